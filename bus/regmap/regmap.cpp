@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+//
+// regmap: turns the register description of a block (*.regs.json) into what each side includes:
+// <block>_regs.vh (Verilog localparams), <block>_regs.h (C90 macros), <block>_regs_pkg.vhd (VHDL
+// package), <block>_regs.md (page for people). Format of the description: docs/registers.md.
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+using nlohmann::json;
+
+namespace {
+
+constexpr unsigned wordsPerSlot = 16;
+
+struct Field {
+    std::string name, doc;
+    unsigned lsb = 0, width = 1;
+};
+struct Register {
+    std::string name, access, doc;
+    unsigned word = 0;
+    std::vector<Field> fields;
+};
+struct Constant {
+    std::string name, doc;
+    unsigned long value = 0;
+};
+struct Block {
+    std::string name, prefix, doc;
+    bool isSlot = false; // has ID, EVENT and MASK in words 0..2
+    std::vector<Constant> constants;
+    std::vector<Register> registers;
+};
+
+std::string upper(std::string s) {
+    for (char& c : s)
+        c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    return s;
+}
+
+unsigned long number(const json& v) {
+    return v.is_string() ? std::stoul(v.get<std::string>(), nullptr, 0) : v.get<unsigned long>();
+}
+
+void check(bool ok, const std::string& what) {
+    if (!ok)
+        throw std::runtime_error(what);
+}
+
+// Adds the words every slot begins with: who it is, its sticky events, their mask.
+void addCommonWords(Block& b, const json& j) {
+    Register event{"EVENT", "w1c", "sticky events; write 1 to clear", 1, {}};
+    Register mask{"MASK", "rw", "1: the event drives the interrupt line", 2, {}};
+    for (const json& e : j.value("events", json::array())) {
+        Field f{e.at("name"), e.at("doc"), e.at("bit").get<unsigned>(), 1};
+        event.fields.push_back(f);
+        mask.fields.push_back(f);
+    }
+    Register id{"ID", "ro", "type and version of the slot", 0, {}};
+    id.fields = {{"VERSION", "major and minor, 8 bits each", 0, 16},
+                 {"TYPE", "type id", 16, 16}};
+    b.constants.push_back({"ID_VALUE", "what word ID reads",
+                           number(j.at("type")) << 16 | number(j.at("version"))});
+    b.registers.insert(b.registers.begin(), {id, event, mask});
+}
+
+void checkRegisters(const Block& b) {
+    std::set<unsigned> words;
+    for (const Register& r : b.registers) {
+        static const std::set<std::string> accesses = {"ro", "rw", "w1c", "ws"};
+        check(r.word < wordsPerSlot, fmt::format("{}: word {} is not in 0..15", r.name, r.word));
+        check(words.insert(r.word).second, fmt::format("{}: word {} is taken", r.name, r.word));
+        check(accesses.count(r.access), fmt::format("{}: access '{}' is not one of ro rw w1c ws",
+                                                    r.name, r.access));
+        unsigned long used = 0;
+        for (const Field& f : r.fields) {
+            check(f.width > 0 && f.lsb + f.width <= 32,
+                  fmt::format("{}.{}: bits {}..{} do not fit a word", r.name, f.name,
+                              f.lsb + f.width - 1, f.lsb));
+            unsigned long bits = ((1ul << f.width) - 1) << f.lsb;
+            check(!(used & bits), fmt::format("{}.{}: overlaps another field", r.name, f.name));
+            used |= bits;
+        }
+    }
+}
+
+Block parse(const json& j) {
+    Block b;
+    b.name = j.at("block");
+    b.prefix = upper(b.name);
+    b.doc = j.at("doc");
+    b.isSlot = j.contains("type");
+    for (const json& c : j.value("constants", json::array()))
+        b.constants.push_back({c.at("name"), c.at("doc"), number(c.at("value"))});
+    for (const json& r : j.at("registers")) {
+        Register out{r.at("name"), r.at("access"), r.at("doc"), r.at("word").get<unsigned>(), {}};
+        for (const json& f : r.value("fields", json::array()))
+            out.fields.push_back({f.at("name"), f.at("doc"), f.at("lsb").get<unsigned>(),
+                                  f.at("width").get<unsigned>()});
+        b.registers.push_back(out);
+    }
+    if (b.isSlot)
+        addCommonWords(b, j);
+    checkRegisters(b);
+    return b;
+}
+
+std::string verilog(const Block& b) {
+    std::string s = fmt::format("// Generated from {}.regs.json: do not edit.\n"
+                                "// verilator lint_off UNUSEDPARAM\n", b.name);
+    for (const Constant& c : b.constants)
+        s += fmt::format("localparam [31:0] {}_{} = 32'h{:08X}; // {}\n", b.prefix, c.name, c.value,
+                         c.doc);
+    for (const Register& r : b.registers) {
+        s += fmt::format("localparam [3:0] {}_{} = 4'd{}; // {}: {}\n", b.prefix, r.name, r.word,
+                         r.access, r.doc);
+        for (const Field& f : r.fields)
+            s += fmt::format("localparam integer {0}_{1}_{2}_LSB = {3}, {0}_{1}_{2}_WIDTH = {4};\n",
+                             b.prefix, r.name, f.name, f.lsb, f.width);
+    }
+    return s + "// verilator lint_on UNUSEDPARAM\n";
+}
+
+std::string cHeader(const Block& b) {
+    std::string s = fmt::format("/* Generated from {0}.regs.json: do not edit.\n * {1} */\n"
+                                "#ifndef {2}_REGS_H\n#define {2}_REGS_H\n\n",
+                                b.name, b.doc, b.prefix);
+    for (const Constant& c : b.constants)
+        s += fmt::format("#define {}_{} 0x{:X}UL /* {} */\n", b.prefix, c.name, c.value, c.doc);
+    for (const Register& r : b.registers) {
+        s += fmt::format("\n#define {}_{} {}U /* {}: {} */\n", b.prefix, r.name, r.word, r.access,
+                         r.doc);
+        for (const Field& f : r.fields)
+            s += fmt::format("#define {0}_{1}_{2}_LSB {3}U /* {4} */\n"
+                             "#define {0}_{1}_{2}_MASK 0x{5:X}UL\n",
+                             b.prefix, r.name, f.name, f.lsb, f.doc,
+                             ((1ul << f.width) - 1) << f.lsb);
+    }
+    return s + "\n#endif\n";
+}
+
+std::string vhdl(const Block& b) {
+    std::string s = fmt::format("-- Generated from {0}.regs.json: do not edit.\n"
+                                "package {0}_regs_pkg is\n", b.name);
+    for (const Constant& c : b.constants)
+        if (c.value <= 0x7FFFFFFF)
+            s += fmt::format("  constant {}_{} : natural := {}; -- {}\n", b.prefix, c.name, c.value,
+                             c.doc);
+    for (const Register& r : b.registers) {
+        s += fmt::format("  constant {}_{} : natural := {}; -- {}: {}\n", b.prefix, r.name, r.word,
+                         r.access, r.doc);
+        for (const Field& f : r.fields)
+            s += fmt::format("  constant {0}_{1}_{2}_LSB : natural := {3};\n"
+                             "  constant {0}_{1}_{2}_WIDTH : natural := {4};\n",
+                             b.prefix, r.name, f.name, f.lsb, f.width);
+    }
+    return s + "end package;\n";
+}
+
+std::string markdown(const Block& b) {
+    std::string s = fmt::format("# `{}`\n\n{}\n", b.name, b.doc);
+    if (!b.constants.empty()) {
+        s += "\n| constant | value | meaning |\n|---|---|---|\n";
+        for (const Constant& c : b.constants)
+            s += fmt::format("| {} | {} (0x{:X}) | {} |\n", c.name, c.value, c.value, c.doc);
+    }
+    if (!b.registers.empty())
+        s += "\n| word | register | access | bits | meaning |\n|---|---|---|---|---|\n";
+    for (const Register& r : b.registers) {
+        s += fmt::format("| {} | **{}** | {} | | {} |\n", r.word, r.name, r.access, r.doc);
+        for (const Field& f : r.fields)
+            s += fmt::format("| | {} | | {} | {} |\n", f.name,
+                             f.width == 1 ? fmt::format("{}", f.lsb)
+                                          : fmt::format("{}..{}", f.lsb + f.width - 1, f.lsb),
+                             f.doc);
+    }
+    return s + "\nAccess: ro read only; rw read and write; w1c write 1 to clear; ws write acts, "
+               "reads as 0.\n";
+}
+
+void save(const std::string& path, const std::string& text) {
+    std::ofstream out(path, std::ios::binary);
+    out << text;
+    out.close();
+    check(bool(out), fmt::format("cannot write '{}'", path));
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Generates the Verilog, C, VHDL and Markdown view of a block's registers."};
+    std::string input, outputDir = ".";
+    app.add_option("description", input, "the block's *.regs.json")->required();
+    app.add_option("--output-dir", outputDir, "where the four files go");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        std::ifstream in(input);
+        check(bool(in), "cannot be read");
+        Block b = parse(json::parse(in));
+        std::string base = outputDir + "/" + b.name + "_regs";
+        save(base + ".vh", verilog(b));
+        save(base + ".h", cHeader(b));
+        save(base + "_pkg.vhd", vhdl(b));
+        save(base + ".md", markdown(b));
+    } catch (const std::exception& e) {
+        std::cerr << input << ": error: " << e.what() << "\n";
+        return 1;
+    }
+    return 0;
+}

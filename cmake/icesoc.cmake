@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: MIT
+#
+# icesoc.cmake: how each kind of source is built, said once.
+
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+find_program(VERILATOR verilator REQUIRED)
+find_program(IVERILOG iverilog REQUIRED)
+find_program(YOSYS yosys REQUIRED)
+find_package(GTest REQUIRED)
+include(GoogleTest)
+
+set(GEN_DIR ${CMAKE_BINARY_DIR}/gen)
+file(MAKE_DIRECTORY ${GEN_DIR})
+# gtest_discover_tests runs the binary at ctest time, so a build never runs a test.
+set(CMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE PRE_TEST)
+
+set(HOST_WARNINGS -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion)
+set(C90_WARNINGS -std=c90 -pedantic -Wall -Wextra -Wconversion -Wstrict-prototypes
+    -Wmissing-prototypes -Wdeclaration-after-statement -Werror)
+if(SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined
+                      -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+
+# icesoc_c90(NAME SOURCES... [INCLUDES dir...] [LIBS lib...])
+# A firmware layer as a static library, C90 to the letter.
+function(icesoc_c90 name)
+  cmake_parse_arguments(A "" "" "SOURCES;INCLUDES;LIBS" ${ARGN})
+  add_library(${name} STATIC ${A_SOURCES})
+  target_compile_options(${name} PRIVATE ${C90_WARNINGS})
+  target_include_directories(${name} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR} ${A_INCLUDES})
+  if(A_LIBS)
+    target_link_libraries(${name} PUBLIC ${A_LIBS})
+  endif()
+endfunction()
+
+# icesoc_test(NAME SOURCES... [LIBS lib...] [LABELS label...] [ARGS ...])
+# A GoogleTest program whose cases CTest finds. Labels select: `ctest -L rtl`.
+function(icesoc_test name)
+  cmake_parse_arguments(A "" "" "SOURCES;LIBS;LABELS;ARGS" ${ARGN})
+  add_executable(${name} ${A_SOURCES})
+  target_compile_options(${name} PRIVATE ${HOST_WARNINGS})
+  target_link_libraries(${name} PRIVATE ${A_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
+  gtest_discover_tests(${name} TEST_PREFIX "${name}." EXTRA_ARGS ${A_ARGS}
+                       PROPERTIES LABELS "${A_LABELS}" DISCOVERY_TIMEOUT 60)
+endfunction()
+
+# icesoc_regmap(JSON): registers of one block, from its *.regs.json, as a Verilog include, a C header,
+# a VHDL package and a Markdown page in ${GEN_DIR}; target regmap_<block>, interface library regs_<block>.
+function(icesoc_regmap json)
+  get_filename_component(block ${json} NAME_WE)
+  get_filename_component(path ${json} ABSOLUTE)
+  set(outs ${GEN_DIR}/${block}_regs.vh ${GEN_DIR}/${block}_regs.h ${GEN_DIR}/${block}_regs_pkg.vhd
+           ${GEN_DIR}/${block}_regs.md)
+  add_custom_command(OUTPUT ${outs}
+    COMMAND regmap ${path} --output-dir ${GEN_DIR}
+    DEPENDS regmap ${path} VERBATIM COMMENT "Registers of ${block}")
+  add_custom_target(regmap_${block} ALL DEPENDS ${outs})
+  set_property(GLOBAL APPEND PROPERTY ICESOC_REGMAP_TARGETS regmap_${block})
+  add_library(regs_${block} INTERFACE)
+  target_include_directories(regs_${block} INTERFACE ${GEN_DIR})
+  add_dependencies(regs_${block} regmap_${block})
+endfunction()
+
+# icesoc_verilate(NAME TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES dir...] [REGS block...]
+#                 [DEPENDS target-or-file...] [FLAGS ...] [TRACE] [COVERAGE])
+# Verilated model of a module as a library NAME with the class V<NAME>. Lint is on (-Wall) and fatal.
+function(icesoc_verilate name)
+  cmake_parse_arguments(A "TRACE;COVERAGE" "TOP" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
+  set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})
+  set(lib ${dir}/V${name}__ALL.a)
+  set(flags --cc -Wall --x-assign unique --x-initial unique -O3 --top-module ${A_TOP} --prefix V${name}
+            --Mdir ${dir} -y ${GEN_DIR} -I${GEN_DIR} ${A_FLAGS})
+  foreach(i IN LISTS A_INCLUDES)
+    list(APPEND flags -y ${i} -I${i})
+  endforeach()
+  foreach(p IN LISTS A_PARAMS)
+    list(APPEND flags -G${p})
+  endforeach()
+  if(A_TRACE)
+    list(APPEND flags --trace-fst)
+  endif()
+  if(A_COVERAGE)
+    list(APPEND flags --coverage-line --coverage-toggle)
+  endif()
+  set(sources)
+  foreach(s IN LISTS A_SOURCES)
+    get_filename_component(s ${s} ABSOLUTE)
+    list(APPEND sources ${s})
+  endforeach()
+  set(deps ${sources} ${A_DEPENDS})
+  foreach(r IN LISTS A_REGS)
+    list(APPEND deps regmap_${r} ${GEN_DIR}/${r}_regs.vh)
+  endforeach()
+  # Verilator's own makefile appends -Os; OPT_FAST is the way in (measured: twice the speed).
+  add_custom_command(OUTPUT ${lib}
+    COMMAND ${VERILATOR} ${flags} ${sources}
+    COMMAND ${CMAKE_COMMAND} -E env CCACHE_DIR=$ENV{CCACHE_DIR}
+            make -s -C ${dir} -f V${name}.mk V${name}__ALL.a
+            "CXX=${CCACHE} ${CMAKE_CXX_COMPILER}" "OPT_FAST=-O3 -march=native" OPT_GLOBAL=-O2
+            "OPT_SLOW=-O1" "USER_CPPFLAGS=-fPIC" ARCHIVE=1
+    DEPENDS ${deps} VERBATIM COMMENT "Verilating ${A_TOP} as ${name}")
+  add_custom_target(verilated_${name} DEPENDS ${lib})
+  icesoc_verilator_runtime()
+  add_library(${name} INTERFACE)
+  add_dependencies(${name} verilated_${name})
+  target_include_directories(${name} SYSTEM INTERFACE ${dir})
+  target_link_libraries(${name} INTERFACE ${lib} verilator_runtime)
+endfunction()
+
+# Verilator's run time, compiled once for all models.
+function(icesoc_verilator_runtime)
+  if(TARGET verilator_runtime)
+    return()
+  endif()
+  execute_process(COMMAND ${VERILATOR} --getenv VERILATOR_ROOT
+                  OUTPUT_VARIABLE root OUTPUT_STRIP_TRAILING_WHITESPACE)
+  if(NOT EXISTS ${root}/include/verilated.cpp)
+    message(FATAL_ERROR "Verilator's include folder is not at '${root}': reinstall verilator")
+  endif()
+  find_package(ZLIB REQUIRED)
+  find_package(Threads REQUIRED)
+  add_library(verilator_runtime STATIC ${root}/include/verilated.cpp
+    ${root}/include/verilated_threads.cpp ${root}/include/verilated_cov.cpp
+    ${root}/include/verilated_fst_c.cpp)
+  target_compile_options(verilator_runtime PRIVATE -O2 -w)
+  target_compile_definitions(verilator_runtime PUBLIC VM_TRACE_FST=1)
+  target_include_directories(verilator_runtime SYSTEM PUBLIC ${root}/include ${root}/include/vltstd)
+  target_link_libraries(verilator_runtime PUBLIC ZLIB::ZLIB Threads::Threads)
+endfunction()

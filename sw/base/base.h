@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * base: integer types of stated width for C90, which has no <stdint.h>.
+ */
+#ifndef BASE_H
+#define BASE_H
+
+typedef unsigned char U8;
+typedef unsigned short U16;
+typedef unsigned int U32;
+typedef signed short S16;
+typedef signed int S32;
+
+/* Fails to compile on a machine whose integers have other widths. */
+typedef char base_check_u16[sizeof(U16) == 2 ? 1 : -1];
+typedef char base_check_u32[sizeof(U32) == 4 ? 1 : -1];
+
+#endif

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * fsmc: driver of the STM32F2's FSMC (RM0033, chapter 31) for the FPGA on bank 1, NE1 and NE2.
+ *
+ * NE1 is a 64 MiB window into DDR3, NE2 the control space of 64 slots with 16 words of 32 bits
+ * each (bus/map.regs.json). Data is 16 bits wide; a 32-bit word is two accesses, low half first.
+ * Functions are not re-entrant between tasks: each slot, and the page register, has one owner, or the
+ * caller holds a lock.
+ */
+#ifndef FSMC_H
+#define FSMC_H
+
+#include "base.h"
+
+/* What the driver stands on. On the target these are volatile loads and stores, on the host they go
+ * to the model of the FSMC peripheral and from there to the pins of the RTL. Addresses are the
+ * Cortex-M3's: FSMC registers at 0xA0000000, NE1 at 0x60000000, NE2 at 0x64000000. */
+typedef struct Fsmc_Port {
+    U16 (*read16)(void *context, U32 address);
+    void (*write16)(void *context, U32 address, U16 value);
+    U32 (*read32)(void *context, U32 address);              /* FSMC registers only */
+    void (*write32)(void *context, U32 address, U32 value); /* FSMC registers only */
+} Fsmc_Port;
+
+typedef enum Fsmc_Status {
+    FSMC_OK = 0,
+    FSMC_NO_DEVICE, /* slot 0 does not identify itself as the system slot */
+    FSMC_BUS_ERROR  /* an access since the last check hit nothing */
+} Fsmc_Status;
+
+/* Programs BCR1/BTR1 and BCR2/BTR2 (asynchronous SRAM, 16 bits, NWAIT on) and looks for the system slot. */
+Fsmc_Status FSMC_init(const Fsmc_Port *port, void *context);
+
+/* Registers: 32 bits, atomic. slot 0..63, word 0..15. */
+U32 FSMC_read(U32 slot, U32 word);
+void FSMC_write(U32 slot, U32 word, U32 value);
+
+/* DDR3: any byte address of the chip (the page register follows), any length. */
+void FSMC_readMemory(U32 address, U8 *data, U32 bytes);
+void FSMC_writeMemory(U32 address, const U8 *data, U32 bytes);
+
+/* Reads and clears the bridge's error event. `where` (may be 0): slot * 16 + word, bit 16 for a write. */
+Fsmc_Status FSMC_checkError(U32 *where);
+
+#endif

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+//
+// bench: clock, reset and bounded waits for a Verilated module with clk_i and rst_i.
+//
+// Drive inputs after tick(), sample outputs before it: outputs are settled whenever tick() returns.
+
+#ifndef BENCH_H
+#define BENCH_H
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+#include <verilated.h>
+
+template <class Module> class Bench {
+public:
+    Bench() : context_(new VerilatedContext), top_(new Module(context_.get())) {}
+    ~Bench() { top_->final(); }
+    Bench(const Bench&) = delete;
+    Bench& operator=(const Bench&) = delete;
+
+    Module& top() { return *top_; }
+    uint64_t cycles() const { return cycles_; }
+
+    // A synchronous model: `sample` sees the settled ports before each rising edge, `drive` sets
+    // inputs after it, as the model's registers would.
+    void addModel(std::function<void()> sample, std::function<void()> drive) {
+        models_.emplace_back(std::move(sample), std::move(drive));
+    }
+
+    // One clock cycle: settle, models sample, rising edge, models drive, falling edge, settle.
+    void tick() {
+        top_->eval();
+        for (auto& model : models_)
+            model.first();
+        top_->clk_i = 1;
+        top_->eval();
+        for (auto& model : models_)
+            model.second();
+        top_->clk_i = 0;
+        top_->eval();
+        ++cycles_;
+    }
+
+    void reset(unsigned cycles = 4) {
+        top_->rst_i = 1;
+        for (unsigned i = 0; i < cycles; ++i)
+            tick();
+        top_->rst_i = 0;
+        top_->eval();
+    }
+
+    // Ticks until the condition holds; throws with `what` after `limit` cycles.
+    template <class Condition>
+    void waitFor(Condition condition, const std::string& what, uint64_t limit = 10000) {
+        for (uint64_t i = 0; i < limit; ++i) {
+            top_->eval();
+            if (condition())
+                return;
+            tick();
+        }
+        throw std::runtime_error("waited " + std::to_string(limit) + " cycles for " + what);
+    }
+
+private:
+    std::unique_ptr<VerilatedContext> context_;
+    std::unique_ptr<Module> top_;
+    std::vector<std::pair<std::function<void()>, std::function<void()>>> models_;
+    uint64_t cycles_ = 0;
+};
+
+#endif

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+//
+// bus_master: drives the register bus of a module with the slave ports of docs/bus.md.
+
+#ifndef BUS_MASTER_H
+#define BUS_MASTER_H
+
+#include "bench.h"
+
+template <class Module> class BusMaster {
+public:
+    explicit BusMaster(Bench<Module>& bench) : bench_(bench) {}
+
+    struct Answer {
+        uint32_t data;
+        bool error;
+        unsigned cycles; // from valid to ready, 1 at least
+    };
+
+    Answer transfer(bool write, unsigned word, uint32_t data) {
+        Module& top = bench_.top();
+        top.bus_valid_i = 1;
+        top.bus_write_i = write;
+        top.bus_addr_i = word;
+        top.bus_wdata_i = data;
+        uint64_t start = bench_.cycles();
+        bench_.waitFor([&] { return top.bus_ready_o; }, "bus_ready_o at word " + std::to_string(word),
+                       64);
+        Answer answer{top.bus_rdata_o, bool(top.bus_error_o),
+                      static_cast<unsigned>(bench_.cycles() - start + 1)};
+        bench_.tick();
+        top.bus_valid_i = 0;
+        top.eval();
+        return answer;
+    }
+    uint32_t read(unsigned word) { return transfer(false, word, 0).data; }
+    void write(unsigned word, uint32_t data) { transfer(true, word, data); }
+
+private:
+    Bench<Module>& bench_;
+};
+
+#endif

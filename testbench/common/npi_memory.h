@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+//
+// npi_memory: the memory behind one NPI port (docs/memory.md), with random stalls, for block tests.
+// It checks the requester's rules and throws where one is broken.
+
+#ifndef NPI_MEMORY_H
+#define NPI_MEMORY_H
+
+#include "bench.h"
+#include "random.h"
+#include <deque>
+#include <unordered_map>
+
+template <class Module> class NpiMemory {
+public:
+    // stall: probability, each cycle, that an acknowledgement or the next read word waits.
+    NpiMemory(Bench<Module>& bench, double stall, uint64_t seed)
+        : top_(bench.top()), random_(seed), stall_(stall) {
+        drive();
+        bench.addModel([this] { sample(); }, [this] { drive(); });
+    }
+
+    uint8_t byte(uint32_t address) const {
+        auto it = bytes_.find(address);
+        return it == bytes_.end() ? 0 : it->second;
+    }
+    void setByte(uint32_t address, uint8_t value) { bytes_[address] = value; }
+    void setStall(double stall) { stall_ = stall; }
+    // While held no request is acknowledged: a memory that hangs.
+    void hold(bool held) { held_ = held; }
+    uint64_t reads() const { return reads_; }
+    uint64_t writes() const { return writes_; }
+
+private:
+    static constexpr unsigned fifoWords = 32;
+
+    struct Word {
+        uint64_t data;
+        uint8_t extra; // write: byte enables; read: index in the transfer
+    };
+
+    [[noreturn]] static void broken(const std::string& what) {
+        throw std::runtime_error("NPI rule broken: " + what);
+    }
+
+    void sample() {
+        if (top_.rst_i) {
+            read_.clear();
+            write_.clear();
+            ack_ = readValid_ = false;
+            return;
+        }
+        if (top_.npi_rd_pop_o) {
+            if (!readValid_)
+                broken("pop of an empty read FIFO");
+            read_.pop_front();
+            readValid_ = false;
+        }
+        if (top_.npi_wr_flush_o)
+            write_.clear();
+        if (top_.npi_rd_flush_o) {
+            read_.clear();
+            readValid_ = false;
+        }
+        if (top_.npi_wr_push_o) {
+            write_.push_back({top_.npi_wr_data_o, static_cast<uint8_t>(top_.npi_wr_be_o)});
+            if (write_.size() > fifoWords)
+                broken("push into a full write FIFO");
+        }
+        sampleRequest();
+        readValid_ = !read_.empty() && (readValid_ || !random_.chance(stall_));
+    }
+
+    void sampleRequest() {
+        bool isNew = top_.npi_addr_req_o && !ack_;
+        if (waiting_ && !top_.npi_addr_req_o)
+            broken("request withdrawn before its acknowledgement");
+        if (isNew) {
+            if (waiting_ && (address_ != top_.npi_addr_o || isRead_ != bool(top_.npi_rnw_o) ||
+                             size_ != top_.npi_size_o))
+                broken("request changed before its acknowledgement");
+            address_ = top_.npi_addr_o;
+            isRead_ = top_.npi_rnw_o;
+            size_ = top_.npi_size_o;
+        } else if (ack_) {
+            take(); // the acknowledgement is given at this edge
+        }
+        waiting_ = isNew;
+        ack_ = isNew && !held_ && !random_.chance(stall_);
+        if (ack_)
+            waiting_ = false;
+    }
+
+    void take() {
+        if (size_ > 4)
+            broken("size " + std::to_string(size_));
+        unsigned words = 1u << size_;
+        if (address_ % (words * 8))
+            broken("address not aligned to its size");
+        isRead_ ? takeRead(words) : takeWrite(words);
+    }
+
+    void takeRead(unsigned words) {
+        ++reads_;
+        for (unsigned w = 0; w < words; ++w)
+            read_.push_back({load(address_ + 8 * w), static_cast<uint8_t>(w)});
+        if (read_.size() > fifoWords)
+            broken("more words outstanding than the read FIFO holds");
+    }
+
+    void takeWrite(unsigned words) {
+        ++writes_;
+        if (write_.size() < words)
+            broken("write requested before its data was pushed");
+        for (unsigned w = 0; w < words; ++w) {
+            Word word = write_.front();
+            write_.pop_front();
+            for (unsigned b = 0; b < 8; ++b)
+                if (word.extra >> b & 1)
+                    bytes_[address_ + 8 * w + b] = static_cast<uint8_t>(word.data >> (8 * b));
+        }
+    }
+
+    uint64_t load(uint32_t address) const {
+        uint64_t value = 0;
+        for (unsigned b = 0; b < 8; ++b)
+            value |= uint64_t(byte(address + b)) << (8 * b);
+        return value;
+    }
+
+    void drive() {
+        top_.npi_init_done_i = 1;
+        top_.npi_addr_ack_i = ack_;
+        top_.npi_wr_empty_i = write_.empty();
+        top_.npi_wr_almost_full_i = write_.size() + 1 >= fifoWords;
+        top_.npi_rd_empty_i = !readValid_;
+        if (readValid_) {
+            top_.npi_rd_data_i = read_.front().data;
+            top_.npi_rd_word_i = read_.front().extra;
+        }
+    }
+
+    Module& top_;
+    Random random_;
+    double stall_;
+    bool held_ = false, ack_ = false, waiting_ = false, readValid_ = false, isRead_ = false;
+    uint32_t address_ = 0;
+    unsigned size_ = 0;
+    std::deque<Word> read_, write_;
+    std::unordered_map<uint32_t, uint8_t> bytes_;
+    uint64_t reads_ = 0, writes_ = 0;
+};
+
+#endif

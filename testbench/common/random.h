@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+//
+// random: a small generator with the same numbers on every machine (xorshift64*), and the seed of a test.
+
+#ifndef RANDOM_H
+#define RANDOM_H
+
+#include <cstdint>
+#include <cstdlib>
+
+class Random {
+public:
+    explicit Random(uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ull + 0x1234567ull) {
+        if (state_ == 0)
+            state_ = 1;
+    }
+    uint32_t next() {
+        state_ ^= state_ >> 12;
+        state_ ^= state_ << 25;
+        state_ ^= state_ >> 27;
+        return static_cast<uint32_t>((state_ * 0x2545F4914F6CDD1Dull) >> 32);
+    }
+    // 0 .. bound-1
+    uint32_t below(uint32_t bound) { return static_cast<uint32_t>(uint64_t(next()) * bound >> 32); }
+    bool chance(double probability) { return next() < probability * 4294967296.0; }
+
+private:
+    uint64_t state_;
+};
+
+// SEED from the environment repeats a run; `fallback` otherwise.
+inline uint64_t testSeed(uint64_t fallback = 1) {
+    const char* seed = std::getenv("SEED");
+    return seed && *seed ? std::strtoull(seed, nullptr, 0) : fallback;
+}
+
+#endif

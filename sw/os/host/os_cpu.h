@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * os_cpu: what the kernel needs of a processor, as uC/OS-II names it. Host: tasks are coroutines of
+ * one thread, and interrupts arrive only where simulated time passes, so runs repeat exactly.
+ */
+#ifndef OS_CPU_H
+#define OS_CPU_H
+
+typedef unsigned long OS_STK;
+typedef unsigned int OS_CPU_SR;
+
+/* Method 3: the state of the interrupt enable is kept in a local variable. */
+#define OS_CRITICAL_METHOD 3U
+#define OS_ENTER_CRITICAL() (cpu_sr = OS_CPU_SR_Save())
+#define OS_EXIT_CRITICAL() (OS_CPU_SR_Restore(cpu_sr))
+
+OS_CPU_SR OS_CPU_SR_Save(void);
+void OS_CPU_SR_Restore(OS_CPU_SR cpu_sr);
+
+#endif

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+//
+// os_host: the kernel's port to a host process: tasks are coroutines of the calling thread.
+//
+// A machine (the simulator, or a test) says how time passes. Interrupts are delivered by
+// OsHost::interruptPoint(), which the machine calls wherever simulated time has passed.
+
+#ifndef OS_HOST_H
+#define OS_HOST_H
+
+#include <functional>
+
+namespace OsHost {
+
+struct Machine {
+    // Nothing to do: let time pass up to the next interrupt.
+    std::function<void()> idle;
+    // True while an interrupt is pending; then `serve` runs its handler (between OSIntEnter and
+    // OSIntExit), which must make `pending` false or the handler is entered again.
+    std::function<bool()> pending;
+    std::function<void()> serve;
+};
+
+// Before OSInit. The machine must outlive run().
+void setMachine(Machine machine);
+
+// OSStart, but it returns: when stop() is called, or with the exception that left a task.
+void run();
+
+// Leaves run() from within a task, an interrupt or idle. Tasks do not go on afterwards.
+[[noreturn]] void stop();
+
+// Serves interrupts that are pending, if they are enabled and none is being served.
+void interruptPoint();
+
+} // namespace OsHost
+
+#endif

@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * os_core: scheduler, tasks, time and interrupts of the kernel. Preemptive, fixed priorities.
+ */
+#include "os_core.h"
+
+OsKernel os_kernel;
+
+static OS_STK idleStack[256];
+
+void OsSet_add(OsSet *set, U8 priority) {
+    set->word[priority >> 5] |= 1U << (priority & 31U);
+}
+
+void OsSet_remove(OsSet *set, U8 priority) {
+    set->word[priority >> 5] &= ~(1U << (priority & 31U));
+}
+
+int OsSet_has(const OsSet *set, U8 priority) {
+    return (int)(set->word[priority >> 5] >> (priority & 31U) & 1U);
+}
+
+int OS_PriorityTaken(U8 priority) {
+    return os_kernel.byPriority[priority] != 0 || OsSet_has(&os_kernel.reserved, priority);
+}
+
+U8 OsSet_first(const OsSet *set) {
+    U8 base = set->word[0] ? 0U : 32U;
+    U32 bits = set->word[base >> 5];
+    U8 n = 0;
+    if (bits == 0)
+        return OS_LOWEST_PRIO + 1U;
+    while ((bits & 1U) == 0) {
+        bits >>= 1;
+        ++n;
+    }
+    return (U8)(base + n);
+}
+
+static void idleTask(void *argument) {
+    (void)argument;
+    for (;;)
+        OSTaskIdleHook();
+}
+
+static INT8U createTask(void (*task)(void *), void *argument, OS_STK *ptos, U8 priority) {
+    OsTask *t = 0;
+    U32 i;
+    for (i = 0; i <= OS_MAX_TASKS && !t; ++i)
+        if (!os_kernel.tasks[i].used)
+            t = &os_kernel.tasks[i];
+    if (!t)
+        return OS_ERR_TASK_NO_MORE_TCB;
+    t->used = 1;
+    t->priority = t->base = priority;
+    t->delay = 0;
+    t->event = 0;
+    t->stack = OSTaskStkInit(task, argument, ptos, 0);
+    os_kernel.byPriority[priority] = t;
+    OsSet_add(&os_kernel.ready, priority);
+    return OS_ERR_NONE;
+}
+
+void OSInit(void) {
+    static const OsKernel empty;
+    os_kernel = empty;
+    (void)createTask(idleTask, 0, idleStack + sizeof idleStack / sizeof idleStack[0] - 1,
+                     OS_LOWEST_PRIO);
+}
+
+INT8U OSTaskCreate(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT8U prio) {
+    OS_CPU_SR cpu_sr;
+    INT8U error;
+    if (os_kernel.interruptNesting)
+        return OS_ERR_TASK_CREATE_ISR;
+    if (prio >= OS_LOWEST_PRIO)
+        return OS_ERR_PRIO_INVALID;
+    OS_ENTER_CRITICAL();
+    error = OS_PriorityTaken(prio) ? OS_ERR_PRIO_EXIST : createTask(task, p_arg, ptos, prio);
+    OS_EXIT_CRITICAL();
+    if (error == OS_ERR_NONE && os_kernel.running)
+        OS_Sched();
+    return error;
+}
+
+void OSStart(void) {
+    if (os_kernel.running)
+        return;
+    os_kernel.running = 1;
+    os_kernel.current = os_kernel.byPriority[OsSet_first(&os_kernel.ready)];
+    OSStartHighRdy();
+}
+
+/* With interrupts disabled. */
+static void switchToFirst(void) {
+    OsTask *from = os_kernel.current;
+    OsTask *to = os_kernel.byPriority[OsSet_first(&os_kernel.ready)];
+    if (to != from) {
+        os_kernel.current = to;
+        OSCtxSw(from, to);
+    }
+}
+
+void OS_Sched(void) {
+    OS_CPU_SR cpu_sr;
+    OS_ENTER_CRITICAL();
+    if (os_kernel.running && !os_kernel.interruptNesting && !os_kernel.lockNesting)
+        switchToFirst();
+    OS_EXIT_CRITICAL();
+}
+
+void OSSchedLock(void) {
+    OS_CPU_SR cpu_sr;
+    OS_ENTER_CRITICAL();
+    if (os_kernel.running && !os_kernel.interruptNesting && os_kernel.lockNesting < 255U)
+        ++os_kernel.lockNesting;
+    OS_EXIT_CRITICAL();
+}
+
+void OSSchedUnlock(void) {
+    OS_CPU_SR cpu_sr;
+    OS_ENTER_CRITICAL();
+    if (os_kernel.lockNesting && !os_kernel.interruptNesting)
+        --os_kernel.lockNesting;
+    OS_EXIT_CRITICAL();
+    OS_Sched();
+}
+
+void OSIntEnter(void) {
+    if (os_kernel.running && os_kernel.interruptNesting < 255U)
+        ++os_kernel.interruptNesting;
+}
+
+void OSIntExit(void) {
+    if (os_kernel.interruptNesting)
+        --os_kernel.interruptNesting;
+    OS_Sched();
+}
+
+void OSTimeDly(INT32U ticks) {
+    OS_CPU_SR cpu_sr;
+    if (os_kernel.interruptNesting || os_kernel.lockNesting || ticks == 0)
+        return;
+    OS_ENTER_CRITICAL();
+    os_kernel.current->delay = ticks;
+    OsSet_remove(&os_kernel.ready, os_kernel.current->priority);
+    OS_EXIT_CRITICAL();
+    OS_Sched();
+}
+
+INT32U OSTimeGet(void) {
+    OS_CPU_SR cpu_sr;
+    INT32U ticks;
+    OS_ENTER_CRITICAL();
+    ticks = os_kernel.ticks;
+    OS_EXIT_CRITICAL();
+    return ticks;
+}
+
+/* A delay or a time-out has run out: ready, whatever it waited for. */
+static void expire(OsTask *task) {
+    if (task->event) {
+        OsSet_remove(&task->event->waiting, task->priority);
+        task->event = 0;
+        task->timedOut = 1;
+    }
+    OsSet_add(&os_kernel.ready, task->priority);
+}
+
+void OSTimeTick(void) {
+    OS_CPU_SR cpu_sr;
+    U32 i;
+    OS_ENTER_CRITICAL();
+    ++os_kernel.ticks;
+    for (i = 0; i <= OS_MAX_TASKS; ++i) {
+        OsTask *task = &os_kernel.tasks[i];
+        if (task->used && task->delay && --task->delay == 0)
+            expire(task);
+    }
+    OS_EXIT_CRITICAL();
+}
+
+U8 OS_EventWait(OS_EVENT *event, U32 timeout, OS_CPU_SR *cpu_sr) {
+    OsTask *task = os_kernel.current;
+    task->event = event;
+    task->timedOut = 0;
+    task->delay = timeout;
+    OsSet_remove(&os_kernel.ready, task->priority);
+    OsSet_add(&event->waiting, task->priority);
+    OS_CPU_SR_Restore(*cpu_sr);
+    OS_Sched();
+    *cpu_sr = OS_CPU_SR_Save();
+    return task->timedOut;
+}
+
+OsTask *OS_EventWake(OS_EVENT *event) {
+    U8 priority = OsSet_first(&event->waiting);
+    OsTask *task;
+    if (priority > OS_LOWEST_PRIO)
+        return 0;
+    task = os_kernel.byPriority[priority];
+    OsSet_remove(&event->waiting, priority);
+    task->event = 0;
+    task->delay = 0;
+    OsSet_add(&os_kernel.ready, priority);
+    return task;
+}
+
+static void moveInSet(OsSet *set, U8 from, U8 to) {
+    if (OsSet_has(set, from)) {
+        OsSet_remove(set, from);
+        OsSet_add(set, to);
+    }
+}
+
+void OS_ChangePriority(OsTask *task, U8 priority) {
+    U8 old = task->priority;
+    moveInSet(&os_kernel.ready, old, priority);
+    if (task->event)
+        moveInSet(&task->event->waiting, old, priority);
+    os_kernel.byPriority[old] = 0;
+    os_kernel.byPriority[priority] = task;
+    task->priority = priority;
+}
+
+OS_EVENT *OS_EventCreate(OsEventType type) {
+    OS_CPU_SR cpu_sr;
+    OS_EVENT *found = 0;
+    U32 i;
+    if (os_kernel.interruptNesting)
+        return 0;
+    OS_ENTER_CRITICAL();
+    for (i = 0; i < OS_MAX_EVENTS && !found; ++i)
+        if (os_kernel.events[i].type == OS_EVENT_FREE)
+            found = &os_kernel.events[i];
+    if (found)
+        found->type = type;
+    OS_EXIT_CRITICAL();
+    return found;
+}
+
+U8 OS_PendError(const OS_EVENT *event, OsEventType type) {
+    if (!event)
+        return OS_ERR_PEVENT_NULL;
+    if (event->type != type)
+        return OS_ERR_EVENT_TYPE;
+    if (os_kernel.interruptNesting)
+        return OS_ERR_PEND_ISR;
+    return os_kernel.lockNesting ? OS_ERR_PEND_LOCKED : OS_ERR_NONE;
+}

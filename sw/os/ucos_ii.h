@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ucos_ii: the part of uC/OS-II's API (2.9x) that the firmware uses, with its names, argument
+ * orders, error codes and blocking rules, so that the real kernel drops in. Manual: "MicroC/OS-II,
+ * The Real-Time Kernel", chapter 16. Time-outs and delays count ticks of 1/OS_TICKS_PER_SEC s.
+ */
+#ifndef UCOS_II_H
+#define UCOS_II_H
+
+#include "base.h"
+#include "os_cfg.h"
+#include "os_cpu.h"
+
+typedef U8 BOOLEAN;
+typedef U8 INT8U;
+typedef U16 INT16U;
+typedef U32 INT32U;
+
+#define OS_FALSE 0U
+#define OS_TRUE 1U
+
+#define OS_ERR_NONE 0U
+#define OS_ERR_EVENT_TYPE 1U         /* the event is of another kind */
+#define OS_ERR_PEND_ISR 2U           /* pending from an interrupt */
+#define OS_ERR_POST_NULL_PTR 3U
+#define OS_ERR_PEVENT_NULL 4U
+#define OS_ERR_TIMEOUT 10U
+#define OS_ERR_PEND_LOCKED 13U       /* the scheduler is locked */
+#define OS_ERR_CREATE_ISR 16U
+#define OS_ERR_Q_FULL 30U
+#define OS_ERR_Q_EMPTY 31U
+#define OS_ERR_PRIO_EXIST 40U        /* the priority is taken */
+#define OS_ERR_PRIO_INVALID 42U
+#define OS_ERR_SEM_OVF 51U
+#define OS_ERR_TASK_CREATE_ISR 60U
+#define OS_ERR_TASK_NO_MORE_TCB 66U
+#define OS_ERR_NOT_MUTEX_OWNER 100U
+#define OS_ERR_PIP_LOWER 120U        /* the owner's priority is above the mutex's ceiling */
+
+typedef struct os_event OS_EVENT;
+
+void OSInit(void);
+/* Runs the tasks; does not return on the target. */
+void OSStart(void);
+
+/* prio 0 (highest) .. OS_LOWEST_PRIO - 1, one task each. `ptos`: highest address of its stack. */
+INT8U OSTaskCreate(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT8U prio);
+
+void OSTimeDly(INT32U ticks);
+INT32U OSTimeGet(void);
+void OSTimeTick(void); /* by the tick interrupt, between OSIntEnter and OSIntExit */
+
+/* timeout 0: for ever. *perr: OS_ERR_NONE, OS_ERR_TIMEOUT, or what was wrong with the call. */
+OS_EVENT *OSSemCreate(INT16U cnt);
+void OSSemPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr);
+INT8U OSSemPost(OS_EVENT *pevent);
+INT16U OSSemAccept(OS_EVENT *pevent);
+
+/* `prio` is the ceiling that an owner inherits while a higher-priority task waits; it must be free. */
+OS_EVENT *OSMutexCreate(INT8U prio, INT8U *perr);
+void OSMutexPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr);
+INT8U OSMutexPost(OS_EVENT *pevent);
+
+OS_EVENT *OSQCreate(void **start, INT16U size);
+void *OSQPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr);
+INT8U OSQPost(OS_EVENT *pevent, void *pmsg);
+
+void OSIntEnter(void);
+void OSIntExit(void);
+void OSSchedLock(void);
+void OSSchedUnlock(void);
+
+#endif

@@ -4,22 +4,27 @@
  *
  * NE1 is a 64 MiB window into DDR3, NE2 the control space of 64 slots with 16 words of 32 bits
  * each (bus/map.regs.json). Data is 16 bits wide; a 32-bit word is two accesses, low half first.
- * Functions are not re-entrant between tasks: each slot, and the page register, has one owner, or the
- * caller holds a lock.
+ * Register accesses are re-entrant. Memory accesses are re-entrant as long as all of them stay in one
+ * page of 64 MiB (the driver moves the page register where one does not): else the callers lock.
  */
 #ifndef FSMC_H
 #define FSMC_H
 
 #include "base.h"
 
-/* What the driver stands on. On the target these are volatile loads and stores, on the host they go
- * to the model of the FSMC peripheral and from there to the pins of the RTL. Addresses are the
- * Cortex-M3's: FSMC registers at 0xA0000000, NE1 at 0x60000000, NE2 at 0x64000000. */
+/* What the driver stands on: the processor's loads and stores. On the target they are volatile
+ * accesses, on the host they go to the model of the FSMC peripheral and from there to the pins of the
+ * RTL. Addresses are the Cortex-M3's: FSMC registers at 0xA0000000 (32 bits only), NE1 at
+ * 0x60000000, NE2 at 0x64000000. The FSMC splits a 32-bit access to a window into two of 16 bits, low
+ * half first, and no interrupt comes between the two: so FSMC_read and FSMC_write, one 32-bit access
+ * each, are safe in tasks and interrupt routines alike. An 8-bit access uses one byte lane. */
 typedef struct Fsmc_Port {
+    U8 (*read8)(void *context, U32 address);
+    void (*write8)(void *context, U32 address, U8 value);
     U16 (*read16)(void *context, U32 address);
     void (*write16)(void *context, U32 address, U16 value);
-    U32 (*read32)(void *context, U32 address);              /* FSMC registers only */
-    void (*write32)(void *context, U32 address, U32 value); /* FSMC registers only */
+    U32 (*read32)(void *context, U32 address);
+    void (*write32)(void *context, U32 address, U32 value);
 } Fsmc_Port;
 
 typedef enum Fsmc_Status {

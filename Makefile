@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: MIT
+#
+# Makefile: the entrance. `make` lists what can be done; CMake (CMakeLists.txt) does it.
+
+SHELL := /bin/sh
+BUILD ?= build/main
+JOBS  ?= $(shell nproc)
+SEED  ?= 1
+LOSS  ?= 0
+SIZE  ?= 320x240
+IMAGE ?= /usr/share/xplanet/images/earth.jpg
+THRESHOLD ?= 24
+# Which tests: LABEL=rtl, NAME=regular-expression
+LABEL ?=
+NAME  ?=
+OUT   ?= build/run
+
+.DEFAULT_GOAL := help
+.PHONY: help setup build run test bench size clean
+
+help: ## this list
+	@echo "IceSoC: every function of the UAV, in software or in hardware, is a ZeroC Ice object."
+	@echo
+	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
+	@echo
+	@echo "Variables: IMAGE=file SIZE=320x240 THRESHOLD=24 LOSS=0.1 SEED=1 OUT=build/run (make run);"
+	@echo "           LABEL=rtl|vhdl|formal|lint|firmware|interop|e2e NAME=regexp SEED=1 (make test)"
+
+setup: ## install the Debian packages that are missing
+	@cmake/setup.sh
+
+$(BUILD)/build.ninja: setup
+	@[ -f $@ ] || cmake -S . -B $(BUILD) -G Ninja
+
+build: $(BUILD)/build.ninja ## build everything (simulator, firmware, compiler, plugin, tests)
+	@ninja -C $(BUILD) -j $(JOBS)
+
+run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground station, pictures in build/run
+	@ninja -C $(BUILD) -j $(JOBS) mission
+	@testbench/sim/run.sh "$(BUILD)" --image "$(IMAGE)" --size "$(SIZE)" --threshold "$(THRESHOLD)" \
+	    --loss "$(LOSS)" --seed "$(SEED)" --out "$(OUT)"
+
+test: build ## run all tests
+	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error \
+	    $(if $(LABEL),-L '$(LABEL)') $(if $(NAME),-R '$(NAME)')
+
+bench: $(BUILD)/build.ninja ## measure the simulator's speed and the calls, write build/bench/*.json
+	@ninja -C $(BUILD) -j $(JOBS) bench
+
+size: $(BUILD)/build.ninja ## bytes of each firmware layer on a Cortex-M3, beside the paper's
+	@ninja -C $(BUILD) size
+
+clean: ## remove what was built
+	rm -rf build

@@ -1,0 +1,84 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# setup: installs the Debian packages that the project needs and the machine lacks.
+# Usage: cmake/setup.sh [--check]    --check only says what is missing (exit 1 if anything is)
+
+set -eu
+
+# package: what it is for
+packages='
+g++ C and C++ compiler
+make drives Verilator models
+cmake build description
+ninja-build runs the build
+ccache makes a second build quick
+pkg-config finds libraries
+zlib1g-dev waveforms (FST)
+verilator turns the Verilog into a C++ model
+iverilog second opinion in lint
+yosys synthesis, latch check, proofs
+z3 solver of the proofs
+libgtest-dev test framework
+libgmock-dev test framework
+nlohmann-json3-dev register descriptions, reports
+libfmt-dev text formatting
+libcli11-dev command lines
+libstb-dev reads and writes pictures
+libmcpp-dev preprocessor of the Slice compiler
+libzeroc-ice-dev ZeroC Ice for C++
+zeroc-ice-compilers slice2cpp, for tests and the C++ client
+zeroc-ice-slice Slice files of ZeroC Ice
+python3-zeroc-ice ZeroC Ice for Python: the ground station
+python3-pil draws the features over the picture
+xplanet-images the default picture
+dpkg-dev unpacks source packages (headers of ZeroC Ice that its -dev package leaves out)
+gcc-arm-none-eabi size of the firmware on a Cortex-M3
+libnewlib-arm-none-eabi C library for it
+'
+case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in
+1[3-9]) packages="$packages
+ghdl-mcode simulates and converts VHDL" ;;
+esac
+
+if ! command -v dpkg-query >/dev/null 2>&1; then
+    echo "setup: this is not Debian, so nothing can be installed automatically. Needed are the" >&2
+    echo "equivalents of these Debian 12 packages:" >&2
+    echo "$packages" | sed -n 's/^\([^ ][^ ]*\) \(.*\)/    \1 (\2)/p' >&2
+    exit 1
+fi
+
+missing=''
+list=$(echo "$packages" | while read -r name why; do
+    [ -n "$name" ] || continue
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] ||
+        echo "$name $why"
+done)
+[ -n "$list" ] || exit 0
+missing=$(echo "$list" | cut -d' ' -f1)
+
+echo "Missing packages:"
+echo "$list" | sed 's/^\([^ ]*\) \(.*\)/    \1: \2/'
+[ "${1:-}" != --check ] || exit 1
+
+sudo=''
+if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null 2>&1 || {
+        echo "setup: not root, and sudo is not there. As root, run:" >&2
+        echo "    apt-get update && apt-get install" $missing >&2
+        exit 1
+    }
+    sudo=sudo
+fi
+echo "Installing them with apt-get (a minute or two) ..."
+$sudo apt-get update -qq || {
+    echo "setup: apt-get update failed: is there a network, and a Debian mirror in /etc/apt?" >&2
+    exit 1
+}
+# shellcheck disable=SC2086 # a list of words
+$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+    $missing >/dev/null || {
+    echo "setup: apt-get could not install the packages above; its message says why. Then run again." >&2
+    exit 1
+}
+echo "Installed."

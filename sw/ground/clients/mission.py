@@ -1,0 +1,232 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""mission: the ground station. Stock ZeroC Ice, and the xbee-at transport plugin.
+
+Sets the vision core's threshold, starts it on the camera's frame, fetches the corners, draws them over
+the picture, and serves Station, which the UAV calls. All of it over the radio.
+"""
+
+import argparse
+import json
+import mmap
+import os
+import struct
+import subprocess
+import sys
+import threading
+import time
+
+import Ice
+from PIL import Image, ImageDraw
+
+
+class Air:
+    """The simulator's counters (testbench/sim/status.h); on real hardware there are none."""
+
+    FORMAT = struct.Struct("<8s7Q")
+
+    def __init__(self, path):
+        self.map = None
+        if path:
+            with open(path, "rb") as f:
+                self.map = mmap.mmap(f.fileno(), self.FORMAT.size, access=mmap.ACCESS_READ)
+
+    def read(self):
+        if not self.map:
+            return None
+        fields = self.FORMAT.unpack(self.map[: self.FORMAT.size])
+        names = ("ns", "cycles", "up", "down", "packets", "lost", "wall")
+        return dict(zip(names, fields[1:]))
+
+
+class Log:
+    """One line a call, for people, and rows for the report."""
+
+    def __init__(self, air):
+        self.air = air
+        self.rows = []
+        self.lock = threading.Lock()
+        self.start = time.monotonic()
+
+    def say(self, text):
+        with self.lock:
+            print("%7.3f s  %s" % (time.monotonic() - self.start, text), flush=True)
+
+    def call(self, who, what, function):
+        """Runs the call; its result, with the air it took written down."""
+        before, wall = self.air.read(), time.monotonic()
+        try:
+            result = function()
+            outcome = ""
+        except Ice.Exception as e:
+            outcome = " failed: " + type(e).__name__
+            raise
+        finally:
+            ms = (time.monotonic() - wall) * 1000
+            after = self.air.read()
+            row = {"who": who, "what": what + outcome, "wall_ms": round(ms, 1)}
+            text = "%-16s %-48s %7.1f ms" % (who, what + outcome, ms)
+            if before:
+                row["simulated_ms"] = round((after["ns"] - before["ns"]) / 1e6, 1)
+                row["bytes_up"] = after["up"] - before["up"]
+                row["bytes_down"] = after["down"] - before["down"]
+                text += " wall, %7.1f ms simulated, %4d bytes up, %4d down" % (
+                    row["simulated_ms"], row["bytes_up"], row["bytes_down"])
+            self.rows.append(row)
+            self.say(text)
+        return result
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--device", required=True, help="serial port of the modem")
+    parser.add_argument("--plugin", required=True, help="folder of libxbeeat.so.37")
+    parser.add_argument("--slice", required=True, help="Autopilot.ice")
+    parser.add_argument("--frame", required=True, help="the camera's frame, to draw on")
+    parser.add_argument("--threshold", type=int, default=24, help="grey levels, 0..255")
+    parser.add_argument("--out", required=True, help="folder for after.png and the report")
+    parser.add_argument("--status", help="the simulator's counters")
+    parser.add_argument("--reference", help="program that computes the corners on the host")
+    parser.add_argument("--loss", default="0", help="noted in the report")
+    parser.add_argument("--trace", type=int, default=0, help="XBeeAT.Trace: 0, 1 or 2")
+    return parser.parse_args()
+
+
+def initialize(args):
+    properties = Ice.createProperties()
+    for key, value in {
+        "Ice.Plugin.XBeeAT": os.path.join(args.plugin, "xbeeat") + ":createXBeeAT",
+        "XBeeAT.Trace": str(args.trace),
+        "Ice.ThreadPool.Client.Size": "2",
+        "Ice.ThreadPool.Server.Size": "2",
+        "Ice.Default.InvocationTimeout": "20000",
+        "Ice.ACM.Close": "0",
+        "Station.Endpoints": "xbee-at -d %s -a 0x0001 -s 0x0000" % args.device,
+    }.items():
+        properties.setProperty(key, value)
+    data = Ice.InitializationData()
+    data.properties = properties
+    return Ice.initialize(data)
+
+
+def make_station(Autopilot, log):
+    class StationI(Autopilot.Station):
+        def __init__(self):
+            self.called = threading.Event()
+            self.alive = None
+            self.params = {}
+
+        def vehicleState(self, uav, params, current):
+            for p in params:
+                self.params[str(p.id)] = int.from_bytes(p.data, "little")
+            log.say("%-16s Station.vehicleState(%s)" % (
+                "UAV -> ground", ", ".join("%s %d" % i for i in self.params.items())))
+            try:
+                self.alive = log.call("ground -> UAV", "uav.isAlive(7)", lambda: uav.isAlive(7))
+            finally:
+                self.called.set()
+
+    return StationI()
+
+
+def draw(frame, result, path):
+    """The frame at twice its size, a circle a corner: the stronger, the larger."""
+    scale = 2
+    picture = Image.open(frame).convert("RGB")
+    picture = picture.resize((picture.width * scale, picture.height * scale), Image.NEAREST)
+    pen = ImageDraw.Draw(picture)
+    strongest = result.best[0].score if result.best else 1
+    for f in result.best:
+        x, y = f.x * scale + scale // 2, f.y * scale + scale // 2
+        r = 4 + 8 * f.score // max(strongest, 1)
+        pen.ellipse((x - r, y - r, x + r, y + r), outline=(255, 80, 0), width=2)
+        pen.point((x, y), fill=(0, 255, 80))
+    picture.save(path)
+
+
+def check_against_reference(args, result):
+    """The same corners, computed by a C++ program from the same frame."""
+    out = subprocess.run([args.reference, args.frame, str(args.threshold)],
+                         check=True, stdout=subprocess.PIPE).stdout
+    want = json.loads(out)
+    got = {"found": result.found, "best": [[f.x, f.y, f.score] for f in result.best]}
+    if got != want:
+        raise RuntimeError("the core's result differs from the reference:\n  core      %s\n"
+                           "  reference %s" % (got, want))
+
+
+def report(args, log, result, station, air):
+    lines = ["# Mission report", "",
+             "Frame `%s`, threshold %d, loss on the air %s: %d corners, %d cycles in the core." % (
+                 os.path.basename(args.frame), args.threshold, args.loss, result.found,
+                 result.cycles), "",
+             "| who | call | wall ms | simulated ms | bytes up | bytes down |",
+             "|---|---|---|---|---|---|"]
+    for r in log.rows:
+        lines.append("| %s | %s | %s | %s | %s | %s |" % (
+            r["who"], r["what"], r["wall_ms"], r.get("simulated_ms", ""), r.get("bytes_up", ""),
+            r.get("bytes_down", "")))
+    lines += ["", "| corner | x | y | score |", "|---|---|---|---|"]
+    lines += ["| %d | %d | %d | %d |" % (i + 1, f.x, f.y, f.score)
+              for i, f in enumerate(result.best)]
+    with open(os.path.join(args.out, "report.md"), "w") as f:
+        f.write("\n".join(lines) + "\n")
+    totals = air.read() or {}
+    with open(os.path.join(args.out, "report.json"), "w") as f:
+        json.dump({"calls": log.rows, "found": result.found, "cycles": result.cycles,
+                   "vehicle": station.params, "air": totals}, f, indent=2)
+
+
+def fly(args, communicator):
+    import Autopilot  # made by loadSlice
+    air = Air(args.status)
+    log = Log(air)
+    station = make_station(Autopilot, log)
+    adapter = communicator.createObjectAdapter("Station")
+    adapter.add(station, communicator.stringToIdentity("station"))
+    adapter.activate()
+    log.say("setting the ground's modem up on %s" % args.device)
+
+    where = "xbee-at -d %s -a 0x0001 -s 0x0000" % args.device
+    base = communicator.stringToProxy("hwengine1:" + where)
+    engine = log.call("ground -> UAV", "checkedCast(hwengine1)",
+                      lambda: Autopilot.HwProcessingEnginePrx.checkedCast(base))
+    # As in the paper's Figure 5: -o is a oneway proxy.
+    oneway = Autopilot.HwProcessingEnginePrx.uncheckedCast(
+        communicator.stringToProxy("hwengine1 -o:" + where))
+
+    log.call("ground -> UAV", "hwengine1.setParameterA(%d), oneway" % args.threshold,
+             lambda: oneway.setParameterA(args.threshold))
+    log.call("ground -> UAV", "hwengine1.startProcessing(), oneway", oneway.startProcessing)
+    result = log.call("ground -> UAV", "hwengine1.getResult()", engine.getResult)
+    log.say("%d corners; the core took %d cycles" % (result.found, result.cycles))
+
+    if not station.called.wait(20):
+        raise RuntimeError("the UAV did not call Station.vehicleState within 20 s")
+    if not station.alive:
+        raise RuntimeError("uav.isAlive answered %r" % station.alive)
+    if args.reference:
+        check_against_reference(args, result)
+        log.say("the result equals the C++ reference, bit by bit")
+    draw(args.frame, result, os.path.join(args.out, "after.png"))
+    report(args, log, result, station, air)
+
+
+def main():
+    args = parse_arguments()
+    Ice.loadSlice("-I" + (Ice.getSliceDir() or ".") + " " + args.slice)
+    communicator = initialize(args)
+    try:
+        fly(args, communicator)
+        return 0
+    except KeyboardInterrupt:
+        return 130
+    except (Ice.Exception, RuntimeError, OSError, subprocess.CalledProcessError) as e:
+        print("mission: %s" % e, file=sys.stderr)
+        return 1
+    finally:
+        communicator.destroy()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -23,6 +23,7 @@
 #ifndef LINK_SEND_BYTES
 #define LINK_SEND_BYTES 16384U /* queue of outgoing messages, shared by the channels */
 #endif
+#define LINK_SEND_MESSAGES 32U /* messages, openings and closings in that queue */
 
 typedef enum Link_Status {
     LINK_OK = 0,
@@ -50,13 +51,15 @@ typedef struct Link_Port {
     int (*transmit)(void *context, const U8 *frame, U32 size);
     /* 32 bits that the peer cannot guess and that differ after a reboot. */
     U32 (*random)(void *context);
-    /* A whole message has arrived; `data` is valid during the call only. */
-    void (*message)(void *context, int channel, const U8 *data, U32 size);
+    /* A whole message has arrived; `data` is valid during the call only. 0: taken; other: no room now.
+     * Then the layer keeps it, offers it again at each poll, and lowers the peer's credit. */
+    int (*message)(void *context, int channel, const U8 *data, U32 size);
     /* The peer opened or closed a channel (1, 0). All channels close when the session ends. */
     void (*channel)(void *context, int channel, int isOpen);
     /* The session came up or ended. */
     void (*state)(void *context, Link_State state);
-    /* What became of a message: `tag` is what Link_send was given. Exactly one call a message. */
+    /* What became of a message: `tag` is what Link_send was given. Exactly one call a message.
+     * May be 0, as may `writable`. */
     void (*outcome)(void *context, int channel, U32 tag, Link_Outcome outcome);
     /* Room appeared after LINK_FULL. */
     void (*writable)(void *context);

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+//
+// link_test: the link layer over a bad radio: nothing wrong, doubled, out of order or unreported.
+
+#include "link_pair.h"
+#include <gtest/gtest.h>
+
+namespace {
+
+Side::Bytes pattern(uint32_t id, uint32_t size) {
+    Side::Bytes bytes(size);
+    for (uint32_t i = 0; i < size; ++i)
+        bytes[i] = static_cast<uint8_t>((id * 2654435761u >> (i % 4 * 8)) + i);
+    return bytes;
+}
+
+// Sends messages both ways while time passes; checks order, content and outcomes at the end.
+class Traffic {
+public:
+    Traffic(Pair& pair, uint64_t seed, uint32_t maxSize)
+        : pair_(pair), random_(seed), maxSize_(maxSize) {}
+
+    void offer(Side& from, std::vector<std::pair<uint32_t, Side::Bytes>>& sent) {
+        uint32_t id = static_cast<uint32_t>(sent.size());
+        Side::Bytes bytes = pattern(id, 1 + random_.below(maxSize_));
+        int channel = static_cast<int>(random_.below(4));
+        if (Link_send(from.link(), channel, bytes.data(), static_cast<U32>(bytes.size()), id,
+                      pair_.now32()) == LINK_OK)
+            sent.emplace_back(channel, std::move(bytes));
+    }
+
+    void run(unsigned messages, uint64_t limitUs) {
+        pair_.runUntil(
+            [&] {
+                if (sentA.size() < messages)
+                    offer(pair_.a, sentA);
+                if (sentB.size() < messages)
+                    offer(pair_.b, sentB);
+                return sentA.size() >= messages && sentB.size() >= messages &&
+                       pair_.a.outcomes.size() == messages && pair_.b.outcomes.size() == messages;
+            },
+            limitUs);
+    }
+
+    // Every message is reported; what was received is a part of what was sent, in order, unchanged,
+    // and holds everything reported as delivered.
+    static void check(const std::vector<std::pair<uint32_t, Side::Bytes>>& sent, const Side& sender,
+                      const Side& receiver) {
+        ASSERT_EQ(sender.outcomes.size(), sent.size()) << "messages not reported";
+        size_t next = 0;
+        for (size_t i = 0; i < sent.size(); ++i) {
+            bool arrived = next < receiver.received.size() &&
+                           receiver.received[next].second == sent[i].second &&
+                           receiver.received[next].first == static_cast<int>(sent[i].first);
+            if (arrived)
+                ++next;
+            if (sender.outcomes.at(static_cast<uint32_t>(i)) == LINK_DELIVERED) {
+                EXPECT_TRUE(arrived) << "message " << i << " was reported delivered";
+            }
+        }
+        EXPECT_EQ(next, receiver.received.size()) << "messages doubled, wrong or out of order";
+    }
+
+    std::vector<std::pair<uint32_t, Side::Bytes>> sentA, sentB;
+
+private:
+    Pair& pair_;
+    Random random_;
+    uint32_t maxSize_;
+};
+
+class LinkSeeds : public ::testing::TestWithParam<int> {
+protected:
+    uint64_t seed_ = testSeed() * 1000 + static_cast<uint64_t>(GetParam());
+    Pair pair_{seed_};
+};
+
+TEST(LinkLayer, HandshakeBringsBothSidesUpAndChannelsOpenInOrder) {
+    Pair pair(testSeed());
+    ASSERT_TRUE(pair.connect());
+    Link_openChannel(pair.a.link(), 1, pair.now32());
+    Side::Bytes hello = {'h', 'i'};
+    Link_send(pair.a.link(), 1, hello.data(), 2, 7, pair.now32());
+    Link_closeChannel(pair.a.link(), 1, pair.now32());
+    ASSERT_TRUE(pair.runUntil([&] { return pair.a.outcomes.count(7) != 0; }, 1000000));
+    ASSERT_EQ(pair.b.received.size(), 1u);
+    EXPECT_EQ(pair.b.received[0].second, hello);
+    EXPECT_EQ(pair.b.events, (std::vector<std::string>{"up", "open 1", "close 1"}));
+}
+
+TEST(LinkLayer, BothSidesMayStartAtOnce) {
+    Pair pair(testSeed());
+    Link_start(pair.b.link(), pair.now32());
+    ASSERT_TRUE(pair.connect());
+    pair.run(3000000);
+    EXPECT_TRUE(pair.bothUp());
+    EXPECT_EQ(Link_statistics(pair.a.link())->sessions, 1u);
+    EXPECT_EQ(Link_statistics(pair.b.link())->sessions, 1u);
+}
+
+TEST(LinkLayer, SizesAreChecked) {
+    Pair pair(testSeed());
+    Side::Bytes big(LINK_MAX_MESSAGE + 1);
+    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), 5, 0, 0), LINK_DOWN);
+    ASSERT_TRUE(pair.connect());
+    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), LINK_MAX_MESSAGE + 1, 0, 0), LINK_TOO_LONG);
+    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), 0, 0, 0), LINK_TOO_LONG);
+    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), LINK_MAX_MESSAGE, 0, 0), LINK_OK);
+    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), LINK_MAX_MESSAGE, 1, 0), LINK_OK);
+    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), 1, 2, 0), LINK_FULL);
+    ASSERT_TRUE(pair.runUntil([&] { return pair.a.outcomes.size() == 2; }, 10000000));
+    EXPECT_EQ(pair.b.received[1].second.size(), LINK_MAX_MESSAGE);
+}
+
+TEST_P(LinkSeeds, NothingIsLostDoubledOrReorderedInBadWeather) {
+    ASSERT_TRUE(pair_.connect());
+    pair_.setWeather({0.1, 0.05, 0.02, 8000});
+    Traffic traffic(pair_, seed_, 400);
+    traffic.run(300, 600000000);
+    Traffic::check(traffic.sentA, pair_.a, pair_.b);
+    Traffic::check(traffic.sentB, pair_.b, pair_.a);
+    for (auto& [tag, outcome] : pair_.a.outcomes)
+        EXPECT_EQ(outcome, LINK_DELIVERED) << tag;
+}
+
+TEST_P(LinkSeeds, RebootsAreNoticedAndMessagesInFlightReported) {
+    ASSERT_TRUE(pair_.connect());
+    Link_start(pair_.b.link(), pair_.now32());
+    pair_.setWeather({0.05, 0.05, 0.01, 8000});
+    Random random(seed_ + 7);
+    Traffic traffic(pair_, seed_, 300);
+    for (int round = 0; round < 6; ++round) {
+        traffic.run(static_cast<unsigned>(40 * (round + 1)), 3000000 + random.below(3000000));
+        // A reboot forgets what was in flight: as the application would, count it as unknown.
+        Side& side = random.below(2) ? pair_.a : pair_.b;
+        auto& sent = &side == &pair_.a ? traffic.sentA : traffic.sentB;
+        side.boot();
+        for (uint32_t i = 0; i < sent.size(); ++i)
+            side.outcomes.emplace(i, LINK_UNKNOWN);
+        Link_start(side.link(), pair_.now32());
+        ASSERT_TRUE(pair_.runUntil([&] { return pair_.bothUp(); }, 60000000)) << "round " << round;
+    }
+    traffic.run(240, 600000000);
+    Traffic::check(traffic.sentA, pair_.a, pair_.b);
+    Traffic::check(traffic.sentB, pair_.b, pair_.a);
+}
+
+TEST_P(LinkSeeds, GarbageOnTheLineDoesNotDisturbTheSession) {
+    ASSERT_TRUE(pair_.connect());
+    Traffic traffic(pair_, seed_, 200);
+    Random random(seed_ + 3);
+    for (int i = 0; i < 60; ++i) {
+        Side::Bytes noise(1 + random.below(150));
+        for (auto& byte : noise)
+            byte = static_cast<uint8_t>(random.next());
+        Link_receive(pair_.b.link(), noise.data(), static_cast<U32>(noise.size()), 0,
+                     pair_.now32());
+        traffic.run(static_cast<unsigned>(3 * (i + 1)), 200000);
+    }
+    traffic.run(180, 100000000);
+    Traffic::check(traffic.sentA, pair_.a, pair_.b);
+    Traffic::check(traffic.sentB, pair_.b, pair_.a);
+    EXPECT_GT(Link_statistics(pair_.b.link())->crcErrors, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, LinkSeeds, ::testing::Range(0, 5));
+
+TEST(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {
+    Pair pair(testSeed());
+    ASSERT_TRUE(pair.connect());
+    pair.setWeather({1.0, 0, 0, 8000});
+    Side::Bytes bytes = {1, 2, 3};
+    Link_send(pair.a.link(), 0, bytes.data(), 3, 1, pair.now32());
+    ASSERT_TRUE(pair.runUntil([&] { return !pair.a.outcomes.empty(); }, 20000000));
+    EXPECT_EQ(pair.a.outcomes[1], LINK_UNKNOWN);
+    EXPECT_EQ(Link_state(pair.a.link()), LINK_STATE_CONNECTING);
+    pair.setWeather({});
+    EXPECT_TRUE(pair.runUntil([&] { return pair.bothUp(); }, 20000000));
+    EXPECT_TRUE(pair.b.received.empty());
+}
+
+TEST(LinkLayer, AMessageThatIsNotTakenWaitsAndStopsTheSender) {
+    Pair pair(testSeed());
+    ASSERT_TRUE(pair.connect());
+    pair.b.refuse = true;
+    Side::Bytes bytes(1000, 5);
+    for (U32 tag = 0; tag < 10; ++tag)
+        Link_send(pair.a.link(), 0, bytes.data(), 1000, tag, pair.now32());
+    pair.run(7000000);
+    EXPECT_TRUE(pair.bothUp());
+    EXPECT_TRUE(pair.b.received.empty());
+    pair.b.refuse = false;
+    ASSERT_TRUE(pair.runUntil([&] { return pair.a.outcomes.size() == 10; }, 20000000));
+    EXPECT_EQ(pair.b.received.size(), 10u);
+}
+
+TEST(LinkLayer, StopTellsThePeer) {
+    Pair pair(testSeed());
+    ASSERT_TRUE(pair.connect());
+    Link_stop(pair.a.link(), pair.now32());
+    pair.run(200000);
+    EXPECT_EQ(Link_state(pair.b.link()), LINK_STATE_IDLE);
+    EXPECT_EQ(pair.b.events.back(), "idle");
+}
+
+// Goodput of one direction as a share of the serial port's 11.1 kB/s (docs/link.md).
+double goodput(double loss, uint64_t seed) {
+    Pair pair(seed);
+    EXPECT_TRUE(pair.connect());
+    pair.setWeather({loss, 0, 0, 8000});
+    Side::Bytes bytes(950, 1);
+    const uint64_t start = pair.nowUs;
+    uint32_t tag = 0;
+    pair.runUntil(
+        [&] {
+            while (Link_send(pair.a.link(), 0, bytes.data(), 950, tag, pair.now32()) == LINK_OK)
+                ++tag;
+            return pair.a.outcomes.size() >= 300;
+        },
+        1000000000);
+    double seconds = static_cast<double>(pair.nowUs - start) / 1e6;
+    return 300.0 * 950 / seconds / (16e6 / byteTimeUs16);
+}
+
+TEST(LinkLayer, GoodputMeetsItsTargets) {
+    const double targets[][2] = {{0, 0.93}, {0.01, 0.92}, {0.1, 0.82}, {0.3, 0.60}};
+    for (auto& [loss, target] : targets) {
+        double share = goodput(loss, testSeed());
+        std::printf("loss %4.0f %%: goodput %.1f %% of the limit (target %.0f %%)\n", loss * 100,
+                    share * 100, target * 100);
+        EXPECT_GE(share, target) << "loss " << loss;
+    }
+}
+
+} // namespace

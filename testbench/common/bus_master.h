@@ -21,7 +21,7 @@ public:
         Module& top = bench_.top();
         top.bus_valid_i = 1;
         top.bus_write_i = write;
-        top.bus_addr_i = word;
+        top.bus_addr_i = static_cast<uint8_t>(word);
         top.bus_wdata_i = data;
         uint64_t start = bench_.cycles();
         bench_.waitFor([&] { return top.bus_ready_o; }, "bus_ready_o at word " + std::to_string(word),

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+//
+// bus_wrapper: the words every slot begins with, and strobes for the block's own (docs/bus.md).
+//
+//   0  ID     ro   ID_VALUE
+//   1  EVENT  w1c  sticky events; one that arrives in the cycle of its clear stays set
+//   2  MASK   rw   1: the event drives irq_o
+//   3..15          the block's: those with a 1 in WORDS
+//
+// The block answers in the cycle of the access: it gives reg_rdata_i for reg_addr_o, and takes
+// reg_wdata_o when reg_write_o is high.
+
+`default_nettype none
+
+module bus_wrapper #(
+    parameter [31:0] ID_VALUE = 32'd0,
+    parameter [15:0] WORDS    = 16'hFFF8, // bit w: word w exists (bits 2..0 are ignored)
+    parameter        EVENTS   = 1         // 1..32
+) (
+    input  wire              clk_i,
+    input  wire              rst_i,
+    // register bus
+    input  wire              bus_valid_i,
+    input  wire              bus_write_i,
+    input  wire [3:0]        bus_addr_i,
+    input  wire [31:0]       bus_wdata_i,
+    output wire              bus_ready_o,
+    output reg  [31:0]       bus_rdata_o,
+    output wire              bus_error_o,
+    // the block's registers
+    output wire              reg_write_o,
+    output wire              reg_read_o,
+    output wire [3:0]        reg_addr_o,
+    output wire [31:0]       reg_wdata_o,
+    input  wire [31:0]       reg_rdata_i,
+    // events: one cycle each
+    input  wire [EVENTS-1:0] event_i,
+    output wire              irq_o
+);
+    localparam [3:0] ID = 4'd0, EVENT = 4'd1, MASK = 4'd2;
+
+    reg [EVENTS-1:0] sticky, mask;
+
+    wire own    = bus_addr_i > MASK;
+    wire exists = !own || WORDS[bus_addr_i];
+    wire write  = bus_valid_i && bus_write_i;
+    wire [EVENTS-1:0] clear = {EVENTS{write && bus_addr_i == EVENT}} & bus_wdata_i[EVENTS-1:0];
+
+    assign bus_ready_o = 1'b1;
+    assign bus_error_o = !exists;
+    assign reg_write_o = write && own && exists;
+    assign reg_read_o  = bus_valid_i && !bus_write_i && own && exists;
+    assign reg_addr_o  = bus_addr_i;
+    assign reg_wdata_o = bus_wdata_i;
+    assign irq_o       = |(sticky & mask);
+
+    always @* begin
+        bus_rdata_o = 32'd0;
+        case (bus_addr_i)
+            ID:      bus_rdata_o = ID_VALUE;
+            EVENT:   bus_rdata_o[EVENTS-1:0] = sticky;
+            MASK:    bus_rdata_o[EVENTS-1:0] = mask;
+            default: if (exists) bus_rdata_o = reg_rdata_i;
+        endcase
+    end
+
+    always @(posedge clk_i) begin
+        sticky <= (sticky & ~clear) | event_i;
+        if (write && bus_addr_i == MASK)
+            mask <= bus_wdata_i[EVENTS-1:0];
+        if (rst_i) begin
+            sticky <= {EVENTS{1'b0}};
+            mask   <= {EVENTS{1'b0}};
+        end
+    end
+
+`ifdef FORMAL
+    reg past = 1'b0;
+    initial assume (rst_i);
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        if (past && !$past(rst_i)) begin
+            // No event is lost, whatever is cleared at the same time.
+            assert (($past(event_i) & ~sticky) == {EVENTS{1'b0}});
+            // A bit falls only where it was cleared.
+            assert (($past(sticky) & ~sticky & ~$past(clear)) == {EVENTS{1'b0}});
+            // The mask follows writes only.
+            if (!($past(write) && $past(bus_addr_i) == MASK))
+                assert (mask == $past(mask));
+        end
+        if (past && $past(rst_i))
+            assert (!irq_o);
+        cover (past && !rst_i && irq_o && write && bus_addr_i == EVENT && |(event_i & clear));
+    end
+    always @* begin
+        // Another block's register is never strobed by a word that does not exist.
+        assert (!(reg_write_o && bus_error_o));
+        assert (bus_ready_o);
+    end
+`endif
+endmodule

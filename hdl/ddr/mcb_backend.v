@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+//
+// mcb_backend: the arbiter's command stream on a 64-bit user port of the Spartan-6 MCB (UG388).
+
+`default_nettype none
+
+module mcb_backend (
+    // from the arbiter
+    input  wire        cmd_valid_i,
+    input  wire        cmd_read_i,
+    input  wire [31:0] cmd_addr_i,
+    input  wire [4:0]  cmd_words_i, // 1..16
+    output wire        cmd_ready_o,
+    input  wire        wr_valid_i,
+    input  wire [63:0] wr_data_i,
+    input  wire [7:0]  wr_be_i,
+    output wire        wr_ready_o,
+    output wire        rd_valid_o,
+    output wire [63:0] rd_data_o,
+    input  wire        rd_ready_i,
+    // MCB user port
+    output wire        mcb_cmd_en_o,
+    output wire [2:0]  mcb_cmd_instr_o,
+    output wire [5:0]  mcb_cmd_bl_o,
+    output wire [29:0] mcb_cmd_byte_addr_o,
+    input  wire        mcb_cmd_full_i,
+    output wire        mcb_wr_en_o,
+    output wire [7:0]  mcb_wr_mask_o,
+    output wire [63:0] mcb_wr_data_o,
+    input  wire        mcb_wr_full_i,
+    output wire        mcb_rd_en_o,
+    input  wire [63:0] mcb_rd_data_i,
+    input  wire        mcb_rd_empty_i,
+    input  wire        mcb_calib_done_i
+);
+    assign cmd_ready_o         = mcb_calib_done_i && !mcb_cmd_full_i;
+    assign mcb_cmd_en_o        = cmd_valid_i && cmd_ready_o;
+    assign mcb_cmd_instr_o     = {2'b00, cmd_read_i};
+    assign mcb_cmd_bl_o        = {1'b0, cmd_words_i} - 6'd1;
+    assign mcb_cmd_byte_addr_o = cmd_addr_i[29:0];
+
+    assign wr_ready_o    = !mcb_wr_full_i;
+    assign mcb_wr_en_o   = wr_valid_i && wr_ready_o;
+    assign mcb_wr_mask_o = ~wr_be_i;
+    assign mcb_wr_data_o = wr_data_i;
+
+    assign rd_valid_o  = !mcb_rd_empty_i;
+    assign rd_data_o   = mcb_rd_data_i;
+    assign mcb_rd_en_o = rd_valid_o && rd_ready_i;
+
+    wire unused = &{1'b0, cmd_addr_i[31:30], 1'b0}; // 1 GiB is the MCB's range
+endmodule

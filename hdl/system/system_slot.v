@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+//
+// system_slot: slot 0: who this chip is, who interrupts, the DDR3 page, bus errors, the cycle count.
+//
+// Registers: hdl/system/system.regs.json.
+
+`default_nettype none
+
+module system_slot #(
+    parameter SLOTS  = 3,         // populated slots, this one included
+    parameter CLK_HZ = 100000000  // Hz
+) (
+    input  wire             clk_i,
+    input  wire             rst_i,
+    // register bus
+    input  wire             bus_valid_i,
+    input  wire             bus_write_i,
+    input  wire [3:0]       bus_addr_i,
+    input  wire [31:0]      bus_wdata_i,
+    output wire             bus_ready_o,
+    output wire [31:0]      bus_rdata_o,
+    output wire             bus_error_o,
+    // interrupt lines of slots SLOTS-1..1, and the one to the processor
+    input  wire [SLOTS-1:1] slot_irq_i,
+    output wire             irq_o,
+    // FSMC bridge
+    output reg  [5:0]       page_o,         // DDR3 address bits 31..26
+    input  wire             access_error_i, // one cycle
+    input  wire [9:0]       error_addr_i,
+    input  wire             error_write_i
+);
+    `include "system_regs.vh"
+
+    wire        reg_write, reg_read, own_irq;
+    wire [3:0]  reg_addr;
+    wire [31:0] reg_wdata;
+    reg  [31:0] reg_rdata;
+
+    reg [31:0] scratch, cycles_high_latched;
+    reg [63:0] cycles;
+    reg [9:0]  error_addr;
+    reg        error_write, error_open;
+    wire [63:0] lines = {{(64-SLOTS){1'b0}}, slot_irq_i, own_irq};
+
+    bus_wrapper #(
+        .ID_VALUE (SYSTEM_ID_VALUE),
+        .WORDS    (16'h0FF8),
+        .EVENTS   (1)
+    ) u_wrapper (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
+        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
+        .bus_error_o(bus_error_o),
+        .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr),
+        .reg_wdata_o(reg_wdata), .reg_rdata_i(reg_rdata),
+        .event_i(access_error_i), .irq_o(own_irq)
+    );
+
+    assign irq_o = |lines;
+
+    always @* begin
+        case (reg_addr)
+            SYSTEM_SLOTS:      reg_rdata = SLOTS;
+            SYSTEM_IRQ_LO:     reg_rdata = lines[31:0];
+            SYSTEM_IRQ_HI:     reg_rdata = lines[63:32];
+            SYSTEM_PAGE:       reg_rdata = {26'd0, page_o};
+            SYSTEM_CLK_HZ:     reg_rdata = CLK_HZ;
+            SYSTEM_ERROR_ADDR: reg_rdata = {15'd0, error_write, 6'd0, error_addr};
+            SYSTEM_SCRATCH:    reg_rdata = scratch;
+            SYSTEM_CYCLES_LO:  reg_rdata = cycles[31:0];
+            SYSTEM_CYCLES_HI:  reg_rdata = cycles_high_latched;
+            default:           reg_rdata = 32'd0;
+        endcase
+    end
+
+    always @(posedge clk_i) begin
+        cycles <= cycles + 64'd1;
+        if (reg_read && reg_addr == SYSTEM_CYCLES_LO)
+            cycles_high_latched <= cycles[63:32];
+        if (reg_write && reg_addr == SYSTEM_PAGE)
+            page_o <= reg_wdata[5:0];
+        if (reg_write && reg_addr == SYSTEM_SCRATCH)
+            scratch <= reg_wdata;
+        // The first error is kept until the event has been cleared.
+        if (bus_valid_i && bus_write_i && bus_addr_i == SYSTEM_EVENT && bus_wdata_i[0])
+            error_open <= 1'b0;
+        if (access_error_i && !error_open) begin
+            error_open  <= 1'b1;
+            error_addr  <= error_addr_i;
+            error_write <= error_write_i;
+        end
+        if (rst_i) begin
+            cycles      <= 64'd0;
+            cycles_high_latched <= 32'd0;
+            page_o      <= 6'd0;
+            scratch     <= 32'd0;
+            error_open  <= 1'b0;
+            error_addr  <= 10'd0;
+            error_write <= 1'b0;
+        end
+    end
+endmodule

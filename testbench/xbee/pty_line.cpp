@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+//
+// pty_line: the modem's serial side as a pseudo-terminal.
+
+#include "serial_line.h"
+#include <asm/termbits.h> // struct termios2, TCGETS2: the true speed, custom ones included
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <fcntl.h>
+#include <sys/ioctl.h>
+#include <system_error>
+#include <unistd.h>
+
+namespace {
+
+constexpr uint64_t pollNs = 500'000; // how often the pty is looked at
+
+void makeRaw(int fd) {
+    termios2 settings{};
+    if (ioctl(fd, TCGETS2, &settings) != 0)
+        throw std::system_error(errno, std::generic_category(), "pty: cannot read its settings");
+    settings.c_iflag &= ~(IGNBRK | BRKINT | PARMRK | ISTRIP | INLCR | IGNCR | ICRNL | IXON);
+    settings.c_oflag &= ~OPOST;
+    settings.c_lflag &= ~(ECHO | ECHONL | ICANON | ISIG | IEXTEN);
+    settings.c_cflag = (settings.c_cflag & ~(CSIZE | PARENB)) | CS8;
+    if (ioctl(fd, TCSETS2, &settings) != 0)
+        throw std::system_error(errno, std::generic_category(), "pty: cannot make it raw");
+}
+
+} // namespace
+
+PtyLine::PtyLine() {
+    master_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    char name[128];
+    if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
+        ptsname_r(master_, name, sizeof name) != 0)
+        throw std::system_error(errno, std::generic_category(), "cannot open a pty");
+    path_ = name;
+    keeper_ = open(name, O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (keeper_ < 0)
+        throw std::system_error(errno, std::generic_category(), "cannot open " + path_);
+    makeRaw(keeper_);
+}
+
+PtyLine::~PtyLine() {
+    close(keeper_);
+    close(master_);
+}
+
+bool PtyLine::speedFits() const {
+    termios2 settings{};
+    if (ioctl(keeper_, TCGETS2, &settings) != 0)
+        return true;
+    double modem = 1e9 / bitNs_;
+    return std::fabs(settings.c_ospeed - modem) <= 0.045 * modem;
+}
+
+void PtyLine::readHost(uint64_t now) {
+    uint8_t bytes[64];
+    // Only what the wire could have carried by now, so that nothing is read ahead of flow control.
+    if (rxFree_ < static_cast<double>(now) - 2.0 * pollNs)
+        rxFree_ = static_cast<double>(now) - 2.0 * pollNs;
+    size_t room = 0;
+    while (room < sizeof bytes && rxFree_ + (static_cast<double>(room) + 1) * 10 * bitNs_ <=
+                                      static_cast<double>(now))
+        ++room;
+    if (room == 0)
+        return;
+    ssize_t count = read(master_, bytes, room);
+    if (count <= 0)
+        return;
+    bool fits = speedFits();
+    for (ssize_t i = 0; i < count; ++i) {
+        rxFree_ += 10 * bitNs_;
+        if (fits)
+            client_->fromHost(bytes[i], now);
+        else if (i % 2)
+            client_->framingError(now);
+        else
+            client_->fromHost(static_cast<uint8_t>(bytes[i] ^ 0xA5), now);
+    }
+}
+
+void PtyLine::writeHost(uint64_t now) {
+    if (txFree_ < static_cast<double>(now) - 2.0 * pollNs)
+        txFree_ = static_cast<double>(now) - 2.0 * pollNs;
+    bool fits = speedFits();
+    uint8_t byte;
+    while (unwritten_.size() < 4096 && txFree_ + 10 * bitNs_ <= static_cast<double>(now) &&
+           client_->nextToHost(byte)) {
+        txFree_ += 10 * bitNs_;
+        unwritten_.push_back(fits ? byte : static_cast<uint8_t>(byte ^ 0x5A));
+    }
+    if (unwritten_.empty())
+        return;
+    ssize_t count = write(master_, unwritten_.data(), unwritten_.size());
+    if (count > 0)
+        unwritten_.erase(unwritten_.begin(), unwritten_.begin() + count);
+}
+
+void PtyLine::advance(uint64_t now) {
+    if (now < nextPoll_)
+        return;
+    nextPoll_ = now + pollNs;
+    if (cts_)
+        readHost(now);
+    writeHost(now);
+}
+
+void PtyLine::wake(uint64_t now) {
+    if (txFree_ < static_cast<double>(now))
+        txFree_ = static_cast<double>(now);
+}

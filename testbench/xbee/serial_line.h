@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+//
+// serial_line: the modem's side of a serial port: UART pins of a design, or a pty for a program.
+
+#ifndef SERIAL_LINE_H
+#define SERIAL_LINE_H
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+constexpr uint64_t never = ~uint64_t(0);
+
+// What the modem does with bytes.
+class SerialClient {
+public:
+    virtual void fromHost(uint8_t byte, uint64_t now) = 0;
+    virtual void framingError(uint64_t now) = 0;
+    virtual bool nextToHost(uint8_t& byte) = 0; // false: nothing to send
+
+protected:
+    ~SerialClient() = default;
+};
+
+class SerialLine {
+public:
+    virtual ~SerialLine() = default;
+    void attach(SerialClient* client) { client_ = client; }
+    // Takes effect when no byte is on the line.
+    virtual void setBitTime(double ns) { bitNs_ = ns; }
+    virtual void setCts(bool accepts) { cts_ = accepts; }
+    virtual void advance(uint64_t now) = 0;
+    virtual uint64_t nextEvent() const = 0;
+    // The modem has something to send: nextToHost will give it.
+    virtual void wake(uint64_t now) = 0;
+
+protected:
+    SerialClient* client_ = nullptr;
+    double bitNs_ = 1e9 / 9600;
+    bool cts_ = true;
+};
+
+// Pins of a design. The design's TXD is told by setTxd when it changes; RXD and CTS are read.
+class UartPins : public SerialLine {
+public:
+    void setTxd(bool level, uint64_t now) {
+        level_ = level;
+        if (!level && rxBit_ == 0 && armed_) {
+            rxBit_ = 1;
+            rxStart_ = static_cast<double>(now);
+            rxAt_ = rxStart_ + bitNs_ / 2;
+        }
+        armed_ = armed_ || level;
+    }
+    void setBitTime(double ns) override {
+        wantedBitNs_ = ns;
+        if (rxBit_ == 0 && txBit_ == 0)
+            bitNs_ = ns;
+    }
+    bool rxd() const { return txLevel_; }
+    bool ctsN() const { return !cts_; }
+    void setRts(bool mayTalk, uint64_t now) {
+        rts_ = mayTalk;
+        wake(now);
+    }
+
+    void advance(uint64_t now) override {
+        while (rxBit_ && rxAt_ <= static_cast<double>(now))
+            sample(now);
+        while (txBit_ && txAt_ <= static_cast<double>(now))
+            shift(now);
+        if (rxBit_ == 0 && txBit_ == 0)
+            bitNs_ = wantedBitNs_;
+    }
+    uint64_t nextEvent() const override {
+        double at = 1e300;
+        if (rxBit_)
+            at = rxAt_;
+        if (txBit_ && txAt_ < at)
+            at = txAt_;
+        return at > 1e299 ? never : static_cast<uint64_t>(at);
+    }
+    void wake(uint64_t now) override {
+        if (txBit_ == 0 && rts_)
+            startByte(static_cast<double>(now));
+    }
+
+private:
+    void sample(uint64_t now) {
+        // Bit 1 is the start bit, 2..9 data, 10 stop.
+        if (rxBit_ == 1 && level_) {
+            rxBit_ = 0; // a glitch
+            return;
+        }
+        if (rxBit_ >= 2 && rxBit_ <= 9)
+            rxByte_ = static_cast<uint8_t>(rxByte_ >> 1 | (level_ ? 0x80 : 0));
+        if (rxBit_ == 10) {
+            rxBit_ = 0;
+            armed_ = level_;
+            level_ ? client_->fromHost(rxByte_, now) : client_->framingError(now);
+            return;
+        }
+        ++rxBit_;
+        rxAt_ += bitNs_;
+    }
+    void startByte(double at) {
+        if (!client_->nextToHost(txByte_))
+            return;
+        txLevel_ = false;
+        txBit_ = 1;
+        txAt_ = at + bitNs_;
+    }
+    void shift(uint64_t) {
+        double at = txAt_;
+        if (txBit_ <= 8) {
+            txLevel_ = txByte_ >> (txBit_ - 1) & 1;
+        } else if (txBit_ == 9) {
+            txLevel_ = true;
+        } else {
+            txBit_ = 0;
+            if (rts_)
+                startByte(at);
+            return;
+        }
+        ++txBit_;
+        txAt_ = at + bitNs_;
+    }
+
+    bool level_ = true, txLevel_ = true, rts_ = true, armed_ = true;
+    unsigned rxBit_ = 0, txBit_ = 0;
+    double wantedBitNs_ = bitNs_, rxStart_ = 0, rxAt_ = 0, txAt_ = 0;
+    uint8_t rxByte_ = 0, txByte_ = 0;
+};
+
+// A pseudo-terminal, for programs that talk to a serial port. Bytes move at the modem's baud rate;
+// while CTS is off none is read, which is the flow control. If the program has set a speed more than
+// 4.5 % off the modem's, bytes are spoilt, as they would be on a wire.
+class PtyLine : public SerialLine {
+public:
+    PtyLine(); // throws std::system_error
+    ~PtyLine() override;
+    PtyLine(const PtyLine&) = delete;
+    PtyLine& operator=(const PtyLine&) = delete;
+    const std::string& path() const { return path_; }
+
+    void advance(uint64_t now) override;
+    uint64_t nextEvent() const override { return nextPoll_; }
+    void wake(uint64_t now) override;
+
+private:
+    bool speedFits() const;
+    void readHost(uint64_t now);
+    void writeHost(uint64_t now);
+
+    int master_ = -1, keeper_ = -1; // keeper_: the slave side, so that closing it is no hang-up
+    std::string path_;
+    uint64_t nextPoll_ = 0;
+    double rxFree_ = 0, txFree_ = 0; // when the wire is free again, each way
+    std::vector<uint8_t> unwritten_;
+};
+
+#endif

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: MIT
+//
+// modem_test: the modem controller against the XBee model, pin by pin.
+
+#include "VModem.h"
+#include "bench.h"
+#include "bus_master.h"
+#include "modem_regs.h"
+#include "npi_memory.h"
+#include "rf_channel.h"
+#include <gtest/gtest.h>
+
+namespace {
+
+constexpr uint64_t clkNs = 500; // 2 MHz
+constexpr uint32_t txRing = 0x1000, rxRing = 0x2000;
+
+// A second modem whose host is the test: bytes in, bytes out, no pins.
+class Plain : public SerialLine {
+public:
+    void advance(uint64_t) override {
+        uint8_t byte;
+        while (client_->nextToHost(byte))
+            received.push_back(byte);
+    }
+    uint64_t nextEvent() const override { return never; }
+    void wake(uint64_t) override { advance(0); }
+    void send(const std::vector<uint8_t>& bytes, uint64_t now) {
+        for (uint8_t byte : bytes)
+            client_->fromHost(byte, now);
+    }
+    std::vector<uint8_t> received;
+};
+
+class ModemTest : public ::testing::Test {
+protected:
+    void power(XBee::Options options) {
+        near_ = std::make_unique<XBee>(pins_, air_, options);
+        XBee::Options far;
+        far.name = "far";
+        far.set = {{"MY", 0x0000}, {"DL", 0x0001}, {"BD", 7}};
+        far_ = std::make_unique<XBee>(plain_, air_, far);
+        bench_.addModel([this] { sample(); }, [this] { drive(); });
+        bench_.reset();
+        bus_.write(MODEM_MASK, 0x3F);
+        bus_.write(MODEM_ADDR, 0x0000u << 16 | 0x0001u);
+        bus_.write(MODEM_TX_BASE, txRing);
+        bus_.write(MODEM_RX_BASE, rxRing);
+    }
+
+    // GT of the modem and of the controller are short, so that tests are.
+    void configure(unsigned bd = 7, unsigned guardMs = 20) {
+        bus_.write(MODEM_BAUD, guardMs << MODEM_BAUD_GUARD_MS_LSB | bd);
+        bus_.write(MODEM_CONTROL, MODEM_CONTROL_CONFIGURE_MASK);
+        bench_.waitFor([&] { return bench_.top().irq_o; }, "the end of the set-up", 40'000'000);
+    }
+    uint32_t takeEvents() {
+        uint32_t events = bus_.read(MODEM_EVENT);
+        bus_.write(MODEM_EVENT, events);
+        return events;
+    }
+    void runMs(double ms) {
+        for (uint64_t end = bench_.cycles() + static_cast<uint64_t>(ms * 2000); bench_.cycles() < end;)
+            bench_.tick();
+    }
+    uint64_t now() const { return bench_.cycles() * clkNs; }
+    static XBee::Options quick(std::map<std::string, uint32_t> more = {}) {
+        XBee::Options options;
+        options.set = {{"GT", 20}};
+        for (auto& [letters, value] : more)
+            options.set[letters] = value;
+        return options;
+    }
+    void put(unsigned buffer, const std::vector<uint8_t>& packet) {
+        for (size_t i = 0; i < packet.size(); ++i)
+            memory_.setByte(txRing + 128 * buffer + static_cast<uint32_t>(i), packet[i]);
+        bus_.write(MODEM_TX_PUT, static_cast<uint32_t>(packet.size()));
+    }
+    // A packet as the link layer's: the first byte gives the length.
+    static std::vector<uint8_t> frame(unsigned size, uint8_t tag) {
+        std::vector<uint8_t> bytes(size, tag);
+        bytes[0] = static_cast<uint8_t>(size - 5);
+        return bytes;
+    }
+    std::vector<uint8_t> take() {
+        uint32_t get = bus_.read(MODEM_RX_GET);
+        std::vector<uint8_t> packet;
+        if (!(get & MODEM_RX_GET_VALID_MASK))
+            return packet;
+        for (uint32_t i = 0; i < (get & MODEM_RX_GET_BYTES_MASK); ++i)
+            packet.push_back(memory_.byte(rxRing + 128 * (get >> 8 & 0xFF) + i));
+        bus_.write(MODEM_RX_RELEASE, 1);
+        return packet;
+    }
+
+    Bench<VModem> bench_;
+    BusMaster<VModem> bus_{bench_};
+    NpiMemory<VModem> memory_{bench_, 0.3, testSeed()};
+    RfChannel air_{testSeed()};
+    UartPins pins_;
+    Plain plain_;
+    std::unique_ptr<XBee> near_, far_;
+    bool noise_ = false; // the line to the controller is held low
+
+private:
+    void sample() {
+        if (bench_.top().modem_txd_o != txd_) {
+            txd_ = bench_.top().modem_txd_o;
+            pins_.setTxd(txd_, now());
+        }
+        near_->resetPin(!bench_.top().modem_reset_n_o, now());
+    }
+    void drive() {
+        air_.advance(now());
+        near_->advance(now());
+        far_->advance(now());
+        bench_.top().modem_rxd_i = pins_.rxd() && !noise_;
+        bench_.top().modem_cts_n_i = pins_.ctsN();
+    }
+    bool txd_ = true;
+};
+
+TEST_F(ModemTest, SetUpFromFactorySettings) {
+    power(quick());
+    configure();
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURED_MASK);
+    EXPECT_EQ(near_->parameter("MY"), 0x0001u);
+    EXPECT_EQ(near_->parameter("DL"), 0x0000u);
+    EXPECT_EQ(near_->parameter("CH"), 0x0Cu);
+    EXPECT_EQ(near_->parameter("ID"), 0x3332u);
+    EXPECT_EQ(near_->parameter("BD"), 7u);
+    EXPECT_FALSE(near_->inCommandMode());
+    EXPECT_TRUE(bus_.read(MODEM_STATUS) & MODEM_STATUS_READY_MASK);
+    EXPECT_EQ(near_->counters().refused, 0u);
+}
+
+TEST_F(ModemTest, SetUpWithDefaultGuardTimes) {
+    power({});
+    configure(7, 1000);
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURED_MASK);
+    EXPECT_EQ(near_->parameter("BD"), 7u);
+}
+
+TEST_F(ModemTest, SetUpFindsAModemAtAnUnexpectedRate) {
+    power(quick({{"BD", 4}}));
+    configure();
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURED_MASK);
+    EXPECT_EQ(near_->parameter("BD"), 7u);
+}
+
+TEST_F(ModemTest, NoModemIsReportedWithItsStep) {
+    power(quick());
+    near_->power(false, now());
+    configure();
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURE_FAILED_MASK);
+    EXPECT_EQ(bus_.read(MODEM_STATUS) >> MODEM_STATUS_STEP_LSB & 15, 1u);
+    EXPECT_FALSE(bus_.read(MODEM_STATUS) & MODEM_STATUS_READY_MASK);
+}
+
+TEST_F(ModemTest, ARefusedCommandIsReportedWithItsStep) {
+    power(quick());
+    near_->refuseCommand("CH");
+    configure();
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURE_FAILED_MASK);
+    EXPECT_EQ(bus_.read(MODEM_STATUS) >> MODEM_STATUS_STEP_LSB & 15, 5u);
+    EXPECT_EQ(near_->counters().refused, 3u) << "sent once and twice again";
+}
+
+TEST_F(ModemTest, PacketsLeaveEachAsOneRfPacket) {
+    power(quick());
+    configure();
+    takeEvents();
+    std::vector<size_t> sizes;
+    air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome outcome) {
+        EXPECT_EQ(outcome, RfChannel::Outcome::Delivered);
+        sizes.push_back(packet.bytes.size());
+    });
+    std::vector<uint8_t> expected;
+    const std::vector<unsigned> lengths = {1, 7, 8, 9, 100, 100, 64, 33, 5};
+    for (size_t i = 0; i < lengths.size(); ++i) {
+        std::vector<uint8_t> packet(lengths[i], static_cast<uint8_t>(i + 1));
+        put(static_cast<unsigned>(i), packet);
+        expected.insert(expected.end(), packet.begin(), packet.end());
+        runMs(16); // else the modem, busy on the air, may join two that wait in it
+    }
+    EXPECT_EQ(plain_.received, expected);
+    EXPECT_EQ(sizes, std::vector<size_t>(lengths.begin(), lengths.end()));
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_DONE_MASK);
+    EXPECT_EQ(bus_.read(MODEM_TX_STATE), 9u << 8 | 16u);
+}
+
+TEST_F(ModemTest, PacketsArriveEachInItsBuffer) {
+    power(quick());
+    configure();
+    takeEvents();
+    std::vector<std::vector<uint8_t>> sent;
+    for (unsigned i = 0; i < 20; ++i) {
+        sent.push_back(frame(5 + i * 13 % 96, static_cast<uint8_t>(i)));
+        plain_.send(sent.back(), now());
+        runMs(16);
+        EXPECT_EQ(takeEvents(), MODEM_EVENT_RX_PACKET_MASK) << i;
+        EXPECT_EQ(take(), sent.back()) << i;
+    }
+}
+
+TEST_F(ModemTest, ThreeCharactersOfSilenceEndAPacket) {
+    power(quick());
+    configure();
+    takeEvents();
+    std::vector<uint8_t> cut = frame(60, 9);
+    cut.resize(21);
+    plain_.send(cut, now());
+    runMs(10);
+    EXPECT_EQ(take(), cut);
+}
+
+TEST_F(ModemTest, AFullRingDropsWholePacketsAndNothingElse) {
+    power(quick());
+    configure();
+    takeEvents();
+    for (unsigned i = 0; i < 18; ++i) {
+        plain_.send(frame(50, static_cast<uint8_t>(i + 1)), now());
+        runMs(10);
+    }
+    EXPECT_TRUE(bench_.top().modem_rts_n_o);
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_RX_PACKET_MASK | MODEM_EVENT_RX_OVERRUN_MASK);
+    EXPECT_EQ(bus_.read(MODEM_ERRORS) >> MODEM_ERRORS_OVERRUN_LSB & 0xFF, 2u);
+    for (unsigned i = 0; i < 16; ++i)
+        EXPECT_EQ(take(), frame(50, static_cast<uint8_t>(i + 1))) << i;
+    EXPECT_TRUE(take().empty());
+    plain_.send(frame(50, 99), now());
+    runMs(10);
+    EXPECT_EQ(take(), frame(50, 99)) << "it goes on";
+}
+
+TEST_F(ModemTest, AFramingErrorEndsThePacketAndIsCounted) {
+    power(quick());
+    configure();
+    takeEvents();
+    plain_.send(frame(50, 7), now());
+    runMs(5.5);
+    noise_ = true; // a break in the middle
+    runMs(0.3);
+    noise_ = false;
+    runMs(10);
+    EXPECT_GE(bus_.read(MODEM_ERRORS) & 0xFF, 1u);
+    while (!take().empty()) {
+    }
+    plain_.send(frame(30, 8), now());
+    runMs(10);
+    EXPECT_EQ(take(), frame(30, 8));
+}
+
+TEST_F(ModemTest, WrongPutsAreRefused) {
+    power(quick());
+    bus_.write(MODEM_TX_PUT, 10); // before the set-up
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_REFUSED_MASK);
+    configure();
+    takeEvents();
+    for (uint32_t bytes : {0u, 101u, 255u}) {
+        bus_.write(MODEM_TX_PUT, bytes);
+        EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_REFUSED_MASK) << bytes;
+    }
+    for (unsigned i = 0; i < 17; ++i)
+        bus_.write(MODEM_TX_PUT, 100);
+    EXPECT_TRUE(takeEvents() & MODEM_EVENT_TX_REFUSED_MASK) << "the ring is full";
+}
+
+TEST_F(ModemTest, ResetInMidPacketAndSetUpAgain) {
+    power(quick());
+    configure();
+    takeEvents();
+    put(0, frame(100, 1));
+    runMs(4);
+    bus_.write(MODEM_CONTROL, MODEM_CONTROL_RESET_MODEM_MASK);
+    runMs(80);
+    EXPECT_EQ(near_->parameter("BD"), 3u) << "nothing was written to its memory";
+    EXPECT_EQ(bus_.read(MODEM_TX_STATE), 16u);
+    configure();
+    EXPECT_TRUE(takeEvents() & MODEM_EVENT_CONFIGURED_MASK);
+    put(0, frame(40, 3));
+    runMs(20);
+    ASSERT_GE(plain_.received.size(), 40u);
+    EXPECT_EQ(std::vector<uint8_t>(plain_.received.end() - 40, plain_.received.end()), frame(40, 3));
+}
+
+TEST_F(ModemTest, AModemThatIsFullHoldsTheControllerBack) {
+    power(quick());
+    configure();
+    takeEvents();
+    air_.weather.delayNs = 200'000'000; // each packet keeps the modem busy
+    for (unsigned i = 0; i < 6; ++i)
+        put(i, frame(100, static_cast<uint8_t>(i)));
+    runMs(1500);
+    EXPECT_EQ(near_->counters().overflow, 0u);
+    EXPECT_EQ(plain_.received.size(), 600u);
+}
+
+} // namespace

@@ -135,13 +135,13 @@ std::string cHeader(const Block& b) {
                                 "#ifndef {2}_REGS_H\n#define {2}_REGS_H\n\n",
                                 b.name, b.doc, b.prefix);
     for (const Constant& c : b.constants)
-        s += fmt::format("#define {}_{} 0x{:X}UL /* {} */\n", b.prefix, c.name, c.value, c.doc);
+        s += fmt::format("#define {}_{} 0x{:X}U /* {} */\n", b.prefix, c.name, c.value, c.doc);
     for (const Register& r : b.registers) {
         s += fmt::format("\n#define {}_{} {}U /* {}: {} */\n", b.prefix, r.name, r.word, r.access,
                          r.doc);
         for (const Field& f : r.fields)
             s += fmt::format("#define {0}_{1}_{2}_LSB {3}U /* {4} */\n"
-                             "#define {0}_{1}_{2}_MASK 0x{5:X}UL\n",
+                             "#define {0}_{1}_{2}_MASK 0x{5:X}U\n",
                              b.prefix, r.name, f.name, f.lsb, f.doc,
                              ((1ul << f.width) - 1) << f.lsb);
     }

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * fsmc: set-up of the FSMC, register words, and memory copies through the DDR3 window.
+ */
+#include "fsmc.h"
+#include "map_regs.h"
+#include "system_regs.h"
+
+#define FSMC_REGISTERS 0xA0000000UL
+#define DDR_WINDOW 0x60000000UL
+#define CONTROL_WINDOW 0x64000000UL
+#define WINDOW_MASK ((1UL << MAP_DDR_WINDOW_LOG2) - 1UL)
+
+/* BCR: bank on, SRAM, 16 bits, write enable, asynchronous wait (NWAIT, active low). */
+#define BCR_VALUE (1UL << 0 | 1UL << 4 | 1UL << 7 | 1UL << 12 | 1UL << 15)
+/* BTR: ADDSET 5 HCLK, so that the strobes rest for four clocks of the fabric; DATAST 8: NWAIT is
+ * looked at four HCLK before the end of it; BUSTURN 1. */
+#define BTR_VALUE (5UL | 8UL << 8 | 1UL << 16)
+
+static const Fsmc_Port *fsmcPort;
+static void *fsmcContext;
+static U32 fsmcPage;
+
+static U32 wordAddress(U32 slot, U32 word) {
+    return (U32)CONTROL_WINDOW + ((slot & 63U) << 6 | (word & 15U) << 2);
+}
+
+Fsmc_Status FSMC_init(const Fsmc_Port *port, void *context) {
+    U32 bank;
+    fsmcPort = port;
+    fsmcContext = context;
+    for (bank = 0; bank < 2U; ++bank) {
+        port->write32(context, (U32)FSMC_REGISTERS + bank * 8U + 4U, (U32)BTR_VALUE);
+        port->write32(context, (U32)FSMC_REGISTERS + bank * 8U, (U32)BCR_VALUE);
+    }
+    if (FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID) >> 16 != SYSTEM_ID_VALUE >> 16)
+        return FSMC_NO_DEVICE;
+    fsmcPage = 0;
+    FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 0);
+    return FSMC_OK;
+}
+
+U32 FSMC_read(U32 slot, U32 word) {
+    return fsmcPort->read32(fsmcContext, wordAddress(slot, word));
+}
+
+void FSMC_write(U32 slot, U32 word, U32 value) {
+    fsmcPort->write32(fsmcContext, wordAddress(slot, word), value);
+}
+
+/* Turns a DDR3 address into one in the window, and moves the page register where it must. */
+static U32 windowAddress(U32 address) {
+    U32 page = address >> MAP_DDR_WINDOW_LOG2;
+    if (page != fsmcPage) {
+        FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, page);
+        fsmcPage = page;
+    }
+    return (U32)(DDR_WINDOW + (address & WINDOW_MASK));
+}
+
+void FSMC_readMemory(U32 address, U8 *data, U32 bytes) {
+    while (bytes) {
+        U32 at = windowAddress(address);
+        if ((address & 1U) || bytes == 1U) {
+            *data++ = fsmcPort->read8(fsmcContext, at);
+            ++address;
+            --bytes;
+        } else {
+            U16 half = fsmcPort->read16(fsmcContext, at);
+            *data++ = (U8)half;
+            *data++ = (U8)(half >> 8);
+            address += 2U;
+            bytes -= 2U;
+        }
+    }
+}
+
+void FSMC_writeMemory(U32 address, const U8 *data, U32 bytes) {
+    while (bytes) {
+        U32 at = windowAddress(address);
+        if ((address & 1U) || bytes == 1U) {
+            fsmcPort->write8(fsmcContext, at, *data++);
+            ++address;
+            --bytes;
+        } else {
+            fsmcPort->write16(fsmcContext, at, (U16)(data[0] | (U32)data[1] << 8));
+            data += 2;
+            address += 2U;
+            bytes -= 2U;
+        }
+    }
+}
+
+Fsmc_Status FSMC_checkError(U32 *where) {
+    if (!(FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_EVENT) & SYSTEM_EVENT_BUS_ERROR_MASK))
+        return FSMC_OK;
+    if (where)
+        *where = FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ERROR_ADDR);
+    FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);
+    return FSMC_BUS_ERROR;
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * xbee_endpoint: IceC's transport over the radio link: a connection is a channel of the link.
+ *
+ * The ground opens channels 0..2, this side channel 3. On the wire an endpoint is type 0x4158 with a
+ * remote address (short), a channel (byte, 255: any) and a time-out in milliseconds (int).
+ */
+#ifndef XBEE_ENDPOINT_H
+#define XBEE_ENDPOINT_H
+
+#include "icec.h"
+#include "link.h"
+
+#define XBEE_ENDPOINT_TYPE 0x4158
+#define XBEE_OWN_CHANNEL 3
+
+/* What the endpoint needs from the application: the link belongs to the radio task. */
+typedef struct XBeeATPort {
+    void (*lock)(void *context);   /* around every use of the link, callbacks included */
+    void (*unlock)(void *context);
+    void (*kick)(void *context);   /* makes the radio task poll the link soon */
+    int (*wait)(void *context, Ice_Int timeoutMs); /* for signal; 1: signalled */
+    void (*signal)(void *context);
+    U32 (*nowUs)(void *context);
+} XBeeATPort;
+
+typedef struct XBeeATEndpoint {
+    Link *link;
+    const XBeeATPort *port;
+    void *context;
+    U16 address; /* own, MY */
+    Ice_Event events[8];
+    U32 head, count;
+    Ice_Byte *buffer; /* of the task that receives; 0: nobody does, the link keeps the message */
+    Ice_Byte ownOpen;
+} XBeeATEndpoint;
+
+/* Makes `name` (always "xbee-at") known to the communicator. */
+void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char *name, XBeeATEndpoint *self, Link *link,
+                         U16 address, const XBeeATPort *port, void *context);
+
+/* To be called from the link's callbacks of these names, under the lock. */
+int XBeeATEndpoint_onMessage(XBeeATEndpoint *self, int channel, const U8 *data, U32 size);
+void XBeeATEndpoint_onChannel(XBeeATEndpoint *self, int channel, int isOpen);
+void XBeeATEndpoint_onState(XBeeATEndpoint *self, Link_State state);
+
+#endif

@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_stream: Ice's encodings 1.0 and 1.1 of the basic types. Little-endian, whatever the machine is.
+ */
+#include "icec.h"
+
+#include <string.h>
+
+Ice_String Ice_String_from(const char *terminated) {
+    Ice_String s;
+    s.data = terminated;
+    s.size = (Ice_Int)strlen(terminated);
+    return s;
+}
+
+int Ice_String_equals(Ice_String a, const char *terminated) {
+    return (size_t)a.size == strlen(terminated) && memcmp(a.data, terminated, (size_t)a.size) == 0;
+}
+
+void Ice_OutputStream_init(Ice_OutputStreamPtr os, Ice_Byte *data, Ice_Int capacity) {
+    os->data = data;
+    os->size = 0;
+    os->capacity = capacity;
+    os->minor = 1;
+    os->failed = 0;
+}
+
+void Ice_OutputStream_writeBlob(Ice_OutputStreamPtr os, const Ice_Byte *data, Ice_Int size) {
+    if (os->failed || size > os->capacity - os->size) {
+        os->failed = 1;
+        return;
+    }
+    if (size)
+        memcpy(os->data + os->size, data, (size_t)size);
+    os->size += size;
+}
+
+void Ice_OutputStream_writeByte(Ice_OutputStreamPtr os, Ice_Byte v) {
+    Ice_OutputStream_writeBlob(os, &v, 1);
+}
+
+void Ice_OutputStream_writeBool(Ice_OutputStreamPtr os, Ice_Bool v) {
+    Ice_OutputStream_writeByte(os, v != 0);
+}
+
+static void writeWord(Ice_OutputStreamPtr os, U32 v, Ice_Int bytes) {
+    Ice_Byte b[4];
+    b[0] = (Ice_Byte)v;
+    b[1] = (Ice_Byte)(v >> 8);
+    b[2] = (Ice_Byte)(v >> 16);
+    b[3] = (Ice_Byte)(v >> 24);
+    Ice_OutputStream_writeBlob(os, b, bytes);
+}
+
+void Ice_OutputStream_writeShort(Ice_OutputStreamPtr os, Ice_Short v) {
+    writeWord(os, (U32)(U16)v, 2);
+}
+
+void Ice_OutputStream_writeInt(Ice_OutputStreamPtr os, Ice_Int v) {
+    writeWord(os, (U32)v, 4);
+}
+
+void Ice_OutputStream_writeLong(Ice_OutputStreamPtr os, Ice_Long v) {
+    writeWord(os, v.low, 4);
+    writeWord(os, (U32)v.high, 4);
+}
+
+void Ice_OutputStream_writeFloat(Ice_OutputStreamPtr os, Ice_Float v) {
+    U32 bits;
+    memcpy(&bits, &v, sizeof bits);
+    writeWord(os, bits, 4);
+}
+
+/* The machine's doubles are IEEE 754 in its integers' byte order, on the Cortex-M3 as on hosts. */
+void Ice_OutputStream_writeDouble(Ice_OutputStreamPtr os, Ice_Double v) {
+    U32 bits[2];
+    memcpy(bits, &v, sizeof bits);
+    writeWord(os, bits[0], 4);
+    writeWord(os, bits[1], 4);
+}
+
+void Ice_OutputStream_writeSize(Ice_OutputStreamPtr os, Ice_Int v) {
+    if (v < 255) {
+        Ice_OutputStream_writeByte(os, (Ice_Byte)v);
+    } else {
+        Ice_OutputStream_writeByte(os, 255);
+        Ice_OutputStream_writeInt(os, v);
+    }
+}
+
+void Ice_OutputStream_writeString(Ice_OutputStreamPtr os, Ice_String v) {
+    Ice_OutputStream_writeSize(os, v.size);
+    Ice_OutputStream_writeBlob(os, (const Ice_Byte *)v.data, v.size);
+}
+
+void Ice_OutputStream_writeEnum(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int largest) {
+    if (os->minor != 0)
+        Ice_OutputStream_writeSize(os, v);
+    else
+        writeWord(os, (U32)v, largest < 127 ? 1 : largest < 32767 ? 2 : 4);
+}
+
+void Ice_InputStream_init(Ice_InputStreamPtr is, const Ice_Byte *data, Ice_Int size) {
+    memset(is, 0, sizeof *is);
+    is->data = data;
+    is->size = size;
+    is->minor = 1;
+}
+
+const Ice_Byte *Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size) {
+    const Ice_Byte *at = is->data + is->position;
+    if (is->failed || size < 0 || size > is->size - is->position) {
+        is->failed = 1;
+        return 0;
+    }
+    is->position += size;
+    return at;
+}
+
+static U32 readWord(Ice_InputStreamPtr is, Ice_Int bytes) {
+    const Ice_Byte *b = Ice_InputStream_readBlob(is, bytes);
+    U32 v = 0;
+    if (b)
+        while (bytes--)
+            v = v << 8 | b[bytes];
+    return v;
+}
+
+Ice_Byte Ice_InputStream_readByte(Ice_InputStreamPtr is) {
+    return (Ice_Byte)readWord(is, 1);
+}
+
+Ice_Bool Ice_InputStream_readBool(Ice_InputStreamPtr is) {
+    return readWord(is, 1) != 0;
+}
+
+Ice_Short Ice_InputStream_readShort(Ice_InputStreamPtr is) {
+    return (Ice_Short)readWord(is, 2);
+}
+
+Ice_Int Ice_InputStream_readInt(Ice_InputStreamPtr is) {
+    return (Ice_Int)readWord(is, 4);
+}
+
+Ice_Long Ice_InputStream_readLong(Ice_InputStreamPtr is) {
+    Ice_Long v;
+    v.low = readWord(is, 4);
+    v.high = (S32)readWord(is, 4);
+    return v;
+}
+
+Ice_Float Ice_InputStream_readFloat(Ice_InputStreamPtr is) {
+    U32 bits = readWord(is, 4);
+    Ice_Float v;
+    memcpy(&v, &bits, sizeof v);
+    return v;
+}
+
+Ice_Double Ice_InputStream_readDouble(Ice_InputStreamPtr is) {
+    U32 bits[2];
+    Ice_Double v;
+    bits[0] = readWord(is, 4);
+    bits[1] = readWord(is, 4);
+    memcpy(&v, bits, sizeof v);
+    return v;
+}
+
+Ice_Int Ice_InputStream_readSize(Ice_InputStreamPtr is) {
+    Ice_Int size = Ice_InputStream_readByte(is);
+    if (size == 255)
+        size = Ice_InputStream_readInt(is);
+    if (size < 0)
+        is->failed = 1;
+    return is->failed ? 0 : size;
+}
+
+Ice_String Ice_InputStream_readString(Ice_InputStreamPtr is) {
+    Ice_String s;
+    s.size = Ice_InputStream_readSize(is);
+    s.data = (const char *)Ice_InputStream_readBlob(is, s.size);
+    if (!s.data) {
+        s.data = "";
+        s.size = 0;
+    }
+    return s;
+}
+
+Ice_Int Ice_InputStream_readEnum(Ice_InputStreamPtr is, Ice_Int largest) {
+    Ice_Int v = is->minor != 0 ? Ice_InputStream_readSize(is)
+                               : (Ice_Int)readWord(is, largest < 127 ? 1 : largest < 32767 ? 2 : 4);
+    if (v < 0 || v > largest)
+        is->failed = 1;
+    return is->failed ? 0 : v;
+}
+
+Ice_Int Ice_InputStream_readSequence(Ice_InputStreamPtr is, Ice_Int least) {
+    Ice_Int count = Ice_InputStream_readSize(is);
+    if (count > (is->size - is->position) / least)
+        is->failed = 1;
+    return is->failed ? 0 : count;
+}
+
+void *Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int bytes) {
+    Ice_Int words;
+    void *at;
+    if (count == 0)
+        return 0;
+    if (is->failed || count > is->arenaSize * 4 / bytes) {
+        is->failed = 1;
+        return 0;
+    }
+    words = (count * bytes + 3) / 4;
+    /* Doubles and pointers want 8 on hosts. */
+    is->arenaUsed += is->arenaUsed & 1;
+    if (words > is->arenaSize - is->arenaUsed) {
+        is->failed = 1;
+        return 0;
+    }
+    at = is->arena + is->arenaUsed;
+    is->arenaUsed += words;
+    return at;
+}

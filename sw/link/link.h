@@ -92,10 +92,10 @@ void Link_stop(Link *link, U32 nowUs);
 
 Link_State Link_state(const Link *link);
 
-/* Opens a channel towards the peer, whose `channel` callback says so. LINK_OK, LINK_DOWN, LINK_FULL. */
+/* Opens a channel, for both directions; the peer's `channel` callback says so. LINK_OK, LINK_DOWN, LINK_FULL. */
 Link_Status Link_openChannel(Link *link, int channel, U32 nowUs);
 
-/* Closes a channel behind the messages that were sent before. */
+/* Closes a channel behind the messages that were sent before. LINK_CLOSED: it was not open. */
 Link_Status Link_closeChannel(Link *link, int channel, U32 nowUs);
 
 /* Queues a copy of a message of 1..LINK_MAX_MESSAGE bytes. */

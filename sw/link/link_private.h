@@ -100,7 +100,7 @@ struct Link {
     U32 messageSize;
     int messageOpen, messageHeld; /* between F and L; whole, but not taken yet */
     U8 messageChannel;
-    U8 peerOpen;            /* bit a channel */
+    U8 open;                /* bit a channel, whoever opened it */
     U32 ackCount, ackAt;    /* fragments since the last acknowledgement; when it is due */
     int ackDue, ackNow;
 

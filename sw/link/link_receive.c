@@ -13,16 +13,16 @@ void Link_resetReceive(Link *link) {
     link->receiveNext = 0;
     link->messageSize = 0;
     link->messageOpen = link->messageHeld = 0;
-    link->peerOpen = 0;
+    link->open = 0;
     link->ackCount = 0;
     link->ackDue = link->ackNow = 0;
 }
 
 static void setOpen(Link *link, U8 channel, int isOpen) {
     U8 bit = (U8)(1U << channel);
-    if (isOpen == ((link->peerOpen & bit) != 0))
+    if (isOpen == ((link->open & bit) != 0))
         return;
-    link->peerOpen = (U8)(isOpen ? link->peerOpen | bit : link->peerOpen & ~(U32)bit);
+    link->open = (U8)(isOpen ? link->open | bit : link->open & ~(U32)bit);
     link->port->channel(link->context, channel, isOpen);
 }
 

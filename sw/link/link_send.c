@@ -70,13 +70,21 @@ static Link_Status enqueue(Link *link, int channel, Link_ItemKind kind, const U8
 }
 
 Link_Status Link_openChannel(Link *link, int channel, U32 nowUs) {
+    Link_Status status = enqueue(link, channel, LINK_ITEM_OPEN, 0, 0, 0);
     (void)nowUs;
-    return enqueue(link, channel, LINK_ITEM_OPEN, 0, 0, 0);
+    if (status == LINK_OK)
+        link->open |= (U8)(1U << channel);
+    return status;
 }
 
 Link_Status Link_closeChannel(Link *link, int channel, U32 nowUs) {
+    Link_Status status = LINK_CLOSED;
     (void)nowUs;
-    return enqueue(link, channel, LINK_ITEM_CLOSE, 0, 0, 0);
+    if (link->open >> channel & 1U)
+        status = enqueue(link, channel, LINK_ITEM_CLOSE, 0, 0, 0);
+    if (status == LINK_OK)
+        link->open &= (U8) ~(1U << channel);
+    return status;
 }
 
 Link_Status Link_send(Link *link, int channel, const U8 *data, U32 size, U32 tag, U32 nowUs) {

@@ -44,7 +44,7 @@ void Link_endSession(Link *link, Link_State next, U32 now) {
     link->helloEvery = LINK_HELLO_FIRST;
     link->pingAt = now;
     if (wasUp) {
-        U8 open = link->peerOpen;
+        U8 open = link->open;
         int channel;
         Link_resetReceive(link);
         Link_dropQueue(link);

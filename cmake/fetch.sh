@@ -1,0 +1,109 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# fetch: brings what Debian has but the packages in use leave out, without touching the system.
+#   cmake/fetch.sh ice DIR    internal transport headers of the installed ZeroC Ice, into DIR
+#   cmake/fetch.sh ghdl DIR   GHDL 5 (GHDL 2's Verilog output is wrong for `case`), DIR/ghdl runs it
+# Kept in ${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network.
+
+set -eu
+
+what=$1 target=$2
+cache=${XDG_CACHE_HOME:-$HOME/.cache}/icesoc
+keyring=/usr/share/keyrings/debian-archive-keyring.gpg
+
+fail() {
+    echo "fetch: $*" >&2
+    exit 1
+}
+
+# The Debian mirror that this machine uses.
+mirror() {
+    found=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/*.sources /etc/apt/sources.list.d/*.list 2>/dev/null |
+        sed -n 's/^URIs: *\(http[^ ]*debian\/\{0,1\}\)$/\1/p; s/^deb .*\(http[^ ]*\/debian\/\{0,1\}\) .*main.*/\1/p' | head -n 1)
+    echo "${found:-http://deb.debian.org/debian}"
+}
+
+# apt with lists of its own. $1 types (deb or deb-src), $2 suites, the rest apt's arguments.
+private_apt() {
+    types=$1 suites=$2
+    shift 2
+    mkdir -p "$work/lists/partial" "$work/archives/partial"
+    cat >"$work/private.sources" <<EOF
+Types: $types
+URIs: $(mirror)
+Suites: $suites
+Components: main
+Signed-By: $keyring
+EOF
+    apt-get -qq -o Dir::Etc::sourcelist="$work/private.sources" -o Dir::Etc::sourceparts=/dev/null \
+        -o Dir::State::lists="$work/lists" -o Dir::Cache::archives="$work/archives" \
+        -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache= -o APT::Sandbox::User=root \
+        -o APT::Get::List-Cleanup=0 "$@"
+}
+
+codename() { sed -n 's/^VERSION_CODENAME=//p' /etc/os-release; }
+
+fetch_ice() {
+    version=$(dpkg-query -W -f '${source:Version}' libzeroc-ice-dev 2>/dev/null) ||
+        fail "libzeroc-ice-dev is not installed; run 'make setup'"
+    keep=$cache/ice-$version
+    if [ ! -f "$keep/done" ]; then
+        echo "Fetching the headers of ZeroC Ice $version (source package, 15 MB) ..."
+        private_apt deb-src "$(codename)" update || fail "cannot reach the Debian mirror $(mirror)"
+        (cd "$work" && private_apt deb-src "$(codename)" --download-only source "zeroc-ice=$version") ||
+            fail "cannot get the source of zeroc-ice $version from $(mirror)"
+        (cd "$work" && dpkg-source --no-check --extract zeroc-ice_*.dsc tree >/dev/null) ||
+            fail "cannot unpack the source of zeroc-ice $version"
+        mkdir -p "$keep/Ice"
+        cp "$work"/tree/cpp/src/Ice/*.h "$keep/Ice/"
+        touch "$keep/done"
+    fi
+    rm -rf "$target"
+    mkdir -p "$target"
+    ln -sfn "$keep/Ice" "$target/Ice"
+}
+
+fetch_ghdl() {
+    mkdir -p "$target"
+    major=$(ghdl --version 2>/dev/null | sed -n 's/^GHDL \([0-9]*\).*/\1/p')
+    if [ "${major:-0}" -ge 5 ]; then
+        printf '#!/bin/sh\nexec ghdl "$@"\n' >"$target/ghdl"
+        chmod +x "$target/ghdl"
+        return
+    fi
+    keep=$cache/ghdl5
+    if [ ! -f "$keep/done" ]; then
+        echo "Fetching GHDL 5 from Debian 13 (7 MB, kept apart from the system) ..."
+        private_apt deb trixie update || fail "cannot reach the Debian mirror $(mirror)"
+        (cd "$work" && private_apt deb trixie download ghdl-mcode ghdl-common libgnat-14 libc6 libgcc-s1 \
+            libstdc++6 zlib1g gcc-14-base) || fail "cannot get GHDL 5 from $(mirror)"
+        mkdir -p "$keep/root"
+        for package in "$work"/*.deb; do
+            dpkg -x "$package" "$keep/root"
+        done
+        touch "$keep/done"
+    fi
+    root=$keep/root
+    lib=$(dirname "$(find "$root" -name 'ld-linux-*.so.2' -type f | head -n 1)")
+    [ -n "$lib" ] || lib=$root/usr/lib/x86_64-linux-gnu
+    cat >"$target/ghdl" <<EOF
+#!/bin/sh
+GHDL_PREFIX=$root/usr/lib/ghdl/mcode/vhdl exec "$lib/ld-linux-x86-64.so.2" \\
+    --library-path "$root/usr/lib/x86_64-linux-gnu" "$root/usr/bin/ghdl-mcode" "\$@"
+EOF
+    chmod +x "$target/ghdl"
+}
+
+mkdir -p "$cache"
+# One at a time: two builds may want the same.
+exec 9>"$cache/lock"
+flock 9
+work=$(mktemp -d "$cache/work.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM
+case $what in
+ice) fetch_ice ;;
+ghdl) fetch_ghdl ;;
+*) fail "unknown: $what" ;;
+esac

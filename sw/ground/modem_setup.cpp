@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+//
+// modem_setup: the engine's first task: find the modem's baud rate and set it up by AT commands.
+
+#include "engine.h"
+
+#include <asm/termbits.h> // struct termios2: any rate, 111,111 too
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace XBeeAT {
+
+namespace {
+
+const int rates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
+constexpr int factoryRate = 9600, replyMs = 500, tries = 3;
+
+int codeOf(int baud) {
+    for (int code = 0; code < 8; ++code)
+        if (rates[code] == baud)
+            return code;
+    return 7;
+}
+
+std::string hex(int value) {
+    char text[16];
+    std::snprintf(text, sizeof text, "%X", static_cast<unsigned>(value));
+    return text;
+}
+
+} // namespace
+
+void Engine::setSpeed(int baud) {
+    termios2 t{};
+    if (ioctl(serial_, TCGETS2, &t) != 0)
+        return; // no terminal: bytes go through as they are
+    t.c_iflag = 0;
+    t.c_oflag = 0;
+    t.c_lflag = 0;
+    t.c_cflag = CS8 | CREAD | CLOCAL | BOTHER | BOTHER << IBSHIFT;
+    t.c_ospeed = t.c_ispeed = static_cast<speed_t>(baud == 115200 ? 111111 : baud);
+    t.c_cc[VMIN] = 0;
+    t.c_cc[VTIME] = 0;
+    ioctl(serial_, TCSETS2, &t);
+}
+
+bool Engine::waitMs(int ms) {
+    pollfd wakeup{wakePipe_[0], POLLIN, 0};
+    auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(ms);
+    for (;;) {
+        {
+            std::lock_guard<std::mutex> lock(mutex_);
+            if (stop_)
+                return false;
+        }
+        auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+                        end - std::chrono::steady_clock::now()).count();
+        if (left <= 0)
+            return true;
+        char bytes[64];
+        if (poll(&wakeup, 1, static_cast<int>(left)) > 0)
+            (void)!read(wakePipe_[0], bytes, sizeof bytes);
+    }
+}
+
+// Up to the carriage return; what came by then if it does not come.
+std::string Engine::readReply(int timeoutMs) {
+    std::string reply;
+    for (int waited = 0; waited <= timeoutMs; waited += 5) {
+        char byte;
+        while (read(serial_, &byte, 1) == 1) {
+            if (byte == '\r')
+                return reply;
+            reply += byte;
+        }
+        if (!waitMs(5))
+            return reply;
+    }
+    return reply;
+}
+
+bool Engine::enterCommandMode() {
+    int guard = settings_.guardMs + settings_.guardMs / 8 + 5;
+    if (!waitMs(guard))
+        return false;
+    ioctl(serial_, TCFLSH, TCIFLUSH);
+    if (write(serial_, "+++", 3) != 3)
+        return false;
+    std::string reply = readReply(guard + replyMs);
+    return reply.size() >= 2 && reply.compare(reply.size() - 2, 2, "OK") == 0;
+}
+
+bool Engine::command(const std::string& text) {
+    std::string line = "AT" + text + "\r";
+    for (int attempt = 0; attempt < tries; ++attempt) {
+        if (write(serial_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
+            return false;
+        std::string reply = readReply(replyMs);
+        log_(2, "AT" + text + ": " + reply);
+        if (reply == "OK")
+            return true;
+    }
+    log_(0, "the modem on '" + settings_.device + "' refuses AT" + text);
+    return false;
+}
+
+bool Engine::setUpModem() {
+    int candidates[10] = {settings_.baud, factoryRate};
+    for (int i = 0; i < 8; ++i)
+        candidates[2 + i] = rates[7 - i];
+    bool found = false;
+    for (int i = 0; i < 10 && !found; ++i) {
+        if (i >= 2 && (candidates[i] == settings_.baud || candidates[i] == factoryRate))
+            continue;
+        setSpeed(candidates[i]);
+        found = enterCommandMode();
+        log_(2, "+++ at " + std::to_string(candidates[i]) + " baud: " + (found ? "OK" : "no answer"));
+        std::lock_guard<std::mutex> lock(mutex_);
+        if (stop_)
+            return false;
+    }
+    if (!found || !command("MY" + hex(settings_.source)) || !command("DH0") ||
+        !command("DL" + hex(settings_.target)) || !command("CH" + hex(settings_.rfChannel)) ||
+        !command("ID" + hex(settings_.pan)) || !command("RO3") ||
+        !command("BD" + hex(codeOf(settings_.baud))) || !command("CN"))
+        return false;
+    setSpeed(rates[codeOf(settings_.baud)]);
+    return waitMs(10); // the modem changes its rate after the last OK has left
+}
+
+} // namespace XBeeAT

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: MIT
+#
+# vhdl.cmake: VHDL cores into Verilog by GHDL 5, checked for latches.
+
+set(GHDL_DIR ${CMAKE_BINARY_DIR}/ghdl)
+set(GHDL ${GHDL_DIR}/ghdl)
+add_custom_command(OUTPUT ${GHDL}
+  COMMAND ${CMAKE_SOURCE_DIR}/cmake/fetch.sh ghdl ${GHDL_DIR}
+  DEPENDS ${CMAKE_SOURCE_DIR}/cmake/fetch.sh VERBATIM COMMENT "GHDL 5")
+add_custom_target(ghdl DEPENDS ${GHDL})
+
+# icesoc_vhdl(NAME entity SOURCES file... [REGS block...]): ${GEN_DIR}/<entity>.v, target <entity>_verilog.
+function(icesoc_vhdl)
+  cmake_parse_arguments(A "" "NAME" "SOURCES;REGS" ${ARGN})
+  set(packages)
+  set(deps)
+  foreach(r IN LISTS A_REGS)
+    list(APPEND packages ${GEN_DIR}/${r}_regs_pkg.vhd)
+    list(APPEND deps regmap_${r})
+  endforeach()
+  set(work ${CMAKE_CURRENT_BINARY_DIR}/ghdl_${A_NAME})
+  file(MAKE_DIRECTORY ${work})
+  add_custom_command(OUTPUT ${GEN_DIR}/${A_NAME}.v
+    COMMAND ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh ${GHDL} ${work} ${A_NAME} ${GEN_DIR}/${A_NAME}.v
+            ${packages} ${A_SOURCES}
+    DEPENDS ${GHDL} ghdl ${packages} ${A_SOURCES} ${deps} ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh
+    VERBATIM COMMENT "VHDL to Verilog: ${A_NAME}")
+  add_custom_target(${A_NAME}_verilog DEPENDS ${GEN_DIR}/${A_NAME}.v)
+endfunction()

@@ -1,0 +1,297 @@
+-- SPDX-License-Identifier: MIT
+--
+-- vision: FAST-9 corners of a grey-scale frame in DDR3, one pixel a clock. Page: ip/vision/README.md.
+--
+-- Registers: ip/vision/vision.regs.json.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+use work.vision_regs_pkg.all;
+
+entity vision is
+  port (
+    clk_i                : in  std_logic;
+    rst_i                : in  std_logic;
+    -- register bus
+    bus_valid_i          : in  std_logic;
+    bus_write_i          : in  std_logic;
+    bus_addr_i           : in  std_logic_vector(3 downto 0);
+    bus_wdata_i          : in  std_logic_vector(31 downto 0);
+    bus_ready_o          : out std_logic;
+    bus_rdata_o          : out std_logic_vector(31 downto 0);
+    bus_error_o          : out std_logic;
+    irq_o                : out std_logic;
+    -- memory port
+    npi_addr_o           : out std_logic_vector(31 downto 0);
+    npi_addr_req_o       : out std_logic;
+    npi_addr_ack_i       : in  std_logic;
+    npi_rnw_o            : out std_logic;
+    npi_size_o           : out std_logic_vector(3 downto 0);
+    npi_rmw_o            : out std_logic;
+    npi_wr_data_o        : out std_logic_vector(63 downto 0);
+    npi_wr_be_o          : out std_logic_vector(7 downto 0);
+    npi_wr_push_o        : out std_logic;
+    npi_wr_empty_i       : in  std_logic;
+    npi_wr_almost_full_i : in  std_logic;
+    npi_wr_flush_o       : out std_logic;
+    npi_rd_data_i        : in  std_logic_vector(63 downto 0);
+    npi_rd_word_i        : in  std_logic_vector(3 downto 0);
+    npi_rd_pop_o         : out std_logic;
+    npi_rd_empty_i       : in  std_logic;
+    npi_rd_flush_o       : out std_logic;
+    npi_init_done_i      : in  std_logic
+  );
+end entity;
+
+architecture rtl of vision is
+  -- A score leaves vision_fast this many steps after its newest pixel, and vision_suppress two later.
+  constant SCORE_DELAY : natural := 5;
+  constant KEPT_DELAY  : natural := 2;
+
+  type state_t is (WAIT_FOR_START, STREAM, DRAIN);
+  signal state : state_t;
+
+  -- registers
+  signal events, mask  : std_logic_vector(1 downto 0); -- REFUSED, DONE
+  signal threshold     : unsigned(7 downto 0);
+  signal frame_base, result_base : std_logic_vector(31 downto 0);
+  signal width, height : unsigned(15 downto 0);
+  signal result_max, found, stored : unsigned(15 downto 0);
+  signal cycles        : unsigned(31 downto 0);
+  signal aborted, stop : std_logic;
+  signal word          : natural range 0 to 15;
+  signal write, start, abort, size_ok, go : std_logic;
+
+  -- stream: column and row of the pixel that enters; and of the score that leaves vision_suppress
+  signal x, score_x, kept_x : unsigned(9 downto 0);
+  signal y, score_y, kept_y : unsigned(16 downto 0);
+  signal fill          : unsigned(3 downto 0); -- steps until the first score, then the first kept one
+  signal step, real_pixel, pixel_valid, pixel_take, last : std_logic;
+  signal pixel, pixel_now : std_logic_vector(7 downto 0);
+  signal window        : std_logic_vector(391 downto 0);
+  signal raw_score, score, centre_score : unsigned(11 downto 0);
+  signal kept, is_corner, record_ready, record_push, quiet, memory_start : std_logic;
+  signal data          : std_logic_vector(63 downto 0);
+  signal frame_x, frame_y : unsigned(15 downto 0);
+
+  procedure advance(signal px : inout unsigned(9 downto 0); signal py : inout unsigned(16 downto 0);
+                    w : unsigned(15 downto 0)) is
+  begin
+    if resize(px, 16) + 1 = w then
+      px <= to_unsigned(0, 10);
+      py <= py + 1;
+    else
+      px <= px + 1;
+    end if;
+  end procedure;
+begin
+  npi_rmw_o      <= '0';
+  npi_wr_flush_o <= '0';
+  npi_rd_flush_o <= '0';
+  npi_wr_be_o    <= x"FF";
+
+  -- ---- registers ----
+
+  word  <= to_integer(unsigned(bus_addr_i));
+  write <= bus_valid_i and bus_write_i;
+  start <= write and bus_wdata_i(VISION_CONTROL_START_LSB) when word = VISION_CONTROL else '0';
+  abort <= write and bus_wdata_i(VISION_CONTROL_ABORT_LSB) when word = VISION_CONTROL else '0';
+  bus_ready_o <= '1';
+  bus_error_o <= '1' when word > VISION_CYCLES else '0';
+  irq_o       <= '1' when (events and mask) /= "00" else '0';
+
+  size_ok <= '1' when width(2 downto 0) = 0 and width >= VISION_MIN_SIDE and
+                      width <= VISION_MAX_WIDTH and height >= VISION_MIN_SIDE and
+                      unsigned(frame_base(6 downto 0)) = 0 and
+                      unsigned(result_base(6 downto 0)) = 0 else '0';
+  go <= start and size_ok when state = WAIT_FOR_START else '0';
+
+  reading : process (all)
+  begin
+    bus_rdata_o <= (others => '0');
+    case word is
+      when VISION_ID          => bus_rdata_o <= std_logic_vector(to_unsigned(VISION_ID_VALUE, 32));
+      when VISION_EVENT       => bus_rdata_o(1 downto 0) <= events;
+      when VISION_MASK        => bus_rdata_o(1 downto 0) <= mask;
+      when VISION_STATUS      =>
+        if state /= WAIT_FOR_START then
+          bus_rdata_o(VISION_STATUS_BUSY_LSB) <= '1';
+        end if;
+        bus_rdata_o(VISION_STATUS_ABORTED_LSB) <= aborted;
+      when VISION_THRESHOLD   => bus_rdata_o(7 downto 0) <= std_logic_vector(threshold);
+      when VISION_FRAME_BASE  => bus_rdata_o <= frame_base;
+      when VISION_FRAME_SIZE  => bus_rdata_o <= std_logic_vector(height & width);
+      when VISION_RESULT_BASE => bus_rdata_o <= result_base;
+      when VISION_RESULT_MAX  => bus_rdata_o(15 downto 0) <= std_logic_vector(result_max);
+      when VISION_FOUND       => bus_rdata_o(15 downto 0) <= std_logic_vector(found);
+      when VISION_STORED      => bus_rdata_o(15 downto 0) <= std_logic_vector(stored);
+      when VISION_CYCLES      => bus_rdata_o <= std_logic_vector(cycles);
+      when others             => null;
+    end case;
+  end process;
+
+  registers : process (clk_i)
+    variable clear : std_logic_vector(1 downto 0);
+  begin
+    if rising_edge(clk_i) then
+      clear := "00";
+      if write = '1' then
+        case word is
+          when VISION_EVENT       => clear := bus_wdata_i(1 downto 0);
+          when VISION_MASK        => mask <= bus_wdata_i(1 downto 0);
+          when VISION_THRESHOLD   => threshold <= unsigned(bus_wdata_i(7 downto 0));
+          when VISION_FRAME_BASE  => frame_base <= bus_wdata_i;
+          when VISION_FRAME_SIZE  =>
+            height <= unsigned(bus_wdata_i(31 downto 16));
+            width  <= unsigned(bus_wdata_i(15 downto 0));
+          when VISION_RESULT_BASE => result_base <= bus_wdata_i;
+          when VISION_RESULT_MAX  => result_max <= unsigned(bus_wdata_i(15 downto 0));
+          when others             => null;
+        end case;
+      end if;
+      events <= events and not clear;
+      if state = DRAIN and quiet = '1' then
+        events(VISION_EVENT_DONE_LSB) <= '1';
+      end if;
+      if start = '1' and state = WAIT_FOR_START and size_ok = '0' then
+        events(VISION_EVENT_REFUSED_LSB) <= '1';
+      end if;
+      if rst_i = '1' then
+        events      <= "00";
+        mask        <= "00";
+        threshold   <= to_unsigned(0, 8);
+        frame_base  <= (others => '0');
+        result_base <= (others => '0');
+        width       <= to_unsigned(0, 16);
+        height      <= to_unsigned(0, 16);
+        result_max  <= to_unsigned(0, 16);
+      end if;
+    end if;
+  end process;
+
+  -- ---- stream ----
+
+  -- Lines below the frame are made up: their scores are 0, but the last corners need them to leave.
+  real_pixel <= '1' when y < resize(height, 17) else '0';
+  pixel_now  <= pixel when real_pixel = '1' else x"00";
+  step       <= '1' when state = STREAM and stop = '0' and (pixel_valid = '1' or real_pixel = '0') and
+                         record_ready = '1' else '0';
+  pixel_take <= step and real_pixel;
+
+  -- The window of a score begins with column 6 and line 6 of the stream: elsewhere it wraps round.
+  score <= raw_score when score_x >= 6 and score_y >= 6 and score_y < resize(height, 17) and
+                          fill >= SCORE_DELAY else to_unsigned(0, 12);
+
+  -- Centre of the frame's coordinates: three columns and lines back for the window.
+  frame_x     <= resize(kept_x, 16) - 3;
+  frame_y     <= resize(kept_y, 16) - 3;
+  -- Lines that are not of this frame are in the block RAMs until the first have gone through.
+  is_corner   <= step and kept when fill = SCORE_DELAY + KEPT_DELAY and kept_y >= 6 and
+                                    kept_y < resize(height, 17) else '0';
+  record_push <= is_corner when stored < result_max else '0';
+  data        <= x"00000" & std_logic_vector(centre_score) &
+                 std_logic_vector(frame_y) & std_logic_vector(frame_x);
+  last        <= '1' when kept_y = resize(height, 17) else '0';
+  memory_start <= go;
+
+  stream_control : process (clk_i)
+  begin
+    if rising_edge(clk_i) then
+      case state is
+        when WAIT_FOR_START =>
+          if go = '1' then
+            state   <= STREAM;
+            stop    <= '0';
+            aborted <= '0';
+            found   <= to_unsigned(0, 16);
+            stored  <= to_unsigned(0, 16);
+            cycles  <= to_unsigned(0, 32);
+            fill    <= to_unsigned(0, 4);
+            x       <= to_unsigned(0, 10);
+            y       <= to_unsigned(0, 17);
+            score_x <= to_unsigned(0, 10);
+            score_y <= to_unsigned(0, 17);
+          end if;
+        when STREAM =>
+          cycles <= cycles + 1;
+          if abort = '1' then
+            aborted <= '1';
+            stop    <= '1';
+          end if;
+          if stop = '1' or (last = '1' and fill = SCORE_DELAY + KEPT_DELAY) then
+            stop  <= '1';
+            state <= DRAIN;
+          end if;
+        when DRAIN =>
+          cycles <= cycles + 1;
+          if quiet = '1' then
+            state <= WAIT_FOR_START;
+          end if;
+      end case;
+
+      if step = '1' then
+        advance(x, y, width);
+        if fill >= SCORE_DELAY then
+          advance(score_x, score_y, width);
+        end if;
+        if fill /= SCORE_DELAY + KEPT_DELAY then
+          fill <= fill + 1;
+        end if;
+      end if;
+      if is_corner = '1' then
+        found <= found + 1;
+      end if;
+      if record_push = '1' then
+        stored <= stored + 1;
+      end if;
+      if rst_i = '1' then
+        state   <= WAIT_FOR_START;
+        stop    <= '0';
+        aborted <= '0';
+        found   <= to_unsigned(0, 16);
+        stored  <= to_unsigned(0, 16);
+        cycles  <= to_unsigned(0, 32);
+      end if;
+    end if;
+  end process;
+
+  -- The centre is one line and one column behind the score that entered KEPT_DELAY steps ago.
+  kept_position : process (clk_i)
+  begin
+    if rising_edge(clk_i) then
+      if go = '1' then
+        -- Column and line of the first centre: one before (0, -1), counted from line 0 for unsigned.
+        kept_x <= resize(width - 1, 10);
+        kept_y <= to_unsigned(131070, 17); -- -2
+      elsif step = '1' and fill = SCORE_DELAY + KEPT_DELAY then
+        advance(kept_x, kept_y, width);
+      end if;
+    end if;
+  end process;
+
+  u_memory : entity work.vision_memory
+    port map (
+      clk_i => clk_i, rst_i => rst_i,
+      start_i => memory_start, stop_i => stop,
+      frame_base_i => frame_base, result_base_i => result_base, quiet_o => quiet,
+      pixel_valid_o => pixel_valid, pixel_o => pixel, pixel_take_i => pixel_take,
+      record_push_i => record_push, record_i => data, record_ready_o => record_ready,
+      npi_addr_o => npi_addr_o, npi_addr_req_o => npi_addr_req_o,
+      npi_addr_ack_i => npi_addr_ack_i, npi_rnw_o => npi_rnw_o, npi_size_o => npi_size_o,
+      npi_wr_data_o => npi_wr_data_o, npi_wr_push_o => npi_wr_push_o,
+      npi_rd_data_i => npi_rd_data_i, npi_rd_pop_o => npi_rd_pop_o,
+      npi_rd_empty_i => npi_rd_empty_i, npi_init_done_i => npi_init_done_i
+    );
+
+  u_window : entity work.vision_window
+    port map (clk_i => clk_i, step_i => step, x_i => x, pixel_i => pixel_now, window_o => window);
+
+  u_fast : entity work.vision_fast
+    port map (clk_i => clk_i, step_i => step, threshold_i => threshold, window_i => window,
+              score_o => raw_score);
+
+  u_suppress : entity work.vision_suppress
+    port map (clk_i => clk_i, step_i => step, x_i => score_x, score_i => score,
+              score_o => centre_score, kept_o => kept);
+end architecture;

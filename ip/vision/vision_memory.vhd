@@ -1,0 +1,144 @@
+-- SPDX-License-Identifier: MIT
+--
+-- vision_memory: the frame in, pixel by pixel, and the records out, through one memory port.
+--
+-- Reads are bursts of 128 bytes, two under way; records are written one word each, before further reads.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+entity vision_memory is
+  port (
+    clk_i          : in  std_logic;
+    rst_i          : in  std_logic;
+    -- control
+    start_i        : in  std_logic;                     -- one cycle; addresses are stable from here on
+    stop_i         : in  std_logic;                     -- no further reads; what comes is dropped
+    frame_base_i   : in  std_logic_vector(31 downto 0);
+    result_base_i  : in  std_logic_vector(31 downto 0);
+    quiet_o        : out std_logic;                     -- nothing is under way
+    -- pixels
+    pixel_valid_o  : out std_logic;
+    pixel_o        : out std_logic_vector(7 downto 0);
+    pixel_take_i   : in  std_logic;
+    -- records
+    record_push_i  : in  std_logic;                     -- only while record_ready_o is 1
+    record_i       : in  std_logic_vector(63 downto 0);
+    record_ready_o : out std_logic;
+    -- memory port
+    npi_addr_o           : out std_logic_vector(31 downto 0);
+    npi_addr_req_o       : out std_logic;
+    npi_addr_ack_i       : in  std_logic;
+    npi_rnw_o            : out std_logic;
+    npi_size_o           : out std_logic_vector(3 downto 0);
+    npi_wr_data_o        : out std_logic_vector(63 downto 0);
+    npi_wr_push_o        : out std_logic;
+    npi_rd_data_i        : in  std_logic_vector(63 downto 0);
+    npi_rd_pop_o         : out std_logic;
+    npi_rd_empty_i       : in  std_logic;
+    npi_init_done_i      : in  std_logic
+  );
+end entity;
+
+architecture rtl of vision_memory is
+  type state_t is (WAIT_FOR_WORK, WAIT_FOR_READ, WAIT_FOR_WRITE);
+  signal state       : state_t;
+  signal active      : std_logic;              -- between start and stop
+  signal read_addr   : unsigned(31 downto 7);
+  signal write_addr  : unsigned(31 downto 3);
+  signal outstanding : unsigned(5 downto 0);   -- words asked for and not yet popped
+  signal word        : std_logic_vector(63 downto 0);
+  signal bytes_left  : unsigned(3 downto 0);   -- of `word`
+  signal slot        : std_logic_vector(63 downto 0); -- a record that waits
+  signal slot_full   : std_logic;
+  signal pushed      : std_logic;
+  signal pop, refill : std_logic;
+begin
+  refill <= '1' when bytes_left = 0 or (bytes_left = 1 and pixel_take_i = '1') else '0';
+  pop    <= not npi_rd_empty_i and (refill or not active);
+
+  npi_rd_pop_o   <= pop;
+  npi_addr_req_o <= '1' when state /= WAIT_FOR_WORK else '0';
+  npi_rnw_o      <= '0' when state = WAIT_FOR_WRITE else '1';
+  npi_size_o     <= "0000" when state = WAIT_FOR_WRITE else "0100";
+  npi_addr_o     <= std_logic_vector(write_addr) & "000" when state = WAIT_FOR_WRITE else
+                    std_logic_vector(read_addr) & "0000000";
+  npi_wr_data_o  <= slot;
+  npi_wr_push_o  <= '1' when state = WAIT_FOR_WRITE and pushed = '0' else '0';
+  record_ready_o <= not slot_full;
+  pixel_valid_o  <= '1' when bytes_left /= 0 else '0';
+  pixel_o        <= word(7 downto 0);
+  quiet_o        <= '1' when state = WAIT_FOR_WORK and slot_full = '0' and outstanding = 0 else '0';
+
+  transfer : process (clk_i)
+    variable asked : unsigned(5 downto 0);
+  begin
+    if rising_edge(clk_i) then
+      asked  := to_unsigned(0, 6);
+      pushed <= '0';
+      case state is
+        when WAIT_FOR_WORK =>
+          if npi_init_done_i = '1' then
+            if slot_full = '1' then
+              state <= WAIT_FOR_WRITE;
+            elsif active = '1' and stop_i = '0' and outstanding <= 16 then
+              state <= WAIT_FOR_READ;
+            end if;
+          end if;
+        when WAIT_FOR_READ =>
+          if npi_addr_ack_i = '1' then
+            asked     := to_unsigned(16, 6);
+            read_addr <= read_addr + 1;
+            state     <= WAIT_FOR_WORK;
+          end if;
+        when WAIT_FOR_WRITE =>
+          pushed <= '1';
+          if npi_addr_ack_i = '1' then
+            write_addr <= write_addr + 1;
+            slot_full  <= '0';
+            state      <= WAIT_FOR_WORK;
+          end if;
+      end case;
+
+      if pop = '1' then
+        outstanding <= outstanding + asked - 1;
+      else
+        outstanding <= outstanding + asked;
+      end if;
+
+      if record_push_i = '1' then
+        slot      <= record_i;
+        slot_full <= '1';
+      end if;
+
+      if pixel_take_i = '1' then
+        word       <= x"00" & word(63 downto 8);
+        bytes_left <= bytes_left - 1;
+      end if;
+      if pop = '1' and active = '1' then
+        word       <= npi_rd_data_i;
+        bytes_left <= to_unsigned(8, 4);
+      end if;
+
+      if stop_i = '1' then
+        active     <= '0';
+        bytes_left <= to_unsigned(0, 4);
+      end if;
+      if start_i = '1' then
+        active     <= '1';
+        read_addr  <= unsigned(frame_base_i(31 downto 7));
+        write_addr <= unsigned(result_base_i(31 downto 3));
+        bytes_left <= to_unsigned(0, 4);
+      end if;
+      if rst_i = '1' then
+        state       <= WAIT_FOR_WORK;
+        active      <= '0';
+        outstanding <= to_unsigned(0, 6);
+        bytes_left  <= to_unsigned(0, 4);
+        slot_full   <= '0';
+        pushed      <= '0';
+      end if;
+    end if;
+  end process;
+end architecture;

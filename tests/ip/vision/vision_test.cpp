@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+//
+// vision_test: the converted core against its model, with a memory that stalls.
+
+#include "VVision.h"
+#include "bench.h"
+#include "bus_master.h"
+#include "npi_memory.h"
+#include "vision_model.h"
+#include "vision_regs.h"
+#include <gtest/gtest.h>
+
+namespace {
+
+constexpr uint32_t frameBase = 0x10000, resultBase = 0x80000;
+
+// Noise, flat areas, and bright and dark squares: corners of every kind.
+std::vector<uint8_t> picture(int width, int height, Random& random) {
+    std::vector<uint8_t> pixels(static_cast<size_t>(width * height));
+    for (auto& p : pixels)
+        p = static_cast<uint8_t>(100 + random.below(20));
+    for (int n = 0; n < width * height / 150 + 2; ++n) {
+        int x0 = static_cast<int>(random.below(static_cast<uint32_t>(width)));
+        int y0 = static_cast<int>(random.below(static_cast<uint32_t>(height)));
+        int size = static_cast<int>(1 + random.below(12));
+        uint8_t grey = static_cast<uint8_t>(random.next());
+        for (int y = y0; y < std::min(height, y0 + size); ++y)
+            for (int x = x0; x < std::min(width, x0 + size); ++x)
+                pixels[static_cast<size_t>(y * width + x)] = grey;
+    }
+    return pixels;
+}
+
+class VisionTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        bench_.reset();
+        bus_.write(VISION_MASK, 3);
+    }
+    void load(const std::vector<uint8_t>& pixels) {
+        for (size_t i = 0; i < pixels.size(); ++i)
+            memory_.setByte(frameBase + static_cast<uint32_t>(i), pixels[i]);
+    }
+    void start(int width, int height, int threshold, uint32_t most = 65535) {
+        bus_.write(VISION_THRESHOLD, static_cast<uint32_t>(threshold));
+        bus_.write(VISION_FRAME_BASE, frameBase);
+        bus_.write(VISION_FRAME_SIZE, static_cast<uint32_t>(height << 16 | width));
+        bus_.write(VISION_RESULT_BASE, resultBase);
+        bus_.write(VISION_RESULT_MAX, most);
+        bus_.write(VISION_CONTROL, VISION_CONTROL_START_MASK);
+    }
+    uint32_t finish(uint64_t limit = 4'000'000) {
+        bench_.waitFor([&] { return bench_.top().irq_o; }, "the core's interrupt", limit);
+        uint32_t events = bus_.read(VISION_EVENT);
+        bus_.write(VISION_EVENT, events);
+        return events;
+    }
+    std::vector<Feature> results() {
+        std::vector<Feature> list;
+        for (uint32_t i = 0; i < bus_.read(VISION_STORED); ++i) {
+            uint32_t at = resultBase + 8 * i;
+            auto half = [&](uint32_t o) { return memory_.byte(at + o) | memory_.byte(at + o + 1) << 8; };
+            list.push_back({half(0), half(2), half(4)});
+        }
+        return list;
+    }
+
+    Bench<VVision> bench_;
+    BusMaster<VVision> bus_{bench_};
+    NpiMemory<VVision> memory_{bench_, 0.2, testSeed()};
+};
+
+TEST_F(VisionTest, EqualsTheModelForManySizesAndThresholds) {
+    Random random(testSeed());
+    const int sizes[][2] = {{8, 8}, {16, 8}, {8, 30}, {64, 48}, {128, 33}, {1024, 9}, {40, 64}};
+    for (auto& size : sizes)
+        for (int threshold : {0, 10, 40, 255}) {
+            auto pixels = picture(size[0], size[1], random);
+            load(pixels);
+            start(size[0], size[1], threshold);
+            EXPECT_EQ(finish(), VISION_EVENT_DONE_MASK);
+            auto want = detectCorners(pixels.data(), size[0], size[1], threshold);
+            EXPECT_EQ(bus_.read(VISION_FOUND), want.size());
+            EXPECT_TRUE(results() == want) << size[0] << " x " << size[1] << ", threshold " << threshold;
+        }
+}
+
+TEST_F(VisionTest, OnePixelAClockWhenTheMemoryKeepsUp) {
+    Random random(testSeed());
+    memory_.setStall(0);
+    load(picture(128, 64, random));
+    start(128, 64, 60);
+    finish();
+    double perPixel = bus_.read(VISION_CYCLES) / (128.0 * 64);
+    std::printf("%.3f clocks a pixel\n", perPixel);
+    EXPECT_LT(perPixel, 1.2);
+}
+
+TEST_F(VisionTest, StoresAtMostWhatItIsTold) {
+    Random random(testSeed());
+    auto pixels = picture(64, 48, random);
+    load(pixels);
+    start(64, 48, 10, 5);
+    finish();
+    auto want = detectCorners(pixels.data(), 64, 48, 10);
+    ASSERT_GT(want.size(), 5u);
+    EXPECT_EQ(bus_.read(VISION_FOUND), want.size());
+    EXPECT_EQ(bus_.read(VISION_STORED), 5u);
+    want.resize(5);
+    EXPECT_TRUE(results() == want);
+    EXPECT_EQ(memory_.byte(resultBase + 40), 0) << "nothing behind the fifth";
+}
+
+TEST_F(VisionTest, RefusesWhatItCannotTake) {
+    for (auto [width, height] : {std::pair{12, 16}, {0, 16}, {1032, 16}, {16, 7}}) {
+        start(width, height, 10);
+        EXPECT_EQ(finish(), VISION_EVENT_REFUSED_MASK) << width << " x " << height;
+        EXPECT_EQ(bus_.read(VISION_STATUS), 0u);
+    }
+    bus_.write(VISION_FRAME_SIZE, 16u << 16 | 16u);
+    bus_.write(VISION_FRAME_BASE, frameBase + 8);
+    bus_.write(VISION_CONTROL, VISION_CONTROL_START_MASK);
+    EXPECT_EQ(finish(), VISION_EVENT_REFUSED_MASK);
+}
+
+TEST_F(VisionTest, AbortEndsAFrameAndTheNextIsRight) {
+    Random random(testSeed());
+    auto pixels = picture(64, 48, random);
+    load(pixels);
+    start(64, 48, 20);
+    for (int i = 0; i < 700; ++i)
+        bench_.tick();
+    bus_.write(VISION_CONTROL, VISION_CONTROL_ABORT_MASK);
+    EXPECT_EQ(finish(2000), VISION_EVENT_DONE_MASK);
+    EXPECT_EQ(bus_.read(VISION_STATUS), VISION_STATUS_ABORTED_MASK);
+    start(64, 48, 20);
+    EXPECT_EQ(finish(), VISION_EVENT_DONE_MASK);
+    EXPECT_TRUE(results() == detectCorners(pixels.data(), 64, 48, 20));
+}
+
+TEST_F(VisionTest, IdentifiesItselfAndReportsUnmappedWords) {
+    EXPECT_EQ(bus_.read(VISION_ID), VISION_ID_VALUE);
+    EXPECT_TRUE(bus_.transfer(false, 13, 0).error);
+    EXPECT_TRUE(bus_.transfer(true, 15, 1).error);
+    EXPECT_FALSE(bus_.transfer(false, VISION_CYCLES, 0).error);
+}
+
+// The model itself, against the plain definition written another way.
+TEST(VisionModel, SegmentTestEqualsTheDefinition) {
+    Random random(testSeed());
+    const int dx[] = {0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3, -3, -3, -2, -1};
+    const int dy[] = {-3, -3, -2, -1, 0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3};
+    auto pixels = picture(48, 48, random);
+    auto corners = detectCorners(pixels.data(), 48, 48, 15);
+    EXPECT_GT(corners.size(), 3u);
+    for (const Feature& f : corners) {
+        auto p = [&](int i) { return int(pixels[static_cast<size_t>((f.y + dy[i]) * 48 + f.x + dx[i])]); };
+        int c = pixels[static_cast<size_t>(f.y * 48 + f.x)];
+        bool isCorner = false;
+        for (int first = 0; first < 16; ++first) {
+            bool bright = true, dark = true;
+            for (int i = first; i < first + 9; ++i) {
+                bright = bright && p(i % 16) - c > 15;
+                dark = dark && c - p(i % 16) > 15;
+            }
+            isCorner = isCorner || bright || dark;
+        }
+        EXPECT_TRUE(isCorner) << f.x << "," << f.y;
+    }
+}
+
+} // namespace

@@ -83,6 +83,10 @@ INT8U OSTaskCreate(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT8U p
     return error;
 }
 
+INT8U OSTaskPrio(void) {
+    return os_kernel.current->base;
+}
+
 void OSStart(void) {
     if (os_kernel.running)
         return;

@@ -46,6 +46,9 @@ void OSStart(void);
 /* prio 0 (highest) .. OS_LOWEST_PRIO - 1, one task each. `ptos`: highest address of its stack. */
 INT8U OSTaskCreate(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT8U prio);
 
+/* Priority of the running task (OSPrioCur of uC/OS-II, as a function). */
+INT8U OSTaskPrio(void);
+
 void OSTimeDly(INT32U ticks);
 INT32U OSTimeGet(void);
 void OSTimeTick(void); /* by the tick interrupt, between OSIntEnter and OSIntExit */

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * uav: tasks of the application: server, client, radio.
+ */
+#include "uav.h"
+#include "map_regs.h"
+#include "modem_regs.h"
+#include "radio.h"
+#include "system_regs.h"
+#include "uav_private.h"
+
+#include <string.h>
+
+#define STACK_WORDS 512
+
+Ice_Communicator uav_ic;
+OS_EVENT *uav_report;
+
+static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STACK_WORDS];
+static Ice_ObjectAdapter adapter;
+static Autopilot_HwProcessingEngine engine;
+static Autopilot_Vehicle vehicle;
+static U8 irqEnabled;
+
+Ice_Status Autopilot_Vehicle_isAlive(Autopilot_VehiclePtr self, Ice_Short sessionId, Ice_Bool *result,
+                                     const Ice_Current *current) {
+    (void)self;
+    (void)sessionId;
+    (void)current;
+    *result = 1;
+    return ICE_OK;
+}
+
+static void setParam(Autopilot_Param *param, Ice_Byte *data, Autopilot_ParamId id, U32 value) {
+    int i;
+    for (i = 0; i < 4; ++i)
+        data[i] = (Ice_Byte)(value >> (8 * i));
+    param->id = id;
+    param->type = Autopilot_uintT;
+    param->data.size = 4;
+    param->data.data = data;
+}
+
+/* Tells the ground station about the vehicle whenever a frame is done. */
+static void clientTask(void *argument) {
+    static Ice_ObjectPrx station, self;
+    Autopilot_Param params[5];
+    Ice_Byte data[5][4];
+    Autopilot_ParamSeq list;
+    INT8U error;
+    (void)argument;
+    (void)Ice_Communicator_stringToProxy(&uav_ic, "station:xbee-at -a 0x0000", &station);
+    (void)Ice_ObjectAdapter_createProxy(&adapter, "uav", &self);
+    list.size = 5;
+    list.data = params;
+    for (;;) {
+        const Radio_Counters *radio;
+        OSSemPend(uav_report, 0, &error);
+        radio = Radio_counters();
+        setParam(&params[0], data[0], Autopilot_uptimeMs, OSTimeGet() * (1000U / OS_TICKS_PER_SEC));
+        setParam(&params[1], data[1], Autopilot_framesProcessed, UAV_framesProcessed());
+        setParam(&params[2], data[2], Autopilot_cornersFound, UAV_cornersFound());
+        setParam(&params[3], data[3], Autopilot_radioBytesSent, radio->bytesCopiedOut);
+        setParam(&params[4], data[4], Autopilot_radioBytesReceived, radio->bytesCopiedIn);
+        /* A station that does not listen is no fault of the vehicle's: the next frame tries again. */
+        (void)Autopilot_StationPrx_vehicleState(&station, &self, &list);
+    }
+}
+
+static void appMainTask(void *argument) {
+    XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0};
+    static const Radio_Memory rings = {UAV_TRANSMIT_RING, UAV_RECEIVE_RING};
+    (void)argument;
+
+    /* A modem that is dead now may be back later: the vehicle flies on and tries again. */
+    while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)
+        OSTimeDly(OS_TICKS_PER_SEC);
+    UAV_initVision();
+    irqEnabled = 1;
+
+    Ice_initialize(&uav_ic);
+    Ice_Communicator_setOs(&uav_ic, &uav_iceOs, 0);
+    UAV_useRadio(&uav_ic);
+    (void)Ice_Communicator_createObjectAdapterWithEndpoints(&uav_ic, "Adapter", "xbee-at", &adapter);
+    Ice_ObjectAdapter_activate(&adapter);
+    Autopilot_HwProcessingEngine_init(&engine);
+    (void)Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&engine, "hwengine1");
+    Autopilot_Vehicle_init(&vehicle);
+    (void)Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&vehicle, "uav");
+
+    (void)OSTaskCreate(UAV_radioTask, 0, &radioStack[STACK_WORDS - 1], PRIO_RADIO);
+    (void)OSTaskCreate(clientTask, 0, &clientStack[STACK_WORDS - 1], PRIO_CLIENT);
+    Ice_Communicator_waitForShutdown(&uav_ic);
+    for (;;)
+        OSTimeDly(OS_TICKS_PER_SEC);
+}
+
+void UAV_irqHandler(void) {
+    U32 lines = FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_LO);
+    if (lines >> MAP_SLOT_MODEM & 1U) {
+        (void)Radio_interrupt();
+        (void)OSSemPost(uav_radioWork);
+    }
+    if (lines >> MAP_SLOT_VISION & 1U)
+        UAV_visionInterrupt();
+}
+
+int UAV_irqEnabled(void) {
+    return irqEnabled;
+}
+
+void UAV_start(const Fsmc_Port *port, void *context) {
+    irqEnabled = 0;
+    if (FSMC_init(port, context) != FSMC_OK)
+        return; /* no tasks: the watchdog's business */
+    UAV_initRadio();
+    UAV_initIceOs();
+    uav_report = OSSemCreate(0);
+    (void)OSTaskCreate(appMainTask, 0, &serverStack[STACK_WORDS - 1], PRIO_SERVER);
+}

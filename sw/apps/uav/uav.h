@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * uav: the application on the UAV, in the shape of the paper's Figure 5.
+ */
+#ifndef UAV_H
+#define UAV_H
+
+#include "fsmc.h"
+
+/* Where things lie in DDR3 (byte addresses). */
+#define UAV_TRANSMIT_RING 0x00000000U
+#define UAV_RECEIVE_RING 0x00001000U
+#define UAV_FRAME 0x00100000U  /* the camera's picture */
+#define UAV_BOOTS 0x000FFF00U   /* counts boots, so that no two have the same nonces; any first value */
+#define UAV_FRAME_HEADER 0x000FFF80U /* its width and height, two 32-bit words, written by the camera */
+#define UAV_RESULT 0x00300000U /* the vision core's records */
+#define UAV_RESULT_MAX 16384U  /* records that fit */
+
+/* Creates the tasks; call between OSInit and OSStart. */
+void UAV_start(const Fsmc_Port *port, void *context);
+
+/* The FPGA's interrupt, a level; and whether it is unmasked. */
+void UAV_irqHandler(void);
+int UAV_irqEnabled(void);
+
+#endif

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * uav_private: what the application's files share.
+ */
+#ifndef UAV_PRIVATE_H
+#define UAV_PRIVATE_H
+
+#include "Autopilot.h"
+#include "link.h"
+#include "ucos_ii.h"
+#include "xbee_endpoint.h"
+
+#define UAV_BEST 64 /* features in a result, as Autopilot.ice says */
+
+/* Priorities. */
+#define PRIO_MUTEX 3U
+#define PRIO_RADIO 5U
+#define PRIO_SERVER 10U
+#define PRIO_CLIENT 12U
+
+extern Ice_Communicator uav_ic;
+extern Link uav_link;
+extern OS_EVENT *uav_radioWork; /* the radio task has something to do */
+extern OS_EVENT *uav_report;    /* a frame is done: tell the station */
+
+/* Microseconds since the start, from the OS's ticks. */
+U32 UAV_nowUs(void);
+
+/* Radio task: runs the link. Returns only if the modem cannot be set up. */
+void UAV_initRadio(void);
+void UAV_radioTask(void *argument);
+void UAV_useRadio(Ice_CommunicatorPtr ic);
+extern const Ice_Os uav_iceOs;
+void UAV_initIceOs(void);
+
+/* Vision core. */
+void UAV_initVision(void);
+void UAV_visionInterrupt(void);
+U32 UAV_framesProcessed(void);
+U32 UAV_cornersFound(void);
+
+#endif

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * uav_radio: the radio task, and what IceC's endpoint needs of it.
+ */
+#include "uav_private.h"
+#include "uav.h"
+#include "radio.h"
+
+#define BYTE_TIME_US16 1440U /* 111,111 baud */
+
+Link uav_link;
+OS_EVENT *uav_radioWork;
+
+static XBeeATEndpoint endpoint;
+static OS_EVENT *linkMutex;
+static OS_EVENT *iceEvent;
+static U32 randomState;
+
+U32 UAV_nowUs(void) {
+    return OSTimeGet() * (1000000U / OS_TICKS_PER_SEC);
+}
+
+static void lockLink(void *context) {
+    INT8U error;
+    (void)context;
+    OSMutexPend(linkMutex, 0, &error);
+}
+
+static void unlockLink(void *context) {
+    (void)context;
+    (void)OSMutexPost(linkMutex);
+}
+
+static void kick(void *context) {
+    (void)context;
+    (void)OSSemPost(uav_radioWork);
+}
+
+static int waitEvent(void *context, Ice_Int timeoutMs) {
+    INT8U error;
+    (void)context;
+    OSSemPend(iceEvent, (INT32U)timeoutMs, &error);
+    return error == OS_ERR_NONE;
+}
+
+static void signalEvent(void *context) {
+    (void)context;
+    (void)OSSemPost(iceEvent);
+}
+
+static U32 nowOf(void *context) {
+    (void)context;
+    return UAV_nowUs();
+}
+
+static const XBeeATPort endpointPort = {lockLink, unlockLink, kick, waitEvent, signalEvent, nowOf};
+
+/* Not for secrets: two boots must differ, and the count of boots in DDR3 sees to that. */
+static U32 randomWord(void *context) {
+    (void)context;
+    randomState = randomState * 1664525U + 1013904223U + OSTimeGet();
+    return randomState ^ randomState >> 15;
+}
+
+static int onMessage(void *context, int channel, const U8 *data, U32 size) {
+    (void)context;
+    return XBeeATEndpoint_onMessage(&endpoint, channel, data, size);
+}
+
+static void onChannel(void *context, int channel, int isOpen) {
+    (void)context;
+    XBeeATEndpoint_onChannel(&endpoint, channel, isOpen);
+}
+
+static void onState(void *context, Link_State state) {
+    (void)context;
+    XBeeATEndpoint_onState(&endpoint, state);
+}
+
+static const Link_Port linkPort = {Radio_transmit, randomWord, onMessage, onChannel, onState, 0, 0};
+
+static void seedRandom(void) {
+    U8 count[4];
+    FSMC_readMemory(UAV_BOOTS, count, 4);
+    randomState = ((U32)count[0] | (U32)count[1] << 8 | (U32)count[2] << 16 | (U32)count[3] << 24) + 1U;
+    count[0] = (U8)randomState;
+    count[1] = (U8)(randomState >> 8);
+    count[2] = (U8)(randomState >> 16);
+    count[3] = (U8)(randomState >> 24);
+    FSMC_writeMemory(UAV_BOOTS, count, 4);
+    randomState *= 2654435761U;
+}
+
+void UAV_initRadio(void) {
+    INT8U error;
+    seedRandom();
+    uav_radioWork = OSSemCreate(0);
+    iceEvent = OSSemCreate(0);
+    linkMutex = OSMutexCreate(PRIO_MUTEX, &error);
+    Link_init(&uav_link, &linkPort, 0, BYTE_TIME_US16);
+}
+
+void UAV_useRadio(Ice_CommunicatorPtr ic) {
+    XBeeATEndpoint_init(ic, "xbee-at", &endpoint, &uav_link, 1, &endpointPort, 0);
+}
+
+void UAV_radioTask(void *argument) {
+    INT8U error;
+    (void)argument;
+    lockLink(0);
+    Link_start(&uav_link, UAV_nowUs());
+    unlockLink(0);
+    for (;;) {
+        U32 wait;
+        lockLink(0);
+        (void)Radio_receive(&uav_link, UAV_nowUs());
+        Link_poll(&uav_link, UAV_nowUs());
+        wait = Link_deadline(&uav_link, UAV_nowUs());
+        unlockLink(0);
+        /* At least a tick, so that a full ring is not asked again and again. */
+        wait = wait > 1000000U ? OS_TICKS_PER_SEC : wait * OS_TICKS_PER_SEC / 1000000U;
+        OSSemPend(uav_radioWork, wait ? wait : 1U, &error);
+    }
+}
+
+/* ---- IceC's tasks ---- */
+
+static OS_EVENT *callDone[ICE_CALLS];
+static OS_EVENT *iceMutex;
+
+void UAV_initIceOs(void) {
+    INT8U error;
+    int c;
+    iceMutex = OSMutexCreate(PRIO_MUTEX + 1U, &error);
+    for (c = 0; c < ICE_CALLS; ++c)
+        callDone[c] = OSSemCreate(0);
+}
+
+static void lockIce(void *context) {
+    INT8U error;
+    (void)context;
+    OSMutexPend(iceMutex, 0, &error);
+}
+
+static void unlockIce(void *context) {
+    (void)context;
+    (void)OSMutexPost(iceMutex);
+}
+
+static int waitCall(void *context, int slot, Ice_Int timeoutMs) {
+    INT8U error;
+    (void)context;
+    OSSemPend(callDone[slot], (INT32U)timeoutMs, &error);
+    return error == OS_ERR_NONE;
+}
+
+static void wakeCall(void *context, int slot) {
+    (void)context;
+    (void)OSSemPost(callDone[slot]);
+}
+
+/* The server task receives; every other one waits. */
+static int taskOf(void *context) {
+    (void)context;
+    return OSTaskPrio();
+}
+
+const Ice_Os uav_iceOs = {lockIce, unlockIce, waitCall, wakeCall, taskOf};

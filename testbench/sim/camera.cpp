@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+//
+// camera: stb_image and a crop.
+
+#include "camera.h"
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wall"
+#pragma GCC diagnostic ignored "-Wextra"
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wshadow"
+#include <stb/stb_image.h>
+#include <stb/stb_image_write.h>
+#pragma GCC diagnostic pop
+
+namespace {
+constexpr int leastSide = 8; // the vision core's
+}
+
+Frame loadFrame(const std::string& path, int width, int height) {
+    if (!std::ifstream(path))
+        throw std::runtime_error("cannot read picture '" + path + "'");
+    int w = 0, h = 0, channels = 0;
+    std::unique_ptr<uint8_t, void (*)(void*)> grey(stbi_load(path.c_str(), &w, &h, &channels, 1),
+                                                   stbi_image_free);
+    if (!grey)
+        throw std::runtime_error("'" + path + "' is no picture that can be read (" +
+                                 stbi_failure_reason() + "); give a PNG, JPEG or PGM file");
+    int factor = std::max(1, std::min(w / width, h / height));
+    Frame frame;
+    frame.width = std::min(width, w / factor) / 8 * 8;
+    frame.height = std::min(height, h / factor);
+    if (frame.width < leastSide || frame.height < leastSide)
+        throw std::runtime_error("'" + path + "' is " + std::to_string(w) + " x " + std::to_string(h) +
+                                 " pixels: too small, 8 x 8 at least");
+    int left = (w - frame.width * factor) / 2, top = (h - frame.height * factor) / 2;
+    for (int y = 0; y < frame.height; ++y)
+        for (int x = 0; x < frame.width; ++x) {
+            int sum = 0;
+            for (int dy = 0; dy < factor; ++dy)
+                for (int dx = 0; dx < factor; ++dx)
+                    sum += grey.get()[(top + y * factor + dy) * w + left + x * factor + dx];
+            frame.pixels.push_back(static_cast<uint8_t>(sum / (factor * factor)));
+        }
+    return frame;
+}
+
+void savePng(const std::string& path, const Frame& frame) {
+    if (!stbi_write_png(path.c_str(), frame.width, frame.height, 1, frame.pixels.data(), frame.width))
+        throw std::runtime_error("cannot write '" + path + "': is the disk full, or the folder read-only?");
+}

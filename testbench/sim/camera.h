@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+//
+// camera: a grey-scale frame from a picture file (PNG, JPEG, PGM and what else stb_image reads).
+
+#ifndef CAMERA_H
+#define CAMERA_H
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+struct Frame {
+    int width = 0, height = 0;
+    std::vector<uint8_t> pixels;
+};
+
+// The middle of the picture, made smaller by a whole factor where it is at least twice the wanted
+// size. The width becomes a multiple of 8. Throws std::runtime_error that says what is wrong.
+Frame loadFrame(const std::string& path, int width, int height);
+void savePng(const std::string& path, const Frame& frame);
+
+#endif

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+//
+// icesoc-sim: the simulated UAV with its modem, the air, and the ground's modem on a pty; and, as its
+// child, the program that uses that pty.
+
+#include "camera.h"
+#include "soc_model.h"
+#include "status.h"
+#include "uav_machine.h"
+
+extern "C" {
+#include "uav.h"
+}
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <fcntl.h>
+#include <iostream>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+volatile sig_atomic_t stopSignal = 0;
+
+struct Options {
+    std::string image, size = "320x240", out = ".", speed = "real";
+    double loss = 0, duration = 0;
+    uint64_t seed = 1;
+    bool quiet = false;
+    std::vector<std::string> command;
+};
+
+// Shared memory that the ground station reads (status.h).
+class StatusFile {
+public:
+    explicit StatusFile(const std::string& path) {
+        int fd = open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+        if (fd < 0 || ftruncate(fd, sizeof(SimStatus)) != 0)
+            throw std::system_error(errno, std::generic_category(), "cannot write '" + path + "'");
+        void* at = mmap(nullptr, sizeof(SimStatus), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+        close(fd);
+        if (at == MAP_FAILED)
+            throw std::system_error(errno, std::generic_category(), "cannot map '" + path + "'");
+        status_ = static_cast<SimStatus*>(at);
+        std::memcpy(status_->magic, "ICESOC1", 8);
+    }
+    ~StatusFile() { munmap(status_, sizeof(SimStatus)); }
+    StatusFile(const StatusFile&) = delete;
+    StatusFile& operator=(const StatusFile&) = delete;
+    SimStatus* operator->() { return status_; }
+
+private:
+    SimStatus* status_;
+};
+
+void loadCamera(SocModel& soc, const Frame& frame) {
+    uint8_t* memory = soc.memory().data();
+    const uint32_t size[2] = {static_cast<uint32_t>(frame.width), static_cast<uint32_t>(frame.height)};
+    std::memcpy(memory + UAV_FRAME_HEADER, size, sizeof size);
+    std::memcpy(memory + UAV_FRAME, frame.pixels.data(), frame.pixels.size());
+}
+
+class Child {
+public:
+    void start(std::vector<std::string> command, const std::map<std::string, std::string>& places) {
+        for (std::string& word : command)
+            for (auto& [name, value] : places)
+                for (size_t at; (at = word.find(name)) != std::string::npos;)
+                    word.replace(at, name.size(), value);
+        std::vector<char*> argv;
+        for (std::string& word : command)
+            argv.push_back(word.data());
+        argv.push_back(nullptr);
+        pid_ = fork();
+        if (pid_ == 0) {
+            execvp(argv[0], argv.data());
+            std::fprintf(stderr, "icesoc-sim: cannot start '%s': %s\n", argv[0], std::strerror(errno));
+            _exit(127);
+        }
+    }
+    // True while it runs; afterwards status() is its exit status.
+    bool runs() {
+        int status;
+        if (pid_ > 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
+            pid_ = 0;
+            status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+        }
+        return pid_ > 0;
+    }
+    // Asks it to end, and waits until it has.
+    void stop() {
+        if (!runs())
+            return;
+        kill(pid_, SIGINT);
+        for (int i = 0; i < 300 && runs(); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        if (runs()) {
+            kill(pid_, SIGKILL);
+            while (runs())
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    }
+    int status() const { return status_; }
+
+private:
+    pid_t pid_ = 0;
+    int status_ = 0;
+};
+
+// Keeps simulated time from running ahead of the wall clock, and counts the time it really worked.
+class Pace {
+public:
+    Pace(bool real) : real_(real), anchor_(Clock::now()), begin_(anchor_) {}
+    void keep(uint64_t simulatedNs) {
+        if (!real_)
+            return;
+        auto due = anchor_ + std::chrono::nanoseconds(simulatedNs - anchorNs_);
+        auto now = Clock::now();
+        if (due > now) {
+            std::this_thread::sleep_until(due);
+            slept_ += Clock::now() - now;
+        } else if (now - due > std::chrono::milliseconds(50)) {
+            anchor_ = now; // too slow for a while: go on from here, without hurry
+            anchorNs_ = simulatedNs;
+        }
+    }
+    uint64_t workedNs() const { return static_cast<uint64_t>((Clock::now() - begin_ - slept_).count()); }
+
+private:
+    bool real_;
+    Clock::time_point anchor_, begin_;
+    uint64_t anchorNs_ = 0;
+    Clock::duration slept_{};
+};
+
+int simulate(const Options& o) {
+    int width = 0, height = 0;
+    if (std::sscanf(o.size.c_str(), "%dx%d", &width, &height) != 2 || width < 8 || width > 1024 || height < 8 ||
+        height > 4096)
+        throw std::runtime_error("size '" + o.size + "': give WIDTHxHEIGHT, 8x8 to 1024x4096");
+    Frame frame = loadFrame(o.image, width, height);
+    mkdir(o.out.c_str(), 0755);
+    savePng(o.out + "/before.png", frame);
+    StatusFile status(o.out + "/status");
+
+    RfChannel air(o.seed);
+    air.weather.loss = o.loss;
+    XBee::Options uavModem, groundModem;
+    uavModem.name = "uav";
+    groundModem.name = "ground";
+    PtyLine pty;
+    XBee ground(pty, air, groundModem);
+    SocModel soc(air, uavModem);
+    soc.onTime([&](uint64_t now) {
+        ground.advance(now);
+        return ground.nextEvent();
+    });
+    air.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome outcome) {
+        (packet.from == 1 ? status->bytesDown : status->bytesUp) += packet.bytes.size();
+        ++status->packets;
+        status->lost += outcome != RfChannel::Outcome::Delivered;
+    });
+    loadCamera(soc, frame);
+    const uint32_t boots = static_cast<uint32_t>(o.seed * 1000 + static_cast<uint64_t>(getpid()) * 77);
+    std::memcpy(soc.memory().data() + UAV_BOOTS, &boots, sizeof boots);
+    soc.reset();
+
+    Child child;
+    if (!o.quiet)
+        std::cout << "icesoc-sim: UAV is up, frame " << frame.width << " x " << frame.height
+                  << ", the ground's modem is " << pty.path() << std::endl;
+    if (!o.command.empty())
+        child.start(o.command, {{"{device}", pty.path()}, {"{frame}", o.out + "/before.png"},
+                                {"{status}", o.out + "/status"}, {"{out}", o.out}});
+    Pace pace(o.speed == "real");
+    UavMachine machine(soc, [&] {
+        status->ns = soc.now();
+        status->cycles = soc.cycles();
+        status->wallNs = pace.workedNs();
+        pace.keep(soc.now());
+        bool over = o.duration > 0 && static_cast<double>(soc.now()) >= o.duration * 1e9;
+        return !stopSignal && !over && (o.command.empty() || child.runs());
+    });
+    machine.run();
+    child.stop();
+    double worked = static_cast<double>(pace.workedNs()) / 1e9;
+    if (!o.quiet)
+        std::printf("icesoc-sim: %.1f s simulated, %.2f million clocks/s while it worked (real time is %.1f), "
+                    "%llu packets on the air, %llu lost\n",
+                    static_cast<double>(soc.now()) / 1e9, static_cast<double>(soc.cycles()) / worked / 1e6,
+                    SocModel::clkHz / 1e6, static_cast<unsigned long long>(status->packets),
+                    static_cast<unsigned long long>(status->lost));
+    return stopSignal ? 128 + stopSignal : child.status();
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Simulates the UAV: RTL, DDR3, firmware, modems, radio. The ground's modem is a pty.\n"
+                 "Words of COMMAND: {device} the pty, {frame} the camera's picture, {status} counters, {out}."};
+    Options o;
+    app.add_option("--image", o.image, "picture for the camera: PNG, JPEG or PGM")->required();
+    app.add_option("--size", o.size, "of the camera's frame, WIDTHxHEIGHT");
+    app.add_option("--loss", o.loss, "loss on the air, each way")->check(CLI::Range(0.0, 1.0));
+    app.add_option("--seed", o.seed, "of the radio's misfortunes");
+    app.add_option("--out", o.out, "folder for before.png and the counters");
+    app.add_option("--speed", o.speed, "real: simulated time follows the clock; max: as fast as it goes")
+        ->check(CLI::IsMember({"real", "max"}));
+    app.add_option("--duration", o.duration, "end after so many simulated seconds");
+    app.add_flag("--quiet", o.quiet, "say nothing");
+    app.add_option("command", o.command, "program to run against the modem, behind --");
+    app.positionals_at_end();
+    CLI11_PARSE(app, argc, argv);
+    struct sigaction action {};
+    action.sa_handler = [](int signal) { stopSignal = signal; };
+    for (int signal : {SIGINT, SIGTERM, SIGHUP})
+        sigaction(signal, &action, nullptr);
+    try {
+        return simulate(o);
+    } catch (const std::exception& e) {
+        std::cerr << "icesoc-sim: error: " << e.what() << "\n";
+        return 1;
+    }
+}

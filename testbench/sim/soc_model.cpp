@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+//
+// soc_model: the simulator's innermost loop. What seldom changes is looked at only when it is due.
+
+#include "soc_model.h"
+#include <algorithm>
+
+SocModel::SocModel(RfChannel& air, XBee::Options modemOptions)
+    : context_(new VerilatedContext), top_(new VSoc(context_.get())),
+      fsmc_(pins_, [this] { tick(); }), air_(air), modem_(line_, air, std::move(modemOptions)) {
+    top_->modem_rxd_i = 1;
+}
+
+SocModel::~SocModel() { top_->final(); }
+
+void SocModel::reset() {
+    top_->rst_i = 1;
+    for (int i = 0; i < 8; ++i)
+        tick();
+    top_->rst_i = 0;
+    while (!memory_.pins.calibDone)
+        tick();
+}
+
+void SocModel::timeModels() {
+    uint64_t time = now();
+    air_.advance(time);
+    modem_.advance(time);
+    air_.advance(time);
+    nextEvent_ = std::min(air_.nextEvent(), modem_.nextEvent());
+    if (others_)
+        nextEvent_ = std::min(nextEvent_, others_(time));
+    top_->modem_rxd_i = line_.rxd();
+    top_->modem_cts_n_i = line_.ctsN();
+}
+
+void SocModel::tick() {
+    VSoc& top = *top_;
+    top.fsmc_a_i = pins_.a;
+    top.fsmc_d_i = pins_.d;
+    top.fsmc_ne_n_i = pins_.neN;
+    top.fsmc_nbl_n_i = pins_.nblN;
+    top.fsmc_noe_n_i = pins_.noeN;
+    top.fsmc_nwe_n_i = pins_.nweN;
+    top.eval();
+
+    McbModel::Pins& m = memory_.pins;
+    m.cmdEn = top.mcb_cmd_en_o;
+    m.wrEn = top.mcb_wr_en_o;
+    m.rdEn = top.mcb_rd_en_o;
+    if (m.cmdEn) {
+        m.cmdInstr = top.mcb_cmd_instr_o;
+        m.cmdBl = top.mcb_cmd_bl_o;
+        m.cmdByteAddr = top.mcb_cmd_byte_addr_o;
+    }
+    if (m.wrEn) {
+        m.wrMask = top.mcb_wr_mask_o;
+        m.wrData = top.mcb_wr_data_o;
+    }
+    memory_.cycle();
+
+    top.clk_i = 1;
+    top.eval();
+    ++cycles_;
+    top.mcb_cmd_full_i = m.cmdFull;
+    top.mcb_wr_full_i = m.wrFull;
+    top.mcb_rd_empty_i = m.rdEmpty;
+    top.mcb_rd_data_i = m.rdData;
+    top.mcb_calib_done_i = m.calibDone;
+    if (top.modem_txd_o != txd_) {
+        txd_ = top.modem_txd_o;
+        line_.setTxd(txd_, now());
+        nextEvent_ = 0;
+    }
+    if (top.modem_reset_n_o != resetN_ || top.modem_rts_n_o != rtsN_) {
+        resetN_ = top.modem_reset_n_o;
+        rtsN_ = top.modem_rts_n_o;
+        modem_.resetPin(!resetN_, now());
+        nextEvent_ = 0;
+    }
+    if (now() >= nextEvent_)
+        timeModels();
+    top.clk_i = 0;
+    top.eval();
+
+    pins_.dFromDesign = top.fsmc_d_o;
+    pins_.dDriven = top.fsmc_d_oe_o;
+    pins_.nwaitN = top.fsmc_nwait_n_o;
+}

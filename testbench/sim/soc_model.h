@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+//
+// soc_model: the Verilated chip with its memory, its modem and its processor's FSMC: one clock.
+
+#ifndef SOC_MODEL_H
+#define SOC_MODEL_H
+
+#include "VSoc.h"
+#include "fsmc_master.h"
+#include "mcb_model.h"
+#include "rf_channel.h"
+#include <functional>
+#include <memory>
+#include <verilated.h>
+#if VM_TRACE_FST
+#include <verilated_fst_c.h>
+#endif
+
+class SocModel {
+public:
+    static constexpr uint64_t clkHz = 2'000'000; // see docs/simulation.md
+    static constexpr uint64_t clkNs = 1'000'000'000 / clkHz;
+
+    SocModel(RfChannel& air, XBee::Options modemOptions);
+    ~SocModel();
+
+    void reset();
+    void tick(); // one clock cycle
+    uint64_t cycles() const { return cycles_; }
+    uint64_t now() const { return cycles_ * clkNs; }
+    bool irq() const { return top_->irq_o; }
+
+    FsmcMaster& fsmc() { return fsmc_; }
+    McbModel& memory() { return memory_; }
+    XBee& modem() { return modem_; }
+
+    // Something else that has events in simulated time (the ground's modem): it is called when due.
+    void onTime(std::function<uint64_t(uint64_t now)> advance) { others_ = std::move(advance); }
+
+private:
+    void timeModels();
+
+    std::unique_ptr<VerilatedContext> context_;
+    std::unique_ptr<VSoc> top_;
+    FsmcPins pins_;
+    FsmcMaster fsmc_;
+    McbModel memory_;
+    RfChannel& air_;
+    UartPins line_;
+    XBee modem_;
+    std::function<uint64_t(uint64_t)> others_;
+    uint64_t cycles_ = 0, nextEvent_ = 0;
+    bool txd_ = true, resetN_ = true, rtsN_ = false;
+};
+
+#endif

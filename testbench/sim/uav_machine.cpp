@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+//
+// uav_machine: simulated time passes in bus accesses and in idling, nowhere else.
+
+#include "uav_machine.h"
+
+extern "C" {
+#include "ucos_ii.h"
+#include "uav.h"
+}
+
+namespace {
+
+// The firmware's port is a table of C functions; the machine is their context.
+SocModel* socOf(void* context) { return static_cast<SocModel*>(context); }
+
+template <class F> auto access(void* context, F f) {
+    auto result = f(socOf(context)->fsmc());
+    OsHost::interruptPoint();
+    return result;
+}
+
+const Fsmc_Port fsmcPort = {
+    [](void* c, U32 a) { return access(c, [=](FsmcMaster& m) { return m.read8(a); }); },
+    [](void* c, U32 a, U8 v) { access(c, [=](FsmcMaster& m) { return m.write8(a, v), 0; }); },
+    [](void* c, U32 a) { return access(c, [=](FsmcMaster& m) { return m.read16(a); }); },
+    [](void* c, U32 a, U16 v) { access(c, [=](FsmcMaster& m) { return m.write16(a, v), 0; }); },
+    [](void* c, U32 a) { return access(c, [=](FsmcMaster& m) { return m.read32(a); }); },
+    [](void* c, U32 a, U32 v) { access(c, [=](FsmcMaster& m) { return m.write32(a, v), 0; }); }};
+
+constexpr uint64_t tickCycles = SocModel::clkHz / OS_TICKS_PER_SEC;
+
+} // namespace
+
+UavMachine::UavMachine(SocModel& soc, std::function<bool()> poll) : soc_(soc), poll_(std::move(poll)) {}
+
+bool UavMachine::pending() const { return soc_.cycles() >= nextTick_ || (soc_.irq() && UAV_irqEnabled()); }
+
+void UavMachine::serve() {
+    if (soc_.cycles() >= nextTick_) {
+        nextTick_ += tickCycles;
+        if (!poll_())
+            OsHost::stop();
+        OSTimeTick();
+        return;
+    }
+    UAV_irqHandler();
+}
+
+void UavMachine::idle() {
+    do
+        soc_.tick();
+    while (!pending());
+}
+
+void UavMachine::run() {
+    nextTick_ = soc_.cycles() + tickCycles;
+    OsHost::setMachine({[this] { idle(); }, [this] { return pending(); }, [this] { serve(); }});
+    OSInit();
+    UAV_start(&fsmcPort, &soc_);
+    OsHost::run();
+}

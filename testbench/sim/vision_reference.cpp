@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+//
+// vision-reference: the corners of a picture by the model, as JSON: what the UAV must answer.
+// Usage: vision-reference picture threshold
+
+#include "camera.h"
+#include "vision_model.h"
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <stdexcept>
+
+int main(int argc, char** argv) {
+    if (argc != 3) {
+        std::cerr << "usage: vision-reference picture threshold\n";
+        return 2;
+    }
+    try {
+        Frame frame = loadFrame(argv[1], 1024, 4096);
+        auto corners = detectCorners(frame.pixels.data(), frame.width, frame.height, std::atoi(argv[2]));
+        std::printf("{\"found\": %zu, \"best\": [", corners.size());
+        const char* separator = "";
+        for (const Feature& f : strongest(corners, 64)) {
+            std::printf("%s[%d, %d, %d]", separator, f.x, f.y, f.score);
+            separator = ", ";
+        }
+        std::printf("]}\n");
+    } catch (const std::exception& e) {
+        std::cerr << "vision-reference: error: " << e.what() << "\n";
+        return 1;
+    }
+    return 0;
+}

@@ -252,13 +252,16 @@ public:
         callback->connectors(list);
     }
     IceInternal::AcceptorPtr acceptor(const string&) const override {
-        return new Acceptor(instance_, o_, ICE_SHARED_FROM_CONST_THIS(Endpoint));
+        // What listens here is reached at this side's own address: so it is published, and so a proxy to
+        // the peer on the same device is not taken for an object of this process.
+        return new Acceptor(instance_, o_, with([](Options& o) { o.serial.target = o.serial.source; }));
     }
     vector<EndpointIPtr> expandIfWildcard() const override { return only(); }
     vector<EndpointIPtr> expandHost(EndpointIPtr&) const override { return only(); }
     bool equivalent(const EndpointIPtr& other) const override {
         const Endpoint* o = dynamic_cast<const Endpoint*>(other.get());
-        return o && o->o_.serial.device == o_.serial.device && o->o_.channel == o_.channel;
+        return o && o->o_.serial.device == o_.serial.device && o->o_.channel == o_.channel &&
+               o->o_.serial.target == o_.serial.target;
     }
 #ifdef ICE_CPP11_MAPPING
     bool operator==(const Ice::Endpoint& other) const override { return equals(dynamic_cast<const Endpoint*>(&other)); }

@@ -4,6 +4,7 @@
 
 #include "serial_line.h"
 #include <asm/termbits.h> // struct termios2, TCGETS2: the true speed, custom ones included
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
@@ -59,8 +60,7 @@ bool PtyLine::speedFits() const {
 void PtyLine::readHost(uint64_t now) {
     uint8_t bytes[64];
     // Only what the wire could have carried by now, so that nothing is read ahead of flow control.
-    if (rxFree_ < static_cast<double>(now) - 2.0 * pollNs)
-        rxFree_ = static_cast<double>(now) - 2.0 * pollNs;
+    rxFree_ = std::max(rxFree_, static_cast<double>(now) - lookBack());
     size_t room = 0;
     while (room < sizeof bytes && rxFree_ + (static_cast<double>(room) + 1) * 10 * bitNs_ <=
                                       static_cast<double>(now))
@@ -83,8 +83,7 @@ void PtyLine::readHost(uint64_t now) {
 }
 
 void PtyLine::writeHost(uint64_t now) {
-    if (txFree_ < static_cast<double>(now) - 2.0 * pollNs)
-        txFree_ = static_cast<double>(now) - 2.0 * pollNs;
+    txFree_ = std::max(txFree_, static_cast<double>(now) - lookBack());
     bool fits = speedFits();
     uint8_t byte;
     while (unwritten_.size() < 4096 && txFree_ + 10 * bitNs_ <= static_cast<double>(now) &&

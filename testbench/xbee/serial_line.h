@@ -149,6 +149,8 @@ public:
 
 private:
     bool speedFits() const;
+    // What an idle wire may have carried since it was looked at last: a byte at least.
+    double lookBack() const { return 1e6 + 10 * bitNs_; }
     void readHost(uint64_t now);
     void writeHost(uint64_t now);
 

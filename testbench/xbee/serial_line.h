@@ -132,6 +132,24 @@ private:
     uint8_t rxByte_ = 0, txByte_ = 0;
 };
 
+// No wire at all: the host is C++ in the same process, which calls send and reads `received`.
+class HostLine : public SerialLine {
+public:
+    void send(const std::vector<uint8_t>& bytes, uint64_t now) {
+        for (uint8_t byte : bytes)
+            client_->fromHost(byte, now);
+    }
+    std::vector<uint8_t> received;
+
+    void advance(uint64_t) override {
+        uint8_t byte;
+        while (client_->nextToHost(byte))
+            received.push_back(byte);
+    }
+    uint64_t nextEvent() const override { return never; }
+    void wake(uint64_t) override { advance(0); }
+};
+
 // A pseudo-terminal, for programs that talk to a serial port. Bytes move at the modem's baud rate;
 // while CTS is off none is read, which is the flow control. If the program has set a speed more than
 // 4.5 % off the modem's, bytes are spoilt, as they would be on a wire.

@@ -68,13 +68,7 @@ static void clientTask(void *argument) {
 }
 
 static void appMainTask(void *argument) {
-    XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0};
-    static const Radio_Memory rings = {UAV_TRANSMIT_RING, UAV_RECEIVE_RING};
     (void)argument;
-
-    /* A modem that is dead now may be back later: the vehicle flies on and tries again. */
-    while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)
-        OSTimeDly(OS_TICKS_PER_SEC);
     UAV_initVision();
     irqEnabled = 1;
 

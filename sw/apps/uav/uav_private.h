@@ -26,7 +26,7 @@ extern OS_EVENT *uav_report;    /* a frame is done: tell the station */
 /* Microseconds since the start, from the OS's ticks. */
 U32 UAV_nowUs(void);
 
-/* Radio task: runs the link. Returns only if the modem cannot be set up. */
+/* Radio task: sets the modem up, runs the link, and sets it up again if the link stays down. */
 void UAV_initRadio(void);
 void UAV_radioTask(void *argument);
 void UAV_useRadio(Ice_CommunicatorPtr ic);

@@ -7,6 +7,7 @@
 #include "radio.h"
 
 #define BYTE_TIME_US16 1440U /* 111,111 baud */
+#define DOWN_LIMIT (15U * OS_TICKS_PER_SEC) /* then the modem may have lost its settings: set it up again */
 
 Link uav_link;
 OS_EVENT *uav_radioWork;
@@ -104,18 +105,35 @@ void UAV_useRadio(Ice_CommunicatorPtr ic) {
     XBeeATEndpoint_init(ic, "xbee-at", &endpoint, &uav_link, 1, &endpointPort, 0);
 }
 
+static void setUpModem(void) {
+    static const XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0};
+    static const Radio_Memory rings = {UAV_TRANSMIT_RING, UAV_RECEIVE_RING};
+    /* A modem that is dead now may be back later: the vehicle flies on and tries again. */
+    while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)
+        OSTimeDly(OS_TICKS_PER_SEC);
+}
+
 void UAV_radioTask(void *argument) {
     INT8U error;
+    U32 upAt;
     (void)argument;
+    setUpModem();
+    upAt = OSTimeGet();
     lockLink(0);
     Link_start(&uav_link, UAV_nowUs());
     unlockLink(0);
     for (;;) {
         U32 wait;
+        if (OSTimeGet() - upAt > DOWN_LIMIT) {
+            setUpModem();
+            upAt = OSTimeGet();
+        }
         lockLink(0);
         (void)Radio_receive(&uav_link, UAV_nowUs());
         Link_poll(&uav_link, UAV_nowUs());
         wait = Link_deadline(&uav_link, UAV_nowUs());
+        if (Link_state(&uav_link) == LINK_STATE_UP)
+            upAt = OSTimeGet();
         unlockLink(0);
         /* At least a tick, so that a full ring is not asked again and again. */
         wait = wait > 1000000U ? OS_TICKS_PER_SEC : wait * OS_TICKS_PER_SEC / 1000000U;

@@ -15,23 +15,6 @@ namespace {
 constexpr uint64_t clkNs = 500; // 2 MHz
 constexpr uint32_t txRing = 0x1000, rxRing = 0x2000;
 
-// A second modem whose host is the test: bytes in, bytes out, no pins.
-class Plain : public SerialLine {
-public:
-    void advance(uint64_t) override {
-        uint8_t byte;
-        while (client_->nextToHost(byte))
-            received.push_back(byte);
-    }
-    uint64_t nextEvent() const override { return never; }
-    void wake(uint64_t) override { advance(0); }
-    void send(const std::vector<uint8_t>& bytes, uint64_t now) {
-        for (uint8_t byte : bytes)
-            client_->fromHost(byte, now);
-    }
-    std::vector<uint8_t> received;
-};
-
 class ModemTest : public ::testing::Test {
 protected:
     void power(XBee::Options options) {
@@ -98,7 +81,7 @@ protected:
     NpiMemory<VModem> memory_{bench_, 0.3, testSeed()};
     RfChannel air_{testSeed()};
     UartPins pins_;
-    Plain plain_;
+    HostLine plain_;
     std::unique_ptr<XBee> near_, far_;
     bool noise_ = false; // the line to the controller is held low
 

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+//
+// soc_test: the whole chip through its FSMC pins: registers, memory, errors.
+
+#include "map_regs.h"
+#include "modem_regs.h"
+#include "soc_model.h"
+#include "system_regs.h"
+#include "vision_regs.h"
+#include <gtest/gtest.h>
+#include <map>
+
+namespace {
+
+constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
+
+class Soc : public ::testing::Test {
+protected:
+    void SetUp() override {
+        soc_.reset();
+        for (uint32_t bank : {0u, 1u}) {
+            fsmc_.write32(0xA0000004 + 8 * bank, 0x00010805);
+            fsmc_.write32(0xA0000000 + 8 * bank, 0x00009091);
+        }
+    }
+    static uint32_t at(uint32_t slot, uint32_t word) { return control + 64 * slot + 4 * word; }
+    uint32_t read(uint32_t slot, uint32_t word) { return fsmc_.read32(at(slot, word)); }
+    void write(uint32_t slot, uint32_t word, uint32_t value) { fsmc_.write32(at(slot, word), value); }
+
+    RfChannel air_{testSeed()};
+    SocModel soc_{air_, {}};
+    FsmcMaster& fsmc_ = soc_.fsmc();
+};
+
+TEST_F(Soc, SlotsSayWhatTheyAre) {
+    EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_ID), SYSTEM_ID_VALUE);
+    EXPECT_EQ(read(MAP_SLOT_MODEM, MODEM_ID), MODEM_ID_VALUE);
+    EXPECT_EQ(read(MAP_SLOT_VISION, VISION_ID), VISION_ID_VALUE);
+    EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_SLOTS), MAP_SLOT_COUNT);
+    EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_CLK_HZ), SocModel::clkHz);
+}
+
+TEST_F(Soc, RegisterWordsKeepAll32Bits) {
+    Random random(testSeed());
+    for (int i = 0; i < 50; ++i) {
+        uint32_t value = random.next();
+        write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, value);
+        EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH), value);
+    }
+}
+
+TEST_F(Soc, HalfAWriteChangesNothing) {
+    write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, 0x12345678);
+    fsmc_.write16(at(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH), 0xFFFF);
+    EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH), 0x12345678u);
+}
+
+TEST_F(Soc, TheCycleCountIsReadInOnePiece) {
+    uint64_t last = 0;
+    for (int i = 0; i < 20; ++i) {
+        uint64_t low = read(MAP_SLOT_SYSTEM, SYSTEM_CYCLES_LO);
+        uint64_t now = low | uint64_t(read(MAP_SLOT_SYSTEM, SYSTEM_CYCLES_HI)) << 32;
+        EXPECT_GT(now, last);
+        last = now;
+    }
+}
+
+TEST_F(Soc, AnUnmappedRegisterIsReportedAndTheSystemGoesOn) {
+    write(MAP_SLOT_SYSTEM, SYSTEM_MASK, 1);
+    const uint32_t places[][2] = {{17, 5}, {63, 15}, {MAP_SLOT_SYSTEM, 13}, {MAP_SLOT_VISION, 14}};
+    for (auto& place : places) {
+        EXPECT_EQ(read(place[0], place[1]), 0u);
+        EXPECT_TRUE(soc_.irq());
+        EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_EVENT), SYSTEM_EVENT_BUS_ERROR_MASK);
+        EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_ERROR_ADDR), place[0] * 16 + place[1]);
+        write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);
+        EXPECT_FALSE(soc_.irq());
+    }
+    write(40, 3, 7);
+    EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_ERROR_ADDR), 1u << 16 | (40u * 16 + 3));
+    write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, 99);
+    EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH), 99u);
+}
+
+TEST_F(Soc, MemoryEqualsAReferenceUnderRandomAccesses) {
+    Random random(testSeed());
+    std::map<uint32_t, uint8_t> reference;
+    for (int i = 0; i < 4000; ++i) {
+        uint32_t a = 0x2000 + random.below(64); // few words: merging and re-reading happen often
+        switch (random.below(6)) {
+        case 0: {
+            uint8_t v = static_cast<uint8_t>(random.next());
+            fsmc_.write8(ddr + a, v);
+            reference[a] = v;
+            break;
+        }
+        case 1: {
+            a &= ~1u;
+            uint16_t v = static_cast<uint16_t>(random.next());
+            fsmc_.write16(ddr + a, v);
+            reference[a] = static_cast<uint8_t>(v);
+            reference[a + 1] = static_cast<uint8_t>(v >> 8);
+            break;
+        }
+        case 2:
+            EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_ID), SYSTEM_ID_VALUE);
+            break;
+        default:
+            a &= ~1u;
+            EXPECT_EQ(fsmc_.read16(ddr + a), reference[a] | reference[a + 1] << 8) << "access " << i;
+        }
+    }
+}
+
+TEST_F(Soc, ARegisterAccessMakesWritesVisibleAndReadsFresh) {
+    fsmc_.write16(ddr + 0x100, 0xBEEF);
+    read(MAP_SLOT_SYSTEM, SYSTEM_ID);
+    EXPECT_EQ(soc_.memory().data()[0x100] | soc_.memory().data()[0x101] << 8, 0xBEEF);
+    EXPECT_EQ(fsmc_.read16(ddr + 0x100), 0xBEEF);
+    soc_.memory().data()[0x100] = 0x11; // as another master would
+    read(MAP_SLOT_SYSTEM, SYSTEM_ID);
+    EXPECT_EQ(fsmc_.read16(ddr + 0x100), 0xBE11);
+}
+
+TEST_F(Soc, ThePageRegisterReachesTheUpperHalf) {
+    write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 1);
+    fsmc_.write16(ddr + 0x40, 0x5A5A);
+    write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 0);
+    EXPECT_EQ(soc_.memory().data()[0x04000040], 0x5A);
+    EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0);
+}
+
+TEST_F(Soc, AccessesTakeThisLong) {
+    auto measure = [&](const char* what, const std::function<void()>& access) {
+        uint64_t start = soc_.cycles();
+        for (int i = 0; i < 16; ++i)
+            access();
+        std::printf("%-34s %5.1f clocks\n", what, static_cast<double>(soc_.cycles() - start) / 16);
+    };
+    uint32_t a = ddr + 0x3000;
+    measure("register read, 32 bits", [&] { read(MAP_SLOT_SYSTEM, SYSTEM_ID); });
+    measure("register write, 32 bits", [&] { write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, 1); });
+    measure("memory write, 16 bits, sequential", [&] { fsmc_.write16(a += 2, 1); });
+    measure("memory read, 16 bits, sequential", [&] { fsmc_.read16(a += 2); });
+    EXPECT_GT(fsmc_.accesses(), 0u);
+}
+
+} // namespace

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+//
+// uav_test: RTL, modems, radio and firmware together, deterministic: the ground is the same link layer
+// in this process, and requests are written byte by byte.
+
+#include "uav_machine.h"
+#include <gtest/gtest.h>
+#include <cstring>
+
+extern "C" {
+#include "link.h"
+#include "uav.h"
+}
+
+namespace {
+
+// A ground station made of a modem, a link and hand-written IceP messages.
+class Ground {
+public:
+    Ground(RfChannel& air, uint64_t seed) : random_(seed), link_(new Link) {
+        XBee::Options options;
+        options.name = "ground";
+        options.set = {{"BD", 7}, {"MY", 0}, {"DL", 1}};
+        modem_ = std::make_unique<XBee>(line_, air, options);
+        start();
+    }
+    // A fresh program on the ground: what was before is forgotten.
+    void start() {
+        static const Link_Port port = {transmit, random, message, nothing, state, nullptr, nullptr};
+        Link_init(link_.get(), &port, this, 1440);
+        Link_start(link_.get(), us());
+        replies.clear();
+        running = true;
+    }
+    uint64_t advance(uint64_t now) {
+        now_ = now;
+        modem_->advance(now);
+        if (running && now >= nextPoll_) {
+            nextPoll_ = now + 1'000'000;
+            if (!line_.received.empty())
+                Link_receive(link_.get(), line_.received.data(), static_cast<U32>(line_.received.size()), 0, us());
+            line_.received.clear();
+            Link_poll(link_.get(), us());
+        }
+        return std::min(modem_->nextEvent(), nextPoll_);
+    }
+    bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
+    void open() { Link_openChannel(link_.get(), 0, us()); }
+    // A two-way ice_ping of an object.
+    void ping(int id, const std::string& object) {
+        std::vector<uint8_t> m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, 0, 0, 0, 0};
+        for (int i = 0; i < 4; ++i)
+            m.push_back(static_cast<uint8_t>(id >> (8 * i)));
+        auto text = [&](const std::string& s) {
+            m.push_back(static_cast<uint8_t>(s.size()));
+            m.insert(m.end(), s.begin(), s.end());
+        };
+        text(object);
+        text("");         // category
+        m.push_back(0);   // facet
+        text("ice_ping");
+        m.push_back(2);   // idempotent
+        m.push_back(0);   // context
+        for (uint8_t byte : {6, 0, 0, 0, 1, 1})
+            m.push_back(byte);
+        m[10] = static_cast<uint8_t>(m.size());
+        Link_send(link_.get(), 0, m.data(), static_cast<U32>(m.size()), 0, us());
+    }
+    void noise(const std::vector<uint8_t>& bytes) { line_.send(bytes, now_); }
+
+    std::map<int, int> replies; // request id to reply status
+    bool validated = false, running = true;
+
+private:
+    U32 us() const { return static_cast<U32>(now_ / 1000); }
+    static Ground& self(void* context) { return *static_cast<Ground*>(context); }
+    static int transmit(void* context, const U8* frame, U32 size) {
+        Ground& g = self(context);
+        if (g.modem_->counters().bytesFromHost - g.modem_->counters().bytesToHost > 1u << 30)
+            return 1;
+        g.line_.send({frame, frame + size}, g.now_);
+        return 0;
+    }
+    static U32 random(void* context) { return self(context).random_.next(); }
+    static int message(void* context, int, const U8* data, U32 size) {
+        Ground& g = self(context);
+        if (size >= 14 && data[8] == 3)
+            g.validated = true;
+        if (size >= 19 && data[8] == 2)
+            g.replies[data[14] | data[15] << 8] = data[18];
+        return 0;
+    }
+    static void nothing(void*, int, int) {}
+    static void state(void* context, Link_State) { self(context).validated = false; }
+
+    Random random_;
+    HostLine line_;
+    std::unique_ptr<XBee> modem_;
+    std::unique_ptr<Link> link_;
+    uint64_t now_ = 0, nextPoll_ = 0;
+};
+
+class Uav : public ::testing::Test {
+protected:
+    void SetUp() override {
+        soc_.onTime([this](uint64_t now) { return ground_.advance(now); });
+        soc_.reset();
+    }
+    // Runs the firmware with a script: called each millisecond until it returns true.
+    void fly(std::function<bool()> script, double limitSeconds) {
+        bool done = false;
+        UavMachine machine(soc_, [&] {
+            done = script();
+            return !done && static_cast<double>(soc_.now()) < limitSeconds * 1e9;
+        });
+        machine.run();
+        EXPECT_TRUE(done) << "not done after " << limitSeconds << " simulated seconds";
+    }
+    // Connects, then pings until `count` replies have come.
+    std::function<bool()> pinging(int count, const std::string& object = "hwengine1") {
+        auto sent = std::make_shared<int>(0);
+        auto opened = std::make_shared<bool>(false);
+        return [=, this_ = this] {
+            Ground& g = this_->ground_;
+            if (!*opened && g.isUp()) {
+                g.open();
+                *opened = true;
+            }
+            if (g.validated && static_cast<int>(g.replies.size()) == *sent && *sent < count)
+                g.ping(++*sent, object);
+            return static_cast<int>(g.replies.size()) == count;
+        };
+    }
+
+    RfChannel air_{testSeed()};
+    Ground ground_{air_, testSeed() + 5};
+    SocModel soc_{air_, {}};
+};
+
+TEST_F(Uav, AnswersPings) {
+    fly(pinging(20), 20);
+    for (auto& [id, status] : ground_.replies)
+        EXPECT_EQ(status, 0) << id;
+}
+
+TEST_F(Uav, AnObjectThatDoesNotExistIsSaidNotToExist) {
+    fly(pinging(1, "nobody"), 20);
+    EXPECT_EQ(ground_.replies[1], 2);
+}
+
+TEST_F(Uav, TenPercentLossIsNotNoticed) {
+    air_.weather.loss = 0.1;
+    fly(pinging(40), 60);
+    for (auto& [id, status] : ground_.replies)
+        EXPECT_EQ(status, 0) << id;
+    EXPECT_GT(air_.counters().lost, 0u);
+}
+
+TEST_F(Uav, CorruptionAndDuplicationAreNotNoticed) {
+    air_.weather.corruption = 0.03;
+    air_.weather.duplication = 0.1;
+    fly(pinging(40), 60);
+    EXPECT_EQ(ground_.replies.size(), 40u);
+}
+
+TEST_F(Uav, TheGroundGoesAwayAndComesBack) {
+    auto first = pinging(3), second = pinging(3);
+    int phase = 0;
+    uint64_t since = 0;
+    fly([&] {
+        if (phase == 0 && first()) {
+            ground_.running = false; // the program is killed
+            since = soc_.now();
+            phase = 1;
+        }
+        if (phase == 1 && soc_.now() - since > 12'000'000'000) {
+            ground_.start();
+            phase = 2;
+        }
+        return phase == 2 && second();
+    }, 60);
+}
+
+TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
+    auto first = pinging(3), second = pinging(3);
+    int phase = 0;
+    uint64_t since = 0;
+    fly([&] {
+        if (phase == 0 && first()) {
+            ground_.ping(100, "hwengine1"); // while this is on its way ...
+            since = soc_.now();
+            phase = 1;
+        }
+        if (phase == 1 && soc_.now() - since > 8'000'000) {
+            soc_.modem().resetPin(true, soc_.now()); // ... the UAV's modem loses its settings
+            soc_.modem().resetPin(false, soc_.now() + 1000);
+            EXPECT_EQ(soc_.modem().parameter("BD"), 3u);
+            phase = 2;
+        }
+        if (phase == 2 && !ground_.isUp())
+            phase = 3;
+        if (phase == 3 && ground_.isUp()) {
+            ground_.replies.clear();
+            phase = 4;
+        }
+        return phase == 4 && second();
+    }, 120);
+    EXPECT_EQ(soc_.modem().parameter("BD"), 7u);
+}
+
+TEST_F(Uav, GarbageOnTheGroundsSerialLineIsSurvived) {
+    Random random(testSeed());
+    auto ping = pinging(20);
+    uint64_t next = 0;
+    fly([&] {
+        if (ground_.isUp() && soc_.now() > next) {
+            std::vector<uint8_t> bytes(1 + random.below(40));
+            for (auto& byte : bytes)
+                byte = static_cast<uint8_t>(random.next());
+            ground_.noise(bytes);
+            next = soc_.now() + 150'000'000;
+        }
+        return ping();
+    }, 60);
+}
+
+TEST_F(Uav, TheSameSeedGivesTheSameRun) {
+    fly(pinging(5), 20);
+    uint64_t cycles = soc_.cycles();
+    RfChannel air(testSeed());
+    Ground ground(air, testSeed() + 5);
+    SocModel soc(air, {});
+    soc.onTime([&](uint64_t now) { return ground.advance(now); });
+    soc.reset();
+    int sent = 0;
+    bool opened = false;
+    UavMachine machine(soc, [&] {
+        if (!opened && ground.isUp()) {
+            ground.open();
+            opened = true;
+        }
+        if (ground.validated && static_cast<int>(ground.replies.size()) == sent && sent < 5)
+            ground.ping(++sent, "hwengine1");
+        return ground.replies.size() < 5;
+    });
+    machine.run();
+    EXPECT_EQ(soc.cycles(), cycles);
+}
+
+} // namespace

@@ -153,8 +153,4 @@ module npi_arbiter #(
 
     // A requester has room for what it reads (rule 3), and there is no size above 4.
     wire unused = &{1'b0, rd_almost_full, npi_size_i, 1'b0};
-
-`ifdef FORMAL
-`include "npi_arbiter_formal.vh"
-`endif
 endmodule

@@ -292,8 +292,4 @@ module fsmc_bridge #(
             push <= 1'b0;
         end
     end
-
-`ifdef FORMAL
-`include "fsmc_bridge_formal.vh"
-`endif
 endmodule

@@ -88,6 +88,7 @@ def parse_arguments():
     parser.add_argument("--status", help="the simulator's counters")
     parser.add_argument("--reference", help="program that computes the corners on the host")
     parser.add_argument("--loss", default="0", help="noted in the report")
+    parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
     parser.add_argument("--trace", type=int, default=0, help="XBeeAT.Trace: 0, 1 or 2")
     return parser.parse_args()
 
@@ -101,6 +102,7 @@ def initialize(args):
         "Ice.ThreadPool.Server.Size": "2",
         "Ice.Default.InvocationTimeout": "20000",
         "Ice.ACM.Close": "0",
+        "XBeeAT.Guard": str(args.guard),
         "Station.Endpoints": "xbee-at -d %s -a 0x0001 -s 0x0000" % args.device,
     }.items():
         properties.setProperty(key, value)

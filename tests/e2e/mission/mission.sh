@@ -1,0 +1,74 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# mission: source-folder build-folder case out-folder
+set -eu
+source=$1 build=$2 case=$3 out=$4
+rm -rf "$out"
+mkdir -p "$out"
+image=/usr/share/xplanet/images/earth.jpg
+run() { # out-folder, then options
+    to=$1
+    shift
+    "$source/testbench/sim/run.sh" "$build" --out "$to" --size 96x64 "$@"
+}
+check_output() {
+    [ -s "$1/after.png" ] && [ -s "$1/before.png" ] && grep -q 'isAlive' "$1/report.md"
+}
+# The command fails, with this text and no Python traceback.
+fails_with() {
+    text=$1
+    shift
+    if "$@" >"$out/log" 2>&1; then
+        cat "$out/log"
+        echo "it succeeded; expected: $text"
+        exit 1
+    fi
+    grep -q -- "$text" "$out/log" && ! grep -q Traceback "$out/log" || {
+        cat "$out/log"
+        echo "expected: $text"
+        exit 1
+    }
+}
+case $case in
+plain) run "$out" --image $image && check_output "$out" ;;
+loss) run "$out" --image $image --loss 0.1 --seed "${SEED:-1}" && check_output "$out" ;;
+twice)
+    run "$out/a" --image $image >"$out/a.log" 2>&1 &
+    first=$!
+    run "$out/b" --image $image --threshold 50
+    wait $first || { cat "$out/a.log" && exit 1; }
+    check_output "$out/a" && check_output "$out/b"
+    ;;
+picture_bad)
+    echo "this is no picture" >"$out/bad.png"
+    fails_with "is no picture that can be read" run "$out" --image "$out/bad.png"
+    ;;
+picture_missing) fails_with "cannot read picture" run "$out" --image /nowhere.png ;;
+device_missing)
+    fails_with "cannot open serial port '/dev/no-such-port'" /usr/bin/python3 "$source/sw/ground/clients/mission.py" \
+        --device /dev/no-such-port --plugin "$build/ground" --slice "$source/sw/apps/uav/Autopilot.ice" \
+        --frame none --out "$out"
+    ;;
+modem_silent)
+    # A pty with nobody behind it but this shell's sleep: no modem answers.
+    fails_with "no modem answers on" /usr/bin/python3 -c '
+import os, pty, subprocess, sys
+master, slave = pty.openpty()
+sys.exit(subprocess.call(sys.argv[1:] + ["--device", os.ttyname(slave), "--guard", "20"]))' \
+        /usr/bin/python3 "$source/sw/ground/clients/mission.py" --plugin "$build/ground" \
+        --slice "$source/sw/apps/uav/Autopilot.ice" --frame none --out "$out"
+    ;;
+interrupted)
+    run "$out" --image $image >"$out/log" 2>&1 &
+    pid=$!
+    while ! grep -q "setting the ground" "$out/log" 2>/dev/null; do
+        kill -0 $pid || { cat "$out/log" && exit 1; }
+        sleep 0.1
+    done
+    pkill -INT -f "icesoc-sim.*$out" # the simulator; Ctrl-C would reach all of them
+    status=0
+    wait $pid || status=$?
+    [ $status = 130 ] || { cat "$out/log"; echo "exit status $status; expected 130"; exit 1; }
+    ! pgrep -f "mission.py.*$out" || { echo "the ground station still runs" && exit 1; }
+    ;;
+esac

@@ -1,0 +1,27 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# lint: module source-folder generated-folder. Verilator -Wall, Icarus, Yosys check and latches.
+set -eu
+module=$1 source=$2 gen=$3
+folders="$source/bus $source/hdl/fsmc $source/hdl/ddr $source/hdl/modem $source/hdl/system"
+file=$(for f in $folders; do ls "$f/$module.v" 2>/dev/null || true; done)
+case $module in
+bus_decoder) variants='SLOTS=1 SLOTS=3 SLOTS=64' ;;
+npi_arbiter) variants='PORTS=2 PORTS=3 PORTS=5 PORTS=8' ;;
+bus_wrapper) variants='EVENTS=1 EVENTS=32' ;;
+npi_fifo) variants='LOG2=1 LOG2=5' ;;
+modem) variants='CLK_HZ=2000000 CLK_HZ=100000000' ;;
+system_slot) variants='SLOTS=2 SLOTS=63' ;;
+*) variants='' ;;
+esac
+search=$(for f in $folders; do echo "-y $f"; done)
+verilogs=$(for f in $folders; do ls "$f"/*.v; done)
+for variant in '' $variants; do
+    # shellcheck disable=SC2086
+    verilator --lint-only -Wall $search -I"$gen" --top-module "$module" ${variant:+-G$variant} "$file"
+    set_parameter=''
+    [ -z "$variant" ] || set_parameter="chparam -set ${variant%=*} ${variant#*=} $module;"
+    yosys -q -p "read_verilog -I$gen $(echo $verilogs); $set_parameter hierarchy -top $module; proc; opt; check -assert; select -assert-none t:\$dlatch"
+done
+# shellcheck disable=SC2086
+iverilog -g2005 -Wall -Wno-timescale -I"$gen" -t null $search -s "$module" "$file"

@@ -44,8 +44,8 @@ test: build ## run all tests
 	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error \
 	    $(if $(LABEL),-L '$(LABEL)') $(if $(NAME),-R '$(NAME)')
 
-bench: $(BUILD)/build.ninja ## measure the simulator's speed and the calls, write build/bench/*.json
-	@ninja -C $(BUILD) -j $(JOBS) bench
+bench: $(BUILD)/build.ninja ## measure the simulator, write build/bench/simulator.json
+	@ninja -C $(BUILD) -j $(JOBS) measure_simulator
 
 size: $(BUILD)/build.ninja ## bytes of each firmware layer on a Cortex-M3, beside the paper's
 	@ninja -C $(BUILD) size

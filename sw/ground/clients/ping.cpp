@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// ping: a C++ ground station of a few lines: pings an object, says its type and how long it took.
+// Usage: ping "hwengine1:xbee-at -d /dev/ttyUSB0 -a 1" [count]
+
+#include <Ice/Ice.h>
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+
+#ifndef PLUGIN_FOLDER
+#define PLUGIN_FOLDER "."
+#endif
+
+int main(int argc, char** argv) {
+    if (argc < 2 || std::string(argv[1]) == "--help") {
+        std::cerr << "usage: ping PROXY [COUNT]   e.g. ping \"hwengine1:xbee-at -d /dev/ttyUSB0 -a 1\" 5\n";
+        return 2;
+    }
+    try {
+        Ice::InitializationData data;
+        data.properties = Ice::createProperties();
+        data.properties->setProperty("Ice.Plugin.XBeeAT", PLUGIN_FOLDER "/xbeeat:createXBeeAT");
+        data.properties->setProperty("Ice.Default.InvocationTimeout", "20000");
+        data.properties->setProperty("Ice.ACM.Close", "0");
+        Ice::CommunicatorHolder ic(data);
+        auto object = ic->stringToProxy(argv[1]);
+        std::cout << ic->proxyToString(object) << "\n";
+        for (int i = 0, count = argc > 2 ? std::atoi(argv[2]) : 3; i < count; ++i) {
+            auto start = std::chrono::steady_clock::now();
+            object->ice_ping();
+            std::cout << "ping " << i + 1 << ": "
+                      << std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()
+                      << " ms" << std::endl;
+        }
+        std::cout << "it is a " << object->ice_id() << std::endl;
+    } catch (const std::exception& e) {
+        std::cerr << "ping: " << e.what() << "\n";
+        return 1;
+    }
+    return 0;
+}

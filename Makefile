@@ -40,9 +40,18 @@ run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground st
 	@testbench/sim/run.sh "$(BUILD)" --image "$(IMAGE)" --size "$(SIZE)" --threshold "$(THRESHOLD)" \
 	    --loss "$(LOSS)" --seed "$(SEED)" --out "$(OUT)"
 
-test: build ## run all tests
+# What the sanitized build covers: the firmware's layers and their peers.
+SANITIZED := test_os test_link icec_server icec_client ice_cpp_client
+test: build ## run all tests; firmware, models and IceC once more with sanitizers
 	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error \
 	    $(if $(LABEL),-L '$(LABEL)') $(if $(NAME),-R '$(NAME)')
+ifeq ($(LABEL)$(NAME),)
+	@[ -f build/sanitized/build.ninja ] || cmake -S . -B build/sanitized -G Ninja -DSANITIZE=ON \
+	    -DROOMS="bus;slice;sw;hdl;ip;testbench;tests" >/dev/null
+	@ninja -C build/sanitized -j $(JOBS) $(SANITIZED)
+	@SEED=$(SEED) ctest --test-dir build/sanitized -j $(JOBS) --output-on-failure --no-tests=error \
+	    -R '^(test_os|test_link|interop)'
+endif
 
 bench: $(BUILD)/build.ninja ## measure the simulator, write build/bench/simulator.json
 	@ninja -C $(BUILD) -j $(JOBS) measure_simulator

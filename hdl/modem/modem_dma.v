@@ -72,4 +72,23 @@ module modem_dma (
             pushed <= 1'b0;
         end
     end
+
+`ifdef FORMAL
+    reg past = 1'b0;
+    initial assume (rst_i);
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        if (past && !rst_i && !$past(rst_i)) begin
+            // A request stays, with its address, until it is acknowledged.
+            if ($past(npi_addr_req_o) && !$past(npi_addr_ack_i))
+                assert (npi_addr_req_o && $stable(npi_addr_o) && $stable(npi_rnw_o));
+            // A write's word is pushed once, in the first cycle of its request.
+            assert (npi_wr_push_o == (state == WRITE && $past(state) != WRITE));
+            assert (!(npi_rd_pop_o && npi_rd_empty_i));
+            assert (!(rd_done_o && wr_done_o));
+        end
+        cover (past && wr_done_o);
+        cover (past && rd_done_o);
+    end
+`endif
 endmodule

@@ -210,8 +210,9 @@ void *Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int byt
         return 0;
     }
     words = (count * bytes + 3) / 4;
-    /* Doubles and pointers want 8 on hosts. */
-    is->arenaUsed += is->arenaUsed & 1;
+    /* Doubles and pointers want 8 on hosts, wherever the arena begins. */
+    if ((size_t)(is->arena + is->arenaUsed) & 7U)
+        ++is->arenaUsed;
     if (words > is->arenaSize - is->arenaUsed) {
         is->failed = 1;
         return 0;

@@ -102,7 +102,7 @@ Ice_String Ice_InputStream_readString(Ice_InputStreamPtr is);
 Ice_Int Ice_InputStream_readEnum(Ice_InputStreamPtr is, Ice_Int largest);
 /* Size of a sequence whose elements take at least `least` bytes each: more than is left fails. */
 Ice_Int Ice_InputStream_readSequence(Ice_InputStreamPtr is, Ice_Int least);
-/* Room for `count` elements of `bytes` each, aligned to 4; 0 and a failed stream if there is none. */
+/* Room for `count` elements of `bytes` each, aligned to 8; 0 and a failed stream if there is none. */
 void *Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int bytes);
 
 /* ---- transports ---- */

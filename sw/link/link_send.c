@@ -73,17 +73,17 @@ Link_Status Link_openChannel(Link *link, int channel, U32 nowUs) {
     Link_Status status = enqueue(link, channel, LINK_ITEM_OPEN, 0, 0, 0);
     (void)nowUs;
     if (status == LINK_OK)
-        link->open |= (U8)(1U << channel);
+        link->open = (U8)(link->open | 1U << channel);
     return status;
 }
 
 Link_Status Link_closeChannel(Link *link, int channel, U32 nowUs) {
     Link_Status status = LINK_CLOSED;
     (void)nowUs;
-    if (link->open >> channel & 1U)
+    if (link->open & 1U << channel)
         status = enqueue(link, channel, LINK_ITEM_CLOSE, 0, 0, 0);
     if (status == LINK_OK)
-        link->open &= (U8) ~(1U << channel);
+        link->open = (U8)(link->open & ~(1U << channel));
     return status;
 }
 

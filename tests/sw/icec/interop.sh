@@ -10,7 +10,7 @@ done
 shift
 port=$(mktemp)
 trap 'kill $pid 2>/dev/null || true; rm -f "$port"' EXIT
-eval "$server" >"$port" &
+eval "exec $server" >"$port" &
 pid=$!
 while [ ! -s "$port" ]; do
     kill -0 $pid 2>/dev/null || { echo "the server ended before it listened" && exit 1; }

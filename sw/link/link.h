@@ -30,7 +30,7 @@ typedef enum Link_Status {
     LINK_DOWN,     /* no session with the peer */
     LINK_FULL,     /* the send queue has no room now: try again after the callback `writable` */
     LINK_TOO_LONG, /* more than LINK_MAX_MESSAGE bytes, or none */
-    LINK_CLOSED    /* the channel is not open */
+    LINK_CLOSED    /* there is no such channel; for closing also: it is not open */
 } Link_Status;
 
 typedef enum Link_State {

@@ -47,6 +47,8 @@ static Link_Status enqueue(Link *link, int channel, Link_ItemKind kind, const U8
                            U32 tag) {
     Link_Item *item;
     U32 i, at;
+    if (channel < 0 || channel >= LINK_CHANNELS)
+        return LINK_CLOSED;
     if (link->state != LINK_STATE_UP)
         return LINK_DOWN;
     if (link->itemCount == LINK_SEND_MESSAGES || size > LINK_SEND_BYTES - link->queueUsed) {
@@ -80,7 +82,7 @@ Link_Status Link_openChannel(Link *link, int channel, U32 nowUs) {
 Link_Status Link_closeChannel(Link *link, int channel, U32 nowUs) {
     Link_Status status = LINK_CLOSED;
     (void)nowUs;
-    if (link->open & 1U << channel)
+    if (channel >= 0 && channel < LINK_CHANNELS && (link->open & 1U << channel))
         status = enqueue(link, channel, LINK_ITEM_CLOSE, 0, 0, 0);
     if (status == LINK_OK)
         link->open = (U8)(link->open & ~(1U << channel));

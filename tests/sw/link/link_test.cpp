@@ -105,6 +105,11 @@ TEST(LinkLayer, SizesAreChecked) {
     ASSERT_TRUE(pair.connect());
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), LINK_MAX_MESSAGE + 1, 0, 0), LINK_TOO_LONG);
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), 0, 0, 0), LINK_TOO_LONG);
+    for (int channel : {-1, LINK_CHANNELS}) {
+        EXPECT_EQ(Link_send(pair.a.link(), channel, big.data(), 1, 0, 0), LINK_CLOSED);
+        EXPECT_EQ(Link_openChannel(pair.a.link(), channel, 0), LINK_CLOSED);
+        EXPECT_EQ(Link_closeChannel(pair.a.link(), channel, 0), LINK_CLOSED);
+    }
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), LINK_MAX_MESSAGE, 0, 0), LINK_OK);
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), LINK_MAX_MESSAGE, 1, 0), LINK_OK);
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), 1, 2, 0), LINK_FULL);

@@ -4,7 +4,8 @@
 //
 // A packet ends after the length that its first byte announces ((byte & 127) + 5, if that is at most
 // 100), at 100 bytes, after three characters of silence, or at a framing error. It is in memory before
-// it is published. With no buffer free the whole packet is dropped, and nothing else is touched.
+// it is published. With no buffer free, or a memory more than a word behind, the whole packet is
+// dropped, and nothing else is touched.
 
 `default_nettype none
 
@@ -57,8 +58,9 @@ module modem_rx (
                                       : word;
     wire       starts    = rx_valid_i && count == 7'd0;
     wire       no_room   = used == 5'd16;
-    wire       stuck     = wr_req_o && !wr_done_i; // memory is a word behind
+    wire       stuck     = wr_req_o || packet_o; // memory is a word behind
     wire       drop_now  = dropping || (starts && no_room);
+    wire       keeps     = ends && !drop_now && !stuck;
     wire [6:0] last_index = count_now - 7'd1;
 
     wire fifo_empty, fifo_almost_full;
@@ -77,7 +79,7 @@ module modem_rx (
     always @(posedge clk_i) begin
         packet_o  <= 1'b0;
         overrun_o <= 1'b0;
-        used <= used + {4'd0, packet_o} - {4'd0, release_i};
+        used <= used + {4'd0, keeps} - {4'd0, release_i}; // a packet on its way counts
         if (release_i)
             oldest <= oldest + 4'd1;
 
@@ -103,7 +105,7 @@ module modem_rx (
                 dropping <= no_room;
             end
         end
-        if ((word_full || ends) && !drop_now) begin
+        if ((word_full || ends) && !drop_now && !stuck) begin
             // The word goes out: its address and which bytes of it are new.
             wr_data_o <= word_now;
             wr_addr_o <= base_i + {21'd0, buffer, 7'd0} + {25'd0, last_index[6:3], 3'd0};
@@ -111,16 +113,14 @@ module modem_rx (
             wr_req_o  <= 1'b1;
             publish   <= ends;
             publish_bytes <= count_now;
-            if (stuck)
-                dropping <= 1'b1;
         end
+        // The word before, maybe another packet's last, still waits: it is kept, this packet is not.
+        if (word_full && stuck)
+            dropping <= 1'b1;
         if (ends) begin
-            count    <= 7'd0;
-            dropping <= 1'b0;
-            if (drop_now || stuck) begin
-                overrun_o <= 1'b1;
-                publish   <= 1'b0;
-            end
+            count     <= 7'd0;
+            dropping  <= 1'b0;
+            overrun_o <= !keeps;
         end
         if (rst_i) begin
             count    <= 7'd0;

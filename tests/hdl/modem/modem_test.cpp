@@ -43,7 +43,8 @@ protected:
         return events;
     }
     void runMs(double ms) {
-        for (uint64_t end = bench_.cycles() + static_cast<uint64_t>(ms * 2000); bench_.cycles() < end;)
+        for (uint64_t end = bench_.cycles() + static_cast<uint64_t>(ms * 2000);
+             bench_.cycles() < end;)
             bench_.tick();
     }
     uint64_t now() const { return bench_.cycles() * clkNs; }
@@ -264,7 +265,8 @@ TEST_F(ModemTest, ResetInMidPacketAndSetUpAgain) {
     put(0, frame(40, 3));
     runMs(20);
     ASSERT_GE(plain_.received.size(), 40u);
-    EXPECT_EQ(std::vector<uint8_t>(plain_.received.end() - 40, plain_.received.end()), frame(40, 3));
+    EXPECT_EQ(std::vector<uint8_t>(plain_.received.end() - 40, plain_.received.end()),
+              frame(40, 3));
 }
 
 TEST_F(ModemTest, AModemThatIsFullHoldsTheControllerBack) {
@@ -277,6 +279,62 @@ TEST_F(ModemTest, AModemThatIsFullHoldsTheControllerBack) {
     runMs(1500);
     EXPECT_EQ(near_->counters().overflow, 0u);
     EXPECT_EQ(plain_.received.size(), 600u);
+}
+
+// The far modem sends both frames in one RF packet, so they come without a pause.
+void sendTogether(HostLine& line, std::vector<uint8_t> first, const std::vector<uint8_t>& second,
+                  uint64_t now) {
+    first.insert(first.end(), second.begin(), second.end());
+    line.send(first, now);
+}
+
+TEST_F(ModemTest, AStalledMemoryCostsTheNextPacketNotTheOneBefore) {
+    power(quick());
+    configure();
+    takeEvents();
+    uint64_t before = near_->counters().bytesToHost;
+    auto delivered = [&](uint64_t bytes) {
+        bench_.waitFor([&] { return near_->counters().bytesToHost - before >= bytes; },
+                       "byte " + std::to_string(bytes), 100'000);
+    };
+    sendTogether(plain_, frame(50, 1), frame(50, 2), now());
+    delivered(50);
+    memory_.hold(true); // the last word of the first packet waits ...
+    delivered(50 + 12);
+    memory_.hold(false); // ... until the first word of the second is complete
+    runMs(10);
+    EXPECT_EQ(take(), frame(50, 1));
+    EXPECT_TRUE(take().empty());
+    EXPECT_EQ(bus_.read(MODEM_ERRORS) >> MODEM_ERRORS_OVERRUN_LSB & 0xFF, 1u);
+    plain_.send(frame(50, 3), now());
+    runMs(10);
+    EXPECT_EQ(take(), frame(50, 3)) << "it goes on";
+}
+
+TEST_F(ModemTest, APacketThatIsStillBeingWrittenCountsAsABuffer) {
+    power(quick());
+    configure();
+    takeEvents();
+    for (unsigned i = 0; i < 15; ++i) {
+        plain_.send(frame(20, static_cast<uint8_t>(i + 1)), now());
+        runMs(10);
+    }
+    uint64_t before = near_->counters().bytesToHost;
+    auto delivered = [&](uint64_t bytes) {
+        bench_.waitFor([&] { return near_->counters().bytesToHost - before >= bytes; },
+                       "byte " + std::to_string(bytes), 100'000);
+    };
+    sendTogether(plain_, frame(50, 16), frame(50, 99), now());
+    delivered(50);
+    memory_.hold(true);
+    delivered(50 + 3); // the next one has begun
+    memory_.hold(false);
+    runMs(10);
+    for (unsigned i = 0; i < 15; ++i)
+        EXPECT_EQ(take(), frame(20, static_cast<uint8_t>(i + 1))) << i;
+    EXPECT_EQ(take(), frame(50, 16));
+    EXPECT_TRUE(take().empty());
+    EXPECT_EQ(bus_.read(MODEM_ERRORS) >> MODEM_ERRORS_OVERRUN_LSB & 0xFF, 1u);
 }
 
 } // namespace

@@ -22,7 +22,8 @@ namespace XBeeAT {
 namespace {
 
 constexpr int ownChannels = 3; // 0..2 are opened by the ground, 3 by the UAV
-constexpr int streamBytes = 4096; // buffer of a stream: small, so that back-pressure reaches the caller
+constexpr int streamBytes =
+    4096; // buffer of a stream: small, so that back-pressure reaches the caller
 constexpr size_t headerBytes = 14;
 
 std::mutex registryMutex;
@@ -58,9 +59,10 @@ std::shared_ptr<Engine> Engine::get(const Settings& settings, const Log& log) {
         if (engines.size() == 1)
             if (auto engine = engines.begin()->second.lock())
                 return engine;
-        throw std::system_error(ENODEV, std::generic_category(),
-                                "xbee-at endpoint without -d, XBeeAT.Device not set, and not exactly "
-                                "one device in use");
+        throw std::system_error(
+            ENODEV, std::generic_category(),
+            "xbee-at endpoint without -d, XBeeAT.Device not set, and not exactly "
+            "one device in use");
     }
     if (auto engine = engines[settings.device].lock())
         if (!engine->failed_)
@@ -78,8 +80,8 @@ Engine::Engine(const Settings& settings, const Log& log)
                                 "cannot open serial port '" + settings.device + "'");
     makePipe(wakePipe_);
     makePipe(acceptPipe_);
-    static const Link_Port port = {onTransmit, onRandom, onMessage, onChannel, onState, nullptr,
-                                   onWritable};
+    static const Link_Port port = {onTransmit, onRandom, onMessage, onChannel,
+                                   onState,    nullptr,  onWritable};
     Link_init(link_.get(), &port, this, 1440);
     thread_ = std::thread([this] { run(); });
 }
@@ -252,23 +254,51 @@ void Engine::fail(const std::string& text) {
         closeChannel(channel);
 }
 
-void Engine::run() {
+bool Engine::prepareModem() {
     if (settings_.setUp && !setUpModem()) {
-        std::lock_guard<std::mutex> lock(mutex_);
-        if (!stop_)
-            fail("no modem answers on '" + settings_.device +
-                 "': check its power and cable, the guard time (-g), or set XBeeAT.Setup=0 if it must "
-                 "not be set up");
-        return;
+        log_(0, "no modem answers on '" + settings_.device +
+                    "': check its power and cable, the guard time (-g), or set XBeeAT.Setup=0 if "
+                    "it must "
+                    "not be set up");
+        return false;
     }
     if (!settings_.setUp)
         setSpeed(settings_.baud);
     log_(1, "modem ready on " + settings_.device);
-    {
-        std::lock_guard<std::mutex> lock(mutex_);
+    return true;
+}
+
+// A modem that was reset in flight has its own settings again (nothing is written to its memory).
+// It looks like a peer that is silent: so after a while the modem is set up once more, and less and
+// less often while nothing changes.
+void Engine::run() {
+    bool ready = prepareModem();
+    std::unique_lock<std::mutex> lock(mutex_);
+    if (!ready && !stop_)
+        fail("the modem on '" + settings_.device + "' is given up");
+    patienceUs_ = static_cast<U32>(settings_.downMs) * 1000;
+    if (!stop_ && !failed_)
         Link_start(link_.get(), nowUs());
+    while (!stop_ && !failed_) {
+        upAt_ = nowUs();
+        loop(lock);
+        if (stop_ || failed_)
+            break;
+        lock.unlock();
+        log_(1, "the link is down: setting the modem up again");
+        ready = prepareModem();
+        lock.lock();
+        serialOut_.clear();
+        patienceUs_ = std::min(patienceUs_ * 2, static_cast<U32>(settings_.downMs) * 4000);
     }
-    loop();
+}
+
+bool Engine::downTooLong(U32 now) {
+    if (Link_state(link_.get()) == LINK_STATE_UP) {
+        upAt_ = now;
+        patienceUs_ = static_cast<U32>(settings_.downMs) * 1000;
+    }
+    return settings_.setUp && now - upAt_ >= patienceUs_;
 }
 
 void Engine::readSerial(U32 now) {
@@ -277,8 +307,8 @@ void Engine::readSerial(U32 now) {
     if (count > 0)
         Link_receive(link_.get(), bytes, static_cast<U32>(count), 0, now);
     else if (count == 0 || (errno != EAGAIN && errno != EINTR))
-        fail("serial port '" + settings_.device + "': " +
-             (count == 0 ? "closed" : std::strerror(errno)));
+        fail("serial port '" + settings_.device +
+             "': " + (count == 0 ? "closed" : std::strerror(errno)));
 }
 
 void Engine::writeSerial() {
@@ -306,8 +336,10 @@ bool Engine::sendMessages(int channel, U32 now) {
     while (c.out.size() >= headerBytes && !c.wanted) {
         U32 size = messageSize(c.out);
         if (size < headerBytes || size > LINK_MAX_MESSAGE) {
-            log_(0, "a message of " + std::to_string(size) + " bytes does not fit the radio link (at "
-                    "most " + std::to_string(LINK_MAX_MESSAGE) + "): connection closed");
+            log_(0, "a message of " + std::to_string(size) +
+                        " bytes does not fit the radio link (at "
+                        "most " +
+                        std::to_string(LINK_MAX_MESSAGE) + "): connection closed");
             return false;
         }
         if (c.out.size() < size)
@@ -343,21 +375,26 @@ void Engine::openWanted(U32 now) {
             channels_[channel].wanted = false;
 }
 
-void Engine::loop() {
-    std::unique_lock<std::mutex> lock(mutex_);
+// Returns when the engine is to stop, has failed, or the link has been down for too long.
+void Engine::loop(std::unique_lock<std::mutex>& lock) {
     while (!stop_ && !failed_) {
         U32 now = nowUs();
+        if (downTooLong(now))
+            return;
         openWanted(now);
         Link_poll(link_.get(), now);
         U32 deadline = Link_deadline(link_.get(), now);
-        std::vector<pollfd> fds = {{serial_, static_cast<short>(serialOut_.empty() ? POLLIN : POLLIN | POLLOUT), 0},
-                                   {wakePipe_[0], POLLIN, 0}};
+        std::vector<pollfd> fds = {
+            {serial_, static_cast<short>(serialOut_.empty() ? POLLIN : POLLIN | POLLOUT), 0},
+            {wakePipe_[0], POLLIN, 0}};
         for (Channel& c : channels_) {
-            short events = static_cast<short>((c.stuck || c.wanted ? 0 : POLLIN) | (c.in.empty() ? 0 : POLLOUT));
+            short events = static_cast<short>((c.stuck || c.wanted ? 0 : POLLIN) |
+                                              (c.in.empty() ? 0 : POLLOUT));
             fds.push_back({c.wanted ? -1 : c.fd, events, 0});
         }
         lock.unlock();
-        timespec timeout{static_cast<time_t>(deadline / 1000000), static_cast<long>(deadline % 1000000 * 1000)};
+        timespec timeout{static_cast<time_t>(deadline / 1000000),
+                         static_cast<long>(deadline % 1000000 * 1000)};
         ppoll(fds.data(), fds.size(), deadline == 0xFFFFFFFFu ? nullptr : &timeout, nullptr);
         lock.lock();
         now = nowUs();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // engine: one serial port with a modem on it, set up by AT commands, and the link layer over it. It
-// knows nothing of Ice but the 14 bytes before each message. One thread an engine; engines are shared
-// by all communicators of the process that name the same device.
+// knows nothing of Ice but the 14 bytes before each message. One thread an engine; engines are
+// shared by all communicators of the process that name the same device.
 
 #ifndef GROUND_ENGINE_H
 #define GROUND_ENGINE_H
@@ -24,13 +24,15 @@ namespace XBeeAT {
 
 struct Settings {
     std::string device;
-    int baud = 115200;     // target; 115200 is the modem's BD 7, really 111,111
-    int source = 0x0000;   // MY
-    int target = 0x0001;   // DL
-    int rfChannel = 0x0C;  // CH
-    int pan = 0x3332;      // ID
-    int guardMs = 1000;    // of the modem as it is
-    bool setUp = true;     // by AT commands
+    int baud = 115200;    // target; 115200 is the modem's BD 7, really 111,111
+    int source = 0x0000;  // MY
+    int target = 0x0001;  // DL
+    int rfChannel = 0x0C; // CH
+    int pan = 0x3332;     // ID
+    int guardMs = 1000;   // of the modem as it is
+    bool setUp = true;    // by AT commands
+    int downMs =
+        15000; // the link was down for so long: set the modem up again, it may have been reset
 };
 
 // Levels: 0 error, 1 link and connections, 2 AT commands.
@@ -38,18 +40,19 @@ using Log = std::function<void(int level, const std::string& text)>;
 
 class Engine {
 public:
-    // The engine of a device: the one that runs, or a new one. Throws std::system_error if the device
-    // cannot be opened. An empty device means the only one that is open.
+    // The engine of a device: the one that runs, or a new one. Throws std::system_error if the
+    // device cannot be opened. An empty device means the only one that is open.
     static std::shared_ptr<Engine> get(const Settings& settings, const Log& log);
 
     ~Engine();
     Engine(const Engine&) = delete;
     Engine& operator=(const Engine&) = delete;
 
-    // A connection to the peer, on a channel of 0..2 or (-1) any free one. Returns the file descriptor
-    // of a stream; -1 if no channel is free. The peer speaks as soon as the link is up.
+    // A connection to the peer, on a channel of 0..2 or (-1) any free one. Returns the file
+    // descriptor of a stream; -1 if no channel is free. The peer speaks as soon as the link is up.
     int connect(int channel);
-    // The peer may open connections: each makes the returned descriptor readable. -1: taken already.
+    // The peer may open connections: each makes the returned descriptor readable. -1: taken
+    // already.
     int listen();
     int accept(); // descriptor of the stream, -1: none
     void stopListening();
@@ -59,16 +62,18 @@ public:
 
 private:
     struct Channel {
-        int fd = -1;          // the engine's end
-        bool wanted = false;  // to be opened when the link is up
-        std::vector<U8> out;  // from the program, not yet a whole message
-        std::vector<U8> in;   // to the program, not yet written
-        bool stuck = false;   // the link's queue was full
+        int fd = -1;         // the engine's end
+        bool wanted = false; // to be opened when the link is up
+        std::vector<U8> out; // from the program, not yet a whole message
+        std::vector<U8> in;  // to the program, not yet written
+        bool stuck = false;  // the link's queue was full
     };
 
     Engine(const Settings& settings, const Log& log);
     void run();
-    void loop();
+    bool prepareModem();
+    void loop(std::unique_lock<std::mutex>& lock);
+    bool downTooLong(U32 now);
     bool setUpModem();
     bool enterCommandMode();
     bool command(const std::string& text);
@@ -103,6 +108,7 @@ private:
     Channel channels_[LINK_CHANNELS];
     std::unique_ptr<Link> link_;
     std::vector<U8> serialOut_;
+    U32 upAt_ = 0, patienceUs_ = 0; // when the link was up last; how long it may be down
     mutable std::mutex mutex_;
     std::thread thread_;
 };

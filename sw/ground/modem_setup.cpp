@@ -58,7 +58,8 @@ bool Engine::waitMs(int ms) {
                 return false;
         }
         auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-                        end - std::chrono::steady_clock::now()).count();
+                        end - std::chrono::steady_clock::now())
+                        .count();
         if (left <= 0)
             return true;
         char bytes[64];
@@ -118,7 +119,8 @@ bool Engine::setUpModem() {
             continue;
         setSpeed(candidates[i]);
         found = enterCommandMode();
-        log_(2, "+++ at " + std::to_string(candidates[i]) + " baud: " + (found ? "OK" : "no answer"));
+        log_(2,
+             "+++ at " + std::to_string(candidates[i]) + " baud: " + (found ? "OK" : "no answer"));
         std::lock_guard<std::mutex> lock(mutex_);
         if (stop_)
             return false;

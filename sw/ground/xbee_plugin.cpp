@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee_plugin: the xbee-at transport of ZeroC Ice 3.7. One source, two libraries: for the C++98 mapping
-// (which Python loads) and for the C++11 mapping. It links to ZeroC Ice, which is GPL-2.0.
+// xbee_plugin: the xbee-at transport of ZeroC Ice 3.7. One source, two libraries: for the C++98
+// mapping (which Python loads) and for the C++11 mapping. It links to ZeroC Ice, which is GPL-2.0.
 
 #include "engine.h"
 
@@ -91,7 +91,8 @@ public:
         : IceInternal::NativeInfo(fd), engine_(engine) {}
     IceInternal::NativeInfoPtr getNativeInfo() override { return this; }
     IceInternal::SocketOperation initialize(IceInternal::Buffer&, IceInternal::Buffer&) override {
-        // Ice waits for the peer's first message next, under the connect time-out: that is "link up".
+        // Ice waits for the peer's first message next, under the connect time-out: that is "link
+        // up".
         return IceInternal::SocketOperationNone;
     }
     IceInternal::SocketOperation closing(bool initiator, const Ice::LocalException&) override {
@@ -103,7 +104,8 @@ public:
     }
     IceInternal::SocketOperation write(IceInternal::Buffer& buf) override {
         while (buf.i != buf.b.end()) {
-            ssize_t count = ::send(_fd, &*buf.i, static_cast<size_t>(buf.b.end() - buf.i), MSG_NOSIGNAL);
+            ssize_t count =
+                ::send(_fd, &*buf.i, static_cast<size_t>(buf.b.end() - buf.i), MSG_NOSIGNAL);
             if (count > 0)
                 buf.i += count;
             else if (errno == EAGAIN)
@@ -150,7 +152,8 @@ private:
 
 class Connector : public IceInternal::Connector {
 public:
-    Connector(const InstancePtr& instance, const Options& options) : instance_(instance), options_(options) {}
+    Connector(const InstancePtr& instance, const Options& options)
+        : instance_(instance), options_(options) {}
     IceInternal::TransceiverPtr connect() override {
         auto engine = instance_->engine(options_);
         int fd = engine->connect(options_.channel == 255 ? -1 : options_.channel);
@@ -216,7 +219,8 @@ class Endpoint : public IceInternal::EndpointI
 #endif
 {
 public:
-    Endpoint(const InstancePtr& instance, const Options& options) : instance_(instance), o_(options) {}
+    Endpoint(const InstancePtr& instance, const Options& options)
+        : instance_(instance), o_(options) {}
 
     void streamWriteImpl(Ice::OutputStream* s) const override {
         // Only what a peer can use: never the device of this machine.
@@ -228,23 +232,39 @@ public:
         typedef IceInternal::InfoI<Ice::EndpointInfo> Info;
         return ICE_MAKE_SHARED(Info, ICE_SHARED_FROM_CONST_THIS(Endpoint));
     }
-    Ice::Short type() const override { return endpointType; }
-    const string& protocol() const override { return protocolName; }
-    Ice::Int timeout() const override { return o_.timeoutMs; }
+    Ice::Short type() const override {
+        return endpointType;
+    }
+    const string& protocol() const override {
+        return protocolName;
+    }
+    Ice::Int timeout() const override {
+        return o_.timeoutMs;
+    }
     EndpointIPtr timeout(Ice::Int ms) const override {
         return with([&](Options& o) { o.timeoutMs = ms; });
     }
-    const string& connectionId() const override { return o_.connectionId; }
+    const string& connectionId() const override {
+        return o_.connectionId;
+    }
     EndpointIPtr connectionId(const string& id) const override {
         return with([&](Options& o) { o.connectionId = id; });
     }
-    bool compress() const override { return o_.compress; }
+    bool compress() const override {
+        return o_.compress;
+    }
     EndpointIPtr compress(bool on) const override {
         return with([&](Options& o) { o.compress = on; });
     }
-    bool datagram() const override { return false; }
-    bool secure() const override { return false; }
-    IceInternal::TransceiverPtr transceiver() const override { return ICE_NULLPTR; }
+    bool datagram() const override {
+        return false;
+    }
+    bool secure() const override {
+        return false;
+    }
+    IceInternal::TransceiverPtr transceiver() const override {
+        return ICE_NULLPTR;
+    }
     void connectors_async(Ice::EndpointSelectionType,
                           const IceInternal::EndpointI_connectorsPtr& callback) const override {
         vector<IceInternal::ConnectorPtr> list;
@@ -252,25 +272,40 @@ public:
         callback->connectors(list);
     }
     IceInternal::AcceptorPtr acceptor(const string&) const override {
-        // What listens here is reached at this side's own address: so it is published, and so a proxy to
-        // the peer on the same device is not taken for an object of this process.
-        return new Acceptor(instance_, o_, with([](Options& o) { o.serial.target = o.serial.source; }));
+        // What listens here is reached at this side's own address: so it is published, and so a
+        // proxy to the peer on the same device is not taken for an object of this process.
+        return new Acceptor(instance_, o_,
+                            with([](Options& o) { o.serial.target = o.serial.source; }));
     }
-    vector<EndpointIPtr> expandIfWildcard() const override { return only(); }
-    vector<EndpointIPtr> expandHost(EndpointIPtr&) const override { return only(); }
+    vector<EndpointIPtr> expandIfWildcard() const override {
+        return only();
+    }
+    vector<EndpointIPtr> expandHost(EndpointIPtr&) const override {
+        return only();
+    }
     bool equivalent(const EndpointIPtr& other) const override {
         const Endpoint* o = dynamic_cast<const Endpoint*>(other.get());
         return o && o->o_.serial.device == o_.serial.device && o->o_.channel == o_.channel &&
                o->o_.serial.target == o_.serial.target;
     }
 #ifdef ICE_CPP11_MAPPING
-    bool operator==(const Ice::Endpoint& other) const override { return equals(dynamic_cast<const Endpoint*>(&other)); }
-    bool operator<(const Ice::Endpoint& other) const override { return less(dynamic_cast<const Endpoint*>(&other)); }
+    bool operator==(const Ice::Endpoint& other) const override {
+        return equals(dynamic_cast<const Endpoint*>(&other));
+    }
+    bool operator<(const Ice::Endpoint& other) const override {
+        return less(dynamic_cast<const Endpoint*>(&other));
+    }
 #else
-    bool operator==(const Ice::LocalObject& other) const override { return equals(dynamic_cast<const Endpoint*>(&other)); }
-    bool operator<(const Ice::LocalObject& other) const override { return less(dynamic_cast<const Endpoint*>(&other)); }
+    bool operator==(const Ice::LocalObject& other) const override {
+        return equals(dynamic_cast<const Endpoint*>(&other));
+    }
+    bool operator<(const Ice::LocalObject& other) const override {
+        return less(dynamic_cast<const Endpoint*>(&other));
+    }
 #endif
-    Ice::Int hash() const override { return static_cast<Ice::Int>(std::hash<string>()(key())); }
+    Ice::Int hash() const override {
+        return static_cast<Ice::Int>(std::hash<string>()(key()));
+    }
     string options() const override {
         ostringstream s;
         if (!o_.serial.device.empty())
@@ -288,7 +323,8 @@ public:
     }
 
 protected:
-    bool checkOption(const string& option, const string& argument, const string& endpoint) override {
+    bool checkOption(const string& option, const string& argument,
+                     const string& endpoint) override {
         if (option == "-z") {
             o_.compress = true;
             return true;
@@ -296,8 +332,9 @@ protected:
         if (string("-d-b-a-s-c-i-p-t-g-h").find(option) == string::npos || option.size() != 2)
             return false;
         if (argument.empty())
-            throw Ice::EndpointParseException(__FILE__, __LINE__, "no argument for option '" + option +
-                                                                      "' in endpoint '" + endpoint + "'");
+            throw Ice::EndpointParseException(__FILE__, __LINE__,
+                                              "no argument for option '" + option +
+                                                  "' in endpoint '" + endpoint + "'");
         if (option == "-d")
             o_.serial.device = argument;
         else if (option != "-h") // tolerated: there is no host
@@ -309,22 +346,41 @@ private:
     void number(char option, const string& argument, const string& endpoint) {
         char* end = nullptr;
         long value = strtol(argument.c_str(), &end, 0);
-        long most = option == 'b' ? 250000 : option == 't' ? 0x7FFFFFFF : option == 'p' ? 2 : 0xFFFF;
+        long most = option == 'b'   ? 250000
+                    : option == 't' ? 0x7FFFFFFF
+                    : option == 'p' ? 2
+                                    : 0xFFFF;
         if (*end || value < 0 || value > most)
-            throw Ice::EndpointParseException(__FILE__, __LINE__,
-                                              string("'") + argument + "' is no value for option '-" +
-                                                  option + "' in endpoint '" + endpoint + "' (0.." +
-                                                  to_string(most) + ")");
+            throw Ice::EndpointParseException(
+                __FILE__, __LINE__,
+                string("'") + argument + "' is no value for option '-" + option +
+                    "' in endpoint '" + endpoint + "' (0.." + to_string(most) + ")");
         int v = static_cast<int>(value);
         switch (option) {
-        case 'b': o_.serial.baud = v; break;
-        case 'a': o_.serial.target = v; break;
-        case 's': o_.serial.source = v; break;
-        case 'c': o_.serial.rfChannel = v; break;
-        case 'i': o_.serial.pan = v; break;
-        case 'p': o_.channel = v; break;
-        case 'g': o_.serial.guardMs = v; break;
-        default: o_.timeoutMs = v; break;
+        case 'b':
+            o_.serial.baud = v;
+            break;
+        case 'a':
+            o_.serial.target = v;
+            break;
+        case 's':
+            o_.serial.source = v;
+            break;
+        case 'c':
+            o_.serial.rfChannel = v;
+            break;
+        case 'i':
+            o_.serial.pan = v;
+            break;
+        case 'p':
+            o_.channel = v;
+            break;
+        case 'g':
+            o_.serial.guardMs = v;
+            break;
+        default:
+            o_.timeoutMs = v;
+            break;
         }
     }
     static string quoted(const string& s) {
@@ -338,9 +394,15 @@ private:
     vector<EndpointIPtr> only() const {
         return vector<EndpointIPtr>(1, ICE_SHARED_FROM_CONST_THIS(Endpoint));
     }
-    string key() const { return options() + " " + o_.connectionId; }
-    bool equals(const Endpoint* other) const { return other && key() == other->key(); }
-    bool less(const Endpoint* other) const { return other && key() < other->key(); }
+    string key() const {
+        return options() + " " + o_.connectionId;
+    }
+    bool equals(const Endpoint* other) const {
+        return other && key() == other->key();
+    }
+    bool less(const Endpoint* other) const {
+        return other && key() < other->key();
+    }
 
     InstancePtr instance_;
     Options o_;

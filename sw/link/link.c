@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-void Link_init(Link *link, const Link_Port *port, void *context, U32 byteTimeUs16) {
+void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16) {
     memset(link, 0, sizeof *link);
     link->port = port;
     link->context = context;
@@ -16,7 +16,7 @@ void Link_init(Link *link, const Link_Port *port, void *context, U32 byteTimeUs1
     Link_resetReceive(link);
 }
 
-void Link_start(Link *link, U32 nowUs) {
+void Link_start(Link* link, U32 nowUs) {
     if (link->wanted)
         return;
     link->wanted = 1;
@@ -27,7 +27,7 @@ void Link_start(Link *link, U32 nowUs) {
     }
 }
 
-void Link_stop(Link *link, U32 nowUs) {
+void Link_stop(Link* link, U32 nowUs) {
     link->wanted = 0;
     link->hasCandidate = 0;
     if (link->state == LINK_STATE_UP)
@@ -35,17 +35,17 @@ void Link_stop(Link *link, U32 nowUs) {
     Link_endSession(link, LINK_STATE_IDLE, nowUs);
 }
 
-Link_State Link_state(const Link *link) {
+Link_State Link_state(const Link* link) {
     return link->state;
 }
 
-void Link_poll(Link *link, U32 nowUs) {
+void Link_poll(Link* link, U32 nowUs) {
     Link_pollReceive(link, nowUs);
     Link_pollSession(link, nowUs);
     Link_pollSend(link, nowUs);
 }
 
-U32 Link_deadline(const Link *link, U32 nowUs) {
+U32 Link_deadline(const Link* link, U32 nowUs) {
     U32 wait = Link_sessionDeadline(link, nowUs);
     U32 other = Link_sendDeadline(link, nowUs);
     if (other < wait)
@@ -54,6 +54,6 @@ U32 Link_deadline(const Link *link, U32 nowUs) {
     return other < wait ? other : wait;
 }
 
-const Link_Statistics *Link_statistics(const Link *link) {
+const Link_Statistics* Link_statistics(const Link* link) {
     return &link->statistics;
 }

@@ -30,7 +30,7 @@ typedef enum Link_Status {
     LINK_DOWN,     /* no session with the peer */
     LINK_FULL,     /* the send queue has no room now: try again after the callback `writable` */
     LINK_TOO_LONG, /* more than LINK_MAX_MESSAGE bytes, or none */
-    LINK_CLOSED    /* there is no such channel; for closing also: it is not open */
+    LINK_CLOSED    /* there is no such channel, or neither side has opened it */
 } Link_Status;
 
 typedef enum Link_State {
@@ -48,71 +48,73 @@ typedef enum Link_Outcome {
 typedef struct Link_Port {
     /* Hands one frame (at most LINK_MAX_FRAME bytes, valid during the call only) to the radio as
      * one RF packet. 0: taken; other: no room now, the layer offers it again at the next poll. */
-    int (*transmit)(void *context, const U8 *frame, U32 size);
+    int (*transmit)(void* context, const U8* frame, U32 size);
     /* 32 bits that the peer cannot guess and that differ after a reboot. */
-    U32 (*random)(void *context);
-    /* A whole message has arrived; `data` is valid during the call only. 0: taken; other: no room now.
-     * Then the layer keeps it, offers it again at each poll, and lowers the peer's credit. */
-    int (*message)(void *context, int channel, const U8 *data, U32 size);
+    U32 (*random)(void* context);
+    /* A whole message has arrived; `data` is valid during the call only. 0: taken; other: no room
+     * now. Then the layer keeps it, offers it again at each poll, and lowers the peer's credit. */
+    int (*message)(void* context, int channel, const U8* data, U32 size);
     /* The peer opened or closed a channel (1, 0). All channels close when the session ends. */
-    void (*channel)(void *context, int channel, int isOpen);
+    void (*channel)(void* context, int channel, int isOpen);
     /* The session came up or ended. */
-    void (*state)(void *context, Link_State state);
+    void (*state)(void* context, Link_State state);
     /* What became of a message: `tag` is what Link_send was given. Exactly one call a message.
      * May be 0, as may `writable`. */
-    void (*outcome)(void *context, int channel, U32 tag, Link_Outcome outcome);
+    void (*outcome)(void* context, int channel, U32 tag, Link_Outcome outcome);
     /* Room appeared after LINK_FULL. */
-    void (*writable)(void *context);
+    void (*writable)(void* context);
 } Link_Port;
 
 typedef struct Link Link; /* complete below, so that callers can place it; its fields are private */
 
 typedef struct Link_Statistics {
-    U32 framesSent, framesReceived;   /* all kinds */
-    U32 bytesSent, bytesReceived;     /* on the air, payload and overhead */
-    U32 fragmentsResent;              /* data fragments sent more than once */
+    U32 framesSent, framesReceived; /* all kinds */
+    U32 bytesSent, bytesReceived;   /* on the air, payload and overhead */
+    U32 fragmentsResent;            /* data fragments sent more than once */
     U32 acksSent;
-    U32 crcErrors, bytesSkipped;      /* what resynchronisation threw away */
-    U32 duplicates;                   /* fragments that had already arrived */
+    U32 crcErrors, bytesSkipped; /* what resynchronisation threw away */
+    U32 duplicates;              /* fragments that had already arrived */
     U32 messagesSent, messagesReceived;
-    U32 sessions;                     /* times the link came up */
-    U32 roundTripUs;                  /* smoothed estimate */
+    U32 sessions;    /* times the link came up */
+    U32 roundTripUs; /* smoothed estimate */
 } Link_Statistics;
 
 /* Prepares `link`. `port` must stay valid; `byteTimeUs16` is the time of one byte on the slowest
  * part of the way, in 1/16 microseconds (111,111 baud: 1440), used for pacing and timers. */
-void Link_init(Link *link, const Link_Port *port, void *context, U32 byteTimeUs16);
+void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16);
 
-/* Starts the handshake. Both sides may do so; either one's HELLO makes the session. A side that never
- * calls it still answers a HELLO. After the peer has vanished the layer goes back to CONNECTING. */
-void Link_start(Link *link, U32 nowUs);
+/* Starts the handshake. Both sides may do so; either one's HELLO makes the session. A side that
+ * never calls it still answers a HELLO. After the peer has vanished the layer goes back to
+ * CONNECTING. */
+void Link_start(Link* link, U32 nowUs);
 
 /* Ends the session: tells the peer, reports messages in flight as LINK_UNKNOWN, goes to IDLE. */
-void Link_stop(Link *link, U32 nowUs);
+void Link_stop(Link* link, U32 nowUs);
 
-Link_State Link_state(const Link *link);
+Link_State Link_state(const Link* link);
 
-/* Opens a channel, for both directions; the peer's `channel` callback says so. LINK_OK, LINK_DOWN, LINK_FULL. */
-Link_Status Link_openChannel(Link *link, int channel, U32 nowUs);
+/* Opens a channel, for both directions; the peer's `channel` callback says so. LINK_OK, LINK_DOWN,
+ * LINK_FULL. */
+Link_Status Link_openChannel(Link* link, int channel, U32 nowUs);
 
 /* Closes a channel behind the messages that were sent before. LINK_CLOSED: it was not open. */
-Link_Status Link_closeChannel(Link *link, int channel, U32 nowUs);
+Link_Status Link_closeChannel(Link* link, int channel, U32 nowUs);
 
 /* Queues a copy of a message of 1..LINK_MAX_MESSAGE bytes. */
-Link_Status Link_send(Link *link, int channel, const U8 *data, U32 size, U32 tag, U32 nowUs);
+Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag, U32 nowUs);
 
 /* Bytes from the radio, in any portions: packet boundaries are not relied upon.
  * `isPacketEnd` is 1 where the caller knows that a packet or a silence ends here (a hint for
  * resynchronisation after corruption), else 0. */
-void Link_receive(Link *link, const U8 *bytes, U32 size, int isPacketEnd, U32 nowUs);
+void Link_receive(Link* link, const U8* bytes, U32 size, int isPacketEnd, U32 nowUs);
 
 /* Sends what is due: fragments, acknowledgements, retransmissions, HELLO. */
-void Link_poll(Link *link, U32 nowUs);
+void Link_poll(Link* link, U32 nowUs);
 
 /* When Link_poll must be called at the latest, in microseconds from now; 0xFFFFFFFF: no need. */
-U32 Link_deadline(const Link *link, U32 nowUs);
+U32 Link_deadline(const Link* link, U32 nowUs);
 
-const Link_Statistics *Link_statistics(const Link *link);
+const Link_Statistics* Link_statistics(const Link* link);
 
 #include "link_private.h"
 

@@ -5,7 +5,7 @@
 #include "link.h"
 
 /* CRC-16/CCITT, polynomial 0x1021, MSB first; four bits at a time, so that the table is small. */
-U16 Link_crc(U16 seed, const U8 *bytes, U32 size) {
+U16 Link_crc(U16 seed, const U8* bytes, U32 size) {
     static const U16 table[16] = {0x0000, 0x1021, 0x2042, 0x3063, 0x4084, 0x50A5, 0x60C6, 0x70E7,
                                   0x8108, 0x9129, 0xA14A, 0xB16B, 0xC18C, 0xD1AD, 0xE1CE, 0xF1EF};
     U32 crc = seed;
@@ -21,11 +21,11 @@ int Link_isBefore(U32 a, U32 b) {
     return (S32)(a - b) < 0;
 }
 
-U32 Link_get32(const U8 *p) {
+U32 Link_get32(const U8* p) {
     return (U32)p[0] | (U32)p[1] << 8 | (U32)p[2] << 16 | (U32)p[3] << 24;
 }
 
-void Link_put32(U8 *p, U32 value) {
+void Link_put32(U8* p, U32 value) {
     p[0] = (U8)value;
     p[1] = (U8)(value >> 8);
     p[2] = (U8)(value >> 16);
@@ -33,7 +33,7 @@ void Link_put32(U8 *p, U32 value) {
 }
 
 /* Adds the checksum and hands the frame over. 1: taken. */
-int Link_sendFrame(Link *link, U8 *frame, U32 payload, U16 seed, U32 now) {
+int Link_sendFrame(Link* link, U8* frame, U32 payload, U16 seed, U32 now) {
     U32 size = payload + LINK_OVERHEAD;
     U16 crc = Link_crc(seed, frame, size - 2U);
     U32 start = Link_isBefore(link->paceUntil, now) ? now : link->paceUntil;
@@ -42,17 +42,18 @@ int Link_sendFrame(Link *link, U8 *frame, U32 payload, U16 seed, U32 now) {
     if (link->port->transmit(link->context, frame, size) != 0)
         return 0;
     /* A packet shorter than the longest is followed by the silence that sends it off. */
-    link->paceUntil = start + ((size + (size < LINK_MAX_FRAME ? 4U : 0U)) * link->byteTimeUs16 >> 4);
+    link->paceUntil =
+        start + ((size + (size < LINK_MAX_FRAME ? 4U : 0U)) * link->byteTimeUs16 >> 4);
     ++link->statistics.framesSent;
     link->statistics.bytesSent += size;
     return 1;
 }
 
-U8 Link_controlBits(const Link_Session *session, Link_Kind kind) {
+U8 Link_controlBits(const Link_Session* session, Link_Kind kind) {
     return (U8)((U32)kind << 5 | (U32)session->epoch << 2);
 }
 
-int Link_sendControl(Link *link, Link_Kind kind, U8 byte1, const U8 *payload, U32 size, U32 now) {
+int Link_sendControl(Link* link, Link_Kind kind, U8 byte1, const U8* payload, U32 size, U32 now) {
     U8 frame[LINK_OVERHEAD + 8U];
     U32 i;
     frame[0] = (U8)(LINK_CONTROL | size);
@@ -60,9 +61,9 @@ int Link_sendControl(Link *link, Link_Kind kind, U8 byte1, const U8 *payload, U3
     frame[2] = Link_controlBits(&link->session, kind);
     for (i = 0; i < size; ++i)
         frame[3U + i] = payload[i];
-    return Link_sendFrame(link, frame, size,
-                          kind == LINK_KIND_ACK || kind >= LINK_KIND_BYE ? link->session.seed : 0xFFFFU,
-                          now);
+    return Link_sendFrame(
+        link, frame, size,
+        kind == LINK_KIND_ACK || kind >= LINK_KIND_BYE ? link->session.seed : 0xFFFFU, now);
 }
 
 /* Whether a header makes sense now; it keeps chance from passing garbage on to the checksum. */
@@ -73,13 +74,13 @@ static int isPlausibleControl(U32 kind, U32 payload) {
     return payload == sizes[kind] || (kind == LINK_KIND_ACK && payload == 5U);
 }
 
-static int hasGoodCrc(const U8 *frame, U32 payload, U16 seed) {
+static int hasGoodCrc(const U8* frame, U32 payload, U16 seed) {
     U32 size = payload + LINK_OVERHEAD;
     return Link_crc(seed, frame, size - 2U) == (U32)((U32)frame[size - 2U] << 8 | frame[size - 1U]);
 }
 
 /* A frame of the session, or the first one of a session that a HELLO announced. */
-static int belongsToSession(Link *link, const U8 *frame, U32 payload, U32 now) {
+static int belongsToSession(Link* link, const U8* frame, U32 payload, U32 now) {
     U32 epoch = frame[2] >> 2 & 7U;
     if (link->state == LINK_STATE_UP && epoch == link->session.epoch &&
         hasGoodCrc(frame, payload, link->session.seed))
@@ -93,10 +94,11 @@ static int belongsToSession(Link *link, const U8 *frame, U32 payload, U32 now) {
 }
 
 /* Acts upon one whole frame. 0: it is none. */
-static int takeFrame(Link *link, const U8 *frame, U32 payload, U32 now) {
+static int takeFrame(Link* link, const U8* frame, U32 payload, U32 now) {
     U32 kind = frame[2] >> 5;
     if (!(frame[0] & LINK_CONTROL)) {
-        if ((payload == 0 && !(frame[2] & LINK_LAST)) || !belongsToSession(link, frame, payload, now))
+        if ((payload == 0 && !(frame[2] & LINK_LAST)) ||
+            !belongsToSession(link, frame, payload, now))
             return 0;
         link->heardAt = now;
         Link_onData(link, frame, payload, now);
@@ -127,7 +129,7 @@ static int takeFrame(Link *link, const U8 *frame, U32 payload, U32 now) {
     return 1;
 }
 
-static void discard(Link *link, U32 count) {
+static void discard(Link* link, U32 count) {
     U32 i;
     link->inputCount -= count;
     for (i = 0; i < link->inputCount; ++i)
@@ -135,7 +137,7 @@ static void discard(Link *link, U32 count) {
 }
 
 /* Somebody talks in a session that is not known here: say so, but not too often. */
-static void refuse(Link *link, U32 now) {
+static void refuse(Link* link, U32 now) {
     if (Link_isBefore(now, link->pingAt))
         return;
     link->pingAt = now + LINK_HELLO_FIRST;
@@ -145,7 +147,7 @@ static void refuse(Link *link, U32 now) {
 
 /* Takes all whole frames out of the input. After a bad one it goes on at the next byte; `isEnd`: a
  * silence follows, so half a frame will never become whole. */
-void Link_parse(Link *link, int isEnd, U32 now) {
+void Link_parse(Link* link, int isEnd, U32 now) {
     int inSync = 1;
     while (link->inputCount) {
         U8 frame[LINK_MAX_FRAME];
@@ -180,7 +182,7 @@ void Link_parse(Link *link, int isEnd, U32 now) {
     }
 }
 
-void Link_receive(Link *link, const U8 *bytes, U32 size, int isPacketEnd, U32 nowUs) {
+void Link_receive(Link* link, const U8* bytes, U32 size, int isPacketEnd, U32 nowUs) {
     U32 i;
     for (i = 0; i < size; ++i) {
         link->input[link->inputCount++] = bytes[i];

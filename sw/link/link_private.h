@@ -26,17 +26,17 @@ typedef enum Link_Kind {
 } Link_Kind;
 
 /* Times in microseconds. */
-#define LINK_ACK_DELAY 20000U       /* an acknowledgement waits this long for company */
-#define LINK_ACK_EVERY 8U           /* or for so many fragments */
-#define LINK_HELLO_FIRST 300000U    /* between HELLOs, doubled up to ... */
+#define LINK_ACK_DELAY 20000U    /* an acknowledgement waits this long for company */
+#define LINK_ACK_EVERY 8U        /* or for so many fragments */
+#define LINK_HELLO_FIRST 300000U /* between HELLOs, doubled up to ... */
 #define LINK_HELLO_LAST 2000000U
-#define LINK_PING_AFTER 5000000U    /* silence after which the peer is asked, ... */
-#define LINK_PING_EVERY 1000000U    /* again, ... */
-#define LINK_DEAD_AFTER 9000000U    /* and given up */
+#define LINK_PING_AFTER 5000000U /* silence after which the peer is asked, ... */
+#define LINK_PING_EVERY 1000000U /* again, ... */
+#define LINK_DEAD_AFTER 9000000U /* and given up */
 #define LINK_RTO_FIRST 600000U
 #define LINK_RTO_MIN 60000U
 #define LINK_RTO_MAX 2000000U
-#define LINK_FRAME_GAP 25000U       /* silence on the serial side after which half a frame is dropped */
+#define LINK_FRAME_GAP 25000U /* silence on the serial side after which half a frame is dropped */
 
 /* What identifies a session: both nonces, and what follows from them. */
 typedef struct Link_Session {
@@ -56,20 +56,20 @@ typedef struct Link_Item {
 
 /* A fragment that was cut and is not acknowledged in order. */
 typedef struct Link_Fragment {
-    U32 start;      /* in the byte ring */
-    U32 sentAt;     /* last time */
+    U32 start;                 /* in the byte ring */
+    U32 sentAt;                /* last time */
     U32 firstOrder, lastOrder; /* numbers of its first and last transmission */
-    U8 size, flags; /* flags: F, L and CH */
+    U8 size, flags;            /* flags: F, L and CH */
     U8 transmissions;
     U8 acked, lost;
 } Link_Fragment;
 
 struct Link {
-    const Link_Port *port;
-    void *context;
+    const Link_Port* port;
+    void* context;
     U32 byteTimeUs16;
     Link_State state;
-    int wanted;       /* Link_start was called */
+    int wanted; /* Link_start was called */
     Link_Session session, candidate;
     int hasCandidate; /* a HELLO was answered, its sender has not confirmed yet */
     U32 helloNonce, helloAt, helloEvery;
@@ -82,13 +82,13 @@ struct Link {
     U32 itemHead, itemCount;
     U32 cutItem, cutOffset; /* the next fragment comes from here: items after head, bytes */
     Link_Fragment window[64];
-    U8 sendBase, sendNext;  /* oldest unacknowledged, next new */
+    U8 sendBase, sendNext; /* oldest unacknowledged, next new */
     U8 credit;
-    U8 wasFull;             /* Link_send said LINK_FULL */
-    U32 order;              /* transmissions so far */
+    U8 wasFull; /* Link_send said LINK_FULL */
+    U32 order;  /* transmissions so far */
     U32 smoothed, variance, timeout, timerAt;
     int timerRuns, hasSample;
-    U32 paceUntil;          /* when the serial side will have sent everything handed over */
+    U32 paceUntil; /* when the serial side will have sent everything handed over */
 
     /* receiving */
     U8 input[LINK_MAX_FRAME];
@@ -100,45 +100,45 @@ struct Link {
     U32 messageSize;
     int messageOpen, messageHeld; /* between F and L; whole, but not taken yet */
     U8 messageChannel;
-    U8 open;                /* bit a channel, whoever opened it */
-    U32 ackCount, ackAt;    /* fragments since the last acknowledgement; when it is due */
+    U8 open;             /* bit a channel, whoever opened it */
+    U32 ackCount, ackAt; /* fragments since the last acknowledgement; when it is due */
     int ackDue, ackNow;
 
     Link_Statistics statistics;
 };
 
 /* frame */
-U16 Link_crc(U16 seed, const U8 *bytes, U32 size);
-int Link_sendFrame(Link *link, U8 *frame, U32 payload, U16 seed, U32 now);
-int Link_sendControl(Link *link, Link_Kind kind, U8 byte1, const U8 *payload, U32 size, U32 now);
+U16 Link_crc(U16 seed, const U8* bytes, U32 size);
+int Link_sendFrame(Link* link, U8* frame, U32 payload, U16 seed, U32 now);
+int Link_sendControl(Link* link, Link_Kind kind, U8 byte1, const U8* payload, U32 size, U32 now);
 int Link_isBefore(U32 a, U32 b);
-U32 Link_get32(const U8 *p);
-void Link_put32(U8 *p, U32 value);
-void Link_parse(Link *link, int isEnd, U32 now);
-U8 Link_controlBits(const Link_Session *session, Link_Kind kind);
+U32 Link_get32(const U8* p);
+void Link_put32(U8* p, U32 value);
+void Link_parse(Link* link, int isEnd, U32 now);
+U8 Link_controlBits(const Link_Session* session, Link_Kind kind);
 
 /* session */
-void Link_onHello(Link *link, const U8 *frame, U32 now);
-void Link_onHelloAck(Link *link, const U8 *frame, U32 now);
-void Link_onReset(Link *link, U8 epoch, U32 now);
-void Link_confirmCandidate(Link *link, U32 now);
-void Link_endSession(Link *link, Link_State next, U32 now);
-void Link_pollSession(Link *link, U32 now);
-U32 Link_sessionDeadline(const Link *link, U32 now);
+void Link_onHello(Link* link, const U8* frame, U32 now);
+void Link_onHelloAck(Link* link, const U8* frame, U32 now);
+void Link_onReset(Link* link, U8 epoch, U32 now);
+void Link_confirmCandidate(Link* link, U32 now);
+void Link_endSession(Link* link, Link_State next, U32 now);
+void Link_pollSession(Link* link, U32 now);
+U32 Link_sessionDeadline(const Link* link, U32 now);
 
 /* send */
-void Link_resetSend(Link *link);
-void Link_dropQueue(Link *link);
-void Link_onAck(Link *link, const U8 *frame, U32 payload, U32 now);
-void Link_pollSend(Link *link, U32 now);
-U32 Link_sendDeadline(const Link *link, U32 now);
+void Link_resetSend(Link* link);
+void Link_dropQueue(Link* link);
+void Link_onAck(Link* link, const U8* frame, U32 payload, U32 now);
+void Link_pollSend(Link* link, U32 now);
+U32 Link_sendDeadline(const Link* link, U32 now);
 
 /* receive */
-void Link_resetReceive(Link *link);
-void Link_onData(Link *link, const U8 *frame, U32 payload, U32 now);
-void Link_deliverHeld(Link *link, U32 now);
-int Link_sendAck(Link *link, U32 now);
-void Link_pollReceive(Link *link, U32 now);
-U32 Link_receiveDeadline(const Link *link, U32 now);
+void Link_resetReceive(Link* link);
+void Link_onData(Link* link, const U8* frame, U32 payload, U32 now);
+void Link_deliverHeld(Link* link, U32 now);
+int Link_sendAck(Link* link, U32 now);
+void Link_pollReceive(Link* link, U32 now);
+U32 Link_receiveDeadline(const Link* link, U32 now);
 
 #endif

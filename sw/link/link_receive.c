@@ -4,9 +4,9 @@
  */
 #include "link.h"
 
-#define SLOT(seq) ((seq) & 63U)
+#define SLOT(seq) ((seq)&63U)
 
-void Link_resetReceive(Link *link) {
+void Link_resetReceive(Link* link) {
     U32 i;
     for (i = 0; i < 64U; ++i)
         link->slotUsed[i] = 0;
@@ -18,7 +18,7 @@ void Link_resetReceive(Link *link) {
     link->ackDue = link->ackNow = 0;
 }
 
-static void setOpen(Link *link, U8 channel, int isOpen) {
+static void setOpen(Link* link, U8 channel, int isOpen) {
     U8 bit = (U8)(1U << channel);
     if (isOpen == ((link->open & bit) != 0))
         return;
@@ -27,7 +27,7 @@ static void setOpen(Link *link, U8 channel, int isOpen) {
 }
 
 /* One fragment in order. 0: its message is whole and nobody takes it now. */
-static int accept(Link *link, U8 flags, const U8 *data, U32 size) {
+static int accept(Link* link, U8 flags, const U8* data, U32 size) {
     U8 channel = flags & 3U;
     U32 i;
     if (size == 0) {
@@ -59,7 +59,7 @@ static int accept(Link *link, U8 flags, const U8 *data, U32 size) {
 }
 
 /* Takes what is in order out of the slots, unless a message is held. */
-static void drain(Link *link) {
+static void drain(Link* link) {
     while (!link->messageHeld && link->slotUsed[SLOT(link->receiveNext)]) {
         U32 slot = SLOT(link->receiveNext);
         Link_State before = link->state;
@@ -71,10 +71,9 @@ static void drain(Link *link) {
     }
 }
 
-void Link_deliverHeld(Link *link, U32 now) {
-    if (!link->messageHeld ||
-        link->port->message(link->context, link->messageChannel, link->message,
-                            link->messageSize) != 0)
+void Link_deliverHeld(Link* link, U32 now) {
+    if (!link->messageHeld || link->port->message(link->context, link->messageChannel,
+                                                  link->message, link->messageSize) != 0)
         return;
     link->messageHeld = 0;
     ++link->statistics.messagesReceived;
@@ -83,7 +82,7 @@ void Link_deliverHeld(Link *link, U32 now) {
     link->ackAt = now;
 }
 
-void Link_onData(Link *link, const U8 *frame, U32 payload, U32 now) {
+void Link_onData(Link* link, const U8* frame, U32 payload, U32 now) {
     U8 seq = frame[1];
     U32 ahead = (U8)(seq - link->receiveNext);
     U32 slot = SLOT(seq);
@@ -108,7 +107,7 @@ void Link_onData(Link *link, const U8 *frame, U32 payload, U32 now) {
 }
 
 /* 1: sent. */
-int Link_sendAck(Link *link, U32 now) {
+int Link_sendAck(Link* link, U32 now) {
     U8 payload[5];
     U32 bitmap = 0;
     U32 used = 0;
@@ -130,7 +129,7 @@ int Link_sendAck(Link *link, U32 now) {
     return 1;
 }
 
-void Link_pollReceive(Link *link, U32 now) {
+void Link_pollReceive(Link* link, U32 now) {
     if (link->inputCount && !Link_isBefore(now, link->inputAt + LINK_FRAME_GAP))
         Link_parse(link, 1, now);
     if (link->state != LINK_STATE_UP)
@@ -140,7 +139,7 @@ void Link_pollReceive(Link *link, U32 now) {
         (void)Link_sendAck(link, now);
 }
 
-U32 Link_receiveDeadline(const Link *link, U32 now) {
+U32 Link_receiveDeadline(const Link* link, U32 now) {
     U32 wait = 0xFFFFFFFFU;
     if (link->inputCount) {
         U32 at = link->inputAt + LINK_FRAME_GAP;

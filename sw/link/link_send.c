@@ -2,14 +2,14 @@
  *
  * link_send: the send queue, fragments, window, acknowledgements and retransmission.
  *
- * The way is first in, first out. So what was transmitted before the newest transmission that has been
- * acknowledged, and is not acknowledged itself, is lost; the timer covers the tail only.
+ * The way is first in, first out. So what was transmitted before the newest transmission that has
+ * been acknowledged, and is not acknowledged itself, is lost; the timer covers the tail only.
  */
 #include "link.h"
 
-#define SLOT(seq) ((seq) & 63U)
+#define SLOT(seq) ((seq)&63U)
 
-void Link_resetSend(Link *link) {
+void Link_resetSend(Link* link) {
     link->sendBase = link->sendNext = 0;
     link->credit = LINK_WINDOW;
     link->order = 0;
@@ -18,11 +18,11 @@ void Link_resetSend(Link *link) {
     link->cutItem = link->cutOffset = 0;
 }
 
-static Link_Item *itemAt(Link *link, U32 index) {
+static Link_Item* itemAt(Link* link, U32 index) {
     return &link->items[(link->itemHead + index) % LINK_SEND_MESSAGES];
 }
 
-static void popItem(Link *link, Link_Outcome outcome) {
+static void popItem(Link* link, Link_Outcome outcome) {
     Link_Item item = *itemAt(link, 0);
     link->itemHead = (link->itemHead + 1U) % LINK_SEND_MESSAGES;
     --link->itemCount;
@@ -36,21 +36,23 @@ static void popItem(Link *link, Link_Outcome outcome) {
     }
 }
 
-void Link_dropQueue(Link *link) {
+void Link_dropQueue(Link* link) {
     while (link->itemCount)
         popItem(link, LINK_UNKNOWN);
     link->queueHead = link->queueUsed = link->itemHead = 0;
     Link_resetSend(link);
 }
 
-static Link_Status enqueue(Link *link, int channel, Link_ItemKind kind, const U8 *data, U32 size,
+static Link_Status enqueue(Link* link, int channel, Link_ItemKind kind, const U8* data, U32 size,
                            U32 tag) {
-    Link_Item *item;
+    Link_Item* item;
     U32 i, at;
     if (channel < 0 || channel >= LINK_CHANNELS)
         return LINK_CLOSED;
     if (link->state != LINK_STATE_UP)
         return LINK_DOWN;
+    if (kind != LINK_ITEM_OPEN && !(link->open >> channel & 1))
+        return LINK_CLOSED;
     if (link->itemCount == LINK_SEND_MESSAGES || size > LINK_SEND_BYTES - link->queueUsed) {
         link->wasFull = 1;
         return LINK_FULL;
@@ -71,7 +73,7 @@ static Link_Status enqueue(Link *link, int channel, Link_ItemKind kind, const U8
     return LINK_OK;
 }
 
-Link_Status Link_openChannel(Link *link, int channel, U32 nowUs) {
+Link_Status Link_openChannel(Link* link, int channel, U32 nowUs) {
     Link_Status status = enqueue(link, channel, LINK_ITEM_OPEN, 0, 0, 0);
     (void)nowUs;
     if (status == LINK_OK)
@@ -79,17 +81,15 @@ Link_Status Link_openChannel(Link *link, int channel, U32 nowUs) {
     return status;
 }
 
-Link_Status Link_closeChannel(Link *link, int channel, U32 nowUs) {
-    Link_Status status = LINK_CLOSED;
+Link_Status Link_closeChannel(Link* link, int channel, U32 nowUs) {
+    Link_Status status = enqueue(link, channel, LINK_ITEM_CLOSE, 0, 0, 0);
     (void)nowUs;
-    if (channel >= 0 && channel < LINK_CHANNELS && (link->open & 1U << channel))
-        status = enqueue(link, channel, LINK_ITEM_CLOSE, 0, 0, 0);
     if (status == LINK_OK)
         link->open = (U8)(link->open & ~(1U << channel));
     return status;
 }
 
-Link_Status Link_send(Link *link, int channel, const U8 *data, U32 size, U32 tag, U32 nowUs) {
+Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag, U32 nowUs) {
     (void)nowUs;
     if (size == 0 || size > LINK_MAX_MESSAGE)
         return LINK_TOO_LONG;
@@ -98,16 +98,16 @@ Link_Status Link_send(Link *link, int channel, const U8 *data, U32 size, U32 tag
 
 /* Fragments that may be in flight. Without credit one goes out all the same, as a probe: its
  * acknowledgement tells when there is credit again. */
-static U32 windowLimit(const Link *link) {
+static U32 windowLimit(const Link* link) {
     if (link->credit == 0)
         return 1;
     return link->credit < LINK_WINDOW ? link->credit : LINK_WINDOW;
 }
 
 /* Cuts the next fragment from the queue into the window. 0: nothing to cut, or no room. */
-static int cut(Link *link) {
-    Link_Item *item;
-    Link_Fragment *f;
+static int cut(Link* link) {
+    Link_Item* item;
+    Link_Fragment* f;
     U32 inFlight = (U8)(link->sendNext - link->sendBase);
     U32 left;
     if (link->cutItem == link->itemCount || inFlight >= windowLimit(link))
@@ -133,8 +133,8 @@ static int cut(Link *link) {
 }
 
 /* 1: handed over. */
-static int transmit(Link *link, U8 seq, int askAck, U32 now) {
-    Link_Fragment *f = &link->window[SLOT(seq)];
+static int transmit(Link* link, U8 seq, int askAck, U32 now) {
+    Link_Fragment* f = &link->window[SLOT(seq)];
     U8 frame[LINK_MAX_FRAME];
     U32 i, at = f->start;
     frame[0] = f->size;
@@ -159,13 +159,14 @@ static int transmit(Link *link, U8 seq, int askAck, U32 now) {
     return 1;
 }
 
-static void sample(Link *link, U32 roundTrip) {
+static void sample(Link* link, U32 roundTrip) {
     if (!link->hasSample) {
         link->smoothed = roundTrip;
         link->variance = roundTrip / 2U;
         link->hasSample = 1;
     } else {
-        U32 error = roundTrip > link->smoothed ? roundTrip - link->smoothed : link->smoothed - roundTrip;
+        U32 error =
+            roundTrip > link->smoothed ? roundTrip - link->smoothed : link->smoothed - roundTrip;
         link->variance += error / 4U - link->variance / 4U;
         link->smoothed += roundTrip / 8U - link->smoothed / 8U;
     }
@@ -178,7 +179,7 @@ static void sample(Link *link, U32 roundTrip) {
 }
 
 /* Marks a fragment as arrived; returns the number of the transmission that this surely means. */
-static U32 acknowledge(Link *link, Link_Fragment *f, U32 now) {
+static U32 acknowledge(Link* link, Link_Fragment* f, U32 now) {
     U32 elapsed = now - f->sentAt;
     f->acked = 1;
     f->lost = 0;
@@ -190,7 +191,7 @@ static U32 acknowledge(Link *link, Link_Fragment *f, U32 now) {
     return elapsed >= link->smoothed - link->smoothed / 4U ? f->lastOrder : f->firstOrder;
 }
 
-void Link_onAck(Link *link, const U8 *frame, U32 payload, U32 now) {
+void Link_onAck(Link* link, const U8* frame, U32 payload, U32 now) {
     U8 cumulative = frame[1];
     U32 inFlight = (U8)(link->sendNext - link->sendBase);
     U32 advance = (U8)(cumulative - link->sendBase);
@@ -201,7 +202,7 @@ void Link_onAck(Link *link, const U8 *frame, U32 payload, U32 now) {
         return; /* an old one that came late */
     link->credit = frame[3];
     for (i = 0; i < inFlight; ++i) {
-        Link_Fragment *f = &link->window[SLOT(link->sendBase + i)];
+        Link_Fragment* f = &link->window[SLOT(link->sendBase + i)];
         int arrived = i < advance || (i > advance && i - advance - 1U < 32U &&
                                       (bitmap >> (i - advance - 1U) & 1U));
         if (arrived && !f->acked && f->transmissions) {
@@ -211,7 +212,7 @@ void Link_onAck(Link *link, const U8 *frame, U32 payload, U32 now) {
         }
     }
     for (i = 0; i < inFlight; ++i) {
-        Link_Fragment *f = &link->window[SLOT(link->sendBase + i)];
+        Link_Fragment* f = &link->window[SLOT(link->sendBase + i)];
         if (!f->acked && f->transmissions && f->lastOrder < newest)
             f->lost = 1;
     }
@@ -233,11 +234,12 @@ void Link_onAck(Link *link, const U8 *frame, U32 payload, U32 now) {
     }
 }
 
-/* What is to be sent next, and whether there is anything. New fragments are cut as they are wanted. */
-static int nextFragment(Link *link, U8 *seq) {
+/* What is to be sent next, and whether there is anything. New fragments are cut as they are wanted.
+ */
+static int nextFragment(Link* link, U8* seq) {
     U8 s;
     for (s = link->sendBase; s != link->sendNext; ++s) {
-        Link_Fragment *f = &link->window[SLOT(s)];
+        Link_Fragment* f = &link->window[SLOT(s)];
         if (f->lost || f->transmissions == 0) {
             *seq = s;
             return 1;
@@ -247,15 +249,15 @@ static int nextFragment(Link *link, U8 *seq) {
     return cut(link);
 }
 
-static int mayHandOver(const Link *link, U32 now) {
+static int mayHandOver(const Link* link, U32 now) {
     U32 slack = LINK_MAX_FRAME * link->byteTimeUs16 >> 4; /* one frame waits behind the one sent */
     return !Link_isBefore(now + slack, link->paceUntil);
 }
 
-static void onTimeout(Link *link, U32 now) {
+static void onTimeout(Link* link, U32 now) {
     U8 s;
     for (s = link->sendBase; s != link->sendNext; ++s) {
-        Link_Fragment *f = &link->window[SLOT(s)];
+        Link_Fragment* f = &link->window[SLOT(s)];
         if (!f->acked && f->transmissions)
             f->lost = 1;
     }
@@ -263,7 +265,7 @@ static void onTimeout(Link *link, U32 now) {
     link->timerAt = now + link->timeout;
 }
 
-void Link_pollSend(Link *link, U32 now) {
+void Link_pollSend(Link* link, U32 now) {
     U8 seq;
     if (link->state != LINK_STATE_UP)
         return;
@@ -284,7 +286,7 @@ void Link_pollSend(Link *link, U32 now) {
     }
 }
 
-U32 Link_sendDeadline(const Link *link, U32 now) {
+U32 Link_sendDeadline(const Link* link, U32 now) {
     U32 wait = 0xFFFFFFFFU;
     U32 inFlight = (U8)(link->sendNext - link->sendBase);
     int hasWork = link->cutItem != link->itemCount && inFlight < windowLimit(link);

@@ -2,10 +2,10 @@
  *
  * link_session: handshake, reboots, and a peer that has vanished.
  *
- * HELLO carries a nonce; the answer carries the peer's. Both nonces make the session's epoch and the
- * seed of its checksums, so a frame of another session is never taken for one of this. Who answered a
- * HELLO stays in its old session until the first frame of the new one arrives: a HELLO that was
- * delayed on the air cannot end a session.
+ * HELLO carries a nonce; the answer carries the peer's. Both nonces make the session's epoch and
+ * the seed of its checksums, so a frame of another session is never taken for one of this. Who
+ * answered a HELLO stays in its old session until the first frame of the new one arrives: a HELLO
+ * that was delayed on the air cannot end a session.
  */
 #include "link.h"
 
@@ -23,7 +23,7 @@ static Link_Session sessionOf(U32 nonce, U32 peerNonce) {
     return session;
 }
 
-static void enter(Link *link, Link_Session session, U32 now) {
+static void enter(Link* link, Link_Session session, U32 now) {
     link->session = session;
     link->hasCandidate = 0;
     link->heardAt = now;
@@ -36,7 +36,7 @@ static void enter(Link *link, Link_Session session, U32 now) {
     link->port->state(link->context, LINK_STATE_UP);
 }
 
-void Link_endSession(Link *link, Link_State next, U32 now) {
+void Link_endSession(Link* link, Link_State next, U32 now) {
     int wasUp = link->state == LINK_STATE_UP;
     link->state = next;
     link->helloNonce = link->port->random(link->context);
@@ -55,7 +55,7 @@ void Link_endSession(Link *link, Link_State next, U32 now) {
     }
 }
 
-void Link_confirmCandidate(Link *link, U32 now) {
+void Link_confirmCandidate(Link* link, U32 now) {
     Link_Session session = link->candidate;
     link->hasCandidate = 0;
     if (link->state == LINK_STATE_UP)
@@ -63,14 +63,14 @@ void Link_confirmCandidate(Link *link, U32 now) {
     enter(link, session, now);
 }
 
-static void answerHello(Link *link, Link_Session session, U32 now) {
+static void answerHello(Link* link, Link_Session session, U32 now) {
     U8 payload[8];
     Link_put32(payload, session.nonce);
     Link_put32(payload + 4, session.peerNonce);
     (void)Link_sendControl(link, LINK_KIND_HELLO_ACK, LINK_VERSION, payload, 8, now);
 }
 
-void Link_onHello(Link *link, const U8 *frame, U32 now) {
+void Link_onHello(Link* link, const U8* frame, U32 now) {
     U32 peer = Link_get32(frame + 3);
     if (frame[1] != LINK_VERSION)
         return;
@@ -87,7 +87,7 @@ void Link_onHello(Link *link, const U8 *frame, U32 now) {
     answerHello(link, link->candidate, now);
 }
 
-void Link_onHelloAck(Link *link, const U8 *frame, U32 now) {
+void Link_onHelloAck(Link* link, const U8* frame, U32 now) {
     if (frame[1] != LINK_VERSION || link->state != LINK_STATE_CONNECTING ||
         Link_get32(frame + 7) != link->helloNonce)
         return;
@@ -95,12 +95,12 @@ void Link_onHelloAck(Link *link, const U8 *frame, U32 now) {
     link->ackDue = link->ackNow = 1; /* the first frame of the session confirms it */
 }
 
-void Link_onReset(Link *link, U8 epoch, U32 now) {
+void Link_onReset(Link* link, U8 epoch, U32 now) {
     if (link->state == LINK_STATE_UP && epoch == link->session.epoch)
         Link_endSession(link, link->wanted ? LINK_STATE_CONNECTING : LINK_STATE_IDLE, now);
 }
 
-void Link_pollSession(Link *link, U32 now) {
+void Link_pollSession(Link* link, U32 now) {
     U8 nonce[4];
     if (link->state == LINK_STATE_CONNECTING && !Link_isBefore(now, link->helloAt)) {
         Link_put32(nonce, link->helloNonce);
@@ -119,7 +119,7 @@ void Link_pollSession(Link *link, U32 now) {
     }
 }
 
-U32 Link_sessionDeadline(const Link *link, U32 now) {
+U32 Link_sessionDeadline(const Link* link, U32 now) {
     U32 at;
     if (link->state == LINK_STATE_IDLE)
         return 0xFFFFFFFFU;

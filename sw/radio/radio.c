@@ -38,7 +38,7 @@ static void set(U32 word, U32 value) {
     FSMC_write(MAP_SLOT_MODEM, word, value);
 }
 
-static void setUpController(const XBeeInitTypeDef *conf) {
+static void setUpController(const XBeeInitTypeDef* conf) {
     U32 guard = conf->guardMs ? conf->guardMs : DEFAULT_GUARD_MS;
     set(MODEM_CONTROL, MODEM_CONTROL_RESET_MODEM_MASK);
     OSTimeDly(OS_TICKS_PER_SEC / 2U); /* the modem boots in 50 to 500 ms */
@@ -53,7 +53,7 @@ static void setUpController(const XBeeInitTypeDef *conf) {
     set(MODEM_CONTROL, MODEM_CONTROL_CONFIGURE_MASK);
 }
 
-Radio_Status xbeeInit(const XBeeInitTypeDef *conf, const Radio_Memory *memory) {
+Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory) {
     U32 events = 0;
     U32 i;
     if (get(MODEM_ID) >> 16 != MODEM_ID_VALUE >> 16)
@@ -73,7 +73,8 @@ Radio_Status xbeeInit(const XBeeInitTypeDef *conf, const Radio_Memory *memory) {
         radio.failedStep = (get(MODEM_STATUS) & MODEM_STATUS_STEP_MASK) >> MODEM_STATUS_STEP_LSB;
         return radio.failedStep <= 1U ? RADIO_NO_MODEM : RADIO_REFUSED;
     }
-    set(MODEM_MASK, MODEM_MASK_TX_DONE_MASK | MODEM_MASK_RX_PACKET_MASK | MODEM_MASK_RX_OVERRUN_MASK);
+    set(MODEM_MASK,
+        MODEM_MASK_TX_DONE_MASK | MODEM_MASK_RX_PACKET_MASK | MODEM_MASK_RX_OVERRUN_MASK);
     return RADIO_OK;
 }
 
@@ -91,7 +92,7 @@ static void reclaim(void) {
     }
 }
 
-int Radio_transmit(void *context, const U8 *frame, U32 size) {
+int Radio_transmit(void* context, const U8* frame, U32 size) {
     U32 buffer;
     (void)context;
     reclaim();
@@ -110,7 +111,7 @@ int Radio_transmit(void *context, const U8 *frame, U32 size) {
     return 0;
 }
 
-U32 Radio_receive(Link *link, U32 nowUs) {
+U32 Radio_receive(Link* link, U32 nowUs) {
     U8 packet[MODEM_BUFFER_BYTES];
     U32 packets = 0;
     for (; packets < 2U * BUFFERS; ++packets) {
@@ -137,9 +138,10 @@ U32 Radio_interrupt(void) {
     return events;
 }
 
-const Radio_Counters *Radio_counters(void) {
+const Radio_Counters* Radio_counters(void) {
     U32 errors = get(MODEM_ERRORS);
     radio.counters.framingErrors = errors & MODEM_ERRORS_FRAMING_MASK;
-    radio.counters.hardwareOverruns = (errors & MODEM_ERRORS_OVERRUN_MASK) >> MODEM_ERRORS_OVERRUN_LSB;
+    radio.counters.hardwareOverruns =
+        (errors & MODEM_ERRORS_OVERRUN_MASK) >> MODEM_ERRORS_OVERRUN_LSB;
     return &radio.counters;
 }

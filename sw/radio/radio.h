@@ -14,11 +14,18 @@
 
 /* BD codes of the modem. */
 typedef enum XBee_Baud {
-    XBEE_BD_1200, XBEE_BD_2400, XBEE_BD_4800, XBEE_BD_9600,
-    XBEE_BD_19200, XBEE_BD_38400, XBEE_BD_57600, XBEE_BD_115200
+    XBEE_BD_1200,
+    XBEE_BD_2400,
+    XBEE_BD_4800,
+    XBEE_BD_9600,
+    XBEE_BD_19200,
+    XBEE_BD_38400,
+    XBEE_BD_57600,
+    XBEE_BD_115200
 } XBee_Baud;
 
-/* As in the paper's Figure 5: {XBEE_BD_115200, source, target}. A zero after that means the default. */
+/* As in the paper's Figure 5: {XBEE_BD_115200, source, target}. A zero after that means the
+ * default. */
 typedef struct XBeeInitTypeDef {
     XBee_Baud baud;
     U16 source;  /* MY */
@@ -30,9 +37,9 @@ typedef struct XBeeInitTypeDef {
 
 typedef enum Radio_Status {
     RADIO_OK = 0,
-    RADIO_NO_DEVICE,    /* the slot is not a modem controller */
-    RADIO_NO_MODEM,     /* no answer at any baud rate */
-    RADIO_REFUSED       /* the modem refused a command: Radio_failedStep says which */
+    RADIO_NO_DEVICE, /* the slot is not a modem controller */
+    RADIO_NO_MODEM,  /* no answer at any baud rate */
+    RADIO_REFUSED    /* the modem refused a command: Radio_failedStep says which */
 } Radio_Status;
 
 typedef struct Radio_Counters {
@@ -48,21 +55,24 @@ typedef struct Radio_Memory {
     U32 transmitRing, receiveRing;
 } Radio_Memory;
 
-/* Sets the controller and the modem up; blocks the calling task (about 4 s with default guard times). */
-Radio_Status xbeeInit(const XBeeInitTypeDef *conf, const Radio_Memory *memory);
+/* Sets the controller and the modem up; blocks the calling task (about 4 s with default guard
+ * times). */
+Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory);
 
 /* The AT step that failed, as in the modem's STATUS.STEP. */
 U32 Radio_failedStep(void);
 
 /* Link_Port.transmit: copies a frame to the ring. 0 taken, 1 no buffer free. */
-int Radio_transmit(void *context, const U8 *frame, U32 size);
+int Radio_transmit(void* context, const U8* frame, U32 size);
 
-/* Takes every packet out of the receive ring and feeds it to `link`. Returns the number of packets. */
-U32 Radio_receive(Link *link, U32 nowUs);
+/* Takes every packet out of the receive ring and feeds it to `link`. Returns the number of packets.
+ */
+U32 Radio_receive(Link* link, U32 nowUs);
 
-/* Interrupt routine part: reads and clears the modem's events; non-zero when there is work for the task. */
+/* Interrupt routine part: reads and clears the modem's events; non-zero when there is work for the
+ * task. */
 U32 Radio_interrupt(void);
 
-const Radio_Counters *Radio_counters(void);
+const Radio_Counters* Radio_counters(void);
 
 #endif

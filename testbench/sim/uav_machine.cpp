@@ -6,7 +6,6 @@
 
 extern "C" {
 #include "ucos_ii.h"
-#include "uav.h"
 }
 
 namespace {
@@ -32,9 +31,10 @@ constexpr uint64_t tickCycles = SocModel::clkHz / OS_TICKS_PER_SEC;
 
 } // namespace
 
-UavMachine::UavMachine(SocModel& soc, std::function<bool()> poll) : soc_(soc), poll_(std::move(poll)) {}
+UavMachine::UavMachine(SocModel& soc, std::function<bool()> poll, Firmware firmware)
+    : soc_(soc), poll_(std::move(poll)), firmware_(std::move(firmware)) {}
 
-bool UavMachine::pending() const { return soc_.cycles() >= nextTick_ || (soc_.irq() && UAV_irqEnabled()); }
+bool UavMachine::pending() const { return soc_.cycles() >= nextTick_ || (soc_.irq() && firmware_.irqEnabled()); }
 
 void UavMachine::serve() {
     if (soc_.cycles() >= nextTick_) {
@@ -44,7 +44,7 @@ void UavMachine::serve() {
         OSTimeTick();
         return;
     }
-    UAV_irqHandler();
+    firmware_.irqHandler();
 }
 
 void UavMachine::idle() {
@@ -57,6 +57,6 @@ void UavMachine::run() {
     nextTick_ = soc_.cycles() + tickCycles;
     OsHost::setMachine({[this] { idle(); }, [this] { return pending(); }, [this] { serve(); }});
     OSInit();
-    UAV_start(&fsmcPort, &soc_);
+    firmware_.start(&fsmcPort, &soc_);
     OsHost::run();
 }

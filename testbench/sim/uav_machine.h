@@ -1,21 +1,32 @@
 // SPDX-License-Identifier: MIT
 //
 // uav_machine: runs the firmware's host build on a SocModel: bus accesses, interrupts, the tick.
+// Which firmware is a table of its entrances; without one it is the UAV's application.
 
 #ifndef UAV_MACHINE_H
 #define UAV_MACHINE_H
 
 #include "os_host.h"
 #include "soc_model.h"
+#include <functional>
 
 extern "C" {
 #include "fsmc.h"
+#include "uav.h"
 }
 
 class UavMachine {
 public:
+    // As in uav.h: what is called at boot (it creates the tasks), and at the FPGA's interrupt.
+    struct Firmware {
+        std::function<void(const Fsmc_Port*, void*)> start = UAV_start;
+        std::function<void()> irqHandler = UAV_irqHandler;
+        std::function<bool()> irqEnabled = [] { return UAV_irqEnabled() != 0; };
+    };
+
     // `poll` is called about once a simulated millisecond; when it returns false, run() ends.
-    UavMachine(SocModel& soc, std::function<bool()> poll);
+    UavMachine(SocModel& soc, std::function<bool()> poll) : UavMachine(soc, std::move(poll), Firmware()) {}
+    UavMachine(SocModel& soc, std::function<bool()> poll, Firmware firmware);
 
     // Boots the firmware and runs it until poll says so; exceptions of the models come through.
     void run();
@@ -24,10 +35,10 @@ private:
     void idle();
     bool pending() const;
     void serve();
-    void afterAccess();
 
     SocModel& soc_;
     std::function<bool()> poll_;
+    Firmware firmware_;
     uint64_t nextTick_ = 0;
 };
 

@@ -14,7 +14,8 @@
 
 int main(int argc, char** argv) {
     if (argc < 2 || std::string(argv[1]) == "--help") {
-        std::cerr << "usage: ping PROXY [COUNT]   e.g. ping \"hwengine1:xbee-at -d /dev/ttyUSB0 -a 1\" 5\n";
+        std::cerr << "usage: ping PROXY [COUNT]   e.g. ping \"hwengine1:xbee-at -d /dev/ttyUSB0 -a "
+                     "1\" 5\n";
         return 2;
     }
     try {
@@ -30,7 +31,9 @@ int main(int argc, char** argv) {
             auto start = std::chrono::steady_clock::now();
             object->ice_ping();
             std::cout << "ping " << i + 1 << ": "
-                      << std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()
+                      << std::chrono::duration<double, std::milli>(
+                             std::chrono::steady_clock::now() - start)
+                             .count()
                       << " ms" << std::endl;
         }
         std::cout << "it is a " << object->ice_id() << std::endl;

@@ -3,6 +3,7 @@
 // link_test: the link layer over a bad radio: nothing wrong, doubled, out of order or unreported.
 
 #include "link_pair.h"
+#include <cstdlib>
 #include <gtest/gtest.h>
 
 namespace {
@@ -24,9 +25,12 @@ public:
         uint32_t id = static_cast<uint32_t>(sent.size());
         Side::Bytes bytes = pattern(id, 1 + random_.below(maxSize_));
         int channel = static_cast<int>(random_.below(4));
-        if (Link_send(from.link(), channel, bytes.data(), static_cast<U32>(bytes.size()), id,
-                      pair_.now32()) == LINK_OK)
+        Link_Status status = Link_send(from.link(), channel, bytes.data(),
+                                       static_cast<U32>(bytes.size()), id, pair_.now32());
+        if (status == LINK_OK)
             sent.emplace_back(channel, std::move(bytes));
+        else if (status == LINK_CLOSED) // a new session
+            Link_openChannel(from.link(), channel, pair_.now32());
     }
 
     void run(unsigned messages, uint64_t limitUs) {
@@ -103,6 +107,7 @@ TEST(LinkLayer, SizesAreChecked) {
     Side::Bytes big(LINK_MAX_MESSAGE + 1);
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), 5, 0, 0), LINK_DOWN);
     ASSERT_TRUE(pair.connect());
+    ASSERT_EQ(Link_openChannel(pair.a.link(), 0, 0), LINK_OK);
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), LINK_MAX_MESSAGE + 1, 0, 0), LINK_TOO_LONG);
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), 0, 0, 0), LINK_TOO_LONG);
     for (int channel : {-1, LINK_CHANNELS}) {
@@ -115,6 +120,42 @@ TEST(LinkLayer, SizesAreChecked) {
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), 1, 2, 0), LINK_FULL);
     ASSERT_TRUE(pair.runUntil([&] { return pair.a.outcomes.size() == 2; }, 10000000));
     EXPECT_EQ(pair.b.received[1].second.size(), LINK_MAX_MESSAGE);
+}
+
+TEST(LinkLayer, AChannelThatNobodyHasOpenedIsRefused) {
+    Pair pair(testSeed());
+    const U8 byte = 1;
+    ASSERT_TRUE(pair.connect());
+    EXPECT_EQ(Link_send(pair.a.link(), 1, &byte, 1, 0, pair.now32()), LINK_CLOSED);
+    EXPECT_EQ(Link_closeChannel(pair.a.link(), 1, pair.now32()), LINK_CLOSED);
+    ASSERT_EQ(Link_openChannel(pair.a.link(), 1, pair.now32()), LINK_OK);
+    EXPECT_EQ(Link_send(pair.a.link(), 1, &byte, 1, 1, pair.now32()), LINK_OK);
+    EXPECT_EQ(Link_send(pair.b.link(), 1, &byte, 1, 2, pair.now32()), LINK_CLOSED); // not there yet
+    ASSERT_TRUE(pair.runUntil([&] { return pair.a.outcomes.count(1) != 0; }, 1000000));
+    EXPECT_EQ(Link_send(pair.b.link(), 1, &byte, 1, 3, pair.now32()), LINK_OK);
+    Link_closeChannel(pair.a.link(), 1, pair.now32());
+    EXPECT_EQ(Link_send(pair.a.link(), 1, &byte, 1, 4, pair.now32()), LINK_CLOSED);
+    pair.run(300000);
+    EXPECT_EQ(Link_send(pair.b.link(), 1, &byte, 1, 5, pair.now32()), LINK_CLOSED);
+    EXPECT_EQ(pair.b.received.size(), 1u);
+}
+
+// Small messages, as many as the link carries: sequence numbers wrap hundreds of times.
+// MESSAGES=100000 sends more.
+TEST(LinkLayer, TenThousandMessagesAtSpeedInBadWeather) {
+    const char* more = std::getenv("MESSAGES");
+    const unsigned messages = more ? static_cast<unsigned>(std::atoi(more)) : 10000;
+    Pair pair(testSeed());
+    ASSERT_TRUE(pair.connect());
+    pair.setWeather({0.05, 0.05, 0.02, 8000});
+    Traffic traffic(pair, testSeed(), 40);
+    traffic.run(messages, uint64_t(messages) * 1000000);
+    ASSERT_EQ(traffic.sentA.size(), messages);
+    ASSERT_EQ(traffic.sentB.size(), messages);
+    Traffic::check(traffic.sentA, pair.a, pair.b);
+    Traffic::check(traffic.sentB, pair.b, pair.a);
+    EXPECT_EQ(pair.a.received.size(), messages);
+    EXPECT_EQ(pair.b.received.size(), messages);
 }
 
 TEST_P(LinkSeeds, NothingIsLostDoubledOrReorderedInBadWeather) {
@@ -175,6 +216,7 @@ TEST(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {
     ASSERT_TRUE(pair.connect());
     pair.setWeather({1.0, 0, 0, 8000});
     Side::Bytes bytes = {1, 2, 3};
+    Link_openChannel(pair.a.link(), 0, pair.now32());
     Link_send(pair.a.link(), 0, bytes.data(), 3, 1, pair.now32());
     ASSERT_TRUE(pair.runUntil([&] { return !pair.a.outcomes.empty(); }, 20000000));
     EXPECT_EQ(pair.a.outcomes[1], LINK_UNKNOWN);
@@ -189,6 +231,7 @@ TEST(LinkLayer, AMessageThatIsNotTakenWaitsAndStopsTheSender) {
     ASSERT_TRUE(pair.connect());
     pair.b.refuse = true;
     Side::Bytes bytes(1000, 5);
+    Link_openChannel(pair.a.link(), 0, pair.now32());
     for (U32 tag = 0; tag < 10; ++tag)
         Link_send(pair.a.link(), 0, bytes.data(), 1000, tag, pair.now32());
     pair.run(7000000);
@@ -214,6 +257,7 @@ double goodput(double loss, uint64_t seed) {
     EXPECT_TRUE(pair.connect());
     pair.setWeather({loss, 0, 0, 8000});
     Side::Bytes bytes(950, 1);
+    Link_openChannel(pair.a.link(), 0, pair.now32());
     const uint64_t start = pair.nowUs;
     uint32_t tag = 0;
     pair.runUntil(

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+//
+// radio_test: the radio driver on the real RTL: FSMC pins, bridge, arbiter, DDR3, modem controller,
+// and the XBee model on its UART. The driver runs in a task of the firmware's kernel, and time is
+// simulated.
+
+#include "uav_machine.h"
+#include <cstring>
+#include <gtest/gtest.h>
+
+extern "C" {
+#include "map_regs.h"
+#include "radio.h"
+#include "ucos_ii.h"
+}
+
+namespace {
+
+constexpr int guardMs = 20; // of both modems, so that tests are short
+
+XBee::Options quick(std::map<std::string, uint32_t> more) {
+    XBee::Options options;
+    options.set = {{"GT", guardMs}};
+    for (auto& [letters, value] : more)
+        options.set[letters] = value;
+    return options;
+}
+
+// A link with its messages; its frames go where `send` says.
+class Peer {
+public:
+    explicit Peer(std::function<int(const U8*, U32)> send, uint32_t seed)
+        : link_(new Link), send_(std::move(send)), random_(seed) {
+        static const Link_Port port = {
+            [](void* c, const U8* f, U32 n) { return static_cast<Peer*>(c)->send_(f, n); },
+            [](void* c) { return static_cast<Peer*>(c)->random_.next(); },
+            [](void* c, int, const U8* d, U32 n) {
+                static_cast<Peer*>(c)->received.emplace_back(d, d + n);
+                return 0;
+            },
+            [](void*, int, int) {},
+            [](void*, Link_State) {},
+            nullptr,
+            nullptr};
+        Link_init(link_.get(), &port, this, 1440);
+    }
+    Link* link() { return link_.get(); }
+    bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
+    std::vector<std::vector<uint8_t>> received;
+
+private:
+    std::unique_ptr<Link> link_;
+    std::function<int(const U8*, U32)> send_;
+    Random random_;
+};
+
+class Radio : public ::testing::Test {
+protected:
+    void SetUp() override {
+        soc_.onTime([this](uint64_t now) {
+            far_.advance(now);
+            if (farLinkRuns_ && now >= nextPoll_) {
+                nextPoll_ = now + 1'000'000;
+                U32 us = static_cast<U32>(now / 1000);
+                Link_receive(farPeer_.link(), farLine_.received.data(),
+                             static_cast<U32>(farLine_.received.size()), 0, us);
+                farLine_.received.clear();
+                Link_poll(farPeer_.link(), us);
+            }
+            return std::min(far_.nextEvent(), farLinkRuns_ ? nextPoll_ : never);
+        });
+        soc_.reset();
+    }
+    // Runs `body` as the only task.
+    void run(std::function<void()> body) {
+        static std::function<void()> task;
+        static OS_STK stack[1024];
+        bool done = false;
+        task = [&] {
+            body();
+            done = true;
+            OsHost::stop();
+        };
+        irqOn_ = false;
+        UavMachine::Firmware firmware;
+        firmware.start = [this](const Fsmc_Port* port, void* context) {
+            realPort_ = port;
+            ASSERT_EQ(FSMC_init(port, context), FSMC_OK);
+            OSTaskCreate([](void*) { task(); }, nullptr, &stack[1023], 5);
+        };
+        firmware.irqHandler = [this] { events_ |= Radio_interrupt(); };
+        firmware.irqEnabled = [this] { return irqOn_; };
+        UavMachine machine(
+            soc_, [&] { return static_cast<double>(soc_.now()) < 60e9; }, firmware);
+        machine.run();
+        ASSERT_TRUE(done) << "the task did not end within 60 simulated seconds";
+    }
+    Radio_Status init(uint8_t channel = 0, uint16_t pan = 0) {
+        const XBeeInitTypeDef conf = {XBEE_BD_115200, 0x0001, 0x0000, channel, pan, guardMs};
+        const Radio_Memory rings = {0x0000, 0x1000};
+        Radio_Status status = xbeeInit(&conf, &rings);
+        irqOn_ = status == RADIO_OK;
+        return status;
+    }
+    static U32 us() { return OSTimeGet() * (1000000U / OS_TICKS_PER_SEC); }
+    // Runs the near link on the driver until `done`.
+    template <class Done> bool talk(Done done, int limitMs) {
+        for (int i = 0; i < limitMs; ++i) {
+            Radio_receive(nearPeer_.link(), us());
+            Link_poll(nearPeer_.link(), us());
+            if (done())
+                return true;
+            OSTimeDly(OS_TICKS_PER_SEC / 1000);
+        }
+        return done();
+    }
+    bool connect() {
+        farLinkRuns_ = true;
+        Link_start(nearPeer_.link(), us());
+        return talk([&] { return nearPeer_.isUp() && farPeer_.isUp(); }, 5000);
+    }
+
+    RfChannel air_{testSeed()};
+    HostLine farLine_;
+    XBee far_{farLine_, air_, quick({{"BD", 7}, {"MY", 0}, {"DL", 1}})};
+    SocModel soc_{air_, quick({})};
+    Peer nearPeer_{[](const U8* f, U32 n) { return Radio_transmit(nullptr, f, n); }, 11};
+    Peer farPeer_{[this](const U8* f, U32 n) {
+                      farLine_.send({f, f + n}, soc_.now());
+                      return 0;
+                  },
+                  12};
+    bool farLinkRuns_ = false, irqOn_ = false;
+    U32 events_ = 0;
+    uint64_t nextPoll_ = 0;
+    const Fsmc_Port* realPort_ = nullptr;
+};
+
+TEST_F(Radio, SetsTheModemUpAsItIsToldTo) {
+    run([&] { EXPECT_EQ(init(0x14, 0x1234), RADIO_OK); });
+    EXPECT_EQ(soc_.modem().parameter("MY"), 0x0001u);
+    EXPECT_EQ(soc_.modem().parameter("DL"), 0x0000u);
+    EXPECT_EQ(soc_.modem().parameter("CH"), 0x14u);
+    EXPECT_EQ(soc_.modem().parameter("ID"), 0x1234u);
+    EXPECT_EQ(soc_.modem().parameter("BD"), 7u);
+    EXPECT_FALSE(soc_.modem().inCommandMode());
+}
+
+TEST_F(Radio, ZeroMeansTheDefaultChannelAndNetwork) {
+    run([&] { EXPECT_EQ(init(), RADIO_OK); });
+    EXPECT_EQ(soc_.modem().parameter("CH"), 0x0Cu);
+    EXPECT_EQ(soc_.modem().parameter("ID"), 0x3332u);
+}
+
+TEST_F(Radio, AModemThatIsOffIsReported) {
+    soc_.modem().power(false, 0);
+    run([&] { EXPECT_EQ(init(), RADIO_NO_MODEM); });
+}
+
+TEST_F(Radio, ARefusedCommandIsReportedWithItsStep) {
+    soc_.modem().refuseCommand("ID");
+    run([&] { EXPECT_EQ(init(), RADIO_REFUSED); });
+    EXPECT_EQ(Radio_failedStep(), 6u); // ATID in the table of docs/modem.md
+}
+
+TEST_F(Radio, ASlotThatIsNoModemControllerIsReported) {
+    run([&] {
+        static const Fsmc_Port* real;
+        static Fsmc_Port lying;
+        real = realPort_;
+        lying = *real;
+        lying.read32 = [](void* c, U32 address) {
+            return address == 0x64000000U + 64U * MAP_SLOT_MODEM ? 0x12345678U
+                                                                 : real->read32(c, address);
+        };
+        ASSERT_EQ(FSMC_init(&lying, &soc_), FSMC_OK);
+        EXPECT_EQ(init(), RADIO_NO_DEVICE);
+        ASSERT_EQ(FSMC_init(real, &soc_), FSMC_OK);
+    });
+}
+
+TEST_F(Radio, FramesLeaveInOrderAndUnchangedAndAFullRingSaysSo) {
+    std::vector<uint8_t> sent;
+    U32 copied = 0, full = 0;
+    run([&] {
+        ASSERT_EQ(init(), RADIO_OK);
+        farLine_.received.clear(); // what the search for the baud rate looked like to the modem
+        copied = Radio_counters()->bytesCopiedOut;
+        full = Radio_counters()->ringFull;
+        Random random(testSeed());
+        for (int i = 0; i < 60; ++i) {
+            std::vector<uint8_t> frame(1 + random.below(100));
+            for (auto& byte : frame)
+                byte = static_cast<uint8_t>(random.next());
+            while (Radio_transmit(nullptr, frame.data(), static_cast<U32>(frame.size())) != 0)
+                OSTimeDly(1);
+            sent.insert(sent.end(), frame.begin(), frame.end());
+        }
+        for (int i = 0; i < 2000 && farLine_.received.size() < sent.size(); ++i)
+            OSTimeDly(OS_TICKS_PER_SEC / 1000);
+        copied = Radio_counters()->bytesCopiedOut - copied;
+        full = Radio_counters()->ringFull - full;
+    });
+    EXPECT_EQ(farLine_.received, sent) << "seed " << testSeed();
+    EXPECT_EQ(copied, sent.size()); // one copy, into DDR3
+    EXPECT_GT(full, 0u);
+    EXPECT_TRUE(events_ & 1u) << "no interrupt for a packet that left"; // TX_DONE
+}
+
+TEST_F(Radio, ALinkRunsOverItBothWays) {
+    run([&] {
+        ASSERT_EQ(init(), RADIO_OK);
+        ASSERT_TRUE(connect());
+        const U32 before = Radio_counters()->bytesCopiedIn;
+        const uint64_t fromModem = soc_.modem().counters().bytesToHost;
+        ASSERT_EQ(Link_openChannel(nearPeer_.link(), 0, us()), LINK_OK);
+        std::vector<uint8_t> message(700, 0x5A);
+        for (U32 tag = 0; tag < 5; ++tag)
+            ASSERT_EQ(Link_send(nearPeer_.link(), 0, message.data(), 700, tag, us()), LINK_OK);
+        ASSERT_TRUE(talk([&] { return farPeer_.received.size() == 5; }, 5000));
+        for (U32 tag = 0; tag < 5; ++tag)
+            ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 700, tag, us()), LINK_OK);
+        ASSERT_TRUE(talk([&] { return nearPeer_.received.size() == 5; }, 5000));
+        talk([] { return false; }, 100);
+        EXPECT_EQ(nearPeer_.received[4], message);
+        EXPECT_EQ(Radio_counters()->bytesCopiedIn - before,
+                  soc_.modem().counters().bytesToHost - fromModem);
+        EXPECT_EQ(Radio_counters()->framingErrors, 0u);
+        EXPECT_EQ(Link_statistics(nearPeer_.link())->bytesSkipped, 0u);
+    });
+}
+
+TEST_F(Radio, ATaskThatSleepsLosesNoMessage) {
+    run([&] {
+        ASSERT_EQ(init(), RADIO_OK);
+        ASSERT_TRUE(connect());
+        ASSERT_EQ(Link_openChannel(farPeer_.link(), 0, us()), LINK_OK);
+        for (U32 i = 0; i < 30; ++i) {
+            std::vector<uint8_t> message(300, static_cast<uint8_t>(i));
+            ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 300, i, us()), LINK_OK);
+        }
+        OSTimeDly(OS_TICKS_PER_SEC); // more packets than the ring has room for come meanwhile
+        ASSERT_TRUE(talk([&] { return nearPeer_.received.size() == 30; }, 20000));
+        for (size_t i = 0; i < 30; ++i)
+            EXPECT_EQ(nearPeer_.received[i], std::vector<uint8_t>(300, static_cast<uint8_t>(i)));
+        EXPECT_EQ(Link_statistics(nearPeer_.link())->crcErrors,
+                  0u); // what the ring gave out was whole
+    });
+}
+
+TEST_F(Radio, AModemThatWasResetIsSetUpAgain) {
+    run([&] {
+        ASSERT_EQ(init(), RADIO_OK);
+        ASSERT_TRUE(connect());
+        soc_.modem().resetPin(true, soc_.now());
+        soc_.modem().resetPin(false, soc_.now() + 1000);
+        EXPECT_EQ(soc_.modem().parameter("BD"), 3u);
+        ASSERT_EQ(init(), RADIO_OK);
+        EXPECT_EQ(soc_.modem().parameter("BD"), 7u);
+        Link_openChannel(nearPeer_.link(), 0, us());
+        const U8 bytes[3] = {1, 2, 3};
+        Link_send(nearPeer_.link(), 0, bytes, 3, 0, us());
+        EXPECT_TRUE(talk([&] { return farPeer_.received.size() == 1; }, 10000));
+    });
+}
+
+} // namespace

@@ -11,8 +11,9 @@
 #define CONTROL_WINDOW 0x64000000UL
 #define WINDOW_MASK ((1UL << MAP_DDR_WINDOW_LOG2) - 1UL)
 
-/* BCR: bank on, SRAM, 16 bits, write enable, asynchronous wait (NWAIT, active low). */
-#define BCR_VALUE (1UL << 0 | 1UL << 4 | 1UL << 7 | 1UL << 12 | 1UL << 15)
+/* BCR: bank on, SRAM, 16 bits, write enable, extended (mode A: NOE rests between reads), asynchronous
+ * wait (NWAIT, active low). */
+#define BCR_VALUE (1UL << 0 | 1UL << 4 | 1UL << 7 | 1UL << 12 | 1UL << 14 | 1UL << 15)
 /* BTR: ADDSET 5 HCLK, so that the strobes rest for four clocks of the fabric; DATAST 8: NWAIT is
  * looked at four HCLK before the end of it; BUSTURN 1. */
 #define BTR_VALUE (5UL | 8UL << 8 | 1UL << 16)
@@ -31,6 +32,7 @@ Fsmc_Status FSMC_init(const Fsmc_Port *port, void *context) {
     fsmcContext = context;
     for (bank = 0; bank < 2U; ++bank) {
         port->write32(context, (U32)FSMC_REGISTERS + bank * 8U + 4U, (U32)BTR_VALUE);
+        port->write32(context, (U32)FSMC_REGISTERS + 0x104U + bank * 8U, (U32)BTR_VALUE);
         port->write32(context, (U32)FSMC_REGISTERS + bank * 8U, (U32)BCR_VALUE);
     }
     if (FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID) >> 16 != SYSTEM_ID_VALUE >> 16)

@@ -3,15 +3,10 @@
 // fsmc_master: accesses as sequences of pin changes and HCLK cycles.
 
 #include "fsmc_master.h"
+#include "fsmc_fields.h"
 #include <cstdio>
-#include <string>
 
 namespace {
-
-constexpr uint32_t registersAt = 0xA0000000, windowsAt = 0x60000000, windowBytes = 0x04000000;
-constexpr unsigned waitLimit = 20000; // HCLK cycles of NWAIT before the model gives up
-constexpr uint32_t bcrEnable = 1u << 0, bcrWidth16 = 1u << 4, bcrWriteEnable = 1u << 12,
-                   bcrAsyncWait = 1u << 15;
 
 std::string hex(uint32_t value) {
     char text[16];
@@ -21,93 +16,214 @@ std::string hex(uint32_t value) {
 
 } // namespace
 
+using namespace fsmc;
+
+void FsmcMaster::show() {
+    design_.settle();
+    if (pins_.dDriven && pins_.dOut)
+        throw FsmcError("data bus driven by both sides");
+}
+
 void FsmcMaster::passHclk(unsigned cycles) {
+    hclks_ += cycles;
     phase_ += cycles * clkPerUnit_;
     while (phase_ >= hclkPerUnit_) {
         phase_ -= hclkPerUnit_;
-        tick_();
+        design_.tick();
         ++cycles_;
-        if (!pins_.noeN && pins_.dDriven && !pins_.nweN)
+        if (pins_.dDriven && pins_.dOut)
             throw FsmcError("data bus driven by both sides");
     }
 }
 
 uint32_t& FsmcMaster::fsmcRegister(uint32_t address) {
     uint32_t offset = address - registersAt;
-    if (offset >= 32 || offset % 4)
-        throw FsmcError("no FSMC register at " + hex(address));
-    Bank& bank = banks_[offset / 8];
-    return offset % 8 ? bank.btr : bank.bcr;
+    if (offset < 32 && offset % 4 == 0) {
+        Bank& bank = banks_[offset / 8];
+        return offset % 8 ? bank.btr : bank.bcr;
+    }
+    if (offset >= 0x104 && offset <= 0x11C && offset % 8 == 4)
+        return banks_[(offset - 0x104) / 8].bwtr;
+    throw FsmcError("no FSMC register at " + hex(address));
 }
 
-FsmcMaster::Access FsmcMaster::decode(uint32_t address) {
+FsmcMaster::Access FsmcMaster::decode(uint32_t address, bool write) {
     uint32_t offset = address - windowsAt;
-    if (address < windowsAt || offset >= 2 * windowBytes)
+    if (address < windowsAt || offset >= 4 * windowBytes)
         throw FsmcError("bus fault: nothing at " + hex(address));
     unsigned index = offset / windowBytes;
     Bank& bank = banks_[index];
-    if (!(bank.bcr & bcrEnable) || !(bank.bcr & bcrWidth16))
-        throw FsmcError("access to " + hex(address) + " before BCR" + std::to_string(index + 1) +
+    std::string bcr = "BCR" + std::to_string(index + 1);
+    if (!(bank.bcr & bcrEnable) || (bank.bcr >> 4 & 3) != 1)
+        throw FsmcError("access to " + hex(address) + " before " + bcr +
                         " enables the bank with 16 bits");
-    return {&bank, index, offset % windowBytes >> 1};
+    if (write && !(bank.bcr & bcrWriteEnable))
+        throw FsmcError("write to " + hex(address) + " while BCR forbids writing");
+
+    bool extended = bank.bcr & bcrExtended;
+    uint32_t timing = extended && write ? bank.bwtr : bank.btr;
+    char mode = (bank.bcr >> 2 & 3) == typeNor ? '2' : '1';
+    if (extended)
+        mode = static_cast<char>('A' + (timing >> 28 & 3));
+    bool muxed = bank.bcr & bcrMuxed;
+    Access access{&bank,
+                  index,
+                  offset % windowBytes >> 1,
+                  write,
+                  muxed,
+                  mode,
+                  {timing & 0xF, timing >> 4 & 0xF, timing >> 8 & 0xFF},
+                  std::string(write ? "writing " : "reading ") + hex(address)};
+    if (access.timing.datast == 0 || ((muxed || mode == 'D') && access.timing.addhld == 0))
+        throw FsmcError(access.name + ": DATAST or ADDHLD is 0, which is reserved");
+    if ((bank.bcr & bcrAsyncWait) && access.timing.datast < 4)
+        throw FsmcError(access.name + ": ASYNCWAIT needs DATAST of 4 at least");
+    return access;
 }
 
-void FsmcMaster::begin(const Access& access) {
+// RM0033, BUSTURN: which pairs of accesses have a pause between them, and how long.
+void FsmcMaster::turnaround(const Access& access) {
+    bool held = access.muxed || access.mode == 'D';
+    unsigned pause = 1; // after a read
+    if (lastHeld_)
+        pause = lastBusturn_;
+    else if (lastWrite_)
+        pause = access.write && access.index == lastIndex_ ? 0 : lastBusturn_;
+    if (accesses_)
+        passHclk(pause);
     ++accesses_;
-    pins_.a = access.halfword;
-    pins_.neN = static_cast<uint8_t>(3 & ~(1u << access.index));
+    lastWrite_ = access.write;
+    lastHeld_ = held;
+    lastIndex_ = access.index;
+    lastBusturn_ = access.bank->btr >> 16 & 0xF;
 }
 
-void FsmcMaster::dataPhase(const Access& access, uint32_t address, const char* what) {
-    uint32_t datast = access.bank->btr >> 8 & 0xFF;
-    passHclk(datast ? datast : 1);
-    if (!(access.bank->bcr & bcrAsyncWait))
-        return;
-    unsigned waited = 0;
-    while (!pins_.nwaitN) {
-        passHclk(1);
-        if (++waited > waitLimit)
-            throw FsmcError(std::string(what) + " " + hex(address) + ": NWAIT has been low for " +
-                            std::to_string(waitLimit) + " HCLK cycles");
+// From NE low to the beginning of the data phase; the strobe is low afterwards.
+void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lanes) {
+    bool early = access.write ? access.mode == '2'
+                              : access.mode == '1' || access.mode == '2' || access.mode == 'B';
+    bool hold = access.muxed || access.mode == 'D';
+    bool advance = access.muxed || (access.mode != '1' && access.mode != 'A');
+    bool& strobe = access.write ? pins_.nweN : pins_.noeN;
+
+    pins_.a = access.muxed ? access.halfword & ~0xFFFFu : access.halfword;
+    pins_.nblN = static_cast<uint8_t>(3 & ~lanes);
+    pins_.nadvN = !advance;
+    if (access.muxed)
+        pins_.d = static_cast<uint16_t>(access.halfword);
+    else if (access.write)
+        pins_.d = value;
+    pins_.dOut = access.muxed || access.write;
+    pins_.neN = static_cast<uint8_t>(0xF & ~(1u << access.index));
+    if (early && !access.muxed)
+        strobe = false;
+    show();
+    passHclk(access.timing.addset);
+    pins_.nadvN = true;
+    show();
+    if (hold)
+        passHclk(access.timing.addhld);
+    if (access.muxed) {
+        pins_.d = value;
+        pins_.dOut = access.write;
     }
-    if (waited)
-        passHclk(4); // NWAIT is seen through the FSMC's own synchroniser
+    strobe = false;
+    show();
 }
 
-void FsmcMaster::end(const Access& access) {
-    pins_.noeN = pins_.nweN = true;
-    pins_.nblN = 3;
-    passHclk(1); // data hold
-    pins_.neN = 3;
-    uint32_t busturn = access.bank->btr >> 16 & 0xF;
-    passHclk(busturn);
+// The data phase up to two HCLK cycles before its end, or to its end less what is left of it. NWAIT
+// is looked at four HCLK before the end, and ends it four HCLK after it has gone high. Returns the
+// HCLK cycles that are left.
+unsigned FsmcMaster::waitPhase(const Access& access) {
+    if (!(access.bank->bcr & bcrAsyncWait)) {
+        unsigned left = access.timing.datast < 2 ? access.timing.datast : 2;
+        passHclk(access.timing.datast - left);
+        return left;
+    }
+    bool active = access.bank->bcr & bcrWaitHigh;
+    passHclk(access.timing.datast - 4);
+    for (unsigned waited = 0; pins_.nwaitN == active; ++waited) {
+        if (waited > waitLimit)
+            throw FsmcError(access.name + ": NWAIT has been active for " +
+                            std::to_string(waitLimit) + " HCLK cycles");
+        passHclk(1);
+    }
+    passHclk(2);
+    return 2;
+}
+
+// What the pins must show when an access ends.
+void FsmcMaster::endOfAccess(const Access& access) {
+    if (access.index < 2 && (access.bank->bcr & bcrAsyncWait) &&
+        pins_.nwaitN == bool(access.bank->bcr & bcrWaitHigh))
+        throw FsmcError(access.name + ": NWAIT went active too late to be seen");
 }
 
 uint16_t FsmcMaster::readPins(uint32_t address) {
-    Access access = decode(address);
-    begin(access);
-    pins_.nblN = 0;
-    passHclk(access.bank->btr & 0xF);
-    pins_.noeN = false;
-    dataPhase(access, address, "reading");
-    if (!pins_.dDriven)
-        throw FsmcError("reading " + hex(address) + ": nobody drives the data bus");
+    Access access = decode(address, false);
+    turnaround(access);
+    addressPhase(access, 0, 3);
+    // Data-to-NE-high set-up time: HCLK + 4 ns (STM32F2 data sheet): two HCLK cycles here.
+    passHclk(0);
+    unsigned left = waitPhase(access);
+    bool ours = access.index < 2;
     uint16_t value = pins_.dFromDesign;
-    end(access);
-    return value;
+    passHclk(left);
+    if (ours != pins_.dDriven)
+        throw FsmcError(access.name +
+                        (ours ? ": nobody drives the data bus" : ": the FPGA drives the data bus"));
+    if (ours && pins_.dFromDesign != value)
+        throw FsmcError(access.name + ": the data moved in its set-up time");
+    endOfAccess(access);
+    pins_.noeN = true;
+    pins_.neN = 0xF;
+    pins_.nblN = 3;
+    show();
+    if (pins_.dDriven)
+        throw FsmcError(access.name + ": the data bus is still driven after the access");
+    return ours ? value : 0xFFFF; // another chip's bank: pulled up
 }
 
 void FsmcMaster::writePins(uint32_t address, uint16_t value, uint8_t lanes) {
-    Access access = decode(address);
-    if (!(access.bank->bcr & bcrWriteEnable))
-        throw FsmcError("write to " + hex(address) + " while BCR forbids writing");
-    begin(access);
-    pins_.nblN = static_cast<uint8_t>(3 & ~lanes);
-    passHclk(access.bank->btr & 0xF);
-    pins_.nweN = false;
-    pins_.d = value;
-    dataPhase(access, address, "writing");
-    end(access);
+    Access access = decode(address, true);
+    turnaround(access);
+    addressPhase(access, value, lanes);
+    passHclk(waitPhase(access));
+    endOfAccess(access);
+    pins_.nweN = true;
+    show();
+    passHclk(1); // address and data are held for one HCLK
+    pins_.neN = 0xF;
+    pins_.nblN = 3;
+    pins_.dOut = false;
+    show();
+}
+
+void FsmcMaster::abort(const Access& access, unsigned hclk) {
+    passHclk(hclk);
+    pins_.neN = 0xF;
+    show();
+    pins_.noeN = pins_.nweN = pins_.nadvN = true;
+    pins_.nblN = 3;
+    pins_.dOut = false;
+    show();
+    if (pins_.dDriven)
+        throw FsmcError(access.name + ": given up, and the data bus is still driven");
+    passHclk(200); // a reset of the processor takes at least 20 us
+}
+
+void FsmcMaster::abortRead(uint32_t address, unsigned hclk) {
+    Access access = decode(address, false);
+    turnaround(access);
+    addressPhase(access, 0, 3);
+    abort(access, hclk);
+}
+
+void FsmcMaster::abortWrite(uint32_t address, uint16_t value, unsigned hclk) {
+    Access access = decode(address, true);
+    turnaround(access);
+    addressPhase(access, value, 3);
+    abort(access, hclk);
 }
 
 uint8_t FsmcMaster::read8(uint32_t address) {
@@ -118,8 +234,12 @@ void FsmcMaster::write8(uint32_t address, uint8_t value) {
     writePins(address & ~1u, static_cast<uint16_t>(value | value << 8), address & 1 ? 2 : 1);
 }
 
-uint16_t FsmcMaster::read16(uint32_t address) { return readPins(address); }
-void FsmcMaster::write16(uint32_t address, uint16_t value) { writePins(address, value, 3); }
+uint16_t FsmcMaster::read16(uint32_t address) {
+    return readPins(address);
+}
+void FsmcMaster::write16(uint32_t address, uint16_t value) {
+    writePins(address, value, 3);
+}
 
 uint32_t FsmcMaster::read32(uint32_t address) {
     if (address >= registersAt)

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_master: the STM32F2's FSMC peripheral (RM0033, chapter 31), bank 1, as far as the driver uses
-// it: asynchronous accesses of 16-bit memory with NWAIT, timed by what was written to BCR and BTR.
+// fsmc_master: the STM32F2's FSMC peripheral, bank 1 (RM0033, chapter 31), on the pins to the FPGA.
 //
-// An access runs the clock of the design while it lasts. HCLK and the design's clock stand in a fixed
-// ratio (120 MHz to 100 MHz by default), kept exactly.
+// Programmed through BCRx, BTRx and BWTRx like the real one. Asynchronous modes 1, A, 2, B, C, D
+// and multiplexed, with ASYNCWAIT; synchronous bursts of PSRAM with FSMC_CLK, data latency and
+// NWAIT. An access runs the clock of the design while it lasts. HCLK and that clock stand in a
+// fixed ratio (120 MHz to 100 MHz by default), kept exactly; pins change on HCLK edges, between
+// clock edges.
+//
+// It throws FsmcError where a real system would fail: both sides driving the data bus, nobody
+// driving it in a read, read data that moves within its set-up time, NWAIT too late to be seen or
+// low for ever, reserved values in registers, a bank that is not enabled.
 
 #ifndef FSMC_MASTER_H
 #define FSMC_MASTER_H
@@ -12,13 +18,16 @@
 #include <cstdint>
 #include <functional>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 // The pins between processor and FPGA. The design's side is filled in by whoever clocks it.
 struct FsmcPins {
-    uint32_t a = 0; // halfword address, 25 bits
-    uint16_t d = 0; // driven by the processor
-    uint8_t neN = 3, nblN = 3;
-    bool noeN = true, nweN = true;
+    uint32_t a = 0; // halfword address, 25 bits; multiplexed: only bits 24..16 are meant
+    uint16_t d = 0; // driven by the processor while dOut
+    bool dOut = false;
+    uint8_t neN = 0xF, nblN = 3; // NE1 in bit 0 .. NE4 in bit 3
+    bool noeN = true, nweN = true, nadvN = true, clk = false;
     // from the design
     uint16_t dFromDesign = 0;
     bool dDriven = false, nwaitN = true;
@@ -31,10 +40,14 @@ public:
 
 class FsmcMaster {
 public:
-    // `tick` clocks the design once with the pins as they are, and updates the design's side.
-    FsmcMaster(FsmcPins& pins, std::function<void()> tick, unsigned hclkPerUnit = 6,
-               unsigned clkPerUnit = 5)
-        : pins_(pins), tick_(std::move(tick)), hclkPerUnit_(hclkPerUnit), clkPerUnit_(clkPerUnit) {}
+    // What the master needs of the design: `tick` clocks it once with the pins as they are,
+    // `settle` shows it changed pins between two clock edges. Both update the design's side.
+    struct Design {
+        std::function<void()> tick, settle;
+    };
+    FsmcMaster(FsmcPins& pins, Design design, unsigned hclkPerUnit = 6, unsigned clkPerUnit = 5)
+        : pins_(pins), design_(std::move(design)), hclkPerUnit_(hclkPerUnit),
+          clkPerUnit_(clkPerUnit) {}
 
     // Loads and stores of the processor. A 32-bit one to a window is two accesses, low half first.
     uint8_t read8(uint32_t address);
@@ -44,34 +57,55 @@ public:
     uint32_t read32(uint32_t address);
     void write32(uint32_t address, uint32_t value);
 
+    // An access that the processor gives up (its reset): NE and strobe rise together, NE first,
+    // after so many HCLK cycles of the data phase, whatever NWAIT says. Asynchronous modes.
+    void abortRead(uint32_t address, unsigned hclk);
+    void abortWrite(uint32_t address, uint16_t value, unsigned hclk);
+    // HCLK cycles in which the processor does something else.
+    void idle(unsigned hclk) { passHclk(hclk); }
+
     uint64_t accesses() const { return accesses_; }
+    uint64_t hclks() const { return hclks_; }             // HCLK cycles of all accesses and pauses
     uint64_t cyclesInAccesses() const { return cycles_; } // of the design's clock
 
 private:
     struct Bank {
-        uint32_t bcr = 0x000030DA, btr = 0x0FFFFFFF; // reset values
+        uint32_t bcr, btr = 0x0FFFFFFF, bwtr = 0x0FFFFFFF; // reset values
+    };
+    struct Timing {
+        unsigned addset, addhld, datast;
     };
     struct Access {
         Bank* bank;
-        unsigned index;    // 0: NE1, 1: NE2
-        uint32_t halfword; // address on the pins
+        unsigned index;    // 0: NE1 .. 3: NE4
+        uint32_t halfword; // address
+        bool write, muxed;
+        char mode; // '1' 'A' '2' 'B' 'C' 'D'
+        Timing timing;
+        std::string name; // for messages
     };
 
-    Access decode(uint32_t address);
+    Access decode(uint32_t address, bool write);
     uint32_t& fsmcRegister(uint32_t address);
     uint16_t readPins(uint32_t address);
     void writePins(uint32_t address, uint16_t value, uint8_t lanes);
-    void begin(const Access& access);
-    void dataPhase(const Access& access, uint32_t address, const char* what);
-    void end(const Access& access);
+    void turnaround(const Access& access);
+    void addressPhase(const Access& access, uint16_t value, uint8_t lanes);
+    unsigned waitPhase(const Access& access);
+    void endOfAccess(const Access& access);
+    void abort(const Access& access, unsigned hclk);
+    void show();
     void passHclk(unsigned cycles);
 
     FsmcPins& pins_;
-    std::function<void()> tick_;
+    Design design_;
     unsigned hclkPerUnit_, clkPerUnit_; // in one unit of time so many cycles of each
     unsigned phase_ = 0;
-    Bank banks_[4];
-    uint64_t accesses_ = 0, cycles_ = 0;
+    Bank banks_[4] = {{0x000030DB}, {0x000030D2}, {0x000030D2}, {0x000030D2}};
+    // The access before, for the turnaround.
+    bool lastWrite_ = false, lastHeld_ = false;
+    unsigned lastIndex_ = 0, lastBusturn_ = 0;
+    uint64_t accesses_ = 0, cycles_ = 0, hclks_ = 0;
 };
 
 #endif

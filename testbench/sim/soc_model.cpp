@@ -7,11 +7,14 @@
 
 SocModel::SocModel(RfChannel& air, XBee::Options modemOptions)
     : context_(new VerilatedContext), top_(new VSoc(context_.get())),
-      fsmc_(pins_, [this] { tick(); }), air_(air), modem_(line_, air, std::move(modemOptions)) {
+      fsmc_(pins_, {[this] { tick(); }, [this] { settle(); }}), air_(air),
+      modem_(line_, air, std::move(modemOptions)) {
     top_->modem_rxd_i = 1;
 }
 
-SocModel::~SocModel() { top_->final(); }
+SocModel::~SocModel() {
+    top_->final();
+}
 
 void SocModel::reset() {
     top_->rst_i = 1;
@@ -34,14 +37,23 @@ void SocModel::timeModels() {
     top_->modem_cts_n_i = line_.ctsN();
 }
 
-void SocModel::tick() {
+// The processor's pins, between two clock edges.
+void SocModel::settle() {
     VSoc& top = *top_;
     top.fsmc_a_i = pins_.a;
     top.fsmc_d_i = pins_.d;
-    top.fsmc_ne_n_i = pins_.neN;
+    top.fsmc_ne_n_i = pins_.neN & 3;
     top.fsmc_nbl_n_i = pins_.nblN;
     top.fsmc_noe_n_i = pins_.noeN;
     top.fsmc_nwe_n_i = pins_.nweN;
+    top.eval();
+    pins_.dFromDesign = top.fsmc_d_o;
+    pins_.dDriven = top.fsmc_d_oe_o;
+    pins_.nwaitN = top.fsmc_nwait_n_o;
+}
+
+void SocModel::tick() {
+    VSoc& top = *top_;
     top.eval();
 
     McbModel::Pins& m = memory_.pins;

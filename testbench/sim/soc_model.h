@@ -39,6 +39,7 @@ public:
 
 private:
     void timeModels();
+    void settle();
 
     std::unique_ptr<VerilatedContext> context_;
     std::unique_ptr<VSoc> top_;

@@ -20,7 +20,8 @@ protected:
         soc_.reset();
         for (uint32_t bank : {0u, 1u}) {
             fsmc_.write32(0xA0000004 + 8 * bank, 0x00010805);
-            fsmc_.write32(0xA0000000 + 8 * bank, 0x00009091);
+            fsmc_.write32(0xA0000104 + 8 * bank, 0x00010805);
+            fsmc_.write32(0xA0000000 + 8 * bank, 0x0000D091);
         }
     }
     static uint32_t at(uint32_t slot, uint32_t word) { return control + 64 * slot + 4 * word; }

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+//
+// bridge_bench: the FSMC bridge alone between the processor's pins, a bus slave and a memory.
+
+#ifndef BRIDGE_BENCH_H
+#define BRIDGE_BENCH_H
+
+#include "bus_slave.h"
+#include "fsmc_master.h"
+#include "npi_memory.h"
+
+template <class Bridge> class BridgeBench {
+public:
+    explicit BridgeBench(uint64_t seed, double stall = 0.3, unsigned hclk = 6, unsigned clk = 5)
+        : memory(bench, stall, seed * 2 + 1), slave(bench, stall, seed * 2 + 2),
+          master(pins, {[this] { tick(); }, [this] { settle(); }}, hclk, clk) {
+        top.page_i = 0;
+        settle();
+        for (int i = 0; i < 8; ++i)
+            tickReset();
+        top.rst_i = 0;
+        settle();
+    }
+
+    Bench<Bridge> bench;
+    Bridge& top = bench.top();
+    FsmcPins pins;
+    NpiMemory<Bridge> memory;
+    BusSlave<Bridge> slave;
+    FsmcMaster master;
+    unsigned errors = 0, errorAddr = 0;
+    bool errorWrite = false;
+
+    void tick() {
+        showPins();
+        top.eval();
+        slave.answer();
+        bench.tick();
+        if (top.access_error_o) {
+            ++errors;
+            errorAddr = top.error_addr_o;
+            errorWrite = top.error_write_o;
+        }
+        seePins();
+    }
+    void settle() {
+        showPins();
+        top.eval();
+        seePins();
+    }
+    uint64_t clocks() const { return bench.cycles(); }
+
+private:
+    void tickReset() {
+        top.rst_i = 1;
+        tick();
+    }
+    void showPins() {
+        top.fsmc_a_i = pins.a;
+        top.fsmc_d_i = pins.dOut ? pins.d : 0xDEAD; // a floating bus
+        top.fsmc_ne_n_i = pins.neN & 3;
+        top.fsmc_nbl_n_i = pins.nblN;
+        top.fsmc_noe_n_i = pins.noeN;
+        top.fsmc_nwe_n_i = pins.nweN;
+    }
+    void seePins() {
+        pins.dFromDesign = top.fsmc_d_o;
+        pins.dDriven = top.fsmc_d_oe_o;
+        pins.nwaitN = top.fsmc_nwait_n_o;
+    }
+};
+
+#endif

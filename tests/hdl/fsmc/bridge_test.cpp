@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+//
+// bridge_test: the FSMC bridge between the STM32's FSMC, a bus slave and a memory that stall, fail
+// and hang.
+
+#include "VFsmcBridge.h"
+#include "bridge_bench.h"
+extern "C" {
+#include "fsmc.h"
+#include "map_regs.h"
+#include "system_regs.h"
+}
+#include <gtest/gtest.h>
+#include <map>
+
+namespace {
+
+constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
+
+FsmcMaster& masterOf(void* context) {
+    return *static_cast<FsmcMaster*>(context);
+}
+const Fsmc_Port port = {[](void* c, U32 a) -> U8 { return masterOf(c).read8(a); },
+                        [](void* c, U32 a, U8 v) { masterOf(c).write8(a, v); },
+                        [](void* c, U32 a) -> U16 { return masterOf(c).read16(a); },
+                        [](void* c, U32 a, U16 v) { masterOf(c).write16(a, v); },
+                        [](void* c, U32 a) -> U32 { return masterOf(c).read32(a); },
+                        [](void* c, U32 a, U32 v) { masterOf(c).write32(a, v); }};
+
+class Bridge : public ::testing::Test {
+protected:
+    void SetUp() override {
+        RecordProperty("seed", static_cast<int>(testSeed()));
+        b_.slave.words[MAP_SLOT_SYSTEM * 16 + SYSTEM_ID] = SYSTEM_ID_VALUE;
+        ASSERT_EQ(FSMC_init(&port, &b_.master), FSMC_OK);
+    }
+    static uint32_t at(uint32_t word) { return control + 4 * word; }
+    // A register access, after which all writes have reached the memory.
+    void doorbell() { b_.master.read32(at(0)); }
+
+    BridgeBench<VFsmcBridge> b_{testSeed()};
+    FsmcMaster& fsmc_ = b_.master;
+};
+
+TEST_F(Bridge, RegisterWordsAreTransferredInOnePiece) {
+    Random random(testSeed());
+    for (int i = 0; i < 300; ++i) {
+        unsigned word = 1 + random.below(1023);
+        uint32_t value = random.next();
+        uint64_t writes = b_.slave.writes, reads = b_.slave.reads;
+        fsmc_.write32(at(word), value);
+        EXPECT_EQ(fsmc_.read32(at(word)), value) << "SEED=" << testSeed();
+        EXPECT_EQ(b_.slave.words[word], value);
+        EXPECT_EQ(b_.slave.writes, writes + 1);
+        EXPECT_EQ(b_.slave.reads, reads + 1);
+    }
+    EXPECT_EQ(b_.errors, 0u);
+}
+
+TEST_F(Bridge, AReadWordIsOneMomentsValue) {
+    b_.slave.words[77] = 0x11112222;
+    EXPECT_EQ(fsmc_.read16(at(77)), 0x2222);
+    b_.slave.words[77] = 0x33334444;
+    EXPECT_EQ(fsmc_.read16(at(77) + 2), 0x1111)
+        << "the high half belongs to the low half read before";
+    EXPECT_EQ(fsmc_.read16(at(77) + 2), 0x3333) << "a high half alone is read afresh";
+}
+
+TEST_F(Bridge, HalfAWrittenWordChangesNothing) {
+    b_.slave.words[5] = 1;
+    fsmc_.write16(at(5), 0xFFFF);
+    fsmc_.write16(at(6) + 2, 0xFFFF); // the other half of another word
+    doorbell();
+    EXPECT_EQ(b_.slave.writes, 1u) << "only FSMC_init's";
+    EXPECT_EQ(b_.errors, 1u) << "a high half without its low half is an error";
+    EXPECT_EQ(b_.slave.words[5], 1u);
+}
+
+TEST_F(Bridge, MemoryEqualsAReferenceWithAllWidths) {
+    Random random(testSeed());
+    std::map<uint32_t, uint8_t> reference;
+    auto value = [&](uint32_t a, unsigned bytes) {
+        uint32_t v = 0;
+        for (unsigned i = 0; i < bytes; ++i)
+            v |= static_cast<uint32_t>(reference[a + i]) << (8 * i);
+        return v;
+    };
+    auto set = [&](uint32_t a, unsigned bytes, uint32_t v) {
+        for (unsigned i = 0; i < bytes; ++i)
+            reference[a + i] = static_cast<uint8_t>(v >> (8 * i));
+    };
+    uint32_t place = 0x1000;
+    for (int i = 0; i < 6000; ++i) {
+        if (random.chance(0.03))
+            place = 0x1000 + random.below(512); // runs, with jumps between them
+        uint32_t v = random.next(), a = place;
+        switch (random.below(8)) {
+        case 0:
+            fsmc_.write8(ddr + a, static_cast<uint8_t>(v)), set(a, 1, v), place += 1;
+            break;
+        case 1:
+            a &= ~1u, fsmc_.write16(ddr + a, static_cast<uint16_t>(v)), set(a, 2, v), place += 2;
+            break;
+        case 2:
+            a &= ~3u, fsmc_.write32(ddr + a, v), set(a, 4, v), place += 4;
+            break;
+        case 3:
+            EXPECT_EQ(fsmc_.read8(ddr + a), value(a, 1)) << "access " << i;
+            break;
+        case 4:
+            a &= ~3u;
+            EXPECT_EQ(fsmc_.read32(ddr + a), value(a, 4)) << "access " << i;
+            break;
+        case 5:
+            EXPECT_EQ(fsmc_.read32(at(0)), SYSTEM_ID_VALUE);
+            break;
+        default:
+            a &= ~1u;
+            EXPECT_EQ(fsmc_.read16(ddr + a), value(a, 2)) << "access " << i;
+            place += 2;
+        }
+        ASSERT_FALSE(HasFailure()) << "SEED=" << testSeed();
+    }
+    doorbell();
+    for (auto& [a, v] : reference)
+        EXPECT_EQ(b_.memory.byte(a), v) << std::hex << a;
+    EXPECT_EQ(b_.errors, 0u);
+}
+
+TEST_F(Bridge, TheDriverCopiesAnyLengthToAnyAddress) {
+    Random random(testSeed());
+    for (int i = 0; i < 60; ++i) {
+        uint32_t address = random.below(0x200), bytes = 1 + random.below(70);
+        std::vector<uint8_t> out(bytes), in(bytes);
+        for (auto& byte : out)
+            byte = static_cast<uint8_t>(random.next());
+        uint8_t before = b_.memory.byte(address + bytes);
+        FSMC_writeMemory(address, out.data(), bytes);
+        FSMC_readMemory(address, in.data(), bytes);
+        EXPECT_EQ(in, out) << "SEED=" << testSeed() << " copy " << i;
+        EXPECT_EQ(b_.memory.byte(address + bytes), before);
+    }
+}
+
+TEST_F(Bridge, ADoorbellMakesWritesVisibleAndReadsFresh) {
+    fsmc_.write16(ddr + 0x100, 0xBEEF);
+    doorbell();
+    EXPECT_EQ(b_.memory.byte(0x100), 0xEF);
+    EXPECT_EQ(fsmc_.read16(ddr + 0x100), 0xBEEF);
+    b_.memory.setByte(0x100, 0x11); // another master
+    doorbell();
+    EXPECT_EQ(fsmc_.read16(ddr + 0x100), 0xBE11);
+}
+
+TEST_F(Bridge, AnErrorOfTheSlaveIsReportedWithItsPlace) {
+    b_.slave.firstError = 500;
+    EXPECT_EQ(fsmc_.read32(at(700)), 0u);
+    EXPECT_EQ(b_.errors, 1u);
+    EXPECT_EQ(b_.errorAddr, 700u);
+    EXPECT_FALSE(b_.errorWrite);
+    fsmc_.write32(at(800), 1);
+    doorbell();
+    EXPECT_EQ(b_.errors, 2u);
+    EXPECT_EQ(b_.errorAddr, 800u);
+    EXPECT_TRUE(b_.errorWrite);
+    fsmc_.read32(control + 0x2000); // beyond the 64 slots
+    EXPECT_GE(b_.errors, 3u);
+}
+
+TEST_F(Bridge, AHungSlaveEndsInAnErrorAndTheBridgeGoesOn) {
+    b_.slave.hung = true;
+    fsmc_.read16(at(33));
+    EXPECT_EQ(b_.errors, 1u);
+    EXPECT_EQ(b_.errorAddr, 33u);
+    b_.slave.hung = false;
+    fsmc_.write32(at(34), 0x12345678);
+    EXPECT_EQ(fsmc_.read32(at(34)), 0x12345678u);
+    EXPECT_EQ(b_.errors, 1u);
+}
+
+TEST_F(Bridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
+    b_.memory.setByte(0x40, 0x77);
+    b_.memory.hold(true);
+    fsmc_.read16(ddr + 0x40);
+    EXPECT_EQ(b_.errors, 1u);
+    EXPECT_EQ(b_.errorAddr, 0x3FFu);
+    b_.memory.hold(false);
+    EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0x77)
+        << "what comes late is not mistaken for something else";
+    EXPECT_EQ(fsmc_.read16(ddr + 0x80), 0);
+}
+
+TEST_F(Bridge, AnAccessThatIsGivenUpLeavesNothingHalfDone) {
+    Random random(testSeed());
+    for (int i = 0; i < 400; ++i) {
+        uint32_t value = random.next(), other = random.next();
+        unsigned word = 1 + random.below(100), hclk = 1 + random.below(30);
+        uint32_t a = 0x1000 + 2 * random.below(64);
+        fsmc_.write32(at(word), value);
+        fsmc_.write16(ddr + a, static_cast<uint16_t>(value));
+        switch (random.below(3)) {
+        case 0:
+            fsmc_.abortRead(at(word), hclk);
+            break;
+        case 1:
+            fsmc_.abortRead(ddr + a, hclk);
+            break;
+        default:
+            fsmc_.abortRead(ddr + a + 64, hclk);
+        }
+        EXPECT_EQ(fsmc_.read32(at(word)), value) << "SEED=" << testSeed();
+        EXPECT_EQ(fsmc_.read16(ddr + a), static_cast<uint16_t>(value));
+        fsmc_.write32(at(word), other);
+        EXPECT_EQ(fsmc_.read32(at(word)), other);
+    }
+    EXPECT_EQ(b_.errors, 0u);
+}
+
+TEST_F(Bridge, OtherChipsOnTheBusAreLeftAlone) {
+    constexpr uint32_t other = 0x68000000; // NE3
+    fsmc_.write32(0xA0000010, 0x00001091);
+    fsmc_.write32(0xA0000014, 0x00010805);
+    fsmc_.write16(ddr + 0x10, 0x1234);
+    for (int i = 0; i < 20; ++i) {
+        fsmc_.write16(other + 0x10, 0xFFFF);
+        EXPECT_EQ(fsmc_.read16(other + 0x10), 0xFFFF);
+        EXPECT_EQ(fsmc_.read16(ddr + 0x10), 0x1234);
+        EXPECT_EQ(fsmc_.read32(at(0)), SYSTEM_ID_VALUE);
+    }
+}
+
+} // namespace

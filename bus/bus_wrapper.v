@@ -75,6 +75,10 @@ module bus_wrapper #(
     end
 
 `ifdef FORMAL
+    bus_rules #(.LIMIT(1)) u_rules (
+        .clk_i(clk_i), .rst_i(rst_i), .valid_i(bus_valid_i), .write_i(bus_write_i),
+        .addr_i({6'd0, bus_addr_i}), .wdata_i(bus_wdata_i), .ready_i(bus_ready_o),
+        .rdata_i(bus_rdata_o), .error_i(bus_error_o));
     reg past = 1'b0;
     initial assume (rst_i);
     always @(posedge clk_i) begin

@@ -9,6 +9,8 @@ case $module in
 bus_decoder) variants='SLOTS=1 SLOTS=3 SLOTS=64' ;;
 npi_arbiter) variants='PORTS=2 PORTS=3 PORTS=5 PORTS=8' ;;
 bus_wrapper) variants='EVENTS=1 EVENTS=32' ;;
+bus_window | bus_to_axi4lite) variants='ADDR_WIDTH=6 ADDR_WIDTH=32' ;;
+bus_to_wishbone) variants='ADDR_WIDTH=6 ADDR_WIDTH=32 PIPELINED=1' ;;
 npi_fifo) variants='LOG2=1 LOG2=5' ;;
 modem) variants='CLK_HZ=2000000 CLK_HZ=100000000' ;;
 system_slot) variants='SLOTS=2 SLOTS=63' ;;

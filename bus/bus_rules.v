@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+//
+// bus_rules: the contract of docs/bus.md as properties, for either side of the register bus.
+//
+// Instanced under `ifdef FORMAL beside the ports of a slave (default) or of a master: the other side's
+// rules are assumed, this side's are asserted. A block's own properties go beside it.
+
+`default_nettype none
+
+module bus_rules #(
+    parameter MASTER   = 0,   // 1: the instance is in a master
+    parameter LIMIT    = 16,  // clocks within which a slave answers, 1 or more
+    parameter PATIENCE = 256  // clocks after which a master may give a hung slave up
+) (
+    input wire        clk_i,
+    input wire        rst_i,
+    input wire        valid_i,
+    input wire        write_i,
+    input wire [9:0]  addr_i,
+    input wire [31:0] wdata_i,
+    input wire        ready_i,
+    input wire [31:0] rdata_i,
+    input wire        error_i
+);
+`ifdef FORMAL
+    reg        past   = 1'b0;
+    reg [15:0] waited = 16'd0; // clocks for which valid has waited before this one
+    always @(posedge clk_i) begin
+        past   <= 1'b1;
+        waited <= valid_i && !ready_i && !rst_i ? waited + 16'd1 : 16'd0;
+    end
+
+    reg waiting = 1'b0; // a transfer was wanted and not answered in the clock before
+    reg        write_was;
+    reg [9:0]  addr_was;
+    reg [31:0] wdata_was;
+    always @(posedge clk_i) begin
+        waiting   <= valid_i && !ready_i && !rst_i;
+        write_was <= write_i;
+        addr_was  <= addr_i;
+        wdata_was <= wdata_i;
+    end
+    // The counter and the flag say the same: an induction hint.
+    always @*
+        assert (waiting == (waited != 16'd0));
+
+    // Master: a transfer that waits stays as it is; it is withdrawn only when patience is over.
+    wire stable    = !waiting || !valid_i
+                     || (write_i == write_was && addr_i == addr_was && (!write_i || wdata_i == wdata_was));
+    wire withdrawn = waiting && !valid_i && waited < PATIENCE;
+    // Slave: an answer in time; an error comes without data.
+    wire late      = valid_i && !ready_i && waited >= LIMIT - 1;
+    wire leaking   = valid_i && ready_i && error_i && !write_i && rdata_i != 32'd0;
+
+    generate
+        if (MASTER != 0) begin : g_master
+            always @* if (!rst_i) begin
+                assert (stable);
+                assert (!withdrawn);
+                assume (!leaking);
+                // A slave may hang: `late` is not assumed away.
+            end
+        end else begin : g_slave
+            always @* if (!rst_i) begin
+                assume (stable);
+                assume (!withdrawn);
+                assert (!late);
+                assert (!leaking);
+            end
+            always @*
+                cover (!rst_i && valid_i && ready_i && write_i && !error_i);
+        end
+    endgenerate
+    wire unused = &{1'b0, past, late, 1'b0};
+`else
+    wire unused = &{1'b0, clk_i, rst_i, valid_i, write_i, addr_i, wdata_i, ready_i, rdata_i, error_i, 1'b0};
+`endif
+endmodule

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+//
+// bus_to_wishbone: a slot that is a Wishbone B4 master of 32 bits, classic or pipelined
+// (Wishbone B4, OpenCores 2010, chapters 3 and 5). Words and events: bus_window.v.
+//
+// One transfer at a time. ERR ends the access with an error; RTY starts it again until the slot's
+// time-out, which ends the cycle by dropping CYC.
+
+`default_nettype none
+
+module bus_to_wishbone #(
+    parameter [31:0] ID_VALUE   = 32'd0,
+    parameter        ADDR_WIDTH = 12,  // of the core's byte addresses, 6..32
+    parameter        TIMEOUT    = 255, // clocks, 1..255
+    parameter        PIPELINED  = 0    // 1: STALL_I is observed, STB_O lasts until it is low
+) (
+    input  wire                  clk_i,
+    input  wire                  rst_i,
+    // register bus
+    input  wire                  bus_valid_i,
+    input  wire                  bus_write_i,
+    input  wire [3:0]            bus_addr_i,
+    input  wire [31:0]           bus_wdata_i,
+    output wire                  bus_ready_o,
+    output wire [31:0]           bus_rdata_o,
+    output wire                  bus_error_o,
+    output wire                  irq_o,
+    // Wishbone master
+    output wire                  wb_cyc_o,
+    output wire                  wb_stb_o,
+    output wire                  wb_we_o,
+    output wire [ADDR_WIDTH-1:0] wb_adr_o, // byte address, bits 1..0 are 0
+    output wire [3:0]            wb_sel_o,
+    output wire [31:0]           wb_dat_o,
+    input  wire [31:0]           wb_dat_i,
+    input  wire                  wb_ack_i,
+    input  wire                  wb_err_i,
+    input  wire                  wb_rty_i,
+    input  wire                  wb_stall_i, // classic: not used
+    input  wire                  irq_i       // the core's interrupt line, a level of clk_i
+);
+    wire busy;
+    reg  accepted; // pipelined: the core has taken the strobe
+    reg  pause;    // after RTY: one clock without CYC
+
+    bus_window #(.ID_VALUE(ID_VALUE), .ADDR_WIDTH(ADDR_WIDTH), .TIMEOUT(TIMEOUT)) u_window (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
+        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
+        .bus_error_o(bus_error_o), .irq_o(irq_o),
+        .idle_i(1'b1), .busy_o(busy), .write_o(wb_we_o), .addr_o(wb_adr_o), .wdata_o(wb_dat_o),
+        .done_i(wb_cyc_o && (wb_ack_i || wb_err_i)), .error_i(wb_err_i), .rdata_i(wb_dat_i),
+        .irq_i(irq_i)
+    );
+
+    assign wb_cyc_o = busy && !pause;
+    assign wb_stb_o = wb_cyc_o && !accepted;
+    assign wb_sel_o = 4'hF;
+
+    always @(posedge clk_i) begin
+        accepted <= PIPELINED != 0 && wb_cyc_o && !wb_ack_i && !wb_err_i && !wb_rty_i
+                    && (accepted || !wb_stall_i);
+        pause    <= wb_cyc_o && wb_rty_i && !wb_ack_i && !wb_err_i;
+        // The access may end by time-out: the next one starts afresh.
+        if (rst_i || (bus_valid_i && bus_ready_o)) begin
+            accepted <= 1'b0;
+            pause    <= 1'b0;
+        end
+    end
+
+    wire unused = &{1'b0, wb_stall_i, 1'b0};
+
+`ifdef FORMAL
+    wire outstanding;
+    wishbone_rules #(.PIPELINED(PIPELINED), .ADDR_WIDTH(ADDR_WIDTH)) u_wishbone (
+        .clk_i(clk_i), .rst_i(rst_i), .cyc_i(wb_cyc_o), .stb_i(wb_stb_o), .we_i(wb_we_o),
+        .adr_i(wb_adr_o), .dat_i(wb_dat_o), .ack_i(wb_ack_i), .err_i(wb_err_i), .rty_i(wb_rty_i),
+        .stall_i(wb_stall_i), .abort_i(!bus_valid_i || bus_ready_o), .outstanding_o(outstanding));
+    // One strobe taken for each access that is answered, and its answer is passed on as it is.
+    always @* if (!rst_i && bus_valid_i && bus_addr_i[3] && bus_ready_o && !bus_error_o) begin
+        assert (wb_cyc_o && wb_ack_i && !wb_err_i && bus_rdata_o == wb_dat_i);
+        assert (wb_we_o == bus_write_i && wb_adr_o[4:2] == bus_addr_i[2:0]);
+        assert (wb_stb_o || outstanding);
+    end
+    always @* if (!rst_i) begin
+        assert (!accepted || (busy && !pause));
+        assert (accepted == outstanding);
+        cover (bus_valid_i && bus_ready_o && !bus_error_o && bus_addr_i[3] && accepted == (PIPELINED != 0));
+        cover (bus_valid_i && bus_ready_o && wb_err_i && wb_cyc_o);
+        cover (pause);
+    end
+`endif
+endmodule

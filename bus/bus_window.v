@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+//
+// bus_window: the slot side of a foreign core's adapter: eight words of the core at a time.
+//
+//   0..2  ID, EVENT, MASK (bus_wrapper); EVENT bit 0: the core's interrupt line was high,
+//         bit 1: TIMEOUT, the core did not answer
+//   3     PAGE rw: byte address in the core of word 8, a multiple of 32
+//   8..15 the core's words at PAGE + 0, 4, .. 28
+//
+// A core that does not answer within TIMEOUT clocks, or answers with an error, ends the access with
+// an error. After a time-out the adapter may still owe the core its end of the transfer: idle_i is low
+// until then, and no access starts.
+
+`default_nettype none
+
+module bus_window #(
+    parameter [31:0] ID_VALUE   = 32'd0,
+    parameter        ADDR_WIDTH = 12,  // of the core's byte addresses, 6..32
+    parameter        TIMEOUT    = 255  // clocks, 1..255
+) (
+    input  wire                  clk_i,
+    input  wire                  rst_i,
+    // register bus
+    input  wire                  bus_valid_i,
+    input  wire                  bus_write_i,
+    input  wire [3:0]            bus_addr_i,
+    input  wire [31:0]           bus_wdata_i,
+    output wire                  bus_ready_o,
+    output wire [31:0]           bus_rdata_o,
+    output wire                  bus_error_o,
+    output wire                  irq_o,
+    // the adapter: busy_o is high, with the rest stable, until done_i or until it falls by time-out
+    input  wire                  idle_i,
+    output reg                   busy_o,
+    output wire                  write_o,
+    output wire [ADDR_WIDTH-1:0] addr_o,
+    output wire [31:0]           wdata_o,
+    input  wire                  done_i,
+    input  wire                  error_i,
+    input  wire [31:0]           rdata_i,
+    // the core's interrupt line, a level of clk_i
+    input  wire                  irq_i
+);
+    localparam [3:0] PAGE = 4'd3;
+
+    wire        own_ready, own_error, reg_write, reg_read;
+    wire [31:0] own_rdata;
+    wire [3:0]  reg_addr;
+    wire [31:0] reg_wdata;
+    reg  [ADDR_WIDTH-1:5] page;
+    reg  [7:0]  patience;
+
+    wire window   = bus_addr_i[3];
+    wire wanted   = bus_valid_i && window;
+    wire given_up = wanted && patience == 8'd0;
+    wire end_now  = wanted && ((busy_o && done_i) || given_up);
+    wire [31:0] page_value;
+
+    bus_wrapper #(.ID_VALUE(ID_VALUE), .WORDS(16'h0008), .EVENTS(2)) u_wrapper (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .bus_valid_i(bus_valid_i && !window), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
+        .bus_wdata_i(bus_wdata_i), .bus_ready_o(own_ready), .bus_rdata_o(own_rdata),
+        .bus_error_o(own_error),
+        .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr),
+        .reg_wdata_o(reg_wdata), .reg_rdata_i(page_value),
+        .event_i({given_up && !(busy_o && done_i), irq_i}), .irq_o(irq_o)
+    );
+
+    generate
+        if (ADDR_WIDTH == 32) begin : g_full
+            assign page_value = {page, 5'd0};
+        end else begin : g_part
+            assign page_value = {{(32-ADDR_WIDTH){1'b0}}, page, 5'd0};
+        end
+    endgenerate
+    assign write_o = bus_write_i;
+    assign addr_o  = {page, bus_addr_i[2:0], 2'b00};
+    assign wdata_o = bus_wdata_i;
+
+    wire good = busy_o && done_i && !error_i;
+    assign bus_ready_o = window ? end_now : own_ready;
+    assign bus_error_o = window ? !good : own_error;
+    assign bus_rdata_o = window ? rdata_i & {32{good}} : own_rdata;
+
+    always @(posedge clk_i) begin
+        if (reg_write && reg_addr == PAGE)
+            page <= reg_wdata[ADDR_WIDTH-1:5];
+        busy_o <= wanted && !end_now && (busy_o || idle_i);
+        if (!wanted || end_now)
+            patience <= TIMEOUT[7:0];
+        else
+            patience <= patience - 8'd1;
+        if (rst_i) begin
+            page     <= {(ADDR_WIDTH-5){1'b0}};
+            busy_o   <= 1'b0;
+            patience <= TIMEOUT[7:0];
+        end
+    end
+
+    wire unused = &{1'b0, reg_read, reg_wdata, 1'b0};
+
+`ifdef FORMAL
+    bus_rules #(.LIMIT(TIMEOUT + 1), .PATIENCE(TIMEOUT + 2)) u_rules (
+        .clk_i(clk_i), .rst_i(rst_i), .valid_i(bus_valid_i), .write_i(bus_write_i),
+        .addr_i({6'd0, bus_addr_i}), .wdata_i(bus_wdata_i), .ready_i(bus_ready_o),
+        .rdata_i(bus_rdata_o), .error_i(bus_error_o));
+    reg past = 1'b0;
+    reg [15:0] used = 16'd0; // clocks the access has waited before this one
+    always @(posedge clk_i)
+        used <= wanted && !bus_ready_o && !rst_i ? used + 16'd1 : 16'd0;
+    initial assume (rst_i);
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        if (past && !rst_i && !$past(rst_i) && $past(busy_o) && busy_o)
+            assert ($past({write_o, addr_o}) == {write_o, addr_o});
+        if (past && !rst_i && !$past(rst_i) && busy_o && !$past(busy_o))
+            assert ($past(idle_i));
+        cover (past && !rst_i && $past(given_up) && irq_o);
+    end
+    always @* if (!rst_i) begin
+        assert (!busy_o || wanted);          // it never outlives the access
+        assert (patience + used == TIMEOUT);
+    end
+`endif
+endmodule

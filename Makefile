@@ -61,3 +61,5 @@ size: $(BUILD)/build.ninja ## bytes of each firmware layer on a Cortex-M3, besid
 
 clean: ## remove what was built
 	rm -rf build
+
+include $(wildcard */room.mk) # what a room adds

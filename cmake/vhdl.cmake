@@ -26,4 +26,5 @@ function(icesoc_vhdl)
     DEPENDS ${GHDL} ghdl ${packages} ${A_SOURCES} ${deps} ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh
     VERBATIM COMMENT "VHDL to Verilog: ${A_NAME}")
   add_custom_target(${A_NAME}_verilog DEPENDS ${GEN_DIR}/${A_NAME}.v)
+  set_property(GLOBAL APPEND PROPERTY ICESOC_VHDL_TARGETS ${A_NAME}_verilog)
 endfunction()

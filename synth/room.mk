@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: MIT
+#
+# DESIGN=modem one design only; FAMILY=xc6s one chip family only
+DESIGN ?=
+FAMILY ?=
+
+synth: $(BUILD)/build.ninja ## utilisation: LUTs, flip-flops, slices of the chip and each part, against limits and paper
+	@ninja -C $(BUILD) -j $(JOBS) --quiet synth_inputs
+	@$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) \
+	    $(DESIGN:%=--design %) $(FAMILY:%=--family %)
+.PHONY: synth

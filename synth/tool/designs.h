@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+//
+// designs: what is synthesised, against which limits (synth/designs.json and the modules found).
+
+#pragma once
+
+#include "sources.h"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+struct Chip {
+    std::string name;
+    int lut = 0, ff = 0, slices = 0, slicem = 0, ramb16 = 0, dsp = 0;
+    double mhz = 0;
+};
+
+struct Design {
+    std::string name, top, title, file; // file: where the module is, relative to the project
+    std::map<std::string, std::string> parameters;
+    std::map<std::string, int> limits; // "lut", "ff", "slices": not to be exceeded
+    bool beside = false;               // the paper has figures for it
+};
+
+struct Plan {
+    Chip chip;
+    std::map<std::string, int> paper; // Table I: "lut", "ff", "slices"
+    std::vector<Design> designs;
+};
+
+// The designs of the file, then every other module of the library that is `alone` there.
+Plan readPlan(const std::filesystem::path& file, const Library& library,
+              const std::filesystem::path& root);

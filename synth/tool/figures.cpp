@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+//
+// figures: what one design takes of one chip family: the result of a synthesis run.
+
+#include "figures.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+using nlohmann::json;
+
+namespace {
+
+double blockRams(const std::string& type) {
+    if (type == "RAMB8BWER")
+        return 0.5;
+    if (type == "RAMB16BWER" || type == "RAMB18E1" || type == "DP16KD" || type == "PDPW16KD")
+        return 1;
+    return type == "RAMB36E1" ? 2 : 0;
+}
+
+bool isMultiplier(const std::string& type) {
+    return type.rfind("DSP48", 0) == 0 || type == "MULT18X18D" || type == "ALU54B";
+}
+
+} // namespace
+
+int Figures::luts(int inputs) const {
+    const auto count = [&](const std::string& type) {
+        const auto it = cells.find(type);
+        return it == cells.end() ? 0 : it->second;
+    };
+    return count(fmt::format("LUT{}", inputs)) + (inputs == 1 ? count("INV") : 0);
+}
+
+Figures figuresOf(const Netlist& netlist, const FilesAlong& filesAlong) {
+    Figures f;
+    for (const Cell& cell : netlist.cells) {
+        const Cost cost = costOf(cell);
+        f.cells[cell.type]++;
+        f.lut += cost.lut;
+        f.lutRam += memoryLuts(cell.type);
+        f.shift += isShiftRegister(cell.type) ? 1 : 0;
+        f.ff += cost.ff;
+        f.carry += cost.carry;
+        f.ram += blockRams(cell.type);
+        f.dsp += isMultiplier(cell.type) ? 1 : 0;
+    }
+    for (const Port& port : netlist.ports)
+        if (port.name.rfind("mcb_", 0) != 0)
+            f.pins += static_cast<int>(port.bits.size());
+    f.slices = slicesOf(netlist);
+    f.costs = costsOf(netlist, filesAlong);
+    return f;
+}
+
+void to_json(json& j, const Figures& f) {
+    json costs = json::array(); // path, signal, LUT, memory LUT, FF, carry
+    for (const auto& [owner, c] : f.costs)
+        costs.push_back({owner.first, owner.second, c.lut, c.memory, c.ff, c.carry});
+    const Slices& s = f.slices;
+    j = {{"cells", f.cells},
+         {"lut", f.lut},
+         {"lutRam", f.lutRam},
+         {"shift", f.shift},
+         {"ff", f.ff},
+         {"carry", f.carry},
+         {"ram", f.ram},
+         {"dsp", f.dsp},
+         {"pins", f.pins},
+         {"costs", costs},
+         {"slices",
+          {{"low", s.low},
+           {"estimate", s.estimate},
+           {"high", s.high},
+           {"slicem", s.slicem},
+           {"sites", s.sites},
+           {"pairs", s.pairs},
+           {"controlSets", s.controlSets}}}};
+}
+
+void from_json(const json& j, Figures& f) {
+    j.at("cells").get_to(f.cells);
+    j.at("lut").get_to(f.lut);
+    j.at("lutRam").get_to(f.lutRam);
+    j.at("shift").get_to(f.shift);
+    j.at("ff").get_to(f.ff);
+    j.at("carry").get_to(f.carry);
+    j.at("ram").get_to(f.ram);
+    j.at("dsp").get_to(f.dsp);
+    j.at("pins").get_to(f.pins);
+    for (const json& c : j.at("costs"))
+        f.costs[{c[0], c[1]}] = {c[2], c[3], c[4], c[5]};
+    const json& s = j.at("slices");
+    f.slices = {s.at("low"),   s.at("estimate"), s.at("high"),       s.at("slicem"),
+                s.at("sites"), s.at("pairs"),    s.at("controlSets")};
+}

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+//
+// figures: what one design takes of one chip family: the result of a synthesis run.
+
+#pragma once
+
+#include "owners.h"
+#include "slices.h"
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+struct Figures {
+    std::map<std::string, int> cells; // by type, as Yosys names them
+    int lut = 0;                      // all look-up tables, those used as memory included
+    int lutRam = 0;                   // of these: memory
+    int shift = 0;                    // of these: shift registers
+    int ff = 0;                       // flip-flops and latches
+    int carry = 0;                    // carry chain segments of four bits (ECP5: two)
+    double ram = 0;                   // block RAMs of 16 or 18 Kbit; half ones count half
+    int dsp = 0;
+    int pins = 0;  // ports that leave the chip: not those of the memory controller (mcb_*)
+    Slices slices; // not for ECP5
+    Costs costs;
+
+    int luts(int inputs) const; // logic LUTs of so many inputs
+};
+
+Figures figuresOf(const Netlist& netlist, const FilesAlong& filesAlong);
+
+void to_json(nlohmann::json& j, const Figures& f);
+void from_json(const nlohmann::json& j, Figures& f);

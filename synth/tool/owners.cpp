@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+//
+// owners: whose each cell of a flat netlist is: an instance path and a signal of the source.
+
+#include "owners.h"
+
+#include <cctype>
+#include <vector>
+
+using std::string;
+
+namespace {
+
+bool isNumber(const string& s) {
+    for (const char c : s)
+        if (!std::isdigit(static_cast<unsigned char>(c)))
+            return false;
+    return !s.empty();
+}
+
+// "u_fifo.words.0.1" -> "u_fifo.words"
+string withoutNumbers(string name) {
+    for (size_t dot; (dot = name.rfind('.')) != string::npos && isNumber(name.substr(dot + 1));)
+        name.resize(dot);
+    return name;
+}
+
+bool isCombinational(const string& type) {
+    return lutInputs(type) != 0 || type == "CARRY4" || type == "MUXF7" || type == "MUXF8" ||
+           type == "CCU2C" || type == "PFUMX" || type == "L6MUX21";
+}
+
+class Finder {
+public:
+    Finder(const Netlist& n, const FilesAlong& filesAlong)
+        : n_(n), filesAlong_(filesAlong), owner_(n.cells.size()), state_(n.cells.size()) {}
+
+    const string& ownerOf(int index) {
+        if (state_[index] == 0) {
+            state_[index] = 1; // a loop through this cell finds no owner here
+            owner_[index] = find(index);
+            state_[index] = 2;
+        }
+        return owner_[index];
+    }
+
+private:
+    string find(int index) {
+        const Cell& cell = n_.cells[index];
+        if (cell.named && !isCombinational(cell.type))
+            return withoutNumbers(cell.name);
+        for (const Pin& pin : cell.pins)
+            for (const int bit : pin.bits)
+                if (pin.output && n_.names.count(bit))
+                    return nameFor(cell, n_.names.at(bit));
+        std::map<string, int> votes;
+        for (const Pin& pin : cell.pins)
+            for (const int bit : pin.bits)
+                if (pin.output && n_.readers.count(bit))
+                    for (const int reader : n_.readers.at(bit))
+                        if (state_[reader] != 1 && !ownerOf(reader).empty())
+                            votes[ownerOf(reader)]++;
+        string best;
+        for (const auto& [name, count] : votes)
+            if (best.empty() || count > votes[best])
+                best = name;
+        return best;
+    }
+
+    // Of several names of one net the one in the module that the cell comes from.
+    string nameFor(const Cell& cell, const std::vector<Netlist::Name>& names) {
+        for (const Netlist::Name& name : names) {
+            const string path = splitName(name.name).first;
+            auto it = files_.find(path);
+            if (it == files_.end())
+                it = files_.emplace(path, filesAlong_(path)).first;
+            if (it->second == cell.sources)
+                return name.name;
+        }
+        return names.front().name;
+    }
+
+    const Netlist& n_;
+    const FilesAlong& filesAlong_;
+    std::map<string, std::set<string>> files_;
+    std::vector<string> owner_;
+    std::vector<char> state_;
+};
+
+} // namespace
+
+Cost& Cost::operator+=(const Cost& o) {
+    lut += o.lut;
+    memory += o.memory;
+    ff += o.ff;
+    carry += o.carry;
+    return *this;
+}
+
+Cost costOf(const Cell& cell) {
+    Cost c;
+    c.memory = memoryLuts(cell.type) + (isShiftRegister(cell.type) ? 1 : 0);
+    c.lut = c.memory + (lutInputs(cell.type) != 0 ? 1 : 0) + (cell.type == "CCU2C" ? 2 : 0);
+    c.ff = isFlipFlop(cell.type) || isLatch(cell.type) ? 1 : 0;
+    c.carry = cell.type == "CARRY4" || cell.type == "CCU2C" ? 1 : 0;
+    return c;
+}
+
+std::pair<string, string> splitName(const string& name) {
+    const size_t dot = name.rfind('.');
+    if (dot == string::npos)
+        return {"", name};
+    return {name.substr(0, dot), name.substr(dot + 1)};
+}
+
+Costs costsOf(const Netlist& netlist, const FilesAlong& filesAlong) {
+    Costs costs;
+    Finder finder(netlist, filesAlong);
+    for (size_t i = 0; i < netlist.cells.size(); i++) {
+        const Cost cost = costOf(netlist.cells[i]);
+        if (!cost.empty())
+            costs[splitName(finder.ownerOf(static_cast<int>(i)))] += cost;
+    }
+    return costs;
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+//
+// owners: whose each cell of a flat netlist is: an instance path and a signal of the source.
+
+#pragma once
+
+#include "netlist.h"
+
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+
+struct Cost {
+    int lut = 0;    // look-up tables, those used as memory included
+    int memory = 0; // of these, used as memory or shift register
+    int ff = 0;     // flip-flops and latches
+    int carry = 0;  // carry chain segments of 4 bits
+
+    Cost& operator+=(const Cost& o);
+    bool empty() const { return lut == 0 && ff == 0 && carry == 0; }
+};
+
+// (instance path, "" for the top; signal) -> cost. A flip-flop is its register's. Logic is the
+// named wire's that it drives; where optimisation has left no name, it is whose logic it feeds
+// most.
+using Costs = std::map<std::pair<std::string, std::string>, Cost>;
+
+// Files (names only) of the modules along an instance path, the top's included.
+using FilesAlong = std::function<std::set<std::string>(const std::string& path)>;
+
+Costs costsOf(const Netlist& netlist, const FilesAlong& filesAlong);
+Cost costOf(const Cell& cell);
+std::pair<std::string, std::string> splitName(const std::string& name); // path, signal

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+//
+// runner: synthesis runs by Yosys, in parallel, each result kept under the hash of its sources.
+
+#include "runner.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string replaceAll(std::string text, const std::string& what, const std::string& by) {
+    for (size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+        text.replace(at, what.size(), by);
+    return text;
+}
+
+std::string scriptOf(const Run& run, const Library& library, const RunnerOptions& options,
+                     const std::string& output) {
+    std::string sources, includes, parameters;
+    for (const fs::path& file : library.filesOf(run.design->top))
+        sources += fmt::format(" \"{}\"", file.string());
+    for (const fs::path& folder : library.includeFolders())
+        includes += fmt::format(" -I{}", folder.string());
+    for (const auto& [name, value] : run.design->parameters)
+        parameters += fmt::format("chparam -set {} {} {}\n", name, value, run.design->top);
+    std::string script = readFile(options.scripts / (run.family + ".ys"));
+    script = replaceAll(script, "@SOURCES@", sources);
+    script = replaceAll(script, "@INCLUDES@", includes);
+    script = replaceAll(script, "@PARAMETERS@", parameters);
+    script = replaceAll(script, "@TOP@", run.design->top);
+    return replaceAll(script, "@OUTPUT@", output);
+}
+
+// The lines of a log that say what is wrong.
+std::string errorsIn(const fs::path& log) {
+    std::istringstream lines(readFile(log));
+    std::string line, errors, last;
+    while (std::getline(lines, line)) {
+        if (line.find("ERROR") != std::string::npos)
+            errors += line + "\n";
+        last = line;
+    }
+    return errors.empty() ? last + "\n" : errors;
+}
+
+void synthesise(const Run& run, const Library& library, const RunnerOptions& options) {
+    const std::string part = run.netlist.string() + ".part";
+    const std::string script = fs::path(run.netlist).replace_extension(".ys").string();
+    const std::string log = fs::path(run.netlist).replace_extension(".log").string();
+    std::ofstream(script) << scriptOf(run, library, options, part);
+    const std::string command =
+        fmt::format("\"{}\" -q -s \"{}\" >\"{}\" 2>&1", options.yosys, script, log);
+    if (std::system(command.c_str()) != 0)
+        throw std::runtime_error(errorsIn(log) + "whole log: " + log);
+    fs::rename(part, run.netlist);
+}
+
+void carryOutOne(Run& run, const Library& library, const RunnerOptions& options,
+                 const std::string& tools, const std::string& program) {
+    const std::string sources =
+        hexHash({library.hashOf(run.design->top), tools, scriptOf(run, library, options, "")});
+    const fs::path stem =
+        options.cache / fmt::format("{}.{}.{}", run.design->name, run.family, sources);
+    run.netlist = stem.string() + ".json";
+    const fs::path kept = fmt::format("{}.{}.figures", stem.string(), program);
+    run.cached = fs::exists(run.netlist);
+    if (run.cached && fs::exists(kept)) {
+        run.figures = nlohmann::json::parse(readFile(kept)).get<Figures>();
+        return;
+    }
+    if (!run.cached)
+        synthesise(run, library, options);
+    run.figures = figuresOf(readNetlist(run.netlist), [&](const std::string& path) {
+        return library.filesAlong(run.design->top, path);
+    });
+    const fs::path part = kept.string() + ".part";
+    std::ofstream(part) << nlohmann::json(run.figures);
+    fs::rename(part, kept);
+}
+
+} // namespace
+
+std::string outputOf(const std::string& command) {
+    const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+    char line[512] = "";
+    if (!pipe || !std::fgets(line, sizeof line, pipe.get()))
+        return "";
+    const std::string result = line;
+    return result.substr(0, result.find_last_not_of("\r\n") + 1);
+}
+
+void carryOut(std::vector<Run>& runs, const Library& library, const RunnerOptions& options) {
+    const std::string version = outputOf(fmt::format("\"{}\" -V 2>/dev/null", options.yosys));
+    if (version.empty())
+        throw std::runtime_error(
+            fmt::format("'{}' does not run: is yosys installed?", options.yosys));
+    fs::create_directories(options.cache);
+    const std::string program = hexHash({readFile("/proc/self/exe")});
+
+    std::atomic<size_t> next{0}, done{0};
+    std::mutex terminal;
+    const auto work = [&] {
+        for (size_t i; (i = next++) < runs.size();) {
+            const auto begin = std::chrono::steady_clock::now();
+            try {
+                carryOutOne(runs[i], library, options, version, program);
+            } catch (const std::exception& e) {
+                runs[i].error = e.what();
+            }
+            const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+            const std::lock_guard<std::mutex> lock(terminal);
+            done++;
+            if (!runs[i].cached)
+                fmt::print(stderr, "[{}/{}] {} for {}: {} ({:.1f} s)\n", done.load(), runs.size(),
+                           runs[i].design->name, runs[i].family,
+                           runs[i].error.empty() ? fmt::format("{} LUT, {} FF", runs[i].figures.lut,
+                                                               runs[i].figures.ff)
+                                                 : "failed",
+                           took.count());
+        }
+    };
+    std::vector<std::thread> threads;
+    for (unsigned k = 0; k < std::max(1u, options.jobs); k++)
+        threads.emplace_back(work);
+    for (std::thread& thread : threads)
+        thread.join();
+}

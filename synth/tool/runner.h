@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+//
+// runner: synthesis runs by Yosys, in parallel, each result kept under the hash of its sources.
+
+#pragma once
+
+#include "designs.h"
+#include "figures.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+struct Run {
+    const Design* design = nullptr;
+    std::string family; // "xc6s", "xc7", "ecp5": the script of that name
+
+    std::filesystem::path netlist; // where Yosys wrote it
+    Figures figures;
+    std::string error; // why there are no figures, "" if there are
+    bool cached = false;
+};
+
+struct RunnerOptions {
+    std::filesystem::path scripts; // *.ys
+    std::filesystem::path cache;
+    std::string yosys = "yosys";
+    unsigned jobs = 1;
+};
+
+// Carries all runs out, says on stderr which is done. A failed run does not stop the others.
+void carryOut(std::vector<Run>& runs, const Library& library, const RunnerOptions& options);
+
+// First line of a program's output, "" if it does not run.
+std::string outputOf(const std::string& command);

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+//
+// slices: how many slices of four LUT6 and eight flip-flops a netlist takes (docs/utilisation.md).
+
+#include "slices.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+#include <unordered_map>
+
+namespace {
+
+constexpr int sitesPerSlice = 4, flipFlopsPerSlice = 8, sharedInputs = 5;
+
+// Occupied slices over the bound of the rules, in the reports of docs/utilisation.md.
+constexpr double usualFill = 1.35, worstFill = 1.80;
+
+int upTo(int n, int unit) {
+    return (n + unit - 1) / unit;
+}
+
+std::set<int> inputsOf(const Cell& cell) {
+    std::set<int> bits;
+    for (const Pin& pin : cell.pins)
+        for (const int bit : pin.bits)
+            if (!pin.output && bit >= 0)
+                bits.insert(bit);
+    return bits;
+}
+
+// LUT6 sites for these LUTs: two share one if together they have five inputs at most. Greedy, the
+// partner with most inputs in common first; LUTs with nothing in common are left apart, as map
+// does.
+int sitesFor(const std::vector<std::set<int>>& luts) {
+    std::unordered_map<int, std::vector<size_t>> readers;
+    for (size_t i = 0; i < luts.size(); i++)
+        if (luts[i].size() <= sharedInputs)
+            for (const int bit : luts[i])
+                readers[bit].push_back(i);
+    std::vector<bool> placed(luts.size());
+    int sites = 0;
+    for (size_t i = 0; i < luts.size(); i++) {
+        if (placed[i])
+            continue;
+        placed[i] = true;
+        sites++;
+        if (luts[i].size() > sharedInputs)
+            continue;
+        std::map<size_t, int> common;
+        for (const int bit : luts[i])
+            if (readers[bit].size() <= 64) // a reset's readers are no neighbours
+                for (const size_t k : readers[bit])
+                    if (!placed[k])
+                        common[k]++;
+        size_t best = i;
+        int bestCommon = 1; // at least two inputs in common
+        for (const auto& [k, count] : common)
+            if (count > bestCommon &&
+                static_cast<int>(luts[i].size() + luts[k].size()) - count <= sharedInputs) {
+                best = k;
+                bestCommon = count;
+            }
+        placed[best] = true;
+    }
+    return sites;
+}
+
+} // namespace
+
+Slices slicesOf(const Netlist& n) {
+    Slices s;
+    std::vector<std::set<int>> luts;
+    std::map<std::tuple<int, int, int>, std::pair<int, int>> sets; // (pairs, others)
+    int memory = 0, carry = 0, carrySites = 0;
+
+    for (const Cell& cell : n.cells) {
+        if (lutInputs(cell.type) != 0) {
+            luts.push_back(inputsOf(cell));
+        } else if (memoryLuts(cell.type) != 0) {
+            memory += memoryLuts(cell.type);
+        } else if (isShiftRegister(cell.type)) {
+            memory++;
+        } else if (cell.type == "CARRY4") {
+            carry++;
+            // A bit whose S is no LUT of its own takes a site as a route-through.
+            for (const int bit : cell.pin("S")->bits) {
+                const auto it = n.driver.find(bit);
+                if (bit >= 0 && (it == n.driver.end() || lutInputs(n.cells[it->second].type) == 0))
+                    carrySites++;
+            }
+        } else if (isFlipFlop(cell.type) || isLatch(cell.type)) {
+            int control = cell.bit("R");
+            for (const char* port : {"S", "CLR", "PRE"})
+                if (control == bitUndefined)
+                    control = cell.bit(port);
+            const int d = cell.bit("D");
+            const auto it = n.driver.find(d);
+            const bool fed = it != n.driver.end() && lutInputs(n.cells[it->second].type) != 0 &&
+                             n.readers.at(d).size() == 1;
+            auto& [pairs, others] = sets[{cell.bit("C"), cell.bit("CE"), control}];
+            (fed ? pairs : others)++;
+        }
+    }
+
+    int forFlipFlops = 0;
+    for (const auto& [control, counts] : sets) {
+        s.pairs += counts.first;
+        forFlipFlops += std::max(upTo(counts.first, sitesPerSlice),
+                                 upTo(counts.first + counts.second, flipFlopsPerSlice));
+    }
+    s.controlSets = static_cast<int>(sets.size());
+    s.slicem = upTo(memory, sitesPerSlice);
+    s.sites = sitesFor(luts) + memory + carrySites;
+    s.low = std::max({upTo(s.sites, sitesPerSlice), forFlipFlops, s.slicem + carry});
+    s.estimate = static_cast<int>(std::lround(s.low * usualFill));
+    s.high = static_cast<int>(std::lround(s.low * worstFill));
+    return s;
+}

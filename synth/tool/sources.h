@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+//
+// sources: which Verilog files a module needs, found by reading their instances.
+
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+struct VerilogModule {
+    std::filesystem::path file;
+    std::map<std::string, std::string> instances; // instance name -> module name
+    std::set<std::string> includes;               // "`include" file names
+};
+
+class Library {
+public:
+    // All *.v of these folders; of two modules with one name the first folder's counts.
+    explicit Library(const std::vector<std::filesystem::path>& folders,
+                     const std::vector<std::filesystem::path>& includeFolders);
+
+    const std::map<std::string, VerilogModule>& modules() const { return modules_; }
+    bool has(const std::string& module) const { return modules_.count(module) != 0; }
+
+    // Files of a module and of all it instantiates, sorted; throws if `top` is not there.
+    std::vector<std::filesystem::path> filesOf(const std::string& top) const;
+    // Folders to search for include files.
+    const std::vector<std::filesystem::path>& includeFolders() const { return includeFolders_; }
+    // Changes whenever a file changes that the module is made of, include files too.
+    std::string hashOf(const std::string& top) const;
+    // Module of the instance at the end of a path of instance names, "" if unknown.
+    std::string moduleAt(const std::string& top, const std::string& path) const;
+    // File names of the modules along such a path, the top's included.
+    std::set<std::string> filesAlong(const std::string& top, const std::string& path) const;
+
+private:
+    std::set<std::string> reach(const std::string& top) const;
+
+    std::map<std::string, VerilogModule> modules_;
+    std::vector<std::filesystem::path> includeFolders_;
+};
+
+std::string readFile(const std::filesystem::path& file);       // throws if it cannot be read
+std::string hexHash(const std::vector<std::string>& contents); // FNV-1a, 64 bits

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+//
+// table: the report as text, for the terminal and as Markdown.
+
+#pragma once
+
+#include "designs.h"
+#include "runner.h"
+
+#include <string>
+#include <vector>
+
+// What is shown of a design: its runs by family.
+struct Row {
+    const Design* design = nullptr;
+    const Run* main = nullptr; // Spartan-6
+    std::vector<const Run*> others;
+};
+std::vector<Row> rowsOf(const Plan& plan, const std::vector<Run>& runs, const std::string& family);
+
+class TextTable { // columns as wide as they need; the first is left-aligned
+public:
+    void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+    std::string plain() const;
+    std::string markdown() const;
+
+private:
+    std::vector<std::vector<std::string>> rows_;
+};
+
+TextTable paperTable(const Plan& plan, const Row& row);
+TextTable designTable(const Plan& plan, const std::vector<Row>& rows);
+// Where a design's cost is: the instances, with all below them.
+TextTable costTable(const Library& library, const Row& row, size_t depth);
+std::string percent(double part, double whole); // "18.9 %"

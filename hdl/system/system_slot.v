@@ -73,6 +73,8 @@ module system_slot #(
         endcase
     end
 
+    wire clearing = bus_valid_i && bus_write_i && bus_addr_i == SYSTEM_EVENT && bus_wdata_i[0];
+
     always @(posedge clk_i) begin
         cycles <= cycles + 64'd1;
         if (reg_read && reg_addr == SYSTEM_CYCLES_LO)
@@ -81,13 +83,13 @@ module system_slot #(
             page_o <= reg_wdata[5:0];
         if (reg_write && reg_addr == SYSTEM_SCRATCH)
             scratch <= reg_wdata;
-        // The first error is kept until the event has been cleared.
-        if (bus_valid_i && bus_write_i && bus_addr_i == SYSTEM_EVENT && bus_wdata_i[0])
-            error_open <= 1'b0;
-        if (access_error_i && !error_open) begin
+        // The first error is kept until the event has been cleared; one that comes with the clear is new.
+        if (access_error_i && (!error_open || clearing)) begin
             error_open  <= 1'b1;
             error_addr  <= error_addr_i;
             error_write <= error_write_i;
+        end else if (clearing) begin
+            error_open <= 1'b0;
         end
         if (rst_i) begin
             cycles      <= 64'd0;
@@ -99,4 +101,28 @@ module system_slot #(
             error_write <= 1'b0;
         end
     end
+
+`ifdef FORMAL
+    reg past = 1'b0;
+    initial assume (rst_i);
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        if (past && !rst_i && !$past(rst_i)) begin
+            // The place shown is that of the oldest error since the event was last clear.
+            if ($past(access_error_i && (!error_open || clearing)))
+                assert ({error_addr, error_write} == $past({error_addr_i, error_write_i}));
+            else
+                assert ({error_addr, error_write} == $past({error_addr, error_write}));
+            assert (error_open == ($past(access_error_i) || $past(error_open && !clearing)));
+            if (!$past(reg_read && reg_addr == SYSTEM_CYCLES_LO))
+                assert (cycles_high_latched == $past(cycles_high_latched));
+        end
+        cover (past && !rst_i && $past(access_error_i && clearing && error_open));
+    end
+    always @* begin
+        assert (irq_o == (own_irq || |slot_irq_i));
+        if (bus_valid_i && !bus_write_i && !rst_i && bus_addr_i == SYSTEM_EVENT)
+            assert (bus_rdata_o == {31'd0, error_open}); // event and place tell of the same error
+    end
+`endif
 endmodule

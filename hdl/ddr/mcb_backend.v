@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: MIT
 //
 // mcb_backend: the arbiter's command stream on a 64-bit user port of the Spartan-6 MCB (UG388).
+//
+// The MCB's read FIFO holds 64 words, and what does not fit is lost. Where PORTS * 32 words may be
+// under way at most (rule 3 of docs/memory.md) two ports need nothing; more ports wait until half
+// of it is not promised to anybody.
 
 `default_nettype none
 
-module mcb_backend (
+module mcb_backend #(
+    parameter PORTS = 2 // of the arbiter
+) (
+    input  wire        clk_i,
+    input  wire        rst_i,
     // from the arbiter
     input  wire        cmd_valid_i,
     input  wire        cmd_read_i,
     input  wire [31:0] cmd_addr_i,
-    input  wire [4:0]  cmd_words_i, // 1..16
+    input  wire [4:0]  cmd_last_i, // words - 1
     output wire        cmd_ready_o,
     input  wire        wr_valid_i,
     input  wire [63:0] wr_data_i,
@@ -33,10 +41,11 @@ module mcb_backend (
     input  wire        mcb_rd_empty_i,
     input  wire        mcb_calib_done_i
 );
-    assign cmd_ready_o         = mcb_calib_done_i && !mcb_cmd_full_i;
+    wire room;
+    assign cmd_ready_o         = mcb_calib_done_i && !mcb_cmd_full_i && (room || !cmd_read_i);
     assign mcb_cmd_en_o        = cmd_valid_i && cmd_ready_o;
     assign mcb_cmd_instr_o     = {2'b00, cmd_read_i};
-    assign mcb_cmd_bl_o        = {1'b0, cmd_words_i} - 6'd1;
+    assign mcb_cmd_bl_o        = {1'b0, cmd_last_i};
     assign mcb_cmd_byte_addr_o = cmd_addr_i[29:0];
 
     assign wr_ready_o    = !mcb_wr_full_i;
@@ -47,6 +56,19 @@ module mcb_backend (
     assign rd_valid_o  = !mcb_rd_empty_i;
     assign rd_data_o   = mcb_rd_data_i;
     assign mcb_rd_en_o = rd_valid_o && rd_ready_i;
+
+    generate
+        if (PORTS > 2) begin : g_room
+            reg [6:0] promised; // words, 0..64
+            wire [5:0] more = mcb_cmd_en_o && cmd_read_i ? {1'b0, cmd_last_i} + 6'd1 : 6'd0;
+            assign room = !promised[6] && (!promised[5] || promised[4:0] == 5'd0);
+            always @(posedge clk_i)
+                promised <= rst_i ? 7'd0 : promised + {1'b0, more} - {6'd0, mcb_rd_en_o};
+        end else begin : g_always
+            assign room = 1'b1;
+            wire unused = &{1'b0, clk_i, rst_i, 1'b0};
+        end
+    endgenerate
 
     wire unused = &{1'b0, cmd_addr_i[31:30], 1'b0}; // 1 GiB is the MCB's range
 endmodule

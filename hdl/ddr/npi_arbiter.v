@@ -2,13 +2,18 @@
 //
 // npi_arbiter: PORTS memory ports with NPI semantics (docs/memory.md) on one command stream.
 //
-// Round robin. A write's words go to the back-end before its command; a read's command goes at once,
-// and its words come back in the order of the commands. addr_ack is the order between ports.
+// A request is acknowledged as soon as it has its place in the queue, one a clock. The order of
+// acknowledgement is the order in memory, between all ports.
 
 `default_nettype none
 
 module npi_arbiter #(
-    parameter PORTS = 3 // 2..8
+    parameter             PORTS      = 2, // 2..8
+    parameter [PORTS-1:0] URGENT     = 0, // ports that go before the others: npi_select
+    parameter             URGENT_RUN = 3, // 1..7
+    // A port without a read FIFO gets its words as they come, and holds up all ports until it takes
+    // them: for those that always do at once.
+    parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}}
 ) (
     input  wire                clk_i,
     input  wire                rst_i,
@@ -18,6 +23,7 @@ module npi_arbiter #(
     output reg  [PORTS-1:0]    npi_addr_ack_o,
     input  wire [PORTS-1:0]    npi_rnw_i,
     input  wire [4*PORTS-1:0]  npi_size_i,
+    input  wire [PORTS-1:0]    npi_rmw_i,
     input  wire [64*PORTS-1:0] npi_wr_data_i,
     input  wire [8*PORTS-1:0]  npi_wr_be_i,
     input  wire [PORTS-1:0]    npi_wr_push_i,
@@ -29,11 +35,11 @@ module npi_arbiter #(
     input  wire [PORTS-1:0]    npi_rd_pop_i,
     output wire [PORTS-1:0]    npi_rd_empty_o,
     input  wire [PORTS-1:0]    npi_rd_flush_i,
-    // back-end: a command of 1..16 words; write words come first
+    // back-end: commands of 1..32 words; a write's words come before its command
     output wire                cmd_valid_o,
     output wire                cmd_read_o,
     output wire [31:0]         cmd_addr_o,
-    output wire [4:0]          cmd_words_o,
+    output wire [4:0]          cmd_last_o, // words - 1
     input  wire                cmd_ready_i,
     output wire                wr_valid_o,
     output wire [63:0]         wr_data_o,
@@ -45,112 +51,100 @@ module npi_arbiter #(
 );
     localparam PORT_BITS = PORTS > 4 ? 3 : PORTS > 2 ? 2 : 1;
 
-    localparam [1:0] WAIT_REQUEST = 2'd0, MOVE_WORDS = 2'd1, WAIT_COMMAND = 2'd2;
+    // A request's bit is still up in the cycle of its acknowledgement.
+    wire             full;
+    wire [PORTS-1:0] grant;
+    npi_select #(.PORTS(PORTS), .URGENT(URGENT), .URGENT_RUN(URGENT_RUN)) u_select (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .asking_i(npi_addr_req_i & ~npi_addr_ack_o), .enable_i(!full), .grant_o(grant)
+    );
+    always @(posedge clk_i)
+        npi_addr_ack_o <= rst_i ? {PORTS{1'b0}} : grant;
 
-    reg [1:0]           state;
-    reg [PORT_BITS-1:0] port;     // being served, and the last one served
-    reg                 read;
+    // The chosen request: one-hot AND-OR.
     reg [31:0]          addr;
-    reg [4:0]           words, left;
-
-    // Who is next: the first requester after the one served last. The bit of an acknowledged request
-    // is still up in the cycle of its acknowledgement.
-    wire [PORTS-1:0] asking = npi_addr_req_i & ~npi_addr_ack_o;
-    reg [PORT_BITS-1:0] next;
+    reg [2:0]           size;
+    reg [PORT_BITS-1:0] port;
     integer i;
     always @* begin
-        next = port;
-        for (i = PORTS - 1; i >= 0; i = i - 1)
-            if (asking[i])
-                next = i[PORT_BITS-1:0];
-        for (i = PORTS - 1; i >= 0; i = i - 1)
-            if (asking[i] && i[PORT_BITS-1:0] > port)
-                next = i[PORT_BITS-1:0];
+        addr = 32'd0;
+        size = 3'd0;
+        port = {PORT_BITS{1'b0}};
+        for (i = 0; i < PORTS; i = i + 1) begin
+            addr = addr | (npi_addr_i[32*i +: 32] & {32{grant[i]}});
+            size = size | (npi_size_i[4*i +: 3] & {3{grant[i]}});
+            port = port | (i[PORT_BITS-1:0] & {PORT_BITS{grant[i]}});
+        end
     end
+    // A read of a cache line may name any of its words; rd_word tells them apart.
+    wire line = size == 3'd1 || size == 3'd2;
+    wire [28:0] start = {addr[31:5], addr[4] && size != 3'd2, addr[3] && !line};
+
+    wire                 move_valid, back_valid;
+    wire [PORT_BITS-1:0] move_port, back_port;
+    wire [4:0]           back_index;
+    wire [28:0]          cmd_word;
+    npi_queue #(.PORT_BITS(PORT_BITS)) u_queue (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .push_i(|grant), .push_port_i(port), .push_read_i(|(grant & npi_rnw_i)),
+        .push_size_i(size), .push_addr_i(start), .full_o(full),
+        .move_valid_o(move_valid), .move_port_o(move_port),
+        .move_done_i(wr_valid_o && wr_ready_i),
+        .cmd_valid_o(cmd_valid_o), .cmd_read_o(cmd_read_o), .cmd_addr_o(cmd_word),
+        .cmd_last_o(cmd_last_o), .cmd_ready_i(cmd_ready_i),
+        .back_valid_o(back_valid), .back_port_o(back_port), .back_index_o(back_index),
+        .back_done_i(rd_valid_i && rd_ready_o)
+    );
+    assign cmd_addr_o = {cmd_word, 3'd0};
 
     // FIFOs of the ports.
-    wire [71:0] wr_word [0:PORTS-1];
-    wire [PORTS-1:0] wr_pop, rd_push, rd_almost_full;
-    reg  [3:0] rd_index;
+    wire [72*PORTS-1:0] wr_words;
+    wire [PORTS-1:0]    move_at, back_at, back_free;
     genvar p;
     generate
         for (p = 0; p < PORTS; p = p + 1) begin : g_port
             localparam [PORT_BITS-1:0] ME = p;
+            assign move_at[p] = move_valid && move_port == ME;
+            assign back_at[p] = back_valid && back_port == ME;
             npi_fifo #(.WIDTH(72), .LOG2(5)) u_write (
                 .clk_i(clk_i), .rst_i(rst_i || npi_wr_flush_i[p]),
                 .push_i(npi_wr_push_i[p]),
                 .data_i({npi_wr_be_i[8*p +: 8], npi_wr_data_i[64*p +: 64]}),
-                .pop_i(wr_pop[p]), .data_o(wr_word[p]), .empty_o(npi_wr_empty_o[p]),
-                .almost_full_o(npi_wr_almost_full_o[p])
+                .pop_i(move_at[p] && wr_valid_o && wr_ready_i), .data_o(wr_words[72*p +: 72]),
+                .empty_o(npi_wr_empty_o[p]), .full_o(npi_wr_almost_full_o[p])
             );
-            npi_fifo #(.WIDTH(68), .LOG2(5)) u_read (
-                .clk_i(clk_i), .rst_i(rst_i || npi_rd_flush_i[p]),
-                .push_i(rd_push[p]), .data_i({rd_index, rd_data_i}),
-                .pop_i(npi_rd_pop_i[p]),
-                .data_o({npi_rd_word_o[4*p +: 4], npi_rd_data_o[64*p +: 64]}),
-                .empty_o(npi_rd_empty_o[p]), .almost_full_o(rd_almost_full[p])
-            );
-            assign wr_pop[p]  = wr_valid_o && wr_ready_i && port == ME;
-            assign rd_push[p] = rd_valid_i && rd_ready_o && back_port == ME;
+            if (READ_FIFO[p]) begin : g_fifo
+                wire rd_full; // a requester has room for what it reads (rule 3)
+                npi_fifo #(.WIDTH(68), .LOG2(5)) u_read (
+                    .clk_i(clk_i), .rst_i(rst_i || npi_rd_flush_i[p]),
+                    .push_i(rd_valid_i && back_at[p]), .data_i({back_index[3:0], rd_data_i}),
+                    .pop_i(npi_rd_pop_i[p]),
+                    .data_o({npi_rd_word_o[4*p +: 4], npi_rd_data_o[64*p +: 64]}),
+                    .empty_o(npi_rd_empty_o[p]), .full_o(rd_full)
+                );
+                assign back_free[p] = 1'b1;
+                wire unused = &{1'b0, rd_full, 1'b0};
+            end else begin : g_direct
+                assign {npi_rd_word_o[4*p +: 4], npi_rd_data_o[64*p +: 64]} =
+                       {back_index[3:0], rd_data_i};
+                assign npi_rd_empty_o[p] = !(rd_valid_i && back_at[p]);
+                assign back_free[p] = npi_rd_pop_i[p];
+                wire unused = &{1'b0, npi_rd_flush_i[p], 1'b0};
+            end
         end
     endgenerate
 
-    // Reads under way, in order: whose they are and how many words each.
-    wire [PORT_BITS-1:0] back_port;
-    wire [4:0] back_words;
-    wire back_empty, back_almost_full;
-    wire back_last = {1'b0, rd_index} + 5'd1 == back_words;
-    npi_fifo #(.WIDTH(PORT_BITS + 5), .LOG2(4)) u_order (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .push_i(cmd_valid_o && cmd_ready_i && read), .data_i({port, words}),
-        .pop_i(rd_valid_i && rd_ready_o && back_last), .data_o({back_port, back_words}),
-        .empty_o(back_empty), .almost_full_o(back_almost_full)
-    );
-
-    assign wr_valid_o  = state == MOVE_WORDS && !npi_wr_empty_o[port];
-    assign {wr_be_o, wr_data_o} = wr_word[port];
-    assign cmd_valid_o = state == WAIT_COMMAND && !(read && back_almost_full);
-    assign cmd_read_o  = read;
-    assign cmd_addr_o  = addr;
-    assign cmd_words_o = words;
-    assign rd_ready_o  = !back_empty;
-
-    wire [2:0] next_size = npi_size_i[4*next +: 3];
-
-    always @(posedge clk_i) begin
-        npi_addr_ack_o <= {PORTS{1'b0}};
-        case (state)
-            WAIT_REQUEST: begin
-                port  <= next;
-                read  <= npi_rnw_i[next];
-                addr  <= npi_addr_i[32*next +: 32];
-                words <= 5'd1 << next_size;
-                left  <= 5'd1 << next_size;
-                if (|asking)
-                    state <= npi_rnw_i[next] ? WAIT_COMMAND : MOVE_WORDS;
-                else
-                    port <= port;
-            end
-            MOVE_WORDS: if (wr_valid_o && wr_ready_i) begin
-                left <= left - 5'd1;
-                if (left == 5'd1)
-                    state <= WAIT_COMMAND;
-            end
-            default: if (cmd_valid_o && cmd_ready_i) begin
-                npi_addr_ack_o[port] <= 1'b1;
-                state <= WAIT_REQUEST;
-            end
-        endcase
-        if (rd_valid_i && rd_ready_o)
-            rd_index <= back_last ? 4'd0 : rd_index + 4'd1;
-        if (rst_i) begin
-            state <= WAIT_REQUEST;
-            port  <= 0;
-            rd_index <= 4'd0;
-            npi_addr_ack_o <= {PORTS{1'b0}};
-        end
+    reg [71:0] wr_word;
+    integer k;
+    always @* begin
+        wr_word = 72'd0;
+        for (k = 0; k < PORTS; k = k + 1)
+            wr_word = wr_word | (wr_words[72*k +: 72] & {72{move_port == k[PORT_BITS-1:0]}});
     end
+    assign wr_valid_o = |(move_at & ~npi_wr_empty_o);
+    assign {wr_be_o, wr_data_o} = wr_word;
+    assign rd_ready_o = |(back_at & back_free);
 
-    // A requester has room for what it reads (rule 3), and there is no size above 4.
-    wire unused = &{1'b0, rd_almost_full, npi_size_i, 1'b0};
+    // Byte enables always work, so read-modify-write is nothing special. Transfers are aligned.
+    wire unused = &{1'b0, npi_rmw_i, npi_size_i, addr[2:0], back_index[4], 1'b0};
 endmodule

@@ -17,15 +17,15 @@ module npi_fifo #(
     input  wire             pop_i,
     output wire [WIDTH-1:0] data_o,
     output wire             empty_o,
-    output wire             almost_full_o // room for one word at most
+    output wire             full_o
 );
     reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
     reg [LOG2:0] write_index, read_index;
 
-    wire [LOG2:0] count  = write_index - read_index;
-    assign empty_o       = write_index == read_index;
-    assign almost_full_o = count >= (1 << LOG2) - 1;
-    assign data_o        = words[read_index[LOG2-1:0]];
+    wire same    = write_index[LOG2-1:0] == read_index[LOG2-1:0];
+    assign empty_o = same && write_index[LOG2] == read_index[LOG2];
+    assign full_o  = same && write_index[LOG2] != read_index[LOG2];
+    assign data_o  = words[read_index[LOG2-1:0]];
 
     always @(posedge clk_i) begin
         if (push_i) begin
@@ -47,9 +47,10 @@ module npi_fifo #(
     (* anyconst *) reg [LOG2:0] place;
     reg [WIDTH-1:0] value;
     reg inside = 1'b0;
+    wire [LOG2:0] count = write_index - read_index;
     always @(posedge clk_i) begin
         past <= 1'b1;
-        assume (!(push_i && count == (1 << LOG2)));
+        assume (!(push_i && full_o));
         assume (!(pop_i && empty_o));
         if (push_i && write_index == place) begin
             value  <= data_i;
@@ -59,14 +60,16 @@ module npi_fifo #(
             inside <= 1'b0;
         if (past) begin
             assert (count <= (1 << LOG2));
+            assert (empty_o == (count == 0));
+            assert (full_o == (count == (1 << LOG2)));
             if (inside) begin
                 assert ((place - read_index) < count);
                 assert (words[place[LOG2-1:0]] == value);
             end
             if (inside && read_index == place)
                 assert (data_o == value && !empty_o);
-            cover (count == (1 << LOG2));
-            cover ($past(count) == (1 << LOG2) && empty_o == 0 && inside);
+            cover (full_o);
+            cover ($past(full_o) && !empty_o && inside);
         end
     end
 `endif

@@ -63,13 +63,13 @@ module modem_rx (
     wire       keeps     = ends && !drop_now && !stuck;
     wire [6:0] last_index = count_now - 7'd1;
 
-    wire fifo_empty, fifo_almost_full;
+    wire fifo_empty, fifo_full;
     npi_fifo #(.WIDTH(7), .LOG2(4)) u_lengths (
         .clk_i(clk_i), .rst_i(rst_i), .push_i(packet_o), .data_i(publish_bytes),
         .pop_i(release_i), .data_o(packet_bytes_o), .empty_o(fifo_empty),
-        .almost_full_o(fifo_almost_full)
+        .full_o(fifo_full)
     );
-    wire unused = &{1'b0, fifo_almost_full, 1'b0};
+    wire unused = &{1'b0, fifo_full, 1'b0};
 
     reg [3:0] oldest;
     assign packet_valid_o  = !fifo_empty;

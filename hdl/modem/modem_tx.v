@@ -42,10 +42,10 @@ module modem_tx (
     reg [5:0]  rest;
 
     wire [6:0] bytes;
-    wire       empty, almost_full;
+    wire       empty, full;
     npi_fifo #(.WIDTH(7), .LOG2(4)) u_lengths (
         .clk_i(clk_i), .rst_i(rst_i), .push_i(put_i), .data_i(put_bytes_i),
-        .pop_i(sent_o), .data_o(bytes), .empty_o(empty), .almost_full_o(almost_full)
+        .pop_i(sent_o), .data_o(bytes), .empty_o(empty), .full_o(full)
     );
 
     wire take = tx_valid_o && tx_ready_i;
@@ -58,7 +58,7 @@ module modem_tx (
     assign tx_valid_o = state == SEND && cts_i && enable_i;
     assign tx_data_o  = word[7:0];
 
-    wire unused = &{1'b0, almost_full, 1'b0};
+    wire unused = &{1'b0, full, 1'b0};
 
     always @(posedge clk_i) begin
         sent_o <= 1'b0;

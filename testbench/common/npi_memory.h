@@ -92,18 +92,20 @@ private:
     }
 
     void take() {
-        if (size_ > 4)
+        if (size_ > 5)
             broken("size " + std::to_string(size_));
         unsigned words = 1u << size_;
-        if (address_ % (words * 8))
+        bool lineRead = isRead_ && (size_ == 1 || size_ == 2); // may name any word of the line
+        if (address_ % (lineRead ? 8 : words * 8))
             broken("address not aligned to its size");
+        address_ -= address_ % (words * 8);
         isRead_ ? takeRead(words) : takeWrite(words);
     }
 
     void takeRead(unsigned words) {
         ++reads_;
         for (unsigned w = 0; w < words; ++w)
-            read_.push_back({load(address_ + 8 * w), static_cast<uint8_t>(w)});
+            read_.push_back({load(address_ + 8 * w), static_cast<uint8_t>(w % 16)});
         if (read_.size() > fifoWords)
             broken("more words outstanding than the read FIFO holds");
     }
@@ -132,7 +134,7 @@ private:
         top_.npi_init_done_i = 1;
         top_.npi_addr_ack_i = ack_;
         top_.npi_wr_empty_i = write_.empty();
-        top_.npi_wr_almost_full_i = write_.size() + 1 >= fifoWords;
+        top_.npi_wr_almost_full_i = write_.size() >= fifoWords;
         top_.npi_rd_empty_i = !readValid_;
         if (readValid_) {
             top_.npi_rd_data_i = read_.front().data;

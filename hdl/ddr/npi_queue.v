@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+//
+// npi_queue: accepted requests on their way: write words out, commands out, read words back.
+//
+// One LUT RAM of 2**LOG2 requests (one is kept free), and four places in it that chase each other:
+//   head   where the next accepted request goes
+//   move   the write whose words go to the back-end now (a read is passed by)
+//   issue  the request whose command goes to the back-end now; a write's words are all there
+//   back   the read whose words come back now (a write is passed by)
+// So addresses are accepted, write words move, commands go and read words come in the same cycle.
+// Commands go in the order of acceptance.
+
+`default_nettype none
+
+module npi_queue #(
+    parameter PORT_BITS = 1, // width of a port's number
+    parameter LOG2      = 5  // 2..5
+) (
+    input  wire                 clk_i,
+    input  wire                 rst_i,
+    // accepted requests
+    input  wire                 push_i,
+    input  wire [PORT_BITS-1:0] push_port_i,
+    input  wire                 push_read_i,
+    input  wire [2:0]           push_size_i, // 2**size words, 0..5
+    input  wire [28:0]          push_addr_i, // of a 64-bit word
+    output wire                 full_o,
+    // words of writes
+    output wire                 move_valid_o, // a word of this port is wanted
+    output wire [PORT_BITS-1:0] move_port_o,
+    input  wire                 move_done_i,  // it goes in this cycle
+    // commands
+    output wire                 cmd_valid_o,
+    output wire                 cmd_read_o,
+    output wire [28:0]          cmd_addr_o,
+    output wire [4:0]           cmd_last_o,   // words - 1
+    input  wire                 cmd_ready_i,
+    // words of reads
+    output wire                 back_valid_o, // the next word is for this port
+    output wire [PORT_BITS-1:0] back_port_o,
+    output wire [4:0]           back_index_o, // its place in its transfer
+    input  wire                 back_done_i   // it comes in this cycle
+);
+    localparam KIND = PORT_BITS + 4;
+
+    reg [28:0]     addrs [0:(1<<LOG2)-1];
+    reg [KIND-1:0] kinds [0:(1<<LOG2)-1]; // port, read, size
+    reg [LOG2-1:0] head, move, issue, back;
+    reg [4:0]      move_index, back_index;
+
+    // words - 1 of a size; 6 and 7 count as 5
+    function [4:0] last_of;
+        input [2:0] size;
+        last_of = {size[2] && |size[1:0], size[2], size[2] || &size[1:0], size[2] || size[1],
+                   |size};
+    endfunction
+
+    wire [LOG2-1:0] head_next = head + 1'b1;
+    assign full_o = head_next == back;
+
+    wire       move_read, issue_read, back_read;
+    wire [2:0] move_size, issue_size, back_size;
+    wire [PORT_BITS-1:0] issue_port;
+    assign {move_port_o, move_read, move_size} = kinds[move];
+    assign {issue_port, issue_read, issue_size} = kinds[issue];
+    assign {back_port_o, back_read, back_size} = kinds[back];
+
+    wire moving     = move != head;
+    wire move_last  = move_index == last_of(move_size);
+    assign move_valid_o = moving && !move_read;
+
+    assign cmd_valid_o = issue != move;
+    assign cmd_read_o  = issue_read;
+    assign cmd_addr_o  = addrs[issue];
+    assign cmd_last_o  = last_of(issue_size);
+
+    wire coming     = back != issue;
+    wire back_last  = back_index == last_of(back_size);
+    assign back_valid_o = coming && back_read;
+    assign back_index_o = back_index;
+
+    always @(posedge clk_i) begin
+        if (push_i) begin
+            addrs[head] <= push_addr_i;
+            kinds[head] <= {push_port_i, push_read_i, push_size_i};
+            head        <= head_next;
+        end
+        if (move_done_i)
+            move_index <= move_last ? 5'd0 : move_index + 5'd1;
+        if (moving && (move_read || (move_done_i && move_last)))
+            move <= move + 1'b1;
+        if (cmd_valid_o && cmd_ready_i)
+            issue <= issue + 1'b1;
+        if (back_done_i)
+            back_index <= back_last ? 5'd0 : back_index + 5'd1;
+        if (coming && (!back_read || (back_done_i && back_last)))
+            back <= back + 1'b1;
+        if (rst_i) begin
+            head  <= 0;
+            move  <= 0;
+            issue <= 0;
+            back  <= 0;
+            move_index <= 5'd0;
+            back_index <= 5'd0;
+        end
+    end
+
+    wire unused = &{1'b0, issue_port, 1'b0};
+
+`ifdef FORMAL
+    reg past = 1'b0;
+    initial assume (rst_i);
+
+    // Any one place of the ring: what is put there comes out as it went in, once, in its turn.
+    (* anyconst *) reg [LOG2-1:0] place;
+    reg [28:0]     addr;
+    reg [KIND-1:0] kind;
+    reg            inside = 1'b0, issued = 1'b0;
+    reg [5:0]      moved = 0, came = 0; // words of it
+    wire           is_read   = kind[3];
+    wire [5:0]     all_words = {1'b0, last_of(kind[2:0])} + 6'd1;
+    // distances from `back`, the oldest
+    wire [LOG2-1:0] n_head = head - back, n_move = move - back, n_issue = issue - back,
+                    n_place = place - back;
+
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        assume (!(push_i && full_o));
+        assume (!(move_done_i && !move_valid_o));
+        assume (!(back_done_i && !back_valid_o));
+        if (push_i && head == place) begin
+            addr   <= push_addr_i;
+            kind   <= {push_port_i, push_read_i, push_size_i};
+            inside <= 1'b1;
+            issued <= 1'b0;
+            moved  <= 6'd0;
+            came   <= 6'd0;
+        end
+        if (move_done_i && move == place)
+            moved <= moved + 6'd1;
+        if (cmd_valid_o && cmd_ready_i && issue == place)
+            issued <= 1'b1;
+        if (back_done_i && back == place)
+            came <= came + 6'd1;
+        if (coming && (!back_read || (back_done_i && back_last)) && back == place)
+            inside <= 1'b0;
+        if (rst_i)
+            inside <= 1'b0;
+        if (past && !rst_i) begin
+            // The four places keep their order.
+            assert (n_issue <= n_move);
+            assert (n_move <= n_head);
+            assert (inside == (n_place < n_head));
+            assert (move_index <= last_of(move_size) || !moving || move_read);
+            assert (back_index <= last_of(back_size) || !coming || !back_read);
+            if (!moving || move_read)
+                assert (move_index == 5'd0);
+            if (!coming || !back_read)
+                assert (back_index == 5'd0);
+            if (inside) begin
+                assert (addrs[place] == addr && kinds[place] == kind);
+                assert (issued == (n_place < n_issue));
+                // No word of a write before its turn, and all of them before its command.
+                if (n_place > n_move)
+                    assert (moved == 6'd0);
+                if (move == place && moving)
+                    assert (moved == (is_read ? 6'd0 : {1'b0, move_index}));
+                if (n_place < n_move)
+                    assert (moved == (is_read ? 6'd0 : all_words));
+                // No word of a read before its command; its words are counted.
+                if (back != place)
+                    assert (came == 6'd0);
+                if (back == place)
+                    assert (came == {1'b0, back_index});
+            end
+            if (cmd_valid_o && issue == place) begin
+                assert (inside && !issued);
+                assert (cmd_read_o == is_read && cmd_addr_o == addr);
+                assert ({1'b0, cmd_last_o} + 6'd1 == all_words);
+                assert (is_read || moved == all_words);
+            end
+            if (back_valid_o && back == place)
+                assert (issued && is_read && back_port_o == kind[KIND-1:4]);
+            cover (full_o);
+            cover (inside && issued && is_read && came == 6'd4);
+            cover (cmd_valid_o && !cmd_read_o && cmd_last_o == 5'd3);
+            // addresses, write words, commands and read words all in one cycle
+            cover (push_i && move_done_i && cmd_valid_o && cmd_ready_i && back_done_i);
+        end
+    end
+`endif
+endmodule

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+//
+// npi_select: chooses the next of PORTS requesters: round robin, with an optional urgent class.
+//
+// Ports with their bit set in URGENT go before the others; each class is served in turn. While a
+// port that is not urgent waits, at most URGENT_RUN urgent grants are given in a row. So between a
+// request and its grant there are at most, with N ports of which U are urgent,
+//   no port urgent:     N - 1 grants to other ports
+//   a port not urgent:  (N - U) * (URGENT_RUN + 1) - 1
+//   an urgent port:     U + (U - 1) / URGENT_RUN, with U < N; U - 1, with U = N
+// The proof is at the foot.
+
+`default_nettype none
+
+module npi_select #(
+    parameter             PORTS      = 2, // 2..8
+    parameter [PORTS-1:0] URGENT     = 0,
+    parameter             URGENT_RUN = 3  // 1..7
+) (
+    input  wire             clk_i,
+    input  wire             rst_i,
+    input  wire [PORTS-1:0] asking_i,
+    input  wire             enable_i, // a grant can be taken in this cycle
+    output wire [PORTS-1:0] grant_o   // one-hot, or 0
+);
+    // later: the ports after the one of their class that was served last.
+    reg [PORTS-1:0] later;
+    reg [2:0]       run;
+
+    wire [PORTS-1:0] urgent  = asking_i & URGENT;
+    wire [PORTS-1:0] normal  = asking_i & ~URGENT;
+    wire             overdue = run == URGENT_RUN;
+    wire [PORTS-1:0] turn    = |urgent && !(overdue && |normal) ? urgent : normal;
+    wire [PORTS-1:0] next    = |(turn & later) ? turn & later : turn;
+    wire [PORTS-1:0] chosen  = next & (~next + 1'b1); // the lowest bit
+    wire [PORTS-1:0] members = |(chosen & URGENT) ? URGENT : ~URGENT;
+
+    assign grant_o = enable_i ? chosen : {PORTS{1'b0}};
+
+    always @(posedge clk_i) begin
+        if (|grant_o) begin
+            later <= (later & ~members) | (~(chosen - 1'b1) & ~chosen & members);
+            if (!(|(chosen & URGENT)))
+                run <= 3'd0;
+            else if (|normal && !overdue)
+                run <= run + 3'd1;
+        end
+        if (rst_i) begin
+            later <= {PORTS{1'b0}};
+            run   <= 3'd0;
+        end
+    end
+
+`ifdef FORMAL
+    reg past = 1'b0;
+    initial assume (rst_i);
+
+    (* anyconst *) reg [PORTS-1:0] me; // any one port, one-hot
+    localparam [5:0] RUN = URGENT_RUN, N = PORTS;
+    reg  [5:0] waited = 0;             // grants to others since it began to wait
+    reg  [5:0] urgents, bound;
+    wire       me_asks = |(me & asking_i);
+    integer    q;
+    always @* begin
+        urgents = 6'd0;
+        for (q = 0; q < PORTS; q = q + 1)
+            urgents = urgents + {5'd0, URGENT[q]};
+        if (URGENT == 0 || &URGENT)
+            bound = N - 6'd1;
+        else if (!(|(me & URGENT)))
+            bound = (N - urgents) * (RUN + 6'd1) - 6'd1;
+        else
+            bound = urgents + (urgents - 6'd1) / RUN;
+    end
+
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        assume (me != 0 && (me & (me - 1'b1)) == 0);
+        // A request stays until it is granted.
+        if (past && !rst_i && !$past(rst_i))
+            assume ((asking_i | ~$past(asking_i) | $past(grant_o)) == {PORTS{1'b1}});
+        if (rst_i || !me_asks || |(grant_o & me))
+            waited <= 6'd0;
+        else if (|grant_o)
+            waited <= waited + 6'd1;
+        if (past && !rst_i) begin
+            assert ((grant_o & (grant_o - 1'b1)) == 0);     // at most one
+            assert ((grant_o & ~asking_i) == 0);            // only to a requester
+            assert (!enable_i || |grant_o == |asking_i);    // no cycle is lost
+            assert (run <= URGENT_RUN);
+            assert (waited <= bound);
+            cover (waited == bound);
+            cover (&asking_i && |(grant_o & me));
+        end
+    end
+`endif
+endmodule

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+//
+// npi_requester: requesters on the packed NPI ports of a memory controller, with a reference memory.
+//
+// The reference is brought up to date at each acknowledgement, which is the order in memory
+// (docs/memory.md): every word read and its place are compared with it, at once. A difference throws.
+
+#ifndef NPI_REQUESTER_H
+#define NPI_REQUESTER_H
+
+#include "bits.h"
+#include "random.h"
+#include <cstring>
+#include <deque>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+// What a requester does.
+struct NpiTraffic {
+    double ask = 1.0;        // chance, each cycle, of beginning a request when none is waiting
+    double push = 1.0;       // ... that the next word of a write is pushed
+    double pop = 1.0;        // ... that a word that came is taken
+    double writes = 0.5;     // share of writes
+    unsigned minSize = 0, maxSize = 5;
+    bool byteEnables = true; // random; else all bytes
+    bool anyLineWord = true; // reads of cache lines begin at any word
+    bool sequential = false; // address after address, else anywhere
+    uint32_t base = 0, bytes = 1 << 16; // its part of the memory
+};
+
+template <class Module> class NpiRequesters {
+public:
+    static constexpr unsigned fifoWords = 32;
+
+    struct Counters {
+        uint64_t readWords = 0, writeWords = 0, requests = 0, waitSum = 0, waitMax = 0;
+        uint64_t latencySum = 0, latencyMax = 0, latencyMin = ~0ull, reads = 0;
+        uint64_t othersMax = 0; // acknowledgements of other ports while it waited
+    };
+
+    NpiRequesters(Module& top, unsigned ports, size_t bytes, uint64_t seed)
+        : top_(top), reference_(bytes), ports_(ports), random_(seed) {
+        for (unsigned p = 0; p < ports; ++p)
+            ports_[p].number = p;
+        drive();
+    }
+
+    NpiTraffic& traffic(unsigned port) { return ports_[port].traffic; }
+    const Counters& counters(unsigned port) const { return ports_[port].counters; }
+    void clearCounters() {
+        for (Port& port : ports_)
+            port.counters = Counters();
+    }
+    std::vector<uint8_t>& reference() { return reference_; }
+    void stop() { stopped_ = true; } // no new requests; what is under way ends
+    void go() { stopped_ = false; }
+    bool idle() const {
+        for (const Port& port : ports_)
+            if (port.asking || port.pushed || !port.expected.empty())
+                return false;
+        return true;
+    }
+
+    void sample() {
+        uint64_t acks = top_.npi_addr_ack_o;
+        if (acks & (acks - 1))
+            throw std::runtime_error("two acknowledgements in one cycle");
+        for (Port& port : ports_) {
+            takeWord(port);
+            if (acks >> port.number & 1)
+                acknowledged(port);
+            else if (port.asking)
+                port.others += acks != 0;
+        }
+        ++now_;
+    }
+
+    void drive() {
+        for (Port& port : ports_) {
+            begin(port);
+            push(port);
+            unsigned p = port.number;
+            bool asks = port.asking && port.pushed >= (port.read ? 0 : port.words);
+            if (asks && !port.raised) {
+                port.raised = true;
+                port.since = now_;
+                port.others = 0;
+            }
+            setBits(top_.npi_addr_req_i, p, 1, asks);
+            setBits(top_.npi_addr_i, 32 * p, 32, port.address);
+            setBits(top_.npi_rnw_i, p, 1, port.read);
+            setBits(top_.npi_size_i, 4 * p, 4, port.size);
+            setBits(top_.npi_rmw_i, p, 1, port.rmw);
+            port.willing = random_.chance(port.traffic.pop);
+            setBits(top_.npi_rd_pop_i, p, 1, 0);
+        }
+    }
+
+    // Pops depend on what the port shows in the same cycle: called when the outputs have settled.
+    void pops() {
+        for (Port& port : ports_) {
+            port.popping = port.willing && !getBits(top_.npi_rd_empty_o, port.number, 1);
+            setBits(top_.npi_rd_pop_i, port.number, 1, port.popping);
+        }
+    }
+
+private:
+    struct Expected {
+        uint64_t data, since;
+        unsigned index;
+        bool first;
+    };
+    struct Port {
+        unsigned number = 0;
+        NpiTraffic traffic;
+        Counters counters;
+        bool asking = false, raised = false, read = false, rmw = false, willing = false,
+             popping = false;
+        uint32_t address = 0, next = 0;
+        unsigned size = 0, words = 0, pushed = 0;
+        uint64_t since = 0, others = 0;
+        std::vector<std::pair<uint64_t, uint8_t>> data; // of the write being prepared
+        std::deque<Expected> expected;                  // words of reads, in their order
+    };
+
+    void begin(Port& port) {
+        if (port.asking || stopped_ || !top_.npi_init_done_o || !random_.chance(port.traffic.ask))
+            return;
+        const NpiTraffic& t = port.traffic;
+        bool read = !random_.chance(t.writes);
+        unsigned size = t.minSize + random_.below(t.maxSize - t.minSize + 1), words = 1u << size;
+        if (read && port.expected.size() + words > fifoWords)
+            return; // rule 3
+        port.asking = true;
+        port.raised = false;
+        port.read = read;
+        port.rmw = random_.chance(0.5);
+        port.size = size;
+        port.words = words;
+        uint32_t bytes = words * 8;
+        if (t.sequential) {
+            port.next = (port.next + bytes - 1) / bytes * bytes % t.bytes;
+            port.address = t.base + port.next;
+            port.next += bytes;
+        } else {
+            port.address = t.base + random_.below(t.bytes / bytes) * bytes;
+        }
+        if (read && t.anyLineWord && (size == 1 || size == 2))
+            port.address += random_.below(words) * 8;
+        port.data.clear();
+        port.pushed = 0;
+        if (!read)
+            for (unsigned w = 0; w < words; ++w) {
+                uint64_t data = uint64_t(random_.next()) << 32 | random_.next();
+                port.data.emplace_back(data, t.byteEnables ? random_.next() & 0xFF : 0xFF);
+            }
+    }
+
+    void push(Port& port) {
+        unsigned p = port.number;
+        bool pushes = port.asking && !port.read && port.pushed < port.words &&
+                      !getBits(top_.npi_wr_almost_full_o, p, 1) && random_.chance(port.traffic.push);
+        setBits(top_.npi_wr_push_i, p, 1, pushes);
+        if (pushes) {
+            setBits(top_.npi_wr_data_i, 64 * p, 64, port.data[port.pushed].first);
+            setBits(top_.npi_wr_be_i, 8 * p, 8, port.data[port.pushed].second);
+            ++port.pushed;
+        }
+    }
+
+    void acknowledged(Port& port) {
+        if (!port.raised)
+            throw std::runtime_error("port " + std::to_string(port.number) +
+                                     ": acknowledged without a request");
+        uint32_t from = port.address / (port.words * 8) * (port.words * 8);
+        for (unsigned w = 0; w < port.words; ++w) {
+            uint8_t* where = reference_.data() + from + 8 * w;
+            if (port.read) {
+                uint64_t value;
+                std::memcpy(&value, where, 8);
+                port.expected.push_back({value, port.since, w % 16, w == 0});
+            } else {
+                for (unsigned b = 0; b < 8; ++b)
+                    if (port.data[w].second >> b & 1)
+                        where[b] = static_cast<uint8_t>(port.data[w].first >> (8 * b));
+            }
+        }
+        Counters& c = port.counters;
+        ++c.requests;
+        uint64_t wait = now_ - port.since;
+        c.waitSum += wait;
+        c.waitMax = std::max(c.waitMax, wait);
+        c.othersMax = std::max(c.othersMax, port.others);
+        c.writeWords += port.read ? 0 : port.words;
+        port.asking = port.raised = false;
+        port.pushed = 0;
+    }
+
+    void takeWord(Port& port) {
+        if (!port.popping)
+            return;
+        if (port.expected.empty())
+            throw std::runtime_error(where(port) + "a word that nobody asked for");
+        Expected e = port.expected.front();
+        port.expected.pop_front();
+        uint64_t data = getBits(top_.npi_rd_data_o, 64 * port.number, 64);
+        uint64_t index = getBits(top_.npi_rd_word_o, 4 * port.number, 4);
+        if (data != e.data || index != e.index)
+            throw std::runtime_error(where(port) + "read " + std::to_string(data) + " place " +
+                                     std::to_string(index) + ", expected " +
+                                     std::to_string(e.data) + " place " + std::to_string(e.index));
+        ++port.counters.readWords;
+        if (e.first) {
+            uint64_t latency = now_ - e.since;
+            Counters& c = port.counters;
+            ++c.reads;
+            c.latencySum += latency;
+            c.latencyMax = std::max(c.latencyMax, latency);
+            c.latencyMin = std::min(c.latencyMin, latency);
+        }
+    }
+
+    std::string where(const Port& port) const {
+        return "cycle " + std::to_string(now_) + ", port " + std::to_string(port.number) + ": ";
+    }
+
+    Module& top_;
+    std::vector<uint8_t> reference_;
+    std::vector<Port> ports_;
+    Random random_;
+    bool stopped_ = false;
+    uint64_t now_ = 0;
+};
+
+#endif

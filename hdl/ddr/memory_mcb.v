@@ -7,7 +7,7 @@
 module memory_mcb #(
     parameter             PORTS      = 2, // 2..8
     parameter [PORTS-1:0] URGENT     = 0, // these three: npi_arbiter
-    parameter             URGENT_RUN = 3,
+    parameter [2:0]       URGENT_RUN = 3'd3,
     parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}}
 ) (
     input  wire                clk_i,

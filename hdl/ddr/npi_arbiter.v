@@ -10,7 +10,7 @@
 module npi_arbiter #(
     parameter             PORTS      = 2, // 2..8
     parameter [PORTS-1:0] URGENT     = 0, // ports that go before the others: npi_select
-    parameter             URGENT_RUN = 3, // 1..7
+    parameter [2:0]       URGENT_RUN = 3'd3, // 1..7
     // A port without a read FIFO gets its words as they come, and holds up all ports until it takes
     // them: for those that always do at once.
     parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}}

@@ -184,8 +184,9 @@ module npi_queue #(
             cover (full_o);
             cover (inside && issued && is_read && came == 6'd4);
             cover (cmd_valid_o && !cmd_read_o && cmd_last_o == 5'd3);
-            // addresses, write words, commands and read words all in one cycle
-            cover (push_i && move_done_i && cmd_valid_o && cmd_ready_i && back_done_i);
+            // all of them in one cycle, as far as three places allow
+            cover (move_done_i && cmd_valid_o && cmd_ready_i && back_done_i);
+            cover (push_i && move_done_i && back_done_i);
         end
     end
 `endif

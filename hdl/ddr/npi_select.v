@@ -15,7 +15,7 @@
 module npi_select #(
     parameter             PORTS      = 2, // 2..8
     parameter [PORTS-1:0] URGENT     = 0,
-    parameter             URGENT_RUN = 3  // 1..7
+    parameter [2:0]       URGENT_RUN = 3'd3 // 1..7
 ) (
     input  wire             clk_i,
     input  wire             rst_i,
@@ -56,11 +56,11 @@ module npi_select #(
     initial assume (rst_i);
 
     (* anyconst *) reg [PORTS-1:0] me; // any one port, one-hot
-    localparam [5:0] RUN = URGENT_RUN, N = PORTS;
+    localparam [5:0] N = PORTS;
     reg  [5:0] waited = 0;             // grants to others since it began to wait
     reg  [5:0] urgents, bound;
-    wire       me_asks = |(me & asking_i);
-    integer    q;
+    wire me_asks = |(me & asking_i);
+    integer q;
     always @* begin
         urgents = 6'd0;
         for (q = 0; q < PORTS; q = q + 1)
@@ -68,9 +68,9 @@ module npi_select #(
         if (URGENT == 0 || &URGENT)
             bound = N - 6'd1;
         else if (!(|(me & URGENT)))
-            bound = (N - urgents) * (RUN + 6'd1) - 6'd1;
+            bound = (N - urgents) * ({3'd0, URGENT_RUN} + 6'd1) - 6'd1;
         else
-            bound = urgents + (urgents - 6'd1) / RUN;
+            bound = urgents + (urgents - 6'd1) / {3'd0, URGENT_RUN};
     end
 
     always @(posedge clk_i) begin

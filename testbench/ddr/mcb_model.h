@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// mcb_model: a 64-bit user port of the Spartan-6 memory controller block (UG388) with DDR3 behind it.
+// mcb_model: a 64-bit user port of the Spartan-6 memory controller block (UG388) with DDR3 behind
+// it.
 //
-// Commands wait in a FIFO of 4, data in FIFOs of 64 words. Times are in cycles of the design's clock,
-// from DDR3-800 data-sheet numbers at 100 MHz. What the real one refuses throws McbError.
+// Commands wait in a FIFO of 4, data in FIFOs of 64 words. Times are in cycles of the design's
+// clock, from DDR3-800 data-sheet numbers at 100 MHz. What the real one refuses throws McbError.
 
 #ifndef MCB_MODEL_H
 #define MCB_MODEL_H
@@ -34,10 +35,10 @@ public:
     } pins;
 
     struct Timing {
-        unsigned calibration = 64;  // shortened: the real one takes about 100 us
-        unsigned rowHit = 14;       // command to first data through the controller, CL included
-        unsigned rowMiss = 18;      // + tRP + tRCD (27.5 ns)
-        unsigned turnaround = 2;    // read after write: tWTR
+        unsigned calibration = 64; // shortened: the real one takes about 100 us
+        unsigned rowHit = 14;      // command to first data through the controller, CL included
+        unsigned rowMiss = 18;     // + tRP + tRCD (27.5 ns)
+        unsigned turnaround = 2;   // read after write: tWTR
         unsigned refreshEvery = 780, refreshTakes = 16; // tREFI 7.8 us, tRFC 160 ns
     };
 
@@ -105,7 +106,8 @@ private:
         if (command.address % 8)
             throw McbError("MCB: address not aligned to 8 bytes");
         if (command.address + size_t(8) * command.words > memory_.size())
-            throw McbError("MCB: address " + std::to_string(command.address) + " beyond the memory");
+            throw McbError("MCB: address " + std::to_string(command.address) +
+                           " beyond the memory");
         queuedWrites_ += command.read ? 0 : command.words;
         if (queuedWrites_ > write_.size())
             throw McbError("MCB: write command before its data");

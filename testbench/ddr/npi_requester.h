@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_requester: requesters on the packed NPI ports of a memory controller, with a reference memory.
+// npi_requester: requesters on the packed NPI ports of a memory controller, with a reference
+// memory.
 //
 // The reference is brought up to date at each acknowledgement, which is the order in memory
-// (docs/memory.md): every word read and its place are compared with it, at once. A difference throws.
+// (docs/memory.md): every word read and its place are compared with it, at once. A difference
+// throws.
 
 #ifndef NPI_REQUESTER_H
 #define NPI_REQUESTER_H
@@ -18,14 +20,14 @@
 
 // What a requester does.
 struct NpiTraffic {
-    double ask = 1.0;        // chance, each cycle, of beginning a request when none is waiting
-    double push = 1.0;       // ... that the next word of a write is pushed
-    double pop = 1.0;        // ... that a word that came is taken
-    double writes = 0.5;     // share of writes
+    double ask = 1.0;    // chance, each cycle, of beginning a request when none is waiting
+    double push = 1.0;   // ... that the next word of a write is pushed
+    double pop = 1.0;    // ... that a word that came is taken
+    double writes = 0.5; // share of writes
     unsigned minSize = 0, maxSize = 5;
-    bool byteEnables = true; // random; else all bytes
-    bool anyLineWord = true; // reads of cache lines begin at any word
-    bool sequential = false; // address after address, else anywhere
+    bool byteEnables = true;            // random; else all bytes
+    bool anyLineWord = true;            // reads of cache lines begin at any word
+    bool sequential = false;            // address after address, else anywhere
     uint32_t base = 0, bytes = 1 << 16; // its part of the memory
 };
 
@@ -160,7 +162,8 @@ private:
     void push(Port& port) {
         unsigned p = port.number;
         bool pushes = port.asking && !port.read && port.pushed < port.words &&
-                      !getBits(top_.npi_wr_almost_full_o, p, 1) && random_.chance(port.traffic.push);
+                      !getBits(top_.npi_wr_almost_full_o, p, 1) &&
+                      random_.chance(port.traffic.push);
         setBits(top_.npi_wr_push_i, p, 1, pushes);
         if (pushes) {
             setBits(top_.npi_wr_data_i, 64 * p, 64, port.data[port.pushed].first);

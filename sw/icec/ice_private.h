@@ -9,6 +9,13 @@
 
 enum { ICE_REQUEST, ICE_BATCH, ICE_REPLY, ICE_VALIDATE, ICE_CLOSE };
 #define ICE_HEADER 14
+#define ICE_REPLY_BODY 19 /* where a reply's encapsulation begins: header, id, status */
+#define ICE_REPLY_HEAD 25 /* where its results begin */
+
+/* A call, and a connection: what is waited for is WAITING. */
+enum { ICE_FREE, ICE_WAITING, ICE_DONE, ICE_BUILDING };
+
+/* ---- messages (ice_message.c) ---- */
 
 /* The 14 bytes before every message; its size is set by Ice_endMessage. */
 void Ice_beginMessage(Ice_OutputStreamPtr os, Ice_Byte type);
@@ -20,12 +27,62 @@ Ice_Int Ice_beginEncapsulation(Ice_OutputStreamPtr os);
 void Ice_endEncapsulation(Ice_OutputStreamPtr os, Ice_Int begin);
 /* Narrows `is` to the encapsulation that follows. ICE_PROTOCOL: an encoding other than 1.0 and 1.1. */
 Ice_Status Ice_enterEncapsulation(Ice_InputStreamPtr is);
+/* Facet as on the wire: none, or one. */
+void Ice_writeFacet(Ice_OutputStreamPtr os, Ice_String facet);
+Ice_String Ice_readFacet(Ice_InputStreamPtr is);
 
+/* ---- connections (ice_connection.c) ---- */
+
+#define Ice_lock(ic, which) ((void)(ICEC_TASKS && ((ic)->os->lock((ic)->osContext, which), 0)))
+#define Ice_unlock(ic, which) ((void)(ICEC_TASKS && ((ic)->os->unlock((ic)->osContext, which), 0)))
 Ice_Status Ice_sendPlain(Ice_CommunicatorPtr ic, int connection, Ice_Byte type);
-void Ice_dispatchMessage(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
-void Ice_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
-void Ice_takeReply(Ice_CommunicatorPtr ic, Ice_InputStreamPtr is);
-void Ice_failCalls(Ice_CommunicatorPtr ic, int connection);
+/* A connection that cannot send is lost. Under ICE_LOCK_SEND. */
+Ice_Status Ice_send(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os);
+void Ice_lose(Ice_CommunicatorPtr ic, int connection, Ice_Status status);
+U32 Ice_nowMs(Ice_CommunicatorPtr ic);
+/* Receives, or lets another task receive, until `state` is no more ICE_WAITING; from within an operation
+ * too. ICE_TIMEOUT, ICE_LIMIT. */
+Ice_Status Ice_await(Ice_CommunicatorPtr ic, const volatile Ice_Byte *state, int slot, Ice_Int timeoutMs);
+/* A connection has come to be. */
+void Ice_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_Byte state);
+/* The communicator's arena behind what outer operations use of it. */
+void Ice_giveArena(Ice_CommunicatorPtr ic, Ice_InputStreamPtr is);
+
+/* ---- requests (ice_dispatch.c, ice_reply.c) ---- */
+
+/* One operation more or less under way; 0: the connection is another one by now. */
+int Ice_countPending(Ice_CommunicatorPtr ic, int connection, U16 generation, int change);
+
+/* 0: the message is malformed. */
+int Ice_dispatchRequest(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
+int Ice_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
+/* Turns results at ICE_REPLY_HEAD into a whole reply. `current` 0: who was meant is no more known. */
+void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Current *current);
+
+/* ---- calls (ice_call.c) ---- */
+
+/* Sends what begin began, and gives the buffer back. */
+Ice_Status Ice_sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void *cookie);
+/* Empties ic->request; under ICE_LOCK_SEND. */
+void Ice_initRequest(Ice_CommunicatorPtr ic);
+
+void Ice_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
+void Ice_failCalls(Ice_CommunicatorPtr ic, int connection, Ice_Status status);
+/* Ends asynchronous calls whose time is over; the result is when the next one's is, at most `waitMs`. */
+Ice_Int Ice_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs);
 void Ice_wakeCalls(Ice_CommunicatorPtr ic);
+
+/* ---- proxies (ice_proxy.c) ---- */
+
+void Ice_ObjectPrx_init(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic);
+/* ICE_LIMIT: too long together. */
+Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, Ice_String name, Ice_String category,
+                                     Ice_String facet);
+/* Adds the transport's endpoint; `options` 0: the one it listens on. */
+Ice_Status Ice_ObjectPrx_addEndpoint(Ice_ObjectPrxPtr prx, const char *options);
+/* The options behind the transport's name, or 0 where the text names another transport. */
+const char *Ice_optionsOf(Ice_CommunicatorPtr ic, const char *text);
+/* "category/name" */
+Ice_Identity Ice_parseIdentity(const char *text);
 
 #endif

@@ -2,7 +2,7 @@
  *
  * ice_stream: Ice's encodings 1.0 and 1.1 of the basic types. Little-endian, whatever the machine is.
  */
-#include "icec.h"
+#include "ice_stream.h"
 
 #include <string.h>
 
@@ -14,15 +14,18 @@ Ice_String Ice_String_from(const char *terminated) {
 }
 
 int Ice_String_equals(Ice_String a, const char *terminated) {
-    return (size_t)a.size == strlen(terminated) && memcmp(a.data, terminated, (size_t)a.size) == 0;
+    return Ice_String_same(a, Ice_String_from(terminated));
+}
+
+int Ice_String_same(Ice_String a, Ice_String b) {
+    return a.size == b.size && memcmp(a.data, b.data, (size_t)a.size) == 0;
 }
 
 void Ice_OutputStream_init(Ice_OutputStreamPtr os, Ice_Byte *data, Ice_Int capacity) {
+    memset(os, 0, sizeof *os);
     os->data = data;
-    os->size = 0;
     os->capacity = capacity;
     os->minor = 1;
-    os->failed = 0;
 }
 
 void Ice_OutputStream_writeBlob(Ice_OutputStreamPtr os, const Ice_Byte *data, Ice_Int size) {

@@ -2,167 +2,46 @@
  *
  * icec: a small peer of ZeroC Ice 3.7 in C90: communicator, object adapter, servants, proxies.
  *
- * No allocation: the caller owns every object named here, and keeps it while it is in use. Limits are
- * the constants below. Names follow the paper's figures; the mapping is docs/icec.md.
+ * No allocation: the caller owns every object named here, and keeps it while it is in use. So are
+ * strings that are passed as `const char *`. Limits and options: ice_config.h. With ICEC_TASKS and an
+ * Ice_Os, every function may be called by any task; a proxy object belongs to one task at a time
+ * (copies are plain assignments). Names follow the paper's figures; the mapping is docs/icec.md.
  */
 #ifndef ICEC_H
 #define ICEC_H
 
-#include "base.h"
-
-typedef U8 Ice_Bool;
-typedef U8 Ice_Byte;
-typedef S16 Ice_Short;
-typedef S32 Ice_Int;
-typedef float Ice_Float;
-typedef double Ice_Double;
-typedef struct Ice_Long {
-    U32 low; /* C90 has no 64-bit integer */
-    S32 high;
-} Ice_Long;
-
-/* Not terminated; points into a message, or at what the caller keeps. */
-typedef struct Ice_String {
-    Ice_Int size;
-    const char *data;
-} Ice_String;
-
-#define ICE_MESSAGE_MAX 8192   /* bytes of one message, header included (LINK_MAX_MESSAGE) */
-#define ICE_ARENA_BYTES 2048   /* decoded sequences of one message */
-#define ICE_ADAPTERS 2         /* object adapters a communicator */
-#define ICE_SERVANTS 8         /* servants an adapter */
-#define ICE_NAME_MAX 32        /* characters of an identity's name in a proxy */
-#define ICE_ENDPOINT_MAX 48    /* bytes of a proxy's encoded endpoints */
-#define ICE_CONNECTIONS 4
-#define ICE_CALLS 4            /* two-way calls waiting for their replies */
-
-typedef enum Ice_Status {
-    ICE_OK = 0,
-    ICE_OBJECT_NOT_EXIST,
-    ICE_FACET_NOT_EXIST,
-    ICE_OPERATION_NOT_EXIST,
-    ICE_USER_EXCEPTION,   /* the reply is one; its body is in the stream */
-    ICE_UNKNOWN_EXCEPTION, /* the peer failed otherwise */
-    ICE_MARSHAL,          /* a message is not what it should be, or does not fit */
-    ICE_TIMEOUT,
-    ICE_CONNECTION_LOST,
-    ICE_NO_ENDPOINT,      /* unknown transport, or a proxy string that is none */
-    ICE_LIMIT,            /* one of the constants above */
-    ICE_PROTOCOL          /* not IceP 1.0, compressed, or an encoding other than 1.0 and 1.1 */
-} Ice_Status;
-
-const char *Ice_Status_text(Ice_Status status);
-
-Ice_String Ice_String_from(const char *terminated);
-int Ice_String_equals(Ice_String a, const char *terminated);
-
-/* ---- streams: errors stick, one check at the end is enough ---- */
-
-typedef struct Ice_OutputStream {
-    Ice_Byte *data;
-    Ice_Int size, capacity;
-    Ice_Byte minor; /* encoding 1.minor */
-    Ice_Byte failed;
-} Ice_OutputStream, *Ice_OutputStreamPtr;
-
-typedef struct Ice_InputStream {
-    const Ice_Byte *data;
-    Ice_Int position, size;
-    Ice_Byte minor;
-    Ice_Byte failed;
-    U32 *arena; /* for decoded sequences */
-    Ice_Int arenaUsed, arenaSize; /* in words of 4 bytes */
-} Ice_InputStream, *Ice_InputStreamPtr;
-
-void Ice_OutputStream_init(Ice_OutputStreamPtr os, Ice_Byte *data, Ice_Int capacity);
-void Ice_OutputStream_writeBlob(Ice_OutputStreamPtr os, const Ice_Byte *data, Ice_Int size);
-void Ice_OutputStream_writeByte(Ice_OutputStreamPtr os, Ice_Byte v);
-void Ice_OutputStream_writeBool(Ice_OutputStreamPtr os, Ice_Bool v);
-void Ice_OutputStream_writeShort(Ice_OutputStreamPtr os, Ice_Short v);
-void Ice_OutputStream_writeInt(Ice_OutputStreamPtr os, Ice_Int v);
-void Ice_OutputStream_writeLong(Ice_OutputStreamPtr os, Ice_Long v);
-void Ice_OutputStream_writeFloat(Ice_OutputStreamPtr os, Ice_Float v);
-void Ice_OutputStream_writeDouble(Ice_OutputStreamPtr os, Ice_Double v);
-void Ice_OutputStream_writeSize(Ice_OutputStreamPtr os, Ice_Int v);
-void Ice_OutputStream_writeString(Ice_OutputStreamPtr os, Ice_String v);
-/* `largest`: the greatest enumerator, which chooses the width in encoding 1.0. */
-void Ice_OutputStream_writeEnum(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int largest);
-
-void Ice_InputStream_init(Ice_InputStreamPtr is, const Ice_Byte *data, Ice_Int size);
-const Ice_Byte *Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size); /* 0 on failure */
-Ice_Byte Ice_InputStream_readByte(Ice_InputStreamPtr is);
-Ice_Bool Ice_InputStream_readBool(Ice_InputStreamPtr is);
-Ice_Short Ice_InputStream_readShort(Ice_InputStreamPtr is);
-Ice_Int Ice_InputStream_readInt(Ice_InputStreamPtr is);
-Ice_Long Ice_InputStream_readLong(Ice_InputStreamPtr is);
-Ice_Float Ice_InputStream_readFloat(Ice_InputStreamPtr is);
-Ice_Double Ice_InputStream_readDouble(Ice_InputStreamPtr is);
-Ice_Int Ice_InputStream_readSize(Ice_InputStreamPtr is);
-Ice_String Ice_InputStream_readString(Ice_InputStreamPtr is);
-Ice_Int Ice_InputStream_readEnum(Ice_InputStreamPtr is, Ice_Int largest);
-/* Size of a sequence whose elements take at least `least` bytes each: more than is left fails. */
-Ice_Int Ice_InputStream_readSequence(Ice_InputStreamPtr is, Ice_Int least);
-/* Room for `count` elements of `bytes` each, aligned to 8; 0 and a failed stream if there is none. */
-void *Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int bytes);
-
-/* ---- transports ---- */
-
-/* What a transport tells its communicator. */
-typedef enum Ice_EventKind { ICE_EVENT_NONE, ICE_EVENT_OPENED, ICE_EVENT_MESSAGE, ICE_EVENT_CLOSED } Ice_EventKind;
-
-typedef struct Ice_Event {
-    Ice_EventKind kind;
-    int connection; /* 0..ICE_CONNECTIONS-1, the transport's number */
-    Ice_Int size;   /* of the message, which lies in the buffer that receive was given */
-} Ice_Event;
-
-/* A transport moves whole IceP messages on numbered connections. All calls are made by the tasks of the
- * communicator; receive by one at a time. */
-typedef struct Ice_Endpoint {
-    const char *name; /* in proxy strings: "xbee-at", "tcp" */
-    /* Waits up to timeoutMs for one event. `buffer` takes a message of up to ICE_MESSAGE_MAX bytes. */
-    Ice_Status (*receive)(void *context, Ice_Byte *buffer, Ice_Int timeoutMs, Ice_Event *event);
-    Ice_Status (*send)(void *context, int connection, const Ice_Byte *message, Ice_Int size);
-    /* `encoded`: endpoints as in a proxy on the wire (2-byte type + encapsulation each). */
-    Ice_Status (*connect)(void *context, const Ice_Byte *encoded, Ice_Int size, int *connection);
-    void (*close)(void *context, int connection);
-    Ice_Status (*listen)(void *context, const char *options);
-    /* From "-a 1 -p 3" to the wire, and the endpoint that a proxy of our own should carry (options 0). */
-    void (*encode)(void *context, const char *options, Ice_OutputStreamPtr os);
-    /* Makes receive return early; may be called from any task. */
-    void (*wake)(void *context);
-} Ice_Endpoint;
-
-/* ---- tasks ---- */
-
-/* What IceC needs where several tasks use one communicator. The single-task version is Ice_Os_none. */
-typedef struct Ice_Os {
-    void (*lock)(void *context);
-    void (*unlock)(void *context);
-    /* Sleeps until wake of this slot (0..ICE_CALLS-1) or the time is over. 1: woken. */
-    int (*wait)(void *context, int slot, Ice_Int timeoutMs);
-    void (*wake)(void *context, int slot);
-    /* Something that differs from task to task. */
-    int (*task)(void *context);
-} Ice_Os;
-
-/* ---- objects ---- */
+#include "ice_seam.h"
 
 typedef struct Ice_Communicator Ice_Communicator, *Ice_CommunicatorPtr;
 typedef struct Ice_ObjectAdapter Ice_ObjectAdapter, *Ice_ObjectAdapterPtr;
 typedef struct Ice_Object Ice_Object, *Ice_ObjectPtr;
 typedef struct Ice_ObjectPrx Ice_ObjectPrx, *Ice_ObjectPrxPtr;
 
-/* The call being dispatched. */
+typedef struct Ice_Identity {
+    Ice_String name, category;
+} Ice_Identity;
+
+typedef struct Ice_ContextEntry {
+    const char *key, *value;
+} Ice_ContextEntry; /* in an array; a key of 0 ends it */
+
+/* ---- servants ---- */
+
+/* The call being dispatched. Its strings are valid during the dispatch. */
 typedef struct Ice_Current {
+    Ice_CommunicatorPtr communicator;
     Ice_ObjectAdapterPtr adapter;
-    Ice_String name, category, operation;
+    Ice_String name, category, facet, operation;
     Ice_Byte mode; /* 0 normal, 1 nonmutating, 2 idempotent */
+    Ice_Byte minor; /* encoding 1.minor */
     int connection;
+    Ice_Int requestId; /* 0: oneway */
+    Ice_InputStream context; /* use Ice_Current_context */
 } Ice_Current;
 
-/* Reads the parameters from `is`, runs the operation, writes the results to `os`.
- * ICE_OPERATION_NOT_EXIST where there is no such operation. */
+/* Reads the parameters from `is`, runs the operation, writes the results to `os` (after the servant's
+ * function has returned: until then `os` has no place of its own). ICE_OPERATION_NOT_EXIST where there
+ * is no such operation. */
 typedef Ice_Status (*Ice_Dispatch)(Ice_ObjectPtr self, const Ice_Current *current, Ice_InputStreamPtr is,
                                    Ice_OutputStreamPtr os);
 
@@ -172,54 +51,189 @@ struct Ice_Object {
     const char *id;         /* the most derived one */
 };
 
+/* 1: the caller's context has the key, and `value` is set. */
+Ice_Bool Ice_Current_context(const Ice_Current *current, const char *key, Ice_String *value);
+
+/* The right to answer a call later; the servant's function returned ICE_LATER. */
+typedef struct Ice_Reply {
+    Ice_CommunicatorPtr communicator;
+    Ice_Int id;
+    int connection;
+    U16 generation;
+    Ice_Byte minor;
+} Ice_Reply;
+
+void Ice_Current_later(const Ice_Current *current, Ice_Reply *reply);
+/* The stream for the results (or a user exception); to be followed by end. */
+Ice_OutputStreamPtr Ice_Reply_begin(Ice_Reply *reply);
+/* Sends: ICE_OK and ICE_USER_EXCEPTION with what was written, any other status as the failure it is.
+ * ICE_CONNECTION_LOST: who asked is gone. */
+Ice_Status Ice_Reply_end(Ice_Reply *reply, Ice_Status status);
+
+/* ---- object adapters ---- */
+
 struct Ice_ObjectAdapter {
     Ice_CommunicatorPtr communicator;
+    Ice_ObjectAdapterPtr next;
     const char *name;
     Ice_Byte active;
     struct {
-        const char *name;
-        Ice_ObjectPtr servant;
+        Ice_Identity identity; /* name of no characters: default servant of the category */
+        Ice_String facet;
+        Ice_ObjectPtr servant; /* 0: free */
     } servants[ICE_SERVANTS];
 };
 
+/* `identity`: "name" or "category/name". ICE_LIMIT: it is taken, or there is no room. */
+Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant, const char *identity);
+Ice_Status Ice_ObjectAdapter_addFacet(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
+                                      const char *identity, const char *facet);
+/* Answers for every identity of the category that has no servant; "" for every category. */
+Ice_Status Ice_ObjectAdapter_addDefaultServant(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
+                                               const char *category);
+Ice_Status Ice_ObjectAdapter_remove(Ice_ObjectAdapterPtr adapter, const char *identity);
+Ice_Status Ice_ObjectAdapter_removeFacet(Ice_ObjectAdapterPtr adapter, const char *identity,
+                                         const char *facet);
+Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter, const char *category);
+Ice_ObjectPtr Ice_ObjectAdapter_find(Ice_ObjectAdapterPtr adapter, const char *identity);
+void Ice_ObjectAdapter_activate(Ice_ObjectAdapterPtr adapter);
+/* Its objects do not exist until it is activated again. */
+void Ice_ObjectAdapter_deactivate(Ice_ObjectAdapterPtr adapter);
+void Ice_ObjectAdapter_destroy(Ice_ObjectAdapterPtr adapter);
+/* A proxy to an object of this adapter, to be passed to a peer. */
+Ice_Status Ice_ObjectAdapter_createProxy(Ice_ObjectAdapterPtr adapter, const char *identity,
+                                         Ice_ObjectPrxPtr prx);
+
+/* ---- proxies ---- */
+
+enum { ICE_TWOWAY, ICE_ONEWAY, ICE_BATCH_ONEWAY, ICE_DATAGRAM, ICE_BATCH_DATAGRAM };
+
+/* One-way requests that wait to be sent together. `data` is the caller's. */
+typedef struct Ice_Batch {
+    Ice_OutputStream os;
+    Ice_Int count;
+    Ice_Status (*keep)(Ice_ObjectPrxPtr prx); /* the run time's */
+} Ice_Batch;
+
 struct Ice_ObjectPrx {
     Ice_CommunicatorPtr communicator;
-    char name[ICE_NAME_MAX];
-    Ice_Byte nameSize, mode; /* mode: 0 twoway, 1 oneway */
-    Ice_Byte encoded[ICE_ENDPOINT_MAX];
+    char identity[ICE_IDENTITY_MAX]; /* name, category, facet, one behind the other */
+    Ice_Byte nameSize, categorySize, facetSize;
+    Ice_Byte mode, secure;
+    Ice_Byte minor; /* encoding of requests, 1.minor */
+    Ice_Byte encoded[ICE_ENDPOINT_MAX]; /* without endpoints: the adapter's id, a string */
     Ice_Byte encodedSize, endpointCount;
-    Ice_Int timeoutMs; /* for a reply; 10 s unless set */
-    int call;          /* the slot of the call under way */
+    Ice_Byte status; /* Ice_Status of the call being built */
+    Ice_Int timeoutMs; /* for connecting and for a reply; 10 s unless set */
+    U32 *reply;        /* 0: ICE_REPLY_MAX bytes of the communicator's */
+    Ice_Int replySize;
+    int call;          /* the slot of the last call, -1 none */
+    int connection;    /* of the last call; a fixed proxy's only one */
+    U16 generation;    /* of a fixed proxy's connection; 0: not fixed */
+    const Ice_ContextEntry *context;
+    Ice_Batch *batch;
 };
 
+/* What a failed call's reply said: of ICE_OBJECT_NOT_EXIST and its like who and what, else the text. */
+typedef struct Ice_Failure {
+    Ice_Identity identity;
+    Ice_String facet, operation;
+    Ice_String unknown;
+} Ice_Failure;
+
+/* `proxy`: "identity [-t|-o|-O|-d|-D|-s] [-f facet] [-e 1.0|1.1]:transport options[:...]" or "...@adapter",
+ * as in Ice's manual. The minimal configuration takes "name [-t|-o]:transport options". */
+Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char *proxy, Ice_ObjectPrxPtr prx);
+/* Writes a terminated string of at most `size` bytes with the end mark. ICE_LIMIT: it does not fit. */
+Ice_Status Ice_Communicator_proxyToString(const Ice_ObjectPrx *prx, char *text, Ice_Int size);
+int Ice_ObjectPrx_isNull(const Ice_ObjectPrx *prx);
+int Ice_ObjectPrx_equals(const Ice_ObjectPrx *a, const Ice_ObjectPrx *b);
+Ice_Identity Ice_ObjectPrx_getIdentity(const Ice_ObjectPrx *prx);
+Ice_String Ice_ObjectPrx_getFacet(const Ice_ObjectPrx *prx);
+
+/* Changes of a copy: `Ice_ObjectPrx other = *prx; Ice_ObjectPrx_ice_facet(&other, "f");` */
+Ice_Status Ice_ObjectPrx_ice_identity(Ice_ObjectPrxPtr prx, const char *identity);
+Ice_Status Ice_ObjectPrx_ice_facet(Ice_ObjectPrxPtr prx, const char *facet);
+void Ice_ObjectPrx_ice_twoway(Ice_ObjectPrxPtr prx);
+void Ice_ObjectPrx_ice_oneway(Ice_ObjectPrxPtr prx);
+/* Calls are kept in `data` until flushed, or until it is full. */
+void Ice_ObjectPrx_ice_batchOneway(Ice_ObjectPrxPtr prx, Ice_Batch *batch, Ice_Byte *data, Ice_Int size);
+Ice_Status Ice_ObjectPrx_ice_flushBatchRequests(Ice_ObjectPrxPtr prx);
+void Ice_ObjectPrx_ice_context(Ice_ObjectPrxPtr prx, const Ice_ContextEntry *context); /* 0: none */
+void Ice_ObjectPrx_ice_invocationTimeout(Ice_ObjectPrxPtr prx, Ice_Int ms);
+/* Room for larger replies, aligned to 8: `bytes` for the reply and its decoded sequences together. */
+void Ice_ObjectPrx_setReplyBuffer(Ice_ObjectPrxPtr prx, U32 *buffer, Ice_Int bytes);
+void Ice_ObjectPrx_ice_encodingVersion(Ice_ObjectPrxPtr prx, Ice_Byte minor);
+
+Ice_Status Ice_ObjectPrx_ice_ping(Ice_ObjectPrxPtr self);
+Ice_Status Ice_ObjectPrx_ice_isA(Ice_ObjectPrxPtr self, const char *id, Ice_Bool *result);
+Ice_Status Ice_ObjectPrx_ice_id(Ice_ObjectPrxPtr self, Ice_String *result);
+/* `self` becomes `from` if the object has the type, else null; the status says whether it could be asked. */
+Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx *from, const char *id);
+/* Opens the connection that a call would use. */
+Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int *connection);
+/* Of the last call that was made through this object; until its next call. */
+void Ice_ObjectPrx_failure(const Ice_ObjectPrx *self, Ice_Failure *failure);
+
+/* For generated code. A call is begin, writes to the returned stream, invoke, reads, end. begin
+ * returns 0, with the reason in self->status, where all calls are taken, and where the mode says that
+ * there are results and the proxy is none for them. Between begin and invoke no other call is made. */
+#define ICE_RESULTS 0x80 /* in `mode`: the operation has results or exceptions */
+Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char *operation, Ice_Byte mode);
+Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr *is);
+Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status);
+/* Instead of invoke and end: `callback` gets the reply, from the task that receives, unless this
+ * returns another status than ICE_OK. What `is` holds is valid during the callback. */
+typedef void (*Ice_Callback)(void *cookie, Ice_Status status, Ice_InputStreamPtr is);
+Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callback, void *cookie);
+
+/* A null proxy is written for 0, and read as one of an empty name. `ic` 0: the stream's. */
+void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx *prx);
+void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr prx);
+
+/* ---- communicator ---- */
+
 typedef struct Ice_Call {
-    Ice_Byte used, done;
+    Ice_Byte state;
+    Ice_Byte status; /* Ice_Status, once it is done */
     Ice_Int id;
     int connection;
-    Ice_Status status;
-    Ice_Int replySize;
-    Ice_Byte out[512]; /* the request: parameters of calls that the UAV makes are small */
-    Ice_Byte reply[512];
-    U32 arena[64];
-    Ice_OutputStream os;
+    U32 begunMs;
+    Ice_Int timeoutMs;
+    Ice_Callback callback; /* 0: a task waits */
+    void *cookie;
     Ice_InputStream is;
-    Ice_Int encapsulation; /* where its size goes */
+    Ice_Failure failure;
+    U32 *reply; /* the reply, and behind it its decoded sequences */
+    Ice_Int replySize;
+    U32 replyData[ICEC_COPY_REPLIES ? ICE_REPLY_MAX / 4 : 1];
 } Ice_Call;
+
+typedef struct Ice_Connection {
+    Ice_Byte state;   /* 0 closed, 1 waits for the peer's first message, 2 open */
+    Ice_Byte pending; /* operations under way, or answered later */
+    U16 generation;   /* counts the connections that had this number; never 0 */
+    U32 spokeMs;      /* last sign of life */
+} Ice_Connection;
 
 struct Ice_Communicator {
     const Ice_Os *os;
     void *osContext;
     const Ice_Endpoint *endpoint;
     void *endpointContext;
-    Ice_ObjectAdapterPtr adapters[ICE_ADAPTERS];
+    const char *const *properties;
+    Ice_ObjectAdapterPtr adapters;
     Ice_Call calls[ICE_CALLS];
-    Ice_Byte validated[ICE_CONNECTIONS]; /* the peer of an outgoing connection has said hello */
-    Ice_Byte open[ICE_CONNECTIONS];
+    Ice_Connection connections[ICE_CONNECTIONS];
     Ice_Byte stopping;
     int receiver; /* task that receives, -1 none */
-    Ice_Byte dispatching;
+    int depth;    /* messages being handled */
     Ice_Int lastId;
-    Ice_Byte in[ICE_MESSAGE_MAX], out[ICE_MESSAGE_MAX];
+    Ice_InputStreamPtr decoding; /* of the innermost operation: what it uses of the arena */
+    Ice_OutputStream request;    /* being built, under ICE_LOCK_SEND */
+    Ice_Int requestBody;      /* where its encapsulation begins */
+    Ice_Byte in[ICEC_NESTING][ICE_MESSAGE_MAX], out[ICE_MESSAGE_MAX];
+    Ice_Byte requestData[ICEC_TASKS ? ICE_REQUEST_MAX : 1];
     U32 arena[ICE_ARENA_BYTES / 4];
 };
 
@@ -228,36 +242,32 @@ void Ice_initialize(Ice_CommunicatorPtr ic);
 void Ice_Communicator_setOs(Ice_CommunicatorPtr ic, const Ice_Os *os, void *context);
 void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint *endpoint, void *context);
 
+/* `table`: strings "key=value", 0 ends. Of two with one key the first counts. */
+void Ice_Communicator_setProperties(Ice_CommunicatorPtr ic, const char *const *table);
+const char *Ice_Communicator_getProperty(Ice_CommunicatorPtr ic, const char *key); /* 0: not there */
+Ice_Int Ice_Communicator_getPropertyAsInt(Ice_CommunicatorPtr ic, const char *key, Ice_Int otherwise);
+Ice_Status Ice_Communicator_propertyToProxy(Ice_CommunicatorPtr ic, const char *key, Ice_ObjectPrxPtr prx);
+
 /* `endpoints`: name of the transport and its options, "xbee-at" or "tcp -p 10000". */
 Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr ic, const char *name,
                                                              const char *endpoints,
                                                              Ice_ObjectAdapterPtr adapter);
-/* `proxy`: "identity [-t|-o]:transport options". */
-Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char *proxy, Ice_ObjectPrxPtr prx);
+/* With the property <name>.Endpoints; without it only connections that this side makes reach it. */
+Ice_Status Ice_Communicator_createObjectAdapter(Ice_CommunicatorPtr ic, const char *name,
+                                                Ice_ObjectAdapterPtr adapter);
 /* Receives and dispatches until Ice_Communicator_shutdown. */
 void Ice_Communicator_waitForShutdown(Ice_CommunicatorPtr ic);
 void Ice_Communicator_shutdown(Ice_CommunicatorPtr ic);
-/* Handles at most one event; for programs with a loop of their own. */
+/* Handles at most one event; for programs with a loop of their own. ICE_TIMEOUT: there was none. */
 Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs);
+/* Closes every connection in good order: tells the peers, and waits up to timeoutMs for them. */
+void Ice_Communicator_destroy(Ice_CommunicatorPtr ic, Ice_Int timeoutMs);
 
-Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant, const char *identity);
-Ice_Status Ice_ObjectAdapter_remove(Ice_ObjectAdapterPtr adapter, const char *identity);
-void Ice_ObjectAdapter_activate(Ice_ObjectAdapterPtr adapter);
-/* A proxy to an object of this adapter, to be passed to a peer. */
-Ice_Status Ice_ObjectAdapter_createProxy(Ice_ObjectAdapterPtr adapter, const char *identity,
-                                         Ice_ObjectPrxPtr prx);
-
-/* For generated code: a call is begin, writes to the returned stream, invoke, reads, end. begin
- * returns 0 where all calls are taken. */
-Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char *operation, Ice_Byte mode);
-Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr *is);
-Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status);
-Ice_Status Ice_ObjectPrx_ice_ping(Ice_ObjectPrxPtr self);
-
-/* A null proxy is written for 0, and read as an empty name. */
-void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx *prx);
-void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr prx);
-
-extern const Ice_Os Ice_Os_none;
+/* A proxy to an object of the peer on this connection, whoever made it: calls go back on it. It ends
+ * with the connection (ICE_CONNECTION_LOST), and cannot be passed to anybody. */
+Ice_Status Ice_Connection_createProxy(Ice_CommunicatorPtr ic, int connection, const char *identity,
+                                      Ice_ObjectPrxPtr prx);
+/* Closes one connection in good order, without waiting for the peer. */
+void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection);
 
 #endif

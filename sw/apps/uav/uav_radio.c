@@ -54,7 +54,12 @@ static U32 nowOf(void *context) {
     return UAV_nowUs();
 }
 
-static const XBeeATPort endpointPort = {lockLink, unlockLink, kick, waitEvent, signalEvent, nowOf};
+static U32 nowMsOf(void *context) {
+    (void)context;
+    return OSTimeGet() * (1000U / OS_TICKS_PER_SEC);
+}
+
+static const XBeeATPort endpointPort = {lockLink, unlockLink, kick, waitEvent, signalEvent, nowOf, nowMsOf};
 
 /* Not for secrets: two boots must differ, and the count of boots in DDR3 sees to that. */
 static U32 randomWord(void *context) {
@@ -144,25 +149,26 @@ void UAV_radioTask(void *argument) {
 /* ---- IceC's tasks ---- */
 
 static OS_EVENT *callDone[ICE_CALLS];
-static OS_EVENT *iceMutex;
+static OS_EVENT *iceMutex[2]; /* by ICE_LOCK_STATE and ICE_LOCK_SEND */
 
 void UAV_initIceOs(void) {
     INT8U error;
     int c;
-    iceMutex = OSMutexCreate(PRIO_MUTEX + 1U, &error);
+    iceMutex[ICE_LOCK_STATE] = OSMutexCreate(PRIO_MUTEX + 1U, &error);
+    iceMutex[ICE_LOCK_SEND] = OSMutexCreate(PRIO_RADIO + 1U, &error);
     for (c = 0; c < ICE_CALLS; ++c)
         callDone[c] = OSSemCreate(0);
 }
 
-static void lockIce(void *context) {
+static void lockIce(void *context, int which) {
     INT8U error;
     (void)context;
-    OSMutexPend(iceMutex, 0, &error);
+    OSMutexPend(iceMutex[which], 0, &error);
 }
 
-static void unlockIce(void *context) {
+static void unlockIce(void *context, int which) {
     (void)context;
-    (void)OSMutexPost(iceMutex);
+    (void)OSMutexPost(iceMutex[which]);
 }
 
 static int waitCall(void *context, int slot, Ice_Int timeoutMs) {

@@ -6,12 +6,15 @@
 #include "tcp_endpoint.h"
 
 #include <arpa/inet.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <netdb.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/socket.h>
+#include <time.h>
 #include <unistd.h>
 
 static int freeSlot(TcpEndpoint *self) {
@@ -29,6 +32,11 @@ static void closeOne(void *context, int connection) {
         (void)close(c->fd);
     c->fd = -1;
     c->have = 0;
+}
+
+static void wakeUp(void *context) {
+    TcpEndpoint *self = context;
+    (void)!write(self->pipe[1], "", 1);
 }
 
 static void use(TcpConnection *c, int fd, Ice_Byte accepted) {
@@ -142,34 +150,70 @@ static Ice_Status sendAll(void *context, int connection, const Ice_Byte *message
     return fd >= 0 ? ICE_OK : ICE_CONNECTION_LOST;
 }
 
+/* A numeric address or a name; the first answer counts. */
+static int resolve(const char *host, Ice_Int size, U32 port, struct sockaddr_storage *to, socklen_t *length) {
+    struct addrinfo hints, *found;
+    char name[256], service[8];
+    if (size <= 0 || size >= (Ice_Int)sizeof name || port > 65535)
+        return 0;
+    memcpy(name, host, (size_t)size);
+    name[size] = 0;
+    sprintf(service, "%u", port);
+    memset(&hints, 0, sizeof hints);
+    hints.ai_socktype = SOCK_STREAM;
+    if (getaddrinfo(name, service, &hints, &found) != 0)
+        return 0;
+    memcpy(to, found->ai_addr, found->ai_addrlen);
+    *length = found->ai_addrlen;
+    freeaddrinfo(found);
+    return 1;
+}
+
+/* connect with a time limit; the socket blocks again afterwards. */
+static int openSocket(const struct sockaddr_storage *to, socklen_t length, Ice_Int timeoutMs) {
+    struct pollfd wait;
+    int failed = 1, on = 1;
+    socklen_t size = sizeof failed;
+    wait.fd = socket(to->ss_family, SOCK_STREAM, 0);
+    wait.events = POLLOUT;
+    if (wait.fd < 0)
+        return -1;
+    (void)fcntl(wait.fd, F_SETFL, O_NONBLOCK);
+    (void)setsockopt(wait.fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    if (connect(wait.fd, (const struct sockaddr *)to, length) == 0)
+        failed = 0;
+    else if (errno == EINPROGRESS && poll(&wait, 1, timeoutMs) == 1)
+        (void)getsockopt(wait.fd, SOL_SOCKET, SO_ERROR, &failed, &size);
+    if (failed) {
+        (void)close(wait.fd);
+        return -1;
+    }
+    (void)fcntl(wait.fd, F_SETFL, 0);
+    return wait.fd;
+}
+
 /* One connection a peer is kept and used again. */
 static Ice_Status connectTo(void *context, const Ice_Byte *encoded, Ice_Int size, int *connection) {
     TcpEndpoint *self = context;
-    struct sockaddr_in to, other;
+    struct sockaddr_storage to;
+    socklen_t length;
     Ice_InputStream is;
     Ice_String host;
-    char text[64];
+    Ice_Int timeoutMs;
+    U32 port;
     int slot, fd;
-    socklen_t length;
     Ice_InputStream_init(&is, encoded, size);
     if (Ice_InputStream_readShort(&is) != TCP_ENDPOINT_TYPE)
         return ICE_NO_ENDPOINT;
     (void)Ice_InputStream_readBlob(&is, 6);
     host = Ice_InputStream_readString(&is);
-    memset(&to, 0, sizeof to);
-    to.sin_family = AF_INET;
-    to.sin_port = htons((U16)Ice_InputStream_readInt(&is));
-    if (is.failed || host.size >= (Ice_Int)sizeof text)
-        return ICE_NO_ENDPOINT;
-    memcpy(text, host.data, (size_t)host.size);
-    text[host.size] = 0;
-    if (inet_pton(AF_INET, text, &to.sin_addr) != 1)
+    port = (U32)Ice_InputStream_readInt(&is);
+    timeoutMs = Ice_InputStream_readInt(&is);
+    if (is.failed || !resolve(host.data, host.size, port, &to, &length))
         return ICE_NO_ENDPOINT;
     for (slot = 0; slot < ICE_CONNECTIONS; ++slot) {
         TcpConnection *c = &self->connections[slot];
-        length = sizeof other;
-        if (c->fd >= 0 && !c->accepted && getpeername(c->fd, (struct sockaddr *)&other, &length) == 0 &&
-            other.sin_port == to.sin_port && other.sin_addr.s_addr == to.sin_addr.s_addr) {
+        if (c->fd >= 0 && !c->accepted && c->peerSize == length && memcmp(&c->peer, &to, length) == 0) {
             *connection = slot;
             return ICE_OK;
         }
@@ -177,69 +221,107 @@ static Ice_Status connectTo(void *context, const Ice_Byte *encoded, Ice_Int size
     slot = freeSlot(self);
     if (slot < 0)
         return ICE_LIMIT;
-    fd = socket(AF_INET, SOCK_STREAM, 0);
-    if (fd < 0 || connect(fd, (struct sockaddr *)&to, sizeof to) != 0) {
-        if (fd >= 0)
-            (void)close(fd);
+    fd = openSocket(&to, length, timeoutMs);
+    if (fd < 0)
         return ICE_CONNECTION_LOST;
-    }
     use(&self->connections[slot], fd, 0);
+    self->connections[slot].peer = to;
+    self->connections[slot].peerSize = length;
     *connection = slot;
+    wakeUp(self); /* a task that receives waits on the others only */
     return ICE_OK;
-}
-
-static const char *value(const char *options, const char *flag) {
-    const char *at = options ? strstr(options, flag) : 0;
-    return at ? at + strlen(flag) : 0;
 }
 
 static Ice_Status listenTo(void *context, const char *options) {
     TcpEndpoint *self = context;
-    const char *port = value(options, "-p ");
-    struct sockaddr_in at;
-    socklen_t length = sizeof at;
+    struct sockaddr_storage at;
+    socklen_t length;
+    Ice_Int size = 9;
+    const char *host = Ice_findOption(options, 'h', &size);
     int on = 1;
-    memset(&at, 0, sizeof at);
-    at.sin_family = AF_INET;
-    at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    at.sin_port = htons((U16)(port ? atoi(port) : 0));
-    self->listener = socket(AF_INET, SOCK_STREAM, 0);
+    if (self->listener >= 0)
+        return ICE_LIMIT; /* one port a communicator */
+    if (!host) {
+        host = "127.0.0.1";
+        size = 9;
+    }
+    if (size >= (Ice_Int)sizeof self->host ||
+        !resolve(host, size, Ice_numberOption(options, 'p', 0), &at, &length))
+        return ICE_NO_ENDPOINT;
+    memcpy(self->host, host, (size_t)size);
+    self->host[size] = 0;
+    self->listener = socket(at.ss_family, SOCK_STREAM, 0);
     if (self->listener < 0)
         return ICE_NO_ENDPOINT;
     (void)setsockopt(self->listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    if (bind(self->listener, (struct sockaddr *)&at, sizeof at) != 0 || listen(self->listener, 4) != 0 ||
-        getsockname(self->listener, (struct sockaddr *)&at, &length) != 0)
+    if (bind(self->listener, (struct sockaddr *)&at, length) != 0 || listen(self->listener, 4) != 0 ||
+        getsockname(self->listener, (struct sockaddr *)&at, &length) != 0) {
+        (void)close(self->listener);
+        self->listener = -1;
         return ICE_NO_ENDPOINT;
-    self->port = ntohs(at.sin_port);
+    }
+    self->port = ntohs(at.ss_family == AF_INET6 ? ((struct sockaddr_in6 *)&at)->sin6_port
+                                                : ((struct sockaddr_in *)&at)->sin_port);
     return ICE_OK;
 }
 
 static void encode(void *context, const char *options, Ice_OutputStreamPtr os) {
     TcpEndpoint *self = context;
-    const char *host = value(options, "-h ");
-    const char *port = value(options, "-p ");
-    Ice_String name = Ice_String_from(host ? host : "127.0.0.1");
-    if (host)
-        name.size = (Ice_Int)strcspn(host, " ");
+    Ice_String host;
+    host.data = Ice_findOption(options, 'h', &host.size);
+    if (!host.data || host.size > 200)
+        host = Ice_String_from(self->host);
     Ice_OutputStream_writeShort(os, TCP_ENDPOINT_TYPE);
-    Ice_OutputStream_writeInt(os, 6 + 1 + name.size + 9);
-    Ice_OutputStream_writeByte(os, 1);
-    Ice_OutputStream_writeByte(os, 1);
-    Ice_OutputStream_writeString(os, name);
-    Ice_OutputStream_writeInt(os, port ? atoi(port) : self->port);
-    Ice_OutputStream_writeInt(os, 60000);
-    Ice_OutputStream_writeBool(os, 0);
+    Ice_OutputStream_writeInt(os, 6 + 1 + host.size + 9);
+    Ice_OutputStream_writeShort(os, 0x0101); /* encoding 1.1 */
+    Ice_OutputStream_writeString(os, host);
+    Ice_OutputStream_writeInt(os, (Ice_Int)Ice_numberOption(options, 'p', options ? 0 : (U32)self->port));
+    Ice_OutputStream_writeInt(os, (Ice_Int)Ice_numberOption(options, 't', 60000));
+    Ice_OutputStream_writeBool(os, 0); /* no compression */
 }
 
-static void wakeUp(void *context) {
-    TcpEndpoint *self = context;
-    (void)!write(self->pipe[1], "", 1);
+static Ice_Bool print(void *context, const Ice_Byte *encoded, Ice_Int size, Ice_OutputStreamPtr text) {
+    Ice_InputStream is;
+    Ice_String host;
+    Ice_Int port, timeoutMs;
+    char line[64];
+    (void)context;
+    Ice_InputStream_init(&is, encoded, size);
+    if (Ice_InputStream_readShort(&is) != TCP_ENDPOINT_TYPE)
+        return 0;
+    (void)Ice_InputStream_readBlob(&is, 6);
+    host = Ice_InputStream_readString(&is);
+    port = Ice_InputStream_readInt(&is);
+    timeoutMs = Ice_InputStream_readInt(&is);
+    if (is.failed)
+        return 0;
+    Ice_OutputStream_writeBlob(text, (const Ice_Byte *)"tcp -h ", 7);
+    if (memchr(host.data, ':', (size_t)host.size))
+        Ice_OutputStream_writeByte(text, '"');
+    Ice_OutputStream_writeBlob(text, (const Ice_Byte *)host.data, host.size);
+    if (memchr(host.data, ':', (size_t)host.size))
+        Ice_OutputStream_writeByte(text, '"');
+    if (timeoutMs < 0)
+        sprintf(line, " -p %d -t infinite", port);
+    else
+        sprintf(line, " -p %d -t %d", port, timeoutMs);
+    Ice_OutputStream_writeBlob(text, (const Ice_Byte *)line, (Ice_Int)strlen(line));
+    return 1;
+}
+
+static U32 nowMs(void *context) {
+    struct timespec now;
+    (void)context;
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (U32)now.tv_sec * 1000U + (U32)(now.tv_nsec / 1000000);
 }
 
 Ice_Status TcpEndpoint_init(Ice_CommunicatorPtr ic, TcpEndpoint *self) {
-    static const Ice_Endpoint endpoint = {"tcp", receive, sendAll, connectTo, closeOne, listenTo, encode, wakeUp};
+    static const Ice_Endpoint endpoint = {"tcp",    receive, sendAll, connectTo, closeOne,
+                                          listenTo, encode,  wakeUp,  nowMs,     print};
     int c;
     memset(self, 0, sizeof *self);
+    strcpy(self->host, "127.0.0.1");
     self->listener = -1;
     for (c = 0; c < ICE_CONNECTIONS; ++c)
         self->connections[c].fd = -1;

@@ -9,7 +9,7 @@
 #define EVENTS (sizeof((XBeeATEndpoint *)0)->events / sizeof(Ice_Event))
 #define RETRIES 100 /* of a send while the link's queue is full, 20 ms apart */
 
-static int put(XBeeATEndpoint *self, Ice_EventKind kind, int channel, Ice_Int size) {
+static int report(XBeeATEndpoint *self, Ice_EventKind kind, int channel, Ice_Int size) {
     Ice_Event *event;
     if (self->count == EVENTS)
         return 0;
@@ -27,7 +27,7 @@ int XBeeATEndpoint_onMessage(XBeeATEndpoint *self, int channel, const U8 *data, 
         return 1;
     memcpy(self->buffer, data, size);
     self->buffer = 0;
-    (void)put(self, ICE_EVENT_MESSAGE, channel, (Ice_Int)size);
+    (void)report(self, ICE_EVENT_MESSAGE, channel, (Ice_Int)size);
     return 0;
 }
 
@@ -36,36 +36,35 @@ void XBeeATEndpoint_onChannel(XBeeATEndpoint *self, int channel, int isOpen) {
         return;
     if (channel == XBEE_OWN_CHANNEL)
         self->ownOpen = 0;
-    (void)put(self, isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel, 0);
+    (void)report(self, isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel, 0);
 }
 
 void XBeeATEndpoint_onState(XBeeATEndpoint *self, Link_State state) {
     if (state != LINK_STATE_UP && self->ownOpen) {
         self->ownOpen = 0;
-        (void)put(self, ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL, 0);
+        (void)report(self, ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL, 0);
     }
 }
 
+/* The buffer is the link's only while this waits: what comes at another time, the link keeps. */
 static Ice_Status receive(void *context, Ice_Byte *buffer, Ice_Int timeoutMs, Ice_Event *event) {
     XBeeATEndpoint *self = context;
-    int tries;
-    for (tries = 0; tries < 2; ++tries) {
-        self->port->lock(self->context);
-        if (self->count) {
-            *event = self->events[self->head];
-            self->head = (self->head + 1U) % EVENTS;
-            --self->count;
-            self->port->unlock(self->context);
-            return ICE_OK;
-        }
+    self->port->lock(self->context);
+    if (self->count == 0) {
         self->buffer = buffer;
         self->port->unlock(self->context);
-        if (tries == 0) {
-            self->port->kick(self->context); /* the link may hold a message */
-            (void)self->port->wait(self->context, timeoutMs);
-        }
+        self->port->kick(self->context); /* the link may hold a message */
+        (void)self->port->wait(self->context, timeoutMs);
+        self->port->lock(self->context);
+        self->buffer = 0;
     }
-    return ICE_OK; /* nothing came */
+    if (self->count) {
+        *event = self->events[self->head];
+        self->head = (self->head + 1U) % EVENTS;
+        --self->count;
+    }
+    self->port->unlock(self->context);
+    return ICE_OK;
 }
 
 static Ice_Status statusOf(Link_Status status) {
@@ -84,6 +83,8 @@ static Ice_Status sendMessage(void *context, int connection, const Ice_Byte *mes
         if (status == LINK_FULL)
             (void)self->port->wait(self->context, 20);
     } while (status == LINK_FULL && ++tries < RETRIES);
+    if (tries)
+        self->port->signal(self->context); /* this may have taken what the receiver waits for */
     return statusOf(status);
 }
 
@@ -120,39 +121,51 @@ static Ice_Status listenTo(void *context, const char *options) {
     return ICE_OK;
 }
 
-/* The number behind "-x", decimal or 0x..., else `fallback`. */
-static U32 option(const char *options, char letter, U32 fallback) {
-    const char *at;
-    for (at = options; *at; ++at)
-        if (at[0] == '-' && at[1] == letter && at[2] == ' ') {
-            U32 value = 0, base = 10;
-            at += 3;
-            if (at[0] == '0' && (at[1] == 'x' || at[1] == 'X')) {
-                base = 16;
-                at += 2;
-            }
-            for (;; ++at) {
-                if (*at >= '0' && *at <= '9')
-                    value = value * base + (U32)(*at - '0');
-                else if (base == 16 && (*at | 32) >= 'a' && (*at | 32) <= 'f')
-                    value = value * base + (U32)((*at | 32) - 'a' + 10);
-                else
-                    return value;
-            }
-        }
-    return fallback;
-}
-
 static void encode(void *context, const char *options, Ice_OutputStreamPtr os) {
     XBeeATEndpoint *self = context;
-    U32 address = options ? option(options, 'a', 0) : self->address;
+    U32 address = options ? Ice_numberOption(options, 'a', 0) : self->address;
     Ice_OutputStream_writeShort(os, XBEE_ENDPOINT_TYPE);
     Ice_OutputStream_writeInt(os, 6 + 7);
-    Ice_OutputStream_writeByte(os, 1);
-    Ice_OutputStream_writeByte(os, 1);
+    Ice_OutputStream_writeShort(os, 0x0101); /* encoding 1.1 */
     Ice_OutputStream_writeShort(os, (Ice_Short)address);
-    Ice_OutputStream_writeByte(os, (Ice_Byte)(options ? option(options, 'p', 255) : 255));
-    Ice_OutputStream_writeInt(os, (Ice_Int)(options ? option(options, 't', 10000) : 10000));
+    Ice_OutputStream_writeByte(os, (Ice_Byte)Ice_numberOption(options, 'p', 255));
+    Ice_OutputStream_writeInt(os, (Ice_Int)Ice_numberOption(options, 't', 10000));
+}
+
+static void put(Ice_OutputStreamPtr text, const char *characters) {
+    while (*characters)
+        Ice_OutputStream_writeByte(text, (Ice_Byte)*characters++);
+}
+
+static void putNumber(Ice_OutputStreamPtr text, U32 value) {
+    if (value > 9)
+        putNumber(text, value / 10);
+    Ice_OutputStream_writeByte(text, (Ice_Byte)('0' + value % 10));
+}
+
+static Ice_Bool print(void *context, const Ice_Byte *encoded, Ice_Int size, Ice_OutputStreamPtr text) {
+    Ice_InputStream is;
+    Ice_Byte channel;
+    (void)context;
+    Ice_InputStream_init(&is, encoded, size);
+    if (Ice_InputStream_readShort(&is) != XBEE_ENDPOINT_TYPE || size != 8 + 7)
+        return 0;
+    is.position = 8;
+    put(text, "xbee-at -a ");
+    putNumber(text, (U16)Ice_InputStream_readShort(&is));
+    channel = Ice_InputStream_readByte(&is);
+    if (channel != 255) {
+        put(text, " -p ");
+        putNumber(text, channel);
+    }
+    put(text, " -t ");
+    putNumber(text, (U32)Ice_InputStream_readInt(&is));
+    return 1;
+}
+
+static U32 nowMs(void *context) {
+    XBeeATEndpoint *self = context;
+    return self->port->nowMs(self->context);
 }
 
 static void wakeUp(void *context) {
@@ -163,7 +176,7 @@ static void wakeUp(void *context) {
 void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char *name, XBeeATEndpoint *self, Link *link,
                          U16 address, const XBeeATPort *port, void *context) {
     static const Ice_Endpoint endpoint = {"xbee-at", receive, sendMessage, connectTo, closeChannel,
-                                          listenTo, encode, wakeUp};
+                                          listenTo,  encode,  wakeUp,      nowMs,     ICEC_DETAILS ? print : 0};
     (void)name;
     memset(self, 0, sizeof *self);
     self->link = link;

@@ -22,6 +22,7 @@ typedef struct XBeeATPort {
     int (*wait)(void *context, Ice_Int timeoutMs); /* for signal; 1: signalled */
     void (*signal)(void *context);
     U32 (*nowUs)(void *context);
+    U32 (*nowMs)(void *context);
 } XBeeATPort;
 
 typedef struct XBeeATEndpoint {

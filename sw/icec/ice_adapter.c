@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_adapter: object adapters: which servant answers for which identity.
+ */
+#include "ice_private.h"
+
+#include <string.h>
+
+static Ice_String part(const char *data, size_t size) {
+    Ice_String s;
+    s.data = data;
+    s.size = (Ice_Int)size;
+    return s;
+}
+
+Ice_Identity Ice_parseIdentity(const char *text) {
+    Ice_Identity id;
+    const char *slash = ICEC_CATEGORIES ? strchr(text, '/') : 0;
+    id.category = part(text, slash ? (size_t)(slash - text) : 0);
+    id.name = Ice_String_from(slash ? slash + 1 : text);
+    return id;
+}
+
+const char *Ice_optionsOf(Ice_CommunicatorPtr ic, const char *text) {
+    const char *name = ic->endpoint->name;
+    while (*name && *name == *text)
+        ++name, ++text;
+    return *name == 0 && (*text == ' ' || *text == ':' || *text == 0) ? text : 0;
+}
+
+Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr ic, const char *name,
+                                                             const char *endpoints,
+                                                             Ice_ObjectAdapterPtr adapter) {
+    const char *options = endpoints ? Ice_optionsOf(ic, endpoints) : 0;
+    Ice_Status status = ICE_OK;
+    memset(adapter, 0, sizeof *adapter);
+    adapter->communicator = ic;
+    adapter->name = name;
+    if (endpoints && !options)
+        return ICE_NO_ENDPOINT;
+    Ice_lock(ic, ICE_LOCK_STATE);
+    if (endpoints)
+        status = ic->endpoint->listen(ic->endpointContext, options);
+    if (status == ICE_OK) {
+        adapter->next = ic->adapters;
+        ic->adapters = adapter;
+    }
+    Ice_unlock(ic, ICE_LOCK_STATE);
+    return status;
+}
+
+/* The entry of exactly this identity and facet, or -1. */
+static int indexOf(Ice_ObjectAdapterPtr adapter, const Ice_Identity *id, Ice_String facet) {
+    int s;
+    for (s = 0; s < ICE_SERVANTS; ++s)
+        if (adapter->servants[s].servant && Ice_String_same(adapter->servants[s].identity.name, id->name) &&
+            (!ICEC_CATEGORIES ||
+             (Ice_String_same(adapter->servants[s].identity.category, id->category) &&
+              Ice_String_same(adapter->servants[s].facet, facet))))
+            return s;
+    return -1;
+}
+
+static Ice_Status change(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant, const Ice_Identity *id,
+                         Ice_String facet) {
+    Ice_Status status = ICE_LIMIT;
+    int s;
+    Ice_lock(adapter->communicator, ICE_LOCK_STATE);
+    s = indexOf(adapter, id, facet);
+    if (!servant) {
+        if (s >= 0)
+            adapter->servants[s].servant = 0;
+        status = s >= 0 ? ICE_OK : ICE_OBJECT_NOT_EXIST;
+    } else if (s < 0) {
+        for (s = 0; s < ICE_SERVANTS && status != ICE_OK; ++s)
+            if (!adapter->servants[s].servant) {
+                adapter->servants[s].identity = *id;
+                adapter->servants[s].facet = facet;
+                adapter->servants[s].servant = servant;
+                status = ICE_OK;
+            }
+    }
+    Ice_unlock(adapter->communicator, ICE_LOCK_STATE);
+    return status;
+}
+
+static Ice_Status changeNamed(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant, const char *identity,
+                              const char *facet) {
+    Ice_Identity id = Ice_parseIdentity(identity);
+    return id.name.size ? change(adapter, servant, &id, Ice_String_from(facet)) : ICE_PARSE;
+}
+
+static Ice_Status changeDefault(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant, const char *category) {
+    Ice_Identity id;
+    id.name = part("", 0);
+    id.category = Ice_String_from(category);
+    return change(adapter, servant, &id, id.name);
+}
+
+Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant, const char *identity) {
+    return changeNamed(adapter, servant, identity, "");
+}
+
+Ice_Status Ice_ObjectAdapter_addFacet(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
+                                      const char *identity, const char *facet) {
+    return changeNamed(adapter, servant, identity, facet);
+}
+
+Ice_Status Ice_ObjectAdapter_addDefaultServant(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
+                                               const char *category) {
+    return changeDefault(adapter, servant, category);
+}
+
+Ice_Status Ice_ObjectAdapter_remove(Ice_ObjectAdapterPtr adapter, const char *identity) {
+    return changeNamed(adapter, 0, identity, "");
+}
+
+Ice_Status Ice_ObjectAdapter_removeFacet(Ice_ObjectAdapterPtr adapter, const char *identity,
+                                         const char *facet) {
+    return changeNamed(adapter, 0, identity, facet);
+}
+
+Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter, const char *category) {
+    return changeDefault(adapter, 0, category);
+}
+
+Ice_ObjectPtr Ice_ObjectAdapter_find(Ice_ObjectAdapterPtr adapter, const char *identity) {
+    Ice_Identity id = Ice_parseIdentity(identity);
+    Ice_ObjectPtr found = 0;
+    int s;
+    Ice_lock(adapter->communicator, ICE_LOCK_STATE);
+    s = indexOf(adapter, &id, part("", 0));
+    if (s >= 0)
+        found = adapter->servants[s].servant;
+    Ice_unlock(adapter->communicator, ICE_LOCK_STATE);
+    return found;
+}
+
+void Ice_ObjectAdapter_activate(Ice_ObjectAdapterPtr adapter) {
+    adapter->active = 1;
+}
+
+void Ice_ObjectAdapter_deactivate(Ice_ObjectAdapterPtr adapter) {
+    adapter->active = 0;
+}
+
+void Ice_ObjectAdapter_destroy(Ice_ObjectAdapterPtr adapter) {
+    Ice_ObjectAdapterPtr *at;
+    Ice_lock(adapter->communicator, ICE_LOCK_STATE);
+    for (at = &adapter->communicator->adapters; *at && *at != adapter; at = &(*at)->next)
+        ;
+    if (*at)
+        *at = adapter->next;
+    Ice_unlock(adapter->communicator, ICE_LOCK_STATE);
+}
+
+Ice_Status Ice_ObjectAdapter_createProxy(Ice_ObjectAdapterPtr adapter, const char *identity,
+                                         Ice_ObjectPrxPtr prx) {
+    Ice_Identity id = Ice_parseIdentity(identity);
+    Ice_Status status;
+    Ice_ObjectPrx_init(prx, adapter->communicator);
+    status = Ice_ObjectPrx_setIdentity(prx, id.name, id.category, part("", 0));
+    return status == ICE_OK ? Ice_ObjectPrx_addEndpoint(prx, 0) : status;
+}

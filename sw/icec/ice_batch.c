@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_batch: one-way requests that are sent together.
+ *
+ * A batch is a message of its own: its head, a count, and requests without ids.
+ */
+#include "ice_private.h"
+
+static void restart(Ice_Batch *batch) {
+    batch->os.size = 0;
+    batch->os.failed = 0;
+    batch->count = 0;
+    Ice_beginMessage(&batch->os, ICE_BATCH);
+    Ice_OutputStream_writeInt(&batch->os, 0);
+}
+
+/* Under ICE_LOCK_SEND, on an open connection. */
+static Ice_Status flush(Ice_ObjectPrxPtr prx) {
+    Ice_Batch *batch = prx->batch;
+    Ice_Status status;
+    Ice_patchInt(&batch->os, ICE_HEADER, batch->count);
+    Ice_endMessage(&batch->os);
+    status = Ice_send(prx->communicator, prx->connection, &batch->os);
+    restart(batch);
+    return status;
+}
+
+/* Adds the request that was just built. A full batch is sent if there is a connection to do it on:
+ * opening one here would receive, and the request's buffer is in use. */
+static Ice_Status keep(Ice_ObjectPrxPtr prx) {
+    Ice_Batch *batch = prx->batch;
+    Ice_OutputStreamPtr request = &prx->communicator->request;
+    Ice_Status status = ICE_OK;
+    if (request->failed || batch->os.failed)
+        return ICE_MARSHAL;
+    if (request->size > batch->os.capacity - batch->os.size && batch->count) {
+        if (prx->connection < 0 || prx->communicator->connections[prx->connection].state != ICE_DONE)
+            return ICE_LIMIT;
+        status = flush(prx);
+    }
+    if (status == ICE_OK && request->size > batch->os.capacity - batch->os.size)
+        return ICE_LIMIT;
+    if (status == ICE_OK) {
+        Ice_OutputStream_writeBlob(&batch->os, request->data, request->size);
+        ++batch->count;
+    }
+    return status;
+}
+
+void Ice_ObjectPrx_ice_batchOneway(Ice_ObjectPrxPtr prx, Ice_Batch *batch, Ice_Byte *data, Ice_Int size) {
+    Ice_OutputStream_init(&batch->os, data, size < ICE_MESSAGE_MAX ? size : ICE_MESSAGE_MAX);
+    batch->keep = keep;
+    prx->mode = ICE_BATCH_ONEWAY;
+    prx->batch = batch;
+    restart(batch);
+}
+
+Ice_Status Ice_ObjectPrx_ice_flushBatchRequests(Ice_ObjectPrxPtr prx) {
+    Ice_Batch *batch = prx->batch;
+    Ice_Status status;
+    int connection;
+    if (!batch || batch->count == 0)
+        return ICE_OK;
+    prx->batch = 0; /* to connect as any call does */
+    status = Ice_ObjectPrx_ice_getConnection(prx, &connection);
+    prx->batch = batch;
+    if (status != ICE_OK)
+        return status;
+    Ice_lock(prx->communicator, ICE_LOCK_SEND);
+    status = flush(prx);
+    Ice_unlock(prx->communicator, ICE_LOCK_SEND);
+    return status;
+}

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_builtin: the operations that every object has, asked of objects elsewhere.
+ */
+#include "ice_private.h"
+
+#include <string.h>
+
+#define MODE (2 | ICE_RESULTS) /* idempotent */
+
+Ice_Status Ice_ObjectPrx_ice_isA(Ice_ObjectPrxPtr self, const char *id, Ice_Bool *result) {
+    Ice_InputStreamPtr is;
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "ice_isA", MODE);
+    Ice_Status status;
+    if (!os)
+        return (Ice_Status)self->status;
+    Ice_OutputStream_writeString(os, Ice_String_from(id));
+    status = Ice_ObjectPrx_invoke(self, &is);
+    if (status == ICE_OK)
+        *result = Ice_InputStream_readBool(is);
+    return Ice_ObjectPrx_end(self, status);
+}
+
+Ice_Status Ice_ObjectPrx_ice_id(Ice_ObjectPrxPtr self, Ice_String *result) {
+    Ice_InputStreamPtr is;
+    Ice_Status status;
+    if (!Ice_ObjectPrx_begin(self, "ice_id", MODE))
+        return (Ice_Status)self->status;
+    status = Ice_ObjectPrx_invoke(self, &is);
+    if (status == ICE_OK)
+        *result = Ice_InputStream_readString(is);
+    return Ice_ObjectPrx_end(self, status);
+}
+
+Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx *from, const char *id) {
+    Ice_Bool is = 0;
+    Ice_Status status;
+    *self = *from;
+    if (Ice_ObjectPrx_isNull(from))
+        return ICE_OK;
+    status = Ice_ObjectPrx_ice_isA(self, id, &is);
+    if (status != ICE_OK || !is)
+        Ice_ObjectPrx_init(self, from->communicator);
+    return status;
+}
+
+void Ice_ObjectPrx_failure(const Ice_ObjectPrx *self, Ice_Failure *failure) {
+    if (self->call >= 0)
+        *failure = self->communicator->calls[self->call].failure;
+    else
+        memset(failure, 0, sizeof *failure);
+}

@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_call: calls made through proxies: request, wait, reply.
+ */
+#include "ice_private.h"
+
+#include <string.h>
+
+void Ice_wakeCalls(Ice_CommunicatorPtr ic) {
+    int c;
+    for (c = 0; ICEC_TASKS && c < ICE_CALLS; ++c)
+        if (ic->calls[c].state != ICE_FREE)
+            ic->os->wake(ic->osContext, c);
+}
+
+/* Ends the call `id` if it still waits: tells the waiting task, or calls back. */
+static void finish(Ice_CommunicatorPtr ic, Ice_Call *call, Ice_Int id, Ice_Status status,
+                   Ice_InputStreamPtr is) {
+    Ice_Callback callback = 0;
+    void *cookie = 0;
+    Ice_lock(ic, ICE_LOCK_STATE);
+    if (call->state == ICE_WAITING && call->id == id) {
+        if (ICEC_ASYNC)
+            callback = call->callback, cookie = call->cookie;
+        call->status = (Ice_Byte)status;
+        call->state = callback ? ICE_FREE : ICE_DONE; /* the callback may make the next call */
+        if (ICEC_TASKS && !callback)
+            ic->os->wake(ic->osContext, (int)(call - ic->calls));
+    }
+    Ice_unlock(ic, ICE_LOCK_STATE);
+    if (callback)
+        callback(cookie, status, is);
+}
+
+void Ice_failCalls(Ice_CommunicatorPtr ic, int connection, Ice_Status status) {
+    Ice_InputStream none;
+    int c;
+    Ice_InputStream_init(&none, 0, 0);
+    for (c = 0; c < ICE_CALLS; ++c)
+        if (ic->calls[c].state == ICE_WAITING && ic->calls[c].connection == connection)
+            finish(ic, &ic->calls[c], ic->calls[c].id, status, &none);
+    Ice_wakeCalls(ic); /* some wait for the connection */
+}
+
+Ice_Int Ice_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
+    Ice_InputStream none;
+    int c;
+    Ice_InputStream_init(&none, 0, 0);
+    for (c = 0; c < ICE_CALLS; ++c) {
+        Ice_Call *call = &ic->calls[c];
+        Ice_Int left;
+        if (call->state != ICE_WAITING || !call->callback)
+            continue;
+        left = call->timeoutMs - (Ice_Int)(Ice_nowMs(ic) - call->begunMs);
+        if (left <= 0)
+            finish(ic, call, call->id, ICE_TIMEOUT, &none);
+        else if (left < waitMs)
+            waitMs = left;
+    }
+    return waitMs;
+}
+
+/* From a reply's status byte on. */
+static Ice_Status readReply(Ice_InputStreamPtr is, Ice_Failure *failure) {
+    static const Ice_Byte statuses[] = {ICE_OK, ICE_USER_EXCEPTION, ICE_OBJECT_NOT_EXIST,
+                                        ICE_FACET_NOT_EXIST, ICE_OPERATION_NOT_EXIST,
+                                        ICE_UNKNOWN_LOCAL_EXCEPTION, ICE_UNKNOWN_USER_EXCEPTION,
+                                        ICE_UNKNOWN_EXCEPTION};
+    Ice_Byte code = Ice_InputStream_readByte(is);
+    Ice_Status entered;
+    if (is->failed || code >= sizeof statuses)
+        return ICE_MARSHAL;
+    if (code <= 1) {
+        entered = Ice_enterEncapsulation(is);
+        return entered != ICE_OK ? entered : (Ice_Status)statuses[code];
+    }
+    if (ICEC_DETAILS && code <= 4) {
+        failure->identity.name = Ice_InputStream_readString(is);
+        failure->identity.category = Ice_InputStream_readString(is);
+        failure->facet = Ice_readFacet(is);
+        failure->operation = Ice_InputStream_readString(is);
+    } else if (ICEC_DETAILS) {
+        failure->unknown = Ice_InputStream_readString(is);
+    }
+    return (Ice_Status)statuses[code];
+}
+
+/* Copies what is left of the message, for the task that waits. */
+static void keepReply(Ice_Call *call, Ice_InputStreamPtr is) {
+    Ice_Int size = is->size - is->position;
+    if (size > call->replySize) {
+        is->failed = 1;
+        return;
+    }
+    memcpy(call->reply, is->data + is->position, (size_t)size);
+    Ice_InputStream_init(is, (const Ice_Byte *)call->reply, size);
+    size = (size + 7) / 8 * 2; /* in words: the arena begins at a multiple of 8 */
+    is->arena = call->reply + size;
+    is->arenaSize = call->replySize / 4 - size;
+}
+
+static Ice_Call *callOf(Ice_CommunicatorPtr ic, int connection, Ice_Int id) {
+    Ice_Call *call;
+    for (call = ic->calls; call < ic->calls + ICE_CALLS; ++call)
+        if (call->state == ICE_WAITING && call->id == id && call->connection == connection)
+            return call;
+    return 0; /* it timed out, or there never was one */
+}
+
+void Ice_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is) {
+    Ice_Int id = Ice_InputStream_readInt(is);
+    Ice_Call *call;
+    Ice_Status status;
+    Ice_giveArena(ic, is);
+    Ice_lock(ic, ICE_LOCK_STATE); /* so that it does not time out meanwhile */
+    call = callOf(ic, connection, id);
+    if (call && ICEC_ASYNC && call->callback) {
+        Ice_unlock(ic, ICE_LOCK_STATE);
+        status = readReply(is, &call->failure);
+        finish(ic, call, id, status, is);
+        return;
+    }
+    if (call) {
+        if (ICEC_COPY_REPLIES)
+            keepReply(call, is);
+        is->communicator = ic;
+        call->status = (Ice_Byte)readReply(is, &call->failure);
+        call->is = *is;
+        call->state = ICE_DONE;
+        if (ICEC_TASKS)
+            ic->os->wake(ic->osContext, (int)(call - ic->calls));
+    }
+    Ice_unlock(ic, ICE_LOCK_STATE);
+}
+
+/* ---- making a call ---- */
+
+void Ice_initRequest(Ice_CommunicatorPtr ic) {
+    Ice_OutputStream_init(&ic->request, ICEC_TASKS ? ic->requestData : ic->out,
+                          ICEC_TASKS ? ICE_REQUEST_MAX : ICE_MESSAGE_MAX);
+}
+
+/* Tries the proxy's endpoints in turn. */
+static Ice_Status connect(Ice_ObjectPrxPtr self, int slot) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    Ice_Status status = ICE_NO_ENDPOINT;
+    Ice_InputStream is;
+    int n;
+    if (self->mode >= ICE_DATAGRAM)
+        return ICE_NO_ENDPOINT;
+    if (ICEC_ASYNC && self->generation) {
+        const Ice_Connection *c = &ic->connections[self->connection];
+        return c->generation == self->generation && c->state == ICE_DONE ? ICE_OK : ICE_CONNECTION_LOST;
+    }
+    Ice_InputStream_init(&is, self->encoded, self->encodedSize);
+    for (n = self->endpointCount; n > 0 && status != ICE_OK; --n) {
+        Ice_Int begin = is.position;
+        (void)Ice_InputStream_readShort(&is);
+        (void)Ice_InputStream_readBlob(&is, Ice_InputStream_readInt(&is) - 4);
+        Ice_lock(ic, ICE_LOCK_STATE);
+        status = ic->endpoint->connect(ic->endpointContext, self->encoded + begin, is.position - begin,
+                                       &self->connection);
+        if (status == ICE_OK && ic->connections[self->connection].state == ICE_FREE)
+            Ice_openConnection(ic, self->connection, ICE_WAITING);
+        Ice_unlock(ic, ICE_LOCK_STATE);
+    }
+    if (status != ICE_OK)
+        return status;
+    status = Ice_await(ic, &ic->connections[self->connection].state, slot, self->timeoutMs);
+    return status != ICE_OK || ic->connections[self->connection].state == ICE_DONE ? status
+                                                                                   : ICE_CONNECTION_LOST;
+}
+
+Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int *connection) {
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "", 0); /* for a slot to wait in */
+    if (!os)
+        return (Ice_Status)self->status;
+    Ice_unlock(self->communicator, ICE_LOCK_SEND);
+    *connection = self->connection;
+    return Ice_ObjectPrx_end(self, (Ice_Status)self->status);
+}
+
+static void writeContext(Ice_OutputStreamPtr os, const Ice_ContextEntry *context) {
+    Ice_Int n = 0;
+    while (context && context[n].key)
+        ++n;
+    Ice_OutputStream_writeSize(os, n);
+    for (; n > 0; --n, ++context) {
+        Ice_OutputStream_writeString(os, Ice_String_from(context->key));
+        Ice_OutputStream_writeString(os, Ice_String_from(context->value));
+    }
+}
+
+static int takeSlot(Ice_ObjectPrxPtr self) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    int c;
+    self->call = -1;
+    Ice_lock(ic, ICE_LOCK_STATE);
+    for (c = 0; c < ICE_CALLS && self->call < 0; ++c)
+        if (ic->calls[c].state == ICE_FREE) {
+            ic->calls[c].state = ICE_BUILDING;
+            self->call = c;
+        }
+    Ice_unlock(ic, ICE_LOCK_STATE);
+    return self->call;
+}
+
+Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char *operation, Ice_Byte mode) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    Ice_OutputStreamPtr os = &ic->request;
+    Ice_Identity id = Ice_ObjectPrx_getIdentity(self);
+    Ice_Call *call;
+    self->status = self->mode != ICE_TWOWAY && mode & ICE_RESULTS ? ICE_TWOWAY_ONLY : ICE_LIMIT;
+    if (self->status == ICE_TWOWAY_ONLY || takeSlot(self) < 0)
+        return 0;
+    call = &ic->calls[self->call];
+    call->callback = 0;
+    self->status = ICE_OK;
+    if (!(ICEC_BATCH && self->batch))
+        self->status = (Ice_Byte)connect(self, self->call);
+    Ice_lock(ic, ICE_LOCK_SEND);
+    Ice_initRequest(ic);
+    os->minor = self->minor;
+    if (!(ICEC_BATCH && self->batch)) {
+        call->id = 0;
+        if (self->mode == ICE_TWOWAY) {
+            if (ic->lastId == 0x7FFFFFFF)
+                ic->lastId = 0;
+            call->id = ++ic->lastId;
+        }
+        Ice_beginMessage(os, ICE_REQUEST);
+        Ice_OutputStream_writeInt(os, call->id);
+    }
+    Ice_OutputStream_writeString(os, id.name);
+    Ice_OutputStream_writeString(os, id.category);
+    Ice_writeFacet(os, Ice_ObjectPrx_getFacet(self));
+    Ice_OutputStream_writeString(os, Ice_String_from(operation));
+    Ice_OutputStream_writeByte(os, mode & (Ice_Byte)~ICE_RESULTS);
+    writeContext(os, ICEC_CONTEXTS ? self->context : 0);
+    ic->requestBody = Ice_beginEncapsulation(os);
+    return os;
+}
+
+Ice_Status Ice_sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void *cookie) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    Ice_OutputStreamPtr os = &ic->request;
+    Ice_Call *call = &ic->calls[self->call];
+    Ice_Status status = (Ice_Status)self->status;
+    Ice_endEncapsulation(os, ic->requestBody);
+    if (ICEC_BATCH && self->batch) {
+        status = self->batch->keep(self);
+    } else {
+        Ice_endMessage(os);
+        if (status == ICE_OK && os->failed)
+            status = ICE_MARSHAL;
+        if (status == ICE_OK) {
+            call->connection = self->connection;
+            call->callback = callback;
+            call->cookie = cookie;
+            call->timeoutMs = self->timeoutMs;
+            call->begunMs = Ice_nowMs(ic);
+            call->reply = self->reply ? self->reply : call->replyData;
+            call->replySize = self->reply ? self->replySize : (Ice_Int)sizeof call->replyData;
+            memset(&call->failure, 0, sizeof call->failure);
+            if (self->mode == ICE_TWOWAY)
+                call->state = ICE_WAITING; /* before the reply can be there */
+            status = Ice_send(ic, self->connection, os);
+            if (status != ICE_OK && call->state == ICE_WAITING)
+                call->state = ICE_BUILDING;
+        }
+    }
+    Ice_unlock(ic, ICE_LOCK_SEND);
+    return status;
+}
+
+Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr *is) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    Ice_Call *call = &ic->calls[self->call];
+    Ice_Status status = Ice_sendRequest(self, 0, 0);
+    if (status != ICE_OK || self->mode != ICE_TWOWAY)
+        return status;
+    status = Ice_await(ic, &call->state, self->call, self->timeoutMs);
+    if (call->state == ICE_DONE)
+        status = (Ice_Status)call->status;
+    *is = &call->is;
+    return status;
+}
+
+Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    Ice_Call *call = &ic->calls[self->call];
+    if ((status == ICE_OK || status == ICE_USER_EXCEPTION) && call->state == ICE_DONE && call->is.failed)
+        status = ICE_MARSHAL;
+    Ice_lock(ic, ICE_LOCK_STATE);
+    call->state = ICE_FREE;
+    Ice_unlock(ic, ICE_LOCK_STATE);
+    return status;
+}
+
+Ice_Status Ice_ObjectPrx_ice_ping(Ice_ObjectPrxPtr self) {
+    Ice_InputStreamPtr is;
+    if (!Ice_ObjectPrx_begin(self, "ice_ping", 2))
+        return (Ice_Status)self->status;
+    return Ice_ObjectPrx_end(self, Ice_ObjectPrx_invoke(self, &is));
+}

@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_connection: what arrives on connections, and waiting for it.
+ */
+#include "ice_private.h"
+
+#include <string.h>
+
+U32 Ice_nowMs(Ice_CommunicatorPtr ic) {
+    return ic->endpoint->nowMs(ic->endpointContext);
+}
+
+Ice_Status Ice_send(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os) {
+    Ice_Status status = ic->endpoint->send(ic->endpointContext, connection, os->data, os->size);
+    if (ICEC_ASYNC)
+        ic->connections[connection].spokeMs = Ice_nowMs(ic);
+    return status;
+}
+
+Ice_Status Ice_sendPlain(Ice_CommunicatorPtr ic, int connection, Ice_Byte type) {
+    Ice_Byte bytes[ICE_HEADER];
+    Ice_OutputStream os;
+    Ice_Status status;
+    Ice_OutputStream_init(&os, bytes, ICE_HEADER);
+    Ice_beginMessage(&os, type);
+    Ice_lock(ic, ICE_LOCK_SEND);
+    status = Ice_send(ic, connection, &os);
+    Ice_unlock(ic, ICE_LOCK_SEND);
+    return status;
+}
+
+void Ice_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_Byte state) {
+    Ice_Connection *c = &ic->connections[connection];
+    c->state = state;
+    if (ICEC_ASYNC) {
+        c->pending = 0;
+        if (++c->generation == 0)
+            c->generation = 1;
+    }
+}
+
+void Ice_lose(Ice_CommunicatorPtr ic, int connection, Ice_Status status) {
+    ic->connections[connection].state = ICE_FREE;
+    Ice_failCalls(ic, connection, status);
+}
+
+static void closeNow(Ice_CommunicatorPtr ic, int connection, Ice_Status status) {
+    Ice_lock(ic, ICE_LOCK_STATE);
+    ic->endpoint->close(ic->endpointContext, connection);
+    Ice_unlock(ic, ICE_LOCK_STATE);
+    Ice_lose(ic, connection, status);
+}
+
+void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection) {
+    (void)Ice_sendPlain(ic, connection, ICE_CLOSE);
+    closeNow(ic, connection, ICE_CONNECTION_LOST);
+}
+
+/* 0: malformed; the connection is to be closed. */
+static int takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_Byte *in, Ice_Int size) {
+    static const Ice_Byte head[6] = {'I', 'c', 'e', 'P', 1, 0};
+    Ice_InputStream is;
+    Ice_Byte type, compression;
+    Ice_InputStream_init(&is, in, size);
+    is.communicator = ic;
+    if (size < ICE_HEADER || memcmp(in, head, sizeof head) != 0)
+        return 0;
+    is.position = 8;
+    type = Ice_InputStream_readByte(&is);
+    compression = Ice_InputStream_readByte(&is);
+    if (Ice_InputStream_readInt(&is) != size)
+        return 0;
+    if (compression > 1) {
+        /* What is inside cannot be answered; this says that it was not executed. */
+        (void)Ice_sendPlain(ic, connection, ICE_CLOSE);
+        return 0;
+    }
+    switch (type) {
+    case ICE_REQUEST:
+        return Ice_dispatchRequest(ic, connection, &is);
+    case ICE_BATCH:
+        return ICEC_BATCH && Ice_dispatchBatch(ic, connection, &is);
+    case ICE_REPLY:
+        Ice_takeReply(ic, connection, &is);
+        return 1;
+    case ICE_VALIDATE:
+        ic->connections[connection].state = ICE_DONE;
+        Ice_wakeCalls(ic);
+        return 1;
+    case ICE_CLOSE:
+        closeNow(ic, connection, ICE_CONNECTION_CLOSED);
+        return 1;
+    default:
+        return 0;
+    }
+}
+
+/* Signs of life for who waits for an operation; time-outs of asynchronous calls. Returns how long
+ * there is nothing of this to do, at most waitMs. */
+static Ice_Int keepUp(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
+    int c;
+    for (c = 0; c < ICE_CONNECTIONS; ++c) {
+        Ice_Connection *connection = &ic->connections[c];
+        Ice_Int left;
+        if (connection->state != ICE_DONE || connection->pending == 0)
+            continue;
+        left = ICE_HEARTBEAT_MS - (Ice_Int)(Ice_nowMs(ic) - connection->spokeMs);
+        if (left <= 0) {
+            (void)Ice_sendPlain(ic, c, ICE_VALIDATE);
+            left = ICE_HEARTBEAT_MS;
+        }
+        if (left < waitMs)
+            waitMs = left;
+    }
+    return Ice_expireCalls(ic, waitMs);
+}
+
+Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
+    Ice_Event event;
+    Ice_Status status;
+    Ice_Byte *in = ic->in[0];
+    int handled = 1;
+    if (ic->depth == ICEC_NESTING)
+        return ICE_LIMIT;
+    if (ICEC_NESTING > 1)
+        in = ic->in[ic->depth];
+    if (ICEC_ASYNC)
+        timeoutMs = keepUp(ic, timeoutMs);
+    event.kind = ICE_EVENT_NONE;
+    status = ic->endpoint->receive(ic->endpointContext, in, timeoutMs, &event);
+    if (status != ICE_OK)
+        return status;
+    switch (event.kind) {
+    case ICE_EVENT_OPENED: /* who accepts a connection speaks first */
+        Ice_openConnection(ic, event.connection, ICE_DONE);
+        (void)Ice_sendPlain(ic, event.connection, ICE_VALIDATE);
+        break;
+    case ICE_EVENT_MESSAGE:
+        ++ic->depth;
+        handled = takeMessage(ic, event.connection, in, event.size);
+        --ic->depth;
+        if (!handled)
+            closeNow(ic, event.connection, ICE_CONNECTION_LOST);
+        break;
+    case ICE_EVENT_CLOSED:
+        Ice_lose(ic, event.connection, ICE_CONNECTION_LOST);
+        break;
+    default:
+        return ICE_TIMEOUT;
+    }
+    return ICE_OK;
+}
+
+/* A task that waits while nobody receives becomes the receiver for as long as it waits. */
+Ice_Status Ice_await(Ice_CommunicatorPtr ic, const volatile Ice_Byte *state, int slot, Ice_Int timeoutMs) {
+    U32 begin = Ice_nowMs(ic);
+    Ice_Status status = ICE_OK;
+    int task = ICEC_TASKS ? ic->os->task(ic->osContext) : 0, leads = 0;
+    while (*state == ICE_WAITING) {
+        Ice_Int left = timeoutMs - (Ice_Int)(Ice_nowMs(ic) - begin);
+        status = ICE_TIMEOUT;
+        if (left <= 0)
+            break;
+        if (ICEC_TASKS) {
+            Ice_lock(ic, ICE_LOCK_STATE);
+            if (ic->receiver < 0) {
+                ic->receiver = task;
+                leads = 1;
+            }
+            Ice_unlock(ic, ICE_LOCK_STATE);
+        }
+        if (ICEC_TASKS && ic->receiver != task)
+            (void)ic->os->wait(ic->osContext, slot, left);
+        else
+            status = Ice_Communicator_poll(ic, left);
+        if (status != ICE_OK && status != ICE_TIMEOUT)
+            break;
+        status = ICE_OK;
+    }
+    if (leads) {
+        ic->receiver = -1;
+        Ice_wakeCalls(ic); /* the next one takes over */
+    }
+    return *state == ICE_WAITING ? status : ICE_OK;
+}

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_option: options in proxy and endpoint strings: "-h host -p 10000 -v 'a b'".
+ */
+#include "ice_seam.h"
+
+const char *Ice_findOption(const char *options, char letter, Ice_Int *size) {
+    int matches = 0; /* the word before was "-x" */
+    while (options && *options && *options != ':') {
+        const char *begin;
+        char quote = 0;
+        if (*options == ' ') {
+            ++options;
+            continue;
+        }
+        if (*options == '"' || *options == '\'')
+            quote = *options++;
+        begin = options;
+        while (*options && (quote ? *options != quote : *options != ' ' && *options != ':'))
+            ++options;
+        *size = (Ice_Int)(options - begin);
+        if (matches)
+            return begin;
+        matches = !quote && *size == 2 && begin[0] == '-' && begin[1] == letter;
+        if (quote && *options)
+            ++options;
+    }
+    return 0;
+}
+
+U32 Ice_numberOption(const char *options, char letter, U32 otherwise) {
+    Ice_Int size;
+    const char *at = Ice_findOption(options, letter, &size);
+    U32 value = 0, base = 10;
+    if (!at)
+        return otherwise;
+    if (size > 2 && at[0] == '0' && (at[1] | 32) == 'x') {
+        base = 16;
+        at += 2;
+        size -= 2;
+    }
+    for (; size > 0; --size, ++at) {
+        U32 digit = (U32)(U8)*at - (U32)'0';
+        if (digit > 9)
+            digit = ((U32)(U8)*at | 32U) - (U32)'a' + 10U;
+        if (digit >= base)
+            return otherwise;
+        value = value * base + digit;
+    }
+    return value;
+}

@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_proxy_parse: from a proxy's string to the proxy, after the manual's "Proxy and Endpoint Syntax".
+ */
+#include "ice_private.h"
+
+#include <string.h>
+
+/* "name [-t|-o]:transport options", all that the minimal configuration takes. */
+static Ice_Status parseShort(const char *text, Ice_ObjectPrxPtr prx) {
+    Ice_String name, none = {0, ""};
+    const char *options;
+    name.data = text;
+    while (*text && *text != ' ' && *text != ':')
+        ++text;
+    name.size = (Ice_Int)(text - name.data);
+    for (; *text && *text != ':'; ++text)
+        if (text[0] == '-' && text[1] == 'o')
+            prx->mode = ICE_ONEWAY;
+    options = *text ? Ice_optionsOf(prx->communicator, text + 1) : 0;
+    if (!options)
+        return ICE_NO_ENDPOINT;
+    if (name.size == 0 || Ice_ObjectPrx_setIdentity(prx, name, none, none) != ICE_OK)
+        return ICE_LIMIT;
+    return Ice_ObjectPrx_addEndpoint(prx, options);
+}
+
+/* The next word, without its quotes; ends at a space, a colon or an at sign. Escapes stay as they are. */
+static const char *word(const char *text, Ice_String *found) {
+    char quote = 0;
+    while (*text == ' ')
+        ++text;
+    if (*text == '"' || *text == '\'')
+        quote = *text++;
+    found->data = text;
+    while (*text && (quote ? *text != quote : strchr(" :@", *text) == 0))
+        text += text[0] == '\\' && text[1] ? 2 : 1;
+    found->size = (Ice_Int)(text - found->data);
+    if (quote && *text++ != quote)
+        return 0; /* no closing quote */
+    return text;
+}
+
+/* Resolves escapes. */
+static void unescape(Ice_String text, Ice_OutputStreamPtr os) {
+    static const char from[] = "abfnrtv", to[] = "\a\b\f\n\r\t\v";
+    Ice_Int i = 0;
+    while (i < text.size) {
+        char c = text.data[i++];
+        if (c == '\\' && i < text.size) {
+            const char *known;
+            c = text.data[i++];
+            known = strchr(from, c);
+            if (c >= '0' && c <= '3') {
+                int digits = 2, value = c - '0';
+                for (; digits > 0 && i < text.size && text.data[i] >= '0' && text.data[i] <= '7'; --digits)
+                    value = value * 8 + (text.data[i++] - '0');
+                c = (char)value;
+            } else if (known) {
+                c = to[known - from];
+            }
+        }
+        Ice_OutputStream_writeByte(os, (Ice_Byte)c);
+    }
+}
+
+/* "name" or "category/name", where a slash may be escaped. */
+static Ice_Status parseIdentity(Ice_String text, Ice_String facet, Ice_ObjectPrxPtr prx) {
+    Ice_Byte bytes[3 * ICE_IDENTITY_MAX]; /* escaped text is longer than what it means */
+    Ice_OutputStream os;
+    Ice_String parts[3], raw[3];
+    Ice_Int i, slash = -1;
+    for (i = 0; i < text.size; ++i) {
+        if (text.data[i] == '\\')
+            ++i;
+        else if (text.data[i] == '/' && slash >= 0)
+            return ICE_PARSE;
+        else if (text.data[i] == '/')
+            slash = i;
+    }
+    raw[0].data = text.data + slash + 1;
+    raw[0].size = text.size - slash - 1;
+    raw[1].data = text.data;
+    raw[1].size = slash < 0 ? 0 : slash;
+    raw[2] = facet;
+    Ice_OutputStream_init(&os, bytes, (Ice_Int)sizeof bytes);
+    for (i = 0; i < 3; ++i) {
+        parts[i].data = (const char *)bytes + os.size;
+        parts[i].size = os.size;
+        unescape(raw[i], &os);
+        parts[i].size = os.size - parts[i].size;
+    }
+    if (os.failed)
+        return ICE_LIMIT;
+    return parts[0].size ? Ice_ObjectPrx_setIdentity(prx, parts[0], parts[1], parts[2]) : ICE_PARSE;
+}
+
+/* 64 characters stand for six bits each. */
+static void decodeBase64(const char *text, Ice_Int size, Ice_OutputStreamPtr os) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    U32 bits = 0, have = 0;
+    for (; size > 0 && *text != '='; --size, ++text) {
+        const char *digit = *text ? strchr(digits, *text) : 0;
+        if (!digit) {
+            os->failed = 1;
+            return;
+        }
+        bits = bits << 6 | (U32)(digit - digits);
+        have += 6;
+        if (have >= 8) {
+            have -= 8;
+            Ice_OutputStream_writeByte(os, (Ice_Byte)(bits >> have));
+        }
+    }
+}
+
+/* "opaque -t type -e encoding -v bytes in base 64": an endpoint that is only passed on. */
+static Ice_Status parseOpaque(const char *options, Ice_ObjectPrxPtr prx) {
+    Ice_Int size, versionSize, begin;
+    const char *value = Ice_findOption(options, 'v', &size);
+    const char *version = Ice_findOption(options, 'e', &versionSize);
+    U32 type = Ice_numberOption(options, 't', 0x10000U);
+    Ice_OutputStream os;
+    if (!value || type > 0x7FFFU)
+        return ICE_PARSE;
+    Ice_OutputStream_init(&os, prx->encoded, ICE_ENDPOINT_MAX);
+    os.size = prx->encodedSize;
+    os.minor = !(version && versionSize == 3 && version[2] == '0');
+    Ice_OutputStream_writeShort(&os, (Ice_Short)type);
+    begin = Ice_beginEncapsulation(&os);
+    decodeBase64(value, size, &os);
+    Ice_endEncapsulation(&os, begin);
+    if (os.failed)
+        return ICE_LIMIT;
+    prx->encodedSize = (Ice_Byte)os.size;
+    ++prx->endpointCount;
+    return ICE_OK;
+}
+
+static Ice_Status parseEndpoints(const char *text, Ice_ObjectPrxPtr prx) {
+    Ice_Status status = ICE_OK;
+    while (*text == ':' && status == ICE_OK) {
+        const char *options;
+        char quote = 0;
+        do
+            ++text;
+        while (*text == ' ');
+        options = Ice_optionsOf(prx->communicator, text);
+        if (options)
+            status = Ice_ObjectPrx_addEndpoint(prx, options);
+        else if (strncmp(text, "opaque ", 7) == 0)
+            status = parseOpaque(text + 7, prx);
+        else
+            status = ICE_NO_ENDPOINT;
+        for (; *text && (quote || *text != ':'); ++text)
+            if (*text == quote)
+                quote = 0;
+            else if (!quote && (*text == '"' || *text == '\''))
+                quote = *text;
+    }
+    return status;
+}
+
+static Ice_Status parseAdapter(const char *text, Ice_ObjectPrxPtr prx) {
+    Ice_OutputStream os;
+    Ice_String id;
+    text = word(text, &id);
+    if (!text || id.size == 0 || *text != 0)
+        return ICE_PARSE;
+    Ice_OutputStream_init(&os, prx->encoded, ICE_ENDPOINT_MAX);
+    unescape(id, &os);
+    prx->encodedSize = (Ice_Byte)os.size;
+    return os.failed ? ICE_LIMIT : ICE_OK;
+}
+
+static Ice_Status parse(const char *text, Ice_ObjectPrxPtr prx) {
+    static const char modes[] = "toOdD"; /* in the order of ICE_TWOWAY and its like */
+    Ice_String identity, facet = {0, ""}, option, value;
+    Ice_Status status;
+    text = word(text, &identity);
+    if (!text)
+        return ICE_PARSE;
+    for (;;) {
+        const char *mode;
+        while (*text == ' ')
+            ++text;
+        if (*text != '-')
+            break;
+        text = word(text, &option);
+        if (option.size != 2)
+            return ICE_PARSE;
+        mode = strchr(modes, option.data[1]);
+        if (mode) {
+            prx->mode = (Ice_Byte)(mode - modes);
+        } else if (option.data[1] == 's') {
+            prx->secure = 1;
+        } else {
+            text = word(text, &value);
+            if (!text)
+                return ICE_PARSE;
+            if (option.data[1] == 'f')
+                facet = value;
+            else if (option.data[1] == 'e' && value.size == 3 && memcmp(value.data, "1.", 2) == 0)
+                prx->minor = value.data[2] != '0';
+            else if (option.data[1] != 'p' || !Ice_String_equals(value, "1.0"))
+                return ICE_PARSE;
+        }
+    }
+    status = parseIdentity(identity, facet, prx);
+    if (status != ICE_OK || *text == 0)
+        return status;
+    if (*text == ':')
+        return parseEndpoints(text, prx);
+    return *text == '@' ? parseAdapter(text + 1, prx) : ICE_PARSE;
+}
+
+Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char *proxy, Ice_ObjectPrxPtr prx) {
+    Ice_Status status;
+    Ice_ObjectPrx_init(prx, ic);
+    if (!ICEC_DETAILS)
+        return parseShort(proxy, prx);
+    if (proxy[strspn(proxy, " ")] == 0)
+        return ICE_OK; /* the null proxy */
+    status = parse(proxy, prx);
+    if (status != ICE_OK)
+        Ice_ObjectPrx_init(prx, ic);
+    return status;
+}

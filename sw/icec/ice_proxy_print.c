@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_proxy_print: a proxy as a string, as stock Ice prints it.
+ */
+#include "ice_private.h"
+
+#include <string.h>
+
+static void put(Ice_OutputStreamPtr os, const char *text) {
+    Ice_OutputStream_writeBlob(os, (const Ice_Byte *)text, (Ice_Int)strlen(text));
+}
+
+static void putNumber(Ice_OutputStreamPtr os, U32 value) {
+    if (value > 9)
+        putNumber(os, value / 10);
+    Ice_OutputStream_writeByte(os, (Ice_Byte)('0' + value % 10));
+}
+
+/* Escapes what would be read otherwise; UTF-8 stays as it is. `special`: one more character, or 0. */
+static void escape(Ice_OutputStreamPtr os, Ice_String text, char special) {
+    static const char from[] = "\a\b\f\n\r\t\v\\'\"", to[] = "abfnrtv\\'\"";
+    Ice_Int i;
+    for (i = 0; i < text.size; ++i) {
+        char c = text.data[i];
+        const char *known = c ? strchr(from, c) : 0;
+        if (known) {
+            c = to[known - from];
+        } else if ((U8)c < 32 || c == 127) { /* octal, which all versions of Ice read */
+            Ice_OutputStream_writeByte(os, '\\');
+            Ice_OutputStream_writeByte(os, (Ice_Byte)('0' + ((U8)c >> 6)));
+            Ice_OutputStream_writeByte(os, (Ice_Byte)('0' + ((U8)c >> 3 & 7)));
+            Ice_OutputStream_writeByte(os, (Ice_Byte)('0' + ((U8)c & 7)));
+            continue;
+        }
+        if (known || (special && c == special))
+            Ice_OutputStream_writeByte(os, '\\');
+        Ice_OutputStream_writeByte(os, (Ice_Byte)c);
+    }
+}
+
+/* With quotes where the text begun at `begin` needs them. */
+static void quote(Ice_OutputStreamPtr os, Ice_Int begin) {
+    Ice_Int i;
+    for (i = begin; i < os->size; ++i)
+        if (strchr(" :@", os->data[i])) {
+            put(os, "\"\"");
+            if (os->failed)
+                return;
+            memmove(os->data + begin + 1, os->data + begin, (size_t)(os->size - 2 - begin));
+            os->data[begin] = '"';
+            return;
+        }
+}
+
+static void putOpaque(Ice_OutputStreamPtr os, const Ice_Byte *encoded, Ice_Int size) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    Ice_Int i;
+    put(os, "opaque -t ");
+    putNumber(os, encoded[0] | (U32)encoded[1] << 8);
+    put(os, encoded[7] ? " -e 1.1 -v " : " -e 1.0 -v ");
+    for (i = 8; i < size; i += 3) {
+        U32 bits = (U32)encoded[i] << 16 | (i + 1 < size ? (U32)encoded[i + 1] << 8 : 0) |
+                   (i + 2 < size ? (U32)encoded[i + 2] : 0);
+        Ice_OutputStream_writeByte(os, (Ice_Byte)digits[bits >> 18]);
+        Ice_OutputStream_writeByte(os, (Ice_Byte)digits[bits >> 12 & 63]);
+        Ice_OutputStream_writeByte(os, (Ice_Byte)(i + 1 < size ? digits[bits >> 6 & 63] : '='));
+        Ice_OutputStream_writeByte(os, (Ice_Byte)(i + 2 < size ? digits[bits & 63] : '='));
+    }
+}
+
+static void putEndpoints(const Ice_ObjectPrx *prx, Ice_OutputStreamPtr os) {
+    Ice_CommunicatorPtr ic = prx->communicator;
+    Ice_InputStream is;
+    int n;
+    Ice_InputStream_init(&is, prx->encoded, prx->encodedSize);
+    for (n = prx->endpointCount; n > 0; --n) {
+        const Ice_Byte *at = prx->encoded + is.position;
+        Ice_Int size;
+        (void)Ice_InputStream_readShort(&is);
+        (void)Ice_InputStream_readBlob(&is, Ice_InputStream_readInt(&is) - 4);
+        size = (Ice_Int)(prx->encoded + is.position - at);
+        put(os, ":");
+        if (!ic->endpoint || !ic->endpoint->print ||
+            !ic->endpoint->print(ic->endpointContext, at, size, os))
+            putOpaque(os, at, size);
+    }
+}
+
+Ice_Status Ice_Communicator_proxyToString(const Ice_ObjectPrx *prx, char *text, Ice_Int size) {
+    static const char *const modes[] = {" -t", " -o", " -O", " -d", " -D"};
+    Ice_Identity id = Ice_ObjectPrx_getIdentity(prx);
+    Ice_String facet = Ice_ObjectPrx_getFacet(prx);
+    Ice_OutputStream os;
+    Ice_Int begin;
+    Ice_OutputStream_init(&os, (Ice_Byte *)text, size);
+    if (!Ice_ObjectPrx_isNull(prx)) {
+        if (id.category.size) {
+            escape(&os, id.category, '/');
+            put(&os, "/");
+        }
+        escape(&os, id.name, '/');
+        quote(&os, 0);
+        if (facet.size) {
+            put(&os, " -f ");
+            begin = os.size;
+            escape(&os, facet, 0);
+            quote(&os, begin);
+        }
+        put(&os, modes[prx->mode]);
+        put(&os, prx->secure ? " -s" : "");
+        put(&os, prx->minor ? " -e 1.1" : " -e 1.0");
+        if (prx->endpointCount) {
+            putEndpoints(prx, &os);
+        } else if (prx->encodedSize) {
+            Ice_String adapter;
+            adapter.data = (const char *)prx->encoded;
+            adapter.size = prx->encodedSize;
+            put(&os, " @ ");
+            begin = os.size;
+            escape(&os, adapter, 0);
+            quote(&os, begin);
+        }
+    }
+    Ice_OutputStream_writeByte(&os, 0);
+    if (os.failed && size > 0)
+        text[0] = 0;
+    return os.failed ? ICE_LIMIT : ICE_OK;
+}

@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_slice: slices of user exceptions, and optional values.
+ *
+ * 1.0: a slice is its type id, a size of 4 bytes that counts itself, the members; a byte before the
+ * first says whether there are classes. 1.1: flags, type id, the size where the format is sliced,
+ * the members, optional values behind them up to a mark.
+ */
+#include "ice_stream.h"
+
+enum { HAS_OPTIONALS = 0x04, HAS_INDIRECTION = 0x08, HAS_SIZE = 0x10, IS_LAST = 0x20, TYPE_IS_STRING = 0x01 };
+#define TYPE_MASK 0x03
+#define OPTIONAL_END 0xFF
+#define TAG_ESCAPE 30
+
+static void patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value) {
+    Ice_Int end = os->size;
+    if (os->failed)
+        return;
+    os->size = at;
+    Ice_OutputStream_writeInt(os, value);
+    os->size = end;
+}
+
+Ice_Int Ice_OutputStream_startSize(Ice_OutputStreamPtr os) {
+    Ice_OutputStream_writeInt(os, 0);
+    return os->size - 4;
+}
+
+void Ice_OutputStream_endSize(Ice_OutputStreamPtr os, Ice_Int begin) {
+    patchInt(os, begin, os->size - begin - 4);
+}
+
+/* ---- writing ---- */
+
+void Ice_OutputStream_startException(Ice_OutputStreamPtr os, Ice_Bool usesClasses) {
+    if (os->minor == 0)
+        Ice_OutputStream_writeBool(os, usesClasses);
+}
+
+Ice_Int Ice_OutputStream_startSlice(Ice_OutputStreamPtr os, const char *typeId, Ice_Bool last) {
+    Ice_Int begin = os->size;
+    os->sliceFlags = (Ice_Byte)(TYPE_IS_STRING | (os->sliced ? HAS_SIZE : 0) | (last ? IS_LAST : 0));
+    if (os->minor != 0)
+        Ice_OutputStream_writeByte(os, os->sliceFlags);
+    Ice_OutputStream_writeString(os, Ice_String_from(typeId));
+    if (os->minor == 0 || os->sliced)
+        (void)Ice_OutputStream_startSize(os);
+    return begin;
+}
+
+void Ice_OutputStream_endSlice(Ice_OutputStreamPtr os, Ice_Int begin, Ice_Bool last) {
+    Ice_InputStream is;
+    Ice_Int at;
+    (void)last;
+    if (os->sliceFlags & HAS_OPTIONALS)
+        Ice_OutputStream_writeByte(os, OPTIONAL_END);
+    if (os->failed)
+        return;
+    if (os->minor != 0)
+        os->data[begin++] = os->sliceFlags;
+    if (os->minor == 0 || os->sliced) {
+        Ice_InputStream_init(&is, os->data, os->size);
+        is.position = begin;
+        (void)Ice_InputStream_readString(&is);
+        at = is.position;
+        patchInt(os, at, os->size - at);
+    }
+    os->sliceFlags = 0;
+}
+
+Ice_Bool Ice_OutputStream_writeOptional(Ice_OutputStreamPtr os, Ice_Int tag, Ice_Int format) {
+    if (os->minor == 0)
+        return 0;
+    os->sliceFlags |= HAS_OPTIONALS;
+    if (tag < TAG_ESCAPE) {
+        Ice_OutputStream_writeByte(os, (Ice_Byte)(format | tag << 3));
+    } else {
+        Ice_OutputStream_writeByte(os, (Ice_Byte)(format | TAG_ESCAPE << 3));
+        Ice_OutputStream_writeSize(os, tag);
+    }
+    return 1;
+}
+
+/* ---- reading ---- */
+
+void Ice_InputStream_startException(Ice_InputStreamPtr is) {
+    if (is->minor == 0)
+        (void)Ice_InputStream_readBool(is);
+    is->sliceFlags = 0;
+}
+
+Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
+    static const Ice_String none = {0, ""};
+    Ice_String id;
+    Ice_Int begin, size = 0;
+    if (is->sliceFlags & IS_LAST || is->failed || is->position == is->size) {
+        is->failed = 1; /* a base that is asked for and is not there */
+        return none;
+    }
+    is->sliceFlags = is->minor != 0 ? Ice_InputStream_readByte(is) : HAS_SIZE | TYPE_IS_STRING;
+    is->sliceEnd = 0;
+    if ((is->sliceFlags & TYPE_MASK) != TYPE_IS_STRING)
+        is->failed = 1; /* indices and compact ids are for classes */
+    id = Ice_InputStream_readString(is);
+    begin = is->position;
+    if (is->sliceFlags & HAS_SIZE) {
+        size = Ice_InputStream_readInt(is);
+        if (size < 4 || size > is->size - begin)
+            is->failed = 1;
+        is->sliceEnd = begin + size;
+    }
+    return is->failed ? none : id;
+}
+
+Ice_Bool Ice_InputStream_skipSlice(Ice_InputStreamPtr is) {
+    if (is->failed || is->sliceEnd == 0 || is->sliceFlags & (IS_LAST | HAS_INDIRECTION))
+        return 0;
+    is->position = is->sliceEnd;
+    return is->position < is->size;
+}
+
+void Ice_InputStream_endSlice(Ice_InputStreamPtr is) {
+    if (is->sliceFlags & HAS_OPTIONALS) {
+        Ice_InputStream_skipOptionals(is);
+        if (Ice_InputStream_readByte(is) != OPTIONAL_END)
+            is->failed = 1;
+    }
+    if (is->sliceEnd && is->position != is->sliceEnd)
+        is->failed = 1;
+}
+
+/* Skips one value. Classes cannot be skipped, unless null or an instance that came before. */
+static void skip(Ice_InputStreamPtr is, Ice_Int format) {
+    switch (format) {
+    case ICE_OPTIONAL_SIZE:
+        (void)Ice_InputStream_readSize(is);
+        break;
+    case ICE_OPTIONAL_VSIZE:
+        (void)Ice_InputStream_readBlob(is, Ice_InputStream_readSize(is));
+        break;
+    case ICE_OPTIONAL_FSIZE:
+        (void)Ice_InputStream_readBlob(is, Ice_InputStream_readInt(is));
+        break;
+    case ICE_OPTIONAL_CLASS:
+        if (Ice_InputStream_readSize(is) == 1)
+            is->failed = 1;
+        break;
+    default:
+        (void)Ice_InputStream_readBlob(is, (Ice_Int)1 << format);
+    }
+}
+
+/* Goes on to the first tag that is not below `tag`. 1: it is this one, and its value follows. */
+static Ice_Bool seek(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format) {
+    Ice_Int end = is->sliceFlags && is->sliceEnd ? is->sliceEnd : is->size;
+    while (!is->failed && is->position < end) {
+        Ice_Int begin = is->position, found;
+        Ice_Byte head = Ice_InputStream_readByte(is);
+        found = head >> 3;
+        if (head != OPTIONAL_END && found == TAG_ESCAPE)
+            found = Ice_InputStream_readSize(is);
+        if (head == OPTIONAL_END || found > tag) {
+            is->position = begin;
+            break;
+        }
+        if (found == tag) {
+            if ((head & 7) != format)
+                is->failed = 1;
+            return !is->failed;
+        }
+        skip(is, head & 7);
+    }
+    return 0;
+}
+
+Ice_Bool Ice_InputStream_readOptional(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format) {
+    if (is->minor == 0 || (is->sliceFlags && !(is->sliceFlags & HAS_OPTIONALS)))
+        return 0;
+    return seek(is, tag, format);
+}
+
+void Ice_InputStream_skipOptionals(Ice_InputStreamPtr is) {
+    if (is->minor != 0)
+        (void)seek(is, 0x7FFFFFFF, -1);
+}

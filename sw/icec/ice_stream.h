@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_stream: Ice's types, and their encodings 1.0 and 1.1. Errors stick: one check at the end is enough.
+ *
+ * Streams do not allocate and share nothing: a stream is used by one task, different streams by any.
+ */
+#ifndef ICE_STREAM_H
+#define ICE_STREAM_H
+
+#include "base.h"
+#include "ice_config.h"
+
+typedef U8 Ice_Bool;
+typedef U8 Ice_Byte;
+typedef S16 Ice_Short;
+typedef S32 Ice_Int;
+typedef float Ice_Float;
+typedef double Ice_Double;
+typedef struct Ice_Long {
+    U32 low; /* C90 has no 64-bit integer */
+    S32 high;
+} Ice_Long;
+
+/* Not terminated; points into a message, or at what the caller keeps. */
+typedef struct Ice_String {
+    Ice_Int size;
+    const char *data;
+} Ice_String;
+
+Ice_String Ice_String_from(const char *terminated);
+int Ice_String_equals(Ice_String a, const char *terminated);
+int Ice_String_same(Ice_String a, Ice_String b);
+
+struct Ice_Communicator;
+struct Ice_OutputValues; /* ice_value.h */
+struct Ice_InputValues;
+
+typedef struct Ice_OutputStream {
+    Ice_Byte *data;
+    Ice_Int size, capacity;
+    Ice_Byte minor; /* encoding 1.minor */
+    Ice_Byte failed;
+    Ice_Byte sliced;     /* user exceptions in the sliced format: a peer can skip slices it does not know */
+    Ice_Byte sliceFlags; /* of the slice under way */
+    struct Ice_OutputValues *values; /* classes; 0: none so far */
+} Ice_OutputStream, *Ice_OutputStreamPtr;
+
+typedef struct Ice_InputStream {
+    const Ice_Byte *data;
+    Ice_Int position, size;
+    Ice_Byte minor;
+    Ice_Byte failed;
+    Ice_Byte sliceFlags; /* of the slice under way; 0: none */
+    Ice_Int sliceEnd;    /* 0: not known */
+    U32 *arena;          /* for decoded sequences */
+    Ice_Int arenaUsed, arenaSize; /* in words of 4 bytes */
+    struct Ice_Communicator *communicator; /* of the proxies that are read */
+    struct Ice_InputValues *values; /* classes; 0: none so far */
+} Ice_InputStream, *Ice_InputStreamPtr;
+
+/* ---- writing ---- */
+
+void Ice_OutputStream_init(Ice_OutputStreamPtr os, Ice_Byte *data, Ice_Int capacity);
+void Ice_OutputStream_writeBlob(Ice_OutputStreamPtr os, const Ice_Byte *data, Ice_Int size);
+void Ice_OutputStream_writeByte(Ice_OutputStreamPtr os, Ice_Byte v);
+void Ice_OutputStream_writeBool(Ice_OutputStreamPtr os, Ice_Bool v);
+void Ice_OutputStream_writeShort(Ice_OutputStreamPtr os, Ice_Short v);
+void Ice_OutputStream_writeInt(Ice_OutputStreamPtr os, Ice_Int v);
+void Ice_OutputStream_writeLong(Ice_OutputStreamPtr os, Ice_Long v);
+void Ice_OutputStream_writeFloat(Ice_OutputStreamPtr os, Ice_Float v);
+void Ice_OutputStream_writeDouble(Ice_OutputStreamPtr os, Ice_Double v);
+void Ice_OutputStream_writeSize(Ice_OutputStreamPtr os, Ice_Int v);
+void Ice_OutputStream_writeString(Ice_OutputStreamPtr os, Ice_String v);
+/* `largest`: the greatest enumerator, which chooses the width in encoding 1.0. */
+void Ice_OutputStream_writeEnum(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int largest);
+/* A size of 4 bytes that does not count itself, filled in by endSize. */
+Ice_Int Ice_OutputStream_startSize(Ice_OutputStreamPtr os);
+void Ice_OutputStream_endSize(Ice_OutputStreamPtr os, Ice_Int begin);
+
+/* ---- reading ---- */
+
+void Ice_InputStream_init(Ice_InputStreamPtr is, const Ice_Byte *data, Ice_Int size);
+const Ice_Byte *Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size); /* 0 on failure */
+Ice_Byte Ice_InputStream_readByte(Ice_InputStreamPtr is);
+Ice_Bool Ice_InputStream_readBool(Ice_InputStreamPtr is);
+Ice_Short Ice_InputStream_readShort(Ice_InputStreamPtr is);
+Ice_Int Ice_InputStream_readInt(Ice_InputStreamPtr is);
+Ice_Long Ice_InputStream_readLong(Ice_InputStreamPtr is);
+Ice_Float Ice_InputStream_readFloat(Ice_InputStreamPtr is);
+Ice_Double Ice_InputStream_readDouble(Ice_InputStreamPtr is);
+Ice_Int Ice_InputStream_readSize(Ice_InputStreamPtr is);
+Ice_String Ice_InputStream_readString(Ice_InputStreamPtr is);
+Ice_Int Ice_InputStream_readEnum(Ice_InputStreamPtr is, Ice_Int largest);
+/* Size of a sequence whose elements take at least `least` bytes each: more than is left fails. */
+Ice_Int Ice_InputStream_readSequence(Ice_InputStreamPtr is, Ice_Int least);
+/* Room for `count` elements of `bytes` each, aligned to 8; 0 and a failed stream if there is none. */
+void *Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int bytes);
+
+/* ---- optional values: encoding 1.1 only ---- */
+
+enum {
+    ICE_OPTIONAL_F1, ICE_OPTIONAL_F2, ICE_OPTIONAL_F4, ICE_OPTIONAL_F8, /* 1, 2, 4, 8 bytes */
+    ICE_OPTIONAL_SIZE,  /* an enum */
+    ICE_OPTIONAL_VSIZE, /* a size, then so many bytes */
+    ICE_OPTIONAL_FSIZE, /* the same with a size of 4 bytes */
+    ICE_OPTIONAL_CLASS
+};
+
+/* Begins a value that is there, behind the required ones, by ascending tag. 0: the encoding has no
+ * optional values, write nothing. */
+Ice_Bool Ice_OutputStream_writeOptional(Ice_OutputStreamPtr os, Ice_Int tag, Ice_Int format);
+/* 1: the value is there and follows. Tags in between that nobody asked for are skipped. */
+Ice_Bool Ice_InputStream_readOptional(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format);
+/* Skips what is left of them in the slice or encapsulation. */
+void Ice_InputStream_skipOptionals(Ice_InputStreamPtr is);
+
+/* ---- user exceptions: slices, the most derived one first ---- */
+
+void Ice_OutputStream_startException(Ice_OutputStreamPtr os, Ice_Bool usesClasses);
+/* The result is endSlice's `begin`. */
+Ice_Int Ice_OutputStream_startSlice(Ice_OutputStreamPtr os, const char *typeId, Ice_Bool last);
+void Ice_OutputStream_endSlice(Ice_OutputStreamPtr os, Ice_Int begin, Ice_Bool last);
+
+void Ice_InputStream_startException(Ice_InputStreamPtr is);
+/* The type id of the slice that begins here; empty where there is none. */
+Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is);
+/* To the next slice. 0: there is none, or the format does not say where it begins. */
+Ice_Bool Ice_InputStream_skipSlice(Ice_InputStreamPtr is);
+void Ice_InputStream_endSlice(Ice_InputStreamPtr is);
+
+#endif

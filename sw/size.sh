@@ -1,39 +1,134 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# size: text and read-only data of each firmware layer for a Cortex-M3 at -Os, beside the paper's Table II.
+# size: bytes of each firmware layer on a Cortex-M3 at -Os, beside the paper's Table II; RAM and stack;
+# against the budget, which a layer may not exceed.
+#
+# minimal: sw/apps/minimal, all layers linked with --gc-sections and -DICEC_MINIMAL; of each layer what is
+# in the image (text and read-only data; the C library and generated code are not counted, as in the paper).
+# full: everything that the layer's files hold, all options on, linked or not.
+#
 # Usage: size.sh source-folder generated-folder output.json
 
 set -eu
-source=$1 gen=$2 json=$3
-command -v arm-none-eabi-gcc >/dev/null || {
-    echo "size: arm-none-eabi-gcc is missing; run 'make setup'" >&2
+[ $# = 3 ] || {
+    echo "usage: size.sh source-folder generated-folder output.json" >&2
+    exit 2
+}
+source=$(cd "$1" && pwd) gen=$(cd "$2" && pwd) json=$3
+for tool in arm-none-eabi-gcc awk; do
+    command -v $tool >/dev/null || {
+        echo "size: $tool is missing; run 'make setup'" >&2
+        exit 1
+    }
+done
+[ -f "$gen/slice/Autopilot/Autopilot.h" ] || {
+    echo "size: $gen/slice/Autopilot/Autopilot.h is missing; build the target Autopilot_types first" >&2
     exit 1
 }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-includes="-I$gen"
+target="-mcpu=cortex-m3 -mthumb"
+includes="-I$gen -I$gen/slice/Autopilot"
 for d in base os os/host fsmc radio link icec icec/endpoints; do includes="$includes -I$source/sw/$d"; done
-entries='' total=0
-layer() { # name, paper's bytes, files
-    name=$1 paper=$2
-    shift 2
-    for f in "$@"; do
-        # shellcheck disable=SC2086
-        arm-none-eabi-gcc -std=c90 -mcpu=cortex-m3 -mthumb -Os -ffunction-sections $includes -c "$f" \
-            -o "$work/$name.$(basename "$f").o"
-    done
-    bytes=$(arm-none-eabi-size "$work/$name".*.o | awk 'NR > 1 {n += $1} END {print n}')
-    printf '%-22s %7d %9s\n' "$name" "$bytes" "$paper"
-    entries="$entries${entries:+, }{\"name\": \"$name\", \"value\": $bytes, \"unit\": \"bytes\", \"limit\": $paper, \"command\": \"make size\"}"
-    total=$((total + bytes))
+layers='fsmc radio link icec endpoint'
+
+files() {
+    case $1 in
+    endpoint) echo "$source"/sw/icec/endpoints/xbee_endpoint.c ;;
+    app) echo "$source"/sw/apps/minimal/*.c "$gen"/slice/Autopilot/*.c ;;
+    *) echo "$source"/sw/"$1"/*.c ;;
+    esac
 }
-printf '%-22s %7s %9s\n' layer bytes "paper's"
-layer fsmc 1116 "$source"/sw/fsmc/*.c
-layer radio 1795 "$source"/sw/radio/*.c
-layer link 1307 "$source"/sw/link/*.c
-layer icec 2622 "$source"/sw/icec/*.c
-printf '%-22s %7d %9d\n' all $total 6840
+
+compile() { # folder, flags: every file of every layer, a folder a layer
+    folder=$1
+    shift
+    for layer in $layers app; do
+        mkdir -p "$folder/$layer"
+        # shellcheck disable=SC2046,SC2086 # lists of words
+        (cd "$folder/$layer" && arm-none-eabi-gcc -std=c90 $target -Os -ffunction-sections -fdata-sections -fno-merge-constants \
+            -fstack-usage $includes "$@" -c $(files $layer))
+    done
+}
+
+compile "$work/minimal" -DICEC_MINIMAL
+compile "$work/full"
+# shellcheck disable=SC2086
+arm-none-eabi-gcc $target -nostartfiles --specs=nosys.specs --specs=nano.specs -Wl,--gc-sections -Wl,-e,main \
+    -Wl,-Map="$work/map" -o "$work/minimal.elf" "$work"/minimal/*/*.o 2>"$work/link.log" || {
+    cat "$work/link.log" >&2
+    exit 1
+}
+
+# Bytes of the sections whose names match, of a layer's files, in the image.
+linked() { # layer, pattern
+    awk -v layer="/minimal/$1/" -v wanted="$2" '
+        function add(size, file) { if (index(file, layer) && section ~ wanted) sum += hex(size) }
+        function hex(text,  i, n) {
+            for (i = 3; i <= length(text); ++i) n = n * 16 + index("0123456789abcdef", substr(text, i, 1)) - 1
+            return n
+        }
+        /^Linker script and memory map/ { live = 1 }
+        !live { next }
+        /^ \.?[A-Za-z_]/ { section = $1; if (NF >= 4) add($3, $4); next }
+        /^ +0x/ && NF == 3 { add($2, $3) }
+        END { print sum + 0 }' "$work/map"
+}
+
+whole() { # layer, column of size (1 text and read-only data, 2 data, 3 bss)
+    arm-none-eabi-size "$work/full/$1"/*.o | awk -v c="$2" 'NR > 1 {n += $c} END {print n + 0}'
+}
+
+deepest() { # configuration, layer: the function with the largest frame
+    cat "$work/$1/$2"/*.su | awk -F '\t' '$2 > n {n = $2; split($1, f, ":"); name = f[4]} END {print n + 0, name}'
+}
+
+budget() { # configuration, layer
+    sed -n "s/.*\"$1\\.$2\": *\\([0-9]*\\).*/\\1/p" "$source/sw/size_budget.json"
+}
+
+paper() {
+    case $1 in fsmc) echo 1116 ;; radio) echo 1795 ;; link) echo 1307 ;; icec) echo 2622 ;; *) echo 0 ;; esac
+}
+
+entries='' over='' paperTotal=0 minimalTotal=0 fullTotal=0
+entry() { # name, bytes, limit or 0
+    entries="$entries${entries:+,
+ }{\"name\": \"$1\", \"value\": $2, \"unit\": \"bytes\"$([ "$3" = 0 ] || echo ", \"limit\": $3"), \"command\": \"make size\"}"
+}
+check() { # configuration, layer, bytes
+    limit=$(budget "$1" "$2")
+    [ -n "$limit" ] || {
+        over="$over
+size: sw/size_budget.json has no \"$1.$2\" (it is $3)"
+        return
+    }
+    [ "$3" -le "$limit" ] || over="$over
+size: $1.$2 has grown to $3 bytes, its budget is $limit (sw/size_budget.json)"
+}
+
+printf '%-10s %8s %8s %8s %8s %9s %s\n' layer minimal "paper's" full 'RAM min' 'RAM full' 'largest frame (minimal)'
+for layer in $layers; do
+    small=$(linked $layer '^[.](text|rodata)')
+    ram=$(linked $layer '^[.](data|bss)|^COMMON')
+    large=$(whole $layer 1)
+    largeRam=$(($(whole $layer 2) + $(whole $layer 3)))
+    printf '%-10s %8d %8s %8d %8d %9d %s\n' $layer "$small" "$(paper $layer | sed s/^0$/-/)" "$large" "$ram" "$largeRam" \
+        "$(deepest minimal $layer)"
+    entry "minimal.$layer" "$small" "$(paper $layer)"
+    entry "full.$layer" "$large" 0
+    check minimal $layer "$small"
+    check full $layer "$large"
+    minimalTotal=$((minimalTotal + small)) fullTotal=$((fullTotal + large)) paperTotal=$((paperTotal + $(paper $layer)))
+done
+printf '%-10s %8d %8d %8d\n' all $minimalTotal $paperTotal $fullTotal
+entry minimal.all $minimalTotal $paperTotal
+echo "RAM of the minimal program with all objects: $(linked app '^[.](data|bss)|^COMMON') bytes, of generated code and servants: $(linked app '^[.](text|rodata)') bytes of text"
 mkdir -p "$(dirname "$json")"
-echo "[$entries]" >"$json"
+printf '[%s]\n' "$entries" >"$json"
 echo "Written: $json"
+[ -z "$over" ] || {
+    echo "$over" >&2
+    exit 1
+}

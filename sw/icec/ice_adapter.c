@@ -28,7 +28,8 @@ const char *Ice_optionsOf(Ice_CommunicatorPtr ic, const char *text) {
     return *name == 0 && (*text == ' ' || *text == ':' || *text == 0) ? text : 0;
 }
 
-Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr ic, const char *name,
+Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr ic,
+                                                             const char *name,
                                                              const char *endpoints,
                                                              Ice_ObjectAdapterPtr adapter) {
     const char *options = endpoints ? Ice_optionsOf(ic, endpoints) : 0;
@@ -53,7 +54,8 @@ Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr
 static int indexOf(Ice_ObjectAdapterPtr adapter, const Ice_Identity *id, Ice_String facet) {
     int s;
     for (s = 0; s < ICE_SERVANTS; ++s)
-        if (adapter->servants[s].servant && Ice_String_same(adapter->servants[s].identity.name, id->name) &&
+        if (adapter->servants[s].servant &&
+            Ice_String_same(adapter->servants[s].identity.name, id->name) &&
             (!ICEC_CATEGORIES ||
              (Ice_String_same(adapter->servants[s].identity.category, id->category) &&
               Ice_String_same(adapter->servants[s].facet, facet))))
@@ -61,8 +63,8 @@ static int indexOf(Ice_ObjectAdapterPtr adapter, const Ice_Identity *id, Ice_Str
     return -1;
 }
 
-static Ice_Status change(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant, const Ice_Identity *id,
-                         Ice_String facet) {
+static Ice_Status change(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
+                         const Ice_Identity *id, Ice_String facet) {
     Ice_Status status = ICE_LIMIT;
     int s;
     Ice_lock(adapter->communicator, ICE_LOCK_STATE);
@@ -84,20 +86,22 @@ static Ice_Status change(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant, co
     return status;
 }
 
-static Ice_Status changeNamed(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant, const char *identity,
-                              const char *facet) {
+static Ice_Status changeNamed(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
+                              const char *identity, const char *facet) {
     Ice_Identity id = Ice_parseIdentity(identity);
     return id.name.size ? change(adapter, servant, &id, Ice_String_from(facet)) : ICE_PARSE;
 }
 
-static Ice_Status changeDefault(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant, const char *category) {
+static Ice_Status changeDefault(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
+                                const char *category) {
     Ice_Identity id;
     id.name = part("", 0);
     id.category = Ice_String_from(category);
     return change(adapter, servant, &id, id.name);
 }
 
-Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant, const char *identity) {
+Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
+                                 const char *identity) {
     return changeNamed(adapter, servant, identity, "");
 }
 
@@ -120,7 +124,8 @@ Ice_Status Ice_ObjectAdapter_removeFacet(Ice_ObjectAdapterPtr adapter, const cha
     return changeNamed(adapter, 0, identity, facet);
 }
 
-Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter, const char *category) {
+Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter,
+                                                  const char *category) {
     return changeDefault(adapter, 0, category);
 }
 

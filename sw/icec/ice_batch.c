@@ -34,7 +34,8 @@ static Ice_Status keep(Ice_ObjectPrxPtr prx) {
     if (request->failed || batch->os.failed)
         return ICE_MARSHAL;
     if (request->size > batch->os.capacity - batch->os.size && batch->count) {
-        if (prx->connection < 0 || prx->communicator->connections[prx->connection].state != ICE_DONE)
+        if (prx->connection < 0 ||
+            prx->communicator->connections[prx->connection].state != ICE_DONE)
             return ICE_LIMIT;
         status = flush(prx);
     }
@@ -47,7 +48,8 @@ static Ice_Status keep(Ice_ObjectPrxPtr prx) {
     return status;
 }
 
-void Ice_ObjectPrx_ice_batchOneway(Ice_ObjectPrxPtr prx, Ice_Batch *batch, Ice_Byte *data, Ice_Int size) {
+void Ice_ObjectPrx_ice_batchOneway(Ice_ObjectPrxPtr prx, Ice_Batch *batch, Ice_Byte *data,
+                                   Ice_Int size) {
     Ice_OutputStream_init(&batch->os, data, size < ICE_MESSAGE_MAX ? size : ICE_MESSAGE_MAX);
     batch->keep = keep;
     prx->mode = ICE_BATCH_ONEWAY;

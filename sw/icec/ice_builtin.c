@@ -32,7 +32,8 @@ Ice_Status Ice_ObjectPrx_ice_id(Ice_ObjectPrxPtr self, Ice_String *result) {
     return Ice_ObjectPrx_end(self, status);
 }
 
-Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx *from, const char *id) {
+Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx *from,
+                                     const char *id) {
     Ice_Bool is = 0;
     Ice_Status status;
     *self = *from;

@@ -62,9 +62,13 @@ Ice_Int Ice_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
 
 /* From a reply's status byte on. */
 static Ice_Status readReply(Ice_InputStreamPtr is, Ice_Failure *failure) {
-    static const Ice_Byte statuses[] = {ICE_OK, ICE_USER_EXCEPTION, ICE_OBJECT_NOT_EXIST,
-                                        ICE_FACET_NOT_EXIST, ICE_OPERATION_NOT_EXIST,
-                                        ICE_UNKNOWN_LOCAL_EXCEPTION, ICE_UNKNOWN_USER_EXCEPTION,
+    static const Ice_Byte statuses[] = {ICE_OK,
+                                        ICE_USER_EXCEPTION,
+                                        ICE_OBJECT_NOT_EXIST,
+                                        ICE_FACET_NOT_EXIST,
+                                        ICE_OPERATION_NOT_EXIST,
+                                        ICE_UNKNOWN_LOCAL_EXCEPTION,
+                                        ICE_UNKNOWN_USER_EXCEPTION,
                                         ICE_UNKNOWN_EXCEPTION};
     Ice_Byte code = Ice_InputStream_readByte(is);
     Ice_Status entered;
@@ -150,7 +154,8 @@ static Ice_Status connect(Ice_ObjectPrxPtr self, int slot) {
         return ICE_NO_ENDPOINT;
     if (ICEC_ASYNC && self->generation) {
         const Ice_Connection *c = &ic->connections[self->connection];
-        return c->generation == self->generation && c->state == ICE_DONE ? ICE_OK : ICE_CONNECTION_LOST;
+        return c->generation == self->generation && c->state == ICE_DONE ? ICE_OK
+                                                                         : ICE_CONNECTION_LOST;
     }
     Ice_InputStream_init(&is, self->encoded, self->encodedSize);
     for (n = self->endpointCount; n > 0 && status != ICE_OK; --n) {
@@ -158,8 +163,8 @@ static Ice_Status connect(Ice_ObjectPrxPtr self, int slot) {
         (void)Ice_InputStream_readShort(&is);
         (void)Ice_InputStream_readBlob(&is, Ice_InputStream_readInt(&is) - 4);
         Ice_lock(ic, ICE_LOCK_STATE);
-        status = ic->endpoint->connect(ic->endpointContext, self->encoded + begin, is.position - begin,
-                                       &self->connection);
+        status = ic->endpoint->connect(ic->endpointContext, self->encoded + begin,
+                                       is.position - begin, &self->connection);
         if (status == ICE_OK && ic->connections[self->connection].state == ICE_FREE)
             Ice_openConnection(ic, self->connection, ICE_WAITING);
         Ice_unlock(ic, ICE_LOCK_STATE);
@@ -167,8 +172,9 @@ static Ice_Status connect(Ice_ObjectPrxPtr self, int slot) {
     if (status != ICE_OK)
         return status;
     status = Ice_await(ic, &ic->connections[self->connection].state, slot, self->timeoutMs);
-    return status != ICE_OK || ic->connections[self->connection].state == ICE_DONE ? status
-                                                                                   : ICE_CONNECTION_LOST;
+    return status != ICE_OK || ic->connections[self->connection].state == ICE_DONE
+               ? status
+               : ICE_CONNECTION_LOST;
 }
 
 Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int *connection) {
@@ -205,7 +211,8 @@ static int takeSlot(Ice_ObjectPrxPtr self) {
     return self->call;
 }
 
-Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char *operation, Ice_Byte mode) {
+Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char *operation,
+                                        Ice_Byte mode) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_OutputStreamPtr os = &ic->request;
     Ice_Identity id = Ice_ObjectPrx_getIdentity(self);
@@ -289,7 +296,8 @@ Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr *is) {
 Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_Call *call = &ic->calls[self->call];
-    if ((status == ICE_OK || status == ICE_USER_EXCEPTION) && call->state == ICE_DONE && call->is.failed)
+    if ((status == ICE_OK || status == ICE_USER_EXCEPTION) && call->state == ICE_DONE &&
+        call->is.failed)
         status = ICE_MARSHAL;
     Ice_lock(ic, ICE_LOCK_STATE);
     call->state = ICE_FREE;

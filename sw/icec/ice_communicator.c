@@ -39,7 +39,8 @@ void Ice_Communicator_setOs(Ice_CommunicatorPtr ic, const Ice_Os *os, void *cont
     ic->osContext = context;
 }
 
-void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint *endpoint, void *context) {
+void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint *endpoint,
+                                  void *context) {
     ic->endpoint = endpoint;
     ic->endpointContext = context;
 }

@@ -2,9 +2,9 @@
  *
  * ice_config: limits and options of IceC; every one may be set by the compiler's -D.
  *
- * The same values must be used for IceC and for all that includes icec.h. Options are 0 or 1 and are
- * tested by plain `if`: the compiler sees all code in every configuration and drops what is off.
- * -DICEC_MINIMAL turns off what the paper's IceC did not have (docs/icec.md lists it).
+ * The same values must be used for IceC and for all that includes icec.h. Options are 0 or 1 and
+ * are tested by plain `if`: the compiler sees all code in every configuration and drops what is
+ * off. -DICEC_MINIMAL turns off what the paper's IceC did not have (docs/icec.md lists it).
  */
 #ifndef ICE_CONFIG_H
 #define ICE_CONFIG_H
@@ -43,8 +43,9 @@
 #ifndef ICE_REQUEST_MAX /* bytes of a request that is made by one of several tasks */
 #define ICE_REQUEST_MAX ICE_MESSAGE_MAX
 #endif
-#ifndef ICE_REPLY_MAX /* bytes of a reply that is kept for the task that waits for it, decoded sequences
-                       * included; a multiple of 8. A proxy can have a buffer of its own. */
+#ifndef ICE_REPLY_MAX /* bytes of a reply that is kept for the task that waits for it, decoded \
+                       * sequences included; a multiple of 8. A proxy can have a buffer of its \
+                       * own. */
 #define ICE_REPLY_MAX 1024
 #endif
 #ifndef ICE_ARENA_BYTES /* decoded sequences of the requests under way */
@@ -53,7 +54,8 @@
 #ifndef ICE_SERVANTS /* servants an adapter */
 #define ICE_SERVANTS 8
 #endif
-#ifndef ICE_IDENTITY_MAX /* characters of a proxy's name, category and facet together, at most 255 */
+#ifndef ICE_IDENTITY_MAX /* characters of a proxy's name, category and facet together, at most 255 \
+                          */
 #define ICE_IDENTITY_MAX 48
 #endif
 #ifndef ICE_ENDPOINT_MAX /* bytes of a proxy's encoded endpoints, at most 255 */
@@ -62,8 +64,8 @@
 #ifndef ICE_CONNECTIONS
 #define ICE_CONNECTIONS 4
 #endif
-#ifndef ICE_CALLS /* two-way calls waiting for their replies */
-#define ICE_CALLS 4
+#ifndef ICE_CALLS /* calls under way */
+#define ICE_CALLS (1 + 3 * ICEC_DEFAULT)
 #endif
 #ifndef ICE_HEARTBEAT_MS /* between signs of life while an operation is under way */
 #define ICE_HEARTBEAT_MS 15000

@@ -4,8 +4,6 @@
  */
 #include "ice_private.h"
 
-#include <string.h>
-
 U32 Ice_nowMs(Ice_CommunicatorPtr ic) {
     return ic->endpoint->nowMs(ic->endpointContext);
 }
@@ -58,24 +56,21 @@ void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection) {
 
 /* 0: malformed; the connection is to be closed. */
 static int takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_Byte *in, Ice_Int size) {
-    static const Ice_Byte head[6] = {'I', 'c', 'e', 'P', 1, 0};
     Ice_InputStream is;
-    Ice_Byte type, compression;
+    Ice_Int type;
     Ice_InputStream_init(&is, in, size);
     is.communicator = ic;
-    if (size < ICE_HEADER || memcmp(in, head, sizeof head) != 0)
+    if (Ice_InputStream_readInt(&is) != ICE_MAGIC || Ice_InputStream_readInt(&is) != ICE_VERSIONS)
         return 0;
-    is.position = 8;
-    type = Ice_InputStream_readByte(&is);
-    compression = Ice_InputStream_readByte(&is);
+    type = Ice_InputStream_readShort(&is); /* and compression: 0 or 1 is none */
     if (Ice_InputStream_readInt(&is) != size)
         return 0;
-    if (compression > 1) {
+    if (type >> 8 > 1) {
         /* What is inside cannot be answered; this says that it was not executed. */
         (void)Ice_sendPlain(ic, connection, ICE_CLOSE);
         return 0;
     }
-    switch (type) {
+    switch (type & 0xFF) {
     case ICE_REQUEST:
         return Ice_dispatchRequest(ic, connection, &is);
     case ICE_BATCH:
@@ -152,7 +147,8 @@ Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
 }
 
 /* A task that waits while nobody receives becomes the receiver for as long as it waits. */
-Ice_Status Ice_await(Ice_CommunicatorPtr ic, const volatile Ice_Byte *state, int slot, Ice_Int timeoutMs) {
+Ice_Status Ice_await(Ice_CommunicatorPtr ic, const volatile Ice_Byte *state, int slot,
+                     Ice_Int timeoutMs) {
     U32 begin = Ice_nowMs(ic);
     Ice_Status status = ICE_OK;
     int task = ICEC_TASKS ? ic->os->task(ic->osContext) : 0, leads = 0;

@@ -4,8 +4,12 @@
  */
 #include "ice_private.h"
 
-/* Reply status on the wire: 0 results, 1 user exception, 2..4 who or what does not exist, and these. */
-enum { REPLY_USER = 1, REPLY_UNKNOWN_LOCAL = 5, REPLY_UNKNOWN_USER, REPLY_UNKNOWN };
+#define UNKNOWN_LOCAL 5
+
+/* Reply status on the wire by Ice_Status: 0 results, 1 user exception, 2..4 who or what does not
+ * exist, 5..7 unknown local, user and other exception. */
+static const Ice_Byte codes[] = {
+    0, 2, 3, 4, 1, 7, UNKNOWN_LOCAL, 7, 7, 7, 7, UNKNOWN_LOCAL, UNKNOWN_LOCAL, 6, 7, 7, 7, 7};
 
 /* The servant, else the category's default servant, else the default servant of all. */
 static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current *current, Ice_Status *status) {
@@ -25,9 +29,9 @@ static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current *current, Ice_Stat
             if (!ICEC_CATEGORIES) {
                 is = Ice_String_same(id->name, current->name) ? 3 : 0;
             } else if (id->name.size == 0) {
-                is = id->category.size == 0                                  ? 1
+                is = id->category.size == 0                             ? 1
                      : Ice_String_same(id->category, current->category) ? 2
-                                                                             : 0;
+                                                                        : 0;
             } else if (Ice_String_same(id->name, current->name) &&
                        Ice_String_same(id->category, current->category)) {
                 *status = ICE_FACET_NOT_EXIST;
@@ -45,14 +49,15 @@ static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current *current, Ice_Stat
 
 static Ice_Status builtIn(Ice_ObjectPtr servant, const Ice_Current *current, Ice_InputStreamPtr is,
                           Ice_OutputStreamPtr os) {
-    Ice_Int n;
+    const char *const *id = servant->ids;
+    Ice_String wanted;
     if (Ice_String_equals(current->operation, "ice_ping"))
         return ICE_OK;
     if (Ice_String_equals(current->operation, "ice_isA")) {
-        Ice_String id = Ice_InputStream_readString(is);
-        for (n = 0; servant->ids[n] && !Ice_String_equals(id, servant->ids[n]); ++n)
-            ;
-        Ice_OutputStream_writeByte(os, servant->ids[n] != 0);
+        wanted = Ice_InputStream_readString(is);
+        while (*id && !Ice_String_equals(wanted, *id))
+            ++id;
+        Ice_OutputStream_writeByte(os, *id != 0);
         return ICE_OK;
     }
     if (Ice_String_equals(current->operation, "ice_id")) {
@@ -60,11 +65,11 @@ static Ice_Status builtIn(Ice_ObjectPtr servant, const Ice_Current *current, Ice
         return ICE_OK;
     }
     if (Ice_String_equals(current->operation, "ice_ids")) {
-        for (n = 0; servant->ids[n]; ++n)
-            ;
-        Ice_OutputStream_writeSize(os, n);
-        for (n = 0; servant->ids[n]; ++n)
-            Ice_OutputStream_writeString(os, Ice_String_from(servant->ids[n]));
+        while (*id)
+            ++id;
+        Ice_OutputStream_writeSize(os, (Ice_Int)(id - servant->ids));
+        for (id = servant->ids; *id; ++id)
+            Ice_OutputStream_writeString(os, Ice_String_from(*id));
         return ICE_OK;
     }
     return ICE_OPERATION_NOT_EXIST;
@@ -82,40 +87,27 @@ static Ice_Status run(Ice_CommunicatorPtr ic, Ice_Current *current, Ice_InputStr
     return status == ICE_OK && is->failed ? ICE_MARSHAL : status;
 }
 
-static void writeFailure(Ice_OutputStreamPtr os, Ice_Status status, const Ice_Current *current) {
-    Ice_Byte code = REPLY_UNKNOWN;
-    if (status >= ICE_OBJECT_NOT_EXIST && status <= ICE_OPERATION_NOT_EXIST && current) {
-        Ice_OutputStream_writeByte(os, (Ice_Byte)(status - ICE_OBJECT_NOT_EXIST + 2));
-        Ice_OutputStream_writeString(os, current->name);
-        Ice_OutputStream_writeString(os, current->category);
-        Ice_writeFacet(os, current->facet);
-        Ice_OutputStream_writeString(os, current->operation);
-        return;
-    }
-    if (status == ICE_MARSHAL || status == ICE_PROTOCOL || status == ICE_UNKNOWN_LOCAL_EXCEPTION)
-        code = REPLY_UNKNOWN_LOCAL;
-    if (status == ICE_UNKNOWN_USER_EXCEPTION)
-        code = REPLY_UNKNOWN_USER;
-    Ice_OutputStream_writeByte(os, code);
-    Ice_OutputStream_writeString(os, Ice_String_from(ICEC_DETAILS ? Ice_Status_text(status) : ""));
-}
-
-void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Current *current) {
+void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte *who,
+                     Ice_Int whoSize) {
     Ice_Int end = os->size;
-    if (os->failed) {
-        status = ICE_MARSHAL;
-        os->failed = 0;
-    }
+    Ice_Byte code = codes[os->failed ? ICE_MARSHAL : status];
+    if (code >= 2 && code <= 4 && whoSize == 0)
+        code = 7;
+    os->failed = 0;
     os->size = 0;
     Ice_beginMessage(os, ICE_REPLY);
     Ice_OutputStream_writeInt(os, id);
-    if (status == ICE_OK || status == ICE_USER_EXCEPTION) {
-        Ice_OutputStream_writeByte(os, status == ICE_OK ? 0 : REPLY_USER);
+    Ice_OutputStream_writeByte(os, code);
+    if (code <= 1) {
         (void)Ice_beginEncapsulation(os);
         os->size = end;
         Ice_endEncapsulation(os, ICE_REPLY_BODY);
+    } else if (code <= 4) {
+        Ice_OutputStream_writeBlob(os, who, whoSize);
+    } else if (ICEC_DETAILS) {
+        Ice_OutputStream_writeString(os, Ice_String_from(Ice_Status_text(status)));
     } else {
-        writeFailure(os, status, current);
+        Ice_OutputStream_writeByte(os, 0);
     }
     Ice_endMessage(os);
 }
@@ -136,7 +128,7 @@ static int dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr i
     Ice_OutputStream os;
     Ice_Current current;
     Ice_Status status;
-    Ice_Int whole = is->size, n;
+    Ice_Int whole = is->size, who = is->position, whoSize, n;
     current.communicator = ic;
     current.adapter = 0;
     current.connection = connection;
@@ -145,11 +137,12 @@ static int dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr i
     current.category = Ice_InputStream_readString(is);
     current.facet = Ice_readFacet(is);
     current.operation = Ice_InputStream_readString(is);
+    whoSize = is->position - who;
     current.mode = Ice_InputStream_readByte(is);
     if (ICEC_CONTEXTS)
         current.context = *is;
-    for (n = 2 * Ice_InputStream_readSequence(is, 2); n > 0; --n)
-        (void)Ice_InputStream_readString(is);
+    n = Ice_InputStream_readSequence(is, 2);
+    Ice_skipStrings(is, 2 * n);
     status = Ice_enterEncapsulation(is);
     if (status == ICE_MARSHAL)
         return 0;
@@ -170,7 +163,7 @@ static int dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr i
     is->size = whole;
     is->failed = 0;
     if (id != 0 && !(ICEC_ASYNC && status == ICE_LATER)) {
-        Ice_finishReply(&os, id, status, &current);
+        Ice_finishReply(&os, id, status, is->data + who, whoSize);
         Ice_lock(ic, ICE_LOCK_SEND);
         (void)Ice_send(ic, connection, &os);
         Ice_unlock(ic, ICE_LOCK_SEND);

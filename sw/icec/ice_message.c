@@ -14,8 +14,8 @@ void Ice_patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value) {
 }
 
 void Ice_beginMessage(Ice_OutputStreamPtr os, Ice_Byte type) {
-    static const Ice_Byte head[8] = {'I', 'c', 'e', 'P', 1, 0, 1, 0};
-    Ice_OutputStream_writeBlob(os, head, 8);
+    Ice_OutputStream_writeInt(os, ICE_MAGIC);
+    Ice_OutputStream_writeInt(os, ICE_VERSIONS);
     Ice_OutputStream_writeShort(os, type); /* and no compression */
     Ice_OutputStream_writeInt(os, ICE_HEADER);
 }
@@ -60,4 +60,9 @@ Ice_String Ice_readFacet(Ice_InputStreamPtr is) {
     else if (n == 1)
         facet = Ice_InputStream_readString(is);
     return facet;
+}
+
+void Ice_skipStrings(Ice_InputStreamPtr is, Ice_Int count) {
+    while (count-- > 0)
+        (void)Ice_InputStream_readString(is);
 }

@@ -9,8 +9,10 @@
 
 enum { ICE_REQUEST, ICE_BATCH, ICE_REPLY, ICE_VALIDATE, ICE_CLOSE };
 #define ICE_HEADER 14
-#define ICE_REPLY_BODY 19 /* where a reply's encapsulation begins: header, id, status */
-#define ICE_REPLY_HEAD 25 /* where its results begin */
+#define ICE_MAGIC 0x50656349    /* "IceP", as an integer */
+#define ICE_VERSIONS 0x00010001 /* protocol 1.0, encoding 1.0 */
+#define ICE_REPLY_BODY 19       /* where a reply's encapsulation begins: header, id, status */
+#define ICE_REPLY_HEAD 25       /* where its results begin */
 
 /* A call, and a connection: what is waited for is WAITING. */
 enum { ICE_FREE, ICE_WAITING, ICE_DONE, ICE_BUILDING };
@@ -25,11 +27,13 @@ void Ice_patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value);
 /* Size and encoding of an encapsulation; endEncapsulation fills the size in. */
 Ice_Int Ice_beginEncapsulation(Ice_OutputStreamPtr os);
 void Ice_endEncapsulation(Ice_OutputStreamPtr os, Ice_Int begin);
-/* Narrows `is` to the encapsulation that follows. ICE_PROTOCOL: an encoding other than 1.0 and 1.1. */
+/* Narrows `is` to the encapsulation that follows. ICE_PROTOCOL: an encoding other than 1.0 and 1.1.
+ */
 Ice_Status Ice_enterEncapsulation(Ice_InputStreamPtr is);
 /* Facet as on the wire: none, or one. */
 void Ice_writeFacet(Ice_OutputStreamPtr os, Ice_String facet);
 Ice_String Ice_readFacet(Ice_InputStreamPtr is);
+void Ice_skipStrings(Ice_InputStreamPtr is, Ice_Int count);
 
 /* ---- connections (ice_connection.c) ---- */
 
@@ -40,9 +44,10 @@ Ice_Status Ice_sendPlain(Ice_CommunicatorPtr ic, int connection, Ice_Byte type);
 Ice_Status Ice_send(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os);
 void Ice_lose(Ice_CommunicatorPtr ic, int connection, Ice_Status status);
 U32 Ice_nowMs(Ice_CommunicatorPtr ic);
-/* Receives, or lets another task receive, until `state` is no more ICE_WAITING; from within an operation
- * too. ICE_TIMEOUT, ICE_LIMIT. */
-Ice_Status Ice_await(Ice_CommunicatorPtr ic, const volatile Ice_Byte *state, int slot, Ice_Int timeoutMs);
+/* Receives, or lets another task receive, until `state` is no more ICE_WAITING; from within an
+ * operation too. ICE_TIMEOUT, ICE_LIMIT. */
+Ice_Status Ice_await(Ice_CommunicatorPtr ic, const volatile Ice_Byte *state, int slot,
+                     Ice_Int timeoutMs);
 /* A connection has come to be. */
 void Ice_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_Byte state);
 /* The communicator's arena behind what outer operations use of it. */
@@ -56,8 +61,10 @@ int Ice_countPending(Ice_CommunicatorPtr ic, int connection, U16 generation, int
 /* 0: the message is malformed. */
 int Ice_dispatchRequest(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
 int Ice_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
-/* Turns results at ICE_REPLY_HEAD into a whole reply. `current` 0: who was meant is no more known. */
-void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Current *current);
+/* Turns results at ICE_REPLY_HEAD into a whole reply. `who`: identity, facet and operation as they
+ * stand in the request; 0 bytes: no more known. */
+void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte *who,
+                     Ice_Int whoSize);
 
 /* ---- calls (ice_call.c) ---- */
 
@@ -68,7 +75,8 @@ void Ice_initRequest(Ice_CommunicatorPtr ic);
 
 void Ice_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
 void Ice_failCalls(Ice_CommunicatorPtr ic, int connection, Ice_Status status);
-/* Ends asynchronous calls whose time is over; the result is when the next one's is, at most `waitMs`. */
+/* Ends asynchronous calls whose time is over; the result is when the next one's is, at most
+ * `waitMs`. */
 Ice_Int Ice_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs);
 void Ice_wakeCalls(Ice_CommunicatorPtr ic);
 

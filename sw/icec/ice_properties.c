@@ -15,7 +15,8 @@ static const char *find(Ice_CommunicatorPtr ic, const char *key, const char *suf
     const char *const *entry;
     size_t n = strlen(key), m = strlen(suffix);
     for (entry = ic->properties; entry && *entry; ++entry)
-        if (strncmp(*entry, key, n) == 0 && strncmp(*entry + n, suffix, m) == 0 && (*entry)[n + m] == '=')
+        if (strncmp(*entry, key, n) == 0 && strncmp(*entry + n, suffix, m) == 0 &&
+            (*entry)[n + m] == '=')
             return *entry + n + m + 1;
     return 0;
 }
@@ -24,7 +25,8 @@ const char *Ice_Communicator_getProperty(Ice_CommunicatorPtr ic, const char *key
     return find(ic, key, "");
 }
 
-Ice_Int Ice_Communicator_getPropertyAsInt(Ice_CommunicatorPtr ic, const char *key, Ice_Int otherwise) {
+Ice_Int Ice_Communicator_getPropertyAsInt(Ice_CommunicatorPtr ic, const char *key,
+                                          Ice_Int otherwise) {
     const char *text = find(ic, key, "");
     U32 value = 0;
     int negative;
@@ -43,7 +45,8 @@ Ice_Int Ice_Communicator_getPropertyAsInt(Ice_CommunicatorPtr ic, const char *ke
     return negative ? -(Ice_Int)value : (Ice_Int)value;
 }
 
-Ice_Status Ice_Communicator_propertyToProxy(Ice_CommunicatorPtr ic, const char *key, Ice_ObjectPrxPtr prx) {
+Ice_Status Ice_Communicator_propertyToProxy(Ice_CommunicatorPtr ic, const char *key,
+                                            Ice_ObjectPrxPtr prx) {
     const char *text = find(ic, key, "");
     if (!text) {
         Ice_ObjectPrx_init(prx, ic);

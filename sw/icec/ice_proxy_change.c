@@ -9,10 +9,10 @@
 int Ice_ObjectPrx_equals(const Ice_ObjectPrx *a, const Ice_ObjectPrx *b) {
     Ice_Identity x = Ice_ObjectPrx_getIdentity(a), y = Ice_ObjectPrx_getIdentity(b);
     return Ice_String_same(x.name, y.name) && Ice_String_same(x.category, y.category) &&
-           Ice_String_same(Ice_ObjectPrx_getFacet(a), Ice_ObjectPrx_getFacet(b)) && a->mode == b->mode &&
-           a->secure == b->secure && a->minor == b->minor && a->endpointCount == b->endpointCount &&
-           a->generation == b->generation && a->encodedSize == b->encodedSize &&
-           memcmp(a->encoded, b->encoded, a->encodedSize) == 0;
+           Ice_String_same(Ice_ObjectPrx_getFacet(a), Ice_ObjectPrx_getFacet(b)) &&
+           a->mode == b->mode && a->secure == b->secure && a->minor == b->minor &&
+           a->endpointCount == b->endpointCount && a->generation == b->generation &&
+           a->encodedSize == b->encodedSize && memcmp(a->encoded, b->encoded, a->encodedSize) == 0;
 }
 
 Ice_Status Ice_ObjectPrx_ice_identity(Ice_ObjectPrxPtr prx, const char *identity) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_proxy_parse: from a proxy's string to the proxy, after the manual's "Proxy and Endpoint Syntax".
+ * ice_proxy_parse: from a proxy's string to the proxy, after the manual's "Proxy and Endpoint
+ * Syntax".
  */
 #include "ice_private.h"
 
@@ -25,7 +26,8 @@ static Ice_Status parseShort(const char *text, Ice_ObjectPrxPtr prx) {
     return Ice_ObjectPrx_addEndpoint(prx, options);
 }
 
-/* The next word, without its quotes; ends at a space, a colon or an at sign. Escapes stay as they are. */
+/* The next word, without its quotes; ends at a space, a colon or an at sign. Escapes stay as they
+ * are. */
 static const char *word(const char *text, Ice_String *found) {
     char quote = 0;
     while (*text == ' ')
@@ -53,7 +55,8 @@ static void unescape(Ice_String text, Ice_OutputStreamPtr os) {
             known = strchr(from, c);
             if (c >= '0' && c <= '3') {
                 int digits = 2, value = c - '0';
-                for (; digits > 0 && i < text.size && text.data[i] >= '0' && text.data[i] <= '7'; --digits)
+                for (; digits > 0 && i < text.size && text.data[i] >= '0' && text.data[i] <= '7';
+                     --digits)
                     value = value * 8 + (text.data[i++] - '0');
                 c = (char)value;
             } else if (known) {
@@ -214,7 +217,8 @@ static Ice_Status parse(const char *text, Ice_ObjectPrxPtr prx) {
     return *text == '@' ? parseAdapter(text + 1, prx) : ICE_PARSE;
 }
 
-Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char *proxy, Ice_ObjectPrxPtr prx) {
+Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char *proxy,
+                                          Ice_ObjectPrxPtr prx) {
     Ice_Status status;
     Ice_ObjectPrx_init(prx, ic);
     if (!ICEC_DETAILS)

@@ -16,7 +16,8 @@ static void putNumber(Ice_OutputStreamPtr os, U32 value) {
     Ice_OutputStream_writeByte(os, (Ice_Byte)('0' + value % 10));
 }
 
-/* Escapes what would be read otherwise; UTF-8 stays as it is. `special`: one more character, or 0. */
+/* Escapes what would be read otherwise; UTF-8 stays as it is. `special`: one more character, or 0.
+ */
 static void escape(Ice_OutputStreamPtr os, Ice_String text, char special) {
     static const char from[] = "\a\b\f\n\r\t\v\\'\"", to[] = "abfnrtv\\'\"";
     Ice_Int i;

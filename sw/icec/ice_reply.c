@@ -38,7 +38,7 @@ Ice_Status Ice_Reply_end(Ice_Reply *reply, Ice_Status status) {
     if (!Ice_countPending(ic, reply->connection, reply->generation, -1)) {
         sent = ICE_CONNECTION_LOST;
     } else if (reply->id != 0) {
-        Ice_finishReply(&ic->request, reply->id, status, 0);
+        Ice_finishReply(&ic->request, reply->id, status, 0, 0);
         sent = Ice_send(ic, reply->connection, &ic->request);
     }
     Ice_unlock(ic, ICE_LOCK_SEND);

@@ -16,22 +16,27 @@ typedef enum Ice_Status {
     ICE_UNKNOWN_EXCEPTION, /* the peer failed otherwise */
     ICE_MARSHAL,           /* a message is not what it should be, or does not fit */
     ICE_TIMEOUT,
-    ICE_CONNECTION_LOST,   /* a call under way may or may not have been executed */
-    ICE_NO_ENDPOINT,       /* unknown transport, or a proxy without endpoints */
-    ICE_LIMIT,             /* one of the constants of ice_config.h */
-    ICE_PROTOCOL,          /* not IceP 1.0, compressed, or an encoding other than 1.0 and 1.1 */
+    ICE_CONNECTION_LOST, /* a call under way may or may not have been executed */
+    ICE_NO_ENDPOINT,     /* unknown transport, or a proxy without endpoints */
+    ICE_LIMIT,           /* one of the constants of ice_config.h */
+    ICE_PROTOCOL,        /* not IceP 1.0, compressed, or an encoding other than 1.0 and 1.1 */
     ICE_UNKNOWN_LOCAL_EXCEPTION, /* the peer's run time failed */
     ICE_UNKNOWN_USER_EXCEPTION,  /* an exception that the operation does not declare */
-    ICE_CONNECTION_CLOSED, /* the peer closed in good order: the call was not executed */
-    ICE_PARSE,             /* a proxy, identity or endpoint string that is none */
-    ICE_TWOWAY_ONLY,       /* results are wanted through a oneway or batch proxy */
-    ICE_LATER              /* from a servant: the reply comes later (Ice_Reply) */
+    ICE_CONNECTION_CLOSED,       /* the peer closed in good order: the call was not executed */
+    ICE_PARSE,                   /* a proxy, identity or endpoint string that is none */
+    ICE_TWOWAY_ONLY,             /* results are wanted through a oneway or batch proxy */
+    ICE_LATER                    /* from a servant: the reply comes later (Ice_Reply) */
 } Ice_Status;
 
 const char *Ice_Status_text(Ice_Status status);
 
 /* What a transport tells its communicator. */
-typedef enum Ice_EventKind { ICE_EVENT_NONE, ICE_EVENT_OPENED, ICE_EVENT_MESSAGE, ICE_EVENT_CLOSED } Ice_EventKind;
+typedef enum Ice_EventKind {
+    ICE_EVENT_NONE,
+    ICE_EVENT_OPENED,
+    ICE_EVENT_MESSAGE,
+    ICE_EVENT_CLOSED
+} Ice_EventKind;
 
 typedef struct Ice_Event {
     Ice_EventKind kind;
@@ -39,8 +44,9 @@ typedef struct Ice_Event {
     Ice_Int size;   /* of the message, which lies in the buffer that receive was given */
 } Ice_Event;
 
-/* A transport moves whole IceP messages on numbered connections. connect, close and listen are called
- * under the communicator's state lock, send by one task at a time, receive by one task at a time. */
+/* A transport moves whole IceP messages on numbered connections. connect, close and listen are
+ * called under the communicator's state lock, send by one task at a time, receive by one task at a
+ * time. */
 typedef struct Ice_Endpoint {
     const char *name; /* in proxy strings: "xbee-at", "tcp" */
     /* Waits up to timeoutMs for one event. `buffer` takes a message of up to ICE_MESSAGE_MAX bytes,
@@ -48,11 +54,13 @@ typedef struct Ice_Endpoint {
     Ice_Status (*receive)(void *context, Ice_Byte *buffer, Ice_Int timeoutMs, Ice_Event *event);
     Ice_Status (*send)(void *context, int connection, const Ice_Byte *message, Ice_Int size);
     /* `encoded`: one endpoint as in a proxy on the wire (2-byte type + encapsulation). An open
-     * connection to the same peer is used again. ICE_NO_ENDPOINT: the type is another transport's. */
+     * connection to the same peer is used again. ICE_NO_ENDPOINT: the type is another transport's.
+     */
     Ice_Status (*connect)(void *context, const Ice_Byte *encoded, Ice_Int size, int *connection);
     void (*close)(void *context, int connection);
     Ice_Status (*listen)(void *context, const char *options);
-    /* From "-a 1 -p 3" (up to its end, or a colon that is not quoted) to the wire, and the endpoint that a proxy of our own should carry (options 0). */
+    /* From "-a 1 -p 3" (up to its end, or a colon that is not quoted) to the wire, and the endpoint
+     * that a proxy of our own should carry (options 0). */
     void (*encode)(void *context, const char *options, Ice_OutputStreamPtr os);
     /* Makes receive return early; may be called from any task. */
     void (*wake)(void *context);
@@ -60,7 +68,8 @@ typedef struct Ice_Endpoint {
     U32 (*nowMs)(void *context);
     /* The reverse of encode: writes name and options as characters. 0: not this transport's type.
      * The pointer itself may be 0: then endpoints print as opaque. */
-    Ice_Bool (*print)(void *context, const Ice_Byte *encoded, Ice_Int size, Ice_OutputStreamPtr text);
+    Ice_Bool (*print)(void *context, const Ice_Byte *encoded, Ice_Int size,
+                      Ice_OutputStreamPtr text);
 } Ice_Endpoint;
 
 /* For transports: the value behind "-x", without quotes; 0 where there is none. */
@@ -72,7 +81,8 @@ U32 Ice_numberOption(const char *options, char letter, U32 otherwise);
  * communicator's tables, briefly. A task that holds SEND may take STATE, not the reverse. */
 enum { ICE_LOCK_STATE, ICE_LOCK_SEND };
 
-/* What IceC needs where several tasks use one communicator. The single-task version is Ice_Os_none. */
+/* What IceC needs where several tasks use one communicator. The single-task version is Ice_Os_none.
+ */
 typedef struct Ice_Os {
     void (*lock)(void *context, int which);
     void (*unlock)(void *context, int which);

@@ -8,7 +8,13 @@
  */
 #include "ice_stream.h"
 
-enum { HAS_OPTIONALS = 0x04, HAS_INDIRECTION = 0x08, HAS_SIZE = 0x10, IS_LAST = 0x20, TYPE_IS_STRING = 0x01 };
+enum {
+    HAS_OPTIONALS = 0x04,
+    HAS_INDIRECTION = 0x08,
+    HAS_SIZE = 0x10,
+    IS_LAST = 0x20,
+    TYPE_IS_STRING = 0x01
+};
 #define TYPE_MASK 0x03
 #define OPTIONAL_END 0xFF
 #define TAG_ESCAPE 30
@@ -40,7 +46,8 @@ void Ice_OutputStream_startException(Ice_OutputStreamPtr os, Ice_Bool usesClasse
 
 Ice_Int Ice_OutputStream_startSlice(Ice_OutputStreamPtr os, const char *typeId, Ice_Bool last) {
     Ice_Int begin = os->size;
-    os->sliceFlags = (Ice_Byte)(TYPE_IS_STRING | (os->sliced ? HAS_SIZE : 0) | (last ? IS_LAST : 0));
+    os->sliceFlags =
+        (Ice_Byte)(TYPE_IS_STRING | (os->sliced ? HAS_SIZE : 0) | (last ? IS_LAST : 0));
     if (os->minor != 0)
         Ice_OutputStream_writeByte(os, os->sliceFlags);
     Ice_OutputStream_writeString(os, Ice_String_from(typeId));

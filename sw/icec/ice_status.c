@@ -5,23 +5,24 @@
 #include "ice_seam.h"
 
 const char *Ice_Status_text(Ice_Status status) {
-    static const char *const texts[] = {"ok",
-                                        "Ice::ObjectNotExistException",
-                                        "Ice::FacetNotExistException",
-                                        "Ice::OperationNotExistException",
-                                        "user exception",
-                                        "Ice::UnknownException: the servant failed",
-                                        "Ice::MarshalException: malformed, or too long for IceC's buffers",
-                                        "Ice::TimeoutException",
-                                        "Ice::ConnectionLostException",
-                                        "Ice::NoEndpointException",
-                                        "a limit of IceC was reached",
-                                        "Ice::ProtocolException: version, encoding or operation mode",
-                                        "Ice::UnknownLocalException",
-                                        "Ice::UnknownUserException",
-                                        "Ice::CloseConnectionException",
-                                        "Ice::ParseException: not a proxy, identity or endpoint",
-                                        "Ice::TwowayOnlyException",
-                                        "the reply comes later"};
+    static const char *const texts[] = {
+        "ok",
+        "Ice::ObjectNotExistException",
+        "Ice::FacetNotExistException",
+        "Ice::OperationNotExistException",
+        "user exception",
+        "Ice::UnknownException: the servant failed",
+        "Ice::MarshalException: malformed, or too long for IceC's buffers",
+        "Ice::TimeoutException",
+        "Ice::ConnectionLostException",
+        "Ice::NoEndpointException",
+        "a limit of IceC was reached",
+        "Ice::ProtocolException: version, encoding or operation mode",
+        "Ice::UnknownLocalException",
+        "Ice::UnknownUserException",
+        "Ice::CloseConnectionException",
+        "Ice::ParseException: not a proxy, identity or endpoint",
+        "Ice::TwowayOnlyException",
+        "the reply comes later"};
     return (unsigned)status < sizeof texts / sizeof texts[0] ? texts[status] : "unknown status";
 }

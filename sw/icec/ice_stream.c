@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_stream: Ice's encodings 1.0 and 1.1 of the basic types. Little-endian, whatever the machine is.
+ * ice_stream: Ice's encodings 1.0 and 1.1 of the basic types. Little-endian, whatever the machine
+ * is.
  */
 #include "ice_stream.h"
 
@@ -190,7 +191,9 @@ Ice_String Ice_InputStream_readString(Ice_InputStreamPtr is) {
 
 Ice_Int Ice_InputStream_readEnum(Ice_InputStreamPtr is, Ice_Int largest) {
     Ice_Int v = is->minor != 0 ? Ice_InputStream_readSize(is)
-                               : (Ice_Int)readWord(is, largest < 127 ? 1 : largest < 32767 ? 2 : 4);
+                               : (Ice_Int)readWord(is, largest < 127     ? 1
+                                                       : largest < 32767 ? 2
+                                                                         : 4);
     if (v < 0 || v > largest)
         is->failed = 1;
     return is->failed ? 0 : v;

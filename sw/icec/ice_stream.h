@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_stream: Ice's types, and their encodings 1.0 and 1.1. Errors stick: one check at the end is enough.
+ * ice_stream: Ice's types, and their encodings 1.0 and 1.1. Errors stick: one check at the end is
+ * enough.
  *
- * Streams do not allocate and share nothing: a stream is used by one task, different streams by any.
+ * Streams do not allocate and share nothing: a stream is used by one task, different streams by
+ * any.
  */
 #ifndef ICE_STREAM_H
 #define ICE_STREAM_H
@@ -40,8 +42,9 @@ typedef struct Ice_OutputStream {
     Ice_Int size, capacity;
     Ice_Byte minor; /* encoding 1.minor */
     Ice_Byte failed;
-    Ice_Byte sliced;     /* user exceptions in the sliced format: a peer can skip slices it does not know */
-    Ice_Byte sliceFlags; /* of the slice under way */
+    Ice_Byte
+        sliced; /* user exceptions in the sliced format: a peer can skip slices it does not know */
+    Ice_Byte sliceFlags;             /* of the slice under way */
     struct Ice_OutputValues *values; /* classes; 0: none so far */
 } Ice_OutputStream, *Ice_OutputStreamPtr;
 
@@ -50,12 +53,12 @@ typedef struct Ice_InputStream {
     Ice_Int position, size;
     Ice_Byte minor;
     Ice_Byte failed;
-    Ice_Byte sliceFlags; /* of the slice under way; 0: none */
-    Ice_Int sliceEnd;    /* 0: not known */
-    U32 *arena;          /* for decoded sequences */
-    Ice_Int arenaUsed, arenaSize; /* in words of 4 bytes */
+    Ice_Byte sliceFlags;                   /* of the slice under way; 0: none */
+    Ice_Int sliceEnd;                      /* 0: not known */
+    U32 *arena;                            /* for decoded sequences */
+    Ice_Int arenaUsed, arenaSize;          /* in words of 4 bytes */
     struct Ice_Communicator *communicator; /* of the proxies that are read */
-    struct Ice_InputValues *values; /* classes; 0: none so far */
+    struct Ice_InputValues *values;        /* classes; 0: none so far */
 } Ice_InputStream, *Ice_InputStreamPtr;
 
 /* ---- writing ---- */
@@ -93,13 +96,17 @@ Ice_String Ice_InputStream_readString(Ice_InputStreamPtr is);
 Ice_Int Ice_InputStream_readEnum(Ice_InputStreamPtr is, Ice_Int largest);
 /* Size of a sequence whose elements take at least `least` bytes each: more than is left fails. */
 Ice_Int Ice_InputStream_readSequence(Ice_InputStreamPtr is, Ice_Int least);
-/* Room for `count` elements of `bytes` each, aligned to 8; 0 and a failed stream if there is none. */
+/* Room for `count` elements of `bytes` each, aligned to 8; 0 and a failed stream if there is none.
+ */
 void *Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int bytes);
 
 /* ---- optional values: encoding 1.1 only ---- */
 
 enum {
-    ICE_OPTIONAL_F1, ICE_OPTIONAL_F2, ICE_OPTIONAL_F4, ICE_OPTIONAL_F8, /* 1, 2, 4, 8 bytes */
+    ICE_OPTIONAL_F1,
+    ICE_OPTIONAL_F2,
+    ICE_OPTIONAL_F4,
+    ICE_OPTIONAL_F8,    /* 1, 2, 4, 8 bytes */
     ICE_OPTIONAL_SIZE,  /* an enum */
     ICE_OPTIONAL_VSIZE, /* a size, then so many bytes */
     ICE_OPTIONAL_FSIZE, /* the same with a size of 4 bytes */

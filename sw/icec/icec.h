@@ -3,8 +3,8 @@
  * icec: a small peer of ZeroC Ice 3.7 in C90: communicator, object adapter, servants, proxies.
  *
  * No allocation: the caller owns every object named here, and keeps it while it is in use. So are
- * strings that are passed as `const char *`. Limits and options: ice_config.h. With ICEC_TASKS and an
- * Ice_Os, every function may be called by any task; a proxy object belongs to one task at a time
+ * strings that are passed as `const char *`. Limits and options: ice_config.h. With ICEC_TASKS and
+ * an Ice_Os, every function may be called by any task; a proxy object belongs to one task at a time
  * (copies are plain assignments). Names follow the paper's figures; the mapping is docs/icec.md.
  */
 #ifndef ICEC_H
@@ -32,18 +32,18 @@ typedef struct Ice_Current {
     Ice_CommunicatorPtr communicator;
     Ice_ObjectAdapterPtr adapter;
     Ice_String name, category, facet, operation;
-    Ice_Byte mode; /* 0 normal, 1 nonmutating, 2 idempotent */
+    Ice_Byte mode;  /* 0 normal, 1 nonmutating, 2 idempotent */
     Ice_Byte minor; /* encoding 1.minor */
     int connection;
-    Ice_Int requestId; /* 0: oneway */
+    Ice_Int requestId;       /* 0: oneway */
     Ice_InputStream context; /* use Ice_Current_context */
 } Ice_Current;
 
-/* Reads the parameters from `is`, runs the operation, writes the results to `os` (after the servant's
- * function has returned: until then `os` has no place of its own). ICE_OPERATION_NOT_EXIST where there
- * is no such operation. */
-typedef Ice_Status (*Ice_Dispatch)(Ice_ObjectPtr self, const Ice_Current *current, Ice_InputStreamPtr is,
-                                   Ice_OutputStreamPtr os);
+/* Reads the parameters from `is`, runs the operation, writes the results to `os` (after the
+ * servant's function has returned: until then `os` has no place of its own).
+ * ICE_OPERATION_NOT_EXIST where there is no such operation. */
+typedef Ice_Status (*Ice_Dispatch)(Ice_ObjectPtr self, const Ice_Current *current,
+                                   Ice_InputStreamPtr is, Ice_OutputStreamPtr os);
 
 struct Ice_Object {
     Ice_Dispatch dispatch;
@@ -66,8 +66,8 @@ typedef struct Ice_Reply {
 void Ice_Current_later(const Ice_Current *current, Ice_Reply *reply);
 /* The stream for the results (or a user exception); to be followed by end. */
 Ice_OutputStreamPtr Ice_Reply_begin(Ice_Reply *reply);
-/* Sends: ICE_OK and ICE_USER_EXCEPTION with what was written, any other status as the failure it is.
- * ICE_CONNECTION_LOST: who asked is gone. */
+/* Sends: ICE_OK and ICE_USER_EXCEPTION with what was written, any other status as the failure it
+ * is. ICE_CONNECTION_LOST: who asked is gone. */
 Ice_Status Ice_Reply_end(Ice_Reply *reply, Ice_Status status);
 
 /* ---- object adapters ---- */
@@ -85,7 +85,8 @@ struct Ice_ObjectAdapter {
 };
 
 /* `identity`: "name" or "category/name". ICE_LIMIT: it is taken, or there is no room. */
-Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant, const char *identity);
+Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
+                                 const char *identity);
 Ice_Status Ice_ObjectAdapter_addFacet(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                                       const char *identity, const char *facet);
 /* Answers for every identity of the category that has no servant; "" for every category. */
@@ -94,7 +95,8 @@ Ice_Status Ice_ObjectAdapter_addDefaultServant(Ice_ObjectAdapterPtr adapter, Ice
 Ice_Status Ice_ObjectAdapter_remove(Ice_ObjectAdapterPtr adapter, const char *identity);
 Ice_Status Ice_ObjectAdapter_removeFacet(Ice_ObjectAdapterPtr adapter, const char *identity,
                                          const char *facet);
-Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter, const char *category);
+Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter,
+                                                  const char *category);
 Ice_ObjectPtr Ice_ObjectAdapter_find(Ice_ObjectAdapterPtr adapter, const char *identity);
 void Ice_ObjectAdapter_activate(Ice_ObjectAdapterPtr adapter);
 /* Its objects do not exist until it is activated again. */
@@ -120,31 +122,35 @@ struct Ice_ObjectPrx {
     char identity[ICE_IDENTITY_MAX]; /* name, category, facet, one behind the other */
     Ice_Byte nameSize, categorySize, facetSize;
     Ice_Byte mode, secure;
-    Ice_Byte minor; /* encoding of requests, 1.minor */
+    Ice_Byte minor;                     /* encoding of requests, 1.minor */
     Ice_Byte encoded[ICE_ENDPOINT_MAX]; /* without endpoints: the adapter's id, a string */
     Ice_Byte encodedSize, endpointCount;
-    Ice_Byte status; /* Ice_Status of the call being built */
+    Ice_Byte status;   /* Ice_Status of the call being built */
     Ice_Int timeoutMs; /* for connecting and for a reply; 10 s unless set */
     U32 *reply;        /* 0: ICE_REPLY_MAX bytes of the communicator's */
     Ice_Int replySize;
-    int call;          /* the slot of the last call, -1 none */
-    int connection;    /* of the last call; a fixed proxy's only one */
-    U16 generation;    /* of a fixed proxy's connection; 0: not fixed */
+    int call;       /* the slot of the last call, -1 none */
+    int connection; /* of the last call; a fixed proxy's only one */
+    U16 generation; /* of a fixed proxy's connection; 0: not fixed */
     const Ice_ContextEntry *context;
     Ice_Batch *batch;
 };
 
-/* What a failed call's reply said: of ICE_OBJECT_NOT_EXIST and its like who and what, else the text. */
+/* What a failed call's reply said: of ICE_OBJECT_NOT_EXIST and its like who and what, else the
+ * text. */
 typedef struct Ice_Failure {
     Ice_Identity identity;
     Ice_String facet, operation;
     Ice_String unknown;
 } Ice_Failure;
 
-/* `proxy`: "identity [-t|-o|-O|-d|-D|-s] [-f facet] [-e 1.0|1.1]:transport options[:...]" or "...@adapter",
- * as in Ice's manual. The minimal configuration takes "name [-t|-o]:transport options". */
-Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char *proxy, Ice_ObjectPrxPtr prx);
-/* Writes a terminated string of at most `size` bytes with the end mark. ICE_LIMIT: it does not fit. */
+/* `proxy`: "identity [-t|-o|-O|-d|-D|-s] [-f facet] [-e 1.0|1.1]:transport options[:...]" or
+ * "...@adapter", as in Ice's manual. The minimal configuration takes "name [-t|-o]:transport
+ * options". */
+Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char *proxy,
+                                          Ice_ObjectPrxPtr prx);
+/* Writes a terminated string of at most `size` bytes with the end mark. ICE_LIMIT: it does not fit.
+ */
 Ice_Status Ice_Communicator_proxyToString(const Ice_ObjectPrx *prx, char *text, Ice_Int size);
 int Ice_ObjectPrx_isNull(const Ice_ObjectPrx *prx);
 int Ice_ObjectPrx_equals(const Ice_ObjectPrx *a, const Ice_ObjectPrx *b);
@@ -157,29 +163,35 @@ Ice_Status Ice_ObjectPrx_ice_facet(Ice_ObjectPrxPtr prx, const char *facet);
 void Ice_ObjectPrx_ice_twoway(Ice_ObjectPrxPtr prx);
 void Ice_ObjectPrx_ice_oneway(Ice_ObjectPrxPtr prx);
 /* Calls are kept in `data` until flushed, or until it is full. */
-void Ice_ObjectPrx_ice_batchOneway(Ice_ObjectPrxPtr prx, Ice_Batch *batch, Ice_Byte *data, Ice_Int size);
+void Ice_ObjectPrx_ice_batchOneway(Ice_ObjectPrxPtr prx, Ice_Batch *batch, Ice_Byte *data,
+                                   Ice_Int size);
 Ice_Status Ice_ObjectPrx_ice_flushBatchRequests(Ice_ObjectPrxPtr prx);
 void Ice_ObjectPrx_ice_context(Ice_ObjectPrxPtr prx, const Ice_ContextEntry *context); /* 0: none */
 void Ice_ObjectPrx_ice_invocationTimeout(Ice_ObjectPrxPtr prx, Ice_Int ms);
-/* Room for larger replies, aligned to 8: `bytes` for the reply and its decoded sequences together. */
+/* Room for larger replies, aligned to 8: `bytes` for the reply and its decoded sequences together.
+ */
 void Ice_ObjectPrx_setReplyBuffer(Ice_ObjectPrxPtr prx, U32 *buffer, Ice_Int bytes);
 void Ice_ObjectPrx_ice_encodingVersion(Ice_ObjectPrxPtr prx, Ice_Byte minor);
 
 Ice_Status Ice_ObjectPrx_ice_ping(Ice_ObjectPrxPtr self);
 Ice_Status Ice_ObjectPrx_ice_isA(Ice_ObjectPrxPtr self, const char *id, Ice_Bool *result);
 Ice_Status Ice_ObjectPrx_ice_id(Ice_ObjectPrxPtr self, Ice_String *result);
-/* `self` becomes `from` if the object has the type, else null; the status says whether it could be asked. */
-Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx *from, const char *id);
+/* `self` becomes `from` if the object has the type, else null; the status says whether it could be
+ * asked. */
+Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx *from,
+                                     const char *id);
 /* Opens the connection that a call would use. */
 Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int *connection);
 /* Of the last call that was made through this object; until its next call. */
 void Ice_ObjectPrx_failure(const Ice_ObjectPrx *self, Ice_Failure *failure);
 
 /* For generated code. A call is begin, writes to the returned stream, invoke, reads, end. begin
- * returns 0, with the reason in self->status, where all calls are taken, and where the mode says that
- * there are results and the proxy is none for them. Between begin and invoke no other call is made. */
+ * returns 0, with the reason in self->status, where all calls are taken, and where the mode says
+ * that there are results and the proxy is none for them. Between begin and invoke no other call is
+ * made. */
 #define ICE_RESULTS 0x80 /* in `mode`: the operation has results or exceptions */
-Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char *operation, Ice_Byte mode);
+Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char *operation,
+                                        Ice_Byte mode);
 Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr *is);
 Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status);
 /* Instead of invoke and end: `callback` gets the reply, from the task that receives, unless this
@@ -216,40 +228,46 @@ typedef struct Ice_Connection {
     U32 spokeMs;      /* last sign of life */
 } Ice_Connection;
 
+/* Small members first: their offsets are short in the code. */
 struct Ice_Communicator {
-    const Ice_Os *os;
-    void *osContext;
     const Ice_Endpoint *endpoint;
     void *endpointContext;
-    const char *const *properties;
     Ice_ObjectAdapterPtr adapters;
-    Ice_Call calls[ICE_CALLS];
-    Ice_Connection connections[ICE_CONNECTIONS];
     Ice_Byte stopping;
     int receiver; /* task that receives, -1 none */
     int depth;    /* messages being handled */
     Ice_Int lastId;
-    Ice_InputStreamPtr decoding; /* of the innermost operation: what it uses of the arena */
     Ice_OutputStream request;    /* being built, under ICE_LOCK_SEND */
-    Ice_Int requestBody;      /* where its encapsulation begins */
-    Ice_Byte in[ICEC_NESTING][ICE_MESSAGE_MAX], out[ICE_MESSAGE_MAX];
-    Ice_Byte requestData[ICEC_TASKS ? ICE_REQUEST_MAX : 1];
+    Ice_Int requestBody;         /* where its encapsulation begins */
+    Ice_InputStreamPtr decoding; /* of the innermost operation: what it uses of the arena */
+    const Ice_Os *os;
+    void *osContext;
+    const char *const *properties;
+    Ice_Connection connections[ICE_CONNECTIONS];
+    Ice_Call calls[ICE_CALLS];
     U32 arena[ICE_ARENA_BYTES / 4];
+    Ice_Byte requestData[ICEC_TASKS ? ICE_REQUEST_MAX : 1];
+    Ice_Byte in[ICEC_NESTING][ICE_MESSAGE_MAX], out[ICE_MESSAGE_MAX];
 };
 
 void Ice_initialize(Ice_CommunicatorPtr ic);
 /* Before any other call; `os` must stay valid. */
 void Ice_Communicator_setOs(Ice_CommunicatorPtr ic, const Ice_Os *os, void *context);
-void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint *endpoint, void *context);
+void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint *endpoint,
+                                  void *context);
 
 /* `table`: strings "key=value", 0 ends. Of two with one key the first counts. */
 void Ice_Communicator_setProperties(Ice_CommunicatorPtr ic, const char *const *table);
-const char *Ice_Communicator_getProperty(Ice_CommunicatorPtr ic, const char *key); /* 0: not there */
-Ice_Int Ice_Communicator_getPropertyAsInt(Ice_CommunicatorPtr ic, const char *key, Ice_Int otherwise);
-Ice_Status Ice_Communicator_propertyToProxy(Ice_CommunicatorPtr ic, const char *key, Ice_ObjectPrxPtr prx);
+const char *Ice_Communicator_getProperty(Ice_CommunicatorPtr ic,
+                                         const char *key); /* 0: not there */
+Ice_Int Ice_Communicator_getPropertyAsInt(Ice_CommunicatorPtr ic, const char *key,
+                                          Ice_Int otherwise);
+Ice_Status Ice_Communicator_propertyToProxy(Ice_CommunicatorPtr ic, const char *key,
+                                            Ice_ObjectPrxPtr prx);
 
 /* `endpoints`: name of the transport and its options, "xbee-at" or "tcp -p 10000". */
-Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr ic, const char *name,
+Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr ic,
+                                                             const char *name,
                                                              const char *endpoints,
                                                              Ice_ObjectAdapterPtr adapter);
 /* With the property <name>.Endpoints; without it only connections that this side makes reach it. */
@@ -263,8 +281,8 @@ Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs);
 /* Closes every connection in good order: tells the peers, and waits up to timeoutMs for them. */
 void Ice_Communicator_destroy(Ice_CommunicatorPtr ic, Ice_Int timeoutMs);
 
-/* A proxy to an object of the peer on this connection, whoever made it: calls go back on it. It ends
- * with the connection (ICE_CONNECTION_LOST), and cannot be passed to anybody. */
+/* A proxy to an object of the peer on this connection, whoever made it: calls go back on it. It
+ * ends with the connection (ICE_CONNECTION_LOST), and cannot be passed to anybody. */
 Ice_Status Ice_Connection_createProxy(Ice_CommunicatorPtr ic, int connection, const char *identity,
                                       Ice_ObjectPrxPtr prx);
 /* Closes one connection in good order, without waiting for the peer. */

@@ -151,7 +151,8 @@ static Ice_Status sendAll(void *context, int connection, const Ice_Byte *message
 }
 
 /* A numeric address or a name; the first answer counts. */
-static int resolve(const char *host, Ice_Int size, U32 port, struct sockaddr_storage *to, socklen_t *length) {
+static int resolve(const char *host, Ice_Int size, U32 port, struct sockaddr_storage *to,
+                   socklen_t *length) {
     struct addrinfo hints, *found;
     char name[256], service[8];
     if (size <= 0 || size >= (Ice_Int)sizeof name || port > 65535)
@@ -213,7 +214,8 @@ static Ice_Status connectTo(void *context, const Ice_Byte *encoded, Ice_Int size
         return ICE_NO_ENDPOINT;
     for (slot = 0; slot < ICE_CONNECTIONS; ++slot) {
         TcpConnection *c = &self->connections[slot];
-        if (c->fd >= 0 && !c->accepted && c->peerSize == length && memcmp(&c->peer, &to, length) == 0) {
+        if (c->fd >= 0 && !c->accepted && c->peerSize == length &&
+            memcmp(&c->peer, &to, length) == 0) {
             *connection = slot;
             return ICE_OK;
         }
@@ -254,7 +256,8 @@ static Ice_Status listenTo(void *context, const char *options) {
     if (self->listener < 0)
         return ICE_NO_ENDPOINT;
     (void)setsockopt(self->listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    if (bind(self->listener, (struct sockaddr *)&at, length) != 0 || listen(self->listener, 4) != 0 ||
+    if (bind(self->listener, (struct sockaddr *)&at, length) != 0 ||
+        listen(self->listener, 4) != 0 ||
         getsockname(self->listener, (struct sockaddr *)&at, &length) != 0) {
         (void)close(self->listener);
         self->listener = -1;
@@ -275,12 +278,14 @@ static void encode(void *context, const char *options, Ice_OutputStreamPtr os) {
     Ice_OutputStream_writeInt(os, 6 + 1 + host.size + 9);
     Ice_OutputStream_writeShort(os, 0x0101); /* encoding 1.1 */
     Ice_OutputStream_writeString(os, host);
-    Ice_OutputStream_writeInt(os, (Ice_Int)Ice_numberOption(options, 'p', options ? 0 : (U32)self->port));
+    Ice_OutputStream_writeInt(
+        os, (Ice_Int)Ice_numberOption(options, 'p', options ? 0 : (U32)self->port));
     Ice_OutputStream_writeInt(os, (Ice_Int)Ice_numberOption(options, 't', 60000));
     Ice_OutputStream_writeBool(os, 0); /* no compression */
 }
 
-static Ice_Bool print(void *context, const Ice_Byte *encoded, Ice_Int size, Ice_OutputStreamPtr text) {
+static Ice_Bool print(void *context, const Ice_Byte *encoded, Ice_Int size,
+                      Ice_OutputStreamPtr text) {
     Ice_InputStream is;
     Ice_String host;
     Ice_Int port, timeoutMs;

@@ -2,8 +2,8 @@
  *
  * tcp_endpoint: IceC's transport over TCP on a POSIX host: any ZeroC program can be the peer.
  *
- * Options: -h name or address, IPv4 or IPv6 (default 127.0.0.1), -p port (0: the system chooses), -t
- * milliseconds for connecting (default 60000). One adapter of a communicator can listen.
+ * Options: -h name or address, IPv4 or IPv6 (default 127.0.0.1), -p port (0: the system chooses),
+ * -t milliseconds for connecting (default 60000). One adapter of a communicator can listen.
  */
 #ifndef TCP_ENDPOINT_H
 #define TCP_ENDPOINT_H
@@ -15,8 +15,8 @@
 #define TCP_ENDPOINT_TYPE 1
 
 typedef struct TcpConnection {
-    int fd; /* -1: free */
-    Ice_Byte accepted, told; /* told: OPENED has been reported */
+    int fd;                       /* -1: free */
+    Ice_Byte accepted, told;      /* told: OPENED has been reported */
     struct sockaddr_storage peer; /* of a connection made by this side */
     socklen_t peerSize;
     Ice_Int have;

@@ -71,13 +71,15 @@ static Ice_Status statusOf(Link_Status status) {
     return status == LINK_OK ? ICE_OK : status == LINK_TOO_LONG ? ICE_LIMIT : ICE_CONNECTION_LOST;
 }
 
-static Ice_Status sendMessage(void *context, int connection, const Ice_Byte *message, Ice_Int size) {
+static Ice_Status sendMessage(void *context, int connection, const Ice_Byte *message,
+                              Ice_Int size) {
     XBeeATEndpoint *self = context;
     Link_Status status;
     int tries = 0;
     do {
         self->port->lock(self->context);
-        status = Link_send(self->link, connection, message, (U32)size, 0, self->port->nowUs(self->context));
+        status = Link_send(self->link, connection, message, (U32)size, 0,
+                           self->port->nowUs(self->context));
         self->port->unlock(self->context);
         self->port->kick(self->context);
         if (status == LINK_FULL)
@@ -91,7 +93,8 @@ static Ice_Status sendMessage(void *context, int connection, const Ice_Byte *mes
 static Ice_Status connectTo(void *context, const Ice_Byte *encoded, Ice_Int size, int *connection) {
     XBeeATEndpoint *self = context;
     Link_Status status = LINK_OK;
-    if (size < 2 || encoded[0] != (XBEE_ENDPOINT_TYPE & 0xFF) || encoded[1] != XBEE_ENDPOINT_TYPE >> 8)
+    if (size < 2 || encoded[0] != (XBEE_ENDPOINT_TYPE & 0xFF) ||
+        encoded[1] != XBEE_ENDPOINT_TYPE >> 8)
         return ICE_NO_ENDPOINT;
     self->port->lock(self->context);
     if (Link_state(self->link) != LINK_STATE_UP)
@@ -143,7 +146,8 @@ static void putNumber(Ice_OutputStreamPtr text, U32 value) {
     Ice_OutputStream_writeByte(text, (Ice_Byte)('0' + value % 10));
 }
 
-static Ice_Bool print(void *context, const Ice_Byte *encoded, Ice_Int size, Ice_OutputStreamPtr text) {
+static Ice_Bool print(void *context, const Ice_Byte *encoded, Ice_Int size,
+                      Ice_OutputStreamPtr text) {
     Ice_InputStream is;
     Ice_Byte channel;
     (void)context;
@@ -175,8 +179,9 @@ static void wakeUp(void *context) {
 
 void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char *name, XBeeATEndpoint *self, Link *link,
                          U16 address, const XBeeATPort *port, void *context) {
-    static const Ice_Endpoint endpoint = {"xbee-at", receive, sendMessage, connectTo, closeChannel,
-                                          listenTo,  encode,  wakeUp,      nowMs,     ICEC_DETAILS ? print : 0};
+    static const Ice_Endpoint endpoint = {
+        "xbee-at", receive, sendMessage, connectTo, closeChannel,
+        listenTo,  encode,  wakeUp,      nowMs,     ICEC_DETAILS ? print : 0};
     (void)name;
     memset(self, 0, sizeof *self);
     self->link = link;

@@ -2,8 +2,8 @@
  *
  * xbee_endpoint: IceC's transport over the radio link: a connection is a channel of the link.
  *
- * The ground opens channels 0..2, this side channel 3. On the wire an endpoint is type 0x4158 with a
- * remote address (short), a channel (byte, 255: any) and a time-out in milliseconds (int).
+ * The ground opens channels 0..2, this side channel 3. On the wire an endpoint is type 0x4158 with
+ * a remote address (short), a channel (byte, 255: any) and a time-out in milliseconds (int).
  */
 #ifndef XBEE_ENDPOINT_H
 #define XBEE_ENDPOINT_H
@@ -16,9 +16,9 @@
 
 /* What the endpoint needs from the application: the link belongs to the radio task. */
 typedef struct XBeeATPort {
-    void (*lock)(void *context);   /* around every use of the link, callbacks included */
+    void (*lock)(void *context); /* around every use of the link, callbacks included */
     void (*unlock)(void *context);
-    void (*kick)(void *context);   /* makes the radio task poll the link soon */
+    void (*kick)(void *context);                   /* makes the radio task poll the link soon */
     int (*wait)(void *context, Ice_Int timeoutMs); /* for signal; 1: signalled */
     void (*signal)(void *context);
     U32 (*nowUs)(void *context);

@@ -16,7 +16,7 @@ NAME  ?=
 OUT   ?= build/run
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build run test bench size clean
+.PHONY: help setup build run test mutants bench size clean
 
 help: ## this list
 	@echo "IceSoC: every function of the UAV, in software or in hardware, is a ZeroC Ice object."
@@ -52,6 +52,9 @@ ifeq ($(LABEL)$(NAME),)
 	@SEED=$(SEED) ctest --test-dir build/sanitized -j $(JOBS) --output-on-failure --no-tests=error \
 	    -R '^(test_os|test_link|interop)'
 endif
+
+mutants: $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect its test to fail (BLOCK=bus for one block)
+	@tests/mutants/run.sh --jobs $(JOBS) $(if $(BLOCK),--block '$(BLOCK)')
 
 bench: $(BUILD)/build.ninja ## measure the simulator, write build/bench/simulator.json
 	@ninja -C $(BUILD) -j $(JOBS) measure_simulator

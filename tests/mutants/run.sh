@@ -1,0 +1,120 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# run: plants each seeded bug of tests/mutants/ in a copy of the tree and expects the test it names to fail.
+# Usage: tests/mutants/run.sh [--block NAME] [--jobs N]
+#
+# A patch says the bug in its first line, `Caught-by: <ctest name>` in a line of its own, and is then a
+# diff for `patch -p1`. Exit status 1: a bug survived, a patch no longer applies, or a mutant does not build.
+# Leaves build/mutants/results.tsv: patch, result, test, seconds.
+set -eu
+block='*' jobs=$(nproc)
+while [ $# -gt 0 ]; do
+    case $1 in
+    --block) block=$2 && shift 2 ;;
+    --jobs) jobs=$2 && shift 2 ;;
+    -h | --help) sed -n '4,9s/^# \{0,1\}//p' "$0" && exit 0 ;;
+    *) echo "run.sh: '$1' is not an option; see --help" >&2 && exit 2 ;;
+    esac
+done
+cd "$(dirname "$(readlink -f "$0")")/../.."
+top=$PWD
+list=$(ls tests/mutants/$block/*.patch 2>/dev/null) || {
+    echo "mutants: no tests/mutants/$block/*.patch" >&2
+    exit 2
+}
+mkdir -p build/mutants
+
+caught_by() { sed -n 's/^Caught-by: *//p' "$1" | head -1; }
+
+# a copy of the tree for each worker, with its own build folder
+prepare() {
+    copy=$top/build/mutants/$1
+    mkdir -p "$copy"
+    git ls-files -coz --exclude-standard | xargs -0 cp -pu --parents -t "$copy" 2>/dev/null || true
+    [ -f "$copy/build/main/build.ninja" ] ||
+        (cd "$copy" && CCACHE_BASEDIR=$copy CCACHE_NOHASHDIR=1 cmake -S . -B build/main -G Ninja >cmake.log 2>&1) || {
+        cat "$copy/cmake.log"
+        exit 1
+    }
+}
+
+# builds what a test needs, runs it: 0 passes, 1 fails, 2 does not build
+try() { # test log
+    export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+    case $1 in
+    test_*) target=${1%%.*} ;;
+    *) target=regmaps ;;
+    esac
+    nice ninja -C build/main -j 1 "$target" >"$2" 2>&1 || return 2
+    regexp=$(echo "$1" | sed 's/[.]/\\./g')
+    ctest --test-dir build/main -R "^$regexp(\\.|\$)" --no-tests=error --output-on-failure >>"$2" 2>&1 && return 0
+    case $1 in # a proof must fail by its properties, not by a file that cannot be read
+    formal.*) grep -q 'an assertion fails\|not proven\|not reached' "$2" || return 2 ;;
+    esac
+    return 1
+}
+
+one() { # patch, in the worker's copy
+    patch=$1
+    test=$(caught_by "$patch")
+    name=$(echo "${patch#tests/mutants/}" | sed 's/[.]patch$//')
+    start=$(date +%s)
+    log=$top/build/mutants/$(echo "$name" | tr / -).log
+    cd "$top/build/mutants/$SLOT"
+    files=$(sed -n 's,^+++ b/\([^\t ]*\).*,\1,p' "$top/$patch")
+    for file in $files; do cp "$file" "$file.orig"; done
+    if [ -z "$test" ]; then
+        result='names no test (Caught-by:)'
+    elif ! patch -s -p1 <"$top/$patch" >"$log" 2>&1; then
+        result='does not apply'
+    else
+        status=0
+        try "$test" "$log" || status=$?
+        case $status in
+        0) result=SURVIVED ;;
+        1) result=caught ;;
+        *) result='does not build' ;;
+        esac
+    fi
+    # newer than what was built from the mutant
+    for file in $files; do mv "$file.orig" "$file" && touch "$file"; done
+    seconds=$(($(date +%s) - start))
+    printf '%s\t%s\t%s\t%s\n' "$name" "$result" "$test" "$seconds" >"$top/build/mutants/result.$(echo "$name" | tr / -)"
+    printf '%-10s %-36s %s (%s s)\n' "$result" "$name" "$test" "$seconds"
+}
+
+case ${MUTANT_STEP:-} in
+one)
+    one "$MUTANT_PATCH"
+    exit 0
+    ;;
+esac
+
+rm -f build/mutants/result.*
+workers=$jobs
+worker=0
+while [ "$worker" -lt "$workers" ]; do
+    prepare "$worker"
+    worker=$((worker + 1))
+done
+
+# The tests must pass without a bug, or "caught" says nothing.
+cd "$top/build/mutants/0"
+for patch in $list; do caught_by "$top/$patch"; done | sort -u >../tests
+while read -r test; do
+    try "$test" ../baseline.log || {
+        cat ../baseline.log
+        echo "mutants: $test fails without any mutant: mend that first" >&2
+        exit 1
+    }
+done <../tests
+cd "$top"
+
+echo "$list" | MUTANT_STEP=one xargs -P "$workers" --process-slot-var=SLOT -I '{}' \
+    env MUTANT_PATCH='{}' sh tests/mutants/run.sh
+cat build/mutants/result.* >build/mutants/results.tsv
+total=$(wc -l <build/mutants/results.tsv)
+caught=$(cut -f2 build/mutants/results.tsv | grep -c '^caught$' || true)
+echo "mutants: $caught of $total caught (build/mutants/results.tsv)"
+[ "$caught" -eq "$total" ]

@@ -27,7 +27,8 @@ module system_slot #(
     output reg  [5:0]       page_o,         // DDR3 address bits 31..26
     input  wire             access_error_i, // one cycle
     input  wire [9:0]       error_addr_i,
-    input  wire             error_write_i
+    input  wire             error_write_i,
+    input  wire             read_late_i
 );
     `include "system_regs.vh"
 
@@ -45,7 +46,7 @@ module system_slot #(
     bus_wrapper #(
         .ID_VALUE (SYSTEM_ID_VALUE),
         .WORDS    (16'h0FF8),
-        .EVENTS   (1)
+        .EVENTS   (2)
     ) u_wrapper (
         .clk_i(clk_i), .rst_i(rst_i),
         .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
@@ -53,7 +54,7 @@ module system_slot #(
         .bus_error_o(bus_error_o),
         .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr),
         .reg_wdata_o(reg_wdata), .reg_rdata_i(reg_rdata),
-        .event_i(access_error_i), .irq_o(own_irq)
+        .event_i({read_late_i, access_error_i}), .irq_o(own_irq)
     );
 
     assign irq_o = |lines;
@@ -122,7 +123,7 @@ module system_slot #(
     always @* begin
         assert (irq_o == (own_irq || |slot_irq_i));
         if (bus_valid_i && !bus_write_i && !rst_i && bus_addr_i == SYSTEM_EVENT)
-            assert (bus_rdata_o == {31'd0, error_open}); // event and place tell of the same error
+            assert ({bus_rdata_o[31:2], bus_rdata_o[0]} == {30'd0, error_open}); // event and place tell of the same error
     end
 `endif
 endmodule

@@ -11,12 +11,11 @@
 #define CONTROL_WINDOW 0x64000000UL
 #define WINDOW_MASK ((1UL << MAP_DDR_WINDOW_LOG2) - 1UL)
 
-/* BCR: bank on, SRAM, 16 bits, write enable, extended (mode A: NOE rests between reads), asynchronous
- * wait (NWAIT, active low). */
-#define BCR_VALUE (1UL << 0 | 1UL << 4 | 1UL << 7 | 1UL << 12 | 1UL << 14 | 1UL << 15)
-/* BTR: ADDSET 5 HCLK, so that the strobes rest for four clocks of the fabric; DATAST 8: NWAIT is
- * looked at four HCLK before the end of it; BUSTURN 1. */
-#define BTR_VALUE (5UL | 8UL << 8 | 1UL << 16)
+/* BCR: bank on, SRAM, 16 bits, write enable, asynchronous wait (NWAIT, active low): mode 1. */
+#define BCR_VALUE (1UL << 0 | 1UL << 4 | 1UL << 7 | 1UL << 12 | 1UL << 15)
+/* BTR: ADDSET 2 HCLK: NWAIT, which follows the pins in less than 16 ns, is valid when the data phase
+ * begins; DATAST 4, the least with NWAIT; BUSTURN 1 (docs/fsmc.md). */
+#define BTR_VALUE (2UL | 4UL << 8 | 1UL << 16)
 
 static const Fsmc_Port *fsmcPort;
 static void *fsmcContext;
@@ -32,7 +31,6 @@ Fsmc_Status FSMC_init(const Fsmc_Port *port, void *context) {
     fsmcContext = context;
     for (bank = 0; bank < 2U; ++bank) {
         port->write32(context, (U32)FSMC_REGISTERS + bank * 8U + 4U, (U32)BTR_VALUE);
-        port->write32(context, (U32)FSMC_REGISTERS + 0x104U + bank * 8U, (U32)BTR_VALUE);
         port->write32(context, (U32)FSMC_REGISTERS + bank * 8U, (U32)BCR_VALUE);
     }
     if (FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID) >> 16 != SYSTEM_ID_VALUE >> 16)

@@ -33,7 +33,7 @@ typedef enum Fsmc_Status {
     FSMC_BUS_ERROR  /* an access since the last check hit nothing */
 } Fsmc_Status;
 
-/* Programs BCRx, BTRx and BWTRx of both banks (mode A, 16 bits, NWAIT on) and looks for the system slot. */
+/* Programs BCRx and BTRx of both banks (asynchronous mode 1, 16 bits, NWAIT) and looks for the system slot. */
 Fsmc_Status FSMC_init(const Fsmc_Port *port, void *context);
 
 /* Registers: 32 bits, atomic. slot 0..63, word 0..15. */

@@ -62,6 +62,7 @@ private:
         top.fsmc_nbl_n_i = pins.nblN;
         top.fsmc_noe_n_i = pins.noeN;
         top.fsmc_nwe_n_i = pins.nweN;
+        top.fsmc_nadv_n_i = pins.nadvN;
     }
     void seePins() {
         pins.dFromDesign = top.fsmc_d_o;

@@ -209,7 +209,7 @@ void FsmcMaster::abort(const Access& access, unsigned hclk) {
     show();
     if (pins_.dDriven)
         throw FsmcError(access.name + ": given up, and the data bus is still driven");
-    passHclk(200); // a reset of the processor takes at least 20 us
+    passHclk(8); // the reset of a processor takes far longer
 }
 
 void FsmcMaster::abortRead(uint32_t address, unsigned hclk) {

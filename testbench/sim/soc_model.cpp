@@ -18,6 +18,7 @@ SocModel::~SocModel() {
 
 void SocModel::reset() {
     top_->rst_i = 1;
+    settle();
     for (int i = 0; i < 8; ++i)
         tick();
     top_->rst_i = 0;
@@ -46,6 +47,7 @@ void SocModel::settle() {
     top.fsmc_nbl_n_i = pins_.nblN;
     top.fsmc_noe_n_i = pins_.noeN;
     top.fsmc_nwe_n_i = pins_.nweN;
+    top.fsmc_nadv_n_i = pins_.nadvN;
     top.eval();
     pins_.dFromDesign = top.fsmc_d_o;
     pins_.dDriven = top.fsmc_d_oe_o;

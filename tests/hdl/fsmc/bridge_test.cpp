@@ -33,6 +33,7 @@ protected:
         RecordProperty("seed", static_cast<int>(testSeed()));
         b_.slave.words[MAP_SLOT_SYSTEM * 16 + SYSTEM_ID] = SYSTEM_ID_VALUE;
         ASSERT_EQ(FSMC_init(&port, &b_.master), FSMC_OK);
+        doorbell(); // its last write is posted
     }
     static uint32_t at(uint32_t word) { return control + 4 * word; }
     // A register access, after which all writes have reached the memory.

@@ -19,14 +19,15 @@ protected:
     void SetUp() override {
         soc_.reset();
         for (uint32_t bank : {0u, 1u}) {
-            fsmc_.write32(0xA0000004 + 8 * bank, 0x00010805);
-            fsmc_.write32(0xA0000104 + 8 * bank, 0x00010805);
-            fsmc_.write32(0xA0000000 + 8 * bank, 0x0000D091);
+            fsmc_.write32(0xA0000004 + 8 * bank, 0x00010402);
+            fsmc_.write32(0xA0000000 + 8 * bank, 0x00009091);
         }
     }
     static uint32_t at(uint32_t slot, uint32_t word) { return control + 64 * slot + 4 * word; }
     uint32_t read(uint32_t slot, uint32_t word) { return fsmc_.read32(at(slot, word)); }
-    void write(uint32_t slot, uint32_t word, uint32_t value) { fsmc_.write32(at(slot, word), value); }
+    void write(uint32_t slot, uint32_t word, uint32_t value) {
+        fsmc_.write32(at(slot, word), value);
+    }
 
     RfChannel air_{testSeed()};
     SocModel soc_{air_, {}};
@@ -75,6 +76,7 @@ TEST_F(Soc, AnUnmappedRegisterIsReportedAndTheSystemGoesOn) {
         EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_EVENT), SYSTEM_EVENT_BUS_ERROR_MASK);
         EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_ERROR_ADDR), place[0] * 16 + place[1]);
         write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);
+        EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_EVENT), 0u);
         EXPECT_FALSE(soc_.irq());
     }
     write(40, 3, 7);
@@ -108,7 +110,8 @@ TEST_F(Soc, MemoryEqualsAReferenceUnderRandomAccesses) {
             break;
         default:
             a &= ~1u;
-            EXPECT_EQ(fsmc_.read16(ddr + a), reference[a] | reference[a + 1] << 8) << "access " << i;
+            EXPECT_EQ(fsmc_.read16(ddr + a), reference[a] | reference[a + 1] << 8)
+                << "access " << i;
         }
     }
 }
@@ -127,6 +130,8 @@ TEST_F(Soc, ThePageRegisterReachesTheUpperHalf) {
     write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 1);
     fsmc_.write16(ddr + 0x40, 0x5A5A);
     write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 0);
+    EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_PAGE),
+              0u); // register writes are posted: this waits for it
     EXPECT_EQ(soc_.memory().data()[0x04000040], 0x5A);
     EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0);
 }

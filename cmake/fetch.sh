@@ -44,15 +44,23 @@ EOF
 
 codename() { sed -n 's/^VERSION_CODENAME=//p' /etc/os-release; }
 
+ice_source() { (cd "$work" && private_apt deb-src "$1" --download-only source "zeroc-ice$2"); }
+
 fetch_ice() {
     version=$(dpkg-query -W -f '${source:Version}' libzeroc-ice-dev 2>/dev/null) ||
         fail "libzeroc-ice-dev is not installed; run 'make setup'"
     keep=$cache/ice-$version
     if [ ! -f "$keep/done" ]; then
         echo "Fetching the headers of ZeroC Ice $version (source package, 15 MB) ..."
-        private_apt deb-src "$(codename)" update || fail "cannot reach the Debian mirror $(mirror)"
-        (cd "$work" && private_apt deb-src "$(codename)" --download-only source "zeroc-ice=$version") ||
-            fail "cannot get the source of zeroc-ice $version from $(mirror)"
+        if private_apt deb-src "$(codename)" update && ice_source "$(codename)" "=$version"; then
+            :
+        elif private_apt deb-src bookworm update && ice_source bookworm ''; then
+            # Transports are internal to Ice, but did not change between 3.7.8 and 3.7.10.
+            echo "fetch: the mirror $(mirror) has no source of zeroc-ice $version;" \
+                "using the headers of Debian 12's 3.7.8, of the same series" >&2
+        else
+            fail "cannot get the source of zeroc-ice $version from $(mirror); check the network, then run make again"
+        fi
         (cd "$work" && dpkg-source --no-check --extract zeroc-ice_*.dsc tree >/dev/null) ||
             fail "cannot unpack the source of zeroc-ice $version"
         mkdir -p "$keep/Ice"

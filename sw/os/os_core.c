@@ -4,9 +4,12 @@
  */
 #include "os_core.h"
 
-OsKernel os_kernel;
+#define IDLE_WORDS 128U
 
-static OS_STK idleStack[256];
+OsKernel os_kernel;
+INT8U OSPrioCur;
+
+static OS_STK idleStack[IDLE_WORDS];
 
 void OsSet_add(OsSet *set, U8 priority) {
     set->word[priority >> 5] |= 1U << (priority & 31U);
@@ -43,48 +46,14 @@ static void idleTask(void *argument) {
         OSTaskIdleHook();
 }
 
-static INT8U createTask(void (*task)(void *), void *argument, OS_STK *ptos, U8 priority) {
-    OsTask *t = 0;
-    U32 i;
-    for (i = 0; i <= OS_MAX_TASKS && !t; ++i)
-        if (!os_kernel.tasks[i].used)
-            t = &os_kernel.tasks[i];
-    if (!t)
-        return OS_ERR_TASK_NO_MORE_TCB;
-    t->used = 1;
-    t->priority = t->base = priority;
-    t->delay = 0;
-    t->event = 0;
-    t->stack = OSTaskStkInit(task, argument, ptos, 0);
-    os_kernel.byPriority[priority] = t;
-    OsSet_add(&os_kernel.ready, priority);
-    return OS_ERR_NONE;
-}
-
 void OSInit(void) {
     static const OsKernel empty;
+    OsTask stack;
     os_kernel = empty;
-    (void)createTask(idleTask, 0, idleStack + sizeof idleStack / sizeof idleStack[0] - 1,
-                     OS_LOWEST_PRIO);
-}
-
-INT8U OSTaskCreate(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT8U prio) {
-    OS_CPU_SR cpu_sr;
-    INT8U error;
-    if (os_kernel.interruptNesting)
-        return OS_ERR_TASK_CREATE_ISR;
-    if (prio >= OS_LOWEST_PRIO)
-        return OS_ERR_PRIO_INVALID;
-    OS_ENTER_CRITICAL();
-    error = OS_PriorityTaken(prio) ? OS_ERR_PRIO_EXIST : createTask(task, p_arg, ptos, prio);
-    OS_EXIT_CRITICAL();
-    if (error == OS_ERR_NONE && os_kernel.running)
-        OS_Sched();
-    return error;
-}
-
-INT8U OSTaskPrio(void) {
-    return os_kernel.current->base;
+    stack.bottom = idleStack;
+    stack.words = IDLE_WORDS;
+    stack.options = OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR;
+    (void)OS_TaskMake(idleTask, 0, idleStack + IDLE_WORDS - 1, OS_LOWEST_PRIO, &stack);
 }
 
 void OSStart(void) {
@@ -92,6 +61,7 @@ void OSStart(void) {
         return;
     os_kernel.running = 1;
     os_kernel.current = os_kernel.byPriority[OsSet_first(&os_kernel.ready)];
+    OSPrioCur = os_kernel.current->priority;
     OSStartHighRdy();
 }
 
@@ -101,6 +71,7 @@ static void switchToFirst(void) {
     OsTask *to = os_kernel.byPriority[OsSet_first(&os_kernel.ready)];
     if (to != from) {
         os_kernel.current = to;
+        OSPrioCur = to->priority;
         OSCtxSw(from, to);
     }
 }
@@ -225,6 +196,8 @@ void OS_ChangePriority(OsTask *task, U8 priority) {
     os_kernel.byPriority[old] = 0;
     os_kernel.byPriority[priority] = task;
     task->priority = priority;
+    if (task == os_kernel.current)
+        OSPrioCur = priority;
 }
 
 OS_EVENT *OS_EventCreate(OsEventType type) {

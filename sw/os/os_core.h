@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_core: what the kernel's own files share, and the seam to a port (os_cpu). Not for applications.
+ * os_core: what the kernel's own files share, and the seam to a port (os_cpu). Not for
+ * applications.
  */
 #ifndef OS_CORE_H
 #define OS_CORE_H
@@ -23,6 +24,9 @@ typedef struct OsTask {
     U32 delay;       /* ticks left, 0: none */
     OS_EVENT *event; /* what it waits for */
     void *message;   /* what OSQPost handed over */
+    OS_STK *bottom;  /* lowest address of the stack; 0: not known */
+    U32 words;       /* its size */
+    U16 options;     /* OS_TASK_OPT_... */
 } OsTask;
 
 struct os_event {
@@ -56,10 +60,13 @@ U8 OsSet_first(const OsSet *set);
 
 /* 1 where a task or a mutex has this priority. */
 int OS_PriorityTaken(U8 priority);
+/* Creates a task, with interrupts disabled; of `stack` the bounds and options are used. */
+U8 OS_TaskMake(void (*task)(void *), void *argument, OS_STK *ptos, U8 priority, const OsTask *stack);
 /* Switches to the highest ready task, unless in an interrupt or locked. */
 void OS_Sched(void);
-/* Puts the current task to sleep on an event; back when it is signalled or `timeout` ticks are over.
- * Returns 1 on time-out. Call with interrupts disabled: the state is restored and saved around it. */
+/* Puts the current task to sleep on an event; back when it is signalled or `timeout` ticks are
+ * over. Returns 1 on time-out. Call with interrupts disabled: the state is restored and saved
+ * around it. */
 U8 OS_EventWait(OS_EVENT *event, U32 timeout, OS_CPU_SR *cpu_sr);
 /* Makes the first waiting task ready and returns it; 0 where none waits. */
 OsTask *OS_EventWake(OS_EVENT *event);
@@ -71,8 +78,8 @@ void OS_ChangePriority(OsTask *task, U8 priority);
 
 /* The port. */
 OS_STK *OSTaskStkInit(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT16U opt);
-void OSStartHighRdy(void);             /* first switch: to os_kernel.current */
+void OSStartHighRdy(void);              /* first switch: to os_kernel.current */
 void OSCtxSw(OsTask *from, OsTask *to); /* also from OSIntExit */
-void OSTaskIdleHook(void);             /* the idle task, again and again */
+void OSTaskIdleHook(void);              /* the idle task, again and again */
 
 #endif

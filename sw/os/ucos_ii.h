@@ -20,22 +20,25 @@ typedef U32 INT32U;
 #define OS_TRUE 1U
 
 #define OS_ERR_NONE 0U
-#define OS_ERR_EVENT_TYPE 1U         /* the event is of another kind */
-#define OS_ERR_PEND_ISR 2U           /* pending from an interrupt */
+#define OS_ERR_EVENT_TYPE 1U /* the event is of another kind */
+#define OS_ERR_PEND_ISR 2U   /* pending from an interrupt */
 #define OS_ERR_POST_NULL_PTR 3U
 #define OS_ERR_PEVENT_NULL 4U
+#define OS_ERR_PDATA_NULL 9U
 #define OS_ERR_TIMEOUT 10U
-#define OS_ERR_PEND_LOCKED 13U       /* the scheduler is locked */
+#define OS_ERR_PEND_LOCKED 13U /* the scheduler is locked */
 #define OS_ERR_CREATE_ISR 16U
 #define OS_ERR_Q_FULL 30U
 #define OS_ERR_Q_EMPTY 31U
-#define OS_ERR_PRIO_EXIST 40U        /* the priority is taken */
+#define OS_ERR_PRIO_EXIST 40U /* the priority is taken */
 #define OS_ERR_PRIO_INVALID 42U
 #define OS_ERR_SEM_OVF 51U
 #define OS_ERR_TASK_CREATE_ISR 60U
 #define OS_ERR_TASK_NO_MORE_TCB 66U
+#define OS_ERR_TASK_NOT_EXIST 67U
+#define OS_ERR_TASK_OPT 69U /* created without OS_TASK_OPT_STK_CHK */
 #define OS_ERR_NOT_MUTEX_OWNER 100U
-#define OS_ERR_PIP_LOWER 120U        /* the owner's priority is above the mutex's ceiling */
+#define OS_ERR_PIP_LOWER 120U /* the owner's priority is above the mutex's ceiling */
 
 typedef struct os_event OS_EVENT;
 
@@ -46,8 +49,26 @@ void OSStart(void);
 /* prio 0 (highest) .. OS_LOWEST_PRIO - 1, one task each. `ptos`: highest address of its stack. */
 INT8U OSTaskCreate(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT8U prio);
 
+#define OS_TASK_OPT_NONE 0U
+#define OS_TASK_OPT_STK_CHK 1U /* OSTaskStkChk may be asked about it */
+#define OS_TASK_OPT_STK_CLR 2U /* the stack is filled with zeros, which OSTaskStkChk counts */
+
+/* As OSTaskCreate, and the stack's bounds are known: `pbos` is its lowest address, `stk_size` its
+ * size in OS_STK. `id` and `pext` are accepted as in uC/OS-II, and not used. */
+INT8U OSTaskCreateExt(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT8U prio, INT16U id,
+                      OS_STK *pbos, INT32U stk_size, void *pext, INT16U opt);
+
+typedef struct os_stk_data {
+    INT32U OSFree, OSUsed; /* in OS_STK */
+} OS_STK_DATA;
+
+/* How much of a task's stack has ever been in use. */
+INT8U OSTaskStkChk(INT8U prio, OS_STK_DATA *p_stk_data);
+
 /* Priority of the running task (OSPrioCur of uC/OS-II, as a function). */
 INT8U OSTaskPrio(void);
+
+extern INT8U OSPrioCur; /* priority at which the running task runs; not to be written */
 
 void OSTimeDly(INT32U ticks);
 INT32U OSTimeGet(void);
@@ -59,7 +80,8 @@ void OSSemPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr);
 INT8U OSSemPost(OS_EVENT *pevent);
 INT16U OSSemAccept(OS_EVENT *pevent);
 
-/* `prio` is the ceiling that an owner inherits while a higher-priority task waits; it must be free. */
+/* `prio` is the ceiling that an owner inherits while a higher-priority task waits; it must be free.
+ */
 OS_EVENT *OSMutexCreate(INT8U prio, INT8U *perr);
 void OSMutexPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr);
 INT8U OSMutexPost(OS_EVENT *pevent);

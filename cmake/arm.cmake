@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+#
+# arm.cmake: C90 and assembly for the Cortex-M3, beside the host's build, by GCC's bare-metal toolchain.
+
+find_program(ARM_GCC arm-none-eabi-gcc REQUIRED)
+find_program(ARM_SIZE arm-none-eabi-size REQUIRED)
+find_program(ARM_OBJCOPY arm-none-eabi-objcopy REQUIRED)
+
+set(ARM_FLAGS -mcpu=cortex-m3 -mthumb -Os -g -ffunction-sections -fdata-sections -fno-common
+    -fstack-usage -fcallgraph-info=su)
+
+# icesoc_arm_objects(OUT name SOURCES file... [INCLUDES dir...] [DEFINES NAME=value...] [OPTIONS ...]
+#                    [DEPENDS target...] [FOREIGN])
+# Object files of the sources; their paths into the variable OUT. FOREIGN: not ours, without our warnings.
+function(icesoc_arm_objects out name)
+  cmake_parse_arguments(A "FOREIGN" "" "SOURCES;INCLUDES;DEFINES;OPTIONS;DEPENDS" ${ARGN})
+  set(dir ${CMAKE_CURRENT_BINARY_DIR}/${name}.arm)
+  set(flags ${ARM_FLAGS})
+  foreach(i IN LISTS A_INCLUDES)
+    list(APPEND flags -I${i})
+  endforeach()
+  foreach(d IN LISTS A_DEFINES)
+    list(APPEND flags -D${d})
+  endforeach()
+  set(objects)
+  foreach(source IN LISTS A_SOURCES)
+    get_filename_component(path ${source} ABSOLUTE)
+    get_filename_component(folder ${path} DIRECTORY)
+    get_filename_component(folder ${folder} NAME)
+    get_filename_component(file ${path} NAME)
+    set(object ${dir}/${folder}/${file}.o)
+    file(MAKE_DIRECTORY ${dir}/${folder})
+    set(own)
+    if(NOT A_FOREIGN AND path MATCHES "\\.c$")
+      set(own ${C90_WARNINGS})
+    elseif(A_FOREIGN)
+      set(own -w)
+    endif()
+    add_custom_command(OUTPUT ${object}
+      COMMAND ${CCACHE} ${ARM_GCC} ${flags} ${own} ${A_OPTIONS} -MMD -MF ${object}.d -c ${path} -o ${object}
+      DEPENDS ${path} ${A_DEPENDS} DEPFILE ${object}.d VERBATIM COMMENT "ARM: ${folder}/${file}")
+    list(APPEND objects ${object})
+  endforeach()
+  set(${out} ${objects} PARENT_SCOPE)
+endfunction()
+
+# icesoc_arm_program(NAME SCRIPT file.ld OBJECTS ... [OPTIONS ...])
+# Links NAME.elf with its map in ${CMAKE_BINARY_DIR}/firmware, stamped with its checksum; target firmware_NAME.
+function(icesoc_arm_program name)
+  cmake_parse_arguments(A "" "SCRIPT" "OBJECTS;OPTIONS" ${ARGN})
+  set(dir ${CMAKE_BINARY_DIR}/firmware)
+  file(MAKE_DIRECTORY ${dir})
+  add_custom_command(OUTPUT ${dir}/${name}.elf
+    COMMAND ${ARM_GCC} -mcpu=cortex-m3 -mthumb -nostartfiles --specs=nano.specs -T ${A_SCRIPT} ${A_OPTIONS}
+            -Wl,--gc-sections -Wl,-Map=${dir}/${name}.map -Wl,--fatal-warnings -o ${dir}/${name}.elf ${A_OBJECTS}
+    COMMAND stamp_image ${dir}/${name}.elf
+    COMMAND ${ARM_OBJCOPY} -O binary ${dir}/${name}.elf ${dir}/${name}.bin
+    DEPENDS ${A_OBJECTS} ${A_SCRIPT} stamp_image BYPRODUCTS ${dir}/${name}.map ${dir}/${name}.bin
+    VERBATIM COMMENT "Firmware: ${name}.elf")
+  add_custom_target(firmware_${name} DEPENDS ${dir}/${name}.elf)
+endfunction()

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * os_m3: the kernel's port to the Cortex-M3: first stack, first switch, PendSV's choice, stack
+ * guard.
+ */
+#include "os_m3.h"
+#include "os_core.h"
+
+#define ICSR (*(volatile U32 *)0xE000ED04UL)
+#define ICSR_PENDSVSET (1UL << 28)
+#define SHPR3 (*(volatile U32 *)0xE000ED20UL)
+#define XPSR_THUMB 0x01000000UL
+
+U32 *OS_Switch(U32 *sp); /* called by os_switch.S */
+
+static OsTask *running; /* whose context the processor holds; 0 before the first switch */
+
+static void taskReturned(void) {
+    OS_StackFault(0xFFU); /* a task must not return; it is told as what it is */
+}
+
+OS_STK *OSTaskStkInit(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT16U opt) {
+    /* The frame must begin at a multiple of 8 (AAPCS). */
+    OS_STK *stack = (OS_STK *)((U32)(ptos + 1) & ~7UL);
+    int i;
+    (void)opt;
+    *--stack = XPSR_THUMB;
+    *--stack = (OS_STK)task;
+    *--stack = (OS_STK)taskReturned;
+    for (i = 0; i < 4; ++i)
+        *--stack = 0; /* r12, r3..r1 */
+    *--stack = (OS_STK)p_arg;
+    for (i = 0; i < 8; ++i)
+        *--stack = 0; /* r11..r4 */
+    return stack;
+}
+
+void OSCtxSw(OsTask *from, OsTask *to) {
+    (void)from;
+    (void)to; /* os_kernel.current, when PendSV runs */
+    ICSR = ICSR_PENDSVSET;
+}
+
+void OSStartHighRdy(void) {
+    running = 0;
+    SHPR3 |= 0xFFUL << 16; /* PendSV below everything */
+    __asm__ volatile("msr psp, %0" : : "r"(0));
+    ICSR = ICSR_PENDSVSET;
+    __asm__ volatile("cpsie i\n\tisb");
+    for (;;) /* not reached: PendSV leaves to the first task */
+        ;
+}
+
+/* By PendSV, interrupts off: `sp` is where the running task's registers are; returns the next
+ * one's. */
+U32 *OS_Switch(U32 *sp) {
+    if (running) {
+        running->stack = sp;
+        if (running->bottom && (sp < running->bottom || *running->bottom != 0))
+            OS_StackFault(running->base);
+    }
+    running = os_kernel.current;
+    OS_TaskSwitched(running->bottom);
+    return running->stack;
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * os_m3: what the Cortex-M3 port asks of the board (sw/target), besides an idle hook.
+ */
+#ifndef OS_M3_H
+#define OS_M3_H
+
+#include "ucos_ii.h"
+
+/* Called by PendSV before a task goes on, interrupts off; `bottom` is the lowest address of its
+ * stack, 0 where unknown (OSTaskCreate): the place of a guard. */
+void OS_TaskSwitched(OS_STK *bottom);
+
+/* The task with this priority has run over the end of its stack (255: a task has returned). Does
+ * not return. */
+void OS_StackFault(INT8U priority);
+
+#endif

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * os_switch: PendSV saves what the processor has not saved, asks OS_Switch for the next stack, restores.
+ *
+ * Stack of a task that does not run, from its stack pointer upwards: r4..r11, then the processor's own
+ * frame r0..r3, r12, lr, pc, xPSR (ARMv7-M ARM, B1.5.6).
+ */
+    .syntax unified
+    .thumb
+    .section .text.PendSV_Handler, "ax"
+    .global PendSV_Handler
+    .type PendSV_Handler, %function
+PendSV_Handler:
+    cpsid   i
+    mrs     r0, psp
+    cbz     r0, 1f              /* the first switch: nothing to save */
+    stmdb   r0!, {r4-r11}
+1:  push    {r3, lr}            /* r3 for the alignment only */
+    bl      OS_Switch
+    pop     {r3, lr}
+    ldmia   r0!, {r4-r11}
+    msr     psp, r0
+    orr     lr, lr, #4          /* back to thread mode on the process stack */
+    cpsie   i
+    bx      lr
+    .size PendSV_Handler, . - PendSV_Handler

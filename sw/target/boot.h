@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * boot: why the firmware started, and what ended the run before; written to the system slot's SCRATCH
+ * register at each start, where anybody who reaches the FPGA can read it.
+ *
+ *   31..24  0xB0, so that a report can be told from other uses
+ *   23..16  starts since power-on, modulo 256
+ *   15..8   Boot_Reason
+ *    7..0   detail: of faults the priority of the task that ran (63 the idle task, 255 none)
+ */
+#ifndef BOOT_H
+#define BOOT_H
+
+#include "base.h"
+
+typedef enum Boot_Reason {
+    BOOT_POWER_ON = 1,
+    BOOT_SOFTWARE = 2,       /* a reset that was asked for, without a fault */
+    BOOT_WATCHDOG = 3,       /* the watchdog was not served for a second */
+    BOOT_IMAGE_CORRUPT = 4,  /* the image's checksum is wrong: the firmware has not started */
+    BOOT_STACK_OVERFLOW = 5, /* a task ran over the end of its stack */
+    BOOT_BUS_FAULT = 6,      /* an access that nobody answers */
+    BOOT_USAGE_FAULT = 7,    /* an instruction that is none */
+    BOOT_HARD_FAULT = 8,
+    BOOT_NO_FPGA = 9 /* the system slot does not answer; only in Boot_record */
+} Boot_Reason;
+
+#define BOOT_REPORT_MARK 0xB0U
+
+/* What the last fault left behind; survives resets, not power-off. */
+typedef struct Boot_Record {
+    U32 magic;
+    U32 starts;  /* since power-on */
+    U32 reason;  /* Boot_Reason of the fault that is not reported yet, else 0 */
+    U32 pc, lr;  /* where it happened */
+    U32 address; /* the access that failed, else 0 */
+    U32 status;  /* SCB's CFSR */
+    U32 task;    /* priority of the task that ran */
+} Boot_Record;
+
+extern Boot_Record boot_record; /* of the run before, once Boot_begin has been called */
+
+/* First of all: counts the start, reads why it is one. */
+void Boot_begin(void);
+/* 1: the checksum that the build has put behind the image is right. */
+int Boot_imageIsSound(void);
+/* The word for SCRATCH. */
+U32 Boot_report(void);
+/* Keeps what happened and resets the processor. */
+void Boot_fail(Boot_Reason reason, U32 pc, U32 lr, U32 address);
+/* A corrupt image: says so in SCRATCH, and sleeps for ever. */
+void Boot_refuse(void);
+
+#endif

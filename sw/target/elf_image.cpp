@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+//
+// elf_image: ELF by the structures of <elf.h>; little-endian hosts only, as everywhere here.
+
+#include "elf_image.h"
+#include <cstring>
+#include <elf.h>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+namespace {
+
+template <class T> T at(const std::vector<uint8_t>& file, size_t offset) {
+    T value;
+    if (offset + sizeof value > file.size())
+        throw std::runtime_error("it ends too early");
+    std::memcpy(&value, file.data() + offset, sizeof value);
+    return value;
+}
+
+} // namespace
+
+ElfImage::ElfImage(const std::string& path) : path_(path) {
+    std::ifstream in(path, std::ios::binary);
+    if (!in)
+        throw std::runtime_error("cannot read firmware '" + path + "': 'make firmware' builds it");
+    std::vector<uint8_t> file((std::istreambuf_iterator<char>(in)), {});
+    try {
+        auto header = at<Elf32_Ehdr>(file, 0);
+        if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS32 ||
+            header.e_machine != EM_ARM)
+            throw std::runtime_error("it is no 32-bit ARM ELF file");
+        for (unsigned i = 0; i < header.e_phnum; ++i) {
+            auto p = at<Elf32_Phdr>(file, header.e_phoff + i * sizeof(Elf32_Phdr));
+            if (p.p_type != PT_LOAD || p.p_filesz == 0)
+                continue;
+            if (size_t(p.p_offset) + p.p_filesz > file.size())
+                throw std::runtime_error("it ends too early");
+            auto begin = file.begin() + p.p_offset;
+            segments_.push_back({p.p_paddr, p.p_offset, {begin, begin + p.p_filesz}});
+        }
+        for (unsigned i = 0; i < header.e_shnum; ++i) {
+            auto s = at<Elf32_Shdr>(file, header.e_shoff + i * sizeof(Elf32_Shdr));
+            if (s.sh_type != SHT_SYMTAB)
+                continue;
+            auto names = at<Elf32_Shdr>(file, header.e_shoff + s.sh_link * sizeof(Elf32_Shdr));
+            for (size_t n = 0; n < s.sh_size / sizeof(Elf32_Sym); ++n) {
+                auto symbol = at<Elf32_Sym>(file, s.sh_offset + n * sizeof(Elf32_Sym));
+                if (size_t(names.sh_offset) + symbol.st_name >= file.size())
+                    throw std::runtime_error("a symbol has no name");
+                const char* text =
+                    reinterpret_cast<const char*>(file.data()) + names.sh_offset + symbol.st_name;
+                std::string name(text, strnlen(text, file.size() - names.sh_offset - symbol.st_name));
+                bool isFunction = ELF32_ST_TYPE(symbol.st_info) == STT_FUNC;
+                symbols_[name] = isFunction ? symbol.st_value & ~1u : symbol.st_value;
+                sizes_[name] = symbol.st_size;
+                if (isFunction)
+                    functions_[symbol.st_value & ~1u] = name;
+            }
+        }
+    } catch (const std::exception& e) {
+        throw std::runtime_error("firmware '" + path + "': " + e.what());
+    }
+}
+
+uint32_t ElfImage::symbol(const std::string& name) const {
+    auto found = symbols_.find(name);
+    if (found == symbols_.end())
+        throw std::runtime_error("firmware '" + path_ + "' has no symbol " + name);
+    return found->second;
+}
+
+std::string ElfImage::functionAt(uint32_t address) const {
+    auto after = functions_.upper_bound(address);
+    return after == functions_.begin() ? "?" : std::prev(after)->second;
+}
+
+uint32_t ElfImage::wordAt(uint32_t address) const {
+    for (const Segment& s : segments_)
+        if (address >= s.address && address + 4 <= s.address + s.bytes.size())
+            return at<uint32_t>(s.bytes, address - s.address);
+    return 0xFFFFFFFF; // erased
+}
+
+uint32_t ElfImage::checksum() const {
+    uint32_t crc = 0xFFFFFFFF;
+    for (uint32_t a = symbol("image_begin"); a < symbol("image_end"); a += 4) {
+        crc ^= wordAt(a);
+        for (int bit = 0; bit < 32; ++bit)
+            crc = crc & 0x80000000 ? crc << 1 ^ 0x04C11DB7 : crc << 1;
+    }
+    return crc;
+}
+
+void ElfImage::stamp() const {
+    uint32_t end = symbol("image_end"), crc = checksum();
+    std::fstream out(path_, std::ios::in | std::ios::out | std::ios::binary);
+    for (const Segment& s : segments_)
+        if (end >= s.address && end + 4 <= s.address + s.bytes.size()) {
+            out.seekp(s.offset + (end - s.address));
+            out.write(reinterpret_cast<const char*>(&crc), sizeof crc);
+            if (out.flush())
+                return;
+        }
+    throw std::runtime_error("cannot write the checksum into '" + path_ + "'");
+}

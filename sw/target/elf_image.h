@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+//
+// elf_image: a program for the Cortex-M3 as its ELF file describes it: bytes of flash, symbols, checksum.
+
+#ifndef ELF_IMAGE_H
+#define ELF_IMAGE_H
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+class ElfImage {
+public:
+    // Throws std::runtime_error that says what is wrong with the file.
+    explicit ElfImage(const std::string& path);
+
+    struct Segment {
+        uint32_t address; // where it is loaded, in flash
+        uint32_t offset;  // in the file
+        std::vector<uint8_t> bytes;
+    };
+    const std::vector<Segment>& segments() const { return segments_; }
+    bool has(const std::string& symbol) const { return symbols_.count(symbol) != 0; }
+    uint32_t symbol(const std::string& name) const; // throws where there is none
+    uint32_t size(const std::string& name) const { return sizes_.at(name); }
+    // Name of the function at an address, "?" where there is none.
+    std::string functionAt(uint32_t address) const;
+
+    // CRC of the STM32's unit (RM0033, 3.2) over the words image_begin .. image_end.
+    uint32_t checksum() const;
+    // Writes it into the file, where image_end is.
+    void stamp() const;
+
+private:
+    uint32_t wordAt(uint32_t address) const;
+
+    std::string path_;
+    std::vector<Segment> segments_;
+    std::map<std::string, uint32_t> symbols_, sizes_;
+    std::map<uint32_t, std::string> functions_;
+};
+
+#endif

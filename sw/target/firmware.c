@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * firmware: starts the kernel with the application and a task below all others that serves the watchdog:
+ * it does so as long as no task of higher priority, and no interrupt, takes the processor for itself.
+ */
+#include "firmware.h"
+#include "board.h"
+#include "boot.h"
+#include "map_regs.h"
+#include "stm32f2.h"
+#include "system_regs.h"
+#include "uav.h"
+
+#define PRIO_WATCH 60U
+#define GUARD_BYTES 32UL
+#define GUARD_RASR (1UL << 28 | 4UL << 1 | 1UL) /* never execute, no access, 2^(4+1) bytes, on */
+
+static OS_STK watchStack[128];
+
+void Firmware_guardStack(OS_STK *bottom) {
+    if (!bottom) {
+        MPU_CTRL = 0;
+        return;
+    }
+    MPU_RBAR = (((U32)bottom + GUARD_BYTES - 1UL) & ~(GUARD_BYTES - 1UL)) | 0x10UL; /* region 0 */
+    MPU_RASR = GUARD_RASR;
+    MPU_CTRL = MPU_CTRL_ON;
+}
+
+static void watchTask(void *argument) {
+    (void)argument;
+    for (;;) {
+        Board_serveWatchdog();
+        OSTimeDly(OS_TICKS_PER_SEC / 10U);
+    }
+}
+
+void Firmware_run(void) {
+    OSInit();
+    UAV_start(&board_fsmc, 0);
+    FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, Boot_report());
+    (void)OSTaskCreateExt(watchTask, 0, &watchStack[127], PRIO_WATCH, 0, watchStack, 128, 0,
+                          OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);
+    /* From here on interrupts wait for the first task: they call the kernel. */
+    __asm__ volatile("cpsid i");
+    Board_startInterrupts();
+    OSStart();
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * firmware: the program: kernel, application, watchdog task. Two files implement what differs between
+ * kernels: own_kernel.c and ucos2/.
+ */
+#ifndef FIRMWARE_H
+#define FIRMWARE_H
+
+#include "ucos_ii.h"
+
+/* From reset, once memory is set up; does not return. */
+void Firmware_run(void);
+
+/* Puts an MPU region without access over the lowest 32 bytes of a stack (those at multiples of 32); 0
+ * takes the guard away. */
+void Firmware_guardStack(OS_STK *bottom);
+
+#endif

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * own_kernel: what sw/os asks of the board.
+ */
+#include "board.h"
+#include "boot.h"
+#include "firmware.h"
+#include "os_core.h"
+#include "os_m3.h"
+
+void OSTaskIdleHook(void) {
+    __asm__ volatile("wfi");
+}
+
+void OS_TaskSwitched(OS_STK *bottom) {
+    Firmware_guardStack(bottom);
+}
+
+void OS_StackFault(INT8U priority) {
+    (void)priority;
+    Boot_fail(BOOT_STACK_OVERFLOW, 0, 0, 0);
+}
+
+U32 Board_task(void) {
+    return os_kernel.running ? OSPrioCur : 255U;
+}

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * start: vectors, what runs before main, fault handlers.
+ */
+#include "board.h"
+#include "boot.h"
+#include "firmware.h"
+#include "stm32f2.h"
+
+typedef void (*Vector)(void);
+
+extern void stack_top(void);
+extern U32 data_begin[], data_end[], data_load[], bss_begin[], bss_end[];
+extern void PendSV_Handler(void);
+
+void Reset_Handler(void);
+void Fault_Handler(void);
+void Fault_entered(const U32 *frame, U32 number);
+
+/* The frame is on the stack that was in use, which bit 2 of EXC_RETURN says. */
+void __attribute__((naked)) Fault_Handler(void) {
+    __asm__ volatile("tst lr, #4\n\t"
+                     "ite eq\n\t"
+                     "mrseq r0, msp\n\t"
+                     "mrsne r0, psp\n\t"
+                     "mrs r1, ipsr\n\t"
+                     "b Fault_entered");
+}
+
+void Fault_entered(const U32 *frame, U32 number) {
+    static const Boot_Reason reasons[] = {BOOT_HARD_FAULT, BOOT_STACK_OVERFLOW, BOOT_BUS_FAULT,
+                                          BOOT_USAGE_FAULT};
+    U32 status = SCB_CFSR;
+    U32 address = status & SCB_CFSR_MMFARVALID ? SCB_MMFAR : status & SCB_CFSR_BFARVALID ? SCB_BFAR : 0;
+    Boot_Reason reason = number >= 3U && number <= 6U ? reasons[number - 3U] : BOOT_HARD_FAULT;
+    Boot_fail(reason, frame[6], frame[5], address);
+}
+
+__attribute__((section(".vectors"), used)) static const Vector vectors[16 + 7] = {
+    stack_top, /* not a function: the first word is the stack pointer */
+    Reset_Handler,
+    Fault_Handler, /* NMI */
+    Fault_Handler, /* HardFault */
+    Fault_Handler, /* MemManage: the MPU guards the ends of stacks */
+    Fault_Handler, /* BusFault */
+    Fault_Handler, /* UsageFault */
+    0,
+    0,
+    0,
+    0,
+    Fault_Handler, /* SVC */
+    Fault_Handler, /* DebugMonitor */
+    0,
+    PendSV_Handler,
+    SysTick_Handler,
+    Fault_Handler, /* interrupts 0..5 are never enabled */
+    Fault_Handler,
+    Fault_Handler,
+    Fault_Handler,
+    Fault_Handler,
+    Fault_Handler,
+    EXTI0_Handler};
+
+void Reset_Handler(void) {
+    U32 *to;
+    const U32 *from = data_load;
+    Board_start();
+    for (to = data_begin; to < data_end;)
+        *to++ = *from++;
+    for (to = bss_begin; to < bss_end;)
+        *to++ = 0;
+    Boot_begin();
+    if (!Boot_imageIsSound())
+        Boot_refuse();
+    Firmware_run();
+}

@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * stm32f2: the registers of an STM32F2 that the firmware uses. Source: RM0033 (chapter and page names
+ * at each block), and the ARMv7-M Architecture Reference Manual for the core's own.
+ */
+#ifndef STM32F2_H
+#define STM32F2_H
+
+#include "base.h"
+
+#define REG(address) (*(volatile U32 *)(address))
+
+/* Reset and clock control (RM0033, 5.3). */
+#define RCC_CR REG(0x40023800UL)
+#define RCC_CR_HSEON (1UL << 16)
+#define RCC_CR_HSERDY (1UL << 17)
+#define RCC_CR_PLLON (1UL << 24)
+#define RCC_CR_PLLRDY (1UL << 25)
+#define RCC_PLLCFGR REG(0x40023804UL) /* M 5..0, N 14..6, P 17..16, HSE as source 22, Q 27..24 */
+#define RCC_CFGR REG(0x40023808UL)
+#define RCC_CFGR_SW_PLL 2UL
+#define RCC_CFGR_SWS_MASK (3UL << 2)
+#define RCC_CFGR_SWS_PLL (2UL << 2)
+#define RCC_CFGR_APB1_DIV4 (5UL << 10)
+#define RCC_CFGR_APB2_DIV2 (4UL << 13)
+#define RCC_AHB1ENR REG(0x40023830UL) /* GPIOA 0 .. GPIOI 8, CRC 12 */
+#define RCC_AHB1ENR_CRC (1UL << 12)
+#define RCC_AHB3ENR REG(0x40023838UL)
+#define RCC_AHB3ENR_FSMC (1UL << 0)
+#define RCC_APB2ENR REG(0x40023844UL)
+#define RCC_APB2ENR_SYSCFG (1UL << 14)
+#define RCC_CSR REG(0x40023874UL)
+#define RCC_CSR_RMVF (1UL << 24) /* clears the flags below */
+#define RCC_CSR_PORRST (1UL << 27)
+#define RCC_CSR_SFTRST (1UL << 28)
+#define RCC_CSR_IWDGRST (1UL << 29)
+
+/* Flash interface (RM0033, 2.3; the PM0059): 3 wait states at 120 MHz and 3.3 V, caches and prefetch. */
+#define FLASH_ACR REG(0x40023C00UL)
+#define FLASH_ACR_120MHZ (3UL | 7UL << 8)
+
+/* CRC unit (RM0033, 3.4): polynomial 0x04C11DB7, from 0xFFFFFFFF, words, most significant bit first. */
+#define CRC_DR REG(0x40023000UL)
+#define CRC_CR REG(0x40023008UL) /* 1: start again */
+
+/* General-purpose pins (RM0033, 6.4). Port 0 is A. */
+#define GPIO(port, offset) REG(0x40020000UL + 0x400UL * (U32)(port) + (offset))
+#define GPIO_MODER(port) GPIO(port, 0x00UL)   /* two bits a pin: 0 input, 2 alternate function */
+#define GPIO_OSPEEDR(port) GPIO(port, 0x08UL) /* two bits a pin: 3 is 100 MHz */
+#define GPIO_IDR(port) GPIO(port, 0x10UL)
+#define GPIO_AFR(port, half) GPIO(port, 0x20UL + 4UL * (half)) /* four bits a pin */
+#define GPIO_AF_FSMC 12UL
+
+/* Which pin an EXTI line listens to, and the lines (RM0033, 7.2 and 8.3). */
+#define SYSCFG_EXTICR(n) REG(0x40013808UL + 4UL * (n)) /* four bits a line: the port */
+#define EXTI_IMR REG(0x40013C00UL)
+#define EXTI_RTSR REG(0x40013C08UL)
+#define EXTI_PR REG(0x40013C14UL) /* write 1 to clear */
+
+/* Independent watchdog (RM0033, 18.3), clocked by LSI, about 32 kHz. */
+#define IWDG_KR REG(0x40003000UL)
+#define IWDG_KR_START 0xCCCCUL
+#define IWDG_KR_UNLOCK 0x5555UL
+#define IWDG_KR_REFRESH 0xAAAAUL
+#define IWDG_PR REG(0x40003004UL) /* prescaler 4 << n */
+#define IWDG_RLR REG(0x40003008UL)
+#define IWDG_SR REG(0x4000300CUL) /* not 0: an update is under way */
+
+/* The core (ARMv7-M ARM, B3). */
+#define SYST_CSR REG(0xE000E010UL)
+#define SYST_CSR_ON 7UL /* from HCLK, with interrupt */
+#define SYST_RVR REG(0xE000E014UL)
+#define SYST_CVR REG(0xE000E018UL)
+#define SYST_CALIB REG(0xE000E01CUL) /* RM0033, 8.1.2: HCLK/8 ticks in one millisecond */
+#define SYST_CALIB_TENMS 0xFFFFFFUL
+#define NVIC_ISER(n) REG(0xE000E100UL + 4UL * (n))
+#define NVIC_IPR(n) (*(volatile U8 *)(0xE000E400UL + (n)))
+#define SCB_ICSR REG(0xE000ED04UL)
+#define SCB_VTOR REG(0xE000ED08UL)
+#define SCB_AIRCR REG(0xE000ED0CUL)
+#define SCB_AIRCR_RESET 0x05FA0004UL
+#define SCB_SHPR(n) (*(volatile U8 *)(0xE000ED14UL + (n))) /* of exception n, 4..15 */
+#define SCB_SHCSR REG(0xE000ED24UL)
+#define SCB_SHCSR_FAULTS (7UL << 16) /* usage, bus and memory faults have handlers of their own */
+#define SCB_CFSR REG(0xE000ED28UL)
+#define SCB_CFSR_MMFARVALID (1UL << 7)
+#define SCB_CFSR_BFARVALID (1UL << 15)
+#define SCB_MMFAR REG(0xE000ED34UL)
+#define SCB_BFAR REG(0xE000ED38UL)
+#define MPU_CTRL REG(0xE000ED94UL)
+#define MPU_CTRL_ON 5UL /* on, with the default map for privileged code as background */
+#define MPU_RBAR REG(0xE000ED9CUL)
+#define MPU_RASR REG(0xE000EDA0UL)
+
+#endif

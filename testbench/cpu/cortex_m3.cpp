@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+//
+// cortex_m3: the loop around libunicorn, and what happens before each instruction.
+//
+// Every instruction is announced by unicorn's code hook. There time passes, and there the processor
+// is stopped, before the instruction, when an exception is to be entered: so unmasking takes effect
+// at the instruction where it would on the chip. Within an IT block it is not stopped, for unicorn
+// would lose the block's state; an interrupt waits up to four instructions there.
+
+#include "cortex_m3.h"
+#include "unicorn_calls.h"
+#include <algorithm>
+#include <cstdio>
+
+CortexM3::Stop CortexM3::run(bool singleStep) {
+    singleStep_ = singleStep;
+    stepped_ = breakpointHit_ = false;
+    passBreakpoint_ = true; // the one that the processor stands on
+    for (;;) {
+        if (failure_) {
+            auto failure = failure_;
+            failure_ = nullptr;
+            std::rethrow_exception(failure);
+        }
+        if (resetAsked_) {
+            resetAsked_ = false;
+            if (listener.systemReset)
+                listener.systemReset();
+            reset();
+        }
+        if (synchronous_.number)
+            fault(synchronous_.number, synchronous_.cfsrBits, synchronous_.text);
+        if (stopAsked_ || stepped_ || breakpointHit_) {
+            Stop why = breakpointHit_ ? Stop::Breakpoint : stepped_ ? Stop::Stepped : Stop::Asked;
+            stopAsked_ = false;
+            updateAttention();
+            return why;
+        }
+        if (lockedUp_) { // only a reset gets it out of here
+            pass(1);
+            continue;
+        }
+        if (unsigned number = exceptions_.deliverable())
+            enter(number);
+        updateAttention();
+        raised_ = 0;
+        uc_err error = uc_emu_start(uc_, pc_ | 1, 0, 0, 0);
+        uc_reg_read(uc_, UC_ARM_REG_PC, &pc_);
+        handleUnicorn(error);
+    }
+}
+
+void CortexM3::updateAttention() {
+    attention_ =
+        stopAsked_ || resetAsked_ || failure_ || synchronous_.number || exceptions_.deliverable() != 0;
+}
+
+void CortexM3::onInstruction(uint32_t address) {
+    if (masksChanged_)
+        updateMasks(address);
+    bool inUnit = skipped_ != 0 && address > executing_ && address < unitEnd_;
+    if (!inUnit) {
+        if (failure_ || synchronous_.number || raised_) {
+            uc_emu_stop(uc_);
+            return;
+        }
+        if (skipped_ != 0) {
+            unsigned cycles = skipped_;
+            skipped_ = 0;
+            if (address == unitEnd_) { // instructions of an IT block that were not taken cost a cycle each
+                expected_ = address;
+                pass(cycles);
+            }
+        }
+        if (attention_)
+            updateAttention();
+        if (attention_ || stepped_) {
+            uc_emu_stop(uc_);
+            return;
+        }
+        if (!breakpoints.empty() && !passBreakpoint_ && breakpoints.count(address)) {
+            breakpointHit_ = true;
+            uc_emu_stop(uc_);
+            return;
+        }
+        passBreakpoint_ = false;
+    } else {
+        --skipped_;
+        expected_ = address;
+    }
+    execute(address, instructionAt(address));
+}
+
+void CortexM3::execute(uint32_t address, const Instruction& i) {
+    if (listener.instruction)
+        listener.instruction(address);
+    unsigned cycles = i.cycles;
+    if (address != expected_ && expected_)
+        cycles += refillCycles;
+    executing_ = address;
+    expected_ = address + i.bytes;
+    ++instructions_;
+    pass(cycles);
+    stepped_ = singleStep_;
+    switch (i.kind) {
+    case Instruction::If: {
+        uint32_t at = expected_;
+        for (unsigned n = 0; n < i.conditional; ++n)
+            at += instructionAt(at).bytes;
+        unitEnd_ = at;
+        skipped_ = i.conditional;
+        break;
+    }
+    case Instruction::Sleep: sleep(); break;
+    case Instruction::Masks: masksChanged_ = true; break;
+    case Instruction::Refused:
+        failure_ = std::make_exception_ptr(std::runtime_error("WFE and SEV are not modelled"));
+        break;
+    case Instruction::Plain: break;
+    }
+}
+
+const Instruction& CortexM3::instructionAt(uint32_t address) {
+    auto decode = [&] {
+        uint16_t halves[2] = {0, 0};
+        if (!readMemory(address, halves, 4))
+            readMemory(address, halves, 2);
+        return decodeInstruction(halves[0], halves[1]);
+    };
+    uint32_t offset = address >= config_.flashBase ? address - config_.flashBase : address;
+    if (offset >= config_.flashBytes)
+        return scratch_ = decode();
+    Instruction& i = decoded_[offset >> 1];
+    if (i.bytes == 0)
+        i = decode();
+    return i;
+}
+
+void CortexM3::pass(unsigned cycles) {
+    control_.pass(cycles);
+    try {
+        bus_.pass(cycles);
+    } catch (...) {
+        failure_ = std::current_exception();
+    }
+    attention_ = attention_ || failure_ || exceptions_.deliverable();
+}
+
+void CortexM3::sleep() {
+    asleep_ = true;
+    uint64_t from = cycles();
+    while (!exceptions_.wakes() && !stopAsked_ && !resetAsked_ && !failure_)
+        pass(static_cast<unsigned>(std::min<uint64_t>(bus_.idleCycles(), control_.untilTick())));
+    sleeping_ += cycles() - from;
+    asleep_ = false;
+}
+
+void CortexM3::updateMasks(uint32_t address) {
+    masksChanged_ = false;
+    exceptions_.setMasks(reg(Primask), reg(Basepri), reg(Faultmask));
+    attention_ = attention_ || exceptions_.deliverable();
+    bool masked = reg(Primask) || reg(Faultmask) || (reg(Basepri) && reg(Basepri) <= watchedPriority_);
+    if (masked && !masked_) {
+        maskedSince_ = cycles();
+        maskedAt_ = executing_;
+    } else if (!masked && masked_ && cycles() - maskedSince_ > longest_.cycles) {
+        longest_ = {cycles() - maskedSince_, maskedAt_, address};
+    }
+    masked_ = masked;
+}
+
+void CortexM3::countMasked(uint8_t priority) {
+    watchedPriority_ = priority;
+    longest_ = Masked();
+    masked_ = false;
+}
+
+void CortexM3::setInterrupt(unsigned number, bool high) {
+    exceptions_.setLine(FirstInterrupt + number, high);
+    attention_ = attention_ || exceptions_.deliverable();
+}
+
+void CortexM3::pendInterrupt(unsigned number) {
+    exceptions_.pend(FirstInterrupt + number);
+    attention_ = attention_ || exceptions_.deliverable();
+}
+
+// ---- accesses ----
+
+template <class Access> uint32_t CortexM3::guardedAccess(uint32_t address, unsigned bytes, Access access) {
+    if (failure_ || synchronous_.number)
+        return 0; // the processor stops before the next instruction
+    try {
+        uint32_t value = 0;
+        if (address >= 0xE0000000) {
+            value = access(true);
+            // Writing a system register may make an exception deliverable: DSB and ISB cost nothing
+            // more.
+            attention_ = attention_ || exceptions_.deliverable() || stopAsked_;
+            return value;
+        }
+        value = access(false);
+        unsigned waited = bus_.takeWaited();
+        waited_ += waited;
+        control_.pass(waited);
+        attention_ = attention_ || exceptions_.deliverable();
+        return value;
+    } catch (const CpuBus::Error& e) {
+        (void)bus_.takeWaited();
+        char text[64];
+        std::snprintf(text, sizeof text, "access of %u bytes to 0x%08X: ", bytes, address);
+        synchronous_ = {BusFault, SystemControl::preciseBus | SystemControl::bfarValid,
+                        text + std::string(e.what())};
+        control_.setFaultAddress(SystemControl::bfarValid, address);
+    } catch (...) {
+        failure_ = std::current_exception();
+    }
+    attention_ = true;
+    uc_emu_stop(uc_);
+    return 0;
+}
+
+uint32_t CortexM3::onRead(uint32_t address, unsigned bytes) {
+    return guardedAccess(address, bytes, [&](bool own) {
+        uint32_t value = 0;
+        if (!own)
+            return bus_.read(address, bytes);
+        if (!control_.read(address, bytes, value))
+            throw CpuBus::Error("no such system register");
+        return value;
+    });
+}
+
+void CortexM3::onWrite(uint32_t address, unsigned bytes, uint32_t value) {
+    guardedAccess(address, bytes, [&](bool own) {
+        if (!own)
+            bus_.write(address, bytes, value);
+        else if (!control_.write(address, bytes, value))
+            throw CpuBus::Error("no such system register, or a value that is not modelled");
+        return 0u;
+    });
+    if (address >= 0xE0000000 && control_.takeResetRequest())
+        requestReset();
+}
+
+bool CortexM3::onGuarded(uint32_t address, unsigned bytes) {
+    if (!control_.isGuarded(address, bytes) || synchronous_.number || currentException() == HardFault)
+        return false;
+    char text[80];
+    std::snprintf(text, sizeof text, "access of %u bytes to 0x%08X: the MPU forbids it", bytes, address);
+    synchronous_ = {MemManage, SystemControl::dataAccess | SystemControl::mmfarValid, text};
+    control_.setFaultAddress(SystemControl::mmfarValid, address);
+    attention_ = true;
+    uc_emu_stop(uc_);
+    return true;
+}

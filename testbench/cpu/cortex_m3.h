@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+//
+// cortex_m3: a Cortex-M3: libunicorn executes the instructions; exceptions, their priorities, the
+// system registers, cycles and faults are added here. Its contract and what it leaves out:
+// docs/cpu.md.
+
+#ifndef CORTEX_M3_H
+#define CORTEX_M3_H
+
+#include "exceptions.h"
+#include "instruction.h"
+#include "system_control.h"
+#include <exception>
+#include <functional>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <unicorn/unicorn.h>
+#include <vector>
+
+// What surrounds the processor. Addresses are the processor's.
+class CpuBus {
+public:
+    virtual ~CpuBus() = default;
+    // An access that the chip's bus answers with an error: it becomes a BusFault with this text.
+    class Error : public std::runtime_error {
+    public:
+        using std::runtime_error::runtime_error;
+    };
+    virtual uint32_t read(uint32_t address, unsigned bytes) = 0; // 1, 2 or 4 bytes
+    virtual void write(uint32_t address, unsigned bytes, uint32_t value) = 0;
+    // `cycles` of HCLK pass outside of accesses. Not called again from within.
+    virtual void pass(unsigned cycles) = 0;
+    // How many may pass at once while the processor sleeps: as many as cannot miss an event.
+    virtual unsigned idleCycles() { return 1; }
+    // HCLK cycles that the access just made took; the processor waited for so long.
+    virtual unsigned takeWaited() = 0;
+};
+
+class CortexM3 {
+public:
+    struct Config {
+        uint32_t flashBase = 0x08000000, flashBytes = 0x100000; // also seen at address 0
+        uint32_t ramBase = 0x20000000, ramBytes = 0x20000;
+        uint32_t calibration = 15000; // SYST_CALIB: HCLK/8 ticks a millisecond
+    };
+    // Windows that go to the bus.
+    struct Window {
+        uint32_t base, bytes;
+    };
+
+    CortexM3(CpuBus& bus, const Config& config, const std::vector<Window>& windows);
+    ~CortexM3();
+    CortexM3(const CortexM3&) = delete;
+    CortexM3& operator=(const CortexM3&) = delete;
+
+    // Memory as a debugger sees it: flash and RAM, no side effects. False: not all of it is memory.
+    bool readMemory(uint32_t address, void* data, uint32_t bytes) const;
+    bool writeMemory(uint32_t address, const void* data, uint32_t bytes);
+    void loadFlash(uint32_t address, const std::vector<uint8_t>& bytes);
+    uint32_t word(uint32_t address) const; // 0 where there is no memory
+
+    // Power-on or system reset: registers from the vector table; RAM stays.
+    void reset();
+    // Runs until stop(), a breakpoint or an exception of the bus that is no CpuBus::Error.
+    enum class Stop { Asked, Breakpoint, Stepped };
+    Stop run(bool singleStep = false);
+    // From the bus or a listener: run() returns before the next instruction.
+    void stop() { stopAsked_ = attention_ = true; }
+    // A reset from outside (a watchdog): before the next instruction.
+    void requestReset() { resetAsked_ = attention_ = true; }
+
+    // Interrupt lines, levels; from the bus.
+    void setInterrupt(unsigned number, bool high);
+    void pendInterrupt(unsigned number);
+
+    // R0..R12, SP, LR, PC, xPSR as 0..16; then MSP, PSP, PRIMASK, BASEPRI, FAULTMASK, CONTROL.
+    enum Register { Sp = 13, Lr, Pc, Xpsr, Msp, Psp, Primask, Basepri, Faultmask, Control, Registers };
+    uint32_t reg(int number) const;
+    void setReg(int number, uint32_t value);
+
+    uint64_t cycles() const { return control_.cycles(); }
+    uint64_t instructions() const { return instructions_; }
+    uint64_t sleepingCycles() const { return sleeping_; }
+    uint64_t busCycles() const { return waited_; } // waiting for windows
+    bool isAsleep() const { return asleep_; }
+    bool isLockedUp() const { return lockedUp_; }
+    unsigned currentException() const;
+    Exceptions& exceptions() { return exceptions_; }
+
+    // Longest time that the masks held back interrupts of `priority` and below, in cycles, and
+    // where it ended. Counted from now on.
+    struct Masked {
+        uint64_t cycles = 0;
+        uint32_t from = 0, to = 0; // addresses of the instructions that masked and unmasked
+    };
+    void countMasked(uint8_t priority);
+    const Masked& longestMasked() const { return longest_; }
+
+    std::set<uint32_t> breakpoints; // addresses, bit 0 clear
+    std::string lastFault;          // text of the last fault, for people
+
+    // Told of what happens: exceptions entered and left, a system reset before it is carried out.
+    struct Listener {
+        std::function<void(unsigned number)> entered, left;
+        std::function<void()> systemReset;
+        std::function<void(uint32_t address)> instruction; // before it; costly
+    } listener;
+
+private:
+    friend struct UnicornCalls;
+    void map(uint32_t base, uint32_t bytes, void* host, uint32_t rights);
+    void onInstruction(uint32_t address);
+    void execute(uint32_t address, const Instruction& i);
+    void onRaised(uint32_t number);
+    uint32_t onRead(uint32_t address, unsigned bytes);
+    void onWrite(uint32_t address, unsigned bytes, uint32_t value);
+    bool onGuarded(uint32_t address, unsigned bytes);
+    template <class Access> uint32_t guardedAccess(uint32_t address, unsigned bytes, Access access);
+    const Instruction& instructionAt(uint32_t address);
+    void pass(unsigned cycles);
+    void sleep();
+    void updateMasks(uint32_t address);
+    void updateAttention();
+    void enter(unsigned number);
+    void leave();
+    void jumpTo(unsigned number);
+    void fault(unsigned number, uint32_t cfsrBits, const std::string& text);
+    void handleUnicorn(uc_err error);
+    void handleRaised();
+
+    CpuBus& bus_;
+    Config config_;
+    uc_engine* uc_ = nullptr;
+    std::unique_ptr<uint8_t[], void (*)(void*)> flash_, ram_;
+    std::vector<Instruction> decoded_; // of flash, a slot a halfword; bytes 0: not yet
+    Instruction scratch_;              // of code elsewhere
+    struct MappedWindow {
+        CortexM3* cpu;
+        uint32_t base;
+    };
+    std::vector<std::unique_ptr<MappedWindow>> windows_;
+    Exceptions exceptions_;
+    SystemControl control_{exceptions_, 0};
+
+    uint32_t pc_ = 0, executing_ = 0, expected_ = 0, unitEnd_ = 0;
+    unsigned skipped_ = 0; // of the IT block under way: conditional instructions not seen yet
+    bool masksChanged_ = false;
+    bool attention_ = false, stopAsked_ = false, resetAsked_ = false, stepped_ = false,
+         breakpointHit_ = false;
+    bool singleStep_ = false, passBreakpoint_ = false;
+    bool lockedUp_ = false, asleep_ = false;
+    uint32_t raised_ = 0;
+    struct {
+        unsigned number = 0;
+        uint32_t cfsrBits = 0;
+        std::string text;
+    } synchronous_; // fault of the instruction under way
+    std::exception_ptr failure_;
+    uint64_t instructions_ = 0, sleeping_ = 0, waited_ = 0;
+    uint8_t watchedPriority_ = 0xFF;
+    bool masked_ = false;
+    uint64_t maskedSince_ = 0;
+    uint32_t maskedAt_ = 0;
+    Masked longest_;
+};
+
+#endif

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: MIT
+//
+// cpu_exceptions: CortexM3's construction, reset, exception entry and return, faults (ARMv7-M ARM,
+// B1.5).
+
+#include "cortex_m3.h"
+#include "unicorn_calls.h"
+#include <cstdlib>
+#include <cstring>
+
+namespace {
+
+constexpr unsigned entryCycles = 12, exitCycles = 10, chainCycles = 6; // Cortex-M3 TRM, 5.5 and 5.9
+constexpr uint32_t returnHandler = 0xFFFFFFF1, returnMain = 0xFFFFFFF9, returnProcess = 0xFFFFFFFD;
+constexpr uint32_t thumb = 1u << 24, aligned = 1u << 9, exceptionMask = 0x1FF;
+
+void check(uc_err error, const char* what) {
+    if (error != UC_ERR_OK)
+        throw std::runtime_error(std::string("libunicorn: ") + what + ": " + uc_strerror(error));
+}
+
+uint8_t* pages(uint32_t bytes) {
+    void* at = std::aligned_alloc(4096, bytes);
+    if (!at)
+        throw std::bad_alloc();
+    std::memset(at, 0, bytes);
+    return static_cast<uint8_t*>(at);
+}
+
+} // namespace
+
+int UnicornCalls::registerId(int number) {
+    static const int ids[CortexM3::Registers] = {
+        UC_ARM_REG_R0,      UC_ARM_REG_R1,        UC_ARM_REG_R2,     UC_ARM_REG_R3,  UC_ARM_REG_R4,
+        UC_ARM_REG_R5,      UC_ARM_REG_R6,        UC_ARM_REG_R7,     UC_ARM_REG_R8,  UC_ARM_REG_R9,
+        UC_ARM_REG_R10,     UC_ARM_REG_R11,       UC_ARM_REG_R12,    UC_ARM_REG_SP,  UC_ARM_REG_LR,
+        UC_ARM_REG_PC,      UC_ARM_REG_XPSR,      UC_ARM_REG_MSP,    UC_ARM_REG_PSP, UC_ARM_REG_PRIMASK,
+        UC_ARM_REG_BASEPRI, UC_ARM_REG_FAULTMASK, UC_ARM_REG_CONTROL};
+    return ids[number];
+}
+
+CortexM3::CortexM3(CpuBus& bus, const Config& config, const std::vector<Window>& windows)
+    : bus_(bus), config_(config), flash_(pages(config.flashBytes), std::free),
+      ram_(pages(config.ramBytes), std::free), decoded_(config.flashBytes / 2),
+      control_(exceptions_, config.calibration) {
+    for (Instruction& i : decoded_)
+        i.bytes = 0;
+    check(uc_open(UC_ARCH_ARM, static_cast<uc_mode>(UC_MODE_THUMB | UC_MODE_MCLASS), &uc_), "open");
+    check(uc_ctl_set_cpu_model(uc_, UC_CPU_ARM_CORTEX_M3), "Cortex-M3");
+    for (uint32_t base : {0u, config.flashBase})
+        map(base, config.flashBytes, flash_.get(), UC_PROT_READ | UC_PROT_EXEC);
+    map(config.ramBase, config.ramBytes, ram_.get(), UC_PROT_ALL);
+    std::vector<Window> all = windows;
+    all.push_back({0xE0000000, 0x100000});
+    for (const Window& w : all) {
+        windows_.push_back(std::make_unique<MappedWindow>(MappedWindow{this, w.base}));
+        void* user = windows_.back().get();
+        check(uc_mmio_map(uc_, w.base, w.bytes, UnicornCalls::read, user, UnicornCalls::write, user),
+              "window");
+    }
+    uc_hook hook;
+    check(uc_hook_add(uc_, &hook, UC_HOOK_CODE, reinterpret_cast<void*>(UnicornCalls::code), this, 1, 0),
+          "hook");
+    check(uc_hook_add(uc_, &hook, UC_HOOK_INTR, reinterpret_cast<void*>(UnicornCalls::raised), this, 1, 0),
+          "hook");
+    check(uc_hook_add(uc_, &hook, UC_HOOK_MEM_READ | UC_HOOK_MEM_WRITE,
+                      reinterpret_cast<void*>(UnicornCalls::access), this, config.ramBase,
+                      uint64_t(config.ramBase) + config.ramBytes - 1),
+          "hook");
+}
+
+CortexM3::~CortexM3() {
+    uc_close(uc_);
+}
+
+void CortexM3::map(uint32_t base, uint32_t bytes, void* host, uint32_t rights) {
+    check(uc_mem_map_ptr(uc_, base, bytes, rights, host), "memory");
+}
+
+// ---- memory and registers for the loader and the debugger ----
+
+bool CortexM3::readMemory(uint32_t address, void* data, uint32_t bytes) const {
+    auto inside = [&](uint32_t base, uint32_t size) {
+        return address >= base && uint64_t(address) + bytes <= uint64_t(base) + size;
+    };
+    const uint8_t* at = inside(config_.ramBase, config_.ramBytes) ? ram_.get() + (address - config_.ramBase)
+                        : inside(config_.flashBase, config_.flashBytes)
+                            ? flash_.get() + (address - config_.flashBase)
+                        : inside(0, config_.flashBytes) ? flash_.get() + address
+                                                        : nullptr;
+    if (at)
+        std::memcpy(data, at, bytes);
+    return at != nullptr;
+}
+
+bool CortexM3::writeMemory(uint32_t address, const void* data, uint32_t bytes) {
+    if (address >= config_.ramBase &&
+        uint64_t(address) + bytes <= uint64_t(config_.ramBase) + config_.ramBytes)
+        return uc_mem_write(uc_, address, data, bytes) == UC_ERR_OK;
+    uint8_t was;
+    if (address >= config_.ramBase || !readMemory(address, &was, 1) ||
+        !readMemory(address + bytes - 1, &was, 1))
+        return false;
+    for (uint32_t i = 0; i < bytes; ++i) { // flash: as a programmer writes it
+        uint32_t offset = (address >= config_.flashBase ? address - config_.flashBase : address) + i;
+        flash_[offset] = static_cast<const uint8_t*>(data)[i];
+        decoded_[offset >> 1].bytes = 0;
+        if (offset >= 2)
+            decoded_[(offset >> 1) - 1].bytes = 0;
+    }
+    for (uint32_t base : {0u, config_.flashBase})
+        uc_ctl_remove_cache(uc_, base, base + config_.flashBytes - 1);
+    return true;
+}
+
+void CortexM3::loadFlash(uint32_t address, const std::vector<uint8_t>& bytes) {
+    if (!bytes.empty() && !writeMemory(address, bytes.data(), static_cast<uint32_t>(bytes.size())))
+        throw std::runtime_error("the program does not fit into flash and RAM");
+}
+
+uint32_t CortexM3::word(uint32_t address) const {
+    uint32_t value = 0;
+    (void)readMemory(address, &value, 4);
+    return value;
+}
+
+uint32_t CortexM3::reg(int number) const {
+    if (number == Pc)
+        return pc_;
+    uint32_t value = 0;
+    uc_reg_read(uc_, UnicornCalls::registerId(number), &value);
+    return value;
+}
+
+void CortexM3::setReg(int number, uint32_t value) {
+    if (number == Pc)
+        pc_ = value & ~1u;
+    else
+        uc_reg_write(uc_, UnicornCalls::registerId(number), &value);
+    if (number >= Primask)
+        exceptions_.setMasks(reg(Primask), reg(Basepri), reg(Faultmask));
+}
+
+unsigned CortexM3::currentException() const {
+    return reg(Xpsr) & exceptionMask;
+}
+
+void CortexM3::reset() {
+    control_.reset();
+    lockedUp_ = false;
+    synchronous_.number = 0;
+    raised_ = skipped_ = unitEnd_ = expected_ = 0;
+    masksChanged_ = masked_ = false;
+    setReg(Xpsr, thumb);
+    for (int r : {Primask, Basepri, Faultmask, Control})
+        setReg(r, 0);
+    setReg(Msp, word(0));
+    setReg(Lr, 0xFFFFFFFF);
+    pc_ = word(4) & ~1u;
+    updateAttention();
+}
+
+// ---- entry and return ----
+
+void CortexM3::jumpTo(unsigned number) {
+    setReg(Xpsr, (reg(Xpsr) & ~exceptionMask) | thumb | number);
+    setReg(Control, reg(Control) & ~2u);
+    exceptions_.enter(number);
+    pc_ = word(control_.vectorTable() + 4 * number) & ~1u;
+    expected_ = 0;
+    if (listener.entered)
+        listener.entered(number);
+}
+
+void CortexM3::enter(unsigned number) {
+    bool handler = currentException() != 0, process = !handler && (reg(Control) & 2);
+    uint32_t xpsr = reg(Xpsr), sp = reg(Sp);
+    uint32_t padding = control_.alignsStack() && (sp & 4) ? 4 : 0;
+    uint32_t frame = sp - 32 - padding;
+    const uint32_t saved[8] = {reg(0),  reg(1),  reg(2), reg(3),
+                               reg(12), reg(Lr), pc_,    (xpsr & ~aligned) | (padding ? aligned : 0)};
+    bool guarded = control_.isGuarded(frame, 32);
+    if (guarded || !writeMemory(frame, saved, 32)) {
+        lastFault = "the stack pointer is bad at the entry of an exception";
+        control_.reportFault(guarded ? SystemControl::stackAccess : SystemControl::stackAccess << 8);
+        unsigned derived = guarded ? MemManage : BusFault;
+        bool possible =
+            exceptions_[derived].enabled && exceptions_.priorityOf(derived) < exceptions_.runningPriority();
+        if (!possible)
+            control_.reportHardFault(SystemControl::forced);
+        number = possible ? derived : unsigned(HardFault); // the frame is lost, as on the chip
+    }
+    setReg(Sp, frame);
+    setReg(Lr, handler ? returnHandler : process ? returnProcess : returnMain);
+    jumpTo(number);
+    pass(entryCycles);
+}
+
+void CortexM3::leave() {
+    uint32_t number = currentException(), how = raised_ ? pc_ | 1 : 0;
+    uint32_t kind = how & 0xF;
+    bool valid =
+        number && (kind == 1 || kind == 9 || kind == 13) && (kind == 1) == (exceptions_.activeCount() > 1);
+    exceptions_.leave(number);
+    if (number != NonMaskable)
+        setReg(Faultmask, 0);
+    if (listener.left)
+        listener.left(number);
+    exceptions_.setMasks(reg(Primask), reg(Basepri), reg(Faultmask));
+    if (!valid) {
+        synchronous_ = {UsageFault, SystemControl::invalidReturn, "wrong EXC_RETURN value"};
+        return;
+    }
+    if (unsigned next = exceptions_.deliverable()) { // tail-chaining: the frame stays where it is
+        setReg(Lr, how);
+        jumpTo(next);
+        pass(chainCycles);
+        return;
+    }
+    int stack = kind == 13 ? Psp : Msp;
+    uint32_t frame = reg(stack), saved[8];
+    if (!readMemory(frame, saved, 32)) {
+        lastFault = "the stack pointer is bad at the return from an exception";
+        synchronous_ = {BusFault, SystemControl::stackAccess << 7, lastFault};
+        return;
+    }
+    for (int r = 0; r < 4; ++r)
+        setReg(r, saved[r]);
+    setReg(12, saved[4]);
+    setReg(stack, frame + 32 + (saved[7] & aligned ? 4 : 0));
+    setReg(Xpsr, (saved[7] & ~aligned) | thumb);
+    if (kind != 1)
+        setReg(Control, (reg(Control) & ~2u) | (kind == 13 ? 2 : 0));
+    setReg(Lr, saved[5]);
+    pc_ = saved[6] & ~1u;
+    expected_ = 0;
+    pass(exitCycles);
+}
+
+// ---- faults ----
+
+void CortexM3::fault(unsigned number, uint32_t cfsrBits, const std::string& text) {
+    char where[40];
+    std::snprintf(where, sizeof where, " (at 0x%08X)", executing_);
+    lastFault = text + where;
+    synchronous_.number = 0;
+    control_.reportFault(cfsrBits);
+    bool possible = number == SupervisorCall || exceptions_[number].enabled;
+    int own = exceptions_.priorityOf(number), running = exceptions_.runningPriority();
+    if (!possible || own >= running) { // escalation
+        control_.reportHardFault(SystemControl::forced);
+        if (running <= -1) {
+            lockedUp_ = true;
+            lastFault += "; in the handler of a hard fault: the processor locks up";
+            return;
+        }
+        number = HardFault;
+    }
+    exceptions_.pend(number);
+    enter(number);
+}
+
+void CortexM3::onRaised(uint32_t number) {
+    raised_ = number;
+    uc_emu_stop(uc_);
+}
+
+void CortexM3::handleRaised() {
+    enum {
+        Undefined = 1,
+        Software = 2,
+        Fetch = 3,
+        Breakpoint = 7,
+        ExceptionReturn = 8,
+        NoCoprocessor = 17,
+        State = 18
+    };
+    uint32_t raised = raised_;
+    if (raised == ExceptionReturn) {
+        leave();
+        raised_ = 0;
+        return;
+    }
+    raised_ = 0;
+    switch (raised) {
+    case Software:
+        if (exceptions_.priorityOf(SupervisorCall) < exceptions_.runningPriority()) {
+            exceptions_.pend(SupervisorCall);
+            enter(SupervisorCall);
+        } else {
+            pc_ = executing_;
+            fault(HardFault, 0, "SVC at a priority that is not below its own");
+        }
+        return;
+    case Breakpoint:
+        pc_ = executing_;
+        breakpointHit_ = true; // a debugger's business; without one run() returns all the same
+        return;
+    case Fetch: synchronous_ = {BusFault, SystemControl::instructionBus, "nothing to execute there"}; return;
+    case NoCoprocessor:
+        pc_ = executing_;
+        synchronous_ = {UsageFault, SystemControl::noCoprocessor, "there is no such coprocessor"};
+        return;
+    case State: synchronous_ = {UsageFault, SystemControl::invalidState, "a jump out of Thumb state"}; return;
+    default: pc_ = executing_; synchronous_ = {UsageFault, SystemControl::undefined, "undefined instruction"};
+    }
+}
+
+void CortexM3::handleUnicorn(uc_err error) {
+    if (synchronous_.number) { // the instruction at executing_ is the one to blame
+        pc_ = executing_;
+        return;
+    }
+    if (raised_)
+        return handleRaised();
+    char text[64];
+    std::snprintf(text, sizeof text, "%s", uc_strerror(error));
+    switch (error) {
+    case UC_ERR_OK: return;
+    case UC_ERR_READ_UNMAPPED:
+    case UC_ERR_WRITE_UNMAPPED:
+    case UC_ERR_WRITE_PROT:
+        pc_ = executing_;
+        synchronous_ = {BusFault, SystemControl::preciseBus, text};
+        return;
+    case UC_ERR_FETCH_UNMAPPED:
+    case UC_ERR_FETCH_PROT: synchronous_ = {BusFault, SystemControl::instructionBus, text}; return;
+    case UC_ERR_INSN_INVALID:
+    case UC_ERR_EXCEPTION:
+        pc_ = executing_;
+        synchronous_ = {UsageFault, SystemControl::undefined, text};
+        return;
+    default: throw std::runtime_error(std::string("libunicorn: ") + text);
+    }
+}

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+//
+// exceptions: which exception of a Cortex-M3 is pending, active, enabled, and which may run now.
+//
+// ARMv7-M Architecture Reference Manual, B1.5. Numbers: 1 Reset .. 15 SysTick, 16 + n is interrupt
+// n.
+
+#ifndef EXCEPTIONS_H
+#define EXCEPTIONS_H
+
+#include <array>
+#include <cstdint>
+
+enum Exception : unsigned {
+    NonMaskable = 2,
+    HardFault = 3,
+    MemManage = 4,
+    BusFault = 5,
+    UsageFault = 6,
+    SupervisorCall = 11,
+    DebugMonitor = 12,
+    PendSv = 14,
+    SysTick = 15,
+    FirstInterrupt = 16
+};
+
+class Exceptions {
+public:
+    static constexpr unsigned interrupts = 81; // of an STM32F2 (RM0033, table 61)
+    static constexpr unsigned count = FirstInterrupt + interrupts;
+    static constexpr uint8_t priorityBits = 0xF0; // four bits are there
+    static constexpr int none = 256;              // priority of thread mode
+
+    struct State {
+        bool pending = false, active = false, enabled = false;
+        bool level = false; // of the line: it pends again as long as it is high
+        uint8_t priority = 0;
+    };
+
+    void reset();
+    void pend(unsigned number, bool pending = true);
+    void enable(unsigned number, bool enabled);
+    void setPriority(unsigned number, uint8_t priority);
+    void setGrouping(unsigned group); // PRIGROUP
+    unsigned grouping() const { return group_; }
+    void setLine(unsigned number, bool high);
+    void enter(unsigned number); // pending becomes active
+    void leave(unsigned number);
+    const State& operator[](unsigned number) const { return states_[number]; }
+    bool anyActive() const { return activeCount_ != 0; }
+    unsigned activeCount() const { return activeCount_; }
+
+    // The masks of the processor.
+    void setMasks(uint32_t primask, uint32_t basepri, uint32_t faultmask);
+
+    // The exception that must be entered now; 0: none.
+    unsigned deliverable() const { return bestPriority_ < runningPriority_ ? best_ : 0; }
+    // As the processor sees it, with masks; `none` in thread mode without them.
+    int runningPriority() const { return runningPriority_; }
+    // The pending one of the highest priority, masked or not; 0: none.
+    unsigned firstPending() const { return best_; }
+    // WFI wakes by what would preempt if PRIMASK were 0 (B1.5.19).
+    bool wakes() const { return bestPriority_ < sleepPriority_; }
+    int priorityOf(unsigned number) const;
+
+private:
+    int groupOf(int priority) const;
+    void update();
+    void updateMasks();
+
+    std::array<State, count> states_;
+    unsigned group_ = 0, activeCount_ = 0;
+    uint32_t primask_ = 0, basepri_ = 0, faultmask_ = 0;
+    unsigned best_ = 0;
+    int bestPriority_ = none, activePriority_ = none, runningPriority_ = none, sleepPriority_ = none;
+};
+
+#endif

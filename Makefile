@@ -14,16 +14,18 @@ THRESHOLD ?= 24
 LABEL ?=
 NAME  ?=
 OUT   ?= build/run
+# host: the firmware's host build; m3: its ARM binary on a model of the Cortex-M3
+CPU   ?= host
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build run test mutants bench size clean
+.PHONY: help setup build run test mutants bench firmware size clean
 
 help: ## this list
 	@echo "IceSoC: every function of the UAV, in software or in hardware, is a ZeroC Ice object."
 	@echo
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 	@echo
-	@echo "Variables: IMAGE=file SIZE=320x240 THRESHOLD=24 LOSS=0.1 SEED=1 OUT=build/run (make run);"
+	@echo "Variables: IMAGE=file SIZE=320x240 THRESHOLD=24 LOSS=0.1 SEED=1 OUT=build/run CPU=host|m3 (make run);"
 	@echo "           LABEL=rtl|vhdl|formal|lint|firmware|interop|e2e NAME=regexp SEED=1 (make test)"
 
 setup: ## install the Debian packages that are missing
@@ -38,7 +40,7 @@ build: $(BUILD)/build.ninja ## build everything (simulator, firmware, compiler, 
 run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground station, pictures in build/run
 	@ninja -C $(BUILD) -j $(JOBS) mission
 	@testbench/sim/run.sh "$(BUILD)" --image "$(IMAGE)" --size "$(SIZE)" --threshold "$(THRESHOLD)" \
-	    --loss "$(LOSS)" --seed "$(SEED)" --out "$(OUT)"
+	    --loss "$(LOSS)" --seed "$(SEED)" --out "$(OUT)" --cpu "$(CPU)"
 
 # What the sanitized build covers: the firmware's layers and their peers.
 SANITIZED := test_os test_link icec_server icec_client ice_cpp_client
@@ -58,6 +60,9 @@ mutants: $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect
 
 bench: $(BUILD)/build.ninja ## measure the simulator, write build/bench/simulator.json
 	@ninja -C $(BUILD) -j $(JOBS) measure_simulator
+
+firmware: $(BUILD)/build.ninja ## the firmware for the STM32F2: ELF, map, sizes in build/main/firmware
+	@ninja -C $(BUILD) -j $(JOBS) firmware
 
 size: $(BUILD)/build.ninja ## bytes of each firmware layer on a Cortex-M3, beside the paper's
 	@ninja -C $(BUILD) size

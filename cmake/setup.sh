@@ -33,7 +33,9 @@ python3-zeroc-ice ZeroC Ice for Python: the ground station
 python3-pil draws the features over the picture
 xplanet-images the default picture
 dpkg-dev unpacks source packages (headers of ZeroC Ice that its -dev package leaves out)
-gcc-arm-none-eabi size of the firmware on a Cortex-M3
+gcc-arm-none-eabi the firmware for the Cortex-M3
+libunicorn-dev executes its instructions in the simulator
+gdb-multiarch debugs it there
 libnewlib-arm-none-eabi C library for it
 '
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in

@@ -12,6 +12,10 @@
 #include <algorithm>
 #include <cstdio>
 
+namespace {
+constexpr uint64_t sleepStep = 1 << 20; // cycles that the surroundings may pass at once
+}
+
 CortexM3::Stop CortexM3::run(bool singleStep) {
     singleStep_ = singleStep;
     stepped_ = breakpointHit_ = false;
@@ -136,21 +140,25 @@ const Instruction& CortexM3::instructionAt(uint32_t address) {
     return i;
 }
 
-void CortexM3::pass(unsigned cycles) {
-    control_.pass(cycles);
+template <class Time> void CortexM3::passing(Time time) {
     try {
-        bus_.pass(cycles);
+        time();
     } catch (...) {
         failure_ = std::current_exception();
     }
     attention_ = attention_ || failure_ || exceptions_.deliverable();
 }
 
+void CortexM3::pass(unsigned cycles) {
+    control_.pass(cycles);
+    passing([&] { bus_.pass(cycles); });
+}
+
 void CortexM3::sleep() {
     asleep_ = true;
     uint64_t from = cycles();
     while (!exceptions_.wakes() && !stopAsked_ && !resetAsked_ && !failure_)
-        pass(static_cast<unsigned>(std::min<uint64_t>(bus_.idleCycles(), control_.untilTick())));
+        passing([&] { control_.pass(bus_.sleep(static_cast<unsigned>(std::min(control_.untilTick(), sleepStep)))); });
     sleeping_ += cycles() - from;
     asleep_ = false;
 }

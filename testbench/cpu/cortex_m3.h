@@ -32,8 +32,12 @@ public:
     virtual void write(uint32_t address, unsigned bytes, uint32_t value) = 0;
     // `cycles` of HCLK pass outside of accesses. Not called again from within.
     virtual void pass(unsigned cycles) = 0;
-    // How many may pass at once while the processor sleeps: as many as cannot miss an event.
-    virtual unsigned idleCycles() { return 1; }
+    // The processor sleeps: up to `limit` cycles pass, fewer if an interrupt line has changed. Returns
+    // how many have passed, at least 1.
+    virtual unsigned sleep(unsigned limit) {
+        pass(1);
+        return limit ? 1 : 0;
+    }
     // HCLK cycles that the access just made took; the processor waited for so long.
     virtual unsigned takeWaited() = 0;
 };
@@ -120,6 +124,7 @@ private:
     template <class Access> uint32_t guardedAccess(uint32_t address, unsigned bytes, Access access);
     const Instruction& instructionAt(uint32_t address);
     void pass(unsigned cycles);
+    template <class Time> void passing(Time time);
     void sleep();
     void updateMasks(uint32_t address);
     void updateAttention();

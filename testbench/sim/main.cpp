@@ -4,6 +4,7 @@
 // child, the program that uses that pty.
 
 #include "camera.h"
+#include "m3_machine.h"
 #include "soc_model.h"
 #include "status.h"
 #include "uav_machine.h"
@@ -33,7 +34,8 @@ using Clock = std::chrono::steady_clock;
 volatile sig_atomic_t stopSignal = 0;
 
 struct Options {
-    std::string image, size = "320x240", out = ".", speed = "real";
+    std::string image, size = "320x240", out = ".", speed = "real", cpu = "host", firmware = FIRMWARE_ELF;
+    uint32_t hclk = 120'000'000;
     double loss = 0, duration = 0;
     uint64_t seed = 1;
     bool quiet = false;
@@ -143,6 +145,21 @@ private:
     Clock::duration slept_{};
 };
 
+// What the processor did, and what stopped it, if anything did.
+void report(M3Machine& machine) {
+    CortexM3& cpu = machine.cpu();
+    const Stm32F2::Resets& resets = machine.stm32().resets();
+    double cycles = static_cast<double>(cpu.cycles());
+    std::printf("icesoc-sim: Cortex-M3: %llu instructions; asleep %.1f %% of the time, %.2f %% in bus accesses; "
+                "resets: %u software, %u watchdog\n",
+                static_cast<unsigned long long>(cpu.instructions()),
+                100 * static_cast<double>(cpu.sleepingCycles()) / cycles,
+                100 * static_cast<double>(cpu.busCycles()) / cycles, resets.software, resets.watchdog);
+    if (!cpu.lastFault.empty())
+        std::printf("icesoc-sim: last fault: %s in %s\n", cpu.lastFault.c_str(),
+                    machine.stm32().image()->functionAt(cpu.reg(CortexM3::Pc)).c_str());
+}
+
 int simulate(const Options& o) {
     int width = 0, height = 0;
     if (std::sscanf(o.size.c_str(), "%dx%d", &width, &height) != 2 || width < 8 || width > 1024 || height < 8 ||
@@ -183,15 +200,22 @@ int simulate(const Options& o) {
         child.start(o.command, {{"{device}", pty.path()}, {"{frame}", o.out + "/before.png"},
                                 {"{status}", o.out + "/status"}, {"{out}", o.out}});
     Pace pace(o.speed == "real");
-    UavMachine machine(soc, [&] {
+    auto poll = [&] {
         status->ns = soc.now();
         status->cycles = soc.cycles();
         status->wallNs = pace.workedNs();
         pace.keep(soc.now());
         bool over = o.duration > 0 && static_cast<double>(soc.now()) >= o.duration * 1e9;
         return !stopSignal && !over && (o.command.empty() || child.runs());
-    });
-    machine.run();
+    };
+    if (o.cpu == "m3") {
+        M3Machine machine(soc, {o.firmware, o.hclk}, poll);
+        machine.run();
+        if (!o.quiet)
+            report(machine);
+    } else {
+        UavMachine(soc, poll).run();
+    }
     child.stop();
     double worked = static_cast<double>(pace.workedNs()) / 1e9;
     if (!o.quiet)
@@ -217,6 +241,10 @@ int main(int argc, char** argv) {
     app.add_option("--speed", o.speed, "real: simulated time follows the clock; max: as fast as it goes")
         ->check(CLI::IsMember({"real", "max"}));
     app.add_option("--duration", o.duration, "end after so many simulated seconds");
+    app.add_option("--cpu", o.cpu, "host: the firmware's host build; m3: its ARM binary on a Cortex-M3 model")
+        ->check(CLI::IsMember({"host", "m3"}));
+    app.add_option("--firmware", o.firmware, "ELF file for --cpu m3");
+    app.add_option("--hclk", o.hclk, "of the Cortex-M3, Hz in simulated time; 0: 6/5 of the fabric's clock");
     app.add_flag("--quiet", o.quiet, "say nothing");
     app.add_option("command", o.command, "program to run against the modem, behind --");
     app.positionals_at_end();

@@ -92,6 +92,11 @@ void SocModel::tick() {
         modem_.resetPin(!resetN_, now());
         nextEvent_ = 0;
     }
+    if (top.irq_o != irq_) {
+        irq_ = top.irq_o;
+        if (irqEdge_)
+            irqEdge_(irq_);
+    }
     if (now() >= nextEvent_)
         timeModels();
     top.clk_i = 0;

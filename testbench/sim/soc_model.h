@@ -37,6 +37,9 @@ public:
     // Something else that has events in simulated time (the ground's modem): it is called when due.
     void onTime(std::function<uint64_t(uint64_t now)> advance) { others_ = std::move(advance); }
 
+    // Told of each edge of the interrupt line.
+    void onIrq(std::function<void(bool high)> edge) { irqEdge_ = std::move(edge); }
+
 private:
     void timeModels();
     void settle();
@@ -51,7 +54,8 @@ private:
     XBee modem_;
     std::function<uint64_t(uint64_t)> others_;
     uint64_t cycles_ = 0, nextEvent_ = 0;
-    bool txd_ = true, resetN_ = true, rtsN_ = false;
+    std::function<void(bool)> irqEdge_;
+    bool irq_ = false, txd_ = true, resetN_ = true, rtsN_ = false;
 };
 
 #endif

@@ -3,100 +3,11 @@
 // uav_test: RTL, modems, radio and firmware together, deterministic: the ground is the same link layer
 // in this process, and requests are written byte by byte.
 
+#include "ground.h"
 #include "uav_machine.h"
 #include <gtest/gtest.h>
-#include <cstring>
-
-extern "C" {
-#include "link.h"
-#include "uav.h"
-}
 
 namespace {
-
-// A ground station made of a modem, a link and hand-written IceP messages.
-class Ground {
-public:
-    Ground(RfChannel& air, uint64_t seed) : random_(seed), link_(new Link) {
-        XBee::Options options;
-        options.name = "ground";
-        options.set = {{"BD", 7}, {"MY", 0}, {"DL", 1}};
-        modem_ = std::make_unique<XBee>(line_, air, options);
-        start();
-    }
-    // A fresh program on the ground: what was before is forgotten.
-    void start() {
-        static const Link_Port port = {transmit, random, message, nothing, state, nullptr, nullptr};
-        Link_init(link_.get(), &port, this, 1440);
-        Link_start(link_.get(), us());
-        replies.clear();
-        running = true;
-    }
-    uint64_t advance(uint64_t now) {
-        now_ = now;
-        modem_->advance(now);
-        if (running && now >= nextPoll_) {
-            nextPoll_ = now + 1'000'000;
-            if (!line_.received.empty())
-                Link_receive(link_.get(), line_.received.data(), static_cast<U32>(line_.received.size()), 0, us());
-            line_.received.clear();
-            Link_poll(link_.get(), us());
-        }
-        return std::min(modem_->nextEvent(), nextPoll_);
-    }
-    bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
-    void open() { Link_openChannel(link_.get(), 0, us()); }
-    // A two-way ice_ping of an object.
-    void ping(int id, const std::string& object) {
-        std::vector<uint8_t> m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, 0, 0, 0, 0};
-        for (int i = 0; i < 4; ++i)
-            m.push_back(static_cast<uint8_t>(id >> (8 * i)));
-        auto text = [&](const std::string& s) {
-            m.push_back(static_cast<uint8_t>(s.size()));
-            m.insert(m.end(), s.begin(), s.end());
-        };
-        text(object);
-        text("");         // category
-        m.push_back(0);   // facet
-        text("ice_ping");
-        m.push_back(2);   // idempotent
-        m.push_back(0);   // context
-        for (uint8_t byte : {6, 0, 0, 0, 1, 1})
-            m.push_back(byte);
-        m[10] = static_cast<uint8_t>(m.size());
-        Link_send(link_.get(), 0, m.data(), static_cast<U32>(m.size()), 0, us());
-    }
-    void noise(const std::vector<uint8_t>& bytes) { line_.send(bytes, now_); }
-
-    std::map<int, int> replies; // request id to reply status
-    bool validated = false, running = true;
-
-private:
-    U32 us() const { return static_cast<U32>(now_ / 1000); }
-    static Ground& self(void* context) { return *static_cast<Ground*>(context); }
-    static int transmit(void* context, const U8* frame, U32 size) {
-        Ground& g = self(context);
-        g.line_.send({frame, frame + size}, g.now_);
-        return 0;
-    }
-    static U32 random(void* context) { return self(context).random_.next(); }
-    static int message(void* context, int, const U8* data, U32 size) {
-        Ground& g = self(context);
-        if (size >= 14 && data[8] == 3)
-            g.validated = true;
-        if (size >= 19 && data[8] == 2)
-            g.replies[data[14] | data[15] << 8] = data[18];
-        return 0;
-    }
-    static void nothing(void*, int, int) {}
-    static void state(void* context, Link_State) { self(context).validated = false; }
-
-    Random random_;
-    HostLine line_;
-    std::unique_ptr<XBee> modem_;
-    std::unique_ptr<Link> link_;
-    uint64_t now_ = 0, nextPoll_ = 0;
-};
 
 class Uav : public ::testing::Test {
 protected:

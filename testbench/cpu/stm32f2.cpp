@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+//
+// stm32f2: the bus matrix by address, and peripherals that mostly only store what is written.
+
+#include "stm32f2.h"
+#include <algorithm>
+
+namespace {
+
+constexpr uint32_t iwdg = 0x40003000, syscfg = 0x40013800, exti = 0x40013C00, gpio = 0x40020000,
+                   crcUnit = 0x40023000, rcc = 0x40023800, flashInterface = 0x40023C00, windows = 0x60000000,
+                   fsmcRegisters = 0xA0000000;
+constexpr uint32_t ahb1Enable = rcc + 0x30, ahb3Enable = rcc + 0x38, apb2Enable = rcc + 0x44, csr = rcc + 0x74;
+constexpr uint32_t padReset = 1u << 26, powerReset = 1u << 27, softwareReset = 1u << 28, watchdogReset = 1u << 29;
+constexpr uint64_t lsiNs = 31'250; // one cycle of 32 kHz
+constexpr unsigned extiVector = 6; // of line 0; up to line 4 each has its own
+
+bool isIn(uint32_t address, uint32_t base, uint32_t bytes) { return address - base < bytes; }
+
+// Which pins of ports D..G the FSMC has (data sheet of the STM32F207, alternate functions).
+struct Pins {
+    unsigned port;
+    uint16_t pins;
+    const char* name;
+};
+constexpr Pins fsmcPins[] = {{3, 0xFFF3, "D"}, {4, 0xFFFF, "E"}, {5, 0xF03F, "F"}, {6, 0x223F, "G"}};
+
+} // namespace
+
+Stm32F2::Stm32F2(FsmcMaster& fsmc, std::function<uint64_t()> now, Config config)
+    : fsmc_(fsmc), now_(std::move(now)), config_(config),
+      cpu_(*this,
+           {0x08000000, 0x100000, 0x20000000, 0x20000, config.hclkHz / 8 / 1000},
+           {{0x40000000, 0x80000}, {windows, 0x10000000}, {fsmcRegisters, 0x1000}}) {
+    cpu_.listener.systemReset = [this] {
+        bool byWatchdog = watchdog_.fired;
+        ++(byWatchdog ? resets_.watchdog : resets_.software);
+        resetFlags_ |= padReset | (byWatchdog ? watchdogReset : softwareReset);
+        resetPeripherals();
+    };
+}
+
+void Stm32F2::load(const std::string& elf) {
+    image_.emplace(elf);
+    for (const ElfImage::Segment& s : image_->segments())
+        cpu_.loadFlash(s.address, s.bytes);
+}
+
+void Stm32F2::powerOn() {
+    ++resets_.power;
+    resetFlags_ = padReset | powerReset;
+    resetPeripherals();
+    cpu_.reset();
+}
+
+void Stm32F2::resetPeripherals() {
+    registers_.clear();
+    registers_[rcc] = 0x83;              // HSI on and ready
+    registers_[rcc + 4] = 0x24003010;    // PLLCFGR
+    registers_[gpio] = 0xA8000000;       // debug pins of port A
+    registers_[gpio + 0x400] = 0x280;    // and of port B
+    watchdog_ = {};
+    crc_ = 0xFFFFFFFF;
+    pendingExti_ = 0;
+    fsmcUsable_ = false;
+    for (uint32_t bank = 0; bank < 4; ++bank) {
+        fsmc_.write32(fsmcRegisters + 8 * bank, bank ? 0x30D2 : 0x30DB);
+        fsmc_.write32(fsmcRegisters + 8 * bank + 4, 0x0FFFFFFF);
+        fsmc_.write32(fsmcRegisters + 8 * bank + 0x104, 0x0FFFFFFF);
+    }
+}
+
+// ---- time ----
+
+void Stm32F2::pass(unsigned cycles) {
+    carry_ += cycles;
+    if (carry_ >= config_.coreCyclesPerHclk) {
+        fsmc_.idle(carry_ / config_.coreCyclesPerHclk);
+        carry_ %= config_.coreCyclesPerHclk;
+    }
+    lookAround();
+}
+
+// What is looked at now and then: the watchdog, and who wants to know that time has passed.
+void Stm32F2::lookAround() {
+    if (watchdog_.on && now_() >= watchdog_.due) {
+        watchdog_.fired = true;
+        watchdog_.due = ~0ull;
+        cpu_.requestReset();
+    }
+    if (onTime_)
+        onTime_();
+}
+
+unsigned Stm32F2::sleep(unsigned limit) {
+    constexpr unsigned step = 64; // HCLK at the pins
+    unsigned passed = 0;
+    lineChanged_ = false;
+    for (unsigned n = 0; n < step && passed < limit && !lineChanged_; ++n) {
+        unsigned cycles = std::min(config_.coreCyclesPerHclk - carry_, limit - passed);
+        passed += cycles;
+        carry_ += cycles;
+        if (carry_ == config_.coreCyclesPerHclk) {
+            carry_ = 0;
+            fsmc_.idle(1);
+        }
+    }
+    lookAround();
+    return passed;
+}
+
+unsigned Stm32F2::takeWaited() {
+    unsigned waited = waited_;
+    waited_ = 0;
+    return waited;
+}
+
+// ---- the bus ----
+
+uint32_t Stm32F2::read(uint32_t address, unsigned bytes) {
+    if (isIn(address, 0x40000000, 0x80000)) {
+        if (bytes != 4)
+            throw Error("peripheral registers are read in words");
+        return readPeripheral(address);
+    }
+    uint64_t before = fsmc_.hclks();
+    requireFsmc();
+    try {
+        uint32_t value = bytes == 1 ? fsmc_.read8(address) : bytes == 2 ? fsmc_.read16(address) : fsmc_.read32(address);
+        waited_ += static_cast<unsigned>(fsmc_.hclks() - before) * config_.coreCyclesPerHclk;
+        return value;
+    } catch (const FsmcError& e) {
+        throw Error(e.what());
+    }
+}
+
+void Stm32F2::write(uint32_t address, unsigned bytes, uint32_t value) {
+    if (isIn(address, 0x40000000, 0x80000)) {
+        if (bytes != 4)
+            throw Error("peripheral registers are written in words");
+        return writePeripheral(address, value);
+    }
+    uint64_t before = fsmc_.hclks();
+    requireFsmc();
+    try {
+        if (bytes == 1)
+            fsmc_.write8(address, static_cast<uint8_t>(value));
+        else if (bytes == 2)
+            fsmc_.write16(address, static_cast<uint16_t>(value));
+        else
+            fsmc_.write32(address, value);
+    } catch (const FsmcError& e) {
+        throw Error(e.what());
+    }
+    waited_ += static_cast<unsigned>(fsmc_.hclks() - before) * config_.coreCyclesPerHclk;
+}
+
+void Stm32F2::requireFsmc() {
+    if (fsmcUsable_)
+        return;
+    if (!(stored(ahb3Enable) & 1))
+        throw Error("the FSMC's clock is off (RCC_AHB3ENR)");
+    for (const Pins& p : fsmcPins)
+        for (unsigned pin = 0; pin < 16; ++pin) {
+            uint32_t base = gpio + 0x400 * p.port;
+            bool alternate = (stored(base) >> 2 * pin & 3) == 2;
+            bool function = (stored(base + 0x20 + 4 * (pin / 8)) >> 4 * (pin % 8) & 15) == 12;
+            if ((p.pins >> pin & 1) && !(alternate && function))
+                throw Error(std::string("pin P") + p.name + std::to_string(pin) + " is not switched to the FSMC (AF12)");
+        }
+    fsmcUsable_ = true;
+}
+
+void Stm32F2::requireClock(uint32_t address) const {
+    auto on = [&](uint32_t enable, unsigned bit) {
+        auto found = registers_.find(enable);
+        return found != registers_.end() && (found->second >> bit & 1);
+    };
+    bool ok = isIn(address, gpio, 0x2400)      ? on(ahb1Enable, (address - gpio) / 0x400)
+              : isIn(address, crcUnit, 0x400)  ? on(ahb1Enable, 12)
+              : isIn(address, syscfg, 0x400)   ? on(apb2Enable, 14)
+                                               : true;
+    if (!ok)
+        throw Error("the peripheral's clock is off (RCC)");
+}
+
+uint32_t Stm32F2::readPeripheral(uint32_t address) {
+    requireClock(address);
+    if (isIn(address, gpio, 0x2400) && (address & 0x3FF) < 0x28)
+        return (address & 0x3FF) == 0x10 ? (address == gpio + 0x410 ? pinsB_ : 0) : stored(address);
+    if (isIn(address, rcc, 0x88)) {
+        uint32_t value = stored(address);
+        if (address == rcc) // oscillators and PLL are ready at once
+            return value | (value & 0x05010001) << 1;
+        if (address == rcc + 8)
+            return (value & ~0xCu) | (value & 3) << 2; // the switch has happened
+        return address == csr ? (value & 0x00FFFFFF) | resetFlags_ : value;
+    }
+    if (address == exti + 0x14)
+        return pendingExti_;
+    if (isIn(address, exti, 0x14) || isIn(address, syscfg, 0x24) || isIn(address, flashInterface, 0x18))
+        return stored(address);
+    if (address == crcUnit)
+        return crc_;
+    if (address == iwdg + 0x4)
+        return watchdog_.prescaler;
+    if (address == iwdg + 0x8)
+        return watchdog_.reload;
+    if (address == iwdg + 0xC)
+        return 0;
+    throw Error("no such peripheral in the model");
+}
+
+void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
+    requireClock(address);
+    if (isIn(address, gpio, 0x2400) && (address & 0x3FF) < 0x28) {
+        stored(address) = value;
+        fsmcUsable_ = false;
+    } else if (isIn(address, rcc, 0x88)) {
+        stored(address) = value;
+        fsmcUsable_ = false;
+        if (address == csr && (value >> 24 & 1)) { // RMVF
+            resetFlags_ = 0;
+            stored(address) = 0;
+        }
+    } else if (address == exti + 0x14) {
+        pendingExti_ &= ~value;
+        updateExti();
+    } else if (isIn(address, exti, 0x14) || isIn(address, syscfg, 0x24) || isIn(address, flashInterface, 0x18)) {
+        stored(address) = value;
+        updateExti();
+    } else if (address == crcUnit) {
+        crc_ ^= value;
+        for (int bit = 0; bit < 32; ++bit)
+            crc_ = crc_ & 0x80000000 ? crc_ << 1 ^ 0x04C11DB7 : crc_ << 1;
+    } else if (address == crcUnit + 8) {
+        if (value & 1)
+            crc_ = 0xFFFFFFFF;
+    } else if (isIn(address, iwdg, 0x10)) {
+        writeWatchdog(address - iwdg, value);
+    } else {
+        throw Error("no such peripheral in the model");
+    }
+}
+
+// ---- watchdog (RM0033, 18.3) ----
+
+uint64_t Stm32F2::watchdogNs() const { return (uint64_t(watchdog_.reload) + 1) * (4u << watchdog_.prescaler) * lsiNs; }
+
+void Stm32F2::writeWatchdog(uint32_t offset, uint32_t value) {
+    if (offset == 0) {
+        watchdog_.unlocked = value == 0x5555;
+        watchdog_.on = watchdog_.on || value == 0xCCCC;
+        if (value == 0xCCCC || value == 0xAAAA)
+            watchdog_.due = now_() + watchdogNs();
+    } else if (watchdog_.unlocked) {
+        if (offset == 4)
+            watchdog_.prescaler = value & 7;
+        else if (offset == 8)
+            watchdog_.reload = value & 0xFFF;
+    }
+}
+
+// ---- external interrupts ----
+
+void Stm32F2::setPinB(unsigned pin, bool high) {
+    bool was = pinsB_ >> pin & 1;
+    pinsB_ = (pinsB_ & ~(1u << pin)) | uint32_t(high) << pin;
+    if (pin > 4 || was == high || (stored(syscfg + 8) >> 4 * pin & 15) != 1)
+        return;
+    if (stored(exti + (high ? 8 : 12)) >> pin & 1)
+        pendingExti_ |= 1u << pin;
+    updateExti();
+}
+
+void Stm32F2::updateExti() {
+    lineChanged_ = true;
+    for (unsigned line = 0; line < 5; ++line)
+        cpu_.setInterrupt(extiVector + line, (pendingExti_ & stored(exti)) >> line & 1);
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+//
+// stm32f2: an STM32F2 as far as the firmware uses one: the Cortex-M3, flash, RAM, FSMC, and clock,
+// pins, EXTI, CRC unit and watchdog by RM0033. What is not here answers with a bus fault, and so does a
+// peripheral whose clock is off, or the FSMC while one of its pins is not switched to it.
+
+#ifndef STM32F2_H
+#define STM32F2_H
+
+#include "cortex_m3.h"
+#include "elf_image.h"
+#include "fsmc_master.h"
+#include <functional>
+#include <map>
+#include <optional>
+
+class Stm32F2 : private CpuBus {
+public:
+    struct Config {
+        // Simulated time has fewer HCLK cycles at the FSMC's pins than the processor has of its own
+        // where the fabric's clock is scaled down: so many of the processor's for one at the pins.
+        unsigned coreCyclesPerHclk = 1;
+        uint32_t hclkHz = 120'000'000; // of the processor, in simulated time
+    };
+    // `now` is simulated time in ns.
+    Stm32F2(FsmcMaster& fsmc, std::function<uint64_t()> now, Config config);
+
+    CortexM3& cpu() { return cpu_; }
+    const ElfImage* image() const { return image_ ? &*image_ : nullptr; }
+
+    void load(const std::string& elf);
+    void powerOn();
+    CortexM3::Stop run(bool singleStep = false) { return cpu_.run(singleStep); }
+    // The level at a pin of port B, 0..4, which EXTI can listen to.
+    void setPinB(unsigned pin, bool high);
+    // Called whenever time has passed, at the pace of the pins.
+    void onTime(std::function<void()> called) { onTime_ = std::move(called); }
+
+    struct Resets {
+        unsigned power = 0, software = 0, watchdog = 0;
+    };
+    const Resets& resets() const { return resets_; }
+
+private:
+    uint32_t read(uint32_t address, unsigned bytes) override;
+    void write(uint32_t address, unsigned bytes, uint32_t value) override;
+    void pass(unsigned cycles) override;
+    unsigned sleep(unsigned limit) override;
+    void lookAround();
+    unsigned takeWaited() override;
+
+    uint32_t readPeripheral(uint32_t address);
+    void writePeripheral(uint32_t address, uint32_t value);
+    void writeWatchdog(uint32_t offset, uint32_t value);
+    void requireClock(uint32_t address) const;
+    void requireFsmc();
+    void updateExti();
+    void resetPeripherals();
+    uint64_t watchdogNs() const;
+    uint32_t& stored(uint32_t address) { return registers_[address]; }
+
+    FsmcMaster& fsmc_;
+    std::function<uint64_t()> now_;
+    Config config_;
+    std::function<void()> onTime_;
+    CortexM3 cpu_;
+    std::optional<ElfImage> image_;
+    std::map<uint32_t, uint32_t> registers_; // that only store
+    unsigned carry_ = 0, waited_ = 0;
+    uint32_t resetFlags_ = 0, crc_ = 0xFFFFFFFF, pinsB_ = 0, pendingExti_ = 0;
+    bool fsmcUsable_ = false, lineChanged_ = false;
+    struct {
+        bool on = false, unlocked = false, fired = false;
+        uint32_t prescaler = 0, reload = 0xFFF;
+        uint64_t due = ~0ull;
+    } watchdog_;
+    Resets resets_;
+};
+
+#endif

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+//
+// m3_machine: runs the firmware's ARM binary on a SocModel: the Cortex-M3, its FSMC on the RTL's pins.
+
+#ifndef M3_MACHINE_H
+#define M3_MACHINE_H
+
+#include "soc_model.h"
+#include "stm32f2.h"
+
+class M3Machine {
+public:
+    struct Config {
+        std::string firmware; // ELF file
+        // HCLK in simulated time. 120 MHz: what the processor does takes as long as on the board, though
+        // the fabric is slower. 0: in the board's ratio to the fabric's clock, 6 to 5, as FSMC accesses
+        // always are; then cycles are as on the board, and the processor is slower by the fabric's scale.
+        uint32_t hclkHz = 120'000'000;
+    };
+    // `poll` is called about once a simulated millisecond; when it returns false, run() ends.
+    M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll);
+    ~M3Machine();
+
+    // Runs until poll says so; the first call begins with power-on. Exceptions of the models come through.
+    void run();
+
+    Stm32F2& stm32() { return stm32_; }
+    CortexM3& cpu() { return stm32_.cpu(); }
+
+private:
+    SocModel& soc_;
+    std::function<bool()> poll_;
+    Stm32F2 stm32_;
+    uint64_t nextPoll_ = 0;
+    bool powered_ = false, over_ = false;
+};
+
+#endif

@@ -51,14 +51,14 @@ Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr
 }
 
 /* The entry of exactly this identity and facet, or -1. */
-static int indexOf(Ice_ObjectAdapterPtr adapter, const Ice_Identity *id, Ice_String facet) {
+static int indexOf(Ice_ObjectAdapterPtr adapter, const Ice_Identity *id, const Ice_String *facet) {
     int s;
     for (s = 0; s < ICE_SERVANTS; ++s)
         if (adapter->servants[s].servant &&
-            Ice_String_same(adapter->servants[s].identity.name, id->name) &&
+            Ice_String_same(&adapter->servants[s].identity.name, &id->name) &&
             (!ICEC_CATEGORIES ||
-             (Ice_String_same(adapter->servants[s].identity.category, id->category) &&
-              Ice_String_same(adapter->servants[s].facet, facet))))
+             (Ice_String_same(&adapter->servants[s].identity.category, &id->category) &&
+              Ice_String_same(&adapter->servants[s].facet, facet))))
             return s;
     return -1;
 }
@@ -68,7 +68,7 @@ static Ice_Status change(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
     Ice_Status status = ICE_LIMIT;
     int s;
     Ice_lock(adapter->communicator, ICE_LOCK_STATE);
-    s = indexOf(adapter, id, facet);
+    s = indexOf(adapter, id, &facet);
     if (!servant) {
         if (s >= 0)
             adapter->servants[s].servant = 0;
@@ -100,8 +100,24 @@ static Ice_Status changeDefault(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr serv
     return change(adapter, servant, &id, id.name);
 }
 
+/* For names only: into the first free entry; who adds a name twice finds the first servant. */
+static Ice_Status addName(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
+                          const char *identity) {
+    Ice_Servant *s;
+    for (s = adapter->servants; s < adapter->servants + ICE_SERVANTS; ++s)
+        if (!s->servant) {
+            s->servant = servant;
+            s->identity.name.data = identity;
+            s->identity.name.size = (Ice_Int)strlen(identity);
+            return ICE_OK;
+        }
+    return ICE_LIMIT;
+}
+
 Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                                  const char *identity) {
+    if (!ICEC_CATEGORIES)
+        return addName(adapter, servant, identity);
     return changeNamed(adapter, servant, identity, "");
 }
 
@@ -131,10 +147,11 @@ Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter,
 
 Ice_ObjectPtr Ice_ObjectAdapter_find(Ice_ObjectAdapterPtr adapter, const char *identity) {
     Ice_Identity id = Ice_parseIdentity(identity);
+    Ice_String none = part("", 0);
     Ice_ObjectPtr found = 0;
     int s;
     Ice_lock(adapter->communicator, ICE_LOCK_STATE);
-    s = indexOf(adapter, &id, part("", 0));
+    s = indexOf(adapter, &id, &none);
     if (s >= 0)
         found = adapter->servants[s].servant;
     Ice_unlock(adapter->communicator, ICE_LOCK_STATE);
@@ -161,9 +178,14 @@ void Ice_ObjectAdapter_destroy(Ice_ObjectAdapterPtr adapter) {
 
 Ice_Status Ice_ObjectAdapter_createProxy(Ice_ObjectAdapterPtr adapter, const char *identity,
                                          Ice_ObjectPrxPtr prx) {
-    Ice_Identity id = Ice_parseIdentity(identity);
+    Ice_Identity id;
     Ice_Status status;
     Ice_ObjectPrx_init(prx, adapter->communicator);
-    status = Ice_ObjectPrx_setIdentity(prx, id.name, id.category, part("", 0));
+    if (ICEC_CATEGORIES) {
+        id = Ice_parseIdentity(identity);
+        status = Ice_ObjectPrx_setIdentity(prx, &id.name, &id.category, 0);
+    } else {
+        status = Ice_ObjectPrx_setName(prx, identity) ? ICE_OK : ICE_LIMIT;
+    }
     return status == ICE_OK ? Ice_ObjectPrx_addEndpoint(prx, 0) : status;
 }

@@ -24,5 +24,5 @@ Ice_Status Ice_Connection_createProxy(Ice_CommunicatorPtr ic, int connection, co
         return ICE_CONNECTION_LOST;
     prx->connection = connection;
     prx->generation = ic->connections[connection].generation;
-    return Ice_ObjectPrx_setIdentity(prx, id.name, id.category, Ice_String_from(""));
+    return Ice_ObjectPrx_setIdentity(prx, &id.name, &id.category, 0);
 }

@@ -19,7 +19,7 @@ static void finish(Ice_CommunicatorPtr ic, Ice_Call *call, Ice_Int id, Ice_Statu
     Ice_Callback callback = 0;
     void *cookie = 0;
     Ice_lock(ic, ICE_LOCK_STATE);
-    if (call->state == ICE_WAITING && call->id == id) {
+    if (!ICEC_TASKS || (call->state == ICE_WAITING && call->id == id)) {
         if (ICEC_ASYNC)
             callback = call->callback, cookie = call->cookie;
         call->status = (Ice_Byte)status;
@@ -35,7 +35,8 @@ static void finish(Ice_CommunicatorPtr ic, Ice_Call *call, Ice_Int id, Ice_Statu
 void Ice_failCalls(Ice_CommunicatorPtr ic, int connection, Ice_Status status) {
     Ice_InputStream none;
     int c;
-    Ice_InputStream_init(&none, 0, 0);
+    if (ICEC_ASYNC)
+        Ice_InputStream_init(&none, 0, 0);
     for (c = 0; c < ICE_CALLS; ++c)
         if (ic->calls[c].state == ICE_WAITING && ic->calls[c].connection == connection)
             finish(ic, &ic->calls[c], ic->calls[c].id, status, &none);
@@ -81,7 +82,7 @@ static Ice_Status readReply(Ice_InputStreamPtr is, Ice_Failure *failure) {
     if (ICEC_DETAILS && code <= 4) {
         failure->identity.name = Ice_InputStream_readString(is);
         failure->identity.category = Ice_InputStream_readString(is);
-        failure->facet = Ice_readFacet(is);
+        Ice_readFacet(is, &failure->facet);
         failure->operation = Ice_InputStream_readString(is);
     } else if (ICEC_DETAILS) {
         failure->unknown = Ice_InputStream_readString(is);
@@ -103,7 +104,7 @@ static void keepReply(Ice_Call *call, Ice_InputStreamPtr is) {
     is->arenaSize = call->replySize / 4 - size;
 }
 
-static Ice_Call *callOf(Ice_CommunicatorPtr ic, int connection, Ice_Int id) {
+static Ice_Call *waitingCall(Ice_CommunicatorPtr ic, int connection, Ice_Int id) {
     Ice_Call *call;
     for (call = ic->calls; call < ic->calls + ICE_CALLS; ++call)
         if (call->state == ICE_WAITING && call->id == id && call->connection == connection)
@@ -117,7 +118,7 @@ void Ice_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is
     Ice_Status status;
     Ice_giveArena(ic, is);
     Ice_lock(ic, ICE_LOCK_STATE); /* so that it does not time out meanwhile */
-    call = callOf(ic, connection, id);
+    call = waitingCall(ic, connection, id);
     if (call && ICEC_ASYNC && call->callback) {
         Ice_unlock(ic, ICE_LOCK_STATE);
         status = readReply(is, &call->failure);
@@ -144,6 +145,18 @@ void Ice_initRequest(Ice_CommunicatorPtr ic) {
                           ICEC_TASKS ? ICE_REQUEST_MAX : ICE_MESSAGE_MAX);
 }
 
+/* Connects to one endpoint, or to what is there already. */
+static Ice_Status open(Ice_ObjectPrxPtr self, const Ice_Byte *endpoint, Ice_Int size) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    Ice_Status status;
+    Ice_lock(ic, ICE_LOCK_STATE);
+    status = ic->endpoint->connect(ic->endpointContext, endpoint, size, &self->connection);
+    if (status == ICE_OK && ic->connections[self->connection].state == ICE_FREE)
+        Ice_openConnection(ic, self->connection, ICE_WAITING);
+    Ice_unlock(ic, ICE_LOCK_STATE);
+    return status;
+}
+
 /* Tries the proxy's endpoints in turn. */
 static Ice_Status connect(Ice_ObjectPrxPtr self, int slot) {
     Ice_CommunicatorPtr ic = self->communicator;
@@ -157,24 +170,22 @@ static Ice_Status connect(Ice_ObjectPrxPtr self, int slot) {
         return c->generation == self->generation && c->state == ICE_DONE ? ICE_OK
                                                                          : ICE_CONNECTION_LOST;
     }
-    Ice_InputStream_init(&is, self->encoded, self->encodedSize);
-    for (n = self->endpointCount; n > 0 && status != ICE_OK; --n) {
-        Ice_Int begin = is.position;
-        (void)Ice_InputStream_readShort(&is);
-        (void)Ice_InputStream_readBlob(&is, Ice_InputStream_readInt(&is) - 4);
-        Ice_lock(ic, ICE_LOCK_STATE);
-        status = ic->endpoint->connect(ic->endpointContext, self->encoded + begin,
-                                       is.position - begin, &self->connection);
-        if (status == ICE_OK && ic->connections[self->connection].state == ICE_FREE)
-            Ice_openConnection(ic, self->connection, ICE_WAITING);
-        Ice_unlock(ic, ICE_LOCK_STATE);
+    if (!ICEC_DETAILS) {
+        status = open(self, self->endpoints + 1, self->endpointsSize - 1);
+    } else {
+        Ice_InputStream_init(&is, self->endpoints + 1, self->endpointsSize - 1);
+        for (n = self->endpoints[0]; n > 0 && status != ICE_OK; --n) {
+            Ice_Int begin = is.position;
+            (void)Ice_InputStream_readShort(&is);
+            (void)Ice_InputStream_readBlob(&is, Ice_InputStream_readInt(&is) - 4);
+            status = open(self, is.data + begin, is.position - begin);
+        }
     }
-    if (status != ICE_OK)
-        return status;
-    status = Ice_await(ic, &ic->connections[self->connection].state, slot, self->timeoutMs);
-    return status != ICE_OK || ic->connections[self->connection].state == ICE_DONE
-               ? status
-               : ICE_CONNECTION_LOST;
+    if (status == ICE_OK)
+        status = Ice_await(ic, &ic->connections[self->connection].state, slot, self->timeoutMs);
+    if (status == ICE_OK && ic->connections[self->connection].state == ICE_FREE)
+        status = ICE_CONNECTION_LOST;
+    return status;
 }
 
 Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int *connection) {
@@ -192,8 +203,8 @@ static void writeContext(Ice_OutputStreamPtr os, const Ice_ContextEntry *context
         ++n;
     Ice_OutputStream_writeSize(os, n);
     for (; n > 0; --n, ++context) {
-        Ice_OutputStream_writeString(os, Ice_String_from(context->key));
-        Ice_OutputStream_writeString(os, Ice_String_from(context->value));
+        Ice_OutputStream_writeText(os, context->key);
+        Ice_OutputStream_writeText(os, context->value);
     }
 }
 
@@ -215,13 +226,13 @@ Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char *opera
                                         Ice_Byte mode) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_OutputStreamPtr os = &ic->request;
-    Ice_Identity id = Ice_ObjectPrx_getIdentity(self);
     Ice_Call *call;
     self->status = self->mode != ICE_TWOWAY && mode & ICE_RESULTS ? ICE_TWOWAY_ONLY : ICE_LIMIT;
     if (self->status == ICE_TWOWAY_ONLY || takeSlot(self) < 0)
         return 0;
-    call = &ic->calls[self->call];
-    call->callback = 0;
+    call = Ice_callOf(ic, self);
+    if (ICEC_ASYNC)
+        call->callback = 0;
     self->status = ICE_OK;
     if (!(ICEC_BATCH && self->batch))
         self->status = (Ice_Byte)connect(self, self->call);
@@ -231,17 +242,14 @@ Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char *opera
     if (!(ICEC_BATCH && self->batch)) {
         call->id = 0;
         if (self->mode == ICE_TWOWAY) {
-            if (ic->lastId == 0x7FFFFFFF)
-                ic->lastId = 0;
-            call->id = ++ic->lastId;
+            ic->lastId = (ic->lastId & 0x3FFFFFFF) + 1; /* never 0: that is a one-way request */
+            call->id = ic->lastId;
         }
         Ice_beginMessage(os, ICE_REQUEST);
         Ice_OutputStream_writeInt(os, call->id);
     }
-    Ice_OutputStream_writeString(os, id.name);
-    Ice_OutputStream_writeString(os, id.category);
-    Ice_writeFacet(os, Ice_ObjectPrx_getFacet(self));
-    Ice_OutputStream_writeString(os, Ice_String_from(operation));
+    Ice_OutputStream_writeBlob(os, self->identity, self->identitySize);
+    Ice_OutputStream_writeText(os, operation);
     Ice_OutputStream_writeByte(os, mode & (Ice_Byte)~ICE_RESULTS);
     writeContext(os, ICEC_CONTEXTS ? self->context : 0);
     ic->requestBody = Ice_beginEncapsulation(os);
@@ -251,7 +259,7 @@ Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char *opera
 Ice_Status Ice_sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void *cookie) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_OutputStreamPtr os = &ic->request;
-    Ice_Call *call = &ic->calls[self->call];
+    Ice_Call *call = Ice_callOf(ic, self);
     Ice_Status status = (Ice_Status)self->status;
     Ice_endEncapsulation(os, ic->requestBody);
     if (ICEC_BATCH && self->batch) {
@@ -262,18 +270,21 @@ Ice_Status Ice_sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void *c
             status = ICE_MARSHAL;
         if (status == ICE_OK) {
             call->connection = self->connection;
-            call->callback = callback;
-            call->cookie = cookie;
-            call->timeoutMs = self->timeoutMs;
-            call->begunMs = Ice_nowMs(ic);
-            call->reply = self->reply ? self->reply : call->replyData;
-            call->replySize = self->reply ? self->replySize : (Ice_Int)sizeof call->replyData;
-            memset(&call->failure, 0, sizeof call->failure);
+            if (ICEC_ASYNC) {
+                call->callback = callback;
+                call->cookie = cookie;
+                call->timeoutMs = self->timeoutMs;
+                call->begunMs = Ice_nowMs(ic);
+            }
+            if (ICEC_COPY_REPLIES) {
+                call->reply = self->reply ? self->reply : call->replyData;
+                call->replySize = self->reply ? self->replySize : (Ice_Int)sizeof call->replyData;
+            }
+            if (ICEC_DETAILS)
+                memset(&call->failure, 0, sizeof call->failure);
             if (self->mode == ICE_TWOWAY)
                 call->state = ICE_WAITING; /* before the reply can be there */
             status = Ice_send(ic, self->connection, os);
-            if (status != ICE_OK && call->state == ICE_WAITING)
-                call->state = ICE_BUILDING;
         }
     }
     Ice_unlock(ic, ICE_LOCK_SEND);
@@ -282,7 +293,7 @@ Ice_Status Ice_sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void *c
 
 Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr *is) {
     Ice_CommunicatorPtr ic = self->communicator;
-    Ice_Call *call = &ic->calls[self->call];
+    Ice_Call *call = Ice_callOf(ic, self);
     Ice_Status status = Ice_sendRequest(self, 0, 0);
     if (status != ICE_OK || self->mode != ICE_TWOWAY)
         return status;
@@ -295,7 +306,7 @@ Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr *is) {
 
 Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {
     Ice_CommunicatorPtr ic = self->communicator;
-    Ice_Call *call = &ic->calls[self->call];
+    Ice_Call *call = Ice_callOf(ic, self);
     if ((status == ICE_OK || status == ICE_USER_EXCEPTION) && call->state == ICE_DONE &&
         call->is.failed)
         status = ICE_MARSHAL;

@@ -33,6 +33,9 @@
 #ifndef ICEC_DETAILS /* texts and fields of system exceptions; strings of all proxies */
 #define ICEC_DETAILS ICEC_DEFAULT
 #endif
+#ifndef ICEC_IDS /* ice_id and ice_ids are answered (ice_ping and ice_isA always are) */
+#define ICEC_IDS ICEC_DEFAULT
+#endif
 #ifndef ICEC_NESTING /* messages handled at once: 1 + calls made from within an operation */
 #define ICEC_NESTING (1 + ICEC_DEFAULT)
 #endif
@@ -56,7 +59,7 @@
 #endif
 #ifndef ICE_IDENTITY_MAX /* characters of a proxy's name, category and facet together, at most 255 \
                           */
-#define ICE_IDENTITY_MAX 48
+#define ICE_IDENTITY_MAX 52
 #endif
 #ifndef ICE_ENDPOINT_MAX /* bytes of a proxy's encoded endpoints, at most 255 */
 #define ICE_ENDPOINT_MAX 96

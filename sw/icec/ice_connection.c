@@ -4,6 +4,8 @@
  */
 #include "ice_private.h"
 
+#include <string.h>
+
 U32 Ice_nowMs(Ice_CommunicatorPtr ic) {
     return ic->endpoint->nowMs(ic->endpointContext);
 }
@@ -42,52 +44,45 @@ void Ice_lose(Ice_CommunicatorPtr ic, int connection, Ice_Status status) {
     Ice_failCalls(ic, connection, status);
 }
 
-static void closeNow(Ice_CommunicatorPtr ic, int connection, Ice_Status status) {
+void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection) {
+    (void)Ice_sendPlain(ic, connection, ICE_CLOSE);
     Ice_lock(ic, ICE_LOCK_STATE);
     ic->endpoint->close(ic->endpointContext, connection);
     Ice_unlock(ic, ICE_LOCK_STATE);
-    Ice_lose(ic, connection, status);
+    Ice_lose(ic, connection, ICE_CONNECTION_LOST);
 }
 
-void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection) {
-    (void)Ice_sendPlain(ic, connection, ICE_CLOSE);
-    closeNow(ic, connection, ICE_CONNECTION_LOST);
-}
-
-/* 0: malformed; the connection is to be closed. */
-static int takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_Byte *in, Ice_Int size) {
+/* ICE_OK, or why the connection is to be closed; what is malformed loses it. */
+static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_Byte *in,
+                              Ice_Int size) {
     Ice_InputStream is;
     Ice_Int type;
     Ice_InputStream_init(&is, in, size);
     is.communicator = ic;
-    if (Ice_InputStream_readInt(&is) != ICE_MAGIC || Ice_InputStream_readInt(&is) != ICE_VERSIONS)
-        return 0;
-    type = Ice_InputStream_readShort(&is); /* and compression: 0 or 1 is none */
+    if (size < ICE_HEADER || memcmp(in, Ice_head, ICE_TYPE_AT) != 0)
+        return ICE_CONNECTION_LOST;
+    is.position = ICE_TYPE_AT;
+    type = Ice_InputStream_readShort(&is) & 0xFEFF; /* and compression: 0 or 1 is none */
     if (Ice_InputStream_readInt(&is) != size)
-        return 0;
-    if (type >> 8 > 1) {
-        /* What is inside cannot be answered; this says that it was not executed. */
-        (void)Ice_sendPlain(ic, connection, ICE_CLOSE);
-        return 0;
-    }
-    switch (type & 0xFF) {
-    case ICE_REQUEST:
+        return ICE_CONNECTION_LOST;
+    if (type == ICE_REQUEST)
         return Ice_dispatchRequest(ic, connection, &is);
-    case ICE_BATCH:
-        return ICEC_BATCH && Ice_dispatchBatch(ic, connection, &is);
-    case ICE_REPLY:
+    if (type == ICE_REPLY) {
         Ice_takeReply(ic, connection, &is);
-        return 1;
-    case ICE_VALIDATE:
+    } else if (type == ICE_VALIDATE) {
         ic->connections[connection].state = ICE_DONE;
         Ice_wakeCalls(ic);
-        return 1;
-    case ICE_CLOSE:
-        closeNow(ic, connection, ICE_CONNECTION_CLOSED);
-        return 1;
-    default:
-        return 0;
+    } else if (type == ICE_CLOSE) {
+        return ICE_CONNECTION_CLOSED;
+    } else if (ICEC_BATCH && type == ICE_BATCH) {
+        return Ice_dispatchBatch(ic, connection, &is);
+    } else {
+        /* What is compressed cannot be answered; this says that it was not executed. */
+        if (ICEC_DETAILS && type > 0xFF)
+            (void)Ice_sendPlain(ic, connection, ICE_CLOSE);
+        return ICE_CONNECTION_LOST;
     }
+    return ICE_OK;
 }
 
 /* Signs of life for who waits for an operation; time-outs of asynchronous calls. Returns how long
@@ -110,40 +105,44 @@ static Ice_Int keepUp(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
     return Ice_expireCalls(ic, waitMs);
 }
 
+static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte *in, const Ice_Event *event) {
+    int connection = event->connection;
+    Ice_Status end = ICE_CONNECTION_LOST;
+    if (event->kind == ICE_EVENT_NONE)
+        return ICE_TIMEOUT;
+    if (event->kind == ICE_EVENT_OPENED) { /* who accepts a connection speaks first */
+        Ice_openConnection(ic, connection, ICE_DONE);
+        (void)Ice_sendPlain(ic, connection, ICE_VALIDATE);
+        return ICE_OK;
+    }
+    if (event->kind == ICE_EVENT_MESSAGE) {
+        end = takeMessage(ic, connection, in, event->size);
+        if (end == ICE_OK)
+            return ICE_OK;
+        Ice_lock(ic, ICE_LOCK_STATE);
+        ic->endpoint->close(ic->endpointContext, connection);
+        Ice_unlock(ic, ICE_LOCK_STATE);
+    }
+    Ice_lose(ic, connection, end);
+    return ICE_OK;
+}
+
 Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     Ice_Event event;
     Ice_Status status;
-    Ice_Byte *in = ic->in[0];
-    int handled = 1;
+    Ice_Byte *in;
     if (ic->depth == ICEC_NESTING)
         return ICE_LIMIT;
-    if (ICEC_NESTING > 1)
-        in = ic->in[ic->depth];
+    in = ic->in[ICEC_NESTING > 1 ? ic->depth : 0];
     if (ICEC_ASYNC)
         timeoutMs = keepUp(ic, timeoutMs);
     event.kind = ICE_EVENT_NONE;
+    ++ic->depth;
     status = ic->endpoint->receive(ic->endpointContext, in, timeoutMs, &event);
-    if (status != ICE_OK)
-        return status;
-    switch (event.kind) {
-    case ICE_EVENT_OPENED: /* who accepts a connection speaks first */
-        Ice_openConnection(ic, event.connection, ICE_DONE);
-        (void)Ice_sendPlain(ic, event.connection, ICE_VALIDATE);
-        break;
-    case ICE_EVENT_MESSAGE:
-        ++ic->depth;
-        handled = takeMessage(ic, event.connection, in, event.size);
-        --ic->depth;
-        if (!handled)
-            closeNow(ic, event.connection, ICE_CONNECTION_LOST);
-        break;
-    case ICE_EVENT_CLOSED:
-        Ice_lose(ic, event.connection, ICE_CONNECTION_LOST);
-        break;
-    default:
-        return ICE_TIMEOUT;
-    }
-    return ICE_OK;
+    if (status == ICE_OK)
+        status = takeEvent(ic, in, &event);
+    --ic->depth;
+    return status;
 }
 
 /* A task that waits while nobody receives becomes the receiver for as long as it waits. */

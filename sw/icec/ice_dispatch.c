@@ -11,14 +11,25 @@
 static const Ice_Byte codes[] = {
     0, 2, 3, 4, 1, 7, UNKNOWN_LOCAL, 7, 7, 7, 7, UNKNOWN_LOCAL, UNKNOWN_LOCAL, 6, 7, 7, 7, 7};
 
+/* Where there are only names. */
+static Ice_ObjectPtr findName(Ice_CommunicatorPtr ic, Ice_Current *current) {
+    Ice_ObjectAdapterPtr adapter;
+    const Ice_Servant *s;
+    for (adapter = ic->adapters; adapter; adapter = adapter->next)
+        for (s = adapter->servants; adapter->active && s < adapter->servants + ICE_SERVANTS; ++s)
+            if (s->servant && Ice_String_same(&s->identity.name, &current->name)) {
+                current->adapter = adapter;
+                return s->servant;
+            }
+    return 0;
+}
+
 /* The servant, else the category's default servant, else the default servant of all. */
 static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current *current, Ice_Status *status) {
     Ice_ObjectAdapterPtr adapter;
     Ice_ObjectPtr servant = 0;
     int s, rank = 0;
     *status = ICE_OBJECT_NOT_EXIST;
-    if (!ICEC_CATEGORIES && (current->category.size || current->facet.size))
-        return 0;
     Ice_lock(ic, ICE_LOCK_STATE);
     for (adapter = ic->adapters; adapter; adapter = adapter->next)
         for (s = 0; adapter->active && s < ICE_SERVANTS; ++s) {
@@ -26,16 +37,15 @@ static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current *current, Ice_Stat
             int is = 0;
             if (!adapter->servants[s].servant)
                 continue;
-            if (!ICEC_CATEGORIES) {
-                is = Ice_String_same(id->name, current->name) ? 3 : 0;
-            } else if (id->name.size == 0) {
-                is = id->category.size == 0                             ? 1
-                     : Ice_String_same(id->category, current->category) ? 2
-                                                                        : 0;
-            } else if (Ice_String_same(id->name, current->name) &&
-                       Ice_String_same(id->category, current->category)) {
+            if (id->name.size == 0) {
+                if (id->category.size == 0)
+                    is = 1;
+                else if (Ice_String_same(&id->category, &current->category))
+                    is = 2;
+            } else if (Ice_String_same(&id->name, &current->name) &&
+                       Ice_String_same(&id->category, &current->category)) {
                 *status = ICE_FACET_NOT_EXIST;
-                is = Ice_String_same(adapter->servants[s].facet, current->facet) ? 3 : 0;
+                is = Ice_String_same(&adapter->servants[s].facet, &current->facet) ? 3 : 0;
             }
             if (is > rank) {
                 rank = is;
@@ -47,51 +57,36 @@ static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current *current, Ice_Stat
     return servant;
 }
 
-static Ice_Status builtIn(Ice_ObjectPtr servant, const Ice_Current *current, Ice_InputStreamPtr is,
-                          Ice_OutputStreamPtr os) {
+/* The operations that every object has; other ones are the servant's. */
+static Ice_Status run(Ice_ObjectPtr servant, const Ice_Current *current, Ice_InputStreamPtr is,
+                      Ice_OutputStreamPtr os) {
     const char *const *id = servant->ids;
-    Ice_String wanted;
-    if (Ice_String_equals(current->operation, "ice_ping"))
-        return ICE_OK;
-    if (Ice_String_equals(current->operation, "ice_isA")) {
-        wanted = Ice_InputStream_readString(is);
-        while (*id && !Ice_String_equals(wanted, *id))
+    const Ice_String *operation = &current->operation;
+    if (Ice_String_is(operation, "ice_isA")) {
+        Ice_String wanted;
+        Ice_InputStream_takeString(is, &wanted);
+        while (*id && !Ice_String_is(&wanted, *id))
             ++id;
         Ice_OutputStream_writeByte(os, *id != 0);
-        return ICE_OK;
-    }
-    if (Ice_String_equals(current->operation, "ice_id")) {
-        Ice_OutputStream_writeString(os, Ice_String_from(servant->id));
-        return ICE_OK;
-    }
-    if (Ice_String_equals(current->operation, "ice_ids")) {
+    } else if (ICEC_IDS && Ice_String_is(operation, "ice_id")) {
+        Ice_OutputStream_writeText(os, servant->id);
+    } else if (ICEC_IDS && Ice_String_is(operation, "ice_ids")) {
         while (*id)
             ++id;
         Ice_OutputStream_writeSize(os, (Ice_Int)(id - servant->ids));
         for (id = servant->ids; *id; ++id)
-            Ice_OutputStream_writeString(os, Ice_String_from(*id));
-        return ICE_OK;
+            Ice_OutputStream_writeText(os, *id);
+    } else if (!Ice_String_is(operation, "ice_ping")) {
+        return servant->dispatch(servant, current, is, os);
     }
-    return ICE_OPERATION_NOT_EXIST;
-}
-
-static Ice_Status run(Ice_CommunicatorPtr ic, Ice_Current *current, Ice_InputStreamPtr is,
-                      Ice_OutputStreamPtr os) {
-    Ice_Status status;
-    Ice_ObjectPtr servant = find(ic, current, &status);
-    if (!servant)
-        return status;
-    status = builtIn(servant, current, is, os);
-    if (status == ICE_OPERATION_NOT_EXIST)
-        status = servant->dispatch(servant, current, is, os);
-    return status == ICE_OK && is->failed ? ICE_MARSHAL : status;
+    return ICE_OK;
 }
 
 void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte *who,
                      Ice_Int whoSize) {
     Ice_Int end = os->size;
     Ice_Byte code = codes[os->failed ? ICE_MARSHAL : status];
-    if (code >= 2 && code <= 4 && whoSize == 0)
+    if (ICEC_ASYNC && code >= 2 && code <= 4 && whoSize == 0)
         code = 7;
     os->failed = 0;
     os->size = 0;
@@ -105,7 +100,7 @@ void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, cons
     } else if (code <= 4) {
         Ice_OutputStream_writeBlob(os, who, whoSize);
     } else if (ICEC_DETAILS) {
-        Ice_OutputStream_writeString(os, Ice_String_from(Ice_Status_text(status)));
+        Ice_OutputStream_writeText(os, Ice_Status_text(status));
     } else {
         Ice_OutputStream_writeByte(os, 0);
     }
@@ -121,69 +116,88 @@ void Ice_giveArena(Ice_CommunicatorPtr ic, Ice_InputStreamPtr is) {
         is->arenaUsed = 0;
 }
 
-/* One request behind its id. 0: malformed. */
-static int dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is, Ice_Int id) {
+/* One request behind its id. */
+static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is,
+                           Ice_Int id) {
     Ice_InputStreamPtr outer = ic->decoding;
     U16 generation = ic->connections[connection].generation;
     Ice_OutputStream os;
     Ice_Current current;
-    Ice_Status status;
-    Ice_Int whole = is->size, who = is->position, whoSize, n;
+    Ice_ObjectPtr servant = 0;
+    Ice_Status status, found = ICE_OBJECT_NOT_EXIST;
+    Ice_Int whole = is->size, who = is->position, whoSize;
     current.communicator = ic;
-    current.adapter = 0;
     current.connection = connection;
-    current.requestId = id;
-    current.name = Ice_InputStream_readString(is);
-    current.category = Ice_InputStream_readString(is);
-    current.facet = Ice_readFacet(is);
-    current.operation = Ice_InputStream_readString(is);
+    if (ICEC_ASYNC)
+        current.requestId = id;
+    Ice_InputStream_takeString(is, &current.name);
+    Ice_InputStream_takeString(is, &current.category);
+    if (ICEC_CATEGORIES) {
+        Ice_readFacet(is, &current.facet);
+    } else {
+        current.facet.size = Ice_InputStream_readByte(is); /* one is too many */
+        Ice_skipStrings(is, current.facet.size);
+    }
+    Ice_InputStream_takeString(is, &current.operation);
     whoSize = is->position - who;
     current.mode = Ice_InputStream_readByte(is);
     if (ICEC_CONTEXTS)
         current.context = *is;
-    n = Ice_InputStream_readSequence(is, 2);
-    Ice_skipStrings(is, 2 * n);
+    Ice_skipStrings(is, 2 * Ice_InputStream_readSequence(is, 2));
     status = Ice_enterEncapsulation(is);
     if (status == ICE_MARSHAL)
-        return 0;
+        return ICE_CONNECTION_LOST;
     Ice_giveArena(ic, is);
     Ice_OutputStream_init(&os, ic->out, ICE_MESSAGE_MAX);
-    current.minor = os.minor = is->minor & 1U;
-    os.size = ICE_REPLY_HEAD;
-    ic->decoding = is;
+    os.minor = is->minor & 1U;
     if (ICEC_ASYNC)
-        (void)Ice_countPending(ic, connection, generation, 1);
+        current.minor = os.minor;
+    os.size = ICE_REPLY_HEAD;
+    if (ICEC_CATEGORIES)
+        servant = find(ic, &current, &found);
+    else if (current.category.size + current.facet.size == 0)
+        servant = findName(ic, &current);
     if (status == ICE_OK)
-        status = run(ic, &current, is, &os);
-    if (ICEC_ASYNC && status != ICE_LATER && !Ice_countPending(ic, connection, generation, -1))
-        id = 0; /* who asked has gone meanwhile */
-    ic->decoding = outer;
-    /* The next request of a batch begins where this one's parameters end. */
-    is->position = is->size;
-    is->size = whole;
-    is->failed = 0;
-    if (id != 0 && !(ICEC_ASYNC && status == ICE_LATER)) {
+        status = found;
+    if (servant && status != ICE_PROTOCOL) {
+        if (ICEC_NESTING > 1)
+            ic->decoding = is;
+        if (ICEC_ASYNC)
+            (void)Ice_countPending(ic, connection, generation, 1);
+        status = run(servant, &current, is, &os);
+        if (status == ICE_OK && is->failed)
+            status = ICE_MARSHAL;
+        if (ICEC_NESTING > 1)
+            ic->decoding = outer;
+        if (ICEC_ASYNC &&
+            (status == ICE_LATER || !Ice_countPending(ic, connection, generation, -1)))
+            id = 0; /* nothing to send now, or who asked has gone meanwhile */
+    }
+    if (ICEC_BATCH) { /* the next request begins where this one's parameters end */
+        is->position = is->size;
+        is->size = whole;
+        is->failed = 0;
+    }
+    if (id != 0) {
         Ice_finishReply(&os, id, status, is->data + who, whoSize);
         Ice_lock(ic, ICE_LOCK_SEND);
         (void)Ice_send(ic, connection, &os);
         Ice_unlock(ic, ICE_LOCK_SEND);
     }
-    return 1;
+    return ICE_OK;
 }
 
-int Ice_dispatchRequest(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is) {
+Ice_Status Ice_dispatchRequest(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is) {
     Ice_Int id = Ice_InputStream_readInt(is);
     return dispatch(ic, connection, is, id);
 }
 
-int Ice_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is) {
+Ice_Status Ice_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is) {
     Ice_Int count = Ice_InputStream_readInt(is);
-    if (is->failed || count < 0)
-        return 0;
-    while (count-- > 0)
-        if (!dispatch(ic, connection, is, 0))
-            return 0;
-    return 1;
+    Ice_Status status = is->failed || count < 0 ? ICE_CONNECTION_LOST : ICE_OK;
+    while (count-- > 0 && status == ICE_OK)
+        status = dispatch(ic, connection, is, 0);
+    return status;
 }
 
 Ice_Bool Ice_Current_context(const Ice_Current *current, const char *key, Ice_String *value) {
@@ -192,7 +206,7 @@ Ice_Bool Ice_Current_context(const Ice_Current *current, const char *key, Ice_St
     for (n = ICEC_CONTEXTS ? Ice_InputStream_readSize(&is) : 0; n > 0 && !is.failed; --n) {
         Ice_String found = Ice_InputStream_readString(&is);
         *value = Ice_InputStream_readString(&is);
-        if (Ice_String_equals(found, key))
+        if (Ice_String_is(&found, key))
             return 1;
     }
     return 0;

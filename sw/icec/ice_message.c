@@ -13,11 +13,11 @@ void Ice_patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value) {
     os->size = end;
 }
 
+const Ice_Byte Ice_head[ICE_HEADER] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, ICE_HEADER, 0, 0, 0};
+
 void Ice_beginMessage(Ice_OutputStreamPtr os, Ice_Byte type) {
-    Ice_OutputStream_writeInt(os, ICE_MAGIC);
-    Ice_OutputStream_writeInt(os, ICE_VERSIONS);
-    Ice_OutputStream_writeShort(os, type); /* and no compression */
-    Ice_OutputStream_writeInt(os, ICE_HEADER);
+    Ice_OutputStream_writeBlob(os, Ice_head, ICE_HEADER);
+    os->data[ICE_TYPE_AT] = type;
 }
 
 void Ice_endMessage(Ice_OutputStreamPtr os) {
@@ -36,33 +36,33 @@ void Ice_endEncapsulation(Ice_OutputStreamPtr os, Ice_Int begin) {
 }
 
 Ice_Status Ice_enterEncapsulation(Ice_InputStreamPtr is) {
-    Ice_Int size = Ice_InputStream_readInt(is);
+    Ice_Int size = Ice_InputStream_readInt(is) - 6;
     U32 version = (U16)Ice_InputStream_readShort(is); /* major, minor */
-    if (is->failed || size < 6 || size - 6 > is->size - is->position)
+    if ((U32)size > (U32)(is->size - is->position))
         return ICE_MARSHAL;
-    is->size = is->position + size - 6;
+    is->size = is->position + size;
     is->minor = (Ice_Byte)(version >> 8);
     return (version & 0xFEFFU) == 1U ? ICE_OK : ICE_PROTOCOL;
 }
 
-void Ice_writeFacet(Ice_OutputStreamPtr os, Ice_String facet) {
-    Ice_OutputStream_writeSize(os, facet.size != 0);
-    if (facet.size)
-        Ice_OutputStream_writeString(os, facet);
+void Ice_writeFacet(Ice_OutputStreamPtr os, const Ice_String *facet) {
+    Ice_OutputStream_writeByte(os, facet->size != 0);
+    if (facet->size)
+        Ice_OutputStream_writeString(os, *facet);
 }
 
 /* More than one is malformed, as it is to Ice. */
-Ice_String Ice_readFacet(Ice_InputStreamPtr is) {
-    Ice_String facet = {0, ""};
-    Ice_Int n = Ice_InputStream_readSize(is);
+void Ice_readFacet(Ice_InputStreamPtr is, Ice_String *facet) {
+    Ice_Byte n = Ice_InputStream_readByte(is);
+    facet->size = 0;
     if (n > 1)
         is->failed = 1;
     else if (n == 1)
-        facet = Ice_InputStream_readString(is);
-    return facet;
+        Ice_InputStream_takeString(is, facet);
 }
 
 void Ice_skipStrings(Ice_InputStreamPtr is, Ice_Int count) {
+    Ice_String skipped;
     while (count-- > 0)
-        (void)Ice_InputStream_readString(is);
+        Ice_InputStream_takeString(is, &skipped);
 }

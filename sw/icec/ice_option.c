@@ -4,6 +4,16 @@
  */
 #include "ice_seam.h"
 
+/* Where nothing is quoted. */
+static const char *findPlain(const char *options, char letter) {
+    while (options && *options) {
+        if (options[0] == '-' && options[1] == letter)
+            return options + 3;
+        ++options;
+    }
+    return 0;
+}
+
 const char *Ice_findOption(const char *options, char letter, Ice_Int *size) {
     int matches = 0; /* the word before was "-x" */
     while (options && *options && *options != ':') {
@@ -30,22 +40,21 @@ const char *Ice_findOption(const char *options, char letter, Ice_Int *size) {
 
 U32 Ice_numberOption(const char *options, char letter, U32 otherwise) {
     Ice_Int size;
-    const char *at = Ice_findOption(options, letter, &size);
-    U32 value = 0, base = 10;
+    const char *at =
+        ICEC_DETAILS ? Ice_findOption(options, letter, &size) : findPlain(options, letter);
+    U32 value = 0, base = 10, digit;
     if (!at)
         return otherwise;
-    if (size > 2 && at[0] == '0' && (at[1] | 32) == 'x') {
+    if (at[0] == '0' && at[1] == 'x') {
         base = 16;
         at += 2;
-        size -= 2;
     }
-    for (; size > 0; --size, ++at) {
-        U32 digit = (U32)(U8)*at - (U32)'0';
-        if (digit > 9)
-            digit = ((U32)(U8)*at | 32U) - (U32)'a' + 10U;
+    for (;;) {
+        digit = (U32)(U8)*at++ - (U32)'0';
+        if (digit > 9) /* a letter of either case, or what ends the number */
+            digit = ((digit + (U32)'0') | 32U) - (U32)'a' + 10U;
         if (digit >= base)
-            return otherwise;
+            return value;
         value = value * base + digit;
     }
-    return value;
 }

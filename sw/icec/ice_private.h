@@ -9,17 +9,18 @@
 
 enum { ICE_REQUEST, ICE_BATCH, ICE_REPLY, ICE_VALIDATE, ICE_CLOSE };
 #define ICE_HEADER 14
-#define ICE_MAGIC 0x50656349    /* "IceP", as an integer */
-#define ICE_VERSIONS 0x00010001 /* protocol 1.0, encoding 1.0 */
-#define ICE_REPLY_BODY 19       /* where a reply's encapsulation begins: header, id, status */
-#define ICE_REPLY_HEAD 25       /* where its results begin */
+#define ICE_TYPE_AT 8
+#define ICE_REPLY_BODY 19 /* where a reply's encapsulation begins: header, id, status */
+#define ICE_REPLY_HEAD 25 /* where its results begin */
 
 /* A call, and a connection: what is waited for is WAITING. */
 enum { ICE_FREE, ICE_WAITING, ICE_DONE, ICE_BUILDING };
 
 /* ---- messages (ice_message.c) ---- */
 
-/* The 14 bytes before every message; its size is set by Ice_endMessage. */
+/* The bytes before every message: "IceP", versions, type, compression, size. */
+extern const Ice_Byte Ice_head[ICE_HEADER];
+/* On an empty stream with room for them; the size is set by Ice_endMessage. */
 void Ice_beginMessage(Ice_OutputStreamPtr os, Ice_Byte type);
 void Ice_endMessage(Ice_OutputStreamPtr os);
 /* Overwrites four bytes. */
@@ -31,8 +32,8 @@ void Ice_endEncapsulation(Ice_OutputStreamPtr os, Ice_Int begin);
  */
 Ice_Status Ice_enterEncapsulation(Ice_InputStreamPtr is);
 /* Facet as on the wire: none, or one. */
-void Ice_writeFacet(Ice_OutputStreamPtr os, Ice_String facet);
-Ice_String Ice_readFacet(Ice_InputStreamPtr is);
+void Ice_writeFacet(Ice_OutputStreamPtr os, const Ice_String *facet);
+void Ice_readFacet(Ice_InputStreamPtr is, Ice_String *facet);
 void Ice_skipStrings(Ice_InputStreamPtr is, Ice_Int count);
 
 /* ---- connections (ice_connection.c) ---- */
@@ -58,9 +59,9 @@ void Ice_giveArena(Ice_CommunicatorPtr ic, Ice_InputStreamPtr is);
 /* One operation more or less under way; 0: the connection is another one by now. */
 int Ice_countPending(Ice_CommunicatorPtr ic, int connection, U16 generation, int change);
 
-/* 0: the message is malformed. */
-int Ice_dispatchRequest(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
-int Ice_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
+/* ICE_OK whatever became of the operation; ICE_CONNECTION_LOST: the message is malformed. */
+Ice_Status Ice_dispatchRequest(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
+Ice_Status Ice_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
 /* Turns results at ICE_REPLY_HEAD into a whole reply. `who`: identity, facet and operation as they
  * stand in the request; 0 bytes: no more known. */
 void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte *who,
@@ -70,6 +71,8 @@ void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, cons
 
 /* Sends what begin began, and gives the buffer back. */
 Ice_Status Ice_sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void *cookie);
+/* The call that a proxy began. */
+#define Ice_callOf(ic, prx) (&(ic)->calls[ICE_CALLS > 1 ? (prx)->call : 0])
 /* Empties ic->request; under ICE_LOCK_SEND. */
 void Ice_initRequest(Ice_CommunicatorPtr ic);
 
@@ -83,9 +86,12 @@ void Ice_wakeCalls(Ice_CommunicatorPtr ic);
 /* ---- proxies (ice_proxy.c) ---- */
 
 void Ice_ObjectPrx_init(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic);
-/* ICE_LIMIT: too long together. */
-Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, Ice_String name, Ice_String category,
-                                     Ice_String facet);
+/* ICE_LIMIT: too long together. `category` and `facet` may be 0. */
+Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String *name,
+                                     const Ice_String *category, const Ice_String *facet);
+/* The text up to its end, a space or a colon, as the identity's name; the result is what follows,
+ * or 0 where there is none or it is too long. */
+const char *Ice_ObjectPrx_setName(Ice_ObjectPrxPtr prx, const char *text);
 /* Adds the transport's endpoint; `options` 0: the one it listens on. */
 Ice_Status Ice_ObjectPrx_addEndpoint(Ice_ObjectPrxPtr prx, const char *options);
 /* The options behind the transport's name, or 0 where the text names another transport. */

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * ice_proxy: what a proxy is made of, and how it travels.
+ *
+ * Identity, facet and endpoints are kept as they are on the wire: most of what is done with them is
+ * to send them.
  */
 #include "ice_private.h"
 
@@ -13,108 +16,109 @@ void Ice_ObjectPrx_init(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic) {
     prx->communicator = ic;
     prx->timeoutMs = DEFAULT_TIMEOUT_MS;
     prx->minor = 1;
+    prx->endpointsSize = 1; /* none of them */
     prx->call = prx->connection = -1;
 }
 
-Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, Ice_String name, Ice_String category,
-                                     Ice_String facet) {
-    Ice_Int whole = name.size;
-    if (ICEC_CATEGORIES && category.size <= ICE_IDENTITY_MAX && facet.size <= ICE_IDENTITY_MAX)
-        whole += category.size + facet.size;
-    else if (category.size || facet.size)
-        return ICE_LIMIT;
-    if (name.size > ICE_IDENTITY_MAX || whole > ICE_IDENTITY_MAX)
-        return ICE_LIMIT;
-    memmove(prx->identity, name.data, (size_t)name.size);
-    prx->nameSize = (Ice_Byte)name.size;
-    if (ICEC_CATEGORIES) {
-        prx->categorySize = (Ice_Byte)category.size;
-        prx->facetSize = (Ice_Byte)facet.size;
-        memcpy(prx->identity + name.size, category.data, (size_t)category.size);
-        memcpy(prx->identity + name.size + category.size, facet.data, (size_t)facet.size);
-    }
-    return ICE_OK;
+Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String *name,
+                                     const Ice_String *category, const Ice_String *facet) {
+    Ice_OutputStream os;
+    Ice_OutputStream_init(&os, prx->identity, ICE_IDENTITY_MAX);
+    Ice_OutputStream_writeString(&os, *name);
+    if (ICEC_CATEGORIES && category)
+        Ice_OutputStream_writeString(&os, *category);
+    else
+        Ice_OutputStream_writeByte(&os, 0);
+    if (ICEC_CATEGORIES && facet)
+        Ice_writeFacet(&os, facet);
+    else
+        Ice_OutputStream_writeByte(&os, 0);
+    prx->identitySize = (Ice_Byte)os.size;
+    return os.failed ? ICE_LIMIT : ICE_OK;
+}
+
+const char *Ice_ObjectPrx_setName(Ice_ObjectPrxPtr prx, const char *text) {
+    Ice_Byte *to = prx->identity + 1;
+    while (*text && *text != ' ' && *text != ':' && to < prx->identity + ICE_IDENTITY_MAX - 2)
+        *to++ = (Ice_Byte)*text++;
+    prx->identity[0] = (Ice_Byte)(to - prx->identity - 1);
+    to[0] = to[1] = 0; /* no category, no facet */
+    prx->identitySize = (Ice_Byte)(prx->identity[0] + 3);
+    return prx->identity[0] && (*text == 0 || *text == ' ' || *text == ':') ? text : 0;
 }
 
 Ice_Status Ice_ObjectPrx_addEndpoint(Ice_ObjectPrxPtr prx, const char *options) {
     Ice_CommunicatorPtr ic = prx->communicator;
     Ice_OutputStream os;
-    Ice_OutputStream_init(&os, prx->encoded, ICE_ENDPOINT_MAX);
-    os.size = prx->encodedSize;
+    Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
+    os.size = prx->endpointsSize;
     ic->endpoint->encode(ic->endpointContext, options, &os);
-    if (os.failed)
-        return ICE_LIMIT;
-    prx->encodedSize = (Ice_Byte)os.size;
-    ++prx->endpointCount;
-    return ICE_OK;
+    prx->endpointsSize = (Ice_Byte)os.size;
+    ++prx->endpoints[0];
+    return os.failed ? ICE_LIMIT : ICE_OK;
 }
 
 int Ice_ObjectPrx_isNull(const Ice_ObjectPrx *prx) {
-    return prx->nameSize == 0;
+    return prx->identity[0] == 0;
 }
 
 Ice_Identity Ice_ObjectPrx_getIdentity(const Ice_ObjectPrx *prx) {
     Ice_Identity id;
-    id.name.data = prx->identity;
-    id.name.size = prx->nameSize;
-    id.category.data = prx->identity + prx->nameSize;
-    id.category.size = ICEC_CATEGORIES ? prx->categorySize : 0;
+    Ice_InputStream is;
+    Ice_InputStream_init(&is, prx->identity, prx->identitySize);
+    id.name = Ice_InputStream_readString(&is);
+    id.category = Ice_InputStream_readString(&is);
     return id;
 }
 
 Ice_String Ice_ObjectPrx_getFacet(const Ice_ObjectPrx *prx) {
     Ice_String facet;
-    facet.data = prx->identity + prx->nameSize + prx->categorySize;
-    facet.size = ICEC_CATEGORIES ? prx->facetSize : 0;
+    Ice_InputStream is;
+    Ice_InputStream_init(&is, prx->identity, prx->identitySize);
+    Ice_skipStrings(&is, 2);
+    Ice_readFacet(&is, &facet);
     return facet;
 }
 
 void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx *prx) {
-    Ice_Identity id;
     if (!prx || Ice_ObjectPrx_isNull(prx)) {
         Ice_OutputStream_writeShort(os, 0); /* two empty strings */
         return;
     }
     if (ICEC_ASYNC && prx->generation)
         os->failed = 1; /* nobody else has this connection */
-    id = Ice_ObjectPrx_getIdentity(prx);
-    Ice_OutputStream_writeString(os, id.name);
-    Ice_OutputStream_writeString(os, id.category);
-    Ice_writeFacet(os, Ice_ObjectPrx_getFacet(prx));
+    Ice_OutputStream_writeBlob(os, prx->identity, prx->identitySize);
     Ice_OutputStream_writeByte(os, prx->mode);
     Ice_OutputStream_writeByte(os, prx->secure);
-    if (os->minor != 0) {
-        Ice_OutputStream_writeShort(os, 1); /* protocol 1.0 */
+    if (os->minor != 0) { /* protocol 1.0, the encoding */
+        Ice_OutputStream_writeShort(os, 1);
         Ice_OutputStream_writeShort(os, (Ice_Short)(1 | prx->minor << 8));
     }
-    Ice_OutputStream_writeSize(os, prx->endpointCount);
-    if (prx->endpointCount)
-        Ice_OutputStream_writeBlob(os, prx->encoded, prx->encodedSize);
-    else /* an adapter's id, in a proxy without endpoints */
-        Ice_OutputStream_writeSize(os, prx->encodedSize),
-            Ice_OutputStream_writeBlob(os, prx->encoded, prx->encodedSize);
+    Ice_OutputStream_writeBlob(os, prx->endpoints, prx->endpointsSize);
+    if (ICEC_DETAILS && prx->endpointsSize == 1)
+        Ice_OutputStream_writeByte(os, 0); /* no adapter's id either */
 }
 
 /* Keeps bytes of the message behind those kept so far. 0: no room. */
 static int keep(Ice_InputStreamPtr is, Ice_Int begin, Ice_ObjectPrxPtr prx) {
     Ice_Int size = is->position - begin;
-    if (is->failed || size > ICE_ENDPOINT_MAX - prx->encodedSize)
+    if (is->failed || size > ICE_ENDPOINT_MAX - prx->endpointsSize)
         return 0;
-    memcpy(prx->encoded + prx->encodedSize, is->data + begin, (size_t)size);
-    prx->encodedSize = (Ice_Byte)(prx->encodedSize + size);
+    memcpy(prx->endpoints + prx->endpointsSize, is->data + begin, (size_t)size);
+    prx->endpointsSize = (Ice_Byte)(prx->endpointsSize + size);
     return 1;
 }
 
 void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr prx) {
-    Ice_String name = Ice_InputStream_readString(is);
-    Ice_String category = Ice_InputStream_readString(is);
-    Ice_String facet;
+    Ice_String name, category, facet;
     Ice_Int n, begin;
     Ice_ObjectPrx_init(prx, ic ? ic : is->communicator);
+    Ice_InputStream_takeString(is, &name);
+    Ice_InputStream_takeString(is, &category);
     if (name.size == 0)
         return;
-    facet = Ice_readFacet(is);
-    if (Ice_ObjectPrx_setIdentity(prx, name, category, facet) != ICE_OK)
+    Ice_readFacet(is, &facet);
+    if (is->failed || Ice_ObjectPrx_setIdentity(prx, &name, &category, &facet) != ICE_OK)
         is->failed = 1;
     prx->mode = Ice_InputStream_readByte(is);
     prx->secure = Ice_InputStream_readByte(is);
@@ -122,21 +126,24 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         const Ice_Byte *versions = Ice_InputStream_readBlob(is, 4);
         prx->minor = versions && versions[3] != 0; /* of a later encoding 1.1 is understood there */
     }
+    begin = is->position + 1;
     n = Ice_InputStream_readSequence(is, 8);
     if (n == 0) {
-        Ice_String adapter = Ice_InputStream_readString(is);
-        if (!keep(is, is->position - adapter.size, prx))
+        Ice_skipStrings(is, 1);
+        if (!keep(is, begin, prx))
             is->failed = 1;
-        return;
     }
-    for (; n > 0; --n) {
+    /* Endpoints that do not fit are left out, as long as one does. */
+    for (; n > 0 && !is->failed; --n) {
         Ice_Int size;
         begin = is->position;
         (void)Ice_InputStream_readShort(is);
         size = Ice_InputStream_readInt(is);
         (void)Ice_InputStream_readBlob(is, size < 6 ? -1 : size - 4);
-        prx->endpointCount = (Ice_Byte)(prx->endpointCount + keep(is, begin, prx));
+        prx->endpoints[0] = (Ice_Byte)(prx->endpoints[0] + keep(is, begin, prx));
+        if (n == 1 && prx->endpoints[0] == 0)
+            is->failed = 1;
     }
-    if (prx->endpointCount == 0 || prx->mode > ICE_BATCH_DATAGRAM)
+    if (prx->mode > ICE_BATCH_DATAGRAM)
         is->failed = 1;
 }

@@ -7,24 +7,23 @@
 #include <string.h>
 
 int Ice_ObjectPrx_equals(const Ice_ObjectPrx *a, const Ice_ObjectPrx *b) {
-    Ice_Identity x = Ice_ObjectPrx_getIdentity(a), y = Ice_ObjectPrx_getIdentity(b);
-    return Ice_String_same(x.name, y.name) && Ice_String_same(x.category, y.category) &&
-           Ice_String_same(Ice_ObjectPrx_getFacet(a), Ice_ObjectPrx_getFacet(b)) &&
-           a->mode == b->mode && a->secure == b->secure && a->minor == b->minor &&
-           a->endpointCount == b->endpointCount && a->generation == b->generation &&
-           a->encodedSize == b->encodedSize && memcmp(a->encoded, b->encoded, a->encodedSize) == 0;
+    return a->mode == b->mode && a->secure == b->secure && a->minor == b->minor &&
+           a->generation == b->generation && a->identitySize == b->identitySize &&
+           a->endpointsSize == b->endpointsSize &&
+           memcmp(a->identity, b->identity, a->identitySize) == 0 &&
+           memcmp(a->endpoints, b->endpoints, a->endpointsSize) == 0;
 }
 
 Ice_Status Ice_ObjectPrx_ice_identity(Ice_ObjectPrxPtr prx, const char *identity) {
     Ice_Identity id = Ice_parseIdentity(identity);
-    return id.name.size ? Ice_ObjectPrx_setIdentity(prx, id.name, id.category, Ice_String_from(""))
-                        : ICE_PARSE;
+    return id.name.size ? Ice_ObjectPrx_setIdentity(prx, &id.name, &id.category, 0) : ICE_PARSE;
 }
 
 Ice_Status Ice_ObjectPrx_ice_facet(Ice_ObjectPrxPtr prx, const char *facet) {
     Ice_ObjectPrx old = *prx;
     Ice_Identity id = Ice_ObjectPrx_getIdentity(&old);
-    return Ice_ObjectPrx_setIdentity(prx, id.name, id.category, Ice_String_from(facet));
+    Ice_String text = Ice_String_from(facet);
+    return Ice_ObjectPrx_setIdentity(prx, &id.name, &id.category, &text);
 }
 
 void Ice_ObjectPrx_ice_twoway(Ice_ObjectPrxPtr prx) {

@@ -9,21 +9,14 @@
 
 /* "name [-t|-o]:transport options", all that the minimal configuration takes. */
 static Ice_Status parseShort(const char *text, Ice_ObjectPrxPtr prx) {
-    Ice_String name, none = {0, ""};
-    const char *options;
-    name.data = text;
-    while (*text && *text != ' ' && *text != ':')
-        ++text;
-    name.size = (Ice_Int)(text - name.data);
+    text = Ice_ObjectPrx_setName(prx, text);
+    if (!text)
+        return ICE_LIMIT;
     for (; *text && *text != ':'; ++text)
         if (text[0] == '-' && text[1] == 'o')
             prx->mode = ICE_ONEWAY;
-    options = *text ? Ice_optionsOf(prx->communicator, text + 1) : 0;
-    if (!options)
-        return ICE_NO_ENDPOINT;
-    if (name.size == 0 || Ice_ObjectPrx_setIdentity(prx, name, none, none) != ICE_OK)
-        return ICE_LIMIT;
-    return Ice_ObjectPrx_addEndpoint(prx, options);
+    text = Ice_optionsOf(prx->communicator, *text ? text + 1 : text);
+    return text ? Ice_ObjectPrx_addEndpoint(prx, text) : ICE_NO_ENDPOINT;
 }
 
 /* The next word, without its quotes; ends at a space, a colon or an at sign. Escapes stay as they
@@ -69,7 +62,7 @@ static void unescape(Ice_String text, Ice_OutputStreamPtr os) {
 
 /* "name" or "category/name", where a slash may be escaped. */
 static Ice_Status parseIdentity(Ice_String text, Ice_String facet, Ice_ObjectPrxPtr prx) {
-    Ice_Byte bytes[3 * ICE_IDENTITY_MAX]; /* escaped text is longer than what it means */
+    Ice_Byte bytes[ICE_IDENTITY_MAX];
     Ice_OutputStream os;
     Ice_String parts[3], raw[3];
     Ice_Int i, slash = -1;
@@ -95,7 +88,9 @@ static Ice_Status parseIdentity(Ice_String text, Ice_String facet, Ice_ObjectPrx
     }
     if (os.failed)
         return ICE_LIMIT;
-    return parts[0].size ? Ice_ObjectPrx_setIdentity(prx, parts[0], parts[1], parts[2]) : ICE_PARSE;
+    if (parts[0].size == 0)
+        return ICE_PARSE;
+    return Ice_ObjectPrx_setIdentity(prx, &parts[0], &parts[1], &parts[2]);
 }
 
 /* 64 characters stand for six bits each. */
@@ -126,8 +121,8 @@ static Ice_Status parseOpaque(const char *options, Ice_ObjectPrxPtr prx) {
     Ice_OutputStream os;
     if (!value || type > 0x7FFFU)
         return ICE_PARSE;
-    Ice_OutputStream_init(&os, prx->encoded, ICE_ENDPOINT_MAX);
-    os.size = prx->encodedSize;
+    Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
+    os.size = prx->endpointsSize;
     os.minor = !(version && versionSize == 3 && version[2] == '0');
     Ice_OutputStream_writeShort(&os, (Ice_Short)type);
     begin = Ice_beginEncapsulation(&os);
@@ -135,8 +130,8 @@ static Ice_Status parseOpaque(const char *options, Ice_ObjectPrxPtr prx) {
     Ice_endEncapsulation(&os, begin);
     if (os.failed)
         return ICE_LIMIT;
-    prx->encodedSize = (Ice_Byte)os.size;
-    ++prx->endpointCount;
+    prx->endpointsSize = (Ice_Byte)os.size;
+    ++prx->endpoints[0];
     return ICE_OK;
 }
 
@@ -170,9 +165,11 @@ static Ice_Status parseAdapter(const char *text, Ice_ObjectPrxPtr prx) {
     text = word(text, &id);
     if (!text || id.size == 0 || *text != 0)
         return ICE_PARSE;
-    Ice_OutputStream_init(&os, prx->encoded, ICE_ENDPOINT_MAX);
+    Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
+    os.size = 2; /* no endpoints, the id's size */
     unescape(id, &os);
-    prx->encodedSize = (Ice_Byte)os.size;
+    prx->endpointsSize = (Ice_Byte)os.size;
+    prx->endpoints[1] = (Ice_Byte)(os.size - 2);
     return os.failed ? ICE_LIMIT : ICE_OK;
 }
 

@@ -73,13 +73,13 @@ static void putEndpoints(const Ice_ObjectPrx *prx, Ice_OutputStreamPtr os) {
     Ice_CommunicatorPtr ic = prx->communicator;
     Ice_InputStream is;
     int n;
-    Ice_InputStream_init(&is, prx->encoded, prx->encodedSize);
-    for (n = prx->endpointCount; n > 0; --n) {
-        const Ice_Byte *at = prx->encoded + is.position;
+    Ice_InputStream_init(&is, prx->endpoints + 1, prx->endpointsSize - 1);
+    for (n = prx->endpoints[0]; n > 0; --n) {
+        const Ice_Byte *at = is.data + is.position;
         Ice_Int size;
         (void)Ice_InputStream_readShort(&is);
         (void)Ice_InputStream_readBlob(&is, Ice_InputStream_readInt(&is) - 4);
-        size = (Ice_Int)(prx->encoded + is.position - at);
+        size = (Ice_Int)(is.data + is.position - at);
         put(os, ":");
         if (!ic->endpoint || !ic->endpoint->print ||
             !ic->endpoint->print(ic->endpointContext, at, size, os))
@@ -110,12 +110,12 @@ Ice_Status Ice_Communicator_proxyToString(const Ice_ObjectPrx *prx, char *text, 
         put(&os, modes[prx->mode]);
         put(&os, prx->secure ? " -s" : "");
         put(&os, prx->minor ? " -e 1.1" : " -e 1.0");
-        if (prx->endpointCount) {
+        if (prx->endpoints[0]) {
             putEndpoints(prx, &os);
-        } else if (prx->encodedSize) {
+        } else if (prx->endpointsSize > 2) {
             Ice_String adapter;
-            adapter.data = (const char *)prx->encoded;
-            adapter.size = prx->encodedSize;
+            adapter.data = (const char *)prx->endpoints + 2;
+            adapter.size = prx->endpointsSize - 2;
             put(&os, " @ ");
             begin = os.size;
             escape(&os, adapter, 0);

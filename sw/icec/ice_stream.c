@@ -14,12 +14,17 @@ Ice_String Ice_String_from(const char *terminated) {
     return s;
 }
 
-int Ice_String_equals(Ice_String a, const char *terminated) {
-    return Ice_String_same(a, Ice_String_from(terminated));
+int Ice_String_same(const Ice_String *a, const Ice_String *b) {
+    return a->size == b->size && memcmp(a->data, b->data, (size_t)a->size) == 0;
 }
 
-int Ice_String_same(Ice_String a, Ice_String b) {
-    return a.size == b.size && memcmp(a.data, b.data, (size_t)a.size) == 0;
+int Ice_String_equals(Ice_String a, const char *terminated) {
+    return Ice_String_is(&a, terminated);
+}
+
+int Ice_String_is(const Ice_String *a, const char *terminated) {
+    size_t size = strlen(terminated);
+    return (size_t)a->size == size && memcmp(a->data, terminated, size) == 0;
 }
 
 void Ice_OutputStream_init(Ice_OutputStreamPtr os, Ice_Byte *data, Ice_Int capacity) {
@@ -95,6 +100,13 @@ void Ice_OutputStream_writeSize(Ice_OutputStreamPtr os, Ice_Int v) {
 void Ice_OutputStream_writeString(Ice_OutputStreamPtr os, Ice_String v) {
     Ice_OutputStream_writeSize(os, v.size);
     Ice_OutputStream_writeBlob(os, (const Ice_Byte *)v.data, v.size);
+}
+
+void Ice_OutputStream_writeText(Ice_OutputStreamPtr os, const char *terminated) {
+    Ice_String text;
+    text.data = terminated;
+    text.size = (Ice_Int)strlen(terminated);
+    Ice_OutputStream_writeString(os, text);
 }
 
 void Ice_OutputStream_writeEnum(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int largest) {
@@ -178,14 +190,16 @@ Ice_Int Ice_InputStream_readSize(Ice_InputStreamPtr is) {
     return is->failed ? 0 : size;
 }
 
+void Ice_InputStream_takeString(Ice_InputStreamPtr is, Ice_String *s) {
+    s->size = Ice_InputStream_readSize(is);
+    s->data = (const char *)Ice_InputStream_readBlob(is, s->size);
+    if (!s->data)
+        s->size = 0;
+}
+
 Ice_String Ice_InputStream_readString(Ice_InputStreamPtr is) {
     Ice_String s;
-    s.size = Ice_InputStream_readSize(is);
-    s.data = (const char *)Ice_InputStream_readBlob(is, s.size);
-    if (!s.data) {
-        s.data = "";
-        s.size = 0;
-    }
+    Ice_InputStream_takeString(is, &s);
     return s;
 }
 

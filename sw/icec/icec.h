@@ -72,16 +72,18 @@ Ice_Status Ice_Reply_end(Ice_Reply *reply, Ice_Status status);
 
 /* ---- object adapters ---- */
 
+typedef struct Ice_Servant {
+    Ice_ObjectPtr servant; /* 0: free */
+    Ice_Identity identity; /* name of no characters: default servant of the category */
+    Ice_String facet;
+} Ice_Servant;
+
 struct Ice_ObjectAdapter {
     Ice_CommunicatorPtr communicator;
     Ice_ObjectAdapterPtr next;
     const char *name;
     Ice_Byte active;
-    struct {
-        Ice_Identity identity; /* name of no characters: default servant of the category */
-        Ice_String facet;
-        Ice_ObjectPtr servant; /* 0: free */
-    } servants[ICE_SERVANTS];
+    Ice_Servant servants[ICE_SERVANTS];
 };
 
 /* `identity`: "name" or "category/name". ICE_LIMIT: it is taken, or there is no room. */
@@ -117,23 +119,23 @@ typedef struct Ice_Batch {
     Ice_Status (*keep)(Ice_ObjectPrxPtr prx); /* the run time's */
 } Ice_Batch;
 
+/* Members that code uses first: their offsets are short. */
 struct Ice_ObjectPrx {
     Ice_CommunicatorPtr communicator;
-    char identity[ICE_IDENTITY_MAX]; /* name, category, facet, one behind the other */
-    Ice_Byte nameSize, categorySize, facetSize;
-    Ice_Byte mode, secure;
-    Ice_Byte minor;                     /* encoding of requests, 1.minor */
-    Ice_Byte encoded[ICE_ENDPOINT_MAX]; /* without endpoints: the adapter's id, a string */
-    Ice_Byte encodedSize, endpointCount;
-    Ice_Byte status;   /* Ice_Status of the call being built */
+    int call;          /* the slot of the last call, -1 none */
+    int connection;    /* of the last call; a fixed proxy's only one */
     Ice_Int timeoutMs; /* for connecting and for a reply; 10 s unless set */
-    U32 *reply;        /* 0: ICE_REPLY_MAX bytes of the communicator's */
-    Ice_Int replySize;
-    int call;       /* the slot of the last call, -1 none */
-    int connection; /* of the last call; a fixed proxy's only one */
+    Ice_Byte mode, secure;
+    Ice_Byte minor;  /* encoding of requests, 1.minor */
+    Ice_Byte status; /* Ice_Status of the call being built */
+    Ice_Byte identitySize, endpointsSize;
     U16 generation; /* of a fixed proxy's connection; 0: not fixed */
     const Ice_ContextEntry *context;
     Ice_Batch *batch;
+    U32 *reply; /* 0: ICE_REPLY_MAX bytes of the communicator's */
+    Ice_Int replySize;
+    Ice_Byte identity[ICE_IDENTITY_MAX];  /* as on the wire: name, category, facet */
+    Ice_Byte endpoints[ICE_ENDPOINT_MAX]; /* as on the wire: count, endpoints; or 0, adapter's id */
 };
 
 /* What a failed call's reply said: of ICE_OBJECT_NOT_EXIST and its like who and what, else the

@@ -167,7 +167,7 @@ int main(void) {
     (void)Ice_Communicator_stringToProxy(&ic, "station:xbee-at -a 0x0000", &station);
     (void)Ice_Communicator_stringToProxy(&ic, "station -o:xbee-at -a 0x0000", &stationOneway);
     (void)Ice_ObjectAdapter_createProxy(&adapter, "hwengine1", &self);
-    if (Ice_ObjectPrx_ice_ping(&station) == ICE_OK)
+    if (Autopilot_StationPrx_vehicleState(&station, &self, &params) == ICE_OK)
         (void)Autopilot_StationPrx_vehicleState(&stationOneway, &self, &params);
 
     Ice_Communicator_waitForShutdown(&ic);

@@ -65,6 +65,7 @@ module table1 #(
     wire [63:0]  npi_addr;
     wire [1:0]   npi_addr_req, npi_addr_ack, npi_rnw, npi_rmw, npi_wr_push, npi_wr_empty;
     wire [1:0]   npi_wr_almost_full, npi_wr_flush, npi_rd_pop, npi_rd_empty, npi_rd_flush;
+    wire [1:0]   npi_init_done;
     wire [7:0]   npi_size, npi_rd_word;
     wire [127:0] npi_wr_data, npi_rd_data;
     wire [15:0]  npi_wr_be;
@@ -87,7 +88,7 @@ module table1 #(
         .npi_wr_almost_full_i(npi_wr_almost_full[FSMC]), .npi_wr_flush_o(npi_wr_flush[FSMC]),
         .npi_rd_data_i(npi_rd_data[64*FSMC +: 64]), .npi_rd_word_i(npi_rd_word[4*FSMC +: 4]),
         .npi_rd_pop_o(npi_rd_pop[FSMC]), .npi_rd_empty_i(npi_rd_empty[FSMC]),
-        .npi_rd_flush_o(npi_rd_flush[FSMC]), .npi_init_done_i(mcb_calib_done_i)
+        .npi_rd_flush_o(npi_rd_flush[FSMC]), .npi_init_done_i(npi_init_done[FSMC])
     );
 
     bus_decoder #(.SLOTS(2)) u_bus_decoder (
@@ -112,37 +113,21 @@ module table1 #(
         .npi_wr_almost_full_i(npi_wr_almost_full[RADIO]), .npi_wr_flush_o(npi_wr_flush[RADIO]),
         .npi_rd_data_i(npi_rd_data[64*RADIO +: 64]), .npi_rd_word_i(npi_rd_word[4*RADIO +: 4]),
         .npi_rd_pop_o(npi_rd_pop[RADIO]), .npi_rd_empty_i(npi_rd_empty[RADIO]),
-        .npi_rd_flush_o(npi_rd_flush[RADIO]), .npi_init_done_i(mcb_calib_done_i),
+        .npi_rd_flush_o(npi_rd_flush[RADIO]), .npi_init_done_i(npi_init_done[RADIO]),
         .modem_rxd_i(modem_rxd_i), .modem_txd_o(modem_txd_o), .modem_cts_n_i(modem_cts_n_i),
         .modem_rts_n_o(modem_rts_n_o), .modem_reset_n_o(modem_reset_n_o)
     );
 
-    wire        cmd_valid, cmd_read, cmd_ready, wr_valid, wr_ready, rd_valid, rd_ready;
-    wire [31:0] cmd_addr;
-    wire [4:0]  cmd_words;
-    wire [63:0] wr_data, rd_data;
-    wire [7:0]  wr_be;
-
-    npi_arbiter #(.PORTS(2)) u_npi_arbiter (
+    memory_mcb #(.PORTS(2)) u_memory (
         .clk_i(clk_i), .rst_i(rst_i),
         .npi_addr_i(npi_addr), .npi_addr_req_i(npi_addr_req), .npi_addr_ack_o(npi_addr_ack),
-        .npi_rnw_i(npi_rnw), .npi_size_i(npi_size),
+        .npi_rnw_i(npi_rnw), .npi_size_i(npi_size), .npi_rmw_i(npi_rmw),
         .npi_wr_data_i(npi_wr_data), .npi_wr_be_i(npi_wr_be), .npi_wr_push_i(npi_wr_push),
         .npi_wr_empty_o(npi_wr_empty), .npi_wr_almost_full_o(npi_wr_almost_full),
         .npi_wr_flush_i(npi_wr_flush),
         .npi_rd_data_o(npi_rd_data), .npi_rd_word_o(npi_rd_word), .npi_rd_pop_i(npi_rd_pop),
         .npi_rd_empty_o(npi_rd_empty), .npi_rd_flush_i(npi_rd_flush),
-        .cmd_valid_o(cmd_valid), .cmd_read_o(cmd_read), .cmd_addr_o(cmd_addr),
-        .cmd_words_o(cmd_words), .cmd_ready_i(cmd_ready),
-        .wr_valid_o(wr_valid), .wr_data_o(wr_data), .wr_be_o(wr_be), .wr_ready_i(wr_ready),
-        .rd_valid_i(rd_valid), .rd_data_i(rd_data), .rd_ready_o(rd_ready)
-    );
-
-    mcb_backend u_mcb_backend (
-        .cmd_valid_i(cmd_valid), .cmd_read_i(cmd_read), .cmd_addr_i(cmd_addr),
-        .cmd_words_i(cmd_words), .cmd_ready_o(cmd_ready),
-        .wr_valid_i(wr_valid), .wr_data_i(wr_data), .wr_be_i(wr_be), .wr_ready_o(wr_ready),
-        .rd_valid_o(rd_valid), .rd_data_o(rd_data), .rd_ready_i(rd_ready),
+        .npi_init_done_o(npi_init_done),
         .mcb_cmd_en_o(mcb_cmd_en_o), .mcb_cmd_instr_o(mcb_cmd_instr_o),
         .mcb_cmd_bl_o(mcb_cmd_bl_o), .mcb_cmd_byte_addr_o(mcb_cmd_byte_addr_o),
         .mcb_cmd_full_i(mcb_cmd_full_i), .mcb_wr_en_o(mcb_wr_en_o),
@@ -152,5 +137,5 @@ module table1 #(
         .mcb_calib_done_i(mcb_calib_done_i)
     );
 
-    wire unused = &{1'b0, npi_rmw, slot_valid[0], 1'b0};
+    wire unused = &{1'b0, slot_valid[0], 1'b0};
 endmodule

@@ -52,7 +52,9 @@ Plan readPlan(const fs::path& file, const Library& library, const fs::path& root
     for (const auto& [name, module] : library.modules()) {
         const bool known = std::any_of(plan.designs.begin(), plan.designs.end(),
                                        [&, &n = name](const Design& d) { return d.top == n; });
-        if (!known && module.file.stem() == name) // of a converted core only the core itself
+        const bool rules = name.size() > 6 && name.compare(name.size() - 6, 6, "_rules") == 0;
+        if (!known && !rules &&
+            module.file.stem() == name) // of a converted core only the core itself
             plan.designs.push_back({name, name, sentenceOf(module.file, name), "", {}, {}, false});
     }
     for (Design& design : plan.designs)

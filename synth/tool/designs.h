@@ -30,6 +30,7 @@ struct Plan {
     std::vector<Design> designs;
 };
 
-// The designs of the file, then every other module of the library that is `alone` there.
+// The designs of the file, then every other module that has a file of its own; `*_rules` are
+// properties, not hardware.
 Plan readPlan(const std::filesystem::path& file, const Library& library,
               const std::filesystem::path& root);

@@ -25,6 +25,10 @@ bool isMultiplier(const std::string& type) {
 
 } // namespace
 
+double Figures::mhz() const {
+    return timing.paths.empty() ? 0 : 1000 / (timing.paths.front().ns * slowGrade);
+}
+
 int Figures::luts(int inputs) const {
     const auto count = [&](const std::string& type) {
         const auto it = cells.find(type);
@@ -33,7 +37,7 @@ int Figures::luts(int inputs) const {
     return count(fmt::format("LUT{}", inputs)) + (inputs == 1 ? count("INV") : 0);
 }
 
-Figures figuresOf(const Netlist& netlist, const FilesAlong& filesAlong) {
+Figures figuresOf(const Netlist& netlist, bool spartan6, const FilesAlong& filesAlong) {
     Figures f;
     for (const Cell& cell : netlist.cells) {
         const Cost cost = costOf(cell);
@@ -50,8 +54,41 @@ Figures figuresOf(const Netlist& netlist, const FilesAlong& filesAlong) {
         if (port.name.rfind("mcb_", 0) != 0)
             f.pins += static_cast<int>(port.bits.size());
     f.slices = slicesOf(netlist);
+    if (spartan6)
+        f.timing = timingOf(netlist);
     f.costs = costsOf(netlist, filesAlong);
     return f;
+}
+
+void to_json(json& j, const Timing& t) {
+    json paths = json::array();
+    for (const Path& p : t.paths) {
+        json steps = json::array(); // cell, net, fan-out, delay of cell, of net
+        for (const Step& s : p.steps)
+            steps.push_back({s.cell, s.name, s.fanout, s.delay, s.net});
+        paths.push_back({{"from", p.from},
+                         {"to", p.to},
+                         {"pin", p.pin},
+                         {"levels", p.levels},
+                         {"ns", p.ns},
+                         {"steps", steps}});
+    }
+    j = {{"paths", paths},
+         {"inputLevels", t.inputLevels},
+         {"outputLevels", t.outputLevels},
+         {"throughLevels", t.throughLevels}};
+}
+
+void from_json(const json& j, Timing& t) {
+    for (const json& p : j.at("paths")) {
+        Path path{p.at("from"), p.at("to"), p.at("pin"), p.at("levels"), p.at("ns"), {}};
+        for (const json& s : p.at("steps"))
+            path.steps.push_back({s[0], s[1], s[2], s[3], s[4]});
+        t.paths.push_back(path);
+    }
+    t.inputLevels = j.at("inputLevels");
+    t.outputLevels = j.at("outputLevels");
+    t.throughLevels = j.at("throughLevels");
 }
 
 void to_json(json& j, const Figures& f) {
@@ -69,6 +106,7 @@ void to_json(json& j, const Figures& f) {
          {"dsp", f.dsp},
          {"pins", f.pins},
          {"costs", costs},
+         {"timing", f.timing},
          {"slices",
           {{"low", s.low},
            {"estimate", s.estimate},
@@ -91,6 +129,7 @@ void from_json(const json& j, Figures& f) {
     j.at("pins").get_to(f.pins);
     for (const json& c : j.at("costs"))
         f.costs[{c[0], c[1]}] = {c[2], c[3], c[4], c[5]};
+    j.at("timing").get_to(f.timing);
     const json& s = j.at("slices");
     f.slices = {s.at("low"),   s.at("estimate"), s.at("high"),       s.at("slicem"),
                 s.at("sites"), s.at("pairs"),    s.at("controlSets")};

@@ -6,6 +6,7 @@
 
 #include "owners.h"
 #include "slices.h"
+#include "timing.h"
 
 #include <map>
 #include <nlohmann/json_fwd.hpp>
@@ -22,12 +23,18 @@ struct Figures {
     int dsp = 0;
     int pins = 0;  // ports that leave the chip: not those of the memory controller (mcb_*)
     Slices slices; // not for ECP5
+    Timing timing; // only for Spartan-6
     Costs costs;
 
+    // Clock rate that the longest path allows, MHz; 0 if there is no path. At the slower speed
+    // grade.
+    double mhz() const;
     int luts(int inputs) const; // logic LUTs of so many inputs
 };
 
-Figures figuresOf(const Netlist& netlist, const FilesAlong& filesAlong);
+Figures figuresOf(const Netlist& netlist, bool spartan6, const FilesAlong& filesAlong);
 
+void to_json(nlohmann::json& j, const Timing& t);
+void from_json(const nlohmann::json& j, Timing& t);
 void to_json(nlohmann::json& j, const Figures& f);
 void from_json(const nlohmann::json& j, Figures& f);

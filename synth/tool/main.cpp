@@ -64,8 +64,8 @@ int report(const Options& o) {
     int status = 0;
     for (const Row& row : rows)
         if (row.design->beside && row.main->error.empty())
-            fmt::print("{}\n{}\n{}\n", row.design->title, paperTable(plan, row).plain(),
-                       costTable(library, row, 2).plain());
+            fmt::print("{}\n{}\n{}\n{}\n", row.design->title, paperTable(plan, row).plain(),
+                       costTable(library, row, 2).plain(), pathTable(plan, row, 5).plain());
     fmt::print("{}", designTable(plan, rows).plain());
     for (const Run& run : runs)
         if (!run.error.empty()) {

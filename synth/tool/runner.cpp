@@ -84,9 +84,10 @@ void carryOutOne(Run& run, const Library& library, const RunnerOptions& options,
     }
     if (!run.cached)
         synthesise(run, library, options);
-    run.figures = figuresOf(readNetlist(run.netlist), [&](const std::string& path) {
-        return library.filesAlong(run.design->top, path);
-    });
+    run.figures =
+        figuresOf(readNetlist(run.netlist), run.family == "xc6s", [&](const std::string& path) {
+            return library.filesAlong(run.design->top, path);
+        });
     const fs::path part = kept.string() + ".part";
     std::ofstream(part) << nlohmann::json(run.figures);
     fs::rename(part, kept);

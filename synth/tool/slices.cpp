@@ -15,9 +15,6 @@ namespace {
 
 constexpr int sitesPerSlice = 4, flipFlopsPerSlice = 8, sharedInputs = 5;
 
-// Occupied slices over the bound of the rules, in the reports of docs/utilisation.md.
-constexpr double usualFill = 1.35, worstFill = 1.80;
-
 int upTo(int n, int unit) {
     return (n + unit - 1) / unit;
 }
@@ -70,11 +67,15 @@ int sitesFor(const std::vector<std::set<int>>& luts) {
 
 } // namespace
 
+double occupiedSlices(double sites, double flipFlops, double share) {
+    return (sites + share * flipFlops) / sitesPerSlice;
+}
+
 Slices slicesOf(const Netlist& n) {
     Slices s;
     std::vector<std::set<int>> luts;
     std::map<std::tuple<int, int, int>, std::pair<int, int>> sets; // (pairs, others)
-    int memory = 0, carry = 0, carrySites = 0;
+    int memory = 0, carry = 0, carrySites = 0, flipFlops = 0;
 
     for (const Cell& cell : n.cells) {
         if (lutInputs(cell.type) != 0) {
@@ -92,6 +93,7 @@ Slices slicesOf(const Netlist& n) {
                     carrySites++;
             }
         } else if (isFlipFlop(cell.type) || isLatch(cell.type)) {
+            flipFlops++;
             int control = cell.bit("R");
             for (const char* port : {"S", "CLR", "PRE"})
                 if (control == bitUndefined)
@@ -113,9 +115,15 @@ Slices slicesOf(const Netlist& n) {
     }
     s.controlSets = static_cast<int>(sets.size());
     s.slicem = upTo(memory, sitesPerSlice);
-    s.sites = sitesFor(luts) + memory + carrySites;
+    const int others = memory + carrySites;
+    s.sites = sitesFor(luts) + others;
+    const double usual = std::max<double>(s.sites, (1 - usualPairing) * luts.size() + others);
     s.low = std::max({upTo(s.sites, sitesPerSlice), forFlipFlops, s.slicem + carry});
-    s.estimate = static_cast<int>(std::lround(s.low * usualFill));
-    s.high = static_cast<int>(std::lround(s.low * worstFill));
+    const auto atLeast = [&](double slices) {
+        return std::max(s.low, static_cast<int>(std::lround(slices)));
+    };
+    s.estimate = atLeast(occupiedSlices(usual, flipFlops, usualShare));
+    s.high =
+        atLeast(occupiedSlices(static_cast<double>(luts.size()) + others, flipFlops, mostShare));
     return s;
 }

@@ -12,13 +12,20 @@
 
 struct Slices {
     int low = 0;      // nothing but the rules: no placer can do with less
-    int estimate = 0; // as ISE's map fills slices in a chip with room (calibrated)
-    int high = 0;     // as it does with the most generous of the calibration designs
+    int estimate = 0; // as ISE's map fills slices in a chip with room
+    int high = 0;     // as it did in the most generously filled design of the calibration
     int slicem = 0;   // of these, must be SLICEM: LUT RAM and shift registers
 
-    int sites = 0;       // LUT6 sites after pairing LUTs of five common inputs
+    int sites = 0;       // LUT6 sites, LUTs of five common inputs paired as far as possible
     int pairs = 0;       // flip-flops that a LUT of their own feeds
     int controlSets = 0; // distinct (clock, enable, set/reset)
 };
+
+// What map makes of so many LUT sites and flip-flops: (sites + share * flip-flops) / 4, where
+// `share` is how many flip-flops find no place beside a LUT that is used. Calibrated with published
+// reports of map for Spartan-6 (tests/synth/slices_test.cpp has them).
+constexpr double usualShare = 0.55, leastShare = 0.13, mostShare = 0.97;
+constexpr double usualPairing = 0.12; // LUTs that map saves by pairing: 1 to 18 % in those reports
+double occupiedSlices(double sites, double flipFlops, double share);
 
 Slices slicesOf(const Netlist& netlist);

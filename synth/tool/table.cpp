@@ -90,9 +90,9 @@ TextTable paperTable(const Plan& plan, const Row& row) {
 
 TextTable designTable(const Plan& plan, const std::vector<Row>& rows) {
     TextTable t;
-    std::vector<string> head{"design", "LUT",   "chip", "1-2",  "3",      "4",
-                             "5",      "6",     "RAM",  "SRL",  "FF",     "sets",
-                             "carry",  "RAM16", "DSP",  "pins", "slices", "low-high"};
+    std::vector<string> head{"design", "LUT",  "chip",   "1-2",      "3",      "4",     "5",
+                             "6",      "RAM",  "SRL",    "FF",       "sets",   "carry", "RAM16",
+                             "DSP",    "pins", "slices", "low-high", "levels", "MHz"};
     for (const Run* other : rows.empty() ? std::vector<const Run*>{} : rows[0].others) {
         head.push_back(other->family + " LUT");
         head.push_back("FF");
@@ -115,6 +115,8 @@ TextTable designTable(const Plan& plan, const std::vector<Row>& rows) {
         for (const int value : {f.dsp, f.pins, f.slices.estimate})
             line.push_back(std::to_string(value));
         line.push_back(fmt::format("{}-{}", f.slices.low, f.slices.high));
+        line.push_back(f.timing.paths.empty() ? "" : std::to_string(f.timing.paths[0].levels));
+        line.push_back(f.timing.paths.empty() ? "" : fmt::format("{:.0f}", f.mhz()));
         for (const Run* other : row.others) {
             line.push_back(other->error.empty() ? std::to_string(other->figures.lut) : "failed");
             line.push_back(other->error.empty() ? std::to_string(other->figures.ff) : "");
@@ -146,5 +148,18 @@ TextTable costTable(const Library& library, const Row& row, size_t depth) {
                    std::to_string(cost.memory), std::to_string(cost.ff),
                    std::to_string(cost.carry)});
     }
+    return t;
+}
+
+TextTable pathTable(const Plan& plan, const Row& row, size_t count) {
+    TextTable t;
+    t.add({"longest paths, estimated", "to", "levels", "ns (-3)", "ns (-2)",
+           fmt::format("of {:g} MHz", plan.chip.mhz)});
+    const std::vector<Path>& paths = row.main->figures.timing.paths;
+    for (size_t i = 0; i < std::min(count, paths.size()); i++)
+        t.add({paths[i].from, fmt::format("{} {}", paths[i].to, paths[i].pin),
+               std::to_string(paths[i].levels), fmt::format("{:.2f}", paths[i].ns),
+               fmt::format("{:.2f}", paths[i].ns * slowGrade),
+               percent(paths[i].ns * slowGrade, 1000 / plan.chip.mhz)});
     return t;
 }

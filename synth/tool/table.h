@@ -32,4 +32,5 @@ TextTable paperTable(const Plan& plan, const Row& row);
 TextTable designTable(const Plan& plan, const std::vector<Row>& rows);
 // Where a design's cost is: the instances, with all below them.
 TextTable costTable(const Library& library, const Row& row, size_t depth);
+TextTable pathTable(const Plan& plan, const Row& row, size_t count);
 std::string percent(double part, double whole); // "18.9 %"

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// timing: the longest paths of a Spartan-6 netlist, by an estimate as XST makes it before
+// placement.
+//
+// Cell delays are those that XST 14.7 prints for speed grade -3; a net's delay depends on its
+// fan-out alone. Grade -2 is slower by slowGrade. Clock skew, pads and placement are not known
+// here.
+
+#pragma once
+
+#include "netlist.h"
+
+#include <string>
+#include <vector>
+
+struct Step {
+    std::string cell; // type
+    std::string name; // of the net it drives, "" if the source has none
+    int fanout = 0;
+    double delay = 0; // ns, of the cell
+    double net = 0;   // ns, of the net behind it
+};
+
+struct Path {
+    std::string from, to; // registers, memories: as the source names them
+    std::string pin;      // that the path ends at: D, CE, R, ADDRA, ...
+    int levels = 0;       // LUTs, wide multiplexers and carry chains
+    double ns = 0;
+    std::vector<Step> steps;
+};
+
+struct Timing {
+    std::vector<Path> paths; // between clocked cells, longest first, one for each end register
+    int inputLevels = 0, outputLevels = 0, throughLevels = 0; // from, to, and between ports
+};
+
+constexpr double slowGrade =
+    1.2; // -2 over -3, about: DS162 has 0.26 for 0.21 ns (LUT), 0.53 for 0.45 (clock to out)
+
+Timing timingOf(const Netlist& netlist, size_t count = 10);
+double netDelay(int fanout); // ns

@@ -16,6 +16,8 @@ NAME  ?=
 OUT   ?= build/run
 # host: the firmware's host build; m3: its ARM binary on a model of the Cortex-M3
 CPU   ?= host
+# Folder of the real uC/OS-II: the firmware is built with it, too, and CPU=m3 flies it (docs/ucos2.md)
+UCOS2 ?=
 
 .DEFAULT_GOAL := help
 .PHONY: help setup build run test mutants bench firmware size clean
@@ -33,6 +35,7 @@ setup: ## install the Debian packages that are missing
 
 $(BUILD)/build.ninja: setup
 	@[ -f $@ ] || cmake -S . -B $(BUILD) -G Ninja
+	@$(if $(UCOS2),cmake -S . -B $(BUILD) "-DUCOS2=$(abspath $(UCOS2))" >/dev/null)
 
 build: $(BUILD)/build.ninja ## build everything (simulator, firmware, compiler, plugin, tests)
 	@ninja -C $(BUILD) -j $(JOBS)
@@ -40,7 +43,8 @@ build: $(BUILD)/build.ninja ## build everything (simulator, firmware, compiler, 
 run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground station, pictures in build/run
 	@ninja -C $(BUILD) -j $(JOBS) mission
 	@testbench/sim/run.sh "$(BUILD)" --image "$(IMAGE)" --size "$(SIZE)" --threshold "$(THRESHOLD)" \
-	    --loss "$(LOSS)" --seed "$(SEED)" --out "$(OUT)" --cpu "$(CPU)"
+	    --loss "$(LOSS)" --seed "$(SEED)" --out "$(OUT)" --cpu "$(CPU)" \
+	    $(if $(UCOS2),--firmware "$(BUILD)/firmware/uav_ucos2.elf")
 
 # What the sanitized build covers: the firmware's layers and their peers.
 SANITIZED := test_os test_link icec_server icec_client ice_cpp_client

@@ -12,20 +12,8 @@
 #include "uav.h"
 
 #define PRIO_WATCH 60U
-#define GUARD_BYTES 32UL
-#define GUARD_RASR (1UL << 28 | 4UL << 1 | 1UL) /* never execute, no access, 2^(4+1) bytes, on */
 
 static OS_STK watchStack[128];
-
-void Firmware_guardStack(OS_STK *bottom) {
-    if (!bottom) {
-        MPU_CTRL = 0;
-        return;
-    }
-    MPU_RBAR = (((U32)bottom + GUARD_BYTES - 1UL) & ~(GUARD_BYTES - 1UL)) | 0x10UL; /* region 0 */
-    MPU_RASR = GUARD_RASR;
-    MPU_CTRL = MPU_CTRL_ON;
-}
 
 static void watchTask(void *argument) {
     (void)argument;

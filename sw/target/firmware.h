@@ -11,8 +11,4 @@
 /* From reset, once memory is set up; does not return. */
 void Firmware_run(void);
 
-/* Puts an MPU region without access over the lowest 32 bytes of a stack (those at multiples of 32); 0
- * takes the guard away. */
-void Firmware_guardStack(OS_STK *bottom);
-
 #endif

@@ -4,7 +4,7 @@
  */
 #include "board.h"
 #include "boot.h"
-#include "firmware.h"
+#include "guard.h"
 #include "os_core.h"
 #include "os_m3.h"
 
@@ -13,7 +13,7 @@ void OSTaskIdleHook(void) {
 }
 
 void OS_TaskSwitched(OS_STK *bottom) {
-    Firmware_guardStack(bottom);
+    Guard_place(bottom);
 }
 
 void OS_StackFault(INT8U priority) {

@@ -251,8 +251,8 @@ void CortexM3::onWrite(uint32_t address, unsigned bytes, uint32_t value) {
         requestReset();
 }
 
-bool CortexM3::onGuarded(uint32_t address, unsigned bytes) {
-    if (!control_.isGuarded(address, bytes) || synchronous_.number || currentException() == HardFault)
+bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
+    if (!control_.isForbidden(address, bytes, write) || synchronous_.number || currentException() == HardFault)
         return false;
     char text[80];
     std::snprintf(text, sizeof text, "access of %u bytes to 0x%08X: the MPU forbids it", bytes, address);

@@ -120,7 +120,7 @@ private:
     void onRaised(uint32_t number);
     uint32_t onRead(uint32_t address, unsigned bytes);
     void onWrite(uint32_t address, unsigned bytes, uint32_t value);
-    bool onGuarded(uint32_t address, unsigned bytes);
+    bool onGuarded(uint32_t address, unsigned bytes, bool write);
     template <class Access> uint32_t guardedAccess(uint32_t address, unsigned bytes, Access access);
     const Instruction& instructionAt(uint32_t address);
     void pass(unsigned cycles);

@@ -179,7 +179,7 @@ void CortexM3::enter(unsigned number) {
     uint32_t frame = sp - 32 - padding;
     const uint32_t saved[8] = {reg(0),  reg(1),  reg(2), reg(3),
                                reg(12), reg(Lr), pc_,    (xpsr & ~aligned) | (padding ? aligned : 0)};
-    bool guarded = control_.isGuarded(frame, 32);
+    bool guarded = control_.isForbidden(frame, 32, true);
     if (guarded || !writeMemory(frame, saved, 32)) {
         lastFault = "the stack pointer is bad at the entry of an exception";
         control_.reportFault(guarded ? SystemControl::stackAccess : SystemControl::stackAccess << 8);

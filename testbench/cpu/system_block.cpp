@@ -14,6 +14,12 @@ bool hasPriority(unsigned number) {
            number == DebugMonitor || number == PendSv || number == SysTick;
 }
 
+// RASR.AP for privileged code: 0 no access; 5 to 7 read only.
+bool forbids(uint32_t rasr, bool write) {
+    uint32_t access = rasr >> 24 & 7;
+    return access == 0 || (write && access >= 5);
+}
+
 } // namespace
 
 bool SystemControl::takeResetRequest() {
@@ -140,12 +146,12 @@ void SystemControl::updateGuards() {
     guards_ = 0;
     if (mpuControl_ & 1)
         for (const Region& r : region_)
-            guards_ += (r.rasr & 1) && !(r.rasr >> 24 & 7);
+            guards_ += (r.rasr & 1) && forbids(r.rasr, true);
 }
 
-bool SystemControl::hitsGuard(uint32_t start, uint32_t bytes) const {
+bool SystemControl::hitsGuard(uint32_t start, uint32_t bytes, bool write) const {
     for (const Region& r : region_) {
-        if (!(r.rasr & 1) || (r.rasr >> 24 & 7)) // off, or with some access
+        if (!(r.rasr & 1) || !forbids(r.rasr, write))
             continue;
         uint64_t size = 2ull << (r.rasr >> 1 & 0x1F);
         uint64_t base = r.rbar & ~(size - 1);

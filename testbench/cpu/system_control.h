@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // system_control: registers of a Cortex-M3's private peripheral bus (0xE0000000): SysTick, NVIC,
-// SCB, MPU as far as no-access regions go, and DWT's cycle counter. ARMv7-M ARM, chapter B3.
+// SCB, MPU as far as regions without access or only for reading go, and DWT's cycle counter. ARMv7-M ARM, chapter B3.
 
 #ifndef SYSTEM_CONTROL_H
 #define SYSTEM_CONTROL_H
@@ -35,8 +35,10 @@ public:
     bool takeResetRequest();
     bool alignsStack() const { return ccr_ & 1u << 9; }
 
-    // Whether a data access hits an MPU region without access; `start` is where the access begins.
-    bool isGuarded(uint32_t start, uint32_t bytes) const { return guards_ && hitsGuard(start, bytes); }
+    // Whether the MPU forbids a data access from `start` on.
+    bool isForbidden(uint32_t start, uint32_t bytes, bool write) const {
+        return guards_ && hitsGuard(start, bytes, write);
+    }
 
     // Fault status, for the processor to fill in: bits of CFSR and HFSR, and the address.
     void reportFault(uint32_t cfsrBits) { cfsr_ |= cfsrBits; }
@@ -60,7 +62,7 @@ private:
     void startSysTick(uint64_t ticks);
     uint64_t tickUnit() const { return control_ & 4 ? 1 : 8; } // CLKSOURCE: HCLK or HCLK/8
     uint32_t currentTicks() const;
-    bool hitsGuard(uint32_t start, uint32_t bytes) const;
+    bool hitsGuard(uint32_t start, uint32_t bytes, bool write) const;
     void updateGuards();
     uint8_t priorityByte(unsigned number) const { return (*exceptions_)[number].priority; }
 
@@ -76,7 +78,7 @@ private:
     bool resetRequested_ = false;
     uint32_t mpuControl_ = 0, mpuRegion_ = 0;
     Region region_[regions];
-    unsigned guards_ = 0; // regions without access that are on
+    unsigned guards_ = 0; // regions that are on and forbid something
 };
 
 #endif

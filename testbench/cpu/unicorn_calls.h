@@ -13,8 +13,9 @@ struct UnicornCalls {
         cpu(user).onInstruction(static_cast<uint32_t>(address));
     }
     static void raised(uc_engine*, uint32_t number, void* user) { cpu(user).onRaised(number); }
-    static void access(uc_engine*, uc_mem_type, uint64_t address, int size, int64_t, void* user) {
-        cpu(user).onGuarded(static_cast<uint32_t>(address), static_cast<unsigned>(size));
+    static void access(uc_engine*, uc_mem_type type, uint64_t address, int size, int64_t, void* user) {
+        cpu(user).onGuarded(static_cast<uint32_t>(address), static_cast<unsigned>(size),
+                            type == UC_MEM_WRITE);
     }
     static uint64_t read(uc_engine*, uint64_t offset, unsigned size, void* user) {
         auto& window = *static_cast<CortexM3::MappedWindow*>(user);

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: MIT
 #
 # run: the mission: simulator and ground station. Usage: run.sh build-folder --image F --size WxH
-#      --threshold N --loss P --seed N --out DIR --cpu host|m3
+#      --threshold N --loss P --seed N --out DIR --cpu host|m3 --firmware ELF
 
 set -eu
 build=$1
 shift
 here=$(cd "$(dirname "$0")/../.." && pwd)
-image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host
+image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host firmware=$build/firmware/uav.elf
 while [ $# -gt 0 ]; do
     case $1 in
     --image) image=$2 ;;
@@ -18,6 +18,7 @@ while [ $# -gt 0 ]; do
     --seed) seed=$2 ;;
     --out) out=$2 ;;
     --cpu) cpu=$2 ;;
+    --firmware) firmware=$2 ;;
     *)
         echo "run: unknown option $1" >&2
         exit 2
@@ -28,7 +29,7 @@ done
 mkdir -p "$out"
 rm -f "$out/after.png" "$out/report.md" "$out/report.json"
 status=0
-"$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" -- \
+"$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" --firmware "$firmware" -- \
     /usr/bin/python3 "$here/sw/ground/clients/mission.py" --device '{device}' --frame '{frame}' \
     --status '{status}' --out "$out" --plugin "$build/ground" --slice "$here/sw/apps/uav/Autopilot.ice" \
     --reference "$build/testbench/sim/vision-reference" --threshold "$threshold" --loss "$loss" || status=$?

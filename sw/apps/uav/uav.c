@@ -67,6 +67,12 @@ static void clientTask(void *argument) {
     }
 }
 
+/* With the stack's bounds, so that its end is guarded and its use can be asked for. */
+static void createTask(void (*task)(void *), OS_STK *stack, INT8U priority) {
+    (void)OSTaskCreateExt(task, 0, &stack[STACK_WORDS - 1], priority, priority, stack, STACK_WORDS, 0,
+                          OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);
+}
+
 static void appMainTask(void *argument) {
     (void)argument;
     UAV_initVision();
@@ -82,8 +88,8 @@ static void appMainTask(void *argument) {
     Autopilot_Vehicle_init(&vehicle);
     (void)Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&vehicle, "uav");
 
-    (void)OSTaskCreate(UAV_radioTask, 0, &radioStack[STACK_WORDS - 1], PRIO_RADIO);
-    (void)OSTaskCreate(clientTask, 0, &clientStack[STACK_WORDS - 1], PRIO_CLIENT);
+    createTask(UAV_radioTask, radioStack, PRIO_RADIO);
+    createTask(clientTask, clientStack, PRIO_CLIENT);
     Ice_Communicator_waitForShutdown(&uav_ic);
     for (;;)
         OSTimeDly(OS_TICKS_PER_SEC);
@@ -110,5 +116,5 @@ void UAV_start(const Fsmc_Port *port, void *context) {
     UAV_initRadio();
     UAV_initIceOs();
     uav_report = OSSemCreate(0);
-    (void)OSTaskCreate(appMainTask, 0, &serverStack[STACK_WORDS - 1], PRIO_SERVER);
+    createTask(appMainTask, serverStack, PRIO_SERVER);
 }

@@ -84,7 +84,12 @@ struct Flight {
     int sent = 0;
 };
 
-const M3Machine::Config firmware{FIRMWARE_ELF, 120'000'000};
+// UAV_FIRMWARE names another build, of the real uC/OS-II (docs/ucos2.md).
+M3Machine::Config firmwareAt(uint32_t hclkHz) {
+    const char* other = std::getenv("UAV_FIRMWARE");
+    return {other ? other : FIRMWARE_ELF, hclkHz};
+}
+const M3Machine::Config firmware = firmwareAt(120'000'000);
 
 Boot_Reason reasonOf(uint32_t report) { return static_cast<Boot_Reason>(report >> 8 & 0xFF); }
 
@@ -130,7 +135,7 @@ TEST(CortexM3Firmware, LosesNothingAtTenPercentLossAndAtTheBoardsCycleRatio) {
     Flight f(0.1);
     f.pings(20);
     f.mission();
-    M3Machine machine(f.soc, {FIRMWARE_ELF, 0}, [&] { return f.step() && f.inTime(90); });
+    M3Machine machine(f.soc, firmwareAt(0), [&] { return f.step() && f.inTime(90); });
     machine.run();
     EXPECT_EQ(f.ground.replies.size(), 27u);
     EXPECT_GT(f.air.counters().lost, 0u);

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ucos2_kernel: what the firmware's board asks of the real uC/OS-II.
+ */
+#include "board.h"
+
+#include <ucos_ii.h>
+
+U32 Board_task(void) {
+    return OSRunning ? OSPrioCur : 255U;
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+//
+// m3_test: the cases of os_cases.c on the Cortex-M3's port: the ARM binary on the model of the processor.
+
+#include "plain_bus.h"
+#include <cstdlib>
+#include <gtest/gtest.h>
+
+extern "C" {
+#include "os_cases.h"
+}
+
+namespace {
+
+class OsM3Cases : public ::testing::TestWithParam<unsigned> {};
+
+// UCOS2_CASES names a build of the same program on the real uC/OS-II (docs/ucos2.md).
+std::string program() {
+    const char* other = std::getenv("UCOS2_CASES");
+    return other ? other : CASES_ELF;
+}
+
+TEST_P(OsM3Cases, SaysWhatTheManualSays) {
+    const OsCase& c = os_cases[GetParam()];
+    PlainCpu m3(program());
+    m3.setVariable("selected_case", GetParam());
+    EXPECT_EQ(m3.run(1'000'000), 1) << m3.cpu.lastFault << " pc in " << m3.image.functionAt(m3.cpu.reg(CortexM3::Pc));
+    EXPECT_EQ(m3.text("os_said"), c.expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, OsM3Cases, ::testing::Range(0u, os_caseCount),
+                         [](auto& c) { return std::string(os_cases[c.param].name); });
+
+} // namespace
+
+// The host's side of the table is only read here.
+extern "C" void Runner_interrupt(void) {}
+extern "C" void Runner_passTime(void) {}

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * own_hooks: what our kernel asks of the runner.
+ */
+#include "guard.h"
+#include "os_core.h"
+#include "os_m3.h"
+
+void OSTaskIdleHook(void) {
+    __asm__ volatile("wfi");
+}
+
+void OS_TaskSwitched(OS_STK *bottom) {
+    Guard_place(bottom);
+}
+
+void OS_StackFault(INT8U priority) {
+    (void)priority;
+    __asm__ volatile("bkpt #3");
+}

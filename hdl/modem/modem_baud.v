@@ -1,35 +1,59 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_baud: phase step of a BD code: bit rate / CLK_HZ in 1/2**26. BD 7 is 111,111 baud, as the modem.
+// modem_baud: eight ticks a bit time, from a phase accumulator; rates below 38400 are 38400 / 2**n.
 //
-// Error of the mean rate: below 0.1 % for every code from 2 MHz to 100 MHz.
+// Error of the mean rate: below 0.1 % for every code from 2 to 100 MHz.
+//
+//   bd_i  0..5  1200 << bd_i     6  57,600     7  111,111, as the modem's "115200"     8..15  250,000
 
 `default_nettype none
 
 module modem_baud #(
-    parameter CLK_HZ = 100000000 // Hz
+    parameter CLK_HZ = 100000000 // Hz, at least 2 MHz
 ) (
-    input  wire [2:0]  bd_i,
-    output reg  [25:0] step_o
+    input  wire       clk_i,
+    input  wire       rst_i,
+    input  wire [3:0] bd_i,
+    output wire       tick_o
 );
-    localparam [31:0] CLK = CLK_HZ;
+    localparam WIDTH = 18; // 38400 baud at 100 MHz is 805 / 2**18 within 0.04 %
+    // Phase steps: 8 * rate * 2**18 / CLK_HZ, rounded.
+    localparam [31:0] KHZ   = CLK_HZ / 1000,
+                      BASE  = (32'd80530637 + KHZ / 2) / KHZ,
+                      BD6   = (32'd120795955 + KHZ / 2) / KHZ,
+                      BD7   = (32'd233016361 + KHZ / 2) / KHZ,
+                      EXACT = (32'd524288000 + KHZ / 2) / KHZ,
+                      BD8   = EXACT >> WIDTH != 32'd0 ? (32'd1 << WIDTH) - 32'd1 : EXACT;
 
-    function [25:0] step(input [63:0] baud);
-        // verilator lint_off WIDTH
-        step = ((baud << 26) + CLK / 2) / CLK; // below 2**26, since no rate is above CLK_HZ
-        // verilator lint_on WIDTH
-    endfunction
+    reg  [WIDTH:0]   phase; // its highest bit is the carry
+    reg  [4:0]       count; // ticks of 38400 baud
+    reg  [WIDTH-1:0] step;
+    reg  [4:0]       hide;  // bits of count that must be 0
 
     always @* begin
+        hide = 5'd0;
+        step = BASE[WIDTH-1:0];
         case (bd_i)
-            3'd0:    step_o = step(64'd1200);
-            3'd1:    step_o = step(64'd2400);
-            3'd2:    step_o = step(64'd4800);
-            3'd3:    step_o = step(64'd9600);
-            3'd4:    step_o = step(64'd19200);
-            3'd5:    step_o = step(64'd38400);
-            3'd6:    step_o = step(64'd57600);
-            default: step_o = step(64'd111111);
+            4'd0:    hide = 5'b11111;
+            4'd1:    hide = 5'b01111;
+            4'd2:    hide = 5'b00111;
+            4'd3:    hide = 5'b00011;
+            4'd4:    hide = 5'b00001;
+            4'd5:    hide = 5'b00000;
+            4'd6:    step = BD6[WIDTH-1:0];
+            4'd7:    step = BD7[WIDTH-1:0];
+            default: step = BD8[WIDTH-1:0];
         endcase
+    end
+
+    assign tick_o = phase[WIDTH] && (count & hide) == 5'd0;
+
+    always @(posedge clk_i) begin
+        phase <= {1'b0, phase[WIDTH-1:0]} + {1'b0, step};
+        count <= count + {4'd0, phase[WIDTH]};
+        if (rst_i) begin
+            phase <= 0;
+            count <= 5'd0;
+        end
     end
 endmodule

@@ -1,74 +1,105 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_uart_rx: bytes in, 8N1, each bit sampled in its middle.
+// modem_uart_rx: bytes in, 8N1, eight ticks a bit, each bit sampled within an eighth before its middle.
 
 `default_nettype none
 
 module modem_uart_rx (
-    input  wire        clk_i,
-    input  wire        rst_i,
-    input  wire [25:0] step_i,
+    input  wire       clk_i,
+    input  wire       rst_i,
+    input  wire       tick_i, // eight a bit time
     // pin, asynchronous
-    input  wire        rxd_i,
+    input  wire       rxd_i,
     // bytes out: one cycle each
-    output reg         valid_o,
-    output reg  [7:0]  data_o,
-    output reg         framing_error_o, // the stop bit was low: the byte is dropped
-    output wire        idle_o           // no byte is on the line
+    output reg        valid_o,
+    output wire [7:0] data_o,          // for a bit time at least
+    output reg        framing_error_o, // the stop bit was low: the byte is dropped
+    output wire       idle_o           // no byte is on the line
 );
-    reg [1:0]  sync;
-    reg [26:0] phase;
-    reg [3:0]  left; // bits left, start and stop included; 0: idle
-    reg        armed; // the line has been high since the last byte
+    reg [1:0] sync;
+    reg [2:0] ticks;
+    reg [8:0] bits;   // enter at the top, above a 1 that reaches the bottom with the eighth
+    reg       busy;   // a start bit was seen
+    reg       started; // ... and found to be one
+    reg       armed;  // the line has been high since the last byte
 
-    wire line = sync[1];
-    assign idle_o = left == 4'd0 && line;
+    wire line   = sync[1];
+    wire sample = tick_i && ticks == 3'd7;
+
+    assign data_o = bits[8:1];
+    assign idle_o = !busy && line;
 
     always @(posedge clk_i) begin
         sync            <= {sync[0], rxd_i};
-        phase           <= {1'b0, phase[25:0]} + {1'b0, step_i};
         valid_o         <= 1'b0;
         framing_error_o <= 1'b0;
-        if (left == 4'd0) begin
-            armed <= armed || line;
-            if (armed && !line) begin
-                left  <= 4'd10;
-                phase <= 27'h2000000; // half a bit to the middle of the start bit
-            end
-        end else if (phase[26]) begin
-            left   <= left - 4'd1;
-            data_o <= {line, data_o[7:1]};
-            if (left == 4'd10 && line) begin
-                left <= 4'd0; // a glitch, no start bit
-            end else if (left == 4'd1) begin
-                data_o          <= data_o;
+        if (tick_i)
+            ticks <= ticks + 3'd1;
+        if (!busy) begin
+            armed  <= armed || line;
+            started <= 1'b0;
+            busy   <= armed && !line;
+            ticks  <= 3'd4;
+        end else if (sample) begin
+            started <= 1'b1;
+            if (!started) begin
+                bits <= 9'h100;
+                busy <= !line; // else a glitch, no start bit
+            end else if (!bits[0]) begin
+                bits <= {line, bits[8:1]};
+            end else begin
+                busy            <= 1'b0;
+                armed           <= line;
                 valid_o         <= line;
                 framing_error_o <= !line;
-                armed           <= line;
             end
         end
         if (rst_i) begin
-            sync  <= 2'b11;
-            left  <= 4'd0;
-            armed <= 1'b0;
-            phase <= 27'd0;
+            sync   <= 2'b11;
+            busy   <= 1'b0;
+            started <= 1'b0;
+            armed  <= 1'b0;
             valid_o         <= 1'b0;
             framing_error_o <= 1'b0;
         end
     end
 
 `ifdef FORMAL
+    // A sender of the same rate, a tick a clock: its byte comes, once, in the stop bit.
     reg past = 1'b0;
     initial assume (rst_i);
+    (* anyconst *) reg [7:0] sent;
+    reg [6:0] age = 7'd127; // ticks since the start bit's edge at sync[0]; 127: not yet
+    wire [9:0] frame = {1'b1, sent, 1'b0};
+    wire [6:0] before = age - 7'd1;
+    wire [3:0] got = (age - 7'd6) >> 3; // data bits sampled
     always @(posedge clk_i) begin
         past <= 1'b1;
+        assume (tick_i);
+        assume (!past || !rst_i);
+        assume (sync[0] == (age < 7'd80 ? frame[age[6:3]] : 1'b1));
+        if (age == 7'd127 && past && !rst_i && armed)
+            age <= 7'd0;
+        else if (age < 7'd90)
+            age <= age + 7'd1;
+        else
+            age <= 7'd127;
         if (past) begin
-            assert (left <= 4'd10);
-            assert (!(valid_o && framing_error_o));
-            if (!$past(rst_i) && (valid_o || framing_error_o))
-                assert ($past(left) == 4'd1 && left == 4'd0);
+            assert (!framing_error_o);
+            assert (valid_o == (age == 7'd78));
+            if (valid_o)
+                assert (data_o == sent);
+            // The state in each clock of a frame, so that the proof need not find it.
+            assert (age <= 7'd90 || age == 7'd127);
+            assert (line == (age >= 7'd1 && age <= 7'd80 ? frame[before[6:3]] : 1'b1));
+            assert (busy == (age >= 7'd2 && age <= 7'd77));
+            if (busy)
+                assert (ticks == age[2:0] + 3'd2 && started == (age >= 7'd6));
+            if (busy && started)
+                assert (bits == (({1'b0, sent} << (4'd9 - got)) | (9'h100 >> got)));
+            assert (armed || age == 7'd127 || age > 7'd77);
         end
-        cover (past && valid_o);
+        cover (past && valid_o && sent == 8'h3C);
     end
 `endif
 endmodule

@@ -1,70 +1,75 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_uart_tx: bytes out, 8N1, timed by a phase step (modem_baud).
+// modem_uart_tx: bytes out, 8N1, eight ticks a bit.
 
 `default_nettype none
 
 module modem_uart_tx (
-    input  wire        clk_i,
-    input  wire        rst_i,
-    input  wire [25:0] step_i,
+    input  wire       clk_i,
+    input  wire       rst_i,
+    input  wire       tick_i,  // eight a bit time
     // bytes in
-    input  wire        valid_i,
-    input  wire [7:0]  data_i,
-    output wire        ready_o, // the line is idle
+    input  wire       valid_i,
+    input  wire [7:0] data_i,
+    output wire       ready_o, // one cycle a tick while the line is idle
     // pin
-    output wire        txd_o
+    output wire       txd_o
 );
-    reg [26:0] phase;
-    reg [8:0]  bits;  // still to come after the one on the line
-    reg [3:0]  left;  // bit times left, the one on the line included
-    reg        line;
+    reg [2:0] ticks;
+    reg [8:0] bits;  // still to come: data below a 1, the stop bit, that ends them
+    reg       line;
+    reg       busy;
 
-    assign ready_o = left == 4'd0;
+    assign ready_o = tick_i && !busy;
     assign txd_o   = line;
 
     always @(posedge clk_i) begin
-        phase <= {1'b0, phase[25:0]} + {1'b0, step_i};
+        if (tick_i)
+            ticks <= ticks + 3'd1;
         if (ready_o) begin
+            ticks <= 3'd0;
             if (valid_i) begin
-                line  <= 1'b0;
-                bits  <= {1'b1, data_i};
-                left  <= 4'd10;
-                phase <= 27'd0;
+                line <= 1'b0;
+                bits <= {1'b1, data_i};
+                busy <= 1'b1;
             end
-        end else if (phase[26]) begin
-            line <= bits[0];
-            bits <= {1'b1, bits[8:1]};
-            left <= left - 4'd1;
+        end else if (tick_i && ticks == 3'd7) begin
+            bits <= {1'b0, bits[8:1]};
+            if (bits == 9'd0)
+                busy <= 1'b0; // the stop bit is over
+            else
+                line <= bits[0];
         end
         if (rst_i) begin
             line  <= 1'b1;
-            left  <= 4'd0;
-            phase <= 27'd0;
+            busy  <= 1'b0;
+            ticks <= 3'd0;
+            bits  <= 9'd0;
         end
     end
 
 `ifdef FORMAL
+    // Any byte: what was taken is on the line: a start bit, eight bits, a stop bit, each eight ticks.
     reg past = 1'b0;
     initial assume (rst_i);
+    reg [7:0] sent;
+    reg [6:0] age = 7'd80; // ticks since the byte was taken; 80: it is over
+    wire [9:0] frame = {1'b1, sent, 1'b0};
     always @(posedge clk_i) begin
         past <= 1'b1;
-        if (past) begin
-            assert (left <= 4'd10);
-            // Idle and stop are high; a byte begins with a low start bit.
-            if (left <= 4'd1)
-                assert (line);
-            if (left == 4'd10)
-                assert (!line);
-            if (!$past(rst_i) && $past(ready_o) && $past(valid_i))
-                assert (!txd_o && !ready_o);
-            // From the stop bit on all that will be shifted out is high.
-            if (left >= 4'd2)
-                assert ((bits >> (left - 4'd2)) == (9'h1FF >> (left - 4'd2)));
-            if (left == 4'd1)
-                assert (&bits);
+        if (rst_i) begin
+            age <= 7'd80;
+        end else if (valid_i && ready_o) begin
+            sent <= data_i;
+            age  <= 7'd0;
+        end else if (tick_i && age != 7'd80) begin
+            age <= age + 7'd1;
         end
-        cover (past && !$past(rst_i) && $past(left) == 4'd1 && left == 4'd0);
+        if (past) begin
+            assert (ready_o == (tick_i && age == 7'd80));
+            assert (txd_o == (age == 7'd80 ? 1'b1 : frame[age[6:3]]));
+        end
+        cover (past && age == 7'd80 && $past(age) == 7'd79 && sent == 8'hA5);
     end
 `endif
 endmodule

@@ -3,8 +3,8 @@
 // pty_line: the modem's serial side as a pseudo-terminal.
 
 #include "serial_line.h"
-#include <asm/termbits.h> // struct termios2, TCGETS2: the true speed, custom ones included
 #include <algorithm>
+#include <asm/termbits.h> // struct termios2, TCGETS2: the true speed, custom ones included
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
@@ -62,8 +62,8 @@ void PtyLine::readHost(uint64_t now) {
     // Only what the wire could have carried by now, so that nothing is read ahead of flow control.
     rxFree_ = std::max(rxFree_, static_cast<double>(now) - lookBack());
     size_t room = 0;
-    while (room < sizeof bytes && rxFree_ + (static_cast<double>(room) + 1) * 10 * bitNs_ <=
-                                      static_cast<double>(now))
+    while (room < sizeof bytes &&
+           rxFree_ + (static_cast<double>(room) + 1) * 10 * bitNs_ <= static_cast<double>(now))
         ++room;
     if (room == 0)
         return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// rf_channel: the air between modems: delay, loss, bursts of loss, duplication, corruption, by seed.
+// rf_channel: the air between modems: delay, loss, bursts of loss, duplication, corruption, by
+// seed.
 
 #ifndef RF_CHANNEL_H
 #define RF_CHANNEL_H

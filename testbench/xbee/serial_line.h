@@ -151,8 +151,8 @@ public:
 };
 
 // A pseudo-terminal, for programs that talk to a serial port. Bytes move at the modem's baud rate;
-// while CTS is off none is read, which is the flow control. If the program has set a speed more than
-// 4.5 % off the modem's, bytes are spoilt, as they would be on a wire.
+// while CTS is off none is read, which is the flow control. If the program has set a speed more
+// than 4.5 % off the modem's, bytes are spoilt, as they would be on a wire.
 class PtyLine : public SerialLine {
 public:
     PtyLine(); // throws std::system_error

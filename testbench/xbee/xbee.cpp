@@ -13,6 +13,7 @@ namespace {
 constexpr size_t inputBytes = 202, outputBytes = 202;
 constexpr size_t ctsOffAt = 17, ctsOnAt = 34; // bytes free
 constexpr size_t packetBytes = 100, packetBytesEncrypted = 95;
+constexpr size_t keyDigits = 32; // 128 bits
 constexpr uint64_t msNs = 1'000'000, resetNs = 200;
 constexpr uint64_t plusWindowNs = 1000 * msNs; // the three characters come within a second
 
@@ -26,15 +27,15 @@ const std::map<std::string, Limits> settable = {
     {"CH", {0x0B, 0x1A}}, {"BD", {0, 0x3D090}},    {"RO", {0, 0xFF}},       {"RN", {0, 3}},
     {"MM", {0, 3}},       {"RR", {0, 6}},          {"EE", {0, 1}},          {"GT", {2, 3300}},
     {"CT", {2, 0xFFFF}},  {"CC", {0, 0xFF}},       {"D6", {0, 5}},          {"D7", {0, 5}},
-    {"AP", {0, 0}},       {"KY", {0, 0xFFFFFFFF}}};
+    {"AP", {0, 0}}};
 
 } // namespace
 
 XBee::Parameters XBee::factory() {
-    return {{"MY", 0},    {"DH", 0},    {"DL", 0},    {"ID", 0x3332}, {"CH", 0x0C}, {"BD", 3},
-            {"RO", 3},    {"RN", 0},    {"MM", 0},    {"RR", 0},      {"EE", 0},    {"KY", 0},
-            {"GT", 1000}, {"CT", 100},  {"CC", '+'},  {"D6", 0},      {"D7", 1},    {"AP", 0},
-            {"SH", 0x13A200}, {"SL", 0x40000000}, {"DB", 0x28}};
+    return {{"MY", 0}, {"DH", 0},    {"DL", 0},        {"ID", 0x3332},     {"CH", 0x0C},
+            {"BD", 3}, {"RO", 3},    {"RN", 0},        {"MM", 0},          {"RR", 0},
+            {"EE", 0}, {"GT", 1000}, {"CT", 100},      {"CC", '+'},        {"D6", 0},
+            {"D7", 1}, {"AP", 0},    {"SH", 0x13A200}, {"SL", 0x40000000}, {"DB", 0x28}};
 }
 
 XBee::XBee(SerialLine& line, RfChannel& channel, Options options)
@@ -48,7 +49,9 @@ XBee::XBee(SerialLine& line, RfChannel& channel, Options options)
     bootDone_ = 0; // powered long ago
 }
 
-XBee::~XBee() { channel_.leave(this); }
+XBee::~XBee() {
+    channel_.leave(this);
+}
 
 double XBee::baud() const {
     static const double rates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 1e6 / 9};
@@ -56,8 +59,12 @@ double XBee::baud() const {
     return bd < 8 ? rates[bd] : bd;
 }
 
-uint64_t XBee::charNs() const { return static_cast<uint64_t>(10e9 / baud()); }
-uint64_t XBee::guardNs() const { return active_.at("GT") * msNs; }
+uint64_t XBee::charNs() const {
+    return static_cast<uint64_t>(10e9 / baud());
+}
+uint64_t XBee::guardNs() const {
+    return active_.at("GT") * msNs;
+}
 
 void XBee::boot(uint64_t now) {
     active_ = pending_ = written_;
@@ -197,7 +204,9 @@ bool XBee::nextToHost(uint8_t& byte) {
     return true;
 }
 
-void XBee::reply(const std::string& text) { output_.insert(output_.end(), text.begin(), text.end()); }
+void XBee::reply(const std::string& text) {
+    output_.insert(output_.end(), text.begin(), text.end());
+}
 
 void XBee::commandByte(uint8_t byte, uint64_t now) {
     if (byte != '\r') {
@@ -223,6 +232,15 @@ std::string XBee::setParameter(const std::string& letters, const std::string& va
     if (number < limits->second.lowest || number > limits->second.highest)
         return "ERROR\r";
     pending_[letters] = number;
+    return "OK\r";
+}
+
+// Write-only: a question is refused.
+std::string XBee::setKey(const std::string& value) {
+    if (value.empty() || value.size() > keyDigits ||
+        value.find_first_not_of("0123456789ABCDEFabcdef") != std::string::npos)
+        return "ERROR\r";
+    key_ = std::string(keyDigits - value.size(), '0') + value;
     return "OK\r";
 }
 
@@ -258,10 +276,12 @@ std::string XBee::execute(const std::string& line, uint64_t now) {
         pending_ = active_ = written_;
         return "OK\r";
     }
+    if (letters == "KY")
+        return setKey(value);
     if (!value.empty())
         return setParameter(letters, value);
     auto parameter = pending_.find(letters);
-    if (parameter == pending_.end() || letters == "KY")
+    if (parameter == pending_.end())
         return "ERROR\r";
     char text[16];
     std::snprintf(text, sizeof text, "%X\r", parameter->second);
@@ -269,7 +289,9 @@ std::string XBee::execute(const std::string& line, uint64_t now) {
 }
 
 // BD takes effect after the OK has left: the line's bit time changes when it is idle.
-void XBee::apply() { active_ = pending_; }
+void XBee::apply() {
+    active_ = pending_;
+}
 
 void XBee::leaveCommandMode() {
     apply();

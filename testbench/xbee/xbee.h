@@ -3,8 +3,8 @@
 // xbee: model of an XBee 802.15.4 (series 1) modem in transparent mode: command mode, packetizing,
 // buffers, flow control, reset. Facts and what is left out: docs/modem.md.
 //
-// Time is in nanoseconds. advance(now) does what is due; nextEvent() says when that will be. The serial
-// side is a SerialLine (pins or a pty), the radio side an RfChannel.
+// Time is in nanoseconds. advance(now) does what is due; nextEvent() says when that will be. The
+// serial side is a SerialLine (pins or a pty), the radio side an RfChannel.
 
 #ifndef XBEE_H
 #define XBEE_H
@@ -29,7 +29,7 @@ class XBee : private SerialClient {
 public:
     struct Options {
         std::string name = "xbee";
-        uint64_t bootNs = 50'000'000;       // 50..500 ms by firmware
+        uint64_t bootNs = 50'000'000;        // 50..500 ms by firmware
         std::map<std::string, uint32_t> set; // parameters that differ from the factory's
     };
     struct Counters {
@@ -58,6 +58,7 @@ public:
     const std::string& name() const { return options_.name; }
     uint32_t parameter(const std::string& letters) const { return active_.at(letters); }
     double baud() const;
+    const std::string& key() const { return key_; } // 32 hex digits, "" if none was set
     bool inCommandMode() const { return mode_ == Mode::Command; }
     const Counters& counters() const { return counters_; }
 
@@ -80,6 +81,7 @@ private:
     void commandByte(uint8_t byte, uint64_t now);
     std::string execute(const std::string& line, uint64_t now);
     std::string setParameter(const std::string& letters, const std::string& value);
+    std::string setKey(const std::string& value);
     void apply();
     void leaveCommandMode();
     void sendPackets(uint64_t now);
@@ -95,13 +97,13 @@ private:
     Mode mode_ = Mode::Off;
     uint64_t bootDone_ = 0, lastByte_ = 0, commandUntil_ = 0, resetLowSince_ = 0;
     bool resetLow_ = false;
-    unsigned pluses_ = 0;          // of a sequence that may lead to command mode
+    unsigned pluses_ = 0; // of a sequence that may lead to command mode
     std::string commandLine_;
-    std::deque<uint8_t> input_;    // from the host, to be sent
-    size_t flushCount_ = 0;        // bytes of it that must leave now
-    std::deque<uint8_t> output_;   // to the host
+    std::deque<uint8_t> input_;  // from the host, to be sent
+    size_t flushCount_ = 0;      // bytes of it that must leave now
+    std::deque<uint8_t> output_; // to the host
     bool inFlight_ = false, cts_ = true;
-    std::string refuse_;
+    std::string refuse_, key_;
     Counters counters_;
 };
 

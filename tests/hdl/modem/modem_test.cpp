@@ -29,6 +29,7 @@ protected:
         bus_.write(MODEM_ADDR, 0x0000u << 16 | 0x0001u);
         bus_.write(MODEM_TX_BASE, txRing);
         bus_.write(MODEM_RX_BASE, rxRing);
+        bus_.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | 0x0C);
     }
 
     // GT of the modem and of the controller are short, so that tests are.
@@ -148,6 +149,28 @@ TEST_F(ModemTest, ARefusedCommandIsReportedWithItsStep) {
     EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURE_FAILED_MASK);
     EXPECT_EQ(bus_.read(MODEM_STATUS) >> MODEM_STATUS_STEP_LSB & 15, 5u);
     EXPECT_EQ(near_->counters().refused, 3u) << "sent once and twice again";
+}
+
+TEST_F(ModemTest, EncryptionAndItsKeyAreSet) {
+    power(quick());
+    bus_.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | 1u << MODEM_NET_ENCRYPT_LSB | 0x0C);
+    for (uint32_t word : {0x00112233u, 0x44556677u, 0x8899AABBu, 0xCCDDEEFFu})
+        bus_.write(MODEM_KEY, word);
+    configure();
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURED_MASK);
+    EXPECT_EQ(near_->parameter("EE"), 1u);
+    EXPECT_EQ(near_->key(), "00112233445566778899AABBCCDDEEFF");
+    EXPECT_EQ(bus_.read(MODEM_KEY), 0u) << "it cannot be read back";
+}
+
+TEST_F(ModemTest, TheKeyIsSentOnlyWithEncryption) {
+    power(quick());
+    near_->refuseCommand("KY");
+    configure();
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURED_MASK);
+    EXPECT_EQ(near_->parameter("EE"), 0u);
+    EXPECT_EQ(near_->parameter("D6"), 1u);
+    EXPECT_EQ(near_->parameter("D7"), 1u);
 }
 
 TEST_F(ModemTest, PacketsLeaveEachAsOneRfPacket) {

@@ -2,15 +2,12 @@
 //
 // mcb_backend: the arbiter's command stream on a 64-bit user port of the Spartan-6 MCB (UG388).
 //
-// The MCB's read FIFO holds 64 words, and what does not fit is lost. Where PORTS * 32 words may be
-// under way at most (rule 3 of docs/memory.md) two ports need nothing; more ports wait until half
-// of it is not promised to anybody.
+// The MCB's read FIFO holds 64 words, and what does not fit is lost: a read waits until half of it,
+// the longest burst, is not promised to others.
 
 `default_nettype none
 
-module mcb_backend #(
-    parameter PORTS = 2 // of the arbiter
-) (
+module mcb_backend (
     input  wire        clk_i,
     input  wire        rst_i,
     // from the arbiter
@@ -57,18 +54,11 @@ module mcb_backend #(
     assign rd_data_o   = mcb_rd_data_i;
     assign mcb_rd_en_o = rd_valid_o && rd_ready_i;
 
-    generate
-        if (PORTS > 2) begin : g_room
-            reg [6:0] promised; // words, 0..64
-            wire [5:0] more = mcb_cmd_en_o && cmd_read_i ? {1'b0, cmd_last_i} + 6'd1 : 6'd0;
-            assign room = !promised[6] && (!promised[5] || promised[4:0] == 5'd0);
-            always @(posedge clk_i)
-                promised <= rst_i ? 7'd0 : promised + {1'b0, more} - {6'd0, mcb_rd_en_o};
-        end else begin : g_always
-            assign room = 1'b1;
-            wire unused = &{1'b0, clk_i, rst_i, 1'b0};
-        end
-    endgenerate
+    reg [6:0] promised; // words, 0..64
+    wire [5:0] more = mcb_cmd_en_o && cmd_read_i ? {1'b0, cmd_last_i} + 6'd1 : 6'd0;
+    assign room = !promised[6] && (!promised[5] || promised[4:0] == 5'd0);
+    always @(posedge clk_i)
+        promised <= rst_i ? 7'd0 : promised + {1'b0, more} - {6'd0, mcb_rd_en_o};
 
     wire unused = &{1'b0, cmd_addr_i[31:30], 1'b0}; // 1 GiB is the MCB's range
 endmodule

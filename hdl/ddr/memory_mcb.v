@@ -72,7 +72,7 @@ module memory_mcb #(
         .rd_valid_i(rd_valid), .rd_data_i(rd_data), .rd_ready_o(rd_ready)
     );
 
-    mcb_backend #(.PORTS(PORTS)) u_backend (
+    mcb_backend u_backend (
         .clk_i(clk_i), .rst_i(rst_i),
         .cmd_valid_i(cmd_valid), .cmd_read_i(cmd_read), .cmd_addr_i(cmd_addr),
         .cmd_last_i(cmd_last), .cmd_ready_o(cmd_ready),

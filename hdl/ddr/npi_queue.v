@@ -14,7 +14,7 @@
 
 module npi_queue #(
     parameter PORT_BITS = 1, // width of a port's number
-    parameter LOG2      = 5  // 2..5
+    parameter LOG2      = 4  // 2..5
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,

@@ -2,12 +2,13 @@
 //
 // memory_bench: a memory controller with PORTS requesters in front and a memory model behind.
 //
-// The back-end is a struct with: connect(bench, drive), which adds its model; data(): the memory.
+// A back-end is a memory model with its pins: sample() before the clock's edge, drive() after it.
 
 #ifndef MEMORY_BENCH_H
 #define MEMORY_BENCH_H
 
 #include "bench.h"
+#include "litedram_pins.h"
 #include "mcb_pins.h"
 #include "npi_requester.h"
 
@@ -16,6 +17,14 @@ struct McbBackend {
     explicit McbBackend(size_t bytes) : model(bytes) {}
     template <class Module> void sample(Module& top) { sampleMcb(top, model); }
     template <class Module> void drive(Module& top) { driveMcb(top, model); }
+    uint8_t* data() { return model.data(); }
+};
+
+struct LitedramBackend {
+    LitedramModel model;
+    explicit LitedramBackend(size_t bytes) : model(bytes) {}
+    template <class Module> void sample(Module& top) { sampleLitedram(top, model); }
+    template <class Module> void drive(Module& top) { driveLitedram(top, model); }
     uint8_t* data() { return model.data(); }
 };
 

@@ -25,6 +25,7 @@ struct NpiTraffic {
     double pop = 1.0;    // ... that a word that came is taken
     double writes = 0.5; // share of writes
     unsigned minSize = 0, maxSize = 5;
+    unsigned outstanding = 32; // words asked for and not yet taken; more only with pop = 1 (rule 3)
     bool byteEnables = true;            // random; else all bytes
     bool anyLineWord = true;            // reads of cache lines begin at any word
     bool sequential = false;            // address after address, else anywhere
@@ -33,8 +34,6 @@ struct NpiTraffic {
 
 template <class Module> class NpiRequesters {
 public:
-    static constexpr unsigned fifoWords = 32;
-
     struct Counters {
         uint64_t readWords = 0, writeWords = 0, requests = 0, waitSum = 0, waitMax = 0;
         uint64_t latencySum = 0, latencyMax = 0, latencyMin = ~0ull, reads = 0;
@@ -59,10 +58,18 @@ public:
     void go() { stopped_ = false; }
     bool idle() const {
         for (const Port& port : ports_)
-            if (port.asking || port.pushed || !port.expected.empty())
+            if (port.now.valid || port.ahead.valid || !port.expected.empty())
                 return false;
         return true;
     }
+
+    // Accepted requests, in their order, if somebody wants them.
+    struct Accepted {
+        uint32_t address;
+        unsigned words;
+        bool read;
+    };
+    std::vector<Accepted>* log = nullptr;
 
     void sample() {
         uint64_t acks = top_.npi_addr_ack_o;
@@ -72,7 +79,7 @@ public:
             takeWord(port);
             if (acks >> port.number & 1)
                 acknowledged(port);
-            else if (port.asking)
+            else if (port.raised)
                 port.others += acks != 0;
         }
         ++now_;
@@ -80,20 +87,26 @@ public:
 
     void drive() {
         for (Port& port : ports_) {
-            begin(port);
+            if (!port.now.valid)
+                std::swap(port.now, port.ahead);
+            if (!port.now.valid)
+                draw(port, port.now);
+            if (port.now.valid && !port.now.read && !port.ahead.valid)
+                draw(port, port.ahead);
             push(port);
             unsigned p = port.number;
-            bool asks = port.asking && port.pushed >= (port.read ? 0 : port.words);
+            const Request& r = port.now;
+            bool asks = r.ready() && (port.raised || !r.read || roomFor(port, r));
             if (asks && !port.raised) {
                 port.raised = true;
                 port.since = now_;
                 port.others = 0;
             }
             setBits(top_.npi_addr_req_i, p, 1, asks);
-            setBits(top_.npi_addr_i, 32 * p, 32, port.address);
-            setBits(top_.npi_rnw_i, p, 1, port.read);
-            setBits(top_.npi_size_i, 4 * p, 4, port.size);
-            setBits(top_.npi_rmw_i, p, 1, port.rmw);
+            setBits(top_.npi_addr_i, 32 * p, 32, r.address);
+            setBits(top_.npi_rnw_i, p, 1, r.read);
+            setBits(top_.npi_size_i, 4 * p, 4, r.size);
+            setBits(top_.npi_rmw_i, p, 1, r.rmw);
             port.willing = random_.chance(port.traffic.pop);
             setBits(top_.npi_rd_pop_i, p, 1, 0);
         }
@@ -113,91 +126,97 @@ private:
         unsigned index;
         bool first;
     };
+    struct Request {
+        bool valid = false, read = false, rmw = false;
+        uint32_t address = 0;
+        unsigned size = 0, words = 0, pushed = 0;
+        std::vector<std::pair<uint64_t, uint8_t>> data; // of a write
+        bool ready() const { return valid && (read || pushed == words); }
+    };
     struct Port {
         unsigned number = 0;
         NpiTraffic traffic;
         Counters counters;
-        bool asking = false, raised = false, read = false, rmw = false, willing = false,
-             popping = false;
-        uint32_t address = 0, next = 0;
-        unsigned size = 0, words = 0, pushed = 0;
+        Request now, ahead; // the words of a write may be pushed before its turn comes
+        bool raised = false, willing = false, popping = false;
+        uint32_t next = 0; // address of a sequential stream
         uint64_t since = 0, others = 0;
-        std::vector<std::pair<uint64_t, uint8_t>> data; // of the write being prepared
-        std::deque<Expected> expected;                  // words of reads, in their order
+        std::deque<Expected> expected; // words of reads, in their order
     };
 
-    void begin(Port& port) {
-        if (port.asking || stopped_ || !top_.npi_init_done_o || !random_.chance(port.traffic.ask))
+    bool roomFor(const Port& port, const Request& r) const { // rule 3
+        return port.expected.size() + r.words <= port.traffic.outstanding;
+    }
+
+    void draw(Port& port, Request& r) {
+        if (stopped_ || !top_.npi_init_done_o || !random_.chance(port.traffic.ask))
             return;
         const NpiTraffic& t = port.traffic;
-        bool read = !random_.chance(t.writes);
-        unsigned size = t.minSize + random_.below(t.maxSize - t.minSize + 1), words = 1u << size;
-        if (read && port.expected.size() + words > fifoWords)
-            return; // rule 3
-        port.asking = true;
-        port.raised = false;
-        port.read = read;
-        port.rmw = random_.chance(0.5);
-        port.size = size;
-        port.words = words;
-        uint32_t bytes = words * 8;
+        r.valid = true;
+        r.read = !random_.chance(t.writes);
+        r.rmw = random_.chance(0.5);
+        r.size = t.minSize + random_.below(t.maxSize - t.minSize + 1);
+        r.words = 1u << r.size;
+        r.pushed = 0;
+        uint32_t bytes = r.words * 8;
         if (t.sequential) {
             port.next = (port.next + bytes - 1) / bytes * bytes % t.bytes;
-            port.address = t.base + port.next;
+            r.address = t.base + port.next;
             port.next += bytes;
         } else {
-            port.address = t.base + random_.below(t.bytes / bytes) * bytes;
+            r.address = t.base + random_.below(t.bytes / bytes) * bytes;
         }
-        if (read && t.anyLineWord && (size == 1 || size == 2))
-            port.address += random_.below(words) * 8;
-        port.data.clear();
-        port.pushed = 0;
-        if (!read)
-            for (unsigned w = 0; w < words; ++w) {
+        if (r.read && t.anyLineWord && (r.size == 1 || r.size == 2))
+            r.address += random_.below(r.words) * 8;
+        r.data.clear();
+        if (!r.read)
+            for (unsigned w = 0; w < r.words; ++w) {
                 uint64_t data = uint64_t(random_.next()) << 32 | random_.next();
-                port.data.emplace_back(data, t.byteEnables ? random_.next() & 0xFF : 0xFF);
+                r.data.emplace_back(data, t.byteEnables ? random_.next() & 0xFF : 0xFF);
             }
     }
 
     void push(Port& port) {
         unsigned p = port.number;
-        bool pushes = port.asking && !port.read && port.pushed < port.words &&
+        Request& r = port.now.ready() ? port.ahead : port.now;
+        bool pushes = r.valid && !r.read && r.pushed < r.words &&
                       !getBits(top_.npi_wr_almost_full_o, p, 1) &&
                       random_.chance(port.traffic.push);
         setBits(top_.npi_wr_push_i, p, 1, pushes);
         if (pushes) {
-            setBits(top_.npi_wr_data_i, 64 * p, 64, port.data[port.pushed].first);
-            setBits(top_.npi_wr_be_i, 8 * p, 8, port.data[port.pushed].second);
-            ++port.pushed;
+            setBits(top_.npi_wr_data_i, 64 * p, 64, r.data[r.pushed].first);
+            setBits(top_.npi_wr_be_i, 8 * p, 8, r.data[r.pushed].second);
+            ++r.pushed;
         }
     }
 
     void acknowledged(Port& port) {
         if (!port.raised)
-            throw std::runtime_error("port " + std::to_string(port.number) +
-                                     ": acknowledged without a request");
-        uint32_t from = port.address / (port.words * 8) * (port.words * 8);
-        for (unsigned w = 0; w < port.words; ++w) {
+            throw std::runtime_error(where(port) + "acknowledged without a request");
+        Request& r = port.now;
+        uint32_t from = r.address / (r.words * 8) * (r.words * 8);
+        for (unsigned w = 0; w < r.words; ++w) {
             uint8_t* where = reference_.data() + from + 8 * w;
-            if (port.read) {
+            if (r.read) {
                 uint64_t value;
                 std::memcpy(&value, where, 8);
                 port.expected.push_back({value, port.since, w % 16, w == 0});
             } else {
                 for (unsigned b = 0; b < 8; ++b)
-                    if (port.data[w].second >> b & 1)
-                        where[b] = static_cast<uint8_t>(port.data[w].first >> (8 * b));
+                    if (r.data[w].second >> b & 1)
+                        where[b] = static_cast<uint8_t>(r.data[w].first >> (8 * b));
             }
         }
+        if (log)
+            log->push_back({from, r.words, r.read});
         Counters& c = port.counters;
         ++c.requests;
         uint64_t wait = now_ - port.since;
         c.waitSum += wait;
         c.waitMax = std::max(c.waitMax, wait);
         c.othersMax = std::max(c.othersMax, port.others);
-        c.writeWords += port.read ? 0 : port.words;
-        port.asking = port.raised = false;
-        port.pushed = 0;
+        c.writeWords += r.read ? 0 : r.words;
+        r.valid = port.raised = false;
     }
 
     void takeWord(Port& port) {

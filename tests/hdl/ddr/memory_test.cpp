@@ -2,6 +2,9 @@
 //
 // memory_test: memory controllers with random traffic from all ports against a reference memory.
 
+#include "VMemoryLitedram2.h"
+#include "VMemoryLitedram4.h"
+#include "VMemoryLitedram8.h"
 #include "VMemoryMcb2.h"
 #include "VMemoryMcb4.h"
 #include "VMemoryMcb8.h"
@@ -17,7 +20,10 @@ template <class Module, class Backend, unsigned count> struct Kind {
 };
 using Kinds =
     ::testing::Types<Kind<VMemoryMcb2, McbBackend, 2>, Kind<VMemoryMcb4, McbBackend, 4>,
-                     Kind<VMemoryMcb8, McbBackend, 8>, Kind<VMemoryMcbOptions, McbBackend, 4>>;
+                     Kind<VMemoryMcb8, McbBackend, 8>, Kind<VMemoryMcbOptions, McbBackend, 4>,
+                     Kind<VMemoryLitedram2, LitedramBackend, 2>,
+                     Kind<VMemoryLitedram4, LitedramBackend, 4>,
+                     Kind<VMemoryLitedram8, LitedramBackend, 8>>;
 
 template <class T> class Memory : public ::testing::Test {
 protected:
@@ -49,6 +55,15 @@ TYPED_TEST(Memory, RandomTrafficOnOneSmallRegionEqualsTheReference) {
 
 TYPED_TEST(Memory, FullSpeedTrafficOfEverySizeEqualsTheReference) {
     this->all(NpiTraffic());
+    this->run(20000);
+}
+
+TYPED_TEST(Memory, ReadersThatTakeTheirWordsAtOnceMayAskForMoreThanAFifoHolds) {
+    NpiTraffic traffic;
+    traffic.outstanding = 200;
+    traffic.writes = 0.2;
+    traffic.minSize = 4;
+    this->all(traffic);
     this->run(20000);
 }
 

@@ -7,9 +7,9 @@ folders="$source/bus $source/hdl/fsmc $source/hdl/ddr $source/hdl/modem $source/
 file=$(for f in $folders; do ls "$f/$module.v" 2>/dev/null || true; done)
 case $module in
 bus_decoder) variants='SLOTS=1 SLOTS=3 SLOTS=64' ;;
-npi_arbiter | npi_select | memory_mcb) variants='PORTS=2 PORTS=3 PORTS=4 PORTS=5 PORTS=6 PORTS=7 PORTS=8' ;;
+npi_arbiter | npi_select | memory_mcb | memory_litedram) variants='PORTS=2 PORTS=3 PORTS=4 PORTS=5 PORTS=6 PORTS=7 PORTS=8' ;;
 npi_queue) variants='PORT_BITS=2 PORT_BITS=3' ;;
-mcb_backend) variants='PORTS=2 PORTS=8' ;;
+litedram_backend) variants='ADDR_WIDTH=6 ADDR_WIDTH=29' ;;
 bus_wrapper) variants='EVENTS=1 EVENTS=32' ;;
 bus_window | bus_to_axi4lite) variants='ADDR_WIDTH=6 ADDR_WIDTH=32' ;;
 bus_to_wishbone) variants='ADDR_WIDTH=6 ADDR_WIDTH=32 PIPELINED=1' ;;

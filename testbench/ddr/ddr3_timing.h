@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+//
+// ddr3_timing: when a DDR3 device takes the commands that one BL8 burst needs: banks, rows,
+// turnarounds.
+//
+// All times are in clocks of the memory (tCK). Figures: Micron 1Gb DDR3 SDRAM data sheet
+// (MT41J64M16, MT41J128M8; 09005aef826aa906), "Speed Bins" and "Electrical Characteristics and AC
+// Operating Conditions", rounded up to clocks of 2.5 ns as its note on tCK demands.
+
+#ifndef DDR3_TIMING_H
+#define DDR3_TIMING_H
+
+#include <algorithm>
+#include <cstdint>
+
+struct Ddr3Part {
+    const char* name;
+    unsigned rowBytes;   // a page: 1024 columns
+    unsigned burstBytes; // BL8
+    unsigned cl, cwl;    // read and write latency
+    unsigned tRCD, tRP, tRAS, tRC;
+    unsigned tCCD, tRTP, tWR, tWTR, tRRD, tFAW;
+    unsigned tRFC, tREFI;
+};
+
+// -187E (DDR3-1066, 7-7-7) at DDR3-800: CL 6, CWL 5; tRCD = tRP = 13.125 ns, tRAS = 37.5 ns,
+// tRC = 50.625 ns, tWR = 15 ns, tRFC = 110 ns (1 Gb), tREFI = 7.8 us; tCCD = 4 CK, tRTP = tWTR =
+// max(4 CK, 7.5 ns), tRRD = max(4 CK, 10 ns), tFAW = 50 ns for pages of 2 KiB, 40 ns for 1 KiB.
+constexpr Ddr3Part mt41j64m16{
+    "MT41J64M16-187E at DDR3-800", 2048, 16, 6, 5, 6, 6, 15, 21, 4, 4, 6, 4, 4, 20, 44, 3120};
+constexpr Ddr3Part mt41j128m8{
+    "MT41J128M8-187E at DDR3-800", 1024, 8, 6, 5, 6, 6, 15, 21, 4, 4, 6, 4, 4, 16, 44, 3120};
+
+class Ddr3Timing {
+public:
+    explicit Ddr3Timing(const Ddr3Part& part) : part_(part), nextRefresh_(part.tREFI) {}
+
+    const Ddr3Part& part() const { return part_; }
+    uint64_t rowHits = 0, rowMisses = 0, refreshes = 0, turnarounds = 0;
+
+    unsigned bank(uint32_t address) const { return address / part_.rowBytes % banks; }
+    uint32_t row(uint32_t address) const { return address / part_.rowBytes / banks; }
+
+    // One burst, not before `at` and after all those before it: the clock of its READ or WRITE
+    // command. The row is opened, and another closed, as need be; refreshes that are due go first.
+    uint64_t access(uint64_t at, bool read, uint32_t address) {
+        at = refresh(at);
+        Bank& b = banks_[bank(address)];
+        uint32_t wanted = row(address);
+        if (b.open && b.row == wanted) {
+            ++rowHits;
+        } else {
+            ++rowMisses;
+            activate(b, wanted, at);
+        }
+        uint64_t cas = std::max({at, b.activated + part_.tRCD, lastCas_ + part_.tCCD});
+        if (anyCas_ && read != lastRead_) {
+            ++turnarounds;
+            // READ to WRITE: CL + tCCD + 2 - CWL; WRITE to READ: CWL + 4 + tWTR.
+            cas = std::max(cas, lastCas_ + (read ? part_.cwl + 4 + part_.tWTR
+                                                 : part_.cl + part_.tCCD + 2 - part_.cwl));
+        }
+        lastCas_ = cas;
+        lastRead_ = read;
+        anyCas_ = true;
+        b.mayPrecharge =
+            std::max(b.mayPrecharge, read ? cas + part_.tRTP : cas + part_.cwl + 4 + part_.tWR);
+        return cas;
+    }
+    // The bank closes by itself after its last burst.
+    void autoPrecharge(uint32_t address) {
+        Bank& b = banks_[bank(address)];
+        b.open = false;
+        b.mayActivate = std::max(b.mayActivate, precharge(b, 0) + part_.tRP);
+    }
+    // A refresh on demand, not before `at`: when it is over.
+    uint64_t refreshNow(uint64_t at) {
+        uint64_t start = at;
+        for (Bank& b : banks_) { // precharge all
+            if (b.open)
+                start = std::max(start, precharge(b, at) + part_.tRP);
+            start = std::max(start, b.mayActivate);
+            b.open = false;
+        }
+        for (Bank& b : banks_)
+            b.mayActivate = start + part_.tRFC;
+        ++refreshes;
+        return start + part_.tRFC;
+    }
+
+private:
+    static constexpr unsigned banks = 8;
+    struct Bank {
+        bool open = false;
+        uint32_t row = 0;
+        uint64_t activated = 0, mayPrecharge = 0, mayActivate = 0;
+        bool used = false;
+    };
+
+    uint64_t precharge(const Bank& b, uint64_t at) const {
+        return std::max({at, b.mayPrecharge, b.activated + part_.tRAS});
+    }
+
+    void activate(Bank& b, uint32_t row, uint64_t at) {
+        uint64_t act = std::max(at, b.mayActivate);
+        if (b.open)
+            act = std::max(act, precharge(b, at) + part_.tRP);
+        if (activations_ > 0) {
+            act = std::max(
+                {act, b.activated + (b.used ? part_.tRC : 0), lastActivated_ + part_.tRRD});
+            if (activations_ >= 4) // four activates in any window of tFAW
+                act = std::max(act, window_[activations_ % 4] + part_.tFAW);
+        }
+        window_[activations_++ % 4] = act;
+        lastActivated_ = b.activated = act;
+        b.open = b.used = true;
+        b.row = row;
+        b.mayPrecharge = 0;
+    }
+
+    // Refreshes due until `at`; of a long idle time only the last one can be in the way.
+    uint64_t refresh(uint64_t at) {
+        if (at < nextRefresh_)
+            return at;
+        uint64_t missed = (at - nextRefresh_) / part_.tREFI;
+        refreshes += missed;
+        uint64_t due = nextRefresh_ + missed * part_.tREFI;
+        nextRefresh_ = due + part_.tREFI;
+        return std::max(at, refreshNow(due));
+    }
+
+    const Ddr3Part part_;
+    Bank banks_[banks];
+    uint64_t window_[4] = {}, activations_ = 0, lastActivated_ = 0;
+    uint64_t lastCas_ = 0, nextRefresh_;
+    bool lastRead_ = true, anyCas_ = false;
+};
+
+#endif

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+//
+// mcb_model_test: the MCB model's user port: order, flags, and everything that it refuses.
+
+#include "mcb_model.h"
+#include <cstring>
+#include <functional>
+#include <gtest/gtest.h>
+
+namespace {
+
+class Mcb : public ::testing::Test {
+protected:
+    void SetUp() override {
+        while (!memory_.pins.calibDone)
+            cycle();
+    }
+    void cycle(unsigned times = 1) {
+        for (unsigned i = 0; i < times; ++i) {
+            memory_.cycle();
+            memory_.pins.cmdEn = memory_.pins.wrEn = memory_.pins.rdEn = false;
+        }
+    }
+    void push(uint64_t data, uint8_t mask = 0) {
+        memory_.pins.wrEn = true;
+        memory_.pins.wrData = data;
+        memory_.pins.wrMask = mask;
+        cycle();
+    }
+    void command(uint8_t instruction, uint32_t address, unsigned words) {
+        memory_.pins.cmdEn = true;
+        memory_.pins.cmdInstr = instruction;
+        memory_.pins.cmdByteAddr = address;
+        memory_.pins.cmdBl = static_cast<uint8_t>(words - 1);
+        cycle();
+    }
+    unsigned waitForWord() {
+        unsigned clocks = 0;
+        for (; memory_.pins.rdEmpty && clocks < 1000; ++clocks)
+            cycle();
+        return clocks;
+    }
+    uint64_t pop() {
+        uint64_t data = memory_.pins.rdData;
+        memory_.pins.rdEn = true;
+        cycle();
+        return data;
+    }
+    void refuses(const std::function<void()>& act, const std::string& why) {
+        try {
+            act();
+            FAIL() << "expected: " << why;
+        } catch (const McbError& error) {
+            EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+        }
+    }
+
+    static constexpr uint8_t write = 0, read = 1, writePrecharge = 2, readPrecharge = 3,
+                             refresh = 4;
+    McbModel memory_{1 << 20};
+};
+
+TEST_F(Mcb, ReadsWhatWasWrittenWithItsMask) {
+    push(0x1111111111111111u);
+    push(0x2222222222222222u, 0xF0);
+    command(write, 0x108, 2);
+    command(read, 0x108, 2);
+    waitForWord();
+    EXPECT_EQ(pop(), 0x1111111111111111u);
+    waitForWord();
+    EXPECT_EQ(pop(), 0x22222222u);
+    EXPECT_TRUE(memory_.pins.rdEmpty);
+}
+
+TEST_F(Mcb, ReadLatencyIsTheSumOfItsParts) {
+    command(read, 0, 1);
+    // 6 clocks in; then in memory clocks tRCD 6, CL 6, burst 4: 16 are 4 clocks; 5 clocks out
+    EXPECT_EQ(waitForWord() + 1, 6u + 4 + 5);
+    pop();
+    command(read, 0, 1);
+    EXPECT_EQ(waitForWord() + 1, 6u + 3 + 5) << "a row hit: CL 6 and burst 4 are 3 clocks";
+}
+
+TEST_F(Mcb, PrechargingInstructionsCloseTheRow) {
+    command(readPrecharge, 0, 1);
+    waitForWord();
+    pop();
+    cycle(20);
+    uint64_t misses = memory_.device().rowMisses;
+    command(read, 0, 1);
+    waitForWord();
+    EXPECT_EQ(memory_.device().rowMisses, misses + 1);
+    push(1);
+    command(writePrecharge, 64, 1);
+    cycle(30);
+    EXPECT_EQ(memory_.data()[64], 1);
+    uint64_t refreshes = memory_.device().refreshes;
+    command(refresh, 0, 1);
+    cycle(30);
+    EXPECT_EQ(memory_.device().refreshes, refreshes + 1);
+}
+
+TEST_F(Mcb, TwoWordsAClockBehindTheFifosOneAtThePort) {
+    // 64 words that were asked for are in the FIFO before 40 clocks have passed since the first
+    command(read, 0, 64);
+    waitForWord();
+    unsigned clocks = 0;
+    for (; !memory_.pins.rdFull; ++clocks)
+        cycle();
+    EXPECT_GE(clocks, 31u);
+    EXPECT_LE(clocks, 32u);
+    EXPECT_EQ(memory_.pins.rdCount, 64);
+}
+
+TEST_F(Mcb, FlagsOfTheWriteSide) {
+    EXPECT_TRUE(memory_.pins.wrEmpty);
+    for (unsigned i = 0; i < 64; ++i) {
+        EXPECT_FALSE(memory_.pins.wrFull);
+        push(i);
+        EXPECT_EQ(memory_.pins.wrCount, i + 1);
+    }
+    EXPECT_TRUE(memory_.pins.wrFull);
+    refuses([&] { push(64); }, "write FIFO overflow");
+    command(write, 0, 64);
+    cycle(60);
+    EXPECT_TRUE(memory_.pins.wrEmpty);
+    EXPECT_EQ(memory_.data()[8 * 63], 63);
+}
+
+TEST_F(Mcb, TheCommandFifoHoldsFour) {
+    for (unsigned i = 0; i < 4; ++i) {
+        EXPECT_FALSE(memory_.pins.cmdFull);
+        command(read, 0, 8);
+    }
+    EXPECT_TRUE(memory_.pins.cmdFull);
+    refuses([&] { command(read, 0, 8); }, "command FIFO overflow");
+}
+
+TEST_F(Mcb, Refusals) {
+    refuses([&] { command(write, 0, 1); }, "before its data");
+    EXPECT_TRUE(memory_.pins.wrUnderrun && memory_.pins.wrError);
+    refuses([&] { command(read, 4, 1); }, "aligned");
+    refuses([&] { command(read, (1 << 20) - 8, 2); }, "beyond the memory");
+    refuses([&] { command(read, 0, 65); }, "more than 64 words");
+    refuses([&] { pop(); }, "read of an empty FIFO");
+    EXPECT_TRUE(memory_.pins.rdError);
+    memory_.pins.rdEn = false;
+    push(1);
+    command(write, 0, 1); // its word is claimed
+    refuses([&] { command(write, 0, 1); }, "before its data");
+}
+
+TEST_F(Mcb, ReadWordsThatDoNotFitAreLost) {
+    command(read, 0, 64);
+    command(read, 512, 1);
+    refuses([&] { cycle(200); }, "read FIFO overflow");
+    EXPECT_TRUE(memory_.pins.rdOverflow);
+}
+
+TEST(McbStart, NoCommandBeforeCalibration) {
+    McbModel memory(1 << 20);
+    memory.pins.cmdEn = true;
+    memory.pins.cmdInstr = 1;
+    EXPECT_THROW(memory.cycle(), McbError);
+}
+
+} // namespace

@@ -52,6 +52,7 @@ protected:
             FAIL() << "expected: " << why;
         } catch (const McbError& error) {
             EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+            memory_.pins.cmdEn = memory_.pins.wrEn = memory_.pins.rdEn = false;
         }
     }
 
@@ -144,7 +145,6 @@ TEST_F(Mcb, Refusals) {
     refuses([&] { command(read, 0, 65); }, "more than 64 words");
     refuses([&] { pop(); }, "read of an empty FIFO");
     EXPECT_TRUE(memory_.pins.rdError);
-    memory_.pins.rdEn = false;
     push(1);
     command(write, 0, 1); // its word is claimed
     refuses([&] { command(write, 0, 1); }, "before its data");

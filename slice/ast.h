@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// ast: what a Slice file declares.
+// ast: what a Slice file and the files it includes declare. Made by the parser, which has resolved
+// every name and checked what Slice demands; read by the generators.
+//
+//   Unit         declarations in the order of the source, those of included files among them
+//   Declaration  one enum, struct, sequence, dictionary, interface, class, exception or constant
+//   Operation    of an interface;  Field: a member or a parameter;  Type: of a field
 
 #ifndef AST_H
 #define AST_H
@@ -14,69 +19,94 @@
 struct Declaration;
 
 struct Type {
-    enum class Kind { Void, Bool, Byte, Short, Int, Long, Float, Double, String, Named, Proxy };
+    enum class Kind {
+        Void, Bool, Byte, Short, Int, Long, Float, Double, String,
+        Named,      // `declaration`: enum, struct, sequence, dictionary or class
+        Proxy,      // `declaration`: the interface; 0 for Object*
+        Value,      // any class: Object or Value; with `declaration`, an interface by value
+        LocalObject // only within local definitions
+    };
     Kind kind = Kind::Void;
-    Declaration* declaration = nullptr; // Named: enum, struct, sequence; Proxy: interface, 0 for Object*
+    Declaration* declaration = nullptr;
+};
+
+// The value of a constant, or of a member's default.
+struct Literal {
+    enum class Kind { None, Bool, Integer, Floating, String, Enumerator };
+    Kind kind = Kind::None;
+    int64_t integer = 0;                  // Bool, Integer; Enumerator: its value
+    double floating = 0;                  // Floating
+    std::string text;                     // Floating as written; String as bytes of UTF-8; Enumerator's name
+    const Declaration* owner = nullptr;   // Enumerator's enum
 };
 
 struct Field {
     Type type;
     std::string name, doc;
     Location at;
-    bool isOut = false; // of an operation's parameter
+    bool isOut = false;         // of an operation's parameter
+    bool isOptional = false;
+    int tag = 0;                // of an optional one
+    Literal value;              // default of a member
+    std::vector<std::string> metadata;
 };
 
 struct Operation {
     std::string name, doc;
-    Type result;
-    std::vector<Field> parameters;
+    Type result;                // Void where there is none
+    bool isResultOptional = false;
+    int resultTag = 0;
+    std::vector<Field> parameters; // in the order of the source, ins before outs
+    std::vector<const Declaration*> throws;
     bool idempotent = false;
     Location at;
+    std::vector<std::string> metadata;
 };
 
 struct Enumerator {
-    std::string name;
+    std::string name, doc;
     int64_t value = 0;
+    Location at;
 };
 
 struct Declaration {
-    enum class Kind { Enum, Struct, Sequence, Interface, Constant };
+    enum class Kind { Enum, Struct, Sequence, Dictionary, Interface, Class, Exception, Constant };
     Kind kind = Kind::Enum;
     std::string name, doc;
-    std::vector<std::string> scope; // modules
+    std::vector<std::string> scope; // modules, outermost first
     Location at;
     bool fromInclude = false;
-    bool isForward = false; // an interface that is declared, not defined
+    bool isLocal = false;
+    bool isForward = false;         // an interface or class that is declared, but not defined here
     std::vector<std::string> metadata;
-    std::vector<Enumerator> enumerators;
-    std::vector<Field> fields;
-    Type element; // of a sequence; type of a constant
-    std::string value; // of a constant
-    std::vector<Declaration*> bases;
-    std::vector<Operation> operations;
 
-    std::string cName() const {
-        std::string s;
-        for (const std::string& module : scope)
-            s += module + "_";
-        return s + name;
-    }
-    std::string id() const {
-        std::string s;
-        for (const std::string& module : scope)
-            s += "::" + module;
-        return s + "::" + name;
-    }
-    bool isHardware() const {
-        for (const std::string& m : metadata)
-            if (m == ":hw")
-                return true;
-        return false;
-    }
+    std::vector<Enumerator> enumerators;     // Enum
+    std::vector<Field> fields;               // Struct, Class, Exception: own members
+    Type key, element;                       // Dictionary; Sequence: element; Constant: its type
+    Literal value;                           // Constant
+    std::vector<const Declaration*> bases;   // Interface: any; Class, Exception: at most one
+    std::vector<Operation> operations;       // Interface: own ones
+    int compactId = -1;                      // Class; -1: none
+
+    // Module_Sub_Name, ::Module::Sub::Name
+    std::string cName() const;
+    std::string id() const;
+    bool isHardware() const { return hasMetadata(":hw"); }
+    bool hasMetadata(const std::string& directive) const;
+    // What stands behind "prefix:", or nothing.
+    std::string metadataValue(const std::string& prefix) const;
+    // The same as `other`, or derived from it.
+    bool isA(const Declaration& other) const;
+    const Declaration* base() const { return bases.empty() ? nullptr : bases.front(); }
 };
 
 struct Unit {
-    std::vector<std::unique_ptr<Declaration>> declarations; // in the order of the source
+    std::string file;                           // as given on the command line
+    std::vector<std::unique_ptr<Declaration>> declarations;
+    std::vector<std::string> metadata;          // [["..."]] of the main file
 };
+
+bool hasMetadata(const std::vector<std::string>& metadata, const std::string& directive);
+std::string metadataValue(const std::vector<std::string>& metadata, const std::string& prefix);
 
 #endif

@@ -1,21 +1,30 @@
 // SPDX-License-Identifier: MIT
 //
-// c_generator: the C90 of one Slice file: header, types, proxies (client), dispatch (server).
+// c_generator: a unit as C90 for IceC: a header and four sources (docs/slice-mapping.md).
 
 #ifndef C_GENERATOR_H
 #define C_GENERATOR_H
 
 #include "ast.h"
+#include <string>
+#include <vector>
 
 struct GeneratedFile {
     std::string name, text;
 };
 
-// `base`: name of the Slice file without its extension.
-std::vector<GeneratedFile> generateC(const Unit& unit, const std::string& base,
-                                     const std::string& headerExtension);
+struct CFileNames {
+    std::string base;                  // "Printer"
+    std::string headerExtension = "h"; // without the dot
+    std::string sourceExtension = "c";
+    std::string path;                  // of the header, as others include it: its guard
+    std::string includeDir;            // before the header's name in the sources, may be empty
+    std::vector<std::string> includes; // headers of the Slice files that the main file includes
+};
 
-// What Slice allows and the C mapping does not; and what a [":hw"] interface cannot hold.
+// What C cannot map, or maps in a way that clashes. Call it before generateC.
 void checkC(const Unit& unit, Diagnostics& diagnostics);
+
+std::vector<GeneratedFile> generateC(const Unit& unit, const CFileNames& names);
 
 #endif

@@ -3,108 +3,89 @@
 // c_types: the mapping, type by type.
 
 #include "c_types.h"
+#include "c_names.h"
 #include <algorithm>
-#include <set>
 
 namespace {
 
 using Kind = Type::Kind;
+using DKind = Declaration::Kind;
 
-bool isEnum(const Type& t) {
-    return t.kind == Kind::Named && t.declaration->kind == Declaration::Kind::Enum;
+bool isNamed(const Type& t, DKind kind) { return t.kind == Kind::Named && t.declaration->kind == kind; }
+
+// Ice_OutputStream_write<word>, Ice_InputStream_read<word>
+std::string streamWord(const Type& t) { return cType(t).substr(4); }
+
+std::string largestEnumerator(const Declaration& d) {
+    int64_t largest = 0;
+    for (const Enumerator& e : d.enumerators)
+        largest = std::max(largest, e.value);
+    return std::to_string(largest);
 }
 
-// Names of the run time's functions: Ice_OutputStream_write<word>.
-std::string streamWord(Kind kind) {
-    switch (kind) {
-    case Kind::Bool: return "Bool";
-    case Kind::Byte: return "Byte";
-    case Kind::Short: return "Short";
-    case Kind::Int: return "Int";
-    case Kind::Long: return "Long";
-    case Kind::Float: return "Float";
-    case Kind::Double: return "Double";
-    case Kind::String: return "String";
-    default: return "";
+// ICE_OPTIONAL_...
+std::string optionalFormat(const Type& t) {
+    switch (t.kind) {
+    case Kind::Bool:
+    case Kind::Byte: return "F1";
+    case Kind::Short: return "F2";
+    case Kind::Int:
+    case Kind::Float: return "F4";
+    case Kind::Long:
+    case Kind::Double: return "F8";
+    case Kind::String: return "VSIZE";
+    case Kind::Named: break;
+    case Kind::Proxy: return "FSIZE";
+    default: return "CLASS";
     }
+    switch (t.declaration->kind) {
+    case DKind::Enum: return "SIZE";
+    case DKind::Class: return "CLASS";
+    case DKind::Struct: return isVariable(t) ? "FSIZE" : "VSIZE";
+    case DKind::Sequence: return isVariable(t.declaration->element) ? "FSIZE" : "VSIZE";
+    default:
+        return isVariable(t.declaration->key) || isVariable(t.declaration->element) ? "FSIZE" : "VSIZE";
+    }
+}
+
+// The size that stands before an optional of format VSIZE, or nothing where the value begins with it.
+std::string sizeBefore(const Slot& s) {
+    const Type& t = *s.type;
+    if (optionalFormat(t) != "VSIZE" || t.kind == Kind::String)
+        return "";
+    if (t.declaration->kind == DKind::Struct)
+        return std::to_string(leastWireSize(t));
+    int each = leastWireSize(t.declaration->element);
+    if (t.declaration->kind == DKind::Dictionary)
+        each += leastWireSize(t.declaration->key);
+    if (each == 1)
+        return "";
+    std::string count = s.value[0] == '*' ? s.pointer + "->size" : s.value + ".size";
+    return std::to_string(each) + " * " + count + " + (" + count + " > 254 ? 5 : 1)";
 }
 
 } // namespace
 
-std::string cIdentifier(const std::string& name) {
-    static const std::set<std::string> reserved = {
-        "auto",   "break",    "case",     "char",   "const",    "continue", "default", "do",
-        "double", "else",     "enum",     "extern", "float",    "for",      "goto",    "if",
-        "int",    "long",     "register", "return", "short",    "signed",   "sizeof",  "static",
-        "struct", "switch",   "typedef",  "union",  "unsigned", "void",     "volatile", "while",
-        // of the generated functions themselves
-        "self", "current", "is", "os", "status"};
-    return reserved.count(name) ? name + "_" : name;
+bool isEnum(const Type& t) { return isNamed(t, DKind::Enum); }
+
+bool isClass(const Type& t) {
+    return t.kind == Kind::Value || t.kind == Kind::LocalObject || isNamed(t, DKind::Class);
 }
 
 bool isByPointer(const Type& t) {
-    return t.kind == Kind::Proxy || (t.kind == Kind::Named && !isEnum(t));
-}
-
-std::string cType(const Type& t) {
-    if (t.kind == Kind::Named)
-        return t.declaration->cName();
-    if (t.kind == Kind::Proxy)
-        return t.declaration ? t.declaration->cName() + "Prx" : "Ice_ObjectPrx";
-    return "Ice_" + streamWord(t.kind);
-}
-
-std::string cInParameter(const Type& t, const std::string& name) {
-    if (isByPointer(t))
-        return "const " + cType(t) + " *" + name;
-    return cType(t) + " " + name;
-}
-
-std::string cOutParameter(const Type& t, const std::string& name) { return cType(t) + " *" + name; }
-
-std::string asInArgument(const Type& t, const std::string& variable) {
-    return isByPointer(t) ? "&" + variable : variable;
-}
-
-int64_t largestEnumerator(const Declaration& d) {
-    int64_t largest = 0;
-    for (const Enumerator& e : d.enumerators)
-        largest = std::max(largest, e.value);
-    return largest;
-}
-
-std::string writeStatement(const Type& t, const std::string& expression) {
-    if (isEnum(t))
-        return "Ice_OutputStream_writeEnum(os, (Ice_Int)" + expression + ", " +
-               std::to_string(largestEnumerator(*t.declaration)) + ");";
-    if (t.kind == Kind::Proxy)
-        return "Ice_OutputStream_writePrx(os, " + expression + ");";
-    if (t.kind == Kind::Named)
-        return cType(t) + "_writeToOutputStream(" + expression + ", os);";
-    return "Ice_OutputStream_write" + streamWord(t.kind) + "(os, " + expression + ");";
-}
-
-std::string readStatement(const Type& t, const std::string& object, const std::string& communicator) {
-    if (isEnum(t))
-        return object + " = (" + cType(t) + ")Ice_InputStream_readEnum(is, " +
-               std::to_string(largestEnumerator(*t.declaration)) + ");";
-    if (t.kind == Kind::Proxy)
-        return "Ice_InputStream_readPrx(is, " + communicator + ", &" + object + ");";
-    if (t.kind == Kind::Named)
-        return cType(t) + "_readFromInputStream(&" + object + ", is);";
-    return object + " = Ice_InputStream_read" + streamWord(t.kind) + "(is);";
+    return t.kind == Kind::Proxy || (t.kind == Kind::Named && !isEnum(t) && !isClass(t));
 }
 
 int leastWireSize(const Type& t) {
     switch (t.kind) {
-    case Kind::Short: return 2;
+    case Kind::Short:
+    case Kind::Proxy: return 2;
     case Kind::Int:
     case Kind::Float: return 4;
     case Kind::Long:
     case Kind::Double: return 8;
-    case Kind::Proxy: return 2;
     case Kind::Named:
-        if (t.declaration->kind == Declaration::Kind::Struct) {
+        if (t.declaration->kind == DKind::Struct) {
             int sum = 0;
             for (const Field& f : t.declaration->fields)
                 sum += leastWireSize(f.type);
@@ -115,13 +96,117 @@ int leastWireSize(const Type& t) {
     }
 }
 
-bool containsProxy(const Type& t) {
-    if (t.kind == Kind::Proxy)
+bool isVariable(const Type& t) {
+    if (t.kind == Kind::String || t.kind == Kind::Proxy || isClass(t))
         return true;
     if (t.kind != Kind::Named)
         return false;
-    if (t.declaration->kind == Declaration::Kind::Sequence)
-        return containsProxy(t.declaration->element);
+    if (t.declaration->kind != DKind::Struct)
+        return true;
     return std::any_of(t.declaration->fields.begin(), t.declaration->fields.end(),
-                       [](const Field& f) { return containsProxy(f.type); });
+                       [](const Field& f) { return isVariable(f.type); });
+}
+
+bool containsClass(const Type& t) {
+    if (isClass(t))
+        return true;
+    if (t.kind != Kind::Named)
+        return false;
+    const Declaration& d = *t.declaration;
+    if (d.kind == DKind::Sequence || d.kind == DKind::Dictionary)
+        return containsClass(d.element);
+    return std::any_of(d.fields.begin(), d.fields.end(), [](const Field& f) { return containsClass(f.type); });
+}
+
+std::string cVariable(const Type& t, const std::string& name) {
+    std::string type = cType(t);
+    return type.back() == '*' ? type + name : type + " " + name;
+}
+
+std::string writeStatement(const Type& t, const std::string& value, const std::string& pointer) {
+    if (isEnum(t))
+        return "Ice_OutputStream_writeEnum(os, (Ice_Int)" + value + ", " + largestEnumerator(*t.declaration) + ");";
+    if (t.kind == Kind::Proxy)
+        return "Ice_OutputStream_writePrx(os, " + pointer + ");";
+    if (isClass(t))
+        return "Ice_OutputStream_writeValue(os, (const Ice_Value *)" + value + ");";
+    if (t.kind == Kind::Named)
+        return cType(t) + "_writeToOutputStream(" + pointer + ", os);";
+    return "Ice_OutputStream_write" + streamWord(t) + "(os, " + value + ");";
+}
+
+std::string readStatement(const Type& t, const std::string& value, const std::string& pointer) {
+    if (isEnum(t))
+        return value + " = (" + cType(t) + ")Ice_InputStream_readEnum(is, " + largestEnumerator(*t.declaration) + ");";
+    if (t.kind == Kind::Proxy)
+        return "Ice_InputStream_readPrx(is, 0, " + pointer + ");";
+    if (isClass(t)) {
+        bool any = t.kind != Kind::Named;
+        return "Ice_InputStream_readValue(is, " + pointer + ", " +
+               (any ? "0" : "&" + t.declaration->cName() + "_type") + ");";
+    }
+    if (t.kind == Kind::Named)
+        return cType(t) + "_readFromInputStream(" + pointer + ", is);";
+    return value + " = Ice_InputStream_read" + streamWord(t) + "(is);";
+}
+
+std::vector<Slot> wireOrder(std::vector<Slot> slots) {
+    std::stable_sort(slots.begin(), slots.end(), [](const Slot& a, const Slot& b) {
+        if (a.isOptional != b.isOptional)
+            return b.isOptional;
+        return a.isOptional && a.tag < b.tag;
+    });
+    return slots;
+}
+
+void writeSlots(Writer& w, const std::vector<Slot>& slots) {
+    for (const Slot& s : wireOrder(slots)) {
+        std::string statement = writeStatement(*s.type, s.value, s.pointer);
+        if (!s.isOptional) {
+            w.line(statement);
+            continue;
+        }
+        std::string format = optionalFormat(*s.type), size = sizeBefore(s);
+        std::string condition = "if (" + s.has + " && Ice_OutputStream_writeOptional(os, " + std::to_string(s.tag) +
+                                ", ICE_OPTIONAL_" + format + "))";
+        if (format == "FSIZE") {
+            w.block(condition, {}, [&] {
+                w.line("Ice_Int at = Ice_OutputStream_startSize(os);");
+                w.line(statement);
+                w.line("Ice_OutputStream_endSize(os, at);");
+            });
+        } else if (!size.empty()) {
+            w.block(condition, {}, [&] {
+                w.line("Ice_OutputStream_writeSize(os, " + size + ");");
+                w.line(statement);
+            });
+        } else {
+            w.line(condition);
+            w.nested(statement);
+        }
+    }
+}
+
+void readSlots(Writer& w, const std::vector<Slot>& slots) {
+    for (const Slot& s : wireOrder(slots)) {
+        std::string statement = readStatement(*s.type, s.value, s.pointer);
+        if (!s.isOptional) {
+            w.line(statement);
+            continue;
+        }
+        std::string format = optionalFormat(*s.type);
+        w.line(s.has + " = Ice_InputStream_readOptional(is, " + std::to_string(s.tag) + ", ICE_OPTIONAL_" + format + ");");
+        std::string skip = format == "FSIZE"           ? "(void)Ice_InputStream_readInt(is); /* its size */"
+                           : !sizeBefore(s).empty() ? "(void)Ice_InputStream_readSize(is);"
+                                                    : "";
+        if (skip.empty()) {
+            w.line("if (" + s.has + ")");
+            w.nested(statement);
+        } else {
+            w.block("if (" + s.has + ")", {}, [&] {
+                w.line(skip);
+                w.line(statement);
+            });
+        }
+    }
 }

@@ -1,27 +1,45 @@
 // SPDX-License-Identifier: MIT
 //
-// c_types: how Slice types look in C and on the wire (docs/icec.md).
+// c_types: how values are passed, written and read: pieces of C that the generators put together.
 
 #ifndef C_TYPES_H
 #define C_TYPES_H
 
 #include "ast.h"
+#include "writer.h"
+#include <string>
+#include <vector>
 
-// A name that C90 keeps for itself gets a trailing underscore.
-std::string cIdentifier(const std::string& name);
-// As a member or variable: "Ice_Short", "M_Param".
-std::string cType(const Type& type);
-// As a parameter that is read: by value, or a pointer to const.
-std::string cInParameter(const Type& type, const std::string& name);
-std::string cOutParameter(const Type& type, const std::string& name);
-// Statements. `expression` names a value of the type; `object` (for reading) an lvalue.
-std::string writeStatement(const Type& type, const std::string& expression);
-std::string readStatement(const Type& type, const std::string& object, const std::string& communicator);
-// The expression that hands a variable on as an in parameter.
-std::string asInArgument(const Type& type, const std::string& variable);
-bool isByPointer(const Type& type); // structs, sequences and proxies
-int leastWireSize(const Type& type); // bytes
-int64_t largestEnumerator(const Declaration& declaration);
-bool containsProxy(const Type& type);
+// Passed by const pointer: all but scalars, strings, enums and pointers to classes.
+bool isByPointer(const Type& type);
+bool isEnum(const Type& type);
+bool isClass(const Type& type); // a pointer to an Ice_Value
+
+// Least bytes on the wire, and whether that is all there can be.
+int leastWireSize(const Type& type);
+bool isVariable(const Type& type);
+// A class is in it, at any depth.
+bool containsClass(const Type& type);
+
+// A declaration of `name`: "Ice_Int x", "M_Node *x".
+std::string cVariable(const Type& type, const std::string& name);
+
+// One value in a list of members or parameters that is written or read.
+struct Slot {
+    const Type* type = nullptr;
+    std::string value;   // its lvalue
+    std::string pointer; // its address
+    bool isOptional = false;
+    int tag = 0;
+    std::string has;     // is it there? written: a condition; read: an lvalue
+};
+
+// Required ones in their order, then the optional ones by tag, as they are on the wire.
+std::vector<Slot> wireOrder(std::vector<Slot> slots);
+void writeSlots(Writer& w, const std::vector<Slot>& slots);
+void readSlots(Writer& w, const std::vector<Slot>& slots);
+
+std::string writeStatement(const Type& type, const std::string& value, const std::string& pointer);
+std::string readStatement(const Type& type, const std::string& value, const std::string& pointer);
 
 #endif

@@ -5,10 +5,26 @@
 #include "diagnostics.h"
 #include <fstream>
 
-const std::vector<std::string>& Diagnostics::lines(const std::string& file) {
+void Diagnostics::error(const Location& at, const std::string& text) {
+    // A broken file says enough in its first hundred errors.
+    if (++errors_ <= 100)
+        print(at, "error", text);
+}
+
+void Diagnostics::warning(const Location& at, const std::string& text, Category category) {
+    if (!suppressed_.count({at.file, General}) && !suppressed_.count({at.file, category}))
+        print(at, "warning", text);
+}
+
+std::string_view Diagnostics::intern(std::string_view text) {
+    auto it = names_.find(text);
+    return it != names_.end() ? *it : *names_.insert(std::string(text)).first;
+}
+
+const std::vector<std::string>& Diagnostics::lines(std::string_view file) {
     auto [it, isNew] = files_.try_emplace(file);
     if (isNew) {
-        std::ifstream in(file);
+        std::ifstream in{std::string(file)};
         for (std::string line; std::getline(in, line);)
             it->second.push_back(line);
     }

@@ -3,23 +3,29 @@
 // lexer: one pass over the text.
 
 #include "lexer.h"
-#include <cctype>
+#include <algorithm>
 #include <cstdlib>
+#include <string>
 
 namespace {
 
+bool isDigit(char c) { return c >= '0' && c <= '9'; }
+bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool isSpace(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
 class Lexer {
 public:
-    Lexer(const std::string& text, const std::string& file, Diagnostics& diagnostics)
+    Lexer(std::string_view text, std::string_view file, Diagnostics& diagnostics)
         : text_(text), diagnostics_(diagnostics) {
-        at_.file = file;
+        at_.file = diagnostics.intern(file);
         at_.line = at_.column = 1;
+        tokens_.reserve(text.size() / 12);
     }
 
     std::vector<Token> run() {
         while (position_ < text_.size())
             next();
-        add(Token::Kind::End, "", at_);
+        add(Token::Kind::End, text_.size(), at_);
         return std::move(tokens_);
     }
 
@@ -35,146 +41,152 @@ private:
             ++at_.column;
         }
     }
-    void add(Token::Kind kind, std::string text, const Location& at) {
-        tokens_.push_back({kind, std::move(text), std::move(doc_), at, false});
-        doc_.clear();
+    void skipTo(size_t position) {
+        while (position_ < position)
+            advance();
+    }
+    // A token from `begin` to here.
+    void add(Token::Kind kind, size_t begin, const Location& at, bool escaped = false) {
+        tokens_.push_back({kind, text_.substr(begin, position_ - begin), doc_, at, escaped});
+        doc_ = {};
     }
 
     // # 12 "file" or #line 12 "file", as the preprocessor leaves them.
     void lineMarker() {
-        std::string line;
-        while (position_ < text_.size() && peek() != '\n') {
-            line += peek();
-            advance();
-        }
-        if (position_ < text_.size())
-            advance();
+        size_t end = text_.find('\n', position_);
+        std::string_view line = text_.substr(position_, end - position_);
+        position_ = end == std::string_view::npos ? text_.size() : end + 1;
+        at_.column = 1;
+        ++at_.line;
         size_t digits = line.find_first_of("0123456789");
-        if (digits == std::string::npos)
+        if (digits == std::string_view::npos)
             return;
-        at_.line = std::atoi(line.c_str() + digits);
+        at_.line = std::atoi(std::string(line.substr(digits, 9)).c_str());
         size_t open = line.find('"'), close = line.rfind('"');
-        if (open != std::string::npos && close > open)
-            at_.file = line.substr(open + 1, close - open - 1);
+        if (open != std::string_view::npos && close > open)
+            at_.file = diagnostics_.intern(line.substr(open + 1, close - open - 1));
     }
 
     void comment() {
         Location begin = at_;
-        bool isDoc = peek(1) == '*' && peek(2) == '*' && peek(3) != '/';
-        std::string body;
-        advance();
-        advance();
-        while (position_ < text_.size() && !(peek() == '*' && peek(1) == '/')) {
-            body += peek();
-            advance();
-        }
-        if (position_ >= text_.size()) {
+        size_t end = text_.find("*/", position_ + 2);
+        if (end == std::string_view::npos) {
             diagnostics_.error(begin, "comment without an end; expected '*/'");
+            skipTo(text_.size());
             return;
         }
-        advance();
-        advance();
-        if (isDoc)
-            doc_ = body.substr(1);
+        if (end > position_ + 2 && peek(2) == '*')
+            doc_ = text_.substr(position_ + 3, end - position_ - 3);
+        skipTo(end + 2);
+    }
+
+    void lineComment() {
+        size_t end = std::min(text_.find('\n', position_), text_.size());
+        if (peek(2) == '/') { // lines of them are one comment
+            size_t begin = doc_.empty() ? position_ + 3 : static_cast<size_t>(doc_.data() - text_.data());
+            doc_ = text_.substr(begin, end - begin);
+        }
+        skipTo(end);
     }
 
     void string() {
-        Location begin = at_;
-        std::string value;
+        Location at = at_;
         advance();
+        size_t begin = position_;
         while (peek() != '"') {
             if (peek() == '\n' || position_ >= text_.size()) {
-                diagnostics_.error(begin, "string without an end; expected '\"'");
-                return;
+                diagnostics_.error(at, "string without an end; expected '\"'");
+                return add(Token::Kind::String, begin, at);
             }
-            if (peek() == '\\') {
-                value += peek();
+            if (peek() == '\\' && peek(1) != '\n' && position_ + 1 < text_.size())
                 advance();
-            }
-            value += peek();
             advance();
         }
+        add(Token::Kind::String, begin, at);
         advance();
-        add(Token::Kind::String, value, begin);
     }
 
     void word() {
-        Location begin = at_;
+        Location at = at_;
         bool escaped = peek() == '\\';
         if (escaped)
             advance();
-        std::string value;
-        while (std::isalnum(static_cast<unsigned char>(peek())) || peek() == '_') {
-            value += peek();
+        size_t begin = position_;
+        while (isLetter(peek()) || isDigit(peek()))
             advance();
-        }
-        add(Token::Kind::Identifier, value, begin);
-        tokens_.back().escaped = escaped;
+        if (begin == position_)
+            diagnostics_.error(at, "'\\' without the identifier that it should escape");
+        else
+            add(Token::Kind::Identifier, begin, at, escaped);
     }
 
     void number() {
-        Location begin = at_;
-        std::string value;
-        bool isFloat = false;
-        while (std::isalnum(static_cast<unsigned char>(peek())) || peek() == '.' ||
-               ((peek() == '-' || peek() == '+') &&
-                (value.empty() || value.back() == 'e' || value.back() == 'E'))) {
-            isFloat = isFloat || peek() == '.';
-            value += peek();
+        Location at = at_;
+        size_t begin = position_;
+        bool isFloat = false, isHex = false;
+        if (peek() == '+' || peek() == '-')
             advance();
+        isHex = peek() == '0' && (peek(1) == 'x' || peek(1) == 'X');
+        while (isLetter(peek()) || isDigit(peek()) || peek() == '.') {
+            bool exponent = !isHex && (peek() == 'e' || peek() == 'E');
+            isFloat = isFloat || peek() == '.' || exponent || (!isHex && (peek() == 'f' || peek() == 'F'));
+            advance();
+            if (exponent && (peek() == '+' || peek() == '-'))
+                advance();
         }
-        add(isFloat ? Token::Kind::Float : Token::Kind::Integer, value, begin);
+        add(isFloat ? Token::Kind::Float : Token::Kind::Integer, begin, at);
+    }
+
+    bool isNumber() const {
+        char c = peek();
+        size_t sign = c == '+' || c == '-';
+        return isDigit(peek(sign)) || (peek(sign) == '.' && isDigit(peek(sign + 1)));
     }
 
     void next() {
         char c = peek();
         if (c == '#' && at_.column == 1)
             return lineMarker();
-        if (std::isspace(static_cast<unsigned char>(c)))
+        if (isSpace(c))
             return advance();
         if (c == '/' && peek(1) == '*')
             return comment();
-        if (c == '/' && peek(1) == '/') {
-            std::string body;
-            while (position_ < text_.size() && peek() != '\n') {
-                body += peek();
-                advance();
-            }
-            if (body.size() > 2 && body[2] == '/')
-                doc_ = body.substr(3);
-            return;
-        }
+        if (c == '/' && peek(1) == '/')
+            return lineComment();
         if (c == '"')
             return string();
-        if (std::isalpha(static_cast<unsigned char>(c)) || c == '_' || c == '\\')
+        if (isLetter(c) || c == '\\')
             return word();
-        if (std::isdigit(static_cast<unsigned char>(c)) ||
-            (c == '-' && std::isdigit(static_cast<unsigned char>(peek(1)))))
+        if (isNumber())
             return number();
-        Location begin = at_;
-        std::string symbol(1, c);
-        advance();
-        if ((c == ':' && peek() == ':') || (c == '[' && peek() == '[') || (c == ']' && peek() == ']')) {
-            symbol += peek();
-            advance();
+        if (text_.compare(position_, 3, "\xEF\xBB\xBF") == 0) { // byte order mark
+            position_ += 3;
+            return;
         }
-        if (symbol.size() == 1 && std::string("{}()[];:,*=<>").find(c) == std::string::npos)
-            diagnostics_.error(begin, "character '" + symbol + "' has no meaning in Slice");
-        else
-            add(Token::Kind::Symbol, symbol, begin);
+        Location at = at_;
+        size_t begin = position_;
+        advance();
+        if ((c == ':' || c == '[' || c == ']') && peek() == c)
+            advance();
+        if (position_ == begin + 1 && std::string_view("{}()[];:,*=<>").find(c) == std::string_view::npos) {
+            auto u = static_cast<unsigned char>(c);
+            std::string shown = u > 32 && u < 127 ? std::string(1, c) : "code " + std::to_string(u);
+            diagnostics_.error(at, "character '" + shown + "' has no meaning in Slice");
+        } else {
+            add(Token::Kind::Symbol, begin, at);
+        }
     }
 
-    const std::string& text_;
+    std::string_view text_;
     Diagnostics& diagnostics_;
     size_t position_ = 0;
     Location at_;
-    std::string doc_;
+    std::string_view doc_;
     std::vector<Token> tokens_;
 };
 
 } // namespace
 
-std::vector<Token> tokenize(const std::string& text, const std::string& file,
-                            Diagnostics& diagnostics) {
+std::vector<Token> tokenize(std::string_view text, std::string_view file, Diagnostics& diagnostics) {
     return Lexer(text, file, diagnostics).run();
 }

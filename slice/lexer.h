@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: MIT
 //
-// lexer: preprocessed Slice into tokens; line markers give each its place in the source.
+// lexer: preprocessed Slice text into tokens, with the place in the original files.
 
 #ifndef LEXER_H
 #define LEXER_H
 
 #include "diagnostics.h"
-#include <string>
+#include <string_view>
 #include <vector>
 
 struct Token {
     enum class Kind { Identifier, Integer, Float, String, Symbol, End };
-    Kind kind = Kind::End;
-    std::string text;
-    std::string doc; // the doc comment before it
+    Kind kind;
+    std::string_view text; // as written; of a string, what stands between the quotes
+    std::string_view doc;  // the doc comment before it, without /** and */
     Location at;
-    bool escaped = false; // \identifier: never a keyword
+    bool escaped;          // identifier written with a backslash
 };
 
-std::vector<Token> tokenize(const std::string& text, const std::string& file,
-                            Diagnostics& diagnostics);
+// Tokens point into `text`. The last one is End.
+std::vector<Token> tokenize(std::string_view text, std::string_view file, Diagnostics& diagnostics);
 
 #endif

@@ -2,12 +2,10 @@
 //
 // slice2c: Slice files into C90 stubs and skeletons for IceC.
 
-#include "c_generator.h"
-#include "lexer.h"
-#include "parser.h"
+#include "compiler.h"
+#include "dependencies.h"
 #include "preprocessor.h"
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -18,8 +16,9 @@ namespace {
 
 struct Options {
     std::vector<std::string> files, includes, defines, undefines;
-    std::string outputDir = ".", headerExtension = "h";
-    bool depend = false;
+    std::string outputDir = ".", includeDir, headerExtension = "h", sourceExtension = "c", dependFile;
+    bool preprocessOnly = false, depend = false, dependXml = false, validate = false;
+    NameRules rules;
 };
 
 std::vector<std::string> preprocessorOptions(const Options& o) {
@@ -51,11 +50,25 @@ bool save(const std::vector<GeneratedFile>& files, const std::string& directory)
     }
     for (const GeneratedFile& f : files)
         fs::rename(fs::path(directory) / (f.name + ".tmp"), fs::path(directory) / f.name, error);
+    if (error)
+        std::cerr << "slice2c: error: cannot write into '" << directory << "': " << error.message() << "\n";
     return !error;
 }
 
-bool compile(const std::string& file, const Options& o) {
-    if (!std::ifstream(file)) {
+CFileNames namesFor(const std::string& file, const Options& o, const Preprocessed& p) {
+    CFileNames names;
+    names.base = fs::path(file).stem().string();
+    names.path = headerOf(file, file, o.includes, o.headerExtension);
+    names.headerExtension = o.headerExtension;
+    names.sourceExtension = o.sourceExtension;
+    names.includeDir = o.includeDir;
+    for (const std::string& included : p.includes)
+        names.includes.push_back(headerOf(included, file, o.includes, o.headerExtension));
+    return names;
+}
+
+bool compile(const std::string& file, const Options& o, Dependencies& dependencies) {
+    if (fs::is_directory(file) || !std::ifstream(file)) {
         std::cerr << "slice2c: error: cannot read '" << file << "'\n";
         return false;
     }
@@ -64,22 +77,40 @@ bool compile(const std::string& file, const Options& o) {
         std::cerr << p.messages;
     if (!p.ok)
         return false;
-    if (o.depend) {
-        std::cout << fs::path(file).stem().string() << "." << o.headerExtension << ":";
-        for (const std::string& d : p.dependencies)
-            std::cout << " \\\n " << d;
-        std::cout << "\n";
+    if (o.preprocessOnly) {
+        std::cout << p.text;
+        return true;
+    }
+    CFileNames names = namesFor(file, o, p);
+    if (o.depend || o.dependXml) {
+        dependencies.add(file, names, p.files);
         return true;
     }
     Diagnostics diagnostics(std::cerr);
-    Unit unit = parse(tokenize(p.text, file, diagnostics), file, diagnostics);
-    if (diagnostics.errors() == 0)
-        checkC(unit, diagnostics);
-    if (diagnostics.errors()) {
+    auto files = compileToC(p.text, file, o.rules, names, diagnostics);
+    if (!files)
         std::cerr << diagnostics.errors() << (diagnostics.errors() == 1 ? " error\n" : " errors\n");
-        return false;
-    }
-    return save(generateC(unit, fs::path(file).stem().string(), o.headerExtension), o.outputDir);
+    return files && save(*files, o.outputDir);
+}
+
+void describe(CLI::App& app, Options& o) {
+    app.add_option("files", o.files, "Slice files");
+    app.add_option("-I", o.includes, "folder to look for #include files")->allow_extra_args(false);
+    app.add_option("-D", o.defines, "define a preprocessor symbol: NAME or NAME=VALUE")->allow_extra_args(false);
+    app.add_option("-U", o.undefines, "forget a preprocessor symbol")->allow_extra_args(false);
+    app.add_flag("-E", o.preprocessOnly, "print what the preprocessor makes, generate nothing");
+    app.add_option("--output-dir", o.outputDir, "where the generated files go");
+    app.add_option("--header-ext", o.headerExtension, "extension of headers, without the dot (h)");
+    app.add_option("--source-ext", o.sourceExtension, "extension of sources, without the dot (c)");
+    app.add_option("--include-dir", o.includeDir, "folder of the header in the sources' #include");
+    app.add_flag("--depend", o.depend, "print make dependencies, generate nothing");
+    app.add_flag("--depend-xml", o.dependXml, "print dependencies as XML, generate nothing");
+    app.add_option("--depend-file", o.dependFile, "write dependencies to this file");
+    app.add_flag("--validate", o.validate, "check the command line only");
+    app.add_flag("--underscore", o.rules.underscore, "allow underscores in names");
+    app.add_flag("--ice", o.rules.icePrefix, "allow names that begin with 'ice'");
+    app.set_version_flag("-v,--version", "slice2c 1.0, Slice of Ice 3.7");
+    app.footer("Exit status: 0, or 1 where a file has errors or the command line is wrong.");
 }
 
 } // namespace
@@ -87,21 +118,23 @@ bool compile(const std::string& file, const Options& o) {
 int main(int argc, char** argv) {
     CLI::App app{"Generates C90 stubs and skeletons for IceC from Slice files."};
     Options o;
-    app.add_option("files", o.files, "Slice files")->required();
-    app.add_option("-I", o.includes, "folder to look for #include files")->allow_extra_args(false);
-    app.add_option("-D", o.defines, "define a preprocessor symbol: NAME or NAME=VALUE")->allow_extra_args(false);
-    app.add_option("-U", o.undefines, "forget a preprocessor symbol")->allow_extra_args(false);
-    app.add_option("--output-dir", o.outputDir, "where the generated files go");
-    app.add_option("--header-ext", o.headerExtension, "extension of headers");
-    app.add_flag("--depend", o.depend, "print make dependencies, generate nothing");
-    app.set_version_flag("--version", "0.1");
+    describe(app, o);
     try {
         app.parse(argc, argv);
+        if (o.files.empty() && !o.validate)
+            throw CLI::RequiredError("a Slice file");
     } catch (const CLI::ParseError& e) {
         return app.exit(e) ? 1 : 0;
     }
+    if (o.validate)
+        return 0;
+    if (!o.dependFile.empty() && !o.dependXml)
+        o.depend = true;
+    Dependencies dependencies;
     int failures = 0;
     for (const std::string& file : o.files)
-        failures += !compile(file, o);
+        failures += !compile(file, o, dependencies);
+    if ((o.depend || o.dependXml) && failures == 0 && !dependencies.print(o.dependXml, o.dependFile))
+        ++failures;
     return failures ? 1 : 0;
 }

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// parser: tokens into declarations. After an error it goes on at the next declaration.
+// parser: tokens into the declarations of a unit, every name resolved; errors are said, and passed.
 
 #ifndef PARSER_H
 #define PARSER_H
 
 #include "ast.h"
 #include "lexer.h"
+#include "names.h"
 
-// `mainFile`: declarations of other files are marked as coming from an include.
-Unit parse(const std::vector<Token>& tokens, const std::string& mainFile, Diagnostics& diagnostics);
+// `mainFile` is the file on the command line; what comes from others is marked fromInclude.
+Unit parse(const std::vector<Token>& tokens, const std::string& mainFile, NameRules rules,
+           Diagnostics& diagnostics);
 
 #endif

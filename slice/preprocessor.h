@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// preprocessor: libmcpp, as ZeroC's own compilers use it.
+// preprocessor: #include, #define and #if by libmcpp.
 
 #ifndef PREPROCESSOR_H
 #define PREPROCESSOR_H
@@ -10,11 +10,13 @@
 
 struct Preprocessed {
     bool ok = false;
-    std::string text, messages;
-    std::vector<std::string> dependencies; // files that were read
+    std::string text;                   // with #line markers and comments
+    std::string messages;               // the preprocessor's own
+    std::vector<std::string> files;     // the file and all that it includes, at any depth
+    std::vector<std::string> includes;  // what it includes itself
 };
 
-// `options`: -I, -D and -U as on the command line.
+// `options`: -I, -D, -U as the C preprocessor takes them.
 Preprocessed preprocess(const std::string& file, const std::vector<std::string>& options);
 
 #endif

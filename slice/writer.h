@@ -5,53 +5,41 @@
 #ifndef WRITER_H
 #define WRITER_H
 
-#include <functional>
-#include <map>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 class Writer {
 public:
-    using Values = std::map<std::string, std::string>;
+    using Values = std::vector<std::pair<std::string_view, std::string>>;
 
-    explicit Writer(Values values = {}) : values_(std::move(values)) {}
-
-    // `{name}` with a known name is replaced; any other brace is text.
-    void line(const std::string& text = "", const Values& values = {}) {
-        std::string filled = fill(text, values);
-        out_ += filled.empty() ? "\n" : std::string(static_cast<size_t>(indent_) * 4, ' ') + filled + "\n";
-    }
-    void block(const std::string& head, const Values& values, const std::function<void()>& body,
-               const std::string& tail = "}") {
-        line(head + " {", values);
+    // `{name}` with a known name is replaced; any other brace is text. A line of code that is longer
+    // than 100 columns is broken behind a comma or an operator.
+    void line(std::string_view text = {}, const Values& values = {});
+    template <class Body>
+    void block(std::string_view head, const Values& values, Body body, std::string_view tail = "}") {
+        line(std::string(head) + " {", values);
         ++indent_;
         body();
         --indent_;
         line(tail, values);
     }
+    // A line that belongs to the one before: if (...)
+    void nested(std::string_view text, const Values& values = {}) {
+        ++indent_;
+        line(text, values);
+        --indent_;
+    }
+    void blank() { out_ += '\n'; }
+    // Lines that another writer has made; they get this one's indentation.
+    void raw(std::string_view text);
     const std::string& text() const { return out_; }
 
 private:
-    std::string fill(const std::string& text, const Values& values) const {
-        std::string result;
-        for (size_t i = 0; i < text.size(); ++i) {
-            size_t close = text[i] == '{' ? text.find('}', i) : std::string::npos;
-            if (close != std::string::npos) {
-                std::string name = text.substr(i + 1, close - i - 1);
-                auto it = values.find(name);
-                auto own = values_.find(name);
-                if (it != values.end() || own != values_.end()) {
-                    result += it != values.end() ? it->second : own->second;
-                    i = close;
-                    continue;
-                }
-            }
-            result += text[i];
-        }
-        return result;
-    }
+    static std::string fill(std::string_view text, const Values& values);
 
-    Values values_;
-    int indent_ = 0;
+    size_t indent_ = 0;
     std::string out_;
 };
 

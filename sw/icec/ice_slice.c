@@ -6,16 +6,9 @@
  * first says whether there are classes. 1.1: flags, type id, the size where the format is sliced,
  * the members, optional values behind them up to a mark.
  */
-#include "ice_stream.h"
+#include "ice_slice.h"
+#include "ice_value.h"
 
-enum {
-    HAS_OPTIONALS = 0x04,
-    HAS_INDIRECTION = 0x08,
-    HAS_SIZE = 0x10,
-    IS_LAST = 0x20,
-    TYPE_IS_STRING = 0x01
-};
-#define TYPE_MASK 0x03
 #define OPTIONAL_END 0xFF
 #define TAG_ESCAPE 30
 
@@ -46,40 +39,52 @@ void Ice_OutputStream_startException(Ice_OutputStreamPtr os, Ice_Bool usesClasse
 
 Ice_Int Ice_OutputStream_startSlice(Ice_OutputStreamPtr os, const char *typeId, Ice_Bool last) {
     Ice_Int begin = os->size;
-    os->sliceFlags =
-        (Ice_Byte)(TYPE_IS_STRING | (os->sliced ? HAS_SIZE : 0) | (last ? IS_LAST : 0));
+    os->sliceFlags = (Ice_Byte)(ICE_SLICE_INSIDE | (os->sliced ? ICE_SLICE_SIZE : 0) |
+                                (last ? ICE_SLICE_LAST : 0));
     if (os->minor != 0)
-        Ice_OutputStream_writeByte(os, os->sliceFlags);
+        Ice_OutputStream_writeByte(os, 0);
     Ice_OutputStream_writeString(os, Ice_String_from(typeId));
     if (os->minor == 0 || os->sliced)
-        (void)Ice_OutputStream_startSize(os);
+        Ice_OutputStream_writeInt(os, 0);
     return begin;
+}
+
+void Ice_patchSize(Ice_OutputStreamPtr os, Ice_Int begin) {
+    patchInt(os, begin, os->size - begin);
+}
+
+void Ice_finishSlice(Ice_OutputStreamPtr os, Ice_Int flags, Ice_Int size) {
+    if (os->sliceFlags & ICE_SLICE_OPTIONALS)
+        Ice_OutputStream_writeByte(os, OPTIONAL_END);
+    if (size >= 0)
+        Ice_patchSize(os, size);
+    if (os->values && os->values->writeTable(os))
+        os->sliceFlags |= ICE_SLICE_TABLE;
+    if (!os->failed)
+        os->data[flags] = (Ice_Byte)(os->sliceFlags & ~ICE_SLICE_INSIDE);
+    os->sliceFlags = 0;
 }
 
 void Ice_OutputStream_endSlice(Ice_OutputStreamPtr os, Ice_Int begin, Ice_Bool last) {
     Ice_InputStream is;
-    Ice_Int at;
     (void)last;
-    if (os->sliceFlags & HAS_OPTIONALS)
-        Ice_OutputStream_writeByte(os, OPTIONAL_END);
     if (os->failed)
         return;
-    if (os->minor != 0)
-        os->data[begin++] = os->sliceFlags;
-    if (os->minor == 0 || os->sliced) {
-        Ice_InputStream_init(&is, os->data, os->size);
-        is.position = begin;
-        (void)Ice_InputStream_readString(&is);
-        at = is.position;
-        patchInt(os, at, os->size - at);
+    Ice_InputStream_init(&is, os->data, os->size);
+    is.position = begin + (os->minor != 0);
+    (void)Ice_InputStream_readString(&is);
+    if (os->minor != 0) {
+        Ice_finishSlice(os, begin, os->sliced ? is.position : -1);
+    } else {
+        Ice_patchSize(os, is.position);
+        os->sliceFlags = 0;
     }
-    os->sliceFlags = 0;
 }
 
 Ice_Bool Ice_OutputStream_writeOptional(Ice_OutputStreamPtr os, Ice_Int tag, Ice_Int format) {
     if (os->minor == 0)
         return 0;
-    os->sliceFlags |= HAS_OPTIONALS;
+    os->sliceFlags |= ICE_SLICE_OPTIONALS;
     if (tag < TAG_ESCAPE) {
         Ice_OutputStream_writeByte(os, (Ice_Byte)(format | tag << 3));
     } else {
@@ -92,8 +97,11 @@ Ice_Bool Ice_OutputStream_writeOptional(Ice_OutputStreamPtr os, Ice_Int tag, Ice
 /* ---- reading ---- */
 
 void Ice_InputStream_startException(Ice_InputStreamPtr is) {
-    if (is->minor == 0)
-        (void)Ice_InputStream_readBool(is);
+    if (is->minor == 0) {
+        Ice_Bool usesClasses = Ice_InputStream_readBool(is);
+        if (is->values)
+            is->values->pending = usesClasses;
+    }
     is->sliceFlags = 0;
 }
 
@@ -101,17 +109,16 @@ Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
     static const Ice_String none = {0, ""};
     Ice_String id;
     Ice_Int begin, size = 0;
-    if (is->sliceFlags & IS_LAST || is->failed || is->position == is->size) {
+    if (is->sliceFlags & ICE_SLICE_LAST || is->failed || is->position == is->size) {
         is->failed = 1; /* a base that is asked for and is not there */
         return none;
     }
-    is->sliceFlags = is->minor != 0 ? Ice_InputStream_readByte(is) : HAS_SIZE | TYPE_IS_STRING;
+    is->sliceFlags = is->minor != 0 ? Ice_InputStream_readByte(is) : ICE_SLICE_SIZE;
+    is->sliceFlags |= ICE_SLICE_INSIDE;
     is->sliceEnd = 0;
-    if ((is->sliceFlags & TYPE_MASK) != TYPE_IS_STRING)
-        is->failed = 1; /* indices and compact ids are for classes */
     id = Ice_InputStream_readString(is);
     begin = is->position;
-    if (is->sliceFlags & HAS_SIZE) {
+    if (is->sliceFlags & ICE_SLICE_SIZE) {
         size = Ice_InputStream_readInt(is);
         if (size < 4 || size > is->size - begin)
             is->failed = 1;
@@ -120,24 +127,38 @@ Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
     return is->failed ? none : id;
 }
 
+/* The table of instances behind a slice. */
+static void readTable(Ice_InputStreamPtr is) {
+    Ice_Byte flags = is->sliceFlags;
+    if (is->sliceFlags & ICE_SLICE_TABLE) {
+        if (is->values)
+            is->values->readTable(is);
+        else
+            is->failed = 1;
+    }
+    is->sliceFlags = flags;
+}
+
 Ice_Bool Ice_InputStream_skipSlice(Ice_InputStreamPtr is) {
-    if (is->failed || is->sliceEnd == 0 || is->sliceFlags & (IS_LAST | HAS_INDIRECTION))
+    if (is->failed || is->sliceEnd == 0)
         return 0;
     is->position = is->sliceEnd;
-    return is->position < is->size;
+    readTable(is);
+    return !is->failed && !(is->sliceFlags & ICE_SLICE_LAST) && is->position < is->size;
 }
 
 void Ice_InputStream_endSlice(Ice_InputStreamPtr is) {
-    if (is->sliceFlags & HAS_OPTIONALS) {
+    if (is->sliceFlags & ICE_SLICE_OPTIONALS) {
         Ice_InputStream_skipOptionals(is);
         if (Ice_InputStream_readByte(is) != OPTIONAL_END)
             is->failed = 1;
     }
     if (is->sliceEnd && is->position != is->sliceEnd)
         is->failed = 1;
+    readTable(is);
 }
 
-/* Skips one value. Classes cannot be skipped, unless null or an instance that came before. */
+/* Skips one value. */
 static void skip(Ice_InputStreamPtr is, Ice_Int format) {
     switch (format) {
     case ICE_OPTIONAL_SIZE:
@@ -150,8 +171,10 @@ static void skip(Ice_InputStreamPtr is, Ice_Int format) {
         (void)Ice_InputStream_readBlob(is, Ice_InputStream_readInt(is));
         break;
     case ICE_OPTIONAL_CLASS:
-        if (Ice_InputStream_readSize(is) == 1)
-            is->failed = 1;
+        if (is->values)
+            is->values->skip(is);
+        else if (Ice_InputStream_readSize(is) == 1)
+            is->failed = 1; /* an instance where none was expected */
         break;
     default:
         (void)Ice_InputStream_readBlob(is, (Ice_Int)1 << format);
@@ -182,7 +205,7 @@ static Ice_Bool seek(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format) {
 }
 
 Ice_Bool Ice_InputStream_readOptional(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format) {
-    if (is->minor == 0 || (is->sliceFlags && !(is->sliceFlags & HAS_OPTIONALS)))
+    if (is->minor == 0 || (is->sliceFlags && !(is->sliceFlags & ICE_SLICE_OPTIONALS)))
         return 0;
     return seek(is, tag, format);
 }

@@ -2,12 +2,23 @@
  * Proxies: calls to objects elsewhere. */
 #include "figure3.h"
 
-Ice_Status Autopilot_HwProcessingEnginePrx_setParameterA(Autopilot_HwProcessingEnginePrxPtr self, Ice_Short value) {
+Ice_Status Autopilot_HwProcessingEnginePrx_checkedCast(Autopilot_HwProcessingEnginePrxPtr self,
+        const Ice_ObjectPrx *from) {
+    return Ice_ObjectPrx_checkedCast(self, from, Autopilot_HwProcessingEngine_ice_staticId);
+}
+
+void Autopilot_HwProcessingEnginePrx_uncheckedCast(Autopilot_HwProcessingEnginePrxPtr self,
+        const Ice_ObjectPrx *from) {
+    *self = *from;
+}
+
+Ice_Status Autopilot_HwProcessingEnginePrx_setParameterA(Autopilot_HwProcessingEnginePrxPtr self,
+        Ice_Short value) {
     Ice_InputStreamPtr is = 0;
-    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "setParameterA", 0);
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "setParameterA", ICE_NORMAL);
     Ice_Status status;
     if (!os)
-        return ICE_LIMIT;
+        return (Ice_Status)self->status;
     Ice_OutputStream_writeShort(os, value);
     status = Ice_ObjectPrx_invoke(self, &is);
     return Ice_ObjectPrx_end(self, status);
@@ -15,47 +26,68 @@ Ice_Status Autopilot_HwProcessingEnginePrx_setParameterA(Autopilot_HwProcessingE
 
 Ice_Status Autopilot_HwProcessingEnginePrx_startProcessing(Autopilot_HwProcessingEnginePrxPtr self) {
     Ice_InputStreamPtr is = 0;
-    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "startProcessing", 0);
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "startProcessing", ICE_NORMAL);
     Ice_Status status;
     if (!os)
-        return ICE_LIMIT;
+        return (Ice_Status)self->status;
     status = Ice_ObjectPrx_invoke(self, &is);
     return Ice_ObjectPrx_end(self, status);
 }
 
-Ice_Status Autopilot_HwProcessingEnginePrx_getResult(Autopilot_HwProcessingEnginePrxPtr self, Autopilot_ResultType *res) {
+Ice_Status Autopilot_HwProcessingEnginePrx_getResult(Autopilot_HwProcessingEnginePrxPtr self,
+        Autopilot_ResultType *res) {
     Ice_InputStreamPtr is = 0;
-    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "getResult", 0);
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "getResult", ICE_NORMAL | ICE_RESULTS);
     Ice_Status status;
     if (!os)
-        return ICE_LIMIT;
+        return (Ice_Status)self->status;
     status = Ice_ObjectPrx_invoke(self, &is);
-    if (status == ICE_OK && is) {
-        Autopilot_ResultType_readFromInputStream(&(*res), is);
+    if (status == ICE_OK) {
+        Autopilot_ResultType_readFromInputStream(res, is);
     }
     return Ice_ObjectPrx_end(self, status);
 }
 
-Ice_Status Autopilot_VehiclePrx_isAlive(Autopilot_VehiclePrxPtr self, Ice_Short sessionId, Ice_Bool *result) {
+Ice_Status Autopilot_VehiclePrx_checkedCast(Autopilot_VehiclePrxPtr self,
+        const Ice_ObjectPrx *from) {
+    return Ice_ObjectPrx_checkedCast(self, from, Autopilot_Vehicle_ice_staticId);
+}
+
+void Autopilot_VehiclePrx_uncheckedCast(Autopilot_VehiclePrxPtr self, const Ice_ObjectPrx *from) {
+    *self = *from;
+}
+
+Ice_Status Autopilot_VehiclePrx_isAlive(Autopilot_VehiclePrxPtr self, Ice_Short sessionId,
+        Ice_Bool *result) {
     Ice_InputStreamPtr is = 0;
-    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "isAlive", 0);
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "isAlive", ICE_NORMAL | ICE_RESULTS);
     Ice_Status status;
     if (!os)
-        return ICE_LIMIT;
+        return (Ice_Status)self->status;
     Ice_OutputStream_writeShort(os, sessionId);
     status = Ice_ObjectPrx_invoke(self, &is);
-    if (status == ICE_OK && is) {
-        (*result) = Ice_InputStream_readBool(is);
+    if (status == ICE_OK) {
+        *result = Ice_InputStream_readBool(is);
     }
     return Ice_ObjectPrx_end(self, status);
 }
 
-Ice_Status Autopilot_StationPrx_vehicleState(Autopilot_StationPrxPtr self, const Autopilot_VehiclePrx *uav, const Autopilot_ParamSeq *params) {
+Ice_Status Autopilot_StationPrx_checkedCast(Autopilot_StationPrxPtr self,
+        const Ice_ObjectPrx *from) {
+    return Ice_ObjectPrx_checkedCast(self, from, Autopilot_Station_ice_staticId);
+}
+
+void Autopilot_StationPrx_uncheckedCast(Autopilot_StationPrxPtr self, const Ice_ObjectPrx *from) {
+    *self = *from;
+}
+
+Ice_Status Autopilot_StationPrx_vehicleState(Autopilot_StationPrxPtr self,
+        const Autopilot_VehiclePrx *uav, const Autopilot_ParamSeq *params) {
     Ice_InputStreamPtr is = 0;
-    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "vehicleState", 0);
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "vehicleState", ICE_NORMAL);
     Ice_Status status;
     if (!os)
-        return ICE_LIMIT;
+        return (Ice_Status)self->status;
     Ice_OutputStream_writePrx(os, uav);
     Autopilot_ParamSeq_writeToOutputStream(params, os);
     status = Ice_ObjectPrx_invoke(self, &is);

@@ -2,120 +2,175 @@
  * Dispatch: from requests to the application's servants. */
 #include "figure3.h"
 
-static Ice_Status Autopilot_HwProcessingEngine_dispatch_setParameterA(Ice_ObjectPtr self, const Ice_Current *current,
-                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+static Ice_Status dispatch_Autopilot_HwProcessingEngine_setParameterA(Ice_ObjectPtr self,
+        const void *table,
+        const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+    const Autopilot_HwProcessingEngine_Operations *operations =
+            (const Autopilot_HwProcessingEngine_Operations *)table;
     Ice_Short value;
     Ice_Status status;
-    if (current->mode != 0)
-        return ICE_PROTOCOL;
+    if (!operations->setParameterA)
+        return ICE_OPERATION_NOT_EXIST;
     value = Ice_InputStream_readShort(is);
     if (is->failed)
         return ICE_MARSHAL;
-    status = Autopilot_HwProcessingEngine_setParameterA((Autopilot_HwProcessingEnginePtr)self, value, current);
+    status = operations->setParameterA((Autopilot_HwProcessingEnginePtr)self, value, current);
     (void)os;
     return status;
 }
 
-static Ice_Status Autopilot_HwProcessingEngine_dispatch_startProcessing(Ice_ObjectPtr self, const Ice_Current *current,
-                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+static Ice_Status dispatch_Autopilot_HwProcessingEngine_startProcessing(Ice_ObjectPtr self,
+        const void *table,
+        const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+    const Autopilot_HwProcessingEngine_Operations *operations =
+            (const Autopilot_HwProcessingEngine_Operations *)table;
     Ice_Status status;
-    if (current->mode != 0)
-        return ICE_PROTOCOL;
+    if (!operations->startProcessing)
+        return ICE_OPERATION_NOT_EXIST;
     (void)is;
-    status = Autopilot_HwProcessingEngine_startProcessing((Autopilot_HwProcessingEnginePtr)self, current);
+    status = operations->startProcessing((Autopilot_HwProcessingEnginePtr)self, current);
     (void)os;
     return status;
 }
 
-static Ice_Status Autopilot_HwProcessingEngine_dispatch_getResult(Ice_ObjectPtr self, const Ice_Current *current,
-                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+static Ice_Status dispatch_Autopilot_HwProcessingEngine_getResult(Ice_ObjectPtr self,
+        const void *table,
+        const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+    const Autopilot_HwProcessingEngine_Operations *operations =
+            (const Autopilot_HwProcessingEngine_Operations *)table;
     Autopilot_ResultType res;
     Ice_Status status;
-    if (current->mode != 0)
-        return ICE_PROTOCOL;
+    if (!operations->getResult)
+        return ICE_OPERATION_NOT_EXIST;
     (void)is;
-    status = Autopilot_HwProcessingEngine_getResult((Autopilot_HwProcessingEnginePtr)self, &res, current);
+    status = operations->getResult((Autopilot_HwProcessingEnginePtr)self, &res, current);
     if (status == ICE_OK) {
         Autopilot_ResultType_writeToOutputStream(&res, os);
     }
     return status;
 }
 
-static Ice_Status Autopilot_HwProcessingEngine_dispatch(Ice_ObjectPtr self, const Ice_Current *current,
-                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    if (Ice_String_equals(current->operation, "setParameterA"))
-        return Autopilot_HwProcessingEngine_dispatch_setParameterA(self, current, is, os);
-    if (Ice_String_equals(current->operation, "startProcessing"))
-        return Autopilot_HwProcessingEngine_dispatch_startProcessing(self, current, is, os);
-    if (Ice_String_equals(current->operation, "getResult"))
-        return Autopilot_HwProcessingEngine_dispatch_getResult(self, current, is, os);
-    return ICE_OPERATION_NOT_EXIST;
+static const Ice_Operation operations_Autopilot_HwProcessingEngine[] = {
+    {"setParameterA", dispatch_Autopilot_HwProcessingEngine_setParameterA, ICE_NORMAL},
+    {"startProcessing", dispatch_Autopilot_HwProcessingEngine_startProcessing, ICE_NORMAL},
+    {"getResult", dispatch_Autopilot_HwProcessingEngine_getResult, ICE_NORMAL},
+    {0, 0, 0}};
+const Ice_Interface Autopilot_HwProcessingEngine_ice_interface =
+        {operations_Autopilot_HwProcessingEngine, 0};
+
+static Ice_Status dispatch_Autopilot_HwProcessingEngine(Ice_ObjectPtr self,
+        const Ice_Current *current,
+        Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+    const Autopilot_HwProcessingEngine_Operations *operations = ((const Autopilot_HwProcessingEngine *)self)->operations;
+    return Ice_Object_dispatch(&Autopilot_HwProcessingEngine_ice_interface, operations, self, current, is, os);
+}
+
+void Autopilot_HwProcessingEngine_initWith(Autopilot_HwProcessingEnginePtr self,
+        const Autopilot_HwProcessingEngine_Operations *operations) {
+    static const char *const ids[] = {
+        "::Autopilot::HwProcessingEngine",
+        "::Ice::Object",
+        0};
+    self->base.dispatch = dispatch_Autopilot_HwProcessingEngine;
+    self->base.ids = ids;
+    self->base.id = "::Autopilot::HwProcessingEngine";
+    self->operations = operations;
 }
 
 void Autopilot_HwProcessingEngine_init(Autopilot_HwProcessingEnginePtr self) {
-    static const char *const ids[] = {"::Autopilot::HwProcessingEngine", "::Ice::Object", 0};
-    self->base.dispatch = Autopilot_HwProcessingEngine_dispatch;
-    self->base.ids = ids;
-    self->base.id = "::Autopilot::HwProcessingEngine";
+    static const Autopilot_HwProcessingEngine_Operations operations =
+            {Autopilot_HwProcessingEngine_setParameterA,
+            Autopilot_HwProcessingEngine_startProcessing, Autopilot_HwProcessingEngine_getResult};
+    Autopilot_HwProcessingEngine_initWith(self, &operations);
 }
 
-static Ice_Status Autopilot_Vehicle_dispatch_isAlive(Ice_ObjectPtr self, const Ice_Current *current,
-                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+static Ice_Status dispatch_Autopilot_Vehicle_isAlive(Ice_ObjectPtr self, const void *table,
+        const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+    const Autopilot_Vehicle_Operations *operations = (const Autopilot_Vehicle_Operations *)table;
     Ice_Short sessionId;
     Ice_Bool result;
     Ice_Status status;
-    if (current->mode != 0)
-        return ICE_PROTOCOL;
+    if (!operations->isAlive)
+        return ICE_OPERATION_NOT_EXIST;
     sessionId = Ice_InputStream_readShort(is);
     if (is->failed)
         return ICE_MARSHAL;
-    status = Autopilot_Vehicle_isAlive((Autopilot_VehiclePtr)self, sessionId, &result, current);
+    status = operations->isAlive((Autopilot_VehiclePtr)self, sessionId, &result, current);
     if (status == ICE_OK) {
         Ice_OutputStream_writeBool(os, result);
     }
     return status;
 }
 
-static Ice_Status Autopilot_Vehicle_dispatch(Ice_ObjectPtr self, const Ice_Current *current,
-                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    if (Ice_String_equals(current->operation, "isAlive"))
-        return Autopilot_Vehicle_dispatch_isAlive(self, current, is, os);
-    return ICE_OPERATION_NOT_EXIST;
+static const Ice_Operation operations_Autopilot_Vehicle[] = {
+    {"isAlive", dispatch_Autopilot_Vehicle_isAlive, ICE_NORMAL},
+    {0, 0, 0}};
+const Ice_Interface Autopilot_Vehicle_ice_interface = {operations_Autopilot_Vehicle, 0};
+
+static Ice_Status dispatch_Autopilot_Vehicle(Ice_ObjectPtr self, const Ice_Current *current,
+        Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+    const Autopilot_Vehicle_Operations *operations = ((const Autopilot_Vehicle *)self)->operations;
+    return Ice_Object_dispatch(&Autopilot_Vehicle_ice_interface, operations, self, current, is, os);
+}
+
+void Autopilot_Vehicle_initWith(Autopilot_VehiclePtr self,
+        const Autopilot_Vehicle_Operations *operations) {
+    static const char *const ids[] = {
+        "::Autopilot::Vehicle",
+        "::Ice::Object",
+        0};
+    self->base.dispatch = dispatch_Autopilot_Vehicle;
+    self->base.ids = ids;
+    self->base.id = "::Autopilot::Vehicle";
+    self->operations = operations;
 }
 
 void Autopilot_Vehicle_init(Autopilot_VehiclePtr self) {
-    static const char *const ids[] = {"::Autopilot::Vehicle", "::Ice::Object", 0};
-    self->base.dispatch = Autopilot_Vehicle_dispatch;
-    self->base.ids = ids;
-    self->base.id = "::Autopilot::Vehicle";
+    static const Autopilot_Vehicle_Operations operations = {Autopilot_Vehicle_isAlive};
+    Autopilot_Vehicle_initWith(self, &operations);
 }
 
-static Ice_Status Autopilot_Station_dispatch_vehicleState(Ice_ObjectPtr self, const Ice_Current *current,
-                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+static Ice_Status dispatch_Autopilot_Station_vehicleState(Ice_ObjectPtr self, const void *table,
+        const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+    const Autopilot_Station_Operations *operations = (const Autopilot_Station_Operations *)table;
     Autopilot_VehiclePrx uav;
     Autopilot_ParamSeq params;
     Ice_Status status;
-    if (current->mode != 0)
-        return ICE_PROTOCOL;
-    Ice_InputStream_readPrx(is, current->adapter->communicator, &uav);
+    if (!operations->vehicleState)
+        return ICE_OPERATION_NOT_EXIST;
+    Ice_InputStream_readPrx(is, 0, &uav);
     Autopilot_ParamSeq_readFromInputStream(&params, is);
     if (is->failed)
         return ICE_MARSHAL;
-    status = Autopilot_Station_vehicleState((Autopilot_StationPtr)self, &uav, &params, current);
+    status = operations->vehicleState((Autopilot_StationPtr)self, &uav, &params, current);
     (void)os;
     return status;
 }
 
-static Ice_Status Autopilot_Station_dispatch(Ice_ObjectPtr self, const Ice_Current *current,
-                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    if (Ice_String_equals(current->operation, "vehicleState"))
-        return Autopilot_Station_dispatch_vehicleState(self, current, is, os);
-    return ICE_OPERATION_NOT_EXIST;
+static const Ice_Operation operations_Autopilot_Station[] = {
+    {"vehicleState", dispatch_Autopilot_Station_vehicleState, ICE_NORMAL},
+    {0, 0, 0}};
+const Ice_Interface Autopilot_Station_ice_interface = {operations_Autopilot_Station, 0};
+
+static Ice_Status dispatch_Autopilot_Station(Ice_ObjectPtr self, const Ice_Current *current,
+        Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+    const Autopilot_Station_Operations *operations = ((const Autopilot_Station *)self)->operations;
+    return Ice_Object_dispatch(&Autopilot_Station_ice_interface, operations, self, current, is, os);
+}
+
+void Autopilot_Station_initWith(Autopilot_StationPtr self,
+        const Autopilot_Station_Operations *operations) {
+    static const char *const ids[] = {
+        "::Autopilot::Station",
+        "::Ice::Object",
+        0};
+    self->base.dispatch = dispatch_Autopilot_Station;
+    self->base.ids = ids;
+    self->base.id = "::Autopilot::Station";
+    self->operations = operations;
 }
 
 void Autopilot_Station_init(Autopilot_StationPtr self) {
-    static const char *const ids[] = {"::Autopilot::Station", "::Ice::Object", 0};
-    self->base.dispatch = Autopilot_Station_dispatch;
-    self->base.ids = ids;
-    self->base.id = "::Autopilot::Station";
+    static const Autopilot_Station_Operations operations = {Autopilot_Station_vehicleState};
+    Autopilot_Station_initWith(self, &operations);
 }

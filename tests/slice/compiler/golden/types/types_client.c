@@ -2,59 +2,64 @@
  * Proxies: calls to objects elsewhere. */
 #include "types.h"
 
+Ice_Status Outer_BasePrx_checkedCast(Outer_BasePrxPtr self, const Ice_ObjectPrx *from) {
+    return Ice_ObjectPrx_checkedCast(self, from, Outer_Base_ice_staticId);
+}
+
+void Outer_BasePrx_uncheckedCast(Outer_BasePrxPtr self, const Ice_ObjectPrx *from) {
+    *self = *from;
+}
+
 Ice_Status Outer_BasePrx_name(Outer_BasePrxPtr self, Ice_String *result) {
     Ice_InputStreamPtr is = 0;
-    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "name", 2);
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "name", ICE_IDEMPOTENT | ICE_RESULTS);
     Ice_Status status;
     if (!os)
-        return ICE_LIMIT;
+        return (Ice_Status)self->status;
     status = Ice_ObjectPrx_invoke(self, &is);
-    if (status == ICE_OK && is) {
-        (*result) = Ice_InputStream_readString(is);
+    if (status == ICE_OK) {
+        *result = Ice_InputStream_readString(is);
     }
     return Ice_ObjectPrx_end(self, status);
 }
 
-Ice_Status Outer_DerivedPrx_name(Outer_DerivedPrxPtr self, Ice_String *result) {
-    Ice_InputStreamPtr is = 0;
-    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "name", 2);
-    Ice_Status status;
-    if (!os)
-        return ICE_LIMIT;
-    status = Ice_ObjectPrx_invoke(self, &is);
-    if (status == ICE_OK && is) {
-        (*result) = Ice_InputStream_readString(is);
-    }
-    return Ice_ObjectPrx_end(self, status);
+Ice_Status Outer_DerivedPrx_checkedCast(Outer_DerivedPrxPtr self, const Ice_ObjectPrx *from) {
+    return Ice_ObjectPrx_checkedCast(self, from, Outer_Derived_ice_staticId);
 }
 
-Ice_Status Outer_DerivedPrx_echo(Outer_DerivedPrxPtr self, const Outer_Inner_Rows *rows, const Outer_Inner_Names *names, Outer_Inner_Doubles *sums, Outer_Inner_Rows *result) {
+void Outer_DerivedPrx_uncheckedCast(Outer_DerivedPrxPtr self, const Ice_ObjectPrx *from) {
+    *self = *from;
+}
+
+Ice_Status Outer_DerivedPrx_echo(Outer_DerivedPrxPtr self, const Outer_Inner_Rows *rows,
+        const Outer_Inner_Names *names, Outer_Inner_Doubles *sums, Outer_Inner_Rows *result) {
     Ice_InputStreamPtr is = 0;
-    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "echo", 0);
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "echo", ICE_NORMAL | ICE_RESULTS);
     Ice_Status status;
     if (!os)
-        return ICE_LIMIT;
+        return (Ice_Status)self->status;
     Outer_Inner_Rows_writeToOutputStream(rows, os);
     Outer_Inner_Names_writeToOutputStream(names, os);
     status = Ice_ObjectPrx_invoke(self, &is);
-    if (status == ICE_OK && is) {
-        Outer_Inner_Doubles_readFromInputStream(&(*sums), is);
-        Outer_Inner_Rows_readFromInputStream(&(*result), is);
+    if (status == ICE_OK) {
+        Outer_Inner_Doubles_readFromInputStream(sums, is);
+        Outer_Inner_Rows_readFromInputStream(result, is);
     }
     return Ice_ObjectPrx_end(self, status);
 }
 
-Ice_Status Outer_DerivedPrx_self(Outer_DerivedPrxPtr self, const Ice_ObjectPrx *any, Ice_Bool int_, Outer_DerivedPrx *result) {
+Ice_Status Outer_DerivedPrx_self(Outer_DerivedPrxPtr self, const Ice_ObjectPrx *any, Ice_Bool int_,
+        Outer_DerivedPrx *result) {
     Ice_InputStreamPtr is = 0;
-    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "self", 0);
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "self", ICE_NORMAL | ICE_RESULTS);
     Ice_Status status;
     if (!os)
-        return ICE_LIMIT;
+        return (Ice_Status)self->status;
     Ice_OutputStream_writePrx(os, any);
     Ice_OutputStream_writeBool(os, int_);
     status = Ice_ObjectPrx_invoke(self, &is);
-    if (status == ICE_OK && is) {
-        Ice_InputStream_readPrx(is, self->communicator, &(*result));
+    if (status == ICE_OK) {
+        Ice_InputStream_readPrx(is, 0, result);
     }
     return Ice_ObjectPrx_end(self, status);
 }

@@ -2,62 +2,63 @@
  * Dispatch: from requests to the application's servants. */
 #include "types.h"
 
-static Ice_Status Outer_Base_dispatch_name(Ice_ObjectPtr self, const Ice_Current *current,
-                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+static Ice_Status dispatch_Outer_Base_name(Ice_ObjectPtr self, const void *table,
+        const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+    const Outer_Base_Operations *operations = (const Outer_Base_Operations *)table;
     Ice_String result;
     Ice_Status status;
-    if (current->mode == 0)
-        return ICE_PROTOCOL;
+    if (!operations->name)
+        return ICE_OPERATION_NOT_EXIST;
     (void)is;
-    status = Outer_Base_name((Outer_BasePtr)self, &result, current);
+    status = operations->name((Outer_BasePtr)self, &result, current);
     if (status == ICE_OK) {
         Ice_OutputStream_writeString(os, result);
     }
     return status;
 }
 
-static Ice_Status Outer_Base_dispatch(Ice_ObjectPtr self, const Ice_Current *current,
-                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    if (Ice_String_equals(current->operation, "name"))
-        return Outer_Base_dispatch_name(self, current, is, os);
-    return ICE_OPERATION_NOT_EXIST;
+static const Ice_Operation operations_Outer_Base[] = {
+    {"name", dispatch_Outer_Base_name, ICE_IDEMPOTENT},
+    {0, 0, 0}};
+const Ice_Interface Outer_Base_ice_interface = {operations_Outer_Base, 0};
+
+static Ice_Status dispatch_Outer_Base(Ice_ObjectPtr self, const Ice_Current *current,
+        Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+    const Outer_Base_Operations *operations = ((const Outer_Base *)self)->operations;
+    return Ice_Object_dispatch(&Outer_Base_ice_interface, operations, self, current, is, os);
+}
+
+void Outer_Base_initWith(Outer_BasePtr self, const Outer_Base_Operations *operations) {
+    static const char *const ids[] = {
+        "::Ice::Object",
+        "::Outer::Base",
+        0};
+    self->base.dispatch = dispatch_Outer_Base;
+    self->base.ids = ids;
+    self->base.id = "::Outer::Base";
+    self->operations = operations;
 }
 
 void Outer_Base_init(Outer_BasePtr self) {
-    static const char *const ids[] = {"::Ice::Object", "::Outer::Base", 0};
-    self->base.dispatch = Outer_Base_dispatch;
-    self->base.ids = ids;
-    self->base.id = "::Outer::Base";
+    static const Outer_Base_Operations operations = {Outer_Base_name};
+    Outer_Base_initWith(self, &operations);
 }
 
-static Ice_Status Outer_Derived_dispatch_name(Ice_ObjectPtr self, const Ice_Current *current,
-                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    Ice_String result;
-    Ice_Status status;
-    if (current->mode == 0)
-        return ICE_PROTOCOL;
-    (void)is;
-    status = Outer_Derived_name((Outer_DerivedPtr)self, &result, current);
-    if (status == ICE_OK) {
-        Ice_OutputStream_writeString(os, result);
-    }
-    return status;
-}
-
-static Ice_Status Outer_Derived_dispatch_echo(Ice_ObjectPtr self, const Ice_Current *current,
-                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+static Ice_Status dispatch_Outer_Derived_echo(Ice_ObjectPtr self, const void *table,
+        const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+    const Outer_Derived_Operations *operations = (const Outer_Derived_Operations *)table;
     Outer_Inner_Rows rows;
     Outer_Inner_Names names;
     Outer_Inner_Doubles sums;
     Outer_Inner_Rows result;
     Ice_Status status;
-    if (current->mode != 0)
-        return ICE_PROTOCOL;
+    if (!operations->echo)
+        return ICE_OPERATION_NOT_EXIST;
     Outer_Inner_Rows_readFromInputStream(&rows, is);
     Outer_Inner_Names_readFromInputStream(&names, is);
     if (is->failed)
         return ICE_MARSHAL;
-    status = Outer_Derived_echo((Outer_DerivedPtr)self, &rows, &names, &sums, &result, current);
+    status = operations->echo((Outer_DerivedPtr)self, &rows, &names, &sums, &result, current);
     if (status == ICE_OK) {
         Outer_Inner_Doubles_writeToOutputStream(&sums, os);
         Outer_Inner_Rows_writeToOutputStream(&result, os);
@@ -65,39 +66,55 @@ static Ice_Status Outer_Derived_dispatch_echo(Ice_ObjectPtr self, const Ice_Curr
     return status;
 }
 
-static Ice_Status Outer_Derived_dispatch_self(Ice_ObjectPtr self, const Ice_Current *current,
-                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+static Ice_Status dispatch_Outer_Derived_self(Ice_ObjectPtr self, const void *table,
+        const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+    const Outer_Derived_Operations *operations = (const Outer_Derived_Operations *)table;
     Ice_ObjectPrx any;
     Ice_Bool int_;
     Outer_DerivedPrx result;
     Ice_Status status;
-    if (current->mode != 0)
-        return ICE_PROTOCOL;
-    Ice_InputStream_readPrx(is, current->adapter->communicator, &any);
+    if (!operations->self_)
+        return ICE_OPERATION_NOT_EXIST;
+    Ice_InputStream_readPrx(is, 0, &any);
     int_ = Ice_InputStream_readBool(is);
     if (is->failed)
         return ICE_MARSHAL;
-    status = Outer_Derived_self((Outer_DerivedPtr)self, &any, int_, &result, current);
+    status = operations->self_((Outer_DerivedPtr)self, &any, int_, &result, current);
     if (status == ICE_OK) {
         Ice_OutputStream_writePrx(os, &result);
     }
     return status;
 }
 
-static Ice_Status Outer_Derived_dispatch(Ice_ObjectPtr self, const Ice_Current *current,
-                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    if (Ice_String_equals(current->operation, "name"))
-        return Outer_Derived_dispatch_name(self, current, is, os);
-    if (Ice_String_equals(current->operation, "echo"))
-        return Outer_Derived_dispatch_echo(self, current, is, os);
-    if (Ice_String_equals(current->operation, "self"))
-        return Outer_Derived_dispatch_self(self, current, is, os);
-    return ICE_OPERATION_NOT_EXIST;
+static const Ice_Operation operations_Outer_Derived[] = {
+    {"echo", dispatch_Outer_Derived_echo, ICE_NORMAL},
+    {"self", dispatch_Outer_Derived_self, ICE_NORMAL},
+    {0, 0, 0}};
+static const Ice_Base bases_Outer_Derived[] = {
+    {&Outer_Base_ice_interface, offsetof(Outer_Derived_Operations, Outer_Base_)},
+    {0, 0}};
+const Ice_Interface Outer_Derived_ice_interface = {operations_Outer_Derived, bases_Outer_Derived};
+
+static Ice_Status dispatch_Outer_Derived(Ice_ObjectPtr self, const Ice_Current *current,
+        Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+    const Outer_Derived_Operations *operations = ((const Outer_Derived *)self)->operations;
+    return Ice_Object_dispatch(&Outer_Derived_ice_interface, operations, self, current, is, os);
+}
+
+void Outer_Derived_initWith(Outer_DerivedPtr self, const Outer_Derived_Operations *operations) {
+    static const char *const ids[] = {
+        "::Ice::Object",
+        "::Outer::Base",
+        "::Outer::Derived",
+        0};
+    self->base.dispatch = dispatch_Outer_Derived;
+    self->base.ids = ids;
+    self->base.id = "::Outer::Derived";
+    self->operations = operations;
 }
 
 void Outer_Derived_init(Outer_DerivedPtr self) {
-    static const char *const ids[] = {"::Ice::Object", "::Outer::Base", "::Outer::Derived", 0};
-    self->base.dispatch = Outer_Derived_dispatch;
-    self->base.ids = ids;
-    self->base.id = "::Outer::Derived";
+    static const Outer_Derived_Operations operations = {{Outer_Derived_name}, Outer_Derived_echo,
+            Outer_Derived_self};
+    Outer_Derived_initWith(self, &operations);
 }

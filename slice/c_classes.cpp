@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+//
+// c_classes: descriptors of classes, which the run time reads and writes graphs by.
+
+#include "c_files.h"
+#include "c_names.h"
+
+void classFunctions(Writer& w, const Declaration& d) {
+    Writer::Values v = {{"c", d.cName()}, {"id", d.id()}};
+    initFunction(w, d);
+    w.blank();
+    w.block("static void {c}_write(const void *object, Ice_OutputStreamPtr os)", v, [&] {
+        if (d.fields.empty()) {
+            w.line("(void)object;");
+            w.line("(void)os;");
+            return;
+        }
+        w.line("const {c} *v = (const {c} *)object;", v);
+        writeSlots(w, memberSlots(d));
+    });
+    w.blank();
+    w.block("static void {c}_read(void *object, Ice_InputStreamPtr is)", v, [&] {
+        if (d.fields.empty()) {
+            w.line("(void)object;");
+            w.line("(void)is;");
+            return;
+        }
+        w.line("{c} *v = ({c} *)object;", v);
+        readSlots(w, memberSlots(d));
+    });
+    w.blank();
+    std::string base = d.base() ? "&" + d.base()->cName() + "_type" : "0";
+    w.line("const Ice_ValueType {c}_type = {", v);
+    w.line("    \"{id}\", " + base + ", " + std::to_string(d.compactId) + ", (Ice_Int)sizeof({c}), {c}_write, {c}_read};", v);
+}
+
+void valueTypeTable(Writer& w, const CContext& c) {
+    w.blank();
+    w.line("const Ice_ValueType *const " + c.valueTable() + "[] = {");
+    for (const auto& d : c.unit.declarations)
+        if (d->kind == Declaration::Kind::Class && !d->isLocal && !d->isForward)
+            w.line("    &" + d->cName() + "_type,");
+    w.line("    0};");
+}

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+//
+// c_exceptions: marshalling of exceptions, and of the unions of what operations throw.
+
+#include "c_files.h"
+#include "c_names.h"
+
+namespace {
+
+bool hasClasses(const Declaration& d) {
+    for (const Field& f : d.fields)
+        if (containsClass(f.type))
+            return true;
+    return d.base() && hasClasses(*d.base());
+}
+
+} // namespace
+
+void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d) {
+    Writer::Values v = {{"c", d.cName()}, {"id", d.id()}, {"classes", hasClasses(d) ? "1" : "0"}};
+    bool classes = hasClasses(d);
+    initFunction(w, d);
+    w.blank();
+    w.block("void {c}_writeSlices(const {c} *v, Ice_OutputStreamPtr os)", v, [&] {
+        std::string last = d.base() ? "0" : "1";
+        w.line("Ice_Int slice = Ice_OutputStream_startSlice(os, \"{id}\", " + last + ");", v);
+        writeSlots(w, memberSlots(d));
+        w.line("Ice_OutputStream_endSlice(os, slice, " + last + ");");
+        if (d.base())
+            w.line(d.base()->cName() + "_writeSlices(&v->base, os);");
+        else if (d.fields.empty())
+            w.line("(void)v;");
+    });
+    w.blank();
+    w.block("void {c}_readSlices({c} *v, Ice_InputStreamPtr is)", v, [&] {
+        readSlots(w, memberSlots(d));
+        w.line("Ice_InputStream_endSlice(is);");
+        if (d.base()) {
+            w.line("(void)Ice_InputStream_startSlice(is);");
+            w.line(d.base()->cName() + "_readSlices(&v->base, is);");
+        } else if (d.fields.empty()) {
+            w.line("(void)v;");
+        }
+    });
+    w.blank();
+    w.block("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os)", v, [&] {
+        if (classes)
+            w.line("Ice_OutputValues values;");
+        withOutputValues(w, classes, [&] {
+            w.line("Ice_OutputStream_startException(os, {classes});", v);
+            w.line("{c}_writeSlices(v, os);", v);
+        });
+    });
+    w.blank();
+    w.block("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is)", v, [&] {
+        if (classes)
+            w.line("Ice_InputValues values;");
+        withInputValues(w, c, classes, [&] {
+            w.line("Ice_InputStream_startException(is);");
+            w.block("while (!Ice_String_equals(Ice_InputStream_startSlice(is), \"{id}\"))", v, [&] {
+                w.block("if (!Ice_InputStream_skipSlice(is))", {}, [&] {
+                    w.line("is->failed = 1;");
+                    w.line("return;");
+                });
+            });
+            w.line("{c}_readSlices(v, is);", v);
+        });
+    });
+}
+
+void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
+    auto family = mayThrow(c.unit, o);
+    Writer::Values v = {{"t", exceptionType(d, o)}, {"op", operationName(d, o)}};
+    bool classes = false;
+    for (const Declaration* e : family)
+        classes = classes || hasClasses(*e);
+    auto eachOf = [&](auto f) {
+        for (const Declaration* e : family) {
+            std::string label = exceptionLabel(family, *e);
+            f(*e, Writer::Values{{"t", exceptionType(d, o)}, {"op", operationName(d, o)}, {"e", e->cName()},
+                                 {"id", e->id()}, {"label", label}, {"member", cIdentifier(label)}});
+        }
+    };
+    w.blank();
+    w.block("void {t}_writeToOutputStream(const {t} *v, Ice_OutputStreamPtr os)", v, [&] {
+        w.line("switch (v->type) {");
+        eachOf([&](const Declaration&, const Writer::Values& names) {
+            w.line("case {op}_{label}:", names);
+            w.nested("{e}_writeToOutputStream(&v->u.{member}, os);", names);
+            w.nested("break;");
+        });
+        w.line("default:");
+        w.nested("os->failed = 1; /* the servant has not said which */");
+        w.line("}");
+    });
+    w.blank();
+    w.block("Ice_Status {t}_readFromInputStream({t} *v, Ice_InputStreamPtr is)", v, [&] {
+        if (classes)
+            w.line("Ice_InputValues values;");
+        w.line("v->type = {op}_none;", v);
+        if (classes)
+            w.line("Ice_InputStream_beginValues(is, &values, " + c.valueTable() + ");");
+        w.line("Ice_InputStream_startException(is);");
+        w.line("do {");
+        w.nested("Ice_String id = Ice_InputStream_startSlice(is);");
+        bool first = true;
+        eachOf([&](const Declaration&, const Writer::Values& names) {
+            w.nested(std::string(first ? "" : "} else ") + "if (Ice_String_equals(id, \"{id}\")) {", names);
+            w.nested("    v->type = {op}_{label};", names);
+            w.nested("    {e}_readSlices(&v->u.{member}, is);", names);
+            first = false;
+        });
+        w.nested("}");
+        w.line("} while (v->type == {op}_none && Ice_InputStream_skipSlice(is));", v);
+        if (classes)
+            w.line("Ice_InputStream_endValues(is);");
+        w.line("if (is->failed)");
+        w.nested("return ICE_MARSHAL;");
+        w.line("return v->type == {op}_none ? ICE_UNKNOWN_USER_EXCEPTION : ICE_USER_EXCEPTION;", v);
+    });
+}

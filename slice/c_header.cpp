@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: MIT
+//
+// c_header: the header: types, constants, proxies, servants.
+
+#include "c_files.h"
+#include "c_names.h"
+#include "doc_comment.h"
+
+namespace {
+
+using DKind = Declaration::Kind;
+
+// "ICE_METRICS_ICE_H" of Ice/Metrics.ice
+std::string guardOf(const CContext& c) {
+    std::string path = c.names.path.empty() ? c.header() : c.names.path;
+    std::string guard = path.substr(0, path.rfind('.')) + "_ICE_" + c.names.headerExtension;
+    for (char& ch : guard) {
+        bool isSmall = ch >= 'a' && ch <= 'z';
+        bool isKept = (ch >= '0' && ch <= '9') || (ch >= 'A' && ch <= 'Z');
+        ch = isSmall ? static_cast<char>(ch - 32) : isKept ? ch : '_';
+    }
+    return guard[0] >= '0' && guard[0] <= '9' ? "SLICE_" + guard : guard;
+}
+
+// Interfaces and classes may be declared by several files: C90 wants one typedef.
+void forwardDeclarations(Writer& w, const CContext& c) {
+    for (const auto& d : c.unit.declarations) {
+        bool isClass = d->kind == DKind::Class;
+        if (d->fromInclude || d->isLocal || (!isClass && d->kind != DKind::Interface))
+            continue;
+        Writer::Values v = {{"c", d->cName()}};
+        w.blank();
+        w.line(isClass ? "#ifndef {c}_declared" : "#ifndef {c}Prx_declared", v);
+        w.line(isClass ? "#define {c}_declared" : "#define {c}Prx_declared", v);
+        if (isClass) {
+            w.line("typedef struct {c} {c};", v);
+            w.line("extern const Ice_ValueType {c}_type;", v);
+        } else {
+            w.line("typedef Ice_ObjectPrx {c}Prx, *{c}PrxPtr;", v);
+        }
+        w.line("#endif");
+    }
+}
+
+void declareConstant(Writer& w, const Declaration& d) {
+    std::string value = cValue(d.value, d.element), name = d.cName();
+    switch (d.element.kind) {
+    case Type::Kind::Long: w.line("extern const Ice_Long " + name + ";"); break;
+    case Type::Kind::String: w.line("#define " + name + " " + value); break;
+    default: w.line("#define " + name + " ((" + cType(d.element) + ")" +
+                    (value[0] == '-' ? "(" + value + ")" : value) + ")");
+    }
+}
+
+void declareEnum(Writer& w, const Declaration& d) {
+    w.block("typedef enum " + d.cName(), {}, [&] {
+        for (size_t i = 0; i < d.enumerators.size(); ++i) {
+            const Enumerator& e = d.enumerators[i];
+            writeDoc(w, e.doc);
+            w.line(cEnumerator(d, e.name) + " = " + std::to_string(e.value) +
+                   (i + 1 < d.enumerators.size() ? "," : ""));
+        }
+    }, "} " + d.cName() + ";");
+}
+
+void declareFields(Writer& w, const Declaration& d) {
+    for (const Field& f : d.fields) {
+        writeDoc(w, f.doc, f.metadata);
+        if (f.isOptional)
+            w.line("Ice_Bool has_" + f.name + ";");
+        w.line(cVariable(f.type, cIdentifier(f.name)) + ";");
+    }
+}
+
+// The members of a sequence or dictionary of `element`.
+void declareElements(Writer& w, const Declaration& d, const std::string& element) {
+    int maximum = statedMaximum(d);
+    bool pointer = element.back() == '*';
+    w.block("typedef struct " + d.cName(), {}, [&] {
+        w.line("Ice_Int size;");
+        std::string name = maximum ? "data[" + std::to_string(maximum) + "]" : "*data";
+        w.line(element + (pointer ? "" : " ") + name + ";");
+    }, "} " + d.cName() + ";");
+}
+
+bool hasFind(const Declaration& d) {
+    return !isByPointer(d.key) && d.key.kind != Type::Kind::Long;
+}
+
+void declareStruct(Writer& w, const Declaration& d) {
+    Writer::Values v = {{"c", d.cName()}};
+    bool isClass = d.kind == DKind::Class;
+    // A class is a type already.
+    w.block(isClass ? "struct {c}" : "typedef struct {c}", v, [&] {
+        if (d.base())
+            w.line(d.base()->cName() + " base;");
+        else if (isClass)
+            w.line("Ice_Value ice_value;");
+        declareFields(w, d);
+        if (!isClass && !d.base() && d.fields.empty())
+            w.line("Ice_Byte ice_unused; /* C90 has no empty structs */");
+    }, isClass ? "};" : "} " + d.cName() + ";");
+}
+
+void declareType(Writer& w, const Declaration& d) {
+    Writer::Values v = {{"c", d.cName()}};
+    switch (d.kind) {
+    case DKind::Sequence: {
+        declareElements(w, d, cType(d.element));
+        break;
+    }
+    case DKind::Dictionary:
+        w.block("typedef struct {c}_Entry", v, [&] {
+            w.line(cVariable(d.key, "key") + ";");
+            w.line(cVariable(d.element, "value") + ";");
+        }, "} " + d.cName() + "_Entry;");
+        declareElements(w, d, d.cName() + "_Entry");
+        break;
+    default:
+        if (!isRuntimeType(d))
+            declareStruct(w, d);
+    }
+    bool isPlain = d.kind == DKind::Struct || d.kind == DKind::Exception;
+    if (isPlain || d.kind == DKind::Class)
+        w.line("void {c}_init({c} *v);", v);
+    if (d.kind == DKind::Class)
+        return;
+    w.line("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os);", v);
+    w.line("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is);", v);
+    if (d.kind == DKind::Exception) {
+        w.line("/* Without the head: this type's slice and those of its bases. */");
+        w.line("void {c}_writeSlices(const {c} *v, Ice_OutputStreamPtr os);", v);
+        w.line("void {c}_readSlices({c} *v, Ice_InputStreamPtr is);", v);
+    }
+    if (d.kind == DKind::Dictionary && hasFind(d))
+        w.line(cVariable(d.element, "*" + d.cName() + "_find") + "(const " + d.cName() + " *v, " +
+               cVariable(d.key, "key") + ");");
+}
+
+void declare(Writer& w, const Declaration& d) {
+    if (d.fromInclude || d.isLocal || d.kind == DKind::Interface || d.isForward)
+        return;
+    w.blank();
+    writeDoc(w, d.doc, d.metadata);
+    if (d.kind == DKind::Constant)
+        declareConstant(w, d);
+    else if (d.kind == DKind::Enum)
+        declareEnum(w, d);
+    else
+        declareType(w, d);
+}
+
+void declareThrown(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
+    auto family = mayThrow(c.unit, o);
+    std::string op = operationName(d, o), type = exceptionType(d, o);
+    w.blank();
+    w.line("/* What {op} throws: `type` says which member of `u` it is. */", {{"op", op}});
+    w.block("typedef struct " + type, {}, [&] {
+        w.line("enum {");
+        w.line("    " + op + "_none");
+        for (const Declaration* e : family)
+            w.line("    , " + op + "_" + exceptionLabel(family, *e));
+        w.line("} type;");
+        w.block("union", {}, [&] {
+            for (const Declaration* e : family)
+                w.line(e->cName() + " " + cIdentifier(exceptionLabel(family, *e)) + ";");
+        }, "} u;");
+    }, "} " + type + ";");
+    w.line("void " + type + "_writeToOutputStream(const " + type + " *v, Ice_OutputStreamPtr os);");
+    w.line("/* ICE_USER_EXCEPTION; ICE_UNKNOWN_USER_EXCEPTION: none of these; ICE_MARSHAL. */");
+    w.line("Ice_Status " + type + "_readFromInputStream(" + type + " *v, Ice_InputStreamPtr is);");
+}
+
+void declareAsync(Writer& w, const Declaration& d, const Operation& o) {
+    std::string type = operationName(d, o) + "_Async";
+    w.blank();
+    w.block("typedef struct " + type, {}, [&] {
+        w.line("void (*completed)(struct " + type + " *self);");
+        w.line("void *context;");
+        w.line("Ice_Bool done;");
+        w.line("Ice_Status status;");
+        for (const Slot& s : outSlots(o, "")) {
+            if (s.isOptional)
+                w.line("Ice_Bool " + s.has + ";");
+            w.line(cVariable(*s.type, s.value) + ";");
+        }
+        if (!o.throws.empty())
+            w.line(exceptionType(d, o) + " exception;");
+    }, "} " + type + ";");
+    w.line(asyncSignature(d, o) + ";");
+}
+
+void declareProxy(Writer& w, const Declaration& d) {
+    Writer::Values v = {{"c", d.cName()}, {"id", d.id()}};
+    w.blank();
+    w.line("#define {c}_ice_staticId \"{id}\"", v);
+    w.line("Ice_Status {c}Prx_checkedCast({c}PrxPtr self, const Ice_ObjectPrx *from);", v);
+    w.line("void {c}Prx_uncheckedCast({c}PrxPtr self, const Ice_ObjectPrx *from);", v);
+    for (const Declaration* from : lineage(d))
+        for (const Operation& o : from->operations) {
+            if (from == &d) {
+                w.blank();
+                writeDoc(w, o.doc, o.metadata);
+                w.line(proxySignature(d, o) + ";");
+                continue;
+            }
+            Writer::Values names = {{"c", d.cName()}, {"from", from->cName()}, {"op", cOperation(o.name)}};
+            w.line("#define {c}Prx_{op} {from}Prx_{op}", names);
+            w.line("#define {c}Prx_{op}_async {from}Prx_{op}_async", names);
+        }
+}
+
+void declareServant(Writer& w, const Declaration& d) {
+    Writer::Values v = {{"c", d.cName()}};
+    w.blank();
+    w.block("typedef struct {c}", v, [&] {
+        w.line("Ice_Object base;");
+        w.line("const struct {c}_Operations *operations;", v);
+    }, "} " + d.cName() + ", *" + d.cName() + "Ptr;");
+    w.blank();
+    w.line("/* A servant's operations; 0 for one that it does not have. */");
+    w.block("typedef struct {c}_Operations", v, [&] {
+        for (const Declaration* base : d.bases)
+            w.line(base->cName() + "_Operations " + base->cName() + "_;");
+        for (const Operation& o : d.operations)
+            w.line(servantSignature(d, o, "(*" + cIdentifier(o.name) + ")") + ";");
+        if (d.bases.empty() && d.operations.empty())
+            w.line("Ice_Byte ice_unused; /* C90 has no empty structs */");
+    }, "} " + d.cName() + "_Operations;");
+    w.line("extern const Ice_Interface {c}_ice_interface;", v);
+    w.line("void {c}_initWith({c}Ptr self, const {c}_Operations *operations);", v);
+    w.blank();
+    w.line("/* With the operations below, which the application writes. */");
+    w.line("void {c}_init({c}Ptr self);", v);
+    for (const Declaration* from : lineage(d))
+        for (const Operation& o : from->operations)
+            w.line(servantSignature(*from, o, d.cName() + "_" + cOperation(o.name)) + ";");
+}
+
+void declareResponses(Writer& w, const Declaration& d) {
+    bool first = true;
+    for (const Operation& o : d.operations) {
+        if (!isAmd(d, o))
+            continue;
+        if (first) {
+            w.blank();
+            w.line("/* Answers to calls for which the servant returned ICE_LATER. */");
+        }
+        first = false;
+        w.line(responseSignature(d, o) + ";");
+        if (!o.throws.empty())
+            w.line("Ice_Status " + operationName(d, o) + "_exception(Ice_Reply *reply, const " + exceptionType(d, o) +
+                   " *ex);");
+    }
+}
+
+void declareInterface(Writer& w, const CContext& c, const Declaration& d) {
+    if (d.isForward)
+        return;
+    w.blank();
+    w.line(d.isHardware() ? "/* ---- " + d.id() + ", implemented in hardware ---- */" : "/* ---- " + d.id() + " ---- */");
+    writeDoc(w, d.doc, d.metadata);
+    for (const Operation& o : d.operations)
+        if (!o.throws.empty())
+            declareThrown(w, c, d, o);
+    declareProxy(w, d);
+    if (!d.operations.empty()) {
+        w.blank();
+        w.line("/* Asynchronous calls: the caller keeps the object until it is done. */");
+    }
+    for (const Operation& o : d.operations)
+        declareAsync(w, d, o);
+    declareServant(w, d);
+    declareResponses(w, d);
+}
+
+} // namespace
+
+std::string headerFile(const CContext& c) {
+    Writer w = c.begin("Types, proxies and servants. Mapping: docs/slice-mapping.md.");
+    std::string guard = guardOf(c);
+    w.line("#ifndef " + guard);
+    w.line("#define " + guard);
+    w.blank();
+    w.line("#include \"ice_operation.h\"");
+    if (c.usesClasses())
+        w.line("#include \"ice_value.h\"");
+    for (const std::string& include : c.names.includes)
+        w.line("#include \"" + include + "\"");
+    for (const std::string& m : c.unit.metadata)
+        if (m.compare(0, 10, "c:include:") == 0)
+            w.line("#include \"" + m.substr(10) + "\"");
+    w.blank();
+    w.line("#ifdef __cplusplus");
+    w.line("extern \"C\" {");
+    w.line("#endif");
+    forwardDeclarations(w, c);
+    for (const auto& d : c.unit.declarations)
+        declare(w, *d);
+    if (c.usesClasses()) {
+        w.blank();
+        w.line("/* The classes that can be received; 0 ends. */");
+        w.line("extern const Ice_ValueType *const " + c.valueTable() + "[];");
+    }
+    c.each(DKind::Interface, [&](const Declaration& d) { declareInterface(w, c, d); });
+    w.blank();
+    w.line("#ifdef __cplusplus");
+    w.line("}");
+    w.line("#endif");
+    w.blank();
+    w.line("#endif");
+    return w.text();
+}

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+//
+// compiler: lexer, parser, checks, generator, one after the other.
+
+#include "compiler.h"
+#include "lexer.h"
+#include "parser.h"
+
+Unit compileUnit(const std::string& text, const std::string& file, NameRules rules, Diagnostics& diagnostics) {
+    return parse(tokenize(text, file, diagnostics), file, rules, diagnostics);
+}
+
+std::optional<std::vector<GeneratedFile>> compileToC(const std::string& text, const std::string& file,
+                                                     NameRules rules, const CFileNames& names,
+                                                     Diagnostics& diagnostics) {
+    Unit unit = compileUnit(text, file, rules, diagnostics);
+    if (diagnostics.errors() == 0)
+        checkC(unit, diagnostics);
+    if (diagnostics.errors())
+        return std::nullopt;
+    return generateC(unit, names);
+}

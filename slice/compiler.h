@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+//
+// compiler: one Slice file from text to files, without a command line and without a file system.
+
+#ifndef COMPILER_H
+#define COMPILER_H
+
+#include "c_generator.h"
+#include "names.h"
+#include <optional>
+
+// The unit of a preprocessed file; errors are in `diagnostics`.
+Unit compileUnit(const std::string& text, const std::string& file, NameRules rules, Diagnostics& diagnostics);
+// The C of it; nothing if there were errors.
+std::optional<std::vector<GeneratedFile>> compileToC(const std::string& text, const std::string& file,
+                                                     NameRules rules, const CFileNames& names,
+                                                     Diagnostics& diagnostics);
+
+#endif

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+//
+// parser_data: enums, structs, exceptions, classes, sequences, dictionaries and constants.
+
+#include "literals.h"
+#include "parser_private.h"
+
+void Parser::enumeration() {
+    Declaration& d = declareType(Declaration::Kind::Enum, false);
+    int64_t next = 0;
+    expect("{");
+    while (!isSymbol("}")) {
+        Enumerator e;
+        e.doc = doc();
+        e.at = token().at;
+        e.name = name("an enumerator");
+        if (accept("="))
+            next = number("an enumerator's value", 0);
+        else if (next > INT32_MAX)
+            error(e.at, "an enumerator's value is 0..2147483647");
+        e.value = next++;
+        for (const Enumerator& other : d.enumerators) {
+            if (lowerCase(other.name) == lowerCase(e.name))
+                error(e.at, "enumerator '" + e.name + "' is there already, as '" + other.name + "'");
+            else if (other.value == e.value)
+                error(e.at, "enumerator '" + e.name + "' has the same value as '" + other.name + "'");
+        }
+        d.enumerators.push_back(e);
+        bool isNew = false;
+        Symbol* s = symbols_.declare(d.id(), e.name, e.at, isNew);
+        if (s && isNew) {
+            s->kind = Symbol::Kind::Enumerator;
+            s->declaration = &d;
+            s->enumerator = d.enumerators.size() - 1;
+            symbols_.declareBare(scopeId_, e.name, s);
+        }
+        if (!accept(","))
+            break;
+    }
+    expect("}");
+    accept(";");
+    if (d.enumerators.empty())
+        error(d.at, "an enum has at least one enumerator");
+}
+
+void Parser::structure() {
+    Declaration& d = declareType(Declaration::Kind::Struct, false);
+    if (isSymbol(";"))
+        fail("'{': a struct cannot be declared forward");
+    braces("struct '" + d.name + "'", [&] { member(d, false); });
+    if (d.fields.empty())
+        error(d.at, "a struct has at least one member");
+}
+
+void Parser::exception() {
+    Declaration& d = declareType(Declaration::Kind::Exception, false);
+    if (isSymbol(";"))
+        fail("'{': an exception cannot be declared forward");
+    if (acceptWord("extends"))
+        d.bases = baseList(d, Declaration::Kind::Exception, false);
+    braces("exception '" + d.name + "'", [&] { member(d, true); });
+}
+
+void Parser::classDefinition() {
+    Declaration& d = declareType(Declaration::Kind::Class, true);
+    if (accept(";"))
+        return;
+    if (accept("(")) {
+        Location begin = token().at;
+        d.compactId = number("a class's compact id", 0);
+        auto [it, isNew] = compactIds_.emplace(d.compactId, d.id());
+        if (!isNew)
+            error(begin, "compact id " + std::to_string(d.compactId) + " is that of '" + it->second + "'");
+        expect(")");
+    }
+    if (acceptWord("extends"))
+        d.bases = baseList(d, Declaration::Kind::Class, false);
+    if (isWord("implements")) {
+        diagnostics_.warning(token().at, "classes implementing interfaces are deprecated",
+                             Diagnostics::Deprecated);
+        ++position_;
+        (void)baseList(d, Declaration::Kind::Interface, true);
+    }
+    braces("class '" + d.name + "'", [&] { member(d, true); });
+}
+
+// A data member; a class's operation too.
+void Parser::member(Declaration& d, bool mayBeOptional) {
+    Field f;
+    f.doc = doc();
+    f.metadata = metadata();
+    if (f.doc.empty())
+        f.doc = doc();
+    Location begin = token().at;
+    bool isClass = d.kind == Declaration::Kind::Class;
+    bool isIdempotent = isClass && isWord("idempotent");
+    bool returnsNothing = isClass && isWord("void");
+    size_t start = position_;
+    Optional o;
+    if (!isIdempotent) {
+        o = optional();
+        f.type = type(d.isLocal);
+    }
+    if (isClass && (isIdempotent || returnsNothing || isSymbol("(", 1))) {
+        if (!d.isLocal && d.operations.empty())
+            diagnostics_.warning(begin, "classes with operations are deprecated", Diagnostics::Deprecated);
+        position_ = start;
+        return operation(d);
+    }
+    f.isOptional = o.present;
+    f.tag = o.tag;
+    if (o.present && !mayBeOptional)
+        error(begin, "a struct's member cannot be optional");
+    f.at = token().at;
+    f.name = name("the member's name");
+    if (f.type.kind == Type::Kind::Void)
+        error(begin, "a member cannot be void");
+    checkLocal(f.type, d.isLocal, "member '" + f.name + "'", begin);
+    checkMember(d, f);
+    if (accept("="))
+        f.value = literal(f.type, "member '" + f.name + "'");
+    expect(";");
+    d.fields.push_back(std::move(f));
+}
+
+void Parser::checkMember(const Declaration& d, const Field& f) {
+    std::string called = lowerCase(f.name);
+    if (called == lowerCase(d.name))
+        error(f.at, "member '" + f.name + "' must differ from the name of its " + kindName(d.kind));
+    for (const Declaration* from = &d; from; from = from->base())
+        for (const Field& other : from->fields) {
+            if (other.name == f.name)
+                error(f.at, "member '" + f.name + "' is there already" +
+                                (from == &d ? "" : ", in the base '" + from->id() + "'"));
+            else if (lowerCase(other.name) == called)
+                error(f.at, "member '" + f.name + "' differs in capitals only from '" + other.name + "'");
+            if (from == &d && f.isOptional && other.isOptional && other.tag == f.tag)
+                error(f.at, "tag " + std::to_string(f.tag) + " is that of '" + other.name + "'");
+        }
+    // A struct that contains itself would have no end.
+    if (f.type.declaration == &d && f.type.kind == Type::Kind::Named && d.kind != Declaration::Kind::Class)
+        error(f.at, "a " + std::string(kindName(d.kind)) + " cannot contain itself");
+}
+
+void Parser::sequence() {
+    expect("<");
+    Metadata elementMetadata = metadata();
+    Location begin = token().at;
+    Type element = type(local_);
+    expect(">");
+    Declaration& d = declareType(Declaration::Kind::Sequence, false);
+    d.element = element;
+    if (element.kind == Type::Kind::Void)
+        error(begin, "a sequence of void makes no sense");
+    checkLocal(element, d.isLocal, "sequence '" + d.name + "'", begin);
+    expect(";");
+}
+
+void Parser::dictionary() {
+    expect("<");
+    (void)metadata();
+    Location keyAt = token().at;
+    Type key = type(local_);
+    expect(",");
+    (void)metadata();
+    Location valueAt = token().at;
+    Type value = type(local_);
+    expect(">");
+    Declaration& d = declareType(Declaration::Kind::Dictionary, false);
+    d.key = key;
+    d.element = value;
+    bool usesSequence = false;
+    if (!isLegalKey(key, usesSequence))
+        error(keyAt, "dictionary '" + d.name + "' cannot have keys of type '" + typeName(key) +
+                         "': only bool, integers, strings, enums and structs of them");
+    else if (usesSequence)
+        diagnostics_.warning(keyAt, "sequences in dictionary keys are deprecated", Diagnostics::Deprecated);
+    if (value.kind == Type::Kind::Void)
+        error(valueAt, "a dictionary's value cannot be void");
+    checkLocal(key, d.isLocal, "dictionary '" + d.name + "'", keyAt);
+    checkLocal(value, d.isLocal, "dictionary '" + d.name + "'", valueAt);
+    expect(";");
+}
+
+void Parser::constant() {
+    (void)metadata();
+    Type t = type(false);
+    Declaration& d = declareType(Declaration::Kind::Constant, false);
+    d.element = t;
+    expect("=");
+    d.value = literal(t, "constant '" + d.name + "'");
+    expect(";");
+}

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+//
+// parser_interface: interfaces, operations, and what may be inherited.
+
+#include "parser_private.h"
+#include <algorithm>
+
+std::vector<const Declaration*> Parser::baseList(const Declaration& d, Declaration::Kind wanted,
+                                                 bool many) {
+    std::vector<const Declaration*> bases;
+    std::string what = std::string("the ") + kindName(wanted) + " to extend";
+    do {
+        Location begin = token().at;
+        if (isWord("Object") || isWord("Value")) {
+            error(begin, "'" + std::string(token().text) + "' is the base of all that have none; leave it out");
+            ++position_;
+            continue;
+        }
+        std::string written = scopedName(what);
+        Symbol* s = resolve(written, begin);
+        const Declaration* base = s && s->kind == Symbol::Kind::Declaration ? s->declaration : nullptr;
+        if (!base || base->kind != wanted) {
+            error(begin, "'" + written + "' is not " + (wanted == Declaration::Kind::Class ? "a " : "an ") +
+                             kindName(wanted));
+        } else if (base->isForward) {
+            error(begin, "'" + written + "' is declared, but not defined yet");
+        } else if (base == &d) {
+            error(begin, "'" + written + "' cannot extend itself");
+        } else if (std::find(bases.begin(), bases.end(), base) != bases.end()) {
+            error(begin, "'" + written + "' is listed twice");
+        } else {
+            warnDeprecated(*base, begin);
+            if (base->isLocal && !d.isLocal)
+                error(begin, "'" + d.name + "' is not local, but '" + written + "' is");
+            if (!base->isLocal && d.isLocal && wanted == Declaration::Kind::Interface)
+                error(begin, "'" + d.name + "' is local, but '" + written + "' is not");
+            bases.push_back(base);
+        }
+    } while (many && accept(","));
+    return bases;
+}
+
+namespace {
+
+void allOperations(const Declaration& d, std::vector<std::pair<const Operation*, const Declaration*>>& list) {
+    for (const Declaration* base : d.bases)
+        allOperations(*base, list);
+    for (const Operation& o : d.operations)
+        list.push_back({&o, &d});
+}
+
+} // namespace
+
+// Two bases must not bring different operations of one name.
+void Parser::checkBases(const Declaration& d) {
+    std::vector<std::pair<const Operation*, const Declaration*>> list;
+    allOperations(d, list);
+    for (size_t i = 0; i < list.size(); ++i)
+        for (size_t j = 0; j < i; ++j)
+            if (list[i].first != list[j].first && lowerCase(list[i].first->name) == lowerCase(list[j].first->name)) {
+                error(d.at, "'" + d.name + "' inherits operation '" + list[i].first->name + "' twice: from '" +
+                                list[j].second->id() + "' and '" + list[i].second->id() + "'");
+                return;
+            }
+}
+
+void Parser::interface() {
+    Declaration& d = declareType(Declaration::Kind::Interface, true);
+    if (accept(";"))
+        return;
+    if (acceptWord("extends"))
+        d.bases = baseList(d, Declaration::Kind::Interface, true);
+    checkBases(d);
+    braces("interface '" + d.name + "'", [&] { operation(d); });
+}
+
+void Parser::operation(Declaration& d) {
+    Operation o;
+    o.doc = doc();
+    o.metadata = metadata();
+    if (o.doc.empty())
+        o.doc = doc();
+    o.idempotent = acceptWord("idempotent");
+    Optional result = optional();
+    Location begin = token().at;
+    o.result = type(d.isLocal);
+    o.isResultOptional = result.present;
+    o.resultTag = result.tag;
+    if (result.present && o.result.kind == Type::Kind::Void)
+        error(begin, "void cannot be optional");
+    o.at = token().at;
+    o.name = name("the operation's name");
+    checkLocal(o.result, d.isLocal, "operation '" + o.name + "'", begin);
+    checkOperation(d, o);
+    expect("(");
+    parameters(o, d);
+    expect(")");
+    if (acceptWord("throws"))
+        throwsClause(o, d);
+    expect(";");
+    d.operations.push_back(std::move(o));
+}
+
+void Parser::checkOperation(const Declaration& d, const Operation& o) {
+    std::string called = lowerCase(o.name);
+    if (called == lowerCase(d.name))
+        error(o.at, "operation '" + o.name + "' must differ from the name of its " + kindName(d.kind));
+    std::vector<std::pair<const Operation*, const Declaration*>> list;
+    allOperations(d, list);
+    for (const auto& [other, from] : list) {
+        if (other->name == o.name)
+            error(o.at, "operation '" + o.name + "' is there already" +
+                            (from == &d ? "" : ", in the base '" + from->id() + "'") +
+                            "; Slice has no overloading");
+        else if (lowerCase(other->name) == called)
+            error(o.at, "operation '" + o.name + "' differs in capitals only from '" + other->name + "'");
+    }
+}
+
+void Parser::parameters(Operation& o, const Declaration& owner) {
+    if (isWord("void") && isSymbol(")", 1)) {
+        diagnostics_.warning(token().at, "'(void)' is C, not Slice; taken as '()'");
+        ++position_;
+    }
+    while (!isSymbol(")")) {
+        Field p;
+        p.metadata = metadata();
+        p.isOut = acceptWord("out");
+        Optional tag = optional();
+        Location begin = token().at;
+        p.type = type(owner.isLocal);
+        p.isOptional = tag.present;
+        p.tag = tag.tag;
+        p.at = token().at;
+        p.name = name("the parameter's name");
+        if (p.type.kind == Type::Kind::Void)
+            error(begin, "a parameter cannot be void");
+        checkLocal(p.type, owner.isLocal, "parameter '" + p.name + "'", begin);
+        if (!p.isOut && !o.parameters.empty() && o.parameters.back().isOut)
+            error(p.at, "in parameters come before out parameters");
+        for (const Field& other : o.parameters) {
+            if (lowerCase(other.name) == lowerCase(p.name))
+                error(p.at, "parameter '" + p.name + "' is there already, as '" + other.name + "'");
+            if (p.isOptional && other.isOptional && other.tag == p.tag)
+                error(p.at, "tag " + std::to_string(p.tag) + " is that of '" + other.name + "'");
+        }
+        if (p.isOptional && o.isResultOptional && o.resultTag == p.tag)
+            error(p.at, "tag " + std::to_string(p.tag) + " is that of the return value");
+        o.parameters.push_back(std::move(p));
+        if (!accept(","))
+            break;
+        if (isSymbol(")"))
+            fail("a parameter");
+    }
+}
+
+void Parser::throwsClause(Operation& o, const Declaration& owner) {
+    do {
+        Location begin = token().at;
+        std::string written = scopedName("an exception");
+        Symbol* s = resolve(written, begin);
+        if (!s || s->kind != Symbol::Kind::Declaration ||
+            s->declaration->kind != Declaration::Kind::Exception) {
+            error(begin, "'" + written + "' is not an exception");
+            continue;
+        }
+        warnDeprecated(*s->declaration, begin);
+        if (s->declaration->isLocal && !owner.isLocal)
+            error(begin, "operation '" + o.name + "' cannot throw the local exception '" + written + "'");
+        if (std::find(o.throws.begin(), o.throws.end(), s->declaration) != o.throws.end())
+            error(begin, "'" + written + "' is listed twice");
+        else
+            o.throws.push_back(s->declaration);
+    } while (accept(","));
+}

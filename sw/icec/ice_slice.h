@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_slice: what slices of exceptions and of classes have in common.
+ */
+#ifndef ICE_SLICE_H
+#define ICE_SLICE_H
+
+#include "ice_stream.h"
+
+/* The flags before a slice in encoding 1.1. Exceptions have none for the type: it is a string. */
+enum {
+    ICE_SLICE_TYPE_STRING = 0x01,
+    ICE_SLICE_TYPE_INDEX = 0x02,
+    ICE_SLICE_COMPACT_ID = 0x03,
+    ICE_SLICE_OPTIONALS = 0x04,
+    ICE_SLICE_TABLE = 0x08,
+    ICE_SLICE_SIZE = 0x10,
+    ICE_SLICE_LAST = 0x20,
+    ICE_SLICE_INSIDE = 0x80 /* never on the wire: a slice is under way */
+};
+
+/* Ends a slice of 1.1 whose flags stand at `flags`, and its size at `size` (-1: none). */
+void Ice_finishSlice(Ice_OutputStreamPtr os, Ice_Int flags, Ice_Int size);
+/* The size at `begin` counts itself. */
+void Ice_patchSize(Ice_OutputStreamPtr os, Ice_Int begin);
+
+#endif

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_value_write: instances of classes onto a stream.
+ *
+ * 1.1: an instance stands where it is first met, its number (from 2) where it is met again; within
+ * a slice of the sliced format there is an index into a table behind the slice instead. 1.0: minus
+ * the number (from 1), and the instances behind all parameters.
+ */
+#include "ice_slice.h"
+#include "ice_value.h"
+
+#include <string.h>
+
+static Ice_Bool writeTable(Ice_OutputStreamPtr os);
+
+void Ice_OutputStream_beginValues(Ice_OutputStreamPtr os, Ice_OutputValues *values) {
+    memset(values, 0, sizeof *values);
+    values->writeTable = writeTable;
+    os->values = values;
+}
+
+/* The instance's place in `known`; -1: it is new, and has the last place now. */
+static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value *v, Ice_Int *place) {
+    Ice_OutputValues *values = os->values;
+    Ice_Int i;
+    for (i = 0; i < values->count; ++i)
+        if (values->known[i] == v) {
+            *place = i;
+            return 0;
+        }
+    if (values->count == ICE_VALUES_MAX) {
+        os->failed = 1;
+        return 0;
+    }
+    *place = values->count;
+    values->known[values->count++] = v;
+    return 1;
+}
+
+/* The number under which this type's name was written, 0: it was not, and has one now. */
+static Ice_Int typeNumber(Ice_OutputStreamPtr os, const char *id) {
+    Ice_OutputValues *values = os->values;
+    Ice_Int i;
+    for (i = 0; i < values->typeCount; ++i)
+        if (strcmp(values->types[i], id) == 0)
+            return i + 1;
+    if (values->typeCount == ICE_VALUE_TYPES_MAX)
+        os->failed = 1;
+    else
+        values->types[values->typeCount++] = id;
+    return 0;
+}
+
+static void writeType(Ice_OutputStreamPtr os, const Ice_ValueType *type) {
+    Ice_Int number;
+    if (type->compactId >= 0) {
+        os->sliceFlags |= ICE_SLICE_COMPACT_ID;
+        Ice_OutputStream_writeSize(os, type->compactId);
+        return;
+    }
+    number = typeNumber(os, type->id);
+    os->sliceFlags |= number ? ICE_SLICE_TYPE_INDEX : ICE_SLICE_TYPE_STRING;
+    if (number)
+        Ice_OutputStream_writeSize(os, number);
+    else
+        Ice_OutputStream_writeString(os, Ice_String_from(type->id));
+}
+
+static void writeSlices11(Ice_OutputStreamPtr os, const Ice_Value *v) {
+    const Ice_ValueType *type;
+    for (type = v->type; type; type = type->base) {
+        Ice_Int begin = os->size, body;
+        os->sliceFlags = (Ice_Byte)(ICE_SLICE_INSIDE | (os->sliced ? ICE_SLICE_SIZE : 0) |
+                                    (type->base ? 0 : ICE_SLICE_LAST));
+        Ice_OutputStream_writeByte(os, 0);
+        if (os->sliced || type == v->type)
+            writeType(os, type);
+        if (os->sliced)
+            Ice_OutputStream_writeInt(os, 0);
+        body = os->size;
+        type->write(v, os);
+        Ice_finishSlice(os, begin, os->sliced ? body - 4 : -1);
+    }
+}
+
+/* The instance itself, or its number. */
+static void writeInstance(Ice_OutputStreamPtr os, const Ice_Value *v) {
+    Ice_Int place = 0, tableBegin = os->values->tableBegin;
+    Ice_Byte flags = os->sliceFlags;
+    if (!placeOf(os, v, &place)) {
+        Ice_OutputStream_writeSize(os, place + 2);
+        return;
+    }
+    Ice_OutputStream_writeSize(os, 1);
+    os->values->tableBegin = os->values->tableEnd;
+    writeSlices11(os, v);
+    os->values->tableBegin = tableBegin;
+    os->sliceFlags = flags;
+}
+
+/* Behind a slice: what its members pointed at. 0: there is nothing. */
+static Ice_Bool writeTable(Ice_OutputStreamPtr os) {
+    Ice_OutputValues *values = os->values;
+    Ice_Int begin = values->tableBegin, end = values->tableEnd, i;
+    if (begin == end)
+        return 0;
+    Ice_OutputStream_writeSize(os, end - begin);
+    for (i = begin; i < end; ++i)
+        writeInstance(os, values->table[i]);
+    values->tableEnd = begin;
+    return 1;
+}
+
+static void writeIndirect(Ice_OutputStreamPtr os, const Ice_Value *v) {
+    Ice_OutputValues *values = os->values;
+    Ice_Int i;
+    for (i = values->tableBegin; i < values->tableEnd; ++i)
+        if (values->table[i] == v)
+            break;
+    if (i == ICE_VALUES_MAX) {
+        os->failed = 1;
+        return;
+    }
+    if (i == values->tableEnd)
+        values->table[values->tableEnd++] = v;
+    Ice_OutputStream_writeSize(os, i - values->tableBegin + 1);
+}
+
+void Ice_OutputStream_writeValue(Ice_OutputStreamPtr os, const Ice_Value *v) {
+    Ice_Int place = 0;
+    if (os->failed || !os->values) {
+        os->failed = 1;
+    } else if (os->minor == 0) {
+        if (v)
+            (void)placeOf(os, v, &place);
+        Ice_OutputStream_writeInt(os, v ? -(place + 1) : 0);
+    } else if (!v) {
+        Ice_OutputStream_writeSize(os, 0);
+    } else if (os->sliced && os->sliceFlags & ICE_SLICE_INSIDE) {
+        writeIndirect(os, v);
+    } else {
+        writeInstance(os, v);
+    }
+}
+
+static void writeSlice10(Ice_OutputStreamPtr os, const char *id, const Ice_ValueType *type,
+                         const Ice_Value *v) {
+    Ice_Int number = typeNumber(os, id), begin;
+    Ice_OutputStream_writeBool(os, number != 0);
+    if (number)
+        Ice_OutputStream_writeSize(os, number);
+    else
+        Ice_OutputStream_writeString(os, Ice_String_from(id));
+    begin = os->size;
+    Ice_OutputStream_writeInt(os, 0);
+    if (type)
+        type->write(v, os);
+    else
+        Ice_OutputStream_writeSize(os, 0); /* the facets of very old versions */
+    Ice_patchSize(os, begin);
+}
+
+/* 1.0: in groups; what a group's members point at is the next one. */
+void Ice_OutputStream_endValues(Ice_OutputStreamPtr os) {
+    Ice_OutputValues *values = os->values;
+    while (os->minor == 0 && !os->failed && values->written < values->count) {
+        Ice_Int i = values->written, end = values->count;
+        Ice_OutputStream_writeSize(os, end - i);
+        for (; i < end; ++i) {
+            const Ice_ValueType *type;
+            Ice_OutputStream_writeInt(os, i + 1);
+            for (type = values->known[i]->type; type; type = type->base)
+                writeSlice10(os, type->id, type, values->known[i]);
+            writeSlice10(os, "::Ice::Object", 0, 0);
+        }
+        values->written = end;
+    }
+    if (os->minor == 0)
+        Ice_OutputStream_writeSize(os, 0);
+    os->values = 0;
+}

@@ -108,12 +108,27 @@ static Ice_Status connectTo(void *context, const Ice_Byte *encoded, Ice_Int size
     return statusOf(status);
 }
 
+/* 1: the peer closed already, and its report is taken back; the channel may be a new one by now. */
+static int isOver(XBeeATEndpoint *self, int channel) {
+    U32 i;
+    for (i = 0; i < self->count; ++i) {
+        Ice_Event *event = &self->events[(self->head + i) % EVENTS];
+        if (event->kind == ICE_EVENT_CLOSED && event->connection == channel) {
+            event->kind = ICE_EVENT_NONE;
+            return 1;
+        }
+    }
+    return 0;
+}
+
 static void closeChannel(void *context, int connection) {
     XBeeATEndpoint *self = context;
     self->port->lock(self->context);
-    (void)Link_closeChannel(self->link, connection, self->port->nowUs(self->context));
-    if (connection == XBEE_OWN_CHANNEL)
-        self->ownOpen = 0;
+    if (!isOver(self, connection)) {
+        (void)Link_closeChannel(self->link, connection, self->port->nowUs(self->context));
+        if (connection == XBEE_OWN_CHANNEL)
+            self->ownOpen = 0;
+    }
     self->port->unlock(self->context);
     self->port->kick(self->context);
 }

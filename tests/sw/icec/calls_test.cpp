@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: MIT
+//
+// calls_test: calls between two communicators: servants, facets, one-way, batches, later answers,
+// calls in flight, calls from within operations, time-outs, connections.
+
+#include "pair.h"
+
+namespace {
+
+class Calls : public Pair {};
+
+TEST_F(Calls, ResultsComeBack) {
+    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+        Ice_OutputStream_writeInt(os, 2 * Ice_InputStream_readInt(is));
+        return ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    for (int i = 0; i < 1000; ++i) {
+        Ice_Int out = 0;
+        ASSERT_EQ(call(prx, "double", i, &out), ICE_OK);
+        ASSERT_EQ(out, 2 * i);
+    }
+    EXPECT_EQ(servant_.calls, 1000);
+}
+
+TEST_F(Calls, EveryObjectAnswersThePingAndItsTypes) {
+    Ice_ObjectPrx prx = here().proxy("thing:loop"), other;
+    Ice_Bool is = 0;
+    Ice_String id;
+    EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OK);
+    EXPECT_EQ(Ice_ObjectPrx_ice_isA(&prx, "::Test::Thing", &is), ICE_OK);
+    EXPECT_TRUE(is);
+    EXPECT_EQ(Ice_ObjectPrx_ice_isA(&prx, "::Test::Thin", &is), ICE_OK);
+    EXPECT_FALSE(is);
+    ASSERT_EQ(Ice_ObjectPrx_ice_id(&prx, &id), ICE_OK);
+    EXPECT_EQ(str(id), "::Test::Thing");
+    EXPECT_EQ(Ice_ObjectPrx_checkedCast(&other, &prx, "::Test::Thing"), ICE_OK);
+    EXPECT_FALSE(Ice_ObjectPrx_isNull(&other));
+    EXPECT_EQ(Ice_ObjectPrx_checkedCast(&other, &prx, "::Test::Else"), ICE_OK);
+    EXPECT_TRUE(Ice_ObjectPrx_isNull(&other));
+    EXPECT_EQ(servant_.calls, 0);
+}
+
+TEST_F(Calls, WhatDoesNotExistIsSaidWithItsName) {
+    Ice_ObjectPrx nobody = here().proxy("cat/nobody -f side:loop");
+    Ice_Failure failure;
+    EXPECT_EQ(call(nobody, "op"), ICE_OBJECT_NOT_EXIST);
+    Ice_ObjectPrx_failure(&nobody, &failure);
+    EXPECT_EQ(str(failure.identity.name), "nobody");
+    EXPECT_EQ(str(failure.identity.category), "cat");
+    EXPECT_EQ(str(failure.facet), "side");
+    EXPECT_EQ(str(failure.operation), "op");
+    Ice_ObjectPrx facet = here().proxy("thing -f side:loop");
+    EXPECT_EQ(call(facet, "op"), ICE_FACET_NOT_EXIST);
+    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        return ICE_OPERATION_NOT_EXIST;
+    };
+    Ice_ObjectPrx thing = here().proxy("thing:loop");
+    EXPECT_EQ(call(thing, "none"), ICE_OPERATION_NOT_EXIST);
+}
+
+TEST_F(Calls, FailuresOfServantsKeepTheirKind) {
+    const Ice_Status given[] = {ICE_UNKNOWN_EXCEPTION, ICE_LIMIT, ICE_TIMEOUT, ICE_MARSHAL,
+                                ICE_PROTOCOL, ICE_UNKNOWN_USER_EXCEPTION, ICE_USER_EXCEPTION};
+    const Ice_Status seen[] = {ICE_UNKNOWN_EXCEPTION, ICE_UNKNOWN_EXCEPTION, ICE_UNKNOWN_EXCEPTION,
+                               ICE_UNKNOWN_LOCAL_EXCEPTION, ICE_UNKNOWN_LOCAL_EXCEPTION,
+                               ICE_UNKNOWN_USER_EXCEPTION, ICE_USER_EXCEPTION};
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    for (size_t i = 0; i < 7; ++i) {
+        servant_.run = [&](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+            return given[i];
+        };
+        EXPECT_EQ(call(prx, "op"), seen[i]) << i;
+    }
+    Ice_Failure failure;
+    servant_.run = [&](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        return ICE_LIMIT;
+    };
+    EXPECT_EQ(call(prx, "op"), ICE_UNKNOWN_EXCEPTION);
+    Ice_ObjectPrx_failure(&prx, &failure);
+    EXPECT_EQ(str(failure.unknown), Ice_Status_text(ICE_LIMIT));
+}
+
+TEST_F(Calls, CategoriesFacetsAndDefaultServantsAreFoundInIcesOrder) {
+    Servant category, facet, any;
+    auto& adapter = there().adapter;
+    EXPECT_EQ(Ice_ObjectAdapter_addDefaultServant(&adapter, &category.base, "cat"), ICE_OK);
+    EXPECT_EQ(Ice_ObjectAdapter_addFacet(&adapter, &facet.base, "thing", "side"), ICE_OK);
+    EXPECT_EQ(Ice_ObjectAdapter_add(&adapter, &facet.base, "thing"), ICE_LIMIT) << "taken";
+    auto to = [&](const char* string) {
+        Ice_ObjectPrx prx = here().proxy(string);
+        return call(prx, "op");
+    };
+    EXPECT_EQ(to("cat/whoever:loop"), ICE_OK);
+    EXPECT_EQ(category.calls, 1);
+    EXPECT_EQ(to("thing -f side:loop"), ICE_OK);
+    EXPECT_EQ(facet.calls, 1);
+    EXPECT_EQ(to("thing -f none:loop"), ICE_FACET_NOT_EXIST);
+    EXPECT_EQ(to("other:loop"), ICE_OBJECT_NOT_EXIST);
+    EXPECT_EQ(Ice_ObjectAdapter_addDefaultServant(&adapter, &any.base, ""), ICE_OK);
+    EXPECT_EQ(to("other:loop"), ICE_OK);
+    EXPECT_EQ(to("cat/whoever:loop"), ICE_OK);
+    EXPECT_EQ(any.calls, 1);
+    EXPECT_EQ(category.calls, 2);
+    EXPECT_EQ(Ice_ObjectAdapter_removeDefaultServant(&adapter, ""), ICE_OK);
+    EXPECT_EQ(Ice_ObjectAdapter_removeFacet(&adapter, "thing", "side"), ICE_OK);
+    EXPECT_EQ(Ice_ObjectAdapter_removeFacet(&adapter, "thing", "side"), ICE_OBJECT_NOT_EXIST);
+    EXPECT_EQ(to("thing -f side:loop"), ICE_FACET_NOT_EXIST);
+    EXPECT_EQ(Ice_ObjectAdapter_find(&adapter, "thing"), &servant_.base);
+    EXPECT_EQ(Ice_ObjectAdapter_remove(&adapter, "thing"), ICE_OK);
+    EXPECT_EQ(Ice_ObjectAdapter_find(&adapter, "thing"), nullptr);
+    EXPECT_EQ(to("thing:loop"), ICE_OBJECT_NOT_EXIST);
+}
+
+TEST_F(Calls, AnAdapterIsFullAtItsLimitAndDeafUntilActive) {
+    int added = 1;
+    static std::vector<std::string> names;
+    for (int i = 0; i < ICE_SERVANTS; ++i)
+        names.push_back("n" + std::to_string(i));
+    while (Ice_ObjectAdapter_add(&there().adapter, &servant_.base,
+                                 names[static_cast<size_t>(added - 1)].c_str()) == ICE_OK)
+        ++added;
+    EXPECT_EQ(added, ICE_SERVANTS);
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    Ice_ObjectAdapter_deactivate(&there().adapter);
+    EXPECT_EQ(call(prx, "op"), ICE_OBJECT_NOT_EXIST);
+    Ice_ObjectAdapter_activate(&there().adapter);
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    Ice_ObjectAdapter_destroy(&there().adapter);
+    EXPECT_EQ(call(prx, "op"), ICE_OBJECT_NOT_EXIST);
+}
+
+TEST_F(Calls, OnewayCallsReturnAtOnceAndRefuseResults) {
+    Ice_ObjectPrx prx = here().proxy("thing -o:loop");
+    Ice_Int out;
+    EXPECT_EQ(call(prx, "op", 0, &out), ICE_TWOWAY_ONLY);
+    for (int i = 0; i < 10; ++i)
+        EXPECT_EQ(call(prx, "op"), ICE_OK);
+    settle();
+    EXPECT_EQ(servant_.calls, 10);
+}
+
+TEST_F(Calls, ABatchIsOneMessageAndIsSentWhenFullOrFlushed) {
+    std::vector<int> got;
+    int messages = 0;
+    here().loop.tapContext = &messages;
+    here().loop.tap = [](void* context, int, const Ice_Byte* message, Ice_Int) {
+        *static_cast<int*>(context) += message[8] == 1; // a batch
+    };
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr) {
+        EXPECT_EQ(current.requestId, 0);
+        got.push_back(Ice_InputStream_readInt(is));
+        return ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    Ice_Batch batch;
+    Ice_Byte data[200];
+    Ice_ObjectPrx_ice_batchOneway(&prx, &batch, data, sizeof data);
+    EXPECT_EQ(Ice_ObjectPrx_ice_flushBatchRequests(&prx), ICE_OK) << "nothing to send";
+    for (int i = 0; i < 5; ++i)
+        EXPECT_EQ(call(prx, "op", i), ICE_OK);
+    settle();
+    EXPECT_TRUE(got.empty());
+    EXPECT_EQ(Ice_ObjectPrx_ice_flushBatchRequests(&prx), ICE_OK);
+    settle();
+    EXPECT_EQ(got, std::vector<int>({0, 1, 2, 3, 4}));
+    EXPECT_EQ(messages, 1);
+    for (int i = 0; i < 20; ++i) // more than fits
+        EXPECT_EQ(call(prx, "op", i), ICE_OK);
+    EXPECT_EQ(Ice_ObjectPrx_ice_flushBatchRequests(&prx), ICE_OK);
+    settle();
+    EXPECT_EQ(got.size(), 25u);
+    EXPECT_GT(messages, 2);
+    Ice_Int out;
+    EXPECT_EQ(call(prx, "op", 0, &out), ICE_TWOWAY_ONLY);
+}
+
+TEST_F(Calls, ContextsArrive) {
+    std::string seen;
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        Ice_String value;
+        seen = Ice_Current_context(&current, "who", &value) ? str(value) : "-";
+        EXPECT_FALSE(Ice_Current_context(&current, "else", &value));
+        return ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    const Ice_ContextEntry context[] = {{"a", "b"}, {"who", "me"}, {nullptr, nullptr}};
+    Ice_ObjectPrx_ice_context(&prx, context);
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    EXPECT_EQ(seen, "me");
+    Ice_ObjectPrx_ice_context(&prx, nullptr);
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    EXPECT_EQ(seen, "-");
+}
+
+TEST_F(Calls, AServantMayAnswerLaterAndOthersAreServedMeanwhile) {
+    Ice_Reply later{};
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+        if (str(current.operation) == "slow") {
+            Ice_Current_later(&current, &later);
+            return ICE_LATER;
+        }
+        Ice_OutputStream_writeInt(os, Ice_InputStream_readInt(is));
+        return ICE_OK;
+    };
+    struct Answer {
+        Ice_Status status = ICE_LATER;
+        Ice_Int value = 0;
+        static void take(void* cookie, Ice_Status status, Ice_InputStreamPtr is) {
+            auto* self = static_cast<Answer*>(cookie);
+            self->status = status;
+            if (status == ICE_OK)
+                self->value = Ice_InputStream_readInt(is);
+        }
+    } slow;
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    ASSERT_NE(Ice_ObjectPrx_begin(&prx, "slow", ICE_RESULTS), nullptr);
+    ASSERT_EQ(Ice_ObjectPrx_invokeAsync(&prx, &Answer::take, &slow), ICE_OK);
+    Ice_Int out = 0;
+    EXPECT_EQ(call(prx, "quick", 5, &out), ICE_OK);
+    EXPECT_EQ(out, 5);
+    EXPECT_EQ(slow.status, ICE_LATER);
+    Ice_OutputStreamPtr os = Ice_Reply_begin(&later);
+    Ice_OutputStream_writeInt(os, 42);
+    EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_OK);
+    settle();
+    EXPECT_EQ(slow.status, ICE_OK);
+    EXPECT_EQ(slow.value, 42);
+}
+
+TEST_F(Calls, AnAnswerForALostConnectionIsRefused) {
+    Ice_Reply later{};
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        Ice_Current_later(&current, &later);
+        return ICE_LATER;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    prx.timeoutMs = 5;
+    EXPECT_EQ(call(prx, "slow"), ICE_TIMEOUT);
+    Ice_Connection_close(&here().ic, prx.connection);
+    settle();
+    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        return ICE_OK;
+    };
+    EXPECT_EQ(call(prx, "again"), ICE_OK) << "a new connection of the same number";
+    (void)Ice_Reply_begin(&later);
+    EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_CONNECTION_LOST);
+}
+
+TEST_F(Calls, SeveralCallsAreInFlightUpToTheLimit) {
+    std::vector<Ice_Reply> later;
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        later.emplace_back();
+        Ice_Current_later(&current, &later.back());
+        return ICE_LATER;
+    };
+    std::vector<Ice_Status> answers;
+    auto take = [](void* cookie, Ice_Status status, Ice_InputStreamPtr) {
+        static_cast<std::vector<Ice_Status>*>(cookie)->push_back(status);
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    for (int i = 0; i < ICE_CALLS; ++i) {
+        ASSERT_NE(Ice_ObjectPrx_begin(&prx, "op", 0), nullptr);
+        ASSERT_EQ(Ice_ObjectPrx_invokeAsync(&prx, take, &answers), ICE_OK);
+    }
+    EXPECT_EQ(Ice_ObjectPrx_begin(&prx, "op", 0), nullptr);
+    EXPECT_EQ(prx.status, ICE_LIMIT);
+    settle();
+    ASSERT_EQ(later.size(), static_cast<size_t>(ICE_CALLS));
+    for (size_t i = later.size(); i-- > 0;) { // in the reverse order
+        (void)Ice_Reply_begin(&later[i]);
+        EXPECT_EQ(Ice_Reply_end(&later[i], ICE_OK), ICE_OK);
+    }
+    settle();
+    EXPECT_EQ(answers, std::vector<Ice_Status>(ICE_CALLS, ICE_OK));
+}
+
+TEST_F(Calls, AnOperationMayCallBackBeforeItAnswers) {
+    Servant back;
+    ASSERT_EQ(Ice_ObjectAdapter_add(&here().adapter, &back.base, "back"), ICE_OK);
+    back.run = [](const Ice_Current&, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+        Ice_OutputStream_writeInt(os, Ice_InputStream_readInt(is) + 1);
+        return ICE_OK;
+    };
+    servant_.run = [&](const Ice_Current&, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+        Ice_Int v = Ice_InputStream_readInt(is);
+        Ice_ObjectPrx prx = there().proxy("back:loop");
+        EXPECT_EQ(call(prx, "next", v, &v), ICE_OK);
+        EXPECT_EQ(call(prx, "next", v, &v), ICE_OK);
+        Ice_OutputStream_writeInt(os, v);
+        return ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    for (int i = 0; i < 100; ++i) {
+        Ice_Int out = 0;
+        ASSERT_EQ(call(prx, "op", i, &out), ICE_OK);
+        ASSERT_EQ(out, i + 2);
+    }
+}
+
+TEST_F(Calls, TheCallersConnectionCarriesCallsBack) {
+    Servant back;
+    ASSERT_EQ(Ice_ObjectAdapter_add(&here().adapter, &back.base, "back"), ICE_OK);
+    Ice_ObjectPrx fixed{};
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        EXPECT_EQ(Ice_Connection_createProxy(&there().ic, current.connection, "back", &fixed), ICE_OK);
+        return ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    ASSERT_EQ(call(prx, "op"), ICE_OK);
+    EXPECT_EQ(call(fixed, "op"), ICE_OK);
+    EXPECT_EQ(back.calls, 1);
+    EXPECT_EQ(fixed.connection, prx.connection);
+    Ice_Byte bytes[100];
+    Ice_OutputStream os;
+    Ice_OutputStream_init(&os, bytes, sizeof bytes);
+    Ice_OutputStream_writePrx(&os, &fixed);
+    EXPECT_TRUE(os.failed) << "a fixed proxy means nothing to others";
+    Ice_Connection_close(&here().ic, prx.connection);
+    settle();
+    EXPECT_EQ(call(fixed, "op"), ICE_CONNECTION_LOST);
+}
+
+TEST_F(Calls, TimeOutsAreKeptAndLateRepliesPassedOver) {
+    Ice_Reply later{};
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        Ice_Current_later(&current, &later);
+        return ICE_LATER;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    Ice_ObjectPrx_ice_invocationTimeout(&prx, 250);
+    U32 begin = *here().loop.nowMs;
+    EXPECT_EQ(call(prx, "op"), ICE_TIMEOUT);
+    EXPECT_EQ(*here().loop.nowMs - begin, 250u);
+    Ice_Status status = ICE_OK;
+    ASSERT_NE(Ice_ObjectPrx_begin(&prx, "op", 0), nullptr);
+    ASSERT_EQ(Ice_ObjectPrx_invokeAsync(
+                  &prx,
+                  [](void* cookie, Ice_Status s, Ice_InputStreamPtr) {
+                      *static_cast<Ice_Status*>(cookie) = s;
+                  },
+                  &status),
+              ICE_OK);
+    (void)Ice_Communicator_poll(&here().ic, 249);
+    EXPECT_EQ(status, ICE_OK);
+    (void)Ice_Communicator_poll(&here().ic, 249);
+    (void)Ice_Communicator_poll(&here().ic, 0);
+    EXPECT_EQ(status, ICE_TIMEOUT);
+    (void)Ice_Reply_begin(&later);
+    EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_OK);
+    settle();
+    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        return ICE_OK;
+    };
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+}
+
+TEST_F(Calls, WhoWaitsForALongOperationGetsSignsOfLife) {
+    int beats = 0;
+    there().loop.tapContext = &beats;
+    there().loop.tap = [](void* context, int, const Ice_Byte* message, Ice_Int) {
+        *static_cast<int*>(context) += message[8] == 3; // ValidateConnection
+    };
+    Ice_Reply later{};
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        Ice_Current_later(&current, &later);
+        return ICE_LATER;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    prx.timeoutMs = 5 * ICE_HEARTBEAT_MS + 100;
+    EXPECT_EQ(call(prx, "op"), ICE_TIMEOUT);
+    EXPECT_EQ(beats, 1 + 5); // the first opened the connection
+    (void)Ice_Reply_begin(&later);
+    EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_OK);
+    beats = 0;
+    (void)Ice_Communicator_poll(&there().ic, 3 * ICE_HEARTBEAT_MS);
+    EXPECT_EQ(beats, 0);
+}
+
+TEST_F(Calls, LargeRepliesNeedTheProxysOwnBuffer) {
+    servant_.run = [&](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr os) {
+        static Ice_Byte many[8000];
+        Ice_OutputStream_writeBlob(os, many, sizeof many);
+        return ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    Ice_Int out;
+    EXPECT_EQ(call(prx, "op", 0, &out), ICE_MARSHAL);
+    alignas(8) static U32 buffer[2048];
+    Ice_ObjectPrx_setReplyBuffer(&prx, buffer, sizeof buffer);
+    EXPECT_EQ(call(prx, "op", 0, &out), ICE_OK);
+}
+
+TEST_F(Calls, DestroyClosesInGoodOrder) {
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    ASSERT_EQ(call(prx, "op"), ICE_OK);
+    U32 begin = *here().loop.nowMs;
+    Ice_Communicator_destroy(&here().ic, 1000);
+    EXPECT_LT(*here().loop.nowMs - begin, 1000u) << "the peer closed";
+    EXPECT_FALSE(there().loop.open[0]);
+}
+
+TEST_F(Calls, AGracefulCloseSaysThatNothingWasExecuted) {
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        Ice_Connection_close(&there().ic, current.connection);
+        return ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    EXPECT_EQ(call(prx, "op"), ICE_CONNECTION_CLOSED);
+    servant_.run = [&](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        return ICE_OK;
+    };
+    EXPECT_EQ(call(prx, "op"), ICE_OK) << "a new connection";
+}
+
+TEST_F(Calls, PropertiesMakeAdaptersAndProxies) {
+    static const char* const table[] = {"Side.Endpoints=loop", "Thing.Proxy=thing:loop -c 1",
+                                        "Number=-17",          "Wrong=12x",
+                                        "Number=4",            nullptr};
+    Ice_ObjectAdapter side;
+    Ice_ObjectPrx prx;
+    Ice_Communicator_setProperties(&here().ic, table);
+    EXPECT_STREQ(Ice_Communicator_getProperty(&here().ic, "Side.Endpoints"), "loop");
+    EXPECT_EQ(Ice_Communicator_getProperty(&here().ic, "Side"), nullptr);
+    EXPECT_EQ(Ice_Communicator_getPropertyAsInt(&here().ic, "Number", 1), -17);
+    EXPECT_EQ(Ice_Communicator_getPropertyAsInt(&here().ic, "Wrong", 1), 1);
+    EXPECT_EQ(Ice_Communicator_getPropertyAsInt(&here().ic, "None", 7), 7);
+    EXPECT_EQ(Ice_Communicator_createObjectAdapter(&here().ic, "Side", &side), ICE_OK);
+    EXPECT_EQ(Ice_Communicator_propertyToProxy(&here().ic, "None", &prx), ICE_PARSE);
+    ASSERT_EQ(Ice_Communicator_propertyToProxy(&here().ic, "Thing.Proxy", &prx), ICE_OK);
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    EXPECT_EQ(prx.connection, 2);
+}
+
+} // namespace

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+//
+// pair: two communicators joined by the loop-back transport, and a servant that the tests steer.
+
+#pragma once
+
+#include <cstring>
+#include <functional>
+#include <gtest/gtest.h>
+#include <memory>
+#include <string>
+#include <vector>
+
+extern "C" {
+#include "icec.h"
+#include "loop_endpoint.h"
+}
+
+inline Ice_String text(const char* s) { return Ice_String_from(s); }
+inline std::string str(Ice_String s) { return std::string(s.data, static_cast<size_t>(s.size)); }
+
+// A servant whose every operation is `run`.
+struct Servant {
+    Ice_Object base; // first: IceC calls with its address
+    std::function<Ice_Status(const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr)> run;
+    int calls = 0;
+
+    Servant() {
+        static const char* const ids[] = {"::Ice::Object", "::Test::Thing", nullptr};
+        base.dispatch = &Servant::dispatch;
+        base.ids = ids;
+        base.id = ids[1];
+        run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) { return ICE_OK; };
+    }
+    static Ice_Status dispatch(Ice_ObjectPtr self, const Ice_Current* current, Ice_InputStreamPtr is,
+                               Ice_OutputStreamPtr os) {
+        auto* servant = reinterpret_cast<Servant*>(self);
+        ++servant->calls;
+        return servant->run(*current, is, os);
+    }
+};
+
+struct Side {
+    Ice_Communicator ic;
+    LoopEndpoint loop;
+    Ice_ObjectAdapter adapter;
+
+    Side() {
+        Ice_initialize(&ic);
+        LoopEndpoint_init(&ic, &loop);
+        EXPECT_EQ(Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "A", "loop", &adapter),
+                  ICE_OK);
+        Ice_ObjectAdapter_activate(&adapter);
+    }
+    Ice_ObjectPrx proxy(const char* string) {
+        Ice_ObjectPrx prx;
+        EXPECT_EQ(Ice_Communicator_stringToProxy(&ic, string, &prx), ICE_OK) << string;
+        return prx;
+    }
+};
+
+// A call of one int parameter and one int result.
+inline Ice_Status call(Ice_ObjectPrx& prx, const char* operation, Ice_Int in = 0,
+                       Ice_Int* out = nullptr, Ice_Byte mode = 0) {
+    Ice_InputStreamPtr is = nullptr;
+    Ice_OutputStreamPtr os =
+        Ice_ObjectPrx_begin(&prx, operation, static_cast<Ice_Byte>(mode | (out ? ICE_RESULTS : 0)));
+    if (!os)
+        return static_cast<Ice_Status>(prx.status);
+    Ice_OutputStream_writeInt(os, in);
+    Ice_Status status = Ice_ObjectPrx_invoke(&prx, &is);
+    if (status == ICE_OK && out)
+        *out = Ice_InputStream_readInt(is);
+    return Ice_ObjectPrx_end(&prx, status);
+}
+
+class Pair : public ::testing::Test {
+protected:
+    Pair() : here_(std::make_unique<Side>()), there_(std::make_unique<Side>()) {
+        LoopEndpoint_join(&here_->loop, &there_->loop);
+        add("thing");
+    }
+    void add(const char* identity) {
+        EXPECT_EQ(Ice_ObjectAdapter_add(&there_->adapter, &servant_.base, identity), ICE_OK);
+    }
+    Side& here() { return *here_; }
+    Side& there() { return *there_; }
+    // Lets the other side handle what it was sent.
+    void settle() {
+        while (Ice_Communicator_poll(&there_->ic, 0) == ICE_OK ||
+               Ice_Communicator_poll(&here_->ic, 0) == ICE_OK)
+            ;
+    }
+    Servant servant_;
+
+private:
+    std::unique_ptr<Side> here_, there_;
+};

@@ -47,7 +47,7 @@ run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground st
 	    $(if $(UCOS2),--firmware "$(BUILD)/firmware/uav_ucos2.elf")
 
 # What the sanitized build covers: the firmware's layers and their peers.
-SANITIZED := test_os test_link icec_server icec_client ice_cpp_client
+SANITIZED := test_os test_link test_icec icec_server icec_client ice_cpp_client
 test: build ## run all tests; firmware, models and IceC once more with sanitizers
 	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error \
 	    $(if $(LABEL),-L '$(LABEL)') $(if $(NAME),-R '$(NAME)')
@@ -56,7 +56,7 @@ ifeq ($(LABEL)$(NAME),)
 	    -DROOMS="bus;slice;sw;hdl;ip;testbench;tests" >/dev/null
 	@ninja -C build/sanitized -j $(JOBS) $(SANITIZED)
 	@SEED=$(SEED) ctest --test-dir build/sanitized -j $(JOBS) --output-on-failure --no-tests=error \
-	    -R '^(test_os|test_link|interop)'
+	    -R '^(test_os|test_link|test_icec|interop)'
 endif
 
 mutants: $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect its test to fail (BLOCK=bus for one block)

@@ -40,6 +40,7 @@ libnewlib-arm-none-eabi C library for it
 '
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in
 1[3-9]) packages="$packages
+libclang-rt-19-dev run time of the fuzzers
 ghdl-mcode simulates and converts VHDL" ;;
 esac
 

@@ -36,7 +36,7 @@ void Ice_failCalls(Ice_CommunicatorPtr ic, int connection, Ice_Status status) {
     Ice_InputStream none;
     int c;
     if (ICEC_ASYNC)
-        Ice_InputStream_init(&none, 0, 0);
+        Ice_InputStream_init(&none, Ice_head, 0);
     for (c = 0; c < ICE_CALLS; ++c)
         if (ic->calls[c].state == ICE_WAITING && ic->calls[c].connection == connection)
             finish(ic, &ic->calls[c], ic->calls[c].id, status, &none);
@@ -46,7 +46,7 @@ void Ice_failCalls(Ice_CommunicatorPtr ic, int connection, Ice_Status status) {
 Ice_Int Ice_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
     Ice_InputStream none;
     int c;
-    Ice_InputStream_init(&none, 0, 0);
+    Ice_InputStream_init(&none, Ice_head, 0);
     for (c = 0; c < ICE_CALLS; ++c) {
         Ice_Call *call = &ic->calls[c];
         Ice_Int left;

@@ -195,7 +195,7 @@ Ice_Status Ice_dispatchRequest(Ice_CommunicatorPtr ic, int connection, Ice_Input
 Ice_Status Ice_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is) {
     Ice_Int count = Ice_InputStream_readInt(is);
     Ice_Status status = is->failed || count < 0 ? ICE_CONNECTION_LOST : ICE_OK;
-    while (count-- > 0 && status == ICE_OK)
+    for (; count > 0 && status == ICE_OK; --count)
         status = dispatch(ic, connection, is, 0);
     return status;
 }

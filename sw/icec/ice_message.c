@@ -36,11 +36,11 @@ void Ice_endEncapsulation(Ice_OutputStreamPtr os, Ice_Int begin) {
 }
 
 Ice_Status Ice_enterEncapsulation(Ice_InputStreamPtr is) {
-    Ice_Int size = Ice_InputStream_readInt(is) - 6;
+    U32 size = (U32)Ice_InputStream_readInt(is) - 6U;
     U32 version = (U16)Ice_InputStream_readShort(is); /* major, minor */
-    if ((U32)size > (U32)(is->size - is->position))
+    if (size > (U32)(is->size - is->position))
         return ICE_MARSHAL;
-    is->size = is->position + size;
+    is->size = is->position + (Ice_Int)size;
     is->minor = (Ice_Byte)(version >> 8);
     return (version & 0xFEFFU) == 1U ? ICE_OK : ICE_PROTOCOL;
 }

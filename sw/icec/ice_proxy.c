@@ -16,7 +16,7 @@ void Ice_ObjectPrx_init(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic) {
     prx->communicator = ic;
     prx->timeoutMs = DEFAULT_TIMEOUT_MS;
     prx->minor = 1;
-    prx->endpointsSize = 1; /* none of them */
+    prx->endpointsSize = 2; /* no endpoints, no adapter's id */
     prx->call = prx->connection = -1;
 }
 
@@ -51,7 +51,7 @@ Ice_Status Ice_ObjectPrx_addEndpoint(Ice_ObjectPrxPtr prx, const char *options) 
     Ice_CommunicatorPtr ic = prx->communicator;
     Ice_OutputStream os;
     Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
-    os.size = prx->endpointsSize;
+    os.size = prx->endpoints[0] ? prx->endpointsSize : 1;
     ic->endpoint->encode(ic->endpointContext, options, &os);
     prx->endpointsSize = (Ice_Byte)os.size;
     ++prx->endpoints[0];
@@ -95,8 +95,6 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx *prx)
         Ice_OutputStream_writeShort(os, (Ice_Short)(1 | prx->minor << 8));
     }
     Ice_OutputStream_writeBlob(os, prx->endpoints, prx->endpointsSize);
-    if (ICEC_DETAILS && prx->endpointsSize == 1)
-        Ice_OutputStream_writeByte(os, 0); /* no adapter's id either */
 }
 
 /* Keeps bytes of the message behind those kept so far. 0: no room. */
@@ -121,11 +119,12 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
     if (is->failed || Ice_ObjectPrx_setIdentity(prx, &name, &category, &facet) != ICE_OK)
         is->failed = 1;
     prx->mode = Ice_InputStream_readByte(is);
-    prx->secure = Ice_InputStream_readByte(is);
+    prx->secure = Ice_InputStream_readBool(is);
     if (is->minor != 0) {
         const Ice_Byte *versions = Ice_InputStream_readBlob(is, 4);
         prx->minor = versions && versions[3] != 0; /* of a later encoding 1.1 is understood there */
     }
+    prx->endpointsSize = 1;
     begin = is->position + 1;
     n = Ice_InputStream_readSequence(is, 8);
     if (n == 0) {

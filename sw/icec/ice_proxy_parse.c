@@ -19,16 +19,17 @@ static Ice_Status parseShort(const char *text, Ice_ObjectPrxPtr prx) {
     return text ? Ice_ObjectPrx_addEndpoint(prx, text) : ICE_NO_ENDPOINT;
 }
 
+#define SPACES " \t\n\r"
+
 /* The next word, without its quotes; ends at a space, a colon or an at sign. Escapes stay as they
  * are. */
 static const char *word(const char *text, Ice_String *found) {
     char quote = 0;
-    while (*text == ' ')
-        ++text;
+    text += strspn(text, SPACES);
     if (*text == '"' || *text == '\'')
         quote = *text++;
     found->data = text;
-    while (*text && (quote ? *text != quote : strchr(" :@", *text) == 0))
+    while (*text && (quote ? *text != quote : strchr(SPACES ":@", *text) == 0))
         text += text[0] == '\\' && text[1] ? 2 : 1;
     found->size = (Ice_Int)(text - found->data);
     if (quote && *text++ != quote)
@@ -117,15 +118,23 @@ static Ice_Status parseOpaque(const char *options, Ice_ObjectPrxPtr prx) {
     Ice_Int size, versionSize, begin;
     const char *value = Ice_findOption(options, 'v', &size);
     const char *version = Ice_findOption(options, 'e', &versionSize);
-    U32 type = Ice_numberOption(options, 't', 0x10000U);
+    U32 type = Ice_numberOption(options, 't', 0x10000U), major = 1, minor = 1;
     Ice_OutputStream os;
-    if (!value || type > 0x7FFFU)
+    if (version) {
+        major = Ice_numberOption(options, 'e', 0);
+        while (versionSize > 0 && *version != '.')
+            ++version, --versionSize;
+        for (minor = 0; --versionSize > 0;)
+            minor = minor * 10 + ((U32)(U8) * ++version - (U32)'0');
+    }
+    if (!value || type > 0xFFFFU || major > 255 || minor > 255)
         return ICE_PARSE;
     Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
-    os.size = prx->endpointsSize;
-    os.minor = !(version && versionSize == 3 && version[2] == '0');
+    os.size = prx->endpoints[0] ? prx->endpointsSize : 1;
     Ice_OutputStream_writeShort(&os, (Ice_Short)type);
-    begin = Ice_beginEncapsulation(&os);
+    begin = os.size;
+    Ice_OutputStream_writeInt(&os, 0);
+    Ice_OutputStream_writeShort(&os, (Ice_Short)(major | minor << 8));
     decodeBase64(value, size, &os);
     Ice_endEncapsulation(&os, begin);
     if (os.failed)
@@ -182,8 +191,7 @@ static Ice_Status parse(const char *text, Ice_ObjectPrxPtr prx) {
         return ICE_PARSE;
     for (;;) {
         const char *mode;
-        while (*text == ' ')
-            ++text;
+        text += strspn(text, SPACES);
         if (*text != '-')
             break;
         text = word(text, &option);
@@ -220,7 +228,7 @@ Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char *pr
     Ice_ObjectPrx_init(prx, ic);
     if (!ICEC_DETAILS)
         return parseShort(proxy, prx);
-    if (proxy[strspn(proxy, " ")] == 0)
+    if (proxy[strspn(proxy, SPACES)] == 0)
         return ICE_OK; /* the null proxy */
     status = parse(proxy, prx);
     if (status != ICE_OK)

@@ -58,7 +58,11 @@ static void putOpaque(Ice_OutputStreamPtr os, const Ice_Byte *encoded, Ice_Int s
     Ice_Int i;
     put(os, "opaque -t ");
     putNumber(os, encoded[0] | (U32)encoded[1] << 8);
-    put(os, encoded[7] ? " -e 1.1 -v " : " -e 1.0 -v ");
+    put(os, " -e ");
+    putNumber(os, encoded[6]);
+    put(os, ".");
+    putNumber(os, encoded[7]);
+    put(os, " -v ");
     for (i = 8; i < size; i += 3) {
         U32 bits = (U32)encoded[i] << 16 | (i + 1 < size ? (U32)encoded[i + 1] << 8 : 0) |
                    (i + 2 < size ? (U32)encoded[i + 2] : 0);

@@ -122,7 +122,8 @@ Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
         size = Ice_InputStream_readInt(is);
         if (size < 4 || size > is->size - begin)
             is->failed = 1;
-        is->sliceEnd = begin + size;
+        else
+            is->sliceEnd = begin + size;
     }
     return is->failed ? none : id;
 }

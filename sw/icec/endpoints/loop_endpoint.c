@@ -50,14 +50,16 @@ static Ice_Status receive(void *context, Ice_Byte *buffer, Ice_Int timeoutMs, Ic
     return ICE_OK;
 }
 
-static Ice_Status sendMessage(void *context, int connection, const Ice_Byte *message, Ice_Int size) {
+static Ice_Status sendMessage(void *context, int connection, const Ice_Byte *message,
+                              Ice_Int size) {
     LoopEndpoint *self = context;
     if (!self->open[connection])
         return ICE_CONNECTION_LOST;
     if (self->tap)
         self->tap(self->tapContext, connection, message, size);
-    return self->peer ? LoopEndpoint_inject(self->peer, ICE_EVENT_MESSAGE, connection, message, size)
-                      : ICE_OK;
+    return self->peer
+               ? LoopEndpoint_inject(self->peer, ICE_EVENT_MESSAGE, connection, message, size)
+               : ICE_OK;
 }
 
 static Ice_Status connectTo(void *context, const Ice_Byte *encoded, Ice_Int size, int *connection) {
@@ -71,10 +73,12 @@ static Ice_Status connectTo(void *context, const Ice_Byte *encoded, Ice_Int size
     if (!self->peer && !self->silent)
         return ICE_CONNECTION_LOST;
     self->open[*connection] = 1;
-    return self->peer ? LoopEndpoint_inject(self->peer, ICE_EVENT_OPENED, *connection, 0, 0) : ICE_OK;
+    return self->peer ? LoopEndpoint_inject(self->peer, ICE_EVENT_OPENED, *connection, 0, 0)
+                      : ICE_OK;
 }
 
-/* 1: the peer closed already, and its report is taken back; the connection may be a new one by now. */
+/* 1: the peer closed already, and its report is taken back; the connection may be a new one by now.
+ */
 static int isOver(LoopEndpoint *self, int connection) {
     unsigned i;
     for (i = 0; i < self->count; ++i) {
@@ -110,7 +114,8 @@ static void encode(void *context, const char *options, Ice_OutputStreamPtr os) {
     Ice_OutputStream_writeByte(os, (Ice_Byte)Ice_numberOption(options, 'c', 0));
 }
 
-static Ice_Bool print(void *context, const Ice_Byte *encoded, Ice_Int size, Ice_OutputStreamPtr text) {
+static Ice_Bool print(void *context, const Ice_Byte *encoded, Ice_Int size,
+                      Ice_OutputStreamPtr text) {
     (void)context;
     if (size != 9 || encoded[0] != (LOOP_ENDPOINT_TYPE & 0xFF) ||
         encoded[1] != LOOP_ENDPOINT_TYPE >> 8)
@@ -129,8 +134,9 @@ static U32 nowMs(void *context) {
 }
 
 void LoopEndpoint_init(Ice_CommunicatorPtr ic, LoopEndpoint *self) {
-    static const Ice_Endpoint endpoint = {"loop",   receive, sendMessage, connectTo, closeConnection,
-                                          listenTo, encode,  wakeUp,      nowMs,     print};
+    static const Ice_Endpoint endpoint = {"loop",          receive,  sendMessage, connectTo,
+                                          closeConnection, listenTo, encode,      wakeUp,
+                                          nowMs,           print};
     memset(self, 0, sizeof *self);
     self->ic = ic;
     self->nowMs = &self->ownNowMs;

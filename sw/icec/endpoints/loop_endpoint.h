@@ -20,7 +20,7 @@ struct LoopEndpoint {
     LoopEndpoint *peer; /* 0: none */
     U32 *nowMs;         /* the clock that both ends share */
     U32 ownNowMs;
-    Ice_Byte first;  /* connections that this side makes: this number, and this + 2 */
+    Ice_Byte first; /* connections that this side makes: this number, and this + 2 */
     Ice_Byte open[ICE_CONNECTIONS];
     Ice_Byte silent; /* connections can be made, and nobody answers */
     int running;     /* in the peer's loop */

@@ -60,11 +60,13 @@ TEST_F(Calls, WhatDoesNotExistIsSaidWithItsName) {
 }
 
 TEST_F(Calls, FailuresOfServantsKeepTheirKind) {
-    const Ice_Status given[] = {ICE_UNKNOWN_EXCEPTION, ICE_LIMIT, ICE_TIMEOUT, ICE_MARSHAL,
-                                ICE_PROTOCOL, ICE_UNKNOWN_USER_EXCEPTION, ICE_USER_EXCEPTION};
-    const Ice_Status seen[] = {ICE_UNKNOWN_EXCEPTION, ICE_UNKNOWN_EXCEPTION, ICE_UNKNOWN_EXCEPTION,
-                               ICE_UNKNOWN_LOCAL_EXCEPTION, ICE_UNKNOWN_LOCAL_EXCEPTION,
-                               ICE_UNKNOWN_USER_EXCEPTION, ICE_USER_EXCEPTION};
+    const Ice_Status given[] = {ICE_UNKNOWN_EXCEPTION, ICE_LIMIT,    ICE_TIMEOUT,
+                                ICE_MARSHAL,           ICE_PROTOCOL, ICE_UNKNOWN_USER_EXCEPTION,
+                                ICE_USER_EXCEPTION};
+    const Ice_Status seen[] = {ICE_UNKNOWN_EXCEPTION,       ICE_UNKNOWN_EXCEPTION,
+                               ICE_UNKNOWN_EXCEPTION,       ICE_UNKNOWN_LOCAL_EXCEPTION,
+                               ICE_UNKNOWN_LOCAL_EXCEPTION, ICE_UNKNOWN_USER_EXCEPTION,
+                               ICE_USER_EXCEPTION};
     Ice_ObjectPrx prx = here().proxy("thing:loop");
     for (size_t i = 0; i < 7; ++i) {
         servant_.run = [&](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
@@ -303,7 +305,8 @@ TEST_F(Calls, TheCallersConnectionCarriesCallsBack) {
     ASSERT_EQ(Ice_ObjectAdapter_add(&here().adapter, &back.base, "back"), ICE_OK);
     Ice_ObjectPrx fixed{};
     servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-        EXPECT_EQ(Ice_Connection_createProxy(&there().ic, current.connection, "back", &fixed), ICE_OK);
+        EXPECT_EQ(Ice_Connection_createProxy(&there().ic, current.connection, "back", &fixed),
+                  ICE_OK);
         return ICE_OK;
     };
     Ice_ObjectPrx prx = here().proxy("thing:loop");
@@ -414,9 +417,12 @@ TEST_F(Calls, AGracefulCloseSaysThatNothingWasExecuted) {
 }
 
 TEST_F(Calls, PropertiesMakeAdaptersAndProxies) {
-    static const char* const table[] = {"Side.Endpoints=loop", "Thing.Proxy=thing:loop -c 1",
-                                        "Number=-17",          "Wrong=12x",
-                                        "Number=4",            nullptr};
+    static const char* const table[] = {"Side.Endpoints=loop",
+                                        "Thing.Proxy=thing:loop -c 1",
+                                        "Number=-17",
+                                        "Wrong=12x",
+                                        "Number=4",
+                                        nullptr};
     Ice_ObjectAdapter side;
     Ice_ObjectPrx prx;
     Ice_Communicator_setProperties(&here().ic, table);

@@ -20,10 +20,12 @@ int main(int argc, char** argv) {
         check(service != nullptr, "checkedCast");
         for (int i = 0; i < 1000; ++i)
             check(service->add(i, i) == 2 * i, "add");
-        Interop::Items items = {{"a", 1, Interop::Colour::green, 0.5}, {"b", 2, Interop::Colour::blue, -1}};
+        Interop::Items items = {{"a", 1, Interop::Colour::green, 0.5},
+                                {"b", 2, Interop::Colour::blue, -1}};
         std::string joined;
         Interop::Items back = service->reverse(items, joined);
-        check(joined == "ab" && back.size() == 2 && back[0].name == "b" && back[1].price == 0.5, "reverse");
+        check(joined == "ab" && back.size() == 2 && back[0].name == "b" && back[1].price == 0.5,
+              "reverse");
         Interop::Bytes bytes(8000, 7);
         check(service->echo(bytes) == bytes, "echo");
         service->ice_oneway()->notify("hello");

@@ -16,8 +16,12 @@ extern "C" {
 #include "loop_endpoint.h"
 }
 
-inline Ice_String text(const char* s) { return Ice_String_from(s); }
-inline std::string str(Ice_String s) { return std::string(s.data, static_cast<size_t>(s.size)); }
+inline Ice_String text(const char* s) {
+    return Ice_String_from(s);
+}
+inline std::string str(Ice_String s) {
+    return std::string(s.data, static_cast<size_t>(s.size));
+}
 
 // A servant whose every operation is `run`.
 struct Servant {
@@ -32,8 +36,8 @@ struct Servant {
         base.id = ids[1];
         run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) { return ICE_OK; };
     }
-    static Ice_Status dispatch(Ice_ObjectPtr self, const Ice_Current* current, Ice_InputStreamPtr is,
-                               Ice_OutputStreamPtr os) {
+    static Ice_Status dispatch(Ice_ObjectPtr self, const Ice_Current* current,
+                               Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
         auto* servant = reinterpret_cast<Servant*>(self);
         ++servant->calls;
         return servant->run(*current, is, os);

@@ -69,8 +69,9 @@ protected:
     }
     void inject(Ice_EventKind kind, const Bytes& m) {
         sent_.clear();
-        EXPECT_EQ(LoopEndpoint_inject(&side_->loop, kind, 1, m.data(), static_cast<Ice_Int>(m.size())),
-                  ICE_OK);
+        EXPECT_EQ(
+            LoopEndpoint_inject(&side_->loop, kind, 1, m.data(), static_cast<Ice_Int>(m.size())),
+            ICE_OK);
         (void)Ice_Communicator_poll(&side_->ic, 0);
     }
     bool isOpen() const { return side_->loop.open[1] != 0; }
@@ -124,17 +125,17 @@ TEST_F(Wire, CompressionThatIsOnlyOfferedDoesNotMatter) {
 TEST_F(Wire, MalformedMessagesCloseTheConnection) {
     Bytes good = request(1, requestBody("thing", "op", 1, {1, 2, 3, 4}));
     std::vector<Bytes> bad(12, good);
-    bad[0][0] = 'J';                 // magic
-    bad[1][4] = 2;                   // protocol 2.0
-    bad[2][8] = 5;                   // type
-    bad[3][10] = 13;                 // size
-    bad[4][10]++;                    // size that is not the message's
-    bad[5][18] = 200;                // name longer than the message
-    bad[6][24 + 1] = 2;              // two facets
-    bad[7][good.size() - 10]++;      // encapsulation longer than the message
-    bad[8][good.size() - 10] = 5;    // or too short for its own head
-    bad[9][good.size() - 7] = 0x80;  // or negative
-    bad[10].resize(13);              // less than a head
+    bad[0][0] = 'J';                // magic
+    bad[1][4] = 2;                  // protocol 2.0
+    bad[2][8] = 5;                  // type
+    bad[3][10] = 13;                // size
+    bad[4][10]++;                   // size that is not the message's
+    bad[5][18] = 200;               // name longer than the message
+    bad[6][24 + 1] = 2;             // two facets
+    bad[7][good.size() - 10]++;     // encapsulation longer than the message
+    bad[8][good.size() - 10] = 5;   // or too short for its own head
+    bad[9][good.size() - 7] = 0x80; // or negative
+    bad[10].resize(13);             // less than a head
     bad[11].resize(0);
     for (size_t i = 0; i < bad.size(); ++i) {
         EXPECT_TRUE(exchange(bad[i]).empty()) << i;
@@ -181,8 +182,10 @@ TEST_F(Wire, DamagedMessagesDoNoHarm) {
     };
     Bytes parameters;
     addString(parameters, "id");
-    parameters.insert(parameters.end(), {0, 0, 0, 0, 1, 0, 1, 1, 1, 9, 0, 8, 0, 0, 0, 1, 1, 65, 66});
-    parameters.insert(parameters.end(), {2, 1, 'a', 2, 'b', 'c', 0x0A, 1, 2, 3, 4, 0x2A, 5, 6, 7, 8});
+    parameters.insert(parameters.end(),
+                      {0, 0, 0, 0, 1, 0, 1, 1, 1, 9, 0, 8, 0, 0, 0, 1, 1, 65, 66});
+    parameters.insert(parameters.end(),
+                      {2, 1, 'a', 2, 'b', 'c', 0x0A, 1, 2, 3, 4, 0x2A, 5, 6, 7, 8});
     Bytes good = request(1, requestBody("thing", "op", 1, parameters));
     for (int i = 0; i < 20000; ++i) {
         Bytes bad = good;
@@ -195,10 +198,10 @@ TEST_F(Wire, DamagedMessagesDoNoHarm) {
 }
 
 TEST_F(Wire, ProxiesTravelWithEndpointsOfAnyKind) {
-    const Bytes wire = {2,   'i',  'd', 1,   'c', 1,   1,   'f', 1, 1, 1, 0, 1, 1, // -f f -o -s
+    const Bytes wire = {2,    'i',  'd', 1, 'c', 1, 1, 'f', 1,  1,  1, 0, 1, 1, // -f f -o -s
                         2,                                                      // two endpoints
-                        9,   0,    8,   0,   0,   0,   1,   1,   65, 66,        // of type 9
-                        0x50, 0x4C, 7,   0,   0,   0,   1,   1,   1};           // loop -c 1
+                        9,    0,    8,   0, 0,   0, 1, 1,   65, 66,             // of type 9
+                        0x50, 0x4C, 7,   0, 0,   0, 1, 1,   1};                 // loop -c 1
     Ice_InputStream is;
     Ice_InputStream_init(&is, wire.data(), static_cast<Ice_Int>(wire.size()));
     Ice_ObjectPrx prx;
@@ -265,8 +268,8 @@ TEST_F(Wire, StringsThatAreNoProxiesSaySo) {
 
 TEST(Stream, OptionalsOfEveryFormatAreSkipped) {
     // tag 1 of each format in turn, then tag 2 = 7 (a byte)
-    const std::vector<Bytes> values = {{1}, {1, 2}, {1, 2, 3, 4}, {1, 2, 3, 4, 5, 6, 7, 8}, {5},
-                                       {2, 1, 2}, {2, 0, 0, 0, 1, 2}, {0}};
+    const std::vector<Bytes> values = {{1}, {1, 2},    {1, 2, 3, 4},       {1, 2, 3, 4, 5, 6, 7, 8},
+                                       {5}, {2, 1, 2}, {2, 0, 0, 0, 1, 2}, {0}};
     for (size_t format = 0; format < values.size(); ++format) {
         Bytes wire = {static_cast<Ice_Byte>(1 << 3 | format)};
         wire.insert(wire.end(), values[format].begin(), values[format].end());

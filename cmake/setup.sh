@@ -24,6 +24,7 @@ libgmock-dev test framework
 nlohmann-json3-dev register descriptions, reports
 libfmt-dev text formatting
 libcli11-dev command lines
+libpugixml-dev reads JUnit results
 libstb-dev reads and writes pictures
 libmcpp-dev preprocessor of the Slice compiler
 libzeroc-ice-dev ZeroC Ice for C++

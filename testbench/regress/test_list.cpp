@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+
+#include "test_list.h"
+#include "shell.h"
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// FNV-1a: enough to see that a file changed.
+uint64_t hashFile(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    uint64_t hash = 0xcbf29ce484222325ull;
+    char block[65536];
+    while (in.read(block, sizeof block), in.gcount() > 0)
+        for (std::streamsize i = 0; i < in.gcount(); ++i)
+            hash = (hash ^ static_cast<unsigned char>(block[i])) * 0x100000001b3ull;
+    return hash;
+}
+
+uint64_t mix(uint64_t hash, uint64_t value) {
+    return (hash ^ value) * 0x100000001b3ull + (hash >> 29);
+}
+
+// Which folders a test that is no program of its own reads.
+std::vector<std::string> readsOf(const Test& test) {
+    if (test.place.find("formal") != std::string::npos || test.place.find("lint") != std::string::npos)
+        return {"bus", "hdl", "ip", "tests/" + test.place};
+    if (test.place.rfind("slice", 0) == 0)
+        return {"slice", "tests/slice"};
+    return {"bus", "hdl", "ip", "slice", "sw", "testbench", "tests/" + test.place};
+}
+
+} // namespace
+
+std::vector<Test> listTests(const std::string& build) {
+    Output out = run({"ctest", "--test-dir", build, "--show-only=json-v1"});
+    if (out.status != 0)
+        throw std::runtime_error("ctest cannot list the tests of " + build + ":\n" + out.text);
+    auto begin = out.text.find('{');
+    if (begin == std::string::npos)
+        throw std::runtime_error("ctest lists no tests in " + build + "; run `make build` first");
+    auto json = nlohmann::json::parse(out.text.substr(begin));
+    std::vector<Test> tests;
+    for (auto& entry : json.at("tests")) {
+        Test test;
+        test.number = static_cast<unsigned>(tests.size() + 1);
+        test.name = entry.at("name");
+        if (entry.contains("command"))
+            test.command = entry["command"].get<std::vector<std::string>>();
+        for (auto& property : entry.value("properties", nlohmann::json::array())) {
+            if (property.at("name") == "LABELS")
+                test.labels = property.at("value").get<std::vector<std::string>>();
+            if (property.at("name") == "WORKING_DIRECTORY") {
+                std::string folder = property.at("value");
+                auto at = folder.find("/tests/");
+                test.place = at == std::string::npos ? fs::path(folder).filename().string() : folder.substr(at + 7);
+            }
+        }
+        tests.push_back(std::move(test));
+    }
+    return tests;
+}
+
+std::set<std::string> blockWords(const Test& test) {
+    std::set<std::string> words;
+    std::string text = test.place + "/" + test.name.substr(0, test.name.find('.'));
+    if (test.name.rfind("formal.", 0) == 0 || test.name.rfind("lint.", 0) == 0 || test.name.rfind("wave.", 0) == 0)
+        text += "/" + test.name.substr(test.name.find('.') + 1);
+    std::string word;
+    for (char c : text + "/") {
+        if (std::isalnum(static_cast<unsigned char>(c))) {
+            word += c;
+        } else {
+            if (!word.empty())
+                words.insert(word);
+            word.clear();
+        }
+    }
+    return words;
+}
+
+void fingerprint(std::vector<Test>& tests, const std::string& source, const std::string& build) {
+    std::map<std::string, uint64_t> fileHash; // tracked files, by path from the root
+    Output files = run({"git", "-C", source, "ls-files", "-co", "--exclude-standard"});
+    std::istringstream lines(files.text);
+    for (std::string line; std::getline(lines, line);)
+        if (fs::is_regular_file(fs::path(source) / line))
+            fileHash[line] = hashFile(source + "/" + line);
+    std::map<std::string, uint64_t> programHash;
+    for (Test& test : tests) {
+        uint64_t hash = 0xcbf29ce484222325ull;
+        bool program = !test.command.empty() && test.command[0].find("/test_") != std::string::npos &&
+                       test.command[0].rfind(fs::absolute(build).string(), 0) == 0;
+        if (program) {
+            auto found = programHash.find(test.command[0]);
+            if (found == programHash.end())
+                found = programHash.emplace(test.command[0], hashFile(test.command[0])).first;
+            hash = mix(hash, found->second);
+        } else {
+            for (const std::string& folder : readsOf(test))
+                for (auto it = fileHash.lower_bound(folder + "/");
+                     it != fileHash.end() && it->first.rfind(folder + "/", 0) == 0; ++it)
+                    hash = mix(hash, it->second);
+        }
+        std::ostringstream hex;
+        hex << std::hex << hash;
+        test.print = hex.str();
+    }
+}

@@ -7,6 +7,7 @@
 #ifndef BENCH_H
 #define BENCH_H
 
+#include "observer.h"
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -18,7 +19,7 @@
 
 template <class Module> class Bench {
 public:
-    Bench() : context_(new VerilatedContext), top_(new Module(context_.get())) {}
+    Bench() : context_(new VerilatedContext), observer_(*context_), top_(new Module(context_.get())) {}
     ~Bench() { top_->final(); }
     Bench(const Bench&) = delete;
     Bench& operator=(const Bench&) = delete;
@@ -41,8 +42,10 @@ public:
         top_->eval();
         for (auto& model : models_)
             model.second();
+        observer_.step(*top_, cycles_, 0);
         top_->clk_i = 0;
         top_->eval();
+        observer_.step(*top_, cycles_, 1);
         ++cycles_;
     }
 
@@ -68,6 +71,7 @@ public:
 
 private:
     std::unique_ptr<VerilatedContext> context_;
+    Observer<Module> observer_;
     std::unique_ptr<Module> top_;
     std::vector<std::pair<std::function<void()>, std::function<void()>>> models_;
     uint64_t cycles_ = 0;

@@ -27,7 +27,7 @@ std::string reasonOf(const std::string& log) {
     unsigned wanted = 0;
     for (std::string line; std::getline(lines, line);) {
         line = strip(line);
-        if (line.empty())
+        if (line.empty() || line.rfind("at clock cycle", 0) == 0)
             continue;
         if (wanted > 0) {
             reason += (reason.empty() ? "" : " ") + line;

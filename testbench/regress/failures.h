@@ -23,6 +23,6 @@ std::vector<Failure> examine(const std::vector<Result>& results, const std::stri
 // Runs failed RTL tests again in a build with waveforms (build/trace), and keeps the clocks around the
 // failure. Says on the terminal what it does; a test that cannot be traced has none.
 void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests, const std::string& source,
-              const std::string& out, unsigned jobs, unsigned limit);
+              unsigned jobs, unsigned limit);
 
 #endif

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 SocModel::SocModel(RfChannel& air, XBee::Options modemOptions)
-    : context_(new VerilatedContext), top_(new VSoc(context_.get())),
+    : context_(new VerilatedContext), observer_(*context_), top_(new VSoc(context_.get())),
       fsmc_(pins_, {[this] { tick(); }, [this] { settle(); }}), air_(air),
       modem_(line_, air, std::move(modemOptions)) {
     top_->modem_rxd_i = 1;
@@ -76,6 +76,7 @@ void SocModel::tick() {
     top.clk_i = 1;
     top.eval();
     ++cycles_;
+    observer_.step(top, cycles_, 0);
     top.mcb_cmd_full_i = m.cmdFull;
     top.mcb_wr_full_i = m.wrFull;
     top.mcb_rd_empty_i = m.rdEmpty;
@@ -101,6 +102,7 @@ void SocModel::tick() {
         timeModels();
     top.clk_i = 0;
     top.eval();
+    observer_.step(top, cycles_, 1);
 
     pins_.dFromDesign = top.fsmc_d_o;
     pins_.dDriven = top.fsmc_d_oe_o;

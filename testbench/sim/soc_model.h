@@ -8,13 +8,11 @@
 #include "VSoc.h"
 #include "fsmc_master.h"
 #include "mcb_model.h"
+#include "observer.h"
 #include "rf_channel.h"
 #include <functional>
 #include <memory>
 #include <verilated.h>
-#if VM_TRACE_FST
-#include <verilated_fst_c.h>
-#endif
 
 class SocModel {
 public:
@@ -45,6 +43,7 @@ private:
     void settle();
 
     std::unique_ptr<VerilatedContext> context_;
+    Observer<VSoc> observer_;
     std::unique_ptr<VSoc> top_;
     FsmcPins pins_;
     FsmcMaster fsmc_;

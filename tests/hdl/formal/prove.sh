@@ -86,9 +86,12 @@ covers=$(grep -c . cover.names || true)
 }
 solve="bmc3 -F $((depth * 4))"
 [ "$(latches cover.aig)" -gt 0 ] || solve=sat
+# older abc drops the flip-flops of a cone without -s, newer has no -s
+cone=cone
+! yosys-abc -c 'cone -h' 2>&1 | grep -q -- '^.*-s  ' || cone='cone -s'
 commands='' index=0
 while [ "$index" -lt "$covers" ]; do # one at a time: bmc3 -a of several outputs can crash
-    commands="$commands echo cover $index; read_aiger cover.aig; fold; strash; cone -s -O $index; $solve;"
+    commands="$commands echo cover $index; read_aiger cover.aig; fold; strash; $cone -O $index; $solve;"
     index=$((index + 1))
 done
 abc "$commands" cover.log

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+//
+// clock_listener: a failed assertion also says at which clock of the model it failed.
+
+#include "observed_clock.h"
+#include <cstdio>
+#include <gtest/gtest.h>
+
+namespace {
+
+class ClockListener : public ::testing::EmptyTestEventListener {
+    void OnTestPartResult(const ::testing::TestPartResult& result) override {
+        if (result.failed() && observedClock)
+            std::printf("at clock cycle %llu\n", static_cast<unsigned long long>(observedClock));
+    }
+};
+
+const bool added = [] {
+    ::testing::UnitTest::GetInstance()->listeners().Append(new ClockListener);
+    return true;
+}();
+
+} // namespace

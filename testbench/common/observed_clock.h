@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+//
+// observed_clock: the clock of the model that ran last, which a failed assertion then tells.
+
+#ifndef OBSERVED_CLOCK_H
+#define OBSERVED_CLOCK_H
+
+#include <cstdint>
+
+inline uint64_t observedClock = 0;
+
+#endif

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+//
+// regress: runs chosen tests, keeps what failed, remembers, and writes the pages. `make regress` calls it.
+
+#include "failures.h"
+#include "history.h"
+#include "report.h"
+#include "shell.h"
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fmt/format.h>
+#include <iostream>
+#include <map>
+#include <random>
+#include <regex>
+#include <unistd.h>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Options {
+    std::string source = ".", build = "build/main", out = "build/regress", seed = "1", launcher = "local";
+    Selection selection;
+    unsigned jobs = 2, repeat = 1, waves = 3;
+    bool list = false;
+};
+
+std::vector<Test> choose(const std::vector<Test>& all, const Selection& selection, const History& history) {
+    std::vector<Test> chosen;
+    std::regex name(selection.name);
+    for (const Test& test : all) {
+        bool label = selection.label.empty() ||
+                     std::find(test.labels.begin(), test.labels.end(), selection.label) != test.labels.end();
+        if (!label || !std::regex_search(test.name, name))
+            continue;
+        if (!selection.block.empty() && !blockWords(test).count(selection.block))
+            continue;
+        if (selection.changed && history.passedWith(test.name) == test.print)
+            continue;
+        if (selection.failed && history.last(test.name) != "f")
+            continue;
+        chosen.push_back(test);
+    }
+    return chosen;
+}
+
+// What a person who mistyped wants to see.
+std::string known(const std::vector<Test>& all) {
+    std::set<std::string> labels, places;
+    for (const Test& test : all) {
+        labels.insert(test.labels.begin(), test.labels.end());
+        places.insert(test.place);
+    }
+    std::string text = "labels:";
+    for (const std::string& label : labels)
+        text += " " + label;
+    text += "\nfolders:";
+    for (const std::string& place : places)
+        text += " " + place;
+    return text;
+}
+
+class Progress {
+public:
+    void end(const Result& result, unsigned done, unsigned total) {
+        if (result.status == "failed") {
+            ++failed_;
+            line(fmt::format("FAILED {} ({:.1f} s)", result.name, result.seconds), true);
+        }
+        line(fmt::format("[{}/{}] {} failed  {}", done, total, failed_, result.name), false);
+    }
+    void done() { line("", false); }
+
+private:
+    void line(std::string text, bool keep) {
+        static const bool terminal = isatty(1);
+        if (!terminal && !keep)
+            return;
+        if (terminal)
+            std::cout << '\r' << text.substr(0, 110) << "\033[K";
+        else
+            std::cout << text;
+        if (keep)
+            std::cout << '\n';
+        std::cout << std::flush;
+    }
+    unsigned failed_ = 0;
+};
+
+std::string commitOf(const std::string& source) {
+    Output out = run({"git", "-C", source, "describe", "--always", "--dirty", "--abbrev=10"});
+    return out.status == 0 ? out.text.substr(0, out.text.find('\n')) : "unknown";
+}
+
+void summary(const nlohmann::json& data, const std::vector<Failure>& failures, const std::string& out) {
+    std::map<std::string, std::vector<const Failure*>> buckets;
+    for (const Failure& failure : failures)
+        buckets[failure.bucket].push_back(&failure);
+    for (auto& [bucket, members] : buckets) {
+        std::cout << fmt::format("\n{} x  {}\n", members.size(), members[0]->reason.substr(0, 200));
+        for (const Failure* failure : members) {
+            std::cout << "    " << failure->repeat << "\n        log " << failure->log << '\n';
+            if (!failure->wave.empty())
+                std::cout << "        gtkwave " << failure->save << '\n';
+        }
+    }
+    if (!data["flaky"].empty()) {
+        std::cout << "\nFlaky:";
+        for (auto& name : data["flaky"])
+            std::cout << ' ' << name.get<std::string>();
+        std::cout << '\n';
+    }
+    std::cout << fmt::format("\n{} passed, {} failed, {} skipped in {:.0f} s; {}/report.html\n", data["passed"].get<int>(),
+                             data["failed"].get<int>(), data["skipped"].get<int>(), data["seconds"].get<double>(), out);
+}
+
+int regress(const Options& options) {
+    fs::create_directories(options.out);
+    History history(options.out + "/history.jsonl");
+    if (history.damaged())
+        std::cout << fmt::format("{} damaged lines of {}/history.jsonl are left out\n", history.damaged(), options.out);
+    auto all = listTests(options.build);
+    fingerprint(all, options.source, options.build);
+    auto chosen = choose(all, options.selection, history);
+    if (chosen.empty()) {
+        if (options.selection.changed || options.selection.failed) {
+            std::cout << "Nothing to run: no test " << (options.selection.failed ? "failed" : "changed")
+                      << " since the last run.\n";
+            return 0;
+        }
+        std::cerr << "regress: no test is chosen by this.\n" << known(all) << '\n';
+        return 2;
+    }
+    if (options.list) {
+        for (const Test& test : chosen)
+            std::cout << test.name << '\n';
+        return 0;
+    }
+    auto start = std::chrono::steady_clock::now();
+    std::vector<Result> results;
+    uint64_t seed = options.seed == "random" ? std::random_device{}() : std::stoull(options.seed, nullptr, 0);
+    for (unsigned i = 0; i < options.repeat; ++i) {
+        Progress progress;
+        RunOptions how{options.build, options.out, std::to_string(seed + i), options.jobs,
+                       [&](const Result& result, unsigned done, unsigned total) { progress.end(result, done, total); }};
+        std::cout << fmt::format("{} tests, SEED={}\n", chosen.size(), seed + i) << std::flush;
+        auto part = options.launcher == "slurm" ? runSlurm(chosen, how) : runHere(chosen, how);
+        progress.done();
+        results.insert(results.end(), part.begin(), part.end());
+    }
+    double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    auto failures = examine(results, options.out);
+    addWaves(failures, all, options.source, options.jobs, options.waves);
+    history.add(History::makeRun(chosen, results, commitOf(options.source), seconds));
+    auto data = gather(history, all, results, failures, options.source);
+    writeReports(data, options.out);
+    writeJUnit(options.out + "/junit.xml", results);
+    summary(data, failures, options.out);
+    return failures.empty() ? 0 : 1;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    CLI::App app("Runs the regression: chosen tests, in parallel, with history, waveforms of failures and a page.\n"
+                 "Exit status 0: all passed; 1: some failed; 2: it could not run.");
+    app.add_option("--source", options.source, "root of the tree")->capture_default_str();
+    app.add_option("--build", options.build, "build folder with the tests")->capture_default_str();
+    app.add_option("--out", options.out, "where reports go")->capture_default_str();
+    app.add_option("--name", options.selection.name, "regular expression on test names");
+    app.add_option("--block", options.selection.block, "one block: modem, link, bus, ...");
+    app.add_option("--label", options.selection.label, "one label: rtl, formal, lint, firmware, ...");
+    app.add_flag("--changed", options.selection.changed, "only tests whose program or sources changed since they passed");
+    app.add_flag("--rerun-failed", options.selection.failed, "only tests that failed in their last run");
+    app.add_option("--seed", options.seed, "seed of the random tests, or `random`")->capture_default_str();
+    app.add_option("--repeat", options.repeat, "so many runs, each with the next seed")->check(CLI::Range(1, 1000));
+    app.add_option("--jobs", options.jobs, "tests at once")->check(CLI::Range(1, 256));
+    app.add_option("--waves", options.waves, "waveforms of at most so many failures")->capture_default_str();
+    app.add_option("--launcher", options.launcher, "local or slurm")->check(CLI::IsMember({"local", "slurm"}));
+    app.add_flag("--list", options.list, "only say which tests are chosen");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        return regress(options);
+    } catch (const std::exception& error) {
+        std::cerr << "regress: " << error.what() << '\n';
+        return 2;
+    }
+}

@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: MIT
+#
+# The regression: the tests of `make test` with selection, history, waveforms of failures and a page.
+BLOCK    ?=
+REPEAT   ?= 1
+WAVES    ?= 3
+LAUNCHER ?= local
+CHANGED  ?=
+FAILED   ?=
+
+regress: build ## run the regression, write build/regress/report.html (NAME= BLOCK= LABEL= CHANGED=1 FAILED=1 SEED=n|random REPEAT=n LAUNCHER=slurm)
+	@$(BUILD)/testbench/regress/regress --build $(BUILD) --jobs $(JOBS) --seed $(SEED) --repeat $(REPEAT) --waves $(WAVES) \
+	    --launcher $(LAUNCHER) $(if $(NAME),--name '$(NAME)') $(if $(BLOCK),--block '$(BLOCK)') \
+	    $(if $(LABEL),--label '$(LABEL)') $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed)
+
+.PHONY: regress

@@ -134,6 +134,7 @@ private:
     void fault(unsigned number, uint32_t cfsrBits, const std::string& text);
     void handleUnicorn(uc_err error);
     void handleRaised();
+    void undefinedAt(uint32_t address);
 
     CpuBus& bus_;
     Config config_;

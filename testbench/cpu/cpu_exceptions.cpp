@@ -265,6 +265,16 @@ void CortexM3::onRaised(uint32_t number) {
     uc_emu_stop(uc_);
 }
 
+// Unicorn says the same of an unknown instruction and of a jump to an even address.
+void CortexM3::undefinedAt(uint32_t address) {
+    if (!(reg(Xpsr) & thumb)) {
+        synchronous_ = {UsageFault, SystemControl::invalidState, "a jump out of Thumb state"};
+        return;
+    }
+    pc_ = address;
+    synchronous_ = {UsageFault, SystemControl::undefined, "undefined instruction"};
+}
+
 void CortexM3::handleRaised() {
     enum {
         Undefined = 1,
@@ -326,10 +336,7 @@ void CortexM3::handleUnicorn(uc_err error) {
     case UC_ERR_FETCH_UNMAPPED:
     case UC_ERR_FETCH_PROT: synchronous_ = {BusFault, SystemControl::instructionBus, text}; return;
     case UC_ERR_INSN_INVALID:
-    case UC_ERR_EXCEPTION:
-        pc_ = executing_;
-        synchronous_ = {UsageFault, SystemControl::undefined, text};
-        return;
+    case UC_ERR_EXCEPTION: return undefinedAt(executing_);
     default: throw std::runtime_error(std::string("libunicorn: ") + text);
     }
 }

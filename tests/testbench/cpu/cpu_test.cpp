@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+//
+// cpu_test: the CPU model against the ARMv7-M Architecture Reference Manual and the Cortex-M3 TRM.
+
+#include "plain_bus.h"
+#include <gtest/gtest.h>
+
+namespace {
+
+class Cpu : public ::testing::Test {
+protected:
+    // In the order of cpu_cases.c.
+    enum Case {
+        Nesting, SamePriority, LowestNumberFirst, SubPriority, Primask, Basepri, Faultmask, SwitchLast,
+        SupervisorCallCase, Ticks, SleepMasked, BusFaultCase, NoMemory, Escalation, UndefinedInstruction, ArmState,
+        LockUp, Guard, Process, Alignment, Cycles, ResetRequest, Work
+    };
+    // What the case says until it ends.
+    std::string run(Case number) {
+        m3.setVariable("selected", number);
+        EXPECT_EQ(m3.run(100'000), 1) << m3.cpu.lastFault << ", said " << m3.text("said");
+        return m3.text("said");
+    }
+    uint32_t value(unsigned n) { return m3.cpu.word(m3.image.symbol("value") + 4 * n); }
+
+    PlainCpu m3{CASES_ELF};
+};
+
+TEST_F(Cpu, AnInterruptOfHigherPriorityPreempts) { EXPECT_EQ(run(Nesting), "abBA"); }
+TEST_F(Cpu, OneOfTheSamePriorityWaits) { EXPECT_EQ(run(SamePriority), "aAbB"); }
+TEST_F(Cpu, OfEqualOnesTheLowestNumberComesFirst) { EXPECT_EQ(run(LowestNumberFirst), "aAbBcC"); }
+TEST_F(Cpu, SubPrioritiesOrderAndDoNotPreempt) { EXPECT_EQ(run(SubPriority), "aAcCbB"); }
+
+TEST_F(Cpu, PrimaskHoldsBackAndUnmaskingIsExact) {
+    EXPECT_EQ(run(Primask), "1aA2");
+    EXPECT_EQ(value(0), 5u); // r0 when the handler ran: no instruction behind CPSIE has been executed
+}
+
+TEST_F(Cpu, BasepriHoldsBackItsPriorityAndBelow) { EXPECT_EQ(run(Basepri), "1bB2aA3"); }
+TEST_F(Cpu, FaultmaskHoldsBackAll) { EXPECT_EQ(run(Faultmask), "1aA2"); }
+TEST_F(Cpu, PendSvRunsBehindInterrupts) { EXPECT_EQ(run(SwitchLast), "aAp"); }
+
+TEST_F(Cpu, SvcEntersAtOnceAndReturnsBehindItself) {
+    EXPECT_EQ(run(SupervisorCallCase), "s.");
+    EXPECT_EQ(value(0), 42u);
+}
+
+TEST_F(Cpu, SysTickHasItsPeriodExactly) {
+    EXPECT_EQ(run(Ticks), "tttt");
+    EXPECT_EQ(value(0), 1000u);
+    EXPECT_EQ(value(1), 1000u);
+    EXPECT_GT(m3.cpu.sleepingCycles(), 2000u);
+}
+
+TEST_F(Cpu, SleepEndsThoughPrimaskIsSet) { EXPECT_EQ(run(SleepMasked), "wt."); }
+
+TEST_F(Cpu, AnAccessThatNobodyAnswersIsAPreciseBusFault) {
+    EXPECT_EQ(run(BusFaultCase), "u.");
+    EXPECT_EQ(value(0), 1u << 9 | 1u << 15); // PRECISERR, BFARVALID
+    EXPECT_EQ(value(1), 0x60000010u);
+}
+
+TEST_F(Cpu, WhereThereIsNoMemoryOrItIsFlashAWriteIsABusFault) {
+    EXPECT_EQ(run(NoMemory), "u.u.");
+    EXPECT_EQ(value(0) & 1u << 9, 1u << 9);
+}
+
+TEST_F(Cpu, WithoutAHandlerOfItsOwnAFaultIsAHardFault) {
+    EXPECT_EQ(run(Escalation), "h.");
+    EXPECT_EQ(value(2), 1u << 30); // FORCED
+}
+
+TEST_F(Cpu, AnUndefinedInstructionIsAUsageFault) {
+    EXPECT_EQ(run(UndefinedInstruction), "f.");
+    EXPECT_EQ(value(0), 1u << 16); // UNDEFINSTR
+}
+
+TEST_F(Cpu, AJumpOutOfThumbStateIsAUsageFault) {
+    EXPECT_EQ(run(ArmState), "f.");
+    EXPECT_EQ(value(0), 1u << 17); // INVSTATE
+}
+
+TEST_F(Cpu, AFaultInTheHardFaultHandlerLocksUpUntilReset) {
+    m3.setVariable("selected", LockUp);
+    EXPECT_EQ(m3.run(100'000), -1);
+    EXPECT_TRUE(m3.cpu.isLockedUp());
+    m3.cpu.reset();
+    EXPECT_EQ(run(Nesting), "abBA");
+}
+
+TEST_F(Cpu, TheMpuForbidsWritingToAGuardAndNothingBesides) {
+    EXPECT_EQ(run(Guard), "0m..");
+    EXPECT_EQ(value(0), 1u << 1 | 1u << 7); // DACCVIOL, MMARVALID
+    EXPECT_EQ(value(3), m3.image.symbol("guarded") + 32);
+}
+
+TEST_F(Cpu, AnInterruptedProcessHasItsFrameOnItsOwnStack) {
+    EXPECT_EQ(run(Process), "aA");
+    EXPECT_EQ(value(0), 0u); // the frame is where PSP points
+    EXPECT_EQ(value(1), 1u); // and the handler has another stack
+    EXPECT_EQ(value(2), 2u); // CONTROL.SPSEL is back afterwards
+    EXPECT_EQ(value(3), 0xFFFFFFFDu);
+}
+
+TEST_F(Cpu, FramesAreAlignedToEight) {
+    EXPECT_EQ(run(Alignment), "aA");
+    EXPECT_EQ(value(2), 0u);
+    EXPECT_EQ(value(3), 0u);
+}
+
+// TRM, table 3-1; a taken branch costs 1 + 2 here.
+TEST_F(Cpu, InstructionsTakeTheCyclesOfTheManual) {
+    run(Cycles);
+    uint32_t nothing = value(0);
+    EXPECT_EQ(value(1) - nothing, 10u); // 10 NOP
+    EXPECT_EQ(value(2) - nothing, 4u);  // 2 LDR
+    EXPECT_EQ(value(3) - nothing, 10u); // PUSH and POP of four registers
+    EXPECT_EQ(value(4) - nothing, 3u);  // B
+    EXPECT_EQ(value(5) - nothing, 4u);  // MOV, CBZ taken
+    EXPECT_EQ(value(6) - nothing, 6u);  // MOV, CMP, IT, two skipped, one executed
+}
+
+TEST_F(Cpu, AResetRequestStartsAgainAndKeepsMemory) {
+    unsigned told = 0;
+    m3.cpu.listener.systemReset = [&] { ++told; };
+    EXPECT_EQ(run(ResetRequest), "r");
+    EXPECT_EQ(told, 1u);
+    EXPECT_EQ(m3.variable("boots"), 2u);
+}
+
+// The strongest one: two nested interrupts before each single instruction of a computation.
+TEST_F(Cpu, AnInterruptAtAnyInstructionDoesNotChangeAResult) {
+    run(Work);
+    const uint32_t expected = value(0);
+    const uint64_t instructions = m3.cpu.instructions();
+    ASSERT_GT(instructions, 300u);
+    for (uint64_t where = 1; where < instructions; ++where) {
+        PlainCpu other(CASES_ELF);
+        uint64_t n = 0;
+        other.cpu.listener.instruction = [&](uint32_t) {
+            if (++n == where) {
+                other.cpu.pendInterrupt(0);
+                other.cpu.pendInterrupt(1);
+            }
+        };
+        other.setVariable("selected", Work);
+        ASSERT_EQ(other.run(100'000), 1) << where;
+        ASSERT_EQ(other.cpu.word(other.image.symbol("value")), expected) << "interrupted at instruction " << where;
+    }
+}
+
+TEST_F(Cpu, InterruptEntryTakesTwelveCyclesAndTailChainingSix) {
+    std::vector<uint64_t> entered, left;
+    m3.cpu.listener.entered = [&](unsigned) { entered.push_back(m3.cpu.cycles()); };
+    m3.cpu.listener.left = [&](unsigned) { left.push_back(m3.cpu.cycles()); };
+    uint64_t first = 0;
+    m3.cpu.listener.instruction = [&](uint32_t address) {
+        if (!first && entered.size() == 1 && address == (m3.image.symbol("Handler") & ~1u))
+            first = m3.cpu.cycles();
+    };
+    EXPECT_EQ(run(SamePriority), "aAbB");
+    ASSERT_EQ(entered.size(), 2u);
+    EXPECT_EQ(first - entered[0], 12u);
+    EXPECT_EQ(entered[1], left[0]); // and then 6 cycles until the first instruction
+}
+
+TEST_F(Cpu, MaskedTimeIsMeasured) {
+    m3.cpu.countMasked(0x80);
+    run(Primask);
+    EXPECT_GT(m3.cpu.longestMasked().cycles, 5u);
+    EXPECT_LT(m3.cpu.longestMasked().cycles, 100u);
+    EXPECT_EQ(m3.image.functionAt(m3.cpu.longestMasked().from), "primaskExact");
+}
+
+} // namespace

@@ -49,13 +49,17 @@ U32 Boot_report(void) {
            (detail & 0xFFU);
 }
 
-void Boot_fail(Boot_Reason why, U32 pc, U32 lr, U32 address) {
+void Boot_note(Boot_Reason why) {
     boot_record.reason = (U32)why;
+    boot_record.task = Board_task();
+}
+
+void Boot_fail(Boot_Reason why, U32 pc, U32 lr, U32 address) {
+    Boot_note(why);
     boot_record.pc = pc;
     boot_record.lr = lr;
     boot_record.address = address;
     boot_record.status = SCB_CFSR;
-    boot_record.task = Board_task();
     SCB_AIRCR = SCB_AIRCR_RESET;
     for (;;)
         ;

@@ -46,6 +46,8 @@ void Boot_begin(void);
 int Boot_imageIsSound(void);
 /* The word for SCRATCH. */
 U32 Boot_report(void);
+/* The next start is to give this reason, whatever ends the run. */
+void Boot_note(Boot_Reason reason);
 /* Keeps what happened and resets the processor. */
 void Boot_fail(Boot_Reason reason, U32 pc, U32 lr, U32 address);
 /* A corrupt image: says so in SCRATCH, and sleeps for ever. */

@@ -13,7 +13,9 @@
 
 #define PRIO_WATCH 60U
 
-static OS_STK watchStack[128];
+#define WATCH_WORDS 128U
+
+static OS_STK watchStack[WATCH_WORDS];
 
 static void watchTask(void *argument) {
     (void)argument;
@@ -25,10 +27,13 @@ static void watchTask(void *argument) {
 
 void Firmware_run(void) {
     OSInit();
-    UAV_start(&board_fsmc, 0);
-    FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, Boot_report());
-    (void)OSTaskCreateExt(watchTask, 0, &watchStack[127], PRIO_WATCH, 0, watchStack, 128, 0,
-                          OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);
+    if (UAV_start(&board_fsmc, 0)) {
+        FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, Boot_report());
+        (void)OSTaskCreateExt(watchTask, 0, &watchStack[WATCH_WORDS - 1], PRIO_WATCH, 0, watchStack,
+                              WATCH_WORDS, 0, OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);
+    } else {
+        Boot_note(BOOT_NO_FPGA); /* nobody serves the watchdog: the next try is in a second */
+    }
     /* From here on interrupts wait for the first task: they call the kernel. */
     __asm__ volatile("cpsid i");
     Board_startInterrupts();

@@ -21,6 +21,7 @@ static Ice_ObjectAdapter adapter;
 static Autopilot_HwProcessingEngine engine;
 static Autopilot_Vehicle vehicle;
 static U8 irqEnabled;
+static U32 busErrors, busErrorPlace; /* written by the interrupt only */
 
 Ice_Status Autopilot_Vehicle_isAlive(Autopilot_VehiclePtr self, Ice_Short sessionId, Ice_Bool *result,
                                      const Ice_Current *current) {
@@ -95,8 +96,18 @@ static void appMainTask(void *argument) {
         OSTimeDly(OS_TICKS_PER_SEC);
 }
 
+U32 UAV_busErrors(void) {
+    return busErrors;
+}
+
+U32 UAV_busErrorPlace(void) {
+    return busErrorPlace;
+}
+
 void UAV_irqHandler(void) {
     U32 lines = FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_LO);
+    if ((lines >> MAP_SLOT_SYSTEM & 1U) && FSMC_checkError(&busErrorPlace) == FSMC_BUS_ERROR)
+        ++busErrors;
     if (lines >> MAP_SLOT_MODEM & 1U) {
         (void)Radio_interrupt();
         (void)OSSemPost(uav_radioWork);
@@ -109,12 +120,16 @@ int UAV_irqEnabled(void) {
     return irqEnabled;
 }
 
-void UAV_start(const Fsmc_Port *port, void *context) {
+int UAV_start(const Fsmc_Port *port, void *context) {
     irqEnabled = 0;
+    busErrors = 0;
     if (FSMC_init(port, context) != FSMC_OK)
-        return; /* no tasks: the watchdog's business */
+        return 0;
+    FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);
+    FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_MASK, SYSTEM_MASK_BUS_ERROR_MASK);
     UAV_initRadio();
     UAV_initIceOs();
     uav_report = OSSemCreate(0);
     createTask(appMainTask, serverStack, PRIO_SERVER);
+    return 1;
 }

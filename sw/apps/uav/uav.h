@@ -16,8 +16,8 @@
 #define UAV_RESULT 0x00300000U /* the vision core's records */
 #define UAV_RESULT_MAX 16384U  /* records that fit */
 
-/* Creates the tasks; call between OSInit and OSStart. */
-void UAV_start(const Fsmc_Port *port, void *context);
+/* Creates the tasks; call between OSInit and OSStart. 0: the FPGA does not answer, there are no tasks. */
+int UAV_start(const Fsmc_Port *port, void *context);
 
 /* The FPGA's interrupt, a level; and whether it is unmasked. */
 void UAV_irqHandler(void);

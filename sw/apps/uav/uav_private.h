@@ -33,6 +33,11 @@ void UAV_useRadio(Ice_CommunicatorPtr ic);
 extern const Ice_Os uav_iceOs;
 void UAV_initIceOs(void);
 
+/* Accesses that no register answered, or whose core hung until the bridge gave up: how many, and where the last
+ * one was (slot * 16 + word, bit 16 for a write). */
+U32 UAV_busErrors(void);
+U32 UAV_busErrorPlace(void);
+
 /* Vision core. */
 void UAV_initVision(void);
 void UAV_visionInterrupt(void);

@@ -90,6 +90,7 @@ static void readResults(void) {
 /* Waits for the frame under way, if there is one. */
 static Ice_Status finishFrame(void) {
     INT8U error;
+    U32 errorsBefore = UAV_busErrors();
     if (!vision.busy)
         return ICE_OK;
     OSSemPend(frameDone, FRAME_TIMEOUT_MS * OS_TICKS_PER_SEC / 1000U, &error);
@@ -101,6 +102,8 @@ static Ice_Status finishFrame(void) {
     if (vision.refused)
         return ICE_UNKNOWN_EXCEPTION;
     readResults();
+    if (UAV_busErrors() != errorsBefore)
+        return ICE_UNKNOWN_EXCEPTION; /* the core hangs: what was read is nothing */
     (void)OSSemPost(uav_report);
     return ICE_OK;
 }

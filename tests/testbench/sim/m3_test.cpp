@@ -141,6 +141,101 @@ TEST(CortexM3Firmware, LosesNothingAtTenPercentLossAndAtTheBoardsCycleRatio) {
     EXPECT_GT(f.air.counters().lost, 0u);
 }
 
+// One flight, several accidents: a core that hangs, a processor that hangs, the FSMC switched off, a stack that
+// runs over. Each is told in the system slot, and the link comes back by itself.
+TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
+    Flight f;
+    f.pings(2);
+    int phase = 0;
+    uint64_t since = 0;
+    M3Machine* m3 = nullptr;
+    auto busErrors = [&] { return m3->cpu().word(m3->stm32().image()->symbol("busErrors")); };
+    auto reported = [&] {
+        try {
+            return reasonOf(f.scratch());
+        } catch (const FsmcError&) {
+            return Boot_Reason(); // the firmware has not switched the FSMC on yet
+        }
+    };
+    auto script = [&] {
+        switch (phase) {
+        case 0: // a register that nobody answers for: an event, an interrupt, and the flight goes on
+            if (f.step())
+                return true;
+            EXPECT_EQ(busErrors(), 0u);
+            (void)f.soc.fsmc().read32(0x64000000 + 64 * 33 + 4 * 5);
+            since = f.soc.cycles();
+            phase = 1;
+            return true;
+        case 1:
+            if (f.soc.cycles() < since + SocModel::clkHz / 100)
+                return true;
+            EXPECT_EQ(busErrors(), 1u);
+            EXPECT_EQ(m3->cpu().word(m3->stm32().image()->symbol("busErrorPlace")), 33u * 16 + 5);
+            f.ground.ping(100, "hwengine1"); // on its way when ...
+            m3->cpu().setReg(CortexM3::Faultmask, 1); // ... nothing gets through to the processor any more
+            phase = 2;
+            return true;
+        case 2: // the ground is told; the link comes up again
+            if (m3->stm32().resets().watchdog == 0 || f.ground.unknown == 0 || !f.ground.isUp())
+                return true;
+            EXPECT_EQ(f.ground.replies.count(100), 0u);
+            EXPECT_EQ(reported(), BOOT_WATCHDOG);
+            f.forget();
+            phase = 3;
+            return true;
+        case 3:
+            if (f.step())
+                return true;
+            f.soc.fsmc().write32(0xA0000008, 0x000030D2); // NE2 is switched off: the next register access fails
+            phase = 4;
+            return true;
+        case 4:
+            if (m3->stm32().resets().software == 0 || reported() != BOOT_BUS_FAULT)
+                return true;
+            EXPECT_EQ(m3->cpu().word(m3->stm32().image()->symbol("boot_record") + 20) & 0xFF000000, 0x64000000u); // where
+            since = f.soc.cycles();
+            phase = 5;
+            return true;
+        case 5: { // the idle task's stack runs over
+            if (f.soc.cycles() < since + SocModel::clkHz / 100 || m3->cpu().currentException() != 0)
+                return true;
+            bool own = m3->stm32().image()->has("idleStack");
+            m3->cpu().setReg(CortexM3::Psp, m3->stm32().image()->symbol(own ? "idleStack" : "OSTaskIdleStk") + 56);
+            phase = 6;
+            return true;
+        }
+        default: return reported() != BOOT_STACK_OVERFLOW;
+        }
+    };
+    M3Machine machine(f.soc, firmware, [&] { return script() && f.inTime(60); });
+    m3 = &machine;
+    machine.run();
+    EXPECT_EQ(phase, 6);
+    EXPECT_EQ(reported(), BOOT_STACK_OVERFLOW);
+    EXPECT_EQ(f.scratch() & 0xFF, 63u) << "the idle task's priority";
+    EXPECT_EQ(f.scratch() >> 16 & 0xFF, 4u) << "starts since power-on";
+}
+
+TEST(CortexM3Firmware, ACorruptImageIsRefusedWithItsReason) {
+    Random random(testSeed());
+    for (int i = 0; i < 4; ++i) {
+        Flight f;
+        M3Machine machine(f.soc, firmware, [&] { return f.inTime(0.3); });
+        const ElfImage& image = *machine.stm32().image();
+        // Anywhere behind the code that tells: start, boot, FSMC driver come first in the image.
+        uint32_t begin = image.symbol("telling_end"), end = image.symbol("image_end");
+        uint32_t at = begin + random.below(end - begin);
+        uint8_t byte = 0;
+        machine.cpu().readMemory(at, &byte, 1);
+        byte = static_cast<uint8_t>(byte ^ 1u << random.below(8));
+        machine.cpu().writeMemory(at, &byte, 1);
+        machine.run();
+        EXPECT_EQ(reasonOf(f.scratch()), BOOT_IMAGE_CORRUPT) << "flipped a bit at 0x" << std::hex << at;
+        EXPECT_EQ(f.soc.modem().parameter("BD"), 3u) << "the firmware has started";
+    }
+}
+
 TEST(CortexM3Firmware, TheSameSeedGivesTheSameRunToTheInstruction) {
     uint64_t instructions[2], cycles[2];
     for (int run = 0; run < 2; ++run) {

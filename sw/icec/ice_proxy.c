@@ -120,6 +120,7 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         is->failed = 1;
     prx->mode = Ice_InputStream_readByte(is);
     prx->secure = Ice_InputStream_readBool(is);
+    prx->minor = is->minor; /* an old peer says nothing, and means its own */
     if (is->minor != 0) {
         const Ice_Byte *versions = Ice_InputStream_readBlob(is, 4);
         prx->minor = versions && versions[3] != 0; /* of a later encoding 1.1 is understood there */

@@ -16,9 +16,8 @@ Ice_Status Ice_Object_dispatch(const Ice_Interface *interface, const void *table
             return o->dispatch(self, table, current, is, os);
         }
     for (base = interface->bases; base && base->interface; ++base) {
-        Ice_Status status =
-            Ice_Object_dispatch(base->interface, (const char *)table + base->offset, self, current,
-                                is, os);
+        Ice_Status status = Ice_Object_dispatch(base->interface, (const char *)table + base->offset,
+                                                self, current, is, os);
         if (status != ICE_OPERATION_NOT_EXIST)
             return status;
     }

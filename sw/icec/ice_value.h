@@ -26,10 +26,10 @@ typedef struct Ice_Value {
 } Ice_Value;
 
 struct Ice_ValueType {
-    const char *id;            /* "::M::C" */
-    const Ice_ValueType *base; /* 0: none */
-    Ice_Int compactId;         /* -1: none */
-    Ice_Int size;              /* bytes of the struct */
+    const char *id;                                            /* "::M::C" */
+    const Ice_ValueType *base;                                 /* 0: none */
+    Ice_Int compactId;                                         /* -1: none */
+    Ice_Int size;                                              /* bytes of the struct */
     void (*write)(const void *object, Ice_OutputStreamPtr os); /* own members */
     void (*read)(void *object, Ice_InputStreamPtr is);
 };
@@ -64,7 +64,7 @@ typedef struct Ice_InputValues {
         Ice_Int number;
     } patches[ICE_VALUES_MAX]; /* for instances that come later */
     Ice_Int patchBegin, patchEnd;
-    Ice_Bool pending; /* 1.0: instances follow the parameters */
+    Ice_Bool pending;                         /* 1.0: instances follow the parameters */
     void (*readTable)(Ice_InputStreamPtr is); /* for exceptions' slices */
     void (*skip)(Ice_InputStreamPtr is);      /* an optional that nobody asked for */
 } Ice_InputValues;

@@ -209,7 +209,8 @@ static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
     }
 }
 
-/* `number` as it stands on the wire: 1 is followed by an instance. The result is its number, from 1. */
+/* `number` as it stands on the wire: 1 is followed by an instance. The result is its number,
+ * from 1. */
 static Ice_Int readInstance(Ice_InputStreamPtr is, Ice_Int number) {
     Ice_InputValues *values = is->values;
     Ice_Byte flags = is->sliceFlags;

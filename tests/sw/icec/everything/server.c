@@ -50,16 +50,15 @@ Ice_Status Everything_Tester_echoBytes(Everything_TesterPtr self, const Everythi
     return ICE_OK;
 }
 
-Ice_Status
-Everything_Tester_echoSequences(Everything_TesterPtr self, const Everything_Bools *a,
-                                const Everything_Shorts *b, const Everything_Ints *c,
-                                const Everything_Longs *d, const Everything_Floats *e,
-                                const Everything_Doubles *f, const Everything_Strings *g,
-                                const Everything_StringLists *h, Everything_Bools *aa,
-                                Everything_Shorts *bb, Everything_Ints *cc, Everything_Longs *dd,
-                                Everything_Floats *ee, Everything_Doubles *ff,
-                                Everything_Strings *gg, Everything_StringLists *hh,
-                                const Ice_Current *current) {
+Ice_Status Everything_Tester_echoSequences(Everything_TesterPtr self, const Everything_Bools *a,
+                                           const Everything_Shorts *b, const Everything_Ints *c,
+                                           const Everything_Longs *d, const Everything_Floats *e,
+                                           const Everything_Doubles *f, const Everything_Strings *g,
+                                           const Everything_StringLists *h, Everything_Bools *aa,
+                                           Everything_Shorts *bb, Everything_Ints *cc,
+                                           Everything_Longs *dd, Everything_Floats *ee,
+                                           Everything_Doubles *ff, Everything_Strings *gg,
+                                           Everything_StringLists *hh, const Ice_Current *current) {
     (void)self, (void)current;
     *aa = *a, *bb = *b, *cc = *c, *dd = *d, *ee = *e, *ff = *f, *gg = *g, *hh = *h;
     return ICE_OK;
@@ -126,7 +125,8 @@ static void fillWorse(Everything_Worse *worse) {
 }
 
 Ice_Status Everything_Tester_fail(Everything_TesterPtr self, Ice_Int how,
-                                  Everything_Tester_fail_Exception *ex, const Ice_Current *current) {
+                                  Everything_Tester_fail_Exception *ex,
+                                  const Ice_Current *current) {
     static Everything_Counts_Entry entry;
     (void)self, (void)current;
     switch (how) {
@@ -206,7 +206,8 @@ Ice_Status Everything_Tester_callBack(Everything_TesterPtr self,
     return status;
 }
 
-Ice_Status Everything_Tester_later(Everything_TesterPtr self, Ice_Int v, const Ice_Current *current) {
+Ice_Status Everything_Tester_later(Everything_TesterPtr self, Ice_Int v,
+                                   const Ice_Current *current) {
     (void)self;
     if (waitingCount == WAITING_MAX)
         return ICE_LIMIT;
@@ -232,7 +233,8 @@ Ice_Status Everything_Tester_release(Everything_TesterPtr self, Ice_Int *result,
     return ICE_OK;
 }
 
-Ice_Status Everything_Tester_note(Everything_TesterPtr self, Ice_Int v, const Ice_Current *current) {
+Ice_Status Everything_Tester_note(Everything_TesterPtr self, Ice_Int v,
+                                  const Ice_Current *current) {
     (void)self, (void)current;
     total += v;
     return ICE_OK;

@@ -42,3 +42,25 @@ void valueTypeTable(Writer& w, const CContext& c) {
             w.line("    &" + d->cName() + "_type,");
     w.line("    0};");
 }
+
+void writeWithValues(Writer& w, const std::vector<Slot>& slots, const std::string& table) {
+    bool classes = anyClass(slots);
+    if (classes)
+        w.line("Ice_OutputStream_beginValues(os, &" + table + ");");
+    if (classes && !anyRequiredClass(slots))
+        w.line(table + ".pending = 0;");
+    writeSlots(w, slots);
+    if (classes)
+        w.line("Ice_OutputStream_endValues(os);");
+}
+
+void readWithValues(Writer& w, const CContext& c, const std::vector<Slot>& slots, const std::string& table) {
+    bool classes = anyClass(slots);
+    if (classes)
+        w.line("Ice_InputStream_beginValues(is, &" + table + ", " + c.valueTable() + ");");
+    if (classes && !anyRequiredClass(slots))
+        w.line(table + ".pending = 0;");
+    readSlots(w, slots);
+    if (classes)
+        w.line("Ice_InputStream_endValues(is);");
+}

@@ -23,11 +23,7 @@ void writeParameters(Writer& w, const Declaration& d, const Operation& o) {
     w.nested("return (Ice_Status)self->status;");
     if (sendsClasses(o) && isSliced(d, o))
         w.line("os->sliced = 1;");
-    withOutputValues(w, sendsClasses(o), [&] { writeSlots(w, inSlots(o)); });
-}
-
-void readResults(Writer& w, const CContext& c, const Operation& o, const std::string& object) {
-    withInputValues(w, c, returnsClasses(o), [&] { readSlots(w, outSlots(o, object)); });
+    writeWithValues(w, inSlots(o), "values");
 }
 
 void syncFunction(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
@@ -35,21 +31,14 @@ void syncFunction(Writer& w, const CContext& c, const Declaration& d, const Oper
         if (sendsClasses(o))
             w.line("Ice_OutputValues values;");
         if (returnsClasses(o))
-            w.line(sendsClasses(o) ? "Ice_InputValues received;" : "Ice_InputValues values;");
+            w.line("Ice_InputValues received;");
         w.line("Ice_InputStreamPtr is = 0;");
         beginCall(w, o);
         w.line("Ice_Status status;");
         writeParameters(w, d, o);
         w.line("status = Ice_ObjectPrx_invoke(self, &is);");
         if (hasResults(o)) {
-            w.block("if (status == ICE_OK)", {}, [&] {
-                Writer inner;
-                readResults(inner, c, o, "*");
-                std::string text = inner.text();
-                if (sendsClasses(o) && returnsClasses(o))
-                    text.replace(text.find("&values"), 7, "&received");
-                w.raw(text);
-            });
+            w.block("if (status == ICE_OK)", {}, [&] { readWithValues(w, c, outSlots(o, "*"), "received"); });
         }
         if (!o.throws.empty()) {
             w.line("if (status == ICE_USER_EXCEPTION && ex)");
@@ -78,7 +67,7 @@ void completedFunction(Writer& w, const CContext& c, const Declaration& d, const
             w.block("if (status == ICE_OK)", {}, [&] {
                 if (returnsClasses(o))
                     w.line("Ice_InputValues values;");
-                readResults(w, c, o, "call->");
+                readWithValues(w, c, outSlots(o, "call->"), "values");
                 w.line("if (is->failed)");
                 w.nested("status = ICE_MARSHAL;");
             });

@@ -109,8 +109,7 @@ void findFunction(Writer& w, const Declaration& d) {
         w.line("Ice_Int i;");
         w.line("for (i = 0; i < v->size; ++i)");
         if (isString) {
-            w.line("    if (v->data[i].key.size == key.size &&");
-            w.line("        memcmp(v->data[i].key.data, key.data, (size_t)key.size) == 0)");
+            w.line("    if (Ice_String_same(&v->data[i].key, &key))");
         } else {
             w.line("    if (v->data[i].key == key)");
         }

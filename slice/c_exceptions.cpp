@@ -7,17 +7,19 @@
 
 namespace {
 
+// In its members or its bases'.
 bool hasClasses(const Declaration& d) {
-    for (const Field& f : d.fields)
-        if (containsClass(f.type))
-            return true;
-    return d.base() && hasClasses(*d.base());
+    return anyClass(memberSlots(d)) || (d.base() && hasClasses(*d.base()));
+}
+
+bool requiresClasses(const Declaration& d) {
+    return anyRequiredClass(memberSlots(d)) || (d.base() && requiresClasses(*d.base()));
 }
 
 } // namespace
 
 void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d) {
-    Writer::Values v = {{"c", d.cName()}, {"id", d.id()}, {"classes", hasClasses(d) ? "1" : "0"}};
+    Writer::Values v = {{"c", d.cName()}, {"id", d.id()}, {"classes", requiresClasses(d) ? "1" : "0"}};
     bool classes = hasClasses(d);
     initFunction(w, d);
     w.blank();
@@ -44,27 +46,32 @@ void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d) {
     });
     w.blank();
     w.block("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os)", v, [&] {
-        if (classes)
+        if (classes) {
             w.line("Ice_OutputValues values;");
-        withOutputValues(w, classes, [&] {
-            w.line("Ice_OutputStream_startException(os, {classes});", v);
-            w.line("{c}_writeSlices(v, os);", v);
-        });
+            w.line("Ice_OutputStream_beginValues(os, &values);");
+            w.line("values.pending = {classes};", v);
+        }
+        w.line("Ice_OutputStream_startException(os, {classes});", v);
+        w.line("{c}_writeSlices(v, os);", v);
+        if (classes)
+            w.line("Ice_OutputStream_endValues(os);");
     });
     w.blank();
     w.block("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is)", v, [&] {
-        if (classes)
+        if (classes) {
             w.line("Ice_InputValues values;");
-        withInputValues(w, c, classes, [&] {
-            w.line("Ice_InputStream_startException(is);");
-            w.block("while (!Ice_String_equals(Ice_InputStream_startSlice(is), \"{id}\"))", v, [&] {
-                w.block("if (!Ice_InputStream_skipSlice(is))", {}, [&] {
-                    w.line("is->failed = 1;");
-                    w.line("return;");
-                });
+            w.line("Ice_InputStream_beginValues(is, &values, " + c.valueTable() + ");");
+        }
+        w.line("Ice_InputStream_startException(is);");
+        w.block("while (!Ice_String_equals(Ice_InputStream_startSlice(is), \"{id}\"))", v, [&] {
+            w.block("if (!Ice_InputStream_skipSlice(is))", {}, [&] {
+                w.line("is->failed = 1;");
+                w.line("return;");
             });
-            w.line("{c}_readSlices(v, is);", v);
         });
+        w.line("{c}_readSlices(v, is);", v);
+        if (classes)
+            w.line("Ice_InputStream_endValues(is);");
     });
 }
 

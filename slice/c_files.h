@@ -50,20 +50,8 @@ void valueTypeTable(Writer& w, const CContext& c);
 void initFunction(Writer& w, const Declaration& d);
 // Members as slots of `v`.
 std::vector<Slot> memberSlots(const Declaration& d);
-// The body of `write` or `read` within which classes may occur.
-template <class Body> void withOutputValues(Writer& w, bool classes, Body body) {
-    if (classes)
-        w.line("Ice_OutputStream_beginValues(os, &values);");
-    body();
-    if (classes)
-        w.line("Ice_OutputStream_endValues(os);");
-}
-template <class Body> void withInputValues(Writer& w, const CContext& c, bool classes, Body body) {
-    if (classes)
-        w.line("Ice_InputStream_beginValues(is, &values, " + c.valueTable() + ");");
-    body();
-    if (classes)
-        w.line("Ice_InputStream_endValues(is);");
-}
+// Writes or reads slots; where they hold classes, within a table of instances of this name.
+void writeWithValues(Writer& w, const std::vector<Slot>& slots, const std::string& table);
+void readWithValues(Writer& w, const CContext& c, const std::vector<Slot>& slots, const std::string& table);
 
 #endif

@@ -47,11 +47,6 @@ void collect(const Declaration& d, std::vector<const Declaration*>& list) {
         list.push_back(&d);
 }
 
-bool fieldsHaveClasses(const Declaration& d) {
-    return std::any_of(d.fields.begin(), d.fields.end(), [](const Field& f) { return containsClass(f.type); }) ||
-           (d.base() && fieldsHaveClasses(*d.base()));
-}
-
 } // namespace
 
 std::vector<const Declaration*> lineage(const Declaration& interface) {
@@ -96,6 +91,15 @@ bool sendsClasses(const Operation& o) {
 bool returnsClasses(const Operation& o) {
     auto list = results(o);
     return std::any_of(list.begin(), list.end(), [](const Result& r) { return containsClass(*r.type); });
+}
+
+bool anyClass(const std::vector<Slot>& slots) {
+    return std::any_of(slots.begin(), slots.end(), [](const Slot& s) { return containsClass(*s.type); });
+}
+
+bool anyRequiredClass(const std::vector<Slot>& slots) {
+    return std::any_of(slots.begin(), slots.end(),
+                       [](const Slot& s) { return !s.isOptional && containsClass(*s.type); });
 }
 
 std::string operationName(const Declaration& owner, const Operation& o) { return owner.cName() + "_" + cOperation(o.name); }

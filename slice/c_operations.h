@@ -24,6 +24,9 @@ bool isSliced(const Declaration& owner, const Operation& o);
 // Classes among the parameters, or among the results and exceptions.
 bool sendsClasses(const Operation& o);
 bool returnsClasses(const Operation& o);
+// Classes in one of the slots; in one that is not optional: encoding 1.0 has a list of instances then.
+bool anyClass(const std::vector<Slot>& slots);
+bool anyRequiredClass(const std::vector<Slot>& slots);
 
 // "M_I_op"
 std::string operationName(const Declaration& owner, const Operation& o);

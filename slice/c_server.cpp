@@ -40,7 +40,7 @@ void declareVariables(Writer& w, const Declaration& d, const Operation& o) {
     if (sendsClasses(o))
         w.line("Ice_InputValues values;");
     if (returnsClasses(o) && !amd)
-        w.line(sendsClasses(o) ? "Ice_OutputValues sent;" : "Ice_OutputValues values;");
+        w.line("Ice_OutputValues sent;");
     std::vector<Slot> slots = inVariables(o);
     if (!amd)
         for (const Slot& s : outSlots(o, ""))
@@ -60,7 +60,7 @@ void readParameters(Writer& w, const CContext& c, const Operation& o) {
         w.line("(void)is;");
         return;
     }
-    withInputValues(w, c, sendsClasses(o), [&] { readSlots(w, inVariables(o)); });
+    readWithValues(w, c, inVariables(o), "values");
     w.line("if (is->failed)");
     w.nested("return ICE_MARSHAL;");
 }
@@ -71,15 +71,7 @@ void writeResults(Writer& w, const Declaration& d, const Operation& o) {
     if (sliced && (!o.throws.empty() || returnsClasses(o)))
         w.line("os->sliced = 1;");
     if (!outs.empty())
-        w.block("if (status == ICE_OK)", {}, [&] {
-            bool classes = returnsClasses(o);
-            if (classes)
-                w.line(sendsClasses(o) ? "Ice_OutputStream_beginValues(os, &sent);"
-                                       : "Ice_OutputStream_beginValues(os, &values);");
-            writeSlots(w, outs);
-            if (classes)
-                w.line("Ice_OutputStream_endValues(os);");
-        });
+        w.block("if (status == ICE_OK)", {}, [&] { writeWithValues(w, outs, "sent"); });
     if (!o.throws.empty()) {
         w.line("if (status == ICE_USER_EXCEPTION)");
         w.nested(exceptionType(d, o) + "_writeToOutputStream(&ex, os);");
@@ -133,9 +125,9 @@ void responseFunctions(Writer& w, const Declaration& d, const Operation& o) {
     w.blank();
     w.block(responseSignature(d, o), {}, [&] {
         if (returnsClasses(o))
-            w.line("Ice_OutputValues values;");
+            w.line("Ice_OutputValues sent;");
         begin();
-        withOutputValues(w, returnsClasses(o), [&] { writeSlots(w, responseSlots(o)); });
+        writeWithValues(w, responseSlots(o), "sent");
         w.line("return Ice_Reply_end(reply, ICE_OK);");
     });
     if (o.throws.empty())

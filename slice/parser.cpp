@@ -56,6 +56,11 @@ void Parser::expect(std::string_view symbol) {
         fail("'" + std::string(symbol) + "'");
 }
 
+void Parser::expectEnd(const std::string& what) {
+    if (!accept("}"))
+        fail(what);
+}
+
 std::string Parser::name(const std::string& what) {
     if (!at(Token::Kind::Identifier))
         fail(what);
@@ -192,34 +197,25 @@ void Parser::definition() {
 }
 
 void Parser::module() {
-    size_t depth = scope_.size();
-    std::string outer = scopeId_;
-    do {
-        Location begin = token().at;
-        std::string module = name("the module's name");
-        bool isNew = false;
-        Symbol* symbol = symbols_.declare(scopeId_, module, begin, isNew);
-        if (symbol && symbol->declaration)
-            error(begin, "'" + module + "' is declared as " +
-                             kindName(symbol->declaration->kind) + " already, at line " +
-                             std::to_string(symbol->at.line));
-        for (const std::string& around : scope_)
-            if (lowerCase(around) == lowerCase(module))
-                error(begin, "module '" + module + "' must differ from the module around it, '" + around + "'");
-        scope_.push_back(module);
-        scopeId_ += "::" + module;
-    } while (accept("::"));
-    auto leave = [&] {
-        scope_.resize(depth);
-        scopeId_ = outer;
-    };
-    try {
-        braces("module '" + scope_.back() + "'", [&] { definition(); });
-    } catch (const SyntaxError&) {
-        leave();
-        throw;
-    }
-    leave();
+    Location begin = token().at;
+    std::string called = name("the module's name"), outer = scopeId_;
+    bool isNew = false;
+    Symbol* symbol = symbols_.declare(scopeId_, called, begin, isNew);
+    if (symbol && symbol->declaration)
+        error(begin, "'" + called + "' is declared as " + kindName(symbol->declaration->kind) + " already, at line " +
+                         std::to_string(symbol->at.line));
+    for (const std::string& around : scope_)
+        if (lowerCase(around) == lowerCase(called))
+            error(begin, "module '" + called + "' must differ from the module around it, '" + around + "'");
+    expect("{");
+    scope_.push_back(called);
+    scopeId_ += "::" + called;
+    while (!isSymbol("}") && !at(Token::Kind::End))
+        guarded([&] { definition(); });
+    scope_.pop_back();
+    scopeId_ = outer;
+    expectEnd("'}' at the end of module '" + called + "'");
+    accept(";");
 }
 
 void Parser::checkGlobal(const std::string& name, const Location& at) {

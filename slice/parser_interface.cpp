@@ -26,10 +26,7 @@ std::vector<const Declaration*> Parser::baseList(const Declaration& d, Declarati
             error(begin, "'" + written + "' is declared, but not defined yet");
         } else if (base == &d) {
             error(begin, "'" + written + "' cannot extend itself");
-        } else if (std::find(bases.begin(), bases.end(), base) != bases.end()) {
-            error(begin, "'" + written + "' is listed twice");
-        } else {
-            warnDeprecated(*base, begin);
+        } else if (std::find(bases.begin(), bases.end(), base) == bases.end()) {
             if (base->isLocal && !d.isLocal)
                 error(begin, "'" + d.name + "' is not local, but '" + written + "' is");
             if (!base->isLocal && d.isLocal && wanted == Declaration::Kind::Interface)
@@ -124,8 +121,10 @@ void Parser::parameters(Operation& o, const Declaration& owner) {
     }
     while (!isSymbol(")")) {
         Field p;
-        p.metadata = metadata();
         p.isOut = acceptWord("out");
+        p.metadata = metadata();
+        if (isWord("out"))
+            fail("a type; 'out' stands before metadata");
         Optional tag = optional();
         Location begin = token().at;
         p.type = type(owner.isLocal);
@@ -164,7 +163,6 @@ void Parser::throwsClause(Operation& o, const Declaration& owner) {
             error(begin, "'" + written + "' is not an exception");
             continue;
         }
-        warnDeprecated(*s->declaration, begin);
         if (s->declaration->isLocal && !owner.isLocal)
             error(begin, "operation '" + o.name + "' cannot throw the local exception '" + written + "'");
         if (std::find(o.throws.begin(), o.throws.end(), s->declaration) != o.throws.end())

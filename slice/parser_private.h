@@ -39,6 +39,7 @@ private:
     bool accept(std::string_view symbol);
     bool acceptWord(std::string_view word);
     void expect(std::string_view symbol);
+    void expectEnd(const std::string& what); // a '}'
     [[noreturn]] void fail(const std::string& expected);
     void error(const Location& at, const std::string& text) { diagnostics_.error(at, text); }
     // A name that is declared here, checked.
@@ -91,7 +92,6 @@ private:
     Symbol* resolve(const std::string& written, const Location& at);
     Symbol* resolveValue(const std::string& written, const Location& at);
     void checkLocal(const Type& type, bool local, const std::string& what, const Location& at);
-    void warnDeprecated(const Declaration& d, const Location& at);
     bool isLegalKey(const Type& type, bool& usesSequence) const;
 
     const std::vector<Token>& tokens_;
@@ -102,6 +102,7 @@ private:
     size_t position_ = 0;
     std::vector<std::string> scope_;
     std::string scopeId_; // "::A::B"
+    int depth_ = 0;       // of types around the token; their members do not name things for the module
     std::map<std::string_view, bool> isMain_;
     std::set<std::string_view> begun_; // files whose definitions have begun
     std::map<int, std::string> compactIds_;
@@ -129,12 +130,11 @@ template <class Rule> void Parser::guarded(Rule rule) {
 // { rule rule ... } with an optional ';' behind it.
 template <class Rule> void Parser::braces(const std::string& what, Rule rule) {
     expect("{");
-    while (!isSymbol("}")) {
-        if (at(Token::Kind::End))
-            fail("'}' at the end of " + what);
+    ++depth_;
+    while (!isSymbol("}") && !at(Token::Kind::End))
         guarded(rule);
-    }
-    ++position_;
+    --depth_;
+    expectEnd("'}' at the end of " + what);
     accept(";");
 }
 

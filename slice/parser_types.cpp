@@ -28,17 +28,7 @@ std::string typeName(const Type& type) {
 }
 
 Symbol* Parser::resolve(const std::string& written, const Location& at) {
-    return symbols_.resolve(scopeId_, written, at);
-}
-
-void Parser::warnDeprecated(const Declaration& d, const Location& at) {
-    for (const std::string& m : d.metadata) {
-        if (m != "deprecate" && m.compare(0, 10, "deprecate:") != 0)
-            continue;
-        std::string reason = m.size() > 10 ? ": " + m.substr(10) : "";
-        diagnostics_.warning(at, std::string(kindName(d.kind)) + " '" + d.id() + "' is deprecated" + reason,
-                             Diagnostics::Deprecated);
-    }
+    return symbols_.resolve(scopeId_, written, at, depth_ == 0);
 }
 
 // Whatever is not local must not hold what is.
@@ -89,7 +79,6 @@ Type Parser::namedType(bool local) {
         throw SyntaxError();
     }
     t.declaration = symbol->declaration;
-    warnDeprecated(*t.declaration, begin);
     bool isInterface = t.declaration->kind == Declaration::Kind::Interface;
     bool isClass = t.declaration->kind == Declaration::Kind::Class;
     if (isSymbol("*") && !isInterface && !isClass) {

@@ -32,7 +32,8 @@ Symbol* Symbols::declare(const std::string& scope, const std::string& name, cons
     return &symbol;
 }
 
-Symbol* Symbols::resolve(const std::string& scope, const std::string& written, const Location& at) {
+Symbol* Symbols::resolve(const std::string& scope, const std::string& written, const Location& at,
+                         bool introduces) {
     bool absolute = written.compare(0, 2, "::") == 0;
     std::string inner = absolute ? "" : scope;
     for (;;) {
@@ -41,7 +42,7 @@ Symbol* Symbols::resolve(const std::string& scope, const std::string& written, c
             if (s->id != id)
                 diagnostics_.error(at, "'" + written + "' is written with other capitals than '" + s->id +
                                            "', line " + std::to_string(s->at.line));
-            if (!absolute) {
+            if (!absolute && introduces) {
                 std::string first = lowerCase(written.substr(0, written.find("::")));
                 used_.emplace(lowerCase(scope) + "::" + first, lowerCase(inner) + "::" + first);
             }

@@ -15,7 +15,8 @@ Ice_String Ice_String_from(const char *terminated) {
 }
 
 int Ice_String_same(const Ice_String *a, const Ice_String *b) {
-    return a->size == b->size && memcmp(a->data, b->data, (size_t)a->size) == 0;
+    /* An empty string may lead nowhere. */
+    return a->size == b->size && (a->size == 0 || memcmp(a->data, b->data, (size_t)a->size) == 0);
 }
 
 int Ice_String_equals(Ice_String a, const char *terminated) {
@@ -24,7 +25,7 @@ int Ice_String_equals(Ice_String a, const char *terminated) {
 
 int Ice_String_is(const Ice_String *a, const char *terminated) {
     size_t size = strlen(terminated);
-    return (size_t)a->size == size && memcmp(a->data, terminated, size) == 0;
+    return (size_t)a->size == size && (size == 0 || memcmp(a->data, terminated, size) == 0);
 }
 
 void Ice_OutputStream_init(Ice_OutputStreamPtr os, Ice_Byte *data, Ice_Int capacity) {

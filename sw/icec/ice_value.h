@@ -44,6 +44,7 @@ typedef struct Ice_OutputValues {
     Ice_Int typeCount;
     const Ice_Value *table[ICE_VALUES_MAX]; /* of the slices under way, one behind the other */
     Ice_Int tableBegin, tableEnd;
+    Ice_Bool pending; /* 1.0: instances follow; 0 where only optional parameters could hold one */
     Ice_Bool (*writeTable)(Ice_OutputStreamPtr os); /* for exceptions' slices */
 } Ice_OutputValues;
 
@@ -64,7 +65,7 @@ typedef struct Ice_InputValues {
         Ice_Int number;
     } patches[ICE_VALUES_MAX]; /* for instances that come later */
     Ice_Int patchBegin, patchEnd;
-    Ice_Bool pending;                         /* 1.0: instances follow the parameters */
+    Ice_Bool pending;                         /* as in Ice_OutputValues */
     void (*readTable)(Ice_InputStreamPtr is); /* for exceptions' slices */
     void (*skip)(Ice_InputStreamPtr is);      /* an optional that nobody asked for */
 } Ice_InputValues;

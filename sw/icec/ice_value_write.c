@@ -16,6 +16,7 @@ static Ice_Bool writeTable(Ice_OutputStreamPtr os);
 void Ice_OutputStream_beginValues(Ice_OutputStreamPtr os, Ice_OutputValues *values) {
     memset(values, 0, sizeof *values);
     values->writeTable = writeTable;
+    values->pending = 1;
     os->values = values;
 }
 
@@ -175,7 +176,7 @@ void Ice_OutputStream_endValues(Ice_OutputStreamPtr os) {
         }
         values->written = end;
     }
-    if (os->minor == 0)
+    if (os->minor == 0 && values->pending)
         Ice_OutputStream_writeSize(os, 0);
     os->values = 0;
 }

@@ -153,8 +153,7 @@ void Outer_Shapes_readFromInputStream(Outer_Shapes *v, Ice_InputStreamPtr is) {
 Outer_Points *Outer_Shapes_find(const Outer_Shapes *v, Ice_String key) {
     Ice_Int i;
     for (i = 0; i < v->size; ++i)
-        if (v->data[i].key.size == key.size &&
-            memcmp(v->data[i].key.data, key.data, (size_t)key.size) == 0)
+        if (Ice_String_same(&v->data[i].key, &key))
             return (Outer_Points *)&v->data[i].value;
     return 0;
 }
@@ -436,6 +435,7 @@ void Outer_WithClass_readSlices(Outer_WithClass *v, Ice_InputStreamPtr is) {
 void Outer_WithClass_writeToOutputStream(const Outer_WithClass *v, Ice_OutputStreamPtr os) {
     Ice_OutputValues values;
     Ice_OutputStream_beginValues(os, &values);
+    values.pending = 1;
     Ice_OutputStream_startException(os, 1);
     Outer_WithClass_writeSlices(v, os);
     Ice_OutputStream_endValues(os);

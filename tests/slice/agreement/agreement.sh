@@ -1,0 +1,42 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# agreement: slice2c cases.ice work-folder
+# Each case, from a line "// ok: ..." , "// warning: ..." or "// error: ..." to the next, is given to slice2c and to
+# ZeroC's slice2cpp: both must take it silently, take it with a warning, or refuse it, at the same first line.
+set -eu
+slice2c=$1 cases=$2 work=$3
+rm -rf "$work"
+mkdir -p "$work"
+cd "$work"
+awk '/^\/\/ (ok|warning|error): / { n++; file = sprintf("case%03d.ice", n) } n { print > file }' "$cases"
+
+# What a compiler says of a file: "0" or "1", and the line of its first message.
+said() { # compiler, file
+    status=0
+    "$1" "$2" --output-dir out >log 2>&1 || status=1
+    echo "$status $(sed -n 's/^[^:]*\.ice:\([0-9]*\):.*/\1/p' log | head -n 1)"
+}
+
+mkdir out
+failures=0
+for file in case*.ice; do
+    title=$(head -n 1 "$file")
+    kind=${title#// }
+    kind=${kind%%:*}
+    ours=$(said "$slice2c" "$file")
+    cp log ours
+    theirs=$(said slice2cpp "$file")
+    case $kind in ok) wanted='0 ' ;; warning) wanted='0 [0-9]*' ;; error) wanted='1 [0-9]*' ;; esac
+    # shellcheck disable=SC2254 # a pattern is meant
+    case $theirs in $wanted) ;; *)
+        echo "$file: $title: slice2cpp says otherwise: $theirs" && cat log && failures=$((failures + 1))
+        continue
+        ;;
+    esac
+    [ "$ours" = "$theirs" ] || {
+        echo "$file: $title: slice2cpp: $theirs, slice2c: $ours" && cat log ours
+        failures=$((failures + 1))
+    }
+done
+echo "$(ls case*.ice | wc -l) cases, $failures on which the compilers differ"
+[ $failures = 0 ]

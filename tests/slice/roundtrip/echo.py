@@ -1,0 +1,128 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""echo: `echo.py generate SEED FOLDER` writes Random.ice and servants.c; `echo.py client SEED FOLDER PORT` sends
+random values of every type through the C servants by stock ZeroC Ice, in both encodings, and compares."""
+
+import os
+import sys
+
+import Ice
+
+from model import Model
+
+
+def same(t, a, b, encoding, seen):
+    """Are the values equal? In encoding 1.0 optional members are gone on the way."""
+    if a is None or b is None:
+        return a is None and b is None
+    if t.kind == "sequence":
+        if t.element.kind == "byte":
+            return bytes(a) == bytes(b)
+        return len(a) == len(b) and all(same(t.element, x, y, encoding, seen) for x, y in zip(a, b))
+    if t.kind == "dictionary":
+        return a.keys() == b.keys() and all(same(t.element, a[k], b[k], encoding, seen) for k in a)
+    if t.kind == "struct":
+        return all(same(ft, getattr(a, n), getattr(b, n), encoding, seen) for n, ft, _ in t.fields)
+    if t.kind == "class":
+        if type(a) is not type(b):
+            return False
+        if id(a) in seen:
+            return seen[id(a)] is b  # shared instances stay shared
+        seen[id(a)] = b
+        t = next(d for d in model.declared if d.name == type(a).__name__)
+        return members(t, a, b, encoding, seen)
+    if t.kind == "proxy" and encoding == "1.0":  # which does not carry a proxy's own encoding
+        return a.ice_encodingVersion(Ice.Encoding_1_0) == b.ice_encodingVersion(Ice.Encoding_1_0)
+    return a == b
+
+
+def members(t, a, b, encoding, seen):
+    for name, ft, tag in t.all_fields():
+        x, y = getattr(a, name), getattr(b, name)
+        if tag is not None and (x is Ice.Unset or encoding == "1.0"):
+            if y is not Ice.Unset:
+                return False
+        elif not same(ft, x, y, encoding, seen):
+            return False
+    return True
+
+
+class Members:
+    """Values for the members of an exception."""
+
+
+def check(what, ok, *values):
+    if not ok:
+        print("echo: seed %s: %s: what came back differs:" % (sys.argv[2], what))
+        for v in values:
+            print("  ", repr(v)[:2000])
+        sys.exit(1)
+
+
+def plain(echo, module, ic, encoding, form, i, t):
+    budget = [40]
+    v = model.value(t, module, ic, budget, [])
+    result, w = getattr(echo, "plain%d%s" % (i, form))(v)
+    what = "%s in %s, %s" % (t.slice(), encoding, form)
+    check(what, same(t, v, result, encoding, {}) and same(t, v, w, encoding, {}), v, result, w)
+
+
+def maybe(echo, module, ic, encoding, i, t):
+    for v in (Ice.Unset, model.value(t, module, ic, [40], [])):
+        result, w = getattr(echo, "maybe%d" % i)(v)
+        what = "optional %s in %s" % (t.slice(), encoding)
+        if v is Ice.Unset or encoding == "1.0":
+            check(what, result is Ice.Unset and w is Ice.Unset, v, result, w)
+        else:
+            check(what, same(t, v, result, encoding, {}) and same(t, v, w, encoding, {}), v, result, w)
+
+
+def thrown(echo, module, ic, encoding, form, e):
+    sent, graph = Members(), []
+    for name, ft, tag in e.all_fields():
+        unset = tag is not None and model.random.random() < 0.5
+        setattr(sent, name, Ice.Unset if unset else model.value(ft, module, ic, [15], graph))
+    values = [getattr(sent, name) for name, _, _ in e.all_fields()]
+    try:
+        getattr(echo, "raise%s%s" % (e.name, form))(*values)
+        check(e.name, False, "nothing was thrown")
+    except getattr(module, model.root(e).name) as got:
+        what = "exception %s in %s, %s" % (e.name, encoding, form)
+        check(what, type(got).__name__ == e.name and members(e, sent, got, encoding, {}), vars(sent), got)
+
+
+def client(folder, port):
+    Ice.loadSlice(os.path.join(folder, "Random.ice"))
+    import T as module
+
+    calls = 0
+    data = Ice.InitializationData()
+    data.properties = Ice.createProperties()
+    data.properties.setProperty("Ice.MessageSizeMax", "64")
+    with Ice.initialize(data) as ic:
+        for encoding in ("1.1", "1.0"):
+            echo = module.EchoPrx.uncheckedCast(ic.stringToProxy("echo -e %s:tcp -h 127.0.0.1 -p %s" % (encoding, port)))
+            for i, t in enumerate(model.types):
+                for _ in range(12):
+                    for form in model.formats(t):
+                        plain(echo, module, ic, encoding, form, i, t)
+                    maybe(echo, module, ic, encoding, i, t)
+                    calls += 3
+            for e in model.exceptions:
+                for form in ("Compact", "Sliced"):
+                    for _ in range(12):
+                        thrown(echo, module, ic, encoding, form, e)
+                        calls += 1
+        echo.shutdown()
+    print("echo: seed %s: %d types, %d exceptions, %d values each came back as they went" % (
+        sys.argv[2], len(model.types), len(model.exceptions), calls))
+
+
+model = Model(sys.argv[2])
+if sys.argv[1] == "generate":
+    with open(os.path.join(sys.argv[3], "Random.ice"), "w") as f:
+        f.write(model.slice_text())
+    with open(os.path.join(sys.argv[3], "servants.c"), "w") as f:
+        f.write(model.c_text())
+else:
+    client(sys.argv[3], sys.argv[4])

@@ -1,0 +1,20 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# roundtrip: slice2c sw-folder work-folder interop.sh
+# Random Slice types and values (SEED) through generated C servants, against stock ZeroC Ice; with sanitizers.
+set -eu
+slice2c=$1 sw=$2 work=$3 interop=$4
+here=$(dirname "$0")
+seed=${SEED:-1}
+echo "SEED=$seed"
+rm -rf "$work"
+mkdir -p "$work"
+/usr/bin/python3 "$here/echo.py" generate "$seed" "$work"
+"$slice2c" "$work/Random.ice" --output-dir "$work"
+# With room for graphs and long sequences; -O0, since most of the time goes into compiling.
+# shellcheck disable=SC2046
+cc -O0 -w -fsanitize=address,undefined -fno-sanitize-recover=undefined -DICE_ARENA_BYTES=262144 -DICE_MESSAGE_MAX=65536 \
+    -DICE_IDENTITY_MAX=255 -I"$sw/base" -I"$sw/icec" -I"$sw/icec/endpoints" -I"$work" -I"$here" \
+    -o "$work/server" "$here/server.c" "$work/servants.c" "$work/Random_types.c" "$work/Random_server.c" \
+    "$sw"/icec/*.c "$sw/icec/endpoints/tcp_endpoint.c"
+"$interop" "$work/server" -- /usr/bin/python3 "$here/echo.py" client "$seed" "$work"

@@ -47,7 +47,7 @@ void Parser::structure() {
     Declaration& d = declareType(Declaration::Kind::Struct, false);
     if (isSymbol(";"))
         fail("'{': a struct cannot be declared forward");
-    braces("struct '" + d.name + "'", [&] { member(d, false); });
+    braces(d, [&] { member(d, false); });
     if (d.fields.empty())
         error(d.at, "a struct has at least one member");
 }
@@ -58,7 +58,7 @@ void Parser::exception() {
         fail("'{': an exception cannot be declared forward");
     if (acceptWord("extends"))
         d.bases = baseList(d, Declaration::Kind::Exception, false);
-    braces("exception '" + d.name + "'", [&] { member(d, true); });
+    braces(d, [&] { member(d, true); });
 }
 
 void Parser::classDefinition() {
@@ -81,7 +81,7 @@ void Parser::classDefinition() {
         ++position_;
         (void)baseList(d, Declaration::Kind::Interface, true);
     }
-    braces("class '" + d.name + "'", [&] { member(d, true); });
+    braces(d, [&] { member(d, true); });
 }
 
 // A data member; a class's operation too.

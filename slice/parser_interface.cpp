@@ -68,7 +68,7 @@ void Parser::interface() {
     if (acceptWord("extends"))
         d.bases = baseList(d, Declaration::Kind::Interface, true);
     checkBases(d);
-    braces("interface '" + d.name + "'", [&] { operation(d); });
+    braces(d, [&] { operation(d); });
 }
 
 void Parser::operation(Declaration& d) {
@@ -100,6 +100,7 @@ void Parser::operation(Declaration& d) {
 
 void Parser::checkOperation(const Declaration& d, const Operation& o) {
     std::string called = lowerCase(o.name);
+    (void)symbols_.hasChanged(d.id(), o.name, o.at);
     if (called == lowerCase(d.name))
         error(o.at, "operation '" + o.name + "' must differ from the name of its " + kindName(d.kind));
     std::vector<std::pair<const Operation*, const Declaration*>> list;

@@ -10,6 +10,9 @@
 #include <map>
 #include <set>
 
+const char* kindName(Declaration::Kind kind);
+std::string typeName(const Type& type);
+
 class Parser {
 public:
     Parser(const std::vector<Token>& tokens, const std::string& mainFile, NameRules rules,
@@ -48,7 +51,7 @@ private:
     void recover();
     // Runs a rule; after a syntax error goes on behind the next ';' or '}'.
     template <class Rule> void guarded(Rule rule);
-    template <class Rule> void braces(const std::string& what, Rule rule);
+    template <class Rule> void braces(const Declaration& d, Rule rule);
     std::string doc();
 
     // ---- files and metadata (parser.cpp)
@@ -102,7 +105,7 @@ private:
     size_t position_ = 0;
     std::vector<std::string> scope_;
     std::string scopeId_; // "::A::B"
-    int depth_ = 0;       // of types around the token; their members do not name things for the module
+    std::string user_;    // the type around the token: it uses names on its own account, not the module's
     std::map<std::string_view, bool> isMain_;
     std::set<std::string_view> begun_; // files whose definitions have begun
     std::map<int, std::string> compactIds_;
@@ -112,9 +115,6 @@ private:
     bool local_ = false;
     Unit unit_;
 };
-
-const char* kindName(Declaration::Kind kind);
-std::string typeName(const Type& type);
 
 template <class Rule> void Parser::guarded(Rule rule) {
     size_t before = position_;
@@ -128,13 +128,13 @@ template <class Rule> void Parser::guarded(Rule rule) {
 }
 
 // { rule rule ... } with an optional ';' behind it.
-template <class Rule> void Parser::braces(const std::string& what, Rule rule) {
+template <class Rule> void Parser::braces(const Declaration& d, Rule rule) {
     expect("{");
-    ++depth_;
+    user_ = d.id();
     while (!isSymbol("}") && !at(Token::Kind::End))
         guarded(rule);
-    --depth_;
-    expectEnd("'}' at the end of " + what);
+    user_.clear();
+    expectEnd("'}' at the end of " + std::string(kindName(d.kind)) + " '" + d.name + "'");
     accept(";");
 }
 

@@ -28,7 +28,7 @@ std::string typeName(const Type& type) {
 }
 
 Symbol* Parser::resolve(const std::string& written, const Location& at) {
-    return symbols_.resolve(scopeId_, written, at, depth_ == 0);
+    return symbols_.resolve(scopeId_, written, at, user_.empty() ? scopeId_ : user_);
 }
 
 // Whatever is not local must not hold what is.

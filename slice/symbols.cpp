@@ -12,12 +12,8 @@ Symbol* Symbols::find(const std::string& id) {
 
 Symbol* Symbols::declare(const std::string& scope, const std::string& name, const Location& at, bool& isNew) {
     std::string id = scope + "::" + name, key = lowerCase(id);
-    auto used = used_.find(key);
-    if (used != used_.end() && used->second != key) {
-        diagnostics_.error(at, "'" + name + "' has changed meaning: it was used as '" + used->second +
-                                   "' in this scope before");
+    if (hasChanged(scope, name, at))
         return nullptr;
-    }
     auto [it, inserted] = table_.try_emplace(key);
     isNew = inserted;
     Symbol& symbol = it->second;
@@ -32,8 +28,18 @@ Symbol* Symbols::declare(const std::string& scope, const std::string& name, cons
     return &symbol;
 }
 
+bool Symbols::hasChanged(const std::string& user, const std::string& name, const Location& at) {
+    std::string key = lowerCase(user + "::" + name);
+    auto used = used_.find(key);
+    if (used == used_.end() || used->second == key)
+        return false;
+    diagnostics_.error(at, "'" + name + "' has changed meaning: it was used as '" + used->second +
+                               "' in this scope before");
+    return true;
+}
+
 Symbol* Symbols::resolve(const std::string& scope, const std::string& written, const Location& at,
-                         bool introduces) {
+                         const std::string& user) {
     bool absolute = written.compare(0, 2, "::") == 0;
     std::string inner = absolute ? "" : scope;
     for (;;) {
@@ -42,9 +48,9 @@ Symbol* Symbols::resolve(const std::string& scope, const std::string& written, c
             if (s->id != id)
                 diagnostics_.error(at, "'" + written + "' is written with other capitals than '" + s->id +
                                            "', line " + std::to_string(s->at.line));
-            if (!absolute && introduces) {
+            if (!absolute) {
                 std::string first = lowerCase(written.substr(0, written.find("::")));
-                used_.emplace(lowerCase(scope) + "::" + first, lowerCase(inner) + "::" + first);
+                used_.emplace(lowerCase(user) + "::" + first, lowerCase(inner) + "::" + first);
             }
             return s;
         }

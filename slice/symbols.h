@@ -29,9 +29,11 @@ public:
     // Declares `name` in `scope` ("" or "::A::B"): a new symbol, or the one that has the name already.
     // 0: an error was said.
     Symbol* declare(const std::string& scope, const std::string& name, const Location& at, bool& isNew);
-    // What `written` means in `scope`, searched from the inside out; 0: nothing. `introduces`: the scope must not
-    // give the name another meaning later.
-    Symbol* resolve(const std::string& scope, const std::string& written, const Location& at, bool introduces);
+    // What `written` means in `scope`, searched from the inside out; 0: nothing. `user`, a module or a type, must
+    // not give the name another meaning later.
+    Symbol* resolve(const std::string& scope, const std::string& written, const Location& at, const std::string& user);
+    // Says so if `user` has used the name for something else.
+    bool hasChanged(const std::string& user, const std::string& name, const Location& at);
     // Enumerators of any enum in the scope, or around it, with this name: Ice still allows them bare.
     void declareBare(const std::string& scope, const std::string& name, Symbol* enumerator);
     const std::vector<Symbol*>& bare(std::string scope, const std::string& name) const;

@@ -20,7 +20,7 @@ CPU   ?= host
 UCOS2 ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build run test mutants bench firmware size clean
+.PHONY: help setup build run test mutants bench firmware gdb size clean
 
 help: ## this list
 	@echo "IceSoC: every function of the UAV, in software or in hardware, is a ZeroC Ice object."
@@ -67,6 +67,11 @@ bench: $(BUILD)/build.ninja ## measure the simulator, write build/bench/simulato
 
 firmware: $(BUILD)/build.ninja ## the firmware for the STM32F2: ELF, map, sizes in build/main/firmware
 	@ninja -C $(BUILD) -j $(JOBS) firmware
+
+gdb: $(BUILD)/build.ninja ## debug the firmware's ARM binary against the RTL with gdb-multiarch
+	@ninja -C $(BUILD) -j $(JOBS) mission
+	@mkdir -p "$(OUT)"
+	@testbench/sim/gdb.sh "$(BUILD)" --image "$(IMAGE)" --size "$(SIZE)" --seed "$(SEED)" --out "$(OUT)"
 
 size: $(BUILD)/build.ninja ## bytes of each firmware layer on a Cortex-M3, beside the paper's
 	@ninja -C $(BUILD) size

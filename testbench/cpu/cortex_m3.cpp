@@ -11,6 +11,7 @@
 #include "unicorn_calls.h"
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 
 namespace {
 constexpr uint64_t sleepStep = 1 << 20; // cycles that the surroundings may pass at once
@@ -158,7 +159,9 @@ void CortexM3::sleep() {
     asleep_ = true;
     uint64_t from = cycles();
     while (!exceptions_.wakes() && !stopAsked_ && !resetAsked_ && !failure_)
-        passing([&] { control_.pass(bus_.sleep(static_cast<unsigned>(std::min(control_.untilTick(), sleepStep)))); });
+        passing([&] {
+            control_.pass(bus_.sleep(static_cast<unsigned>(std::min(control_.untilTick(), sleepStep))));
+        });
     sleeping_ += cycles() - from;
     asleep_ = false;
 }
@@ -252,7 +255,8 @@ void CortexM3::onWrite(uint32_t address, unsigned bytes, uint32_t value) {
 }
 
 bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
-    if (!control_.isForbidden(address, bytes, write) || synchronous_.number || currentException() == HardFault)
+    if (!control_.isForbidden(address, bytes, write) || synchronous_.number ||
+        currentException() == HardFault)
         return false;
     char text[80];
     std::snprintf(text, sizeof text, "access of %u bytes to 0x%08X: the MPU forbids it", bytes, address);
@@ -261,4 +265,54 @@ bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
     attention_ = true;
     uc_emu_stop(uc_);
     return true;
+}
+
+// ---- a debugger's accesses outside of memory: in words where they are aligned, else in bytes ----
+
+bool CortexM3::debugRead(uint32_t address, void* data, uint32_t bytes) {
+    if (readMemory(address, data, bytes))
+        return true;
+    auto* to = static_cast<uint8_t*>(data);
+    try {
+        while (bytes) {
+            unsigned size = address % 4 == 0 && bytes >= 4 ? 4 : address % 2 == 0 && bytes >= 2 ? 2 : 1;
+            uint32_t value = 0;
+            if (address >= 0xE0000000) {
+                if (!control_.read(address, size, value))
+                    return false;
+            } else {
+                value = bus_.read(address, size);
+                control_.pass(bus_.takeWaited());
+            }
+            std::memcpy(to, &value, size);
+            to += size, address += size, bytes -= size;
+        }
+    } catch (const CpuBus::Error&) {
+        (void)bus_.takeWaited();
+    }
+    return bytes == 0;
+}
+
+bool CortexM3::debugWrite(uint32_t address, const void* data, uint32_t bytes) {
+    if (writeMemory(address, data, bytes))
+        return true;
+    const auto* from = static_cast<const uint8_t*>(data);
+    try {
+        while (bytes) {
+            unsigned size = address % 4 == 0 && bytes >= 4 ? 4 : address % 2 == 0 && bytes >= 2 ? 2 : 1;
+            uint32_t value = 0;
+            std::memcpy(&value, from, size);
+            if (address >= 0xE0000000) {
+                if (!control_.write(address, size, value))
+                    return false;
+            } else {
+                bus_.write(address, size, value);
+                control_.pass(bus_.takeWaited());
+            }
+            from += size, address += size, bytes -= size;
+        }
+    } catch (const CpuBus::Error&) {
+        (void)bus_.takeWaited();
+    }
+    return bytes == 0;
 }

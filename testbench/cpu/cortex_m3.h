@@ -63,6 +63,9 @@ public:
     bool readMemory(uint32_t address, void* data, uint32_t bytes) const;
     bool writeMemory(uint32_t address, const void* data, uint32_t bytes);
     void loadFlash(uint32_t address, const std::vector<uint8_t>& bytes);
+    // What a debugger asks for: memory, else registers and windows by accesses like the processor's own.
+    bool debugRead(uint32_t address, void* data, uint32_t bytes);
+    bool debugWrite(uint32_t address, const void* data, uint32_t bytes);
     uint32_t word(uint32_t address) const; // 0 where there is no memory
 
     // Power-on or system reset: registers from the vector table; RAM stays.

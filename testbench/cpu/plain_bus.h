@@ -27,7 +27,9 @@ struct PlainCpu {
         cpu.reset();
     }
     uint32_t variable(const std::string& name) const { return cpu.word(image.symbol(name)); }
-    void setVariable(const std::string& name, uint32_t value) { cpu.writeMemory(image.symbol(name), &value, 4); }
+    void setVariable(const std::string& name, uint32_t value) {
+        cpu.writeMemory(image.symbol(name), &value, 4);
+    }
     std::string text(const std::string& name) const {
         std::string bytes(image.size(name), 0);
         cpu.readMemory(image.symbol(name), bytes.data(), image.size(name));

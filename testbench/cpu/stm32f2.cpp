@@ -10,12 +10,16 @@ namespace {
 constexpr uint32_t iwdg = 0x40003000, syscfg = 0x40013800, exti = 0x40013C00, gpio = 0x40020000,
                    crcUnit = 0x40023000, rcc = 0x40023800, flashInterface = 0x40023C00, windows = 0x60000000,
                    fsmcRegisters = 0xA0000000;
-constexpr uint32_t ahb1Enable = rcc + 0x30, ahb3Enable = rcc + 0x38, apb2Enable = rcc + 0x44, csr = rcc + 0x74;
-constexpr uint32_t padReset = 1u << 26, powerReset = 1u << 27, softwareReset = 1u << 28, watchdogReset = 1u << 29;
+constexpr uint32_t ahb1Enable = rcc + 0x30, ahb3Enable = rcc + 0x38, apb2Enable = rcc + 0x44,
+                   csr = rcc + 0x74;
+constexpr uint32_t padReset = 1u << 26, powerReset = 1u << 27, softwareReset = 1u << 28,
+                   watchdogReset = 1u << 29;
 constexpr uint64_t lsiNs = 31'250; // one cycle of 32 kHz
 constexpr unsigned extiVector = 6; // of line 0; up to line 4 each has its own
 
-bool isIn(uint32_t address, uint32_t base, uint32_t bytes) { return address - base < bytes; }
+bool isIn(uint32_t address, uint32_t base, uint32_t bytes) {
+    return address - base < bytes;
+}
 
 // Which pins of ports D..G the FSMC has (data sheet of the STM32F207, alternate functions).
 struct Pins {
@@ -29,8 +33,7 @@ constexpr Pins fsmcPins[] = {{3, 0xFFF3, "D"}, {4, 0xFFFF, "E"}, {5, 0xF03F, "F"
 
 Stm32F2::Stm32F2(FsmcMaster& fsmc, std::function<uint64_t()> now, Config config)
     : fsmc_(fsmc), now_(std::move(now)), config_(config),
-      cpu_(*this,
-           {0x08000000, 0x100000, 0x20000000, 0x20000, config.hclkHz / 8 / 1000},
+      cpu_(*this, {0x08000000, 0x100000, 0x20000000, 0x20000, config.hclkHz / 8 / 1000},
            {{0x40000000, 0x80000}, {windows, 0x10000000}, {fsmcRegisters, 0x1000}}) {
     cpu_.listener.systemReset = [this] {
         bool byWatchdog = watchdog_.fired;
@@ -55,10 +58,10 @@ void Stm32F2::powerOn() {
 
 void Stm32F2::resetPeripherals() {
     registers_.clear();
-    registers_[rcc] = 0x83;              // HSI on and ready
-    registers_[rcc + 4] = 0x24003010;    // PLLCFGR
-    registers_[gpio] = 0xA8000000;       // debug pins of port A
-    registers_[gpio + 0x400] = 0x280;    // and of port B
+    registers_[rcc] = 0x83;           // HSI on and ready
+    registers_[rcc + 4] = 0x24003010; // PLLCFGR
+    registers_[gpio] = 0xA8000000;    // debug pins of port A
+    registers_[gpio + 0x400] = 0x280; // and of port B
     watchdog_ = {};
     crc_ = 0xFFFFFFFF;
     pendingExti_ = 0;
@@ -126,7 +129,9 @@ uint32_t Stm32F2::read(uint32_t address, unsigned bytes) {
     uint64_t before = fsmc_.hclks();
     requireFsmc();
     try {
-        uint32_t value = bytes == 1 ? fsmc_.read8(address) : bytes == 2 ? fsmc_.read16(address) : fsmc_.read32(address);
+        uint32_t value = bytes == 1   ? fsmc_.read8(address)
+                         : bytes == 2 ? fsmc_.read16(address)
+                                      : fsmc_.read32(address);
         waited_ += static_cast<unsigned>(fsmc_.hclks() - before) * config_.coreCyclesPerHclk;
         return value;
     } catch (const FsmcError& e) {
@@ -166,7 +171,8 @@ void Stm32F2::requireFsmc() {
             bool alternate = (stored(base) >> 2 * pin & 3) == 2;
             bool function = (stored(base + 0x20 + 4 * (pin / 8)) >> 4 * (pin % 8) & 15) == 12;
             if ((p.pins >> pin & 1) && !(alternate && function))
-                throw Error(std::string("pin P") + p.name + std::to_string(pin) + " is not switched to the FSMC (AF12)");
+                throw Error(std::string("pin P") + p.name + std::to_string(pin) +
+                            " is not switched to the FSMC (AF12)");
         }
     fsmcUsable_ = true;
 }
@@ -176,10 +182,10 @@ void Stm32F2::requireClock(uint32_t address) const {
         auto found = registers_.find(enable);
         return found != registers_.end() && (found->second >> bit & 1);
     };
-    bool ok = isIn(address, gpio, 0x2400)      ? on(ahb1Enable, (address - gpio) / 0x400)
-              : isIn(address, crcUnit, 0x400)  ? on(ahb1Enable, 12)
-              : isIn(address, syscfg, 0x400)   ? on(apb2Enable, 14)
-                                               : true;
+    bool ok = isIn(address, gpio, 0x2400)     ? on(ahb1Enable, (address - gpio) / 0x400)
+              : isIn(address, crcUnit, 0x400) ? on(ahb1Enable, 12)
+              : isIn(address, syscfg, 0x400)  ? on(apb2Enable, 14)
+                                              : true;
     if (!ok)
         throw Error("the peripheral's clock is off (RCC)");
 }
@@ -226,7 +232,8 @@ void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
     } else if (address == exti + 0x14) {
         pendingExti_ &= ~value;
         updateExti();
-    } else if (isIn(address, exti, 0x14) || isIn(address, syscfg, 0x24) || isIn(address, flashInterface, 0x18)) {
+    } else if (isIn(address, exti, 0x14) || isIn(address, syscfg, 0x24) ||
+               isIn(address, flashInterface, 0x18)) {
         stored(address) = value;
         updateExti();
     } else if (address == crcUnit) {
@@ -245,7 +252,9 @@ void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
 
 // ---- watchdog (RM0033, 18.3) ----
 
-uint64_t Stm32F2::watchdogNs() const { return (uint64_t(watchdog_.reload) + 1) * (4u << watchdog_.prescaler) * lsiNs; }
+uint64_t Stm32F2::watchdogNs() const {
+    return (uint64_t(watchdog_.reload) + 1) * (4u << watchdog_.prescaler) * lsiNs;
+}
 
 void Stm32F2::writeWatchdog(uint32_t offset, uint32_t value) {
     if (offset == 0) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // system_control: registers of a Cortex-M3's private peripheral bus (0xE0000000): SysTick, NVIC,
-// SCB, MPU as far as regions without access or only for reading go, and DWT's cycle counter. ARMv7-M ARM, chapter B3.
+// SCB, MPU as far as regions without access or only for reading go, and DWT's cycle counter. ARMv7-M ARM,
+// chapter B3.
 
 #ifndef SYSTEM_CONTROL_H
 #define SYSTEM_CONTROL_H

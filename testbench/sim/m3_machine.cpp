@@ -3,6 +3,7 @@
 // m3_machine: the chip's interrupt goes to PB0; the processor's time is the time of its FSMC's pins.
 
 #include "m3_machine.h"
+#include <cstdio>
 
 namespace {
 
@@ -27,21 +28,42 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
         if (soc_.cycles() < nextPoll_)
             return;
         nextPoll_ = soc_.cycles() + SocModel::clkHz / 1000;
-        if (!poll_()) {
-            over_ = true;
+        over_ = !poll_();
+        if (over_ || (stub_ && stub_->wantsStop()))
             cpu().stop();
-        }
     });
     soc_.onIrq([this](bool high) { stm32_.setPinB(0, high); });
 }
 
 M3Machine::~M3Machine() { soc_.onIrq(nullptr); }
 
-void M3Machine::run() {
+void M3Machine::powerOn() {
     if (!powered_)
         stm32_.powerOn();
     powered_ = true;
     over_ = false;
+}
+
+void M3Machine::run() {
+    powerOn();
     while (!over_)
         stm32_.run();
+}
+
+void M3Machine::debug(GdbStub& stub) {
+    powerOn();
+    GdbStub::Target target{
+        cpu(), [this](bool step) { return stm32_.run(step); }, [this] { stm32_.powerOn(); }, [this] { return over_; },
+        [this] {
+            char text[160];
+            std::snprintf(text, sizeof text, "%.6f s simulated, %llu instructions, %llu cycles; last fault: ",
+                          static_cast<double>(soc_.now()) / 1e9, static_cast<unsigned long long>(cpu().instructions()),
+                          static_cast<unsigned long long>(cpu().cycles()));
+            return text + (cpu().lastFault.empty() ? std::string("none") : cpu().lastFault) + "\n";
+        }};
+    stub_ = &stub;
+    bool goesOn = stub.serve(target, [this] { return poll_(); });
+    stub_ = nullptr;
+    if (goesOn)
+        run();
 }

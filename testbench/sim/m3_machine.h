@@ -6,6 +6,7 @@
 #define M3_MACHINE_H
 
 #include "soc_model.h"
+#include "gdb_stub.h"
 #include "stm32f2.h"
 
 class M3Machine {
@@ -24,11 +25,17 @@ public:
     // Runs until poll says so; the first call begins with power-on. Exceptions of the models come through.
     void run();
 
+    // As run(), but a debugger commands; it begins when one connects, and goes on freely when it detaches.
+    void debug(GdbStub& stub);
+
     Stm32F2& stm32() { return stm32_; }
     CortexM3& cpu() { return stm32_.cpu(); }
 
 private:
+    void powerOn();
+
     SocModel& soc_;
+    GdbStub* stub_ = nullptr;
     std::function<bool()> poll_;
     Stm32F2 stm32_;
     uint64_t nextPoll_ = 0;

@@ -5,6 +5,7 @@
 
 #include "camera.h"
 #include "m3_machine.h"
+#include "mark_file.h"
 #include "soc_model.h"
 #include "status.h"
 #include "uav_machine.h"
@@ -21,6 +22,7 @@ extern "C" {
 #include <cstring>
 #include <fcntl.h>
 #include <iostream>
+#include <optional>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -36,6 +38,8 @@ volatile sig_atomic_t stopSignal = 0;
 struct Options {
     std::string image, size = "320x240", out = ".", speed = "real", cpu = "host", firmware = FIRMWARE_ELF;
     uint32_t hclk = 120'000'000;
+    int gdb = -1;
+    std::string marks;
     double loss = 0, duration = 0;
     uint64_t seed = 1;
     bool quiet = false;
@@ -210,7 +214,17 @@ int simulate(const Options& o) {
     };
     if (o.cpu == "m3") {
         M3Machine machine(soc, {o.firmware, o.hclk}, poll);
-        machine.run();
+        std::optional<MarkFile> marks;
+        if (!o.marks.empty())
+            marks.emplace(o.marks, machine.stm32(), [&] { return soc.now(); });
+        if (o.gdb >= 0) {
+            GdbStub stub(static_cast<uint16_t>(o.gdb));
+            std::cout << "icesoc-sim: waiting for a debugger: gdb-multiarch " << o.firmware
+                      << " -ex 'target remote localhost:" << stub.port() << "'" << std::endl;
+            machine.debug(stub);
+        } else {
+            machine.run();
+        }
         if (!o.quiet)
             report(machine);
     } else {
@@ -245,6 +259,9 @@ int main(int argc, char** argv) {
         ->check(CLI::IsMember({"host", "m3"}));
     app.add_option("--firmware", o.firmware, "ELF file for --cpu m3");
     app.add_option("--hclk", o.hclk, "of the Cortex-M3, Hz in simulated time; 0: 6/5 of the fabric's clock");
+    app.add_option("--gdb", o.gdb, "wait for GDB on this port of the loopback interface; 0: any")
+        ->check(CLI::Range(0, 65535));
+    app.add_option("--marks", o.marks, "write exceptions and tasks to this waveform file (VCD)");
     app.add_flag("--quiet", o.quiet, "say nothing");
     app.add_option("command", o.command, "program to run against the modem, behind --");
     app.positionals_at_end();
@@ -253,6 +270,10 @@ int main(int argc, char** argv) {
     action.sa_handler = [](int signal) { stopSignal = signal; };
     for (int signal : {SIGINT, SIGTERM, SIGHUP})
         sigaction(signal, &action, nullptr);
+    if (o.cpu != "m3" && (o.gdb >= 0 || !o.marks.empty())) {
+        std::cerr << "icesoc-sim: --gdb and --marks need --cpu m3\n";
+        return 2;
+    }
     try {
         return simulate(o);
     } catch (const std::exception& e) {

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+//
+// gdb_stub: packets "$payload#checksum", answered one by one (GDB manual, appendix E).
+
+#include "gdb_stub.h"
+#include <arpa/inet.h>
+#include <cerrno>
+#include <cstdio>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <system_error>
+#include <unistd.h>
+
+namespace {
+
+constexpr int xpsrNumber = 25, firstSystemNumber = 26; // as in the description below
+constexpr int systemRegisters[] = {CortexM3::Msp,     CortexM3::Psp,       CortexM3::Primask,
+                                   CortexM3::Basepri, CortexM3::Faultmask, CortexM3::Control};
+
+const char* const description =
+    "<?xml version=\"1.0\"?><!DOCTYPE target SYSTEM \"gdb-target.dtd\"><target version=\"1.0\">"
+    "<architecture>arm</architecture><feature name=\"org.gnu.gdb.arm.m-profile\">"
+    "<reg name=\"r0\" bitsize=\"32\"/><reg name=\"r1\" bitsize=\"32\"/><reg name=\"r2\" bitsize=\"32\"/>"
+    "<reg name=\"r3\" bitsize=\"32\"/><reg name=\"r4\" bitsize=\"32\"/><reg name=\"r5\" bitsize=\"32\"/>"
+    "<reg name=\"r6\" bitsize=\"32\"/><reg name=\"r7\" bitsize=\"32\"/><reg name=\"r8\" bitsize=\"32\"/>"
+    "<reg name=\"r9\" bitsize=\"32\"/><reg name=\"r10\" bitsize=\"32\"/><reg name=\"r11\" bitsize=\"32\"/>"
+    "<reg name=\"r12\" bitsize=\"32\"/><reg name=\"sp\" bitsize=\"32\" type=\"data_ptr\"/>"
+    "<reg name=\"lr\" bitsize=\"32\"/><reg name=\"pc\" bitsize=\"32\" type=\"code_ptr\"/>"
+    "<reg name=\"xpsr\" bitsize=\"32\" regnum=\"25\"/></feature>"
+    "<feature name=\"org.gnu.gdb.arm.m-system\">"
+    "<reg name=\"msp\" bitsize=\"32\" type=\"data_ptr\" regnum=\"26\"/>"
+    "<reg name=\"psp\" bitsize=\"32\" type=\"data_ptr\"/><reg name=\"primask\" bitsize=\"32\"/>"
+    "<reg name=\"basepri\" bitsize=\"32\"/><reg name=\"faultmask\" bitsize=\"32\"/>"
+    "<reg name=\"control\" bitsize=\"32\"/></feature></target>";
+
+std::string hexByte(unsigned value) {
+    char text[4];
+    std::snprintf(text, sizeof text, "%02x", value & 0xFF);
+    return text;
+}
+
+std::string hexWord(uint32_t value) { // in the target's order of bytes
+    std::string text;
+    for (int i = 0; i < 4; ++i)
+        text += hexByte(value >> 8 * i);
+    return text;
+}
+
+std::string bytesOf(const std::string& hex) {
+    std::string bytes;
+    for (size_t i = 0; i + 1 < hex.size(); i += 2)
+        bytes += static_cast<char>(std::strtoul(hex.substr(i, 2).c_str(), nullptr, 16));
+    return bytes;
+}
+
+uint32_t wordOf(const std::string& hex) {
+    std::string b = bytesOf(hex.substr(0, 8));
+    uint32_t value = 0;
+    for (size_t i = 0; i < b.size(); ++i)
+        value |= uint32_t(static_cast<uint8_t>(b[i])) << 8 * i;
+    return value;
+}
+
+// GDB's number of a register to CortexM3's; -1: there is none.
+int registerOf(unsigned long number) {
+    if (number <= 15)
+        return static_cast<int>(number);
+    if (number == xpsrNumber)
+        return CortexM3::Xpsr;
+    unsigned long n = number - firstSystemNumber;
+    return number >= firstSystemNumber && n < std::size(systemRegisters) ? systemRegisters[n] : -1;
+}
+
+const std::string error = "E01";
+
+} // namespace
+
+GdbStub::GdbStub(uint16_t port) {
+    sockaddr_in at{};
+    at.sin_family = AF_INET;
+    at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    at.sin_port = htons(port);
+    int on = 1;
+    socklen_t size = sizeof at;
+    listener_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    if (listener_ < 0 || bind(listener_, reinterpret_cast<sockaddr*>(&at), size) != 0 ||
+        listen(listener_, 1) != 0 || getsockname(listener_, reinterpret_cast<sockaddr*>(&at), &size) != 0)
+        throw std::system_error(errno, std::generic_category(),
+                                "cannot listen on port " + std::to_string(port));
+    port_ = ntohs(at.sin_port);
+}
+
+GdbStub::~GdbStub() {
+    if (connection_ >= 0)
+        close(connection_);
+    close(listener_);
+}
+
+bool GdbStub::accept(const std::function<bool()>& mayWait) {
+    pollfd waiting{listener_, POLLIN, 0};
+    while (mayWait())
+        if (poll(&waiting, 1, 100) > 0) {
+            connection_ = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+            int on = 1;
+            setsockopt(connection_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+            return connection_ >= 0;
+        }
+    return false;
+}
+
+int GdbStub::nextByte() {
+    uint8_t byte;
+    ssize_t n;
+    do
+        n = recv(connection_, &byte, 1, 0);
+    while (n < 0 && errno == EINTR);
+    return n == 1 ? byte : -1;
+}
+
+bool GdbStub::receive(std::string& packet) {
+    for (;;) {
+        int c;
+        do
+            c = nextByte();
+        while (c >= 0 && c != '$');
+        packet.clear();
+        unsigned sum = 0;
+        while ((c = nextByte()) >= 0 && c != '#') {
+            packet += static_cast<char>(c);
+            sum += static_cast<unsigned>(c);
+        }
+        int high = nextByte(), low = nextByte();
+        if (low < 0)
+            return false;
+        const std::string given{static_cast<char>(high), static_cast<char>(low)};
+        bool good = std::strtoul(given.c_str(), nullptr, 16) == (sum & 0xFF);
+        if (!noAcknowledgement_)
+            (void)!::send(connection_, good ? "+" : "-", 1, MSG_NOSIGNAL);
+        if (good)
+            return true;
+    }
+}
+
+void GdbStub::send(const std::string& payload) {
+    unsigned sum = 0;
+    for (char c : payload)
+        sum += static_cast<uint8_t>(c);
+    std::string packet = "$" + payload + "#" + hexByte(sum);
+    (void)!::send(connection_, packet.data(), packet.size(), MSG_NOSIGNAL);
+}
+
+bool GdbStub::wantsStop() {
+    if (connection_ < 0)
+        return false;
+    uint8_t byte;
+    ssize_t n = recv(connection_, &byte, 1, MSG_DONTWAIT);
+    return n == 0 || (n == 1 && byte == 3);
+}
+
+bool GdbStub::serve(const Target& target, const std::function<bool()>& mayWait) {
+    over_ = detached_ = noAcknowledgement_ = false;
+    if (!accept(mayWait))
+        return false;
+    std::string packet;
+    while (!over_ && !detached_) {
+        if (!receive(packet))
+            detached_ = true; // it has gone: the program goes on
+        else
+            send(answer(target, packet));
+    }
+    target.cpu.breakpoints.clear();
+    close(connection_);
+    connection_ = -1;
+    return detached_;
+}
+
+std::string GdbStub::answer(const Target& target, const std::string& packet) {
+    const std::string rest = packet.empty() ? "" : packet.substr(1);
+    switch (packet.empty() ? 0 : packet[0]) {
+    case '?': return "T05";
+    case 'g': return readRegisters(target, 0, CortexM3::Xpsr);
+    case 'G':
+        for (int r = 0; r <= CortexM3::Xpsr && rest.size() >= static_cast<size_t>(8 * r + 8); ++r)
+            target.cpu.setReg(r, wordOf(rest.substr(static_cast<size_t>(8 * r))));
+        return "OK";
+    case 'p': {
+        int r = registerOf(std::strtoul(rest.c_str(), nullptr, 16));
+        return r < 0 ? error : readRegisters(target, r, r);
+    }
+    case 'P': {
+        char* end;
+        int r = registerOf(std::strtoul(rest.c_str(), &end, 16));
+        if (r < 0 || *end != '=')
+            return error;
+        target.cpu.setReg(r, wordOf(end + 1));
+        return "OK";
+    }
+    case 'm': return readMemory(target, rest);
+    case 'M': return writeMemory(target, rest);
+    case 'Z':
+    case 'z': return breakpoint(target, packet);
+    case 'c': return resume(target, false);
+    case 's': return resume(target, true);
+    case 'H': return "OK";
+    case 'T': return "OK";
+    case 'D': detached_ = true; return "OK";
+    case 'k': over_ = true; return "OK";
+    case 'q':
+    case 'Q': return query(target, packet);
+    default: return ""; // not supported
+    }
+}
+
+std::string GdbStub::query(const Target& target, const std::string& packet) {
+    const std::string features = "qXfer:features:read:target.xml:", monitor = "qRcmd,";
+    if (packet.rfind("qSupported", 0) == 0)
+        return "PacketSize=4000;qXfer:features:read+;QStartNoAckMode+";
+    if (packet == "QStartNoAckMode") {
+        noAcknowledgement_ = true;
+        return "OK";
+    }
+    if (packet.rfind("qAttached", 0) == 0)
+        return "1";
+    if (packet.rfind(features, 0) == 0) {
+        unsigned offset = 0, length = 0;
+        std::sscanf(packet.c_str() + features.size(), "%x,%x", &offset, &length);
+        std::string all = description;
+        if (offset >= all.size())
+            return "l";
+        return (offset + length >= all.size() ? "l" : "m") + all.substr(offset, length);
+    }
+    if (packet.rfind(monitor, 0) == 0) {
+        std::string command = bytesOf(packet.substr(monitor.size())), text;
+        if (command == "reset") {
+            target.reset();
+            text = "reset\n";
+        } else if (command == "info") {
+            text = target.describe();
+        } else {
+            text = "monitor reset: power-on reset of the processor; monitor info: time, cycles, last fault\n";
+        }
+        std::string hex;
+        for (char c : text)
+            hex += hexByte(static_cast<uint8_t>(c));
+        return hex;
+    }
+    return "";
+}
+
+std::string GdbStub::readRegisters(const Target& target, int first, int last) {
+    std::string text;
+    for (int r = first; r <= last; ++r)
+        text += hexWord(target.cpu.reg(r));
+    return text;
+}
+
+std::string GdbStub::readMemory(const Target& target, const std::string& arguments) {
+    unsigned address = 0, length = 0;
+    if (std::sscanf(arguments.c_str(), "%x,%x", &address, &length) != 2 || length > 0x1000)
+        return error;
+    std::string bytes(length, 0);
+    if (!target.cpu.debugRead(address, bytes.data(), length))
+        return error;
+    std::string text;
+    for (char c : bytes)
+        text += hexByte(static_cast<uint8_t>(c));
+    return text;
+}
+
+std::string GdbStub::writeMemory(const Target& target, const std::string& arguments) {
+    unsigned address = 0, length = 0;
+    size_t colon = arguments.find(':');
+    if (colon == std::string::npos || std::sscanf(arguments.c_str(), "%x,%x", &address, &length) != 2)
+        return error;
+    std::string bytes = bytesOf(arguments.substr(colon + 1));
+    return bytes.size() == length && target.cpu.debugWrite(address, bytes.data(), length) ? "OK" : error;
+}
+
+std::string GdbStub::breakpoint(const Target& target, const std::string& packet) {
+    unsigned kind = 0, address = 0;
+    if (std::sscanf(packet.c_str() + 1, "%u,%x", &kind, &address) != 2 || kind > 1)
+        return ""; // watchpoints: the debugger steps instead
+    if (packet[0] == 'Z')
+        target.cpu.breakpoints.insert(address & ~1u);
+    else
+        target.cpu.breakpoints.erase(address & ~1u);
+    return "OK";
+}
+
+std::string GdbStub::resume(const Target& target, bool singleStep) {
+    CortexM3::Stop why = target.run(singleStep);
+    if (target.isOver()) {
+        over_ = true;
+        return "W00"; // the program has ended
+    }
+    return why == CortexM3::Stop::Asked ? "T02" : "T05"; // SIGINT, SIGTRAP
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+//
+// gdb_stub: lets a debugger on this machine command a CortexM3: GDB's remote serial protocol over TCP on
+// the loopback interface. Registers, memory, breakpoints, step, continue, interrupt, `monitor reset`.
+
+#ifndef GDB_STUB_H
+#define GDB_STUB_H
+
+#include "cortex_m3.h"
+#include <cstdint>
+#include <functional>
+#include <string>
+
+class GdbStub {
+public:
+    // What the debugger commands. `run` returns when the processor stops (or the simulation ends: then
+    // `isOver` is true); `describe` is the answer to `monitor info`.
+    struct Target {
+        CortexM3& cpu;
+        std::function<CortexM3::Stop(bool singleStep)> run;
+        std::function<void()> reset;
+        std::function<bool()> isOver;
+        std::function<std::string()> describe;
+    };
+    // Listens on 127.0.0.1; port 0 is any free one. Throws std::system_error where it is taken.
+    explicit GdbStub(uint16_t port);
+    ~GdbStub();
+    GdbStub(const GdbStub&) = delete;
+    GdbStub& operator=(const GdbStub&) = delete;
+    uint16_t port() const { return port_; }
+
+    // Waits for a debugger and obeys it. True: it has detached, the program is to go on; false: it has
+    // killed the program, or the simulation is over. `mayWait` false ends the waiting.
+    bool serve(const Target& target, const std::function<bool()>& mayWait);
+    // To be asked while the processor runs: the debugger wants it to stop (Ctrl-C), or has gone.
+    bool wantsStop();
+
+private:
+    bool accept(const std::function<bool()>& mayWait);
+    bool receive(std::string& packet);
+    int nextByte();
+    void send(const std::string& payload);
+    std::string answer(const Target& target, const std::string& packet);
+    std::string query(const Target& target, const std::string& packet);
+    std::string readRegisters(const Target& target, int first, int last);
+    std::string readMemory(const Target& target, const std::string& arguments);
+    std::string writeMemory(const Target& target, const std::string& arguments);
+    std::string breakpoint(const Target& target, const std::string& packet);
+    std::string resume(const Target& target, bool singleStep);
+
+    int listener_ = -1, connection_ = -1;
+    uint16_t port_ = 0;
+    bool over_ = false, detached_ = false, noAcknowledgement_ = false;
+};
+
+#endif

@@ -47,7 +47,7 @@ static void unescape(Ice_String text, Ice_OutputStreamPtr os) {
             const char *known;
             c = text.data[i++];
             known = strchr(from, c);
-            if (c >= '0' && c <= '3') {
+            if (c >= '0' && c <= '7') {
                 int digits = 2, value = c - '0';
                 for (; digits > 0 && i < text.size && text.data[i] >= '0' && text.data[i] <= '7';
                      --digits)
@@ -144,6 +144,24 @@ static Ice_Status parseOpaque(const char *options, Ice_ObjectPrxPtr prx) {
     return ICE_OK;
 }
 
+/* "-x value" again and again; -z of tcp has none. */
+static int areOptions(const char *text) {
+    Ice_String option, value;
+    for (;;) {
+        text += strspn(text, SPACES);
+        if (*text == 0 || *text == ':')
+            return 1;
+        text = word(text, &option);
+        if (!text || option.size != 2 || option.data[0] != '-')
+            return 0;
+        if (option.data[1] == 'z')
+            continue;
+        text = word(text, &value);
+        if (!text || text == value.data)
+            return 0;
+    }
+}
+
 static Ice_Status parseEndpoints(const char *text, Ice_ObjectPrxPtr prx) {
     Ice_Status status = ICE_OK;
     while (*text == ':' && status == ICE_OK) {
@@ -153,7 +171,9 @@ static Ice_Status parseEndpoints(const char *text, Ice_ObjectPrxPtr prx) {
             ++text;
         while (*text == ' ');
         options = Ice_optionsOf(prx->communicator, text);
-        if (options)
+        if (!areOptions(text + strcspn(text, SPACES ":")))
+            status = ICE_PARSE;
+        else if (options)
             status = Ice_ObjectPrx_addEndpoint(prx, options);
         else if (strncmp(text, "opaque ", 7) == 0)
             status = parseOpaque(text + 7, prx);
@@ -204,8 +224,8 @@ static Ice_Status parse(const char *text, Ice_ObjectPrxPtr prx) {
             prx->secure = 1;
         } else {
             text = word(text, &value);
-            if (!text)
-                return ICE_PARSE;
+            if (!text || text == value.data)
+                return ICE_PARSE; /* no closing quote, or no value */
             if (option.data[1] == 'f')
                 facet = value;
             else if (option.data[1] == 'e' && value.size == 3 && memcmp(value.data, "1.", 2) == 0)

@@ -270,6 +270,9 @@ static Ice_Status listenTo(void *context, const char *options) {
 
 static void encode(void *context, const char *options, Ice_OutputStreamPtr os) {
     TcpEndpoint *self = context;
+    const char *timeout;
+    Ice_Int size;
+    int infinite;
     Ice_String host;
     host.data = Ice_findOption(options, 'h', &host.size);
     if (!host.data || host.size > 200)
@@ -280,7 +283,9 @@ static void encode(void *context, const char *options, Ice_OutputStreamPtr os) {
     Ice_OutputStream_writeString(os, host);
     Ice_OutputStream_writeInt(
         os, (Ice_Int)Ice_numberOption(options, 'p', options ? 0 : (U32)self->port));
-    Ice_OutputStream_writeInt(os, (Ice_Int)Ice_numberOption(options, 't', 60000));
+    timeout = Ice_findOption(options, 't', &size);
+    infinite = timeout && size == 8 && memcmp(timeout, "infinite", 8) == 0;
+    Ice_OutputStream_writeInt(os, infinite ? -1 : (Ice_Int)Ice_numberOption(options, 't', 60000));
     Ice_OutputStream_writeBool(os, 0); /* no compression */
 }
 

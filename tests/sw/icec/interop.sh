@@ -1,20 +1,30 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# interop: server-command -- client-command   The server prints its port; the client gets it appended.
+# interop: command -- command ...   Each prints the port that it listens on; the next gets it appended. The
+# last one's exit status counts, and that of the first, which it must have ended.
 set -eu
-server=''
-while [ "$1" != -- ]; do
-    server="$server '$1'"
-    shift
+work=$(mktemp -d)
+pids=''
+# shellcheck disable=SC2086
+trap 'kill $pids 2>/dev/null || true; rm -rf "$work"' EXIT
+first='' port='' command=''
+start() {
+    eval "exec $command $port" >"$work/port" &
+    pids="$pids $!"
+    first=${first:-$!}
+    while [ ! -s "$work/port" ]; do
+        kill -0 $! 2>/dev/null || { echo "$command ended before it listened" && exit 1; }
+        sleep 0.05
+    done
+    port=$(head -n 1 "$work/port")
+    command='' && rm "$work/port"
+}
+for word in "$@"; do
+    if [ "$word" = -- ]; then
+        start
+    else
+        command="$command '$word'"
+    fi
 done
-shift
-port=$(mktemp)
-trap 'kill $pid 2>/dev/null || true; rm -f "$port"' EXIT
-eval "exec $server" >"$port" &
-pid=$!
-while [ ! -s "$port" ]; do
-    kill -0 $pid 2>/dev/null || { echo "the server ended before it listened" && exit 1; }
-    sleep 0.05
-done
-"$@" "$(cat "$port")"
-wait $pid
+eval "$command $port"
+wait "$first"

@@ -244,7 +244,9 @@ TEST_F(Wire, StringsThatAreNoProxiesSaySo) {
     } cases[] = {{"id -x:loop", ICE_PARSE},
                  {":loop", ICE_PARSE},
                  {"a/b/c:loop", ICE_PARSE},
-                 {"id -f:loop", ICE_OK}, // the facet is empty
+                 {"id -f:loop", ICE_PARSE},
+                 {"id:loop -c", ICE_PARSE},
+                 {"id:loop c", ICE_PARSE},
                  {"\"id:loop", ICE_PARSE},
                  {"id junk", ICE_PARSE},
                  {"id -e 2.0:loop", ICE_PARSE},

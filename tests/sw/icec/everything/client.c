@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * client: IceC's client of Everything.ice against a server on the port given. Exit status 0: all as
- * expected. `client PORT slow`: fewer calls.
+ * expected. `client slow PORT`: fewer calls.
  */
 #include "Everything.h"
 #include "tcp_endpoint.h"
@@ -215,14 +215,14 @@ int main(int argc, char **argv) {
     Ice_ObjectPrx base;
     char text[128];
     Ice_Byte minor;
-    int slow = argc > 2 && strcmp(argv[2], "slow") == 0;
+    int slow = argc > 2 && strcmp(argv[1], "slow") == 0;
     if (argc < 2) {
-        fprintf(stderr, "usage: client port [slow]\n");
+        fprintf(stderr, "usage: client [slow] port\n");
         return 2;
     }
     Ice_initialize(&ic);
     CHECK(TcpEndpoint_init(&ic, &tcp) == ICE_OK);
-    sprintf(text, "tester:tcp -h localhost -p %.8s", argv[1]);
+    sprintf(text, "tester:tcp -h localhost -p %.8s", argv[argc - 1]);
     CHECK(Ice_Communicator_stringToProxy(&ic, text, &base) == ICE_OK);
     base.timeoutMs = 120000;
     Ice_ObjectPrx_setReplyBuffer(&base, room, sizeof room);

@@ -126,8 +126,8 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         prx->minor = versions && versions[3] != 0; /* of a later encoding 1.1 is understood there */
     }
     prx->endpointsSize = 1;
-    begin = is->position + 1;
     n = Ice_InputStream_readSequence(is, 8);
+    begin = is->position;
     if (n == 0) {
         Ice_skipStrings(is, 1);
         if (!keep(is, begin, prx))

@@ -75,7 +75,8 @@ private:
     void loop(std::unique_lock<std::mutex>& lock);
     bool downTooLong(U32 now);
     bool setUpModem();
-    bool enterCommandMode();
+    bool findModem();
+    bool enterCommandMode(int guardMs);
     bool command(const std::string& text);
     std::string readReply(int timeoutMs);
     void setSpeed(int baud);

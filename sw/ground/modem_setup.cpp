@@ -4,6 +4,7 @@
 
 #include "engine.h"
 
+#include <algorithm>
 #include <asm/termbits.h> // struct termios2: any rate, 111,111 too
 #include <cerrno>
 #include <chrono>
@@ -18,6 +19,7 @@ namespace {
 
 const int rates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 constexpr int factoryRate = 9600, replyMs = 500, tries = 3;
+constexpr int mostGuard = 3300; // ms, of ATGT
 
 int codeOf(int baud) {
     for (int code = 0; code < 8; ++code)
@@ -84,8 +86,8 @@ std::string Engine::readReply(int timeoutMs) {
     return reply;
 }
 
-bool Engine::enterCommandMode() {
-    int guard = settings_.guardMs + settings_.guardMs / 8 + 5;
+bool Engine::enterCommandMode(int guardMs) {
+    int guard = guardMs + guardMs / 8 + 5;
     if (!waitMs(guard))
         return false;
     ioctl(serial_, TCFLSH, TCIFLUSH);
@@ -109,23 +111,33 @@ bool Engine::command(const std::string& text) {
     return false;
 }
 
-bool Engine::setUpModem() {
-    int candidates[10] = {settings_.baud, factoryRate};
-    for (int i = 0; i < 8; ++i)
-        candidates[2 + i] = rates[7 - i];
-    bool found = false;
-    for (int i = 0; i < 10 && !found; ++i) {
-        if (i >= 2 && (candidates[i] == settings_.baud || candidates[i] == factoryRate))
-            continue;
-        setSpeed(candidates[i]);
-        found = enterCommandMode();
-        log_(2,
-             "+++ at " + std::to_string(candidates[i]) + " baud: " + (found ? "OK" : "no answer"));
+// At the target rate and the factory's first; then there with a longer guard time, because a modem
+// keeps what it was once told (ATGT), and a simulated one may be slower than the clock; then at all
+// rates.
+bool Engine::findModem() {
+    const int guard = settings_.guardMs, longer = std::min(3 * guard, mostGuard);
+    std::vector<std::pair<int, int>> candidates = {{settings_.baud, guard},
+                                                   {factoryRate, guard},
+                                                   {settings_.baud, longer},
+                                                   {factoryRate, longer}};
+    for (int i = 7; i >= 0; --i)
+        if (rates[i] != settings_.baud && rates[i] != factoryRate)
+            candidates.emplace_back(rates[i], guard);
+    for (auto [baud, guardMs] : candidates) {
+        setSpeed(baud);
+        bool found = enterCommandMode(guardMs);
+        log_(2, "+++ at " + std::to_string(baud) + " baud: " + (found ? "OK" : "no answer"));
+        if (found)
+            return true;
         std::lock_guard<std::mutex> lock(mutex_);
         if (stop_)
             return false;
     }
-    if (!found || !command("MY" + hex(settings_.source)) || !command("DH0") ||
+    return false;
+}
+
+bool Engine::setUpModem() {
+    if (!findModem() || !command("MY" + hex(settings_.source)) || !command("DH0") ||
         !command("DL" + hex(settings_.target)) || !command("CH" + hex(settings_.rfChannel)) ||
         !command("ID" + hex(settings_.pan)) || !command("RO3") ||
         !command("BD" + hex(codeOf(settings_.baud))) || !command("CN"))

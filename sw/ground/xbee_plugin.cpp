@@ -29,7 +29,7 @@ using IceInternal::EndpointIPtr;
 
 const Ice::Short endpointType = 0x4158;
 const string protocolName = "xbee-at";
-const Ice::Int defaultTimeoutMs = 20000; // setting a modem up takes seconds
+const Ice::Int defaultTimeoutMs = 30000; // setting a modem up takes seconds
 
 struct Options {
     XBeeAT::Settings serial;

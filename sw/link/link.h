@@ -14,21 +14,38 @@
 #include "base.h"
 
 #define LINK_CHANNELS 4
-#define LINK_MAX_FRAME 100U    /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
-#define LINK_MAX_MESSAGE 8192U /* bytes of one message */
+#define LINK_MAX_FRAME 100U /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
 
+/* Options, for the compiler's command line; any two settings understand each other. The smallest:
+ * LINK_WINDOW=1 LINK_HEADS=0 LINK_RIDE=0 LINK_STATISTICS=0. */
 #ifndef LINK_WINDOW
-#define LINK_WINDOW 32U /* fragments in flight, at most 64 */
+#define LINK_WINDOW 32U /* fragments in flight, a power of two up to 64; 1: stop and wait */
+#endif
+#ifndef LINK_HEADS
+#define LINK_HEADS 1 /* heads of IceP messages are sent once (link_head.c, 2.3 KiB of tables) */
+#endif
+#ifndef LINK_RIDE
+#define LINK_RIDE 1 /* acknowledgements ride on short messages */
+#endif
+#ifndef LINK_STATISTICS
+#define LINK_STATISTICS 1
+#endif
+#ifndef LINK_MAX_MESSAGE
+#define LINK_MAX_MESSAGE \
+    8192U /* bytes of one message; a longer one from the peer ends the session */
 #endif
 #ifndef LINK_SEND_BYTES
-#define LINK_SEND_BYTES 16384U /* queue of outgoing messages, shared by the channels */
+#define LINK_SEND_BYTES \
+    16384U /* queue of outgoing messages, shared by the channels; a power of two */
 #endif
-#define LINK_SEND_MESSAGES 32U /* messages, openings and closings in that queue */
+#ifndef LINK_SEND_MESSAGES
+#define LINK_SEND_MESSAGES 32U /* messages, openings and closings in that queue, at most 128 */
+#endif
 
 typedef enum Link_Status {
     LINK_OK = 0,
-    LINK_DOWN,     /* no session with the peer */
-    LINK_FULL,     /* the send queue has no room now: try again after the callback `writable` */
+    LINK_DOWN, /* no session with the peer */
+    LINK_FULL, /* no room in the send queue now, or the channel is still being closed: try later */
     LINK_TOO_LONG, /* more than LINK_MAX_MESSAGE bytes, or none */
     LINK_CLOSED    /* there is no such channel, or neither side has opened it */
 } Link_Status;
@@ -75,8 +92,9 @@ typedef struct Link_Statistics {
     U32 crcErrors, bytesSkipped; /* what resynchronisation threw away */
     U32 duplicates;              /* fragments that had already arrived */
     U32 messagesSent, messagesReceived;
-    U32 sessions;    /* times the link came up */
-    U32 roundTripUs; /* smoothed estimate */
+    U32 sessions;       /* times the link came up */
+    U32 roundTripUs;    /* smoothed estimate */
+    U32 headBytesSaved; /* by link_head.c, of what was sent */
 } Link_Statistics;
 
 /* Prepares `link`. `port` must stay valid; `byteTimeUs16` is the time of one byte on the slowest

@@ -4,21 +4,17 @@
  */
 #include "link.h"
 
-/* CRC-16/CCITT, polynomial 0x1021, MSB first; four bits at a time, so that the table is small. */
+#include <string.h>
+
+/* CRC-16/CCITT, polynomial 0x1021, MSB first, without a table: x ^= x >> 4 (Sarwate, by shifts). */
 U16 Link_crc(U16 seed, const U8* bytes, U32 size) {
-    static const U16 table[16] = {0x0000, 0x1021, 0x2042, 0x3063, 0x4084, 0x50A5, 0x60C6, 0x70E7,
-                                  0x8108, 0x9129, 0xA14A, 0xB16B, 0xC18C, 0xD1AD, 0xE1CE, 0xF1EF};
     U32 crc = seed;
-    U32 i;
-    for (i = 0; i < size; ++i) {
-        crc = (crc << 4 & 0xFFF0U) ^ table[crc >> 12 ^ (U32)(bytes[i] >> 4)];
-        crc = (crc << 4 & 0xFFF0U) ^ table[crc >> 12 ^ (U32)(bytes[i] & 15U)];
+    while (size--) {
+        U32 x = (crc >> 8 ^ *bytes++) & 0xFFU;
+        x ^= x >> 4;
+        crc = (crc << 8 ^ x << 12 ^ x << 5 ^ x) & 0xFFFFU;
     }
     return (U16)crc;
-}
-
-int Link_isBefore(U32 a, U32 b) {
-    return (S32)(a - b) < 0;
 }
 
 U32 Link_get32(const U8* p) {
@@ -33,164 +29,171 @@ void Link_put32(U8* p, U32 value) {
 }
 
 /* Adds the checksum and hands the frame over. 1: taken. */
-int Link_sendFrame(Link* link, U8* frame, U32 payload, U16 seed, U32 now) {
+int Link_sendFrame(Link* link, U8* frame, U32 payload, U16 seed) {
     U32 size = payload + LINK_OVERHEAD;
     U16 crc = Link_crc(seed, frame, size - 2U);
-    U32 start = Link_isBefore(link->paceUntil, now) ? now : link->paceUntil;
     frame[size - 2U] = (U8)(crc >> 8);
     frame[size - 1U] = (U8)crc;
     if (link->port->transmit(link->context, frame, size) != 0)
         return 0;
+    if (LINK_BEFORE(link->paceUntil, link->now))
+        link->paceUntil = link->now;
     /* A packet shorter than the longest is followed by the silence that sends it off. */
-    link->paceUntil =
-        start + ((size + (size < LINK_MAX_FRAME ? 4U : 0U)) * link->byteTimeUs16 >> 4);
-    ++link->statistics.framesSent;
-    link->statistics.bytesSent += size;
+    link->paceUntil += (size + (size < LINK_MAX_FRAME ? 4U : 0U)) * link->byteTimeUs16 >> 4;
+    LINK_COUNT(link, framesSent, 1U);
+    LINK_COUNT(link, bytesSent, size);
     return 1;
 }
 
-U8 Link_controlBits(const Link_Session* session, Link_Kind kind) {
-    return (U8)((U32)kind << 5 | (U32)session->epoch << 2);
-}
-
-int Link_sendControl(Link* link, Link_Kind kind, U8 byte1, const U8* payload, U32 size, U32 now) {
-    U8 frame[LINK_OVERHEAD + 8U];
-    U32 i;
+/* A control frame whose payload, `size` bytes, stands at frame + 3. 1: taken. */
+int Link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 byte1, U32 size) {
+    U32 bits = (U32)kind << 5 | (U32)link->session.epoch << 2;
+    U16 seed = link->session.seed;
+    if (kind >= LINK_KIND_HELLO && kind <= LINK_KIND_RST) {
+        bits |= LINK_FEATURES;
+        seed = LINK_NO_SEED;
+    }
     frame[0] = (U8)(LINK_CONTROL | size);
-    frame[1] = byte1;
-    frame[2] = Link_controlBits(&link->session, kind);
-    for (i = 0; i < size; ++i)
-        frame[3U + i] = payload[i];
-    return Link_sendFrame(
-        link, frame, size,
-        kind == LINK_KIND_ACK || kind >= LINK_KIND_BYE ? link->session.seed : 0xFFFFU, now);
-}
-
-/* Whether a header makes sense now; it keeps chance from passing garbage on to the checksum. */
-static int isPlausibleControl(U32 kind, U32 payload) {
-    static const U8 sizes[LINK_KINDS] = {1, 4, 8, 0, 0, 0};
-    if (kind >= LINK_KINDS)
-        return 0;
-    return payload == sizes[kind] || (kind == LINK_KIND_ACK && payload == 5U);
+    frame[1] = (U8)byte1;
+    frame[2] = (U8)bits;
+    return Link_sendFrame(link, frame, size, seed);
 }
 
 static int hasGoodCrc(const U8* frame, U32 payload, U16 seed) {
-    U32 size = payload + LINK_OVERHEAD;
-    return Link_crc(seed, frame, size - 2U) == (U32)((U32)frame[size - 2U] << 8 | frame[size - 1U]);
+    U32 size = payload + 3U;
+    return Link_crc(seed, frame, size) == ((U32)frame[size] << 8 | frame[size + 1U]);
 }
 
 /* A frame of the session, or the first one of a session that a HELLO announced. */
-static int belongsToSession(Link* link, const U8* frame, U32 payload, U32 now) {
+static int belongsToSession(Link* link, const U8* frame, U32 payload) {
     U32 epoch = frame[2] >> 2 & 7U;
     if (link->state == LINK_STATE_UP && epoch == link->session.epoch &&
         hasGoodCrc(frame, payload, link->session.seed))
         return 1;
-    if (link->hasCandidate && epoch == link->candidate.epoch &&
-        hasGoodCrc(frame, payload, link->candidate.seed)) {
-        Link_confirmCandidate(link, now);
-        return 1;
-    }
-    return 0;
-}
-
-/* Acts upon one whole frame. 0: it is none. */
-static int takeFrame(Link* link, const U8* frame, U32 payload, U32 now) {
-    U32 kind = frame[2] >> 5;
-    if (!(frame[0] & LINK_CONTROL)) {
-        if ((payload == 0 && !(frame[2] & LINK_LAST)) ||
-            !belongsToSession(link, frame, payload, now))
-            return 0;
-        link->heardAt = now;
-        Link_onData(link, frame, payload, now);
-        return 1;
-    }
-    if (!isPlausibleControl(kind, payload))
+    if (!link->hasCandidate || epoch != link->candidate.epoch ||
+        !hasGoodCrc(frame, payload, link->candidate.seed))
         return 0;
-    if (kind == LINK_KIND_HELLO || kind == LINK_KIND_HELLO_ACK || kind == LINK_KIND_RST) {
-        if (!hasGoodCrc(frame, payload, 0xFFFFU))
-            return 0;
-        if (kind == LINK_KIND_HELLO)
-            Link_onHello(link, frame, now);
-        else if (kind == LINK_KIND_HELLO_ACK)
-            Link_onHelloAck(link, frame, now);
-        else
-            Link_onReset(link, (U8)(frame[2] >> 2 & 7U), now);
-        return 1;
-    }
-    if (!belongsToSession(link, frame, payload, now))
-        return 0;
-    link->heardAt = now;
-    if (kind == LINK_KIND_ACK)
-        Link_onAck(link, frame, payload, now);
-    else if (kind == LINK_KIND_BYE)
-        Link_endSession(link, link->wanted ? LINK_STATE_CONNECTING : LINK_STATE_IDLE, now);
-    else
-        link->ackDue = link->ackNow = 1;
+    Link_confirmCandidate(link);
     return 1;
 }
 
-static void discard(Link* link, U32 count) {
-    U32 i;
-    link->inputCount -= count;
-    for (i = 0; i < link->inputCount; ++i)
-        link->input[i] = link->input[i + count];
+/* Whether a header makes sense; it keeps chance from passing garbage on to the checksum. */
+static int isPlausible(const U8* frame, U32 payload) {
+    static const U8 sizes[] = {1, 4, 8, 0, 0, 0}; /* by Link_Kind */
+    U32 kind = frame[2] >> 5;
+    if (!(frame[0] & LINK_CONTROL))
+        return payload != 0 || (frame[2] & LINK_LAST);
+    if (kind > LINK_KIND_PING)
+        return payload >= 2U;
+    return payload == sizes[kind] || (kind == LINK_KIND_ACK && payload == 5U);
+}
+
+/* Acts upon one whole frame. 0: it is none. */
+static int takeFrame(Link* link, const U8* frame, U32 payload) {
+    U32 kind = frame[0] & LINK_CONTROL ? frame[2] >> 5 : LINK_KIND_DATA;
+    if (!isPlausible(frame, payload))
+        return 0;
+    if (kind >= LINK_KIND_HELLO && kind <= LINK_KIND_RST) {
+        if (!hasGoodCrc(frame, payload, LINK_NO_SEED))
+            return 0;
+        Link_onHandshake(link, frame, (Link_Kind)kind);
+        return 1;
+    }
+    if (!belongsToSession(link, frame, payload))
+        return 0;
+    link->heardAt = link->now;
+    if (kind == LINK_KIND_DATA) {
+        Link_onData(link, frame[1], frame[2], frame + 3, payload);
+    } else if (kind == LINK_KIND_ACK) {
+        Link_onAck(link, frame[1], frame[3], payload == 5U ? Link_get32(frame + 4) : 0);
+    } else if (kind == LINK_KIND_BYE) {
+        Link_lose(link);
+    } else if (kind == LINK_KIND_PING) {
+        link->ackDue = link->ackNow = 1;
+    } else {
+        /* Such a frame is not sent while a message is held: the whole window is open. */
+        Link_onAck(link, frame[3], link->fullCredit, 0);
+        Link_onData(link, frame[1],
+                    LINK_FIRST | LINK_LAST | (kind == LINK_KIND_RIDE_ASK ? LINK_ACK_NOW : 0U) |
+                        (frame[2] & 3U),
+                    frame + 4, payload - 1U);
+    }
+    return 1;
 }
 
 /* Somebody talks in a session that is not known here: say so, but not too often. */
-static void refuse(Link* link, U32 now) {
-    if (Link_isBefore(now, link->pingAt))
+static void refuse(Link* link, const U8* frame) {
+    U8 reset[LINK_OVERHEAD];
+    if (link->state != LINK_STATE_IDLE || LINK_BEFORE(link->now, link->pingAt))
         return;
-    link->pingAt = now + LINK_HELLO_FIRST;
-    link->session.epoch = (U8)(link->input[2] >> 2 & 7U);
-    (void)Link_sendControl(link, LINK_KIND_RST, 0, 0, 0, now);
+    link->pingAt = link->now + LINK_HELLO_FIRST;
+    link->session.epoch = frame[2] >> 2 & 7U;
+    (void)Link_sendControl(link, reset, LINK_KIND_RST, 0, 0);
 }
 
-/* Takes all whole frames out of the input. After a bad one it goes on at the next byte; `isEnd`: a
- * silence follows, so half a frame will never become whole. */
-void Link_parse(Link* link, int isEnd, U32 now) {
-    int inSync = 1;
-    while (link->inputCount) {
-        U8 frame[LINK_MAX_FRAME];
-        U32 payload = link->input[0] & 0x7FU;
-        U32 i;
+/* Takes all whole frames out of the bytes; returns how many it is done with. After a bad one it
+ * goes on at the next byte; `isEnd`: a silence follows, so half a frame will never become whole. */
+static U32 parse(Link* link, const U8* bytes, U32 count, int isEnd) {
+    U32 used = 0;
+    U32 inSync = 1;
+    while (used < count) {
+        const U8* frame = bytes + used;
+        U32 payload = frame[0] & 0x7FU;
+        U32 size = payload + LINK_OVERHEAD;
         if (payload <= LINK_MAX_PAYLOAD) {
-            U32 size = payload + LINK_OVERHEAD;
-            if (link->inputCount < size) {
+            if (count - used < size) {
                 if (!isEnd)
-                    return;
-            } else {
-                /* A callback may feed nothing, but it may send: work on a copy. */
-                for (i = 0; i < size; ++i)
-                    frame[i] = link->input[i];
-                if (takeFrame(link, frame, payload, now)) {
-                    ++link->statistics.framesReceived;
-                    link->statistics.bytesReceived += size;
-                    discard(link, size);
-                    inSync = 1;
-                    continue;
-                }
+                    break;
+            } else if (takeFrame(link, frame, payload)) {
+                LINK_COUNT(link, framesReceived, 1U);
+                LINK_COUNT(link, bytesReceived, size);
+                used += size;
+                inSync = 1;
+                continue;
             }
         }
         if (inSync) {
-            ++link->statistics.crcErrors;
-            if (link->state == LINK_STATE_IDLE && link->inputCount >= LINK_OVERHEAD)
-                refuse(link, now);
+            LINK_COUNT(link, crcErrors, 1U);
+            if (count - used >= LINK_OVERHEAD)
+                refuse(link, frame);
         }
         inSync = 0;
-        ++link->statistics.bytesSkipped;
-        discard(link, 1);
+        LINK_COUNT(link, bytesSkipped, 1U);
+        ++used;
     }
+    return used;
+}
+
+static void parseInput(Link* link, int isEnd) {
+    U32 used = parse(link, link->input, link->inputCount, isEnd);
+    link->inputCount = (U8)(link->inputCount - used);
+    memmove(link->input, link->input + used, link->inputCount);
 }
 
 void Link_receive(Link* link, const U8* bytes, U32 size, int isPacketEnd, U32 nowUs) {
-    U32 i;
-    for (i = 0; i < size; ++i) {
-        link->input[link->inputCount++] = bytes[i];
+    link->now = nowUs;
+    while (size) {
+        U32 part = LINK_MAX_FRAME - link->inputCount;
+        if (LINK_WINDOW > 1U && link->inputCount == 0) {
+            /* The usual case, a whole frame: it is read where it is. */
+            U32 used = parse(link, bytes, size, 0);
+            bytes += used;
+            size -= used;
+        }
+        if (part > size)
+            part = size;
+        memcpy(link->input + link->inputCount, bytes, part);
+        link->inputCount = (U8)(link->inputCount + part);
         link->inputAt = nowUs;
-        if (link->inputCount == LINK_MAX_FRAME ||
-            link->inputCount >= (link->input[0] & 0x7FU) + LINK_OVERHEAD)
-            Link_parse(link, 0, nowUs);
+        bytes += part;
+        size -= part;
+        parseInput(link, 0);
     }
     if (isPacketEnd)
-        Link_parse(link, 1, nowUs);
+        parseInput(link, 1);
+}
+
+void Link_pollInput(Link* link) {
+    if (link->inputCount && !LINK_BEFORE(link->now, link->inputAt + LINK_FRAME_GAP))
+        parseInput(link, 1);
 }

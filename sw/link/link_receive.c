@@ -4,153 +4,158 @@
  */
 #include "link.h"
 
-#define SLOT(seq) ((seq)&63U)
+#include <string.h>
 
 void Link_resetReceive(Link* link) {
-    U32 i;
-    for (i = 0; i < 64U; ++i)
-        link->slotUsed[i] = 0;
+    if (LINK_WINDOW > 1U)
+        memset(link->slotUsed, 0, sizeof link->slotUsed);
     link->receiveNext = 0;
-    link->messageSize = 0;
     link->messageOpen = link->messageHeld = 0;
-    link->open = 0;
-    link->ackCount = 0;
-    link->ackDue = link->ackNow = 0;
+    link->open = link->closing = link->closeDue = 0;
+    link->ackCount = link->ackDue = link->ackNow = 0;
 }
 
-static void setOpen(Link* link, U8 channel, int isOpen) {
-    U8 bit = (U8)(1U << channel);
-    if (isOpen == ((link->open & bit) != 0))
+/* The peer opens or closes a channel. */
+static void onChannel(Link* link, U32 channel, int isOpen) {
+    U32 bit = 1U << channel;
+    if (link->closing & bit) {
+        if (!isOpen)
+            link->closing = (U8)(link->closing & ~bit); /* the answer to our closing */
         return;
-    link->open = (U8)(isOpen ? link->open | bit : link->open & ~(U32)bit);
-    link->port->channel(link->context, channel, isOpen);
+    }
+    if (isOpen == (link->open >> channel & 1))
+        return;
+    link->open = (U8)(link->open ^ bit);
+    if (!isOpen)
+        link->closeDue = (U8)(link->closeDue | bit);
+    link->port->channel(link->context, (int)channel, isOpen);
 }
 
-/* One fragment in order. 0: its message is whole and nobody takes it now. */
-static int accept(Link* link, U8 flags, const U8* data, U32 size) {
-    U8 channel = flags & 3U;
-    U32 i;
+/* Offers a whole message to the program; one on a channel that was closed here is dropped. */
+static void deliver(Link* link) {
+    link->messageHeld = 0;
+    if (!(link->open >> link->messageChannel & 1))
+        return;
+    if (link->port->message(link->context, link->messageChannel, link->messageStart,
+                            link->messageSize) != 0)
+        link->messageHeld = 1;
+    else
+        LINK_COUNT(link, messagesReceived, 1U);
+}
+
+/* One fragment in order. */
+static void accept(Link* link, U32 flags, const U8* data, U32 size) {
+    ++link->receiveNext;
     if (size == 0) {
-        setOpen(link, channel, (flags & LINK_FIRST) != 0);
-        return 1;
+        onChannel(link, flags & 3U, (flags & LINK_FIRST) != 0);
+        return;
     }
     if (flags & LINK_FIRST) {
         link->messageOpen = 1;
         link->messageSize = 0;
-        link->messageChannel = channel;
+        link->messageChannel = flags & 3U;
     }
-    /* A sender of ours breaks none of these; one that does loses its message, nothing else. */
-    if (!link->messageOpen || channel != link->messageChannel ||
-        link->messageSize + size > LINK_MAX_MESSAGE) {
-        link->messageOpen = 0;
-        return 1;
-    }
-    for (i = 0; i < size; ++i)
-        link->message[link->messageSize++] = data[i];
-    if (!(flags & LINK_LAST))
-        return 1;
-    link->messageOpen = 0;
-    if (link->port->message(link->context, channel, link->message, link->messageSize) != 0) {
-        link->messageHeld = 1;
-        return 0;
-    }
-    ++link->statistics.messagesReceived;
-    return 1;
-}
-
-/* Takes what is in order out of the slots, unless a message is held. */
-static void drain(Link* link) {
-    while (!link->messageHeld && link->slotUsed[SLOT(link->receiveNext)]) {
-        U32 slot = SLOT(link->receiveNext);
-        Link_State before = link->state;
-        link->slotUsed[slot] = 0;
-        ++link->receiveNext;
-        (void)accept(link, link->slotFlags[slot], link->slots[slot], link->slotSize[slot]);
-        if (link->state != before)
-            return;
-    }
-}
-
-void Link_deliverHeld(Link* link, U32 now) {
-    if (!link->messageHeld || link->port->message(link->context, link->messageChannel,
-                                                  link->message, link->messageSize) != 0)
+    if (!link->messageOpen || (flags & 3U) != link->messageChannel ||
+        size > LINK_MAX_MESSAGE + LINK_ESCAPE - link->messageSize) {
+        Link_abort(link);
         return;
-    link->messageHeld = 0;
-    ++link->statistics.messagesReceived;
-    drain(link);
-    link->ackDue = link->ackNow = 1; /* the credit has changed */
-    link->ackAt = now;
+    }
+    memcpy(link->message + LINK_HEAD_ROOM + link->messageSize, data, size);
+    link->messageSize = (U16)(link->messageSize + size);
+    if (!(flags & LINK_LAST))
+        return;
+    link->messageOpen = 0;
+    link->messageStart = link->message + LINK_HEAD_ROOM;
+    if (LINK_HEADS && (link->session.features & LINK_FEATURE_HEADS) && !Link_unpackHead(link)) {
+        Link_abort(link);
+        return;
+    }
+    deliver(link);
 }
 
-void Link_onData(Link* link, const U8* frame, U32 payload, U32 now) {
-    U8 seq = frame[1];
+/* Takes what is in order out of the slots, unless a message is held or the session ends on the way.
+ */
+static void drain(Link* link) {
+    U32 slot;
+    for (;;) {
+        slot = LINK_SLOT(link->receiveNext);
+        if (link->messageHeld || !link->slotUsed[slot])
+            return;
+        link->slotUsed[slot] = 0;
+        accept(link, link->slotFlags[slot], link->slots[slot], link->slotSize[slot]);
+    }
+}
+
+void Link_onData(Link* link, U32 seq, U32 flags, const U8* data, U32 size) {
     U32 ahead = (U8)(seq - link->receiveNext);
-    U32 slot = SLOT(seq);
-    U32 i;
+    U32 slot = LINK_SLOT(seq);
     if (!link->ackDue) {
         link->ackDue = 1;
-        link->ackAt = now + LINK_ACK_DELAY;
+        link->ackAt = link->now + LINK_ACK_DELAY;
     }
-    if (ahead >= LINK_WINDOW || link->slotUsed[slot]) {
-        ++link->statistics.duplicates; /* our acknowledgement was lost, or it is being resent */
+    if (++link->ackCount >= LINK_ACK_EVERY || (flags & LINK_ACK_NOW) || ahead != 0)
         link->ackNow = 1;
-        return;
+    if (ahead == 0 && !link->messageHeld) {
+        accept(link, flags, data, size); /* the usual case: straight into the message */
+        if (LINK_WINDOW > 1U)
+            drain(link);
+    } else if (LINK_WINDOW > 1U && ahead < LINK_WINDOW && !link->slotUsed[slot]) {
+        link->slotUsed[slot] = 1;
+        link->slotFlags[slot] = (U8)flags;
+        link->slotSize[slot] = (U8)size;
+        memcpy(link->slots[slot], data, size);
+    } else {
+        LINK_COUNT(link, duplicates, 1U); /* our acknowledgement was lost, or it is being resent */
+        link->ackNow = 1;
     }
-    link->slotUsed[slot] = 1;
-    link->slotFlags[slot] = frame[2];
-    link->slotSize[slot] = (U8)payload;
-    for (i = 0; i < payload; ++i)
-        link->slots[slot][i] = frame[3U + i];
-    if (++link->ackCount >= LINK_ACK_EVERY || (frame[2] & LINK_ACK_NOW) || ahead != 0)
-        link->ackNow = 1;
-    drain(link);
 }
 
-/* 1: sent. */
-int Link_sendAck(Link* link, U32 now) {
-    U8 payload[5];
+/* Which of the fragments behind the next expected one have arrived; bit n: SEQ + 1 + n. */
+static U32 gaps(const Link* link, U32* used) {
     U32 bitmap = 0;
-    U32 used = 0;
     U32 i;
-    for (i = 0; i < LINK_WINDOW; ++i)
-        if (link->slotUsed[SLOT(link->receiveNext + i)]) {
-            ++used;
+    for (i = 0; LINK_WINDOW > 1U && i < LINK_WINDOW; ++i)
+        if (link->slotUsed[LINK_SLOT(link->receiveNext + i)]) {
+            ++*used;
             if (i > 0 && i <= 32U)
                 bitmap |= 1U << (i - 1U);
         }
-    /* A held message holds what has arrived behind it; the window never moves past it. */
-    payload[0] = (U8)(link->messageHeld ? used : LINK_WINDOW);
-    Link_put32(payload + 1, bitmap);
-    if (!Link_sendControl(link, LINK_KIND_ACK, link->receiveNext, payload, bitmap ? 5U : 1U, now))
-        return 0;
-    ++link->statistics.acksSent;
-    link->ackDue = link->ackNow = 0;
-    link->ackCount = 0;
-    return 1;
+    return bitmap;
 }
 
-void Link_pollReceive(Link* link, U32 now) {
-    if (link->inputCount && !Link_isBefore(now, link->inputAt + LINK_FRAME_GAP))
-        Link_parse(link, 1, now);
-    if (link->state != LINK_STATE_UP)
+/* Whether an acknowledgement is due, and needs no more than the cumulative SEQ. */
+int Link_ackMayRide(const Link* link) {
+    U32 used = 0;
+    return link->ackDue && !link->messageHeld && (link->session.features & LINK_FEATURE_RIDE) &&
+           gaps(link, &used) == 0;
+}
+
+void Link_ackIsSent(Link* link) {
+    LINK_COUNT(link, acksSent, 1U);
+    link->ackDue = link->ackNow = link->ackCount = 0;
+}
+
+void Link_pollReceive(Link* link) {
+    if (!link->messageHeld)
         return;
-    Link_deliverHeld(link, now);
-    if (link->ackDue && (link->ackNow || !Link_isBefore(now, link->ackAt)))
-        (void)Link_sendAck(link, now);
+    deliver(link);
+    if (link->messageHeld)
+        return;
+    link->ackDue = link->ackNow = 1; /* the credit has changed */
+    if (LINK_WINDOW > 1U)
+        drain(link);
 }
 
-U32 Link_receiveDeadline(const Link* link, U32 now) {
-    U32 wait = 0xFFFFFFFFU;
-    if (link->inputCount) {
-        U32 at = link->inputAt + LINK_FRAME_GAP;
-        wait = Link_isBefore(at, now) ? 0 : at - now;
-    }
-    if (link->state == LINK_STATE_UP && link->ackDue) {
-        U32 ack = link->ackNow || Link_isBefore(link->ackAt, now) ? 0 : link->ackAt - now;
-        if (ack < wait)
-            wait = ack;
-    }
-    if (link->messageHeld && wait > 5000U)
-        wait = 5000U;
-    return wait;
+void Link_pollAck(Link* link) {
+    U8 frame[LINK_OVERHEAD + 5U];
+    U32 used = 0;
+    U32 bitmap;
+    if (!link->ackDue || (!link->ackNow && LINK_BEFORE(link->now, link->ackAt)))
+        return;
+    bitmap = gaps(link, &used);
+    /* A held message holds what has arrived behind it; the window never moves past it. */
+    frame[3] = (U8)(link->messageHeld ? used : LINK_WINDOW);
+    Link_put32(frame + 4, bitmap);
+    if (Link_sendControl(link, frame, LINK_KIND_ACK, link->receiveNext, bitmap ? 5U : 1U))
+        Link_ackIsSent(link);
 }

@@ -5,130 +5,114 @@
  * HELLO carries a nonce; the answer carries the peer's. Both nonces make the session's epoch and
  * the seed of its checksums, so a frame of another session is never taken for one of this. Who
  * answered a HELLO stays in its old session until the first frame of the new one arrives: a HELLO
- * that was delayed on the air cannot end a session.
+ * that was delayed on the air cannot end a session. `helloNonce` is the own nonce of the next
+ * session.
  */
 #include "link.h"
 
 /* Both sides compute the same, whoever called first. */
-static Link_Session sessionOf(U32 nonce, U32 peerNonce) {
-    Link_Session session;
+static void makeSession(Link* link, Link_Session* session, const U8* peer, U32 features) {
     U8 bytes[4];
-    U16 hash;
+    U32 nonce = link->helloNonce;
+    U32 peerNonce = Link_get32(peer);
     Link_put32(bytes, (nonce ^ peerNonce) * 2654435761U + nonce + peerNonce);
-    hash = Link_crc(0x1D0FU, bytes, 4);
-    session.nonce = nonce;
-    session.peerNonce = peerNonce;
-    session.seed = hash;
-    session.epoch = (U8)(bytes[3] >> 5);
-    return session;
+    session->nonce = nonce;
+    session->peerNonce = peerNonce;
+    session->seed = Link_crc(0x1D0FU, bytes, 4);
+    session->epoch = (U8)(bytes[3] >> 5);
+    session->features = (U8)(features & LINK_FEATURES);
 }
 
-static void enter(Link* link, Link_Session session, U32 now) {
-    link->session = session;
+static void enter(Link* link) {
     link->hasCandidate = 0;
-    link->heardAt = now;
-    link->pingAt = now;
-    link->paceUntil = now; /* after a long silence its age would read as a future time */
-    Link_resetSend(link);
-    Link_resetReceive(link);
+    link->heardAt = link->pingAt = link->now;
+    link->paceUntil = link->now; /* after a long silence its age would read as a future time */
     link->state = LINK_STATE_UP;
-    ++link->statistics.sessions;
+    LINK_COUNT(link, sessions, 1U);
     link->port->state(link->context, LINK_STATE_UP);
 }
 
-void Link_endSession(Link* link, Link_State next, U32 now) {
+/* Leaves the session, if there is one; what it was is forgotten, and reported. */
+void Link_endSession(Link* link, Link_State next) {
     int wasUp = link->state == LINK_STATE_UP;
-    link->state = next;
+    U32 open = link->open;
+    int channel;
+    link->state = (U8)next;
     link->helloNonce = link->port->random(link->context);
-    link->helloAt = now;
+    link->helloAt = link->pingAt = link->now;
     link->helloEvery = LINK_HELLO_FIRST;
-    link->pingAt = now;
-    if (wasUp) {
-        U8 open = link->open;
-        int channel;
-        Link_resetReceive(link);
-        Link_dropQueue(link);
-        for (channel = 0; channel < LINK_CHANNELS; ++channel)
-            if (open >> channel & 1)
-                link->port->channel(link->context, channel, 0);
+    Link_resetReceive(link);
+    Link_resetSend(link);
+    if (LINK_HEADS)
+        Link_resetHeads(link);
+    for (channel = 0; channel < LINK_CHANNELS; ++channel)
+        if (open >> channel & 1U)
+            link->port->channel(link->context, channel, 0);
+    if (wasUp)
         link->port->state(link->context, next);
-    }
 }
 
-void Link_confirmCandidate(Link* link, U32 now) {
-    Link_Session session = link->candidate;
-    link->hasCandidate = 0;
+/* The session is over, by the peer's wish or silence. */
+void Link_lose(Link* link) {
+    Link_endSession(link, link->wanted ? LINK_STATE_CONNECTING : LINK_STATE_IDLE);
+}
+
+/* The peer broke the rules: nothing it sent can be trusted, so both sides start afresh. */
+void Link_abort(Link* link) {
+    U8 frame[LINK_OVERHEAD];
+    (void)Link_sendControl(link, frame, LINK_KIND_RST, 0, 0);
+    Link_lose(link);
+}
+
+void Link_confirmCandidate(Link* link) {
     if (link->state == LINK_STATE_UP)
-        Link_endSession(link, LINK_STATE_CONNECTING, now);
-    enter(link, session, now);
+        Link_endSession(link, LINK_STATE_CONNECTING);
+    link->session = link->candidate;
+    enter(link);
 }
 
-static void answerHello(Link* link, Link_Session session, U32 now) {
-    U8 payload[8];
-    Link_put32(payload, session.nonce);
-    Link_put32(payload + 4, session.peerNonce);
-    (void)Link_sendControl(link, LINK_KIND_HELLO_ACK, LINK_VERSION, payload, 8, now);
-}
-
-void Link_onHello(Link* link, const U8* frame, U32 now) {
-    U32 peer = Link_get32(frame + 3);
-    if (frame[1] != LINK_VERSION)
+void Link_onHandshake(Link* link, const U8* frame, Link_Kind kind) {
+    int isUp = link->state == LINK_STATE_UP;
+    if (kind == LINK_KIND_RST) {
+        if (isUp && (frame[2] >> 2 & 7U) == link->session.epoch)
+            Link_lose(link);
+    } else if (frame[1] != LINK_VERSION) {
         return;
-    if (link->state == LINK_STATE_UP && peer == link->session.peerNonce) {
-        answerHello(link, link->session, now); /* our answer was lost */
-        return;
+    } else if (kind == LINK_KIND_HELLO) {
+        U8 answer[LINK_OVERHEAD + 8U];
+        Link_Session* session = &link->session;
+        /* The same HELLO once more: our answer was lost. */
+        if (!isUp || Link_get32(frame + 3) != session->peerNonce) {
+            session = &link->candidate;
+            makeSession(link, session, frame + 3, frame[2]);
+            link->hasCandidate = 1;
+        }
+        Link_put32(answer + 3, session->nonce);
+        Link_put32(answer + 7, session->peerNonce);
+        (void)Link_sendControl(link, answer, LINK_KIND_HELLO_ACK, LINK_VERSION, 8);
+    } else if (link->state == LINK_STATE_CONNECTING && Link_get32(frame + 7) == link->helloNonce) {
+        makeSession(link, &link->session, frame + 3, frame[2]);
+        enter(link);
+        link->ackDue = link->ackNow = 1; /* the first frame of the session confirms it */
     }
-    if (!link->hasCandidate || peer != link->candidate.peerNonce) {
-        U32 own = link->state == LINK_STATE_CONNECTING ? link->helloNonce
-                                                       : link->port->random(link->context);
-        link->candidate = sessionOf(own, peer);
-        link->hasCandidate = 1;
-    }
-    answerHello(link, link->candidate, now);
 }
 
-void Link_onHelloAck(Link* link, const U8* frame, U32 now) {
-    if (frame[1] != LINK_VERSION || link->state != LINK_STATE_CONNECTING ||
-        Link_get32(frame + 7) != link->helloNonce)
-        return;
-    enter(link, sessionOf(link->helloNonce, Link_get32(frame + 3)), now);
-    link->ackDue = link->ackNow = 1; /* the first frame of the session confirms it */
-}
-
-void Link_onReset(Link* link, U8 epoch, U32 now) {
-    if (link->state == LINK_STATE_UP && epoch == link->session.epoch)
-        Link_endSession(link, link->wanted ? LINK_STATE_CONNECTING : LINK_STATE_IDLE, now);
-}
-
-void Link_pollSession(Link* link, U32 now) {
-    U8 nonce[4];
-    if (link->state == LINK_STATE_CONNECTING && !Link_isBefore(now, link->helloAt)) {
-        Link_put32(nonce, link->helloNonce);
-        (void)Link_sendControl(link, LINK_KIND_HELLO, LINK_VERSION, nonce, 4, now);
+void Link_pollSession(Link* link) {
+    U8 frame[LINK_OVERHEAD + 4U];
+    U32 now = link->now;
+    if (link->state == LINK_STATE_CONNECTING && !LINK_BEFORE(now, link->helloAt)) {
+        Link_put32(frame + 3, link->helloNonce);
+        (void)Link_sendControl(link, frame, LINK_KIND_HELLO, LINK_VERSION, 4);
         link->helloAt = now + link->helloEvery;
         if (link->helloEvery < LINK_HELLO_LAST)
             link->helloEvery *= 2U;
     }
-    if (link->state != LINK_STATE_UP || Link_isBefore(now, link->heardAt + LINK_PING_AFTER))
+    if (link->state != LINK_STATE_UP || now - link->heardAt < LINK_PING_AFTER)
         return;
-    if (!Link_isBefore(now, link->heardAt + LINK_DEAD_AFTER)) {
-        Link_endSession(link, link->wanted ? LINK_STATE_CONNECTING : LINK_STATE_IDLE, now);
-    } else if (!Link_isBefore(now, link->pingAt)) {
-        (void)Link_sendControl(link, LINK_KIND_PING, 0, 0, 0, now);
+    if (now - link->heardAt >= LINK_DEAD_AFTER) {
+        Link_lose(link);
+    } else if (!LINK_BEFORE(now, link->pingAt)) {
+        (void)Link_sendControl(link, frame, LINK_KIND_PING, 0, 0);
         link->pingAt = now + LINK_PING_EVERY;
     }
-}
-
-U32 Link_sessionDeadline(const Link* link, U32 now) {
-    U32 at;
-    if (link->state == LINK_STATE_IDLE)
-        return 0xFFFFFFFFU;
-    if (link->state == LINK_STATE_CONNECTING) {
-        at = link->helloAt;
-    } else {
-        at = link->heardAt + LINK_PING_AFTER;
-        if (Link_isBefore(at, link->pingAt))
-            at = link->pingAt;
-    }
-    return Link_isBefore(at, now) ? 0 : at - now;
 }

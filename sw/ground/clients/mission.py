@@ -100,7 +100,7 @@ def initialize(args):
         "XBeeAT.Trace": str(args.trace),
         "Ice.ThreadPool.Client.Size": "2",
         "Ice.ThreadPool.Server.Size": "2",
-        "Ice.Default.InvocationTimeout": "20000",
+        "Ice.Default.InvocationTimeout": "60000",
         "Ice.ACM.Close": "0",
         "XBeeAT.Guard": str(args.guard),
         "Station.Endpoints": "xbee-at -d %s -a 0x0001 -s 0x0000" % args.device,
@@ -203,8 +203,8 @@ def fly(args, communicator):
     result = log.call("ground -> UAV", "hwengine1.getResult()", engine.getResult)
     log.say("%d corners; the core took %d cycles" % (result.found, result.cycles))
 
-    if not station.called.wait(20):
-        raise RuntimeError("the UAV did not call Station.vehicleState within 20 s")
+    if not station.called.wait(60):
+        raise RuntimeError("the UAV did not call Station.vehicleState within 60 s")
     if not station.alive:
         raise RuntimeError("uav.isAlive answered %r" % station.alive)
     if args.reference:

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+//
+// ice_messages: IceP messages, byte by byte as the manual of ZeroC Ice 3.7 describes them.
+
+#ifndef ICE_MESSAGES_H
+#define ICE_MESSAGES_H
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace IceMessages {
+
+using Bytes = std::vector<uint8_t>;
+
+inline void put32(Bytes& m, uint32_t value) {
+    for (int i = 0; i < 4; ++i)
+        m.push_back(static_cast<uint8_t>(value >> 8 * i));
+}
+
+inline Bytes header(uint8_t type, uint8_t compression = 0) {
+    return {'I', 'c', 'e', 'P', 1, 0, 1, 0, type, compression, 0, 0, 0, 0};
+}
+
+inline Bytes finish(Bytes m) {
+    for (int i = 0; i < 4; ++i)
+        m[10 + i] = static_cast<uint8_t>(m.size() >> 8 * i);
+    return m;
+}
+
+inline void encapsulate(Bytes& m, const Bytes& parameters, uint8_t minor = 1) {
+    put32(m, static_cast<uint32_t>(parameters.size()) + 6);
+    m.push_back(1);
+    m.push_back(minor);
+    m.insert(m.end(), parameters.begin(), parameters.end());
+}
+
+inline void putString(Bytes& m, const std::string& s) {
+    m.push_back(static_cast<uint8_t>(s.size()));
+    m.insert(m.end(), s.begin(), s.end());
+}
+
+// id 0: oneway.
+inline Bytes request(uint32_t id, const std::string& object, const std::string& operation,
+                     const Bytes& parameters, const std::string& facet = "", uint8_t minor = 1) {
+    Bytes m = header(0);
+    put32(m, id);
+    putString(m, object);
+    putString(m, ""); // category
+    m.push_back(facet.empty() ? 0 : 1);
+    if (!facet.empty())
+        putString(m, facet);
+    putString(m, operation);
+    m.push_back(0); // mode
+    m.push_back(0); // context
+    encapsulate(m, parameters, minor);
+    return finish(m);
+}
+
+inline Bytes reply(uint32_t id, const Bytes& results, uint8_t status = 0, uint8_t minor = 1) {
+    Bytes m = header(2);
+    put32(m, id);
+    m.push_back(status);
+    encapsulate(m, results, minor);
+    return finish(m);
+}
+
+inline Bytes validate() {
+    return finish(header(3));
+}
+inline Bytes closing() {
+    return finish(header(4, 1));
+}
+
+} // namespace IceMessages
+
+#endif

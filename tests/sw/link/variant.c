@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * variant: what a test must know of a link layer that was compiled with other options than its own.
+ */
+#include "link.h"
+
+U32 LinkVariant_size(void);
+U32 LinkVariant_maxMessage(void);
+
+U32 LinkVariant_size(void) {
+    return (U32)sizeof(Link);
+}
+
+U32 LinkVariant_maxMessage(void) {
+    return LINK_MAX_MESSAGE;
+}

@@ -4,7 +4,7 @@
 # size: bytes of each firmware layer on a Cortex-M3 at -Os, beside the paper's Table II; RAM and stack;
 # against the budget, which a layer may not exceed.
 #
-# minimal: sw/apps/minimal, all layers linked with --gc-sections and -DICEC_MINIMAL; of each layer what is
+# minimal: sw/apps/minimal, all layers linked with --gc-sections, -DICEC_MINIMAL and -DLINK_MINIMAL; of each layer what is
 # in the image (text and read-only data; the C library and generated code are not counted, as in the paper).
 # full: everything that the layer's files hold, all options on, linked or not.
 #
@@ -52,7 +52,7 @@ compile() { # folder, flags: every file of every layer, a folder a layer
     done
 }
 
-compile "$work/minimal" -DICEC_MINIMAL
+compile "$work/minimal" -DICEC_MINIMAL -DLINK_MINIMAL
 compile "$work/full"
 # shellcheck disable=SC2086
 arm-none-eabi-gcc $target -nostartfiles --specs=nosys.specs --specs=nano.specs -Wl,--gc-sections -Wl,-e,main \

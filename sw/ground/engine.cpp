@@ -118,6 +118,11 @@ int Engine::connect(int channel) {
     std::lock_guard<std::mutex> lock(mutex_);
     if (failed_)
         return -1;
+    for (int i = 0; i < ownChannels; ++i) { // who gave up before the link was up
+        pollfd waiting{channels_[i].fd, 0, 0};
+        if (channels_[i].wanted && poll(&waiting, 1, 0) > 0)
+            closeChannel(i);
+    }
     int chosen = -1;
     for (int i = 0; i < ownChannels && chosen < 0; ++i) {
         int candidate = channel >= 0 ? channel : (nextChannel_ + i) % ownChannels;
@@ -256,6 +261,10 @@ void Engine::fail(const std::string& text) {
 
 bool Engine::prepareModem() {
     if (settings_.setUp && !setUpModem()) {
+        std::unique_lock<std::mutex> lock(mutex_);
+        if (stop_)
+            return false;
+        lock.unlock();
         log_(0, "no modem answers on '" + settings_.device +
                     "': check its power and cable, the guard time (-g), or set XBeeAT.Setup=0 if "
                     "it must "

@@ -16,8 +16,17 @@
 #define LINK_CHANNELS 4
 #define LINK_MAX_FRAME 100U /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
 
-/* Options, for the compiler's command line; any two settings understand each other. The smallest:
- * LINK_WINDOW=1 LINK_HEADS=0 LINK_RIDE=0 LINK_STATISTICS=0. */
+/* Options, for the compiler's command line; any two settings understand each other. LINK_MINIMAL
+ * chooses the smallest. */
+#ifdef LINK_MINIMAL
+#define LINK_WINDOW 1U
+#define LINK_HEADS 0
+#define LINK_RIDE 0
+#define LINK_STATISTICS 0
+#define LINK_MAX_MESSAGE 1024U
+#define LINK_SEND_BYTES 2048U
+#define LINK_SEND_MESSAGES 4U
+#endif
 #ifndef LINK_WINDOW
 #define LINK_WINDOW 32U /* fragments in flight, a power of two up to 64; 1: stop and wait */
 #endif

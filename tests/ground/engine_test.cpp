@@ -130,6 +130,19 @@ TEST_F(EngineTest, AMessageThatIsTooLongEndsItsConnectionOnly) {
     close(bad);
 }
 
+TEST_F(EngineTest, WhoGivesUpBeforeTheLinkIsUpFreesItsChannel) {
+    rig_.with([&] { rig_.echo = true; });
+    auto engine = start();
+    int fd = engine->connect(1);
+    ASSERT_GE(fd, 0);
+    EXPECT_EQ(engine->connect(1), -1);
+    close(fd);
+    fd = engine->connect(1);
+    ASSERT_GE(fd, 0);
+    echoes(fd, 1);
+    close(fd);
+}
+
 TEST_F(EngineTest, TheUavMayCallWhenSomebodyListens) {
     auto engine = start();
     int ready = engine->listen();

@@ -189,7 +189,7 @@ def fly(args, communicator):
     adapter.activate()
     log.say("setting the ground's modem up on %s" % args.device)
 
-    where = "xbee-at -d %s -a 0x0001 -s 0x0000" % args.device
+    where = "xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % args.device
     base = communicator.stringToProxy("hwengine1:" + where)
     engine = log.call("ground -> UAV", "checkedCast(hwengine1)",
                       lambda: Autopilot.HwProcessingEnginePrx.checkedCast(base))

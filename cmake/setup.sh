@@ -38,6 +38,7 @@ gcc-arm-none-eabi the firmware for the Cortex-M3
 libunicorn-dev executes its instructions in the simulator
 gdb-multiarch debugs it there
 libnewlib-arm-none-eabi C library for it
+clang fuzzers of the link layer (libFuzzer)
 '
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in
 1[3-9]) packages="$packages

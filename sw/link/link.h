@@ -66,7 +66,7 @@ typedef enum Link_State {
 } Link_State;
 
 typedef enum Link_Outcome {
-    LINK_DELIVERED, /* the peer acknowledged every fragment */
+    LINK_DELIVERED, /* the peer's program has taken it */
     LINK_UNKNOWN    /* the session ended first: it may or may not have arrived */
 } Link_Outcome;
 

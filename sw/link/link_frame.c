@@ -64,43 +64,64 @@ static int hasGoodCrc(const U8* frame, U32 payload, U16 seed) {
     return Link_crc(seed, frame, size) == ((U32)frame[size] << 8 | frame[size + 1U]);
 }
 
-/* A frame of the session, or the first one of a session that a HELLO announced. */
-static int belongsToSession(Link* link, const U8* frame, U32 payload) {
-    U32 epoch = frame[2] >> 2 & 7U;
-    if (link->state == LINK_STATE_UP && epoch == link->session.epoch &&
-        hasGoodCrc(frame, payload, link->session.seed))
-        return 1;
-    if (!link->hasCandidate || epoch != link->candidate.epoch ||
-        !hasGoodCrc(frame, payload, link->candidate.seed))
-        return 0;
-    Link_confirmCandidate(link);
-    return 1;
+static U32 kindOf(const U8* frame) {
+    return frame[0] & LINK_CONTROL ? frame[2] >> 5 : LINK_KIND_DATA;
 }
 
 /* Whether a header makes sense; it keeps chance from passing garbage on to the checksum. */
 static int isPlausible(const U8* frame, U32 payload) {
     static const U8 sizes[] = {1, 4, 8, 0, 0, 0}; /* by Link_Kind */
-    U32 kind = frame[2] >> 5;
-    if (!(frame[0] & LINK_CONTROL))
+    U32 kind = kindOf(frame);
+    if (kind == LINK_KIND_DATA)
         return payload != 0 || (frame[2] & LINK_LAST);
     if (kind > LINK_KIND_PING)
         return payload >= 2U;
     return payload == sizes[kind] || (kind == LINK_KIND_ACK && payload == 5U);
 }
 
-/* Acts upon one whole frame. 0: it is none. */
-static int takeFrame(Link* link, const U8* frame, U32 payload) {
-    U32 kind = frame[0] & LINK_CONTROL ? frame[2] >> 5 : LINK_KIND_DATA;
+typedef enum Owner { NOBODY, HANDSHAKE, SESSION, CANDIDATE } Owner;
+
+/* Whose checksum a whole frame has: the session's, or that of one that a HELLO announced. */
+static Owner ownerOf(const Link* link, const U8* frame, U32 payload) {
+    U32 kind = kindOf(frame);
+    U32 epoch = frame[2] >> 2 & 7U;
     if (!isPlausible(frame, payload))
-        return 0;
-    if (kind >= LINK_KIND_HELLO && kind <= LINK_KIND_RST) {
-        if (!hasGoodCrc(frame, payload, LINK_NO_SEED))
-            return 0;
-        Link_onHandshake(link, frame, (Link_Kind)kind);
+        return NOBODY;
+    if (kind >= LINK_KIND_HELLO && kind <= LINK_KIND_RST)
+        return hasGoodCrc(frame, payload, LINK_NO_SEED) ? HANDSHAKE : NOBODY;
+    if (link->state == LINK_STATE_UP && epoch == link->session.epoch &&
+        hasGoodCrc(frame, payload, link->session.seed))
+        return SESSION;
+    return link->hasCandidate && epoch == link->candidate.epoch &&
+                   hasGoodCrc(frame, payload, link->candidate.seed)
+               ? CANDIDATE
+               : NOBODY;
+}
+
+/* After something that was no frame, the search at every byte might find one by chance. So there a
+ * frame is believed only if it ends where the bytes end, or a good one follows. -1: not known yet.
+ */
+static int isConfirmed(const Link* link, const U8* next, U32 left, int isEnd) {
+    U32 payload;
+    if (left == 0)
         return 1;
-    }
-    if (!belongsToSession(link, frame, payload))
+    payload = next[0] & 0x7FU;
+    if (payload > LINK_MAX_PAYLOAD)
         return 0;
+    if (left < payload + LINK_OVERHEAD)
+        return isEnd ? 0 : -1;
+    return ownerOf(link, next, payload) != NOBODY;
+}
+
+/* Acts upon a good frame. */
+static void takeFrame(Link* link, const U8* frame, U32 payload, Owner owner) {
+    U32 kind = kindOf(frame);
+    if (owner == HANDSHAKE) {
+        Link_onHandshake(link, frame, (Link_Kind)kind);
+        return;
+    }
+    if (owner == CANDIDATE)
+        Link_confirmCandidate(link);
     link->heardAt = link->now;
     if (kind == LINK_KIND_DATA) {
         Link_onData(link, frame[1], frame[2], frame + 3, payload);
@@ -118,7 +139,6 @@ static int takeFrame(Link* link, const U8* frame, U32 payload) {
                         (frame[2] & 3U),
                     frame + 4, payload - 1U);
     }
-    return 1;
 }
 
 /* Somebody talks in a session that is not known here: say so, but not too often. */
@@ -135,29 +155,35 @@ static void refuse(Link* link, const U8* frame) {
  * goes on at the next byte; `isEnd`: a silence follows, so half a frame will never become whole. */
 static U32 parse(Link* link, const U8* bytes, U32 count, int isEnd) {
     U32 used = 0;
-    U32 inSync = 1;
     while (used < count) {
         const U8* frame = bytes + used;
+        U32 left = count - used;
         U32 payload = frame[0] & 0x7FU;
         U32 size = payload + LINK_OVERHEAD;
-        if (payload <= LINK_MAX_PAYLOAD) {
-            if (count - used < size) {
-                if (!isEnd)
-                    break;
-            } else if (takeFrame(link, frame, payload)) {
+        if (payload <= LINK_MAX_PAYLOAD && left < size && !isEnd)
+            break;
+        if (payload <= LINK_MAX_PAYLOAD && left >= size) {
+            Owner owner = ownerOf(link, frame, payload);
+            int confirmed = 1;
+            if (LINK_WINDOW > 1U && owner != NOBODY && link->outOfStep)
+                confirmed = isConfirmed(link, frame + size, left - size, isEnd);
+            if (confirmed < 0)
+                break;
+            if (confirmed && owner != NOBODY) {
+                link->outOfStep = 0;
+                takeFrame(link, frame, payload, owner);
                 LINK_COUNT(link, framesReceived, 1U);
                 LINK_COUNT(link, bytesReceived, size);
                 used += size;
-                inSync = 1;
                 continue;
             }
         }
-        if (inSync) {
+        if (!link->outOfStep) {
             LINK_COUNT(link, crcErrors, 1U);
-            if (count - used >= LINK_OVERHEAD)
+            if (left >= LINK_OVERHEAD)
                 refuse(link, frame);
         }
-        inSync = 0;
+        link->outOfStep = 1;
         LINK_COUNT(link, bytesSkipped, 1U);
         ++used;
     }
@@ -173,7 +199,7 @@ static void parseInput(Link* link, int isEnd) {
 void Link_receive(Link* link, const U8* bytes, U32 size, int isPacketEnd, U32 nowUs) {
     link->now = nowUs;
     while (size) {
-        U32 part = LINK_MAX_FRAME - link->inputCount;
+        U32 part = LINK_INPUT_BYTES - link->inputCount;
         if (LINK_WINDOW > 1U && link->inputCount == 0) {
             /* The usual case, a whole frame: it is read where it is. */
             U32 used = parse(link, bytes, size, 0);

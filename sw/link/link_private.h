@@ -61,6 +61,8 @@ typedef enum Link_Kind {
 #define LINK_HEAD_ROOM (LINK_HEADS ? 96U : 0U) /* what may grow in front of a message */
 #define LINK_ESCAPE (LINK_HEADS ? 1U : 0U)     /* a byte that marks what is not Ice */
 
+#define LINK_INPUT_BYTES (LINK_WINDOW > 1U ? 2U * LINK_MAX_FRAME : LINK_MAX_FRAME)
+
 /* What must hold for the options of link.h; a negative size stops the compiler. */
 typedef char
     Link_Check[LINK_WINDOW >= 1U && LINK_WINDOW <= 64U && !(LINK_WINDOW & (LINK_WINDOW - 1U)) &&
@@ -116,10 +118,11 @@ struct Link {
     U8 wanted;       /* Link_start was called */
     U8 hasCandidate; /* a HELLO was answered, its sender has not confirmed yet */
     U8 inputCount;
-    U8 sendBase, sendNext;           /* oldest unacknowledged, next new */
-    U8 credit, fullCredit;           /* the peer's: now, and the most it gave */
-    U8 work;                         /* there may be something to send */
-    U8 wasFull;                      /* Link_send said LINK_FULL */
+    U8 outOfStep;          /* no frame where one should begin: the next one needs confirmation */
+    U8 sendBase, sendNext; /* oldest unacknowledged, next new */
+    U8 credit, fullCredit; /* the peer's: now, and the most it gave */
+    U8 work;               /* there may be something to send */
+    U8 wasFull;            /* Link_send said LINK_FULL */
     U8 itemHead, itemCount, cutItem; /* the next fragment comes from cutItem, after the head */
     U8 hasSample;
     U8 receiveNext;
@@ -148,7 +151,7 @@ struct Link {
 
     Link_Item items[LINK_SEND_MESSAGES];
     Link_Fragment window[LINK_WINDOW];
-    U8 input[LINK_MAX_FRAME];
+    U8 input[LINK_INPUT_BYTES];
     U8 slotSize[LINK_WINDOW], slotFlags[LINK_WINDOW], slotUsed[LINK_WINDOW];
     U8 slots[LINK_WINDOW > 1U ? LINK_WINDOW : 1U][LINK_MAX_PAYLOAD];
     Link_Heads headsOut, headsIn;

@@ -31,16 +31,19 @@ static void onChannel(Link* link, U32 channel, int isOpen) {
     link->port->channel(link->context, (int)channel, isOpen);
 }
 
-/* Offers a whole message to the program; one on a channel that was closed here is dropped. */
+/* Offers a whole message to the program; one on a channel that was closed here is dropped. What
+ * nobody takes is not acknowledged either: its last fragment counts as not yet here. */
 static void deliver(Link* link) {
     link->messageHeld = 0;
     if (!(link->open >> link->messageChannel & 1))
         return;
     if (link->port->message(link->context, link->messageChannel, link->messageStart,
-                            link->messageSize) != 0)
+                            link->messageSize) != 0) {
         link->messageHeld = 1;
-    else
+        --link->receiveNext;
+    } else {
         LINK_COUNT(link, messagesReceived, 1U);
+    }
 }
 
 /* One fragment in order. */
@@ -99,7 +102,7 @@ void Link_onData(Link* link, U32 seq, U32 flags, const U8* data, U32 size) {
         accept(link, flags, data, size); /* the usual case: straight into the message */
         if (LINK_WINDOW > 1U)
             drain(link);
-    } else if (LINK_WINDOW > 1U && ahead < LINK_WINDOW && !link->slotUsed[slot]) {
+    } else if (LINK_WINDOW > 1U && ahead != 0 && ahead < LINK_WINDOW && !link->slotUsed[slot]) {
         link->slotUsed[slot] = 1;
         link->slotFlags[slot] = (U8)flags;
         link->slotSize[slot] = (U8)size;
@@ -138,6 +141,7 @@ void Link_ackIsSent(Link* link) {
 void Link_pollReceive(Link* link) {
     if (!link->messageHeld)
         return;
+    ++link->receiveNext;
     deliver(link);
     if (link->messageHeld)
         return;
@@ -153,8 +157,8 @@ void Link_pollAck(Link* link) {
     if (!link->ackDue || (!link->ackNow && LINK_BEFORE(link->now, link->ackAt)))
         return;
     bitmap = gaps(link, &used);
-    /* A held message holds what has arrived behind it; the window never moves past it. */
-    frame[3] = (U8)(link->messageHeld ? used : LINK_WINDOW);
+    /* A message that nobody takes keeps the window where it is. */
+    frame[3] = (U8)(link->messageHeld ? used + 1U : LINK_WINDOW);
     Link_put32(frame + 4, bitmap);
     if (Link_sendControl(link, frame, LINK_KIND_ACK, link->receiveNext, bitmap ? 5U : 1U))
         Link_ackIsSent(link);

@@ -132,8 +132,8 @@ static int cut(Link* link) {
     Link_Fragment* f = &link->window[LINK_SLOT(link->sendNext)];
     U32 inFlight = IN_FLIGHT(link);
     U32 left, size;
-    /* Without credit one goes out all the same, as a probe: its acknowledgement tells when there is
-     * credit again. */
+    /* Without credit one goes out all the same: its acknowledgement tells when there is credit
+     * again. */
     if (link->cutItem == link->itemCount || (inFlight && inFlight >= link->credit) ||
         inFlight >= LINK_WINDOW)
         return 0;
@@ -241,8 +241,6 @@ void Link_onAck(Link* link, U32 cumulative, U32 credit, U32 bitmap) {
     U32 i;
     if (advance > IN_FLIGHT(link))
         return; /* an old one that came late */
-    if (link->credit == 0 && credit)
-        sendAgain(link, link->order + 1U); /* the probe was not taken */
     link->credit = (U8)credit;
     if (link->fullCredit < credit)
         link->fullCredit = (U8)credit;

@@ -4,9 +4,13 @@
 
 #include "engine.h"
 #include "rig.h"
+#include <cstdlib>
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <pty.h>
 #include <sys/socket.h>
+#include <termios.h>
 #include <unistd.h>
 
 namespace {
@@ -159,6 +163,113 @@ TEST_F(EngineTest, TheUavMayCallWhenSomebodyListens) {
     int fd = engine->accept();
     ASSERT_GE(fd, 0);
     EXPECT_EQ(readAll(fd, 30), message(5));
+    close(fd);
+}
+
+// A serial port with this test behind it, and no modem: bytes as fast as they are taken.
+class Wire {
+public:
+    Wire() {
+        static const Link_Port port = {
+            [](void* c, const U8* f, U32 n) { return self(c).put(f, n); },
+            [](void* c) { return self(c).random_.next(); },
+            [](void* c, int channel, const U8* d, U32 n) {
+                return Link_send(self(c).link_.get(), channel, d, n, 0, us()) == LINK_FULL ? 1 : 0;
+            },
+            [](void*, int, int) {},
+            [](void*, Link_State) {},
+            nullptr,
+            nullptr};
+        Link_init(link_.get(), &port, this, 16); // a fast way: nothing to pace
+        Link_start(link_.get(), us());
+        if (openpty(&master_, &slave_, name_, nullptr, nullptr) != 0)
+            throw std::runtime_error("no pty");
+        termios raw;
+        tcgetattr(slave_, &raw);
+        cfmakeraw(&raw);
+        tcsetattr(slave_, TCSANOW, &raw);
+        fcntl(master_, F_SETFL, O_NONBLOCK);
+    }
+    ~Wire() {
+        close(slave_);
+        close(master_);
+    }
+    std::string path() const { return name_; }
+    // Puts bytes on the wire, throws away what comes.
+    void flood(const Bytes& bytes) {
+        for (size_t done = 0; done < bytes.size();) {
+            pollfd p{master_, POLLIN | POLLOUT, 0};
+            poll(&p, 1, 60000);
+            U8 sink[512];
+            (void)!read(master_, sink, sizeof sink);
+            ssize_t count = write(master_, bytes.data() + done, bytes.size() - done);
+            done += count > 0 ? static_cast<size_t>(count) : 0;
+        }
+    }
+    // The peer's link runs until `done`.
+    template <class F> bool until(F done) {
+        for (auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60); !done();) {
+            if (std::chrono::steady_clock::now() > end)
+                return false;
+            pollfd p{master_, POLLIN, 0};
+            poll(&p, 1, 2);
+            U8 bytes[512];
+            ssize_t count = read(master_, bytes, sizeof bytes);
+            if (count > 0)
+                Link_receive(link_.get(), bytes, static_cast<U32>(count), 0, us());
+            Link_poll(link_.get(), us());
+        }
+        return true;
+    }
+
+private:
+    static Wire& self(void* c) { return *static_cast<Wire*>(c); }
+    static U32 us() {
+        return static_cast<U32>(std::chrono::duration_cast<std::chrono::microseconds>(
+                                    std::chrono::steady_clock::now().time_since_epoch())
+                                    .count());
+    }
+    int put(const U8* f, U32 n) { return write(master_, f, n) == static_cast<ssize_t>(n) ? 0 : 1; }
+    int master_ = -1, slave_ = -1;
+    char name_[128];
+    Random random_{testSeed()};
+    std::unique_ptr<Link> link_{new Link};
+};
+
+// BYTES=10000000 from the line and as many from a program that talks no Ice: nothing hangs or falls
+// over, and afterwards the link works.
+TEST(Engine, RandomBytesFromTheLineAndFromProgramsAreSurvived) {
+    const char* more = std::getenv("BYTES");
+    const size_t total = more ? std::strtoul(more, nullptr, 0) : 10'000'000;
+    Wire wire;
+    Random random(testSeed());
+    XBeeAT::Settings s;
+    s.device = wire.path();
+    s.setUp = false;
+    auto engine = XBeeAT::Engine::get(s, [](int, const std::string&) {});
+    Bytes noise(65536);
+    for (size_t done = 0; done < total; done += noise.size()) {
+        for (auto& byte : noise)
+            byte = static_cast<uint8_t>(random.next());
+        wire.flood(noise);
+        int fd = engine->connect(0);
+        if (fd >= 0) { // nonsense instead of a message ends the connection
+            (void)!send(fd, noise.data(), noise.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+            close(fd);
+        }
+    }
+    int fd = -1;
+    ASSERT_TRUE(wire.until([&] { return fd >= 0 || (fd = engine->connect(1)) >= 0; }));
+    Bytes m = message(5, 500), answer;
+    writeAll(fd, m);
+    ASSERT_TRUE(wire.until([&] {
+        U8 bytes[512];
+        ssize_t count = recv(fd, bytes, sizeof bytes, MSG_DONTWAIT);
+        answer.insert(answer.end(), bytes, bytes + std::max<ssize_t>(count, 0));
+        return answer.size() >= m.size();
+    })) << "the link did not recover, seed "
+        << testSeed();
+    EXPECT_EQ(answer, m);
     close(fd);
 }
 

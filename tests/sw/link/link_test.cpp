@@ -209,6 +209,34 @@ TEST_P(LinkSeeds, GarbageOnTheLineDoesNotDisturbTheSession) {
     EXPECT_GT(Link_statistics(pair_.b.link())->crcErrors, 0u);
 }
 
+// 10^7 random bytes in a session, between messages: no fault, and the link goes on.
+TEST(LinkLayer, TenMillionRandomBytesAreSurvived) {
+    Pair pair(testSeed());
+    ASSERT_TRUE(pair.connect());
+    Link_start(pair.b.link(), pair.now32());
+    Random random(testSeed());
+    Side::Bytes noise(10000), hello = {'h', 'i'};
+    for (int i = 0; i < 1000; ++i) {
+        for (auto& byte : noise)
+            byte = static_cast<uint8_t>(random.next());
+        Link_receive(pair.b.link(), noise.data(), static_cast<U32>(noise.size()), 0, pair.now32());
+        pair.run(2000);
+    }
+    ASSERT_TRUE(pair.runUntil([&] { return pair.bothUp(); }, 60000000)) << "seed " << testSeed();
+    pair.run(1000000);
+    pair.b.received.clear();
+    ASSERT_TRUE(pair.runUntil(
+        [&] {
+            if (Link_send(pair.a.link(), 2, hello.data(), 2, 1u << 30, pair.now32()) == LINK_OK)
+                return true;
+            Link_openChannel(pair.a.link(), 2, pair.now32());
+            return false;
+        },
+        60000000));
+    ASSERT_TRUE(pair.runUntil([&] { return !pair.b.received.empty(); }, 60000000));
+    EXPECT_EQ(pair.b.received.back().second, hello);
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, LinkSeeds, ::testing::Range(0, 5));
 
 TEST(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {

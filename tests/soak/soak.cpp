@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: MIT
+//
+// soak: two link layers over two XBee models and a bad radio, for as long as one likes: random
+// messages both ways, loss, bursts, corruption, duplication; reboots of the UAV, of the ground and
+// of modems. None wrong, none doubled, none out of order, each delivered or reported: the first
+// that is not ends it.
+
+#include "ice_messages.h"
+#include "rf_channel.h"
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <unordered_map>
+
+extern "C" {
+#include "link.h"
+}
+
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+
+constexpr uint64_t msNs = 1'000'000, secondNs = 1000 * msNs;
+
+class Fault : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+// What message `id` of a side looks like: everything follows from the two.
+Bytes messageOf(uint32_t side, uint32_t id) {
+    Random r(uint64_t(side) << 40 | id);
+    uint32_t kind = r.below(10), size = r.below(40) ? r.below(60) : r.below(LINK_MAX_MESSAGE - 100);
+    Bytes body;
+    IceMessages::put32(body, id);
+    for (uint32_t i = 0; i < size; ++i)
+        body.push_back(static_cast<uint8_t>(r.next()));
+    std::string object = "object" + std::to_string(r.below(20));
+    if (kind < 5)
+        return IceMessages::request(kind < 2 ? 0 : id, object, "operation", body);
+    if (kind < 8)
+        return IceMessages::reply(id, body, kind == 7);
+    body.push_back(body[0]);
+    body[0] = static_cast<uint8_t>(r.next()); // any first byte
+    return body;
+}
+
+struct Totals {
+    uint64_t sent = 0, delivered = 0, unknown = 0, received = 0, reboots = 0, modemResets = 0;
+};
+
+// The link heeds the modem's CTS, as both drivers do.
+class FlowLine : public HostLine {
+public:
+    bool mayTalk() const { return cts_; }
+};
+
+// One end: modem, link, program. What it knows of its peer's messages it needs to check them only.
+class End {
+public:
+    End(uint32_t side, RfChannel& air, Random& random, Totals& totals)
+        : side_(side), random_(random), totals_(totals), link_(new Link) {
+        XBee::Options options;
+        options.name = side ? "uav" : "ground";
+        options.set = {{"BD", 7}, {"MY", side}, {"DL", 1 - side}, {"D7", 1}};
+        modem_ = std::make_unique<XBee>(line_, air, options);
+        boot(0);
+    }
+    void boot(uint64_t now) {
+        static const Link_Port port = {
+            [](void* c, const U8* f, U32 n) { return self(c).transmit(f, n); },
+            [](void* c) { return self(c).random_.next(); },
+            [](void* c, int channel, const U8* d, U32 n) {
+                return self(c).onMessage(channel, d, n);
+            },
+            [](void*, int, int) {},
+            [](void*, Link_State) {},
+            [](void* c, int, U32 tag, Link_Outcome o) { self(c).onOutcome(tag, o); },
+            nullptr};
+        now_ = now;
+        line_.received.clear();
+        out_.clear();
+        // What was on its way when the power went: its program would call it unknown.
+        totals_.unknown += outstanding_.size();
+        outstanding_.clear();
+        Link_init(link_.get(), &port, this, 1440);
+        Link_start(link_.get(), us());
+    }
+    void advance(uint64_t now, double rate) {
+        now_ = now;
+        modem_->advance(now);
+        for (; !out_.empty() && line_.mayTalk(); out_.pop_front())
+            line_.send({out_.front()}, now);
+        Link_receive(link_.get(), line_.received.data(), static_cast<U32>(line_.received.size()), 0,
+                     us());
+        line_.received.clear();
+        Link_poll(link_.get(), us());
+        if (isUp() && random_.chance(rate))
+            offer();
+        if (random_.chance(0.001))
+            busy_ = random_.chance(0.1); // takes no message for a while
+    }
+    bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
+    bool isQuiet() const { return outstanding_.empty(); }
+    XBee& modem() { return *modem_; }
+    void setPeer(End* peer) { peer_ = peer; }
+    void wakeUp() { busy_ = false; }
+    const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
+
+private:
+    static End& self(void* c) { return *static_cast<End*>(c); }
+    U32 us() const { return static_cast<U32>(now_ / 1000); }
+    [[noreturn]] void fault(const std::string& what, uint32_t id) {
+        throw Fault((side_ ? "uav" : "ground") + std::string(": message ") + std::to_string(id) +
+                    " " + what);
+    }
+    int transmit(const U8* frame, U32 size) {
+        if (out_.size() > 2 * LINK_MAX_FRAME)
+            return 1;
+        out_.insert(out_.end(), frame, frame + size);
+        return 0;
+    }
+    void offer() {
+        Bytes m = messageOf(side_, nextId_);
+        int channel = static_cast<int>(nextId_ % LINK_CHANNELS);
+        Link_Status status =
+            Link_send(link_.get(), channel, m.data(), static_cast<U32>(m.size()), nextId_, us());
+        if (status == LINK_CLOSED)
+            Link_openChannel(link_.get(), channel, us());
+        if (status != LINK_OK)
+            return;
+        outstanding_.emplace(nextId_++, false);
+        ++totals_.sent;
+    }
+    void onOutcome(U32 id, Link_Outcome outcome) {
+        auto it = outstanding_.find(id);
+        if (it == outstanding_.end())
+            fault("reported twice, or never sent", id);
+        if (outcome == LINK_DELIVERED && !it->second)
+            fault("reported delivered, and it was not", id);
+        ++(outcome == LINK_DELIVERED ? totals_.delivered : totals_.unknown);
+        outstanding_.erase(it);
+    }
+    // The link's acceptance of a message and the program's are one step here, unless it is busy.
+    int onMessage(int channel, const U8* data, U32 size) {
+        if (busy_)
+            return 1;
+        peer_->check(channel, Bytes(data, data + size));
+        ++totals_.received;
+        return 0;
+    }
+    // By the receiver: was this the next, or a later one, of mine, and is it whole?
+    void check(int channel, const Bytes& bytes) {
+        uint32_t id = lastArrived_;
+        do
+            if (++id >= nextId_)
+                fault("or one before it arrived wrong, twice or out of order", lastArrived_);
+        while (bytes != messageOf(side_, id));
+        if (channel != static_cast<int>(id % LINK_CHANNELS))
+            fault("arrived on channel " + std::to_string(channel), id);
+        auto it = outstanding_.find(id);
+        if (it != outstanding_.end())
+            it->second = true;
+        // What was skipped must not be on its way any more with the sender still believing in it.
+        for (uint32_t skipped = lastArrived_ + 1; skipped < id; ++skipped)
+            if (outstanding_.count(skipped))
+                fault("was skipped", skipped);
+        lastArrived_ = id;
+    }
+
+    uint32_t side_;
+    Random& random_;
+    Totals& totals_;
+    FlowLine line_;
+    std::deque<uint8_t> out_; // handed over, not yet on the line
+    std::unique_ptr<XBee> modem_;
+    std::unique_ptr<Link> link_;
+    End* peer_ = nullptr;
+    uint64_t now_ = 0;
+    bool busy_ = false;
+    uint32_t nextId_ = 1, lastArrived_ = 0;
+    std::unordered_map<uint32_t, bool>
+        outstanding_; // sent and not reported: whether it has arrived
+};
+
+class Soak {
+public:
+    explicit Soak(uint64_t seed) : random_(seed), air_(seed + 1) {
+        ground_.setPeer(&uav_);
+        uav_.setPeer(&ground_);
+    }
+    // One simulated second of whatever happens.
+    void second() {
+        weather();
+        misfortune();
+        for (uint64_t end = now_ + secondNs; now_ < end; now_ += msNs / 2)
+            step(rate_);
+    }
+    // Good weather, nothing new: everything that is under way must be reported.
+    void settle() {
+        air_.weather = {};
+        for (int s = 0;
+             s < 120 && !(ground_.isQuiet() && uav_.isQuiet() && ground_.isUp() && uav_.isUp());
+             ++s) {
+            ground_.wakeUp();
+            uav_.wakeUp();
+            ground_.modem().power(true, now_);
+            uav_.modem().power(true, now_);
+            for (uint64_t end = now_ + secondNs; now_ < end; now_ += msNs / 2)
+                step(0);
+        }
+        if (!ground_.isUp() || !uav_.isUp())
+            throw Fault("the link does not come back in good weather");
+        if (!ground_.isQuiet() || !uav_.isQuiet())
+            throw Fault("messages are neither delivered nor reported in good weather");
+    }
+    const Totals& totals() const { return totals_; }
+    double seconds() const { return static_cast<double>(now_) / 1e9; }
+    const RfChannel::Counters& air() const { return air_.counters(); }
+    uint64_t resent() const {
+        return ground_.statistics().fragmentsResent + uav_.statistics().fragmentsResent;
+    }
+
+private:
+    void step(double rate) {
+        air_.advance(now_);
+        ground_.advance(now_, rate);
+        uav_.advance(now_, rate);
+    }
+    void weather() {
+        if (random_.below(8))
+            return;
+        RfChannel::Weather w;
+        w.loss = random_.below(2) ? 0 : random_.below(40) / 100.0;
+        w.burstBegin = random_.below(3) ? 0 : 0.05;
+        w.duplication = random_.below(2) ? 0 : 0.1;
+        w.corruption = random_.below(2) ? 0 : 0.05;
+        w.delayNs = random_.below(2) ? 0 : random_.below(20) * msNs;
+        air_.weather = w;
+        rate_ = random_.below(3)
+                    ? 0.02
+                    : 0.2; // messages a half millisecond: light, or more than it carries
+    }
+    void misfortune() {
+        End& end = random_.below(2) ? ground_ : uav_;
+        switch (random_.below(60)) {
+        case 0:
+            ++totals_.reboots;
+            end.boot(now_);
+            break;
+        case 1:
+            ++totals_.modemResets;
+            end.modem().resetPin(true, now_);
+            end.modem().resetPin(false, now_ + 1000);
+            break;
+        case 2:
+            end.modem().power(false, now_); // for a second at least
+            break;
+        default:
+            ground_.modem().power(true, now_);
+            uav_.modem().power(true, now_);
+        }
+    }
+
+    Random random_;
+    RfChannel air_;
+    Totals totals_;
+    End ground_{0, air_, random_, totals_}, uav_{1, air_, random_, totals_};
+    uint64_t now_ = 0;
+    double rate_ = 0.1;
+};
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Endurance of the radio link: two link layers, two modems and a bad radio, faster "
+                 "than the clock.\n"
+                 "Ends with status 1, the seed and the second at the first message that is wrong, "
+                 "doubled, out of\n"
+                 "order, or neither delivered nor reported."};
+    double minutes = 3;
+    uint64_t seed = testSeed(), messages = 0;
+    app.add_option("--minutes", minutes, "of the wall clock to go on for")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--messages", messages, "stop after so many instead, however long it takes");
+    app.add_option("--seed", seed, "of everything that happens (default: $SEED, or 1)");
+    CLI11_PARSE(app, argc, argv);
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+    Soak soak(seed);
+    auto report = [&] {
+        const Totals& t = soak.totals();
+        std::printf("soak: %7.0f s simulated in %4.0f s: %llu messages sent, %llu received, %llu "
+                    "delivered, %llu "
+                    "reported unknown; %llu reboots, %llu modem resets; %llu packets, %llu lost, "
+                    "%llu spoilt, %llu "
+                    "doubled\n",
+                    soak.seconds(), elapsed(), static_cast<unsigned long long>(t.sent),
+                    static_cast<unsigned long long>(t.received),
+                    static_cast<unsigned long long>(t.delivered),
+                    static_cast<unsigned long long>(t.unknown),
+                    static_cast<unsigned long long>(t.reboots),
+                    static_cast<unsigned long long>(t.modemResets),
+                    static_cast<unsigned long long>(soak.air().packets),
+                    static_cast<unsigned long long>(soak.air().lost),
+                    static_cast<unsigned long long>(soak.air().corrupted),
+                    static_cast<unsigned long long>(soak.air().duplicated));
+        std::fflush(stdout);
+    };
+    try {
+        double said = 0;
+        for (int second = 1; messages ? soak.totals().sent < messages : elapsed() < minutes * 60;
+             ++second) {
+            soak.second();
+            if (second % 600 == 0)
+                soak.settle();
+            if (elapsed() - said >= 15) {
+                said = elapsed();
+                report();
+            }
+        }
+        soak.settle();
+        report();
+        const Totals& t = soak.totals();
+        if (t.delivered + t.unknown != t.sent)
+            throw Fault("delivered and reported messages are not all that were sent");
+    } catch (const Fault& fault) {
+        report();
+        std::fprintf(stderr, "soak: error: %s (seed %llu, second %.3f)\n", fault.what(),
+                     static_cast<unsigned long long>(seed), soak.seconds());
+        return 1;
+    }
+    std::printf("soak: none wrong, none doubled, none out of order, each delivered or reported\n");
+    return 0;
+}

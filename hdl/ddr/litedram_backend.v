@@ -9,7 +9,7 @@
 `default_nettype none
 
 module litedram_backend #(
-    parameter ADDR_WIDTH = 24, // of a 64-bit word, 6..29: 2**24 words are 128 MiB
+    parameter ADDR_WIDTH = 27, // of a byte, 9..32: 2**27 are 128 MiB
     parameter WRITE_LOG2 = 6,  // write FIFO: words, 32 at least
     parameter READ_LOG2  = 5   // read FIFO: words; covers the latency of the memory
 ) (
@@ -18,7 +18,7 @@ module litedram_backend #(
     // from the arbiter
     input  wire                  cmd_valid_i,
     input  wire                  cmd_read_i,
-    input  wire [31:0]           cmd_addr_i, // aligned to the size of the transfer
+    input  wire [ADDR_WIDTH-1:0] cmd_addr_i, // aligned to the size of the transfer
     input  wire [4:0]            cmd_last_i, // words - 1
     output wire                  cmd_ready_o,
     input  wire                  wr_valid_i,
@@ -32,7 +32,7 @@ module litedram_backend #(
     output wire                  dram_cmd_valid_o,
     input  wire                  dram_cmd_ready_i,
     output wire                  dram_cmd_we_o,
-    output wire [ADDR_WIDTH-1:0] dram_cmd_addr_o,
+    output wire [ADDR_WIDTH-4:0] dram_cmd_addr_o, // of a word
     output wire                  dram_wdata_valid_o,
     input  wire                  dram_wdata_ready_i,
     output wire [7:0]            dram_wdata_we_o,
@@ -71,7 +71,7 @@ module litedram_backend #(
     // A command that has been shown stays: `promised` grows by commands only.
     assign dram_cmd_valid_o = cmd_valid_i && dram_init_done_i && (room || !cmd_read_i);
     assign dram_cmd_we_o    = !cmd_read_i;
-    assign dram_cmd_addr_o  = {cmd_addr_i[ADDR_WIDTH+2:8], cmd_addr_i[7:3] | index};
+    assign dram_cmd_addr_o  = {cmd_addr_i[ADDR_WIDTH-1:8], cmd_addr_i[7:3] | index};
     assign cmd_ready_o      = dram_cmd_ready_i && dram_init_done_i && (room || !cmd_read_i) &&
                               index == cmd_last_i;
 
@@ -86,10 +86,5 @@ module litedram_backend #(
         end
     end
 
-    generate
-        if (ADDR_WIDTH < 29) begin : g_small
-            wire unused = &{1'b0, cmd_addr_i[31:ADDR_WIDTH+3], 1'b0}; // beyond the memory
-        end
-    endgenerate
     wire unused = &{1'b0, cmd_addr_i[2:0], 1'b0};
 endmodule

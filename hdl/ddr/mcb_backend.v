@@ -7,13 +7,15 @@
 
 `default_nettype none
 
-module mcb_backend (
+module mcb_backend #(
+    parameter ADDR_WIDTH = 27 // of a byte, 9..30: the MCB's range is 1 GiB
+) (
     input  wire        clk_i,
     input  wire        rst_i,
     // from the arbiter
     input  wire        cmd_valid_i,
     input  wire        cmd_read_i,
-    input  wire [31:0] cmd_addr_i,
+    input  wire [ADDR_WIDTH-1:0] cmd_addr_i,
     input  wire [4:0]  cmd_last_i, // words - 1
     output wire        cmd_ready_o,
     input  wire        wr_valid_i,
@@ -43,7 +45,7 @@ module mcb_backend (
     assign mcb_cmd_en_o        = cmd_valid_i && cmd_ready_o;
     assign mcb_cmd_instr_o     = {2'b00, cmd_read_i};
     assign mcb_cmd_bl_o        = {1'b0, cmd_last_i};
-    assign mcb_cmd_byte_addr_o = cmd_addr_i[29:0];
+    assign mcb_cmd_byte_addr_o = {{30-ADDR_WIDTH{1'b0}}, cmd_addr_i};
 
     assign wr_ready_o    = !mcb_wr_full_i;
     assign mcb_wr_en_o   = wr_valid_i && wr_ready_o;
@@ -54,11 +56,13 @@ module mcb_backend (
     assign rd_data_o   = mcb_rd_data_i;
     assign mcb_rd_en_o = rd_valid_o && rd_ready_i;
 
-    reg [6:0] promised; // words, 0..64
-    wire [5:0] more = mcb_cmd_en_o && cmd_read_i ? {1'b0, cmd_last_i} + 6'd1 : 6'd0;
-    assign room = !promised[6] && (!promised[5] || promised[4:0] == 5'd0);
+    // Words of the read FIFO that are not promised, 0..64. Minus n is plus ~(n - 1).
+    reg  [6:0] free;
+    wire       take = mcb_cmd_en_o && cmd_read_i;
+    wire [7:0] next = {free, 1'b1} + {take ? {2'b11, ~cmd_last_i} : 7'd0, mcb_rd_en_o};
+    assign room = |free[6:5];
     always @(posedge clk_i)
-        promised <= rst_i ? 7'd0 : promised + {1'b0, more} - {6'd0, mcb_rd_en_o};
+        free <= rst_i ? 7'd64 : next[7:1];
 
-    wire unused = &{1'b0, cmd_addr_i[31:30], 1'b0}; // 1 GiB is the MCB's range
+    wire unused = &{1'b0, next[0], 1'b0};
 endmodule

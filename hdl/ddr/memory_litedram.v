@@ -6,10 +6,11 @@
 
 module memory_litedram #(
     parameter             PORTS      = 2, // 2..8
-    parameter [PORTS-1:0] URGENT     = 0, // these three: npi_arbiter
+    parameter [PORTS-1:0] URGENT     = 0, // these: npi_arbiter
     parameter [2:0]       URGENT_RUN = 3'd3,
     parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}},
-    parameter             ADDR_WIDTH = 24 // litedram_backend
+    parameter             BLOCK_RAM  = 1,
+    parameter             ADDR_WIDTH = 27
 ) (
     input  wire                clk_i,
     input  wire                rst_i,
@@ -36,7 +37,7 @@ module memory_litedram #(
     output wire                  dram_cmd_valid_o,
     input  wire                  dram_cmd_ready_i,
     output wire                  dram_cmd_we_o,
-    output wire [ADDR_WIDTH-1:0] dram_cmd_addr_o,
+    output wire [ADDR_WIDTH-4:0] dram_cmd_addr_o,
     output wire                  dram_wdata_valid_o,
     input  wire                  dram_wdata_ready_i,
     output wire [7:0]            dram_wdata_we_o,
@@ -47,7 +48,7 @@ module memory_litedram #(
     input  wire                  dram_init_done_i
 );
     wire        cmd_valid, cmd_read, cmd_ready, wr_valid, wr_ready, rd_valid, rd_ready;
-    wire [31:0] cmd_addr;
+    wire [ADDR_WIDTH-1:0] cmd_addr;
     wire [4:0]  cmd_last;
     wire [63:0] wr_data, rd_data;
     wire [7:0]  wr_be;
@@ -55,7 +56,8 @@ module memory_litedram #(
     assign npi_init_done_o = {PORTS{dram_init_done_i}};
 
     npi_arbiter #(
-        .PORTS(PORTS), .URGENT(URGENT), .URGENT_RUN(URGENT_RUN), .READ_FIFO(READ_FIFO)
+        .PORTS(PORTS), .URGENT(URGENT), .URGENT_RUN(URGENT_RUN), .READ_FIFO(READ_FIFO),
+        .BLOCK_RAM(BLOCK_RAM), .ADDR_WIDTH(ADDR_WIDTH)
     ) u_arbiter (
         .clk_i(clk_i), .rst_i(rst_i),
         .npi_addr_i(npi_addr_i), .npi_addr_req_i(npi_addr_req_i), .npi_addr_ack_o(npi_addr_ack_o),

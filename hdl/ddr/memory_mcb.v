@@ -6,9 +6,11 @@
 
 module memory_mcb #(
     parameter             PORTS      = 2, // 2..8
-    parameter [PORTS-1:0] URGENT     = 0, // these three: npi_arbiter
+    parameter [PORTS-1:0] URGENT     = 0, // these: npi_arbiter
     parameter [2:0]       URGENT_RUN = 3'd3,
-    parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}}
+    parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}},
+    parameter             BLOCK_RAM  = 1,
+    parameter             ADDR_WIDTH = 27
 ) (
     input  wire                clk_i,
     input  wire                rst_i,
@@ -47,7 +49,7 @@ module memory_mcb #(
     input  wire                mcb_calib_done_i
 );
     wire        cmd_valid, cmd_read, cmd_ready, wr_valid, wr_ready, rd_valid, rd_ready;
-    wire [31:0] cmd_addr;
+    wire [ADDR_WIDTH-1:0] cmd_addr;
     wire [4:0]  cmd_last;
     wire [63:0] wr_data, rd_data;
     wire [7:0]  wr_be;
@@ -55,7 +57,8 @@ module memory_mcb #(
     assign npi_init_done_o = {PORTS{mcb_calib_done_i}};
 
     npi_arbiter #(
-        .PORTS(PORTS), .URGENT(URGENT), .URGENT_RUN(URGENT_RUN), .READ_FIFO(READ_FIFO)
+        .PORTS(PORTS), .URGENT(URGENT), .URGENT_RUN(URGENT_RUN), .READ_FIFO(READ_FIFO),
+        .BLOCK_RAM(BLOCK_RAM), .ADDR_WIDTH(ADDR_WIDTH)
     ) u_arbiter (
         .clk_i(clk_i), .rst_i(rst_i),
         .npi_addr_i(npi_addr_i), .npi_addr_req_i(npi_addr_req_i), .npi_addr_ack_o(npi_addr_ack_o),
@@ -72,7 +75,7 @@ module memory_mcb #(
         .rd_valid_i(rd_valid), .rd_data_i(rd_data), .rd_ready_o(rd_ready)
     );
 
-    mcb_backend u_backend (
+    mcb_backend #(.ADDR_WIDTH(ADDR_WIDTH)) u_backend (
         .clk_i(clk_i), .rst_i(rst_i),
         .cmd_valid_i(cmd_valid), .cmd_read_i(cmd_read), .cmd_addr_i(cmd_addr),
         .cmd_last_i(cmd_last), .cmd_ready_o(cmd_ready),

@@ -13,7 +13,9 @@ module npi_arbiter #(
     parameter [2:0]       URGENT_RUN = 3'd3, // 1..7
     // A port without a read FIFO gets its words as they come, and holds up all ports until it takes
     // them: for those that always do at once.
-    parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}}
+    parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}},
+    parameter             BLOCK_RAM  = 1,  // FIFOs in block RAM, else in LUT RAM and a clock faster
+    parameter             ADDR_WIDTH = 27  // of a byte: 2**27 are 128 MiB, 9..32
 ) (
     input  wire                clk_i,
     input  wire                rst_i,
@@ -38,7 +40,7 @@ module npi_arbiter #(
     // back-end: commands of 1..32 words; a write's words come before its command
     output wire                cmd_valid_o,
     output wire                cmd_read_o,
-    output wire [31:0]         cmd_addr_o,
+    output wire [ADDR_WIDTH-1:0] cmd_addr_o,
     output wire [4:0]          cmd_last_o, // words - 1
     input  wire                cmd_ready_i,
     output wire                wr_valid_o,
@@ -61,30 +63,31 @@ module npi_arbiter #(
     always @(posedge clk_i)
         npi_addr_ack_o <= rst_i ? {PORTS{1'b0}} : grant;
 
-    // The chosen request: one-hot AND-OR.
-    reg [31:0]          addr;
+    // The chosen request.
+    reg [ADDR_WIDTH-1:0] addr;
     reg [2:0]           size;
     reg [PORT_BITS-1:0] port;
     integer i;
     always @* begin
-        addr = 32'd0;
-        size = 3'd0;
+        addr = npi_addr_i[ADDR_WIDTH-1:0];
+        size = npi_size_i[2:0];
         port = {PORT_BITS{1'b0}};
-        for (i = 0; i < PORTS; i = i + 1) begin
-            addr = addr | (npi_addr_i[32*i +: 32] & {32{grant[i]}});
-            size = size | (npi_size_i[4*i +: 3] & {3{grant[i]}});
-            port = port | (i[PORT_BITS-1:0] & {PORT_BITS{grant[i]}});
-        end
+        for (i = 1; i < PORTS; i = i + 1)
+            if (grant[i]) begin
+                addr = npi_addr_i[32*i +: ADDR_WIDTH];
+                size = npi_size_i[4*i +: 3];
+                port = i[PORT_BITS-1:0];
+            end
     end
     // A read of a cache line may name any of its words; rd_word tells them apart.
     wire line = size == 3'd1 || size == 3'd2;
-    wire [28:0] start = {addr[31:5], addr[4] && size != 3'd2, addr[3] && !line};
+    wire [ADDR_WIDTH-4:0] start = {addr[ADDR_WIDTH-1:5], addr[4] && size != 3'd2, addr[3] && !line};
 
     wire                 move_valid, back_valid;
     wire [PORT_BITS-1:0] move_port, back_port;
     wire [4:0]           back_index;
-    wire [28:0]          cmd_word;
-    npi_queue #(.PORT_BITS(PORT_BITS)) u_queue (
+    wire [ADDR_WIDTH-4:0] cmd_word;
+    npi_queue #(.PORT_BITS(PORT_BITS), .ADDR_BITS(ADDR_WIDTH - 3)) u_queue (
         .clk_i(clk_i), .rst_i(rst_i),
         .push_i(|grant), .push_port_i(port), .push_read_i(|(grant & npi_rnw_i)),
         .push_size_i(size), .push_addr_i(start), .full_o(full),
@@ -98,7 +101,9 @@ module npi_arbiter #(
     assign cmd_addr_o = {cmd_word, 3'd0};
 
     // FIFOs of the ports.
-    wire [72*PORTS-1:0] wr_words;
+    wire [64*PORTS-1:0] wr_datas;
+    wire [8*PORTS-1:0]  wr_bes;
+    wire [67:0]         rd_word = {back_index[3:0], rd_data_i};
     wire [PORTS-1:0]    move_at, back_at, back_free;
     genvar p;
     generate
@@ -106,18 +111,19 @@ module npi_arbiter #(
             localparam [PORT_BITS-1:0] ME = p;
             assign move_at[p] = move_valid && move_port == ME;
             assign back_at[p] = back_valid && back_port == ME;
-            npi_fifo #(.WIDTH(72), .LOG2(5)) u_write (
+            npi_fifo #(.WIDTH(72), .LOG2(5), .BLOCK(BLOCK_RAM)) u_write (
                 .clk_i(clk_i), .rst_i(rst_i || npi_wr_flush_i[p]),
                 .push_i(npi_wr_push_i[p]),
                 .data_i({npi_wr_be_i[8*p +: 8], npi_wr_data_i[64*p +: 64]}),
-                .pop_i(move_at[p] && wr_valid_o && wr_ready_i), .data_o(wr_words[72*p +: 72]),
+                .pop_i(move_at[p] && wr_valid_o && wr_ready_i),
+                .data_o({wr_bes[8*p +: 8], wr_datas[64*p +: 64]}),
                 .empty_o(npi_wr_empty_o[p]), .full_o(npi_wr_almost_full_o[p])
             );
             if (READ_FIFO[p]) begin : g_fifo
                 wire rd_full; // a requester has room for what it reads (rule 3)
-                npi_fifo #(.WIDTH(68), .LOG2(5)) u_read (
+                npi_fifo #(.WIDTH(68), .LOG2(5), .BLOCK(BLOCK_RAM)) u_read (
                     .clk_i(clk_i), .rst_i(rst_i || npi_rd_flush_i[p]),
-                    .push_i(rd_valid_i && back_at[p]), .data_i({back_index[3:0], rd_data_i}),
+                    .push_i(rd_valid_i && back_at[p]), .data_i(rd_word),
                     .pop_i(npi_rd_pop_i[p]),
                     .data_o({npi_rd_word_o[4*p +: 4], npi_rd_data_o[64*p +: 64]}),
                     .empty_o(npi_rd_empty_o[p]), .full_o(rd_full)
@@ -125,8 +131,7 @@ module npi_arbiter #(
                 assign back_free[p] = 1'b1;
                 wire unused = &{1'b0, rd_full, 1'b0};
             end else begin : g_direct
-                assign {npi_rd_word_o[4*p +: 4], npi_rd_data_o[64*p +: 64]} =
-                       {back_index[3:0], rd_data_i};
+                assign {npi_rd_word_o[4*p +: 4], npi_rd_data_o[64*p +: 64]} = rd_word;
                 assign npi_rd_empty_o[p] = !(rd_valid_i && back_at[p]);
                 assign back_free[p] = npi_rd_pop_i[p];
                 wire unused = &{1'b0, npi_rd_flush_i[p], 1'b0};
@@ -134,17 +139,23 @@ module npi_arbiter #(
         end
     endgenerate
 
-    reg [71:0] wr_word;
+    reg [63:0] wr_data;
+    reg [7:0]  wr_be;
     integer k;
     always @* begin
-        wr_word = 72'd0;
-        for (k = 0; k < PORTS; k = k + 1)
-            wr_word = wr_word | (wr_words[72*k +: 72] & {72{move_port == k[PORT_BITS-1:0]}});
+        wr_data = wr_datas[63:0];
+        wr_be   = wr_bes[7:0];
+        for (k = 1; k < PORTS; k = k + 1)
+            if (move_port == k[PORT_BITS-1:0]) begin
+                wr_data = wr_datas[64*k +: 64];
+                wr_be   = wr_bes[8*k +: 8];
+            end
     end
     assign wr_valid_o = |(move_at & ~npi_wr_empty_o);
-    assign {wr_be_o, wr_data_o} = wr_word;
+    assign wr_data_o  = wr_data;
+    assign wr_be_o    = wr_be;
     assign rd_ready_o = |(back_at & back_free);
 
     // Byte enables always work, so read-modify-write is nothing special. Transfers are aligned.
-    wire unused = &{1'b0, npi_rmw_i, npi_size_i, addr[2:0], back_index[4], 1'b0};
+    wire unused = &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], 1'b0};
 endmodule

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_fifo: first-in first-out in LUT RAM; its first word is on data_o while empty_o is 0.
+// npi_fifo: first-in first-out; its first word is on data_o while empty_o is 0.
 //
-// A push while full and a pop while empty are the user's errors; they are proven absent where used.
+// In LUT RAM, or with BLOCK in block RAM: no LUTs for the words, and one clock more from push_i to
+// empty_o. A push while full and a pop while empty are the user's errors; they are proven absent
+// where it is used.
 
 `default_nettype none
 
 module npi_fifo #(
     parameter WIDTH = 72,
-    parameter LOG2  = 5 // 2**LOG2 words
+    parameter LOG2  = 5, // 2**LOG2 words
+    parameter BLOCK = 0
 ) (
     input  wire             clk_i,
     input  wire             rst_i, // also empties it
@@ -19,26 +22,48 @@ module npi_fifo #(
     output wire             empty_o,
     output wire             full_o
 );
-    reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
-    reg [LOG2:0] write_index, read_index;
+    reg  [LOG2:0] write_index, read_index;
+    wire [LOG2:0] next = read_index + {{LOG2{1'b0}}, pop_i};
 
-    wire same    = write_index[LOG2-1:0] == read_index[LOG2-1:0];
-    assign empty_o = same && write_index[LOG2] == read_index[LOG2];
-    assign full_o  = same && write_index[LOG2] != read_index[LOG2];
-    assign data_o  = words[read_index[LOG2-1:0]];
+    assign full_o = write_index[LOG2-1:0] == read_index[LOG2-1:0] &&
+                    write_index[LOG2] != read_index[LOG2];
 
     always @(posedge clk_i) begin
-        if (push_i) begin
-            words[write_index[LOG2-1:0]] <= data_i;
+        if (push_i)
             write_index <= write_index + 1'b1;
-        end
-        if (pop_i)
-            read_index <= read_index + 1'b1;
+        read_index <= next;
         if (rst_i) begin
             write_index <= 0;
             read_index  <= 0;
         end
     end
+
+    generate
+        if (BLOCK == 0) begin : g_lut
+            reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
+            assign empty_o = write_index == read_index;
+            assign data_o  = words[read_index[LOG2-1:0]];
+            always @(posedge clk_i)
+                if (push_i)
+                    words[write_index[LOG2-1:0]] <= data_i;
+        end else begin : g_block
+            (* ram_style = "block" *)
+            reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
+            reg [WIDTH-1:0] word;
+            reg             empty;
+            // Words of the clocks before only: the RAM is never read where it is being written.
+            wire ready = next != write_index;
+            assign empty_o = empty;
+            assign data_o  = word;
+            always @(posedge clk_i) begin
+                if (push_i)
+                    words[write_index[LOG2-1:0]] <= data_i;
+                if (ready)
+                    word <= words[next[LOG2-1:0]];
+                empty <= rst_i || !ready;
+            end
+        end
+    endgenerate
 
 `ifdef FORMAL
     reg past = 1'b0;
@@ -60,16 +85,17 @@ module npi_fifo #(
             inside <= 1'b0;
         if (past) begin
             assert (count <= (1 << LOG2));
-            assert (empty_o == (count == 0));
             assert (full_o == (count == (1 << LOG2)));
-            if (inside) begin
-                assert ((place - read_index) < count);
-                assert (words[place[LOG2-1:0]] == value);
-            end
-            if (inside && read_index == place)
-                assert (data_o == value && !empty_o);
+            assert (empty_o || count != 0);
+            if (BLOCK == 0)
+                assert (empty_o == (count == 0));
+            else if ($past(count) != 0 && !$past(pop_i) && !$past(rst_i))
+                assert (!empty_o); // a clock later, not more
+            assert (inside == ((place - read_index) < count));
+            if (inside && read_index == place && !empty_o)
+                assert (data_o == value);
             cover (full_o);
-            cover ($past(full_o) && !empty_o && inside);
+            cover ($past(full_o) && $past(pop_i) && !empty_o && inside);
         end
     end
 `endif

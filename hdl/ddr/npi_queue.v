@@ -13,8 +13,9 @@
 `default_nettype none
 
 module npi_queue #(
-    parameter PORT_BITS = 1, // width of a port's number
-    parameter LOG2      = 4  // 2..5
+    parameter PORT_BITS = 1,  // width of a port's number
+    parameter ADDR_BITS = 24, // of a 64-bit word
+    parameter LOG2      = 4   // 2..5
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,
@@ -23,7 +24,7 @@ module npi_queue #(
     input  wire [PORT_BITS-1:0] push_port_i,
     input  wire                 push_read_i,
     input  wire [2:0]           push_size_i, // 2**size words, 0..5
-    input  wire [28:0]          push_addr_i, // of a 64-bit word
+    input  wire [ADDR_BITS-1:0] push_addr_i,
     output wire                 full_o,
     // words of writes
     output wire                 move_valid_o, // a word of this port is wanted
@@ -32,7 +33,7 @@ module npi_queue #(
     // commands
     output wire                 cmd_valid_o,
     output wire                 cmd_read_o,
-    output wire [28:0]          cmd_addr_o,
+    output wire [ADDR_BITS-1:0] cmd_addr_o,
     output wire [4:0]           cmd_last_o,   // words - 1
     input  wire                 cmd_ready_i,
     // words of reads
@@ -43,7 +44,7 @@ module npi_queue #(
 );
     localparam KIND = PORT_BITS + 4;
 
-    reg [28:0]     addrs [0:(1<<LOG2)-1];
+    reg [ADDR_BITS-1:0] addrs [0:(1<<LOG2)-1];
     reg [KIND-1:0] kinds [0:(1<<LOG2)-1]; // port, read, size
     reg [LOG2-1:0] head, move, issue, back;
     reg [4:0]      move_index, back_index;
@@ -113,7 +114,7 @@ module npi_queue #(
 
     // Any one place of the ring: what is put there comes out as it went in, once, in its turn.
     (* anyconst *) reg [LOG2-1:0] place;
-    reg [28:0]     addr;
+    reg [ADDR_BITS-1:0] addr;
     reg [KIND-1:0] kind;
     reg            inside = 1'b0, issued = 1'b0;
     reg [5:0]      moved = 0, came = 0; // words of it

@@ -115,7 +115,7 @@ public:
     // Pops depend on what the port shows in the same cycle: called when the outputs have settled.
     void pops() {
         for (Port& port : ports_) {
-            port.popping = port.willing && !getBits(top_.npi_rd_empty_o, port.number, 1);
+            port.popping = !top_.rst_i && port.willing && !getBits(top_.npi_rd_empty_o, port.number, 1);
             setBits(top_.npi_rd_pop_i, port.number, 1, port.popping);
         }
     }

@@ -7,13 +7,18 @@ folders="$source/bus $source/hdl/fsmc $source/hdl/ddr $source/hdl/modem $source/
 file=$(for f in $folders; do ls "$f/$module.v" 2>/dev/null || true; done)
 case $module in
 bus_decoder) variants='SLOTS=1 SLOTS=3 SLOTS=64' ;;
-npi_arbiter | npi_select | memory_mcb | memory_litedram) variants='PORTS=2 PORTS=3 PORTS=4 PORTS=5 PORTS=6 PORTS=7 PORTS=8' ;;
+npi_select) variants="PORTS=2 PORTS=3 PORTS=4 PORTS=5 PORTS=6 PORTS=7 PORTS=8 URGENT=2'd1" ;;
+npi_arbiter | memory_mcb | memory_litedram)
+    variants="PORTS=2 PORTS=3 PORTS=4 PORTS=5 PORTS=6 PORTS=7 PORTS=8 URGENT=2'd1 READ_FIFO=2'd1 BLOCK_RAM=0 ADDR_WIDTH=30" ;;
+litedram_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=32' ;;
+mcb_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=30' ;;
 npi_queue) variants='PORT_BITS=2 PORT_BITS=3' ;;
-litedram_backend) variants='ADDR_WIDTH=6 ADDR_WIDTH=29' ;;
+litedram_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=32' ;;
+mcb_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=30' ;;
 bus_wrapper) variants='EVENTS=1 EVENTS=32' ;;
 bus_window | bus_to_axi4lite) variants='ADDR_WIDTH=6 ADDR_WIDTH=32' ;;
 bus_to_wishbone) variants='ADDR_WIDTH=6 ADDR_WIDTH=32 PIPELINED=1' ;;
-npi_fifo) variants='LOG2=1 LOG2=5' ;;
+npi_fifo) variants='LOG2=1 LOG2=5 BLOCK=1' ;;
 modem) variants='CLK_HZ=2000000 CLK_HZ=100000000' ;;
 system_slot) variants='SLOTS=2 SLOTS=63' ;;
 *) variants='' ;;

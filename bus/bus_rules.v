@@ -27,7 +27,7 @@ module bus_rules #(
     reg [15:0] waited = 16'd0; // clocks for which valid has waited before this one
     always @(posedge clk_i) begin
         past   <= 1'b1;
-        waited <= valid_i && !ready_i && !rst_i ? waited + 16'd1 : 16'd0;
+        waited <= valid_i && !ready_i && !rst_i ? waited + (waited != 16'hFFFF) : 16'd0;
     end
 
     reg waiting = 1'b0; // a transfer was wanted and not answered in the clock before

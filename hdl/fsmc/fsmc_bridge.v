@@ -11,6 +11,7 @@
 
 module fsmc_bridge #(
     parameter MUXED        = 0, // 1: address bits 15..0 come on the data pins while NADV is low
+    parameter WAIT_HIGH    = 0, // 1: NWAIT is active high (WAITPOL = 1)
     parameter TIMEOUT_LOG2 = 12,
     parameter POST_LOG2    = 4, // see fsmc_memory
     parameter BLOCK_LOG2   = 3
@@ -121,7 +122,8 @@ module fsmc_bridge #(
     wire ne1 = !fsmc_ne_n_i[0], ne2 = !fsmc_ne_n_i[1];
     wire read_ok  = ne2 ? reg_done : (hit && clear) || excused;
     wire write_ok = clear && (ne2 || room) || excused;
-    assign fsmc_nwait_n_o = !((ne1 || ne2) && ((!fsmc_noe_n_i && !read_ok) || (!fsmc_nwe_n_i && !write_ok)));
+    assign fsmc_nwait_n_o = (WAIT_HIGH != 0) ^ !((ne1 || ne2) &&
+        ((!fsmc_noe_n_i && !read_ok) || (!fsmc_nwe_n_i && !write_ok)));
     assign fsmc_d_o       = ne2 ? reg_data : mem_data;
     assign fsmc_d_oe_o    = (ne1 || ne2) && !fsmc_noe_n_i;
 

@@ -44,28 +44,34 @@ module fsmc_registers (
     input  wire [31:0] bus_rdata_i,
     input  wire        bus_error_i
 );
-    localparam [1:0] IDLE    = 2'd0,
-                     FLUSH   = 2'd1, // memory takes what was posted
-                     BUS     = 2'd2, // the slave answers
-                     ANSWER  = 2'd3; // the processor ends its read
-
-    reg [1:0]  state;
+    // One of them at most: memory takes what was posted; the slave answers (bus_valid_o); the
+    // processor ends its read. None: nothing to do.
+    reg        flushing, answering;
     reg [31:0] word;       // last read; its low half also what was written
     reg        half_read, half_write; // which half of bus_addr_o's word is kept in it
     reg        given_up;   // the read has ended early: nobody takes its answer
     reg        give, done, seen;
     reg [1:0]  done_s;
 
-    wire [24:0] addr   = wr_i ? wr_addr_i : rd_addr_i;
-    wire in_range      = addr[24:11] == 14'd0;
-    wire same          = addr[10:1] == bus_addr_o;
+    wire idle     = !flushing && !bus_valid_o && !give && !answering;
+    wire begins   = idle && (wr_i || reading_i);
+    wire high     = wr_i ? wr_addr_i[0] : rd_addr_i[0];
+    wire in_range = wr_i ? wr_addr_i[24:11] == 14'd0 : rd_addr_i[24:11] == 14'd0;
+    wire [9:0] addr = wr_i ? wr_addr_i[10:1] : rd_addr_i[10:1];
+    wire same     = addr == bus_addr_o;
+    wire keep     = wr_i && !high;                       // a low half to be written
+    wire kept     = !wr_i && high && half_read && same;  // a high half that was read
+    wire wrong    = !in_range || (wr_i && !(half_write && same));
+    wire transfer = begins && !keep && !kept && !wrong;
+    wire at_once  = begins && !wr_i && (kept || wrong);  // a read without a transfer
+    wire flushed  = flushing && (idle_i || expired_i);
+    wire ends     = bus_valid_o && (bus_ready_i || expired_i);
 
     assign rd_done_o     = done;
     assign rd_data_o     = rd_addr_i[0] ? word[31:16] : word[15:0];
-    assign busy_o        = state != IDLE;
-    wire   bus_next      = idle_i || expired_i;
-    assign restart_o     = state == IDLE || (flush_o && bus_next);
-    assign flush_o       = state == FLUSH;
+    assign busy_o        = !idle;
+    assign restart_o     = idle || flushed;
+    assign flush_o       = flushing;
     assign bus_wdata_o   = {wr_data_i, word[15:0]};
     assign error_write_o = bus_write_o;
 
@@ -77,77 +83,118 @@ module fsmc_registers (
             done <= 1'b1;
 
     always @(posedge clk_i) begin
-        done_s   <= {done_s[0], done};
-        error_o  <= 1'b0;
-        error_memory_o <= 1'b0;
-        give     <= 1'b0;
-        if (wr_i && state != IDLE)
-            error_o <= 1'b1; // written without looking at NWAIT: lost
-        if (!reading_i)
-            given_up <= 1'b1;
+        done_s <= {done_s[0], done};
+        seen   <= !idle && (seen || done_s[1]);
+        give   <= at_once || (ends && !bus_write_o);
 
-        case (state)
-            IDLE: begin
-                seen <= 1'b0;
-                if (wr_i || reading_i) begin
-                    given_up    <= wr_i;
-                    bus_addr_o  <= addr[10:1];
-                    bus_write_o <= wr_i;
-                    half_read   <= 1'b0;
-                    half_write  <= 1'b0;
-                    if (wr_i && !addr[0]) begin
-                        word[15:0] <= wr_data_i;
-                        half_write <= 1'b1;
-                    end else if (!wr_i && addr[0] && half_read && same) begin
-                        give  <= 1'b1;
-                        state <= ANSWER;
-                    end else if (!in_range || (wr_i && !(half_write && same))) begin
-                        error_o <= 1'b1;
-                        if (!wr_i) begin
-                            word  <= 32'd0;
-                            give  <= 1'b1;
-                            state <= ANSWER;
-                        end
-                    end else begin
-                        state <= FLUSH;
-                    end
-                end
-            end
-            FLUSH: begin
-                error_memory_o <= expired_i && !idle_i;
-                if (bus_next) begin
-                    bus_valid_o <= 1'b1;
-                    state       <= BUS;
-                end
-            end
-            BUS: begin
-                if (bus_ready_i || expired_i) begin
-                    bus_valid_o <= 1'b0;
-                    error_o     <= bus_error_i || !bus_ready_i;
-                    if (!bus_write_o)
-                        word <= bus_rdata_i;
-                    give        <= !bus_write_o;
-                    half_read   <= !bus_write_o && !rd_addr_i[0] && !given_up;
-                    state       <= bus_write_o ? IDLE : ANSWER;
-                end
-            end
-            default: begin
-                seen <= seen || done_s[1];
-                if (given_up || (seen && !done_s[1]))
-                    state <= IDLE;
-            end
-        endcase
+        if (begins) begin
+            bus_addr_o  <= addr;
+            bus_write_o <= wr_i;
+            half_write  <= keep;
+        end
+        if (begins || ends)
+            half_read <= ends && !bus_write_o && !rd_addr_i[0] && !given_up;
+        given_up <= !begins && (given_up || !reading_i);
+
+        if (begins && keep)
+            word[15:0] <= wr_data_i;
+        else if (ends && !bus_write_o)
+            word <= bus_rdata_i;
+        if (at_once && !kept)
+            word <= 32'd0;
+
+        if (begins || flushed)
+            flushing <= transfer;
+        if (flushed || ends)
+            bus_valid_o <= flushed;
+        if (give || (answering && (given_up || (seen && !done_s[1]))))
+            answering <= give;
+
+        // An error, too: written without looking at NWAIT, and lost.
+        error_o <= (begins && !keep && !kept && wrong) || (ends && (bus_error_i || !bus_ready_i)) ||
+                   (wr_i && !idle);
+        error_memory_o <= flushing && expired_i && !idle_i;
 
         if (rst_i) begin
-            state <= IDLE;
+            flushing    <= 1'b0;
+            bus_valid_o <= 1'b0;
+            answering   <= 1'b0;
             give        <= 1'b0;
-            done_s      <= 2'b00;
             half_read   <= 1'b0;
             half_write  <= 1'b0;
-            bus_valid_o <= 1'b0;
-            bus_write_o <= 1'b0;
             error_o     <= 1'b0;
             error_memory_o <= 1'b0;
         end
     end
+
+`ifdef FORMAL
+    // A hung slave is given up when expired_i says so: the rule that a transfer waits is not broken.
+    bus_rules #(.MASTER(1), .PATIENCE(1)) u_bus_rules (
+        .clk_i(clk_i), .rst_i(rst_i), .valid_i(bus_valid_o), .write_i(bus_write_o),
+        .addr_i(bus_addr_o), .wdata_i(bus_wdata_o), .ready_i(bus_ready_i), .rdata_i(bus_rdata_i),
+        .error_i(bus_error_i)
+    );
+    reg        past = 1'b0;
+    reg [3:0]  patience;  // the bridge's, shorter
+    reg [4:0]  stuck;     // clocks of this access without an answer
+    reg [31:0] last_read; // the word that the bus gave last
+    reg [15:0] last_low;  // low half written last
+    reg        low_word;  // to the word of bus_addr_o, nothing since
+    reg        was_busy = 1'b0;
+    reg [40:0] write_was;
+    always @* begin
+        // Pins: NWAIT keeps the next write, and its data, away until the one before is done.
+        assume (!(busy_o && wr_i));
+        assume (!(was_busy && busy_o) || write_was == {wr_addr_i, wr_data_i});
+        // Time, as the bridge counts it.
+        assume (expired_i == patience[3]);
+    end
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        if (past)
+            assume (!rst_i);
+        else
+            assume (rst_i);
+        was_busy <= busy_o;
+        write_was <= {wr_addr_i, wr_data_i};
+        patience <= restart_o || patience[3] || rst_i ? 4'd0 : patience + 4'd1;
+        stuck    <= !rst_i && (flushing || bus_valid_o) ? stuck + 5'd1 : 5'd0;
+        if (ends && !bus_write_o)
+            last_read <= bus_rdata_i;
+        if (begins && keep)
+            last_low <= wr_data_i;
+        low_word <= !rst_i && (begins ? keep : low_word);
+
+        if (past && !rst_i) begin
+            // One thing at a time, so one transfer an access, and none that nobody began.
+            assert ({2'd0, flushing} + {2'd0, bus_valid_o} + {2'd0, give} + {2'd0, answering} <= 3'd1);
+            if (bus_valid_o && !$past(bus_valid_o))
+                assert ($past(flushing));
+            if (flushing && !$past(flushing))
+                assert ($past(idle && (wr_i || reading_i)));
+            // In one piece: a high half that is kept is of the word read last; a word is written
+            // with the low half that was written to it just before.
+            assert (!half_read || word == last_read);
+            assert (half_write == low_word);
+            assert (idle || !half_write);
+            assert (!flushing && !bus_valid_o || !half_read);
+            assert (!half_write || word[15:0] == last_low);
+            if ((flushing || bus_valid_o) && bus_write_o)
+                assert (word[15:0] == last_low);
+            // No waiting for ever: 2 time-outs and the steps between.
+            assert (!flushing || stuck <= patience);
+            assert (!bus_valid_o || stuck <= patience + 5'd9);
+            assert (stuck <= 5'd18);
+            // Memory writes come first, unless the memory hangs.
+            if (bus_valid_o && !$past(bus_valid_o))
+                assert ($past(idle_i) || $past(expired_i));
+            // An answer is for the access that asked for it.
+            assert (!$past(given_up && !begins) || !(done && !$past(done)));
+        end
+        cover (past && bus_valid_o && bus_write_o && bus_ready_i);
+        cover (past && done && rd_addr_i[0] && $past(half_read, 3));
+        cover (past && error_o && $past(expired_i));
+        cover (past && error_memory_o);
+    end
+`endif
 endmodule

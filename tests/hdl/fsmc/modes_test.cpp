@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modes_test: the bridge in each asynchronous mode of the FSMC, at several ratios of the two clocks.
+// modes_test: the bridge in each asynchronous mode of the FSMC, at several ratios of the two
+// clocks.
 
 #include "VFsmcBridge.h"
 #include "VFsmcBridgeMuxed.h"
@@ -29,21 +30,25 @@ const Mode plainModes[] = {
     {"A", base | bcrExtended, timing(2, 4, 1, 1, 0), timing(1, 5, 0, 1, 0)},
     {"A write fast", base | bcrExtended, timing(3, 6, 0, 1, 0), timing(1, 4, 0, 1, 0)},
     {"2", base | bcrTypeNor | bcrFlashAccess, timing(2, 4, 1), 0},
-    {"B", base | bcrTypeNor | bcrFlashAccess | bcrExtended, timing(2, 4, 1, 1, 1), timing(2, 4, 0, 1, 1)},
-    {"C", base | bcrTypeNor | bcrFlashAccess | bcrExtended, timing(2, 4, 1, 1, 2), timing(2, 4, 0, 1, 2)},
-    {"D", base | bcrTypeNor | bcrFlashAccess | bcrExtended, timing(2, 4, 1, 2, 3), timing(2, 4, 0, 2, 3)},
+    {"B", base | bcrTypeNor | bcrFlashAccess | bcrExtended, timing(2, 4, 1, 1, 1),
+     timing(2, 4, 0, 1, 1)},
+    {"C", base | bcrTypeNor | bcrFlashAccess | bcrExtended, timing(2, 4, 1, 1, 2),
+     timing(2, 4, 0, 1, 2)},
+    {"D", base | bcrTypeNor | bcrFlashAccess | bcrExtended, timing(2, 4, 1, 2, 3),
+     timing(2, 4, 0, 2, 3)},
     {"read A, write D", base | bcrExtended, timing(2, 4, 1, 1, 0), timing(1, 4, 0, 3, 3)},
 };
 const Mode muxedModes[] = {
     {"muxed NOR", base | bcrTypeNor | bcrFlashAccess | bcrMuxed, timing(2, 4, 1, 2), 0},
     {"muxed PSRAM", base | bcrTypePsram | bcrMuxed, timing(1, 5, 2, 1), 0},
-    {"muxed, extended", base | bcrTypeNor | bcrMuxed | bcrExtended, timing(3, 4, 1, 1, 3), timing(1, 4, 1, 1, 3)},
+    {"muxed, extended", base | bcrTypeNor | bcrMuxed | bcrExtended, timing(3, 4, 1, 1, 3),
+     timing(1, 4, 1, 1, 3)},
 };
 
 // Random traffic of all widths to both windows against a reference.
 template <class Bridge> void traffic(const Mode& mode, unsigned hclk, unsigned clk) {
-    SCOPED_TRACE(std::string("mode ") + mode.name + ", HCLK : clock = " + std::to_string(hclk) + " : " +
-                 std::to_string(clk) + ", SEED=" + std::to_string(testSeed()));
+    SCOPED_TRACE(std::string("mode ") + mode.name + ", HCLK : clock = " + std::to_string(hclk) +
+                 " : " + std::to_string(clk) + ", SEED=" + std::to_string(testSeed()));
     BridgeBench<Bridge> b(testSeed(), 0.2, hclk, clk);
     for (uint32_t bank : {0u, 1u}) {
         b.master.write32(registersAt + 4 + 8 * bank, mode.btr);
@@ -76,7 +81,8 @@ template <class Bridge> void traffic(const Mode& mode, unsigned hclk, unsigned c
             EXPECT_EQ(b.master.read32(control + 4 * word), words[word]) << "register " << word;
             break;
         default:
-            EXPECT_EQ(b.master.read16(ddr + a), reference[a] | reference[a + 1] << 8) << "access " << i;
+            EXPECT_EQ(b.master.read16(ddr + a), reference[a] | reference[a + 1] << 8)
+                << "access " << i;
             place += 2;
         }
         if (random.chance(0.1))
@@ -87,7 +93,8 @@ template <class Bridge> void traffic(const Mode& mode, unsigned hclk, unsigned c
 
 TEST(Modes, EveryAsynchronousModeAtEveryRatio) {
     for (const Mode& mode : plainModes)
-        for (auto [hclk, clk] : {std::pair(120, 100), {100, 100}, {1000, 997}, {997, 1000}, {60, 100}, {168, 100}}) {
+        for (auto [hclk, clk] :
+             {std::pair(120, 100), {100, 100}, {1000, 997}, {997, 1000}, {60, 100}, {168, 100}}) {
             if (hclk == 168 && (mode.btr & 0xF) < 2)
                 continue; // 4 clocks between writes want ADDSET 2 at 168 MHz
             traffic<VFsmcBridge>(mode, hclk, clk);

@@ -117,10 +117,15 @@ void Parser::member(Declaration& d, bool mayBeOptional) {
         error(begin, "a member cannot be void");
     checkLocal(f.type, d.isLocal, "member '" + f.name + "'", begin);
     checkMember(d, f);
+    // It would have no end, and whoever walks through it neither.
+    bool containsItself = f.type.declaration == &d && f.type.kind == Type::Kind::Named && !isClass;
+    if (containsItself)
+        error(f.at, "a " + std::string(kindName(d.kind)) + " cannot contain itself");
     if (accept("="))
         f.value = literal(f.type, "member '" + f.name + "'");
     expect(";");
-    d.fields.push_back(std::move(f));
+    if (!containsItself)
+        d.fields.push_back(std::move(f));
 }
 
 void Parser::checkMember(const Declaration& d, const Field& f) {
@@ -137,9 +142,6 @@ void Parser::checkMember(const Declaration& d, const Field& f) {
             if (from == &d && f.isOptional && other.isOptional && other.tag == f.tag)
                 error(f.at, "tag " + std::to_string(f.tag) + " is that of '" + other.name + "'");
         }
-    // A struct that contains itself would have no end.
-    if (f.type.declaration == &d && f.type.kind == Type::Kind::Named && d.kind != Declaration::Kind::Class)
-        error(f.at, "a " + std::string(kindName(d.kind)) + " cannot contain itself");
 }
 
 void Parser::sequence() {

@@ -62,8 +62,10 @@ endif
 mutants: $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect its test to fail (BLOCK=bus for one block)
 	@tests/mutants/run.sh --jobs $(JOBS) $(if $(BLOCK),--block '$(BLOCK)')
 
-bench: $(BUILD)/build.ninja ## measure the simulator, write build/bench/simulator.json
+bench: $(BUILD)/build.ninja ## measure simulator and Slice compiler, write build/bench/*.json
 	@ninja -C $(BUILD) -j $(JOBS) measure_simulator
+	@ninja -C $(BUILD) -j $(JOBS) slice2c
+	@tests/slice/bench.sh $(BUILD)/slice/slice2c build/bench/slice.json
 
 firmware: $(BUILD)/build.ninja ## the firmware for the STM32F2: ELF, map, sizes in build/main/firmware
 	@ninja -C $(BUILD) -j $(JOBS) firmware

@@ -6,6 +6,7 @@
 #include "c_names.h"
 #include "c_types.h"
 #include <map>
+#include <set>
 
 namespace {
 
@@ -71,7 +72,7 @@ public:
 
     void add(const std::string& c, const std::string& slice, const Location& at) {
         auto [it, isNew] = names_.emplace(c, slice);
-        if (!isNew && it->second != slice)
+        if (!isNew && it->second != slice && said_.insert(slice).second) // once for each
             diagnostics_.error(at, "'" + slice + "' becomes '" + c + "' in C, as '" + it->second + "' does");
     }
     void add(const Declaration& d) {
@@ -106,6 +107,7 @@ private:
 
     Diagnostics& diagnostics_;
     std::map<std::string, std::string> names_;
+    std::set<std::string> said_;
 };
 
 // has_x, which an optional member brings, may be another member's name.

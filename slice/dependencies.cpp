@@ -28,12 +28,22 @@ std::string headerOf(const std::string& included, const std::string& file,
     return best.replace_extension(extension).generic_string();
 }
 
+namespace {
+
+// The preprocessor makes paths absolute; below the current folder they are written without it.
+std::string shown(const std::string& file) {
+    fs::path path = fs::weakly_canonical(file), relative = path.lexically_relative(fs::current_path());
+    return relative.empty() || *relative.begin() == ".." ? path.string() : relative.string();
+}
+
+} // namespace
+
 void Dependencies::add(const std::string& file, const CFileNames& names,
                        const std::vector<std::string>& files) {
     entries_.push_back({file, names, {}});
     for (const std::string& f : files)
-        if (f != file)
-            entries_.back().dependsOn.push_back(f);
+        if (shown(f) != shown(file))
+            entries_.back().dependsOn.push_back(shown(f));
 }
 
 bool Dependencies::print(bool xml, const std::string& path) const {

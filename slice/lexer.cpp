@@ -170,7 +170,11 @@ private:
             advance();
         if (position_ == begin + 1 && std::string_view("{}()[];:,*=<>").find(c) == std::string_view::npos) {
             auto u = static_cast<unsigned char>(c);
-            std::string shown = u > 32 && u < 127 ? std::string(1, c) : "code " + std::to_string(u);
+            if (u >= 0xC0) // the whole of a character of UTF-8
+                while ((static_cast<unsigned char>(peek()) & 0xC0) == 0x80)
+                    ++position_;
+            std::string shown = u > 32 && u != 127 ? std::string(text_.substr(begin, position_ - begin))
+                                                   : "code " + std::to_string(u);
             diagnostics_.error(at, "character '" + shown + "' has no meaning in Slice");
         } else {
             add(Token::Kind::Symbol, begin, at);

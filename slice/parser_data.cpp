@@ -19,7 +19,9 @@ void Parser::enumeration() {
         else if (next > INT32_MAX)
             error(e.at, "an enumerator's value is 0..2147483647");
         e.value = next++;
+        bool isTaken = false;
         for (const Enumerator& other : d.enumerators) {
+            isTaken = isTaken || lowerCase(other.name) == lowerCase(e.name);
             if (lowerCase(other.name) == lowerCase(e.name))
                 error(e.at, "enumerator '" + e.name + "' is there already, as '" + other.name + "'");
             else if (other.value == e.value)
@@ -27,7 +29,7 @@ void Parser::enumeration() {
         }
         d.enumerators.push_back(e);
         bool isNew = false;
-        Symbol* s = symbols_.declare(d.id(), e.name, e.at, isNew);
+        Symbol* s = isTaken ? nullptr : symbols_.declare(d.id(), e.name, e.at, isNew);
         if (s && isNew) {
             s->kind = Symbol::Kind::Enumerator;
             s->declaration = &d;

@@ -1,0 +1,97 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# commandline: slice2c sw-folder work-folder   Options, exit statuses, files that include others, dependencies.
+set -eu
+slice2c=$1 sw=$2 work=$3
+rm -rf "$work"
+mkdir -p "$work/slice/Lib"
+cd "$work"
+fail() { echo "commandline: $*" && exit 1; }
+expect() { # status, words of the output, command...
+    wanted=$1 words=$2
+    shift 2
+    status=0
+    "$@" >log 2>&1 || status=$?
+    [ $status = "$wanted" ] || { cat log && fail "exit status $status, not $wanted: $*"; }
+    [ -z "$words" ] || grep -q -- "$words" log || { cat log && fail "'$words' is not said: $*"; }
+}
+
+cat >slice/Lib/Base.ice <<'ICE'
+#pragma once
+[["underscore"]]
+module Lib { struct Point_ty { int x; int y; }; exception Failed { string why; }; interface Named { string name() throws Failed; };
+             class Node { Node next; }; };
+ICE
+cat >slice/Lib/Middle.ice <<'ICE'
+#ifndef MIDDLE
+#define MIDDLE
+#include <Lib/Base.ice>
+module Lib { sequence<Point_ty> Points; interface Later; };
+#endif
+ICE
+cat >slice/Top.ice <<'ICE'
+#include <Lib/Middle.ice>
+#include <Lib/Base.ice>
+#ifdef WITH_MORE
+module More { const int Amount = WITH_MORE; };
+#endif
+module Top {
+    class Leaf extends Lib::Node { Lib::Points points; };
+    exception Worse extends Lib::Failed { Lib::Later* whom; };
+    interface Service extends Lib::Named { void go(Lib::Points points, Leaf leaf) throws Worse; };
+};
+ICE
+
+expect 0 'output-dir' "$slice2c" --help
+expect 0 'slice2c' "$slice2c" --version
+expect 0 'slice2c' "$slice2c" -v
+expect 1 'Slice file' "$slice2c"
+expect 1 'no-such-option' "$slice2c" --no-such-option slice/Top.ice
+expect 1 'cannot read' "$slice2c" no-such-file.ice
+expect 1 'cannot read' "$slice2c" slice
+expect 1 'Middle.ice' "$slice2c" slice/Top.ice # no -I
+[ ! -e Top.h ] || fail 'files were written in spite of an error'
+echo 'in the way' >file
+expect 1 'cannot write' "$slice2c" -I slice slice/Lib/Base.ice --output-dir file/sub
+expect 0 '' "$slice2c" --validate
+expect 0 'struct Point_ty' "$slice2c" -E -I slice slice/Top.ice
+
+# Several files in one run, each beside the others; a header that is included as it is on the -I path.
+expect 0 '' "$slice2c" -I slice slice/Lib/Base.ice slice/Lib/Middle.ice --output-dir out/Lib
+expect 0 '' "$slice2c" -Islice -DWITH_MORE=7 slice/Top.ice --output-dir out
+grep -q '#include "Lib/Middle.h"' out/Top.h || fail 'Top.h does not include Lib/Middle.h'
+grep -q '#include "Lib/Base.h"' out/Lib/Middle.h || fail 'Middle.h does not include Lib/Base.h'
+grep -q 'More_Amount ((Ice_Int)7)' out/Top.h || fail '-D does nothing'
+expect 0 '' "$slice2c" -Islice -DWITH_MORE=7 -UWITH_MORE slice/Top.ice --output-dir out
+! grep -q More_ out/Top.h || fail '-U does nothing'
+for cc in gcc clang; do
+    command -v $cc >/dev/null || continue
+    for c in out/*.c out/Lib/*.c; do
+        $cc -std=c90 -pedantic -Wall -Wextra -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Werror -fsyntax-only \
+            -I"$sw/base" -I"$sw/icec" -Iout -Iout/Lib "$c"
+    done
+done
+# A header for C++ too.
+printf '#include "Top.h"\nint main() { Top_Leaf leaf; return sizeof leaf == 0; }\n' >top.cpp
+g++ -std=c++17 -Wall -Werror -fsyntax-only -I"$sw/base" -I"$sw/icec" -Iout top.cpp
+
+expect 0 '' "$slice2c" -Islice slice/Top.ice --output-dir ext --header-ext hh --source-ext cc --include-dir sub
+grep -q '#include "sub/Top.hh"' ext/Top_client.cc || fail '--header-ext, --source-ext or --include-dir do nothing'
+expect 0 'Top.h Top_types.c Top_client.c Top_async.c Top_server.c:' "$slice2c" --depend -Islice slice/Top.ice
+grep -q 'slice/Lib/Base.ice' log || fail 'a dependency is missing'
+expect 0 '<dependsOn name="slice/Lib/Base.ice"/>' "$slice2c" --depend-xml -Islice slice/Top.ice
+expect 0 '' "$slice2c" --depend-file deps -Islice slice/Top.ice
+grep -q Top_client.c deps || fail '--depend-file writes nothing'
+# Make understands it, and remakes the header when an included file changes.
+printf 'include deps\nTop.h:\n\t@echo remade\n' >Makefile
+touch Top.h
+touch -d '+1 hour' slice/Lib/Base.ice
+make -s Top.h | grep -q remade || fail 'make does not remake Top.h'
+# One bad file does not keep the others from being compiled.
+echo 'module {' >bad.ice
+expect 1 'expected the module' "$slice2c" bad.ice slice/Lib/Base.ice --output-dir mixed
+[ -f mixed/Base.h ] || fail 'the good file was not compiled'
+printf 'module A_b { struct iceS { int x; }; };' >names.ice
+expect 1 'underscore' "$slice2c" names.ice --output-dir x
+expect 0 '' "$slice2c" --underscore --ice names.ice --output-dir x
+echo 'commandline: all as expected'

@@ -39,6 +39,8 @@ libunicorn-dev executes its instructions in the simulator
 gdb-multiarch debugs it there
 libnewlib-arm-none-eabi C library for it
 clang fuzzers of the link layer (libFuzzer)
+graphviz pictures of netlists
+chromium tests of the report pages
 '
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in
 1[3-9]) packages="$packages

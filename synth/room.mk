@@ -9,3 +9,8 @@ synth: $(BUILD)/build.ninja ## utilisation: LUTs, flip-flops, slices of the chip
 	@$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) \
 	    $(DESIGN:%=--design %) $(FAMILY:%=--family %)
 .PHONY: synth
+
+synth-accept: $(BUILD)/build.ninja ## record today's utilisation as what is wanted (synth/baseline.json)
+	@ninja -C $(BUILD) -j $(JOBS) --quiet synth_inputs
+	@$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) --accept --family xc6s $(DESIGN:%=--design %)
+.PHONY: synth-accept

@@ -39,6 +39,7 @@ int Figures::luts(int inputs) const {
 
 Figures figuresOf(const Netlist& netlist, bool spartan6, const FilesAlong& filesAlong) {
     Figures f;
+    const std::vector<std::string> owners = ownersOf(netlist, filesAlong);
     for (const Cell& cell : netlist.cells) {
         const Cost cost = costOf(cell);
         f.cells[cell.type]++;
@@ -55,8 +56,8 @@ Figures figuresOf(const Netlist& netlist, bool spartan6, const FilesAlong& files
             f.pins += static_cast<int>(port.bits.size());
     f.slices = slicesOf(netlist);
     if (spartan6)
-        f.timing = timingOf(netlist);
-    f.costs = costsOf(netlist, filesAlong);
+        f.timing = timingOf(netlist, owners);
+    f.costs = costsOf(netlist, owners);
     return f;
 }
 
@@ -114,6 +115,7 @@ void to_json(json& j, const Figures& f) {
            {"slicem", s.slicem},
            {"sites", s.sites},
            {"pairs", s.pairs},
+           {"through", s.through},
            {"controlSets", s.controlSets}}}};
 }
 
@@ -131,6 +133,6 @@ void from_json(const json& j, Figures& f) {
         f.costs[{c[0], c[1]}] = {c[2], c[3], c[4], c[5]};
     j.at("timing").get_to(f.timing);
     const json& s = j.at("slices");
-    f.slices = {s.at("low"),   s.at("estimate"), s.at("high"),       s.at("slicem"),
-                s.at("sites"), s.at("pairs"),    s.at("controlSets")};
+    f.slices = {s.at("low"),   s.at("estimate"), s.at("high"),    s.at("slicem"),
+                s.at("sites"), s.at("pairs"),    s.at("through"), s.at("controlSets")};
 }

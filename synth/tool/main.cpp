@@ -3,13 +3,15 @@
 // utilisation: what the chip and each of its parts take of the FPGA, beside limits and the paper.
 
 #include "designs.h"
+#include "pictures.h"
+#include "report.h"
 #include "runner.h"
 #include "table.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fmt/format.h>
-#include <iostream>
+#include <fstream>
 #include <thread>
 
 namespace fs = std::filesystem;
@@ -23,7 +25,18 @@ struct Options {
     std::vector<std::string> only, families{mainFamily, "xc7", "ecp5"};
     std::string yosys = "yosys";
     unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
+    bool accept = false;
 };
+
+constexpr size_t shownCommits = 30;
+
+void writeFile(const fs::path& file, const std::string& text) {
+    std::ofstream out(file, std::ios::binary);
+    out << text;
+    out.close();
+    if (!out)
+        throw std::runtime_error(fmt::format("cannot write {}", file.string()));
+}
 
 // Every folder of platform RTL, cores and what was generated, in this order.
 std::vector<fs::path> rtlFolders(const Options& o) {
@@ -35,6 +48,57 @@ std::vector<fs::path> rtlFolders(const Options& o) {
     std::sort(folders.begin() + 3, folders.end());
     folders.push_back(o.generated);
     return folders;
+}
+
+void print(const Report& r) {
+    for (const Row& row : r.rows)
+        if (row.design->beside && row.main->error.empty())
+            fmt::print("{}\n{}\n{}\n{}\n", row.design->title, paperTable(*r.plan, row).plain(),
+                       costTable(*r.library, row, 2).plain(), pathTable(*r.plan, row, 5).plain());
+    fmt::print("{}", designTable(*r.plan, r.rows, countsOf(r.baseline)).plain());
+    if (!r.baseline.yosys.empty() && shortVersion(r.baseline.yosys) != shortVersion(r.yosys))
+        fmt::print("The accepted figures are by {}, these by {}: growth is not judged.\n",
+                   shortVersion(r.baseline.yosys), shortVersion(r.yosys));
+    std::string fresh;
+    for (size_t i = 0; i < r.rows.size(); i++) {
+        if (r.baseline.designs.count(r.rows[i].design->name) == 0)
+            fresh += " " + r.rows[i].design->name;
+        for (const std::string& note : r.verdicts[i].notes)
+            fmt::print("{}\n", note);
+        for (const std::string& failure : r.verdicts[i].failures)
+            fmt::print("FAILED {}\n", failure);
+    }
+    if (!fresh.empty())
+        fmt::print("No accepted figures yet (`make synth-accept` records them):{}\n", fresh);
+}
+
+void writeReports(const Report& r, const Options& o) {
+    writeFile(o.output / "report.json", entriesJson(r));
+    writeFile(o.output / "report.md", markdown(r));
+    const fs::path parts = o.source / "synth/report";
+    writeFile(o.output / "report.html",
+              html(r, readFile(parts / "page.html"), readFile(parts / "page.css"),
+                   readFile(parts / "page.js")));
+    fmt::print("Page: {}\n", (o.output / "report.html").string());
+}
+
+// Records what was measured; designs that were not are left as they are.
+int accept(const Report& r, const fs::path& file) {
+    Baseline b = r.baseline;
+    if (shortVersion(b.yosys) != shortVersion(r.yosys))
+        b.designs.clear(); // figures of two versions do not belong together
+    b.yosys = r.yosys;
+    if (r.whole)
+        b.designs.clear(); // designs that are gone
+    for (const Row& row : r.rows) {
+        if (!row.main->error.empty())
+            throw std::runtime_error(
+                fmt::format("{} failed: nothing is accepted", row.design->name));
+        b.designs[row.design->name] = acceptedFrom(row.main->figures);
+    }
+    writeFile(file, written(b));
+    fmt::print("Accepted: {}; commit it.\n", file.string());
+    return 0;
 }
 
 int report(const Options& o) {
@@ -58,22 +122,34 @@ int report(const Options& o) {
     for (const std::string& family : o.families)
         for (const Design& design : plan.designs)
             runs.push_back({&design, family, {}, {}, {}, false});
-    carryOut(runs, library, {o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs});
-
-    const std::vector<Row> rows = rowsOf(plan, runs, mainFamily);
-    int status = 0;
-    for (const Row& row : rows)
-        if (row.design->beside && row.main->error.empty())
-            fmt::print("{}\n{}\n{}\n{}\n", row.design->title, paperTable(plan, row).plain(),
-                       costTable(library, row, 2).plain(), pathTable(plan, row, 5).plain());
-    fmt::print("{}", designTable(plan, rows).plain());
+    const RunnerOptions options{o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs};
+    carryOut(runs, library, options);
     for (const Run& run : runs)
-        if (!run.error.empty()) {
+        if (!run.error.empty())
             fmt::print(stderr, "utilisation: {} for {}: {}\n", run.design->name, run.family,
                        run.error);
-            status = 1;
-        }
-    return status;
+
+    Report r;
+    r.plan = &plan;
+    r.library = &library;
+    r.whole = o.only.empty();
+    r.rows = rowsOf(plan, runs, mainFamily);
+    r.yosys = outputOf(fmt::format("\"{}\" -V", o.yosys));
+    const fs::path accepted = o.source / "synth/baseline.json";
+    r.baseline = readBaseline(fs::exists(accepted) ? readFile(accepted) : "");
+    for (const Row& row : r.rows)
+        r.verdicts.push_back(judge(row, r.baseline, r.yosys));
+    r.commits = history(o.source, shownCommits);
+    r.commit = currentCommit(o.source);
+    r.pictures = drawNetlists(plan, library, options);
+
+    print(r);
+    if (r.whole && !o.accept)
+        writeReports(r, o);
+    if (o.accept)
+        return accept(r, accepted);
+    return std::any_of(r.verdicts.begin(), r.verdicts.end(),
+                       [](const Verdict& v) { return !v.failures.empty(); });
 }
 
 } // namespace
@@ -91,6 +167,7 @@ int main(int argc, char** argv) {
         ->check(CLI::IsMember({"xc6s", "xc7", "ecp5"}));
     app.add_option("--yosys", o.yosys, "the program")->capture_default_str();
     app.add_option("--jobs", o.jobs, "synthesis runs at a time")->capture_default_str();
+    app.add_flag("--accept", o.accept, "record these figures in synth/baseline.json");
     CLI11_PARSE(app, argc, argv);
     if (std::find(o.families.begin(), o.families.end(), mainFamily) == o.families.end())
         o.families.insert(o.families.begin(), mainFamily);

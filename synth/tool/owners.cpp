@@ -113,13 +113,20 @@ std::pair<string, string> splitName(const string& name) {
     return {name.substr(0, dot), name.substr(dot + 1)};
 }
 
-Costs costsOf(const Netlist& netlist, const FilesAlong& filesAlong) {
-    Costs costs;
+std::vector<string> ownersOf(const Netlist& netlist, const FilesAlong& filesAlong) {
     Finder finder(netlist, filesAlong);
+    std::vector<string> owners;
+    for (size_t i = 0; i < netlist.cells.size(); i++)
+        owners.push_back(finder.ownerOf(static_cast<int>(i)));
+    return owners;
+}
+
+Costs costsOf(const Netlist& netlist, const std::vector<string>& owners) {
+    Costs costs;
     for (size_t i = 0; i < netlist.cells.size(); i++) {
         const Cost cost = costOf(netlist.cells[i]);
         if (!cost.empty())
-            costs[splitName(finder.ownerOf(static_cast<int>(i)))] += cost;
+            costs[splitName(owners[i])] += cost;
     }
     return costs;
 }

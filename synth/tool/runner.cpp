@@ -112,31 +112,36 @@ void carryOut(std::vector<Run>& runs, const Library& library, const RunnerOption
     fs::create_directories(options.cache);
     const std::string program = hexHash({readFile("/proc/self/exe")});
 
-    std::atomic<size_t> next{0}, done{0};
+    std::atomic<size_t> done{0};
     std::mutex terminal;
-    const auto work = [&] {
-        for (size_t i; (i = next++) < runs.size();) {
-            const auto begin = std::chrono::steady_clock::now();
-            try {
-                carryOutOne(runs[i], library, options, version, program);
-            } catch (const std::exception& e) {
-                runs[i].error = e.what();
-            }
-            const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-            const std::lock_guard<std::mutex> lock(terminal);
-            done++;
-            if (!runs[i].cached)
-                fmt::print(stderr, "[{}/{}] {} for {}: {} ({:.1f} s)\n", done.load(), runs.size(),
-                           runs[i].design->name, runs[i].family,
-                           runs[i].error.empty() ? fmt::format("{} LUT, {} FF", runs[i].figures.lut,
-                                                               runs[i].figures.ff)
-                                                 : "failed",
-                           took.count());
+    inParallel(options.jobs, runs.size(), [&](size_t i) {
+        const auto begin = std::chrono::steady_clock::now();
+        try {
+            carryOutOne(runs[i], library, options, version, program);
+        } catch (const std::exception& e) {
+            runs[i].error = e.what();
         }
-    };
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+        const std::lock_guard<std::mutex> lock(terminal);
+        done++;
+        if (!runs[i].cached)
+            fmt::print(stderr, "[{}/{}] {} for {}: {} ({:.1f} s)\n", done.load(), runs.size(),
+                       runs[i].design->name, runs[i].family,
+                       runs[i].error.empty()
+                           ? fmt::format("{} LUT, {} FF", runs[i].figures.lut, runs[i].figures.ff)
+                           : "failed",
+                       took.count());
+    });
+}
+
+void inParallel(unsigned jobs, size_t count, const std::function<void(size_t)>& work) {
+    std::atomic<size_t> next{0};
     std::vector<std::thread> threads;
-    for (unsigned k = 0; k < std::max(1u, options.jobs); k++)
-        threads.emplace_back(work);
+    for (unsigned k = 0; k < std::max(1u, jobs); k++)
+        threads.emplace_back([&] {
+            for (size_t i; (i = next++) < count;)
+                work(i);
+        });
     for (std::thread& thread : threads)
         thread.join();
 }

@@ -8,6 +8,7 @@
 #include "figures.h"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,9 @@ struct RunnerOptions {
 
 // Carries all runs out, says on stderr which is done. A failed run does not stop the others.
 void carryOut(std::vector<Run>& runs, const Library& library, const RunnerOptions& options);
+
+// Calls work(0) .. work(count - 1), `jobs` at a time.
+void inParallel(unsigned jobs, size_t count, const std::function<void(size_t)>& work);
 
 // First line of a program's output, "" if it does not run.
 std::string outputOf(const std::string& command);

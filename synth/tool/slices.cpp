@@ -115,6 +115,7 @@ Slices slicesOf(const Netlist& n) {
     }
     s.controlSets = static_cast<int>(sets.size());
     s.slicem = upTo(memory, sitesPerSlice);
+    s.through = carrySites;
     const int others = memory + carrySites;
     s.sites = sitesFor(luts) + others;
     const double usual = std::max<double>(s.sites, (1 - usualPairing) * luts.size() + others);

@@ -16,8 +16,9 @@ struct Slices {
     int high = 0;     // as it did in the most generously filled design of the calibration
     int slicem = 0;   // of these, must be SLICEM: LUT RAM and shift registers
 
-    int sites = 0;       // LUT6 sites, LUTs of five common inputs paired as far as possible
-    int pairs = 0;       // flip-flops that a LUT of their own feeds
+    int sites = 0;   // LUT6 sites, LUTs of five common inputs paired as far as possible
+    int pairs = 0;   // flip-flops that a LUT of their own feeds
+    int through = 0; // sites that only lead a signal into a carry chain; Yosys has no cell for them
     int controlSets = 0; // distinct (clock, enable, set/reset)
 };
 

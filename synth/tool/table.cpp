@@ -84,15 +84,20 @@ TextTable paperTable(const Plan& plan, const Row& row) {
     };
     line("flip-flops", "ff", f.ff, plan.chip.ff);
     line("LUTs", "lut", f.lut, plan.chip.lut);
+    const int all = f.lut + f.slices.through;
+    t.add({"with carry route-throughs", std::to_string(all), percent(all, plan.chip.lut), "",
+           fmt::format("{:.2f}", static_cast<double>(all) / plan.paper.at("lut")), "", ""});
     line("slices (estimate)", "slices", f.slices.estimate, plan.chip.slices);
     return t;
 }
 
-TextTable designTable(const Plan& plan, const std::vector<Row>& rows) {
+TextTable designTable(const Plan& plan, const std::vector<Row>& rows,
+                      const AcceptedCounts& accepted) {
     TextTable t;
-    std::vector<string> head{"design", "LUT",  "chip",   "1-2",      "3",      "4",     "5",
-                             "6",      "RAM",  "SRL",    "FF",       "sets",   "carry", "RAM16",
-                             "DSP",    "pins", "slices", "low-high", "levels", "MHz"};
+    std::vector<string> head{"design", "LUT",    "change",   "chip",   "1-2",   "3",
+                             "4",      "5",      "6",        "RAM",    "SRL",   "thru",
+                             "FF",     "change", "sets",     "carry",  "RAM16", "DSP",
+                             "pins",   "slices", "low-high", "levels", "MHz"};
     for (const Run* other : rows.empty() ? std::vector<const Run*>{} : rows[0].others) {
         head.push_back(other->family + " LUT");
         head.push_back("FF");
@@ -104,12 +109,22 @@ TextTable designTable(const Plan& plan, const std::vector<Row>& rows) {
             continue;
         }
         const Figures& f = row.main->figures;
-        std::vector<string> line{row.design->name, std::to_string(f.lut),
+        const auto before = accepted.find(row.design->name);
+        const auto change = [&](int now, int then) {
+            return before == accepted.end() ? "new"
+                   : now == then            ? ""
+                                            : fmt::format("{:+d}", now - then);
+        };
+        const auto [luts, flipFlops] = before == accepted.end() ? std::pair(0, 0) : before->second;
+        std::vector<string> line{row.design->name, std::to_string(f.lut), change(f.lut, luts),
                                  percent(f.lut, plan.chip.lut),
                                  std::to_string(f.luts(1) + f.luts(2))};
         for (int inputs = 3; inputs <= 6; inputs++)
             line.push_back(std::to_string(f.luts(inputs)));
-        for (const int value : {f.lutRam, f.shift, f.ff, f.slices.controlSets, f.carry})
+        for (const int value : {f.lutRam, f.shift, f.slices.through, f.ff})
+            line.push_back(std::to_string(value));
+        line.push_back(change(f.ff, flipFlops));
+        for (const int value : {f.slices.controlSets, f.carry})
             line.push_back(std::to_string(value));
         line.push_back(fmt::format("{:g}", f.ram));
         for (const int value : {f.dsp, f.pins, f.slices.estimate})

@@ -7,7 +7,9 @@
 #include "designs.h"
 #include "runner.h"
 
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 // What is shown of a design: its runs by family.
@@ -29,7 +31,10 @@ private:
 };
 
 TextTable paperTable(const Plan& plan, const Row& row);
-TextTable designTable(const Plan& plan, const std::vector<Row>& rows);
+// `accepted`: LUTs and flip-flops by design, to tell what has changed.
+using AcceptedCounts = std::map<std::string, std::pair<int, int>>;
+TextTable designTable(const Plan& plan, const std::vector<Row>& rows,
+                      const AcceptedCounts& accepted);
 // Where a design's cost is: the instances, with all below them.
 TextTable costTable(const Library& library, const Row& row, size_t depth);
 TextTable pathTable(const Plan& plan, const Row& row, size_t count);

@@ -166,18 +166,21 @@ private:
     std::array<std::unordered_map<int, Arrival>, 2> known_;
 };
 
-string sourceName(const Netlist& n, int bit) {
+// The register or memory that drives a bit; where it has no name of its own, what it is for.
+string startName(const Netlist& n, const std::vector<string>& owners, int bit) {
     const string name = n.nameOf(bit);
-    return name.empty() && bit >= 0 && n.driver.count(bit) ? n.cells[n.driver.at(bit)].name : name;
+    const auto driver = n.driver.find(bit);
+    return name.empty() && driver != n.driver.end() ? "(for) " + owners[driver->second] : name;
 }
 
-string endName(const Netlist& n, const Cell& cell) {
+string endName(const Netlist& n, const std::vector<string>& owners, size_t index) {
+    const Cell& cell = n.cells[index];
     if (cell.named && !isFlipFlop(cell.type))
         return cell.name;
     for (const Pin& pin : cell.pins)
         if (pin.output && !pin.bits.empty())
-            return sourceName(n, pin.bits[0]);
-    return cell.name;
+            return startName(n, owners, pin.bits[0]);
+    return owners[index];
 }
 
 } // namespace
@@ -195,7 +198,7 @@ double netDelay(int fanout) {
     return 0;
 }
 
-Timing timingOf(const Netlist& n, size_t count) {
+Timing timingOf(const Netlist& n, const std::vector<string>& owners, size_t count) {
     Timing t;
     Analysis analysis(n);
     std::map<string, Path> worst; // by end register
@@ -216,7 +219,7 @@ Timing timingOf(const Netlist& n, size_t count) {
                     continue;
                 const double ns = arrival.ns + analysis.net(bit, static_cast<int>(i)) +
                                   endDelay(cell.type, pin.port);
-                const string end = endName(n, cell);
+                const string end = endName(n, owners, i);
                 Path& path = worst[end.substr(0, end.find('['))];
                 if (ns <= path.ns)
                     continue;
@@ -230,7 +233,7 @@ Timing timingOf(const Netlist& n, size_t count) {
                         {n.cells[a.cell].type, n.nameOf(at),
                          readers == n.readers.end() ? 0 : static_cast<int>(readers->second.size()),
                          a.delay, analysis.net(at, reader)});
-                    path.from = sourceName(n, at);
+                    path.from = startName(n, owners, at);
                     reader = a.cell;
                     at = a.before;
                 }

@@ -38,5 +38,6 @@ struct Timing {
 constexpr double slowGrade =
     1.2; // -2 over -3, about: DS162 has 0.26 for 0.21 ns (LUT), 0.53 for 0.45 (clock to out)
 
-Timing timingOf(const Netlist& netlist, size_t count = 10);
+// `owners`: names for cells whose own net has none (owners.h).
+Timing timingOf(const Netlist& netlist, const std::vector<std::string>& owners, size_t count = 10);
 double netDelay(int fanout); // ns

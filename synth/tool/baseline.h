@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+//
+// baseline: the accepted figures of all designs (synth/baseline.json), and what has grown since.
+
+#pragma once
+
+#include "owners.h"
+#include "table.h"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+struct Accepted {
+    int lut = 0, ff = 0, slices = 0, carry = 0, dsp = 0;
+    double ram = 0, mhz = 0;
+    Costs costs; // LUT and flip-flops only
+};
+
+struct Baseline {
+    std::string yosys; // version that measured it, "" if there is no baseline
+    std::map<std::string, Accepted> designs;
+};
+
+Baseline readBaseline(const std::string& text); // throws on what is none; "" gives an empty one
+std::string written(const Baseline& baseline);
+Accepted acceptedFrom(const Figures& figures);
+AcceptedCounts countsOf(const Baseline& baseline);
+std::string shortVersion(const std::string& yosys); // "Yosys 0.23"
+
+// A signal or a module whose cost is another now.
+struct Change {
+    std::string name;
+    Cost before, after;
+    int grown() const { return after.lut + after.ff - before.lut - before.ff; }
+};
+// Largest growth first; those that shrank come last.
+std::vector<Change> changedSignals(const Costs& before, const Costs& after);
+std::vector<Change> changedInstances(const Costs& before, const Costs& after);
+
+// What is wrong with a design, and what is only to be told.
+struct Verdict {
+    std::vector<std::string> failures, notes;
+};
+// A budget is the accepted figure and a little more, since optimisation is no exact science: 3 % +
+// 4 LUTs, 1 % + 2 flip-flops. A limit that the accepted figure keeps must be kept; one that it does
+// not keep is a target.
+Verdict judge(const Row& row, const Baseline& baseline, const std::string& yosys);
+int lutBudget(int accepted);
+int ffBudget(int accepted);

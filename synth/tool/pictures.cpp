@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+//
+// pictures: netlists of small modules as SVG, drawn by Yosys' `show` and Graphviz.
+
+#include "pictures.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <fstream>
+#include <mutex>
+
+namespace fs = std::filesystem;
+using std::string;
+
+namespace {
+
+constexpr size_t mostLines = 140;      // of the drawing's description: boxes and arrows
+constexpr size_t mostBytes = 64 << 10; // of a picture, so that the page stays small
+
+// The module's own netlist, before it is mapped: as the source has it, instances as boxes.
+string scriptFor(const Library& library, const Design& design, const fs::path& stem) {
+    string script;
+    for (const fs::path& folder : library.includeFolders())
+        script += fmt::format("verilog_defaults -add -I{}\n", folder.string());
+    for (const fs::path& file : library.filesOf(design.top))
+        script += fmt::format("read_verilog \"{}\"\n", file.string());
+    return script + fmt::format("hierarchy -top {0}\nproc\nopt_expr\nopt_clean\ncd {0}\n"
+                                "show -format dot -width -notitle -viewer none -prefix {1}\n",
+                                design.top, stem.string());
+}
+
+void draw(const Library& library, const Design& design, const RunnerOptions& options,
+          const fs::path& stem) {
+    const string script = stem.string() + ".picture.ys", dot = stem.string() + ".dot";
+    std::ofstream(script) << scriptFor(library, design, stem);
+    string svg; // nothing, if it is too large
+    if (std::system(
+            fmt::format("\"{}\" -q -s \"{}\" >/dev/null 2>&1", options.yosys, script).c_str()) ==
+        0) {
+        const string text = readFile(dot);
+        if (static_cast<size_t>(std::count(text.begin(), text.end(), '\n')) <= mostLines &&
+            std::system(fmt::format("dot -Tsvg \"{0}\" -o \"{0}.svg\" 2>/dev/null", dot).c_str()) ==
+                0) {
+            const string drawn = readFile(dot + ".svg");
+            if (drawn.size() <= mostBytes && drawn.find("<svg") != string::npos)
+                svg = drawn.substr(drawn.find("<svg"));
+        }
+    }
+    std::ofstream(stem.string() + ".svg") << svg;
+}
+
+} // namespace
+
+std::map<string, string> drawNetlists(const Plan& plan, const Library& library,
+                                      const RunnerOptions& options) {
+    std::map<string, string> pictures;
+    if (outputOf("dot -V 2>&1").find("graphviz") == string::npos) {
+        fmt::print(stderr, "no netlist pictures: Graphviz' dot does not run\n");
+        return pictures;
+    }
+    std::mutex mutex;
+    inParallel(options.jobs, plan.designs.size(), [&](size_t i) {
+        const Design& design = plan.designs[i];
+        const fs::path stem =
+            options.cache / fmt::format("{}.{}", design.top, library.hashOf(design.top));
+        if (!fs::exists(stem.string() + ".svg"))
+            draw(library, design, options, stem);
+        const string svg = readFile(stem.string() + ".svg");
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (!svg.empty())
+            pictures[design.top] = svg;
+    });
+    return pictures;
+}

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+//
+// report: the figures as JSON for machines, as Markdown, and as one HTML page that needs no
+// network.
+
+#pragma once
+
+#include "history.h"
+#include "table.h"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+struct Report {
+    const Plan* plan = nullptr;
+    const Library* library = nullptr;
+    bool whole = true; // all designs, not only some
+    std::vector<Row> rows;
+    std::vector<Verdict> verdicts; // one for each row
+    Baseline baseline;
+    std::vector<Commit> commits;
+    std::string yosys, commit;
+    std::map<std::string, std::string> pictures; // module -> SVG of its netlist
+};
+
+std::string entriesJson(const Report& report); // docs: the contract of all figures
+std::string markdown(const Report& report);
+// From the files of synth/report: "@STYLE@", "@SCRIPT@" and "@DATA@" in the page are replaced.
+std::string html(const Report& report, const std::string& page, const std::string& style,
+                 const std::string& script);

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+//
+// baseline_test: what is judged as growth, which names are given, what the committed file keeps.
+
+#include "baseline.h"
+
+#include <gmock/gmock.h>
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+namespace {
+
+constexpr const char* yosys = "Yosys 0.23 (git sha1 7ce5011c24b)";
+
+struct Fixture {
+    Design design{"block", "block", "", "", {}, {}, false};
+    Run run{&design, "xc6s", {}, {}, {}, false};
+    Row row{&design, &run, {}};
+    Baseline baseline{yosys, {}};
+
+    Fixture() {
+        run.figures.lut = 100;
+        run.figures.ff = 50;
+        run.figures.costs[{"u_part", "state"}] = {60, 0, 30, 0};
+        run.figures.costs[{"", "count"}] = {40, 0, 20, 0};
+        baseline.designs["block"] = acceptedFrom(run.figures);
+    }
+    void grow(int luts, int flipFlops) {
+        run.figures.lut += luts;
+        run.figures.ff += flipFlops;
+        run.figures.costs[{"u_part", "state"}] += {luts, 0, flipFlops, 0};
+    }
+    Verdict verdict() { return judge(row, baseline, yosys); }
+};
+
+TEST(Baseline, GrowthWithinTheBudgetPasses) {
+    Fixture f;
+    f.grow(7, 2); // 3 % and 4; 1 % and 2
+    EXPECT_THAT(f.verdict().failures, IsEmpty());
+}
+
+TEST(Baseline, GrowthBeyondTheBudgetNamesTheModuleAndTheSignal) {
+    Fixture f;
+    f.grow(8, 0);
+    ASSERT_THAT(f.verdict().failures, SizeIs(1));
+    EXPECT_THAT(f.verdict().failures[0], HasSubstr("108 LUT, 50 FF; accepted were 100 and 50"));
+    EXPECT_THAT(f.verdict().failures[0], HasSubstr("modules that grew:\n      u_part +8 LUT"));
+    EXPECT_THAT(f.verdict().failures[0],
+                HasSubstr("signals that grew:\n      u_part.state +8 LUT"));
+    EXPECT_THAT(f.verdict().failures[0], testing::Not(HasSubstr("count")));
+}
+
+TEST(Baseline, FlipFlopsAreJudgedToo) {
+    Fixture f;
+    f.grow(0, 3);
+    EXPECT_THAT(f.verdict().failures, SizeIs(1));
+}
+
+TEST(Baseline, ShrinkingPasses) {
+    Fixture f;
+    f.grow(-50, -25);
+    EXPECT_THAT(f.verdict().failures, IsEmpty());
+}
+
+TEST(Baseline, ALimitThatWasKeptMustBeKept) {
+    Fixture f;
+    f.design.limits = {{"lut", 102}};
+    f.grow(3, 0); // within the budget of growth
+    EXPECT_THAT(f.verdict().failures, ElementsAre(HasSubstr("103 lut, 1 above the limit of 102")));
+}
+
+TEST(Baseline, ALimitThatWasNotKeptIsATarget) {
+    Fixture f;
+    f.design.limits = {{"lut", 90}};
+    EXPECT_THAT(f.verdict().failures, IsEmpty());
+    EXPECT_THAT(f.verdict().notes, ElementsAre(HasSubstr("10 above the limit of 90")));
+}
+
+TEST(Baseline, FiguresOfAnotherYosysAreNotJudged) {
+    Fixture f;
+    f.grow(80, 30);
+    EXPECT_THAT(judge(f.row, f.baseline, "Yosys 0.52").failures, IsEmpty());
+}
+
+TEST(Baseline, AFailedSynthesisIsAFailure) {
+    Fixture f;
+    f.run.error = "syntax error";
+    EXPECT_THAT(f.verdict().failures, SizeIs(1));
+}
+
+TEST(Baseline, WhatIsWrittenIsReadAgain) {
+    Fixture f;
+    const Baseline again = readBaseline(written(f.baseline));
+    EXPECT_EQ(again.yosys, f.baseline.yosys);
+    const Accepted& a = again.designs.at("block");
+    EXPECT_EQ(a.lut, 100);
+    EXPECT_EQ(a.ff, 50);
+    EXPECT_THAT(changedSignals(a.costs, f.run.figures.costs), IsEmpty());
+    EXPECT_EQ(written(again), written(f.baseline));
+}
+
+TEST(Baseline, AFileOfAnotherKindIsRefused) {
+    EXPECT_ANY_THROW(readBaseline("{\"designs\": 3}"));
+    EXPECT_ANY_THROW(readBaseline("not json"));
+    EXPECT_TRUE(readBaseline("").designs.empty());
+}
+
+} // namespace

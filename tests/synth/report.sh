@@ -1,0 +1,93 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# report: utilisation-program source-folder case: the command on a small project of its own, as a user runs it.
+#   counts   its figures are those that the blocks' sources promise, and Yosys' own `stat` counts them too
+#   growth   a register more fails with its name; accepting it passes; a second run takes all from the cache
+#   broken   a syntax error is told with its file and line, and the other designs are reported nevertheless
+#   page     the page in Chromium: tables, chart, sorting, looking inside, differences; one file, no network
+set -eu
+program=$1 source=$2 case=$3
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+fail() {
+    echo "report: $*" >&2
+    exit 1
+}
+project=$work/project
+cp -r "$source/tests/synth/project" "$project"
+cp -r "$source/synth/yosys" "$source/synth/report" "$project/synth/"
+mkdir "$work/gen"
+run() {
+    "$program" --source "$project" --generated "$work/gen" --output "$work/out" "$@" >"$work/log" 2>&1
+}
+has() { grep -q -- "$1" "$work/log" || { cat "$work/log" >&2; fail "no '$1' in the output"; }; }
+
+case $case in
+counts)
+    run --family xc6s || fail "$(cat "$work/log")"
+    value() { sed -n "s/.*\"cells\":{\([^}]*\)}.*/\1/p" "$work"/out/cache/"$1".xc6s.*.figures; }
+    value wide | grep -q '"CARRY4":4' || fail "a counter of 16 bits has four: the parameter was not set"
+    value store | grep -q '"RAM32M":1' || fail "32 x 6 bits are one RAM32M"
+    grep -q '"lutRam":4' "$work"/out/cache/store.xc6s.*.figures || fail "a RAM32M is four LUTs"
+    grep -q '\["u_counter","count_o",[0-9]*,0,5,' "$work"/out/cache/whole.xc6s.*.figures || fail "five flip-flops are u_counter.count_o"
+    grep -q '\["u_store","words",4,4,0,' "$work"/out/cache/whole.xc6s.*.figures || fail "four LUTs are u_store.words"
+    yosys -q -p "read_verilog $project/hdl/blocks/*.v; synth_xilinx -family xc6s -flatten -noiopad -noclkbuf -top pair; tee -o $work/stat stat"
+    luts=$(awk '/^ +(LUT[1-6]|INV) /{n += $2} /^ +[0-9]+ +.* (LUT[1-6]|INV)$/{n += $1} END {print n + 4}' "$work/stat")
+    grep -q "\"lut\":$luts," "$work"/out/cache/whole.xc6s.*.figures || fail "Yosys counts $luts LUTs: $(cat "$work"/out/cache/whole.xc6s.*.figures)"
+    ;;
+growth)
+    run --family xc6s --accept || fail "$(cat "$work/log")"
+    run --family xc6s || fail "what was accepted does not pass: $(cat "$work/log")"
+    if grep -q '^\[' "$work/log"; then fail "a second run synthesised again"; fi
+    sed -i 's/^    wire \[5:0\] word;/&\n    reg [11:0] extra;/; s/^        data_o <= word/        extra <= {extra[5:0], word};\n        data_o <= extra[11:6] ^ word/' \
+        "$project/hdl/blocks/pair.v"
+    if run --family xc6s; then fail "twelve flip-flops more pass"; fi
+    has 'FAILED whole:'
+    has 'extra +.*FF'
+    [ "$(grep -c '^\[' "$work/log")" = 1 ] || fail "more was synthesised than what has changed"
+    run --family xc6s --accept && run --family xc6s || fail "the accepted growth does not pass"
+    ;;
+broken)
+    echo 'module broken(input wire a_i); assign b = ; endmodule' >"$project/hdl/blocks/broken.v"
+    if run --family xc6s; then fail "a syntax error passes"; fi
+    has 'broken.v:1: ERROR: syntax error'
+    has "^wide "
+    has '^broken .*failed'
+    ;;
+page)
+    run || fail "$(cat "$work/log")"
+    page=$work/out/report.html
+    [ "$(wc -c <"$page")" -lt 2000000 ] || fail "the page has 2 MB or more"
+    if grep -Eo '(src|href)="?https?:' "$page"; then fail "the page needs the network"; fi
+    # A second script clicks as a user does and writes what it then sees.
+    cat >"$work/clicks.js" <<'JS'
+const seen = [];
+const cells = (id, row, column) => document.getElementById(id).tBodies[0].rows[row].cells[column].textContent;
+seen.push("rows " + document.getElementById("designs").tBodies[0].rows.length);
+document.querySelectorAll("#designs th")[1].click();
+seen.push("largest " + cells("designs", 0, 0));
+document.querySelectorAll("#designs th")[1].click();
+const rows = [...document.getElementById("designs").tBodies[0].rows].map(r => r.cells[0].textContent);
+seen.push("last " + rows[rows.length - 1]);
+[...document.getElementById("designs").tBodies[0].rows].find(r => r.cells[0].textContent === "whole").click();
+document.querySelector('#chart rect[data-path="u_store"]').dispatchEvent(new MouseEvent("click"));
+seen.push("crumbs " + document.getElementById("crumbs").textContent);
+seen.push("signal " + cells("signals", 0, 0) + " " + cells("signals", 0, 1));
+seen.push("paths " + document.querySelectorAll("#paths details").length);
+seen.push("paper " + cells("paper", 0, 3));
+seen.push("points " + document.querySelectorAll("#history circle").length);
+const from = document.getElementById("from");
+seen.push("choices " + from.options.length);
+document.getElementById("seen").textContent = seen.join("; ") + ";";
+JS
+    awk -v clicks="$work/clicks.js" '/^<\/body>/ { print "<p id=\"seen\"></p><script>"; while ((getline line < clicks) > 0) print line; print "</script>" } { print }' \
+        "$page" >"$work/clicked.html"
+    HOME=$work chromium --headless --no-sandbox --disable-gpu --dump-dom "file://$work/clicked.html" >"$work/log" 2>/dev/null
+    has '>rows 3; largest whole; last whole; crumbs pair / u_store; signal read_addr_i 5; paths [1-9]'
+    has 'paper 50 (0.3 %); points 3; choices 1;'
+    grep -q '"peer": 100' "$work/out/report.json" || fail "report.json has no figure of the paper"
+    grep -q '^| whole |' "$work/out/report.md" || fail "report.md has no table of designs"
+    ;;
+*) fail "unknown case $case" ;;
+esac

@@ -184,7 +184,7 @@ module modem #(
     modem_rx #(.API(API)) u_rx (
         .clk_i(clk_i), .rst_i(rings_reset), .tick_i(bit_tick),
         .rx_valid_i(rx_valid && ready), .rx_data_i(rx_data), .rx_error_i(rx_error && ready),
-        .rx_end_i(1'b0), .rx_idle_i(rx_idle),
+        .rx_end_i(1'b0), .rx_idle_i(rx_idle && !modem_rts_n_o), // a pause that was asked for ends no packet
         .wr_valid_o(wr_valid), .wr_data_o(wr_data), .wr_index_o(wr_index), .wr_be_o(wr_be),
         .wr_ready_i(wr_ready), .wr_busy_i(wr_busy),
         .full_i(rx_free == 5'd0), .push_o(rx_push), .overrun_o(rx_overrun)

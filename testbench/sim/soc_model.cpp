@@ -91,6 +91,7 @@ void SocModel::tick() {
         resetN_ = top.modem_reset_n_o;
         rtsN_ = top.modem_rts_n_o;
         modem_.resetPin(!resetN_, now());
+        line_.setRts(!rtsN_, now());
         nextEvent_ = 0;
     }
     if (top.irq_o != irq_) {

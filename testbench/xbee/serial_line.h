@@ -29,6 +29,8 @@ public:
     // Takes effect when no byte is on the line.
     virtual void setBitTime(double ns) { bitNs_ = ns; }
     virtual void setCts(bool accepts) { cts_ = accepts; }
+    // Whether the host's RTS stops the modem (D6); a line without RTS takes no notice.
+    void setHeedRts(bool heeds) { heedsRts_ = heeds; }
     virtual void advance(uint64_t now) = 0;
     virtual uint64_t nextEvent() const = 0;
     // The modem has something to send: nextToHost will give it.
@@ -37,7 +39,7 @@ public:
 protected:
     SerialClient* client_ = nullptr;
     double bitNs_ = 1e9 / 9600;
-    bool cts_ = true;
+    bool cts_ = true, heedsRts_ = false;
 };
 
 // Pins of a design. The design's TXD is told by setTxd when it changes; RXD and CTS are read.
@@ -81,11 +83,12 @@ public:
         return at > 1e299 ? never : static_cast<uint64_t>(at);
     }
     void wake(uint64_t now) override {
-        if (txBit_ == 0 && rts_)
+        if (txBit_ == 0 && mayTalk())
             startByte(static_cast<double>(now));
     }
 
 private:
+    bool mayTalk() const { return rts_ || !heedsRts_; }
     void sample(uint64_t now) {
         // Bit 1 is the start bit, 2..9 data, 10 stop.
         if (rxBit_ == 1 && level_) {
@@ -118,7 +121,7 @@ private:
             txLevel_ = true;
         } else {
             txBit_ = 0;
-            if (rts_)
+            if (mayTalk())
                 startByte(at);
             return;
         }
@@ -140,10 +143,12 @@ public:
             client_->fromHost(byte, now);
     }
     std::vector<uint8_t> received;
+    bool paused = false; // nothing moves to the host
+    bool cts() const { return cts_; }
 
     void advance(uint64_t) override {
         uint8_t byte;
-        while (client_->nextToHost(byte))
+        while (!paused && client_->nextToHost(byte))
             received.push_back(byte);
     }
     uint64_t nextEvent() const override { return never; }

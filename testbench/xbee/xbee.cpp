@@ -1,41 +1,29 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee: the modem's firmware, as its manual describes it.
+// xbee: the modem's firmware, as its manual describes it: data, buffers, packets.
 
 #include "xbee.h"
+#include "random.h"
 #include "rf_channel.h"
+#include "xbee_parameters.h"
 #include <algorithm>
 #include <cstddef>
-#include <cstdio>
 
 namespace {
 
 constexpr size_t inputBytes = 202, outputBytes = 202;
-constexpr size_t ctsOffAt = 17, ctsOnAt = 34; // bytes free
+constexpr size_t ctsSlack = 17; // bytes by which the buffer empties further before CTS comes back
 constexpr size_t packetBytes = 100, packetBytesEncrypted = 95;
-constexpr size_t keyDigits = 32; // 128 bits
 constexpr uint64_t msNs = 1'000'000, resetNs = 200;
 constexpr uint64_t plusWindowNs = 1000 * msNs; // the three characters come within a second
-
-struct Limits {
-    uint32_t lowest, highest;
-};
-
-// Parameters that can be set, and what they take.
-const std::map<std::string, Limits> settable = {
-    {"MY", {0, 0xFFFF}},  {"DH", {0, 0xFFFFFFFF}}, {"DL", {0, 0xFFFFFFFF}}, {"ID", {0, 0xFFFF}},
-    {"CH", {0x0B, 0x1A}}, {"BD", {0, 0x3D090}},    {"RO", {0, 0xFF}},       {"RN", {0, 3}},
-    {"MM", {0, 3}},       {"RR", {0, 6}},          {"EE", {0, 1}},          {"GT", {2, 3300}},
-    {"CT", {2, 0xFFFF}},  {"CC", {0, 0xFF}},       {"D6", {0, 5}},          {"D7", {0, 5}},
-    {"AP", {0, 0}}};
 
 } // namespace
 
 XBee::Parameters XBee::factory() {
-    return {{"MY", 0}, {"DH", 0},    {"DL", 0},        {"ID", 0x3332},     {"CH", 0x0C},
-            {"BD", 3}, {"RO", 3},    {"RN", 0},        {"MM", 0},          {"RR", 0},
-            {"EE", 0}, {"GT", 1000}, {"CT", 100},      {"CC", '+'},        {"D6", 0},
-            {"D7", 1}, {"AP", 0},    {"SH", 0x13A200}, {"SL", 0x40000000}, {"DB", 0x28}};
+    Parameters values;
+    for (auto& [letters, parameter] : xbeeParameters())
+        values[letters] = parameter.factory;
+    return values;
 }
 
 XBee::XBee(SerialLine& line, RfChannel& channel, Options options)
@@ -46,6 +34,7 @@ XBee::XBee(SerialLine& line, RfChannel& channel, Options options)
     line_.attach(this);
     channel_.join(this);
     boot(0);
+    line_.setBitTime(1e9 / baud());
     bootDone_ = 0; // powered long ago
 }
 
@@ -54,11 +43,8 @@ XBee::~XBee() {
 }
 
 double XBee::baud() const {
-    static const double rates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 1e6 / 9};
-    uint32_t bd = active_.at("BD");
-    return bd < 8 ? rates[bd] : bd;
+    return xbeeBaud(active_.at("BD"));
 }
-
 uint64_t XBee::charNs() const {
     return static_cast<uint64_t>(10e9 / baud());
 }
@@ -68,6 +54,7 @@ uint64_t XBee::guardNs() const {
 
 void XBee::boot(uint64_t now) {
     active_ = pending_ = written_;
+    key_ = writtenKey_;
     mode_ = Mode::Boot;
     bootDone_ = now + options_.bootNs;
     lastByte_ = now;
@@ -76,7 +63,9 @@ void XBee::boot(uint64_t now) {
     input_.clear();
     output_.clear();
     commandLine_.clear();
-    line_.setBitTime(1e9 / baud());
+    apiQueue_.clear();
+    inFrame_ = false;
+    line_.setHeedRts(active_.at("D6") == 1);
     cts_ = true;
     line_.setCts(true);
 }
@@ -96,6 +85,7 @@ void XBee::power(bool on, uint64_t now) {
         mode_ = Mode::Off;
         input_.clear();
         output_.clear();
+        apiQueue_.clear();
     } else if (mode_ == Mode::Off) {
         boot(now);
     }
@@ -110,8 +100,10 @@ void XBee::store(uint8_t byte) {
 }
 
 void XBee::updateCts() {
-    size_t room = inputBytes - input_.size();
-    bool cts = cts_ ? room > ctsOffAt : room >= ctsOnAt;
+    size_t held = input_.size(), threshold = active_.at("FT");
+    for (auto& queued : apiQueue_)
+        held += queued.packet.bytes.size();
+    bool cts = cts_ ? held < threshold : held + ctsSlack <= threshold;
     if (active_.at("D7") != 1)
         cts = true;
     if (cts != cts_) {
@@ -126,6 +118,8 @@ void XBee::fromHost(uint8_t byte, uint64_t now) {
     ++counters_.bytesFromHost;
     if (mode_ == Mode::Command)
         commandByte(byte, now);
+    else if (active_.at("AP"))
+        apiByte(byte, now);
     else
         dataByte(byte, now);
     lastByte_ = now;
@@ -140,8 +134,9 @@ void XBee::dataByte(uint8_t byte, uint64_t now) {
     bool silentBefore = now - lastByte_ >= guardNs();
     if (byte == active_.at("CC") &&
         ((pluses_ == 0 && silentBefore) ||
-         (pluses_ > 0 && pluses_ < 3 && now - lastByte_ < plusWindowNs))) {
-        ++pluses_;
+         (pluses_ > 0 && pluses_ < 3 && now - firstPlus_ < plusWindowNs))) {
+        if (pluses_++ == 0)
+            firstPlus_ = now;
         return;
     }
     for (; pluses_; --pluses_)
@@ -150,10 +145,47 @@ void XBee::dataByte(uint8_t byte, uint64_t now) {
     sendPackets(now);
 }
 
+// After the guard time the characters held back were the command sequence, or data.
+void XBee::silence(uint64_t now) {
+    if (pluses_ && now - lastByte_ >= guardNs()) {
+        if (pluses_ == 3)
+            enterCommandMode(now);
+        else
+            for (unsigned i = 0; i < pluses_; ++i)
+                store(static_cast<uint8_t>(active_.at("CC")));
+        pluses_ = 0;
+        sendPackets(now);
+    }
+    if (mode_ == Mode::Data && flushCount_ < input_.size() &&
+        now - lastByte_ >= active_.at("RO") * charNs()) {
+        flushCount_ = input_.size();
+        sendPackets(now);
+    }
+}
+
+RfPacket XBee::addressed() const {
+    RfPacket packet;
+    uint32_t mm = active_.at("MM"), dh = active_.at("DH"), dl = active_.at("DL");
+    packet.from = static_cast<uint16_t>(active_.at("MY"));
+    packet.wide = dh != 0 || dl > 0xFFFF;
+    packet.to = static_cast<uint16_t>(dl);
+    packet.to64 = uint64_t(dh) << 32 | dl;
+    packet.pan = static_cast<uint16_t>(active_.at("ID"));
+    packet.channel = static_cast<uint8_t>(active_.at("CH"));
+    packet.header = mm == 0 || mm == 3;
+    packet.acknowledged = (mm == 0 || mm == 2) && !(packet.to == 0xFFFF && !packet.wide);
+    packet.sequenced = packet.header && active_.at("RR") > 0;
+    packet.tries = packet.acknowledged ? 4 * (1 + active_.at("RR")) : 1;
+    packet.backoff = active_.at("RN");
+    return packet;
+}
+
 void XBee::sendPackets(uint64_t now) {
-    size_t most = active_.at("EE") ? packetBytesEncrypted : packetBytes;
-    if (inFlight_ || input_.empty() || mode_ == Mode::Off)
+    if (inFlight_ || mode_ == Mode::Off)
         return;
+    if (!apiQueue_.empty())
+        return sendApiPacket(now);
+    size_t most = active_.at("EE") ? packetBytesEncrypted : packetBytes;
     size_t count = 0;
     if (input_.size() >= most)
         count = most;
@@ -163,34 +195,87 @@ void XBee::sendPackets(uint64_t now) {
         count = std::min(flushCount_, input_.size());
     if (count == 0)
         return;
-    RfPacket packet;
-    packet.from = static_cast<uint16_t>(active_.at("MY"));
-    packet.to = static_cast<uint16_t>(active_.at("DL"));
-    packet.pan = static_cast<uint16_t>(active_.at("ID"));
-    packet.channel = static_cast<uint8_t>(active_.at("CH"));
+    RfPacket packet = addressed();
     packet.bytes.assign(input_.begin(), input_.begin() + static_cast<std::ptrdiff_t>(count));
     input_.erase(input_.begin(), input_.begin() + static_cast<std::ptrdiff_t>(count));
     flushCount_ -= std::min(flushCount_, count);
+    updateCts();
+    launch(std::move(packet), now);
+}
+
+void XBee::launch(RfPacket packet, uint64_t now) {
+    packet.sequence = ++sequence_;
+    crypt(packet);
     inFlight_ = true;
     ++counters_.packetsSent;
-    updateCts();
     channel_.transmit(this, std::move(packet), now);
 }
 
-void XBee::transmitted(uint64_t now) {
+// Not AES, but as AES in the counter mode of 802.15.4 it keeps the length, checks nothing, and
+// gives garbage with another key. Encrypting twice with the same key decrypts.
+void XBee::crypt(RfPacket& packet) const {
+    if (!active_.at("EE"))
+        return;
+    uint64_t seed = packet.sequence + (uint64_t(packet.from) << 16);
+    for (char digit : key_)
+        seed = seed * 31 + static_cast<unsigned char>(digit);
+    Random stream(seed);
+    for (uint8_t& byte : packet.bytes)
+        byte ^= static_cast<uint8_t>(stream.next());
+}
+
+void XBee::transmitted(uint64_t now, Fate fate, unsigned unanswered) {
     inFlight_ = false;
+    auto count = [this](const char* letters, unsigned by) {
+        active_[letters] = pending_[letters] = std::min(active_[letters] + by, 0xFFFFu);
+    };
+    count("EA", unanswered);
+    count("EC", fate == Fate::NoClearChannel);
+    if (apiId_) {
+        apiReply({0x89, apiId_, static_cast<uint8_t>(fate)});
+        apiId_ = 0;
+        line_.wake(now);
+    }
     sendPackets(now);
 }
 
-bool XBee::receive(const RfPacket& packet, uint64_t now) {
+bool XBee::hears(const RfPacket& packet) const {
+    if (active_.at("CH") != packet.channel || active_.at("ID") != packet.pan)
+        return false;
+    if (packet.wide)
+        return packet.to64 == (uint64_t(active_.at("SH")) << 32 | active_.at("SL"));
+    return packet.to == 0xFFFF || (active_.at("MY") == packet.to && packet.to < 0xFFFE);
+}
+
+bool XBee::receive(const RfPacket& onAir, uint64_t now) {
     if (mode_ == Mode::Off || mode_ == Mode::Boot)
         return false;
-    if (output_.size() + packet.bytes.size() > outputBytes) {
+    RfPacket packet = onAir;
+    bool wantsHeader = active_.at("MM") == 0 || active_.at("MM") == 3;
+    if (wantsHeader && !packet.header)
+        return true; // acknowledged, but nothing that this mode understands
+    size_t size =
+        packet.bytes.size() + (active_.at("AP") ? 9 : 0) + (wantsHeader || !packet.header ? 0 : 2);
+    if (output_.size() + size > outputBytes) {
         ++counters_.packetsDropped;
         return false;
     }
+    if (packet.sequenced) {
+        auto [last, isNew] = lastSequence_.emplace(packet.from, packet.sequence);
+        if (!isNew && last->second == packet.sequence) {
+            ++counters_.duplicatesDropped;
+            return true;
+        }
+        last->second = packet.sequence;
+    }
     ++counters_.packetsReceived;
-    output_.insert(output_.end(), packet.bytes.begin(), packet.bytes.end());
+    crypt(packet);
+    if (packet.header && !wantsHeader)
+        packet.bytes.insert(packet.bytes.begin(), {static_cast<uint8_t>(packet.sequence), 0x00});
+    if (active_.at("AP"))
+        apiReceived(packet);
+    else
+        output_.insert(output_.end(), packet.bytes.begin(), packet.bytes.end());
     line_.wake(now);
     return true;
 }
@@ -202,101 +287,6 @@ bool XBee::nextToHost(uint8_t& byte) {
     output_.pop_front();
     ++counters_.bytesToHost;
     return true;
-}
-
-void XBee::reply(const std::string& text) {
-    output_.insert(output_.end(), text.begin(), text.end());
-}
-
-void XBee::commandByte(uint8_t byte, uint64_t now) {
-    if (byte != '\r') {
-        if (commandLine_.size() < 64)
-            commandLine_ += static_cast<char>(byte);
-        return;
-    }
-    std::string line;
-    line.swap(commandLine_);
-    ++counters_.commands;
-    std::string answer = execute(line, now);
-    counters_.refused += answer == "ERROR\r";
-    reply(answer);
-    line_.wake(now);
-}
-
-std::string XBee::setParameter(const std::string& letters, const std::string& value) {
-    auto limits = settable.find(letters);
-    if (limits == settable.end() || value.size() > 8 ||
-        value.find_first_not_of("0123456789ABCDEFabcdef") != std::string::npos)
-        return "ERROR\r";
-    uint32_t number = static_cast<uint32_t>(std::stoul(value, nullptr, 16));
-    if (number < limits->second.lowest || number > limits->second.highest)
-        return "ERROR\r";
-    pending_[letters] = number;
-    return "OK\r";
-}
-
-// Write-only: a question is refused.
-std::string XBee::setKey(const std::string& value) {
-    if (value.empty() || value.size() > keyDigits ||
-        value.find_first_not_of("0123456789ABCDEFabcdef") != std::string::npos)
-        return "ERROR\r";
-    key_ = std::string(keyDigits - value.size(), '0') + value;
-    return "OK\r";
-}
-
-std::string XBee::execute(const std::string& line, uint64_t now) {
-    if (line.size() < 4 || (line[0] != 'A' && line[0] != 'a') || (line[1] != 'T' && line[1] != 't'))
-        return "ERROR\r";
-    std::string letters = line.substr(2, 2), value = line.substr(4);
-    for (char& c : letters)
-        c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    if (letters == refuse_)
-        return "ERROR\r";
-    commandUntil_ = now + active_.at("CT") * 100 * msNs;
-    if (letters == "CN") {
-        leaveCommandMode();
-        return "OK\r";
-    }
-    if (letters == "AC") {
-        apply();
-        return "OK\r";
-    }
-    if (letters == "WR") {
-        written_ = pending_;
-        return "OK\r";
-    }
-    if (letters == "RE") {
-        pending_ = factory();
-        return "OK\r";
-    }
-    if (letters == "FR") {
-        leaveCommandMode();
-        mode_ = Mode::Boot;
-        bootDone_ = now + options_.bootNs;
-        pending_ = active_ = written_;
-        return "OK\r";
-    }
-    if (letters == "KY")
-        return setKey(value);
-    if (!value.empty())
-        return setParameter(letters, value);
-    auto parameter = pending_.find(letters);
-    if (parameter == pending_.end())
-        return "ERROR\r";
-    char text[16];
-    std::snprintf(text, sizeof text, "%X\r", parameter->second);
-    return text;
-}
-
-// BD takes effect after the OK has left: the line's bit time changes when it is idle.
-void XBee::apply() {
-    active_ = pending_;
-}
-
-void XBee::leaveCommandMode() {
-    apply();
-    mode_ = Mode::Data;
-    commandLine_.clear();
 }
 
 uint64_t XBee::nextEvent() const {
@@ -317,28 +307,15 @@ void XBee::advance(uint64_t now) {
     if (mode_ == Mode::Boot && now >= bootDone_) {
         mode_ = Mode::Data;
         lastByte_ = now;
+        if (active_.at("AP")) {
+            apiReply({0x8A, 0x00}); // modem status: hardware reset
+            line_.wake(now);
+        }
     }
     if (mode_ == Mode::Command && now >= commandUntil_)
         leaveCommandMode();
-    if (mode_ == Mode::Data && pluses_ && now - lastByte_ >= guardNs()) {
-        if (pluses_ == 3) {
-            mode_ = Mode::Command;
-            flushCount_ = input_.size();
-            commandUntil_ = now + active_.at("CT") * 100 * msNs;
-            reply("OK\r");
-            line_.wake(now);
-        } else {
-            for (unsigned i = 0; i < pluses_; ++i)
-                store(static_cast<uint8_t>(active_.at("CC")));
-        }
-        pluses_ = 0;
-        sendPackets(now);
-    }
-    if (mode_ == Mode::Data && flushCount_ < input_.size() &&
-        now - lastByte_ >= active_.at("RO") * charNs()) {
-        flushCount_ = input_.size();
-        sendPackets(now);
-    }
+    if (mode_ == Mode::Data)
+        silence(now);
     if (output_.empty())
         line_.setBitTime(1e9 / baud());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee: model of an XBee 802.15.4 (series 1) modem in transparent mode: command mode, packetizing,
-// buffers, flow control, reset. Facts and what is left out: docs/modem.md.
+// xbee: model of an XBee 802.15.4 (series 1) modem: command mode, packetizing, buffers, flow
+// control, API frames, encryption, reset. Facts and what is left out: docs/modem.md.
 //
 // Time is in nanoseconds. advance(now) does what is due; nextEvent() says when that will be. The
 // serial side is a SerialLine (pins or a pty), the radio side an RfChannel.
@@ -21,8 +21,17 @@ class RfChannel;
 
 struct RfPacket {
     uint16_t from = 0, to = 0, pan = 0;
+    uint64_t to64 = 0; // destination by serial number, if `wide`
+    bool wide = false;
     uint8_t channel = 0;
-    std::vector<uint8_t> bytes;
+    std::vector<uint8_t> bytes; // as on the air: encrypted, if the sender encrypts
+    // The sender's settings
+    bool header = true;       // MM 0 or 3: the maker's header of two bytes
+    bool acknowledged = true; // MM 0 or 2, and no broadcast
+    bool sequenced = false;   // with a header and RR: the receiver drops what it has already
+    uint16_t sequence = 0;
+    unsigned tries = 4;   // the first and the MAC's retries, times 1 + RR
+    unsigned backoff = 0; // RN
 };
 
 class XBee : private SerialClient {
@@ -38,6 +47,7 @@ public:
         uint64_t framingErrors = 0; // wrong stop bit, or the host's baud rate is too far off
         uint64_t commands = 0, refused = 0;
         uint64_t packetsSent = 0, packetsReceived = 0, packetsDropped = 0;
+        uint64_t duplicatesDropped = 0, badFrames = 0; // API frames with a wrong checksum or type
     };
 
     XBee(SerialLine& line, RfChannel& channel, Options options);
@@ -54,21 +64,32 @@ public:
     void power(bool on, uint64_t now);
     // Answers ERROR to this command, as a firmware that lacks it does ("" for none).
     void refuseCommand(const std::string& letters) { refuse_ = letters; }
+    // Does not answer this command at all ("" for none): a reply that was lost on the wire.
+    void ignoreCommand(const std::string& letters, unsigned times = ~0u) {
+        ignore_ = letters;
+        ignoreTimes_ = times;
+    }
 
     const std::string& name() const { return options_.name; }
     uint32_t parameter(const std::string& letters) const { return active_.at(letters); }
     double baud() const;
     const std::string& key() const { return key_; } // 32 hex digits, "" if none was set
     bool inCommandMode() const { return mode_ == Mode::Command; }
+    bool cts() const { return cts_; }
     const Counters& counters() const { return counters_; }
 
-    // From the channel. False: no room in the buffer to the host; the sender tries again.
+    // From the channel.
+    bool hears(const RfPacket& packet) const; // is it for this modem?
+    // False: no room in the buffer to the host; the sender tries again.
     bool receive(const RfPacket& packet, uint64_t now);
-    void transmitted(uint64_t now); // the packet in flight has left, or was given up
+    // The packet in flight is done with. `unanswered` tries had no acknowledgement.
+    enum class Fate { Sent, NoAck, NoClearChannel };
+    void transmitted(uint64_t now, Fate fate = Fate::Sent, unsigned unanswered = 0);
 
 private:
     enum class Mode { Off, Boot, Data, Command };
     using Parameters = std::map<std::string, uint32_t>;
+    using Bytes = std::vector<uint8_t>;
 
     void fromHost(uint8_t byte, uint64_t now) override;
     void framingError(uint64_t now) override;
@@ -78,17 +99,34 @@ private:
     void boot(uint64_t now);
     void store(uint8_t byte);
     void dataByte(uint8_t byte, uint64_t now);
-    void commandByte(uint8_t byte, uint64_t now);
-    std::string execute(const std::string& line, uint64_t now);
-    std::string setParameter(const std::string& letters, const std::string& value);
-    std::string setKey(const std::string& value);
-    void apply();
-    void leaveCommandMode();
+    void silence(uint64_t now);
     void sendPackets(uint64_t now);
+    void launch(RfPacket packet, uint64_t now);
+    RfPacket addressed() const;
+    void crypt(RfPacket& packet) const;
     void updateCts();
-    void reply(const std::string& text);
     uint64_t charNs() const;
     uint64_t guardNs() const;
+
+    // xbee_command.cpp
+    void enterCommandMode(uint64_t now);
+    void commandByte(uint8_t byte, uint64_t now);
+    std::string execute(const std::string& line, uint64_t now);
+    std::string order(const std::string& letters, uint64_t now);
+    bool setParameter(const std::string& letters, uint32_t value);
+    bool setKey(const std::string& value);
+    void apply();
+    void leaveCommandMode();
+    void reply(const std::string& text);
+
+    // xbee_api.cpp
+    void apiByte(uint8_t byte, uint64_t now);
+    void apiFrame(const Bytes& frame, uint64_t now);
+    void apiCommand(const Bytes& frame, uint64_t now);
+    void apiSend(const Bytes& frame, uint64_t now);
+    void apiReply(const Bytes& frame);
+    void apiReceived(const RfPacket& packet);
+    void sendApiPacket(uint64_t now);
 
     SerialLine& line_;
     RfChannel& channel_;
@@ -98,12 +136,26 @@ private:
     uint64_t bootDone_ = 0, lastByte_ = 0, commandUntil_ = 0, resetLowSince_ = 0;
     bool resetLow_ = false;
     unsigned pluses_ = 0; // of a sequence that may lead to command mode
+    uint64_t firstPlus_ = 0;
     std::string commandLine_;
     std::deque<uint8_t> input_;  // from the host, to be sent
     size_t flushCount_ = 0;      // bytes of it that must leave now
     std::deque<uint8_t> output_; // to the host
     bool inFlight_ = false, cts_ = true;
-    std::string refuse_, key_;
+    uint16_t sequence_ = 0;
+    std::map<uint16_t, uint16_t> lastSequence_; // of each sender
+    std::string refuse_, ignore_;
+    unsigned ignoreTimes_ = 0;
+    std::string key_, writtenKey_;
+    // API
+    struct ApiPacket {
+        uint8_t id;
+        RfPacket packet;
+    };
+    Bytes frame_;
+    bool inFrame_ = false, escaped_ = false;
+    std::deque<ApiPacket> apiQueue_;
+    uint8_t apiId_ = 0; // of the packet in flight
     Counters counters_;
 };
 

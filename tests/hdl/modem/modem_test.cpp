@@ -85,6 +85,7 @@ protected:
     UartPins pins_;
     HostLine plain_;
     std::unique_ptr<XBee> near_, far_;
+    bool pinsIgnoreRts_ = false;
     bool noise_ = false; // the line to the controller is held low
 
 private:
@@ -94,6 +95,10 @@ private:
             pins_.setTxd(txd_, now());
         }
         near_->resetPin(!bench_.top().modem_reset_n_o, now());
+        if (bench_.top().modem_rts_n_o != rtsN_) {
+            rtsN_ = bench_.top().modem_rts_n_o;
+            pins_.setRts(!rtsN_ || pinsIgnoreRts_, now());
+        }
     }
     void drive() {
         air_.advance(now());
@@ -102,7 +107,7 @@ private:
         bench_.top().modem_rxd_i = pins_.rxd() && !noise_;
         bench_.top().modem_cts_n_i = pins_.ctsN();
     }
-    bool txd_ = true;
+    bool txd_ = true, rtsN_ = false;
 };
 
 TEST_F(ModemTest, SetUpFromFactorySettings) {
@@ -225,6 +230,7 @@ TEST_F(ModemTest, AFullRingDropsWholePacketsAndNothingElse) {
     power(quick());
     configure();
     takeEvents();
+    pinsIgnoreRts_ = true; // a modem that takes no notice of RTS
     for (unsigned i = 0; i < 18; ++i) {
         plain_.send(frame(50, static_cast<uint8_t>(i + 1)), now());
         runMs(10);
@@ -238,6 +244,27 @@ TEST_F(ModemTest, AFullRingDropsWholePacketsAndNothingElse) {
     plain_.send(frame(50, 99), now());
     runMs(10);
     EXPECT_EQ(take(), frame(50, 99)) << "it goes on";
+}
+
+TEST_F(ModemTest, RTSHoldsTheModemInMidPacketAndThePacketIsWhole) {
+    power(quick());
+    configure();
+    takeEvents();
+    for (unsigned i = 0; i < 13; ++i) {
+        plain_.send(frame(20, static_cast<uint8_t>(i + 1)), now());
+        runMs(10);
+    }
+    std::vector<uint8_t> both = frame(50, 14), second = frame(50, 15);
+    both.insert(both.end(), second.begin(), second.end());
+    plain_.send(both, now());
+    runMs(50);
+    EXPECT_TRUE(bench_.top().modem_rts_n_o);
+    for (unsigned i = 0; i < 13; ++i)
+        EXPECT_EQ(take(), frame(20, static_cast<uint8_t>(i + 1))) << i;
+    EXPECT_FALSE(bench_.top().modem_rts_n_o);
+    runMs(10);
+    EXPECT_EQ(take(), frame(50, 14));
+    EXPECT_EQ(take(), second);
 }
 
 TEST_F(ModemTest, AFramingErrorEndsThePacketAndIsCounted) {
@@ -338,6 +365,7 @@ TEST_F(ModemTest, APacketThatIsStillBeingWrittenCountsAsABuffer) {
     power(quick());
     configure();
     takeEvents();
+    pinsIgnoreRts_ = true;
     for (unsigned i = 0; i < 15; ++i) {
         plain_.send(frame(20, static_cast<uint8_t>(i + 1)), now());
         runMs(10);

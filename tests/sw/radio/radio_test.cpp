@@ -243,8 +243,9 @@ TEST_F(Radio, ATaskThatSleepsLosesNoMessage) {
         ASSERT_TRUE(talk([&] { return nearPeer_.received.size() == 30; }, 20000));
         for (size_t i = 0; i < 30; ++i)
             EXPECT_EQ(nearPeer_.received[i], std::vector<uint8_t>(300, static_cast<uint8_t>(i)));
-        EXPECT_EQ(Link_statistics(nearPeer_.link())->crcErrors,
-                  0u); // what the ring gave out was whole
+        // RTS stopped the modem before the ring was full. (The modem itself drops RF packets then,
+        // and a packet may hold the end of one frame and the beginning of the next.)
+        EXPECT_EQ(Radio_counters()->hardwareOverruns, 0u);
     });
 }
 

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+//
+// icesoc-xbee: two XBee modems, each on a pseudo-terminal, and the air between them: any program
+// that talks to an XBee can be tried against it.
+
+#include "rf_channel.h"
+#include "xbee_parameters.h"
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+namespace {
+
+volatile std::sig_atomic_t stopped = 0;
+
+struct Settings {
+    std::string link; // a path that points to the pty
+    std::vector<std::string> set;
+    uint64_t bootMs = 50;
+};
+
+struct Modem {
+    PtyLine line;
+    std::unique_ptr<XBee> xbee;
+    std::string link;
+    ~Modem() {
+        std::error_code ignored;
+        if (!link.empty())
+            std::filesystem::remove(link, ignored);
+    }
+};
+
+// "MY=1" into a parameter; throws CLI::ValidationError with what is wrong.
+void setParameter(std::map<std::string, uint32_t>& set, const std::string& text) {
+    std::string letters = text.substr(0, text.find('='));
+    auto parameter = xbeeParameters().find(letters);
+    size_t used = 0;
+    unsigned long value = 0;
+    try {
+        if (letters.size() + 1 < text.size())
+            value = std::stoul(text.substr(letters.size() + 1), &used, 16);
+    } catch (const std::exception&) {
+        used = 0;
+    }
+    if (parameter == xbeeParameters().end())
+        throw CLI::ValidationError("'" + text + "'", "there is no parameter " + letters);
+    if (used == 0 || letters.size() + 1 + used != text.size())
+        throw CLI::ValidationError("'" + text + "'", "give it as in MY=1A2B, in hex");
+    if (value < parameter->second.lowest || value > parameter->second.highest) {
+        char range[64];
+        std::snprintf(range, sizeof range, "%s is from %X to %X", letters.c_str(),
+                      parameter->second.lowest, parameter->second.highest);
+        throw CLI::ValidationError("'" + text + "'", range);
+    }
+    set[letters] = static_cast<uint32_t>(value);
+}
+
+void power(Modem& modem, RfChannel& air, const std::string& name, const Settings& settings,
+           std::map<std::string, uint32_t> set) {
+    XBee::Options options;
+    options.name = name;
+    options.bootNs = settings.bootMs * 1'000'000;
+    for (auto& text : settings.set)
+        setParameter(set, text);
+    options.set = std::move(set);
+    modem.xbee = std::make_unique<XBee>(modem.line, air, options);
+    if (!settings.link.empty()) {
+        std::error_code error;
+        if (std::filesystem::is_symlink(settings.link))
+            std::filesystem::remove(settings.link, error);
+        std::filesystem::create_symlink(modem.line.path(), settings.link, error);
+        if (error)
+            throw CLI::ValidationError(settings.link, error.message());
+        modem.link = settings.link;
+    }
+    std::printf("%s: %s%s%s, %.0f baud, address %04X, sends to %04X\n", name.c_str(),
+                modem.line.path().c_str(), modem.link.empty() ? "" : " = ", modem.link.c_str(),
+                modem.xbee->baud(), modem.xbee->parameter("MY"), modem.xbee->parameter("DL"));
+}
+
+void report(const XBee& modem) {
+    const XBee::Counters& c = modem.counters();
+    std::printf(
+        "%s: %llu bytes from the host, %llu to it, %llu packets sent, %llu received, %llu commands "
+        "(%llu refused), lost: %llu bytes by overflow, %llu framing errors, %llu packets by a full "
+        "buffer\n",
+        modem.name().c_str(), 0ull + c.bytesFromHost, 0ull + c.bytesToHost, 0ull + c.packetsSent,
+        0ull + c.packetsReceived, 0ull + c.commands, 0ull + c.refused, 0ull + c.overflow,
+        0ull + c.framingErrors, 0ull + c.packetsDropped);
+}
+
+void report(const RfChannel& air) {
+    const RfChannel::Counters& c = air.counters();
+    std::printf("air: %llu packets, %llu bytes, %llu lost, %llu corrupted, %llu duplicated, %llu "
+                "tries again, "
+                "%llu collisions, %llu never sent, %.1f ms\n",
+                0ull + c.packets, 0ull + c.bytes, 0ull + c.lost, 0ull + c.corrupted,
+                0ull + c.duplicated, 0ull + c.retries, 0ull + c.collisions, 0ull + c.noClearChannel,
+                static_cast<double>(c.airNs) / 1e6);
+}
+
+void addSettings(CLI::App& app, const std::string& name, Settings& settings) {
+    app.add_option("--" + name, settings.set,
+                   "Parameter of modem " + name + ", in hex, as MY=1 or BD=7; may be repeated")
+        ->type_name("XX=HEX");
+    app.add_option("--link-" + name, settings.link, "Symbolic link to its pty")->type_name("PATH");
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Two XBee 802.15.4 modems on pseudo-terminals, and the air between them.\n"
+                 "Open the printed devices as serial ports; Ctrl-C ends it and prints statistics.\n"
+                 "Modem a has address 1 and sends to 2, modem b the other way round."};
+    Settings settingsA, settingsB;
+    RfChannel::Weather weather;
+    double delayMs = 0, duration = 0;
+    uint64_t seed = testSeed(), bootMs = 50;
+    bool verbose = false;
+    addSettings(app, "a", settingsA);
+    addSettings(app, "b", settingsB);
+    auto chance = [&](const char* option, double& value, const char* what) {
+        app.add_option(option, value, what)->check(CLI::Range(0.0, 1.0))->capture_default_str();
+    };
+    chance("--loss", weather.loss, "Residual loss of a packet");
+    chance("--burst-begin", weather.burstBegin,
+           "Chance that a burst of loss begins (Gilbert-Elliott)");
+    chance("--burst-end", weather.burstEnd, "Chance that it ends, each packet");
+    chance("--burst-loss", weather.burstLoss, "Loss in a burst");
+    chance("--duplication", weather.duplication, "Packets that arrive twice");
+    chance("--corruption", weather.corruption, "Packets with a wrong byte");
+    chance("--try-loss", weather.tryLoss, "Loss of one try; the MAC tries again");
+    chance("--ack-loss", weather.ackLoss, "Loss of an acknowledgement: duplicates");
+    app.add_flag("--contention", weather.contention, "Carrier sense, waits and collisions");
+    app.add_option("--delay", delayMs, "Delay beyond the time on the air, ms")
+        ->check(CLI::Range(0.0, 10000.0));
+    app.add_option("--boot", bootMs, "Boot time of the modems, ms")->check(CLI::Range(0, 5000));
+    app.add_option("--seed", seed, "Seed of the weather (default: SEED, or 1)");
+    app.add_option("--duration", duration, "Ends by itself after so many seconds (0: never)")
+        ->check(CLI::Range(0.0, 1e6));
+    app.add_flag("-v,--verbose", verbose, "A line for each packet");
+    CLI11_PARSE(app, argc, argv);
+
+    weather.delayNs = static_cast<uint64_t>(delayMs * 1e6);
+    settingsA.bootMs = settingsB.bootMs = bootMs;
+    RfChannel air(seed);
+    air.weather = weather;
+    if (verbose)
+        air.onPacket([](uint64_t now, const RfPacket& packet, RfChannel::Outcome outcome) {
+            static const char* const outcomes[] = {"delivered",    "lost",    "corrupted",
+                                                   "nobody there", "no room", "channel not clear"};
+            std::printf("%9.3f s  %04X -> %04X  %3zu bytes  %s\n", static_cast<double>(now) / 1e9,
+                        packet.from, packet.to, packet.bytes.size(),
+                        outcomes[static_cast<int>(outcome)]);
+        });
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);
+    try {
+        Modem a, b;
+        power(a, air, "a", settingsA, {{"MY", 1}, {"DL", 2}});
+        power(b, air, "b", settingsB, {{"MY", 2}, {"DL", 1}});
+        std::signal(SIGINT, [](int) { stopped = 1; });
+        std::signal(SIGTERM, [](int) { stopped = 1; });
+        auto begin = std::chrono::steady_clock::now();
+        while (!stopped) {
+            auto elapsed = std::chrono::steady_clock::now() - begin;
+            auto now = static_cast<uint64_t>(
+                std::chrono::duration_cast<std::chrono::nanoseconds>(elapsed).count());
+            if (duration > 0 && static_cast<double>(now) > duration * 1e9)
+                break;
+            air.advance(now);
+            a.xbee->advance(now);
+            b.xbee->advance(now);
+            std::this_thread::sleep_for(std::chrono::microseconds(500));
+        }
+        report(*a.xbee);
+        report(*b.xbee);
+        report(air);
+    } catch (const CLI::Error& error) {
+        std::fprintf(stderr, "icesoc-xbee: %s\n", error.what());
+        return 2;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "icesoc-xbee: %s\n", error.what());
+        return 1;
+    }
+    return 0;
+}

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+//
+// xbee: API frames: 0x7E, length (2), type and contents, checksum; with AP 2 some bytes are
+// escaped.
+
+#include "rf_channel.h"
+#include "xbee.h"
+#include "xbee_parameters.h"
+
+namespace {
+
+constexpr uint8_t delimiter = 0x7E, escape = 0x7D, escapeXor = 0x20;
+constexpr size_t longestFrame = 3 + 120;
+
+bool mustEscape(uint8_t byte) {
+    return byte == delimiter || byte == escape || byte == 0x11 || byte == 0x13;
+}
+
+uint8_t sum(const uint8_t* bytes, size_t count) {
+    uint8_t total = 0;
+    for (size_t i = 0; i < count; ++i)
+        total = static_cast<uint8_t>(total + bytes[i]);
+    return total;
+}
+
+} // namespace
+
+void XBee::apiByte(uint8_t byte, uint64_t now) {
+    bool escapes = active_.at("AP") == 2;
+    if (byte == delimiter && (escapes || !inFrame_)) {
+        inFrame_ = true; // with escapes a delimiter always begins a frame
+        escaped_ = false;
+        frame_.clear();
+        return;
+    }
+    if (!inFrame_)
+        return;
+    if (escapes && byte == escape && !escaped_) {
+        escaped_ = true;
+        return;
+    }
+    frame_.push_back(escaped_ ? byte ^ escapeXor : byte);
+    escaped_ = false;
+    size_t length = frame_.size() >= 2 ? size_t(frame_[0]) << 8 | frame_[1] : longestFrame;
+    if (frame_.size() >= 2 && (length == 0 || length > longestFrame)) {
+        inFrame_ = false;
+        ++counters_.badFrames;
+    } else if (frame_.size() == length + 3) {
+        inFrame_ = false;
+        if (sum(&frame_[2], length + 1) != 0xFF)
+            ++counters_.badFrames;
+        else
+            apiFrame({frame_.begin() + 2, frame_.end() - 1}, now);
+    }
+}
+
+void XBee::apiFrame(const Bytes& frame, uint64_t now) {
+    switch (frame[0]) {
+    case 0x00: // transmit request, 64-bit address
+    case 0x01: // 16-bit address
+        apiSend(frame, now);
+        break;
+    case 0x08: // AT command
+    case 0x09: // ... that waits for AC
+        apiCommand(frame, now);
+        break;
+    default:
+        ++counters_.badFrames;
+    }
+}
+
+void XBee::apiSend(const Bytes& frame, uint64_t now) {
+    size_t address = frame[0] == 0x00 ? 8 : 2, head = 2 + address + 1;
+    size_t most = active_.at("EE") ? 95 : 100;
+    if (frame.size() <= head || frame.size() - head > most) {
+        ++counters_.badFrames;
+        return;
+    }
+    RfPacket packet = addressed();
+    packet.wide = frame[0] == 0x00;
+    packet.to64 = 0;
+    for (size_t i = 0; i < address; ++i)
+        packet.to64 = packet.to64 << 8 | frame[2 + i];
+    packet.to = static_cast<uint16_t>(packet.to64);
+    bool noAck = frame[head - 1] & 0x01; // option: no acknowledgement
+    if (noAck || (packet.to == 0xFFFF && !packet.wide)) {
+        packet.acknowledged = false;
+        packet.tries = 1;
+    }
+    packet.bytes.assign(frame.begin() + static_cast<std::ptrdiff_t>(head), frame.end());
+    apiQueue_.push_back({frame[1], std::move(packet)});
+    updateCts();
+    sendPackets(now);
+}
+
+void XBee::sendApiPacket(uint64_t now) {
+    ApiPacket next = std::move(apiQueue_.front());
+    apiQueue_.pop_front();
+    updateCts();
+    apiId_ = next.id;
+    launch(std::move(next.packet), now);
+}
+
+// 0x88: the answer; its status is 0 OK, 1 ERROR, 2 no such command, 3 wrong value.
+void XBee::apiCommand(const Bytes& frame, uint64_t now) {
+    if (frame.size() < 4) {
+        ++counters_.badFrames;
+        return;
+    }
+    ++counters_.commands;
+    std::string letters(frame.begin() + 2, frame.begin() + 4);
+    uint32_t value = 0;
+    std::string key;
+    for (size_t i = 4; i < frame.size(); ++i) {
+        value = value << 8 | frame[i];
+        key += "0123456789ABCDEF"[frame[i] >> 4];
+        key += "0123456789ABCDEF"[frame[i] & 15];
+    }
+    Bytes answer = {0x88, frame[1], frame[2], frame[3], 0};
+    auto parameter = pending_.find(letters);
+    bool known = parameter != pending_.end() && letters != refuse_;
+    if (letters == "KY") {
+        answer[4] = setKey(key) ? 0 : 3;
+    } else if (frame.size() > 4) {
+        answer[4] = !known ? 2 : setParameter(letters, value) ? 0 : 3;
+        if (answer[4] == 0 && frame[0] == 0x08)
+            apply();
+    } else if (known) {
+        unsigned bytes = xbeeParameters().at(letters).highest > 0xFFFF ? 4
+                         : xbeeParameters().at(letters).highest > 0xFF ? 2
+                                                                       : 1;
+        while (bytes--)
+            answer.push_back(static_cast<uint8_t>(parameter->second >> (8 * bytes)));
+    } else if (letters == refuse_ || order(letters, now).empty()) {
+        answer[4] = 2;
+    }
+    counters_.refused += answer[4] != 0;
+    if (frame[1] != 0) // id 0: no answer is wanted
+        apiReply(answer);
+    line_.wake(now);
+}
+
+void XBee::apiReply(const Bytes& frame) {
+    Bytes bytes = {static_cast<uint8_t>(frame.size() >> 8), static_cast<uint8_t>(frame.size())};
+    bytes.insert(bytes.end(), frame.begin(), frame.end());
+    bytes.push_back(static_cast<uint8_t>(0xFF - sum(frame.data(), frame.size())));
+    output_.push_back(delimiter);
+    for (uint8_t byte : bytes) {
+        bool escaped = active_.at("AP") == 2 && mustEscape(byte);
+        if (escaped)
+            output_.push_back(escape);
+        output_.push_back(escaped ? byte ^ escapeXor : byte);
+    }
+}
+
+// 0x81: a packet from a 16-bit address: source, RSSI, options, data.
+void XBee::apiReceived(const RfPacket& packet) {
+    bool broadcast = !packet.wide && packet.to == 0xFFFF;
+    Bytes frame = {0x81, static_cast<uint8_t>(packet.from >> 8), static_cast<uint8_t>(packet.from),
+                   static_cast<uint8_t>(active_.at("DB")), static_cast<uint8_t>(broadcast ? 2 : 0)};
+    frame.insert(frame.end(), packet.bytes.begin(), packet.bytes.end());
+    apiReply(frame);
+}

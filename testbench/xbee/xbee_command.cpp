@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+//
+// xbee: command mode.
+
+#include "rf_channel.h"
+#include "xbee.h"
+#include "xbee_parameters.h"
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+
+namespace {
+
+constexpr size_t keyDigits = 32; // 128 bits
+constexpr uint64_t msNs = 1'000'000;
+
+bool isHex(const std::string& text, size_t most) {
+    return !text.empty() && text.size() <= most &&
+           text.find_first_not_of("0123456789ABCDEFabcdef") == std::string::npos;
+}
+
+} // namespace
+
+// The OK waits behind received data that still drains out.
+void XBee::enterCommandMode(uint64_t now) {
+    mode_ = Mode::Command;
+    flushCount_ = input_.size();
+    commandUntil_ = now + active_.at("CT") * 100 * msNs;
+    reply("OK\r");
+    line_.wake(now);
+}
+
+void XBee::reply(const std::string& text) {
+    output_.insert(output_.end(), text.begin(), text.end());
+}
+
+void XBee::commandByte(uint8_t byte, uint64_t now) {
+    if (byte != '\r') {
+        if (commandLine_.size() < 64)
+            commandLine_ += static_cast<char>(byte);
+        return;
+    }
+    std::string line;
+    line.swap(commandLine_);
+    ++counters_.commands;
+    std::string answer = execute(line, now);
+    counters_.refused += answer == "ERROR\r";
+    reply(answer);
+    line_.wake(now);
+}
+
+bool XBee::setParameter(const std::string& letters, uint32_t value) {
+    auto found = xbeeParameters().find(letters);
+    if (found == xbeeParameters().end() || !found->second.writable ||
+        value < found->second.lowest || value > found->second.highest)
+        return false;
+    if (letters == "BD" && value > 7)
+        value = static_cast<uint32_t>(std::lround(xbeeBaud(value))); // the nearest is kept
+    pending_[letters] = value;
+    if (letters == "EC" || letters == "EA")
+        active_[letters] = value;
+    return true;
+}
+
+// Write-only: a question is refused.
+bool XBee::setKey(const std::string& value) {
+    if (!isHex(value, keyDigits))
+        return false;
+    key_ = std::string(keyDigits - value.size(), '0') + value;
+    return true;
+}
+
+// Commands without a value; "" if there is none of that name.
+std::string XBee::order(const std::string& letters, uint64_t now) {
+    if (letters == "CN") {
+        leaveCommandMode();
+    } else if (letters == "AC") {
+        apply();
+    } else if (letters == "WR") {
+        written_ = pending_;
+        writtenKey_ = key_;
+    } else if (letters == "RE") {
+        pending_ = factory();
+        for (auto& [own, value] : options_.set)
+            if (!xbeeParameters().at(own).writable)
+                pending_[own] = value; // the serial number stays
+        key_.clear();
+    } else if (letters == "FR") {
+        boot(now); // the OK still leaves, at the old rate
+    } else {
+        return "";
+    }
+    return "OK\r";
+}
+
+std::string XBee::execute(const std::string& line, uint64_t now) {
+    if (line.size() < 4 || std::toupper(static_cast<unsigned char>(line[0])) != 'A' ||
+        std::toupper(static_cast<unsigned char>(line[1])) != 'T')
+        return "ERROR\r";
+    std::string letters = line.substr(2, 2), value = line.substr(4);
+    value.erase(0, value.find_first_not_of(' '));
+    for (char& c : letters)
+        c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    if (letters == ignore_ && ignoreTimes_ > 0) {
+        --ignoreTimes_;
+        return "";
+    }
+    if (letters == refuse_)
+        return "ERROR\r";
+    std::string answer = value.empty() ? order(letters, now) : "";
+    if (answer.empty() && letters == "KY")
+        answer = setKey(value) ? "OK\r" : "ERROR\r";
+    if (answer.empty() && !value.empty())
+        answer =
+            isHex(value, 8) &&
+                    setParameter(letters, static_cast<uint32_t>(std::stoul(value, nullptr, 16)))
+                ? "OK\r"
+                : "ERROR\r";
+    if (answer.empty()) {
+        auto parameter = pending_.find(letters);
+        char text[16] = "ERROR\r";
+        if (parameter != pending_.end())
+            std::snprintf(text, sizeof text, "%X\r", parameter->second);
+        answer = text;
+    }
+    if (answer != "ERROR\r")
+        commandUntil_ = std::max(commandUntil_, now + active_.at("CT") * 100 * msNs);
+    return answer;
+}
+
+// BD takes effect after the OK has left: the line's bit time changes when it is idle.
+void XBee::apply() {
+    active_ = pending_;
+    line_.setHeedRts(active_.at("D6") == 1);
+    updateCts();
+}
+
+void XBee::leaveCommandMode() {
+    apply();
+    mode_ = Mode::Data;
+    commandLine_.clear();
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+//
+// pair: two modems, `a` at address 1 and `b` at address 2, the air between them, and their hosts.
+
+#ifndef PAIR_H
+#define PAIR_H
+
+#include "rf_channel.h"
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <memory>
+
+class Pair : public ::testing::Test {
+protected:
+    using Settings = std::map<std::string, uint32_t>;
+    using Bytes = std::vector<uint8_t>;
+    static constexpr uint64_t ms = 1'000'000;
+
+    // Settings differ from: quick guard times, addresses 1 and 2.
+    void power(Settings forA = {}, Settings forB = {}) {
+        XBee::Options optionsA, optionsB;
+        optionsA.set = {{"MY", 1}, {"DL", 2}, {"GT", 10}, {"SL", 0xA}};
+        optionsB.set = {{"MY", 2}, {"DL", 1}, {"GT", 10}, {"SL", 0xB}};
+        for (auto& [letters, value] : forA)
+            optionsA.set[letters] = value;
+        for (auto& [letters, value] : forB)
+            optionsB.set[letters] = value;
+        a = std::make_unique<XBee>(lineA, air, optionsA);
+        b = std::make_unique<XBee>(lineB, air, optionsB);
+        air.onPacket([this](uint64_t time, const RfPacket& packet, RfChannel::Outcome outcome) {
+            packets.push_back({time, packet.bytes, outcome});
+        });
+        run(20 * ms);
+    }
+    void run(uint64_t ns) {
+        for (uint64_t end = now + ns; now < end;) {
+            uint64_t next = std::min({air.nextEvent(), a->nextEvent(), b->nextEvent(), end});
+            now = std::max(next, now + 1);
+            air.advance(now);
+            a->advance(now);
+            b->advance(now);
+        }
+    }
+    static Bytes bytes(const std::string& text) { return {text.begin(), text.end()}; }
+    static std::string text(const Bytes& data) { return {data.begin(), data.end()}; }
+    void send(const std::string& data) { lineA.send(bytes(data), now); }
+    // What `a` has given its host since the last call.
+    std::string heard() {
+        std::string data = text(lineA.received);
+        lineA.received.clear();
+        return data;
+    }
+    std::string heardB() {
+        std::string data = text(lineB.received);
+        lineB.received.clear();
+        return data;
+    }
+    std::string enter() {
+        run(11 * ms);
+        send("+++");
+        run(11 * ms);
+        return heard();
+    }
+    std::string command(const std::string& line) {
+        send(line + "\r");
+        run(ms);
+        return heard();
+    }
+    uint64_t charNs(double baud = 9600) const { return static_cast<uint64_t>(10e9 / baud); }
+
+    struct Seen {
+        uint64_t time;
+        Bytes bytes;
+        RfChannel::Outcome outcome;
+    };
+    uint64_t now = 0;
+    RfChannel air{testSeed()};
+    HostLine lineA, lineB;
+    std::unique_ptr<XBee> a, b;
+    std::vector<Seen> packets; // as they landed
+};
+
+#endif

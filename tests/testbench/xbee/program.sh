@@ -1,0 +1,53 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+#
+# program: icesoc-xbee as its user sees it, with stty and the shell as the serial programs: help, wrong
+# options, command mode, data across, statistics, a clean end by Ctrl-C. Usage: program.sh icesoc-xbee
+set -eu
+program=$1
+work=$(mktemp -d)
+trap 'kill $pid 2>/dev/null || true; rm -rf "$work"' EXIT
+pid=''
+fail() {
+    echo "FAILED: $*" >&2
+    cat "$work"/out >&2 || true
+    exit 1
+}
+"$program" --help | grep -q 'Two XBee' || fail "--help"
+for wrong in '--loss 2' '--a ZZ=1' '--a MY=G' '--a CH=1' '--b MY' '--nonsense' "--link-a $work/none/x"; do
+    # shellcheck disable=SC2086
+    if "$program" $wrong --duration 0.1 >"$work/out" 2>&1; then fail "took $wrong"; fi
+    [ -s "$work/out" ] || fail "said nothing about $wrong"
+done
+
+"$program" --a GT=14 --a BD=7 --b BD=7 --link-a "$work/a" --link-b "$work/b" -v >"$work/out" 2>&1 &
+pid=$!
+for _ in $(seq 500); do # until it is there
+    [ -e "$work/b" ] && break
+    sleep 0.02
+done
+stty -F "$work/a" 115200 raw -echo
+stty -F "$work/b" 115200 raw -echo
+exec 3<>"$work/a" 4<>"$work/b"
+sleep 0.2
+# bash's own read would change the terminal's settings. The limit only keeps a broken program from hanging.
+expect() { # file-descriptor text what
+    answer=$(timeout 60 head -c ${#2} <&"$1" | tr '\r' '~') || true
+    [ "$answer" = "${2//$'\r'/'~'}" ] || fail "$3: '$answer'"
+}
+printf '+++' >&3
+expect 3 $'OK\r' "answer to +++"
+printf 'ATMY\r' >&3
+expect 3 $'1\r' "answer to ATMY"
+printf 'ATCN\r' >&3
+expect 3 $'OK\r' "answer to ATCN"
+printf 'hello, world.' >&3
+expect 4 'hello, world.' "came across"
+kill -INT $pid
+wait $pid || fail "status $? after Ctrl-C"
+pid=''
+grep -q '0001 -> 0002 *13 bytes  delivered' "$work/out" || fail "no line for the packet"
+grep -q '^a: .* 2 commands (0 refused)' "$work/out" || fail "no statistics"
+grep -q 'air: 1 packets, 13 bytes, 0 lost' "$work/out" || fail "no statistics of the air"
+[ ! -L "$work/a" ] || fail "the link is still there"
+echo passed

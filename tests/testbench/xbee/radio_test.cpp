@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: MIT
+//
+// radio_test: the modem's radio side and the air: addresses, time, tries, encryption, weather.
+
+#include "pair.h"
+
+namespace {
+
+using Addresses = Pair;
+using Mac = Pair;
+using Encryption = Pair;
+using Air = Pair;
+
+TEST_F(Addresses, ChannelNetworkAndAddressMustAgree) {
+    for (auto& [letters, value] : Settings{{"CH", 0x0D}, {"ID", 0x1111}, {"MY", 3}}) {
+        power({}, {{letters, value}});
+        send("x");
+        run(30 * ms);
+        EXPECT_EQ(heardB(), "") << letters;
+        EXPECT_EQ(packets.back().outcome, RfChannel::Outcome::Nobody);
+    }
+}
+
+TEST_F(Addresses, FFFFReachesEverybodyOnceAndWithoutAck) {
+    power({{"DL", 0xFFFF}});
+    air.weather.tryLoss = 1;
+    send("x");
+    run(60 * ms);
+    EXPECT_EQ(air.counters().retries, 0u);
+    air.weather.tryLoss = 0;
+    send("y");
+    run(30 * ms);
+    EXPECT_EQ(heardB(), "y");
+}
+
+TEST_F(Addresses, SerialNumbersReachAModemWithoutAShortAddress) {
+    power({{"DH", 0x0013A200}, {"DL", 0xB}}, {{"MY", 0xFFFE}});
+    send("x");
+    run(30 * ms);
+    EXPECT_EQ(heardB(), "x");
+}
+
+TEST_F(Mac, AirTimeIsTheFormulas) {
+    EXPECT_EQ(RfChannel::airTimeNs(100), 5'312'000u);
+    EXPECT_EQ(RfChannel::airTimeNs(0), 2'112'000u);
+    power({{"RO", 0}});
+    uint64_t begin = now;
+    send("x");
+    run(10 * ms);
+    EXPECT_EQ(packets[0].time - begin, RfChannel::airTimeNs(1));
+}
+
+// Tries without any acknowledgement, by RR and MM.
+struct Tries {
+    uint32_t rr, mm;
+    unsigned tries;
+};
+class MacTries : public Pair, public ::testing::WithParamInterface<Tries> {};
+TEST_P(MacTries, AreFourTimesRRAndOneMore) {
+    power({{"RR", GetParam().rr}, {"MM", GetParam().mm}});
+    air.weather.tryLoss = 1;
+    send("x");
+    run(200 * ms);
+    EXPECT_EQ(air.counters().retries, GetParam().tries - 1);
+    EXPECT_EQ(packets.back().outcome, RfChannel::Outcome::Lost);
+    bool acks = GetParam().mm == 0 || GetParam().mm == 2;
+    EXPECT_EQ(a->parameter("EA"), acks ? GetParam().tries : 0u);
+}
+INSTANTIATE_TEST_SUITE_P(Modes, MacTries,
+                         ::testing::Values(Tries{0, 0, 4}, Tries{2, 0, 12}, Tries{6, 2, 28},
+                                           Tries{0, 1, 1}, Tries{3, 3, 1}));
+
+TEST_F(Mac, RetriesHideLossOfSingleTries) {
+    power({{"RR", 2}});
+    air.weather.tryLoss = 0.3;
+    for (int i = 0; i < 200; ++i) {
+        send("x");
+        run(100 * ms);
+    }
+    EXPECT_EQ(heardB(), std::string(200, 'x'));
+    EXPECT_GT(air.counters().retries, 40u);
+    EXPECT_LT(air.counters().retries, 140u);
+}
+
+TEST_F(Mac, ALostAckMakesADuplicate) {
+    power();
+    air.weather.ackLoss = 1;
+    send("x");
+    run(100 * ms);
+    EXPECT_EQ(heardB(), "xxxx");
+    EXPECT_EQ(a->parameter("EA"), 3u);
+}
+
+TEST_F(Mac, WithRRAndTheHeaderDuplicatesAreDropped) {
+    power({{"RR", 1}});
+    air.weather.ackLoss = 1;
+    send("x");
+    run(100 * ms);
+    EXPECT_EQ(heardB(), "x");
+    EXPECT_EQ(b->counters().duplicatesDropped, 7u);
+}
+
+TEST_F(Mac, MMMustSuit) {
+    power({{"MM", 2}});
+    send("x");
+    run(30 * ms);
+    EXPECT_EQ(heardB(), "") << "no header, which MM 0 wants";
+    power({{"MM", 0}}, {{"MM", 2}});
+    send("x");
+    run(30 * ms);
+    EXPECT_EQ(heardB().size(), 3u) << "two bytes of header before the data";
+    power({{"MM", 2}}, {{"MM", 1}});
+    send("x");
+    run(30 * ms);
+    EXPECT_EQ(heardB(), "x");
+}
+
+TEST_F(Encryption, TheSameKeyReads) {
+    power({{"EE", 1}}, {{"EE", 1}});
+    send("secret");
+    run(30 * ms);
+    EXPECT_EQ(heardB(), "secret");
+    EXPECT_NE(text(packets[0].bytes), "secret") << "as on the air";
+}
+
+TEST_F(Encryption, AnotherKeyGivesGarbageNotSilence) {
+    power({{"EE", 1}}, {{"EE", 1}});
+    enter();
+    command("ATKY1");
+    command("ATCN");
+    send("secret");
+    run(30 * ms);
+    std::string got = heardB();
+    EXPECT_EQ(got.size(), 6u);
+    EXPECT_NE(got, "secret");
+}
+
+TEST_F(Encryption, AModemWithoutItReadsGarbage) {
+    power({{"EE", 1}});
+    send("secret");
+    run(30 * ms);
+    EXPECT_NE(heardB(), "secret");
+}
+
+TEST_F(Air, LossIsAsAsked) {
+    power({{"RO", 0}});
+    air.weather.loss = 0.25;
+    for (int i = 0; i < 2000; ++i) {
+        send("x");
+        run(3 * ms);
+    }
+    double lost = static_cast<double>(air.counters().lost) / 2000;
+    EXPECT_NEAR(lost, 0.25, 0.04);
+    EXPECT_EQ(heardB().size(), 2000 - air.counters().lost);
+}
+
+TEST_F(Air, BurstsHaveTheirLengthAndShare) {
+    power({{"RO", 0}});
+    air.weather.burstBegin = 0.02;
+    air.weather.burstEnd = 0.2;
+    air.weather.burstLoss = 1;
+    unsigned bursts = 0, lost = 0;
+    for (int i = 0; i < 6000; ++i) {
+        uint64_t before = air.counters().lost;
+        send("x");
+        run(3 * ms);
+        bool now_lost = air.counters().lost > before;
+        bursts += now_lost && (packets.size() < 2 ||
+                               packets[packets.size() - 2].outcome != RfChannel::Outcome::Lost);
+        lost += now_lost;
+    }
+    EXPECT_NEAR(static_cast<double>(lost) / bursts, 5, 1.2) << "1 / burstEnd";
+    EXPECT_NEAR(lost / 6000.0, 0.02 / 0.22, 0.03);
+}
+
+TEST_F(Air, DelayIsAddedToTheAirTime) {
+    power({{"RO", 0}});
+    air.weather.delayNs = 7 * ms;
+    uint64_t begin = now;
+    send("x");
+    run(20 * ms);
+    EXPECT_EQ(packets[0].time - begin, RfChannel::airTimeNs(1) + 7 * ms);
+}
+
+TEST_F(Air, DuplicationDeliversTwice) {
+    power();
+    air.weather.duplication = 1;
+    send("ab");
+    run(30 * ms);
+    EXPECT_EQ(heardB(), "abab");
+}
+
+TEST_F(Air, CorruptionChangesOneByte) {
+    power();
+    air.weather.corruption = 1;
+    send("abcdefgh");
+    run(30 * ms);
+    std::string got = heardB();
+    ASSERT_EQ(got.size(), 8u);
+    int different = 0;
+    for (size_t i = 0; i < 8; ++i)
+        different += got[i] != "abcdefgh"[i];
+    EXPECT_EQ(different, 1);
+}
+
+TEST_F(Air, TheSameSeedGivesTheSameWeatherAndAnotherSeedAnother) {
+    auto weather = [this](uint64_t seed) {
+        air = RfChannel(seed);
+        packets.clear();
+        power({{"RO", 0}});
+        air.weather.loss = 0.5;
+        std::vector<RfChannel::Outcome> outcomes;
+        for (int i = 0; i < 64; ++i) {
+            send("x");
+            run(4 * ms);
+            outcomes.push_back(packets.back().outcome);
+        }
+        a.reset();
+        b.reset();
+        return outcomes;
+    };
+    auto first = weather(5);
+    EXPECT_EQ(weather(5), first);
+    EXPECT_NE(weather(6), first);
+}
+
+TEST_F(Air, TwoThatBeginTogetherCollideAndTryAgain) {
+    power({{"RO", 0}, {"RN", 3}, {"RR", 3}}, {{"RO", 0}, {"RN", 3}, {"RR", 3}});
+    air.weather.contention = true;
+    for (int i = 0; i < 100; ++i) {
+        send("x");
+        lineB.send({'y'}, now);
+        run(100 * ms);
+    }
+    EXPECT_GT(air.counters().collisions, 5u);
+    EXPECT_EQ(heardB(), std::string(100, 'x'));
+    EXPECT_EQ(heard(), std::string(100, 'y'));
+}
+
+TEST_F(Air, WithoutRNTheFirstTriesAlwaysCollide) {
+    power({{"RO", 0}}, {{"RO", 0}});
+    air.weather.contention = true;
+    for (int i = 0; i < 20; ++i) {
+        send("x");
+        lineB.send({'y'}, now);
+        run(100 * ms);
+    }
+    EXPECT_GE(air.counters().collisions, 20u);
+}
+
+TEST_F(Air, CarrierSenseWaitsForTheOther) {
+    power({{"RO", 0}, {"RN", 3}});
+    air.weather.contention = true;
+    lineB.send(Bytes(30, 'y'), now);
+    run(3 * charNs() + ms); // well on the air
+    send("x");
+    run(50 * ms);
+    EXPECT_EQ(air.counters().collisions, 0u);
+    EXPECT_EQ(heard(), std::string(30, 'y'));
+    EXPECT_EQ(heardB(), "x");
+}
+
+TEST_F(Air, AChannelThatIsNeverClearIsCountedInEC) {
+    power({{"RO", 0}}, {{"RO", 0}});
+    air.weather.contention = true;
+    air.weather.delayNs = 0;
+    // Others on the channel talk without a pause.
+    HostLine third;
+    XBee::Options options;
+    options.set = {{"MY", 3}, {"DL", 9}, {"MM", 1}, {"RO", 0}};
+    XBee jammer(third, air, options);
+    for (int i = 0; i < 400; ++i) {
+        if (i % 4 == 0 || jammer.counters().packetsSent < static_cast<uint64_t>(i))
+            third.send(Bytes(100, 'j'), now);
+        if (i == 5)
+            send("x");
+        run(ms);
+    }
+    EXPECT_EQ(a->parameter("EC") + (text(lineB.received).find('x') != std::string::npos ? 1u : 0u),
+              1u);
+}
+
+} // namespace

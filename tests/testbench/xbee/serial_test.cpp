@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT
+//
+// serial_test: the modem's serial side: baud rate and its tolerance, packetizing, buffers, flow
+// control, reset.
+
+#include "pair.h"
+
+namespace {
+
+using Packetizing = Pair;
+using Buffers = Pair;
+using Reset = Pair;
+
+TEST_F(Packetizing, APacketLeavesAfterROOfSilence) {
+    power(); // RO 3 at 9600 baud: 3.125 ms
+    send("abc");
+    run(3 * charNs() - 1000);
+    EXPECT_EQ(a->counters().packetsSent, 0u);
+    run(2000);
+    EXPECT_EQ(a->counters().packetsSent, 1u);
+}
+
+TEST_F(Packetizing, APauseBelowRODoesNotSplit) {
+    power();
+    send("abc");
+    run(2 * charNs());
+    send("def");
+    run(30 * ms);
+    ASSERT_EQ(packets.size(), 1u);
+    EXPECT_EQ(text(packets[0].bytes), "abcdef");
+}
+
+TEST_F(Packetizing, APauseAboveROSplits) {
+    power();
+    send("abc");
+    run(4 * charNs());
+    send("def");
+    run(30 * ms);
+    ASSERT_EQ(packets.size(), 2u);
+}
+
+TEST_F(Packetizing, RO0SendsAtOnce) {
+    power({{"RO", 0}});
+    send("a");
+    EXPECT_EQ(a->counters().packetsSent, 1u);
+}
+
+TEST_F(Packetizing, AHundredBytesLeaveAtOnce) {
+    power({{"RO", 0xFF}});
+    send(std::string(99, 'x'));
+    EXPECT_EQ(a->counters().packetsSent, 0u);
+    send("x");
+    EXPECT_EQ(a->counters().packetsSent, 1u);
+}
+
+TEST_F(Packetizing, NinetyFiveBytesWithEncryption) {
+    power({{"EE", 1}, {"RO", 0xFF}}, {{"EE", 1}});
+    send(std::string(100, 'x'));
+    run(400 * ms);
+    ASSERT_EQ(packets.size(), 2u);
+    EXPECT_EQ(packets[0].bytes.size(), 95u);
+    EXPECT_EQ(packets[1].bytes.size(), 5u);
+}
+
+TEST_F(Buffers, OnePacketIsInFlightAtATime) {
+    power();
+    send(std::string(200, 'x'));
+    EXPECT_EQ(a->counters().packetsSent, 1u);
+    run(RfChannel::airTimeNs(100) + 1000);
+    EXPECT_EQ(a->counters().packetsSent, 2u);
+}
+
+TEST_F(Buffers, CTSGoesOffWith17BytesLeftAndComesBackWith34Free) {
+    power({{"BD", 7}});
+    air.weather.delayNs = 100 * ms;
+    send(std::string(100, 'x')); // in flight; the buffer is empty
+    send(std::string(184, 'y')); // 18 are left
+    EXPECT_TRUE(lineA.cts());
+    send("y");
+    EXPECT_FALSE(lineA.cts());
+    run(110 * ms); // the first has arrived, a hundred more leave: 85 are held
+    EXPECT_TRUE(lineA.cts());
+
+    // The other edge: 169 held are 33 free, 168 are 34.
+    power({{"BD", 7}, {"EE", 1}});
+    air.weather.delayNs = 100 * ms;
+    send(std::string(95, 'x'));
+    send(std::string(202, 'y'));
+    EXPECT_FALSE(lineA.cts());
+    run(106 * ms);
+    EXPECT_TRUE(lineA.cts()) << "95 left: 107 held";
+}
+
+TEST_F(Buffers, TheInputBufferHolds202BytesAndCountsWhatIsLost) {
+    power();
+    air.weather.delayNs = 50 * ms;
+    send(std::string(100, 'x'));
+    send(std::string(202, 'y'));
+    EXPECT_EQ(a->counters().overflow, 0u);
+    send("z");
+    EXPECT_EQ(a->counters().overflow, 1u);
+    run(400 * ms);
+    EXPECT_EQ(heardB(), std::string(100, 'x') + std::string(202, 'y'));
+}
+
+TEST_F(Buffers, FTMovesTheCTSThreshold) {
+    power({{"FT", 0x20}, {"RO", 0xFF}});
+    send(std::string(31, 'x'));
+    EXPECT_TRUE(lineA.cts());
+    send("x");
+    EXPECT_FALSE(lineA.cts());
+}
+
+TEST_F(Buffers, WithoutD7CTSStaysOn) {
+    power({{"D7", 0}});
+    air.weather.delayNs = 50 * ms;
+    send(std::string(300, 'x'));
+    EXPECT_TRUE(lineA.cts());
+}
+
+TEST_F(Buffers, TheOutputBufferHolds202BytesAndTheSenderTriesAgain) {
+    power();
+    lineB.paused = true;
+    send(std::string(100, 'x'));
+    run(120 * ms);
+    send(std::string(100, 'y'));
+    run(120 * ms);
+    send(std::string(100, 'z'));
+    run(200 * ms);
+    EXPECT_EQ(b->counters().packetsDropped, 4u) << "the first try and three more";
+    EXPECT_EQ(packets.back().outcome, RfChannel::Outcome::NoRoom);
+    EXPECT_EQ(a->parameter("EA"), 3u);
+    lineB.paused = false;
+    run(ms);
+    EXPECT_EQ(heardB(), std::string(100, 'x') + std::string(100, 'y'));
+}
+
+// A host with a UART of its own, bit by bit, `error` off the modem's rate.
+class Wire : public ::testing::Test {
+protected:
+    void connect(XBee::Options options) {
+        options.set["MY"] = 1;
+        options.set["DL"] = 2;
+        modem_ = std::make_unique<XBee>(pins_, air_, options);
+    }
+    void step(uint64_t until) {
+        for (; now_ < until; now_ += 200) {
+            air_.advance(now_);
+            modem_->advance(now_);
+            watch();
+        }
+    }
+    void send(const std::string& text, double baud) {
+        double at = static_cast<double>(now_);
+        for (char c : text)
+            for (int bit = 0; bit < 10; ++bit) {
+                bool level = bit == 0 ? false : bit == 9 ? true : (c >> (bit - 1) & 1);
+                step(static_cast<uint64_t>(at));
+                pins_.setTxd(level, now_);
+                at += 1e9 / baud;
+            }
+        step(static_cast<uint64_t>(at));
+    }
+    void watch() {
+        if (pins_.rxd() != level_) {
+            level_ = pins_.rxd();
+            edges_.push_back(now_);
+        }
+    }
+    uint64_t now_ = 0;
+    RfChannel air_{testSeed()};
+    UartPins pins_;
+    std::unique_ptr<XBee> modem_;
+    bool level_ = true;
+    std::vector<uint64_t> edges_;
+};
+
+class BaudTolerance : public Wire, public ::testing::WithParamInterface<double> {};
+
+TEST_P(BaudTolerance, BytesAreReadWithin4Percent) {
+    XBee::Options options;
+    options.set["BD"] = 7;
+    connect(options);
+    std::string text = "U\x01\xFF\x80 tolerance \x7F";
+    send(text, modem_->baud() * (1 + GetParam()));
+    std::string sent;
+    air_.onPacket([&](uint64_t, const RfPacket& p, RfChannel::Outcome) {
+        sent.assign(p.bytes.begin(), p.bytes.end());
+    });
+    step(now_ + 20'000'000);
+    EXPECT_EQ(modem_->counters().framingErrors, 0u);
+    EXPECT_EQ(sent, text);
+}
+INSTANTIATE_TEST_SUITE_P(Rates, BaudTolerance, ::testing::Values(-0.04, -0.02, 0.0, 0.02, 0.04));
+
+TEST_F(Wire, SevenPercentIsTooFar) {
+    XBee::Options options;
+    options.set["BD"] = 7;
+    connect(options);
+    send(std::string(50, '\x0F'), modem_->baud() * 0.93);
+    step(now_ + 20'000'000);
+    EXPECT_GT(modem_->counters().framingErrors, 0u);
+}
+
+TEST_F(Wire, RepliesHaveTheModemsRateAndBDChangesAfterTheOK) {
+    XBee::Options options;
+    options.set = {{"BD", 6}, {"GT", 2}};
+    connect(options);
+    step(3'000'000);
+    send("+++", 57600);
+    step(now_ + 3'000'000);
+    ASSERT_TRUE(modem_->inCommandMode());
+    step(now_ + 2'000'000);
+    send("ATBD7\rATCN\r", 57600); // both OKs at the old rate
+    step(now_ + 3'000'000);
+    EXPECT_NEAR(modem_->baud(), 111111, 1);
+    // 'K' and 'O' have edges one bit apart: the shortest distance is a bit time.
+    uint64_t shortest = ~uint64_t(0);
+    for (size_t i = 1; i < edges_.size(); ++i)
+        shortest = std::min(shortest, edges_[i] - edges_[i - 1]);
+    EXPECT_NEAR(static_cast<double>(shortest), 1e9 / 57600, 500);
+    send("data", 111111);
+    std::string sent;
+    air_.onPacket([&](uint64_t, const RfPacket& p, RfChannel::Outcome) {
+        sent.assign(p.bytes.begin(), p.bytes.end());
+    });
+    step(now_ + 20'000'000);
+    EXPECT_EQ(sent, "data") << "and the new rate holds";
+}
+
+TEST_F(Wire, WithD6TheModemWaitsForRTS) {
+    XBee::Options options;
+    options.set = {{"BD", 7}, {"GT", 2}, {"D6", 1}};
+    connect(options);
+    step(3'000'000);
+    pins_.setRts(false, now_);
+    send("+++", 111111);
+    step(now_ + 5'000'000);
+    EXPECT_TRUE(modem_->inCommandMode());
+    EXPECT_TRUE(edges_.empty());
+    pins_.setRts(true, now_);
+    step(now_ + 5'000'000);
+    EXPECT_FALSE(edges_.empty());
+}
+
+TEST_F(Wire, WithoutD6TheModemTakesNoNoticeOfRTS) {
+    XBee::Options options;
+    options.set = {{"BD", 7}, {"GT", 2}};
+    connect(options);
+    step(3'000'000);
+    pins_.setRts(false, now_);
+    send("+++", 111111);
+    step(now_ + 5'000'000);
+    EXPECT_FALSE(edges_.empty());
+}
+
+TEST_F(Reset, APulseOf200NsResets) {
+    power();
+    enter();
+    command("ATMY66");
+    command("ATCN");
+    a->resetPin(true, now);
+    a->resetPin(false, now + 199);
+    EXPECT_EQ(a->parameter("MY"), 0x66u) << "too short";
+    now += 1000;
+    a->resetPin(true, now);
+    a->resetPin(false, now + 200);
+    EXPECT_EQ(a->parameter("MY"), 1u);
+}
+
+TEST_F(Reset, BootTimeIsAParameter) {
+    power();
+    for (uint64_t boot : {50 * ms, 500 * ms}) {
+        XBee::Options options;
+        options.bootNs = boot;
+        options.set = {{"MY", 1}, {"DL", 2}};
+        a.reset();
+        a = std::make_unique<XBee>(lineA, air, options);
+        run(ms);
+        a->resetPin(true, now);
+        run(1000);
+        a->resetPin(false, now);
+        run(boot - ms);
+        send("x");
+        EXPECT_EQ(a->counters().bytesFromHost, 0u);
+        run(2 * ms);
+        send("x");
+        EXPECT_EQ(a->counters().bytesFromHost, 1u);
+    }
+}
+
+} // namespace

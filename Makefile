@@ -47,7 +47,7 @@ run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground st
 	    $(if $(UCOS2),--firmware "$(BUILD)/firmware/uav_ucos2.elf")
 
 # What the sanitized build covers: the firmware's layers and their peers.
-SANITIZED := test_os test_link test_icec icec_server icec_client ice_cpp_client
+SANITIZED := test_os test_os_cases test_link test_icec icec_server icec_client ice_cpp_client
 test: build ## run all tests; firmware, models and IceC once more with sanitizers
 	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error \
 	    $(if $(LABEL),-L '$(LABEL)') $(if $(NAME),-R '$(NAME)')
@@ -56,19 +56,21 @@ ifeq ($(LABEL)$(NAME),)
 	    -DROOMS="bus;slice;sw;hdl;ip;testbench;tests" >/dev/null
 	@ninja -C build/sanitized -j $(JOBS) $(SANITIZED)
 	@SEED=$(SEED) ctest --test-dir build/sanitized -j $(JOBS) --output-on-failure --no-tests=error \
-	    -R '^(test_os|test_link|test_icec|interop)'
+	    -R '^(test_os[.]|test_os_cases|test_link|test_icec|interop)'
 endif
 
 mutants: $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect its test to fail (BLOCK=bus for one block)
 	@tests/mutants/run.sh --jobs $(JOBS) $(if $(BLOCK),--block '$(BLOCK)')
 
-bench: $(BUILD)/build.ninja ## measure simulator and Slice compiler, write build/bench/*.json
+bench: $(BUILD)/build.ninja ## measure simulator, firmware and Slice compiler, write build/bench/*.json
 	@ninja -C $(BUILD) -j $(JOBS) measure_simulator
+	@ninja -C $(BUILD) -j $(JOBS) measure_firmware
 	@ninja -C $(BUILD) -j $(JOBS) slice2c
 	@tests/slice/bench.sh $(BUILD)/slice/slice2c build/bench/slice.json
 
-firmware: $(BUILD)/build.ninja ## the firmware for the STM32F2: ELF, map, sizes in build/main/firmware
+firmware: $(BUILD)/build.ninja ## the firmware for the STM32F2: ELF and map in build/main/firmware, table of flash, RAM and stacks
 	@ninja -C $(BUILD) -j $(JOBS) firmware
+	@sw/target/table.sh $(BUILD)/firmware/uav.map $(BUILD)/sw/target/uav.arm build/firmware.json
 
 gdb: $(BUILD)/build.ninja ## debug the firmware's ARM binary against the RTL with gdb-multiarch
 	@ninja -C $(BUILD) -j $(JOBS) mission

@@ -28,16 +28,17 @@ int OS_PriorityTaken(U8 priority) {
 }
 
 U8 OsSet_first(const OsSet *set) {
-    U8 base = set->word[0] ? 0U : 32U;
-    U32 bits = set->word[base >> 5];
-    U8 n = 0;
+    U8 n = set->word[0] ? 0U : 32U;
+    U32 bits = set->word[n >> 5];
+    U8 half;
     if (bits == 0)
         return OS_LOWEST_PRIO + 1U;
-    while ((bits & 1U) == 0) {
-        bits >>= 1;
-        ++n;
-    }
-    return (U8)(base + n);
+    for (half = 16U; half; half >>= 1)
+        if (!(bits & ((1U << half) - 1U))) {
+            bits >>= half;
+            n = (U8)(n + half);
+        }
+    return n;
 }
 
 static void idleTask(void *argument) {

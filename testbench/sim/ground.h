@@ -31,6 +31,7 @@ public:
         Link_init(link_.get(), &port, this, 1440);
         Link_start(link_.get(), us());
         replies.clear();
+        backlog_ = 0;
         running = true;
     }
     uint64_t advance(uint64_t now) {
@@ -70,8 +71,11 @@ public:
         m.push_back(1); // encoding 1.1
         m.push_back(1);
         m.insert(m.end(), parameters.begin(), parameters.end());
-        m[10] = static_cast<uint8_t>(m.size());
-        Link_send(link_.get(), 0, m.data(), static_cast<U32>(m.size()), 0, us());
+        for (int i = 0; i < 4; ++i)
+            m[static_cast<size_t>(10 + i)] = static_cast<uint8_t>(m.size() >> (8 * i));
+        U32 size = static_cast<U32>(m.size());
+        if (Link_send(link_.get(), 0, m.data(), size, size, us()) == LINK_OK)
+            backlog_ += size;
     }
     void ping(int id, const std::string& object) { call(id, object, "ice_ping", 2); }
     void noise(const std::vector<uint8_t>& bytes) { line_.send(bytes, now_); }
@@ -79,6 +83,8 @@ public:
     std::map<int, int> replies;                   // request id to reply status
     std::map<int, std::vector<uint8_t>> messages; // request id to the whole reply
     int delivered = 0, unknown = 0;               // what became of messages
+    uint64_t deliveredBytes = 0;                  // of messages that were acknowledged
+    size_t backlog() const { return backlog_; }   // bytes of messages that are not yet delivered
     bool validated = false, running = true;
 
 private:
@@ -101,8 +107,11 @@ private:
         return 0;
     }
     static void nothing(void*, int, int) {}
-    static void outcome(void* context, int, U32, Link_Outcome what) {
+    static void outcome(void* context, int, U32 size, Link_Outcome what) {
         Ground& g = self(context);
+        g.backlog_ -= size;
+        if (what == LINK_DELIVERED)
+            g.deliveredBytes += size;
         ++(what == LINK_DELIVERED ? g.delivered : g.unknown);
     }
     static void state(void* context, Link_State) { self(context).validated = false; }
@@ -112,6 +121,7 @@ private:
     std::unique_ptr<XBee> modem_;
     std::unique_ptr<Link> link_;
     uint64_t now_ = 0, nextPoll_ = 0;
+    size_t backlog_ = 0;
 };
 
 #endif

@@ -4,6 +4,7 @@
 // child, the program that uses that pty.
 
 #include "camera.h"
+#include "app.h"
 #include "m3_machine.h"
 #include "mark_file.h"
 #include "soc_model.h"
@@ -228,7 +229,7 @@ int simulate(const Options& o) {
         if (!o.quiet)
             report(machine);
     } else {
-        UavMachine(soc, poll).run();
+        UavMachine(soc, poll, simulatedFirmware()).run();
     }
     child.stop();
     double worked = static_cast<double>(pace.workedNs()) / 1e9;

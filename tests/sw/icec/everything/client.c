@@ -152,7 +152,7 @@ static int modes(void) {
     Ice_Batch batch;
     Ice_Byte batchData[500];
     Ice_String text;
-    Ice_Int before, after, i;
+    Ice_Int before, after, released, i;
     CHECK(Everything_TesterPrx_sum(&tester, &before) == ICE_OK);
     Ice_ObjectPrx_ice_oneway(&other);
     for (i = 0; i < 20; ++i)
@@ -162,7 +162,10 @@ static int modes(void) {
     for (i = 0; i < 20; ++i)
         CHECK(Everything_TesterPrx_note(&other, 1000) == ICE_OK);
     CHECK(Ice_ObjectPrx_ice_flushBatchRequests(&other) == ICE_OK);
-    CHECK(Everything_TesterPrx_sum(&tester, &after) == ICE_OK && after - before == 20190);
+    do /* the server's threads may overtake each other: then one is missing for a while */
+        CHECK(Everything_TesterPrx_sum(&tester, &after) == ICE_OK);
+    while (after - before < 20190);
+    CHECK(after - before == 20190);
 
     other = tester;
     Ice_ObjectPrx_ice_context(&other, context);
@@ -179,7 +182,8 @@ static int modes(void) {
         calls[i].completed = completed;
         CHECK(Everything_TesterPrx_later_async(&tester, i - 1, &calls[i]) == ICE_OK);
     }
-    CHECK(Everything_TesterPrx_release(&tester, &i) == ICE_OK && i == 3);
+    for (released = 0; released < 3; released += i) /* likewise */
+        CHECK(Everything_TesterPrx_release(&tester, &i) == ICE_OK);
     while (finished < 3)
         CHECK(Ice_Communicator_poll(&ic, 10000) == ICE_OK);
     CHECK(calls[0].status == ICE_USER_EXCEPTION && calls[1].result == 0 && calls[2].result == 2);

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """peer: stock ZeroC Ice in Python for Everything.ice.
 
-peer.py client [slow] PORT   every operation against the server on PORT; `slow`: fewer, smaller calls
+peer.py client [slow] PORT|ENDPOINT   every operation against the server on PORT; `slow`: fewer, smaller calls
 peer.py lost PORT            a connection that is cut: calls fail cleanly and the next ones work
 peer.py server               prints its port
 peer.py strings              reads proxies, prints what Ice makes of them
@@ -38,7 +38,7 @@ class WatcherI(E.Watcher):
 
 
 def client(ic, port, slow):
-    where = ":tcp -h 127.0.0.1 -p " + port
+    where = port if port.startswith(":") else ":tcp -h 127.0.0.1 -p " + port
     for encoding in ("1.1", "1.0"):
         base = ic.stringToProxy("tester -e %s%s" % (encoding, where))
         t = E.TesterPrx.checkedCast(base)
@@ -280,7 +280,7 @@ for key, value in (("Ice.Warn.Dispatch", "0"), ("Ice.Warn.Connections", "0"), ("
                    ("Ice.ThreadPool.Server.Size", "4"), ("Ice.ThreadPool.Client.Size", "2"),
                    ("Ice.Plugin.IceSSL", "IceSSL:createIceSSL")):
     data.properties.setProperty(key, value)
-with Ice.initialize(data) as communicator:
+with Ice.initialize(sys.argv, data) as communicator:
     role = sys.argv[1]
     if role == "client":
         client(communicator, sys.argv[-1], "slow" in sys.argv)

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * boot: starts a program that is one main task, the radio task, and the modem's interrupt.
+ */
+#include "map_regs.h"
+#include "paper.h"
+#include "radio.h"
+#include "system_regs.h"
+#include "uav_private.h"
+
+#define STACK_WORDS 1024
+
+static OS_STK stack[STACK_WORDS], radioStack[STACK_WORDS];
+static U8 irqEnabled;
+
+void PAPER_irqHandler(void) {
+    U32 lines = FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_LO);
+    if (lines >> MAP_SLOT_MODEM & 1U) {
+        (void)Radio_interrupt();
+        (void)OSSemPost(uav_radioWork);
+    }
+}
+
+int PAPER_irqEnabled(void) {
+    return irqEnabled;
+}
+
+void PAPER_useRadio(Ice_CommunicatorPtr ic) {
+    Ice_Communicator_setOs(ic, &uav_iceOs, 0);
+    UAV_useRadio(ic);
+    (void)OSTaskCreate(UAV_radioTask, 0, &radioStack[STACK_WORDS - 1], PRIO_RADIO);
+}
+
+void PAPER_start(const Fsmc_Port *port, void *context) {
+    irqEnabled = 0;
+    if (FSMC_init(port, context) != FSMC_OK)
+        return;
+    UAV_initRadio();
+    UAV_initIceOs();
+    irqEnabled = 1;
+    (void)OSTaskCreate(appMainTask, 0, &stack[STACK_WORDS - 1], PRIO_SERVER);
+}

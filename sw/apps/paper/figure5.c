@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Figure 5 of the paper, upper half: the server on the UAV, as printed but for what is marked:
+ *   [1] servants get `self`, so that two cores of a kind can be told apart, and `current`; they return
+ *       a status; Figure 3 calls the operation setParameterA
+ *   [2] FSMC_write(...) filled in: word 1 of the vision core's slot is its threshold, word 0 starts it
+ *   [3] xbeeInit is called by the radio task (uav_radio.c, with the same xbeeConf), which also repeats
+ *       it when the modem has lost its settings
+ *   [4] XBeeATEndpoint_init(&ic, "xbee-at"), with the link that it stands on, and that link's task
+ *   [5] Figure 3's Vehicle is served as well
+ * getResult, which the figure leaves out ("[...]"), follows the same pattern.
+ */
+#include "Figure3.h"
+#include "fsmc.h"
+#include "map_regs.h"
+#include "paper.h"
+#include "uav.h"
+#include "ucos_ii.h"
+#include "vision_regs.h"
+
+Ice_Status Autopilot_HwProcessingEngine_setParameterA(Autopilot_HwProcessingEnginePtr self, /* [1] */
+                                                      Ice_Short value,
+                                                      const Ice_Current *current) {
+    (void)self, (void)current;
+    FSMC_write(MAP_SLOT_VISION, VISION_THRESHOLD, (U32)value); /* [2] */
+    return ICE_OK;
+}
+
+Ice_Status Autopilot_HwProcessingEngine_startProcessing(Autopilot_HwProcessingEnginePtr self,
+                                                        const Ice_Current *current) {
+    (void)self, (void)current;
+    FSMC_write(MAP_SLOT_VISION, VISION_FRAME_BASE, UAV_FRAME);
+    FSMC_write(MAP_SLOT_VISION, VISION_FRAME_SIZE, 96U | 64U << 16);
+    FSMC_write(MAP_SLOT_VISION, VISION_RESULT_BASE, UAV_RESULT);
+    FSMC_write(MAP_SLOT_VISION, VISION_RESULT_MAX, UAV_RESULT_MAX);
+    FSMC_write(MAP_SLOT_VISION, VISION_CONTROL, VISION_CONTROL_START_MASK);
+    return ICE_OK;
+}
+
+Ice_Status Autopilot_HwProcessingEngine_getResult(Autopilot_HwProcessingEnginePtr self,
+                                                  Autopilot_ResultType *res,
+                                                  const Ice_Current *current) {
+    (void)self, (void)current;
+    res->found = (Ice_Int)FSMC_read(MAP_SLOT_VISION, VISION_FOUND);
+    return ICE_OK;
+}
+
+Ice_Status Autopilot_Vehicle_isAlive(Autopilot_VehiclePtr self, Ice_Short sessionId,
+                                     Ice_Bool *result, const Ice_Current *current) {
+    (void)self, (void)sessionId, (void)current;
+    *result = 1;
+    return ICE_OK;
+}
+
+void appMainTask(void *argument) {
+    static Ice_Communicator ic;
+    static Ice_ObjectAdapter adapter;
+    static Autopilot_HwProcessingEngine servant;
+    static Autopilot_Vehicle vehicle;
+    (void)argument;
+
+    /* [3]: xbeeInit(&xbeeConf); */
+    Ice_initialize(&ic);
+    PAPER_useRadio(&ic); /* [4] */
+
+    Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "Adapter", "xbee-at", &adapter);
+
+    Ice_ObjectAdapter_activate(&adapter);
+    Autopilot_HwProcessingEngine_init(&servant);
+    Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&servant, "hwengine1");
+    Autopilot_Vehicle_init(&vehicle); /* [5] */
+    Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&vehicle, "uav");
+
+    Ice_Communicator_waitForShutdown(&ic);
+    for (;;)
+        OSTimeDly(OS_TICKS_PER_SEC);
+}

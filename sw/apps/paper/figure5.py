@@ -1,0 +1,41 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Figure 5 of the paper, lower half: the client on the ground, as printed but for what is marked.
+
+[1] the figure has HwProcessEnginePrx and uncheckCast
+[2] the proxy says which serial port the ground's modem is on, and the UAV's address
+[3] results need a twoway proxy: "-o" is Ice's oneway flag
+"""
+
+import os
+import sys
+
+import Ice
+
+Ice.loadSlice(os.path.join(os.path.dirname(os.path.abspath(__file__)), "Figure3.ice"))
+import Autopilot  # noqa: E402
+
+
+class Client(Ice.Application):
+    def run(self, args):
+        where = ":xbee-at -d %s -a 0x0001" % args[1]  # [2]
+
+        ic = self.communicator()
+        proxy = ic.stringToProxy("hwengine1 -o" + where)
+        hwobject = Autopilot.HwProcessingEnginePrx.uncheckedCast(proxy)  # [1]
+
+        paramValue = 0
+
+        hwobject.setParameterA(paramValue)
+        hwobject.startProcessing()
+        twoway = Autopilot.HwProcessingEnginePrx.checkedCast(ic.stringToProxy("hwengine1" + where))  # [3]
+        found = twoway.getResult().found
+        while found == 0:  # the core is still at work
+            found = twoway.getResult().found
+        print("figure 5: %d corners at threshold %d" % (found, paramValue))
+        return 0
+
+
+if len(sys.argv) < 2:
+    sys.exit("usage: figure5.py DEVICE [--Ice.Plugin.XBeeAT=FOLDER/xbeeat:createXBeeAT]")
+sys.exit(Client().main(sys.argv))

@@ -12,7 +12,8 @@ void appMainTask(void *argument) {
     (void)argument;
     Ice_initialize(&ic);
     PAPER_useRadio(&ic);
-    if (Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "Adapter", "xbee-at", &adapter) == ICE_OK &&
+    if (Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "Adapter", "xbee-at", &adapter) ==
+            ICE_OK &&
         Tester_serve(&adapter) == ICE_OK)
         Ice_Communicator_waitForShutdown(&ic);
     for (;;)

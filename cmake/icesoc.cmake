@@ -52,6 +52,7 @@ function(icesoc_test name)
     target_link_libraries(clock_listener PRIVATE GTest::gtest)
   endif()
   add_executable(${name} ${A_SOURCES} $<TARGET_OBJECTS:clock_listener>)
+  set_property(GLOBAL APPEND PROPERTY ICESOC_TEST_PROGRAMS ${name})
   target_compile_options(${name} PRIVATE ${HOST_WARNINGS})
   target_link_libraries(${name} PRIVATE ${A_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
   gtest_discover_tests(${name} TEST_PREFIX "${name}." EXTRA_ARGS ${A_ARGS}

@@ -25,6 +25,13 @@ nlohmann-json3-dev register descriptions, reports
 libfmt-dev text formatting
 libcli11-dev command lines
 libpugixml-dev reads JUnit results
+lcov coverage pages
+chromium opens the report pages in tests
+git finds what changed
+slurmctld regression on a cluster, tested on loopback
+slurmd its node
+slurm-client its commands
+munge its authentication
 libstb-dev reads and writes pictures
 libmcpp-dev preprocessor of the Slice compiler
 libzeroc-ice-dev ZeroC Ice for C++

@@ -13,4 +13,9 @@ regress: build ## run the regression, write build/regress/report.html (NAME= BLO
 	    --launcher $(LAUNCHER) $(if $(NAME),--name '$(NAME)') $(if $(BLOCK),--block '$(BLOCK)') \
 	    $(if $(LABEL),--label '$(LABEL)') $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed)
 
-.PHONY: regress
+# Gates: testbench/regress/coverage_gates.json
+coverage: $(BUILD)/build.ninja ## lines, branches and toggles that the tests reach, write build/coverage/html
+	@ninja -C $(BUILD) -j $(JOBS) coverage
+	@testbench/regress/coverage.sh $(BUILD) $(JOBS)
+
+.PHONY: regress coverage

@@ -20,7 +20,10 @@
 template <class Module> class Bench {
 public:
     Bench() : context_(new VerilatedContext), observer_(*context_), top_(new Module(context_.get())) {}
-    ~Bench() { top_->final(); }
+    ~Bench() {
+        top_->final();
+        observer_.finish();
+    }
     Bench(const Bench&) = delete;
     Bench& operator=(const Bench&) = delete;
 

@@ -32,7 +32,8 @@ public:
         name_ = name ? name : "";
 #endif
     }
-    ~Observer() {
+    // Before the model is destroyed: it owns the counters.
+    void finish() {
 #ifdef ICESOC_TRACE
         if (wave_)
             wave_->close();

@@ -71,27 +71,33 @@ std::vector<Result> runHere(const std::vector<Test>& tests, const RunOptions& op
     fs::remove(junit);
     std::regex ended(R"(^ *\d+/\d+ Test +#\d+: (\S+) \.*(.*?) +([0-9.]+) sec.*)");
     unsigned done = 0;
+    std::map<std::string, std::string> ends; // CTest's words: "***Exception: SegFault"
     Output out = run({"ctest", "--test-dir", options.build, "-I", fs::absolute(list), "-j", std::to_string(options.jobs),
                       "--output-junit", junit, "--test-output-size-passed", "4096", "--test-output-size-failed",
                       "200000"},
                      {{"SEED", options.seed}}, [&](const std::string& line) {
                          std::smatch match;
-                         if (!options.onEnd || !std::regex_match(line, match, ended))
+                         if (!std::regex_match(line, match, ended))
                              return;
                          Result result;
                          result.name = match[1];
                          std::string how = match[2];
+                         ends[result.name] = how;
                          result.status = how.find("Passed") != std::string::npos    ? "passed"
                                          : how.find("Skipped") != std::string::npos ? "skipped"
                                                                                     : "failed";
                          result.seconds = std::stod(match[3]);
                          result.seed = options.seed;
-                         options.onEnd(result, ++done, static_cast<unsigned>(tests.size()));
+                         if (options.onEnd)
+                             options.onEnd(result, ++done, static_cast<unsigned>(tests.size()));
                      });
     if (!fs::exists(junit))
         throw std::runtime_error("ctest gave no results:\n" + out.text);
     auto results = readJUnit(junit);
-    for (Result& result : results)
+    for (Result& result : results) {
         result.seed = options.seed;
+        if (result.status == "failed" && result.log.find_first_not_of(" \n") == std::string::npos)
+            result.log = ends[result.name]; // a crash says nothing itself
+    }
     return results;
 }

@@ -4,11 +4,13 @@
 
 #include "runner.h"
 #include "shell.h"
-#include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 #include <stdexcept>
+#include <thread>
 
 namespace fs = std::filesystem;
 
@@ -29,33 +31,66 @@ void writeJob(const std::string& path, const std::vector<Test>& tests, const Run
         throw std::runtime_error("cannot write " + path + ": is the disk full?");
 }
 
+volatile std::sig_atomic_t interrupted = 0;
+
+// What a task left, or nothing yet.
+bool resultOf(const std::string& junit, Result& result) {
+    if (!fs::exists(junit))
+        return false;
+    try {
+        auto one = readJUnit(junit);
+        if (one.size() != 1)
+            return false;
+        result = one[0];
+        return true;
+    } catch (const std::runtime_error&) { // half written
+        return false;
+    }
+}
+
 } // namespace
 
 std::vector<Result> runSlurm(const std::vector<Test>& tests, const RunOptions& options) {
     std::string script = options.out + "/slurm.sh";
     writeJob(script, tests, options);
+    auto junit = [&](size_t i) { return fmt::format("{}/slurm-{}.xml", options.out, i); };
     for (size_t i = 0; i < tests.size(); ++i)
-        fs::remove(fmt::format("{}/slurm-{}.xml", options.out, i));
-    Output out = run({"sbatch", "--wait", "--chdir", fs::absolute(options.out),
-                      "--output", "slurm-%a.log", fmt::format("--array=0-{}", tests.size() - 1), script});
-    std::vector<Result> results;
-    for (size_t i = 0; i < tests.size(); ++i) {
-        std::string junit = fmt::format("{}/slurm-{}.xml", options.out, i);
-        Result result;
-        if (fs::exists(junit)) {
-            auto one = readJUnit(junit);
-            if (one.size() == 1)
-                result = one[0];
+        fs::remove(junit(i));
+    Output job = run({"sbatch", "--parsable", "--chdir", fs::absolute(options.out), "--output", "slurm-%a.log",
+                      fmt::format("--array=0-{}", tests.size() - 1), script});
+    if (job.status != 0)
+        throw std::runtime_error("sbatch: " + job.text);
+    std::string id = job.text.substr(0, job.text.find_first_of(";\n"));
+    auto before = std::signal(SIGINT, [](int) { interrupted = 1; });
+    std::vector<Result> results(tests.size());
+    std::vector<bool> known(tests.size());
+    unsigned done = 0;
+    for (bool running = true; running;) {
+        // Asked before the files are looked at: a job that is gone has left all it will leave.
+        running = run({"squeue", "--noheader", "--jobs", id}).text.find(id) != std::string::npos;
+        if (interrupted) {
+            run({"scancel", id});
+            throw std::runtime_error("interrupted; job " + id + " is cancelled");
         }
-        if (result.name.empty()) { // the node died, or the job was cancelled: that is no pass
-            result.name = tests[i].name;
-            result.status = "failed";
-            result.log = "Slurm gave no result for this test.\n" + out.text;
+        for (size_t i = 0; i < tests.size(); ++i) {
+            if (known[i])
+                continue;
+            known[i] = resultOf(junit(i), results[i]);
+            if (!known[i] && !running) { // the node died, or somebody cancelled it: that is no pass
+                known[i] = true;
+                results[i].name = tests[i].name;
+                results[i].status = "failed";
+                results[i].log = "Slurm gave no result for this test; see " + options.out + fmt::format("/slurm-{}.log", i);
+            }
+            if (!known[i])
+                continue;
+            results[i].seed = options.seed;
+            if (options.onEnd)
+                options.onEnd(results[i], ++done, static_cast<unsigned>(tests.size()));
         }
-        result.seed = options.seed;
-        if (options.onEnd)
-            options.onEnd(result, static_cast<unsigned>(i + 1), static_cast<unsigned>(tests.size()));
-        results.push_back(std::move(result));
+        if (running)
+            std::this_thread::sleep_for(std::chrono::seconds(1));
     }
+    std::signal(SIGINT, before);
     return results;
 }

@@ -14,6 +14,7 @@ SocModel::SocModel(RfChannel& air, XBee::Options modemOptions)
 
 SocModel::~SocModel() {
     top_->final();
+    observer_.finish();
 }
 
 void SocModel::reset() {

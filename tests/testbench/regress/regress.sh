@@ -1,0 +1,123 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# regress.sh: the regression tool on a small project of its own, with tests that pass, fail, flicker and crash.
+# Usage: regress.sh case regress-binary work-folder cluster-script
+set -eu
+case=$1 regress=$2 work=$3 cluster=$4
+fail() {
+    echo "$case: $*" >&2
+    [ ! -f out.txt ] || cat out.txt >&2
+    exit 1
+}
+has() { grep -q -- "$1" "${2:-out.txt}" || fail "'$1' is not in ${2:-the output}"; }
+hasNot() { ! grep -q -- "$1" "${2:-out.txt}" || fail "'$1' is in ${2:-the output}"; }
+
+# A project: test_a passes, test_b fails alike for two seeds, test_c as the file `flicker` says, test_d crashes.
+rm -rf "$work"
+mkdir -p "$work/tests/room"
+cd "$work"
+git init -q . && git config user.email a@b && git config user.name a
+cat >CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(small NONE)
+enable_testing()
+add_subdirectory(tests/room)
+END
+cat >tests/room/CMakeLists.txt <<'END'
+set(t ${CMAKE_CURRENT_SOURCE_DIR}/t.sh)
+foreach(n a.One a.Two b.Bad c.Flicker d.Crash)
+  add_test(NAME test_${n} COMMAND ${t} ${n})
+  set_tests_properties(test_${n} PROPERTIES LABELS rtl)
+endforeach()
+add_test(NAME formal.thing COMMAND ${t} formal)
+set_tests_properties(formal.thing PROPERTIES LABELS formal)
+END
+cat >tests/room/t.sh <<'END'
+#!/bin/sh
+case $1 in
+b.Bad) echo "x.cpp:12: Failure"; echo "value $SEED is not 7 </script>"; exit 1 ;;
+c.Flicker) [ ! -e ../../../../flicker ] ;;
+d.Crash) kill -SEGV $$ ;;
+formal) echo "thing: bounded, 6 clocks"; echo "thing: proven, 12 clauses with 3 flops"; echo "thing: 2 covers reached" ;;
+esac
+END
+chmod +x tests/room/t.sh
+echo build >.gitignore
+cmake -S . -B build/main -G Ninja >/dev/null
+git add . && git commit -qm one
+run() { status=0; "$regress" "$@" >out.txt 2>&1 || status=$?; }
+
+case $case in
+results)
+    run --seed 5
+    [ $status -eq 1 ] || fail "exit status $status, not 1"
+    has "4 passed, 2 failed, 0 skipped"
+    has "make test NAME='^test_b\\\\.Bad\$\$' SEED=5"
+    has "value 5 is not 7" build/regress/failures/test_b.Bad-5.log
+    has 'failures="2"' build/regress/junit.xml
+    has "2 failed" build/regress/badge.svg
+    has "test_d.Crash" build/regress/summary.md
+    has "1 x  \*\*\*Exception: SegFault" # a crash without a word
+    hasNot "not 7 </script>" build/regress/report.html
+    [ "$(wc -c <build/regress/report.html)" -lt 2000000 ] || fail "the page is over 2 MB"
+    ;;
+selection)
+    run --block room --list && [ "$(wc -l <out.txt)" -eq 6 ] || fail "block room"
+    run --block thing --list && [ "$(cat out.txt)" = formal.thing ] || fail "block thing"
+    run --label formal --list && [ "$(cat out.txt)" = formal.thing ] || fail "label formal"
+    run --name One --list && [ "$(cat out.txt)" = test_a.One ] || fail "name One"
+    run --name nothing
+    [ $status -eq 2 ] || fail "exit status $status, not 2, where nothing is chosen"
+    has "labels: formal rtl"
+    run --build nowhere
+    [ $status -eq 2 ] || fail "exit status $status, not 2, without a build"
+    ;;
+again)
+    run
+    run --rerun-failed
+    has "2 tests, SEED=1"
+    run --changed
+    has "2 tests, SEED=1" # what passed has not changed
+    echo "# changed" >>tests/room/t.sh
+    run --changed
+    has "6 tests, SEED=1"
+    run --name 'a.One' --repeat 3 --seed 7
+    has "SEED=9"
+    has "3 passed, 0 failed"
+    ;;
+flaky)
+    run
+    hasNot Flaky
+    touch flicker
+    run
+    has "Flaky: test_c.Flicker"
+    has "test_c.Flicker" build/regress/summary.md
+    echo '{"damaged' >>build/regress/history.jsonl
+    run --name One
+    has "1 damaged lines"
+    [ $status -eq 0 ] || fail "a damaged history stops the run"
+    ;;
+slurm)
+    command -v slurmctld >/dev/null 2>&1 || PATH=$PATH:/usr/sbin
+    status=0
+    "$cluster" cluster "$regress" --launcher slurm --seed 3 >out.txt 2>&1 || status=$?
+    [ $status -eq 1 ] || fail "exit status $status, not 1"
+    has "4 passed, 2 failed, 0 skipped"
+    has "value 3 is not 7" build/regress/failures/test_b.Bad-3.log
+    ;;
+page)
+    run
+    chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$work/chromium" \
+        --virtual-time-budget=5000 --dump-dom "file://$work/build/regress/report.html" >dom.html 2>chromium.log ||
+        fail "chromium: $(tail -3 chromium.log)"
+    has '2 failed' dom.html
+    has 'id="results"' dom.html
+    has 'test_c.Flicker' dom.html
+    has 'class="dot dp"' dom.html
+    has '12 clauses with 3 flops' dom.html
+    has 'value 1 is not 7' dom.html
+    hasNot 'src="http\|href="http' build/regress/report.html # offline
+    ;;
+*) fail "no such case" ;;
+esac

@@ -64,6 +64,7 @@ mutants: $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect
 
 bench: $(BUILD)/build.ninja ## measure simulator, firmware and Slice compiler, write build/bench/*.json
 	@ninja -C $(BUILD) -j $(JOBS) measure_simulator
+	@ninja -C $(BUILD) -j $(JOBS) measure_speed
 	@ninja -C $(BUILD) -j $(JOBS) measure_firmware
 	@ninja -C $(BUILD) -j $(JOBS) slice2c
 	@tests/slice/bench.sh $(BUILD)/slice/slice2c build/bench/slice.json

@@ -1,0 +1,39 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# speed: clocks a second of Verilator, Icarus and GHDL on the same frames of the vision core, in one run.
+# Usage: speed.sh verilated-program ghdl generated-folder vision.v work-folder out.json vhdl-files...
+set -eu
+program=$1 ghdl=$2 gen=$3 core=$4 work=$5 out=$6
+shift 6
+here=$(dirname "$(readlink -f "$0")")
+mkdir -p "$work" "$(dirname "$out")"
+iverilog -g2005 -o "$work/speed.vvp" -I"$gen" -s speed_tb "$here/speed_tb.v" "$core"
+(cd "$work" && "$ghdl" -a --std=08 "$@" "$here/speed_tb.vhd" && "$ghdl" -e --std=08 speed_tb)
+
+# name frames command...: "name clocks seconds"; three times, the quickest counts
+measure() {
+    name=$1
+    shift
+    for run in 1 2 3; do
+        start=$(date +%s%N)
+        clocks=$("$@" 2>&1 | sed -n 's/.*clocks \([0-9]*\).*/\1/p')
+        end=$(date +%s%N)
+        [ -n "$clocks" ] || {
+            echo "speed: $name gave no result" >&2
+            exit 1
+        }
+        echo "$name $clocks $(((end - start) / 1000))"
+    done | sort -n -k3 | head -n 1
+}
+{
+    measure Verilator "$program" 200
+    measure Icarus vvp -n "$work/speed.vvp" +frames=2
+    (cd "$work" && measure GHDL "$ghdl" -r --std=08 speed_tb -gframes=2)
+} >"$work/figures"
+awk 'BEGIN { printf "{\"block\": \"vision, 256 x 64\", \"rows\": [" }
+    { rate = $2 * 1e6 / $3; if (NR == 1) first = rate
+      printf "%s\n  {\"simulator\": \"%s\", \"clocks\": %d, \"microseconds\": %d, \"clocks_per_second\": %d, \"ratio\": %.5f}", (NR == 1 ? "" : ","), $1, $2, $3, rate, rate / first
+      printf "%-10s %10.0f clocks/s  %8.5f of the first\n", $1, rate, rate / first >"/dev/stderr" }
+    END { print "\n]}" }' "$work/figures" >"$out"
+echo "$out"

@@ -76,7 +76,7 @@ module modem #(
     wire [3:0]  bd_now;
 
     reg         ready, reset_n, pulse_ends;
-    reg  [7:0]  framing_errors, overruns, retries;
+    reg  [7:0]  framing_errors, overruns, retries, unsents;
     reg  [1:0]  cts_sync;
 
     // AT sequencer
@@ -91,6 +91,10 @@ module modem #(
     // Rings and packets
     wire        packet_tx_valid, tx_sent, rx_push, rx_overrun;
     wire [7:0]  packet_tx_data;
+    // The packet blocks' side of the API frames; in the transparent mode the UART itself.
+    wire        body_valid, body_last, body_ready, in_valid, in_error, in_end, in_bad, silent;
+    wire [7:0]  body_data;
+    wire        unsent; // one cycle: the modem gave a packet up
     wire [4:0]  tx_free, rx_free;
     wire [3:0]  tx_next, tx_buffer, rx_next, rx_buffer;
     wire [6:0]  tx_bytes, rx_bytes;
@@ -121,7 +125,7 @@ module modem #(
     bus_wrapper #(
         .ID_VALUE (MODEM_ID_VALUE),
         .WORDS    (16'hFFF8),
-        .EVENTS   (6)
+        .EVENTS   (7)
     ) u_wrapper (
         .clk_i(clk_i), .rst_i(rst_i),
         .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
@@ -129,7 +133,7 @@ module modem #(
         .bus_error_o(bus_error_o),
         .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr),
         .reg_wdata_o(reg_wdata), .reg_rdata_i(reg_rdata),
-        .event_i({put && !put_ok, rx_overrun, at_failed, at_done, rx_push, tx_sent}),
+        .event_i({unsent, put && !put_ok, rx_overrun, at_failed, at_done, rx_push, tx_sent}),
         .irq_o(irq_o)
     );
 
@@ -173,18 +177,53 @@ module modem #(
         .free_o(rx_free)
     );
 
-    modem_tx u_tx (
+    generate
+        if (API != 0) begin : g_api
+            reg [15:0] target;
+            wire       frame_bad;
+            always @(posedge clk_i)
+                if (reg_write && reg_addr == MODEM_ADDR)
+                    target <= reg_wdata[MODEM_ADDR_TARGET_LSB +: 16];
+
+            modem_api_tx u_api_tx (
+                .clk_i(clk_i), .rst_i(rings_reset || configure), .target_i(target),
+                .valid_i(body_valid), .data_i(body_data), .last_i(body_last),
+                .bytes_i(tx_bytes), .ready_o(body_ready), .cts_i(cts_sync[1]),
+                .valid_o(packet_tx_valid), .data_o(packet_tx_data), .ready_i(tx_ready && !at_busy)
+            );
+            modem_api_rx u_api_rx (
+                .clk_i(clk_i), .rst_i(rst_i || !ready), .valid_i(rx_valid), .data_i(rx_data),
+                .error_i(rx_error), .silent_i(silent),
+                .valid_o(in_valid), .end_o(in_end), .bad_o(frame_bad), .unsent_o(unsent)
+            );
+            assign in_error = 1'b0;
+            assign in_bad   = frame_bad || !ready; // what a set-up cut off
+        end else begin : g_transparent
+            assign packet_tx_valid = body_valid;
+            assign packet_tx_data  = body_data;
+            assign body_ready      = tx_ready && !at_busy;
+            assign in_valid        = rx_valid && ready;
+            assign in_error        = rx_error && ready;
+            assign in_end          = 1'b0;
+            assign in_bad          = 1'b0;
+            assign unsent          = 1'b0;
+            wire unused_api = &{1'b0, body_last, silent, 1'b0};
+        end
+    endgenerate
+
+    modem_tx #(.API(API)) u_tx (
         .clk_i(clk_i), .rst_i(rings_reset), .enable_i(ready),
         .packet_valid_i(tx_waits), .packet_bytes_i(tx_bytes), .sent_o(tx_sent),
         .rd_valid_o(rd_valid), .rd_index_o(rd_index), .rd_done_i(rd_done), .rd_data_i(rd_data),
-        .tx_valid_o(packet_tx_valid), .tx_data_o(packet_tx_data), .tx_ready_i(tx_ready),
+        .tx_valid_o(body_valid), .tx_data_o(body_data), .tx_ready_i(body_ready), .tx_last_o(body_last),
         .cts_i(cts_sync[1])
     );
 
     modem_rx #(.API(API)) u_rx (
         .clk_i(clk_i), .rst_i(rings_reset), .tick_i(bit_tick),
-        .rx_valid_i(rx_valid && ready), .rx_data_i(rx_data), .rx_error_i(rx_error && ready),
-        .rx_end_i(1'b0), .rx_idle_i(rx_idle && !modem_rts_n_o), // a pause that was asked for ends no packet
+        .rx_valid_i(in_valid), .rx_data_i(rx_data), .rx_error_i(in_error),
+        .rx_end_i(in_end), .rx_bad_i(in_bad), .silent_o(silent),
+        .rx_idle_i(rx_idle && !modem_rts_n_o), // a pause that was asked for ends no packet
         .wr_valid_o(wr_valid), .wr_data_o(wr_data), .wr_index_o(wr_index), .wr_be_o(wr_be),
         .wr_ready_i(wr_ready), .wr_busy_i(wr_busy),
         .full_i(rx_free == 5'd0), .push_o(rx_push), .overrun_o(rx_overrun)
@@ -211,7 +250,7 @@ module modem #(
                                          at_busy || !reset_n, ready, 16'd0};
             MODEM_TX_STATE: reg_rdata = {20'd0, tx_next, 3'd0, tx_free};
             MODEM_RX_GET:   reg_rdata = {rx_waits, 19'd0, rx_buffer, 1'b0, rx_bytes};
-            MODEM_ERRORS:   reg_rdata = {8'd0, retries, overruns, framing_errors};
+            MODEM_ERRORS:   reg_rdata = {unsents, retries, overruns, framing_errors};
             MODEM_BAUD, MODEM_ADDR, MODEM_NET, MODEM_TX_BASE, MODEM_RX_BASE:
                             reg_rdata = word;
             default:        reg_rdata = 32'd0; // words that only act
@@ -242,6 +281,9 @@ module modem #(
         if (at_retried && retries != 8'hFF)
             retries <= retries + 8'd1;
 
+        if (unsent && unsents != 8'hFF)
+            unsents <= unsents + 8'd1;
+
         if (configure || reset_modem) begin
             ready     <= 1'b0;
             key_index <= 2'd0;
@@ -254,6 +296,7 @@ module modem #(
             framing_errors <= 8'd0;
             overruns       <= 8'd0;
             retries        <= 8'd0;
+            unsents        <= 8'd0;
         end
         if (rst_i) begin
             cts_sync   <= 2'b00;

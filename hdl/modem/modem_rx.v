@@ -20,6 +20,8 @@ module modem_rx #(
     input  wire [7:0] rx_data_i,
     input  wire       rx_error_i, // the packet under way ends here
     input  wire       rx_end_i,   // the packet is complete (API)
+    input  wire       rx_bad_i,   // it is to be dropped (API)
+    output wire       silent_o,   // 3.2 characters without a byte
     input  wire       rx_idle_i,
     // memory
     output wire       wr_valid_o,
@@ -48,12 +50,13 @@ module modem_rx #(
     wire       taken   = pending && !ending && (drop || wr_ready_i);
     wire [6:0] count   = wr_index_o + 7'd1;
     wire       silent  = silence[8];
-    wire       late    = (rx_valid_i || rx_error_i || rx_end_i) && pending && !taken && !deaf;
+    wire       late    = (rx_valid_i || rx_error_i || rx_end_i || rx_bad_i) && pending && !taken && !deaf;
     wire       done    = ending && !wr_busy_i;
     wire       longest = count == LONGEST || (API == 0 && !first && count == length);
-    wire       cut     = rx_error_i || (API == 0 && silent) || (API != 0 && rx_end_i);
+    wire       cut     = API == 0 ? rx_error_i || silent : rx_end_i || rx_bad_i;
 
     assign wr_valid_o = pending && !ending && !drop;
+    assign silent_o   = silent;
     assign push_o     = done && !dropping && !first;
 
     always @(posedge clk_i) begin
@@ -78,8 +81,11 @@ module modem_rx #(
             if (longest)
                 ending <= 1'b1;
         end
-        if (cut && (!pending || taken) && (!first || taken))
+        if (cut && (!pending || taken) && (!first || taken)) begin
             ending <= 1'b1;
+            if (API != 0 && rx_bad_i)
+                dropping <= 1'b1;
+        end
         if (done) begin
             ending     <= 1'b0;
             dropping   <= 1'b0;

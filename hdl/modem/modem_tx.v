@@ -7,7 +7,9 @@
 
 `default_nettype none
 
-module modem_tx (
+module modem_tx #(
+    parameter API = 0 // 1: frames end by themselves
+) (
     input  wire       clk_i,
     input  wire       rst_i,        // also drops the packet under way
     input  wire       enable_i,     // the modem is set up
@@ -24,6 +26,7 @@ module modem_tx (
     output wire       tx_valid_o,
     output reg  [7:0] tx_data_o,
     input  wire       tx_ready_i,   // one cycle a tick, eight a bit, while the line is idle
+    output wire       tx_last_o,    // the last byte of the packet
     input  wire       cts_i         // 1: the modem takes bytes
 );
     localparam [1:0] FETCH = 2'd0, SEND = 2'd1, REST = 2'd2;
@@ -33,9 +36,11 @@ module modem_tx (
     reg [8:0] rest; // ticks of silence
 
     wire last   = rd_index_o == packet_bytes_i;                // all its bytes are out
-    wire rested = (rest[8] && rest[6]) || packet_bytes_i == LONGEST; // 320 ticks
+    wire rested = (rest[8] && rest[6]) || packet_bytes_i == LONGEST ||
+                  API != 0; // 320 ticks
 
     assign rd_valid_o = state == FETCH && packet_valid_i && enable_i && !sent_o;
+    assign tx_last_o  = last;
     assign tx_valid_o = state == SEND && cts_i && enable_i;
 
     always @(posedge clk_i) begin
@@ -51,7 +56,7 @@ module modem_tx (
                 state <= last ? REST : FETCH;
             default: begin
                 rest <= rest + {8'd0, tx_ready_i};
-                if (tx_ready_i && rested) begin
+                if ((tx_ready_i || API != 0) && rested) begin
                     sent_o     <= 1'b1;
                     rd_index_o <= 7'd0;
                     state      <= FETCH;

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+//
+// modem_rig: the modem controller, its memory, the modem at its pins, the air, and a modem far
+// away.
+
+#ifndef MODEM_RIG_H
+#define MODEM_RIG_H
+
+#include "bench.h"
+#include "bus_master.h"
+#include "modem_regs.h"
+#include "npi_memory.h"
+#include "rf_channel.h"
+#include <gtest/gtest.h>
+
+// `clkNs`: period of the clock that the module's CLK_HZ says.
+template <class Module, uint64_t clkNs> class ModemRig : public ::testing::Test {
+protected:
+    static constexpr uint32_t txRing = 0x1000, rxRing = 0x2000;
+
+    void power(XBee::Options options) {
+        near_ = std::make_unique<XBee>(pins_, air_, options);
+        XBee::Options far;
+        far.name = "far";
+        far.set = {{"MY", 0x0000}, {"DL", 0x0001}, {"BD", 7}};
+        far_ = std::make_unique<XBee>(plain_, air_, far);
+        bench_.addModel([this] { sample(); }, [this] { drive(); });
+        bench_.reset();
+        bus_.write(MODEM_MASK, 0x7F);
+        bus_.write(MODEM_ADDR, 0x0000u << 16 | 0x0001u);
+        bus_.write(MODEM_TX_BASE, txRing);
+        bus_.write(MODEM_RX_BASE, rxRing);
+        bus_.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | 0x0C);
+    }
+
+    // GT of the modem and of the controller are short, so that tests are.
+    void configure(unsigned bd = 7, unsigned guardMs = 20) {
+        bus_.write(MODEM_BAUD, guardMs << MODEM_BAUD_GUARD_MS_LSB | bd);
+        bus_.write(MODEM_CONTROL, MODEM_CONTROL_CONFIGURE_MASK);
+        bench_.waitFor([&] { return bench_.top().irq_o; }, "the end of the set-up", 40'000'000);
+    }
+    uint32_t takeEvents() {
+        uint32_t events = bus_.read(MODEM_EVENT);
+        bus_.write(MODEM_EVENT, events);
+        return events;
+    }
+    void runMs(double ms) {
+        for (uint64_t end = bench_.cycles() + static_cast<uint64_t>(ms * 1e6 / clkNs);
+             bench_.cycles() < end;)
+            bench_.tick();
+    }
+    uint64_t now() const { return bench_.cycles() * clkNs; }
+    static XBee::Options quick(std::map<std::string, uint32_t> more = {}) {
+        XBee::Options options;
+        options.set = {{"GT", 20}};
+        for (auto& [letters, value] : more)
+            options.set[letters] = value;
+        return options;
+    }
+    void put(unsigned buffer, const std::vector<uint8_t>& packet) {
+        for (size_t i = 0; i < packet.size(); ++i)
+            memory_.setByte(txRing + 128 * buffer + static_cast<uint32_t>(i), packet[i]);
+        bus_.write(MODEM_TX_PUT, static_cast<uint32_t>(packet.size()));
+    }
+    // A packet as the link layer's: the first byte gives the length.
+    static std::vector<uint8_t> frame(unsigned size, uint8_t tag) {
+        std::vector<uint8_t> bytes(size, tag);
+        bytes[0] = static_cast<uint8_t>(size - 5);
+        return bytes;
+    }
+    std::vector<uint8_t> take() {
+        uint32_t get = bus_.read(MODEM_RX_GET);
+        std::vector<uint8_t> packet;
+        if (!(get & MODEM_RX_GET_VALID_MASK))
+            return packet;
+        for (uint32_t i = 0; i < (get & MODEM_RX_GET_BYTES_MASK); ++i)
+            packet.push_back(memory_.byte(rxRing + 128 * (get >> 8 & 0xFF) + i));
+        bus_.write(MODEM_RX_RELEASE, 1);
+        return packet;
+    }
+
+    Bench<Module> bench_;
+    BusMaster<Module> bus_{bench_};
+    NpiMemory<Module> memory_{bench_, 0.3, testSeed()};
+    RfChannel air_{testSeed()};
+    UartPins pins_;
+    HostLine plain_;
+    std::unique_ptr<XBee> near_, far_;
+    bool pinsIgnoreRts_ = false;
+    bool noise_ = false; // the line to the controller is held low
+
+private:
+    void sample() {
+        if (bench_.top().modem_txd_o != txd_) {
+            txd_ = bench_.top().modem_txd_o;
+            pins_.setTxd(txd_, now());
+        }
+        near_->resetPin(!bench_.top().modem_reset_n_o, now());
+        if (bench_.top().modem_rts_n_o != rtsN_) {
+            rtsN_ = bench_.top().modem_rts_n_o;
+            pins_.setRts(!rtsN_ || pinsIgnoreRts_, now());
+        }
+    }
+    void drive() {
+        air_.advance(now());
+        near_->advance(now());
+        far_->advance(now());
+        bench_.top().modem_rxd_i = pins_.rxd() && !noise_;
+        bench_.top().modem_cts_n_i = pins_.ctsN();
+    }
+    bool txd_ = true, rtsN_ = false;
+};
+
+#endif

@@ -28,9 +28,11 @@ module fsmc_async (
     output reg  [15:0] wr_data_o,
     output reg  [1:0]  wr_be_o,
     // accesses under way
-    input  wire        safe_i,       // what the address on the pins asks for is there
+    input  wire        hit_i,        // what the address on the pins asks for is there
+    input  wire        safe_i,       // and has been for a while
     output wire [1:0]  reading_o,    // NE2, NE1
-    output wire        safe_o,       // safe_i as it was in the same moment as reading_o
+    output wire        hit_o,        // hit_i and safe_i as they were in the same moment as reading_o
+    output wire        safe_o,
     output wire        writing_o     // either
 );
     wire [1:0] ne = ~fsmc_ne_n_i;
@@ -57,9 +59,10 @@ module fsmc_async (
     assign wr_o      = taken;
 
     reg [1:0] read_s0, read_s1;
-    reg       write_s0, write_s1, safe_s0, safe_s1;
+    reg       write_s0, write_s1, hit_s0, hit_s1, safe_s0, safe_s1;
     assign reading_o = read_s1;
-    assign safe_o     = safe_s1;
+    assign hit_o     = hit_s1;
+    assign safe_o    = safe_s1;
     assign writing_o = write_s1;
 
     always @(posedge clk_i) begin
@@ -68,8 +71,10 @@ module fsmc_async (
         read_s1  <= read_s0;
         write_s0 <= |ne && !fsmc_nwe_n_i;
         write_s1 <= write_s0;
-        safe_s0   <= safe_i;
-        safe_s1   <= safe_s0;
+        hit_s0   <= hit_i;
+        hit_s1   <= hit_s0;
+        safe_s0  <= safe_i;
+        safe_s1  <= safe_s0;
         if (rst_i) begin
             full_s   <= 3'd0;
             read_s1  <= 2'd0;

@@ -34,7 +34,7 @@ module fsmc_bridge #(
     output wire        access_error_o, // one cycle
     output wire [9:0]  error_addr_o,   // register word, or 0x3FF: memory
     output wire        error_write_o,
-    output wire        late_o,         // a read came before its data: it was wrong without NWAIT
+    output wire        late_o,         // one cycle: an access came too early and did not wait
     // register bus
     output wire        bus_valid_o,
     output wire        bus_write_o,
@@ -79,7 +79,7 @@ module fsmc_bridge #(
         end
     endgenerate
 
-    wire        wr_full, wr, safe, writing;
+    wire        wr_full, wr, hit_was, safe_was, writing;
     wire [1:0]  wr_ne, wr_be, reading;
     wire [24:0] wr_addr;
     wire [15:0] wr_data;
@@ -95,7 +95,8 @@ module fsmc_bridge #(
         .fsmc_noe_n_i(fsmc_noe_n_i), .fsmc_nwe_n_i(fsmc_nwe_n_i), .fsmc_nbl_n_i(fsmc_nbl_n_i),
         .wr_full_o(wr_full), .wr_o(wr), .wr_ne_o(wr_ne), .wr_addr_o(wr_addr),
         .wr_data_o(wr_data), .wr_be_o(wr_be),
-        .safe_i(hit_safe && clear), .reading_o(reading), .safe_o(safe), .writing_o(writing)
+        .hit_i(hit && clear), .safe_i(hit_safe && clear),
+        .reading_o(reading), .hit_o(hit_was), .safe_o(safe_was), .writing_o(writing)
     );
 
     // ---- An access that has waited too long is let go, until its strobe rises.
@@ -103,7 +104,7 @@ module fsmc_bridge #(
     reg  excused;
     wire reg_restart;
     wire expired = patience[TIMEOUT_LOG2];
-    wire waiting = (reading[0] && !safe) || (writing && !room);
+    wire waiting = (reading[0] && !hit_was) || (writing && !room);
     wire excuse  = expired && !busy && waiting && !excused;
     wire rest    = fsmc_noe_n_i && fsmc_nwe_n_i;
 
@@ -149,7 +150,8 @@ module fsmc_bridge #(
         .clk_i(clk_i), .rst_i(rst_i), .page_i(page_i),
         .wr_i(wr && wr_ne[0]), .wr_addr_i(wr_addr), .wr_data_i(wr_data), .wr_be_i(wr_be),
         .wr_lost_o(wr_lost), .room_o(room),
-        .rd_addr_i(address), .rd_used_i(reading[0] && safe), .rd_miss_i(reading[0] && !safe && clear),
+        .rd_addr_i(address), .rd_used_i(reading[0] && hit_was),
+        .rd_miss_i(reading[0] && !hit_was && clear),
         .rd_hit_o(hit), .rd_safe_o(hit_safe), .rd_data_o(mem_data),
         .flush_i(reg_flush), .drop_i(reg_access), .idle_o(mem_idle),
         .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
@@ -164,10 +166,20 @@ module fsmc_bridge #(
     assign npi_rd_flush_o = 1'b0;
 
     // ---- Errors
-    assign access_error_o = reg_error || reg_error_memory || wr_lost || (excuse && reading[0]);
+    assign access_error_o = reg_error || reg_error_memory || excuse;
     assign error_addr_o   = reg_error ? bus_addr_o : 10'h3FF;
-    assign error_write_o  = reg_error ? reg_write : !(excuse && reading[0]);
-    assign late_o         = reading[0] && !safe;
+    assign error_write_o  = reg_error ? reg_write : !reading[0];
+
+    // ---- For a master that does not look at NWAIT: a write that found no room, and a read that did not
+    // find its data there from the beginning and did not wait for it (two clocks) either.
+    reg       reading_d, early;
+    reg [1:0] good;
+    assign late_o = wr_lost || (reading_d && !reading[0] && early);
+    always @(posedge clk_i) begin
+        reading_d <= reading[0] && !rst_i;
+        good      <= {hit_was && good[0] && reading_d, hit_was};
+        early     <= reading_d ? early && !good[1] : !safe_was;
+    end
 
     wire unused = &{1'b0, npi_wr_empty_i, npi_wr_almost_full_i, npi_rd_word_i, 1'b0};
 endmodule

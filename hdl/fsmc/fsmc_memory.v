@@ -32,7 +32,7 @@ module fsmc_memory #(
     input  wire                 rd_used_i, // the halfword is being read
     input  wire                 rd_miss_i, // somebody waits for it
     output wire                 rd_hit_o,
-    output wire                 rd_safe_o, // a hit, and not in a block that is being filled
+    output wire                 rd_safe_o, // a hit, in a block that was there a clock ago
     output wire [WIDTH-1:0]     rd_data_o,
     // order
     input  wire                 flush_i,   // write out what is posted
@@ -82,7 +82,7 @@ module fsmc_memory #(
     // ---- What was read
     reg [UPPER-1:0]      upper;           // of both blocks
     reg [PAIR-1:0]       pair0, pair1;    // of the even and the odd block
-    reg [1:0]            full;            // bit n: block n has all its words
+    reg [1:0]            full, settled;   // bit n: block n has all its words; had them before
     reg                  current;         // the block being read
     reg                  ahead;           // the other one is its successor, or will be
     // The fetch, and what it has brought: words below fetch_word, or with `single` that one.
@@ -100,7 +100,8 @@ module fsmc_memory #(
     wire alone      = fetch_block == rd_block && have_single;
     wire here       = rd_block ? full[1] : full[0];
     assign rd_hit_o  = same_block && idle_o && (here || filling || (alone && rd_word == fetch_word));
-    assign rd_safe_o = same_block && idle_o && here;
+    wire   whole     = same_block && idle_o && here;
+    assign rd_safe_o = whole && (rd_block ? settled[1] : settled[0]);
 
     wire fill = !npi_rd_empty_i && !stale;
     assign npi_rd_pop_o = !npi_rd_empty_i;
@@ -116,9 +117,9 @@ module fsmc_memory #(
     wire last     = npi_rd_pop_o && (single || &fetch_word);
     wire miss     = rd_miss_i && !rd_hit_o && idle_o && !fetching;
     wire second   = same_block && alone;       // a miss beside the single word: fetch the block
-    wire enter    = rd_used_i && rd_safe_o && ahead && rd_block != current;
+    wire enter    = rd_used_i && whole && ahead && rd_block != current;
     wire border    = current && &pair1;          // the last block of a region
-    wire next     = rd_used_i && rd_safe_o && !ahead && rd_block == current && !border && !fetching;
+    wire next     = rd_used_i && whole && !ahead && rd_block == current && !border && !fetching;
 
     // ---- The port: posted words first
     wire start      = !npi_addr_req_o && npi_init_done_i && (post_valid || wanted);
@@ -129,6 +130,7 @@ module fsmc_memory #(
     assign npi_wr_push_o = start && post_valid;
 
     always @(posedge clk_i) begin
+        settled <= full;
         if (start)
             npi_rnw_o <= !post_valid;
         if (start || npi_addr_ack_i)

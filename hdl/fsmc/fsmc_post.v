@@ -60,7 +60,8 @@ module fsmc_post #(
     wire [LOG2-1:0] place = close ? tail_next : tail;
 
     assign wr_lost_o    = wr_i && !accept;
-    assign room_o       = !(&count[LOG2-1:1]); // seen late by two halfwords at most
+    // The open word counts as closed, so that room does not go away by itself.
+    assign room_o       = !(&count[LOG2-1:1] || (open && count == (1 << LOG2) - 3));
     assign word_valid_o = count != 0;
     assign idle_o       = !open && !word_valid_o;
     assign {word_be_o, word_addr_o} = tags[head];

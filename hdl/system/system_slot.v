@@ -28,7 +28,7 @@ module system_slot #(
     input  wire             access_error_i, // one cycle
     input  wire [9:0]       error_addr_i,
     input  wire             error_write_i,
-    input  wire             read_late_i
+    input  wire             late_i
 );
     `include "system_regs.vh"
 
@@ -54,7 +54,7 @@ module system_slot #(
         .bus_error_o(bus_error_o),
         .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr),
         .reg_wdata_o(reg_wdata), .reg_rdata_i(reg_rdata),
-        .event_i({read_late_i, access_error_i}), .irq_o(own_irq)
+        .event_i({late_i, access_error_i}), .irq_o(own_irq)
     );
 
     assign irq_o = |lines;

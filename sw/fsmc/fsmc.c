@@ -2,33 +2,26 @@
  *
  * fsmc: set-up of the FSMC, register words, and memory copies through the DDR3 window.
  */
-#include "fsmc.h"
+#include "fsmc_private.h"
 #include "map_regs.h"
 #include "system_regs.h"
 
-#define FSMC_REGISTERS 0xA0000000UL
 #define DDR_WINDOW 0x60000000UL
 #define CONTROL_WINDOW 0x64000000UL
 #define WINDOW_MASK ((1UL << MAP_DDR_WINDOW_LOG2) - 1UL)
 
-/* BCR: bank on, SRAM, 16 bits, write enable, asynchronous wait (NWAIT, active low): mode 1. */
-#define BCR_VALUE (1UL << 0 | 1UL << 4 | 1UL << 7 | 1UL << 12 | 1UL << 15)
-/* BTR: ADDSET 2 HCLK: NWAIT, which follows the pins in less than 16 ns, is valid when the data phase
- * begins; DATAST 4, the least with NWAIT; BUSTURN 1 (docs/fsmc.md). */
-#define BTR_VALUE (2UL | 4UL << 8 | 1UL << 16)
-
-static const Fsmc_Port *fsmcPort;
-static void *fsmcContext;
+const Fsmc_Port* fsmc_port;
+void* fsmc_context;
 static U32 fsmcPage;
 
 static U32 wordAddress(U32 slot, U32 word) {
     return (U32)CONTROL_WINDOW + ((slot & 63U) << 6 | (word & 15U) << 2);
 }
 
-Fsmc_Status FSMC_init(const Fsmc_Port *port, void *context) {
+Fsmc_Status FSMC_init(const Fsmc_Port* port, void* context) {
     U32 bank;
-    fsmcPort = port;
-    fsmcContext = context;
+    fsmc_port = port;
+    fsmc_context = context;
     for (bank = 0; bank < 2U; ++bank) {
         port->write32(context, (U32)FSMC_REGISTERS + bank * 8U + 4U, (U32)BTR_VALUE);
         port->write32(context, (U32)FSMC_REGISTERS + bank * 8U, (U32)BCR_VALUE);
@@ -41,15 +34,14 @@ Fsmc_Status FSMC_init(const Fsmc_Port *port, void *context) {
 }
 
 U32 FSMC_read(U32 slot, U32 word) {
-    return fsmcPort->read32(fsmcContext, wordAddress(slot, word));
+    return fsmc_port->read32(fsmc_context, wordAddress(slot, word));
 }
 
 void FSMC_write(U32 slot, U32 word, U32 value) {
-    fsmcPort->write32(fsmcContext, wordAddress(slot, word), value);
+    fsmc_port->write32(fsmc_context, wordAddress(slot, word), value);
 }
 
-/* Turns a DDR3 address into one in the window, and moves the page register where it must. */
-static U32 windowAddress(U32 address) {
+U32 fsmc_windowAddress(U32 address) {
     U32 page = address >> MAP_DDR_WINDOW_LOG2;
     if (page != fsmcPage) {
         FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, page);
@@ -58,15 +50,15 @@ static U32 windowAddress(U32 address) {
     return (U32)(DDR_WINDOW + (address & WINDOW_MASK));
 }
 
-void FSMC_readMemory(U32 address, U8 *data, U32 bytes) {
+void FSMC_readMemory(U32 address, U8* data, U32 bytes) {
     while (bytes) {
-        U32 at = windowAddress(address);
+        U32 at = fsmc_windowAddress(address);
         if ((address & 1U) || bytes == 1U) {
-            *data++ = fsmcPort->read8(fsmcContext, at);
+            *data++ = fsmc_port->read8(fsmc_context, at);
             ++address;
             --bytes;
         } else {
-            U16 half = fsmcPort->read16(fsmcContext, at);
+            U16 half = fsmc_port->read16(fsmc_context, at);
             *data++ = (U8)half;
             *data++ = (U8)(half >> 8);
             address += 2U;
@@ -75,15 +67,15 @@ void FSMC_readMemory(U32 address, U8 *data, U32 bytes) {
     }
 }
 
-void FSMC_writeMemory(U32 address, const U8 *data, U32 bytes) {
+void FSMC_writeMemory(U32 address, const U8* data, U32 bytes) {
     while (bytes) {
-        U32 at = windowAddress(address);
+        U32 at = fsmc_windowAddress(address);
         if ((address & 1U) || bytes == 1U) {
-            fsmcPort->write8(fsmcContext, at, *data++);
+            fsmc_port->write8(fsmc_context, at, *data++);
             ++address;
             --bytes;
         } else {
-            fsmcPort->write16(fsmcContext, at, (U16)(data[0] | (U32)data[1] << 8));
+            fsmc_port->write16(fsmc_context, at, (U16)(data[0] | (U32)data[1] << 8));
             data += 2;
             address += 2U;
             bytes -= 2U;
@@ -91,7 +83,7 @@ void FSMC_writeMemory(U32 address, const U8 *data, U32 bytes) {
     }
 }
 
-Fsmc_Status FSMC_checkError(U32 *where) {
+Fsmc_Status FSMC_checkError(U32* where) {
     if (!(FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_EVENT) & SYSTEM_EVENT_BUS_ERROR_MASK))
         return FSMC_OK;
     if (where)

@@ -29,6 +29,7 @@ public:
     BusSlave<Bridge> slave;
     FsmcMaster master;
     unsigned errors = 0, errorAddr = 0;
+    uint32_t lateMask = 0; // bits that a late access sets in slave.clearWord
     bool errorWrite = false;
 
     void tick() {
@@ -41,6 +42,8 @@ public:
             errorAddr = top.error_addr_o;
             errorWrite = top.error_write_o;
         }
+        if (top.late_o && slave.clearWord < slave.words.size())
+            slave.words[slave.clearWord] |= lateMask;
         seePins();
     }
     void settle() {

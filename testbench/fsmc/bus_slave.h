@@ -21,6 +21,7 @@ public:
     std::array<uint32_t, 1024> words{};
     unsigned firstError = 1024; // words from here on answer with error
     bool hung = false;          // never answers
+    unsigned clearWord = 1024;  // writing 1 clears there
     uint64_t reads = 0, writes = 0;
 
 private:
@@ -47,7 +48,7 @@ private:
         if (valid && top_.bus_ready_i) {
             ++(write_ ? writes : reads);
             if (write_ && addr_ < firstError)
-                words[addr_] = wdata_;
+                words[addr_] = addr_ == clearWord ? words[addr_] & ~wdata_ : wdata_;
         }
     }
 

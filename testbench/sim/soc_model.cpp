@@ -5,9 +5,10 @@
 #include "soc_model.h"
 #include <algorithm>
 
-SocModel::SocModel(RfChannel& air, XBee::Options modemOptions)
+SocModel::SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerUnit,
+                   unsigned clkPerUnit)
     : context_(new VerilatedContext), observer_(*context_), top_(new VSoc(context_.get())),
-      fsmc_(pins_, {[this] { tick(); }, [this] { settle(); }}), air_(air),
+      fsmc_(pins_, {[this] { tick(); }, [this] { settle(); }}, hclkPerUnit, clkPerUnit), air_(air),
       modem_(line_, air, std::move(modemOptions)) {
     top_->modem_rxd_i = 1;
 }

@@ -19,7 +19,9 @@ public:
     static constexpr uint64_t clkHz = 2'000'000; // see docs/simulation.md
     static constexpr uint64_t clkNs = 1'000'000'000 / clkHz;
 
-    SocModel(RfChannel& air, XBee::Options modemOptions);
+    // HCLK to clkHz: 120 MHz to 100 MHz, scaled down, unless stated otherwise.
+    SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerUnit = 6,
+             unsigned clkPerUnit = 5);
     ~SocModel();
 
     void reset();

@@ -217,6 +217,32 @@ TEST_F(Bridge, AnAccessThatIsGivenUpLeavesNothingHalfDone) {
     EXPECT_EQ(b_.errors, 0u);
 }
 
+// The fastest timing, without NWAIT: right when the memory keeps up, and noticed when it does not.
+TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
+    Random random(testSeed());
+    FSMC_setHclk(120000000);
+    b_.slave.clearWord = MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT; // as the system slot does it
+    b_.lateMask = SYSTEM_EVENT_LATE_MASK;
+    uint64_t repeated = 0;
+    for (double stall : {0.0, 0.3, 0.9, 0.97, 0.99}) {
+        b_.memory.setStall(stall);
+        for (int i = 0; i < 6; ++i) {
+            uint32_t address = 2 * random.below(0x4000), count = 1 + random.below(3000);
+            std::vector<uint16_t> out(count), in(count);
+            for (auto& value : out)
+                value = static_cast<uint16_t>(random.next());
+            uint32_t again = FSMC_streamWrite(address, out.data(), count);
+            again += FSMC_streamRead(address, in.data(), count);
+            ASSERT_EQ(in, out) << "SEED=" << testSeed() << " stall " << stall << " copy " << i;
+            if (stall == 0.0) {
+                EXPECT_EQ(again, 0u) << "a quick memory keeps up";
+            }
+            repeated += again;
+        }
+    }
+    EXPECT_GT(repeated, 0u) << "a slow one does not, and that was seen";
+}
+
 TEST_F(Bridge, OtherChipsOnTheBusAreLeftAlone) {
     constexpr uint32_t other = 0x68000000; // NE3
     fsmc_.write32(0xA0000010, 0x00001091);

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * fsmc_stream: blocks to and from DDR3 at the bridge's full speed, without NWAIT; checked, and
+ * repeated where needed.
+ */
+#include "fsmc_private.h"
+#include "map_regs.h"
+#include "system_regs.h"
+
+/* Mode A without NWAIT: the data phase is 2 HCLK, and an access takes ADDSET + 3. */
+#define STREAM_BCR (1UL << 0 | 1UL << 4 | 1UL << 7 | 1UL << 12 | 1UL << 14)
+#define STREAM_DATAST 2U
+#define ACCESS_HZ 25000000UL /* edges of NWE at most (docs/fsmc.md) */
+#define REGION 4096U         /* bytes: the bridge does not read ahead beyond their multiples */
+#define BLOCK 64U
+
+static U32 streamAddset = 15; /* until FSMC_setHclk: slow, but right */
+
+void FSMC_setHclk(U32 hz) {
+    U32 cycles = (U32)((hz + ACCESS_HZ - 1U) / ACCESS_HZ);
+    streamAddset = cycles < 4U ? 1U : cycles - 3U > 15U ? 15U : cycles - 3U;
+}
+
+static void setBank(int fast) {
+    if (fast) {
+        U32 btr = streamAddset | STREAM_DATAST << 8 | 1UL << 16;
+        fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS + 4U, btr);
+        fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS + 0x104U, btr);
+        fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS, (U32)STREAM_BCR);
+    } else {
+        fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS, (U32)BCR_VALUE);
+        fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS + 4U, (U32)BTR_VALUE);
+    }
+}
+
+/* Was something too early since the last call? (The register access also ends what is posted.) */
+static int wasLate(void) {
+    if (!(FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_EVENT) & SYSTEM_EVENT_LATE_MASK))
+        return 0;
+    FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_LATE_MASK);
+    return 1;
+}
+
+/* Bytes up to the next multiple of `size`, at most `bytes`. */
+static U32 upTo(U32 address, U32 size, U32 bytes) {
+    U32 left = size - (address & (size - 1U));
+    return left < bytes ? left : bytes;
+}
+
+U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords) {
+    U32 repeated = 0;
+    (void)wasLate();
+    while (halfwords) {
+        U32 i, part = upTo(address, 8U * REGION, 2U * halfwords) / 2U;
+        U32 at = fsmc_windowAddress(address);
+        (void)FSMC_read(MAP_SLOT_SYSTEM,
+                        SYSTEM_ID); /* register writes are posted, and NWAIT is off now */
+        setBank(1);
+        for (i = 0; i < part; ++i)
+            fsmc_port->write16(fsmc_context, at + 2U * i, data[i]);
+        setBank(0);
+        if (wasLate()) {
+            repeated += part;
+            for (i = 0; i < part; ++i)
+                fsmc_port->write16(fsmc_context, at + 2U * i, data[i]);
+        }
+        address += 2U * part;
+        data += part;
+        halfwords -= part;
+    }
+    return repeated;
+}
+
+/* With the bank's timing as it is set. */
+static void readHalfwords(U32 at, U16* data, U32 halfwords) {
+    U32 i;
+    for (i = 0; i < halfwords; ++i)
+        data[i] = fsmc_port->read16(fsmc_context, at + 2U * i);
+}
+
+U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords) {
+    U32 repeated = 0;
+    (void)wasLate();
+    while (halfwords) {
+        U32 part = upTo(address, REGION, 2U * halfwords) / 2U;
+        U32 at = fsmc_windowAddress(address);
+        if (address & (BLOCK - 1U)) {
+            /* Only from the beginning of a block is there time to fetch the next one. */
+            part = upTo(address, BLOCK, 2U * part) / 2U;
+            readHalfwords(at, data, part);
+        } else {
+            /* Two reads in a block fetch it; that of its end waits until all of it is there. */
+            (void)fsmc_port->read16(fsmc_context, at);
+            (void)fsmc_port->read16(fsmc_context, at + BLOCK - 2U);
+            setBank(1);
+            readHalfwords(at, data, part);
+            setBank(0);
+            if (wasLate()) {
+                repeated += part;
+                readHalfwords(at, data, part);
+            }
+        }
+        address += 2U * part;
+        data += part;
+        halfwords -= part;
+    }
+    return repeated;
+}

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+//
+// measure_fsmc: the FSMC bridge's speed in the whole chip: the real driver, the pins, the bridge,
+// the arbiter, the MCB and DDR3.
+
+#include "random.h"
+#include "soc_model.h"
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+extern "C" {
+#include "fsmc.h"
+#include "map_regs.h"
+#include "system_regs.h"
+}
+
+namespace {
+
+constexpr double fabricHz = 100e6, pinLimit = 25e6; // accesses a second at the pins
+constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
+
+nlohmann::json report = nlohmann::json::array();
+
+void record(const std::string& name, double value, const char* unit, double limit = 0) {
+    nlohmann::json entry{
+        {"name", "FSMC, " + name}, {"value", value}, {"unit", unit}, {"command", "make bench"}};
+    if (limit != 0) {
+        entry["limit"] = limit;
+        entry["share"] = value / limit;
+    }
+    report.push_back(entry);
+}
+
+FsmcMaster& masterOf(void* context) {
+    return *static_cast<FsmcMaster*>(context);
+}
+const Fsmc_Port port = {[](void* c, U32 a) -> U8 { return masterOf(c).read8(a); },
+                        [](void* c, U32 a, U8 v) { masterOf(c).write8(a, v); },
+                        [](void* c, U32 a) -> U16 { return masterOf(c).read16(a); },
+                        [](void* c, U32 a, U16 v) { masterOf(c).write16(a, v); },
+                        [](void* c, U32 a) -> U32 { return masterOf(c).read32(a); },
+                        [](void* c, U32 a, U32 v) { masterOf(c).write32(a, v); }};
+
+// A chip with its driver, at an HCLK in MHz; the fabric runs at 100 MHz.
+struct Chip {
+    Chip(unsigned hclkMhz, uint64_t seed) : air(seed), soc(air, {}, hclkMhz, 100) {
+        soc.reset();
+        if (FSMC_init(&port, &soc.fsmc()) != FSMC_OK)
+            throw std::runtime_error("the chip does not answer");
+        FSMC_setHclk(hclkMhz * 1000000);
+        FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
+    }
+    template <class F> double clocks(F f) {
+        uint64_t start = soc.cycles();
+        f();
+        return static_cast<double>(soc.cycles() - start);
+    }
+    RfChannel air;
+    SocModel soc;
+};
+
+// Blocks by the driver, everything included: setting the bank up, reading ahead, the check at the
+// end.
+double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
+    Chip chip(hclk, seed);
+    Random random(seed);
+    std::vector<U16> out(halfwords), in(halfwords);
+    for (auto& value : out)
+        value = static_cast<U16>(random.next());
+    U32 repeated = 0;
+    double least = 1;
+    auto show = [&](const char* what, double clocks, double wanted) {
+        double rate = halfwords / clocks * fabricHz;
+        fmt::print("HCLK {:3} MHz  {:<40} {:6.2f} M/s {:6.1f} %", hclk, what, rate / 1e6,
+                   100 * rate / pinLimit);
+        fmt::print(wanted > 0 ? "   {:.0f} % wanted\n" : "\n", 100 * wanted);
+        record(fmt::format("HCLK {} MHz, {}", hclk, what), rate / 1e6, "million halfwords/s",
+               pinLimit / 1e6);
+        if (wanted > 0)
+            least = std::min(least, rate / pinLimit / wanted);
+    };
+    show("sequential writes, stream",
+         chip.clocks([&] { repeated += FSMC_streamWrite(0x10000, out.data(), halfwords); }), 0.99);
+    show("sequential reads, stream",
+         chip.clocks([&] { repeated += FSMC_streamRead(0x10000, in.data(), halfwords); }), 0.95);
+    right = right && in == out && repeated == 0;
+    std::vector<U8> bytes(2 * halfwords);
+    show("sequential writes, NWAIT (driver's copy)",
+         chip.clocks([&] { FSMC_writeMemory(0x90000, bytes.data(), 2 * halfwords); }), 0);
+    show("sequential reads, NWAIT (driver's copy)",
+         chip.clocks([&] { FSMC_readMemory(0x90000, bytes.data(), 2 * halfwords); }), 0);
+    return least;
+}
+
+void single(unsigned hclk, uint64_t seed, int count) {
+    Chip chip(hclk, seed);
+    Random random(seed);
+    FsmcMaster& master = chip.soc.fsmc();
+    double hclks = 100.0 / hclk; // clocks of the fabric in one HCLK
+    auto show = [&](const char* what, double least, const std::function<void()>& access) {
+        double sum = chip.clocks([&] {
+            for (int i = 0; i < count; ++i)
+                access();
+        });
+        fmt::print("HCLK {:3} MHz  {:<38} {:6.1f} clocks, {:5.1f} at least\n", hclk, what,
+                   sum / count, least);
+        record(fmt::format("HCLK {} MHz, {}", hclk, what), sum / count, "clocks", least);
+    };
+    // At least: ADDSET 2, DATAST 4 and 1 HCLK of hold or turnaround; a read that waits ends 4 HCLK
+    // after NWAIT and is seen through two flip-flops (1 to 2 clocks, 1.5 on average), then a clock
+    // each for noting it, for the request and for what comes back.
+    double access = 7 * hclks, waits = (2 + 4 + 1) * hclks + 1.5;
+    show("register word, 32 bits, write", 2 * access,
+         [&] { master.write32(control + 4 * SYSTEM_SCRATCH, 1); });
+    show("register word, 32 bits, read", waits + 3 + access,
+         [&] { master.read32(control + 4 * SYSTEM_SCRATCH); });
+    show("random 16-bit write", access,
+         [&] { master.write16(ddr + 2 * random.below(1u << 24), 1); });
+    FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
+    show("random 16-bit read", waits + 3, [&] { master.read16(ddr + 2 * random.below(1u << 24)); });
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Speed of the FSMC bridge with the real driver, up to DDR3."};
+    std::string json;
+    uint64_t seed = testSeed();
+    uint32_t halfwords = 32768;
+    int count = 500;
+    app.add_option("--json", json, "write the figures there");
+    app.add_option("--halfwords", halfwords, "in a block")->check(CLI::Range(16u, 1u << 18));
+    app.add_option("--count", count, "single accesses of each kind")->check(CLI::Range(1, 100000));
+    app.add_option("--seed", seed, "of data and addresses");
+    CLI11_PARSE(app, argc, argv);
+
+    bool right = true;
+    fmt::print("Share of the pins' 25 million accesses/s, blocks of {} halfwords\n", halfwords);
+    double least = streams(100, seed, halfwords, right);
+    streams(120, seed, halfwords, right);
+    fmt::print("\nSingle accesses, in clocks of 100 MHz\n");
+    single(100, seed, count);
+    single(120, seed, count);
+    if (!json.empty()) {
+        std::ofstream out(json);
+        out << report.dump(1) << '\n';
+        if (!out) {
+            fmt::print(stderr, "measure-fsmc: cannot write {}\n", json);
+            return 1;
+        }
+        fmt::print("written: {}\n", json);
+    }
+    if (!right)
+        fmt::print(stderr,
+                   "measure-fsmc: what was read is not what was written, or had to be repeated\n");
+    return right && least >= 1 ? 0 : 1;
+}

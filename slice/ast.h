@@ -20,7 +20,15 @@ struct Declaration;
 
 struct Type {
     enum class Kind {
-        Void, Bool, Byte, Short, Int, Long, Float, Double, String,
+        Void,
+        Bool,
+        Byte,
+        Short,
+        Int,
+        Long,
+        Float,
+        Double,
+        String,
         Named,      // `declaration`: enum, struct, sequence, dictionary or class
         Proxy,      // `declaration`: the interface; 0 for Object*
         Value,      // any class: Object or Value; with `declaration`, an interface by value
@@ -34,26 +42,26 @@ struct Type {
 struct Literal {
     enum class Kind { None, Bool, Integer, Floating, String, Enumerator };
     Kind kind = Kind::None;
-    int64_t integer = 0;                  // Bool, Integer; Enumerator: its value
-    double floating = 0;                  // Floating
-    std::string text;                     // Floating as written; String as bytes of UTF-8; Enumerator's name
-    const Declaration* owner = nullptr;   // Enumerator's enum
+    int64_t integer = 0; // Bool, Integer; Enumerator: its value
+    double floating = 0; // Floating
+    std::string text;    // Floating as written; String as bytes of UTF-8; Enumerator's name
+    const Declaration* owner = nullptr; // Enumerator's enum
 };
 
 struct Field {
     Type type;
     std::string name, doc;
     Location at;
-    bool isOut = false;         // of an operation's parameter
+    bool isOut = false; // of an operation's parameter
     bool isOptional = false;
-    int tag = 0;                // of an optional one
-    Literal value;              // default of a member
+    int tag = 0;   // of an optional one
+    Literal value; // default of a member
     std::vector<std::string> metadata;
 };
 
 struct Operation {
     std::string name, doc;
-    Type result;                // Void where there is none
+    Type result; // Void where there is none
     bool isResultOptional = false;
     int resultTag = 0;
     std::vector<Field> parameters; // in the order of the source, ins before outs
@@ -77,16 +85,27 @@ struct Declaration {
     Location at;
     bool fromInclude = false;
     bool isLocal = false;
-    bool isForward = false;         // an interface or class that is declared, but not defined here
+    bool isForward = false; // an interface or class that is declared, but not defined here
     std::vector<std::string> metadata;
 
-    std::vector<Enumerator> enumerators;     // Enum
-    std::vector<Field> fields;               // Struct, Class, Exception: own members
-    Type key, element;                       // Dictionary; Sequence: element; Constant: its type
-    Literal value;                           // Constant
-    std::vector<const Declaration*> bases;   // Interface: any; Class, Exception: at most one
-    std::vector<Operation> operations;       // Interface: own ones
-    int compactId = -1;                      // Class; -1: none
+    std::vector<Enumerator> enumerators;   // Enum
+    std::vector<Field> fields;             // Struct, Class, Exception: own members
+    Type key, element;                     // Dictionary; Sequence: element; Constant: its type
+    Literal value;                         // Constant
+    std::vector<const Declaration*> bases; // Interface: any; Class, Exception: at most one
+    std::vector<Operation> operations;     // Interface: own ones
+    int compactId = -1;                    // Class; -1: none
+
+    // Of all values of a type; set when its definition is complete, since types may be deep.
+    struct Facts {
+        int leastWireSize = 1;  // bytes
+        bool isVariable = true; // longer ones are possible
+        bool hasClass = false;  // a class is in it, at any depth
+        bool isKey = false;     // it can be a dictionary's key
+        bool hasSequence = false;
+        bool isNumeric = true; // numbers, enums, structs and sequences of them only
+    } facts;
+    void complete();
 
     // Module_Sub_Name, ::Module::Sub::Name
     std::string cName() const;
@@ -101,11 +120,12 @@ struct Declaration {
 };
 
 struct Unit {
-    std::string file;                           // as given on the command line
+    std::string file; // as given on the command line
     std::vector<std::unique_ptr<Declaration>> declarations;
-    std::vector<std::string> metadata;          // [["..."]] of the main file
+    std::vector<std::string> metadata; // [["..."]] of the main file
 };
 
+Declaration::Facts factsOf(const Type& type);
 bool hasMetadata(const std::vector<std::string>& metadata, const std::string& directive);
 std::string metadataValue(const std::vector<std::string>& metadata, const std::string& prefix);
 

@@ -13,37 +13,20 @@ namespace {
 using DKind = Declaration::Kind;
 
 // A ":hw" interface: numbers, enums, structs and sequences of them; no more fits into registers.
-bool fitsHardware(const Type& t) {
-    switch (t.kind) {
-    case Type::Kind::String:
-    case Type::Kind::Proxy:
-    case Type::Kind::Value:
-    case Type::Kind::LocalObject: return false;
-    case Type::Kind::Named: break;
-    default: return true;
-    }
-    const Declaration& d = *t.declaration;
-    if (d.kind == DKind::Class || d.kind == DKind::Dictionary)
-        return false;
-    if (d.kind == DKind::Sequence)
-        return fitsHardware(d.element);
-    for (const Field& f : d.fields)
-        if (!fitsHardware(f.type))
-            return false;
-    return true;
-}
-
 void checkHardware(const Declaration& d, Diagnostics& diagnostics) {
     std::string who = "interface '" + d.name + "' is hardware ([\":hw\"]): '";
     for (const Operation& o : d.operations) {
-        if (!fitsHardware(o.result))
-            diagnostics.error(o.at, who + o.name + "' must return a number, an enum, a struct or a sequence of them");
+        if (!factsOf(o.result).isNumeric)
+            diagnostics.error(
+                o.at,
+                who + o.name + "' must return a number, an enum, a struct or a sequence of them");
         if (!o.throws.empty())
             diagnostics.error(o.at, who + o.name + "' cannot throw");
         for (const Field& p : o.parameters)
-            if (!fitsHardware(p.type) || p.isOptional)
-                diagnostics.error(p.at, who + p.name +
-                                            "' must be a number, an enum, a struct or a sequence of them");
+            if (!factsOf(p.type).isNumeric || p.isOptional)
+                diagnostics.error(
+                    p.at,
+                    who + p.name + "' must be a number, an enum, a struct or a sequence of them");
     }
 }
 
@@ -60,7 +43,8 @@ void checkMetadata(const Declaration& d, Diagnostics& diagnostics) {
             if (n < 1 || n > 65535)
                 diagnostics.error(d.at, "[\"" + m + "\"]: the maximum is a number, 1..65535");
         } else if (m != "c:scoped" || d.kind != DKind::Enum) {
-            diagnostics.warning(d.at, "metadata [\"" + m + "\"] means nothing here", Diagnostics::Metadata);
+            diagnostics.warning(d.at, "metadata [\"" + m + "\"] means nothing here",
+                                Diagnostics::Metadata);
         }
     }
 }
@@ -73,12 +57,14 @@ public:
     void add(const std::string& c, const std::string& slice, const Location& at) {
         auto [it, isNew] = names_.emplace(c, slice);
         if (!isNew && it->second != slice && said_.insert(slice).second) // once for each
-            diagnostics_.error(at, "'" + slice + "' becomes '" + c + "' in C, as '" + it->second + "' does");
+            diagnostics_.error(at, "'" + slice + "' becomes '" + c + "' in C, as '" + it->second +
+                                       "' does");
     }
     void add(const Declaration& d) {
         std::string c = d.cName(), id = d.id();
         if (d.kind == DKind::Interface) {
-            for (const char* suffix : {"Prx", "PrxPtr", "Ptr", "", "_init", "_initWith", "_Operations"})
+            for (const char* suffix :
+                 {"Prx", "PrxPtr", "Ptr", "", "_init", "_initWith", "_Operations"})
                 add(c + suffix, id, d.at);
             for (const Operation& o : d.operations)
                 for (const char* suffix : {"", "_Async", "_Exception", "_response", "_exception"})
@@ -92,7 +78,8 @@ public:
         if (d.kind == DKind::Dictionary)
             add(c + "_Entry", id, d.at);
         if (d.kind != DKind::Constant && d.kind != DKind::Enum)
-            for (const char* suffix : {"_init", "_type", "_find", "_writeToOutputStream", "_readFromInputStream"})
+            for (const char* suffix :
+                 {"_init", "_type", "_find", "_writeToOutputStream", "_readFromInputStream"})
                 add(c + suffix, id, d.at);
     }
 
@@ -101,8 +88,9 @@ private:
         std::string c = cEnumerator(d, e.name), id = d.id() + "::" + e.name;
         auto [it, isNew] = names_.emplace(c, id);
         if (!isNew && it->second != id)
-            diagnostics_.error(e.at, "'" + id + "' becomes '" + c + "' in C, as '" + it->second +
-                                         "' does; [\"c:scoped\"] before the enum puts its name between");
+            diagnostics_.error(e.at,
+                               "'" + id + "' becomes '" + c + "' in C, as '" + it->second +
+                                   "' does; [\"c:scoped\"] before the enum puts its name between");
     }
 
     Diagnostics& diagnostics_;
@@ -115,7 +103,8 @@ void checkOptionalNames(const std::vector<Field>& fields, Diagnostics& diagnosti
     for (const Field& f : fields)
         for (const Field& other : fields)
             if (f.isOptional && other.name == "has_" + f.name)
-                diagnostics.error(other.at, "'" + other.name + "' says in C whether '" + f.name + "' is there");
+                diagnostics.error(other.at, "'" + other.name + "' says in C whether '" + f.name +
+                                                "' is there");
 }
 
 } // namespace
@@ -135,6 +124,7 @@ void checkC(const Unit& unit, Diagnostics& diagnostics) {
     }
     for (const std::string& m : unit.metadata)
         if (m.compare(0, 2, "c:") == 0 && m.compare(0, 10, "c:include:") != 0)
-            diagnostics.warning({diagnostics.intern(unit.file), 1, 1}, "metadata [[\"" + m + "\"]] means nothing here",
+            diagnostics.warning({diagnostics.intern(unit.file), 1, 1},
+                                "metadata [[\"" + m + "\"]] means nothing here",
                                 Diagnostics::Metadata);
 }

@@ -31,7 +31,9 @@ void classFunctions(Writer& w, const Declaration& d) {
     w.blank();
     std::string base = d.base() ? "&" + d.base()->cName() + "_type" : "0";
     w.line("const Ice_ValueType {c}_type = {", v);
-    w.line("    \"{id}\", " + base + ", " + std::to_string(d.compactId) + ", (Ice_Int)sizeof({c}), {c}_write, {c}_read};", v);
+    w.line("    \"{id}\", " + base + ", " + std::to_string(d.compactId) +
+               ", (Ice_Int)sizeof({c}), {c}_write, {c}_read};",
+           v);
 }
 
 void valueTypeTable(Writer& w, const CContext& c) {
@@ -54,7 +56,8 @@ void writeWithValues(Writer& w, const std::vector<Slot>& slots, const std::strin
         w.line("Ice_OutputStream_endValues(os);");
 }
 
-void readWithValues(Writer& w, const CContext& c, const std::vector<Slot>& slots, const std::string& table) {
+void readWithValues(Writer& w, const CContext& c, const std::vector<Slot>& slots,
+                    const std::string& table) {
     bool classes = anyClass(slots);
     if (classes)
         w.line("Ice_InputStream_beginValues(is, &" + table + ", " + c.valueTable() + ");");

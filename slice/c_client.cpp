@@ -38,7 +38,8 @@ void syncFunction(Writer& w, const CContext& c, const Declaration& d, const Oper
         writeParameters(w, d, o);
         w.line("status = Ice_ObjectPrx_invoke(self, &is);");
         if (hasResults(o)) {
-            w.block("if (status == ICE_OK)", {}, [&] { readWithValues(w, c, outSlots(o, "*"), "received"); });
+            w.block("if (status == ICE_OK)", {},
+                    [&] { readWithValues(w, c, outSlots(o, "*"), "received"); });
         }
         if (!o.throws.empty()) {
             w.line("if (status == ICE_USER_EXCEPTION && ex)");
@@ -51,38 +52,40 @@ void syncFunction(Writer& w, const CContext& c, const Declaration& d, const Oper
 void casts(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", d.cName()}};
     w.blank();
-    w.block("Ice_Status {c}Prx_checkedCast({c}PrxPtr self, const Ice_ObjectPrx *from)", v, [&] {
-        w.line("return Ice_ObjectPrx_checkedCast(self, from, {c}_ice_staticId);", v);
-    });
+    w.block("Ice_Status {c}Prx_checkedCast({c}PrxPtr self, const Ice_ObjectPrx *from)", v,
+            [&] { w.line("return Ice_ObjectPrx_checkedCast(self, from, {c}_ice_staticId);", v); });
     w.blank();
     w.block("void {c}Prx_uncheckedCast({c}PrxPtr self, const Ice_ObjectPrx *from)", v,
             [&] { w.line("*self = *from;"); });
 }
 
 void completedFunction(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
-    Writer::Values v = {{"p", d.cName() + "Prx_" + cOperation(o.name)}, {"t", operationName(d, o) + "_Async"}};
-    w.block("static void {p}_completed(void *cookie, Ice_Status status, Ice_InputStreamPtr is)", v, [&] {
-        w.line("{t} *call = ({t} *)cookie;", v);
-        if (hasResults(o)) {
-            w.block("if (status == ICE_OK)", {}, [&] {
-                if (returnsClasses(o))
-                    w.line("Ice_InputValues values;");
-                readWithValues(w, c, outSlots(o, "call->"), "values");
-                w.line("if (is->failed)");
-                w.nested("status = ICE_MARSHAL;");
+    Writer::Values v = {{"p", d.cName() + "Prx_" + cOperation(o.name)},
+                        {"t", operationName(d, o) + "_Async"}};
+    w.block("static void {p}_completed(void *cookie, Ice_Status status, Ice_InputStreamPtr is)", v,
+            [&] {
+                w.line("{t} *call = ({t} *)cookie;", v);
+                if (hasResults(o)) {
+                    w.block("if (status == ICE_OK)", {}, [&] {
+                        if (returnsClasses(o))
+                            w.line("Ice_InputValues values;");
+                        readWithValues(w, c, outSlots(o, "call->"), "values");
+                        w.line("if (is->failed)");
+                        w.nested("status = ICE_MARSHAL;");
+                    });
+                }
+                if (!o.throws.empty()) {
+                    w.line("if (status == ICE_USER_EXCEPTION)");
+                    w.nested("status = " + exceptionType(d, o) +
+                             "_readFromInputStream(&call->exception, is);");
+                }
+                if (!hasResults(o) && o.throws.empty())
+                    w.line("(void)is;");
+                w.line("call->status = status;");
+                w.line("call->done = 1;");
+                w.line("if (call->completed)");
+                w.nested("call->completed(call);");
             });
-        }
-        if (!o.throws.empty()) {
-            w.line("if (status == ICE_USER_EXCEPTION)");
-            w.nested("status = " + exceptionType(d, o) + "_readFromInputStream(&call->exception, is);");
-        }
-        if (!hasResults(o) && o.throws.empty())
-            w.line("(void)is;");
-        w.line("call->status = status;");
-        w.line("call->done = 1;");
-        w.line("if (call->completed)");
-        w.nested("call->completed(call);");
-    });
 }
 
 void asyncFunction(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
@@ -95,7 +98,8 @@ void asyncFunction(Writer& w, const CContext& c, const Declaration& d, const Ope
         beginCall(w, o);
         writeParameters(w, d, o);
         w.line("call->done = 0;");
-        w.line("return Ice_ObjectPrx_invokeAsync(self, " + d.cName() + "Prx_" + cOperation(o.name) + "_completed, call);");
+        w.line("return Ice_ObjectPrx_invokeAsync(self, " + d.cName() + "Prx_" + cOperation(o.name) +
+               "_completed, call);");
     });
 }
 

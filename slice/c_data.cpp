@@ -42,27 +42,29 @@ void writeFunction(Writer& w, const Declaration& d) {
     bool bytes = d.kind == DKind::Sequence && d.element.kind == Type::Kind::Byte;
     int maximum = statedMaximum(d);
     w.blank();
-    w.block("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os)", {{"c", d.cName()}}, [&] {
-        if (!bytes)
-            w.line("Ice_Int i;");
-        if (maximum) {
-            w.block("if (v->size > " + std::to_string(maximum) + ")", {}, [&] {
-                w.line("os->failed = 1;");
-                w.line("return;");
+    w.block("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os)",
+            {{"c", d.cName()}}, [&] {
+                if (!bytes)
+                    w.line("Ice_Int i;");
+                if (maximum) {
+                    w.block("if (v->size > " + std::to_string(maximum) + ")", {}, [&] {
+                        w.line("os->failed = 1;");
+                        w.line("return;");
+                    });
+                }
+                w.line("Ice_OutputStream_writeSize(os, v->size);");
+                if (bytes)
+                    w.line("Ice_OutputStream_writeBlob(os, v->data, v->size);");
+                else
+                    loop(w, d, writeSlots);
             });
-        }
-        w.line("Ice_OutputStream_writeSize(os, v->size);");
-        if (bytes)
-            w.line("Ice_OutputStream_writeBlob(os, v->data, v->size);");
-        else
-            loop(w, d, writeSlots);
-    });
 }
 
 void readElsewhere(Writer& w, const Declaration& d) {
     Writer::Values v = {{"e", element(d)}};
     w.line("v->data = ({e}" + std::string(v[0].second.back() == '*' ? "*" : " *") +
-           ")Ice_InputStream_allocate(is, v->size, (Ice_Int)sizeof *v->data);", v);
+               ")Ice_InputStream_allocate(is, v->size, (Ice_Int)sizeof *v->data);",
+           v);
     w.line("if (!v->data)");
     w.nested("v->size = 0;");
 }
@@ -76,7 +78,8 @@ void readFunction(Writer& w, const Declaration& d) {
             w.line("const Ice_Byte *bytes;");
         else if (!bytes)
             w.line("Ice_Int i;");
-        w.line("v->size = Ice_InputStream_readSequence(is, " + std::to_string(leastElementSize(d)) + ");");
+        w.line("v->size = Ice_InputStream_readSequence(is, " + std::to_string(leastElementSize(d)) +
+               ");");
         if (maximum)
             w.block("if (v->size > " + std::to_string(maximum) + ")", {}, [&] {
                 w.line("v->size = 0;");
@@ -105,26 +108,28 @@ void findFunction(Writer& w, const Declaration& d) {
     bool isString = d.key.kind == Type::Kind::String;
     w.blank();
     w.block(cVariable(d.element, "*" + d.cName() + "_find") + "(const " + d.cName() + " *v, " +
-                cVariable(d.key, "key") + ")", {}, [&] {
-        w.line("Ice_Int i;");
-        w.line("for (i = 0; i < v->size; ++i)");
-        if (isString) {
-            w.line("    if (Ice_String_same(&v->data[i].key, &key))");
-        } else {
-            w.line("    if (v->data[i].key == key)");
-        }
-        std::string type = cType(d.element);
-        w.line("        return (" + type + (type.back() == '*' ? "*" : " *") + ")&v->data[i].value;");
-        w.line("return 0;");
-    });
+                cVariable(d.key, "key") + ")",
+            {}, [&] {
+                w.line("Ice_Int i;");
+                w.line("for (i = 0; i < v->size; ++i)");
+                if (isString) {
+                    w.line("    if (Ice_String_same(&v->data[i].key, &key))");
+                } else {
+                    w.line("    if (v->data[i].key == key)");
+                }
+                std::string type = cType(d.element);
+                w.line("        return (" + type + (type.back() == '*' ? "*" : " *") +
+                       ")&v->data[i].value;");
+                w.line("return 0;");
+            });
 }
 
 void structFunctions(Writer& w, const Declaration& d) {
     if (!isRuntimeType(d) || !d.fields.empty())
         initFunction(w, d);
     w.blank();
-    w.block("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os)", {{"c", d.cName()}},
-            [&] { writeSlots(w, memberSlots(d)); });
+    w.block("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os)",
+            {{"c", d.cName()}}, [&] { writeSlots(w, memberSlots(d)); });
     w.blank();
     w.block("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is)", {{"c", d.cName()}},
             [&] { readSlots(w, memberSlots(d)); });
@@ -136,11 +141,14 @@ void initMember(Writer& w, const Field& f) {
     if (f.isOptional && f.value.kind != Literal::Kind::None)
         w.line("v->has_" + f.name + " = 1;");
     if (f.value.kind == Literal::Kind::None) {
-        bool isStruct = f.type.kind == Type::Kind::Named && f.type.declaration->kind == DKind::Struct;
+        bool isStruct =
+            f.type.kind == Type::Kind::Named && f.type.declaration->kind == DKind::Struct;
         if (isStruct)
             w.line(f.type.declaration->cName() + "_init(&" + name + ");");
         else if (isEnum(f.type) && f.type.declaration->enumerators.front().value != 0)
-            w.line(name + " = " + cEnumerator(*f.type.declaration, f.type.declaration->enumerators.front().name) + ";");
+            w.line(name + " = " +
+                   cEnumerator(*f.type.declaration, f.type.declaration->enumerators.front().name) +
+                   ";");
     } else if (f.type.kind == Type::Kind::String) {
         if (f.value.text.empty())
             return;
@@ -194,7 +202,9 @@ std::string typesFile(const CContext& c) {
         if (d->fromInclude || d->isLocal || d->isForward)
             continue;
         switch (d->kind) {
-        case DKind::Struct: structFunctions(w, *d); break;
+        case DKind::Struct:
+            structFunctions(w, *d);
+            break;
         case DKind::Sequence:
         case DKind::Dictionary:
             writeFunction(w, *d);
@@ -202,9 +212,14 @@ std::string typesFile(const CContext& c) {
             if (d->kind == DKind::Dictionary)
                 findFunction(w, *d);
             break;
-        case DKind::Exception: exceptionFunctions(w, c, *d); break;
-        case DKind::Class: classFunctions(w, *d); break;
-        default: break;
+        case DKind::Exception:
+            exceptionFunctions(w, c, *d);
+            break;
+        case DKind::Class:
+            classFunctions(w, *d);
+            break;
+        default:
+            break;
         }
     }
     c.eachOperation([&](const Declaration& d, const Operation& o) {

@@ -19,7 +19,8 @@ bool requiresClasses(const Declaration& d) {
 } // namespace
 
 void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d) {
-    Writer::Values v = {{"c", d.cName()}, {"id", d.id()}, {"classes", requiresClasses(d) ? "1" : "0"}};
+    Writer::Values v = {
+        {"c", d.cName()}, {"id", d.id()}, {"classes", requiresClasses(d) ? "1" : "0"}};
     bool classes = hasClasses(d);
     initFunction(w, d);
     w.blank();
@@ -84,8 +85,12 @@ void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const O
     auto eachOf = [&](auto f) {
         for (const Declaration* e : family) {
             std::string label = exceptionLabel(family, *e);
-            f(*e, Writer::Values{{"t", exceptionType(d, o)}, {"op", operationName(d, o)}, {"e", e->cName()},
-                                 {"id", e->id()}, {"label", label}, {"member", cIdentifier(label)}});
+            f(*e, Writer::Values{{"t", exceptionType(d, o)},
+                                 {"op", operationName(d, o)},
+                                 {"e", e->cName()},
+                                 {"id", e->id()},
+                                 {"label", label},
+                                 {"member", cIdentifier(label)}});
         }
     };
     w.blank();
@@ -112,7 +117,8 @@ void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const O
         w.nested("Ice_String id = Ice_InputStream_startSlice(is);");
         bool first = true;
         eachOf([&](const Declaration&, const Writer::Values& names) {
-            w.nested(std::string(first ? "" : "} else ") + "if (Ice_String_equals(id, \"{id}\")) {", names);
+            w.nested(std::string(first ? "" : "} else ") + "if (Ice_String_equals(id, \"{id}\")) {",
+                     names);
             w.nested("    v->type = {op}_{label};", names);
             w.nested("    {e}_readSlices(&v->u.{member}, is);", names);
             first = false;

@@ -52,6 +52,7 @@ void initFunction(Writer& w, const Declaration& d);
 std::vector<Slot> memberSlots(const Declaration& d);
 // Writes or reads slots; where they hold classes, within a table of instances of this name.
 void writeWithValues(Writer& w, const std::vector<Slot>& slots, const std::string& table);
-void readWithValues(Writer& w, const CContext& c, const std::vector<Slot>& slots, const std::string& table);
+void readWithValues(Writer& w, const CContext& c, const std::vector<Slot>& slots,
+                    const std::string& table);
 
 #endif

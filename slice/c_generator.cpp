@@ -14,12 +14,15 @@ std::vector<GeneratedFile> generateC(const Unit& unit, const CFileNames& names) 
             {names.base + "_server." + s, serverFile(c)}};
 }
 
-std::string CContext::header() const { return names.base + "." + names.headerExtension; }
+std::string CContext::header() const {
+    return names.base + "." + names.headerExtension;
+}
 
 std::string CContext::valueTable() const {
     std::string s;
     for (char ch : names.base)
-        s += (ch >= '0' && ch <= '9') || (ch >= 'A' && ch <= 'Z') || (ch >= 'a' && ch <= 'z') ? ch : '_';
+        s += (ch >= '0' && ch <= '9') || (ch >= 'A' && ch <= 'Z') || (ch >= 'a' && ch <= 'z') ? ch
+                                                                                              : '_';
     return s + "_valueTypes";
 }
 
@@ -50,8 +53,9 @@ Writer CContext::begin(const std::string& what) const {
 
 Writer CContext::beginSource(const std::string& what) const {
     Writer w = begin(what);
-    std::string dir = names.includeDir.empty() || names.includeDir.back() == '/' ? names.includeDir
-                                                                                 : names.includeDir + "/";
+    std::string dir = names.includeDir.empty() || names.includeDir.back() == '/'
+                          ? names.includeDir
+                          : names.includeDir + "/";
     w.line("#include \"" + dir + header() + "\"");
     return w;
 }

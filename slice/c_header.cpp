@@ -45,22 +45,30 @@ void forwardDeclarations(Writer& w, const CContext& c) {
 void declareConstant(Writer& w, const Declaration& d) {
     std::string value = cValue(d.value, d.element), name = d.cName();
     switch (d.element.kind) {
-    case Type::Kind::Long: w.line("extern const Ice_Long " + name + ";"); break;
-    case Type::Kind::String: w.line("#define " + name + " " + value); break;
-    default: w.line("#define " + name + " ((" + cType(d.element) + ")" +
-                    (value[0] == '-' ? "(" + value + ")" : value) + ")");
+    case Type::Kind::Long:
+        w.line("extern const Ice_Long " + name + ";");
+        break;
+    case Type::Kind::String:
+        w.line("#define " + name + " " + value);
+        break;
+    default:
+        w.line("#define " + name + " ((" + cType(d.element) + ")" +
+               (value[0] == '-' ? "(" + value + ")" : value) + ")");
     }
 }
 
 void declareEnum(Writer& w, const Declaration& d) {
-    w.block("typedef enum " + d.cName(), {}, [&] {
-        for (size_t i = 0; i < d.enumerators.size(); ++i) {
-            const Enumerator& e = d.enumerators[i];
-            writeDoc(w, e.doc);
-            w.line(cEnumerator(d, e.name) + " = " + std::to_string(e.value) +
-                   (i + 1 < d.enumerators.size() ? "," : ""));
-        }
-    }, "} " + d.cName() + ";");
+    w.block(
+        "typedef enum " + d.cName(), {},
+        [&] {
+            for (size_t i = 0; i < d.enumerators.size(); ++i) {
+                const Enumerator& e = d.enumerators[i];
+                writeDoc(w, e.doc);
+                w.line(cEnumerator(d, e.name) + " = " + std::to_string(e.value) +
+                       (i + 1 < d.enumerators.size() ? "," : ""));
+            }
+        },
+        "} " + d.cName() + ";");
 }
 
 void declareFields(Writer& w, const Declaration& d) {
@@ -76,11 +84,14 @@ void declareFields(Writer& w, const Declaration& d) {
 void declareElements(Writer& w, const Declaration& d, const std::string& element) {
     int maximum = statedMaximum(d);
     bool pointer = element.back() == '*';
-    w.block("typedef struct " + d.cName(), {}, [&] {
-        w.line("Ice_Int size;");
-        std::string name = maximum ? "data[" + std::to_string(maximum) + "]" : "*data";
-        w.line(element + (pointer ? "" : " ") + name + ";");
-    }, "} " + d.cName() + ";");
+    w.block(
+        "typedef struct " + d.cName(), {},
+        [&] {
+            w.line("Ice_Int size;");
+            std::string name = maximum ? "data[" + std::to_string(maximum) + "]" : "*data";
+            w.line(element + (pointer ? "" : " ") + name + ";");
+        },
+        "} " + d.cName() + ";");
 }
 
 bool hasFind(const Declaration& d) {
@@ -91,15 +102,18 @@ void declareStruct(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", d.cName()}};
     bool isClass = d.kind == DKind::Class;
     // A class is a type already.
-    w.block(isClass ? "struct {c}" : "typedef struct {c}", v, [&] {
-        if (d.base())
-            w.line(d.base()->cName() + " base;");
-        else if (isClass)
-            w.line("Ice_Value ice_value;");
-        declareFields(w, d);
-        if (!isClass && !d.base() && d.fields.empty())
-            w.line("Ice_Byte ice_unused; /* C90 has no empty structs */");
-    }, isClass ? "};" : "} " + d.cName() + ";");
+    w.block(
+        isClass ? "struct {c}" : "typedef struct {c}", v,
+        [&] {
+            if (d.base())
+                w.line(d.base()->cName() + " base;");
+            else if (isClass)
+                w.line("Ice_Value ice_value;");
+            declareFields(w, d);
+            if (!isClass && !d.base() && d.fields.empty())
+                w.line("Ice_Byte ice_unused; /* C90 has no empty structs */");
+        },
+        isClass ? "};" : "} " + d.cName() + ";");
 }
 
 void declareType(Writer& w, const Declaration& d) {
@@ -110,10 +124,13 @@ void declareType(Writer& w, const Declaration& d) {
         break;
     }
     case DKind::Dictionary:
-        w.block("typedef struct {c}_Entry", v, [&] {
-            w.line(cVariable(d.key, "key") + ";");
-            w.line(cVariable(d.element, "value") + ";");
-        }, "} " + d.cName() + "_Entry;");
+        w.block(
+            "typedef struct {c}_Entry", v,
+            [&] {
+                w.line(cVariable(d.key, "key") + ";");
+                w.line(cVariable(d.element, "value") + ";");
+            },
+            "} " + d.cName() + "_Entry;");
         declareElements(w, d, d.cName() + "_Entry");
         break;
     default:
@@ -155,17 +172,23 @@ void declareThrown(Writer& w, const CContext& c, const Declaration& d, const Ope
     std::string op = operationName(d, o), type = exceptionType(d, o);
     w.blank();
     w.line("/* What {op} throws: `type` says which member of `u` it is. */", {{"op", op}});
-    w.block("typedef struct " + type, {}, [&] {
-        w.line("enum {");
-        w.line("    " + op + "_none");
-        for (const Declaration* e : family)
-            w.line("    , " + op + "_" + exceptionLabel(family, *e));
-        w.line("} type;");
-        w.block("union", {}, [&] {
+    w.block(
+        "typedef struct " + type, {},
+        [&] {
+            w.line("enum {");
+            w.line("    " + op + "_none");
             for (const Declaration* e : family)
-                w.line(e->cName() + " " + cIdentifier(exceptionLabel(family, *e)) + ";");
-        }, "} u;");
-    }, "} " + type + ";");
+                w.line("    , " + op + "_" + exceptionLabel(family, *e));
+            w.line("} type;");
+            w.block(
+                "union", {},
+                [&] {
+                    for (const Declaration* e : family)
+                        w.line(e->cName() + " " + cIdentifier(exceptionLabel(family, *e)) + ";");
+                },
+                "} u;");
+        },
+        "} " + type + ";");
     w.line("void " + type + "_writeToOutputStream(const " + type + " *v, Ice_OutputStreamPtr os);");
     w.line("/* ICE_USER_EXCEPTION; ICE_UNKNOWN_USER_EXCEPTION: none of these; ICE_MARSHAL. */");
     w.line("Ice_Status " + type + "_readFromInputStream(" + type + " *v, Ice_InputStreamPtr is);");
@@ -174,19 +197,22 @@ void declareThrown(Writer& w, const CContext& c, const Declaration& d, const Ope
 void declareAsync(Writer& w, const Declaration& d, const Operation& o) {
     std::string type = operationName(d, o) + "_Async";
     w.blank();
-    w.block("typedef struct " + type, {}, [&] {
-        w.line("void (*completed)(struct " + type + " *self);");
-        w.line("void *context;");
-        w.line("Ice_Bool done;");
-        w.line("Ice_Status status;");
-        for (const Slot& s : outSlots(o, "")) {
-            if (s.isOptional)
-                w.line("Ice_Bool " + s.has + ";");
-            w.line(cVariable(*s.type, s.value) + ";");
-        }
-        if (!o.throws.empty())
-            w.line(exceptionType(d, o) + " exception;");
-    }, "} " + type + ";");
+    w.block(
+        "typedef struct " + type, {},
+        [&] {
+            w.line("void (*completed)(struct " + type + " *self);");
+            w.line("void *context;");
+            w.line("Ice_Bool done;");
+            w.line("Ice_Status status;");
+            for (const Slot& s : outSlots(o, "")) {
+                if (s.isOptional)
+                    w.line("Ice_Bool " + s.has + ";");
+                w.line(cVariable(*s.type, s.value) + ";");
+            }
+            if (!o.throws.empty())
+                w.line(exceptionType(d, o) + " exception;");
+        },
+        "} " + type + ";");
     w.line(asyncSignature(d, o) + ";");
 }
 
@@ -204,7 +230,8 @@ void declareProxy(Writer& w, const Declaration& d) {
                 w.line(proxySignature(d, o) + ";");
                 continue;
             }
-            Writer::Values names = {{"c", d.cName()}, {"from", from->cName()}, {"op", cOperation(o.name)}};
+            Writer::Values names = {
+                {"c", d.cName()}, {"from", from->cName()}, {"op", cOperation(o.name)}};
             w.line("#define {c}Prx_{op} {from}Prx_{op}", names);
             w.line("#define {c}Prx_{op}_async {from}Prx_{op}_async", names);
         }
@@ -213,20 +240,26 @@ void declareProxy(Writer& w, const Declaration& d) {
 void declareServant(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", d.cName()}};
     w.blank();
-    w.block("typedef struct {c}", v, [&] {
-        w.line("Ice_Object base;");
-        w.line("const struct {c}_Operations *operations;", v);
-    }, "} " + d.cName() + ", *" + d.cName() + "Ptr;");
+    w.block(
+        "typedef struct {c}", v,
+        [&] {
+            w.line("Ice_Object base;");
+            w.line("const struct {c}_Operations *operations;", v);
+        },
+        "} " + d.cName() + ", *" + d.cName() + "Ptr;");
     w.blank();
     w.line("/* A servant's operations; 0 for one that it does not have. */");
-    w.block("typedef struct {c}_Operations", v, [&] {
-        for (const Declaration* base : d.bases)
-            w.line(base->cName() + "_Operations " + base->cName() + "_;");
-        for (const Operation& o : d.operations)
-            w.line(servantSignature(d, o, "(*" + cIdentifier(o.name) + ")") + ";");
-        if (d.bases.empty() && d.operations.empty())
-            w.line("Ice_Byte ice_unused; /* C90 has no empty structs */");
-    }, "} " + d.cName() + "_Operations;");
+    w.block(
+        "typedef struct {c}_Operations", v,
+        [&] {
+            for (const Declaration* base : d.bases)
+                w.line(base->cName() + "_Operations " + base->cName() + "_;");
+            for (const Operation& o : d.operations)
+                w.line(servantSignature(d, o, "(*" + cIdentifier(o.name) + ")") + ";");
+            if (d.bases.empty() && d.operations.empty())
+                w.line("Ice_Byte ice_unused; /* C90 has no empty structs */");
+        },
+        "} " + d.cName() + "_Operations;");
     w.line("extern const Ice_Interface {c}_ice_interface;", v);
     w.line("void {c}_initWith({c}Ptr self, const {c}_Operations *operations);", v);
     w.blank();
@@ -249,8 +282,8 @@ void declareResponses(Writer& w, const Declaration& d) {
         first = false;
         w.line(responseSignature(d, o) + ";");
         if (!o.throws.empty())
-            w.line("Ice_Status " + operationName(d, o) + "_exception(Ice_Reply *reply, const " + exceptionType(d, o) +
-                   " *ex);");
+            w.line("Ice_Status " + operationName(d, o) + "_exception(Ice_Reply *reply, const " +
+                   exceptionType(d, o) + " *ex);");
     }
 }
 
@@ -258,7 +291,8 @@ void declareInterface(Writer& w, const CContext& c, const Declaration& d) {
     if (d.isForward)
         return;
     w.blank();
-    w.line(d.isHardware() ? "/* ---- " + d.id() + ", implemented in hardware ---- */" : "/* ---- " + d.id() + " ---- */");
+    w.line(d.isHardware() ? "/* ---- " + d.id() + ", implemented in hardware ---- */"
+                          : "/* ---- " + d.id() + " ---- */");
     writeDoc(w, d.doc, d.metadata);
     for (const Operation& o : d.operations)
         if (!o.throws.empty())

@@ -10,47 +10,61 @@
 std::string cIdentifier(const std::string& name) {
     static const std::unordered_set<std::string> reserved = {
         // C90, C99
-        "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum",
-        "extern", "float", "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return",
-        "short", "signed", "sizeof", "static", "struct", "switch", "typedef", "union", "unsigned", "void",
-        "volatile", "while",
+        "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else",
+        "enum", "extern", "float", "for", "goto", "if", "inline", "int", "long", "register",
+        "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch", "typedef",
+        "union", "unsigned", "void", "volatile", "while",
         // C++, which may include the header
-        "alignas", "alignof", "and", "and_eq", "asm", "bitand", "bitor", "bool", "catch", "class", "compl",
-        "concept", "const_cast", "constexpr", "decltype", "delete", "dynamic_cast", "explicit", "export",
-        "false", "friend", "mutable", "namespace", "new", "noexcept", "not", "not_eq", "nullptr",
-        "operator", "or", "or_eq", "private", "protected", "public", "reinterpret_cast", "requires",
-        "static_assert", "static_cast", "template", "this", "thread_local", "throw", "true", "try",
-        "typeid", "typename", "using", "virtual", "wchar_t", "xor", "xor_eq",
+        "alignas", "alignof", "and", "and_eq", "asm", "bitand", "bitor", "bool", "catch", "class",
+        "compl", "concept", "const_cast", "constexpr", "decltype", "delete", "dynamic_cast",
+        "explicit", "export", "false", "friend", "mutable", "namespace", "new", "noexcept", "not",
+        "not_eq", "nullptr", "operator", "or", "or_eq", "private", "protected", "public",
+        "reinterpret_cast", "requires", "static_assert", "static_cast", "template", "this",
+        "thread_local", "throw", "true", "try", "typeid", "typename", "using", "virtual", "wchar_t",
+        "xor", "xor_eq",
         // macros of the C library, and of compilers
-        "assert", "errno", "offsetof", "stderr", "stdin", "stdout", "va_arg", "va_end", "va_start", "EOF",
-        "NULL", "linux", "unix",
+        "assert", "errno", "offsetof", "stderr", "stdin", "stdout", "va_arg", "va_end", "va_start",
+        "EOF", "NULL", "linux", "unix",
         // of the generated functions themselves
         "call", "current", "ex", "is", "os", "reply", "result", "self", "status"};
     return reserved.count(name) ? name + "_" : name;
 }
 
 std::string cOperation(const std::string& name) {
-    static const std::unordered_set<std::string> reserved = {"checkedCast", "init", "initWith", "uncheckedCast"};
+    static const std::unordered_set<std::string> reserved = {"checkedCast", "init", "initWith",
+                                                             "uncheckedCast"};
     return reserved.count(name) ? name + "_" : name;
 }
 
 std::string cType(const Type& t) {
     using Kind = Type::Kind;
     switch (t.kind) {
-    case Kind::Void: return "void";
-    case Kind::Bool: return "Ice_Bool";
-    case Kind::Byte: return "Ice_Byte";
-    case Kind::Short: return "Ice_Short";
-    case Kind::Int: return "Ice_Int";
-    case Kind::Long: return "Ice_Long";
-    case Kind::Float: return "Ice_Float";
-    case Kind::Double: return "Ice_Double";
-    case Kind::String: return "Ice_String";
-    case Kind::Proxy: return t.declaration ? t.declaration->cName() + "Prx" : "Ice_ObjectPrx";
+    case Kind::Void:
+        return "void";
+    case Kind::Bool:
+        return "Ice_Bool";
+    case Kind::Byte:
+        return "Ice_Byte";
+    case Kind::Short:
+        return "Ice_Short";
+    case Kind::Int:
+        return "Ice_Int";
+    case Kind::Long:
+        return "Ice_Long";
+    case Kind::Float:
+        return "Ice_Float";
+    case Kind::Double:
+        return "Ice_Double";
+    case Kind::String:
+        return "Ice_String";
+    case Kind::Proxy:
+        return t.declaration ? t.declaration->cName() + "Prx" : "Ice_ObjectPrx";
     case Kind::Named:
-        return t.declaration->cName() + (t.declaration->kind == Declaration::Kind::Class ? " *" : "");
+        return t.declaration->cName() +
+               (t.declaration->kind == Declaration::Kind::Class ? " *" : "");
     case Kind::Value:
-    case Kind::LocalObject: break;
+    case Kind::LocalObject:
+        break;
     }
     return "Ice_Value *";
 }
@@ -83,18 +97,24 @@ std::string cString(const std::string& bytes) {
 std::string cValue(const Literal& v, const Type& type) {
     char text[80];
     switch (v.kind) {
-    case Literal::Kind::None: break;
-    case Literal::Kind::Bool: return v.integer ? "1" : "0";
-    case Literal::Kind::Enumerator: return cEnumerator(*v.owner, v.text);
-    case Literal::Kind::String: return cString(v.text);
+    case Literal::Kind::None:
+        break;
+    case Literal::Kind::Bool:
+        return v.integer ? "1" : "0";
+    case Literal::Kind::Enumerator:
+        return cEnumerator(*v.owner, v.text);
+    case Literal::Kind::String:
+        return cString(v.text);
     case Literal::Kind::Floating:
         std::snprintf(text, sizeof text, "%.17g", v.floating);
-        return std::string(text) + (std::string(text).find_first_of(".en") == std::string::npos ? ".0" : "");
+        return std::string(text) +
+               (std::string(text).find_first_of(".en") == std::string::npos ? ".0" : "");
     case Literal::Kind::Integer:
         if (type.kind == Type::Kind::Long) {
             auto bits = static_cast<uint64_t>(v.integer);
             int64_t high = v.integer >> 32;
-            std::snprintf(text, sizeof text, "{0x%lXU, %s}", static_cast<unsigned long>(bits & 0xFFFFFFFFU),
+            std::snprintf(text, sizeof text, "{0x%lXU, %s}",
+                          static_cast<unsigned long>(bits & 0xFFFFFFFFU),
                           high == INT32_MIN ? "-2147483647 - 1" : std::to_string(high).c_str());
             return text;
         }
@@ -103,6 +123,10 @@ std::string cValue(const Literal& v, const Type& type) {
     return "0";
 }
 
-bool isRuntimeType(const Declaration& d) { return d.id() == "::Ice::Identity"; }
+bool isRuntimeType(const Declaration& d) {
+    return d.id() == "::Ice::Identity";
+}
 
-int statedMaximum(const Declaration& d) { return std::atoi(d.metadataValue("c:max").c_str()); }
+int statedMaximum(const Declaration& d) {
+    return std::atoi(d.metadataValue("c:max").c_str());
+}

@@ -5,6 +5,7 @@
 #include "c_operations.h"
 #include "c_names.h"
 #include <algorithm>
+#include <set>
 
 namespace {
 
@@ -40,18 +41,21 @@ std::vector<Result> results(const Operation& o) {
     return list;
 }
 
-void collect(const Declaration& d, std::vector<const Declaration*>& list) {
+void collect(const Declaration& d, std::set<const Declaration*>& seen,
+             std::vector<const Declaration*>& list) {
+    if (!seen.insert(&d).second)
+        return;
     for (const Declaration* base : d.bases)
-        collect(*base, list);
-    if (std::find(list.begin(), list.end(), &d) == list.end())
-        list.push_back(&d);
+        collect(*base, seen, list);
+    list.push_back(&d);
 }
 
 } // namespace
 
 std::vector<const Declaration*> lineage(const Declaration& interface) {
+    std::set<const Declaration*> seen;
     std::vector<const Declaration*> list;
-    collect(interface, list);
+    collect(interface, seen, list);
     return list;
 }
 
@@ -61,18 +65,22 @@ std::vector<const Declaration*> mayThrow(const Unit& unit, const Operation& o) {
         return list;
     for (const auto& d : unit.declarations)
         if (d->kind == Declaration::Kind::Exception &&
-            std::any_of(o.throws.begin(), o.throws.end(), [&](const Declaration* t) { return d->isA(*t); }))
+            std::any_of(o.throws.begin(), o.throws.end(),
+                        [&](const Declaration* t) { return d->isA(*t); }))
             list.push_back(d.get());
     return list;
 }
 
-std::string exceptionLabel(const std::vector<const Declaration*>& family, const Declaration& exception) {
+std::string exceptionLabel(const std::vector<const Declaration*>& family,
+                           const Declaration& exception) {
     auto same = std::count_if(family.begin(), family.end(),
                               [&](const Declaration* e) { return e->name == exception.name; });
     return same > 1 ? exception.cName() : exception.name;
 }
 
-bool hasResults(const Operation& o) { return !results(o).empty(); }
+bool hasResults(const Operation& o) {
+    return !results(o).empty();
+}
 
 bool isAmd(const Declaration& owner, const Operation& o) {
     return hasMetadata(o.metadata, "amd") || owner.hasMetadata("amd");
@@ -90,11 +98,13 @@ bool sendsClasses(const Operation& o) {
 
 bool returnsClasses(const Operation& o) {
     auto list = results(o);
-    return std::any_of(list.begin(), list.end(), [](const Result& r) { return containsClass(*r.type); });
+    return std::any_of(list.begin(), list.end(),
+                       [](const Result& r) { return containsClass(*r.type); });
 }
 
 bool anyClass(const std::vector<Slot>& slots) {
-    return std::any_of(slots.begin(), slots.end(), [](const Slot& s) { return containsClass(*s.type); });
+    return std::any_of(slots.begin(), slots.end(),
+                       [](const Slot& s) { return containsClass(*s.type); });
 }
 
 bool anyRequiredClass(const std::vector<Slot>& slots) {
@@ -102,7 +112,9 @@ bool anyRequiredClass(const std::vector<Slot>& slots) {
                        [](const Slot& s) { return !s.isOptional && containsClass(*s.type); });
 }
 
-std::string operationName(const Declaration& owner, const Operation& o) { return owner.cName() + "_" + cOperation(o.name); }
+std::string operationName(const Declaration& owner, const Operation& o) {
+    return owner.cName() + "_" + cOperation(o.name);
+}
 
 std::string exceptionType(const Declaration& owner, const Operation& o) {
     return operationName(owner, o) + "_Exception";
@@ -136,16 +148,17 @@ std::string responseParameters(const Operation& o) {
 }
 
 std::string proxySignature(const Declaration& d, const Operation& o) {
-    return "Ice_Status " + d.cName() + "Prx_" + cOperation(o.name) + "(" + d.cName() + "PrxPtr self" + inParameters(o) +
-           outParameters(d, o) + ")";
+    return "Ice_Status " + d.cName() + "Prx_" + cOperation(o.name) + "(" + d.cName() +
+           "PrxPtr self" + inParameters(o) + outParameters(d, o) + ")";
 }
 
 std::string asyncSignature(const Declaration& d, const Operation& o) {
-    return "Ice_Status " + d.cName() + "Prx_" + cOperation(o.name) + "_async(" + d.cName() + "PrxPtr self" +
-           inParameters(o) + ", " + operationName(d, o) + "_Async *call)";
+    return "Ice_Status " + d.cName() + "Prx_" + cOperation(o.name) + "_async(" + d.cName() +
+           "PrxPtr self" + inParameters(o) + ", " + operationName(d, o) + "_Async *call)";
 }
 
-std::string servantSignature(const Declaration& owner, const Operation& o, const std::string& name) {
+std::string servantSignature(const Declaration& owner, const Operation& o,
+                             const std::string& name) {
     std::string list = "Ice_Status " + name + "(" + owner.cName() + "Ptr self" + inParameters(o);
     if (!isAmd(owner, o))
         list += outParameters(owner, o);
@@ -153,7 +166,8 @@ std::string servantSignature(const Declaration& owner, const Operation& o, const
 }
 
 std::string responseSignature(const Declaration& d, const Operation& o) {
-    return "Ice_Status " + operationName(d, o) + "_response(Ice_Reply *reply" + responseParameters(o) + ")";
+    return "Ice_Status " + operationName(d, o) + "_response(Ice_Reply *reply" +
+           responseParameters(o) + ")";
 }
 
 std::vector<Slot> inSlots(const Operation& o) {
@@ -177,7 +191,8 @@ std::vector<Slot> inVariables(const Operation& o) {
 std::vector<Slot> outSlots(const Operation& o, const std::string& object) {
     std::vector<Slot> list;
     for (const Result& r : results(o)) {
-        Slot s{r.type, object + r.name, "&" + object + r.name, r.isOptional, r.tag, object + "has_" + r.name};
+        Slot s{r.type,       object + r.name, "&" + object + r.name,
+               r.isOptional, r.tag,           object + "has_" + r.name};
         if (object == "*") {
             s.value = "*" + r.name;
             s.pointer = r.name;

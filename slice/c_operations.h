@@ -16,7 +16,8 @@ std::vector<const Declaration*> lineage(const Declaration& interface);
 // Of an operation with a throws clause: what it lists, and what this unit derives from that.
 std::vector<const Declaration*> mayThrow(const Unit& unit, const Operation& o);
 // The constant and the union member of an exception in M_I_op_Exception.
-std::string exceptionLabel(const std::vector<const Declaration*>& family, const Declaration& exception);
+std::string exceptionLabel(const std::vector<const Declaration*>& family,
+                           const Declaration& exception);
 
 bool hasResults(const Operation& o);
 bool isAmd(const Declaration& owner, const Operation& o);
@@ -24,7 +25,8 @@ bool isSliced(const Declaration& owner, const Operation& o);
 // Classes among the parameters, or among the results and exceptions.
 bool sendsClasses(const Operation& o);
 bool returnsClasses(const Operation& o);
-// Classes in one of the slots; in one that is not optional: encoding 1.0 has a list of instances then.
+// Classes in one of the slots; in one that is not optional: encoding 1.0 has a list of instances
+// then.
 bool anyClass(const std::vector<Slot>& slots);
 bool anyRequiredClass(const std::vector<Slot>& slots);
 
@@ -32,8 +34,8 @@ bool anyRequiredClass(const std::vector<Slot>& slots);
 std::string operationName(const Declaration& owner, const Operation& o);
 std::string exceptionType(const Declaration& owner, const Operation& o);
 
-// ", Ice_Int a, const M_S *b": in parameters; out parameters and the result as pointers; the same as
-// values to be sent (of a response).
+// ", Ice_Int a, const M_S *b": in parameters; out parameters and the result as pointers; the same
+// as values to be sent (of a response).
 std::string inParameters(const Operation& o);
 std::string outParameters(const Declaration& owner, const Operation& o);
 std::string responseParameters(const Operation& o);
@@ -44,8 +46,8 @@ std::string asyncSignature(const Declaration& d, const Operation& o);
 std::string servantSignature(const Declaration& owner, const Operation& o, const std::string& name);
 std::string responseSignature(const Declaration& d, const Operation& o);
 
-// Parameters as slots. In parameters as the proxy's function has them; out ones behind `object` ("*" for
-// pointers, "call->" for members, "" for variables).
+// Parameters as slots. In parameters as the proxy's function has them; out ones behind `object`
+// ("*" for pointers, "call->" for members, "" for variables).
 std::vector<Slot> inSlots(const Operation& o);
 std::vector<Slot> inVariables(const Operation& o);
 std::vector<Slot> outSlots(const Operation& o, const std::string& object);

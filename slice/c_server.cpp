@@ -9,17 +9,13 @@
 
 namespace {
 
-void collectIds(const Declaration& d, std::set<std::string>& ids) {
-    ids.insert(d.id());
-    for (const Declaration* base : d.bases)
-        collectIds(*base, ids);
-}
-
 // The call of the servant's function, from the variables of the dispatch function.
 std::string servantCall(const Declaration& d, const Operation& o) {
-    std::string call = "status = operations->" + cIdentifier(o.name) + "((" + d.cName() + "Ptr)self";
+    std::string call =
+        "status = operations->" + cIdentifier(o.name) + "((" + d.cName() + "Ptr)self";
     for (const Slot& s : inVariables(o)) {
-        std::string address = isClass(*s.type) ? "(const " + cType(*s.type) + "const *)" + s.pointer : s.pointer;
+        std::string address =
+            isClass(*s.type) ? "(const " + cType(*s.type) + "const *)" + s.pointer : s.pointer;
         if (s.isOptional)
             call += ", " + s.has + " ? " + address + " : 0";
         else
@@ -102,7 +98,8 @@ void dispatchOperation(Writer& w, const CContext& c, const Declaration& d, const
         if (isAmd(d, o)) {
             body.line("(void)os;");
             if (hasResults(o))
-                body.line("return status == ICE_OK ? ICE_UNKNOWN_EXCEPTION : status; /* ICE_LATER was due */");
+                body.line("return status == ICE_OK ? ICE_UNKNOWN_EXCEPTION : status; /* ICE_LATER "
+                          "was due */");
             else
                 body.line("return status;");
         } else {
@@ -133,28 +130,33 @@ void responseFunctions(Writer& w, const Declaration& d, const Operation& o) {
     if (o.throws.empty())
         return;
     w.blank();
-    w.block("Ice_Status {n}_exception(Ice_Reply *reply, const {n}_Exception *ex)", {{"n", operationName(d, o)}}, [&] {
-        begin();
-        w.line(exceptionType(d, o) + "_writeToOutputStream(ex, os);");
-        w.line("return Ice_Reply_end(reply, ICE_USER_EXCEPTION);");
-    });
+    w.block("Ice_Status {n}_exception(Ice_Reply *reply, const {n}_Exception *ex)",
+            {{"n", operationName(d, o)}}, [&] {
+                begin();
+                w.line(exceptionType(d, o) + "_writeToOutputStream(ex, os);");
+                w.line("return Ice_Reply_end(reply, ICE_USER_EXCEPTION);");
+            });
 }
 
 void interfaceTable(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", d.cName()}};
     w.line("static const Ice_Operation operations_{c}[] = {", v);
     for (const Operation& o : d.operations)
-        w.line("    {\"{op}\", dispatch_{n}, {mode}},", {{"op", o.name}, {"n", operationName(d, o)},
-                                                        {"mode", o.idempotent ? "ICE_IDEMPOTENT" : "ICE_NORMAL"}});
+        w.line("    {\"{op}\", dispatch_{n}, {mode}},",
+               {{"op", o.name},
+                {"n", operationName(d, o)},
+                {"mode", o.idempotent ? "ICE_IDEMPOTENT" : "ICE_NORMAL"}});
     w.line("    {0, 0, 0}};");
     if (!d.bases.empty()) {
         w.line("static const Ice_Base bases_{c}[] = {", v);
         for (const Declaration* base : d.bases)
-            w.line("    {&{b}_ice_interface, offsetof({c}_Operations, {b}_)},", {{"c", d.cName()}, {"b", base->cName()}});
+            w.line("    {&{b}_ice_interface, offsetof({c}_Operations, {b}_)},",
+                   {{"c", d.cName()}, {"b", base->cName()}});
         w.line("    {0, 0}};");
     }
     w.line("const Ice_Interface {c}_ice_interface = {operations_{c}, " +
-               std::string(d.bases.empty() ? "0" : "bases_{c}") + "};", v);
+               std::string(d.bases.empty() ? "0" : "bases_{c}") + "};",
+           v);
 }
 
 // The default table: the application's functions, in the shape of the table of operations.
@@ -170,11 +172,13 @@ std::string defaultOperations(const Declaration& top, const Declaration& d) {
 void initFunctions(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", d.cName()}, {"id", d.id()}};
     std::set<std::string> ids = {"::Ice::Object"};
-    collectIds(d, ids);
+    for (const Declaration* from : lineage(d))
+        ids.insert(from->id());
     w.line("static Ice_Status dispatch_{c}(Ice_ObjectPtr self, const Ice_Current *current,", v);
     w.line("        Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {");
     w.line("    const {c}_Operations *operations = ((const {c} *)self)->operations;", v);
-    w.line("    return Ice_Object_dispatch(&{c}_ice_interface, operations, self, current, is, os);", v);
+    w.line("    return Ice_Object_dispatch(&{c}_ice_interface, operations, self, current, is, os);",
+           v);
     w.line("}");
     w.blank();
     w.block("void {c}_initWith({c}Ptr self, const {c}_Operations *operations)", v, [&] {

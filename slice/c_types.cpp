@@ -11,10 +11,14 @@ namespace {
 using Kind = Type::Kind;
 using DKind = Declaration::Kind;
 
-bool isNamed(const Type& t, DKind kind) { return t.kind == Kind::Named && t.declaration->kind == kind; }
+bool isNamed(const Type& t, DKind kind) {
+    return t.kind == Kind::Named && t.declaration->kind == kind;
+}
 
 // Ice_OutputStream_write<word>, Ice_InputStream_read<word>
-std::string streamWord(const Type& t) { return cType(t).substr(4); }
+std::string streamWord(const Type& t) {
+    return cType(t).substr(4);
+}
 
 std::string largestEnumerator(const Declaration& d) {
     int64_t largest = 0;
@@ -27,28 +31,42 @@ std::string largestEnumerator(const Declaration& d) {
 std::string optionalFormat(const Type& t) {
     switch (t.kind) {
     case Kind::Bool:
-    case Kind::Byte: return "F1";
-    case Kind::Short: return "F2";
+    case Kind::Byte:
+        return "F1";
+    case Kind::Short:
+        return "F2";
     case Kind::Int:
-    case Kind::Float: return "F4";
+    case Kind::Float:
+        return "F4";
     case Kind::Long:
-    case Kind::Double: return "F8";
-    case Kind::String: return "VSIZE";
-    case Kind::Named: break;
-    case Kind::Proxy: return "FSIZE";
-    default: return "CLASS";
+    case Kind::Double:
+        return "F8";
+    case Kind::String:
+        return "VSIZE";
+    case Kind::Named:
+        break;
+    case Kind::Proxy:
+        return "FSIZE";
+    default:
+        return "CLASS";
     }
     switch (t.declaration->kind) {
-    case DKind::Enum: return "SIZE";
-    case DKind::Class: return "CLASS";
-    case DKind::Struct: return isVariable(t) ? "FSIZE" : "VSIZE";
-    case DKind::Sequence: return isVariable(t.declaration->element) ? "FSIZE" : "VSIZE";
+    case DKind::Enum:
+        return "SIZE";
+    case DKind::Class:
+        return "CLASS";
+    case DKind::Struct:
+        return isVariable(t) ? "FSIZE" : "VSIZE";
+    case DKind::Sequence:
+        return isVariable(t.declaration->element) ? "FSIZE" : "VSIZE";
     default:
-        return isVariable(t.declaration->key) || isVariable(t.declaration->element) ? "FSIZE" : "VSIZE";
+        return isVariable(t.declaration->key) || isVariable(t.declaration->element) ? "FSIZE"
+                                                                                    : "VSIZE";
     }
 }
 
-// The size that stands before an optional of format VSIZE, or nothing where the value begins with it.
+// The size that stands before an optional of format VSIZE, or nothing where the value begins with
+// it.
 std::string sizeBefore(const Slot& s) {
     const Type& t = *s.type;
     if (optionalFormat(t) != "VSIZE" || t.kind == Kind::String)
@@ -66,7 +84,9 @@ std::string sizeBefore(const Slot& s) {
 
 } // namespace
 
-bool isEnum(const Type& t) { return isNamed(t, DKind::Enum); }
+bool isEnum(const Type& t) {
+    return isNamed(t, DKind::Enum);
+}
 
 bool isClass(const Type& t) {
     return t.kind == Kind::Value || t.kind == Kind::LocalObject || isNamed(t, DKind::Class);
@@ -77,45 +97,13 @@ bool isByPointer(const Type& t) {
 }
 
 int leastWireSize(const Type& t) {
-    switch (t.kind) {
-    case Kind::Short:
-    case Kind::Proxy: return 2;
-    case Kind::Int:
-    case Kind::Float: return 4;
-    case Kind::Long:
-    case Kind::Double: return 8;
-    case Kind::Named:
-        if (t.declaration->kind == DKind::Struct) {
-            int sum = 0;
-            for (const Field& f : t.declaration->fields)
-                sum += leastWireSize(f.type);
-            return sum;
-        }
-        return 1;
-    default: return 1;
-    }
+    return factsOf(t).leastWireSize;
 }
-
 bool isVariable(const Type& t) {
-    if (t.kind == Kind::String || t.kind == Kind::Proxy || isClass(t))
-        return true;
-    if (t.kind != Kind::Named)
-        return false;
-    if (t.declaration->kind != DKind::Struct)
-        return true;
-    return std::any_of(t.declaration->fields.begin(), t.declaration->fields.end(),
-                       [](const Field& f) { return isVariable(f.type); });
+    return factsOf(t).isVariable;
 }
-
 bool containsClass(const Type& t) {
-    if (isClass(t))
-        return true;
-    if (t.kind != Kind::Named)
-        return false;
-    const Declaration& d = *t.declaration;
-    if (d.kind == DKind::Sequence || d.kind == DKind::Dictionary)
-        return containsClass(d.element);
-    return std::any_of(d.fields.begin(), d.fields.end(), [](const Field& f) { return containsClass(f.type); });
+    return factsOf(t).hasClass;
 }
 
 std::string cVariable(const Type& t, const std::string& name) {
@@ -125,7 +113,8 @@ std::string cVariable(const Type& t, const std::string& name) {
 
 std::string writeStatement(const Type& t, const std::string& value, const std::string& pointer) {
     if (isEnum(t))
-        return "Ice_OutputStream_writeEnum(os, (Ice_Int)" + value + ", " + largestEnumerator(*t.declaration) + ");";
+        return "Ice_OutputStream_writeEnum(os, (Ice_Int)" + value + ", " +
+               largestEnumerator(*t.declaration) + ");";
     if (t.kind == Kind::Proxy)
         return "Ice_OutputStream_writePrx(os, " + pointer + ");";
     if (isClass(t))
@@ -137,7 +126,8 @@ std::string writeStatement(const Type& t, const std::string& value, const std::s
 
 std::string readStatement(const Type& t, const std::string& value, const std::string& pointer) {
     if (isEnum(t))
-        return value + " = (" + cType(t) + ")Ice_InputStream_readEnum(is, " + largestEnumerator(*t.declaration) + ");";
+        return value + " = (" + cType(t) + ")Ice_InputStream_readEnum(is, " +
+               largestEnumerator(*t.declaration) + ");";
     if (t.kind == Kind::Proxy)
         return "Ice_InputStream_readPrx(is, 0, " + pointer + ");";
     if (isClass(t)) {
@@ -167,8 +157,8 @@ void writeSlots(Writer& w, const std::vector<Slot>& slots) {
             continue;
         }
         std::string format = optionalFormat(*s.type), size = sizeBefore(s);
-        std::string condition = "if (" + s.has + " && Ice_OutputStream_writeOptional(os, " + std::to_string(s.tag) +
-                                ", ICE_OPTIONAL_" + format + "))";
+        std::string condition = "if (" + s.has + " && Ice_OutputStream_writeOptional(os, " +
+                                std::to_string(s.tag) + ", ICE_OPTIONAL_" + format + "))";
         if (format == "FSIZE") {
             w.block(condition, {}, [&] {
                 w.line("Ice_Int at = Ice_OutputStream_startSize(os);");
@@ -195,8 +185,9 @@ void readSlots(Writer& w, const std::vector<Slot>& slots) {
             continue;
         }
         std::string format = optionalFormat(*s.type);
-        w.line(s.has + " = Ice_InputStream_readOptional(is, " + std::to_string(s.tag) + ", ICE_OPTIONAL_" + format + ");");
-        std::string skip = format == "FSIZE"           ? "(void)Ice_InputStream_readInt(is); /* its size */"
+        w.line(s.has + " = Ice_InputStream_readOptional(is, " + std::to_string(s.tag) +
+               ", ICE_OPTIONAL_" + format + ");");
+        std::string skip = format == "FSIZE" ? "(void)Ice_InputStream_readInt(is); /* its size */"
                            : !sizeBefore(s).empty() ? "(void)Ice_InputStream_readSize(is);"
                                                     : "";
         if (skip.empty()) {

@@ -31,7 +31,7 @@ struct Slot {
     std::string pointer; // its address
     bool isOptional = false;
     int tag = 0;
-    std::string has;     // is it there? written: a condition; read: an lvalue
+    std::string has; // is it there? written: a condition; read: an lvalue
 };
 
 // Required ones in their order, then the optional ones by tag, as they are on the wire.

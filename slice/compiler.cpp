@@ -6,12 +6,14 @@
 #include "lexer.h"
 #include "parser.h"
 
-Unit compileUnit(const std::string& text, const std::string& file, NameRules rules, Diagnostics& diagnostics) {
+Unit compileUnit(const std::string& text, const std::string& file, NameRules rules,
+                 Diagnostics& diagnostics) {
     return parse(tokenize(text, file, diagnostics), file, rules, diagnostics);
 }
 
-std::optional<std::vector<GeneratedFile>> compileToC(const std::string& text, const std::string& file,
-                                                     NameRules rules, const CFileNames& names,
+std::optional<std::vector<GeneratedFile>> compileToC(const std::string& text,
+                                                     const std::string& file, NameRules rules,
+                                                     const CFileNames& names,
                                                      Diagnostics& diagnostics) {
     Unit unit = compileUnit(text, file, rules, diagnostics);
     if (diagnostics.errors() == 0)

@@ -10,10 +10,12 @@
 #include <optional>
 
 // The unit of a preprocessed file; errors are in `diagnostics`.
-Unit compileUnit(const std::string& text, const std::string& file, NameRules rules, Diagnostics& diagnostics);
+Unit compileUnit(const std::string& text, const std::string& file, NameRules rules,
+                 Diagnostics& diagnostics);
 // The C of it; nothing if there were errors.
-std::optional<std::vector<GeneratedFile>> compileToC(const std::string& text, const std::string& file,
-                                                     NameRules rules, const CFileNames& names,
+std::optional<std::vector<GeneratedFile>> compileToC(const std::string& text,
+                                                     const std::string& file, NameRules rules,
+                                                     const CFileNames& names,
                                                      Diagnostics& diagnostics);
 
 #endif

@@ -32,7 +32,8 @@ namespace {
 
 // The preprocessor makes paths absolute; below the current folder they are written without it.
 std::string shown(const std::string& file) {
-    fs::path path = fs::weakly_canonical(file), relative = path.lexically_relative(fs::current_path());
+    fs::path path = fs::weakly_canonical(file),
+             relative = path.lexically_relative(fs::current_path());
     return relative.empty() || *relative.begin() == ".." ? path.string() : relative.string();
 }
 

@@ -29,7 +29,9 @@ public:
     void error(const Location& at, const std::string& text);
     void warning(const Location& at, const std::string& text, Category category = General);
     // No warnings of this category (General: none at all) from this file on.
-    void suppress(std::string_view file, Category category) { suppressed_.insert({file, category}); }
+    void suppress(std::string_view file, Category category) {
+        suppressed_.insert({file, category});
+    }
 
     int errors() const { return errors_; }
     // A copy that lives as long as this object.

@@ -57,7 +57,9 @@ std::vector<std::string> docLines(const std::string& doc) {
         std::string line = doc.substr(at, end - at);
         at = end + 1;
         size_t begin = line.find_first_not_of(" \t*/\r");
-        line = begin == std::string::npos ? "" : line.substr(begin, line.find_last_not_of(" \t\r") - begin + 1);
+        line = begin == std::string::npos
+                   ? ""
+                   : line.substr(begin, line.find_last_not_of(" \t\r") - begin + 1);
         plainLinks(line);
         plainTag(line);
         replaceAll(line, "*/", "* /");
@@ -74,7 +76,8 @@ void writeDoc(Writer& w, const std::string& doc, const std::vector<std::string>&
     std::vector<std::string> lines = docLines(doc);
     for (const std::string& m : metadata)
         if (m.compare(0, 9, "deprecate") == 0)
-            lines.push_back("Deprecated" + (m.size() > 10 ? ": " + m.substr(10) : std::string(".")));
+            lines.push_back("Deprecated" +
+                            (m.size() > 10 ? ": " + m.substr(10) : std::string(".")));
     if (lines.empty())
         return;
     for (size_t i = 0; i < lines.size(); ++i) {

@@ -9,9 +9,15 @@
 
 namespace {
 
-bool isDigit(char c) { return c >= '0' && c <= '9'; }
-bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool isSpace(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+bool isDigit(char c) {
+    return c >= '0' && c <= '9';
+}
+bool isLetter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+bool isSpace(char c) {
+    return c == ' ' || (c >= '\t' && c <= '\r');
+}
 
 class Lexer {
 public:
@@ -83,7 +89,8 @@ private:
     void lineComment() {
         size_t end = std::min(text_.find('\n', position_), text_.size());
         if (peek(2) == '/') { // lines of them are one comment
-            size_t begin = doc_.empty() ? position_ + 3 : static_cast<size_t>(doc_.data() - text_.data());
+            size_t begin =
+                doc_.empty() ? position_ + 3 : static_cast<size_t>(doc_.data() - text_.data());
             doc_ = text_.substr(begin, end - begin);
         }
         skipTo(end);
@@ -129,7 +136,8 @@ private:
         isHex = peek() == '0' && (peek(1) == 'x' || peek(1) == 'X');
         while (isLetter(peek()) || isDigit(peek()) || peek() == '.') {
             bool exponent = !isHex && (peek() == 'e' || peek() == 'E');
-            isFloat = isFloat || peek() == '.' || exponent || (!isHex && (peek() == 'f' || peek() == 'F'));
+            isFloat = isFloat || peek() == '.' || exponent ||
+                      (!isHex && (peek() == 'f' || peek() == 'F'));
             advance();
             if (exponent && (peek() == '+' || peek() == '-'))
                 advance();
@@ -168,13 +176,15 @@ private:
         advance();
         if ((c == ':' || c == '[' || c == ']') && peek() == c)
             advance();
-        if (position_ == begin + 1 && std::string_view("{}()[];:,*=<>").find(c) == std::string_view::npos) {
+        if (position_ == begin + 1 &&
+            std::string_view("{}()[];:,*=<>").find(c) == std::string_view::npos) {
             auto u = static_cast<unsigned char>(c);
             if (u >= 0xC0) // the whole of a character of UTF-8
                 while ((static_cast<unsigned char>(peek()) & 0xC0) == 0x80)
                     ++position_;
-            std::string shown = u > 32 && u != 127 ? std::string(text_.substr(begin, position_ - begin))
-                                                   : "code " + std::to_string(u);
+            std::string shown = u > 32 && u != 127
+                                    ? std::string(text_.substr(begin, position_ - begin))
+                                    : "code " + std::to_string(u);
             diagnostics_.error(at, "character '" + shown + "' has no meaning in Slice");
         } else {
             add(Token::Kind::Symbol, begin, at);
@@ -191,6 +201,7 @@ private:
 
 } // namespace
 
-std::vector<Token> tokenize(std::string_view text, std::string_view file, Diagnostics& diagnostics) {
+std::vector<Token> tokenize(std::string_view text, std::string_view file,
+                            Diagnostics& diagnostics) {
     return Lexer(text, file, diagnostics).run();
 }

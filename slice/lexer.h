@@ -15,7 +15,7 @@ struct Token {
     std::string_view text; // as written; of a string, what stands between the quotes
     std::string_view doc;  // the doc comment before it, without /** and */
     Location at;
-    bool escaped;          // identifier written with a backslash
+    bool escaped; // identifier written with a backslash
 };
 
 // Tokens point into `text`. The last one is End.

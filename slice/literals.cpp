@@ -63,7 +63,8 @@ private:
             char c = text_[position_];
             if (hex ? !isHex(c) : c < '0' || c > '7')
                 break;
-            v = v * (hex ? 16 : 8) + static_cast<uint32_t>(c <= '9' ? c - '0' : (c | 32) - 'a' + 10);
+            v = v * (hex ? 16 : 8) +
+                static_cast<uint32_t>(c <= '9' ? c - '0' : (c | 32) - 'a' + 10);
         }
         return v;
     }
@@ -88,7 +89,8 @@ private:
             size_t wanted = c == 'u' ? 4 : 8;
             uint32_t v = digits(wanted, true, count);
             if (count < wanted)
-                error("a universal character name has " + std::to_string(wanted) + " hexadecimal digits");
+                error("a universal character name has " + std::to_string(wanted) +
+                      " hexadecimal digits");
             else if ((v >= 0xD800 && v <= 0xDFFF) || v > 0x10FFFF)
                 error("no character has this code");
             else
@@ -127,7 +129,8 @@ int64_t integerValue(const Token& token, Diagnostics& diagnostics) {
 
 double floatingValue(const Token& token, Diagnostics& diagnostics) {
     std::string text(token.text);
-    if (!text.empty() && (text.back() == 'f' || text.back() == 'F') && text.find_first_of("xX") == std::string::npos)
+    if (!text.empty() && (text.back() == 'f' || text.back() == 'F') &&
+        text.find_first_of("xX") == std::string::npos)
         text.pop_back();
     char* end = nullptr;
     errno = 0;
@@ -137,7 +140,8 @@ double floatingValue(const Token& token, Diagnostics& diagnostics) {
         return 0;
     }
     if (errno == ERANGE) {
-        diagnostics.error(token.at, "number '" + text + (std::fabs(v) > 1 ? "' is too large" : "' is too small"));
+        diagnostics.error(token.at, "number '" + text +
+                                        (std::fabs(v) > 1 ? "' is too large" : "' is too small"));
         return 0;
     }
     return v;

@@ -16,7 +16,8 @@ namespace {
 
 struct Options {
     std::vector<std::string> files, includes, defines, undefines;
-    std::string outputDir = ".", includeDir, headerExtension = "h", sourceExtension = "c", dependFile;
+    std::string outputDir = ".", includeDir, headerExtension = "h", sourceExtension = "c",
+                dependFile;
     bool preprocessOnly = false, depend = false, dependXml = false, validate = false;
     NameRules rules;
 };
@@ -51,7 +52,8 @@ bool save(const std::vector<GeneratedFile>& files, const std::string& directory)
     for (const GeneratedFile& f : files)
         fs::rename(fs::path(directory) / (f.name + ".tmp"), fs::path(directory) / f.name, error);
     if (error)
-        std::cerr << "slice2c: error: cannot write into '" << directory << "': " << error.message() << "\n";
+        std::cerr << "slice2c: error: cannot write into '" << directory << "': " << error.message()
+                  << "\n";
     return !error;
 }
 
@@ -96,7 +98,8 @@ bool compile(const std::string& file, const Options& o, Dependencies& dependenci
 void describe(CLI::App& app, Options& o) {
     app.add_option("files", o.files, "Slice files");
     app.add_option("-I", o.includes, "folder to look for #include files")->allow_extra_args(false);
-    app.add_option("-D", o.defines, "define a preprocessor symbol: NAME or NAME=VALUE")->allow_extra_args(false);
+    app.add_option("-D", o.defines, "define a preprocessor symbol: NAME or NAME=VALUE")
+        ->allow_extra_args(false);
     app.add_option("-U", o.undefines, "forget a preprocessor symbol")->allow_extra_args(false);
     app.add_flag("-E", o.preprocessOnly, "print what the preprocessor makes, generate nothing");
     app.add_option("--output-dir", o.outputDir, "where the generated files go");
@@ -134,7 +137,8 @@ int main(int argc, char** argv) {
     int failures = 0;
     for (const std::string& file : o.files)
         failures += !compile(file, o, dependencies);
-    if ((o.depend || o.dependXml) && failures == 0 && !dependencies.print(o.dependXml, o.dependFile))
+    if ((o.depend || o.dependXml) && failures == 0 &&
+        !dependencies.print(o.dependXml, o.dependFile))
         ++failures;
     return failures ? 1 : 0;
 }

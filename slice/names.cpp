@@ -8,11 +8,14 @@
 namespace {
 
 constexpr std::string_view keywords[] = {
-    "module", "class", "interface", "exception", "struct", "sequence", "dictionary", "enum", "out",
-    "extends", "implements", "throws", "void", "byte", "bool", "short", "int", "long", "float", "double",
-    "string", "Object", "LocalObject", "local", "const", "false", "true", "idempotent", "optional", "Value"};
+    "module", "class",   "interface",  "exception",  "struct",   "sequence", "dictionary",  "enum",
+    "out",    "extends", "implements", "throws",     "void",     "byte",     "bool",        "short",
+    "int",    "long",    "float",      "double",     "string",   "Object",   "LocalObject", "local",
+    "const",  "false",   "true",       "idempotent", "optional", "Value"};
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; }
+char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+}
 
 bool equalsIgnoringCase(std::string_view a, std::string_view b) {
     if (a.size() != b.size())
@@ -39,7 +42,8 @@ bool isKeyword(std::string_view word) {
     return false;
 }
 
-void checkName(std::string_view name, const NameRules& rules, const Location& at, Diagnostics& diagnostics) {
+void checkName(std::string_view name, const NameRules& rules, const Location& at,
+               Diagnostics& diagnostics) {
     std::string quoted = "'" + std::string(name) + "'";
     for (std::string_view suffix : {"Helper", "Holder", "Prx", "Ptr"})
         if (name.size() >= suffix.size() && name.substr(name.size() - suffix.size()) == suffix)
@@ -52,9 +56,11 @@ void checkName(std::string_view name, const NameRules& rules, const Location& at
     else if (name.find("__") != std::string_view::npos)
         diagnostics.error(at, "identifier " + quoted + " has two underscores in a row");
     else if (name.find('_') != std::string_view::npos && !rules.underscore)
-        diagnostics.error(at, "identifier " + quoted +
-                                  " has an underscore; allow them with [[\"underscore\"]] or --underscore");
+        diagnostics.error(
+            at, "identifier " + quoted +
+                    " has an underscore; allow them with [[\"underscore\"]] or --underscore");
     if (name.size() > 2 && equalsIgnoringCase(name.substr(0, 3), "ice") && !rules.icePrefix)
-        diagnostics.error(at, "identifier " + quoted + ": the prefix '" + std::string(name.substr(0, 3)) +
+        diagnostics.error(at, "identifier " + quoted + ": the prefix '" +
+                                  std::string(name.substr(0, 3)) +
                                   "' is reserved; allow it with [[\"ice-prefix\"]] or --ice");
 }

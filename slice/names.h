@@ -17,7 +17,8 @@ struct NameRules {
 bool isKeyword(std::string_view word);
 
 // Says what is wrong with the name of something that is declared.
-void checkName(std::string_view name, const NameRules& rules, const Location& at, Diagnostics& diagnostics);
+void checkName(std::string_view name, const NameRules& rules, const Location& at,
+               Diagnostics& diagnostics);
 
 std::string lowerCase(std::string_view text);
 

@@ -66,7 +66,8 @@ std::string Parser::name(const std::string& what) {
         fail(what);
     std::string_view text = token().text;
     if (!token().escaped && isKeyword(text))
-        fail(what + " ('" + std::string(text) + "' is a keyword; write '\\" + std::string(text) + "')");
+        fail(what + " ('" + std::string(text) + "' is a keyword; write '\\" + std::string(text) +
+             "')");
     NameRules rules = rules_;
     if (!isMain(token().at.file))
         rules = {true, true}; // who includes a file does not answer for its names
@@ -108,7 +109,9 @@ void Parser::recover() {
     }
 }
 
-std::string Parser::doc() { return std::string(token().doc); }
+std::string Parser::doc() {
+    return std::string(token().doc);
+}
 
 // ---- files and metadata
 
@@ -167,8 +170,8 @@ void Parser::fileMetadata() {
 // ---- definitions
 
 void Parser::definition() {
-    static const char* const expected =
-        "a definition: module, enum, struct, sequence, dictionary, class, interface, exception or const";
+    static const char* const expected = "a definition: module, enum, struct, sequence, dictionary, "
+                                        "class, interface, exception or const";
     while (isSymbol("[["))
         fileMetadata();
     if (at(Token::Kind::End))
@@ -202,11 +205,14 @@ void Parser::module() {
     bool isNew = false;
     Symbol* symbol = symbols_.declare(scopeId_, called, begin, isNew);
     if (symbol && symbol->declaration)
-        error(begin, "'" + called + "' is declared as " + kindName(symbol->declaration->kind) + " already, at line " +
-                         std::to_string(symbol->at.line));
+        error(begin, "'" + called + "' is declared as " + kindName(symbol->declaration->kind) +
+                         " already, at line " + std::to_string(symbol->at.line));
     for (const std::string& around : scope_)
         if (lowerCase(around) == lowerCase(called))
-            error(begin, "module '" + called + "' must differ from the module around it, '" + around + "'");
+            error(begin, "module '" + called + "' must differ from the module around it, '" +
+                             around + "'");
+    if (scope_.size() == 100)
+        fail("at most 100 modules within one another");
     expect("{");
     scope_.push_back(called);
     scopeId_ += "::" + called;
@@ -259,22 +265,24 @@ Declaration& Parser::declareType(Declaration::Kind kind, bool mayBeForward) {
     }
     Declaration* earlier = symbol->declaration;
     if (!earlier) {
-        error(begin, "'" + called + "' is a module already, at line " + std::to_string(symbol->at.line));
+        error(begin,
+              "'" + called + "' is a module already, at line " + std::to_string(symbol->at.line));
         return d;
     }
     if (earlier->kind != kind || !mayBeForward || (!earlier->isForward && !isSymbol(";"))) {
-        error(begin, "'" + called + "' is defined already, as " + kindName(earlier->kind) + " at line " +
-                         std::to_string(earlier->at.line));
+        error(begin, "'" + called + "' is defined already, as " + kindName(earlier->kind) +
+                         " at line " + std::to_string(earlier->at.line));
         return d;
     }
     if (earlier->isLocal != d.isLocal)
-        error(begin, "'" + called + "' is " + (d.isLocal ? "" : "not ") + "local here, unlike at line " +
-                         std::to_string(earlier->at.line));
+        error(begin, "'" + called + "' is " + (d.isLocal ? "" : "not ") +
+                         "local here, unlike at line " + std::to_string(earlier->at.line));
     if (isSymbol(";")) { // declared once more
         unit_.declarations.pop_back();
         return *earlier;
     }
-    // The definition takes the place that others refer to; the source's order stays by moving it back.
+    // The definition takes the place that others refer to; the source's order stays by moving it
+    // back.
     auto it = std::find_if(unit_.declarations.begin(), unit_.declarations.end(),
                            [&](const auto& p) { return p.get() == earlier; });
     *earlier = std::move(d);

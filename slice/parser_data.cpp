@@ -23,9 +23,11 @@ void Parser::enumeration() {
         for (const Enumerator& other : d.enumerators) {
             isTaken = isTaken || lowerCase(other.name) == lowerCase(e.name);
             if (lowerCase(other.name) == lowerCase(e.name))
-                error(e.at, "enumerator '" + e.name + "' is there already, as '" + other.name + "'");
+                error(e.at,
+                      "enumerator '" + e.name + "' is there already, as '" + other.name + "'");
             else if (other.value == e.value)
-                error(e.at, "enumerator '" + e.name + "' has the same value as '" + other.name + "'");
+                error(e.at,
+                      "enumerator '" + e.name + "' has the same value as '" + other.name + "'");
         }
         d.enumerators.push_back(e);
         bool isNew = false;
@@ -41,6 +43,7 @@ void Parser::enumeration() {
     }
     expect("}");
     accept(";");
+    d.complete();
     if (d.enumerators.empty())
         error(d.at, "an enum has at least one enumerator");
 }
@@ -50,6 +53,7 @@ void Parser::structure() {
     if (isSymbol(";"))
         fail("'{': a struct cannot be declared forward");
     braces(d, [&] { member(d, false); });
+    d.complete();
     if (d.fields.empty())
         error(d.at, "a struct has at least one member");
 }
@@ -65,6 +69,7 @@ void Parser::exception() {
 
 void Parser::classDefinition() {
     Declaration& d = declareType(Declaration::Kind::Class, true);
+    d.complete();
     if (accept(";"))
         return;
     if (accept("(")) {
@@ -72,7 +77,8 @@ void Parser::classDefinition() {
         d.compactId = number("a class's compact id", 0);
         auto [it, isNew] = compactIds_.emplace(d.compactId, d.id());
         if (!isNew)
-            error(begin, "compact id " + std::to_string(d.compactId) + " is that of '" + it->second + "'");
+            error(begin,
+                  "compact id " + std::to_string(d.compactId) + " is that of '" + it->second + "'");
         expect(")");
     }
     if (acceptWord("extends"))
@@ -105,7 +111,8 @@ void Parser::member(Declaration& d, bool mayBeOptional) {
     }
     if (isClass && (isIdempotent || returnsNothing || isSymbol("(", 1))) {
         if (!d.isLocal && d.operations.empty())
-            diagnostics_.warning(begin, "classes with operations are deprecated", Diagnostics::Deprecated);
+            diagnostics_.warning(begin, "classes with operations are deprecated",
+                                 Diagnostics::Deprecated);
         position_ = start;
         return operation(d);
     }
@@ -140,7 +147,8 @@ void Parser::checkMember(const Declaration& d, const Field& f) {
                 error(f.at, "member '" + f.name + "' is there already" +
                                 (from == &d ? "" : ", in the base '" + from->id() + "'"));
             else if (lowerCase(other.name) == called)
-                error(f.at, "member '" + f.name + "' differs in capitals only from '" + other.name + "'");
+                error(f.at,
+                      "member '" + f.name + "' differs in capitals only from '" + other.name + "'");
             if (from == &d && f.isOptional && other.isOptional && other.tag == f.tag)
                 error(f.at, "tag " + std::to_string(f.tag) + " is that of '" + other.name + "'");
         }
@@ -156,6 +164,7 @@ void Parser::sequence() {
     d.element = element;
     if (element.kind == Type::Kind::Void)
         error(begin, "a sequence of void makes no sense");
+    d.complete();
     checkLocal(element, d.isLocal, "sequence '" + d.name + "'", begin);
     expect(";");
 }
@@ -173,16 +182,17 @@ void Parser::dictionary() {
     Declaration& d = declareType(Declaration::Kind::Dictionary, false);
     d.key = key;
     d.element = value;
-    bool usesSequence = false;
-    if (!isLegalKey(key, usesSequence))
+    if (!factsOf(key).isKey)
         error(keyAt, "dictionary '" + d.name + "' cannot have keys of type '" + typeName(key) +
                          "': only bool, integers, strings, enums and structs of them");
-    else if (usesSequence)
-        diagnostics_.warning(keyAt, "sequences in dictionary keys are deprecated", Diagnostics::Deprecated);
+    else if (factsOf(key).hasSequence)
+        diagnostics_.warning(keyAt, "sequences in dictionary keys are deprecated",
+                             Diagnostics::Deprecated);
     if (value.kind == Type::Kind::Void)
         error(valueAt, "a dictionary's value cannot be void");
     checkLocal(key, d.isLocal, "dictionary '" + d.name + "'", keyAt);
     checkLocal(value, d.isLocal, "dictionary '" + d.name + "'", valueAt);
+    d.complete();
     expect(";");
 }
 

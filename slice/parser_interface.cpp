@@ -12,15 +12,18 @@ std::vector<const Declaration*> Parser::baseList(const Declaration& d, Declarati
     do {
         Location begin = token().at;
         if (isWord("Object") || isWord("Value")) {
-            error(begin, "'" + std::string(token().text) + "' is the base of all that have none; leave it out");
+            error(begin, "'" + std::string(token().text) +
+                             "' is the base of all that have none; leave it out");
             ++position_;
             continue;
         }
         std::string written = scopedName(what);
         Symbol* s = resolve(written, begin);
-        const Declaration* base = s && s->kind == Symbol::Kind::Declaration ? s->declaration : nullptr;
+        const Declaration* base =
+            s && s->kind == Symbol::Kind::Declaration ? s->declaration : nullptr;
         if (!base || base->kind != wanted) {
-            error(begin, "'" + written + "' is not " + (wanted == Declaration::Kind::Class ? "a " : "an ") +
+            error(begin, "'" + written + "' is not " +
+                             (wanted == Declaration::Kind::Class ? "a " : "an ") +
                              kindName(wanted));
         } else if (base->isForward) {
             error(begin, "'" + written + "' is declared, but not defined yet");
@@ -39,24 +42,37 @@ std::vector<const Declaration*> Parser::baseList(const Declaration& d, Declarati
 
 namespace {
 
-void allOperations(const Declaration& d, std::vector<std::pair<const Operation*, const Declaration*>>& list) {
+using OwnedOperation = std::pair<const Operation*, const Declaration*>;
+
+void collect(const Declaration& d, std::set<const Declaration*>& seen,
+             std::vector<OwnedOperation>& list) {
+    if (!seen.insert(&d).second)
+        return;
     for (const Declaration* base : d.bases)
-        allOperations(*base, list);
+        collect(*base, seen, list);
     for (const Operation& o : d.operations)
         list.push_back({&o, &d});
+}
+
+// The interface's own and those it inherits, each once.
+std::vector<OwnedOperation> allOperations(const Declaration& d) {
+    std::set<const Declaration*> seen;
+    std::vector<OwnedOperation> list;
+    collect(d, seen, list);
+    return list;
 }
 
 } // namespace
 
 // Two bases must not bring different operations of one name.
 void Parser::checkBases(const Declaration& d) {
-    std::vector<std::pair<const Operation*, const Declaration*>> list;
-    allOperations(d, list);
+    std::vector<OwnedOperation> list = allOperations(d);
     for (size_t i = 0; i < list.size(); ++i)
         for (size_t j = 0; j < i; ++j)
-            if (list[i].first != list[j].first && lowerCase(list[i].first->name) == lowerCase(list[j].first->name)) {
-                error(d.at, "'" + d.name + "' inherits operation '" + list[i].first->name + "' twice: from '" +
-                                list[j].second->id() + "' and '" + list[i].second->id() + "'");
+            if (lowerCase(list[i].first->name) == lowerCase(list[j].first->name)) {
+                error(d.at, "'" + d.name + "' inherits operation '" + list[i].first->name +
+                                "' twice: from '" + list[j].second->id() + "' and '" +
+                                list[i].second->id() + "'");
                 return;
             }
 }
@@ -102,16 +118,16 @@ void Parser::checkOperation(const Declaration& d, const Operation& o) {
     std::string called = lowerCase(o.name);
     (void)symbols_.hasChanged(d.id(), o.name, o.at);
     if (called == lowerCase(d.name))
-        error(o.at, "operation '" + o.name + "' must differ from the name of its " + kindName(d.kind));
-    std::vector<std::pair<const Operation*, const Declaration*>> list;
-    allOperations(d, list);
-    for (const auto& [other, from] : list) {
+        error(o.at,
+              "operation '" + o.name + "' must differ from the name of its " + kindName(d.kind));
+    for (const auto& [other, from] : allOperations(d)) {
         if (other->name == o.name)
             error(o.at, "operation '" + o.name + "' is there already" +
                             (from == &d ? "" : ", in the base '" + from->id() + "'") +
                             "; Slice has no overloading");
         else if (lowerCase(other->name) == called)
-            error(o.at, "operation '" + o.name + "' differs in capitals only from '" + other->name + "'");
+            error(o.at,
+                  "operation '" + o.name + "' differs in capitals only from '" + other->name + "'");
     }
 }
 
@@ -165,7 +181,8 @@ void Parser::throwsClause(Operation& o, const Declaration& owner) {
             continue;
         }
         if (s->declaration->isLocal && !owner.isLocal)
-            error(begin, "operation '" + o.name + "' cannot throw the local exception '" + written + "'");
+            error(begin,
+                  "operation '" + o.name + "' cannot throw the local exception '" + written + "'");
         if (std::find(o.throws.begin(), o.throws.end(), s->declaration) != o.throws.end())
             error(begin, "'" + written + "' is listed twice");
         else

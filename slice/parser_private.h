@@ -81,7 +81,8 @@ private:
     void parameters(Operation& o, const Declaration& owner);
     void throwsClause(Operation& o, const Declaration& owner);
     void checkOperation(const Declaration& d, const Operation& o);
-    std::vector<const Declaration*> baseList(const Declaration& d, Declaration::Kind wanted, bool many);
+    std::vector<const Declaration*> baseList(const Declaration& d, Declaration::Kind wanted,
+                                             bool many);
     void checkBases(const Declaration& d);
 
     // ---- types and values (parser_types.cpp)
@@ -95,7 +96,6 @@ private:
     Symbol* resolve(const std::string& written, const Location& at);
     Symbol* resolveValue(const std::string& written, const Location& at);
     void checkLocal(const Type& type, bool local, const std::string& what, const Location& at);
-    bool isLegalKey(const Type& type, bool& usesSequence) const;
 
     const std::vector<Token>& tokens_;
     std::string mainFile_;
@@ -105,7 +105,8 @@ private:
     size_t position_ = 0;
     std::vector<std::string> scope_;
     std::string scopeId_; // "::A::B"
-    std::string user_;    // the type around the token: it uses names on its own account, not the module's
+    std::string
+        user_; // the type around the token: it uses names on its own account, not the module's
     std::map<std::string_view, bool> isMain_;
     std::set<std::string_view> begun_; // files whose definitions have begun
     std::map<int, std::string> compactIds_;

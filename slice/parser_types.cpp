@@ -12,10 +12,17 @@ namespace {
 
 using Kind = Type::Kind;
 
-const std::pair<std::string_view, Kind> basicTypes[] = {
-    {"void", Kind::Void}, {"bool", Kind::Bool},   {"byte", Kind::Byte},     {"short", Kind::Short},
-    {"int", Kind::Int},   {"long", Kind::Long},   {"float", Kind::Float},   {"double", Kind::Double},
-    {"string", Kind::String}, {"Value", Kind::Value}, {"LocalObject", Kind::LocalObject}};
+const std::pair<std::string_view, Kind> basicTypes[] = {{"void", Kind::Void},
+                                                        {"bool", Kind::Bool},
+                                                        {"byte", Kind::Byte},
+                                                        {"short", Kind::Short},
+                                                        {"int", Kind::Int},
+                                                        {"long", Kind::Long},
+                                                        {"float", Kind::Float},
+                                                        {"double", Kind::Double},
+                                                        {"string", Kind::String},
+                                                        {"Value", Kind::Value},
+                                                        {"LocalObject", Kind::LocalObject}};
 
 } // namespace
 
@@ -33,7 +40,8 @@ Symbol* Parser::resolve(const std::string& written, const Location& at) {
 
 // Whatever is not local must not hold what is.
 void Parser::checkLocal(const Type& type, bool local, const std::string& what, const Location& at) {
-    bool isLocal = type.kind == Kind::LocalObject || (type.declaration && type.declaration->isLocal);
+    bool isLocal =
+        type.kind == Kind::LocalObject || (type.declaration && type.declaration->isLocal);
     if (isLocal && !local)
         error(at, what + " cannot have the local type '" + typeName(type) + "'");
 }
@@ -49,7 +57,8 @@ Type Parser::type(bool local) {
                 ++position_;
                 t.kind = kind;
                 if (isSymbol("*"))
-                    fail("no '*': '" + std::string(name) + "' has no proxies, and Slice no pointers to data");
+                    fail("no '*': '" + std::string(name) +
+                         "' has no proxies, and Slice no pointers to data");
                 return t;
             }
         if (acceptWord("Object")) {
@@ -69,9 +78,9 @@ Type Parser::namedType(bool local) {
     if (!symbol || symbol->kind != Symbol::Kind::Declaration ||
         symbol->declaration->kind == Declaration::Kind::Constant ||
         symbol->declaration->kind == Declaration::Kind::Exception) {
-        std::string is = !symbol                                      ? "not a type that is known here"
-                         : symbol->kind == Symbol::Kind::Module       ? "a module, not a type"
-                         : symbol->kind == Symbol::Kind::Enumerator   ? "an enumerator, not a type"
+        std::string is = !symbol                                ? "not a type that is known here"
+                         : symbol->kind == Symbol::Kind::Module ? "a module, not a type"
+                         : symbol->kind == Symbol::Kind::Enumerator ? "an enumerator, not a type"
                          : symbol->declaration->kind == Declaration::Kind::Constant
                              ? "a constant, not a type"
                              : "an exception; it can only be thrown";
@@ -96,7 +105,8 @@ Type Parser::namedType(bool local) {
     } else if (isInterface) {
         t.kind = Kind::Value;
         if (!t.declaration->isLocal && !local)
-            diagnostics_.warning(begin, "interface by value is deprecated; a proxy is '" + written + "*'",
+            diagnostics_.warning(begin,
+                                 "interface by value is deprecated; a proxy is '" + written + "*'",
                                  Diagnostics::Deprecated);
     }
     return t;
@@ -156,7 +166,8 @@ Symbol* Parser::resolveValue(const std::string& written, const Location& at) {
     }
     const std::vector<Symbol*>& found = symbols_.bare(scope, bare);
     if (found.size() > 1)
-        error(at, "enumerator '" + written + "' could be '" + found[0]->id + "' or '" + found[1]->id + "'");
+        error(at, "enumerator '" + written + "' could be '" + found[0]->id + "' or '" +
+                      found[1]->id + "'");
     return found.empty() ? nullptr : found.front();
 }
 
@@ -178,7 +189,8 @@ Literal Parser::namedLiteral(const Type& type, const std::string& what) {
         v.owner = s->declaration;
         v.text = s->declaration->enumerators[s->enumerator].name;
         v.integer = s->declaration->enumerators[s->enumerator].value;
-    } else if (s->kind == Symbol::Kind::Declaration && s->declaration->kind == Declaration::Kind::Constant) {
+    } else if (s->kind == Symbol::Kind::Declaration &&
+               s->declaration->kind == Declaration::Kind::Constant) {
         v = s->declaration->value;
     } else {
         error(begin, "'" + written + "' is not a constant or an enumerator");
@@ -221,8 +233,8 @@ Literal Parser::convert(Literal v, const Type& type, const std::string& what, co
         if (v.kind != Literal::Kind::Integer)
             return wrong("needs an integer");
         if (v.integer < least || v.integer > most)
-            return wrong("cannot be " + std::to_string(v.integer) + ": it is " + std::to_string(least) +
-                         ".." + std::to_string(most));
+            return wrong("cannot be " + std::to_string(v.integer) + ": it is " +
+                         std::to_string(least) + ".." + std::to_string(most));
         return v;
     };
     switch (type.kind) {
@@ -260,30 +272,4 @@ Literal Parser::convert(Literal v, const Type& type, const std::string& what, co
         break;
     }
     return wrong("cannot have a value: only numbers, bool, string and enums can");
-}
-
-bool Parser::isLegalKey(const Type& type, bool& usesSequence) const {
-    switch (type.kind) {
-    case Kind::Bool:
-    case Kind::Byte:
-    case Kind::Short:
-    case Kind::Int:
-    case Kind::Long:
-    case Kind::String:
-        return true;
-    case Kind::Named:
-        break;
-    default:
-        return false;
-    }
-    const Declaration& d = *type.declaration;
-    if (d.kind == Declaration::Kind::Enum)
-        return true;
-    if (d.kind == Declaration::Kind::Sequence) {
-        usesSequence = true;
-        return isLegalKey(d.element, usesSequence);
-    }
-    return d.kind == Declaration::Kind::Struct &&
-           std::all_of(d.fields.begin(), d.fields.end(),
-                       [&](const Field& f) { return isLegalKey(f.type, usesSequence); });
 }

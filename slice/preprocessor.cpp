@@ -43,10 +43,16 @@ void findFiles(Preprocessed& p) {
 } // namespace
 
 Preprocessed preprocess(const std::string& file, const std::vector<std::string>& options) {
-    // -C: comments stay, for doc comments; -k: columns stay, for messages. The version macros are those
-    // that Ice's own compilers of 3.7 define.
-    std::vector<std::string> arguments = {"mcpp", "-C", "-k", "-e", "en_us.utf8", "-D__SLICE2C__",
-                                          "-DICE_VERSION=30708", "-D__ICE_VERSION__=30708"};
+    // -C: comments stay, for doc comments; -k: columns stay, for messages. The version macros are
+    // those that Ice's own compilers of 3.7 define.
+    std::vector<std::string> arguments = {"mcpp",
+                                          "-C",
+                                          "-k",
+                                          "-e",
+                                          "en_us.utf8",
+                                          "-D__SLICE2C__",
+                                          "-DICE_VERSION=30708",
+                                          "-D__ICE_VERSION__=30708"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     arguments.push_back(file);
     std::vector<char*> argv;

@@ -10,10 +10,10 @@
 
 struct Preprocessed {
     bool ok = false;
-    std::string text;                   // with #line markers and comments
-    std::string messages;               // the preprocessor's own
-    std::vector<std::string> files;     // the file and all that it includes, at any depth
-    std::vector<std::string> includes;  // what it includes itself
+    std::string text;                  // with #line markers and comments
+    std::string messages;              // the preprocessor's own
+    std::vector<std::string> files;    // the file and all that it includes, at any depth
+    std::vector<std::string> includes; // what it includes itself
 };
 
 // `options`: -I, -D, -U as the C preprocessor takes them.

@@ -10,7 +10,8 @@ Symbol* Symbols::find(const std::string& id) {
     return it == table_.end() ? nullptr : &it->second;
 }
 
-Symbol* Symbols::declare(const std::string& scope, const std::string& name, const Location& at, bool& isNew) {
+Symbol* Symbols::declare(const std::string& scope, const std::string& name, const Location& at,
+                         bool& isNew) {
     std::string id = scope + "::" + name, key = lowerCase(id);
     if (hasChanged(scope, name, at))
         return nullptr;
@@ -21,8 +22,8 @@ Symbol* Symbols::declare(const std::string& scope, const std::string& name, cons
         symbol.id = id;
         symbol.at = at;
     } else if (symbol.id != id) {
-        diagnostics_.error(at, "'" + name + "' differs in capitals only from '" + symbol.id + "', line " +
-                                   std::to_string(symbol.at.line));
+        diagnostics_.error(at, "'" + name + "' differs in capitals only from '" + symbol.id +
+                                   "', line " + std::to_string(symbol.at.line));
         return nullptr;
     }
     return &symbol;
@@ -46,8 +47,8 @@ Symbol* Symbols::resolve(const std::string& scope, const std::string& written, c
         std::string id = absolute ? written : inner + "::" + written;
         if (Symbol* s = find(id)) {
             if (s->id != id)
-                diagnostics_.error(at, "'" + written + "' is written with other capitals than '" + s->id +
-                                           "', line " + std::to_string(s->at.line));
+                diagnostics_.error(at, "'" + written + "' is written with other capitals than '" +
+                                           s->id + "', line " + std::to_string(s->at.line));
             if (!absolute) {
                 std::string first = lowerCase(written.substr(0, written.find("::")));
                 used_.emplace(lowerCase(user) + "::" + first, lowerCase(inner) + "::" + first);

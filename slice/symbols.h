@@ -26,15 +26,18 @@ public:
 
     // The symbol of this full name, whatever its capitals.
     Symbol* find(const std::string& id);
-    // Declares `name` in `scope` ("" or "::A::B"): a new symbol, or the one that has the name already.
-    // 0: an error was said.
-    Symbol* declare(const std::string& scope, const std::string& name, const Location& at, bool& isNew);
-    // What `written` means in `scope`, searched from the inside out; 0: nothing. `user`, a module or a type, must
-    // not give the name another meaning later.
-    Symbol* resolve(const std::string& scope, const std::string& written, const Location& at, const std::string& user);
+    // Declares `name` in `scope` ("" or "::A::B"): a new symbol, or the one that has the name
+    // already. 0: an error was said.
+    Symbol* declare(const std::string& scope, const std::string& name, const Location& at,
+                    bool& isNew);
+    // What `written` means in `scope`, searched from the inside out; 0: nothing. `user`, a module
+    // or a type, must not give the name another meaning later.
+    Symbol* resolve(const std::string& scope, const std::string& written, const Location& at,
+                    const std::string& user);
     // Says so if `user` has used the name for something else.
     bool hasChanged(const std::string& user, const std::string& name, const Location& at);
-    // Enumerators of any enum in the scope, or around it, with this name: Ice still allows them bare.
+    // Enumerators of any enum in the scope, or around it, with this name: Ice still allows them
+    // bare.
     void declareBare(const std::string& scope, const std::string& name, Symbol* enumerator);
     const std::vector<Symbol*>& bare(std::string scope, const std::string& name) const;
 
@@ -42,7 +45,8 @@ private:
     Diagnostics& diagnostics_;
     std::unordered_map<std::string, Symbol> table_; // by the name in small letters
     std::unordered_map<std::string, std::vector<Symbol*>> bare_;
-    std::unordered_map<std::string, std::string> used_; // first components used in a scope: what they meant
+    std::unordered_map<std::string, std::string>
+        used_; // first components used in a scope: what they meant
 };
 
 #endif

@@ -14,11 +14,12 @@ class Writer {
 public:
     using Values = std::vector<std::pair<std::string_view, std::string>>;
 
-    // `{name}` with a known name is replaced; any other brace is text. A line of code that is longer
-    // than 100 columns is broken behind a comma or an operator.
+    // `{name}` with a known name is replaced; any other brace is text. A line of code that is
+    // longer than 100 columns is broken behind a comma or an operator.
     void line(std::string_view text = {}, const Values& values = {});
     template <class Body>
-    void block(std::string_view head, const Values& values, Body body, std::string_view tail = "}") {
+    void block(std::string_view head, const Values& values, Body body,
+               std::string_view tail = "}") {
         line(std::string(head) + " {", values);
         ++indent_;
         body();

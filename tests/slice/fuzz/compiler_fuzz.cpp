@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// compiler_fuzz: libFuzzer's entry: any text through lexer, parser, checks and generator. What has no errors must
-// give C; nothing may crash, hang or leak (built with sanitizers).
+// compiler_fuzz: libFuzzer's entry: any text through lexer, parser, checks and generator. What has
+// no errors must give C; nothing may crash, hang or leak (built with sanitizers).
 
 #include "compiler.h"
 #include <cstdint>
@@ -15,7 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     CFileNames names;
     names.base = "Fuzz";
     auto files = compileToC(text, "Fuzz.ice", {}, names, diagnostics);
-    if (files.has_value() == (diagnostics.errors() > 0) || (diagnostics.errors() > 0 && out.str().empty()))
+    if (files.has_value() == (diagnostics.errors() > 0) ||
+        (diagnostics.errors() > 0 && out.str().empty()))
         std::abort(); // errors without a message, or a result in spite of them
     return 0;
 }

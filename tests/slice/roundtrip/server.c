@@ -14,8 +14,8 @@ static T_Echo echo;
 
 int main(void) {
     Ice_initialize(&ic);
-    if (TcpEndpoint_init(&ic, &tcp) != ICE_OK ||
-        Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "Adapter", "tcp", &adapter) != ICE_OK)
+    if (TcpEndpoint_init(&ic, &tcp) != ICE_OK || Ice_Communicator_createObjectAdapterWithEndpoints(
+                                                     &ic, "Adapter", "tcp", &adapter) != ICE_OK)
         return 1;
     T_Echo_init(&echo);
     if (Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&echo, "echo") != ICE_OK)

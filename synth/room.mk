@@ -14,3 +14,8 @@ synth-accept: $(BUILD)/build.ninja ## record today's utilisation as what is want
 	@ninja -C $(BUILD) -j $(JOBS) --quiet synth_inputs
 	@$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) --accept --family xc6s $(DESIGN:%=--design %)
 .PHONY: synth-accept
+
+synth-edif: $(BUILD)/build.ninja ## the chip as EDIF for Xilinx ISE, in build/synth/ise (DESIGN=soc)
+	@ninja -C $(BUILD) -j $(JOBS) --quiet synth_inputs
+	@$(BUILD)/synth/utilisation --generated $(BUILD)/gen --edif $(or $(DESIGN),soc)
+.PHONY: synth-edif

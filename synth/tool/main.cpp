@@ -26,6 +26,7 @@ struct Options {
     std::string yosys = "yosys";
     unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
     bool accept = false;
+    std::string edif; // a design's name
 };
 
 constexpr size_t shownCommits = 30;
@@ -106,7 +107,10 @@ int report(const Options& o) {
         throw std::runtime_error(fmt::format("{} is not there: build first", o.generated.string()));
     const Library library(rtlFolders(o), {o.generated});
     Plan plan = readPlan(o.source / "synth/designs.json", library, o.source);
-    for (const std::string& name : o.only)
+    std::vector<std::string> wanted = o.only;
+    if (!o.edif.empty())
+        wanted.push_back(o.edif);
+    for (const std::string& name : wanted)
         if (std::none_of(plan.designs.begin(), plan.designs.end(),
                          [&](const Design& d) { return d.name == name; }))
             throw std::runtime_error(fmt::format("there is no design {}", name));
@@ -118,11 +122,21 @@ int report(const Options& o) {
                                           }),
                            plan.designs.end());
 
+    const RunnerOptions options{o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs};
+    if (!o.edif.empty()) {
+        const auto design = std::find_if(plan.designs.begin(), plan.designs.end(),
+                                         [&](const Design& d) { return d.name == o.edif; });
+        fmt::print(stderr, "{} as EDIF ...\n", o.edif);
+        writeEdif(*design, library, options, o.output / "ise");
+        fmt::print("{} and its Verilog in {}; docs/ise.md says how to go on.\n",
+                   (o.output / "ise" / (o.edif + ".edf")).string(),
+                   (o.output / "ise/verilog").string());
+        return 0;
+    }
     std::vector<Run> runs;
     for (const std::string& family : o.families)
         for (const Design& design : plan.designs)
             runs.push_back({&design, family, {}, {}, {}, false});
-    const RunnerOptions options{o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs};
     carryOut(runs, library, options);
     for (const Run& run : runs)
         if (!run.error.empty())
@@ -168,6 +182,7 @@ int main(int argc, char** argv) {
     app.add_option("--yosys", o.yosys, "the program")->capture_default_str();
     app.add_option("--jobs", o.jobs, "synthesis runs at a time")->capture_default_str();
     app.add_flag("--accept", o.accept, "record these figures in synth/baseline.json");
+    app.add_option("--edif", o.edif, "only write this design as EDIF for ISE, into the folder ise");
     CLI11_PARSE(app, argc, argv);
     if (std::find(o.families.begin(), o.families.end(), mainFamily) == o.families.end())
         o.families.insert(o.families.begin(), mainFamily);

@@ -95,6 +95,26 @@ void carryOutOne(Run& run, const Library& library, const RunnerOptions& options,
 
 } // namespace
 
+void writeEdif(const Design& design, const Library& library, const RunnerOptions& options,
+               const fs::path& folder) {
+    const fs::path verilog = folder / "verilog";
+    fs::remove_all(verilog);
+    fs::create_directories(verilog);
+    for (const fs::path& file : library.filesOf(design.top))
+        fs::copy_file(file, verilog / file.filename());
+    for (const fs::path& include : library.includeFolders())
+        for (const auto& entry : fs::directory_iterator(include))
+            if (entry.path().extension() == ".vh")
+                fs::copy_file(entry.path(), verilog / entry.path().filename(),
+                              fs::copy_options::skip_existing);
+    Run run;
+    run.design = &design;
+    run.family = "edif";
+    run.netlist = folder / (design.name + ".edf");
+    synthesise(run, library, options);
+    fs::rename(run.netlist.string() + ".part.json", folder / (design.name + ".json"));
+}
+
 std::string outputOf(const std::string& command) {
     const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
     char line[512] = "";

@@ -32,6 +32,10 @@ struct RunnerOptions {
 // Carries all runs out, says on stderr which is done. A failed run does not stop the others.
 void carryOut(std::vector<Run>& runs, const Library& library, const RunnerOptions& options);
 
+// A design as EDIF, FOLDER/<name>.edf, by the script edif.ys; its Verilog in FOLDER/verilog.
+void writeEdif(const Design& design, const Library& library, const RunnerOptions& options,
+               const std::filesystem::path& folder);
+
 // Calls work(0) .. work(count - 1), `jobs` at a time.
 void inParallel(unsigned jobs, size_t count, const std::function<void(size_t)>& work);
 

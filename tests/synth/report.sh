@@ -5,6 +5,7 @@
 #   counts   its figures are those that the blocks' sources promise, and Yosys' own `stat` counts them too
 #   growth   a register more fails with its name; accepting it passes; a second run takes all from the cache
 #   broken   a syntax error is told with its file and line, and the other designs are reported nevertheless
+#   edif     the netlist for ISE is whole
 #   page     the page in Chromium: tables, chart, sorting, looking inside, differences; one file, no network
 set -eu
 program=$1 source=$2 case=$3
@@ -88,6 +89,19 @@ JS
     has 'paper 50 (0.3 %); points 3; choices 1;'
     grep -q '"peer": 100' "$work/out/report.json" || fail "report.json has no figure of the paper"
     grep -q '^| whole |' "$work/out/report.md" || fail "report.md has no table of designs"
+    ;;
+edif)
+    # The netlist that ISE reads has every cell that Yosys counts, once, and well-formed parentheses.
+    run --edif whole || fail "$(cat "$work/log")"
+    edif=$work/out/ise/whole.edf
+    [ "$(tr -cd '(' <"$edif" | wc -c)" = "$(tr -cd ')' <"$edif" | wc -c)" ] || fail "parentheses do not match"
+    for cell in RAM32M CARRY4 FDRE; do
+        inside=$(grep -o "(cellRef $cell " "$edif" | wc -l)
+        counted=$(grep -c "\"type\": \"$cell\"" "$work"/out/ise/whole.json)
+        { [ "$inside" = "$counted" ] && [ "$inside" -gt 0 ]; } || fail "$inside $cell in EDIF, $counted counted"
+    done
+    grep -q '(design pair' "$edif" || grep -q '(design whole' "$edif" || fail "the top is not named"
+    [ -f "$work/out/ise/verilog/store.v" ] || fail "the Verilog for XST is not there"
     ;;
 *) fail "unknown case $case" ;;
 esac

@@ -1,0 +1,68 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# build: from soc.edf to a bitstream with Xilinx ISE 14.7: XST for the wrapper, ngdbuild, map, par, trce, bitgen.
+# Usage: synth/ise/build.sh [--xst] [--part xc6slx16-2-csg324] soc.edf mig-folder output-folder [board.ucf]
+#   soc.edf      from `make synth-edif`
+#   mig-folder   user_design of a MIG core called "mig": its rtl/*.v and par/*.ucf are used
+#   --xst        XST synthesises soc as well, from the folder verilog beside soc.edf, given instead of it
+set -eu
+usage() {
+    sed -n 's/^# \{0,1\}//; 5,8p' "$0"
+    exit "$1"
+}
+part=xc6slx16-2-csg324 whole='' xst_includes=''
+while [ $# -gt 0 ]; do
+    case $1 in
+    --help | -h) usage 0 ;;
+    --xst) whole=1 ;;
+    --part) part=${2:?--part needs a name} && shift ;;
+    -*) echo "build: there is no option $1" >&2 && usage 2 >&2 ;;
+    *) break ;;
+    esac
+    shift
+done
+[ $# -ge 3 ] || usage 2 >&2
+source=$(cd "$(dirname "$0")" && pwd)
+soc=$1 mig=$2 output=$3 board=${4:-}
+for needed in "$soc" "$mig" ${board:+"$board"}; do
+    [ -e "$needed" ] || { echo "build: $needed is not there" >&2 && exit 2; }
+done
+for program in xst ngdbuild map par trce bitgen; do
+    command -v $program >/dev/null 2>&1 || {
+        echo "build: $program is not in the PATH; source ISE's settings64.sh first" >&2
+        exit 2
+    }
+done
+mkdir -p "$output"
+soc=$(cd "$(dirname "$soc")" && pwd)/$(basename "$soc") mig=$(cd "$mig" && pwd)
+cd "$output"
+: >chip.prj
+for file in "$source/chip.v" "$mig"/rtl/*.v "$mig"/rtl/*/*.v; do
+    [ ! -e "$file" ] || echo "verilog work \"$file\"" >>chip.prj
+done
+if [ -n "$whole" ]; then
+    xst_includes="-vlgincdir $soc"
+    for file in "$soc"/*.v; do echo "verilog work \"$file\"" >>chip.prj; done
+fi
+cat >chip.xst <<XST
+run
+-ifn chip.prj
+-ofn chip.ngc
+-top chip
+-p $part
+-uc $source/chip.xcf
+-opt_mode Area
+-read_cores optimize
+${xst_includes:--sd $(dirname "$soc")}
+XST
+xst -ifn chip.xst -ofn chip.syr
+ucf=$source/chip.ucf
+cat "$ucf" "$mig"/par/*.ucf ${board:+"$board"} >all.ucf
+ngdbuild -p "$part" -sd "$(dirname "$soc")" -uc all.ucf chip.ngc chip.ngd
+map -w -p "$part" -ol high -o chip_map.ncd chip.ngd chip.pcf
+par -w -ol high chip_map.ncd chip.ncd chip.pcf
+trce -v 20 chip.ncd chip.pcf -o chip.twr
+bitgen -w chip.ncd chip.bit chip.pcf
+grep -E 'Number of (Slice Registers|Slice LUTs|occupied Slices)' chip_map.mrp
+grep -E 'constraints? (were|was) (not )?met|Minimum period' chip.twr chip.par || true

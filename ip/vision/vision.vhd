@@ -54,10 +54,13 @@ architecture rtl of vision is
 
   -- registers
   signal events, mask  : std_logic_vector(1 downto 0); -- REFUSED, DONE
+  signal set_threshold : unsigned(7 downto 0);
+  signal frame_base, result_base : std_logic_vector(31 downto 0); -- vision_memory takes them at START
+  signal set_width, set_height, set_result_max : unsigned(15 downto 0);
+  signal found, stored : unsigned(15 downto 0);
+  -- of the frame under way: what was set at START
   signal threshold     : unsigned(7 downto 0);
-  signal frame_base, result_base : std_logic_vector(31 downto 0);
-  signal width, height : unsigned(15 downto 0);
-  signal result_max, found, stored : unsigned(15 downto 0);
+  signal width, height, result_max : unsigned(15 downto 0);
   signal cycles        : unsigned(31 downto 0);
   signal aborted, stop : std_logic;
   signal word          : natural range 0 to 15;
@@ -101,8 +104,8 @@ begin
   bus_error_o <= '1' when word > VISION_CYCLES else '0';
   irq_o       <= '1' when (events and mask) /= "00" else '0';
 
-  size_ok <= '1' when width(2 downto 0) = 0 and width >= VISION_MIN_SIDE and
-                      width <= VISION_MAX_WIDTH and height >= VISION_MIN_SIDE and
+  size_ok <= '1' when set_width(2 downto 0) = 0 and set_width >= VISION_MIN_SIDE and
+                      set_width <= VISION_MAX_WIDTH and set_height >= VISION_MIN_SIDE and
                       unsigned(frame_base(6 downto 0)) = 0 and
                       unsigned(result_base(6 downto 0)) = 0 else '0';
   go <= start and size_ok when state = WAIT_FOR_START else '0';
@@ -119,11 +122,11 @@ begin
           bus_rdata_o(VISION_STATUS_BUSY_LSB) <= '1';
         end if;
         bus_rdata_o(VISION_STATUS_ABORTED_LSB) <= aborted;
-      when VISION_THRESHOLD   => bus_rdata_o(7 downto 0) <= std_logic_vector(threshold);
+      when VISION_THRESHOLD   => bus_rdata_o(7 downto 0) <= std_logic_vector(set_threshold);
       when VISION_FRAME_BASE  => bus_rdata_o <= frame_base;
-      when VISION_FRAME_SIZE  => bus_rdata_o <= std_logic_vector(height & width);
+      when VISION_FRAME_SIZE  => bus_rdata_o <= std_logic_vector(set_height & set_width);
       when VISION_RESULT_BASE => bus_rdata_o <= result_base;
-      when VISION_RESULT_MAX  => bus_rdata_o(15 downto 0) <= std_logic_vector(result_max);
+      when VISION_RESULT_MAX  => bus_rdata_o(15 downto 0) <= std_logic_vector(set_result_max);
       when VISION_FOUND       => bus_rdata_o(15 downto 0) <= std_logic_vector(found);
       when VISION_STORED      => bus_rdata_o(15 downto 0) <= std_logic_vector(stored);
       when VISION_CYCLES      => bus_rdata_o <= std_logic_vector(cycles);
@@ -140,13 +143,13 @@ begin
         case word is
           when VISION_EVENT       => clear := bus_wdata_i(1 downto 0);
           when VISION_MASK        => mask <= bus_wdata_i(1 downto 0);
-          when VISION_THRESHOLD   => threshold <= unsigned(bus_wdata_i(7 downto 0));
+          when VISION_THRESHOLD   => set_threshold <= unsigned(bus_wdata_i(7 downto 0));
           when VISION_FRAME_BASE  => frame_base <= bus_wdata_i;
           when VISION_FRAME_SIZE  =>
-            height <= unsigned(bus_wdata_i(31 downto 16));
-            width  <= unsigned(bus_wdata_i(15 downto 0));
+            set_height <= unsigned(bus_wdata_i(31 downto 16));
+            set_width  <= unsigned(bus_wdata_i(15 downto 0));
           when VISION_RESULT_BASE => result_base <= bus_wdata_i;
-          when VISION_RESULT_MAX  => result_max <= unsigned(bus_wdata_i(15 downto 0));
+          when VISION_RESULT_MAX  => set_result_max <= unsigned(bus_wdata_i(15 downto 0));
           when others             => null;
         end case;
       end if;
@@ -160,12 +163,12 @@ begin
       if rst_i = '1' then
         events      <= "00";
         mask        <= "00";
-        threshold   <= to_unsigned(0, 8);
+        set_threshold  <= to_unsigned(0, 8);
         frame_base  <= (others => '0');
         result_base <= (others => '0');
-        width       <= to_unsigned(0, 16);
-        height      <= to_unsigned(0, 16);
-        result_max  <= to_unsigned(0, 16);
+        set_width      <= to_unsigned(0, 16);
+        set_height     <= to_unsigned(0, 16);
+        set_result_max <= to_unsigned(0, 16);
       end if;
     end if;
   end process;
@@ -202,6 +205,10 @@ begin
         when WAIT_FOR_START =>
           if go = '1' then
             state   <= STREAM;
+            threshold  <= set_threshold;
+            width      <= set_width;
+            height     <= set_height;
+            result_max <= set_result_max;
             stop    <= '0';
             aborted <= '0';
             found   <= to_unsigned(0, 16);
@@ -239,7 +246,7 @@ begin
           fill <= fill + 1;
         end if;
       end if;
-      if is_corner = '1' then
+      if is_corner = '1' and found /= 65535 then
         found <= found + 1;
       end if;
       if record_push = '1' then
@@ -262,7 +269,7 @@ begin
     if rising_edge(clk_i) then
       if go = '1' then
         -- Column and line of the first centre: one before (0, -1), counted from line 0 for unsigned.
-        kept_x <= resize(width - 1, 10);
+        kept_x <= resize(set_width - 1, 10);
         kept_y <= to_unsigned(131070, 17); -- -2
       elsif step = '1' and fill = SCORE_DELAY + KEPT_DELAY then
         advance(kept_x, kept_y, width);

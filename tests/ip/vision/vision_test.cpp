@@ -111,6 +111,22 @@ TEST_F(VisionTest, StoresAtMostWhatItIsTold) {
     EXPECT_EQ(memory_.byte(resultBase + 40), 0) << "nothing behind the fifth";
 }
 
+TEST_F(VisionTest, SettingsWrittenWhileBusyAreTheNextFrames) {
+    Random random(testSeed());
+    auto pixels = picture(64, 48, random);
+    load(pixels);
+    start(64, 48, 20);
+    for (int i = 0; i < 900; ++i)
+        bench_.tick();
+    bus_.write(VISION_THRESHOLD, 90);
+    bus_.write(VISION_FRAME_SIZE, 16u << 16 | 16u);
+    bus_.write(VISION_RESULT_MAX, 1);
+    bus_.write(VISION_FRAME_BASE, 0);
+    EXPECT_EQ(finish(), VISION_EVENT_DONE_MASK);
+    EXPECT_TRUE(results() == detectCorners(pixels.data(), 64, 48, 20));
+    EXPECT_EQ(bus_.read(VISION_THRESHOLD), 90u);
+}
+
 TEST_F(VisionTest, RefusesWhatItCannotTake) {
     for (auto [width, height] : {std::pair{12, 16}, {0, 16}, {1032, 16}, {16, 7}}) {
         start(width, height, 10);
@@ -145,28 +161,66 @@ TEST_F(VisionTest, IdentifiesItselfAndReportsUnmappedWords) {
     EXPECT_FALSE(bus_.transfer(false, VISION_CYCLES, 0).error);
 }
 
-// The model itself, against the plain definition written another way.
-TEST(VisionModel, SegmentTestEqualsTheDefinition) {
-    Random random(testSeed());
-    const int dx[] = {0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3, -3, -3, -2, -1};
-    const int dy[] = {-3, -3, -2, -1, 0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3};
-    auto pixels = picture(48, 48, random);
-    auto corners = detectCorners(pixels.data(), 48, 48, 15);
-    EXPECT_GT(corners.size(), 3u);
-    for (const Feature& f : corners) {
-        auto p = [&](int i) { return int(pixels[static_cast<size_t>((f.y + dy[i]) * 48 + f.x + dx[i])]); };
-        int c = pixels[static_cast<size_t>(f.y * 48 + f.x)];
-        bool isCorner = false;
-        for (int first = 0; first < 16; ++first) {
-            bool bright = true, dark = true;
-            for (int i = first; i < first + 9; ++i) {
-                bright = bright && p(i % 16) - c > 15;
-                dark = dark && c - p(i % 16) > 15;
+// The model itself, against the definition of ip/vision/README.md written another way: corners, those that are
+// none, scores and suppression, pixel by pixel.
+class Definition {
+public:
+    Definition(const std::vector<uint8_t>& pixels, int width, int height, int threshold)
+        : pixels_(pixels), width_(width), height_(height), threshold_(threshold) {}
+
+    int score(int x, int y) const {
+        if (x < 3 || y < 3 || x >= width_ - 3 || y >= height_ - 3)
+            return 0;
+        for (int sign : {+1, -1}) {
+            unsigned mask = 0; // bit i: pixel i of the circle is brighter (darker)
+            int sum = 0;
+            for (int i = 0; i < 16; ++i) {
+                int more = sign * (circle(x, y, i) - at(x, y)) - threshold_;
+                if (more > 0) {
+                    mask |= 1u << i;
+                    sum += more;
+                }
             }
-            isCorner = isCorner || bright || dark;
+            unsigned twice = mask | mask << 16, nine = twice;
+            for (int shift = 1; shift < 9; ++shift)
+                nine &= twice >> shift;
+            if (nine & 0xFFFF)
+                return sum;
         }
-        EXPECT_TRUE(isCorner) << f.x << "," << f.y;
+        return 0;
     }
+    bool kept(int x, int y) const {
+        int s = score(x, y);
+        return s > 0 && s > score(x - 1, y - 1) && s > score(x, y - 1) && s > score(x + 1, y - 1) && s > score(x - 1, y) &&
+               s >= score(x + 1, y) && s >= score(x - 1, y + 1) && s >= score(x, y + 1) && s >= score(x + 1, y + 1);
+    }
+
+private:
+    int at(int x, int y) const { return pixels_[static_cast<size_t>(y * width_ + x)]; }
+    int circle(int x, int y, int i) const { // clockwise from the top
+        static const char* dx = "3456665432100012";
+        static const char* dy = "0012345666543210";
+        return at(x + dx[i] - '3', y + dy[i] - '3');
+    }
+    const std::vector<uint8_t>& pixels_;
+    int width_, height_, threshold_;
+};
+
+TEST(VisionModel, EqualsTheDefinition) {
+    Random random(testSeed());
+    size_t total = 0;
+    for (int threshold : {0, 15, 60}) {
+        auto pixels = picture(56, 48, random);
+        Definition definition(pixels, 56, 48, threshold);
+        std::vector<Feature> want;
+        for (int y = 0; y < 48; ++y)
+            for (int x = 0; x < 56; ++x)
+                if (definition.kept(x, y))
+                    want.push_back({x, y, definition.score(x, y)});
+        total += want.size();
+        EXPECT_TRUE(detectCorners(pixels.data(), 56, 48, threshold) == want) << "threshold " << threshold;
+    }
+    EXPECT_GT(total, 20u);
 }
 
 } // namespace

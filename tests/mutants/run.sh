@@ -44,6 +44,7 @@ try() { # test log
     export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
     case $1 in
     test_*) target=${1%%.*} ;;
+    vhdl.*) target=${1#vhdl.}_vectors ;;
     *) target=regmaps ;;
     esac
     nice ninja -C build/main -j 1 "$target" >"$2" 2>&1 || return 2

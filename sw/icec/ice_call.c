@@ -49,13 +49,17 @@ Ice_Int Ice_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
     Ice_InputStream_init(&none, Ice_head, 0);
     for (c = 0; c < ICE_CALLS; ++c) {
         Ice_Call *call = &ic->calls[c];
-        Ice_Int left;
-        if (call->state != ICE_WAITING || !call->callback)
-            continue;
-        left = call->timeoutMs - (Ice_Int)(Ice_nowMs(ic) - call->begunMs);
+        Ice_Int left = 1, id;
+        int counts;
+        Ice_lock(ic, ICE_LOCK_STATE);
+        id = call->id;
+        counts = call->state == ICE_WAITING && call->callback;
+        if (counts)
+            left = call->timeoutMs - (Ice_Int)(Ice_nowMs(ic) - call->begunMs);
+        Ice_unlock(ic, ICE_LOCK_STATE);
         if (left <= 0)
-            finish(ic, call, call->id, ICE_TIMEOUT, &none);
-        else if (left < waitMs)
+            finish(ic, call, id, ICE_TIMEOUT, &none);
+        else if (counts && left < waitMs)
             waitMs = left;
     }
     return waitMs;
@@ -269,6 +273,7 @@ Ice_Status Ice_sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void *c
         if (status == ICE_OK && os->failed)
             status = ICE_MARSHAL;
         if (status == ICE_OK) {
+            Ice_lock(ic, ICE_LOCK_STATE);
             call->connection = self->connection;
             if (ICEC_ASYNC) {
                 call->callback = callback;
@@ -284,6 +289,7 @@ Ice_Status Ice_sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void *c
                 memset(&call->failure, 0, sizeof call->failure);
             if (self->mode == ICE_TWOWAY)
                 call->state = ICE_WAITING; /* before the reply can be there */
+            Ice_unlock(ic, ICE_LOCK_STATE);
             status = Ice_send(ic, self->connection, os);
         }
     }

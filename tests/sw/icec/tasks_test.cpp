@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+//
+// tasks_test: one communicator used by several threads, over tcp: calls at once, with a task that
+// receives and without, and answers that come from another task than the operation's.
+
+#include "pair.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <thread>
+
+extern "C" {
+#include "tcp_endpoint.h"
+}
+
+namespace {
+
+// Ice_Os on threads.
+struct Threads {
+    std::mutex locks[2], waiting;
+    std::condition_variable changed[ICE_CALLS];
+    bool woken[ICE_CALLS] = {};
+
+    static Threads& of(void* context) { return *static_cast<Threads*>(context); }
+    static const Ice_Os* os() {
+        static const Ice_Os table = {[](void* c, int which) { of(c).locks[which].lock(); },
+                                     [](void* c, int which) { of(c).locks[which].unlock(); },
+                                     [](void* c, int slot, Ice_Int ms) {
+                                         Threads& t = of(c);
+                                         std::unique_lock<std::mutex> lock(t.waiting);
+                                         bool woken = t.changed[slot].wait_for(
+                                             lock, std::chrono::milliseconds(ms),
+                                             [&] { return t.woken[slot]; });
+                                         t.woken[slot] = false;
+                                         return woken ? 1 : 0;
+                                     },
+                                     [](void* c, int slot) {
+                                         Threads& t = of(c);
+                                         std::lock_guard<std::mutex> lock(t.waiting);
+                                         t.woken[slot] = true;
+                                         t.changed[slot].notify_all();
+                                     },
+                                     [](void*) {
+                                         static std::atomic<int> next{0};
+                                         static thread_local int mine = next++;
+                                         return mine;
+                                     }};
+        return &table;
+    }
+};
+
+struct Program {
+    Ice_Communicator ic;
+    TcpEndpoint tcp;
+    Ice_ObjectAdapter adapter;
+    Threads threads;
+
+    Program() {
+        Ice_initialize(&ic);
+        Ice_Communicator_setOs(&ic, Threads::os(), &threads);
+        EXPECT_EQ(TcpEndpoint_init(&ic, &tcp), ICE_OK);
+    }
+    ~Program() { TcpEndpoint_destroy(&tcp); }
+};
+
+class Tasks : public ::testing::Test {
+protected:
+    Tasks() : server_(std::make_unique<Program>()), client_(std::make_unique<Program>()) {
+        Ice_Communicator& ic = server_->ic;
+        EXPECT_EQ(
+            Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "A", "tcp", &server_->adapter),
+            ICE_OK);
+        EXPECT_EQ(Ice_ObjectAdapter_add(&server_->adapter, &servant_.base, "thing"), ICE_OK);
+        Ice_ObjectAdapter_activate(&server_->adapter);
+        servant_.run = [this](const Ice_Current& current, Ice_InputStreamPtr is,
+                              Ice_OutputStreamPtr os) {
+            Ice_Int v = Ice_InputStream_readInt(is);
+            if (str(current.operation) == "later") {
+                std::lock_guard<std::mutex> lock(laterMutex_);
+                later_.emplace_back();
+                later_.back().second = v;
+                Ice_Current_later(&current, &later_.back().first);
+                laterCame_.notify_one();
+                return ICE_LATER;
+            }
+            Ice_OutputStream_writeInt(os, 2 * v);
+            return ICE_OK;
+        };
+        serving_ = std::thread([this] { Ice_Communicator_waitForShutdown(&server_->ic); });
+        answering_ = std::thread([this] { answer(); });
+    }
+    ~Tasks() override {
+        Ice_Communicator_shutdown(&server_->ic);
+        {
+            std::lock_guard<std::mutex> lock(laterMutex_);
+            over_ = true;
+            laterCame_.notify_one();
+        }
+        serving_.join();
+        answering_.join();
+    }
+    // Another task than the one that dispatches.
+    void answer() {
+        for (;;) {
+            std::unique_lock<std::mutex> lock(laterMutex_);
+            laterCame_.wait(lock, [this] { return over_ || !later_.empty(); });
+            if (over_)
+                return;
+            auto [reply, v] = later_.front();
+            later_.pop_front();
+            lock.unlock();
+            Ice_OutputStream_writeInt(Ice_Reply_begin(&reply), 3 * v);
+            EXPECT_EQ(Ice_Reply_end(&reply, ICE_OK), ICE_OK);
+        }
+    }
+    void callFromThreads(int count) {
+        std::string where = "thing:tcp -h 127.0.0.1 -p " + std::to_string(server_->tcp.port);
+        std::vector<std::thread> callers;
+        std::atomic<int> wrong{0};
+        for (int t = 0; t < count; ++t)
+            callers.emplace_back([&, t] {
+                Ice_ObjectPrx prx;
+                wrong +=
+                    Ice_Communicator_stringToProxy(&client_->ic, where.c_str(), &prx) != ICE_OK;
+                prx.timeoutMs = 60000;
+                for (int i = 0; i < 200; ++i) {
+                    Ice_Int out = 0, v = 1000 * t + i;
+                    bool later = i % 3 == 0;
+                    Ice_Status status = call(prx, later ? "later" : "now", v, &out);
+                    wrong += status != ICE_OK || out != (later ? 3 : 2) * v;
+                }
+            });
+        for (auto& c : callers)
+            c.join();
+        EXPECT_EQ(wrong, 0);
+    }
+
+    std::unique_ptr<Program> server_, client_;
+    Servant servant_;
+    std::mutex laterMutex_;
+    std::condition_variable laterCame_;
+    std::deque<std::pair<Ice_Reply, Ice_Int>> later_;
+    bool over_ = false;
+    std::thread serving_, answering_;
+};
+
+TEST_F(Tasks, CallAtOnceWhileOneReceives) {
+    std::thread receiving([this] { Ice_Communicator_waitForShutdown(&client_->ic); });
+    callFromThreads(ICE_CALLS);
+    Ice_Communicator_shutdown(&client_->ic);
+    receiving.join();
+}
+
+TEST_F(Tasks, ReceiveInTurnsWhereNobodyElseDoes) {
+    callFromThreads(ICE_CALLS);
+}
+
+} // namespace

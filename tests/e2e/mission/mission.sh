@@ -32,6 +32,9 @@ fails_with() {
 case $case in
 plain) run "$out" --image $image && check_output "$out" ;;
 loss) run "$out" --image $image --loss 0.1 --seed "${SEED:-1}" && check_output "$out" ;;
+m3) # the ARM binary
+    run "$out" --image $image --cpu m3 && check_output "$out"
+    ;;
 cpp) # the C++11 library of the plugin, a C++ client, and a proxy that goes through its string form
     "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" -- \
         "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d "{device}" -a 0x0001 -p 2 -t 60000' 3 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }

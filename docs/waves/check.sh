@@ -1,0 +1,34 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# check: draws every waveform, with its signals' names, and feeds wavesvg what is wrong.
+set -eu
+tool=$1 folder=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+for wave in "$folder"/*.json; do
+    "$tool" "$wave" "$work/out.svg"
+    grep -o '"name": "[^"]*"' "$wave" | sed 's/.*: "//; s/"$//' | while read -r name; do
+        grep -qF ">$name</text>" "$work/out.svg" || {
+            echo "$wave: signal '$name' is not drawn" >&2
+            exit 1
+        }
+    done
+done
+refused() { # text of the file, what must be said
+    printf '%s' "$1" >"$work/bad.json"
+    if "$tool" "$work/bad.json" "$work/bad.svg" 2>"$work/said"; then
+        echo "accepted: $1" >&2
+        exit 1
+    fi
+    grep -q "$2" "$work/said" || {
+        echo "expected '$2' for $1, got: $(cat "$work/said")" >&2
+        exit 1
+    }
+}
+refused '{' 'parse error'
+refused '{}' "no list 'signal'"
+refused '{"signal": [{"name": "a", "wave": "01q"}]}' "signal 'a': 'q' is no state"
+refused '{"signal": [{"name": "a", "wave": ".1"}]}' "begins with"
+refused '{"signal": [{"name": "a", "wave": "1", "period": 0}]}' 'period must be above 0'
+"$tool" /nonexistent "$work/x.svg" 2>"$work/said" && exit 1
+grep -q 'cannot be read' "$work/said"

@@ -40,7 +40,8 @@ void Ice_failCalls(Ice_CommunicatorPtr ic, int connection, Ice_Status status) {
     for (c = 0; c < ICE_CALLS; ++c)
         if (ic->calls[c].state == ICE_WAITING && ic->calls[c].connection == connection)
             finish(ic, &ic->calls[c], ic->calls[c].id, status, &none);
-    Ice_wakeCalls(ic); /* some wait for the connection */
+    if (ICEC_TASKS)
+        Ice_wakeCalls(ic); /* some wait for the connection */
 }
 
 Ice_Int Ice_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs) {

@@ -51,7 +51,8 @@ void Ice_Communicator_waitForShutdown(Ice_CommunicatorPtr ic) {
     while (!ic->stopping)
         (void)Ice_Communicator_poll(ic, POLL_MS);
     ic->receiver = -1;
-    Ice_wakeCalls(ic); /* who waits for a reply receives it himself now */
+    if (ICEC_TASKS)
+        Ice_wakeCalls(ic); /* who waits for a reply receives it himself now */
 }
 
 void Ice_Communicator_shutdown(Ice_CommunicatorPtr ic) {

@@ -71,7 +71,8 @@ static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_
         Ice_takeReply(ic, connection, &is);
     } else if (type == ICE_VALIDATE) {
         ic->connections[connection].state = ICE_DONE;
-        Ice_wakeCalls(ic);
+        if (ICEC_TASKS)
+            Ice_wakeCalls(ic);
     } else if (type == ICE_CLOSE) {
         return ICE_CONNECTION_CLOSED;
     } else if (ICEC_BATCH && type == ICE_BATCH) {
@@ -174,7 +175,8 @@ Ice_Status Ice_await(Ice_CommunicatorPtr ic, const volatile Ice_Byte *state, int
     }
     if (leads) {
         ic->receiver = -1;
-        Ice_wakeCalls(ic); /* the next one takes over */
+        if (ICEC_TASKS)
+            Ice_wakeCalls(ic); /* the next one takes over */
     }
     return *state == ICE_WAITING ? status : ICE_OK;
 }

@@ -82,8 +82,8 @@ static Ice_Status run(Ice_ObjectPtr servant, const Ice_Current *current, Ice_Inp
     return ICE_OK;
 }
 
-void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte *who,
-                     Ice_Int whoSize) {
+static void finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte *who,
+                        Ice_Int whoSize) {
     Ice_Int end = os->size;
     Ice_Byte code = codes[os->failed ? ICE_MARSHAL : status];
     if (ICEC_ASYNC && code >= 2 && code <= 4 && whoSize == 0)
@@ -107,6 +107,12 @@ void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, cons
     Ice_endMessage(os);
 }
 
+void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte *who,
+                     Ice_Int whoSize) {
+    if (ICEC_ASYNC) /* else nobody does this outside of a dispatch */
+        finishReply(os, id, status, who, whoSize);
+}
+
 void Ice_giveArena(Ice_CommunicatorPtr ic, Ice_InputStreamPtr is) {
     is->arena = ic->arena;
     is->arenaSize = ICE_ARENA_BYTES / 4;
@@ -116,16 +122,19 @@ void Ice_giveArena(Ice_CommunicatorPtr ic, Ice_InputStreamPtr is) {
         is->arenaUsed = 0;
 }
 
-/* One request behind its id. */
+/* One request; in a batch they have no ids. */
 static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is,
-                           Ice_Int id) {
+                           int isBatch) {
     Ice_InputStreamPtr outer = ic->decoding;
     U16 generation = ic->connections[connection].generation;
     Ice_OutputStream os;
     Ice_Current current;
     Ice_ObjectPtr servant = 0;
     Ice_Status status, found = ICE_OBJECT_NOT_EXIST;
-    Ice_Int whole = is->size, who = is->position, whoSize;
+    Ice_Int whole = is->size, who, whoSize, pairs, id = 0;
+    if (!isBatch)
+        id = Ice_InputStream_readInt(is);
+    who = is->position;
     current.communicator = ic;
     current.connection = connection;
     if (ICEC_ASYNC)
@@ -143,7 +152,9 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
     current.mode = Ice_InputStream_readByte(is);
     if (ICEC_CONTEXTS)
         current.context = *is;
-    Ice_skipStrings(is, 2 * Ice_InputStream_readSequence(is, 2));
+    pairs = Ice_InputStream_readSize(is);
+    Ice_skipStrings(is, pairs);
+    Ice_skipStrings(is, pairs);
     status = Ice_enterEncapsulation(is);
     if (status == ICE_MARSHAL)
         return ICE_CONNECTION_LOST;
@@ -179,7 +190,7 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
         is->failed = 0;
     }
     if (id != 0) {
-        Ice_finishReply(&os, id, status, is->data + who, whoSize);
+        finishReply(&os, id, status, is->data + who, whoSize);
         Ice_lock(ic, ICE_LOCK_SEND);
         (void)Ice_send(ic, connection, &os);
         Ice_unlock(ic, ICE_LOCK_SEND);
@@ -188,15 +199,14 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
 }
 
 Ice_Status Ice_dispatchRequest(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is) {
-    Ice_Int id = Ice_InputStream_readInt(is);
-    return dispatch(ic, connection, is, id);
+    return dispatch(ic, connection, is, 0);
 }
 
 Ice_Status Ice_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is) {
     Ice_Int count = Ice_InputStream_readInt(is);
     Ice_Status status = is->failed || count < 0 ? ICE_CONNECTION_LOST : ICE_OK;
-    for (; count > 0 && status == ICE_OK; --count)
-        status = dispatch(ic, connection, is, 0);
+    for (; ICEC_BATCH && count > 0 && status == ICE_OK; --count)
+        status = dispatch(ic, connection, is, 1);
     return status;
 }
 

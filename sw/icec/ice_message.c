@@ -63,6 +63,6 @@ void Ice_readFacet(Ice_InputStreamPtr is, Ice_String *facet) {
 
 void Ice_skipStrings(Ice_InputStreamPtr is, Ice_Int count) {
     Ice_String skipped;
-    while (count-- > 0)
+    for (; count > 0 && !is->failed; --count)
         Ice_InputStream_takeString(is, &skipped);
 }

@@ -51,7 +51,7 @@ Ice_Status Ice_ObjectPrx_addEndpoint(Ice_ObjectPrxPtr prx, const char *options) 
     Ice_CommunicatorPtr ic = prx->communicator;
     Ice_OutputStream os;
     Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
-    os.size = prx->endpoints[0] ? prx->endpointsSize : 1;
+    os.size = ICEC_DETAILS && prx->endpoints[0] ? prx->endpointsSize : 1;
     ic->endpoint->encode(ic->endpointContext, options, &os);
     prx->endpointsSize = (Ice_Byte)os.size;
     ++prx->endpoints[0];

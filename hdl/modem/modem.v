@@ -100,6 +100,8 @@ module modem #(
     wire [6:0]  tx_bytes, rx_bytes;
     wire        tx_waits = !tx_free[4];
     wire        rx_waits = !rx_free[4];
+    // A clock late, which is early for a byte on the line; it is on the way to the word that is read.
+    reg         rx_full;
     wire [7:0]  put_bytes = reg_wdata[7:0];
     wire        put      = reg_write && reg_addr == MODEM_TX_PUT;
     wire        put_ok   = put && ready && tx_free != 5'd0 && put_bytes != 8'd0 && put_bytes <= 8'd100;
@@ -226,7 +228,7 @@ module modem #(
         .rx_idle_i(rx_idle && !modem_rts_n_o), // a pause that was asked for ends no packet
         .wr_valid_o(wr_valid), .wr_data_o(wr_data), .wr_index_o(wr_index), .wr_be_o(wr_be),
         .wr_ready_i(wr_ready), .wr_busy_i(wr_busy),
-        .full_i(rx_free == 5'd0), .push_o(rx_push), .overrun_o(rx_overrun)
+        .full_i(rx_full), .push_o(rx_push), .overrun_o(rx_overrun)
     );
 
     modem_npi u_npi (
@@ -259,6 +261,7 @@ module modem #(
 
     always @(posedge clk_i) begin
         cts_sync <= {cts_sync[0], !modem_cts_n_i};
+        rx_full  <= rx_free == 5'd0;
 
         if (reg_write)
             words[key_write ? {3'b100, key_index} : {1'b0, reg_addr}] <= reg_wdata;

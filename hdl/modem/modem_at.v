@@ -230,4 +230,46 @@ module modem_at #(
             retried_o <= 1'b0;
         end
     end
+
+`ifdef FORMAL
+    reg past = 1'b0;
+    initial assume (rst_i);
+    reg [23:0] heard = 24'd0; // the last three characters since the command
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        assume (!past || !start_i || state[IDLE]);
+        if (state[RETURN] || state[WAIT_GUARD])
+            heard <= 24'd0;
+        else if (rx_valid_i)
+            heard <= {heard[15:0], rx_data_i};
+        if (past && !rst_i && !$past(rst_i)) begin
+            // One state at a time; the step is one of the table.
+            assert (state != 8'd0 && (state & (state - 8'd1)) == 8'd0);
+            assert (step_o <= CN);
+            // A step follows its predecessor, and only after "OK" and a return came.
+            if (ok && (state[WAIT_SILENCE] || state[WAIT_REPLY]))
+                assert (heard == {"OK", 8'h0D});
+            if (step_o != $past(step_o))
+                assert (($past(start_i) && step_o == ENTER) ||
+                        ($past(ok) && (step_o == $past(step_o) + 4'd1 ||
+                                       ($past(step_o) == EE && step_o == RO))));
+            // The end is success after the last step, or failure, never both.
+            assert (!(done_o && failed_o));
+            if (done_o)
+                assert ($past(state[SETTLE]) && step_o == CN);
+            if (state[SETTLE] && !$past(state[SETTLE]))
+                assert ($past(ok) && $past(step_o) == CN);
+            if ($past(busy_o) && !busy_o)
+                assert (done_o || failed_o);
+            // Nothing is sent while silence is kept, and what is offered stays until it is taken.
+            if (tx_valid_o)
+                assert (sending || $past(sending));
+            if ($past(tx_valid_o) && !$past(tx_ready_i))
+                assert (tx_valid_o && $stable(tx_data_o));
+        end
+        cover (past && !rst_i && step_o == 4'd3);
+        cover (past && !rst_i && retried_o && !entering);
+        cover (past && !rst_i && state[DIGITS] && taken && last);
+    end
+`endif
 endmodule

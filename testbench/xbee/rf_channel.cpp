@@ -25,8 +25,8 @@ void RfChannel::leave(XBee* modem) {
 }
 
 RfChannel::Outcome RfChannel::fate() {
-    inBurst_ = weather.burstBegin > 0 && (inBurst_ ? !random_.chance(weather.burstEnd)
-                                                   : random_.chance(weather.burstBegin));
+    inBurst_ = weather.burstBegin > 0 &&
+               (inBurst_ ? !random_.chance(weather.burstEnd) : random_.chance(weather.burstBegin));
     if (random_.chance(inBurst_ ? weather.burstLoss : weather.loss))
         return Outcome::Lost;
     return random_.chance(weather.corruption) ? Outcome::Corrupted : Outcome::Delivered;

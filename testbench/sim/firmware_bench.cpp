@@ -239,7 +239,9 @@ void measureStream(Flight& f) {
 // High-water marks: stacks are filled with zeros at the start.
 void measureStacks(Flight& f) {
     const ElfImage& image = *f.machine.stm32().image();
-    for (const char* name : {"radioStack", "serverStack", "clientStack", "watchStack", "idleStack"}) {
+    for (const char* name : {"radioStack", "serverStack", "clientStack", "watchStack", "idleStack", "OSTaskIdleStk"}) {
+        if (!image.has(name)) // the idle task's is called otherwise in the real uC/OS-II
+            continue;
         uint32_t words = image.size(name) / 4, free = 0;
         while (free < words && f.cpu().word(image.symbol(name) + 4 * free) == 0)
             ++free;

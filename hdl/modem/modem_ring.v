@@ -58,6 +58,8 @@ module modem_ring (
             inside <= 1'b0;
         if (past) begin
             assert (free_o <= 5'd16);
+            if ($past(rst_i))
+                assert (free_o == 5'd16);
             if (inside) begin
                 assert ((place - oldest) < used);
                 assert (bytes[place[3:0]] == length);

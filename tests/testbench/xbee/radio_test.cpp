@@ -54,6 +54,9 @@ TEST_F(Mac, AirTimeIsTheFormulas) {
 struct Tries {
     uint32_t rr, mm;
     unsigned tries;
+    friend void PrintTo(const Tries& t, std::ostream* out) {
+        *out << "RR" << t.rr << "_MM" << t.mm;
+    }
 };
 class MacTries : public Pair, public ::testing::WithParamInterface<Tries> {};
 TEST_P(MacTries, AreFourTimesRRAndOneMore) {

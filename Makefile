@@ -64,6 +64,7 @@ mutants: $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect
 
 bench: $(BUILD)/build.ninja ## measure simulator, FSMC bridge, modem set-up, firmware and Slice compiler, write build/bench/*.json
 	@ninja -C $(BUILD) -j $(JOBS) measure_simulator
+	@ninja -C $(BUILD) -j $(JOBS) measure_link
 	@ninja -C $(BUILD) -j $(JOBS) measure_fsmc
 	@ninja -C $(BUILD) -j $(JOBS) measure_modem
 	@ninja -C $(BUILD) -j $(JOBS) measure_speed

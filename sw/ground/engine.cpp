@@ -43,6 +43,11 @@ void makePipe(int pipeEnds[2]) {
         throw std::system_error(errno, std::generic_category(), "pipe");
 }
 
+// Of IceP's header: "The Ice Protocol" in the manual of ZeroC Ice.
+enum MessageType { request = 0, batch = 1, reply = 2, validate = 3 };
+constexpr size_t typeAt = 8, idAt = 14;
+constexpr U32 heartbeatUs = 5000000; // below any sensible Ice.ACM.Timeout
+
 U32 messageSize(const std::vector<U8>& head) {
     return static_cast<U32>(head[10]) | static_cast<U32>(head[11]) << 8 |
            static_cast<U32>(head[12]) << 16 | static_cast<U32>(head[13]) << 24;
@@ -165,16 +170,22 @@ void Engine::stopListening() {
     listening_ = false;
 }
 
+bool Engine::hasFailed() const {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return failed_;
+}
+
 std::string Engine::statistics() const {
     std::lock_guard<std::mutex> lock(mutex_);
     const Link_Statistics& s = *Link_statistics(link_.get());
-    char text[256];
-    std::snprintf(text, sizeof text,
-                  "%s: %u bytes in %u frames sent (%u sent again), %u bytes in %u frames received, "
-                  "%u messages out, %u in, round trip %.1f ms, %u sessions, %u bytes skipped",
-                  settings_.device.c_str(), s.bytesSent, s.framesSent, s.fragmentsResent,
-                  s.bytesReceived, s.framesReceived, s.messagesSent, s.messagesReceived,
-                  s.roundTripUs / 1000.0, s.sessions, s.bytesSkipped);
+    char text[320];
+    std::snprintf(
+        text, sizeof text,
+        "%s: %u bytes in %u frames sent (%u sent again), %u bytes in %u frames received, "
+        "%u messages out, %u in, round trip %.1f ms, %u sessions, %u bytes skipped, %u saved",
+        settings_.device.c_str(), s.bytesSent, s.framesSent, s.fragmentsResent, s.bytesReceived,
+        s.framesReceived, s.messagesSent, s.messagesReceived, s.roundTripUs / 1000.0, s.sessions,
+        s.bytesSkipped, s.headBytesSaved);
     return text;
 }
 
@@ -201,6 +212,9 @@ int Engine::onMessage(void* context, int channel, const U8* data, U32 size) {
     if (!c.in.empty())
         return 1; // the program is slow: the link holds the rest back
     c.in.assign(data, data + size);
+    c.heardAt = nowUs();
+    if (size > typeAt && data[typeAt] == reply && c.pending)
+        --c.pending;
     self(context).writeProgram(channel);
     return 0;
 }
@@ -353,14 +367,57 @@ bool Engine::sendMessages(int channel, U32 now) {
         }
         if (c.out.size() < size)
             return true;
+        if (isHeartbeat(channel)) {
+            c.out.erase(c.out.begin(), c.out.begin() + size);
+            continue;
+        }
         Link_Status status = Link_send(link_.get(), channel, c.out.data(), size, 0, now);
         if (status == LINK_FULL)
             c.stuck = true;
         if (status != LINK_OK)
             return status == LINK_FULL;
+        noteSent(c);
         c.out.erase(c.out.begin(), c.out.begin() + size);
     }
     return true;
+}
+
+// The link itself knows whether the peer is there, so Ice's heartbeats need not cross it. What is
+// not one is the greeting of a server, the first message of a connection that the UAV has opened.
+bool Engine::isHeartbeat(int channel) {
+    Channel& c = channels_[channel];
+    if (c.out[typeAt] != validate)
+        return false;
+    bool first = channel >= ownChannels && !c.greeted;
+    c.greeted = true;
+    return !first;
+}
+
+void Engine::noteSent(Channel& c) {
+    bool wantsReply = c.out[typeAt] == request && c.out.size() >= idAt + 4 &&
+                      (c.out[idAt] | c.out[idAt + 1] | c.out[idAt + 2] | c.out[idAt + 3]);
+    if (wantsReply && c.pending++ == 0)
+        c.heardAt = nowUs();
+}
+
+// While a program waits for an answer and the peer is there, the program gets heartbeats from here:
+// as a server that runs long would send them, but without air. Returns when to come again.
+U32 Engine::beat(U32 now) {
+    static const U8 heartbeat[headerBytes] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, validate, 0, 14};
+    U32 wait = 0xFFFFFFFFu;
+    for (int channel = 0; channel < LINK_CHANNELS; ++channel) {
+        Channel& c = channels_[channel];
+        if (c.fd < 0 || c.wanted || !c.pending)
+            continue;
+        if (now - c.heardAt >= heartbeatUs && c.in.empty()) {
+            c.in.assign(heartbeat, heartbeat + headerBytes);
+            c.heardAt = now;
+            writeProgram(channel);
+        }
+        wait = std::min(wait,
+                        now - c.heardAt < heartbeatUs ? heartbeatUs - (now - c.heardAt) : 100000u);
+    }
+    return wait;
 }
 
 void Engine::readProgram(int channel, U32 now) {
@@ -392,7 +449,7 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
             return;
         openWanted(now);
         Link_poll(link_.get(), now);
-        U32 deadline = Link_deadline(link_.get(), now);
+        U32 deadline = std::min(Link_deadline(link_.get(), now), beat(now));
         std::vector<pollfd> fds = {
             {serial_, static_cast<short>(serialOut_.empty() ? POLLIN : POLLIN | POLLOUT), 0},
             {wakePipe_[0], POLLIN, 0}};

@@ -29,6 +29,7 @@ struct Settings {
     int target = 0x0001;  // DL
     int rfChannel = 0x0C; // CH
     int pan = 0x3332;     // ID
+    std::string key;      // AES key, up to 32 hexadecimal digits; empty: the modem's setting stays
     int guardMs = 1000;   // of the modem as it is
     bool setUp = true;    // by AT commands
     int downMs =
@@ -57,16 +58,20 @@ public:
     int accept(); // descriptor of the stream, -1: none
     void stopListening();
 
+    bool hasFailed() const;         // the port is lost, or no modem answered
     std::string statistics() const; // one line of text
     const std::string& device() const { return settings_.device; }
 
 private:
     struct Channel {
-        int fd = -1;         // the engine's end
-        bool wanted = false; // to be opened when the link is up
-        std::vector<U8> out; // from the program, not yet a whole message
-        std::vector<U8> in;  // to the program, not yet written
-        bool stuck = false;  // the link's queue was full
+        int fd = -1;          // the engine's end
+        bool wanted = false;  // to be opened when the link is up
+        std::vector<U8> out;  // from the program, not yet a whole message
+        std::vector<U8> in;   // to the program, not yet written
+        bool greeted = false; // the program's first ValidateConnection has passed
+        unsigned pending = 0; // two-way requests of the program that are not answered yet
+        U32 heardAt = 0;      // when it got its last message
+        bool stuck = false;   // the link's queue was full
     };
 
     Engine(const Settings& settings, const Log& log);
@@ -89,6 +94,9 @@ private:
     bool sendMessages(int channel, U32 now);
     void writeProgram(int channel);
     void openWanted(U32 now);
+    bool isHeartbeat(int channel);
+    void noteSent(Channel& c);
+    U32 beat(U32 now);
     int newPair(int& programEnd);
     void wake();
 

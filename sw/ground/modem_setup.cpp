@@ -103,11 +103,12 @@ bool Engine::command(const std::string& text) {
         if (write(serial_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
             return false;
         std::string reply = readReply(replyMs);
-        log_(2, "AT" + text + ": " + reply);
+        // A key is a secret.
+        log_(2, "AT" + (text.compare(0, 2, "KY") ? text : text.substr(0, 2)) + ": " + reply);
         if (reply == "OK")
             return true;
     }
-    log_(0, "the modem on '" + settings_.device + "' refuses AT" + text);
+    log_(0, "the modem on '" + settings_.device + "' refuses AT" + text.substr(0, 2));
     return false;
 }
 
@@ -140,6 +141,7 @@ bool Engine::setUpModem() {
     if (!findModem() || !command("MY" + hex(settings_.source)) || !command("DH0") ||
         !command("DL" + hex(settings_.target)) || !command("CH" + hex(settings_.rfChannel)) ||
         !command("ID" + hex(settings_.pan)) || !command("RO3") ||
+        (!settings_.key.empty() && (!command("EE1") || !command("KY" + settings_.key))) ||
         !command("BD" + hex(codeOf(settings_.baud))) || !command("CN"))
         return false;
     setSpeed(rates[codeOf(settings_.baud)]);

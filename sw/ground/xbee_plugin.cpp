@@ -39,6 +39,13 @@ struct Options {
     bool compress = false;
 };
 
+// The key itself is in no message.
+void checkKey(const string& key, const string& where) {
+    if (key.size() > 32 || key.find_first_not_of("0123456789abcdefABCDEF") != string::npos)
+        throw Ice::EndpointParseException(
+            __FILE__, __LINE__, "the AES key of " + where + " must be up to 32 hexadecimal digits");
+}
+
 // What the endpoints of one communicator share: its properties and its logger.
 class Instance : public IceUtil::Shared {
 public:
@@ -49,6 +56,9 @@ public:
         defaults_.serial.device = p->getProperty("XBeeAT.Device");
         defaults_.serial.baud = p->getPropertyAsIntWithDefault("XBeeAT.Baud", 115200);
         defaults_.serial.guardMs = p->getPropertyAsIntWithDefault("XBeeAT.Guard", 1000);
+        defaults_.serial.key = p->getProperty("XBeeAT.Key");
+        checkKey(defaults_.serial.key, "property XBeeAT.Key");
+        defaults_.serial.downMs = 1000 * p->getPropertyAsIntWithDefault("XBeeAT.Down", 15);
         defaults_.serial.setUp = p->getPropertyAsIntWithDefault("XBeeAT.Setup", 1) > 0;
     }
     const Options& defaults() const { return defaults_; }
@@ -329,7 +339,7 @@ protected:
             o_.compress = true;
             return true;
         }
-        if (string("-d-b-a-s-c-i-p-t-g-h").find(option) == string::npos || option.size() != 2)
+        if (string("-d-b-a-s-c-i-p-t-g-k-h").find(option) == string::npos || option.size() != 2)
             return false;
         if (argument.empty())
             throw Ice::EndpointParseException(__FILE__, __LINE__,
@@ -337,7 +347,10 @@ protected:
                                                   "' in endpoint '" + endpoint + "'");
         if (option == "-d")
             o_.serial.device = argument;
-        else if (option != "-h") // tolerated: there is no host
+        else if (option == "-k") { // a secret: it is never printed
+            checkKey(argument, "an xbee-at endpoint");
+            o_.serial.key = argument;
+        } else if (option != "-h") // tolerated: there is no host
             number(option[1], argument, endpoint);
         return true;
     }

@@ -17,6 +17,13 @@ U16 Link_crc(U16 seed, const U8* bytes, U32 size) {
     return (U16)crc;
 }
 
+/* Fletcher's two sums, modulo 256: unlike a second CRC it has nothing in common with the
+ * fragments'. */
+void Link_sum(U8 sums[2], const U8* byte) {
+    sums[0] = (U8)(sums[0] + *byte);
+    sums[1] = (U8)(sums[1] + sums[0]);
+}
+
 U32 Link_get32(const U8* p) {
     return (U32)p[0] | (U32)p[1] << 8 | (U32)p[2] << 16 | (U32)p[3] << 24;
 }

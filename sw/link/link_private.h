@@ -61,6 +61,7 @@ typedef enum Link_Kind {
 #define LINK_HEAD_ROOM (LINK_HEADS ? 96U : 0U) /* what may grow in front of a message */
 #define LINK_ESCAPE (LINK_HEADS ? 1U : 0U)     /* a byte that marks what is not Ice */
 
+#define LINK_CHECK 2U /* bytes behind a message of several fragments */
 #define LINK_INPUT_BYTES (LINK_WINDOW > 1U ? 2U * LINK_MAX_FRAME : LINK_MAX_FRAME)
 
 /* What must hold for the options of link.h; a negative size stops the compiler. */
@@ -131,6 +132,7 @@ struct Link {
     U8 open;                     /* bit a channel: messages may be sent */
     U8 closing;                  /* closed here, the peer's closing has not come yet */
     U8 closeDue;                 /* closed by the peer, our closing is not queued yet */
+    U8 check[2];                 /* sums of the message being queued */
     U8 ackDue, ackNow, ackCount; /* ackCount: fragments since the last acknowledgement */
     U16 cutBegun;                /* bytes of cutItem that were cut */
     U16 messageSize;
@@ -155,7 +157,7 @@ struct Link {
     U8 slotSize[LINK_WINDOW], slotFlags[LINK_WINDOW], slotUsed[LINK_WINDOW];
     U8 slots[LINK_WINDOW > 1U ? LINK_WINDOW : 1U][LINK_MAX_PAYLOAD];
     Link_Heads headsOut, headsIn;
-    U8 message[LINK_HEAD_ROOM + LINK_MAX_MESSAGE + LINK_ESCAPE];
+    U8 message[LINK_HEAD_ROOM + LINK_MAX_MESSAGE + LINK_ESCAPE + LINK_CHECK];
     U8 queue[LINK_SEND_BYTES];
 };
 
@@ -163,6 +165,7 @@ struct Link {
 U16 Link_crc(U16 seed, const U8* bytes, U32 size);
 int Link_sendFrame(Link* link, U8* frame, U32 payload, U16 seed);
 int Link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 byte1, U32 size);
+void Link_sum(U8 sums[2], const U8* byte);
 U32 Link_get32(const U8* p);
 void Link_put32(U8* p, U32 value);
 void Link_pollInput(Link* link);

@@ -40,9 +40,12 @@ void Link_resetSend(Link* link) {
     link->timeout = LINK_RTO_FIRST;
 }
 
+/* Adds bytes to the ring, and to the check of their message. */
 void Link_put(Link* link, const U8* data, U32 size) {
-    while (size--)
+    while (size--) {
+        Link_sum(link->check, data);
         link->queue[RING(link->queueTail++)] = *data++;
+    }
 }
 
 /* An entry of the queue for `size` bytes, which the caller puts in. */
@@ -61,14 +64,14 @@ static Link_Status enqueue(Link* link, int channel, U32 flags, U32 size, U32 tag
     return LINK_OK;
 }
 
-static Link_Status check(const Link* link, int channel) {
+static Link_Status usable(const Link* link, int channel) {
     if (channel < 0 || channel >= LINK_CHANNELS)
         return LINK_CLOSED;
     return link->state == LINK_STATE_UP ? LINK_OK : LINK_DOWN;
 }
 
 Link_Status Link_openChannel(Link* link, int channel, U32 nowUs) {
-    Link_Status status = check(link, channel);
+    Link_Status status = usable(link, channel);
     (void)nowUs;
     if (status == LINK_OK && ((link->closing | link->closeDue) >> channel & 1))
         return LINK_FULL;
@@ -80,7 +83,7 @@ Link_Status Link_openChannel(Link* link, int channel, U32 nowUs) {
 }
 
 Link_Status Link_closeChannel(Link* link, int channel, U32 nowUs) {
-    Link_Status status = check(link, channel);
+    Link_Status status = usable(link, channel);
     (void)nowUs;
     if (status == LINK_OK && !(link->open >> channel & 1))
         return LINK_CLOSED;
@@ -103,7 +106,9 @@ static void answerClosings(Link* link) {
 }
 
 Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag, U32 nowUs) {
-    Link_Status status = check(link, channel);
+    Link_Status status = usable(link, channel);
+    Link_Packed packed;
+    U32 total;
     (void)nowUs;
     if (size == 0 || size > LINK_MAX_MESSAGE)
         return LINK_TOO_LONG;
@@ -111,19 +116,28 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
         return status;
     if (!(link->open >> channel & 1))
         return LINK_CLOSED;
-    if (LINK_HEADS && (link->session.features & LINK_FEATURE_HEADS)) {
-        Link_Packed packed;
+    packed.prefix = packed.middle = packed.tailAt = 0;
+    packed.tail = size;
+    if (LINK_HEADS && (link->session.features & LINK_FEATURE_HEADS))
         Link_packHead(link, channel, data, size, &packed);
-        status =
-            enqueue(link, channel, LINK_FIRST, packed.prefix + packed.middle + packed.tail, tag);
-        if (status == LINK_OK)
-            Link_putPacked(link, channel, data, size, &packed);
+    total = packed.prefix + packed.middle + packed.tail;
+    if (total > LINK_MAX_PAYLOAD)
+        total += LINK_CHECK; /* of several fragments: with a check over the whole */
+    status = enqueue(link, channel, LINK_FIRST, total, tag);
+    if (status != LINK_OK)
         return status;
-    }
-    status = enqueue(link, channel, LINK_FIRST, size, tag);
-    if (status == LINK_OK)
+    link->check[0] = link->check[1] = 0;
+    if (LINK_HEADS && (link->session.features & LINK_FEATURE_HEADS))
+        Link_putPacked(link, channel, data, size, &packed);
+    else
         Link_put(link, data, size);
-    return status;
+    if (total > LINK_MAX_PAYLOAD) {
+        U8 check[LINK_CHECK];
+        check[0] = link->check[0];
+        check[1] = link->check[1];
+        Link_put(link, check, LINK_CHECK);
+    }
+    return LINK_OK;
 }
 
 /* Cuts the next fragment from the queue into the window. 0: nothing to cut, or no room. */

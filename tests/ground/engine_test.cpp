@@ -147,6 +147,42 @@ TEST_F(EngineTest, WhoGivesUpBeforeTheLinkIsUpFreesItsChannel) {
     close(fd);
 }
 
+TEST_F(EngineTest, HeartbeatsTakeNoAir) {
+    auto engine = start();
+    int fd = engine->connect(0);
+    ASSERT_TRUE(rig_.until([&] { return rig_.isUp() && !rig_.opened.empty(); }));
+    // As Ice does: a two-way request, then heartbeats while the answer takes its time.
+    Bytes request = message(1, 40), heartbeat = message(0, 14);
+    request[8] = 0;
+    heartbeat[8] = 3;
+    writeAll(fd, request);
+    ASSERT_TRUE(rig_.until([&] { return rig_.received.size() == 1; }));
+    for (int i = 0; i < 10; ++i)
+        writeAll(fd, heartbeat);
+    EXPECT_EQ(readAll(fd, 14), heartbeat); // after 5 s, from the engine, for the UAV says nothing
+    rig_.with([&] {
+        EXPECT_EQ(rig_.received.size(), 1u) << "a heartbeat crossed the air";
+        Bytes reply = message(1, 30);
+        reply[8] = 2;
+        Link_send(rig_.link(), 0, reply.data(), 30, 0, rig_.us());
+    });
+    EXPECT_EQ(readAll(fd, 30)[8], 2);
+    close(fd);
+}
+
+TEST_F(EngineTest, TheKeyIsSetAndNeverLogged) {
+    XBeeAT::Settings s = settings();
+    s.key = "0123456789ABCDEF";
+    auto engine = XBeeAT::Engine::get(s, [this](int, const std::string& text) {
+        std::lock_guard<std::mutex> lock(logMutex_);
+        log_ += text + "\n";
+    });
+    ASSERT_TRUE(rig_.until([&] { return rig_.ground->parameter("EE") == 1; }));
+    ASSERT_TRUE(rig_.until([&] { return !rig_.ground->inCommandMode(); }));
+    EXPECT_TRUE(logged("ATKY: OK"));
+    EXPECT_FALSE(logged("0123456789ABCDEF"));
+}
+
 TEST_F(EngineTest, TheUavMayCallWhenSomebodyListens) {
     auto engine = start();
     int ready = engine->listen();

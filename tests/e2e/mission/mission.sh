@@ -41,6 +41,10 @@ cpp) # the C++11 library of the plugin, a C++ client, and a proxy that goes thro
     grep -q 'it is a ::Autopilot::HwProcessingEngine' "$out/log"
     grep -q -- '-a 0x1 .*-p 2' "$out/log"
     ;;
+gateway) # two stock clients at once, through TCP
+    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" -- \
+        "$source/tests/e2e/mission/gateway.sh" "$build" '{device}' "$out" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+    ;;
 twice)
     run "$out/a" --image $image >"$out/a.log" 2>&1 &
     first=$!

@@ -100,7 +100,7 @@ def initialize(args):
         "XBeeAT.Trace": str(args.trace),
         "Ice.ThreadPool.Client.Size": "2",
         "Ice.ThreadPool.Server.Size": "2",
-        "Ice.Default.InvocationTimeout": "60000",
+        "Ice.Default.InvocationTimeout": "300000",
         "Ice.ACM.Close": "0",
         "XBeeAT.Guard": str(args.guard),
         "Station.Endpoints": "xbee-at -d %s -a 0x0001 -s 0x0000" % args.device,

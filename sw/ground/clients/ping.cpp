@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
         Ice::InitializationData data;
         data.properties = Ice::createProperties();
         data.properties->setProperty("Ice.Plugin.XBeeAT", PLUGIN_FOLDER "/xbeeat:createXBeeAT");
-        data.properties->setProperty("Ice.Default.InvocationTimeout", "60000");
+        data.properties->setProperty("Ice.Default.InvocationTimeout", "300000");
         data.properties->setProperty("Ice.ACM.Close", "0");
         Ice::CommunicatorHolder ic(data);
         auto object = ic->stringToProxy(argv[1]);

@@ -45,6 +45,7 @@ try() { # test log
     case $1 in
     test_*) target=${1%%.*} ;;
     vhdl.*) target=${1#vhdl.}_vectors ;;
+    slice.*) target=slice2c ;;
     *) target=regmaps ;;
     esac
     nice ninja -C build/main -j 1 "$target" >"$2" 2>&1 || return 2

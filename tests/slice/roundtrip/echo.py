@@ -91,8 +91,29 @@ def thrown(echo, module, ic, encoding, form, e):
         check(what, type(got).__name__ == e.name and members(e, sent, got, encoding, {}), vars(sent), got)
 
 
+def unknown(echo, module, ic, encoding, t):
+    """An instance of a type that C does not know is cut down to the base it knows; where the format forbids it, refused."""
+    graph = []
+    v = getattr(module, "Hidden" + t.name)()
+    for name, ft, tag in t.all_fields():
+        setattr(v, name, model.value(ft, module, ic, [15], graph))
+    v.more, v.last = "of what C does not know", Ice.Unset if model.random.random() < 0.5 else 5
+    v.other = v.same = model.value(t, module, ic, [15], graph)
+    i = model.types.index(t)
+    if encoding == "1.1":
+        try:
+            getattr(echo, "plain%dCompact" % i)(v)
+            check(t.name, False, "an unknown class in the compact format was taken")
+        except Ice.UnknownLocalException:
+            pass
+    result, w = getattr(echo, "plain%dSliced" % i)(v)
+    for got in (result, w):
+        what = "%s, cut down, in %s" % (t.name, encoding)
+        check(what, type(got).__name__ == t.name and members(t, v, got, encoding, {id(v): got}), v, got)
+
+
 def client(folder, port):
-    Ice.loadSlice(os.path.join(folder, "Random.ice"))
+    Ice.loadSlice(os.path.join(folder, "Hidden.ice"))
     import T as module
 
     calls = 0
@@ -108,6 +129,9 @@ def client(folder, port):
                         plain(echo, module, ic, encoding, form, i, t)
                     maybe(echo, module, ic, encoding, i, t)
                     calls += 3
+            for t in model.classes() * 6:
+                unknown(echo, module, ic, encoding, t)
+                calls += 1
             for e in model.exceptions:
                 for form in ("Compact", "Sliced"):
                     for _ in range(12):
@@ -120,8 +144,9 @@ def client(folder, port):
 
 model = Model(sys.argv[2])
 if sys.argv[1] == "generate":
-    with open(os.path.join(sys.argv[3], "Random.ice"), "w") as f:
-        f.write(model.slice_text())
+    for name, hidden in (("Random.ice", False), ("Hidden.ice", True)):
+        with open(os.path.join(sys.argv[3], name), "w") as f:
+            f.write(model.slice_text(hidden))
     with open(os.path.join(sys.argv[3], "servants.c"), "w") as f:
         f.write(model.c_text())
 else:

@@ -115,7 +115,8 @@ class Model:
 
     # ---- Slice
 
-    def slice_text(self):
+    def slice_text(self, hidden=False):
+        """`hidden`: with classes that the C side does not know."""
         out = ["module T {"]
         for t in self.declared:
             most = '["c:max:%d"] ' % t.maximum if t.maximum else ""
@@ -137,8 +138,14 @@ class Model:
             for form in ("Compact", "Sliced"):
                 out.append("%svoid raise%s%s(%s) throws %s;" % (
                     self.meta(form), e.name, form, ", ".join(self.parameter(f) for f in e.all_fields()), self.root(e).name))
-        out += ["void shutdown();", "};", "};"]
+        out += ["void shutdown();", "};"]
+        for t in self.classes() if hidden else []:
+            out.append("class Hidden%s extends %s { string more; %s other; optional(200) int last; %s same; };" % ((t.name,) * 4))
+        out.append("};")
         return '[["underscore"]]\n' + "\n".join(out) + "\n"
+
+    def classes(self):
+        return [t for t in self.declared if t.kind == "class"]
 
     @staticmethod
     def root(e):

@@ -2,7 +2,7 @@
 //
 // fsmc_bridge: the STM32's FSMC to DDR3 (NE1) and to the register bus (NE2), 16 bits; docs/fsmc.md.
 //
-// Asynchronous accesses of modes 1, A, 2, B, C and D. Reads that are not there yet, and writes for
+// Asynchronous accesses of modes 1, A, 2, B, C and D; with SYNC, bursts for NE1. Reads that are not there yet, and writes for
 // which there is no room, hold NWAIT low; it depends on the pins combinationally. Every access waits
 // until the write before it has been noted and a register write before it has been carried out.
 // An access that waits for 2**TIMEOUT_LOG2 clocks is let go with access_error_o, never NWAIT for ever.
@@ -11,6 +11,8 @@
 
 module fsmc_bridge #(
     parameter MUXED        = 0, // 1: address bits 15..0 come on the data pins while NADV is low
+    parameter SYNC         = 0, // 1: NE1 is a synchronous PSRAM with bursts (fsmc_burst)
+    parameter LATENCY      = 5, // then: FSMC_CLK edges from the address to the first data, DATLAT + 2
     parameter WAIT_HIGH    = 0, // 1: NWAIT is active high (WAITPOL = 1)
     parameter TIMEOUT_LOG2 = 12,
     parameter POST_LOG2    = 4, // see fsmc_memory
@@ -28,6 +30,7 @@ module fsmc_bridge #(
     input  wire        fsmc_nwe_n_i,
     input  wire [1:0]  fsmc_nbl_n_i,
     input  wire        fsmc_nadv_n_i,
+    input  wire        fsmc_clk_i,     // with SYNC
     output wire        fsmc_nwait_n_o,
     // system slot
     input  wire [5:0]  page_i,
@@ -64,6 +67,7 @@ module fsmc_bridge #(
     input  wire        npi_init_done_i
 );
     // ---- Pins
+    wire ne1 = !fsmc_ne_n_i[0], ne2 = !fsmc_ne_n_i[1];
     wire [24:0] address;
     generate
         if (MUXED != 0) begin : g_muxed
@@ -79,33 +83,76 @@ module fsmc_bridge #(
         end
     endgenerate
 
-    wire        wr_full, wr, hit_was, safe_was, writing;
-    wire [1:0]  wr_ne, wr_be, reading;
-    wire [24:0] wr_addr;
-    wire [15:0] wr_data;
-    wire        hit, hit_safe, room, busy, reg_done;
+    wire        wr_full, taken, writing;
+    wire [1:0]  taken_ne, taken_be, seen;
+    wire [24:0] taken_addr;
+    wire [15:0] taken_data;
+    wire        hit, hit_safe, room, busy, reg_done, hit_seen, safe_seen, excuse;
     wire [15:0] mem_data, reg_data;
+    // Of NE1: writes, and the halfword being read.
+    wire        mem_wr, mem_reading, hit_was, safe_was, mem_queued;
+    wire [24:0] mem_wr_addr, mem_rd_addr;
+    wire [15:0] mem_wr_data, burst_d;
+    wire [1:0]  mem_wr_be;
+    wire        burst_nwait_n;
 
     // What came before is noted, and registers are quiet.
-    wire clear = !wr_full && !wr && !busy;
+    wire clear = !wr_full && !taken && !busy;
 
     fsmc_async u_fsmc_async (
         .clk_i(clk_i), .rst_i(rst_i),
-        .fsmc_a_i(address), .fsmc_d_i(fsmc_d_i), .fsmc_ne_n_i(fsmc_ne_n_i),
+        .fsmc_a_i(address), .fsmc_d_i(fsmc_d_i), .fsmc_ne_n_i({fsmc_ne_n_i[1], fsmc_ne_n_i[0] || SYNC != 0}),
         .fsmc_noe_n_i(fsmc_noe_n_i), .fsmc_nwe_n_i(fsmc_nwe_n_i), .fsmc_nbl_n_i(fsmc_nbl_n_i),
-        .wr_full_o(wr_full), .wr_o(wr), .wr_ne_o(wr_ne), .wr_addr_o(wr_addr),
-        .wr_data_o(wr_data), .wr_be_o(wr_be),
+        .wr_full_o(wr_full), .wr_o(taken), .wr_ne_o(taken_ne), .wr_addr_o(taken_addr),
+        .wr_data_o(taken_data), .wr_be_o(taken_be),
         .hit_i(hit && clear), .safe_i(hit_safe && clear),
-        .reading_o(reading), .hit_o(hit_was), .safe_o(safe_was), .writing_o(writing)
+        .reading_o(seen), .hit_o(hit_seen), .safe_o(safe_seen), .writing_o(writing)
     );
+
+    generate
+        if (SYNC != 0) begin : g_sync
+            wire wr_valid, rd_valid;
+            fsmc_burst #(.MUXED(MUXED), .LATENCY(LATENCY)) u_fsmc_burst (
+                .clk_i(clk_i), .rst_i(rst_i), .fsmc_clk_i(fsmc_clk_i),
+                .fsmc_a_i(fsmc_a_i), .fsmc_d_i(fsmc_d_i), .fsmc_d_o(burst_d),
+                .fsmc_ne_n_i(fsmc_ne_n_i[0]), .selected_i(ne1), .fsmc_nwe_n_i(fsmc_nwe_n_i),
+                .fsmc_nadv_n_i(fsmc_nadv_n_i), .fsmc_nbl_n_i(fsmc_nbl_n_i),
+                .fsmc_nwait_n_o(burst_nwait_n), .busy_i(busy),
+                .wr_valid_o(wr_valid), .wr_addr_o(mem_wr_addr), .wr_data_o(mem_wr_data),
+                .wr_be_o(mem_wr_be), .wr_ready_i(mem_wr),
+                .rd_valid_o(rd_valid), .rd_addr_o(mem_rd_addr), .rd_data_i(mem_data),
+                .rd_ready_i((hit && clear && !wr_valid) || excuse)
+            );
+            // A read waits for the writes of the burst before.
+            assign mem_queued  = wr_valid;
+            assign mem_wr      = wr_valid && (room || excuse);
+            assign mem_reading = rd_valid && !wr_valid;
+            assign hit_was     = hit && clear;
+            assign safe_was    = 1'b1;
+            wire unused = &{1'b0, seen[0], hit_seen, safe_seen, hit_safe, taken_be, taken_ne[0], 1'b0};
+        end else begin : g_async
+            assign mem_queued  = 1'b0;
+            assign mem_wr      = taken && taken_ne[0];
+            assign mem_wr_addr = taken_addr;
+            assign mem_wr_data = taken_data;
+            assign mem_wr_be   = taken_be;
+            assign mem_rd_addr = address;
+            assign mem_reading = seen[0];
+            assign hit_was     = hit_seen;
+            assign safe_was    = safe_seen;
+            assign burst_d       = 16'd0;
+            assign burst_nwait_n = 1'b1;
+            wire unused = &{1'b0, fsmc_clk_i, mem_queued, 1'b0};
+        end
+    endgenerate
 
     // ---- An access that has waited too long is let go, until its strobe rises.
     reg [TIMEOUT_LOG2:0] patience;
     reg  excused;
     wire reg_restart;
     wire expired = patience[TIMEOUT_LOG2];
-    wire waiting = (reading[0] && !hit_was) || (writing && !room);
-    wire excuse  = expired && !busy && waiting && !excused;
+    wire waiting = (mem_reading && !hit_was) || ((writing || mem_queued) && !room);
+    assign excuse = expired && !busy && waiting && (!excused || SYNC != 0); // each beat of a burst
     wire rest    = fsmc_noe_n_i && fsmc_nwe_n_i;
 
     always @(posedge clk_i)
@@ -120,24 +167,23 @@ module fsmc_bridge #(
         else if (excuse)
             excused <= 1'b1;
 
-    wire ne1 = !fsmc_ne_n_i[0], ne2 = !fsmc_ne_n_i[1];
     wire read_ok  = ne2 ? reg_done : (hit && clear) || excused;
     wire write_ok = clear && (ne2 || room) || excused;
-    assign fsmc_nwait_n_o = (WAIT_HIGH != 0) ^ !((ne1 || ne2) &&
-        ((!fsmc_noe_n_i && !read_ok) || (!fsmc_nwe_n_i && !write_ok)));
-    assign fsmc_d_o       = ne2 ? reg_data : mem_data;
+    wire waits = (ne1 || ne2) && ((!fsmc_noe_n_i && !read_ok) || (!fsmc_nwe_n_i && !write_ok));
+    assign fsmc_nwait_n_o = (WAIT_HIGH != 0) ^ (SYNC != 0 && ne1 ? burst_nwait_n : !waits);
+    assign fsmc_d_o       = ne2 ? reg_data : SYNC != 0 ? burst_d : mem_data;
     assign fsmc_d_oe_o    = (ne1 || ne2) && !fsmc_noe_n_i;
 
     // ---- Registers
     wire reg_error, reg_error_memory, reg_write, reg_flush, mem_idle;
-    wire reg_access = (wr && wr_ne[1]) || reading[1];
+    wire reg_access = (taken && taken_ne[1]) || seen[1];
     fsmc_registers u_fsmc_registers (
         .clk_i(clk_i), .rst_i(rst_i),
-        .wr_i(wr && wr_ne[1]), .wr_addr_i(wr_addr), .wr_data_i(wr_data),
-        .reading_i(reading[1]), .rd_addr_i(address), .ended_i(!ne2 || fsmc_noe_n_i),
+        .wr_i(taken && taken_ne[1]), .wr_addr_i(taken_addr), .wr_data_i(taken_data),
+        .reading_i(seen[1]), .rd_addr_i(address), .ended_i(!ne2 || fsmc_noe_n_i),
         .rd_done_o(reg_done), .rd_data_o(reg_data),
         .restart_o(reg_restart), .expired_i(expired),
-        .busy_o(busy), .flush_o(reg_flush), .idle_i(mem_idle),
+        .busy_o(busy), .flush_o(reg_flush), .idle_i(mem_idle && !mem_queued),
         .error_o(reg_error), .error_memory_o(reg_error_memory), .error_write_o(reg_write),
         .bus_valid_o(bus_valid_o), .bus_write_o(bus_write_o), .bus_addr_o(bus_addr_o),
         .bus_wdata_o(bus_wdata_o), .bus_ready_i(bus_ready_i), .bus_rdata_i(bus_rdata_i),
@@ -148,10 +194,10 @@ module fsmc_bridge #(
     wire wr_lost;
     fsmc_memory #(.POST_LOG2(POST_LOG2), .BLOCK_LOG2(BLOCK_LOG2)) u_fsmc_memory (
         .clk_i(clk_i), .rst_i(rst_i), .page_i(page_i),
-        .wr_i(wr && wr_ne[0]), .wr_addr_i(wr_addr), .wr_data_i(wr_data), .wr_be_i(wr_be),
+        .wr_i(mem_wr), .wr_addr_i(mem_wr_addr), .wr_data_i(mem_wr_data), .wr_be_i(mem_wr_be),
         .wr_lost_o(wr_lost), .room_o(room),
-        .rd_addr_i(address), .rd_used_i(reading[0] && hit_was),
-        .rd_miss_i(reading[0] && !hit_was && clear),
+        .rd_addr_i(mem_rd_addr), .rd_used_i(mem_reading && hit_was),
+        .rd_miss_i(mem_reading && !hit_was && clear),
         .rd_hit_o(hit), .rd_safe_o(hit_safe), .rd_data_o(mem_data),
         .flush_i(reg_flush), .drop_i(reg_access), .idle_o(mem_idle),
         .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
@@ -168,15 +214,15 @@ module fsmc_bridge #(
     // ---- Errors
     assign access_error_o = reg_error || reg_error_memory || excuse;
     assign error_addr_o   = reg_error ? bus_addr_o : 10'h3FF;
-    assign error_write_o  = reg_error ? reg_write : !reading[0];
+    assign error_write_o  = reg_error ? reg_write : !mem_reading;
 
     // ---- For a master that does not look at NWAIT: a write that found no room, and a read that did not
     // find its data there from the beginning and did not wait for it (two clocks) either.
     reg       reading_d, early;
     reg [1:0] good;
-    assign late_o = wr_lost || (reading_d && !reading[0] && early);
+    assign late_o = wr_lost || (reading_d && !mem_reading && early);
     always @(posedge clk_i) begin
-        reading_d <= reading[0] && !rst_i;
+        reading_d <= mem_reading && !rst_i;
         good      <= {hit_was && good[0] && reading_d, hit_was};
         early     <= reading_d ? early && !good[1] : !safe_was;
     end

@@ -66,6 +66,7 @@ private:
         top.fsmc_noe_n_i = pins.noeN;
         top.fsmc_nwe_n_i = pins.nweN;
         top.fsmc_nadv_n_i = pins.nadvN;
+        top.fsmc_clk_i = pins.clk;
     }
     void seePins() {
         pins.dFromDesign = top.fsmc_d_o;

@@ -27,7 +27,7 @@ constexpr uint32_t timing(unsigned addset, unsigned datast, unsigned busturn = 0
 }
 // BTR of a synchronous bank: FSMC_CLK = HCLK / (clkdiv + 1), first data after datlat + 2 of them.
 constexpr uint32_t burstTiming(unsigned clkdiv, unsigned datlat) {
-    return clkdiv << 20 | datlat << 24 | 0x0000FF0Fu;
+    return clkdiv << 20 | datlat << 24 | 0x0000FF1Fu;
 }
 
 } // namespace fsmc

@@ -61,6 +61,10 @@ public:
     // after so many HCLK cycles of the data phase, whatever NWAIT says. Asynchronous modes.
     void abortRead(uint32_t address, unsigned hclk);
     void abortWrite(uint32_t address, uint16_t value, unsigned hclk);
+    // Synchronous bursts of halfwords (BURSTEN, and CBURSTRW for writes; FSMC_CLK, DATLAT, NWAIT
+    // one clock ahead): what an AHB burst to such a bank becomes.
+    std::vector<uint16_t> readBurst(uint32_t address, unsigned halfwords);
+    void writeBurst(uint32_t address, const std::vector<uint16_t>& values, uint8_t lanes = 3);
     // HCLK cycles in which the processor does something else.
     void idle(unsigned hclk) { passHclk(hclk); }
 
@@ -94,6 +98,9 @@ private:
     unsigned waitPhase(const Access& access);
     void endOfAccess(const Access& access);
     void abort(const Access& access, unsigned hclk);
+    void beginBurst(const Access& access);
+    bool clockEdge(const Access& access, uint16_t& data); // returns NWAIT inactive, and the data
+    void endBurst(const Access& access);
     void show();
     void passHclk(unsigned cycles);
 

@@ -65,6 +65,9 @@ TEST_F(Bridge, AReadWordIsOneMomentsValue) {
     EXPECT_EQ(fsmc_.read16(at(77) + 2), 0x1111)
         << "the high half belongs to the low half read before";
     EXPECT_EQ(fsmc_.read16(at(77) + 2), 0x3333) << "a high half alone is read afresh";
+    b_.slave.words[78] = 0x55556666;
+    EXPECT_EQ(fsmc_.read16(at(77)), 0x4444);
+    EXPECT_EQ(fsmc_.read16(at(78) + 2), 0x5555) << "another word's is its own";
 }
 
 TEST_F(Bridge, HalfAWrittenWordChangesNothing) {

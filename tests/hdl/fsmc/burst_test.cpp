@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+//
+// burst_test: the bridge with a synchronous NE1: bursts of every length, registers in between, slow
+// and hung memories.
+
+#include "VFsmcBridgeSync.h"
+#include "VFsmcBridgeSyncMuxed.h"
+#include "bridge_bench.h"
+#include "fsmc_fields.h"
+#include <gtest/gtest.h>
+#include <map>
+
+using namespace fsmc;
+
+namespace {
+
+constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
+
+// NE1: PSRAM, bursts both ways, FSMC_CLK = HCLK / (clkdiv + 1); NE2: mode 1, or multiplexed.
+template <class Bridge>
+void setUp(BridgeBench<Bridge>& b, unsigned clkdiv, unsigned datlat, bool muxed) {
+    uint32_t mux = muxed ? bcrMuxed : 0;
+    uint32_t bcr = bcrEnable | bcrTypePsram | bcrWidth16 | bcrWriteEnable | mux;
+    b.master.write32(registersAt + 4, burstTiming(clkdiv, datlat));
+    b.master.write32(registersAt, bcr | bcrBurst | bcrWaitEnable | bcrBurstWrite);
+    b.master.write32(registersAt + 12, timing(2, 4, 2, 2));
+    b.master.write32(registersAt + 8, bcr | bcrAsyncWait);
+}
+
+template <class Bridge>
+void traffic(unsigned hclk, unsigned clkdiv, unsigned datlat, bool muxed, double stall) {
+    SCOPED_TRACE("HCLK " + std::to_string(hclk) + " MHz, CLKDIV " + std::to_string(clkdiv) +
+                 ", stall " + std::to_string(stall) + ", SEED=" + std::to_string(testSeed()));
+    BridgeBench<Bridge> b(testSeed(), stall, hclk, 100);
+    setUp(b, clkdiv, datlat, muxed);
+    Random random(testSeed() + hclk);
+    std::map<uint32_t, uint8_t> reference;
+    uint32_t words[16] = {};
+    for (int i = 0; i < 250 && !testing::Test::HasFailure(); ++i) {
+        uint32_t a = (random.below(3) << 18) + 2 * random.below(200);
+        unsigned n = 1 + random.below(random.chance(0.2) ? 80 : 8), word = random.below(16);
+        switch (random.below(5)) {
+        case 0:
+        case 1: {
+            std::vector<uint16_t> values(n);
+            uint8_t lanes = static_cast<uint8_t>(random.chance(0.8) ? 3 : 1 + random.below(2));
+            for (unsigned k = 0; k < n; ++k) {
+                values[k] = static_cast<uint16_t>(random.next());
+                if (lanes & 1)
+                    reference[a + 2 * k] = static_cast<uint8_t>(values[k]);
+                if (lanes & 2)
+                    reference[a + 2 * k + 1] = static_cast<uint8_t>(values[k] >> 8);
+            }
+            b.master.writeBurst(ddr + a, values, lanes);
+            break;
+        }
+        case 2:
+            if (random.chance(0.5))
+                b.master.write32(control + 4 * word, words[word] = random.next());
+            else
+                EXPECT_EQ(b.master.read32(control + 4 * word), words[word]);
+            break;
+        default: {
+            std::vector<uint16_t> values = b.master.readBurst(ddr + a, n);
+            for (unsigned k = 0; k < n; ++k)
+                EXPECT_EQ(values[k], reference[a + 2 * k] | reference[a + 2 * k + 1] << 8)
+                    << "access " << i << ", beat " << k << " of " << n;
+        }
+        }
+    }
+    EXPECT_EQ(b.errors, 0u);
+    b.master.read32(control);
+    for (auto& [a, v] : reference)
+        ASSERT_EQ(b.memory.byte(a), v) << std::hex << a;
+}
+
+TEST(Burst, EqualsAReferenceAtEveryRatio) {
+    for (double stall : {0.0, 0.3, 0.9})
+        for (auto [hclk, clkdiv] :
+             {std::pair(100u, 3u), {120u, 4u}, {120u, 5u}, {60u, 1u}, {97u, 3u}})
+            traffic<VFsmcBridgeSync>(hclk, clkdiv, 3, false, stall);
+}
+
+TEST(Burst, MultiplexedWithTheShortestLatency) {
+    for (double stall : {0.0, 0.5})
+        for (auto [hclk, clkdiv] : {std::pair(100u, 3u), {120u, 4u}})
+            traffic<VFsmcBridgeSyncMuxed>(hclk, clkdiv, 2, true, stall);
+}
+
+TEST(Burst, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
+    BridgeBench<VFsmcBridgeSync> b(testSeed(), 0.1, 100, 100);
+    setUp(b, 3, 3, false);
+    b.memory.setByte(0x40, 0x77);
+    b.memory.hold(true);
+    b.master.readBurst(ddr + 0x40, 2);
+    EXPECT_GE(b.errors, 1u);
+    EXPECT_EQ(b.errorAddr, 0x3FFu);
+    b.memory.hold(false);
+    for (int i = 0; i < 100; ++i)
+        b.tick();
+    EXPECT_EQ(b.master.readBurst(ddr + 0x40, 1)[0], 0x77);
+}
+
+// 25 MHz of FSMC_CLK: a beat each, but for address, latency and pause of a burst.
+TEST(Burst, LongBurstsReachThePinLimit) {
+    BridgeBench<VFsmcBridgeSync> b(testSeed(), 0, 100, 100);
+    setUp(b, 3, 3, false);
+    auto share = [&](unsigned length, bool write) {
+        uint64_t start = b.clocks();
+        for (uint32_t at = 0; at < 4096; at += length)
+            if (write)
+                b.master.writeBurst(ddr + 2 * at, std::vector<uint16_t>(length, 1));
+            else
+                b.master.readBurst(ddr + 2 * at, length);
+        return 4096 * 4.0 / static_cast<double>(b.clocks() - start);
+    };
+    for (unsigned length : {8u, 64u, 512u}) {
+        double write = share(length, true), read = share(length, false);
+        std::printf("bursts of %3u halfwords: writes %.1f %%, reads %.1f %% of 25 M/s\n", length,
+                    100 * write, 100 * read);
+        EXPECT_GT(write, length / (length + 9.0));
+        EXPECT_GT(read, length / (length + 14.0));
+    }
+}
+
+} // namespace

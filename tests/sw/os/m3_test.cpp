@@ -28,6 +28,29 @@ TEST_P(OsM3Cases, SaysWhatTheManualSays) {
     EXPECT_EQ(m3.text("os_said"), c.expected);
 }
 
+// An interrupt before any instruction wakes the higher task, so the switch may be anywhere in the computation.
+TEST(OsM3, ASwitchAtAnyInstructionLosesNoRegister) {
+    unsigned number = 0;
+    while (std::string(os_cases[number].name) != "RegistersSurviveSwitches")
+        ++number;
+    uint64_t instructions = 0;
+    for (uint64_t where = 0; where <= instructions; where += 7) {
+        PlainCpu m3(program());
+        uint64_t n = 0;
+        bool said = false;
+        m3.cpu.listener.instruction = [&](uint32_t) {
+            if (++n == where)
+                m3.cpu.pendInterrupt(0);
+            said = said || (where == 0 && n % 64 == 0 && !m3.text("os_said").empty());
+            instructions += where == 0 && !said; // up to where the computation has ended
+        };
+        m3.setVariable("selected_case", number);
+        ASSERT_EQ(m3.run(1'000'000), 1) << m3.cpu.lastFault << ", interrupted at instruction " << where;
+        ASSERT_EQ(m3.text("os_said"), os_cases[number].expected) << "interrupted at instruction " << where;
+    }
+    EXPECT_GT(instructions, 500u);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, OsM3Cases, ::testing::Range(0u, os_caseCount),
                          [](auto& c) { return std::string(os_cases[c.param].name); });
 

@@ -499,6 +499,53 @@ static void stackChecking(void) {
     (void)OSTaskCreate(created, 0, &stacks[STACKS - 1][WORDS - 1], 12);
 }
 
+/* ---- a computation that needs all registers, and a task that may come in between anywhere ---- */
+
+static unsigned scramble(unsigned a) {
+    unsigned b = 3, c = 5, d = 7, e = 11, f = 13, g = 17, h = 19, j = 23, k = 29, l = 31, i;
+    for (i = 0; i < 12U; ++i) {
+        a += b ^ c;
+        b = (b << 3 | b >> 29) + d;
+        c ^= e * 2654435761U;
+        d += f - g;
+        e = (e << 7 | e >> 25) ^ h;
+        f += a;
+        g ^= b + c;
+        h += d ^ i;
+        j ^= h + k;
+        k += l ^ a;
+        l = (l << 11 | l >> 21) + j;
+    }
+    return a ^ b ^ c ^ d ^ e ^ f ^ g ^ h ^ j ^ k ^ l;
+}
+
+static unsigned disturbances;
+
+static void computes(void *p) {
+    (void)p;
+    sayNumber(scramble(1));
+    end();
+}
+
+static void disturbs(void *p) {
+    (void)p;
+    for (;;) {
+        OSSemPend(sem, 0, &err);
+        disturbances += scramble(disturbances);
+    }
+}
+
+static void postsFromInterrupt(void) {
+    (void)OSSemPost(sem);
+}
+
+static void computing(void) {
+    begin();
+    sem = OSSemCreate(0);
+    (void)task(computes, 10);
+    (void)task(disturbs, 5);
+}
+
 const OsCase os_cases[] = {
     {"APostLetsTheHigherTaskGoOnAtOnce", preempting, 0, 4, "high-waits low-posts high-goes 0 low-ends "},
     {"ACreatedTaskOfHigherPriorityRunsAtOnce", creating, 0, 4,
@@ -518,6 +565,7 @@ const OsCase os_cases[] = {
     {"ALockedSchedulerDoesNotSwitch", locking, saysIrq, 4,
      "high-waits 13 irq still-locked high-goes ends "},
     {"DelaysEndInOrderOfPriority", delaying, 0, 12, "9 10 9 10 9 10 "},
+    {"RegistersSurviveSwitches", computing, postsFromInterrupt, 2, "3828057899 "},
     {"StacksAreChecked", stackChecking, 0, 4, "0 128 67 67 9 69 42 created "},
 };
 const unsigned os_caseCount = sizeof os_cases / sizeof os_cases[0];

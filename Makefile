@@ -47,7 +47,8 @@ run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground st
 	    $(if $(UCOS2),--firmware "$(BUILD)/firmware/uav_ucos2.elf")
 
 # What the sanitized build covers: the firmware's layers and their peers.
-SANITIZED := test_os test_os_cases test_link test_icec icec_server icec_client ice_cpp_client
+SANITIZED := test_os test_os_cases test_link test_icec icec_server icec_client ice_cpp_client everything_server \
+    everything_client everything_strings ice_relay
 test: build ## run all tests; firmware, models and IceC once more with sanitizers
 	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error \
 	    $(if $(LABEL),-L '$(LABEL)') $(if $(NAME),-R '$(NAME)')

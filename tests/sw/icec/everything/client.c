@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * client: IceC's client of Everything.ice against a server on the port given. Exit status 0: all as
- * expected. `client slow PORT`: fewer calls.
+ * expected. `client slow PORT`: fewer calls; `client lost PORT`: through a
+ * relay that cuts connections.
  */
 #include "Everything.h"
 #include "tcp_endpoint.h"
@@ -215,13 +216,35 @@ static int volume(int slow) {
     return 0;
 }
 
+/* The relay cuts every connection after some bytes; a call either answers or fails as lost. */
+static int lost(void) {
+    static Ice_Byte many[200];
+    Everything_Bytes out, in;
+    int answered = 0, failed = 0, i;
+    Ice_Status status;
+    out.size = sizeof many, out.data = many;
+    for (i = 0; i < 60; ++i) {
+        status = Everything_TesterPrx_echoBytes(&tester, &out, &in);
+        CHECK(status == ICE_CONNECTION_LOST || (status == ICE_OK && in.size == out.size));
+        answered += status == ICE_OK;
+        failed += status != ICE_OK;
+    }
+    printf("client: %d calls answered, %d lost with their connection\n", answered, failed);
+    CHECK(answered >= 20 && failed >= 3);
+    while (Everything_TesterPrx_shutdown(&tester) != ICE_OK)
+        if (Ice_ObjectPrx_ice_ping(&tester) == ICE_CONNECTION_LOST &&
+            Ice_ObjectPrx_ice_ping(&tester) == ICE_CONNECTION_LOST)
+            break; /* its answer was cut off, and it is gone */
+    return 0;
+}
+
 int main(int argc, char **argv) {
     Ice_ObjectPrx base;
     char text[128];
     Ice_Byte minor;
     int slow = argc > 2 && strcmp(argv[1], "slow") == 0;
     if (argc < 2) {
-        fprintf(stderr, "usage: client [slow] port\n");
+        fprintf(stderr, "usage: client [slow|lost] port\n");
         return 2;
     }
     Ice_initialize(&ic);
@@ -230,6 +253,10 @@ int main(int argc, char **argv) {
     CHECK(Ice_Communicator_stringToProxy(&ic, text, &base) == ICE_OK);
     base.timeoutMs = 120000;
     Ice_ObjectPrx_setReplyBuffer(&base, room, sizeof room);
+    if (argc > 2 && strcmp(argv[1], "lost") == 0) {
+        tester = base;
+        return lost();
+    }
     CHECK(Everything_WatcherPrx_checkedCast(&tester, &base) == ICE_OK);
     CHECK(Ice_ObjectPrx_isNull(&tester));
     CHECK(Everything_TesterPrx_checkedCast(&tester, &base) == ICE_OK);

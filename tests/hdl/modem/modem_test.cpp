@@ -100,6 +100,20 @@ TEST_F(ModemTest, PacketsLeaveEachAsOneRfPacket) {
     EXPECT_EQ(bus_.read(MODEM_TX_STATE), 9u << 8 | 16u);
 }
 
+TEST_F(ModemTest, ShortPacketsInARowAreNotJoined) {
+    power(quick());
+    configure();
+    takeEvents();
+    std::vector<size_t> sizes;
+    air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
+        sizes.push_back(packet.bytes.size());
+    });
+    put(0, frame(40, 1));
+    put(1, frame(40, 2));
+    runMs(30);
+    EXPECT_EQ(sizes, (std::vector<size_t>{40, 40}));
+}
+
 TEST_F(ModemTest, PacketsArriveEachInItsBuffer) {
     power(quick());
     configure();
@@ -155,7 +169,16 @@ TEST_F(ModemTest, RTSHoldsTheModemInMidPacketAndThePacketIsWhole) {
     }
     std::vector<uint8_t> both = frame(50, 14), second = frame(50, 15);
     both.insert(both.end(), second.begin(), second.end());
+    uint64_t before = near_->counters().bytesToHost;
+    auto delivered = [&](uint64_t bytes) {
+        bench_.waitFor([&] { return near_->counters().bytesToHost - before >= bytes; },
+                       "byte " + std::to_string(bytes), 100'000);
+    };
     plain_.send(both, now());
+    delivered(50);
+    memory_.hold(true); // the fourteenth is complete when the next has begun
+    delivered(51);
+    memory_.hold(false);
     runMs(50);
     EXPECT_TRUE(bench_.top().modem_rts_n_o);
     for (unsigned i = 0; i < 13; ++i)

@@ -57,9 +57,8 @@ void SocModel::settle() {
 }
 
 void SocModel::tick() {
+    // The design is settled: by settle() if the processor's pins have changed, else by the last tick.
     VSoc& top = *top_;
-    top.eval();
-
     McbModel::Pins& m = memory_.pins;
     m.cmdEn = top.mcb_cmd_en_o;
     m.wrEn = top.mcb_wr_en_o;

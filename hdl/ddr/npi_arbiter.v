@@ -15,7 +15,8 @@ module npi_arbiter #(
     // them: for those that always do at once.
     parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}},
     parameter             BLOCK_RAM  = 1,  // FIFOs in block RAM, else in LUT RAM and a clock faster
-    parameter             ADDR_WIDTH = 27  // of a byte: 2**27 are 128 MiB, 9..32
+    parameter             ADDR_WIDTH = 27, // of a byte: 2**27 are 128 MiB, 9..32
+    parameter             FIFO_LOG2  = 5   // 32 words as the contract says; less in proofs
 ) (
     input  wire                clk_i,
     input  wire                rst_i,
@@ -111,7 +112,7 @@ module npi_arbiter #(
             localparam [PORT_BITS-1:0] ME = p;
             assign move_at[p] = move_valid && move_port == ME;
             assign back_at[p] = back_valid && back_port == ME;
-            npi_fifo #(.WIDTH(72), .LOG2(5), .BLOCK(BLOCK_RAM)) u_write (
+            npi_fifo #(.WIDTH(72), .LOG2(FIFO_LOG2), .BLOCK(BLOCK_RAM)) u_write (
                 .clk_i(clk_i), .rst_i(rst_i || npi_wr_flush_i[p]),
                 .push_i(npi_wr_push_i[p]),
                 .data_i({npi_wr_be_i[8*p +: 8], npi_wr_data_i[64*p +: 64]}),
@@ -121,7 +122,7 @@ module npi_arbiter #(
             );
             if (READ_FIFO[p]) begin : g_fifo
                 wire rd_full; // a requester has room for what it reads (rule 3)
-                npi_fifo #(.WIDTH(68), .LOG2(5), .BLOCK(BLOCK_RAM)) u_read (
+                npi_fifo #(.WIDTH(68), .LOG2(FIFO_LOG2), .BLOCK(BLOCK_RAM)) u_read (
                     .clk_i(clk_i), .rst_i(rst_i || npi_rd_flush_i[p]),
                     .push_i(rd_valid_i && back_at[p]), .data_i(rd_word),
                     .pop_i(npi_rd_pop_i[p]),
@@ -158,4 +159,43 @@ module npi_arbiter #(
 
     // Byte enables always work, so read-modify-write is nothing special. Transfers are aligned.
     wire unused = &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], 1'b0};
+
+`ifdef FORMAL
+    // The queue, the choice and the FIFOs have proofs of their own; here, what they do together.
+    reg past = 1'b0;
+    initial assume (rst_i);
+    integer f;
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        // A request stays as it is until it is acknowledged.
+        for (f = 0; f < PORTS; f = f + 1)
+            if (past && !$past(rst_i) && $past(npi_addr_req_i[f]) && !$past(npi_addr_ack_o[f]))
+                assume (npi_addr_req_i[f] && $stable(npi_addr_i[32*f +: 32]) &&
+                        $stable(npi_size_i[4*f +: 4]) && $stable(npi_rnw_i[f]));
+        if (past && !rst_i && !$past(rst_i)) begin
+            // One acknowledgement at most, to a requester, and a clock after the request at the soonest.
+            assert ((npi_addr_ack_o & (npi_addr_ack_o - 1'b1)) == 0);
+            assert ((npi_addr_ack_o & ~npi_addr_req_i) == 0);
+            assert ((npi_addr_ack_o & ~$past(npi_addr_req_i)) == 0);
+            assert ((npi_addr_ack_o & $past(npi_addr_ack_o)) == 0);
+            // While the queue has room somebody is acknowledged.
+            if (|($past(npi_addr_req_i) & ~$past(npi_addr_ack_o)) && !$past(full))
+                assert (|npi_addr_ack_o);
+            // A read word is for one port.
+            assert ((back_at & (back_at - 1'b1)) == 0);
+            assert (!rd_ready_o || |back_at);
+            // What goes into the queue is the request of the port that is acknowledged then, and a line
+            // begins at its first word.
+            for (f = 0; f < PORTS; f = f + 1)
+                if (grant[f]) begin
+                    assert (size == npi_size_i[4*f +: 3] && port == f);
+                    assert (start[ADDR_WIDTH-4:2] == npi_addr_i[32*f+5 +: ADDR_WIDTH-5]);
+                    assert (!line || !start[0]);
+                    assert (size != 3'd2 || !start[1]);
+                end
+            cover (npi_addr_ack_o[0] && $past(npi_addr_ack_o[1]));
+            cover (cmd_valid_o && cmd_ready_i && wr_valid_o && wr_ready_i);
+        end
+    end
+`endif
 endmodule

@@ -182,6 +182,16 @@ module npi_queue #(
             end
             if (back_valid_o && back == place)
                 assert (issued && is_read && back_port_o == kind[KIND-1:4]);
+            // What is offered stays until it is taken.
+            if (!$past(rst_i)) begin
+                if ($past(cmd_valid_o) && !$past(cmd_ready_i))
+                    assert (cmd_valid_o && $stable(cmd_read_o) && $stable(cmd_addr_o) &&
+                            $stable(cmd_last_o));
+                if ($past(move_valid_o) && !$past(move_done_i))
+                    assert (move_valid_o && $stable(move_port_o));
+                if ($past(back_valid_o) && !$past(back_done_i))
+                    assert (back_valid_o && $stable(back_port_o) && $stable(back_index_o));
+            end
             cover (full_o);
             cover (inside && issued && is_read && came == 6'd4);
             cover (cmd_valid_o && !cmd_read_o && cmd_last_o == 5'd3);

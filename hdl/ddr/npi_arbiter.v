@@ -159,43 +159,4 @@ module npi_arbiter #(
 
     // Byte enables always work, so read-modify-write is nothing special. Transfers are aligned.
     wire unused = &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], 1'b0};
-
-`ifdef FORMAL
-    // The queue, the choice and the FIFOs have proofs of their own; here, what they do together.
-    reg past = 1'b0;
-    initial assume (rst_i);
-    integer f;
-    always @(posedge clk_i) begin
-        past <= 1'b1;
-        // A request stays as it is until it is acknowledged.
-        for (f = 0; f < PORTS; f = f + 1)
-            if (past && !$past(rst_i) && $past(npi_addr_req_i[f]) && !$past(npi_addr_ack_o[f]))
-                assume (npi_addr_req_i[f] && $stable(npi_addr_i[32*f +: 32]) &&
-                        $stable(npi_size_i[4*f +: 4]) && $stable(npi_rnw_i[f]));
-        if (past && !rst_i && !$past(rst_i)) begin
-            // One acknowledgement at most, to a requester, and a clock after the request at the soonest.
-            assert ((npi_addr_ack_o & (npi_addr_ack_o - 1'b1)) == 0);
-            assert ((npi_addr_ack_o & ~npi_addr_req_i) == 0);
-            assert ((npi_addr_ack_o & ~$past(npi_addr_req_i)) == 0);
-            assert ((npi_addr_ack_o & $past(npi_addr_ack_o)) == 0);
-            // While the queue has room somebody is acknowledged.
-            if (|($past(npi_addr_req_i) & ~$past(npi_addr_ack_o)) && !$past(full))
-                assert (|npi_addr_ack_o);
-            // A read word is for one port.
-            assert ((back_at & (back_at - 1'b1)) == 0);
-            assert (!rd_ready_o || |back_at);
-            // What goes into the queue is the request of the port that is acknowledged then, and a line
-            // begins at its first word.
-            for (f = 0; f < PORTS; f = f + 1)
-                if (grant[f]) begin
-                    assert (size == npi_size_i[4*f +: 3] && port == f);
-                    assert (start[ADDR_WIDTH-4:2] == npi_addr_i[32*f+5 +: ADDR_WIDTH-5]);
-                    assert (!line || !start[0]);
-                    assert (size != 3'd2 || !start[1]);
-                end
-            cover (npi_addr_ack_o[0] && $past(npi_addr_ack_o[1]));
-            cover (cmd_valid_o && cmd_ready_i && wr_valid_o && wr_ready_i);
-        end
-    end
-`endif
 endmodule

@@ -101,8 +101,10 @@ size_t differingBytes(const Bytes& a, const Bytes& b) {
 }
 
 // The clock cycles that the core measured of itself depend on who else uses the memory just then: four
-// bytes of getResult's reply, the only ones that may differ between the builds.
+// bytes of getResult's reply, the only ones that may differ between the builds; and with them the checksums of the
+// packet that holds them, and of the one that ends the message.
 constexpr size_t cyclesAt = 29, cyclesBytes = 4, checksumBytes = 2;
+constexpr int packetsThatMayDiffer = 2;
 
 TEST(CortexM3Firmware, FliesTheMissionAsTheHostBuildDoesByteByByteOnTheAir) {
     Flight host, m3;
@@ -127,7 +129,7 @@ TEST(CortexM3Firmware, FliesTheMissionAsTheHostBuildDoesByteByByteOnTheAir) {
         EXPECT_LE(differingBytes(a, b), cyclesBytes + checksumBytes) << "packet " << i;
         differing += a != b;
     }
-    EXPECT_LE(differing, 1);
+    EXPECT_LE(differing, packetsThatMayDiffer);
     EXPECT_EQ(reasonOf(m3.scratch()), BOOT_POWER_ON);
 }
 

@@ -246,17 +246,18 @@ module modem #(
         .npi_init_done_i(npi_init_done_i)
     );
 
+    wire stored = reg_addr >= MODEM_BAUD && reg_addr <= MODEM_RX_BASE;
     always @* begin
-        case (reg_addr)
-            MODEM_STATUS:   reg_rdata = {bd_now, at_step, 4'd0, cts_sync[1], tx_waits,
-                                         at_busy || !reset_n, ready, 16'd0};
-            MODEM_TX_STATE: reg_rdata = {20'd0, tx_next, 3'd0, tx_free};
-            MODEM_RX_GET:   reg_rdata = {rx_waits, 19'd0, rx_buffer, 1'b0, rx_bytes};
-            MODEM_ERRORS:   reg_rdata = {unsents, retries, overruns, framing_errors};
-            MODEM_BAUD, MODEM_ADDR, MODEM_NET, MODEM_TX_BASE, MODEM_RX_BASE:
-                            reg_rdata = word;
-            default:        reg_rdata = 32'd0; // words that only act
-        endcase
+        reg_rdata = stored ? word : 32'd0; // words that only act read as 0
+        if (reg_addr == MODEM_STATUS)
+            reg_rdata = reg_rdata | {bd_now, at_step, 4'd0, cts_sync[1], tx_waits,
+                                     at_busy || !reset_n, ready, 16'd0};
+        if (reg_addr == MODEM_TX_STATE)
+            reg_rdata = reg_rdata | {20'd0, tx_next, 3'd0, tx_free};
+        if (reg_addr == MODEM_RX_GET)
+            reg_rdata = reg_rdata | {rx_waits, 19'd0, rx_buffer, 1'b0, rx_bytes};
+        if (reg_addr == MODEM_ERRORS)
+            reg_rdata = reg_rdata | {unsents, retries, overruns, framing_errors};
     end
 
     always @(posedge clk_i) begin

@@ -14,7 +14,7 @@ module modem_baud #(
     input  wire       clk_i,
     input  wire       rst_i,
     input  wire [3:0] bd_i,
-    output wire       tick_o
+    output reg        tick_o
 );
     localparam WIDTH = 18; // 38400 baud at 100 MHz is 805 / 2**18 within 0.04 %
     // Phase steps: 8 * rate * 2**18 / CLK_HZ, rounded.
@@ -46,14 +46,14 @@ module modem_baud #(
         endcase
     end
 
-    assign tick_o = phase[WIDTH] && (count & hide) == 5'd0;
-
     always @(posedge clk_i) begin
         phase <= {1'b0, phase[WIDTH-1:0]} + {1'b0, step};
         count <= count + {4'd0, phase[WIDTH]};
+        tick_o <= phase[WIDTH] && (count & hide) == 5'd0;
         if (rst_i) begin
             phase <= 0;
             count <= 5'd0;
+            tick_o <= 1'b0;
         end
     end
 endmodule

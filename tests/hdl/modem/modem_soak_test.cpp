@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iostream>
 
 namespace {
 
@@ -103,9 +104,7 @@ TEST_F(ModemSoak, NoiseIsReceivedAsItIsOrDroppedWhole) {
     for (uint64_t i = 0; i < bytes && !HasFatalFailure(); ++i) {
         sendNoise();
         if (bytes >= 1'000'000 && i % (bytes / 20) == 0)
-            std::printf("%3.0f %%, %llu packets\n",
-                        100.0 * static_cast<double>(i) / static_cast<double>(bytes),
-                        static_cast<unsigned long long>(packets_));
+            std::cout << 100 * i / bytes << " %, " << packets_ << " packets" << std::endl;
     }
     memory_.hold(false);
     hold(true, 2000);

@@ -202,12 +202,18 @@ TEST_F(Bridge, AnAccessThatIsGivenUpLeavesNothingHalfDone) {
         uint32_t a = 0x1000 + 2 * random.below(64);
         fsmc_.write32(at(word), value);
         fsmc_.write16(ddr + a, static_cast<uint16_t>(value));
-        switch (random.below(3)) {
+        switch (random.below(5)) {
         case 0:
             fsmc_.abortRead(at(word), hclk);
             break;
         case 1:
             fsmc_.abortRead(ddr + a, hclk);
+            break;
+        case 2:
+            fsmc_.abortWrite(at(word), static_cast<uint16_t>(other), hclk);
+            break;
+        case 3:
+            fsmc_.abortWrite(ddr + a, static_cast<uint16_t>(other), hclk);
             break;
         default:
             fsmc_.abortRead(ddr + a + 64, hclk);

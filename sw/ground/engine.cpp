@@ -191,10 +191,20 @@ std::string Engine::statistics() const {
 
 // ---- link callbacks, in the engine's thread, mutex held ----
 
+// The modem sends a packet off at 100 bytes or after a silence of three characters (RO). So a
+// shorter frame is followed by a silence: else the packets would cut all later frames in two, and
+// each loss would cost two.
 int Engine::onTransmit(void* context, const U8* frame, U32 size) {
     Engine& e = self(context);
-    if (e.serialOut_.size() > 2 * LINK_MAX_FRAME)
+    U32 now = nowUs();
+    if (e.serialOut_.size() > 2 * LINK_MAX_FRAME || static_cast<S32>(now - e.quietUntil_) < 0)
         return 1;
+    U32 characterUs =
+        10'000'000u / static_cast<U32>(e.settings_.baud == 115200 ? 111111 : e.settings_.baud);
+    if (static_cast<S32>(now - e.lineFree_) > 0)
+        e.lineFree_ = now;
+    e.lineFree_ += size * characterUs;
+    e.quietUntil_ = size < LINK_MAX_FRAME ? e.lineFree_ + 4 * characterUs : now;
     e.serialOut_.insert(e.serialOut_.end(), frame, frame + size);
     e.writeSerial();
     return 0;
@@ -300,6 +310,7 @@ void Engine::run() {
     if (!ready && !stop_)
         fail("the modem on '" + settings_.device + "' is given up");
     patienceUs_ = static_cast<U32>(settings_.downMs) * 1000;
+    lineFree_ = quietUntil_ = nowUs();
     if (!stop_ && !failed_)
         Link_start(link_.get(), nowUs());
     while (!stop_ && !failed_) {

@@ -117,7 +117,8 @@ private:
     Channel channels_[LINK_CHANNELS];
     std::unique_ptr<Link> link_;
     std::vector<U8> serialOut_;
-    U32 upAt_ = 0, patienceUs_ = 0; // when the link was up last; how long it may be down
+    U32 lineFree_ = 0, quietUntil_ = 0; // when the serial line has sent all; when it may send again
+    U32 upAt_ = 0, patienceUs_ = 0;     // when the link was up last; how long it may be down
     mutable std::mutex mutex_;
     std::thread thread_;
 };

@@ -150,13 +150,16 @@ private:
     SocModel soc_{air_, modem(guardMs_, {})};
     bool irqOn_ = false;
     OS_EVENT* work_ = nullptr;
-    uint64_t nextPoll_ = 0;
+    uint64_t nextPoll_ = 0, lineFree_ = 0, quietUntil_ = 0;
 
 public:
     End near{[](const U8* f, U32 n) { return Radio_transmit(nullptr, f, n); }, 11};
+    // As the engine: a frame shorter than a packet is followed by a silence (RO).
     End far{[this](const U8* f, U32 n) {
-                if (line_.waiting() > LINK_MAX_FRAME)
+                if (line_.waiting() > LINK_MAX_FRAME || soc_.now() < quietUntil_)
                     return 1;
+                lineFree_ = std::max(lineFree_, soc_.now()) + n * 90'000;
+                quietUntil_ = n < LINK_MAX_FRAME ? lineFree_ + 4 * 90'000 : 0;
                 line_.send(f, n, soc_.now());
                 return 0;
             },

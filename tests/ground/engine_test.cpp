@@ -70,6 +70,10 @@ protected:
             log_ += std::to_string(level) + " " + text + "\n";
         });
     }
+    std::string log() {
+        std::lock_guard<std::mutex> lock(logMutex_);
+        return log_;
+    }
     bool logged(const std::string& text) {
         std::lock_guard<std::mutex> lock(logMutex_);
         return log_.find(text) != std::string::npos;
@@ -77,7 +81,10 @@ protected:
     // A call and its answer, byte by byte.
     void echoes(int fd, uint8_t tag, size_t size = 30) {
         writeAll(fd, message(tag, size));
-        EXPECT_EQ(readAll(fd, size), message(tag, size));
+        Bytes got = readAll(fd, size);
+        EXPECT_TRUE(got == message(tag, size))
+            << got.size() << " of " << size << " bytes; the engine's log:\n"
+            << log();
     }
 
     std::mutex logMutex_;

@@ -100,7 +100,8 @@ module modem #(
     wire [6:0]  tx_bytes, rx_bytes;
     wire        tx_waits = !tx_free[4];
     wire        rx_waits = !rx_free[4];
-    // A clock late, which is early for a byte on the line; it is on the way to the word that is read.
+    // In time for a byte that waits while the sixteenth packet is completed, a clock late after a
+    // release. A register: it is on the way to the word that is read.
     reg         rx_full;
     wire [7:0]  put_bytes = reg_wdata[7:0];
     wire        put      = reg_write && reg_addr == MODEM_TX_PUT;
@@ -262,7 +263,7 @@ module modem #(
 
     always @(posedge clk_i) begin
         cts_sync <= {cts_sync[0], !modem_cts_n_i};
-        rx_full  <= rx_free == 5'd0;
+        rx_full  <= rx_free == 5'd0 || (rx_free == 5'd1 && rx_push);
 
         if (reg_write)
             words[key_write ? {3'b100, key_index} : {1'b0, reg_addr}] <= reg_wdata;

@@ -273,6 +273,21 @@ TEST(LinkLayer, AMessageThatIsNotTakenWaitsAndStopsTheSender) {
     EXPECT_EQ(pair.b.received.size(), 10u);
 }
 
+TEST(LinkLayer, ALateMessageDoesNotReachTheNextConnection) {
+    Pair pair(testSeed());
+    const U8 byte = 1;
+    ASSERT_TRUE(pair.connect());
+    ASSERT_EQ(Link_openChannel(pair.a.link(), 1, pair.now32()), LINK_OK);
+    pair.run(300000);
+    ASSERT_EQ(Link_send(pair.b.link(), 1, &byte, 1, 0, pair.now32()), LINK_OK);
+    ASSERT_EQ(Link_closeChannel(pair.a.link(), 1, pair.now32()), LINK_OK);
+    EXPECT_EQ(Link_openChannel(pair.a.link(), 1, pair.now32()), LINK_FULL);
+    pair.run(300000);
+    EXPECT_EQ(Link_openChannel(pair.a.link(), 1, pair.now32()), LINK_OK);
+    pair.run(300000);
+    EXPECT_TRUE(pair.a.received.empty());
+}
+
 TEST(LinkLayer, StopTellsThePeer) {
     Pair pair(testSeed());
     ASSERT_TRUE(pair.connect());

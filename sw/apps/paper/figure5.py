@@ -3,7 +3,7 @@
 """Figure 5 of the paper, lower half: the client on the ground, as printed but for what is marked.
 
 [1] the figure has HwProcessEnginePrx and uncheckCast
-[2] the proxy says which serial port the ground's modem is on, and the UAV's address
+[2] the proxy says which serial port the ground's modem is on, the UAV's address, and how long setting up may take
 [3] results need a twoway proxy: "-o" is Ice's oneway flag
 """
 
@@ -18,7 +18,7 @@ import Autopilot  # noqa: E402
 
 class Client(Ice.Application):
     def run(self, args):
-        where = ":xbee-at -d %s -a 0x0001" % args[1]  # [2]
+        where = ":xbee-at -d %s -a 0x0001 -t 300000" % args[1]  # [2]
 
         ic = self.communicator()
         proxy = ic.stringToProxy("hwengine1 -o" + where)

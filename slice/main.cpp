@@ -4,6 +4,7 @@
 
 #include "compiler.h"
 #include "dependencies.h"
+#include "hw_generator.h"
 #include "preprocessor.h"
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -17,7 +18,7 @@ namespace {
 struct Options {
     std::vector<std::string> files, includes, defines, undefines;
     std::string outputDir = ".", includeDir, headerExtension = "h", sourceExtension = "c",
-                dependFile;
+                dependFile, hwVerilog, hwVhdl, hwRegisters, hwC;
     bool preprocessOnly = false, depend = false, dependXml = false, validate = false;
     NameRules rules;
 };
@@ -69,6 +70,29 @@ CFileNames namesFor(const std::string& file, const Options& o, const Preprocesse
     return names;
 }
 
+bool wantsHardware(const Options& o) {
+    return !(o.hwVerilog + o.hwVhdl + o.hwRegisters + o.hwC).empty();
+}
+
+bool saveHardware(const std::vector<hw::Block>& blocks, const Options& o, const CFileNames& names) {
+    using Make = GeneratedFile (*)(const hw::Block&, const CFileNames&);
+    for (auto [directory, makes] :
+         {std::pair{&o.hwVerilog, std::vector<Make>{hw::verilogFile}},
+          std::pair{&o.hwVhdl, std::vector<Make>{hw::vhdlFile}},
+          std::pair{&o.hwRegisters, std::vector<Make>{hw::registersFile}},
+          std::pair{&o.hwC, std::vector<Make>{hw::servantHeader, hw::servantSource}}}) {
+        std::vector<GeneratedFile> files;
+        if (directory->empty())
+            continue;
+        for (const hw::Block& b : blocks)
+            for (Make make : makes)
+                files.push_back(make(b, names));
+        if (!save(files, *directory))
+            return false;
+    }
+    return true;
+}
+
 bool compile(const std::string& file, const Options& o, Dependencies& dependencies) {
     if (fs::is_directory(file) || !std::ifstream(file)) {
         std::cerr << "slice2c: error: cannot read '" << file << "'\n";
@@ -89,10 +113,17 @@ bool compile(const std::string& file, const Options& o, Dependencies& dependenci
         return true;
     }
     Diagnostics diagnostics(std::cerr);
-    auto files = compileToC(p.text, file, o.rules, names, diagnostics);
-    if (!files)
+    Unit unit = compileUnit(p.text, file, o.rules, diagnostics);
+    if (diagnostics.errors() == 0)
+        checkC(unit, diagnostics);
+    std::vector<hw::Block> blocks;
+    if (diagnostics.errors() == 0 && wantsHardware(o))
+        blocks = hw::mapHardware(unit, diagnostics);
+    if (diagnostics.errors()) {
         std::cerr << diagnostics.errors() << (diagnostics.errors() == 1 ? " error\n" : " errors\n");
-    return files && save(*files, o.outputDir);
+        return false;
+    }
+    return save(generateC(unit, names), o.outputDir) && saveHardware(blocks, o, names);
 }
 
 void describe(CLI::App& app, Options& o) {
@@ -106,6 +137,11 @@ void describe(CLI::App& app, Options& o) {
     app.add_option("--header-ext", o.headerExtension, "extension of headers, without the dot (h)");
     app.add_option("--source-ext", o.sourceExtension, "extension of sources, without the dot (c)");
     app.add_option("--include-dir", o.includeDir, "folder of the header in the sources' #include");
+    app.add_option("--hw-verilog", o.hwVerilog,
+                   "folder for the wrappers of [\":hw\"] interfaces (docs/hw-mapping.md)");
+    app.add_option("--hw-vhdl", o.hwVhdl, "folder for their components in VHDL");
+    app.add_option("--hw-regs", o.hwRegisters, "folder for their registers, *.regs.json");
+    app.add_option("--hw-c", o.hwC, "folder for their servants in C90");
     app.add_flag("--depend", o.depend, "print make dependencies, generate nothing");
     app.add_flag("--depend-xml", o.dependXml, "print dependencies as XML, generate nothing");
     app.add_option("--depend-file", o.dependFile, "write dependencies to this file");

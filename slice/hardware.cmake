@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+#
+# hardware.cmake: [":hw"] interfaces into wrappers, registers and servants (docs/hw-mapping.md).
+
+# icesoc_hardware(NAME file.ice BLOCKS block...): in ${GEN_DIR}/hw/NAME the wrappers <block>_wrapper.v and
+# <block>_wrapper_pkg.vhd; the registers of each block as icesoc_regmap makes them; the library NAME_servants;
+# target NAME_hardware. BLOCKS: the file's hardware interfaces in snake_case.
+function(icesoc_hardware name file)
+  cmake_parse_arguments(A "" "" "BLOCKS;INCLUDES" ${ARGN})
+  get_filename_component(path ${file} ABSOLUTE)
+  set(dir ${GEN_DIR}/hw/${name})
+  set(outs)
+  set(sources)
+  set(registers)
+  foreach(b IN LISTS A_BLOCKS)
+    list(APPEND outs ${dir}/${b}_wrapper.v ${dir}/${b}_wrapper_pkg.vhd ${dir}/${b}.regs.json
+                     ${dir}/${b}_servant.h ${dir}/${b}_servant.c)
+    list(APPEND sources ${dir}/${b}_servant.c)
+    list(APPEND registers regs_${b})
+  endforeach()
+  list(TRANSFORM A_INCLUDES PREPEND -I)
+  icesoc_slice(${name} ${file} INCLUDES ${A_INCLUDES})
+  add_custom_command(OUTPUT ${outs}
+    COMMAND slice2c ${A_INCLUDES} ${path} --output-dir ${dir}/c --hw-verilog ${dir} --hw-vhdl ${dir}
+            --hw-regs ${dir} --hw-c ${dir}
+    DEPENDS slice2c ${path} VERBATIM COMMENT "Slice to hardware: ${name}")
+  add_custom_target(${name}_hardware DEPENDS ${outs})
+  foreach(b IN LISTS A_BLOCKS)
+    icesoc_regmap(${dir}/${b}.regs.json)
+  endforeach()
+  icesoc_c90(${name}_servants SOURCES ${sources} INCLUDES ${dir}
+             LIBS ${name}_server hw_core ${registers})
+  add_dependencies(${name}_servants ${name}_hardware)
+endfunction()

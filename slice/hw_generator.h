@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+//
+// hw_generator: what is made of a hardware interface, one function a file (docs/hw-mapping.md).
+
+#ifndef HW_GENERATOR_H
+#define HW_GENERATOR_H
+
+#include "c_generator.h"
+#include "hw_map.h"
+
+namespace hw {
+
+GeneratedFile registersFile(const Block& b, const CFileNames& names); // <block>.regs.json
+GeneratedFile verilogFile(const Block& b, const CFileNames& names);   // <block>_wrapper.v
+GeneratedFile vhdlFile(const Block& b, const CFileNames& names);      // <block>_wrapper_pkg.vhd
+GeneratedFile servantHeader(const Block& b, const CFileNames& names); // <block>_servant.h
+GeneratedFile servantSource(const Block& b, const CFileNames& names); // <block>_servant.c
+
+} // namespace hw
+
+#endif

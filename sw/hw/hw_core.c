@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * hw_core: starting operations of a core, and waiting for their events.
+ */
+#include "hw_core.h"
+#include "fsmc.h"
+
+#include <string.h>
+
+enum { ID, EVENT, MASK, CONTROL, STATUS };
+#define RESET (1U << 31)
+#define REFUSED_LSB 16U
+
+typedef char hw_check_double[sizeof(double) == 8 ? 1 : -1];
+
+Hw_Status Hw_Core_init(Hw_Core *self, U32 slot, U32 id, const Hw_Seam *seam, void *context) {
+    U32 i;
+    self->slot = slot;
+    self->seam = seam;
+    self->context = context;
+    for (i = 0; i < HW_OPERATIONS; ++i)
+        self->done[i] = 0;
+    if (FSMC_read(slot, ID) != id)
+        return HW_WRONG_CORE;
+    FSMC_write(slot, CONTROL, RESET);
+    FSMC_write(slot, EVENT, 0xFFFFFFFFU);
+    FSMC_write(slot, MASK, 0xFFFFFFFFU);
+    return HW_OK;
+}
+
+void Hw_Core_interrupt(Hw_Core *self) {
+    U32 events = FSMC_read(self->slot, EVENT);
+    U32 i;
+    FSMC_write(self->slot, EVENT, events);
+    for (i = 0; i < HW_OPERATIONS; ++i)
+        if (events & 1U << i) {
+            self->done[i] = 1;
+            self->seam->post(self->context, i);
+        }
+}
+
+Hw_Status Hw_Core_ready(const Hw_Core *self, U32 operation) {
+    return FSMC_read(self->slot, STATUS) & 1U << operation ? HW_BUSY : HW_OK;
+}
+
+void Hw_Core_act(const Hw_Core *self, U32 operation) {
+    FSMC_write(self->slot, CONTROL, 1U << operation);
+}
+
+Hw_Status Hw_Core_run(Hw_Core *self, U32 operation, U32 ms) {
+    self->done[operation] = 0;
+    Hw_Core_act(self, operation);
+    /* A post that is left from a call that was given up ends one wait early, and no more. */
+    while (!self->done[operation])
+        if (!self->seam->wait(self->context, operation, ms) && !self->done[operation]) {
+            FSMC_write(self->slot, CONTROL, RESET);
+            return HW_TIMEOUT;
+        }
+    return FSMC_read(self->slot, STATUS) & 1U << (REFUSED_LSB + operation) ? HW_REFUSED : HW_OK;
+}
+
+U32 Hw_floatBits(float value) {
+    U32 bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+float Hw_float(U32 bits) {
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* Both the Cortex-M3 and the host have the low word first. */
+U32 Hw_doubleBits(double value, int high) {
+    U32 words[2];
+    memcpy(words, &value, sizeof words);
+    return words[high];
+}
+
+double Hw_double(U32 low, U32 high) {
+    U32 words[2];
+    double value;
+    words[0] = low;
+    words[1] = high;
+    memcpy(&value, words, sizeof value);
+    return value;
+}

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * hw_core: what the servants generated from [":hw"] interfaces share (docs/hw-mapping.md).
+ *
+ * A core has the registers of its interface in one slot. Each operation has a bit, 0..15. Calls of
+ * different operations may come from different tasks; those of one operation come one at a time.
+ */
+#ifndef HW_CORE_H
+#define HW_CORE_H
+
+#include "base.h"
+
+#define HW_OPERATIONS 16
+
+typedef enum Hw_Status {
+    HW_OK = 0,
+    HW_WRONG_CORE, /* the slot's ID is another one */
+    HW_BUSY,       /* the operation has not ended yet */
+    HW_REFUSED,    /* by the core */
+    HW_TIMEOUT     /* no event in time; the core was reset */
+} Hw_Status;
+
+/* How a task waits. On uC/OS-II: a semaphore for each operation that takes time (OSSemPend,
+ * OSSemPost). */
+typedef struct Hw_Seam {
+    /* Until post was called for the operation since the last wait (1), or `ms` have passed (0). */
+    int (*wait)(void *context, U32 operation, U32 ms);
+    void (*post)(void *context, U32 operation);
+} Hw_Seam;
+
+typedef struct Hw_Core {
+    U32 slot; /* 0..63 */
+    const Hw_Seam *seam;
+    void *context;
+    volatile U8 done[HW_OPERATIONS]; /* set by the interrupt */
+} Hw_Core;
+
+/* `id`: what the slot's word ID reads. Resets the core, clears its events, enables them. */
+Hw_Status Hw_Core_init(Hw_Core *self, U32 slot, U32 id, const Hw_Seam *seam, void *context);
+/* When the slot's interrupt line is high, from the interrupt routine or a task. */
+void Hw_Core_interrupt(Hw_Core *self);
+
+/* For generated servants. ready: may parameters be written? act: an operation that is done at
+ * once. run: one that takes time, until it is done or `ms` have passed without its event. */
+Hw_Status Hw_Core_ready(const Hw_Core *self, U32 operation);
+void Hw_Core_act(const Hw_Core *self, U32 operation);
+Hw_Status Hw_Core_run(Hw_Core *self, U32 operation, U32 ms);
+
+/* IEEE 754 as it is in registers. */
+U32 Hw_floatBits(float value);
+float Hw_float(U32 bits);
+U32 Hw_doubleBits(double value, int high);
+double Hw_double(U32 low, U32 high);
+
+#endif

@@ -1,0 +1,35 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# check: golden|errors slice2c file.ice work-folder source-folder
+# UPDATE_GOLDENS=1 rewrites what is expected.
+set -eu
+kind=$1 slice2c=$2 ice=$3 work=$4 source=$5
+rm -rf "$work"
+mkdir -p "$work"
+hardware="--hw-verilog $work/out --hw-vhdl $work/out --hw-regs $work/out --hw-c $work/out"
+cd "$(dirname "$ice")"
+case $kind in
+golden)
+    # shellcheck disable=SC2086
+    "$slice2c" "$ice" --output-dir "$work/c" $hardware
+    [ -z "${UPDATE_GOLDENS:-}" ] || { rm -rf "${ice%.ice}"; cp -r "$work/out" "${ice%.ice}"; }
+    diff -ru "${ice%.ice}" "$work/out"
+    for file in "$work"/out/*.v; do
+        module=$(basename "$file" .v)
+        verilator --lint-only -Wall -y "$source/bus" --top-module "$module" "$file"
+        iverilog -g2005 -Wall -Wno-timescale -t null -y "$source/bus" -s "$module" "$file"
+        yosys -q -p "read_verilog $file $source/bus/bus_registers.v $source/bus/bus_wrapper.v; hierarchy -check -top $module; \
+                     proc; opt; check -assert; select -assert-none t:\$dlatch"
+    done
+    ;;
+errors)
+    status=0
+    # shellcheck disable=SC2086
+    "$slice2c" "$(basename "$ice")" --output-dir "$work/c" $hardware 2>"$work/messages" || status=$?
+    sed -i "s/^[^:]*\///" "$work/messages"
+    [ $status = 1 ] || { echo "exit status $status; expected 1" && exit 1; }
+    [ "$(ls "$work")" = messages ] || { echo "files were written in spite of errors" && exit 1; }
+    [ -z "${UPDATE_GOLDENS:-}" ] || cp "$work/messages" "${ice%.ice}.expected"
+    diff -u "${ice%.ice}.expected" "$work/messages"
+    ;;
+esac

@@ -148,7 +148,8 @@ def client(ic, port, slow):
     assert t.sum() == before + 190 + 20000, t.sum()
     for i in range(5 if slow else 1000):
         assert t.echoNumbers(n)[0] == n
-    t.shutdown()
+    if ":tcp" in where:  # a vehicle is not shut down: who would close the connection with us?
+        t.shutdown()
     print("peer: everything as expected")
 
 

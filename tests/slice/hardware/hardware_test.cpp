@@ -4,76 +4,20 @@
 // and a port that has a slot's register bus behind it.
 
 #include "VCalculatorSlot.h"
+#include "VHttpLevelSlot.h"
 #include "VWideEchoSlot.h"
-#include "bus_master.h"
+#include "core_slot.h"
 extern "C" {
 #include "calculator_servant.h"
 #include "fsmc.h"
-#include "map_regs.h"
-#include "system_regs.h"
+#include "http_level_servant.h"
 #include "wide_echo_servant.h"
 }
 #include <gtest/gtest.h>
 
 namespace {
 
-constexpr U32 slot = 5, clocksOfMs = 100;
-constexpr U32 control = 0x64000000;
-
-// One core in a slot, the driver's port, the interrupt and the wait.
-template <class Module> class Slot {
-public:
-    Slot() {
-        static const Fsmc_Port port = {nullptr, nullptr, nullptr, nullptr, read, write};
-        bench_.reset();
-        EXPECT_EQ(FSMC_init(&port, this), FSMC_OK);
-    }
-    static int wait(void* context, U32 operation, U32 ms) {
-        auto& self = *static_cast<Slot*>(context);
-        for (U32 i = 0; i < ms * clocksOfMs && !(self.posted_ >> operation & 1); ++i)
-            self.tick();
-        int posted = self.posted_ >> operation & 1;
-        self.posted_ &= ~(1u << operation);
-        self.waitedClocks_ = bench(context).cycles() - self.started_;
-        return posted;
-    }
-    static void post(void* context, U32 operation) {
-        static_cast<Slot*>(context)->posted_ |= 1u << operation;
-    }
-    void tick() {
-        bench_.tick();
-        if (bench_.top().irq_o && core_)
-            Hw_Core_interrupt(core_);
-    }
-
-    static constexpr Hw_Seam seam = {wait, post};
-    Bench<Module> bench_;
-    BusMaster<Module> bus_{bench_};
-    Hw_Core* core_ = nullptr;
-    U32 posted_ = 0;
-    uint64_t started_ = 0, waitedClocks_ = 0;
-    unsigned errors_ = 0;
-
-private:
-    static Bench<Module>& bench(void* context) { return static_cast<Slot*>(context)->bench_; }
-    U32 access(bool isWrite, U32 address, U32 value) {
-        if (address < control || address >= control + 0x1000)
-            return 0; // the FSMC's own registers
-        U32 word = (address - control) / 4;
-        if (word / 16 == MAP_SLOT_SYSTEM)
-            return word == SYSTEM_ID ? SYSTEM_ID_VALUE : 0;
-        EXPECT_EQ(word / 16, slot);
-        auto answer = bus_.transfer(isWrite, word % 16, value);
-        errors_ += answer.error;
-        return answer.data;
-    }
-    static U32 read(void* context, U32 address) {
-        return static_cast<Slot*>(context)->access(false, address, 0);
-    }
-    static void write(void* context, U32 address, U32 value) {
-        static_cast<Slot*>(context)->access(true, address, value);
-    }
-};
+constexpr U32 slot = coreSlot, clocksOfMs = coreClocksOfMs;
 
 class CalculatorServant : public ::testing::Test {
 protected:
@@ -87,7 +31,7 @@ protected:
         return Demo_Calculator_divide(self_, a, b, &remainder_, &quotient_, nullptr);
     }
 
-    Slot<VCalculatorSlot> slot_;
+    CoreSlot<VCalculatorSlot> slot_;
     Demo_Calculator_Core core_{};
     Demo_CalculatorPtr self_ = &core_.servant;
     Ice_Int quotient_ = 0, remainder_ = 0;
@@ -192,7 +136,7 @@ protected:
                               });
     }
 
-    Slot<VWideEchoSlot> slot_;
+    CoreSlot<VWideEchoSlot> slot_;
     Demo_WideEcho_Core core_{};
     Demo_WideEchoPtr self_ = &core_.servant;
     unsigned nothings_ = 0;
@@ -226,12 +170,38 @@ TEST_F(WideEchoServant, AStartIsOneClock) {
     EXPECT_EQ(nothings_, 2u);
 }
 
+TEST_F(WideEchoServant, AStartWhileBusyIsNone) {
+    unsigned starts = 0;
+    slot_.bench_.addModel([&] { starts += slot_.bench_.top().pause_start_o; }, [] {});
+    FSMC_write(slot, 3, 1u << 3);
+    FSMC_write(slot, 3, 1u << 3);
+    EXPECT_EQ(starts, 1u);
+    EXPECT_EQ(FSMC_read(slot, 4), 1u << 3) << "busy";
+}
+
 TEST_F(WideEchoServant, ADoneWithoutAStartIsNoEvent) {
     pauses_ = true;
     for (int i = 0; i < 5; ++i)
         slot_.bench_.tick();
     EXPECT_EQ(FSMC_read(slot, 1), 0u);
     EXPECT_EQ(Demo_WideEcho_pause(self_, nullptr), ICE_OK);
+}
+
+TEST(VhdlCore, IsCalledAsOneInVerilog) {
+    CoreSlot<VHttpLevelSlot> rig;
+    Demo_HTTPLevel_Core core{};
+    ASSERT_EQ(Demo_HTTPLevel_Core_init(&core, slot, &rig.seam, &rig), HW_OK);
+    for (unsigned level : {0u, 0x5Au, 0xFFu}) {
+        Ice_Byte read = 1;
+        ASSERT_EQ(Demo_HTTPLevel_setLevel(&core.servant, static_cast<Ice_Byte>(level), nullptr),
+                  ICE_OK);
+        ASSERT_EQ(Demo_HTTPLevel_level(&core.servant, &read, nullptr), ICE_OK);
+        EXPECT_EQ(read, level);
+    }
+    FSMC_write(slot, 3, 1u << 31);
+    Ice_Byte read = 1;
+    ASSERT_EQ(Demo_HTTPLevel_level(&core.servant, &read, nullptr), ICE_OK);
+    EXPECT_EQ(read, 0) << "CONTROL's bit 31 resets the core";
 }
 
 } // namespace

@@ -2,13 +2,13 @@
 #
 # hardware.cmake: [":hw"] interfaces into wrappers, registers and servants (docs/hw-mapping.md).
 
-# icesoc_hardware(NAME file.ice BLOCKS block...): in ${GEN_DIR}/hw/NAME the wrappers <block>_wrapper.v and
+# icesoc_hardware(NAME file.ice BLOCKS block...): in ${GEN_DIR} the wrappers <block>_wrapper.v and
 # <block>_wrapper_pkg.vhd; the registers of each block as icesoc_regmap makes them; the library NAME_servants;
 # target NAME_hardware. BLOCKS: the file's hardware interfaces in snake_case.
 function(icesoc_hardware name file)
   cmake_parse_arguments(A "" "" "BLOCKS;INCLUDES" ${ARGN})
   get_filename_component(path ${file} ABSOLUTE)
-  set(dir ${GEN_DIR}/hw/${name})
+  set(dir ${GEN_DIR})
   set(outs)
   set(sources)
   set(registers)
@@ -21,7 +21,7 @@ function(icesoc_hardware name file)
   list(TRANSFORM A_INCLUDES PREPEND -I)
   icesoc_slice(${name} ${file} INCLUDES ${A_INCLUDES})
   add_custom_command(OUTPUT ${outs}
-    COMMAND slice2c ${A_INCLUDES} ${path} --output-dir ${dir}/c --hw-verilog ${dir} --hw-vhdl ${dir}
+    COMMAND slice2c ${A_INCLUDES} ${path} --output-dir ${dir}/hw/${name} --hw-verilog ${dir} --hw-vhdl ${dir}
             --hw-regs ${dir} --hw-c ${dir}
     DEPENDS slice2c ${path} VERBATIM COMMENT "Slice to hardware: ${name}")
   add_custom_target(${name}_hardware DEPENDS ${outs})

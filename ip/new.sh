@@ -1,0 +1,46 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# new: name verilog|vhdl build-folder   Writes ip/<name>: interface, core, test. Or says what is wrong with the name.
+set -eu
+usage='usage: make new-ip NAME=fir LANG=verilog|vhdl'
+case ${1:-} in -h | --help) echo "$usage" && exit 0 ;; esac
+name=${1:-} lang=${2:-} build=${3:-build/main}
+cd "$(dirname "$0")/.."
+fail() { echo "new-ip: $*" >&2 && exit 1; }
+[ -n "$name" ] || fail "$usage"
+case $lang in verilog | vhdl) ;; *) fail "LANG is verilog or vhdl, not '$lang'" ;; esac
+echo "$name" | grep -Eq '^[a-z][a-z0-9]*$|^[a-z][a-z0-9]+(_[a-z][a-z0-9]+)+$' ||
+    fail "'$name': words of small letters and digits, joined by _, such as fir or low_pass"
+reserved=' abs access after alias all always and architecture array assert assign attribute automatic begin block body buf buffer
+ bus case casex casez cell class cmos component config configuration const constant context cover deassign default defparam design disable
+ disconnect double downto edge else elsif end enum event exit false file float for force forever fork function generate generic genvar
+ group guarded highz0 highz1 if ifnone impure in inertial inout input instance int integer interface is join label large
+ liblist library linkage literal local localparam long loop macromodule map medium mod module nand negedge new next nmos nor
+ noshowcancelled not notif0 notif1 null object of on open operation or others out output package parameter pmos port posedge
+ postponed primitive private procedure process property protected public pull0 pull1 pulldown pullup pure range rcmos real
+ realtime record reg register reject release rem repeat report restrict return rnmos rol ror rpmos select sequence severity
+ shared short showcancelled signal signed sla sll small specify specparam sra srl string strong strong0 strong1 struct subtype
+ supply0 supply1 table task template test then throws time to tran transport tri type union unaffected units unsigned until
+ use value variable vectored void wait wand weak weak0 weak1 when while wire with wor work xnor xor '
+case $(echo "$reserved" | tr '\n' ' ') in *" $name "*) fail "'$name' is a reserved word of Verilog, VHDL, C, Slice or this project" ;; esac
+[ ! -e "ip/$name" ] || fail "ip/$name is there already"
+taken=$(find bus hdl ip sw testbench -name "$name.regs.json" -o -name "${name}_wrapper.v")
+[ -z "$taken" ] || fail "$taken has the name '$name'"
+taken=$(grep -rliE --include='*.v' --include='*.vhd' "^ *(module|entity) +${name}(_wrapper)?\b" bus hdl ip synth || true)
+[ -z "$taken" ] || fail "there is a module '$name' in $taken"
+type=$(echo "$name" | sed -E 's/(^|_)([a-z])/\U\2/g')
+folder=ip/$name
+mkdir "$folder"
+for file in ip/template/*.in "ip/template/$lang"/*.in; do
+    target=$(basename "$file" .in | sed "s/^NAME/$name/")
+    sed "s/@NAME@/$name/g; s/@TYPE@/$type/g; s/@MODULE@/Cores/g" "$file" >"$folder/$target"
+done
+# A build folder notices the new one by itself; it is asked now, while the folder can be taken back.
+if [ -f "$build/build.ninja" ] && ! cmake "$build" >"$build/new-ip.log" 2>&1; then
+    rm -r "$folder"
+    cmake "$build" >/dev/null 2>&1 || true
+    grep -A4 'CMake Error' "$build/new-ip.log" >&2 || true
+    fail "the build does not take '$name' (above); nothing was changed"
+fi
+echo "$folder: $(ls "$folder" | tr '\n' ' ')"
+echo "Next: make ip-test IP=$name"

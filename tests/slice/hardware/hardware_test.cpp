@@ -144,10 +144,10 @@ protected:
 };
 
 TEST_F(WideEchoServant, ValuesOf64BitsAreTwoWords) {
-    Ice_Long v = {1, 0}, negative = {0, 0};
+    Ice_Long v = {5, 7}, negative = {0, 0};
     ASSERT_EQ(Demo_WideEcho_negate(self_, v, &negative, nullptr), ICE_OK);
-    EXPECT_EQ(negative.low, 0xFFFFFFFFu);
-    EXPECT_EQ(negative.high, -1);
+    EXPECT_EQ(negative.low, 0xFFFFFFFBu);
+    EXPECT_EQ(negative.high, -8);
     double same = 0;
     ASSERT_EQ(Demo_WideEcho_same(self_, -1234.5678e-9, &same, nullptr), ICE_OK);
     EXPECT_EQ(same, -1234.5678e-9);

@@ -48,6 +48,7 @@ std::vector<Test> listTests(const std::string& build) {
     if (begin == std::string::npos)
         throw std::runtime_error("ctest lists no tests in " + build + "; run `make build` first");
     auto json = nlohmann::json::parse(out.text.substr(begin));
+    const std::string below = fs::canonical(build).string() + "/tests/";
     std::vector<Test> tests;
     for (auto& entry : json.at("tests")) {
         Test test;
@@ -60,8 +61,7 @@ std::vector<Test> listTests(const std::string& build) {
                 test.labels = property.at("value").get<std::vector<std::string>>();
             if (property.at("name") == "WORKING_DIRECTORY") {
                 std::string folder = property.at("value");
-                auto at = folder.find("/tests/");
-                test.place = at == std::string::npos ? fs::path(folder).filename().string() : folder.substr(at + 7);
+                test.place = folder.rfind(below, 0) == 0 ? folder.substr(below.size()) : fs::path(folder).filename().string();
             }
         }
         tests.push_back(std::move(test));

@@ -6,33 +6,33 @@
 
 #include <string.h>
 
-static Ice_String part(const char *data, size_t size) {
+static Ice_String part(const char* data, size_t size) {
     Ice_String s;
     s.data = data;
     s.size = (Ice_Int)size;
     return s;
 }
 
-Ice_Identity Ice_parseIdentity(const char *text) {
+Ice_Identity Ice_parseIdentity(const char* text) {
     Ice_Identity id;
-    const char *slash = ICEC_CATEGORIES ? strchr(text, '/') : 0;
+    const char* slash = ICEC_CATEGORIES ? strchr(text, '/') : 0;
     id.category = part(text, slash ? (size_t)(slash - text) : 0);
     id.name = Ice_String_from(slash ? slash + 1 : text);
     return id;
 }
 
-const char *Ice_optionsOf(Ice_CommunicatorPtr ic, const char *text) {
-    const char *name = ic->endpoint->name;
+const char* Ice_optionsOf(Ice_CommunicatorPtr ic, const char* text) {
+    const char* name = ic->endpoint->name;
     while (*name && *name == *text)
         ++name, ++text;
     return *name == 0 && (*text == ' ' || *text == ':' || *text == 0) ? text : 0;
 }
 
 Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr ic,
-                                                             const char *name,
-                                                             const char *endpoints,
+                                                             const char* name,
+                                                             const char* endpoints,
                                                              Ice_ObjectAdapterPtr adapter) {
-    const char *options = endpoints ? Ice_optionsOf(ic, endpoints) : 0;
+    const char* options = endpoints ? Ice_optionsOf(ic, endpoints) : 0;
     Ice_Status status = ICE_OK;
     memset(adapter, 0, sizeof *adapter);
     adapter->communicator = ic;
@@ -51,7 +51,7 @@ Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr
 }
 
 /* The entry of exactly this identity and facet, or -1. */
-static int indexOf(Ice_ObjectAdapterPtr adapter, const Ice_Identity *id, const Ice_String *facet) {
+static int indexOf(Ice_ObjectAdapterPtr adapter, const Ice_Identity* id, const Ice_String* facet) {
     int s;
     for (s = 0; s < ICE_SERVANTS; ++s)
         if (adapter->servants[s].servant &&
@@ -64,7 +64,7 @@ static int indexOf(Ice_ObjectAdapterPtr adapter, const Ice_Identity *id, const I
 }
 
 static Ice_Status change(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
-                         const Ice_Identity *id, Ice_String facet) {
+                         const Ice_Identity* id, Ice_String facet) {
     Ice_Status status = ICE_LIMIT;
     int s;
     Ice_lock(adapter->communicator, ICE_LOCK_STATE);
@@ -87,13 +87,13 @@ static Ice_Status change(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
 }
 
 static Ice_Status changeNamed(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
-                              const char *identity, const char *facet) {
+                              const char* identity, const char* facet) {
     Ice_Identity id = Ice_parseIdentity(identity);
     return id.name.size ? change(adapter, servant, &id, Ice_String_from(facet)) : ICE_PARSE;
 }
 
 static Ice_Status changeDefault(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
-                                const char *category) {
+                                const char* category) {
     Ice_Identity id;
     id.name = part("", 0);
     id.category = Ice_String_from(category);
@@ -102,8 +102,8 @@ static Ice_Status changeDefault(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr serv
 
 /* For names only: into the first free entry; who adds a name twice finds the first servant. */
 static Ice_Status addName(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
-                          const char *identity) {
-    Ice_Servant *s;
+                          const char* identity) {
+    Ice_Servant* s;
     for (s = adapter->servants; s < adapter->servants + ICE_SERVANTS; ++s)
         if (!s->servant) {
             s->servant = servant;
@@ -115,37 +115,37 @@ static Ice_Status addName(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
 }
 
 Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
-                                 const char *identity) {
+                                 const char* identity) {
     if (!ICEC_CATEGORIES)
         return addName(adapter, servant, identity);
     return changeNamed(adapter, servant, identity, "");
 }
 
 Ice_Status Ice_ObjectAdapter_addFacet(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
-                                      const char *identity, const char *facet) {
+                                      const char* identity, const char* facet) {
     return changeNamed(adapter, servant, identity, facet);
 }
 
 Ice_Status Ice_ObjectAdapter_addDefaultServant(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
-                                               const char *category) {
+                                               const char* category) {
     return changeDefault(adapter, servant, category);
 }
 
-Ice_Status Ice_ObjectAdapter_remove(Ice_ObjectAdapterPtr adapter, const char *identity) {
+Ice_Status Ice_ObjectAdapter_remove(Ice_ObjectAdapterPtr adapter, const char* identity) {
     return changeNamed(adapter, 0, identity, "");
 }
 
-Ice_Status Ice_ObjectAdapter_removeFacet(Ice_ObjectAdapterPtr adapter, const char *identity,
-                                         const char *facet) {
+Ice_Status Ice_ObjectAdapter_removeFacet(Ice_ObjectAdapterPtr adapter, const char* identity,
+                                         const char* facet) {
     return changeNamed(adapter, 0, identity, facet);
 }
 
 Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter,
-                                                  const char *category) {
+                                                  const char* category) {
     return changeDefault(adapter, 0, category);
 }
 
-Ice_ObjectPtr Ice_ObjectAdapter_find(Ice_ObjectAdapterPtr adapter, const char *identity) {
+Ice_ObjectPtr Ice_ObjectAdapter_find(Ice_ObjectAdapterPtr adapter, const char* identity) {
     Ice_Identity id = Ice_parseIdentity(identity);
     Ice_String none = part("", 0);
     Ice_ObjectPtr found = 0;
@@ -167,7 +167,7 @@ void Ice_ObjectAdapter_deactivate(Ice_ObjectAdapterPtr adapter) {
 }
 
 void Ice_ObjectAdapter_destroy(Ice_ObjectAdapterPtr adapter) {
-    Ice_ObjectAdapterPtr *at;
+    Ice_ObjectAdapterPtr* at;
     Ice_lock(adapter->communicator, ICE_LOCK_STATE);
     for (at = &adapter->communicator->adapters; *at && *at != adapter; at = &(*at)->next)
         ;
@@ -176,7 +176,7 @@ void Ice_ObjectAdapter_destroy(Ice_ObjectAdapterPtr adapter) {
     Ice_unlock(adapter->communicator, ICE_LOCK_STATE);
 }
 
-Ice_Status Ice_ObjectAdapter_createProxy(Ice_ObjectAdapterPtr adapter, const char *identity,
+Ice_Status Ice_ObjectAdapter_createProxy(Ice_ObjectAdapterPtr adapter, const char* identity,
                                          Ice_ObjectPrxPtr prx) {
     Ice_Identity id;
     Ice_Status status;

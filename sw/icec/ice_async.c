@@ -4,7 +4,7 @@
  */
 #include "ice_private.h"
 
-Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callback, void *cookie) {
+Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie) {
     Ice_CommunicatorPtr ic = self->communicator;
     int slot = self->call;
     Ice_Status status = Ice_sendRequest(self, callback, cookie);
@@ -16,7 +16,7 @@ Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callbac
     return ICE_OK;
 }
 
-Ice_Status Ice_Connection_createProxy(Ice_CommunicatorPtr ic, int connection, const char *identity,
+Ice_Status Ice_Connection_createProxy(Ice_CommunicatorPtr ic, int connection, const char* identity,
                                       Ice_ObjectPrxPtr prx) {
     Ice_Identity id = Ice_parseIdentity(identity);
     Ice_ObjectPrx_init(prx, ic);

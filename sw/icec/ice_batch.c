@@ -6,7 +6,7 @@
  */
 #include "ice_private.h"
 
-static void restart(Ice_Batch *batch) {
+static void restart(Ice_Batch* batch) {
     batch->os.size = 0;
     batch->os.failed = 0;
     batch->count = 0;
@@ -16,7 +16,7 @@ static void restart(Ice_Batch *batch) {
 
 /* Under ICE_LOCK_SEND, on an open connection. */
 static Ice_Status flush(Ice_ObjectPrxPtr prx) {
-    Ice_Batch *batch = prx->batch;
+    Ice_Batch* batch = prx->batch;
     Ice_Status status;
     Ice_patchInt(&batch->os, ICE_HEADER, batch->count);
     Ice_endMessage(&batch->os);
@@ -28,7 +28,7 @@ static Ice_Status flush(Ice_ObjectPrxPtr prx) {
 /* Adds the request that was just built. A full batch is sent if there is a connection to do it on:
  * opening one here would receive, and the request's buffer is in use. */
 static Ice_Status keep(Ice_ObjectPrxPtr prx) {
-    Ice_Batch *batch = prx->batch;
+    Ice_Batch* batch = prx->batch;
     Ice_OutputStreamPtr request = &prx->communicator->request;
     Ice_Status status = ICE_OK;
     if (request->failed || batch->os.failed)
@@ -48,7 +48,7 @@ static Ice_Status keep(Ice_ObjectPrxPtr prx) {
     return status;
 }
 
-void Ice_ObjectPrx_ice_batchOneway(Ice_ObjectPrxPtr prx, Ice_Batch *batch, Ice_Byte *data,
+void Ice_ObjectPrx_ice_batchOneway(Ice_ObjectPrxPtr prx, Ice_Batch* batch, Ice_Byte* data,
                                    Ice_Int size) {
     Ice_OutputStream_init(&batch->os, data, size < ICE_MESSAGE_MAX ? size : ICE_MESSAGE_MAX);
     batch->keep = keep;
@@ -58,7 +58,7 @@ void Ice_ObjectPrx_ice_batchOneway(Ice_ObjectPrxPtr prx, Ice_Batch *batch, Ice_B
 }
 
 Ice_Status Ice_ObjectPrx_ice_flushBatchRequests(Ice_ObjectPrxPtr prx) {
-    Ice_Batch *batch = prx->batch;
+    Ice_Batch* batch = prx->batch;
     Ice_Status status;
     int connection;
     if (!batch || batch->count == 0)

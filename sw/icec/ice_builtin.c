@@ -8,7 +8,7 @@
 
 #define MODE (2 | ICE_RESULTS) /* idempotent */
 
-Ice_Status Ice_ObjectPrx_ice_isA(Ice_ObjectPrxPtr self, const char *id, Ice_Bool *result) {
+Ice_Status Ice_ObjectPrx_ice_isA(Ice_ObjectPrxPtr self, const char* id, Ice_Bool* result) {
     Ice_InputStreamPtr is;
     Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "ice_isA", MODE);
     Ice_Status status;
@@ -21,7 +21,7 @@ Ice_Status Ice_ObjectPrx_ice_isA(Ice_ObjectPrxPtr self, const char *id, Ice_Bool
     return Ice_ObjectPrx_end(self, status);
 }
 
-Ice_Status Ice_ObjectPrx_ice_id(Ice_ObjectPrxPtr self, Ice_String *result) {
+Ice_Status Ice_ObjectPrx_ice_id(Ice_ObjectPrxPtr self, Ice_String* result) {
     Ice_InputStreamPtr is;
     Ice_Status status;
     if (!Ice_ObjectPrx_begin(self, "ice_id", MODE))
@@ -32,8 +32,8 @@ Ice_Status Ice_ObjectPrx_ice_id(Ice_ObjectPrxPtr self, Ice_String *result) {
     return Ice_ObjectPrx_end(self, status);
 }
 
-Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx *from,
-                                     const char *id) {
+Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx* from,
+                                     const char* id) {
     Ice_Bool is = 0;
     Ice_Status status;
     *self = *from;
@@ -45,7 +45,7 @@ Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx 
     return status;
 }
 
-void Ice_ObjectPrx_failure(const Ice_ObjectPrx *self, Ice_Failure *failure) {
+void Ice_ObjectPrx_failure(const Ice_ObjectPrx* self, Ice_Failure* failure) {
     if (self->call >= 0)
         *failure = self->communicator->calls[self->call].failure;
     else

@@ -14,10 +14,10 @@ void Ice_wakeCalls(Ice_CommunicatorPtr ic) {
 }
 
 /* Ends the call `id` if it still waits: tells the waiting task, or calls back. */
-static void finish(Ice_CommunicatorPtr ic, Ice_Call *call, Ice_Int id, Ice_Status status,
+static void finish(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id, Ice_Status status,
                    Ice_InputStreamPtr is) {
     Ice_Callback callback = 0;
-    void *cookie = 0;
+    void* cookie = 0;
     Ice_lock(ic, ICE_LOCK_STATE);
     if (!ICEC_TASKS || (call->state == ICE_WAITING && call->id == id)) {
         if (ICEC_ASYNC)
@@ -37,11 +37,20 @@ void Ice_failCalls(Ice_CommunicatorPtr ic, int connection, Ice_Status status) {
     int c;
     if (ICEC_ASYNC)
         Ice_InputStream_init(&none, Ice_head, 0);
-    for (c = 0; c < ICE_CALLS; ++c)
-        if (ic->calls[c].state == ICE_WAITING && ic->calls[c].connection == connection)
-            finish(ic, &ic->calls[c], ic->calls[c].id, status, &none);
-    if (ICEC_TASKS)
-        Ice_wakeCalls(ic); /* some wait for the connection */
+    for (c = 0; c < ICE_CALLS; ++c) {
+        Ice_Call* call = &ic->calls[c];
+        Ice_Int id = 0;
+        int counts;
+        Ice_lock(ic, ICE_LOCK_STATE);
+        counts = call->state == ICE_WAITING && call->connection == connection;
+        if (ICEC_TASKS && counts)
+            id = call->id;
+        else if (ICEC_TASKS && call->state != ICE_FREE)
+            ic->os->wake(ic->osContext, c); /* it may wait for the connection */
+        Ice_unlock(ic, ICE_LOCK_STATE);
+        if (counts)
+            finish(ic, call, id, status, &none);
+    }
 }
 
 Ice_Int Ice_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
@@ -49,14 +58,15 @@ Ice_Int Ice_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
     int c;
     Ice_InputStream_init(&none, Ice_head, 0);
     for (c = 0; c < ICE_CALLS; ++c) {
-        Ice_Call *call = &ic->calls[c];
-        Ice_Int left = 1, id;
+        Ice_Call* call = &ic->calls[c];
+        Ice_Int left = 1, id = 0;
         int counts;
         Ice_lock(ic, ICE_LOCK_STATE);
-        id = call->id;
         counts = call->state == ICE_WAITING && call->callback;
-        if (counts)
+        if (counts) {
+            id = call->id;
             left = call->timeoutMs - (Ice_Int)(Ice_nowMs(ic) - call->begunMs);
+        }
         Ice_unlock(ic, ICE_LOCK_STATE);
         if (left <= 0)
             finish(ic, call, id, ICE_TIMEOUT, &none);
@@ -67,7 +77,7 @@ Ice_Int Ice_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
 }
 
 /* From a reply's status byte on. */
-static Ice_Status readReply(Ice_InputStreamPtr is, Ice_Failure *failure) {
+static Ice_Status readReply(Ice_InputStreamPtr is, Ice_Failure* failure) {
     static const Ice_Byte statuses[] = {ICE_OK,
                                         ICE_USER_EXCEPTION,
                                         ICE_OBJECT_NOT_EXIST,
@@ -96,21 +106,21 @@ static Ice_Status readReply(Ice_InputStreamPtr is, Ice_Failure *failure) {
 }
 
 /* Copies what is left of the message, for the task that waits. */
-static void keepReply(Ice_Call *call, Ice_InputStreamPtr is) {
+static void keepReply(Ice_Call* call, Ice_InputStreamPtr is) {
     Ice_Int size = is->size - is->position;
     if (size > call->replySize) {
         is->failed = 1;
         return;
     }
     memcpy(call->reply, is->data + is->position, (size_t)size);
-    Ice_InputStream_init(is, (const Ice_Byte *)call->reply, size);
+    Ice_InputStream_init(is, (const Ice_Byte*)call->reply, size);
     size = (size + 7) / 8 * 2; /* in words: the arena begins at a multiple of 8 */
     is->arena = call->reply + size;
     is->arenaSize = call->replySize / 4 - size;
 }
 
-static Ice_Call *waitingCall(Ice_CommunicatorPtr ic, int connection, Ice_Int id) {
-    Ice_Call *call;
+static Ice_Call* waitingCall(Ice_CommunicatorPtr ic, int connection, Ice_Int id) {
+    Ice_Call* call;
     for (call = ic->calls; call < ic->calls + ICE_CALLS; ++call)
         if (call->state == ICE_WAITING && call->id == id && call->connection == connection)
             return call;
@@ -119,7 +129,7 @@ static Ice_Call *waitingCall(Ice_CommunicatorPtr ic, int connection, Ice_Int id)
 
 void Ice_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is) {
     Ice_Int id = Ice_InputStream_readInt(is);
-    Ice_Call *call;
+    Ice_Call* call;
     Ice_Status status;
     Ice_giveArena(ic, is);
     Ice_lock(ic, ICE_LOCK_STATE); /* so that it does not time out meanwhile */
@@ -151,7 +161,7 @@ void Ice_initRequest(Ice_CommunicatorPtr ic) {
 }
 
 /* Connects to one endpoint, or to what is there already. */
-static Ice_Status open(Ice_ObjectPrxPtr self, const Ice_Byte *endpoint, Ice_Int size) {
+static Ice_Status open(Ice_ObjectPrxPtr self, const Ice_Byte* endpoint, Ice_Int size) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_Status status;
     Ice_lock(ic, ICE_LOCK_STATE);
@@ -171,9 +181,8 @@ static Ice_Status connect(Ice_ObjectPrxPtr self, int slot) {
     if (self->mode >= ICE_DATAGRAM)
         return ICE_NO_ENDPOINT;
     if (ICEC_ASYNC && self->generation) {
-        const Ice_Connection *c = &ic->connections[self->connection];
-        return c->generation == self->generation && c->state == ICE_DONE ? ICE_OK
-                                                                         : ICE_CONNECTION_LOST;
+        return Ice_countPending(ic, self->connection, self->generation, 0) ? ICE_OK
+                                                                           : ICE_CONNECTION_LOST;
     }
     if (!ICEC_DETAILS) {
         status = open(self, self->endpoints + 1, self->endpointsSize - 1);
@@ -188,12 +197,12 @@ static Ice_Status connect(Ice_ObjectPrxPtr self, int slot) {
     }
     if (status == ICE_OK)
         status = Ice_await(ic, &ic->connections[self->connection].state, slot, self->timeoutMs);
-    if (status == ICE_OK && ic->connections[self->connection].state == ICE_FREE)
+    if (status == ICE_OK && Ice_connectionState(ic, self->connection) == ICE_FREE)
         status = ICE_CONNECTION_LOST;
     return status;
 }
 
-Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int *connection) {
+Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int* connection) {
     Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "", 0); /* for a slot to wait in */
     if (!os)
         return (Ice_Status)self->status;
@@ -202,7 +211,7 @@ Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int *connectio
     return Ice_ObjectPrx_end(self, (Ice_Status)self->status);
 }
 
-static void writeContext(Ice_OutputStreamPtr os, const Ice_ContextEntry *context) {
+static void writeContext(Ice_OutputStreamPtr os, const Ice_ContextEntry* context) {
     Ice_Int n = 0;
     while (context && context[n].key)
         ++n;
@@ -227,11 +236,11 @@ static int takeSlot(Ice_ObjectPrxPtr self) {
     return self->call;
 }
 
-Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char *operation,
+Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char* operation,
                                         Ice_Byte mode) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_OutputStreamPtr os = &ic->request;
-    Ice_Call *call;
+    Ice_Call* call;
     self->status = self->mode != ICE_TWOWAY && mode & ICE_RESULTS ? ICE_TWOWAY_ONLY : ICE_LIMIT;
     if (self->status == ICE_TWOWAY_ONLY || takeSlot(self) < 0)
         return 0;
@@ -261,10 +270,10 @@ Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char *opera
     return os;
 }
 
-Ice_Status Ice_sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void *cookie) {
+Ice_Status Ice_sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_OutputStreamPtr os = &ic->request;
-    Ice_Call *call = Ice_callOf(ic, self);
+    Ice_Call* call = Ice_callOf(ic, self);
     Ice_Status status = (Ice_Status)self->status;
     Ice_endEncapsulation(os, ic->requestBody);
     if (ICEC_BATCH && self->batch) {
@@ -298,22 +307,24 @@ Ice_Status Ice_sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void *c
     return status;
 }
 
-Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr *is) {
+Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr* is) {
     Ice_CommunicatorPtr ic = self->communicator;
-    Ice_Call *call = Ice_callOf(ic, self);
+    Ice_Call* call = Ice_callOf(ic, self);
     Ice_Status status = Ice_sendRequest(self, 0, 0);
     if (status != ICE_OK || self->mode != ICE_TWOWAY)
         return status;
     status = Ice_await(ic, &call->state, self->call, self->timeoutMs);
+    Ice_lock(ic, ICE_LOCK_STATE);
     if (call->state == ICE_DONE)
         status = (Ice_Status)call->status;
+    Ice_unlock(ic, ICE_LOCK_STATE);
     *is = &call->is;
     return status;
 }
 
 Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {
     Ice_CommunicatorPtr ic = self->communicator;
-    Ice_Call *call = Ice_callOf(ic, self);
+    Ice_Call* call = Ice_callOf(ic, self);
     if ((status == ICE_OK || status == ICE_USER_EXCEPTION) && call->state == ICE_DONE &&
         call->is.failed)
         status = ICE_MARSHAL;

@@ -12,8 +12,11 @@ U32 Ice_nowMs(Ice_CommunicatorPtr ic) {
 
 Ice_Status Ice_send(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os) {
     Ice_Status status = ic->endpoint->send(ic->endpointContext, connection, os->data, os->size);
-    if (ICEC_ASYNC)
+    if (ICEC_ASYNC) {
+        Ice_lock(ic, ICE_LOCK_STATE);
         ic->connections[connection].spokeMs = Ice_nowMs(ic);
+        Ice_unlock(ic, ICE_LOCK_STATE);
+    }
     return status;
 }
 
@@ -30,7 +33,7 @@ Ice_Status Ice_sendPlain(Ice_CommunicatorPtr ic, int connection, Ice_Byte type) 
 }
 
 void Ice_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_Byte state) {
-    Ice_Connection *c = &ic->connections[connection];
+    Ice_Connection* c = &ic->connections[connection];
     c->state = state;
     if (ICEC_ASYNC) {
         c->pending = 0;
@@ -39,8 +42,18 @@ void Ice_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_Byte state) 
     }
 }
 
+int Ice_connectionState(Ice_CommunicatorPtr ic, int connection) {
+    int state;
+    Ice_lock(ic, ICE_LOCK_STATE);
+    state = ic->connections[connection].state;
+    Ice_unlock(ic, ICE_LOCK_STATE);
+    return state;
+}
+
 void Ice_lose(Ice_CommunicatorPtr ic, int connection, Ice_Status status) {
+    Ice_lock(ic, ICE_LOCK_STATE);
     ic->connections[connection].state = ICE_FREE;
+    Ice_unlock(ic, ICE_LOCK_STATE);
     Ice_failCalls(ic, connection, status);
 }
 
@@ -50,10 +63,11 @@ void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection) {
     ic->endpoint->close(ic->endpointContext, connection);
     Ice_unlock(ic, ICE_LOCK_STATE);
     Ice_lose(ic, connection, ICE_CONNECTION_LOST);
+    ic->endpoint->wake(ic->endpointContext); /* the call that failed may be its receiver's */
 }
 
 /* ICE_OK, or why the connection is to be closed; what is malformed loses it. */
-static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_Byte *in,
+static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_Byte* in,
                               Ice_Int size) {
     Ice_InputStream is;
     Ice_Int type;
@@ -70,9 +84,11 @@ static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_
     if (type == ICE_REPLY) {
         Ice_takeReply(ic, connection, &is);
     } else if (type == ICE_VALIDATE) {
+        Ice_lock(ic, ICE_LOCK_STATE);
         ic->connections[connection].state = ICE_DONE;
         if (ICEC_TASKS)
             Ice_wakeCalls(ic);
+        Ice_unlock(ic, ICE_LOCK_STATE);
     } else if (type == ICE_CLOSE) {
         return ICE_CONNECTION_CLOSED;
     } else if (ICEC_BATCH && type == ICE_BATCH) {
@@ -91,11 +107,15 @@ static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_
 static Ice_Int keepUp(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
     int c;
     for (c = 0; c < ICE_CONNECTIONS; ++c) {
-        Ice_Connection *connection = &ic->connections[c];
+        Ice_Connection* connection = &ic->connections[c];
         Ice_Int left;
-        if (connection->state != ICE_DONE || connection->pending == 0)
-            continue;
+        int counts;
+        Ice_lock(ic, ICE_LOCK_STATE);
+        counts = connection->state == ICE_DONE && connection->pending;
         left = ICE_HEARTBEAT_MS - (Ice_Int)(Ice_nowMs(ic) - connection->spokeMs);
+        Ice_unlock(ic, ICE_LOCK_STATE);
+        if (!counts)
+            continue;
         if (left <= 0) {
             (void)Ice_sendPlain(ic, c, ICE_VALIDATE);
             left = ICE_HEARTBEAT_MS;
@@ -106,13 +126,15 @@ static Ice_Int keepUp(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
     return Ice_expireCalls(ic, waitMs);
 }
 
-static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte *in, const Ice_Event *event) {
+static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ice_Event* event) {
     int connection = event->connection;
     Ice_Status end = ICE_CONNECTION_LOST;
     if (event->kind == ICE_EVENT_NONE)
         return ICE_TIMEOUT;
     if (event->kind == ICE_EVENT_OPENED) { /* who accepts a connection speaks first */
+        Ice_lock(ic, ICE_LOCK_STATE);
         Ice_openConnection(ic, connection, ICE_DONE);
+        Ice_unlock(ic, ICE_LOCK_STATE);
         (void)Ice_sendPlain(ic, connection, ICE_VALIDATE);
         return ICE_OK;
     }
@@ -128,10 +150,10 @@ static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte *in, const Ic
     return ICE_OK;
 }
 
-Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
+Ice_Status Ice_receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     Ice_Event event;
     Ice_Status status;
-    Ice_Byte *in;
+    Ice_Byte* in;
     if (ic->depth == ICEC_NESTING)
         return ICE_LIMIT;
     in = ic->in[ICEC_NESTING > 1 ? ic->depth : 0];
@@ -146,37 +168,33 @@ Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     return status;
 }
 
-/* A task that waits while nobody receives becomes the receiver for as long as it waits. */
-Ice_Status Ice_await(Ice_CommunicatorPtr ic, const volatile Ice_Byte *state, int slot,
+static int isWaiting(Ice_CommunicatorPtr ic, const volatile Ice_Byte* state) {
+    int is;
+    Ice_lock(ic, ICE_LOCK_STATE);
+    is = *state == ICE_WAITING;
+    Ice_unlock(ic, ICE_LOCK_STATE);
+    return is;
+}
+
+Ice_Status Ice_await(Ice_CommunicatorPtr ic, const volatile Ice_Byte* state, int slot,
                      Ice_Int timeoutMs) {
     U32 begin = Ice_nowMs(ic);
     Ice_Status status = ICE_OK;
-    int task = ICEC_TASKS ? ic->os->task(ic->osContext) : 0, leads = 0;
-    while (*state == ICE_WAITING) {
+    int leads = 0;
+    while (isWaiting(ic, state)) {
         Ice_Int left = timeoutMs - (Ice_Int)(Ice_nowMs(ic) - begin);
         status = ICE_TIMEOUT;
         if (left <= 0)
             break;
-        if (ICEC_TASKS) {
-            Ice_lock(ic, ICE_LOCK_STATE);
-            if (ic->receiver < 0) {
-                ic->receiver = task;
-                leads = 1;
-            }
-            Ice_unlock(ic, ICE_LOCK_STATE);
-        }
-        if (ICEC_TASKS && ic->receiver != task)
+        if (ICEC_TASKS && !Ice_mayReceive(ic, &leads))
             (void)ic->os->wait(ic->osContext, slot, left);
         else
-            status = Ice_Communicator_poll(ic, left);
+            status = Ice_receiveOne(ic, left);
         if (status != ICE_OK && status != ICE_TIMEOUT)
             break;
         status = ICE_OK;
     }
-    if (leads) {
-        ic->receiver = -1;
-        if (ICEC_TASKS)
-            Ice_wakeCalls(ic); /* the next one takes over */
-    }
-    return *state == ICE_WAITING ? status : ICE_OK;
+    if (ICEC_TASKS && leads)
+        Ice_giveRole(ic); /* the next one takes over */
+    return isWaiting(ic, state) ? status : ICE_OK;
 }

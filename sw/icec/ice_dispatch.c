@@ -12,9 +12,9 @@ static const Ice_Byte codes[] = {
     0, 2, 3, 4, 1, 7, UNKNOWN_LOCAL, 7, 7, 7, 7, UNKNOWN_LOCAL, UNKNOWN_LOCAL, 6, 7, 7, 7, 7};
 
 /* Where there are only names. */
-static Ice_ObjectPtr findName(Ice_CommunicatorPtr ic, Ice_Current *current) {
+static Ice_ObjectPtr findName(Ice_CommunicatorPtr ic, Ice_Current* current) {
     Ice_ObjectAdapterPtr adapter;
-    const Ice_Servant *s;
+    const Ice_Servant* s;
     for (adapter = ic->adapters; adapter; adapter = adapter->next)
         for (s = adapter->servants; adapter->active && s < adapter->servants + ICE_SERVANTS; ++s)
             if (s->servant && Ice_String_same(&s->identity.name, &current->name)) {
@@ -25,7 +25,7 @@ static Ice_ObjectPtr findName(Ice_CommunicatorPtr ic, Ice_Current *current) {
 }
 
 /* The servant, else the category's default servant, else the default servant of all. */
-static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current *current, Ice_Status *status) {
+static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current* current, Ice_Status* status) {
     Ice_ObjectAdapterPtr adapter;
     Ice_ObjectPtr servant = 0;
     int s, rank = 0;
@@ -33,7 +33,7 @@ static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current *current, Ice_Stat
     Ice_lock(ic, ICE_LOCK_STATE);
     for (adapter = ic->adapters; adapter; adapter = adapter->next)
         for (s = 0; adapter->active && s < ICE_SERVANTS; ++s) {
-            const Ice_Identity *id = &adapter->servants[s].identity;
+            const Ice_Identity* id = &adapter->servants[s].identity;
             int is = 0;
             if (!adapter->servants[s].servant)
                 continue;
@@ -58,10 +58,10 @@ static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current *current, Ice_Stat
 }
 
 /* The operations that every object has; other ones are the servant's. */
-static Ice_Status run(Ice_ObjectPtr servant, const Ice_Current *current, Ice_InputStreamPtr is,
+static Ice_Status run(Ice_ObjectPtr servant, const Ice_Current* current, Ice_InputStreamPtr is,
                       Ice_OutputStreamPtr os) {
-    const char *const *id = servant->ids;
-    const Ice_String *operation = &current->operation;
+    const char* const* id = servant->ids;
+    const Ice_String* operation = &current->operation;
     if (Ice_String_is(operation, "ice_isA")) {
         Ice_String wanted;
         Ice_InputStream_takeString(is, &wanted);
@@ -82,7 +82,7 @@ static Ice_Status run(Ice_ObjectPtr servant, const Ice_Current *current, Ice_Inp
     return ICE_OK;
 }
 
-static void finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte *who,
+static void finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte* who,
                         Ice_Int whoSize) {
     Ice_Int end = os->size;
     Ice_Byte code = codes[os->failed ? ICE_MARSHAL : status];
@@ -107,7 +107,7 @@ static void finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, c
     Ice_endMessage(os);
 }
 
-void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte *who,
+void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte* who,
                      Ice_Int whoSize) {
     if (ICEC_ASYNC) /* else nobody does this outside of a dispatch */
         finishReply(os, id, status, who, whoSize);
@@ -210,7 +210,7 @@ Ice_Status Ice_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputSt
     return status;
 }
 
-Ice_Bool Ice_Current_context(const Ice_Current *current, const char *key, Ice_String *value) {
+Ice_Bool Ice_Current_context(const Ice_Current* current, const char* key, Ice_String* value) {
     Ice_InputStream is = current->context;
     Ice_Int n;
     for (n = ICEC_CONTEXTS ? Ice_InputStream_readSize(&is) : 0; n > 0 && !is.failed; --n) {

@@ -45,14 +45,14 @@ Ice_Status Ice_enterEncapsulation(Ice_InputStreamPtr is) {
     return (version & 0xFEFFU) == 1U ? ICE_OK : ICE_PROTOCOL;
 }
 
-void Ice_writeFacet(Ice_OutputStreamPtr os, const Ice_String *facet) {
+void Ice_writeFacet(Ice_OutputStreamPtr os, const Ice_String* facet) {
     Ice_OutputStream_writeByte(os, facet->size != 0);
     if (facet->size)
         Ice_OutputStream_writeString(os, *facet);
 }
 
 /* More than one is malformed, as it is to Ice. */
-void Ice_readFacet(Ice_InputStreamPtr is, Ice_String *facet) {
+void Ice_readFacet(Ice_InputStreamPtr is, Ice_String* facet) {
     Ice_Byte n = Ice_InputStream_readByte(is);
     facet->size = 0;
     if (n > 1)

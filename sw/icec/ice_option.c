@@ -5,7 +5,7 @@
 #include "ice_seam.h"
 
 /* Where nothing is quoted. */
-static const char *findPlain(const char *options, char letter) {
+static const char* findPlain(const char* options, char letter) {
     while (options && *options) {
         if (options[0] == '-' && options[1] == letter)
             return options + 3;
@@ -14,10 +14,10 @@ static const char *findPlain(const char *options, char letter) {
     return 0;
 }
 
-const char *Ice_findOption(const char *options, char letter, Ice_Int *size) {
+const char* Ice_findOption(const char* options, char letter, Ice_Int* size) {
     int matches = 0; /* the word before was "-x" */
     while (options && *options && *options != ':') {
-        const char *begin;
+        const char* begin;
         char quote = 0;
         if (*options == ' ') {
             ++options;
@@ -38,9 +38,9 @@ const char *Ice_findOption(const char *options, char letter, Ice_Int *size) {
     return 0;
 }
 
-U32 Ice_numberOption(const char *options, char letter, U32 otherwise) {
+U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     Ice_Int size;
-    const char *at =
+    const char* at =
         ICEC_DETAILS ? Ice_findOption(options, letter, &size) : findPlain(options, letter);
     U32 value = 0, base = 10, digit;
     if (!at)

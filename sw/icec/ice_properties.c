@@ -6,13 +6,13 @@
 
 #include <string.h>
 
-void Ice_Communicator_setProperties(Ice_CommunicatorPtr ic, const char *const *table) {
+void Ice_Communicator_setProperties(Ice_CommunicatorPtr ic, const char* const* table) {
     ic->properties = table;
 }
 
 /* `suffix` is what follows the key's first part. */
-static const char *find(Ice_CommunicatorPtr ic, const char *key, const char *suffix) {
-    const char *const *entry;
+static const char* find(Ice_CommunicatorPtr ic, const char* key, const char* suffix) {
+    const char* const* entry;
     size_t n = strlen(key), m = strlen(suffix);
     for (entry = ic->properties; entry && *entry; ++entry)
         if (strncmp(*entry, key, n) == 0 && strncmp(*entry + n, suffix, m) == 0 &&
@@ -21,13 +21,13 @@ static const char *find(Ice_CommunicatorPtr ic, const char *key, const char *suf
     return 0;
 }
 
-const char *Ice_Communicator_getProperty(Ice_CommunicatorPtr ic, const char *key) {
+const char* Ice_Communicator_getProperty(Ice_CommunicatorPtr ic, const char* key) {
     return find(ic, key, "");
 }
 
-Ice_Int Ice_Communicator_getPropertyAsInt(Ice_CommunicatorPtr ic, const char *key,
+Ice_Int Ice_Communicator_getPropertyAsInt(Ice_CommunicatorPtr ic, const char* key,
                                           Ice_Int otherwise) {
-    const char *text = find(ic, key, "");
+    const char* text = find(ic, key, "");
     U32 value = 0;
     int negative;
     if (!text)
@@ -45,9 +45,9 @@ Ice_Int Ice_Communicator_getPropertyAsInt(Ice_CommunicatorPtr ic, const char *ke
     return negative ? -(Ice_Int)value : (Ice_Int)value;
 }
 
-Ice_Status Ice_Communicator_propertyToProxy(Ice_CommunicatorPtr ic, const char *key,
+Ice_Status Ice_Communicator_propertyToProxy(Ice_CommunicatorPtr ic, const char* key,
                                             Ice_ObjectPrxPtr prx) {
-    const char *text = find(ic, key, "");
+    const char* text = find(ic, key, "");
     if (!text) {
         Ice_ObjectPrx_init(prx, ic);
         return ICE_PARSE;
@@ -55,7 +55,7 @@ Ice_Status Ice_Communicator_propertyToProxy(Ice_CommunicatorPtr ic, const char *
     return Ice_Communicator_stringToProxy(ic, text, prx);
 }
 
-Ice_Status Ice_Communicator_createObjectAdapter(Ice_CommunicatorPtr ic, const char *name,
+Ice_Status Ice_Communicator_createObjectAdapter(Ice_CommunicatorPtr ic, const char* name,
                                                 Ice_ObjectAdapterPtr adapter) {
     return Ice_Communicator_createObjectAdapterWithEndpoints(ic, name, find(ic, name, ".Endpoints"),
                                                              adapter);

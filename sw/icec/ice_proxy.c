@@ -20,8 +20,8 @@ void Ice_ObjectPrx_init(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic) {
     prx->call = prx->connection = -1;
 }
 
-Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String *name,
-                                     const Ice_String *category, const Ice_String *facet) {
+Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* name,
+                                     const Ice_String* category, const Ice_String* facet) {
     Ice_OutputStream os;
     Ice_OutputStream_init(&os, prx->identity, ICE_IDENTITY_MAX);
     Ice_OutputStream_writeString(&os, *name);
@@ -37,8 +37,8 @@ Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String *nam
     return os.failed ? ICE_LIMIT : ICE_OK;
 }
 
-const char *Ice_ObjectPrx_setName(Ice_ObjectPrxPtr prx, const char *text) {
-    Ice_Byte *to = prx->identity + 1;
+const char* Ice_ObjectPrx_setName(Ice_ObjectPrxPtr prx, const char* text) {
+    Ice_Byte* to = prx->identity + 1;
     while (*text && *text != ' ' && *text != ':' && to < prx->identity + ICE_IDENTITY_MAX - 2)
         *to++ = (Ice_Byte)*text++;
     prx->identity[0] = (Ice_Byte)(to - prx->identity - 1);
@@ -47,7 +47,7 @@ const char *Ice_ObjectPrx_setName(Ice_ObjectPrxPtr prx, const char *text) {
     return prx->identity[0] && (*text == 0 || *text == ' ' || *text == ':') ? text : 0;
 }
 
-Ice_Status Ice_ObjectPrx_addEndpoint(Ice_ObjectPrxPtr prx, const char *options) {
+Ice_Status Ice_ObjectPrx_addEndpoint(Ice_ObjectPrxPtr prx, const char* options) {
     Ice_CommunicatorPtr ic = prx->communicator;
     Ice_OutputStream os;
     Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
@@ -58,11 +58,11 @@ Ice_Status Ice_ObjectPrx_addEndpoint(Ice_ObjectPrxPtr prx, const char *options) 
     return os.failed ? ICE_LIMIT : ICE_OK;
 }
 
-int Ice_ObjectPrx_isNull(const Ice_ObjectPrx *prx) {
+int Ice_ObjectPrx_isNull(const Ice_ObjectPrx* prx) {
     return prx->identity[0] == 0;
 }
 
-Ice_Identity Ice_ObjectPrx_getIdentity(const Ice_ObjectPrx *prx) {
+Ice_Identity Ice_ObjectPrx_getIdentity(const Ice_ObjectPrx* prx) {
     Ice_Identity id;
     Ice_InputStream is;
     Ice_InputStream_init(&is, prx->identity, prx->identitySize);
@@ -71,7 +71,7 @@ Ice_Identity Ice_ObjectPrx_getIdentity(const Ice_ObjectPrx *prx) {
     return id;
 }
 
-Ice_String Ice_ObjectPrx_getFacet(const Ice_ObjectPrx *prx) {
+Ice_String Ice_ObjectPrx_getFacet(const Ice_ObjectPrx* prx) {
     Ice_String facet;
     Ice_InputStream is;
     Ice_InputStream_init(&is, prx->identity, prx->identitySize);
@@ -80,7 +80,7 @@ Ice_String Ice_ObjectPrx_getFacet(const Ice_ObjectPrx *prx) {
     return facet;
 }
 
-void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx *prx) {
+void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx) {
     if (!prx || Ice_ObjectPrx_isNull(prx)) {
         Ice_OutputStream_writeShort(os, 0); /* two empty strings */
         return;
@@ -122,7 +122,7 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
     prx->secure = Ice_InputStream_readBool(is);
     prx->minor = is->minor; /* an old peer says nothing, and means its own */
     if (is->minor != 0) {
-        const Ice_Byte *versions = Ice_InputStream_readBlob(is, 4);
+        const Ice_Byte* versions = Ice_InputStream_readBlob(is, 4);
         prx->minor = versions && versions[3] != 0; /* of a later encoding 1.1 is understood there */
     }
     prx->endpointsSize = 1;

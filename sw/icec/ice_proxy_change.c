@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-int Ice_ObjectPrx_equals(const Ice_ObjectPrx *a, const Ice_ObjectPrx *b) {
+int Ice_ObjectPrx_equals(const Ice_ObjectPrx* a, const Ice_ObjectPrx* b) {
     return a->mode == b->mode && a->secure == b->secure && a->minor == b->minor &&
            a->generation == b->generation && a->identitySize == b->identitySize &&
            a->endpointsSize == b->endpointsSize &&
@@ -14,12 +14,12 @@ int Ice_ObjectPrx_equals(const Ice_ObjectPrx *a, const Ice_ObjectPrx *b) {
            memcmp(a->endpoints, b->endpoints, a->endpointsSize) == 0;
 }
 
-Ice_Status Ice_ObjectPrx_ice_identity(Ice_ObjectPrxPtr prx, const char *identity) {
+Ice_Status Ice_ObjectPrx_ice_identity(Ice_ObjectPrxPtr prx, const char* identity) {
     Ice_Identity id = Ice_parseIdentity(identity);
     return id.name.size ? Ice_ObjectPrx_setIdentity(prx, &id.name, &id.category, 0) : ICE_PARSE;
 }
 
-Ice_Status Ice_ObjectPrx_ice_facet(Ice_ObjectPrxPtr prx, const char *facet) {
+Ice_Status Ice_ObjectPrx_ice_facet(Ice_ObjectPrxPtr prx, const char* facet) {
     Ice_ObjectPrx old = *prx;
     Ice_Identity id = Ice_ObjectPrx_getIdentity(&old);
     Ice_String text = Ice_String_from(facet);
@@ -36,7 +36,7 @@ void Ice_ObjectPrx_ice_oneway(Ice_ObjectPrxPtr prx) {
     prx->batch = 0;
 }
 
-void Ice_ObjectPrx_ice_context(Ice_ObjectPrxPtr prx, const Ice_ContextEntry *context) {
+void Ice_ObjectPrx_ice_context(Ice_ObjectPrxPtr prx, const Ice_ContextEntry* context) {
     prx->context = context;
 }
 
@@ -48,7 +48,7 @@ void Ice_ObjectPrx_ice_encodingVersion(Ice_ObjectPrxPtr prx, Ice_Byte minor) {
     prx->minor = minor != 0;
 }
 
-void Ice_ObjectPrx_setReplyBuffer(Ice_ObjectPrxPtr prx, U32 *buffer, Ice_Int bytes) {
+void Ice_ObjectPrx_setReplyBuffer(Ice_ObjectPrxPtr prx, U32* buffer, Ice_Int bytes) {
     prx->reply = buffer;
     prx->replySize = bytes & ~7;
 }

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* "name [-t|-o]:transport options", all that the minimal configuration takes. */
-static Ice_Status parseShort(const char *text, Ice_ObjectPrxPtr prx) {
+static Ice_Status parseShort(const char* text, Ice_ObjectPrxPtr prx) {
     text = Ice_ObjectPrx_setName(prx, text);
     if (!text)
         return ICE_LIMIT;
@@ -23,7 +23,7 @@ static Ice_Status parseShort(const char *text, Ice_ObjectPrxPtr prx) {
 
 /* The next word, without its quotes; ends at a space, a colon or an at sign. Escapes stay as they
  * are. */
-static const char *word(const char *text, Ice_String *found) {
+static const char* word(const char* text, Ice_String* found) {
     char quote = 0;
     text += strspn(text, SPACES);
     if (*text == '"' || *text == '\'')
@@ -44,7 +44,7 @@ static void unescape(Ice_String text, Ice_OutputStreamPtr os) {
     while (i < text.size) {
         char c = text.data[i++];
         if (c == '\\' && i < text.size) {
-            const char *known;
+            const char* known;
             c = text.data[i++];
             known = strchr(from, c);
             if (c >= '0' && c <= '7') {
@@ -82,7 +82,7 @@ static Ice_Status parseIdentity(Ice_String text, Ice_String facet, Ice_ObjectPrx
     raw[2] = facet;
     Ice_OutputStream_init(&os, bytes, (Ice_Int)sizeof bytes);
     for (i = 0; i < 3; ++i) {
-        parts[i].data = (const char *)bytes + os.size;
+        parts[i].data = (const char*)bytes + os.size;
         parts[i].size = os.size;
         unescape(raw[i], &os);
         parts[i].size = os.size - parts[i].size;
@@ -95,11 +95,11 @@ static Ice_Status parseIdentity(Ice_String text, Ice_String facet, Ice_ObjectPrx
 }
 
 /* 64 characters stand for six bits each. */
-static void decodeBase64(const char *text, Ice_Int size, Ice_OutputStreamPtr os) {
+static void decodeBase64(const char* text, Ice_Int size, Ice_OutputStreamPtr os) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     U32 bits = 0, have = 0;
     for (; size > 0 && *text != '='; --size, ++text) {
-        const char *digit = *text ? strchr(digits, *text) : 0;
+        const char* digit = *text ? strchr(digits, *text) : 0;
         if (!digit) {
             os->failed = 1;
             return;
@@ -114,10 +114,10 @@ static void decodeBase64(const char *text, Ice_Int size, Ice_OutputStreamPtr os)
 }
 
 /* "opaque -t type -e encoding -v bytes in base 64": an endpoint that is only passed on. */
-static Ice_Status parseOpaque(const char *options, Ice_ObjectPrxPtr prx) {
+static Ice_Status parseOpaque(const char* options, Ice_ObjectPrxPtr prx) {
     Ice_Int size, versionSize, begin;
-    const char *value = Ice_findOption(options, 'v', &size);
-    const char *version = Ice_findOption(options, 'e', &versionSize);
+    const char* value = Ice_findOption(options, 'v', &size);
+    const char* version = Ice_findOption(options, 'e', &versionSize);
     U32 type = Ice_numberOption(options, 't', 0x10000U), major = 1, minor = 1;
     Ice_OutputStream os;
     if (version) {
@@ -145,7 +145,7 @@ static Ice_Status parseOpaque(const char *options, Ice_ObjectPrxPtr prx) {
 }
 
 /* "-x value" again and again; -z of tcp has none. */
-static int areOptions(const char *text) {
+static int areOptions(const char* text) {
     Ice_String option, value;
     for (;;) {
         text += strspn(text, SPACES);
@@ -162,10 +162,10 @@ static int areOptions(const char *text) {
     }
 }
 
-static Ice_Status parseEndpoints(const char *text, Ice_ObjectPrxPtr prx) {
+static Ice_Status parseEndpoints(const char* text, Ice_ObjectPrxPtr prx) {
     Ice_Status status = ICE_OK;
     while (*text == ':' && status == ICE_OK) {
-        const char *options;
+        const char* options;
         char quote = 0;
         do
             ++text;
@@ -188,7 +188,7 @@ static Ice_Status parseEndpoints(const char *text, Ice_ObjectPrxPtr prx) {
     return status;
 }
 
-static Ice_Status parseAdapter(const char *text, Ice_ObjectPrxPtr prx) {
+static Ice_Status parseAdapter(const char* text, Ice_ObjectPrxPtr prx) {
     Ice_OutputStream os;
     Ice_String id;
     text = word(text, &id);
@@ -202,7 +202,7 @@ static Ice_Status parseAdapter(const char *text, Ice_ObjectPrxPtr prx) {
     return os.failed ? ICE_LIMIT : ICE_OK;
 }
 
-static Ice_Status parse(const char *text, Ice_ObjectPrxPtr prx) {
+static Ice_Status parse(const char* text, Ice_ObjectPrxPtr prx) {
     static const char modes[] = "toOdD"; /* in the order of ICE_TWOWAY and its like */
     Ice_String identity, facet = {0, ""}, option, value;
     Ice_Status status;
@@ -210,7 +210,7 @@ static Ice_Status parse(const char *text, Ice_ObjectPrxPtr prx) {
     if (!text)
         return ICE_PARSE;
     for (;;) {
-        const char *mode;
+        const char* mode;
         text += strspn(text, SPACES);
         if (*text != '-')
             break;
@@ -242,7 +242,7 @@ static Ice_Status parse(const char *text, Ice_ObjectPrxPtr prx) {
     return *text == '@' ? parseAdapter(text + 1, prx) : ICE_PARSE;
 }
 
-Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char *proxy,
+Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char* proxy,
                                           Ice_ObjectPrxPtr prx) {
     Ice_Status status;
     Ice_ObjectPrx_init(prx, ic);

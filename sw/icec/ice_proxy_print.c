@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-static void put(Ice_OutputStreamPtr os, const char *text) {
-    Ice_OutputStream_writeBlob(os, (const Ice_Byte *)text, (Ice_Int)strlen(text));
+static void put(Ice_OutputStreamPtr os, const char* text) {
+    Ice_OutputStream_writeBlob(os, (const Ice_Byte*)text, (Ice_Int)strlen(text));
 }
 
 static void putNumber(Ice_OutputStreamPtr os, U32 value) {
@@ -23,7 +23,7 @@ static void escape(Ice_OutputStreamPtr os, Ice_String text, char special) {
     Ice_Int i;
     for (i = 0; i < text.size; ++i) {
         char c = text.data[i];
-        const char *known = c ? strchr(from, c) : 0;
+        const char* known = c ? strchr(from, c) : 0;
         if (known) {
             c = to[known - from];
         } else if ((U8)c < 32 || c == 127) { /* octal, which all versions of Ice read */
@@ -53,7 +53,7 @@ static void quote(Ice_OutputStreamPtr os, Ice_Int begin) {
         }
 }
 
-static void putOpaque(Ice_OutputStreamPtr os, const Ice_Byte *encoded, Ice_Int size) {
+static void putOpaque(Ice_OutputStreamPtr os, const Ice_Byte* encoded, Ice_Int size) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     Ice_Int i;
     put(os, "opaque -t ");
@@ -73,13 +73,13 @@ static void putOpaque(Ice_OutputStreamPtr os, const Ice_Byte *encoded, Ice_Int s
     }
 }
 
-static void putEndpoints(const Ice_ObjectPrx *prx, Ice_OutputStreamPtr os) {
+static void putEndpoints(const Ice_ObjectPrx* prx, Ice_OutputStreamPtr os) {
     Ice_CommunicatorPtr ic = prx->communicator;
     Ice_InputStream is;
     int n;
     Ice_InputStream_init(&is, prx->endpoints + 1, prx->endpointsSize - 1);
     for (n = prx->endpoints[0]; n > 0; --n) {
-        const Ice_Byte *at = is.data + is.position;
+        const Ice_Byte* at = is.data + is.position;
         Ice_Int size;
         (void)Ice_InputStream_readShort(&is);
         (void)Ice_InputStream_readBlob(&is, Ice_InputStream_readInt(&is) - 4);
@@ -91,13 +91,13 @@ static void putEndpoints(const Ice_ObjectPrx *prx, Ice_OutputStreamPtr os) {
     }
 }
 
-Ice_Status Ice_Communicator_proxyToString(const Ice_ObjectPrx *prx, char *text, Ice_Int size) {
-    static const char *const modes[] = {" -t", " -o", " -O", " -d", " -D"};
+Ice_Status Ice_Communicator_proxyToString(const Ice_ObjectPrx* prx, char* text, Ice_Int size) {
+    static const char* const modes[] = {" -t", " -o", " -O", " -d", " -D"};
     Ice_Identity id = Ice_ObjectPrx_getIdentity(prx);
     Ice_String facet = Ice_ObjectPrx_getFacet(prx);
     Ice_OutputStream os;
     Ice_Int begin;
-    Ice_OutputStream_init(&os, (Ice_Byte *)text, size);
+    Ice_OutputStream_init(&os, (Ice_Byte*)text, size);
     if (!Ice_ObjectPrx_isNull(prx)) {
         if (id.category.size) {
             escape(&os, id.category, '/');
@@ -118,7 +118,7 @@ Ice_Status Ice_Communicator_proxyToString(const Ice_ObjectPrx *prx, char *text, 
             putEndpoints(prx, &os);
         } else if (prx->endpointsSize > 2) {
             Ice_String adapter;
-            adapter.data = (const char *)prx->endpoints + 2;
+            adapter.data = (const char*)prx->endpoints + 2;
             adapter.size = prx->endpointsSize - 2;
             put(&os, " @ ");
             begin = os.size;

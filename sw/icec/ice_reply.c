@@ -5,7 +5,7 @@
 #include "ice_private.h"
 
 int Ice_countPending(Ice_CommunicatorPtr ic, int connection, U16 generation, int change) {
-    Ice_Connection *c = &ic->connections[connection];
+    Ice_Connection* c = &ic->connections[connection];
     int same;
     Ice_lock(ic, ICE_LOCK_STATE);
     same = c->generation == generation && c->state == ICE_DONE;
@@ -15,7 +15,7 @@ int Ice_countPending(Ice_CommunicatorPtr ic, int connection, U16 generation, int
     return same;
 }
 
-void Ice_Current_later(const Ice_Current *current, Ice_Reply *reply) {
+void Ice_Current_later(const Ice_Current* current, Ice_Reply* reply) {
     reply->communicator = current->communicator;
     reply->id = current->requestId;
     reply->connection = current->connection;
@@ -23,7 +23,7 @@ void Ice_Current_later(const Ice_Current *current, Ice_Reply *reply) {
     reply->minor = current->minor;
 }
 
-Ice_OutputStreamPtr Ice_Reply_begin(Ice_Reply *reply) {
+Ice_OutputStreamPtr Ice_Reply_begin(Ice_Reply* reply) {
     Ice_CommunicatorPtr ic = reply->communicator;
     Ice_lock(ic, ICE_LOCK_SEND);
     Ice_initRequest(ic);
@@ -32,7 +32,7 @@ Ice_OutputStreamPtr Ice_Reply_begin(Ice_Reply *reply) {
     return &ic->request;
 }
 
-Ice_Status Ice_Reply_end(Ice_Reply *reply, Ice_Status status) {
+Ice_Status Ice_Reply_end(Ice_Reply* reply, Ice_Status status) {
     Ice_CommunicatorPtr ic = reply->communicator;
     Ice_Status sent = ICE_OK;
     if (!Ice_countPending(ic, reply->connection, reply->generation, -1)) {

@@ -28,7 +28,7 @@ typedef enum Ice_Status {
     ICE_LATER                    /* from a servant: the reply comes later (Ice_Reply) */
 } Ice_Status;
 
-const char *Ice_Status_text(Ice_Status status);
+const char* Ice_Status_text(Ice_Status status);
 
 /* What a transport tells its communicator. */
 typedef enum Ice_EventKind {
@@ -48,34 +48,34 @@ typedef struct Ice_Event {
  * called under the communicator's state lock, send by one task at a time, receive by one task at a
  * time. */
 typedef struct Ice_Endpoint {
-    const char *name; /* in proxy strings: "xbee-at", "tcp" */
+    const char* name; /* in proxy strings: "xbee-at", "tcp" */
     /* Waits up to timeoutMs for one event. `buffer` takes a message of up to ICE_MESSAGE_MAX bytes,
      * and is not touched after the return. OPENED is told of connections that the peer made. */
-    Ice_Status (*receive)(void *context, Ice_Byte *buffer, Ice_Int timeoutMs, Ice_Event *event);
-    Ice_Status (*send)(void *context, int connection, const Ice_Byte *message, Ice_Int size);
+    Ice_Status (*receive)(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event);
+    Ice_Status (*send)(void* context, int connection, const Ice_Byte* message, Ice_Int size);
     /* `encoded`: one endpoint as in a proxy on the wire (2-byte type + encapsulation). An open
      * connection to the same peer is used again. ICE_NO_ENDPOINT: the type is another transport's.
      */
-    Ice_Status (*connect)(void *context, const Ice_Byte *encoded, Ice_Int size, int *connection);
-    void (*close)(void *context, int connection);
-    Ice_Status (*listen)(void *context, const char *options);
+    Ice_Status (*connect)(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection);
+    void (*close)(void* context, int connection);
+    Ice_Status (*listen)(void* context, const char* options);
     /* From "-a 1 -p 3" (up to its end, or a colon that is not quoted) to the wire, and the endpoint
      * that a proxy of our own should carry (options 0). */
-    void (*encode)(void *context, const char *options, Ice_OutputStreamPtr os);
+    void (*encode)(void* context, const char* options, Ice_OutputStreamPtr os);
     /* Makes receive return early; may be called from any task. */
-    void (*wake)(void *context);
+    void (*wake)(void* context);
     /* Milliseconds since any time; wraps. */
-    U32 (*nowMs)(void *context);
+    U32 (*nowMs)(void* context);
     /* The reverse of encode: writes name and options as characters. 0: not this transport's type.
      * The pointer itself may be 0: then endpoints print as opaque. */
-    Ice_Bool (*print)(void *context, const Ice_Byte *encoded, Ice_Int size,
+    Ice_Bool (*print)(void* context, const Ice_Byte* encoded, Ice_Int size,
                       Ice_OutputStreamPtr text);
 } Ice_Endpoint;
 
 /* For transports: the value behind "-x", without quotes; 0 where there is none. */
-const char *Ice_findOption(const char *options, char letter, Ice_Int *size);
+const char* Ice_findOption(const char* options, char letter, Ice_Int* size);
 /* The same as a number, decimal or 0x...; `otherwise` where there is none. */
-U32 Ice_numberOption(const char *options, char letter, U32 otherwise);
+U32 Ice_numberOption(const char* options, char letter, U32 otherwise);
 
 /* What is locked: the buffer and order of requests, for as long as one is written and sent; or the
  * communicator's tables, briefly. A task that holds SEND may take STATE, not the reverse. */
@@ -84,13 +84,14 @@ enum { ICE_LOCK_STATE, ICE_LOCK_SEND };
 /* What IceC needs where several tasks use one communicator. The single-task version is Ice_Os_none.
  */
 typedef struct Ice_Os {
-    void (*lock)(void *context, int which);
-    void (*unlock)(void *context, int which);
-    /* Sleeps until wake of this slot (0..ICE_CALLS-1) or the time is over. 1: woken. */
-    int (*wait)(void *context, int slot, Ice_Int timeoutMs);
-    void (*wake)(void *context, int slot);
+    void (*lock)(void* context, int which);
+    void (*unlock)(void* context, int which);
+    /* Sleeps until wake of this slot (0..ICE_CALLS) or the time is over; a wake that came before
+     * counts. One task waits on each, on the last any number, of which one is woken. 1: woken. */
+    int (*wait)(void* context, int slot, Ice_Int timeoutMs);
+    void (*wake)(void* context, int slot);
     /* Something that differs from task to task, 0 or greater. */
-    int (*task)(void *context);
+    int (*task)(void* context);
 } Ice_Os;
 
 extern const Ice_Os Ice_Os_none;

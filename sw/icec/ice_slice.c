@@ -37,7 +37,7 @@ void Ice_OutputStream_startException(Ice_OutputStreamPtr os, Ice_Bool usesClasse
         Ice_OutputStream_writeBool(os, usesClasses);
 }
 
-Ice_Int Ice_OutputStream_startSlice(Ice_OutputStreamPtr os, const char *typeId, Ice_Bool last) {
+Ice_Int Ice_OutputStream_startSlice(Ice_OutputStreamPtr os, const char* typeId, Ice_Bool last) {
     Ice_Int begin = os->size;
     os->sliceFlags = (Ice_Byte)(ICE_SLICE_INSIDE | (os->sliced ? ICE_SLICE_SIZE : 0) |
                                 (last ? ICE_SLICE_LAST : 0));

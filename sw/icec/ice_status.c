@@ -4,8 +4,8 @@
  */
 #include "ice_seam.h"
 
-const char *Ice_Status_text(Ice_Status status) {
-    static const char *const texts[] = {
+const char* Ice_Status_text(Ice_Status status) {
+    static const char* const texts[] = {
         "ok",
         "Ice::ObjectNotExistException",
         "Ice::FacetNotExistException",

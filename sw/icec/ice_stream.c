@@ -7,35 +7,35 @@
 
 #include <string.h>
 
-Ice_String Ice_String_from(const char *terminated) {
+Ice_String Ice_String_from(const char* terminated) {
     Ice_String s;
     s.data = terminated;
     s.size = (Ice_Int)strlen(terminated);
     return s;
 }
 
-int Ice_String_same(const Ice_String *a, const Ice_String *b) {
+int Ice_String_same(const Ice_String* a, const Ice_String* b) {
     /* An empty string may lead nowhere. */
     return a->size == b->size && (a->size == 0 || memcmp(a->data, b->data, (size_t)a->size) == 0);
 }
 
-int Ice_String_equals(Ice_String a, const char *terminated) {
+int Ice_String_equals(Ice_String a, const char* terminated) {
     return Ice_String_is(&a, terminated);
 }
 
-int Ice_String_is(const Ice_String *a, const char *terminated) {
+int Ice_String_is(const Ice_String* a, const char* terminated) {
     size_t size = strlen(terminated);
     return (size_t)a->size == size && (size == 0 || memcmp(a->data, terminated, size) == 0);
 }
 
-void Ice_OutputStream_init(Ice_OutputStreamPtr os, Ice_Byte *data, Ice_Int capacity) {
+void Ice_OutputStream_init(Ice_OutputStreamPtr os, Ice_Byte* data, Ice_Int capacity) {
     memset(os, 0, sizeof *os);
     os->data = data;
     os->capacity = capacity;
     os->minor = 1;
 }
 
-void Ice_OutputStream_writeBlob(Ice_OutputStreamPtr os, const Ice_Byte *data, Ice_Int size) {
+void Ice_OutputStream_writeBlob(Ice_OutputStreamPtr os, const Ice_Byte* data, Ice_Int size) {
     if (os->failed || size > os->capacity - os->size) {
         os->failed = 1;
         return;
@@ -100,10 +100,10 @@ void Ice_OutputStream_writeSize(Ice_OutputStreamPtr os, Ice_Int v) {
 
 void Ice_OutputStream_writeString(Ice_OutputStreamPtr os, Ice_String v) {
     Ice_OutputStream_writeSize(os, v.size);
-    Ice_OutputStream_writeBlob(os, (const Ice_Byte *)v.data, v.size);
+    Ice_OutputStream_writeBlob(os, (const Ice_Byte*)v.data, v.size);
 }
 
-void Ice_OutputStream_writeText(Ice_OutputStreamPtr os, const char *terminated) {
+void Ice_OutputStream_writeText(Ice_OutputStreamPtr os, const char* terminated) {
     Ice_String text;
     text.data = terminated;
     text.size = (Ice_Int)strlen(terminated);
@@ -117,15 +117,15 @@ void Ice_OutputStream_writeEnum(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int large
         writeWord(os, (U32)v, largest < 127 ? 1 : largest < 32767 ? 2 : 4);
 }
 
-void Ice_InputStream_init(Ice_InputStreamPtr is, const Ice_Byte *data, Ice_Int size) {
+void Ice_InputStream_init(Ice_InputStreamPtr is, const Ice_Byte* data, Ice_Int size) {
     memset(is, 0, sizeof *is);
     is->data = data;
     is->size = size;
     is->minor = 1;
 }
 
-const Ice_Byte *Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size) {
-    const Ice_Byte *at = is->data + is->position;
+const Ice_Byte* Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size) {
+    const Ice_Byte* at = is->data + is->position;
     if (is->failed || size < 0 || size > is->size - is->position) {
         is->failed = 1;
         return 0;
@@ -135,7 +135,7 @@ const Ice_Byte *Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size) {
 }
 
 static U32 readWord(Ice_InputStreamPtr is, Ice_Int bytes) {
-    const Ice_Byte *b = Ice_InputStream_readBlob(is, bytes);
+    const Ice_Byte* b = Ice_InputStream_readBlob(is, bytes);
     U32 v = 0;
     if (b)
         while (bytes--)
@@ -191,9 +191,9 @@ Ice_Int Ice_InputStream_readSize(Ice_InputStreamPtr is) {
     return is->failed ? 0 : size;
 }
 
-void Ice_InputStream_takeString(Ice_InputStreamPtr is, Ice_String *s) {
+void Ice_InputStream_takeString(Ice_InputStreamPtr is, Ice_String* s) {
     s->size = Ice_InputStream_readSize(is);
-    s->data = (const char *)Ice_InputStream_readBlob(is, s->size);
+    s->data = (const char*)Ice_InputStream_readBlob(is, s->size);
     if (!s->data)
         s->size = 0;
 }
@@ -221,9 +221,9 @@ Ice_Int Ice_InputStream_readSequence(Ice_InputStreamPtr is, Ice_Int least) {
     return is->failed ? 0 : count;
 }
 
-void *Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int bytes) {
+void* Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int bytes) {
     Ice_Int words;
-    void *at;
+    void* at;
     if (count == 0)
         return 0;
     if (is->failed || count > is->arenaSize * 4 / bytes) {

@@ -26,47 +26,47 @@ typedef struct Ice_Long {
 /* Not terminated; points into a message, or at what the caller keeps. */
 typedef struct Ice_String {
     Ice_Int size;
-    const char *data;
+    const char* data;
 } Ice_String;
 
-Ice_String Ice_String_from(const char *terminated);
-int Ice_String_equals(Ice_String a, const char *terminated);
+Ice_String Ice_String_from(const char* terminated);
+int Ice_String_equals(Ice_String a, const char* terminated);
 /* The same by pointer: shorter code. */
-int Ice_String_is(const Ice_String *a, const char *terminated);
-int Ice_String_same(const Ice_String *a, const Ice_String *b);
+int Ice_String_is(const Ice_String* a, const char* terminated);
+int Ice_String_same(const Ice_String* a, const Ice_String* b);
 
 struct Ice_Communicator;
 struct Ice_OutputValues; /* ice_value.h */
 struct Ice_InputValues;
 
 typedef struct Ice_OutputStream {
-    Ice_Byte *data;
+    Ice_Byte* data;
     Ice_Int size, capacity;
     Ice_Byte minor; /* encoding 1.minor */
     Ice_Byte failed;
     Ice_Byte
         sliced; /* user exceptions in the sliced format: a peer can skip slices it does not know */
     Ice_Byte sliceFlags;             /* of the slice under way */
-    struct Ice_OutputValues *values; /* classes; 0: none so far */
+    struct Ice_OutputValues* values; /* classes; 0: none so far */
 } Ice_OutputStream, *Ice_OutputStreamPtr;
 
 typedef struct Ice_InputStream {
-    const Ice_Byte *data;
+    const Ice_Byte* data;
     Ice_Int position, size;
     Ice_Byte minor;
     Ice_Byte failed;
     Ice_Byte sliceFlags;                   /* of the slice under way; 0: none */
     Ice_Int sliceEnd;                      /* 0: not known */
-    U32 *arena;                            /* for decoded sequences */
+    U32* arena;                            /* for decoded sequences */
     Ice_Int arenaUsed, arenaSize;          /* in words of 4 bytes */
-    struct Ice_Communicator *communicator; /* of the proxies that are read */
-    struct Ice_InputValues *values;        /* classes; 0: none so far */
+    struct Ice_Communicator* communicator; /* of the proxies that are read */
+    struct Ice_InputValues* values;        /* classes; 0: none so far */
 } Ice_InputStream, *Ice_InputStreamPtr;
 
 /* ---- writing ---- */
 
-void Ice_OutputStream_init(Ice_OutputStreamPtr os, Ice_Byte *data, Ice_Int capacity);
-void Ice_OutputStream_writeBlob(Ice_OutputStreamPtr os, const Ice_Byte *data, Ice_Int size);
+void Ice_OutputStream_init(Ice_OutputStreamPtr os, Ice_Byte* data, Ice_Int capacity);
+void Ice_OutputStream_writeBlob(Ice_OutputStreamPtr os, const Ice_Byte* data, Ice_Int size);
 void Ice_OutputStream_writeByte(Ice_OutputStreamPtr os, Ice_Byte v);
 void Ice_OutputStream_writeBool(Ice_OutputStreamPtr os, Ice_Bool v);
 void Ice_OutputStream_writeShort(Ice_OutputStreamPtr os, Ice_Short v);
@@ -76,7 +76,7 @@ void Ice_OutputStream_writeFloat(Ice_OutputStreamPtr os, Ice_Float v);
 void Ice_OutputStream_writeDouble(Ice_OutputStreamPtr os, Ice_Double v);
 void Ice_OutputStream_writeSize(Ice_OutputStreamPtr os, Ice_Int v);
 void Ice_OutputStream_writeString(Ice_OutputStreamPtr os, Ice_String v);
-void Ice_OutputStream_writeText(Ice_OutputStreamPtr os, const char *terminated);
+void Ice_OutputStream_writeText(Ice_OutputStreamPtr os, const char* terminated);
 /* `largest`: the greatest enumerator, which chooses the width in encoding 1.0. */
 void Ice_OutputStream_writeEnum(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int largest);
 /* A size of 4 bytes that does not count itself, filled in by endSize. */
@@ -85,8 +85,8 @@ void Ice_OutputStream_endSize(Ice_OutputStreamPtr os, Ice_Int begin);
 
 /* ---- reading ---- */
 
-void Ice_InputStream_init(Ice_InputStreamPtr is, const Ice_Byte *data, Ice_Int size);
-const Ice_Byte *Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size); /* 0 on failure */
+void Ice_InputStream_init(Ice_InputStreamPtr is, const Ice_Byte* data, Ice_Int size);
+const Ice_Byte* Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size); /* 0 on failure */
 Ice_Byte Ice_InputStream_readByte(Ice_InputStreamPtr is);
 Ice_Bool Ice_InputStream_readBool(Ice_InputStreamPtr is);
 Ice_Short Ice_InputStream_readShort(Ice_InputStreamPtr is);
@@ -96,13 +96,13 @@ Ice_Float Ice_InputStream_readFloat(Ice_InputStreamPtr is);
 Ice_Double Ice_InputStream_readDouble(Ice_InputStreamPtr is);
 Ice_Int Ice_InputStream_readSize(Ice_InputStreamPtr is);
 Ice_String Ice_InputStream_readString(Ice_InputStreamPtr is);
-void Ice_InputStream_takeString(Ice_InputStreamPtr is, Ice_String *s);
+void Ice_InputStream_takeString(Ice_InputStreamPtr is, Ice_String* s);
 Ice_Int Ice_InputStream_readEnum(Ice_InputStreamPtr is, Ice_Int largest);
 /* Size of a sequence whose elements take at least `least` bytes each: more than is left fails. */
 Ice_Int Ice_InputStream_readSequence(Ice_InputStreamPtr is, Ice_Int least);
 /* Room for `count` elements of `bytes` each, aligned to 8; 0 and a failed stream if there is none.
  */
-void *Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int bytes);
+void* Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int bytes);
 
 /* ---- optional values: encoding 1.1 only ---- */
 
@@ -129,7 +129,7 @@ void Ice_InputStream_skipOptionals(Ice_InputStreamPtr is);
 
 void Ice_OutputStream_startException(Ice_OutputStreamPtr os, Ice_Bool usesClasses);
 /* The result is endSlice's `begin`. */
-Ice_Int Ice_OutputStream_startSlice(Ice_OutputStreamPtr os, const char *typeId, Ice_Bool last);
+Ice_Int Ice_OutputStream_startSlice(Ice_OutputStreamPtr os, const char* typeId, Ice_Bool last);
 void Ice_OutputStream_endSlice(Ice_OutputStreamPtr os, Ice_Int begin, Ice_Bool last);
 
 void Ice_InputStream_startException(Ice_InputStreamPtr is);

@@ -22,46 +22,46 @@ typedef struct Ice_ValueType Ice_ValueType;
 
 /* What every class begins with. */
 typedef struct Ice_Value {
-    const Ice_ValueType *type;
+    const Ice_ValueType* type;
 } Ice_Value;
 
 struct Ice_ValueType {
-    const char *id;                                            /* "::M::C" */
-    const Ice_ValueType *base;                                 /* 0: none */
+    const char* id;                                            /* "::M::C" */
+    const Ice_ValueType* base;                                 /* 0: none */
     Ice_Int compactId;                                         /* -1: none */
     Ice_Int size;                                              /* bytes of the struct */
-    void (*write)(const void *object, Ice_OutputStreamPtr os); /* own members */
-    void (*read)(void *object, Ice_InputStreamPtr is);
+    void (*write)(const void* object, Ice_OutputStreamPtr os); /* own members */
+    void (*read)(void* object, Ice_InputStreamPtr is);
 };
 
 /* 1: the instance is of this type or of one derived from it; 0 for a null instance. */
-int Ice_Value_isA(const Ice_Value *v, const Ice_ValueType *type);
+int Ice_Value_isA(const Ice_Value* v, const Ice_ValueType* type);
 
 typedef struct Ice_OutputValues {
-    const Ice_Value *known[ICE_VALUES_MAX]; /* in the order of their numbers */
+    const Ice_Value* known[ICE_VALUES_MAX]; /* in the order of their numbers */
     Ice_Int count, written;
-    const char *types[ICE_VALUE_TYPES_MAX];
+    const char* types[ICE_VALUE_TYPES_MAX];
     Ice_Int typeCount;
-    const Ice_Value *table[ICE_VALUES_MAX]; /* of the slices under way, one behind the other */
+    const Ice_Value* table[ICE_VALUES_MAX]; /* of the slices under way, one behind the other */
     Ice_Int tableBegin, tableEnd;
     Ice_Bool pending; /* 1.0: instances follow; 0 where only optional parameters could hold one */
     Ice_Bool (*writeTable)(Ice_OutputStreamPtr os); /* for exceptions' slices */
 } Ice_OutputValues;
 
-void Ice_OutputStream_beginValues(Ice_OutputStreamPtr os, Ice_OutputValues *values);
+void Ice_OutputStream_beginValues(Ice_OutputStreamPtr os, Ice_OutputValues* values);
 /* 0: null. More than ICE_VALUES_MAX fail the stream. */
-void Ice_OutputStream_writeValue(Ice_OutputStreamPtr os, const Ice_Value *v);
+void Ice_OutputStream_writeValue(Ice_OutputStreamPtr os, const Ice_Value* v);
 void Ice_OutputStream_endValues(Ice_OutputStreamPtr os);
 
 typedef struct Ice_InputValues {
-    const Ice_ValueType *const *types; /* those that can be made; 0 ends */
-    Ice_Value *known[ICE_VALUES_MAX];  /* by number; 0: of a type that is not known */
+    const Ice_ValueType* const* types; /* those that can be made; 0 ends */
+    Ice_Value* known[ICE_VALUES_MAX];  /* by number; 0: of a type that is not known */
     Ice_Int count;
     Ice_String typeIds[ICE_VALUE_TYPES_MAX];
     Ice_Int typeCount;
     struct {
-        void *at; /* where the pointer goes */
-        const Ice_ValueType *expected;
+        void* at; /* where the pointer goes */
+        const Ice_ValueType* expected;
         Ice_Int number;
     } patches[ICE_VALUES_MAX]; /* for instances that come later */
     Ice_Int patchBegin, patchEnd;
@@ -70,11 +70,11 @@ typedef struct Ice_InputValues {
     void (*skip)(Ice_InputStreamPtr is);      /* an optional that nobody asked for */
 } Ice_InputValues;
 
-void Ice_InputStream_beginValues(Ice_InputStreamPtr is, Ice_InputValues *values,
-                                 const Ice_ValueType *const *types);
+void Ice_InputStream_beginValues(Ice_InputStreamPtr is, Ice_InputValues* values,
+                                 const Ice_ValueType* const* types);
 /* Sets the pointer at `at`, now or at endValues. An instance that is no `expected` (0: any) fails
  * the stream, and so does one of which no type is known. */
-void Ice_InputStream_readValue(Ice_InputStreamPtr is, void *at, const Ice_ValueType *expected);
+void Ice_InputStream_readValue(Ice_InputStreamPtr is, void* at, const Ice_ValueType* expected);
 void Ice_InputStream_endValues(Ice_InputStreamPtr is);
 
 #endif

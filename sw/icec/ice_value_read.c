@@ -11,15 +11,15 @@ static void readTable(Ice_InputStreamPtr is);
 static void skip(Ice_InputStreamPtr is);
 static Ice_Int readInstance(Ice_InputStreamPtr is, Ice_Int number);
 
-int Ice_Value_isA(const Ice_Value *v, const Ice_ValueType *type) {
-    const Ice_ValueType *t = v ? v->type : 0;
+int Ice_Value_isA(const Ice_Value* v, const Ice_ValueType* type) {
+    const Ice_ValueType* t = v ? v->type : 0;
     while (t && t != type)
         t = t->base;
     return t != 0;
 }
 
-void Ice_InputStream_beginValues(Ice_InputStreamPtr is, Ice_InputValues *values,
-                                 const Ice_ValueType *const *types) {
+void Ice_InputStream_beginValues(Ice_InputStreamPtr is, Ice_InputValues* values,
+                                 const Ice_ValueType* const* types) {
     memset(values, 0, sizeof *values);
     values->types = types;
     values->readTable = readTable;
@@ -29,18 +29,18 @@ void Ice_InputStream_beginValues(Ice_InputStreamPtr is, Ice_InputValues *values,
 }
 
 /* Sets a pointer to the instance of this number, which must have been read. */
-static void set(Ice_InputStreamPtr is, void *at, Ice_Int number, const Ice_ValueType *expected) {
-    Ice_InputValues *values = is->values;
-    Ice_Value *v = number >= 1 && number <= values->count ? values->known[number - 1] : 0;
+static void set(Ice_InputStreamPtr is, void* at, Ice_Int number, const Ice_ValueType* expected) {
+    Ice_InputValues* values = is->values;
+    Ice_Value* v = number >= 1 && number <= values->count ? values->known[number - 1] : 0;
     if (!v || (expected && !Ice_Value_isA(v, expected)))
         is->failed = 1;
     else
         memcpy(at, &v, sizeof v);
 }
 
-static void setLater(Ice_InputStreamPtr is, void *at, Ice_Int number,
-                     const Ice_ValueType *expected) {
-    Ice_InputValues *values = is->values;
+static void setLater(Ice_InputStreamPtr is, void* at, Ice_Int number,
+                     const Ice_ValueType* expected) {
+    Ice_InputValues* values = is->values;
     if (values->patchEnd == ICE_VALUES_MAX) {
         is->failed = 1;
         return;
@@ -50,8 +50,8 @@ static void setLater(Ice_InputStreamPtr is, void *at, Ice_Int number,
     values->patches[values->patchEnd++].expected = expected;
 }
 
-void Ice_InputStream_readValue(Ice_InputStreamPtr is, void *at, const Ice_ValueType *expected) {
-    void *none = 0;
+void Ice_InputStream_readValue(Ice_InputStreamPtr is, void* at, const Ice_ValueType* expected) {
+    void* none = 0;
     Ice_Int number;
     memcpy(at, &none, sizeof none);
     if (!is->values)
@@ -86,7 +86,7 @@ static void skip(Ice_InputStreamPtr is) {
 
 /* Behind a slice: the instances that its members, the patches from patchBegin, point at. */
 static void readTable(Ice_InputStreamPtr is) {
-    Ice_InputValues *values = is->values;
+    Ice_InputValues* values = is->values;
     Ice_Int count = Ice_InputStream_readSequence(is, 1), first = values->patchBegin;
     Ice_Int last = values->patchEnd, i, p;
     values->patchBegin = last;
@@ -122,8 +122,8 @@ static Ice_String typeByName(Ice_InputStreamPtr is) {
 }
 
 /* The head of a slice. The type is found, or 0. `isObject`: it ends an instance of 1.0. */
-static const Ice_ValueType *startSlice(Ice_InputStreamPtr is, Ice_Bool *isObject) {
-    const Ice_ValueType *const *type = is->values->types;
+static const Ice_ValueType* startSlice(Ice_InputStreamPtr is, Ice_Bool* isObject) {
+    const Ice_ValueType* const* type = is->values->types;
     Ice_String id = {0, ""};
     Ice_Int compact = -1, begin, size;
     if (is->minor == 0) {
@@ -162,10 +162,10 @@ static const Ice_ValueType *startSlice(Ice_InputStreamPtr is, Ice_Bool *isObject
 }
 
 /* Skips slices down to one whose type is known; 0: there is none. */
-static const Ice_ValueType *knownType(Ice_InputStreamPtr is) {
+static const Ice_ValueType* knownType(Ice_InputStreamPtr is) {
     for (;;) {
         Ice_Bool isObject;
-        const Ice_ValueType *type = startSlice(is, &isObject);
+        const Ice_ValueType* type = startSlice(is, &isObject);
         Ice_Byte flags = is->sliceFlags;
         if (is->failed || type)
             return type;
@@ -183,12 +183,12 @@ static const Ice_ValueType *knownType(Ice_InputStreamPtr is) {
 
 /* The slices of one instance, which gets this number. */
 static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
-    const Ice_ValueType *type = knownType(is);
+    const Ice_ValueType* type = knownType(is);
     Ice_Bool isObject;
-    Ice_Value *v;
+    Ice_Value* v;
     if (is->failed || !type)
         return;
-    v = (Ice_Value *)Ice_InputStream_allocate(is, 1, type->size);
+    v = (Ice_Value*)Ice_InputStream_allocate(is, 1, type->size);
     if (!v)
         return;
     memset(v, 0, (size_t)type->size);
@@ -212,7 +212,7 @@ static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
 /* `number` as it stands on the wire: 1 is followed by an instance. The result is its number,
  * from 1. */
 static Ice_Int readInstance(Ice_InputStreamPtr is, Ice_Int number) {
-    Ice_InputValues *values = is->values;
+    Ice_InputValues* values = is->values;
     Ice_Byte flags = is->sliceFlags;
     Ice_Int sliceEnd = is->sliceEnd, patchBegin = values->patchBegin;
     if (is->failed || number < 1 || number > values->count + 1 ||
@@ -232,7 +232,7 @@ static Ice_Int readInstance(Ice_InputStreamPtr is, Ice_Int number) {
 }
 
 void Ice_InputStream_endValues(Ice_InputStreamPtr is) {
-    Ice_InputValues *values = is->values;
+    Ice_InputValues* values = is->values;
     Ice_Int n, p;
     while (is->minor == 0 && values->pending && !is->failed) {
         n = Ice_InputStream_readSequence(is, 5);

@@ -13,7 +13,7 @@
 
 static Ice_Bool writeTable(Ice_OutputStreamPtr os);
 
-void Ice_OutputStream_beginValues(Ice_OutputStreamPtr os, Ice_OutputValues *values) {
+void Ice_OutputStream_beginValues(Ice_OutputStreamPtr os, Ice_OutputValues* values) {
     memset(values, 0, sizeof *values);
     values->writeTable = writeTable;
     values->pending = 1;
@@ -21,8 +21,8 @@ void Ice_OutputStream_beginValues(Ice_OutputStreamPtr os, Ice_OutputValues *valu
 }
 
 /* The instance's place in `known`; -1: it is new, and has the last place now. */
-static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value *v, Ice_Int *place) {
-    Ice_OutputValues *values = os->values;
+static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value* v, Ice_Int* place) {
+    Ice_OutputValues* values = os->values;
     Ice_Int i;
     for (i = 0; i < values->count; ++i)
         if (values->known[i] == v) {
@@ -39,8 +39,8 @@ static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value *v, Ice_Int *plac
 }
 
 /* The number under which this type's name was written, 0: it was not, and has one now. */
-static Ice_Int typeNumber(Ice_OutputStreamPtr os, const char *id) {
-    Ice_OutputValues *values = os->values;
+static Ice_Int typeNumber(Ice_OutputStreamPtr os, const char* id) {
+    Ice_OutputValues* values = os->values;
     Ice_Int i;
     for (i = 0; i < values->typeCount; ++i)
         if (strcmp(values->types[i], id) == 0)
@@ -52,7 +52,7 @@ static Ice_Int typeNumber(Ice_OutputStreamPtr os, const char *id) {
     return 0;
 }
 
-static void writeType(Ice_OutputStreamPtr os, const Ice_ValueType *type) {
+static void writeType(Ice_OutputStreamPtr os, const Ice_ValueType* type) {
     Ice_Int number;
     if (type->compactId >= 0) {
         os->sliceFlags |= ICE_SLICE_COMPACT_ID;
@@ -67,8 +67,8 @@ static void writeType(Ice_OutputStreamPtr os, const Ice_ValueType *type) {
         Ice_OutputStream_writeString(os, Ice_String_from(type->id));
 }
 
-static void writeSlices11(Ice_OutputStreamPtr os, const Ice_Value *v) {
-    const Ice_ValueType *type;
+static void writeSlices11(Ice_OutputStreamPtr os, const Ice_Value* v) {
+    const Ice_ValueType* type;
     for (type = v->type; type; type = type->base) {
         Ice_Int begin = os->size, body;
         os->sliceFlags = (Ice_Byte)(ICE_SLICE_INSIDE | (os->sliced ? ICE_SLICE_SIZE : 0) |
@@ -85,7 +85,7 @@ static void writeSlices11(Ice_OutputStreamPtr os, const Ice_Value *v) {
 }
 
 /* The instance itself, or its number. */
-static void writeInstance(Ice_OutputStreamPtr os, const Ice_Value *v) {
+static void writeInstance(Ice_OutputStreamPtr os, const Ice_Value* v) {
     Ice_Int place = 0, tableBegin = os->values->tableBegin;
     Ice_Byte flags = os->sliceFlags;
     if (!placeOf(os, v, &place)) {
@@ -101,7 +101,7 @@ static void writeInstance(Ice_OutputStreamPtr os, const Ice_Value *v) {
 
 /* Behind a slice: what its members pointed at. 0: there is nothing. */
 static Ice_Bool writeTable(Ice_OutputStreamPtr os) {
-    Ice_OutputValues *values = os->values;
+    Ice_OutputValues* values = os->values;
     Ice_Int begin = values->tableBegin, end = values->tableEnd, i;
     if (begin == end)
         return 0;
@@ -112,8 +112,8 @@ static Ice_Bool writeTable(Ice_OutputStreamPtr os) {
     return 1;
 }
 
-static void writeIndirect(Ice_OutputStreamPtr os, const Ice_Value *v) {
-    Ice_OutputValues *values = os->values;
+static void writeIndirect(Ice_OutputStreamPtr os, const Ice_Value* v) {
+    Ice_OutputValues* values = os->values;
     Ice_Int i;
     for (i = values->tableBegin; i < values->tableEnd; ++i)
         if (values->table[i] == v)
@@ -127,7 +127,7 @@ static void writeIndirect(Ice_OutputStreamPtr os, const Ice_Value *v) {
     Ice_OutputStream_writeSize(os, i - values->tableBegin + 1);
 }
 
-void Ice_OutputStream_writeValue(Ice_OutputStreamPtr os, const Ice_Value *v) {
+void Ice_OutputStream_writeValue(Ice_OutputStreamPtr os, const Ice_Value* v) {
     Ice_Int place = 0;
     if (os->failed || !os->values) {
         os->failed = 1;
@@ -144,8 +144,8 @@ void Ice_OutputStream_writeValue(Ice_OutputStreamPtr os, const Ice_Value *v) {
     }
 }
 
-static void writeSlice10(Ice_OutputStreamPtr os, const char *id, const Ice_ValueType *type,
-                         const Ice_Value *v) {
+static void writeSlice10(Ice_OutputStreamPtr os, const char* id, const Ice_ValueType* type,
+                         const Ice_Value* v) {
     Ice_Int number = typeNumber(os, id), begin;
     Ice_OutputStream_writeBool(os, number != 0);
     if (number)
@@ -163,12 +163,12 @@ static void writeSlice10(Ice_OutputStreamPtr os, const char *id, const Ice_Value
 
 /* 1.0: in groups; what a group's members point at is the next one. */
 void Ice_OutputStream_endValues(Ice_OutputStreamPtr os) {
-    Ice_OutputValues *values = os->values;
+    Ice_OutputValues* values = os->values;
     while (os->minor == 0 && !os->failed && values->written < values->count) {
         Ice_Int i = values->written, end = values->count;
         Ice_OutputStream_writeSize(os, end - i);
         for (; i < end; ++i) {
-            const Ice_ValueType *type;
+            const Ice_ValueType* type;
             Ice_OutputStream_writeInt(os, i + 1);
             for (type = values->known[i]->type; type; type = type->base)
                 writeSlice10(os, type->id, type, values->known[i]);

@@ -148,7 +148,7 @@ void UAV_radioTask(void *argument) {
 
 /* ---- IceC's tasks ---- */
 
-static OS_EVENT *callDone[ICE_CALLS];
+static OS_EVENT *callDone[ICE_CALLS + 1]; /* the last: of tasks that want to receive */
 static OS_EVENT *iceMutex[2]; /* by ICE_LOCK_STATE and ICE_LOCK_SEND */
 
 void UAV_initIceOs(void) {
@@ -156,7 +156,7 @@ void UAV_initIceOs(void) {
     int c;
     iceMutex[ICE_LOCK_STATE] = OSMutexCreate(PRIO_MUTEX + 1U, &error);
     iceMutex[ICE_LOCK_SEND] = OSMutexCreate(PRIO_RADIO + 1U, &error);
-    for (c = 0; c < ICE_CALLS; ++c)
+    for (c = 0; c <= ICE_CALLS; ++c)
         callDone[c] = OSSemCreate(0);
 }
 
@@ -183,7 +183,6 @@ static void wakeCall(void *context, int slot) {
     (void)OSSemPost(callDone[slot]);
 }
 
-/* The server task receives; every other one waits. */
 static int taskOf(void *context) {
     (void)context;
     return OSTaskPrio();

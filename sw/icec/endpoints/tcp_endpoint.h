@@ -10,6 +10,7 @@
 
 #include "icec.h"
 
+#include <pthread.h>
 #include <sys/socket.h>
 
 #define TCP_ENDPOINT_TYPE 1
@@ -17,6 +18,7 @@
 typedef struct TcpConnection {
     int fd;                       /* -1: free */
     Ice_Byte accepted, told;      /* told: OPENED has been reported */
+    Ice_Byte sending, over;       /* over: closed, but for the task that still sends */
     struct sockaddr_storage peer; /* of a connection made by this side */
     socklen_t peerSize;
     Ice_Int have;
@@ -28,11 +30,12 @@ typedef struct TcpEndpoint {
     int port;     /* that it listens on */
     char host[64];
     int pipe[2];
+    pthread_mutex_t lock; /* of what follows: the receiver's, the sender's and who connects */
     TcpConnection connections[ICE_CONNECTIONS];
 } TcpEndpoint;
 
 /* ICE_NO_ENDPOINT if the system refuses. */
-Ice_Status TcpEndpoint_init(Ice_CommunicatorPtr ic, TcpEndpoint *self);
-void TcpEndpoint_destroy(TcpEndpoint *self);
+Ice_Status TcpEndpoint_init(Ice_CommunicatorPtr ic, TcpEndpoint* self);
+void TcpEndpoint_destroy(TcpEndpoint* self);
 
 #endif

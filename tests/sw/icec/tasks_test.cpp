@@ -20,8 +20,9 @@ namespace {
 // Ice_Os on threads.
 struct Threads {
     std::mutex locks[2], waiting;
-    std::condition_variable changed[ICE_CALLS];
-    bool woken[ICE_CALLS] = {};
+    std::condition_variable changed[ICE_CALLS + 1];
+    bool woken[ICE_CALLS + 1] = {};
+    std::atomic<int> callsAsleep{0};
 
     static Threads& of(void* context) { return *static_cast<Threads*>(context); }
     static const Ice_Os* os() {
@@ -30,10 +31,12 @@ struct Threads {
                                      [](void* c, int slot, Ice_Int ms) {
                                          Threads& t = of(c);
                                          std::unique_lock<std::mutex> lock(t.waiting);
+                                         t.callsAsleep += slot < ICE_CALLS;
                                          bool woken = t.changed[slot].wait_for(
                                              lock, std::chrono::milliseconds(ms),
                                              [&] { return t.woken[slot]; });
                                          t.woken[slot] = false;
+                                         t.callsAsleep -= slot < ICE_CALLS;
                                          return woken ? 1 : 0;
                                      },
                                      [](void* c, int slot) {
@@ -105,7 +108,7 @@ protected:
     void answer() {
         for (;;) {
             std::unique_lock<std::mutex> lock(laterMutex_);
-            laterCame_.wait(lock, [this] { return over_ || !later_.empty(); });
+            laterCame_.wait(lock, [this] { return over_ || (!held_ && !later_.empty()); });
             if (over_)
                 return;
             auto [reply, v] = later_.front();
@@ -115,15 +118,22 @@ protected:
             EXPECT_EQ(Ice_Reply_end(&reply, ICE_OK), ICE_OK);
         }
     }
+    void hold(bool held) {
+        std::lock_guard<std::mutex> lock(laterMutex_);
+        held_ = held;
+        laterCame_.notify_one();
+    }
+    std::string where() const {
+        return "thing:tcp -h 127.0.0.1 -p " + std::to_string(server_->tcp.port);
+    }
     void callFromThreads(int count) {
-        std::string where = "thing:tcp -h 127.0.0.1 -p " + std::to_string(server_->tcp.port);
         std::vector<std::thread> callers;
         std::atomic<int> wrong{0};
         for (int t = 0; t < count; ++t)
             callers.emplace_back([&, t] {
                 Ice_ObjectPrx prx;
                 wrong +=
-                    Ice_Communicator_stringToProxy(&client_->ic, where.c_str(), &prx) != ICE_OK;
+                    Ice_Communicator_stringToProxy(&client_->ic, where().c_str(), &prx) != ICE_OK;
                 prx.timeoutMs = 60000;
                 for (int i = 0; i < 200; ++i) {
                     Ice_Int out = 0, v = 1000 * t + i;
@@ -142,7 +152,7 @@ protected:
     std::mutex laterMutex_;
     std::condition_variable laterCame_;
     std::deque<std::pair<Ice_Reply, Ice_Int>> later_;
-    bool over_ = false;
+    bool over_ = false, held_ = false;
     std::thread serving_, answering_;
 };
 
@@ -151,6 +161,60 @@ TEST_F(Tasks, CallAtOnceWhileOneReceives) {
     callFromThreads(ICE_CALLS);
     Ice_Communicator_shutdown(&client_->ic);
     receiving.join();
+}
+
+TEST_F(Tasks, CallWhileTwoServe) {
+    std::thread first([this] { Ice_Communicator_waitForShutdown(&client_->ic); });
+    std::thread second([this] { Ice_Communicator_waitForShutdown(&client_->ic); });
+    callFromThreads(ICE_CALLS);
+    Ice_Communicator_shutdown(&client_->ic);
+    first.join();
+    second.join();
+}
+
+// Who polls takes the role from who waits for a reply, and gives it back, over and over.
+TEST_F(Tasks, CallWhileTwoPollNowAndThen) {
+    std::atomic<bool> over{false};
+    auto poll = [&] {
+        while (!over)
+            Ice_Communicator_poll(&client_->ic, 1);
+    };
+    std::thread first(poll), second(poll);
+    callFromThreads(ICE_CALLS);
+    over = true;
+    first.join();
+    second.join();
+}
+
+TEST_F(Tasks, AServerTakesTheRoleFromACallThatWaits) {
+    hold(true);
+    std::atomic<bool> answered{false};
+    std::thread caller([&] {
+        Ice_ObjectPrx prx;
+        Ice_Int out = 0;
+        EXPECT_EQ(Ice_Communicator_stringToProxy(&client_->ic, where().c_str(), &prx), ICE_OK);
+        prx.timeoutMs = 120000;
+        EXPECT_EQ(call(prx, "later", 14, &out), ICE_OK);
+        EXPECT_EQ(out, 42);
+        answered = true;
+    });
+    auto isAsked = [this] {
+        std::lock_guard<std::mutex> lock(laterMutex_);
+        return !later_.empty();
+    };
+    while (!isAsked())
+        std::this_thread::yield();
+    std::atomic<int> polls{0};
+    std::thread server([&] {
+        for (; !answered && polls < 1000; ++polls)
+            Ice_Communicator_poll(&client_->ic, 60);
+    });
+    while (client_->threads.callsAsleep == 0 && polls < 1000)
+        std::this_thread::yield();
+    EXPECT_LT(polls, 1000) << "the role was not handed over";
+    hold(false);
+    caller.join();
+    server.join();
 }
 
 TEST_F(Tasks, ReceiveInTurnsWhereNobodyElseDoes) {

@@ -47,7 +47,7 @@ run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground st
 	    $(if $(UCOS2),--firmware "$(BUILD)/firmware/uav_ucos2.elf")
 
 # What the sanitized build covers: the firmware's layers and their peers.
-SANITIZED := test_os test_os_cases test_link test_icec icec_server icec_client ice_cpp_client everything_server \
+SANITIZED := test_os test_os_cases test_link test_icec icec_server icec_client everything_cpp_client everything_cpp_server everything_server \
     everything_client everything_strings ice_relay
 # The missions run with stock Ice and ptys in real time; where other work takes the processor from the simulator
 # they may fail, so they have a second go.

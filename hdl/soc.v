@@ -69,7 +69,7 @@ module soc #(
     wire [PORTS-1:0]    npi_rmw, npi_init_done;
 
     wire [5:0] page;
-    wire       access_error, error_write, late;
+    wire       access_error, error_memory, error_write, late;
     wire [9:0] error_addr;
 
     fsmc_bridge u_fsmc_bridge (
@@ -78,7 +78,8 @@ module soc #(
         .fsmc_ne_n_i(fsmc_ne_n_i), .fsmc_noe_n_i(fsmc_noe_n_i), .fsmc_nwe_n_i(fsmc_nwe_n_i),
         .fsmc_nbl_n_i(fsmc_nbl_n_i), .fsmc_nadv_n_i(fsmc_nadv_n_i), .fsmc_clk_i(1'b0),
         .fsmc_nwait_n_o(fsmc_nwait_n_o),
-        .page_i(page), .access_error_o(access_error), .error_addr_o(error_addr),
+        .page_i(page), .access_error_o(access_error),
+        .error_memory_o(error_memory), .error_addr_o(error_addr),
         .error_write_o(error_write), .late_o(late),
         .bus_valid_o(bus_valid), .bus_write_o(bus_write), .bus_addr_o(bus_addr),
         .bus_wdata_o(bus_wdata), .bus_ready_i(bus_ready), .bus_rdata_i(bus_rdata),
@@ -118,7 +119,8 @@ module soc #(
         .bus_wdata_i(slot_wdata), .bus_ready_o(slot_ready[SYSTEM]),
         .bus_rdata_o(slot_rdata[32*SYSTEM +: 32]), .bus_error_o(slot_error[SYSTEM]),
         .slot_irq_i(slot_irq), .irq_o(irq_o), .page_o(page),
-        .access_error_i(access_error), .error_addr_i(error_addr), .error_write_i(error_write), .late_i(late)
+        .access_error_i(access_error), .error_memory_i(error_memory),
+        .error_addr_i(error_addr), .error_write_i(error_write), .late_i(late)
     );
 
     modem #(.CLK_HZ(CLK_HZ)) u_modem (
@@ -175,7 +177,9 @@ module soc #(
         .npi_init_done_i(npi_init_done[MAP_NPI_PORT_VISION])
     );
 
-    memory_mcb #(.PORTS(PORTS)) u_memory (
+    // The bridge and the modem take what they read in the cycle it comes: no FIFO.
+    localparam [31:0] NO_READ_FIFO = 1 << MAP_NPI_PORT_FSMC | 1 << MAP_NPI_PORT_MODEM;
+    memory_mcb #(.PORTS(PORTS), .READ_FIFO(~NO_READ_FIFO[PORTS-1:0])) u_memory (
         .clk_i(clk_i), .rst_i(rst_i),
         .npi_addr_i(npi_addr), .npi_addr_req_i(npi_addr_req), .npi_addr_ack_o(npi_addr_ack),
         .npi_rnw_i(npi_rnw), .npi_size_i(npi_size), .npi_rmw_i(npi_rmw),

@@ -26,6 +26,7 @@ module table1 #(
     // system slot
     input  wire [5:0]  page_i,
     output wire        access_error_o,
+    output wire        error_memory_o,
     output wire [9:0]  error_addr_o,
     output wire        error_write_o,
     output wire        late_o,
@@ -76,7 +77,8 @@ module table1 #(
         .fsmc_ne_n_i(fsmc_ne_n_i), .fsmc_noe_n_i(fsmc_noe_n_i), .fsmc_nwe_n_i(fsmc_nwe_n_i),
         .fsmc_nbl_n_i(fsmc_nbl_n_i), .fsmc_nadv_n_i(fsmc_nadv_n_i), .fsmc_clk_i(1'b0),
         .fsmc_nwait_n_o(fsmc_nwait_n_o),
-        .page_i(page_i), .access_error_o(access_error_o), .error_addr_o(error_addr_o),
+        .page_i(page_i), .access_error_o(access_error_o),
+        .error_memory_o(error_memory_o), .error_addr_o(error_addr_o),
         .error_write_o(error_write_o), .late_o(late_o),
         .bus_valid_o(bus_valid), .bus_write_o(bus_write), .bus_addr_o(bus_addr),
         .bus_wdata_o(bus_wdata), .bus_ready_i(bus_ready), .bus_rdata_i(bus_rdata),
@@ -119,7 +121,7 @@ module table1 #(
         .modem_rts_n_o(modem_rts_n_o), .modem_reset_n_o(modem_reset_n_o)
     );
 
-    memory_mcb #(.PORTS(2)) u_memory (
+    memory_mcb #(.PORTS(2), .READ_FIFO(2'b00)) u_memory (
         .clk_i(clk_i), .rst_i(rst_i),
         .npi_addr_i(npi_addr), .npi_addr_req_i(npi_addr_req), .npi_addr_ack_o(npi_addr_ack),
         .npi_rnw_i(npi_rnw), .npi_size_i(npi_size), .npi_rmw_i(npi_rmw),

@@ -35,7 +35,8 @@ module fsmc_bridge #(
     // system slot
     input  wire [5:0]  page_i,
     output wire        access_error_o, // one cycle
-    output wire [9:0]  error_addr_o,   // register word, or 0x3FF: memory
+    output wire        error_memory_o, // of memory, else
+    output wire [9:0]  error_addr_o,   // of this register
     output wire        error_write_o,
     output wire        late_o,         // one cycle: an access came too early and did not wait
     // register bus
@@ -213,7 +214,8 @@ module fsmc_bridge #(
 
     // ---- Errors
     assign access_error_o = reg_error || reg_error_memory || excuse;
-    assign error_addr_o   = reg_error ? bus_addr_o : 10'h3FF;
+    assign error_memory_o = !reg_error;
+    assign error_addr_o   = bus_addr_o;
     assign error_write_o  = reg_error ? reg_write : !mem_reading;
 
     // ---- For a master that does not look at NWAIT: a write that found no room, and a read that did not

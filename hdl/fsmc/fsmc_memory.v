@@ -64,6 +64,7 @@ module fsmc_memory #(
     (* anyseq *) reg [WIDTH-1:0] foreign_data;
     (* anyseq *) reg foreign;
     wire [WIDTH-1:0] memory, newest;
+    wire [POST_LOG2-1:0] post_waiting;
 `endif
     wire            post_valid;
     wire [WORD-1:0] post_addr;
@@ -71,12 +72,13 @@ module fsmc_memory #(
         .clk_i(clk_i), .rst_i(rst_i),
         .wr_i(wr_i), .wr_addr_i(wr_addr_i), .wr_data_i(wr_data_i), .wr_be_i(wr_be_i),
         .wr_lost_o(wr_lost_o), .room_o(room_o), .flush_i(flush_i || rd_miss_i), .idle_o(idle_o),
-        .word_valid_o(post_valid), .word_addr_o(post_addr), .word_data_o(npi_wr_data_o),
+        .push_o(npi_wr_push_o), .push_data_o(npi_wr_data_o), .push_be_o(npi_wr_be_o),
+        .word_valid_o(post_valid), .word_addr_o(post_addr),
 `ifdef FORMAL
         .place_i(place), .foreign_i(foreign), .foreign_data_i(foreign_data),
-        .memory_o(memory), .newest_o(newest),
+        .memory_o(memory), .newest_o(newest), .waiting_o(post_waiting),
 `endif
-        .word_be_o(npi_wr_be_o), .word_taken_i(npi_addr_ack_i && !npi_rnw_o)
+        .word_taken_i(npi_addr_ack_i && !npi_rnw_o)
     );
 
     // ---- What was read
@@ -127,7 +129,6 @@ module fsmc_memory #(
     wire [WORD-1:0] fetch_addr = {upper, fetch_block ? pair1 : pair0, fetch_block, fetch_word};
     assign npi_addr_o    = {page_i, npi_rnw_o ? fetch_addr : post_addr, 3'd0};
     assign npi_size_o    = npi_rnw_o && !single ? BLOCK_LOG2[3:0] : 4'd0;
-    assign npi_wr_push_o = start && post_valid;
 
     always @(posedge clk_i) begin
         settled <= full;
@@ -194,9 +195,8 @@ module fsmc_memory #(
 `ifdef FORMAL
     reg past = 1'b0;
     reg untold = 1'b0;         // others have written since the last drop_i
-    // The port's side: the word pushed, and the words of a read, in order, as the memory had them.
-    reg [4*WIDTH-1:0] pushed_data;
-    reg [7:0] pushed_be;
+    // The port's side: words pushed, and the words of a read, in order, as the memory had them.
+    reg [POST_LOG2-1:0] pushed; // words without a request that was acknowledged
     reg [4:0] to_come;
     reg [WORD-1:0] coming;     // address of the next one
     reg [WIDTH-1:0] coming_data;
@@ -230,8 +230,7 @@ module fsmc_memory #(
             assume (came == coming_data);
         assume (!foreign || (idle_o && !wr_i));
 
-        if (npi_wr_push_o)
-            {pushed_be, pushed_data} <= {npi_wr_be_o, npi_wr_data_o};
+        pushed <= pushed + npi_wr_push_o - (taken && !npi_rnw_o);
         untold <= foreign || (untold && !drop_i);
         if (!npi_rd_empty_i) begin
             to_come <= to_come - 5'd1;
@@ -244,6 +243,7 @@ module fsmc_memory #(
         end
         if (rst_i) begin
             to_come <= 5'd0;
+            pushed  <= 0;
             untold  <= 1'b0;
         end
 
@@ -257,14 +257,14 @@ module fsmc_memory #(
             // The port's rules: one read at a time, data of a write before its request, aligned.
             if (npi_addr_req_o) begin
                 assert (!npi_rnw_o || to_come == 5'd0);
-                assert (npi_rnw_o || {pushed_be, pushed_data} == {npi_wr_be_o, npi_wr_data_o});
+                assert (npi_rnw_o || pushed != 0);
                 assert (!npi_rnw_o || single || fetch_word == 0);
-                assert (!npi_wr_push_o);
             end
             if ($past(npi_addr_req_o && !npi_addr_ack_i && !rst_i)) begin
                 assert (npi_addr_req_o && $stable(npi_rnw_o) && $stable(npi_size_o));
                 assert ($stable(npi_addr_o[ADDR_BITS:0]));
             end
+            assert (pushed == post_waiting);
             // How it works, which the above follows from.
             assert (!(wanted && busy));
             assert (!wanted || single || fetch_word == 0);

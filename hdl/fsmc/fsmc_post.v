@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_post: halfword writes merged into words of four, and a queue of words on their way to memory.
+// fsmc_post: halfword writes merged into words of four; closed words go to the memory port, addresses queue.
 //
-// A halfword joins the open word if it belongs to it. The word is closed, and can be taken, when all its
-// bytes are there, when a write elsewhere comes, and with flush_i. (Half a halfword does not join a word
-// that has the other half: the queue is RAM without byte write enables.)
+// A halfword joins the open word if it belongs to it. The word is closed when all its bytes are there,
+// when a write elsewhere comes, and with flush_i: its data goes into the port's write FIFO at once, its
+// address waits here for its request. So one word is in flip-flops, and the others in the FIFO's RAM.
 
 `default_nettype none
 
 module fsmc_post #(
     parameter ADDR_BITS = 25, // of a halfword address
     parameter WIDTH     = 16, // of a halfword
-    parameter LOG2      = 4   // 2**LOG2 - 1 closed words can wait
+    parameter LOG2      = 4   // 2**LOG2 - 1 closed words can wait; the port's FIFO has room for them
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,
@@ -24,11 +24,13 @@ module fsmc_post #(
     output wire                 room_o,    // for two halfwords at least
     input  wire                 flush_i,
     output wire                 idle_o,    // nothing is open and nothing waits
+    // a word is closed
+    output wire                 push_o,    // one cycle
+    output reg  [4*WIDTH-1:0]   push_data_o,
+    output wire [7:0]           push_be_o,
     // the oldest closed word
     output wire                 word_valid_o,
     output wire [ADDR_BITS-3:0] word_addr_o,
-    output wire [4*WIDTH-1:0]   word_data_o,
-    output wire [7:0]           word_be_o,
 `ifdef FORMAL
     // the halfword that the proof looks at, any; what others write there while nothing waits
     input  wire [ADDR_BITS-1:0] place_i,
@@ -36,68 +38,54 @@ module fsmc_post #(
     input  wire [WIDTH-1:0]     foreign_data_i,
     output reg  [WIDTH-1:0]     memory_o, // what the memory has there
     output reg  [WIDTH-1:0]     newest_o, // what was written there last
+    output wire [LOG2-1:0]      waiting_o, // closed words
 `endif
     input  wire                 word_taken_i
 );
     localparam WORD = ADDR_BITS - 2;
 
-    reg [WORD+7:0] tags [0:(1<<LOG2)-1];
-    reg [LOG2-1:0] head, tail; // head..tail-1 are closed, tail is open or free
+    reg [WORD-1:0] addrs [0:(1<<LOG2)-1];
+    reg [LOG2-1:0] head, tail; // head..tail-1 are closed
     reg            open;
     reg [WORD-1:0] open_addr;
     reg [7:0]      open_be;
 
-    wire [3:0] bank = 4'd1 << wr_addr_i[1:0];
-    wire [7:0] both = {{2{bank[3]}}, {2{bank[2]}}, {2{bank[1]}}, {2{bank[0]}}};
-    wire       free = (open_be & both) == 8'd0;
-
-    wire joins = open_addr == wr_addr_i[ADDR_BITS-1:2] && (&wr_be_i || free);
-    wire [LOG2-1:0] tail_next = tail + 1'b1;
-    wire [LOG2-1:0] count     = tail - head;
+    wire       joins = open_addr == wr_addr_i[ADDR_BITS-1:2];
+    wire [LOG2-1:0] count = tail - head;
     wire full   = &count; // the open word has no successor: it stays open
     wire close  = open && !full && (&open_be || flush_i || (wr_i && !joins));
     wire accept = wr_i && !(full && open && !joins);
-    wire [LOG2-1:0] place = close ? tail_next : tail;
 
     assign wr_lost_o    = wr_i && !accept;
     // The open word counts as closed, so that room does not go away by itself.
     assign room_o       = !(&count[LOG2-1:1] || (open && count == (1 << LOG2) - 3));
     assign word_valid_o = count != 0;
     assign idle_o       = !open && !word_valid_o;
-    assign {word_be_o, word_addr_o} = tags[head];
+    assign word_addr_o  = addrs[head];
+    assign push_o       = close;
+    assign push_be_o    = open_be;
 
-`ifdef FORMAL
-    localparam BANK = WIDTH << LOG2; // bits of a bank
-    wire [4*BANK-1:0] all;
-`endif
+    wire [3:0] bank = 4'd1 << wr_addr_i[1:0];
+    wire [7:0] take = {{2{bank[3]}}, {2{bank[2]}}, {2{bank[1]}}, {2{bank[0]}}} & {4{wr_be_i}} & {8{accept}};
     genvar b;
     generate
-        for (b = 0; b < 4; b = b + 1) begin : g_bank
-            reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
+        for (b = 0; b < 8; b = b + 1) begin : g_byte
             always @(posedge clk_i)
-                if (accept && bank[b])
-                    words[place] <= wr_data_i;
-            assign word_data_o[WIDTH*b +: WIDTH] = words[head];
-`ifdef FORMAL
-            genvar k;
-            for (k = 0; k < (1 << LOG2); k = k + 1) begin : g_word
-                assign all[BANK*b + WIDTH*k +: WIDTH] = words[k];
-            end
-`endif
+                if (take[b])
+                    push_data_o[WIDTH/2*b +: WIDTH/2] <= wr_data_i[WIDTH/2*(b%2) +: WIDTH/2];
         end
     endgenerate
 
     always @(posedge clk_i) begin
         if (close) begin
-            tags[tail] <= {open_be, open_addr};
-            tail <= tail_next;
+            addrs[tail] <= open_addr;
+            tail <= tail + 1'b1;
         end
         if (close || accept)
             open <= accept;
-        if (accept) begin
+        open_be <= take | (open && !close ? open_be : 8'd0);
+        if (accept)
             open_addr <= wr_addr_i[ADDR_BITS-1:2];
-            open_be   <= (open && !close ? open_be : 8'd0) | (both & {4{wr_be_i}});
-        end
         if (word_taken_i)
             head <= head + 1'b1;
         if (rst_i) begin
@@ -108,42 +96,41 @@ module fsmc_post #(
     end
 
 `ifdef FORMAL
+    assign waiting_o = count;
     localparam HALF = WIDTH / 2, DEPTH = 1 << LOG2;
     reg past = 1'b0;
     wire [1:0] place_lane = place_i[1:0];
-    wire [BANK-1:0] mine = place_lane[1] ? (place_lane[0] ? all[3*BANK +: BANK] : all[2*BANK +: BANK])
-                                         : (place_lane[0] ? all[1*BANK +: BANK] : all[0 +: BANK]);
+    // The port's write FIFO: of every word the halfword that is looked at, and its byte enables.
+    reg [WIDTH+1:0] fifo [0:DEPTH-1];
+    wire [WIDTH+1:0] open_half = {push_be_o[2*place_lane +: 2], push_data_o[WIDTH*place_lane +: WIDTH]};
+    always @(posedge clk_i)
+        if (push_o)
+            fifo[tail] <= open_half;
 
     // What the memory will have when all that waits has been written, oldest first: the open word is
     // the last of `after`.
     wire [WIDTH*(DEPTH+1)-1:0] after;
-    wire [WIDTH*DEPTH-1:0] queued;
     assign after[WIDTH-1:0] = memory_o;
-    genvar q, w;
+    genvar q;
     generate
         for (q = 0; q < DEPTH; q = q + 1) begin : g_after
             wire [LOG2-1:0] at = head + q;
             wire closed = q < count;
-            wire [WORD+7:0] tag_ram = tags[at];
-            wire [WORD+7:0] tag = closed ? tag_ram : {open_be, open_addr};
-            wire [WIDTH*(DEPTH+1)-1:0] find;
-            assign find[WIDTH-1:0] = 0;
-            for (w = 0; w < DEPTH; w = w + 1) begin : g_find
-                assign find[WIDTH*(w+1) +: WIDTH] = at == w ? mine[WIDTH*w +: WIDTH] : find[WIDTH*w +: WIDTH];
-            end
-            wire [WIDTH-1:0] data = find[WIDTH*DEPTH +: WIDTH];
-            wire [1:0] be = place_lane[1] ? (place_lane[0] ? tag[WORD+6 +: 2] : tag[WORD+4 +: 2])
-                                          : (place_lane[0] ? tag[WORD+2 +: 2] : tag[WORD +: 2]);
-            wire hits = (closed || (q == count && open)) && tag[WORD-1:0] == place_i[ADDR_BITS-1:2];
-            assign queued[WIDTH*q +: WIDTH] = data;
+            wire [WORD-1:0] addr_ram = addrs[at];
+            wire [WIDTH+1:0] half_ram = fifo[at];
+            wire [WORD-1:0] addr = closed ? addr_ram : open_addr;
+            wire [WIDTH-1:0] data;
+            wire [1:0] be;
+            assign {be, data} = closed ? half_ram : open_half;
+            wire hits = (closed || (q == count && open)) && addr == place_i[ADDR_BITS-1:2];
             assign after[WIDTH*(q+1) +: HALF] = hits && be[0] ? data[HALF-1:0] : after[WIDTH*q +: HALF];
             assign after[WIDTH*(q+1)+HALF +: HALF] = hits && be[1] ? data[WIDTH-1:HALF] : after[WIDTH*q+HALF +: HALF];
         end
     endgenerate
     wire [WIDTH-1:0] final_value = after[WIDTH*DEPTH +: WIDTH];
-    wire [WIDTH-1:0] head_data = queued[WIDTH-1:0];
-    wire [1:0] head_be = place_lane[1] ? (place_lane[0] ? word_be_o[7:6] : word_be_o[5:4])
-                                       : (place_lane[0] ? word_be_o[3:2] : word_be_o[1:0]);
+    wire [WIDTH-1:0] head_data;
+    wire [1:0] head_be;
+    assign {head_be, head_data} = fifo[head];
 
     always @(posedge clk_i) begin
         past <= 1'b1;
@@ -173,7 +160,7 @@ module fsmc_post #(
             assert (!wr_lost_o || !$past(room_o));
             // The oldest word stays as it is until it is taken.
             if ($past(word_valid_o && !word_taken_i && !rst_i))
-                assert (word_valid_o && $stable(word_addr_o) && $stable(word_be_o) && $stable(word_data_o));
+                assert (word_valid_o && $stable(word_addr_o));
         end
         cover (past && wr_lost_o);
         cover (past && !$past(idle_o) && idle_o && memory_o != $past(memory_o));

@@ -26,7 +26,8 @@ module system_slot #(
     // FSMC bridge
     output reg  [5:0]       page_o,         // DDR3 address bits 31..26
     input  wire             access_error_i, // one cycle
-    input  wire [9:0]       error_addr_i,
+    input  wire             error_memory_i, // of memory: shown as 0x3FF; else
+    input  wire [9:0]       error_addr_i,   // of this register
     input  wire             error_write_i,
     input  wire             late_i
 );
@@ -87,7 +88,7 @@ module system_slot #(
         // The first error is kept until the event has been cleared; one that comes with the clear is new.
         if (access_error_i && (!error_open || clearing)) begin
             error_open  <= 1'b1;
-            error_addr  <= error_addr_i;
+            error_addr  <= error_memory_i ? 10'h3FF : error_addr_i;
             error_write <= error_write_i;
         end else if (clearing) begin
             error_open <= 1'b0;
@@ -111,7 +112,7 @@ module system_slot #(
         if (past && !rst_i && !$past(rst_i)) begin
             // The place shown is that of the oldest error since the event was last clear.
             if ($past(access_error_i && (!error_open || clearing)))
-                assert ({error_addr, error_write} == $past({error_addr_i, error_write_i}));
+                assert ({error_addr, error_write} == $past({error_addr_i | {10{error_memory_i}}, error_write_i}));
             else
                 assert ({error_addr, error_write} == $past({error_addr, error_write}));
             assert (error_open == ($past(access_error_i) || $past(error_open && !clearing)));

@@ -39,7 +39,7 @@ public:
         bench.tick();
         if (top.access_error_o) {
             ++errors;
-            errorAddr = top.error_addr_o;
+            errorAddr = top.error_memory_o ? 0x3FF : top.error_addr_o;
             errorWrite = top.error_write_o;
         }
         if (top.late_o && slave.clearWord < slave.words.size())

@@ -13,9 +13,10 @@ namespace {
 class SystemSlot : public ::testing::Test {
 protected:
     SystemSlot() { bench_.reset(); }
-    void error(unsigned word, bool write) {
+    void error(unsigned word, bool write, bool memory = false) {
         VSystemSlot& top = bench_.top();
         top.access_error_i = 1;
+        top.error_memory_i = memory;
         top.error_addr_i = static_cast<uint16_t>(word);
         top.error_write_i = write;
         bench_.tick();
@@ -60,7 +61,7 @@ TEST_F(SystemSlot, EveryLineIsSummarisedAndDrivesTheOne) {
 TEST_F(SystemSlot, TheFirstErrorIsKeptUntilItIsCleared) {
     bus_.write(SYSTEM_MASK, SYSTEM_EVENT_BUS_ERROR_MASK);
     error(0x123, true);
-    error(0x3FF, false);
+    error(0x045, false, true);
     EXPECT_TRUE(bench_.top().irq_o);
     EXPECT_EQ(bus_.read(SYSTEM_IRQ_LO), 1u) << "slot 0 itself";
     EXPECT_EQ(bus_.read(SYSTEM_ERROR_ADDR), 0x123u | SYSTEM_ERROR_ADDR_WRITE_MASK);
@@ -68,6 +69,9 @@ TEST_F(SystemSlot, TheFirstErrorIsKeptUntilItIsCleared) {
     EXPECT_FALSE(bench_.top().irq_o);
     error(0x045, false);
     EXPECT_EQ(bus_.read(SYSTEM_ERROR_ADDR), 0x45u);
+    bus_.write(SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);
+    error(0x045, false, true);
+    EXPECT_EQ(bus_.read(SYSTEM_ERROR_ADDR), 0x3FFu) << "of memory";
 }
 
 // An error in the very clock in which the event is cleared is a new one: event and place agree.

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# run: plants each seeded bug of tests/mutants/ in a copy of the tree and expects the test it names to fail.
+# run: plants each seeded bug of tests/mutants/ and ip/*/mutants/ in a copy of the tree and expects the test it names to fail.
 # Usage: tests/mutants/run.sh [--block NAME] [--jobs N]
 #
 # A patch says the bug in its first line, `Caught-by: <ctest name>` in a line of its own, and is then a
@@ -19,8 +19,9 @@ while [ $# -gt 0 ]; do
 done
 cd "$(dirname "$(readlink -f "$0")")/../.."
 top=$PWD
-list=$(ls tests/mutants/$block/*.patch 2>/dev/null) || {
-    echo "mutants: no tests/mutants/$block/*.patch" >&2
+list=$(ls tests/mutants/$block/*.patch ip/$block/mutants/*.patch 2>/dev/null || true)
+[ -n "$list" ] || {
+    echo "mutants: no tests/mutants/$block/*.patch, no ip/$block/mutants/*.patch" >&2
     exit 2
 }
 mkdir -p build/mutants
@@ -60,7 +61,7 @@ try() { # test log
 one() { # patch, in the worker's copy
     patch=$1
     test=$(caught_by "$patch")
-    name=$(echo "${patch#tests/mutants/}" | sed 's/[.]patch$//')
+    name=$(echo "$patch" | sed 's,^tests/mutants/,,; s,^ip/\(.*\)/mutants/,\1/,; s/[.]patch$//')
     start=$(date +%s)
     log=$top/build/mutants/$(echo "$name" | tr / -).log
     cd "$top/build/mutants/$SLOT"

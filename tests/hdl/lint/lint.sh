@@ -4,6 +4,8 @@
 set -eu
 module=$1 source=$2 gen=$3
 folders="$source/bus $source/hdl/fsmc $source/hdl/ddr $source/hdl/modem $source/hdl/system"
+core=$(ls "$source"/ip/*/"$module.v" 2>/dev/null || true)
+[ -z "$core" ] || folders="$folders $(dirname "$core")"
 file=$(for f in $folders; do ls "$f/$module.v" 2>/dev/null || true; done)
 case $module in
 bus_decoder) variants='SLOTS=1 SLOTS=3 SLOTS=64' ;;
@@ -13,6 +15,7 @@ npi_arbiter | memory_mcb | memory_litedram)
 litedram_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=32' ;;
 mcb_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=30' ;;
 npi_queue) variants='PORT_BITS=2 PORT_BITS=3' ;;
+npi_stream) variants='ADDR_BITS=7 WORD_BITS=4 WORD_BITS=32' ;;
 litedram_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=32' ;;
 mcb_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=30' ;;
 bus_wrapper) variants='EVENTS=1 EVENTS=32' ;;
@@ -24,8 +27,8 @@ fsmc_bridge) variants='MUXED=1 SYNC=1 WAIT_HIGH=1 POST_LOG2=2 POST_LOG2=5 BLOCK_
 system_slot) variants='SLOTS=2 SLOTS=63' ;;
 *) variants='' ;;
 esac
-search=$(for f in $folders; do echo "-y $f"; done)
-verilogs=$(for f in $folders; do ls "$f"/*.v; done)
+search=$(for f in $folders ${core:+"$gen"}; do echo "-y $f"; done)
+verilogs=$(for f in $folders; do ls "$f"/*.v; done; [ -z "$core" ] || ls "$gen/$(basename "$(dirname "$core")")"*.v 2>/dev/null || true)
 for variant in '' $variants; do
     # shellcheck disable=SC2086
     verilator --lint-only -Wall $search -I"$gen" --top-module "$module" ${variant:+-G$variant} "$file"

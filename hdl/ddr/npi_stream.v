@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+//
+// npi_stream: a memory port (docs/memory.md) as two streams of 64-bit words: a buffer that is read in order,
+// and one that is written in order. Bursts of 64 bytes, read ahead as far as the port's FIFO holds.
+//
+// Reading: read_start_i names a buffer, while read_idle_o is high; its words come as valid/take. What a burst
+// brings beyond read_words_i is thrown away, as is everything after read_stop_i.
+// Writing: write_start_i names a buffer, while write_idle_o is high; words go as valid/ready. write_flush_i,
+// high for a clock without valid, fills the burst that is begun with words that no byte enable writes.
+// write_idle_o: all that was taken is acknowledged, so every later request of any port sees it.
+
+`default_nettype none
+
+module npi_stream #(
+    parameter ADDR_BITS = 32, // of a byte address, 7..32
+    parameter WORD_BITS = 24  // of the number of words to read, 4..32
+) (
+    input  wire                 clk_i,
+    input  wire                 rst_i,
+    // read stream
+    input  wire                 read_start_i,
+    input  wire [ADDR_BITS-1:6] read_base_i,
+    input  wire [WORD_BITS-1:0] read_words_i,
+    input  wire                 read_stop_i,
+    output wire                 read_valid_o,
+    output wire [63:0]          read_data_o,
+    input  wire                 read_take_i,
+    output wire                 read_idle_o,
+    // write stream
+    input  wire                 write_start_i,
+    input  wire [ADDR_BITS-1:6] write_base_i,
+    input  wire                 write_valid_i,
+    input  wire [63:0]          write_data_i,
+    input  wire [7:0]           write_be_i,
+    output wire                 write_ready_o,
+    input  wire                 write_flush_i,
+    output wire                 write_idle_o,
+    // memory port
+    output wire [31:0]          npi_addr_o,
+    output wire                 npi_addr_req_o,
+    input  wire                 npi_addr_ack_i,
+    output wire                 npi_rnw_o,
+    output wire [3:0]           npi_size_o,
+    output wire [63:0]          npi_wr_data_o,
+    output wire [7:0]           npi_wr_be_o,
+    output wire                 npi_wr_push_o,
+    input  wire                 npi_wr_almost_full_i,
+    input  wire [63:0]          npi_rd_data_i,
+    output wire                 npi_rd_pop_o,
+    input  wire                 npi_rd_empty_i,
+    input  wire                 npi_init_done_i
+);
+    localparam [5:0] BURST = 6'd8, FIFO = 6'd32; // words
+    localparam [3:0] SIZE_64_BYTES = 4'd3;
+
+    reg                 request, request_read; // a request waits for its acknowledgement
+    reg [ADDR_BITS-1:6] read_addr, write_addr; // of the next burst
+    reg [WORD_BITS-1:0] to_ask, to_give;       // words not yet asked for; not yet given to the core
+    reg [5:0]           outstanding;           // words asked for and not yet popped
+    reg [2:0]           filled;                // words of the burst that is begun
+    reg [2:0]           bursts;                // pushed and not yet acknowledged
+    reg                 padding;
+
+    wire acked_read  = npi_addr_ack_i && request_read;
+    wire acked_write = npi_addr_ack_i && !request_read;
+
+    // ---- read ----
+    wire ask = to_ask != {WORD_BITS{1'b0}} && outstanding <= FIFO - BURST;
+
+    assign read_valid_o = !npi_rd_empty_i && to_give != {WORD_BITS{1'b0}};
+    assign read_data_o  = npi_rd_data_i;
+    assign npi_rd_pop_o = !npi_rd_empty_i && (read_take_i || to_give == {WORD_BITS{1'b0}});
+    assign read_idle_o  = to_give == {WORD_BITS{1'b0}} && outstanding == 6'd0 && !(request && request_read);
+
+    // ---- write ----
+    wire push = !npi_wr_almost_full_i && bursts != 3'd4 && (padding || write_valid_i);
+    wire full = push && filled == 3'd7;
+
+    assign write_ready_o = !npi_wr_almost_full_i && bursts != 3'd4 && !padding;
+    assign write_idle_o  = filled == 3'd0 && bursts == 3'd0;
+    assign npi_wr_push_o = push;
+    assign npi_wr_data_o = write_data_i;
+    assign npi_wr_be_o   = padding ? 8'd0 : write_be_i;
+
+    // ---- requests ----
+    wire [ADDR_BITS-1:6] addr = request_read ? read_addr : write_addr;
+    generate
+        if (ADDR_BITS < 32) begin : g_narrow
+            assign npi_addr_o = {{(32 - ADDR_BITS){1'b0}}, addr, 6'd0};
+        end else begin : g_wide
+            assign npi_addr_o = {addr, 6'd0};
+        end
+    endgenerate
+    assign npi_addr_req_o = request;
+    assign npi_rnw_o      = request_read;
+    assign npi_size_o     = SIZE_64_BYTES;
+
+    always @(posedge clk_i) begin
+        if (request) begin
+            request <= !npi_addr_ack_i;
+        end else if (npi_init_done_i && !read_stop_i) begin
+            request      <= bursts != 3'd0 || ask;
+            request_read <= bursts == 3'd0;
+        end else if (npi_init_done_i) begin
+            request      <= bursts != 3'd0;
+            request_read <= 1'b0;
+        end
+
+        outstanding <= outstanding + (acked_read ? BURST : 6'd0) - {5'd0, npi_rd_pop_o};
+        if (acked_read) begin
+            read_addr <= read_addr + 1'b1;
+            to_ask    <= to_ask > {{(WORD_BITS - 4){1'b0}}, 4'd8} ? to_ask - {{(WORD_BITS - 4){1'b0}}, 4'd8}
+                                                                  : {WORD_BITS{1'b0}};
+        end
+        if (read_valid_o && read_take_i)
+            to_give <= to_give - 1'b1;
+        if (read_stop_i) begin
+            to_ask  <= {WORD_BITS{1'b0}};
+            to_give <= {WORD_BITS{1'b0}};
+        end
+        if (read_start_i) begin
+            read_addr <= read_base_i;
+            to_ask    <= read_words_i;
+            to_give   <= read_words_i;
+        end
+
+        if (push)
+            filled <= filled + 3'd1;
+        padding <= padding ? !full : write_flush_i && filled != 3'd0;
+        bursts  <= bursts + {2'd0, full} - {2'd0, acked_write};
+        if (acked_write)
+            write_addr <= write_addr + 1'b1;
+        if (write_start_i)
+            write_addr <= write_base_i;
+
+        if (rst_i) begin
+            request     <= 1'b0;
+            to_ask      <= {WORD_BITS{1'b0}};
+            to_give     <= {WORD_BITS{1'b0}};
+            outstanding <= 6'd0;
+            filled      <= 3'd0;
+            bursts      <= 3'd0;
+            padding     <= 1'b0;
+        end
+    end
+
+`ifdef FORMAL
+    // The port: two FIFOs of 32 words and a controller that acknowledges when it likes.
+    reg       past = 1'b0;
+    reg [5:0] pushed, promised; // words in the write FIFO; words of reads that are acknowledged, not yet popped
+    reg [5:0] there;            // of those, in the read FIFO
+    reg [6:0] owed;             // words of acknowledged writes, still in the write FIFO
+    (* anyseq *) wire may_move, may_come;
+    wire      moved = may_move && owed != 7'd0;
+    wire      came  = may_come && there != promised;
+    // The core: takes what is offered, starts when idle, flushes without a word.
+    reg [WORD_BITS-1:0] f_left; // words that it may still take
+    reg [2:0] f_begun;          // words it gave since the burst began
+    initial assume (rst_i);
+    always @* begin
+        assume (!npi_addr_ack_i || npi_addr_req_o);
+        assume (npi_rd_empty_i == (there == 6'd0));
+        assume (npi_wr_almost_full_i == (pushed == 6'd32));
+        assume (!read_take_i || read_valid_o);
+        assume (!read_start_i || (read_idle_o && !read_stop_i));
+        assume (!write_start_i || (write_idle_o && !write_valid_i && !write_flush_i));
+        assume (!write_flush_i || !write_valid_i);
+    end
+    always @(posedge clk_i) begin
+        past     <= !rst_i;
+        pushed   <= pushed + {5'd0, npi_wr_push_o} - {5'd0, moved};
+        owed     <= owed + (npi_addr_ack_i && !npi_rnw_o ? 7'd8 : 7'd0) - {6'd0, moved};
+        promised <= promised + (npi_addr_ack_i && npi_rnw_o ? 6'd8 : 6'd0) - {5'd0, npi_rd_pop_o};
+        there    <= there + {5'd0, came} - {5'd0, npi_rd_pop_o};
+        f_left   <= read_stop_i ? {WORD_BITS{1'b0}} : read_start_i ? read_words_i
+                    : f_left - {{(WORD_BITS - 1){1'b0}}, read_take_i};
+        if (write_valid_i && write_ready_o)
+            f_begun <= f_begun + 3'd1;
+        else if (padding && full)
+            f_begun <= 3'd0;
+        if (rst_i) begin
+            pushed   <= 6'd0;
+            owed     <= 7'd0;
+            promised <= 6'd0;
+            there    <= 6'd0;
+            f_left   <= {WORD_BITS{1'b0}};
+            f_begun  <= 3'd0;
+        end
+    end
+    always @* if (!rst_i && past) begin
+        // Rules of docs/memory.md: no FIFO overflows or is popped empty, a write's words are there first.
+        assert (!npi_wr_push_o || pushed != 6'd32);
+        assert (!npi_rd_pop_o || there != 6'd0);
+        assert (promised <= 6'd32 && !(npi_addr_req_o && npi_rnw_o && promised > 6'd24));
+        assert (!(npi_addr_req_o && !npi_rnw_o) || {1'b0, pushed} >= owed + 7'd8);
+        assert (outstanding == promised && there <= promised);
+        assert ({1'b0, pushed} == owed + {1'b0, bursts, 3'd0} + {4'd0, filled});
+        assert (bursts <= 3'd4 && owed <= 7'd32);
+        // The core gets as many words as it asked for, no more; all that were asked for come.
+        assert (to_give == f_left);
+        assert (!read_valid_o || f_left != {WORD_BITS{1'b0}});
+        assert (to_ask == {WORD_BITS{1'b0}} || to_give >= to_ask);
+        assert (!padding || filled != 3'd0);
+        assert (!npi_addr_req_o || npi_rnw_o || bursts != 3'd0);
+        // A word that is not the core's writes nothing.
+        assert (!npi_wr_push_o || npi_wr_be_o == 8'd0 || (write_valid_i && write_ready_o));
+        cover (read_take_i && f_left == {{(WORD_BITS - 1){1'b0}}, 1'b1} && npi_addr_req_o && !npi_rnw_o);
+        cover (npi_rd_pop_o && !read_valid_o);
+        cover (padding && full);
+        cover (acked_write && bursts == 3'd1 && filled == 3'd0);
+        cover (promised == 6'd32);
+    end
+    always @(posedge clk_i) if (past && !rst_i && !$past(rst_i) && $past(npi_addr_req_o && !npi_addr_ack_i)) begin
+        assert (npi_addr_req_o && $stable(npi_rnw_o) && $stable(npi_size_o));
+        assert ($stable(npi_addr_o));
+    end
+`endif
+endmodule

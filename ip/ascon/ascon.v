@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: MIT
+//
+// ascon: Ascon-AEAD128 and Ascon-Hash256 (NIST SP 800-232) over buffers in DDR3, a round a clock.
+// Registers: ascon.regs.json. Page: README.md.
+//
+// State, key and message move in 64-bit words, byte n of memory in bits 8n+7..8n, as the standard has it.
+
+`default_nettype none
+
+module ascon (
+    input  wire        clk_i,
+    input  wire        rst_i,
+    // register bus
+    input  wire        bus_valid_i,
+    input  wire        bus_write_i,
+    input  wire [3:0]  bus_addr_i,
+    input  wire [31:0] bus_wdata_i,
+    output wire        bus_ready_o,
+    output wire [31:0] bus_rdata_o,
+    output wire        bus_error_o,
+    output wire        irq_o,
+    // memory port
+    output wire [31:0] npi_addr_o,
+    output wire        npi_addr_req_o,
+    input  wire        npi_addr_ack_i,
+    output wire        npi_rnw_o,
+    output wire [3:0]  npi_size_o,
+    output wire        npi_rmw_o,
+    output wire [63:0] npi_wr_data_o,
+    output wire [7:0]  npi_wr_be_o,
+    output wire        npi_wr_push_o,
+    input  wire        npi_wr_empty_i,
+    input  wire        npi_wr_almost_full_i,
+    output wire        npi_wr_flush_o,
+    input  wire [63:0] npi_rd_data_i,
+    input  wire [3:0]  npi_rd_word_i,
+    output wire        npi_rd_pop_o,
+    input  wire        npi_rd_empty_i,
+    output wire        npi_rd_flush_o,
+    input  wire        npi_init_done_i
+);
+    `include "ascon_regs.vh"
+
+    // Initial values, sections 4 and 5: version, rounds, tag or digest bits, rate.
+    localparam [63:0] IV_AEAD = 64'h00001000_808C0001, IV_HASH = 64'h00000801_00CC0002;
+    localparam [3:0]  TWELVE_ROUNDS = 4'd0, EIGHT_ROUNDS = 4'd4, LAST_ROUND = 4'd11;
+    localparam [1:0]  ASSOCIATED = 2'd0, MESSAGE = 2'd1, WIPE = 2'd2; // what is passed over
+    localparam [3:0]  WAIT_FOR_START = 4'd0, ROUNDS = 4'd1, FIRST_WORDS = 4'd2, ADD_KEY = 4'd3, LOAD_SIZE = 4'd4,
+                      SEPARATE = 4'd5, LOAD_TARGET = 4'd6, LOAD_SOURCE = 4'd7, WORD = 4'd8, FINAL_KEY = 4'd9,
+                      LOAD_TAG = 4'd10, TAG_WORD = 4'd11, DIGEST = 4'd12, FLUSH = 4'd13, DRAIN = 4'd14, CLEAR = 4'd15;
+
+    reg [3:0]   state, after;   // after: what follows ROUNDS
+    reg [1:0]   pass;
+    reg         decrypt, hash;
+    reg [319:0] s;              // S4 .. S0; 0 while nothing is under way, but for the nonce in S4, S3
+    reg [127:0] key;
+    reg [2:0]   key_words, nonce_words; // written, 4 at most
+    reg [3:0]   round;
+    reg [23:0]  left;           // bytes
+    reg [1:0]   index;          // of the word in its block, key, tag or digest
+    reg         differs, valid, aborted, wipe;
+    reg [31:0]  job [0:7];      // words AD_SIZE..TAG by their low address bits
+    reg [7:0]   bad;            // of those, what is not aligned or too long
+
+    // ---- registers ----
+    wire        reg_write, reg_read, done, refused;
+    wire [3:0]  reg_addr;
+    wire [31:0] reg_wdata;
+    wire        is_job = reg_addr >= ASCON_AD_SIZE && reg_addr <= ASCON_TAG;
+    wire        idle   = state == WAIT_FOR_START;
+    wire [31:0] status = {29'd0, aborted, valid, !idle};
+
+    bus_wrapper #(.ID_VALUE(ASCON_ID_VALUE), .WORDS(16'h1FF8), .EVENTS(2)) u_wrapper (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
+        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
+        .bus_error_o(bus_error_o),
+        .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr), .reg_wdata_o(reg_wdata),
+        .reg_rdata_i(is_job ? job[reg_addr[2:0]] : reg_addr == ASCON_STATUS ? status : 32'd0),
+        .event_i({refused, done}), .irq_o(irq_o));
+
+    wire control = reg_write && reg_addr == ASCON_CONTROL;
+    wire start   = control && idle && |reg_wdata[2:0];
+    wire aead    = !reg_wdata[ASCON_CONTROL_HASH_LSB];
+    wire go      = start && bad == 8'd0 && (!aead || (key_words[2] && nonce_words[2]));
+    wire abort   = control && reg_wdata[ASCON_CONTROL_ABORT_LSB];
+    wire forget  = control && reg_wdata[ASCON_CONTROL_FORGET_LSB] && idle;
+    wire put_key   = reg_write && reg_addr == ASCON_KEY && idle;
+    wire put_nonce = reg_write && reg_addr == ASCON_NONCE && idle && !nonce_words[2];
+    assign refused = start && !go;
+
+    always @(posedge clk_i)
+        if (reg_write && is_job)
+            job[reg_addr[2:0]] <= reg_wdata;
+
+    // ---- memory ----
+    reg [2:0] wanted; // the register that the state looks at
+    always @* case (state)
+        LOAD_SIZE:   wanted = pass == ASSOCIATED ? ASCON_AD_SIZE[2:0] : ASCON_SIZE[2:0];
+        LOAD_TARGET: wanted = ASCON_TARGET[2:0];
+        LOAD_SOURCE: wanted = pass == ASSOCIATED ? ASCON_AD_BASE[2:0] : ASCON_SOURCE[2:0];
+        default:     wanted = ASCON_TAG[2:0];
+    endcase
+    wire [31:0] setting = job[wanted];
+
+    wire        read_valid, read_idle, write_ready, write_idle;
+    wire [63:0] read_data;
+    wire        both_idle = read_idle && write_idle;
+    wire [23:0] words = state == LOAD_TAG ? 24'd2 : {3'd0, left[23:3]} + {23'd0, |left[2:0]};
+
+    // Bytes of this word: all eight, or what is left, padded by a one.
+    wire        last = state == WORD && left[23:3] == 21'd0;
+    wire [7:0]  be   = last ? ~(8'hFF << left[2:0]) : 8'hFF;
+    wire [63:0] pad  = last ? 64'd1 << {left[2:0], 3'd0} : 64'd0;
+    wire [63:0] mask = {{8{be[7]}}, {8{be[6]}}, {8{be[5]}}, {8{be[4]}},
+                        {8{be[3]}}, {8{be[2]}}, {8{be[1]}}, {8{be[0]}}};
+
+    wire writes = pass == WIPE || (pass == MESSAGE && !hash);
+    wire reads  = pass != WIPE && be != 8'd0;
+    wire step   = state == WORD && (!reads || read_valid) && (!writes || be == 8'd0 || write_ready);
+    wire tag_step    = state == TAG_WORD && (decrypt ? read_valid : write_ready);
+    wire digest_step = state == DIGEST && write_ready;
+
+    npi_stream #(.ADDR_BITS(32), .WORD_BITS(24)) u_stream (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .read_start_i((state == LOAD_SOURCE || (state == LOAD_TAG && decrypt)) && both_idle),
+        .read_base_i(setting[31:6]), .read_words_i(words),
+        .read_stop_i(state == FLUSH), .read_valid_o(read_valid), .read_data_o(read_data),
+        .read_take_i((step && reads) || (tag_step && decrypt)), .read_idle_o(read_idle),
+        .write_start_i((state == LOAD_TARGET || (state == LOAD_TAG && !decrypt)) && both_idle),
+        .write_base_i(setting[31:6]),
+        .write_valid_i((step && writes && be != 8'd0) || (tag_step && !decrypt) || digest_step),
+        .write_data_i(pass == WIPE ? 64'd0 : sum), .write_be_i(be),
+        .write_ready_o(write_ready), .write_flush_i(state == FLUSH || state == FINAL_KEY), .write_idle_o(write_idle),
+        .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
+        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o),
+        .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o),
+        .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),
+        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i), .npi_init_done_i(npi_init_done_i));
+    assign npi_rmw_o      = 1'b0;
+    assign npi_wr_flush_o = 1'b0;
+    assign npi_rd_flush_o = 1'b0;
+
+    // ---- state of 320 bits: a round, or one of its words plus an operand ----
+    // The operand is a word of the message, the key, the nonce or a constant. What is added is that, or, when
+    // decrypting, what makes the rate equal to the ciphertext; kept as a net, since 72 LUTs go without.
+    wire        key_high = state == FIRST_WORDS ? index[1] : index[0];
+    wire        use_key  = state == ADD_KEY || state == FINAL_KEY || (state == FIRST_WORDS && index != 2'd0);
+    wire        use_iv   = state == FIRST_WORDS && index == 2'd0;
+    wire [63:0] operand  = (state == WORD || (state == TAG_WORD && decrypt) ? read_data : 64'd0) | (idle ? {2{reg_wdata}} : 64'd0) |
+                           (use_key && !key_high ? key[63:0] : 64'd0) | (use_key && key_high ? key[127:64] : 64'd0) |
+                           (use_iv && !hash ? IV_AEAD : 64'd0) | (use_iv && hash ? IV_HASH : 64'd0) |
+                           {state == SEPARATE, 63'd0};
+    wire        second   = index[0] && state != DIGEST;
+    wire [63:0] chosen   = state == TAG_WORD ? (second ? s[319:256] : s[255:192]) : second ? s[127:64] : s[63:0];
+    wire [63:0] sum      = chosen ^ operand; // encrypted, decrypted, a tag (its difference) or a digest
+    (* keep *) wire [63:0] added    = ((decrypt && state == WORD && pass == MESSAGE ? sum : operand) & mask) ^ pad;
+
+    // Which halves of which words take it.
+    wire absorbs = step && pass != WIPE;
+    wire [9:0] takes = {{2{(state == ADD_KEY && index[0]) || state == SEPARATE}} | {put_nonce && nonce_words[1:0] == 2'd3,
+                                                                                   put_nonce && nonce_words[1:0] == 2'd2},
+                        {2{(state == ADD_KEY && !index[0]) || (state == FINAL_KEY && index[0])}} |
+                            {put_nonce && nonce_words[1:0] == 2'd1, put_nonce && nonce_words[1:0] == 2'd0},
+                        {2{(state == FIRST_WORDS && index == 2'd2) || (state == FINAL_KEY && !index[0])}},
+                        {2{(state == FIRST_WORDS && index == 2'd1) || (absorbs && index[0])}},
+                        {2{use_iv || (absorbs && !index[0])}}};
+
+    wire [319:0] permuted;
+    ascon_round u_round (.state_i(s), .round_i(round), .state_o(permuted));
+    wire clear = rst_i || forget || state == CLEAR || (idle && abort);
+    integer h;
+    always @(posedge clk_i) begin
+        for (h = 0; h < 10; h = h + 1)
+            if (state == ROUNDS || takes[h])
+                s[32*h +: 32] <= state == ROUNDS ? permuted[32*h +: 32] : s[32*h +: 32] ^ added[32*(h & 1) +: 32];
+        if (clear)
+            s <= 320'd0;
+        if (put_key)
+            key <= {reg_wdata, key[127:32]};
+        if (rst_i || forget)
+            key <= 128'd0;
+    end
+
+    // ---- control ----
+    assign done = state == DRAIN && both_idle && !wipe;
+
+    always @(posedge clk_i) begin
+        case (state)
+            WAIT_FOR_START: if (go) begin
+                decrypt <= aead && reg_wdata[ASCON_CONTROL_DECRYPT_LSB] && !reg_wdata[ASCON_CONTROL_ENCRYPT_LSB];
+                hash    <= !aead;
+                pass    <= aead ? ASSOCIATED : MESSAGE;
+                round   <= TWELVE_ROUNDS;
+                index   <= 2'd0;
+                after   <= FIRST_WORDS;
+                state   <= aead ? FIRST_WORDS : CLEAR; // a digest needs no nonce
+                differs <= 1'b0;
+                valid   <= 1'b0;
+                aborted <= 1'b0;
+            end
+            FIRST_WORDS: begin
+                index <= index + 2'd1;
+                after <= hash ? LOAD_SIZE : ADD_KEY;
+                if (hash || index == 2'd2) begin
+                    index <= 2'd0;
+                    state <= ROUNDS;
+                end
+            end
+            ROUNDS: begin
+                round <= round + 4'd1;
+                if (round == LAST_ROUND)
+                    state <= after;
+            end
+            ADD_KEY: begin
+                index <= {1'b0, !index[0]};
+                if (index[0])
+                    state <= pass == MESSAGE ? LOAD_TAG : LOAD_SIZE;
+            end
+            LOAD_SIZE: begin
+                left  <= setting[23:0];
+                index <= 2'd0;
+                state <= pass != ASSOCIATED ? LOAD_TARGET : setting[23:0] == 24'd0 ? SEPARATE : LOAD_SOURCE;
+            end
+            SEPARATE: begin
+                pass  <= MESSAGE;
+                state <= LOAD_SIZE;
+            end
+            LOAD_TARGET: if (both_idle)
+                state <= pass == WIPE ? WORD : LOAD_SOURCE;
+            LOAD_SOURCE: if (both_idle)
+                state <= WORD;
+            WORD: if (step) begin
+                left  <= last ? 24'd0 : left - 24'd8;
+                index <= hash || pass == WIPE ? 2'd0 : {1'b0, !last && !index[0]};
+                round <= hash ? TWELVE_ROUNDS : EIGHT_ROUNDS;
+                after <= !last ? WORD : hash ? DIGEST : SEPARATE;
+                if (pass == WIPE)
+                    state <= last ? FLUSH : WORD;
+                else if (last && !hash && pass == MESSAGE)
+                    state <= FINAL_KEY;
+                else if (last || hash || index[0])
+                    state <= ROUNDS;
+            end
+            FINAL_KEY: begin
+                index <= {1'b0, !index[0]};
+                round <= TWELVE_ROUNDS;
+                after <= ADD_KEY;
+                if (index[0])
+                    state <= ROUNDS;
+            end
+            LOAD_TAG: if (both_idle)
+                state <= TAG_WORD;
+            TAG_WORD: if (tag_step) begin
+                index <= 2'd1;
+                if (decrypt) begin
+                    differs <= differs || sum != 64'd0;
+                    valid   <= index[0] && !differs && sum == 64'd0;
+                    wipe    <= index[0] && (differs || sum != 64'd0);
+                end
+                if (index[0])
+                    state <= FLUSH;
+            end
+            DIGEST: if (digest_step) begin
+                index <= index + 2'd1;
+                round <= TWELVE_ROUNDS;
+                after <= DIGEST;
+                state <= index == 2'd3 ? FLUSH : ROUNDS;
+            end
+            FLUSH: state <= DRAIN;
+            DRAIN: if (both_idle) begin
+                wipe  <= 1'b0;
+                pass  <= wipe ? WIPE : ASSOCIATED;
+                after <= WAIT_FOR_START;
+                state <= wipe ? LOAD_SIZE : CLEAR;
+            end
+            default: state <= after; // CLEAR
+        endcase
+        if (abort && !idle && pass != WIPE && state != FLUSH && state != DRAIN && state != CLEAR) begin
+            aborted <= 1'b1;
+            valid   <= 1'b0;
+            wipe    <= decrypt && pass == MESSAGE;
+            state   <= FLUSH;
+        end
+
+        if (put_key && !key_words[2])
+            key_words <= key_words + 3'd1;
+        if (put_nonce)
+            nonce_words <= nonce_words + 3'd1;
+        if (go || forget || (idle && abort))
+            nonce_words <= 3'd0;
+        if (forget)
+            key_words <= 3'd0;
+        if (reg_write && is_job)
+            bad[reg_addr[2:0]] <= reg_addr <= ASCON_SIZE ? |reg_wdata[31:24] : |reg_wdata[5:0];
+        if (rst_i) begin
+            state       <= WAIT_FOR_START;
+            pass        <= ASSOCIATED;
+            key_words   <= 3'd0;
+            nonce_words <= 3'd0;
+            bad         <= 8'd0;
+            valid       <= 1'b0;
+            aborted     <= 1'b0;
+            wipe        <= 1'b0;
+        end
+    end
+
+    wire unused = &{1'b0, reg_read, npi_wr_empty_i, npi_rd_word_i, 1'b0};
+endmodule

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: MIT
+//
+// ascon_test: the core and its model against the known answers of the standard's authors, and the
+// core against the model with a memory that stalls.
+
+#include "VAscon.h"
+#include "ascon_model.h"
+#include "ascon_regs.h"
+#include "bench.h"
+#include "bus_master.h"
+#include "npi_memory.h"
+#include <fstream>
+#include <gtest/gtest.h>
+#include <sstream>
+
+namespace {
+
+constexpr uint32_t adBase = 0x1000, source = 0x4000, target = 0x8000, tagBase = 0xC000;
+
+AsconBytes counted(uint8_t first, size_t size) {
+    AsconBytes bytes(size);
+    for (size_t i = 0; i < size; ++i)
+        bytes[i] = static_cast<uint8_t>(first + i);
+    return bytes;
+}
+AsconKey sixteen(uint8_t first) {
+    AsconKey key;
+    for (size_t i = 0; i < key.size(); ++i)
+        key[i] = static_cast<uint8_t>(first + i);
+    return key;
+}
+template <class Bytes> std::string hex(const Bytes& bytes) {
+    std::string text;
+    char digits[3];
+    for (uint8_t b : bytes) {
+        std::snprintf(digits, sizeof digits, "%02X", b);
+        text += digits;
+    }
+    return text;
+}
+
+// Lines of a file of vectors, without its comments.
+std::vector<std::istringstream> vectors(const std::string& name) {
+    std::ifstream file(VECTORS + name);
+    std::vector<std::istringstream> lines;
+    for (std::string line; std::getline(file, line);)
+        if (line[0] != '#')
+            lines.emplace_back(line);
+    return lines;
+}
+
+class AsconTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        bench_.reset();
+        bus_.write(ASCON_MASK, 3);
+        bus_.write(ASCON_AD_BASE, adBase);
+        bus_.write(ASCON_SOURCE, source);
+        bus_.write(ASCON_TARGET, target);
+        bus_.write(ASCON_TAG, tagBase);
+    }
+    void put(unsigned word, const AsconKey& value) {
+        for (size_t i = 0; i < 16; i += 4)
+            bus_.write(word, uint32_t(value[i]) | uint32_t(value[i + 1]) << 8 |
+                                 uint32_t(value[i + 2]) << 16 | uint32_t(value[i + 3]) << 24);
+    }
+    template <class Bytes> void load(uint32_t at, const Bytes& bytes) {
+        for (size_t i = 0; i < bytes.size(); ++i)
+            memory_.setByte(at + static_cast<uint32_t>(i), bytes[i]);
+    }
+    AsconBytes bytesAt(uint32_t at, size_t size) const {
+        AsconBytes bytes(size);
+        for (size_t i = 0; i < size; ++i)
+            bytes[i] = memory_.byte(at + static_cast<uint32_t>(i));
+        return bytes;
+    }
+    AsconKey tag() const {
+        AsconKey key;
+        for (size_t i = 0; i < 16; ++i)
+            key[i] = memory_.byte(tagBase + static_cast<uint32_t>(i));
+        return key;
+    }
+    uint32_t finish(uint64_t limit = 100000) {
+        bench_.waitFor([&] { return bench_.top().irq_o; }, "the core's interrupt", limit);
+        uint32_t events = bus_.read(ASCON_EVENT);
+        bus_.write(ASCON_EVENT, events);
+        return events;
+    }
+    void sizes(size_t associated, size_t message) {
+        bus_.write(ASCON_AD_SIZE, static_cast<uint32_t>(associated));
+        bus_.write(ASCON_SIZE, static_cast<uint32_t>(message));
+    }
+    AsconSealed encrypt(const AsconKey& nonce, const AsconBytes& associated,
+                        const AsconBytes& message) {
+        load(adBase, associated);
+        load(source, message);
+        sizes(associated.size(), message.size());
+        put(ASCON_NONCE, nonce);
+        bus_.write(ASCON_CONTROL, ASCON_CONTROL_ENCRYPT_MASK);
+        EXPECT_EQ(finish(), ASCON_EVENT_DONE_MASK);
+        return {bytesAt(target, message.size()), tag()};
+    }
+    // False: the core did not accept the tag.
+    bool decrypt(const AsconKey& nonce, const AsconBytes& associated, const AsconSealed& sealed) {
+        load(adBase, associated);
+        load(source, sealed.text);
+        load(tagBase, sealed.tag);
+        sizes(associated.size(), sealed.text.size());
+        put(ASCON_NONCE, nonce);
+        bus_.write(ASCON_CONTROL, ASCON_CONTROL_DECRYPT_MASK);
+        EXPECT_EQ(finish(), ASCON_EVENT_DONE_MASK);
+        return bus_.read(ASCON_STATUS) & ASCON_STATUS_VALID_MASK;
+    }
+    AsconBytes random(size_t size) {
+        AsconBytes bytes(size);
+        for (auto& b : bytes)
+            b = static_cast<uint8_t>(random_.next());
+        return bytes;
+    }
+    AsconKey randomKey() {
+        AsconKey key;
+        for (auto& b : key)
+            b = static_cast<uint8_t>(random_.next());
+        return key;
+    }
+
+    Random random_{testSeed()};
+    Bench<VAscon> bench_;
+    BusMaster<VAscon> bus_{bench_};
+    NpiMemory<VAscon> memory_{bench_, 0.2, testSeed()};
+};
+
+TEST(AsconModel, GivesTheKnownAnswers) {
+    size_t count = 0;
+    for (auto& line : vectors("aead128.txt")) {
+        size_t associated, message;
+        std::string want;
+        line >> associated >> message >> want;
+        auto ad = counted(0x30, associated), text = counted(0x20, message);
+        auto sealed = asconEncrypt(sixteen(0), sixteen(0x10), ad, text);
+        ASSERT_EQ(hex(sealed.text) + hex(sealed.tag), want) << associated << ", " << message;
+        ASSERT_EQ(asconDecrypt(sixteen(0), sixteen(0x10), ad, sealed), text);
+        ++count;
+    }
+    EXPECT_EQ(count, 1089u);
+    count = 0;
+    for (auto& line : vectors("hash256.txt")) {
+        size_t size;
+        std::string want;
+        line >> size >> want;
+        ASSERT_EQ(hex(asconHash(counted(0, size))), want) << size;
+        ++count;
+    }
+    EXPECT_EQ(count, 1025u);
+}
+
+TEST_F(AsconTest, EncryptsAndDecryptsTheKnownAnswers) {
+    put(ASCON_KEY, sixteen(0));
+    for (auto& line : vectors("aead128.txt")) {
+        size_t associated, message;
+        std::string want;
+        line >> associated >> message >> want;
+        auto ad = counted(0x30, associated), text = counted(0x20, message);
+        auto sealed = encrypt(sixteen(0x10), ad, text);
+        ASSERT_EQ(hex(sealed.text) + hex(sealed.tag), want) << associated << ", " << message;
+        ASSERT_TRUE(decrypt(sixteen(0x10), ad, sealed));
+        ASSERT_EQ(bytesAt(target, message), text);
+    }
+}
+
+TEST_F(AsconTest, HashesTheKnownAnswers) {
+    for (auto& line : vectors("hash256.txt")) {
+        size_t size;
+        std::string want;
+        line >> size >> want;
+        load(source, counted(0, size));
+        sizes(0, size);
+        bus_.write(ASCON_CONTROL, ASCON_CONTROL_HASH_MASK);
+        ASSERT_EQ(finish(), ASCON_EVENT_DONE_MASK);
+        ASSERT_EQ(hex(bytesAt(target, ASCON_DIGEST_BYTES)), want) << size;
+    }
+}
+
+TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
+    for (int i = 0; i < 60; ++i) {
+        auto key = randomKey(), nonce = randomKey();
+        auto associated = random(random_.below(200)), message = random(random_.below(600));
+        if (i % 3 == 0)
+            put(ASCON_KEY, randomKey()); // the last four words count
+        put(ASCON_KEY, key);
+        auto sealed = encrypt(nonce, associated, message),
+             want = asconEncrypt(key, nonce, associated, message);
+        ASSERT_EQ(hex(sealed.text), hex(want.text)) << associated.size() << ", " << message.size();
+        ASSERT_EQ(hex(sealed.tag), hex(want.tag));
+        EXPECT_EQ(memory_.byte(tagBase + 16), 0) << "16 bytes, no more";
+        // Any one bit of what is protected makes it invalid, and nothing of the message is left.
+        auto forged = sealed;
+        auto forgedAd = associated;
+        uint8_t bit = static_cast<uint8_t>(1u << random_.below(8));
+        size_t place =
+            random_.below(static_cast<uint32_t>(16 + message.size() + associated.size()));
+        if (place < 16)
+            forged.tag[place] ^= bit;
+        else if (place < 16 + message.size())
+            forged.text[place - 16] ^= bit;
+        else
+            forgedAd[place - 16 - message.size()] ^= bit;
+        load(target, AsconBytes(message.size() + 8, 0x55));
+        ASSERT_FALSE(decrypt(nonce, forgedAd, forged)) << place;
+        ASSERT_EQ(bytesAt(target, message.size()), AsconBytes(message.size(), 0));
+        ASSERT_EQ(bytesAt(target + static_cast<uint32_t>(message.size()), 8), AsconBytes(8, 0x55))
+            << "not behind it";
+        ASSERT_TRUE(decrypt(nonce, associated, sealed));
+        ASSERT_EQ(bytesAt(target, message.size()), message);
+    }
+}
+
+TEST_F(AsconTest, WorksInPlace) {
+    auto key = randomKey(), nonce = randomKey();
+    auto message = random(777);
+    put(ASCON_KEY, key);
+    bus_.write(ASCON_TARGET, source);
+    encrypt(nonce, {}, message);
+    EXPECT_EQ(bytesAt(source, 777), asconEncrypt(key, nonce, {}, message).text);
+}
+
+TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
+    sizes(0, 4);
+    auto start = [&](uint32_t how) {
+        bus_.write(ASCON_CONTROL, how);
+        return finish();
+    };
+    EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_REFUSED_MASK);
+    put(ASCON_NONCE, sixteen(1));
+    EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_REFUSED_MASK) << "no key";
+    put(ASCON_KEY, sixteen(2));
+    EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_DONE_MASK);
+    EXPECT_EQ(start(ASCON_CONTROL_DECRYPT_MASK), ASCON_EVENT_REFUSED_MASK)
+        << "the nonce is used up";
+    for (int i = 0; i < 3; ++i)
+        bus_.write(ASCON_NONCE, 7);
+    EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_REFUSED_MASK)
+        << "three words of a nonce";
+    bus_.write(ASCON_NONCE, 7);
+    EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_DONE_MASK);
+    // A nonce that is begun, and dropped.
+    sizes(0, 5);
+    load(source, counted(9, 5));
+    bus_.write(ASCON_NONCE, 0x12345678);
+    EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_DONE_MASK);
+    auto digest = asconHash(counted(9, 5));
+    EXPECT_EQ(bytesAt(target, 32), AsconBytes(digest.begin(), digest.end()));
+    bus_.write(ASCON_NONCE, 0x12345678);
+    bus_.write(ASCON_CONTROL, ASCON_CONTROL_ABORT_MASK);
+    EXPECT_EQ(hex(encrypt(sixteen(1), {}, counted(9, 5)).text),
+              hex(asconEncrypt(sixteen(2), sixteen(1), {}, counted(9, 5)).text));
+    put(ASCON_NONCE, sixteen(1));
+    bus_.write(ASCON_CONTROL, ASCON_CONTROL_FORGET_MASK);
+    put(ASCON_NONCE, sixteen(1));
+    EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_REFUSED_MASK)
+        << "the key is forgotten";
+    EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_DONE_MASK) << "a digest needs neither";
+    for (unsigned word : {ASCON_AD_BASE, ASCON_SOURCE, ASCON_TARGET, ASCON_TAG}) {
+        bus_.write(word, 0x1008);
+        EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_REFUSED_MASK) << "word " << word;
+        bus_.write(word, 0x1000);
+    }
+    sizes(ASCON_MAX_SIZE + 1, 0);
+    EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_REFUSED_MASK);
+}
+
+TEST_F(AsconTest, AbortEndsAMessageAndLeavesNoPlaintext) {
+    auto key = randomKey(), nonce = randomKey();
+    auto message = random(3000);
+    put(ASCON_KEY, key);
+    auto sealed = encrypt(nonce, {}, message);
+    for (int clocks : {0, 20, 300, 1500, 1800}) {
+        load(source, sealed.text);
+        load(target, AsconBytes(3000, 0x55));
+        put(ASCON_NONCE, nonce);
+        bus_.write(ASCON_CONTROL, ASCON_CONTROL_DECRYPT_MASK);
+        for (int i = 0; i < clocks; ++i)
+            bench_.tick();
+        bus_.write(ASCON_CONTROL, ASCON_CONTROL_ABORT_MASK);
+        EXPECT_EQ(finish(5000), ASCON_EVENT_DONE_MASK);
+        EXPECT_EQ(bus_.read(ASCON_STATUS), ASCON_STATUS_ABORTED_MASK);
+        for (uint32_t i = 0; i < 3000; ++i)
+            ASSERT_TRUE(memory_.byte(target + i) == 0 || memory_.byte(target + i) == 0x55) << i;
+    }
+    ASSERT_TRUE(decrypt(nonce, {}, sealed)) << "the next is right";
+    EXPECT_EQ(bytesAt(target, 3000), message);
+}
+
+TEST_F(AsconTest, SpeedWhenTheMemoryKeepsUp) {
+    memory_.setStall(0);
+    put(ASCON_KEY, sixteen(0));
+    auto clocksOf = [&](uint32_t how, size_t size) {
+        sizes(0, size);
+        put(ASCON_NONCE, sixteen(1));
+        uint64_t before = bench_.cycles();
+        bus_.write(ASCON_CONTROL, how);
+        finish();
+        return bench_.cycles() - before;
+    };
+    double sealed = 2048.0 / static_cast<double>(clocksOf(ASCON_CONTROL_ENCRYPT_MASK, 4096) -
+                                                 clocksOf(ASCON_CONTROL_ENCRYPT_MASK, 2048));
+    double hashed = 2048.0 / static_cast<double>(clocksOf(ASCON_CONTROL_HASH_MASK, 4096) -
+                                                 clocksOf(ASCON_CONTROL_HASH_MASK, 2048));
+    std::printf("Ascon-AEAD128 %.3f bytes a clock, Ascon-Hash256 %.3f\n", sealed, hashed);
+    EXPECT_GE(sealed, 1.6); // 16 bytes: 8 rounds, a clock for each word
+    EXPECT_GE(hashed, 8.0 / 13 - 0.001);
+}
+
+TEST_F(AsconTest, IdentifiesItselfAndHidesItsKey) {
+    EXPECT_EQ(bus_.read(ASCON_ID), ASCON_ID_VALUE);
+    put(ASCON_KEY, sixteen(1));
+    for (unsigned word = 3; word < 16; ++word) {
+        auto answer = bus_.transfer(false, word, 0);
+        EXPECT_EQ(answer.error, word > ASCON_TAG) << word;
+        if (word <= ASCON_NONCE) {
+            EXPECT_EQ(answer.data, 0u) << word;
+        }
+    }
+}
+
+} // namespace

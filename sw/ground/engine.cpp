@@ -78,7 +78,8 @@ std::shared_ptr<Engine> Engine::get(const Settings& settings, const Log& log) {
 }
 
 Engine::Engine(const Settings& settings, const Log& log)
-    : settings_(settings), log_(log), link_(new Link) {
+    : settings_(settings), log_(log), link_(new Link),
+      pacer_(1e7 / (settings.baud == 115200 ? 111111 : settings.baud), LINK_MAX_FRAME) {
     serial_ = open(settings.device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (serial_ < 0)
         throw std::system_error(errno, std::generic_category(),
@@ -191,22 +192,12 @@ std::string Engine::statistics() const {
 
 // ---- link callbacks, in the engine's thread, mutex held ----
 
-// The modem sends a packet off at 100 bytes or after a silence of three characters (RO). So a
-// shorter frame is followed by a silence: else the packets would cut all later frames in two, and
-// each loss would cost two.
 int Engine::onTransmit(void* context, const U8* frame, U32 size) {
     Engine& e = self(context);
     U32 now = nowUs();
-    if (e.serialOut_.size() > 2 * LINK_MAX_FRAME || static_cast<S32>(now - e.quietUntil_) < 0)
+    if (!e.serialOut_.empty() || !e.pacer_.offer(frame, size, now))
         return 1;
-    U32 characterUs =
-        10'000'000u / static_cast<U32>(e.settings_.baud == 115200 ? 111111 : e.settings_.baud);
-    if (static_cast<S32>(now - e.lineFree_) > 0)
-        e.lineFree_ = now;
-    e.lineFree_ += size * characterUs;
-    e.quietUntil_ = size < LINK_MAX_FRAME ? e.lineFree_ + 4 * characterUs : now;
-    e.serialOut_.insert(e.serialOut_.end(), frame, frame + size);
-    e.writeSerial();
+    e.writeSerial(now);
     return 0;
 }
 
@@ -310,7 +301,7 @@ void Engine::run() {
     if (!ready && !stop_)
         fail("the modem on '" + settings_.device + "' is given up");
     patienceUs_ = static_cast<U32>(settings_.downMs) * 1000;
-    lineFree_ = quietUntil_ = nowUs();
+    pacer_.clear(nowUs());
     if (!stop_ && !failed_)
         Link_start(link_.get(), nowUs());
     while (!stop_ && !failed_) {
@@ -323,6 +314,7 @@ void Engine::run() {
         ready = prepareModem();
         lock.lock();
         serialOut_.clear();
+        pacer_.clear(nowUs());
         patienceUs_ = std::min(patienceUs_ * 2, static_cast<U32>(settings_.downMs) * 4000);
     }
 }
@@ -345,7 +337,9 @@ void Engine::readSerial(U32 now) {
              "': " + (count == 0 ? "closed" : std::strerror(errno)));
 }
 
-void Engine::writeSerial() {
+void Engine::writeSerial(U32 now) {
+    if (serialOut_.empty())
+        serialOut_ = pacer_.due(now);
     if (serialOut_.empty())
         return;
     ssize_t count = write(serial_, serialOut_.data(), serialOut_.size());
@@ -460,7 +454,7 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
             return;
         openWanted(now);
         Link_poll(link_.get(), now);
-        U32 deadline = std::min(Link_deadline(link_.get(), now), beat(now));
+        U32 deadline = std::min({Link_deadline(link_.get(), now), beat(now), pacer_.deadline(now)});
         std::vector<pollfd> fds = {
             {serial_, static_cast<short>(serialOut_.empty() ? POLLIN : POLLIN | POLLOUT), 0},
             {wakePipe_[0], POLLIN, 0}};
@@ -481,7 +475,7 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
         }
         if (fds[0].revents & (POLLIN | POLLERR | POLLHUP))
             readSerial(now);
-        writeSerial();
+        writeSerial(now);
         for (int channel = 0; channel < LINK_CHANNELS; ++channel) {
             pollfd& p = fds[2 + static_cast<size_t>(channel)];
             if (p.fd < 0 || p.fd != channels_[channel].fd)
@@ -495,7 +489,7 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
     }
     if (!failed_) {
         Link_stop(link_.get(), nowUs());
-        writeSerial();
+        writeSerial(nowUs());
     }
 }
 

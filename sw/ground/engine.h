@@ -7,6 +7,8 @@
 #ifndef GROUND_ENGINE_H
 #define GROUND_ENGINE_H
 
+#include "frame_pacer.h"
+
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -89,7 +91,7 @@ private:
     void fail(const std::string& text);
     bool waitMs(int ms); // false: the engine is to stop
     void readSerial(U32 now);
-    void writeSerial();
+    void writeSerial(U32 now);
     void readProgram(int channel, U32 now);
     bool sendMessages(int channel, U32 now);
     void writeProgram(int channel);
@@ -116,9 +118,9 @@ private:
     int nextChannel_ = 0;
     Channel channels_[LINK_CHANNELS];
     std::unique_ptr<Link> link_;
-    std::vector<U8> serialOut_;
-    U32 lineFree_ = 0, quietUntil_ = 0; // when the serial line has sent all; when it may send again
-    U32 upAt_ = 0, patienceUs_ = 0;     // when the link was up last; how long it may be down
+    std::vector<U8> serialOut_; // of a frame, not yet taken by the port
+    FramePacer pacer_;
+    U32 upAt_ = 0, patienceUs_ = 0; // when the link was up last; how long it may be down
     mutable std::mutex mutex_;
     std::thread thread_;
 };

@@ -313,7 +313,8 @@ void Link_pollSend(Link* link) {
         answerClosings(link);
     if (link->sendBase != link->sendNext && !LINK_BEFORE(link->now, link->timerAt)) {
         sendAgain(link, link->order + 1U);
-        link->timeout *= 2U;
+        /* Loss here is the radio's, no congestion: doubling would only prolong a bad tail. */
+        link->timeout += link->timeout / 4U;
         if (link->timeout > LINK_RTO_MAX)
             link->timeout = LINK_RTO_MAX;
         link->timerAt = link->now + link->timeout;

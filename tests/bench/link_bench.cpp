@@ -2,8 +2,9 @@
 //
 // link_bench: the radio link's figures in simulated time: link layer and driver in the firmware's
 // kernel, FSMC, RTL, UART, modems, air; on the ground the same link layer behind a serial line at
-// 111,111 baud. Beside each the physical limit (docs/link.md). Usage: link-bench OUTPUT.json
+// 111,111 baud. Beside each the physical limit (docs/link.md). Usage: link-bench OUTPUT.json [PART]
 
+#include "frame_pacer.h"
 #include "rf_channel.h"
 #include "timed_line.h"
 #include "uav_machine.h"
@@ -26,8 +27,8 @@ constexpr double serialBytesPerSecond = 1e6 / 90; // 111,111 baud
 // One end's link: counts what arrives, and may echo it in another size.
 class End {
 public:
-    explicit End(std::function<int(const U8*, U32)> send, uint32_t seed)
-        : send_(std::move(send)), random_(seed) {
+    End(std::function<int(const U8*, U32)> send, std::function<uint64_t()> clock, uint32_t seed)
+        : send_(std::move(send)), clock_(std::move(clock)), random_(seed) {
         static const Link_Port port = {
             [](void* c, const U8* f, U32 n) { return self(c).send_(f, n); },
             [](void* c) { return self(c).random_.next(); },
@@ -42,13 +43,14 @@ public:
     const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
     bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
     U32 echoSize = 0, messages = 0;
-    uint64_t bytes = 0;
+    uint64_t bytes = 0, lastAt = 0; // lastAt: ns, when the program got the last message
 
 private:
     static End& self(void* c) { return *static_cast<End*>(c); }
     int onMessage(int channel, U32 size) {
         ++messages;
         bytes += size;
+        lastAt = clock_();
         static const U8 answer[LINK_MAX_PAYLOAD] = {1};
         if (echoSize)
             Link_send(link(), channel, answer, echoSize, 0, 0);
@@ -56,6 +58,7 @@ private:
     }
     std::unique_ptr<Link> link_{new Link};
     std::function<int(const U8*, U32)> send_;
+    std::function<uint64_t()> clock_;
     Random random_;
 };
 
@@ -65,6 +68,7 @@ public:
         air_.weather.loss = loss;
         soc_.onTime([this](uint64_t now) {
             ground_.advance(now);
+            write(now);
             if (now >= nextPoll_ || !line_.received.empty()) {
                 // As the engine: awake when bytes come or time is due.
                 U32 us = static_cast<U32>(now / 1000);
@@ -75,7 +79,7 @@ public:
                 nextPoll_ =
                     now + std::min<uint64_t>(Link_deadline(far.link(), us), 1000) * 1000 + 100'000;
             }
-            return std::min(ground_.nextEvent(), nextPoll_);
+            return std::min({ground_.nextEvent(), nextPoll_, nextWrite_});
         });
         soc_.reset();
     }
@@ -136,6 +140,13 @@ public:
     double setUpMs = 0;
 
 private:
+    void write(uint64_t now) {
+        U32 us = static_cast<U32>(now / 1000);
+        std::vector<U8> frame = pacer_.due(us);
+        line_.send(frame.data(), frame.size(), now);
+        U32 wait = pacer_.deadline(us);
+        nextWrite_ = wait == 0xFFFFFFFFu ? never : now + wait * 1000ull;
+    }
     static XBee::Options modem(unsigned guardMs, std::map<std::string, uint32_t> more) {
         XBee::Options options;
         options.set = {{"GT", guardMs}};
@@ -150,20 +161,21 @@ private:
     SocModel soc_{air_, modem(guardMs_, {})};
     bool irqOn_ = false;
     OS_EVENT* work_ = nullptr;
-    uint64_t nextPoll_ = 0, lineFree_ = 0, quietUntil_ = 0;
+    uint64_t nextPoll_ = 0, nextWrite_ = never;
+    XBeeAT::FramePacer pacer_{90, LINK_MAX_FRAME};
 
 public:
-    End near{[](const U8* f, U32 n) { return Radio_transmit(nullptr, f, n); }, 11};
-    // As the engine: a frame shorter than a packet is followed by a silence (RO).
+    End near{[](const U8* f, U32 n) { return Radio_transmit(nullptr, f, n); },
+             [this] { return soc_.now(); }, 11};
+    // As the engine on the ground.
     End far{[this](const U8* f, U32 n) {
-                if (line_.waiting() > LINK_MAX_FRAME || soc_.now() < quietUntil_)
+                U32 us = static_cast<U32>(soc_.now() / 1000);
+                if (!pacer_.offer(f, n, us))
                     return 1;
-                lineFree_ = std::max(lineFree_, soc_.now()) + n * 90'000;
-                quietUntil_ = n < LINK_MAX_FRAME ? lineFree_ + 4 * 90'000 : 0;
-                line_.send(f, n, soc_.now());
+                write(soc_.now());
                 return 0;
             },
-            12};
+            [this] { return soc_.now(); }, 12};
 };
 
 nlohmann::json entries = nlohmann::json::array();
@@ -195,7 +207,8 @@ void goodput(double loss, double target, bool down) {
                 return to.messages >= count;
             },
             300);
-        double rate = static_cast<double>(to.bytes) / (static_cast<double>(w.now() - start) / 1e9);
+        double rate =
+            static_cast<double>(to.bytes) / (static_cast<double>(to.lastAt - start) / 1e9);
         std::printf("goodput %s, %4.0f %% lost: %7.0f bytes/s, %.1f %% of %.0f (target %.0f %%), "
                     "%u fragments sent "
                     "again\n",
@@ -227,7 +240,7 @@ void roundTrips() {
                 uint64_t start = w.now();
                 Link_send(w.near.link(), 0, message.data(), out, 0, w.us());
                 w.until([&] { return w.near.messages > before; }, 5);
-                times.push_back(static_cast<double>(w.now() - start) / 1e6);
+                times.push_back(static_cast<double>(w.near.lastAt - start) / 1e6);
                 uint64_t rest = w.now() + 60'000'000 + static_cast<uint64_t>(i) * 330'000;
                 w.until([&] { return w.now() >= rest; }, 5);
             }
@@ -290,8 +303,9 @@ void copies() {
 
 void hostTime() {
     std::deque<std::vector<U8>> wire[2];
-    End a([&](const U8* f, U32 n) { return wire[0].emplace_back(f, f + n), 0; }, 1);
-    End b([&](const U8* f, U32 n) { return wire[1].emplace_back(f, f + n), 0; }, 2);
+    auto clock = [] { return uint64_t(0); };
+    End a([&](const U8* f, U32 n) { return wire[0].emplace_back(f, f + n), 0; }, clock, 1);
+    End b([&](const U8* f, U32 n) { return wire[1].emplace_back(f, f + n), 0; }, clock, 2);
     U32 now = 0;
     auto pass = [&] {
         now += 10000;
@@ -321,25 +335,45 @@ void hostTime() {
     entry("link layer on the host, both ends", ns / (2000 * 945.0), "ns/byte");
 }
 
+// What a part of the name measures.
+struct Part {
+    const char* name;
+    std::function<void()> run;
+};
+
+void allGoodput() {
+    const double targets[][2] = {{0, 0.93}, {0.01, 0.92}, {0.1, 0.82}, {0.3, 0.60}};
+    for (bool down : {true, false})
+        for (auto [loss, target] : targets)
+            goodput(loss, target, down);
+}
+
+const Part parts[] = {{"set-up", [] { setUp(1000), setUp(20); }},
+                      {"goodput", allGoodput},
+                      {"round-trips", roundTrips},
+                      {"copies", copies},
+                      {"host", hostTime}};
+
 } // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 2 || std::string(argv[1]) == "--help") {
-        std::fprintf(stderr, "usage: link-bench OUTPUT.json   measures the radio link through the "
-                             "RTL, in simulated time\n");
-        return argc == 2 ? 0 : 2;
+    const std::string only = argc == 3 ? argv[2] : "";
+    bool known = only.empty();
+    for (const Part& part : parts)
+        known = known || only == part.name;
+    if (argc < 2 || argc > 3 || std::string(argv[1]) == "--help" || !known) {
+        std::fprintf(stderr,
+                     "usage: link-bench OUTPUT.json [PART]   measures the radio link through the "
+                     "RTL, in simulated time\nPART, without it all:");
+        for (const Part& part : parts)
+            std::fprintf(stderr, " %s", part.name);
+        std::fprintf(stderr, "\n");
+        return argc > 1 && std::string(argv[1]) == "--help" ? 0 : 2;
     }
     try {
-        setUp(1000);
-        setUp(20);
-        const double targets[][2] = {{0, 0.93}, {0.01, 0.92}, {0.1, 0.82}, {0.3, 0.60}};
-        for (auto [loss, target] : targets)
-            goodput(loss, target, true);
-        for (auto [loss, target] : targets)
-            goodput(loss, target, false);
-        roundTrips();
-        copies();
-        hostTime();
+        for (const Part& part : parts)
+            if (only.empty() || only == part.name)
+                part.run();
         std::filesystem::create_directories(std::filesystem::absolute(argv[1]).parent_path());
         std::ofstream file(argv[1]);
         file << entries.dump(1) << "\n";

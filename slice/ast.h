@@ -93,8 +93,9 @@ struct Declaration {
     Type key, element;                     // Dictionary; Sequence: element; Constant: its type
     Literal value;                         // Constant
     std::vector<const Declaration*> bases; // Interface: any; Class, Exception: at most one
-    std::vector<Operation> operations;     // Interface: own ones
-    int compactId = -1;                    // Class; -1: none
+    std::vector<const Declaration*> implemented; // Class: interfaces, for the rules of names only
+    std::vector<Operation> operations;           // Interface: own ones; Class: not generated
+    int compactId = -1;                          // Class; -1: none
 
     // Of all values of a type; set when its definition is complete, since types may be deep.
     struct Facts {

@@ -136,8 +136,7 @@ private:
         isHex = peek() == '0' && (peek(1) == 'x' || peek(1) == 'X');
         while (isLetter(peek()) || isDigit(peek()) || peek() == '.') {
             bool exponent = !isHex && (peek() == 'e' || peek() == 'E');
-            isFloat = isFloat || peek() == '.' || exponent ||
-                      (!isHex && (peek() == 'f' || peek() == 'F'));
+            isFloat = isFloat || peek() == '.' || exponent;
             advance();
             if (exponent && (peek() == '+' || peek() == '-'))
                 advance();

@@ -5,6 +5,7 @@
 #include "parser_private.h"
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 const char* kindName(Declaration::Kind kind) {
     static const char* const names[] = {"enum",      "struct", "sequence",  "dictionary",
@@ -139,6 +140,25 @@ Parser::Metadata Parser::metadata() {
     return found;
 }
 
+// suppress-warning, suppress-warning:a, suppress-warning:a,b
+void Parser::suppressWarnings(const std::string& metadata, std::string_view file) {
+    static const std::string directive = "suppress-warning";
+    if (metadata == directive)
+        return diagnostics_.suppress(file, Diagnostics::General);
+    if (metadata.compare(0, directive.size() + 1, directive + ":") != 0)
+        return;
+    std::istringstream list(metadata.substr(directive.size() + 1));
+    for (std::string item; std::getline(list >> std::ws, item, ',');) {
+        item.erase(item.find_last_not_of(" \t") + 1);
+        if (item == "all")
+            diagnostics_.suppress(file, Diagnostics::General);
+        else if (item == "deprecated")
+            diagnostics_.suppress(file, Diagnostics::Deprecated);
+        else if (item == "invalid-metadata")
+            diagnostics_.suppress(file, Diagnostics::Metadata);
+    }
+}
+
 void Parser::fileMetadata() {
     Location begin = token().at;
     ++position_;
@@ -153,12 +173,7 @@ void Parser::fileMetadata() {
     if (begun_.count(begin.file))
         error(begin, "metadata of the file must come before its first definition");
     for (const std::string& m : found) {
-        if (m == "suppress-warning" || m == "suppress-warning:all")
-            diagnostics_.suppress(begin.file, Diagnostics::General);
-        else if (m == "suppress-warning:deprecated")
-            diagnostics_.suppress(begin.file, Diagnostics::Deprecated);
-        else if (m == "suppress-warning:invalid-metadata")
-            diagnostics_.suppress(begin.file, Diagnostics::Metadata);
+        suppressWarnings(m, begin.file);
         if (!isMain(begin.file))
             continue;
         rules_.underscore |= m == "underscore";

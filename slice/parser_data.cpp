@@ -13,6 +13,14 @@ void Parser::enumeration() {
         Enumerator e;
         e.doc = doc();
         e.at = token().at;
+        if (at(Token::Kind::Identifier) && !token().escaped && isKeyword(token().text)) {
+            std::string word(token().text);
+            error(e.at, "'" + word + "' is a keyword; as an enumerator, write '\\" + word + "'");
+            ++position_;
+            if (!accept(","))
+                break;
+            continue;
+        }
         e.name = name("an enumerator");
         if (accept("="))
             next = number("an enumerator's value", 0);
@@ -87,8 +95,9 @@ void Parser::classDefinition() {
         diagnostics_.warning(token().at, "classes implementing interfaces are deprecated",
                              Diagnostics::Deprecated);
         ++position_;
-        (void)baseList(d, Declaration::Kind::Interface, true);
+        d.implemented = baseList(d, Declaration::Kind::Interface, true);
     }
+    checkBases(d);
     braces(d, [&] { member(d, true); });
 }
 
@@ -139,8 +148,8 @@ void Parser::member(Declaration& d, bool mayBeOptional) {
 
 void Parser::checkMember(const Declaration& d, const Field& f) {
     std::string called = lowerCase(f.name);
-    if (called == lowerCase(d.name))
-        error(f.at, "member '" + f.name + "' must differ from the name of its " + kindName(d.kind));
+    if (d.kind == Declaration::Kind::Class)
+        checkMemberOfClass(d, f);
     for (const Declaration* from = &d; from; from = from->base())
         for (const Field& other : from->fields) {
             if (other.name == f.name)

@@ -32,7 +32,7 @@ std::vector<const Declaration*> Parser::baseList(const Declaration& d, Declarati
         } else if (std::find(bases.begin(), bases.end(), base) == bases.end()) {
             if (base->isLocal && !d.isLocal)
                 error(begin, "'" + d.name + "' is not local, but '" + written + "' is");
-            if (!base->isLocal && d.isLocal && wanted == Declaration::Kind::Interface)
+            if (!base->isLocal && d.isLocal && wanted != Declaration::Kind::Exception)
                 error(begin, "'" + d.name + "' is local, but '" + written + "' is not");
             bases.push_back(base);
         }
@@ -50,11 +50,13 @@ void collect(const Declaration& d, std::set<const Declaration*>& seen,
         return;
     for (const Declaration* base : d.bases)
         collect(*base, seen, list);
+    for (const Declaration* base : d.implemented)
+        collect(*base, seen, list);
     for (const Operation& o : d.operations)
         list.push_back({&o, &d});
 }
 
-// The interface's own and those it inherits, each once.
+// An interface's or a class's own and those it inherits, each once.
 std::vector<OwnedOperation> allOperations(const Declaration& d) {
     std::set<const Declaration*> seen;
     std::vector<OwnedOperation> list;
@@ -85,6 +87,9 @@ void Parser::interface() {
         d.bases = baseList(d, Declaration::Kind::Interface, true);
     checkBases(d);
     braces(d, [&] { operation(d); });
+    if (d.hasMetadata("delegate") && (!d.isLocal || allOperations(d).size() != 1))
+        diagnostics_.warning(d.at, "[\"delegate\"] is for local interfaces of one operation",
+                             Diagnostics::Metadata);
 }
 
 void Parser::operation(Declaration& d) {
@@ -129,6 +134,20 @@ void Parser::checkOperation(const Declaration& d, const Operation& o) {
             error(o.at,
                   "operation '" + o.name + "' differs in capitals only from '" + other->name + "'");
     }
+    for (const Declaration* from = &d; from && d.kind == Declaration::Kind::Class;
+         from = from->base())
+        for (const Field& f : from->fields)
+            if (lowerCase(f.name) == called)
+                error(o.at,
+                      "operation '" + o.name + "' has the name of a member, '" + f.name + "'");
+}
+
+// A class's member must not have the name of an operation.
+void Parser::checkMemberOfClass(const Declaration& d, const Field& f) {
+    for (const auto& [operation, from] : allOperations(d))
+        if (lowerCase(operation->name) == lowerCase(f.name))
+            error(f.at, "member '" + f.name + "' has the name of an operation, '" +
+                            operation->name + "' of '" + from->id() + "'");
 }
 
 void Parser::parameters(Operation& o, const Declaration& owner) {

@@ -58,6 +58,7 @@ private:
     bool isMain(std::string_view file);
     Metadata metadata();
     void fileMetadata();
+    void suppressWarnings(const std::string& metadata, std::string_view file);
 
     // ---- definitions (parser.cpp, parser_data.cpp, parser_interface.cpp)
     void definition();
@@ -77,6 +78,7 @@ private:
     // ---- their parts
     void member(Declaration& d, bool mayBeOptional);
     void checkMember(const Declaration& d, const Field& f);
+    void checkMemberOfClass(const Declaration& d, const Field& f);
     void operation(Declaration& d);
     void parameters(Operation& o, const Declaration& owner);
     void throwsClause(Operation& o, const Declaration& owner);

@@ -38,5 +38,31 @@ for file in case*.ice; do
         failures=$((failures + 1))
     }
 done
-echo "$(ls case*.ice | wc -l) cases, $failures on which the compilers differ"
+# Each keyword of Slice as a name of each kind, with and without the backslash: of a file with a definition a line both
+# refuse the same lines.
+keywords='module class interface exception struct sequence dictionary enum out extends implements throws void byte bool short
+int long float double string Object LocalObject local const false true idempotent optional Value'
+lines() { # compiler, file
+    "$1" "$2" --output-dir out 2>&1 | sed -n 's/^[^:]*\.ice:\([0-9]*\):.*/\1/p' | sort -nu
+}
+number=0
+for form in 'struct % { int a; };' 'struct S# { int %; };' 'enum % { x# };' 'enum E# { % };' 'interface % { };' \
+    'interface I# { void %(); };' 'interface I# { void op(int %); };' 'const int % = 1;' 'exception % { };' 'class % { };' \
+    'sequence<int> %;' 'dictionary<int, int> %;' 'module % { };'; do
+    number=$((number + 1))
+    for kind in plain escaped; do
+        file=keyword$number$kind.ice line=0
+        for word in $keywords; do
+            [ $kind = plain ] || word="\\\\$word"
+            line=$((line + 1))
+            echo "module A$line { $form };" | sed "s/%/$word/; s/#/$line/"
+        done >"$file"
+        lines "$slice2c" "$file" >ours
+        lines slice2cpp "$file" >theirs
+        [ $kind = plain ] || [ ! -s theirs ] || { echo "$file: slice2cpp refuses escaped names" && failures=$((failures + 1)); }
+        [ $kind = escaped ] || [ "$(wc -l <theirs)" = $line ] || { echo "$file: slice2cpp takes some" && failures=$((failures + 1)); }
+        cmp -s ours theirs || { echo "$file: the compilers refuse different lines:" && diff theirs ours; failures=$((failures + 1)); }
+    done
+done
+echo "$(ls case*.ice | wc -l) cases and $((number * 2)) files of keywords, $failures on which the compilers differ"
 [ $failures = 0 ]

@@ -42,8 +42,8 @@ compile) # every file of a folder compiles without a message, and its C without 
     find "$work/out" -name '*_types.c' | while read -r types; do
         for part in types client async server; do echo "#include \"${types%_types.c}_$part.c\""; done >"${types%_types.c}_whole.c"
     done
-    for cc in gcc clang; do
-        command -v $cc >/dev/null || continue
+    for cc in gcc clang 'arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb'; do
+        command -v ${cc%% *} >/dev/null || continue
         find "$work/out" -name '*_whole.c' -exec $cc $flags -I"$sw/base" -I"$sw/icec" -I"$work/out" -fsyntax-only {} +
     done
     wc -l <"$work/list"

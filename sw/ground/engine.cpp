@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
@@ -30,12 +29,6 @@ std::mutex registryMutex;
 std::map<std::string, std::weak_ptr<Engine>>& registry() {
     static std::map<std::string, std::weak_ptr<Engine>> engines;
     return engines;
-}
-
-U32 nowUs() {
-    using namespace std::chrono;
-    return static_cast<U32>(
-        duration_cast<microseconds>(steady_clock::now().time_since_epoch()).count());
 }
 
 void makePipe(int pipeEnds[2]) {
@@ -194,7 +187,7 @@ std::string Engine::statistics() const {
 
 int Engine::onTransmit(void* context, const U8* frame, U32 size) {
     Engine& e = self(context);
-    U32 now = nowUs();
+    U32 now = e.clock_.nowUs();
     if (!e.serialOut_.empty() || !e.pacer_.offer(frame, size, now))
         return 1;
     e.writeSerial(now);
@@ -213,7 +206,7 @@ int Engine::onMessage(void* context, int channel, const U8* data, U32 size) {
     if (!c.in.empty())
         return 1; // the program is slow: the link holds the rest back
     c.in.assign(data, data + size);
-    c.heardAt = nowUs();
+    c.heardAt = self(context).clock_.nowUs();
     if (size > typeAt && data[typeAt] == reply && c.pending)
         --c.pending;
     self(context).writeProgram(channel);
@@ -231,7 +224,7 @@ void Engine::onChannel(void* context, int channel, int isOpen) {
     int programEnd = -1;
     if (channel < ownChannels || !e.listening_) {
         e.log_(1, "the peer opened channel " + std::to_string(channel) + ", and nobody listens");
-        Link_closeChannel(e.link_.get(), channel, nowUs());
+        Link_closeChannel(e.link_.get(), channel, e.clock_.nowUs());
         return;
     }
     e.closeChannel(channel);
@@ -301,11 +294,11 @@ void Engine::run() {
     if (!ready && !stop_)
         fail("the modem on '" + settings_.device + "' is given up");
     patienceUs_ = static_cast<U32>(settings_.downMs) * 1000;
-    pacer_.clear(nowUs());
+    pacer_.clear(clock_.nowUs());
     if (!stop_ && !failed_)
-        Link_start(link_.get(), nowUs());
+        Link_start(link_.get(), clock_.nowUs());
     while (!stop_ && !failed_) {
-        upAt_ = nowUs();
+        upAt_ = clock_.nowUs();
         loop(lock);
         if (stop_ || failed_)
             break;
@@ -314,7 +307,7 @@ void Engine::run() {
         ready = prepareModem();
         lock.lock();
         serialOut_.clear();
-        pacer_.clear(nowUs());
+        pacer_.clear(clock_.nowUs());
         patienceUs_ = std::min(patienceUs_ * 2, static_cast<U32>(settings_.downMs) * 4000);
     }
 }
@@ -402,7 +395,7 @@ void Engine::noteSent(Channel& c) {
     bool wantsReply = c.out[typeAt] == request && c.out.size() >= idAt + 4 &&
                       (c.out[idAt] | c.out[idAt + 1] | c.out[idAt + 2] | c.out[idAt + 3]);
     if (wantsReply && c.pending++ == 0)
-        c.heardAt = nowUs();
+        c.heardAt = clock_.nowUs();
 }
 
 // While a program waits for an answer and the peer is there, the program gets heartbeats from here:
@@ -449,7 +442,7 @@ void Engine::openWanted(U32 now) {
 // Returns when the engine is to stop, has failed, or the link has been down for too long.
 void Engine::loop(std::unique_lock<std::mutex>& lock) {
     while (!stop_ && !failed_) {
-        U32 now = nowUs();
+        U32 now = clock_.nowUs();
         if (downTooLong(now))
             return;
         openWanted(now);
@@ -464,11 +457,9 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
             fds.push_back({c.wanted ? -1 : c.fd, events, 0});
         }
         lock.unlock();
-        timespec timeout{static_cast<time_t>(deadline / 1000000),
-                         static_cast<long>(deadline % 1000000 * 1000)};
-        ppoll(fds.data(), fds.size(), deadline == 0xFFFFFFFFu ? nullptr : &timeout, nullptr);
+        clock_.wait(fds.data(), fds.size(), deadline);
         lock.lock();
-        now = nowUs();
+        now = clock_.nowUs();
         if (fds[1].revents) {
             char bytes[64];
             (void)!read(wakePipe_[0], bytes, sizeof bytes);
@@ -488,8 +479,8 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
         }
     }
     if (!failed_) {
-        Link_stop(link_.get(), nowUs());
-        writeSerial(nowUs());
+        Link_stop(link_.get(), clock_.nowUs());
+        writeSerial(clock_.nowUs());
     }
 }
 

@@ -7,6 +7,7 @@
 #ifndef GROUND_ENGINE_H
 #define GROUND_ENGINE_H
 
+#include "clock.h"
 #include "frame_pacer.h"
 
 #include <condition_variable>
@@ -112,6 +113,7 @@ private:
 
     Settings settings_;
     Log log_;
+    Clock clock_;
     int serial_ = -1, wakePipe_[2] = {-1, -1}, acceptPipe_[2] = {-1, -1};
     bool stop_ = false, listening_ = false, failed_ = false;
     std::deque<int> accepted_;

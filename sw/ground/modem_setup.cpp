@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <asm/termbits.h> // struct termios2: any rate, 111,111 too
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
 #include <poll.h>
 #include <sys/ioctl.h>
@@ -51,22 +50,23 @@ void Engine::setSpeed(int baud) {
 }
 
 bool Engine::waitMs(int ms) {
-    pollfd wakeup{wakePipe_[0], POLLIN, 0};
-    auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(ms);
+    // A port that is gone ends the wait, too: where its simulator has ended, time stands still.
+    pollfd fds[] = {{wakePipe_[0], POLLIN, 0}, {serial_, 0, 0}};
+    const U32 begin = clock_.nowUs(), us = static_cast<U32>(ms) * 1000;
     for (;;) {
         {
             std::lock_guard<std::mutex> lock(mutex_);
             if (stop_)
                 return false;
         }
-        auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-                        end - std::chrono::steady_clock::now())
-                        .count();
-        if (left <= 0)
+        U32 passed = clock_.nowUs() - begin;
+        if (passed >= us)
             return true;
         char bytes[64];
-        if (poll(&wakeup, 1, static_cast<int>(left)) > 0)
+        if (clock_.wait(fds, 2, us - passed) > 0 && fds[0].revents)
             (void)!read(wakePipe_[0], bytes, sizeof bytes);
+        if (fds[1].revents)
+            return false;
     }
 }
 

@@ -11,7 +11,7 @@ for run in 1 2 3; do
     speed=$("$sim" --image /usr/share/xplanet/images/earth.jpg --speed max --duration 5 --out "$work" |
         sed -n 's/.* \([0-9.]*\) million clocks.*/\1/p')
     echo "run $run: $speed million clocks/s"
-    best=$(echo "$best $speed" | awk '{print $1 > $2 ? $1 : $2}')
+    best=$(echo "$best $speed" | awk '{print ($1 > $2) ? $1 : $2}')
 done
 mkdir -p "$(dirname "$json")"
 echo "[{\"name\": \"simulator speed\", \"value\": $best, \"unit\": \"million clocks/s\", \"limit\": 1.5, \"share\": $(echo "$best" | awk '{print $1 / 1.5}'), \"command\": \"make bench\"}]" >"$json"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// icesoc-sim: the simulated UAV with its modem, the air, and the ground's modem on a pty; and, as its
-// child, the program that uses that pty.
+// icesoc-sim: the simulated UAV with its modem, the air, and the ground's modem on a pty; and, as
+// its child, the program that uses that pty.
 
-#include "camera.h"
 #include "app.h"
+#include "camera.h"
 #include "m3_machine.h"
 #include "mark_file.h"
 #include "soc_model.h"
@@ -16,12 +16,14 @@ extern "C" {
 }
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 #include <sys/mman.h>
@@ -35,9 +37,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 volatile sig_atomic_t stopSignal = 0;
+constexpr uint64_t clockStepNs = 100'000; // of the time that other programs read
 
 struct Options {
-    std::string image, size = "320x240", out = ".", speed = "real", cpu = "host", firmware = FIRMWARE_ELF;
+    std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
+                       firmware = FIRMWARE_ELF;
     uint32_t hclk = 120'000'000;
     int gdb = -1;
     std::string marks;
@@ -72,7 +76,8 @@ private:
 
 void loadCamera(SocModel& soc, const Frame& frame) {
     uint8_t* memory = soc.memory().data();
-    const uint32_t size[2] = {static_cast<uint32_t>(frame.width), static_cast<uint32_t>(frame.height)};
+    const uint32_t size[2] = {static_cast<uint32_t>(frame.width),
+                              static_cast<uint32_t>(frame.height)};
     std::memcpy(memory + UAV_FRAME_HEADER, size, sizeof size);
     std::memcpy(memory + UAV_FRAME, frame.pixels.data(), frame.pixels.size());
 }
@@ -91,7 +96,8 @@ public:
         pid_ = fork();
         if (pid_ == 0) {
             execvp(argv[0], argv.data());
-            std::fprintf(stderr, "icesoc-sim: cannot start '%s': %s\n", argv[0], std::strerror(errno));
+            std::fprintf(stderr, "icesoc-sim: cannot start '%s': %s\n", argv[0],
+                         std::strerror(errno));
             _exit(127);
         }
     }
@@ -127,11 +133,13 @@ private:
 // Keeps simulated time from running ahead of the wall clock, and counts the time it really worked.
 class Pace {
 public:
-    Pace(bool real) : real_(real), anchor_(Clock::now()), begin_(anchor_) {}
+    // `rate`: simulated seconds in one of the wall clock; 0: as many as there may be.
+    explicit Pace(double rate) : rate_(rate), anchor_(Clock::now()), begin_(anchor_) {}
     void keep(uint64_t simulatedNs) {
-        if (!real_)
+        if (rate_ == 0)
             return;
-        auto due = anchor_ + std::chrono::nanoseconds(simulatedNs - anchorNs_);
+        auto due = anchor_ + std::chrono::nanoseconds(static_cast<int64_t>(
+                                 static_cast<double>(simulatedNs - anchorNs_) / rate_));
         auto now = Clock::now();
         if (due > now) {
             std::this_thread::sleep_until(due);
@@ -141,10 +149,12 @@ public:
             anchorNs_ = simulatedNs;
         }
     }
-    uint64_t workedNs() const { return static_cast<uint64_t>((Clock::now() - begin_ - slept_).count()); }
+    uint64_t workedNs() const {
+        return static_cast<uint64_t>((Clock::now() - begin_ - slept_).count());
+    }
 
 private:
-    bool real_;
+    double rate_;
     Clock::time_point anchor_, begin_;
     uint64_t anchorNs_ = 0;
     Clock::duration slept_{};
@@ -155,11 +165,13 @@ void report(M3Machine& machine) {
     CortexM3& cpu = machine.cpu();
     const Stm32F2::Resets& resets = machine.stm32().resets();
     double cycles = static_cast<double>(cpu.cycles());
-    std::printf("icesoc-sim: Cortex-M3: %llu instructions; asleep %.1f %% of the time, %.2f %% in bus accesses; "
+    std::printf("icesoc-sim: Cortex-M3: %llu instructions; asleep %.1f %% of the time, %.2f %% in "
+                "bus accesses; "
                 "resets: %u software, %u watchdog\n",
                 static_cast<unsigned long long>(cpu.instructions()),
                 100 * static_cast<double>(cpu.sleepingCycles()) / cycles,
-                100 * static_cast<double>(cpu.busCycles()) / cycles, resets.software, resets.watchdog);
+                100 * static_cast<double>(cpu.busCycles()) / cycles, resets.software,
+                resets.watchdog);
     if (!cpu.lastFault.empty())
         std::printf("icesoc-sim: last fault: %s in %s\n", cpu.lastFault.c_str(),
                     machine.stm32().image()->functionAt(cpu.reg(CortexM3::Pc)).c_str());
@@ -167,8 +179,8 @@ void report(M3Machine& machine) {
 
 int simulate(const Options& o) {
     int width = 0, height = 0;
-    if (std::sscanf(o.size.c_str(), "%dx%d", &width, &height) != 2 || width < 8 || width > 1024 || height < 8 ||
-        height > 4096)
+    if (std::sscanf(o.size.c_str(), "%dx%d", &width, &height) != 2 || width < 8 || width > 1024 ||
+        height < 8 || height > 4096)
         throw std::runtime_error("size '" + o.size + "': give WIDTHxHEIGHT, 8x8 to 1024x4096");
     Frame frame = loadFrame(o.image, width, height);
     mkdir(o.out.c_str(), 0755);
@@ -185,7 +197,8 @@ int simulate(const Options& o) {
     SocModel soc(air, uavModem);
     soc.onTime([&](uint64_t now) {
         ground.advance(now);
-        return ground.nextEvent();
+        __atomic_store_n(&status->ns, now, __ATOMIC_RELAXED); // the ground's clock
+        return std::min(ground.nextEvent(), now + clockStepNs);
     });
     air.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome outcome) {
         (packet.from == 1 ? status->bytesDown : status->bytesUp) += packet.bytes.size();
@@ -193,7 +206,8 @@ int simulate(const Options& o) {
         status->lost += outcome != RfChannel::Outcome::Delivered;
     });
     loadCamera(soc, frame);
-    const uint32_t boots = static_cast<uint32_t>(o.seed * 1000 + static_cast<uint64_t>(getpid()) * 77);
+    const uint32_t boots =
+        static_cast<uint32_t>(o.seed * 1000 + static_cast<uint64_t>(getpid()) * 77);
     std::memcpy(soc.memory().data() + UAV_BOOTS, &boots, sizeof boots);
     soc.reset();
 
@@ -201,12 +215,15 @@ int simulate(const Options& o) {
     if (!o.quiet)
         std::cout << "icesoc-sim: UAV is up, frame " << frame.width << " x " << frame.height
                   << ", the ground's modem is " << pty.path() << std::endl;
+    setenv("XBEEAT_CLOCK", std::filesystem::absolute(o.out + "/status").c_str(),
+           1); // sw/ground/clock.h
     if (!o.command.empty())
-        child.start(o.command, {{"{device}", pty.path()}, {"{frame}", o.out + "/before.png"},
-                                {"{status}", o.out + "/status"}, {"{out}", o.out}});
-    Pace pace(o.speed == "real");
+        child.start(o.command, {{"{device}", pty.path()},
+                                {"{frame}", o.out + "/before.png"},
+                                {"{status}", o.out + "/status"},
+                                {"{out}", o.out}});
+    Pace pace(o.speed == "real" ? 1 : o.speed == "max" ? 0 : std::stod(o.speed));
     auto poll = [&] {
-        status->ns = soc.now();
         status->cycles = soc.cycles();
         status->wallNs = pace.workedNs();
         pace.keep(soc.now());
@@ -234,10 +251,12 @@ int simulate(const Options& o) {
     child.stop();
     double worked = static_cast<double>(pace.workedNs()) / 1e9;
     if (!o.quiet)
-        std::printf("icesoc-sim: %.1f s simulated, %.2f million clocks/s while it worked (real time is %.1f), "
+        std::printf("icesoc-sim: %.1f s simulated, %.2f million clocks/s while it worked (real "
+                    "time is %.1f), "
                     "%llu packets on the air, %llu lost\n",
-                    static_cast<double>(soc.now()) / 1e9, static_cast<double>(soc.cycles()) / worked / 1e6,
-                    SocModel::clkHz / 1e6, static_cast<unsigned long long>(status->packets),
+                    static_cast<double>(soc.now()) / 1e9,
+                    static_cast<double>(soc.cycles()) / worked / 1e6, SocModel::clkHz / 1e6,
+                    static_cast<unsigned long long>(status->packets),
                     static_cast<unsigned long long>(status->lost));
     return stopSignal ? 128 + stopSignal : child.status();
 }
@@ -245,21 +264,27 @@ int simulate(const Options& o) {
 } // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"Simulates the UAV: RTL, DDR3, firmware, modems, radio. The ground's modem is a pty.\n"
-                 "Words of COMMAND: {device} the pty, {frame} the camera's picture, {status} counters, {out}."};
+    CLI::App app{
+        "Simulates the UAV: RTL, DDR3, firmware, modems, radio. The ground's modem is a pty.\n"
+        "Words of COMMAND: {device} the pty, {frame} the camera's picture, {status} counters, "
+        "{out}."};
     Options o;
     app.add_option("--image", o.image, "picture for the camera: PNG, JPEG or PGM")->required();
     app.add_option("--size", o.size, "of the camera's frame, WIDTHxHEIGHT");
     app.add_option("--loss", o.loss, "loss on the air, each way")->check(CLI::Range(0.0, 1.0));
     app.add_option("--seed", o.seed, "of the radio's misfortunes");
     app.add_option("--out", o.out, "folder for before.png and the counters");
-    app.add_option("--speed", o.speed, "real: simulated time follows the clock; max: as fast as it goes")
-        ->check(CLI::IsMember({"real", "max"}));
+    app.add_option("--speed", o.speed,
+                   "real: simulated time follows the clock; 0.25: at a quarter of its speed; max: "
+                   "as fast as it goes")
+        ->check(CLI::IsMember({"real", "max"}) | CLI::Range(0.01, 100.0));
     app.add_option("--duration", o.duration, "end after so many simulated seconds");
-    app.add_option("--cpu", o.cpu, "host: the firmware's host build; m3: its ARM binary on a Cortex-M3 model")
+    app.add_option("--cpu", o.cpu,
+                   "host: the firmware's host build; m3: its ARM binary on a Cortex-M3 model")
         ->check(CLI::IsMember({"host", "m3"}));
     app.add_option("--firmware", o.firmware, "ELF file for --cpu m3");
-    app.add_option("--hclk", o.hclk, "of the Cortex-M3, Hz in simulated time; 0: 6/5 of the fabric's clock");
+    app.add_option("--hclk", o.hclk,
+                   "of the Cortex-M3, Hz in simulated time; 0: 6/5 of the fabric's clock");
     app.add_option("--gdb", o.gdb, "wait for GDB on this port of the loopback interface; 0: any")
         ->check(CLI::Range(0, 65535));
     app.add_option("--marks", o.marks, "write exceptions and tasks to this waveform file (VCD)");

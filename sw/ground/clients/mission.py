@@ -189,7 +189,7 @@ def fly(args, communicator):
     adapter.activate()
     log.say("setting the ground's modem up on %s" % args.device)
 
-    where = "xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % args.device
+    where = "xbee-at -d %s -a 0x0001 -s 0x0000 -t 300000" % args.device
     base = communicator.stringToProxy("hwengine1:" + where)
     engine = log.call("ground -> UAV", "checkedCast(hwengine1)",
                       lambda: Autopilot.HwProcessingEnginePrx.checkedCast(base))
@@ -203,8 +203,8 @@ def fly(args, communicator):
     result = log.call("ground -> UAV", "hwengine1.getResult()", engine.getResult)
     log.say("%d corners; the core took %d cycles" % (result.found, result.cycles))
 
-    if not station.called.wait(60):
-        raise RuntimeError("the UAV did not call Station.vehicleState within 60 s")
+    if not station.called.wait(300):
+        raise RuntimeError("the UAV did not call Station.vehicleState within 300 s")
     if not station.alive:
         raise RuntimeError("uav.isAlive answered %r" % station.alive)
     if args.reference:

@@ -37,9 +37,16 @@ m3) # the ARM binary
     ;;
 cpp) # the C++11 library of the plugin, a C++ client, and a proxy that goes through its string form
     "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" -- \
-        "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d "{device}" -a 0x0001 -p 2 -t 60000' 3 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+        "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d "{device}" -a 0x0001 -p 2 -t 300000' 3 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
     grep -q 'it is a ::Autopilot::HwProcessingEngine' "$out/log"
     grep -q -- '-a 0x1 .*-p 2' "$out/log"
+    ;;
+slow) # a machine that is four times too slow: the ground lives by the simulator's clock, so the modem is found as fast
+    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --speed 0.25 -- \
+        /usr/bin/python3 "$source/sw/ground/clients/mission.py" --device '{device}' --frame '{frame}' --status '{status}' \
+        --out "$out" --plugin "$build/ground" --slice "$source/sw/apps/uav/Autopilot.ice" --trace 2 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+    [ "$(grep -c '+++ at' "$out/log")" = 2 ] || { cat "$out/log" && exit 1; }
+    check_output "$out"
     ;;
 gateway) # two stock clients at once, through TCP
     "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" -- \

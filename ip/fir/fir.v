@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+//
+// fir: the FIR filter (fir_filter.vhd) over a buffer in DDR3; registers by the generated fir_wrapper.
+
+`default_nettype none
+
+module fir (
+    input  wire        clk_i,
+    input  wire        rst_i,
+    // register bus
+    input  wire        bus_valid_i,
+    input  wire        bus_write_i,
+    input  wire [3:0]  bus_addr_i,
+    input  wire [31:0] bus_wdata_i,
+    output wire        bus_ready_o,
+    output wire [31:0] bus_rdata_o,
+    output wire        bus_error_o,
+    output wire        irq_o,
+    // memory port
+    output wire [31:0] npi_addr_o,
+    output wire        npi_addr_req_o,
+    input  wire        npi_addr_ack_i,
+    output wire        npi_rnw_o,
+    output wire [3:0]  npi_size_o,
+    output wire        npi_rmw_o,
+    output wire [63:0] npi_wr_data_o,
+    output wire [7:0]  npi_wr_be_o,
+    output wire        npi_wr_push_o,
+    input  wire        npi_wr_empty_i,
+    input  wire        npi_wr_almost_full_i,
+    output wire        npi_wr_flush_o,
+    input  wire [63:0] npi_rd_data_i,
+    input  wire [3:0]  npi_rd_word_i,
+    output wire        npi_rd_pop_o,
+    input  wire        npi_rd_empty_i,
+    output wire        npi_rd_flush_o,
+    input  wire        npi_init_done_i
+);
+    wire        core_rst, set_coefficient, clear, start, unused_shift_start;
+    wire [7:0]  index, shift;
+    wire [31:0] coefficient, source, target, samples;
+
+    reg         busy, refused;
+    reg         begun, flushed;    // the streams have their buffers; the last word is on its way
+    reg  [23:0] to_send, to_take;  // samples that the filter has not got; results that it has not given
+    reg  [1:0]  place;             // of the next sample in its word
+    reg  [63:0] packed_results;
+    reg  [2:0]  filled;            // results in there, 0..4
+    reg  [31:0] saturations;
+
+    wire        bad = source[5:0] != 6'd0 || target[5:0] != 6'd0 || samples[31:24] != 8'd0 || samples == 32'd0;
+    wire        read_valid, read_idle, write_ready, write_idle;
+    wire [63:0] read_data;
+    wire        sample_ready, result_valid, saturated;
+    wire [15:0] result;
+    wire        idle    = read_idle && write_idle;
+    wire        go      = busy && !begun && idle; // what was given up may still be under way
+    wire        ended   = begun && to_take == 24'd0;
+    wire        flush   = ended && filled == 3'd0 && !flushed;
+    wire        sending = to_send != 24'd0 && read_valid;
+    wire        sent    = sending && sample_ready;
+    wire        offer   = (filled == 3'd4 || (ended && filled != 3'd0)) && !core_rst;
+    wire        written = offer && write_ready;
+    wire        room    = filled != 3'd4 || write_ready;
+    wire        taken   = result_valid && room;
+    wire [1:0]  next    = written ? 2'd0 : filled[1:0]; // where this result goes
+
+    fir_wrapper u_wrapper (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
+        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
+        .bus_error_o(bus_error_o), .irq_o(irq_o), .core_rst_o(core_rst),
+        .set_coefficient_start_o(set_coefficient), .set_coefficient_index_o(index),
+        .set_coefficient_value_o(coefficient),
+        .set_shift_start_o(unused_shift_start), .set_shift_bits_o(shift), .clear_start_o(clear),
+        .filter_start_o(start), .filter_source_o(source), .filter_target_o(target),
+        .filter_samples_o(samples), .filter_result_i(saturations),
+        .filter_done_i(refused || (flushed && idle)), .filter_refused_i(refused));
+
+    fir_filter u_filter (
+        .clk_i(clk_i), .rst_i(core_rst),
+        .coefficient_write_i(set_coefficient && index[7:4] == 4'd0), .coefficient_index_i(index[3:0]),
+        .coefficient_i(coefficient[17:0]), .shift_i(shift[4:0]), .clear_i(clear && !busy),
+        .sample_valid_i(sending), .sample_ready_o(sample_ready), .sample_i(read_data[16*place +: 16]),
+        .result_valid_o(result_valid), .result_ready_i(room),
+        .result_o(result), .saturated_o(saturated));
+
+    npi_stream #(.ADDR_BITS(32), .WORD_BITS(24)) u_stream (
+        .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: what the memory was asked for must be taken
+        .read_start_i(go && !core_rst), .read_base_i(source[31:6]),
+        .read_words_i({2'd0, samples[23:2]} + {23'd0, |samples[1:0]}), .read_stop_i(core_rst),
+        .read_valid_o(read_valid), .read_data_o(read_data),
+        .read_take_i(sent && (place == 2'd3 || to_send == 24'd1)), .read_idle_o(read_idle),
+        .write_start_i(go && !core_rst), .write_base_i(target[31:6]),
+        .write_valid_i(offer), .write_data_i(packed_results),
+        .write_be_i({{2{filled[2]}}, {2{filled[2] || &filled[1:0]}}, {2{filled[2] || filled[1]}}, 2'b11}),
+        .write_ready_o(write_ready), .write_flush_i(flush || core_rst), .write_idle_o(write_idle),
+        .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
+        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o),
+        .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o),
+        .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),
+        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i), .npi_init_done_i(npi_init_done_i));
+    assign npi_rmw_o      = 1'b0;
+    assign npi_wr_flush_o = 1'b0;
+    assign npi_rd_flush_o = 1'b0;
+
+    always @(posedge clk_i) begin
+        refused <= start && bad;
+        if (start && !bad) begin
+            busy        <= 1'b1;
+            to_send     <= samples[23:0];
+            to_take     <= samples[23:0];
+            saturations <= 32'd0;
+            place       <= 2'd0;
+        end
+        if (go)
+            begun <= 1'b1;
+        if (sent) begin
+            to_send <= to_send - 24'd1;
+            place   <= place + 2'd1;
+        end
+        if (taken) begin
+            to_take     <= to_take - 24'd1;
+            saturations <= saturations + {31'd0, saturated};
+            packed_results[16*next +: 16] <= result;
+        end
+        filled <= (written ? 3'd0 : filled) + {2'd0, taken};
+        if (flush)
+            flushed <= 1'b1;
+        if (flushed && idle) begin
+            busy    <= 1'b0;
+            begun   <= 1'b0;
+            flushed <= 1'b0;
+        end
+        if (core_rst) begin
+            busy    <= 1'b0;
+            refused <= 1'b0;
+            begun   <= 1'b0;
+            flushed <= 1'b0;
+            filled  <= 3'd0;
+            to_send <= 24'd0;
+            to_take <= 24'd0;
+        end
+    end
+
+    wire unused = &{1'b0, unused_shift_start, shift[7:5], coefficient[31:18], npi_wr_empty_i, npi_rd_word_i, 1'b0};
+endmodule

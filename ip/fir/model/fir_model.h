@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+//
+// fir_model: the FIR filter's results on the host, bit by bit: the sum as the definition has it
+// (ip/fir/README.md).
+
+#ifndef FIR_MODEL_H
+#define FIR_MODEL_H
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+
+class FirModel {
+public:
+    static constexpr size_t taps = 16;
+
+    std::array<int32_t, taps> coefficients{}; // 18 bits, of the newest sample first
+    unsigned shift = 0;                       // 0..31
+    unsigned saturations = 0;
+
+    void clear() { history_.clear(); }
+    int16_t step(int16_t sample) {
+        history_.push_front({sample, coefficients});
+        if (history_.size() > taps)
+            history_.pop_back();
+        int64_t sum = 0;
+        for (size_t k = 0; k < history_.size(); ++k)
+            sum += int64_t(history_[k].coefficients[k]) * history_[k].sample;
+        // Floor of (sum + half) / 2^shift: to nearest, halves up.
+        int64_t unit = int64_t(1) << shift, value = sum + unit / 2;
+        value = value >= 0 ? value / unit : -((-value + unit - 1) / unit);
+        if (value > INT16_MAX || value < INT16_MIN) {
+            ++saturations;
+            value = value > 0 ? INT16_MAX : INT16_MIN;
+        }
+        return static_cast<int16_t>(value);
+    }
+
+private:
+    struct Past {
+        int16_t sample;
+        std::array<int32_t, taps> coefficients; // as they were when it came
+    };
+    std::deque<Past> history_; // newest first
+};
+
+#endif

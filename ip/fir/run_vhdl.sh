@@ -1,0 +1,16 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# run_vhdl: GHDL vectors-program folder file.vhd ...   Runs entity fir_tb; it stops with a failure.
+set -eu
+ghdl=$1 vectors=$2 work=$3
+shift 3
+rm -rf "$work"
+mkdir -p "$work"
+"$vectors" "${SEED:-1}" >"$work/vectors.txt"
+"$ghdl" -a --std=08 --workdir="$work" "$@"
+cd "$work"
+# numeric_std warns of what is undefined before the pipeline is full.
+status=0
+"$ghdl" --elab-run --std=08 --workdir="$work" fir_tb --assert-level=error >log 2>&1 || status=$?
+grep -v metavalue log || true
+exit $status

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// soc: the chip: wiring only. Slots and memory ports are numbered in bus/map.regs.json.
+// soc: the chip: wiring only. Its cores are the lines of ip/cores.list; slots, memory ports and the cores'
+// pins are numbered in the generated map_regs.vh.
 
 `default_nettype none
 
@@ -27,6 +28,9 @@ module soc #(
     input  wire        modem_cts_n_i,
     output wire        modem_rts_n_o,
     output wire        modem_reset_n_o,
+    // pins of cores
+    input  wire [31:0] core_pins_i,
+    output wire [31:0] core_pins_o,
     // MCB user port
     output wire        mcb_cmd_en_o,
     output wire [2:0]  mcb_cmd_instr_o,
@@ -46,7 +50,7 @@ module soc #(
 
     localparam SLOTS = MAP_SLOT_COUNT;
     localparam PORTS = MAP_NPI_PORT_COUNT;
-    localparam SYSTEM = MAP_SLOT_SYSTEM, MODEM = MAP_SLOT_MODEM, VISION = MAP_SLOT_VISION;
+    localparam SYSTEM = MAP_SLOT_SYSTEM, MODEM = MAP_SLOT_MODEM;
 
     // Register bus
     wire        bus_valid, bus_write, bus_ready, bus_error;
@@ -151,31 +155,8 @@ module soc #(
         .modem_rts_n_o(modem_rts_n_o), .modem_reset_n_o(modem_reset_n_o)
     );
 
-    vision u_vision (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(slot_valid[VISION]), .bus_write_i(slot_write), .bus_addr_i(slot_addr),
-        .bus_wdata_i(slot_wdata), .bus_ready_o(slot_ready[VISION]),
-        .bus_rdata_o(slot_rdata[32*VISION +: 32]), .bus_error_o(slot_error[VISION]),
-        .irq_o(slot_irq[VISION]),
-        .npi_addr_o(npi_addr[32*MAP_NPI_PORT_VISION +: 32]),
-        .npi_addr_req_o(npi_addr_req[MAP_NPI_PORT_VISION]),
-        .npi_addr_ack_i(npi_addr_ack[MAP_NPI_PORT_VISION]),
-        .npi_rnw_o(npi_rnw[MAP_NPI_PORT_VISION]),
-        .npi_size_o(npi_size[4*MAP_NPI_PORT_VISION +: 4]),
-        .npi_rmw_o(npi_rmw[MAP_NPI_PORT_VISION]),
-        .npi_wr_data_o(npi_wr_data[64*MAP_NPI_PORT_VISION +: 64]),
-        .npi_wr_be_o(npi_wr_be[8*MAP_NPI_PORT_VISION +: 8]),
-        .npi_wr_push_o(npi_wr_push[MAP_NPI_PORT_VISION]),
-        .npi_wr_empty_i(npi_wr_empty[MAP_NPI_PORT_VISION]),
-        .npi_wr_almost_full_i(npi_wr_almost_full[MAP_NPI_PORT_VISION]),
-        .npi_wr_flush_o(npi_wr_flush[MAP_NPI_PORT_VISION]),
-        .npi_rd_data_i(npi_rd_data[64*MAP_NPI_PORT_VISION +: 64]),
-        .npi_rd_word_i(npi_rd_word[4*MAP_NPI_PORT_VISION +: 4]),
-        .npi_rd_pop_o(npi_rd_pop[MAP_NPI_PORT_VISION]),
-        .npi_rd_empty_i(npi_rd_empty[MAP_NPI_PORT_VISION]),
-        .npi_rd_flush_o(npi_rd_flush[MAP_NPI_PORT_VISION]),
-        .npi_init_done_i(npi_init_done[MAP_NPI_PORT_VISION])
-    );
+    // Cores: generated from ip/cores.list.
+    `include "soc_cores.vh"
 
     // The bridge and the modem take what they read in the cycle it comes: no FIFO.
     localparam [31:0] NO_READ_FIFO = 1 << MAP_NPI_PORT_FSMC | 1 << MAP_NPI_PORT_MODEM;

@@ -87,6 +87,8 @@ GeneratedFile registersFile(const Block& b, const CFileNames&) {
            quoted(firstLine(b.interface->doc, "Registers of " + b.interface->id() + ".")) + ",");
     w.line("  \"type\": \"" + hex(b.type) + "\",");
     w.line("  \"version\": \"" + hex(b.version) + "\",");
+    w.line("  \"servant\": {\"type\": \"" + b.interface->cName() + "_Core\", \"header\": \"" +
+           b.name + "_servant.h\"},");
     w.line("  \"registers\": [");
     auto list = registers(b);
     for (const Register& r : list) {

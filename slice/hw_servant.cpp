@@ -103,6 +103,11 @@ Word bracketed(Word word) {
     return word;
 }
 
+std::string initSignature(const std::string& type) {
+    return "Hw_Status " + type + "_init(" + type +
+           " *self, U32 slot, U32 memory, const Hw_Seam *seam, void *context)";
+}
+
 void operation(Writer& w, const Block& b, const Call& c) {
     bool returns = false, hasDouble = false;
     for (const Word& word : c.words)
@@ -168,9 +173,15 @@ GeneratedFile servantHeader(const Block& b, const CFileNames& names) {
     w.line("} " + type + ";");
     w.blank();
     w.line("/* Resets the core. HW_WRONG_CORE: the slot holds another one, or another version.");
-    w.line(" * Hw_Core_interrupt(&self->core) is to be called when the slot's line is high. */");
-    w.line("Hw_Status " + type + "_init(" + type +
-           " *self, U32 slot, const Hw_Seam *seam, void *context);");
+    w.line(" * memory: DDR3 byte address of its buffers. */");
+    w.line(initSignature(type) + ";");
+    w.line(
+        "/* To be called when the slot's line is high, from the interrupt routine or a task. */");
+    w.line("void " + type + "_interrupt(" + type + " *self);");
+    w.line("/* Answers what is done or too late; to be called by a task after an interrupt, and "
+           "within");
+    w.line(" * the ms that it returns (HW_NEVER: no need). */");
+    w.line("U32 " + type + "_poll(" + type + " *self, U32 nowMs);");
     w.blank();
     w.line("#endif");
     return {b.name + "_servant.h", w.text()};
@@ -198,13 +209,20 @@ GeneratedFile servantSource(const Block& b, const CFileNames& names) {
         });
     }
     w.blank();
-    w.block("Hw_Status " + type + "_init(" + type +
-                " *self, U32 slot, const Hw_Seam *seam, void *context)",
-            {}, [&] {
-                w.line(cName(b) + "_init(&self->servant);");
-                w.line("return Hw_Core_init(&self->core, slot, " + prefix +
-                       "_ID_VALUE, seam, context);");
-            });
+    w.block(initSignature(type), {}, [&] {
+        w.line(cName(b) + "_init(&self->servant);");
+        w.line("(void)memory;");
+        w.line("return Hw_Core_init(&self->core, slot, " + prefix + "_ID_VALUE, seam, context);");
+    });
+    w.blank();
+    w.block("void " + type + "_interrupt(" + type + " *self)", {},
+            [&] { w.line("Hw_Core_interrupt(&self->core);"); });
+    w.blank();
+    w.block("U32 " + type + "_poll(" + type + " *self, U32 nowMs)", {}, [&] {
+        w.line("(void)self;");
+        w.line("(void)nowMs;");
+        w.line("return HW_NEVER;");
+    });
     for (const Call& c : b.calls)
         operation(w, b, c);
     return {b.name + "_servant.c", w.text()};

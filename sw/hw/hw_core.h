@@ -20,31 +20,34 @@ typedef enum Hw_Status {
     HW_TIMEOUT     /* no event in time; the core was reset */
 } Hw_Status;
 
-/* How a task waits. On uC/OS-II: a semaphore for each operation that takes time (OSSemPend,
- * OSSemPost). */
+/* How a task waits. On uC/OS-II: a semaphore (OSSemPend, OSSemPost); where several tasks call
+ * operations that take time, one for each operation. */
 typedef struct Hw_Seam {
     /* Until post was called for the operation since the last wait (1), or `ms` have passed (0). */
-    int (*wait)(void *context, U32 operation, U32 ms);
-    void (*post)(void *context, U32 operation);
+    int (*wait)(void* context, U32 operation, U32 ms);
+    void (*post)(void* context, U32 operation);
+    U32 (*nowMs)(void* context); /* of any beginning; wraps */
 } Hw_Seam;
+
+#define HW_NEVER 0xFFFFFFFFU
 
 typedef struct Hw_Core {
     U32 slot; /* 0..63 */
-    const Hw_Seam *seam;
-    void *context;
+    const Hw_Seam* seam;
+    void* context;
     volatile U8 done[HW_OPERATIONS]; /* set by the interrupt */
 } Hw_Core;
 
 /* `id`: what the slot's word ID reads. Resets the core, clears its events, enables them. */
-Hw_Status Hw_Core_init(Hw_Core *self, U32 slot, U32 id, const Hw_Seam *seam, void *context);
+Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Seam* seam, void* context);
 /* When the slot's interrupt line is high, from the interrupt routine or a task. */
-void Hw_Core_interrupt(Hw_Core *self);
+void Hw_Core_interrupt(Hw_Core* self);
 
 /* For generated servants. ready: may parameters be written? act: an operation that is done at
  * once. run: one that takes time, until it is done or `ms` have passed without its event. */
-Hw_Status Hw_Core_ready(const Hw_Core *self, U32 operation);
-void Hw_Core_act(const Hw_Core *self, U32 operation);
-Hw_Status Hw_Core_run(Hw_Core *self, U32 operation, U32 ms);
+Hw_Status Hw_Core_ready(const Hw_Core* self, U32 operation);
+void Hw_Core_act(const Hw_Core* self, U32 operation);
+Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms);
 
 /* IEEE 754 as it is in registers. */
 U32 Hw_floatBits(float value);

@@ -67,8 +67,26 @@ size_t closing(const std::vector<std::string>& t, size_t open) {
     return t.size();
 }
 
-void scan(const fs::path& file, std::map<std::string, VerilogModule>& modules) {
-    const std::vector<std::string> t = tokens(readFile(file));
+// Tokens of a file, and behind each include those of the file that it names, where that is known.
+std::vector<std::string> allTokens(const fs::path& file, const std::vector<fs::path>& includeFolders) {
+    std::vector<std::string> result;
+    for (const std::string& token : tokens(readFile(file))) {
+        const bool isInclude = !result.empty() && result.back() == "`include";
+        result.push_back(token);
+        if (isInclude)
+            for (const fs::path& folder : includeFolders)
+                if (fs::exists(folder / token)) {
+                    for (const std::string& t : allTokens(folder / token, {}))
+                        result.push_back(t);
+                    break;
+                }
+    }
+    return result;
+}
+
+void scan(const fs::path& file, const std::vector<fs::path>& includeFolders,
+          std::map<std::string, VerilogModule>& modules) {
+    const std::vector<std::string> t = allTokens(file, includeFolders);
     VerilogModule* current = nullptr;
     for (size_t i = 0; i + 1 < t.size(); i++) {
         if (t[i] == "module" && isName(t[i + 1])) {
@@ -123,7 +141,7 @@ Library::Library(const std::vector<fs::path>& folders, const std::vector<fs::pat
                 files.push_back(entry.path());
         std::sort(files.begin(), files.end());
         for (const fs::path& file : files)
-            scan(file, modules_);
+            scan(file, includeFolders, modules_);
     }
     for (auto& [name, module] : modules_) // what is not a module was no instance
         for (auto it = module.instances.begin(); it != module.instances.end();)

@@ -37,13 +37,16 @@ public:
     static void post(void* context, U32 operation) {
         static_cast<CoreSlot*>(context)->posted_ |= 1u << operation;
     }
+    static U32 nowMs(void* context) {
+        return static_cast<U32>(bench(context).cycles() / coreClocksOfMs);
+    }
     void tick() {
         bench_.tick();
         if (bench_.top().irq_o && core_)
             Hw_Core_interrupt(core_);
     }
 
-    static constexpr Hw_Seam seam = {wait, post};
+    static constexpr Hw_Seam seam = {wait, post, nowMs};
     Bench<Module> bench_;
     BusMaster<Module> bus_{bench_};
     Hw_Core* core_ = nullptr;

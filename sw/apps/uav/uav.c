@@ -14,12 +14,12 @@
 #define STACK_WORDS 512
 
 Ice_Communicator uav_ic;
-OS_EVENT *uav_report;
 
-static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STACK_WORDS];
+static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STACK_WORDS], coresStack[STACK_WORDS];
 static Ice_ObjectAdapter adapter;
-static Autopilot_HwProcessingEngine engine;
 static Autopilot_Vehicle vehicle;
+static OS_EVENT *report; /* a frame is done: tell the station */
+static U32 frames, corners;
 static U8 irqEnabled;
 static U32 busErrors, busErrorPlace; /* written by the interrupt only */
 
@@ -56,11 +56,11 @@ static void clientTask(void *argument) {
     list.data = params;
     for (;;) {
         const Radio_Counters *radio;
-        OSSemPend(uav_report, 0, &error);
+        OSSemPend(report, 0, &error);
         radio = Radio_counters();
         setParam(&params[0], data[0], Autopilot_uptimeMs, OSTimeGet() * (1000U / OS_TICKS_PER_SEC));
-        setParam(&params[1], data[1], Autopilot_framesProcessed, UAV_framesProcessed());
-        setParam(&params[2], data[2], Autopilot_cornersFound, UAV_cornersFound());
+        setParam(&params[1], data[1], Autopilot_framesProcessed, frames);
+        setParam(&params[2], data[2], Autopilot_cornersFound, corners);
         setParam(&params[3], data[3], Autopilot_radioBytesSent, radio->bytesCopiedOut);
         setParam(&params[4], data[4], Autopilot_radioBytesReceived, radio->bytesCopiedIn);
         /* A station that does not listen is no fault of the vehicle's: the next frame tries again. */
@@ -76,7 +76,6 @@ static void createTask(void (*task)(void *), OS_STK *stack, INT8U priority) {
 
 static void appMainTask(void *argument) {
     (void)argument;
-    UAV_initVision();
     irqEnabled = 1;
 
     Ice_initialize(&uav_ic);
@@ -84,12 +83,12 @@ static void appMainTask(void *argument) {
     UAV_useRadio(&uav_ic);
     (void)Ice_Communicator_createObjectAdapterWithEndpoints(&uav_ic, "Adapter", "xbee-at", &adapter);
     Ice_ObjectAdapter_activate(&adapter);
-    Autopilot_HwProcessingEngine_init(&engine);
-    (void)Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&engine, "hwengine1");
+    UAV_startCores(&adapter);
     Autopilot_Vehicle_init(&vehicle);
     (void)Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&vehicle, "uav");
 
     createTask(UAV_radioTask, radioStack, PRIO_RADIO);
+    createTask(UAV_coresTask, coresStack, PRIO_CORES);
     createTask(clientTask, clientStack, PRIO_CLIENT);
     Ice_Communicator_waitForShutdown(&uav_ic);
     for (;;)
@@ -104,16 +103,23 @@ U32 UAV_busErrorPlace(void) {
     return busErrorPlace;
 }
 
+void UAV_frameDone(U32 found) {
+    ++frames;
+    corners += found;
+    (void)OSSemPost(report);
+}
+
 void UAV_irqHandler(void) {
-    U32 lines = FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_LO);
-    if ((lines >> MAP_SLOT_SYSTEM & 1U) && FSMC_checkError(&busErrorPlace) == FSMC_BUS_ERROR)
+    U32 lines[2];
+    lines[0] = FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_LO);
+    lines[1] = MAP_SLOT_COUNT > 32U ? FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_HI) : 0U;
+    if ((lines[0] >> MAP_SLOT_SYSTEM & 1U) && FSMC_checkError(&busErrorPlace) == FSMC_BUS_ERROR)
         ++busErrors;
-    if (lines >> MAP_SLOT_MODEM & 1U) {
+    if (lines[0] >> MAP_SLOT_MODEM & 1U) {
         (void)Radio_interrupt();
         (void)OSSemPost(uav_radioWork);
     }
-    if (lines >> MAP_SLOT_VISION & 1U)
-        UAV_visionInterrupt();
+    UAV_coresInterrupt(lines);
 }
 
 int UAV_irqEnabled(void) {
@@ -123,13 +129,16 @@ int UAV_irqEnabled(void) {
 int UAV_start(const Fsmc_Port *port, void *context) {
     irqEnabled = 0;
     busErrors = 0;
+    frames = 0;
+    corners = 0;
     if (FSMC_init(port, context) != FSMC_OK)
         return 0;
     FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);
     FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_MASK, SYSTEM_MASK_BUS_ERROR_MASK);
     UAV_initRadio();
     UAV_initIceOs();
-    uav_report = OSSemCreate(0);
+    report = OSSemCreate(0);
+    UAV_initCores();
     createTask(appMainTask, serverStack, PRIO_SERVER);
     return 1;
 }

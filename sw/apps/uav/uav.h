@@ -19,6 +19,17 @@
 /* Creates the tasks; call between OSInit and OSStart. 0: the FPGA does not answer, there are no tasks. */
 int UAV_start(const Fsmc_Port *port, void *context);
 
+/* Accesses that no register answered, or whose core hung until the bridge gave up: how many, and where the last
+ * one was (slot * 16 + word, bit 16 for a write). */
+U32 UAV_busErrors(void);
+U32 UAV_busErrorPlace(void);
+
+/* A frame was processed, with so many corners: it is counted, and the station is told. */
+void UAV_frameDone(U32 corners);
+
+/* Cores of ip/cores.list that are not in their slot, or in another version, or not served for want of room. */
+U32 UAV_missingCores(void);
+
 /* The FPGA's interrupt, a level; and whether it is unmasked. */
 void UAV_irqHandler(void);
 int UAV_irqEnabled(void);

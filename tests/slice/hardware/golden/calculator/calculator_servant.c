@@ -17,10 +17,21 @@ static Ice_Status hwStatus(Hw_Status status) {
     }
 }
 
-Hw_Status Demo_Calculator_Core_init(Demo_Calculator_Core *self, U32 slot, const Hw_Seam *seam,
-        void *context) {
+Hw_Status Demo_Calculator_Core_init(Demo_Calculator_Core *self, U32 slot, U32 memory,
+        const Hw_Seam *seam, void *context) {
     Demo_Calculator_init(&self->servant);
+    (void)memory;
     return Hw_Core_init(&self->core, slot, CALCULATOR_ID_VALUE, seam, context);
+}
+
+void Demo_Calculator_Core_interrupt(Demo_Calculator_Core *self) {
+    Hw_Core_interrupt(&self->core);
+}
+
+U32 Demo_Calculator_Core_poll(Demo_Calculator_Core *self, U32 nowMs) {
+    (void)self;
+    (void)nowMs;
+    return HW_NEVER;
 }
 
 Ice_Status Demo_Calculator_setMode(Demo_CalculatorPtr self, Demo_Mode mode, Ice_Bool negate,

@@ -17,10 +17,21 @@ static Ice_Status hwStatus(Hw_Status status) {
     }
 }
 
-Hw_Status Demo_WideEcho_Core_init(Demo_WideEcho_Core *self, U32 slot, const Hw_Seam *seam,
-        void *context) {
+Hw_Status Demo_WideEcho_Core_init(Demo_WideEcho_Core *self, U32 slot, U32 memory,
+        const Hw_Seam *seam, void *context) {
     Demo_WideEcho_init(&self->servant);
+    (void)memory;
     return Hw_Core_init(&self->core, slot, WIDE_ECHO_ID_VALUE, seam, context);
+}
+
+void Demo_WideEcho_Core_interrupt(Demo_WideEcho_Core *self) {
+    Hw_Core_interrupt(&self->core);
+}
+
+U32 Demo_WideEcho_Core_poll(Demo_WideEcho_Core *self, U32 nowMs) {
+    (void)self;
+    (void)nowMs;
+    return HW_NEVER;
 }
 
 Ice_Status Demo_WideEcho_negate(Demo_WideEchoPtr self, Ice_Long v, Ice_Long *result,

@@ -4,10 +4,21 @@
 #include "http_level_regs.h"
 #include "fsmc.h"
 
-Hw_Status Demo_HTTPLevel_Core_init(Demo_HTTPLevel_Core *self, U32 slot, const Hw_Seam *seam,
-        void *context) {
+Hw_Status Demo_HTTPLevel_Core_init(Demo_HTTPLevel_Core *self, U32 slot, U32 memory,
+        const Hw_Seam *seam, void *context) {
     Demo_HTTPLevel_init(&self->servant);
+    (void)memory;
     return Hw_Core_init(&self->core, slot, HTTP_LEVEL_ID_VALUE, seam, context);
+}
+
+void Demo_HTTPLevel_Core_interrupt(Demo_HTTPLevel_Core *self) {
+    Hw_Core_interrupt(&self->core);
+}
+
+U32 Demo_HTTPLevel_Core_poll(Demo_HTTPLevel_Core *self, U32 nowMs) {
+    (void)self;
+    (void)nowMs;
+    return HW_NEVER;
 }
 
 Ice_Status Demo_HTTPLevel_setLevel(Demo_HTTPLevelPtr self, Ice_Byte level,

@@ -12,8 +12,13 @@ typedef struct Demo_HTTPLevel_Core {
 } Demo_HTTPLevel_Core;
 
 /* Resets the core. HW_WRONG_CORE: the slot holds another one, or another version.
- * Hw_Core_interrupt(&self->core) is to be called when the slot's line is high. */
-Hw_Status Demo_HTTPLevel_Core_init(Demo_HTTPLevel_Core *self, U32 slot, const Hw_Seam *seam,
-        void *context);
+ * memory: DDR3 byte address of its buffers. */
+Hw_Status Demo_HTTPLevel_Core_init(Demo_HTTPLevel_Core *self, U32 slot, U32 memory,
+        const Hw_Seam *seam, void *context);
+/* To be called when the slot's line is high, from the interrupt routine or a task. */
+void Demo_HTTPLevel_Core_interrupt(Demo_HTTPLevel_Core *self);
+/* Answers what is done or too late; to be called by a task after an interrupt, and within
+ * the ms that it returns (HW_NEVER: no need). */
+U32 Demo_HTTPLevel_Core_poll(Demo_HTTPLevel_Core *self, U32 nowMs);
 
 #endif

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+//
+// core_list: lines into cores: slots, memory ports, buffers, pins.
+
+#include "core_list.h"
+#include <algorithm>
+#include <fmt/format.h>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+using nlohmann::json;
+
+namespace {
+
+constexpr unsigned slotLimit = 64, pinLimit = 32;
+constexpr unsigned bufferAlignment = 128; // the largest NPI burst, bytes
+
+[[noreturn]] void fail(unsigned line, const std::string& text) {
+    throw std::runtime_error(fmt::format("{}: error: {}", line, text));
+}
+
+unsigned constant(const json& base, const std::string& name) {
+    for (const json& c : base.at("constants"))
+        if (c.at("name") == name)
+            return c.at("value").get<unsigned>();
+    throw std::runtime_error("1: error: the platform's map has no " + name);
+}
+
+bool isName(const std::string& s) {
+    return !s.empty() && std::islower(static_cast<unsigned char>(s[0])) &&
+           std::all_of(s.begin(), s.end(), [](unsigned char c) {
+               return std::islower(c) || std::isdigit(c) || c == '_';
+           });
+}
+
+class Reader {
+public:
+    Reader(const json& base, const std::map<std::string, json>& descriptions)
+        : descriptions_(descriptions), first_(constant(base, "SLOT_COUNT")),
+          memory_(constant(base, "BUFFERS")), memoryEnd_(1ul << constant(base, "DDR_BYTES_LOG2")) {
+        chip_.ports = constant(base, "NPI_PORT_COUNT");
+        for (const json& c : base.at("constants"))
+            if (std::string name = c.at("name"); name.rfind("SLOT_", 0) == 0)
+                names_[lower(name.substr(5))] = 0;
+    }
+
+    Chip run(const std::string& text) {
+        std::istringstream in(text);
+        std::string line;
+        for (unsigned n = 1; std::getline(in, line); ++n)
+            read(line.substr(0, line.find('#')), n);
+        giveSlots();
+        for (Core& c : chip_.cores)
+            connect(c);
+        std::sort(chip_.cores.begin(), chip_.cores.end(),
+                  [](const Core& a, const Core& b) { return a.slot < b.slot; });
+        chip_.slots = chip_.cores.empty() ? first_ : chip_.cores.back().slot + 1;
+        return chip_;
+    }
+
+private:
+    static std::string lower(std::string s) {
+        for (char& c : s)
+            c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        return s;
+    }
+
+    void read(const std::string& text, unsigned n) {
+        std::istringstream words(text);
+        Core c;
+        c.line = n;
+        if (!(words >> c.folder))
+            return;
+        auto found = descriptions_.find(c.folder);
+        if (found == descriptions_.end())
+            fail(n, fmt::format("there is no core '{0}': ip/{0}/CMakeLists.txt, with icesoc_core",
+                                c.folder));
+        c.name = c.folder;
+        describe(c, found->second);
+        std::map<std::string, std::string> given;
+        for (std::string word; words >> word;) {
+            size_t equals = word.find('=');
+            if (equals == std::string::npos || equals + 1 == word.size())
+                fail(n, fmt::format("'{}': after the core's folder come name=, identity=, slot= "
+                                    "and its input pins",
+                                    word));
+            if (!given.emplace(word.substr(0, equals), word.substr(equals + 1)).second)
+                fail(n, fmt::format("'{}' is given twice", word.substr(0, equals)));
+        }
+        for (const auto& [key, value] : given)
+            set(c, key, value);
+        if (c.identity.empty())
+            c.identity = c.name;
+        auto [it, isNew] = names_.emplace(c.name, n);
+        if (!isNew)
+            fail(n, it->second
+                        ? fmt::format("'{}' is on line {} already; name= tells two of a kind apart",
+                                      c.name, it->second)
+                        : fmt::format("'{}' is a name of the platform's", c.name));
+        if (!identities_.insert(c.identity).second)
+            fail(n, fmt::format("the identity '{}' is taken", c.identity));
+        chip_.cores.push_back(c);
+    }
+
+    void describe(Core& c, const json& j) {
+        if (!j.contains("type"))
+            fail(c.line,
+                 fmt::format("'{}' has no type: its description is not a slot's", c.folder));
+        if (j.value("memory_port", false))
+            c.port = static_cast<int>(chip_.ports++);
+        c.memory = memory_;
+        unsigned bytes = j.value("memory_bytes", 0u);
+        memory_ += (bytes + bufferAlignment - 1) / bufferAlignment * bufferAlignment;
+        if (memory_ > memoryEnd_)
+            fail(c.line, fmt::format("no room in DDR3 for the {} bytes of '{}'", bytes, c.folder));
+        if (j.contains("servant")) {
+            c.servantType = j.at("servant").at("type");
+            c.servantHeader = j.at("servant").at("header");
+        }
+        for (const json& p : j.value("pins", json::array()))
+            c.pins.push_back({p.at("name"), p.value("width", 1u), 0, ""});
+    }
+
+    void set(Core& c, const std::string& key, const std::string& value) {
+        if (key == "name") {
+            if (!isName(value))
+                fail(c.line, fmt::format("name={}: small letters, digits and _", value));
+            c.name = value;
+        } else if (key == "identity") {
+            if (value.find_first_of("\"\\/") != std::string::npos)
+                fail(c.line, fmt::format("identity={}: without quotes, \\ and /", value));
+            c.identity = value;
+        } else if (key == "slot") {
+            bool isNumber = value.size() < 3 && std::all_of(value.begin(), value.end(), ::isdigit);
+            c.slot = isNumber ? static_cast<unsigned>(std::stoul(value)) : 0;
+            if (c.slot < first_ || c.slot >= slotLimit)
+                fail(c.line,
+                     fmt::format("slot={}: {}..{} are for cores", value, first_, slotLimit - 1));
+        } else {
+            for (Pin& p : c.pins)
+                if (p.name == key && !p.isOut()) {
+                    p.source = value;
+                    return;
+                }
+            fail(c.line, fmt::format("'{}' has no input pin '{}'", c.folder, key));
+        }
+    }
+
+    void giveSlots() {
+        std::map<unsigned, unsigned> taken;
+        for (const Core& c : chip_.cores)
+            if (c.slot)
+                if (auto [it, isNew] = taken.emplace(c.slot, c.line); !isNew)
+                    fail(c.line, fmt::format("slot {} is taken on line {}", c.slot, it->second));
+        unsigned next = first_;
+        for (Core& c : chip_.cores) {
+            if (c.slot)
+                continue;
+            while (taken.count(next))
+                ++next;
+            if (next >= slotLimit)
+                fail(c.line, fmt::format("all {} slots are taken", slotLimit));
+            c.slot = next;
+            taken[next] = c.line;
+        }
+    }
+
+    void connect(Core& c) {
+        for (Pin& p : c.pins) {
+            if (!p.source.empty()) {
+                const Pin* from = nullptr;
+                for (const Core& other : chip_.cores)
+                    for (const Pin& q : other.pins)
+                        if (other.name + "." + q.name == p.source && q.isOut())
+                            from = &q;
+                if (!from || from->width != p.width)
+                    fail(c.line, fmt::format("{}={}: no core's output of {} bits", p.name, p.source,
+                                             p.width));
+                continue;
+            }
+            unsigned& next = chip_.pins[p.isOut()];
+            p.lsb = next;
+            next += p.width;
+            if (next > pinLimit)
+                fail(c.line,
+                     fmt::format("'{}' of '{}': the chip has {} pins of a direction for cores",
+                                 p.name, c.name, pinLimit));
+        }
+    }
+
+    const std::map<std::string, json>& descriptions_;
+    unsigned first_;
+    unsigned memory_;
+    unsigned long memoryEnd_;
+    Chip chip_;
+    std::map<std::string, unsigned> names_; // to its line; 0: the platform's
+    std::set<std::string> identities_;
+};
+
+} // namespace
+
+Chip readCores(const std::string& list, const json& base,
+               const std::map<std::string, json>& descriptions) {
+    return Reader(base, descriptions).run(list);
+}

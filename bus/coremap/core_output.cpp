@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+//
+// core_output: the chip's cores as address map, as instances in soc.v, and as the firmware's table.
+
+#include "core_list.h"
+#include <algorithm>
+#include <fmt/format.h>
+#include <set>
+
+using nlohmann::ordered_json;
+
+namespace {
+
+std::string upper(std::string s) {
+    for (char& c : s)
+        c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    return s;
+}
+
+std::string bits(unsigned lsb, unsigned width) {
+    return width == 1 ? fmt::format("[{}]", lsb) : fmt::format("[{}:{}]", lsb + width - 1, lsb);
+}
+
+struct Signal {
+    const char* name;
+    bool isOut;
+    unsigned width;
+};
+// A memory port as the master has it (docs/memory.md).
+constexpr Signal npi[] = {{"addr", true, 32},
+                          {"addr_req", true, 1},
+                          {"addr_ack", false, 1},
+                          {"rnw", true, 1},
+                          {"size", true, 4},
+                          {"rmw", true, 1},
+                          {"wr_data", true, 64},
+                          {"wr_be", true, 8},
+                          {"wr_push", true, 1},
+                          {"wr_empty", false, 1},
+                          {"wr_almost_full", false, 1},
+                          {"wr_flush", true, 1},
+                          {"rd_data", false, 64},
+                          {"rd_word", false, 4},
+                          {"rd_pop", true, 1},
+                          {"rd_empty", false, 1},
+                          {"rd_flush", true, 1},
+                          {"init_done", false, 1}};
+
+std::string instance(const Core& c) {
+    std::string s = fmt::format("    // {}: ip/{}\n", c.name, c.folder), pins;
+    for (const Pin& p : c.pins) {
+        std::string at;
+        if (!p.source.empty()) {
+            size_t dot = p.source.find('.');
+            at = fmt::format("pin_{}_{}", p.source.substr(0, dot), p.source.substr(dot + 1));
+        } else if (!p.isOut()) {
+            at = "core_pins_i" + bits(p.lsb, p.width);
+        } else {
+            at = fmt::format("pin_{}_{}", c.name, p.name);
+        }
+        pins += fmt::format(",\n        .{}({})", p.name, at);
+    }
+    s += fmt::format(
+        "    {0} u_{1} (\n"
+        "        .clk_i(clk_i), .rst_i(rst_i),\n"
+        "        .bus_valid_i(slot_valid[{2}]), .bus_write_i(slot_write), .bus_addr_i(slot_addr),\n"
+        "        .bus_wdata_i(slot_wdata), .bus_ready_o(slot_ready[{2}]),\n"
+        "        .bus_rdata_o(slot_rdata[32*{2} +: 32]), .bus_error_o(slot_error[{2}]),\n"
+        "        .irq_o(slot_irq[{2}])",
+        c.folder, c.name, c.slot);
+    if (c.port >= 0)
+        for (const Signal& n : npi)
+            s += fmt::format(",\n        .npi_{0}_{1}(npi_{0}[{2}{3}])", n.name,
+                             n.isOut ? "o" : "i", n.width == 1 ? "" : fmt::format("{}*", n.width),
+                             n.width == 1 ? std::to_string(c.port)
+                                          : fmt::format("{} +: {}", c.port, n.width));
+    return s + pins + "\n    );\n";
+}
+
+} // namespace
+
+ordered_json mapOf(const Chip& chip, const ordered_json& base) {
+    ordered_json map = base;
+    auto& constants = map["constants"];
+    auto set = [&](const std::string& name, unsigned value) {
+        for (auto& c : constants)
+            if (c["name"] == name)
+                c["value"] = value;
+    };
+    auto add = [&](const std::string& name, unsigned value, const std::string& doc) {
+        constants.push_back({{"name", name}, {"value", value}, {"doc", doc}});
+    };
+    set("SLOT_COUNT", chip.slots);
+    set("NPI_PORT_COUNT", chip.ports);
+    add("CORES", std::max<unsigned>(1, static_cast<unsigned>(chip.cores.size())),
+        "cores, 1 where there are none: for tables");
+    for (const Core& c : chip.cores) {
+        add("SLOT_" + upper(c.name), c.slot, "slot of the core " + c.name);
+        if (c.port >= 0)
+            add("NPI_PORT_" + upper(c.name), static_cast<unsigned>(c.port),
+                "memory port of the core " + c.name);
+        add("MEMORY_" + upper(c.name), c.memory,
+            "DDR3 byte address of the buffers of the core " + c.name);
+        for (const Pin& p : c.pins)
+            if (p.source.empty())
+                add("PIN_" + upper(c.name + "_" + p.name), p.lsb,
+                    fmt::format("bit of core_pins_{}, {} wide", p.isOut() ? 'o' : 'i', p.width));
+    }
+    return map;
+}
+
+std::string verilogOf(const Chip& chip) {
+    std::string s =
+        "// Generated from ip/cores.list: do not edit. Cores in their slots, for soc.v.\n\n";
+    for (const Core& c : chip.cores)
+        for (const Pin& p : c.pins)
+            if (p.isOut())
+                s += fmt::format("    wire {}pin_{}_{};\n",
+                                 p.width == 1 ? "" : fmt::format("[{}:0] ", p.width - 1), c.name,
+                                 p.name);
+    for (const Core& c : chip.cores)
+        s += instance(c) + "\n";
+    std::set<unsigned> used;
+    for (const Core& c : chip.cores)
+        used.insert(c.slot);
+    for (unsigned slot = 2; slot < chip.slots; ++slot)
+        if (!used.count(slot))
+            s += fmt::format("    // slot {0} is empty\n"
+                             "    assign slot_ready[{0}] = slot_valid[{0}];\n"
+                             "    assign slot_rdata[32*{0} +: 32] = 32'd0;\n"
+                             "    assign slot_error[{0}] = 1'b1;\n"
+                             "    assign slot_irq[{0}]   = 1'b0;\n\n",
+                             slot);
+    for (const Core& c : chip.cores)
+        for (const Pin& p : c.pins)
+            if (p.isOut())
+                s += fmt::format("    assign core_pins_o{} = pin_{}_{};\n", bits(p.lsb, p.width),
+                                 c.name, p.name);
+    if (chip.pins[1] < 32)
+        s += fmt::format("    assign core_pins_o{} = {}'d0;\n",
+                         bits(chip.pins[1], 32 - chip.pins[1]), 32 - chip.pins[1]);
+    s += "    wire unused_pins = &{1'b0, core_pins_i, 1'b0};\n";
+    return s;
+}
+
+std::string instancesOf(const Chip& chip) {
+    std::string s = "/* Generated from ip/cores.list: do not edit.\n"
+                    " * The firmware's cores: what hw_instance.h declares. */\n"
+                    "#include \"hw_instance.h\"\n#include \"map_regs.h\"\n",
+                table;
+    std::set<std::string> headers;
+    for (const Core& c : chip.cores)
+        if (!c.servantType.empty())
+            headers.insert(c.servantHeader);
+    for (const std::string& h : headers)
+        s += fmt::format("#include \"{}\"\n", h);
+    for (const Core& c : chip.cores) {
+        if (c.servantType.empty())
+            continue;
+        s += fmt::format(
+            "\nstatic {0} {1};\n"
+            "static Hw_Status {1}_start(const Hw_Seam *seam, void *context) {{\n"
+            "    return {0}_init(&{1}, MAP_SLOT_{2}, MAP_MEMORY_{2}, seam, context);\n}}\n"
+            "static void {1}_interrupt(void) {{\n    {0}_interrupt(&{1});\n}}\n"
+            "static U32 {1}_poll(U32 nowMs) {{\n    return {0}_poll(&{1}, nowMs);\n}}\n",
+            c.servantType, "core_" + c.name, upper(c.name));
+        table += fmt::format("    {{\"{0}\", MAP_SLOT_{1}, (Ice_ObjectPtr)&{2}.servant, {2}_start, "
+                             "{2}_interrupt, {2}_poll}},\n",
+                             c.identity, upper(c.name), "core_" + c.name);
+    }
+    return s + "\nconst Hw_Instance hw_instances[] = {\n" + table + "    {0, 0, 0, 0, 0, 0}};\n";
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+//
+// coremap: the chip's cores, a line each in ip/cores.list, as map.regs.json (slots, memory ports,
+// buffers in DDR3, pins), soc_cores.vh (their instances, for soc.v) and soc_cores.c (their
+// servants).
+
+#include "core_list.h"
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <stdexcept>
+
+namespace {
+
+std::string read(const std::string& path) {
+    std::ifstream in(path);
+    if (!in)
+        throw std::runtime_error("1: error: cannot read '" + path + "'");
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void save(const std::string& path, const std::string& text) {
+    std::ofstream out(path, std::ios::binary);
+    out << text;
+    out.close();
+    if (!out)
+        throw std::runtime_error("1: error: cannot write '" + path + "'");
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Puts the cores of a list into the chip: address map, instances in Verilog, the "
+                 "firmware's table."};
+    std::string list, base, outputDir = ".";
+    std::vector<std::string> cores;
+    app.add_option("list", list,
+                   "a core a line: folder [name=] [identity=] [slot=] [input=core.output]")
+        ->required();
+    app.add_option("--base", base, "the platform's map.regs.json")->required();
+    app.add_option("--core", cores, "folder=its description (*.regs.json)");
+    app.add_option("--output-dir", outputDir, "where the three files go");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        std::map<std::string, nlohmann::json> descriptions;
+        for (const std::string& c : cores) {
+            size_t equals = c.find('=');
+            if (equals == std::string::npos)
+                throw std::runtime_error("1: error: --core folder=file, not '" + c + "'");
+            descriptions[c.substr(0, equals)] = nlohmann::json::parse(read(c.substr(equals + 1)));
+        }
+        auto platform = nlohmann::ordered_json::parse(read(base));
+        Chip chip = readCores(read(list), platform, descriptions);
+        save(outputDir + "/map.regs.json", mapOf(chip, platform).dump(2) + "\n");
+        save(outputDir + "/soc_cores.vh", verilogOf(chip));
+        save(outputDir + "/soc_cores.c", instancesOf(chip));
+    } catch (const std::exception& e) {
+        std::cerr << list << ":" << e.what() << "\n";
+        return 1;
+    }
+    return 0;
+}

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * vision_servant: HwProcessingEngine by the vision core: its registers through the FSMC.
+ */
+#include "vision_servant.h"
+#include "fsmc.h"
+#include "uav.h"
+#include "vision_regs.h"
+
+#define FRAME_TIMEOUT_MS 5000U /* a frame takes a tenth of that; a core that takes longer hangs */
+
+enum { DONE, REFUSED }; /* events */
+
+static U32 get(const Vision_Core* self, U32 word) {
+    return FSMC_read(self->core.slot, word);
+}
+
+static void set(const Vision_Core* self, U32 word, U32 value) {
+    FSMC_write(self->core.slot, word, value);
+}
+
+Hw_Status Vision_Core_init(Vision_Core* self, U32 slot, U32 memory, const Hw_Seam* seam,
+                           void* context) {
+    Hw_Status status = Hw_Core_init(&self->core, slot, VISION_ID_VALUE, seam, context);
+    (void)memory; /* frame and records are where the camera and the ground know them */
+    self->busy = 0;
+    if (status != HW_OK)
+        return status;
+    Autopilot_HwProcessingEngine_init(&self->servant);
+    set(self, VISION_FRAME_BASE, UAV_FRAME);
+    set(self, VISION_RESULT_BASE, UAV_RESULT);
+    set(self, VISION_RESULT_MAX, UAV_RESULT_MAX);
+    set(self, VISION_THRESHOLD, 24);
+    return HW_OK;
+}
+
+void Vision_Core_interrupt(Vision_Core* self) {
+    Hw_Core_interrupt(&self->core);
+}
+
+U32 Vision_Core_poll(Vision_Core* self, U32 nowMs) {
+    (void)self;
+    (void)nowMs;
+    return HW_NEVER;
+}
+
+/* Strongest first; of equal ones the first in scan order first. */
+static void insert(Vision_Core* self, const Autopilot_Feature* f) {
+    Ice_Int at = self->bestCount;
+    if (at == VISION_BEST) {
+        if (f->score <= self->best[VISION_BEST - 1].score)
+            return;
+        at = VISION_BEST - 1;
+    } else {
+        ++self->bestCount;
+    }
+    for (; at > 0 && self->best[at - 1].score < f->score; --at)
+        self->best[at] = self->best[at - 1];
+    self->best[at] = *f;
+}
+
+static void readResults(Vision_Core* self) {
+    U32 stored = get(self, VISION_STORED);
+    U32 i;
+    self->found = (Ice_Int)get(self, VISION_FOUND);
+    self->cycles = (Ice_Int)get(self, VISION_CYCLES);
+    self->bestCount = 0;
+    for (i = 0; i < stored; ++i) {
+        U8 record[VISION_RECORD_BYTES];
+        Autopilot_Feature f;
+        FSMC_readMemory(UAV_RESULT + i * VISION_RECORD_BYTES, record, VISION_RECORD_BYTES);
+        f.x = (Ice_Short)(record[0] | (U32)record[1] << 8);
+        f.y = (Ice_Short)(record[2] | (U32)record[3] << 8);
+        f.score = (Ice_Int)(record[4] | (U32)record[5] << 8);
+        insert(self, &f);
+    }
+}
+
+/* Waits for the frame under way, if there is one. */
+static Ice_Status finishFrame(Vision_Core* self) {
+    U32 errorsBefore = UAV_busErrors();
+    if (!self->busy)
+        return ICE_OK;
+    while (!self->core.done[DONE] && !self->core.done[REFUSED])
+        if (!self->core.seam->wait(self->core.context, DONE, FRAME_TIMEOUT_MS) &&
+            !self->core.done[DONE] && !self->core.done[REFUSED]) {
+            set(self, VISION_CONTROL, VISION_CONTROL_ABORT_MASK);
+            return ICE_TIMEOUT;
+        }
+    self->busy = 0;
+    if (self->core.done[REFUSED])
+        return ICE_UNKNOWN_EXCEPTION;
+    readResults(self);
+    if (UAV_busErrors() != errorsBefore)
+        return ICE_UNKNOWN_EXCEPTION; /* the core hangs: what was read is nothing */
+    UAV_frameDone((U32)self->found);
+    return ICE_OK;
+}
+
+Ice_Status Autopilot_HwProcessingEngine_setParameterA(Autopilot_HwProcessingEnginePtr servant,
+                                                      Ice_Short value, const Ice_Current* current) {
+    (void)current;
+    if (value < 0 || value > 255)
+        return ICE_UNKNOWN_EXCEPTION;
+    set((Vision_Core*)servant, VISION_THRESHOLD, (U32)value);
+    return ICE_OK;
+}
+
+Ice_Status Autopilot_HwProcessingEngine_startProcessing(Autopilot_HwProcessingEnginePtr servant,
+                                                        const Ice_Current* current) {
+    Vision_Core* self = (Vision_Core*)servant;
+    U8 size[8];
+    Ice_Status status = finishFrame(self);
+    (void)current;
+    if (status == ICE_TIMEOUT)
+        return status;
+    FSMC_readMemory(UAV_FRAME_HEADER, size, sizeof size);
+    set(self, VISION_FRAME_SIZE,
+        (U32)size[0] | (U32)size[1] << 8 | (U32)size[4] << 16 | (U32)size[5] << 24);
+    self->busy = 1;
+    self->core.done[DONE] = 0;
+    self->core.done[REFUSED] = 0;
+    set(self, VISION_CONTROL, VISION_CONTROL_START_MASK);
+    return ICE_OK;
+}
+
+Ice_Status Autopilot_HwProcessingEngine_getResult(Autopilot_HwProcessingEnginePtr servant,
+                                                  Autopilot_ResultType* res,
+                                                  const Ice_Current* current) {
+    Vision_Core* self = (Vision_Core*)servant;
+    Ice_Status status = finishFrame(self);
+    (void)current;
+    if (status != ICE_OK)
+        return status;
+    res->found = self->found;
+    res->cycles = self->cycles;
+    res->best.size = self->bestCount;
+    res->best.data = self->best;
+    return ICE_OK;
+}

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * vision_servant: HwProcessingEngine (sw/apps/uav/Autopilot.ice) by the vision core in a slot;
+ * shaped as slice2c's servants are (docs/hw-mapping.md).
+ */
+#ifndef VISION_SERVANT_H
+#define VISION_SERVANT_H
+
+#include "Autopilot.h"
+#include "hw_core.h"
+
+#define VISION_BEST 64 /* features in a result, as Autopilot.ice says */
+
+typedef struct Vision_Core {
+    Autopilot_HwProcessingEngine servant;
+    Hw_Core core;
+    U8 busy; /* a frame has begun, and is not read yet */
+    Ice_Int found, cycles, bestCount;
+    Autopilot_Feature best[VISION_BEST];
+} Vision_Core;
+
+Hw_Status Vision_Core_init(Vision_Core* self, U32 slot, U32 memory, const Hw_Seam* seam,
+                           void* context);
+void Vision_Core_interrupt(Vision_Core* self);
+U32 Vision_Core_poll(Vision_Core* self, U32 nowMs);
+
+#endif

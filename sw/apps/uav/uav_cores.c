@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * uav_cores: the servants of the cores in ip/cores.list: their start, their interrupts, and the
+ * task that answers calls which a core takes its time for.
+ */
+#include "hw_instance.h"
+#include "map_regs.h"
+#include "uav.h"
+#include "uav_private.h"
+
+#define MS_PER_TICK (1000U / OS_TICKS_PER_SEC)
+
+static OS_EVENT *waiter, *work; /* the task that waits within an operation; the task below */
+static U32 missing;
+static U8 isStarted[MAP_CORES];
+
+/* One task waits, the one that serves calls; it looks itself whether the event was its own. */
+static int waitEvent(void* context, U32 operation, U32 ms) {
+    INT8U error;
+    (void)context;
+    (void)operation;
+    OSSemPend(waiter, (INT32U)(ms / MS_PER_TICK + 1U), &error);
+    return error == OS_ERR_NONE;
+}
+
+static void postEvent(void* context, U32 operation) {
+    (void)context;
+    (void)operation;
+    (void)OSSemPost(waiter);
+    (void)OSSemPost(work);
+}
+
+static U32 nowMs(void* context) {
+    (void)context;
+    return OSTimeGet() * MS_PER_TICK;
+}
+
+static const Hw_Seam seam = {waitEvent, postEvent, nowMs};
+
+void UAV_initCores(void) {
+    waiter = OSSemCreate(0);
+    work = OSSemCreate(0);
+    missing = 0;
+}
+
+void UAV_startCores(Ice_ObjectAdapterPtr adapter) {
+    U32 i;
+    for (i = 0; hw_instances[i].identity; ++i) {
+        const Hw_Instance* core = &hw_instances[i];
+        isStarted[i] = core->start(&seam, 0) == HW_OK;
+        if (!isStarted[i] ||
+            Ice_ObjectAdapter_add(adapter, core->servant, core->identity) != ICE_OK)
+            ++missing;
+    }
+}
+
+U32 UAV_missingCores(void) {
+    return missing;
+}
+
+void UAV_coresInterrupt(const U32 lines[2]) {
+    U32 i;
+    for (i = 0; hw_instances[i].identity; ++i)
+        if (isStarted[i] && (lines[hw_instances[i].slot >> 5] >> (hw_instances[i].slot & 31U) & 1U))
+            hw_instances[i].interrupt();
+}
+
+void UAV_coresTask(void* argument) {
+    INT8U error;
+    (void)argument;
+    for (;;) {
+        U32 next = HW_NEVER, i;
+        for (i = 0; hw_instances[i].identity; ++i)
+            if (isStarted[i]) {
+                U32 ms = hw_instances[i].poll(nowMs(0));
+                next = ms < next ? ms : next;
+            }
+        /* 0 would be for ever. */
+        OSSemPend(work, next == HW_NEVER ? 0 : (INT32U)(next / MS_PER_TICK + 1U), &error);
+    }
+}

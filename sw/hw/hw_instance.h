@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * hw_instance: the chip's cores with their servants; the table is generated from ip/cores.list
+ * (soc_cores.c).
+ */
+#ifndef HW_INSTANCE_H
+#define HW_INSTANCE_H
+
+#include "hw_core.h"
+#include "icec.h"
+
+typedef struct Hw_Instance {
+    const char* identity; /* 0 ends the table */
+    U32 slot;             /* 2..63 */
+    Ice_ObjectPtr servant;
+    Hw_Status (*start)(const Hw_Seam* seam, void* context);
+    void (*interrupt)(void);
+    /* Answers calls that are done or too late; returns after how many ms it wants to be called
+     * again even without an event, or HW_NEVER. */
+    U32 (*poll)(U32 nowMs);
+} Hw_Instance;
+
+extern const Hw_Instance hw_instances[];
+
+#endif

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT
+ * adder_servant: a servant's outside, as slice2c's have it. */
+#include "hw_core.h"
+#include "icec.h"
+typedef struct Demo_Adder_Core {
+    Ice_Object servant;
+    Hw_Core core;
+} Demo_Adder_Core;
+Hw_Status Demo_Adder_Core_init(Demo_Adder_Core *self, U32 slot, U32 memory, const Hw_Seam *seam, void *context);
+void Demo_Adder_Core_interrupt(Demo_Adder_Core *self);
+U32 Demo_Adder_Core_poll(Demo_Adder_Core *self, U32 nowMs);

@@ -38,7 +38,7 @@ is NPI_PORT_COUNT 0x2
 accepted one 'led\n'
 is SLOT_LED 0x2
 is SLOT_COUNT 0x3
-accepted several 'adder # a comment\nled slot=5 button_i=camera.seen_o\nmover\nmover name=camera identity=eye\n adder name=adder2\n'
+accepted several 'adder identity=eye # a comment\nled slot=5 button_i=camera.seen_o\nmover\nmover name=camera\n adder name=adder2\n'
 is SLOT_ADDER 0x2
 is SLOT_LED 0x5
 is SLOT_MOVER 0x3

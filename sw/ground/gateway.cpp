@@ -142,8 +142,6 @@ public:
     void run() {
         int said = 0;
         while (!stopSignal) {
-            if (engine_->hasFailed() && !reopenRadio())
-                continue;
             wait();
             acceptClient();
             acceptUav();
@@ -168,18 +166,6 @@ private:
         });
         if (!options_.station.empty())
             radioCalls_ = engine_->listen();
-    }
-    // A modem that was unplugged, or does not answer, may be back later. False: not yet.
-    bool reopenRadio() {
-        sessions_.clear();
-        poll(nullptr, 0, 2000);
-        try {
-            openRadio();
-            return true;
-        } catch (const std::system_error& e) {
-            std::cerr << "gateway: " << e.what() << std::endl;
-            return false;
-        }
     }
     void say(const std::string& text) {
         if (options_.trace > 0)

@@ -11,7 +11,12 @@ void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs1
     link->port = port;
     link->context = context;
     link->byteTimeUs16 = byteTimeUs16;
+    link->longest = LINK_MAX_PAYLOAD;
     Link_endSession(link, LINK_STATE_IDLE);
+}
+
+void Link_limitFrame(Link* link, U32 bytes) {
+    link->longest = (U8)(bytes - LINK_OVERHEAD);
 }
 
 void Link_start(Link* link, U32 nowUs) {

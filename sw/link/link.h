@@ -14,7 +14,8 @@
 #include "base.h"
 
 #define LINK_CHANNELS 4
-#define LINK_MAX_FRAME 100U /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
+#define LINK_MAX_FRAME 100U    /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
+#define LINK_MAX_ENCRYPTED 95U /* of one that the modem encrypts (Link_limitFrame) */
 
 /* Options, for the compiler's command line; any two settings understand each other. LINK_MINIMAL
  * chooses the smallest. */
@@ -23,6 +24,7 @@
 #define LINK_HEADS 0
 #define LINK_RIDE 0
 #define LINK_STATISTICS 0
+#define LINK_LIMIT 0
 #define LINK_MAX_MESSAGE 1024U
 #define LINK_SEND_BYTES 2048U
 #define LINK_SEND_MESSAGES 4U
@@ -38,6 +40,9 @@
 #endif
 #ifndef LINK_STATISTICS
 #define LINK_STATISTICS 1
+#endif
+#ifndef LINK_LIMIT
+#define LINK_LIMIT 1 /* Link_limitFrame has an effect */
 #endif
 #ifndef LINK_MAX_MESSAGE
 #define LINK_MAX_MESSAGE \
@@ -109,6 +114,10 @@ typedef struct Link_Statistics {
 /* Prepares `link`. `port` must stay valid; `byteTimeUs16` is the time of one byte on the slowest
  * part of the way, in 1/16 microseconds (111,111 baud: 1440), used for pacing and timers. */
 void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16);
+
+/* Bytes of the longest frame from now on, 32..LINK_MAX_FRAME: a modem that encrypts splits what is
+ * longer than LINK_MAX_ENCRYPTED. The two sides may differ. */
+void Link_limitFrame(Link* link, U32 bytes);
 
 /* Starts the handshake. Both sides may do so; either one's HELLO makes the session. A side that
  * never calls it still answers a HELLO. After the peer has vanished the layer goes back to

@@ -46,7 +46,8 @@ int Link_sendFrame(Link* link, U8* frame, U32 payload, U16 seed) {
     if (LINK_BEFORE(link->paceUntil, link->now))
         link->paceUntil = link->now;
     /* A packet shorter than the longest is followed by the silence that sends it off. */
-    link->paceUntil += (size + (size < LINK_MAX_FRAME ? 4U : 0U)) * link->byteTimeUs16 >> 4;
+    link->paceUntil +=
+        (size + (size < LINK_LONGEST(link) + LINK_OVERHEAD ? 4U : 0U)) * link->byteTimeUs16 >> 4;
     LINK_COUNT(link, framesSent, 1U);
     LINK_COUNT(link, bytesSent, size);
     return 1;

@@ -9,6 +9,9 @@
 #define LINK_MAX_PAYLOAD 95U
 #define LINK_VERSION 2U
 
+/* Payload of the longest frame that is sent. */
+#define LINK_LONGEST(link) (LINK_LIMIT ? (U32)(link)->longest : LINK_MAX_PAYLOAD)
+
 /* Byte 0 and byte 2 of a frame. */
 #define LINK_CONTROL 0x80U
 #define LINK_FIRST 0x80U
@@ -119,6 +122,7 @@ struct Link {
     U8 wanted;       /* Link_start was called */
     U8 hasCandidate; /* a HELLO was answered, its sender has not confirmed yet */
     U8 inputCount;
+    U8 longest;            /* Link_limitFrame's, without the overhead */
     U8 outOfStep;          /* no frame where one should begin: the next one needs confirmation */
     U8 sendBase, sendNext; /* oldest unacknowledged, next new */
     U8 credit, fullCredit; /* the peer's: now, and the most it gave */

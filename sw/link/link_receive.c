@@ -52,8 +52,8 @@ static void deliver(Link* link) {
 static int isWhole(Link* link) {
     U8 sums[2];
     U32 i, size;
-    if (link->messageSize <= LINK_MAX_PAYLOAD)
-        return 1;
+    if (link->messageSize <= LINK_CHECK)
+        return 0;
     size = link->messageSize - LINK_CHECK;
     sums[0] = sums[1] = 0;
     for (i = 0; i < size; ++i)
@@ -86,7 +86,7 @@ static void accept(Link* link, U32 flags, const U8* data, U32 size) {
         return;
     link->messageOpen = 0;
     link->messageStart = link->message + LINK_HEAD_ROOM;
-    if (!isWhole(link)) {
+    if (!(flags & LINK_FIRST) && !isWhole(link)) {
         Link_abort(link);
         return;
     }

@@ -109,6 +109,7 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     Link_Status status = usable(link, channel);
     Link_Packed packed;
     U32 total;
+    int isLong;
     (void)nowUs;
     if (size == 0 || size > LINK_MAX_MESSAGE)
         return LINK_TOO_LONG;
@@ -121,7 +122,8 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     if (LINK_HEADS && (link->session.features & LINK_FEATURE_HEADS))
         Link_packHead(link, channel, data, size, &packed);
     total = packed.prefix + packed.middle + packed.tail;
-    if (total > LINK_MAX_PAYLOAD)
+    isLong = total > LINK_LONGEST(link);
+    if (isLong)
         total += LINK_CHECK; /* of several fragments: with a check over the whole */
     status = enqueue(link, channel, LINK_FIRST, total, tag);
     if (status != LINK_OK)
@@ -131,7 +133,7 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
         Link_putPacked(link, channel, data, size, &packed);
     else
         Link_put(link, data, size);
-    if (total > LINK_MAX_PAYLOAD) {
+    if (isLong) {
         U8 check[LINK_CHECK];
         check[0] = link->check[0];
         check[1] = link->check[1];
@@ -152,7 +154,7 @@ static int cut(Link* link) {
         inFlight >= LINK_WINDOW)
         return 0;
     left = item->size - link->cutBegun;
-    size = left < LINK_MAX_PAYLOAD ? left : LINK_MAX_PAYLOAD;
+    size = left < LINK_LONGEST(link) ? left : LINK_LONGEST(link);
     f->start = link->cutAt;
     f->size = (U8)size;
     f->flags = item->flags;
@@ -188,7 +190,7 @@ static int transmit(Link* link, U8 seq) {
     frame[1] = seq;
     frame[2] = (U8)(f->flags | ask | (U32)link->session.epoch << 2);
     if (LINK_RIDE && (f->flags & LINK_FIRST) && (f->flags & LINK_LAST) && size &&
-        size < LINK_MAX_PAYLOAD && Link_ackMayRide(link)) {
+        size < LINK_LONGEST(link) && Link_ackMayRide(link)) {
         U32 kind = ask ? LINK_KIND_RIDE_ASK : LINK_KIND_RIDE;
         frame[0] = (U8)(LINK_CONTROL | (size + 1U));
         frame[2] = (U8)((frame[2] & 0x1FU) | kind << 5);

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+//
+// settings: what an engine is told about its serial port and its modem.
+
+#ifndef GROUND_SETTINGS_H
+#define GROUND_SETTINGS_H
+
+#include <functional>
+#include <string>
+
+namespace XBeeAT {
+
+struct Settings {
+    std::string device;
+    int baud = 115200;    // target; 115200 is the modem's BD 7, really 111,111
+    int source = 0x0000;  // MY
+    int target = 0x0001;  // DL
+    int rfChannel = 0x0C; // CH
+    int pan = 0x3332;     // ID
+    std::string key;      // AES key, up to 32 hexadecimal digits; empty: the modem's setting stays
+    int guardMs = 1000;   // of the modem as it is
+    bool setUp = true;    // by AT commands
+    int downMs =
+        15000; // the link was down for so long: set the modem up again, it may have been reset
+
+    double characterUs() const { return 1e7 / (baud == 115200 ? 111111 : baud); }
+};
+
+// Levels: 0 error, 1 link and connections, 2 AT commands.
+using Log = std::function<void(int level, const std::string& text)>;
+
+} // namespace XBeeAT
+
+#endif

@@ -39,11 +39,12 @@ U32 Engine::onRandom(void*) {
 }
 
 int Engine::onMessage(void* context, int channel, const U8* data, U32 size) {
-    Stream& s = self(context).streams_[channel];
+    Engine& e = self(context);
+    Stream& s = e.streams_[channel];
     if (!s.isOpen())
         return 0; // the program has closed: nobody wants it
-    return s.give(data, size, clock_.nowUs()) ? 0
-                                              : 1; // a slow program: the link holds the rest back
+    // A slow program: the link holds the rest back.
+    return s.give(data, size, e.clock_.nowUs()) ? 0 : 1;
 }
 
 void Engine::onChannel(void* context, int channel, int isOpen) {

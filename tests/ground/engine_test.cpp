@@ -209,6 +209,47 @@ TEST_F(EngineTest, TheUavMayCallWhenSomebodyListens) {
     close(fd);
 }
 
+// A modem that was given up once is no end: the same listener is called when it is back.
+TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
+    rig_.with([&] {
+        rig_.echo = true;
+        rig_.ground->power(false, rig_.ns());
+    });
+    auto engine = start();
+    int ready = engine->listen();
+    int fd = engine->connect(0);
+    EXPECT_TRUE(readAll(fd, 1).empty()); // nobody answers: who waits is told
+    close(fd);
+    EXPECT_TRUE(logged("0 no modem answers"));
+    rig_.with([&] { rig_.ground->power(true, rig_.ns()); });
+    fd = engine->connect(0);
+    ASSERT_GE(fd, 0);
+    echoes(fd, 1);
+    rig_.with([&] {
+        Link_openChannel(rig_.link(), 3, rig_.us());
+        Bytes m = message(5);
+        Link_send(rig_.link(), 3, m.data(), static_cast<U32>(m.size()), 0, rig_.us());
+    });
+    pollfd p{ready, POLLIN, 0};
+    ASSERT_EQ(poll(&p, 1, 60000), 1);
+    int called = engine->accept();
+    ASSERT_GE(called, 0);
+    EXPECT_EQ(readAll(called, 30), message(5));
+    close(called);
+    close(fd);
+}
+
+// Nobody connects: a listener alone has the modem tried again.
+TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
+    rig_.with([&] { rig_.ground->power(false, rig_.ns()); });
+    auto engine = start();
+    ASSERT_GE(engine->listen(), 0);
+    while (!logged("given up"))
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    rig_.with([&] { rig_.ground->power(true, rig_.ns()); });
+    EXPECT_TRUE(rig_.until([&] { return rig_.isUp(); }));
+}
+
 // A serial port with this test behind it, and no modem: bytes as fast as they are taken.
 class Wire {
 public:

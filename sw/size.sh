@@ -4,7 +4,7 @@
 # size: bytes of each firmware layer on a Cortex-M3 at -Os, beside the paper's Table II; RAM and stack;
 # against the budget, which a layer may not exceed.
 #
-# minimal: sw/apps/minimal, all layers linked with --gc-sections, -DICEC_MINIMAL and -DLINK_MINIMAL; of each layer what is
+# minimal: sw/apps/minimal, all layers linked with --gc-sections, -DICEC_MINIMAL and -DLINK_MINIMAL (sw/link/minimal); of each layer what is
 # in the image (text and read-only data; the C library and generated code are not counted, as in the paper).
 # full: everything that the layer's files hold, all options on, linked or not.
 #
@@ -33,27 +33,28 @@ includes="-I$gen -I$gen/slice/Autopilot"
 for d in base os os/host fsmc radio link icec icec/endpoints; do includes="$includes -I$source/sw/$d"; done
 layers='fsmc radio link icec endpoint'
 
-files() {
-    case $1 in
-    endpoint) echo "$source"/sw/icec/endpoints/xbee_endpoint.c ;;
-    app) echo "$source"/sw/apps/minimal/*.c "$gen"/slice/Autopilot/*.c ;;
-    *) echo "$source"/sw/"$1"/*.c ;;
+files() { # configuration, layer
+    case $1.$2 in
+    minimal.link) echo "$source"/sw/link/minimal/*.c "$source"/sw/link/link_bytes.c ;;
+    *.endpoint) echo "$source"/sw/icec/endpoints/xbee_endpoint.c ;;
+    *.app) echo "$source"/sw/apps/minimal/*.c "$gen"/slice/Autopilot/*.c ;;
+    *) echo "$source"/sw/"$2"/*.c ;;
     esac
 }
 
-compile() { # folder, flags: every file of every layer, a folder a layer
-    folder=$1
+compile() { # configuration, flags: every file of every layer, a folder a layer
+    configuration=$1 folder=$work/$1
     shift
     for layer in $layers app; do
         mkdir -p "$folder/$layer"
         # shellcheck disable=SC2046,SC2086 # lists of words
         (cd "$folder/$layer" && arm-none-eabi-gcc -std=c90 $target -Os -ffunction-sections -fdata-sections -fno-merge-constants \
-            -fstack-usage $includes "$@" -c $(files $layer))
+            -fstack-usage $includes "$@" -c $(files $configuration $layer))
     done
 }
 
-compile "$work/minimal" -DICEC_MINIMAL -DLINK_MINIMAL
-compile "$work/full"
+compile minimal -DICEC_MINIMAL -DLINK_MINIMAL
+compile full
 # shellcheck disable=SC2086
 arm-none-eabi-gcc $target -nostartfiles --specs=nosys.specs --specs=nano.specs -Wl,--gc-sections -Wl,-e,main \
     -Wl,-Map="$work/map" -o "$work/minimal.elf" "$work"/minimal/*/*.o 2>"$work/link.log" || {

@@ -18,16 +18,13 @@
 #define LINK_MAX_ENCRYPTED 95U /* of one that the modem encrypts (Link_limitFrame) */
 
 /* Options, for the compiler's command line; any two settings understand each other. LINK_MINIMAL
- * chooses the smallest. */
+ * chooses the minimal layer (link_minimal.c), which has only LINK_MAX_MESSAGE of them and its own
+ * LINK_LONGEST (for Link_limitFrame) and LINK_OUTCOMES; Link_start does nothing there: the peer
+ * calls. */
 #ifdef LINK_MINIMAL
-#define LINK_WINDOW 1U
-#define LINK_HEADS 0
-#define LINK_RIDE 0
-#define LINK_STATISTICS 0
-#define LINK_LIMIT 0
+#ifndef LINK_MAX_MESSAGE
 #define LINK_MAX_MESSAGE 1024U
-#define LINK_SEND_BYTES 2048U
-#define LINK_SEND_MESSAGES 4U
+#endif
 #endif
 #ifndef LINK_WINDOW
 #define LINK_WINDOW 32U /* fragments in flight, a power of two up to 64; 1: stop and wait */
@@ -152,6 +149,10 @@ U32 Link_deadline(const Link* link, U32 nowUs);
 
 const Link_Statistics* Link_statistics(const Link* link);
 
+#ifdef LINK_MINIMAL
+#include "minimal/link_minimal.h"
+#else
 #include "link_private.h"
+#endif
 
 #endif

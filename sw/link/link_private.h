@@ -5,37 +5,13 @@
 #ifndef LINK_PRIVATE_H
 #define LINK_PRIVATE_H
 
-#define LINK_OVERHEAD 5U
-#define LINK_MAX_PAYLOAD 95U
-#define LINK_VERSION 2U
+#include "link_wire.h"
 
 /* Payload of the longest frame that is sent. */
 #define LINK_LONGEST(link) (LINK_LIMIT ? (U32)(link)->longest : LINK_MAX_PAYLOAD)
 
-/* Byte 0 and byte 2 of a frame. */
-#define LINK_CONTROL 0x80U
-#define LINK_FIRST 0x80U
-#define LINK_LAST 0x40U
-#define LINK_ACK_NOW 0x20U
-
-/* What a side understands, in bits 1..0 of byte 2 of HELLO and HELLO-ACK; used if both do. */
-#define LINK_FEATURE_HEADS 1U
-#define LINK_FEATURE_RIDE 2U
 #define LINK_FEATURES \
     ((LINK_HEADS ? LINK_FEATURE_HEADS : 0U) | (LINK_RIDE ? LINK_FEATURE_RIDE : 0U))
-#define LINK_NO_SEED 0xFFFFU /* of the checksums outside a session */
-
-typedef enum Link_Kind {
-    LINK_KIND_ACK,
-    LINK_KIND_HELLO,
-    LINK_KIND_HELLO_ACK,
-    LINK_KIND_RST,
-    LINK_KIND_BYE,
-    LINK_KIND_PING,
-    LINK_KIND_RIDE,     /* a whole message of one fragment with an acknowledgement */
-    LINK_KIND_RIDE_ASK, /* the same with LINK_ACK_NOW */
-    LINK_KIND_DATA      /* no control frame */
-} Link_Kind;
 
 /* Times in microseconds. */
 #define LINK_ACK_DELAY 20000U    /* an acknowledgement waits this long for company */
@@ -52,7 +28,6 @@ typedef enum Link_Kind {
 #define LINK_POLL_EVERY 1000U  /* while the radio has no room */
 #define LINK_OFFER_EVERY 5000U /* while nobody takes a message */
 
-#define LINK_BEFORE(a, b) ((S32)((a) - (b)) < 0)
 #define LINK_SLACK(link) \
     (LINK_MAX_FRAME * (link)->byteTimeUs16 >> 4) /* time of the longest frame */
 #define LINK_SLOT(seq) ((seq) & (LINK_WINDOW - 1U))
@@ -166,12 +141,8 @@ struct Link {
 };
 
 /* frame */
-U16 Link_crc(U16 seed, const U8* bytes, U32 size);
 int Link_sendFrame(Link* link, U8* frame, U32 payload, U16 seed);
 int Link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 byte1, U32 size);
-void Link_sum(U8 sums[2], const U8* byte);
-U32 Link_get32(const U8* p);
-void Link_put32(U8* p, U32 value);
 void Link_pollInput(Link* link);
 
 /* session */

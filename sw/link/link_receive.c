@@ -51,13 +51,12 @@ static void deliver(Link* link) {
  * once in 65,536 times. */
 static int isWhole(Link* link) {
     U8 sums[2];
-    U32 i, size;
+    U32 size;
     if (link->messageSize <= LINK_CHECK)
         return 0;
     size = link->messageSize - LINK_CHECK;
     sums[0] = sums[1] = 0;
-    for (i = 0; i < size; ++i)
-        Link_sum(sums, link->messageStart + i);
+    Link_sum(sums, link->messageStart, size);
     link->messageSize = (U16)size;
     return size <= LINK_MAX_MESSAGE + LINK_ESCAPE &&
            memcmp(sums, link->messageStart + size, LINK_CHECK) == 0;

@@ -42,10 +42,9 @@ void Link_resetSend(Link* link) {
 
 /* Adds bytes to the ring, and to the check of their message. */
 void Link_put(Link* link, const U8* data, U32 size) {
-    while (size--) {
-        Link_sum(link->check, data);
+    Link_sum(link->check, data, size);
+    while (size--)
         link->queue[RING(link->queueTail++)] = *data++;
-    }
 }
 
 /* An entry of the queue for `size` bytes, which the caller puts in. */

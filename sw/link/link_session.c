@@ -10,16 +10,10 @@
  */
 #include "link.h"
 
-/* Both sides compute the same, whoever called first. */
 static void makeSession(Link* link, Link_Session* session, const U8* peer, U32 features) {
-    U8 bytes[4];
-    U32 nonce = link->helloNonce;
-    U32 peerNonce = Link_get32(peer);
-    Link_put32(bytes, (nonce ^ peerNonce) * 2654435761U + nonce + peerNonce);
-    session->nonce = nonce;
-    session->peerNonce = peerNonce;
-    session->seed = Link_crc(0x1D0FU, bytes, 4);
-    session->epoch = (U8)(bytes[3] >> 5);
+    session->nonce = link->helloNonce;
+    session->peerNonce = Link_get32(peer);
+    session->epoch = (U8)Link_mixNonces(session->nonce, session->peerNonce, &session->seed);
     session->features = (U8)(features & LINK_FEATURES);
 }
 

@@ -1,0 +1,335 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_minimal: the side that is called, in 1.3 KiB of code: the same wire format and functions as
+ * the full layer's, stop and wait, one message in the queue.
+ *
+ * It never calls: the peer's HELLO makes the session, another one ends it, and so do 9 s without a
+ * good frame, BYE and RST. Every fragment asks for an acknowledgement
+ * at once and goes out again when the timer is over. A message that nobody takes is not
+ * acknowledged, so its last fragment comes again. After a bad frame the next one is looked for
+ * behind a silence, which stop and wait sees to.
+ */
+#include "link.h"
+
+#include <stddef.h>
+#include <string.h>
+
+/* Times in microseconds, of few bits: such a constant is part of the instruction. */
+#define DEAD_AFTER 0x890000U /* 9.0 s */
+#define FRAME_GAP 0x6200U    /* 25 ms of silence, behind which a frame begins */
+#define POLL_EVERY 1000U     /* while something is to be done at once */
+
+/* Of a channel; LINK_FIRST and LINK_LAST: what is to be sent about it. */
+#define OPEN 1U
+#define CLOSING 2U /* closed here, the peer's closing has not come yet */
+#define DUE (LINK_FIRST | LINK_LAST)
+
+/* What link->frame holds from its byte 3 on; `header`: the bytes before, the low one first. */
+static void transmit(Link* link, U32 header) {
+    U8* frame = link->frame;
+    U32 size = (header & 0x7FU) + LINK_OVERHEAD - 2U;
+    U32 crc;
+    frame[0] = (U8)header;
+    frame[1] = (U8)(header >> 8);
+    frame[2] = (U8)(header >> 16 | (U32)link->epoch << 2);
+    crc = Link_crc((U16)link->seed, frame, size);
+    frame[size] = (U8)(crc >> 8);
+    frame[size + 1U] = (U8)crc;
+    /* What the radio has no room for is as good as lost. */
+    (void)link->port->transmit(link->context, frame, size + 2U);
+}
+
+#define HEADER(byte0, byte1, byte2) ((byte0) | (U32)(byte1) << 8 | (U32)(byte2) << 16)
+#define CONTROL(kind, byte1, size) HEADER(LINK_CONTROL | (size), byte1, (U32)(kind) << 5)
+
+static void report(Link* link, Link_Outcome outcome) {
+    if (!LINK_OUTCOMES || link->outSize == 0)
+        return;
+    if (link->port->outcome)
+        link->port->outcome(link->context, link->channel, link->tag, outcome);
+    if (link->port->writable)
+        link->port->writable(link->context);
+}
+
+/* Leaves the session, if there is one; what it was is forgotten, and reported. */
+static void lose(Link* link) {
+    int channel;
+    if (link->state != LINK_STATE_UP)
+        return;
+    link->state = LINK_STATE_IDLE;
+    report(link, LINK_UNKNOWN);
+    for (channel = 0; channel < LINK_CHANNELS; ++channel)
+        if (link->channels[channel] & OPEN)
+            link->port->channel(link->context, channel, 0);
+    memset(link->channels, 0, offsetof(Link, nonce) - offsetof(Link, channels));
+    link->port->state(link->context, LINK_STATE_IDLE);
+}
+
+/* ---- what arrives ---- */
+
+static void onHello(Link* link, const U8* frame) {
+    U32 peerNonce = Link_get32(frame + 3);
+    U16 seed;
+    if (peerNonce != link->peerNonce) { /* else our answer was lost */
+        lose(link);
+        link->peerNonce = peerNonce;
+        link->nonce = link->port->random(link->context);
+        link->heardAt = link->inputAt;
+        link->state = LINK_STATE_UP;
+        link->port->state(link->context, LINK_STATE_UP);
+    }
+    link->seed = LINK_NO_SEED;
+    Link_put32(link->frame + 3, link->nonce);
+    Link_put32(link->frame + 7, peerNonce);
+    transmit(link, CONTROL(LINK_KIND_HELLO_ACK, LINK_VERSION, 8));
+    link->epoch = (U8)Link_mixNonces(link->nonce, peerNonce, &seed);
+    link->seed = seed;
+}
+
+static void onChannel(Link* link, U32 channel, U32 isOpen) {
+    U8* c = link->channels + channel;
+    if (*c & CLOSING) {
+        if (!isOpen)
+            *c ^= CLOSING; /* the answer to our closing */
+    } else if (isOpen != (*c & OPEN)) {
+        *c = isOpen ? OPEN : LINK_LAST;
+        link->port->channel(link->context, (int)channel, (int)isOpen);
+    }
+}
+
+/* The fragment that is expected. A message on a channel that was closed here is dropped. */
+static void onData(Link* link, const U8* frame, U32 size) {
+    U32 flags = frame[2];
+    U32 channel = flags & 3U;
+    U32 have = link->messageSize + size;
+    if (size == 0) {
+        onChannel(link, channel, flags >> 7);
+    } else {
+        if (have > sizeof link->message) {
+            lose(link);
+            return;
+        }
+        memcpy(link->message + link->messageSize, frame + 3, size);
+        if (flags & LINK_LAST) {
+            if (have != size) { /* of several fragments */
+                U8 sums[LINK_CHECK];
+                have -= LINK_CHECK;
+                sums[0] = sums[1] = 0;
+                Link_sum(sums, link->message, have);
+                if (have == 0 || memcmp(sums, link->message + have, LINK_CHECK) != 0) {
+                    lose(link);
+                    return;
+                }
+            }
+            if ((link->channels[channel] & OPEN) &&
+                link->port->message(link->context, (int)channel, link->message, have) != 0)
+                return;
+            have = 0;
+        }
+        link->messageSize = have;
+    }
+    ++link->receiveNext;
+}
+
+static void onAck(Link* link, U32 cumulative) {
+    if (!link->flags || (U8)(link->sendNext + 1U) != cumulative)
+        return;
+    link->sendNext = (U8)cumulative;
+    link->flags = 0;
+    link->outAt += link->size;
+    if (link->outAt == link->outSize) {
+        report(link, LINK_DELIVERED);
+        link->outSize = link->outAt = 0;
+    }
+}
+
+static void takeFrame(Link* link, const U8* frame, U32 size) {
+    int isControl = frame[0] >> 7;
+    U32 kind = frame[2] >> 5;
+    U32 epoch = frame[2] >> 2 & 7U;
+    if (isControl && kind - LINK_KIND_HELLO < 3U) {
+        if (Link_crc(LINK_NO_SEED, frame, size) != 0)
+            return;
+        if (kind == LINK_KIND_HELLO && frame[1] == LINK_VERSION)
+            onHello(link, frame);
+        else if (kind == LINK_KIND_RST && epoch == link->epoch)
+            lose(link);
+    } else if (link->state != LINK_STATE_UP) { /* somebody talks in a session of before */
+        link->epoch = (U8)epoch;
+        link->seed = LINK_NO_SEED;
+        transmit(link, CONTROL(LINK_KIND_RST, 0, 0U));
+    } else if (epoch == link->epoch && Link_crc((U16)link->seed, frame, size) == 0) {
+        link->heardAt = link->inputAt;
+        if (isControl && kind == LINK_KIND_ACK) {
+            onAck(link, frame[1]);
+        } else if (isControl && kind == LINK_KIND_BYE) {
+            lose(link);
+        } else {
+            link->ackDue = 1;
+            if (!isControl && frame[1] == link->receiveNext)
+                onData(link, frame, size - LINK_OVERHEAD);
+        }
+    }
+}
+
+void Link_receive(Link* link, const U8* bytes, U32 size, int isPacketEnd, U32 nowUs) {
+    (void)isPacketEnd; /* silence will tell */
+    if (nowUs - link->inputAt > FRAME_GAP)
+        link->inputCount = 0;
+    link->inputAt = nowUs;
+    while (size--) {
+        U32 whole = (link->input[0] & 0x7FU) + LINK_OVERHEAD;
+        link->input[link->inputCount++] = *bytes++;
+        if (link->inputCount == whole) {
+            takeFrame(link, link->input, whole);
+            link->inputCount = 0;
+        }
+    }
+}
+
+/* ---- what goes out ---- */
+
+/* The next fragment: openings come first, closings after the message. */
+static U32 cut(Link* link) {
+    U32 size, channel, flags;
+    link->size = 0;
+    for (channel = 0; channel < LINK_CHANNELS; ++channel) {
+        U8* c = link->channels + channel;
+        flags = *c & DUE;
+        if (flags && (flags > LINK_FIRST || !link->outSize)) {
+            *c = *c & (U8)~DUE;
+            return flags | channel;
+        }
+    }
+    size = link->outSize - link->outAt;
+    if (!size)
+        return 0;
+    flags = link->channel;
+    if (!link->outAt)
+        flags |= LINK_FIRST;
+    if (size > LINK_LONGEST)
+        size = LINK_LONGEST;
+    else
+        flags |= LINK_LAST;
+    link->size = size;
+    return flags | LINK_ACK_NOW;
+}
+
+void Link_poll(Link* link, U32 nowUs) {
+    if (link->state != LINK_STATE_UP)
+        return;
+    if (nowUs - link->heardAt >= DEAD_AFTER) {
+        lose(link);
+        return;
+    }
+    if (link->ackDue) {
+        link->ackDue = 0;
+        link->frame[3] = 1; /* credit */
+        transmit(link, CONTROL(LINK_KIND_ACK, link->receiveNext, 1U));
+    }
+    if (!link->flags) {
+        link->flags = (U8)cut(link);
+        link->timerAt = nowUs;
+    }
+    if (link->flags && !LINK_BEFORE(nowUs, link->timerAt)) {
+        link->timerAt = nowUs + link->retryUs;
+        memcpy(link->frame + 3, link->out + link->outAt, link->size);
+        transmit(link, HEADER(link->size, link->sendNext, link->flags));
+    }
+}
+
+U32 Link_deadline(const Link* link, U32 nowUs) {
+    U32 at = link->heardAt + DEAD_AFTER;
+    int c, due = link->ackDue;
+    if (link->state != LINK_STATE_UP)
+        return 0xFFFFFFFFU;
+    for (c = 0; c < LINK_CHANNELS && !link->flags; ++c)
+        due |= link->outSize || (link->channels[c] & DUE);
+    if (due)
+        return POLL_EVERY;
+    if (link->flags && LINK_BEFORE(link->timerAt, at))
+        at = link->timerAt;
+    return LINK_BEFORE(at, nowUs) ? 0 : at - nowUs;
+}
+
+/* ---- the program's side ---- */
+
+void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16) {
+    memset(link, 0, sizeof *link);
+    link->port = port;
+    link->context = context;
+    link->retryUs = byteTimeUs16 * LINK_MAX_FRAME; /* the time of 16 of the longest frames */
+}
+
+void Link_start(Link* link, U32 nowUs) {
+    (void)link;
+    (void)nowUs;
+}
+
+void Link_stop(Link* link, U32 nowUs) {
+    (void)nowUs;
+    if (link->state == LINK_STATE_UP)
+        transmit(link, CONTROL(LINK_KIND_BYE, 0, 0U));
+    lose(link);
+}
+
+Link_State Link_state(const Link* link) {
+    return (Link_State)link->state;
+}
+
+const Link_Statistics* Link_statistics(const Link* link) {
+    static const Link_Statistics none;
+    (void)link;
+    return &none;
+}
+
+/* Of the channel; 0: there is no session, or no such channel. */
+static U8* channelOf(Link* link, int channel) {
+    return link->state == LINK_STATE_UP && (U32)channel < LINK_CHANNELS ? link->channels + channel
+                                                                        : 0;
+}
+
+Link_Status Link_openChannel(Link* link, int channel, U32 nowUs) {
+    U8* c = channelOf(link, channel);
+    (void)nowUs;
+    if (!c)
+        return LINK_DOWN;
+    if (*c & (LINK_LAST | CLOSING))
+        return LINK_FULL;
+    *c = OPEN | DUE;
+    return LINK_OK;
+}
+
+Link_Status Link_closeChannel(Link* link, int channel, U32 nowUs) {
+    U8* c = channelOf(link, channel);
+    (void)nowUs;
+    if (!c || !(*c & OPEN))
+        return LINK_CLOSED;
+    if (*c & LINK_FIRST)
+        return LINK_FULL; /* the opening is still to be sent */
+    *c = CLOSING | LINK_LAST;
+    return LINK_OK;
+}
+
+Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag, U32 nowUs) {
+    const U8* c = channelOf(link, channel);
+    U8* sums = link->out + size;
+    (void)nowUs;
+    if (!c || !(*c & OPEN))
+        return LINK_CLOSED;
+    if (size - 1U >= LINK_MAX_MESSAGE)
+        return LINK_TOO_LONG;
+    if (link->outSize)
+        return LINK_FULL;
+    memcpy(link->out, data, size);
+    if (size > LINK_LONGEST) {
+        sums[0] = sums[1] = 0;
+        Link_sum(sums, data, size);
+        size += LINK_CHECK;
+    }
+    link->outSize = size;
+    link->channel = (U8)channel;
+    if (LINK_OUTCOMES)
+        link->tag = tag;
+    return LINK_OK;
+}

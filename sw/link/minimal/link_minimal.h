@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_minimal: the fields of a Link in the minimal layer. Included by link.h only.
+ */
+#ifndef LINK_MINIMAL_H
+#define LINK_MINIMAL_H
+
+#include "link_wire.h"
+
+#ifndef LINK_LONGEST
+#define LINK_LONGEST LINK_MAX_PAYLOAD /* payload of a frame; 90 where the modem encrypts */
+#endif
+#ifndef LINK_OUTCOMES
+#define LINK_OUTCOMES 0 /* 1: `outcome` and `writable` are called */
+#endif
+
+#define LINK_CHECK 2U        /* bytes behind a message of several fragments */
+#define LINK_INPUT_BYTES 132 /* so that no length that a frame may claim goes beyond */
+
+/* Small and often used fields first: a Cortex-M3 reaches them with short instructions. */
+struct Link {
+    U8 state; /* Link_State */
+    U8 epoch;
+    /* From here on all is 0 when a session begins. */
+    U8 channels[LINK_CHANNELS]; /* what is open, and what is to be said about it */
+    U8 sendNext;                /* SEQ of the fragment in flight, or of the next one */
+    U8 receiveNext;             /* SEQ expected */
+    U8 ackDue;
+    U8 flags;           /* byte 2 of the fragment in flight; 0: there is none */
+    U8 channel;         /* of the message going out */
+    U32 outSize, outAt; /* of the message going out, and where the next fragment begins */
+    U32 size;           /* bytes of the fragment in flight */
+    U32 messageSize;    /* so far */
+    U32 peerNonce;      /* 0: no session */
+    /* Up to here. */
+    U32 nonce, seed;
+    U32 timerAt; /* when the fragment in flight goes out again, ... */
+    U32 retryUs; /* and how long after the last time */
+    U32 inputAt, heardAt;
+    U32 inputCount;
+    const Link_Port* port;
+    void* context;
+    U32 tag;
+    U8 input[LINK_INPUT_BYTES];
+    U8 frame[LINK_MAX_FRAME]; /* going out */
+    U8 out[LINK_MAX_MESSAGE + LINK_CHECK];
+    U8 message[LINK_MAX_MESSAGE + LINK_CHECK];
+};
+
+#endif

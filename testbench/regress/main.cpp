@@ -4,6 +4,7 @@
 
 #include "failures.h"
 #include "history.h"
+#include "lights.h"
 #include "report.h"
 #include "shell.h"
 #include <CLI/CLI.hpp>
@@ -113,7 +114,8 @@ void summary(const nlohmann::json& data, const std::vector<Failure>& failures, c
             std::cout << ' ' << name.get<std::string>();
         std::cout << '\n';
     }
-    std::cout << fmt::format("\n{} passed, {} failed, {} skipped in {:.0f} s; {}/report.html\n", data["passed"].get<int>(),
+    std::cout << '\n' << lightsText(data["lights"]);
+    std::cout << fmt::format("{} passed, {} failed, {} skipped in {:.0f} s; {}/report.html\n", data["passed"].get<int>(),
                              data["failed"].get<int>(), data["skipped"].get<int>(), data["seconds"].get<double>(), out);
 }
 

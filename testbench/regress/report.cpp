@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 
 #include "report.h"
+#include "lights.h"
 #include "page.h"
 #include <filesystem>
 #include <fmt/format.h>
@@ -33,6 +34,16 @@ json readMutants(const std::string& path) {
         rows.push_back({name, result, test, seconds});
     }
     return rows;
+}
+
+// The page has room for so much; all of it is in coverage's own summary.
+void shorten(json& missed) {
+    constexpr size_t shown = 40;
+    if (!missed.is_array() || missed.size() <= shown)
+        return;
+    size_t more = missed.size() - shown;
+    missed.erase(missed.begin() + shown, missed.end());
+    missed.push_back(fmt::format("and {} more", more));
 }
 
 // What prove.sh says: "X: proven, 47 clauses with 33 flops", "X: 2 covers reached".
@@ -75,6 +86,10 @@ std::string markdown(const json& data) {
     std::string text = fmt::format("# Regression: {} passed, {} failed, {} skipped\n\n", data["passed"].get<int>(),
                                    data["failed"].get<int>(), data["skipped"].get<int>());
     text += fmt::format("Commit `{}`, {:.0f} s.\n", data["commit"].get<std::string>(), data["seconds"].get<double>());
+    text += "\n| light | | |\n|---|---|---|\n";
+    for (auto& each : data["lights"])
+        text += fmt::format("| {} | {} | {} |\n", each["name"].get<std::string>(), each["state"].get<std::string>(),
+                            each["text"].get<std::string>());
     if (!data["failures"].empty()) {
         text += "\n| bucket | test | repeat |\n|---|---|---|\n";
         for (auto& f : data["failures"])
@@ -129,6 +144,13 @@ json gather(const History& history, const std::vector<Test>& tests, const std::v
         if (!found.is_discarded() && !found.is_null())
             data[key] = found;
     }
+    json simulator = readJson(build + "/bench/simulator.json");
+    if (simulator.is_array() && data.contains("speed"))
+        data["speed"]["entries"].insert(data["speed"]["entries"].end(), simulator.begin(), simulator.end());
+    if (data.contains("coverage"))
+        for (json& file : data["coverage"]["files"])
+            shorten(file["missed"]);
+    data["lights"] = lightsOf(data);
     return data;
 }
 

@@ -14,5 +14,5 @@ for run in 1 2 3; do
     best=$(echo "$best $speed" | awk '{print ($1 > $2) ? $1 : $2}')
 done
 mkdir -p "$(dirname "$json")"
-echo "[{\"name\": \"simulator speed\", \"value\": $best, \"unit\": \"million clocks/s\", \"limit\": 1.5, \"share\": $(echo "$best" | awk '{print $1 / 1.5}'), \"command\": \"make bench\"}]" >"$json"
+echo "[{\"name\": \"simulator speed\", \"value\": $best, \"unit\": \"million clocks/s, at least\", \"limit\": 1.5, \"share\": $(echo "$best" | awk '{print $1 / 1.5}'), \"command\": \"make bench\"}]" >"$json"
 echo "best $best million clocks/s; 1.5 is wanted, 2.0 is real time. Written: $json"

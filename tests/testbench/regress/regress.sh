@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: MIT
 #
 # regress.sh: the regression tool on a small project of its own, with tests that pass, fail, flicker and crash.
-# Usage: regress.sh case regress-binary work-folder cluster-script
+# Usage: regress.sh case regress-binary work-folder source-folder build-folder
 set -eu
-case=$1 regress=$2 work=$3 cluster=$4
+case=$1 regress=$2 work=$3 source=$4 build=$5
+cluster=$source/tests/testbench/regress/slurm_cluster.sh
 fail() {
     echo "$case: $*" >&2
     [ ! -f out.txt ] || cat out.txt >&2
@@ -119,5 +120,6 @@ page)
     has 'value 1 is not 7' dom.html
     hasNot 'src="http\|href="http' build/regress/report.html # offline
     ;;
+lights_*) . "$source/tests/testbench/regress/lights.sh" ;;
 *) fail "no such case" ;;
 esac

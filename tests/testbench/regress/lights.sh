@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+#
+# lights: a bug of each kind, seeded on purpose, turns its light red and no other. Sourced by regress.sh, in its project.
+
+# light name state: in the last run's output
+light() { has "^$1  *$2"; }
+
+# The proof's and the coverage test's design: two bits that count to 2.
+design() {
+    mkdir -p hdl/small bus ip build/coverage
+    cat >hdl/small/counter.v <<'END'
+`default_nettype none
+module counter (input wire clk_i, input wire rst_i, input wire enable_i, output reg [1:0] count_o);
+    always @(posedge clk_i) begin
+        if (enable_i)
+            count_o <= (count_o == 2) ? 0 : count_o + 1;
+        if (rst_i)
+            count_o <= 0;
+    end
+`ifdef FORMAL
+    initial assume (rst_i);
+    reg past = 0;
+    always @(posedge clk_i) past <= 1;
+    always @* if (past) begin
+        assert (count_o != 3);
+        cover (count_o == 2);
+    end
+`endif
+endmodule
+END
+}
+
+case $case in
+lights_function)
+    run --name 'a[.]'
+    light tests green
+    run --name '[ab][.]'
+    light tests 'red   *1 failed: test_b.Bad'
+    has '^| tests | red | 1 failed: test_b.Bad' build/regress/summary.md
+    ;;
+lights_proof)
+    design
+    touch bus/none.v
+    cat >>tests/room/CMakeLists.txt <<END
+add_test(NAME formal.counter COMMAND $source/tests/hdl/formal/prove.sh counter 6 $work $work/build/proof)
+set_tests_properties(formal.counter PROPERTIES LABELS formal)
+END
+    cmake build/main >/dev/null
+    run --name 'formal|a[.]'
+    light proofs green
+    sed -i 's/count_o == 2) ? 0/count_o == 3) ? 0/' hdl/small/counter.v # one value too many
+    run --name 'formal|a[.]'
+    light proofs 'red   *1 failed: formal.counter'
+    light tests green
+    ;;
+lights_coverage)
+    design
+    cat >main.cpp <<'END'
+#include "Vcounter.h"
+#include <cstdlib>
+#include <verilated_cov.h>
+int main() {
+    Vcounter top;
+    for (int i = 0; i < 40; ++i) {
+        top.rst_i = i < 4 || i > 30;
+        top.enable_i = !std::getenv("LAZY") && i % 3;
+        top.clk_i = i & 1;
+        top.eval();
+    }
+    VerilatedCov::write("build/coverage/small.dat");
+}
+END
+    echo '{"gates": {"hdl/": {"lines": 95, "toggles": 95}}}' >gates.json
+    verilator --cc --exe --build --coverage -O0 -Mdir build/small hdl/small/counter.v "$PWD/main.cpp" \
+        -MAKEFLAGS "OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0 CXX='$(command -v ccache) g++'" >verilator.log 2>&1 || fail "$(tail -5 verilator.log)"
+    measure() { # environment
+        env "$@" build/small/Vcounter
+        status=0
+        "$build/testbench/regress/coverage" --gates gates.json --verilator build/coverage/small.dat \
+            --out build/coverage/summary.json >coverage.txt 2>&1 || status=$?
+        run --name 'a[.]'
+    }
+    measure SEED=1
+    light coverage green
+    measure LAZY=1 # the stimulus is forgotten: the test still passes
+    light coverage 'red   *1 files below their gate: hdl/small/counter.v'
+    light tests green
+    measure SEED=1
+    light coverage green
+    ;;
+lights_mutants)
+    mkdir -p build/mutants
+    printf 'small/one\tcaught\ttest_a\t1\nsmall/two\tcaught\ttest_a\t1\n' >build/mutants/results.tsv
+    run --name 'a[.]'
+    light mutants 'green  2 of 2 caught'
+    sed -i 's/two.caught/two\tSURVIVED/' build/mutants/results.tsv
+    run --name 'a[.]'
+    light mutants 'red   *1 of 2 not caught: small/two'
+    light tests green
+    ;;
+lights_speed)
+    mkdir -p build/bench
+    measure() { # program
+        status=0
+        RUNS=1 FRAMES=1 "$source/testbench/speed/speed.sh" "$1" - "$build/gen" "$build/gen/vision.v" build/speed \
+            build/bench/rtl.json >speed.txt 2>&1 || status=$?
+        run --name 'a[.]'
+    }
+    measure "$build/testbench/speed/speed"
+    light speed green
+    printf '#!/bin/sh\nsleep 15\nexec "%s" "$@"\n' "$build/testbench/speed/speed" >slow # as a model that costs too much
+    chmod +x slow
+    status=0
+    measure "$PWD/slow"
+    light speed 'red   *1 beyond their limits: Verilator over Icarus'
+    light tests green
+    ;;
+esac

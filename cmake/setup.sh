@@ -25,6 +25,7 @@ nlohmann-json3-dev register descriptions, reports
 libfmt-dev text formatting
 libcli11-dev command lines
 libpugixml-dev reads JUnit results
+libssl-dev AES of the modem's model
 lcov coverage pages
 chromium opens the report pages in tests
 git finds what changed

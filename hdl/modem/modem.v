@@ -75,7 +75,7 @@ module modem #(
     wire        bit_tick; // eight a bit time
     wire [3:0]  bd_now;
 
-    reg         ready, reset_n, pulse_ends;
+    reg         ready, reset_n, pulse_ends, encrypt;
     reg  [7:0]  framing_errors, overruns, retries, unsents;
     reg  [1:0]  cts_sync;
 
@@ -215,7 +215,7 @@ module modem #(
     endgenerate
 
     modem_tx #(.API(API)) u_tx (
-        .clk_i(clk_i), .rst_i(rings_reset), .enable_i(ready),
+        .clk_i(clk_i), .rst_i(rings_reset), .enable_i(ready), .encrypt_i(encrypt),
         .packet_valid_i(tx_waits), .packet_bytes_i(tx_bytes), .sent_o(tx_sent),
         .rd_valid_o(rd_valid), .rd_index_o(rd_index), .rd_done_i(rd_done), .rd_data_i(rd_data),
         .tx_valid_o(body_valid), .tx_data_o(body_data), .tx_ready_i(body_ready), .tx_last_o(body_last),
@@ -268,6 +268,8 @@ module modem #(
         if (reg_write)
             words[key_write ? {3'b100, key_index} : {1'b0, reg_addr}] <= reg_wdata;
         key_index <= key_index + {1'b0, key_write};
+        if (reg_write && reg_addr == MODEM_NET)
+            encrypt <= reg_wdata[MODEM_NET_ENCRYPT_LSB];
 
         if (at_done)
             ready <= 1'b1;

@@ -2,8 +2,8 @@
 //
 // modem_tx: takes packets out of the transmit ring and sends them, each as one RF packet.
 //
-// After a packet of fewer than 100 bytes the line rests for four characters: more than the modem's RO
-// of 3, so that it sends the packet off. One of 100 leaves by itself.
+// After a packet of fewer than 100 bytes (95 where the modem encrypts) the line rests for four characters:
+// more than the modem's RO of 3, so that it sends the packet off. One of 100 (95) leaves by itself.
 
 `default_nettype none
 
@@ -13,6 +13,7 @@ module modem_tx #(
     input  wire       clk_i,
     input  wire       rst_i,        // also drops the packet under way
     input  wire       enable_i,     // the modem is set up
+    input  wire       encrypt_i,    // and encrypts
     // oldest packet of the ring
     input  wire       packet_valid_i,
     input  wire [6:0] packet_bytes_i,
@@ -30,13 +31,13 @@ module modem_tx #(
     input  wire       cts_i         // 1: the modem takes bytes
 );
     localparam [1:0] FETCH = 2'd0, SEND = 2'd1, REST = 2'd2;
-    localparam [6:0] LONGEST = 7'd100;
+    wire [6:0] longest = encrypt_i ? 7'd95 : 7'd100;
 
     reg [1:0] state;
     reg [8:0] rest; // ticks of silence
 
     wire last   = rd_index_o == packet_bytes_i;                // all its bytes are out
-    wire rested = (rest[8] && rest[6]) || packet_bytes_i == LONGEST ||
+    wire rested = (rest[8] && rest[6]) || packet_bytes_i == longest ||
                   API != 0; // 320 ticks
 
     assign rd_valid_o = state == FETCH && packet_valid_i && enable_i && !sent_o;

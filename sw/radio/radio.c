@@ -38,14 +38,25 @@ static void set(U32 word, U32 value) {
     FSMC_write(MAP_SLOT_MODEM, word, value);
 }
 
+/* Highest word first. */
+static void setKey(const U8* key) {
+    U32 i;
+    for (i = 0; i < 16U; i += 4U)
+        set(MODEM_KEY,
+            (U32)key[i] << 24 | (U32)key[i + 1U] << 16 | (U32)key[i + 2U] << 8 | key[i + 3U]);
+}
+
 static void setUpController(const XBeeInitTypeDef* conf) {
     U32 guard = conf->guardMs ? conf->guardMs : DEFAULT_GUARD_MS;
+    U32 encrypt = LINK_LIMIT && conf->key ? 1U << MODEM_NET_ENCRYPT_LSB : 0U;
     set(MODEM_CONTROL, MODEM_CONTROL_RESET_MODEM_MASK);
     OSTimeDly(OS_TICKS_PER_SEC / 2U); /* the modem boots in 50 to 500 ms */
     set(MODEM_BAUD, guard << MODEM_BAUD_GUARD_MS_LSB | (U32)conf->baud);
     set(MODEM_ADDR, (U32)conf->target << MODEM_ADDR_TARGET_LSB | conf->source);
-    set(MODEM_NET, (U32)(conf->pan ? conf->pan : DEFAULT_PAN) << MODEM_NET_PAN_LSB |
+    set(MODEM_NET, (U32)(conf->pan ? conf->pan : DEFAULT_PAN) << MODEM_NET_PAN_LSB | encrypt |
                        (conf->channel ? conf->channel : DEFAULT_CHANNEL));
+    if (encrypt)
+        setKey(conf->key);
     set(MODEM_TX_BASE, radio.memory.transmitRing);
     set(MODEM_RX_BASE, radio.memory.receiveRing);
     set(MODEM_MASK, 0);

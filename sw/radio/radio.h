@@ -33,6 +33,10 @@ typedef struct XBeeInitTypeDef {
     U8 channel;  /* CH, default 0x0C */
     U16 pan;     /* ID, default 0x3332 */
     U16 guardMs; /* guard time of the modem as it is now, default 1000 */
+    /* EE, KY: 16 bytes that every modem of the network has; 0: in the clear. A frame may then have
+     * LINK_MAX_ENCRYPTED bytes (Link_limitFrame); without the option LINK_LIMIT it is not heeded.
+     */
+    const U8* key;
 } XBeeInitTypeDef;
 
 typedef enum Radio_Status {

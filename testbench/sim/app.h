@@ -6,7 +6,9 @@
 #define APP_H
 
 #include "uav_machine.h"
+#include <vector>
 
-UavMachine::Firmware simulatedFirmware();
+// `radioKey`: 16 bytes of the modem's AES key, or none. Throws if the firmware cannot encrypt.
+UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& radioKey);
 
 #endif

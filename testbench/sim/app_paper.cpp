@@ -3,11 +3,14 @@
 // app_paper: the paper's Figure 5 as firmware.
 
 #include "app.h"
+#include <stdexcept>
 
 extern "C" {
 #include "paper.h"
 }
 
-UavMachine::Firmware simulatedFirmware() {
+UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& radioKey) {
+    if (!radioKey.empty())
+        throw std::runtime_error("--key: the paper's firmware talks in the clear");
     return {PAPER_start, PAPER_irqHandler, [] { return PAPER_irqEnabled() != 0; }};
 }

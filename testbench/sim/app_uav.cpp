@@ -4,4 +4,9 @@
 
 #include "app.h"
 
-UavMachine::Firmware simulatedFirmware() { return {}; }
+UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& radioKey) {
+    static std::vector<uint8_t> key;
+    key = radioKey;
+    uav_radioKey = key.empty() ? nullptr : key.data();
+    return {};
+}

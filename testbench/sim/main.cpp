@@ -40,6 +40,7 @@ volatile sig_atomic_t stopSignal = 0;
 constexpr uint64_t clockStepNs = 100'000; // of the time that other programs read
 
 struct Options {
+    std::string key; // 32 hexadecimal digits
     std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
                        firmware = FIRMWARE_ELF;
     uint32_t hclk = 120'000'000;
@@ -80,6 +81,13 @@ void loadCamera(SocModel& soc, const Frame& frame) {
                               static_cast<uint32_t>(frame.height)};
     std::memcpy(memory + UAV_FRAME_HEADER, size, sizeof size);
     std::memcpy(memory + UAV_FRAME, frame.pixels.data(), frame.pixels.size());
+}
+
+std::vector<uint8_t> keyBytes(const std::string& digits) {
+    std::vector<uint8_t> key;
+    for (size_t i = 0; i + 1 < digits.size(); i += 2)
+        key.push_back(static_cast<uint8_t>(std::stoul(digits.substr(i, 2), nullptr, 16)));
+    return key;
 }
 
 class Child {
@@ -246,7 +254,7 @@ int simulate(const Options& o) {
         if (!o.quiet)
             report(machine);
     } else {
-        UavMachine(soc, poll, simulatedFirmware()).run();
+        UavMachine(soc, poll, simulatedFirmware(keyBytes(o.key))).run();
     }
     child.stop();
     double worked = static_cast<double>(pace.workedNs()) / 1e9;
@@ -273,6 +281,13 @@ int main(int argc, char** argv) {
     app.add_option("--size", o.size, "of the camera's frame, WIDTHxHEIGHT");
     app.add_option("--loss", o.loss, "loss on the air, each way")->check(CLI::Range(0.0, 1.0));
     app.add_option("--seed", o.seed, "of the radio's misfortunes");
+    app.add_option("--key", o.key,
+                   "the UAV's modem encrypts with this AES key, 32 hexadecimal digits")
+        ->check([](const std::string& text) {
+            bool good = text.size() == 32 && text.find_first_not_of("0123456789abcdefABCDEF") ==
+                                                 std::string::npos;
+            return good ? std::string() : std::string("give 32 hexadecimal digits");
+        });
     app.add_option("--out", o.out, "folder for before.png and the counters");
     app.add_option("--speed", o.speed,
                    "real: simulated time follows the clock; 0.25: at a quarter of its speed; max: "
@@ -296,6 +311,10 @@ int main(int argc, char** argv) {
     action.sa_handler = [](int signal) { stopSignal = signal; };
     for (int signal : {SIGINT, SIGTERM, SIGHUP})
         sigaction(signal, &action, nullptr);
+    if (o.cpu == "m3" && !o.key.empty()) {
+        std::cerr << "icesoc-sim: --key needs --cpu host: the ARM binary has its own\n";
+        return 2;
+    }
     if (o.cpu != "m3" && (o.gdb >= 0 || !o.marks.empty())) {
         std::cerr << "icesoc-sim: --gdb and --marks need --cpu m3\n";
         return 2;

@@ -5,6 +5,7 @@
 #include "xbee.h"
 #include "random.h"
 #include "rf_channel.h"
+#include "xbee_crypt.h"
 #include "xbee_parameters.h"
 #include <algorithm>
 #include <cstddef>
@@ -30,6 +31,7 @@ XBee::XBee(SerialLine& line, RfChannel& channel, Options options)
     : line_(line), channel_(channel), options_(std::move(options)), written_(factory()) {
     for (auto& [letters, value] : options_.set)
         written_.at(letters) = value;
+    writtenKey_ = options_.key;
     active_ = pending_ = written_;
     line_.attach(this);
     channel_.join(this);
@@ -44,6 +46,9 @@ XBee::~XBee() {
 
 double XBee::baud() const {
     return xbeeBaud(active_.at("BD"));
+}
+uint64_t XBee::serial() const {
+    return uint64_t(active_.at("SH")) << 32 | active_.at("SL");
 }
 uint64_t XBee::charNs() const {
     return static_cast<uint64_t>(10e9 / baud());
@@ -205,23 +210,12 @@ void XBee::sendPackets(uint64_t now) {
 
 void XBee::launch(RfPacket packet, uint64_t now) {
     packet.sequence = ++sequence_;
-    crypt(packet);
+    packet.serial = serial();
+    if (active_.at("EE"))
+        packet.bytes = XBeeCrypt::encrypt(key_, packet.serial, ++frameCounter_, packet.bytes);
     inFlight_ = true;
     ++counters_.packetsSent;
     channel_.transmit(this, std::move(packet), now);
-}
-
-// Not AES, but as AES in the counter mode of 802.15.4 it keeps the length, checks nothing, and
-// gives garbage with another key. Encrypting twice with the same key decrypts.
-void XBee::crypt(RfPacket& packet) const {
-    if (!active_.at("EE"))
-        return;
-    uint64_t seed = packet.sequence + (uint64_t(packet.from) << 16);
-    for (char digit : key_)
-        seed = seed * 31 + static_cast<unsigned char>(digit);
-    Random stream(seed);
-    for (uint8_t& byte : packet.bytes)
-        byte ^= static_cast<uint8_t>(stream.next());
 }
 
 void XBee::transmitted(uint64_t now, Fate fate, unsigned unanswered) {
@@ -243,7 +237,7 @@ bool XBee::hears(const RfPacket& packet) const {
     if (active_.at("CH") != packet.channel || active_.at("ID") != packet.pan)
         return false;
     if (packet.wide)
-        return packet.to64 == (uint64_t(active_.at("SH")) << 32 | active_.at("SL"));
+        return packet.to64 == serial();
     return packet.to == 0xFFFF || (active_.at("MY") == packet.to && packet.to < 0xFFFE);
 }
 
@@ -254,6 +248,8 @@ bool XBee::receive(const RfPacket& onAir, uint64_t now) {
     bool wantsHeader = active_.at("MM") == 0 || active_.at("MM") == 3;
     if (wantsHeader && !packet.header)
         return true; // acknowledged, but nothing that this mode understands
+    if (active_.at("EE"))
+        packet.bytes = XBeeCrypt::decrypt(key_, packet.serial, packet.bytes);
     size_t size =
         packet.bytes.size() + (active_.at("AP") ? 9 : 0) + (wantsHeader || !packet.header ? 0 : 2);
     if (output_.size() + size > outputBytes) {
@@ -269,7 +265,6 @@ bool XBee::receive(const RfPacket& onAir, uint64_t now) {
         last->second = packet.sequence;
     }
     ++counters_.packetsReceived;
-    crypt(packet);
     if (packet.header && !wantsHeader)
         packet.bytes.insert(packet.bytes.begin(), {static_cast<uint8_t>(packet.sequence), 0x00});
     if (active_.at("AP"))

@@ -30,6 +30,7 @@ struct RfPacket {
     bool acknowledged = true; // MM 0 or 2, and no broadcast
     bool sequenced = false;   // with a header and RR: the receiver drops what it has already
     uint16_t sequence = 0;
+    uint64_t serial = 0;  // the sender's, for decryption
     unsigned tries = 4;   // the first and the MAC's retries, times 1 + RR
     unsigned backoff = 0; // RN
 };
@@ -40,6 +41,7 @@ public:
         std::string name = "xbee";
         uint64_t bootNs = 50'000'000;        // 50..500 ms by firmware
         std::map<std::string, uint32_t> set; // parameters that differ from the factory's
+        std::string key;                     // KY, 32 hexadecimal digits
     };
     struct Counters {
         uint64_t bytesFromHost = 0, bytesToHost = 0;
@@ -103,7 +105,7 @@ private:
     void sendPackets(uint64_t now);
     void launch(RfPacket packet, uint64_t now);
     RfPacket addressed() const;
-    void crypt(RfPacket& packet) const;
+    uint64_t serial() const;
     void updateCts();
     uint64_t charNs() const;
     uint64_t guardNs() const;
@@ -143,6 +145,7 @@ private:
     std::deque<uint8_t> output_; // to the host
     bool inFlight_ = false, cts_ = true;
     uint16_t sequence_ = 0;
+    uint32_t frameCounter_ = 0;                 // of encrypted packets, since power on
     std::map<uint16_t, uint16_t> lastSequence_; // of each sender
     std::string refuse_, ignore_;
     unsigned ignoreTimes_ = 0;

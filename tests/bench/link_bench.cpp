@@ -88,7 +88,7 @@ public:
         static std::function<void()> task;
         static OS_STK stack[1024];
         task = [&] {
-            const XBeeInitTypeDef conf = {XBEE_BD_115200, 1, 0, 0, 0, static_cast<U16>(guardMs_)};
+            const XBeeInitTypeDef conf = {XBEE_BD_115200, 1, 0, 0, 0, static_cast<U16>(guardMs_), nullptr};
             const Radio_Memory rings = {0, 0x1000};
             uint64_t start = soc_.now();
             if (xbeeInit(&conf, &rings) != RADIO_OK)

@@ -16,6 +16,9 @@
 #define UAV_RESULT 0x00300000U /* the vision core's records */
 #define UAV_RESULT_MAX 16384U  /* records that fit */
 
+/* The radio's AES key, 16 bytes that stay valid; 0, as at first: in the clear. Read when the tasks start. */
+extern const U8 *uav_radioKey;
+
 /* Creates the tasks; call between OSInit and OSStart. 0: the FPGA does not answer, there are no tasks. */
 int UAV_start(const Fsmc_Port *port, void *context);
 

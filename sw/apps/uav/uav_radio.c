@@ -11,6 +11,7 @@
 
 Link uav_link;
 OS_EVENT *uav_radioWork;
+const U8 *uav_radioKey;
 
 static XBeeATEndpoint endpoint;
 static OS_EVENT *linkMutex;
@@ -111,8 +112,10 @@ void UAV_useRadio(Ice_CommunicatorPtr ic) {
 }
 
 static void setUpModem(void) {
-    static const XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0};
+    XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0};
     static const Radio_Memory rings = {UAV_TRANSMIT_RING, UAV_RECEIVE_RING};
+    xbeeConf.key = uav_radioKey;
+    Link_limitFrame(&uav_link, uav_radioKey ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME);
     /* A modem that is dead now may be back later: the vehicle flies on and tries again. */
     while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)
         OSTimeDly(OS_TICKS_PER_SEC);

@@ -48,6 +48,13 @@ slow) # a machine that is four times too slow: the ground lives by the simulator
     [ "$(grep -c '+++ at' "$out/log")" = 2 ] || { cat "$out/log" && exit 1; }
     check_output "$out"
     ;;
+encrypted) # both modems by the same AES key: the controller sets one, the endpoint's -k the other
+    key=00112233445566778899AABBCCDDEEFF
+    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --key $key -- \
+        "$build/sw/ground/ground_ping" "hwengine1:xbee-at -d \"{device}\" -a 0x0001 -k $key -t 60000" 3 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+    grep -q 'it is a ::Autopilot::HwProcessingEngine' "$out/log"
+    ! grep -q $key "$out/log" || { echo "the key is in the output" && exit 1; }
+    ;;
 gateway) # two stock clients at once, through TCP
     "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" -- \
         "$source/tests/e2e/mission/gateway.sh" "$build" '{device}' "$out" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }

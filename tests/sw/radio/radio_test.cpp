@@ -18,8 +18,9 @@ namespace {
 
 constexpr int guardMs = 20; // of both modems, so that tests are short
 
-XBee::Options quick(std::map<std::string, uint32_t> more) {
+XBee::Options quick(std::map<std::string, uint32_t> more, const std::string& key = "") {
     XBee::Options options;
+    options.key = key;
     options.set = {{"GT", guardMs}};
     for (auto& [letters, value] : more)
         options.set[letters] = value;
@@ -56,6 +57,10 @@ private:
 
 class Radio : public ::testing::Test {
 protected:
+    // A far modem that encrypts, or one that does not.
+    explicit Radio(const std::string& farKey = "")
+        : far_(farLine_, air_,
+               quick({{"BD", 7}, {"MY", 0}, {"DL", 1}, {"EE", farKey.empty() ? 0 : 1}}, farKey)) {}
     void SetUp() override {
         soc_.onTime([this](uint64_t now) {
             far_.advance(now);
@@ -95,8 +100,8 @@ protected:
         machine.run();
         ASSERT_TRUE(done) << "the task did not end within 60 simulated seconds";
     }
-    Radio_Status init(uint8_t channel = 0, uint16_t pan = 0) {
-        const XBeeInitTypeDef conf = {XBEE_BD_115200, 0x0001, 0x0000, channel, pan, guardMs};
+    Radio_Status init(uint8_t channel = 0, uint16_t pan = 0, const U8* key = nullptr) {
+        const XBeeInitTypeDef conf = {XBEE_BD_115200, 0x0001, 0x0000, channel, pan, guardMs, key};
         const Radio_Memory rings = {0x0000, 0x1000};
         Radio_Status status = xbeeInit(&conf, &rings);
         irqOn_ = status == RADIO_OK;
@@ -114,15 +119,15 @@ protected:
         }
         return done();
     }
-    bool connect() {
+    bool connect(int limitMs = 5000) {
         farLinkRuns_ = true;
         Link_start(nearPeer_.link(), us());
-        return talk([&] { return nearPeer_.isUp() && farPeer_.isUp(); }, 5000);
+        return talk([&] { return nearPeer_.isUp() && farPeer_.isUp(); }, limitMs);
     }
 
     RfChannel air_{testSeed()};
     HostLine farLine_;
-    XBee far_{farLine_, air_, quick({{"BD", 7}, {"MY", 0}, {"DL", 1}})};
+    XBee far_;
     SocModel soc_{air_, quick({})};
     Peer nearPeer_{[](const U8* f, U32 n) { return Radio_transmit(nullptr, f, n); }, 11};
     Peer farPeer_{[this](const U8* f, U32 n) {
@@ -262,6 +267,68 @@ TEST_F(Radio, AModemThatWasResetIsSetUpAgain) {
         const U8 bytes[3] = {1, 2, 3};
         Link_send(nearPeer_.link(), 0, bytes, 3, 0, us());
         EXPECT_TRUE(talk([&] { return farPeer_.received.size() == 1; }, 10000));
+    });
+}
+
+const U8 key[16] = {0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77,
+                    0x88, 0x99, 0xAA, 0xBB, 0xCC, 0xDD, 0xEE, 0xFF};
+
+class EncryptedRadio : public Radio {
+protected:
+    EncryptedRadio() : Radio("00112233445566778899AABBCCDDEEFF") {}
+    void limitFrames() {
+        Link_limitFrame(nearPeer_.link(), LINK_MAX_ENCRYPTED);
+        Link_limitFrame(farPeer_.link(), LINK_MAX_ENCRYPTED);
+    }
+};
+
+TEST_F(EncryptedRadio, WithTheSameKeyMessagesArriveAndNoFrameIsSplit) {
+    size_t longest = 0, packets = 0;
+    air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
+        longest = std::max(longest, packet.bytes.size());
+        ++packets;
+    });
+    const std::vector<U8> message(2000, 'm');
+    run([&] {
+        limitFrames();
+        ASSERT_EQ(init(0, 0, key), RADIO_OK);
+        ASSERT_TRUE(connect());
+        ASSERT_EQ(Link_openChannel(nearPeer_.link(), 0, us()), LINK_OK);
+        ASSERT_TRUE(talk([&] { return Link_statistics(nearPeer_.link())->framesSent > 2; }, 1000));
+        talk([] { return false; }, 100);
+        packets = 0;
+        U32 before = Link_statistics(nearPeer_.link())->framesSent +
+                     Link_statistics(farPeer_.link())->framesSent;
+        ASSERT_EQ(Link_send(nearPeer_.link(), 0, message.data(), 2000, 0, us()), LINK_OK);
+        ASSERT_TRUE(talk([&] { return farPeer_.received.size() == 1; }, 5000));
+        ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 2000, 0, us()), LINK_OK);
+        ASSERT_TRUE(talk([&] { return nearPeer_.received.size() == 1; }, 5000));
+        talk([] { return false; }, 100);
+        EXPECT_EQ(packets, Link_statistics(nearPeer_.link())->framesSent +
+                               Link_statistics(farPeer_.link())->framesSent - before);
+    });
+    EXPECT_EQ(soc_.modem().key(), "00112233445566778899AABBCCDDEEFF");
+    EXPECT_EQ(longest, 5 + 95u) << "on the air, with the cipher's five bytes";
+    EXPECT_EQ(farPeer_.received[0], message);
+    EXPECT_EQ(nearPeer_.received[0], message);
+}
+
+TEST_F(EncryptedRadio, WithAnotherKeyThereIsNoSession) {
+    static U8 other[16];
+    std::copy(key, key + 16, other);
+    other[15] ^= 1;
+    run([&] {
+        limitFrames();
+        ASSERT_EQ(init(0, 0, other), RADIO_OK);
+        EXPECT_FALSE(connect(1000));
+    });
+    EXPECT_GT(far_.counters().packetsReceived, 3u) << "garbage, not silence";
+}
+
+TEST_F(EncryptedRadio, InTheClearThereIsNoSession) {
+    run([&] {
+        ASSERT_EQ(init(), RADIO_OK);
+        EXPECT_FALSE(connect(1000));
     });
 }
 

@@ -3,12 +3,28 @@
 // radio_test: the modem's radio side and the air: addresses, time, tries, encryption, weather.
 
 #include "pair.h"
+#include <openssl/evp.h>
 
 namespace {
 
 using Addresses = Pair;
 using Mac = Pair;
-using Encryption = Pair;
+class Encryption : public Pair {
+protected:
+    // One block, under the key 000102..0F.
+    static Bytes aes(const Bytes& block) {
+        Bytes key, out(32);
+        for (uint8_t i = 0; i < 16; ++i)
+            key.push_back(i);
+        EVP_CIPHER_CTX* context = EVP_CIPHER_CTX_new();
+        int size = 0;
+        EVP_EncryptInit_ex(context, EVP_aes_128_ecb(), nullptr, key.data(), nullptr);
+        EVP_EncryptUpdate(context, out.data(), &size, block.data(), 16);
+        EVP_CIPHER_CTX_free(context);
+        out.resize(16);
+        return out;
+    }
+};
 using Air = Pair;
 
 TEST_F(Addresses, ChannelNetworkAndAddressMustAgree) {
@@ -143,6 +159,44 @@ TEST_F(Encryption, AModemWithoutItReadsGarbage) {
     send("secret");
     run(30 * ms);
     EXPECT_NE(heardB(), "secret");
+}
+
+// What is on the air, by AES on single blocks: 802.15.4-2003, 7.6.2 (flags, sender, frame counter,
+// key sequence counter, block number).
+TEST_F(Encryption, OnTheAirItIsAesInCounterModeOf802154) {
+    power({{"EE", 1}}, {{"EE", 1}});
+    enter();
+    command("ATKY000102030405060708090A0B0C0D0E0F");
+    command("ATCN");
+    const std::string plain = "forty bytes of text, so three AES blocks";
+    send(plain);
+    run(100 * ms);
+    const Bytes& onAir = packets.back().bytes;
+    ASSERT_EQ(onAir.size(), 5 + plain.size());
+    const Bytes counter(onAir.begin(), onAir.begin() + 4);
+    EXPECT_EQ(counter, (Bytes{0, 0, 0, 1}));
+    EXPECT_EQ(onAir[4], 0) << "key sequence counter";
+    for (size_t i = 0; i < plain.size(); ++i) {
+        Bytes block = {0x82, 0x00, 0x13, 0xA2, 0x00, 0x00, 0x00, 0x00,
+                       0x0A, 0,    0,    0,    1,    0,    0,    static_cast<uint8_t>(1 + i / 16)};
+        EXPECT_EQ(onAir[5 + i] ^ aes(block)[i % 16], static_cast<uint8_t>(plain[i]))
+            << "byte " << i;
+    }
+    // FIPS-197, appendix C.1: the same key, so its digits are in the right order.
+    EXPECT_EQ(aes({0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77, 0x88, 0x99, 0xAA, 0xBB, 0xCC,
+                   0xDD, 0xEE, 0xFF}),
+              (Bytes{0x69, 0xC4, 0xE0, 0xD8, 0x6A, 0x7B, 0x04, 0x30, 0xD8, 0xCD, 0xB7, 0x80, 0x70,
+                     0xB4, 0xC5, 0x5A}));
+}
+
+TEST_F(Encryption, TheSameTextLooksDifferentEachTime) {
+    power({{"EE", 1}}, {{"EE", 1}});
+    send("again");
+    run(30 * ms);
+    send("again");
+    run(30 * ms);
+    EXPECT_EQ(heardB(), "againagain");
+    EXPECT_NE(packets[0].bytes, packets[1].bytes);
 }
 
 TEST_F(Air, LossIsAsAsked) {

@@ -58,8 +58,8 @@ TEST_F(Packetizing, NinetyFiveBytesWithEncryption) {
     send(std::string(100, 'x'));
     run(400 * ms);
     ASSERT_EQ(packets.size(), 2u);
-    EXPECT_EQ(packets[0].bytes.size(), 95u);
-    EXPECT_EQ(packets[1].bytes.size(), 5u);
+    EXPECT_EQ(packets[0].bytes.size(), 5 + 95u) << "on the air, with the cipher's five";
+    EXPECT_EQ(packets[1].bytes.size(), 5 + 5u);
 }
 
 TEST_F(Buffers, OnePacketIsInFlightAtATime) {

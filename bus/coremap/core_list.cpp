@@ -119,7 +119,8 @@ private:
             c.servantHeader = j.at("servant").at("header");
         }
         for (const json& p : j.value("pins", json::array()))
-            c.pins.push_back({p.at("name"), p.value("width", 1u), 0, ""});
+            c.pins.push_back(
+                {p.at("name"), p.value("width", 1u), 0, "", p.value("internal", false)});
     }
 
     void set(Core& c, const std::string& key, const std::string& value) {
@@ -179,6 +180,8 @@ private:
                                              p.width));
                 continue;
             }
+            if (p.isInternal)
+                continue;
             unsigned& next = chip_.pins[p.isOut()];
             p.lsb = next;
             next += p.width;

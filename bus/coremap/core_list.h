@@ -13,8 +13,9 @@
 struct Pin {
     std::string name; // of the core's port; its end says the direction
     unsigned width = 1;
-    unsigned lsb = 0;   // in the chip's core_pins_i or core_pins_o; bits
-    std::string source; // instead of a pin: another core's output
+    unsigned lsb = 0;        // in the chip's core_pins_i or core_pins_o; bits
+    std::string source;      // instead of a pin: another core's output
+    bool isInternal = false; // for other cores only: never a pin; an input that is not wired is 0
     bool isOut() const { return name.back() == 'o'; }
 };
 

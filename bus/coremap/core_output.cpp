@@ -53,6 +53,8 @@ std::string instance(const Core& c) {
         if (!p.source.empty()) {
             size_t dot = p.source.find('.');
             at = fmt::format("pin_{}_{}", p.source.substr(0, dot), p.source.substr(dot + 1));
+        } else if (!p.isOut() && p.isInternal) {
+            at = fmt::format("{}'d0", p.width);
         } else if (!p.isOut()) {
             at = "core_pins_i" + bits(p.lsb, p.width);
         } else {
@@ -102,7 +104,7 @@ ordered_json mapOf(const Chip& chip, const ordered_json& base) {
         add("MEMORY_" + upper(c.name), c.memory,
             "DDR3 byte address of the buffers of the core " + c.name);
         for (const Pin& p : c.pins)
-            if (p.source.empty())
+            if (p.source.empty() && !p.isInternal)
                 add("PIN_" + upper(c.name + "_" + p.name), p.lsb,
                     fmt::format("bit of core_pins_{}, {} wide", p.isOut() ? 'o' : 'i', p.width));
     }
@@ -133,7 +135,7 @@ std::string verilogOf(const Chip& chip) {
                              slot);
     for (const Core& c : chip.cores)
         for (const Pin& p : c.pins)
-            if (p.isOut())
+            if (p.isOut() && !p.isInternal)
                 s += fmt::format("    assign core_pins_o{} = pin_{}_{};\n", bits(p.lsb, p.width),
                                  c.name, p.name);
     if (chip.pins[1] < 32)

@@ -21,6 +21,9 @@ file=$(find "$source/bus" "$source/hdl" "$source/ip" -name "$module.v")
     exit 2
 }
 files=$(ls "$source"/bus/*.v "$(dirname "$file")"/*.v | sort -u)
+# Several clocks (a proof with `gclk`): every edge is an input of its own.
+clocks=async2sync
+! grep -q gclk "$file" || clocks='memory_map; clk2fflogic'
 # -nosdff -nodffe: AIGER has plain flip-flops only. The module's outputs are dropped: abc would take
 # them for properties.
 aiger='memory_map; opt -full; techmap; opt -fast -nosdff -nodffe; dfflegalize -cell $_DFF_P_ 01;
@@ -32,7 +35,7 @@ $parameters
 prep -top $module -nordff
 memory_nordff
 flatten
-async2sync
+$clocks
 dffunmap
 setundef -anyseq -undriven
 opt_clean

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: MIT
+//
+// camera: frames of a parallel sensor port into three buffers in DDR3; whole ones are handed on.
+// Registers: camera.regs.json. Page: README.md.
+//
+// frame_valid_o offers the newest frame, in buffer frame_index_o, to another core; what that takes with
+// frame_take_i is not written until it takes another.
+
+`default_nettype none
+
+module camera (
+    input  wire        clk_i,
+    input  wire        rst_i,
+    // register bus
+    input  wire        bus_valid_i,
+    input  wire        bus_write_i,
+    input  wire [3:0]  bus_addr_i,
+    input  wire [31:0] bus_wdata_i,
+    output wire        bus_ready_o,
+    output wire [31:0] bus_rdata_o,
+    output wire        bus_error_o,
+    output wire        irq_o,
+    // memory port
+    output wire [31:0] npi_addr_o,
+    output wire        npi_addr_req_o,
+    input  wire        npi_addr_ack_i,
+    output wire        npi_rnw_o,
+    output wire [3:0]  npi_size_o,
+    output wire        npi_rmw_o,
+    output wire [63:0] npi_wr_data_o,
+    output wire [7:0]  npi_wr_be_o,
+    output wire        npi_wr_push_o,
+    input  wire        npi_wr_empty_i,
+    input  wire        npi_wr_almost_full_i,
+    output wire        npi_wr_flush_o,
+    input  wire [63:0] npi_rd_data_i,
+    input  wire [3:0]  npi_rd_word_i,
+    output wire        npi_rd_pop_o,
+    input  wire        npi_rd_empty_i,
+    output wire        npi_rd_flush_o,
+    input  wire        npi_init_done_i,
+    // the core that uses the frames
+    output wire        frame_valid_o,
+    output wire [1:0]  frame_index_o,
+    input  wire        frame_take_i,
+    // sensor: its own clock
+    input  wire        pclk_i,
+    input  wire        vsync_i,
+    input  wire        href_i,
+    input  wire [7:0]  data_i
+);
+    `include "camera_regs.vh"
+
+    localparam [1:0] PIXEL = 2'd0, LINE_END = 2'd1, FRAME_START = 2'd2;
+    localparam [2:0] OFF = 3'd0, WAIT_FOR_FRAME = 3'd1, WAIT_FOR_BUFFER = 3'd2, CAPTURE = 3'd3, FINISH = 3'd4,
+                     WAIT_FOR_MEMORY = 3'd5;
+
+    reg [2:0]  state;
+    reg        stopping;             // no further frame
+    reg        whole;                // the frame that ends, or has ended, is good
+    reg        again;                // the next one has begun already
+    reg [15:0] width, height, x, y;
+    reg [31:0] base, stride;         // of the buffers in use
+    reg [31:0] size, set_base, set_stride;
+    reg [15:0] frames, dropped;
+    reg [55:0] pixels;               // of the word that is begun, newest on top
+    // Buffers: the one that is written is neither the newest whole one nor that which the other core has.
+    reg [1:0]  writing, newest, used;
+    reg        has_newest, offered;
+
+    // ---- sensor ----
+    wire        push, full, empty, pop;
+    wire [10:0] token_in, token;
+    camera_sensor u_sensor (.pclk_i(pclk_i), .vsync_i(vsync_i), .href_i(href_i), .data_i(data_i),
+                            .push_o(push), .token_o(token_in), .full_i(full));
+    camera_fifo #(.WIDTH(11), .LOG2(5)) u_fifo (
+        .write_clk_i(pclk_i), .push_i(push), .data_i(token_in), .full_o(full),
+        .read_clk_i(clk_i), .pop_i(pop), .data_o(token), .empty_o(empty));
+    wire       lost = token[10];
+    wire [1:0] kind = token[9:8];
+    wire       starts = kind == FRAME_START, ends_line = kind == LINE_END, is_pixel = kind == PIXEL;
+
+    // ---- registers ----
+    wire        reg_write, reg_read;
+    wire [3:0]  reg_addr;
+    wire [31:0] reg_wdata;
+    reg  [31:0] reg_rdata;
+    reg  [6:0]  events;
+    bus_wrapper #(.ID_VALUE(CAMERA_ID_VALUE), .WORDS(16'h07F8), .EVENTS(7)) u_wrapper (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
+        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
+        .bus_error_o(bus_error_o),
+        .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr), .reg_wdata_o(reg_wdata),
+        .reg_rdata_i(reg_rdata), .event_i(events), .irq_o(irq_o));
+
+    wire control = reg_write && reg_addr == CAMERA_CONTROL;
+    wire start   = control && reg_wdata[CAMERA_CONTROL_START_LSB] && state == OFF;
+    wire stop    = control && reg_wdata[CAMERA_CONTROL_STOP_LSB];
+    wire good    = size[2:0] == 3'd0 && size[15:0] != 16'd0 && size[15:0] <= 16'd2048 && size[31:16] != 16'd0 &&
+                   size[31:28] == 4'd0 && set_base[6:0] == 7'd0 && set_stride[6:0] == 7'd0;
+
+    always @* case (reg_addr)
+        CAMERA_STATUS:  reg_rdata = {30'd0, state == CAPTURE, state != OFF};
+        CAMERA_SIZE:    reg_rdata = size;
+        CAMERA_BASE:    reg_rdata = set_base;
+        CAMERA_STRIDE:  reg_rdata = set_stride;
+        CAMERA_LATEST:  reg_rdata = {has_newest, 29'd0, newest};
+        CAMERA_FRAMES:  reg_rdata = {16'd0, frames};
+        CAMERA_DROPPED: reg_rdata = {16'd0, dropped};
+        default:        reg_rdata = 32'd0;
+    endcase
+
+    // ---- memory ----
+    wire        write_ready, write_idle;
+    // Buffers 1..3 lie at base, base + stride, base + 2 * stride.
+    wire [31:0] write_base = base + (writing == 2'd2 ? stride : writing == 2'd3 ? {stride[30:0], 1'b0} : 32'd0);
+    wire        no_data, read_idle;
+    wire [63:0] no_words;
+    wire        room   = x != width; // for one more pixel of this line
+    wire        eighth = state == CAPTURE && !empty && !lost && is_pixel && room && x[2:0] == 3'd7;
+    npi_stream #(.ADDR_BITS(32), .WORD_BITS(4)) u_stream (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .read_start_i(1'b0), .read_base_i(26'd0), .read_words_i(4'd0), .read_stop_i(1'b0),
+        .read_valid_o(no_data), .read_data_o(no_words), .read_take_i(1'b0), .read_idle_o(read_idle),
+        .write_start_i(state == WAIT_FOR_BUFFER && write_idle), .write_base_i(write_base[31:6]),
+        .write_valid_i(eighth), .write_data_i({token[7:0], pixels}), .write_be_i(8'hFF),
+        .write_ready_o(write_ready), .write_flush_i(state == FINISH), .write_idle_o(write_idle),
+        .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
+        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o),
+        .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o),
+        .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),
+        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i), .npi_init_done_i(npi_init_done_i));
+    assign npi_rmw_o      = 1'b0;
+    assign npi_wr_flush_o = 1'b0;
+    assign npi_rd_flush_o = 1'b0;
+
+    // ---- frames ----
+    // Tokens wait while a buffer is chosen and while a frame is finished; what waits too long is lost, and said so.
+    wire frozen = state == WAIT_FOR_BUFFER || state == FINISH || state == WAIT_FOR_MEMORY || (eighth && !write_ready);
+    assign pop  = !empty && !frozen;
+    wire begins = pop && starts;
+    wire token_in_frame = pop && state == CAPTURE;
+    wire bad    = lost || (is_pixel && !room) || (ends_line && room) || starts;
+    wire last   = ends_line && y + 16'd1 == height;
+    wire kept   = state == WAIT_FOR_MEMORY && write_idle && whole; // all of it is in memory
+    wire taken  = offered && frame_take_i;
+    wire [1:0] reserved = taken ? newest : used;
+    assign frame_valid_o = offered;
+    assign frame_index_o = newest;
+
+    always @(posedge clk_i) begin
+        events <= 7'd0;
+        if (stop && state != OFF)
+            stopping <= 1'b1;
+        case (state)
+            OFF: begin
+                stopping <= 1'b0;
+                events[CAMERA_EVENT_REFUSED_LSB] <= start && !good;
+                if (start && good) begin
+                    state      <= WAIT_FOR_FRAME;
+                    width      <= size[15:0];
+                    height     <= size[31:16];
+                    base       <= set_base;
+                    stride     <= set_stride;
+                    frames     <= 16'd0;
+                    dropped    <= 16'd0;
+                    whole      <= 1'b0;
+                    has_newest <= 1'b0;
+                end
+            end
+            WAIT_FOR_FRAME: begin
+                if (stopping)
+                    state <= OFF;
+                else if (begins)
+                    state <= WAIT_FOR_BUFFER;
+                if (pop && ends_line) // told once
+                    whole <= 1'b0;
+                events[CAMERA_EVENT_LONG_FRAME_LSB] <= pop && ends_line && whole;
+            end
+            WAIT_FOR_BUFFER: if (write_idle) begin
+                x     <= 16'd0;
+                y     <= 16'd0;
+                whole <= 1'b0;
+                again <= 1'b0;
+                state <= CAPTURE;
+            end
+            CAPTURE: if (token_in_frame) begin
+                if (is_pixel) begin
+                    pixels <= {token[7:0], pixels[55:8]};
+                    x      <= x + 16'd1;
+                end
+                if (ends_line) begin
+                    x <= 16'd0;
+                    y <= y + 16'd1;
+                end
+                events[CAMERA_EVENT_OVERFLOW_LSB]    <= lost;
+                events[CAMERA_EVENT_LONG_LINE_LSB]   <= !lost && is_pixel && !room;
+                events[CAMERA_EVENT_SHORT_LINE_LSB]  <= !lost && ends_line && room;
+                events[CAMERA_EVENT_SHORT_FRAME_LSB] <= !lost && starts;
+                whole <= last && !bad;
+                again <= starts;
+                if (bad)
+                    dropped <= dropped + 16'd1;
+                if (bad || last)
+                    state <= FINISH;
+            end else if (stopping) begin
+                state <= FINISH;
+            end
+            FINISH: state <= WAIT_FOR_MEMORY;
+            default: if (write_idle) // WAIT_FOR_MEMORY
+                state <= stopping ? OFF : again ? WAIT_FOR_BUFFER : WAIT_FOR_FRAME;
+        endcase
+
+        if (kept) begin
+            newest     <= writing;
+            has_newest <= 1'b1;
+            writing    <= writing ^ reserved; // of 1, 2, 3 the one that is neither
+            frames     <= frames + 16'd1;
+            events[CAMERA_EVENT_FRAME_LSB] <= 1'b1;
+        end
+        offered <= kept || (offered && !taken && state != OFF);
+        used    <= reserved;
+
+        if (reg_write) case (reg_addr)
+            CAMERA_SIZE:   size <= reg_wdata;
+            CAMERA_BASE:   set_base <= reg_wdata;
+            CAMERA_STRIDE: set_stride <= reg_wdata;
+            default: ;
+        endcase
+        if (rst_i) begin
+            state      <= OFF;
+            stopping   <= 1'b0;
+            events     <= 7'd0;
+            writing    <= 2'd1;
+            newest     <= 2'd2;
+            used       <= 2'd3;
+            has_newest <= 1'b0;
+            offered    <= 1'b0;
+            frames     <= 16'd0;
+            dropped    <= 16'd0;
+            size       <= 32'd0;
+            set_base   <= 32'd0;
+            set_stride <= 32'd0;
+        end
+    end
+
+    wire unused = &{1'b0, reg_read, no_data, no_words, read_idle, npi_wr_empty_i, npi_rd_word_i, write_base[5:0], 1'b0};
+endmodule

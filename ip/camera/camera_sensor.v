@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+//
+// camera_sensor: a sensor's parallel port, in the sensor's clock, as tokens for camera_fifo.
+//
+// A token has 11 bits: LOST (tokens before it found no room), kind, pixel. While the FIFO is full pixels are lost;
+// beginnings of frames and ends of lines wait for room until the next one comes.
+
+`default_nettype none
+
+module camera_sensor (
+    // pins: sampled at the rising edge of the pixel clock
+    input  wire        pclk_i,
+    input  wire        vsync_i, // high between frames
+    input  wire        href_i,  // high while pixels of a line are there
+    input  wire [7:0]  data_i,
+    // tokens
+    output wire        push_o,
+    output wire [10:0] token_o,
+    input  wire        full_i
+);
+    localparam [1:0] PIXEL = 2'd0, LINE_END = 2'd1, FRAME_START = 2'd2;
+
+    reg       vsync, vsync_before, href, href_before;
+    reg [7:0] data;
+    reg       owes_line_end, owes_frame_start, lost;
+
+    // No reset in this domain: the pins say where the sensor is, and a frame is whole or is not taken.
+    initial begin
+        {vsync, vsync_before, href, href_before} = 4'd0;
+        {owes_line_end, owes_frame_start, lost}  = 3'd0;
+    end
+
+    wire line_end    = owes_line_end || (href_before && !href);
+    wire frame_start = owes_frame_start || (vsync_before && !vsync);
+    // A pixel cannot wait, so it goes first.
+    wire [1:0] kind  = href ? PIXEL : line_end ? LINE_END : FRAME_START;
+    wire       any   = href || line_end || frame_start;
+
+    assign push_o  = any && !full_i;
+    assign token_o = {lost, kind, data};
+
+    always @(posedge pclk_i) begin
+        vsync        <= vsync_i;
+        href         <= href_i;
+        data         <= data_i;
+        vsync_before <= vsync;
+        href_before  <= href;
+        owes_line_end    <= line_end && !(push_o && kind == LINE_END);
+        owes_frame_start <= frame_start && !(push_o && kind == FRAME_START);
+        lost             <= push_o ? 1'b0 : lost || (href && full_i);
+    end
+endmodule

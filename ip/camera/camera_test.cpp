@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+//
+// camera_test: a sensor with a jittering clock of its own, a memory that stalls, and every kind of
+// broken frame.
+
+#include "Vcamera_slot.h"
+#include "bench.h"
+#include "bus_master.h"
+#include "model/sensor_model.h"
+#include "npi_memory.h"
+#include <gtest/gtest.h>
+extern "C" {
+#include "camera_regs.h"
+}
+
+namespace {
+
+constexpr int width = 40, height = 12;
+constexpr uint32_t base = 0x10000, stride = 0x400;
+
+class CameraTest : public ::testing::Test {
+protected:
+    CameraTest() {
+        // Edges of the pixel clock fall before or after those of the fabric's, 1 to 3 halves of its
+        // period apart.
+        bench_.addModel([this] { edge(); }, [this] { edge(); });
+        bench_.reset();
+        bus_.write(CAMERA_MASK, 0x7F);
+        configure(width, height);
+    }
+    void configure(uint32_t w, uint32_t h) {
+        bus_.write(CAMERA_SIZE, h << 16 | w);
+        bus_.write(CAMERA_BASE, base);
+        bus_.write(CAMERA_STRIDE, stride);
+    }
+    void edge() {
+        if (--wait_ > 0)
+            return;
+        wait_ = 1 + static_cast<int>(random_.below(slowest_));
+        auto& top = bench_.top();
+        top.pclk_i = !top.pclk_i;
+        if (!top.pclk_i) { // a sensor changes its pins at the falling edge
+            auto pins = sensor_.next();
+            top.vsync_i = pins.vsync;
+            top.href_i = pins.href;
+            top.data_i = pins.data;
+        }
+    }
+    std::vector<uint8_t> picture() {
+        std::vector<uint8_t> pixels(width * height);
+        for (auto& p : pixels)
+            p = static_cast<uint8_t>(random_.next());
+        return pixels;
+    }
+    // The events of what happens until the sensor has sent all and it has gone through.
+    uint32_t drain() {
+        for (int i = 0; i < 200000 && !sensor_.isIdle(); ++i)
+            bench_.tick();
+        for (int i = 0; i < 400; ++i)
+            bench_.tick();
+        uint32_t events = bus_.read(CAMERA_EVENT);
+        bus_.write(CAMERA_EVENT, events);
+        return events;
+    }
+    uint32_t latest() {
+        uint32_t value = bus_.read(CAMERA_LATEST);
+        EXPECT_TRUE(value & CAMERA_LATEST_VALID_MASK);
+        return base + ((value & CAMERA_LATEST_BUFFER_MASK) - 1) * stride;
+    }
+    void expectAt(uint32_t at, const std::vector<uint8_t>& pixels) {
+        for (size_t i = 0; i < pixels.size(); ++i)
+            ASSERT_EQ(memory_.byte(at + static_cast<uint32_t>(i)), pixels[i]) << "pixel " << i;
+    }
+    void start() { bus_.write(CAMERA_CONTROL, CAMERA_CONTROL_START_MASK); }
+
+    Random random_{testSeed()};
+    uint32_t slowest_ = 3;
+    int wait_ = 1;
+    SensorModel sensor_{{60, 9}};
+    Bench<Vcamera_slot> bench_;
+    BusMaster<Vcamera_slot> bus_{bench_};
+    NpiMemory<Vcamera_slot> memory_{bench_, 0.2, testSeed()};
+};
+
+TEST_F(CameraTest, EveryFrameIsInMemoryAsTheSensorSentIt) {
+    start();
+    for (int i = 1; i <= 20; ++i) {
+        auto pixels = picture();
+        sensor_.addFrame(pixels, width, height);
+        ASSERT_EQ(drain(), CAMERA_EVENT_FRAME_MASK);
+        expectAt(latest(), pixels);
+        EXPECT_EQ(bus_.read(CAMERA_FRAMES), static_cast<uint32_t>(i));
+    }
+    EXPECT_EQ(bus_.read(CAMERA_DROPPED), 0u);
+    for (uint32_t i = 0; i < 3; ++i)
+        EXPECT_EQ(memory_.byte(base + i * stride + width * height), 0) << "nothing behind a frame";
+}
+
+TEST_F(CameraTest, FramesCloseTogetherAreAllCaught) {
+    sensor_ = SensorModel({70, 3});
+    start();
+    std::vector<uint8_t> last;
+    for (int i = 0; i < 8; ++i)
+        sensor_.addFrame(last = picture(), width, height);
+    EXPECT_EQ(drain(), CAMERA_EVENT_FRAME_MASK);
+    EXPECT_EQ(bus_.read(CAMERA_FRAMES), 8u);
+    expectAt(latest(), last);
+}
+
+TEST_F(CameraTest, BrokenFramesAreToldAndNeverHandedOn) {
+    start();
+    auto good = picture();
+    sensor_.addFrame(good, width, height);
+    drain();
+    const struct {
+        SensorModel::Defect defect;
+        uint32_t event;
+    } cases[] = {{{3, -1, 0}, CAMERA_EVENT_SHORT_LINE_MASK},
+                 {{height - 1, -8, 0}, CAMERA_EVENT_SHORT_LINE_MASK},
+                 {{0, 1, 0}, CAMERA_EVENT_LONG_LINE_MASK},
+                 {{5, 30, 0}, CAMERA_EVENT_LONG_LINE_MASK},
+                 {{-1, 0, -1}, CAMERA_EVENT_SHORT_FRAME_MASK},
+                 {{-1, 0, -height + 1}, CAMERA_EVENT_SHORT_FRAME_MASK}};
+    uint32_t dropped = 0;
+    for (auto& c : cases) {
+        uint32_t before = latest();
+        sensor_.addFrame(picture(), width, height, c.defect);
+        sensor_.addFrame(good = picture(), width, height);
+        EXPECT_EQ(drain(), c.event | CAMERA_EVENT_FRAME_MASK);
+        EXPECT_EQ(bus_.read(CAMERA_DROPPED), ++dropped);
+        EXPECT_NE(latest(), before);
+        expectAt(latest(), good);
+    }
+    sensor_.addFrame(good = picture(), width, height, {-1, 0, 3});
+    EXPECT_EQ(drain(), CAMERA_EVENT_LONG_FRAME_MASK | CAMERA_EVENT_FRAME_MASK);
+    expectAt(latest(), good);
+    EXPECT_EQ(bus_.read(CAMERA_DROPPED), dropped) << "more lines than wanted: the frame was whole";
+}
+
+TEST_F(CameraTest, AMemoryThatIsTooSlowIsToldAndTheNextFrameIsRight) {
+    start();
+    memory_.hold(true);
+    sensor_.addFrame(picture(), width, height);
+    drain();
+    memory_.hold(false);
+    uint32_t events = drain();
+    EXPECT_EQ(bus_.read(CAMERA_FRAMES), 0u) << events;
+    auto pixels = picture();
+    sensor_.addFrame(picture(), width, height); // ends what the lost lines left open
+    sensor_.addFrame(pixels, width, height);
+    events |= drain();
+    EXPECT_TRUE(events & CAMERA_EVENT_OVERFLOW_MASK);
+    EXPECT_EQ(bus_.read(CAMERA_DROPPED), 1u);
+    expectAt(latest(), pixels);
+}
+
+TEST_F(CameraTest, TheFrameThatAnotherCoreHasIsNotOverwritten) {
+    start();
+    auto pixels = picture();
+    sensor_.addFrame(pixels, width, height);
+    drain();
+    auto& top = bench_.top();
+    for (int round = 0; round < 6; ++round) {
+        ASSERT_TRUE(top.frame_valid_o);
+        uint32_t at = base + (top.frame_index_o - 1u) * stride;
+        EXPECT_EQ(at, latest());
+        top.frame_take_i = 1;
+        bench_.tick();
+        top.frame_take_i = 0;
+        bench_.tick();
+        EXPECT_FALSE(top.frame_valid_o) << "offered once";
+        std::vector<uint8_t> last;
+        for (uint32_t i = 0; i < 1 + random_.below(4); ++i)
+            sensor_.addFrame(last = picture(), width, height);
+        drain();
+        expectAt(at, pixels);
+        expectAt(latest(), last);
+        pixels = last;
+    }
+}
+
+TEST_F(CameraTest, StopsAndStartsInTheMiddleOfAFrame) {
+    start();
+    for (int round = 0; round < 5; ++round) {
+        sensor_.addFrame(picture(), width, height);
+        for (uint32_t i = 0; i < 300 + random_.below(900); ++i)
+            bench_.tick();
+        bus_.write(CAMERA_CONTROL, CAMERA_CONTROL_STOP_MASK);
+        bench_.waitFor([&] { return !(bus_.read(CAMERA_STATUS) & CAMERA_STATUS_ACTIVE_MASK); },
+                       "the core to stop", 500);
+        EXPECT_FALSE(bench_.top().frame_valid_o);
+        drain();
+        start();
+        auto pixels = picture();
+        sensor_.addFrame(pixels, width, height);
+        EXPECT_EQ(drain(), CAMERA_EVENT_FRAME_MASK);
+        EXPECT_EQ(bus_.read(CAMERA_FRAMES), 1u);
+        expectAt(latest(), pixels);
+    }
+}
+
+TEST_F(CameraTest, RefusesWhatItCannotCapture) {
+    auto refused = [&] {
+        start();
+        bench_.tick();
+        uint32_t events = bus_.read(CAMERA_EVENT);
+        bus_.write(CAMERA_EVENT, events);
+        return events == CAMERA_EVENT_REFUSED_MASK && bus_.read(CAMERA_STATUS) == 0;
+    };
+    for (auto [w, h] : {std::pair{12u, 8u}, {0u, 8u}, {2056u, 8u}, {16u, 0u}, {16u, 4096u}}) {
+        configure(w, h);
+        EXPECT_TRUE(refused()) << w << " x " << h;
+    }
+    configure(16, 8);
+    bus_.write(CAMERA_BASE, base + 64);
+    EXPECT_TRUE(refused());
+    configure(16, 8);
+    bus_.write(CAMERA_STRIDE, stride + 8);
+    EXPECT_TRUE(refused());
+    configure(16, 8);
+    EXPECT_FALSE(refused());
+    EXPECT_EQ(bus_.read(CAMERA_ID), CAMERA_ID_VALUE);
+    EXPECT_TRUE(bus_.transfer(false, 11, 0).error);
+}
+
+TEST_F(CameraTest, APixelEachFabricClockWhenTheMemoryKeepsUp) {
+    memory_.setStall(0);
+    slowest_ = 1; // the pixel clock is as fast as the fabric's
+    start();
+    for (int i = 0; i < 6; ++i)
+        sensor_.addFrame(picture(), width, height);
+    EXPECT_EQ(drain(), CAMERA_EVENT_FRAME_MASK);
+    EXPECT_EQ(bus_.read(CAMERA_FRAMES), 6u);
+}
+
+} // namespace

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+//
+// sensor_model: the parallel port of an image sensor: what its pins are at each pixel clock. Frames
+// that are not as they should be can be asked for.
+
+#ifndef SENSOR_MODEL_H
+#define SENSOR_MODEL_H
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+class SensorModel {
+public:
+    struct Pins {
+        bool vsync = true, href = false;
+        uint8_t data = 0;
+    };
+    // Blanking in pixel clocks: before each frame, after each line.
+    struct Blanking {
+        int frame = 60, line = 9;
+    };
+    struct Defect {
+        int line = -1;  // in this line ..
+        int pixels = 0; // .. so many pixels more, or less if negative
+        int lines = 0;  // so many lines more, or less if negative
+    };
+
+    explicit SensorModel(Blanking blanking) : blanking_(blanking) {}
+
+    void addFrame(const std::vector<uint8_t>& pixels, int width, int height) {
+        addFrame(pixels, width, height, Defect());
+    }
+    void addFrame(const std::vector<uint8_t>& pixels, int width, int height, Defect defect) {
+        for (int i = 0; i < blanking_.frame; ++i)
+            pins_.push_back({true, false, 0xEE});
+        rest(blanking_.line);
+        for (int y = 0; y < height + defect.lines; ++y) {
+            int wide = width + (y == defect.line ? defect.pixels : 0);
+            for (int x = 0; x < wide; ++x)
+                pins_.push_back({false, true,
+                                 x < width && y < height
+                                     ? pixels[static_cast<size_t>(y * width + x)]
+                                     : uint8_t(0x99)});
+            rest(blanking_.line);
+        }
+    }
+    bool isIdle() const { return pins_.empty(); }
+    // At the next pixel clock; between frames once all have gone.
+    Pins next() {
+        if (pins_.empty())
+            return {};
+        Pins pins = pins_.front();
+        pins_.pop_front();
+        return pins;
+    }
+
+private:
+    void rest(int clocks) {
+        for (int i = 0; i < clocks; ++i)
+            pins_.push_back({false, false, 0xDD});
+    }
+    Blanking blanking_;
+    std::deque<Pins> pins_;
+};
+
+#endif

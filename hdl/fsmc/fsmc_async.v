@@ -5,7 +5,7 @@
 // As in an SRAM, a write happens when NWE rises while NE is low: address, data and byte lanes are
 // registered by that very edge (the STM32 holds them for one HCLK after it). So an access that is
 // given up, NE rising first, writes nothing, and there is no minimum for the time that NWE rests. The
-// next edge must not come within four clocks (40 ns at 100 MHz).
+// next edge must come later than three clocks (30 ns at 100 MHz): until then the write is handed on.
 // wr_full_o is high at once; wr_o follows for one cycle, two to three clocks later, and clears it.
 
 `default_nettype none
@@ -81,4 +81,60 @@ module fsmc_async (
             write_s1 <= 1'b0;
         end
     end
+
+`ifdef FORMAL
+    // Time goes in steps; in each the clock and the pins may change as they like: no ratio, no phase.
+    // What changes together with an edge is seen as it was before it.
+    (* gclk *) wire step;
+    reg        past = 1'b0, was_nwe = 1'b1, was_clk = 1'b1, waiting = 1'b0, was_taken = 1'b0, begun = 1'b0;
+    reg [1:0]  was_ne = 2'b00;
+    reg [42:0] pins = 43'd0, was_pins = 43'd0;
+    reg [1:0]  pins_ne = 2'b00;
+    reg [2:0]  clocks = 3'd7; // edges of clk_i since the write's edge
+    wire rise = past && fsmc_nwe_n_i && !was_nwe;
+    wire edge_of_clk = past && clk_i && !was_clk;
+    wire writes = rise && |was_ne;
+    wire handed = edge_of_clk && was_taken; // the user has seen wr_o
+    wire open = waiting && !handed;
+    wire rings = writes && clocks == 3'd0 && open && was_pins == pins && was_ne == pins_ne;
+    always @(posedge step) begin
+        past     <= 1'b1;
+        was_nwe  <= fsmc_nwe_n_i;
+        was_clk  <= clk_i;
+        was_ne   <= ne;
+        was_pins <= {fsmc_a_i, fsmc_d_i, ~fsmc_nbl_n_i};
+        // Reset: long enough, and no access meanwhile.
+        begun <= begun || clocks == 3'd6;
+        assume (rst_i == !begun);
+        assume (begun || fsmc_nwe_n_i);
+        assume (past || (fsmc_nwe_n_i && clk_i));
+        if (handed)
+            waiting <= 1'b0;
+        if (writes && !rings) begin
+            pins    <= was_pins;
+            pins_ne <= was_ne;
+            waiting <= 1'b1;
+            clocks  <= 3'd0;
+        end else if (edge_of_clk && clocks != 3'd7) begin
+            clocks <= clocks + 3'd1;
+        end
+        if (!past)
+            clocks <= 3'd0;
+        // Three clocks and a little between two edges: as many edges of the clock. Ringing is shorter.
+        assume (!writes || rings || clocks >= 3'd3);
+
+        if (begun && past) begin
+            // Each write is noted at once, handed over once, as it was on the pins, and before the next.
+            assert (!open || full || taken);
+            assert (!(writes && !rings) || !open);
+            assert (!open || clocks < 3'd3);
+            assert (!open || {wr_addr_o, wr_data_o, wr_be_o, wr_ne_o} == {pins, pins_ne});
+            assert (open || !wr_o);
+        end
+        was_taken <= taken;
+        cover (begun && rings);
+        cover (begun && writes && clocks == 3'd3);
+        cover (begun && wr_o && rise && !writes);
+    end
+`endif
 endmodule

@@ -18,6 +18,14 @@ static U32 wordAddress(U32 slot, U32 word) {
     return (U32)CONTROL_WINDOW + ((slot & 63U) << 6 | (word & 15U) << 2);
 }
 
+Fsmc_Status fsmc_identify(void) {
+    if (FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID) >> 16 != SYSTEM_ID_VALUE >> 16)
+        return FSMC_NO_DEVICE;
+    fsmcPage = 0;
+    FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 0);
+    return FSMC_OK;
+}
+
 Fsmc_Status FSMC_init(const Fsmc_Port* port, void* context) {
     U32 bank;
     fsmc_port = port;
@@ -26,11 +34,7 @@ Fsmc_Status FSMC_init(const Fsmc_Port* port, void* context) {
         port->write32(context, (U32)FSMC_REGISTERS + bank * 8U + 4U, (U32)BTR_VALUE);
         port->write32(context, (U32)FSMC_REGISTERS + bank * 8U, (U32)BCR_VALUE);
     }
-    if (FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID) >> 16 != SYSTEM_ID_VALUE >> 16)
-        return FSMC_NO_DEVICE;
-    fsmcPage = 0;
-    FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 0);
-    return FSMC_OK;
+    return fsmc_identify();
 }
 
 U32 FSMC_read(U32 slot, U32 word) {

@@ -31,8 +31,9 @@ typedef struct Fsmc_Port {
 
 typedef enum Fsmc_Status {
     FSMC_OK = 0,
-    FSMC_NO_DEVICE, /* slot 0 does not identify itself as the system slot */
-    FSMC_BUS_ERROR  /* an access since the last check hit nothing */
+    FSMC_NO_DEVICE,  /* slot 0 does not identify itself as the system slot */
+    FSMC_BUS_ERROR,  /* an access since the last check hit nothing, or waited for too long */
+    FSMC_BAD_SETTING /* of a bank (fsmc_bank.h) */
 } Fsmc_Status;
 
 /* Programs BCRx and BTRx of both banks (asynchronous mode 1, 16 bits, NWAIT) and looks for the
@@ -47,11 +48,11 @@ void FSMC_write(U32 slot, U32 word, U32 value);
 void FSMC_readMemory(U32 address, U8* data, U32 bytes);
 void FSMC_writeMemory(U32 address, const U8* data, U32 bytes);
 
-/* DDR3 at the bridge's full speed, 25 million halfwords a second, without NWAIT. `address` is even.
- * Each part is checked by the bridge's LATE event and repeated with NWAIT where it came too early;
- * returns how many halfwords that were (0 unless others keep the memory very busy). Meanwhile
- * nobody else may use the DDR3 window: the caller locks, interrupt routines included. FSMC_setHclk
- * first (else it is slow): Hz of HCLK, 120 million at most. */
+/* DDR3 at the bridge's full speed, 24 to 30 million halfwords a second, without NWAIT. `address` is
+ * even. Each part is checked by the bridge's LATE event and repeated with NWAIT where it came too
+ * early; returns how many halfwords that were (0 unless others keep the memory very busy).
+ * Meanwhile nobody else may use the DDR3 window: the caller locks, interrupt routines included.
+ * FSMC_setHclk first (else it is slow): Hz of HCLK, 120 million at most. */
 void FSMC_setHclk(U32 hz);
 U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords);
 U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords);

@@ -17,6 +17,9 @@
 extern const Fsmc_Port* fsmc_port;
 extern void* fsmc_context;
 
+/* Looks for the system slot; the last step of setting up. */
+Fsmc_Status fsmc_identify(void);
+
 /* Turns a DDR3 address into one in the window, and moves the page register where it must. */
 U32 fsmc_windowAddress(U32 address);
 

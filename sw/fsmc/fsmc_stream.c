@@ -10,22 +10,30 @@
 /* Mode A without NWAIT: the data phase is 2 HCLK, and an access takes ADDSET + 3. */
 #define STREAM_BCR (1UL << 0 | 1UL << 4 | 1UL << 7 | 1UL << 12 | 1UL << 14)
 #define STREAM_DATAST 2U
-#define ACCESS_HZ 25000000UL /* edges of NWE at most (docs/fsmc.md) */
-#define REGION 4096U         /* bytes: the bridge does not read ahead beyond their multiples */
+/* Accesses/s at most (docs/fsmc.md): more than three clocks of 10 ns between edges of NWE; a read
+ * has its data 16 ns after its address. */
+#define WRITE_HZ 30000000UL
+#define READ_HZ 25000000UL
+#define REGION 4096U /* bytes: the bridge does not read ahead beyond their multiples */
 #define BLOCK 64U
 
-static U32 streamAddset = 15; /* until FSMC_setHclk: slow, but right */
+static U8 writeAddset = 15, readAddset = 15; /* until FSMC_setHclk: slow, but right */
+
+static U8 addsetFor(U32 hclkHz, U32 accessHz) {
+    U32 cycles = (U32)((hclkHz + accessHz - 1U) / accessHz);
+    return (U8)(cycles < 4U ? 1U : cycles - 3U > 15U ? 15U : cycles - 3U);
+}
 
 void FSMC_setHclk(U32 hz) {
-    U32 cycles = (U32)((hz + ACCESS_HZ - 1U) / ACCESS_HZ);
-    streamAddset = cycles < 4U ? 1U : cycles - 3U > 15U ? 15U : cycles - 3U;
+    writeAddset = addsetFor(hz, WRITE_HZ);
+    readAddset = addsetFor(hz, READ_HZ);
 }
 
 static void setBank(int fast) {
     if (fast) {
-        U32 btr = streamAddset | STREAM_DATAST << 8 | 1UL << 16;
-        fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS + 4U, btr);
-        fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS + 0x104U, btr);
+        U32 rest = STREAM_DATAST << 8 | 1UL << 16;
+        fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS + 4U, rest | readAddset);
+        fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS + 0x104U, rest | writeAddset);
         fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS, (U32)STREAM_BCR);
     } else {
         fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS, (U32)BCR_VALUE);

@@ -3,6 +3,7 @@
 // measure_fsmc: the FSMC bridge's speed in the whole chip: the real driver, the pins, the bridge,
 // the arbiter, the MCB and DDR3.
 
+#include "driver_port.h"
 #include "random.h"
 #include "soc_model.h"
 #include <CLI/CLI.hpp>
@@ -11,14 +12,13 @@
 #include <nlohmann/json.hpp>
 
 extern "C" {
-#include "fsmc.h"
 #include "map_regs.h"
 #include "system_regs.h"
 }
 
 namespace {
 
-constexpr double fabricHz = 100e6, pinLimit = 25e6; // accesses a second at the pins
+constexpr double fabricHz = 100e6, wantedRate = 25e6; // accesses/s at the pins
 constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
 
 nlohmann::json report = nlohmann::json::array();
@@ -33,21 +33,11 @@ void record(const std::string& name, double value, const char* unit, double limi
     report.push_back(entry);
 }
 
-FsmcMaster& masterOf(void* context) {
-    return *static_cast<FsmcMaster*>(context);
-}
-const Fsmc_Port port = {[](void* c, U32 a) -> U8 { return masterOf(c).read8(a); },
-                        [](void* c, U32 a, U8 v) { masterOf(c).write8(a, v); },
-                        [](void* c, U32 a) -> U16 { return masterOf(c).read16(a); },
-                        [](void* c, U32 a, U16 v) { masterOf(c).write16(a, v); },
-                        [](void* c, U32 a) -> U32 { return masterOf(c).read32(a); },
-                        [](void* c, U32 a, U32 v) { masterOf(c).write32(a, v); }};
-
 // A chip with its driver, at an HCLK in MHz; the fabric runs at 100 MHz.
 struct Chip {
     Chip(unsigned hclkMhz, uint64_t seed) : air(seed), soc(air, {}, hclkMhz, 100) {
         soc.reset();
-        if (FSMC_init(&port, &soc.fsmc()) != FSMC_OK)
+        if (FSMC_init(&driverPort, &soc.fsmc()) != FSMC_OK)
             throw std::runtime_error("the chip does not answer");
         FSMC_setHclk(hclkMhz * 1000000);
         FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
@@ -71,26 +61,32 @@ double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
         value = static_cast<U16>(random.next());
     U32 repeated = 0;
     double least = 1;
-    auto show = [&](const char* what, double clocks, double wanted) {
-        double rate = halfwords / clocks * fabricHz;
-        fmt::print("HCLK {:3} MHz  {:<40} {:6.2f} M/s {:6.1f} %", hclk, what, rate / 1e6,
-                   100 * rate / pinLimit);
+    // An access takes whole HCLK: the pins' limit is what the driver's timing leaves at this HCLK
+    // (docs/fsmc.md).
+    auto show = [&](const char* what, double clocks, unsigned cycles, double wanted) {
+        double rate = halfwords / clocks * fabricHz, limit = hclk * 1e6 / cycles;
+        fmt::print("HCLK {:3} MHz  {:<40} {:6.2f} M/s {:6.1f} % {:4} HCLK {:6.2f} M/s {:6.1f} %",
+                   hclk, what, rate / 1e6, 100 * rate / wantedRate, cycles, limit / 1e6,
+                   100 * rate / limit);
         fmt::print(wanted > 0 ? "   {:.0f} % wanted\n" : "\n", 100 * wanted);
         record(fmt::format("HCLK {} MHz, {}", hclk, what), rate / 1e6, "million halfwords/s",
-               pinLimit / 1e6);
+               limit / 1e6);
         if (wanted > 0)
-            least = std::min(least, rate / pinLimit / wanted);
+            least = std::min(least, rate / limit / wanted);
     };
+    unsigned readCycles = (hclk + 24) / 25;
     show("sequential writes, stream",
-         chip.clocks([&] { repeated += FSMC_streamWrite(0x10000, out.data(), halfwords); }), 0.99);
+         chip.clocks([&] { repeated += FSMC_streamWrite(0x10000, out.data(), halfwords); }), 4,
+         0.99);
     show("sequential reads, stream",
-         chip.clocks([&] { repeated += FSMC_streamRead(0x10000, in.data(), halfwords); }), 0.95);
+         chip.clocks([&] { repeated += FSMC_streamRead(0x10000, in.data(), halfwords); }),
+         readCycles, 0.95);
     right = right && in == out && repeated == 0;
     std::vector<U8> bytes(2 * halfwords);
     show("sequential writes, NWAIT (driver's copy)",
-         chip.clocks([&] { FSMC_writeMemory(0x90000, bytes.data(), 2 * halfwords); }), 0);
+         chip.clocks([&] { FSMC_writeMemory(0x90000, bytes.data(), 2 * halfwords); }), 7, 0);
     show("sequential reads, NWAIT (driver's copy)",
-         chip.clocks([&] { FSMC_readMemory(0x90000, bytes.data(), 2 * halfwords); }), 0);
+         chip.clocks([&] { FSMC_readMemory(0x90000, bytes.data(), 2 * halfwords); }), 7, 0);
     return least;
 }
 
@@ -137,9 +133,12 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
 
     bool right = true;
-    fmt::print("Share of the pins' 25 million accesses/s, blocks of {} halfwords\n", halfwords);
+    fmt::print(
+        "Blocks of {} halfwords; share of 25 million accesses/s, HCLK of an access, the pins' "
+        "limit with it, share of that\n",
+        halfwords);
     double least = streams(100, seed, halfwords, right);
-    streams(120, seed, halfwords, right);
+    least = std::min(least, streams(120, seed, halfwords, right));
     fmt::print("\nSingle accesses, in clocks of 100 MHz\n");
     single(100, seed, count);
     single(120, seed, count);

@@ -5,8 +5,8 @@
 
 #include "VFsmcBridge.h"
 #include "bridge_bench.h"
+#include "driver_port.h"
 extern "C" {
-#include "fsmc.h"
 #include "map_regs.h"
 #include "system_regs.h"
 }
@@ -17,22 +17,12 @@ namespace {
 
 constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
 
-FsmcMaster& masterOf(void* context) {
-    return *static_cast<FsmcMaster*>(context);
-}
-const Fsmc_Port port = {[](void* c, U32 a) -> U8 { return masterOf(c).read8(a); },
-                        [](void* c, U32 a, U8 v) { masterOf(c).write8(a, v); },
-                        [](void* c, U32 a) -> U16 { return masterOf(c).read16(a); },
-                        [](void* c, U32 a, U16 v) { masterOf(c).write16(a, v); },
-                        [](void* c, U32 a) -> U32 { return masterOf(c).read32(a); },
-                        [](void* c, U32 a, U32 v) { masterOf(c).write32(a, v); }};
-
 class Bridge : public ::testing::Test {
 protected:
     void SetUp() override {
         RecordProperty("seed", static_cast<int>(testSeed()));
         b_.slave.words[MAP_SLOT_SYSTEM * 16 + SYSTEM_ID] = SYSTEM_ID_VALUE;
-        ASSERT_EQ(FSMC_init(&port, &b_.master), FSMC_OK);
+        ASSERT_EQ(FSMC_init(&driverPort, &b_.master), FSMC_OK);
         doorbell(); // its last write is posted
     }
     static uint32_t at(uint32_t word) { return control + 4 * word; }
@@ -250,6 +240,27 @@ TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
         }
     }
     EXPECT_GT(repeated, 0u) << "a slow one does not, and that was seen";
+}
+
+// The edges of NWE are 33.3 ns apart at 120 MHz; other ratios let them come at every phase of the
+// clock.
+TEST(BridgeRatios, WritesOfAStreamAreTakenAtEveryPhase) {
+    Random random(testSeed());
+    for (auto [hclk, clk] :
+         {std::pair(120u, 100u), {1199u, 1000u}, {1000u, 999u}, {1083u, 1000u}}) {
+        BridgeBench<VFsmcBridge> b(testSeed(), 0, hclk, clk);
+        b.slave.words[MAP_SLOT_SYSTEM * 16 + SYSTEM_ID] = SYSTEM_ID_VALUE;
+        ASSERT_EQ(FSMC_init(&driverPort, &b.master), FSMC_OK);
+        FSMC_setHclk(static_cast<U32>(100e6 * hclk / clk));
+        std::vector<uint16_t> out(5000), in(out.size());
+        for (auto& value : out)
+            value = static_cast<uint16_t>(random.next());
+        uint64_t start = b.clocks();
+        FSMC_streamWrite(0x400, out.data(), static_cast<U32>(out.size()));
+        EXPECT_LT(b.clocks() - start, out.size() * 41 * clk / hclk / 10) << "4 HCLK an access";
+        FSMC_streamRead(0x400, in.data(), static_cast<U32>(in.size()));
+        EXPECT_EQ(in, out) << "SEED=" << testSeed() << " HCLK : clock = " << hclk << " : " << clk;
+    }
 }
 
 TEST_F(Bridge, OtherChipsOnTheBusAreLeftAlone) {

@@ -7,7 +7,12 @@
 #include "VFsmcBridgeMuxed.h"
 #include "VFsmcBridgeWaitHigh.h"
 #include "bridge_bench.h"
+#include "driver_port.h"
 #include "fsmc_fields.h"
+extern "C" {
+#include "fsmc_bank.h"
+#include "system_regs.h"
+}
 #include <gtest/gtest.h>
 #include <map>
 
@@ -16,33 +21,30 @@ using namespace fsmc;
 namespace {
 
 constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
+constexpr uint32_t base = bcrEnable | bcrWidth16 | bcrWriteEnable | bcrAsyncWait;
 
 struct Mode {
     const char* name;
-    uint32_t bcr, btr, bwtr;
+    Fsmc_Bank bank;
 };
-constexpr uint32_t base = bcrEnable | bcrWidth16 | bcrWriteEnable | bcrAsyncWait;
-// ADDSET, DATAST, BUSTURN, ADDHLD, ACCMOD
+// mode, of writes, PSRAM, muxed, wait, wait high, BUSTURN, {ADDSET, ADDHLD, DATAST} of reads,
+// writes
 const Mode plainModes[] = {
-    {"1", base, timing(2, 4, 1), 0},
-    {"1 slow", base, timing(15, 20, 15), 0},
-    {"1 PSRAM", base | bcrTypePsram, timing(1, 4, 1), 0},
-    {"A", base | bcrExtended, timing(2, 4, 1, 1, 0), timing(1, 5, 0, 1, 0)},
-    {"A write fast", base | bcrExtended, timing(3, 6, 0, 1, 0), timing(1, 4, 0, 1, 0)},
-    {"2", base | bcrTypeNor | bcrFlashAccess, timing(2, 4, 1), 0},
-    {"B", base | bcrTypeNor | bcrFlashAccess | bcrExtended, timing(2, 4, 1, 1, 1),
-     timing(2, 4, 0, 1, 1)},
-    {"C", base | bcrTypeNor | bcrFlashAccess | bcrExtended, timing(2, 4, 1, 1, 2),
-     timing(2, 4, 0, 1, 2)},
-    {"D", base | bcrTypeNor | bcrFlashAccess | bcrExtended, timing(2, 4, 1, 2, 3),
-     timing(2, 4, 0, 2, 3)},
-    {"read A, write D", base | bcrExtended, timing(2, 4, 1, 1, 0), timing(1, 4, 0, 3, 3)},
+    {"1", {FSMC_MODE_1, {}, 0, 0, 1, 0, 1, {2, 1, 4}, {}, 0, 0}},
+    {"1 slow", {FSMC_MODE_1, {}, 0, 0, 1, 0, 15, {15, 1, 20}, {}, 0, 0}},
+    {"1 PSRAM", {FSMC_MODE_1, {}, 1, 0, 1, 0, 1, {1, 1, 4}, {}, 0, 0}},
+    {"A", {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 1, {2, 1, 4}, {1, 1, 5}, 0, 0}},
+    {"A write fast", {FSMC_MODE_A, FSMC_MODE_A, 1, 0, 1, 0, 0, {3, 1, 6}, {1, 1, 4}, 0, 0}},
+    {"2", {FSMC_MODE_2, {}, 0, 0, 1, 0, 1, {2, 1, 4}, {}, 0, 0}},
+    {"B", {FSMC_MODE_B, FSMC_MODE_B, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}, 0, 0}},
+    {"C", {FSMC_MODE_C, FSMC_MODE_C, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}, 0, 0}},
+    {"D", {FSMC_MODE_D, FSMC_MODE_D, 0, 0, 1, 0, 1, {2, 2, 4}, {2, 2, 4}, 0, 0}},
+    {"read A, write D", {FSMC_MODE_A, FSMC_MODE_D, 0, 0, 1, 0, 0, {2, 1, 4}, {1, 3, 4}, 0, 0}},
 };
 const Mode muxedModes[] = {
-    {"muxed NOR", base | bcrTypeNor | bcrFlashAccess | bcrMuxed, timing(2, 4, 1, 2), 0},
-    {"muxed PSRAM", base | bcrTypePsram | bcrMuxed, timing(1, 5, 2, 1), 0},
-    {"muxed, extended", base | bcrTypeNor | bcrMuxed | bcrExtended, timing(3, 4, 1, 1, 3),
-     timing(1, 4, 1, 1, 3)},
+    {"muxed NOR", {FSMC_MODE_2, {}, 0, 1, 1, 0, 1, {2, 2, 4}, {}, 0, 0}},
+    {"muxed PSRAM", {FSMC_MODE_1, {}, 1, 1, 1, 0, 2, {1, 1, 5}, {}, 0, 0}},
+    {"muxed, extended", {FSMC_MODE_D, FSMC_MODE_D, 0, 1, 1, 0, 1, {3, 1, 4}, {1, 1, 4}, 0, 0}},
 };
 
 // Random traffic of all widths to both windows against a reference.
@@ -50,11 +52,9 @@ template <class Bridge> void traffic(const Mode& mode, unsigned hclk, unsigned c
     SCOPED_TRACE(std::string("mode ") + mode.name + ", HCLK : clock = " + std::to_string(hclk) +
                  " : " + std::to_string(clk) + ", SEED=" + std::to_string(testSeed()));
     BridgeBench<Bridge> b(testSeed(), 0.2, hclk, clk);
-    for (uint32_t bank : {0u, 1u}) {
-        b.master.write32(registersAt + 4 + 8 * bank, mode.btr);
-        b.master.write32(registersAt + 0x104 + 8 * bank, mode.bwtr);
-        b.master.write32(registersAt + 8 * bank, mode.bcr);
-    }
+    b.slave.words[0] = SYSTEM_ID_VALUE;
+    const Fsmc_Bank banks[2] = {mode.bank, mode.bank};
+    ASSERT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
     Random random(testSeed() + hclk);
     std::map<uint32_t, uint8_t> reference;
     std::map<uint32_t, uint32_t> words;
@@ -62,7 +62,7 @@ template <class Bridge> void traffic(const Mode& mode, unsigned hclk, unsigned c
     for (int i = 0; i < 700 && !testing::Test::HasFailure(); ++i) {
         if (random.chance(0.04))
             place = random.below(4) << 17 | random.below(256); // upper address bits too
-        uint32_t v = random.next(), a = place & ~1u, word = random.below(1024);
+        uint32_t v = random.next(), a = place & ~1u, word = 1 + random.below(1023);
         switch (random.below(6)) {
         case 0:
             b.master.write8(ddr + place, static_cast<uint8_t>(v));
@@ -95,7 +95,7 @@ TEST(Modes, EveryAsynchronousModeAtEveryRatio) {
     for (const Mode& mode : plainModes)
         for (auto [hclk, clk] :
              {std::pair(120, 100), {100, 100}, {1000, 997}, {997, 1000}, {60, 100}, {168, 100}}) {
-            if (hclk == 168 && (mode.btr & 0xF) < 2)
+            if (hclk == 168 && mode.bank.read.addset < 2)
                 continue; // 4 clocks between writes want ADDSET 2 at 168 MHz
             traffic<VFsmcBridge>(mode, hclk, clk);
         }
@@ -109,9 +109,42 @@ TEST(Modes, MultiplexedAddressAndData) {
 
 TEST(Modes, NwaitActiveHighAndSmallBuffers) {
     for (Mode mode : plainModes) {
-        mode.bcr |= bcrWaitHigh;
+        mode.bank.waitHigh = 1;
         traffic<VFsmcBridgeWaitHigh>(mode, 120, 100);
     }
+}
+
+TEST(Modes, TheDriverRefusesWhatTheManualForbids) {
+    BridgeBench<VFsmcBridge> b(testSeed());
+    const Fsmc_Bank good = plainModes[8].bank; // D
+    auto refuses = [&](unsigned bank, auto change) {
+        Fsmc_Bank banks[2] = {good, good};
+        change(banks[bank]);
+        return FSMC_initBanks(&driverPort, &b.master, banks) == FSMC_BAD_SETTING;
+    };
+    for (unsigned bank : {0u, 1u}) {
+        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.read.datast = 3; })) << "NWAIT is not seen";
+        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.wait = 0, x.write.datast = 0; }));
+        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.write.addhld = 0; }))
+            << "reserved in mode D";
+        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.read.addset = 16; }));
+        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.read.addhld = 16; }));
+        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.busturn = 16; }));
+        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.writeMode = FSMC_MODE_1; }));
+        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.mode = static_cast<Fsmc_Mode>(7); }));
+        for (unsigned clkdiv : {0u, 16u})
+            EXPECT_TRUE(refuses(bank, [=](Fsmc_Bank& x) {
+                x.mode = FSMC_MODE_BURST, x.latency = 5, x.clkdiv = static_cast<U8>(clkdiv);
+            }));
+        for (unsigned latency : {1u, 18u})
+            EXPECT_TRUE(refuses(bank, [=](Fsmc_Bank& x) {
+                x.mode = FSMC_MODE_BURST, x.clkdiv = 3, x.latency = static_cast<U8>(latency);
+            }));
+    }
+    EXPECT_TRUE(refuses(1, [](Fsmc_Bank& x) {
+        x.mode = FSMC_MODE_BURST, x.clkdiv = 3, x.latency = 5;
+    })) << "NE2 is asynchronous";
+    EXPECT_THROW(b.master.read16(control), FsmcError) << "bank 2 is off: nothing was written";
 }
 
 // The model is strict: what a real STM32 would not do, or what would not work, throws.

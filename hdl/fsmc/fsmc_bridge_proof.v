@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+//
+// fsmc_bridge_proof: what the processor may rely on at the pins of fsmc_bridge; only for the prover.
+//
+// Time goes in steps; in each the clock and the pins may change, so any ratio and phase is there. The memory
+// (fsmc_memory, with its own proof) is free: it answers when and what it likes, also never. A slave of
+// the register bus likewise. Properties of the parts are left to their own proofs.
+//
+// - NWAIT is not active for ever: it ends within two time-outs and what the synchronisers take.
+// - Once NWAIT is inactive in an access to a register it stays so, and data on the pins stays.
+// - A word written to the bus is of two writes that the processor completed, low half and high half of the same
+//   word, one right after the other; and each such pair is written, once, before the next access goes on.
+// - A register read gives a half of a word that the bus gave for this address: the low half in this access, the
+//   high half in the same answer if the low half was read just before.
+// - What ends with NE first changes nothing: it is in none of these.
+
+`default_nettype none
+
+`ifdef FORMAL
+module fsmc_bridge_proof #(
+    parameter TIMEOUT_LOG2 = 1
+) (
+    input wire        clk_i,
+    // pins; addresses of 8 halfwords, and one beyond the slots; two bits of data in a halfword
+    input wire        ne1_i,
+    input wire        ne2_i,
+    input wire        noe_n_i,
+    input wire        nwe_n_i,
+    input wire        beyond_i,
+    input wire [2:0]  a_i,
+    input wire [1:0]  d_i,
+    input wire [1:0]  nbl_n_i,
+    // slave
+    input wire        ready_i,
+    input wire        error_i,
+    input wire [3:0]  rdata_i
+);
+    (* gclk *) wire step;
+    reg  rst = 1'b1;
+    wire [24:0] a = {13'd0, beyond_i, 8'd0, a_i};
+    wire [15:0] d_out;
+    wire        oe, nwait_n, access_error, error_write, late;
+    wire [9:0]  error_addr, bus_addr;
+    wire        bus_valid, bus_write;
+    wire [31:0] bus_wdata;
+    wire [31:0] bus_rdata = {14'd0, rdata_i[3:2], 14'd0, rdata_i[1:0]};
+
+    fsmc_bridge #(.TIMEOUT_LOG2(TIMEOUT_LOG2)) u_fsmc_bridge (
+        .clk_i(clk_i), .rst_i(rst),
+        .fsmc_a_i(a), .fsmc_d_i({14'd0, d_i}), .fsmc_d_o(d_out), .fsmc_d_oe_o(oe),
+        .fsmc_ne_n_i({!ne2_i, !ne1_i}), .fsmc_noe_n_i(noe_n_i), .fsmc_nwe_n_i(nwe_n_i),
+        .fsmc_nbl_n_i(nbl_n_i), .fsmc_nadv_n_i(1'b1), .fsmc_clk_i(1'b0), .fsmc_nwait_n_o(nwait_n),
+        .page_i(6'd0), .access_error_o(access_error), .error_addr_o(error_addr),
+        .error_write_o(error_write), .late_o(late),
+        .bus_valid_o(bus_valid), .bus_write_o(bus_write), .bus_addr_o(bus_addr),
+        .bus_wdata_o(bus_wdata), .bus_ready_i(ready_i), .bus_rdata_i(bus_rdata),
+        .bus_error_i(error_i),
+        .npi_addr_ack_i(1'b0), .npi_wr_empty_i(1'b1), .npi_wr_almost_full_i(1'b0),
+        .npi_rd_data_i(64'd0), .npi_rd_word_i(4'd0), .npi_rd_empty_i(1'b1), .npi_init_done_i(1'b1)
+    );
+
+    // ---- The pins, a step ago, and what has happened
+    reg        past = 1'b0, was_clk = 1'b1, was_ne1 = 1'b0, was_ne2 = 1'b0, was_noe = 1'b1, was_nwe = 1'b1;
+    reg        was_beyond = 1'b0, was_nwait = 1'b1;
+    reg [2:0]  was_a = 3'd0;
+    reg [1:0]  was_d = 2'd0, was_nbl = 2'd0, was_out = 2'd0;
+    reg [2:0]  resets = 3'd0; // clocks of reset
+    reg        let_go = 1'b0; // NWAIT has been seen inactive in this access
+    reg [2:0]  rest = 3'd0;   // clocks since NWE's last edge, or an access that was given up
+    reg [1:0]  calm = 2'd0;   // clocks since then
+    reg        held = 1'b0;   // a write's strobe has risen, NE not yet
+    wire clock    = past && clk_i && !was_clk;
+    wire selected = ne1_i || ne2_i, was_selected = was_ne1 || was_ne2;
+    wire strobe   = !noe_n_i || !nwe_n_i, was_strobe = !was_noe || !was_nwe;
+    wire access   = selected && strobe, was_access = was_selected && was_strobe;
+    wire same     = {ne1_i, ne2_i, beyond_i, a_i} == {was_ne1, was_ne2, was_beyond, was_a};
+    wire ended    = was_access && !strobe && selected; // write: the strobe first
+    wire wrote    = was_access && !was_nwe && ended;
+    wire gives_up = was_access && !selected && (was_noe || calm != 2'd2);
+
+    always @(posedge step) begin
+        past <= 1'b1;
+        {was_clk, was_ne1, was_ne2, was_noe, was_nwe} <= {clk_i, ne1_i, ne2_i, noe_n_i, nwe_n_i};
+        {was_beyond, was_a, was_d, was_nbl, was_nwait, was_out} <= {beyond_i, a_i, d_i, nbl_n_i, nwait_n, d_out[1:0]};
+
+        // Reset for some clocks, with the pins at rest.
+        assume (past || (clk_i && !selected));
+        if (clock && resets != 3'd4)
+            resets <= resets + 3'd1;
+        rst <= resets < 3'd4;
+        assume (!rst || (!selected && !strobe));
+
+        // The processor: one bank, one strobe; they fall while selected or together; address stable.
+        assume (!(ne1_i && ne2_i) && (noe_n_i || nwe_n_i));
+        assume (!(was_selected && selected) || same);
+        assume (!(was_access && strobe) || {noe_n_i, nwe_n_i} == {was_noe, was_nwe});
+        assume (selected || was_selected || !strobe || was_strobe);
+        assume (!(was_access && !nwe_n_i && access) || (d_i == was_d && nbl_n_i == was_nbl));
+        assume (!wrote || (d_i == was_d && nbl_n_i == was_nbl));
+        // A strobe rises when NWAIT was inactive, or after NE: given up, and then it rests for a while.
+        assume (!wrote || let_go);
+        assume (!(was_strobe && !was_selected) || !strobe || !selected);
+        if (!access || !nwait_n) begin
+            let_go <= 1'b0;
+            calm   <= 2'd0;
+        end else if (was_access) begin
+            let_go <= 1'b1;
+            if (clock && calm != 2'd2)
+                calm <= calm + 2'd1;
+        end
+        held <= (wrote || held) && selected;
+        assume (!held || !strobe);
+        assume (!ended || wrote); // a read: NE and NOE together, two clocks after NWAIT at least (FSMC: 4 HCLK)
+        // Three clocks between edges of NWE (fsmc_async), four after an access that was given up.
+        if (wrote || gives_up)
+            rest <= 3'd0;
+        else if (clock && rest != 3'd7)
+            rest <= rest + 3'd1;
+        assume (!wrote || rest >= 3'd3);
+        assume (!(given_up && access) || rest >= 3'd4);
+        if (gives_up)
+            given_up <= 1'b1;
+        else if (access)
+            given_up <= 1'b0;
+    end
+    reg given_up = 1'b0;
+
+    // ---- NWAIT
+    localparam [7:0] BOUND = 4 * ((1 << TIMEOUT_LOG2) + 1) + 12;
+    reg [7:0] waited = 8'd0;
+    always @(posedge step) begin
+        if (!access || nwait_n)
+            waited <= 8'd0;
+        else if (clock && waited != 8'hFF)
+            waited <= waited + 8'd1;
+        assert (waited < BOUND);
+    end
+    always @(posedge step) if (past) begin
+        if (ne2_i && access && let_go)
+            assert (nwait_n);
+        if (ne2_i && access && let_go && !noe_n_i)
+            assert (d_out[1:0] == was_out);
+        assert (oe == (selected && !noe_n_i));
+        cover (waited > 8'd12 && was_access && access && nwait_n);
+    end
+endmodule
+`endif

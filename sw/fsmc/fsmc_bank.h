@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * fsmc_bank: the FSMC's other modes, for bridges that are built for them: what BCR, BTR and BWTR of
+ * a bank say (RM0033, 31.5.6), by name. FSMC_init needs none of this.
+ */
+#ifndef FSMC_BANK_H
+#define FSMC_BANK_H
+
+#include "fsmc.h"
+
+typedef enum Fsmc_Mode {
+    FSMC_MODE_1, /* SRAM: read and write alike */
+    FSMC_MODE_2, /* NOR: read and write alike */
+    FSMC_MODE_A, /* A to D: EXTMOD, writes have a mode and times of their own */
+    FSMC_MODE_B,
+    FSMC_MODE_C,
+    FSMC_MODE_D,
+    FSMC_MODE_BURST /* synchronous PSRAM: BURSTEN, CBURSTRW, WAITEN, WAITCFG 0 */
+} Fsmc_Mode;
+
+/* In HCLK: ADDSET 0..15, ADDHLD 1..15 (mode D and multiplexed), DATAST 1..255 (4 at least with
+ * NWAIT). */
+typedef struct Fsmc_Timing {
+    U8 addset, addhld, datast;
+} Fsmc_Timing;
+
+typedef struct Fsmc_Bank {
+    Fsmc_Mode mode;
+    Fsmc_Mode writeMode;     /* of A to D, where mode is */
+    U8 psram;                /* MTYP of modes 1 and A: 1 PSRAM, 0 SRAM */
+    U8 muxed;                /* MUXEN: address bits 15..0 on the data pins (the bridge's MUXED) */
+    U8 wait;                 /* ASYNCWAIT: asynchronous accesses look at NWAIT */
+    U8 waitHigh;             /* WAITPOL: NWAIT is active high (WAIT_HIGH) */
+    U8 busturn;              /* BUSTURN, HCLK, 0..15 */
+    Fsmc_Timing read, write; /* modes 1 and 2: only `read`, for both */
+    U8 clkdiv;               /* burst: FSMC_CLK = HCLK / (clkdiv + 1), 1..15 */
+    U8 latency; /* burst: edges from the address to the first data, 2..17 (LATENCY): DATLAT + 2 */
+} Fsmc_Bank;
+
+/* As FSMC_init, with these settings of NE1 and NE2. FSMC_BAD_SETTING, and nothing written, where
+ * one is reserved or out of range; NE2 cannot be FSMC_MODE_BURST. Streams (FSMC_streamRead, -Write)
+ * are for the plain bridge and FSMC_init's settings only. */
+Fsmc_Status FSMC_initBanks(const Fsmc_Port* port, void* context, const Fsmc_Bank banks[2]);
+
+#endif

@@ -27,27 +27,15 @@ module modem_baud #(
 
     reg  [WIDTH:0]   phase; // its highest bit is the carry
     reg  [4:0]       count; // ticks of 38400 baud
-    reg  [WIDTH-1:0] step;
-    reg  [4:0]       hide;  // bits of count that must be 0
 
-    always @* begin
-        hide = 5'd0;
-        step = BASE[WIDTH-1:0];
-        case (bd_i)
-            4'd0:    hide = 5'b11111;
-            4'd1:    hide = 5'b01111;
-            4'd2:    hide = 5'b00111;
-            4'd3:    hide = 5'b00011;
-            4'd4:    hide = 5'b00001;
-            4'd5:    hide = 5'b00000;
-            4'd6:    step = BD6[WIDTH-1:0];
-            4'd7:    step = BD7[WIDTH-1:0];
-            default: step = BD8[WIDTH-1:0];
-        endcase
-    end
+    // Not a case: Yosys would make a ROM of it, and put registers before it.
+    wire [WIDTH-1:0] step = bd_i[3] ? BD8[WIDTH-1:0] : bd_i == 4'd7 ? BD7[WIDTH-1:0]
+                          : bd_i == 4'd6 ? BD6[WIDTH-1:0] : BASE[WIDTH-1:0];
+    // Bits of count that must be 0.
+    wire [4:0] hide = {bd_i < 4'd1, bd_i < 4'd2, bd_i < 4'd3, bd_i < 4'd4, bd_i < 4'd5};
 
     always @(posedge clk_i) begin
-        phase <= {1'b0, phase[WIDTH-1:0]} + {1'b0, step};
+        phase <= {1'b0, step} + {1'b0, phase[WIDTH-1:0]};
         count <= count + {4'd0, phase[WIDTH]};
         tick_o <= phase[WIDTH] && (count & hide) == 5'd0;
         if (rst_i) begin

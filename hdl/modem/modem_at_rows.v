@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+//
+// modem_at_rows: the AT set-up as rows in block RAM: what modem_at does at each place of each step.
+//
+// A row has flags and eight bits of data: a character, or {word of the settings, its nibble}. Flags 0: nothing to do.
+
+`default_nettype none
+
+module modem_at_rows #(
+    parameter API = 0 // the modem's mode: 0 transparent, 1 API frames
+) (
+    input  wire       clk_i,
+    input  wire       clear_i, // the next row is 0
+    input  wire [3:0] step_i,
+    input  wire [5:0] place_i,
+    // of the row, a cycle later
+    output wire       send_o,   // a character ...
+    output wire       digit_o,  // ... that is the hex digit of a nibble
+    output wire       rate_o,   // the target's rate is taken
+    output wire       guard_o,  // wait for the guard time
+    output wire       hear_o,   // OK ends the step
+    output wire       limit_o,  // half a second without an answer is a failure
+    output wire       refuse_o, // so is another answer
+    output wire       skip_o,   // the next step is left out if the last digit was even
+    output wire       settle_o, // wait until the modem has changed its rate, and end
+    output wire [7:0] data_o
+);
+    `include "modem_regs.vh"
+
+    localparam [8:0] SEND = 9'd1,  DIGIT = 9'd2,  RATE   = 9'd4,  GUARD = 9'd8,
+                     HEAR = 9'd16, LIMIT = 9'd32, REFUSE = 9'd64, SKIP  = 9'd128, SETTLE = 9'd256;
+    localparam KEY = 8, LAST = 15; // steps
+    localparam [7:0] SETTINGS = {1'b0, MODEM_BAUD, 3'd0}; // rate and guard time
+
+    // The letters after "AT" of a command: two or, with a constant value, three.
+    function [23:0] letters(input integer step);
+        case (step)
+            2:       letters = {8'd0, "MY"};
+            3:       letters = "DH0";
+            4:       letters = {8'd0, "DL"};
+            5:       letters = {8'd0, "CH"};
+            6:       letters = {8'd0, "ID"};
+            7:       letters = {8'd0, "EE"};
+            KEY:     letters = {8'd0, "KY"};
+            9:       letters = "RO3";
+            10:      letters = "D61"; // the modem heeds RTS
+            11:      letters = "D71"; // and drives CTS
+            12:      letters = API != 0 ? "AP1" : "AP0";
+            13:      letters = {8'd0, "BD"};
+            default: letters = {8'd0, "CN"};
+        endcase
+    endfunction
+    function integer letter_count(input integer step);
+        letter_count = letters(step) < 24'h10000 ? 2 : 3;
+    endfunction
+    function [7:0] letter(input [23:0] text, input integer left); // before `left` others
+        case (left)
+            0:       letter = text[7:0];
+            1:       letter = text[15:8];
+            default: letter = text[23:16];
+        endcase
+    endfunction
+
+    // Its value: so many digits of this word from this nibble on; the key is in four words.
+    function integer digit_count(input integer step);
+        case (step)
+            2, 4, 6: digit_count = 4;
+            5:       digit_count = 2;
+            7:       digit_count = 1;
+            KEY:     digit_count = 32;
+            13:      digit_count = 5;
+            default: digit_count = 0;
+        endcase
+    endfunction
+    function [7:0] digit(input integer step, input [4:0] left); // {word, nibble} before `left` others
+        case (step)
+            2:       digit = {1'b0, MODEM_ADDR, left[2:0]};
+            4:       digit = {1'b0, MODEM_ADDR, 1'b1, left[1:0]};
+            5:       digit = {1'b0, MODEM_NET, left[2:0]};
+            6:       digit = {1'b0, MODEM_NET, 1'b1, left[1:0]};
+            7:       digit = {1'b0, MODEM_NET, 3'd2};
+            KEY:     digit = {3'b100, ~left[4:3], left[2:0]};
+            default: digit = {1'b0, MODEM_BAUD, left[2:0]};
+        endcase
+    endfunction
+
+    (* rom_style = "block", ram_style = "block" *)
+    reg [16:0] rows [0:1023];
+    integer i, k;
+    initial begin
+        for (i = 0; i < 1024; i = i + 1)
+            rows[i] = 17'd0;
+        // +++ between two guard times
+        rows[64]     = {GUARD | RATE, SETTINGS};
+        rows[64 + 1] = {SEND, "+"};
+        rows[64 + 2] = {SEND, "+"};
+        rows[64 + 3] = {SEND, "+"};
+        rows[64 + 4] = {GUARD | HEAR, SETTINGS};
+        rows[64 + 5] = {HEAR | LIMIT, 8'd0};
+        // "AT", letters, digits, return; then the answer
+        for (i = 2; i < LAST; i = i + 1) begin
+            rows[64*i]     = {SEND, "A"};
+            rows[64*i + 1] = {SEND, "T"};
+            for (k = 0; k < letter_count(i); k = k + 1)
+                rows[64*i + 1 + letter_count(i) - k] = {SEND, letter(letters(i), k)};
+            for (k = 0; k < digit_count(i); k = k + 1)
+                rows[64*i + 1 + letter_count(i) + digit_count(i) - k] = {SEND | DIGIT, digit(i, k[4:0])};
+            rows[64*i + 2 + letter_count(i) + digit_count(i)] = {SEND, 8'h0D};
+            rows[64*i + 3 + letter_count(i) + digit_count(i)] =
+                {HEAR | LIMIT | REFUSE | (i == KEY - 1 ? SKIP : 9'd0), 8'd0};
+        end
+        rows[64*LAST] = {SETTLE | RATE, SETTINGS};
+    end
+
+    reg [16:0] now;
+    always @(posedge clk_i)
+        if (clear_i)
+            now <= 17'd0;
+        else
+            now <= rows[{step_i, place_i}];
+
+    assign {settle_o, skip_o, refuse_o, limit_o, hear_o, guard_o, rate_o, digit_o, send_o, data_o} = now;
+endmodule

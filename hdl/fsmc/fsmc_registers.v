@@ -47,8 +47,9 @@ module fsmc_registers (
     // One of them at most: memory takes what was posted; the slave answers (bus_valid_o); the
     // processor ends its read. None: nothing to do.
     reg        flushing, answering;
-    reg [31:0] word;       // last read; its low half also what was written
-    reg        half_read, half_write; // which half of bus_addr_o's word is kept in it
+    reg [31:0] word;       // last read
+    reg [15:0] low;        // low half written last
+    reg        half_read, half_write; // word's high half, low: that of bus_addr_o's word is kept
     reg        given_up;   // the read has ended early: nobody takes its answer
     reg        give, done, seen;
     reg [1:0]  done_s;
@@ -72,7 +73,7 @@ module fsmc_registers (
     assign busy_o        = !idle;
     assign restart_o     = idle || flushed;
     assign flush_o       = flushing;
-    assign bus_wdata_o   = {wr_data_i, word[15:0]};
+    assign bus_wdata_o   = {wr_data_i, low};
     assign error_write_o = bus_write_o;
 
     // Set by the clock, cleared by the pins: the next read may begin a few nanoseconds later.
@@ -97,8 +98,8 @@ module fsmc_registers (
         given_up <= !begins && (given_up || !reading_i);
 
         if (begins && keep)
-            word[15:0] <= wr_data_i;
-        else if (ends && !bus_write_o)
+            low <= wr_data_i;
+        if (ends && !bus_write_o)
             word <= bus_rdata_i;
         if (at_once && !kept)
             word <= 32'd0;
@@ -178,9 +179,9 @@ module fsmc_registers (
             assert (half_write == low_word);
             assert (idle || !half_write);
             assert (!flushing && !bus_valid_o || !half_read);
-            assert (!half_write || word[15:0] == last_low);
+            assert (!half_write || low == last_low);
             if ((flushing || bus_valid_o) && bus_write_o)
-                assert (word[15:0] == last_low);
+                assert (low == last_low);
             // No waiting for ever: 2 time-outs and the steps between.
             assert (!flushing || stuck <= patience);
             assert (!bus_valid_o || stuck <= patience + 5'd9);

@@ -115,8 +115,8 @@ module modem #(
 
     assign modem_rts_n_o   = rx_free <= 5'd2;
     assign modem_reset_n_o = reset_n;
-    assign uart_valid = at_busy ? at_tx_valid : packet_tx_valid;
-    assign uart_data  = at_busy ? at_tx_data : packet_tx_data;
+    assign uart_valid = at_tx_valid || packet_tx_valid; // never both: not ready while the set-up runs
+    assign uart_data  = at_tx_data | packet_tx_data;
     assign ring_word  = wr_valid ? {1'b0, MODEM_RX_BASE} : {1'b0, MODEM_TX_BASE};
     assign npi_size_o = 4'd0;
     assign npi_rmw_o  = 1'b0;
@@ -184,6 +184,8 @@ module modem #(
         if (API != 0) begin : g_api
             reg [15:0] target;
             wire       frame_bad;
+            wire [7:0] frame_data;
+            assign packet_tx_data = packet_tx_valid ? frame_data : 8'd0;
             always @(posedge clk_i)
                 if (reg_write && reg_addr == MODEM_ADDR)
                     target <= reg_wdata[MODEM_ADDR_TARGET_LSB +: 16];
@@ -192,7 +194,7 @@ module modem #(
                 .clk_i(clk_i), .rst_i(rings_reset || configure), .target_i(target),
                 .valid_i(body_valid), .data_i(body_data), .last_i(body_last),
                 .bytes_i(tx_bytes), .ready_o(body_ready), .cts_i(cts_sync[1]),
-                .valid_o(packet_tx_valid), .data_o(packet_tx_data), .ready_i(tx_ready && !at_busy)
+                .valid_o(packet_tx_valid), .data_o(frame_data), .ready_i(tx_ready)
             );
             modem_api_rx u_api_rx (
                 .clk_i(clk_i), .rst_i(rst_i || !ready), .valid_i(rx_valid), .data_i(rx_data),
@@ -204,7 +206,7 @@ module modem #(
         end else begin : g_transparent
             assign packet_tx_valid = body_valid;
             assign packet_tx_data  = body_data;
-            assign body_ready      = tx_ready && !at_busy;
+            assign body_ready      = tx_ready;
             assign in_valid        = rx_valid && ready;
             assign in_error        = rx_error && ready;
             assign in_end          = 1'b0;

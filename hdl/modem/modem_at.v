@@ -32,7 +32,7 @@ module modem_at #(
     input  wire        word_valid_i,
     // bytes to and from the modem
     output wire        tx_valid_o,
-    output wire [7:0]  tx_data_o,
+    output wire [7:0]  tx_data_o,  // 0 while not busy
     input  wire        tx_ready_i,
     input  wire        rx_valid_i,
     input  wire [7:0]  rx_data_i

@@ -37,7 +37,7 @@ module modem_rx #(
 );
     localparam [6:0] LONGEST = 7'd100;
 
-    reg [6:0] length;   // announced
+    reg [7:0] length;   // announced; what is above 100 does not count
     reg [8:0] silence;  // ticks; 256 are 3.2 characters
     reg       pending;  // wr_data_o waits
     reg       ending;   // the last byte is in wr_data_o or beyond
@@ -52,7 +52,7 @@ module modem_rx #(
     wire       silent  = silence[8];
     wire       late    = (rx_valid_i || rx_error_i || rx_end_i || rx_bad_i) && pending && !taken && !deaf;
     wire       done    = ending && !wr_busy_i;
-    wire       longest = count == LONGEST || (API == 0 && !first && count == length);
+    wire       longest = count == LONGEST || (API == 0 && !first && {1'b0, count} == length);
     wire       cut     = API == 0 ? rx_error_i || silent : rx_end_i || rx_bad_i;
 
     assign wr_valid_o = pending && !ending && !drop;
@@ -77,7 +77,7 @@ module modem_rx #(
             if (!rx_valid_i || deaf)
                 pending <= 1'b0;
             if (first)
-                length <= wr_data_o[6:5] == 2'd3 ? LONGEST : wr_data_o[6:0] + 7'd5;
+                length <= {1'b0, wr_data_o[6:0]} + 8'd5;
             if (longest)
                 ending <= 1'b1;
         end

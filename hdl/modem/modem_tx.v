@@ -25,7 +25,7 @@ module modem_tx #(
     input  wire [7:0] rd_data_i,
     // bytes out
     output wire       tx_valid_o,
-    output reg  [7:0] tx_data_o,
+    output reg  [7:0] tx_data_o,    // 0 while not enabled
     input  wire       tx_ready_i,   // one cycle a tick, eight a bit, while the line is idle
     output wire       tx_last_o,    // the last byte of the packet
     input  wire       cts_i         // 1: the modem takes bytes
@@ -64,6 +64,8 @@ module modem_tx #(
                 end
             end
         endcase
+        if (!enable_i)
+            tx_data_o <= 8'd0;
         if (rst_i) begin
             state      <= FETCH;
             sent_o     <= 1'b0;

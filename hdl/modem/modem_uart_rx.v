@@ -19,7 +19,7 @@ module modem_uart_rx (
     reg [1:0] sync;
     reg [2:0] ticks;
     reg [8:0] bits;   // enter at the top, above a 1 that reaches the bottom with the eighth
-    reg       busy;   // a start bit was seen
+    reg       idle;   // no start bit was seen
     reg       started; // ... and found to be one
     reg       armed;  // the line has been high since the last byte
 
@@ -27,7 +27,7 @@ module modem_uart_rx (
     wire sample = tick_i && ticks == 3'd7;
 
     assign data_o = bits[8:1];
-    assign idle_o = !busy && line;
+    assign idle_o = idle && line;
 
     always @(posedge clk_i) begin
         sync            <= {sync[0], rxd_i};
@@ -35,20 +35,20 @@ module modem_uart_rx (
         framing_error_o <= 1'b0;
         if (tick_i)
             ticks <= ticks + 3'd1;
-        if (!busy) begin
+        if (idle) begin
             armed  <= armed || line;
             started <= 1'b0;
-            busy   <= armed && !line;
+            idle   <= !armed || line;
             ticks  <= 3'd4;
         end else if (sample) begin
             started <= 1'b1;
             if (!started) begin
                 bits <= 9'h100;
-                busy <= !line; // else a glitch, no start bit
+                idle <= line; // a glitch, no start bit
             end else if (!bits[0]) begin
                 bits <= {line, bits[8:1]};
             end else begin
-                busy            <= 1'b0;
+                idle            <= 1'b1;
                 armed           <= line;
                 valid_o         <= line;
                 framing_error_o <= !line;
@@ -56,7 +56,7 @@ module modem_uart_rx (
         end
         if (rst_i) begin
             sync   <= 2'b11;
-            busy   <= 1'b0;
+            idle   <= 1'b1;
             started <= 1'b0;
             armed  <= 1'b0;
             valid_o         <= 1'b0;
@@ -67,6 +67,7 @@ module modem_uart_rx (
 `ifdef FORMAL
     // A sender of the same rate, a tick a clock: its byte comes, once, in the stop bit.
     reg past = 1'b0;
+    wire busy = !idle;
     initial assume (rst_i);
     (* anyconst *) reg [7:0] sent;
     reg [6:0] age = 7'd127; // ticks since the start bit's edge at sync[0]; 127: not yet

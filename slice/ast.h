@@ -117,6 +117,10 @@ struct Declaration {
     std::string metadataValue(const std::string& prefix) const;
     // The same as `other`, or derived from it.
     bool isA(const Declaration& other) const;
+    // ["preserve-slice"], here or at a base: slices of unknown derived types are kept.
+    bool preserves() const {
+        return hasMetadata("preserve-slice") || (base() && base()->preserves());
+    }
     const Declaration* base() const { return bases.empty() ? nullptr : bases.front(); }
 };
 

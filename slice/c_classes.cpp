@@ -32,7 +32,7 @@ void classFunctions(Writer& w, const Declaration& d) {
     std::string base = d.base() ? "&" + d.base()->cName() + "_type" : "0";
     w.line("const Ice_ValueType {c}_type = {", v);
     w.line("    \"{id}\", " + base + ", " + std::to_string(d.compactId) +
-               ", (Ice_Int)sizeof({c}), {c}_write, {c}_read};",
+               ", (Ice_Int)sizeof({c}), " + (d.preserves() ? "1" : "0") + ", {c}_write, {c}_read};",
            v);
 }
 

@@ -16,12 +16,22 @@ bool requiresClasses(const Declaration& d) {
     return anyRequiredClass(memberSlots(d)) || (d.base() && requiresClasses(*d.base()));
 }
 
+// The slices that an exception keeps, seen from it.
+std::string unknownOf(const Declaration& d) {
+    return d.base() && d.base()->preserves() ? "base." + unknownOf(*d.base()) : "ice_unknown";
+}
+
+// Their own instances need tables, even where nothing else has classes.
+bool needsTables(const Declaration& d) {
+    return hasClasses(d) || d.preserves();
+}
+
 } // namespace
 
 void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d) {
     Writer::Values v = {
         {"c", d.cName()}, {"id", d.id()}, {"classes", requiresClasses(d) ? "1" : "0"}};
-    bool classes = hasClasses(d);
+    bool classes = needsTables(d), preserves = d.preserves();
     initFunction(w, d);
     w.blank();
     w.block("void {c}_writeSlices(const {c} *v, Ice_OutputStreamPtr os)", v, [&] {
@@ -53,21 +63,31 @@ void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d) {
             w.line("values.pending = {classes};", v);
         }
         w.line("Ice_OutputStream_startException(os, {classes});", v);
+        if (preserves)
+            w.line("Ice_OutputStream_writeUnknown(os, v->" + unknownOf(d) + ");");
         w.line("{c}_writeSlices(v, os);", v);
         if (classes)
             w.line("Ice_OutputStream_endValues(os);");
     });
     w.blank();
     w.block("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is)", v, [&] {
-        if (classes) {
+        std::string skip = "Ice_InputStream_skipSlice(is)";
+        if (classes)
             w.line("Ice_InputValues values;");
-            w.line("Ice_InputStream_beginValues(is, &values, " + c.valueTable() + ");");
+        if (preserves) {
+            skip = "Ice_InputStream_keepSlice(is, id, &v->" + unknownOf(d) + ")";
+            w.line("v->" + unknownOf(d) + " = 0;");
         }
+        if (classes)
+            w.line("Ice_InputStream_beginValues(is, &values, " + c.valueTable() + ");");
         w.line("Ice_InputStream_startException(is);");
-        w.block("while (!Ice_String_equals(Ice_InputStream_startSlice(is), \"{id}\"))", v, [&] {
-            w.block("if (!Ice_InputStream_skipSlice(is))", {}, [&] {
+        w.block("for (;;)", {}, [&] {
+            w.line("Ice_String id = Ice_InputStream_startSlice(is);");
+            w.line("if (Ice_String_equals(id, \"{id}\"))", v);
+            w.nested("break;");
+            w.block("if (!" + skip + ")", {}, [&] {
                 w.line("is->failed = 1;");
-                w.line("return;");
+                w.line("break;");
             });
         });
         w.line("{c}_readSlices(v, is);", v);
@@ -79,9 +99,9 @@ void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d) {
 void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
     auto family = mayThrow(c.unit, o);
     Writer::Values v = {{"t", exceptionType(d, o)}, {"op", operationName(d, o)}};
-    bool classes = false;
+    bool classes = false, preserves = throwsPreserved(c.unit, o);
     for (const Declaration* e : family)
-        classes = classes || hasClasses(*e);
+        classes = classes || needsTables(*e);
     auto eachOf = [&](auto f) {
         for (const Declaration* e : family) {
             std::string label = exceptionLabel(family, *e);
@@ -109,22 +129,33 @@ void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const O
     w.block("Ice_Status {t}_readFromInputStream({t} *v, Ice_InputStreamPtr is)", v, [&] {
         if (classes)
             w.line("Ice_InputValues values;");
+        if (preserves) {
+            w.line("Ice_UnknownSlice *unknown = 0;");
+            w.line("Ice_String id;");
+        }
         w.line("v->type = {op}_none;", v);
         if (classes)
             w.line("Ice_InputStream_beginValues(is, &values, " + c.valueTable() + ");");
         w.line("Ice_InputStream_startException(is);");
         w.line("do {");
-        w.nested("Ice_String id = Ice_InputStream_startSlice(is);");
+        w.nested(std::string(preserves ? "" : "Ice_String ") +
+                 "id = Ice_InputStream_startSlice(is);");
         bool first = true;
-        eachOf([&](const Declaration&, const Writer::Values& names) {
+        eachOf([&](const Declaration& e, const Writer::Values& names) {
             w.nested(std::string(first ? "" : "} else ") + "if (Ice_String_equals(id, \"{id}\")) {",
                      names);
             w.nested("    v->type = {op}_{label};", names);
             w.nested("    {e}_readSlices(&v->u.{member}, is);", names);
+            if (e.preserves())
+                w.nested("    v->u.{member}." + unknownOf(e) + " = unknown;", names);
             first = false;
         });
         w.nested("}");
-        w.line("} while (v->type == {op}_none && Ice_InputStream_skipSlice(is));", v);
+        w.line(
+            preserves
+                ? "} while (v->type == {op}_none && Ice_InputStream_keepSlice(is, id, &unknown));"
+                : "} while (v->type == {op}_none && Ice_InputStream_skipSlice(is));",
+            v);
         if (classes)
             w.line("Ice_InputStream_endValues(is);");
         w.line("if (is->failed)");

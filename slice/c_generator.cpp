@@ -30,7 +30,8 @@ bool CContext::usesClasses() const {
     for (const auto& d : unit.declarations) {
         if (d->isLocal)
             continue;
-        if (d->kind == Declaration::Kind::Class)
+        if (d->kind == Declaration::Kind::Class ||
+            (d->kind == Declaration::Kind::Exception && d->preserves()))
             return true;
         for (const Field& f : d->fields)
             if (containsClass(f.type))

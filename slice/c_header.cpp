@@ -109,8 +109,12 @@ void declareStruct(Writer& w, const Declaration& d) {
                 w.line(d.base()->cName() + " base;");
             else if (isClass)
                 w.line("Ice_Value ice_value;");
+            bool keeps = !isClass && d.preserves() && !(d.base() && d.base()->preserves());
+            if (keeps)
+                w.line(
+                    "Ice_UnknownSlice *ice_unknown; /* what it is besides, most derived first */");
             declareFields(w, d);
-            if (!isClass && !d.base() && d.fields.empty())
+            if (!isClass && !d.base() && d.fields.empty() && !keeps)
                 w.line("Ice_Byte ice_unused; /* C90 has no empty structs */");
         },
         isClass ? "};" : "} " + d.cName() + ";");

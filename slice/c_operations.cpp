@@ -71,6 +71,12 @@ std::vector<const Declaration*> mayThrow(const Unit& unit, const Operation& o) {
     return list;
 }
 
+bool throwsPreserved(const Unit& unit, const Operation& o) {
+    auto list = mayThrow(unit, o);
+    return std::any_of(list.begin(), list.end(),
+                       [](const Declaration* e) { return e->preserves(); });
+}
+
 std::string exceptionLabel(const std::vector<const Declaration*>& family,
                            const Declaration& exception) {
     auto same = std::count_if(family.begin(), family.end(),

@@ -42,6 +42,8 @@ std::string responseParameters(const Operation& o);
 
 std::string proxySignature(const Declaration& d, const Operation& o);
 std::string asyncSignature(const Declaration& d, const Operation& o);
+// May it throw an exception that keeps unknown slices?
+bool throwsPreserved(const Unit& unit, const Operation& o);
 // `name` is a function's, or "(*op)"; `self` the servant's type.
 std::string servantSignature(const Declaration& owner, const Operation& o, const std::string& name);
 std::string responseSignature(const Declaration& d, const Operation& o);

@@ -91,6 +91,8 @@ void dispatchOperation(Writer& w, const CContext& c, const Declaration& d, const
             for (const Slot& s : outSlots(o, ""))
                 if (s.isOptional)
                     body.line(s.has + " = 0;");
+            if (throwsPreserved(c.unit, o)) // the list of slices as well
+                body.line("memset(&ex, 0, sizeof ex);");
             if (!o.throws.empty())
                 body.line("ex.type = " + operationName(d, o) + "_none;");
         }
@@ -202,6 +204,14 @@ void initFunctions(Writer& w, const Declaration& d) {
 
 std::string serverFile(const CContext& c) {
     Writer w = c.beginSource("Dispatch: from requests to the application's servants.");
+    bool preserved = false;
+    c.eachOperation([&](const Declaration&, const Operation& o) {
+        preserved = preserved || throwsPreserved(c.unit, o);
+    });
+    if (preserved) {
+        w.blank();
+        w.line("#include <string.h>");
+    }
     c.each(Declaration::Kind::Interface, [&](const Declaration& d) {
         if (d.isForward)
             return;

@@ -128,6 +128,29 @@ Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
     return is->failed ? none : id;
 }
 
+/* Past the table of instances behind a slice, where nobody wants them. `depth`: of tables of the
+ * instances themselves, lest a peer fills the stack. */
+static void skipTable(Ice_InputStreamPtr is, int depth) {
+    Ice_Int count = Ice_InputStream_readSequence(is, 1);
+    while (count-- > 0 && !is->failed) {
+        Ice_Byte flags = ICE_SLICE_LAST;
+        if (Ice_InputStream_readSize(is) != 1)
+            continue; /* one that was there before */
+        do {
+            flags = Ice_InputStream_readByte(is);
+            if ((flags & ICE_SLICE_COMPACT_ID) == ICE_SLICE_TYPE_STRING)
+                (void)Ice_InputStream_readString(is);
+            else
+                (void)Ice_InputStream_readSize(is);
+            if (!(flags & ICE_SLICE_SIZE) || (flags & ICE_SLICE_TABLE && depth == 0))
+                is->failed = 1;
+            (void)Ice_InputStream_readBlob(is, Ice_InputStream_readInt(is) - 4);
+            if (flags & ICE_SLICE_TABLE && !is->failed)
+                skipTable(is, depth - 1);
+        } while (!(flags & ICE_SLICE_LAST) && !is->failed);
+    }
+}
+
 /* The table of instances behind a slice. */
 static void readTable(Ice_InputStreamPtr is) {
     Ice_Byte flags = is->sliceFlags;
@@ -135,7 +158,7 @@ static void readTable(Ice_InputStreamPtr is) {
         if (is->values)
             is->values->readTable(is);
         else
-            is->failed = 1;
+            skipTable(is, 8);
     }
     is->sliceFlags = flags;
 }

@@ -4,7 +4,9 @@
  *
  * Generated code begins with beginValues before the first member or parameter that may hold a
  * class, and ends with endValues behind the last. The tables are on its stack. Written instances
- * are the caller's; received ones lie in the message's arena.
+ * are the caller's; received ones lie in the message's arena, and so do slices that are kept: of
+ * types derived from one with ["preserve-slice"] that are not known here. They go on with the
+ * instance (or exception) where it is written in the sliced format, as Ice's other peers do it.
  */
 #ifndef ICE_VALUE_H
 #define ICE_VALUE_H
@@ -20,9 +22,28 @@
 
 typedef struct Ice_ValueType Ice_ValueType;
 
+struct Ice_Value;
+
+/* A slice of a type that is not known here. */
+typedef struct Ice_UnknownSlice {
+    struct Ice_UnknownSlice* next;     /* of the same instance, towards the base; 0: none */
+    struct Ice_UnknownSlice* nextRead; /* of the message: the run time's */
+    Ice_String typeId;
+    Ice_Int compactId;    /* instead of typeId; -1: none */
+    Ice_Byte flags;       /* has it optional members, is it the last */
+    const Ice_Byte* data; /* its members, in the message */
+    Ice_Int size;
+    Ice_Int count; /* of the instances that they point at */
+    union {
+        Ice_Int number; /* until the end of the message */
+        const struct Ice_Value* value;
+    } * values;
+} Ice_UnknownSlice;
+
 /* What every class begins with. */
 typedef struct Ice_Value {
     const Ice_ValueType* type;
+    const Ice_UnknownSlice* unknown; /* the most derived one; 0: none */
 } Ice_Value;
 
 struct Ice_ValueType {
@@ -30,9 +51,14 @@ struct Ice_ValueType {
     const Ice_ValueType* base;                                 /* 0: none */
     Ice_Int compactId;                                         /* -1: none */
     Ice_Int size;                                              /* bytes of the struct */
+    Ice_Bool preserves;                                        /* it keeps unknown slices */
     void (*write)(const void* object, Ice_OutputStreamPtr os); /* own members */
     void (*read)(void* object, Ice_InputStreamPtr is);
 };
+
+/* The class of all classes, ::Ice::Object: instances without members, and those of which nothing
+ * but unknown slices is there. */
+extern const Ice_ValueType Ice_Value_type;
 
 /* 1: the instance is of this type or of one derived from it; 0 for a null instance. */
 int Ice_Value_isA(const Ice_Value* v, const Ice_ValueType* type);
@@ -40,7 +66,7 @@ int Ice_Value_isA(const Ice_Value* v, const Ice_ValueType* type);
 typedef struct Ice_OutputValues {
     const Ice_Value* known[ICE_VALUES_MAX]; /* in the order of their numbers */
     Ice_Int count, written;
-    const char* types[ICE_VALUE_TYPES_MAX];
+    Ice_String types[ICE_VALUE_TYPES_MAX];
     Ice_Int typeCount;
     const Ice_Value* table[ICE_VALUES_MAX]; /* of the slices under way, one behind the other */
     Ice_Int tableBegin, tableEnd;
@@ -65,7 +91,9 @@ typedef struct Ice_InputValues {
         Ice_Int number;
     } patches[ICE_VALUES_MAX]; /* for instances that come later */
     Ice_Int patchBegin, patchEnd;
-    Ice_Bool pending;                         /* as in Ice_OutputValues */
+    struct Ice_LatePatch* late; /* to instances whose type is still being looked for */
+    Ice_UnknownSlice* unknown;  /* of the message, the last one first */
+    Ice_Bool pending;           /* as in Ice_OutputValues */
     void (*readTable)(Ice_InputStreamPtr is); /* for exceptions' slices */
     void (*skip)(Ice_InputStreamPtr is);      /* an optional that nobody asked for */
 } Ice_InputValues;
@@ -76,5 +104,13 @@ void Ice_InputStream_beginValues(Ice_InputStreamPtr is, Ice_InputValues* values,
  * the stream, and so does one of which no type is known. */
 void Ice_InputStream_readValue(Ice_InputStreamPtr is, void* at, const Ice_ValueType* expected);
 void Ice_InputStream_endValues(Ice_InputStreamPtr is);
+
+/* ---- slices of exceptions that are not known, within beginValues and endValues ---- */
+
+/* As skipSlice; the slice, of type `id`, is put at the end of the list where the encoding has
+ * slices that can be kept. The list begins as 0. */
+Ice_Bool Ice_InputStream_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_UnknownSlice** list);
+/* Before the exception's own slices; nothing where the format is not the sliced one. */
+void Ice_OutputStream_writeUnknown(Ice_OutputStreamPtr os, const Ice_UnknownSlice* list);
 
 #endif

@@ -2,21 +2,19 @@
  *
  * ice_value_read: instances of classes from a stream. ice_value_write.c says how they lie there.
  */
-#include "ice_slice.h"
-#include "ice_value.h"
+#include "ice_value_private.h"
 
 #include <string.h>
 
 static void readTable(Ice_InputStreamPtr is);
 static void skip(Ice_InputStreamPtr is);
-static Ice_Int readInstance(Ice_InputStreamPtr is, Ice_Int number);
 
-int Ice_Value_isA(const Ice_Value* v, const Ice_ValueType* type) {
-    const Ice_ValueType* t = v ? v->type : 0;
-    while (t && t != type)
-        t = t->base;
-    return t != 0;
-}
+struct Ice_LatePatch {
+    struct Ice_LatePatch* next;
+    void* at;
+    const Ice_ValueType* expected;
+    Ice_Int number;
+};
 
 void Ice_InputStream_beginValues(Ice_InputStreamPtr is, Ice_InputValues* values,
                                  const Ice_ValueType* const* types) {
@@ -28,14 +26,28 @@ void Ice_InputStream_beginValues(Ice_InputStreamPtr is, Ice_InputValues* values,
     is->values = values;
 }
 
-/* Sets a pointer to the instance of this number, which must have been read. */
-static void set(Ice_InputStreamPtr is, void* at, Ice_Int number, const Ice_ValueType* expected) {
+/* Sets a pointer to the instance of this number, which has begun; where its type is still being
+ * looked for, once the message is read. */
+static void set(Ice_InputStreamPtr is, void* at, Ice_Int number, const Ice_ValueType* expected,
+                Ice_Bool last) {
     Ice_InputValues* values = is->values;
-    Ice_Value* v = number >= 1 && number <= values->count ? values->known[number - 1] : 0;
-    if (!v || (expected && !Ice_Value_isA(v, expected)))
+    Ice_Bool begun = number >= 1 && number <= values->count;
+    Ice_Value* v = begun ? values->known[number - 1] : 0;
+    if (begun && !v && !last && is->minor != 0) {
+        struct Ice_LatePatch* patch =
+            (struct Ice_LatePatch*)Ice_InputStream_allocate(is, 1, (Ice_Int)sizeof *patch);
+        if (!patch)
+            return;
+        patch->next = values->late;
+        patch->at = at;
+        patch->number = number;
+        patch->expected = expected;
+        values->late = patch;
+    } else if (!v || (expected && !Ice_Value_isA(v, expected))) {
         is->failed = 1;
-    else
+    } else {
         memcpy(at, &v, sizeof v);
+    }
 }
 
 static void setLater(Ice_InputStreamPtr is, void* at, Ice_Int number,
@@ -60,7 +72,7 @@ void Ice_InputStream_readValue(Ice_InputStreamPtr is, void* at, const Ice_ValueT
         return;
     if (is->minor == 0) {
         number = Ice_InputStream_readInt(is);
-        if (number > 0)
+        if (number > 0 || number < -ICE_VALUES_MAX)
             is->failed = 1;
         else if (number < 0)
             setLater(is, at, -number, expected);
@@ -73,15 +85,15 @@ void Ice_InputStream_readValue(Ice_InputStreamPtr is, void* at, const Ice_ValueT
         setLater(is, at, number, expected);
         return;
     }
-    number = readInstance(is, number);
+    number = Ice_readInstance(is, number);
     if (!is->failed)
-        set(is, at, number, expected);
+        set(is, at, number, expected, 0);
 }
 
 static void skip(Ice_InputStreamPtr is) {
     Ice_Int number = Ice_InputStream_readSize(is);
     if (number != 0 && !(is->sliceFlags & ICE_SLICE_TABLE))
-        (void)readInstance(is, number);
+        (void)Ice_readInstance(is, number);
 }
 
 /* Behind a slice: the instances that its members, the patches from patchBegin, point at. */
@@ -91,10 +103,10 @@ static void readTable(Ice_InputStreamPtr is) {
     Ice_Int last = values->patchEnd, i, p;
     values->patchBegin = last;
     for (i = 1; i <= count && !is->failed; ++i) {
-        Ice_Int number = readInstance(is, Ice_InputStream_readSize(is));
+        Ice_Int number = Ice_readInstance(is, Ice_InputStream_readSize(is));
         for (p = first; p < last && !is->failed; ++p)
             if (values->patches[p].number == i)
-                set(is, values->patches[p].at, number, values->patches[p].expected);
+                set(is, values->patches[p].at, number, values->patches[p].expected, 0);
     }
     for (p = first; p < last; ++p)
         if (values->patches[p].number > count)
@@ -103,88 +115,51 @@ static void readTable(Ice_InputStreamPtr is) {
     values->patchEnd = first;
 }
 
-static Ice_String typeByIndex(Ice_InputStreamPtr is) {
-    static const Ice_String none = {0, ""};
-    Ice_Int index = Ice_InputStream_readSize(is);
-    if (index >= 1 && index <= is->values->typeCount)
-        return is->values->typeIds[index - 1];
-    is->failed = 1;
-    return none;
-}
-
-static Ice_String typeByName(Ice_InputStreamPtr is) {
-    Ice_String id = Ice_InputStream_readString(is);
-    if (is->values->typeCount == ICE_VALUE_TYPES_MAX)
+/* Behind the slices of an instance of 1.0: that of ::Ice::Object, with a size that is 0. */
+static void readEnd10(Ice_InputStreamPtr is) {
+    if (Ice_InputStream_readSize(is) != 0)
         is->failed = 1;
-    else
-        is->values->typeIds[is->values->typeCount++] = id;
-    return id;
 }
 
-/* The head of a slice. The type is found, or 0. `isObject`: it ends an instance of 1.0. */
-static const Ice_ValueType* startSlice(Ice_InputStreamPtr is, Ice_Bool* isObject) {
-    const Ice_ValueType* const* type = is->values->types;
-    Ice_String id = {0, ""};
-    Ice_Int compact = -1, begin, size;
-    if (is->minor == 0) {
-        is->sliceFlags = ICE_SLICE_SIZE | ICE_SLICE_INSIDE;
-        id = Ice_InputStream_readBool(is) ? typeByIndex(is) : typeByName(is);
-    } else {
-        is->sliceFlags = (Ice_Byte)(Ice_InputStream_readByte(is) | ICE_SLICE_INSIDE);
-        switch (is->sliceFlags & ICE_SLICE_COMPACT_ID) {
-        case ICE_SLICE_COMPACT_ID:
-            compact = Ice_InputStream_readSize(is);
-            break;
-        case ICE_SLICE_TYPE_INDEX:
-            id = typeByIndex(is);
-            break;
-        case ICE_SLICE_TYPE_STRING:
-            id = typeByName(is);
-            break;
-        default: /* a base, in the compact format */
-            break;
+/* Slices down to one whose type is known; where there is none, Ice_Value_type without a slice, in
+ * 1.0 nothing: its slices cannot be kept. */
+static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** list) {
+    Ice_Bool isFirst;
+    for (isFirst = 1;; isFirst = 0) {
+        Ice_SliceHead head;
+        Ice_startSlice(is, &head);
+        if (is->minor == 0 && head.isObject && !isFirst) {
+            readEnd10(is); /* nobody may point at it */
+            return 0;
         }
-    }
-    is->sliceEnd = 0;
-    begin = is->position;
-    if (is->sliceFlags & ICE_SLICE_SIZE) {
-        size = Ice_InputStream_readInt(is);
-        if (size < 4 || size > is->size - begin)
+        if (is->failed || (head.isObject && !isFirst)) {
             is->failed = 1;
-        else
-            is->sliceEnd = begin + size;
-    }
-    *isObject = (Ice_Bool)(Ice_String_equals(id, "::Ice::Object") != 0);
-    for (; *type && !is->failed; ++type)
-        if (compact >= 0 ? (*type)->compactId == compact : Ice_String_equals(id, (*type)->id))
-            return *type;
-    return 0;
-}
-
-/* Skips slices down to one whose type is known; 0: there is none. */
-static const Ice_ValueType* knownType(Ice_InputStreamPtr is) {
-    for (;;) {
-        Ice_Bool isObject;
-        const Ice_ValueType* type = startSlice(is, &isObject);
-        Ice_Byte flags = is->sliceFlags;
-        if (is->failed || type)
-            return type;
-        if (is->sliceEnd == 0 || (is->minor == 0 && isObject)) {
+            return 0;
+        }
+        if (head.type)
+            return head.type;
+        if (is->sliceEnd == 0) {
             is->failed = 1; /* the format does not say where it ends */
             return 0;
         }
-        is->position = is->sliceEnd;
-        if (flags & ICE_SLICE_TABLE)
-            readTable(is);
-        if (flags & ICE_SLICE_LAST)
+        if (is->minor == 0) {
+            is->position = is->sliceEnd;
+            continue;
+        }
+        *list = Ice_keepSlice(is, head.id, head.compactId);
+        if (!*list)
             return 0;
+        if ((*list)->flags & ICE_SLICE_LAST)
+            return &Ice_Value_type;
+        list = &(*list)->next;
     }
 }
 
 /* The slices of one instance, which gets this number. */
 static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
-    const Ice_ValueType* type = knownType(is);
-    Ice_Bool isObject;
+    Ice_UnknownSlice* unknown = 0;
+    const Ice_ValueType* type = knownType(is, &unknown);
+    Ice_SliceHead head;
     Ice_Value* v;
     if (is->failed || !type)
         return;
@@ -193,25 +168,31 @@ static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
         return;
     memset(v, 0, (size_t)type->size);
     v->type = type;
+    v->unknown = type->preserves ? unknown : 0;
     is->values->known[number - 1] = v;
+    if (is->minor == 0 && type == &Ice_Value_type) {
+        readEnd10(is);
+        return;
+    }
+    if (type == &Ice_Value_type && unknown)
+        return; /* the last slice was an unknown one */
     for (; type && !is->failed; type = type->base) {
         type->read(v, is);
         Ice_InputStream_endSlice(is);
         if (!type->base != (is->minor != 0 && is->sliceFlags & ICE_SLICE_LAST) && is->minor != 0)
             is->failed = 1;
         else if (type->base)
-            (void)startSlice(is, &isObject);
+            Ice_startSlice(is, &head);
     }
     if (is->minor == 0 && !is->failed) {
-        (void)startSlice(is, &isObject);
-        if (!isObject || Ice_InputStream_readSize(is) != 0)
+        Ice_startSlice(is, &head);
+        if (!head.isObject)
             is->failed = 1;
+        readEnd10(is);
     }
 }
 
-/* `number` as it stands on the wire: 1 is followed by an instance. The result is its number,
- * from 1. */
-static Ice_Int readInstance(Ice_InputStreamPtr is, Ice_Int number) {
+Ice_Int Ice_readInstance(Ice_InputStreamPtr is, Ice_Int number) {
     Ice_InputValues* values = is->values;
     Ice_Byte flags = is->sliceFlags;
     Ice_Int sliceEnd = is->sliceEnd, patchBegin = values->patchBegin;
@@ -252,6 +233,9 @@ void Ice_InputStream_endValues(Ice_InputStreamPtr is) {
     is->sliceFlags = 0;
     is->sliceEnd = 0;
     for (p = 0; is->minor == 0 && p < values->patchEnd && !is->failed; ++p)
-        set(is, values->patches[p].at, values->patches[p].number, values->patches[p].expected);
+        set(is, values->patches[p].at, values->patches[p].number, values->patches[p].expected, 1);
+    for (; values->late && !is->failed; values->late = values->late->next)
+        set(is, values->late->at, values->late->number, values->late->expected, 1);
+    Ice_endUnknown(is);
     is->values = 0;
 }

@@ -39,11 +39,11 @@ static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value* v, Ice_Int* plac
 }
 
 /* The number under which this type's name was written, 0: it was not, and has one now. */
-static Ice_Int typeNumber(Ice_OutputStreamPtr os, const char* id) {
+static Ice_Int typeNumber(Ice_OutputStreamPtr os, Ice_String id) {
     Ice_OutputValues* values = os->values;
     Ice_Int i;
     for (i = 0; i < values->typeCount; ++i)
-        if (strcmp(values->types[i], id) == 0)
+        if (Ice_String_same(&values->types[i], &id))
             return i + 1;
     if (values->typeCount == ICE_VALUE_TYPES_MAX)
         os->failed = 1;
@@ -52,30 +52,66 @@ static Ice_Int typeNumber(Ice_OutputStreamPtr os, const char* id) {
     return 0;
 }
 
-static void writeType(Ice_OutputStreamPtr os, const Ice_ValueType* type) {
+static void writeType(Ice_OutputStreamPtr os, Ice_String id, Ice_Int compactId) {
     Ice_Int number;
-    if (type->compactId >= 0) {
+    if (compactId >= 0) {
         os->sliceFlags |= ICE_SLICE_COMPACT_ID;
-        Ice_OutputStream_writeSize(os, type->compactId);
+        Ice_OutputStream_writeSize(os, compactId);
         return;
     }
-    number = typeNumber(os, type->id);
+    number = typeNumber(os, id);
     os->sliceFlags |= number ? ICE_SLICE_TYPE_INDEX : ICE_SLICE_TYPE_STRING;
     if (number)
         Ice_OutputStream_writeSize(os, number);
     else
-        Ice_OutputStream_writeString(os, Ice_String_from(type->id));
+        Ice_OutputStream_writeString(os, id);
+}
+
+/* Slices that were kept. An exception's have no flags for their type: it is a string. */
+static void writeUnknown(Ice_OutputStreamPtr os, const Ice_UnknownSlice* slice,
+                         Ice_Bool isException) {
+    Ice_OutputValues* values = os->values;
+    for (; slice && !os->failed; slice = slice->next) {
+        Ice_Int begin = os->size, i;
+        os->sliceFlags = (Ice_Byte)(ICE_SLICE_INSIDE | ICE_SLICE_SIZE | slice->flags);
+        Ice_OutputStream_writeByte(os, 0);
+        if (isException)
+            Ice_OutputStream_writeString(os, slice->typeId);
+        else
+            writeType(os, slice->typeId, slice->compactId);
+        i = os->size;
+        Ice_OutputStream_writeInt(os, 0);
+        Ice_OutputStream_writeBlob(os, slice->data, slice->size);
+        if (slice->count > ICE_VALUES_MAX - values->tableEnd) {
+            os->failed = 1;
+            return;
+        }
+        for (; values->tableEnd - values->tableBegin < slice->count; ++values->tableEnd)
+            values->table[values->tableEnd] =
+                slice->values[values->tableEnd - values->tableBegin].value;
+        Ice_finishSlice(os, begin, i);
+    }
+}
+
+void Ice_OutputStream_writeUnknown(Ice_OutputStreamPtr os, const Ice_UnknownSlice* list) {
+    if (os->minor != 0 && os->sliced)
+        writeUnknown(os, list, 1);
 }
 
 static void writeSlices11(Ice_OutputStreamPtr os, const Ice_Value* v) {
-    const Ice_ValueType* type;
-    for (type = v->type; type; type = type->base) {
+    const Ice_ValueType* type = v->type;
+    if (os->sliced && v->unknown) {
+        writeUnknown(os, v->unknown, 0);
+        if (type == &Ice_Value_type)
+            return; /* the last of them was the last slice */
+    }
+    for (; type; type = type->base) {
         Ice_Int begin = os->size, body;
         os->sliceFlags = (Ice_Byte)(ICE_SLICE_INSIDE | (os->sliced ? ICE_SLICE_SIZE : 0) |
                                     (type->base ? 0 : ICE_SLICE_LAST));
         Ice_OutputStream_writeByte(os, 0);
         if (os->sliced || type == v->type)
-            writeType(os, type);
+            writeType(os, Ice_String_from(type->id), type->compactId);
         if (os->sliced)
             Ice_OutputStream_writeInt(os, 0);
         body = os->size;
@@ -144,20 +180,20 @@ void Ice_OutputStream_writeValue(Ice_OutputStreamPtr os, const Ice_Value* v) {
     }
 }
 
-static void writeSlice10(Ice_OutputStreamPtr os, const char* id, const Ice_ValueType* type,
-                         const Ice_Value* v) {
+static void writeSlice10(Ice_OutputStreamPtr os, const Ice_ValueType* type, const Ice_Value* v) {
+    Ice_String id = Ice_String_from(type->id);
     Ice_Int number = typeNumber(os, id), begin;
     Ice_OutputStream_writeBool(os, number != 0);
     if (number)
         Ice_OutputStream_writeSize(os, number);
     else
-        Ice_OutputStream_writeString(os, Ice_String_from(id));
+        Ice_OutputStream_writeString(os, id);
     begin = os->size;
     Ice_OutputStream_writeInt(os, 0);
-    if (type)
-        type->write(v, os);
-    else
+    if (type == &Ice_Value_type)
         Ice_OutputStream_writeSize(os, 0); /* the facets of very old versions */
+    else
+        type->write(v, os);
     Ice_patchSize(os, begin);
 }
 
@@ -170,9 +206,9 @@ void Ice_OutputStream_endValues(Ice_OutputStreamPtr os) {
         for (; i < end; ++i) {
             const Ice_ValueType* type;
             Ice_OutputStream_writeInt(os, i + 1);
-            for (type = values->known[i]->type; type; type = type->base)
-                writeSlice10(os, type->id, type, values->known[i]);
-            writeSlice10(os, "::Ice::Object", 0, 0);
+            for (type = values->known[i]->type; type && type != &Ice_Value_type; type = type->base)
+                writeSlice10(os, type, values->known[i]);
+            writeSlice10(os, &Ice_Value_type, values->known[i]);
         }
         values->written = end;
     }

@@ -24,10 +24,10 @@ def same(t, a, b, encoding, seen):
     if t.kind == "struct":
         return all(same(ft, getattr(a, n), getattr(b, n), encoding, seen) for n, ft, _ in t.fields)
     if t.kind == "class":
-        if type(a) is not type(b):
-            return False
         if id(a) in seen:
             return seen[id(a)] is b  # shared instances stay shared
+        if type(a) is not type(b):
+            return False
         seen[id(a)] = b
         t = next(d for d in model.declared if d.name == type(a).__name__)
         return members(t, a, b, encoding, seen)
@@ -91,13 +91,27 @@ def thrown(echo, module, ic, encoding, form, e):
         check(what, type(got).__name__ == e.name and members(e, sent, got, encoding, {}), vars(sent), got)
 
 
-def unknown(echo, module, ic, encoding, t):
-    """An instance of a type that C does not know is cut down to the base it knows; where the format forbids it, refused."""
-    graph = []
-    v = getattr(module, "Hidden" + t.name)()
+def hide(v, t, module, ic, values):
+    """Fills an instance of the class or exception Hidden...; `values`: how many the members of `t` may have."""
+    graph = [(v, t)] if t.kind == "class" else []  # its members may point back at it
     for name, ft, tag in t.all_fields():
-        setattr(v, name, model.value(ft, module, ic, [15], graph))
+        setattr(v, name, model.value(ft, module, ic, [values], graph))
     v.more, v.last = "of what C does not know", Ice.Unset if model.random.random() < 0.5 else 5
+    return graph
+
+
+def same_hidden(t, v, got, encoding):
+    """As sent where slices are kept, else cut down to `t`."""
+    kept = t.preserves() and encoding == "1.1"
+    if type(got).__name__ != ("Hidden" if kept else "") + t.name or not members(t, v, got, encoding, {id(v): got}):
+        return False
+    return not kept or (got.more, got.last) == (v.more, v.last)
+
+
+def unknown(echo, module, ic, encoding, t):
+    """An instance of a type that C does not know; where the format does not say where its slice ends, it is refused."""
+    v = getattr(module, "Hidden" + t.name)()
+    graph = hide(v, t, module, ic, 15)
     v.other = v.same = model.value(t, module, ic, [15], graph)
     i = model.types.index(t)
     if encoding == "1.1":
@@ -107,9 +121,52 @@ def unknown(echo, module, ic, encoding, t):
         except Ice.UnknownLocalException:
             pass
     result, w = getattr(echo, "plain%dSliced" % i)(v)
-    for got in (result, w):
-        what = "%s, cut down, in %s" % (t.name, encoding)
-        check(what, type(got).__name__ == t.name and members(t, v, got, encoding, {id(v): got}), v, got)
+    check(t.name, result is w)
+    what = "%s of a derived type in %s" % (t.name, encoding)
+    check(what, same_hidden(t, v, result, encoding), v, result)
+    if type(result) is type(v):
+        check(what, result.other is result.same and members(t, v, result, encoding, {id(v): result}), v, result)
+        check(what, (result.other is result) == (v.other is v) and (v.other is None) == (result.other is None), v, result)
+
+
+def lone(echo, module, encoding):
+    """A graph of which C knows nothing goes through a parameter of type Object as it is."""
+    first, second = module.Lone(1, None, "one"), module.Lone(2)
+    first.next, second.next, first.any = second, first, second
+    if encoding == "1.0":
+        try:
+            echo.any(first)
+            check("Object", False, "an unknown class was taken in 1.0")
+        except Ice.UnknownLocalException:
+            return
+    result, w = echo.any(first)
+    check("Object", result is w and type(result) is module.Lone and (result.number, result.text) == (1, "one"), result)
+    second = result.next
+    check("Object", second.next is result and result.any is second and (second.number, second.text) == (2, Ice.Unset), result)
+    check("Object", echo.any(None) == (None, None))
+
+
+class Thrower:
+    """Throws `what` at whom C forwards a call to."""
+
+    def forward(self, to, current):
+        raise self.what
+
+
+def forwarded(echo, module, ic, encoding, thrower, own, e):
+    """C is thrown an exception of a type that it does not know, and throws it on."""
+    thrower.what = sent = getattr(module, "Hidden" + e.name)()
+    hide(sent, e, module, ic, 15)
+    sent.other = module.Lone(7)
+    sent.other.next = sent.other
+    try:
+        getattr(echo, "forward" + e.name)(own)
+        check(e.name, False, "nothing was thrown")
+    except getattr(module, model.root(e).name) as got:
+        what = "exception %s of a derived type in %s" % (e.name, encoding)
+        check(what, same_hidden(e, sent, got, encoding), vars(sent), type(got), got)
+        if type(got) is type(sent):
+            check(what, got.other.number == 7 and got.other.next is got.other, got)
 
 
 def client(folder, port):
@@ -121,6 +178,11 @@ def client(folder, port):
     data.properties = Ice.createProperties()
     data.properties.setProperty("Ice.MessageSizeMax", "64")
     with Ice.initialize(data) as ic:
+        names = {"forward" + e.name: Thrower.forward for e in model.exceptions}
+        thrower = type("Throws", (Thrower, module.Echo), names)()
+        adapter = ic.createObjectAdapterWithEndpoints("Thrower", "tcp -h 127.0.0.1")
+        own = adapter.addWithUUID(thrower)
+        adapter.activate()
         for encoding in ("1.1", "1.0"):
             echo = module.EchoPrx.uncheckedCast(ic.stringToProxy("echo -e %s:tcp -h 127.0.0.1 -p %s" % (encoding, port)))
             for i, t in enumerate(model.types):
@@ -132,11 +194,15 @@ def client(folder, port):
             for t in model.classes() * 6:
                 unknown(echo, module, ic, encoding, t)
                 calls += 1
+            lone(echo, module, encoding)
             for e in model.exceptions:
                 for form in ("Compact", "Sliced"):
                     for _ in range(12):
                         thrown(echo, module, ic, encoding, form, e)
                         calls += 1
+                for _ in range(4):
+                    forwarded(echo, module, ic, encoding, thrower, own, e)
+                    calls += 1
         echo.shutdown()
     print("echo: seed %s: %d types, %d exceptions, %d values each came back as they went" % (
         sys.argv[2], len(model.types), len(model.exceptions), calls))

@@ -21,6 +21,7 @@ class Type:
         self.element = self.key = self.maximum = None
         self.values = []  # enum
         self.compact = None
+        self.preserve = False
 
     def slice(self):
         return {"proxy": "Object*"}.get(self.kind, self.name or self.kind)
@@ -37,6 +38,10 @@ class Type:
 
     def all_fields(self):
         return (self.base.all_fields() if self.base else []) + self.fields
+
+    def preserves(self):
+        """Slices of derived types that are not known are kept."""
+        return self.preserve or (self.base is not None and self.base.preserves())
 
     def legal_key(self):
         return self.kind in KEYS or self.kind == "enum" or (
@@ -61,6 +66,7 @@ class Model:
             e = Type("exception", "E%d" % i)
             if self.exceptions and r.random() < 0.6:
                 e.base = r.choice(self.exceptions)
+            e.preserve = r.random() < 0.4
             self.fields_of(e, optionals=True)
             self.exceptions.append(e)
 
@@ -109,6 +115,7 @@ class Model:
             t.base = self.random.choice(classes)
         if self.random.random() < 0.3:
             t.compact = 1000 + i
+        t.preserve = self.random.random() < 0.4
         self.fields_of(t, optionals=True)
         t.fields.append(("self%d" % i, t, self.random.choice([None, 100])))
         return t
@@ -129,6 +136,8 @@ class Model:
             else:
                 out.append(self.members(t))
         out += [self.members(e) for e in self.exceptions]
+        if hidden:
+            out.append("class Lone { int number; Lone next; optional(1) string text; Object any; };")
         out.append("interface Echo {")
         for i, t in enumerate(self.types):
             for form in self.formats(t):
@@ -138,9 +147,13 @@ class Model:
             for form in ("Compact", "Sliced"):
                 out.append("%svoid raise%s%s(%s) throws %s;" % (
                     self.meta(form), e.name, form, ", ".join(self.parameter(f) for f in e.all_fields()), self.root(e).name))
-        out += ["void shutdown();", "};"]
+            out.append('["format:sliced"] void forward%s(Object* to) throws %s;' % (e.name, self.root(e).name))
+        out += ['["format:sliced"] Object any(Object v, out Object w);', "void shutdown();", "};"]
         for t in self.classes() if hidden else []:
-            out.append("class Hidden%s extends %s { string more; %s other; optional(200) int last; %s same; };" % ((t.name,) * 4))
+            out.append("class Hidden%s%s extends %s { string more; %s other; optional(200) int last; %s same; };" % (
+                (t.name, "(%d)" % (t.compact + 5000) if t.compact else "") + (t.name,) * 3))
+        for e in self.exceptions if hidden else []:
+            out.append("exception Hidden%s extends %s { string more; Lone other; optional(200) int last; };" % (e.name, e.name))
         out.append("};")
         return '[["underscore"]]\n' + "\n".join(out) + "\n"
 
@@ -166,7 +179,7 @@ class Model:
 
     @staticmethod
     def members(t):
-        head = {"struct": "struct", "class": "class", "exception": "exception"}[t.kind] + " " + t.name
+        head = ('["preserve-slice"] ' if t.preserve else "") + t.kind + " " + t.name
         if t.compact:
             head += "(%d)" % t.compact
         if t.base:
@@ -185,7 +198,7 @@ class Model:
         return "%s %s" % (t.c(), name)
 
     def c_text(self):
-        out = ['#include "echo.h"']
+        out = ['#include "echo.h"', "static U32 room[16384];"]
         for i, t in enumerate(self.types):
             value = "(%s)v" % t.c() if t.kind == "class" else "*v" if t.by_pointer() else "v"
             for form in self.formats(t):
@@ -200,6 +213,12 @@ class Model:
         for e in self.exceptions:
             for form in ("Compact", "Sliced"):
                 self.c_raise(out, e, form)
+            out.append("Ice_Status T_Echo_forward%s(T_EchoPtr self, const Ice_ObjectPrx *to, T_Echo_forward%s_Exception *ex, "
+                       "const Ice_Current *current) {" % (e.name, e.name))
+            out.append("    T_EchoPrx prx = *to; (void)self, (void)current; Ice_ObjectPrx_setReplyBuffer(&prx, room, sizeof room);")
+            out.append("    return T_EchoPrx_forward%s(&prx, 0, ex); }" % e.name)
+        out.append("Ice_Status T_Echo_any(T_EchoPtr self, const Ice_Value *v, Ice_Value **w, Ice_Value **result, "
+                   "const Ice_Current *current) { (void)self, (void)current; *w = *result = (Ice_Value *)v; return ICE_OK; }")
         out.append("Ice_Status T_Echo_shutdown(T_EchoPtr self, const Ice_Current *current) "
                    "{ (void)self; Ice_Communicator_shutdown(current->communicator); return ICE_OK; }")
         return "\n".join(out) + "\n"

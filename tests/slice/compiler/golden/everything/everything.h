@@ -240,6 +240,7 @@ void Outer_Empty_init(Outer_Empty *v);
 
 typedef struct Outer_WithClass {
     Outer_Failure base;
+    Ice_UnknownSlice *ice_unknown; /* what it is besides, most derived first */
     Outer_Node *node;
 } Outer_WithClass;
 void Outer_WithClass_init(Outer_WithClass *v);

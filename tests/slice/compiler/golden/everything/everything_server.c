@@ -2,6 +2,8 @@
  * Dispatch: from requests to the application's servants. */
 #include "everything.h"
 
+#include <string.h>
+
 static Ice_Status dispatch_Outer_Base_name(Ice_ObjectPtr self, const void *table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
     const Outer_Base_Operations *operations = (const Outer_Base_Operations *)table;
@@ -70,6 +72,7 @@ static Ice_Status dispatch_Outer_Service_find(Ice_ObjectPtr self, const void *ta
     key = Ice_InputStream_readString(is);
     if (is->failed)
         return ICE_MARSHAL;
+    memset(&ex, 0, sizeof ex);
     ex.type = Outer_Service_find_none;
     status = operations->find((Outer_ServicePtr)self, key, &where, &result, &ex, current);
     if (status == ICE_OK) {
@@ -207,6 +210,7 @@ static Ice_Status dispatch_Outer_Service_graph(Ice_ObjectPtr self, const void *t
     Ice_InputStream_endValues(is);
     if (is->failed)
         return ICE_MARSHAL;
+    memset(&ex, 0, sizeof ex);
     ex.type = Outer_Service_graph_none;
     status = operations->graph((Outer_ServicePtr)self, root, any, &all, &result, &ex, current);
     os->sliced = 1;

@@ -237,10 +237,13 @@ void Outer_Failure_writeToOutputStream(const Outer_Failure *v, Ice_OutputStreamP
 
 void Outer_Failure_readFromInputStream(Outer_Failure *v, Ice_InputStreamPtr is) {
     Ice_InputStream_startException(is);
-    while (!Ice_String_equals(Ice_InputStream_startSlice(is), "::Outer::Failure")) {
+    for (;;) {
+        Ice_String id = Ice_InputStream_startSlice(is);
+        if (Ice_String_equals(id, "::Outer::Failure"))
+            break;
         if (!Ice_InputStream_skipSlice(is)) {
             is->failed = 1;
-            return;
+            break;
         }
     }
     Outer_Failure_readSlices(v, is);
@@ -287,10 +290,13 @@ void Outer_Deep_writeToOutputStream(const Outer_Deep *v, Ice_OutputStreamPtr os)
 
 void Outer_Deep_readFromInputStream(Outer_Deep *v, Ice_InputStreamPtr is) {
     Ice_InputStream_startException(is);
-    while (!Ice_String_equals(Ice_InputStream_startSlice(is), "::Outer::Deep")) {
+    for (;;) {
+        Ice_String id = Ice_InputStream_startSlice(is);
+        if (Ice_String_equals(id, "::Outer::Deep"))
+            break;
         if (!Ice_InputStream_skipSlice(is)) {
             is->failed = 1;
-            return;
+            break;
         }
     }
     Outer_Deep_readSlices(v, is);
@@ -318,10 +324,13 @@ void Outer_Other_writeToOutputStream(const Outer_Other *v, Ice_OutputStreamPtr o
 
 void Outer_Other_readFromInputStream(Outer_Other *v, Ice_InputStreamPtr is) {
     Ice_InputStream_startException(is);
-    while (!Ice_String_equals(Ice_InputStream_startSlice(is), "::Outer::Other")) {
+    for (;;) {
+        Ice_String id = Ice_InputStream_startSlice(is);
+        if (Ice_String_equals(id, "::Outer::Other"))
+            break;
         if (!Ice_InputStream_skipSlice(is)) {
             is->failed = 1;
-            return;
+            break;
         }
     }
     Outer_Other_readSlices(v, is);
@@ -367,7 +376,7 @@ static void Outer_Node_read(void *object, Ice_InputStreamPtr is) {
 }
 
 const Ice_ValueType Outer_Node_type = {
-    "::Outer::Node", 0, -1, (Ice_Int)sizeof(Outer_Node), Outer_Node_write, Outer_Node_read};
+    "::Outer::Node", 0, -1, (Ice_Int)sizeof(Outer_Node), 0, Outer_Node_write, Outer_Node_read};
 
 void Outer_Leaf_init(Outer_Leaf *v) {
     memset(v, 0, sizeof *v);
@@ -393,7 +402,7 @@ static void Outer_Leaf_read(void *object, Ice_InputStreamPtr is) {
 }
 
 const Ice_ValueType Outer_Leaf_type = {
-    "::Outer::Leaf", &Outer_Node_type, 42, (Ice_Int)sizeof(Outer_Leaf), Outer_Leaf_write, Outer_Leaf_read};
+    "::Outer::Leaf", &Outer_Node_type, 42, (Ice_Int)sizeof(Outer_Leaf), 0, Outer_Leaf_write, Outer_Leaf_read};
 
 void Outer_Empty_init(Outer_Empty *v) {
     memset(v, 0, sizeof *v);
@@ -411,7 +420,7 @@ static void Outer_Empty_read(void *object, Ice_InputStreamPtr is) {
 }
 
 const Ice_ValueType Outer_Empty_type = {
-    "::Outer::Empty", 0, -1, (Ice_Int)sizeof(Outer_Empty), Outer_Empty_write, Outer_Empty_read};
+    "::Outer::Empty", 0, -1, (Ice_Int)sizeof(Outer_Empty), 1, Outer_Empty_write, Outer_Empty_read};
 
 void Outer_WithClass_init(Outer_WithClass *v) {
     memset(v, 0, sizeof *v);
@@ -437,18 +446,23 @@ void Outer_WithClass_writeToOutputStream(const Outer_WithClass *v, Ice_OutputStr
     Ice_OutputStream_beginValues(os, &values);
     values.pending = 1;
     Ice_OutputStream_startException(os, 1);
+    Ice_OutputStream_writeUnknown(os, v->ice_unknown);
     Outer_WithClass_writeSlices(v, os);
     Ice_OutputStream_endValues(os);
 }
 
 void Outer_WithClass_readFromInputStream(Outer_WithClass *v, Ice_InputStreamPtr is) {
     Ice_InputValues values;
+    v->ice_unknown = 0;
     Ice_InputStream_beginValues(is, &values, everything_valueTypes);
     Ice_InputStream_startException(is);
-    while (!Ice_String_equals(Ice_InputStream_startSlice(is), "::Outer::WithClass")) {
-        if (!Ice_InputStream_skipSlice(is)) {
+    for (;;) {
+        Ice_String id = Ice_InputStream_startSlice(is);
+        if (Ice_String_equals(id, "::Outer::WithClass"))
+            break;
+        if (!Ice_InputStream_keepSlice(is, id, &v->ice_unknown)) {
             is->failed = 1;
-            return;
+            break;
         }
     }
     Outer_WithClass_readSlices(v, is);
@@ -537,11 +551,13 @@ void Outer_Service_find_Exception_writeToOutputStream(const Outer_Service_find_E
 Ice_Status Outer_Service_find_Exception_readFromInputStream(Outer_Service_find_Exception *v,
         Ice_InputStreamPtr is) {
     Ice_InputValues values;
+    Ice_UnknownSlice *unknown = 0;
+    Ice_String id;
     v->type = Outer_Service_find_none;
     Ice_InputStream_beginValues(is, &values, everything_valueTypes);
     Ice_InputStream_startException(is);
     do {
-        Ice_String id = Ice_InputStream_startSlice(is);
+        id = Ice_InputStream_startSlice(is);
         if (Ice_String_equals(id, "::Outer::Failure")) {
             v->type = Outer_Service_find_Failure;
             Outer_Failure_readSlices(&v->u.Failure, is);
@@ -554,8 +570,9 @@ Ice_Status Outer_Service_find_Exception_readFromInputStream(Outer_Service_find_E
         } else if (Ice_String_equals(id, "::Outer::WithClass")) {
             v->type = Outer_Service_find_WithClass;
             Outer_WithClass_readSlices(&v->u.WithClass, is);
+            v->u.WithClass.ice_unknown = unknown;
         }
-    } while (v->type == Outer_Service_find_none && Ice_InputStream_skipSlice(is));
+    } while (v->type == Outer_Service_find_none && Ice_InputStream_keepSlice(is, id, &unknown));
     Ice_InputStream_endValues(is);
     if (is->failed)
         return ICE_MARSHAL;
@@ -603,16 +620,19 @@ void Outer_Service_graph_Exception_writeToOutputStream(const Outer_Service_graph
 Ice_Status Outer_Service_graph_Exception_readFromInputStream(Outer_Service_graph_Exception *v,
         Ice_InputStreamPtr is) {
     Ice_InputValues values;
+    Ice_UnknownSlice *unknown = 0;
+    Ice_String id;
     v->type = Outer_Service_graph_none;
     Ice_InputStream_beginValues(is, &values, everything_valueTypes);
     Ice_InputStream_startException(is);
     do {
-        Ice_String id = Ice_InputStream_startSlice(is);
+        id = Ice_InputStream_startSlice(is);
         if (Ice_String_equals(id, "::Outer::WithClass")) {
             v->type = Outer_Service_graph_WithClass;
             Outer_WithClass_readSlices(&v->u.WithClass, is);
+            v->u.WithClass.ice_unknown = unknown;
         }
-    } while (v->type == Outer_Service_graph_none && Ice_InputStream_skipSlice(is));
+    } while (v->type == Outer_Service_graph_none && Ice_InputStream_keepSlice(is, id, &unknown));
     Ice_InputStream_endValues(is);
     if (is->failed)
         return ICE_MARSHAL;

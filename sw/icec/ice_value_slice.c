@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_value_slice: heads of the slices of received instances, and slices that are kept.
+ */
+#include "ice_value_private.h"
+
+#include <string.h>
+
+static void noMembers(void* object, Ice_InputStreamPtr is) {
+    (void)object, (void)is;
+}
+
+static void writeNoMembers(const void* object, Ice_OutputStreamPtr os) {
+    (void)object, (void)os;
+}
+
+const Ice_ValueType Ice_Value_type = {"::Ice::Object", 0,        -1, (Ice_Int)sizeof(Ice_Value), 1,
+                                      writeNoMembers,  noMembers};
+
+int Ice_Value_isA(const Ice_Value* v, const Ice_ValueType* type) {
+    const Ice_ValueType* t = v ? v->type : 0;
+    while (t && t != type)
+        t = t->base;
+    return t != 0;
+}
+
+static Ice_String typeByIndex(Ice_InputStreamPtr is) {
+    static const Ice_String none = {0, ""};
+    Ice_Int index = Ice_InputStream_readSize(is);
+    if (index >= 1 && index <= is->values->typeCount)
+        return is->values->typeIds[index - 1];
+    is->failed = 1;
+    return none;
+}
+
+static Ice_String typeByName(Ice_InputStreamPtr is) {
+    Ice_String id = Ice_InputStream_readString(is);
+    if (is->values->typeCount == ICE_VALUE_TYPES_MAX)
+        is->failed = 1;
+    else
+        is->values->typeIds[is->values->typeCount++] = id;
+    return id;
+}
+
+void Ice_startSlice(Ice_InputStreamPtr is, Ice_SliceHead* head) {
+    const Ice_ValueType* const* type = is->values->types;
+    Ice_Int begin, size;
+    head->id = Ice_String_from("");
+    head->compactId = -1;
+    head->type = 0;
+    if (is->minor == 0) {
+        is->sliceFlags = ICE_SLICE_SIZE | ICE_SLICE_INSIDE;
+        head->id = Ice_InputStream_readBool(is) ? typeByIndex(is) : typeByName(is);
+    } else {
+        is->sliceFlags = (Ice_Byte)(Ice_InputStream_readByte(is) | ICE_SLICE_INSIDE);
+        switch (is->sliceFlags & ICE_SLICE_COMPACT_ID) {
+        case ICE_SLICE_COMPACT_ID:
+            head->compactId = Ice_InputStream_readSize(is);
+            break;
+        case ICE_SLICE_TYPE_INDEX:
+            head->id = typeByIndex(is);
+            break;
+        case ICE_SLICE_TYPE_STRING:
+            head->id = typeByName(is);
+            break;
+        default: /* a base, in the compact format */
+            break;
+        }
+    }
+    is->sliceEnd = 0;
+    begin = is->position;
+    if (is->sliceFlags & ICE_SLICE_SIZE) {
+        size = Ice_InputStream_readInt(is);
+        if (size < 4 || size > is->size - begin)
+            is->failed = 1;
+        else
+            is->sliceEnd = begin + size;
+    }
+    head->isObject = (Ice_Bool)(Ice_String_equals(head->id, Ice_Value_type.id) != 0);
+    if (head->isObject)
+        head->type = &Ice_Value_type;
+    for (; *type && !is->failed && !head->type; ++type)
+        if (head->compactId >= 0 ? (*type)->compactId == head->compactId
+                                 : Ice_String_equals(head->id, (*type)->id))
+            head->type = *type;
+}
+
+Ice_UnknownSlice* Ice_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int compactId) {
+    Ice_Byte flags = is->sliceFlags, optionals = (flags & ICE_SLICE_OPTIONALS) != 0;
+    Ice_UnknownSlice* slice;
+    if (is->failed || is->sliceEnd - is->position < optionals) {
+        is->failed = 1;
+        return 0;
+    }
+    slice = (Ice_UnknownSlice*)Ice_InputStream_allocate(is, 1, (Ice_Int)sizeof *slice);
+    if (!slice)
+        return 0;
+    memset(slice, 0, sizeof *slice);
+    slice->typeId = id;
+    slice->compactId = compactId;
+    slice->flags = flags & (ICE_SLICE_OPTIONALS | ICE_SLICE_LAST);
+    slice->data = is->data + is->position;
+    slice->size = is->sliceEnd - is->position - optionals; /* their end is written anew */
+    is->position = is->sliceEnd;
+    if (flags & ICE_SLICE_TABLE) {
+        Ice_Int count = Ice_InputStream_readSequence(is, 1), i;
+        void* room = Ice_InputStream_allocate(is, count, (Ice_Int)sizeof *slice->values);
+        memcpy(&slice->values, &room, sizeof room); /* its type has no name */
+        for (i = 0; i < count && !is->failed; ++i)
+            slice->values[i].number = Ice_readInstance(is, Ice_InputStream_readSize(is));
+        slice->count = is->failed ? 0 : count;
+    }
+    slice->nextRead = is->values->unknown;
+    is->values->unknown = slice;
+    return is->failed ? 0 : slice;
+}
+
+Ice_Bool Ice_InputStream_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_UnknownSlice** list) {
+    Ice_UnknownSlice* slice;
+    if (is->minor == 0 || is->failed || is->sliceEnd == 0)
+        return Ice_InputStream_skipSlice(is);
+    slice = Ice_keepSlice(is, id, -1);
+    while (*list)
+        list = &(*list)->next;
+    *list = slice;
+    return slice && !(slice->flags & ICE_SLICE_LAST) && is->position < is->size;
+}
+
+void Ice_endUnknown(Ice_InputStreamPtr is) {
+    Ice_InputValues* values = is->values;
+    Ice_UnknownSlice* slice;
+    Ice_Int i;
+    for (slice = values->unknown; slice && !is->failed; slice = slice->nextRead)
+        for (i = 0; i < slice->count; ++i)
+            slice->values[i].value = values->known[slice->values[i].number - 1];
+}

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// coverage: what the tests ran of each file: points of the RTL (lines, branches, toggles, covers) from Verilator, lines
-// of C and C++ from gcov; against the gates of coverage_gates.json. `make coverage` calls it.
+// coverage: what the tests ran of each file: points of the RTL (lines, branches, toggles, covers)
+// from Verilator, lines of VHDL from GHDL, of C and C++ from gcov; against the gates of
+// coverage_gates.json. `make coverage` calls it.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <stdexcept>
 #include <vector>
@@ -30,7 +32,47 @@ struct Share {
 };
 struct File {
     Share lines, toggles;
-    std::vector<std::string> missed; // signals that never toggled, lines that never ran
+    std::vector<std::string> missed;           // signals that never toggled, lines that never ran
+    std::map<std::string, unsigned> explained; // why: so many points
+};
+// Points that cannot be reached, and why: they count as if they were not there.
+class Explanations {
+public:
+    explicit Explanations(const json& list) {
+        for (const json& each : list)
+            rules_.push_back({each.value("file", ""),
+                              std::regex(each.at("points").get<std::string>()), each.at("points"),
+                              each.at("why"), 0, 0});
+    }
+    // The reason, or "".
+    std::string of(const std::string& file, const std::string& point, bool covered) {
+        for (Rule& rule : rules_) {
+            if (file.rfind(rule.file, 0) != 0 || !std::regex_match(point, rule.points))
+                continue;
+            ++(covered ? rule.reached : rule.missed);
+            if (!covered)
+                return rule.why;
+        }
+        return "";
+    }
+    // Those that explain nothing: what they speak of is reached, or gone.
+    std::vector<std::string> stale() const {
+        std::vector<std::string> list;
+        for (const Rule& rule : rules_)
+            if (rule.missed == 0)
+                list.push_back(fmt::format("{}: {} ({})", rule.file, rule.text,
+                                           rule.reached ? "reached" : "no such point"));
+        return list;
+    }
+
+private:
+    struct Rule {
+        std::string file;
+        std::regex points;
+        std::string text, why;
+        unsigned missed, reached;
+    };
+    std::vector<Rule> rules_;
 };
 using Files = std::map<std::string, File>; // by path from the root
 
@@ -38,14 +80,16 @@ using Files = std::map<std::string, File>; // by path from the root
 std::string inside(const std::string& path, const std::string& root) {
     std::error_code none;
     std::string real = fs::weakly_canonical(path, none).string();
-    if (real.rfind(root + "/", 0) != 0 || real.rfind(root + "/build/", 0) == 0 || real.rfind(root + "/tests/", 0) == 0)
+    if (real.rfind(root + "/", 0) != 0 || real.rfind(root + "/build/", 0) == 0 ||
+        real.rfind(root + "/tests/", 0) == 0)
         return "";
     return real.substr(root.size() + 1);
 }
 
-// verilated.dat: C '\1key\2value\1key\2value...' count. A module that is there several times, in several models or
-// with several parameters, is covered where any of them is.
-void readVerilator(const std::string& path, const std::string& root, Files& files) {
+// verilated.dat: C '\1key\2value\1key\2value...' count. A module that is there several times, in
+// several models or with several parameters, is covered where any of them is.
+void readVerilator(const std::string& path, const std::string& root, Explanations& explanations,
+                   Files& files) {
     struct Point {
         std::string file, line, name;
         bool toggle;
@@ -69,12 +113,19 @@ void readVerilator(const std::string& path, const std::string& root, Files& file
         if (file.empty())
             continue;
         bool toggle = fields["page"].rfind("v_toggle", 0) == 0;
-        std::string key = file + ":" + fields["l"] + ":" + fields["n"] + ":" + fields["page"].substr(0, 8) + ":" + fields["o"];
-        auto& point = points.emplace(key, Point{file, fields["l"], fields["o"], toggle, 0}).first->second;
+        std::string key = file + ":" + fields["l"] + ":" + fields["n"] + ":" +
+                          fields["page"].substr(0, 8) + ":" + fields["o"];
+        auto& point =
+            points.emplace(key, Point{file, fields["l"], fields["o"], toggle, 0}).first->second;
         point.count += std::stoull(text.substr(end + 2));
     }
     for (auto& [key, point] : points) {
         File& file = files[point.file];
+        if (std::string why = explanations.of(point.file, point.name, point.count > 0);
+            !why.empty()) {
+            ++file.explained[why];
+            continue;
+        }
         (point.toggle ? file.toggles : file.lines).add(point.count > 0);
         if (point.count == 0)
             file.missed.push_back(point.line + ": " + point.name);
@@ -117,7 +168,8 @@ Gate gateOf(const json& gates, const std::string& file) {
     return {gate.value("lines", 0.0), gate.value("toggles", 0.0), gate.value("why", "")};
 }
 
-int report(const Files& files, const json& gates, const std::string& out) {
+int report(const Files& files, const json& gates, const Explanations& explanations,
+           const std::string& out) {
     json rows = json::array();
     Share lines, toggles;
     std::vector<std::string> below;
@@ -127,37 +179,59 @@ int report(const Files& files, const json& gates, const std::string& out) {
         lines.covered += file.lines.covered;
         toggles.total += file.toggles.total;
         toggles.covered += file.toggles.covered;
-        rows.push_back({{"file", name}, {"percent", file.lines.percent()}, {"lines", file.lines.total}, {"gate", gate.lines},
-                        {"toggles", file.toggles.percent()}, {"toggle_points", file.toggles.total},
-                        {"toggle_gate", gate.toggles}, {"why", gate.why}, {"missed", file.missed}});
-        fmt::print("{:<44} {:6.1f} % of {:5} lines {:>22}{}\n", name, file.lines.percent(), file.lines.total,
-                   file.toggles.total ? fmt::format("{:6.1f} % of {:5} toggles", file.toggles.percent(), file.toggles.total) : "",
+        rows.push_back({{"file", name},
+                        {"percent", file.lines.percent()},
+                        {"lines", file.lines.total},
+                        {"gate", gate.lines},
+                        {"toggles", file.toggles.percent()},
+                        {"toggle_points", file.toggles.total},
+                        {"toggle_gate", gate.toggles},
+                        {"why", gate.why},
+                        {"missed", file.missed},
+                        {"explained", file.explained}});
+        fmt::print("{:<44} {:6.1f} % of {:5} lines {:>22}{}\n", name, file.lines.percent(),
+                   file.lines.total,
+                   file.toggles.total ? fmt::format("{:6.1f} % of {:5} toggles",
+                                                    file.toggles.percent(), file.toggles.total)
+                                      : "",
                    gate.why.empty() ? "" : "  (" + gate.why + ")");
-        if (file.lines.percent() < gate.lines || (file.toggles.total && file.toggles.percent() < gate.toggles))
-            below.push_back(fmt::format("{}: lines {:.1f} (gate {:.0f}), toggles {:.1f} (gate {:.0f}); never: {}", name,
-                                        file.lines.percent(), gate.lines, file.toggles.percent(), gate.toggles,
-                                        fmt::join(file.missed.begin(), file.missed.begin() + std::min<long>(8, static_cast<long>(file.missed.size())), "; ")));
+        if (file.lines.percent() < gate.lines ||
+            (file.toggles.total && file.toggles.percent() < gate.toggles))
+            below.push_back(fmt::format(
+                "below its gate: {}: lines {:.1f} (gate {:.0f}), toggles {:.1f} (gate {:.0f}); "
+                "never: {}",
+                name, file.lines.percent(), gate.lines, file.toggles.percent(), gate.toggles,
+                fmt::join(file.missed.begin(),
+                          file.missed.begin() +
+                              std::min<long>(8, static_cast<long>(file.missed.size())),
+                          "; ")));
     }
     std::ofstream summary(out);
-    summary << json{{"total", lines.percent()}, {"toggles", toggles.percent()}, {"files", rows}}.dump(1) << '\n';
+    summary
+        << json{{"total", lines.percent()}, {"toggles", toggles.percent()}, {"files", rows}}.dump(1)
+        << '\n';
     if (!summary.flush())
         throw std::runtime_error("cannot write " + out + ": is the disk full?");
-    fmt::print("\n{:.1f} % of {} lines, {:.1f} % of {} toggle points; {}\n", lines.percent(), lines.total, toggles.percent(),
-               toggles.total, out);
+    fmt::print("\n{:.1f} % of {} lines, {:.1f} % of {} toggle points; {}\n", lines.percent(),
+               lines.total, toggles.percent(), toggles.total, out);
+    for (const std::string& rule : explanations.stale())
+        below.push_back("an explanation that explains nothing: " + rule);
     for (const std::string& line : below)
-        std::cerr << "below its gate: " << line << '\n';
+        std::cerr << "coverage: " << line << '\n';
     return below.empty() ? 0 : 1;
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-    std::string root = ".", gates, verilator, info, out = "summary.json";
-    CLI::App app("Coverage of RTL and host code against the gates. Exit status 1: a file is below its gate.");
+    std::string root = ".", gates, verilator, out = "summary.json";
+    std::vector<std::string> infos;
+    CLI::App app("Coverage of RTL and host code against the gates. Exit status 1: a file is below "
+                 "its gate.");
     app.add_option("--source", root, "root of the tree")->capture_default_str();
     app.add_option("--gates", gates, "JSON: least percentages by path")->required();
     app.add_option("--verilator", verilator, "merged data of verilator_coverage");
-    app.add_option("--info", info, "lcov file of C and C++");
+    app.add_option("--info", infos, "lcov files of C, C++ and VHDL");
     app.add_option("--out", out, "JSON summary")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
     try {
@@ -166,14 +240,15 @@ int main(int argc, char** argv) {
         if (!in)
             throw std::runtime_error("cannot read " + gates);
         json limits = json::parse(in);
+        Explanations explanations(limits.value("explained", json::array()));
         Files files;
         if (!verilator.empty())
-            readVerilator(verilator, root, files);
-        if (!info.empty())
+            readVerilator(verilator, root, explanations, files);
+        for (const std::string& info : infos)
             readInfo(info, root, files);
         if (files.empty())
             throw std::runtime_error("nothing was measured: did the tests run with COVERAGE_DIR?");
-        return report(files, limits.at("gates"), out);
+        return report(files, limits.at("gates"), explanations, out);
     } catch (const std::exception& error) {
         std::cerr << "coverage: " << error.what() << '\n';
         return 2;

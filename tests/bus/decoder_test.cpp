@@ -5,6 +5,7 @@
 #include "VDecoder1.h"
 #include "VDecoder3.h"
 #include "VDecoder64.h"
+#include "observer.h"
 #include "random.h"
 #include <gtest/gtest.h>
 #include <verilated.h>
@@ -24,6 +25,7 @@ template <std::size_t N> void setData(VlWide<N>& port, unsigned slot, uint32_t v
 
 template <class Decoder> void checkAll(unsigned slots) {
     VerilatedContext context;
+    Observer<Decoder> observer(context);
     Decoder top(&context);
     Random random(testSeed(7));
     for (unsigned address = 0; address < 1024; ++address) {
@@ -58,6 +60,7 @@ template <class Decoder> void checkAll(unsigned slots) {
         ASSERT_EQ(top.bus_error_o, mapped ? error >> slot & 1 : 1) << "an unmapped slot answers with an error";
     }
     top.final();
+    observer.finish();
 }
 
 TEST(BusDecoder, OneSlot) {

@@ -50,7 +50,8 @@ TEST_F(SystemSlot, EveryLineIsSummarisedAndDrivesTheOne) {
         uint64_t lines = bus_.read(SYSTEM_IRQ_LO) | uint64_t(bus_.read(SYSTEM_IRQ_HI)) << 32;
         EXPECT_EQ(lines, 1ull << slot);
     }
-    // A line that falls before software looks leaves nothing behind: a spurious interrupt shows no slot.
+    // A line that falls before software looks leaves nothing behind: a spurious interrupt shows no
+    // slot.
     top.slot_irq_i = 0;
     top.eval();
     EXPECT_FALSE(top.irq_o);
@@ -84,6 +85,30 @@ TEST_F(SystemSlot, AnErrorWhileItIsClearedIsANewOne) {
     top.access_error_i = 0;
     EXPECT_EQ(bus_.read(SYSTEM_EVENT), SYSTEM_EVENT_BUS_ERROR_MASK);
     EXPECT_EQ(bus_.read(SYSTEM_ERROR_ADDR), 0x002u);
+}
+
+TEST_F(SystemSlot, EveryBitOfScratchAndOfAnErrorsPlaceIsKept) {
+    for (unsigned bit = 0; bit < 32; ++bit) {
+        bus_.write(SYSTEM_SCRATCH, 1u << bit);
+        EXPECT_EQ(bus_.read(SYSTEM_SCRATCH), 1u << bit);
+        unsigned word = 1u << bit % 10;
+        error(word, bit % 2);
+        EXPECT_EQ(bus_.read(SYSTEM_ERROR_ADDR),
+                  word | (bit % 2 ? SYSTEM_ERROR_ADDR_WRITE_MASK : 0));
+        bus_.write(SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);
+    }
+}
+
+TEST_F(SystemSlot, ALateAnswerOfTheBridgeIsAnEventOfItsOwn) {
+    bus_.write(SYSTEM_MASK, SYSTEM_EVENT_LATE_MASK);
+    bench_.top().late_i = 1;
+    bench_.tick();
+    bench_.top().late_i = 0;
+    bench_.top().eval();
+    EXPECT_EQ(bus_.read(SYSTEM_EVENT), SYSTEM_EVENT_LATE_MASK);
+    EXPECT_TRUE(bench_.top().irq_o);
+    bus_.write(SYSTEM_EVENT, SYSTEM_EVENT_LATE_MASK);
+    EXPECT_FALSE(bench_.top().irq_o);
 }
 
 TEST_F(SystemSlot, TheHighHalfOfTheCycleCountIsThatOfTheLowHalf) {

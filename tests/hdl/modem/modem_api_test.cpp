@@ -48,6 +48,19 @@ TEST_F(ModemApi, PacketsLeaveWithoutAPauseEachAsOneRfPacket) {
     EXPECT_EQ(near_->counters().badFrames, 0u);
 }
 
+TEST_F(ModemApi, EachPacketGoesToTheTargetOfItsTime) {
+    ready();
+    std::vector<uint16_t> targets;
+    air_.onPacket([&](uint64_t, const RfPacket& p, RfChannel::Outcome) { targets.push_back(p.to); });
+    const std::vector<uint16_t> wanted = {0x5A5A, 0xA5A5, 0x0000, 0xFF00};
+    for (unsigned i = 0; i < wanted.size(); ++i) {
+        bus_.write(MODEM_ADDR, uint32_t(wanted[i]) << MODEM_ADDR_TARGET_LSB | 0x0001);
+        put(i, packet(16 + i, static_cast<uint8_t>(i)));
+        runMs(30);
+    }
+    EXPECT_EQ(targets, wanted);
+}
+
 TEST_F(ModemApi, PacketsArriveEachInItsBuffer) {
     ready();
     for (unsigned i = 0; i < 20; ++i) {

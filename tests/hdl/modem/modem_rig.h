@@ -16,7 +16,8 @@
 // `clkNs`: period of the clock that the module's CLK_HZ says.
 template <class Module, uint64_t clkNs> class ModemRig : public ::testing::Test {
 protected:
-    static constexpr uint32_t txRing = 0x1000, rxRing = 0x2000;
+    static constexpr uint32_t txRing = 0xAAAAA800,
+                              rxRing = 0x55555000; // every address line, both ways
 
     void power(XBee::Options options) {
         near_ = std::make_unique<XBee>(pins_, air_, options);

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # run_vhdl: GHDL vectors-program folder file.vhd ...   Runs entity vision_tb; it stops with a failure.
+# COVERAGE_DIR: GHDL counts the lines that ran into a file there.
 set -eu
 ghdl=$1 vectors=$2 work=$3
 shift 3
@@ -11,6 +12,7 @@ mkdir -p "$work"
 cd "$work"
 # numeric_std warns of every value that is undefined before the pipeline is full.
 status=0
-"$ghdl" --elab-run --std=08 --workdir="$work" vision_tb --assert-level=error >log 2>&1 || status=$?
+"$ghdl" --elab-run --std=08 --workdir="$work" ${COVERAGE_DIR:+--coverage} vision_tb --assert-level=error >log 2>&1 || status=$?
 grep -v metavalue log || true
+[ -z "${COVERAGE_DIR:-}" ] || mv coverage-*.json "$COVERAGE_DIR/vision-vhdl.json"
 exit $status

@@ -134,6 +134,47 @@ TEST_F(Soc, ThePageRegisterReachesTheUpperHalf) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0);
 }
 
+// Each address line alone, each data line both ways: a line that is cut or crossed shows. 128 MiB are there.
+TEST_F(Soc, EveryLineToTheMemoryIsConnected) {
+    uint32_t page = 0;
+    auto place = [&](uint32_t address) {
+        if (address >> 26 != page) {
+            page = address >> 26;
+            write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, page);
+            read(MAP_SLOT_SYSTEM, SYSTEM_PAGE); // register writes are posted
+        }
+        return ddr + (address & 0x03FFFFFF);
+    };
+    std::map<uint32_t, uint16_t> expected;
+    for (int round = 0; round < 2; ++round) {
+        for (unsigned bit = 1; bit < 27; ++bit) {
+            uint32_t address = round ? 0x07FFFFFE & ~(1u << bit) : 1u << bit;
+            uint16_t value = static_cast<uint16_t>(bit % 2 ? 1u << bit % 16 : ~(1u << bit % 16));
+            fsmc_.write16(place(address), value);
+            expected[address] = value;
+        }
+    }
+    for (auto [address, value] : expected)
+        EXPECT_EQ(fsmc_.read16(place(address)), value) << std::hex << address;
+    for (unsigned bit = 0; bit < 6; ++bit) { // the page register keeps what has no memory behind it, too
+        write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 1u << bit);
+        EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_PAGE), 1u << bit);
+    }
+}
+
+// Registers of all slots that can be written: walking bits over the bus and back.
+TEST_F(Soc, EveryLineToTheSlotsIsConnected) {
+    for (unsigned bit = 0; bit < 32; ++bit) {
+        write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, 1u << bit);
+        EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH), 1u << bit);
+        uint32_t address = 1u << bit & 0xFFFFF800; // a ring of the modem's lies at a multiple of 2048
+        write(MAP_SLOT_MODEM, MODEM_TX_BASE, address);
+        EXPECT_EQ(read(MAP_SLOT_MODEM, MODEM_TX_BASE), address);
+    }
+    for (unsigned slot = 0; slot < 64; ++slot) // an empty slot answers with an error, none hangs
+        read(slot, 0);
+}
+
 TEST_F(Soc, AccessesTakeThisLong) {
     auto measure = [&](const char* what, const std::function<void()>& access) {
         uint64_t start = soc_.cycles();

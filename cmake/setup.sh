@@ -24,6 +24,7 @@ libgmock-dev test framework
 nlohmann-json3-dev register descriptions, reports
 libfmt-dev text formatting
 libcli11-dev command lines
+libcpp-httplib-dev serves the page of make run
 libpugixml-dev reads JUnit results
 libssl-dev AES of the modem's model
 lcov coverage pages

@@ -252,7 +252,10 @@ uint32_t FsmcMaster::read32(uint32_t address) {
     if (address >= registersAt)
         return fsmcRegister(address);
     uint32_t low = readPins(address);
-    return low | static_cast<uint32_t>(readPins(address + 2)) << 16;
+    uint32_t value = low | static_cast<uint32_t>(readPins(address + 2)) << 16;
+    if (onWord)
+        onWord(address, value, false);
+    return value;
 }
 
 void FsmcMaster::write32(uint32_t address, uint32_t value) {
@@ -262,4 +265,6 @@ void FsmcMaster::write32(uint32_t address, uint32_t value) {
     }
     writePins(address, static_cast<uint16_t>(value), 3);
     writePins(address + 2, static_cast<uint16_t>(value >> 16), 3);
+    if (onWord)
+        onWord(address, value, true);
 }

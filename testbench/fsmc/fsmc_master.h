@@ -57,6 +57,9 @@ public:
     uint32_t read32(uint32_t address);
     void write32(uint32_t address, uint32_t value);
 
+    // Told of each 32-bit access to a window, after it: who only looks.
+    std::function<void(uint32_t address, uint32_t value, bool isWrite)> onWord;
+
     // An access that the processor gives up (its reset): NE and strobe rise together, NE first,
     // after so many HCLK cycles of the data phase, whatever NWAIT says. Asynchronous modes.
     void abortRead(uint32_t address, unsigned hclk);

@@ -218,6 +218,13 @@ int simulate(const Options& o) {
         static_cast<uint32_t>(o.seed * 1000 + static_cast<uint64_t>(getpid()) * 77);
     std::memcpy(soc.memory().data() + UAV_BOOTS, &boots, sizeof boots);
     soc.reset();
+    soc.fsmc().onWord = [&](uint32_t address, uint32_t value, bool isWrite) {
+        constexpr uint32_t control = 0x64000000, bytes = 4096; // NE2
+        if (address - control >= bytes)
+            return;
+        status->registers[(address - control) / 4] = value;
+        status->seen[(address - control) / 4] = isWrite ? 2 : 1;
+    };
 
     Child child;
     if (!o.quiet)
@@ -284,8 +291,8 @@ int main(int argc, char** argv) {
     app.add_option("--key", o.key,
                    "the UAV's modem encrypts with this AES key, 32 hexadecimal digits")
         ->check([](const std::string& text) {
-            bool good = text.size() == 32 && text.find_first_not_of("0123456789abcdefABCDEF") ==
-                                                 std::string::npos;
+            bool good = text.size() == 32 &&
+                        text.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
             return good ? std::string() : std::string("give 32 hexadecimal digits");
         });
     app.add_option("--out", o.out, "folder for before.png and the counters");

@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: MIT
 #
 # run: the mission: simulator and ground station. Usage: run.sh build-folder --image F --size WxH
-#      --threshold N --loss P --seed N --out DIR --cpu host|m3 --firmware ELF
+#      --threshold N --loss P --seed N --out DIR --cpu host|m3 --firmware ELF --port N (of the live page; 0: any)
+#      --live 1 (the page stays until Ctrl-C)
 
 set -eu
 build=$1
 shift
 here=$(cd "$(dirname "$0")/../.." && pwd)
-image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host firmware=$build/firmware/uav.elf
+image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host port=0 live='' firmware=$build/firmware/uav.elf
 while [ $# -gt 0 ]; do
     case $1 in
     --image) image=$2 ;;
@@ -18,6 +19,8 @@ while [ $# -gt 0 ]; do
     --seed) seed=$2 ;;
     --out) out=$2 ;;
     --cpu) cpu=$2 ;;
+    --port) port=$2 ;;
+    --live) live=$2 ;;
     --firmware) firmware=$2 ;;
     *)
         echo "run: unknown option $1" >&2
@@ -27,7 +30,10 @@ while [ $# -gt 0 ]; do
     shift 2
 done
 mkdir -p "$out"
-rm -f "$out/after.png" "$out/report.md" "$out/report.json"
+rm -f "$out/after.png" "$out/report.md" "$out/report.json" "$out/calls.jsonl" "$out/status"
+"$build/testbench/live/icesoc-live" --dir "$out" --port "$port" --registers "$build/gen/registers.list" &
+page=$!
+trap 'kill $page 2>/dev/null || true' EXIT
 status=0
 "$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" --firmware "$firmware" -- \
     /usr/bin/python3 "$here/sw/ground/clients/mission.py" --device '{device}' --frame '{frame}' \
@@ -37,5 +43,10 @@ if [ $status = 0 ]; then
     echo "Pictures and report: $out/before.png $out/after.png $out/report.md"
 else
     echo "The mission failed (exit status $status)." >&2
+fi
+if [ -n "$live" ] && [ $status = 0 ]; then
+    echo "The page stays until Ctrl-C."
+    trap 'exit 0' INT
+    wait $page
 fi
 exit $status

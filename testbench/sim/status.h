@@ -15,6 +15,9 @@ struct SimStatus {
     uint64_t bytesDown;    // UAV to ground
     uint64_t packets, lost;
     uint64_t wallNs;       // since the start, sleeping not counted: speed = cycles / wallNs
+    // Registers as the processor last wrote or read them, [slot * 16 + word]; looking disturbs nothing.
+    uint32_t registers[1024];
+    uint8_t seen[1024];    // 0: never, 1: read, 2: written
 };
 
 #endif

@@ -42,15 +42,21 @@ class Air:
 class Log:
     """One line a call, for people, and rows for the report."""
 
-    def __init__(self, air):
+    def __init__(self, air, out):
         self.air = air
         self.rows = []
+        self.live = open(os.path.join(out, "calls.jsonl"), "w")  # the page of `make run` follows it
         self.lock = threading.Lock()
         self.start = time.monotonic()
 
     def say(self, text):
         with self.lock:
             print("%7.3f s  %s" % (time.monotonic() - self.start, text), flush=True)
+
+    def follow(self, row):
+        with self.lock:
+            self.live.write(json.dumps(dict(row, at=round(time.monotonic() - self.start, 3))) + "\n")
+            self.live.flush()
 
     def call(self, who, what, function):
         """Runs the call; its result, with the air it took written down."""
@@ -73,6 +79,7 @@ class Log:
                 text += " wall, %7.1f ms simulated, %4d bytes up, %4d down" % (
                     row["simulated_ms"], row["bytes_up"], row["bytes_down"])
             self.rows.append(row)
+            self.follow(row)
             self.say(text)
         return result
 
@@ -121,8 +128,9 @@ def make_station(Autopilot, log):
         def vehicleState(self, uav, params, current):
             for p in params:
                 self.params[str(p.id)] = int.from_bytes(p.data, "little")
-            log.say("%-16s Station.vehicleState(%s)" % (
-                "UAV -> ground", ", ".join("%s %d" % i for i in self.params.items())))
+            what = "Station.vehicleState(%s)" % ", ".join("%s %d" % i for i in self.params.items())
+            log.say("%-16s %s" % ("UAV -> ground", what))
+            log.follow({"who": "UAV -> ground", "what": what})
             try:
                 self.alive = log.call("ground -> UAV", "uav.isAlive(7)", lambda: uav.isAlive(7))
             finally:
@@ -182,7 +190,7 @@ def report(args, log, result, station, air):
 def fly(args, communicator):
     import Autopilot  # made by loadSlice
     air = Air(args.status)
-    log = Log(air)
+    log = Log(air, args.out)
     station = make_station(Autopilot, log)
     adapter = communicator.createObjectAdapter("Station")
     adapter.add(station, communicator.stringToIdentity("station"))
@@ -202,6 +210,7 @@ def fly(args, communicator):
     log.call("ground -> UAV", "hwengine1.startProcessing(), oneway", oneway.startProcessing)
     result = log.call("ground -> UAV", "hwengine1.getResult()", engine.getResult)
     log.say("%d corners; the core took %d cycles" % (result.found, result.cycles))
+    log.follow({"features": [[f.x, f.y, f.score] for f in result.best], "found": result.found})
 
     if not station.called.wait(300):
         raise RuntimeError("the UAV did not call Station.vehicleState within 300 s")

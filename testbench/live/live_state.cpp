@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+//
+// live_state: files into one JSON object.
+
+#include "live_state.h"
+#include "status.h"
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+
+using nlohmann::json;
+
+namespace {
+
+std::string contents(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+json parsed(const std::string& path) {
+    json value = json::parse(contents(path), nullptr, false);
+    if (value.is_discarded())
+        throw std::runtime_error("cannot read '" + path + "'");
+    return value;
+}
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), ::tolower);
+    return text;
+}
+
+} // namespace
+
+LiveState::LiveState(std::string folder, const std::string& registers)
+    : folder_(std::move(folder)) {
+    std::ifstream list(registers);
+    if (!list)
+        throw std::runtime_error("cannot read '" + registers + "'");
+    std::map<std::string, json> blocks;
+    for (std::string path; std::getline(list, path);)
+        if (!path.empty()) {
+            json j = parsed(path);
+            blocks[j.value("block", "")] = j;
+        }
+    for (const json& constant : blocks["map"].value("constants", json::array())) {
+        std::string name = constant.at("name");
+        if (name.rfind("SLOT_", 0) == 0 && name != "SLOT_COUNT") {
+            std::string block = lower(name.substr(5));
+            json description =
+                blocks.count(block) ? blocks[block] : json{{"registers", json::array()}};
+            description["block"] = block;
+            blocks_.push_back({constant.at("value"), description});
+        }
+    }
+    std::sort(blocks_.begin(), blocks_.end(),
+              [](const Block& a, const Block& b) { return a.slot < b.slot; });
+}
+
+json LiveState::slots(const std::string& bytes) const {
+    auto status = std::make_unique<SimStatus>();
+    std::memcpy(status.get(), bytes.data(), sizeof(SimStatus));
+    json list = json::array();
+    for (const Block& block : blocks_) {
+        json words = json::array();
+        for (unsigned word = 0; word < 16; ++word) {
+            unsigned at = block.slot * 16 + word;
+            if (!status->seen[at])
+                continue;
+            json w = {{"word", word},
+                      {"value", status->registers[at]},
+                      {"written", status->seen[at] == 2}};
+            static const char* const common[] = {"ID", "EVENT", "MASK"};
+            w["name"] = word < 3 ? common[word] : "word " + std::to_string(word);
+            for (const json& r : block.description.value("registers", json::array()))
+                if (r.at("word") == word) {
+                    w["name"] = r.at("name");
+                    w["doc"] = r.value("doc", "");
+                }
+            words.push_back(w);
+        }
+        list.push_back({{"slot", block.slot},
+                        {"block", block.description["block"]},
+                        {"doc", block.description.value("doc", "")},
+                        {"words", words}});
+    }
+    return list;
+}
+
+json LiveState::now() const {
+    json state = {{"calls", json::array()}, {"features", json::array()}, {"slots", json::array()}};
+    std::string status = contents(folder_ + "/status");
+    if (status.size() >= sizeof(SimStatus) && status.compare(0, 7, "ICESOC1") == 0) {
+        uint64_t values[7];
+        std::memcpy(values, status.data() + 8, sizeof values);
+        const char* const names[] = {"ns",      "cycles", "bytesUp", "bytesDown",
+                                     "packets", "lost",   "wallNs"};
+        for (int i = 0; i < 7; ++i)
+            state["air"][names[i]] = values[i];
+        state["slots"] = slots(status);
+    }
+    std::istringstream calls(contents(folder_ + "/calls.jsonl"));
+    for (std::string line; std::getline(calls, line);) {
+        json row = json::parse(line, nullptr, false); // the last one may be half written
+        if (row.is_discarded())
+            continue;
+        if (row.contains("features")) {
+            state["features"] = row["features"];
+            state["found"] = row["found"];
+        } else {
+            state["calls"].push_back(row);
+        }
+    }
+    state["frame"] = std::ifstream(folder_ + "/before.png").good();
+    state["over"] = std::ifstream(folder_ + "/report.json").good();
+    return state;
+}

@@ -1,0 +1,73 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# live: source-folder build-folder case out-folder   The page of a mission in headless Chromium, or its errors.
+set -eu
+source=$1 build=$2 case=$3 out=$4
+rm -rf "$out"
+mkdir -p "$out"
+live=$build/testbench/live/icesoc-live
+fail() {
+    cat "$out/log" 2>/dev/null || true
+    echo "live: $*" >&2
+    exit 1
+}
+has() { grep -q -- "$1" "$out/dom.html" || fail "the page lacks '$1' (see $out/dom.html)"; }
+case $case in
+mission)
+    "$source/testbench/sim/run.sh" "$build" --image /usr/share/xplanet/images/earth.jpg --size 96x64 --out "$out" --live 1 >"$out/log" 2>&1 &
+    run=$!
+    trap 'kill $(ps -o pid= --ppid $run) $run 2>/dev/null || true' EXIT
+    while ! grep -q 'The page stays' "$out/log"; do
+        kill -0 $run 2>/dev/null || fail "the mission failed"
+        sleep 0.2
+    done
+    url=$(sed -n 's,.*\(http://127.0.0.1:[0-9]*/\).*,\1,p' "$out/log")
+    # No name is resolved: whatever another host would have to give is missing, and said in the log.
+    HOME=$out timeout 120 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$out/chromium" \
+        --host-resolver-rules='MAP * ~NOTFOUND, EXCLUDE 127.0.0.1' --window-size=1280,1500 --virtual-time-budget=4000 \
+        --enable-logging=stderr --dump-dom "$url" >"$out/dom.html" 2>"$out/chromium.log" || fail "chromium: $(tail -3 "$out/chromium.log")"
+    ! grep -E 'CONSOLE.*(rror|NOT_RESOLVED)' "$out/chromium.log" || fail "the page has errors"
+    has 'the mission is over'
+    has 'hwengine1.getResult()'
+    has 'Station.vehicleState(uptimeMs'
+    has '<td>THRESHOLD</td><td class="n">0x00000018</td>'
+    has 'corners, the strongest'
+    drawn=$(sed -n 's/.*data-features="\([0-9]*\)".*/\1/p' "$out/dom.html")
+    wanted=$(python3 -c 'import json,sys; print([len(r["features"]) for r in map(json.loads, open(sys.argv[1])) if "features" in r][-1])' "$out/calls.jsonl")
+    [ "$drawn" = "$wanted" ] || fail "$drawn corners drawn, $wanted were found"
+    ! grep -En '(https?:)?//[a-z]' "$source"/testbench/live/page/*.html "$source"/testbench/live/page/*.css || fail "the page names another host"
+    ;;
+errors)
+    expect() { # text, then the command
+        text=$1
+        shift
+        ! timeout 20 "$@" >"$out/log" 2>&1 || fail "it succeeded; expected: $text"
+        grep -q -- "$text" "$out/log" || fail "expected: $text"
+    }
+    "$live" --help | grep -q -- --registers
+    expect 'cannot read' "$live" --dir "$out" --registers "$out/none"
+    expect 'required' "$live" --dir "$out"
+    "$live" --dir "$out" --registers "$build/gen/registers.list" >"$out/first" &
+    first=$!
+    trap 'kill $first 2>/dev/null || true' EXIT
+    while ! grep -q 127.0.0.1 "$out/first" 2>/dev/null; do kill -0 $first && sleep 0.1; done
+    port=$(sed -n 's,.*127.0.0.1:\([0-9]*\)/.*,\1,p' "$out/first")
+    expect 'is the port taken' "$live" --dir "$out" --registers "$build/gen/registers.list" --port "$port"
+    # Nothing has run in this folder yet: the page still answers; and only on the loopback interface.
+    python3 - "$port" <<'PY'
+import json, sys, urllib.request, urllib.error
+base = "http://127.0.0.1:%s/" % sys.argv[1]
+state = json.load(urllib.request.urlopen(base + "state"))
+assert state["calls"] == [] and state["slots"] == [] and not state["frame"], state
+for path, status in (("", 200), ("live.js", 200), ("frame.png", 404), ("../main.cpp", 404)):
+    try:
+        got = urllib.request.urlopen(base + path).status
+    except urllib.error.HTTPError as e:
+        got = e.code
+    assert got == status, (path, got)
+PY
+    kill -TERM $first
+    wait $first
+    trap - EXIT
+    ;;
+esac

@@ -175,6 +175,13 @@ private:
                     for (const Pin& q : other.pins)
                         if (other.name + "." + q.name == p.source && q.isOut())
                             from = &q;
+                // A neighbour that is not in the chip is none.
+                std::string owner = p.source.substr(0, p.source.find('.'));
+                if (p.isInternal && std::none_of(chip_.cores.begin(), chip_.cores.end(),
+                                                 [&](const Core& o) { return o.name == owner; })) {
+                    p.source.clear();
+                    continue;
+                }
                 if (!from || from->width != p.width)
                     fail(c.line, fmt::format("{}={}: no core's output of {} bits", p.name, p.source,
                                              p.width));

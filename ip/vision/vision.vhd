@@ -22,6 +22,10 @@ entity vision is
     bus_rdata_o          : out std_logic_vector(31 downto 0);
     bus_error_o          : out std_logic;
     irq_o                : out std_logic;
+    -- frames of another core, in buffers 1..3 (FOLLOW)
+    frame_valid_i        : in  std_logic := '0';
+    frame_index_i        : in  std_logic_vector(1 downto 0) := "00";
+    frame_take_o         : out std_logic;
     -- memory port
     npi_addr_o           : out std_logic_vector(31 downto 0);
     npi_addr_req_o       : out std_logic;
@@ -56,6 +60,9 @@ architecture rtl of vision is
   signal events, mask  : std_logic_vector(1 downto 0); -- REFUSED, DONE
   signal set_threshold : unsigned(7 downto 0);
   signal frame_base, result_base : std_logic_vector(31 downto 0); -- vision_memory takes them at START
+  signal frame_stride  : unsigned(31 downto 0);
+  signal follow        : std_logic;
+  signal taken         : std_logic_vector(1 downto 0); -- the buffer of the last frame, 0: FRAME_BASE itself
   signal set_width, set_height, set_result_max : unsigned(15 downto 0);
   signal found, stored : unsigned(15 downto 0);
   -- of the frame under way: what was set at START
@@ -64,7 +71,8 @@ architecture rtl of vision is
   signal cycles        : unsigned(31 downto 0);
   signal aborted, stop : std_logic;
   signal word          : natural range 0 to 15;
-  signal write, start, abort, size_ok, go : std_logic;
+  signal write, start, abort, size_ok, go, offered : std_logic;
+  signal first_pixel, memory_base : std_logic_vector(31 downto 0);
 
   -- stream: column and row of the pixel that enters; and of the score that leaves vision_suppress
   signal x, score_x, kept_x : unsigned(9 downto 0);
@@ -101,14 +109,23 @@ begin
   start <= write and bus_wdata_i(VISION_CONTROL_START_LSB) when word = VISION_CONTROL else '0';
   abort <= write and bus_wdata_i(VISION_CONTROL_ABORT_LSB) when word = VISION_CONTROL else '0';
   bus_ready_o <= '1';
-  bus_error_o <= '1' when word > VISION_CYCLES else '0';
+  bus_error_o <= '1' when word > VISION_FRAME else '0';
   irq_o       <= '1' when (events and mask) /= "00" else '0';
 
   size_ok <= '1' when set_width(2 downto 0) = 0 and set_width >= VISION_MIN_SIDE and
                       set_width <= VISION_MAX_WIDTH and set_height >= VISION_MIN_SIDE and
                       unsigned(frame_base(6 downto 0)) = 0 and
-                      unsigned(result_base(6 downto 0)) = 0 else '0';
-  go <= start and size_ok when state = WAIT_FOR_START else '0';
+                      unsigned(result_base(6 downto 0)) = 0 and frame_stride(6 downto 0) = 0 else '0';
+  -- The next frame waits until the results of the last one have been read: DONE is cleared.
+  offered <= follow and frame_valid_i and not start and not events(VISION_EVENT_DONE_LSB)
+             when state = WAIT_FOR_START else '0';
+  go <= (start or offered) and size_ok when state = WAIT_FOR_START else '0';
+  frame_take_o <= go and not start;
+
+  with frame_index_i select first_pixel <=
+    frame_base when "01",
+    std_logic_vector(unsigned(frame_base) + frame_stride) when "10",
+    std_logic_vector(unsigned(frame_base) + (frame_stride(30 downto 0) & '0')) when others;
 
   reading : process (all)
   begin
@@ -130,6 +147,9 @@ begin
       when VISION_FOUND       => bus_rdata_o(15 downto 0) <= std_logic_vector(found);
       when VISION_STORED      => bus_rdata_o(15 downto 0) <= std_logic_vector(stored);
       when VISION_CYCLES      => bus_rdata_o <= std_logic_vector(cycles);
+      when VISION_FRAME_STRIDE => bus_rdata_o <= std_logic_vector(frame_stride);
+      when VISION_MODE        => bus_rdata_o(VISION_MODE_FOLLOW_LSB) <= follow;
+      when VISION_FRAME       => bus_rdata_o(1 downto 0) <= taken;
       when others             => null;
     end case;
   end process;
@@ -149,6 +169,8 @@ begin
             set_height <= unsigned(bus_wdata_i(31 downto 16));
             set_width  <= unsigned(bus_wdata_i(15 downto 0));
           when VISION_RESULT_BASE => result_base <= bus_wdata_i;
+          when VISION_FRAME_STRIDE => frame_stride <= unsigned(bus_wdata_i);
+          when VISION_MODE        => follow <= bus_wdata_i(VISION_MODE_FOLLOW_LSB);
           when VISION_RESULT_MAX  => set_result_max <= unsigned(bus_wdata_i(15 downto 0));
           when others             => null;
         end case;
@@ -157,14 +179,21 @@ begin
       if state = DRAIN and quiet = '1' then
         events(VISION_EVENT_DONE_LSB) <= '1';
       end if;
-      if start = '1' and state = WAIT_FOR_START and size_ok = '0' then
+      if ((start = '1' and state = WAIT_FOR_START) or offered = '1') and size_ok = '0' then
         events(VISION_EVENT_REFUSED_LSB) <= '1';
+        follow <= '0';
+      end if;
+      if go = '1' then
+        taken <= frame_index_i and (1 downto 0 => offered);
       end if;
       if rst_i = '1' then
         events      <= "00";
         mask        <= "00";
         set_threshold  <= to_unsigned(0, 8);
         frame_base  <= (others => '0');
+        frame_stride <= (others => '0');
+        follow      <= '0';
+        taken       <= "00";
         result_base <= (others => '0');
         set_width      <= to_unsigned(0, 16);
         set_height     <= to_unsigned(0, 16);
@@ -197,6 +226,7 @@ begin
                  std_logic_vector(frame_y) & std_logic_vector(frame_x);
   last        <= '1' when kept_y = resize(height, 17) else '0';
   memory_start <= go;
+  memory_base  <= first_pixel when offered = '1' else frame_base;
 
   stream_control : process (clk_i)
   begin
@@ -281,7 +311,7 @@ begin
     port map (
       clk_i => clk_i, rst_i => rst_i,
       start_i => memory_start, stop_i => stop,
-      frame_base_i => frame_base, result_base_i => result_base, quiet_o => quiet,
+      frame_base_i => memory_base, result_base_i => result_base, quiet_o => quiet,
       pixel_valid_o => pixel_valid, pixel_o => pixel, pixel_take_i => pixel_take,
       record_push_i => record_push, record_i => data, record_ready_o => record_ready,
       npi_addr_o => npi_addr_o, npi_addr_req_o => npi_addr_req_o,

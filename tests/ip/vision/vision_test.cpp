@@ -59,7 +59,9 @@ protected:
         std::vector<Feature> list;
         for (uint32_t i = 0; i < bus_.read(VISION_STORED); ++i) {
             uint32_t at = resultBase + 8 * i;
-            auto half = [&](uint32_t o) { return memory_.byte(at + o) | memory_.byte(at + o + 1) << 8; };
+            auto half = [&](uint32_t o) {
+                return memory_.byte(at + o) | memory_.byte(at + o + 1) << 8;
+            };
             list.push_back({half(0), half(2), half(4)});
         }
         return list;
@@ -81,7 +83,8 @@ TEST_F(VisionTest, EqualsTheModelForManySizesAndThresholds) {
             EXPECT_EQ(finish(), VISION_EVENT_DONE_MASK);
             auto want = detectCorners(pixels.data(), size[0], size[1], threshold);
             EXPECT_EQ(bus_.read(VISION_FOUND), want.size());
-            EXPECT_TRUE(results() == want) << size[0] << " x " << size[1] << ", threshold " << threshold;
+            EXPECT_TRUE(results() == want)
+                << size[0] << " x " << size[1] << ", threshold " << threshold;
         }
 }
 
@@ -154,15 +157,48 @@ TEST_F(VisionTest, AbortEndsAFrameAndTheNextIsRight) {
     EXPECT_TRUE(results() == detectCorners(pixels.data(), 64, 48, 20));
 }
 
-TEST_F(VisionTest, IdentifiesItselfAndReportsUnmappedWords) {
-    EXPECT_EQ(bus_.read(VISION_ID), VISION_ID_VALUE);
-    EXPECT_TRUE(bus_.transfer(false, 13, 0).error);
-    EXPECT_TRUE(bus_.transfer(true, 15, 1).error);
-    EXPECT_FALSE(bus_.transfer(false, VISION_CYCLES, 0).error);
+TEST_F(VisionTest, FollowsAnotherCoresFramesAndWaitsForItsReader) {
+    Random random(testSeed());
+    constexpr uint32_t stride = 64 * 48;
+    auto& top = bench_.top();
+    start(64, 48, 25);
+    finish();
+    bus_.write(VISION_FRAME_STRIDE, stride);
+    bus_.write(VISION_MODE, VISION_MODE_FOLLOW_MASK);
+    for (uint32_t buffer : {1u, 2u, 3u, 2u}) {
+        auto pixels = picture(64, 48, random);
+        for (size_t i = 0; i < pixels.size(); ++i)
+            memory_.setByte(frameBase + (buffer - 1) * stride + static_cast<uint32_t>(i),
+                            pixels[i]);
+        top.frame_index_i = static_cast<uint8_t>(buffer);
+        top.frame_valid_i = 1;
+        bench_.waitFor([&] { return top.frame_take_o; }, "the frame to be taken", 5);
+        bench_.tick();
+        EXPECT_FALSE(top.frame_take_o) << "taken once";
+        bench_.waitFor([&] { return top.irq_o; }, "the core's interrupt", 100000);
+        for (int i = 0; i < 50; ++i) { // the next is offered, but nobody has read these results
+            EXPECT_FALSE(top.frame_take_o);
+            bench_.tick();
+        }
+        top.frame_valid_i = 0;
+        EXPECT_EQ(bus_.read(VISION_FRAME), buffer);
+        EXPECT_TRUE(results() == detectCorners(pixels.data(), 64, 48, 25)) << "buffer " << buffer;
+        EXPECT_EQ(finish(), VISION_EVENT_DONE_MASK);
+    }
+    bus_.write(VISION_FRAME_STRIDE, stride + 8);
+    top.frame_valid_i = 1;
+    EXPECT_EQ(finish(), VISION_EVENT_REFUSED_MASK);
+    EXPECT_EQ(bus_.read(VISION_MODE), 0u);
 }
 
-// The model itself, against the definition of ip/vision/README.md written another way: corners, those that are
-// none, scores and suppression, pixel by pixel.
+TEST_F(VisionTest, IdentifiesItselfAndHasAllWords) {
+    EXPECT_EQ(bus_.read(VISION_ID), VISION_ID_VALUE);
+    for (unsigned word = 0; word < 16; ++word)
+        EXPECT_FALSE(bus_.transfer(false, word, 0).error) << word;
+}
+
+// The model itself, against the definition of ip/vision/README.md written another way: corners,
+// those that are none, scores and suppression, pixel by pixel.
 class Definition {
 public:
     Definition(const std::vector<uint8_t>& pixels, int width, int height, int threshold)
@@ -191,8 +227,9 @@ public:
     }
     bool kept(int x, int y) const {
         int s = score(x, y);
-        return s > 0 && s > score(x - 1, y - 1) && s > score(x, y - 1) && s > score(x + 1, y - 1) && s > score(x - 1, y) &&
-               s >= score(x + 1, y) && s >= score(x - 1, y + 1) && s >= score(x, y + 1) && s >= score(x + 1, y + 1);
+        return s > 0 && s > score(x - 1, y - 1) && s > score(x, y - 1) && s > score(x + 1, y - 1) &&
+               s > score(x - 1, y) && s >= score(x + 1, y) && s >= score(x - 1, y + 1) &&
+               s >= score(x, y + 1) && s >= score(x + 1, y + 1);
     }
 
 private:
@@ -218,7 +255,8 @@ TEST(VisionModel, EqualsTheDefinition) {
                 if (definition.kept(x, y))
                     want.push_back({x, y, definition.score(x, y)});
         total += want.size();
-        EXPECT_TRUE(detectCorners(pixels.data(), 56, 48, threshold) == want) << "threshold " << threshold;
+        EXPECT_TRUE(detectCorners(pixels.data(), 56, 48, threshold) == want)
+            << "threshold " << threshold;
     }
     EXPECT_GT(total, 20u);
 }

@@ -12,21 +12,25 @@ namespace {
 
 using DKind = Declaration::Kind;
 
-// A ":hw" interface: numbers, enums, structs and sequences of them; no more fits into registers.
+// A ":hw" interface: numbers, enums, structs and sequences of them; exceptions of them; proxies that
+// are told of events. No more fits into registers.
 void checkHardware(const Declaration& d, Diagnostics& diagnostics) {
     std::string who = "interface '" + d.name + "' is hardware ([\":hw\"]): '";
+    const char* kinds = "a number, an enum, a struct or a sequence of them";
     for (const Operation& o : d.operations) {
         if (!factsOf(o.result).isNumeric)
-            diagnostics.error(
-                o.at,
-                who + o.name + "' must return a number, an enum, a struct or a sequence of them");
-        if (!o.throws.empty())
-            diagnostics.error(o.at, who + o.name + "' cannot throw");
+            diagnostics.error(o.at, who + o.name + "' must return " + kinds);
+        for (const Declaration* e : o.throws)
+            for (const Declaration* part = e; part; part = part->base())
+                for (const Field& f : part->fields)
+                    if (!factsOf(f.type).isNumeric || f.isOptional)
+                        diagnostics.error(o.at, who + o.name + "' throws '" + e->name + "', whose '" +
+                                                    f.name + "' is not " + kinds);
         for (const Field& p : o.parameters)
-            if (!factsOf(p.type).isNumeric || p.isOptional)
-                diagnostics.error(
-                    p.at,
-                    who + p.name + "' must be a number, an enum, a struct or a sequence of them");
+            if (p.isOptional || !(factsOf(p.type).isNumeric ||
+                                  (p.type.kind == Type::Kind::Proxy && !p.isOut)))
+                diagnostics.error(p.at, who + p.name + "' must be " + kinds +
+                                            ", or the proxy of a callback interface");
     }
 }
 

@@ -14,7 +14,7 @@ function(icesoc_hardware name file)
   set(registers)
   foreach(b IN LISTS A_BLOCKS)
     list(APPEND outs ${dir}/${b}_wrapper.v ${dir}/${b}_wrapper_pkg.vhd ${dir}/${b}.regs.json
-                     ${dir}/${b}_servant.h ${dir}/${b}_servant.c)
+                     ${dir}/${b}_servant.h ${dir}/${b}_servant.c ${dir}/${b}_proxy.h)
     list(APPEND sources ${dir}/${b}_servant.c)
     list(APPEND registers regs_${b})
   endforeach()
@@ -22,13 +22,13 @@ function(icesoc_hardware name file)
   icesoc_slice(${name} ${file} INCLUDES ${A_INCLUDES})
   add_custom_command(OUTPUT ${outs}
     COMMAND slice2c ${A_INCLUDES} ${path} --output-dir ${dir}/hw/${name} --hw-verilog ${dir} --hw-vhdl ${dir}
-            --hw-regs ${dir} --hw-c ${dir}
+            --hw-regs ${dir} --hw-c ${dir} --hw-cpp ${dir}
     DEPENDS slice2c ${path} VERBATIM COMMENT "Slice to hardware: ${name}")
   add_custom_target(${name}_hardware DEPENDS ${outs})
   foreach(b IN LISTS A_BLOCKS)
     icesoc_regmap(${dir}/${b}.regs.json)
   endforeach()
   icesoc_c90(${name}_servants SOURCES ${sources} INCLUDES ${dir}
-             LIBS ${name}_server hw_core ${registers})
+             LIBS ${name}_server ${name}_client hw_core hw_listener ${registers})
   add_dependencies(${name}_servants ${name}_hardware)
 endfunction()

@@ -16,6 +16,8 @@ GeneratedFile vhdlFile(const Block& b, const CFileNames& names);      // <block>
 GeneratedFile servantHeader(const Block& b, const CFileNames& names); // <block>_servant.h
 GeneratedFile servantSource(const Block& b, const CFileNames& names); // <block>_servant.c
 
+GeneratedFile proxyFile(const Block& b, const CFileNames& names);     // <block>_proxy.h
+
 } // namespace hw
 
 #endif

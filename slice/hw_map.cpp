@@ -3,34 +3,17 @@
 // hw_map: interfaces into slots: what is allowed, who gets which word.
 
 #include "hw_map.h"
-#include "c_names.h"
-#include "c_operations.h"
 #include "hw_words.h"
 #include <algorithm>
 #include <map>
-#include <set>
 
 namespace hw {
 namespace {
 
-constexpr unsigned defaultTimeout = 1000, longestTimeout = 60000;
-
-// A whole number, decimal or 0x..., within [low, high].
-bool number(const std::string& text, unsigned low, unsigned high, unsigned& value) {
-    bool hex = text.compare(0, 2, "0x") == 0;
-    std::string digits = hex ? text.substr(2) : text;
-    if (digits.empty() || digits.size() > 8 ||
-        digits.find_first_not_of(hex ? "0123456789abcdefABCDEF" : "0123456789") !=
-            std::string::npos)
-        return false;
-    unsigned long n = std::stoul(digits, nullptr, hex ? 16 : 10);
-    value = static_cast<unsigned>(n);
-    return n >= low && n <= high;
-}
-
 class Mapper {
 public:
-    Mapper(const Declaration& d, Diagnostics& diagnostics) : d_(d), diagnostics_(diagnostics) {
+    Mapper(const Declaration& d, const Unit& unit, Diagnostics& diagnostics)
+        : d_(d), unit_(unit), diagnostics_(diagnostics) {
         block_.interface = &d;
         block_.name = snakeCase(d.name);
     }
@@ -39,11 +22,11 @@ public:
         identity();
         if (!d_.bases.empty())
             error(d_.at, "has a base; each slot is one interface by itself");
-        if (d_.operations.size() > mostOperations)
-            error(d_.at, "has " + std::to_string(d_.operations.size()) +
-                             " operations; CONTROL has bits for " + std::to_string(mostOperations));
-        for (const Operation& o : d_.operations)
-            addCall(o);
+        errors_ += mapCalls(d_, unit_, block_, diagnostics_);
+        if (block_.calls.size() > mostOperations)
+            error(d_.at, "has " + std::to_string(block_.calls.size()) +
+                             " operations and events; CONTROL has bits for " +
+                             std::to_string(mostOperations));
         if (errors_ == 0)
             place();
         if (errors_ == 0)
@@ -62,77 +45,13 @@ private:
         std::string letters = upperCase(d_.name + "_");
         block_.type = static_cast<unsigned>(letters[0]) << 8 | static_cast<unsigned>(letters[1]);
         block_.version = 0x0100;
-        checkWords(d_.metadata, {"hw:type", "hw:version"}, d_.at);
+        errors_ += checkKeys(d_.metadata, {"hw:type", "hw:version"}, "interface '" + d_.name + "'", d_.at,
+                             diagnostics_);
         for (auto [key, value] :
              {std::pair{"hw:type", &block_.type}, std::pair{"hw:version", &block_.version}}) {
             std::string text = d_.metadataValue(key);
             if (!text.empty() && !number(text, 0, 0xFFFF, *value))
                 error(d_.at, "[\"" + std::string(key) + ":" + text + "\"] is not 0..0xFFFF");
-        }
-    }
-
-    void checkWords(const std::vector<std::string>& metadata, const std::set<std::string>& known,
-                    const Location& at) {
-        for (const std::string& m : metadata)
-            if (m.compare(0, 3, "hw:") == 0 && !known.count(m.substr(0, m.find(':', 3))))
-                error(at, "[\"" + m + "\"] means nothing here");
-    }
-
-    void addCall(const Operation& o) {
-        Call call;
-        call.operation = &o;
-        call.name = snakeCase(o.name);
-        call.bit = static_cast<unsigned>(block_.calls.size());
-        checkWords(o.metadata, {"hw:long", "hw:word"}, o.at);
-        std::string limit = metadataValue(o.metadata, "hw:long");
-        call.isLong = !limit.empty() || hasMetadata(o.metadata, "hw:long");
-        call.timeout = defaultTimeout;
-        if (!limit.empty() && !number(limit, 1, longestTimeout, call.timeout))
-            error(o.at, "[\"hw:long:" + limit + "\"]: the time is in ms, 1.." +
-                            std::to_string(longestTimeout));
-        if (isAmd(d_, o))
-            error(o.at, "'" + o.name + "' is [\"amd\"]; the generated servant answers itself");
-        for (const Field& p : o.parameters) {
-            checkWords(p.metadata, {"hw:word"}, p.at);
-            std::string c = cIdentifier(p.name);
-            if (p.isOut || isByPointer(p.type))
-                c = "*" + c;
-            add(call, p.type, p.isOptional, snakeCase(p.name), c, p.isOut,
-                metadataValue(p.metadata, "hw:word"), p.at);
-        }
-        std::string word = metadataValue(o.metadata, "hw:word");
-        if (o.result.kind != Type::Kind::Void)
-            add(call, o.result, o.isResultOptional, "result", "*result", true, word, o.at);
-        else if (!word.empty())
-            error(o.at, "[\"hw:word:" + word + "\"]: '" + o.name + "' has no result");
-        block_.calls.push_back(call);
-    }
-
-    void add(Call& call, const Type& type, bool isOptional, const std::string& name,
-             const std::string& c, bool isOut, const std::string& wanted, const Location& at) {
-        std::string what = "'" + name + "' of '" + call.operation->name + "'";
-        if (isOptional)
-            return error(at, what + " is optional; a register is always there");
-        if (!isMappable(type))
-            return error(at, what + " does not fit into registers: numbers, bools, enums and "
-                                    "structs of them do");
-        // Pieces share words with what precedes them, unless they have a word of their own.
-        std::vector<Word> words;
-        bool shares = wanted.empty() && !call.words.empty() && call.words.back().isOut == isOut &&
-                      call.words.back().number == 0;
-        if (shares) {
-            words.push_back(call.words.back());
-            call.words.pop_back();
-        }
-        addValue(words, type, name, c, isOut);
-        unsigned first = 0;
-        if (!wanted.empty() && !number(wanted, firstWord + 1, slotWords - 1, first))
-            error(at, "[\"hw:word:" + wanted + "\"]: words " + std::to_string(firstWord + 1) +
-                          ".." + std::to_string(slotWords - 1) + " can be chosen");
-        for (Word& w : words) {
-            if (first)
-                w.number = first++;
-            call.words.push_back(w);
         }
     }
 
@@ -143,6 +62,10 @@ private:
             taken[status] = "STATUS";
         unsigned needed = static_cast<unsigned>(taken.size());
         std::string list = block_.hasLong() ? "CONTROL 1, STATUS 1" : "CONTROL 1";
+        if (block_.memoryBytes) {
+            ++needed;
+            list += ", MEMORY 1";
+        }
         for (Call& call : block_.calls) {
             unsigned counts[2] = {0, 0};
             for (Word& w : call.words) {
@@ -168,6 +91,12 @@ private:
         if (errors_)
             return;
         unsigned next = firstWord;
+        if (block_.memoryBytes) {
+            while (taken.count(next))
+                ++next;
+            block_.memoryWord = next;
+            taken[next] = "MEMORY";
+        }
         for (Call& call : block_.calls)
             for (Word& w : call.words)
                 if (w.number == 0) {
@@ -191,19 +120,25 @@ private:
                     error(call.operation->at, "'" + call.operation->name + "' needs the port '" +
                                                   it->first + "', as '" + it->second + "' does");
             };
-            take("start");
+            take(call.isEvent ? "event" : "start");
+            if (call.isEvent)
+                take("taken");
             if (call.isLong) {
                 take("done");
                 take("refused");
             }
             for (const Word& w : call.words)
                 for (const Piece& p : w.pieces)
-                    if (p.portLsb == 0)
+                    if (p.portLsb == 0) {
                         take(p.name);
+                        if (p.isCount)
+                            take(baseName(p));
+                    }
         }
     }
 
     const Declaration& d_;
+    const Unit& unit_;
     Diagnostics& diagnostics_;
     Block block_;
     int errors_ = 0;
@@ -211,10 +146,33 @@ private:
 
 } // namespace
 
+bool number(const std::string& text, unsigned low, unsigned high, unsigned& value) {
+    bool hex = text.compare(0, 2, "0x") == 0;
+    std::string digits = hex ? text.substr(2) : text;
+    if (digits.empty() || digits.size() > 8 ||
+        digits.find_first_not_of(hex ? "0123456789abcdefABCDEF" : "0123456789") !=
+            std::string::npos)
+        return false;
+    unsigned long n = std::stoul(digits, nullptr, hex ? 16 : 10);
+    value = static_cast<unsigned>(n);
+    return n >= low && n <= high;
+}
+
+bool Block::hasLong() const {
+    return std::any_of(calls.begin(), calls.end(), [](const Call& c) { return c.isLong; });
+}
+
+unsigned Block::memoryLsb() const {
+    unsigned lsb = 0;
+    while (1u << lsb < memoryBytes)
+        ++lsb;
+    return lsb;
+}
+
 unsigned Block::events() const {
     unsigned count = 0;
     for (const Call& c : calls)
-        if (c.isLong)
+        if (c.isLong || c.isEvent)
             count = c.bit + 1;
     return count;
 }
@@ -236,7 +194,7 @@ std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics) {
         if (d->kind != Declaration::Kind::Interface || !d->isHardware() || d->fromInclude ||
             d->isForward || d->isLocal)
             continue;
-        blocks.push_back(Mapper(*d, diagnostics).run());
+        blocks.push_back(Mapper(*d, unit, diagnostics).run());
         auto [it, isNew] = names.emplace(blocks.back().name, d.get());
         if (!isNew)
             diagnostics.error(d->at, "'" + d->id() + "' becomes '" + it->first +

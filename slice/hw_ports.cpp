@@ -3,6 +3,7 @@
 // hw_ports: names and directions.
 
 #include "hw_ports.h"
+#include "hw_words.h"
 
 namespace hw {
 
@@ -19,12 +20,20 @@ std::vector<Port> wrapperPorts(const Block& b) {
                               {"irq_o", true, 1, "interrupt"},
                               {"core_rst_o", true, 1, "the core's reset"}};
     for (const Call& c : b.calls) {
-        list.push_back({c.name + "_start_o", true, 1, c.operation->name});
+        if (c.isEvent)
+            list.push_back({c.name + "_event_i", false, 1, "event " + c.operation->name});
+        else
+            list.push_back({c.name + "_start_o", true, 1, c.operation->name});
         for (const Word& w : c.words)
             for (const Piece& p : w.pieces)
-                if (p.portLsb == 0)
+                if (p.portLsb == 0) {
+                    if (p.isCount)
+                        list.push_back({c.name + "_" + baseName(p) + "_o", true, 32, ""});
                     list.push_back({c.name + "_" + p.name + (w.isOut ? "_i" : "_o"), !w.isOut,
                                     p.portWidth, ""});
+                }
+        if (c.isEvent)
+            list.push_back({c.name + "_taken_o", true, 1, ""});
         if (c.isLong) {
             list.push_back({c.name + "_done_i", false, 1, ""});
             list.push_back({c.name + "_refused_i", false, 1, ""});

@@ -52,8 +52,9 @@ std::vector<Register> registers(const Block& b) {
     Register state{status, "STATUS", "ro", "of operations that take time", {}};
     for (const Call& c : b.calls) {
         std::string name = upperCase(c.name);
+        std::string what = (c.isEvent ? "the event was taken: " : "begins ") + c.operation->name;
         act.fields.push_back(
-            {name, firstLine(c.operation->doc, "begins " + c.operation->name), c.bit, 1});
+            {name, c.isEvent ? what : firstLine(c.operation->doc, what), c.bit, 1});
         if (c.isLong)
             state.fields.push_back({name + "_BUSY", "has begun, and is not done", c.bit, 1});
     }
@@ -65,10 +66,26 @@ std::vector<Register> registers(const Block& b) {
     list.push_back(act);
     if (b.hasLong())
         list.push_back(state);
+    if (b.memoryWord)
+        list.push_back({b.memoryWord,
+                        "MEMORY",
+                        "rw",
+                        "where the buffers are in DDR3",
+                        {{"ADDRESS", "byte address from bit " + std::to_string(b.memoryLsb()) + " on",
+                          0, 32 - b.memoryLsb()}}});
     for (const Word* w : b.words()) {
         Register r{
             w->number, w->name, w->isOut ? "ro" : "rw", w->isOut ? "results" : "parameters", {}};
         for (const Piece& p : w->pieces) {
+            if (p.isCount || p.isCode) {
+                r.fields.push_back({upperCase(p.name),
+                                    p.isCode ? "0: none; else which exception"
+                                             : "elements, at most " + std::to_string(p.most) +
+                                                   ", in the buffer at byte " +
+                                                   std::to_string(p.offset),
+                                    p.lsb, p.width});
+                continue;
+            }
             std::string half = p.portWidth <= 32 ? "" : p.portLsb ? "_HIGH" : "_LOW";
             r.fields.push_back({upperCase(p.name) + half, p.name, p.lsb, p.width});
         }
@@ -87,6 +104,10 @@ GeneratedFile registersFile(const Block& b, const CFileNames&) {
            quoted(firstLine(b.interface->doc, "Registers of " + b.interface->id() + ".")) + ",");
     w.line("  \"type\": \"" + hex(b.type) + "\",");
     w.line("  \"version\": \"" + hex(b.version) + "\",");
+    if (b.memoryBytes) {
+        w.line("  \"memory_port\": true,");
+        w.line("  \"memory_bytes\": " + std::to_string(b.memoryBytes) + ",");
+    }
     w.line("  \"servant\": {\"type\": \"" + b.interface->cName() + "_Core\", \"header\": \"" +
            b.name + "_servant.h\"},");
     w.line("  \"registers\": [");
@@ -105,7 +126,11 @@ GeneratedFile registersFile(const Block& b, const CFileNames&) {
     w.line("  \"events\": [");
     std::vector<std::string> events;
     for (const Call& c : b.calls)
-        if (c.isLong)
+        if (c.isEvent)
+            events.push_back("    {\"name\": \"" + upperCase(c.name) +
+                             "\", \"bit\": " + std::to_string(c.bit) + ", \"doc\": " +
+                             quoted(firstLine(c.operation->doc, "event " + c.operation->name)) + "}");
+        else if (c.isLong)
             events.push_back("    {\"name\": \"" + upperCase(c.name) +
                              "_DONE\", \"bit\": " + std::to_string(c.bit) + ", \"doc\": " +
                              quoted(c.operation->name + " is done, or refused") + "}");

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// hw_servant: the servant in C90: parameters into registers, a start, registers into results.
+// hw_servant: the servant's two files in C90.
 
-#include "c_names.h"
-#include "c_operations.h"
+#include "hw_servant.h"
 #include "hw_generator.h"
-#include "writer.h"
-#include <algorithm>
 
 namespace hw {
 namespace {
-
-using Kind = Type::Kind;
 
 Writer begin(const Block& b, const CFileNames& names, const std::string& what) {
     Writer w;
@@ -20,168 +15,87 @@ Writer begin(const Block& b, const CFileNames& names, const std::string& what) {
     return w;
 }
 
-std::string cName(const Block& b) {
-    return b.interface->cName();
-}
-
-std::string macro(const Block& b, const Word& w, const Piece& p, const char* what) {
-    std::string half = p.portWidth <= 32 ? "" : p.portLsb ? "_HIGH" : "_LOW";
-    return upperCase(b.name) + "_" + w.name + "_" + upperCase(p.name) + half + "_" + what;
-}
-
-// The value as bits of a U32.
-std::string bitsOf(const Piece& p) {
-    switch (p.type.kind) {
-    case Kind::Bool:
-        return "(U32)(" + p.c + " != 0)";
-    case Kind::Byte:
-        return "(U32)" + p.c;
-    case Kind::Short:
-        return "(U32)(U16)" + p.c;
-    case Kind::Long:
-        return p.portLsb ? "(U32)" + p.c + ".high" : p.c + ".low";
-    case Kind::Float:
-        return "Hw_floatBits(" + p.c + ")";
-    case Kind::Double:
-        return "Hw_doubleBits(" + p.c + ", " + (p.portLsb ? "1" : "0") + ")";
-    default:
-        return "(U32)" + p.c;
-    }
-}
-
-void writeWord(Writer& w, const Block& b, const Word& word) {
-    std::string value;
-    for (const Piece& p : word.pieces) {
-        std::string bits = bitsOf(p);
-        if (p.lsb)
-            bits = bits + " << " + macro(b, word, p, "LSB");
-        value += (value.empty() ? "" : " | ") + bits;
-    }
-    w.line("FSMC_write(core->core.slot, " + upperCase(b.name) + "_" + word.name + ", " + value +
-           ");");
-}
-
-void readPiece(Writer& w, const Block& b, const Word& word, const Piece& p) {
-    std::string bits =
-        p.width == 32 ? "word"
-                      : "(word & " + macro(b, word, p, "MASK") + ") >> " + macro(b, word, p, "LSB");
-    std::string whole = p.width == 32 ? bits : "(" + bits + ")";
-    switch (p.type.kind) {
-    case Kind::Long:
-        w.line(p.c + (p.portLsb ? ".high = (S32)" : ".low = ") + bits + ";");
-        return;
-    case Kind::Float:
-        w.line(p.c + " = Hw_float(" + bits + ");");
-        return;
-    case Kind::Double:
-        if (p.portLsb)
-            w.line(p.c + " = Hw_double(low, " + bits + ");");
-        else
-            w.line("low = " + bits + ";");
-        return;
-    case Kind::Named: {
-        int64_t largest = 0;
-        for (const Enumerator& e : p.type.declaration->enumerators)
-            largest = std::max(largest, e.value);
-        if (largest + 1 < int64_t(1) << p.width) {
-            w.line("if (" + whole + " > " + std::to_string(largest) + "U)");
-            w.nested("return ICE_UNKNOWN_EXCEPTION; /* no such enumerator */");
-        }
-        break;
-    }
-    default:
-        break;
-    }
-    w.line(p.c + " = (" + cType(p.type) + ")" + whole + ";");
-}
-
-// Pointers are dereferenced in brackets.
-Word bracketed(Word word) {
-    for (Piece& p : word.pieces)
-        if (p.c[0] == '*')
-            p.c = "(" + p.c + ")";
-    return word;
-}
-
 std::string initSignature(const std::string& type) {
     return "Hw_Status " + type + "_init(" + type +
            " *self, U32 slot, U32 memory, const Hw_Seam *seam, void *context)";
 }
 
-void operation(Writer& w, const Block& b, const Call& c) {
-    bool returns = false, hasDouble = false;
-    for (const Word& word : c.words)
-        for (const Piece& p : word.pieces) {
-            returns |= word.isOut;
-            hasDouble |= word.isOut && p.type.kind == Kind::Double;
-        }
-    std::string core = cName(b) + "_Core";
+void statusFunction(Writer& w) {
     w.blank();
-    w.block(servantSignature(*b.interface, *c.operation, operationName(*b.interface, *c.operation)),
-            {}, [&] {
-                w.line(core + " *core = (" + core + " *)self;");
-                if (returns)
-                    w.line("U32 word;");
-                if (hasDouble)
-                    w.line("U32 low;");
-                if (c.isLong)
-                    w.line("Ice_Status status;");
-                w.line("(void)current;");
-                if (c.isLong) {
-                    w.line("status = hwStatus(Hw_Core_ready(&core->core, " + std::to_string(c.bit) +
-                           "U));");
-                    w.line("if (status != ICE_OK)");
-                    w.nested("return status;");
-                }
-                for (const Word& word : c.words)
-                    if (!word.isOut)
-                        writeWord(w, b, bracketed(word));
-                if (c.isLong) {
-                    w.line("status = hwStatus(Hw_Core_run(&core->core, " + std::to_string(c.bit) +
-                           "U, " + std::to_string(c.timeout) + "U));");
-                    w.line("if (status != ICE_OK)");
-                    w.nested("return status;");
-                } else {
-                    w.line("Hw_Core_act(&core->core, " + std::to_string(c.bit) + "U);");
-                }
-                for (const Word& word : c.words)
-                    if (word.isOut) {
-                        w.line("word = FSMC_read(core->core.slot, " + upperCase(b.name) + "_" +
-                               word.name + ");");
-                        Word bracket = bracketed(word);
-                        for (const Piece& p : bracket.pieces)
-                            readPiece(w, b, word, p);
-                    }
-                w.line("return ICE_OK;");
-            });
+    w.block("static Ice_Status hwStatus(Hw_Status status)", {}, [&] {
+        w.line("switch (status) {");
+        w.line("case HW_OK:");
+        w.nested("return ICE_OK;");
+        w.line("case HW_TIMEOUT:");
+        w.nested("return ICE_TIMEOUT;");
+        w.line("case HW_BUSY:");
+        w.nested("return ICE_LIMIT;");
+        w.line("default:");
+        w.nested("return ICE_UNKNOWN_EXCEPTION; /* refused */");
+        w.line("}");
+    });
+}
+
+void initFunction(Writer& w, const Block& b) {
+    std::string type = coreType(b), prefix = upperCase(b.name);
+    w.blank();
+    w.block(initSignature(type), {}, [&] {
+        w.line("Hw_Status status = Hw_Core_init(&self->core, slot, " + prefix +
+               "_ID_VALUE, seam, context);");
+        w.line(b.interface->cName() + "_init(&self->servant);");
+        for (const Listener& l : b.listeners)
+            w.line("Hw_Listener_init(&self->" + l.name + ");");
+        w.line("self->core.memory = memory;");
+        if (b.memoryWord) {
+            w.line("if (status == HW_OK)");
+            w.nested("FSMC_write(slot, " + prefix + "_MEMORY, memory >> " +
+                     std::to_string(b.memoryLsb()) + ");");
+        }
+        w.line("return status;");
+    });
+    w.blank();
+    w.block("void " + type + "_interrupt(" + type + " *self)", {},
+            [&] { w.line("Hw_Core_interrupt(&self->core);"); });
 }
 
 } // namespace
 
 GeneratedFile servantHeader(const Block& b, const CFileNames& names) {
     Writer w = begin(b, names, b.interface->id() + ", done by the core in a slot.");
-    std::string guard = upperCase(b.name) + "_SERVANT_H", type = cName(b) + "_Core";
+    std::string guard = upperCase(b.name) + "_SERVANT_H", type = coreType(b);
     w.line("#ifndef " + guard);
     w.line("#define " + guard);
     w.blank();
     w.line("#include \"" + names.base + "." + names.headerExtension + "\"");
     w.line("#include \"hw_core.h\"");
+    if (!b.listeners.empty())
+        w.line("#include \"hw_listener.h\"");
     w.blank();
     w.line("typedef struct " + type + " {");
-    w.line("    " + cName(b) + " servant; /* for Ice_ObjectAdapter_add */");
+    w.line("    " + b.interface->cName() + " servant; /* for Ice_ObjectAdapter_add */");
     w.line("    Hw_Core core;");
+    for (const Call& c : b.calls)
+        if (c.isAmd)
+            w.line("    Ice_Reply " + c.name + "_reply;");
+    for (const Listener& l : b.listeners)
+        w.line("    Hw_Listener " + l.name + ";");
+    sequenceMembers(w, b);
     w.line("} " + type + ";");
     w.blank();
     w.line("/* Resets the core. HW_WRONG_CORE: the slot holds another one, or another version.");
-    w.line(" * memory: DDR3 byte address of its buffers. */");
+    w.line(" * memory: DDR3 byte address of its buffers" +
+           (b.memoryBytes ? ", a multiple of " + std::to_string(b.memoryBytes) + "." : ".") + " */");
     w.line(initSignature(type) + ";");
-    w.line(
-        "/* To be called when the slot's line is high, from the interrupt routine or a task. */");
+    w.line("/* To be called when the slot's line is high, from the interrupt routine or a task. */");
     w.line("void " + type + "_interrupt(" + type + " *self);");
-    w.line("/* Answers what is done or too late; to be called by a task after an interrupt, and "
-           "within");
-    w.line(" * the ms that it returns (HW_NEVER: no need). */");
+    w.line("/* Answers what is done or too late, and tells of events; to be called by a task after an");
+    w.line(" * interrupt, and within the ms that it returns (HW_NEVER: no need). */");
     w.line("U32 " + type + "_poll(" + type + " *self, U32 nowMs);");
+    for (const Call& c : b.calls)
+        if (c.isAmd)
+            amdDeclarations(w, b, c);
+        else if (c.isEvent)
+            eventDeclaration(w, b, c);
     w.blank();
     w.line("#endif");
     return {b.name + "_servant.h", w.text()};
@@ -189,42 +103,26 @@ GeneratedFile servantHeader(const Block& b, const CFileNames& names) {
 
 GeneratedFile servantSource(const Block& b, const CFileNames& names) {
     Writer w = begin(b, names, "operations of " + b.interface->id() + " through its registers.");
-    std::string type = cName(b) + "_Core", prefix = upperCase(b.name);
     w.line("#include \"" + b.name + "_servant.h\"");
     w.line("#include \"" + b.name + "_regs.h\"");
     w.line("#include \"fsmc.h\"");
-    if (b.hasLong()) {
+    Writer layouts;
+    checkLayouts(layouts, b);
+    if (!layouts.text().empty()) {
         w.blank();
-        w.block("static Ice_Status hwStatus(Hw_Status status)", {}, [&] {
-            w.line("switch (status) {");
-            w.line("case HW_OK:");
-            w.nested("return ICE_OK;");
-            w.line("case HW_TIMEOUT:");
-            w.nested("return ICE_TIMEOUT;");
-            w.line("case HW_BUSY:");
-            w.nested("return ICE_LIMIT;");
-            w.line("default:");
-            w.nested("return ICE_UNKNOWN_EXCEPTION; /* refused */");
-            w.line("}");
-        });
+        w.raw(layouts.text());
     }
-    w.blank();
-    w.block(initSignature(type), {}, [&] {
-        w.line(cName(b) + "_init(&self->servant);");
-        w.line("(void)memory;");
-        w.line("return Hw_Core_init(&self->core, slot, " + prefix + "_ID_VALUE, seam, context);");
-    });
-    w.blank();
-    w.block("void " + type + "_interrupt(" + type + " *self)", {},
-            [&] { w.line("Hw_Core_interrupt(&self->core);"); });
-    w.blank();
-    w.block("U32 " + type + "_poll(" + type + " *self, U32 nowMs)", {}, [&] {
-        w.line("(void)self;");
-        w.line("(void)nowMs;");
-        w.line("return HW_NEVER;");
-    });
+    if (b.hasLong())
+        statusFunction(w);
+    initFunction(w, b);
     for (const Call& c : b.calls)
-        operation(w, b, c);
+        if (c.isAmd)
+            amdFunctions(w, b, c);
+        else if (!c.isEvent)
+            operation(w, b, c);
+    for (const Listener& l : b.listeners)
+        listenerFunctions(w, b, l);
+    pollFunction(w, b);
     return {b.name + "_servant.c", w.text()};
 }
 

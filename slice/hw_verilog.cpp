@@ -4,6 +4,7 @@
 
 #include "hw_generator.h"
 #include "hw_ports.h"
+#include "hw_words.h"
 #include "writer.h"
 #include <cstdio>
 
@@ -45,11 +46,15 @@ void parameters(Writer& w, const Block& b) {
     std::string widths;
     for (const Word* word : b.words())
         (word->isOut ? ro : rw) |= 1u << word->number;
+    if (b.memoryWord)
+        rw |= 1u << b.memoryWord;
     for (unsigned n = slotWords; n-- > 0;) {
         unsigned width = 32;
         for (const Word* word : b.words())
             if (word->number == n)
                 width = word->width();
+        if (n && n == b.memoryWord)
+            width = 32 - b.memoryLsb();
         widths += "6'd" + std::to_string(width) + (n ? ", " : "");
     }
     char id[16];
@@ -67,30 +72,46 @@ void parameters(Writer& w, const Block& b) {
            ".bus_rdata_o(bus_rdata_o),");
     w.line("        .bus_error_o(bus_error_o),");
     w.line("        .value_o(value), .value_i(shown), .strobe_o(strobe), .wdata_o(wdata),");
-    w.line("        .event_i(" + std::string(b.hasLong() ? "done" : "1'b0") + "), .irq_o(irq_o)");
+    w.line("        .event_i(" + std::string(b.events() ? "done" : "1'b0") + "), .irq_o(irq_o)");
     w.line("    );");
+}
+
+// One bit for each call up to the last that has an event.
+template <class Choose> std::string bits(const Block& b, Choose choose) {
+    std::string text;
+    for (unsigned bit = b.events(); bit-- > 0;)
+        text += choose(b.calls[bit]) ? '1' : '0';
+    return std::to_string(b.events()) + "'b" + text;
 }
 
 // busy from start to done; a start while busy, and a done without, are nothing.
 void longCalls(Writer& w, const Block& b) {
     std::string n = std::to_string(b.events()), top = std::to_string(b.events() - 1);
     std::string done, refused;
+    bool hasEvents = false;
     for (unsigned bit = b.events(); bit-- > 0;) {
         const Call& c = b.calls[bit];
-        done += c.isLong ? c.name + "_done_i" : "1'b0";
+        hasEvents |= c.isEvent;
+        done += c.isLong    ? c.name + "_done_i"
+                : c.isEvent ? c.name + "_event_i"
+                            : "1'b0";
         refused += c.isLong ? c.name + "_refused_i" : "1'b0";
         if (bit)
             done += ", ", refused += ", ";
     }
+    if (!b.hasLong()) {
+        w.line("    wire [" + top + ":0] done = {" + done + "};");
+        return;
+    }
     w.line("    reg  [" + top + ":0] busy, refused;");
-    w.line("    wire [" + top + ":0] timed = " + n + "'b" + [&] {
-        std::string bits;
-        for (unsigned bit = b.events(); bit-- > 0;)
-            bits += b.calls[bit].isLong ? '1' : '0';
-        return bits;
-    }() + "; // operations that end by done");
+    w.line("    wire [" + top + ":0] timed = " + bits(b, [](const Call& c) { return c.isLong; }) +
+           "; // operations that end by done");
     w.line("    wire [" + top + ":0] start = act[" + top + ":0] & ~busy;");
-    w.line("    wire [" + top + ":0] done  = {" + done + "} & busy;");
+    if (hasEvents)
+        w.line("    wire [" + top + ":0] event_bits = " +
+               bits(b, [](const Call& c) { return c.isEvent; }) + "; // at any time");
+    w.line("    wire [" + top + ":0] done  = {" + done + "} & " +
+           (hasEvents ? "(busy | event_bits);" : "busy;"));
     w.line("    always @(posedge clk_i) begin");
     w.line("        busy    <= (busy & ~done) | (start & timed);");
     w.line("        refused <= (refused & ~done & ~start) | (done & {" + refused + "});");
@@ -135,13 +156,22 @@ void results(Writer& w, const Block& b) {
     zero(32 * (slotWords - firstWord));
 }
 
+// Where a sequence is: the buffers begin at a multiple of their size, so nothing is added.
+void base(Writer& w, const Block& b, const Call& c, const Piece& p) {
+    unsigned lsb = b.memoryLsb();
+    w.line("    assign " + c.name + "_" + baseName(p) + "_o = {" +
+           slice("value", base(b.memoryWord), 32 - lsb) + ", " + std::to_string(lsb) + "'d" +
+           std::to_string(p.offset) + "};");
+}
+
 void calls(Writer& w, const Block& b) {
     for (const Call& c : b.calls) {
         w.line();
-        w.line("    assign " + c.name +
-               "_start_o = " + slice(c.isLong ? "start" : "act", c.bit, 1) + ";");
+        w.line("    assign " + c.name + (c.isEvent ? "_taken_o = " : "_start_o = ") + slice(c.isLong ? "start" : "act", c.bit, 1) + ";");
         for (const Word& word : c.words)
             for (const Piece& p : word.pieces) {
+                if (p.isCount)
+                    base(w, b, c, p);
                 if (word.isOut)
                     continue;
                 std::string port = c.name + "_" + p.name + "_o";
@@ -162,6 +192,8 @@ GeneratedFile verilogFile(const Block& b, const CFileNames& names) {
     w.line("//");
     w.line("// <operation>_start_o is high for one clock; parameters are stable from then on.");
     w.line("// Results hold from the clock after it, or from done, until the next start.");
+    if (b.memoryWord)
+        w.line("// <..>_base_o: DDR3 byte address of a sequence, a multiple of 128; <..>_count: elements.");
     w.line("// <operation>_done_i ends an operation that takes time; refused_i is read with it.");
     w.line();
     w.line("`default_nettype none");
@@ -179,7 +211,7 @@ GeneratedFile verilogFile(const Block& b, const CFileNames& names) {
     parameters(w, b);
     w.line();
     w.line("    assign core_rst_o = rst_i || " + slice("act", resetBit, 1) + ";");
-    if (b.hasLong())
+    if (b.events())
         longCalls(w, b);
     calls(w, b);
     w.line();

@@ -32,6 +32,11 @@ public:
         line(text, values);
         --indent_;
     }
+    void nestedRaw(std::string_view text) {
+        ++indent_;
+        raw(text);
+        --indent_;
+    }
     void blank() { out_ += '\n'; }
     // Lines that another writer has made; they get this one's indentation.
     void raw(std::string_view text);

@@ -19,7 +19,7 @@ Hw_Status Hw_Core_init(Hw_Core *self, U32 slot, U32 id, const Hw_Seam *seam, voi
     self->seam = seam;
     self->context = context;
     for (i = 0; i < HW_OPERATIONS; ++i)
-        self->done[i] = 0;
+        self->done[i] = self->later[i] = 0;
     if (FSMC_read(slot, ID) != id)
         return HW_WRONG_CORE;
     FSMC_write(slot, CONTROL, RESET);
@@ -57,6 +57,43 @@ Hw_Status Hw_Core_run(Hw_Core *self, U32 operation, U32 ms) {
             return HW_TIMEOUT;
         }
     return FSMC_read(self->slot, STATUS) & 1U << (REFUSED_LSB + operation) ? HW_REFUSED : HW_OK;
+}
+
+void Hw_Core_begin(Hw_Core *self, U32 operation, U32 ms) {
+    self->done[operation] = 0;
+    self->deadline[operation] = self->seam->nowMs(self->context) + ms;
+    Hw_Core_act(self, operation);
+}
+
+void Hw_Core_later(Hw_Core *self, U32 operation) {
+    self->later[operation] = 1;
+    /* The event may have been before, or the task may sleep longer than this one's time. */
+    self->seam->post(self->context, operation);
+}
+
+int Hw_Core_ended(Hw_Core *self, U32 operation, U32 nowMs, Hw_Status *status, U32 *next) {
+    U32 left = self->deadline[operation] - nowMs;
+    if (!self->later[operation])
+        return 0;
+    if (self->done[operation]) {
+        *status = FSMC_read(self->slot, STATUS) & 1U << (REFUSED_LSB + operation) ? HW_REFUSED : HW_OK;
+        return 1;
+    }
+    if (left - 1U >= 0x7FFFFFFFU) {
+        FSMC_write(self->slot, CONTROL, RESET);
+        *status = HW_TIMEOUT;
+        return 1;
+    }
+    if (left < *next)
+        *next = left;
+    return 0;
+}
+
+int Hw_Core_event(Hw_Core *self, U32 event) {
+    int has = self->done[event];
+    if (has)
+        self->done[event] = 0;
+    return has;
 }
 
 U32 Hw_floatBits(float value) {

@@ -7,21 +7,55 @@
 #define CORE_SLOT_H
 
 #include "bus_master.h"
+#include "npi_memory.h"
 #include <gtest/gtest.h>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <unordered_map>
 extern "C" {
 #include "fsmc.h"
 #include "hw_core.h"
+#include "icec.h"
 #include "map_regs.h"
 #include "system_regs.h"
 }
 
 constexpr U32 coreSlot = 5, coreClocksOfMs = 100; // a simulated millisecond
+constexpr U32 coreMemory = 0x01000000;            // DDR3 byte address of the core's buffers
+
+// The status of a call that neither succeeded nor threw one of its exceptions.
+class CoreError : public std::runtime_error {
+public:
+    explicit CoreError(Ice_Status status)
+        : std::runtime_error("the call's status is " + std::to_string(status)), status_(status) {}
+    Ice_Status status() const { return status_; }
+
+private:
+    Ice_Status status_;
+};
+
+// DDR3: behind the core's memory port, if it has one.
+template <class Module, class = void> class CoreMemory {
+public:
+    explicit CoreMemory(Bench<Module>&) {}
+    uint8_t byte(uint32_t address) const { return bytes_.count(address) ? bytes_.at(address) : 0; }
+    void setByte(uint32_t address, uint8_t value) { bytes_[address] = value; }
+
+private:
+    std::unordered_map<uint32_t, uint8_t> bytes_;
+};
+template <class Module>
+class CoreMemory<Module, std::void_t<decltype(Module::npi_addr_o)>> : public NpiMemory<Module> {
+public:
+    explicit CoreMemory(Bench<Module>& bench) : NpiMemory<Module>(bench, 0.2, testSeed()) {}
+};
 
 // One core in a slot, the driver's port, the interrupt and the wait.
 template <class Module> class CoreSlot {
 public:
     CoreSlot() {
-        static const Fsmc_Port port = {nullptr, nullptr, nullptr, nullptr, read, write};
+        static const Fsmc_Port port = {read<1>, write<1, U8>, read<2>, write<2, U16>, read<4>, write<4, U32>};
         bench_.reset();
         EXPECT_EQ(FSMC_init(&port, this), FSMC_OK);
     }
@@ -31,14 +65,14 @@ public:
             self.tick();
         int posted = self.posted_ >> operation & 1;
         self.posted_ &= ~(1u << operation);
-        self.waitedClocks_ = bench(context).cycles() - self.started_;
+        self.waitedClocks_ = self.bench_.cycles() - self.started_;
         return posted;
     }
     static void post(void* context, U32 operation) {
         static_cast<CoreSlot*>(context)->posted_ |= 1u << operation;
     }
     static U32 nowMs(void* context) {
-        return static_cast<U32>(bench(context).cycles() / coreClocksOfMs);
+        return static_cast<U32>(static_cast<CoreSlot*>(context)->bench_.cycles() / coreClocksOfMs);
     }
     void tick() {
         bench_.tick();
@@ -46,8 +80,35 @@ public:
             Hw_Core_interrupt(core_);
     }
 
+    // For generated proxies.
+    void hw_start(Hw_Status status, Hw_Core& core) {
+        EXPECT_EQ(status, HW_OK);
+        core_ = &core;
+    }
+    static void hw_check(Ice_Status status) {
+        if (status != ICE_OK)
+            throw CoreError(status);
+    }
+    template <class Exception> static void hw_check(Ice_Status status, const Exception& exception) {
+        if (status == ICE_USER_EXCEPTION)
+            throw exception;
+        hw_check(status);
+    }
+    // Until an operation that is answered later has ended.
+    void hw_finish(U32 operation) {
+        Hw_Status status = HW_OK;
+        U32 next = HW_NEVER;
+        Hw_Core_later(core_, operation);
+        while (!Hw_Core_ended(core_, operation, nowMs(this), &status, &next))
+            tick();
+        core_->later[operation] = 0;
+        if (status != HW_OK)
+            throw CoreError(status == HW_TIMEOUT ? ICE_TIMEOUT : ICE_UNKNOWN_EXCEPTION);
+    }
+
     static constexpr Hw_Seam seam = {wait, post, nowMs};
     Bench<Module> bench_;
+    CoreMemory<Module> memory_{bench_};
     BusMaster<Module> bus_{bench_};
     Hw_Core* core_ = nullptr;
     U32 posted_ = 0;
@@ -55,9 +116,8 @@ public:
     unsigned errors_ = 0;
 
 private:
-    static Bench<Module>& bench(void* context) { return static_cast<CoreSlot*>(context)->bench_; }
+    static constexpr U32 ddr = 0x60000000, control = 0x64000000; // NE1, NE2
     U32 access(bool isWrite, U32 address, U32 value) {
-        constexpr U32 control = 0x64000000; // NE2
         if (address < control || address >= control + 0x1000)
             return 0; // the FSMC's own registers
         U32 word = (address - control) / 4;
@@ -68,11 +128,24 @@ private:
         errors_ += answer.error;
         return answer.data;
     }
-    static U32 read(void* context, U32 address) {
-        return static_cast<CoreSlot*>(context)->access(false, address, 0);
+    template <unsigned Bytes> static auto read(void* context, U32 address) {
+        auto& self = *static_cast<CoreSlot*>(context);
+        using Value = std::conditional_t<Bytes == 1, U8, std::conditional_t<Bytes == 2, U16, U32>>;
+        U32 value = 0;
+        if (address < ddr || address >= control)
+            return static_cast<Value>(self.access(false, address, 0));
+        for (unsigned i = 0; i < Bytes; ++i)
+            value |= U32(self.memory_.byte(address - ddr + i)) << (8 * i);
+        return static_cast<Value>(value);
     }
-    static void write(void* context, U32 address, U32 value) {
-        static_cast<CoreSlot*>(context)->access(true, address, value);
+    template <unsigned Bytes, class Value> static void write(void* context, U32 address, Value value) {
+        auto& self = *static_cast<CoreSlot*>(context);
+        if (address < ddr || address >= control) {
+            self.access(true, address, value);
+            return;
+        }
+        for (unsigned i = 0; i < Bytes; ++i)
+            self.memory_.setByte(address - ddr + i, static_cast<uint8_t>(value >> (8 * i)));
     }
 };
 

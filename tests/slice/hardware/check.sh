@@ -6,7 +6,7 @@ set -eu
 kind=$1 slice2c=$2 ice=$3 work=$4 source=$5
 rm -rf "$work"
 mkdir -p "$work"
-hardware="--hw-verilog $work/out --hw-vhdl $work/out --hw-regs $work/out --hw-c $work/out"
+hardware="--hw-verilog $work/out --hw-vhdl $work/out --hw-regs $work/out --hw-c $work/out --hw-cpp $work/out"
 cd "$(dirname "$ice")"
 case $kind in
 golden)

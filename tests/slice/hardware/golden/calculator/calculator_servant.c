@@ -19,94 +19,96 @@ static Ice_Status hwStatus(Hw_Status status) {
 
 Hw_Status Demo_Calculator_Core_init(Demo_Calculator_Core *self, U32 slot, U32 memory,
         const Hw_Seam *seam, void *context) {
+    Hw_Status status = Hw_Core_init(&self->core, slot, CALCULATOR_ID_VALUE, seam, context);
     Demo_Calculator_init(&self->servant);
-    (void)memory;
-    return Hw_Core_init(&self->core, slot, CALCULATOR_ID_VALUE, seam, context);
+    self->core.memory = memory;
+    return status;
 }
 
 void Demo_Calculator_Core_interrupt(Demo_Calculator_Core *self) {
     Hw_Core_interrupt(&self->core);
 }
 
-U32 Demo_Calculator_Core_poll(Demo_Calculator_Core *self, U32 nowMs) {
-    (void)self;
-    (void)nowMs;
-    return HW_NEVER;
-}
-
 Ice_Status Demo_Calculator_setMode(Demo_CalculatorPtr self, Demo_Mode mode, Ice_Bool negate,
         Ice_Byte shift, const Ice_Current *current) {
-    Demo_Calculator_Core *core = (Demo_Calculator_Core *)self;
+    Demo_Calculator_Core *hw_core = (Demo_Calculator_Core *)self;
     (void)current;
-    FSMC_write(core->core.slot, CALCULATOR_SET_MODE_IN0,
+    FSMC_write(hw_core->core.slot, CALCULATOR_SET_MODE_IN0,
             (U32)mode | (U32)(negate != 0) << CALCULATOR_SET_MODE_IN0_NEGATE_LSB | (U32)shift << CALCULATOR_SET_MODE_IN0_SHIFT_LSB);
-    Hw_Core_act(&core->core, 0U);
+    Hw_Core_act(&hw_core->core, 0U);
     return ICE_OK;
 }
 
 Ice_Status Demo_Calculator_getMode(Demo_CalculatorPtr self, Ice_Bool *negate, Ice_Byte *shift,
         Demo_Mode *result, const Ice_Current *current) {
-    Demo_Calculator_Core *core = (Demo_Calculator_Core *)self;
-    U32 word;
+    Demo_Calculator_Core *hw_core = (Demo_Calculator_Core *)self;
+    U32 hw_word;
     (void)current;
-    Hw_Core_act(&core->core, 1U);
-    word = FSMC_read(core->core.slot, CALCULATOR_GET_MODE_OUT0);
+    Hw_Core_act(&hw_core->core, 1U);
+    hw_word = FSMC_read(hw_core->core.slot, CALCULATOR_GET_MODE_OUT0);
     (*negate) =
-            (Ice_Bool)((word & CALCULATOR_GET_MODE_OUT0_NEGATE_MASK) >> CALCULATOR_GET_MODE_OUT0_NEGATE_LSB);
-    (*shift) = (Ice_Byte)((word & CALCULATOR_GET_MODE_OUT0_SHIFT_MASK) >> CALCULATOR_GET_MODE_OUT0_SHIFT_LSB);
-    if (((word & CALCULATOR_GET_MODE_OUT0_RESULT_MASK) >> CALCULATOR_GET_MODE_OUT0_RESULT_LSB) > 2U)
+            (Ice_Bool)((hw_word & CALCULATOR_GET_MODE_OUT0_NEGATE_MASK) >> CALCULATOR_GET_MODE_OUT0_NEGATE_LSB);
+    (*shift) = (Ice_Byte)((hw_word & CALCULATOR_GET_MODE_OUT0_SHIFT_MASK) >> CALCULATOR_GET_MODE_OUT0_SHIFT_LSB);
+    if (((hw_word & CALCULATOR_GET_MODE_OUT0_RESULT_MASK) >> CALCULATOR_GET_MODE_OUT0_RESULT_LSB) > 2U)
         return ICE_UNKNOWN_EXCEPTION; /* no such enumerator */
     (*result) =
-            (Demo_Mode)((word & CALCULATOR_GET_MODE_OUT0_RESULT_MASK) >> CALCULATOR_GET_MODE_OUT0_RESULT_LSB);
+            (Demo_Mode)((hw_word & CALCULATOR_GET_MODE_OUT0_RESULT_MASK) >> CALCULATOR_GET_MODE_OUT0_RESULT_LSB);
     return ICE_OK;
 }
 
 Ice_Status Demo_Calculator_add(Demo_CalculatorPtr self, Ice_Int a, Ice_Int b, Ice_Int *result,
         const Ice_Current *current) {
-    Demo_Calculator_Core *core = (Demo_Calculator_Core *)self;
-    U32 word;
+    Demo_Calculator_Core *hw_core = (Demo_Calculator_Core *)self;
+    U32 hw_word;
     (void)current;
-    FSMC_write(core->core.slot, CALCULATOR_ADD_IN0, (U32)a);
-    FSMC_write(core->core.slot, CALCULATOR_ADD_IN1, (U32)b);
-    Hw_Core_act(&core->core, 2U);
-    word = FSMC_read(core->core.slot, CALCULATOR_ADD_OUT0);
-    (*result) = (Ice_Int)word;
+    FSMC_write(hw_core->core.slot, CALCULATOR_ADD_IN0, (U32)a);
+    FSMC_write(hw_core->core.slot, CALCULATOR_ADD_IN1, (U32)b);
+    Hw_Core_act(&hw_core->core, 2U);
+    hw_word = FSMC_read(hw_core->core.slot, CALCULATOR_ADD_OUT0);
+    (*result) = (Ice_Int)hw_word;
     return ICE_OK;
 }
 
 Ice_Status Demo_Calculator_divide(Demo_CalculatorPtr self, Ice_Int a, Ice_Int b,
         Ice_Int *remainder, Ice_Int *result, const Ice_Current *current) {
-    Demo_Calculator_Core *core = (Demo_Calculator_Core *)self;
-    U32 word;
-    Ice_Status status;
+    Demo_Calculator_Core *hw_core = (Demo_Calculator_Core *)self;
+    U32 hw_word;
+    Ice_Status hw_status;
     (void)current;
-    status = hwStatus(Hw_Core_ready(&core->core, 3U));
-    if (status != ICE_OK)
-        return status;
-    FSMC_write(core->core.slot, CALCULATOR_DIVIDE_IN0, (U32)a);
-    FSMC_write(core->core.slot, CALCULATOR_DIVIDE_IN1, (U32)b);
-    status = hwStatus(Hw_Core_run(&core->core, 3U, 20U));
-    if (status != ICE_OK)
-        return status;
-    word = FSMC_read(core->core.slot, CALCULATOR_DIVIDE_OUT0);
-    (*remainder) = (Ice_Int)word;
-    word = FSMC_read(core->core.slot, CALCULATOR_DIVIDE_OUT1);
-    (*result) = (Ice_Int)word;
+    hw_status = hwStatus(Hw_Core_ready(&hw_core->core, 3U));
+    if (hw_status != ICE_OK)
+        return hw_status;
+    FSMC_write(hw_core->core.slot, CALCULATOR_DIVIDE_IN0, (U32)a);
+    FSMC_write(hw_core->core.slot, CALCULATOR_DIVIDE_IN1, (U32)b);
+    hw_status = hwStatus(Hw_Core_run(&hw_core->core, 3U, 20U));
+    if (hw_status != ICE_OK)
+        return hw_status;
+    hw_word = FSMC_read(hw_core->core.slot, CALCULATOR_DIVIDE_OUT0);
+    (*remainder) = (Ice_Int)hw_word;
+    hw_word = FSMC_read(hw_core->core.slot, CALCULATOR_DIVIDE_OUT1);
+    (*result) = (Ice_Int)hw_word;
     return ICE_OK;
 }
 
 Ice_Status Demo_Calculator_swap(Demo_CalculatorPtr self, const Demo_Pair *p, Demo_Pair *result,
         const Ice_Current *current) {
-    Demo_Calculator_Core *core = (Demo_Calculator_Core *)self;
-    U32 word;
+    Demo_Calculator_Core *hw_core = (Demo_Calculator_Core *)self;
+    U32 hw_word;
     (void)current;
-    FSMC_write(core->core.slot, CALCULATOR_SWAP_IN0,
+    FSMC_write(hw_core->core.slot, CALCULATOR_SWAP_IN0,
             (U32)(U16)p->x | (U32)(U16)p->y << CALCULATOR_SWAP_IN0_P_Y_LSB);
-    Hw_Core_act(&core->core, 4U);
-    word = FSMC_read(core->core.slot, CALCULATOR_SWAP_OUT0);
+    Hw_Core_act(&hw_core->core, 4U);
+    hw_word = FSMC_read(hw_core->core.slot, CALCULATOR_SWAP_OUT0);
     result->x =
-            (Ice_Short)((word & CALCULATOR_SWAP_OUT0_RESULT_X_MASK) >> CALCULATOR_SWAP_OUT0_RESULT_X_LSB);
+            (Ice_Short)((hw_word & CALCULATOR_SWAP_OUT0_RESULT_X_MASK) >> CALCULATOR_SWAP_OUT0_RESULT_X_LSB);
     result->y =
-            (Ice_Short)((word & CALCULATOR_SWAP_OUT0_RESULT_Y_MASK) >> CALCULATOR_SWAP_OUT0_RESULT_Y_LSB);
+            (Ice_Short)((hw_word & CALCULATOR_SWAP_OUT0_RESULT_Y_MASK) >> CALCULATOR_SWAP_OUT0_RESULT_Y_LSB);
     return ICE_OK;
+}
+
+U32 Demo_Calculator_Core_poll(Demo_Calculator_Core *self, U32 nowMs) {
+    U32 next = HW_NEVER;
+    (void)nowMs;
+    (void)self;
+    return next;
 }

@@ -19,80 +19,82 @@ static Ice_Status hwStatus(Hw_Status status) {
 
 Hw_Status Demo_WideEcho_Core_init(Demo_WideEcho_Core *self, U32 slot, U32 memory,
         const Hw_Seam *seam, void *context) {
+    Hw_Status status = Hw_Core_init(&self->core, slot, WIDE_ECHO_ID_VALUE, seam, context);
     Demo_WideEcho_init(&self->servant);
-    (void)memory;
-    return Hw_Core_init(&self->core, slot, WIDE_ECHO_ID_VALUE, seam, context);
+    self->core.memory = memory;
+    return status;
 }
 
 void Demo_WideEcho_Core_interrupt(Demo_WideEcho_Core *self) {
     Hw_Core_interrupt(&self->core);
 }
 
-U32 Demo_WideEcho_Core_poll(Demo_WideEcho_Core *self, U32 nowMs) {
-    (void)self;
-    (void)nowMs;
-    return HW_NEVER;
-}
-
 Ice_Status Demo_WideEcho_negate(Demo_WideEchoPtr self, Ice_Long v, Ice_Long *result,
         const Ice_Current *current) {
-    Demo_WideEcho_Core *core = (Demo_WideEcho_Core *)self;
-    U32 word;
+    Demo_WideEcho_Core *hw_core = (Demo_WideEcho_Core *)self;
+    U32 hw_word;
     (void)current;
-    FSMC_write(core->core.slot, WIDE_ECHO_NEGATE_IN0, v.low);
-    FSMC_write(core->core.slot, WIDE_ECHO_NEGATE_IN1, (U32)v.high);
-    Hw_Core_act(&core->core, 0U);
-    word = FSMC_read(core->core.slot, WIDE_ECHO_NEGATE_OUT0);
-    (*result).low = word;
-    word = FSMC_read(core->core.slot, WIDE_ECHO_NEGATE_OUT1);
-    (*result).high = (S32)word;
+    FSMC_write(hw_core->core.slot, WIDE_ECHO_NEGATE_IN0, v.low);
+    FSMC_write(hw_core->core.slot, WIDE_ECHO_NEGATE_IN1, (U32)v.high);
+    Hw_Core_act(&hw_core->core, 0U);
+    hw_word = FSMC_read(hw_core->core.slot, WIDE_ECHO_NEGATE_OUT0);
+    (*result).low = hw_word;
+    hw_word = FSMC_read(hw_core->core.slot, WIDE_ECHO_NEGATE_OUT1);
+    (*result).high = (S32)hw_word;
     return ICE_OK;
 }
 
 Ice_Status Demo_WideEcho_same(Demo_WideEchoPtr self, Ice_Double v, Ice_Double *result,
         const Ice_Current *current) {
-    Demo_WideEcho_Core *core = (Demo_WideEcho_Core *)self;
-    U32 word;
-    U32 low;
+    Demo_WideEcho_Core *hw_core = (Demo_WideEcho_Core *)self;
+    U32 hw_word;
+    U32 hw_low;
     (void)current;
-    FSMC_write(core->core.slot, WIDE_ECHO_SAME_IN0, Hw_doubleBits(v, 0));
-    FSMC_write(core->core.slot, WIDE_ECHO_SAME_IN1, Hw_doubleBits(v, 1));
-    Hw_Core_act(&core->core, 1U);
-    word = FSMC_read(core->core.slot, WIDE_ECHO_SAME_OUT0);
-    low = word;
-    word = FSMC_read(core->core.slot, WIDE_ECHO_SAME_OUT1);
-    (*result) = Hw_double(low, word);
+    FSMC_write(hw_core->core.slot, WIDE_ECHO_SAME_IN0, Hw_doubleBits(v, 0));
+    FSMC_write(hw_core->core.slot, WIDE_ECHO_SAME_IN1, Hw_doubleBits(v, 1));
+    Hw_Core_act(&hw_core->core, 1U);
+    hw_word = FSMC_read(hw_core->core.slot, WIDE_ECHO_SAME_OUT0);
+    hw_low = hw_word;
+    hw_word = FSMC_read(hw_core->core.slot, WIDE_ECHO_SAME_OUT1);
+    (*result) = Hw_double(hw_low, hw_word);
     return ICE_OK;
 }
 
 Ice_Status Demo_WideEcho_sameFloat(Demo_WideEchoPtr self, Ice_Float v, Ice_Float *result,
         const Ice_Current *current) {
-    Demo_WideEcho_Core *core = (Demo_WideEcho_Core *)self;
-    U32 word;
+    Demo_WideEcho_Core *hw_core = (Demo_WideEcho_Core *)self;
+    U32 hw_word;
     (void)current;
-    FSMC_write(core->core.slot, WIDE_ECHO_SAME_FLOAT_IN0, Hw_floatBits(v));
-    Hw_Core_act(&core->core, 2U);
-    word = FSMC_read(core->core.slot, WIDE_ECHO_SAME_FLOAT_OUT0);
-    (*result) = Hw_float(word);
+    FSMC_write(hw_core->core.slot, WIDE_ECHO_SAME_FLOAT_IN0, Hw_floatBits(v));
+    Hw_Core_act(&hw_core->core, 2U);
+    hw_word = FSMC_read(hw_core->core.slot, WIDE_ECHO_SAME_FLOAT_OUT0);
+    (*result) = Hw_float(hw_word);
     return ICE_OK;
 }
 
 Ice_Status Demo_WideEcho_pause(Demo_WideEchoPtr self, const Ice_Current *current) {
-    Demo_WideEcho_Core *core = (Demo_WideEcho_Core *)self;
-    Ice_Status status;
+    Demo_WideEcho_Core *hw_core = (Demo_WideEcho_Core *)self;
+    Ice_Status hw_status;
     (void)current;
-    status = hwStatus(Hw_Core_ready(&core->core, 3U));
-    if (status != ICE_OK)
-        return status;
-    status = hwStatus(Hw_Core_run(&core->core, 3U, 1000U));
-    if (status != ICE_OK)
-        return status;
+    hw_status = hwStatus(Hw_Core_ready(&hw_core->core, 3U));
+    if (hw_status != ICE_OK)
+        return hw_status;
+    hw_status = hwStatus(Hw_Core_run(&hw_core->core, 3U, 1000U));
+    if (hw_status != ICE_OK)
+        return hw_status;
     return ICE_OK;
 }
 
 Ice_Status Demo_WideEcho_nothing(Demo_WideEchoPtr self, const Ice_Current *current) {
-    Demo_WideEcho_Core *core = (Demo_WideEcho_Core *)self;
+    Demo_WideEcho_Core *hw_core = (Demo_WideEcho_Core *)self;
     (void)current;
-    Hw_Core_act(&core->core, 4U);
+    Hw_Core_act(&hw_core->core, 4U);
     return ICE_OK;
+}
+
+U32 Demo_WideEcho_Core_poll(Demo_WideEcho_Core *self, U32 nowMs) {
+    U32 next = HW_NEVER;
+    (void)nowMs;
+    (void)self;
+    return next;
 }

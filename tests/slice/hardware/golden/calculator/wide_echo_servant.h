@@ -17,8 +17,8 @@ Hw_Status Demo_WideEcho_Core_init(Demo_WideEcho_Core *self, U32 slot, U32 memory
         const Hw_Seam *seam, void *context);
 /* To be called when the slot's line is high, from the interrupt routine or a task. */
 void Demo_WideEcho_Core_interrupt(Demo_WideEcho_Core *self);
-/* Answers what is done or too late; to be called by a task after an interrupt, and within
- * the ms that it returns (HW_NEVER: no need). */
+/* Answers what is done or too late, and tells of events; to be called by a task after an
+ * interrupt, and within the ms that it returns (HW_NEVER: no need). */
 U32 Demo_WideEcho_Core_poll(Demo_WideEcho_Core *self, U32 nowMs);
 
 #endif

@@ -6,38 +6,40 @@
 
 Hw_Status Demo_HTTPLevel_Core_init(Demo_HTTPLevel_Core *self, U32 slot, U32 memory,
         const Hw_Seam *seam, void *context) {
+    Hw_Status status = Hw_Core_init(&self->core, slot, HTTP_LEVEL_ID_VALUE, seam, context);
     Demo_HTTPLevel_init(&self->servant);
-    (void)memory;
-    return Hw_Core_init(&self->core, slot, HTTP_LEVEL_ID_VALUE, seam, context);
+    self->core.memory = memory;
+    return status;
 }
 
 void Demo_HTTPLevel_Core_interrupt(Demo_HTTPLevel_Core *self) {
     Hw_Core_interrupt(&self->core);
 }
 
-U32 Demo_HTTPLevel_Core_poll(Demo_HTTPLevel_Core *self, U32 nowMs) {
-    (void)self;
-    (void)nowMs;
-    return HW_NEVER;
-}
-
 Ice_Status Demo_HTTPLevel_setLevel(Demo_HTTPLevelPtr self, Ice_Byte level,
         const Ice_Current *current) {
-    Demo_HTTPLevel_Core *core = (Demo_HTTPLevel_Core *)self;
+    Demo_HTTPLevel_Core *hw_core = (Demo_HTTPLevel_Core *)self;
     (void)current;
-    FSMC_write(core->core.slot, HTTP_LEVEL_SET_LEVEL_IN0, (U32)level);
-    Hw_Core_act(&core->core, 0U);
+    FSMC_write(hw_core->core.slot, HTTP_LEVEL_SET_LEVEL_IN0, (U32)level);
+    Hw_Core_act(&hw_core->core, 0U);
     return ICE_OK;
 }
 
 Ice_Status Demo_HTTPLevel_level(Demo_HTTPLevelPtr self, Ice_Byte *result,
         const Ice_Current *current) {
-    Demo_HTTPLevel_Core *core = (Demo_HTTPLevel_Core *)self;
-    U32 word;
+    Demo_HTTPLevel_Core *hw_core = (Demo_HTTPLevel_Core *)self;
+    U32 hw_word;
     (void)current;
-    Hw_Core_act(&core->core, 1U);
-    word = FSMC_read(core->core.slot, HTTP_LEVEL_LEVEL_OUT0);
+    Hw_Core_act(&hw_core->core, 1U);
+    hw_word = FSMC_read(hw_core->core.slot, HTTP_LEVEL_LEVEL_OUT0);
     (*result) =
-            (Ice_Byte)((word & HTTP_LEVEL_LEVEL_OUT0_RESULT_MASK) >> HTTP_LEVEL_LEVEL_OUT0_RESULT_LSB);
+            (Ice_Byte)((hw_word & HTTP_LEVEL_LEVEL_OUT0_RESULT_MASK) >> HTTP_LEVEL_LEVEL_OUT0_RESULT_LSB);
     return ICE_OK;
+}
+
+U32 Demo_HTTPLevel_Core_poll(Demo_HTTPLevel_Core *self, U32 nowMs) {
+    U32 next = HW_NEVER;
+    (void)nowMs;
+    (void)self;
+    return next;
 }

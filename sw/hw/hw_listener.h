@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * hw_listener: the proxy that a core's events go to. One task sets it, another one uses it.
+ */
+#ifndef HW_LISTENER_H
+#define HW_LISTENER_H
+
+#include "icec.h"
+
+typedef struct Hw_Listener {
+    Ice_ObjectPrx proxies[2];
+    volatile U8 count; /* of changes; its lowest bit says which proxy holds */
+} Hw_Listener;
+
+/* None. */
+void Hw_Listener_init(Hw_Listener *self);
+void Hw_Listener_set(Hw_Listener *self, const Ice_ObjectPrx *proxy);
+/* A copy; 0: there is none. */
+int Hw_Listener_get(const Hw_Listener *self, Ice_ObjectPrx *proxy);
+
+#endif

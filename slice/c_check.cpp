@@ -12,8 +12,8 @@ namespace {
 
 using DKind = Declaration::Kind;
 
-// A ":hw" interface: numbers, enums, structs and sequences of them; exceptions of them; proxies that
-// are told of events. No more fits into registers.
+// A ":hw" interface: numbers, enums, structs and sequences of them; exceptions of them; proxies
+// that are told of events. No more fits into registers.
 void checkHardware(const Declaration& d, Diagnostics& diagnostics) {
     std::string who = "interface '" + d.name + "' is hardware ([\":hw\"]): '";
     const char* kinds = "a number, an enum, a struct or a sequence of them";
@@ -24,11 +24,11 @@ void checkHardware(const Declaration& d, Diagnostics& diagnostics) {
             for (const Declaration* part = e; part; part = part->base())
                 for (const Field& f : part->fields)
                     if (!factsOf(f.type).isNumeric || f.isOptional)
-                        diagnostics.error(o.at, who + o.name + "' throws '" + e->name + "', whose '" +
-                                                    f.name + "' is not " + kinds);
+                        diagnostics.error(o.at, who + o.name + "' throws '" + e->name +
+                                                    "', whose '" + f.name + "' is not " + kinds);
         for (const Field& p : o.parameters)
-            if (p.isOptional || !(factsOf(p.type).isNumeric ||
-                                  (p.type.kind == Type::Kind::Proxy && !p.isOut)))
+            if (p.isOptional ||
+                !(factsOf(p.type).isNumeric || (p.type.kind == Type::Kind::Proxy && !p.isOut)))
                 diagnostics.error(p.at, who + p.name + "' must be " + kinds +
                                             ", or the proxy of a callback interface");
     }

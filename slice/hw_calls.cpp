@@ -67,10 +67,12 @@ private:
             error(o.at, "[\"hw:long:" + limit + "\"]: the time is in ms, 1.." +
                             std::to_string(longestTimeout));
         if (call.isAmd && !call.isLong)
-            error(o.at, "'" + o.name + "' is [\"amd\"], and done at once; [\"hw:long\"] takes time");
+            error(o.at,
+                  "'" + o.name + "' is [\"amd\"], and done at once; [\"hw:long\"] takes time");
         call.thrown = o.throws;
         for (const Declaration* e : o.throws)
-            call.labels.push_back(operationName(d_, o) + "_" + exceptionLabel(mayThrow(unit_, o), *e));
+            call.labels.push_back(operationName(d_, o) + "_" +
+                                  exceptionLabel(mayThrow(unit_, o), *e));
         for (const Field& p : o.parameters)
             if (!p.isOut)
                 addParameter(call, p);
@@ -133,8 +135,9 @@ private:
         const Type& type = o.parameters.front().type;
         if (o.parameters.size() != 1 || o.parameters.front().isOut || !type.declaration ||
             type.declaration->isForward || o.result.kind != Type::Kind::Void || !o.throws.empty())
-            return error(o.at, "'" + o.name + "' has a proxy; an operation that registers one has "
-                                              "it as its only parameter, and no result");
+            return error(o.at, "'" + o.name +
+                                   "' has a proxy; an operation that registers one has "
+                                   "it as its only parameter, and no result");
         keys(o.metadata, {}, o.at);
         Listener l{&o, type.declaration, snakeCase(o.name), block_.calls.size(), 0};
         for (const Declaration* d : lineage(*type.declaration))

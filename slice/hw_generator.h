@@ -16,7 +16,7 @@ GeneratedFile vhdlFile(const Block& b, const CFileNames& names);      // <block>
 GeneratedFile servantHeader(const Block& b, const CFileNames& names); // <block>_servant.h
 GeneratedFile servantSource(const Block& b, const CFileNames& names); // <block>_servant.c
 
-GeneratedFile proxyFile(const Block& b, const CFileNames& names);     // <block>_proxy.h
+GeneratedFile proxyFile(const Block& b, const CFileNames& names); // <block>_proxy.h
 
 } // namespace hw
 

@@ -45,8 +45,8 @@ private:
         std::string letters = upperCase(d_.name + "_");
         block_.type = static_cast<unsigned>(letters[0]) << 8 | static_cast<unsigned>(letters[1]);
         block_.version = 0x0100;
-        errors_ += checkKeys(d_.metadata, {"hw:type", "hw:version"}, "interface '" + d_.name + "'", d_.at,
-                             diagnostics_);
+        errors_ += checkKeys(d_.metadata, {"hw:type", "hw:version"}, "interface '" + d_.name + "'",
+                             d_.at, diagnostics_);
         for (auto [key, value] :
              {std::pair{"hw:type", &block_.type}, std::pair{"hw:version", &block_.version}}) {
             std::string text = d_.metadataValue(key);

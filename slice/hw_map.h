@@ -25,7 +25,8 @@ struct Piece {
     unsigned portLsb = 0, portWidth = 0;
     unsigned exception = 0; // 0: of the call or its results; else a member of the n-th exception
     bool isCode = false;    // not a value: 0, or which exception it is
-    // The number of elements of a sequence: it is in DDR3, `offset` bytes behind the slot's buffers.
+    // The number of elements of a sequence: it is in DDR3, `offset` bytes behind the slot's
+    // buffers.
     bool isCount = false;
     unsigned offset = 0, most = 0, elementBytes = 0;
 };
@@ -38,16 +39,17 @@ struct Word {
     unsigned width() const { return pieces.back().lsb + pieces.back().width; }
 };
 
-// An operation, a call of the core's; or an event, a call by it, of an operation of a callback interface.
+// An operation, a call of the core's; or an event, a call by it, of an operation of a callback
+// interface.
 struct Call {
     const Operation* operation = nullptr;
     bool isEvent = false;
-    bool isAmd = false; // long, and the processor goes on meanwhile
-    const Declaration* owner = nullptr; // whose operation it is
+    bool isAmd = false;                     // long, and the processor goes on meanwhile
+    const Declaration* owner = nullptr;     // whose operation it is
     std::vector<const Declaration*> thrown; // codes 1, 2, ...
     std::vector<std::string> labels;        // their constants in C
-    std::string name; // snake_case
-    unsigned bit = 0; // in CONTROL, STATUS, EVENT and MASK
+    std::string name;                       // snake_case
+    unsigned bit = 0;                       // in CONTROL, STATUS, EVENT and MASK
     bool isLong = false;
     unsigned timeout = 0; // milliseconds
     std::vector<Word> words;
@@ -57,7 +59,7 @@ struct Call {
 struct Listener {
     const Operation* operation = nullptr;
     const Declaration* interface = nullptr;
-    std::string name; // snake_case
+    std::string name;            // snake_case
     size_t first = 0, count = 0; // of Block::calls
 };
 
@@ -72,7 +74,7 @@ struct Block {
 
     bool hasLong() const;
     unsigned memoryLsb() const; // MEMORY holds the address from this bit on
-    unsigned events() const; // bits of EVENT that are used, from bit 0
+    unsigned events() const;    // bits of EVENT that are used, from bit 0
     // Every word between CONTROL and the slot's end, by number.
     std::vector<const Word*> words() const;
 };

@@ -67,22 +67,23 @@ std::vector<Register> registers(const Block& b) {
     if (b.hasLong())
         list.push_back(state);
     if (b.memoryWord)
-        list.push_back({b.memoryWord,
-                        "MEMORY",
-                        "rw",
-                        "where the buffers are in DDR3",
-                        {{"ADDRESS", "byte address from bit " + std::to_string(b.memoryLsb()) + " on",
-                          0, 32 - b.memoryLsb()}}});
+        list.push_back(
+            {b.memoryWord,
+             "MEMORY",
+             "rw",
+             "where the buffers are in DDR3",
+             {{"ADDRESS", "byte address from bit " + std::to_string(b.memoryLsb()) + " on", 0,
+               32 - b.memoryLsb()}}});
     for (const Word* w : b.words()) {
         Register r{
             w->number, w->name, w->isOut ? "ro" : "rw", w->isOut ? "results" : "parameters", {}};
         for (const Piece& p : w->pieces) {
             if (p.isCount || p.isCode) {
                 r.fields.push_back({upperCase(p.name),
-                                    p.isCode ? "0: none; else which exception"
-                                             : "elements, at most " + std::to_string(p.most) +
-                                                   ", in the buffer at byte " +
-                                                   std::to_string(p.offset),
+                                    p.isCode
+                                        ? "0: none; else which exception"
+                                        : "elements, at most " + std::to_string(p.most) +
+                                              ", in the buffer at byte " + std::to_string(p.offset),
                                     p.lsb, p.width});
                 continue;
             }
@@ -127,9 +128,10 @@ GeneratedFile registersFile(const Block& b, const CFileNames&) {
     std::vector<std::string> events;
     for (const Call& c : b.calls)
         if (c.isEvent)
-            events.push_back("    {\"name\": \"" + upperCase(c.name) +
-                             "\", \"bit\": " + std::to_string(c.bit) + ", \"doc\": " +
-                             quoted(firstLine(c.operation->doc, "event " + c.operation->name)) + "}");
+            events.push_back(
+                "    {\"name\": \"" + upperCase(c.name) + "\", \"bit\": " + std::to_string(c.bit) +
+                ", \"doc\": " + quoted(firstLine(c.operation->doc, "event " + c.operation->name)) +
+                "}");
         else if (c.isLong)
             events.push_back("    {\"name\": \"" + upperCase(c.name) +
                              "_DONE\", \"bit\": " + std::to_string(c.bit) + ", \"doc\": " +

@@ -84,11 +84,14 @@ GeneratedFile servantHeader(const Block& b, const CFileNames& names) {
     w.blank();
     w.line("/* Resets the core. HW_WRONG_CORE: the slot holds another one, or another version.");
     w.line(" * memory: DDR3 byte address of its buffers" +
-           (b.memoryBytes ? ", a multiple of " + std::to_string(b.memoryBytes) + "." : ".") + " */");
+           (b.memoryBytes ? ", a multiple of " + std::to_string(b.memoryBytes) + "." : ".") +
+           " */");
     w.line(initSignature(type) + ";");
-    w.line("/* To be called when the slot's line is high, from the interrupt routine or a task. */");
+    w.line(
+        "/* To be called when the slot's line is high, from the interrupt routine or a task. */");
     w.line("void " + type + "_interrupt(" + type + " *self);");
-    w.line("/* Answers what is done or too late, and tells of events; to be called by a task after an");
+    w.line("/* Answers what is done or too late, and tells of events; to be called by a task after "
+           "an");
     w.line(" * interrupt, and within the ms that it returns (HW_NEVER: no need). */");
     w.line("U32 " + type + "_poll(" + type + " *self, U32 nowMs);");
     for (const Call& c : b.calls)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// hw_servant_calls: the servant's operations: answered at once, waited for, or answered later; events.
+// hw_servant_calls: the servant's operations: answered at once, waited for, or answered later;
+// events.
 
 #include "c_names.h"
 #include "c_operations.h"
@@ -68,8 +69,8 @@ void answerFunction(Writer& w, const Block& b, const Call& c) {
                 w.nested("hw_status = " + part(b, c, "end") + "(hw_core" + pointers + ");");
                 w.line("hw_core->core.later[" + std::to_string(c.bit) + "] = 0;");
                 w.line("if (hw_status == ICE_OK)");
-                w.nested("(void)" + nameOf(b, c) + "_response(&hw_reply" + arguments(outSlots(o, "")) +
-                         ");");
+                w.nested("(void)" + nameOf(b, c) + "_response(&hw_reply" +
+                         arguments(outSlots(o, "")) + ");");
                 if (!o.throws.empty()) {
                     w.line("else if (hw_status == ICE_USER_EXCEPTION)");
                     w.nested("(void)" + nameOf(b, c) + "_exception(&hw_reply, &ex);");
@@ -94,7 +95,8 @@ void eventFunctions(Writer& w, const Block& b, const Listener& l, const Call& c)
     w.block(takeSignature(b, c), {}, [&] {
         resultVariables(w, c);
         readResults(w, b, c);
-        w.line("Hw_Core_act(&hw_core->core, " + number(c.bit) + "); /* taken: the next may come */");
+        w.line("Hw_Core_act(&hw_core->core, " + number(c.bit) +
+               "); /* taken: the next may come */");
         w.line("return ICE_OK;");
     });
     w.blank();
@@ -183,14 +185,14 @@ void operation(Writer& w, const Block& b, const Call& c) {
 void listenerFunctions(Writer& w, const Block& b, const Listener& l) {
     const Field& p = l.operation->parameters.front();
     w.blank();
-    w.block(servantSignature(interfaceOf(b), *l.operation,
-                             operationName(interfaceOf(b), *l.operation)),
-            {}, [&] {
-                w.line("(void)current;");
-                w.line("Hw_Listener_set(&((" + coreType(b) + " *)self)->" + l.name + ", " +
-                       cIdentifier(p.name) + ");");
-                w.line("return ICE_OK;");
-            });
+    w.block(
+        servantSignature(interfaceOf(b), *l.operation, operationName(interfaceOf(b), *l.operation)),
+        {}, [&] {
+            w.line("(void)current;");
+            w.line("Hw_Listener_set(&((" + coreType(b) + " *)self)->" + l.name + ", " +
+                   cIdentifier(p.name) + ");");
+            w.line("return ICE_OK;");
+        });
     for (size_t i = l.first; i < l.first + l.count; ++i)
         eventFunctions(w, b, l, b.calls[i]);
 }

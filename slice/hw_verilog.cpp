@@ -92,9 +92,7 @@ void longCalls(Writer& w, const Block& b) {
     for (unsigned bit = b.events(); bit-- > 0;) {
         const Call& c = b.calls[bit];
         hasEvents |= c.isEvent;
-        done += c.isLong    ? c.name + "_done_i"
-                : c.isEvent ? c.name + "_event_i"
-                            : "1'b0";
+        done += c.isLong ? c.name + "_done_i" : c.isEvent ? c.name + "_event_i" : "1'b0";
         refused += c.isLong ? c.name + "_refused_i" : "1'b0";
         if (bit)
             done += ", ", refused += ", ";
@@ -167,7 +165,8 @@ void base(Writer& w, const Block& b, const Call& c, const Piece& p) {
 void calls(Writer& w, const Block& b) {
     for (const Call& c : b.calls) {
         w.line();
-        w.line("    assign " + c.name + (c.isEvent ? "_taken_o = " : "_start_o = ") + slice(c.isLong ? "start" : "act", c.bit, 1) + ";");
+        w.line("    assign " + c.name + (c.isEvent ? "_taken_o = " : "_start_o = ") +
+               slice(c.isLong ? "start" : "act", c.bit, 1) + ";");
         for (const Word& word : c.words)
             for (const Piece& p : word.pieces) {
                 if (p.isCount)
@@ -193,7 +192,8 @@ GeneratedFile verilogFile(const Block& b, const CFileNames& names) {
     w.line("// <operation>_start_o is high for one clock; parameters are stable from then on.");
     w.line("// Results hold from the clock after it, or from done, until the next start.");
     if (b.memoryWord)
-        w.line("// <..>_base_o: DDR3 byte address of a sequence, a multiple of 128; <..>_count: elements.");
+        w.line("// <..>_base_o: DDR3 byte address of a sequence, a multiple of 128; <..>_count: "
+               "elements.");
     w.line("// <operation>_done_i ends an operation that takes time; refused_i is read with it.");
     w.line();
     w.line("`default_nettype none");

@@ -25,7 +25,8 @@ void addCode(std::vector<Word>& words, size_t count);
 std::string baseName(const Piece& count);
 
 bool isSequence(const Type& type);
-// Bytes of an element in DDR3, as C lays it out; 0: of a type that is not laid out alike everywhere.
+// Bytes of an element in DDR3, as C lays it out; 0: of a type that is not laid out alike
+// everywhere.
 unsigned elementBytes(const Type& type);
 
 } // namespace hw

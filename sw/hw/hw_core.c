@@ -13,7 +13,7 @@ enum { ID, EVENT, MASK, CONTROL, STATUS };
 
 typedef char hw_check_double[sizeof(double) == 8 ? 1 : -1];
 
-Hw_Status Hw_Core_init(Hw_Core *self, U32 slot, U32 id, const Hw_Seam *seam, void *context) {
+Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Seam* seam, void* context) {
     U32 i;
     self->slot = slot;
     self->seam = seam;
@@ -28,7 +28,7 @@ Hw_Status Hw_Core_init(Hw_Core *self, U32 slot, U32 id, const Hw_Seam *seam, voi
     return HW_OK;
 }
 
-void Hw_Core_interrupt(Hw_Core *self) {
+void Hw_Core_interrupt(Hw_Core* self) {
     U32 events = FSMC_read(self->slot, EVENT);
     U32 i;
     FSMC_write(self->slot, EVENT, events);
@@ -39,15 +39,15 @@ void Hw_Core_interrupt(Hw_Core *self) {
         }
 }
 
-Hw_Status Hw_Core_ready(const Hw_Core *self, U32 operation) {
+Hw_Status Hw_Core_ready(const Hw_Core* self, U32 operation) {
     return FSMC_read(self->slot, STATUS) & 1U << operation ? HW_BUSY : HW_OK;
 }
 
-void Hw_Core_act(const Hw_Core *self, U32 operation) {
+void Hw_Core_act(const Hw_Core* self, U32 operation) {
     FSMC_write(self->slot, CONTROL, 1U << operation);
 }
 
-Hw_Status Hw_Core_run(Hw_Core *self, U32 operation, U32 ms) {
+Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms) {
     self->done[operation] = 0;
     Hw_Core_act(self, operation);
     /* A post that is left from a call that was given up ends one wait early, and no more. */
@@ -59,24 +59,25 @@ Hw_Status Hw_Core_run(Hw_Core *self, U32 operation, U32 ms) {
     return FSMC_read(self->slot, STATUS) & 1U << (REFUSED_LSB + operation) ? HW_REFUSED : HW_OK;
 }
 
-void Hw_Core_begin(Hw_Core *self, U32 operation, U32 ms) {
+void Hw_Core_begin(Hw_Core* self, U32 operation, U32 ms) {
     self->done[operation] = 0;
     self->deadline[operation] = self->seam->nowMs(self->context) + ms;
     Hw_Core_act(self, operation);
 }
 
-void Hw_Core_later(Hw_Core *self, U32 operation) {
+void Hw_Core_later(Hw_Core* self, U32 operation) {
     self->later[operation] = 1;
     /* The event may have been before, or the task may sleep longer than this one's time. */
     self->seam->post(self->context, operation);
 }
 
-int Hw_Core_ended(Hw_Core *self, U32 operation, U32 nowMs, Hw_Status *status, U32 *next) {
+int Hw_Core_ended(Hw_Core* self, U32 operation, U32 nowMs, Hw_Status* status, U32* next) {
     U32 left = self->deadline[operation] - nowMs;
     if (!self->later[operation])
         return 0;
     if (self->done[operation]) {
-        *status = FSMC_read(self->slot, STATUS) & 1U << (REFUSED_LSB + operation) ? HW_REFUSED : HW_OK;
+        *status =
+            FSMC_read(self->slot, STATUS) & 1U << (REFUSED_LSB + operation) ? HW_REFUSED : HW_OK;
         return 1;
     }
     if (left - 1U >= 0x7FFFFFFFU) {
@@ -89,7 +90,7 @@ int Hw_Core_ended(Hw_Core *self, U32 operation, U32 nowMs, Hw_Status *status, U3
     return 0;
 }
 
-int Hw_Core_event(Hw_Core *self, U32 event) {
+int Hw_Core_event(Hw_Core* self, U32 event) {
     int has = self->done[event];
     if (has)
         self->done[event] = 0;

@@ -35,7 +35,7 @@ typedef struct Hw_Core {
     U32 slot; /* 0..63 */
     const Hw_Seam* seam;
     void* context;
-    volatile U8 done[HW_OPERATIONS]; /* set by the interrupt */
+    volatile U8 done[HW_OPERATIONS];  /* set by the interrupt */
     U32 memory;                       /* DDR3 byte address of the buffers */
     volatile U8 later[HW_OPERATIONS]; /* to be answered by the task that polls */
     U32 deadline[HW_OPERATIONS];      /* ms, of those */
@@ -52,8 +52,8 @@ Hw_Status Hw_Core_ready(const Hw_Core* self, U32 operation);
 void Hw_Core_act(const Hw_Core* self, U32 operation);
 Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms);
 
-/* One that is answered later. begin: act, and the time runs. later: from now on ended tells of it. ended: 1 when
- * it has ended, with how; else 0, and `next` is at most the time that it has left. */
+/* One that is answered later. begin: act, and the time runs. later: from now on ended tells of it.
+ * ended: 1 when it has ended, with how; else 0, and `next` is at most the time that it has left. */
 void Hw_Core_begin(Hw_Core* self, U32 operation, U32 ms);
 void Hw_Core_later(Hw_Core* self, U32 operation);
 int Hw_Core_ended(Hw_Core* self, U32 operation, U32 nowMs, Hw_Status* status, U32* next);

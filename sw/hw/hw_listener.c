@@ -6,17 +6,17 @@
 
 #include <string.h>
 
-void Hw_Listener_init(Hw_Listener *self) {
+void Hw_Listener_init(Hw_Listener* self) {
     memset(self, 0, sizeof *self);
 }
 
-void Hw_Listener_set(Hw_Listener *self, const Ice_ObjectPrx *proxy) {
+void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy) {
     U8 next = (U8)(self->count + 1U);
     self->proxies[next & 1U] = *proxy;
     self->count = next;
 }
 
-int Hw_Listener_get(const Hw_Listener *self, Ice_ObjectPrx *proxy) {
+int Hw_Listener_get(const Hw_Listener* self, Ice_ObjectPrx* proxy) {
     U8 count;
     do {
         count = self->count;

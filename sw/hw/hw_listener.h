@@ -13,9 +13,9 @@ typedef struct Hw_Listener {
 } Hw_Listener;
 
 /* None. */
-void Hw_Listener_init(Hw_Listener *self);
-void Hw_Listener_set(Hw_Listener *self, const Ice_ObjectPrx *proxy);
+void Hw_Listener_init(Hw_Listener* self);
+void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy);
 /* A copy; 0: there is none. */
-int Hw_Listener_get(const Hw_Listener *self, Ice_ObjectPrx *proxy);
+int Hw_Listener_get(const Hw_Listener* self, Ice_ObjectPrx* proxy);
 
 #endif

@@ -55,7 +55,8 @@ public:
 template <class Module> class CoreSlot {
 public:
     CoreSlot() {
-        static const Fsmc_Port port = {read<1>, write<1, U8>, read<2>, write<2, U16>, read<4>, write<4, U32>};
+        static const Fsmc_Port port = {read<1>,       write<1, U8>, read<2>,
+                                       write<2, U16>, read<4>,      write<4, U32>};
         bench_.reset();
         EXPECT_EQ(FSMC_init(&port, this), FSMC_OK);
     }
@@ -138,7 +139,8 @@ private:
             value |= U32(self.memory_.byte(address - ddr + i)) << (8 * i);
         return static_cast<Value>(value);
     }
-    template <unsigned Bytes, class Value> static void write(void* context, U32 address, Value value) {
+    template <unsigned Bytes, class Value>
+    static void write(void* context, U32 address, Value value) {
         auto& self = *static_cast<CoreSlot*>(context);
         if (address < ddr || address >= control) {
             self.access(true, address, value);

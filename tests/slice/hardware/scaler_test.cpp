@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// scaler_test: sequences in DDR3, exceptions, calls that are answered later, events; and the generated proxy, which moves
-// a wrapper's pins.
+// scaler_test: sequences in DDR3, exceptions, calls that are answered later, events; and the
+// generated proxy, which moves a wrapper's pins.
 
 #include "VScalerSlot.h"
 #include "VScalerWrapper.h"
@@ -64,8 +64,9 @@ TEST_F(Scaler, ACoreThrowsAnExceptionWithItsFieldsAndThoseOfItsBase) {
 }
 
 TEST_F(Scaler, ACoreRefusesAndHangsLaterToo) {
-    for (auto [values, offset, status] : {std::tuple{std::vector<Ice_Short>(), 1, ICE_UNKNOWN_EXCEPTION},
-                                          std::tuple{std::vector<Ice_Short>(3), 0x7777, ICE_TIMEOUT}})
+    for (auto [values, offset, status] :
+         {std::tuple{std::vector<Ice_Short>(), 1, ICE_UNKNOWN_EXCEPTION},
+          std::tuple{std::vector<Ice_Short>(3), 0x7777, ICE_TIMEOUT}})
         try {
             shift(values, offset);
             ADD_FAILURE() << "offset " << offset;
@@ -108,7 +109,8 @@ TEST(Proxy, MovesThePins) {
     core.setLimit(-3);
     EXPECT_EQ(pins.set_limit_limit_o, 0xFFFD);
     EXPECT_EQ(pins.shift_list_base_o, coreMemory);
-    EXPECT_EQ(pins.shift_shifted_base_o, coreMemory + 256) << "200 bytes, and the next multiple of 128";
+    EXPECT_EQ(pins.shift_shifted_base_o, coreMemory + 256)
+        << "200 bytes, and the next multiple of 128";
 }
 
 TEST(Proxy, ElementsLieInMemoryAsInC) {

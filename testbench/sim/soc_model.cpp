@@ -3,6 +3,7 @@
 // soc_model: the simulator's innermost loop. What seldom changes is looked at only when it is due.
 
 #include "soc_model.h"
+#include "mcb_pins.h"
 #include <algorithm>
 
 SocModel::SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerUnit,
@@ -59,30 +60,13 @@ void SocModel::settle() {
 void SocModel::tick() {
     // The design is settled: by settle() if the processor's pins have changed, else by the last tick.
     VSoc& top = *top_;
-    McbModel::Pins& m = memory_.pins;
-    m.cmdEn = top.mcb_cmd_en_o;
-    m.wrEn = top.mcb_wr_en_o;
-    m.rdEn = top.mcb_rd_en_o;
-    if (m.cmdEn) {
-        m.cmdInstr = top.mcb_cmd_instr_o;
-        m.cmdBl = top.mcb_cmd_bl_o;
-        m.cmdByteAddr = top.mcb_cmd_byte_addr_o;
-    }
-    if (m.wrEn) {
-        m.wrMask = top.mcb_wr_mask_o;
-        m.wrData = top.mcb_wr_data_o;
-    }
-    memory_.cycle();
+    sampleMcb(top, memory_);
 
     top.clk_i = 1;
     top.eval();
     ++cycles_;
     observer_.step(top, cycles_, 0);
-    top.mcb_cmd_full_i = m.cmdFull;
-    top.mcb_wr_full_i = m.wrFull;
-    top.mcb_rd_empty_i = m.rdEmpty;
-    top.mcb_rd_data_i = m.rdData;
-    top.mcb_calib_done_i = m.calibDone;
+    driveMcb(top, memory_);
     if (top.modem_txd_o != txd_) {
         txd_ = top.modem_txd_o;
         line_.setTxd(txd_, now());

@@ -169,7 +169,7 @@ TEST_F(Cpu, MaskedTimeIsMeasured) {
     run(Primask);
     EXPECT_GT(m3.cpu.longestMasked().cycles, 5u);
     EXPECT_LT(m3.cpu.longestMasked().cycles, 100u);
-    EXPECT_EQ(m3.image.functionAt(m3.cpu.longestMasked().from), "primaskExact");
+    EXPECT_EQ(m3.image.functionAt(m3.cpu.longestMasked().from), "Case_primaskExact");
 }
 
 } // namespace

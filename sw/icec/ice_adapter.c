@@ -22,10 +22,8 @@ Ice_Identity Ice_parseIdentity(const char* text) {
 }
 
 const char* Ice_optionsOf(Ice_CommunicatorPtr ic, const char* text) {
-    const char* name = ic->endpoint->name;
-    while (*name && *name == *text)
-        ++name, ++text;
-    return *name == 0 && (*text == ' ' || *text == ':' || *text == 0) ? text : 0;
+    Ice_String name = part(text, strcspn(text, " :"));
+    return Ice_String_is(&name, ic->endpoint->name) ? text + name.size : 0;
 }
 
 Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr ic,

@@ -22,7 +22,7 @@ static void finish(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id, Ice_Statu
     if (!ICEC_TASKS || (call->state == ICE_WAITING && call->id == id)) {
         if (ICEC_ASYNC)
             callback = call->callback, cookie = call->cookie;
-        call->status = (Ice_Byte)status;
+        call->status = status;
         call->state = callback ? ICE_FREE : ICE_DONE; /* the callback may make the next call */
         if (ICEC_TASKS && !callback)
             ic->os->wake(ic->osContext, (int)(call - ic->calls));
@@ -78,23 +78,15 @@ Ice_Int Ice_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
 
 /* From a reply's status byte on. */
 static Ice_Status readReply(Ice_InputStreamPtr is, Ice_Failure* failure) {
-    static const Ice_Byte statuses[] = {ICE_OK,
-                                        ICE_USER_EXCEPTION,
-                                        ICE_OBJECT_NOT_EXIST,
-                                        ICE_FACET_NOT_EXIST,
-                                        ICE_OPERATION_NOT_EXIST,
-                                        ICE_UNKNOWN_LOCAL_EXCEPTION,
-                                        ICE_UNKNOWN_USER_EXCEPTION,
-                                        ICE_UNKNOWN_EXCEPTION};
     Ice_Byte code = Ice_InputStream_readByte(is);
     Ice_Status entered;
-    if (is->failed || code >= sizeof statuses)
+    if (is->failed || code > ICE_UNKNOWN_EXCEPTION)
         return ICE_MARSHAL;
-    if (code <= 1) {
+    if (code <= ICE_USER_EXCEPTION) {
         entered = Ice_enterEncapsulation(is);
-        return entered != ICE_OK ? entered : (Ice_Status)statuses[code];
+        return entered != ICE_OK ? entered : (Ice_Status)code;
     }
-    if (ICEC_DETAILS && code <= 4) {
+    if (ICEC_DETAILS && code <= ICE_OPERATION_NOT_EXIST) {
         failure->identity.name = Ice_InputStream_readString(is);
         failure->identity.category = Ice_InputStream_readString(is);
         Ice_readFacet(is, &failure->facet);
@@ -102,7 +94,7 @@ static Ice_Status readReply(Ice_InputStreamPtr is, Ice_Failure* failure) {
     } else if (ICEC_DETAILS) {
         failure->unknown = Ice_InputStream_readString(is);
     }
-    return (Ice_Status)statuses[code];
+    return (Ice_Status)code;
 }
 
 /* Copies what is left of the message, for the task that waits. */
@@ -144,8 +136,9 @@ void Ice_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is
         if (ICEC_COPY_REPLIES)
             keepReply(call, is);
         is->communicator = ic;
-        call->status = (Ice_Byte)readReply(is, &call->failure);
-        call->is = *is;
+        call->status = readReply(is, &call->failure);
+        if (ICEC_COPY_REPLIES || ICE_CALLS > 1)
+            call->is = *is;
         call->state = ICE_DONE;
         if (ICEC_TASKS)
             ic->os->wake(ic->osContext, (int)(call - ic->calls));
@@ -197,8 +190,6 @@ static Ice_Status connect(Ice_ObjectPrxPtr self, int slot) {
     }
     if (status == ICE_OK)
         status = Ice_await(ic, &ic->connections[self->connection].state, slot, self->timeoutMs);
-    if (status == ICE_OK && Ice_connectionState(ic, self->connection) == ICE_FREE)
-        status = ICE_CONNECTION_LOST;
     return status;
 }
 
@@ -264,8 +255,13 @@ Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char* opera
     }
     Ice_OutputStream_writeBlob(os, self->identity, self->identitySize);
     Ice_OutputStream_writeText(os, operation);
-    Ice_OutputStream_writeByte(os, mode & (Ice_Byte)~ICE_RESULTS);
-    writeContext(os, ICEC_CONTEXTS ? self->context : 0);
+    mode = mode & (Ice_Byte)~ICE_RESULTS;
+    if (ICEC_CONTEXTS) {
+        Ice_OutputStream_writeByte(os, mode);
+        writeContext(os, self->context);
+    } else {
+        Ice_OutputStream_writeShort(os, mode); /* and no context */
+    }
     ic->requestBody = Ice_beginEncapsulation(os);
     return os;
 }

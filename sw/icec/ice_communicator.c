@@ -87,10 +87,18 @@ void Ice_Communicator_shutdown(Ice_CommunicatorPtr ic) {
         ic->os->wake(ic->osContext, ICE_SERVER_SLOT);
 }
 
+static int isOpen(Ice_CommunicatorPtr ic, int connection) {
+    int is;
+    Ice_lock(ic, ICE_LOCK_STATE);
+    is = ic->connections[connection].state != ICE_FREE;
+    Ice_unlock(ic, ICE_LOCK_STATE);
+    return is;
+}
+
 static int anyOpen(Ice_CommunicatorPtr ic) {
     int c;
     for (c = 0; c < ICE_CONNECTIONS; ++c)
-        if (Ice_connectionState(ic, c) != ICE_FREE)
+        if (isOpen(ic, c))
             return 1;
     return 0;
 }
@@ -100,14 +108,14 @@ void Ice_Communicator_destroy(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     Ice_Int left = timeoutMs;
     int c;
     for (c = 0; c < ICE_CONNECTIONS; ++c)
-        if (Ice_connectionState(ic, c) != ICE_FREE)
+        if (isOpen(ic, c))
             (void)Ice_sendPlain(ic, c, ICE_CLOSE);
     while (anyOpen(ic) && left > 0) {
         (void)Ice_Communicator_poll(ic, left);
         left = timeoutMs - (Ice_Int)(Ice_nowMs(ic) - begin);
     }
     for (c = 0; c < ICE_CONNECTIONS; ++c)
-        if (Ice_connectionState(ic, c) != ICE_FREE) {
+        if (isOpen(ic, c)) {
             ic->endpoint->close(ic->endpointContext, c);
             Ice_lose(ic, c, ICE_CONNECTION_LOST);
         }

@@ -32,7 +32,7 @@ Ice_Status Ice_sendPlain(Ice_CommunicatorPtr ic, int connection, Ice_Byte type) 
     return status;
 }
 
-void Ice_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_Byte state) {
+void Ice_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_Int state) {
     Ice_Connection* c = &ic->connections[connection];
     c->state = state;
     if (ICEC_ASYNC) {
@@ -40,14 +40,6 @@ void Ice_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_Byte state) 
         if (++c->generation == 0)
             c->generation = 1;
     }
-}
-
-int Ice_connectionState(Ice_CommunicatorPtr ic, int connection) {
-    int state;
-    Ice_lock(ic, ICE_LOCK_STATE);
-    state = ic->connections[connection].state;
-    Ice_unlock(ic, ICE_LOCK_STATE);
-    return state;
 }
 
 void Ice_lose(Ice_CommunicatorPtr ic, int connection, Ice_Status status) {
@@ -69,20 +61,22 @@ void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection) {
 /* ICE_OK, or why the connection is to be closed; what is malformed loses it. */
 static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_Byte* in,
                               Ice_Int size) {
-    Ice_InputStream is;
+    Ice_InputStream own;
+    /* Where no reply is copied, it is read from where its call has it. */
+    Ice_InputStreamPtr is = ICEC_COPY_REPLIES || ICE_CALLS > 1 ? &own : &ic->calls[0].is;
     Ice_Int type;
-    Ice_InputStream_init(&is, in, size);
-    is.communicator = ic;
+    Ice_InputStream_init(is, in, size);
+    is->communicator = ic;
     if (size < ICE_HEADER || memcmp(in, Ice_head, ICE_TYPE_AT) != 0)
         return ICE_CONNECTION_LOST;
-    is.position = ICE_TYPE_AT;
-    type = Ice_InputStream_readShort(&is) & 0xFEFF; /* and compression: 0 or 1 is none */
-    if (Ice_InputStream_readInt(&is) != size)
+    is->position = ICE_TYPE_AT;
+    type = Ice_InputStream_readShort(is) & 0xFEFF; /* and compression: 0 or 1 is none */
+    if (Ice_InputStream_readInt(is) != size)
         return ICE_CONNECTION_LOST;
     if (type == ICE_REQUEST)
-        return Ice_dispatchRequest(ic, connection, &is);
+        return Ice_dispatchRequest(ic, connection, is);
     if (type == ICE_REPLY) {
-        Ice_takeReply(ic, connection, &is);
+        Ice_takeReply(ic, connection, is);
     } else if (type == ICE_VALIDATE) {
         Ice_lock(ic, ICE_LOCK_STATE);
         ic->connections[connection].state = ICE_DONE;
@@ -92,7 +86,7 @@ static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_
     } else if (type == ICE_CLOSE) {
         return ICE_CONNECTION_CLOSED;
     } else if (ICEC_BATCH && type == ICE_BATCH) {
-        return Ice_dispatchBatch(ic, connection, &is);
+        return Ice_dispatchBatch(ic, connection, is);
     } else {
         /* What is compressed cannot be answered; this says that it was not executed. */
         if (ICEC_DETAILS && type > 0xFF)
@@ -168,20 +162,21 @@ Ice_Status Ice_receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     return status;
 }
 
-static int isWaiting(Ice_CommunicatorPtr ic, const volatile Ice_Byte* state) {
-    int is;
+static Ice_Int stateOf(Ice_CommunicatorPtr ic, const volatile Ice_Int* state) {
+    Ice_Int now;
     Ice_lock(ic, ICE_LOCK_STATE);
-    is = *state == ICE_WAITING;
+    now = *state;
     Ice_unlock(ic, ICE_LOCK_STATE);
-    return is;
+    return now;
 }
 
-Ice_Status Ice_await(Ice_CommunicatorPtr ic, const volatile Ice_Byte* state, int slot,
+Ice_Status Ice_await(Ice_CommunicatorPtr ic, const volatile Ice_Int* state, int slot,
                      Ice_Int timeoutMs) {
     U32 begin = Ice_nowMs(ic);
     Ice_Status status = ICE_OK;
+    Ice_Int end;
     int leads = 0;
-    while (isWaiting(ic, state)) {
+    while (stateOf(ic, state) == ICE_WAITING) {
         Ice_Int left = timeoutMs - (Ice_Int)(Ice_nowMs(ic) - begin);
         status = ICE_TIMEOUT;
         if (left <= 0)
@@ -196,5 +191,6 @@ Ice_Status Ice_await(Ice_CommunicatorPtr ic, const volatile Ice_Byte* state, int
     }
     if (ICEC_TASKS && leads)
         Ice_giveRole(ic); /* the next one takes over */
-    return isWaiting(ic, state) ? status : ICE_OK;
+    end = stateOf(ic, state);
+    return end == ICE_WAITING ? status : end == ICE_FREE ? ICE_CONNECTION_LOST : ICE_OK;
 }

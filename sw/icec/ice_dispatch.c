@@ -4,13 +4,6 @@
  */
 #include "ice_private.h"
 
-#define UNKNOWN_LOCAL 5
-
-/* Reply status on the wire by Ice_Status: 0 results, 1 user exception, 2..4 who or what does not
- * exist, 5..7 unknown local, user and other exception. */
-static const Ice_Byte codes[] = {
-    0, 2, 3, 4, 1, 7, UNKNOWN_LOCAL, 7, 7, 7, 7, UNKNOWN_LOCAL, UNKNOWN_LOCAL, 6, 7, 7, 7, 7};
-
 /* Where there are only names. */
 static Ice_ObjectPtr findName(Ice_CommunicatorPtr ic, Ice_Current* current) {
     Ice_ObjectAdapterPtr adapter;
@@ -82,37 +75,6 @@ static Ice_Status run(Ice_ObjectPtr servant, const Ice_Current* current, Ice_Inp
     return ICE_OK;
 }
 
-static void finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte* who,
-                        Ice_Int whoSize) {
-    Ice_Int end = os->size;
-    Ice_Byte code = codes[os->failed ? ICE_MARSHAL : status];
-    if (ICEC_ASYNC && code >= 2 && code <= 4 && whoSize == 0)
-        code = 7;
-    os->failed = 0;
-    os->size = 0;
-    Ice_beginMessage(os, ICE_REPLY);
-    Ice_OutputStream_writeInt(os, id);
-    Ice_OutputStream_writeByte(os, code);
-    if (code <= 1) {
-        (void)Ice_beginEncapsulation(os);
-        os->size = end;
-        Ice_endEncapsulation(os, ICE_REPLY_BODY);
-    } else if (code <= 4) {
-        Ice_OutputStream_writeBlob(os, who, whoSize);
-    } else if (ICEC_DETAILS) {
-        Ice_OutputStream_writeText(os, Ice_Status_text(status));
-    } else {
-        Ice_OutputStream_writeByte(os, 0);
-    }
-    Ice_endMessage(os);
-}
-
-void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte* who,
-                     Ice_Int whoSize) {
-    if (ICEC_ASYNC) /* else nobody does this outside of a dispatch */
-        finishReply(os, id, status, who, whoSize);
-}
-
 void Ice_giveArena(Ice_CommunicatorPtr ic, Ice_InputStreamPtr is) {
     is->arena = ic->arena;
     is->arenaSize = ICE_ARENA_BYTES / 4;
@@ -153,8 +115,7 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
     if (ICEC_CONTEXTS)
         current.context = *is;
     pairs = Ice_InputStream_readSize(is);
-    Ice_skipStrings(is, pairs);
-    Ice_skipStrings(is, pairs);
+    Ice_skipStrings(is, (Ice_Int)(2U * (U32)pairs)); /* more than there can be are malformed */
     status = Ice_enterEncapsulation(is);
     if (status == ICE_MARSHAL)
         return ICE_CONNECTION_LOST;
@@ -190,7 +151,7 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
         is->failed = 0;
     }
     if (id != 0) {
-        finishReply(&os, id, status, is->data + who, whoSize);
+        Ice_finishReply(&os, id, status, is->data + who, whoSize);
         Ice_lock(ic, ICE_LOCK_SEND);
         (void)Ice_send(ic, connection, &os);
         Ice_unlock(ic, ICE_LOCK_SEND);

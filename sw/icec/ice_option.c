@@ -4,6 +4,8 @@
  */
 #include "ice_seam.h"
 
+#include <stdlib.h>
+
 /* Where nothing is quoted. */
 static const char* findPlain(const char* options, char letter) {
     while (options && *options) {
@@ -42,19 +44,7 @@ U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     Ice_Int size;
     const char* at =
         ICEC_DETAILS ? Ice_findOption(options, letter, &size) : findPlain(options, letter);
-    U32 value = 0, base = 10, digit;
     if (!at)
         return otherwise;
-    if (at[0] == '0' && at[1] == 'x') {
-        base = 16;
-        at += 2;
-    }
-    for (;;) {
-        digit = (U32)(U8)*at++ - (U32)'0';
-        if (digit > 9) /* a letter of either case, or what ends the number */
-            digit = ((digit + (U32)'0') | 32U) - (U32)'a' + 10U;
-        if (digit >= base)
-            return value;
-        value = value * base + digit;
-    }
+    return (U32)strtoul(at, 0, at[0] == '0' && at[1] == 'x' ? 16 : 10);
 }

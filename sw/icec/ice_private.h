@@ -45,17 +45,16 @@ void Ice_skipStrings(Ice_InputStreamPtr is, Ice_Int count);
 Ice_Status Ice_sendPlain(Ice_CommunicatorPtr ic, int connection, Ice_Byte type);
 /* A connection that cannot send is lost. Under ICE_LOCK_SEND. */
 Ice_Status Ice_send(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os);
-int Ice_connectionState(Ice_CommunicatorPtr ic, int connection);
 void Ice_lose(Ice_CommunicatorPtr ic, int connection, Ice_Status status);
 U32 Ice_nowMs(Ice_CommunicatorPtr ic);
 /* Receives, or lets another task receive, until `state` is no more ICE_WAITING; from within an
  * operation too. ICE_TIMEOUT, ICE_LIMIT. */
-Ice_Status Ice_await(Ice_CommunicatorPtr ic, const volatile Ice_Byte* state, int slot,
+Ice_Status Ice_await(Ice_CommunicatorPtr ic, const volatile Ice_Int* state, int slot,
                      Ice_Int timeoutMs);
 /* Handles at most one event; for the task that has the role of the receiver. */
 Ice_Status Ice_receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs);
 /* A connection has come to be. Under the state lock. */
-void Ice_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_Byte state);
+void Ice_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_Int state);
 /* The communicator's arena behind what outer operations use of it. */
 void Ice_giveArena(Ice_CommunicatorPtr ic, Ice_InputStreamPtr is);
 

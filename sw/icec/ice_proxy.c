@@ -17,7 +17,8 @@ void Ice_ObjectPrx_init(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic) {
     prx->timeoutMs = DEFAULT_TIMEOUT_MS;
     prx->minor = 1;
     prx->endpointsSize = 2; /* no endpoints, no adapter's id */
-    prx->call = prx->connection = -1;
+    if (ICE_CALLS > 1)
+        prx->call = prx->connection = -1;
 }
 
 Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* name,
@@ -38,13 +39,13 @@ Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* nam
 }
 
 const char* Ice_ObjectPrx_setName(Ice_ObjectPrxPtr prx, const char* text) {
-    Ice_Byte* to = prx->identity + 1;
-    while (*text && *text != ' ' && *text != ':' && to < prx->identity + ICE_IDENTITY_MAX - 2)
-        *to++ = (Ice_Byte)*text++;
-    prx->identity[0] = (Ice_Byte)(to - prx->identity - 1);
-    to[0] = to[1] = 0; /* no category, no facet */
-    prx->identitySize = (Ice_Byte)(prx->identity[0] + 3);
-    return prx->identity[0] && (*text == 0 || *text == ' ' || *text == ':') ? text : 0;
+    size_t size = strcspn(text, " :");
+    if (size - 1U > ICE_IDENTITY_MAX - 4U)
+        return 0;
+    prx->identity[0] = (Ice_Byte)size;
+    memcpy(prx->identity + 1, text, size); /* behind it are 0: no category, no facet */
+    prx->identitySize = (Ice_Byte)(size + 3U);
+    return text + size;
 }
 
 Ice_Status Ice_ObjectPrx_addEndpoint(Ice_ObjectPrxPtr prx, const char* options) {
@@ -88,12 +89,9 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx)
     if (ICEC_ASYNC && prx->generation)
         os->failed = 1; /* nobody else has this connection */
     Ice_OutputStream_writeBlob(os, prx->identity, prx->identitySize);
-    Ice_OutputStream_writeByte(os, prx->mode);
-    Ice_OutputStream_writeByte(os, prx->secure);
-    if (os->minor != 0) { /* protocol 1.0, the encoding */
-        Ice_OutputStream_writeShort(os, 1);
-        Ice_OutputStream_writeShort(os, (Ice_Short)(1 | prx->minor << 8));
-    }
+    Ice_OutputStream_writeShort(os, (Ice_Short)(prx->mode | prx->secure << 8));
+    if (os->minor != 0) /* protocol 1.0, the encoding */
+        Ice_OutputStream_writeInt(os, 0x00010001 | prx->minor << 24);
     Ice_OutputStream_writeBlob(os, prx->endpoints, prx->endpointsSize);
 }
 

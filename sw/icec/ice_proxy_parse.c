@@ -12,10 +12,10 @@ static Ice_Status parseShort(const char* text, Ice_ObjectPrxPtr prx) {
     text = Ice_ObjectPrx_setName(prx, text);
     if (!text)
         return ICE_LIMIT;
-    for (; *text && *text != ':'; ++text)
-        if (text[0] == '-' && text[1] == 'o')
-            prx->mode = ICE_ONEWAY;
-    text = Ice_optionsOf(prx->communicator, *text ? text + 1 : text);
+    if (strncmp(text, " -o", 3) == 0)
+        prx->mode = ICE_ONEWAY;
+    text = strchr(text, ':');
+    text = text ? Ice_optionsOf(prx->communicator, text + 1) : 0;
     return text ? Ice_ObjectPrx_addEndpoint(prx, text) : ICE_NO_ENDPOINT;
 }
 

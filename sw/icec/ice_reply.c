@@ -1,8 +1,36 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_reply: answers that come later than their operation's end.
+ * ice_reply: replies, and those that come later than their operation's end.
  */
 #include "ice_private.h"
+
+void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte* who,
+                     Ice_Int whoSize) {
+    Ice_Int end = os->size;
+    Ice_Status code = os->failed ? ICE_MARSHAL : status;
+    if (code > ICE_UNKNOWN_EXCEPTION)
+        code = code <= ICE_PROTOCOL ? ICE_UNKNOWN_LOCAL_EXCEPTION : ICE_UNKNOWN_EXCEPTION;
+    if (ICEC_ASYNC && code >= ICE_OBJECT_NOT_EXIST && code <= ICE_OPERATION_NOT_EXIST &&
+        whoSize == 0)
+        code = ICE_UNKNOWN_EXCEPTION;
+    os->failed = 0;
+    os->size = 0;
+    Ice_beginMessage(os, ICE_REPLY);
+    Ice_OutputStream_writeInt(os, id);
+    Ice_OutputStream_writeByte(os, (Ice_Byte)code);
+    if (code <= ICE_USER_EXCEPTION) {
+        (void)Ice_beginEncapsulation(os);
+        os->size = end;
+        Ice_endEncapsulation(os, ICE_REPLY_BODY);
+    } else if (code <= ICE_OPERATION_NOT_EXIST) {
+        Ice_OutputStream_writeBlob(os, who, whoSize);
+    } else if (ICEC_DETAILS) {
+        Ice_OutputStream_writeText(os, Ice_Status_text(status));
+    } else {
+        Ice_OutputStream_writeByte(os, 0);
+    }
+    Ice_endMessage(os);
+}
 
 int Ice_countPending(Ice_CommunicatorPtr ic, int connection, U16 generation, int change) {
     Ice_Connection* c = &ic->connections[connection];

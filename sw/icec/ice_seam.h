@@ -8,24 +8,26 @@
 #include "ice_stream.h"
 
 typedef enum Ice_Status {
+    /* These eight have the numbers that replies have. */
     ICE_OK = 0,
+    ICE_USER_EXCEPTION, /* the reply is one; its body is in the stream */
     ICE_OBJECT_NOT_EXIST,
     ICE_FACET_NOT_EXIST,
     ICE_OPERATION_NOT_EXIST,
-    ICE_USER_EXCEPTION,    /* the reply is one; its body is in the stream */
-    ICE_UNKNOWN_EXCEPTION, /* the peer failed otherwise */
-    ICE_MARSHAL,           /* a message is not what it should be, or does not fit */
-    ICE_TIMEOUT,
-    ICE_CONNECTION_LOST, /* a call under way may or may not have been executed */
-    ICE_NO_ENDPOINT,     /* unknown transport, or a proxy without endpoints */
-    ICE_LIMIT,           /* one of the constants of ice_config.h */
-    ICE_PROTOCOL,        /* not IceP 1.0, compressed, or an encoding other than 1.0 and 1.1 */
     ICE_UNKNOWN_LOCAL_EXCEPTION, /* the peer's run time failed */
     ICE_UNKNOWN_USER_EXCEPTION,  /* an exception that the operation does not declare */
-    ICE_CONNECTION_CLOSED,       /* the peer closed in good order: the call was not executed */
-    ICE_PARSE,                   /* a proxy, identity or endpoint string that is none */
-    ICE_TWOWAY_ONLY,             /* results are wanted through a oneway or batch proxy */
-    ICE_LATER                    /* from a servant: the reply comes later (Ice_Reply) */
+    ICE_UNKNOWN_EXCEPTION,       /* the peer failed otherwise */
+    /* The next two are local exceptions to the peer, the others unknown ones. */
+    ICE_MARSHAL,  /* a message is not what it should be, or does not fit */
+    ICE_PROTOCOL, /* not IceP 1.0, compressed, or an encoding other than 1.0 and 1.1 */
+    ICE_TIMEOUT,
+    ICE_CONNECTION_LOST,   /* a call under way may or may not have been executed */
+    ICE_NO_ENDPOINT,       /* unknown transport, or a proxy without endpoints */
+    ICE_LIMIT,             /* one of the constants of ice_config.h */
+    ICE_CONNECTION_CLOSED, /* the peer closed in good order: the call was not executed */
+    ICE_PARSE,             /* a proxy, identity or endpoint string that is none */
+    ICE_TWOWAY_ONLY,       /* results are wanted through a oneway or batch proxy */
+    ICE_LATER              /* from a servant: the reply comes later (Ice_Reply) */
 } Ice_Status;
 
 const char* Ice_Status_text(Ice_Status status);

@@ -24,8 +24,10 @@ int Ice_String_equals(Ice_String a, const char* terminated) {
 }
 
 int Ice_String_is(const Ice_String* a, const char* terminated) {
-    size_t size = strlen(terminated);
-    return (size_t)a->size == size && (size == 0 || memcmp(a->data, terminated, size) == 0);
+    Ice_String b;
+    b.data = terminated;
+    b.size = (Ice_Int)strlen(terminated);
+    return Ice_String_same(a, &b);
 }
 
 void Ice_OutputStream_init(Ice_OutputStreamPtr os, Ice_Byte* data, Ice_Int capacity) {
@@ -110,7 +112,7 @@ void Ice_OutputStream_writeText(Ice_OutputStreamPtr os, const char* terminated) 
     Ice_OutputStream_writeString(os, text);
 }
 
-void Ice_OutputStream_writeEnum(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int largest) {
+void(Ice_OutputStream_writeEnum)(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int largest) {
     if (os->minor != 0)
         Ice_OutputStream_writeSize(os, v);
     else
@@ -126,7 +128,7 @@ void Ice_InputStream_init(Ice_InputStreamPtr is, const Ice_Byte* data, Ice_Int s
 
 const Ice_Byte* Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size) {
     const Ice_Byte* at = is->data + is->position;
-    if (is->failed || size < 0 || size > is->size - is->position) {
+    if (is->failed || (U32)size > (U32)(is->size - is->position)) { /* a negative one, too */
         is->failed = 1;
         return 0;
     }

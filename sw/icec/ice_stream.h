@@ -79,6 +79,10 @@ void Ice_OutputStream_writeString(Ice_OutputStreamPtr os, Ice_String v);
 void Ice_OutputStream_writeText(Ice_OutputStreamPtr os, const char* terminated);
 /* `largest`: the greatest enumerator, which chooses the width in encoding 1.0. */
 void Ice_OutputStream_writeEnum(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int largest);
+/* A small one is a byte in both encodings. */
+#define Ice_OutputStream_writeEnum(os, v, largest)                   \
+    ((largest) < 127 ? Ice_OutputStream_writeByte(os, (Ice_Byte)(v)) \
+                     : (Ice_OutputStream_writeEnum)(os, v, largest))
 /* A size of 4 bytes that does not count itself, filled in by endSize. */
 Ice_Int Ice_OutputStream_startSize(Ice_OutputStreamPtr os);
 void Ice_OutputStream_endSize(Ice_OutputStreamPtr os, Ice_Int begin);

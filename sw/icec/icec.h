@@ -208,8 +208,8 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
 /* ---- communicator ---- */
 
 typedef struct Ice_Call {
-    Ice_Byte state;
-    Ice_Byte status; /* Ice_Status, once it is done */
+    Ice_Int state;
+    Ice_Int status; /* Ice_Status, once it is done */
     Ice_Int id;
     int connection;
     U32 begunMs;
@@ -224,7 +224,7 @@ typedef struct Ice_Call {
 } Ice_Call;
 
 typedef struct Ice_Connection {
-    Ice_Byte state;   /* 0 closed, 1 waits for the peer's first message, 2 open */
+    Ice_Int state;    /* 0 closed, 1 waits for the peer's first message, 2 open */
     Ice_Byte pending; /* operations under way, or answered later */
     U16 generation;   /* counts the connections that had this number; never 0 */
     U32 spokeMs;      /* last sign of life */

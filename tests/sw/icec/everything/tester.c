@@ -122,6 +122,14 @@ static void fillWorse(Everything_Worse *worse) {
     worse->how = 7;
 }
 
+/* By `how` - 11, as the peers count. */
+static const Ice_Status failures[] = {
+    ICE_OBJECT_NOT_EXIST, ICE_FACET_NOT_EXIST,    ICE_OPERATION_NOT_EXIST,
+    ICE_USER_EXCEPTION,   ICE_UNKNOWN_EXCEPTION,  ICE_MARSHAL,
+    ICE_TIMEOUT,          ICE_CONNECTION_LOST,    ICE_NO_ENDPOINT,
+    ICE_LIMIT,            ICE_PROTOCOL,           ICE_UNKNOWN_LOCAL_EXCEPTION,
+    ICE_UNKNOWN_USER_EXCEPTION};
+
 Ice_Status Everything_Tester_fail(Everything_TesterPtr self, Ice_Int how,
                                   Everything_Tester_fail_Exception *ex,
                                   const Ice_Current *current) {
@@ -149,7 +157,7 @@ Ice_Status Everything_Tester_fail(Everything_TesterPtr self, Ice_Int how,
         ex->u.Unrelated.hint = Ice_String_from("hint");
         return ICE_USER_EXCEPTION;
     default:
-        return (Ice_Status)(how - 10);
+        return how > 10 && how < 24 ? failures[how - 11] : ICE_UNKNOWN_EXCEPTION;
     }
 }
 

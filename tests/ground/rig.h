@@ -72,6 +72,10 @@ public:
     std::vector<std::pair<int, Bytes>> received;
     std::vector<std::pair<int, int>> opened; // channel, 1 open, 0 close
     bool echo = false, refuse = false, uavRuns = true;
+    // What the UAV does instead of keeping what comes; called in the rig's thread, locked.
+    std::function<int(int channel, const U8* data, U32 size)> take;
+    std::function<void(int channel, bool isOpen)> opening;
+    std::function<void()> step;
 
 private:
     static Rig& self(void* c) { return *static_cast<Rig*>(c); }
@@ -82,6 +86,8 @@ private:
     static U32 onRandom(void* c) { return self(c).random_.next(); }
     static int onMessage(void* c, int channel, const U8* data, U32 size) {
         Rig& r = self(c);
+        if (r.take)
+            return r.take(channel, data, size);
         if (r.refuse ||
             (r.echo && Link_send(r.link(), channel, data, size, 0, r.us()) == LINK_FULL))
             return 1;
@@ -89,7 +95,10 @@ private:
         return 0;
     }
     static void onChannel(void* c, int channel, int isOpen) {
-        self(c).opened.emplace_back(channel, isOpen);
+        if (self(c).opening)
+            self(c).opening(channel, isOpen != 0);
+        else
+            self(c).opened.emplace_back(channel, isOpen);
     }
     static void onState(void*, Link_State) {}
 
@@ -105,6 +114,8 @@ private:
                 if (uavRuns) {
                     Link_receive(link(), line_.received.data(),
                                  static_cast<U32>(line_.received.size()), 0, us());
+                    if (step)
+                        step();
                     Link_poll(link(), us());
                 }
                 line_.received.clear();

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+//
+// ice_test: stock Ice over the radio: many threads and proxies, callbacks, long messages, many
+// calls.
+
+#include "world.h"
+#include <cstdlib>
+#include <future>
+#include <gtest/gtest.h>
+
+namespace {
+
+class StockIce : public ::testing::Test {
+protected:
+    void TearDown() override { EXPECT_EQ(world_.echo->twice(), 0) << "calls executed twice"; }
+    World world_{testSeed()};
+};
+
+TEST_F(StockIce, SeveralProxiesAndThreadsCallAtOnce) {
+    Ice::CommunicatorHolder ic(world_.client());
+    std::atomic<int> id{0}, wrong{0};
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 9; ++t)
+        threads.emplace_back([&, t] {
+            try {
+                auto echo = world_.proxy(ic.communicator(), std::to_string(t % 3));
+                for (int i = 0; i < 8; ++i) {
+                    int mine = ++id;
+                    auto data = World::pattern(mine, static_cast<size_t>(20 + 40 * t));
+                    wrong += echo->repeat(mine, data) != data;
+                }
+            } catch (const std::exception& e) {
+                ADD_FAILURE() << "thread " << t << ": " << e.what();
+            }
+        });
+    for (auto& thread : threads)
+        thread.join();
+    EXPECT_EQ(id, 72);
+    EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(StockIce, AThousandCallsInARow) {
+    Ice::CommunicatorHolder ic(world_.client());
+    auto echo = world_.proxy(ic.communicator());
+    for (int i = 0; i < 1000; ++i)
+        ASSERT_EQ(echo->repeat(i, World::pattern(i, 4)), World::pattern(i, 4)) << "call " << i;
+}
+
+TEST_F(StockIce, MessagesUpToTheLimitPassAndALongerOneIsRefusedInTheCaller) {
+    Ice::CommunicatorHolder ic(world_.client());
+    auto echo = world_.proxy(ic.communicator());
+    // Header 14, id 4, identity "echo" 6, facet 1, operation "repeat" 7, mode 1, context 1,
+    // encapsulation 6, int 4, size of the sequence 5.
+    const size_t most = LINK_MAX_MESSAGE - 49;
+    for (size_t size : {most - 1, most})
+        EXPECT_EQ(echo->repeat(static_cast<int>(size), World::pattern(1, size)),
+                  World::pattern(1, size));
+    EXPECT_THROW(echo->repeat(1, World::pattern(1, most + 1)), Ice::MemoryLimitException);
+    EXPECT_EQ(echo->repeat(2, World::pattern(2, 10)), World::pattern(2, 10)) << "and it goes on";
+}
+
+TEST_F(StockIce, TheUavCallsBackOnTheSameConnectionWhileItIsCalled) {
+    Ice::CommunicatorHolder ic(world_.client());
+    auto adapter = ic->createObjectAdapter("");
+    adapter->add(std::make_shared<ListenerServant>(), Ice::stringToIdentity("listener"));
+    adapter->activate();
+    auto echo = world_.proxy(ic.communicator());
+    echo->ice_getConnection()->setAdapter(adapter);
+    auto other = std::async(std::launch::async, [&] {
+        for (int i = 1; i <= 10; ++i)
+            EXPECT_EQ(echo->repeat(i, World::pattern(i, 300)), World::pattern(i, 300));
+    });
+    EXPECT_EQ(echo->callBack(20), 380);
+    other.get();
+}
+
+TEST_F(StockIce, TheUavCallsAnObjectAdapterOfTheGroundOnItsOwnConnection) {
+    Ice::CommunicatorHolder ic(world_.client());
+    auto adapter =
+        ic->createObjectAdapterWithEndpoints("Station", "xbee-at -d " + world_.rig.pty.path());
+    adapter->add(std::make_shared<ListenerServant>(), Ice::stringToIdentity("station"));
+    adapter->activate();
+    auto echo = world_.proxy(ic.communicator());
+    EXPECT_EQ(echo->callStation(10), 90);
+    world_.relay->reboot(); // the UAV starts again, and calls again
+    for (int tries = 0;; ++tries) {
+        try {
+            EXPECT_EQ(echo->callStation(10), 90);
+            break;
+        } catch (const Ice::Exception& e) { // the call under way when it went
+            ASSERT_LT(tries, 100) << e.what();
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        }
+    }
+}
+
+TEST_F(StockIce, OnewaysArriveInNumberAndTwoProgramsShareTheModem) {
+    Ice::CommunicatorHolder first(world_.client()), second(world_.client());
+    auto a = world_.proxy(first.communicator()), b = world_.proxy(second.communicator(), "b");
+    for (int i = 0; i < 50; ++i) {
+        a->ice_oneway()->note(i);
+        b->ice_oneway()->note(1000 + i);
+    }
+    while (a->noted() + b->noted() < 200)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_EQ(a->noted(), 100);
+}
+
+// The same by Python, which loads the plugin's other library.
+TEST_F(StockIce, PythonWithThreadsAndCallbacks) {
+    std::string command = "/usr/bin/python3 '" CLIENT "' '" SLICE "' '" PLUGIN_FOLDER "' '" +
+                          world_.endpoint() + "' " + std::to_string(Rig::guardMs);
+    EXPECT_EQ(std::system(command.c_str()), 0);
+}
+
+} // namespace

@@ -50,7 +50,7 @@ run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground st
 	    --port "$(PORT)" $(if $(LIVE),--live 1) $(if $(UCOS2),--firmware "$(BUILD)/firmware/uav_ucos2.elf")
 
 # What the sanitized build covers: the firmware's layers and their peers.
-SANITIZED := test_os test_os_cases test_link test_icec icec_server icec_client everything_cpp_client everything_cpp_server everything_server \
+SANITIZED := test_os test_os_cases test_link test_engine test_icec icec_server icec_client everything_cpp_client everything_cpp_server everything_server \
     everything_client everything_strings ice_relay
 # The missions run with stock Ice and ptys in real time; where other work takes the processor from the simulator
 # they may fail, so they have a second go.
@@ -65,7 +65,7 @@ else
 	    -DROOMS="bus;slice;sw;hdl;ip;testbench;tests" >/dev/null
 	@ninja -C build/sanitized -j $(JOBS) $(SANITIZED)
 	@SEED=$(SEED) ctest --test-dir build/sanitized -j $(JOBS) --output-on-failure --no-tests=error \
-	    -R '^(test_os[.]|test_os_cases|test_link|test_icec|interop)'
+	    -R '^(test_os[.]|test_os_cases|test_link|test_engine[.]Engine[.]|test_icec|interop)'
 endif
 
 mutants: $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect its test to fail (BLOCK=bus for one block)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Stock Ice for Python over the radio: threads, proxies, callbacks. Usage: client.py SLICE PLUGINS ENDPOINT GUARD"""
+"""Stock Ice for Python over the radio: threads, proxies, callbacks. Usage: client.py SLICE PLUGINS ENDPOINT GUARD (PLUGINS '': none)"""
 
 import sys
 import threading
@@ -33,11 +33,11 @@ def work(proxy, first, errors):
 
 def main():
     options = [
-        f"--Ice.Plugin.XBeeAT={plugins}/xbeeat:createXBeeAT",
-        f"--XBeeAT.Guard={guard}",
         "--Ice.Default.InvocationTimeout=60000",
         "--Ice.ThreadPool.Client.Size=4",
     ]
+    if plugins:
+        options += [f"--Ice.Plugin.XBeeAT={plugins}/xbeeat:createXBeeAT", f"--XBeeAT.Guard={guard}"]
     errors = []
     with Ice.initialize(options) as communicator:
         proxy = RadioTest.EchoPrx.uncheckedCast(communicator.stringToProxy("echo:" + endpoint))
@@ -59,8 +59,8 @@ def main():
         try:
             proxy.repeat(9999, bytes(9000))
             errors.append("9000 bytes passed")
-        except Ice.MemoryLimitException:
-            pass
+        except (Ice.MemoryLimitException, Ice.ConnectionLostException):
+            pass  # by the plugin; by the gateway
     for error in errors:
         print("client.py:", error, file=sys.stderr)
     return 1 if errors else 0

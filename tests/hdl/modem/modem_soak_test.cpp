@@ -116,6 +116,8 @@ TEST_F(ModemSoak, NoiseIsReceivedAsItIsOrDroppedWhole) {
         ASSERT_EQ(memory_.byte(rxRing - 1 - i), 0) << "below the ring";
         ASSERT_EQ(memory_.byte(rxRing + 2048 + i), 0) << "above the ring";
     }
+    std::cout << "modem controller: " << bytes << " bytes of noise into its UART, " << packets_
+              << " packets came out, each a run of what went in; it goes on" << std::endl;
     noise_ = false;
     plain_.send(frame(50, 9), now());
     runMs(10);

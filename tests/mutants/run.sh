@@ -6,7 +6,7 @@
 #
 # A patch says the bug in its first line, `Caught-by: <ctest name>` in a line of its own, and is then a
 # diff for `patch -p1`. Exit status 1: a bug survived, a patch no longer applies, or a mutant does not build.
-# Leaves build/mutants/results.tsv: patch, result, test, seconds.
+# Leaves build/mutants/results.tsv (patch, result, test, seconds) and summary.json (the score, by block).
 set -eu
 block='*' jobs=$(nproc)
 while [ $# -gt 0 ]; do
@@ -27,6 +27,8 @@ list=$(ls tests/mutants/$block/*.patch ip/$block/mutants/*.patch 2>/dev/null || 
 mkdir -p build/mutants
 
 caught_by() { sed -n 's/^Caught-by: *//p' "$1" | head -1; }
+
+name_of() { echo "$1" | sed 's,^tests/mutants/,,; s,^ip/\(.*\)/mutants/,\1/,; s/[.]patch$//'; } # bus/wrapper_event_lost
 
 # a copy of the tree for each worker, with its own build folder
 prepare() {
@@ -61,7 +63,7 @@ try() { # test log
 one() { # patch, in the worker's copy
     patch=$1
     test=$(caught_by "$patch")
-    name=$(echo "$patch" | sed 's,^tests/mutants/,,; s,^ip/\(.*\)/mutants/,\1/,; s/[.]patch$//')
+    name=$(name_of "$patch")
     start=$(date +%s)
     log=$top/build/mutants/$(echo "$name" | tr / -).log
     cd "$top/build/mutants/$SLOT"
@@ -94,7 +96,13 @@ one)
     ;;
 esac
 
-rm -f build/mutants/result.*
+# Of other blocks stays what an earlier run found, unless the bug is gone.
+if [ "$block" = '*' ]; then rm -f build/mutants/result.*; else rm -f "build/mutants/result.$block-"*; fi
+for result in build/mutants/result.*; do
+    [ -e "$result" ] || continue
+    name=$(cut -f1 "$result")
+    [ -e "tests/mutants/$name.patch" ] || [ -e "ip/${name%%/*}/mutants/${name#*/}.patch" ] || rm -f "$result"
+done
 workers=$jobs
 worker=0
 while [ "$worker" -lt "$workers" ]; do
@@ -117,7 +125,18 @@ cd "$top"
 echo "$list" | MUTANT_STEP=one xargs -P "$workers" --process-slot-var=SLOT -I '{}' \
     env MUTANT_PATCH='{}' sh tests/mutants/run.sh
 cat build/mutants/result.* >build/mutants/results.tsv
-total=$(wc -l <build/mutants/results.tsv)
-caught=$(cut -f2 build/mutants/results.tsv | grep -c '^caught$' || true)
-echo "mutants: $caught of $total caught (build/mutants/results.tsv)"
-[ "$caught" -eq "$total" ]
+# The score of all blocks that were run, for reports; the exit status is that of this run.
+awk -F '\t' '{ split($1, path, "/"); block = path[1]; all[block]++; total++ }
+    $2 == "caught" { good[block]++; caught++ }
+    $2 != "caught" { bad = bad (bad ? ", " : "") "\"" $1 "\"" }
+    END { printf "{\"caught\": %d, \"total\": %d, \"score\": %.1f, \"not_caught\": [%s], \"blocks\": {", caught, total, 100 * caught / total, bad
+          for (block in all) printf "%s\"%s\": {\"caught\": %d, \"total\": %d}", separator, block, good[block], all[block], separator = ", "
+          print "}}" }' build/mutants/results.tsv >build/mutants/summary.json
+now=0 caught=0
+for patch in $list; do
+    name=$(name_of "$patch")
+    now=$((now + 1))
+    [ "$(cut -f2 "build/mutants/result.$(echo "$name" | tr / -)")" != caught ] || caught=$((caught + 1))
+done
+echo "mutants: $caught of $now caught (build/mutants/results.tsv, summary.json)"
+[ "$caught" -eq "$now" ]

@@ -120,6 +120,28 @@ page)
     has 'value 1 is not 7' dom.html
     hasNot 'src="http\|href="http' build/regress/report.html # offline
     ;;
+large) # more than this project has: the page stays small
+    cat >>tests/room/CMakeLists.txt <<'END'
+foreach(i RANGE 1 400)
+  add_test(NAME test_with_a_long_name.AndManyCases.Number/${i} COMMAND ${t} a.${i})
+endforeach()
+foreach(i RANGE 1 30)
+  add_test(NAME test_loud.Case${i} COMMAND sh -c "seq 1 20000; exit 1")
+endforeach()
+END
+    mkdir -p build/coverage build/mutants
+    awk 'BEGIN { printf "{\"total\": 97.1, \"toggles\": 95.2, \"files\": ["
+        for (f = 0; f < 300; f++) {
+            printf "%s{\"file\": \"hdl/block/some_module_%d.v\", \"percent\": 97, \"lines\": 200, \"gate\": 95, \"toggles\": 96, \"toggle_points\": 900, \"toggle_gate\": 95, \"why\": \"\", \"missed\": [", f ? "," : "", f
+            for (m = 0; m < 500; m++) printf "%s\"%d: some_signal_of_it[%d]\"", m ? "," : "", m, m
+            printf "]}" }
+        print "]}" }' >build/coverage/summary.json
+    awk 'BEGIN { for (i = 0; i < 400; i++) printf "block/some_seeded_bug_%d\tcaught\ttest_block.Case\t7\n", i }' >build/mutants/results.tsv
+    cmake build/main >/dev/null
+    run
+    has "404 passed, 32 failed"
+    [ "$(wc -c <build/regress/report.html)" -lt 2000000 ] || fail "the page has $(wc -c <build/regress/report.html) bytes"
+    ;;
 lights_*) . "$source/tests/testbench/regress/lights.sh" ;;
 *) fail "no such case" ;;
 esac

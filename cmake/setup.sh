@@ -26,7 +26,7 @@ libfmt-dev text formatting
 libcli11-dev command lines
 libcpp-httplib-dev serves the page of make run
 libpugixml-dev reads JUnit results
-libssl-dev AES of the modem's model
+libssl-dev AES of the modem model
 lcov coverage pages
 chromium opens the report pages in tests
 git finds what changed

@@ -1,10 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# new: name verilog|vhdl build-folder   Writes ip/<name>: interface, core, test. Or says what is wrong with the name.
+# new: name verilog|vhdl build-folder [file.ice]   Writes ip/<name>: interface, core, test; of the given interface, or of an
+# example. Or says what is wrong.
 set -eu
-usage='usage: make new-ip NAME=fir LANG=verilog|vhdl'
+usage='usage: make new-ip NAME=fir LANG=verilog|vhdl [ICE=file.ice]'
 case ${1:-} in -h | --help) echo "$usage" && exit 0 ;; esac
-name=${1:-} lang=${2:-} build=${3:-build/main}
+name=${1:-} lang=${2:-} build=${3:-build/main} ice=${4:-}
+case $ice in '' | /*) ;; *) ice=$PWD/$ice ;; esac
 cd "$(dirname "$0")/.."
 fail() { echo "new-ip: $*" >&2 && exit 1; }
 [ -n "$name" ] || fail "$usage"
@@ -30,11 +32,31 @@ taken=$(grep -rliE --include='*.v' --include='*.vhd' "^ *(module|entity) +${name
 [ -z "$taken" ] || fail "there is a module '$name' in $taken"
 type=$(echo "$name" | sed -E 's/(^|_)([a-z])/\U\2/g')
 folder=ip/$name
-mkdir "$folder"
-for file in ip/template/*.in "ip/template/$lang"/*.in; do
-    target=$(basename "$file" .in | sed "s/^NAME/$name/")
-    sed "s/@NAME@/$name/g; s/@TYPE@/$type/g; s/@MODULE@/Cores/g" "$file" >"$folder/$target"
-done
+fill() { # template, target
+    sed "s/@NAME@/$name/g; s/@TYPE@/$type/g; s/@MODULE@/Cores/g" "$1" >"$folder/$2"
+}
+if [ -n "$ice" ]; then
+    [ -f "$ice" ] || fail "there is no file '$ice'"
+    slice2c=$build/slice/slice2c
+    [ -x "$slice2c" ] || fail "there is no $slice2c: make build"
+    work=$(mktemp -d)
+    trap 'rm -rf "$work"' EXIT
+    cp "$ice" "$work/$name.ice"
+    "$slice2c" -I"$(dirname "$ice")" "$work/$name.ice" --output-dir "$work/c" --hw-regs "$work/regs" --hw-new-"$lang" "$work/new" ||
+        fail "$ice is not an interface in hardware (above)"
+    [ "$(ls "$work/regs")" = "$name.regs.json" ] ||
+        fail "$ice has the cores $(basename -s .regs.json "$work"/regs/* | tr '\n' ' '): NAME is that of the only one"
+    mkdir "$folder"
+    cp "$work/$name.ice" "$work"/new/* "$folder"
+    fill "ip/template/$lang/CMakeLists.txt.in" CMakeLists.txt
+    fill ip/template/README.md.in README.md
+    sed -i 's/^Adds an offset, and sums 1..count:/Answers every call with zeros:/' "$folder/README.md"
+else
+    mkdir "$folder"
+    for file in ip/template/*.in "ip/template/$lang"/*.in; do
+        fill "$file" "$(basename "$file" .in | sed "s/^NAME/$name/")"
+    done
+fi
 # A build folder notices the new one by itself; it is asked now, while the folder can be taken back.
 if [ -f "$build/build.ninja" ] && ! cmake "$build" >"$build/new-ip.log" 2>&1; then
     rm -r "$folder"
@@ -43,4 +65,4 @@ if [ -f "$build/build.ninja" ] && ! cmake "$build" >"$build/new-ip.log" 2>&1; th
     fail "the build does not take '$name' (above); nothing was changed"
 fi
 echo "$folder: $(ls "$folder" | tr '\n' ' ')"
-echo "Next: make ip-test IP=$name"
+echo "Next: make ip-test IP=$name; a line '$name' in ip/cores.list puts it into the chip"

@@ -1,14 +1,27 @@
 # SPDX-License-Identifier: MIT
 #
-# Cores: begin one, test one, take one away (docs/recipes.md).
+# Cores: begin one, test one, look at one, take one away (docs/recipes.md).
 IP ?=
+TEST ?=
+ICE ?=
+FORCE ?=
 
-new-ip: ## begin a core: NAME=fir LANG=verilog|vhdl writes ip/fir, which builds and passes its test
-	@ip/new.sh '$(NAME)' '$(LANG)' '$(BUILD)'
-.PHONY: new-ip
+new-ip: $(BUILD)/build.ninja ## begin a core: NAME=fir LANG=verilog|vhdl [ICE=file] writes ip/fir, which builds and passes its test
+	@[ -z '$(ICE)' ] || ninja -C $(BUILD) -j $(JOBS) --quiet slice2c
+	@ip/new.sh '$(NAME)' '$(LANG)' '$(BUILD)' '$(ICE)'
 
 ip-test: $(BUILD)/build.ninja ## build and test one core: IP=fir
-	@[ -n '$(IP)' ] && [ -f 'ip/$(IP)/$(IP).ice' ] || { echo "ip-test: IP=name of a core with ip/name/name.ice, not '$(IP)'" >&2; exit 1; }
+	@[ -n '$(IP)' ] && [ -f 'ip/$(IP)/$(IP)_test.cpp' ] || { echo "ip-test: IP=name of a core with ip/name/name_test.cpp, not '$(IP)'" >&2; exit 1; }
 	@ninja -C $(BUILD) -j $(JOBS) --quiet 'test_ip_$(IP)'
 	@SEED=$(SEED) ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -R '^test_ip_$(IP)[.]'
-.PHONY: ip-test
+
+ip-synth: $(BUILD)/build.ninja ## utilisation of one core: IP=fir
+	@[ -n '$(IP)' ] && [ -d 'ip/$(IP)' ] || { echo "ip-synth: IP=name of a core in ip/, not '$(IP)'" >&2; exit 1; }
+	@$(MAKE) --no-print-directory synth DESIGN='$(IP)' FAMILY=xc6s
+
+wave: $(BUILD)/build.ninja ## waveform of one test of a core, for GTKWave: IP=fir TEST=AddsItsOffset
+	@JOBS=$(JOBS) ip/wave.sh '$(IP)' '$(TEST)'
+
+rm-ip: ## take a core away: NAME=fir, its folder and its line (FORCE=1: with changes that are not committed)
+	@FORCE='$(FORCE)' ip/rm.sh '$(NAME)' '$(BUILD)'
+.PHONY: new-ip ip-test ip-synth wave rm-ip

@@ -18,6 +18,11 @@ GeneratedFile servantSource(const Block& b, const CFileNames& names); // <block>
 
 GeneratedFile proxyFile(const Block& b, const CFileNames& names); // <block>_proxy.h
 
+// To begin a core with: <block>.v, <block>.vhd, <block>_test.cpp
+GeneratedFile verilogSkeleton(const Block& b, const CFileNames& names);
+GeneratedFile vhdlSkeleton(const Block& b, const CFileNames& names);
+GeneratedFile testSkeleton(const Block& b, const CFileNames& names);
+
 } // namespace hw
 
 #endif

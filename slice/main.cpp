@@ -18,7 +18,7 @@ namespace {
 struct Options {
     std::vector<std::string> files, includes, defines, undefines;
     std::string outputDir = ".", includeDir, headerExtension = "h", sourceExtension = "c",
-                dependFile, hwVerilog, hwVhdl, hwRegisters, hwC, hwCpp;
+                dependFile, hwVerilog, hwVhdl, hwRegisters, hwC, hwCpp, hwNewVerilog, hwNewVhdl;
     bool preprocessOnly = false, depend = false, dependXml = false, validate = false;
     NameRules rules;
 };
@@ -71,7 +71,9 @@ CFileNames namesFor(const std::string& file, const Options& o, const Preprocesse
 }
 
 bool wantsHardware(const Options& o) {
-    return !(o.hwVerilog + o.hwVhdl + o.hwRegisters + o.hwC + o.hwCpp).empty();
+    return !(o.hwVerilog + o.hwVhdl + o.hwRegisters + o.hwC + o.hwCpp + o.hwNewVerilog +
+             o.hwNewVhdl)
+                .empty();
 }
 
 bool saveHardware(const std::vector<hw::Block>& blocks, const Options& o, const CFileNames& names) {
@@ -81,7 +83,9 @@ bool saveHardware(const std::vector<hw::Block>& blocks, const Options& o, const 
           std::pair{&o.hwVhdl, std::vector<Make>{hw::vhdlFile}},
           std::pair{&o.hwRegisters, std::vector<Make>{hw::registersFile}},
           std::pair{&o.hwC, std::vector<Make>{hw::servantHeader, hw::servantSource}},
-          std::pair{&o.hwCpp, std::vector<Make>{hw::proxyFile}}}) {
+          std::pair{&o.hwCpp, std::vector<Make>{hw::proxyFile}},
+          std::pair{&o.hwNewVerilog, std::vector<Make>{hw::verilogSkeleton, hw::testSkeleton}},
+          std::pair{&o.hwNewVhdl, std::vector<Make>{hw::vhdlSkeleton, hw::testSkeleton}}}) {
         std::vector<GeneratedFile> files;
         if (directory->empty())
             continue;
@@ -144,6 +148,9 @@ void describe(CLI::App& app, Options& o) {
     app.add_option("--hw-regs", o.hwRegisters, "folder for their registers, *.regs.json");
     app.add_option("--hw-c", o.hwC, "folder for their servants in C90");
     app.add_option("--hw-cpp", o.hwCpp, "folder for their proxies in C++, for test benches");
+    app.add_option("--hw-new-verilog", o.hwNewVerilog,
+                   "folder for a core to begin with, in Verilog, and its test");
+    app.add_option("--hw-new-vhdl", o.hwNewVhdl, "the same in VHDL");
     app.add_flag("--depend", o.depend, "print make dependencies, generate nothing");
     app.add_flag("--depend-xml", o.dependXml, "print dependencies as XML, generate nothing");
     app.add_option("--depend-file", o.dependFile, "write dependencies to this file");

@@ -1,11 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# names: ip-folder work-folder   make new-ip's script: names that it refuses, with what is there left as it was.
+# names: ip-folder work-folder slice2c   make new-ip's and rm-ip's scripts: names that it refuses, with what is there left as it was.
 set -eu
-ip=$1 work=$2
+ip=$1 work=$2 slice2c=$3
 rm -rf "$work"
 mkdir -p "$work/bus" "$work/hdl/modem" "$work/ip/old" "$work/sw" "$work/testbench" "$work/synth"
-cp -r "$ip/new.sh" "$ip/template" "$work/ip"
+cp -r "$ip/new.sh" "$ip/rm.sh" "$ip/template" "$work/ip"
+: >"$work/ip/cores.list"
 echo '{}' >"$work/hdl/modem/modem.regs.json"
 echo 'module bus_thing (' >"$work/bus/other.v"
 echo 'entity Vhdl_Thing is' >"$work/ip/old/other.vhd"
@@ -35,6 +36,35 @@ refused 'there already' old verilog
 refused 'modem.regs.json' modem verilog
 refused 'a module' bus_thing verilog
 refused 'a module' vhdl_thing verilog
+# An interface of one's own.
+mkdir -p "$work/build/slice"
+printf '#!/bin/sh\nexec "%s" "$@"\n' "$slice2c" >"$work/build/slice/slice2c"
+chmod +x "$work/build/slice/slice2c"
+refused "there is no file" fir verilog "$work/build" "$work/none.ice"
+echo 'module M { interface Fir { void f(); }; };' >"$work/a.ice"
+refused 'is not an interface in hardware' fir verilog "$work/build" "$work/a.ice"
+echo 'module M { [":hw"] interface Iir { void f(); }; };' >"$work/a.ice"
+refused "has the cores iir : NAME is that of the only one" fir verilog "$work/build" "$work/a.ice"
+echo 'module M { [":hw"] interface LowPass { ["hw:long"] int f(short a); }; };' >"$work/a.ice"
+for language in verilog vhdl; do
+    "$work/ip/new.sh" low_pass $language "$work/build" "$work/a.ice" >/dev/null
+    grep -q "low_pass_wrapper" "$work"/ip/low_pass/low_pass.v* && grep -q 'core.f(a)' "$work/ip/low_pass/low_pass_test.cpp" ||
+        { echo 'ip/low_pass is not made from its interface' && exit 1; }
+    echo 'low_pass identity=a' >"$work/ip/cores.list"
+    [ $language = vhdl ] || echo 'fir b_i=low_pass.c_o' >>"$work/ip/cores.list"
+    [ $language = vhdl ] || { ! "$work/ip/rm.sh" low_pass 2>"$work/log" && grep -q 'inputs of fir' "$work/log" && sed -i 2d "$work/ip/cores.list"; }
+    "$work/ip/rm.sh" low_pass >/dev/null
+    [ ! -e "$work/ip/low_pass" ] && [ ! -s "$work/ip/cores.list" ] || { echo 'rm-ip left something' && exit 1; }
+done
+for wrong in '' nobody template ../bus; do
+    ! "$work/ip/rm.sh" "$wrong" 2>"$work/log" && grep -q 'rm-ip: ' "$work/log" || { echo "rm-ip takes '$wrong'" && exit 1; }
+done
+# What is not committed stays, unless forced.
+(cd "$work" && git init -q . && "$work/ip/new.sh" fir verilog "$work/build" >/dev/null)
+! "$work/ip/rm.sh" fir 2>"$work/log" && grep -q 'not committed' "$work/log" && [ -d "$work/ip/fir" ] || { echo 'rm-ip loses work' && exit 1; }
+FORCE=1 "$work/ip/rm.sh" fir >/dev/null
+[ ! -e "$work/ip/fir" ] || { echo 'rm-ip FORCE=1 left it' && exit 1; }
+rm -rf "$work/.git" "$work/build"
 # A build that cannot be configured with it: taken back.
 mkdir "$work/build"
 touch "$work/build/build.ninja"

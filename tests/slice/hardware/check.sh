@@ -6,7 +6,8 @@ set -eu
 kind=$1 slice2c=$2 ice=$3 work=$4 source=$5
 rm -rf "$work"
 mkdir -p "$work"
-hardware="--hw-verilog $work/out --hw-vhdl $work/out --hw-regs $work/out --hw-c $work/out --hw-cpp $work/out"
+hardware="--hw-verilog $work/out --hw-vhdl $work/out --hw-regs $work/out --hw-c $work/out --hw-cpp $work/out \
+          --hw-new-verilog $work/out --hw-new-vhdl $work/out"
 cd "$(dirname "$ice")"
 case $kind in
 golden)
@@ -16,9 +17,9 @@ golden)
     diff -ru "${ice%.ice}" "$work/out"
     for file in "$work"/out/*.v; do
         module=$(basename "$file" .v)
-        verilator --lint-only -Wall -y "$source/bus" --top-module "$module" "$file"
-        iverilog -g2005 -Wall -Wno-timescale -t null -y "$source/bus" -s "$module" "$file"
-        yosys -q -p "read_verilog $file $source/bus/bus_registers.v $source/bus/bus_wrapper.v; hierarchy -check -top $module; \
+        verilator --lint-only -Wall -y "$source/bus" -y "$work/out" --top-module "$module" "$file"
+        iverilog -g2005 -Wall -Wno-timescale -t null -y "$source/bus" -y "$work/out" -s "$module" "$file"
+        yosys -q -p "read_verilog $work/out/*.v $source/bus/bus_registers.v $source/bus/bus_wrapper.v; hierarchy -check -top $module; \
                      proc; opt; check -assert; select -assert-none t:\$dlatch"
     done
     ;;

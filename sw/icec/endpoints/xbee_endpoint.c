@@ -6,49 +6,61 @@
 
 #include <string.h>
 
-#define EVENTS (sizeof((XBeeATEndpoint *)0)->events / sizeof(Ice_Event))
+#define EVENTS (sizeof((XBeeATEndpoint*)0)->events / sizeof(Ice_Event))
 #define RETRIES 100 /* of a send while the link's queue is full, 20 ms apart */
 
-static int report(XBeeATEndpoint *self, Ice_EventKind kind, int channel, Ice_Int size) {
-    Ice_Event *event;
-    if (self->count == EVENTS)
-        return 0;
-    event = &self->events[(self->head + self->count++) % EVENTS];
+static void report(XBeeATEndpoint* self, Ice_EventKind kind, int channel, Ice_Int size) {
+    Ice_Event* event = &self->events[(self->head + self->count++) % EVENTS];
     event->kind = kind;
     event->connection = channel;
     event->size = size;
     self->port->signal(self->context);
+}
+
+/* 1: this report was still waiting, and is taken back. */
+static int takeBack(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
+    U32 i = 0;
+    while (i < self->count && (self->events[(self->head + i) % EVENTS].kind != kind ||
+                               self->events[(self->head + i) % EVENTS].connection != channel))
+        ++i;
+    if (i == self->count)
+        return 0;
+    for (--self->count; i < self->count; ++i)
+        self->events[(self->head + i) % EVENTS] = self->events[(self->head + i + 1U) % EVENTS];
     return 1;
 }
 
-int XBeeATEndpoint_onMessage(XBeeATEndpoint *self, int channel, const U8 *data, U32 size) {
+int XBeeATEndpoint_onMessage(XBeeATEndpoint* self, int channel, const U8* data, U32 size) {
     /* Opening and closing come before it in order, so the queue must be empty. */
     if (!self->buffer || self->count)
         return 1;
     memcpy(self->buffer, data, size);
     self->buffer = 0;
-    (void)report(self, ICE_EVENT_MESSAGE, channel, (Ice_Int)size);
+    report(self, ICE_EVENT_MESSAGE, channel, (Ice_Int)size);
     return 0;
 }
 
-void XBeeATEndpoint_onChannel(XBeeATEndpoint *self, int channel, int isOpen) {
+void XBeeATEndpoint_onChannel(XBeeATEndpoint* self, int channel, int isOpen) {
     if (channel == XBEE_OWN_CHANNEL && isOpen)
         return;
     if (channel == XBEE_OWN_CHANNEL)
         self->ownOpen = 0;
-    (void)report(self, isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel, 0);
+    /* A connection that came and went while nobody looked is no news: so a channel has at most a
+     * closing and an opening waiting, however often the ground starts again. */
+    if (isOpen || !takeBack(self, ICE_EVENT_OPENED, channel))
+        report(self, isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel, 0);
 }
 
-void XBeeATEndpoint_onState(XBeeATEndpoint *self, Link_State state) {
+void XBeeATEndpoint_onState(XBeeATEndpoint* self, Link_State state) {
     if (state != LINK_STATE_UP && self->ownOpen) {
         self->ownOpen = 0;
-        (void)report(self, ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL, 0);
+        report(self, ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL, 0);
     }
 }
 
 /* The buffer is the link's only while this waits: what comes at another time, the link keeps. */
-static Ice_Status receive(void *context, Ice_Byte *buffer, Ice_Int timeoutMs, Ice_Event *event) {
-    XBeeATEndpoint *self = context;
+static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event) {
+    XBeeATEndpoint* self = context;
     self->port->lock(self->context);
     if (self->count == 0) {
         self->buffer = buffer;
@@ -71,9 +83,21 @@ static Ice_Status statusOf(Link_Status status) {
     return status == LINK_OK ? ICE_OK : status == LINK_TOO_LONG ? ICE_LIMIT : ICE_CONNECTION_LOST;
 }
 
-static Ice_Status sendMessage(void *context, int connection, const Ice_Byte *message,
+/* 1: the link has no room now, and it is worth another try after this pause. */
+static int isFull(XBeeATEndpoint* self, Link_Status status, int* tries) {
+    self->port->kick(self->context);
+    if (status == LINK_FULL && ++*tries <= RETRIES) {
+        (void)self->port->wait(self->context, 20);
+        return 1;
+    }
+    if (*tries)
+        self->port->signal(self->context); /* this may have taken what the receiver waits for */
+    return 0;
+}
+
+static Ice_Status sendMessage(void* context, int connection, const Ice_Byte* message,
                               Ice_Int size) {
-    XBeeATEndpoint *self = context;
+    XBeeATEndpoint* self = context;
     Link_Status status;
     int tries = 0;
     do {
@@ -81,50 +105,39 @@ static Ice_Status sendMessage(void *context, int connection, const Ice_Byte *mes
         status = Link_send(self->link, connection, message, (U32)size, 0,
                            self->port->nowUs(self->context));
         self->port->unlock(self->context);
-        self->port->kick(self->context);
-        if (status == LINK_FULL)
-            (void)self->port->wait(self->context, 20);
-    } while (status == LINK_FULL && ++tries < RETRIES);
-    if (tries)
-        self->port->signal(self->context); /* this may have taken what the receiver waits for */
+    } while (isFull(self, status, &tries));
     return statusOf(status);
 }
 
-static Ice_Status connectTo(void *context, const Ice_Byte *encoded, Ice_Int size, int *connection) {
-    XBeeATEndpoint *self = context;
-    Link_Status status = LINK_OK;
+static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection) {
+    XBeeATEndpoint* self = context;
+    Link_Status status;
+    int tries = 0;
     if (size < 2 || encoded[0] != (XBEE_ENDPOINT_TYPE & 0xFF) ||
         encoded[1] != XBEE_ENDPOINT_TYPE >> 8)
         return ICE_NO_ENDPOINT;
-    self->port->lock(self->context);
-    if (Link_state(self->link) != LINK_STATE_UP)
-        status = LINK_DOWN;
-    else if (!self->ownOpen)
-        status = Link_openChannel(self->link, XBEE_OWN_CHANNEL, self->port->nowUs(self->context));
-    self->ownOpen = status == LINK_OK;
-    self->port->unlock(self->context);
-    self->port->kick(self->context);
+    do { /* the last closing may be on its way still */
+        status = LINK_OK;
+        self->port->lock(self->context);
+        if (Link_state(self->link) != LINK_STATE_UP)
+            status = LINK_DOWN;
+        else if (!self->ownOpen)
+            status =
+                Link_openChannel(self->link, XBEE_OWN_CHANNEL, self->port->nowUs(self->context));
+        if (status == LINK_OK && !self->ownOpen) /* the end of the last connection, not of this */
+            (void)takeBack(self, ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL);
+        self->ownOpen = status == LINK_OK;
+        self->port->unlock(self->context);
+    } while (isFull(self, status, &tries));
     *connection = XBEE_OWN_CHANNEL;
     return statusOf(status);
 }
 
-/* 1: the peer closed already, and its report is taken back; the channel may be a new one by now. */
-static int isOver(XBeeATEndpoint *self, int channel) {
-    U32 i;
-    for (i = 0; i < self->count; ++i) {
-        Ice_Event *event = &self->events[(self->head + i) % EVENTS];
-        if (event->kind == ICE_EVENT_CLOSED && event->connection == channel) {
-            event->kind = ICE_EVENT_NONE;
-            return 1;
-        }
-    }
-    return 0;
-}
-
-static void closeChannel(void *context, int connection) {
-    XBeeATEndpoint *self = context;
+static void closeChannel(void* context, int connection) {
+    XBeeATEndpoint* self = context;
     self->port->lock(self->context);
-    if (!isOver(self, connection)) {
+    /* The peer may have closed already; the channel may be a new one by now. */
+    if (!takeBack(self, ICE_EVENT_CLOSED, connection)) {
         (void)Link_closeChannel(self->link, connection, self->port->nowUs(self->context));
         if (connection == XBEE_OWN_CHANNEL)
             self->ownOpen = 0;
@@ -133,14 +146,14 @@ static void closeChannel(void *context, int connection) {
     self->port->kick(self->context);
 }
 
-static Ice_Status listenTo(void *context, const char *options) {
+static Ice_Status listenTo(void* context, const char* options) {
     (void)context;
     (void)options; /* the radio is always open */
     return ICE_OK;
 }
 
-static void encode(void *context, const char *options, Ice_OutputStreamPtr os) {
-    XBeeATEndpoint *self = context;
+static void encode(void* context, const char* options, Ice_OutputStreamPtr os) {
+    XBeeATEndpoint* self = context;
     U32 address = options ? Ice_numberOption(options, 'a', 0) : self->address;
     Ice_OutputStream_writeShort(os, XBEE_ENDPOINT_TYPE);
     Ice_OutputStream_writeInt(os, 6 + 7);
@@ -150,7 +163,7 @@ static void encode(void *context, const char *options, Ice_OutputStreamPtr os) {
     Ice_OutputStream_writeInt(os, (Ice_Int)Ice_numberOption(options, 't', 10000));
 }
 
-static void put(Ice_OutputStreamPtr text, const char *characters) {
+static void put(Ice_OutputStreamPtr text, const char* characters) {
     while (*characters)
         Ice_OutputStream_writeByte(text, (Ice_Byte)*characters++);
 }
@@ -161,7 +174,7 @@ static void putNumber(Ice_OutputStreamPtr text, U32 value) {
     Ice_OutputStream_writeByte(text, (Ice_Byte)('0' + value % 10));
 }
 
-static Ice_Bool print(void *context, const Ice_Byte *encoded, Ice_Int size,
+static Ice_Bool print(void* context, const Ice_Byte* encoded, Ice_Int size,
                       Ice_OutputStreamPtr text) {
     Ice_InputStream is;
     Ice_Byte channel;
@@ -182,18 +195,18 @@ static Ice_Bool print(void *context, const Ice_Byte *encoded, Ice_Int size,
     return 1;
 }
 
-static U32 nowMs(void *context) {
-    XBeeATEndpoint *self = context;
+static U32 nowMs(void* context) {
+    XBeeATEndpoint* self = context;
     return self->port->nowMs(self->context);
 }
 
-static void wakeUp(void *context) {
-    XBeeATEndpoint *self = context;
+static void wakeUp(void* context) {
+    XBeeATEndpoint* self = context;
     self->port->signal(self->context);
 }
 
-void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char *name, XBeeATEndpoint *self, Link *link,
-                         U16 address, const XBeeATPort *port, void *context) {
+void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoint* self, Link* link,
+                         U16 address, const XBeeATPort* port, void* context) {
     static const Ice_Endpoint endpoint = {
         "xbee-at", receive, sendMessage, connectTo, closeChannel,
         listenTo,  encode,  wakeUp,      nowMs,     ICEC_DETAILS ? print : 0};

@@ -30,7 +30,7 @@ typedef struct XBeeATEndpoint {
     const XBeeATPort *port;
     void *context;
     U16 address; /* own, MY */
-    Ice_Event events[8];
+    Ice_Event events[2 * LINK_CHANNELS + 1]; /* a message; a closing and an opening a channel */
     U32 head, count;
     Ice_Byte *buffer; /* of the task that receives; 0: nobody does, the link keeps the message */
     Ice_Byte ownOpen;

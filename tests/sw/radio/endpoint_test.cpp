@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+//
+// endpoint_test: what IceC's radio endpoint tells of connections that come and go while nobody
+// looks.
+
+#include "link_pair.h"
+#include <gtest/gtest.h>
+#include <map>
+
+extern "C" {
+#include "xbee_endpoint.h"
+}
+
+namespace {
+
+class RadioEndpoint : public ::testing::Test {
+protected:
+    RadioEndpoint() {
+        static const XBeeATPort port = {
+            [](void*) {},
+            [](void*) {},
+            [](void*) {},
+            [](void* c, Ice_Int ms) { return self(c).pair_.run(static_cast<U32>(ms) * 1000), 0; },
+            [](void*) {},
+            [](void* c) { return self(c).pair_.now32(); },
+            [](void* c) { return self(c).pair_.now32() / 1000; }};
+        Ice_initialize(&ic_);
+        XBeeATEndpoint_init(&ic_, "xbee-at", &endpoint_, pair_.b.link(), 1, &port, this);
+    }
+    static RadioEndpoint& self(void* c) { return *static_cast<RadioEndpoint*>(c); }
+    const Ice_Endpoint& ops() { return *ic_.endpoint; }
+    std::vector<std::pair<Ice_EventKind, int>> events() {
+        std::vector<std::pair<Ice_EventKind, int>> list;
+        for (;;) {
+            Ice_Event event{};
+            ops().receive(ic_.endpointContext, buffer_, 0, &event);
+            if (event.kind == ICE_EVENT_NONE)
+                return list;
+            list.emplace_back(event.kind, event.connection);
+        }
+    }
+    Ice_Status connect() {
+        const Ice_Byte encoded[] = {0x58, 0x41};
+        int connection = -1;
+        Ice_Status status = ops().connect(ic_.endpointContext, encoded, 2, &connection);
+        EXPECT_EQ(connection, status == ICE_OK ? 3 : connection);
+        return status;
+    }
+
+    Pair pair_{testSeed()};
+    Ice_Communicator ic_;
+    XBeeATEndpoint endpoint_;
+    Ice_Byte buffer_[ICE_MESSAGE_MAX];
+};
+
+using Kinds = std::vector<std::pair<Ice_EventKind, int>>;
+
+TEST_F(RadioEndpoint, OfConnectionsThatCameAndWentOnlyTheLastStateIsTold) {
+    for (int channel = 0; channel < 3; ++channel)
+        XBeeATEndpoint_onChannel(&endpoint_, channel, 1);
+    EXPECT_EQ(events().size(), 3u);
+    // The ground starts again and again, while the server's task is busy.
+    for (int times = 0; times < 10; ++times)
+        for (int channel = 0; channel < 3; ++channel) {
+            XBeeATEndpoint_onChannel(&endpoint_, channel, 0);
+            XBeeATEndpoint_onChannel(&endpoint_, channel, 1);
+        }
+    XBeeATEndpoint_onChannel(&endpoint_, 2, 0);
+    EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 0},
+                               {ICE_EVENT_CLOSED, 1},
+                               {ICE_EVENT_CLOSED, 2},
+                               {ICE_EVENT_OPENED, 0},
+                               {ICE_EVENT_OPENED, 1}}));
+}
+
+TEST_F(RadioEndpoint, TheEndOfTheLastOwnConnectionDoesNotEndTheNext) {
+    ASSERT_TRUE(pair_.connect());
+    ASSERT_EQ(connect(), ICE_OK);
+    pair_.run(500000);
+    Link_closeChannel(pair_.a.link(), 3, pair_.now32());
+    pair_.run(500000);
+    XBeeATEndpoint_onChannel(&endpoint_, 3, 0); // nobody has looked yet
+    ASSERT_EQ(connect(), ICE_OK);
+    EXPECT_EQ(events(), Kinds{});
+}
+
+TEST_F(RadioEndpoint, ConnectingWaitsUntilTheLastClosingIsAnswered) {
+    ASSERT_TRUE(pair_.connect());
+    ASSERT_EQ(connect(), ICE_OK);
+    pair_.run(500000);
+    ops().close(ic_.endpointContext, 3);
+    EXPECT_EQ(Link_openChannel(pair_.b.link(), 3, pair_.now32()), LINK_FULL);
+    EXPECT_EQ(connect(), ICE_OK);
+}
+
+} // namespace

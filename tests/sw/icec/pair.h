@@ -100,3 +100,6 @@ protected:
 private:
     std::unique_ptr<Side> here_, there_;
 };
+
+// Tests of several files are of this suite.
+class Calls : public Pair {};

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+//
+// connections_test: connections that end, calls back on them, time-outs, signs of life, and the
+// properties that adapters and proxies are made from.
+
+#include "pair.h"
+
+namespace {
+
+TEST_F(Calls, AnAnswerForALostConnectionIsRefused) {
+    Ice_Reply later{};
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        Ice_Current_later(&current, &later);
+        return ICE_LATER;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    prx.timeoutMs = 5;
+    EXPECT_EQ(call(prx, "slow"), ICE_TIMEOUT);
+    Ice_Connection_close(&here().ic, prx.connection);
+    settle();
+    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        return ICE_OK;
+    };
+    EXPECT_EQ(call(prx, "again"), ICE_OK) << "a new connection of the same number";
+    (void)Ice_Reply_begin(&later);
+    EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_CONNECTION_LOST);
+}
+
+TEST_F(Calls, TheCallersConnectionCarriesCallsBack) {
+    Servant back;
+    ASSERT_EQ(Ice_ObjectAdapter_add(&here().adapter, &back.base, "back"), ICE_OK);
+    Ice_ObjectPrx fixed{};
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        EXPECT_EQ(Ice_Connection_createProxy(&there().ic, current.connection, "back", &fixed),
+                  ICE_OK);
+        return ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    ASSERT_EQ(call(prx, "op"), ICE_OK);
+    EXPECT_EQ(call(fixed, "op"), ICE_OK);
+    EXPECT_EQ(back.calls, 1);
+    EXPECT_EQ(fixed.connection, prx.connection);
+    Ice_Byte bytes[100];
+    Ice_OutputStream os;
+    Ice_OutputStream_init(&os, bytes, sizeof bytes);
+    Ice_OutputStream_writePrx(&os, &fixed);
+    EXPECT_TRUE(os.failed) << "a fixed proxy means nothing to others";
+    Ice_Connection_close(&here().ic, prx.connection);
+    settle();
+    EXPECT_EQ(call(fixed, "op"), ICE_CONNECTION_LOST);
+}
+
+TEST_F(Calls, TimeOutsAreKeptAndLateRepliesPassedOver) {
+    Ice_Reply later{};
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        Ice_Current_later(&current, &later);
+        return ICE_LATER;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    Ice_ObjectPrx_ice_invocationTimeout(&prx, 250);
+    U32 begin = *here().loop.nowMs;
+    EXPECT_EQ(call(prx, "op"), ICE_TIMEOUT);
+    EXPECT_EQ(*here().loop.nowMs - begin, 250u);
+    Ice_Status status = ICE_OK;
+    ASSERT_NE(Ice_ObjectPrx_begin(&prx, "op", 0), nullptr);
+    ASSERT_EQ(Ice_ObjectPrx_invokeAsync(
+                  &prx,
+                  [](void* cookie, Ice_Status s, Ice_InputStreamPtr) {
+                      *static_cast<Ice_Status*>(cookie) = s;
+                  },
+                  &status),
+              ICE_OK);
+    (void)Ice_Communicator_poll(&here().ic, 249);
+    EXPECT_EQ(status, ICE_OK);
+    (void)Ice_Communicator_poll(&here().ic, 249);
+    (void)Ice_Communicator_poll(&here().ic, 0);
+    EXPECT_EQ(status, ICE_TIMEOUT);
+    (void)Ice_Reply_begin(&later);
+    EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_OK);
+    settle();
+    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        return ICE_OK;
+    };
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+}
+
+TEST_F(Calls, WhoWaitsForALongOperationGetsSignsOfLife) {
+    int beats = 0;
+    there().loop.tapContext = &beats;
+    there().loop.tap = [](void* context, int, const Ice_Byte* message, Ice_Int) {
+        *static_cast<int*>(context) += message[8] == 3; // ValidateConnection
+    };
+    Ice_Reply later{};
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        Ice_Current_later(&current, &later);
+        return ICE_LATER;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    prx.timeoutMs = 5 * ICE_HEARTBEAT_MS + 100;
+    EXPECT_EQ(call(prx, "op"), ICE_TIMEOUT);
+    EXPECT_EQ(beats, 1 + 5); // the first opened the connection
+    (void)Ice_Reply_begin(&later);
+    EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_OK);
+    beats = 0;
+    (void)Ice_Communicator_poll(&there().ic, 3 * ICE_HEARTBEAT_MS);
+    EXPECT_EQ(beats, 0);
+}
+
+TEST_F(Calls, DestroyClosesInGoodOrder) {
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    ASSERT_EQ(call(prx, "op"), ICE_OK);
+    U32 begin = *here().loop.nowMs;
+    Ice_Communicator_destroy(&here().ic, 1000);
+    EXPECT_LT(*here().loop.nowMs - begin, 1000u) << "the peer closed";
+    EXPECT_FALSE(there().loop.open[0]);
+}
+
+TEST_F(Calls, AGracefulCloseSaysThatNothingWasExecuted) {
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        Ice_Connection_close(&there().ic, current.connection);
+        return ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    EXPECT_EQ(call(prx, "op"), ICE_CONNECTION_CLOSED);
+    servant_.run = [&](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        return ICE_OK;
+    };
+    EXPECT_EQ(call(prx, "op"), ICE_OK) << "a new connection";
+}
+
+TEST_F(Calls, PropertiesMakeAdaptersAndProxies) {
+    static const char* const table[] = {"Side.Endpoints=loop",
+                                        "Thing.Proxy=thing:loop -c 1",
+                                        "Number=-17",
+                                        "Wrong=12x",
+                                        "Number=4",
+                                        nullptr};
+    Ice_ObjectAdapter side;
+    Ice_ObjectPrx prx;
+    Ice_Communicator_setProperties(&here().ic, table);
+    EXPECT_STREQ(Ice_Communicator_getProperty(&here().ic, "Side.Endpoints"), "loop");
+    EXPECT_EQ(Ice_Communicator_getProperty(&here().ic, "Side"), nullptr);
+    EXPECT_EQ(Ice_Communicator_getPropertyAsInt(&here().ic, "Number", 1), -17);
+    EXPECT_EQ(Ice_Communicator_getPropertyAsInt(&here().ic, "Wrong", 1), 1);
+    EXPECT_EQ(Ice_Communicator_getPropertyAsInt(&here().ic, "None", 7), 7);
+    EXPECT_EQ(Ice_Communicator_createObjectAdapter(&here().ic, "Side", &side), ICE_OK);
+    EXPECT_EQ(Ice_Communicator_propertyToProxy(&here().ic, "None", &prx), ICE_PARSE);
+    ASSERT_EQ(Ice_Communicator_propertyToProxy(&here().ic, "Thing.Proxy", &prx), ICE_OK);
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    EXPECT_EQ(prx.connection, 2);
+}
+
+} // namespace

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * os_cases_private: what the files of cases share: tasks that say what they do.
+ */
+#ifndef OS_CASES_PRIVATE_H
+#define OS_CASES_PRIVATE_H
+
+#include "os_cases.h"
+
+#define OS_CASE_WORDS 128 /* of a task's stack */
+
+void OsCase_begin(void); /* of a case: nothing is said, no stack is used */
+void OsCase_say(const char *word);
+void OsCase_sayNumber(unsigned value);
+/* On a stack of its own, with its priority as its number; OSTaskCreateExt's result. */
+INT8U OsCase_task(void (*body)(void *), INT8U priority);
+void OsCase_end(void); /* of a task */
+OS_STK *OsCase_stack(void); /* the top of one that is free */
+
+/* Tasks of several cases. */
+extern OS_EVENT *osCase_sem;
+void OsCase_waitsForSem(void *p);
+void OsCase_created(void *p);
+
+/* Prepare a case, or are its interrupt routine. */
+void OsCase_choosing(void);
+void OsCase_computing(void);
+void OsCase_counting(void);
+void OsCase_creating(void);
+void OsCase_delaying(void);
+void OsCase_handingOver(void);
+void OsCase_inheriting(void);
+void OsCase_inheritingInAList(void);
+void OsCase_interruptRoutine(void);
+void OsCase_interrupting(void);
+void OsCase_locking(void);
+void OsCase_masking(void);
+void OsCase_mutexErrors(void);
+void OsCase_postsFromInterrupt(void);
+void OsCase_preempting(void);
+void OsCase_queueing(void);
+void OsCase_saysIrq(void);
+void OsCase_stackChecking(void);
+void OsCase_timing(void);
+
+#endif

@@ -49,6 +49,8 @@ gdb-multiarch debugs it there
 libnewlib-arm-none-eabi C library for it
 clang fuzzers of the link layer (libFuzzer)
 graphviz pictures of netlists
+man-db shows and checks the manual pages
+groff-base formats them
 chromium tests of the report pages
 '
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in

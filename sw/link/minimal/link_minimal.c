@@ -313,7 +313,6 @@ Link_Status Link_closeChannel(Link* link, int channel, U32 nowUs) {
 
 Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag, U32 nowUs) {
     const U8* c = channelOf(link, channel);
-    U8* sums = link->out + size;
     (void)nowUs;
     if (!c || !(*c & OPEN))
         return LINK_CLOSED;
@@ -323,6 +322,7 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
         return LINK_FULL;
     memcpy(link->out, data, size);
     if (size > LINK_LONGEST) {
+        U8* sums = link->out + size;
         sums[0] = sums[1] = 0;
         Link_sum(sums, data, size);
         size += LINK_CHECK;

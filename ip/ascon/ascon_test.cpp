@@ -3,15 +3,16 @@
 // ascon_test: the core and its model against the known answers of the standard's authors, and the
 // core against the model with a memory that stalls.
 
-#include "VAscon.h"
+#include "Vascon_slot.h"
 #include "ascon_model.h"
-#include "ascon_regs.h"
-#include "bench.h"
-#include "bus_master.h"
-#include "npi_memory.h"
+#include "core_slot.h"
 #include <fstream>
 #include <gtest/gtest.h>
 #include <sstream>
+extern "C" {
+#include "ascon_regs.h"
+#include "ascon_servant.h"
+}
 
 namespace {
 
@@ -125,9 +126,9 @@ protected:
     }
 
     Random random_{testSeed()};
-    Bench<VAscon> bench_;
-    BusMaster<VAscon> bus_{bench_};
-    NpiMemory<VAscon> memory_{bench_, 0.2, testSeed()};
+    Bench<Vascon_slot> bench_;
+    BusMaster<Vascon_slot> bus_{bench_};
+    NpiMemory<Vascon_slot> memory_{bench_, 0.2, testSeed()};
 };
 
 TEST(AsconModel, GivesTheKnownAnswers) {
@@ -213,6 +214,49 @@ TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
         ASSERT_TRUE(decrypt(nonce, associated, sealed));
         ASSERT_EQ(bytesAt(target, message.size()), message);
     }
+}
+
+TEST(AsconServant, SealsOpensAndHashes) {
+    CoreSlot<Vascon_slot> slot;
+    Random random(testSeed());
+    static Ascon_Core core;
+    ASSERT_EQ(Ascon_Core_init(&core, coreSlot, coreMemory, &slot.seam, &slot), HW_OK);
+    slot.core_ = &core.core;
+    auto bytes = [](const auto& list) {
+        return Cores_Bytes{static_cast<Ice_Int>(list.size()), const_cast<uint8_t*>(list.data())};
+    };
+    for (size_t size : {0u, 1u, 16u, 100u, 1024u}) {
+        auto key = sixteen(static_cast<uint8_t>(random.next())),
+             nonce = sixteen(static_cast<uint8_t>(random.next()));
+        auto associated = counted(3, size / 2),
+             message = counted(static_cast<uint8_t>(random.next()), size);
+        auto want = asconEncrypt(key, nonce, associated, message);
+        Cores_Bytes k = bytes(key), n = bytes(nonce), a = bytes(associated), m = bytes(message),
+                    text{}, tag{}, got{};
+        ASSERT_EQ(Cores_Ascon_setKey(&core.servant, &k, nullptr), ICE_OK);
+        ASSERT_EQ(Cores_Ascon_seal(&core.servant, &n, &a, &m, &text, &tag, nullptr), ICE_OK);
+        AsconSealed sealed{AsconBytes(text.data, text.data + text.size), {}};
+        std::copy(tag.data, tag.data + 16, sealed.tag.begin());
+        EXPECT_EQ(hex(sealed.text) + hex(sealed.tag), hex(want.text) + hex(want.tag));
+        Ice_Bool valid = 0;
+        for (bool forged : {true, false}) {
+            sealed.tag[7] ^= forged ? 0x10 : 0;
+            Cores_Bytes t = bytes(sealed.text), g = bytes(sealed.tag);
+            ASSERT_EQ(Cores_Ascon_unseal(&core.servant, &n, &a, &t, &g, &got, &valid, nullptr),
+                      ICE_OK);
+            EXPECT_EQ(valid, !forged);
+            EXPECT_EQ(AsconBytes(got.data, got.data + got.size), forged ? AsconBytes() : message);
+            sealed.tag[7] ^= forged ? 0x10 : 0;
+        }
+        ASSERT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_OK);
+        EXPECT_EQ(std::string(hex(AsconBytes(got.data, got.data + got.size))),
+                  hex(asconHash(message)));
+    }
+    auto tooMuch = counted(0, 1025);
+    auto shortKey = counted(0, 15);
+    Cores_Bytes m = bytes(tooMuch), k = bytes(shortKey), got{};
+    EXPECT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_UNKNOWN_EXCEPTION);
+    EXPECT_EQ(Cores_Ascon_setKey(&core.servant, &k, nullptr), ICE_UNKNOWN_EXCEPTION);
 }
 
 TEST_F(AsconTest, WorksInPlace) {

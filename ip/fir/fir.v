@@ -38,26 +38,27 @@ module fir (
 );
     wire        core_rst, set_coefficient, clear, start, unused_shift_start;
     wire [7:0]  index, shift;
-    wire [31:0] coefficient, source, target, samples;
+    wire [31:0] coefficient, source, target;
+    wire [8:0]  count;
 
     reg         busy, refused;
     reg         begun, flushed;    // the streams have their buffers; the last word is on its way
-    reg  [23:0] to_send, to_take;  // samples that the filter has not got; results that it has not given
+    reg  [8:0]  to_send, to_take;  // samples that the filter has not got; results that it has not given
     reg  [1:0]  place;             // of the next sample in its word
     reg  [63:0] packed_results;
     reg  [2:0]  filled;            // results in there, 0..4
     reg  [31:0] saturations;
 
-    wire        bad = source[5:0] != 6'd0 || target[5:0] != 6'd0 || samples[31:24] != 8'd0 || samples == 32'd0;
+    wire        bad = count == 9'd0;
     wire        read_valid, read_idle, write_ready, write_idle;
     wire [63:0] read_data;
     wire        sample_ready, result_valid, saturated;
     wire [15:0] result;
     wire        idle    = read_idle && write_idle;
     wire        go      = busy && !begun && idle; // what was given up may still be under way
-    wire        ended   = begun && to_take == 24'd0;
+    wire        ended   = begun && to_take == 9'd0;
     wire        flush   = ended && filled == 3'd0 && !flushed;
-    wire        sending = to_send != 24'd0 && read_valid;
+    wire        sending = to_send != 9'd0 && read_valid;
     wire        sent    = sending && sample_ready;
     wire        offer   = (filled == 3'd4 || (ended && filled != 3'd0)) && !core_rst;
     wire        written = offer && write_ready;
@@ -73,8 +74,8 @@ module fir (
         .set_coefficient_start_o(set_coefficient), .set_coefficient_index_o(index),
         .set_coefficient_value_o(coefficient),
         .set_shift_start_o(unused_shift_start), .set_shift_bits_o(shift), .clear_start_o(clear),
-        .filter_start_o(start), .filter_source_o(source), .filter_target_o(target),
-        .filter_samples_o(samples), .filter_result_i(saturations),
+        .filter_start_o(start), .filter_list_base_o(source), .filter_list_count_o(count),
+        .filter_filtered_base_o(target), .filter_filtered_count_i(count), .filter_result_i(saturations),
         .filter_done_i(refused || (flushed && idle)), .filter_refused_i(refused));
 
     fir_filter u_filter (
@@ -85,12 +86,12 @@ module fir (
         .result_valid_o(result_valid), .result_ready_i(room),
         .result_o(result), .saturated_o(saturated));
 
-    npi_stream #(.ADDR_BITS(32), .WORD_BITS(24)) u_stream (
+    npi_stream #(.ADDR_BITS(32), .WORD_BITS(7)) u_stream (
         .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: what the memory was asked for must be taken
         .read_start_i(go && !core_rst), .read_base_i(source[31:6]),
-        .read_words_i({2'd0, samples[23:2]} + {23'd0, |samples[1:0]}), .read_stop_i(core_rst),
+        .read_words_i(count[8:2] + {6'd0, |count[1:0]}), .read_stop_i(core_rst),
         .read_valid_o(read_valid), .read_data_o(read_data),
-        .read_take_i(sent && (place == 2'd3 || to_send == 24'd1)), .read_idle_o(read_idle),
+        .read_take_i(sent && (place == 2'd3 || to_send == 9'd1)), .read_idle_o(read_idle),
         .write_start_i(go && !core_rst), .write_base_i(target[31:6]),
         .write_valid_i(offer), .write_data_i(packed_results),
         .write_be_i({{2{filled[2]}}, {2{filled[2] || &filled[1:0]}}, {2{filled[2] || filled[1]}}, 2'b11}),
@@ -108,19 +109,19 @@ module fir (
         refused <= start && bad;
         if (start && !bad) begin
             busy        <= 1'b1;
-            to_send     <= samples[23:0];
-            to_take     <= samples[23:0];
+            to_send     <= count;
+            to_take     <= count;
             saturations <= 32'd0;
             place       <= 2'd0;
         end
         if (go)
             begun <= 1'b1;
         if (sent) begin
-            to_send <= to_send - 24'd1;
+            to_send <= to_send - 9'd1;
             place   <= place + 2'd1;
         end
         if (taken) begin
-            to_take     <= to_take - 24'd1;
+            to_take     <= to_take - 9'd1;
             saturations <= saturations + {31'd0, saturated};
             packed_results[16*next +: 16] <= result;
         end
@@ -138,10 +139,10 @@ module fir (
             begun   <= 1'b0;
             flushed <= 1'b0;
             filled  <= 3'd0;
-            to_send <= 24'd0;
-            to_take <= 24'd0;
+            to_send <= 9'd0;
+            to_take <= 9'd0;
         end
     end
 
-    wire unused = &{1'b0, unused_shift_start, shift[7:5], coefficient[31:18], npi_wr_empty_i, npi_rd_word_i, 1'b0};
+    wire unused = &{1'b0, unused_shift_start, shift[7:5], coefficient[31:18], source[5:0], target[5:0], npi_wr_empty_i, npi_rd_word_i, 1'b0};
 endmodule

@@ -3,13 +3,13 @@
 #
 # run: the mission: simulator and ground station. Usage: run.sh build-folder --image F --size WxH
 #      --threshold N --loss P --seed N --out DIR --cpu host|m3 --firmware ELF --port N (of the live page; 0: any)
-#      --live 1 (the page stays until Ctrl-C)
+#      --live 1 (the page stays until Ctrl-C) --cores "ascon fir" (also fly these cores' parts, ip/*/ground.py)
 
 set -eu
 build=$1
 shift
 here=$(cd "$(dirname "$0")/../.." && pwd)
-image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host port=0 live='' firmware=$build/firmware/uav.elf
+image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host port=0 live='' cores='' firmware=$build/firmware/uav.elf
 while [ $# -gt 0 ]; do
     case $1 in
     --image) image=$2 ;;
@@ -21,6 +21,7 @@ while [ $# -gt 0 ]; do
     --cpu) cpu=$2 ;;
     --port) port=$2 ;;
     --live) live=$2 ;;
+    --cores) cores=$2 ;;
     --firmware) firmware=$2 ;;
     *)
         echo "run: unknown option $1" >&2
@@ -35,10 +36,15 @@ rm -f "$out/after.png" "$out/report.md" "$out/report.json" "$out/calls.jsonl" "$
 page=$!
 trap 'kill $page 2>/dev/null || true' EXIT
 status=0
+parts=''
+for core in $cores; do
+    parts="$parts --core $here/ip/$core"
+done
+# shellcheck disable=SC2086 # a list of words
 "$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" --firmware "$firmware" -- \
     /usr/bin/python3 "$here/sw/ground/clients/mission.py" --device '{device}' --frame '{frame}' \
     --status '{status}' --out "$out" --plugin "$build/ground" --slice "$here/sw/apps/uav/Autopilot.ice" \
-    --reference "$build/testbench/sim/vision-reference" --threshold "$threshold" --loss "$loss" || status=$?
+    --reference "$build/testbench/sim/vision-reference" --threshold "$threshold" --loss "$loss" $parts || status=$?
 if [ $status = 0 ]; then
     echo "Pictures and report: $out/before.png $out/after.png $out/report.md"
 else

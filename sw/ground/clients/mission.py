@@ -7,6 +7,7 @@ the picture, and serves Station, which the UAV calls. All of it over the radio.
 """
 
 import argparse
+import importlib.util
 import json
 import mmap
 import os
@@ -94,6 +95,8 @@ def parse_arguments():
     parser.add_argument("--out", required=True, help="folder for after.png and the report")
     parser.add_argument("--status", help="the simulator's counters")
     parser.add_argument("--reference", help="program that computes the corners on the host")
+    parser.add_argument("--core", action="append", default=[], metavar="FOLDER",
+                        help="also fly the part of this core: FOLDER/ground.py")
     parser.add_argument("--loss", default="0", help="noted in the report")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
     parser.add_argument("--trace", type=int, default=0, help="XBeeAT.Trace: 0, 1 or 2")
@@ -187,6 +190,17 @@ def report(args, log, result, station, air):
                    "vehicle": station.params, "air": totals}, f, indent=2)
 
 
+def part_of(folder):
+    """The module FOLDER/ground.py."""
+    path = os.path.join(folder, "ground.py")
+    if not os.path.exists(path):
+        raise RuntimeError("the core in %s has no part in a mission: there is no ground.py" % folder)
+    spec = importlib.util.spec_from_file_location("ground_" + os.path.basename(folder), path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
 def fly(args, communicator):
     import Autopilot  # made by loadSlice
     air = Air(args.status)
@@ -219,6 +233,9 @@ def fly(args, communicator):
     if args.reference:
         check_against_reference(args, result)
         log.say("the result equals the C++ reference, bit by bit")
+    for folder in args.core:
+        part_of(folder).fly(log, lambda identity: communicator.stringToProxy(identity + ":" + where),
+                            "%d corners" % result.found)
     draw(args.frame, result, os.path.join(args.out, "after.png"))
     report(args, log, result, station, air)
 
@@ -228,6 +245,9 @@ def main():
     Ice.loadSlice("-I" + (Ice.getSliceDir() or ".") + " " + args.slice)
     communicator = initialize(args)
     try:
+        for folder in args.core:
+            for file in part_of(folder).slices(folder):
+                Ice.loadSlice("-I" + (Ice.getSliceDir() or ".") + " " + file)
         fly(args, communicator)
         return 0
     except KeyboardInterrupt:

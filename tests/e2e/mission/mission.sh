@@ -32,6 +32,12 @@ fails_with() {
 case $case in
 plain) run "$out" --image $image && check_output "$out" ;;
 loss) run "$out" --image $image --loss 0.1 --seed "${SEED:-1}" && check_output "$out" ;;
+cores) # every core that has a part in a mission
+    parts=$(cd "$source/ip" && for part in */ground.py; do echo "${part%/ground.py}"; done | grep -xFf - cores.list || true)
+    run "$out" --image $image --cores "$parts" && check_output "$out"
+    for part in $parts; do grep -q "$part\." "$out/report.md" || { echo "nothing was called of $part" && exit 1; }; done
+    fails_with "has no part in a mission" run "$out/none" --image $image --cores nonesuch
+    ;;
 m3) # the ARM binary
     run "$out" --image $image --cpu m3 && check_output "$out"
     ;;

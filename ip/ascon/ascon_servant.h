@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ascon_servant: Cores::Ascon (Ascon.ice) by the core in a slot; shaped as slice2c's servants are
+ * (docs/hw-mapping.md). It is the processor's part: buffers in DDR3, registers, the wait.
+ */
+#ifndef ASCON_SERVANT_H
+#define ASCON_SERVANT_H
+
+#include "Ascon.h"
+#include "hw_core.h"
+
+#define ASCON_LIMIT 1024 /* bytes of a message, and of associated data */
+
+typedef struct Ascon_Core {
+    Cores_Ascon servant;
+    Hw_Core core;
+    U32 memory; /* DDR3 byte address of the buffers */
+    U8 result[ASCON_LIMIT], tag[16];
+} Ascon_Core;
+
+Hw_Status Ascon_Core_init(Ascon_Core* self, U32 slot, U32 memory, const Hw_Seam* seam,
+                          void* context);
+void Ascon_Core_interrupt(Ascon_Core* self);
+U32 Ascon_Core_poll(Ascon_Core* self, U32 nowMs);
+
+#endif

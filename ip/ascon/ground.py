@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: MIT
+"""ascon's part of a mission: a report is sealed and opened by the core, a forged one is found out."""
+import os
+
+
+def slices(folder):
+    return [os.path.join(folder, "Ascon.ice")]
+
+
+def fly(log, proxy, report):
+    import Cores  # made by loadSlice
+
+    ascon = Cores.AsconPrx.uncheckedCast(proxy("ascon"))
+    nonce = os.urandom(16)
+    message = report.encode()[:200]
+    log.call("ground -> UAV", "ascon.setKey(16 bytes)", lambda: ascon.setKey(os.urandom(16)))
+    text, tag = log.call("ground -> UAV", "ascon.seal(%d bytes)" % len(message),
+                         lambda: ascon.seal(nonce, b"report", message))
+    valid, opened = log.call("ground -> UAV", "ascon.unseal(as it was sealed)",
+                             lambda: ascon.unseal(nonce, b"report", text, tag))
+    if not valid or bytes(opened) != message:
+        raise RuntimeError("ascon: what was sealed does not open")
+    forged = bytes([text[0] ^ 1]) + bytes(text[1:])
+    valid, opened = log.call("ground -> UAV", "ascon.unseal(one bit forged)",
+                             lambda: ascon.unseal(nonce, b"report", forged, tag))
+    if valid or opened:
+        raise RuntimeError("ascon: a forged report was opened")
+    digest = log.call("ground -> UAV", "ascon.hash(nothing)", lambda: ascon.hash(b""))
+    # The first known answer of the standard's authors.
+    if bytes(digest).hex() != "0b3be5850f2f6b98caf29f8fdea89b64a1fa70aa249b8f839bd53baa304d92b2":
+        raise RuntimeError("ascon: the digest of nothing is %s" % bytes(digest).hex())
+    log.say("ascon: sealed, opened, and a forged bit found")

@@ -4,6 +4,7 @@
 
 set(CORES ${CMAKE_SOURCE_DIR}/ip/cores.list CACHE FILEPATH "The cores in the chip, one a line")
 set(CORE_FOLDERS "" CACHE STRING "Folders of cores besides those in ip/")
+set(FOREIGN_CORES ${CMAKE_BINARY_DIR}/foreign CACHE PATH "Where cmake/fetch.sh foreign put third-party cores")
 
 # Names in the list, for what is built only with a core: if("vision" IN_LIST CHIP_CORES)
 set(CHIP_CORES)
@@ -21,9 +22,9 @@ list(REMOVE_DUPLICATES CHIP_CORES)
 # The core NAME: a module or entity NAME with a slot's ports. ICE: its [":hw"] interface, from which
 # registers, wrapper and servant are made; else REGS describes its registers, and SERVANT is written by hand, for an
 # interface of the Slice libraries SLICE. <NAME>_test.cpp beside it becomes test_ip_<NAME>, with the model V<NAME>_slot.
-# FLAGS: Verilator's, for a foreign core's style.
+# FLAGS: Verilator's, for a foreign core's style. LIBRARY: the VHDL library that its files say they are in.
 function(icesoc_core name)
-  cmake_parse_arguments(A "" "ICE;REGS" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS" ${ARGN})
+  cmake_parse_arguments(A "" "ICE;REGS;LIBRARY" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS" ${ARGN})
   list(TRANSFORM A_VHDL PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_VERILOG PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_SERVANT PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
@@ -66,7 +67,7 @@ function(icesoc_core name)
     if(A_REGS)
       set(registers REGS ${name})
     endif()
-    icesoc_vhdl(NAME ${name} SOURCES ${packages} ${A_VHDL} ${registers})
+    icesoc_vhdl(NAME ${name} SOURCES ${packages} ${A_VHDL} ${registers} LIBRARY ${A_LIBRARY})
     list(APPEND files ${GEN_DIR}/${name}.v)
     list(APPEND targets ${name}_verilog)
     list(APPEND A_FLAGS -Wno-PINCONNECTEMPTY) # GHDL's way to write `open`
@@ -83,7 +84,7 @@ function(icesoc_core name)
     if(A_VHDL)
       list(APPEND labels vhdl)
     endif()
-    icesoc_test(test_ip_${name} SOURCES ${name}_test.cpp LIBS ${libs} ${name}_slot bench fsmc LABELS ${labels})
+    icesoc_test(test_ip_${name} SOURCES ${name}_test.cpp LIBS ${libs} ${name}_slot bench fsmc hw_core icec LABELS ${labels})
   endif()
 endfunction()
 

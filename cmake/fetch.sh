@@ -4,6 +4,8 @@
 # fetch: brings what Debian has but the packages in use leave out, without touching the system.
 #   cmake/fetch.sh ice DIR    internal transport headers of the installed ZeroC Ice, into DIR
 #   cmake/fetch.sh ghdl DIR   GHDL 5 (GHDL 2's Verilog output is wrong for `case`), DIR/ghdl runs it
+#   cmake/fetch.sh foreign DIR   the third-party cores that examples/foreign/files.list names, into DIR; from
+#                             ICESOC_RAW, a copy of raw.githubusercontent.com, if it is set
 # Kept in ${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network.
 
 set -eu
@@ -103,6 +105,25 @@ EOF
     chmod +x "$target/ghdl"
 }
 
+# Each file by its commit and its checksum: what comes is what was tested.
+fetch_foreign() {
+    list=$(dirname "$0")/../examples/foreign/files.list
+    mkdir -p "$target" "$cache/foreign"
+    grep -v '^#' "$list" | while read -r repository commit path sum; do
+        keep=$cache/foreign/$sum
+        if [ ! -f "$keep" ]; then
+            url=${ICESOC_RAW:-https://raw.githubusercontent.com}/$repository/$commit/$path
+            echo "Fetching $repository $path ..."
+            curl --fail --silent --show-error --location --max-time 60 -o "$work/file" "$url" ||
+                fail "cannot get $url: is there a network? Only the examples of foreign cores need it"
+            echo "$sum  $work/file" | sha256sum --check --status || fail "$url is not the file that was tested (sha256)"
+            mv "$work/file" "$keep"
+        fi
+        mkdir -p "$target/$(basename "$repository")"
+        cp "$keep" "$target/$(basename "$repository")/$(basename "$path")"
+    done
+}
+
 mkdir -p "$cache"
 # One at a time: two builds may want the same.
 exec 9>"$cache/lock"
@@ -113,5 +134,6 @@ trap 'exit 130' INT TERM
 case $what in
 ice) fetch_ice ;;
 ghdl) fetch_ghdl ;;
+foreign) fetch_foreign ;;
 *) fail "unknown: $what" ;;
 esac

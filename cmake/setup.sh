@@ -30,6 +30,7 @@ libssl-dev AES of the modem model
 lcov coverage pages
 chromium opens the report pages in tests
 git finds what changed
+curl fetches the foreign cores of the examples
 slurmctld regression on a cluster, tested on loopback
 slurmd its node
 slurm-client its commands

@@ -10,6 +10,15 @@ new-ip: $(BUILD)/build.ninja ## begin a core: NAME=fir LANG=verilog|vhdl [ICE=fi
 	@[ -z '$(ICE)' ] || ninja -C $(BUILD) -j $(JOBS) --quiet slice2c
 	@ip/new.sh '$(NAME)' '$(LANG)' '$(BUILD)' '$(ICE)'
 
+# Third-party cores come from the network, so they are no part of the rest.
+foreign: setup ## put third-party cores (Wishbone in Verilog, records in VHDL) through the recipe and test them; downloads them
+	@cmake/fetch.sh foreign build/foreign-cores
+	@cmake -S . -B build/foreign -G Ninja -DROOMS="bus;slice;sw;hdl;ip;testbench" -DFOREIGN_CORES='$(CURDIR)/build/foreign-cores' \
+	    -DCORE_FOLDERS='$(CURDIR)/examples/foreign/i2c_master;$(CURDIR)/examples/foreign/spi_master' >/dev/null
+	@ninja -C build/foreign -j $(JOBS) --quiet test_ip_i2c_master test_ip_spi_master
+	@ctest --test-dir build/foreign --output-on-failure --no-tests=error -R '^test_ip_(i2c|spi)_master[.]'
+.PHONY: foreign
+
 ip-test: $(BUILD)/build.ninja ## build and test one core: IP=fir
 	@[ -n '$(IP)' ] && [ -f 'ip/$(IP)/$(IP)_test.cpp' ] || { echo "ip-test: IP=name of a core with ip/name/name_test.cpp, not '$(IP)'" >&2; exit 1; }
 	@ninja -C $(BUILD) -j $(JOBS) --quiet 'test_ip_$(IP)'

@@ -1,0 +1,42 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# linked: slice2c sw-folder work-folder   A program for the Cortex-M3 has in it only what it uses of an interface and of
+# the run time: nm of a client of one operation and of a server of one interface (docs/slice-mapping.md).
+set -eu
+slice2c=$1 sw=$2 work=$3
+here=$(cd "$(dirname "$0")" && pwd)
+command -v arm-none-eabi-gcc >/dev/null || { echo "linked: arm-none-eabi-gcc is missing; run 'make setup'" && exit 1; }
+rm -rf "$work"
+mkdir -p "$work"
+"$slice2c" "$here/Linked.ice" --output-dir "$work"
+
+build() { # name, flags
+    name=$1
+    shift
+    (cd "$work" && mkdir -p "$name" && cd "$name" &&
+        arm-none-eabi-gcc -std=c90 -mcpu=cortex-m3 -mthumb -Os -ffunction-sections -fdata-sections "$@" \
+            -I"$sw/base" -I"$sw/icec" -I.. -c "$sw"/icec/*.c ../Linked_*.c "$here/$name.c")
+    arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -nostartfiles --specs=nosys.specs --specs=nano.specs -Wl,--gc-sections -Wl,-e,main \
+        -o "$work/$name.elf" "$work/$name"/*.o 2>"$work/$name.log" || { cat "$work/$name.log" && exit 1; }
+    arm-none-eabi-nm "$work/$name.elf" | awk '{print $NF}' | grep -E '^(Linked|Ice|dispatch|operations)_|skipTable' >"$work/$name.names"
+    echo "$name: $(arm-none-eabi-size "$work/$name.elf" | awk 'NR == 2 {print $1}') bytes of text, $(wc -l <"$work/$name.names") names of IceC and of generated code"
+}
+bad=0
+has() { # program, name
+    grep -qx -- "$2" "$work/$1.names" || { echo "linked: $1 lacks $2: the test looks at the wrong thing" && bad=1; }
+}
+lacks() { # program, pattern
+    ! grep -E -- "$2" "$work/$1.names" || { echo "linked: $1 has what it does not use (above: $2)" && bad=1; }
+}
+build client -DICEC_MINIMAL
+build server -DICEC_MINIMAL
+has client Linked_CounterPrx_add
+has server Linked_Lamp_light
+lacks client '^Linked_([^C]|Counter_|CounterPrx_([^a]|a[^d]))'
+lacks server '^Linked_(Counter|Other|Tree|Failure|Groups|Names|CounterPrx|LampPrx)'
+for program in client server; do
+    lacks $program 'Values|_type$|Optional|Exception|Slice|readSequence|Async|_later|_Reply_|batch|writeValue|readValue'
+done
+lacks client 'dispatch_|Object_dispatch|ObjectAdapter|Servant'
+lacks server 'stringToProxy|_readPrx|ObjectPrx_begin|ObjectPrx_invoke'
+exit $bad

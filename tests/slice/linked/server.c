@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * server: one servant of a file that declares more.
+ */
+#include "Linked.h"
+
+static Ice_Communicator ic;
+static Ice_ObjectAdapter adapter;
+static Linked_Lamp lamp;
+static Ice_Bool isOn;
+
+Ice_Status Linked_Lamp_light(Linked_LampPtr self, Ice_Bool on, const Ice_Current* current) {
+    (void)self, (void)current;
+    isOn = on;
+    return ICE_OK;
+}
+
+int main(void) {
+    Ice_initialize(&ic);
+    (void)Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "Adapter", "tcp -p 1", &adapter);
+    Linked_Lamp_init(&lamp);
+    (void)Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&lamp, "lamp");
+    Ice_Communicator_waitForShutdown(&ic);
+    return (int)isOn;
+}

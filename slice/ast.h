@@ -44,6 +44,7 @@ struct Literal {
     Kind kind = Kind::None;
     int64_t integer = 0; // Bool, Integer; Enumerator: its value
     double floating = 0; // Floating
+    std::string written; // String, Enumerator: as checksums have it
     std::string text;    // Floating as written; String as bytes of UTF-8; Enumerator's name
     const Declaration* owner = nullptr; // Enumerator's enum
 };
@@ -89,6 +90,7 @@ struct Declaration {
     std::vector<std::string> metadata;
 
     std::vector<Enumerator> enumerators;   // Enum
+    bool hasValues = false;                // Enum: some are written down
     std::vector<Field> fields;             // Struct, Class, Exception: own members
     Type key, element;                     // Dictionary; Sequence: element; Constant: its type
     Literal value;                         // Constant

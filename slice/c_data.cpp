@@ -4,6 +4,7 @@
 
 #include "c_files.h"
 #include "c_names.h"
+#include "checksums.h"
 
 namespace {
 
@@ -228,5 +229,12 @@ std::string typesFile(const CContext& c) {
     });
     if (c.usesClasses())
         valueTypeTable(w, c);
+    if (c.names.checksums) {
+        w.blank();
+        w.line("const Ice_SliceChecksum " + c.checksumTable() + "[] = {");
+        for (const auto& [id, checksum] : checksums(c.unit))
+            w.line("    {\"" + id + "\", \"" + checksum + "\"},");
+        w.line("    {0, 0}};");
+    }
     return w.text();
 }

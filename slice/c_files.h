@@ -16,6 +16,8 @@ struct CContext {
     std::string header() const;
     // The table of all classes that this unit knows: what may be received.
     std::string valueTable() const;
+    // The table of checksums, where one is wanted.
+    std::string checksumTable() const;
     bool usesClasses() const;
     Writer begin(const std::string& what) const;
     Writer beginSource(const std::string& what) const;

@@ -18,12 +18,21 @@ std::string CContext::header() const {
     return names.base + "." + names.headerExtension;
 }
 
-std::string CContext::valueTable() const {
+// A name of file scope: the file's, as far as C allows.
+static std::string ofFile(const std::string& base, const char* what) {
     std::string s;
-    for (char ch : names.base)
+    for (char ch : base)
         s += (ch >= '0' && ch <= '9') || (ch >= 'A' && ch <= 'Z') || (ch >= 'a' && ch <= 'z') ? ch
                                                                                               : '_';
-    return s + "_valueTypes";
+    return s + what;
+}
+
+std::string CContext::valueTable() const {
+    return ofFile(names.base, "_valueTypes");
+}
+
+std::string CContext::checksumTable() const {
+    return ofFile(names.base, "_sliceChecksums");
 }
 
 bool CContext::usesClasses() const {

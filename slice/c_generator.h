@@ -19,6 +19,7 @@ struct CFileNames {
     std::string sourceExtension = "c";
     std::string path;                  // of the header, as others include it: its guard
     std::string includeDir;            // before the header's name in the sources, may be empty
+    bool checksums = false;            // a table of them, too
     std::vector<std::string> includes; // headers of the Slice files that the main file includes
 };
 

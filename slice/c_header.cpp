@@ -323,6 +323,8 @@ std::string headerFile(const CContext& c) {
     w.line("#include \"ice_operation.h\"");
     if (c.usesClasses())
         w.line("#include \"ice_value.h\"");
+    if (c.names.checksums)
+        w.line("#include \"ice_checksum.h\"");
     for (const std::string& include : c.names.includes)
         w.line("#include \"" + include + "\"");
     for (const std::string& m : c.unit.metadata)
@@ -339,6 +341,11 @@ std::string headerFile(const CContext& c) {
         w.blank();
         w.line("/* The classes that can be received; 0 ends. */");
         w.line("extern const Ice_ValueType *const " + c.valueTable() + "[];");
+    }
+    if (c.names.checksums) {
+        w.blank();
+        w.line("/* Of this file's definitions; an id of 0 ends. */");
+        w.line("extern const Ice_SliceChecksum " + c.checksumTable() + "[];");
     }
     c.each(DKind::Interface, [&](const Declaration& d) { declareInterface(w, c, d); });
     w.blank();

@@ -19,7 +19,8 @@ struct Options {
     std::vector<std::string> files, includes, defines, undefines;
     std::string outputDir = ".", includeDir, headerExtension = "h", sourceExtension = "c",
                 dependFile, hwVerilog, hwVhdl, hwRegisters, hwC, hwCpp, hwNewVerilog, hwNewVhdl;
-    bool preprocessOnly = false, depend = false, dependXml = false, validate = false;
+    bool preprocessOnly = false, depend = false, dependXml = false, validate = false,
+         checksums = false;
     NameRules rules;
 };
 
@@ -65,6 +66,7 @@ CFileNames namesFor(const std::string& file, const Options& o, const Preprocesse
     names.headerExtension = o.headerExtension;
     names.sourceExtension = o.sourceExtension;
     names.includeDir = o.includeDir;
+    names.checksums = o.checksums;
     for (const std::string& included : p.includes)
         names.includes.push_back(headerOf(included, file, o.includes, o.headerExtension));
     return names;
@@ -151,6 +153,7 @@ void describe(CLI::App& app, Options& o) {
     app.add_option("--hw-new-verilog", o.hwNewVerilog,
                    "folder for a core to begin with, in Verilog, and its test");
     app.add_option("--hw-new-vhdl", o.hwNewVhdl, "the same in VHDL");
+    app.add_flag("--checksum", o.checksums, "a table of the definitions' checksums, too");
     app.add_flag("--depend", o.depend, "print make dependencies, generate nothing");
     app.add_flag("--depend-xml", o.dependXml, "print dependencies as XML, generate nothing");
     app.add_option("--depend-file", o.dependFile, "write dependencies to this file");

@@ -9,6 +9,10 @@
 #include "lexer.h"
 #include "names.h"
 
+// "struct"; "int", "::M::I*"
+const char* kindName(Declaration::Kind kind);
+std::string typeName(const Type& type);
+
 // `mainFile` is the file on the command line; what comes from others is marked fromInclude.
 Unit parse(const std::vector<Token>& tokens, const std::string& mainFile, NameRules rules,
            Diagnostics& diagnostics);

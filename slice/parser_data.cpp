@@ -22,7 +22,9 @@ void Parser::enumeration() {
             continue;
         }
         e.name = name("an enumerator");
-        if (accept("="))
+        bool isWritten = accept("=");
+        d.hasValues = d.hasValues || isWritten;
+        if (isWritten)
             next = number("an enumerator's value", 0);
         else if (next > INT32_MAX)
             error(e.at, "an enumerator's value is 0..2147483647");

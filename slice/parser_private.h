@@ -10,9 +10,6 @@
 #include <map>
 #include <set>
 
-const char* kindName(Declaration::Kind kind);
-std::string typeName(const Type& type);
-
 class Parser {
 public:
     Parser(const std::vector<Token>& tokens, const std::string& mainFile, NameRules rules,

@@ -189,6 +189,7 @@ Literal Parser::namedLiteral(const Type& type, const std::string& what) {
         v.owner = s->declaration;
         v.text = s->declaration->enumerators[s->enumerator].name;
         v.integer = s->declaration->enumerators[s->enumerator].value;
+        v.written = written;
     } else if (s->kind == Symbol::Kind::Declaration &&
                s->declaration->kind == Declaration::Kind::Constant) {
         v = s->declaration->value;
@@ -210,7 +211,7 @@ Literal Parser::literal(const Type& type, const std::string& what) {
         v.text = token().text;
     } else if (at(Token::Kind::String)) {
         v.kind = Literal::Kind::String;
-        v.text = stringValue(token(), diagnostics_);
+        v.text = stringValue(token(), diagnostics_, &v.written);
     } else if (isWord("true") || isWord("false")) {
         v.kind = Literal::Kind::Bool;
         v.integer = isWord("true");

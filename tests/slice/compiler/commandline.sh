@@ -54,6 +54,36 @@ expect 1 'Middle.ice' "$slice2c" slice/Top.ice # no -I
 echo 'in the way' >file
 expect 1 'cannot write' "$slice2c" -I slice slice/Lib/Base.ice --output-dir file/sub
 expect 0 '' "$slice2c" --validate
+# Checksums are those of slice2cpp.
+cat >checksums.ice <<'ICE'
+[["underscore"]]
+module Sums {
+    const int A = -0x10; const float B = 1.50; const double C = 1e30; const string D = "a\t\u00e9\"\x41\\"; const bool E = true; const long F = A;
+    const double Third = 0.333333333333; const byte G = 0; const string Empty = ""; const string Raw = "\U0001F681\xe9\351\'\?\n\7";
+    enum Plain { one, two }; enum Valued { x = 5, y = 1, z }; const Valued G_ood = y; const Valued H = Valued::z; const Valued K = H;
+    struct S { int a = 5; ["m"] string b; Plain p; };
+    sequence<Object> Q; sequence<Object*> R; dictionary<S, Q> Dict; interface I; sequence<I*> Is;
+    exception Ex { optional(5) int b; string why; optional(2) S a; }; exception Fx extends Ex { }; exception Gx { };
+    class Base; class Base(7) { int a; optional(9) Base b; optional(3) bool c; Base d; };
+    class Derived extends Base implements I2 { };
+    interface I extends I3, I4 {
+        void nothing(); idempotent int op(int a, out string b) throws Fx, Gx; ["amd"] optional(3) S opt(optional(7) int z, int y, optional(1) int x, out bool w);
+        optional(1) I* all(optional(9) int a, optional(2) int b); void first(int a, optional(4) int b);
+    };
+};
+ICE
+sed -i 's/^    class Base; /    interface I2 { void run(); }; interface I3 { }; interface I4 { };\n&/' checksums.ice
+sums() { sed -n 's/^ *{*"\(::[^"]*\)", "\([0-9a-f]*\)".*/\1 \2/p' "$1" | sort -u; }
+mkdir sums sums/cpp
+for file in checksums.ice /usr/share/ice/slice/IceGrid/Admin.ice /usr/share/ice/slice/Ice/Version.ice /usr/share/ice/slice/Ice/Metrics.ice; do
+    base=$(basename "$file" .ice)
+    expect 0 '' "$slice2c" --checksum -I/usr/share/ice/slice "$file" --output-dir sums
+    slice2cpp --checksum -I/usr/share/ice/slice "$file" --output-dir sums/cpp 2>/dev/null
+    sums "sums/${base}_types.c" >ours
+    sums "sums/cpp/$base.cpp" >theirs
+    [ "$base" != checksums ] || gcc -std=c90 -pedantic -Wall -Wextra -Werror -fsyntax-only -I"$sw/base" -I"$sw/icec" sums/checksums_types.c
+    [ -s ours ] && diff theirs ours || fail "checksums of $base differ from those of slice2cpp"
+done
 expect 0 'struct Point_ty' "$slice2c" -E -I slice slice/Top.ice
 
 # Several files in one run, each beside the others; a header that is included as it is on the -I path.

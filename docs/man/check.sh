@@ -12,8 +12,8 @@ say() {
 warnings=$(LC_ALL=C.UTF-8 MANWIDTH=100 man --warnings -l "$page" 2>&1 >/dev/null || true)
 [ -z "$warnings" ] || say "$warnings"
 if [ -d "$subject" ]; then
-    wanted=$(sed -n 's/.*find(option).*/&/p' "$subject"/*.cpp | grep -o '"-[-a-z]*"' | head -1 | grep -o -- '-[a-z]'
-        grep -ho 'XBeeAT\.[A-Z][a-z]*' "$subject"/*.cpp | sort -u)
+    wanted=$(sed -n 's/.*find(option).*/&/p' "$subject"/*.cpp "$subject"/*.h | grep -o '"-[-a-z]*"' | head -1 | grep -o -- '-[a-z]'
+        grep -ho 'XBeeAT\.[A-Z][a-z]*' "$subject"/*.cpp "$subject"/*.h | sort -u)
     found=$(grep -o 'XBeeAT\.[A-Z][a-z]*' "$page" | sort -u)
 else
     wanted=$("$subject" --help 2>&1 | grep -o -- '--[a-z-]*' | sort -u)

@@ -106,6 +106,32 @@ TEST_F(StockIce, OnewaysArriveInNumberAndTwoProgramsShareTheModem) {
     EXPECT_EQ(a->noted(), 100);
 }
 
+TEST_F(StockIce, AUavThatIsOffIsAConnectTimeout) {
+    world_.rig.with([&] { world_.rig.uavRuns = false; });
+    Ice::CommunicatorHolder ic(world_.client());
+    auto echo = world_.proxy(ic.communicator())->ice_timeout(1500);
+    EXPECT_THROW(echo->ice_ping(), Ice::ConnectTimeoutException);
+    world_.rig.with([&] { world_.rig.uavRuns = true; });
+    EXPECT_NO_THROW(world_.proxy(ic.communicator())->ice_ping());
+}
+
+TEST_F(StockIce, EndpointsKeepTheirOptionsAsTextAndWrongOnesAreRefused) {
+    Ice::CommunicatorHolder ic(world_.client());
+    auto text = [&](const std::string& endpoint) {
+        return ic->proxyToString(ic->stringToProxy("x:xbee-at " + endpoint));
+    };
+    std::string whole = text("-d \"/dev/a b\" -b 57600 -a 0x12 -s 3 -c 0x14 -i 0xBEEF -p 2 -t 7000 "
+                             "-g 30 -k 0011AABB -h any");
+    for (std::string part : {"-d \"/dev/a b\"", "-b 57600", "-a 0x12", "-s 0x3", "-c 0x14",
+                             "-i 0xbeef", "-p 2", "-t 7000", "-g 30"})
+        EXPECT_NE(whole.find(part), std::string::npos) << part << " in " << whole;
+    EXPECT_EQ(whole.find("0011AABB"), std::string::npos) << "the key is printed";
+    EXPECT_EQ(ic->proxyToString(ic->stringToProxy(whole)), whole);
+    for (std::string wrong : {"-d", "-a 65536", "-a x", "-p 3", "-t -1", "-k 0g", "-y 1",
+                              "-k 00112233445566778899AABBCCDDEEFF0"})
+        EXPECT_THROW(text(wrong), Ice::EndpointParseException) << wrong;
+}
+
 // The same by Python, which loads the plugin's other library.
 TEST_F(StockIce, PythonWithThreadsAndCallbacks) {
     std::string command = "/usr/bin/python3 '" CLIENT "' '" SLICE "' '" PLUGIN_FOLDER "' '" +

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+//
+// plugin_instance: what the endpoints of one communicator share: defaults, logger, engine.
+
+#ifndef GROUND_PLUGIN_INSTANCE_H
+#define GROUND_PLUGIN_INSTANCE_H
+
+#include "engine.h"
+
+#include <Ice/Ice.h>
+#include <string>
+#include <system_error>
+
+namespace XBeeAT {
+
+constexpr Ice::Short endpointType = 0x4158;
+inline const std::string protocolName = "xbee-at";
+constexpr Ice::Int defaultTimeoutMs = 30000; // setting a modem up takes seconds
+
+struct EndpointOptions {
+    Settings serial;
+    int channel = 255; // logical, 255: any
+    Ice::Int timeoutMs = defaultTimeoutMs;
+    std::string connectionId;
+    bool compress = false;
+};
+
+// The key itself is in no message.
+inline void checkKey(const std::string& key, const std::string& where) {
+    if (key.size() > 32 || key.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
+        throw Ice::EndpointParseException(
+            __FILE__, __LINE__, "the AES key of " + where + " must be up to 32 hexadecimal digits");
+}
+
+// What the endpoints of one communicator share: its properties and its logger.
+class Instance : public IceUtil::Shared {
+public:
+    explicit Instance(const Ice::CommunicatorPtr& communicator) : communicator_(communicator) {
+        Ice::PropertiesPtr p = communicator->getProperties();
+        trace_ = p->getPropertyAsInt("XBeeAT.Trace");
+        statistics_ = p->getPropertyAsInt("XBeeAT.Statistics") > 0;
+        defaults_.serial.device = p->getProperty("XBeeAT.Device");
+        defaults_.serial.baud = p->getPropertyAsIntWithDefault("XBeeAT.Baud", 115200);
+        defaults_.serial.guardMs = p->getPropertyAsIntWithDefault("XBeeAT.Guard", 1000);
+        defaults_.serial.key = p->getProperty("XBeeAT.Key");
+        checkKey(defaults_.serial.key, "property XBeeAT.Key");
+        defaults_.serial.downMs = 1000 * p->getPropertyAsIntWithDefault("XBeeAT.Down", 15);
+        defaults_.serial.setUp = p->getPropertyAsIntWithDefault("XBeeAT.Setup", 1) > 0;
+    }
+    const EndpointOptions& defaults() const { return defaults_; }
+
+    std::shared_ptr<Engine> engine(const EndpointOptions& o) {
+        Ice::LoggerPtr logger = communicator_->getLogger();
+        int trace = trace_;
+        try {
+            engine_ = Engine::get(o.serial, [logger, trace](int level, const std::string& text) {
+                if (level == 0)
+                    logger->error("xbee-at: " + text);
+                else if (level <= trace)
+                    logger->trace("XBeeAT", text);
+            });
+        } catch (const std::system_error& e) {
+            logger->error(std::string("xbee-at: ") + e.what());
+            throw Ice::ConnectFailedException(__FILE__, __LINE__, e.code().value());
+        }
+        return engine_;
+    }
+    void destroy() {
+        if (engine_ && statistics_)
+            communicator_->getLogger()->print("xbee-at: " + engine_->statistics());
+        engine_.reset();
+        communicator_ = ICE_NULLPTR;
+    }
+
+private:
+    Ice::CommunicatorPtr communicator_;
+    EndpointOptions defaults_;
+    int trace_ = 0;
+    bool statistics_ = false;
+    std::shared_ptr<Engine> engine_; // kept while the communicator lives: set-up takes seconds
+};
+typedef IceUtil::Handle<Instance> InstancePtr;
+
+} // namespace XBeeAT
+
+#endif

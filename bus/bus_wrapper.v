@@ -15,7 +15,8 @@
 module bus_wrapper #(
     parameter [31:0] ID_VALUE = 32'd0,
     parameter [15:0] WORDS    = 16'hFFF8, // bit w: word w exists (bits 2..0 are ignored)
-    parameter        EVENTS   = 1         // 1..32
+    parameter        EVENTS   = 1,        // 1..32
+    parameter        ZERO     = 0         // 1: reg_rdata_i is 0 for words 0..2: it need not be gated
 ) (
     input  wire              clk_i,
     input  wire              rst_i,
@@ -25,7 +26,7 @@ module bus_wrapper #(
     input  wire [3:0]        bus_addr_i,
     input  wire [31:0]       bus_wdata_i,
     output wire              bus_ready_o,
-    output reg  [31:0]       bus_rdata_o,
+    output wire [31:0]       bus_rdata_o,
     output wire              bus_error_o,
     // the block's registers
     output wire              reg_write_o,
@@ -54,15 +55,17 @@ module bus_wrapper #(
     assign reg_wdata_o = bus_wdata_i;
     assign irq_o       = |(sticky & mask);
 
+    reg [31:0] first; // of words 0..2
     always @* begin
-        bus_rdata_o = 32'd0;
-        case (bus_addr_i)
-            ID:      bus_rdata_o = ID_VALUE;
-            EVENT:   bus_rdata_o[EVENTS-1:0] = sticky;
-            MASK:    bus_rdata_o[EVENTS-1:0] = mask;
-            default: if (exists) bus_rdata_o = reg_rdata_i;
-        endcase
+        first = 32'd0;
+        if (bus_addr_i == ID)
+            first = ID_VALUE;
+        if (bus_addr_i == EVENT)
+            first[EVENTS-1:0] = sticky;
+        if (bus_addr_i == MASK)
+            first[EVENTS-1:0] = mask;
     end
+    assign bus_rdata_o = first | (ZERO != 0 || (own && exists) ? reg_rdata_i : 32'd0);
 
     always @(posedge clk_i) begin
         sticky <= (sticky & ~clear) | event_i;

@@ -55,18 +55,16 @@ module modem #(
     reg  [31:0] reg_rdata;
 
     wire control     = reg_write && reg_addr == MODEM_CONTROL;
-    wire configure   = control && reg_wdata[MODEM_CONTROL_CONFIGURE_LSB];
-    wire reset_modem = control && reg_wdata[MODEM_CONTROL_RESET_MODEM_LSB];
-    wire rings_reset = rst_i || reset_modem;
+    reg  configure, reset_modem, rings_reset; // a cycle after the write: they go far
 
-    // What software writes is kept in LUT RAM: words 0..15 as the registers, 16..19 the key.
+    // What software writes is kept in LUT RAM: words 0..15 as the registers, 28..31 the key.
     reg  [31:0] words [0:31];
     reg  [1:0]  key_index;
     wire        key_write = reg_write && reg_addr == MODEM_KEY;
     wire [4:0]  at_word;
     wire [4:0]  ring_word;
     wire        at_busy;
-    wire [4:0]  word_index = bus_valid_i ? {1'b0, bus_addr_i} : at_busy ? at_word : ring_word;
+    wire [4:0]  word_index = bus_valid_i ? {1'b0, bus_addr_i} : at_word | (at_busy ? 5'd0 : ring_word);
     wire [31:0] word       = words[word_index];
 
     // Time
@@ -77,7 +75,8 @@ module modem #(
 
     reg         ready, reset_n, pulse_ends, encrypt;
     reg  [7:0]  framing_errors, overruns, retries, unsents;
-    reg  [1:0]  cts_sync;
+    reg  [1:0]  cts_n_sync;
+    wire        cts = !cts_n_sync[1];
 
     // AT sequencer
     wire        at_done, at_failed, at_retried, at_tx_valid;
@@ -128,6 +127,7 @@ module modem #(
     bus_wrapper #(
         .ID_VALUE (MODEM_ID_VALUE),
         .WORDS    (16'hFFF8),
+        .ZERO     (1),
         .EVENTS   (7)
     ) u_wrapper (
         .clk_i(clk_i), .rst_i(rst_i),
@@ -193,7 +193,7 @@ module modem #(
             modem_api_tx u_api_tx (
                 .clk_i(clk_i), .rst_i(rings_reset || configure), .target_i(target),
                 .valid_i(body_valid), .data_i(body_data), .last_i(body_last),
-                .bytes_i(tx_bytes), .ready_o(body_ready), .cts_i(cts_sync[1]),
+                .bytes_i(tx_bytes), .ready_o(body_ready), .cts_i(cts),
                 .valid_o(packet_tx_valid), .data_o(frame_data), .ready_i(tx_ready)
             );
             modem_api_rx u_api_rx (
@@ -221,7 +221,7 @@ module modem #(
         .packet_valid_i(tx_waits), .packet_bytes_i(tx_bytes), .sent_o(tx_sent),
         .rd_valid_o(rd_valid), .rd_index_o(rd_index), .rd_done_i(rd_done), .rd_data_i(rd_data),
         .tx_valid_o(body_valid), .tx_data_o(body_data), .tx_ready_i(body_ready), .tx_last_o(body_last),
-        .cts_i(cts_sync[1])
+        .cts_i(cts)
     );
 
     modem_rx #(.API(API)) u_rx (
@@ -250,10 +250,14 @@ module modem #(
     );
 
     wire stored = reg_addr >= MODEM_BAUD && reg_addr <= MODEM_RX_BASE;
+    integer w;
+    initial
+        for (w = 0; w < 32; w = w + 1)
+            words[w] = 32'd0;
     always @* begin
-        reg_rdata = stored ? word : 32'd0; // words that only act read as 0
+        reg_rdata = word; // 0 where nothing is stored
         if (reg_addr == MODEM_STATUS)
-            reg_rdata = reg_rdata | {bd_now, at_step, 4'd0, cts_sync[1], tx_waits,
+            reg_rdata = reg_rdata | {bd_now, at_step, 4'd0, cts, tx_waits,
                                      at_busy || !reset_n, ready, 16'd0};
         if (reg_addr == MODEM_TX_STATE)
             reg_rdata = reg_rdata | {20'd0, tx_next, 3'd0, tx_free};
@@ -264,11 +268,15 @@ module modem #(
     end
 
     always @(posedge clk_i) begin
-        cts_sync <= {cts_sync[0], !modem_cts_n_i};
+        cts_n_sync <= {cts_n_sync[0], modem_cts_n_i};
+
+        configure   <= control && reg_wdata[MODEM_CONTROL_CONFIGURE_LSB] && !rst_i;
+        reset_modem <= control && reg_wdata[MODEM_CONTROL_RESET_MODEM_LSB] && !rst_i;
+        rings_reset <= control && reg_wdata[MODEM_CONTROL_RESET_MODEM_LSB] || rst_i;
         rx_full  <= rx_free == 5'd0 || (rx_free == 5'd1 && rx_push);
 
-        if (reg_write)
-            words[key_write ? {3'b100, key_index} : {1'b0, reg_addr}] <= reg_wdata;
+        if (key_write || (reg_write && stored))
+            words[{key_write, reg_addr[3:2], key_write ? key_index : reg_addr[1:0]}] <= reg_wdata;
         key_index <= key_index + {1'b0, key_write};
         if (reg_write && reg_addr == MODEM_NET)
             encrypt <= reg_wdata[MODEM_NET_ENCRYPT_LSB];
@@ -308,7 +316,7 @@ module modem #(
             unsents        <= 8'd0;
         end
         if (rst_i) begin
-            cts_sync   <= 2'b00;
+            cts_n_sync <= 2'b11;
             ready      <= 1'b0;
             reset_n    <= 1'b1;
             pulse_ends <= 1'b0;

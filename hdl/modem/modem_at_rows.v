@@ -79,7 +79,7 @@ module modem_at_rows #(
             5:       digit = {1'b0, MODEM_NET, left[2:0]};
             6:       digit = {1'b0, MODEM_NET, 1'b1, left[1:0]};
             7:       digit = {1'b0, MODEM_NET, 3'd2};
-            KEY:     digit = {3'b100, ~left[4:3], left[2:0]};
+            KEY:     digit = {3'b111, ~left[4:3], left[2:0]};
             default: digit = {1'b0, MODEM_BAUD, left[2:0]};
         endcase
     endfunction

@@ -28,14 +28,16 @@ module modem_baud #(
     reg  [WIDTH:0]   phase; // its highest bit is the carry
     reg  [4:0]       count; // ticks of 38400 baud
 
-    // Not a case: Yosys would make a ROM of it, and put registers before it.
-    wire [WIDTH-1:0] step = bd_i[3] ? BD8[WIDTH-1:0] : bd_i == 4'd7 ? BD7[WIDTH-1:0]
-                          : bd_i == 4'd6 ? BD6[WIDTH-1:0] : BASE[WIDTH-1:0];
+    // Not a case: Yosys would make a ROM of it, and put registers before it. Minus the step: only in a
+    // difference is the phase sure to be the operand that the carry chain takes without a LUT.
+    localparam [WIDTH:0] FULL = 0;
+    wire [WIDTH:0] minus = bd_i[3] ? FULL - BD8[WIDTH:0] : bd_i == 4'd7 ? FULL - BD7[WIDTH:0]
+                         : bd_i == 4'd6 ? FULL - BD6[WIDTH:0] : FULL - BASE[WIDTH:0];
     // Bits of count that must be 0.
     wire [4:0] hide = {bd_i < 4'd1, bd_i < 4'd2, bd_i < 4'd3, bd_i < 4'd4, bd_i < 4'd5};
 
     always @(posedge clk_i) begin
-        phase <= {1'b0, step} + {1'b0, phase[WIDTH-1:0]};
+        phase <= {1'b0, phase[WIDTH-1:0]} - minus;
         count <= count + {4'd0, phase[WIDTH]};
         tick_o <= phase[WIDTH] && (count & hide) == 5'd0;
         if (rst_i) begin

@@ -145,7 +145,7 @@ std::vector<Change> changedInstances(const Costs& before, const Costs& after) {
     return sorted(std::move(changes));
 }
 
-Verdict judge(const Row& row, const Baseline& baseline, const string& yosys) {
+Verdict judge(const Row& row, const Baseline& baseline, const string& yosys, double goal) {
     Verdict v;
     const string& name = row.design->name;
     if (!row.main->error.empty()) {
@@ -181,6 +181,15 @@ Verdict judge(const Row& row, const Baseline& baseline, const string& yosys) {
         text += "\n    modules that grew:" + list(changedInstances(a.costs, f.costs));
         text += "\n    signals that grew:" + list(changedSignals(a.costs, f.costs));
         v.failures.push_back(text);
+    }
+    const double slowest = a.mhz >= goal ? goal : 0.9 * a.mhz;
+    if (f.mhz() > 0 && f.mhz() < slowest) {
+        const Path& path = f.timing.paths.front();
+        v.failures.push_back(fmt::format("{}: {:.0f} MHz; accepted were {:.0f}, the least is "
+                                         "{:.0f}\n    the longest path:\n      "
+                                         "{} to {} {}, {} levels",
+                                         name, f.mhz(), a.mhz, slowest, path.from, path.to,
+                                         path.pin, path.levels));
     }
     return v;
 }

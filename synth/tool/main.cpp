@@ -152,7 +152,7 @@ int report(const Options& o) {
     const fs::path accepted = o.source / "synth/baseline.json";
     r.baseline = readBaseline(fs::exists(accepted) ? readFile(accepted) : "");
     for (const Row& row : r.rows)
-        r.verdicts.push_back(judge(row, r.baseline, r.yosys));
+        r.verdicts.push_back(judge(row, r.baseline, r.yosys, plan.chip.mhz));
     r.commits = history(o.source, shownCommits);
     r.commit = currentCommit(o.source);
     r.pictures = drawNetlists(plan, library, options);

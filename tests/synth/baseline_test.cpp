@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -33,7 +34,8 @@ struct Fixture {
         run.figures.ff += flipFlops;
         run.figures.costs[{"u_part", "state"}] += {luts, 0, flipFlops, 0};
     }
-    Verdict verdict() { return judge(row, baseline, yosys); }
+    void slow(double ns) { run.figures.timing.paths = {{"u_a.from", "u_b.to", "D", 7, ns, {}}}; }
+    Verdict verdict() { return judge(row, baseline, yosys, 100); }
 };
 
 TEST(Baseline, GrowthWithinTheBudgetPasses) {
@@ -82,7 +84,28 @@ TEST(Baseline, ALimitThatWasNotKeptIsATarget) {
 TEST(Baseline, FiguresOfAnotherYosysAreNotJudged) {
     Fixture f;
     f.grow(80, 30);
-    EXPECT_THAT(judge(f.row, f.baseline, "Yosys 0.52").failures, IsEmpty());
+    EXPECT_THAT(judge(f.row, f.baseline, "Yosys 0.52", 100).failures, IsEmpty());
+}
+
+TEST(Baseline, AClockThatWasReachedMustBeReached) {
+    Fixture f;
+    f.slow(8.0); // 104 MHz at -2, 1.2 times as slow as -3
+    f.baseline.designs["block"] = acceptedFrom(f.run.figures);
+    EXPECT_THAT(f.verdict().failures, IsEmpty());
+    f.slow(8.4);
+    EXPECT_THAT(f.verdict().failures,
+                ElementsAre(AllOf(HasSubstr("99 MHz; accepted were 104, the least is 100"),
+                                  HasSubstr("u_a.from to u_b.to D, 7 levels"))));
+}
+
+TEST(Baseline, AClockThatWasNotReachedMayLoseATenth) {
+    Fixture f;
+    f.slow(10.0);
+    f.baseline.designs["block"] = acceptedFrom(f.run.figures);
+    f.slow(10.9);
+    EXPECT_THAT(f.verdict().failures, IsEmpty());
+    f.slow(11.3);
+    EXPECT_THAT(f.verdict().failures, SizeIs(1));
 }
 
 TEST(Baseline, AFailedSynthesisIsAFailure) {

@@ -4,6 +4,7 @@
 # report: utilisation-program source-folder case: the command on a small project of its own, as a user runs it.
 #   counts   its figures are those that the blocks' sources promise, and Yosys' own `stat` counts them too
 #   growth   a register more fails with its name; accepting it passes; a second run takes all from the cache
+#   slow     a longer path than the clock allows fails with its ends
 #   broken   a syntax error is told with its file and line, and the other designs are reported nevertheless
 #   edif     the netlist for ISE is whole
 #   page     the page in Chromium: tables, chart, sorting, looking inside, differences; one file, no network
@@ -48,6 +49,14 @@ growth)
     has 'extra +.*FF'
     [ "$(grep -c '^\[' "$work/log")" = 1 ] || fail "more was synthesised than what has changed"
     run --family xc6s --accept && run --family xc6s || fail "the accepted growth does not pass"
+    ;;
+slow)
+    run --family xc6s --accept || fail "$(cat "$work/log")"
+    sed -i 's/^    wire \[5:0\] word;/&\n    reg [31:0] chain;\n    wire [31:0] a = chain + {chain[7:0], chain[31:8]}, b = a ^ (a + {a[15:0], a[31:16]}), c = b + {b[3:0], b[31:4]}, d = c ^ (c + {c[10:0], c[31:11]}), e = d ^ (d + {d[12:0], d[31:13]}), f = e + {e[5:0], e[31:6]};/; s/^        data_o <= word/        chain <= f ^ word;\n        data_o <= chain[31:26] ^ word/' \
+        "$project/hdl/blocks/pair.v"
+    if run --family xc6s; then fail "a chain of adders passes"; fi
+    has 'FAILED whole: [0-9]* MHz; accepted were [0-9]*, the least is 100'
+    has 'chain.* to .*chain.* levels'
     ;;
 broken)
     echo 'module broken(input wire a_i); assign b = ; endmodule' >"$project/hdl/blocks/broken.v"

@@ -10,6 +10,8 @@ cp -r "$ip/new.sh" "$ip/rm.sh" "$ip/template" "$work/ip"
 echo '{}' >"$work/hdl/modem/modem.regs.json"
 echo 'module bus_thing (' >"$work/bus/other.v"
 echo 'entity Vhdl_Thing is' >"$work/ip/old/other.vhd"
+# Not the repository that the work folder may be in.
+export GIT_CEILING_DIRECTORIES="$(dirname "$work")"
 before=$(ls "$work/ip")
 refused() { # words of the message, arguments
     words=$1

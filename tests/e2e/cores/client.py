@@ -1,0 +1,85 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Calls new cores in a UAV's FPGA by radio: client.py DEVICE STATUS PLUGIN File.ice ..."""
+
+import sys
+import threading
+
+import Ice
+
+device, status, plugin, *files = sys.argv[1:]
+for file in files:
+    Ice.loadSlice("", [file])
+import Cores  # noqa: E402
+import Demo  # noqa: E402
+
+
+def expect(what, value, wanted):
+    if value != wanted:
+        sys.exit("%s: %r, expected %r" % (what, value, wanted))
+
+
+def fails(kind, call, *arguments):
+    try:
+        call(*arguments)
+    except kind as e:
+        return e
+    sys.exit("%s did not come" % kind.__name__)
+
+
+class Watcher(Demo.Watcher):
+    def __init__(self):
+        self.peaks, self.finished_calls, self.came = [], 0, threading.Semaphore(0)
+
+    def peak(self, largest, current=None):
+        self.peaks.append((largest.index, largest.value))
+        self.came.release()
+
+    def finished(self, current=None):
+        self.finished_calls += 1
+        self.came.release()
+
+
+data = Ice.InitializationData()
+data.properties = Ice.createProperties()
+data.properties.setProperty("Ice.Plugin.XBeeAT", plugin)
+data.properties.setProperty("XBeeAT.Clock", status)
+data.properties.setProperty("Ground.Endpoints", "xbee-at -d %s" % device)
+with Ice.initialize(data) as ic:
+    where = ":xbee-at -d %s -a 0x0001 -t 300000" % device
+    for identity, prx in (("sample_verilog", Cores.SampleVerilogPrx), ("newcomer", Cores.SampleVhdlPrx)):
+        core = prx.checkedCast(ic.stringToProxy(identity + where))
+        core.setOffset(-100)
+        expect(identity + ".add", core.add(42), -58)
+        expect(identity + ".sumTo", core.sumTo(100), 5050)
+        fails(Ice.UnknownException, core.sumTo, 0)
+        # While a long call is under way (it hangs, and is given up after 100 ms) others are answered.
+        later = core.sumToAsync(2000000000)
+        expect(identity + ".add meanwhile", core.add(1), -99)
+        if later.done():
+            sys.exit("the long call was over before the short one")
+        fails(Ice.UnknownException, later.result)
+        expect(identity + ".sumTo after that", core.sumTo(4), 10)
+
+    scaler = Demo.ScalerPrx.checkedCast(ic.stringToProxy("scaler" + where))
+    watcher = Watcher()
+    adapter = ic.createObjectAdapter("Ground")
+    listener = adapter.add(watcher, ic.stringToIdentity("watcher"))
+    adapter.activate()
+    scaler.watch(Demo.WatcherPrx.uncheckedCast(ic.stringToProxy("watcher -o:xbee-at -a 0x0000")))
+    scaler.setLimit(1000)
+    values = [37 * i % 200 - 100 for i in range(100)]
+    expect("scaler.shift", scaler.shift(values, 7), (sum(values) + 700, [v + 7 for v in values]))
+    if not watcher.came.acquire(timeout=60):
+        sys.exit("the event 'finished' did not come")
+    expect("events", (watcher.peaks, watcher.finished_calls), ([], 1))
+    scaler.shift([1, 2000, 3], 5)
+    for _ in range(2):
+        if not watcher.came.acquire(timeout=60):
+            sys.exit("events: %r, %d finished" % (watcher.peaks, watcher.finished_calls))
+    expect("events", (watcher.peaks, watcher.finished_calls), ([(1, 2005)], 2))
+    thrown = fails(Demo.Overflow, scaler.shift, [0, 1, 32000], 1000)
+    expect("Overflow", (thrown.index, thrown.code), (2, 42))
+    fails(Ice.UnknownException, scaler.shift, [0] * 101, 1)
+    fails(Ice.ObjectNotExistException, ic.stringToProxy("hwengine1" + where).ice_ping)
+print("cores: all as expected")

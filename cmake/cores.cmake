@@ -113,8 +113,12 @@ function(icesoc_chip)
     list(APPEND inputs ${regs})
   endforeach()
   add_custom_command(OUTPUT ${GEN_DIR}/map.regs.json ${GEN_DIR}/soc_cores.vh ${GEN_DIR}/soc_cores.c
-    COMMAND coremap ${CORES} --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} --output-dir ${GEN_DIR}
+                     ${GEN_DIR}/icesoc.svd ${GEN_DIR}/registers.html
+    COMMAND coremap ${CORES} --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options}
+            --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
+            --block 1=modem=${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json --output-dir ${GEN_DIR}
     DEPENDS coremap ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${inputs}
+            ${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json ${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json
     VERBATIM COMMENT "Cores of the chip: ${CHIP_CORES}")
   icesoc_regmap(${GEN_DIR}/map.regs.json)
   icesoc_chip_property(libs libs)

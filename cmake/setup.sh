@@ -25,6 +25,7 @@ nlohmann-json3-dev register descriptions, reports
 libfmt-dev text formatting
 libcli11-dev command lines
 libcpp-httplib-dev serves the page of make run
+libxml2-utils checks the generated SVD file and pages
 libpugixml-dev reads JUnit results
 libssl-dev AES of the modem model
 lcov coverage pages

@@ -43,4 +43,13 @@ nlohmann::ordered_json mapOf(const Chip& chip, const nlohmann::ordered_json& bas
 std::string verilogOf(const Chip& chip);
 std::string instancesOf(const Chip& chip);
 
+// A populated slot, the platform's too, with its *.regs.json.
+struct Slot {
+    std::string name;
+    unsigned number;
+    nlohmann::json description;
+};
+std::string svdOf(const std::vector<Slot>& slots);
+std::string htmlOf(const std::vector<Slot>& slots);
+
 #endif

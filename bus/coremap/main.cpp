@@ -34,13 +34,15 @@ int main(int argc, char** argv) {
     CLI::App app{"Puts the cores of a list into the chip: address map, instances in Verilog, the "
                  "firmware's table."};
     std::string list, base, outputDir = ".";
-    std::vector<std::string> cores;
+    std::vector<std::string> cores, blocks;
     app.add_option("list", list,
                    "a core a line: folder [name=] [identity=] [slot=] [input=core.output]")
         ->required();
     app.add_option("--base", base, "the platform's map.regs.json")->required();
     app.add_option("--core", cores, "folder=its description (*.regs.json)");
-    app.add_option("--output-dir", outputDir, "where the three files go");
+    app.add_option("--block", blocks,
+                   "slot=name=description of a block of the platform, for the pages");
+    app.add_option("--output-dir", outputDir, "where the files go");
     CLI11_PARSE(app, argc, argv);
     try {
         std::map<std::string, nlohmann::json> descriptions;
@@ -55,6 +57,19 @@ int main(int argc, char** argv) {
         save(outputDir + "/map.regs.json", mapOf(chip, platform).dump(2) + "\n");
         save(outputDir + "/soc_cores.vh", verilogOf(chip));
         save(outputDir + "/soc_cores.c", instancesOf(chip));
+        std::vector<Slot> slots;
+        for (const std::string& b : blocks) {
+            size_t first = b.find('='), second = b.find('=', first + 1);
+            if (second == std::string::npos)
+                throw std::runtime_error("1: error: --block slot=name=file, not '" + b + "'");
+            slots.push_back({b.substr(first + 1, second - first - 1),
+                             static_cast<unsigned>(std::stoul(b.substr(0, first))),
+                             nlohmann::json::parse(read(b.substr(second + 1)))});
+        }
+        for (const Core& c : chip.cores)
+            slots.push_back({c.name, c.slot, descriptions.at(c.folder)});
+        save(outputDir + "/icesoc.svd", svdOf(slots));
+        save(outputDir + "/registers.html", htmlOf(slots));
     } catch (const std::exception& e) {
         std::cerr << list << ":" << e.what() << "\n";
         return 1;

@@ -14,7 +14,8 @@ chip() { # name, the list: the chip in $work/name
     mkdir -p "$out"
     printf '%b' "$2" >"$out/cores.list"
     "$coremap" "$out/cores.list" --base "$source/bus/map.regs.json" --core "led=$data/led.regs.json" \
-        --core "adder=$data/adder.regs.json" --core "mover=$data/mover.regs.json" --output-dir "$out" 2>"$out/messages"
+        --core "adder=$data/adder.regs.json" --core "mover=$data/mover.regs.json" \
+        --block "0=system=$source/hdl/system/system.regs.json" --output-dir "$out" 2>"$out/messages"
 }
 accepted() {
     chip "$@" || { cat "$out/messages" && fail "refused: $2"; }
@@ -49,6 +50,14 @@ is NPI_PORT_MOVER 0x2
 is NPI_PORT_CAMERA 0x3
 is MEMORY_MOVER 0x1000000
 is MEMORY_CAMERA 0x1000500
+# The pages are XML and HTML that others read; the registers are where the map has them.
+xmllint --noout "$out/icesoc.svd"
+address=$(xmllint --xpath 'string(//peripheral[name="CAMERA"]/baseAddress)' "$out/icesoc.svd")
+[ "$address" = 0x64000100 ] || fail "CAMERA is at $address in the SVD file"
+[ "$(xmllint --xpath 'string(//peripheral[name="SYSTEM"]/registers/register[name="EVENT"]/modifiedWriteValues)' "$out/icesoc.svd")" = oneToClear ] ||
+    fail 'EVENT is not cleared by writing 1 in the SVD file'
+[ "$(xmllint --xpath 'count(//peripheral)' "$out/icesoc.svd")" = 6 ] || fail 'the SVD file has not six peripherals'
+xmllint --html --noout "$out/registers.html" 2>"$work/html" || { cat "$work/html" && fail 'registers.html'; }
 is PIN_CAMERA_SEEN_O 0xB
 grep -q '"eye"' "$out/soc_cores.c" || fail 'the identity is not in the table'
 accepted hole 'led slot=63\n'

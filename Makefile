@@ -73,13 +73,14 @@ endif
 mutants: $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect its test to fail (BLOCK=bus for one block)
 	@tests/mutants/run.sh --jobs $(JOBS) $(if $(BLOCK),--block '$(BLOCK)')
 
-bench: $(BUILD)/build.ninja ## measure simulator, radio link, FSMC bridge, memory ports, modem set-up, firmware and Slice compiler, write build/bench/*.json
+bench: $(BUILD)/build.ninja ## measure simulator, radio link, FSMC bridge, memory ports, modem set-up, firmware, cores and Slice compiler, write build/bench/*.json
 	@ninja -C $(BUILD) -j $(JOBS) measure_simulator
 	@ninja -C $(BUILD) -j $(JOBS) measure_link
 	@ninja -C $(BUILD) -j $(JOBS) measure_fsmc
 	@ninja -C $(BUILD) -j $(JOBS) measure_memory
 	@ninja -C $(BUILD) -j $(JOBS) measure_modem
 	@ninja -C $(BUILD) -j $(JOBS) measure_speed
+	@ninja -C $(BUILD) -j $(JOBS) measure_cores
 	@ninja -C $(BUILD) -j $(JOBS) measure_firmware
 	@ninja -C $(BUILD) -j $(JOBS) slice2c
 	@tests/slice/bench.sh $(BUILD)/slice/slice2c build/bench/slice.json

@@ -30,6 +30,9 @@ public:
     uint64_t now() const { return cycles_ * clkNs; }
     bool irq() const { return top_->irq_o; }
 
+    // The pins of cores (MAP_PIN_...): inputs as they are from the next settling on.
+    void setCorePins(uint32_t value) { top_->core_pins_i = value; }
+
     FsmcMaster& fsmc() { return fsmc_; }
     McbModel& memory() { return memory_; }
     XBee& modem() { return modem_; }

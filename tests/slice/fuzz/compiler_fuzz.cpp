@@ -14,6 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     Diagnostics diagnostics(out);
     CFileNames names;
     names.base = "Fuzz";
+    names.checksums = true;
     auto files = compileToC(text, "Fuzz.ice", {}, names, diagnostics);
     if (files.has_value() == (diagnostics.errors() > 0) ||
         (diagnostics.errors() > 0 && out.str().empty()))

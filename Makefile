@@ -53,7 +53,7 @@ run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground st
 
 # What the sanitized build covers: the firmware's layers and their peers.
 SANITIZED := test_os test_os_cases test_link test_engine test_icec icec_server icec_client everything_cpp_client everything_cpp_server everything_server \
-    everything_client everything_strings ice_relay icec_server_minimal icec_client_minimal
+    everything_client everything_strings ice_relay icec_server_minimal icec_client_minimal test_icec_minimal
 # The missions with stock Ice follow the clock as far as the machine can; the ground follows simulated time, but Ice's own
 # time-outs and other programs' ptys are in real time: where other work takes the processor for long they have a second go.
 test: build ## run all tests; firmware, models and IceC once more with sanitizers

@@ -12,7 +12,9 @@
 #include "link.h"
 
 #define XBEE_ENDPOINT_TYPE 0x4158
-#define XBEE_OWN_CHANNEL 3
+#ifndef XBEE_OWN_CHANNEL
+#define XBEE_OWN_CHANNEL 3 /* that this side opens; 0..2 where it is the ground */
+#endif
 
 /* What the endpoint needs from the application: the link belongs to the radio task. */
 typedef struct XBeeATPort {

@@ -61,9 +61,9 @@ protected:
                                         [](void* c) { return of(c).nowUs_; },
                                         [](void* c) { return of(c).nowUs_ / 1000; }};
         Link_init(link_.get(), &linkPort, this, 1440);
-        Link_start(link_.get(), nowUs_);
         Ice_initialize(ic_.get());
         XBeeATEndpoint_init(ic_.get(), "xbee-at", &endpoint_, link_.get(), 0, &port, this);
+        Link_start(link_.get(), nowUs_);
         EXPECT_EQ(
             Ice_Communicator_createObjectAdapterWithEndpoints(ic_.get(), "A", "xbee-at", &adapter_),
             ICE_OK);

@@ -66,9 +66,12 @@ public:
         if (pins.wrEn | pins.cmdEn | pins.rdEn)
             takeInputs();
         ++now_;
-        if (now_ >= nextEvent_)
+        if (now_ >= nextEvent_ && !hung_)
             work();
     }
+
+    // A fault: no command begins and no word moves until it is over; what waits is carried out then.
+    void hang(bool on) { hung_ = on; }
 
     // Back door, for pictures and checks.
     uint8_t* data() { return memory_.data(); }
@@ -106,6 +109,7 @@ private:
     std::vector<uint8_t> memory_;
     Timing timing_;
     Ddr3Timing device_;
+    bool hung_ = false;
     uint64_t now_ = 0, nextEvent_ = 0;
     uint64_t free_ = 0;       // memory clock from which the next command may begin
     unsigned promised_ = 0;   // words of the write FIFO that commands have claimed

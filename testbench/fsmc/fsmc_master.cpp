@@ -98,6 +98,12 @@ void FsmcMaster::turnaround(const Access& access) {
     lastBusturn_ = access.bank->btr >> 16 & 0xF;
 }
 
+// The bank looks at NWAIT, and it is active.
+bool FsmcMaster::isWaiting(const Access& access) const {
+    return (access.bank->bcr & bcrAsyncWait) &&
+           pins_.nwaitN == bool(access.bank->bcr & bcrWaitHigh);
+}
+
 // From NE low to the beginning of the data phase; the strobe is low afterwards.
 void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lanes) {
     bool early = access.write ? access.mode == '2'
@@ -118,6 +124,7 @@ void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lane
     if (early && !access.muxed)
         strobe = false;
     show();
+    bool free = !strobe && !isWaiting(access);
     passHclk(access.timing.addset);
     pins_.nadvN = true;
     show();
@@ -129,6 +136,9 @@ void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lane
     }
     strobe = false;
     show();
+    // The pins' delays leave no time for a NWAIT that does not follow the strobe itself.
+    if (free && isWaiting(access))
+        throw FsmcError(access.name + ": NWAIT went active after the strobe");
 }
 
 // The data phase up to two HCLK cycles before its end, or to its end less what is left of it. NWAIT
@@ -140,9 +150,11 @@ unsigned FsmcMaster::waitPhase(const Access& access) {
         passHclk(access.timing.datast - left);
         return left;
     }
-    bool active = access.bank->bcr & bcrWaitHigh;
+    bool free = !isWaiting(access);
     passHclk(access.timing.datast - 4);
-    for (unsigned waited = 0; pins_.nwaitN == active; ++waited) {
+    if (free && isWaiting(access))
+        throw FsmcError(access.name + ": NWAIT went active after the strobe");
+    for (unsigned waited = 0; isWaiting(access); ++waited) {
         if (waited > waitLimit)
             throw FsmcError(access.name + ": NWAIT has been active for " +
                             std::to_string(waitLimit) + " HCLK cycles");
@@ -154,8 +166,7 @@ unsigned FsmcMaster::waitPhase(const Access& access) {
 
 // What the pins must show when an access ends.
 void FsmcMaster::endOfAccess(const Access& access) {
-    if (access.index < 2 && (access.bank->bcr & bcrAsyncWait) &&
-        pins_.nwaitN == bool(access.bank->bcr & bcrWaitHigh))
+    if (isWaiting(access))
         throw FsmcError(access.name + ": NWAIT went active too late to be seen");
 }
 

@@ -98,6 +98,7 @@ private:
     void writePins(uint32_t address, uint16_t value, uint8_t lanes);
     void turnaround(const Access& access);
     void addressPhase(const Access& access, uint16_t value, uint8_t lanes);
+    bool isWaiting(const Access& access) const;
     unsigned waitPhase(const Access& access);
     void endOfAccess(const Access& access);
     void abort(const Access& access, unsigned hclk);

@@ -67,7 +67,7 @@ failed() {
     # abc's counterexample, replayed by smtbmc for names and a waveform
     awk -v n="$(head -1 assert.aig | cut -d' ' -f3)" 'NR == 1 { print "1" } { print NR == 1 ? $0 : substr($0, 1, n) }' \
         assert.aiw >replay.aiw 2>/dev/null || true
-    [ -n "${NOTRACE:-}" ] || timeout 100 yosys-smtbmc -s z3 --noprogress --aig assert.map:replay.aiw --dump-vcd trace.vcd model.smt2 >trace.log 2>&1 || true
+    timeout 100 yosys-smtbmc -s z3 --noprogress --aig assert.map:replay.aiw --dump-vcd trace.vcd model.smt2 >trace.log 2>&1 || true
     grep -E 'Assert failed' trace.log || true
     [ ! -e trace.vcd ] || echo "$module: trace: $work/trace.vcd" >&2
     echo "$module: $2" >&2

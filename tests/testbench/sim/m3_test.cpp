@@ -219,6 +219,54 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     EXPECT_EQ(f.scratch() >> 16 & 0xFF, 4u) << "starts since power-on";
 }
 
+// The memory holds its port: accesses end by the bridge's time-out, each is a bus error with its place, no reset;
+// when the memory is back, the flight goes on.
+TEST(CortexM3Firmware, AHungMemoryIsReportedAndTheFlightGoesOn) {
+    Flight f;
+    f.pings(2);
+    int phase = 0;
+    uint64_t since = 0;
+    M3Machine* m3 = nullptr;
+    auto variable = [&](const char* name) { return m3->cpu().word(m3->stm32().image()->symbol(name)); };
+    auto script = [&] {
+        switch (phase) {
+        case 0:
+            if (f.step())
+                return true;
+            EXPECT_EQ(variable("busErrors"), 0u);
+            f.soc.memory().hang(true);
+            f.ground.ping(100, "hwengine1"); // its packet is to be read from the memory
+            (void)f.soc.fsmc().read16(0x60000000);
+            since = f.soc.cycles();
+            phase = 1;
+            return true;
+        case 1:
+            if (f.soc.cycles() < since + SocModel::clkHz / 10)
+                return true;
+            EXPECT_GE(variable("busErrors"), 1u);
+            EXPECT_EQ(variable("busErrorPlace") & 0x3FF, 0x3FFu) << "memory";
+            f.soc.memory().hang(false);
+            phase = 2;
+            return true;
+        case 2:
+            if (f.ground.replies.count(100) == 0 && f.ground.isUp())
+                return true;
+            f.calls.push_back([&f](int id) { f.ground.ping(id, "uav"); });
+            phase = 3;
+            return true;
+        default: return f.step() || f.ground.replies.count(3) == 0;
+        }
+    };
+    M3Machine machine(f.soc, firmware, [&] { return script() && f.inTime(60); });
+    m3 = &machine;
+    machine.run();
+    EXPECT_EQ(phase, 3);
+    EXPECT_EQ(f.ground.replies.count(100), 1u) << "the call that was under way";
+    EXPECT_EQ(f.ground.replies.count(3), 1u) << "and the next one";
+    EXPECT_EQ(m3->stm32().resets().watchdog + m3->stm32().resets().software, 0u);
+    EXPECT_EQ(reasonOf(f.scratch()), BOOT_POWER_ON);
+}
+
 TEST(CortexM3Firmware, ACorruptImageIsRefusedWithItsReason) {
     Random random(testSeed());
     for (int i = 0; i < 4; ++i) {

@@ -320,7 +320,7 @@ private:
     std::unique_ptr<Link> link_{new Link};
 };
 
-// BYTES=10000000 from the line and as many from a program that talks no Ice: nothing hangs or falls
+// BYTES=10000000 from the line, and noise from a program for each 64 KiB of them: nothing hangs or falls
 // over, and afterwards the link works.
 TEST(Engine, RandomBytesFromTheLineAndFromProgramsAreSurvived) {
     const char* more = std::getenv("BYTES");
@@ -355,7 +355,7 @@ TEST(Engine, RandomBytesFromTheLineAndFromProgramsAreSurvived) {
         << testSeed();
     EXPECT_EQ(answer, m);
     std::printf(
-        "engine of the plugin: %zu bytes of noise from the line and as many from programs, the "
+        "engine of the plugin: %zu bytes of noise from the line, more from programs that talk no Ice: the "
         "link works\n",
         total);
     close(fd);

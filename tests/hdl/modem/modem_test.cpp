@@ -100,6 +100,29 @@ TEST_F(ModemTest, PacketsLeaveEachAsOneRfPacket) {
     EXPECT_EQ(bus_.read(MODEM_TX_STATE), 9u << 8 | 16u);
 }
 
+// A modem that encrypts sends a packet off at 95 bytes: no rest is needed after one of these.
+TEST_F(ModemTest, EncryptedPacketsOf95BytesFollowEachOther) {
+    power(quick());
+    bus_.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | 1u << MODEM_NET_ENCRYPT_LSB | 0x0C);
+    for (int word = 0; word < 4; ++word)
+        bus_.write(MODEM_KEY, 0);
+    configure();
+    takeEvents();
+    std::vector<size_t> sizes;
+    air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
+        sizes.push_back(packet.bytes.size());
+    });
+    for (unsigned i = 0; i < 10; ++i)
+        put(i, frame(95, static_cast<uint8_t>(i)));
+    double begin = static_cast<double>(now());
+    for (int tenths = 0; tenths < 2000 && (bus_.read(MODEM_TX_STATE) & 0xFF) != 16; ++tenths)
+        runMs(0.1);
+    EXPECT_LT((static_cast<double>(now()) - begin) / 1e6, 950 * 0.09 + 1)
+        << "ms; rests would be 3.6";
+    runMs(10);
+    EXPECT_EQ(sizes, std::vector<size_t>(10, 100)) << "with the cipher's five bytes";
+}
+
 TEST_F(ModemTest, ShortPacketsInARowAreNotJoined) {
     power(quick());
     configure();
@@ -283,8 +306,8 @@ TEST_F(ModemTest, AStalledMemoryCostsTheNextPacketNotTheOneBefore) {
     EXPECT_EQ(take(), frame(50, 3)) << "it goes on";
 }
 
-// Fifteen packets fill the ring but for one buffer; one more comes whole, and of the next so many bytes while memory
-// is held: that one is dropped, and no other.
+// Fifteen packets fill the ring but for one buffer; one more comes whole, and of the next so many
+// bytes while memory is held: that one is dropped, and no other.
 class ModemFullRing : public ModemTest {
 protected:
     void nextHasBegun(uint64_t bytes) {

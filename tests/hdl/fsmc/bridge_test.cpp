@@ -184,6 +184,19 @@ TEST_F(Bridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x80), 0);
 }
 
+// Registers wait for what is posted: a memory that takes nothing is told, and the register access
+// goes on.
+TEST_F(Bridge, AHungMemoryDoesNotKeepRegistersAway) {
+    b_.memory.hold(true);
+    fsmc_.write16(ddr + 0x40, 0x1234);
+    EXPECT_EQ(fsmc_.read32(at(0)), SYSTEM_ID_VALUE);
+    EXPECT_GE(b_.errors, 1u);
+    b_.memory.hold(false);
+    unsigned errors = b_.errors;
+    EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0x1234) << "what was posted is written late";
+    EXPECT_EQ(b_.errors, errors);
+}
+
 TEST_F(Bridge, AnAccessThatIsGivenUpLeavesNothingHalfDone) {
     Random random(testSeed());
     for (int i = 0; i < 400; ++i) {

@@ -44,7 +44,7 @@ void traffic(unsigned hclk, unsigned clkdiv, unsigned latency, bool muxed, doubl
     std::map<uint32_t, uint8_t> reference;
     uint32_t words[16] = {};
     for (int i = 0; i < 250 && !testing::Test::HasFailure(); ++i) {
-        uint32_t a = (random.below(3) << 18) + 2 * random.below(200);
+        uint32_t a = (random.below(16) << 22) + (random.below(3) << 18) + 2 * random.below(200);
         unsigned n = 1 + random.below(random.chance(0.2) ? 80 : 8), word = 1 + random.below(15);
         switch (random.below(5)) {
         case 0:

@@ -19,6 +19,7 @@
 namespace {
 
 nlohmann::json report = nlohmann::json::array();
+unsigned outstanding = 64; // words that a port asks for before it has them
 
 void record(const std::string& name, double value, const std::string& unit, double limit = 0) {
     nlohmann::json entry = {
@@ -65,7 +66,7 @@ double stream(const Mix& mix, unsigned size, uint64_t cycles, uint64_t seed) {
         t.minSize = t.maxSize = size;
         t.byteEnables = t.anyLineWord = false;
         t.sequential = true;
-        t.outstanding = 64;
+        t.outstanding = outstanding;
         t.bytes = Bench::bytes / ports;
         t.base = p * t.bytes;
     }
@@ -157,6 +158,8 @@ int main(int argc, char** argv) {
     app.add_option("--json", json, "write the figures there");
     app.add_option("--cycles", cycles, "clocks of each measurement");
     app.add_option("--seed", seed, "of the traffic");
+    app.add_option("--outstanding", outstanding, "words that a port asks for ahead")
+        ->check(CLI::Range(32, 256));
     CLI11_PARSE(app, argc, argv);
 
     fmt::print(

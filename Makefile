@@ -83,6 +83,7 @@ bench: $(BUILD)/build.ninja ## measure simulator, radio link, FSMC bridge, memor
 	@ninja -C $(BUILD) -j $(JOBS) measure_cores
 	@ninja -C $(BUILD) -j $(JOBS) measure_latency
 	@ninja -C $(BUILD) -j $(JOBS) measure_firmware
+	@ninja -C $(BUILD) -j $(JOBS) measure_new_ip
 	@ninja -C $(BUILD) -j $(JOBS) slice2c
 	@tests/slice/bench.sh $(BUILD)/slice/slice2c build/bench/slice.json
 

@@ -26,6 +26,9 @@ module chip (
     input  wire        modem_cts_n_i,
     output wire        modem_rts_n_o,
     output wire        modem_reset_n_o,
+    // pins of cores (build/main/gen/map_regs.md)
+    input  wire [31:0] core_pins_i,
+    output wire [31:0] core_pins_o,
     // DDR3 pins
     inout  wire [15:0] mcb3_dram_dq,
     output wire [12:0] mcb3_dram_a,
@@ -67,6 +70,7 @@ module chip (
         .fsmc_nwait_n_o(fsmc_nwait_n_o), .irq_o(irq_o),
         .modem_rxd_i(modem_rxd_i), .modem_txd_o(modem_txd_o), .modem_cts_n_i(modem_cts_n_i),
         .modem_rts_n_o(modem_rts_n_o), .modem_reset_n_o(modem_reset_n_o),
+        .core_pins_i(core_pins_i), .core_pins_o(core_pins_o),
         .mcb_cmd_en_o(cmd_en), .mcb_cmd_instr_o(cmd_instr), .mcb_cmd_bl_o(cmd_bl),
         .mcb_cmd_byte_addr_o(cmd_byte_addr), .mcb_cmd_full_i(cmd_full),
         .mcb_wr_en_o(wr_en), .mcb_wr_mask_o(wr_mask), .mcb_wr_data_o(wr_data),

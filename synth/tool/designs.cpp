@@ -16,6 +16,11 @@ using nlohmann::json;
 
 namespace {
 
+bool endsWith(const std::string& name, const std::string& end) {
+    return name.size() > end.size() &&
+           name.compare(name.size() - end.size(), end.size(), end) == 0;
+}
+
 // "// name: one sentence" at the head of a file, or what a converted core says of itself.
 std::string sentenceOf(const fs::path& file, const std::string& module) {
     std::ifstream in(file);
@@ -52,7 +57,7 @@ Plan readPlan(const fs::path& file, const Library& library, const fs::path& root
     for (const auto& [name, module] : library.modules()) {
         const bool known = std::any_of(plan.designs.begin(), plan.designs.end(),
                                        [&, &n = name](const Design& d) { return d.top == n; });
-        const bool rules = name.size() > 6 && name.compare(name.size() - 6, 6, "_rules") == 0;
+        const bool rules = endsWith(name, "_rules") || endsWith(name, "_proof");
         if (!known && !rules &&
             module.file.stem() == name) // of a converted core only the core itself
             plan.designs.push_back({name, name, sentenceOf(module.file, name), "", {}, {}, false});

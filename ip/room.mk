@@ -20,9 +20,7 @@ foreign: setup ## put third-party cores (Wishbone in Verilog, records in VHDL) t
 .PHONY: foreign
 
 ip-test: $(BUILD)/build.ninja ## build and test one core: IP=fir
-	@[ -n '$(IP)' ] && [ -f 'ip/$(IP)/$(IP)_test.cpp' ] || { echo "ip-test: IP=name of a core with ip/name/name_test.cpp, not '$(IP)'" >&2; exit 1; }
-	@ninja -C $(BUILD) -j $(JOBS) --quiet 'test_ip_$(IP)'
-	@SEED=$(SEED) ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -R '^test_ip_$(IP)[.]'
+	@SEED=$(SEED) ip/test.sh '$(BUILD)' '$(IP)' '$(JOBS)'
 
 ip-synth: $(BUILD)/build.ninja ## utilisation of one core: IP=fir
 	@[ -n '$(IP)' ] && [ -d 'ip/$(IP)' ] || { echo "ip-synth: IP=name of a core in ip/, not '$(IP)'" >&2; exit 1; }

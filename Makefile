@@ -81,6 +81,7 @@ bench: $(BUILD)/build.ninja ## measure simulator, radio link, FSMC bridge, memor
 	@ninja -C $(BUILD) -j $(JOBS) measure_modem
 	@ninja -C $(BUILD) -j $(JOBS) measure_speed
 	@ninja -C $(BUILD) -j $(JOBS) measure_cores
+	@ninja -C $(BUILD) -j $(JOBS) measure_wrapper
 	@ninja -C $(BUILD) -j $(JOBS) measure_latency
 	@ninja -C $(BUILD) -j $(JOBS) measure_firmware
 	@ninja -C $(BUILD) -j $(JOBS) measure_new_ip

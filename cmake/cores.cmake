@@ -8,14 +8,24 @@ set(FOREIGN_CORES ${CMAKE_BINARY_DIR}/foreign CACHE PATH "Where cmake/fetch.sh f
 
 # Names in the list, for what is built only with a core: if("vision" IN_LIST CHIP_CORES)
 set(CHIP_CORES)
+set(instances 0)
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CORES})
 file(STRINGS ${CORES} lines)
 foreach(line IN LISTS lines)
   if(line MATCHES "^[ \t]*([^# \t]+)")
     list(APPEND CHIP_CORES ${CMAKE_MATCH_1})
+    math(EXPR instances "${instances} + 1")
   endif()
 endforeach()
 list(REMOVE_DUPLICATES CHIP_CORES)
+# The object adapter has room for every core's servant beside the UAV's own: 8 servants by default (sw/icec/ice_config.h),
+# more where the list is longer, on the host and, by ARM_DEFINES, in the firmware.
+set(ARM_DEFINES)
+if(instances GREATER 7)
+  math(EXPR servants "${instances} + 1")
+  add_compile_definitions(ICE_SERVANTS=${servants})
+  set(ARM_DEFINES ICE_SERVANTS=${servants})
+endif()
 
 # icesoc_core(NAME [ICE file.ice | REGS name.regs.json] [VERILOG file...] [VHDL file...] [SERVANT file.c...]
 #             [SLICE name...] [INCLUDES dir...] [FLAGS ...])

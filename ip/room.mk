@@ -6,6 +6,8 @@ TEST ?=
 ICE ?=
 FORCE ?=
 
+# LANG is the core's language here, not that of messages, for which programs would take it.
+new-ip: export LC_ALL := C.UTF-8
 new-ip: $(BUILD)/build.ninja ## begin a core: NAME=fir LANG=verilog|vhdl [ICE=file] writes ip/fir, which builds and passes its test
 	@[ -z '$(ICE)' ] || ninja -C $(BUILD) -j $(JOBS) --quiet slice2c
 	@ip/new.sh '$(NAME)' '$(LANG)' '$(BUILD)' '$(ICE)'

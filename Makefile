@@ -19,8 +19,10 @@ CPU   ?= host
 # The page that shows the mission: its port (0: any); LIVE=1: it stays until Ctrl-C
 PORT  ?= 0
 LIVE  ?=
-# Cores whose part is flown too: CORES="ascon fir" (ip/*/ground.py)
+# Cores whose part is flown too: CORES="ascon fir camera" (ip/*/ground.py)
 CORES ?=
+# CAMERA=1: the picture comes through the camera core's pins, and the vision core takes it from there
+CAMERA ?=
 # Folder of the real uC/OS-II: the firmware is built with it, too, and CPU=m3 flies it (docs/ucos2.md)
 UCOS2 ?=
 
@@ -32,7 +34,7 @@ help: ## this list
 	@echo
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 	@echo
-	@echo "Variables: IMAGE=file SIZE=320x240 THRESHOLD=24 LOSS=0.1 SEED=1 OUT=build/run CPU=host|m3 LIVE=1 PORT=8080 CORES=ascon (make run);"
+	@echo "Variables: IMAGE=file SIZE=320x240 THRESHOLD=24 LOSS=0.1 SEED=1 OUT=build/run CPU=host|m3 LIVE=1 PORT=8080 CORES=ascon CAMERA=1 (make run);"
 	@echo "           LABEL=rtl|vhdl|formal|lint|firmware|interop|e2e NAME=regexp SEED=1 (make test)"
 
 setup: ## install the Debian packages that are missing
@@ -49,7 +51,7 @@ run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground st
 	@ninja -C $(BUILD) -j $(JOBS) mission
 	@testbench/sim/run.sh "$(BUILD)" --image "$(IMAGE)" --size "$(SIZE)" --threshold "$(THRESHOLD)" \
 	    --loss "$(LOSS)" --seed "$(SEED)" --out "$(OUT)" --cpu "$(CPU)" \
-	    --port "$(PORT)" $(if $(LIVE),--live 1) $(if $(CORES),--cores "$(CORES)") $(if $(UCOS2),--firmware "$(BUILD)/firmware/uav_ucos2.elf")
+	    --port "$(PORT)" $(if $(LIVE),--live 1) $(if $(CORES),--cores "$(CORES)") $(if $(CAMERA),--sensor 1) $(if $(UCOS2),--firmware "$(BUILD)/firmware/uav_ucos2.elf")
 
 # What the sanitized build covers: the firmware's layers and their peers.
 SANITIZED := test_os test_os_cases test_link test_engine test_icec icec_server icec_client everything_cpp_client everything_cpp_server everything_server \

@@ -12,4 +12,4 @@ programs=$(ninja -C "$build" -t targets all | sed -n "s/^\(test_ip_$core\|test_$
 [ -n "$programs" ] || fail "$core has no test: neither ip/$core/${core}_test.cpp nor tests/ip/$core"
 # shellcheck disable=SC2086 # a list of words
 ninja -C "$build" -j "$jobs" --quiet $programs
-ctest --test-dir "$build" --output-on-failure --no-tests=error -R "^(test_ip_$core[.]|test_$core[.]|vhdl[.]$core\$)"
+ctest --test-dir "$build" --output-on-failure --no-tests=error -R "^(test_ip_${core}[.]|test_${core}[.]|vhdl[.]${core}\$)"

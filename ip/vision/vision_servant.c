@@ -27,7 +27,6 @@ Hw_Status Vision_Core_init(Vision_Core* self, U32 slot, U32 memory, const Hw_Sea
     if (status != HW_OK)
         return status;
     Autopilot_HwProcessingEngine_init(&self->servant);
-    set(self, VISION_FRAME_BASE, UAV_FRAME);
     set(self, VISION_RESULT_BASE, UAV_RESULT);
     set(self, VISION_RESULT_MAX, UAV_RESULT_MAX);
     set(self, VISION_THRESHOLD, 24);
@@ -35,6 +34,7 @@ Hw_Status Vision_Core_init(Vision_Core* self, U32 slot, U32 memory, const Hw_Sea
 }
 
 void Vision_Core_interrupt(Vision_Core* self) {
+    set(self, VISION_MODE, 0); /* one frame for each start: the next would overwrite these records */
     Hw_Core_interrupt(&self->core);
 }
 
@@ -84,6 +84,7 @@ static Ice_Status finishFrame(Vision_Core* self) {
     while (!self->core.done[DONE] && !self->core.done[REFUSED])
         if (!self->core.seam->wait(self->core.context, DONE, FRAME_TIMEOUT_MS) &&
             !self->core.done[DONE] && !self->core.done[REFUSED]) {
+            set(self, VISION_MODE, 0);
             set(self, VISION_CONTROL, VISION_CONTROL_ABORT_MASK);
             return ICE_TIMEOUT;
         }
@@ -109,18 +110,27 @@ Ice_Status Autopilot_HwProcessingEngine_setParameterA(Autopilot_HwProcessingEngi
 Ice_Status Autopilot_HwProcessingEngine_startProcessing(Autopilot_HwProcessingEnginePtr servant,
                                                         const Ice_Current* current) {
     Vision_Core* self = (Vision_Core*)servant;
-    U8 size[8];
+    const Uav_Frames* camera = UAV_frames();
     Ice_Status status = finishFrame(self);
     (void)current;
     if (status == ICE_TIMEOUT)
         return status;
-    FSMC_readMemory(UAV_FRAME_HEADER, size, sizeof size);
-    set(self, VISION_FRAME_SIZE,
-        (U32)size[0] | (U32)size[1] << 8 | (U32)size[4] << 16 | (U32)size[5] << 24);
     self->busy = 1;
     self->core.done[DONE] = 0;
     self->core.done[REFUSED] = 0;
-    set(self, VISION_CONTROL, VISION_CONTROL_START_MASK);
+    if (camera->width != 0U) {
+        set(self, VISION_FRAME_SIZE, camera->height << 16 | camera->width);
+        set(self, VISION_FRAME_BASE, camera->base);
+        set(self, VISION_FRAME_STRIDE, camera->stride);
+        set(self, VISION_MODE, VISION_MODE_FOLLOW_MASK);
+    } else {
+        U8 size[8];
+        FSMC_readMemory(UAV_FRAME_HEADER, size, sizeof size);
+        set(self, VISION_FRAME_SIZE,
+            (U32)size[0] | (U32)size[1] << 8 | (U32)size[4] << 16 | (U32)size[5] << 24);
+        set(self, VISION_FRAME_BASE, UAV_FRAME);
+        set(self, VISION_CONTROL, VISION_CONTROL_START_MASK);
+    }
     return ICE_OK;
 }
 

@@ -8,6 +8,7 @@
 #include "m3_machine.h"
 #include "mark_file.h"
 #include "soc_model.h"
+#include "sensor.h"
 #include "status.h"
 #include "uav_machine.h"
 
@@ -48,7 +49,7 @@ struct Options {
     std::string marks;
     double loss = 0, duration = 0;
     uint64_t seed = 1;
-    bool quiet = false;
+    bool quiet = false, sensor = false;
     std::vector<std::string> command;
 };
 
@@ -213,7 +214,10 @@ int simulate(const Options& o) {
         ++status->packets;
         status->lost += outcome != RfChannel::Outcome::Delivered;
     });
-    loadCamera(soc, frame);
+    if (o.sensor)
+        connectSensor(soc, frame);
+    else
+        loadCamera(soc, frame);
     const uint32_t boots =
         static_cast<uint32_t>(o.seed * 1000 + static_cast<uint64_t>(getpid()) * 77);
     std::memcpy(soc.memory().data() + UAV_BOOTS, &boots, sizeof boots);
@@ -285,6 +289,7 @@ int main(int argc, char** argv) {
         "{out}."};
     Options o;
     app.add_option("--image", o.image, "picture for the camera: PNG, JPEG or PGM")->required();
+    app.add_flag("--sensor", o.sensor, "the picture comes through the camera core's pins, not into memory");
     app.add_option("--size", o.size, "of the camera's frame, WIDTHxHEIGHT");
     app.add_option("--loss", o.loss, "loss on the air, each way")->check(CLI::Range(0.0, 1.0));
     app.add_option("--seed", o.seed, "of the radio's misfortunes");

@@ -4,12 +4,13 @@
 # run: the mission: simulator and ground station. Usage: run.sh build-folder --image F --size WxH
 #      --threshold N --loss P --seed N --out DIR --cpu host|m3 --firmware ELF --port N (of the live page; 0: any)
 #      --live 1 (the page stays until Ctrl-C) --cores "ascon fir" (also fly these cores' parts, ip/*/ground.py)
+#      --sensor 1 (the picture comes through the camera core, which hands it to the vision core; camera's part is flown)
 
 set -eu
 build=$1
 shift
 here=$(cd "$(dirname "$0")/../.." && pwd)
-image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host port=0 live='' cores='' firmware=$build/firmware/uav.elf
+image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host port=0 live='' cores='' sensor='' firmware=$build/firmware/uav.elf
 while [ $# -gt 0 ]; do
     case $1 in
     --image) image=$2 ;;
@@ -22,6 +23,7 @@ while [ $# -gt 0 ]; do
     --port) port=$2 ;;
     --live) live=$2 ;;
     --cores) cores=$2 ;;
+    --sensor) sensor=${2:+--sensor} ;;
     --firmware) firmware=$2 ;;
     *)
         echo "run: unknown option $1" >&2
@@ -37,14 +39,15 @@ page=$!
 trap 'kill $page 2>/dev/null || true' EXIT
 status=0
 parts=''
+[ -z "$sensor" ] || case " $cores " in *' camera '*) ;; *) cores="$cores camera" ;; esac
 for core in $cores; do
     parts="$parts --core $here/ip/$core"
 done
 # shellcheck disable=SC2086 # a list of words
-"$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" --firmware "$firmware" -- \
+"$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" --firmware "$firmware" $sensor -- \
     /usr/bin/python3 "$here/sw/ground/clients/mission.py" --device '{device}' --frame '{frame}' \
     --status '{status}' --out "$out" --plugin "$build/ground" --slice "$here/sw/apps/uav/Autopilot.ice" \
-    --reference "$build/testbench/sim/vision-reference" --threshold "$threshold" --loss "$loss" $parts || status=$?
+    --reference "$build/testbench/sim/vision-reference" --threshold "$threshold" --loss "$loss" $sensor $parts || status=$?
 if [ $status = 0 ]; then
     echo "Pictures and report: $out/before.png $out/after.png $out/report.md"
 else

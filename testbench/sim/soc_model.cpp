@@ -60,6 +60,8 @@ void SocModel::settle() {
 void SocModel::tick() {
     // The design is settled: by settle() if the processor's pins have changed, else by the last tick.
     VSoc& top = *top_;
+    if (drive_)
+        drive_();
     sampleMcb(top, memory_);
 
     top.clk_i = 1;

@@ -33,6 +33,9 @@ public:
     // The pins of cores (MAP_PIN_...): inputs as they are from the next settling on.
     void setCorePins(uint32_t value) { top_->core_pins_i = value; }
 
+    // Before each clock: what drives those pins.
+    void onClock(std::function<void()> drive) { drive_ = std::move(drive); }
+
     FsmcMaster& fsmc() { return fsmc_; }
     McbModel& memory() { return memory_; }
     XBee& modem() { return modem_; }
@@ -56,6 +59,7 @@ private:
     RfChannel& air_;
     UartPins line_;
     XBee modem_;
+    std::function<void()> drive_;
     std::function<uint64_t(uint64_t)> others_;
     uint64_t cycles_ = 0, nextEvent_ = 0;
     std::function<void(bool)> irqEdge_;

@@ -27,6 +27,14 @@ int UAV_start(const Fsmc_Port *port, void *context);
 U32 UAV_busErrors(void);
 U32 UAV_busErrorPlace(void);
 
+/* Where the next frame comes from: three buffers that a camera core fills, in DDR3 from `base` on, `stride` bytes from
+ * one to the next; width 0, as at first: the picture at UAV_FRAME. */
+typedef struct Uav_Frames {
+    U32 base, stride, width, height;
+} Uav_Frames;
+void UAV_setFrames(U32 base, U32 stride, U32 width, U32 height);
+const Uav_Frames *UAV_frames(void);
+
 /* A frame was processed, with so many corners: it is counted, and the station is told. */
 void UAV_frameDone(U32 corners);
 

@@ -13,6 +13,7 @@
 static OS_EVENT *waiter, *work; /* the task that waits within an operation; the task below */
 static U32 missing;
 static U8 isStarted[MAP_CORES];
+static Uav_Frames source;
 
 /* One task waits, the one that serves calls; it looks itself whether the event was its own. */
 static int waitEvent(void* context, U32 operation, U32 ms) {
@@ -37,10 +38,22 @@ static U32 nowMs(void* context) {
 
 static const Hw_Seam seam = {waitEvent, postEvent, nowMs};
 
+void UAV_setFrames(U32 base, U32 stride, U32 width, U32 height) {
+    source.base = base;
+    source.stride = stride;
+    source.width = width;
+    source.height = height;
+}
+
+const Uav_Frames* UAV_frames(void) {
+    return &source;
+}
+
 void UAV_initCores(void) {
     waiter = OSSemCreate(0);
     work = OSSemCreate(0);
     missing = 0;
+    UAV_setFrames(0, 0, 0, 0);
 }
 
 void UAV_startCores(Ice_ObjectAdapterPtr adapter) {

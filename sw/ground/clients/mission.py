@@ -97,6 +97,7 @@ def parse_arguments():
     parser.add_argument("--reference", help="program that computes the corners on the host")
     parser.add_argument("--core", action="append", default=[], metavar="FOLDER",
                         help="also fly the part of this core: FOLDER/ground.py")
+    parser.add_argument("--sensor", action="store_true", help="the frame comes through the camera core")
     parser.add_argument("--loss", default="0", help="noted in the report")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
     parser.add_argument("--trace", type=int, default=0, help="XBeeAT.Trace: 0, 1 or 2")
@@ -219,6 +220,16 @@ def fly(args, communicator):
     oneway = Autopilot.HwProcessingEnginePrx.uncheckedCast(
         communicator.stringToProxy("hwengine1 -o:" + where))
 
+    def proxy(identity):
+        return communicator.stringToProxy(identity + ":" + where)
+
+    parts = [part_of(folder) for folder in args.core]
+    if args.sensor:
+        size = Image.open(args.frame).size
+        for part in parts:
+            if hasattr(part, "prepare"):
+                part.prepare(log, proxy, *size)
+
     log.call("ground -> UAV", "hwengine1.setParameterA(%d), oneway" % args.threshold,
              lambda: oneway.setParameterA(args.threshold))
     log.call("ground -> UAV", "hwengine1.startProcessing(), oneway", oneway.startProcessing)
@@ -233,9 +244,8 @@ def fly(args, communicator):
     if args.reference:
         check_against_reference(args, result)
         log.say("the result equals the C++ reference, bit by bit")
-    for folder in args.core:
-        part_of(folder).fly(log, lambda identity: communicator.stringToProxy(identity + ":" + where),
-                            "%d corners" % result.found)
+    for part in parts:
+        part.fly(log, proxy, "%d corners" % result.found)
     draw(args.frame, result, os.path.join(args.out, "after.png"))
     report(args, log, result, station, air)
 

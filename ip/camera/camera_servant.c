@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * camera_servant: Cores::Camera by the core's registers through the FSMC; tells the application
+ * where frames are.
+ */
+#include "camera_servant.h"
+#include "camera_regs.h"
+#include "fsmc.h"
+#include "uav.h"
+
+#define STOP_READS 1000 /* of STATUS: a burst under way takes less than one of them */
+
+static U32 get(const Camera_Core* self, U32 word) {
+    return FSMC_read(self->core.slot, word);
+}
+
+static void set(const Camera_Core* self, U32 word, U32 value) {
+    FSMC_write(self->core.slot, word, value);
+}
+
+Hw_Status Camera_Core_init(Camera_Core* self, U32 slot, U32 memory, const Hw_Seam* seam,
+                           void* context) {
+    Hw_Status status = Hw_Core_init(&self->core, slot, CAMERA_ID_VALUE, seam, context);
+    if (status != HW_OK)
+        return status;
+    self->memory = memory;
+    set(self, CAMERA_MASK, 0); /* the core counts frames, and nobody waits for one */
+    Cores_Camera_init(&self->servant);
+    return HW_OK;
+}
+
+void Camera_Core_interrupt(Camera_Core* self) {
+    Hw_Core_interrupt(&self->core);
+}
+
+U32 Camera_Core_poll(Camera_Core* self, U32 nowMs) {
+    (void)self;
+    (void)nowMs;
+    return HW_NEVER;
+}
+
+static Ice_Status stop(Camera_Core* self) {
+    int i;
+    UAV_setFrames(0, 0, 0, 0);
+    set(self, CAMERA_CONTROL, CAMERA_CONTROL_STOP_MASK);
+    for (i = 0; i < STOP_READS; ++i)
+        if (!(get(self, CAMERA_STATUS) & CAMERA_STATUS_ACTIVE_MASK))
+            return ICE_OK;
+    return ICE_TIMEOUT;
+}
+
+Ice_Status Cores_Camera_capture(Cores_CameraPtr servant, Ice_Short width, Ice_Short height,
+                                const Ice_Current* current) {
+    Camera_Core* self = (Camera_Core*)servant;
+    U32 stride;
+    Ice_Status status = stop(self);
+    (void)current;
+    if (status != ICE_OK)
+        return status;
+    if (width <= 0 || height <= 0)
+        return ICE_UNKNOWN_EXCEPTION;
+    stride =
+        ((U32)width * (U32)height + CAMERA_ALIGNMENT - 1U) / CAMERA_ALIGNMENT * CAMERA_ALIGNMENT;
+    if (stride > CAMERA_MEMORY_BYTES / CAMERA_BUFFERS)
+        return ICE_UNKNOWN_EXCEPTION;
+    set(self, CAMERA_SIZE,
+        (U32)width << CAMERA_SIZE_WIDTH_LSB | (U32)height << CAMERA_SIZE_HEIGHT_LSB);
+    set(self, CAMERA_BASE, self->memory);
+    set(self, CAMERA_STRIDE, stride);
+    set(self, CAMERA_CONTROL, CAMERA_CONTROL_START_MASK);
+    if (!(get(self, CAMERA_STATUS) & CAMERA_STATUS_ACTIVE_MASK))
+        return ICE_UNKNOWN_EXCEPTION;
+    UAV_setFrames(self->memory, stride, (U32)width, (U32)height);
+    return ICE_OK;
+}
+
+Ice_Status Cores_Camera_stop(Cores_CameraPtr servant, const Ice_Current* current) {
+    (void)current;
+    return stop((Camera_Core*)servant);
+}
+
+Ice_Status Cores_Camera_isActive(Cores_CameraPtr servant, Ice_Int* frames, Ice_Int* dropped,
+                                 Ice_Bool* result, const Ice_Current* current) {
+    const Camera_Core* self = (const Camera_Core*)servant;
+    (void)current;
+    *frames = (Ice_Int)get(self, CAMERA_FRAMES);
+    *dropped = (Ice_Int)get(self, CAMERA_DROPPED);
+    *result = (get(self, CAMERA_STATUS) & CAMERA_STATUS_ACTIVE_MASK) != 0;
+    return ICE_OK;
+}

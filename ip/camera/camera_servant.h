@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * camera_servant: Cores::Camera (Camera.ice) by the core in a slot; shaped as slice2c's servants
+ * are (docs/hw-mapping.md). Pixels never pass the processor.
+ */
+#ifndef CAMERA_SERVANT_H
+#define CAMERA_SERVANT_H
+
+#include "Camera.h"
+#include "hw_core.h"
+
+typedef struct Camera_Core {
+    Cores_Camera servant;
+    Hw_Core core;
+    U32 memory; /* DDR3 byte address of the buffers */
+} Camera_Core;
+
+Hw_Status Camera_Core_init(Camera_Core* self, U32 slot, U32 memory, const Hw_Seam* seam,
+                           void* context);
+void Camera_Core_interrupt(Camera_Core* self);
+U32 Camera_Core_poll(Camera_Core* self, U32 nowMs);
+
+#endif

@@ -40,6 +40,16 @@ module mcb_backend #(
     input  wire        mcb_rd_empty_i,
     input  wire        mcb_calib_done_i
 );
+    generate
+        if (ADDR_WIDTH < 9 || ADDR_WIDTH > 30) begin : g_refused
+`ifdef __ICARUS__ // as in npi_arbiter
+            mcb_backend_ADDR_WIDTH_9_to_30 u_refused ();
+`else
+            $error("mcb_backend: ADDR_WIDTH is 9..30");
+`endif
+        end
+    endgenerate
+
     wire room;
     assign cmd_ready_o         = mcb_calib_done_i && !mcb_cmd_full_i && (room || !cmd_read_i);
     assign mcb_cmd_en_o        = cmd_valid_i && cmd_ready_o;

@@ -52,6 +52,16 @@ module npi_arbiter #(
     input  wire [63:0]         rd_data_i,
     output wire                rd_ready_o
 );
+    generate
+        if (PORTS < 2 || PORTS > 8 || URGENT_RUN == 0 || ADDR_WIDTH < 9 || ADDR_WIDTH > 32) begin : g_refused
+`ifdef __ICARUS__ // Verilog-2005 has no error message: an unknown module is one
+            npi_arbiter_PORTS_2_to_8_URGENT_RUN_1_to_7_ADDR_WIDTH_9_to_32 u_refused ();
+`else
+            $error("npi_arbiter: PORTS is 2..8, URGENT_RUN 1..7, ADDR_WIDTH 9..32");
+`endif
+        end
+    endgenerate
+
     localparam PORT_BITS = PORTS > 4 ? 3 : PORTS > 2 ? 2 : 1;
 
     // A request's bit is still up in the cycle of its acknowledgement.

@@ -67,6 +67,18 @@ module fsmc_bridge #(
     output wire        npi_rd_flush_o,
     input  wire        npi_init_done_i
 );
+    generate
+        if (MUXED >> 1 != 0 || SYNC >> 1 != 0 || WAIT_HIGH >> 1 != 0 || TIMEOUT_LOG2 < 1 || TIMEOUT_LOG2 > 24 ||
+            POST_LOG2 < 2 || POST_LOG2 > 5 || BLOCK_LOG2 < 1 || BLOCK_LOG2 > 4 ||
+            (SYNC != 0 && (LATENCY < 4 || LATENCY > 17))) begin : g_refused
+`ifdef __ICARUS__ // Verilog-2005 has no error message: an unknown module is one
+            fsmc_bridge_parameter_out_of_range u_refused ();
+`else
+            $error("fsmc_bridge: MUXED, SYNC, WAIT_HIGH are 0 or 1, LATENCY 4..17, TIMEOUT_LOG2 1..24, POST_LOG2 2..5, BLOCK_LOG2 1..4");
+`endif
+        end
+    endgenerate
+
     // ---- Pins
     wire ne1 = !fsmc_ne_n_i[0], ne2 = !fsmc_ne_n_i[1];
     wire [24:0] address;

@@ -11,6 +11,7 @@
 #include "litedram_pins.h"
 #include "mcb_pins.h"
 #include "npi_requester.h"
+#include <algorithm>
 
 struct McbBackend {
     McbModel model;
@@ -28,10 +29,8 @@ struct LitedramBackend {
     uint8_t* data() { return model.data(); }
 };
 
-template <class Module, class Backend, unsigned ports> class MemoryBench {
+template <class Module, class Backend, unsigned ports, size_t bytes = 1 << 20> class MemoryBench {
 public:
-    static constexpr size_t bytes = 1 << 20;
-
     explicit MemoryBench(uint64_t seed)
         : backend(bytes), requesters(bench.top(), ports, bytes, seed) {
         bench.addModel([this] { settle(); },
@@ -41,7 +40,7 @@ public:
                        });
         backend.drive(bench.top());
         Random random(seed);
-        for (size_t i = 0; i < bytes; ++i)
+        for (size_t i = 0; i < bytes && i < 1 << 20; ++i)
             backend.data()[i] = requesters.reference()[i] = static_cast<uint8_t>(random.next());
         bench.reset();
     }
@@ -55,12 +54,11 @@ public:
         requesters.stop();
         bench.waitFor([this] { return requesters.idle(); }, "the requesters' end", 20000);
         run(500); // posted writes
-        size_t at = 0;
-        while (at < bytes && backend.data()[at] == requesters.reference()[at])
-            ++at;
-        if (at != bytes)
-            throw std::runtime_error("the memory differs from the reference at address " +
-                                     std::to_string(at));
+        const uint8_t *is = backend.data(), *wanted = requesters.reference().data();
+        if (std::memcmp(is, wanted, bytes) != 0)
+            throw std::runtime_error(
+                "the memory differs from the reference at address " +
+                std::to_string(std::mismatch(is, is + bytes, wanted).first - is));
         requesters.go();
     }
 

@@ -26,10 +26,11 @@ struct NpiTraffic {
     double writes = 0.5; // share of writes
     unsigned minSize = 0, maxSize = 5;
     unsigned outstanding = 32; // words asked for and not yet taken; more only with pop = 1 (rule 3)
-    bool byteEnables = true;            // random; else all bytes
-    bool anyLineWord = true;            // reads of cache lines begin at any word
-    bool sequential = false;            // address after address, else anywhere
+    bool byteEnables = true;   // random; else all bytes
+    bool anyLineWord = true;   // reads of cache lines begin at any word
+    bool sequential = false;   // address after address, else anywhere
     uint32_t base = 0, bytes = 1 << 16; // its part of the memory
+    uint32_t above = 0; // address bits beyond the memory, which nobody looks at: random
 };
 
 template <class Module> class NpiRequesters {
@@ -103,7 +104,7 @@ public:
                 port.others = 0;
             }
             setBits(top_.npi_addr_req_i, p, 1, asks);
-            setBits(top_.npi_addr_i, 32 * p, 32, r.address);
+            setBits(top_.npi_addr_i, 32 * p, 32, r.address | r.above);
             setBits(top_.npi_rnw_i, p, 1, r.read);
             setBits(top_.npi_size_i, 4 * p, 4, r.size);
             setBits(top_.npi_rmw_i, p, 1, r.rmw);
@@ -115,7 +116,8 @@ public:
     // Pops depend on what the port shows in the same cycle: called when the outputs have settled.
     void pops() {
         for (Port& port : ports_) {
-            port.popping = !top_.rst_i && port.willing && !getBits(top_.npi_rd_empty_o, port.number, 1);
+            port.popping =
+                !top_.rst_i && port.willing && !getBits(top_.npi_rd_empty_o, port.number, 1);
             setBits(top_.npi_rd_pop_i, port.number, 1, port.popping);
         }
     }
@@ -128,7 +130,7 @@ private:
     };
     struct Request {
         bool valid = false, read = false, rmw = false;
-        uint32_t address = 0;
+        uint32_t address = 0, above = 0;
         unsigned size = 0, words = 0, pushed = 0;
         std::vector<std::pair<uint64_t, uint8_t>> data; // of a write
         bool ready() const { return valid && (read || pushed == words); }
@@ -168,6 +170,8 @@ private:
         }
         if (r.read && t.anyLineWord && (r.size == 1 || r.size == 2))
             r.address += random_.below(r.words) * 8;
+        if (t.above)
+            r.above = random_.next() & t.above;
         r.data.clear();
         if (!r.read)
             for (unsigned w = 0; w < r.words; ++w) {

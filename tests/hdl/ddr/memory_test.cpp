@@ -4,26 +4,45 @@
 
 #include "VMemoryLitedram2.h"
 #include "VMemoryLitedram4.h"
+#include "VMemoryLitedram5.h"
+#include "VMemoryLitedram7.h"
 #include "VMemoryLitedram8.h"
 #include "VMemoryMcb2.h"
+#include "VMemoryMcb3.h"
 #include "VMemoryMcb4.h"
+#include "VMemoryMcb4Options.h"
+#include "VMemoryMcb6.h"
 #include "VMemoryMcb8.h"
-#include "VMemoryMcbOptions.h"
 #include "memory_bench.h"
 #include <gtest/gtest.h>
+#include <memory>
 
 namespace {
 
-template <class Module, class Backend, unsigned count> struct Kind {
-    static constexpr unsigned ports = count;
+// A controller with its parameters; urgent: URGENT, run: URGENT_RUN, bits: ADDR_WIDTH.
+template <class Module, class Backend, unsigned count, unsigned urgent = 0, unsigned run = 3,
+          unsigned bits = 27>
+struct Kind {
+    static constexpr unsigned ports = count, width = bits;
     using Bench = MemoryBench<Module, Backend, count>;
+    using Whole = MemoryBench<Module, Backend, count, size_t(1) << bits>;
+
+    // Requests of others that are granted before one of this port: npi_select's bounds.
+    static unsigned bound(unsigned port) {
+        unsigned u = static_cast<unsigned>(__builtin_popcount(urgent));
+        if (u == 0 || u == count)
+            return count - 1;
+        return urgent >> port & 1 ? u + (u - 1) / run : (count - u) * (run + 1) - 1;
+    }
 };
-using Kinds =
-    ::testing::Types<Kind<VMemoryMcb2, McbBackend, 2>, Kind<VMemoryMcb4, McbBackend, 4>,
-                     Kind<VMemoryMcb8, McbBackend, 8>, Kind<VMemoryMcbOptions, McbBackend, 4>,
-                     Kind<VMemoryLitedram2, LitedramBackend, 2>,
-                     Kind<VMemoryLitedram4, LitedramBackend, 4>,
-                     Kind<VMemoryLitedram8, LitedramBackend, 8>>;
+using Kinds = ::testing::Types<
+    Kind<VMemoryMcb2, McbBackend, 2>, Kind<VMemoryMcb3, McbBackend, 3, 7>,
+    Kind<VMemoryMcb4, McbBackend, 4>, Kind<VMemoryMcb4Options, McbBackend, 4, 8, 2, 28>,
+    Kind<VMemoryMcb6, McbBackend, 6>, Kind<VMemoryMcb8, McbBackend, 8>,
+    Kind<VMemoryLitedram2, LitedramBackend, 2>, Kind<VMemoryLitedram4, LitedramBackend, 4>,
+    Kind<VMemoryLitedram5, LitedramBackend, 5, 0x12, 1>,
+    Kind<VMemoryLitedram7, LitedramBackend, 7, 0x78, 7>,
+    Kind<VMemoryLitedram8, LitedramBackend, 8>>;
 
 template <class T> class Memory : public ::testing::Test {
 protected:
@@ -100,14 +119,23 @@ TYPED_TEST(Memory, EveryPortIsServedWithinItsBound) {
     traffic.maxSize = 0; // the queue is full of short ones: everybody waits
     this->all(traffic);
     this->run(20000);
-    bool options = std::is_same_v<TypeParam, Kind<VMemoryMcbOptions, McbBackend, 4>>;
     for (unsigned p = 0; p < this->ports; ++p) {
-        // npi_select's bounds; the class of port 3 is urgent in the variant with options
-        unsigned bound = !options ? this->ports - 1 : p == 3 ? 1 : 3 * (2 + 1) - 1;
+        unsigned bound = TypeParam::bound(p);
         uint64_t others = this->memory_.requesters.counters(p).othersMax;
         EXPECT_LE(others, bound) << "port " << p;
         EXPECT_GE(others + 1, std::min(bound, 3u)) << "port " << p << ": nobody was in its way";
     }
+}
+
+TYPED_TEST(Memory, AddressesOfTheWholeMemoryAndBitsAboveIt) {
+    uint64_t seed = testSeed();
+    auto memory = std::make_unique<typename TypeParam::Whole>(seed);
+    NpiTraffic traffic;
+    traffic.bytes = 1u << TypeParam::width;
+    traffic.above = ~(traffic.bytes - 1);
+    for (unsigned p = 0; p < TypeParam::ports; ++p)
+        memory->requesters.traffic(p) = traffic;
+    ASSERT_NO_THROW(memory->run(5000); memory->drain()) << "SEED=" << seed;
 }
 
 } // namespace

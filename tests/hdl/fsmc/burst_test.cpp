@@ -4,6 +4,7 @@
 // and hung memories.
 
 #include "VFsmcBridgeSync.h"
+#include "VFsmcBridgeSyncLate.h"
 #include "VFsmcBridgeSyncMuxed.h"
 #include "bridge_bench.h"
 #include "driver_port.h"
@@ -20,7 +21,8 @@ constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
 
 // NE1: PSRAM, bursts both ways, FSMC_CLK = HCLK / (clkdiv + 1); NE2: mode 1, or multiplexed.
 template <class Bridge>
-void setUp(BridgeBench<Bridge>& b, unsigned clkdiv, unsigned latency, bool muxed) {
+void setUp(BridgeBench<Bridge>& b, unsigned clkdiv, unsigned latency, bool muxed,
+           bool waitHigh = false) {
     b.slave.words[0] = SYSTEM_ID_VALUE;
     Fsmc_Bank banks[2] = {};
     banks[0].mode = FSMC_MODE_BURST;
@@ -31,15 +33,17 @@ void setUp(BridgeBench<Bridge>& b, unsigned clkdiv, unsigned latency, bool muxed
     banks[1].busturn = 2;
     banks[1].read = {2, 2, 4};
     banks[0].muxed = banks[1].muxed = muxed;
+    banks[0].waitHigh = banks[1].waitHigh = waitHigh;
     ASSERT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
 }
 
 template <class Bridge>
-void traffic(unsigned hclk, unsigned clkdiv, unsigned latency, bool muxed, double stall) {
+void traffic(unsigned hclk, unsigned clkdiv, unsigned latency, bool muxed, double stall,
+             bool waitHigh = false) {
     SCOPED_TRACE("HCLK " + std::to_string(hclk) + " MHz, CLKDIV " + std::to_string(clkdiv) +
                  ", stall " + std::to_string(stall) + ", SEED=" + std::to_string(testSeed()));
     BridgeBench<Bridge> b(testSeed(), stall, hclk, 100);
-    setUp(b, clkdiv, latency, muxed);
+    setUp(b, clkdiv, latency, muxed, waitHigh);
     Random random(testSeed() + hclk);
     std::map<uint32_t, uint8_t> reference;
     uint32_t words[16] = {};
@@ -92,6 +96,25 @@ TEST(Burst, MultiplexedWithTheShortestLatency) {
     for (double stall : {0.0, 0.5})
         for (auto [hclk, clkdiv] : {std::pair(100u, 3u), {120u, 4u}})
             traffic<VFsmcBridgeSyncMuxed>(hclk, clkdiv, 4, true, stall);
+}
+
+TEST(Burst, TheLongestLatencyNwaitActiveHighAndLargeBuffers) {
+    for (double stall : {0.0, 0.9})
+        for (auto [hclk, clkdiv] : {std::pair(100u, 3u), {120u, 5u}})
+            traffic<VFsmcBridgeSyncLate>(hclk, clkdiv, 17, false, stall, true);
+}
+
+// The queue of writes fills, and NWAIT holds the burst: nothing is lost.
+TEST(Burst, WritesLongerThanWhatCanWaitForASlowMemory) {
+    BridgeBench<VFsmcBridgeSync> b(testSeed(), 0.97, 100, 100);
+    setUp(b, 3, 5, false);
+    std::vector<uint16_t> values(400);
+    for (unsigned i = 0; i < values.size(); ++i)
+        values[i] = static_cast<uint16_t>(0x1357 * i);
+    b.master.writeBurst(ddr, values);
+    EXPECT_EQ(b.master.readBurst(ddr, static_cast<unsigned>(values.size())), values)
+        << "SEED=" << testSeed();
+    EXPECT_EQ(b.errors, 0u);
 }
 
 TEST(Burst, TheDriverCopiesAnyLengthToAnyAddress) {

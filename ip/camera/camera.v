@@ -64,9 +64,9 @@ module camera (
     reg [31:0] size, set_base, set_stride;
     reg [15:0] frames, dropped;
     reg [55:0] pixels;               // of the word that is begun, newest on top
-    // Buffers: the one that is written is neither the newest whole one nor that which the other core has.
-    reg [1:0]  writing, newest, used;
-    reg        has_newest, offered;
+    reg        has_newest;
+    wire [1:0] writing, newest;
+    wire       offered;
 
     // ---- sensor ----
     wire        push, full, empty, pop;
@@ -144,8 +144,8 @@ module camera (
     wire bad    = lost || (is_pixel && !room) || (ends_line && room) || starts;
     wire last   = ends_line && y + 16'd1 == height;
     wire kept   = state == WAIT_FOR_MEMORY && write_idle && whole; // all of it is in memory
-    wire taken  = offered && frame_take_i;
-    wire [1:0] reserved = taken ? newest : used;
+    camera_buffers u_buffers (.clk_i(clk_i), .rst_i(rst_i), .active_i(state != OFF), .kept_i(kept),
+                              .writing_o(writing), .newest_o(newest), .offered_o(offered), .take_i(frame_take_i));
     assign frame_valid_o = offered;
     assign frame_index_o = newest;
 
@@ -213,14 +213,10 @@ module camera (
         endcase
 
         if (kept) begin
-            newest     <= writing;
             has_newest <= 1'b1;
-            writing    <= writing ^ reserved; // of 1, 2, 3 the one that is neither
             frames     <= frames + 16'd1;
             events[CAMERA_EVENT_FRAME_LSB] <= 1'b1;
         end
-        offered <= kept || (offered && !taken && state != OFF);
-        used    <= reserved;
 
         if (reg_write) case (reg_addr)
             CAMERA_SIZE:   size <= reg_wdata;
@@ -232,11 +228,7 @@ module camera (
             state      <= OFF;
             stopping   <= 1'b0;
             events     <= 7'd0;
-            writing    <= 2'd1;
-            newest     <= 2'd2;
-            used       <= 2'd3;
             has_newest <= 1'b0;
-            offered    <= 1'b0;
             frames     <= 16'd0;
             dropped    <= 16'd0;
             size       <= 32'd0;

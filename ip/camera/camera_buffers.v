@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+//
+// camera_buffers: which of the buffers 1..3 is written, which holds the newest whole frame, which another core has.
+
+`default_nettype none
+
+module camera_buffers (
+    input  wire       clk_i,
+    input  wire       rst_i,
+    input  wire       active_i,  // frames are captured: while not, none is offered
+    input  wire       kept_i,    // the frame that was written is whole in memory: it is the newest, and offered
+    output reg  [1:0] writing_o,
+    output reg  [1:0] newest_o,
+    output reg        offered_o,
+    input  wire       take_i     // the other core has the newest from now on, and gives back what it had
+);
+    reg [1:0] used; // of the other core
+
+    wire       taken    = offered_o && take_i;
+    wire [1:0] reserved = taken ? newest_o : used;
+
+    always @(posedge clk_i) begin
+        if (kept_i) begin
+            newest_o  <= writing_o;
+            writing_o <= writing_o ^ reserved; // of 1, 2, 3 the one that is neither
+        end
+        offered_o <= kept_i || (offered_o && !taken && active_i);
+        used      <= reserved;
+        if (rst_i) begin
+            writing_o <= 2'd1;
+            newest_o  <= 2'd2;
+            used      <= 2'd3;
+            offered_o <= 1'b0;
+        end
+    end
+
+`ifdef FORMAL
+    // A buffer is whole from the clock in which it is kept until the next frame is begun in it.
+    reg       past = 1'b0;
+    reg [3:1] whole = 3'b000;
+    reg       has = 1'b0;  // the other core has taken one
+    reg [1:0] held = 2'd0; // it is this one
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        if (rst_i) begin
+            whole <= 3'b000;
+            has   <= 1'b0;
+            held  <= 2'd0;
+        end else begin
+            whole <= (whole | ({2'b00, kept_i} << (writing_o - 2'd1))) & ~(3'b001 << ((kept_i ? writing_o ^ reserved : writing_o) - 2'd1));
+            if (taken) begin
+                has  <= 1'b1;
+                held <= newest_o;
+            end
+        end
+    end
+    always @* begin
+        assume (past || rst_i);
+        if (past) begin
+            // Three buffers, three parts.
+            assert (writing_o != 2'd0 && newest_o != 2'd0 && used != 2'd0 && writing_o != newest_o);
+            assert (writing_o != used && (!offered_o || newest_o != used));
+            // Nothing is written into what the other core has, nor into what it is offered; both are whole.
+            assert (!has || (held == used && held != writing_o && whole[held]));
+            assert (!offered_o || whole[newest_o]);
+            assert (!whole[writing_o]);
+        end
+        cover (past && has && offered_o && held == 2'd1);
+        cover (past && has && held == newest_o && kept_i);
+    end
+`endif
+endmodule

@@ -8,11 +8,8 @@
 //
 // - NWAIT is not active for ever: it ends within two time-outs and what the synchronisers take.
 // - Once NWAIT is inactive in an access to a register it stays so, and data on the pins stays.
-// - A word written to the bus is of two writes that the processor completed, low half and high half of the same
-//   word, one right after the other; and each such pair is written, once, before the next access goes on.
-// - A register read gives a half of a word that the bus gave for this address: the low half in this access, the
-//   high half in the same answer if the low half was read just before.
-// - What ends with NE first changes nothing: it is in none of these.
+// That 32-bit words go in one piece is proven of the parts: fsmc_async (each completed write is handed on once, as it
+// was on the pins, one given up never) and fsmc_registers (which halves make a word).
 
 `default_nettype none
 

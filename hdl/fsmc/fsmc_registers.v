@@ -50,6 +50,7 @@ module fsmc_registers (
     reg [31:0] word;       // last read
     reg [15:0] low;        // low half written last
     reg        half_read, half_write; // word's high half, low: that of bus_addr_o's word is kept
+    reg        asked_high; // by this read, whatever the pins say now
     reg        given_up;   // the read has ended early: nobody takes its answer
     reg        give, done, seen;
     reg [1:0]  done_s;
@@ -59,8 +60,8 @@ module fsmc_registers (
     wire high     = wr_i ? wr_addr_i[0] : rd_addr_i[0];
     wire in_range = wr_i ? wr_addr_i[24:11] == 14'd0 : rd_addr_i[24:11] == 14'd0;
     wire [9:0] addr = wr_i ? wr_addr_i[10:1] : rd_addr_i[10:1];
-    wire same     = addr == bus_addr_o;
-    wire keep     = wr_i && !high;                       // a low half to be written
+    wire same     = in_range && addr == bus_addr_o;
+    wire keep     = wr_i && !high && in_range;           // a low half to be written
     wire kept     = !wr_i && high && half_read && same;  // a high half that was read
     wire wrong    = !in_range || (wr_i && !(half_write && same));
     wire transfer = begins && !keep && !kept && !wrong;
@@ -92,9 +93,10 @@ module fsmc_registers (
             bus_addr_o  <= addr;
             bus_write_o <= wr_i;
             half_write  <= keep;
+            asked_high  <= high;
         end
         if (begins || ends)
-            half_read <= ends && !bus_write_o && !rd_addr_i[0] && !given_up;
+            half_read <= ends && !bus_write_o && !asked_high && !given_up && reading_i;
         given_up <= !begins && (given_up || !reading_i);
 
         if (begins && keep)
@@ -141,6 +143,7 @@ module fsmc_registers (
     reg [31:0] last_read; // the word that the bus gave last
     reg [15:0] last_low;  // low half written last
     reg        low_word;  // to the word of bus_addr_o, nothing since
+    reg        low_read;  // the access begun last reads a low half
     reg        was_busy = 1'b0;
     reg [40:0] write_was;
     always @* begin
@@ -164,7 +167,9 @@ module fsmc_registers (
             last_read <= bus_rdata_i;
         if (begins && keep)
             last_low <= wr_data_i;
-        low_word <= !rst_i && (begins ? keep : low_word);
+        low_word <= !rst_i && (begins ? wr_i && !wr_addr_i[0] && wr_addr_i[24:11] == 14'd0 : low_word);
+        if (begins)
+            low_read <= !wr_i && !rd_addr_i[0];
 
         if (past && !rst_i) begin
             // One thing at a time, so one transfer an access, and none that nobody began.
@@ -175,7 +180,8 @@ module fsmc_registers (
                 assert ($past(idle && (wr_i || reading_i)));
             // In one piece: a high half that is kept is of the word read last; a word is written
             // with the low half that was written to it just before.
-            assert (!half_read || word == last_read);
+            assert (!half_read || (word == last_read && low_read));
+            assert (!half_read || $past(half_read) || $past(reading_i));
             assert (half_write == low_word);
             assert (idle || !half_write);
             assert (!flushing && !bus_valid_o || !half_read);

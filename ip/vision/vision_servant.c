@@ -34,7 +34,8 @@ Hw_Status Vision_Core_init(Vision_Core* self, U32 slot, U32 memory, const Hw_Sea
 }
 
 void Vision_Core_interrupt(Vision_Core* self) {
-    set(self, VISION_MODE, 0); /* one frame for each start: the next would overwrite these records */
+    set(self, VISION_MODE,
+        0); /* one frame for each start: the next would overwrite these records */
     Hw_Core_interrupt(&self->core);
 }
 

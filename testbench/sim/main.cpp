@@ -7,8 +7,8 @@
 #include "camera.h"
 #include "m3_machine.h"
 #include "mark_file.h"
-#include "soc_model.h"
 #include "sensor.h"
+#include "soc_model.h"
 #include "status.h"
 #include "uav_machine.h"
 
@@ -289,7 +289,8 @@ int main(int argc, char** argv) {
         "{out}."};
     Options o;
     app.add_option("--image", o.image, "picture for the camera: PNG, JPEG or PGM")->required();
-    app.add_flag("--sensor", o.sensor, "the picture comes through the camera core's pins, not into memory");
+    app.add_flag("--sensor", o.sensor,
+                 "the picture comes through the camera core's pins, not into memory");
     app.add_option("--size", o.size, "of the camera's frame, WIDTHxHEIGHT");
     app.add_option("--loss", o.loss, "loss on the air, each way")->check(CLI::Range(0.0, 1.0));
     app.add_option("--seed", o.seed, "of the radio's misfortunes");

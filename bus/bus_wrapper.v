@@ -16,7 +16,7 @@ module bus_wrapper #(
     parameter [31:0] ID_VALUE = 32'd0,
     parameter [15:0] WORDS    = 16'hFFF8, // bit w: word w exists (bits 2..0 are ignored)
     parameter        EVENTS   = 1,        // 1..32
-    parameter        ZERO     = 0         // 1: reg_rdata_i is 0 for words 0..2: it need not be gated
+    parameter        ZERO     = 0         // 1: reg_rdata_i is 0 for words 0..2 (word 0: or the ID, with ID_VALUE 0): not gated
 ) (
     input  wire              clk_i,
     input  wire              rst_i,

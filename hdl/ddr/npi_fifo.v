@@ -24,7 +24,8 @@ module npi_fifo #(
     output wire             full_o
 );
     reg  [LOG2:0] write_index, read_index;
-    wire [LOG2:0] next = read_index + {{LOG2{1'b0}}, pop_i};
+    // After the word on data_o; pop_i only decides whether to go there, so it may come late.
+    wire [LOG2:0] next = read_index + {{LOG2{1'b0}}, BLOCK == 0 || !empty_o};
 
     assign full_o = write_index[LOG2-1:0] == read_index[LOG2-1:0] &&
                     write_index[LOG2] != read_index[LOG2];
@@ -32,7 +33,8 @@ module npi_fifo #(
     always @(posedge clk_i) begin
         if (push_i)
             write_index <= write_index + 1'b1;
-        read_index <= next;
+        if (pop_i)
+            read_index <= next;
         if (rst_i) begin
             write_index <= 0;
             read_index  <= 0;
@@ -53,15 +55,16 @@ module npi_fifo #(
             reg [WIDTH-1:0] word;
             reg             empty;
             // Words of the clocks before only: the RAM is never read where it is being written.
+            wire fetch = empty || pop_i;
             wire ready = next != write_index;
             assign empty_o = empty;
             assign data_o  = word;
             always @(posedge clk_i) begin
                 if (push_i)
                     words[write_index[LOG2-1:0]] <= data_i;
-                if (ready)
+                if (fetch && ready)
                     word <= words[next[LOG2-1:0]];
-                empty <= rst_i || !ready;
+                empty <= rst_i || (fetch && !ready);
             end
         end
     endgenerate

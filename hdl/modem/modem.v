@@ -49,6 +49,8 @@ module modem #(
 );
     `include "modem_regs.vh"
 
+    // An access waits a cycle: from then on no path begins in the bus's address decoder.
+    reg         turn;
     wire        reg_write, reg_read;
     wire [3:0]  reg_addr;
     wire [31:0] reg_wdata;
@@ -57,14 +59,14 @@ module modem #(
     wire control     = reg_write && reg_addr == MODEM_CONTROL;
     reg  configure, reset_modem, rings_reset; // a cycle after the write: they go far
 
-    // What software writes is kept in LUT RAM: words 0..15 as the registers, 28..31 the key.
+    // What software writes is kept in LUT RAM: words 0..15 as the registers, the ID with them, 28..31 the key.
     reg  [31:0] words [0:31];
     reg  [1:0]  key_index;
     wire        key_write = reg_write && reg_addr == MODEM_KEY;
     wire [4:0]  at_word;
     wire [4:0]  ring_word;
     wire        at_busy;
-    wire [4:0]  word_index = bus_valid_i ? {1'b0, bus_addr_i} : at_word | (at_busy ? 5'd0 : ring_word);
+    wire [4:0]  word_index = turn ? {1'b0, bus_addr_i} : at_word | (at_busy ? 5'd0 : ring_word);
     wire [31:0] word       = words[word_index];
 
     // Time
@@ -112,6 +114,7 @@ module modem #(
     wire [6:0]  rd_index, wr_index;
     wire [7:0]  rd_data, wr_data, wr_be;
 
+    assign bus_ready_o     = turn;
     assign modem_rts_n_o   = rx_free <= 5'd2;
     assign modem_reset_n_o = reset_n;
     assign uart_valid = at_tx_valid || packet_tx_valid; // never both: not ready while the set-up runs
@@ -122,17 +125,18 @@ module modem #(
     assign npi_wr_flush_o = 1'b0;
     assign npi_rd_flush_o = 1'b0;
 
-    wire unused = &{1'b0, npi_wr_empty_i, npi_wr_almost_full_i, npi_rd_word_i, reg_read, 1'b0};
+    wire unused_ready; // always 1
+    wire unused = &{1'b0, npi_wr_empty_i, npi_wr_almost_full_i, npi_rd_word_i, reg_read, unused_ready, 1'b0};
 
     bus_wrapper #(
-        .ID_VALUE (MODEM_ID_VALUE),
+        .ID_VALUE (32'd0), // words[0]
         .WORDS    (16'hFFF8),
         .ZERO     (1),
         .EVENTS   (7)
     ) u_wrapper (
         .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
+        .bus_valid_i(turn), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
+        .bus_wdata_i(bus_wdata_i), .bus_ready_o(unused_ready), .bus_rdata_o(bus_rdata_o),
         .bus_error_o(bus_error_o),
         .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr),
         .reg_wdata_o(reg_wdata), .reg_rdata_i(reg_rdata),
@@ -163,7 +167,7 @@ module modem #(
         .clk_i(clk_i), .rst_i(rings_reset), .clear_o(at_clear), .time_i(waited),
         .start_i(configure && reset_n), .busy_o(at_busy), .done_o(at_done),
         .failed_o(at_failed), .retried_o(at_retried), .step_o(at_step), .bd_o(bd_now),
-        .word_o(at_word), .word_i(word), .word_valid_i(!bus_valid_i),
+        .word_o(at_word), .word_i(word), .word_valid_i(!turn),
         .tx_valid_o(at_tx_valid), .tx_data_o(at_tx_data), .tx_ready_i(tx_ready),
         .rx_valid_i(rx_valid), .rx_data_i(rx_data)
     );
@@ -236,7 +240,7 @@ module modem #(
 
     modem_npi u_npi (
         .clk_i(clk_i), .rst_i(rst_i),
-        .base_i(word[31:11]), .base_valid_i(!bus_valid_i && !at_busy),
+        .base_i(word[31:11]), .base_valid_i(!turn && !at_busy),
         .wr_valid_i(wr_valid), .wr_addr_i({rx_next, wr_index[6:3]}), .wr_be_i(wr_be), .wr_data_i(wr_data),
         .wr_ready_o(wr_ready), .wr_busy_o(wr_busy),
         .rd_valid_i(rd_valid), .rd_addr_i({tx_buffer, rd_index}),
@@ -253,7 +257,7 @@ module modem #(
     integer w;
     initial
         for (w = 0; w < 32; w = w + 1)
-            words[w] = 32'd0;
+            words[w] = w == 0 ? MODEM_ID_VALUE : 32'd0;
     always @* begin
         reg_rdata = word; // 0 where nothing is stored
         if (reg_addr == MODEM_STATUS)
@@ -269,6 +273,7 @@ module modem #(
 
     always @(posedge clk_i) begin
         cts_n_sync <= {cts_n_sync[0], modem_cts_n_i};
+        turn       <= bus_valid_i && !turn && !rst_i;
 
         configure   <= control && reg_wdata[MODEM_CONTROL_CONFIGURE_LSB] && !rst_i;
         reset_modem <= control && reg_wdata[MODEM_CONTROL_RESET_MODEM_LSB] && !rst_i;

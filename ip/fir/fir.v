@@ -64,7 +64,7 @@ module fir (
     wire        written = offer && write_ready;
     wire        room    = filled != 3'd4 || write_ready;
     wire        taken   = result_valid && room;
-    wire [1:0]  next    = written ? 2'd0 : filled[1:0]; // where this result goes
+    wire [3:0]  here    = written ? 4'd1 : 4'd1 << filled[1:0]; // where this result goes
 
     fir_wrapper u_wrapper (
         .clk_i(clk_i), .rst_i(rst_i),
@@ -105,6 +105,7 @@ module fir (
     assign npi_wr_flush_o = 1'b0;
     assign npi_rd_flush_o = 1'b0;
 
+    integer r;
     always @(posedge clk_i) begin
         refused <= start && bad;
         if (start && !bad) begin
@@ -123,7 +124,9 @@ module fir (
         if (taken) begin
             to_take     <= to_take - 9'd1;
             saturations <= saturations + {31'd0, saturated};
-            packed_results[16*next +: 16] <= result;
+            for (r = 0; r < 4; r = r + 1)
+                if (here[r])
+                    packed_results[16*r +: 16] <= result;
         end
         filled <= (written ? 3'd0 : filled) + {2'd0, taken};
         if (flush)

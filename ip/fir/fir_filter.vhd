@@ -41,16 +41,17 @@ architecture rtl of fir_filter is
   signal coefficients : coefficients_t;
   signal products     : products_t;
   signal sums         : sums_t; -- sums(0) is the newest result, sums(TAPS) is always 0
-  signal scaled       : signed(SUM_BITS downto 0); -- shifted, with one more bit to round by
+  signal coarse       : signed(SUM_BITS downto 0); -- shifted by eights, with one more bit to round by
+  signal scaled       : signed(SUM_BITS downto 0); -- shifted
   signal result       : signed(15 downto 0);
   signal saturated    : std_logic;
-  -- stages: products, sums, scaled, result
-  signal full         : std_logic_vector(1 to 4);
+  -- stages: products, sums, coarse, scaled, result
+  signal full         : std_logic_vector(1 to 5);
   signal step         : std_logic;
 begin
-  step           <= result_ready_i or not full(4);
+  step           <= result_ready_i or not full(5);
   sample_ready_o <= step;
-  result_valid_o <= full(4);
+  result_valid_o <= full(5);
   result_o       <= std_logic_vector(result);
   saturated_o    <= saturated;
   sums(TAPS)     <= (others => '0');
@@ -90,8 +91,9 @@ begin
   begin
     if rising_edge(clk_i) then
       if step = '1' then
-        full   <= sample_valid_i & full(1 to 3);
-        scaled <= shift_right(sums(0) & '0', to_integer(unsigned(shift_i)));
+        full   <= sample_valid_i & full(1 to 4);
+        coarse <= shift_right(sums(0) & '0', to_integer(unsigned(shift_i(4 downto 3)) & "000"));
+        scaled <= shift_right(coarse, to_integer(unsigned(shift_i(2 downto 0))));
         rounded := shift_right(scaled, 1) + signed'("0" & scaled(0));
         -- It fits if all bits above the sign are like it. (GHDL 5 converts a comparison of more than 32 bits
         -- with a negative integer wrongly.)

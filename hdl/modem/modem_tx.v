@@ -40,9 +40,12 @@ module modem_tx #(
     wire rested = (rest[8] && rest[6]) || packet_bytes_i == longest ||
                   API != 0; // 320 ticks
 
+    // A packet that the set-up interrupts is sent again, whole.
+    wire begin_anew = rst_i || !enable_i;
+
     assign rd_valid_o = state == FETCH && packet_valid_i && enable_i && !sent_o;
     assign tx_last_o  = last;
-    assign tx_valid_o = state == SEND && cts_i && enable_i;
+    assign tx_valid_o = state == SEND && cts_i;
 
     always @(posedge clk_i) begin
         sent_o <= 1'b0;
@@ -64,12 +67,11 @@ module modem_tx #(
                 end
             end
         endcase
-        if (!enable_i)
-            tx_data_o <= 8'd0;
-        if (rst_i) begin
+        if (begin_anew) begin
             state      <= FETCH;
             sent_o     <= 1'b0;
             rd_index_o <= 7'd0;
+            tx_data_o  <= 8'd0;
         end
     end
 
@@ -89,13 +91,13 @@ module modem_tx #(
         out <= out + left;
         if (rd_done_i)
             read <= rd_data_i;
-        if (sent_o || rst_i)
+        if (sent_o || begin_anew)
             out <= 7'd0;
-        if (past && !rst_i && !$past(rst_i)) begin
+        if (past && !rst_i && !$past(begin_anew)) begin
             // A byte is read from a packet of the ring, in turn, once, never beyond its end.
             assert (!rd_valid_o || (packet_valid_i && rd_index_o == out && out < packet_bytes_i));
             assert (!tx_valid_o || (rd_index_o == out + 7'd1 && tx_last_o == (rd_index_o == packet_bytes_i)));
-            if (tx_valid_o && $past(enable_i) && $past(rd_done_i))
+            if (tx_valid_o)
                 assert (tx_data_o == read);
             // Its buffer is released once, when all its bytes have left.
             if (sent_o)

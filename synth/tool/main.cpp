@@ -105,7 +105,8 @@ int accept(const Report& r, const fs::path& file) {
 int report(const Options& o) {
     if (!fs::is_directory(o.generated))
         throw std::runtime_error(fmt::format("{} is not there: build first", o.generated.string()));
-    const Library library(rtlFolders(o), {o.generated});
+    const std::vector<fs::path> folders = rtlFolders(o); // include files lie beside the modules
+    const Library library(folders, folders);
     Plan plan = readPlan(o.source / "synth/designs.json", library, o.source);
     std::vector<std::string> wanted = o.only;
     if (!o.edif.empty())

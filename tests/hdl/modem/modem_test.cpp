@@ -264,6 +264,21 @@ TEST_F(ModemTest, ResetInMidPacketAndSetUpAgain) {
               frame(40, 3));
 }
 
+TEST_F(ModemTest, APacketThatASetUpInterruptsIsSentAgainWhole) {
+    power(quick());
+    configure();
+    takeEvents();
+    put(0, frame(100, 1));
+    runMs(4);
+    configure(); // in mid packet
+    EXPECT_TRUE(takeEvents() & MODEM_EVENT_CONFIGURED_MASK);
+    runMs(40);
+    ASSERT_GE(plain_.received.size(), 100u);
+    EXPECT_EQ(std::vector<uint8_t>(plain_.received.end() - 100, plain_.received.end()),
+              frame(100, 1));
+    EXPECT_EQ(bus_.read(MODEM_TX_STATE) & MODEM_TX_STATE_FREE_MASK, 16u);
+}
+
 TEST_F(ModemTest, AModemThatIsFullHoldsTheControllerBack) {
     power(quick());
     configure();

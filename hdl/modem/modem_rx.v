@@ -35,8 +35,6 @@ module modem_rx #(
     output wire       push_o,     // the packet is complete: wr_index_o bytes
     output reg        overrun_o   // one cycle: dropped
 );
-    localparam [6:0] LONGEST = 7'd100;
-
     reg [7:0] length;   // announced; what is above 100 does not count
     reg [8:0] silence;  // ticks; 256 are 3.2 characters
     reg       pending;  // wr_data_o waits
@@ -52,7 +50,9 @@ module modem_rx #(
     wire       silent  = silence[8];
     wire       late    = (rx_valid_i || rx_error_i || rx_end_i || rx_bad_i) && pending && !taken && !deaf;
     wire       done    = ending && !wr_busy_i;
-    wire       longest = count == LONGEST || (API == 0 && !first && {1'b0, count} == length);
+    // The index is at most 100: four of its bits tell 99.
+    wire       longest = (wr_index_o[6] && wr_index_o[5] && wr_index_o[1] && wr_index_o[0]) ||
+                         (API == 0 && !first && {1'b0, count} == length);
     wire       cut     = API == 0 ? rx_error_i || silent : rx_end_i || rx_bad_i;
 
     assign wr_valid_o = pending && !ending && !drop;
@@ -116,6 +116,7 @@ module modem_rx #(
     end
 
 `ifdef FORMAL
+    localparam [6:0] LONGEST = 7'd100;
     reg past = 1'b0;
     initial assume (rst_i);
     (* anyseq *) reg acknowledge;

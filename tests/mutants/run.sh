@@ -2,18 +2,20 @@
 # SPDX-License-Identifier: MIT
 #
 # run: plants each seeded bug of tests/mutants/ and ip/*/mutants/ in a copy of the tree and expects the test it names to fail.
-# Usage: tests/mutants/run.sh [--block NAME] [--jobs N]
+# Usage: tests/mutants/run.sh [--block NAME] [--jobs N] [--check]
 #
+# --check: only that each patch names its test and applies to today's tree, line by line; builds nothing.
 # A patch says the bug in its first line, `Caught-by: <ctest name>` in a line of its own, and is then a
 # diff for `patch -p1`. Exit status 1: a bug survived, a patch no longer applies, or a mutant does not build.
 # Leaves build/mutants/results.tsv (patch, result, test, seconds) and summary.json (the score, by block).
 set -eu
-block='*' jobs=$(nproc)
+block='*' jobs=$(nproc) check=
 while [ $# -gt 0 ]; do
     case $1 in
     --block) block=$2 && shift 2 ;;
     --jobs) jobs=$2 && shift 2 ;;
-    -h | --help) sed -n '4,9s/^# \{0,1\}//p' "$0" && exit 0 ;;
+    --check) check=1 && shift ;;
+    -h | --help) sed -n '4,11s/^# \{0,1\}//p' "$0" && exit 0 ;;
     *) echo "run.sh: '$1' is not an option; see --help" >&2 && exit 2 ;;
     esac
 done
@@ -24,9 +26,17 @@ list=$(ls tests/mutants/$block/*.patch ip/$block/mutants/*.patch 2>/dev/null || 
     echo "mutants: no tests/mutants/$block/*.patch, no ip/$block/mutants/*.patch" >&2
     exit 2
 }
-mkdir -p build/mutants
-
 caught_by() { sed -n 's/^Caught-by: *//p' "$1" | head -1; }
+
+if [ -n "$check" ]; then
+    bad=0
+    for patch in $list; do
+        [ -n "$(caught_by "$patch")" ] || { echo "$patch: names no test (Caught-by:)" && bad=1; }
+        patch --dry-run -s -f -F0 -p1 <"$patch" || { echo "$patch: does not apply; make it anew from today's source" && bad=1; }
+    done
+    exit $bad
+fi
+mkdir -p build/mutants
 
 name_of() { echo "$1" | sed 's,^tests/mutants/,,; s,^ip/\(.*\)/mutants/,\1/,; s/[.]patch$//'; } # bus/wrapper_event_lost
 
@@ -71,7 +81,7 @@ one() { # patch, in the worker's copy
     for file in $files; do cp "$file" "$file.orig"; done
     if [ -z "$test" ]; then
         result='names no test (Caught-by:)'
-    elif ! patch -s -p1 <"$top/$patch" >"$log" 2>&1; then
+    elif ! patch -s -f -F0 -p1 <"$top/$patch" >"$log" 2>&1; then
         result='does not apply'
     else
         status=0

@@ -3,7 +3,7 @@
 # hardware.cmake: [":hw"] interfaces into wrappers, registers and servants (docs/hw-mapping.md).
 
 # icesoc_hardware(NAME file.ice BLOCKS block...): in ${GEN_DIR} the wrappers <block>_wrapper.v and
-# <block>_wrapper_pkg.vhd; the registers of each block as icesoc_regmap makes them; the library NAME_servants;
+# <block>_wrapper.vhd; the registers of each block as icesoc_regmap makes them; the library NAME_servants;
 # target NAME_hardware. BLOCKS: the file's hardware interfaces in snake_case.
 function(icesoc_hardware name file)
   cmake_parse_arguments(A "" "" "BLOCKS;INCLUDES" ${ARGN})
@@ -13,7 +13,7 @@ function(icesoc_hardware name file)
   set(sources)
   set(registers)
   foreach(b IN LISTS A_BLOCKS)
-    list(APPEND outs ${dir}/${b}_wrapper.v ${dir}/${b}_wrapper_pkg.vhd ${dir}/${b}.regs.json
+    list(APPEND outs ${dir}/${b}_wrapper.v ${dir}/${b}_wrapper.vhd ${dir}/${b}.regs.json
                      ${dir}/${b}_servant.h ${dir}/${b}_servant.c ${dir}/${b}_proxy.h)
     list(APPEND sources ${dir}/${b}_servant.c)
     list(APPEND registers regs_${b})

@@ -12,7 +12,7 @@ namespace hw {
 
 GeneratedFile registersFile(const Block& b, const CFileNames& names); // <block>.regs.json
 GeneratedFile verilogFile(const Block& b, const CFileNames& names);   // <block>_wrapper.v
-GeneratedFile vhdlFile(const Block& b, const CFileNames& names);      // <block>_wrapper_pkg.vhd
+GeneratedFile vhdlFile(const Block& b, const CFileNames& names);      // <block>_wrapper.vhd
 GeneratedFile servantHeader(const Block& b, const CFileNames& names); // <block>_servant.h
 GeneratedFile servantSource(const Block& b, const CFileNames& names); // <block>_servant.c
 

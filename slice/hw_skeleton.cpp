@@ -143,7 +143,6 @@ std::string vhdlCore(const Block& b) {
     head(w, b, "--");
     w.line("library ieee;");
     w.line("use ieee.std_logic_1164.all;");
-    w.line("use work." + b.name + "_wrapper_pkg.all;");
     w.line();
     w.line("entity " + b.name + " is");
     w.line("  port (");
@@ -173,7 +172,7 @@ std::string vhdlCore(const Block& b) {
             zeros += "  " + p.name + " <= " + (p.width == 1 ? "'0'" : "(others => '0')") + ";\n";
     w.line("begin");
     w.line();
-    w.line("  u_wrapper : component " + b.name + "_wrapper");
+    w.line("  u_wrapper : entity work." + b.name + "_wrapper");
     w.line("    port map (");
     w.line("      clk_i => clk_i, rst_i => rst_i,");
     w.line(

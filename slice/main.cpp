@@ -146,7 +146,7 @@ void describe(CLI::App& app, Options& o) {
     app.add_option("--include-dir", o.includeDir, "folder of the header in the sources' #include");
     app.add_option("--hw-verilog", o.hwVerilog,
                    "folder for the wrappers of [\":hw\"] interfaces (docs/hw-mapping.md)");
-    app.add_option("--hw-vhdl", o.hwVhdl, "folder for their components in VHDL");
+    app.add_option("--hw-vhdl", o.hwVhdl, "folder for the same wrappers in VHDL");
     app.add_option("--hw-regs", o.hwRegisters, "folder for their registers, *.regs.json");
     app.add_option("--hw-c", o.hwC, "folder for their servants in C90");
     app.add_option("--hw-cpp", o.hwCpp, "folder for their proxies in C++, for test benches");

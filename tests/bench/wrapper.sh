@@ -1,13 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# wrapper: source-folder slice2c out.json   What generating a wrapper costs: LUTs and flip-flops of the one of a new core (ip/template)
-# in Verilog and of wrapper_minimum.v, written by hand, which is shown to do the same clock by clock, from reset on.
+# wrapper: source-folder slice2c out.json ghdl   What generating a wrapper costs: LUTs and flip-flops of the one of a new core (ip/template)
+# in Verilog, in VHDL, and of wrapper_minimum.v, written by hand, which is shown to do the same clock by clock, from reset on.
 set -eu
-source=$1 slice2c=$2 json=$3
+source=$1 slice2c=$2 json=$3 ghdl=$4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 sed 's/@NAME@/sample/g; s/@TYPE@/Sample/g; s/@MODULE@/Cores/g' "$source/ip/template/NAME.ice.in" >"$work/sample.ice"
-"$slice2c" "$work/sample.ice" --output-dir "$work" --hw-verilog "$work"
+"$slice2c" "$work/sample.ice" --output-dir "$work" --hw-verilog "$work" --hw-vhdl "$work"
+"$ghdl" -a --std=08 --workdir="$work" "$work/sample_wrapper.vhd"
+"$ghdl" --synth --std=08 --workdir="$work" --out=verilog sample_wrapper >"$work/from_vhdl.v"
 generated="$source/bus/bus_registers.v $source/bus/bus_wrapper.v $work/sample_wrapper.v" minimum=$source/tests/bench/wrapper_minimum.v
 
 # Equal: a reset for a clock, then whatever may come for 12 more: a write, what it begins, its end, reads of all that.
@@ -28,8 +30,9 @@ size() { # top, files: "luts flip-flops"
 # shellcheck disable=SC2086 # a list of files
 a=$(size sample_wrapper $generated)
 b=$(size wrapper_minimum "$minimum")
+c=$(size sample_wrapper "$work/from_vhdl.v")
 mkdir -p "$(dirname "$json")"
-echo "$a $b" | awk -v json="$json" '{
-    form = "{\"name\": \"wrapper of a new core, %s\", \"value\": %d, \"unit\": \"%s\", \"by_hand\": %d, \"command\": \"make bench\"}"
-    printf "[" form ",\n " form "]\n", "LUTs", $1, "LUTs", $3, "flip-flops", $2, "flip-flops", $4 > json
-    printf "wrapper of a new core: %d LUTs, %d flip-flops; written by hand: %d LUTs, %d flip-flops\n", $1, $2, $3, $4 }'
+echo "$a $b $c" | awk -v json="$json" '{
+    form = "{\"name\": \"wrapper of a new core, %s\", \"value\": %d, \"unit\": \"%s\", \"by_hand\": %d, \"in_vhdl\": %d, \"command\": \"make bench\"}"
+    printf "[" form ",\n " form "]\n", "LUTs", $1, "LUTs", $3, $5, "flip-flops", $2, "flip-flops", $4, $6 > json
+    printf "wrapper of a new core: %d LUTs, %d flip-flops; written by hand: %d LUTs, %d flip-flops; in VHDL: %d LUTs, %d flip-flops\n", $1, $2, $3, $4, $5, $6 }'

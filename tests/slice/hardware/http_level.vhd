@@ -4,7 +4,6 @@
 
 library ieee;
 use ieee.std_logic_1164.all;
-use work.http_level_wrapper_pkg.all;
 
 entity http_level is
   port (
@@ -28,7 +27,7 @@ architecture rtl of http_level is
   signal set_level, level, answer               : std_logic_vector(7 downto 0);
 begin
 
-  u_wrapper : component http_level_wrapper
+  u_wrapper : entity work.http_level_wrapper
     port map (
       clk_i => clk_i, rst_i => rst_i,
       bus_valid_i => bus_valid_i, bus_write_i => bus_write_i, bus_addr_i => bus_addr_i,

@@ -4,7 +4,6 @@
 
 library ieee;
 use ieee.std_logic_1164.all;
-use work.calculator_wrapper_pkg.all;
 
 entity calculator is
   port (
@@ -52,7 +51,7 @@ architecture rtl of calculator is
   signal swap_result_y : std_logic_vector(15 downto 0);
 begin
 
-  u_wrapper : component calculator_wrapper
+  u_wrapper : entity work.calculator_wrapper
     port map (
       clk_i => clk_i, rst_i => rst_i,
       bus_valid_i => bus_valid_i, bus_write_i => bus_write_i, bus_addr_i => bus_addr_i,

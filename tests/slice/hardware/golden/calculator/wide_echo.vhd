@@ -4,7 +4,6 @@
 
 library ieee;
 use ieee.std_logic_1164.all;
-use work.wide_echo_wrapper_pkg.all;
 
 entity wide_echo is
   port (
@@ -41,7 +40,7 @@ architecture rtl of wide_echo is
   signal nothing_start : std_logic;
 begin
 
-  u_wrapper : component wide_echo_wrapper
+  u_wrapper : entity work.wide_echo_wrapper
     port map (
       clk_i => clk_i, rst_i => rst_i,
       bus_valid_i => bus_valid_i, bus_write_i => bus_write_i, bus_addr_i => bus_addr_i,

@@ -4,7 +4,6 @@
 
 library ieee;
 use ieee.std_logic_1164.all;
-use work.scaler_wrapper_pkg.all;
 
 entity scaler is
   port (
@@ -67,7 +66,7 @@ architecture rtl of scaler is
   signal shift_refused : std_logic;
 begin
 
-  u_wrapper : component scaler_wrapper
+  u_wrapper : entity work.scaler_wrapper
     port map (
       clk_i => clk_i, rst_i => rst_i,
       bus_valid_i => bus_valid_i, bus_write_i => bus_write_i, bus_addr_i => bus_addr_i,

@@ -4,7 +4,6 @@
 
 library ieee;
 use ieee.std_logic_1164.all;
-use work.store_wrapper_pkg.all;
 
 entity store is
   port (
@@ -57,7 +56,7 @@ architecture rtl of store is
   signal exchange_result : std_logic_vector(7 downto 0);
 begin
 
-  u_wrapper : component store_wrapper
+  u_wrapper : entity work.store_wrapper
     port map (
       clk_i => clk_i, rst_i => rst_i,
       bus_valid_i => bus_valid_i, bus_write_i => bus_write_i, bus_addr_i => bus_addr_i,

@@ -57,15 +57,12 @@ run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground st
 # Not the interop programs of the minimal configuration: they leave out unused sections, which sanitizers keep.
 SANITIZED := test_os test_os_cases test_link test_engine test_icec icec_server icec_client everything_cpp_client everything_cpp_server everything_server \
     everything_client everything_strings ice_relay test_icec_minimal
-# The missions with stock Ice follow the clock as far as the machine can; the ground follows simulated time, but Ice's own
-# time-outs and other programs' ptys are in real time: where other work takes the processor for long they have a second go.
 test: build ## run all tests; firmware, models and IceC once more with sanitizers
 ifneq ($(LABEL)$(NAME),)
 	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error \
 	    $(if $(LABEL),-L '$(LABEL)') $(if $(NAME),-R '$(NAME)')
 else
-	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error -LE e2e
-	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error -L e2e --repeat until-pass:2
+	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error
 	@[ -f build/sanitized/build.ninja ] || cmake -S . -B build/sanitized -G Ninja -DSANITIZE=ON \
 	    -DROOMS="bus;slice;sw;hdl;ip;testbench;tests" >/dev/null
 	@ninja -C build/sanitized -j $(JOBS) $(SANITIZED)

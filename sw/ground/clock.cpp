@@ -6,6 +6,7 @@
 #include "status.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
@@ -20,6 +21,8 @@ namespace XBeeAT {
 namespace {
 
 constexpr uint32_t shortestUs = 50; // of a look at simulated time
+constexpr uint32_t longestUs = 500; // the same, while simulated time waits for this program
+constexpr uint64_t endOfTime = ~uint64_t(0);
 
 std::string fromEnvironment() {
     const char* file = std::getenv("XBEEAT_CLOCK");
@@ -31,6 +34,17 @@ int pollUs(pollfd* fds, nfds_t count, uint32_t us) {
     return ppoll(fds, count, us == Clock::forever ? nullptr : &limit, nullptr);
 }
 
+std::string whole(const std::string& path) {
+    char* resolved = realpath(path.c_str(), nullptr);
+    std::string result = resolved ? resolved : path;
+    std::free(resolved);
+    return result;
+}
+
+void store(uint64_t& field, uint64_t value) {
+    __atomic_store_n(&field, value, __ATOMIC_RELEASE);
+}
+
 } // namespace
 
 Clock::Clock() : Clock(fromEnvironment()) {}
@@ -38,17 +52,18 @@ Clock::Clock() : Clock(fromEnvironment()) {}
 Clock::Clock(const std::string& file) {
     if (file.empty())
         return;
-    int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-    void* at = fd < 0 ? MAP_FAILED : mmap(nullptr, sizeof(SimStatus), PROT_READ, MAP_SHARED, fd, 0);
+    int fd = open(file.c_str(), O_RDWR | O_CLOEXEC);
+    void* at = fd < 0 ? MAP_FAILED
+                      : mmap(nullptr, sizeof(SimStatus), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
     int error = errno;
-    bool whole = fd >= 0 && lseek(fd, 0, SEEK_END) >= static_cast<off_t>(sizeof(SimStatus));
+    bool isWhole = fd >= 0 && lseek(fd, 0, SEEK_END) >= static_cast<off_t>(sizeof(SimStatus));
     if (fd >= 0)
         close(fd);
     if (at == MAP_FAILED)
         throw std::system_error(error, std::generic_category(),
                                 "the clock of XBEEAT_CLOCK, '" + file + "'");
-    simulation_ = static_cast<const SimStatus*>(at);
-    if (!whole || std::memcmp(simulation_->magic, "ICESOC1", 8) != 0) {
+    simulation_ = static_cast<SimStatus*>(at);
+    if (!isWhole || std::memcmp(simulation_->magic, "ICESOC1", 8) != 0) {
         munmap(at, sizeof(SimStatus));
         throw std::system_error(EINVAL, std::generic_category(),
                                 "the clock of XBEEAT_CLOCK, '" + file +
@@ -57,29 +72,98 @@ Clock::Clock(const std::string& file) {
 }
 
 Clock::~Clock() {
+    leaveStep();
     if (simulation_)
-        munmap(const_cast<SimStatus*>(simulation_), sizeof(SimStatus));
+        munmap(simulation_, sizeof(SimStatus));
+}
+
+uint64_t Clock::nowNs() const {
+    return __atomic_load_n(&simulation_->ns, __ATOMIC_RELAXED);
 }
 
 uint32_t Clock::nowUs() const {
     using namespace std::chrono;
     if (simulation_)
-        return static_cast<uint32_t>(__atomic_load_n(&simulation_->ns, __ATOMIC_RELAXED) / 1000);
+        return static_cast<uint32_t>(nowNs() / 1000);
     return static_cast<uint32_t>(
         duration_cast<microseconds>(steady_clock::now().time_since_epoch()).count());
 }
 
 // Simulated time is not faster than the machine's, as a rule: so what is left is slept, and looked
 // at again.
-int Clock::wait(pollfd* fds, nfds_t count, uint32_t us) const {
-    if (!simulation_ || us == forever)
+int Clock::wait(pollfd* fds, nfds_t count, uint32_t us) {
+    if (!simulation_)
         return pollUs(fds, count, us);
-    for (uint32_t begin = nowUs();;) {
-        uint32_t passed = std::min(nowUs() - begin, us);
-        int ready = pollUs(fds, count, passed == us ? 0 : std::max(us - passed, shortestUs));
-        if (ready != 0 || passed == us)
+    const uint64_t begin = nowNs() / 1000, end = us == forever ? endOfTime : begin + us;
+    const bool reads = std::any_of(fds, fds + count, [this](const pollfd& p) {
+        return p.fd == serial_ && (p.events & POLLIN);
+    });
+    for (;;) {
+        const uint64_t now = nowNs() / 1000;
+        const bool due = now >= end;
+        uint32_t nap = us == forever ? forever
+                       : due         ? 0
+                                     : std::max(static_cast<uint32_t>(end - now), shortestUs);
+        if (inStep()) {
+            sleepUntil(us == forever ? endOfTime : end * 1000, reads);
+            nap = us == forever ? forever : std::min(nap, longestUs);
+        }
+        int ready = pollUs(fds, count, nap);
+        if (ready != 0 || due) {
+            work();
             return ready;
+        }
     }
+}
+
+// ---- keeping step ----
+
+void Clock::keepStep(int serial, const std::string& device) {
+    static std::atomic<uint32_t> steps{0};
+    leaveStep();
+    if (!simulation_ || whole(device) != simulation_->device)
+        return;
+    serial_ = serial;
+    taken_ = 0;
+    token_ = static_cast<uint64_t>(++steps) << 32 | static_cast<uint32_t>(getpid());
+    store(simulation_->untilNs, 0);
+    store(simulation_->fromGround, 0);
+    store(simulation_->taken, 0);
+    store(simulation_->toGround, 0);
+    store(simulation_->keeper, token_);
+}
+
+// Somebody else may keep step by now: a new program on the same port.
+void Clock::leaveStep() {
+    uint64_t mine = token_;
+    if (mine)
+        __atomic_compare_exchange_n(&simulation_->keeper, &mine, uint64_t(0), false,
+                                    __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST);
+    token_ = 0;
+    serial_ = -1;
+}
+
+bool Clock::inStep() const {
+    return token_ && __atomic_load_n(&simulation_->keeper, __ATOMIC_ACQUIRE) == token_;
+}
+
+void Clock::sleepUntil(uint64_t ns, bool reads) {
+    store(simulation_->taken, reads ? taken_ : endOfTime);
+    store(simulation_->untilNs, ns);
+}
+
+void Clock::work() {
+    if (inStep())
+        store(simulation_->untilNs, 0);
+}
+
+void Clock::hasRead(size_t bytes) {
+    taken_ += bytes;
+}
+
+void Clock::hasWritten(size_t bytes) {
+    if (inStep())
+        __atomic_add_fetch(&simulation_->fromGround, bytes, __ATOMIC_RELEASE);
 }
 
 } // namespace XBeeAT

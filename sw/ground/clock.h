@@ -7,6 +7,7 @@
 #ifndef GROUND_CLOCK_H
 #define GROUND_CLOCK_H
 
+#include <cstddef>
 #include <cstdint>
 #include <poll.h>
 #include <string>
@@ -28,10 +29,27 @@ public:
     static constexpr uint32_t forever = 0xFFFFFFFFu;
     uint32_t nowUs() const; // wraps around
     // As poll, until something is ready or `us` have passed by this clock.
-    int wait(pollfd* fds, nfds_t count, uint32_t us) const;
+    int wait(pollfd* fds, nfds_t count, uint32_t us);
+
+    // From now on simulated time waits for this thread: it stands still but during `wait`, and
+    // until all has been read that `serial` was given. Of no effect by the machine's clock, or if
+    // the simulator's modem is not on `device`.
+    void keepStep(int serial, const std::string& device);
+    void leaveStep();
+    // What went through `serial`, in bytes.
+    void hasRead(size_t bytes);
+    void hasWritten(size_t bytes);
 
 private:
-    const SimStatus* simulation_ = nullptr;
+    uint64_t nowNs() const;
+    bool inStep() const;
+    void sleepUntil(uint64_t ns, bool reads);
+    void work();
+
+    SimStatus* simulation_ = nullptr;
+    uint64_t token_ = 0; // as SimStatus::keeper; 0: does not keep step
+    uint64_t taken_ = 0;
+    int serial_ = -1;
 };
 
 } // namespace XBeeAT

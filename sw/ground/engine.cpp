@@ -58,7 +58,7 @@ std::shared_ptr<Engine> Engine::get(const Settings& settings, const Log& log) {
 Engine::Engine(const Settings& settings, const Log& log)
     : device_(settings.device), settings_(settings), log_(log), link_(new Link),
       pacer_(settings.characterUs(), LINK_MAX_FRAME) {
-    if (!openPort())
+    if (!serial_.open(device_))
         throw std::system_error(errno, std::generic_category(),
                                 "cannot open serial port '" + device_ + "'");
     makePipe(wakePipe_);
@@ -76,18 +76,11 @@ Engine::~Engine() {
     }
     wake();
     thread_.join();
-    for (int fd : {serial_, wakePipe_[0], wakePipe_[1], acceptPipe_[0], acceptPipe_[1]})
+    for (int fd : {wakePipe_[0], wakePipe_[1], acceptPipe_[0], acceptPipe_[1]})
         if (fd >= 0)
             close(fd);
     for (int fd : accepted_)
         close(fd);
-}
-
-bool Engine::openPort() {
-    if (serial_ >= 0)
-        close(serial_);
-    serial_ = open(device_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    return serial_ >= 0;
 }
 
 void Engine::wake() {

@@ -9,6 +9,7 @@
 
 #include "clock.h"
 #include "frame_pacer.h"
+#include "serial_port.h"
 #include "settings.h"
 #include "stream.h"
 
@@ -49,7 +50,6 @@ public:
 
 private:
     Engine(const Settings& settings, const Log& log);
-    bool openPort();
     void run();
     bool prepareModem(const Settings& settings);
     void fly(std::unique_lock<std::mutex>& lock);
@@ -57,7 +57,8 @@ private:
     void loop(std::unique_lock<std::mutex>& lock);
     bool downTooLong(U32 now);
     void fail(const std::string& text);
-    bool waitMs(int ms); // false: the engine is to stop, or the port is gone
+    // As ModemSetup::Wait; negative: the engine is to stop, or the port is gone.
+    int waitMs(int ms, bool forBytes);
     bool isWanted() const;
     void readSerial(U32 now);
     void writeSerial(U32 now);
@@ -79,7 +80,8 @@ private:
     Settings settings_; // what the next set-up takes
     Log log_;
     Clock clock_;
-    int serial_ = -1, wakePipe_[2] = {-1, -1}, acceptPipe_[2] = {-1, -1};
+    SerialPort serial_{clock_};
+    int wakePipe_[2] = {-1, -1}, acceptPipe_[2] = {-1, -1};
     // failed_: the port is lost, or no modem answered; complained_: and that was said as an error.
     bool stop_ = false, listening_ = false, failed_ = false, complained_ = false;
     std::deque<int> accepted_;

@@ -86,24 +86,25 @@ void Engine::onWritable(void* context) {
 
 // ---- the modem's life ----
 
-bool Engine::waitMs(int ms) {
+int Engine::waitMs(int ms, bool forBytes) {
     // A port that is gone ends the wait, too: where its simulator has ended, time stands still.
-    pollfd fds[] = {{wakePipe_[0], POLLIN, 0}, {serial_, 0, 0}};
+    pollfd fds[] = {{wakePipe_[0], POLLIN, 0},
+                    {serial_.fd(), static_cast<short>(forBytes ? POLLIN : 0), 0}};
     const U32 begin = clock_.nowUs(), us = static_cast<U32>(ms) * 1000;
     for (;;) {
         {
             std::lock_guard<std::mutex> lock(mutex_);
             if (stop_)
-                return false;
+                return -1;
         }
         U32 passed = clock_.nowUs() - begin;
-        if (passed >= us)
-            return true;
+        if (passed >= us || (fds[1].revents & POLLIN))
+            return static_cast<int>(passed);
         char bytes[64];
         if (clock_.wait(fds, 2, us - passed) > 0 && fds[0].revents)
             (void)!read(wakePipe_[0], bytes, sizeof bytes);
-        if (fds[1].revents)
-            return false;
+        if (fds[1].revents & ~POLLIN)
+            return -1;
     }
 }
 
@@ -117,9 +118,10 @@ void Engine::fail(const std::string& text) {
 }
 
 bool Engine::prepareModem(const Settings& settings) {
-    ModemSetup setup(serial_, settings, log_, [this](int ms) { return waitMs(ms); });
+    ModemSetup setup(serial_, settings, log_,
+                     [this](int ms, bool forBytes) { return waitMs(ms, forBytes); });
     if (!settings.setUp) {
-        setup.setSpeed(settings.baud);
+        serial_.setSpeed(settings.baud);
     } else if (!setup.run()) {
         return false;
     }
@@ -160,8 +162,16 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
     const Settings settings = settings_;
     const U32 down = static_cast<U32>(settings.downMs) * 1000;
     patienceUs_ = down;
-    if (failed_ && !openPort())
+    if (failed_ && !serial_.open(device_))
         return fail("cannot open serial port '" + device_ + "': " + std::strerror(errno));
+    // A simulator waits for this thread as long as it flies.
+    struct Step {
+        Step(Clock& c, int serial, const std::string& device) : clock(c) {
+            clock.keepStep(serial, device);
+        }
+        ~Step() { clock.leaveStep(); }
+        Clock& clock;
+    } step(clock_, serial_.fd(), device_);
     for (bool first = true;; first = false) {
         lock.unlock();
         bool ready = prepareModem(settings);
@@ -197,7 +207,7 @@ bool Engine::downTooLong(U32 now) {
 
 void Engine::readSerial(U32 now) {
     U8 bytes[512];
-    ssize_t count = read(serial_, bytes, sizeof bytes);
+    ssize_t count = serial_.read(bytes, sizeof bytes);
     if (count > 0)
         Link_receive(link_.get(), bytes, static_cast<U32>(count), 0, now);
     else if (count == 0 || (errno != EAGAIN && errno != EINTR))
@@ -209,7 +219,7 @@ void Engine::writeSerial(U32 now) {
         serialOut_ = pacer_.due(now);
     if (serialOut_.empty())
         return;
-    ssize_t count = write(serial_, serialOut_.data(), serialOut_.size());
+    ssize_t count = serial_.write(serialOut_.data(), serialOut_.size());
     if (count > 0)
         serialOut_.erase(serialOut_.begin(), serialOut_.begin() + count);
 }
@@ -268,7 +278,7 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
         Link_poll(link_.get(), now);
         U32 deadline = std::min({Link_deadline(link_.get(), now), beat(now), pacer_.deadline(now)});
         std::vector<pollfd> fds = {
-            {serial_, static_cast<short>(serialOut_.empty() ? POLLIN : POLLIN | POLLOUT), 0},
+            {serial_.fd(), static_cast<short>(serialOut_.empty() ? POLLIN : POLLIN | POLLOUT), 0},
             {wakePipe_[0], POLLIN, 0}};
         for (Stream& s : streams_) {
             short events = static_cast<short>((s.stuck || s.wanted ? 0 : POLLIN) |

@@ -5,10 +5,7 @@
 #include "modem_setup.h"
 
 #include <algorithm>
-#include <asm/termbits.h> // struct termios2: any rate, 111,111 too
 #include <cstdio>
-#include <sys/ioctl.h>
-#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -35,34 +32,28 @@ std::string hex(int value) {
 
 } // namespace
 
-void ModemSetup::setSpeed(int baud) {
-    termios2 t{};
-    if (ioctl(serial_, TCGETS2, &t) != 0)
-        return;
-    t.c_iflag = 0;
-    t.c_oflag = 0;
-    t.c_lflag = 0;
-    t.c_cflag = CS8 | CREAD | CLOCAL | BOTHER | BOTHER << IBSHIFT;
-    t.c_ospeed = t.c_ispeed = static_cast<speed_t>(baud == 115200 ? 111111 : baud);
-    t.c_cc[VMIN] = 0;
-    t.c_cc[VTIME] = 0;
-    ioctl(serial_, TCSETS2, &t);
+bool ModemSetup::pause(int ms) {
+    stopped_ = wait_(ms, false) < 0;
+    return !stopped_;
 }
 
 // Up to the carriage return; what came by then if it does not come.
 std::string ModemSetup::readReply(int timeoutMs) {
     std::string reply;
-    for (int waited = 0; waited <= timeoutMs; waited += 5) {
+    for (int leftUs = timeoutMs * 1000;;) {
         char byte;
-        while (read(serial_, &byte, 1) == 1) {
+        while (serial_.read(&byte, 1) == 1) {
             if (byte == '\r')
                 return reply;
             reply += byte;
         }
-        if (!wait_(5)) {
-            stopped_ = true;
+        if (leftUs <= 0)
+            break;
+        int passed = wait_((leftUs + 999) / 1000, true);
+        stopped_ = passed < 0;
+        if (stopped_)
             return reply;
-        }
+        leftUs -= passed;
     }
     silentMs_ = timeoutMs;
     return reply;
@@ -71,13 +62,11 @@ std::string ModemSetup::readReply(int timeoutMs) {
 // The wait for an answer that does not come is the silence before the next +++ already.
 bool ModemSetup::enterCommandMode(int guardMs) {
     int guard = guardMs + guardMs / 8 + 5;
-    if (silentMs_ < guard && !wait_(guard - silentMs_)) {
-        stopped_ = true;
+    if (silentMs_ < guard && !pause(guard - silentMs_))
         return false;
-    }
     silentMs_ = 0;
-    ioctl(serial_, TCFLSH, TCIFLUSH);
-    if (write(serial_, "+++", 3) != 3)
+    serial_.drop();
+    if (serial_.write("+++", 3) != 3)
         return false;
     std::string reply = readReply(guard + replyMs);
     return reply.size() >= 2 && reply.compare(reply.size() - 2, 2, "OK") == 0;
@@ -85,7 +74,7 @@ bool ModemSetup::enterCommandMode(int guardMs) {
 
 std::string ModemSetup::ask(const std::string& text) {
     std::string line = "AT" + text + "\r";
-    if (write(serial_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
+    if (serial_.write(line.data(), line.size()) != static_cast<ssize_t>(line.size()))
         return "";
     std::string reply = readReply(replyMs);
     // A key is a secret.
@@ -116,7 +105,7 @@ bool ModemSetup::find() {
             candidates.emplace_back(rates[i], guard);
     silentMs_ = 0;
     for (auto [baud, guardMs] : candidates) {
-        setSpeed(baud);
+        serial_.setSpeed(baud);
         bool found = enterCommandMode(guardMs);
         log_(2, "+++ at " + std::to_string(baud) + " baud: " + (found ? "OK" : "no answer"));
         if (found || stopped_)
@@ -136,8 +125,8 @@ bool ModemSetup::run() {
     encrypts_ = ask("EE") == "1";
     if (!command("BD" + hex(codeOf(s.baud))) || !command("CN"))
         return false;
-    setSpeed(rates[codeOf(s.baud)]);
-    return wait_(10); // the modem changes its rate after the last OK has left
+    serial_.setSpeed(rates[codeOf(s.baud)]);
+    return pause(10); // the modem changes its rate after the last OK has left
 }
 
 } // namespace XBeeAT

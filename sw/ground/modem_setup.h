@@ -5,33 +5,34 @@
 #ifndef GROUND_MODEM_SETUP_H
 #define GROUND_MODEM_SETUP_H
 
+#include "serial_port.h"
 #include "settings.h"
 
 namespace XBeeAT {
 
 class ModemSetup {
 public:
-    // Pauses; false: give up.
-    using Wait = std::function<bool(int ms)>;
+    // Pauses, or (`forBytes`) until the port has something to read; returns the microseconds that
+    // have passed, negative: give up.
+    using Wait = std::function<int(int ms, bool forBytes)>;
 
-    ModemSetup(int serial, const Settings& settings, const Log& log, Wait wait)
+    ModemSetup(SerialPort& serial, const Settings& settings, const Log& log, Wait wait)
         : serial_(serial), settings_(settings), log_(log), wait_(std::move(wait)) {}
 
     // False: no modem answers, it refuses a command (logged), or `wait` gave up. About two guard
     // times at the right rate at once, one more for each rate tried in vain.
     bool run();
     bool encrypts() const { return encrypts_; } // EE, after run()
-    // Of the port, in baud; a file that is no terminal takes no notice.
-    void setSpeed(int baud);
 
 private:
     bool find();
     bool enterCommandMode(int guardMs);
+    bool pause(int ms);
     bool command(const std::string& text);
     std::string ask(const std::string& text);
     std::string readReply(int timeoutMs);
 
-    int serial_;
+    SerialPort& serial_;
     const Settings& settings_;
     const Log& log_;
     Wait wait_;

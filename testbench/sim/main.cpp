@@ -5,6 +5,7 @@
 
 #include "app.h"
 #include "camera.h"
+#include "ground_step.h"
 #include "m3_machine.h"
 #include "mark_file.h"
 #include "sensor.h"
@@ -71,6 +72,7 @@ public:
     StatusFile(const StatusFile&) = delete;
     StatusFile& operator=(const StatusFile&) = delete;
     SimStatus* operator->() { return status_; }
+    SimStatus& operator*() { return *status_; }
 
 private:
     SimStatus* status_;
@@ -204,10 +206,14 @@ int simulate(const Options& o) {
     PtyLine pty;
     XBee ground(pty, air, groundModem);
     SocModel soc(air, uavModem);
+    Child child;
+    auto isWanted = [&] { return !stopSignal && (o.command.empty() || child.runs()); };
+    GroundStep step(*status, pty, isWanted);
     soc.onTime([&](uint64_t now) {
         ground.advance(now);
         __atomic_store_n(&status->ns, now, __ATOMIC_RELAXED); // the ground's clock
-        return std::min(ground.nextEvent(), now + clockStepNs);
+        step.wait(now);
+        return std::min({ground.nextEvent(), std::max(step.nextEvent(), now + 1), now + clockStepNs});
     });
     air.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome outcome) {
         (packet.from == 1 ? status->bytesDown : status->bytesUp) += packet.bytes.size();
@@ -230,7 +236,6 @@ int simulate(const Options& o) {
         status->seen[(address - control) / 4] = isWrite ? 2 : 1;
     };
 
-    Child child;
     if (!o.quiet)
         std::cout << "icesoc-sim: UAV is up, frame " << frame.width << " x " << frame.height
                   << ", the ground's modem is " << pty.path() << std::endl;
@@ -244,10 +249,10 @@ int simulate(const Options& o) {
     Pace pace(o.speed == "real" ? 1 : o.speed == "max" ? 0 : std::stod(o.speed));
     auto poll = [&] {
         status->cycles = soc.cycles();
-        status->wallNs = pace.workedNs();
+        status->wallNs = pace.workedNs() - step.waitedNs();
         pace.keep(soc.now());
         bool over = o.duration > 0 && static_cast<double>(soc.now()) >= o.duration * 1e9;
-        return !stopSignal && !over && (o.command.empty() || child.runs());
+        return !over && isWanted();
     };
     if (o.cpu == "m3") {
         M3Machine machine(soc, {o.firmware, o.hclk}, poll);
@@ -268,7 +273,7 @@ int simulate(const Options& o) {
         UavMachine(soc, poll, simulatedFirmware(keyBytes(o.key))).run();
     }
     child.stop();
-    double worked = static_cast<double>(pace.workedNs()) / 1e9;
+    double worked = static_cast<double>(pace.workedNs() - step.waitedNs()) / 1e9;
     if (!o.quiet)
         std::printf("icesoc-sim: %.1f s simulated, %.2f million clocks/s while it worked (real "
                     "time is %.1f), "

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // status: counters of a running simulation, in a file that other programs map. Little-endian.
+//
+// A program on the ground may keep step with simulated time (sw/ground/clock.h, testbench/xbee/ground_step.h): then
+// time stands still while the program works, and until it has read what its serial port was given.
 
 #ifndef STATUS_H
 #define STATUS_H
@@ -18,6 +21,14 @@ struct SimStatus {
     // Registers as the processor last wrote or read them, [slot * 16 + word]; looking disturbs nothing.
     uint32_t registers[1024];
     uint8_t seen[1024];    // 0: never, 1: read, 2: written
+    // Keeping step. The simulator writes:
+    char device[64];       // the serial port of the ground's modem
+    uint64_t toGround;     // bytes that the port has been given since somebody keeps step
+    // The program writes:
+    uint64_t keeper;       // who keeps step: process id in the low 32 bits; 0: nobody
+    uint64_t untilNs;      // it sleeps until then; 0: it works
+    uint64_t taken;        // bytes it has read; all ones: it does not want to read now
+    uint64_t fromGround;   // bytes it has written
 };
 
 #endif

@@ -9,13 +9,16 @@
 #include <cmath>
 #include <cstdlib>
 #include <fcntl.h>
+#include <sched.h>
 #include <sys/ioctl.h>
 #include <system_error>
 #include <unistd.h>
 
 namespace {
 
-constexpr uint64_t pollNs = 500'000; // how often the pty is looked at
+constexpr uint64_t pollNs = 500'000;        // how often the pty is looked at
+constexpr uint64_t countedPollNs = 100'000; // the same, where nothing is late
+constexpr int patience = 20'000;            // looks at a pty whose bytes the kernel has yet to move
 
 void makeRaw(int fd) {
     termios2 settings{};
@@ -57,21 +60,51 @@ bool PtyLine::speedFits() const {
     return std::fabs(settings.c_ospeed - modem) <= 0.045 * modem;
 }
 
+// All that the program has written by now; the kernel takes a moment from one end to the other.
+void PtyLine::readAhead(uint64_t now) {
+    bool isCounted = count_.isKept && count_.isKept();
+    if (isCounted != isCounted_)
+        fetched_ = 0;
+    isCounted_ = isCounted;
+    for (int looks = 0; isCounted && fetched_ < count_.fromProgram() && looks < patience; ++looks) {
+        uint8_t bytes[512];
+        ssize_t count = read(master_, bytes, sizeof bytes);
+        if (ahead_.empty()) // the wire was idle
+            rxFree_ = std::max(rxFree_, static_cast<double>(now));
+        for (ssize_t i = 0; i < count; ++i)
+            ahead_.push_back(bytes[i]);
+        if (count > 0)
+            fetched_ += static_cast<uint64_t>(count);
+        else
+            sched_yield();
+    }
+}
+
+size_t PtyLine::fetch(uint8_t* bytes, size_t room) {
+    if (ahead_.empty() && !isCounted_)
+        return static_cast<size_t>(std::max<ssize_t>(read(master_, bytes, room), 0));
+    size_t count = std::min(room, ahead_.size());
+    std::copy_n(ahead_.begin(), count, bytes);
+    ahead_.erase(ahead_.begin(), ahead_.begin() + static_cast<ptrdiff_t>(count));
+    return count;
+}
+
 void PtyLine::readHost(uint64_t now) {
     uint8_t bytes[64];
     // Only what the wire could have carried by now, so that nothing is read ahead of flow control.
-    rxFree_ = std::max(rxFree_, static_cast<double>(now) - lookBack());
+    if (!isCounted_)
+        rxFree_ = std::max(rxFree_, static_cast<double>(now) - lookBack());
     size_t room = 0;
     while (room < sizeof bytes &&
            rxFree_ + (static_cast<double>(room) + 1) * 10 * bitNs_ <= static_cast<double>(now))
         ++room;
     if (room == 0)
         return;
-    ssize_t count = read(master_, bytes, room);
-    if (count <= 0)
+    size_t count = fetch(bytes, room);
+    if (count == 0)
         return;
     bool fits = speedFits();
-    for (ssize_t i = 0; i < count; ++i) {
+    for (size_t i = 0; i < count; ++i) {
         rxFree_ += 10 * bitNs_;
         if (fits)
             client_->fromHost(bytes[i], now);
@@ -83,31 +116,41 @@ void PtyLine::readHost(uint64_t now) {
 }
 
 void PtyLine::writeHost(uint64_t now) {
-    txFree_ = std::max(txFree_, static_cast<double>(now) - lookBack());
+    if (!isCounted_)
+        txFree_ = std::max(txFree_, static_cast<double>(now) - lookBack());
     bool fits = speedFits();
     uint8_t byte;
-    while (unwritten_.size() < 4096 && txFree_ + 10 * bitNs_ <= static_cast<double>(now) &&
-           client_->nextToHost(byte)) {
+    while (unwritten_.size() < 4096 && txFree_ + 10 * bitNs_ <= static_cast<double>(now)) {
+        txIdle_ = !client_->nextToHost(byte);
+        if (txIdle_)
+            break;
         txFree_ += 10 * bitNs_;
         unwritten_.push_back(fits ? byte : static_cast<uint8_t>(byte ^ 0x5A));
     }
     if (unwritten_.empty())
         return;
     ssize_t count = write(master_, unwritten_.data(), unwritten_.size());
-    if (count > 0)
-        unwritten_.erase(unwritten_.begin(), unwritten_.begin() + count);
+    if (count <= 0)
+        return;
+    unwritten_.erase(unwritten_.begin(), unwritten_.begin() + count);
+    if (isCounted_)
+        count_.toProgram(static_cast<size_t>(count));
 }
 
 void PtyLine::advance(uint64_t now) {
     if (now < nextPoll_)
         return;
-    nextPoll_ = now + pollNs;
+    readAhead(now);
+    nextPoll_ = now + (isCounted_ ? countedPollNs : pollNs);
     if (cts_)
         readHost(now);
+    else
+        rxFree_ = std::max(rxFree_, static_cast<double>(now));
     writeHost(now);
 }
 
 void PtyLine::wake(uint64_t now) {
-    if (txFree_ < static_cast<double>(now))
+    if (txFree_ < static_cast<double>(now) && (txIdle_ || !isCounted_))
         txFree_ = static_cast<double>(now);
+    txIdle_ = false;
 }

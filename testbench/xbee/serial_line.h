@@ -6,6 +6,8 @@
 #define SERIAL_LINE_H
 
 #include <cstdint>
+#include <deque>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -166,6 +168,15 @@ public:
     PtyLine& operator=(const PtyLine&) = delete;
     const std::string& path() const { return path_; }
 
+    // A program may say how many bytes it has written and read: then none of them is late because
+    // the machine is busy (testbench/xbee/ground_step.h).
+    struct Count {
+        std::function<bool()> isKept;
+        std::function<void(size_t bytes)> toProgram;
+        std::function<uint64_t()> fromProgram; // since isKept
+    };
+    void keepCount(Count count) { count_ = std::move(count); }
+
     void advance(uint64_t now) override;
     uint64_t nextEvent() const override { return nextPoll_; }
     void wake(uint64_t now) override;
@@ -174,6 +185,8 @@ private:
     bool speedFits() const;
     // What an idle wire may have carried since it was looked at last: a byte at least.
     double lookBack() const { return 1e6 + 10 * bitNs_; }
+    void readAhead(uint64_t now);
+    size_t fetch(uint8_t* bytes, size_t room);
     void readHost(uint64_t now);
     void writeHost(uint64_t now);
 
@@ -182,6 +195,10 @@ private:
     uint64_t nextPoll_ = 0;
     double rxFree_ = 0, txFree_ = 0; // when the wire is free again, each way
     std::vector<uint8_t> unwritten_;
+    Count count_;
+    bool isCounted_ = false, txIdle_ = true;
+    uint64_t fetched_ = 0;      // of the counted bytes
+    std::deque<uint8_t> ahead_; // read, but the wire has not carried them yet
 };
 
 #endif

@@ -67,17 +67,22 @@ double groundSetUpMs(uint32_t guardMs, uint32_t bd) {
     XBeeAT::Settings settings;
     settings.guardMs = static_cast<int>(guardMs);
     uint64_t now = 0;
-    int serial = open(pty.path().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    XBeeAT::Clock clock{""};
+    XBeeAT::SerialPort serial(clock);
+    if (!serial.open(pty.path()))
+        return 0;
     XBeeAT::Log log = [](int, const std::string&) {};
-    XBeeAT::ModemSetup setup(serial, settings, log, [&](int ms) {
-        for (uint64_t end = now + static_cast<uint64_t>(ms) * 1'000'000; now < end;) {
+    XBeeAT::ModemSetup setup(serial, settings, log, [&](int ms, bool forBytes) {
+        const uint64_t begin = now;
+        pollfd bytes = {serial.fd(), POLLIN, 0};
+        while (now < begin + static_cast<uint64_t>(ms) * 1'000'000 &&
+               !(forBytes && poll(&bytes, 1, 0) > 0)) {
             now += 50'000;
             modem.advance(now);
         }
-        return true;
+        return static_cast<int>((now - begin) / 1000);
     });
     bool done = setup.run() && modem.parameter("BD") == 7;
-    close(serial);
     return done ? static_cast<double>(now) / 1e6 : 0;
 }
 

@@ -14,8 +14,8 @@
 
 int main(int argc, char** argv) {
     if (argc < 2 || std::string(argv[1]) == "--help") {
-        std::cerr << "usage: ping PROXY [COUNT]   e.g. ping \"hwengine1:xbee-at -d /dev/ttyUSB0 -a "
-                     "1\" 5\n";
+        std::cerr << "usage: ping PROXY [COUNT] [--PROPERTY=VALUE ...]   e.g. ping "
+                     "\"hwengine1:xbee-at -d /dev/ttyUSB0 -a 1\" 5 --XBeeAT.Trace=2\n";
         return 2;
     }
     try {
@@ -24,10 +24,15 @@ int main(int argc, char** argv) {
         data.properties->setProperty("Ice.Plugin.XBeeAT", PLUGIN_FOLDER "/xbeeat:createXBeeAT");
         data.properties->setProperty("Ice.Default.InvocationTimeout", "300000");
         data.properties->setProperty("Ice.ACM.Close", "0");
+        const Ice::StringSeq words =
+            data.properties->parseCommandLineOptions("", Ice::StringSeq(argv + 1, argv + argc));
+        if (words.empty())
+            throw std::runtime_error("which object? See --help");
         Ice::CommunicatorHolder ic(data);
-        auto object = ic->stringToProxy(argv[1]);
+        auto object = ic->stringToProxy(words[0]);
         std::cout << ic->proxyToString(object) << "\n";
-        for (int i = 0, count = argc > 2 ? std::atoi(argv[2]) : 3; i < count; ++i) {
+        for (int i = 0, count = words.size() > 1 ? std::atoi(words[1].c_str()) : 3; i < count;
+             ++i) {
             auto start = std::chrono::steady_clock::now();
             object->ice_ping();
             std::cout << "ping " << i + 1 << ": "

@@ -58,6 +58,22 @@ slow) # a machine that is four times too slow: the ground lives by the simulator
     [ "$(grep -c '+++ at' "$out/log")" = 2 ] || { cat "$out/log" && exit 1; }
     check_output "$out"
     ;;
+stopped) # the ground's program gets no processor for four seconds amidst the set-up: simulated time waits for it
+    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" -- \
+        "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d "{device}" -a 0x0001 -t 300000' 3 --XBeeAT.Trace=2 >"$out/log" 2>&1 &
+    sim=$!
+    while ! grep -q '+++ at 9600 baud: OK' "$out/log"; do
+        kill -0 $sim || { cat "$out/log" && exit 1; }
+        sleep 0.02
+    done
+    ground=$(pgrep -P $sim)
+    kill -STOP "$ground"
+    sleep 4
+    kill -CONT "$ground"
+    wait $sim || { cat "$out/log" && exit 1; }
+    simulated=$(sed -n 's/.*: \([0-9.]*\) s simulated.*/\1/p' "$out/log")
+    awk "BEGIN { exit !($simulated < 5) }" || { cat "$out/log" && exit 1; }
+    ;;
 encrypted) # both modems by the same AES key: the controller sets one, the endpoint's -k the other
     key=00112233445566778899AABBCCDDEEFF
     "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --key $key -- \

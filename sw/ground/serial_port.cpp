@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+//
+// serial_port: a terminal made raw, at any rate.
+
+#include "serial_port.h"
+
+#include <asm/termbits.h> // struct termios2: any rate, 111,111 too
+#include <fcntl.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace XBeeAT {
+
+bool SerialPort::open(const std::string& device) {
+    close();
+    fd_ = ::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    return fd_ >= 0;
+}
+
+void SerialPort::close() {
+    if (fd_ >= 0)
+        ::close(fd_);
+    fd_ = -1;
+}
+
+ssize_t SerialPort::read(void* bytes, size_t room) {
+    ssize_t count = ::read(fd_, bytes, room);
+    if (count > 0)
+        clock_.hasRead(static_cast<size_t>(count));
+    return count;
+}
+
+ssize_t SerialPort::write(const void* bytes, size_t size) {
+    ssize_t count = ::write(fd_, bytes, size);
+    if (count > 0)
+        clock_.hasWritten(static_cast<size_t>(count));
+    return count;
+}
+
+// Not by TCFLSH: a byte that was given must be read, for those who count (clock.h).
+void SerialPort::drop() {
+    char bytes[256];
+    while (read(bytes, sizeof bytes) > 0)
+        ;
+}
+
+void SerialPort::setSpeed(int baud) {
+    termios2 t{};
+    if (ioctl(fd_, TCGETS2, &t) != 0)
+        return;
+    t.c_iflag = 0;
+    t.c_oflag = 0;
+    t.c_lflag = 0;
+    t.c_cflag = CS8 | CREAD | CLOCAL | BOTHER | BOTHER << IBSHIFT;
+    t.c_ospeed = t.c_ispeed = static_cast<speed_t>(baud == 115200 ? 111111 : baud);
+    t.c_cc[VMIN] = 0;
+    t.c_cc[VTIME] = 0;
+    ioctl(fd_, TCSETS2, &t);
+}
+
+} // namespace XBeeAT

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+//
+// ground_step: the simulator's side of keeping step.
+
+#include "ground_step.h"
+#include "status.h"
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <sched.h>
+#include <unistd.h>
+
+namespace {
+
+constexpr unsigned turnsAtOnce = 50, napUs = 50, turnsBetweenQuestions = 200;
+
+uint64_t load(const uint64_t& field) {
+    return __atomic_load_n(&field, __ATOMIC_ACQUIRE);
+}
+
+} // namespace
+
+GroundStep::GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> goOn)
+    : status_(status), goOn_(std::move(goOn)) {
+    std::strncpy(status_.device, pty.path().c_str(), sizeof status_.device - 1);
+    pty.keepCount(
+        {[this] { return load(status_.keeper) != 0; },
+         [this](size_t bytes) { __atomic_add_fetch(&status_.toGround, bytes, __ATOMIC_RELEASE); },
+         [this] { return load(status_.fromGround); }});
+}
+
+bool GroundStep::holds(uint64_t now) const {
+    return load(status_.keeper) != 0 &&
+           (load(status_.untilNs) <= now || load(status_.taken) < load(status_.toGround));
+}
+
+// A program that was killed has not said good-bye.
+void GroundStep::dismissTheDead() {
+    uint64_t keeper = load(status_.keeper);
+    if (keeper && kill(static_cast<pid_t>(keeper & 0xFFFFFFFFu), 0) != 0 && errno == ESRCH)
+        __atomic_compare_exchange_n(&status_.keeper, &keeper, uint64_t(0), false, __ATOMIC_SEQ_CST,
+                                    __ATOMIC_SEQ_CST);
+}
+
+void GroundStep::wait(uint64_t now) {
+    if (!holds(now))
+        return;
+    const auto begin = std::chrono::steady_clock::now();
+    for (unsigned turn = 1; holds(now); ++turn) {
+        if (turn < turnsAtOnce)
+            sched_yield();
+        else
+            usleep(napUs);
+        if (turn % turnsBetweenQuestions == 0) {
+            if (!goOn_())
+                break;
+            dismissTheDead();
+        }
+    }
+    waitedNs_ += static_cast<uint64_t>((std::chrono::steady_clock::now() - begin).count());
+}
+
+uint64_t GroundStep::nextEvent() const {
+    return load(status_.keeper) ? load(status_.untilNs) : never;
+}

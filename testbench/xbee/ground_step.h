@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// ground_step: simulated time waits for the program on the ground that keeps step with it
+// (status.h), however seldom a busy machine lets that program run.
+
+#ifndef GROUND_STEP_H
+#define GROUND_STEP_H
+
+#include "serial_line.h"
+#include <functional>
+
+struct SimStatus;
+
+class GroundStep {
+public:
+    // `goOn`: asked about each 10 ms while time stands still; false: wait no longer.
+    GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> goOn);
+    GroundStep(const GroundStep&) = delete;
+    GroundStep& operator=(const GroundStep&) = delete;
+
+    // Returns when the program lets time pass beyond `now`; at once if none keeps step.
+    void wait(uint64_t now);
+    // When the program wakes up, in simulated ns.
+    uint64_t nextEvent() const;
+    uint64_t waitedNs() const { return waitedNs_; } // of the wall clock
+
+private:
+    bool holds(uint64_t now) const;
+    void dismissTheDead();
+
+    SimStatus& status_;
+    std::function<bool()> goOn_;
+    uint64_t waitedNs_ = 0;
+};
+
+#endif

@@ -36,6 +36,7 @@ layers='fsmc radio link icec endpoint'
 files() { # configuration, layer
     case $1.$2 in
     minimal.link) echo "$source"/sw/link/minimal/*.c "$source"/sw/link/link_bytes.c ;;
+    minimal.icec) sed "s,^,$source/sw/icec/," "$source/sw/icec/minimal/sources.txt" ;;
     *.endpoint) echo "$source"/sw/icec/endpoints/xbee_endpoint.c ;;
     *.app) echo "$source"/sw/apps/minimal/*.c "$gen"/slice/Autopilot/*.c ;;
     *) echo "$source"/sw/"$2"/*.c ;;

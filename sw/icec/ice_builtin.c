@@ -4,9 +4,14 @@
  */
 #include "ice_private.h"
 
-#include <string.h>
-
 #define MODE (2 | ICE_RESULTS) /* idempotent */
+
+Ice_Status Ice_ObjectPrx_ice_ping(Ice_ObjectPrxPtr self) {
+    Ice_InputStreamPtr is;
+    if (!Ice_ObjectPrx_begin(self, "ice_ping", 2))
+        return (Ice_Status)self->status;
+    return Ice_ObjectPrx_end(self, Ice_ObjectPrx_invoke(self, &is));
+}
 
 Ice_Status Ice_ObjectPrx_ice_isA(Ice_ObjectPrxPtr self, const char* id, Ice_Bool* result) {
     Ice_InputStreamPtr is;
@@ -43,11 +48,4 @@ Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx*
     if (status != ICE_OK || !is)
         Ice_ObjectPrx_init(self, from->communicator);
     return status;
-}
-
-void Ice_ObjectPrx_failure(const Ice_ObjectPrx* self, Ice_Failure* failure) {
-    if (self->call >= 0)
-        *failure = self->communicator->calls[self->call].failure;
-    else
-        memset(failure, 0, sizeof *failure);
 }

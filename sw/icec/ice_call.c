@@ -330,9 +330,9 @@ Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {
     return status;
 }
 
-Ice_Status Ice_ObjectPrx_ice_ping(Ice_ObjectPrxPtr self) {
-    Ice_InputStreamPtr is;
-    if (!Ice_ObjectPrx_begin(self, "ice_ping", 2))
-        return (Ice_Status)self->status;
-    return Ice_ObjectPrx_end(self, Ice_ObjectPrx_invoke(self, &is));
+void Ice_ObjectPrx_failure(const Ice_ObjectPrx* self, Ice_Failure* failure) {
+    if (self->call >= 0)
+        *failure = self->communicator->calls[self->call].failure;
+    else
+        memset(failure, 0, sizeof *failure);
 }

@@ -4,7 +4,7 @@
  *
  * The same values must be used for IceC and for all that includes icec.h. Options are 0 or 1 and
  * are tested by plain `if`: the compiler sees all code in every configuration and drops what is
- * off. -DICEC_MINIMAL turns off what the paper's IceC did not have (docs/icec.md lists it).
+ * off. -DICEC_MINIMAL chooses the minimal run time (docs/icec.md), without any of them.
  */
 #ifndef ICE_CONFIG_H
 #define ICE_CONFIG_H

@@ -107,7 +107,7 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
         Ice_readFacet(is, &current.facet);
     } else {
         current.facet.size = Ice_InputStream_readByte(is); /* one is too many */
-        Ice_skipStrings(is, current.facet.size);
+        Ice_skipStrings(is, (U32)current.facet.size);
     }
     Ice_InputStream_takeString(is, &current.operation);
     whoSize = is->position - who;
@@ -115,7 +115,7 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
     if (ICEC_CONTEXTS)
         current.context = *is;
     pairs = Ice_InputStream_readSize(is);
-    Ice_skipStrings(is, (Ice_Int)(2U * (U32)pairs)); /* more than there can be are malformed */
+    Ice_skipStrings(is, 2U * (U32)pairs); /* more than there can be are malformed */
     status = Ice_enterEncapsulation(is);
     if (status == ICE_MARSHAL)
         return ICE_CONNECTION_LOST;

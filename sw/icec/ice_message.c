@@ -61,8 +61,8 @@ void Ice_readFacet(Ice_InputStreamPtr is, Ice_String* facet) {
         Ice_InputStream_takeString(is, facet);
 }
 
-void Ice_skipStrings(Ice_InputStreamPtr is, Ice_Int count) {
+void Ice_skipStrings(Ice_InputStreamPtr is, U32 count) {
     Ice_String skipped;
-    for (; count > 0 && !is->failed; --count)
+    for (; count && !is->failed; --count)
         Ice_InputStream_takeString(is, &skipped);
 }

@@ -34,7 +34,7 @@ Ice_Status Ice_enterEncapsulation(Ice_InputStreamPtr is);
 /* Facet as on the wire: none, or one. */
 void Ice_writeFacet(Ice_OutputStreamPtr os, const Ice_String* facet);
 void Ice_readFacet(Ice_InputStreamPtr is, Ice_String* facet);
-void Ice_skipStrings(Ice_InputStreamPtr is, Ice_Int count);
+void Ice_skipStrings(Ice_InputStreamPtr is, U32 count);
 
 /* ---- connections (ice_connection.c) ---- */
 

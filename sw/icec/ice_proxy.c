@@ -26,11 +26,11 @@ Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* nam
     Ice_OutputStream os;
     Ice_OutputStream_init(&os, prx->identity, ICE_IDENTITY_MAX);
     Ice_OutputStream_writeString(&os, *name);
-    if (ICEC_CATEGORIES && category)
+    if (category)
         Ice_OutputStream_writeString(&os, *category);
     else
         Ice_OutputStream_writeByte(&os, 0);
-    if (ICEC_CATEGORIES && facet)
+    if (facet)
         Ice_writeFacet(&os, facet);
     else
         Ice_OutputStream_writeByte(&os, 0);

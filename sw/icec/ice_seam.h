@@ -35,9 +35,9 @@ const char* Ice_Status_text(Ice_Status status);
 /* What a transport tells its communicator. */
 typedef enum Ice_EventKind {
     ICE_EVENT_NONE,
-    ICE_EVENT_OPENED,
     ICE_EVENT_MESSAGE,
-    ICE_EVENT_CLOSED
+    ICE_EVENT_CLOSED,
+    ICE_EVENT_OPENED
 } Ice_EventKind;
 
 typedef struct Ice_Event {

@@ -24,10 +24,8 @@ int Ice_String_equals(Ice_String a, const char* terminated) {
 }
 
 int Ice_String_is(const Ice_String* a, const char* terminated) {
-    Ice_String b;
-    b.data = terminated;
-    b.size = (Ice_Int)strlen(terminated);
-    return Ice_String_same(a, &b);
+    size_t size = strlen(terminated);
+    return (size_t)a->size == size && (size == 0 || memcmp(a->data, terminated, size) == 0);
 }
 
 void Ice_OutputStream_init(Ice_OutputStreamPtr os, Ice_Byte* data, Ice_Int capacity) {
@@ -100,16 +98,17 @@ void Ice_OutputStream_writeSize(Ice_OutputStreamPtr os, Ice_Int v) {
     }
 }
 
+static void writeSized(Ice_OutputStreamPtr os, const char* data, Ice_Int size) {
+    Ice_OutputStream_writeSize(os, size);
+    Ice_OutputStream_writeBlob(os, (const Ice_Byte*)data, size);
+}
+
 void Ice_OutputStream_writeString(Ice_OutputStreamPtr os, Ice_String v) {
-    Ice_OutputStream_writeSize(os, v.size);
-    Ice_OutputStream_writeBlob(os, (const Ice_Byte*)v.data, v.size);
+    writeSized(os, v.data, v.size);
 }
 
 void Ice_OutputStream_writeText(Ice_OutputStreamPtr os, const char* terminated) {
-    Ice_String text;
-    text.data = terminated;
-    text.size = (Ice_Int)strlen(terminated);
-    Ice_OutputStream_writeString(os, text);
+    writeSized(os, terminated, (Ice_Int)strlen(terminated));
 }
 
 void(Ice_OutputStream_writeEnum)(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int largest) {

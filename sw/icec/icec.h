@@ -72,20 +72,6 @@ Ice_Status Ice_Reply_end(Ice_Reply* reply, Ice_Status status);
 
 /* ---- object adapters ---- */
 
-typedef struct Ice_Servant {
-    Ice_ObjectPtr servant; /* 0: free */
-    Ice_Identity identity; /* name of no characters: default servant of the category */
-    Ice_String facet;
-} Ice_Servant;
-
-struct Ice_ObjectAdapter {
-    Ice_CommunicatorPtr communicator;
-    Ice_ObjectAdapterPtr next;
-    const char* name;
-    Ice_Byte active;
-    Ice_Servant servants[ICE_SERVANTS];
-};
-
 /* `identity`: "name" or "category/name". ICE_LIMIT: it is taken, or there is no room. */
 Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                                  const char* identity);
@@ -207,52 +193,6 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
 
 /* ---- communicator ---- */
 
-typedef struct Ice_Call {
-    Ice_Int state;
-    Ice_Int status; /* Ice_Status, once it is done */
-    Ice_Int id;
-    int connection;
-    U32 begunMs;
-    Ice_Int timeoutMs;
-    Ice_Callback callback; /* 0: a task waits */
-    void* cookie;
-    Ice_InputStream is;
-    Ice_Failure failure;
-    U32* reply; /* the reply, and behind it its decoded sequences */
-    Ice_Int replySize;
-    U32 replyData[ICEC_COPY_REPLIES ? ICE_REPLY_MAX / 4 : 1];
-} Ice_Call;
-
-typedef struct Ice_Connection {
-    Ice_Int state;    /* 0 closed, 1 waits for the peer's first message, 2 open */
-    Ice_Byte pending; /* operations under way, or answered later */
-    U16 generation;   /* counts the connections that had this number; never 0 */
-    U32 spokeMs;      /* last sign of life */
-} Ice_Connection;
-
-/* Small members first: their offsets are short in the code. */
-struct Ice_Communicator {
-    const Ice_Endpoint* endpoint;
-    void* endpointContext;
-    Ice_ObjectAdapterPtr adapters;
-    Ice_Byte stopping;
-    int receiver; /* task that receives, -1 none */
-    int servers;  /* tasks that want to */
-    int depth;    /* messages being handled */
-    Ice_Int lastId;
-    Ice_OutputStream request;    /* being built, under ICE_LOCK_SEND */
-    Ice_Int requestBody;         /* where its encapsulation begins */
-    Ice_InputStreamPtr decoding; /* of the innermost operation: what it uses of the arena */
-    const Ice_Os* os;
-    void* osContext;
-    const char* const* properties;
-    Ice_Connection connections[ICE_CONNECTIONS];
-    Ice_Call calls[ICE_CALLS];
-    U32 arena[ICE_ARENA_BYTES / 4];
-    Ice_Byte requestData[ICEC_TASKS ? ICE_REQUEST_MAX : 1];
-    Ice_Byte in[ICEC_NESTING][ICE_MESSAGE_MAX], out[ICE_MESSAGE_MAX];
-};
-
 void Ice_initialize(Ice_CommunicatorPtr ic);
 /* Before any other call; `os` must stay valid. */
 void Ice_Communicator_setOs(Ice_CommunicatorPtr ic, const Ice_Os* os, void* context);
@@ -291,5 +231,11 @@ Ice_Status Ice_Connection_createProxy(Ice_CommunicatorPtr ic, int connection, co
                                       Ice_ObjectPrxPtr prx);
 /* Closes one connection in good order, without waiting for the peer. */
 void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection);
+
+#ifdef ICEC_MINIMAL
+#include "minimal/ice_minimal.h"
+#else
+#include "ice_objects.h"
+#endif
 
 #endif

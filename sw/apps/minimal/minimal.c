@@ -76,21 +76,17 @@ static U32 nowUs(void *context) {
     return minimal_ticks * 1000U;
 }
 
-static void nothing(void *context) {
-    (void)context;
-}
-
 static int work(void *context, Ice_Int timeoutMs) {
     INT32U begin = minimal_ticks;
     (void)context;
     do {
         (void)Radio_receive(&radioLink, nowUs(0));
         Link_poll(&radioLink, nowUs(0));
-    } while (endpoint.count == 0 && (Ice_Int)(minimal_ticks - begin) < timeoutMs);
+    } while (endpoint.events == 0 && (Ice_Int)(minimal_ticks - begin) < timeoutMs);
     return 0;
 }
 
-static const XBeeATPort endpointPort = {nothing, nothing, nothing, work, nothing, nowUs, nowMs};
+static const XBeeATPort endpointPort = {0, 0, 0, work, 0, nowUs, nowMs};
 
 static U32 randomWord(void *context) {
     static U32 state;

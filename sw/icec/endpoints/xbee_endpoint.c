@@ -6,37 +6,60 @@
 
 #include <string.h>
 
-#define EVENTS (sizeof((XBeeATEndpoint*)0)->events / sizeof(Ice_Event))
-#define RETRIES 100 /* of a send while the link's queue is full, 20 ms apart */
+#define HEAD 8
+#define BODY 7
+#define RETRIES 100 /* of what the link has no room for now, 20 ms apart */
 
-static void report(XBeeATEndpoint* self, Ice_EventKind kind, int channel, Ice_Int size) {
-    Ice_Event* event = &self->events[(self->head + self->count++) % EVENTS];
-    event->kind = kind;
-    event->connection = channel;
-    event->size = size;
-    self->port->signal(self->context);
+/* Of an encoded endpoint: type, 13 bytes of encapsulation, encoding 1.1. */
+static const Ice_Byte head[HEAD] = {
+    XBEE_ENDPOINT_TYPE & 0xFF, XBEE_ENDPOINT_TYPE >> 8, 6 + BODY, 0, 0, 0, 1, 1};
+
+/* What is waiting, a bit each: in this order it is told. */
+#define EVENT(kind, channel) \
+    (1U << (((U32)(kind)-ICE_EVENT_MESSAGE) * LINK_CHANNELS + (U32)(channel)))
+
+/* One task needs none of these: it polls the link itself while it waits. */
+static void lock(XBeeATEndpoint* self) {
+    if (ICEC_TASKS)
+        self->port->lock(self->context);
+}
+
+static void unlock(XBeeATEndpoint* self) {
+    if (ICEC_TASKS)
+        self->port->unlock(self->context);
+}
+
+static void kick(XBeeATEndpoint* self) {
+    if (ICEC_TASKS)
+        self->port->kick(self->context);
+}
+
+static void signal(XBeeATEndpoint* self) {
+    if (ICEC_TASKS)
+        self->port->signal(self->context);
+}
+
+static void report(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
+    self->events |= EVENT(kind, channel);
+    signal(self);
 }
 
 /* 1: this report was still waiting, and is taken back. */
 static int takeBack(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
-    U32 i = 0;
-    while (i < self->count && (self->events[(self->head + i) % EVENTS].kind != kind ||
-                               self->events[(self->head + i) % EVENTS].connection != channel))
-        ++i;
-    if (i == self->count)
+    if (!(self->events & EVENT(kind, channel)))
         return 0;
-    for (--self->count; i < self->count; ++i)
-        self->events[(self->head + i) % EVENTS] = self->events[(self->head + i + 1U) % EVENTS];
+    self->events ^= EVENT(kind, channel);
     return 1;
 }
 
 int XBeeATEndpoint_onMessage(XBeeATEndpoint* self, int channel, const U8* data, U32 size) {
-    /* Opening and closing come before it in order, so the queue must be empty. */
-    if (!self->buffer || self->count)
+    /* Opening and closing come before it in order, so nothing else may be waiting. */
+    if (!self->buffer || self->events)
         return 1;
     memcpy(self->buffer, data, size);
     self->buffer = 0;
-    report(self, ICE_EVENT_MESSAGE, channel, (Ice_Int)size);
+    self->size = (Ice_Int)size;
+    report(self, ICE_EVENT_MESSAGE, channel);
     return 0;
 }
 
@@ -46,104 +69,97 @@ void XBeeATEndpoint_onChannel(XBeeATEndpoint* self, int channel, int isOpen) {
     if (channel == XBEE_OWN_CHANNEL)
         self->ownOpen = 0;
     /* A connection that came and went while nobody looked is no news: so a channel has at most a
-     * closing and an opening waiting, however often the ground starts again. */
+     * closing and then an opening waiting, however often the ground starts again. */
     if (isOpen || !takeBack(self, ICE_EVENT_OPENED, channel))
-        report(self, isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel, 0);
+        report(self, isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel);
 }
 
 void XBeeATEndpoint_onState(XBeeATEndpoint* self, Link_State state) {
-    if (state != LINK_STATE_UP && self->ownOpen) {
-        self->ownOpen = 0;
-        report(self, ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL, 0);
-    }
+    if (state != LINK_STATE_UP && self->ownOpen)
+        XBeeATEndpoint_onChannel(self, XBEE_OWN_CHANNEL, 0);
 }
 
 /* The buffer is the link's only while this waits: what comes at another time, the link keeps. */
 static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event) {
     XBeeATEndpoint* self = context;
-    self->port->lock(self->context);
-    if (self->count == 0) {
+    U32 first = 0;
+    lock(self);
+    if (!self->events) {
         self->buffer = buffer;
-        self->port->unlock(self->context);
-        self->port->kick(self->context); /* the link may hold a message */
+        unlock(self);
+        kick(self); /* the link may hold a message */
         (void)self->port->wait(self->context, timeoutMs);
-        self->port->lock(self->context);
+        lock(self);
         self->buffer = 0;
     }
-    if (self->count) {
-        *event = self->events[self->head];
-        self->head = (self->head + 1U) % EVENTS;
-        --self->count;
+    if (self->events) {
+        while (!(self->events >> first & 1U))
+            ++first;
+        self->events &= self->events - 1U; /* without the lowest one */
+        event->kind = (Ice_EventKind)(ICE_EVENT_MESSAGE + first / LINK_CHANNELS);
+        event->connection = (int)(first % LINK_CHANNELS);
+        event->size = self->size;
     }
-    self->port->unlock(self->context);
+    unlock(self);
     return ICE_OK;
 }
 
-static Ice_Status statusOf(Link_Status status) {
-    return status == LINK_OK ? ICE_OK : status == LINK_TOO_LONG ? ICE_LIMIT : ICE_CONNECTION_LOST;
+static Link_Status openOwn(XBeeATEndpoint* self) {
+    Link_Status status = LINK_OK;
+    if (!self->ownOpen) {
+        status = Link_openChannel(self->link, XBEE_OWN_CHANNEL, self->port->nowUs(self->context));
+        if (status == LINK_OK) {
+            self->ownOpen = 1; /* and the end of the last connection is not the end of this one */
+            (void)takeBack(self, ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL);
+        }
+    }
+    return status;
 }
 
-/* 1: the link has no room now, and it is worth another try after this pause. */
-static int isFull(XBeeATEndpoint* self, Link_Status status, int* tries) {
-    self->port->kick(self->context);
-    if (status == LINK_FULL && ++*tries <= RETRIES) {
+/* Sends, or opens the own channel (no message); while the link has no room, again and again. */
+static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* message,
+                        Ice_Int size) {
+    Link_Status status;
+    int tries = 0;
+    for (;;) {
+        lock(self);
+        status = message ? Link_send(self->link, connection, message, (U32)size, 0,
+                                     self->port->nowUs(self->context))
+                         : openOwn(self);
+        unlock(self);
+        kick(self);
+        if (status != LINK_FULL || ++tries > RETRIES)
+            break;
         (void)self->port->wait(self->context, 20);
-        return 1;
     }
-    if (*tries)
-        self->port->signal(self->context); /* this may have taken what the receiver waits for */
-    return 0;
+    if (tries)
+        signal(self); /* this may have taken what the receiver waits for */
+    return status == LINK_OK ? ICE_OK : status == LINK_TOO_LONG ? ICE_LIMIT : ICE_CONNECTION_LOST;
 }
 
 static Ice_Status sendMessage(void* context, int connection, const Ice_Byte* message,
                               Ice_Int size) {
-    XBeeATEndpoint* self = context;
-    Link_Status status;
-    int tries = 0;
-    do {
-        self->port->lock(self->context);
-        status = Link_send(self->link, connection, message, (U32)size, 0,
-                           self->port->nowUs(self->context));
-        self->port->unlock(self->context);
-    } while (isFull(self, status, &tries));
-    return statusOf(status);
+    return offer(context, connection, message, size);
 }
 
 static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection) {
-    XBeeATEndpoint* self = context;
-    Link_Status status;
-    int tries = 0;
-    if (size < 2 || encoded[0] != (XBEE_ENDPOINT_TYPE & 0xFF) ||
-        encoded[1] != XBEE_ENDPOINT_TYPE >> 8)
+    if (size < 2 || encoded[0] != head[0] || encoded[1] != head[1])
         return ICE_NO_ENDPOINT;
-    do { /* the last closing may be on its way still */
-        status = LINK_OK;
-        self->port->lock(self->context);
-        if (Link_state(self->link) != LINK_STATE_UP)
-            status = LINK_DOWN;
-        else if (!self->ownOpen)
-            status =
-                Link_openChannel(self->link, XBEE_OWN_CHANNEL, self->port->nowUs(self->context));
-        if (status == LINK_OK && !self->ownOpen) /* the end of the last connection, not of this */
-            (void)takeBack(self, ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL);
-        self->ownOpen = status == LINK_OK;
-        self->port->unlock(self->context);
-    } while (isFull(self, status, &tries));
     *connection = XBEE_OWN_CHANNEL;
-    return statusOf(status);
+    return offer(context, 0, 0, 0); /* the last closing may be on its way still */
 }
 
 static void closeChannel(void* context, int connection) {
     XBeeATEndpoint* self = context;
-    self->port->lock(self->context);
+    lock(self);
     /* The peer may have closed already; the channel may be a new one by now. */
     if (!takeBack(self, ICE_EVENT_CLOSED, connection)) {
         (void)Link_closeChannel(self->link, connection, self->port->nowUs(self->context));
         if (connection == XBEE_OWN_CHANNEL)
             self->ownOpen = 0;
     }
-    self->port->unlock(self->context);
-    self->port->kick(self->context);
+    unlock(self);
+    kick(self);
 }
 
 static Ice_Status listenTo(void* context, const char* options) {
@@ -155,9 +171,7 @@ static Ice_Status listenTo(void* context, const char* options) {
 static void encode(void* context, const char* options, Ice_OutputStreamPtr os) {
     XBeeATEndpoint* self = context;
     U32 address = options ? Ice_numberOption(options, 'a', 0) : self->address;
-    Ice_OutputStream_writeShort(os, XBEE_ENDPOINT_TYPE);
-    Ice_OutputStream_writeInt(os, 6 + 7);
-    Ice_OutputStream_writeShort(os, 0x0101); /* encoding 1.1 */
+    Ice_OutputStream_writeBlob(os, head, HEAD);
     Ice_OutputStream_writeShort(os, (Ice_Short)address);
     Ice_OutputStream_writeByte(os, (Ice_Byte)Ice_numberOption(options, 'p', 255));
     Ice_OutputStream_writeInt(os, (Ice_Int)Ice_numberOption(options, 't', 10000));
@@ -180,9 +194,9 @@ static Ice_Bool print(void* context, const Ice_Byte* encoded, Ice_Int size,
     Ice_Byte channel;
     (void)context;
     Ice_InputStream_init(&is, encoded, size);
-    if (Ice_InputStream_readShort(&is) != XBEE_ENDPOINT_TYPE || size != 8 + 7)
+    if (Ice_InputStream_readShort(&is) != XBEE_ENDPOINT_TYPE || size != HEAD + BODY)
         return 0;
-    is.position = 8;
+    is.position = HEAD;
     put(text, "xbee-at -a ");
     putNumber(text, (U16)Ice_InputStream_readShort(&is));
     channel = Ice_InputStream_readByte(&is);
@@ -201,8 +215,7 @@ static U32 nowMs(void* context) {
 }
 
 static void wakeUp(void* context) {
-    XBeeATEndpoint* self = context;
-    self->port->signal(self->context);
+    signal(context);
 }
 
 void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoint* self, Link* link,

@@ -13,9 +13,10 @@ mkdir -p "$work"
 build() { # name, flags
     name=$1
     shift
+    # shellcheck disable=SC2046 # a list of words
     (cd "$work" && mkdir -p "$name" && cd "$name" &&
         arm-none-eabi-gcc -std=c90 -mcpu=cortex-m3 -mthumb -Os -ffunction-sections -fdata-sections "$@" \
-            -I"$sw/base" -I"$sw/icec" -I.. -c "$sw"/icec/*.c ../Linked_*.c "$here/$name.c")
+            -I"$sw/base" -I"$sw/icec" -I.. -c $(sed "s,^,$sw/icec/," "$sw/icec/minimal/sources.txt") ../Linked_*.c "$here/$name.c")
     arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -nostartfiles --specs=nosys.specs --specs=nano.specs -Wl,--gc-sections -Wl,-e,main \
         -o "$work/$name.elf" "$work/$name"/*.o 2>"$work/$name.log" || { cat "$work/$name.log" && exit 1; }
     arm-none-eabi-nm "$work/$name.elf" | awk '{print $NF}' | grep -E '^(Linked|Ice|dispatch|operations)_|skipTable' >"$work/$name.names"

@@ -6,21 +6,24 @@ set -eu
 sw=$1/sw
 warnings='-std=c90 -pedantic -Wall -Wextra -Wconversion -Wno-sign-conversion -Wstrict-prototypes -Wmissing-prototypes
 -Wdeclaration-after-statement -Werror -fsyntax-only'
-check() { # flags: compiler first
+full=$(echo "$sw"/icec/*.c)
+minimal=$(sed "s,^,$sw/icec/," "$sw/icec/minimal/sources.txt")
+check() { # sources, flags: compiler first
+    sources=$1
+    shift
     # shellcheck disable=SC2086
-    "$@" $warnings -I"$sw/base" -I"$sw/icec" -I"$sw/link" -I"$sw/icec/endpoints" "$sw"/icec/*.c \
+    "$@" $warnings -I"$sw/base" -I"$sw/icec" -I"$sw/link" -I"$sw/icec/endpoints" $sources \
         "$sw/icec/endpoints/xbee_endpoint.c" "$sw/icec/endpoints/loop_endpoint.c"
     echo "C90: $*"
 }
 for compiler in gcc clang 'arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -Os'; do
     # shellcheck disable=SC2086
-    check $compiler
+    check "$full" $compiler
     # shellcheck disable=SC2086
-    check $compiler -DICEC_MINIMAL
+    check "$minimal" $compiler -DICEC_MINIMAL
 done
 for option in TASKS CATEGORIES CONTEXTS BATCH ASYNC DETAILS IDS; do
-    check gcc -DICEC_$option=0
-    check gcc -DICEC_MINIMAL -DICEC_$option=1
+    check "$full" gcc -DICEC_$option=0
 done
-check gcc -DICEC_NESTING=1
-check gcc -DICE_CALLS=1
+check "$full" gcc -DICEC_NESTING=1
+check "$full" gcc -DICE_CALLS=1

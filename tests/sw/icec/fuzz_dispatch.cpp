@@ -2,8 +2,8 @@
 //
 // fuzz_dispatch: libFuzzer on everything that a peer may send: messages behind a valid head.
 //
-// The first byte chooses the message's type; the rest is cut at marks into messages. Afterwards the
-// communicator must still answer a ping.
+// The first byte chooses the message's type. Afterwards the communicator must still answer a ping.
+// With ICEC_MINIMAL the same of the minimal run time.
 
 #include <cstdint>
 #include <cstdlib>
@@ -26,7 +26,8 @@ Ice_Status serve(Ice_ObjectPtr, const Ice_Current* current, Ice_InputStreamPtr i
                  Ice_OutputStreamPtr os) {
     Ice_ObjectPrx prx;
     Ice_String value;
-    (void)Ice_Current_context(current, "key", &value);
+    if (ICEC_CONTEXTS)
+        (void)Ice_Current_context(current, "key", &value);
     Ice_InputStream_readPrx(is, nullptr, &prx);
     Ice_Int n = Ice_InputStream_readSequence(is, 1);
     auto* room = static_cast<Ice_String*>(Ice_InputStream_allocate(is, n, sizeof(Ice_String)));
@@ -37,7 +38,7 @@ Ice_Status serve(Ice_ObjectPtr, const Ice_Current* current, Ice_InputStreamPtr i
         if (Ice_InputStream_readOptional(is, tag, ICE_OPTIONAL_VSIZE))
             (void)Ice_InputStream_readString(is);
     Ice_InputStream_skipOptionals(is);
-    if (current->mode == 3) {
+    if (ICEC_ASYNC && current->mode == 3) {
         static Ice_Reply later;
         Ice_Current_later(current, &later);
         (void)Ice_Reply_begin(&later);
@@ -57,14 +58,37 @@ void take(void*, Ice_Status, Ice_InputStreamPtr is) {
     Ice_InputStream_endSlice(is);
 }
 
-void message(Ice_Byte type, const uint8_t* body, size_t size) {
+void inject(Ice_Byte type, const uint8_t* body, size_t size) {
     std::vector<Ice_Byte> m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, type, 0};
     for (int i = 0; i < 4; ++i)
         m.push_back(static_cast<Ice_Byte>((14 + size) >> (8 * i)));
     m.insert(m.end(), body, body + size);
-    if (LoopEndpoint_inject(&loop, ICE_EVENT_MESSAGE, 0, m.data(),
-                            static_cast<Ice_Int>(m.size())) == ICE_OK)
+    (void)LoopEndpoint_inject(&loop, ICE_EVENT_MESSAGE, 0, m.data(),
+                              static_cast<Ice_Int>(m.size()));
+}
+
+// What comes while a call of this side waits, for replies to be about something.
+// `answers`: with that call's id.
+void messageDuringCall(Ice_Byte type, bool answers, std::vector<uint8_t> body) {
+    static Ice_ObjectPrx prx;
+    Ice_InputStreamPtr is;
+    (void)Ice_Communicator_stringToProxy(&ic, "far:loop", &prx);
+    prx.timeoutMs = 5;
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(&prx, "op", ICE_RESULTS);
+    if (!os)
+        abort();
+    if (answers)
+        body.insert(body.begin(), os->data + 14, os->data + 18);
+    inject(type, body.data(), body.size());
+    if (ICEC_ASYNC) {
+        (void)Ice_ObjectPrx_invokeAsync(&prx, take, nullptr);
         (void)Ice_Communicator_poll(&ic, 0);
+        return;
+    }
+    Ice_Status status = Ice_ObjectPrx_invoke(&prx, &is);
+    if (status == ICE_OK || status == ICE_USER_EXCEPTION)
+        take(nullptr, status, is);
+    (void)Ice_ObjectPrx_end(&prx, status);
 }
 
 void start() {
@@ -78,7 +102,8 @@ void start() {
         abort();
     Ice_ObjectAdapter_activate(&adapter);
     if (Ice_ObjectAdapter_add(&adapter, &servant, "thing") != ICE_OK ||
-        Ice_ObjectAdapter_addDefaultServant(&adapter, &servant, "cat") != ICE_OK)
+        (ICEC_CATEGORIES &&
+         Ice_ObjectAdapter_addDefaultServant(&adapter, &servant, "cat") != ICE_OK))
         abort();
 }
 
@@ -91,23 +116,19 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     if (size < 2 || size > 2000)
         return 0;
     start();
-    // A call of this side waits, for replies to be about something.
-    Ice_ObjectPrx prx;
-    (void)Ice_Communicator_stringToProxy(&ic, "far:loop", &prx);
     if (LoopEndpoint_inject(&loop, ICE_EVENT_OPENED, 0, nullptr, 0) != ICE_OK)
         abort();
     (void)Ice_Communicator_poll(&ic, 0);
-    if (Ice_ObjectPrx_begin(&prx, "op", ICE_RESULTS))
-        (void)Ice_ObjectPrx_invokeAsync(&prx, take, nullptr);
     static const Ice_Byte types[] = {0, 0, 1, 2, 2, 3, 4, 9};
-    message(types[data[0] & 7], data + 1, size - 1);
+    messageDuringCall(types[data[0] & 7], (data[0] & 7) == 4, {data + 1, data + size});
     // Whatever that was: a new connection, a ping, one reply.
     if (!loop.open[0] || data[0] & 8) {
         (void)LoopEndpoint_inject(&loop, ICE_EVENT_OPENED, 0, nullptr, 0);
         (void)Ice_Communicator_poll(&ic, 0);
     }
     replies = 0;
-    message(0, ping, sizeof ping);
+    inject(0, ping, sizeof ping);
+    (void)Ice_Communicator_poll(&ic, 0);
     if (replies != 1)
         abort();
     return 0;

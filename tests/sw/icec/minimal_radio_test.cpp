@@ -49,7 +49,7 @@ protected:
                                         [](void* c, Ice_Int ms) {
                                             MinimalRadio& m = of(c);
                                             m.waits_ = true;
-                                            for (Ice_Int i = 0; i < ms && m.endpoint_.count == 0;
+                                            for (Ice_Int i = 0; i < ms && m.endpoint_.events == 0;
                                                  ++i) {
                                                 m.step();
                                                 m.stackPoll_();

@@ -23,10 +23,6 @@ static U32 nowMs(void* context) {
     return nowUs(context) / 1000U;
 }
 
-static void nothing(void* context) {
-    (void)context;
-}
-
 static int work(void* context, Ice_Int timeoutMs) {
     U32 begin = nowUs(context);
     for (;;) {
@@ -35,13 +31,13 @@ static int work(void* context, Ice_Int timeoutMs) {
         while ((size = world->receive(worldContext, bytes)) != 0)
             Link_receive(&radioLink, bytes, size, 0, nowUs(context));
         Link_poll(&radioLink, nowUs(context));
-        if (endpoint.count || (Ice_Int)((nowUs(context) - begin) / 1000U) >= timeoutMs)
+        if (endpoint.events || (Ice_Int)((nowUs(context) - begin) / 1000U) >= timeoutMs)
             return 0;
         world->step(worldContext);
     }
 }
 
-static const XBeeATPort endpointPort = {nothing, nothing, nothing, work, nothing, nowUs, nowMs};
+static const XBeeATPort endpointPort = {0, 0, 0, work, 0, nowUs, nowMs};
 
 static int transmit(void* context, const U8* frame, U32 size) {
     (void)context;

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_minimal: communicator and adapter of the minimal run time. Included by icec.h only.
+ */
+#ifndef ICE_MINIMAL_H
+#define ICE_MINIMAL_H
+
+struct Ice_ObjectAdapter {
+    Ice_CommunicatorPtr communicator;
+    struct {
+        Ice_ObjectPtr servant; /* 0: free */
+        const char* name;
+    } servants[ICE_SERVANTS];
+};
+
+/* Small members first: their offsets are short in the code. */
+struct Ice_Communicator {
+    const Ice_Endpoint* endpoint;
+    void* endpointContext;
+    Ice_ObjectAdapterPtr adapter; /* the active one */
+    Ice_Byte stopping;
+    Ice_Byte busy; /* an operation runs */
+    /* Ice_Status: ICE_OK the connection is open, the reply is there; ICE_LATER it is waited for. */
+    Ice_Byte call;
+    Ice_Byte connections[ICE_CONNECTIONS];
+    int connection;      /* of the call */
+    Ice_Int id;          /* of the call; odd */
+    Ice_Int body;        /* of what is written: where its encapsulation begins */
+    Ice_OutputStream os; /* in `out`: a request, or a reply */
+    Ice_InputStream is;  /* in `in` */
+    U32 arena[ICE_ARENA_BYTES / 4];
+    Ice_Byte in[ICE_MESSAGE_MAX], out[ICE_MESSAGE_MAX];
+};
+
+#endif

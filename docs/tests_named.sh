@@ -1,17 +1,24 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# tests_named: every test that a page names (`Suite.Name` or `Suite.*` in backquotes) exists. Usage: tests_named.sh PAGE test-folder...
+# tests_named: every test that a page names exists: `Suite.Name` or `Suite.*` in backquotes as a C++ test in the folders,
+# `interop.name` and its like as ctest's. Usage: tests_named.sh PAGE build-folder test-folder...
 set -eu
-page=$1
-shift
+page=$1 build=$2
+shift 2
 status=0
-for name in $(grep -o '`[A-Z][A-Za-z]*\.\([A-Z][A-Za-z0-9]*\|\*\)`' "$page" | tr -d '`' | sort -u); do
+missing() {
+    echo "$page: there is no test $1" >&2
+    status=1
+}
+for name in $(grep -o '`[A-Z][A-Za-z]*\.\([A-Z][A-Za-z0-9]*\|\*\)`' "$page" | tr -d "\`" | grep -v "^Ice[.]" | sort -u); do
     suite=${name%%.*} case=${name#*.}
     [ "$case" != '*' ] || case='[A-Z]'
-    grep -rqE "TEST(_F|_P)?\($suite, $case" --include='*.cpp' "$@" || {
-        echo "$page: there is no test $name" >&2
-        status=1
-    }
+    grep -rqE "TEST(_F|_P)?\($suite, $case" --include='*.cpp' "$@" || missing "$name"
+done
+names=$(grep -oE '`(interop|e2e|slice|fuzz|lint|vhdl|formal)\.[a-z0-9_.]+[a-z0-9]`' "$page" | tr -d '`' | sort -u)
+[ -z "$names" ] || known=$(ctest --test-dir "$build" -N 2>/dev/null | sed -n 's/.*: \(.*\)/\1/p')
+for name in $names; do
+    echo "$known" | grep -qxF "$name" || missing "$name"
 done
 exit $status

@@ -217,6 +217,18 @@ TEST_F(Tasks, AServerTakesTheRoleFromACallThatWaits) {
     server.join();
 }
 
+// By the transport, as if the object were elsewhere: there is no short cut within a program.
+TEST_F(Tasks, MayCallTheirOwnProgramsObjects) {
+    Ice_ObjectPrx prx;
+    Ice_Int out = 0;
+    ASSERT_EQ(Ice_ObjectAdapter_createProxy(&server_->adapter, "thing", &prx), ICE_OK);
+    prx.timeoutMs = 60000;
+    EXPECT_EQ(call(prx, "now", 4, &out), ICE_OK);
+    EXPECT_EQ(out, 8);
+    EXPECT_EQ(call(prx, "later", 4, &out), ICE_OK);
+    EXPECT_EQ(out, 12);
+}
+
 TEST_F(Tasks, ReceiveInTurnsWhereNobodyElseDoes) {
     callFromThreads(ICE_CALLS);
 }

@@ -247,7 +247,7 @@ static int modes(void) {
     Everything_Watcher_initWith(&watcher, &operations);
     CHECK(Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&watcher, "watcher") == ICE_OK);
     Ice_ObjectAdapter_activate(&adapter);
-    CHECK(Ice_Communicator_stringToProxy(&ic, "watcher", &watcherPrx) == ICE_OK);
+    CHECK(Ice_ObjectAdapter_createProxy(&adapter, "watcher", &watcherPrx) == ICE_OK);
     CHECK(Everything_TesterPrx_callBack(&tester, &watcherPrx, 5, &i) == ICE_OK && i == 100);
     return 0;
 }

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+//
+// manual_test: what the chapters on proxies and adapters of Ice's manual promise besides calls
+// (docs/icec.md): parts of a proxy, changes of a copy, adapters, Current, what cannot be called.
+
+#include "pair.h"
+
+namespace {
+
+std::string written(const Ice_ObjectPrx& prx) {
+    char line[200];
+    EXPECT_EQ(Ice_Communicator_proxyToString(&prx, line, sizeof line), ICE_OK);
+    return line;
+}
+
+class Manual : public Pair {};
+
+TEST_F(Manual, AProxyTellsIdentityAndFacet) {
+    Ice_ObjectPrx prx = here().proxy("\"cat/a name\" -f side:loop -c 1");
+    EXPECT_EQ(str(Ice_ObjectPrx_getIdentity(&prx).name), "a name");
+    EXPECT_EQ(str(Ice_ObjectPrx_getIdentity(&prx).category), "cat");
+    EXPECT_EQ(str(Ice_ObjectPrx_getFacet(&prx)), "side");
+    Ice_ObjectPrx plain = here().proxy("x");
+    EXPECT_EQ(str(Ice_ObjectPrx_getIdentity(&plain).category), "");
+    EXPECT_EQ(str(Ice_ObjectPrx_getFacet(&plain)), "");
+}
+
+TEST_F(Manual, ACopyIsChangedAndTheProxyIsNot) {
+    const Ice_ObjectPrx prx = here().proxy("thing:loop");
+    Ice_ObjectPrx other = prx;
+    EXPECT_EQ(Ice_ObjectPrx_ice_identity(&other, "cat/else"), ICE_OK);
+    EXPECT_EQ(Ice_ObjectPrx_ice_facet(&other, "side"), ICE_OK);
+    Ice_ObjectPrx_ice_oneway(&other);
+    EXPECT_FALSE(Ice_ObjectPrx_equals(&prx, &other));
+    EXPECT_EQ(written(other), "cat/else -f side -o -e 1.1:loop -c 0");
+    EXPECT_EQ(Ice_ObjectPrx_ice_identity(&other, "thing"), ICE_OK);
+    EXPECT_EQ(Ice_ObjectPrx_ice_facet(&other, ""), ICE_OK);
+    Ice_ObjectPrx_ice_twoway(&other);
+    EXPECT_TRUE(Ice_ObjectPrx_equals(&prx, &other));
+    EXPECT_EQ(written(other), written(prx));
+    Ice_Int out;
+    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr os) {
+        Ice_OutputStream_writeInt(os, 5);
+        return ICE_OK;
+    };
+    EXPECT_EQ(call(other, "op", 0, &out), ICE_OK) << "two-way again";
+    EXPECT_EQ(out, 5);
+}
+
+TEST_F(Manual, AConnectionIsOpenedBeforeACallAndUsedByIt) {
+    Ice_ObjectPrx prx = here().proxy("thing:loop -c 1");
+    int connection = -1;
+    ASSERT_EQ(Ice_ObjectPrx_ice_getConnection(&prx, &connection), ICE_OK);
+    EXPECT_EQ(connection, 2);
+    EXPECT_TRUE(there().loop.open[connection]);
+    EXPECT_EQ(servant_.calls, 0);
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    EXPECT_EQ(prx.connection, connection);
+}
+
+TEST_F(Manual, AnAdaptersProxyLeadsToItsObjectWhereverItIsSent) {
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr os) {
+        Ice_ObjectPrx self;
+        EXPECT_EQ(Ice_ObjectAdapter_createProxy(current.adapter, "thing", &self), ICE_OK);
+        Ice_OutputStream_writePrx(os, &self);
+        return ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop"), got;
+    Ice_InputStreamPtr is = nullptr;
+    ASSERT_NE(Ice_ObjectPrx_begin(&prx, "self", ICE_RESULTS), nullptr);
+    ASSERT_EQ(Ice_ObjectPrx_invoke(&prx, &is), ICE_OK);
+    Ice_InputStream_readPrx(is, nullptr, &got);
+    EXPECT_EQ(Ice_ObjectPrx_end(&prx, ICE_OK), ICE_OK);
+    EXPECT_EQ(written(got), "thing -t -e 1.1:loop -c 0");
+    EXPECT_EQ(call(got, "op"), ICE_OK);
+    EXPECT_EQ(servant_.calls, 2);
+}
+
+TEST_F(Manual, SeveralAdaptersServeTheSameConnections) {
+    Servant second;
+    Ice_ObjectAdapter other;
+    ASSERT_EQ(Ice_Communicator_createObjectAdapter(&there().ic, "Other", &other), ICE_OK);
+    ASSERT_EQ(Ice_ObjectAdapter_add(&other, &second.base, "second"), ICE_OK);
+    Ice_ObjectPrx prx = here().proxy("second:loop"), first = here().proxy("thing:loop");
+    EXPECT_EQ(call(prx, "op"), ICE_OBJECT_NOT_EXIST) << "not active yet";
+    Ice_ObjectAdapter_activate(&other);
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    EXPECT_EQ(call(first, "op"), ICE_OK);
+    EXPECT_EQ(second.calls, 1);
+    EXPECT_EQ(servant_.calls, 1);
+    Ice_ObjectAdapter_destroy(&other);
+    EXPECT_EQ(call(prx, "op"), ICE_OBJECT_NOT_EXIST);
+}
+
+TEST_F(Manual, CurrentTellsWhatIsAsked) {
+    Ice_ObjectAdapterPtr adapter = nullptr;
+    std::string seen;
+    servant_.run = [&](const Ice_Current& c, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        adapter = c.adapter;
+        seen = str(c.category) + "/" + str(c.name) + " -f " + str(c.facet) + " " +
+               str(c.operation) + " mode " + std::to_string(c.mode) + " encoding 1." +
+               std::to_string(c.minor) + " on " + std::to_string(c.connection) +
+               (c.requestId ? "" : " one-way");
+        return ICE_OK;
+    };
+    EXPECT_EQ(Ice_ObjectAdapter_addFacet(&there().adapter, &servant_.base, "cat/x", "f"), ICE_OK);
+    Ice_ObjectPrx prx = here().proxy("cat/x -f f -e 1.0:loop -c 1");
+    EXPECT_EQ(call(prx, "look", 0, nullptr, 2), ICE_OK);
+    EXPECT_EQ(seen, "cat/x -f f look mode 2 encoding 1.0 on 2");
+    EXPECT_EQ(adapter, &there().adapter);
+    prx = here().proxy("thing -o:loop");
+    EXPECT_EQ(call(prx, "note"), ICE_OK);
+    settle();
+    EXPECT_EQ(seen, "/thing -f  note mode 0 encoding 1.1 on 0 one-way");
+}
+
+TEST_F(Manual, ADispatchMayPassACallOn) { // an interceptor, a forwarding Blobject
+    static Servant* target;
+    static int passed;
+    target = &servant_;
+    passed = 0;
+    Ice_Object interceptor = servant_.base;
+    interceptor.dispatch = [](Ice_ObjectPtr, const Ice_Current* current, Ice_InputStreamPtr is,
+                              Ice_OutputStreamPtr os) {
+        ++passed;
+        return str(current->operation) == "secret"
+                   ? ICE_OPERATION_NOT_EXIST
+                   : target->base.dispatch(&target->base, current, is, os);
+    };
+    EXPECT_EQ(Ice_ObjectAdapter_add(&there().adapter, &interceptor, "guard"), ICE_OK);
+    Ice_ObjectPrx prx = here().proxy("guard:loop");
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    EXPECT_EQ(call(prx, "secret"), ICE_OPERATION_NOT_EXIST);
+    EXPECT_EQ(passed, 2);
+    EXPECT_EQ(servant_.calls, 1);
+}
+
+TEST_F(Manual, WhatCannotBeCalledSaysSoAndTravelsOn) {
+    for (const char* string : {"x -t -e 1.1 @ adapter", "x -t -e 1.1:opaque -t 2 -e 1.1 -v QUI=",
+                               "x -d -e 1.1:loop -c 0", "x -D -e 1.1:loop -c 0", "x -t -e 1.1"}) {
+        Ice_ObjectPrx prx = here().proxy(string);
+        EXPECT_EQ(call(prx, "op"), ICE_NO_ENDPOINT) << string;
+        EXPECT_EQ(written(prx), string);
+    }
+    EXPECT_EQ(servant_.calls, 0);
+}
+
+} // namespace

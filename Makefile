@@ -5,6 +5,8 @@
 SHELL := /bin/sh
 BUILD ?= build/main
 JOBS  ?= $(shell nproc)
+# Tests at once: some wait for a clock, so two more than there are processors keep all of these busy
+TESTS ?= $(shell expr $(JOBS) + 2)
 SEED  ?= 1
 LOSS  ?= 0
 SIZE  ?= 320x240
@@ -59,14 +61,14 @@ SANITIZED := test_os test_os_cases test_link test_engine test_icec icec_server i
     everything_client everything_strings ice_relay test_icec_minimal
 test: build ## run all tests; firmware, models and IceC once more with sanitizers
 ifneq ($(LABEL)$(NAME),)
-	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error \
+	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(TESTS) --output-on-failure --no-tests=error \
 	    $(if $(LABEL),-L '$(LABEL)') $(if $(NAME),-R '$(NAME)')
 else
-	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error
+	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(TESTS) --output-on-failure --no-tests=error
 	@[ -f build/sanitized/build.ninja ] || cmake -S . -B build/sanitized -G Ninja -DSANITIZE=ON \
 	    -DROOMS="bus;slice;sw;hdl;ip;testbench;tests" >/dev/null
 	@ninja -C build/sanitized -j $(JOBS) $(SANITIZED)
-	@SEED=$(SEED) ctest --test-dir build/sanitized -j $(JOBS) --output-on-failure --no-tests=error \
+	@SEED=$(SEED) ctest --test-dir build/sanitized -j $(TESTS) --output-on-failure --no-tests=error \
 	    -R '^(test_os[.]|test_os_cases|test_link|test_engine[.]Engine[.]|test_icec|interop)' -E '^interop.minimal'
 endif
 

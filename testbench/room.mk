@@ -9,7 +9,7 @@ CHANGED  ?=
 FAILED   ?=
 
 regress: build ## run the regression, write build/regress/report.html (NAME= BLOCK= LABEL= CHANGED=1 FAILED=1 SEED=n|random REPEAT=n LAUNCHER=slurm)
-	@$(BUILD)/testbench/regress/regress --build $(BUILD) --jobs $(JOBS) --seed $(SEED) --repeat $(REPEAT) --waves $(WAVES) \
+	@$(BUILD)/testbench/regress/regress --build $(BUILD) --jobs $(TESTS) --seed $(SEED) --repeat $(REPEAT) --waves $(WAVES) \
 	    --launcher $(LAUNCHER) $(if $(NAME),--name '$(NAME)') $(if $(BLOCK),--block '$(BLOCK)') \
 	    $(if $(LABEL),--label '$(LABEL)') $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed)
 

@@ -1,27 +1,30 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# report: utilisation-program source-folder case: the command on a small project of its own, as a user runs it.
-#   counts   its figures are those that the blocks' sources promise, and Yosys' own `stat` counts them too
+# report: utilisation-program source-folder case kept: the command on a small project of its own, as a user runs it.
+#   counts   its figures are those that the blocks' sources promise, and Yosys' own `stat` counts them too;
+#            what it synthesised is left in the folder `kept`, where the other cases begin
 #   growth   a register more fails with its name; accepting it passes; a second run takes all from the cache
 #   slow     a longer path than the clock allows fails with its ends
 #   broken   a syntax error is told with its file and line, and the other designs are reported nevertheless
 #   edif     the netlist for ISE is whole
 #   page     the page in Chromium: tables, chart, sorting, looking inside, differences; one file, no network
 set -eu
-program=$1 source=$2 case=$3
+program=$1 source=$2 case=$3 kept=$4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() {
     echo "report: $*" >&2
     exit 1
 }
-project=$work/project
+cd "$work" # names of files are relative: they are part of what tells one design from another
+project=project
 cp -r "$source/tests/synth/project" "$project"
 cp -r "$source/synth/yosys" "$source/synth/report" "$project/synth/"
-mkdir "$work/gen"
+mkdir gen out
+[ "$case" = counts ] || cp -r "$kept" out/cache
 run() {
-    "$program" --source "$project" --generated "$work/gen" --output "$work/out" "$@" >"$work/log" 2>&1
+    "$program" --source project --generated gen --output out "$@" >"$work/log" 2>&1
 }
 has() { grep -q -- "$1" "$work/log" || { cat "$work/log" >&2; fail "no '$1' in the output"; }; }
 
@@ -37,6 +40,8 @@ counts)
     yosys -q -p "read_verilog $project/hdl/blocks/*.v; synth_xilinx -family xc6s -flatten -noiopad -noclkbuf -top pair; tee -o $work/stat stat"
     luts=$(awk '/^ +(LUT[1-6]|INV) /{n += $2} /^ +[0-9]+ +.* (LUT[1-6]|INV)$/{n += $1} END {print n + 4}' "$work/stat")
     grep -q "\"lut\":$luts," "$work"/out/cache/whole.xc6s.*.figures || fail "Yosys counts $luts LUTs: $(cat "$work"/out/cache/whole.xc6s.*.figures)"
+    rm -rf "$kept"
+    cp -r out/cache "$kept"
     ;;
 growth)
     run --family xc6s --accept || fail "$(cat "$work/log")"

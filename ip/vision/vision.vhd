@@ -71,18 +71,30 @@ architecture rtl of vision is
   signal cycles        : unsigned(31 downto 0);
   signal aborted, stop : std_logic;
   signal word          : natural range 0 to 15;
-  signal write, start, abort, size_ok, go, offered : std_logic;
+  -- A clock after the bus wrote them, so that address decoder and frame control are not one path; what is written to
+  -- other registers meanwhile comes too late for this frame, as it should.
+  signal start, abort  : std_logic;
+  signal written       : std_logic; -- a register was, so that size_ok is not of what it holds now
+  signal size_ok       : std_logic; -- of the registers a clock ago
+  signal write, idle, offered, accept : std_logic;
+  signal go            : std_logic; -- a clock after `accept`; the frame's settings are followed until then
   signal first_pixel, memory_base : std_logic_vector(31 downto 0);
 
-  -- stream: column and row of the pixel that enters; and of the score that leaves vision_suppress
-  signal x, score_x, kept_x : unsigned(9 downto 0);
-  signal y, score_y, kept_y : unsigned(16 downto 0);
+  -- stream: column of the pixel that is taken, and the lines that are, this one included; then column and row of the
+  -- score, and of what leaves vision_suppress
+  signal x             : unsigned(9 downto 0);
+  signal lines_left    : unsigned(15 downto 0);
+  signal score_x, kept_x : unsigned(9 downto 0);
+  signal score_y, kept_y : unsigned(16 downto 0);
   signal fill          : unsigned(3 downto 0); -- steps until the first score, then the first kept one
-  signal step, real_pixel, pixel_valid, pixel_take, last : std_logic;
-  signal pixel, pixel_now : std_logic_vector(7 downto 0);
+  signal take, real_pixel, pixel_valid, pixel_take, last : std_logic;
+  -- A clock behind `take`: everything from the window on moves by this register, whose fan-out has the clock to itself.
+  signal step          : std_logic;
+  signal step_x        : unsigned(9 downto 0);
+  signal pixel, step_pixel : std_logic_vector(7 downto 0);
   signal window        : std_logic_vector(391 downto 0);
   signal raw_score, score, centre_score : unsigned(11 downto 0);
-  signal kept, is_corner, record_ready, record_push, quiet, memory_start : std_logic;
+  signal kept, is_corner, record_ready, record_push, quiet : std_logic;
   signal data          : std_logic_vector(63 downto 0);
   signal frame_x, frame_y : unsigned(15 downto 0);
 
@@ -106,21 +118,16 @@ begin
 
   word  <= to_integer(unsigned(bus_addr_i));
   write <= bus_valid_i and bus_write_i;
-  start <= write and bus_wdata_i(VISION_CONTROL_START_LSB) when word = VISION_CONTROL else '0';
-  abort <= write and bus_wdata_i(VISION_CONTROL_ABORT_LSB) when word = VISION_CONTROL else '0';
   bus_ready_o <= '1';
   bus_error_o <= '1' when word > VISION_FRAME else '0';
   irq_o       <= '1' when (events and mask) /= "00" else '0';
 
-  size_ok <= '1' when set_width(2 downto 0) = 0 and set_width >= VISION_MIN_SIDE and
-                      set_width <= VISION_MAX_WIDTH and set_height >= VISION_MIN_SIDE and
-                      unsigned(frame_base(6 downto 0)) = 0 and
-                      unsigned(result_base(6 downto 0)) = 0 and frame_stride(6 downto 0) = 0 else '0';
   -- The next frame waits until the results of the last one have been read: DONE is cleared.
-  offered <= follow and frame_valid_i and not start and not events(VISION_EVENT_DONE_LSB)
-             when state = WAIT_FOR_START else '0';
-  go <= (start or offered) and size_ok when state = WAIT_FOR_START else '0';
-  frame_take_o <= go and not start;
+  offered <= follow and frame_valid_i and not written and not events(VISION_EVENT_DONE_LSB)
+             and idle;
+  idle   <= '1' when state = WAIT_FOR_START and go = '0' else '0';
+  accept <= (start or offered) and size_ok and idle;
+  frame_take_o <= offered and size_ok;
 
   with frame_index_i select first_pixel <=
     frame_base when "01",
@@ -135,7 +142,7 @@ begin
       when VISION_EVENT       => bus_rdata_o(1 downto 0) <= events;
       when VISION_MASK        => bus_rdata_o(1 downto 0) <= mask;
       when VISION_STATUS      =>
-        if state /= WAIT_FOR_START then
+        if idle = '0' or start = '1' then
           bus_rdata_o(VISION_STATUS_BUSY_LSB) <= '1';
         end if;
         bus_rdata_o(VISION_STATUS_ABORTED_LSB) <= aborted;
@@ -159,8 +166,20 @@ begin
   begin
     if rising_edge(clk_i) then
       clear := "00";
+      start <= '0';
+      abort <= '0';
+      written <= write;
+      size_ok <= '0';
+      if set_width(2 downto 0) = 0 and set_width >= VISION_MIN_SIDE and set_width <= VISION_MAX_WIDTH and
+         set_height >= VISION_MIN_SIDE and unsigned(frame_base(6 downto 0)) = 0 and
+         unsigned(result_base(6 downto 0)) = 0 and frame_stride(6 downto 0) = 0 then
+        size_ok <= '1';
+      end if;
       if write = '1' then
         case word is
+          when VISION_CONTROL     =>
+            start <= bus_wdata_i(VISION_CONTROL_START_LSB);
+            abort <= bus_wdata_i(VISION_CONTROL_ABORT_LSB);
           when VISION_EVENT       => clear := bus_wdata_i(1 downto 0);
           when VISION_MASK        => mask <= bus_wdata_i(1 downto 0);
           when VISION_THRESHOLD   => set_threshold <= unsigned(bus_wdata_i(7 downto 0));
@@ -179,14 +198,19 @@ begin
       if state = DRAIN and quiet = '1' then
         events(VISION_EVENT_DONE_LSB) <= '1';
       end if;
-      if ((start = '1' and state = WAIT_FOR_START) or offered = '1') and size_ok = '0' then
+      if ((start and idle) or offered) = '1' and size_ok = '0' then
         events(VISION_EVENT_REFUSED_LSB) <= '1';
         follow <= '0';
       end if;
-      if go = '1' then
+      go <= accept;
+      if accept = '1' then
         taken <= frame_index_i and (1 downto 0 => offered);
       end if;
       if rst_i = '1' then
+        start       <= '0';
+        abort       <= '0';
+        written     <= '0';
+        go          <= '0';
         events      <= "00";
         mask        <= "00";
         set_threshold  <= to_unsigned(0, 8);
@@ -205,11 +229,38 @@ begin
   -- ---- stream ----
 
   -- Lines below the frame are made up: their scores are 0, but the last corners need them to leave.
-  real_pixel <= '1' when y < resize(height, 17) else '0';
-  pixel_now  <= pixel when real_pixel = '1' else x"00";
-  step       <= '1' when state = STREAM and stop = '0' and (pixel_valid = '1' or real_pixel = '0') and
+  -- A record may be pushed one step after record_ready_o has fallen, but none is: of two scores in succession
+  -- vision_suppress keeps one at most, the first only if it is not less, the second only if it is greater.
+  take       <= '1' when state = STREAM and stop = '0' and (pixel_valid = '1' or real_pixel = '0') and
                          record_ready = '1' else '0';
-  pixel_take <= step and real_pixel;
+  pixel_take <= take and real_pixel;
+
+  taking : process (clk_i)
+  begin
+    if rising_edge(clk_i) then
+      step   <= take;
+      step_x <= x;
+      step_pixel <= pixel and (7 downto 0 => real_pixel);
+      if take = '1' then
+        x <= x + 1;
+        if resize(x, 16) + 1 = width then
+          x          <= to_unsigned(0, 10);
+          lines_left <= lines_left - 1;
+          if lines_left = 1 then
+            real_pixel <= '0';
+          end if;
+        end if;
+      end if;
+      if go = '1' then
+        x          <= to_unsigned(0, 10);
+        lines_left <= height;
+        real_pixel <= '1';
+      end if;
+      if rst_i = '1' then
+        step <= '0';
+      end if;
+    end if;
+  end process;
 
   -- The window of a score begins with column 6 and line 6 of the stream: elsewhere it wraps round.
   score <= raw_score when score_x >= 6 and score_y >= 6 and score_y < resize(height, 17) and
@@ -225,7 +276,6 @@ begin
   data        <= x"00000" & std_logic_vector(centre_score) &
                  std_logic_vector(frame_y) & std_logic_vector(frame_x);
   last        <= '1' when kept_y = resize(height, 17) else '0';
-  memory_start <= go;
   memory_base  <= first_pixel when offered = '1' else frame_base;
 
   stream_control : process (clk_i)
@@ -235,20 +285,19 @@ begin
         when WAIT_FOR_START =>
           if go = '1' then
             state   <= STREAM;
-            threshold  <= set_threshold;
-            width      <= set_width;
-            height     <= set_height;
-            result_max <= set_result_max;
-            stop    <= '0';
-            aborted <= '0';
+            stop    <= abort;
+            aborted <= abort;
             found   <= to_unsigned(0, 16);
             stored  <= to_unsigned(0, 16);
             cycles  <= to_unsigned(0, 32);
             fill    <= to_unsigned(0, 4);
-            x       <= to_unsigned(0, 10);
-            y       <= to_unsigned(0, 17);
             score_x <= to_unsigned(0, 10);
             score_y <= to_unsigned(0, 17);
+          else
+            threshold  <= set_threshold;
+            width      <= set_width;
+            height     <= set_height;
+            result_max <= set_result_max;
           end if;
         when STREAM =>
           cycles <= cycles + 1;
@@ -268,7 +317,6 @@ begin
       end case;
 
       if step = '1' then
-        advance(x, y, width);
         if fill >= SCORE_DELAY then
           advance(score_x, score_y, width);
         end if;
@@ -299,7 +347,7 @@ begin
     if rising_edge(clk_i) then
       if go = '1' then
         -- Column and line of the first centre: one before (0, -1), counted from line 0 for unsigned.
-        kept_x <= resize(set_width - 1, 10);
+        kept_x <= resize(width - 1, 10);
         kept_y <= to_unsigned(131070, 17); -- -2
       elsif step = '1' and fill = SCORE_DELAY + KEPT_DELAY then
         advance(kept_x, kept_y, width);
@@ -310,7 +358,7 @@ begin
   u_memory : entity work.vision_memory
     port map (
       clk_i => clk_i, rst_i => rst_i,
-      start_i => memory_start, stop_i => stop,
+      idle_i => idle, start_i => go, stop_i => stop,
       frame_base_i => memory_base, result_base_i => result_base, quiet_o => quiet,
       pixel_valid_o => pixel_valid, pixel_o => pixel, pixel_take_i => pixel_take,
       record_push_i => record_push, record_i => data, record_ready_o => record_ready,
@@ -322,7 +370,7 @@ begin
     );
 
   u_window : entity work.vision_window
-    port map (clk_i => clk_i, step_i => step, x_i => x, pixel_i => pixel_now, window_o => window);
+    port map (clk_i => clk_i, step_i => step, x_i => step_x, pixel_i => step_pixel, window_o => window);
 
   u_fast : entity work.vision_fast
     port map (clk_i => clk_i, step_i => step, threshold_i => threshold, window_i => window,

@@ -13,7 +13,8 @@ entity vision_memory is
     clk_i          : in  std_logic;
     rst_i          : in  std_logic;
     -- control
-    start_i        : in  std_logic;                     -- one cycle; addresses are stable from here on
+    idle_i         : in  std_logic;                     -- until start: the addresses are taken each cycle
+    start_i        : in  std_logic;                     -- one cycle, the first without idle_i
     stop_i         : in  std_logic;                     -- no further reads; what comes is dropped
     frame_base_i   : in  std_logic_vector(31 downto 0);
     result_base_i  : in  std_logic_vector(31 downto 0);
@@ -23,7 +24,7 @@ entity vision_memory is
     pixel_o        : out std_logic_vector(7 downto 0);
     pixel_take_i   : in  std_logic;
     -- records
-    record_push_i  : in  std_logic;                     -- only while record_ready_o is 1
+    record_push_i  : in  std_logic;                     -- only if record_ready_o was 1 a clock ago, and never twice running
     record_i       : in  std_logic_vector(63 downto 0);
     record_ready_o : out std_logic;
     -- memory port
@@ -127,9 +128,11 @@ begin
       end if;
       if start_i = '1' then
         active     <= '1';
+        bytes_left <= to_unsigned(0, 4);
+      end if;
+      if idle_i = '1' then
         read_addr  <= unsigned(frame_base_i(31 downto 7));
         write_addr <= unsigned(result_base_i(31 downto 3));
-        bytes_left <= to_unsigned(0, 4);
       end if;
       if rst_i = '1' then
         state       <= WAIT_FOR_WORK;

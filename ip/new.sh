@@ -3,7 +3,7 @@
 # new: name verilog|vhdl build-folder [file.ice]   Writes ip/<name>: interface, core, test; of the given interface, or of an
 # example. Or says what is wrong.
 set -eu
-usage='usage: make new-ip NAME=fir LANG=verilog|vhdl [ICE=file.ice]'
+usage='usage: make new-ip NAME=low_pass LANG=verilog|vhdl [ICE=file.ice]'
 case ${1:-} in -h | --help) echo "$usage" && exit 0 ;; esac
 name=${1:-} lang=${2:-} build=${3:-build/main} ice=${4:-}
 case $ice in '' | /*) ;; *) ice=$PWD/$ice ;; esac
@@ -12,7 +12,7 @@ fail() { echo "new-ip: $*" >&2 && exit 1; }
 [ -n "$name" ] || fail "$usage"
 case $lang in verilog | vhdl) ;; *) fail "LANG is verilog or vhdl, not '$lang'" ;; esac
 echo "$name" | grep -Eq '^[a-z][a-z0-9]*$|^[a-z][a-z0-9]+(_[a-z][a-z0-9]+)+$' ||
-    fail "'$name': words of small letters and digits, joined by _, such as fir or low_pass"
+    fail "'$name': words of small letters and digits, joined by _, such as mixer or low_pass"
 reserved=' abs access after alias all always and architecture array assert assign attribute automatic begin block body buf buffer
  bus case casex casez cell class cmos component config configuration const constant context cover deassign default defparam design disable
  disconnect double downto edge else elsif end enum event exit false file float for force forever fork function generate generic genvar
@@ -50,6 +50,7 @@ if [ -n "$ice" ]; then
     cp "$work/$name.ice" "$work"/new/* "$folder"
     fill "ip/template/$lang/CMakeLists.txt.in" CMakeLists.txt
     fill ip/template/README.md.in README.md
+    fill ip/template/interface/ground.py.in ground.py
     sed -i 's/^Adds an offset, and sums 1..count:/Answers every call with zeros:/' "$folder/README.md"
 else
     mkdir "$folder"
@@ -65,4 +66,4 @@ if [ -f "$build/build.ninja" ] && ! cmake "$build" >"$build/new-ip.log" 2>&1; th
     fail "the build does not take '$name' (above); nothing was changed"
 fi
 echo "$folder: $(ls "$folder" | tr '\n' ' ')"
-echo "Next: make ip-test IP=$name; a line '$name' in ip/cores.list puts it into the chip"
+echo "Next: make ip-test IP=$name; a line '$name' in ip/cores.list puts it into the chip; make run CORES=$name calls it by radio"

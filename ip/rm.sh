@@ -3,7 +3,7 @@
 # rm: name build-folder   Takes a core away: ip/<name> and its line in ip/cores.list. Refuses where work would be lost, unless
 # FORCE=1.
 set -eu
-usage='usage: make rm-ip NAME=fir [FORCE=1]'
+usage='usage: make rm-ip NAME=low_pass [FORCE=1]'
 case ${1:-} in -h | --help) echo "$usage" && exit 0 ;; esac
 name=${1:-} build=${2:-build/main}
 cd "$(dirname "$0")/.."

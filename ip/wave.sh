@@ -3,7 +3,7 @@
 # wave: core test-regexp   Runs one test of a core with waveforms, in build/trace; writes build/wave/<core>.fst and a
 # GTKWave save file with the core's ports, and opens GTKWave where there is a display.
 set -eu
-usage='usage: make wave IP=fir TEST=AddsItsOffset'
+usage='usage: make wave IP=fir TEST=Impulse'
 case ${1:-} in -h | --help) echo "$usage" && exit 0 ;; esac
 core=${1:-} test=${2:-} jobs=${JOBS:-$(nproc)}
 cd "$(dirname "$0")/.."

@@ -34,15 +34,21 @@ while [ $# -gt 0 ]; do
 done
 mkdir -p "$out"
 rm -f "$out/after.png" "$out/report.md" "$out/report.json" "$out/calls.jsonl" "$out/status"
+parts=''
+[ -z "$sensor" ] || case " $cores " in *' camera '*) ;; *) cores="$cores camera" ;; esac
+listed=$(sed -n 's/^CORES:[A-Z]*=//p' "$build/CMakeCache.txt")
+for core in $cores; do
+    # A core that the tree has and the chip does not would be an object that does not exist, minutes from now.
+    [ ! -d "$here/ip/$core" ] || grep -Eq "^[[:space:]]*$core([[:space:]#]|\$)" "$listed" || {
+        echo "run: the chip has no core '$core': it needs a line '$core' in $listed" >&2
+        exit 1
+    }
+    parts="$parts --core $here/ip/$core"
+done
 "$build/testbench/live/icesoc-live" --dir "$out" --port "$port" --registers "$build/gen/registers.list" &
 page=$!
 trap 'kill $page 2>/dev/null || true' EXIT
 status=0
-parts=''
-[ -z "$sensor" ] || case " $cores " in *' camera '*) ;; *) cores="$cores camera" ;; esac
-for core in $cores; do
-    parts="$parts --core $here/ip/$core"
-done
 # shellcheck disable=SC2086 # a list of words
 "$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" --firmware "$firmware" $sensor -- \
     /usr/bin/python3 "$here/sw/ground/clients/mission.py" --device '{device}' --frame '{frame}' \

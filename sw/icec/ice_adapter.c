@@ -15,7 +15,7 @@ static Ice_String part(const char* data, size_t size) {
 
 Ice_Identity Ice_parseIdentity(const char* text) {
     Ice_Identity id;
-    const char* slash = ICEC_CATEGORIES ? strchr(text, '/') : 0;
+    const char* slash = strchr(text, '/');
     id.category = part(text, slash ? (size_t)(slash - text) : 0);
     id.name = Ice_String_from(slash ? slash + 1 : text);
     return id;
@@ -54,9 +54,8 @@ static int indexOf(Ice_ObjectAdapterPtr adapter, const Ice_Identity* id, const I
     for (s = 0; s < ICE_SERVANTS; ++s)
         if (adapter->servants[s].servant &&
             Ice_String_same(&adapter->servants[s].identity.name, &id->name) &&
-            (!ICEC_CATEGORIES ||
-             (Ice_String_same(&adapter->servants[s].identity.category, &id->category) &&
-              Ice_String_same(&adapter->servants[s].facet, facet))))
+            Ice_String_same(&adapter->servants[s].identity.category, &id->category) &&
+            Ice_String_same(&adapter->servants[s].facet, facet))
             return s;
     return -1;
 }
@@ -98,24 +97,8 @@ static Ice_Status changeDefault(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr serv
     return change(adapter, servant, &id, id.name);
 }
 
-/* For names only: into the first free entry; who adds a name twice finds the first servant. */
-static Ice_Status addName(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
-                          const char* identity) {
-    Ice_Servant* s;
-    for (s = adapter->servants; s < adapter->servants + ICE_SERVANTS; ++s)
-        if (!s->servant) {
-            s->servant = servant;
-            s->identity.name.data = identity;
-            s->identity.name.size = (Ice_Int)strlen(identity);
-            return ICE_OK;
-        }
-    return ICE_LIMIT;
-}
-
 Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                                  const char* identity) {
-    if (!ICEC_CATEGORIES)
-        return addName(adapter, servant, identity);
     return changeNamed(adapter, servant, identity, "");
 }
 
@@ -176,14 +159,9 @@ void Ice_ObjectAdapter_destroy(Ice_ObjectAdapterPtr adapter) {
 
 Ice_Status Ice_ObjectAdapter_createProxy(Ice_ObjectAdapterPtr adapter, const char* identity,
                                          Ice_ObjectPrxPtr prx) {
-    Ice_Identity id;
+    Ice_Identity id = Ice_parseIdentity(identity);
     Ice_Status status;
     Ice_ObjectPrx_init(prx, adapter->communicator);
-    if (ICEC_CATEGORIES) {
-        id = Ice_parseIdentity(identity);
-        status = Ice_ObjectPrx_setIdentity(prx, &id.name, &id.category, 0);
-    } else {
-        status = Ice_ObjectPrx_setName(prx, identity) ? ICE_OK : ICE_LIMIT;
-    }
+    status = Ice_ObjectPrx_setIdentity(prx, &id.name, &id.category, 0);
     return status == ICE_OK ? Ice_ObjectPrx_addEndpoint(prx, 0) : status;
 }

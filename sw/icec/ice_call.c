@@ -137,8 +137,7 @@ void Ice_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is
             keepReply(call, is);
         is->communicator = ic;
         call->status = readReply(is, &call->failure);
-        if (ICEC_COPY_REPLIES || ICE_CALLS > 1)
-            call->is = *is;
+        call->is = *is;
         call->state = ICE_DONE;
         if (ICEC_TASKS)
             ic->os->wake(ic->osContext, (int)(call - ic->calls));
@@ -177,16 +176,12 @@ static Ice_Status connect(Ice_ObjectPrxPtr self, int slot) {
         return Ice_countPending(ic, self->connection, self->generation, 0) ? ICE_OK
                                                                            : ICE_CONNECTION_LOST;
     }
-    if (!ICEC_DETAILS) {
-        status = open(self, self->endpoints + 1, self->endpointsSize - 1);
-    } else {
-        Ice_InputStream_init(&is, self->endpoints + 1, self->endpointsSize - 1);
-        for (n = self->endpoints[0]; n > 0 && status != ICE_OK; --n) {
-            Ice_Int begin = is.position;
-            (void)Ice_InputStream_readShort(&is);
-            (void)Ice_InputStream_readBlob(&is, Ice_InputStream_readInt(&is) - 4);
-            status = open(self, is.data + begin, is.position - begin);
-        }
+    Ice_InputStream_init(&is, self->endpoints + 1, self->endpointsSize - 1);
+    for (n = self->endpoints[0]; n > 0 && status != ICE_OK; --n) {
+        Ice_Int begin = is.position;
+        (void)Ice_InputStream_readShort(&is);
+        (void)Ice_InputStream_readBlob(&is, Ice_InputStream_readInt(&is) - 4);
+        status = open(self, is.data + begin, is.position - begin);
     }
     if (status == ICE_OK)
         status = Ice_await(ic, &ic->connections[self->connection].state, slot, self->timeoutMs);

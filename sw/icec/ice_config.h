@@ -18,9 +18,6 @@
 #ifndef ICEC_TASKS /* several tasks use a communicator (Ice_Os) */
 #define ICEC_TASKS ICEC_DEFAULT
 #endif
-#ifndef ICEC_CATEGORIES /* identities with categories; facets; default servants */
-#define ICEC_CATEGORIES ICEC_DEFAULT
-#endif
 #ifndef ICEC_CONTEXTS /* contexts are sent and can be looked up (they are always tolerated) */
 #define ICEC_CONTEXTS ICEC_DEFAULT
 #endif
@@ -30,7 +27,7 @@
 #ifndef ICEC_ASYNC /* asynchronous calls, answers given later, heartbeats meanwhile */
 #define ICEC_ASYNC ICEC_DEFAULT
 #endif
-#ifndef ICEC_DETAILS /* texts and fields of system exceptions; strings of all proxies */
+#ifndef ICEC_DETAILS /* texts and fields of system exceptions; quoted options; endpoints print */
 #define ICEC_DETAILS ICEC_DEFAULT
 #endif
 #ifndef ICEC_IDS /* ice_id and ice_ids are answered (ice_ping and ice_isA always are) */

@@ -62,8 +62,7 @@ void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection) {
 static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_Byte* in,
                               Ice_Int size) {
     Ice_InputStream own;
-    /* Where no reply is copied, it is read from where its call has it. */
-    Ice_InputStreamPtr is = ICEC_COPY_REPLIES || ICE_CALLS > 1 ? &own : &ic->calls[0].is;
+    Ice_InputStreamPtr is = &own;
     Ice_Int type;
     Ice_InputStream_init(is, in, size);
     is->communicator = ic;

@@ -4,19 +4,6 @@
  */
 #include "ice_private.h"
 
-/* Where there are only names. */
-static Ice_ObjectPtr findName(Ice_CommunicatorPtr ic, Ice_Current* current) {
-    Ice_ObjectAdapterPtr adapter;
-    const Ice_Servant* s;
-    for (adapter = ic->adapters; adapter; adapter = adapter->next)
-        for (s = adapter->servants; adapter->active && s < adapter->servants + ICE_SERVANTS; ++s)
-            if (s->servant && Ice_String_same(&s->identity.name, &current->name)) {
-                current->adapter = adapter;
-                return s->servant;
-            }
-    return 0;
-}
-
 /* The servant, else the category's default servant, else the default servant of all. */
 static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current* current, Ice_Status* status) {
     Ice_ObjectAdapterPtr adapter;
@@ -91,8 +78,8 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
     U16 generation = ic->connections[connection].generation;
     Ice_OutputStream os;
     Ice_Current current;
-    Ice_ObjectPtr servant = 0;
-    Ice_Status status, found = ICE_OBJECT_NOT_EXIST;
+    Ice_ObjectPtr servant;
+    Ice_Status status, found;
     Ice_Int whole = is->size, who, whoSize, pairs, id = 0;
     if (!isBatch)
         id = Ice_InputStream_readInt(is);
@@ -103,12 +90,7 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
         current.requestId = id;
     Ice_InputStream_takeString(is, &current.name);
     Ice_InputStream_takeString(is, &current.category);
-    if (ICEC_CATEGORIES) {
-        Ice_readFacet(is, &current.facet);
-    } else {
-        current.facet.size = Ice_InputStream_readByte(is); /* one is too many */
-        Ice_skipStrings(is, (U32)current.facet.size);
-    }
+    Ice_readFacet(is, &current.facet);
     Ice_InputStream_takeString(is, &current.operation);
     whoSize = is->position - who;
     current.mode = Ice_InputStream_readByte(is);
@@ -125,10 +107,7 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
     if (ICEC_ASYNC)
         current.minor = os.minor;
     os.size = ICE_REPLY_HEAD;
-    if (ICEC_CATEGORIES)
-        servant = find(ic, &current, &found);
-    else if (current.category.size + current.facet.size == 0)
-        servant = findName(ic, &current);
+    servant = find(ic, &current, &found);
     if (status == ICE_OK)
         status = found;
     if (servant && status != ICE_PROTOCOL) {

@@ -108,9 +108,6 @@ void Ice_ObjectPrx_init(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic);
 /* ICE_LIMIT: too long together. `category` and `facet` may be 0. */
 Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* name,
                                      const Ice_String* category, const Ice_String* facet);
-/* The text up to its end, a space or a colon, as the identity's name; the result is what follows,
- * or 0 where there is none or it is too long. */
-const char* Ice_ObjectPrx_setName(Ice_ObjectPrxPtr prx, const char* text);
 /* Adds the transport's endpoint; `options` 0: the one it listens on. */
 Ice_Status Ice_ObjectPrx_addEndpoint(Ice_ObjectPrxPtr prx, const char* options);
 /* The options behind the transport's name, or 0 where the text names another transport. */

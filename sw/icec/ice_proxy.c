@@ -38,21 +38,11 @@ Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* nam
     return os.failed ? ICE_LIMIT : ICE_OK;
 }
 
-const char* Ice_ObjectPrx_setName(Ice_ObjectPrxPtr prx, const char* text) {
-    size_t size = strcspn(text, " :");
-    if (size - 1U > ICE_IDENTITY_MAX - 4U)
-        return 0;
-    prx->identity[0] = (Ice_Byte)size;
-    memcpy(prx->identity + 1, text, size); /* behind it are 0: no category, no facet */
-    prx->identitySize = (Ice_Byte)(size + 3U);
-    return text + size;
-}
-
 Ice_Status Ice_ObjectPrx_addEndpoint(Ice_ObjectPrxPtr prx, const char* options) {
     Ice_CommunicatorPtr ic = prx->communicator;
     Ice_OutputStream os;
     Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
-    os.size = ICEC_DETAILS && prx->endpoints[0] ? prx->endpointsSize : 1;
+    os.size = prx->endpoints[0] ? prx->endpointsSize : 1;
     ic->endpoint->encode(ic->endpointContext, options, &os);
     prx->endpointsSize = (Ice_Byte)os.size;
     ++prx->endpoints[0];

@@ -7,18 +7,6 @@
 
 #include <string.h>
 
-/* "name [-t|-o]:transport options", all that the minimal configuration takes. */
-static Ice_Status parseShort(const char* text, Ice_ObjectPrxPtr prx) {
-    text = Ice_ObjectPrx_setName(prx, text);
-    if (!text)
-        return ICE_LIMIT;
-    if (strncmp(text, " -o", 3) == 0)
-        prx->mode = ICE_ONEWAY;
-    text = strchr(text, ':');
-    text = text ? Ice_optionsOf(prx->communicator, text + 1) : 0;
-    return text ? Ice_ObjectPrx_addEndpoint(prx, text) : ICE_NO_ENDPOINT;
-}
-
 #define SPACES " \t\n\r"
 
 /* The next word, without its quotes; ends at a space, a colon or an at sign. Escapes stay as they
@@ -246,8 +234,6 @@ Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char* pr
                                           Ice_ObjectPrxPtr prx) {
     Ice_Status status;
     Ice_ObjectPrx_init(prx, ic);
-    if (!ICEC_DETAILS)
-        return parseShort(proxy, prx);
     if (proxy[strspn(proxy, SPACES)] == 0)
         return ICE_OK; /* the null proxy */
     status = parse(proxy, prx);

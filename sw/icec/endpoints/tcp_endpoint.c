@@ -3,16 +3,10 @@
  * tcp_endpoint: sockets, cut into IceP messages by the size in their heads.
  */
 #define _POSIX_C_SOURCE 200809L
-#include "tcp_endpoint.h"
+#include "tcp_address.h"
 
-#include <arpa/inet.h>
-#include <errno.h>
-#include <fcntl.h>
-#include <netdb.h>
 #include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <poll.h>
-#include <stdio.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -195,67 +189,15 @@ static Ice_Status sendAll(void* context, int connection, const Ice_Byte* message
     return ends ? ICE_CONNECTION_LOST : ICE_OK;
 }
 
-/* A numeric address or a name; the first answer counts. */
-static int resolve(const char* host, Ice_Int size, U32 port, struct sockaddr_storage* to,
-                   socklen_t* length) {
-    struct addrinfo hints, *found;
-    char name[256], service[8];
-    if (size <= 0 || size >= (Ice_Int)sizeof name || port > 65535)
-        return 0;
-    memcpy(name, host, (size_t)size);
-    name[size] = 0;
-    sprintf(service, "%u", port);
-    memset(&hints, 0, sizeof hints);
-    hints.ai_socktype = SOCK_STREAM;
-    if (getaddrinfo(name, service, &hints, &found) != 0)
-        return 0;
-    memcpy(to, found->ai_addr, found->ai_addrlen);
-    *length = found->ai_addrlen;
-    freeaddrinfo(found);
-    return 1;
-}
-
-/* connect with a time limit; the socket blocks again afterwards. */
-static int openSocket(const struct sockaddr_storage* to, socklen_t length, Ice_Int timeoutMs) {
-    struct pollfd wait;
-    int failed = 1, on = 1;
-    socklen_t size = sizeof failed;
-    wait.fd = socket(to->ss_family, SOCK_STREAM, 0);
-    wait.events = POLLOUT;
-    if (wait.fd < 0)
-        return -1;
-    (void)fcntl(wait.fd, F_SETFL, O_NONBLOCK);
-    (void)setsockopt(wait.fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    if (connect(wait.fd, (const struct sockaddr*)to, length) == 0)
-        failed = 0;
-    else if (errno == EINPROGRESS && poll(&wait, 1, timeoutMs) == 1)
-        (void)getsockopt(wait.fd, SOL_SOCKET, SO_ERROR, &failed, &size);
-    if (failed) {
-        (void)close(wait.fd);
-        return -1;
-    }
-    (void)fcntl(wait.fd, F_SETFL, 0);
-    return wait.fd;
-}
-
 /* One connection a peer is kept and used again. */
 static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection) {
     TcpEndpoint* self = context;
     struct sockaddr_storage to;
     socklen_t length;
-    Ice_InputStream is;
-    Ice_String host;
-    Ice_Int timeoutMs;
-    U32 port;
+    Tcp_Address address;
     int slot, fd, found = -1;
-    Ice_InputStream_init(&is, encoded, size);
-    if (Ice_InputStream_readShort(&is) != TCP_ENDPOINT_TYPE)
-        return ICE_NO_ENDPOINT;
-    (void)Ice_InputStream_readBlob(&is, 6);
-    host = Ice_InputStream_readString(&is);
-    port = (U32)Ice_InputStream_readInt(&is);
-    timeoutMs = Ice_InputStream_readInt(&is);
-    if (is.failed || !resolve(host.data, host.size, port, &to, &length))
+    if (!Tcp_decode(encoded, size, &address) ||
+        !Tcp_resolve(address.host.data, address.host.size, (U32)address.port, &to, &length))
         return ICE_NO_ENDPOINT;
     lock(self);
     for (slot = 0; slot < ICE_CONNECTIONS && found < 0; ++slot) {
@@ -271,7 +213,7 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
         return ICE_OK;
     if (slot < 0)
         return ICE_LIMIT;
-    fd = openSocket(&to, length, timeoutMs);
+    fd = Tcp_open(&to, length, address.timeoutMs);
     if (fd < 0)
         return ICE_CONNECTION_LOST;
     lock(self);
@@ -303,7 +245,7 @@ static Ice_Status listenTo(void* context, const char* options) {
         size = 9;
     }
     if (size >= (Ice_Int)sizeof self->host ||
-        !resolve(host, size, Ice_numberOption(options, 'p', 0), &at, &length))
+        !Tcp_resolve(host, size, Ice_numberOption(options, 'p', 0), &at, &length))
         return ICE_NO_ENDPOINT;
     memcpy(self->host, host, (size_t)size);
     self->host[size] = 0;
@@ -323,57 +265,6 @@ static Ice_Status listenTo(void* context, const char* options) {
     return ICE_OK;
 }
 
-static void encode(void* context, const char* options, Ice_OutputStreamPtr os) {
-    TcpEndpoint* self = context;
-    const char* timeout;
-    Ice_Int size;
-    int infinite;
-    Ice_String host;
-    host.data = Ice_findOption(options, 'h', &host.size);
-    if (!host.data || host.size > 200)
-        host = Ice_String_from(self->host);
-    Ice_OutputStream_writeShort(os, TCP_ENDPOINT_TYPE);
-    Ice_OutputStream_writeInt(os, 6 + 1 + host.size + 9);
-    Ice_OutputStream_writeShort(os, 0x0101); /* encoding 1.1 */
-    Ice_OutputStream_writeString(os, host);
-    Ice_OutputStream_writeInt(
-        os, (Ice_Int)Ice_numberOption(options, 'p', options ? 0 : (U32)self->port));
-    timeout = Ice_findOption(options, 't', &size);
-    infinite = timeout && size == 8 && memcmp(timeout, "infinite", 8) == 0;
-    Ice_OutputStream_writeInt(os, infinite ? -1 : (Ice_Int)Ice_numberOption(options, 't', 60000));
-    Ice_OutputStream_writeBool(os, 0); /* no compression */
-}
-
-static Ice_Bool print(void* context, const Ice_Byte* encoded, Ice_Int size,
-                      Ice_OutputStreamPtr text) {
-    Ice_InputStream is;
-    Ice_String host;
-    Ice_Int port, timeoutMs;
-    char line[64];
-    (void)context;
-    Ice_InputStream_init(&is, encoded, size);
-    if (Ice_InputStream_readShort(&is) != TCP_ENDPOINT_TYPE)
-        return 0;
-    (void)Ice_InputStream_readBlob(&is, 6);
-    host = Ice_InputStream_readString(&is);
-    port = Ice_InputStream_readInt(&is);
-    timeoutMs = Ice_InputStream_readInt(&is);
-    if (is.failed)
-        return 0;
-    Ice_OutputStream_writeBlob(text, (const Ice_Byte*)"tcp -h ", 7);
-    if (memchr(host.data, ':', (size_t)host.size))
-        Ice_OutputStream_writeByte(text, '"');
-    Ice_OutputStream_writeBlob(text, (const Ice_Byte*)host.data, host.size);
-    if (memchr(host.data, ':', (size_t)host.size))
-        Ice_OutputStream_writeByte(text, '"');
-    if (timeoutMs < 0)
-        sprintf(line, " -p %d -t infinite", port);
-    else
-        sprintf(line, " -p %d -t %d", port, timeoutMs);
-    Ice_OutputStream_writeBlob(text, (const Ice_Byte*)line, (Ice_Int)strlen(line));
-    return 1;
-}
-
 static U32 nowMs(void* context) {
     struct timespec now;
     (void)context;
@@ -382,8 +273,8 @@ static U32 nowMs(void* context) {
 }
 
 Ice_Status TcpEndpoint_init(Ice_CommunicatorPtr ic, TcpEndpoint* self) {
-    static const Ice_Endpoint endpoint = {"tcp",    receive, sendAll, connectTo, closeConnection,
-                                          listenTo, encode,  wakeUp,  nowMs,     print};
+    static const Ice_Endpoint endpoint = {"tcp",    receive,    sendAll, connectTo, closeConnection,
+                                          listenTo, Tcp_encode, wakeUp,  nowMs,     Tcp_print};
     int c;
     memset(self, 0, sizeof *self);
     strcpy(self->host, "127.0.0.1");

@@ -16,5 +16,5 @@ mkdir -p "$work"
 cc -O0 -w -fsanitize=address,undefined -fno-sanitize-recover=undefined -DICE_ARENA_BYTES=262144 -DICE_MESSAGE_MAX=65536 -DICE_VALUES_MAX=64 -DICE_VALUE_TYPES_MAX=64 \
     -DICE_IDENTITY_MAX=255 -I"$sw/base" -I"$sw/icec" -I"$sw/icec/endpoints" -I"$work" -I"$here" \
     -o "$work/server" "$here/server.c" "$work/servants.c" "$work/Random_types.c" "$work/Random_server.c" "$work/Random_client.c" \
-    "$sw"/icec/*.c "$sw/icec/endpoints/tcp_endpoint.c"
+    "$sw"/icec/*.c "$sw"/icec/endpoints/tcp_*.c
 "$interop" "$work/server" -- /usr/bin/python3 "$here/echo.py" client "$seed" "$work"

@@ -22,7 +22,7 @@ for compiler in gcc clang 'arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -Os'; do
     # shellcheck disable=SC2086
     check "$minimal" $compiler -DICEC_MINIMAL
 done
-for option in TASKS CATEGORIES CONTEXTS BATCH ASYNC DETAILS IDS; do
+for option in TASKS CONTEXTS BATCH ASYNC DETAILS IDS; do
     check "$full" gcc -DICEC_$option=0
 done
 check "$full" gcc -DICEC_NESTING=1

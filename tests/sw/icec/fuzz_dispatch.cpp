@@ -102,7 +102,7 @@ void start() {
         abort();
     Ice_ObjectAdapter_activate(&adapter);
     if (Ice_ObjectAdapter_add(&adapter, &servant, "thing") != ICE_OK ||
-        (ICEC_CATEGORIES &&
+        (ICEC_ASYNC &&
          Ice_ObjectAdapter_addDefaultServant(&adapter, &servant, "cat") != ICE_OK))
         abort();
 }

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * tcp_address: endpoints of the tcp transport as proxies carry them, as strings, and as sockets.
+ */
+#define _POSIX_C_SOURCE 200809L
+#include "tcp_address.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+void Tcp_encode(void* context, const char* options, Ice_OutputStreamPtr os) {
+    TcpEndpoint* self = context;
+    const char* timeout;
+    Ice_Int size;
+    int infinite;
+    Ice_String host;
+    host.data = Ice_findOption(options, 'h', &host.size);
+    if (!host.data || host.size > 200)
+        host = Ice_String_from(self->host);
+    Ice_OutputStream_writeShort(os, TCP_ENDPOINT_TYPE);
+    Ice_OutputStream_writeInt(os, 6 + 1 + host.size + 9);
+    Ice_OutputStream_writeShort(os, 0x0101); /* encoding 1.1 */
+    Ice_OutputStream_writeString(os, host);
+    Ice_OutputStream_writeInt(
+        os, (Ice_Int)Ice_numberOption(options, 'p', options ? 0 : (U32)self->port));
+    timeout = Ice_findOption(options, 't', &size);
+    infinite = timeout && size == 8 && memcmp(timeout, "infinite", 8) == 0;
+    Ice_OutputStream_writeInt(os, infinite ? -1 : (Ice_Int)Ice_numberOption(options, 't', 60000));
+    Ice_OutputStream_writeBool(os, 0); /* no compression */
+}
+
+int Tcp_decode(const Ice_Byte* encoded, Ice_Int size, Tcp_Address* address) {
+    Ice_InputStream is;
+    Ice_InputStream_init(&is, encoded, size);
+    if (Ice_InputStream_readShort(&is) != TCP_ENDPOINT_TYPE)
+        return 0;
+    (void)Ice_InputStream_readBlob(&is, 6); /* size and encoding */
+    address->host = Ice_InputStream_readString(&is);
+    address->port = Ice_InputStream_readInt(&is);
+    address->timeoutMs = Ice_InputStream_readInt(&is);
+    return !is.failed;
+}
+
+Ice_Bool Tcp_print(void* context, const Ice_Byte* encoded, Ice_Int size, Ice_OutputStreamPtr text) {
+    Tcp_Address at;
+    char line[64];
+    (void)context;
+    if (!Tcp_decode(encoded, size, &at))
+        return 0;
+    Ice_OutputStream_writeBlob(text, (const Ice_Byte*)"tcp -h ", 7);
+    if (memchr(at.host.data, ':', (size_t)at.host.size))
+        Ice_OutputStream_writeByte(text, '"');
+    Ice_OutputStream_writeBlob(text, (const Ice_Byte*)at.host.data, at.host.size);
+    if (memchr(at.host.data, ':', (size_t)at.host.size))
+        Ice_OutputStream_writeByte(text, '"');
+    if (at.timeoutMs < 0)
+        sprintf(line, " -p %d -t infinite", at.port);
+    else
+        sprintf(line, " -p %d -t %d", at.port, at.timeoutMs);
+    Ice_OutputStream_writeBlob(text, (const Ice_Byte*)line, (Ice_Int)strlen(line));
+    return 1;
+}
+
+int Tcp_resolve(const char* host, Ice_Int size, U32 port, struct sockaddr_storage* to,
+                socklen_t* length) {
+    struct addrinfo hints, *found;
+    char name[256], service[8];
+    if (size <= 0 || size >= (Ice_Int)sizeof name || port > 65535)
+        return 0;
+    memcpy(name, host, (size_t)size);
+    name[size] = 0;
+    sprintf(service, "%u", port);
+    memset(&hints, 0, sizeof hints);
+    hints.ai_socktype = SOCK_STREAM;
+    if (getaddrinfo(name, service, &hints, &found) != 0)
+        return 0;
+    memcpy(to, found->ai_addr, found->ai_addrlen);
+    *length = found->ai_addrlen;
+    freeaddrinfo(found);
+    return 1;
+}
+
+int Tcp_open(const struct sockaddr_storage* to, socklen_t length, Ice_Int timeoutMs) {
+    struct pollfd wait;
+    int failed = 1, on = 1;
+    socklen_t size = sizeof failed;
+    wait.fd = socket(to->ss_family, SOCK_STREAM, 0);
+    wait.events = POLLOUT;
+    if (wait.fd < 0)
+        return -1;
+    (void)fcntl(wait.fd, F_SETFL, O_NONBLOCK);
+    (void)setsockopt(wait.fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    if (connect(wait.fd, (const struct sockaddr*)to, length) == 0)
+        failed = 0;
+    else if (errno == EINPROGRESS && poll(&wait, 1, timeoutMs) == 1)
+        (void)getsockopt(wait.fd, SOL_SOCKET, SO_ERROR, &failed, &size);
+    if (failed) {
+        (void)close(wait.fd);
+        return -1;
+    }
+    (void)fcntl(wait.fd, F_SETFL, 0);
+    return wait.fd;
+}

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: MIT
+//
+// minimal_test: calls of the minimal run time, and what it refuses.
+
+#include "wire.h"
+
+namespace {
+
+class Minimal : public Pair {};
+
+TEST_F(Minimal, ResultsAndUserExceptionsComeBack) {
+    servant_.run = [](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+        Ice_OutputStream_writeInt(os, 2 * Ice_InputStream_readInt(is));
+        return str(current.operation) == "raise" ? ICE_USER_EXCEPTION : ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    Ice_Int out = 0;
+    EXPECT_EQ(call(prx, "double", 21, &out), ICE_OK);
+    EXPECT_EQ(out, 42);
+    EXPECT_EQ(call(prx, "raise", 21, &out), ICE_USER_EXCEPTION);
+    Ice_Bool is = 0;
+    EXPECT_EQ(Ice_ObjectPrx_ice_isA(&prx, "::Test::Thing", &is), ICE_OK);
+    EXPECT_EQ(is, 1);
+    EXPECT_EQ(Ice_ObjectPrx_ice_isA(&prx, "::Test::Thin", &is), ICE_OK);
+    EXPECT_EQ(is, 0);
+}
+
+TEST_F(Minimal, FailuresOfServantsKeepTheirKind) {
+    const std::pair<Ice_Status, Ice_Status> kinds[] = {
+        {ICE_OPERATION_NOT_EXIST, ICE_OPERATION_NOT_EXIST},
+        {ICE_OBJECT_NOT_EXIST, ICE_OBJECT_NOT_EXIST},
+        {ICE_UNKNOWN_USER_EXCEPTION, ICE_UNKNOWN_USER_EXCEPTION},
+        {ICE_MARSHAL, ICE_UNKNOWN_LOCAL_EXCEPTION},
+        {ICE_PROTOCOL, ICE_UNKNOWN_LOCAL_EXCEPTION},
+        {ICE_LIMIT, ICE_UNKNOWN_EXCEPTION}};
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    for (const auto& kind : kinds) {
+        servant_.run = [&](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+            return kind.first;
+        };
+        EXPECT_EQ(call(prx, "op"), kind.second) << kind.first;
+    }
+}
+
+TEST_F(Minimal, ParametersThatLackAndResultsThatDoNotFitAreUnknownLocalExceptions) {
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr is, Ice_OutputStreamPtr) {
+        (void)Ice_InputStream_readLong(is);
+        return ICE_OK;
+    };
+    EXPECT_EQ(call(prx, "op"), ICE_UNKNOWN_LOCAL_EXCEPTION);
+    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr os) {
+        static const Ice_Byte much[ICE_MESSAGE_MAX] = {};
+        Ice_OutputStream_writeBlob(os, much, ICE_MESSAGE_MAX - ICE_MESSAGE_MAX / 1000);
+        Ice_OutputStream_writeBlob(os, much, ICE_MESSAGE_MAX);
+        return ICE_OK;
+    };
+    EXPECT_EQ(call(prx, "op"), ICE_UNKNOWN_LOCAL_EXCEPTION);
+    EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OK);
+}
+
+TEST_F(Minimal, OnewayCallsReturnAtOnceAndRefuseResults) {
+    Ice_ObjectPrx prx = here().proxy("thing -o:loop");
+    Ice_Int out = 0;
+    EXPECT_EQ(call(prx, "op", 1), ICE_OK);
+    EXPECT_EQ(call(prx, "op", 1, &out), ICE_TWOWAY_ONLY);
+    settle();
+    EXPECT_EQ(servant_.calls, 1);
+}
+
+TEST_F(Minimal, CallsFromWithinAnOperationAreRefused) {
+    Ice_Status inner = ICE_OK;
+    servant_.run = [&](const Ice_Current&, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+        Ice_ObjectPrx back = there().proxy("thing -o:loop");
+        inner = call(back, "op");
+        Ice_OutputStream_writeInt(os, Ice_InputStream_readInt(is) + 1);
+        return ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    Ice_Int out = 0;
+    EXPECT_EQ(call(prx, "op", 4, &out), ICE_OK);
+    EXPECT_EQ(out, 5);
+    EXPECT_EQ(inner, ICE_LIMIT);
+    Ice_ObjectPrx back = there().proxy("nobody:loop");
+    EXPECT_EQ(call(back, "op"), ICE_OBJECT_NOT_EXIST) << "afterwards they are not";
+}
+
+TEST_F(Minimal, OnlyTheActiveAdapterAnswersAndItsTableHasAnEnd) {
+    Ice_ObjectPrx prx = here().proxy("last:loop");
+    for (int i = 1; i < ICE_SERVANTS; ++i)
+        add("last");
+    EXPECT_EQ(Ice_ObjectAdapter_add(&there().adapter, &servant_.base, "more"), ICE_LIMIT);
+    EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OK);
+    Ice_ObjectAdapter_deactivate(&there().adapter);
+    EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OBJECT_NOT_EXIST);
+    Ice_ObjectAdapter_activate(&there().adapter);
+    EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OK);
+    Ice_ObjectAdapter other;
+    EXPECT_EQ(Ice_Communicator_createObjectAdapterWithEndpoints(&there().ic, "B", "ssl", &other),
+              ICE_NO_ENDPOINT);
+}
+
+TEST_F(Minimal, StringsThatAreNoProxiesSaySo) {
+    Ice_ObjectPrx prx;
+    const std::pair<const char*, Ice_Status> cases[] = {
+        {"x", ICE_NO_ENDPOINT},
+        {"x:ssl -p 1", ICE_NO_ENDPOINT},
+        {"x:loops", ICE_NO_ENDPOINT},
+        {":loop", ICE_LIMIT},
+        {"x -t:loop -c 1", ICE_OK},
+        {"a-name-of-fifty-characters-which-is-one-too-many-00:loop", ICE_LIMIT},
+        {"a-name-of-forty-nine-characters-which-still-fit-0:loop", ICE_OK}};
+    for (const auto& c : cases)
+        EXPECT_EQ(Ice_Communicator_stringToProxy(&here().ic, c.first, &prx), c.second) << c.first;
+    EXPECT_EQ(Ice_ObjectAdapter_createProxy(&there().adapter, "thing", &prx), ICE_OK);
+    Ice_Byte bytes[64];
+    Ice_OutputStream os;
+    Ice_OutputStream_init(&os, bytes, sizeof bytes);
+    Ice_OutputStream_writePrx(&os, &prx);
+    EXPECT_EQ(Bytes(bytes, bytes + os.size),
+              Bytes({5, 't', 'h', 'i',  'n',  'g', 0, 0, 0, 0, 1, 0,
+                     1, 1,   1,   0x50, 0x4C, 7,   0, 0, 0, 1, 1, 0}));
+}
+
+// A peer that is played by hand: connection 0 is the one that this side makes.
+class MinimalPeer : public ::testing::Test {
+protected:
+    MinimalPeer() {
+        side_.loop.silent = 1;
+        prx_ = side_.proxy("far:loop");
+        prx_.timeoutMs = 50;
+        side_.loop.tapContext = this;
+        side_.loop.tap = [](void* context, int, const Ice_Byte* m, Ice_Int size) {
+            auto& test = *static_cast<MinimalPeer*>(context);
+            ++test.requests_;
+            if (test.answer_)
+                test.answer_(Bytes(m + 14, m + 18));
+            (void)size;
+        };
+    }
+    void arrives(const Bytes& m) {
+        EXPECT_EQ(LoopEndpoint_inject(&side_.loop, ICE_EVENT_MESSAGE, 0, m.data(),
+                                      static_cast<Ice_Int>(m.size())),
+                  ICE_OK);
+    }
+    void arrives(Ice_Byte type, Bytes id, const Bytes& rest) {
+        id.insert(id.end(), rest.begin(), rest.end());
+        arrives(message(type, id));
+    }
+    void validate() {
+        arrives(message(3, {}));
+        EXPECT_EQ(Ice_Communicator_poll(&side_.ic, 0), ICE_OK);
+    }
+    const Bytes seven_ = {0, 10, 0, 0, 0, 1, 1, 7, 0, 0, 0};
+
+    Side side_;
+    Ice_ObjectPrx prx_;
+    int requests_ = 0;
+    std::function<void(Bytes id)> answer_;
+};
+
+TEST_F(MinimalPeer, NothingIsSentBeforeThePeersFirstMessage) {
+    EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
+    EXPECT_EQ(requests_, 0);
+    validate();
+    EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
+    EXPECT_EQ(requests_, 1);
+}
+
+TEST_F(MinimalPeer, RepliesToOtherCallsArePassedOver) {
+    EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
+    validate();
+    Bytes late;
+    answer_ = [&](const Bytes& id) { late = id; };
+    EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
+    answer_ = [&](const Bytes& id) {
+        arrives(2, late, {7, 0});
+        arrives(message(3, {})); // a sign of life
+        arrives(2, id, seven_);
+    };
+    Ice_Int out = 0;
+    EXPECT_EQ(call(prx_, "op", 0, &out), ICE_OK);
+    EXPECT_EQ(out, 7);
+}
+
+TEST_F(MinimalPeer, ARequestMeanwhileIsServedBeforeTheReplyIsRead) {
+    Servant servant;
+    EXPECT_EQ(Ice_ObjectAdapter_add(&side_.adapter, &servant.base, "thing"), ICE_OK);
+    EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
+    validate();
+    answer_ = [&](const Bytes& id) {
+        answer_ = nullptr;
+        arrives(request(9, requestBody("thing", "op")));
+        arrives(2, id, seven_);
+    };
+    Ice_Int out = 0;
+    EXPECT_EQ(call(prx_, "op", 0, &out), ICE_OK);
+    EXPECT_EQ(out, 7);
+    EXPECT_EQ(servant.calls, 1);
+    EXPECT_EQ(requests_, 2) << "the request and the answer to the other one";
+}
+
+TEST_F(MinimalPeer, AConnectionThatEndsFailsTheCallAndTheNextOneConnectsAgain) {
+    const std::pair<Bytes, Ice_Status> ends[] = {{message(4, {}), ICE_CONNECTION_CLOSED},
+                                                 {message(9, {}), ICE_CONNECTION_LOST},
+                                                 {message(1, {}), ICE_CONNECTION_LOST}};
+    for (const auto& end : ends) {
+        answer_ = nullptr;
+        EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
+        validate();
+        answer_ = [&](const Bytes&) { arrives(end.first); };
+        EXPECT_EQ(call(prx_, "op"), end.second);
+        EXPECT_EQ(side_.loop.open[0], 0);
+    }
+    EXPECT_EQ(requests_, 3);
+}
+
+TEST_F(MinimalPeer, RepliesThatAreMalformedSaySo) {
+    EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
+    validate();
+    const std::pair<Bytes, Ice_Status> replies[] = {
+        {{6, 0}, ICE_UNKNOWN_USER_EXCEPTION},
+        {{}, ICE_MARSHAL},                          // no status
+        {{8}, ICE_MARSHAL},                         // unknown status
+        {{0, 6, 0, 0}, ICE_MARSHAL},                // half an encapsulation
+        {{0, 7, 0, 0, 0, 1, 1}, ICE_MARSHAL},       // longer than the message
+        {{0, 6, 0, 0, 0, 2, 0}, ICE_PROTOCOL},      // encoding 2.0
+        {{0, 8, 0, 0, 0, 1, 1, 7, 0}, ICE_MARSHAL}, // too short for the result
+    };
+    for (const auto& reply : replies) {
+        answer_ = [&](const Bytes& id) { arrives(2, id, reply.first); };
+        Ice_Int out = 0;
+        EXPECT_EQ(call(prx_, "op", 0, &out), reply.second);
+    }
+    Ice_ObjectPrx oneway = prx_;
+    oneway.mode = ICE_ONEWAY;
+    EXPECT_EQ(call(oneway, "op"), ICE_OK) << "what was malformed before does not matter";
+}
+
+} // namespace

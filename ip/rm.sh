@@ -16,7 +16,17 @@ if [ -z "${FORCE:-}" ] && git rev-parse --git-dir >/dev/null 2>&1; then
     [ -z "$changed" ] || fail "ip/$name has changes that are not committed (FORCE=1 takes it away all the same):
 $changed"
 fi
-users=$(sed 's/#.*//' ip/cores.list | grep -E "=$name\." | awk '{print $1}' | tr '\n' ' ')
+# Lines whose inputs are this core's outputs. An input that only other cores drive ("internal") is 0 from then on; any other would
+# become a pin of the chip.
+users=$(sed 's/#.*//' ip/cores.list | grep -E "=$name\." | while read -r user words; do
+    for word in $words; do
+        case $word in
+        *="$name".*)
+            grep -qE "\"name\": *\"${word%%=*}\"[^}]*\"internal\": *true" "ip/$user/"*.regs.json 2>/dev/null || echo "$user"
+            ;;
+        esac
+    done
+done | sort -u | tr '\n' ' ')
 [ -z "$users" ] || fail "in ip/cores.list the inputs of $users are outputs of '$name'; change these lines first"
 rm -r "ip/$name"
 sed -i -E "/^[[:space:]]*$name([[:space:]]|#|\$)/d" ip/cores.list

@@ -58,6 +58,16 @@ for language in verilog vhdl; do
     "$work/ip/rm.sh" low_pass >/dev/null
     [ ! -e "$work/ip/low_pass" ] && [ ! -s "$work/ip/cores.list" ] || { echo 'rm-ip left something' && exit 1; }
 done
+# An input that only cores drive does not keep the core that drives it.
+"$work/ip/new.sh" low_pass verilog "$work/build" "$work/a.ice" >/dev/null
+mkdir -p "$work/ip/taker"
+echo '{"pins": [{"name": "b_i", "internal": true}, {"name": "c_i", "width": 2}]}' >"$work/ip/taker/taker.regs.json"
+printf 'low_pass\ntaker c_i=low_pass.c_o b_i=low_pass.b_o\n' >"$work/ip/cores.list"
+! "$work/ip/rm.sh" low_pass 2>"$work/log" && grep -q 'inputs of taker' "$work/log" || { echo 'rm-ip makes a pin of an input' && exit 1; }
+printf 'low_pass\ntaker b_i=low_pass.b_o\n' >"$work/ip/cores.list"
+"$work/ip/rm.sh" low_pass >/dev/null
+[ "$(cat "$work/ip/cores.list")" = 'taker b_i=low_pass.b_o' ] || { echo 'rm-ip keeps the core, or takes another line' && exit 1; }
+rm -r "$work/ip/taker"
 for wrong in '' nobody template ../bus; do
     ! "$work/ip/rm.sh" "$wrong" 2>"$work/log" && grep -q 'rm-ip: ' "$work/log" || { echo "rm-ip takes '$wrong'" && exit 1; }
 done

@@ -60,6 +60,8 @@ try() { # test log
     vhdl.*) target=${1#vhdl.}_vectors ;;
     slice.hardware.vhdl.*) target="slice2c ghdl" ;;
     slice.*) target=slice2c ;;
+    interop.*) # the programs that its command names
+        target=$(ctest --test-dir build/main --show-only=json-v1 -R "^$1\$" | sed -n "s,^ *\"$PWD/build/main/\([^\"]*\)\".*,\1,p") ;;
     *) target=regmaps ;;
     esac
     # shellcheck disable=SC2086 # a list of words

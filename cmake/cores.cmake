@@ -92,7 +92,7 @@ function(icesoc_core name)
   set_property(GLOBAL APPEND PROPERTY ICESOC_CORES ${name})
   if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp AND "testbench" IN_LIST ROOMS)
     icesoc_verilate(${name}_slot TOP ${name} SOURCES ${files} DEPENDS ${targets} FLAGS ${A_FLAGS}
-                    INCLUDES ${CMAKE_SOURCE_DIR}/bus ${CMAKE_SOURCE_DIR}/hdl/ddr ${CMAKE_CURRENT_SOURCE_DIR})
+                    INCLUDES ${CMAKE_SOURCE_DIR}/bus ${CMAKE_SOURCE_DIR}/hdl/ddr ${CMAKE_SOURCE_DIR}/hdl/system ${CMAKE_CURRENT_SOURCE_DIR})
     set(labels rtl)
     if(A_VHDL)
       list(APPEND labels vhdl)

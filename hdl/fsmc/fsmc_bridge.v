@@ -128,7 +128,7 @@ module fsmc_bridge #(
             fsmc_burst #(.MUXED(MUXED), .LATENCY(LATENCY)) u_fsmc_burst (
                 .clk_i(clk_i), .rst_i(rst_i), .fsmc_clk_i(fsmc_clk_i),
                 .fsmc_a_i(fsmc_a_i), .fsmc_d_i(fsmc_d_i), .fsmc_d_o(burst_d),
-                .fsmc_ne_n_i(fsmc_ne_n_i[0]), .selected_i(ne1), .fsmc_nwe_n_i(fsmc_nwe_n_i),
+                .fsmc_ne_n_i(fsmc_ne_n_i[0]), .fsmc_nwe_n_i(fsmc_nwe_n_i),
                 .fsmc_nadv_n_i(fsmc_nadv_n_i), .fsmc_nbl_n_i(fsmc_nbl_n_i),
                 .fsmc_nwait_n_o(burst_nwait_n), .busy_i(busy),
                 .wr_valid_o(wr_valid), .wr_addr_o(mem_wr_addr), .wr_data_o(mem_wr_data),

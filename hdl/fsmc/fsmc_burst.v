@@ -2,11 +2,9 @@
 //
 // fsmc_burst: synchronous bursts of PSRAM (NE1, FSMC_CLK) to halfword writes and reads in clk_i.
 //
-// FSMC_CLK runs only during a burst; NE1 high ends it and resets that side. The edge with NADV low takes
-// the address (and NWE low: a write); data is on LATENCY edges later (BTR.DATLAT + 2) and on every edge
-// from there. NWAIT is one edge ahead (BCR.WAITCFG = 0): low at an edge, the next edge has no data.
-// Writes go through a queue of 16 with its Gray-coded counts; a burst's reads through one of 8 that
-// begins anew with each burst: `tag` tells FSMC_CLK that the counts are this burst's.
+// fsmc_burst_pins has the pins, in FSMC_CLK. Two FIFOs (async_fifo) are all that crosses: of writes, and of a burst's
+// reads, which restarts with each read burst; its restart brings the address with it. Here reads are asked for, as
+// many as the FIFO takes, as long as the burst lasts.
 
 `default_nettype none
 
@@ -20,16 +18,15 @@ module fsmc_burst #(
     input  wire        fsmc_clk_i,
     input  wire [24:0] fsmc_a_i,   // halfword address
     input  wire [15:0] fsmc_d_i,
-    output reg  [15:0] fsmc_d_o,
-    input  wire        fsmc_ne_n_i, // NE1: resets this side
-    input  wire        selected_i,  // NE1 is low
+    output wire [15:0] fsmc_d_o,
+    input  wire        fsmc_ne_n_i, // NE1
     input  wire        fsmc_nwe_n_i,
     input  wire        fsmc_nadv_n_i,
     input  wire [1:0]  fsmc_nbl_n_i,
-    output reg         fsmc_nwait_n_o,
+    output wire        fsmc_nwait_n_o,
     // accesses that must come first are under way: no write is accepted
     input  wire        busy_i,
-    // writes, in clk_i: the oldest of the queue
+    // writes, in clk_i: the oldest
     output wire        wr_valid_o,
     output wire [24:0] wr_addr_o,
     output wire [15:0] wr_data_o,
@@ -41,156 +38,74 @@ module fsmc_burst #(
     input  wire [15:0] rd_data_i,
     input  wire        rd_ready_i
 );
-    // ---- FSMC_CLK: address, then beats.
-    localparam [4:0] FIRST = LATENCY[4:0];
-    reg        rst_q;      // resets the other side, without glitches
-    always @(posedge clk_i)
-        rst_q <= rst_i;
-    reg [1:0]  busy_s;
-    reg        begun, write, nwait_was;
-    reg [4:0]  edges;      // since the address; stays at FIRST
-    reg [24:0] addr, wr_addr;
-    reg        request;    // toggles with each read burst
-    wire       takes_address = selected_i && !begun && !fsmc_nadv_n_i;
-    wire [24:0] pin_addr;
-    generate
-        if (MUXED != 0) begin : g_muxed
-            wire unused = &{1'b0, fsmc_a_i[15:0], 1'b0};
-            assign pin_addr = {fsmc_a_i[24:16], fsmc_d_i};
-        end else begin : g_plain
-            assign pin_addr = fsmc_a_i;
-        end
-    endgenerate
+    wire        begun, push, full, restart, pop, empty;
+    wire [24:0] addr;
+    wire [42:0] push_data;
+    wire [15:0] pop_data;
+    fsmc_burst_pins #(.MUXED(MUXED), .LATENCY(LATENCY)) u_pins (
+        .fsmc_clk_i(fsmc_clk_i), .fsmc_a_i(fsmc_a_i), .fsmc_d_i(fsmc_d_i), .fsmc_d_o(fsmc_d_o),
+        .fsmc_ne_n_i(fsmc_ne_n_i), .fsmc_nwe_n_i(fsmc_nwe_n_i), .fsmc_nadv_n_i(fsmc_nadv_n_i),
+        .fsmc_nbl_n_i(fsmc_nbl_n_i), .fsmc_nwait_n_o(fsmc_nwait_n_o), .busy_i(busy_i),
+        .begun_o(begun), .addr_o(addr), .push_o(push), .push_data_o(push_data), .full_i(full),
+        .restart_o(restart), .pop_o(pop), .pop_data_i(pop_data), .empty_i(empty));
 
-    // The write queue, its FSMC_CLK side.
-    reg [42:0] queue [0:15];
-    reg [4:0]  wq_count, wq_gray;                 // written
-    reg [4:0]  rq_count, rq_gray, rq_s0, rq_s1;   // taken, as seen from FSMC_CLK
-    wire [4:0] wq_next = wq_count + 5'd1;
-    wire [4:0] rq_seen = {rq_s1[4], ^rq_s1[4:3], ^rq_s1[4:2], ^rq_s1[4:1], ^rq_s1[4:0]};
-    wire [4:0] queued  = wq_count - rq_seen;
-    wire       accept  = begun && write && edges == FIRST && nwait_was;
+    wire none, never_begins;
+    async_fifo #(.WIDTH(43), .LOG2(4), .SPARE(2)) u_writes (
+        .write_clk_i(fsmc_clk_i), .push_i(push), .data_i(push_data), .full_o(full), .begins_o(never_begins),
+        .read_clk_i(clk_i), .restart_i(1'b0), .pop_i(!none && (wr_ready_i || rst_i)),
+        .data_o({wr_addr_o, wr_be_o, wr_data_o}), .empty_o(none));
+    assign wr_valid_o = !none;
 
-    // The read queue, its FSMC_CLK side.
-    reg [15:0] words [0:7];
-    reg [3:0]  pushed, pushed_gray, pushed_s0, pushed_s1;
-    reg [3:0]  popped, popped_gray;
-    reg        tag, tag_s0, tag_s1;
-    reg [15:0] stage;
-    wire       there = tag_s1 == request && pushed_s1 != popped_gray;
-    wire       ahead = begun && !write && edges >= FIRST - 5'd2; // the edge after next has data
-    wire [3:0] popped_next = popped + 4'd1;
+    wire begins, no_room;
+    async_fifo #(.WIDTH(16), .LOG2(3), .RESTARTS(1)) u_reads (
+        .write_clk_i(clk_i), .push_i(rd_valid_o && rd_ready_i), .data_i(rd_data_i), .full_o(no_room), .begins_o(begins),
+        .read_clk_i(fsmc_clk_i), .restart_i(restart), .pop_i(pop), .data_o(pop_data), .empty_o(empty));
 
-    always @(posedge fsmc_clk_i or posedge fsmc_ne_n_i)
-        if (fsmc_ne_n_i) begin
-            begun     <= 1'b0;
-            write     <= 1'b0;
-            edges     <= 5'd0;
-            nwait_was <= 1'b0;
-            fsmc_nwait_n_o <= 1'b0;
-            popped      <= 4'd0;
-            popped_gray <= 4'd0;
-        end else begin
-            nwait_was <= fsmc_nwait_n_o;
-            if (takes_address) begin
-                begun <= 1'b1;
-                write <= !fsmc_nwe_n_i;
-                edges <= 5'd1;
-            end else if (begun && edges != FIRST) begin
-                edges <= edges + 5'd1;
-            end
-            // Two more may be accepted before this is seen, and one is under way.
-            fsmc_nwait_n_o <= begun && (write ? queued <= 5'd12 && !busy_s[1] : ahead && there);
-            if (ahead && there) begin
-                popped      <= popped_next;
-                popped_gray <= popped_next ^ {1'b0, popped_next[3:1]};
-            end
-        end
-
-    always @(posedge fsmc_clk_i) begin
-        if (takes_address) begin
-            addr    <= pin_addr;
-            wr_addr <= pin_addr;
-        end
-        busy_s   <= {busy_s[0], busy_i};
-        stage    <= words[popped[2:0]];
-        fsmc_d_o <= stage;
-        if (accept) begin
-            queue[wq_count[3:0]] <= {wr_addr, ~fsmc_nbl_n_i, fsmc_d_i};
-            wr_addr <= wr_addr + 25'd1;
-        end
-        {tag_s1, tag_s0}       <= {tag_s0, tag};
-        {pushed_s1, pushed_s0} <= {pushed_s0, pushed_gray};
-    end
-    always @(posedge fsmc_clk_i or posedge rst_q)
-        if (rst_q) begin
-            request  <= 1'b0;
-            wq_count <= 5'd0;
-            wq_gray  <= 5'd0;
-            {rq_s1, rq_s0} <= 10'd0;
-        end else begin
-            if (takes_address && fsmc_nwe_n_i)
-                request <= !request;
-            if (accept) begin
-                wq_count <= wq_next;
-                wq_gray  <= wq_next ^ {1'b0, wq_next[4:1]};
-            end
-            {rq_s1, rq_s0} <= {rq_s0, rq_gray};
-        end
-
-    // ---- clk_i: takes writes, and fills the read queue as long as the burst lasts.
-    reg [4:0] wq_s0, wq_s1;
-    wire [4:0] rq_next = rq_count + 5'd1;
-    assign wr_valid_o = wq_s1 != rq_gray;
-    assign {wr_addr_o, wr_be_o, wr_data_o} = queue[rq_count[3:0]];
-
-    reg [2:0] request_s;                 // a clock behind ended_s, which changes with it
+    // ---- Reads. Without reset: a burst that outlasts one gets its data after it.
     reg [1:0] ended_s;
-    reg [3:0] popped_g0, popped_g1;
-    reg       known, reading;            // the request that is being served
-    wire      begins = request_s[2] != known;
-    wire [3:0] pushed_next = pushed + 4'd1;
-    wire [3:0] popped_seen = {popped_g1[3], ^popped_g1[3:2], ^popped_g1[3:1], ^popped_g1[3:0]};
-    wire [3:0] held = pushed - popped_seen;
-    assign rd_valid_o = reading && !ended_s[1] && !begins && tag == known && held < 4'd8;
-    wire      push = rd_valid_o && rd_ready_i;
+    reg       reading;
+    initial reading = 1'b0;
+    assign rd_valid_o = reading && !ended_s[1] && !no_room;
 
     always @(posedge clk_i) begin
-        {wq_s1, wq_s0} <= {wq_s0, wq_gray};
-        request_s <= {request_s[1:0], request};
-        ended_s   <= {ended_s[0], !begun};
-        {popped_g1, popped_g0} <= {popped_g0, popped_gray};
-        if (wr_valid_o && wr_ready_i) begin
-            rq_count <= rq_next;
-            rq_gray  <= rq_next ^ {1'b0, rq_next[4:1]};
-        end
-        if (push) begin
-            words[pushed[2:0]] <= rd_data_i;
-            pushed      <= pushed_next;
-            pushed_gray <= pushed_next ^ {1'b0, pushed_next[3:1]};
-            rd_addr_o   <= rd_addr_o + 25'd1;
-        end
+        ended_s <= {ended_s[0], !begun};
+        if (rd_valid_o && rd_ready_i)
+            rd_addr_o <= rd_addr_o + 25'd1;
         if (ended_s[1])
             reading <= 1'b0;
         if (begins) begin
-            known     <= request_s[2];
             reading   <= 1'b1;
-            rd_addr_o <= addr;
-            pushed      <= 4'd0;
-            pushed_gray <= 4'd0;
-        end else begin
-            tag <= known; // the counts have been zero for a clock
-        end
-        if (rst_i) begin
-            {wq_s1, wq_s0} <= 10'd0;
-            rq_count  <= 5'd0;
-            rq_gray   <= 5'd0;
-            request_s <= 3'd0;
-            known     <= 1'b0;
-            tag       <= 1'b0;
-            reading   <= 1'b0;
-            pushed      <= 4'd0;
-            pushed_gray <= 4'd0;
+            rd_addr_o <= addr; // stays for some clocks still, or nobody takes what it brings
         end
     end
+
+    wire unused = &{1'b0, never_begins, 1'b0};
+
+`ifdef FORMAL
+    // This side alone: pins and FIFOs are cut off, and do what they are proven to do or more.
+    reg        past = 1'b0, was_begins = 1'b0;
+    reg [24:0] asked, count;  // address of this session; halfwords of it that went into the FIFO
+    always @(posedge clk_i) begin
+        past       <= 1'b1;
+        was_begins <= begins;
+        if (begins)
+            asked <= addr;
+        count <= begins ? 25'd0 : count + {24'd0, rd_valid_o && rd_ready_i};
+    end
+    reg known = 1'b0;         // a session has begun
+    always @(posedge clk_i)
+        known <= known || begins;
+    always @* begin
+        assume (!begins || no_room);
+        // What goes into the FIFO: the halfwords from the session's address on, in order.
+        if (rd_valid_o)
+            assert (known && !no_room && !begins);
+        if (known)
+            assert (rd_addr_o == asked + count);
+        assert (!reading || known);
+        assert (wr_valid_o == !none);
+        cover (past && rd_valid_o && count == 25'd3 && asked == 25'd9);
+        cover (was_begins && rd_valid_o);
+    end
+`endif
 endmodule

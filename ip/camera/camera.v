@@ -69,13 +69,13 @@ module camera (
     wire       offered;
 
     // ---- sensor ----
-    wire        push, full, empty, pop;
+    wire        push, full, empty, pop, never_begins;
     wire [10:0] token_in, token;
     camera_sensor u_sensor (.pclk_i(pclk_i), .vsync_i(vsync_i), .href_i(href_i), .data_i(data_i),
                             .push_o(push), .token_o(token_in), .full_i(full));
-    camera_fifo #(.WIDTH(11), .LOG2(5)) u_fifo (
-        .write_clk_i(pclk_i), .push_i(push), .data_i(token_in), .full_o(full),
-        .read_clk_i(clk_i), .pop_i(pop), .data_o(token), .empty_o(empty));
+    async_fifo #(.WIDTH(11), .LOG2(5)) u_fifo (
+        .write_clk_i(pclk_i), .push_i(push), .data_i(token_in), .full_o(full), .begins_o(never_begins),
+        .read_clk_i(clk_i), .restart_i(1'b0), .pop_i(pop), .data_o(token), .empty_o(empty));
     wire       lost = token[10];
     wire [1:0] kind = token[9:8];
     wire       starts = kind == FRAME_START, ends_line = kind == LINE_END, is_pixel = kind == PIXEL;
@@ -237,5 +237,5 @@ module camera (
         end
     end
 
-    wire unused = &{1'b0, reg_read, no_data, no_words, read_idle, npi_wr_empty_i, npi_rd_word_i, write_base[5:0], 1'b0};
+    wire unused = &{1'b0, never_begins, reg_read, no_data, no_words, read_idle, npi_wr_empty_i, npi_rd_word_i, write_base[5:0], 1'b0};
 endmodule

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_sensor: a sensor's parallel port, in the sensor's clock, as tokens for camera_fifo.
+// camera_sensor: a sensor's parallel port, in the sensor's clock, as tokens for a FIFO (async_fifo).
 //
 // A token has 11 bits: LOST (tokens before it found no room), kind, pixel. While the FIFO is full pixels are lost;
 // beginnings of frames and ends of lines wait for room until the next one comes.

@@ -7,7 +7,7 @@
 #    property-directed reachability finds the inductive invariant itself and has it checked
 #    (z3's k-induction did not end on 64-bit data);
 # 3. cover: every cover statement is reached within 4 * `depth` clocks.
-# A failed assertion leaves <work>/trace.vcd. The module may instance others of its folder and of bus/.
+# A failed assertion leaves <work>/trace.vcd. The module may instance others of its folder, of bus/ and of hdl/system/.
 set -eu
 here=$(dirname "$(readlink -f "$0")")
 module=$1 depth=$2 source=$3 work=$4 parameters=${5:-}
@@ -20,7 +20,7 @@ file=$(find "$source/bus" "$source/hdl" "$source/ip" -name "$module.v")
     echo "$module: no $module.v below bus, hdl or ip" >&2
     exit 2
 }
-files=$(ls "$source"/bus/*.v "$(dirname "$file")"/*.v | sort -u)
+files=$(ls "$source"/bus/*.v "$source"/hdl/system/*.v "$(dirname "$file")"/*.v | sort -u)
 # Several clocks (a proof with `gclk`): every edge is an input of its own.
 clocks=async2sync
 ! grep -q gclk "$file" || clocks='memory_map; clk2fflogic'

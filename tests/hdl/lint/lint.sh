@@ -22,9 +22,10 @@ npi_stream) variants='ADDR_BITS=7 WORD_BITS=4 WORD_BITS=32' ;;
 bus_wrapper) variants='EVENTS=1 EVENTS=32' ;;
 bus_window | bus_to_axi4lite) variants='ADDR_WIDTH=6 ADDR_WIDTH=32' ;;
 bus_to_wishbone) variants='ADDR_WIDTH=6 ADDR_WIDTH=32 PIPELINED=1' ;;
+async_fifo) variants='LOG2=2 LOG2=6 RESTARTS=1 SPARE=2 LOG2=3,SPARE=7,RESTARTS=1' ;;
 npi_fifo) variants='LOG2=1 LOG2=5 BLOCK=1' ;;
 modem) variants='CLK_HZ=2000000 CLK_HZ=100000000 API=1' ;;
-fsmc_burst)
+fsmc_burst | fsmc_burst_pins)
     for latency in 4 6 7 8 9 10 11 12 13 14 15 16 17; do
         variants="${variants-} LATENCY=$latency"
     done

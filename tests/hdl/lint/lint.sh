@@ -25,7 +25,8 @@ bus_to_wishbone) variants='ADDR_WIDTH=6 ADDR_WIDTH=32 PIPELINED=1' ;;
 async_fifo) variants='LOG2=2 LOG2=6 RESTARTS=1 SPARE=2 LOG2=3,SPARE=7,RESTARTS=1' ;;
 npi_fifo) variants='LOG2=1 LOG2=5 BLOCK=1' ;;
 modem) variants='CLK_HZ=2000000 CLK_HZ=100000000 API=1' ;;
-fsmc_burst | fsmc_burst_pins)
+fsmc_burst_pins) variants='MUXED=1' ;; # the rest in fsmc_burst
+fsmc_burst)
     for latency in 4 6 7 8 9 10 11 12 13 14 15 16 17; do
         variants="${variants-} LATENCY=$latency"
     done

@@ -94,7 +94,10 @@ uint32_t Clock::nowUs() const {
 int Clock::wait(pollfd* fds, nfds_t count, uint32_t us) {
     if (!simulation_)
         return pollUs(fds, count, us);
-    const uint64_t begin = nowNs() / 1000, end = us == forever ? endOfTime : begin + us;
+    const uint64_t begin = nowNs() / 1000;
+    // Who keeps step and does not wait at all would stop time, and might wait for it.
+    const uint64_t end =
+        us == forever ? endOfTime : begin + (inStep() ? std::max(us, shortestUs) : us);
     const bool reads = std::any_of(fds, fds + count, [this](const pollfd& p) {
         return p.fd == serial_ && (p.events & POLLIN);
     });

@@ -7,15 +7,25 @@ WAVES    ?= 3
 LAUNCHER ?= local
 CHANGED  ?=
 FAILED   ?=
+KEPT     ?=
+# Seeds that `make nightly` draws
+NIGHTLY  ?= 3
 
-regress: build ## run the regression, write build/regress/report.html (NAME= BLOCK= LABEL= CHANGED=1 FAILED=1 SEED=n|random REPEAT=n LAUNCHER=slurm)
+regress: build ## run the regression, write build/regress/report.html (NAME= BLOCK= LABEL= CHANGED=1 FAILED=1 KEPT=1 SEED=n|random REPEAT=n LAUNCHER=slurm)
 	@$(BUILD)/testbench/regress/regress --build $(BUILD) --jobs $(TESTS) --seed $(SEED) --repeat $(REPEAT) --waves $(WAVES) \
 	    --launcher $(LAUNCHER) $(if $(NAME),--name '$(NAME)') $(if $(BLOCK),--block '$(BLOCK)') \
-	    $(if $(LABEL),--label '$(LABEL)') $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed)
+	    $(if $(LABEL),--label '$(LABEL)') $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed) $(if $(KEPT),--kept)
+
+# Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them.
+nightly: build ## what a timer runs: seeds that have failed, then the regression with fresh seeds (NIGHTLY=3 of them)
+	@status=0; tool="$(BUILD)/testbench/regress/regress --build $(BUILD) --jobs $(TESTS) --waves $(WAVES) --launcher $(LAUNCHER)"; \
+	    $$tool --kept $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
+	    $$tool --seed random --repeat $(NIGHTLY) $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
+	    exit $$status
 
 # Gates: testbench/regress/coverage_gates.json
 coverage: $(BUILD)/build.ninja ## lines, branches and toggles that the tests reach, write build/coverage/html
 	@ninja -C $(BUILD) -j $(JOBS) coverage
 	@testbench/regress/coverage.sh $(BUILD) $(JOBS)
 
-.PHONY: regress coverage
+.PHONY: regress nightly coverage

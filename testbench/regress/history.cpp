@@ -54,10 +54,12 @@ std::string History::last(const std::string& test) const {
 }
 
 std::vector<std::string> History::flaky() const {
-    std::map<std::string, std::map<std::string, std::set<std::string>>> ends; // test, fingerprint: how
+    // test; fingerprint and seed: how
+    std::map<std::string, std::map<std::string, std::set<std::string>>> ends;
     for (const auto& run : runs_)
         for (auto& [name, end] : run.at("tests").items())
-            ends[name][end.at(2)].insert(end.at(0).get<std::string>());
+            ends[name][end.at(2).get<std::string>() + " " + (end.size() > 3 ? end.at(3).get<std::string>() : "")].insert(
+                end.at(0).get<std::string>());
     std::vector<std::string> names;
     for (auto& [name, prints] : ends)
         for (auto& [print, how] : prints)

@@ -22,7 +22,7 @@ public:
     std::string passedWith(const std::string& test) const;
     // How a test ended in the newest run that had it: "p", "f", "s" or "".
     std::string last(const std::string& test) const;
-    // Tests that both passed and failed with one fingerprint.
+    // Tests that both passed and failed with one fingerprint and one seed.
     std::vector<std::string> flaky() const;
 
     static nlohmann::json makeRun(const std::vector<Test>& tests, const std::vector<Result>& results,

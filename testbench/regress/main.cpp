@@ -6,6 +6,7 @@
 #include "history.h"
 #include "lights.h"
 #include "report.h"
+#include "seeds.h"
 #include "shell.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -26,7 +27,7 @@ struct Options {
     std::string source = ".", build = "build/main", out = "build/regress", seed = "1", launcher = "local";
     Selection selection;
     unsigned jobs = 2, repeat = 1, waves = 3;
-    bool list = false;
+    bool list = false, kept = false;
 };
 
 std::vector<Test> choose(const std::vector<Test>& all, const Selection& selection, const History& history) {
@@ -114,9 +115,36 @@ void summary(const nlohmann::json& data, const std::vector<Failure>& failures, c
             std::cout << ' ' << name.get<std::string>();
         std::cout << '\n';
     }
+    if (!data["seeds"].empty())
+        std::cout << fmt::format("\n{} failing seeds are kept: make regress KEPT=1 runs them again\n", data["seeds"].size());
     std::cout << '\n' << lightsText(data["lights"]);
     std::cout << fmt::format("{} passed, {} failed, {} skipped in {:.0f} s; {}/report.html\n", data["passed"].get<int>(),
                              data["failed"].get<int>(), data["skipped"].get<int>(), data["seconds"].get<double>(), out);
+}
+
+struct Round {
+    std::string seed;
+    std::vector<Test> tests;
+};
+
+// The chosen tests once for each seed; or each test that failed once, with the seeds that showed it.
+std::vector<Round> roundsOf(const std::vector<Test>& chosen, const Options& options, FailingSeeds& seeds) {
+    std::vector<Round> rounds;
+    if (!options.kept) {
+        uint64_t seed = options.seed == "random" ? std::random_device{}() : std::stoull(options.seed, nullptr, 0);
+        for (unsigned i = 0; i < options.repeat; ++i)
+            rounds.push_back({std::to_string(seed + i), chosen});
+        return rounds;
+    }
+    for (const auto& [seed, names] : seeds.bySeed()) {
+        Round round{seed, {}};
+        for (const Test& test : chosen)
+            if (std::find(names.begin(), names.end(), test.name) != names.end())
+                round.tests.push_back(test);
+        if (!round.tests.empty())
+            rounds.push_back(std::move(round));
+    }
+    return rounds;
 }
 
 int regress(const Options& options) {
@@ -141,23 +169,33 @@ int regress(const Options& options) {
             std::cout << test.name << '\n';
         return 0;
     }
+    FailingSeeds seeds(options.out + "/seeds.jsonl");
+    for (const std::string& gone : seeds.forgetOthers(all))
+        std::cout << gone << " is no test any more: its seeds are forgotten\n";
+    auto rounds = roundsOf(chosen, options, seeds);
+    if (rounds.empty()) {
+        std::cout << "Nothing to run: no seed is kept that made one of these tests fail.\n";
+        return 0;
+    }
     auto start = std::chrono::steady_clock::now();
     std::vector<Result> results;
-    uint64_t seed = options.seed == "random" ? std::random_device{}() : std::stoull(options.seed, nullptr, 0);
-    for (unsigned i = 0; i < options.repeat; ++i) {
+    for (const Round& round : rounds) {
         Progress progress;
-        RunOptions how{options.build, options.out, std::to_string(seed + i), options.jobs,
+        RunOptions how{options.build, options.out, round.seed, options.jobs,
                        [&](const Result& result, unsigned done, unsigned total) { progress.end(result, done, total); }};
-        std::cout << fmt::format("{} tests, SEED={}\n", chosen.size(), seed + i) << std::flush;
-        auto part = options.launcher == "slurm" ? runSlurm(chosen, how) : runHere(chosen, how);
+        std::cout << fmt::format("{} tests, SEED={}\n", round.tests.size(), round.seed) << std::flush;
+        auto part = options.launcher == "slurm" ? runSlurm(round.tests, how) : runHere(round.tests, how);
         progress.done();
         results.insert(results.end(), part.begin(), part.end());
     }
     double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     auto failures = examine(results, options.out);
     addWaves(failures, all, options.source, options.jobs, options.waves);
-    history.add(History::makeRun(chosen, results, commitOf(options.source), seconds));
+    const std::string commit = commitOf(options.source);
+    history.add(History::makeRun(chosen, results, commit, seconds));
+    seeds.update(results, commit);
     auto data = gather(history, all, results, failures, options.source);
+    data["seeds"] = seeds.list();
     writeReports(data, options.out);
     writeJUnit(options.out + "/junit.xml", results);
     summary(data, failures, options.out);
@@ -178,6 +216,8 @@ int main(int argc, char** argv) {
     app.add_option("--label", options.selection.label, "one label: rtl, formal, lint, firmware, ...");
     app.add_flag("--changed", options.selection.changed, "only tests whose program or sources changed since they passed");
     app.add_flag("--rerun-failed", options.selection.failed, "only tests that failed in their last run");
+    app.add_flag("--kept", options.kept, "only tests that failed with some seed and have not passed with it since, with these seeds")
+        ->excludes("--rerun-failed")->excludes("--changed");
     app.add_option("--seed", options.seed, "seed of the random tests, or `random`")->capture_default_str();
     app.add_option("--repeat", options.repeat, "so many runs, each with the next seed")->check(CLI::Range(1, 1000));
     app.add_option("--jobs", options.jobs, "tests at once")->check(CLI::Range(1, 256));

@@ -101,6 +101,11 @@ std::string markdown(const json& data) {
         for (auto& name : data["flaky"])
             text += "- " + name.get<std::string>() + "\n";
     }
+    if (!data["seeds"].empty()) {
+        text += "\nSeeds that failed, and have not passed since (`make regress KEPT=1`):\n";
+        for (auto& kept : data["seeds"])
+            text += fmt::format("- {} SEED={}\n", kept["test"].get<std::string>(), kept["seed"].get<std::string>());
+    }
     return text;
 }
 

@@ -14,7 +14,7 @@ fail() {
 has() { grep -q -- "$1" "${2:-out.txt}" || fail "'$1' is not in ${2:-the output}"; }
 hasNot() { ! grep -q -- "$1" "${2:-out.txt}" || fail "'$1' is in ${2:-the output}"; }
 
-# A project: test_a passes, test_b fails alike for two seeds, test_c as the file `flicker` says, test_d crashes.
+# A project: test_a passes, test_b fails alike for all seeds but 7, test_c as the file `flicker` says, test_d crashes.
 rm -rf "$work"
 mkdir -p "$work/tests/room"
 cd "$work"
@@ -37,7 +37,7 @@ END
 cat >tests/room/t.sh <<'END'
 #!/bin/sh
 case $1 in
-b.Bad) echo "x.cpp:12: Failure"; echo "value $SEED is not 7 </script>"; exit 1 ;;
+b.Bad) [ "$SEED" = 7 ] || { echo "x.cpp:12: Failure"; echo "value $SEED is not 7 </script>"; exit 1; } ;;
 c.Flicker) [ ! -e ../../../../flicker ] ;;
 d.Crash) kill -SEGV $$ ;;
 formal) echo "thing: bounded, 6 clocks"; echo "thing: proven, 12 clauses with 3 flops"; echo "thing: 2 covers reached" ;;
@@ -99,6 +99,33 @@ flaky)
     has "1 damaged lines"
     [ $status -eq 0 ] || fail "a damaged history stops the run"
     ;;
+seeds)
+    run --kept
+    [ $status -eq 0 ] || fail "exit status $status, not 0, where no seed is kept"
+    has "no seed is kept"
+    run --name 'test_[ab]' --seed random --repeat 2
+    [ $status -eq 1 ] || fail "exit status $status, not 1"
+    seeds=$(sed -n 's/^3 tests, SEED=//p' out.txt)
+    [ "$(echo "$seeds" | wc -l)" -eq 2 ] || fail "not two seeds"
+    for seed in $seeds; do has "\"seed\":\"$seed\",\"since\":.*\"test\":\"test_b.Bad\"" build/regress/seeds.jsonl; done
+    hasNot test_a build/regress/seeds.jsonl
+    run --name 'test_[ab]' --seed 7 # passes with another seed: the others stay
+    has "2 failing seeds are kept"
+    run --kept --name 'a[.]' # none of these
+    has "no seed is kept"
+    run --kept
+    [ $status -eq 1 ] || fail "exit status $status, not 1, where kept seeds still fail"
+    for seed in $seeds; do has "^1 tests, SEED=$seed"; done
+    has "0 passed, 2 failed"
+    has '"times":2' build/regress/seeds.jsonl
+    has "test_b.Bad SEED=${seeds##*
+}" build/regress/summary.md
+    has '"seeds":\[{' build/regress/report.html
+    sed -i 's/^b.Bad).*/b.Bad) ;;/' tests/room/t.sh # the bug is mended
+    run --kept
+    [ $status -eq 0 ] || fail "exit status $status, not 0, when kept seeds pass"
+    [ ! -s build/regress/seeds.jsonl ] || fail "seeds that pass are kept"
+    ;;
 slurm)
     command -v slurmctld >/dev/null 2>&1 || PATH=$PATH:/usr/sbin
     status=0
@@ -117,6 +144,7 @@ page)
     has 'test_c.Flicker' dom.html
     has 'class="dot dp"' dom.html
     has '12 clauses with 3 flops' dom.html
+    has 'id="seeds"' dom.html
     has 'value 1 is not 7' dom.html
     hasNot 'src="http\|href="http' build/regress/report.html # offline
     ;;

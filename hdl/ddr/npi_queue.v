@@ -46,7 +46,8 @@ module npi_queue #(
 
     reg [ADDR_BITS-1:0] addrs [0:(1<<LOG2)-1];
     reg [KIND-1:0] kinds [0:(1<<LOG2)-1]; // port, read, size
-    reg [LOG2-1:0] head, move, issue, back;
+    // With initial values: else Yosys merges the RAM's address registers into it, and keeps them twice.
+    reg [LOG2-1:0] head = 0, move = 0, issue = 0, back = 0;
     reg [4:0]      move_index, back_index;
 
     // words - 1 of a size; 6 and 7 count as 5
@@ -87,13 +88,13 @@ module npi_queue #(
             head        <= head_next;
         end
         if (move_done_i)
-            move_index <= move_last ? 5'd0 : move_index + 5'd1;
+            move_index <= move_index + 5'd1;
         if (moving && (move_read || (move_done_i && move_last)))
             move <= move + 1'b1;
         if (cmd_valid_o && cmd_ready_i)
             issue <= issue + 1'b1;
         if (back_done_i)
-            back_index <= back_last ? 5'd0 : back_index + 5'd1;
+            back_index <= back_index + 5'd1;
         if (coming && (!back_read || (back_done_i && back_last)))
             back <= back + 1'b1;
         if (rst_i) begin
@@ -101,9 +102,11 @@ module npi_queue #(
             move  <= 0;
             issue <= 0;
             back  <= 0;
-            move_index <= 5'd0;
-            back_index <= 5'd0;
         end
+        if (rst_i || (move_done_i && move_last))
+            move_index <= 5'd0;
+        if (rst_i || (back_done_i && back_last))
+            back_index <= 5'd0;
     end
 
     wire unused = &{1'b0, issue_port, 1'b0};

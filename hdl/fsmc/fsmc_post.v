@@ -45,7 +45,8 @@ module fsmc_post #(
     localparam WORD = ADDR_BITS - 2;
 
     reg [WORD-1:0] addrs [0:(1<<LOG2)-1];
-    reg [LOG2-1:0] head, tail; // head..tail-1 are closed
+    // head..tail-1 are closed. Initial values: as in npi_queue.
+    reg [LOG2-1:0] head = 0, tail = 0;
     reg            open;
     reg [WORD-1:0] open_addr;
     reg [7:0]      open_be;
@@ -59,7 +60,7 @@ module fsmc_post #(
     assign wr_lost_o    = wr_i && !accept;
     // The open word counts as closed, so that room does not go away by itself.
     assign room_o       = !(&count[LOG2-1:1] || (open && count == (1 << LOG2) - 3));
-    assign word_valid_o = count != 0;
+    assign word_valid_o = head != tail; // sooner there than count
     assign idle_o       = !open && !word_valid_o;
     assign word_addr_o  = addrs[head];
     assign push_o       = close;

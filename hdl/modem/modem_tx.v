@@ -40,6 +40,8 @@ module modem_tx #(
     wire rested = (rest[8] && rest[6]) || packet_bytes_i == longest ||
                   API != 0; // 320 ticks
 
+    wire ends   = state == REST && (tx_ready_i || API != 0) && rested;
+
     // A packet that the set-up interrupts is sent again, whole.
     wire begin_anew = rst_i || !enable_i;
 
@@ -52,26 +54,27 @@ module modem_tx #(
         rest   <= 9'd0;
         case (state)
             FETCH: if (rd_done_i) begin
-                tx_data_o  <= rd_data_i;
-                rd_index_o <= rd_index_o + 7'd1;
-                state      <= SEND;
+                tx_data_o <= rd_data_i;
+                state     <= SEND;
             end
             SEND: if (tx_valid_o && tx_ready_i)
                 state <= last ? REST : FETCH;
             default: begin
                 rest <= rest + {8'd0, tx_ready_i};
-                if ((tx_ready_i || API != 0) && rested) begin
-                    sent_o     <= 1'b1;
-                    rd_index_o <= 7'd0;
-                    state      <= FETCH;
+                if (ends) begin
+                    sent_o <= 1'b1;
+                    state  <= FETCH;
                 end
             end
         endcase
-        if (begin_anew) begin
-            state      <= FETCH;
-            sent_o     <= 1'b0;
+        if (rd_done_i) // only in FETCH
+            rd_index_o <= rd_index_o + 7'd1;
+        if (begin_anew || ends)
             rd_index_o <= 7'd0;
-            tx_data_o  <= 8'd0;
+        if (begin_anew) begin
+            state     <= FETCH;
+            sent_o    <= 1'b0;
+            tx_data_o <= 8'd0;
         end
     end
 

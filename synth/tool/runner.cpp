@@ -38,6 +38,7 @@ std::string scriptOf(const Run& run, const Library& library, const RunnerOptions
     for (const auto& [name, value] : run.design->parameters)
         parameters += fmt::format("chparam -set {} {} {}\n", name, value, run.design->top);
     std::string script = readFile(options.scripts / (run.family + ".ys"));
+    script = replaceAll(script, "@MAP@", readFile(options.scripts / "xilinx_map.ys"));
     script = replaceAll(script, "@SOURCES@", sources);
     script = replaceAll(script, "@INCLUDES@", includes);
     script = replaceAll(script, "@PARAMETERS@", parameters);

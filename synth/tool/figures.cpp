@@ -97,26 +97,11 @@ void to_json(json& j, const Figures& f) {
     for (const auto& [owner, c] : f.costs)
         costs.push_back({owner.first, owner.second, c.lut, c.memory, c.ff, c.carry});
     const Slices& s = f.slices;
-    j = {{"cells", f.cells},
-         {"lut", f.lut},
-         {"lutRam", f.lutRam},
-         {"shift", f.shift},
-         {"ff", f.ff},
-         {"carry", f.carry},
-         {"ram", f.ram},
-         {"dsp", f.dsp},
-         {"pins", f.pins},
-         {"costs", costs},
-         {"timing", f.timing},
-         {"slices",
-          {{"low", s.low},
-           {"estimate", s.estimate},
-           {"high", s.high},
-           {"slicem", s.slicem},
-           {"sites", s.sites},
-           {"pairs", s.pairs},
-           {"through", s.through},
-           {"controlSets", s.controlSets}}}};
+    j = {{"cells", f.cells}, {"lut", f.lut},         {"lutRam", f.lutRam},   {"shift", f.shift},
+         {"ff", f.ff},       {"carry", f.carry},     {"ram", f.ram},         {"dsp", f.dsp},
+         {"pins", f.pins},   {"costs", costs},       {"timing", f.timing},   {"slices", s.estimate},
+         {"low", s.low},     {"high", s.high},       {"slicem", s.slicem},   {"sites", s.sites},
+         {"pairs", s.pairs}, {"through", s.through}, {"sets", s.controlSets}};
 }
 
 void from_json(const json& j, Figures& f) {
@@ -132,7 +117,6 @@ void from_json(const json& j, Figures& f) {
     for (const json& c : j.at("costs"))
         f.costs[{c[0], c[1]}] = {c[2], c[3], c[4], c[5]};
     j.at("timing").get_to(f.timing);
-    const json& s = j.at("slices");
-    f.slices = {s.at("low"),   s.at("estimate"), s.at("high"),    s.at("slicem"),
-                s.at("sites"), s.at("pairs"),    s.at("through"), s.at("controlSets")};
+    f.slices = {j.at("low"),   j.at("slices"), j.at("high"),    j.at("slicem"),
+                j.at("sites"), j.at("pairs"),  j.at("through"), j.at("sets")};
 }

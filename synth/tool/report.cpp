@@ -45,26 +45,11 @@ json instancesJson(const Costs& costs) { // {path: [LUT, FF]}
     return j;
 }
 
+// As the cache has them, without the costs (costsJson), and what is calculated from them.
 json figuresJson(const Figures& f) {
-    json j = {{"lut", f.lut},
-              {"lutRam", f.lutRam},
-              {"shift", f.shift},
-              {"ff", f.ff},
-              {"carry", f.carry},
-              {"ram", f.ram},
-              {"dsp", f.dsp},
-              {"pins", f.pins},
-              {"slices", f.slices.estimate},
-              {"low", f.slices.low},
-              {"high", f.slices.high},
-              {"slicem", f.slices.slicem},
-              {"sites", f.slices.sites},
-              {"pairs", f.slices.pairs},
-              {"through", f.slices.through},
-              {"sets", f.slices.controlSets},
-              {"cells", f.cells},
-              {"mhz", rounded(f.mhz(), 1)},
-              {"timing", f.timing}};
+    json j = f;
+    j.erase("costs");
+    j["mhz"] = rounded(f.mhz(), 1);
     for (int inputs = 1; inputs <= 6; inputs++)
         j["luts"].push_back(f.luts(inputs));
     for (json& path : j["timing"]["paths"]) {

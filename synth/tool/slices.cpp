@@ -13,7 +13,7 @@
 
 namespace {
 
-constexpr int sitesPerSlice = 4, flipFlopsPerSlice = 8, sharedInputs = 5;
+constexpr int sitesPerSlice = 4, flipFlopsPerSlice = 8, muxesPerSlice = 2, sharedInputs = 5;
 
 int upTo(int n, int unit) {
     return (n + unit - 1) / unit;
@@ -75,7 +75,7 @@ Slices slicesOf(const Netlist& n) {
     Slices s;
     std::vector<std::set<int>> luts;
     std::map<std::tuple<int, int, int>, std::pair<int, int>> sets; // (pairs, others)
-    int memory = 0, carry = 0, carrySites = 0, flipFlops = 0;
+    int memory = 0, carry = 0, carrySites = 0, wide = 0, flipFlops = 0;
 
     for (const Cell& cell : n.cells) {
         if (lutInputs(cell.type) != 0) {
@@ -84,6 +84,8 @@ Slices slicesOf(const Netlist& n) {
             memory += memoryLuts(cell.type);
         } else if (isShiftRegister(cell.type)) {
             memory++;
+        } else if (cell.type == "MUXF7") {
+            wide++;
         } else if (cell.type == "CARRY4") {
             carry++;
             // A bit whose S is no LUT of its own takes a site as a route-through.
@@ -118,8 +120,10 @@ Slices slicesOf(const Netlist& n) {
     s.through = carrySites;
     const int others = memory + carrySites;
     s.sites = sitesFor(luts) + others;
-    const double usual = std::max<double>(s.sites, (1 - usualPairing) * luts.size() + others);
-    s.low = std::max({upTo(s.sites, sitesPerSlice), forFlipFlops, s.slicem + carry});
+    const double usual =
+        std::max<double>(s.sites, (1 - usualPairing) * static_cast<double>(luts.size()) + others);
+    s.low = std::max(
+        {upTo(s.sites, sitesPerSlice), forFlipFlops, s.slicem + carry + upTo(wide, muxesPerSlice)});
     const auto atLeast = [&](double slices) {
         return std::max(s.low, static_cast<int>(std::lround(slices)));
     };

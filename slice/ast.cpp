@@ -12,7 +12,13 @@ std::string Declaration::cName() const {
     return s + name;
 }
 
+std::string Declaration::cProxy() const {
+    return (ofClass ? ofClass : this)->cName() + "Prx";
+}
+
 std::string Declaration::id() const {
+    if (ofClass)
+        return ofClass->id();
     std::string s;
     for (const std::string& module : scope)
         s += "::" + module;

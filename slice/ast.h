@@ -95,8 +95,9 @@ struct Declaration {
     Type key, element;                     // Dictionary; Sequence: element; Constant: its type
     Literal value;                         // Constant
     std::vector<const Declaration*> bases; // Interface: any; Class, Exception: at most one
-    std::vector<const Declaration*> implemented; // Class: interfaces, for the rules of names only
-    std::vector<Operation> operations;           // Interface: own ones; Class: not generated
+    std::vector<const Declaration*> implemented; // Class: interfaces
+    std::vector<Operation> operations;           // Interface, Class: own ones
+    const Declaration* ofClass = nullptr;        // Interface: it is what this class is called by
     int compactId = -1;                          // Class; -1: none
 
     // Of all values of a type; set when its definition is complete, since types may be deep.
@@ -113,6 +114,8 @@ struct Declaration {
     // Module_Sub_Name, ::Module::Sub::Name
     std::string cName() const;
     std::string id() const;
+    // Module_Sub_NamePrx, of an interface or a class
+    std::string cProxy() const;
     bool isHardware() const { return hasMetadata(":hw"); }
     bool hasMetadata(const std::string& directive) const;
     // What stands behind "prefix:", or nothing.

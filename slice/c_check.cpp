@@ -67,15 +67,17 @@ public:
     void add(const Declaration& d) {
         std::string c = d.cName(), id = d.id();
         if (d.kind == DKind::Interface) {
-            for (const char* suffix :
-                 {"Prx", "PrxPtr", "Ptr", "", "_init", "_initWith", "_Operations"})
+            for (const char* suffix : {"Ptr", "", "_init", "_initWith", "_Operations"})
                 add(c + suffix, id, d.at);
+            proxy(d);
             for (const Operation& o : d.operations)
                 for (const char* suffix : {"", "_Async", "_Exception", "_response", "_exception"})
                     add(c + "_" + cOperation(o.name) + suffix, id + "::" + o.name, o.at);
             return;
         }
         add(c, id, d.at);
+        if (d.kind == DKind::Class)
+            proxy(d);
         if (d.kind == DKind::Enum)
             for (const Enumerator& e : d.enumerators)
                 addEnumerator(d, e);
@@ -88,6 +90,10 @@ public:
     }
 
 private:
+    void proxy(const Declaration& d) {
+        add(d.cProxy(), d.id(), d.at);
+        add(d.cProxy() + "Ptr", d.id(), d.at);
+    }
     void addEnumerator(const Declaration& d, const Enumerator& e) {
         std::string c = cEnumerator(d, e.name), id = d.id() + "::" + e.name;
         auto [it, isNew] = names_.emplace(c, id);
@@ -118,8 +124,10 @@ void checkC(const Unit& unit, Diagnostics& diagnostics) {
     for (const auto& d : unit.declarations) {
         if (d->isLocal)
             continue;
-        checkMetadata(*d, diagnostics);
         names.add(*d);
+        if (d->ofClass) // the rest is said of the class
+            continue;
+        checkMetadata(*d, diagnostics);
         checkOptionalNames(d->fields, diagnostics);
         for (const Operation& o : d->operations)
             checkOptionalNames(o.parameters, diagnostics);

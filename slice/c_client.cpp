@@ -50,17 +50,17 @@ void syncFunction(Writer& w, const CContext& c, const Declaration& d, const Oper
 }
 
 void casts(Writer& w, const Declaration& d) {
-    Writer::Values v = {{"c", d.cName()}};
+    Writer::Values v = {{"p", d.cProxy()}, {"c", (d.ofClass ? *d.ofClass : d).cName()}};
     w.blank();
-    w.block("Ice_Status {c}Prx_checkedCast({c}PrxPtr self, const Ice_ObjectPrx *from)", v,
+    w.block("Ice_Status {p}_checkedCast({p}Ptr self, const Ice_ObjectPrx *from)", v,
             [&] { w.line("return Ice_ObjectPrx_checkedCast(self, from, {c}_ice_staticId);", v); });
     w.blank();
-    w.block("void {c}Prx_uncheckedCast({c}PrxPtr self, const Ice_ObjectPrx *from)", v,
+    w.block("void {p}_uncheckedCast({p}Ptr self, const Ice_ObjectPrx *from)", v,
             [&] { w.line("*self = *from;"); });
 }
 
 void completedFunction(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
-    Writer::Values v = {{"p", d.cName() + "Prx_" + cOperation(o.name)},
+    Writer::Values v = {{"p", d.cProxy() + "_" + cOperation(o.name)},
                         {"t", operationName(d, o) + "_Async"}};
     w.block("static void {p}_completed(void *cookie, Ice_Status status, Ice_InputStreamPtr is)", v,
             [&] {
@@ -98,7 +98,7 @@ void asyncFunction(Writer& w, const CContext& c, const Declaration& d, const Ope
         beginCall(w, o);
         writeParameters(w, d, o);
         w.line("call->done = 0;");
-        w.line("return Ice_ObjectPrx_invokeAsync(self, " + d.cName() + "Prx_" + cOperation(o.name) +
+        w.line("return Ice_ObjectPrx_invokeAsync(self, " + d.cProxy() + "_" + cOperation(o.name) +
                "_completed, call);");
     });
 }

@@ -26,7 +26,7 @@ std::string guardOf(const CContext& c) {
 void forwardDeclarations(Writer& w, const CContext& c) {
     for (const auto& d : c.unit.declarations) {
         bool isClass = d->kind == DKind::Class;
-        if (d->fromInclude || d->isLocal || (!isClass && d->kind != DKind::Interface))
+        if (d->fromInclude || d->isLocal || d->ofClass || (!isClass && d->kind != DKind::Interface))
             continue;
         Writer::Values v = {{"c", d->cName()}};
         w.blank();
@@ -35,9 +35,8 @@ void forwardDeclarations(Writer& w, const CContext& c) {
         if (isClass) {
             w.line("typedef struct {c} {c};", v);
             w.line("extern const Ice_ValueType {c}_type;", v);
-        } else {
-            w.line("typedef Ice_ObjectPrx {c}Prx, *{c}PrxPtr;", v);
         }
+        w.line("typedef Ice_ObjectPrx {c}Prx, *{c}PrxPtr;", v);
         w.line("#endif");
     }
 }
@@ -221,11 +220,12 @@ void declareAsync(Writer& w, const Declaration& d, const Operation& o) {
 }
 
 void declareProxy(Writer& w, const Declaration& d) {
-    Writer::Values v = {{"c", d.cName()}, {"id", d.id()}};
+    Writer::Values v = {
+        {"p", d.cProxy()}, {"c", (d.ofClass ? *d.ofClass : d).cName()}, {"id", d.id()}};
     w.blank();
     w.line("#define {c}_ice_staticId \"{id}\"", v);
-    w.line("Ice_Status {c}Prx_checkedCast({c}PrxPtr self, const Ice_ObjectPrx *from);", v);
-    w.line("void {c}Prx_uncheckedCast({c}PrxPtr self, const Ice_ObjectPrx *from);", v);
+    w.line("Ice_Status {p}_checkedCast({p}Ptr self, const Ice_ObjectPrx *from);", v);
+    w.line("void {p}_uncheckedCast({p}Ptr self, const Ice_ObjectPrx *from);", v);
     for (const Declaration* from : lineage(d))
         for (const Operation& o : from->operations) {
             if (from == &d) {
@@ -235,9 +235,9 @@ void declareProxy(Writer& w, const Declaration& d) {
                 continue;
             }
             Writer::Values names = {
-                {"c", d.cName()}, {"from", from->cName()}, {"op", cOperation(o.name)}};
-            w.line("#define {c}Prx_{op} {from}Prx_{op}", names);
-            w.line("#define {c}Prx_{op}_async {from}Prx_{op}_async", names);
+                {"c", d.cProxy()}, {"from", from->cProxy()}, {"op", cOperation(o.name)}};
+            w.line("#define {c}_{op} {from}_{op}", names);
+            w.line("#define {c}_{op}_async {from}_{op}_async", names);
         }
 }
 

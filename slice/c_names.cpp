@@ -58,7 +58,7 @@ std::string cType(const Type& t) {
     case Kind::String:
         return "Ice_String";
     case Kind::Proxy:
-        return t.declaration ? t.declaration->cName() + "Prx" : "Ice_ObjectPrx";
+        return t.declaration ? t.declaration->cProxy() : "Ice_ObjectPrx";
     case Kind::Named:
         return t.declaration->cName() +
                (t.declaration->kind == Declaration::Kind::Class ? " *" : "");

@@ -154,13 +154,13 @@ std::string responseParameters(const Operation& o) {
 }
 
 std::string proxySignature(const Declaration& d, const Operation& o) {
-    return "Ice_Status " + d.cName() + "Prx_" + cOperation(o.name) + "(" + d.cName() +
-           "PrxPtr self" + inParameters(o) + outParameters(d, o) + ")";
+    return "Ice_Status " + d.cProxy() + "_" + cOperation(o.name) + "(" + d.cProxy() + "Ptr self" +
+           inParameters(o) + outParameters(d, o) + ")";
 }
 
 std::string asyncSignature(const Declaration& d, const Operation& o) {
-    return "Ice_Status " + d.cName() + "Prx_" + cOperation(o.name) + "_async(" + d.cName() +
-           "PrxPtr self" + inParameters(o) + ", " + operationName(d, o) + "_Async *call)";
+    return "Ice_Status " + d.cProxy() + "_" + cOperation(o.name) + "_async(" + d.cProxy() +
+           "Ptr self" + inParameters(o) + ", " + operationName(d, o) + "_Async *call)";
 }
 
 std::string servantSignature(const Declaration& owner, const Operation& o,

@@ -174,8 +174,11 @@ std::string defaultOperations(const Declaration& top, const Declaration& d) {
 void initFunctions(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", d.cName()}, {"id", d.id()}};
     std::set<std::string> ids = {"::Ice::Object"};
-    for (const Declaration* from : lineage(d))
+    for (const Declaration* from : lineage(d)) {
         ids.insert(from->id());
+        for (const Declaration* c = from->ofClass; c; c = c->base())
+            ids.insert(c->id());
+    }
     w.line("static Ice_Status dispatch_{c}(Ice_ObjectPtr self, const Ice_Current *current,", v);
     w.line("        Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {");
     w.line("    const {c}_Operations *operations = ((const {c} *)self)->operations;", v);

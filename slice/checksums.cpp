@@ -131,7 +131,7 @@ std::string definition(const Declaration& d) {
 std::map<std::string, std::string> checksums(const Unit& unit) {
     std::map<std::string, std::string> all;
     for (const auto& d : unit.declarations) {
-        if (d->fromInclude || d->isLocal || d->isForward)
+        if (d->fromInclude || d->isLocal || d->isForward || d->ofClass)
             continue;
         std::string digits;
         for (uint8_t byte : md5(definition(*d))) {

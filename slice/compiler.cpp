@@ -8,7 +8,10 @@
 
 Unit compileUnit(const std::string& text, const std::string& file, NameRules rules,
                  Diagnostics& diagnostics) {
-    return parse(tokenize(text, file, diagnostics), file, rules, diagnostics);
+    Unit unit = parse(tokenize(text, file, diagnostics), file, rules, diagnostics);
+    if (diagnostics.errors() == 0)
+        addClassInterfaces(unit);
+    return unit;
 }
 
 std::optional<std::vector<GeneratedFile>> compileToC(const std::string& text,

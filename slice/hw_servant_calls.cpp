@@ -109,7 +109,7 @@ void eventFunctions(Writer& w, const Block& b, const Listener& l, const Call& c)
         }
         w.line("if (" + part(b, c, "take") + "(hw_core" + pointers +
                ") == ICE_OK && Hw_Listener_get(&hw_core->" + l.name + ", &hw_proxy))");
-        w.nested("(void)" + c.owner->cName() + "Prx_" + cOperation(o.name) + "(&hw_proxy" +
+        w.nested("(void)" + c.owner->cProxy() + "_" + cOperation(o.name) + "(&hw_proxy" +
                  arguments(inVariables(o)) + ");");
     });
 }

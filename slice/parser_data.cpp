@@ -105,6 +105,7 @@ void Parser::classDefinition() {
 
 // A data member; a class's operation too.
 void Parser::member(Declaration& d, bool mayBeOptional) {
+    size_t start = position_;
     Field f;
     f.doc = doc();
     f.metadata = metadata();
@@ -114,7 +115,6 @@ void Parser::member(Declaration& d, bool mayBeOptional) {
     bool isClass = d.kind == Declaration::Kind::Class;
     bool isIdempotent = isClass && isWord("idempotent");
     bool returnsNothing = isClass && isWord("void");
-    size_t start = position_;
     Optional o;
     if (!isIdempotent) {
         o = optional();

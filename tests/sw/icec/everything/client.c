@@ -252,6 +252,38 @@ static int modes(void) {
     return 0;
 }
 
+/* A class that is called, by its own proxy and by those of its base and of what it implements. */
+static int classes(const char *port) {
+    Everything_ShapeDisp_area_Exception ex;
+    Everything_SquarePrx square;
+    Everything_ShapePrx shape;
+    Everything_LabelledPrx labelled;
+    Everything_TesterPrx none;
+    Ice_ObjectPrx base;
+    Ice_String text;
+    Ice_Int before, side, area;
+    char line[64];
+    sprintf(line, "square:tcp -h localhost -p %.8s", port);
+    CHECK(Ice_Communicator_stringToProxy(&ic, line, &base) == ICE_OK);
+    base.timeoutMs = 120000;
+    CHECK(Everything_TesterPrx_checkedCast(&none, &base) == ICE_OK && Ice_ObjectPrx_isNull(&none));
+    CHECK(Everything_SquarePrx_checkedCast(&square, &base) == ICE_OK);
+    CHECK(Everything_ShapePrx_checkedCast(&shape, &base) == ICE_OK);
+    CHECK(Everything_LabelledPrx_checkedCast(&labelled, &base) == ICE_OK);
+    CHECK(!Ice_ObjectPrx_isNull(&square) && !Ice_ObjectPrx_isNull(&labelled));
+    CHECK(Ice_ObjectPrx_ice_id(&square, &text) == ICE_OK);
+    CHECK(Ice_String_equals(text, Everything_Square_ice_staticId));
+    CHECK(Everything_SquarePrx_grow(&square, 0, &before) == ICE_OK);
+    CHECK(Everything_SquarePrx_grow(&square, 3, &side) == ICE_OK && side == before + 3);
+    CHECK(Everything_SquarePrx_area(&square, 2, &area, &ex) == ICE_OK && area == 2 * side * side);
+    CHECK(Everything_ShapePrx_area(&shape, -1, &area, &ex) == ICE_USER_EXCEPTION);
+    CHECK(ex.type == Everything_ShapeDisp_area_Failure);
+    CHECK(Ice_String_equals(ex.u.Failure.reason, "negative"));
+    CHECK(Everything_LabelledPrx_label(&labelled, &text) == ICE_OK);
+    CHECK(Ice_String_equals(text, "square"));
+    return 0;
+}
+
 static int volume(int slow) {
     static Ice_Byte many[8100];
     Everything_Bytes out, in;
@@ -318,7 +350,7 @@ int main(int argc, char **argv) {
         if (types() || sequences() || exceptions())
             return 1;
     }
-    if (modes() || volume(slow))
+    if (modes() || classes(argv[argc - 1]) || volume(slow))
         return 1;
     CHECK(Everything_TesterPrx_shutdown(&tester) == ICE_OK);
     Ice_Communicator_destroy(&ic, 2000);

@@ -137,6 +137,24 @@ private:
     int total_ = 0;
 };
 
+// A class that is called.
+class SquareI : public SquareDisp {
+public:
+    std::string label(const Ice::Current&) override { return "square"; }
+    int area(int scale, const Ice::Current&) override {
+        if (scale < 0)
+            throw Failure("negative");
+        return scale * side_ * side_;
+    }
+    void growAsync(int by, std::function<void(int)> response,
+                   std::function<void(std::exception_ptr)>, const Ice::Current&) override {
+        response(side_ += by);
+    }
+
+private:
+    int side_ = 0;
+};
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -152,6 +170,7 @@ int main(int argc, char** argv) {
         auto servant = std::make_shared<TesterI>();
         adapter->add(servant, {"tester", ""});
         adapter->addFacet(servant, {"tester", ""}, "side");
+        adapter->add(std::make_shared<SquareI>(), {"square", ""});
         adapter->addDefaultServant(servant, "any");
         adapter->activate();
         auto info = adapter->getPublishedEndpoints().at(0)->getInfo();

@@ -137,6 +137,15 @@ def client(ic, port, slow):
     adapter.activate()
     if not slow:
         assert t.callBack(watcher, 5) == 100
+    # A class that is called, and its base and what it implements.
+    square = E.SquarePrx.checkedCast(ic.stringToProxy("square" + where))
+    assert square.ice_ids() == ["::Everything::Labelled", "::Everything::Shape", "::Everything::Square", "::Ice::Object"]
+    assert square.ice_id() == "::Everything::Square" and not E.TesterPrx.checkedCast(square)
+    side = square.grow(0)
+    assert square.grow(2) == side + 2 and square.area(3) == 3 * (side + 2) ** 2
+    assert E.LabelledPrx.checkedCast(square).label() == "square"
+    e = expect(E.Failure, lambda: E.ShapePrx.checkedCast(square).area(-1))
+    assert e.reason == "negative"
     # One-way, batches.
     before = t.sum()
     oneway = E.TesterPrx.uncheckedCast(t.ice_oneway())
@@ -257,11 +266,28 @@ for name in ("echoBytes", "echoCounts", "echoLists", "echoProxy", "echoProxies",
     setattr(TesterI, name, lambda self, v, current: v)
 
 
+class SquareI(E.SquareDisp):
+    side = 0
+
+    def label(self, current):
+        return "square"
+
+    def area(self, scale, current):
+        if scale < 0:
+            raise E.Failure("negative")
+        return scale * self.side ** 2
+
+    def grow(self, by, current):
+        self.side += by
+        return Ice.Future.completed(self.side)
+
+
 def server(ic):
     adapter = ic.createObjectAdapterWithEndpoints("Adapter", "tcp -h 127.0.0.1")
     servant = TesterI()
     adapter.add(servant, ic.stringToIdentity("tester"))
     adapter.addFacet(servant, ic.stringToIdentity("tester"), "side")
+    adapter.add(SquareI(), ic.stringToIdentity("square"))
     adapter.addDefaultServant(servant, "any")
     adapter.activate()
     print(adapter.getPublishedEndpoints()[0].getInfo().port, flush=True)

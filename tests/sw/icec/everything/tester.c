@@ -259,9 +259,43 @@ Ice_Status Everything_Tester_shutdown(Everything_TesterPtr self, const Ice_Curre
     return ICE_OK;
 }
 
+/* A class that is called. */
+static Everything_SquareDisp square;
+static Ice_Int side;
+
+Ice_Status Everything_SquareDisp_label(Everything_LabelledPtr self, Ice_String *result,
+                                       const Ice_Current *current) {
+    (void)self, (void)current;
+    *result = Ice_String_from("square");
+    return ICE_OK;
+}
+
+Ice_Status Everything_SquareDisp_area(Everything_ShapeDispPtr self, Ice_Int scale, Ice_Int *result,
+                                      Everything_ShapeDisp_area_Exception *ex,
+                                      const Ice_Current *current) {
+    (void)self, (void)current;
+    *result = scale * side * side;
+    ex->type = Everything_ShapeDisp_area_Failure;
+    ex->u.Failure.reason = Ice_String_from("negative");
+    return scale < 0 ? ICE_USER_EXCEPTION : ICE_OK;
+}
+
+Ice_Status Everything_SquareDisp_grow(Everything_SquareDispPtr self, Ice_Int by,
+                                      const Ice_Current *current) {
+    Ice_Reply reply;
+    (void)self;
+    side += by;
+    Ice_Current_later(current, &reply);
+    (void)Everything_SquareDisp_grow_response(&reply, side);
+    return ICE_LATER;
+}
+
 Ice_Status Tester_serve(Ice_ObjectAdapterPtr adapter) {
     Ice_Status status;
     Everything_Tester_init(&tester);
+    Everything_SquareDisp_init(&square);
+    if (Ice_ObjectAdapter_add(adapter, (Ice_ObjectPtr)&square, "square") != ICE_OK)
+        return ICE_LIMIT;
     status = Ice_ObjectAdapter_add(adapter, (Ice_ObjectPtr)&tester, "tester");
     if (status == ICE_OK)
         status = Ice_ObjectAdapter_addFacet(adapter, (Ice_ObjectPtr)&tester, "tester", "side");

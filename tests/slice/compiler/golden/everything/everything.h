@@ -15,18 +15,21 @@ extern "C" {
 #define Outer_Node_declared
 typedef struct Outer_Node Outer_Node;
 extern const Ice_ValueType Outer_Node_type;
+typedef Ice_ObjectPrx Outer_NodePrx, *Outer_NodePrxPtr;
 #endif
 
 #ifndef Outer_Leaf_declared
 #define Outer_Leaf_declared
 typedef struct Outer_Leaf Outer_Leaf;
 extern const Ice_ValueType Outer_Leaf_type;
+typedef Ice_ObjectPrx Outer_LeafPrx, *Outer_LeafPrxPtr;
 #endif
 
 #ifndef Outer_Empty_declared
 #define Outer_Empty_declared
 typedef struct Outer_Empty Outer_Empty;
 extern const Ice_ValueType Outer_Empty_type;
+typedef Ice_ObjectPrx Outer_EmptyPrx, *Outer_EmptyPrxPtr;
 #endif
 
 #ifndef Outer_BasePrx_declared

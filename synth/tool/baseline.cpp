@@ -155,6 +155,9 @@ Verdict judge(const Row& row, const Baseline& baseline, const string& yosys, dou
     const Figures& f = row.main->figures;
     const auto accepted = baseline.designs.find(name);
     const bool known = accepted != baseline.designs.end();
+    // Another Yosys counts otherwise: what the accepted figures are by is what is judged.
+    const bool comparable =
+        baseline.yosys.empty() || shortVersion(baseline.yosys) == shortVersion(yosys);
     const std::map<string, int> now = {{"lut", f.lut}, {"ff", f.ff}, {"slices", f.slices.estimate}};
     for (const auto& [key, limit] : row.design->limits) {
         if (now.at(key) <= limit)
@@ -163,15 +166,15 @@ Verdict judge(const Row& row, const Baseline& baseline, const string& yosys, dou
         const int then = key == "lut" ? a.lut : key == "ff" ? a.ff : a.slices;
         const string text = fmt::format("{}: {} {}, {} above the limit of {}", name, now.at(key),
                                         key, now.at(key) - limit, limit);
-        if (known && then > limit)
+        if (!comparable)
+            v.notes.push_back(text + " (by another Yosys than the limit was set with)");
+        else if (known && then > limit)
             v.notes.push_back(text + " (a target: the accepted figure is above it too)");
         else
             v.failures.push_back(text);
     }
-    if (!known)
+    if (!known || !comparable)
         return v;
-    if (shortVersion(baseline.yosys) != shortVersion(yosys))
-        return v; // another Yosys counts otherwise
     const Accepted& a = accepted->second;
     const bool moreLuts = f.lut > lutBudget(a.lut), moreFlipFlops = f.ff > ffBudget(a.ff);
     if (moreLuts || moreFlipFlops) {

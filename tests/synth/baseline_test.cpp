@@ -87,6 +87,15 @@ TEST(Baseline, FiguresOfAnotherYosysAreNotJudged) {
     EXPECT_THAT(judge(f.row, f.baseline, "Yosys 0.52", 100).failures, IsEmpty());
 }
 
+TEST(Baseline, ALimitThatAnotherYosysDoesNotKeepIsNoted) {
+    Fixture f;
+    f.design.limits = {{"lut", 102}};
+    f.grow(3, 0);
+    const Verdict v = judge(f.row, f.baseline, "Yosys 0.52", 100);
+    EXPECT_THAT(v.failures, IsEmpty());
+    EXPECT_THAT(v.notes, ElementsAre(HasSubstr("1 above the limit of 102 (by another Yosys")));
+}
+
 TEST(Baseline, AClockThatWasReachedMustBeReached) {
     Fixture f;
     f.slow(8.0); // 104 MHz at -2, 1.2 times as slow as -3

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+//
+// biquad: the cascade of sections (biquad_filter.vhd) over a buffer in DDR3, a sample at a time; registers by the generated
+// biquad_wrapper.
+
+`default_nettype none
+
+module biquad (
+    input  wire        clk_i,
+    input  wire        rst_i,
+    // register bus
+    input  wire        bus_valid_i,
+    input  wire        bus_write_i,
+    input  wire [3:0]  bus_addr_i,
+    input  wire [31:0] bus_wdata_i,
+    output wire        bus_ready_o,
+    output wire [31:0] bus_rdata_o,
+    output wire        bus_error_o,
+    output wire        irq_o,
+    // memory port
+    output wire [31:0] npi_addr_o,
+    output wire        npi_addr_req_o,
+    input  wire        npi_addr_ack_i,
+    output wire        npi_rnw_o,
+    output wire [3:0]  npi_size_o,
+    output wire        npi_rmw_o,
+    output wire [63:0] npi_wr_data_o,
+    output wire [7:0]  npi_wr_be_o,
+    output wire        npi_wr_push_o,
+    input  wire        npi_wr_empty_i,
+    input  wire        npi_wr_almost_full_i,
+    output wire        npi_wr_flush_o,
+    input  wire [63:0] npi_rd_data_i,
+    input  wire [3:0]  npi_rd_word_i,
+    output wire        npi_rd_pop_o,
+    input  wire        npi_rd_empty_i,
+    output wire        npi_rd_flush_o,
+    input  wire        npi_init_done_i
+);
+    wire        core_rst, set_coefficient, clear, start;
+    wire [7:0]  index;
+    wire [31:0] coefficient, source, target;
+    wire [8:0]  count;
+
+    reg         busy, refused;
+    reg         begun, flushed;    // the streams have their buffers; the last word is on its way
+    reg  [8:0]  left;              // samples without a result
+    reg         waiting;           // the filter has one
+    reg  [1:0]  place;             // of that sample in its word
+    reg  [63:0] results;
+    reg  [1:0]  last;              // place of the last result in there
+    reg         full;              // they wait for the memory
+    reg  [31:0] saturations;
+
+    wire        bad = count == 9'd0;
+    wire        read_valid, read_idle, write_ready, write_idle;
+    wire [63:0] read_data;
+    wire        sample_ready, result_valid;
+    wire [15:0] result;
+    wire [2:0]  saturated;
+    wire        idle    = read_idle && write_idle;
+    wire        go      = busy && !begun && idle; // what was given up may still be under way
+    wire        sending = begun && left != 9'd0 && read_valid && !waiting && !full;
+    wire        ends    = result_valid && (place == 2'd3 || left == 9'd1); // a word
+    wire        offer   = full && !core_rst;
+    wire        flush   = begun && left == 9'd0 && !full && !flushed;
+
+    biquad_wrapper u_wrapper (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
+        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
+        .bus_error_o(bus_error_o), .irq_o(irq_o), .core_rst_o(core_rst),
+        .set_coefficient_start_o(set_coefficient), .set_coefficient_index_o(index),
+        .set_coefficient_value_o(coefficient), .clear_start_o(clear),
+        .filter_start_o(start), .filter_list_base_o(source), .filter_list_count_o(count),
+        .filter_filtered_base_o(target), .filter_filtered_count_i(count), .filter_result_i(saturations),
+        .filter_done_i(refused || (flushed && idle)), .filter_refused_i(refused));
+
+    biquad_filter u_filter (
+        .clk_i(clk_i), .rst_i(core_rst),
+        .coefficient_write_i(set_coefficient && index[7:5] == 3'd0), .coefficient_index_i(index[4:0]),
+        .coefficient_i(coefficient[17:0]), .clear_i(clear && !busy),
+        .sample_valid_i(sending), .sample_ready_o(sample_ready), .sample_i(read_data[16*place +: 16]),
+        .result_valid_o(result_valid), .result_o(result), .saturations_o(saturated));
+
+    npi_stream #(.ADDR_BITS(32), .WORD_BITS(7)) u_stream (
+        .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: what the memory was asked for must be taken
+        .read_start_i(go && !core_rst), .read_base_i(source[31:6]),
+        .read_words_i(count[8:2] + {6'd0, |count[1:0]}), .read_stop_i(core_rst),
+        .read_valid_o(read_valid), .read_data_o(read_data), .read_take_i(ends), .read_idle_o(read_idle),
+        .write_start_i(go && !core_rst), .write_base_i(target[31:6]),
+        .write_valid_i(offer), .write_data_i(results),
+        .write_be_i({{2{last == 2'd3}}, {2{last[1]}}, {2{last != 2'd0}}, 2'b11}),
+        .write_ready_o(write_ready), .write_flush_i(flush || core_rst), .write_idle_o(write_idle),
+        .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
+        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o),
+        .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o),
+        .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),
+        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i), .npi_init_done_i(npi_init_done_i));
+    assign npi_rmw_o      = 1'b0;
+    assign npi_wr_flush_o = 1'b0;
+    assign npi_rd_flush_o = 1'b0;
+
+    always @(posedge clk_i) begin
+        refused <= start && bad;
+        if (start && !bad) begin
+            busy        <= 1'b1;
+            left        <= count;
+            place       <= 2'd0;
+            saturations <= 32'd0;
+        end
+        if (go)
+            begun <= 1'b1;
+        if (sending && sample_ready)
+            waiting <= 1'b1;
+        if (result_valid) begin
+            waiting              <= 1'b0;
+            results[16*place +: 16] <= result;
+            last                 <= place;
+            place                <= place + 2'd1;
+            left                 <= left - 9'd1;
+            saturations          <= saturations + {29'd0, saturated};
+        end
+        if (ends)
+            full <= 1'b1;
+        else if (write_ready)
+            full <= 1'b0;
+        if (flush)
+            flushed <= 1'b1;
+        if (flushed && idle) begin
+            busy    <= 1'b0;
+            begun   <= 1'b0;
+            flushed <= 1'b0;
+        end
+        if (core_rst) begin
+            busy    <= 1'b0;
+            refused <= 1'b0;
+            begun   <= 1'b0;
+            flushed <= 1'b0;
+            waiting <= 1'b0;
+            full    <= 1'b0;
+            left    <= 9'd0;
+        end
+    end
+
+    wire unused = &{1'b0, coefficient[31:18], source[5:0], target[5:0], npi_wr_empty_i, npi_rd_word_i, 1'b0};
+endmodule

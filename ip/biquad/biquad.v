@@ -101,6 +101,7 @@ module biquad (
     assign npi_wr_flush_o = 1'b0;
     assign npi_rd_flush_o = 1'b0;
 
+    integer r;
     always @(posedge clk_i) begin
         refused <= start && bad;
         if (start && !bad) begin
@@ -114,12 +115,14 @@ module biquad (
         if (sending && sample_ready)
             waiting <= 1'b1;
         if (result_valid) begin
-            waiting              <= 1'b0;
-            results[16*place +: 16] <= result;
-            last                 <= place;
-            place                <= place + 2'd1;
-            left                 <= left - 9'd1;
-            saturations          <= saturations + {29'd0, saturated};
+            waiting     <= 1'b0;
+            for (r = 0; r < 4; r = r + 1)
+                if (place == r[1:0])
+                    results[16*r +: 16] <= result;
+            last        <= place;
+            place       <= place + 2'd1;
+            left        <= left - 9'd1;
+            saturations <= saturations + {29'd0, saturated};
         end
         if (ends)
             full <= 1'b1;

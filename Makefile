@@ -78,6 +78,7 @@ mutants: $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect
 bench: $(BUILD)/build.ninja ## measure simulator, radio link, FSMC bridge, memory ports, modem set-up, firmware, cores and Slice compiler, write build/bench/*.json
 	@ninja -C $(BUILD) -j $(JOBS) measure_simulator
 	@ninja -C $(BUILD) -j $(JOBS) measure_link
+	@ninja -C $(BUILD) -j $(JOBS) measure_plugin
 	@ninja -C $(BUILD) -j $(JOBS) measure_fsmc
 	@ninja -C $(BUILD) -j $(JOBS) measure_memory
 	@ninja -C $(BUILD) -j $(JOBS) measure_modem

@@ -19,6 +19,9 @@
 /* The radio's AES key, 16 bytes that stay valid; 0, as at first: in the clear. Read when the tasks start. */
 extern const U8 *uav_radioKey;
 
+/* Guard time of the radio's modem as it is, in ms; 0, as at first: the factory's 1000. */
+extern U16 uav_guardMs;
+
 /* Creates the tasks; call between OSInit and OSStart. 0: the FPGA does not answer, there are no tasks. */
 int UAV_start(const Fsmc_Port *port, void *context);
 

@@ -12,6 +12,7 @@
 Link uav_link;
 OS_EVENT *uav_radioWork;
 const U8 *uav_radioKey;
+U16 uav_guardMs;
 
 static XBeeATEndpoint endpoint;
 static OS_EVENT *linkMutex;
@@ -115,6 +116,7 @@ static void setUpModem(void) {
     XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0};
     static const Radio_Memory rings = {UAV_TRANSMIT_RING, UAV_RECEIVE_RING};
     xbeeConf.key = uav_radioKey;
+    xbeeConf.guardMs = uav_guardMs;
     Link_limitFrame(&uav_link, uav_radioKey ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME);
     /* A modem that is dead now may be back later: the vehicle flies on and tries again. */
     while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)

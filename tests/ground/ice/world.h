@@ -24,6 +24,10 @@ public:
         twice_ += !seen_.insert(id).second;
         ++noted_;
     }
+    void take(int id, RadioTest::Bytes, const Ice::Current& current) override { note(id, current); }
+    RadioTest::Bytes fetch(int size, const Ice::Current&) override {
+        return RadioTest::Bytes(static_cast<size_t>(size));
+    }
     int noted(const Ice::Current&) override {
         std::lock_guard<std::mutex> lock(mutex_);
         return noted_;

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+//
+// chip_world: the thread in which simulated time passes.
+
+#include "chip_world.h"
+#include <condition_variable>
+#include <cstdlib>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+extern "C" {
+#include "echo_uav.h"
+}
+
+ChipWorld::StatusFile::StatusFile() {
+    char name[] = "/tmp/icesoc-clock-XXXXXX";
+    int fd = mkstemp(name);
+    if (fd < 0 || ftruncate(fd, sizeof(SimStatus)) != 0)
+        throw std::system_error(errno, std::generic_category(), "no file for the clock");
+    path_ = name;
+    void* at = mmap(nullptr, sizeof(SimStatus), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+    close(fd);
+    if (at == MAP_FAILED)
+        throw std::system_error(errno, std::generic_category(), "no clock in memory");
+    status_ = static_cast<SimStatus*>(at);
+    std::memcpy(status_->magic, "ICESOC1", 8);
+}
+
+ChipWorld::StatusFile::~StatusFile() {
+    munmap(status_, sizeof(SimStatus));
+    unlink(path_.c_str());
+}
+
+XBee::Options ChipWorld::modem(const char* name, std::map<std::string, uint32_t> set) {
+    XBee::Options options;
+    options.name = name;
+    options.set = std::move(set);
+    options.set["GT"] = guardMs_;
+    return options;
+}
+
+ChipWorld::ChipWorld(uint64_t seed, const EchoUav_Port& port, void* context)
+    : air(seed), groundModem(pty_, air, modem("ground", {{"BD", 7}, {"DL", 1}, {"D6", 1}})),
+      soc(air, modem("uav", {{"BD", 7}, {"MY", 1}, {"DL", 0}})),
+      step_(*status_, pty_, [this] { return !stop_; }) {
+    setenv("XBEEAT_CLOCK", status_.path().c_str(), 1);
+    uav_guardMs = guardMs_;
+    EchoUav_setPort(&port, context);
+    soc.onTime([this](uint64_t now) { return advance(now); });
+    thread_ = std::thread([this] { run(); });
+}
+
+ChipWorld::~ChipWorld() {
+    stop_ = true;
+    thread_.join();
+    unsetenv("XBEEAT_CLOCK");
+}
+
+uint64_t ChipWorld::advance(uint64_t now) {
+    constexpr uint64_t clockStepNs = 100'000;
+    groundModem.advance(now);
+    __atomic_store_n(&status_->ns, now, __ATOMIC_RELEASE);
+    std::vector<std::function<void()>> wanted;
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        wanted.swap(wanted_);
+    }
+    for (auto& f : wanted)
+        f();
+    step_.wait(now);
+    return std::min(
+        {groundModem.nextEvent(), std::max(step_.nextEvent(), now + 1), now + clockStepNs});
+}
+
+void ChipWorld::run() {
+    UavMachine::Firmware firmware;
+    firmware.start = EchoUav_start;
+    firmware.irqHandler = EchoUav_irqHandler;
+    firmware.irqEnabled = [] { return EchoUav_irqEnabled() != 0; };
+    try {
+        while (!stop_) {
+            reboot_ = false;
+            soc.reset();
+            UavMachine(
+                soc, [this] { return !stop_ && !reboot_; }, firmware)
+                .run();
+        }
+    } catch (const std::exception& e) { // a model says that the chip did wrong: nobody can go on
+        std::fprintf(stderr, "chip: error: %s\n", e.what());
+        std::_Exit(1);
+    }
+}
+
+void ChipWorld::with(std::function<void()> f) {
+    std::mutex mutex;
+    std::condition_variable done;
+    bool isDone = false;
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        wanted_.push_back([&] {
+            f();
+            std::lock_guard<std::mutex> inner(mutex);
+            isDone = true;
+            done.notify_one();
+        });
+    }
+    std::unique_lock<std::mutex> lock(mutex);
+    done.wait(lock, [&] { return isDone; });
+}
+
+void ChipWorld::sleep(double seconds) const {
+    for (const uint64_t end = ns() + static_cast<uint64_t>(seconds * 1e9); ns() < end;)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+Ice::CommunicatorPtr ChipWorld::client(std::map<std::string, std::string> more) const {
+    Ice::InitializationData data;
+    data.properties = Ice::createProperties();
+    std::map<std::string, std::string> all = {
+        {"Ice.Plugin.XBeeAT", PLUGIN_FOLDER "/xbeeat:createXBeeAT"},
+        {"Ice.Default.InvocationTimeout", "120000"},
+        {"Ice.RetryIntervals", "-1"}, // a call is made once, whatever becomes of it
+        {"Ice.ThreadPool.Client.Size", "4"},
+        {"Ice.Warn.Connections", "0"},
+        {"Ice.ACM.Close", "0"},
+        {"XBeeAT.Guard", std::to_string(guardMs_)},
+        {"XBeeAT.Down", "2"},
+        {"Station.Endpoints", endpoint()},
+        {"Station.ThreadPool.Size", "1"}}; // so that order can be seen
+    for (auto& [name, value] : more)
+        all[name] = value;
+    for (auto& [name, value] : all)
+        data.properties->setProperty(name, value);
+    return Ice::initialize(data);
+}
+
+std::shared_ptr<RadioTest::EchoPrx> ChipWorld::echo(const Ice::CommunicatorPtr& ic,
+                                                    const std::string& connection) const {
+    return Ice::uncheckedCast<RadioTest::EchoPrx>(
+        ic->stringToProxy("echo:" + endpoint())->ice_connectionId(connection));
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+//
+// chip_world: the real thing under stock Ice: RTL, DDR3, firmware with IceC, two modems, the air,
+// and a pty for the plugin; in a thread of its own, in simulated time that waits for the plugin.
+
+#ifndef CHIP_WORLD_H
+#define CHIP_WORLD_H
+
+#include "Echo.h"
+#include "ground_step.h"
+#include "soc_model.h"
+#include "status.h"
+#include "uav_machine.h"
+#include <Ice/Ice.h>
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+struct EchoUav_Port; // echo_uav.h
+
+class ChipWorld {
+public:
+    // `port`: what the firmware calls, in this world's thread.
+    ChipWorld(uint64_t seed, const EchoUav_Port& port, void* context);
+    ~ChipWorld();
+    ChipWorld(const ChipWorld&) = delete;
+    ChipWorld& operator=(const ChipWorld&) = delete;
+
+    // Runs `f` in the world's thread; all that has a time is used there only.
+    void with(std::function<void()> f);
+    uint64_t ns() const { return __atomic_load_n(&status_->ns, __ATOMIC_ACQUIRE); }
+    void sleep(double seconds) const; // simulated
+    // Processor and chip start again; memory and modem stay as they are.
+    void reboot() { reboot_ = true; }
+
+    // A program on the ground, with a call's time-out in ms of the wall clock.
+    Ice::CommunicatorPtr client(std::map<std::string, std::string> more = {}) const;
+    std::string endpoint() const { return "xbee-at -t 120000 -d " + pty_.path(); }
+    std::shared_ptr<RadioTest::EchoPrx> echo(const Ice::CommunicatorPtr& ic,
+                                             const std::string& connection = "") const;
+
+private:
+    class StatusFile {
+    public:
+        StatusFile();
+        ~StatusFile();
+        SimStatus* operator->() const { return status_; }
+        SimStatus& operator*() const { return *status_; }
+        const std::string& path() const { return path_; }
+
+    private:
+        std::string path_;
+        SimStatus* status_;
+    };
+    uint64_t advance(uint64_t now);
+    void run();
+    static XBee::Options modem(const char* name, std::map<std::string, uint32_t> set);
+
+    static constexpr uint32_t guardMs_ = 20;
+    StatusFile status_;
+
+public: // in the world's thread only
+    RfChannel air;
+
+private:
+    PtyLine pty_;
+
+public:
+    XBee groundModem;
+    SocModel soc;
+
+private:
+    GroundStep step_;
+    std::atomic<bool> stop_{false}, reboot_{false};
+    std::mutex mutex_;
+    std::vector<std::function<void()>> wanted_;
+    std::thread thread_;
+};
+
+#endif

@@ -2,7 +2,7 @@
 #
 # MINUTES=60 goes on for an hour: a third the link alone, a third stock Ice through the plugin to a stock server, a third
 # to IceC on the chip's RTL (there simulated seconds). Then noise:
-# FUZZED bytes into the modem controller's UART (10,000,000 take 5 to 18 minutes of a core), 10,000,000 into
+# FUZZED bytes into the modem controller's UART (10,000,000 take 5 minutes of a core), 10,000,000 into
 # the link layer and the plugin's engine.
 MINUTES ?= 4
 FUZZED  ?= 1000000

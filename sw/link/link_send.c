@@ -195,7 +195,7 @@ static int transmit(Link* link, U8 seq) {
         frame[2] = (U8)((frame[2] & 0x1FU) | kind << 5);
         *p++ = link->receiveNext;
     }
-    while (p < frame + 3 + (frame[0] & 0x7FU))
+    while (size--)
         *p++ = link->queue[RING(at++)];
     if (!Link_sendFrame(link, frame, frame[0] & 0x7FU, link->session.seed))
         return 0;

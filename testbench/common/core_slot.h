@@ -95,13 +95,17 @@ public:
             throw exception;
         hw_check(status);
     }
-    // Until an operation that is answered later has ended.
+    // Until an operation that is answered later has ended, as the firmware's task polls for it: woken by
+    // the core's interrupt, or some milliseconds after the time it asked for.
     void hw_finish(U32 operation) {
         Hw_Status status = HW_OK;
         U32 next = HW_NEVER;
         Hw_Core_later(core_, operation);
-        while (!Hw_Core_ended(core_, operation, nowMs(this), &status, &next))
-            tick();
+        while (!Hw_Core_ended(core_, operation, nowMs(this), &status, &next)) {
+            ASSERT_LT(next, HW_NEVER / 2) << "nothing would wake the task";
+            wait(this, operation, next + 3);
+            next = HW_NEVER;
+        }
         core_->later[operation] = 0;
         if (status != HW_OK)
             throw CoreError(status == HW_TIMEOUT ? ICE_TIMEOUT : ICE_UNKNOWN_EXCEPTION);

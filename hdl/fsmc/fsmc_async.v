@@ -33,7 +33,7 @@ module fsmc_async (
     output wire [1:0]  reading_o,    // NE2, NE1
     output wire        hit_o,        // hit_i and safe_i as they were in the same moment as reading_o
     output wire        safe_o,
-    output wire        writing_o     // either
+    output wire        writing_o     // NE1
 );
     wire [1:0] ne = ~fsmc_ne_n_i;
 
@@ -69,7 +69,7 @@ module fsmc_async (
         full_s   <= {full_s[1:0], full};
         read_s0  <= ne & {2{!fsmc_noe_n_i}};
         read_s1  <= read_s0;
-        write_s0 <= |ne && !fsmc_nwe_n_i;
+        write_s0 <= ne[0] && !fsmc_nwe_n_i;
         write_s1 <= write_s0;
         hit_s0   <= hit_i;
         hit_s1   <= hit_s0;

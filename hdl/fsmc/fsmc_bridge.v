@@ -65,6 +65,10 @@ module fsmc_bridge #(
     output wire        npi_rd_pop_o,
     input  wire        npi_rd_empty_i,
     output wire        npi_rd_flush_o,
+`ifdef FORMAL
+    output wire        clear_o,   // what came before the access has been noted
+    output wire        excuse_o,  // an access to memory is let go
+`endif
     input  wire        npi_init_done_i
 );
     generate
@@ -159,7 +163,8 @@ module fsmc_bridge #(
         end
     endgenerate
 
-    // ---- An access that has waited too long is let go, until its strobe rises.
+    // ---- An access to memory that has waited too long is let go, until its strobe rises; fsmc_registers does so for
+    // registers.
     reg [TIMEOUT_LOG2:0] patience;
     reg  excused;
     wire reg_restart;
@@ -181,7 +186,7 @@ module fsmc_bridge #(
             excused <= 1'b1;
 
     wire read_ok  = ne2 ? reg_done : (hit && clear) || excused;
-    wire write_ok = clear && (ne2 || room) || excused;
+    wire write_ok = ne2 ? clear : (clear && room) || excused;
     wire waits = (ne1 || ne2) && ((!fsmc_noe_n_i && !read_ok) || (!fsmc_nwe_n_i && !write_ok));
     assign fsmc_nwait_n_o = (WAIT_HIGH != 0) ^ (SYNC != 0 && ne1 ? burst_nwait_n : !waits);
     assign fsmc_d_o       = ne2 ? reg_data : SYNC != 0 ? burst_d : mem_data;
@@ -241,5 +246,9 @@ module fsmc_bridge #(
         early     <= reading_d ? early && !good[1] : !safe_was;
     end
 
+`ifdef FORMAL
+    assign clear_o  = clear;
+    assign excuse_o = excuse;
+`endif
     wire unused = &{1'b0, npi_wr_empty_i, npi_wr_almost_full_i, npi_rd_word_i, 1'b0};
 endmodule

@@ -8,6 +8,8 @@
 //
 // - NWAIT is not active for ever: it ends within two time-outs and what the synchronisers take.
 // - Once NWAIT is inactive in an access to a register it stays so, and data on the pins stays.
+// - A write to a register goes on only when what came before it has been noted, and no other access than one to memory
+//   is let go as one that has waited too long, however short the time-out.
 // That 32-bit words go in one piece is proven of the parts: fsmc_async (each completed write is handed on once, as it
 // was on the pins, one given up never) and fsmc_registers (which halves make a word).
 
@@ -15,6 +17,9 @@
 
 `ifdef FORMAL
 module fsmc_bridge_proof #(
+    parameter MUXED        = 0,
+    parameter SYNC         = 0, // 1: NE2 only; the bursts (fsmc_burst) are free
+    parameter WAIT_HIGH    = 0,
     parameter TIMEOUT_LOG2 = 1
 ) (
     input wire        clk_i,
@@ -23,6 +28,7 @@ module fsmc_bridge_proof #(
     input wire        ne2_i,
     input wire        noe_n_i,
     input wire        nwe_n_i,
+    input wire        nadv_n_i, // with MUXED
     input wire        beyond_i,
     input wire [2:0]  a_i,
     input wire [1:0]  d_i,
@@ -35,23 +41,26 @@ module fsmc_bridge_proof #(
     (* gclk *) wire step;
     reg  rst = 1'b1;
     wire [24:0] a = {13'd0, beyond_i, 8'd0, a_i};
+    wire [15:0] d = MUXED != 0 && !nadv_n_i ? a[15:0] : {14'd0, d_i};
     wire [15:0] d_out;
-    wire        oe, nwait_n, access_error, error_write, late;
+    wire        nwait_pin, nwait_n = nwait_pin ^ (WAIT_HIGH != 0);
+    wire        oe, access_error, error_write, late, clear, excuse;
     wire [9:0]  error_addr, bus_addr;
     wire        bus_valid, bus_write;
     wire [31:0] bus_wdata;
     wire [31:0] bus_rdata = {14'd0, rdata_i[3:2], 14'd0, rdata_i[1:0]};
 
-    fsmc_bridge #(.TIMEOUT_LOG2(TIMEOUT_LOG2)) u_fsmc_bridge (
+    fsmc_bridge #(.MUXED(MUXED), .SYNC(SYNC), .WAIT_HIGH(WAIT_HIGH), .TIMEOUT_LOG2(TIMEOUT_LOG2)) u_fsmc_bridge (
         .clk_i(clk_i), .rst_i(rst),
-        .fsmc_a_i(a), .fsmc_d_i({14'd0, d_i}), .fsmc_d_o(d_out), .fsmc_d_oe_o(oe),
+        .fsmc_a_i(a), .fsmc_d_i(d), .fsmc_d_o(d_out), .fsmc_d_oe_o(oe),
         .fsmc_ne_n_i({!ne2_i, !ne1_i}), .fsmc_noe_n_i(noe_n_i), .fsmc_nwe_n_i(nwe_n_i),
-        .fsmc_nbl_n_i(nbl_n_i), .fsmc_nadv_n_i(1'b1), .fsmc_clk_i(1'b0), .fsmc_nwait_n_o(nwait_n),
+        .fsmc_nbl_n_i(nbl_n_i), .fsmc_nadv_n_i(nadv_n_i), .fsmc_clk_i(1'b0), .fsmc_nwait_n_o(nwait_pin),
         .page_i(6'd0), .access_error_o(access_error), .error_addr_o(error_addr),
         .error_write_o(error_write), .late_o(late),
         .bus_valid_o(bus_valid), .bus_write_o(bus_write), .bus_addr_o(bus_addr),
         .bus_wdata_o(bus_wdata), .bus_ready_i(ready_i), .bus_rdata_i(bus_rdata),
         .bus_error_i(error_i),
+        .clear_o(clear), .excuse_o(excuse),
         .npi_addr_ack_i(1'b0), .npi_wr_empty_i(1'b1), .npi_wr_almost_full_i(1'b0),
         .npi_rd_data_i(64'd0), .npi_rd_word_i(4'd0), .npi_rd_empty_i(1'b1), .npi_init_done_i(1'b1)
     );
@@ -65,6 +74,7 @@ module fsmc_bridge_proof #(
     reg        let_go = 1'b0; // NWAIT has been seen inactive in this access
     reg [2:0]  rest = 3'd0;   // clocks since NWE's last edge, or an access that was given up
     reg [1:0]  calm = 2'd0;   // clocks since then
+    reg        latched = 1'b0; // NADV has been low in this access
     reg        held = 1'b0;   // a write's strobe has risen, NE not yet
     wire clock    = past && clk_i && !was_clk;
     wire selected = ne1_i || ne2_i, was_selected = was_ne1 || was_ne2;
@@ -94,6 +104,11 @@ module fsmc_bridge_proof #(
         assume (selected || was_selected || !strobe || was_strobe);
         assume (!(was_access && !nwe_n_i && access) || (d_i == was_d && nbl_n_i == was_nbl));
         assume (!wrote || (d_i == was_d && nbl_n_i == was_nbl));
+        // Multiplexed: the address is latched before the strobe falls.
+        assume (!strobe || nadv_n_i);
+        assume (MUXED == 0 || !access || latched);
+        assume (SYNC == 0 || !ne1_i);
+        latched <= selected && (latched || !nadv_n_i);
         // A strobe rises when NWAIT was inactive, or after NE: given up, and then it rests for a while.
         assume (!wrote || let_go);
         assume (!(was_strobe && !was_selected) || !strobe || !selected);
@@ -132,11 +147,19 @@ module fsmc_bridge_proof #(
             waited <= waited + 8'd1;
         assert (waited < BOUND);
     end
+    reg [1:0] since_ne1 = 2'd3; // clocks since an access to memory: fsmc_async's synchroniser
+    always @(posedge step)
+        if (ne1_i && strobe)
+            since_ne1 <= 2'd0;
+        else if (clock && since_ne1 != 2'd3)
+            since_ne1 <= since_ne1 + 2'd1;
     always @(posedge step) if (past) begin
         if (ne2_i && access && let_go)
             assert (nwait_n);
         if (ne2_i && access && let_go && !noe_n_i)
             assert (d_out[1:0] == was_out);
+        assert (rst || !excuse || since_ne1 <= 2'd2 || SYNC != 0);
+        assert (!(ne2_i && !nwe_n_i && nwait_n) || clear);
         assert (oe == (selected && !noe_n_i));
         cover (waited > 8'd12 && was_access && access && nwait_n);
     end

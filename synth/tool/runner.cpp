@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <fmt/format.h>
 #include <fstream>
 #include <memory>
@@ -133,9 +134,21 @@ void carryOut(std::vector<Run>& runs, const Library& library, const RunnerOption
     fs::create_directories(options.cache);
     const std::string program = hexHash({readFile("/proc/self/exe")});
 
+    // The largest first: none of them is begun when all others are done.
+    std::vector<std::pair<std::uintmax_t, size_t>> order;
+    for (size_t i = 0; i < runs.size(); i++) {
+        std::uintmax_t bytes = 0;
+        for (const fs::path& file : library.filesOf(runs[i].design->top))
+            bytes += fs::file_size(file);
+        order.emplace_back(bytes, i);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+
     std::atomic<size_t> done{0};
     std::mutex terminal;
-    inParallel(options.jobs, runs.size(), [&](size_t i) {
+    inParallel(options.jobs, runs.size(), [&](size_t place) {
+        const size_t i = order[place].second;
         const auto begin = std::chrono::steady_clock::now();
         try {
             carryOutOne(runs[i], library, options, version, program);
@@ -157,12 +170,22 @@ void carryOut(std::vector<Run>& runs, const Library& library, const RunnerOption
 
 void inParallel(unsigned jobs, size_t count, const std::function<void(size_t)>& work) {
     std::atomic<size_t> next{0};
+    std::exception_ptr failed; // the first that work() throws: rethrown when all have ended
+    std::mutex failing;
     std::vector<std::thread> threads;
     for (unsigned k = 0; k < std::max(1u, jobs); k++)
         threads.emplace_back([&] {
             for (size_t i; (i = next++) < count;)
-                work(i);
+                try {
+                    work(i);
+                } catch (...) {
+                    const std::lock_guard<std::mutex> lock(failing);
+                    if (!failed)
+                        failed = std::current_exception();
+                }
         });
     for (std::thread& thread : threads)
         thread.join();
+    if (failed)
+        std::rethrow_exception(failed);
 }

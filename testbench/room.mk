@@ -23,9 +23,14 @@ nightly: build ## what a timer runs: seeds that have failed, then the regression
 	    $$tool --seed random --repeat $(NIGHTLY) $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
 	    exit $$status
 
+proofs: $(BUILD)/build.ninja ## run all formal proofs, print the processor time of all together
+	@ninja -C $(BUILD) -j $(JOBS) regmaps
+	@ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error -L formal
+	@cat $(BUILD)/tests/hdl/formal/*/cpu | awk '{ n += $$1 } END { printf "%d proofs, %.0f s of a processor\n", NR, n }'
+
 # Gates: testbench/regress/coverage_gates.json
 coverage: $(BUILD)/build.ninja ## lines, branches and toggles that the tests reach, write build/coverage/html
 	@ninja -C $(BUILD) -j $(JOBS) coverage
 	@testbench/regress/coverage.sh $(BUILD) $(JOBS)
 
-.PHONY: regress nightly coverage
+.PHONY: regress nightly proofs coverage

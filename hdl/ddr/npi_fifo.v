@@ -22,6 +22,10 @@ module npi_fifo #(
     output wire [WIDTH-1:0] data_o,
     output wire             empty_o,
     output wire             full_o
+`ifdef FORMAL // what it holds, for proofs of its users
+    , output wire [(WIDTH<<LOG2)-1:0] words_o
+    , output wire [2*LOG2+1:0]        indexes_o // write, read
+`endif
 );
     reg  [LOG2:0] write_index, read_index;
     // After the word on data_o; pop_i only decides whether to go there, so it may come late.
@@ -72,6 +76,17 @@ module npi_fifo #(
     wire unused = &{1'b0, PROOF[0], 1'b0}; // only the proof looks at it
 
 `ifdef FORMAL
+    assign indexes_o = {write_index, read_index};
+    genvar f;
+    generate
+        for (f = 0; f < (1 << LOG2); f = f + 1) begin : g_words
+            if (BLOCK == 0) begin : g_lut_word
+                assign words_o[WIDTH*f +: WIDTH] = g_lut.words[f];
+            end else begin : g_block_word
+                assign words_o[WIDTH*f +: WIDTH] = g_block.words[f];
+            end
+        end
+    endgenerate
     reg past = 1'b0;
     always @(posedge clk_i)
         past <= 1'b1;

@@ -41,6 +41,12 @@ module npi_queue #(
     output wire [PORT_BITS-1:0] back_port_o,
     output wire [4:0]           back_index_o, // its place in its transfer
     input  wire                 back_done_i   // it comes in this cycle
+`ifdef FORMAL // what it holds, for npi_arbiter_proof
+    , output wire [((PORT_BITS+4)<<LOG2)-1:0] kinds_o
+    , output wire [(ADDR_BITS<<LOG2)-1:0]     addrs_o
+    , output wire [4*LOG2-1:0]                places_o // head, move, issue, back
+    , output wire [4:0]                       moved_o
+`endif
 );
     localparam KIND = PORT_BITS + 4;
 
@@ -112,6 +118,15 @@ module npi_queue #(
     wire unused = &{1'b0, issue_port, 1'b0};
 
 `ifdef FORMAL
+    assign places_o = {head, move, issue, back};
+    assign moved_o  = move_index;
+    genvar f;
+    generate
+        for (f = 0; f < (1 << LOG2); f = f + 1) begin : g_places
+            assign kinds_o[KIND*f +: KIND] = kinds[f];
+            assign addrs_o[ADDR_BITS*f +: ADDR_BITS] = addrs[f];
+        end
+    endgenerate
     reg past = 1'b0;
     initial assume (rst_i);
 

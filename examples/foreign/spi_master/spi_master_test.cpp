@@ -32,7 +32,7 @@ TEST(SpiMaster, ExchangesBytesWithADevice) {
     EXPECT_EQ(slot.bus_.read(SPI_MASTER_CTRL) & 0x3FF, 1u);
     EXPECT_EQ(top.spi_csn_o, 0xFF);
     slot.bus_.write(SPI_MASTER_DATA, 1u << 31 | 1u << 3 | 2); // chip select 2
-    for (uint8_t byte : {0xA5, 0x0F}) {
+    for (uint8_t byte : {uint8_t(0xA5), uint8_t(0x0F)}) {
         device = static_cast<uint8_t>(byte ^ 0x5A);
         uint8_t wanted = device;
         slot.bus_.write(SPI_MASTER_DATA, byte);

@@ -54,7 +54,7 @@ elaborate() { yosys -q -p "$read_file $(elaboration "$1")"; } # variant
 checks=''
 for variant in '' $variants; do
     verilate "$variant"
-    checks="$checks log variant '$variant'; design -load read; $(elaboration "$variant") proc; opt; check -assert; select -assert-none t:\$dlatch;"
+    checks="$checks log variant $(each "$variant"); design -load read; $(elaboration "$variant") proc; opt; check -assert; select -assert-none t:\$dlatch;"
 done
 yosys -q -p "$read_file design -save read; $checks" # one process: its start costs more than a variant
 for variant in $refused; do

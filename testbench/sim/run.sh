@@ -48,6 +48,9 @@ done
 "$build/testbench/live/icesoc-live" --dir "$out" --port "$port" --registers "$build/gen/registers.list" &
 page=$!
 trap 'kill $page 2>/dev/null || true' EXIT
+# The simulator has Ctrl-C, too, and ends first. A shell that a signal ends itself would leave the page behind.
+trap 'echo "run: stopped before the mission was over" >&2; exit 130' INT
+trap 'echo "run: stopped before the mission was over" >&2; exit 143' TERM
 status=0
 # shellcheck disable=SC2086 # a list of words
 "$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" --firmware "$firmware" $sensor -- \
@@ -61,7 +64,7 @@ else
 fi
 if [ -n "$live" ] && [ $status = 0 ]; then
     echo "The page stays until Ctrl-C."
-    trap 'exit 0' INT
+    trap 'echo "The page is closed."; exit 0' INT TERM
     wait $page
 fi
 exit $status

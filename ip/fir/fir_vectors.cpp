@@ -1,34 +1,34 @@
 // SPDX-License-Identifier: MIT
 //
 // fir_vectors: rounds of random coefficients and samples with the model's results, for the VHDL
-// test bench. Usage: fir_vectors seed. Prints for each round: the shift, 16 coefficients, the
-// number of samples, and a line "sample result" for each.
+// test bench. Usage: fir_vectors folder seed. Writes vectors.txt, for each round: the shift, 16
+// coefficients, the number of samples, and a line "sample result" for each.
 
 #include "fir_model.h"
 #include "random.h"
-#include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <string>
 
 int main(int argc, char** argv) {
-    if (argc != 2) {
-        std::fprintf(stderr, "usage: fir_vectors seed\n");
+    if (argc != 3)
         return 2;
-    }
-    Random random(std::strtoull(argv[1], nullptr, 0));
+    std::ofstream vectors(std::string(argv[1]) + "/vectors.txt");
+    Random random(std::strtoull(argv[2], nullptr, 0));
     for (int round = 0; round < 24; ++round) {
         FirModel model;
         model.shift = round < 3 ? static_cast<unsigned>(round) * 15 : random.below(32);
-        std::printf("%u\n", model.shift);
+        vectors << model.shift << "\n";
         for (auto& c : model.coefficients) {
             c = round % 4 == 0 ? -131072 : static_cast<int32_t>(random.below(262144)) - 131072;
-            std::printf("%d\n", c);
+            vectors << c << "\n";
         }
         int count = static_cast<int>(20 + random.below(60));
-        std::printf("%d\n", count);
+        vectors << count << "\n";
         for (int i = 0; i < count; ++i) {
             auto sample = static_cast<int16_t>(round % 4 == 0 ? -32768 : random.next());
-            std::printf("%d %d\n", sample, model.step(sample));
+            vectors << sample << " " << model.step(sample) << "\n";
         }
     }
-    return 0;
+    return vectors ? 0 : 1;
 }

@@ -39,7 +39,6 @@
 #define LINK_HEAD_ROOM (LINK_HEADS ? 96U : 0U) /* what may grow in front of a message */
 #define LINK_ESCAPE (LINK_HEADS ? 1U : 0U)     /* a byte that marks what is not Ice */
 
-#define LINK_CHECK 2U /* bytes behind a message of several fragments */
 #define LINK_INPUT_BYTES (LINK_WINDOW > 1U ? 2U * LINK_MAX_FRAME : LINK_MAX_FRAME)
 
 /* What must hold for the options of link.h; a negative size stops the compiler. */

@@ -46,15 +46,14 @@ static void deliver(Link* link) {
     }
 }
 
-/* A message of several fragments ends with a check over the whole, which is taken off here. A
- * fragment that lost its end, and had the next one's beginning in its place, is right by its CRC
- * once in 65,536 times. */
+/* A message ends with a check over the whole, unless it is short; it is taken off here. A fragment
+ * that lost its end, and had the next one's beginning in its place, is right by its CRC once in
+ * 65,536 times. */
 static int isWhole(Link* link) {
     U8 sums[2];
-    U32 size;
-    if (link->messageSize <= LINK_CHECK)
-        return 0;
-    size = link->messageSize - LINK_CHECK;
+    U32 size = link->messageSize - LINK_CHECK;
+    if (link->messageSize <= LINK_UNCHECKED)
+        return 1;
     sums[0] = sums[1] = 0;
     Link_sum(sums, link->messageStart, size);
     link->messageSize = (U16)size;
@@ -85,7 +84,7 @@ static void accept(Link* link, U32 flags, const U8* data, U32 size) {
         return;
     link->messageOpen = 0;
     link->messageStart = link->message + LINK_HEAD_ROOM;
-    if (!(flags & LINK_FIRST) && !isWhole(link)) {
+    if (!isWhole(link)) {
         Link_abort(link);
         return;
     }

@@ -108,7 +108,7 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     Link_Status status = usable(link, channel);
     Link_Packed packed;
     U32 total;
-    int isLong;
+    int isChecked;
     (void)nowUs;
     if (size == 0 || size > LINK_MAX_MESSAGE)
         return LINK_TOO_LONG;
@@ -121,9 +121,9 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     if (LINK_HEADS && (link->session.features & LINK_FEATURE_HEADS))
         Link_packHead(link, channel, data, size, &packed);
     total = packed.prefix + packed.middle + packed.tail;
-    isLong = total > LINK_LONGEST(link);
-    if (isLong)
-        total += LINK_CHECK; /* of several fragments: with a check over the whole */
+    isChecked = total > LINK_UNCHECKED;
+    if (isChecked)
+        total += LINK_CHECK;
     status = enqueue(link, channel, LINK_FIRST, total, tag);
     if (status != LINK_OK)
         return status;
@@ -132,7 +132,7 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
         Link_putPacked(link, channel, data, size, &packed);
     else
         Link_put(link, data, size);
-    if (isLong) {
+    if (isChecked) {
         U8 check[LINK_CHECK];
         check[0] = link->check[0];
         check[1] = link->check[1];

@@ -7,7 +7,11 @@
 
 #define LINK_OVERHEAD 5U
 #define LINK_MAX_PAYLOAD 95U
-#define LINK_VERSION 2U
+#define LINK_VERSION 3U
+
+/* A message that travels in more bytes than these ends with a check over the whole. */
+#define LINK_UNCHECKED 20U
+#define LINK_CHECK 2U
 
 /* Byte 0 and byte 2 of a frame. */
 #define LINK_CONTROL 0x80U
@@ -39,7 +43,7 @@ typedef enum Link_Kind {
 
 /* CRC-16/CCITT; over a frame with its checksum the result is 0. */
 U16 Link_crc(U16 seed, const U8* bytes, U32 size);
-/* Fletcher's sums of a message of several fragments: `size` bytes more. */
+/* Fletcher's sums of a message: `size` bytes more. */
 void Link_sum(U8 sums[2], const U8* bytes, U32 size);
 /* 32 bits, the low byte first. */
 U32 Link_get32(const U8* p);

@@ -14,7 +14,6 @@
 #define LINK_OUTCOMES 0 /* 1: `outcome` and `writable` are called */
 #endif
 
-#define LINK_CHECK 2U        /* bytes behind a message of several fragments */
 #define LINK_INPUT_BYTES 132 /* so that no length that a frame may claim goes beyond */
 
 /* Small and often used fields first: a Cortex-M3 reaches them with short instructions. */

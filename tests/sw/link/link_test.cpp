@@ -243,6 +243,27 @@ TEST(LinkLayer, TenMillionRandomBytesAreSurvived) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, LinkSeeds, ::testing::Range(0, 5));
 
+// What a CRC of 16 bits lets pass once in 65,536 times: here at once, by adding its polynomial.
+TEST(LinkLayer, AWrongMessageWithARightChecksumIsReportedAndNotDelivered) {
+    for (uint32_t size : {20u, 60u, 95u, 300u}) {
+        Pair pair(testSeed());
+        ASSERT_TRUE(pair.connect());
+        ASSERT_EQ(Link_openChannel(pair.a.link(), 0, pair.now32()), LINK_OK);
+        pair.run(1000000);
+        Side::Bytes bytes = pattern(size, size);
+        ASSERT_EQ(Link_send(pair.a.link(), 0, bytes.data(), size, 7, pair.now32()), LINK_OK);
+        pair.runUntil([&] { return !pair.a.air.empty() && pair.a.air[0].bytes.size() >= 20; },
+                      1000000);
+        ASSERT_FALSE(pair.a.air.empty());
+        const uint8_t polynomial[] = {0x01, 0x10, 0x21};
+        for (size_t i = 0; i < sizeof polynomial; ++i)
+            pair.a.air[0].bytes[10 + i] ^= polynomial[i];
+        pair.run(30000000);
+        EXPECT_TRUE(pair.b.received.empty()) << size << " bytes";
+        EXPECT_EQ(pair.a.outcomes.at(7), LINK_UNKNOWN) << size << " bytes";
+    }
+}
+
 TEST(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {
     Pair pair(testSeed());
     ASSERT_TRUE(pair.connect());

@@ -18,6 +18,13 @@ extern "C" {
 
 class Ground {
 public:
+    static constexpr uint16_t guardMs = 20; // of the tests' modems: the default, a second, is idle time
+    static XBee::Options uavModem() {
+        XBee::Options options;
+        options.name = "uav";
+        options.set = {{"GT", guardMs}};
+        return options;
+    }
     Ground(RfChannel& air, uint64_t seed) : random_(seed), link_(new Link) {
         XBee::Options options;
         options.name = "ground";
@@ -35,6 +42,7 @@ public:
         running = true;
     }
     uint64_t advance(uint64_t now) {
+        clock_ += (now - now_) * hurry;
         now_ = now;
         modem_->advance(now);
         if (running && now >= nextPoll_) {
@@ -86,9 +94,10 @@ public:
     uint64_t deliveredBytes = 0;                  // of messages that were acknowledged
     size_t backlog() const { return backlog_; }   // bytes of messages that are not yet delivered
     bool validated = false, running = true;
+    unsigned hurry = 1; // the link's clock runs so many times as fast (UavMachine::hurry)
 
 private:
-    U32 us() const { return static_cast<U32>(now_ / 1000); }
+    U32 us() const { return static_cast<U32>(clock_ / 1000); }
     static Ground& self(void* context) { return *static_cast<Ground*>(context); }
     static int transmit(void* context, const U8* frame, U32 size) {
         Ground& g = self(context);
@@ -120,7 +129,7 @@ private:
     HostLine line_;
     std::unique_ptr<XBee> modem_;
     std::unique_ptr<Link> link_;
-    uint64_t now_ = 0, nextPoll_ = 0;
+    uint64_t now_ = 0, clock_ = 0, nextPoll_ = 0;
     size_t backlog_ = 0;
 };
 

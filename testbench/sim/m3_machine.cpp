@@ -24,10 +24,13 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
     : soc_(soc), poll_(std::move(poll)),
       stm32_(soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz)) {
     stm32_.load(config.firmware);
-    stm32_.onTime([this] {
+    uint32_t guardAt = config.guardMs ? stm32_.image()->symbol("uav_guardMs") : 0;
+    stm32_.onTime([this, guardAt, guardMs = config.guardMs] {
         if (soc_.cycles() < nextPoll_)
             return;
         nextPoll_ = soc_.cycles() + SocModel::clkHz / 1000;
+        if (guardAt)
+            cpu().writeMemory(guardAt, &guardMs, sizeof guardMs);
         over_ = !poll_();
         if (over_ || (stub_ && stub_->wantsStop()))
             cpu().stop();

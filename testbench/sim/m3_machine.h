@@ -17,6 +17,8 @@ public:
         // the fabric is slower. 0: in the board's ratio to the fabric's clock, 6 to 5, as FSMC accesses
         // always are; then cycles are as on the board, and the processor is slower by the fabric's scale.
         uint32_t hclkHz = 120'000'000;
+        // As a debugger would write uav_guardMs (uav.h) after each start, in ms; 0: it is left alone.
+        uint16_t guardMs = 0;
     };
     // `poll` is called about once a simulated millisecond; when it returns false, run() ends.
     M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll);

@@ -46,6 +46,7 @@ struct Options {
     std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
                        firmware = FIRMWARE_ELF;
     uint32_t hclk = 120'000'000;
+    uint16_t guard = 1000;
     int gdb = -1;
     std::string marks;
     double loss = 0, duration = 0;
@@ -203,6 +204,8 @@ int simulate(const Options& o) {
     XBee::Options uavModem, groundModem;
     uavModem.name = "uav";
     groundModem.name = "ground";
+    uavModem.set["GT"] = groundModem.set["GT"] = o.guard;
+    uav_guardMs = o.guard;
     PtyLine pty;
     XBee ground(pty, air, groundModem);
     SocModel soc(air, uavModem);
@@ -245,6 +248,7 @@ int simulate(const Options& o) {
         child.start(o.command, {{"{device}", pty.path()},
                                 {"{frame}", o.out + "/before.png"},
                                 {"{status}", o.out + "/status"},
+                                {"{guard}", std::to_string(o.guard)},
                                 {"{out}", o.out}});
     Pace pace(o.speed == "real" ? 1 : o.speed == "max" ? 0 : std::stod(o.speed));
     auto poll = [&] {
@@ -255,7 +259,7 @@ int simulate(const Options& o) {
         return !over && isWanted();
     };
     if (o.cpu == "m3") {
-        M3Machine machine(soc, {o.firmware, o.hclk}, poll);
+        M3Machine machine(soc, {o.firmware, o.hclk, o.guard}, poll);
         std::optional<MarkFile> marks;
         if (!o.marks.empty())
             marks.emplace(o.marks, machine.stm32(), [&] { return soc.now(); });
@@ -291,7 +295,7 @@ int main(int argc, char** argv) {
     CLI::App app{
         "Simulates the UAV: RTL, DDR3, firmware, modems, radio. The ground's modem is a pty.\n"
         "Words of COMMAND: {device} the pty, {frame} the camera's picture, {status} counters, "
-        "{out}."};
+        "{guard}, {out}."};
     Options o;
     app.add_option("--image", o.image, "picture for the camera: PNG, JPEG or PGM")->required();
     app.add_flag("--sensor", o.sensor,
@@ -306,6 +310,9 @@ int main(int argc, char** argv) {
                         text.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
             return good ? std::string() : std::string("give 32 hexadecimal digits");
         });
+    app.add_option("--guard", o.guard,
+                   "guard time of both modems, ms; a ground station must know it: {guard}")
+        ->check(CLI::Range(2, 3300));
     app.add_option("--out", o.out, "folder for before.png and the counters");
     app.add_option("--speed", o.speed,
                    "real: simulated time follows the clock; 0.25: at a quarter of its speed; max: "

@@ -3,14 +3,14 @@
 #
 # run: the mission: simulator and ground station. Usage: run.sh build-folder --image F --size WxH
 #      --threshold N --loss P --seed N --out DIR --cpu host|m3 --firmware ELF --port N (of the live page; 0: any)
-#      --live 1 (the page stays until Ctrl-C) --cores "ascon fir" (also fly these cores' parts, ip/*/ground.py)
+#      --guard MS (of the modems) --live 1 (the page stays until Ctrl-C) --cores "ascon fir" (also fly these cores' parts, ip/*/ground.py)
 #      --sensor 1 (the picture comes through the camera core, which hands it to the vision core; camera's part is flown)
 
 set -eu
 build=$1
 shift
 here=$(cd "$(dirname "$0")/../.." && pwd)
-image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host port=0 live='' cores='' sensor='' firmware=$build/firmware/uav.elf
+image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host guard=1000 port=0 live='' cores='' sensor='' firmware=$build/firmware/uav.elf
 while [ $# -gt 0 ]; do
     case $1 in
     --image) image=$2 ;;
@@ -21,6 +21,7 @@ while [ $# -gt 0 ]; do
     --out) out=$2 ;;
     --cpu) cpu=$2 ;;
     --port) port=$2 ;;
+    --guard) guard=$2 ;;
     --live) live=$2 ;;
     --cores) cores=$2 ;;
     --sensor) sensor=${2:+--sensor} ;;
@@ -53,9 +54,9 @@ trap 'echo "run: stopped before the mission was over" >&2; exit 130' INT
 trap 'echo "run: stopped before the mission was over" >&2; exit 143' TERM
 status=0
 # shellcheck disable=SC2086 # a list of words
-"$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" --firmware "$firmware" $sensor -- \
+"$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" --guard "$guard" --firmware "$firmware" $sensor -- \
     /usr/bin/python3 "$here/sw/ground/clients/mission.py" --device '{device}' --frame '{frame}' \
-    --status '{status}' --out "$out" --plugin "$build/ground" --slice "$here/sw/apps/uav/Autopilot.ice" \
+    --status '{status}' --guard '{guard}' --out "$out" --plugin "$build/ground" --slice "$here/sw/apps/uav/Autopilot.ice" \
     --reference "$build/testbench/sim/vision-reference" --threshold "$threshold" --loss "$loss" $sensor $parts || status=$?
 if [ $status = 0 ]; then
     echo "Pictures and report: $out/before.png $out/after.png $out/report.md"

@@ -27,18 +27,20 @@ const Fsmc_Port fsmcPort = {
     [](void* c, U32 a) { return access(c, [=](FsmcMaster& m) { return m.read32(a); }); },
     [](void* c, U32 a, U32 v) { access(c, [=](FsmcMaster& m) { return m.write32(a, v), 0; }); }};
 
-constexpr uint64_t tickCycles = SocModel::clkHz / OS_TICKS_PER_SEC;
+constexpr uint64_t ownTickCycles = SocModel::clkHz / OS_TICKS_PER_SEC;
 
 } // namespace
 
 UavMachine::UavMachine(SocModel& soc, std::function<bool()> poll, Firmware firmware)
-    : soc_(soc), poll_(std::move(poll)), firmware_(std::move(firmware)) {}
+    : soc_(soc), poll_(std::move(poll)), firmware_(std::move(firmware)), tickCycles_(ownTickCycles) {}
+
+void UavMachine::hurry(unsigned times) { tickCycles_ = ownTickCycles / times; }
 
 bool UavMachine::pending() const { return soc_.cycles() >= nextTick_ || (soc_.irq() && firmware_.irqEnabled()); }
 
 void UavMachine::serve() {
     if (soc_.cycles() >= nextTick_) {
-        nextTick_ += tickCycles;
+        nextTick_ += tickCycles_;
         if (!poll_())
             OsHost::stop();
         OSTimeTick();
@@ -54,7 +56,7 @@ void UavMachine::idle() {
 }
 
 void UavMachine::run() {
-    nextTick_ = soc_.cycles() + tickCycles;
+    nextTick_ = soc_.cycles() + tickCycles_;
     OsHost::setMachine({[this] { idle(); }, [this] { return pending(); }, [this] { serve(); }});
     OSInit();
     firmware_.start(&fsmcPort, &soc_);

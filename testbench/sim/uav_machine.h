@@ -31,6 +31,10 @@ public:
     // Boots the firmware and runs it until poll says so; exceptions of the models come through.
     void run();
 
+    // From now on the firmware's clock ticks so many times as fast as the fabric's: for spans in which
+    // nothing happens but the firmware's own time-outs. The modem's times are then too long for it.
+    void hurry(unsigned times);
+
 private:
     void idle();
     bool pending() const;
@@ -39,7 +43,7 @@ private:
     SocModel& soc_;
     std::function<bool()> poll_;
     Firmware firmware_;
-    uint64_t nextTick_ = 0;
+    uint64_t nextTick_ = 0, tickCycles_;
 };
 
 #endif

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Calls new cores in a UAV's FPGA by radio: client.py DEVICE STATUS PLUGIN File.ice ..."""
+"""Calls new cores in a UAV's FPGA by radio: client.py DEVICE GUARD STATUS PLUGIN File.ice ..."""
 
 import sys
 import threading
 
 import Ice
 
-device, status, plugin, *files = sys.argv[1:]
+device, guard, status, plugin, *files = sys.argv[1:]
 for file in files:
     Ice.loadSlice("", [file])
 import Cores  # noqa: E402
@@ -44,6 +44,7 @@ data = Ice.InitializationData()
 data.properties = Ice.createProperties()
 data.properties.setProperty("Ice.Plugin.XBeeAT", plugin)
 data.properties.setProperty("XBeeAT.Clock", status)
+data.properties.setProperty("XBeeAT.Guard", guard)
 data.properties.setProperty("Ground.Endpoints", "xbee-at -d %s" % device)
 with Ice.initialize(data) as ic:
     where = ":xbee-at -d %s -a 0x0001 -t 300000" % device

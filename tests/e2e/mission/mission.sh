@@ -6,10 +6,13 @@ source=$1 build=$2 case=$3 out=$4
 rm -rf "$out"
 mkdir -p "$out"
 image=/usr/share/xplanet/images/earth.jpg
+# A guard time of a second, the modem's default, is waited out four times: cases whose subject it is have it.
+guard=20
+case $case in plain | stopped) guard=1000 ;; esac
 run() { # out-folder, then options
     to=$1
     shift
-    "$source/testbench/sim/run.sh" "$build" --out "$to" --size 96x64 "$@"
+    "$source/testbench/sim/run.sh" "$build" --out "$to" --size 96x64 --guard $guard "$@"
 }
 check_output() {
     [ -s "$1/after.png" ] && [ -s "$1/before.png" ] && grep -q 'isAlive' "$1/report.md"
@@ -46,20 +49,20 @@ m3) # the ARM binary
     run "$out" --image $image --cpu m3 && check_output "$out"
     ;;
 cpp) # the C++11 library of the plugin, a C++ client, and a proxy that goes through its string form
-    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" -- \
-        "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d "{device}" -a 0x0001 -p 2 -t 300000' 3 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --guard $guard -- \
+        "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d "{device}" -a 0x0001 -p 2 -g {guard} -t 300000' 3 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
     grep -q 'it is a ::Autopilot::HwProcessingEngine' "$out/log"
     grep -q -- '-a 0x1 .*-p 2' "$out/log"
     ;;
 slow) # a machine that is four times too slow: the ground lives by the simulator's clock, so the modem is found as fast
-    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --speed 0.25 -- \
-        /usr/bin/python3 "$source/sw/ground/clients/mission.py" --device '{device}' --frame '{frame}' --status '{status}' \
+    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --speed 0.25 --guard $guard -- \
+        /usr/bin/python3 "$source/sw/ground/clients/mission.py" --device '{device}' --guard '{guard}' --frame '{frame}' --status '{status}' \
         --out "$out" --plugin "$build/ground" --slice "$source/sw/apps/uav/Autopilot.ice" --trace 2 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
     [ "$(grep -c '+++ at' "$out/log")" = 2 ] || { cat "$out/log" && exit 1; }
     check_output "$out"
     ;;
 stopped) # the ground's program gets no processor for four seconds amidst the set-up: simulated time waits for it
-    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" -- \
+    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --guard $guard -- \
         "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d "{device}" -a 0x0001 -t 300000' 3 --XBeeAT.Trace=2 >"$out/log" 2>&1 &
     sim=$!
     while ! grep -q '+++ at 9600 baud: OK' "$out/log"; do
@@ -76,14 +79,14 @@ stopped) # the ground's program gets no processor for four seconds amidst the se
     ;;
 encrypted) # both modems by the same AES key: the controller sets one, the endpoint's -k the other
     key=00112233445566778899AABBCCDDEEFF
-    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --key $key -- \
-        "$build/sw/ground/ground_ping" "hwengine1:xbee-at -d \"{device}\" -a 0x0001 -k $key -t 60000" 3 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --key $key --guard $guard -- \
+        "$build/sw/ground/ground_ping" "hwengine1:xbee-at -d \"{device}\" -a 0x0001 -k $key -g {guard} -t 60000" 3 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
     grep -q 'it is a ::Autopilot::HwProcessingEngine' "$out/log"
     ! grep -q $key "$out/log" || { echo "the key is in the output" && exit 1; }
     ;;
 gateway) # two stock clients at once, through TCP
-    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" -- \
-        "$source/tests/e2e/mission/gateway.sh" "$build" '{device}' "$out" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --guard $guard -- \
+        "$source/tests/e2e/mission/gateway.sh" "$build" '{device}' '{guard}' "$out" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
     ;;
 twice)
     run "$out/a" --image $image >"$out/a.log" 2>&1 &

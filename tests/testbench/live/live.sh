@@ -14,7 +14,7 @@ fail() {
 has() { grep -q -- "$1" "$out/dom.html" || fail "the page lacks '$1' (see $out/dom.html)"; }
 case $case in
 mission)
-    "$source/testbench/sim/run.sh" "$build" --image /usr/share/xplanet/images/earth.jpg --size 96x64 --out "$out" --live 1 >"$out/log" 2>&1 &
+    "$source/testbench/sim/run.sh" "$build" --image /usr/share/xplanet/images/earth.jpg --size 96x64 --guard 20 --out "$out" --live 1 >"$out/log" 2>&1 &
     run=$!
     trap 'kill $(ps -o pid= --ppid $run) $run 2>/dev/null || true' EXIT
     while ! grep -q 'The page stays' "$out/log"; do

@@ -25,6 +25,7 @@ using Bytes = std::vector<uint8_t>;
 struct Flight {
     explicit Flight(double loss = 0) {
         air.weather.loss = loss;
+        uav_guardMs = Ground::guardMs; // the host build's
         air.onPacket([this](uint64_t, const RfPacket& p, RfChannel::Outcome) { packets.push_back({p.from, p.bytes}); });
         soc.onTime([this](uint64_t now) { return ground.advance(now); });
         soc.reset();
@@ -77,7 +78,7 @@ struct Flight {
     };
     RfChannel air{testSeed()};
     Ground ground{air, testSeed() + 5};
-    SocModel soc{air, {}};
+    SocModel soc{air, Ground::uavModem()};
     std::vector<std::function<void(int id)>> calls;
     std::vector<Packet> packets;
     bool opened = false;
@@ -87,7 +88,7 @@ struct Flight {
 // UAV_FIRMWARE names another build, of the real uC/OS-II (docs/ucos2.md).
 M3Machine::Config firmwareAt(uint32_t hclkHz) {
     const char* other = std::getenv("UAV_FIRMWARE");
-    return {other ? other : FIRMWARE_ELF, hclkHz};
+    return {other ? other : FIRMWARE_ELF, hclkHz, Ground::guardMs};
 }
 const M3Machine::Config firmware = firmwareAt(120'000'000);
 
@@ -290,7 +291,7 @@ TEST(CortexM3Firmware, TheSameSeedGivesTheSameRunToTheInstruction) {
     uint64_t instructions[2], cycles[2];
     for (int run = 0; run < 2; ++run) {
         Flight f; // the modem's set-up: the tick, the driver, its interrupts
-        M3Machine machine(f.soc, firmware, [&] { return f.inTime(4); });
+        M3Machine machine(f.soc, firmware, [&] { return f.inTime(1); });
         machine.run();
         instructions[run] = machine.cpu().instructions();
         cycles[run] = f.soc.cycles();

@@ -7,11 +7,16 @@
 #include "uav_machine.h"
 #include <gtest/gtest.h>
 
+extern "C" {
+extern Link uav_link; // the firmware's
+}
+
 namespace {
 
 class Uav : public ::testing::Test {
 protected:
     void SetUp() override {
+        uav_guardMs = Ground::guardMs;
         soc_.onTime([this](uint64_t now) { return ground_.advance(now); });
         soc_.reset();
     }
@@ -22,6 +27,7 @@ protected:
             done = script();
             return !done && static_cast<double>(soc_.now()) < limitSeconds * 1e9;
         });
+        machine_ = &machine;
         machine.run();
         EXPECT_TRUE(done) << "not done after " << limitSeconds << " simulated seconds";
     }
@@ -43,7 +49,8 @@ protected:
 
     RfChannel air_{testSeed()};
     Ground ground_{air_, testSeed() + 5};
-    SocModel soc_{air_, {}};
+    SocModel soc_{air_, Ground::uavModem()};
+    UavMachine* machine_ = nullptr; // while it flies
 };
 
 TEST_F(Uav, AnswersPings) {
@@ -80,14 +87,17 @@ TEST_F(Uav, TheGroundGoesAwayAndComesBack) {
         if (phase == 0 && first()) {
             ground_.running = false; // the program is killed
             since = soc_.now();
+            machine_->hurry(10);
             phase = 1;
         }
-        if (phase == 1 && soc_.now() - since > 12'000'000'000) {
+        if (phase == 1 && soc_.now() - since > 1'200'000'000) { // 12 s by the UAV's clock
+            EXPECT_NE(Link_state(&uav_link), LINK_STATE_UP) << "the UAV has not noticed";
+            machine_->hurry(1);
             ground_.start();
             phase = 2;
         }
         return phase == 2 && second();
-    }, 60);
+    }, 20);
 }
 
 TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
@@ -104,7 +114,16 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
             soc_.modem().resetPin(true, soc_.now()); // ... the UAV's modem loses its settings
             soc_.modem().resetPin(false, soc_.now() + 1000);
             EXPECT_EQ(soc_.modem().parameter("BD"), 3u);
+            machine_->hurry(10);
+            ground_.hurry = 10;
             phase = 2;
+        }
+        // The link is given up after 9 s of silence, the modem set up again 15 s later, in its own time.
+        if (ground_.hurry > 1 && soc_.now() - since > 2'350'000'000) {
+            EXPECT_NE(Link_state(&uav_link), LINK_STATE_UP) << "the UAV has not noticed";
+            EXPECT_EQ(soc_.modem().parameter("BD"), 3u);
+            machine_->hurry(1);
+            ground_.hurry = 1;
         }
         if (phase == 2 && !ground_.isUp())
             phase = 3;
@@ -113,7 +132,7 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
             phase = 4;
         }
         return phase == 4 && second();
-    }, 120);
+    }, 20);
     EXPECT_EQ(soc_.modem().parameter("BD"), 7u);
 }
 
@@ -138,7 +157,7 @@ TEST_F(Uav, TheSameSeedGivesTheSameRun) {
     uint64_t cycles = soc_.cycles();
     RfChannel air(testSeed());
     Ground ground(air, testSeed() + 5);
-    SocModel soc(air, {});
+    SocModel soc(air, Ground::uavModem());
     soc.onTime([&](uint64_t now) { return ground.advance(now); });
     soc.reset();
     int sent = 0;

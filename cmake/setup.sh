@@ -19,6 +19,7 @@ verilator turns the Verilog into a C++ model
 iverilog second opinion in lint
 yosys synthesis, latch check, proofs
 z3 solver of the proofs
+cadical solver of their induction steps
 libgtest-dev test framework
 libgmock-dev test framework
 nlohmann-json3-dev register descriptions, reports

@@ -8,6 +8,7 @@
 #include "engine.h"
 
 #include <Ice/Ice.h>
+#include <mutex>
 #include <string>
 #include <system_error>
 
@@ -49,7 +50,11 @@ public:
     }
     const EndpointOptions& defaults() const { return defaults_; }
 
+    // A connection may be asked for while another thread destroys the communicator.
     std::shared_ptr<Engine> engine(const EndpointOptions& o) {
+        std::lock_guard<std::mutex> lock(mutex_);
+        if (!communicator_)
+            throw Ice::CommunicatorDestroyedException(__FILE__, __LINE__);
         Ice::LoggerPtr logger = communicator_->getLogger();
         int trace = trace_;
         try {
@@ -66,6 +71,7 @@ public:
         return engine_;
     }
     void destroy() {
+        std::lock_guard<std::mutex> lock(mutex_);
         if (engine_ && statistics_)
             communicator_->getLogger()->print("xbee-at: " + engine_->statistics());
         engine_.reset();
@@ -73,6 +79,7 @@ public:
     }
 
 private:
+    std::mutex mutex_; // of communicator_ and engine_
     Ice::CommunicatorPtr communicator_;
     EndpointOptions defaults_;
     int trace_ = 0;

@@ -133,7 +133,7 @@ TEST_F(IceSoak, EveryCallIsAnsweredRightOrReported) {
             groundRestarts_);
         std::fflush(stdout);
     };
-    while (Steady::now() < end) {
+    while (Steady::now() < end || answered_ == 0) { // a busy machine takes longer
         std::this_thread::sleep_for(std::chrono::milliseconds(1500 + random.below(1500)));
         misfortune(random);
         if (Steady::now() - said > std::chrono::seconds(15)) {

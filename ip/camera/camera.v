@@ -97,8 +97,13 @@ module camera (
     wire control = reg_write && reg_addr == CAMERA_CONTROL;
     wire start   = control && reg_wdata[CAMERA_CONTROL_START_LSB] && state == OFF;
     wire stop    = control && reg_wdata[CAMERA_CONTROL_STOP_LSB];
-    wire good    = size[2:0] == 3'd0 && size[15:0] != 16'd0 && size[15:0] <= 16'd2048 && size[31:16] != 16'd0 &&
-                   size[31:28] == 4'd0 && set_base[6:0] == 7'd0 && set_stride[6:0] == 7'd0;
+    // The settings are judged in the clock of START, the answer counts in the next one.
+    reg  asked, good;
+    always @(posedge clk_i) begin
+        asked <= start && !rst_i;
+        good  <= size[2:0] == 3'd0 && size[15:0] != 16'd0 && size[15:0] <= 16'd2048 && size[31:16] != 16'd0 &&
+                 size[31:28] == 4'd0 && set_base[6:0] == 7'd0 && set_stride[6:0] == 7'd0;
+    end
 
     always @* case (reg_addr)
         CAMERA_STATUS:  reg_rdata = {30'd0, state == CAPTURE, state != OFF};
@@ -156,8 +161,8 @@ module camera (
         case (state)
             OFF: begin
                 stopping <= 1'b0;
-                events[CAMERA_EVENT_REFUSED_LSB] <= start && !good;
-                if (start && good) begin
+                events[CAMERA_EVENT_REFUSED_LSB] <= asked && !good;
+                if (asked && good) begin
                     state      <= WAIT_FOR_FRAME;
                     width      <= size[15:0];
                     height     <= size[31:16];

@@ -202,6 +202,7 @@ TEST_F(CameraTest, StopsAndStartsInTheMiddleOfAFrame) {
 TEST_F(CameraTest, RefusesWhatItCannotCapture) {
     auto refused = [&] {
         start();
+        bench_.tick(); // judged in the clock of START, told in the next, sticky from then on
         bench_.tick();
         uint32_t events = bus_.read(CAMERA_EVENT);
         bus_.write(CAMERA_EVENT, events);

@@ -200,6 +200,9 @@ module npi_stream #(
         assert (to_give == f_left);
         assert (!read_valid_o || f_left != {WORD_BITS{1'b0}});
         assert (to_ask == {WORD_BITS{1'b0}} || to_give >= to_ask);
+        // While words are still to be asked for, what is on its way is the core's.
+        assert (to_ask == {WORD_BITS{1'b0}} || {1'b0, to_give} == {1'b0, to_ask} + {{(WORD_BITS - 5){1'b0}}, outstanding});
+        assert (pushed <= 6'd32);
         assert (!padding || filled != 3'd0);
         assert (!npi_addr_req_o || npi_rnw_o || bursts != 3'd0);
         // A word that is not the core's writes nothing.

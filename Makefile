@@ -58,7 +58,7 @@ run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground st
 # What the sanitized build covers: the firmware's layers and their peers.
 # Not the interop programs of the minimal configuration: they leave out unused sections, which sanitizers keep.
 SANITIZED := test_os test_os_cases test_link test_engine test_icec icec_server icec_client everything_cpp_client everything_cpp_server everything_server \
-    everything_client everything_strings ice_relay test_icec_minimal
+    everything_client everything_strings ice_relay test_icec_minimal test_icec_minimal_calls
 test: build ## run all tests; firmware, models and IceC once more with sanitizers
 ifneq ($(LABEL)$(NAME),)
 	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(TESTS) --output-on-failure --no-tests=error \

@@ -6,6 +6,7 @@
 //
 //   SOAK_SECONDS=600 build/main/tests/ground/chip/test_chip_soak (simulated seconds; default 5)
 
+#include "../reported.h"
 #include "chip_world.h"
 #include "random.h"
 #include <cstdlib>
@@ -134,23 +135,10 @@ protected:
         }
     }
     void note(const Ice::Exception& e) {
-        // "This call may not have been executed", in Ice's words.
-        static const std::set<std::string> honest = {
-            "::Ice::ConnectionLostException",
-            "::Ice::ConnectFailedException",
-            "::Ice::ConnectTimeoutException",
-            "::Ice::InvocationTimeoutException",
-            "::Ice::TimeoutException",
-            "::Ice::CloseConnectionException",
-            "::Ice::CloseTimeoutException",
-            "::Ice::ConnectionTimeoutException",
-            "::Ice::ConnectionRefusedException",
-            "::Ice::CommunicatorDestroyedException",
-            "::IceUtil::IllegalArgumentException"}; // "timer destroyed": of a communicator, too
         {
             std::lock_guard<std::mutex> lock(mutex_);
             ++reports_[e.ice_id()];
-            if (!honest.count(e.ice_id()))
+            if (!isReport(e.ice_id()))
                 faults_.insert(e.ice_id());
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(20));

@@ -7,6 +7,7 @@
 //   SOAK_SECONDS=600 build/main/tests/ground/ice/test_radio_ice --gtest_filter='IceSoak*' (default
 //   10)
 
+#include "../reported.h"
 #include "world.h"
 #include <cstdlib>
 #include <gtest/gtest.h>
@@ -52,20 +53,8 @@ protected:
     // Only what says "this call may not have been executed" is an answer, too.
     void note(const Ice::Exception& e) {
         const std::string id = e.ice_id();
-        static const std::set<std::string> honest = {
-            "::Ice::ConnectionLostException",
-            "::Ice::ConnectFailedException",
-            "::Ice::ConnectTimeoutException",
-            "::Ice::InvocationTimeoutException",
-            "::Ice::TimeoutException",
-            "::Ice::CloseConnectionException",
-            "::Ice::CloseTimeoutException",
-            "::Ice::ConnectionTimeoutException",
-            "::Ice::ConnectionRefusedException",
-            "::Ice::CommunicatorDestroyedException",
-            "::IceUtil::IllegalArgumentException"}; // "timer destroyed": of a communicator, too
         ++reported_;
-        if (!honest.count(id)) {
+        if (!isReport(id)) {
             std::lock_guard<std::mutex> lock(mutex_);
             faults_.insert(id);
         }

@@ -83,10 +83,12 @@ TEST_F(Bridge, MemoryEqualsAReferenceWithAllWidths) {
         for (unsigned i = 0; i < bytes; ++i)
             reference[a + i] = static_cast<uint8_t>(v >> (8 * i));
     };
-    uint32_t place = 0x1000;
+    uint32_t places[16], place = 0; // anywhere in the window
+    for (uint32_t& each : places)
+        each = random.below(0x3FF00) << 8;
     for (int i = 0; i < 6000; ++i) {
-        if (random.chance(0.03))
-            place = 0x1000 + random.below(512); // runs, with jumps between them
+        if (i == 0 || random.chance(0.03))
+            place = places[random.below(16)] + random.below(256); // runs, with jumps between them
         uint32_t v = random.next(), a = place;
         switch (random.below(8)) {
         case 0:
@@ -202,7 +204,7 @@ TEST_F(Bridge, AnAccessThatIsGivenUpLeavesNothingHalfDone) {
     for (int i = 0; i < 400; ++i) {
         uint32_t value = random.next(), other = random.next();
         unsigned word = 1 + random.below(100), hclk = 1 + random.below(30);
-        uint32_t a = 0x1000 + 2 * random.below(64);
+        uint32_t a = 2 * random.below(0x1FF8000);
         fsmc_.write32(at(word), value);
         fsmc_.write16(ddr + a, static_cast<uint16_t>(value));
         switch (random.below(5)) {
@@ -239,7 +241,7 @@ TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
     for (double stall : {0.0, 0.3, 0.9, 0.97, 0.99}) {
         b_.memory.setStall(stall);
         for (int i = 0; i < 6; ++i) {
-            uint32_t address = 2 * random.below(0x4000), count = 1 + random.below(3000);
+            uint32_t address = 2 * random.below(0x1FF8000), count = 1 + random.below(3000);
             std::vector<uint16_t> out(count), in(count);
             for (auto& value : out)
                 value = static_cast<uint16_t>(random.next());

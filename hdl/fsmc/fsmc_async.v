@@ -33,6 +33,9 @@ module fsmc_async (
     output wire [1:0]  reading_o,    // NE2, NE1
     output wire        hit_o,        // hit_i and safe_i as they were in the same moment as reading_o
     output wire        safe_o,
+`ifdef FORMAL
+    output wire [4:0]  inside_o,     // full_s; NE2's read_s0, read_s1
+`endif
     output wire        writing_o     // NE1
 );
     wire [1:0] ne = ~fsmc_ne_n_i;
@@ -83,6 +86,8 @@ module fsmc_async (
     end
 
 `ifdef FORMAL
+    assign inside_o = {full_s, read_s0[1], read_s1[1]};
+
     // Time goes in steps; in each the clock and the pins may change as they like: no ratio, no phase.
     // What changes together with an edge is seen as it was before it.
     (* gclk *) wire step;

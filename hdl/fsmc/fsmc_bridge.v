@@ -68,6 +68,11 @@ module fsmc_bridge #(
 `ifdef FORMAL
     output wire        clear_o,   // what came before the access has been noted
     output wire        excuse_o,  // an access to memory is let go
+    output wire [4:0]  async_o,   // what the parts have inside
+    output wire [9:0]  registers_o,
+    output wire [31:0] word_o,
+    output wire [44:0] taken_o,
+    output wire        excused_o,
 `endif
     input  wire        npi_init_done_i
 );
@@ -123,6 +128,9 @@ module fsmc_bridge #(
         .wr_full_o(wr_full), .wr_o(taken), .wr_ne_o(taken_ne), .wr_addr_o(taken_addr),
         .wr_data_o(taken_data), .wr_be_o(taken_be),
         .hit_i(hit && clear), .safe_i(hit_safe && clear),
+`ifdef FORMAL
+        .inside_o(async_o),
+`endif
         .reading_o(seen), .hit_o(hit_seen), .safe_o(safe_seen), .writing_o(writing)
     );
 
@@ -170,7 +178,7 @@ module fsmc_bridge #(
     wire reg_restart;
     wire expired = patience[TIMEOUT_LOG2];
     wire waiting = (mem_reading && !hit_was) || ((writing || mem_queued) && !room);
-    assign excuse = expired && !busy && waiting && (!excused || SYNC != 0); // each beat of a burst
+    assign excuse = expired && clear && waiting && (!excused || SYNC != 0); // each beat of a burst
     wire rest    = fsmc_noe_n_i && fsmc_nwe_n_i;
 
     always @(posedge clk_i)
@@ -205,6 +213,9 @@ module fsmc_bridge #(
         .error_o(reg_error), .error_memory_o(reg_error_memory), .error_write_o(reg_write),
         .bus_valid_o(bus_valid_o), .bus_write_o(bus_write_o), .bus_addr_o(bus_addr_o),
         .bus_wdata_o(bus_wdata_o), .bus_ready_i(bus_ready_i), .bus_rdata_i(bus_rdata_i),
+`ifdef FORMAL
+        .inside_o(registers_o), .word_o(word_o),
+`endif
         .bus_error_i(bus_error_i)
     );
 
@@ -249,6 +260,8 @@ module fsmc_bridge #(
 `ifdef FORMAL
     assign clear_o  = clear;
     assign excuse_o = excuse;
+    assign taken_o  = {wr_full, taken, taken_ne, taken_addr, taken_data};
+    assign excused_o = excused;
 `endif
     wire unused = &{1'b0, npi_wr_empty_i, npi_wr_almost_full_i, npi_rd_word_i, 1'b0};
 endmodule

@@ -10,8 +10,7 @@
 // - Once NWAIT is inactive in an access to a register it stays so, and data on the pins stays.
 // - A write to a register goes on only when what came before it has been noted, and no other access than one to memory
 //   is let go as one that has waited too long, however short the time-out.
-// That 32-bit words go in one piece is proven of the parts: fsmc_async (each completed write is handed on once, as it
-// was on the pins, one given up never) and fsmc_registers (which halves make a word).
+// WORDS = 1 instead: 32-bit register words are atomic (fsmc_words_proof).
 
 `default_nettype none
 
@@ -20,7 +19,8 @@ module fsmc_bridge_proof #(
     parameter MUXED        = 0,
     parameter SYNC         = 0, // 1: NE2 only; the bursts (fsmc_burst) are free
     parameter WAIT_HIGH    = 0,
-    parameter TIMEOUT_LOG2 = 1
+    parameter TIMEOUT_LOG2 = 1,
+    parameter WORDS        = 0  // 1: only that 32-bit words are atomic (fsmc_words_proof)
 ) (
     input wire        clk_i,
     // pins; addresses of 8 halfwords, and one beyond the slots; two bits of data in a halfword
@@ -46,7 +46,12 @@ module fsmc_bridge_proof #(
     wire        nwait_pin, nwait_n = nwait_pin ^ (WAIT_HIGH != 0);
     wire        oe, access_error, error_write, late, clear, excuse;
     wire [9:0]  error_addr, bus_addr;
-    wire        bus_valid, bus_write;
+    wire        bus_valid, bus_write, error_memory;
+    wire [4:0]  async;
+    wire [9:0]  registers;
+    wire [31:0] word;
+    wire [44:0] taken;
+    wire        excused;
     wire [31:0] bus_wdata;
     wire [31:0] bus_rdata = {14'd0, rdata_i[3:2], 14'd0, rdata_i[1:0]};
 
@@ -55,12 +60,13 @@ module fsmc_bridge_proof #(
         .fsmc_a_i(a), .fsmc_d_i(d), .fsmc_d_o(d_out), .fsmc_d_oe_o(oe),
         .fsmc_ne_n_i({!ne2_i, !ne1_i}), .fsmc_noe_n_i(noe_n_i), .fsmc_nwe_n_i(nwe_n_i),
         .fsmc_nbl_n_i(nbl_n_i), .fsmc_nadv_n_i(nadv_n_i), .fsmc_clk_i(1'b0), .fsmc_nwait_n_o(nwait_pin),
-        .page_i(6'd0), .access_error_o(access_error), .error_addr_o(error_addr),
+        .page_i(6'd0), .access_error_o(access_error), .error_memory_o(error_memory), .error_addr_o(error_addr),
         .error_write_o(error_write), .late_o(late),
         .bus_valid_o(bus_valid), .bus_write_o(bus_write), .bus_addr_o(bus_addr),
         .bus_wdata_o(bus_wdata), .bus_ready_i(ready_i), .bus_rdata_i(bus_rdata),
         .bus_error_i(error_i),
-        .clear_o(clear), .excuse_o(excuse),
+        .clear_o(clear), .excuse_o(excuse), .async_o(async), .registers_o(registers), .word_o(word),
+        .taken_o(taken), .excused_o(excused),
         .npi_addr_ack_i(1'b0), .npi_wr_empty_i(1'b1), .npi_wr_almost_full_i(1'b0),
         .npi_rd_data_i(64'd0), .npi_rd_word_i(4'd0), .npi_rd_empty_i(1'b1), .npi_init_done_i(1'b1)
     );
@@ -76,6 +82,7 @@ module fsmc_bridge_proof #(
     reg [1:0]  calm = 2'd0;   // clocks since then
     reg        latched = 1'b0; // NADV has been low in this access
     reg        held = 1'b0;   // a write's strobe has risen, NE not yet
+    reg        given_up = 1'b0; // the access before
     wire clock    = past && clk_i && !was_clk;
     wire selected = ne1_i || ne2_i, was_selected = was_ne1 || was_ne2;
     wire strobe   = !noe_n_i || !nwe_n_i, was_strobe = !was_noe || !was_nwe;
@@ -89,14 +96,30 @@ module fsmc_bridge_proof #(
         past <= 1'b1;
         {was_clk, was_ne1, was_ne2, was_noe, was_nwe} <= {clk_i, ne1_i, ne2_i, noe_n_i, nwe_n_i};
         {was_beyond, was_a, was_d, was_nbl, was_nwait, was_out} <= {beyond_i, a_i, d_i, nbl_n_i, nwait_n, d_out[1:0]};
-
-        // Reset for some clocks, with the pins at rest.
-        assume (past || (clk_i && !selected));
         if (clock && resets != 3'd4)
             resets <= resets + 3'd1;
         rst <= resets < 3'd4;
-        assume (!rst || (!selected && !strobe));
+        latched <= selected && (latched || !nadv_n_i);
+        if (!access || !nwait_n) begin
+            let_go <= 1'b0;
+            calm   <= 2'd0;
+        end else if (was_access) begin
+            let_go <= 1'b1;
+            if (clock && calm != 2'd2)
+                calm <= calm + 2'd1;
+        end
+        held <= (wrote || held) && selected;
+        if (wrote || gives_up)
+            rest <= 3'd0;
+        else if (clock && rest != 3'd7)
+            rest <= rest + 3'd1;
+        given_up <= gives_up || (given_up && !access);
+    end
 
+    always @* begin
+        // Reset for some clocks, with the pins at rest.
+        assume (past || (clk_i && !selected));
+        assume (!rst || (!selected && !strobe));
         // The processor: one bank, one strobe; they fall while selected or together; address stable.
         assume (!(ne1_i && ne2_i) && (noe_n_i || nwe_n_i));
         assume (!(was_selected && selected) || same);
@@ -108,60 +131,59 @@ module fsmc_bridge_proof #(
         assume (!strobe || nadv_n_i);
         assume (MUXED == 0 || !access || latched);
         assume (SYNC == 0 || !ne1_i);
-        latched <= selected && (latched || !nadv_n_i);
         // A strobe rises when NWAIT was inactive, or after NE: given up, and then it rests for a while.
         assume (!wrote || let_go);
         assume (!(was_strobe && !was_selected) || !strobe || !selected);
-        if (!access || !nwait_n) begin
-            let_go <= 1'b0;
-            calm   <= 2'd0;
-        end else if (was_access) begin
-            let_go <= 1'b1;
-            if (clock && calm != 2'd2)
-                calm <= calm + 2'd1;
-        end
-        held <= (wrote || held) && selected;
         assume (!held || !strobe);
         assume (!ended || wrote); // a read: NE and NOE together, two clocks after NWAIT at least (FSMC: 4 HCLK)
         // Three clocks between edges of NWE (fsmc_async), four after an access that was given up.
-        if (wrote || gives_up)
-            rest <= 3'd0;
-        else if (clock && rest != 3'd7)
-            rest <= rest + 3'd1;
         assume (!wrote || rest >= 3'd3);
         assume (!(given_up && access) || rest >= 3'd4);
-        if (gives_up)
-            given_up <= 1'b1;
-        else if (access)
-            given_up <= 1'b0;
     end
-    reg given_up = 1'b0;
 
     // ---- NWAIT
     localparam [7:0] BOUND = 4 * ((1 << TIMEOUT_LOG2) + 1) + 12;
-    reg [7:0] waited = 8'd0;
-    always @(posedge step) begin
-        if (!access || nwait_n)
-            waited <= 8'd0;
-        else if (clock && waited != 8'hFF)
-            waited <= waited + 8'd1;
-        assert (waited < BOUND);
-    end
-    reg [1:0] since_ne1 = 2'd3; // clocks since an access to memory: fsmc_async's synchroniser
-    always @(posedge step)
-        if (ne1_i && strobe)
-            since_ne1 <= 2'd0;
-        else if (clock && since_ne1 != 2'd3)
-            since_ne1 <= since_ne1 + 2'd1;
-    always @(posedge step) if (past) begin
-        if (ne2_i && access && let_go)
-            assert (nwait_n);
-        if (ne2_i && access && let_go && !noe_n_i)
-            assert (d_out[1:0] == was_out);
-        assert (rst || !excuse || since_ne1 <= 2'd2 || SYNC != 0);
-        assert (!(ne2_i && !nwe_n_i && nwait_n) || clear);
-        assert (oe == (selected && !noe_n_i));
-        cover (waited > 8'd12 && was_access && access && nwait_n);
-    end
+    generate
+        if (WORDS == 0) begin : g_nwait
+            reg [7:0] waited = 8'd0;
+            always @(posedge step) begin
+                if (!access || nwait_n)
+                    waited <= 8'd0;
+                else if (clock && waited != 8'hFF)
+                    waited <= waited + 8'd1;
+                assert (waited < BOUND);
+            end
+            reg [1:0] since_ne1 = 2'd3; // clocks since an access to memory: fsmc_async's synchroniser
+            always @(posedge step)
+                if (ne1_i && strobe)
+                    since_ne1 <= 2'd0;
+                else if (clock && since_ne1 != 2'd3)
+                    since_ne1 <= since_ne1 + 2'd1;
+            always @(posedge step) if (past) begin
+                if (ne2_i && access && let_go)
+                    assert (nwait_n);
+                if (ne2_i && access && let_go && !noe_n_i)
+                    assert (d_out[1:0] == was_out);
+                assert (rst || !excuse || since_ne1 <= 2'd2 || SYNC != 0);
+                assert (!(ne2_i && !nwe_n_i && nwait_n) || clear);
+                assert (oe == (selected && !noe_n_i));
+                cover (waited > 8'd12 && was_access && access && nwait_n);
+            end
+        end else begin : g_words
+            fsmc_words_proof u_fsmc_words_proof (
+                .past_i(past), .rst_i(rst), .resets_i(resets),
+                .clock_i(clock), .ne2_i(ne2_i), .nwe_n_i(nwe_n_i), .noe_n_i(noe_n_i),
+                .access_i(access), .was_access_i(was_access), .beyond_i(beyond_i), .a_i(a_i),
+                .was_ne2_i(was_ne2), .was_noe_i(was_noe), .was_nwe_i(was_nwe),
+                .was_beyond_i(was_beyond), .was_a_i(was_a), .was_d_i(was_d), .selected_i(selected),
+                .wrote_i(wrote), .gives_up_i(gives_up), .let_go_i(let_go), .calm_i(calm), .rest_i(rest),
+                .given_up_i(given_up), .nwait_n_i(nwait_n), .was_nwait_n_i(was_nwait), .d_i(d_out),
+                .valid_i(bus_valid), .write_i(bus_write), .addr_i(bus_addr), .wdata_i(bus_wdata),
+                .rdata_i(bus_rdata), .error_i(access_error && !error_memory), .error_write_i(error_write),
+                .error_addr_i(error_addr), .clear_i(clear), .async_i(async), .registers_i(registers),
+                .word_i(word), .taken_i(taken), .excused_i(excused)
+            );
+        end
+    endgenerate
 endmodule
 `endif

@@ -42,6 +42,10 @@ module fsmc_registers (
     output wire [31:0] bus_wdata_o,
     input  wire        bus_ready_i,
     input  wire [31:0] bus_rdata_i,
+`ifdef FORMAL
+    output wire [9:0]  inside_o,
+    output wire [31:0] word_o,
+`endif
     input  wire        bus_error_i
 );
     // One of them at most: memory takes what was posted; the slave answers (bus_valid_o); the
@@ -131,6 +135,9 @@ module fsmc_registers (
     end
 
 `ifdef FORMAL
+    assign inside_o = {flushing, give, answering, half_read, half_write, asked_high, given_up, done_s, seen};
+    assign word_o   = word;
+
     // A hung slave is given up when expired_i says so: the rule that a transfer waits is not broken.
     bus_rules #(.MASTER(1), .PATIENCE(1)) u_bus_rules (
         .clk_i(clk_i), .rst_i(rst_i), .valid_i(bus_valid_o), .write_i(bus_write_o),

@@ -123,7 +123,7 @@ module ascon (
 
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(24)) u_stream (
         .clk_i(clk_i), .rst_i(rst_i),
-        .read_start_i((state == LOAD_SOURCE || (state == LOAD_TAG && decrypt)) && both_idle),
+        .read_start_i(state == LOAD_SOURCE || (state == LOAD_TAG && decrypt && both_idle)),
         .read_base_i(setting[31:6]), .read_words_i(words),
         .read_stop_i(state == FLUSH), .read_valid_o(read_valid), .read_data_o(read_data),
         .read_take_i((step && reads) || (tag_step && decrypt)), .read_idle_o(read_idle),
@@ -228,8 +228,7 @@ module ascon (
             end
             LOAD_TARGET: if (both_idle)
                 state <= pass == WIPE ? WORD : LOAD_SOURCE;
-            LOAD_SOURCE: if (both_idle)
-                state <= WORD;
+            LOAD_SOURCE: state <= WORD; // idle since LOAD_TARGET, or since the start
             WORD: if (step) begin
                 left  <= last ? 24'd0 : left - 24'd8;
                 index <= hash || pass == WIPE ? 2'd0 : {1'b0, !last && !index[0]};

@@ -6,6 +6,7 @@
 #include "Vascon_slot.h"
 #include "ascon_model.h"
 #include "core_slot.h"
+#include <array>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <sstream>
@@ -15,8 +16,6 @@ extern "C" {
 }
 
 namespace {
-
-constexpr uint32_t adBase = 0x1000, source = 0x4000, target = 0x8000, tagBase = 0xC000;
 
 AsconBytes counted(uint8_t first, size_t size) {
     AsconBytes bytes(size);
@@ -55,10 +54,26 @@ protected:
     void SetUp() override {
         bench_.reset();
         bus_.write(ASCON_MASK, 3);
-        bus_.write(ASCON_AD_BASE, adBase);
-        bus_.write(ASCON_SOURCE, source);
-        bus_.write(ASCON_TARGET, target);
-        bus_.write(ASCON_TAG, tagBase);
+        place();
+    }
+    // Buffers anywhere in the address space, 64 KiB apart at least.
+    void place() {
+        std::array<uint32_t, 4> at;
+        auto apart = [&] {
+            for (size_t i = 0; i < at.size(); ++i)
+                for (size_t k = 0; k < at.size(); ++k)
+                    if (i != k && at[i] - at[k] < 0x10000)
+                        return false;
+            return true;
+        };
+        do
+            for (auto& base : at)
+                base = random_.next() & ~(ASCON_ALIGNMENT - 1u);
+        while (!apart());
+        bus_.write(ASCON_AD_BASE, adBase_ = at[0]);
+        bus_.write(ASCON_SOURCE, source_ = at[1]);
+        bus_.write(ASCON_TARGET, target_ = at[2]);
+        bus_.write(ASCON_TAG, tagBase_ = at[3]);
     }
     void put(unsigned word, const AsconKey& value) {
         for (size_t i = 0; i < 16; i += 4)
@@ -78,7 +93,7 @@ protected:
     AsconKey tag() const {
         AsconKey key;
         for (size_t i = 0; i < 16; ++i)
-            key[i] = memory_.byte(tagBase + static_cast<uint32_t>(i));
+            key[i] = memory_.byte(tagBase_ + static_cast<uint32_t>(i));
         return key;
     }
     uint32_t finish(uint64_t limit = 100000) {
@@ -93,19 +108,19 @@ protected:
     }
     AsconSealed encrypt(const AsconKey& nonce, const AsconBytes& associated,
                         const AsconBytes& message) {
-        load(adBase, associated);
-        load(source, message);
+        load(adBase_, associated);
+        load(source_, message);
         sizes(associated.size(), message.size());
         put(ASCON_NONCE, nonce);
         bus_.write(ASCON_CONTROL, ASCON_CONTROL_ENCRYPT_MASK);
         EXPECT_EQ(finish(), ASCON_EVENT_DONE_MASK);
-        return {bytesAt(target, message.size()), tag()};
+        return {bytesAt(target_, message.size()), tag()};
     }
     // False: the core did not accept the tag.
     bool decrypt(const AsconKey& nonce, const AsconBytes& associated, const AsconSealed& sealed) {
-        load(adBase, associated);
-        load(source, sealed.text);
-        load(tagBase, sealed.tag);
+        load(adBase_, associated);
+        load(source_, sealed.text);
+        load(tagBase_, sealed.tag);
         sizes(associated.size(), sealed.text.size());
         put(ASCON_NONCE, nonce);
         bus_.write(ASCON_CONTROL, ASCON_CONTROL_DECRYPT_MASK);
@@ -125,6 +140,7 @@ protected:
         return key;
     }
 
+    uint32_t adBase_ = 0, source_ = 0, target_ = 0, tagBase_ = 0;
     Random random_{testSeed()};
     Bench<Vascon_slot> bench_;
     BusMaster<Vascon_slot> bus_{bench_};
@@ -165,7 +181,7 @@ TEST_F(AsconTest, EncryptsAndDecryptsTheKnownAnswers) {
         auto sealed = encrypt(sixteen(0x10), ad, text);
         ASSERT_EQ(hex(sealed.text) + hex(sealed.tag), want) << associated << ", " << message;
         ASSERT_TRUE(decrypt(sixteen(0x10), ad, sealed));
-        ASSERT_EQ(bytesAt(target, message), text);
+        ASSERT_EQ(bytesAt(target_, message), text);
     }
 }
 
@@ -174,16 +190,20 @@ TEST_F(AsconTest, HashesTheKnownAnswers) {
         size_t size;
         std::string want;
         line >> size >> want;
-        load(source, counted(0, size));
+        load(source_, counted(0, size));
         sizes(0, size);
         bus_.write(ASCON_CONTROL, ASCON_CONTROL_HASH_MASK);
         ASSERT_EQ(finish(), ASCON_EVENT_DONE_MASK);
-        ASSERT_EQ(hex(bytesAt(target, ASCON_DIGEST_BYTES)), want) << size;
+        ASSERT_EQ(hex(bytesAt(target_, ASCON_DIGEST_BYTES)), want) << size;
     }
 }
 
 TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
     for (int i = 0; i < 60; ++i) {
+        place();
+        bool isSlow = i % 6 == 5; // slower than the rounds between two uses of the memory
+        memory_.setStall(isSlow ? 0.97 : 0.2);
+        memory_.setLinger(isSlow ? 0.97 : 0);
         auto key = randomKey(), nonce = randomKey();
         auto associated = random(random_.below(200)), message = random(random_.below(600));
         if (i % 3 == 0)
@@ -193,7 +213,7 @@ TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
              want = asconEncrypt(key, nonce, associated, message);
         ASSERT_EQ(hex(sealed.text), hex(want.text)) << associated.size() << ", " << message.size();
         ASSERT_EQ(hex(sealed.tag), hex(want.tag));
-        EXPECT_EQ(memory_.byte(tagBase + 16), 0) << "16 bytes, no more";
+        EXPECT_EQ(memory_.byte(tagBase_ + 16), 0) << "16 bytes, no more";
         // Any one bit of what is protected makes it invalid, and nothing of the message is left.
         auto forged = sealed;
         auto forgedAd = associated;
@@ -206,13 +226,13 @@ TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
             forged.text[place - 16] ^= bit;
         else
             forgedAd[place - 16 - message.size()] ^= bit;
-        load(target, AsconBytes(message.size() + 8, 0x55));
+        load(target_, AsconBytes(message.size() + 8, 0x55));
         ASSERT_FALSE(decrypt(nonce, forgedAd, forged)) << place;
-        ASSERT_EQ(bytesAt(target, message.size()), AsconBytes(message.size(), 0));
-        ASSERT_EQ(bytesAt(target + static_cast<uint32_t>(message.size()), 8), AsconBytes(8, 0x55))
+        ASSERT_EQ(bytesAt(target_, message.size()), AsconBytes(message.size(), 0));
+        ASSERT_EQ(bytesAt(target_ + static_cast<uint32_t>(message.size()), 8), AsconBytes(8, 0x55))
             << "not behind it";
         ASSERT_TRUE(decrypt(nonce, associated, sealed));
-        ASSERT_EQ(bytesAt(target, message.size()), message);
+        ASSERT_EQ(bytesAt(target_, message.size()), message);
     }
 }
 
@@ -259,13 +279,71 @@ TEST(AsconServant, SealsOpensAndHashes) {
     EXPECT_EQ(Cores_Ascon_setKey(&core.servant, &k, nullptr), ICE_UNKNOWN_EXCEPTION);
 }
 
+TEST_F(AsconTest, ADigestWaitsForRoomInTheMemorysFifo) {
+    auto message = counted(1, 30);
+    auto digest = asconHash(message);
+    load(source_, message);
+    sizes(0, message.size());
+    auto start = [&] { bus_.write(ASCON_CONTROL, ASCON_CONTROL_HASH_MASK); };
+    memory_.setLinger(1);
+    for (int i = 0; i < 4; ++i) { // a burst each: the FIFO's 32 words
+        start();
+        ASSERT_EQ(finish(), ASCON_EVENT_DONE_MASK);
+    }
+    load(target_, AsconBytes(ASCON_DIGEST_BYTES, 0));
+    start();
+    for (int i = 0; i < 1000; ++i)
+        bench_.tick();
+    EXPECT_EQ(bus_.read(ASCON_STATUS), ASCON_STATUS_BUSY_MASK);
+    EXPECT_TRUE(bench_.top().npi_wr_almost_full_i);
+    memory_.setLinger(0);
+    EXPECT_EQ(finish(), ASCON_EVENT_DONE_MASK);
+    EXPECT_EQ(bytesAt(target_, ASCON_DIGEST_BYTES), AsconBytes(digest.begin(), digest.end()));
+}
+
+TEST_F(AsconTest, CountsSizesOfUpTo16MiB) {
+    put(ASCON_KEY, sixteen(0));
+    // A bit that is not counted makes an empty message of it, or one for which nothing is read.
+    auto goesOn = [&](uint32_t how) {
+        uint64_t before = memory_.reads();
+        put(ASCON_NONCE, sixteen(1));
+        bus_.write(ASCON_CONTROL, how);
+        for (int i = 0; i < 300; ++i)
+            bench_.tick();
+        bool isBusy = bus_.read(ASCON_STATUS) == ASCON_STATUS_BUSY_MASK;
+        bus_.write(ASCON_CONTROL, ASCON_CONTROL_ABORT_MASK);
+        return isBusy && memory_.reads() > before + 3 && finish() == ASCON_EVENT_DONE_MASK &&
+               bus_.read(ASCON_STATUS) == ASCON_STATUS_ABORTED_MASK;
+    };
+    for (uint32_t size = 1024; size <= ASCON_MAX_SIZE; size *= 2) {
+        sizes(0, size);
+        EXPECT_TRUE(goesOn(ASCON_CONTROL_HASH_MASK)) << size;
+        sizes(size, 0);
+        EXPECT_TRUE(goesOn(ASCON_CONTROL_ENCRYPT_MASK)) << size;
+    }
+    sizes(0, ASCON_MAX_SIZE);
+    EXPECT_TRUE(goesOn(ASCON_CONTROL_HASH_MASK));
+    sizes(ASCON_MAX_SIZE, 0);
+    EXPECT_TRUE(goesOn(ASCON_CONTROL_ENCRYPT_MASK));
+}
+
+TEST_F(AsconTest, KeepsEveryBitOfItsSettings) {
+    std::array<uint32_t, ASCON_TAG - ASCON_AD_SIZE + 1> values;
+    for (int round = 0; round < 30; ++round) {
+        for (unsigned i = 0; i < values.size(); ++i)
+            bus_.write(ASCON_AD_SIZE + i, values[i] = random_.next());
+        for (unsigned i = 0; i < values.size(); ++i)
+            ASSERT_EQ(bus_.read(ASCON_AD_SIZE + i), values[i]) << "word " << ASCON_AD_SIZE + i;
+    }
+}
+
 TEST_F(AsconTest, WorksInPlace) {
     auto key = randomKey(), nonce = randomKey();
     auto message = random(777);
     put(ASCON_KEY, key);
-    bus_.write(ASCON_TARGET, source);
+    bus_.write(ASCON_TARGET, source_);
     encrypt(nonce, {}, message);
-    EXPECT_EQ(bytesAt(source, 777), asconEncrypt(key, nonce, {}, message).text);
+    EXPECT_EQ(bytesAt(source_, 777), asconEncrypt(key, nonce, {}, message).text);
 }
 
 TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
@@ -289,11 +367,11 @@ TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
     EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_DONE_MASK);
     // A nonce that is begun, and dropped.
     sizes(0, 5);
-    load(source, counted(9, 5));
+    load(source_, counted(9, 5));
     bus_.write(ASCON_NONCE, 0x12345678);
     EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_DONE_MASK);
     auto digest = asconHash(counted(9, 5));
-    EXPECT_EQ(bytesAt(target, 32), AsconBytes(digest.begin(), digest.end()));
+    EXPECT_EQ(bytesAt(target_, 32), AsconBytes(digest.begin(), digest.end()));
     bus_.write(ASCON_NONCE, 0x12345678);
     bus_.write(ASCON_CONTROL, ASCON_CONTROL_ABORT_MASK);
     EXPECT_EQ(hex(encrypt(sixteen(1), {}, counted(9, 5)).text),
@@ -304,13 +382,19 @@ TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
     EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_REFUSED_MASK)
         << "the key is forgotten";
     EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_DONE_MASK) << "a digest needs neither";
-    for (unsigned word : {ASCON_AD_BASE, ASCON_SOURCE, ASCON_TARGET, ASCON_TAG}) {
-        bus_.write(word, 0x1008);
-        EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_REFUSED_MASK) << "word " << word;
-        bus_.write(word, 0x1000);
-    }
-    sizes(ASCON_MAX_SIZE + 1, 0);
-    EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_REFUSED_MASK);
+    auto refusesBits = [&](unsigned word, unsigned first, unsigned last) {
+        for (unsigned bit = first; bit <= last; ++bit) {
+            bus_.write(word, 1u << bit);
+            EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_REFUSED_MASK)
+                << "word " << word << ", bit " << bit;
+        }
+        bus_.write(word, 0);
+    };
+    for (unsigned word : {ASCON_AD_BASE, ASCON_SOURCE, ASCON_TARGET, ASCON_TAG})
+        refusesBits(word, 0, 5);
+    for (unsigned word : {ASCON_AD_SIZE, ASCON_SIZE})
+        refusesBits(word, 24, 31);
+    EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_DONE_MASK);
 }
 
 TEST_F(AsconTest, AbortEndsAMessageAndLeavesNoPlaintext) {
@@ -319,8 +403,8 @@ TEST_F(AsconTest, AbortEndsAMessageAndLeavesNoPlaintext) {
     put(ASCON_KEY, key);
     auto sealed = encrypt(nonce, {}, message);
     for (int clocks : {0, 20, 300, 1500, 1800}) {
-        load(source, sealed.text);
-        load(target, AsconBytes(3000, 0x55));
+        load(source_, sealed.text);
+        load(target_, AsconBytes(3000, 0x55));
         put(ASCON_NONCE, nonce);
         bus_.write(ASCON_CONTROL, ASCON_CONTROL_DECRYPT_MASK);
         for (int i = 0; i < clocks; ++i)
@@ -329,10 +413,10 @@ TEST_F(AsconTest, AbortEndsAMessageAndLeavesNoPlaintext) {
         EXPECT_EQ(finish(5000), ASCON_EVENT_DONE_MASK);
         EXPECT_EQ(bus_.read(ASCON_STATUS), ASCON_STATUS_ABORTED_MASK);
         for (uint32_t i = 0; i < 3000; ++i)
-            ASSERT_TRUE(memory_.byte(target + i) == 0 || memory_.byte(target + i) == 0x55) << i;
+            ASSERT_TRUE(memory_.byte(target_ + i) == 0 || memory_.byte(target_ + i) == 0x55) << i;
     }
     ASSERT_TRUE(decrypt(nonce, {}, sealed)) << "the next is right";
-    EXPECT_EQ(bytesAt(target, 3000), message);
+    EXPECT_EQ(bytesAt(target_, 3000), message);
 }
 
 TEST_F(AsconTest, SpeedWhenTheMemoryKeepsUp) {

@@ -102,6 +102,41 @@ TEST_F(BiquadCore, IsAButterworthLowPass) {
     }
 }
 
+TEST_F(BiquadCore, BuffersMayBeAnywhereInMemory) {
+    Random random(testSeed());
+    core_.memory_.setLinger(0.99); // full now and then
+    set(0, {20000, -10000, 30000, 5000, -2000});
+    for (int round = 0; round < 12; ++round) {
+        core_.memoryAt_ = random.next() & ~1023u;
+        core_.bus_.write(BIQUAD_MEMORY, core_.memoryAt_ >> 10);
+        SCOPED_TRACE(core_.memoryAt_);
+        expectFiltered(samples(256, random));
+    }
+}
+
+TEST_F(BiquadCore, WhatIsNoCoefficientChangesNone) {
+    Random random(testSeed());
+    set(0, {20000, -10000, 30000, 5000, -2000});
+    for (unsigned k = 0; k < 256; ++k)
+        if (k >= 32 || k % 8 > 4)
+            core_.setCoefficient(static_cast<Ice_Byte>(k), 999);
+    expectFiltered(samples(50, random));
+}
+
+TEST_F(BiquadCore, EveryResultOfEverySectionMayBeTooLarge) {
+    for (size_t section = 0; section < BiquadModel::sections; ++section)
+        set(section, {131071, 131071, 131071, -131072, 0});
+    expectFiltered(std::vector<Ice_Short>(256, 32767)); // until all are at their limit
+    expectFiltered(std::vector<Ice_Short>(256, 32767));
+    EXPECT_EQ(saturations_, 4 * 256);
+}
+
+TEST_F(BiquadCore, HasNoWordBehindItsResults) {
+    for (unsigned word = 0; word < 16; ++word)
+        for (bool write : {false, true})
+            EXPECT_EQ(core_.bus_.transfer(write, word, 0).error, word > BIQUAD_FILTER_OUT1) << word;
+}
+
 TEST_F(BiquadCore, RefusesNothingAtAllAndTooMuch) {
     auto statusOf = [&](size_t count) {
         try {

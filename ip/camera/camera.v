@@ -128,7 +128,7 @@ module camera (
         .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(1'b0), .read_base_i(26'd0), .read_words_i(4'd0), .read_stop_i(1'b0),
         .read_valid_o(no_data), .read_data_o(no_words), .read_take_i(1'b0), .read_idle_o(read_idle),
-        .write_start_i(state == WAIT_FOR_BUFFER && write_idle), .write_base_i(write_base[31:6]),
+        .write_start_i(state == WAIT_FOR_BUFFER), .write_base_i(write_base[31:6]),
         .write_valid_i(eighth), .write_data_i({token[7:0], pixels}), .write_be_i(8'hFF),
         .write_ready_o(write_ready), .write_flush_i(state == FINISH), .write_idle_o(write_idle),
         .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
@@ -183,7 +183,7 @@ module camera (
                     whole <= 1'b0;
                 events[CAMERA_EVENT_LONG_FRAME_LSB] <= pop && ends_line && whole;
             end
-            WAIT_FOR_BUFFER: if (write_idle) begin
+            WAIT_FOR_BUFFER: begin // the clock in which it is chosen; the frame before is in memory
                 x     <= 16'd0;
                 y     <= 16'd0;
                 whole <= 1'b0;

@@ -16,7 +16,6 @@ extern "C" {
 namespace {
 
 constexpr int width = 40, height = 12;
-constexpr uint32_t base = 0x10000, stride = 0x400;
 
 class CameraTest : public ::testing::Test {
 protected:
@@ -26,12 +25,21 @@ protected:
         bench_.addModel([this] { edge(); }, [this] { edge(); });
         bench_.reset();
         bus_.write(CAMERA_MASK, 0x7F);
+        place();
         configure(width, height);
+    }
+    // Buffers anywhere in the address space, 64 KiB apart at least.
+    void place() {
+        auto isFar = [](uint32_t distance) { return distance + 0x10000 >= 0x20000; };
+        do
+            stride_ = random_.next() & ~(CAMERA_ALIGNMENT - 1u);
+        while (!isFar(stride_) || !isFar(2 * stride_));
+        base_ = random_.next() & ~(CAMERA_ALIGNMENT - 1u);
     }
     void configure(uint32_t w, uint32_t h) {
         bus_.write(CAMERA_SIZE, h << 16 | w);
-        bus_.write(CAMERA_BASE, base);
-        bus_.write(CAMERA_STRIDE, stride);
+        bus_.write(CAMERA_BASE, base_);
+        bus_.write(CAMERA_STRIDE, stride_);
     }
     void edge() {
         if (--wait_ > 0)
@@ -65,14 +73,20 @@ protected:
     uint32_t latest() {
         uint32_t value = bus_.read(CAMERA_LATEST);
         EXPECT_TRUE(value & CAMERA_LATEST_VALID_MASK);
-        return base + ((value & CAMERA_LATEST_BUFFER_MASK) - 1) * stride;
+        return base_ + ((value & CAMERA_LATEST_BUFFER_MASK) - 1) * stride_;
     }
     void expectAt(uint32_t at, const std::vector<uint8_t>& pixels) {
         for (size_t i = 0; i < pixels.size(); ++i)
             ASSERT_EQ(memory_.byte(at + static_cast<uint32_t>(i)), pixels[i]) << "pixel " << i;
     }
     void start() { bus_.write(CAMERA_CONTROL, CAMERA_CONTROL_START_MASK); }
+    void stop() {
+        bus_.write(CAMERA_CONTROL, CAMERA_CONTROL_STOP_MASK);
+        bench_.waitFor([&] { return !(bus_.read(CAMERA_STATUS) & CAMERA_STATUS_ACTIVE_MASK); },
+                       "the core to stop", 500);
+    }
 
+    uint32_t base_ = 0, stride_ = 0;
     Random random_{testSeed()};
     uint32_t slowest_ = 3;
     int wait_ = 1;
@@ -83,17 +97,70 @@ protected:
 };
 
 TEST_F(CameraTest, EveryFrameIsInMemoryAsTheSensorSentIt) {
-    start();
-    for (int i = 1; i <= 20; ++i) {
-        auto pixels = picture();
-        sensor_.addFrame(pixels, width, height);
-        ASSERT_EQ(drain(), CAMERA_EVENT_FRAME_MASK);
-        expectAt(latest(), pixels);
-        EXPECT_EQ(bus_.read(CAMERA_FRAMES), static_cast<uint32_t>(i));
+    for (int placed = 0; placed < 12; ++placed) {
+        place();
+        configure(width, height);
+        start();
+        for (uint32_t i = 1; i <= 4; ++i) {
+            // What is written while the core is active is for the next START.
+            for (unsigned word : {CAMERA_SIZE, CAMERA_BASE, CAMERA_STRIDE}) {
+                uint32_t value = random_.next();
+                bus_.write(word, value);
+                ASSERT_EQ(bus_.read(word), value) << "word " << word;
+            }
+            auto pixels = picture();
+            sensor_.addFrame(pixels, width, height);
+            ASSERT_EQ(drain(), CAMERA_EVENT_FRAME_MASK);
+            expectAt(latest(), pixels);
+            EXPECT_EQ(bus_.read(CAMERA_FRAMES), i);
+        }
+        EXPECT_EQ(bus_.read(CAMERA_DROPPED), 0u);
+        for (uint32_t i = 0; i < 3; ++i)
+            EXPECT_EQ(memory_.byte(base_ + i * stride_ + width * height), 0)
+                << "nothing behind a frame";
+        stop();
     }
-    EXPECT_EQ(bus_.read(CAMERA_DROPPED), 0u);
-    for (uint32_t i = 0; i < 3; ++i)
-        EXPECT_EQ(memory_.byte(base + i * stride + width * height), 0) << "nothing behind a frame";
+}
+
+TEST_F(CameraTest, FramesMayBeAsWideAndAsHighAsTheRegistersSay) {
+    sensor_ = SensorModel({60, 1});
+    for (auto [wide, lines] : {std::pair{8, 4095}, {2048, 1}, {2040, 2}, {8, 1}}) {
+        configure(static_cast<uint32_t>(wide), static_cast<uint32_t>(lines));
+        start();
+        std::vector<uint8_t> pixels(static_cast<size_t>(wide * lines));
+        for (auto& p : pixels)
+            p = static_cast<uint8_t>(random_.next());
+        sensor_.addFrame(pixels, wide, lines);
+        EXPECT_EQ(drain(), CAMERA_EVENT_FRAME_MASK) << wide << " x " << lines;
+        expectAt(latest(), pixels);
+        stop();
+    }
+}
+
+TEST_F(CameraTest, FramesAreCountedModulo65536) {
+    // As fast as they can be dropped: a frame that begins ends the one before, which has no lines.
+    slowest_ = 1;
+    sensor_ = SensorModel({4, 2});
+    start();
+    for (uint32_t begun = 0; begun < 0x10003; begun += 0x1001) {
+        for (int i = 0; i < 0x1001; ++i)
+            sensor_.addFrame({}, width, 0);
+        EXPECT_EQ(drain(), CAMERA_EVENT_SHORT_FRAME_MASK);
+        EXPECT_EQ(bus_.read(CAMERA_DROPPED), (begun + 0x1000) & 0xFFFF);
+    }
+    EXPECT_EQ(bus_.read(CAMERA_FRAMES), 0u);
+    stop();
+    // Whole ones, as close as a burst to memory and the FIFO let them be.
+    configure(8, 1);
+    sensor_ = SensorModel({16, 1});
+    memory_.setStall(0);
+    start();
+    for (uint32_t whole = 0; whole < 0x10001;) {
+        for (int i = 0; i < 0x1001; ++i, ++whole)
+            sensor_.addFrame(std::vector<uint8_t>(8, static_cast<uint8_t>(i)), 8, 1);
+        EXPECT_EQ(drain(), CAMERA_EVENT_FRAME_MASK);
+        EXPECT_EQ(bus_.read(CAMERA_FRAMES), whole & 0xFFFF);
+    }
 }
 
 TEST_F(CameraTest, FramesCloseTogetherAreAllCaught) {
@@ -141,6 +208,7 @@ TEST_F(CameraTest, AMemoryThatIsTooSlowIsToldAndTheNextFrameIsRight) {
     start();
     memory_.hold(true);
     sensor_.addFrame(picture(), width, height);
+    sensor_.addFrame(picture(), width, height); // begins, and nobody can be told
     drain();
     memory_.hold(false);
     uint32_t events = drain();
@@ -150,7 +218,7 @@ TEST_F(CameraTest, AMemoryThatIsTooSlowIsToldAndTheNextFrameIsRight) {
     sensor_.addFrame(pixels, width, height);
     events |= drain();
     EXPECT_TRUE(events & CAMERA_EVENT_OVERFLOW_MASK);
-    EXPECT_EQ(bus_.read(CAMERA_DROPPED), 1u);
+    EXPECT_EQ(bus_.read(CAMERA_DROPPED), 2u) << "the second has no pixel";
     expectAt(latest(), pixels);
 }
 
@@ -162,7 +230,7 @@ TEST_F(CameraTest, TheFrameThatAnotherCoreHasIsNotOverwritten) {
     auto& top = bench_.top();
     for (int round = 0; round < 6; ++round) {
         ASSERT_TRUE(top.frame_valid_o);
-        uint32_t at = base + (top.frame_index_o - 1u) * stride;
+        uint32_t at = base_ + (top.frame_index_o - 1u) * stride_;
         EXPECT_EQ(at, latest());
         top.frame_take_i = 1;
         bench_.tick();
@@ -185,9 +253,7 @@ TEST_F(CameraTest, StopsAndStartsInTheMiddleOfAFrame) {
         sensor_.addFrame(picture(), width, height);
         for (uint32_t i = 0; i < 300 + random_.below(900); ++i)
             bench_.tick();
-        bus_.write(CAMERA_CONTROL, CAMERA_CONTROL_STOP_MASK);
-        bench_.waitFor([&] { return !(bus_.read(CAMERA_STATUS) & CAMERA_STATUS_ACTIVE_MASK); },
-                       "the core to stop", 500);
+        stop();
         EXPECT_FALSE(bench_.top().frame_valid_o);
         drain();
         start();
@@ -208,16 +274,31 @@ TEST_F(CameraTest, RefusesWhatItCannotCapture) {
         bus_.write(CAMERA_EVENT, events);
         return events == CAMERA_EVENT_REFUSED_MASK && bus_.read(CAMERA_STATUS) == 0;
     };
-    for (auto [w, h] : {std::pair{12u, 8u}, {0u, 8u}, {2056u, 8u}, {16u, 0u}, {16u, 4096u}}) {
+    for (auto [w, h] : {std::pair{17u, 8u},
+                        {18u, 8u},
+                        {20u, 8u},
+                        {0u, 8u},
+                        {2056u, 8u},
+                        {4096u, 8u},
+                        {8192u, 8u},
+                        {16384u, 8u},
+                        {32768u, 8u},
+                        {16u, 0u},
+                        {16u, 4096u},
+                        {16u, 8192u},
+                        {16u, 16384u},
+                        {16u, 32768u}}) {
         configure(w, h);
         EXPECT_TRUE(refused()) << w << " x " << h;
     }
-    configure(16, 8);
-    bus_.write(CAMERA_BASE, base + 64);
-    EXPECT_TRUE(refused());
-    configure(16, 8);
-    bus_.write(CAMERA_STRIDE, stride + 8);
-    EXPECT_TRUE(refused());
+    for (uint32_t bit = 1; bit < CAMERA_ALIGNMENT; bit *= 2) {
+        configure(16, 8);
+        bus_.write(CAMERA_BASE, base_ + bit);
+        EXPECT_TRUE(refused()) << bit;
+        configure(16, 8);
+        bus_.write(CAMERA_STRIDE, stride_ + bit);
+        EXPECT_TRUE(refused()) << bit;
+    }
     configure(16, 8);
     EXPECT_FALSE(refused());
     EXPECT_EQ(bus_.read(CAMERA_ID), CAMERA_ID_VALUE);
@@ -257,7 +338,7 @@ TEST_F(CameraTest, APixelEachFabricClockWhenTheMemoryKeepsUp) {
         EXPECT_EQ(bus_.read(CAMERA_FRAMES), 3u);
         EXPECT_EQ(seen, 3 * lines * words);
         uint32_t at =
-            base + ((bus_.read(CAMERA_LATEST) & CAMERA_LATEST_BUFFER_MASK) - 1) * wide * lines;
+            base_ + ((bus_.read(CAMERA_LATEST) & CAMERA_LATEST_BUFFER_MASK) - 1) * wide * lines;
         expectAt(at, pixels);
         bus_.write(CAMERA_CONTROL, CAMERA_CONTROL_STOP_MASK);
         for (int i = 0; i < 100; ++i)

@@ -16,7 +16,7 @@ namespace {
 class FirCore : public ::testing::Test {
 protected:
     void set(unsigned shift, Random& random) {
-        model_.shift = shift;
+        model_.shift = shift % 32;
         core_.setShift(static_cast<Ice_Byte>(shift));
         for (size_t k = 0; k < FirModel::taps; ++k) {
             model_.coefficients[k] = static_cast<int32_t>(random.below(262144)) - 131072;
@@ -52,7 +52,7 @@ TEST_F(FirCore, EqualsTheModelAndGoesOnFromCallToCall) {
     Random random(testSeed());
     for (int round = 0; round < 60; ++round) {
         if (round % 4 == 0)
-            set(round < 8 ? 17 : random.below(32), random);
+            set(round < 8 ? 17 : random.below(256), random);
         if (round % 7 == 0) {
             core_.clear();
             model_.clear();
@@ -65,12 +65,40 @@ TEST_F(FirCore, EqualsTheModelAndGoesOnFromCallToCall) {
 TEST_F(FirCore, TheAnswerToAnImpulseIsTheCoefficients) {
     for (int k = 0; k < 16; ++k)
         core_.setCoefficient(static_cast<Ice_Byte>(k), 100 * k - 800);
-    core_.setCoefficient(16, 999); // there is none, and none changes
+    for (int k = 16; k < 256; ++k)
+        core_.setCoefficient(static_cast<Ice_Byte>(k), 999); // there is none, and none changes
     std::vector<Ice_Short> impulse(20, 0);
     impulse[0] = 1;
     auto answer = filter(impulse);
     for (int k = 0; k < 20; ++k)
         EXPECT_EQ(answer[static_cast<size_t>(k)], k < 16 ? 100 * k - 800 : 0) << k;
+}
+
+TEST_F(FirCore, BuffersMayBeAnywhereInMemory) {
+    Random random(testSeed());
+    core_.memory_.setLinger(0.95); // full now and then
+    set(17, random);
+    for (int round = 0; round < 12; ++round) {
+        core_.memoryAt_ = random.next() & ~1023u;
+        core_.bus_.write(FIR_MEMORY, core_.memoryAt_ >> 10);
+        SCOPED_TRACE(core_.memoryAt_);
+        expectFiltered(samples(256, random));
+    }
+}
+
+TEST_F(FirCore, EveryResultMayBeTooLarge) {
+    for (size_t k = 0; k < FirModel::taps; ++k) {
+        model_.coefficients[k] = 131071;
+        core_.setCoefficient(static_cast<Ice_Byte>(k), 131071);
+    }
+    expectFiltered(std::vector<Ice_Short>(256, 32767));
+    EXPECT_EQ(saturations_, 256);
+}
+
+TEST_F(FirCore, HasNoWordBehindItsResults) {
+    for (unsigned word = 0; word < 16; ++word)
+        for (bool write : {false, true})
+            EXPECT_EQ(core_.bus_.transfer(write, word, 0).error, word > FIR_FILTER_OUT1) << word;
 }
 
 TEST_F(FirCore, RefusesNothingAtAllAndTooMuch) {

@@ -22,7 +22,7 @@ extern "C" {
 }
 
 constexpr U32 coreSlot = 5, coreClocksOfMs = 100; // a simulated millisecond
-constexpr U32 coreMemory = 0x01000000;            // DDR3 byte address of the core's buffers
+constexpr U32 coreMemory = 0x01000000; // DDR3 byte address of the core's buffers, to the driver
 
 // The status of a call that neither succeeded nor threw one of its exceptions.
 class CoreError : public std::runtime_error {
@@ -95,8 +95,8 @@ public:
             throw exception;
         hw_check(status);
     }
-    // Until an operation that is answered later has ended, as the firmware's task polls for it: woken by
-    // the core's interrupt, or some milliseconds after the time it asked for.
+    // Until an operation that is answered later has ended, as the firmware's task polls for it:
+    // woken by the core's interrupt, or some milliseconds after the time it asked for.
     void hw_finish(U32 operation) {
         Hw_Status status = HW_OK;
         U32 next = HW_NEVER;
@@ -117,11 +117,13 @@ public:
     BusMaster<Module> bus_{bench_};
     Hw_Core* core_ = nullptr;
     U32 posted_ = 0;
+    U32 memoryAt_ = coreMemory; // where they are to the core: what a test writes into MEMORY
     uint64_t started_ = 0, waitedClocks_ = 0;
     unsigned errors_ = 0;
 
 private:
     static constexpr U32 ddr = 0x60000000, control = 0x64000000; // NE1, NE2
+    U32 inMemory(U32 address) const { return address - ddr - coreMemory + memoryAt_; }
     U32 access(bool isWrite, U32 address, U32 value) {
         if (address < control || address >= control + 0x1000)
             return 0; // the FSMC's own registers
@@ -140,7 +142,7 @@ private:
         if (address < ddr || address >= control)
             return static_cast<Value>(self.access(false, address, 0));
         for (unsigned i = 0; i < Bytes; ++i)
-            value |= U32(self.memory_.byte(address - ddr + i)) << (8 * i);
+            value |= U32(self.memory_.byte(self.inMemory(address + i))) << (8 * i);
         return static_cast<Value>(value);
     }
     template <unsigned Bytes, class Value>
@@ -151,7 +153,8 @@ private:
             return;
         }
         for (unsigned i = 0; i < Bytes; ++i)
-            self.memory_.setByte(address - ddr + i, static_cast<uint8_t>(value >> (8 * i)));
+            self.memory_.setByte(self.inMemory(address + i),
+                                 static_cast<uint8_t>(value >> (8 * i)));
     }
 };
 

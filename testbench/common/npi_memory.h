@@ -28,6 +28,9 @@ public:
     void setStall(double stall) { stall_ = stall; }
     // While held no request is acknowledged: a memory that hangs.
     void hold(bool held) { held_ = held; }
+    // Probability, each cycle, that a word of an acknowledged write stays in the write FIFO, as it
+    // does while the memory is busy with other ports. 0: it leaves at the acknowledgement.
+    void setLinger(double linger) { linger_ = linger; }
     uint64_t reads() const { return reads_; }
     uint64_t writes() const { return writes_; }
 
@@ -47,9 +50,14 @@ private:
         if (top_.rst_i) {
             read_.clear();
             write_.clear();
+            lingering_ = 0;
             ack_ = readValid_ = false;
             return;
         }
+        if (linger_ == 0)
+            lingering_ = 0;
+        else if (lingering_ && !random_.chance(linger_))
+            --lingering_;
         if (top_.npi_rd_pop_o) {
             if (!readValid_)
                 broken("pop of an empty read FIFO");
@@ -64,7 +72,7 @@ private:
         }
         if (top_.npi_wr_push_o) {
             write_.push_back({top_.npi_wr_data_o, static_cast<uint8_t>(top_.npi_wr_be_o)});
-            if (write_.size() > fifoWords)
+            if (write_.size() + lingering_ > fifoWords)
                 broken("push into a full write FIFO");
         }
         sampleRequest();
@@ -121,6 +129,8 @@ private:
                 if (word.extra >> b & 1)
                     bytes_[address_ + 8 * w + b] = static_cast<uint8_t>(word.data >> (8 * b));
         }
+        if (linger_ > 0)
+            lingering_ += words; // what they write is seen by every later request
     }
 
     uint64_t load(uint32_t address) const {
@@ -133,8 +143,8 @@ private:
     void drive() {
         top_.npi_init_done_i = 1;
         top_.npi_addr_ack_i = ack_;
-        top_.npi_wr_empty_i = write_.empty();
-        top_.npi_wr_almost_full_i = write_.size() >= fifoWords;
+        top_.npi_wr_empty_i = write_.empty() && !lingering_;
+        top_.npi_wr_almost_full_i = write_.size() + lingering_ >= fifoWords;
         top_.npi_rd_empty_i = !readValid_;
         if (readValid_) {
             top_.npi_rd_data_i = read_.front().data;
@@ -144,10 +154,11 @@ private:
 
     Module& top_;
     Random random_;
-    double stall_;
+    double stall_, linger_ = 0;
     bool held_ = false, ack_ = false, waiting_ = false, readValid_ = false, isRead_ = false;
     uint32_t address_ = 0;
     unsigned size_ = 0;
+    size_t lingering_ = 0; // words of acknowledged writes that are in the FIFO
     std::deque<Word> read_, write_;
     std::unordered_map<uint32_t, uint8_t> bytes_;
     uint64_t reads_ = 0, writes_ = 0;

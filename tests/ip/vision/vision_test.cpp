@@ -12,8 +12,6 @@
 
 namespace {
 
-constexpr uint32_t frameBase = 0x10000, resultBase = 0x80000;
-
 // Noise, flat areas, and bright and dark squares: corners of every kind.
 std::vector<uint8_t> picture(int width, int height, Random& random) {
     std::vector<uint8_t> pixels(static_cast<size_t>(width * height));
@@ -36,16 +34,25 @@ protected:
     void SetUp() override {
         bench_.reset();
         bus_.write(VISION_MASK, 3);
+        Random random(testSeed());
+        place(random);
+    }
+    // Buffers anywhere in the address space, 1 MiB apart at least.
+    void place(Random& random) {
+        do {
+            frameBase_ = random.next() & ~(127u);
+            resultBase_ = random.next() & ~(127u);
+        } while (frameBase_ - resultBase_ + 0x100000 < 0x200000);
     }
     void load(const std::vector<uint8_t>& pixels) {
         for (size_t i = 0; i < pixels.size(); ++i)
-            memory_.setByte(frameBase + static_cast<uint32_t>(i), pixels[i]);
+            memory_.setByte(frameBase_ + static_cast<uint32_t>(i), pixels[i]);
     }
     void start(int width, int height, int threshold, uint32_t most = 65535) {
         bus_.write(VISION_THRESHOLD, static_cast<uint32_t>(threshold));
-        bus_.write(VISION_FRAME_BASE, frameBase);
+        bus_.write(VISION_FRAME_BASE, frameBase_);
         bus_.write(VISION_FRAME_SIZE, static_cast<uint32_t>(height << 16 | width));
-        bus_.write(VISION_RESULT_BASE, resultBase);
+        bus_.write(VISION_RESULT_BASE, resultBase_);
         bus_.write(VISION_RESULT_MAX, most);
         bus_.write(VISION_CONTROL, VISION_CONTROL_START_MASK);
     }
@@ -58,7 +65,7 @@ protected:
     std::vector<Feature> results() {
         std::vector<Feature> list;
         for (uint32_t i = 0; i < bus_.read(VISION_STORED); ++i) {
-            uint32_t at = resultBase + 8 * i;
+            uint32_t at = resultBase_ + 8 * i;
             auto half = [&](uint32_t o) {
                 return memory_.byte(at + o) | memory_.byte(at + o + 1) << 8;
             };
@@ -67,6 +74,7 @@ protected:
         return list;
     }
 
+    uint32_t frameBase_ = 0, resultBase_ = 0;
     Bench<VVision> bench_;
     BusMaster<VVision> bus_{bench_};
     NpiMemory<VVision> memory_{bench_, 0.2, testSeed()};
@@ -77,6 +85,7 @@ TEST_F(VisionTest, EqualsTheModelForManySizesAndThresholds) {
     const int sizes[][2] = {{8, 8}, {16, 8}, {8, 30}, {64, 48}, {128, 33}, {1024, 9}, {40, 64}};
     for (auto& size : sizes)
         for (int threshold : {0, 10, 40, 255}) {
+            place(random);
             auto pixels = picture(size[0], size[1], random);
             load(pixels);
             start(size[0], size[1], threshold);
@@ -111,7 +120,7 @@ TEST_F(VisionTest, StoresAtMostWhatItIsTold) {
     EXPECT_EQ(bus_.read(VISION_STORED), 5u);
     want.resize(5);
     EXPECT_TRUE(results() == want);
-    EXPECT_EQ(memory_.byte(resultBase + 40), 0) << "nothing behind the fifth";
+    EXPECT_EQ(memory_.byte(resultBase_ + 40), 0) << "nothing behind the fifth";
 }
 
 TEST_F(VisionTest, SettingsWrittenWhileBusyAreTheNextFrames) {
@@ -137,7 +146,7 @@ TEST_F(VisionTest, RefusesWhatItCannotTake) {
         EXPECT_EQ(bus_.read(VISION_STATUS), 0u);
     }
     bus_.write(VISION_FRAME_SIZE, 16u << 16 | 16u);
-    bus_.write(VISION_FRAME_BASE, frameBase + 8);
+    bus_.write(VISION_FRAME_BASE, frameBase_ + 8);
     bus_.write(VISION_CONTROL, VISION_CONTROL_START_MASK);
     EXPECT_EQ(finish(), VISION_EVENT_REFUSED_MASK);
 }
@@ -168,7 +177,7 @@ TEST_F(VisionTest, FollowsAnotherCoresFramesAndWaitsForItsReader) {
     for (uint32_t buffer : {1u, 2u, 3u, 2u}) {
         auto pixels = picture(64, 48, random);
         for (size_t i = 0; i < pixels.size(); ++i)
-            memory_.setByte(frameBase + (buffer - 1) * stride + static_cast<uint32_t>(i),
+            memory_.setByte(frameBase_ + (buffer - 1) * stride + static_cast<uint32_t>(i),
                             pixels[i]);
         top.frame_index_i = static_cast<uint8_t>(buffer);
         top.frame_valid_i = 1;

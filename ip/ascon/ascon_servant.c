@@ -58,6 +58,12 @@ static int fits(const Cores_Bytes* bytes) {
     return bytes->size <= ASCON_LIMIT;
 }
 
+/* It hangs: a message that was given up is not yet ended, since the memory does not answer. A key,
+ * a nonce or a start would be ignored, and its end be taken for that of the next one. */
+static int hangs(const Ascon_Core* self) {
+    return (FSMC_read(self->core.slot, ASCON_STATUS) & ASCON_STATUS_BUSY_MASK) != 0;
+}
+
 static Ice_Status run(Ascon_Core* self, U32 control, const Cores_Bytes* associated,
                       const Cores_Bytes* message) {
     U32 associatedSize = associated ? (U32)associated->size : 0U, size = (U32)message->size;
@@ -67,6 +73,7 @@ static Ice_Status run(Ascon_Core* self, U32 control, const Cores_Bytes* associat
         FSMC_writeMemory(self->memory + MESSAGE, message->data, size);
     set(self, ASCON_AD_SIZE, associatedSize);
     set(self, ASCON_SIZE, size);
+    set(self, ASCON_EVENT, ASCON_EVENT_DONE_MASK | ASCON_EVENT_REFUSED_MASK); /* of one given up */
     self->core.done[DONE] = 0;
     self->core.done[REFUSED] = 0;
     set(self, ASCON_CONTROL, control);
@@ -84,12 +91,16 @@ Ice_Status Cores_Ascon_setKey(Cores_AsconPtr servant, const Cores_Bytes* key,
     (void)current;
     if (key->size != KEY_BYTES)
         return ICE_UNKNOWN_EXCEPTION;
+    if (hangs((Ascon_Core*)servant))
+        return ICE_TIMEOUT;
     setFour((Ascon_Core*)servant, ASCON_KEY, key->data);
     return ICE_OK;
 }
 
 Ice_Status Cores_Ascon_forget(Cores_AsconPtr servant, const Ice_Current* current) {
     (void)current;
+    if (hangs((Ascon_Core*)servant))
+        return ICE_TIMEOUT;
     set((Ascon_Core*)servant, ASCON_CONTROL, ASCON_CONTROL_FORGET_MASK);
     return ICE_OK;
 }
@@ -102,6 +113,8 @@ Ice_Status Cores_Ascon_seal(Cores_AsconPtr servant, const Cores_Bytes* nonce,
     (void)current;
     if (nonce->size != KEY_BYTES || !fits(associated) || !fits(message))
         return ICE_UNKNOWN_EXCEPTION;
+    if (hangs(self))
+        return ICE_TIMEOUT;
     setFour(self, ASCON_NONCE, nonce->data);
     status = run(self, ASCON_CONTROL_ENCRYPT_MASK, associated, message);
     if (status != ICE_OK)
@@ -124,6 +137,8 @@ Ice_Status Cores_Ascon_unseal(Cores_AsconPtr servant, const Cores_Bytes* nonce,
     (void)current;
     if (nonce->size != KEY_BYTES || tag->size != KEY_BYTES || !fits(associated) || !fits(text))
         return ICE_UNKNOWN_EXCEPTION;
+    if (hangs(self))
+        return ICE_TIMEOUT;
     FSMC_writeMemory(self->memory + TAG, tag->data, KEY_BYTES);
     setFour(self, ASCON_NONCE, nonce->data);
     status = run(self, ASCON_CONTROL_DECRYPT_MASK, associated, text);
@@ -143,6 +158,8 @@ Ice_Status Cores_Ascon_hash(Cores_AsconPtr servant, const Cores_Bytes* message, 
     (void)current;
     if (!fits(message))
         return ICE_UNKNOWN_EXCEPTION;
+    if (hangs(self))
+        return ICE_TIMEOUT;
     status = run(self, ASCON_CONTROL_HASH_MASK, 0, message);
     if (status != ICE_OK)
         return status;

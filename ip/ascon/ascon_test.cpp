@@ -279,6 +279,45 @@ TEST(AsconServant, SealsOpensAndHashes) {
     EXPECT_EQ(Cores_Ascon_setKey(&core.servant, &k, nullptr), ICE_UNKNOWN_EXCEPTION);
 }
 
+TEST(AsconServant, WhileTheCoreHangsNothingIsTakenForAnAnswer) {
+    CoreSlot<Vascon_slot> slot;
+    static Ascon_Core core;
+    ASSERT_EQ(Ascon_Core_init(&core, coreSlot, coreMemory, &slot.seam, &slot), HW_OK);
+    slot.core_ = &core.core;
+    auto key = sixteen(1), other = sixteen(2), nonce = sixteen(3);
+    auto message = counted(7, 40);
+    auto bytes = [](auto& list) {
+        return Cores_Bytes{static_cast<Ice_Int>(list.size()), list.data()};
+    };
+    Cores_Bytes k = bytes(key), o = bytes(other), n = bytes(nonce), m = bytes(message), text{},
+                tag{}, got{};
+    Ice_Bool valid = 0;
+    ASSERT_EQ(Cores_Ascon_setKey(&core.servant, &k, nullptr), ICE_OK);
+    slot.memory_.hold(true);
+    EXPECT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_TIMEOUT);
+    // It is still busy with that, and would ignore these.
+    EXPECT_EQ(Cores_Ascon_setKey(&core.servant, &o, nullptr), ICE_TIMEOUT);
+    EXPECT_EQ(Cores_Ascon_forget(&core.servant, nullptr), ICE_TIMEOUT);
+    EXPECT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_TIMEOUT);
+    EXPECT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, nullptr), ICE_TIMEOUT);
+    EXPECT_EQ(Cores_Ascon_unseal(&core.servant, &n, &m, &m, &k, &got, &valid, nullptr),
+              ICE_TIMEOUT);
+    slot.memory_.hold(false);
+    slot.bench_.waitFor([&] { return !(slot.bus_.read(ASCON_STATUS) & ASCON_STATUS_BUSY_MASK); },
+                        "the core to give up", 1000);
+    // The answer to what was given up comes when the next call has begun: before the interrupt.
+    ASSERT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, nullptr), ICE_OK);
+    auto want = asconEncrypt(key, nonce, message, message);
+    EXPECT_EQ(hex(AsconBytes(text.data, text.data + text.size)), hex(want.text));
+    EXPECT_EQ(hex(AsconBytes(tag.data, tag.data + tag.size)), hex(want.tag));
+    Ascon_Core_interrupt(&core); // none is pending
+    EXPECT_EQ(Ascon_Core_poll(&core, 0), HW_NEVER);
+    EXPECT_EQ(Cores_Ascon_forget(&core.servant, nullptr), ICE_OK);
+    EXPECT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, nullptr),
+              ICE_UNKNOWN_EXCEPTION)
+        << "there is no key";
+}
+
 TEST_F(AsconTest, ADigestWaitsForRoomInTheMemorysFifo) {
     auto message = counted(1, 30);
     auto digest = asconHash(message);

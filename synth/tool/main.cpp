@@ -3,6 +3,7 @@
 // utilisation: what the chip and each of its parts take of the FPGA, beside limits and the paper.
 
 #include "designs.h"
+#include "lock.h"
 #include "pictures.h"
 #include "report.h"
 #include "runner.h"
@@ -123,6 +124,8 @@ int report(const Options& o) {
                                           }),
                            plan.designs.end());
 
+    const FolderLock lock(
+        o.output); // what another run is synthesising, this one finds in the cache
     const RunnerOptions options{o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs};
     if (!o.edif.empty()) {
         const auto design = std::find_if(plan.designs.begin(), plan.designs.end(),

@@ -7,6 +7,7 @@
 #   growth   a register more fails with its name; accepting it passes; a second run takes all from the cache
 #   slow     a longer path than the clock allows fails with its ends
 #   broken   a syntax error is told with its file and line, and the other designs are reported nevertheless
+#   twice    of two runs at once the second waits, says so, and takes what the first has made
 #   edif     the netlist for ISE is whole
 #   page     the page in Chromium: tables, chart, sorting, looking inside, differences; one file, no network
 set -eu
@@ -69,6 +70,28 @@ broken)
     has 'broken.v:1: ERROR: syntax error'
     has "^wide "
     has '^broken .*failed'
+    ;;
+twice)
+    # The first one's Yosys begins when the second has been seen to wait (or, if it never does, after 20 s).
+    cat >"$work/slow" <<'SH'
+#!/bin/sh
+[ "$1" = -V ] || for _ in $(seq 200); do
+    ! grep -q 'waiting for another run' second || break
+    sleep 0.1
+done
+exec yosys "$@"
+SH
+    chmod +x "$work/slow"
+    rm -rf out
+    : >second
+    "$program" --source project --generated gen --output out --family xc6s --yosys "$work/slow" >first 2>&1 &
+    first=$!
+    until [ -d out/cache ] || ! kill -0 $first 2>/dev/null; do sleep 0.1; done # it has the folder
+    "$program" --source project --generated gen --output out --family xc6s --yosys "$work/slow" >second 2>&1 || fail "the second: $(cat second)"
+    wait $first || fail "the first: $(cat first)"
+    grep -q 'waiting for another run in out' second || fail "the second did not wait: $(cat second)"
+    [ "$(grep -c '^\[' first)" -gt 0 ] || fail "the first synthesised nothing: $(cat first)"
+    if grep -q '^\[' second; then fail "the second synthesised again: $(cat second)"; fi
     ;;
 page)
     run || fail "$(cat "$work/log")"

@@ -40,6 +40,18 @@ bool isAddress(const string& port) {
     return port[0] == 'A' || startsWith(port, "DPRA"); // ADDRA.., A0.., DPRA0..
 }
 
+// A memory's output follows its own port's address: DOA ADDRA, DPO DPRA0.., SPO A0..; the write port's not.
+bool isRead(const string& address, const string& output) {
+    if (startsWith(address, "ADDR"))
+        return output.size() < 3 || address.back() == output[2];
+    return startsWith(address, "DPRA") ? output == "DPO" : output != "DPO";
+}
+
+// An address that nothing is written at: no path ends there.
+bool isReadOnly(const string& port) {
+    return port == "ADDRA" || port == "ADDRB" || port == "ADDRC" || startsWith(port, "DPRA");
+}
+
 // The delay of a clocked cell's output, and of a pin that ends a path.
 double startDelay(const string& type) {
     if (isBlockRam(type))
@@ -145,7 +157,8 @@ private:
                 }
         for (const Pin& pin : cell.pins)
             for (size_t i = 0; i < pin.bits.size(); i++) {
-                if (pin.output || pin.bits[i] < 0 || (memory && !isAddress(pin.port)))
+                if (pin.output || pin.bits[i] < 0 ||
+                    (memory && !(isAddress(pin.port) && isRead(pin.port, to->port))))
                     continue;
                 const double delay = memory ? lut : throughDelay(cell, pin, i, *to, o);
                 const Arrival& before = at(pin.bits[i], clocked);
@@ -209,7 +222,7 @@ Timing timingOf(const Netlist& n, const std::vector<string>& owners, size_t coun
         const bool memory = memoryLuts(cell.type) != 0 || isShiftRegister(cell.type);
         for (const Pin& pin : cell.pins)
             for (const int bit : pin.bits) {
-                if (pin.output || bit < 0 || pin.port == "C" || (memory && pin.port == "ADDRA"))
+                if (pin.output || bit < 0 || pin.port == "C" || (memory && isReadOnly(pin.port)))
                     continue;
                 const Arrival& fromPort = analysis.at(bit, false);
                 if (fromPort.ns >= 0)

@@ -69,6 +69,19 @@ TEST(Timing, MoreFanOutIsNeverFaster) {
         EXPECT_LE(netDelay(fanout), netDelay(fanout + 1)) << fanout;
 }
 
+TEST(Timing, ThroughAMemoryOnlyTheAddressOfThatOutputLeads) {
+    const auto through = [](const char* address) {
+        Netlist n = chain({1, 1}, "D");
+        n.cells[1] = {"ram", "RAM32M", false, {}, {{address, false, {10}}, {"DOA", true, {11}}}};
+        return longest(n);
+    };
+    EXPECT_EQ(through("ADDRA").levels, 1);
+    EXPECT_EQ(through("ADDRA").from, "from");
+    // The write port's address: the path from there ends, another begins at the memory.
+    EXPECT_EQ(through("ADDRD").levels, 0);
+    EXPECT_EQ(through("ADDRB").levels, 0) << "of DOB";
+}
+
 TEST(Timing, ALoopOfLogicEndsTheSearch) {
     Netlist n = chain({1, 1}, "D");
     n.cells[1].pins.push_back({"I1", false, {11}}); // the LUT reads itself

@@ -2,13 +2,16 @@
 //
 // bus_decoder: one master of the register bus, SLOTS slots of 16 words (docs/bus.md).
 //
-// Slots above SLOTS-1 answer at once with error and data 0.
+// The master shows address and direction a clock before valid, so they are decoded into registers: no path leads
+// from the master's address through a slot. Each slot has a word address of its own, 0 while it is not selected: one
+// for all would have hundreds of ends. Slots above SLOTS-1 answer at once with error and data 0.
 
 `default_nettype none
 
 module bus_decoder #(
     parameter SLOTS = 3 // 1..64
 ) (
+    input  wire                clk_i,
     // master
     input  wire                bus_valid_i,
     input  wire                bus_write_i,
@@ -17,10 +20,10 @@ module bus_decoder #(
     output wire                bus_ready_o,
     output wire [31:0]         bus_rdata_o,
     output wire                bus_error_o,
-    // slots: one bit, or 32, a slot
+    // slots: one bit, or 4, or 32, a slot
     output wire [SLOTS-1:0]    slot_valid_o,
     output wire                slot_write_o,
-    output wire [3:0]          slot_addr_o,
+    output reg  [4*SLOTS-1:0]  slot_addr_o,
     output wire [31:0]         slot_wdata_o,
     input  wire [SLOTS-1:0]    slot_ready_i,
     input  wire [32*SLOTS-1:0] slot_rdata_i,
@@ -29,13 +32,17 @@ module bus_decoder #(
     wire [5:0] slot = bus_addr_i[9:4];
 
     // One-hot AND-OR with constant indices: no multiplier for the solvers, no priority for the mapper.
-    wire [SLOTS-1:0] selected;
-    genvar s;
-    generate
-        for (s = 0; s < SLOTS; s = s + 1) begin : g_slot
-            assign selected[s] = {26'd0, slot} == s;
+    reg [SLOTS-1:0] selected;
+    reg             mapped, write;
+    integer s;
+    always @(posedge clk_i) begin
+        for (s = 0; s < SLOTS; s = s + 1) begin
+            selected[s] <= {26'd0, slot} == s;
+            slot_addr_o[4*s +: 4] <= {26'd0, slot} == s ? bus_addr_i[3:0] : 4'd0;
         end
-    endgenerate
+        mapped <= {26'd0, slot} < SLOTS;
+        write  <= bus_write_i;
+    end
 
     reg [31:0] rdata;
     integer i;
@@ -45,28 +52,36 @@ module bus_decoder #(
             rdata = rdata | ({32{selected[i]}} & slot_rdata_i[32*i +: 32]);
     end
 
-    wire mapped = |selected;
-
     assign slot_valid_o = selected & {SLOTS{bus_valid_i}};
-    assign slot_write_o = bus_write_i;
-    assign slot_addr_o  = bus_addr_i[3:0];
+    assign slot_write_o = write;
     assign slot_wdata_o = bus_wdata_i;
     assign bus_ready_o  = !mapped || |(selected & slot_ready_i);
     assign bus_error_o  = !mapped || |(selected & slot_error_i);
     assign bus_rdata_o  = rdata;
 
 `ifdef FORMAL
-    // The decoder adds no state, so these hold at all times for all inputs.
+    // What the master promises; the decoder's registers are a function of the clock before, so these hold for all inputs.
+    reg             past = 1'b0;
+    reg [10:0]      shown; // address and direction, a clock ago
     reg [SLOTS-1:0] one;   // any one slot
     reg [31:0]      answer;
+    reg [3:0]       word;
     integer k;
-    always @* begin
+    always @(posedge clk_i) begin
+        past  <= 1'b1;
+        shown <= {bus_write_i, bus_addr_i};
+    end
+    always @* assume (!bus_valid_i || shown == {bus_write_i, bus_addr_i});
+    always @* if (past && bus_valid_i) begin
         one    = {{(SLOTS-1){1'b0}}, 1'b1} << slot;
         answer = 32'd0;
+        word   = bus_addr_i[3:0];
         for (k = 0; k < SLOTS; k = k + 1)
-            if (one[k])
+            if (one[k]) begin
                 answer = slot_rdata_i[32*k +: 32];
-        assert (slot_valid_o == (bus_valid_i ? one : {SLOTS{1'b0}}));
+                word   = slot_addr_o[4*k +: 4];
+            end
+        assert (slot_valid_o == one);
         assert (bus_rdata_o == answer);
         if (one != {SLOTS{1'b0}}) begin
             assert (bus_ready_o == |(one & slot_ready_i));
@@ -74,9 +89,11 @@ module bus_decoder #(
         end else begin
             assert (bus_ready_o && bus_error_o && bus_rdata_o == 32'd0);
         end
-        assert ({slot_write_o, slot_addr_o, slot_wdata_o} == {bus_write_i, bus_addr_i[3:0], bus_wdata_i});
+        assert ({slot_write_o, word, slot_wdata_o} == {bus_write_i, bus_addr_i[3:0], bus_wdata_i});
         cover (slot_valid_o[SLOTS-1] && bus_ready_o && !bus_error_o);
-        cover (SLOTS == 64 || (bus_valid_i && slot_valid_o == {SLOTS{1'b0}}));
+        cover (SLOTS == 64 || slot_valid_o == {SLOTS{1'b0}});
     end
+    always @* if (!bus_valid_i)
+        assert (slot_valid_o == {SLOTS{1'b0}});
 `endif
 endmodule

@@ -31,11 +31,13 @@ module bus_rules #(
     end
 
     reg waiting = 1'b0; // a transfer was wanted and not answered in the clock before
+    reg ended   = 1'b0; // a transfer happened in the clock before
     reg        write_was;
     reg [9:0]  addr_was;
     reg [31:0] wdata_was;
     always @(posedge clk_i) begin
         waiting   <= valid_i && !ready_i && !rst_i;
+        ended     <= valid_i && ready_i && !rst_i;
         write_was <= write_i;
         addr_was  <= addr_i;
         wdata_was <= wdata_i;
@@ -47,6 +49,10 @@ module bus_rules #(
     // Master: a transfer that waits stays as it is; it is withdrawn only when patience is over.
     wire stable    = !waiting || !valid_i
                      || (write_i == write_was && addr_i == addr_was && (!write_i || wdata_i == wdata_was));
+    // The address and the direction are there a clock before valid: the decoder relies on it.
+    wire early     = !valid_i || !past || (addr_i == addr_was && write_i == write_was);
+    // Between two transfers valid is low: what a write does may take a clock.
+    wire paused    = !valid_i || !ended;
     wire withdrawn = waiting && !valid_i && waited < PATIENCE;
     // Slave: an answer in time; an error comes without data.
     wire late      = valid_i && !ready_i && waited >= LIMIT - 1;
@@ -56,6 +62,8 @@ module bus_rules #(
         if (MASTER != 0) begin : g_master
             always @* if (!rst_i) begin
                 assert (stable);
+                assert (early);
+                assert (paused);
                 assert (!withdrawn);
                 assume (!leaking);
                 // A slave may hang: `late` is not assumed away.
@@ -71,7 +79,7 @@ module bus_rules #(
                 cover (!rst_i && valid_i && ready_i && write_i && !error_i);
         end
     endgenerate
-    wire unused = &{1'b0, past, late, 1'b0};
+    wire unused = &{1'b0, past, early, paused, late, 1'b0};
 `else
     wire unused = &{1'b0, clk_i, rst_i, valid_i, write_i, addr_i, wdata_i, ready_i, rdata_i, error_i, 1'b0};
 `endif

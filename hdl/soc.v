@@ -64,7 +64,7 @@ module soc #(
     wire [31:0] bus_wdata, bus_rdata;
     wire [SLOTS-1:0]    slot_valid, slot_ready, slot_error;
     wire [32*SLOTS-1:0] slot_rdata;
-    wire [3:0]          slot_addr;
+    wire [4*SLOTS-1:0]  slot_addr;
     wire [31:0]         slot_wdata;
     wire                slot_write;
     wire [SLOTS-1:1]    slot_irq;
@@ -115,6 +115,7 @@ module soc #(
     );
 
     bus_decoder #(.SLOTS(SLOTS)) u_bus_decoder (
+        .clk_i(clk_i),
         .bus_valid_i(bus_valid), .bus_write_i(bus_write), .bus_addr_i(bus_addr),
         .bus_wdata_i(bus_wdata), .bus_ready_o(bus_ready), .bus_rdata_o(bus_rdata),
         .bus_error_o(bus_error),
@@ -125,7 +126,7 @@ module soc #(
 
     system_slot #(.SLOTS(SLOTS), .CLK_HZ(CLK_HZ)) u_system_slot (
         .clk_i(clk_i), .rst_i(rst),
-        .bus_valid_i(slot_valid[SYSTEM]), .bus_write_i(slot_write), .bus_addr_i(slot_addr),
+        .bus_valid_i(slot_valid[SYSTEM]), .bus_write_i(slot_write), .bus_addr_i(slot_addr[4*SYSTEM +: 4]),
         .bus_wdata_i(slot_wdata), .bus_ready_o(slot_ready[SYSTEM]),
         .bus_rdata_o(slot_rdata[32*SYSTEM +: 32]), .bus_error_o(slot_error[SYSTEM]),
         .slot_irq_i(slot_irq), .irq_o(irq_o), .page_o(page),
@@ -135,7 +136,7 @@ module soc #(
 
     modem #(.CLK_HZ(CLK_HZ)) u_modem (
         .clk_i(clk_i), .rst_i(rst),
-        .bus_valid_i(slot_valid[MODEM]), .bus_write_i(slot_write), .bus_addr_i(slot_addr),
+        .bus_valid_i(slot_valid[MODEM]), .bus_write_i(slot_write), .bus_addr_i(slot_addr[4*MODEM +: 4]),
         .bus_wdata_i(slot_wdata), .bus_ready_o(slot_ready[MODEM]),
         .bus_rdata_o(slot_rdata[32*MODEM +: 32]), .bus_error_o(slot_error[MODEM]),
         .irq_o(slot_irq[MODEM]),
@@ -163,6 +164,8 @@ module soc #(
 
     // Cores: generated from ip/cores.list.
     `include "soc_cores.vh"
+
+    wire unused = &{1'b0, slot_addr, 1'b0}; // of slots without a core
 
     // The bridge and the modem take what they read in the cycle it comes: no FIFO.
     localparam [31:0] NO_READ_FIFO = 1 << MAP_NPI_PORT_FSMC | 1 << MAP_NPI_PORT_MODEM;

@@ -113,7 +113,7 @@ void longCalls(Writer& w, const Block& b) {
     w.line("    always @(posedge clk_i) begin");
     w.line("        busy    <= (busy & ~done) | (start & timed);");
     w.line("        refused <= (refused & ~done & ~start) | (done & {" + refused + "});");
-    w.line("        if (core_rst_o) begin");
+    w.line("        if (core_rst) begin");
     w.line("            busy    <= " + n + "'d0;");
     w.line("            refused <= " + n + "'d0;");
     w.line("        end");
@@ -210,7 +210,11 @@ GeneratedFile verilogFile(const Block& b, const CFileNames& names) {
     w.line();
     parameters(w, b);
     w.line();
-    w.line("    assign core_rst_o = rst_i || " + slice("act", resetBit, 1) + ";");
+    w.line("    // A clock after the write, from a register: the whole core hangs on it.");
+    w.line("    reg core_rst;");
+    w.line("    assign core_rst_o = core_rst;");
+    w.line("    always @(posedge clk_i)");
+    w.line("        core_rst <= rst_i || " + slice("act", resetBit, 1) + ";");
     if (b.events())
         longCalls(w, b);
     calls(w, b);

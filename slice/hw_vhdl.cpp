@@ -289,8 +289,14 @@ GeneratedFile vhdlFile(const Block& b, const CFileNames& names) {
     w.line("  writes <= bus_valid_i and bus_write_i;");
     w.line("  act <= bus_wdata_i when writes = '1' and bus_addr_i = " + address(control) +
            " else " + hex(0) + ";");
-    w.line("  core_rst <= rst_i or " + slice("act", resetBit, 1) + ";");
+    w.line("  -- A clock after the write, from a register: the whole core hangs on it.");
     w.line("  core_rst_o <= core_rst;");
+    w.line("  core_resets : process (clk_i)");
+    w.line("  begin");
+    w.line("    if rising_edge(clk_i) then");
+    w.line("      core_rst <= rst_i or " + slice("act", resetBit, 1) + ";");
+    w.line("    end if;");
+    w.line("  end process;");
     events(w, b);
     registers(w, b);
     if (b.hasLong())

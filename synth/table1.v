@@ -60,7 +60,7 @@ module table1 #(
     wire [31:0] bus_wdata, bus_rdata;
     wire [1:0]  slot_valid;
     wire        slot_write, modem_ready, modem_error;
-    wire [3:0]  slot_addr;
+    wire [7:0]  slot_addr;
     wire [31:0] slot_wdata, modem_rdata;
 
     wire [63:0]  npi_addr;
@@ -95,6 +95,7 @@ module table1 #(
     );
 
     bus_decoder #(.SLOTS(2)) u_bus_decoder (
+        .clk_i(clk_i),
         .bus_valid_i(bus_valid), .bus_write_i(bus_write), .bus_addr_i(bus_addr),
         .bus_wdata_i(bus_wdata), .bus_ready_o(bus_ready), .bus_rdata_o(bus_rdata),
         .bus_error_o(bus_error),
@@ -105,7 +106,7 @@ module table1 #(
 
     modem #(.CLK_HZ(CLK_HZ)) u_modem (
         .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(slot_valid[MODEM]), .bus_write_i(slot_write), .bus_addr_i(slot_addr),
+        .bus_valid_i(slot_valid[MODEM]), .bus_write_i(slot_write), .bus_addr_i(slot_addr[4*MODEM +: 4]),
         .bus_wdata_i(slot_wdata), .bus_ready_o(modem_ready), .bus_rdata_o(modem_rdata),
         .bus_error_o(modem_error), .irq_o(irq_o),
         .npi_addr_o(npi_addr[32*RADIO +: 32]), .npi_addr_req_o(npi_addr_req[RADIO]),
@@ -140,5 +141,5 @@ module table1 #(
         .mcb_calib_done_i(mcb_calib_done_i)
     );
 
-    wire unused = &{1'b0, slot_valid[0], 1'b0};
+    wire unused = &{1'b0, slot_valid[0], slot_addr[3:0], 1'b0};
 endmodule

@@ -65,7 +65,8 @@ std::string instance(const Core& c) {
     s += fmt::format(
         "    {0} u_{1} (\n"
         "        .clk_i(clk_i), .rst_i(rst),\n"
-        "        .bus_valid_i(slot_valid[{2}]), .bus_write_i(slot_write), .bus_addr_i(slot_addr),\n"
+        "        .bus_valid_i(slot_valid[{2}]), .bus_write_i(slot_write), "
+        ".bus_addr_i(slot_addr[4*{2} +: 4]),\n"
         "        .bus_wdata_i(slot_wdata), .bus_ready_o(slot_ready[{2}]),\n"
         "        .bus_rdata_o(slot_rdata[32*{2} +: 32]), .bus_error_o(slot_error[{2}]),\n"
         "        .irq_o(slot_irq[{2}])",

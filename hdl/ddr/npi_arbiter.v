@@ -24,7 +24,7 @@ module npi_arbiter #(
     // ports, packed: port p in bits p, 64p+63..64p, ...
     input  wire [32*PORTS-1:0] npi_addr_i,
     input  wire [PORTS-1:0]    npi_addr_req_i,
-    output reg  [PORTS-1:0]    npi_addr_ack_o,
+    output wire [PORTS-1:0]    npi_addr_ack_o,
     input  wire [PORTS-1:0]    npi_rnw_i,
     input  wire [4*PORTS-1:0]  npi_size_i,
     input  wire [PORTS-1:0]    npi_rmw_i,
@@ -66,51 +66,53 @@ module npi_arbiter #(
     localparam PORT_BITS = PORTS > 4 ? 3 : PORTS > 2 ? 2 : 1;
 
     // A request's bit is still up in the cycle of its acknowledgement.
-    wire             full;
+    wire             full, granted;
     wire [PORTS-1:0] grant;
     npi_select #(.PORTS(PORTS), .URGENT(URGENT), .URGENT_RUN(URGENT_RUN)) u_select (
         .clk_i(clk_i), .rst_i(rst_i),
-        .asking_i(npi_addr_req_i & ~npi_addr_ack_o), .enable_i(!full), .grant_o(grant)
+        .req_i(npi_addr_req_i), .enable_i(!full), .grant_o(grant), .any_o(granted), .ack_o(npi_addr_ack_o)
+`ifdef FORMAL
+        , .later_o(f_later)
+`endif
     );
-    always @(posedge clk_i)
-        npi_addr_ack_o <= rst_i ? {PORTS{1'b0}} : grant;
 
-    // The chosen request.
+    // The chosen request: an OR, so that the last port is no later than the first. Of two ports one is enough to know.
+    wire [PORTS-1:0]    pick = PORTS == 2 ? {grant[PORTS-1:1], !grant[1]} : grant;
     reg [ADDR_WIDTH-1:0] addr;
     reg [2:0]           size;
     reg [PORT_BITS-1:0] port;
     integer i;
     always @* begin
-        addr = npi_addr_i[ADDR_WIDTH-1:0];
-        size = npi_size_i[2:0];
+        addr = {ADDR_WIDTH{1'b0}};
+        size = 3'd0;
         port = {PORT_BITS{1'b0}};
-        for (i = 1; i < PORTS; i = i + 1)
-            if (grant[i]) begin
-                addr = npi_addr_i[32*i +: ADDR_WIDTH];
-                size = npi_size_i[4*i +: 3];
-                port = i[PORT_BITS-1:0];
-            end
+        for (i = 0; i < PORTS; i = i + 1) begin
+            addr = addr | (npi_addr_i[32*i +: ADDR_WIDTH] & {ADDR_WIDTH{pick[i]}});
+            size = size | (npi_size_i[4*i +: 3] & {3{pick[i]}});
+            port = port | (i[PORT_BITS-1:0] & {PORT_BITS{pick[i]}});
+        end
     end
     // A read of a cache line may name any of its words; rd_word tells them apart.
     wire line = size == 3'd1 || size == 3'd2;
     wire [ADDR_WIDTH-4:0] start = {addr[ADDR_WIDTH-1:5], addr[4] && size != 3'd2, addr[3] && !line};
 
-    wire                 move_valid, back_valid;
+    wire                 back_valid;
+    wire [(1<<PORT_BITS)-1:0] move_at; // one-hot
     wire [PORT_BITS-1:0] move_port, back_port;
     wire [4:0]           back_index;
     wire [ADDR_WIDTH-4:0] cmd_word;
     npi_queue #(.PORT_BITS(PORT_BITS), .ADDR_BITS(ADDR_WIDTH - 3), .LOG2(QUEUE_LOG2)) u_queue (
         .clk_i(clk_i), .rst_i(rst_i),
-        .push_i(|grant), .push_port_i(port), .push_read_i(|(grant & npi_rnw_i)),
+        .push_i(granted), .push_port_i(port), .push_read_i(|(grant & npi_rnw_i)),
         .push_size_i(size), .push_addr_i(start), .full_o(full),
-        .move_valid_o(move_valid), .move_port_o(move_port),
+        .move_at_o(move_at), .move_port_o(move_port),
         .move_done_i(wr_valid_o && wr_ready_i),
         .cmd_valid_o(cmd_valid_o), .cmd_read_o(cmd_read_o), .cmd_addr_o(cmd_word),
         .cmd_last_o(cmd_last_o), .cmd_ready_i(cmd_ready_i),
         .back_valid_o(back_valid), .back_port_o(back_port), .back_index_o(back_index),
         .back_done_i(rd_valid_i && rd_ready_o)
 `ifdef FORMAL
-        , .kinds_o(f_kinds), .addrs_o(f_addrs), .places_o(f_places), .moved_o(f_moved)
+        , .kinds_o(f_kinds), .addrs_o(f_addrs), .places_o(f_places), .moved_o(f_moved), .moving_o(f_moving)
 `endif
     );
     assign cmd_addr_o = {cmd_word, 3'd0};
@@ -120,6 +122,8 @@ module npi_arbiter #(
     wire [((ADDR_WIDTH-3)<<QUEUE_LOG2)-1:0]   f_addrs;
     wire [4*QUEUE_LOG2-1:0]                   f_places;
     wire [4:0]                                f_moved;
+    wire [PORT_BITS+4:0]                      f_moving;
+    wire [PORTS-1:0]                          f_later;
     wire [PORTS*2*(FIFO_LOG2+1)-1:0]          f_wr_indexes, f_rd_indexes;
     wire [PORTS*(72<<FIFO_LOG2)-1:0]          f_wr_words;
     wire [PORTS*(68<<FIFO_LOG2)-1:0]          f_rd_words;
@@ -129,12 +133,11 @@ module npi_arbiter #(
     wire [64*PORTS-1:0] wr_datas;
     wire [8*PORTS-1:0]  wr_bes;
     wire [67:0]         rd_word = {back_index[3:0], rd_data_i};
-    wire [PORTS-1:0]    move_at, back_at, back_free;
+    wire [PORTS-1:0]    back_at, back_free;
     genvar p;
     generate
         for (p = 0; p < PORTS; p = p + 1) begin : g_port
             localparam [PORT_BITS-1:0] ME = p;
-            assign move_at[p] = move_valid && move_port == ME;
             assign back_at[p] = back_valid && back_port == ME;
             npi_fifo #(.WIDTH(72), .LOG2(FIFO_LOG2), .BLOCK(BLOCK_RAM)) u_write (
                 .clk_i(clk_i), .rst_i(rst_i || npi_wr_flush_i[p]),
@@ -188,13 +191,13 @@ module npi_arbiter #(
                 wr_be   = wr_bes[8*k +: 8];
             end
     end
-    assign wr_valid_o = |(move_at & ~npi_wr_empty_o);
+    assign wr_valid_o = |(move_at[PORTS-1:0] & ~npi_wr_empty_o);
     assign wr_data_o  = wr_data;
     assign wr_be_o    = wr_be;
     assign rd_ready_o = |(back_at & back_free);
 
     // Byte enables always work, so read-modify-write is nothing special. Transfers are aligned.
-    wire unused = &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], 1'b0};
+    wire unused = &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], move_at, 1'b0};
 
 `ifdef FORMAL
     npi_arbiter_proof #(
@@ -211,7 +214,8 @@ module npi_arbiter #(
         .cmd_last_i(cmd_last_o), .cmd_ready_i(cmd_ready_i),
         .wr_valid_i(wr_valid_o), .out_data_i(wr_data_o), .out_be_i(wr_be_o), .wr_ready_i(wr_ready_i),
         .in_valid_i(rd_valid_i), .in_data_i(rd_data_i), .in_ready_i(rd_ready_o),
-        .wr_pop_i(move_at & {PORTS{wr_valid_o && wr_ready_i}}), .wr_heads_i(wr_datas), .wr_head_bes_i(wr_bes),
+        .moving_i(f_moving), .move_at_i(move_at), .later_i(f_later), .full_i(full),
+        .wr_pop_i(move_at[PORTS-1:0] & {PORTS{wr_valid_o && wr_ready_i}}), .wr_heads_i(wr_datas), .wr_head_bes_i(wr_bes),
         .rd_push_i(back_at & {PORTS{rd_valid_i}} & back_free),
         .wr_indexes_i(f_wr_indexes), .rd_indexes_i(f_rd_indexes),
         .wr_words_i(f_wr_words), .rd_words_i(f_rd_words),

@@ -71,6 +71,10 @@ module npi_arbiter_proof #(
     input wire [((PORT_BITS+4)<<QUEUE_LOG2)-1:0] kinds_i,
     input wire [(ADDR_BITS<<QUEUE_LOG2)-1:0] addrs_i,
     input wire [4*QUEUE_LOG2-1:0] places_i, // head, move, issue, back
+    input wire [PORT_BITS+4:0] moving_i, // something moves; its kind
+    input wire [(1<<PORT_BITS)-1:0] move_at_i, // one-hot
+    input wire [PORTS-1:0]     later_i, // of npi_select
+    input wire                 full_i, // of npi_queue
     input wire [4:0]           moved_i, // words of the write that moves
     input wire [4:0]           came_i   // words of the read that comes
 );
@@ -345,6 +349,10 @@ module npi_arbiter_proof #(
         end
     endgenerate
     always @* if (!rst_i) begin
+        assert ((later_i & ack_i) == 0);
+        assert (full_i == ({1'b0, n_head} == SLOTS - 1));
+        assert (moving_i[KIND] == (move != head) && (move == head || moving_i[KIND-1:0] == move_kind));
+        assert (move_at_i == (move != head && !move_kind[3] ? {{((1<<PORT_BITS)-1){1'b0}}, 1'b1} << move_kind[KIND-1:4] : 0));
         assert (accepted == head && issued == issue);
         assert (n_issue <= n_move && n_move <= n_head);
         assert (!g_any || {1'b0, n_head} != SLOTS - 1); // the queue has a place for it

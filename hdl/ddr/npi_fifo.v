@@ -31,15 +31,20 @@ module npi_fifo #(
     // After the word on data_o; pop_i only decides whether to go there, so it may come late.
     wire [LOG2:0] next = read_index + {{LOG2{1'b0}}, BLOCK == 0 || !empty_o};
 
-    assign full_o = write_index[LOG2-1:0] == read_index[LOG2-1:0] &&
-                    write_index[LOG2] != read_index[LOG2];
+    // A register: what waits for room begins its path here.
+    wire [LOG2:0] after = write_index + 1'b1;
+    wire          nearly = after[LOG2-1:0] == read_index[LOG2-1:0]; // room for one, of any count but the full one
+    reg           full;
+    assign full_o = full;
 
     always @(posedge clk_i) begin
         if (push_i)
-            write_index <= write_index + 1'b1;
+            write_index <= after;
         if (pop_i)
             read_index <= next;
+        full <= !pop_i && (full || (push_i && nearly));
         if (rst_i) begin
+            full        <= 1'b0;
             write_index <= 0;
             read_index  <= 0;
         end
@@ -54,7 +59,9 @@ module npi_fifo #(
                 if (push_i)
                     words[write_index[LOG2-1:0]] <= data_i;
         end else begin : g_block
-            (* ram_style = "block" *)
+            // no_rw_check (Yosys): what such a read would give is nobody's business, see below; else on chips whose
+            // RAM does not give the old word, as ECP5, 150 flip-flops and 80 LUTs hold it.
+            (* ram_style = "block", no_rw_check *)
             reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
             reg [WIDTH-1:0] word;
             reg             empty;

@@ -27,7 +27,7 @@ module npi_queue #(
     input  wire [ADDR_BITS-1:0] push_addr_i,
     output wire                 full_o,
     // words of writes
-    output wire                 move_valid_o, // a word of this port is wanted
+    output reg  [(1<<PORT_BITS)-1:0] move_at_o, // a word of this port is wanted: one bit, or none
     output wire [PORT_BITS-1:0] move_port_o,
     input  wire                 move_done_i,  // it goes in this cycle
     // commands
@@ -46,6 +46,7 @@ module npi_queue #(
     , output wire [(ADDR_BITS<<LOG2)-1:0]     addrs_o
     , output wire [4*LOG2-1:0]                places_o // head, move, issue, back
     , output wire [4:0]                       moved_o
+    , output wire [PORT_BITS+4:0]             moving_o // move != head; the kind at `move`
 `endif
 );
     localparam KIND = PORT_BITS + 4;
@@ -63,19 +64,31 @@ module npi_queue #(
                    |size};
     endfunction
 
+    // A register, as requests wait for it: all places but one are in use.
     wire [LOG2-1:0] head_next = head + 1'b1;
-    assign full_o = head_next == back;
+    wire            nearly    = head + {{(LOG2-2){1'b0}}, 2'd2} == back;
+    reg             full;
+    assign full_o = full;
+
+    // The request at `move` is in registers, since the write FIFOs hang on it: it comes from the RAM, or, where that
+    // has none yet, from what is pushed now.
+    reg             moving;
+    reg [KIND-1:0]  move_kind;
+    wire [KIND-1:0] push_kind = {push_port_i, push_read_i, push_size_i};
+    wire [LOG2-1:0] move_next = move + 1'b1;
+    wire            fresh     = !moving || move_next == head;
+    wire            next_is   = !fresh || push_i;
+    wire [KIND-1:0] next_kind = fresh ? push_kind : kinds[move_next];
 
     wire       move_read, issue_read, back_read;
     wire [2:0] move_size, issue_size, back_size;
     wire [PORT_BITS-1:0] issue_port;
-    assign {move_port_o, move_read, move_size} = kinds[move];
+    assign {move_port_o, move_read, move_size} = move_kind;
     assign {issue_port, issue_read, issue_size} = kinds[issue];
     assign {back_port_o, back_read, back_size} = kinds[back];
 
-    wire moving     = move != head;
-    wire move_last  = move_index == last_of(move_size);
-    assign move_valid_o = moving && !move_read;
+    wire       move_last  = move_index == last_of(move_size);
+    wire       move_ends  = moving && (move_read || (move_done_i && move_last));
 
     assign cmd_valid_o = issue != move;
     assign cmd_read_o  = issue_read;
@@ -84,30 +97,40 @@ module npi_queue #(
 
     wire coming     = back != issue;
     wire back_last  = back_index == last_of(back_size);
+    wire back_ends  = coming && (!back_read || (back_done_i && back_last));
     assign back_valid_o = coming && back_read;
     assign back_index_o = back_index;
 
     always @(posedge clk_i) begin
         if (push_i) begin
             addrs[head] <= push_addr_i;
-            kinds[head] <= {push_port_i, push_read_i, push_size_i};
+            kinds[head] <= push_kind;
             head        <= head_next;
         end
         if (move_done_i)
             move_index <= move_index + 5'd1;
-        if (moving && (move_read || (move_done_i && move_last)))
-            move <= move + 1'b1;
+        if (move_ends)
+            move <= move_next;
+        if (move_ends || !moving) begin
+            moving    <= next_is;
+            move_kind <= next_kind;
+            move_at_o <= {{((1<<PORT_BITS)-1){1'b0}}, next_is && !next_kind[3]} << next_kind[KIND-1:4];
+        end
         if (cmd_valid_o && cmd_ready_i)
             issue <= issue + 1'b1;
         if (back_done_i)
             back_index <= back_index + 5'd1;
-        if (coming && (!back_read || (back_done_i && back_last)))
+        if (back_ends)
             back <= back + 1'b1;
+        full <= !back_ends && (full || (push_i && nearly));
         if (rst_i) begin
+            full  <= 1'b0;
             head  <= 0;
             move  <= 0;
             issue <= 0;
             back  <= 0;
+            moving    <= 1'b0;
+            move_at_o <= 0;
         end
         if (rst_i || (move_done_i && move_last))
             move_index <= 5'd0;
@@ -120,6 +143,8 @@ module npi_queue #(
 `ifdef FORMAL
     assign places_o = {head, move, issue, back};
     assign moved_o  = move_index;
+    assign moving_o = {moving, move_kind};
+    wire move_valid = |move_at_o;
     genvar f;
     generate
         for (f = 0; f < (1 << LOG2); f = f + 1) begin : g_places
@@ -145,7 +170,7 @@ module npi_queue #(
     always @(posedge clk_i) begin
         past <= 1'b1;
         assume (!(push_i && full_o));
-        assume (!(move_done_i && !move_valid_o));
+        assume (!(move_done_i && !move_valid));
         assume (!(back_done_i && !back_valid_o));
         if (push_i && head == place) begin
             addr   <= push_addr_i;
@@ -161,7 +186,7 @@ module npi_queue #(
             issued <= 1'b1;
         if (back_done_i && back == place)
             came <= came + 6'd1;
-        if (coming && (!back_read || (back_done_i && back_last)) && back == place)
+        if (back_ends && back == place)
             inside <= 1'b0;
         if (rst_i)
             inside <= 1'b0;
@@ -170,6 +195,10 @@ module npi_queue #(
             assert (n_issue <= n_move);
             assert (n_move <= n_head);
             assert (inside == (n_place < n_head));
+            assert (moving == (move != head));
+            assert (full == (head_next == back));
+            assert (!moving || move != place || move_kind == kind);
+            assert (move_at_o == (moving && !move_read ? {{((1<<PORT_BITS)-1){1'b0}}, 1'b1} << move_port_o : 0));
             assert (move_index <= last_of(move_size) || !moving || move_read);
             assert (back_index <= last_of(back_size) || !coming || !back_read);
             if (!moving || move_read)
@@ -205,8 +234,8 @@ module npi_queue #(
                 if ($past(cmd_valid_o) && !$past(cmd_ready_i))
                     assert (cmd_valid_o && $stable(cmd_read_o) && $stable(cmd_addr_o) &&
                             $stable(cmd_last_o));
-                if ($past(move_valid_o) && !$past(move_done_i))
-                    assert (move_valid_o && $stable(move_port_o));
+                if ($past(move_valid) && !$past(move_done_i))
+                    assert ($stable(move_at_o) && $stable(move_port_o));
                 if ($past(back_valid_o) && !$past(back_done_i))
                     assert (back_valid_o && $stable(back_port_o) && $stable(back_index_o));
             end

@@ -19,39 +19,64 @@ module npi_select #(
 ) (
     input  wire             clk_i,
     input  wire             rst_i,
-    input  wire [PORTS-1:0] asking_i,
+    input  wire [PORTS-1:0] req_i,    // until the cycle of ack_o
     input  wire             enable_i, // a grant can be taken in this cycle
-    output wire [PORTS-1:0] grant_o   // one-hot, or 0
+    output wire [PORTS-1:0] grant_o,  // one-hot, or 0
+    output wire             any_o,    // a grant is given
+    output reg  [PORTS-1:0] ack_o     // the grant of the cycle before
+`ifdef FORMAL // for npi_arbiter_proof
+    , output wire [PORTS-1:0] later_o
+`endif
 );
     // later: the ports after the one of their class that was served last.
     reg [PORTS-1:0] later;
     reg [2:0]       run;
 
-    wire [PORTS-1:0] urgent  = asking_i & URGENT;
-    wire [PORTS-1:0] normal  = asking_i & ~URGENT;
+    wire [PORTS-1:0] asking  = req_i & ~ack_o;
+    wire [PORTS-1:0] urgent  = asking & URGENT;
+    wire [PORTS-1:0] normal  = asking & ~URGENT;
     wire             overdue = run == URGENT_RUN;
-    wire [PORTS-1:0] turn    = |urgent && !(overdue && |normal) ? urgent : normal;
-    wire [PORTS-1:0] next    = |(turn & later) ? turn & later : turn;
-    wire [PORTS-1:0] chosen  = next & (~next + 1'b1); // the lowest bit
-    wire [PORTS-1:0] members = |(chosen & URGENT) ? URGENT : ~URGENT;
+    wire [PORTS-1:0] members = |urgent && !(overdue && |normal) ? URGENT : ~URGENT;
+    // Who was served last is not in `later`, so the requests go here as they are: one input less a port.
+    wire [PORTS-1:0] first   = req_i & later & members;
+    wire [PORTS-1:0] turn    = asking & members;
+
+    // The lowest bit of each, and the ports above the one that is chosen: no carry chain for so few.
+    reg [PORTS-1:0] first_low, turn_low, above;
+    integer i;
+    always @* begin
+        first_low[0] = first[0];
+        turn_low[0]  = turn[0];
+        above[0]     = 1'b0;
+        for (i = 1; i < PORTS; i = i + 1) begin
+            first_low[i] = first[i] && !(|(first << (PORTS - i)));
+            turn_low[i]  = turn[i] && !(|(turn << (PORTS - i)));
+            above[i]     = |(chosen << (PORTS - i));
+        end
+    end
+    wire [PORTS-1:0] chosen = |first ? first_low : turn_low;
 
     assign grant_o = enable_i ? chosen : {PORTS{1'b0}};
+    assign any_o   = enable_i && |asking;
 
     always @(posedge clk_i) begin
-        if (|grant_o) begin
-            later <= (later & ~members) | (~(chosen - 1'b1) & ~chosen & members);
+        ack_o <= grant_o;
+        if (any_o) begin
+            later <= (later & ~members) | (above & members);
             if (!(|(chosen & URGENT)))
                 run <= 3'd0;
             else if (|normal && !overdue)
                 run <= run + 3'd1;
         end
         if (rst_i) begin
+            ack_o <= {PORTS{1'b0}};
             later <= {PORTS{1'b0}};
             run   <= 3'd0;
         end
     end
 
 `ifdef FORMAL
+    assign later_o = later;
     reg past = 1'b0;
     initial assume (rst_i);
 
@@ -59,7 +84,7 @@ module npi_select #(
     localparam [5:0] N = PORTS;
     reg  [5:0] waited = 0;             // grants to others since it began to wait
     reg  [5:0] urgents, bound;
-    wire me_asks = |(me & asking_i);
+    wire me_asks = |(me & asking);
     integer q;
     always @* begin
         urgents = 6'd0;
@@ -78,19 +103,21 @@ module npi_select #(
         assume (me != 0 && (me & (me - 1'b1)) == 0);
         // A request stays until it is granted.
         if (past && !rst_i && !$past(rst_i))
-            assume ((asking_i | ~$past(asking_i) | $past(grant_o)) == {PORTS{1'b1}});
+            assume ((asking | ~$past(asking) | $past(grant_o)) == {PORTS{1'b1}});
         if (rst_i || !me_asks || |(grant_o & me))
             waited <= 6'd0;
         else if (|grant_o)
             waited <= waited + 6'd1;
         if (past && !rst_i) begin
             assert ((grant_o & (grant_o - 1'b1)) == 0);     // at most one
-            assert ((grant_o & ~asking_i) == 0);            // only to a requester
-            assert (!enable_i || |grant_o == |asking_i);    // no cycle is lost
+            assert ((grant_o & ~asking) == 0);              // only to a requester
+            assert (|grant_o == (enable_i && |asking));     // no cycle is lost
+            assert (any_o == |grant_o);
+            assert ((later & ack_o) == 0);
             assert (run <= URGENT_RUN);
             assert (waited <= bound);
             cover (waited == bound);
-            cover (&asking_i && |(grant_o & me));
+            cover (&asking && |(grant_o & me));
         end
     end
 `endif

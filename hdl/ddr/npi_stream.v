@@ -25,7 +25,7 @@ module npi_stream #(
     output wire                 read_valid_o,
     output wire [63:0]          read_data_o,
     input  wire                 read_take_i,
-    output wire                 read_idle_o,
+    output reg                  read_idle_o,
     // write stream
     input  wire                 write_start_i,
     input  wire [ADDR_BITS-1:6] write_base_i,
@@ -34,7 +34,7 @@ module npi_stream #(
     input  wire [7:0]           write_be_i,
     output wire                 write_ready_o,
     input  wire                 write_flush_i,
-    output wire                 write_idle_o,
+    output reg                  write_idle_o,
     // memory port
     output wire [31:0]          npi_addr_o,
     output wire                 npi_addr_req_o,
@@ -70,14 +70,12 @@ module npi_stream #(
     assign read_valid_o = !npi_rd_empty_i && to_give != {WORD_BITS{1'b0}};
     assign read_data_o  = npi_rd_data_i;
     assign npi_rd_pop_o = !npi_rd_empty_i && (read_take_i || to_give == {WORD_BITS{1'b0}});
-    assign read_idle_o  = to_give == {WORD_BITS{1'b0}} && outstanding == 6'd0 && !(request && request_read);
 
     // ---- write ----
     wire push = !npi_wr_almost_full_i && bursts != 3'd4 && (padding || write_valid_i);
     wire full = push && filled == 3'd7;
 
     assign write_ready_o = !npi_wr_almost_full_i && bursts != 3'd4 && !padding;
-    assign write_idle_o  = filled == 3'd0 && bursts == 3'd0;
     assign npi_wr_push_o = push;
     assign npi_wr_data_o = write_data_i;
     assign npi_wr_be_o   = padding ? 8'd0 : write_be_i;
@@ -106,6 +104,9 @@ module npi_stream #(
             request_read <= 1'b0;
         end
 
+        // From registers a clock later: a core's start hangs on them.
+        read_idle_o  <= to_give == {WORD_BITS{1'b0}} && outstanding == 6'd0 && !(request && request_read) && !read_start_i;
+        write_idle_o <= filled == 3'd0 && bursts == 3'd0 && !push;
         outstanding <= outstanding + (acked_read ? BURST : 6'd0) - {5'd0, npi_rd_pop_o};
         if (acked_read) begin
             read_addr <= read_addr + 1'b1;
@@ -141,6 +142,8 @@ module npi_stream #(
             filled      <= 3'd0;
             bursts      <= 3'd0;
             padding     <= 1'b0;
+            read_idle_o  <= 1'b0;
+            write_idle_o <= 1'b0;
         end
     end
 
@@ -194,8 +197,10 @@ module npi_stream #(
         assert (promised <= 6'd32 && !(npi_addr_req_o && npi_rnw_o && promised > 6'd24));
         assert (!(npi_addr_req_o && !npi_rnw_o) || {1'b0, pushed} >= owed + 7'd8);
         assert (outstanding == promised && there <= promised);
+        assert (!read_idle_o || (f_left == {WORD_BITS{1'b0}} && promised == 6'd0 && !(npi_addr_req_o && npi_rnw_o)));
         assert ({1'b0, pushed} == owed + {1'b0, bursts, 3'd0} + {4'd0, filled});
         assert (bursts <= 3'd4 && owed <= 7'd32);
+        assert (!write_idle_o || (filled == 3'd0 && bursts == 3'd0));
         // The core gets as many words as it asked for, no more; all that were asked for come.
         assert (to_give == f_left);
         assert (!read_valid_o || f_left != {WORD_BITS{1'b0}});

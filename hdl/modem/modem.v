@@ -119,7 +119,11 @@ module modem #(
     assign modem_reset_n_o = reset_n;
     assign uart_valid = at_tx_valid || packet_tx_valid; // never both: not ready while the set-up runs
     assign uart_data  = at_tx_data | packet_tx_data;
-    assign ring_word  = wr_valid ? {1'b0, MODEM_RX_BASE} : {1'b0, MODEM_TX_BASE};
+    // From a register, since it addresses the word that the processor reads, too: a ring that changes waits a clock.
+    reg writes;
+    always @(posedge clk_i)
+        writes <= wr_valid;
+    assign ring_word  = writes ? {1'b0, MODEM_RX_BASE} : {1'b0, MODEM_TX_BASE};
     assign npi_size_o = 4'd0;
     assign npi_rmw_o  = 1'b0;
     assign npi_wr_flush_o = 1'b0;
@@ -240,7 +244,7 @@ module modem #(
 
     modem_npi u_npi (
         .clk_i(clk_i), .rst_i(rst_i),
-        .base_i(word[31:11]), .base_valid_i(!turn && !at_busy),
+        .base_i(word[31:11]), .base_valid_i(!turn && !at_busy && writes == wr_valid),
         .wr_valid_i(wr_valid), .wr_addr_i({rx_next, wr_index[6:3]}), .wr_be_i(wr_be), .wr_data_i(wr_data),
         .wr_ready_o(wr_ready), .wr_busy_o(wr_busy),
         .rd_valid_i(rd_valid), .rd_addr_i({tx_buffer, rd_index}),

@@ -50,6 +50,7 @@ module ascon (
                       LOAD_TAG = 4'd10, TAG_WORD = 4'd11, DIGEST = 4'd12, FLUSH = 4'd13, DRAIN = 4'd14, CLEAR = 4'd15;
 
     reg [3:0]   state, after;   // after: what follows ROUNDS
+    reg         in_rounds, in_word, idle; // state is ROUNDS, WORD, WAIT_FOR_START: much hangs on these
     reg [1:0]   pass;
     reg         decrypt, hash;
     reg [319:0] s;              // S4 .. S0; 0 while nothing is under way, but for the nonce in S4, S3
@@ -57,41 +58,52 @@ module ascon (
     reg [2:0]   key_words, nonce_words; // written, 4 at most
     reg [3:0]   round;
     reg [23:0]  left;           // bytes
+    reg         few, none;      // in WORD: fewer than eight; none, so the word is padding only
     reg [1:0]   index;          // of the word in its block, key, tag or digest
     reg         differs, valid, aborted, wipe;
+    reg         clear, acting;  // s becomes 0; that, or a command: an access waits
+    reg [4:0]   command;        // what was written to CONTROL, in the clock after
     reg [31:0]  job [0:7];      // words AD_SIZE..TAG by their low address bits
     reg [7:0]   bad;            // of those, what is not aligned or too long
 
     // ---- registers ----
-    wire        reg_write, reg_read, done, refused;
+    wire        reg_write, reg_read, ready, done, refused;
     wire [3:0]  reg_addr;
     wire [31:0] reg_wdata;
-    wire        is_job = reg_addr >= ASCON_AD_SIZE && reg_addr <= ASCON_TAG;
-    wire        idle   = state == WAIT_FOR_START;
+    wire        is_size = reg_addr == ASCON_AD_SIZE || reg_addr == ASCON_SIZE;
+    wire        is_job  = is_size || reg_addr == ASCON_AD_BASE || reg_addr == ASCON_SOURCE || reg_addr == ASCON_TARGET ||
+                          reg_addr == ASCON_TAG;
     wire [31:0] status = {29'd0, aborted, valid, !idle};
 
     bus_wrapper #(.ID_VALUE(ASCON_ID_VALUE), .WORDS(16'h1FF8), .EVENTS(2)) u_wrapper (
         .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
+        .bus_valid_i(bus_valid_i && !acting), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
+        .bus_wdata_i(bus_wdata_i), .bus_ready_o(ready), .bus_rdata_o(bus_rdata_o),
         .bus_error_o(bus_error_o),
         .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr), .reg_wdata_o(reg_wdata),
         .reg_rdata_i(is_job ? job[reg_addr[2:0]] : reg_addr == ASCON_STATUS ? status : 32'd0),
         .event_i({refused, done}), .irq_o(irq_o));
 
-    wire control = reg_write && reg_addr == ASCON_CONTROL;
-    wire start   = control && idle && |reg_wdata[2:0];
-    wire aead    = !reg_wdata[ASCON_CONTROL_HASH_LSB];
+    // A command acts a clock later, from registers: 448 flip-flops hang on FORGET. No access comes between.
+    wire start   = idle && |command[2:0] && command[4:3] == 2'd0;
+    wire aead    = !command[ASCON_CONTROL_HASH_LSB];
     wire go      = start && bad == 8'd0 && (!aead || (key_words[2] && nonce_words[2]));
-    wire abort   = control && reg_wdata[ASCON_CONTROL_ABORT_LSB];
-    wire forget  = control && reg_wdata[ASCON_CONTROL_FORGET_LSB] && idle;
+    wire abort   = command[ASCON_CONTROL_ABORT_LSB];
+    wire forget  = command[ASCON_CONTROL_FORGET_LSB] && idle;
     wire put_key   = reg_write && reg_addr == ASCON_KEY && idle;
     wire put_nonce = reg_write && reg_addr == ASCON_NONCE && idle && !nonce_words[2];
     assign refused = start && !go;
+    assign bus_ready_o = ready && !acting;
 
-    always @(posedge clk_i)
+    wire control = reg_write && reg_addr == ASCON_CONTROL;
+    wire clears  = (go && !aead) || forget || (idle && abort) || done;
+    always @(posedge clk_i) begin
+        command <= control && !rst_i ? reg_wdata[4:0] : 5'd0;
+        clear   <= rst_i || clears;
+        acting  <= rst_i || clears || control;
         if (reg_write && is_job)
             job[reg_addr[2:0]] <= reg_wdata;
+    end
 
     // ---- memory ----
     reg [2:0] wanted; // the register that the state looks at
@@ -109,15 +121,15 @@ module ascon (
     wire [23:0] words = state == LOAD_TAG ? 24'd2 : {3'd0, left[23:3]} + {23'd0, |left[2:0]};
 
     // Bytes of this word: all eight, or what is left, padded by a one.
-    wire        last = state == WORD && left[23:3] == 21'd0;
+    wire        last = in_word && few;
     wire [7:0]  be   = last ? ~(8'hFF << left[2:0]) : 8'hFF;
     wire [63:0] pad  = last ? 64'd1 << {left[2:0], 3'd0} : 64'd0;
     wire [63:0] mask = {{8{be[7]}}, {8{be[6]}}, {8{be[5]}}, {8{be[4]}},
                         {8{be[3]}}, {8{be[2]}}, {8{be[1]}}, {8{be[0]}}};
 
     wire writes = pass == WIPE || (pass == MESSAGE && !hash);
-    wire reads  = pass != WIPE && be != 8'd0;
-    wire step   = state == WORD && (!reads || read_valid) && (!writes || be == 8'd0 || write_ready);
+    wire reads  = pass != WIPE && !none;
+    wire step   = in_word && (!reads || read_valid) && (!writes || none || write_ready);
     wire tag_step    = state == TAG_WORD && (decrypt ? read_valid : write_ready);
     wire digest_step = state == DIGEST && write_ready;
 
@@ -129,7 +141,7 @@ module ascon (
         .read_take_i((step && reads) || (tag_step && decrypt)), .read_idle_o(read_idle),
         .write_start_i((state == LOAD_TARGET || (state == LOAD_TAG && !decrypt)) && both_idle),
         .write_base_i(setting[31:6]),
-        .write_valid_i((step && writes && be != 8'd0) || (tag_step && !decrypt) || digest_step),
+        .write_valid_i((step && writes && !none) || (tag_step && !decrypt) || digest_step),
         .write_data_i(pass == WIPE ? 64'd0 : sum), .write_be_i(be),
         .write_ready_o(write_ready), .write_flush_i(state == FLUSH || state == FINAL_KEY), .write_idle_o(write_idle),
         .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
@@ -147,14 +159,14 @@ module ascon (
     wire        key_high = state == FIRST_WORDS ? index[1] : index[0];
     wire        use_key  = state == ADD_KEY || state == FINAL_KEY || (state == FIRST_WORDS && index != 2'd0);
     wire        use_iv   = state == FIRST_WORDS && index == 2'd0;
-    wire [63:0] operand  = (state == WORD || (state == TAG_WORD && decrypt) ? read_data : 64'd0) | (idle ? {2{reg_wdata}} : 64'd0) |
+    wire [63:0] operand  = (in_word || (state == TAG_WORD && decrypt) ? read_data : 64'd0) | (idle ? {2{reg_wdata}} : 64'd0) |
                            (use_key && !key_high ? key[63:0] : 64'd0) | (use_key && key_high ? key[127:64] : 64'd0) |
                            (use_iv && !hash ? IV_AEAD : 64'd0) | (use_iv && hash ? IV_HASH : 64'd0) |
                            {state == SEPARATE, 63'd0};
     wire        second   = index[0] && state != DIGEST;
     wire [63:0] chosen   = state == TAG_WORD ? (second ? s[319:256] : s[255:192]) : second ? s[127:64] : s[63:0];
     wire [63:0] sum      = chosen ^ operand; // encrypted, decrypted, a tag (its difference) or a digest
-    (* keep *) wire [63:0] added    = ((decrypt && state == WORD && pass == MESSAGE ? sum : operand) & mask) ^ pad;
+    (* keep *) wire [63:0] added    = ((decrypt && in_word && pass == MESSAGE ? sum : operand) & mask) ^ pad;
 
     // Which halves of which words take it.
     wire absorbs = step && pass != WIPE;
@@ -168,12 +180,11 @@ module ascon (
 
     wire [319:0] permuted;
     ascon_round u_round (.state_i(s), .round_i(round), .state_o(permuted));
-    wire clear = rst_i || forget || state == CLEAR || (idle && abort);
     integer h;
     always @(posedge clk_i) begin
         for (h = 0; h < 10; h = h + 1)
-            if (state == ROUNDS || takes[h])
-                s[32*h +: 32] <= state == ROUNDS ? permuted[32*h +: 32] : s[32*h +: 32] ^ added[32*(h & 1) +: 32];
+            if (in_rounds || takes[h])
+                s[32*h +: 32] <= in_rounds ? permuted[32*h +: 32] : s[32*h +: 32] ^ added[32*(h & 1) +: 32];
         if (clear)
             s <= 320'd0;
         if (put_key)
@@ -185,16 +196,27 @@ module ascon (
     // ---- control ----
     assign done = state == DRAIN && both_idle && !wipe;
 
+    task enter(input [3:0] to);
+        begin
+            state     <= to;
+            in_rounds <= to == ROUNDS;
+            in_word   <= to == WORD;
+            idle      <= to == WAIT_FOR_START;
+        end
+    endtask
+
     always @(posedge clk_i) begin
+        few  <= left[23:3] == {20'd0, step};
+        none <= left[23:3] == {20'd0, step} && left[2:0] == 3'd0;
         case (state)
             WAIT_FOR_START: if (go) begin
-                decrypt <= aead && reg_wdata[ASCON_CONTROL_DECRYPT_LSB] && !reg_wdata[ASCON_CONTROL_ENCRYPT_LSB];
+                decrypt <= aead && command[ASCON_CONTROL_DECRYPT_LSB] && !command[ASCON_CONTROL_ENCRYPT_LSB];
                 hash    <= !aead;
                 pass    <= aead ? ASSOCIATED : MESSAGE;
                 round   <= TWELVE_ROUNDS;
                 index   <= 2'd0;
                 after   <= FIRST_WORDS;
-                state   <= aead ? FIRST_WORDS : CLEAR; // a digest needs no nonce
+                enter(aead ? FIRST_WORDS : CLEAR); // a digest needs no nonce
                 differs <= 1'b0;
                 valid   <= 1'b0;
                 aborted <= 1'b0;
@@ -204,52 +226,53 @@ module ascon (
                 after <= hash ? LOAD_SIZE : ADD_KEY;
                 if (hash || index == 2'd2) begin
                     index <= 2'd0;
-                    state <= ROUNDS;
+                    enter(ROUNDS);
                 end
             end
             ROUNDS: begin
                 round <= round + 4'd1;
                 if (round == LAST_ROUND)
-                    state <= after;
+                    enter(after);
             end
             ADD_KEY: begin
                 index <= {1'b0, !index[0]};
                 if (index[0])
-                    state <= pass == MESSAGE ? LOAD_TAG : LOAD_SIZE;
+                    enter(pass == MESSAGE ? LOAD_TAG : LOAD_SIZE);
             end
             LOAD_SIZE: begin
                 left  <= setting[23:0];
                 index <= 2'd0;
-                state <= pass != ASSOCIATED ? LOAD_TARGET : setting[23:0] == 24'd0 ? SEPARATE : LOAD_SOURCE;
+                enter(pass == ASSOCIATED ? LOAD_SOURCE : LOAD_TARGET);
             end
             SEPARATE: begin
                 pass  <= MESSAGE;
-                state <= LOAD_SIZE;
+                enter(LOAD_SIZE);
             end
             LOAD_TARGET: if (both_idle)
-                state <= pass == WIPE ? WORD : LOAD_SOURCE;
-            LOAD_SOURCE: state <= WORD; // idle since LOAD_TARGET, or since the start
+                enter(pass == WIPE ? WORD : LOAD_SOURCE);
+            // idle since LOAD_TARGET, or since the start
+            LOAD_SOURCE: enter(pass == ASSOCIATED && left == 24'd0 ? SEPARATE : WORD);
             WORD: if (step) begin
                 left  <= last ? 24'd0 : left - 24'd8;
                 index <= hash || pass == WIPE ? 2'd0 : {1'b0, !last && !index[0]};
                 round <= hash ? TWELVE_ROUNDS : EIGHT_ROUNDS;
                 after <= !last ? WORD : hash ? DIGEST : SEPARATE;
                 if (pass == WIPE)
-                    state <= last ? FLUSH : WORD;
+                    enter(last ? FLUSH : WORD);
                 else if (last && !hash && pass == MESSAGE)
-                    state <= FINAL_KEY;
+                    enter(FINAL_KEY);
                 else if (last || hash || index[0])
-                    state <= ROUNDS;
+                    enter(ROUNDS);
             end
             FINAL_KEY: begin
                 index <= {1'b0, !index[0]};
                 round <= TWELVE_ROUNDS;
                 after <= ADD_KEY;
                 if (index[0])
-                    state <= ROUNDS;
+                    enter(ROUNDS);
             end
             LOAD_TAG: if (both_idle)
-                state <= TAG_WORD;
+                enter(TAG_WORD);
             TAG_WORD: if (tag_step) begin
                 index <= 2'd1;
                 if (decrypt) begin
@@ -258,28 +281,28 @@ module ascon (
                     wipe    <= index[0] && (differs || sum != 64'd0);
                 end
                 if (index[0])
-                    state <= FLUSH;
+                    enter(FLUSH);
             end
             DIGEST: if (digest_step) begin
                 index <= index + 2'd1;
                 round <= TWELVE_ROUNDS;
                 after <= DIGEST;
-                state <= index == 2'd3 ? FLUSH : ROUNDS;
+                enter(index == 2'd3 ? FLUSH : ROUNDS);
             end
-            FLUSH: state <= DRAIN;
+            FLUSH: enter(DRAIN);
             DRAIN: if (both_idle) begin
                 wipe  <= 1'b0;
                 pass  <= wipe ? WIPE : ASSOCIATED;
                 after <= WAIT_FOR_START;
-                state <= wipe ? LOAD_SIZE : CLEAR;
+                enter(wipe ? LOAD_SIZE : CLEAR);
             end
-            default: state <= after; // CLEAR
+            default: enter(after); // CLEAR
         endcase
         if (abort && !idle && pass != WIPE && state != FLUSH && state != DRAIN && state != CLEAR) begin
             aborted <= 1'b1;
             valid   <= 1'b0;
             wipe    <= decrypt && pass == MESSAGE;
-            state   <= FLUSH;
+            enter(FLUSH);
         end
 
         if (put_key && !key_words[2])
@@ -291,9 +314,9 @@ module ascon (
         if (forget)
             key_words <= 3'd0;
         if (reg_write && is_job)
-            bad[reg_addr[2:0]] <= reg_addr <= ASCON_SIZE ? |reg_wdata[31:24] : |reg_wdata[5:0];
+            bad[reg_addr[2:0]] <= is_size ? |reg_wdata[31:24] : |reg_wdata[5:0];
         if (rst_i) begin
-            state       <= WAIT_FOR_START;
+            enter(WAIT_FOR_START);
             pass        <= ASSOCIATED;
             key_words   <= 3'd0;
             nonce_words <= 3'd0;

@@ -415,6 +415,16 @@ TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
     bus_.write(ASCON_CONTROL, ASCON_CONTROL_ABORT_MASK);
     EXPECT_EQ(hex(encrypt(sixteen(1), {}, counted(9, 5)).text),
               hex(asconEncrypt(sixteen(2), sixteen(1), {}, counted(9, 5)).text));
+    // A nonce may follow at once; a start beside an abort is none.
+    for (uint32_t how :
+         {ASCON_CONTROL_ABORT_MASK, ASCON_CONTROL_ABORT_MASK | ASCON_CONTROL_ENCRYPT_MASK}) {
+        put(ASCON_NONCE, sixteen(5));
+        bus_.write(ASCON_CONTROL, how);
+        put(ASCON_NONCE, sixteen(1));
+        EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_DONE_MASK);
+        EXPECT_EQ(hex(bytesAt(target_, 5)),
+                  hex(asconEncrypt(sixteen(2), sixteen(1), {}, counted(9, 5)).text));
+    }
     put(ASCON_NONCE, sixteen(1));
     bus_.write(ASCON_CONTROL, ASCON_CONTROL_FORGET_MASK);
     put(ASCON_NONCE, sixteen(1));

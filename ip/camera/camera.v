@@ -56,6 +56,7 @@ module camera (
                      WAIT_FOR_MEMORY = 3'd5;
 
     reg [2:0]  state;
+    reg        capturing, listening; // state is CAPTURE; is one in which tokens are taken
     reg        stopping;             // no further frame
     reg        whole;                // the frame that ends, or has ended, is good
     reg        again;                // the next one has begun already
@@ -69,13 +70,23 @@ module camera (
     wire       offered;
 
     // ---- sensor ----
-    wire        push, full, empty, pop, never_begins;
-    wire [10:0] token_in, token;
+    wire        push, full, waits, empty, pop, never_begins;
+    wire [10:0] token_in, token_out;
     camera_sensor u_sensor (.pclk_i(pclk_i), .vsync_i(vsync_i), .href_i(href_i), .data_i(data_i),
                             .push_o(push), .token_o(token_in), .full_i(full));
     async_fifo #(.WIDTH(11), .LOG2(5)) u_fifo (
         .write_clk_i(pclk_i), .push_i(push), .data_i(token_in), .full_o(full), .begins_o(never_begins),
-        .read_clk_i(clk_i), .restart_i(1'b0), .pop_i(pop), .data_o(token), .empty_o(empty));
+        .read_clk_i(clk_i), .restart_i(1'b0), .pop_i(fetch), .data_o(token_out), .empty_o(waits));
+    // The next one is in a register: what becomes of it is long enough a path without the FIFO's memory.
+    reg [10:0] token;
+    reg        has_token;
+    wire       fetch = !waits && (!has_token || pop);
+    assign empty = !has_token;
+    always @(posedge clk_i) begin
+        if (fetch)
+            token <= token_out;
+        has_token <= !rst_i && (fetch || (has_token && !pop));
+    end
     wire       lost = token[10];
     wire [1:0] kind = token[9:8];
     wire       starts = kind == FRAME_START, ends_line = kind == LINE_END, is_pixel = kind == PIXEL;
@@ -106,7 +117,7 @@ module camera (
     end
 
     always @* case (reg_addr)
-        CAMERA_STATUS:  reg_rdata = {30'd0, state == CAPTURE, state != OFF};
+        CAMERA_STATUS:  reg_rdata = {30'd0, capturing, state != OFF};
         CAMERA_SIZE:    reg_rdata = size;
         CAMERA_BASE:    reg_rdata = set_base;
         CAMERA_STRIDE:  reg_rdata = set_stride;
@@ -123,7 +134,7 @@ module camera (
     wire        no_data, read_idle;
     wire [63:0] no_words;
     wire        room   = x != width; // for one more pixel of this line
-    wire        eighth = state == CAPTURE && !empty && !lost && is_pixel && room && x[2:0] == 3'd7;
+    wire        eighth = capturing && !empty && !lost && is_pixel && room && x[2:0] == 3'd7;
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(4)) u_stream (
         .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(1'b0), .read_base_i(26'd0), .read_words_i(4'd0), .read_stop_i(1'b0),
@@ -142,10 +153,10 @@ module camera (
 
     // ---- frames ----
     // Tokens wait while a buffer is chosen and while a frame is finished; what waits too long is lost, and said so.
-    wire frozen = state == WAIT_FOR_BUFFER || state == FINISH || state == WAIT_FOR_MEMORY || (eighth && !write_ready);
+    wire frozen = !listening || (eighth && !write_ready);
     assign pop  = !empty && !frozen;
     wire begins = pop && starts;
-    wire token_in_frame = pop && state == CAPTURE;
+    wire token_in_frame = pop && capturing;
     wire bad    = lost || (is_pixel && !room) || (ends_line && room) || starts;
     wire last   = ends_line && y + 16'd1 == height;
     wire kept   = state == WAIT_FOR_MEMORY && write_idle && whole; // all of it is in memory
@@ -153,6 +164,14 @@ module camera (
                               .writing_o(writing), .newest_o(newest), .offered_o(offered), .take_i(frame_take_i));
     assign frame_valid_o = offered;
     assign frame_index_o = newest;
+
+    task enter(input [2:0] to);
+        begin
+            state     <= to;
+            capturing <= to == CAPTURE;
+            listening <= to == OFF || to == WAIT_FOR_FRAME || to == CAPTURE;
+        end
+    endtask
 
     always @(posedge clk_i) begin
         events <= 7'd0;
@@ -163,7 +182,7 @@ module camera (
                 stopping <= 1'b0;
                 events[CAMERA_EVENT_REFUSED_LSB] <= asked && !good;
                 if (asked && good) begin
-                    state      <= WAIT_FOR_FRAME;
+                    enter(WAIT_FOR_FRAME);
                     width      <= size[15:0];
                     height     <= size[31:16];
                     base       <= set_base;
@@ -176,9 +195,9 @@ module camera (
             end
             WAIT_FOR_FRAME: begin
                 if (stopping)
-                    state <= OFF;
+                    enter(OFF);
                 else if (begins)
-                    state <= WAIT_FOR_BUFFER;
+                    enter(WAIT_FOR_BUFFER);
                 if (pop && ends_line) // told once
                     whole <= 1'b0;
                 events[CAMERA_EVENT_LONG_FRAME_LSB] <= pop && ends_line && whole;
@@ -188,7 +207,7 @@ module camera (
                 y     <= 16'd0;
                 whole <= 1'b0;
                 again <= 1'b0;
-                state <= CAPTURE;
+                enter(CAPTURE);
             end
             CAPTURE: if (token_in_frame) begin
                 if (is_pixel) begin
@@ -208,13 +227,13 @@ module camera (
                 if (bad)
                     dropped <= dropped + 16'd1;
                 if (bad || last)
-                    state <= FINISH;
+                    enter(FINISH);
             end else if (stopping) begin
-                state <= FINISH;
+                enter(FINISH);
             end
-            FINISH: state <= WAIT_FOR_MEMORY;
+            FINISH: enter(WAIT_FOR_MEMORY);
             default: if (write_idle) // WAIT_FOR_MEMORY
-                state <= stopping ? OFF : again ? WAIT_FOR_BUFFER : WAIT_FOR_FRAME;
+                enter(stopping ? OFF : again ? WAIT_FOR_BUFFER : WAIT_FOR_FRAME);
         endcase
 
         if (kept) begin
@@ -230,7 +249,7 @@ module camera (
             default: ;
         endcase
         if (rst_i) begin
-            state      <= OFF;
+            enter(OFF);
             stopping   <= 1'b0;
             events     <= 7'd0;
             has_newest <= 1'b0;

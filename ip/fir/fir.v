@@ -41,7 +41,7 @@ module fir (
     wire [31:0] coefficient, source, target;
     wire [8:0]  count;
 
-    reg         busy, refused;
+    reg         busy, refused, forget; // forget: earlier samples, a clock after `clear`
     reg         begun, flushed;    // the streams have their buffers; the last word is on its way
     reg  [8:0]  to_send, to_take;  // samples that the filter has not got; results that it has not given
     reg  [1:0]  place;             // of the next sample in its word
@@ -81,7 +81,7 @@ module fir (
     fir_filter u_filter (
         .clk_i(clk_i), .rst_i(core_rst),
         .coefficient_write_i(set_coefficient && index[7:4] == 4'd0), .coefficient_index_i(index[3:0]),
-        .coefficient_i(coefficient[17:0]), .shift_i(shift[4:0]), .clear_i(clear && !busy),
+        .coefficient_i(coefficient[17:0]), .shift_i(shift[4:0]), .clear_i(forget),
         .sample_valid_i(sending), .sample_ready_o(sample_ready), .sample_i(read_data[16*place +: 16]),
         .result_valid_o(result_valid), .result_ready_i(room),
         .result_o(result), .saturated_o(saturated));
@@ -108,6 +108,7 @@ module fir (
     integer r;
     always @(posedge clk_i) begin
         refused <= start && bad;
+        forget  <= clear && !busy;
         if (start && !bad) begin
             busy        <= 1'b1;
             to_send     <= count;

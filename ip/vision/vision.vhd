@@ -88,6 +88,7 @@ architecture rtl of vision is
   signal score_y, kept_y : unsigned(16 downto 0);
   signal fill          : unsigned(3 downto 0); -- steps until the first score, then the first kept one
   signal take, real_pixel, pixel_valid, pixel_take, last : std_logic;
+  signal streaming     : std_logic; -- state = STREAM and not stop
   -- A clock behind `take`: everything from the window on moves by this register, whose fan-out has the clock to itself.
   signal step          : std_logic;
   signal step_x        : unsigned(9 downto 0);
@@ -231,9 +232,8 @@ begin
   -- Lines below the frame are made up: their scores are 0, but the last corners need them to leave.
   -- A record may be pushed one step after record_ready_o has fallen, but none is: of two scores in succession
   -- vision_suppress keeps one at most, the first only if it is not less, the second only if it is greater.
-  take       <= '1' when state = STREAM and stop = '0' and (pixel_valid = '1' or real_pixel = '0') and
-                         record_ready = '1' else '0';
-  pixel_take <= take and real_pixel;
+  take       <= streaming and (pixel_valid or not real_pixel) and record_ready;
+  pixel_take <= streaming and pixel_valid and real_pixel and record_ready;
 
   taking : process (clk_i)
   begin
@@ -286,6 +286,7 @@ begin
           if go = '1' then
             state   <= STREAM;
             stop    <= abort;
+            streaming <= not abort;
             aborted <= abort;
             found   <= to_unsigned(0, 16);
             stored  <= to_unsigned(0, 16);
@@ -304,9 +305,11 @@ begin
           if abort = '1' then
             aborted <= '1';
             stop    <= '1';
+            streaming <= '0';
           end if;
           if stop = '1' or (last = '1' and fill = SCORE_DELAY + KEPT_DELAY) then
             stop  <= '1';
+            streaming <= '0';
             state <= DRAIN;
           end if;
         when DRAIN =>
@@ -333,6 +336,7 @@ begin
       if rst_i = '1' then
         state   <= WAIT_FOR_START;
         stop    <= '0';
+        streaming <= '0';
         aborted <= '0';
         found   <= to_unsigned(0, 16);
         stored  <= to_unsigned(0, 16);

@@ -50,13 +50,13 @@ architecture rtl of vision_memory is
   signal write_addr  : unsigned(31 downto 3);
   signal outstanding : unsigned(5 downto 0);   -- words asked for and not yet popped
   signal word        : std_logic_vector(63 downto 0);
-  signal bytes_left  : unsigned(3 downto 0);   -- of `word`
+  signal left        : std_logic_vector(7 downto 0); -- of `word`: as many ones as bytes, from bit 0 on
   signal slot        : std_logic_vector(63 downto 0); -- a record that waits
   signal slot_full   : std_logic;
   signal pushed      : std_logic;
   signal pop, refill : std_logic;
 begin
-  refill <= '1' when bytes_left = 0 or (bytes_left = 1 and pixel_take_i = '1') else '0';
+  refill <= not left(0) or (not left(1) and pixel_take_i);
   pop    <= not npi_rd_empty_i and (refill or not active);
 
   npi_rd_pop_o   <= pop;
@@ -68,7 +68,7 @@ begin
   npi_wr_data_o  <= slot;
   npi_wr_push_o  <= '1' when state = WAIT_FOR_WRITE and pushed = '0' else '0';
   record_ready_o <= not slot_full;
-  pixel_valid_o  <= '1' when bytes_left /= 0 else '0';
+  pixel_valid_o  <= left(0);
   pixel_o        <= word(7 downto 0);
   quiet_o        <= '1' when state = WAIT_FOR_WORK and slot_full = '0' and outstanding = 0 else '0';
 
@@ -114,21 +114,24 @@ begin
       end if;
 
       if pixel_take_i = '1' then
-        word       <= x"00" & word(63 downto 8);
-        bytes_left <= bytes_left - 1;
+        word <= x"00" & word(63 downto 8);
+        left <= '0' & left(7 downto 1);
       end if;
-      if pop = '1' and active = '1' then
-        word       <= npi_rd_data_i;
-        bytes_left <= to_unsigned(8, 4);
+      -- Whether the port has a word only `left` needs to know.
+      if refill = '1' then
+        word <= npi_rd_data_i;
+      end if;
+      if refill = '1' and npi_rd_empty_i = '0' and active = '1' then -- a pop
+        left <= (others => '1');
       end if;
 
       if stop_i = '1' then
-        active     <= '0';
-        bytes_left <= to_unsigned(0, 4);
+        active <= '0';
+        left   <= (others => '0');
       end if;
       if start_i = '1' then
-        active     <= '1';
-        bytes_left <= to_unsigned(0, 4);
+        active <= '1';
+        left   <= (others => '0');
       end if;
       if idle_i = '1' then
         read_addr  <= unsigned(frame_base_i(31 downto 7));
@@ -138,7 +141,7 @@ begin
         state       <= WAIT_FOR_WORK;
         active      <= '0';
         outstanding <= to_unsigned(0, 6);
-        bytes_left  <= to_unsigned(0, 4);
+        left        <= (others => '0');
         slot_full   <= '0';
         pushed      <= '0';
       end if;

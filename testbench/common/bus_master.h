@@ -19,10 +19,11 @@ public:
 
     Answer transfer(bool write, unsigned word, uint32_t data) {
         Module& top = bench_.top();
-        top.bus_valid_i = 1;
         top.bus_write_i = write;
         top.bus_addr_i = static_cast<uint8_t>(word);
         top.bus_wdata_i = data;
+        bench_.tick(); // the address comes a clock before valid, which is low between transfers
+        top.bus_valid_i = 1;
         uint64_t start = bench_.cycles();
         bench_.waitFor([&] { return top.bus_ready_o; }, "bus_ready_o at word " + std::to_string(word),
                        64);

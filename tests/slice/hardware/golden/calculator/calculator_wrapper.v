@@ -71,7 +71,11 @@ module calculator_wrapper (
         .event_i(done), .irq_o(irq_o)
     );
 
-    assign core_rst_o = rst_i || act[31];
+    // A clock after the write, from a register: the whole core hangs on it.
+    reg core_rst;
+    assign core_rst_o = core_rst;
+    always @(posedge clk_i)
+        core_rst <= rst_i || act[31];
     reg  [3:0] busy, refused;
     wire [3:0] timed = 4'b1000; // operations that end by done
     wire [3:0] start = act[3:0] & ~busy;
@@ -79,7 +83,7 @@ module calculator_wrapper (
     always @(posedge clk_i) begin
         busy    <= (busy & ~done) | (start & timed);
         refused <= (refused & ~done & ~start) | (done & {divide_refused_i, 1'b0, 1'b0, 1'b0});
-        if (core_rst_o) begin
+        if (core_rst) begin
             busy    <= 4'd0;
             refused <= 4'd0;
         end

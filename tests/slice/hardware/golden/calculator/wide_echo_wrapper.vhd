@@ -62,8 +62,14 @@ begin
   bus_ready_o <= '1';
   writes <= bus_valid_i and bus_write_i;
   act <= bus_wdata_i when writes = '1' and bus_addr_i = "0011" else X"00000000";
-  core_rst <= rst_i or act(31);
+  -- A clock after the write, from a register: the whole core hangs on it.
   core_rst_o <= core_rst;
+  core_resets : process (clk_i)
+  begin
+    if rising_edge(clk_i) then
+      core_rst <= rst_i or act(31);
+    end if;
+  end process;
   pause_start <= act(3) and not pause_busy;
   pause_done <= pause_done_i and pause_busy;
   happened(0) <= '0';

@@ -54,7 +54,11 @@ module store_wrapper (
         .event_i(1'b0), .irq_o(irq_o)
     );
 
-    assign core_rst_o = rst_i || act[31];
+    // A clock after the write, from a register: the whole core hangs on it.
+    reg core_rst;
+    assign core_rst_o = core_rst;
+    always @(posedge clk_i)
+        core_rst <= rst_i || act[31];
 
     assign exchange_start_o = act[0];
     assign exchange_v_base_o = {value[50:32], 13'd0};

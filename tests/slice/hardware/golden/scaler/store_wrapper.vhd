@@ -52,8 +52,14 @@ begin
   bus_ready_o <= '1';
   writes <= bus_valid_i and bus_write_i;
   act <= bus_wdata_i when writes = '1' and bus_addr_i = "0011" else X"00000000";
-  core_rst <= rst_i or act(31);
+  -- A clock after the write, from a register: the whole core hangs on it.
   core_rst_o <= core_rst;
+  core_resets : process (clk_i)
+  begin
+    if rising_edge(clk_i) then
+      core_rst <= rst_i or act(31);
+    end if;
+  end process;
   happened(0) <= '0';
   irq_o <= '0' when (event_bits and mask_bits) = "0" else '1';
 

@@ -87,10 +87,12 @@ static Ice_Status finishFrame(Vision_Core* self) {
             !self->core.done[DONE] && !self->core.done[REFUSED]) {
             set(self, VISION_MODE, 0);
             set(self, VISION_CONTROL, VISION_CONTROL_ABORT_MASK);
+            /* While it hangs it stays busy; when no camera sent a frame there is none to end. */
+            self->busy = (get(self, VISION_STATUS) & VISION_STATUS_BUSY_MASK) != 0;
             return ICE_TIMEOUT;
         }
     self->busy = 0;
-    if (self->core.done[REFUSED])
+    if (self->core.done[REFUSED] || (get(self, VISION_STATUS) & VISION_STATUS_ABORTED_MASK))
         return ICE_UNKNOWN_EXCEPTION;
     readResults(self);
     if (UAV_busErrors() != errorsBefore)

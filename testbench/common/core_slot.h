@@ -8,6 +8,7 @@
 
 #include "bus_master.h"
 #include "npi_memory.h"
+#include <functional>
 #include <gtest/gtest.h>
 #include <stdexcept>
 #include <string>
@@ -77,7 +78,11 @@ public:
     }
     void tick() {
         bench_.tick();
-        if (bench_.top().irq_o && core_)
+        if (!bench_.top().irq_o)
+            return;
+        if (interrupt_)
+            interrupt_();
+        else if (core_)
             Hw_Core_interrupt(core_);
     }
 
@@ -116,6 +121,7 @@ public:
     CoreMemory<Module> memory_{bench_};
     BusMaster<Module> bus_{bench_};
     Hw_Core* core_ = nullptr;
+    std::function<void()> interrupt_; // a servant's own, instead of Hw_Core_interrupt
     U32 posted_ = 0;
     U32 memoryAt_ = coreMemory; // where they are to the core: what a test writes into MEMORY
     uint64_t started_ = 0, waitedClocks_ = 0;

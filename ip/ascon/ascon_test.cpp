@@ -4,7 +4,7 @@
 // core against the model with a memory that stalls.
 
 #include "Vascon_slot.h"
-#include "ascon_model.h"
+#include "ascon_bytes.h"
 #include "core_slot.h"
 #include <array>
 #include <fstream>
@@ -12,32 +12,9 @@
 #include <sstream>
 extern "C" {
 #include "ascon_regs.h"
-#include "ascon_servant.h"
 }
 
 namespace {
-
-AsconBytes counted(uint8_t first, size_t size) {
-    AsconBytes bytes(size);
-    for (size_t i = 0; i < size; ++i)
-        bytes[i] = static_cast<uint8_t>(first + i);
-    return bytes;
-}
-AsconKey sixteen(uint8_t first) {
-    AsconKey key;
-    for (size_t i = 0; i < key.size(); ++i)
-        key[i] = static_cast<uint8_t>(first + i);
-    return key;
-}
-template <class Bytes> std::string hex(const Bytes& bytes) {
-    std::string text;
-    char digits[3];
-    for (uint8_t b : bytes) {
-        std::snprintf(digits, sizeof digits, "%02X", b);
-        text += digits;
-    }
-    return text;
-}
 
 // Lines of a file of vectors, without its comments.
 std::vector<std::istringstream> vectors(const std::string& name) {
@@ -234,88 +211,6 @@ TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
         ASSERT_TRUE(decrypt(nonce, associated, sealed));
         ASSERT_EQ(bytesAt(target_, message.size()), message);
     }
-}
-
-TEST(AsconServant, SealsOpensAndHashes) {
-    CoreSlot<Vascon_slot> slot;
-    Random random(testSeed());
-    static Ascon_Core core;
-    ASSERT_EQ(Ascon_Core_init(&core, coreSlot, coreMemory, &slot.seam, &slot), HW_OK);
-    slot.core_ = &core.core;
-    auto bytes = [](const auto& list) {
-        return Cores_Bytes{static_cast<Ice_Int>(list.size()), const_cast<uint8_t*>(list.data())};
-    };
-    for (size_t size : {0u, 1u, 16u, 100u, 1024u}) {
-        auto key = sixteen(static_cast<uint8_t>(random.next())),
-             nonce = sixteen(static_cast<uint8_t>(random.next()));
-        auto associated = counted(3, size / 2),
-             message = counted(static_cast<uint8_t>(random.next()), size);
-        auto want = asconEncrypt(key, nonce, associated, message);
-        Cores_Bytes k = bytes(key), n = bytes(nonce), a = bytes(associated), m = bytes(message),
-                    text{}, tag{}, got{};
-        ASSERT_EQ(Cores_Ascon_setKey(&core.servant, &k, nullptr), ICE_OK);
-        ASSERT_EQ(Cores_Ascon_seal(&core.servant, &n, &a, &m, &text, &tag, nullptr), ICE_OK);
-        AsconSealed sealed{AsconBytes(text.data, text.data + text.size), {}};
-        std::copy(tag.data, tag.data + 16, sealed.tag.begin());
-        EXPECT_EQ(hex(sealed.text) + hex(sealed.tag), hex(want.text) + hex(want.tag));
-        Ice_Bool valid = 0;
-        for (bool forged : {true, false}) {
-            sealed.tag[7] ^= forged ? 0x10 : 0;
-            Cores_Bytes t = bytes(sealed.text), g = bytes(sealed.tag);
-            ASSERT_EQ(Cores_Ascon_unseal(&core.servant, &n, &a, &t, &g, &got, &valid, nullptr),
-                      ICE_OK);
-            EXPECT_EQ(valid, !forged);
-            EXPECT_EQ(AsconBytes(got.data, got.data + got.size), forged ? AsconBytes() : message);
-            sealed.tag[7] ^= forged ? 0x10 : 0;
-        }
-        ASSERT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_OK);
-        EXPECT_EQ(std::string(hex(AsconBytes(got.data, got.data + got.size))),
-                  hex(asconHash(message)));
-    }
-    auto tooMuch = counted(0, 1025);
-    auto shortKey = counted(0, 15);
-    Cores_Bytes m = bytes(tooMuch), k = bytes(shortKey), got{};
-    EXPECT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_UNKNOWN_EXCEPTION);
-    EXPECT_EQ(Cores_Ascon_setKey(&core.servant, &k, nullptr), ICE_UNKNOWN_EXCEPTION);
-}
-
-TEST(AsconServant, WhileTheCoreHangsNothingIsTakenForAnAnswer) {
-    CoreSlot<Vascon_slot> slot;
-    static Ascon_Core core;
-    ASSERT_EQ(Ascon_Core_init(&core, coreSlot, coreMemory, &slot.seam, &slot), HW_OK);
-    slot.core_ = &core.core;
-    auto key = sixteen(1), other = sixteen(2), nonce = sixteen(3);
-    auto message = counted(7, 40);
-    auto bytes = [](auto& list) {
-        return Cores_Bytes{static_cast<Ice_Int>(list.size()), list.data()};
-    };
-    Cores_Bytes k = bytes(key), o = bytes(other), n = bytes(nonce), m = bytes(message), text{},
-                tag{}, got{};
-    Ice_Bool valid = 0;
-    ASSERT_EQ(Cores_Ascon_setKey(&core.servant, &k, nullptr), ICE_OK);
-    slot.memory_.hold(true);
-    EXPECT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_TIMEOUT);
-    // It is still busy with that, and would ignore these.
-    EXPECT_EQ(Cores_Ascon_setKey(&core.servant, &o, nullptr), ICE_TIMEOUT);
-    EXPECT_EQ(Cores_Ascon_forget(&core.servant, nullptr), ICE_TIMEOUT);
-    EXPECT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_TIMEOUT);
-    EXPECT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, nullptr), ICE_TIMEOUT);
-    EXPECT_EQ(Cores_Ascon_unseal(&core.servant, &n, &m, &m, &k, &got, &valid, nullptr),
-              ICE_TIMEOUT);
-    slot.memory_.hold(false);
-    slot.bench_.waitFor([&] { return !(slot.bus_.read(ASCON_STATUS) & ASCON_STATUS_BUSY_MASK); },
-                        "the core to give up", 1000);
-    // The answer to what was given up comes when the next call has begun: before the interrupt.
-    ASSERT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, nullptr), ICE_OK);
-    auto want = asconEncrypt(key, nonce, message, message);
-    EXPECT_EQ(hex(AsconBytes(text.data, text.data + text.size)), hex(want.text));
-    EXPECT_EQ(hex(AsconBytes(tag.data, tag.data + tag.size)), hex(want.tag));
-    Ascon_Core_interrupt(&core); // none is pending
-    EXPECT_EQ(Ascon_Core_poll(&core, 0), HW_NEVER);
-    EXPECT_EQ(Cores_Ascon_forget(&core.servant, nullptr), ICE_OK);
-    EXPECT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, nullptr),
-              ICE_UNKNOWN_EXCEPTION)
-        << "there is no key";
 }
 
 TEST_F(AsconTest, ADigestWaitsForRoomInTheMemorysFifo) {

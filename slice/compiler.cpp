@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// compiler: lexer, parser, checks, generator, one after the other.
+// compiler: lexer and parser, then what the checks and the generators expect to be there.
 
 #include "compiler.h"
 #include "lexer.h"
@@ -12,16 +12,4 @@ Unit compileUnit(const std::string& text, const std::string& file, NameRules rul
     if (diagnostics.errors() == 0)
         addClassInterfaces(unit);
     return unit;
-}
-
-std::optional<std::vector<GeneratedFile>> compileToC(const std::string& text,
-                                                     const std::string& file, NameRules rules,
-                                                     const CFileNames& names,
-                                                     Diagnostics& diagnostics) {
-    Unit unit = compileUnit(text, file, rules, diagnostics);
-    if (diagnostics.errors() == 0)
-        checkC(unit, diagnostics);
-    if (diagnostics.errors())
-        return std::nullopt;
-    return generateC(unit, names);
 }

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// compiler: one Slice file from text to files, without a command line and without a file system.
+// compiler: one Slice file from text to its unit, without a command line and without a file system.
 
 #ifndef COMPILER_H
 #define COMPILER_H
 
-#include "c_generator.h"
+#include "ast.h"
 #include "names.h"
-#include <optional>
 
 // The unit of a preprocessed file; errors are in `diagnostics`.
 Unit compileUnit(const std::string& text, const std::string& file, NameRules rules,
@@ -15,10 +14,5 @@ Unit compileUnit(const std::string& text, const std::string& file, NameRules rul
 // Behind each class that can be called, an interface that holds its operations; a part of
 // compileUnit.
 void addClassInterfaces(Unit& unit);
-// The C of it; nothing if there were errors.
-std::optional<std::vector<GeneratedFile>> compileToC(const std::string& text,
-                                                     const std::string& file, NameRules rules,
-                                                     const CFileNames& names,
-                                                     Diagnostics& diagnostics);
 
 #endif

@@ -93,4 +93,19 @@ TEST_F(RadioEndpoint, ConnectingWaitsUntilTheLastClosingIsAnswered) {
     EXPECT_EQ(connect(), ICE_OK);
 }
 
+// As the ground's plugin writes them (test_radio_ice, EndpointsKeepTheirOptionsAsText...), so far
+// as the UAV has them.
+TEST_F(RadioEndpoint, AnEndpointsOptionsAreInTheProxysTextAgain) {
+    auto text = [&](const char* proxy) {
+        Ice_ObjectPrx prx;
+        char line[120] = "";
+        EXPECT_EQ(Ice_Communicator_stringToProxy(&ic_, proxy, &prx), ICE_OK) << proxy;
+        EXPECT_EQ(Ice_Communicator_proxyToString(&prx, line, sizeof line), ICE_OK) << proxy;
+        return std::string(line);
+    };
+    EXPECT_EQ(text("x:xbee-at -a 0x12 -p 2 -t 7000"), "x -t -e 1.1:xbee-at -a 18 -p 2 -t 7000");
+    EXPECT_EQ(text("x -o:xbee-at -a 65535"), "x -o -e 1.1:xbee-at -a 65535 -t 10000");
+    EXPECT_EQ(text(text("x:xbee-at -a 1").c_str()), text("x:xbee-at -a 1"));
+}
+
 } // namespace

@@ -278,6 +278,26 @@ TEST(BridgeRatios, WritesOfAStreamAreTakenAtEveryPhase) {
     }
 }
 
+TEST_F(Bridge, TheDriverTurnsThePageAndTellsOfTheFirstBusError) {
+    uint32_t* words = b_.slave.words.data() + MAP_SLOT_SYSTEM * 16;
+    const uint8_t out[] = {1, 2, 3, 4};
+    for (uint32_t page : {5u, 0u}) {
+        FSMC_writeMemory(page << MAP_DDR_WINDOW_LOG2 | 0x100, out, sizeof out);
+        doorbell();
+        EXPECT_EQ(words[SYSTEM_PAGE], page);
+        EXPECT_EQ(b_.memory.byte(0x103), 4);
+    }
+    b_.slave.clearWord = MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT; // as the system slot does it
+    U32 where = 0;
+    EXPECT_EQ(FSMC_checkError(&where), FSMC_OK);
+    words[SYSTEM_EVENT] = SYSTEM_EVENT_BUS_ERROR_MASK | SYSTEM_EVENT_LATE_MASK;
+    words[SYSTEM_ERROR_ADDR] = 0x123;
+    EXPECT_EQ(FSMC_checkError(&where), FSMC_BUS_ERROR);
+    EXPECT_EQ(where, 0x123u);
+    doorbell();
+    EXPECT_EQ(words[SYSTEM_EVENT], unsigned(SYSTEM_EVENT_LATE_MASK)) << "only what was told";
+}
+
 TEST_F(Bridge, OtherChipsOnTheBusAreLeftAlone) {
     constexpr uint32_t other = 0x68000000; // NE3
     fsmc_.write32(0xA0000010, 0x00001091);

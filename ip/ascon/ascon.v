@@ -50,7 +50,8 @@ module ascon (
                       LOAD_TAG = 4'd10, TAG_WORD = 4'd11, DIGEST = 4'd12, FLUSH = 4'd13, DRAIN = 4'd14, CLEAR = 4'd15;
 
     reg [3:0]   state, after;   // after: what follows ROUNDS
-    reg         in_rounds, in_word, idle; // state is ROUNDS, WORD, WAIT_FOR_START: much hangs on these
+    // state is ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, WAIT_FOR_START: much hangs on these
+    reg         in_rounds, in_word, in_source, in_tag, idle;
     reg [1:0]   pass;
     reg         decrypt, hash;
     reg [319:0] s;              // S4 .. S0; 0 while nothing is under way, but for the nonce in S4, S3
@@ -118,7 +119,7 @@ module ascon (
     wire        read_valid, read_idle, write_ready, write_idle;
     wire [63:0] read_data;
     wire        both_idle = read_idle && write_idle;
-    wire [23:0] words = state == LOAD_TAG ? 24'd2 : {3'd0, left[23:3]} + {23'd0, |left[2:0]};
+    wire [23:0] words = in_tag ? 24'd2 : {3'd0, left[23:3]} + {23'd0, |left[2:0]};
 
     // Bytes of this word: all eight, or what is left, padded by a one.
     wire        last = in_word && few;
@@ -135,11 +136,11 @@ module ascon (
 
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(24)) u_stream (
         .clk_i(clk_i), .rst_i(rst_i),
-        .read_start_i(state == LOAD_SOURCE || (state == LOAD_TAG && decrypt && both_idle)),
+        .read_start_i(in_source || (in_tag && decrypt && both_idle)),
         .read_base_i(setting[31:6]), .read_words_i(words),
         .read_stop_i(state == FLUSH), .read_valid_o(read_valid), .read_data_o(read_data),
         .read_take_i((step && reads) || (tag_step && decrypt)), .read_idle_o(read_idle),
-        .write_start_i((state == LOAD_TARGET || (state == LOAD_TAG && !decrypt)) && both_idle),
+        .write_start_i((state == LOAD_TARGET || (in_tag && !decrypt)) && both_idle),
         .write_base_i(setting[31:6]),
         .write_valid_i((step && writes && !none) || (tag_step && !decrypt) || digest_step),
         .write_data_i(pass == WIPE ? 64'd0 : sum), .write_be_i(be),
@@ -201,6 +202,8 @@ module ascon (
             state     <= to;
             in_rounds <= to == ROUNDS;
             in_word   <= to == WORD;
+            in_source <= to == LOAD_SOURCE;
+            in_tag    <= to == LOAD_TAG;
             idle      <= to == WAIT_FOR_START;
         end
     endtask

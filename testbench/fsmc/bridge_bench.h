@@ -31,6 +31,7 @@ public:
     unsigned errors = 0, errorAddr = 0;
     uint32_t lateMask = 0; // bits that a late access sets in slave.clearWord
     bool errorWrite = false;
+    std::function<void()> onTick; // who only looks
 
     void tick() {
         showPins();
@@ -45,6 +46,8 @@ public:
         if (top.late_o && slave.clearWord < slave.words.size())
             slave.words[slave.clearWord] |= lateMask;
         seePins();
+        if (onTick)
+            onTick();
     }
     void settle() {
         showPins();

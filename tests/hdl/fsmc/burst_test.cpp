@@ -8,12 +8,16 @@
 #include "VFsmcBridgeSyncMuxed.h"
 #include "bridge_bench.h"
 #include "driver_port.h"
+#include "pin_waves.h"
 extern "C" {
 #include "fsmc_bank.h"
 #include "system_regs.h"
 }
+#include <cstdlib>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <map>
+#include <sstream>
 
 namespace {
 
@@ -170,6 +174,45 @@ TEST(Burst, LongBurstsReachThePinLimit) {
         EXPECT_GT(write, length / (length + 9.0));
         EXPECT_GT(read, length / (length + 14.0));
     }
+}
+
+// docs/fsmc.md shows what the pins do here; UPDATE_GOLDENS=1 draws it anew.
+void compareWave(const std::string& name, const std::string& wave) {
+    std::string path = std::string(WAVES_DIR) + "/" + name + ".json";
+    if (std::getenv("UPDATE_GOLDENS"))
+        std::ofstream(path) << wave;
+    std::stringstream page;
+    page << std::ifstream(path).rdbuf();
+    EXPECT_EQ(page.str(), wave) << path;
+}
+
+TEST(Burst, WaveformsOfThePageAreWhatThePinsDo) {
+    const std::vector<uint16_t> values = {0x1001, 0x1002, 0x1003, 0x1004};
+    BridgeBench<VFsmcBridgeSync> b(1, 0, 100, 100);
+    setUp(b, 3, 5, false); // a cycle of FSMC_CLK is four clocks
+    auto watched = [&](auto burst) {
+        auto waves = std::make_unique<PinWaves>(b.pins, 2);
+        b.onTick = [&] { waves->sample(); };
+        b.master.idle(4);
+        burst();
+        b.master.idle(2);
+        b.onTick = nullptr;
+        return waves;
+    };
+    auto write = watched([&] { b.master.writeBurst(ddr, values); });
+    compareWave("fsmc_burst_write",
+                write->json("Four halfwords written, LATENCY 5: edges 5 to 8 take them",
+                            "NWAIT high at an edge: the next takes data, from LATENCY on. FSMC_CLK "
+                            "(25 MHz) stands still between bursts",
+                            values));
+    b.master.read32(control); // the buffers are empty
+    auto read = watched([&] { EXPECT_EQ(b.master.readBurst(ddr, 4), values); });
+    compareWave("fsmc_burst_read",
+                read->json("Four halfwords read, LATENCY 5: NWAIT low at an edge, the next has "
+                           "no data",
+                           "Edge 5 could have the first halfword; NWAIT holds the burst for two "
+                           "edges more, until it has come",
+                           values));
 }
 
 } // namespace

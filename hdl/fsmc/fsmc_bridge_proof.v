@@ -96,9 +96,9 @@ module fsmc_bridge_proof #(
         past <= 1'b1;
         {was_clk, was_ne1, was_ne2, was_noe, was_nwe} <= {clk_i, ne1_i, ne2_i, noe_n_i, nwe_n_i};
         {was_beyond, was_a, was_d, was_nbl, was_nwait, was_out} <= {beyond_i, a_i, d_i, nbl_n_i, nwait_n, d_out[1:0]};
-        if (clock && resets != 3'd4)
+        if (clock && resets != 3'd2)
             resets <= resets + 3'd1;
-        rst <= resets < 3'd4;
+        rst <= resets < 3'd2;
         latched <= selected && (latched || !nadv_n_i);
         if (!access || !nwait_n) begin
             let_go <= 1'b0;
@@ -167,7 +167,7 @@ module fsmc_bridge_proof #(
                 assert (rst || !excuse || since_ne1 <= 2'd2 || SYNC != 0);
                 assert (!(ne2_i && !nwe_n_i && nwait_n) || clear);
                 assert (oe == (selected && !noe_n_i));
-                cover (waited > 8'd12 && was_access && access && nwait_n);
+                cover (waited > 8'd8 && was_access && access && nwait_n);
             end
         end else begin : g_words
             fsmc_words_proof u_fsmc_words_proof (

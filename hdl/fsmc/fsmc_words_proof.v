@@ -23,7 +23,7 @@
 module fsmc_words_proof (
     input wire        past_i,     // this is not the first step
     input wire        rst_i,
-    input wire [2:0]  resets_i,   // clocks of reset, 4 at most
+    input wire [2:0]  resets_i,   // clocks of reset, 2 at most
     // pins in this step and in the one before, and the harness's notes on them (fsmc_bridge_proof)
     input wire        clock_i,
     input wire        ne2_i,
@@ -201,7 +201,7 @@ module fsmc_words_proof (
 
     always @* begin
         assert (past_i || rst_i);
-        assert (rst_i ? resets_i <= 3'd4 : resets_i == 3'd4);
+        assert (rst_i ? resets_i <= 3'd2 : resets_i == 3'd2);
         if (rst_i)
             assert (!owed && !low_may && !low_sure && !half_may && !half_sure && !asked && !got && since == 3'd5 && !given_up_i && !gone2);
         if (rst_i && resets_i != 3'd0)

@@ -7,6 +7,7 @@
 #    property-directed reachability finds the inductive invariant itself and has it checked
 #    (z3's k-induction did not end on 64-bit data);
 # 3. cover: every cover statement is reached within 4 * `depth` clocks.
+# PROVE_PDR: switches of pdr, where others are quicker.
 # PROVE_STEP=k: the assertions carry themselves over k clocks, but are too many for MiniSat: CaDiCaL does the step.
 # A failed assertion leaves <work>/trace.vcd. The module may instance others of its folder, of bus/ and of hdl/system/.
 set -eu
@@ -27,8 +28,8 @@ clocks=async2sync
 ! grep -q gclk "$file" || clocks='memory_map; clk2fflogic'
 # -nosdff -nodffe: AIGER has plain flip-flops only. The module's outputs are dropped: abc would take
 # them for properties.
-aiger='memory_map; opt -full; techmap; opt -fast -nosdff -nodffe; dfflegalize -cell $_DFF_P_ 01;
-abc -g AND -fast; opt_clean; delete -output w:*; write_aiger -zinit -map'
+gates='memory_map; opt -full; techmap; opt -fast -nosdff -nodffe; dfflegalize -cell $_DFF_P_ 01; delete -output w:*'
+aiger='opt_clean; abc -g AND -fast; opt_clean; write_aiger -zinit -map'
 # shellcheck disable=SC2086
 cat >prove.ys <<END
 read_verilog -formal -sv -I${GEN_DIR:-.} $(echo $files)
@@ -38,18 +39,21 @@ memory_nordff
 flatten
 $clocks
 dffunmap
+chformal -early
 setundef -anyseq -undriven
 opt_clean
 check -assert
 write_smt2 -wires model.smt2
 write_ilang model.il
-design -save model
+$(echo $gates)
+design -save gates
 chformal -cover -remove
 $(echo $aiger) assert.map assert.aig
-design -load model
+design -load gates
 select -write cover.names t:\$cover
 chformal -assert -live -fair -remove
 techmap -map $here/cover.v t:\$cover
+simplemap
 $(echo $aiger) cover.map cover.aig
 END
 yosys -q prove.ys >yosys.log 2>&1 || {
@@ -114,7 +118,7 @@ else
     elif grep -q 'Induction step proven: SUCCESS' induct.log; then
         echo "$module: proven, $(grep -c 'Induction step failed' induct.log) + 1 steps"
     else
-        abc "read_aiger assert.aig; fold; strash; scorr -F 2; pdr; write_cex -a assert.aiw" induction.log
+        abc "read_aiger assert.aig; fold; strash; scorr -F 2; pdr ${PROVE_PDR:-}; write_cex -a assert.aiw" induction.log
         grep -q 'Property proved' induction.log || failed induction.log "not proven (PROVE_SECONDS=$limit)"
         echo "$module: proven, $(sed -n 's/^Invariant[^:]*: \([0-9]* clauses with [0-9]* flops\).*/\1/p' induction.log)"
     fi

@@ -41,7 +41,8 @@ module fir (
     wire [31:0] coefficient, source, target;
     wire [8:0]  count;
 
-    reg         busy, refused, forget; // forget: earlier samples, a clock after `clear`
+    reg         busy, refused;
+    reg         forget, put;       // earlier samples; a coefficient: a clock after they were asked for
     reg         begun, flushed;    // the streams have their buffers; the last word is on its way
     reg  [8:0]  to_send, to_take;  // samples that the filter has not got; results that it has not given
     reg  [1:0]  place;             // of the next sample in its word
@@ -80,7 +81,7 @@ module fir (
 
     fir_filter u_filter (
         .clk_i(clk_i), .rst_i(core_rst),
-        .coefficient_write_i(set_coefficient && index[7:4] == 4'd0), .coefficient_index_i(index[3:0]),
+        .coefficient_write_i(put), .coefficient_index_i(index[3:0]),
         .coefficient_i(coefficient[17:0]), .shift_i(shift[4:0]), .clear_i(forget),
         .sample_valid_i(sending), .sample_ready_o(sample_ready), .sample_i(read_data[16*place +: 16]),
         .result_valid_o(result_valid), .result_ready_i(room),
@@ -109,6 +110,7 @@ module fir (
     always @(posedge clk_i) begin
         refused <= start && bad;
         forget  <= clear && !busy;
+        put     <= set_coefficient && index[7:4] == 4'd0;
         if (start && !bad) begin
             busy        <= 1'b1;
             to_send     <= count;

@@ -31,6 +31,7 @@ libpugixml-dev reads JUnit results
 libssl-dev AES of the modem model
 lcov coverage pages
 chromium opens the report pages in tests
+tshark reads the messages on the wire in tests
 git finds what changed
 curl fetches the foreign cores of the examples
 slurmctld regression on a cluster, tested on loopback
@@ -54,7 +55,6 @@ clang fuzzers of the link layer (libFuzzer)
 graphviz pictures of netlists
 man-db shows and checks the manual pages
 groff-base formats them
-chromium tests of the report pages
 '
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in
 1[3-9]) packages="$packages

@@ -26,8 +26,9 @@ for file in *_wrapper.v; do
         miter -equiv -flatten -make_assert from_verilog from_vhdl both; hierarchy -top both; proc; opt_clean
         setundef -zero -init; opt -full; techmap; opt -fast -nosdff -nodffe; dfflegalize -cell \$_DFF_P_ 01
         abc -g AND -fast; opt_clean; delete -output w:*; write_aiger -zinit both.aig"
-    timeout 100 yosys-abc -c 'read_aiger both.aig; fold; strash; scorr; pdr' >proof.log 2>&1 || true
-    grep -q 'Property proved' proof.log || {
+    # sat: where scorr alone has found the output constant, newer versions of abc have nothing left to prove
+    timeout 100 yosys-abc -c 'read_aiger both.aig; fold; strash; scorr; pdr; sat' >proof.log 2>&1 || true
+    grep -q 'Property proved\|UNSATISFIABLE' proof.log || {
         cat proof.log >&2
         echo "equal: $module: the VHDL wrapper is not shown to do what the Verilog one does" >&2
         exit 1

@@ -63,7 +63,7 @@ until sinfo -h -t idle -o %n 2>/dev/null | grep -q .; do
     tries=$((tries + 1))
     [ "$tries" -lt 120 ] || {
         echo "slurm_cluster: the node does not come up" >&2
-        tail -5 "$folder"/*.log >&2
+        tail -n 5 "$folder"/*.log >&2
         exit 1
     }
     sleep 0.5

@@ -132,7 +132,7 @@ void Clock::keepStep(int serial, const std::string& device) {
     store(simulation_->untilNs, 0);
     store(simulation_->fromGround, 0);
     store(simulation_->taken, 0);
-    store(simulation_->toGround, 0);
+    store(simulation_->toGround, simSession(token_));
     store(simulation_->keeper, token_);
 }
 

@@ -23,12 +23,21 @@ struct SimStatus {
     uint8_t seen[1024];    // 0: never, 1: read, 2: written
     // Keeping step. The simulator writes:
     char device[64];       // the serial port of the ground's modem
-    uint64_t toGround;     // bytes that the port has been given since somebody keeps step
+    uint64_t toGround;     // session of who keeps step, and bytes that the port has been given since it does
     // The program writes:
     uint64_t keeper;       // who keeps step: process id in the low 32 bits; 0: nobody
     uint64_t untilNs;      // it sleeps until then; 0: it works
     uint64_t taken;        // bytes it has read; all ones: it does not want to read now
     uint64_t fromGround;   // bytes it has written
 };
+
+// Upper 24 bits of toGround, from `keeper`: what was given to the one before is not counted for the next.
+constexpr int simCountBits = 40;
+constexpr uint64_t simCount(uint64_t toGround) {
+    return toGround & ((uint64_t(1) << simCountBits) - 1);
+}
+constexpr uint64_t simSession(uint64_t keeper) {
+    return keeper * 0x9E3779B97F4A7C15u >> simCountBits << simCountBits;
+}
 
 #endif

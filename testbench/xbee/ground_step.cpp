@@ -24,15 +24,23 @@ uint64_t load(const uint64_t& field) {
 GroundStep::GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> goOn)
     : status_(status), goOn_(std::move(goOn)) {
     std::strncpy(status_.device, pty.path().c_str(), sizeof status_.device - 1);
-    pty.keepCount(
-        {[this] { return load(status_.keeper) != 0; },
-         [this](size_t bytes) { __atomic_add_fetch(&status_.toGround, bytes, __ATOMIC_RELEASE); },
-         [this] { return load(status_.fromGround); }});
+    pty.keepCount({[this] { return load(status_.keeper); },
+                   [this](uint64_t keeper, size_t bytes) { given(keeper, bytes); },
+                   [this] { return load(status_.fromGround); }});
+}
+
+// By the time that a byte is counted its reader may have left, and another one begun.
+void GroundStep::given(uint64_t keeper, size_t bytes) {
+    uint64_t is = load(status_.toGround);
+    while (is - simCount(is) == simSession(keeper) &&
+           !__atomic_compare_exchange_n(&status_.toGround, &is, is + bytes, false, __ATOMIC_SEQ_CST,
+                                        __ATOMIC_SEQ_CST)) {
+    }
 }
 
 bool GroundStep::holds(uint64_t now) const {
     return load(status_.keeper) != 0 &&
-           (load(status_.untilNs) <= now || load(status_.taken) < load(status_.toGround));
+           (load(status_.untilNs) <= now || load(status_.taken) < simCount(load(status_.toGround)));
 }
 
 // A program that was killed has not said good-bye.

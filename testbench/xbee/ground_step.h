@@ -25,6 +25,7 @@ public:
     uint64_t waitedNs() const { return waitedNs_; } // of the wall clock
 
 private:
+    void given(uint64_t keeper, size_t bytes);
     bool holds(uint64_t now) const;
     void dismissTheDead();
 

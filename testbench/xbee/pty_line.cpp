@@ -62,26 +62,28 @@ bool PtyLine::speedFits() const {
 
 // All that the program has written by now; the kernel takes a moment from one end to the other.
 void PtyLine::readAhead(uint64_t now) {
-    bool isCounted = count_.isKept && count_.isKept();
-    if (isCounted != isCounted_)
+    uint64_t counter = count_.keeper ? count_.keeper() : 0;
+    if (counter != counter_)
         fetched_ = 0;
-    isCounted_ = isCounted;
-    for (int looks = 0; isCounted && fetched_ < count_.fromProgram() && looks < patience; ++looks) {
+    counter_ = counter;
+    for (int looks = 0; counter && looks < patience; ++looks) {
         uint8_t bytes[512];
         ssize_t count = read(master_, bytes, sizeof bytes);
-        if (ahead_.empty()) // the wire was idle
-            rxFree_ = std::max(rxFree_, static_cast<double>(now));
-        for (ssize_t i = 0; i < count; ++i)
-            ahead_.push_back(bytes[i]);
-        if (count > 0)
+        if (count > 0) {        // also what somebody has left behind who counts no longer
+            if (ahead_.empty()) // the wire was idle
+                rxFree_ = std::max(rxFree_, static_cast<double>(now));
+            ahead_.insert(ahead_.end(), bytes, bytes + count);
             fetched_ += static_cast<uint64_t>(count);
-        else
+        } else if (fetched_ >= count_.fromProgram()) {
+            break;
+        } else {
             sched_yield();
+        }
     }
 }
 
 size_t PtyLine::fetch(uint8_t* bytes, size_t room) {
-    if (ahead_.empty() && !isCounted_)
+    if (ahead_.empty() && !counter_)
         return static_cast<size_t>(std::max<ssize_t>(read(master_, bytes, room), 0));
     size_t count = std::min(room, ahead_.size());
     std::copy_n(ahead_.begin(), count, bytes);
@@ -92,7 +94,7 @@ size_t PtyLine::fetch(uint8_t* bytes, size_t room) {
 void PtyLine::readHost(uint64_t now) {
     uint8_t bytes[64];
     // Only what the wire could have carried by now, so that nothing is read ahead of flow control.
-    if (!isCounted_)
+    if (!counter_)
         rxFree_ = std::max(rxFree_, static_cast<double>(now) - lookBack());
     size_t room = 0;
     while (room < sizeof bytes &&
@@ -116,7 +118,7 @@ void PtyLine::readHost(uint64_t now) {
 }
 
 void PtyLine::writeHost(uint64_t now) {
-    if (!isCounted_)
+    if (!counter_)
         txFree_ = std::max(txFree_, static_cast<double>(now) - lookBack());
     bool fits = speedFits();
     uint8_t byte;
@@ -133,15 +135,15 @@ void PtyLine::writeHost(uint64_t now) {
     if (count <= 0)
         return;
     unwritten_.erase(unwritten_.begin(), unwritten_.begin() + count);
-    if (isCounted_)
-        count_.toProgram(static_cast<size_t>(count));
+    if (counter_)
+        count_.toProgram(counter_, static_cast<size_t>(count));
 }
 
 void PtyLine::advance(uint64_t now) {
     if (now < nextPoll_)
         return;
     readAhead(now);
-    nextPoll_ = now + (isCounted_ ? countedPollNs : pollNs);
+    nextPoll_ = now + (counter_ ? countedPollNs : pollNs);
     if (cts_)
         readHost(now);
     else
@@ -150,7 +152,7 @@ void PtyLine::advance(uint64_t now) {
 }
 
 void PtyLine::wake(uint64_t now) {
-    if (txFree_ < static_cast<double>(now) && (txIdle_ || !isCounted_))
+    if (txFree_ < static_cast<double>(now) && (txIdle_ || !counter_))
         txFree_ = static_cast<double>(now);
     txIdle_ = false;
 }

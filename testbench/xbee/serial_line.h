@@ -171,9 +171,9 @@ public:
     // A program may say how many bytes it has written and read: then none of them is late because
     // the machine is busy (testbench/xbee/ground_step.h).
     struct Count {
-        std::function<bool()> isKept;
-        std::function<void(size_t bytes)> toProgram;
-        std::function<uint64_t()> fromProgram; // since isKept
+        std::function<uint64_t()> keeper; // who does so, 0: nobody; each begins to count at 0
+        std::function<void(uint64_t keeper, size_t bytes)> toProgram;
+        std::function<uint64_t()> fromProgram;
     };
     void keepCount(Count count) { count_ = std::move(count); }
 
@@ -196,7 +196,8 @@ private:
     double rxFree_ = 0, txFree_ = 0; // when the wire is free again, each way
     std::vector<uint8_t> unwritten_;
     Count count_;
-    bool isCounted_ = false, txIdle_ = true;
+    bool txIdle_ = true;
+    uint64_t counter_ = 0;      // who keeps count
     uint64_t fetched_ = 0;      // of the counted bytes
     std::deque<uint8_t> ahead_; // read, but the wire has not carried them yet
 };

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
 // rig: the other end of the ground's serial port: a modem on a pty, the air, and a UAV that is a
-// modem and a link layer. Its thread follows the clock, because the engine does.
+// modem and a link layer. Its thread follows the machine's clock, but waits for an engine that
+// keeps step with it: where many tests run at once, time passes slowly and no time-out is early.
 
 #ifndef RIG_H
 #define RIG_H
 
+#include "clock_file.h"
+#include "ground_step.h"
 #include "rf_channel.h"
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -103,11 +107,17 @@ private:
     static void onState(void*, Link_State) {}
 
     void run() {
-        const auto start = std::chrono::steady_clock::now();
-        while (!stop_) {
+        using Steady = std::chrono::steady_clock;
+        constexpr uint64_t longestNs = 1'000'000; // between two looks at the models
+        for (auto last = Steady::now(); !stop_;) {
+            waiting_ = Steady::now();
+            step_.wait(now_);
             {
                 std::lock_guard<std::mutex> lock(mutex_);
-                now_ = static_cast<uint64_t>((std::chrono::steady_clock::now() - start).count());
+                auto now = Steady::now();
+                now_ += std::min(static_cast<uint64_t>((now - last).count()), longestNs);
+                last = now;
+                clock_.set(now_);
                 air.advance(now_);
                 ground->advance(now_);
                 uav->advance(now_);
@@ -124,11 +134,19 @@ private:
         }
     }
 
+    // An engine whose thread waits for the test is not waited for.
+    bool goesOn() const {
+        return !stop_ && std::chrono::steady_clock::now() - waiting_ < std::chrono::seconds(5);
+    }
+
     HostLine line_;
     Random random_;
     std::unique_ptr<Link> link_;
     std::atomic<bool> stop_{false};
     uint64_t now_ = 0;
+    ClockFile clock_;
+    std::chrono::steady_clock::time_point waiting_;
+    GroundStep step_{*clock_, pty, [this] { return goesOn(); }};
     std::mutex mutex_;
     std::thread thread_;
 };

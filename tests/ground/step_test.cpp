@@ -103,6 +103,37 @@ TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
     program.join();
 }
 
+// One follows the other between two looks at the pty: an engine that gave up and tries again.
+TEST_F(Step, WhoKeepsStepNextIsHeardFromTheFirstByte) {
+    std::atomic<bool> over{false};
+    std::strncpy(status_->device, pty_.path().c_str(), sizeof status_->device - 1);
+    std::thread program([&] {
+        struct AtEnd {
+            ~AtEnd() { over = true; }
+            std::atomic<bool>& over;
+        } atEnd{over};
+        Clock clock(file_);
+        SerialPort port(clock);
+        ASSERT_TRUE(port.open(pty_.path()));
+        port.setSpeed(115200);
+        clock.keepStep(port.fd(), pty_.path());
+        pollfd none = {-1, 0, 0};
+        ASSERT_EQ(clock.wait(&none, 1, 1000), 0);
+        for (uint8_t i = 0; i < 240; ++i) {
+            if (i % 4 == 3)
+                clock.keepStep(port.fd(), pty_.path());
+            ASSERT_EQ(port.write(&i, 1), 1);
+            pollfd fds[] = {{port.fd(), POLLIN, 0}};
+            ASSERT_EQ(clock.wait(fds, 1, 1'000'000), 1) << "byte " << int(i);
+            uint8_t byte = 0;
+            ASSERT_EQ(port.read(&byte, 1), 1);
+            ASSERT_EQ(byte, i + 1);
+        }
+    });
+    simulate([&] { return over.load(); });
+    program.join();
+}
+
 TEST_F(Step, AProgramThatWasKilledHoldsNothing) {
     std::strncpy(status_->device, pty_.path().c_str(), sizeof status_->device - 1);
     pid_t child = fork();

@@ -5,32 +5,9 @@
 #include "chip_world.h"
 #include <condition_variable>
 #include <cstdlib>
-#include <cstring>
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 extern "C" {
 #include "echo_uav.h"
-}
-
-ChipWorld::StatusFile::StatusFile() {
-    char name[] = "/tmp/icesoc-clock-XXXXXX";
-    int fd = mkstemp(name);
-    if (fd < 0 || ftruncate(fd, sizeof(SimStatus)) != 0)
-        throw std::system_error(errno, std::generic_category(), "no file for the clock");
-    path_ = name;
-    void* at = mmap(nullptr, sizeof(SimStatus), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-    close(fd);
-    if (at == MAP_FAILED)
-        throw std::system_error(errno, std::generic_category(), "no clock in memory");
-    status_ = static_cast<SimStatus*>(at);
-    std::memcpy(status_->magic, "ICESOC1", 8);
-}
-
-ChipWorld::StatusFile::~StatusFile() {
-    munmap(status_, sizeof(SimStatus));
-    unlink(path_.c_str());
 }
 
 XBee::Options ChipWorld::modem(const char* name, std::map<std::string, uint32_t> set) {
@@ -44,8 +21,7 @@ XBee::Options ChipWorld::modem(const char* name, std::map<std::string, uint32_t>
 ChipWorld::ChipWorld(uint64_t seed, const EchoUav_Port& port, void* context)
     : air(seed), groundModem(pty_, air, modem("ground", {{"BD", 7}, {"DL", 1}, {"D6", 1}})),
       soc(air, modem("uav", {{"BD", 7}, {"MY", 1}, {"DL", 0}})),
-      step_(*status_, pty_, [this] { return !stop_; }) {
-    setenv("XBEEAT_CLOCK", status_.path().c_str(), 1);
+      step_(*clock_, pty_, [this] { return !stop_; }) {
     uav_guardMs = guardMs_;
     EchoUav_setPort(&port, context);
     soc.onTime([this](uint64_t now) { return advance(now); });
@@ -55,13 +31,12 @@ ChipWorld::ChipWorld(uint64_t seed, const EchoUav_Port& port, void* context)
 ChipWorld::~ChipWorld() {
     stop_ = true;
     thread_.join();
-    unsetenv("XBEEAT_CLOCK");
 }
 
 uint64_t ChipWorld::advance(uint64_t now) {
     constexpr uint64_t clockStepNs = 100'000;
     groundModem.advance(now);
-    __atomic_store_n(&status_->ns, now, __ATOMIC_RELEASE);
+    clock_.set(now);
     std::vector<std::function<void()>> wanted;
     {
         std::lock_guard<std::mutex> lock(mutex_);

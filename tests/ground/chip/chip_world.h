@@ -6,10 +6,10 @@
 #ifndef CHIP_WORLD_H
 #define CHIP_WORLD_H
 
+#include "../clock_file.h"
 #include "Echo.h"
 #include "ground_step.h"
 #include "soc_model.h"
-#include "status.h"
 #include "uav_machine.h"
 #include <Ice/Ice.h>
 #include <atomic>
@@ -28,7 +28,7 @@ public:
 
     // Runs `f` in the world's thread; all that has a time is used there only.
     void with(std::function<void()> f);
-    uint64_t ns() const { return __atomic_load_n(&status_->ns, __ATOMIC_ACQUIRE); }
+    uint64_t ns() const { return clock_.ns(); }
     void sleep(double seconds) const; // simulated
     // Processor and chip start again; memory and modem stay as they are.
     void reboot() { reboot_ = true; }
@@ -40,24 +40,12 @@ public:
                                              const std::string& connection = "") const;
 
 private:
-    class StatusFile {
-    public:
-        StatusFile();
-        ~StatusFile();
-        SimStatus* operator->() const { return status_; }
-        SimStatus& operator*() const { return *status_; }
-        const std::string& path() const { return path_; }
-
-    private:
-        std::string path_;
-        SimStatus* status_;
-    };
     uint64_t advance(uint64_t now);
     void run();
     static XBee::Options modem(const char* name, std::map<std::string, uint32_t> set);
 
     static constexpr uint32_t guardMs_ = 20;
-    StatusFile status_;
+    ClockFile clock_;
 
 public: // in the world's thread only
     RfChannel air;

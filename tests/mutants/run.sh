@@ -44,6 +44,8 @@ name_of() { echo "$1" | sed 's,^tests/mutants/,,; s,^ip/\(.*\)/mutants/,\1/,; s/
 prepare() {
     copy=$top/build/mutants/$1
     mkdir -p "$copy"
+    # what a run that was interrupted had planted
+    find "$copy" -name '*.orig' | while read -r kept; do mv "$kept" "${kept%.orig}" && touch "${kept%.orig}"; done
     git ls-files -coz --exclude-standard | xargs -0 cp -pu --parents -t "$copy" 2>/dev/null || true
     [ -f "$copy/build/main/build.ninja" ] ||
         (cd "$copy" && CCACHE_BASEDIR=$copy CCACHE_NOHASHDIR=1 cmake -S . -B build/main -G Ninja >cmake.log 2>&1) || {

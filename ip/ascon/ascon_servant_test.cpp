@@ -12,15 +12,17 @@ extern "C" {
 
 namespace {
 
+// What a servant only reads.
+template <class List> Cores_Bytes bytes(const List& list) {
+    return {static_cast<Ice_Int>(list.size()), const_cast<uint8_t*>(list.data())};
+}
+
 TEST(AsconServant, SealsOpensAndHashes) {
     CoreSlot<Vascon_slot> slot;
     Random random(testSeed());
     static Ascon_Core core;
     ASSERT_EQ(Ascon_Core_init(&core, coreSlot, coreMemory, &slot.seam, &slot), HW_OK);
     slot.core_ = &core.core;
-    auto bytes = [](const auto& list) {
-        return Cores_Bytes{static_cast<Ice_Int>(list.size()), const_cast<uint8_t*>(list.data())};
-    };
     for (size_t size : {0u, 1u, 16u, 100u, 1024u}) {
         auto key = sixteen(static_cast<uint8_t>(random.next())),
              nonce = sixteen(static_cast<uint8_t>(random.next()));
@@ -62,9 +64,6 @@ TEST(AsconServant, WhileTheCoreHangsNothingIsTakenForAnAnswer) {
     slot.core_ = &core.core;
     auto key = sixteen(1), other = sixteen(2), nonce = sixteen(3);
     auto message = counted(7, 40);
-    auto bytes = [](auto& list) {
-        return Cores_Bytes{static_cast<Ice_Int>(list.size()), list.data()};
-    };
     Cores_Bytes k = bytes(key), o = bytes(other), n = bytes(nonce), m = bytes(message), text{},
                 tag{}, got{};
     Ice_Bool valid = 0;

@@ -41,6 +41,8 @@ public:
     ClockFile& operator=(const ClockFile&) = delete;
 
     SimStatus& operator*() const { return *status_; }
+    SimStatus* operator->() const { return status_; }
+    const std::string& path() const { return path_; }
     uint64_t ns() const { return __atomic_load_n(&status_->ns, __ATOMIC_ACQUIRE); }
     void set(uint64_t ns) { __atomic_store_n(&status_->ns, ns, __ATOMIC_RELEASE); }
 

@@ -52,13 +52,13 @@ libunicorn-dev executes its instructions in the simulator
 gdb-multiarch debugs it there
 libnewlib-arm-none-eabi C library for it
 clang fuzzers of the link layer (libFuzzer)
+libclang-rt-dev their run time, which clang only recommends
 graphviz pictures of netlists
 man-db shows and checks the manual pages
 groff-base formats them
 '
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in
 1[3-9]) packages="$packages
-libclang-rt-19-dev run time of the fuzzers
 ghdl-mcode simulates and converts VHDL" ;;
 esac
 

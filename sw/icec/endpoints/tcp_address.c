@@ -68,23 +68,31 @@ Ice_Bool Tcp_print(void* context, const Ice_Byte* encoded, Ice_Int size, Ice_Out
     return 1;
 }
 
-int Tcp_resolve(const char* host, Ice_Int size, U32 port, struct sockaddr_storage* to,
+int Tcp_resolve(const Tcp_Address* address, int turn, struct sockaddr_storage* to,
                 socklen_t* length) {
-    struct addrinfo hints, *found;
+    struct addrinfo hints, *found, *each, *chosen = NULL;
     char name[256], service[8];
-    if (size <= 0 || size >= (Ice_Int)sizeof name || port > 65535)
+    int later;
+    if (address->host.size <= 0 || address->host.size >= (Ice_Int)sizeof name ||
+        address->port < 0 || address->port > 65535)
         return 0;
-    memcpy(name, host, (size_t)size);
-    name[size] = 0;
-    sprintf(service, "%u", port);
+    memcpy(name, address->host.data, (size_t)address->host.size);
+    name[address->host.size] = 0;
+    sprintf(service, "%d", address->port);
     memset(&hints, 0, sizeof hints);
     hints.ai_socktype = SOCK_STREAM;
     if (getaddrinfo(name, service, &hints, &found) != 0)
         return 0;
-    memcpy(to, found->ai_addr, found->ai_addrlen);
-    *length = found->ai_addrlen;
+    for (later = 0; later < 2; ++later)
+        for (each = found; each && !chosen; each = each->ai_next)
+            if ((each->ai_family != AF_INET) == later && turn-- == 0)
+                chosen = each;
+    if (chosen) {
+        memcpy(to, chosen->ai_addr, chosen->ai_addrlen);
+        *length = chosen->ai_addrlen;
+    }
     freeaddrinfo(found);
-    return 1;
+    return chosen != NULL;
 }
 
 int Tcp_open(const struct sockaddr_storage* to, socklen_t length, Ice_Int timeoutMs) {

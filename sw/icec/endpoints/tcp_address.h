@@ -19,8 +19,9 @@ Ice_Bool Tcp_print(void* context, const Ice_Byte* encoded, Ice_Int size, Ice_Out
 /* 0: another transport's, or malformed. */
 int Tcp_decode(const Ice_Byte* encoded, Ice_Int size, Tcp_Address* address);
 
-/* A numeric address or a name; the first answer counts. 0: there is none. */
-int Tcp_resolve(const char* host, Ice_Int size, U32 port, struct sockaddr_storage* to,
+/* A numeric address or a name: its address number `turn`, from 0, those of IPv4 first as in Ice. 0:
+ * there is none. */
+int Tcp_resolve(const Tcp_Address* address, int turn, struct sockaddr_storage* to,
                 socklen_t* length);
 /* connect with a time limit; the socket blocks again afterwards. -1: refused, or not in time. */
 int Tcp_open(const struct sockaddr_storage* to, socklen_t length, Ice_Int timeoutMs);

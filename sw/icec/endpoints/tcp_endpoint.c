@@ -189,31 +189,44 @@ static Ice_Status sendAll(void* context, int connection, const Ice_Byte* message
     return ends ? ICE_CONNECTION_LOST : ICE_OK;
 }
 
-/* One connection a peer is kept and used again. */
+/* The connection that was made to this peer, or -1. */
+static int connectionTo(TcpEndpoint* self, const struct sockaddr_storage* to, socklen_t length) {
+    int slot, found = -1;
+    lock(self);
+    for (slot = 0; slot < ICE_CONNECTIONS && found < 0; ++slot) {
+        const TcpConnection* c = &self->connections[slot];
+        if (c->fd >= 0 && !c->over && !c->accepted && c->peerSize == length &&
+            memcmp(&c->peer, to, length) == 0)
+            found = slot;
+    }
+    unlock(self);
+    return found;
+}
+
+/* One connection a peer is kept and used again. A name's addresses are tried one after the other:
+ * the server may listen on one of them only, as on 127.0.0.1 where localhost is ::1, too. */
 static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection) {
     TcpEndpoint* self = context;
     struct sockaddr_storage to;
     socklen_t length;
     Tcp_Address address;
-    int slot, fd, found = -1;
-    if (!Tcp_decode(encoded, size, &address) ||
-        !Tcp_resolve(address.host.data, address.host.size, (U32)address.port, &to, &length))
+    int slot, turn, fd = -1;
+    if (!Tcp_decode(encoded, size, &address))
+        return ICE_NO_ENDPOINT;
+    *connection = -1;
+    for (turn = 0; *connection < 0 && Tcp_resolve(&address, turn, &to, &length); ++turn)
+        *connection = connectionTo(self, &to, length);
+    if (*connection >= 0)
+        return ICE_OK;
+    if (turn == 0)
         return ICE_NO_ENDPOINT;
     lock(self);
-    for (slot = 0; slot < ICE_CONNECTIONS && found < 0; ++slot) {
-        const TcpConnection* c = &self->connections[slot];
-        if (c->fd >= 0 && !c->over && !c->accepted && c->peerSize == length &&
-            memcmp(&c->peer, &to, length) == 0)
-            found = slot;
-    }
     slot = freeSlot(self);
     unlock(self);
-    *connection = found;
-    if (found >= 0)
-        return ICE_OK;
     if (slot < 0)
         return ICE_LIMIT;
-    fd = Tcp_open(&to, length, address.timeoutMs);
+    for (turn = 0; fd < 0 && Tcp_resolve(&address, turn, &to, &length); ++turn)
+        fd = Tcp_open(&to, length, address.timeoutMs);
     if (fd < 0)
         return ICE_CONNECTION_LOST;
     lock(self);
@@ -235,20 +248,20 @@ static Ice_Status listenTo(void* context, const char* options) {
     TcpEndpoint* self = context;
     struct sockaddr_storage at;
     socklen_t length;
-    Ice_Int size = 9;
-    const char* host = Ice_findOption(options, 'h', &size);
+    Tcp_Address here;
     int on = 1;
     if (self->listener >= 0)
         return ICE_LIMIT; /* one port a communicator */
-    if (!host) {
-        host = "127.0.0.1";
-        size = 9;
+    here.host.data = Ice_findOption(options, 'h', &here.host.size);
+    if (!here.host.data) {
+        here.host.data = "127.0.0.1";
+        here.host.size = 9;
     }
-    if (size >= (Ice_Int)sizeof self->host ||
-        !Tcp_resolve(host, size, Ice_numberOption(options, 'p', 0), &at, &length))
+    here.port = (Ice_Int)Ice_numberOption(options, 'p', 0);
+    if (here.host.size >= (Ice_Int)sizeof self->host || !Tcp_resolve(&here, 0, &at, &length))
         return ICE_NO_ENDPOINT;
-    memcpy(self->host, host, (size_t)size);
-    self->host[size] = 0;
+    memcpy(self->host, here.host.data, (size_t)here.host.size);
+    self->host[here.host.size] = 0;
     self->listener = socket(at.ss_family, SOCK_STREAM, 0);
     if (self->listener < 0)
         return ICE_NO_ENDPOINT;

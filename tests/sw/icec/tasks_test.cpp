@@ -5,14 +5,39 @@
 
 #include "pair.h"
 
+#include <arpa/inet.h>
 #include <atomic>
 #include <condition_variable>
 #include <deque>
+#include <dlfcn.h>
 #include <mutex>
+#include <netdb.h>
+#include <netinet/in.h>
 #include <thread>
 
 extern "C" {
-#include "tcp_endpoint.h"
+#include "tcp_address.h"
+}
+
+// In place of the system's: "twofold.test" is 127.0.0.2 and 127.0.0.1, "mixed.test" is ::1 and
+// 127.0.0.1.
+static addrinfo* inFront(const char* address, const char* port, addrinfo* rest) {
+    addrinfo numeric = {}, *one = nullptr;
+    numeric.ai_flags = AI_NUMERICHOST;
+    numeric.ai_socktype = SOCK_STREAM;
+    auto real = reinterpret_cast<decltype(&getaddrinfo)>(dlsym(RTLD_NEXT, "getaddrinfo"));
+    if (real(address, port, &numeric, &one) == 0)
+        one->ai_next = rest;
+    return one;
+}
+extern "C" int getaddrinfo(const char* name, const char* port, const addrinfo* hints,
+                           addrinfo** list) {
+    bool isTwofold = name && std::string(name) == "twofold.test";
+    if (!isTwofold && (!name || std::string(name) != "mixed.test"))
+        return reinterpret_cast<decltype(&getaddrinfo)>(dlsym(RTLD_NEXT, "getaddrinfo"))(
+            name, port, hints, list);
+    *list = inFront(isTwofold ? "127.0.0.2" : "::1", port, inFront("127.0.0.1", port, nullptr));
+    return 0;
 }
 
 namespace {
@@ -227,6 +252,39 @@ TEST_F(Tasks, MayCallTheirOwnProgramsObjects) {
     EXPECT_EQ(out, 8);
     EXPECT_EQ(call(prx, "later", 4, &out), ICE_OK);
     EXPECT_EQ(out, 12);
+}
+
+// The server listens on the second of the name's addresses only; the next call finds the
+// connection.
+TEST_F(Tasks, TryEachAddressOfAName) {
+    Ice_ObjectPrx prx;
+    std::string text = "thing:tcp -h twofold.test -p " + std::to_string(server_->tcp.port);
+    ASSERT_EQ(Ice_Communicator_stringToProxy(&client_->ic, text.c_str(), &prx), ICE_OK);
+    prx.timeoutMs = 60000;
+    for (int i = 0; i < 3; ++i) {
+        Ice_Int out = 0;
+        EXPECT_EQ(call(prx, "now", 4, &out), ICE_OK);
+        EXPECT_EQ(out, 8);
+    }
+    int open = 0;
+    for (const TcpConnection& c : client_->tcp.connections)
+        open += c.fd >= 0;
+    EXPECT_EQ(open, 1);
+}
+
+TEST_F(Tasks, PreferIPv4AsIceDoes) {
+    Tcp_Address address = {};
+    address.host.data = "mixed.test";
+    address.host.size = 10;
+    address.port = 4061;
+    sockaddr_storage at;
+    socklen_t length;
+    ASSERT_TRUE(Tcp_resolve(&address, 0, &at, &length));
+    EXPECT_EQ(at.ss_family, AF_INET);
+    EXPECT_EQ(reinterpret_cast<sockaddr_in&>(at).sin_port, htons(4061));
+    ASSERT_TRUE(Tcp_resolve(&address, 1, &at, &length));
+    EXPECT_EQ(at.ss_family, AF_INET6);
+    EXPECT_FALSE(Tcp_resolve(&address, 2, &at, &length));
 }
 
 TEST_F(Tasks, ReceiveInTurnsWhereNobodyElseDoes) {

@@ -11,7 +11,7 @@ mkdir -p "$folder/state" "$folder/spool"
 folder=$(cd "$folder" && pwd)
 chmod 755 "$folder"
 user=$(id -un)
-host=$(hostname -s)
+host=$(uname -n | cut -d. -f1) # hostname -s would look it up, and not every machine knows itself
 # any two free ports above 20000
 port=$((20000 + $$ % 20000))
 dd if=/dev/urandom of="$folder/munge.key" bs=128 count=1 2>/dev/null

@@ -6,7 +6,7 @@
 #include "Vbiquad_slot.h"
 #include "biquad_proxy.h"
 #include "model/biquad_model.h"
-#include "random.h"
+#include "sample_filter.h"
 #include <cmath>
 extern "C" {
 #include "biquad_regs.h"
@@ -14,7 +14,8 @@ extern "C" {
 
 namespace {
 
-class BiquadCore : public ::testing::Test {
+class BiquadCore
+    : public SampleFilter<BiquadProxy<Vbiquad_slot>, Cores_BiquadSamples, BiquadModel> {
 protected:
     void set(size_t section, const std::array<int32_t, 5>& coefficients) {
         model_.cascade[section].isUsed = true;
@@ -26,29 +27,6 @@ protected:
         core_.clear();
         model_.clear();
     }
-    std::vector<Ice_Short> samples(size_t count, Random& random) {
-        std::vector<Ice_Short> list(count);
-        for (auto& s : list)
-            s = static_cast<Ice_Short>(random.next());
-        return list;
-    }
-    std::vector<Ice_Short> filter(std::vector<Ice_Short> list) {
-        Cores_BiquadSamples in{static_cast<Ice_Int>(list.size()), list.data()}, out{};
-        saturations_ = core_.filter(&in, &out);
-        return {out.data, out.data + out.size};
-    }
-    void expectFiltered(const std::vector<Ice_Short>& list) {
-        unsigned before = model_.saturations;
-        std::vector<Ice_Short> want;
-        for (Ice_Short s : list)
-            want.push_back(model_.step(s));
-        ASSERT_EQ(filter(list), want) << list.size() << " samples";
-        EXPECT_EQ(saturations_, static_cast<int>(model_.saturations - before));
-    }
-
-    BiquadProxy<Vbiquad_slot> core_;
-    BiquadModel model_;
-    int saturations_ = 0;
 };
 
 TEST_F(BiquadCore, EqualsTheModelAndGoesOnFromCallToCall) {
@@ -106,12 +84,7 @@ TEST_F(BiquadCore, BuffersMayBeAnywhereInMemory) {
     Random random(testSeed());
     core_.memory_.setLinger(0.99); // full now and then
     set(0, {20000, -10000, 30000, 5000, -2000});
-    for (int round = 0; round < 12; ++round) {
-        core_.memoryAt_ = random.next() & ~1023u;
-        core_.bus_.write(BIQUAD_MEMORY, core_.memoryAt_ >> 10);
-        SCOPED_TRACE(core_.memoryAt_);
-        expectFiltered(samples(256, random));
-    }
+    expectBuffersAnywhere(BIQUAD_MEMORY, random);
 }
 
 TEST_F(BiquadCore, WhatIsNoCoefficientChangesNone) {
@@ -132,23 +105,11 @@ TEST_F(BiquadCore, EveryResultOfEverySectionMayBeTooLarge) {
 }
 
 TEST_F(BiquadCore, HasNoWordBehindItsResults) {
-    for (unsigned word = 0; word < 16; ++word)
-        for (bool write : {false, true})
-            EXPECT_EQ(core_.bus_.transfer(write, word, 0).error, word > BIQUAD_FILTER_OUT1) << word;
+    expectNoWordBehind(BIQUAD_FILTER_OUT1);
 }
 
 TEST_F(BiquadCore, RefusesNothingAtAllAndTooMuch) {
-    auto statusOf = [&](size_t count) {
-        try {
-            filter(std::vector<Ice_Short>(count));
-            return ICE_OK;
-        } catch (const CoreError& e) {
-            return e.status();
-        }
-    };
-    EXPECT_EQ(statusOf(0), ICE_UNKNOWN_EXCEPTION);
-    EXPECT_EQ(statusOf(257), ICE_LIMIT);
-    EXPECT_EQ(statusOf(256), ICE_OK);
+    expectLimits();
 }
 
 TEST_F(BiquadCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
@@ -170,20 +131,10 @@ TEST_F(BiquadCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
 }
 
 TEST_F(BiquadCore, EightClocksASection) {
-    core_.memory_.setStall(0);
-    auto clocksOf = [&](size_t count) {
-        filter(std::vector<Ice_Short>(count, 1));
-        uint64_t before = core_.bench_.cycles(); // once more, without the driver's copying
-        core_.bus_.write(BIQUAD_CONTROL, 1u << 2);
-        core_.bench_.waitFor([&] { return core_.bench_.top().irq_o; }, "the core's interrupt",
-                             20000);
-        core_.bus_.write(BIQUAD_EVENT, ~0u);
-        return static_cast<double>(core_.bench_.cycles() - before);
-    };
     for (size_t sections = 0; sections <= 4; ++sections) {
         if (sections)
             set(sections - 1, {65536, 0, 0, 0, 0});
-        double perSample = (clocksOf(248) - clocksOf(56)) / 192;
+        double perSample = clocksOfASample(BIQUAD_CONTROL, 1u << 2, BIQUAD_EVENT);
         std::printf("%zu sections: %.2f clocks a sample\n", sections, perSample);
         EXPECT_NEAR(perSample, 7 + 7.0 * static_cast<double>(sections), 1.5);
     }

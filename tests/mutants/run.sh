@@ -37,6 +37,11 @@ if [ -n "$check" ]; then
     exit $bad
 fi
 mkdir -p build/mutants
+# Two runs would plant their bugs in the same copies. -o: what a test leaves running does not keep the lock.
+if [ -z "${MUTANT_STEP:-}" ]; then
+    flock -n build/mutants/lock true || echo "mutants: another run is at work in build/mutants; waiting for its end ..." >&2
+    exec flock -o build/mutants/lock env MUTANT_STEP=all sh tests/mutants/run.sh --block "$block" --jobs "$jobs"
+fi
 
 name_of() { echo "$1" | sed 's,^tests/mutants/,,; s,^ip/\(.*\)/mutants/,\1/,; s/[.]patch$//'; } # bus/wrapper_event_lost
 
@@ -105,12 +110,10 @@ one() { # patch, in the worker's copy
     printf '%-10s %-36s %s (%s s)\n' "$result" "$name" "$test" "$seconds"
 }
 
-case ${MUTANT_STEP:-} in
-one)
+if [ "$MUTANT_STEP" = one ]; then
     one "$MUTANT_PATCH"
     exit 0
-    ;;
-esac
+fi
 
 # Of other blocks stays what an earlier run found, unless the bug is gone.
 if [ "$block" = '*' ]; then rm -f build/mutants/result.*; else rm -f "build/mutants/result.$block-"*; fi
@@ -128,7 +131,7 @@ done
 
 # The tests must pass without a bug, or "caught" says nothing.
 cd "$top/build/mutants/0"
-for patch in $list; do caught_by "$top/$patch"; done | sort -u >../tests
+for patch in $list; do caught_by "$top/$patch"; done | grep . | sort -u >../tests
 while read -r test; do
     try "$test" ../baseline.log || {
         cat ../baseline.log

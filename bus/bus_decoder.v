@@ -96,4 +96,9 @@ module bus_decoder #(
     always @* if (!bus_valid_i)
         assert (slot_valid_o == {SLOTS{1'b0}});
 `endif
+`ifdef COVER_POINTS
+    no_such_slot: cover property (@(posedge clk_i) bus_valid_i && !mapped);
+    slot_waits: cover property (@(posedge clk_i) bus_valid_i && !bus_ready_o);
+    slot_refuses: cover property (@(posedge clk_i) bus_valid_i && bus_ready_o && mapped && bus_error_o);
+`endif
 endmodule

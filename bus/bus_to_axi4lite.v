@@ -126,4 +126,9 @@ module bus_to_axi4lite #(
         cover (bus_valid_i && bus_ready_o && bus_error_o && axi_rvalid_i && open);
     end
 `endif
+`ifdef COVER_POINTS
+    data_before_address: cover property (@(posedge clk_i) axi_wvalid_o && axi_wready_i && axi_awvalid_o && !axi_awready_i);
+    address_before_data: cover property (@(posedge clk_i) axi_awvalid_o && axi_awready_i && axi_wvalid_o && !axi_wready_i);
+    late_answer: cover property (@(posedge clk_i) response && !busy);
+`endif
 endmodule

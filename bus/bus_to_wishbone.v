@@ -90,4 +90,8 @@ module bus_to_wishbone #(
         cover (pause);
     end
 `endif
+`ifdef COVER_POINTS
+    retry: cover property (@(posedge clk_i) pause);
+    stall: cover property (@(posedge clk_i) PIPELINED != 0 && wb_stb_o && wb_stall_i);
+`endif
 endmodule

@@ -122,4 +122,10 @@ module bus_window #(
         assert (patience + used == TIMEOUT);
     end
 `endif
+`ifdef COVER_POINTS
+    times_out: cover property (@(posedge clk_i) given_up && !(busy_o && done_i));
+    answers_in_the_last_clock: cover property (@(posedge clk_i) given_up && busy_o && done_i);
+    core_refuses: cover property (@(posedge clk_i) end_now && busy_o && done_i && error_i);
+    core_not_idle: cover property (@(posedge clk_i) wanted && !busy_o && !idle_i);
+`endif
 endmodule

@@ -105,4 +105,9 @@ module bus_wrapper #(
         assert (bus_ready_o);
     end
 `endif
+`ifdef COVER_POINTS
+    set_while_cleared: cover property (@(posedge clk_i) |(event_i & clear));
+    masked: cover property (@(posedge clk_i) |sticky && !irq_o);
+    no_such_word: cover property (@(posedge clk_i) bus_valid_i && !exists);
+`endif
 endmodule

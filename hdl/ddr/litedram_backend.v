@@ -134,4 +134,10 @@ module litedram_backend #(
         end
     end
 `endif
+`ifdef COVER_POINTS
+    read_waits_for_room: cover property (@(posedge clk_i) cmd_valid_i && cmd_read_i && !room);
+    command_waits: cover property (@(posedge clk_i) dram_cmd_valid_o && !dram_cmd_ready_i);
+    words_full: cover property (@(posedge clk_i) wr_valid_i && write_full);
+    not_ready: cover property (@(posedge clk_i) cmd_valid_i && !dram_init_done_i);
+`endif
 endmodule

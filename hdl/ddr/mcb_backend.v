@@ -108,4 +108,10 @@ module mcb_backend #(
         end
     end
 `endif
+`ifdef COVER_POINTS
+    read_waits_for_room: cover property (@(posedge clk_i) cmd_valid_i && cmd_read_i && !room);
+    commands_full: cover property (@(posedge clk_i) cmd_valid_i && mcb_cmd_full_i);
+    words_full: cover property (@(posedge clk_i) wr_valid_i && mcb_wr_full_i);
+    not_calibrated: cover property (@(posedge clk_i) cmd_valid_i && !mcb_calib_done_i);
+`endif
 endmodule

@@ -222,4 +222,10 @@ module npi_arbiter #(
         .kinds_i(f_kinds), .addrs_i(f_addrs), .places_i(f_places), .moved_i(f_moved), .came_i(back_index)
     );
 `endif
+`ifdef COVER_POINTS
+    port_holds_up_back_end: cover property (@(posedge clk_i) rd_valid_i && |back_at && !rd_ready_o);
+    write_waits_for_its_words: cover property (@(posedge clk_i) |move_at && !wr_valid_o);
+    back_end_holds_words: cover property (@(posedge clk_i) wr_valid_o && !wr_ready_i);
+    flush_drops_words: cover property (@(posedge clk_i) |(npi_wr_flush_i & ~npi_wr_empty_o));
+`endif
 endmodule

@@ -138,4 +138,9 @@ module npi_fifo #(
         end
     endgenerate
 `endif
+`ifdef COVER_POINTS
+    is_full: cover property (@(posedge clk_i) full_o);
+    both_at_once: cover property (@(posedge clk_i) push_i && pop_i);
+    empties: cover property (@(posedge clk_i) pop_i && next == write_index && !push_i);
+`endif
 endmodule

@@ -248,4 +248,11 @@ module npi_queue #(
         end
     end
 `endif
+`ifdef COVER_POINTS
+    is_full: cover property (@(posedge clk_i) full_o);
+    longest_write: cover property (@(posedge clk_i) cmd_valid_o && cmd_ready_i && !cmd_read_o && cmd_last_o == 5'd31);
+    longest_read: cover property (@(posedge clk_i) cmd_valid_o && cmd_ready_i && cmd_read_o && cmd_last_o == 5'd31);
+    back_end_holds_command: cover property (@(posedge clk_i) cmd_valid_o && !cmd_ready_i);
+    all_at_once: cover property (@(posedge clk_i) push_i && move_done_i && cmd_valid_o && cmd_ready_i && back_done_i);
+`endif
 endmodule

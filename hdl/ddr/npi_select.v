@@ -121,4 +121,9 @@ module npi_select #(
         end
     end
 `endif
+`ifdef COVER_POINTS
+    all_ask: cover property (@(posedge clk_i) &asking && enable_i);
+    none_is_granted: cover property (@(posedge clk_i) |asking && !enable_i);
+    urgent_have_had_their_run: cover property (@(posedge clk_i) any_o && overdue && |urgent && |normal);
+`endif
 endmodule

@@ -223,4 +223,11 @@ module npi_stream #(
         assert ($stable(npi_addr_o));
     end
 `endif
+`ifdef COVER_POINTS
+    as_far_ahead_as_allowed: cover property (@(posedge clk_i) outstanding == FIFO);
+    stopped_with_words_on_their_way: cover property (@(posedge clk_i) read_stop_i && outstanding != 6'd0);
+    pads_a_burst: cover property (@(posedge clk_i) padding && full);
+    write_held_up: cover property (@(posedge clk_i) write_valid_i && !write_ready_o);
+    reads_and_writes: cover property (@(posedge clk_i) outstanding != 6'd0 && bursts != 3'd0);
+`endif
 endmodule

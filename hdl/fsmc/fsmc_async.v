@@ -142,4 +142,10 @@ module fsmc_async (
         cover (begun && wr_o && rise && !writes);
     end
 `endif
+`ifdef COVER_POINTS
+    memory_write: cover property (@(posedge clk_i) taken && wr_ne_o[0]);
+    register_write: cover property (@(posedge clk_i) taken && wr_ne_o[1]);
+    next_access_while_write_is_handed_on: cover property (@(posedge clk_i) full_s[0] && |ne && !fsmc_noe_n_i);
+    half_a_halfword: cover property (@(posedge clk_i) taken && wr_be_o != 2'b11);
+`endif
 endmodule

@@ -264,4 +264,12 @@ module fsmc_bridge #(
     assign excused_o = excused;
 `endif
     wire unused = &{1'b0, npi_wr_empty_i, npi_wr_almost_full_i, npi_rd_word_i, 1'b0};
+`ifdef COVER_POINTS
+    read_excused: cover property (@(posedge clk_i) excuse && mem_reading);
+    write_excused: cover property (@(posedge clk_i) excuse && !mem_reading);
+    does_not_look_at_nwait: cover property (@(posedge clk_i) late_o);
+    memory_read_waits: cover property (@(posedge clk_i) ne1 && !fsmc_noe_n_i && waits);
+    memory_write_waits: cover property (@(posedge clk_i) ne1 && !fsmc_nwe_n_i && waits);
+    register_waits: cover property (@(posedge clk_i) ne2 && waits);
+`endif
 endmodule

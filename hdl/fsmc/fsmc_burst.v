@@ -108,4 +108,9 @@ module fsmc_burst #(
         cover (was_begins && rd_valid_o);
     end
 `endif
+`ifdef COVER_POINTS
+    asks_for_what_does_not_fit: cover property (@(posedge clk_i) reading && !ended_s[1] && no_room);
+    write_waits: cover property (@(posedge clk_i) wr_valid_o && !wr_ready_i);
+    read_behind_writes: cover property (@(posedge clk_i) wr_valid_o && rd_valid_o);
+`endif
 endmodule

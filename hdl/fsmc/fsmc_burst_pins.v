@@ -189,4 +189,9 @@ module fsmc_burst_pins #(
         cover (moves && writes && beat != first);
     end
 `endif
+`ifdef COVER_POINTS
+    write_held_up: cover property (@(posedge fsmc_clk_i) begun_o && write && edges == FIRST && !nwait_was);
+    held_up_by_registers: cover property (@(posedge fsmc_clk_i) begun_o && write && edges == FIRST && busy_s[1]);
+    read_held_up: cover property (@(posedge fsmc_clk_i) ahead && empty_i);
+`endif
 endmodule

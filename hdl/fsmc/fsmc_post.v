@@ -167,4 +167,11 @@ module fsmc_post #(
         cover (past && !$past(idle_o) && idle_o && memory_o != $past(memory_o));
     end
 `endif
+`ifdef COVER_POINTS
+    whole_word: cover property (@(posedge clk_i) close && &open_be);
+    part_of_word: cover property (@(posedge clk_i) close && !(&open_be));
+    write_elsewhere_closes: cover property (@(posedge clk_i) close && accept && !joins);
+    joins_the_last_that_fits: cover property (@(posedge clk_i) wr_i && full && joins && open);
+    no_room: cover property (@(posedge clk_i) wr_lost_o);
+`endif
 endmodule

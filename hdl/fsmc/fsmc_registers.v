@@ -211,4 +211,15 @@ module fsmc_registers (
         cover (past && error_memory_o);
     end
 `endif
+`ifdef COVER_POINTS
+    word_read: cover property (@(posedge clk_i) ends && !bus_write_o && bus_ready_i);
+    word_written: cover property (@(posedge clk_i) ends && bus_write_o && bus_ready_i);
+    high_half_kept: cover property (@(posedge clk_i) begins && kept);
+    high_half_written_alone: cover property (@(posedge clk_i) begins && wr_i && high && in_range && !(half_write && same));
+    beyond_the_slots: cover property (@(posedge clk_i) begins && !in_range);
+    slave_hangs: cover property (@(posedge clk_i) bus_valid_o && expired_i && !bus_ready_i);
+    memory_hangs_before_transfer: cover property (@(posedge clk_i) flushing && expired_i && !idle_i);
+    read_given_up: cover property (@(posedge clk_i) ends && !bus_write_o && given_up);
+    write_while_busy: cover property (@(posedge clk_i) wr_i && !idle);
+`endif
 endmodule

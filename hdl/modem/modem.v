@@ -332,4 +332,12 @@ module modem #(
             key_index  <= 2'd0;
         end
     end
+`ifdef COVER_POINTS
+    put_refused: cover property (@(posedge clk_i) put && !put_ok);
+    all_to_send: cover property (@(posedge clk_i) tx_free == 5'd0);
+    all_received: cover property (@(posedge clk_i) rx_free == 5'd0);
+    sends_and_receives: cover property (@(posedge clk_i) rd_valid && wr_valid);
+    set_up_again_while_packets_wait: cover property (@(posedge clk_i) configure && tx_waits);
+    two_events: cover property (@(posedge clk_i) at_done && rx_push || tx_sent && rx_push);
+`endif
 endmodule

@@ -114,4 +114,12 @@ module modem_api_rx (
         cover (past && !rst_i && unsent_o);
     end
 `endif
+`ifdef COVER_POINTS
+    wrong_checksum: cover property (@(posedge clk_i) bad_o && state == DELIMITER);
+    packet_given_up: cover property (@(posedge clk_i) unsent_o);
+    other_frame: cover property (@(posedge clk_i) valid_i && state == HEAD && !received && !status);
+    too_long: cover property (@(posedge clk_i) valid_i && state == LOW && data_i > LONGEST);
+    cut_off: cover property (@(posedge clk_i) (error_i || silent_i) && state != DELIMITER);
+    delimiter_within_packet: cover property (@(posedge clk_i) valid_o && data_i == 8'h7E);
+`endif
 endmodule

@@ -202,4 +202,12 @@ module modem_at #(
         cover (past && !rst_i && digit && taken);
     end
 `endif
+`ifdef COVER_POINTS
+    tries_again: cover property (@(posedge clk_i) retried_o && !enters);
+    tries_other_rate: cover property (@(posedge clk_i) missed && enters);
+    given_up: cover property (@(posedge clk_i) failed_o);
+    refused_by_modem: cover property (@(posedge clk_i) missed && refuse && refused);
+    key_is_sent: cover property (@(posedge clk_i) passed && skip && value[0]);
+    no_key: cover property (@(posedge clk_i) passed && skip && !value[0]);
+`endif
 endmodule

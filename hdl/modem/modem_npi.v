@@ -130,4 +130,8 @@ module modem_npi (
         cover (past && !rst_i && npi_rd_pop_o && !rd_done_o);
     end
 `endif
+`ifdef COVER_POINTS
+    write_goes_first: cover property (@(posedge clk_i) start && wr_valid_i && rd_valid_i);
+    read_withdrawn: cover property (@(posedge clk_i) npi_rd_pop_o && !rd_done_o);
+`endif
 endmodule

@@ -71,4 +71,8 @@ module modem_ring (
         end
     end
 `endif
+`ifdef COVER_POINTS
+    is_full: cover property (@(posedge clk_i) free_o == 5'd0);
+    both_at_once: cover property (@(posedge clk_i) push_i && pop_i);
+`endif
 endmodule

@@ -165,4 +165,14 @@ module modem_rx #(
         cover (past && !rst_i && lost && owed);
     end
 `endif
+`ifdef COVER_POINTS
+    no_buffer: cover property (@(posedge clk_i) begins && full_i);
+    memory_late: cover property (@(posedge clk_i) late);
+    memory_late_for_the_last_byte: cover property (@(posedge clk_i) late && ending);
+    byte_while_deaf: cover property (@(posedge clk_i) rx_valid_i && deaf);
+    longest_packet: cover property (@(posedge clk_i) push_o && wr_index_o == 7'd100);
+    ends_as_announced: cover property (@(posedge clk_i) API == 0 && taken && longest && wr_index_o != 7'd99);
+    ends_in_silence: cover property (@(posedge clk_i) API == 0 && silent && !first && !ending);
+    ends_with_a_byte: cover property (@(posedge clk_i) cut && taken);
+`endif
 endmodule

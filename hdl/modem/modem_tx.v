@@ -118,4 +118,10 @@ module modem_tx #(
         cover (past && !rst_i && tx_valid_o && !tx_last_o && rd_index_o == 7'd3);
     end
 `endif
+`ifdef COVER_POINTS
+    modem_takes_none: cover property (@(posedge clk_i) state == SEND && !cts_i);
+    needs_no_rest: cover property (@(posedge clk_i) API == 0 && ends && packet_bytes_i == longest);
+    rests: cover property (@(posedge clk_i) API == 0 && ends && packet_bytes_i != longest);
+    set_up_interrupts: cover property (@(posedge clk_i) begin_anew && rd_index_o != 7'd0);
+`endif
 endmodule

@@ -103,4 +103,9 @@ module modem_uart_rx (
         cover (past && valid_o && sent == 8'h3C);
     end
 `endif
+`ifdef COVER_POINTS
+    framing_error: cover property (@(posedge clk_i) framing_error_o);
+    glitch: cover property (@(posedge clk_i) sample && !idle && !started && line);
+    break_on_the_line: cover property (@(posedge clk_i) idle && !armed && !line);
+`endif
 endmodule

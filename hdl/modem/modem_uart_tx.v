@@ -72,4 +72,7 @@ module modem_uart_tx (
         cover (past && age == 7'd0 && $past(age) == 7'd79); // the next byte follows at once
     end
 `endif
+`ifdef COVER_POINTS
+    next_byte_at_once: cover property (@(posedge clk_i) tick_i && ends && valid_i);
+`endif
 endmodule

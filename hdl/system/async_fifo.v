@@ -192,4 +192,9 @@ module async_fifo #(
     assign into_reader = to_reader;
     assign into_writer = to_writer;
 `endif
+`ifdef COVER_POINTS
+    is_full: cover property (@(posedge write_clk_i) full);
+    session_begins: cover property (@(posedge write_clk_i) begins_o);
+    restart_waits: cover property (@(posedge read_clk_i) wants && !answered);
+`endif
 endmodule

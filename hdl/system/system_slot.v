@@ -127,4 +127,8 @@ module system_slot #(
             assert ({bus_rdata_o[31:2], bus_rdata_o[0]} == {30'd0, error_open}); // event and place tell of the same error
     end
 `endif
+`ifdef COVER_POINTS
+    first_error_is_kept: cover property (@(posedge clk_i) access_error_i && error_open && !clearing);
+    error_with_its_clear: cover property (@(posedge clk_i) access_error_i && error_open && clearing);
+`endif
 endmodule

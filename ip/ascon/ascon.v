@@ -331,4 +331,12 @@ module ascon (
     end
 
     wire unused = &{1'b0, reg_read, npi_wr_empty_i, npi_rd_word_i, 1'b0};
+`ifdef COVER_POINTS
+    refused_job: cover property (@(posedge clk_i) refused);
+    wrong_tag: cover property (@(posedge clk_i) tag_step && decrypt && index[0] && (differs || sum != 64'd0));
+    aborted_with_plaintext_out: cover property (@(posedge clk_i) abort && decrypt && pass == MESSAGE && !idle);
+    no_associated_data: cover property (@(posedge clk_i) in_source && pass == ASSOCIATED && left == 24'd0);
+    block_of_padding_only: cover property (@(posedge clk_i) step && none && last);
+    memory_holds_up: cover property (@(posedge clk_i) in_word && writes && !none && !write_ready);
+`endif
 endmodule

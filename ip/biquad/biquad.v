@@ -147,4 +147,9 @@ module biquad (
     end
 
     wire unused = &{1'b0, coefficient[31:18], source[5:0], target[5:0], npi_wr_empty_i, npi_rd_word_i, 1'b0};
+`ifdef COVER_POINTS
+    saturates: cover property (@(posedge clk_i) result_valid && saturated != 3'd0);
+    reset_under_way: cover property (@(posedge clk_i) core_rst && busy);
+    memory_holds_up: cover property (@(posedge clk_i) offer && !write_ready);
+`endif
 endmodule

@@ -262,4 +262,11 @@ module camera (
     end
 
     wire unused = &{1'b0, never_begins, reg_read, no_data, no_words, read_idle, npi_wr_empty_i, npi_rd_word_i, write_base[5:0], 1'b0};
+`ifdef COVER_POINTS
+    replaces_what_nobody_took: cover property (@(posedge clk_i) kept && offered);
+    stopped_in_a_frame: cover property (@(posedge clk_i) capturing && stopping && !token_in_frame);
+    frame_in_a_frame: cover property (@(posedge clk_i) token_in_frame && starts);
+    memory_holds_up: cover property (@(posedge clk_i) eighth && !write_ready);
+    pixels_lost: cover property (@(posedge clk_i) token_in_frame && lost);
+`endif
 endmodule

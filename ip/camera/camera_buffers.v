@@ -69,4 +69,7 @@ module camera_buffers (
         cover (past && has && held == newest_o && kept_i);
     end
 `endif
+`ifdef COVER_POINTS
+    taken_while_next_is_kept: cover property (@(posedge clk_i) kept_i && taken);
+`endif
 endmodule

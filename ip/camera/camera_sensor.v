@@ -49,4 +49,9 @@ module camera_sensor (
         owes_frame_start <= frame_start && !(push_o && kind == FRAME_START);
         lost             <= push_o ? 1'b0 : lost || (href && full_i);
     end
+`ifdef COVER_POINTS
+    pixel_lost: cover property (@(posedge pclk_i) href && full_i);
+    frame_start_waits: cover property (@(posedge pclk_i) owes_frame_start);
+    line_end_waits: cover property (@(posedge pclk_i) owes_line_end);
+`endif
 endmodule

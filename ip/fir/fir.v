@@ -151,4 +151,9 @@ module fir (
     end
 
     wire unused = &{1'b0, unused_shift_start, shift[7:5], coefficient[31:18], source[5:0], target[5:0], npi_wr_empty_i, npi_rd_word_i, 1'b0};
+`ifdef COVER_POINTS
+    saturates: cover property (@(posedge clk_i) taken && saturated);
+    reset_under_way: cover property (@(posedge clk_i) core_rst && busy);
+    memory_holds_up: cover property (@(posedge clk_i) result_valid && !room);
+`endif
 endmodule

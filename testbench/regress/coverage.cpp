@@ -31,8 +31,9 @@ struct Share {
     }
 };
 struct File {
-    Share lines, toggles;
-    std::vector<std::string> missed;           // signals that never toggled, lines that never ran
+    Share lines, toggles, points;
+    std::map<std::string, uint64_t> counts; // of the points: `name: cover property` in the RTL
+    std::vector<std::string> missed; // signals that never toggled, lines that never ran, points
     std::map<std::string, unsigned> explained; // why: so many points
 };
 // Points that cannot be reached, and why: they count as if they were not there.
@@ -92,7 +93,7 @@ void readVerilator(const std::string& path, const std::string& root, Explanation
                    Files& files) {
     struct Point {
         std::string file, line, name;
-        bool toggle;
+        enum { Line, Toggle, User } kind;
         uint64_t count;
     };
     std::map<std::string, Point> points;
@@ -112,11 +113,13 @@ void readVerilator(const std::string& path, const std::string& root, Explanation
         std::string file = inside(fields["f"], root);
         if (file.empty())
             continue;
-        bool toggle = fields["page"].rfind("v_toggle", 0) == 0;
+        auto kind = fields["page"].rfind("v_toggle", 0) == 0 ? Point::Toggle
+                    : fields["page"].rfind("v_user", 0) == 0 ? Point::User
+                                                             : Point::Line;
         std::string key = file + ":" + fields["l"] + ":" + fields["n"] + ":" +
                           fields["page"].substr(0, 8) + ":" + fields["o"];
         auto& point =
-            points.emplace(key, Point{file, fields["l"], fields["o"], toggle, 0}).first->second;
+            points.emplace(key, Point{file, fields["l"], fields["o"], kind, 0}).first->second;
         point.count += std::stoull(text.substr(end + 2));
     }
     for (auto& [key, point] : points) {
@@ -126,7 +129,12 @@ void readVerilator(const std::string& path, const std::string& root, Explanation
             ++file.explained[why];
             continue;
         }
-        (point.toggle ? file.toggles : file.lines).add(point.count > 0);
+        if (point.kind == Point::User)
+            file.counts[point.name] += point.count;
+        (point.kind == Point::User     ? file.points
+         : point.kind == Point::Toggle ? file.toggles
+                                       : file.lines)
+            .add(point.count > 0);
         if (point.count == 0)
             file.missed.push_back(point.line + ": " + point.name);
     }
@@ -152,7 +160,7 @@ void readInfo(const std::string& path, const std::string& root, Files& files) {
 }
 
 struct Gate {
-    double lines, toggles;
+    double lines, toggles, points;
     std::string why;
 };
 
@@ -163,15 +171,16 @@ Gate gateOf(const json& gates, const std::string& file) {
         if (file.rfind(path, 0) == 0 && path.size() >= best.size())
             best = path;
     if (!gates.contains(best))
-        return {0, 0, ""};
+        return {0, 0, 100, ""};
     const json& gate = gates[best];
-    return {gate.value("lines", 0.0), gate.value("toggles", 0.0), gate.value("why", "")};
+    return {gate.value("lines", 0.0), gate.value("toggles", 0.0), gate.value("points", 100.0),
+            gate.value("why", "")};
 }
 
 int report(const Files& files, const json& gates, const Explanations& explanations,
            const std::string& out) {
     json rows = json::array();
-    Share lines, toggles;
+    Share lines, toggles, points;
     std::vector<std::string> below;
     for (auto& [name, file] : files) {
         Gate gate = gateOf(gates, name);
@@ -179,6 +188,8 @@ int report(const Files& files, const json& gates, const Explanations& explanatio
         lines.covered += file.lines.covered;
         toggles.total += file.toggles.total;
         toggles.covered += file.toggles.covered;
+        points.total += file.points.total;
+        points.covered += file.points.covered;
         rows.push_back({{"file", name},
                         {"percent", file.lines.percent()},
                         {"lines", file.lines.total},
@@ -186,34 +197,48 @@ int report(const Files& files, const json& gates, const Explanations& explanatio
                         {"toggles", file.toggles.percent()},
                         {"toggle_points", file.toggles.total},
                         {"toggle_gate", gate.toggles},
+                        {"points", file.counts},
+                        {"point_percent", file.points.percent()},
+                        {"point_gate", gate.points},
                         {"why", gate.why},
                         {"missed", file.missed},
                         {"explained", file.explained}});
-        fmt::print("{:<44} {:6.1f} % of {:5} lines {:>22}{}\n", name, file.lines.percent(),
+        fmt::print("{:<44} {:6.1f} % of {:5} lines {:>22}{:>16}{}\n", name, file.lines.percent(),
                    file.lines.total,
                    file.toggles.total ? fmt::format("{:6.1f} % of {:5} toggles",
                                                     file.toggles.percent(), file.toggles.total)
                                       : "",
+                   file.points.total
+                       ? fmt::format("{} of {} points", file.points.covered, file.points.total)
+                       : "",
                    gate.why.empty() ? "" : "  (" + gate.why + ")");
         if (file.lines.percent() < gate.lines ||
-            (file.toggles.total && file.toggles.percent() < gate.toggles))
-            below.push_back(fmt::format(
-                "below its gate: {}: lines {:.1f} (gate {:.0f}), toggles {:.1f} (gate {:.0f}); "
-                "never: {}",
-                name, file.lines.percent(), gate.lines, file.toggles.percent(), gate.toggles,
-                fmt::join(file.missed.begin(),
-                          file.missed.begin() +
-                              std::min<long>(8, static_cast<long>(file.missed.size())),
-                          "; ")));
+            (file.toggles.total && file.toggles.percent() < gate.toggles) ||
+            file.points.percent() < gate.points)
+            below.push_back(
+                fmt::format("below its gate: {}: lines {:.1f} (gate {:.0f}), toggles {:.1f} (gate "
+                            "{:.0f}), points {:.1f} "
+                            "(gate {:.0f}); never: {}",
+                            name, file.lines.percent(), gate.lines, file.toggles.percent(),
+                            gate.toggles, file.points.percent(), gate.points,
+                            fmt::join(file.missed.begin(),
+                                      file.missed.begin() +
+                                          std::min<long>(8, static_cast<long>(file.missed.size())),
+                                      "; ")));
     }
     std::ofstream summary(out);
-    summary
-        << json{{"total", lines.percent()}, {"toggles", toggles.percent()}, {"files", rows}}.dump(1)
-        << '\n';
+    summary << json{{"total", lines.percent()},
+                    {"toggles", toggles.percent()},
+                    {"points", points.covered},
+                    {"points_total", points.total},
+                    {"files", rows}}
+                   .dump(1)
+            << '\n';
     if (!summary.flush())
         throw std::runtime_error("cannot write " + out + ": is the disk full?");
-    fmt::print("\n{:.1f} % of {} lines, {:.1f} % of {} toggle points; {}\n", lines.percent(),
-               lines.total, toggles.percent(), toggles.total, out);
+    fmt::print("\n{:.1f} % of {} lines, {:.1f} % of {} toggle points, {} of {} cover points; {}\n",
+               lines.percent(), lines.total, toggles.percent(), toggles.total, points.covered,
+               points.total, out);
     for (const std::string& rule : explanations.stale())
         below.push_back("an explanation that explains nothing: " + rule);
     for (const std::string& line : below)

@@ -66,11 +66,13 @@ json ofCoverage(const json& data) {
     for (const json& file : coverage.at("files"))
         if (file.at("percent") < file.at("gate") ||
             (file.value("toggle_points", 0) > 0 &&
-             file.value("toggles", 100.0) < file.value("toggle_gate", 0.0)))
+             file.value("toggles", 100.0) < file.value("toggle_gate", 0.0)) ||
+            file.value("point_percent", 100.0) < file.value("point_gate", 0.0))
             bad.push_back(file.at("file"));
     return judge("coverage",
-                 fmt::format("{:.1f} % of lines, {:.1f} % of toggles",
-                             coverage.at("total").get<double>(), coverage.value("toggles", 0.0)),
+                 fmt::format("{:.1f} % of lines, {:.1f} % of toggles, {} of {} cover points",
+                             coverage.at("total").get<double>(), coverage.value("toggles", 0.0),
+                             coverage.value("points", 0), coverage.value("points_total", 0)),
                  "files below their gate", bad);
 }
 

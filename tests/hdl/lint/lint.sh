@@ -40,9 +40,9 @@ esac
 search=$(for f in $folders ${core:+"$gen"}; do echo "-y $f -I$f"; done)
 libraries=$(for f in $folders ${core:+"$gen"}; do echo "-libdir $f"; done)
 each() { echo "$1" | tr , ' '; }
-verilate() { # variant
+verilate() { # variant [switch]
     # shellcheck disable=SC2086,SC2046
-    verilator --lint-only -Wall $search -I"$gen" --top-module "$module" $(for p in $(each "$1"); do echo "-G$p"; done) "$file"
+    verilator --lint-only -Wall ${2-} $search -I"$gen" --top-module "$module" $(for p in $(each "$1"); do echo "-G$p"; done) "$file"
 }
 # Yosys' commands for one variant; modules below are found by their names.
 elaboration() { # variant
@@ -56,6 +56,7 @@ for variant in '' $variants; do
     verilate "$variant"
     checks="$checks log variant $(each "$variant"); design -load read; $(elaboration "$variant") proc; opt; check -assert; select -assert-none t:\$dlatch;"
 done
+verilate '' -DCOVER_POINTS # not always: a signal must have a use besides
 yosys -q -p "$read_file design -save read; $checks" # one process: its start costs more than a variant
 for variant in $refused; do
     for tool in verilate elaborate; do

@@ -20,7 +20,7 @@ file(MAKE_DIRECTORY ${GEN_DIR})
 set(CMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE PRE_TEST)
 
 set(HOST_WARNINGS -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion)
-# Tools: they compile longer than they run, most of it templates of their command lines and of JSON.
+# Tools and tests: they compile longer than they run, most of it templates of libraries.
 set(TOOL_OPTIONS ${HOST_WARNINGS} -O1)
 set(C90_WARNINGS -std=c90 -pedantic -Wall -Wextra -Wconversion -Wstrict-prototypes
     -Wmissing-prototypes -Wdeclaration-after-statement -Werror)
@@ -59,7 +59,7 @@ function(icesoc_test name)
   endif()
   add_executable(${name} ${A_SOURCES} $<TARGET_OBJECTS:clock_listener>)
   set_property(GLOBAL APPEND PROPERTY ICESOC_TEST_PROGRAMS ${name})
-  target_compile_options(${name} PRIVATE ${HOST_WARNINGS})
+  target_compile_options(${name} PRIVATE ${TOOL_OPTIONS})
   target_link_libraries(${name} PRIVATE ${A_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
   gtest_discover_tests(${name} TEST_PREFIX "${name}." EXTRA_ARGS ${A_ARGS}
                        PROPERTIES LABELS "${A_LABELS}" DISCOVERY_TIMEOUT 60)

@@ -61,11 +61,11 @@ trap 'exit 130' INT TERM
 tries=0
 until sinfo -h -t idle -o %n 2>/dev/null | grep -q .; do
     tries=$((tries + 1))
-    [ "$tries" -lt 120 ] || {
+    if [ "$tries" -ge 120 ] || grep -q 'initialization failed' "$folder"/slurmd.log "$folder"/slurmctld.log; then
         echo "slurm_cluster: the node does not come up" >&2
         tail -n 5 "$folder"/*.log >&2
         exit 1
-    }
+    fi
     sleep 0.5
 done
 status=0

@@ -72,7 +72,7 @@ failed() {
     # abc's counterexample, replayed by smtbmc for names and a waveform
     awk -v n="$(head -1 assert.aig | cut -d' ' -f3)" 'NR == 1 { print "1" } { print NR == 1 ? $0 : substr($0, 1, n) }' \
         assert.aiw >replay.aiw 2>/dev/null || true
-    timeout 100 yosys-smtbmc -s z3 --noprogress --aig assert.map:replay.aiw --dump-vcd trace.vcd model.smt2 >trace.log 2>&1 || true
+    timeout 100 yosys-smtbmc -s z3 --unroll --noprogress --aig assert.map:replay.aiw --dump-vcd trace.vcd model.smt2 >trace.log 2>&1 || true
     grep -E 'Assert failed' trace.log || true
     [ ! -e trace.vcd ] || echo "$module: trace: $work/trace.vcd" >&2
     echo "$module: $2" >&2
@@ -98,6 +98,11 @@ if [ "$(latches assert.aig)" -eq 0 ]; then
     echo "$module: proven (it has no state)"
 else
     abc "read_aiger assert.aig; fold; strash; bmc3 -F $depth; write_cex -a assert.aiw" bounded.log
+    grep -q 'output failed\|output asserted\|was asserted' bounded.log || {
+        cat bounded.log
+        echo "$module: abc has no answer (see above): is another proof at work in $work?" >&2
+        exit 2
+    }
     grep -q 'No output failed\|No output asserted' bounded.log || failed bounded.log "an assertion fails within $depth clocks"
     echo "$module: bounded, $depth clocks"
 

@@ -112,7 +112,7 @@ function(icesoc_verilate name)
     list(APPEND definitions ICESOC_TRACE)
   endif()
   if(COVERAGE)
-    list(APPEND flags --coverage -DCOVER_POINTS)
+    list(APPEND flags --coverage --assert -DCOVER_POINTS) # --assert: newer Verilators leave cover properties out without it
     list(APPEND definitions ICESOC_COVERAGE)
     if(A_FAST)
       file(WRITE ${dir}.vlt "`verilator_config\ncoverage_off -file \"*\"\ncoverage_on -file \"*/${A_TOP}.v\"\n")

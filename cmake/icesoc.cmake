@@ -25,7 +25,7 @@ set(TOOL_OPTIONS ${HOST_WARNINGS} -O1)
 set(C90_WARNINGS -std=c90 -pedantic -Wall -Wextra -Wconversion -Wstrict-prototypes
     -Wmissing-prototypes -Wdeclaration-after-statement -Werror)
 if(COVERAGE)
-  add_compile_options(--coverage -fprofile-update=atomic)
+  add_compile_options(-g --coverage -fprofile-update=atomic) # -g: without it gcov does not know of each line
   add_link_options(--coverage)
 endif()
 if(SANITIZE STREQUAL "thread")

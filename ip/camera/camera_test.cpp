@@ -87,6 +87,7 @@ protected:
     }
 
     uint32_t base_ = 0, stride_ = 0;
+    uint32_t held_ = 1; // address of the buffer that the other core has; 1: none
     Random random_{testSeed()};
     uint32_t slowest_ = 3;
     int wait_ = 1;
@@ -245,6 +246,35 @@ TEST_F(CameraTest, TheFrameThatAnotherCoreHasIsNotOverwritten) {
         expectAt(latest(), last);
         pixels = last;
     }
+}
+
+// Also in the very clock in which the next frame is kept: what is taken is whole, and nothing is
+// taken twice.
+TEST_F(CameraTest, AnotherCoreTakesAFrameInAnyClock) {
+    constexpr int w = 8, h = 1;
+    slowest_ = 1;
+    configure(w, h);
+    start();
+    auto& top = bench_.top();
+    for (int frames = 0; frames < 1500; ++frames) {
+        std::vector<uint8_t> pixels(w * h, static_cast<uint8_t>(frames));
+        sensor_.addFrame(pixels, w, h);
+        for (int clocks = 0; clocks < 150; ++clocks) {
+            top.frame_take_i = random_.chance(0.02);
+            top.eval();
+            bool isTaken = top.frame_take_i && top.frame_valid_o;
+            uint32_t at = base_ + (top.frame_index_o - 1u) * stride_;
+            bench_.tick();
+            if (!isTaken)
+                continue;
+            for (uint32_t i = 1; i < w * h; ++i)
+                ASSERT_EQ(memory_.byte(at + i), memory_.byte(at)) << "frame " << frames;
+            ASSERT_NE(at, held_) << "what the other core has is offered again";
+            held_ = at;
+        }
+    }
+    top.frame_take_i = 0;
+    EXPECT_GT(bus_.read(CAMERA_FRAMES), 1000u);
 }
 
 TEST_F(CameraTest, StopsAndStartsInTheMiddleOfAFrame) {

@@ -20,8 +20,9 @@ public:
         : top_(bench.top()), pipelined_(pipelined), random_(seed) {
         bench.addModel([this] { sample(); }, [this] { drive(); });
     }
-    double wait = 0, retry = 0;   // probability a clock
+    double wait = 0, retry = 0; // probability a clock
     bool hang = false, err = false;
+    unsigned answerAt = 0; // clocks after which a cycle is answered, not sooner
     std::map<uint32_t, uint32_t> memory;
     unsigned transfers = 0;
 
@@ -40,7 +41,8 @@ private:
         else if (taken)
             open_ = true;
         answering_ = false;
-        if (!open_ || hang || random_.chance(wait))
+        age_ = open_ ? age_ + 1 : 0;
+        if (!open_ || hang || age_ < answerAt || random_.chance(wait))
             return;
         answering_ = true;
         retried_ = random_.chance(retry);
@@ -64,6 +66,7 @@ private:
     Random random_;
     bool open_ = false, answering_ = false, retried_ = false;
     uint32_t data_ = 0;
+    unsigned age_ = 0;
 };
 
 template <class Module> struct Rig {
@@ -95,7 +98,8 @@ template <class Module> void randomTraffic(bool pipelined) {
             bool write = random.chance(0.5);
             uint32_t data = random.next();
             auto answer = rig.bus.transfer(write, firstWord + word, data);
-            if (answer.error) { // waits and retries may be longer than TIMEOUT: then it is told, and not in between
+            if (answer.error) { // waits and retries may be longer than TIMEOUT: then it is told,
+                                // and not in between
                 ASSERT_GE(answer.cycles, 40u);
                 reference[page + 4 * word] = rig.slave.memory[page + 4 * word];
                 continue;
@@ -134,6 +138,26 @@ template <class Module> void misbehaviour(bool pipelined) {
     EXPECT_TRUE(rig.bus.transfer(false, 4, 0).error) << "words 4..7 do not exist";
 }
 
+// The answer is late by a clock, by none, or in time: each access says which, and the next one is
+// not told of it.
+template <class Module> void aroundTheTimeOut(bool pipelined) {
+    Rig<Module> rig(pipelined);
+    for (uint32_t k = 0; k < 8; ++k)
+        rig.slave.memory[4 * k] = 100 + k;
+    bool hasFailed = false, hasWorked = false;
+    for (unsigned clocks = 30; clocks < 50; ++clocks) {
+        rig.slave.answerAt = clocks;
+        auto answer = rig.bus.transfer(false, firstWord + clocks % 8, 0);
+        bool late = rig.bus.read(1) & timeoutEvent;
+        rig.bus.write(1, timeoutEvent);
+        EXPECT_EQ(answer.error, late) << clocks;
+        EXPECT_EQ(answer.data, late ? 0 : 100 + clocks % 8) << clocks;
+        EXPECT_FALSE(hasFailed && !late) << "the longer wait is in time: " << clocks;
+        (late ? hasFailed : hasWorked) = true;
+    }
+    EXPECT_TRUE(hasFailed && hasWorked);
+}
+
 template <class Module> void interrupt(bool pipelined) {
     Rig<Module> rig(pipelined);
     auto& top = rig.bench.top();
@@ -149,11 +173,29 @@ template <class Module> void interrupt(bool pipelined) {
     EXPECT_FALSE(top.irq_o);
 }
 
-TEST(WishboneClassic, RandomTraffic) { randomTraffic<VWishboneClassic>(false); }
-TEST(WishboneClassic, ErrorsAndHangs) { misbehaviour<VWishboneClassic>(false); }
-TEST(WishboneClassic, Interrupt) { interrupt<VWishboneClassic>(false); }
-TEST(WishbonePipelined, RandomTraffic) { randomTraffic<VWishbonePipelined>(true); }
-TEST(WishbonePipelined, ErrorsAndHangs) { misbehaviour<VWishbonePipelined>(true); }
-TEST(WishbonePipelined, Interrupt) { interrupt<VWishbonePipelined>(true); }
+TEST(WishboneClassic, RandomTraffic) {
+    randomTraffic<VWishboneClassic>(false);
+}
+TEST(WishboneClassic, ErrorsAndHangs) {
+    misbehaviour<VWishboneClassic>(false);
+}
+TEST(WishboneClassic, AnswersAroundTheTimeOut) {
+    aroundTheTimeOut<VWishboneClassic>(false);
+}
+TEST(WishbonePipelined, AnswersAroundTheTimeOut) {
+    aroundTheTimeOut<VWishbonePipelined>(true);
+}
+TEST(WishboneClassic, Interrupt) {
+    interrupt<VWishboneClassic>(false);
+}
+TEST(WishbonePipelined, RandomTraffic) {
+    randomTraffic<VWishbonePipelined>(true);
+}
+TEST(WishbonePipelined, ErrorsAndHangs) {
+    misbehaviour<VWishbonePipelined>(true);
+}
+TEST(WishbonePipelined, Interrupt) {
+    interrupt<VWishbonePipelined>(true);
+}
 
 } // namespace

@@ -109,19 +109,15 @@ protected:
         auto adapter = fresh->createObjectAdapter("Station");
         adapter->add(std::make_shared<Station>(down_), Ice::stringToIdentity("station"));
         adapter->activate();
-        std::lock_guard<std::mutex> lock(mutex_);
-        ground_ = fresh;
-    }
-    Ice::CommunicatorPtr ground() {
-        std::lock_guard<std::mutex> lock(mutex_);
-        return ground_;
+        ground_.start(fresh);
     }
     void work(int worker) {
         Random random(testSeed() * 100 + static_cast<uint64_t>(worker));
         for (int number = 1; !stop_; number += 2) {
             const int id = worker << 24 | number;
+            const auto ground = ground_.get();
             try {
-                auto echo = world_.echo(ground(), std::to_string(worker));
+                auto echo = world_.echo(ground, std::to_string(worker));
                 if (random.below(4) == 0) // reported by nobody if it is lost: it is oneway
                     echo->ice_oneway()->note(id);
                 const U32 size = random.below(12) ? random.below(200) : random.below(7000);
@@ -130,15 +126,15 @@ protected:
                 const auto answer = echo->repeat(id + 1, data);
                 ++(answer == data ? answered_ : wrong_);
             } catch (const Ice::Exception& e) {
-                note(e);
+                note(ground, e);
             }
         }
     }
-    void note(const Ice::Exception& e) {
+    void note(const Ice::CommunicatorPtr& ground, const Ice::Exception& e) {
         {
             std::lock_guard<std::mutex> lock(mutex_);
             ++reports_[e.ice_id()];
-            if (!isReport(e.ice_id()))
+            if (!ground_.isReport(ground, e.ice_id()))
                 faults_.insert(e.ice_id());
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -159,7 +155,7 @@ protected:
             ++modemResets_;
             break;
         case 3:
-            ground()->destroy(); // with it the engine goes: a program that ends
+            ground_.end(); // with it the engine goes: a program that ends
             startGround();
             ++groundStarts_;
             break;
@@ -200,7 +196,7 @@ protected:
     std::set<std::string> faults_;
     const EchoUav_Port port_{executed, next, outcome};
     ChipWorld world_{testSeed(), port_, this};
-    Ice::CommunicatorPtr ground_;
+    GroundProgram ground_;
 };
 
 TEST_F(ChipSoak, EveryMessageIsRightOnceInOrderOrReported) {
@@ -239,13 +235,13 @@ TEST_F(ChipSoak, EveryMessageIsRightOnceInOrderOrReported) {
             const int id = 8 << 24 | (tries + 1);
             const auto data = pattern(id, 500);
             // Of the three connections one: a fourth would wait.
-            works = world_.echo(ground(), "1")->repeat(id, data) == data;
+            works = world_.echo(ground_.get(), "1")->repeat(id, data) == data;
         } catch (const Ice::Exception&) {
             world_.sleep(0.2);
         }
     }
     EXPECT_TRUE(works) << "no call succeeds in good weather";
-    ground()->destroy();
+    ground_.end();
     report();
     unsigned reported = 0;
     for (auto& [name, count] : reports_)

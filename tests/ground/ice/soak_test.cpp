@@ -23,13 +23,7 @@ protected:
         return text && *text ? std::atof(text) : 10;
     }
     void startGround() {
-        auto fresh = world_.client({{"Ice.Default.InvocationTimeout", "15000"}});
-        std::lock_guard<std::mutex> lock(mutex_);
-        ground_ = fresh;
-    }
-    Ice::CommunicatorPtr ground() {
-        std::lock_guard<std::mutex> lock(mutex_);
-        return ground_;
+        ground_.start(world_.client({{"Ice.Default.InvocationTimeout", "15000"}}));
     }
     // Calls until told to stop.
     void work(int worker) {
@@ -39,22 +33,23 @@ protected:
             uint32_t size = random.below(20) ? random.below(200) : random.below(8000);
             auto data = World::pattern(id, size);
             ++calls_;
+            const auto ground = ground_.get();
             try {
-                auto echo = world_.proxy(ground(), std::to_string(worker % 3));
+                auto echo = world_.proxy(ground, std::to_string(worker % 3));
                 if (random.below(4) == 0)
                     echo->ice_oneway()->note(id | 1 << 23);
                 auto answer = echo->repeat(id, data);
                 ++(answer == data ? answered_ : wrong_);
             } catch (const Ice::Exception& e) {
-                note(e);
+                note(ground, e);
             }
         }
     }
     // Only what says "this call may not have been executed" is an answer, too.
-    void note(const Ice::Exception& e) {
+    void note(const Ice::CommunicatorPtr& ground, const Ice::Exception& e) {
         const std::string id = e.ice_id();
         ++reported_;
-        if (!isReport(id)) {
+        if (!ground_.isReport(ground, id)) {
             std::lock_guard<std::mutex> lock(mutex_);
             faults_.insert(id);
         }
@@ -88,7 +83,7 @@ protected:
             reset(*world_.rig.ground);
             break;
         case 3:
-            ground()->destroy(); // with it the engine goes: a program that ends
+            ground_.end(); // with it the engine goes: a program that ends
             startGround();
             ++groundRestarts_;
             break;
@@ -99,7 +94,7 @@ protected:
 
     World world_{testSeed()};
     std::mutex mutex_;
-    Ice::CommunicatorPtr ground_;
+    GroundProgram ground_;
     std::atomic<bool> stop_{false};
     std::atomic<unsigned> calls_{0}, answered_{0}, reported_{0}, wrong_{0};
     unsigned reboots_ = 0, modemResets_ = 0, groundRestarts_ = 0;
@@ -134,19 +129,19 @@ TEST_F(IceSoak, EveryCallIsAnsweredRightOrReported) {
     world_.rig.with([&] { world_.rig.air.weather = {}; });
     for (auto& worker : workers)
         worker.join();
-    // Good weather: it works again, by one of the workers' three connections: a fourth would be refused.
-    // Minutes only where modem set-ups starve on a busy machine.
+    // Good weather: it works again, by one of the workers' three connections: a fourth would be
+    // refused. Minutes only where modem set-ups starve on a busy machine.
     bool works = false;
     const auto hung = Steady::now() + std::chrono::minutes(5);
     for (int tries = 0; Steady::now() < hung && !works; ++tries) {
         try {
             auto data = World::pattern(tries, 500);
-            works = world_.proxy(ground(), "1")->repeat(1 << 30 | tries, data) == data;
+            works = world_.proxy(ground_.get(), "1")->repeat(1 << 30 | tries, data) == data;
         } catch (const Ice::Exception&) {
             std::this_thread::sleep_for(std::chrono::milliseconds(200));
         }
     }
-    ground()->destroy();
+    ground_.end();
     report();
     EXPECT_TRUE(works) << "no call succeeds in good weather; SEED " << testSeed();
     EXPECT_EQ(wrong_, 0u) << "SEED " << testSeed();

@@ -2,9 +2,11 @@
 //
 // npi_flags_test: one port by hand: flags, flushes, InitDone, words of a cache line, byte enables.
 
+#include "VMemoryLitedram2.h"
 #include "VMemoryMcb2.h"
 #include "bench.h"
 #include "bits.h"
+#include "litedram_pins.h"
 #include "mcb_pins.h"
 #include <cstring>
 #include <gtest/gtest.h>
@@ -70,6 +72,15 @@ TEST_F(NpiPort, InitDoneComesWithTheMemorysCalibration) {
     EXPECT_EQ(top_.npi_init_done_o, 0);
     start();
     EXPECT_TRUE(memory_.pins.calibDone);
+}
+
+TEST_F(NpiPort, ARequestBeforeTheCalibrationWaitsForIt) {
+    push(0x1122334455667788);
+    request(false, 0x40, 0);
+    EXPECT_EQ(top_.npi_init_done_o, 0);
+    start();
+    wait(40);
+    EXPECT_EQ(inMemory(0x40), 0x1122334455667788u);
 }
 
 TEST_F(NpiPort, TheWriteFifoIsFullWithThirtyTwoWordsAndEmptyAgain) {
@@ -157,6 +168,32 @@ TEST_F(NpiPort, AWriteIsSeenByAReadThatIsAcknowledgedAfterIt) {
     request(false, 0x300, 0);
     request(true, 0x300, 0);
     EXPECT_EQ(pop(), 42u);
+}
+
+TEST(NpiPortOfLitedram, ARequestBeforeTheInitialisationWaitsForIt) {
+    Bench<VMemoryLitedram2> bench;
+    auto& top = bench.top();
+    LitedramModel memory{1 << 20};
+    bench.addModel([&] { sampleLitedram(top, memory); }, [&] { driveLitedram(top, memory); });
+    bench.reset();
+    setBits(top.npi_wr_data_i, 0, 64, 0x1122334455667788);
+    setBits(top.npi_wr_be_i, 0, 8, 0xFF);
+    top.npi_wr_push_i = 1;
+    bench.tick();
+    top.npi_wr_push_i = 0;
+    setBits(top.npi_addr_i, 0, 32, 0x40);
+    setBits(top.npi_size_i, 0, 4, 0);
+    top.npi_addr_req_i = 1;
+    bench.waitFor([&] { return top.npi_addr_ack_o == 1; }, "the acknowledgement");
+    bench.tick();
+    top.npi_addr_req_i = 0;
+    EXPECT_FALSE(memory.pins.initDone);
+    bench.waitFor([&] { return memory.pins.initDone; }, "the initialisation");
+    for (int i = 0; i < 60; ++i)
+        bench.tick();
+    uint64_t value;
+    std::memcpy(&value, memory.data() + 0x40, 8);
+    EXPECT_EQ(value, 0x1122334455667788u);
 }
 
 } // namespace

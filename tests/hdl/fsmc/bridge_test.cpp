@@ -186,6 +186,33 @@ TEST_F(Bridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x80), 0);
 }
 
+// A write that finds no room is let go like a read, with an error each; after the last place, lost.
+TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
+    b_.slave.clearWord = MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT; // as the system slot does it
+    b_.lateMask = SYSTEM_EVENT_LATE_MASK;
+    const uint32_t& event = b_.slave.words[b_.slave.clearWord];
+    auto value = [](unsigned i) { return static_cast<uint16_t>(0xA000 + i); };
+    b_.memory.hold(true);
+    unsigned done = 0;
+    for (; b_.errors == 0 && done < 32; ++done)
+        fsmc_.write16(ddr + 8 * done, value(done)); // a place each
+    const unsigned before = done - 1;
+    EXPECT_EQ(before, 14u) << "of 16 places two are kept";
+    EXPECT_EQ(b_.errorAddr, 0x3FFu);
+    EXPECT_TRUE(b_.errorWrite);
+    EXPECT_EQ(event, 0u);
+    for (; done < before + 4; ++done)
+        fsmc_.write16(ddr + 8 * done, value(done));
+    EXPECT_EQ(b_.errors, 4u);
+    b_.memory.hold(false);
+    for (unsigned i = 0; i < done; ++i)
+        EXPECT_EQ(fsmc_.read16(ddr + 8 * i), i < before + 2 ? value(i) : 0) << "write " << i;
+    EXPECT_EQ(event, unsigned(SYSTEM_EVENT_LATE_MASK)) << "some were lost";
+    fsmc_.write16(ddr, 0x4321);
+    EXPECT_EQ(fsmc_.read16(ddr), 0x4321);
+    EXPECT_EQ(b_.errors, 4u);
+}
+
 // Registers wait for what is posted: a memory that takes nothing is told, and the register access
 // goes on.
 TEST_F(Bridge, AHungMemoryDoesNotKeepRegistersAway) {

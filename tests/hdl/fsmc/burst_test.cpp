@@ -154,6 +154,29 @@ TEST(Burst, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
     EXPECT_EQ(b.master.readBurst(ddr + 0x40, 1)[0], 0x77);
 }
 
+// Halfwords that find no room are let go one by one, each with an error.
+TEST(Burst, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
+    BridgeBench<VFsmcBridgeSync> b(testSeed(), 0.1, 100, 100);
+    setUp(b, 3, 5, false);
+    b.memory.hold(true);
+    std::vector<uint16_t> values(100);
+    for (unsigned i = 0; i < values.size(); ++i)
+        values[i] = static_cast<uint16_t>(0x2468 * i + 1);
+    b.master.writeBurst(ddr, values);
+    EXPECT_GE(b.errors, 1u);
+    EXPECT_EQ(b.errorAddr, 0x3FFu);
+    EXPECT_TRUE(b.errorWrite);
+    b.memory.hold(false);
+    b.master.read32(control); // what is still in the queue has been written
+    unsigned errors = b.errors;
+    auto in = b.master.readBurst(ddr, 48);
+    EXPECT_EQ(in, std::vector<uint16_t>(values.begin(), values.begin() + 48))
+        << "what had room before the first error";
+    b.master.writeBurst(ddr, values);
+    EXPECT_EQ(b.master.readBurst(ddr, 100), values);
+    EXPECT_EQ(b.errors, errors);
+}
+
 // 25 MHz of FSMC_CLK: a beat each, but for address, latency and pause of a burst.
 TEST(Burst, LongBurstsReachThePinLimit) {
     BridgeBench<VFsmcBridgeSync> b(testSeed(), 0, 100, 100);

@@ -6,6 +6,7 @@
 #include "VFsmcBridge.h"
 #include "bridge_bench.h"
 #include "driver_port.h"
+#include "fsmc_fields.h"
 extern "C" {
 #include "map_regs.h"
 #include "system_regs.h"
@@ -172,6 +173,36 @@ TEST_F(Bridge, AHungSlaveEndsInAnErrorAndTheBridgeGoesOn) {
     fsmc_.write32(at(34), 0x12345678);
     EXPECT_EQ(fsmc_.read32(at(34)), 0x12345678u);
     EXPECT_EQ(b_.errors, 1u);
+}
+
+// NWAIT off in NE2, as nobody should: what is written while a slow slave still has the access
+// before is lost, and told.
+TEST_F(Bridge, ARegisterWrittenTooEarlyIsLostAndReported) {
+    const uint32_t bcr2 = fsmc::registersAt + 8, bcr = fsmc_.read32(bcr2);
+    b_.slave.words[41] = 0x99998888;
+    for (bool behindWrite : {true, false}) {
+        unsigned errors = b_.errors;
+        b_.slave.hung = true; // for less than the time-out
+        fsmc_.write32(bcr2, bcr & ~fsmc::bcrAsyncWait);
+        // The word under way would get the later data as its high half: here they are the same.
+        if (behindWrite)
+            fsmc_.write32(at(40), 0x5A5A1234);
+        else
+            fsmc_.read16(at(40));
+        fsmc_.idle(30); // the slave has it
+        EXPECT_EQ(b_.errors, errors);
+        fsmc_.write16(at(41), 0x5A5A);
+        fsmc_.idle(30);
+        EXPECT_EQ(b_.errors, errors + 1);
+        EXPECT_EQ(b_.errorAddr, 40u) << "the access that was under way";
+        EXPECT_EQ(b_.errorWrite, behindWrite);
+        b_.slave.hung = false;
+        fsmc_.write32(bcr2, bcr);
+        fsmc_.write16(at(41) + 2, 0x7777);
+        EXPECT_EQ(fsmc_.read32(at(41)), 0x99998888u);
+        EXPECT_EQ(b_.errors, errors + 2) << "a high half, and its low half was lost";
+        EXPECT_EQ(fsmc_.read32(at(40)), 0x5A5A1234u);
+    }
 }
 
 TEST_F(Bridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {

@@ -78,6 +78,18 @@ std::vector<uint16_t> FsmcMaster::readBurst(uint32_t address, unsigned halfwords
     return values;
 }
 
+void FsmcMaster::abortReadBurst(uint32_t address, unsigned edges) {
+    Access access = decode(address, false);
+    beginBurst(access);
+    pins_.noeN = false;
+    pins_.nblN = 0;
+    show();
+    uint16_t nobodys;
+    for (unsigned edge = 1; edge < edges; ++edge)
+        clockEdge(access, nobodys);
+    endBurst(access);
+}
+
 void FsmcMaster::writeBurst(uint32_t address, const std::vector<uint16_t>& values, uint8_t lanes) {
     Access access = decode(address, true);
     beginBurst(access);

@@ -68,6 +68,9 @@ public:
     // one clock ahead): what an AHB burst to such a bank becomes.
     std::vector<uint16_t> readBurst(uint32_t address, unsigned halfwords);
     void writeBurst(uint32_t address, const std::vector<uint16_t>& values, uint8_t lanes = 3);
+    // A read burst that the processor gives up after so many edges of FSMC_CLK, whatever NWAIT
+    // says; the first one takes the address.
+    void abortReadBurst(uint32_t address, unsigned edges);
     // HCLK cycles in which the processor does something else.
     void idle(unsigned hclk) { passHclk(hclk); }
 

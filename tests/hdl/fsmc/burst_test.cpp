@@ -177,6 +177,33 @@ TEST(Burst, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     EXPECT_EQ(b.errors, errors);
 }
 
+// Given up before the memory's side has answered its restart, a burst must not leave its address or
+// its data to the next one, whose restart then waits. FSMC_CLK is up to as fast as the clock here.
+TEST(Burst, AReadBehindBurstsThatAreGivenUpGetsItsOwnData) {
+    for (auto [hclk, clkdiv] : {std::pair(200u, 1u), {190u, 1u}, {120u, 1u}, {100u, 3u}}) {
+        SCOPED_TRACE("HCLK " + std::to_string(hclk) + " MHz, CLKDIV " + std::to_string(clkdiv) +
+                     ", SEED=" + std::to_string(testSeed()));
+        BridgeBench<VFsmcBridgeSync> b(testSeed(), 0.3, hclk, 100);
+        setUp(b, clkdiv, 5, false);
+        Random random(testSeed() + hclk);
+        std::vector<uint16_t> values(256);
+        for (unsigned i = 0; i < values.size(); ++i) {
+            values[i] = static_cast<uint16_t>(random.next());
+            b.memory.setByte(2 * i, static_cast<uint8_t>(values[i]));
+            b.memory.setByte(2 * i + 1, static_cast<uint8_t>(values[i] >> 8));
+        }
+        for (int i = 0; i < 150 && !HasFailure(); ++i) {
+            for (unsigned bursts = 1 + random.below(3); bursts; --bursts)
+                b.master.abortReadBurst(ddr + 2 * random.below(240), 1 + random.below(12));
+            unsigned at = random.below(240), n = 1 + random.below(16);
+            EXPECT_EQ(b.master.readBurst(ddr + 2 * at, n),
+                      std::vector<uint16_t>(values.begin() + at, values.begin() + at + n))
+                << "burst " << i;
+        }
+        EXPECT_EQ(b.errors, 0u);
+    }
+}
+
 // 25 MHz of FSMC_CLK: a beat each, but for address, latency and pause of a burst.
 TEST(Burst, LongBurstsReachThePinLimit) {
     BridgeBench<VFsmcBridgeSync> b(testSeed(), 0, 100, 100);

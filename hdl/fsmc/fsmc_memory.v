@@ -295,7 +295,6 @@ module fsmc_memory #(
     stops_at_border: cover property (@(posedge clk_i) rd_used_i && whole && !ahead && rd_block == current && border);
     dropped_on_its_way: cover property (@(posedge clk_i) npi_rd_pop_o && stale);
     second_miss_fetches_block: cover property (@(posedge clk_i) miss && second);
-    write_goes_before_read: cover property (@(posedge clk_i) start && post_valid && wanted);
     hit_while_block_comes: cover property (@(posedge clk_i) rd_hit_o && filling && rd_used_i);
     drop_while_it_is_asked_for: cover property (@(posedge clk_i) (drop_i || wr_i) && start_read);
 `endif

@@ -117,7 +117,7 @@ module fsmc_registers (
         if (give || (answering && (given_up || (seen && !done_s[1]))))
             answering <= give;
 
-        // An error, too: written without looking at NWAIT, and lost.
+        // An error, too: written without looking at NWAIT, and lost; the word under way may get its data as the high half.
         error_o <= (begins && !keep && !kept && wrong) || (ends && (bus_error_i || !bus_ready_i)) ||
                    (wr_i && !idle);
         error_memory_o <= flushing && expired_i && !idle_i;

@@ -21,6 +21,23 @@ protected:
             bytes[i] = static_cast<uint8_t>(tag + 7 * i);
         return bytes;
     }
+    static constexpr unsigned bitClocks = 16;
+    static std::vector<uint8_t> apiFrame(const std::vector<uint8_t>& body) {
+        std::vector<uint8_t> bytes = {0x7E, static_cast<uint8_t>(body.size() >> 8),
+                                      static_cast<uint8_t>(body.size())};
+        uint8_t sum = 0xFF;
+        for (uint8_t byte : body) {
+            bytes.push_back(byte);
+            sum = static_cast<uint8_t>(sum - byte);
+        }
+        bytes.push_back(sum);
+        return bytes;
+    }
+    static std::vector<uint8_t> received(const std::vector<uint8_t>& packet) {
+        std::vector<uint8_t> body = {0x81, 0x00, 0x00, 40, 0x00};
+        body.insert(body.end(), packet.begin(), packet.end());
+        return apiFrame(body);
+    }
 };
 
 TEST_F(ModemApi, SetUpChoosesFramesAnd250000Baud) {
@@ -94,6 +111,40 @@ TEST_F(ModemApi, ASpoiltFrameIsDroppedAndTheNextIsWhole) {
     plain_.send(packet(30, 8), now());
     runMs(14);
     EXPECT_EQ(take(), packet(30, 8));
+}
+
+// Without pauses, so that only a frame's own end brings the receiver back to the next.
+TEST_F(ModemApi, FramesOfOtherTypesAndTooLongOnesArePassedOver) {
+    ready();
+    Random random(testSeed());
+    auto other = [&](uint8_t type, size_t size) {
+        std::vector<uint8_t> body(size);
+        for (uint8_t& byte : body)
+            byte = static_cast<uint8_t>(1 + random.below(0x7D)); // no delimiter
+        body[0] = type;
+        return apiFrame(body);
+    };
+    const std::vector<std::vector<uint8_t>> strangers = {
+        other(0x8A, 2),                     // the modem's status
+        other(0x88, 3),                     // a reply; its third byte would be a 0x89's failure
+        other(0x80, 11 + random.below(95)), // a packet from a 64-bit address
+        other(0x83, 105),                   // with its inputs
+        received(packet(101, 3)),           // more than a buffer is for
+        other(0x81, 255),                   // the longest that one byte says
+        other(0x81, 0x105),                 // its low byte alone would do
+    };
+    for (size_t i = 0; i < strangers.size(); ++i) {
+        auto before = packet(1 + random.below(100), 1), after = packet(1 + random.below(100), 2);
+        bytesIn(received(before), bitClocks);
+        bytesIn(strangers[i], bitClocks);
+        bytesIn(received(after), bitClocks);
+        runMs(0.1);
+        EXPECT_EQ(take(), before) << i << ", SEED " << testSeed();
+        EXPECT_EQ(take(), after) << i << ", SEED " << testSeed();
+        EXPECT_TRUE(take().empty()) << i;
+        EXPECT_EQ(takeEvents(), MODEM_EVENT_RX_PACKET_MASK) << i;
+    }
+    EXPECT_EQ(errors(), 0u);
 }
 
 TEST_F(ModemApi, AModemThatLostItsPowerIsSetUpAgain) {

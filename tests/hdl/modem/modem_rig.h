@@ -80,6 +80,26 @@ protected:
         return packet;
     }
 
+    // Without those of the set-up, which may have to search the rate.
+    uint32_t errors() { return bus_.read(MODEM_ERRORS) & ~MODEM_ERRORS_RETRIES_MASK; }
+    // Bytes from the modem's side to the clock, and such as the model would not send; it is silent
+    // then.
+    void level(bool high, unsigned clocks) {
+        noise_ = !high;
+        for (unsigned i = 0; i < clocks; ++i)
+            bench_.tick();
+    }
+    void byteIn(uint8_t byte, unsigned bitClocks, unsigned stopClocks) {
+        level(false, bitClocks);
+        for (int bit = 0; bit < 8; ++bit)
+            level(byte >> bit & 1, bitClocks);
+        level(true, stopClocks);
+    }
+    void bytesIn(const std::vector<uint8_t>& bytes, unsigned bitClocks) {
+        for (uint8_t byte : bytes)
+            byteIn(byte, bitClocks, bitClocks);
+    }
+
     Bench<Module> bench_;
     BusMaster<Module> bus_{bench_};
     NpiMemory<Module> memory_{bench_, 0.3, testSeed()};

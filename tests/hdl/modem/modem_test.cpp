@@ -7,7 +7,16 @@
 
 namespace {
 
-class ModemTest : public ModemRig<VModem, 500> {};
+class ModemTest : public ModemRig<VModem, 500> {
+protected:
+    static constexpr unsigned bitClocks = 18; // at 111,111 baud
+    static std::vector<uint8_t> ramp(unsigned size, uint8_t tag) {
+        std::vector<uint8_t> bytes = frame(size, tag);
+        for (unsigned i = 1; i < size; ++i)
+            bytes[i] = static_cast<uint8_t>(tag + i);
+        return bytes;
+    }
+};
 
 TEST_F(ModemTest, SetUpFromFactorySettings) {
     power(quick());
@@ -277,6 +286,81 @@ TEST_F(ModemTest, APacketThatASetUpInterruptsIsSentAgainWhole) {
     EXPECT_EQ(std::vector<uint8_t>(plain_.received.end() - 100, plain_.received.end()),
               frame(100, 1));
     EXPECT_EQ(bus_.read(MODEM_TX_STATE) & MODEM_TX_STATE_FREE_MASK, 16u);
+}
+
+// A word that memory gives for a packet that is no longer under way must not become a byte of the
+// one that is, even if it comes after the set-up.
+class ModemWithdrawnRead : public ModemTest {
+protected:
+    // CONTROL is written so many clocks after the read of the packet's second word has begun.
+    // With `hangs` memory gives that word when the packet is awaited (sentAgain).
+    void interrupt(unsigned buffer, unsigned clocks, uint32_t control, bool hangs = false) {
+        packet_ = ramp(20, static_cast<uint8_t>(16 * buffer));
+        uint32_t second = txRing + 128 * buffer + 8;
+        plain_.received.clear();
+        put(buffer, packet_);
+        bench_.waitFor(
+            [&] { return bench_.top().npi_addr_req_o && bench_.top().npi_addr_o == second; },
+            "the second word");
+        memory_.hold(hangs);
+        for (unsigned i = 0; i < clocks; ++i)
+            bench_.tick();
+        bus_.write(MODEM_CONTROL, control);
+    }
+    void setUp() {
+        bench_.waitFor([&] { return bench_.top().irq_o; }, "the end of the set-up", 1'000'000);
+        EXPECT_TRUE(takeEvents() & MODEM_EVENT_CONFIGURED_MASK);
+    }
+    // The bytes that had left, and the packet.
+    void sentAgain(const std::string& when) {
+        memory_.hold(false);
+        runMs(12);
+        size_t left = plain_.received.size() - packet_.size();
+        ASSERT_TRUE(left == 8 || left == 9) << plain_.received.size() << when;
+        std::vector<uint8_t> expected(packet_.begin(), packet_.begin() + static_cast<long>(left));
+        expected.insert(expected.end(), packet_.begin(), packet_.end());
+        EXPECT_EQ(plain_.received, expected) << when;
+        EXPECT_EQ(bus_.read(MODEM_TX_STATE) & MODEM_TX_STATE_FREE_MASK, 16u) << when;
+        EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_DONE_MASK) << when;
+    }
+    std::vector<uint8_t> packet_;
+};
+
+TEST_F(ModemWithdrawnRead, ASetUpAtAnyClockOfIt) {
+    power(quick());
+    configure();
+    takeEvents();
+    memory_.setStall(0.8);
+    for (unsigned clocks = 0; clocks < 10; ++clocks) {
+        interrupt(clocks, clocks, MODEM_CONTROL_CONFIGURE_MASK);
+        setUp();
+        sentAgain(", clock " + std::to_string(clocks) + ", SEED " + std::to_string(testSeed()));
+    }
+}
+
+TEST_F(ModemWithdrawnRead, ItsWordComesAfterTheSetUp) {
+    power(quick());
+    configure();
+    takeEvents();
+    interrupt(0, 0, MODEM_CONTROL_CONFIGURE_MASK, true);
+    setUp();
+    sentAgain("");
+}
+
+TEST_F(ModemWithdrawnRead, ItsWordComesAfterAResetForAnotherPacket) {
+    power(quick({{"BD", 7}})); // at once found after the reset
+    configure();
+    takeEvents();
+    interrupt(0, 0, MODEM_CONTROL_RESET_MODEM_MASK, true);
+    runMs(60);
+    configure();
+    takeEvents();
+    plain_.received.clear();
+    put(0, ramp(30, 100));
+    memory_.hold(false);
+    runMs(12);
+    EXPECT_EQ(plain_.received, ramp(30, 100));
+    EXPECT_EQ(bus_.read(MODEM_TX_STATE), 1u << 8 | 16u);
 }
 
 TEST_F(ModemTest, AModemThatIsFullHoldsTheControllerBack) {

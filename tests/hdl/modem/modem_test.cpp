@@ -363,6 +363,79 @@ TEST_F(ModemWithdrawnRead, ItsWordComesAfterAResetForAnotherPacket) {
     EXPECT_EQ(bus_.read(MODEM_TX_STATE), 1u << 8 | 16u);
 }
 
+// The end of one packet and the beginning of another in the same clock of a ring, and in those
+// around it; some rounds, since the baud rate's ticks move against the bus.
+class ModemRingsMeet : public ModemTest {
+protected:
+    static constexpr unsigned rounds = 4;
+    void ready() {
+        power(quick());
+        configure();
+        takeEvents();
+        memory_.setStall(0);
+    }
+    void tickUntil(uint64_t cycle) {
+        while (bench_.cycles() < cycle)
+            bench_.tick();
+    }
+    Random random_{testSeed()};
+};
+
+TEST_F(ModemRingsMeet, APutInTheClockInWhichAPacketHasBeenSent) {
+    ready();
+    put(0, {1});
+    uint64_t begin = bench_.cycles();
+    bench_.waitFor([&] { return bench_.top().irq_o; }, "the end of a packet");
+    uint64_t lasts = bench_.cycles() - begin;
+    takeEvents();
+    std::vector<uint8_t> expected = {1};
+    for (unsigned i = 0; i < 16 * rounds; ++i) {
+        unsigned before = i % 16; // clocks
+        std::string when = std::to_string(before) + ", SEED " + std::to_string(testSeed());
+        unsigned buffer = expected.size() % 16, after = (buffer + 2) % 16;
+        level(true, random_.below(9));
+        for (unsigned packet = 0; packet < 2; ++packet) {
+            memory_.setByte(txRing + 128 * ((buffer + packet) % 16),
+                            static_cast<uint8_t>(expected.size()));
+            expected.push_back(static_cast<uint8_t>(expected.size()));
+        }
+        bus_.write(MODEM_TX_PUT, 1);
+        tickUntil(bench_.cycles() + lasts - before);
+        bus_.write(MODEM_TX_PUT, 1);
+        runMs(0.1); // the first has left
+        EXPECT_EQ(bus_.read(MODEM_TX_STATE), after << 8 | 15u) << when;
+        runMs(0.5);
+        EXPECT_EQ(bus_.read(MODEM_TX_STATE), after << 8 | 16u) << when;
+    }
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_DONE_MASK);
+    runMs(20);
+    EXPECT_EQ(plain_.received, expected) << "each once, in turn";
+}
+
+TEST_F(ModemRingsMeet, AReleaseInTheClockOfANewPacket) {
+    ready();
+    bytesIn(frame(5, 1), bitClocks);
+    runMs(0.1);
+    for (unsigned i = 0; i < bitClocks * rounds; ++i) {
+        unsigned after = i % bitClocks, buffer = (i + 1) % 16;
+        std::string when = std::to_string(after) + ", SEED " + std::to_string(testSeed());
+        auto packet = frame(5, static_cast<uint8_t>(0x80 | i)); // its last bit is as the stop bit
+        uint32_t get = MODEM_RX_GET_VALID_MASK | buffer << 8 | 5u;
+        level(true, random_.below(9));
+        bytesIn({packet.begin(), packet.end() - 1}, bitClocks);
+        byteIn(packet.back(), bitClocks, after);
+        bus_.write(MODEM_RX_RELEASE, 1);
+        level(true, 2 * bitClocks);
+        EXPECT_EQ(bus_.read(MODEM_RX_GET), get) << when;
+        for (uint32_t byte = 0; byte < 5; ++byte)
+            EXPECT_EQ(memory_.byte(rxRing + 128 * buffer + byte), packet[byte]) << when;
+    }
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_RX_PACKET_MASK);
+    EXPECT_FALSE(take().empty());
+    EXPECT_TRUE(take().empty()) << "none was doubled";
+    EXPECT_EQ(errors(), 0u);
+}
+
 TEST_F(ModemTest, AModemThatIsFullHoldsTheControllerBack) {
     power(quick());
     configure();

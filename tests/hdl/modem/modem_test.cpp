@@ -518,4 +518,58 @@ TEST_F(ModemFullRing, APacketThatWaitsAsTheRingFillsIsDropped) {
     nextHasBegun(2); // its first byte is here, and waits
 }
 
+// Memory takes a packet's last byte in the very clock of what ends it, or a few before or after: in
+// time the packet is whole, else it is dropped and counted; never cut.
+TEST_F(ModemTest, TheLastByteIsTakenAroundTheClockOfAFramingError) {
+    power(quick());
+    configure();
+    takeEvents();
+    memory_.setStall(0);
+    Random random(testSeed());
+    const std::vector<uint8_t> cut = {95, 2, 3, 4}; // of a packet of 100
+    const std::vector<uint8_t> next = frame(7, 9);  // no silence before it: it must not be joined
+    unsigned whole = 0, dropped = 0;
+    for (unsigned i = 0; i < 36 * 4; ++i) {
+        unsigned clocks = i % 36;
+        level(true, random.below(9)); // the baud rate's ticks move against the clock of the test
+        bytesIn({cut.begin(), cut.end() - 2}, bitClocks);
+        memory_.hold(true); // the byte before is being written, the last one waits for it
+        bytesIn({cut.end() - 2, cut.end()}, bitClocks);
+        level(false, 9 * bitClocks - 9 + clocks); // a break
+        memory_.hold(false);
+        level(false, 2 * bitClocks);
+        level(true, 5 * bitClocks);
+        bytesIn(next, bitClocks);
+        level(true, 40 * bitClocks);
+        auto packet = take();
+        if (packet == cut) {
+            ++whole;
+            EXPECT_EQ(take(), next) << "clock " << clocks;
+        } else {
+            ++dropped;
+            EXPECT_EQ(packet, std::vector<uint8_t>()) << "clock " << clocks;
+        }
+        EXPECT_TRUE(take().empty());
+        EXPECT_EQ(errors(), dropped << MODEM_ERRORS_OVERRUN_LSB | (i + 1)) << "clock " << clocks;
+    }
+    EXPECT_GT(whole, 0u);
+    EXPECT_GT(dropped, 0u);
+}
+
+TEST_F(ModemTest, TheLastByteIsTakenAfterTheSilenceThatEndsThePacket) {
+    power(quick());
+    configure();
+    takeEvents();
+    const std::vector<uint8_t> cut = {95, 2, 3, 4};
+    bytesIn({cut.begin(), cut.end() - 2}, bitClocks);
+    memory_.hold(true);
+    bytesIn({cut.end() - 2, cut.end()}, bitClocks);
+    level(true, 60 * bitClocks);
+    EXPECT_EQ(takeEvents(), 0u) << "it is in memory before it is published";
+    memory_.hold(false);
+    runMs(0.1);
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_RX_PACKET_MASK);
+    EXPECT_EQ(take(), cut);
+}
+
 } // namespace

@@ -28,7 +28,7 @@ page() { # file command
 [ $# -gt 0 ] || set -- mission live utilisation regression
 for picture in "$@"; do
     case $picture in
-    utilisation) shot utilisation 1180 1500 "$(page build/synth/report.html 'make synth')#table1/u_modem" ;;
+    utilisation) shot utilisation 1400 2680 "$(page build/synth/report.html 'make synth')#table1/u_modem" ;;
     regression) shot regression 1180 1180 "$(page build/regress/report.html 'make regress')" ;;
     mission)
         make run SIZE=640x480 OUT="$profile/run" >"$profile/log" 2>&1 || { cat "$profile/log" >&2 && exit 1; }

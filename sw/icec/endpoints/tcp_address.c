@@ -68,11 +68,10 @@ Ice_Bool Tcp_print(void* context, const Ice_Byte* encoded, Ice_Int size, Ice_Out
     return 1;
 }
 
-int Tcp_resolve(const Tcp_Address* address, int turn, struct sockaddr_storage* to,
-                socklen_t* length) {
-    struct addrinfo hints, *found, *each, *chosen = NULL;
+int Tcp_resolve(const Tcp_Address* address, Tcp_Place* places) {
+    struct addrinfo hints, *found, *each;
     char name[256], service[8];
-    int later;
+    int later, count = 0;
     if (address->host.size <= 0 || address->host.size >= (Ice_Int)sizeof name ||
         address->port < 0 || address->port > 65535)
         return 0;
@@ -84,28 +83,26 @@ int Tcp_resolve(const Tcp_Address* address, int turn, struct sockaddr_storage* t
     if (getaddrinfo(name, service, &hints, &found) != 0)
         return 0;
     for (later = 0; later < 2; ++later)
-        for (each = found; each && !chosen; each = each->ai_next)
-            if ((each->ai_family != AF_INET) == later && turn-- == 0)
-                chosen = each;
-    if (chosen) {
-        memcpy(to, chosen->ai_addr, chosen->ai_addrlen);
-        *length = chosen->ai_addrlen;
-    }
+        for (each = found; each && count < TCP_PLACES; each = each->ai_next)
+            if ((each->ai_family != AF_INET) == later) {
+                memcpy(&places[count].at, each->ai_addr, each->ai_addrlen);
+                places[count++].size = each->ai_addrlen;
+            }
     freeaddrinfo(found);
-    return chosen != NULL;
+    return count;
 }
 
-int Tcp_open(const struct sockaddr_storage* to, socklen_t length, Ice_Int timeoutMs) {
+int Tcp_open(const Tcp_Place* to, Ice_Int timeoutMs) {
     struct pollfd wait;
     int failed = 1, on = 1;
     socklen_t size = sizeof failed;
-    wait.fd = socket(to->ss_family, SOCK_STREAM, 0);
+    wait.fd = socket(to->at.ss_family, SOCK_STREAM, 0);
     wait.events = POLLOUT;
     if (wait.fd < 0)
         return -1;
     (void)fcntl(wait.fd, F_SETFL, O_NONBLOCK);
     (void)setsockopt(wait.fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    if (connect(wait.fd, (const struct sockaddr*)to, length) == 0)
+    if (connect(wait.fd, (const struct sockaddr*)&to->at, to->size) == 0)
         failed = 0;
     else if (errno == EINPROGRESS && poll(&wait, 1, timeoutMs) == 1)
         (void)getsockopt(wait.fd, SOL_SOCKET, SO_ERROR, &failed, &size);

@@ -19,11 +19,15 @@ Ice_Bool Tcp_print(void* context, const Ice_Byte* encoded, Ice_Int size, Ice_Out
 /* 0: another transport's, or malformed. */
 int Tcp_decode(const Ice_Byte* encoded, Ice_Int size, Tcp_Address* address);
 
-/* A numeric address or a name: its address number `turn`, from 0, those of IPv4 first as in Ice. 0:
- * there is none. */
-int Tcp_resolve(const Tcp_Address* address, int turn, struct sockaddr_storage* to,
-                socklen_t* length);
+/* A numeric address or a name: its first TCP_PLACES addresses, those of IPv4 first as in Ice. How
+ * many; 0: there is none. */
+#define TCP_PLACES 8
+typedef struct Tcp_Place {
+    struct sockaddr_storage at;
+    socklen_t size;
+} Tcp_Place;
+int Tcp_resolve(const Tcp_Address* address, Tcp_Place* places);
 /* connect with a time limit; the socket blocks again afterwards. -1: refused, or not in time. */
-int Tcp_open(const struct sockaddr_storage* to, socklen_t length, Ice_Int timeoutMs);
+int Tcp_open(const Tcp_Place* to, Ice_Int timeoutMs);
 
 #endif

@@ -190,13 +190,13 @@ static Ice_Status sendAll(void* context, int connection, const Ice_Byte* message
 }
 
 /* The connection that was made to this peer, or -1. */
-static int connectionTo(TcpEndpoint* self, const struct sockaddr_storage* to, socklen_t length) {
+static int connectionTo(TcpEndpoint* self, const Tcp_Place* to) {
     int slot, found = -1;
     lock(self);
     for (slot = 0; slot < ICE_CONNECTIONS && found < 0; ++slot) {
         const TcpConnection* c = &self->connections[slot];
-        if (c->fd >= 0 && !c->over && !c->accepted && c->peerSize == length &&
-            memcmp(&c->peer, to, length) == 0)
+        if (c->fd >= 0 && !c->over && !c->accepted && c->peerSize == to->size &&
+            memcmp(&c->peer, &to->at, to->size) == 0)
             found = slot;
     }
     unlock(self);
@@ -207,34 +207,34 @@ static int connectionTo(TcpEndpoint* self, const struct sockaddr_storage* to, so
  * the server may listen on one of them only, as on 127.0.0.1 where localhost is ::1, too. */
 static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection) {
     TcpEndpoint* self = context;
-    struct sockaddr_storage to;
-    socklen_t length;
+    Tcp_Place places[TCP_PLACES];
     Tcp_Address address;
-    int slot, turn, fd = -1;
+    int slot, count, turn, fd = -1;
     if (!Tcp_decode(encoded, size, &address))
         return ICE_NO_ENDPOINT;
+    count = Tcp_resolve(&address, places);
+    if (count == 0)
+        return ICE_NO_ENDPOINT;
     *connection = -1;
-    for (turn = 0; *connection < 0 && Tcp_resolve(&address, turn, &to, &length); ++turn)
-        *connection = connectionTo(self, &to, length);
+    for (turn = 0; *connection < 0 && turn < count; ++turn)
+        *connection = connectionTo(self, &places[turn]);
     if (*connection >= 0)
         return ICE_OK;
-    if (turn == 0)
-        return ICE_NO_ENDPOINT;
     lock(self);
     slot = freeSlot(self);
     unlock(self);
     if (slot < 0)
         return ICE_LIMIT;
-    for (turn = 0; fd < 0 && Tcp_resolve(&address, turn, &to, &length); ++turn)
-        fd = Tcp_open(&to, length, address.timeoutMs);
+    for (turn = 0; fd < 0 && turn < count; ++turn)
+        fd = Tcp_open(&places[turn], address.timeoutMs);
     if (fd < 0)
         return ICE_CONNECTION_LOST;
     lock(self);
     slot = freeSlot(self); /* the other side of another connection may have been faster */
     if (slot >= 0) {
         use(&self->connections[slot], fd, 0);
-        self->connections[slot].peer = to;
-        self->connections[slot].peerSize = length;
+        self->connections[slot].peer = places[turn - 1].at;
+        self->connections[slot].peerSize = places[turn - 1].size;
     } else {
         (void)close(fd);
     }
@@ -246,8 +246,7 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
 
 static Ice_Status listenTo(void* context, const char* options) {
     TcpEndpoint* self = context;
-    struct sockaddr_storage at;
-    socklen_t length;
+    Tcp_Place places[TCP_PLACES], *at = &places[0];
     Tcp_Address here;
     int on = 1;
     if (self->listener >= 0)
@@ -258,23 +257,23 @@ static Ice_Status listenTo(void* context, const char* options) {
         here.host.size = 9;
     }
     here.port = (Ice_Int)Ice_numberOption(options, 'p', 0);
-    if (here.host.size >= (Ice_Int)sizeof self->host || !Tcp_resolve(&here, 0, &at, &length))
+    if (here.host.size >= (Ice_Int)sizeof self->host || !Tcp_resolve(&here, places))
         return ICE_NO_ENDPOINT;
     memcpy(self->host, here.host.data, (size_t)here.host.size);
     self->host[here.host.size] = 0;
-    self->listener = socket(at.ss_family, SOCK_STREAM, 0);
+    self->listener = socket(at->at.ss_family, SOCK_STREAM, 0);
     if (self->listener < 0)
         return ICE_NO_ENDPOINT;
     (void)setsockopt(self->listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    if (bind(self->listener, (struct sockaddr*)&at, length) != 0 ||
+    if (bind(self->listener, (struct sockaddr*)&at->at, at->size) != 0 ||
         listen(self->listener, 4) != 0 ||
-        getsockname(self->listener, (struct sockaddr*)&at, &length) != 0) {
+        getsockname(self->listener, (struct sockaddr*)&at->at, &at->size) != 0) {
         (void)close(self->listener);
         self->listener = -1;
         return ICE_NO_ENDPOINT;
     }
-    self->port = ntohs(at.ss_family == AF_INET6 ? ((struct sockaddr_in6*)&at)->sin6_port
-                                                : ((struct sockaddr_in*)&at)->sin_port);
+    self->port = ntohs(at->at.ss_family == AF_INET6 ? ((struct sockaddr_in6*)&at->at)->sin6_port
+                                                    : ((struct sockaddr_in*)&at->at)->sin_port);
     return ICE_OK;
 }
 

@@ -277,14 +277,11 @@ TEST_F(Tasks, PreferIPv4AsIceDoes) {
     address.host.data = "mixed.test";
     address.host.size = 10;
     address.port = 4061;
-    sockaddr_storage at;
-    socklen_t length;
-    ASSERT_TRUE(Tcp_resolve(&address, 0, &at, &length));
-    EXPECT_EQ(at.ss_family, AF_INET);
-    EXPECT_EQ(reinterpret_cast<sockaddr_in&>(at).sin_port, htons(4061));
-    ASSERT_TRUE(Tcp_resolve(&address, 1, &at, &length));
-    EXPECT_EQ(at.ss_family, AF_INET6);
-    EXPECT_FALSE(Tcp_resolve(&address, 2, &at, &length));
+    Tcp_Place places[TCP_PLACES];
+    ASSERT_EQ(Tcp_resolve(&address, places), 2);
+    EXPECT_EQ(places[0].at.ss_family, AF_INET);
+    EXPECT_EQ(reinterpret_cast<sockaddr_in&>(places[0].at).sin_port, htons(4061));
+    EXPECT_EQ(places[1].at.ss_family, AF_INET6);
 }
 
 TEST_F(Tasks, ReceiveInTurnsWhereNobodyElseDoes) {

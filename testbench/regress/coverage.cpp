@@ -29,6 +29,10 @@ struct Share {
         ++total;
         covered += hit;
     }
+    void add(const Share& other) {
+        total += other.total;
+        covered += other.covered;
+    }
 };
 struct File {
     Share lines, toggles, points;
@@ -184,12 +188,9 @@ int report(const Files& files, const json& gates, const Explanations& explanatio
     std::vector<std::string> below;
     for (auto& [name, file] : files) {
         Gate gate = gateOf(gates, name);
-        lines.total += file.lines.total;
-        lines.covered += file.lines.covered;
-        toggles.total += file.toggles.total;
-        toggles.covered += file.toggles.covered;
-        points.total += file.points.total;
-        points.covered += file.points.covered;
+        lines.add(file.lines);
+        toggles.add(file.toggles);
+        points.add(file.points);
         rows.push_back({{"file", name},
                         {"percent", file.lines.percent()},
                         {"lines", file.lines.total},

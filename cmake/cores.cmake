@@ -28,16 +28,26 @@ if(instances GREATER 7)
 endif()
 
 # icesoc_core(NAME [ICE file.ice | REGS name.regs.json] [VERILOG file...] [VHDL file...] [SERVANT file.c...]
-#             [SLICE name...] [INCLUDES dir...] [FLAGS ...])
+#             [SLICE name...] [INCLUDES dir...] [FLAGS ...] [LIBRARY name] [CLK_HZ])
 # The core NAME: a module or entity NAME with a slot's ports. ICE: its [":hw"] interface, from which
-# registers, wrapper and servant are made; else REGS describes its registers, and SERVANT is written by hand, for an
-# interface of the Slice libraries SLICE. <NAME>_test.cpp beside it becomes test_ip_<NAME>, with the model V<NAME>_slot.
+# registers, wrapper and servant are made; else REGS describes its registers, and SERVANT is written by hand, for
+# interfaces of SLICE: files, or names given to icesoc_slice. <NAME>_test.cpp beside it becomes test_ip_<NAME>, with the model V<NAME>_slot.
 # FLAGS: Verilator's, for a foreign core's style. LIBRARY: the VHDL library that its files say they are in.
+# CLK_HZ: the module has a parameter of that name, the clock in Hz: 100 MHz on the board and in the simulator; 2 MHz
+# in <NAME>_test.cpp.
 function(icesoc_core name)
-  cmake_parse_arguments(A "" "ICE;REGS;LIBRARY" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS" ${ARGN})
+  cmake_parse_arguments(A "CLK_HZ" "ICE;REGS;LIBRARY" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS" ${ARGN})
   list(TRANSFORM A_VHDL PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_VERILOG PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_SERVANT PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
+  if(A_CLK_HZ AND A_VHDL)
+    message(FATAL_ERROR "${name}: CLK_HZ is for a module in Verilog: GHDL fixes an entity's generics when it converts it, "
+                        "before the clock is known. Take a number by an operation instead")
+  endif()
+  set(clocked)
+  if(A_CLK_HZ)
+    set(clocked ${name})
+  endif()
   set(files ${A_VERILOG})
   set(targets)
   set(wrapper)
@@ -45,6 +55,7 @@ function(icesoc_core name)
   set(arm_includes ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/sw/hw)
   set(arm_targets)
   set(libs)
+  set(slices)
   if(A_ICE)
     get_filename_component(base ${A_ICE} NAME_WE)
     icesoc_hardware(${name} ${A_ICE} BLOCKS ${name} INCLUDES ${A_INCLUDES})
@@ -60,18 +71,29 @@ function(icesoc_core name)
                             ${slice}/${base}_server.c)
     list(APPEND arm_includes ${slice})
     list(APPEND arm_targets ${name}_slice ${name}_hardware)
+    list(APPEND slices ${name}_slice)
     list(APPEND libs ${name}_servants)
   else()
     icesoc_regmap(${A_REGS})
     get_filename_component(regs ${A_REGS} ABSOLUTE)
     list(APPEND targets regmap_${name})
+    list(APPEND libs regs_${name})
     if(A_SERVANT)
-      set(slices)
+      set(servers)
       foreach(s IN LISTS A_SLICE)
-        list(APPEND slices ${s}_server)
+        get_filename_component(base ${s} NAME_WE)
+        if(s MATCHES "[.]ice$")
+          icesoc_slice(${base} ${s})
+          set(slice ${GEN_DIR}/slice/${base})
+          list(APPEND arm_sources ${slice}/${base}_types.c ${slice}/${base}_client.c ${slice}/${base}_server.c)
+          list(APPEND arm_includes ${slice})
+          list(APPEND arm_targets ${base}_slice)
+        endif()
+        list(APPEND servers ${base}_server)
+        list(APPEND slices ${base}_slice)
       endforeach()
-      icesoc_c90(${name}_servants SOURCES ${A_SERVANT} INCLUDES ${CMAKE_SOURCE_DIR}/sw/apps/uav
-                 LIBS ${slices} hw_core regs_${name})
+      icesoc_c90(${name}_servants SOURCES ${A_SERVANT}
+                 LIBS ${servers} hw_core regs_${name})
       list(APPEND libs ${name}_servants)
     endif()
   endif()
@@ -85,23 +107,30 @@ function(icesoc_core name)
     list(APPEND targets ${name}_verilog)
     list(APPEND A_FLAGS -Wno-PINCONNECTEMPTY) # GHDL's way to write `open`
   endif()
-  foreach(what files targets regs libs arm_sources arm_includes arm_targets)
+  foreach(what files targets regs libs clocked slices arm_sources arm_includes arm_targets)
     set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_${what} ${${what}})
   endforeach()
   set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_flags ${A_FLAGS})
   set_property(GLOBAL APPEND PROPERTY ICESOC_CORES ${name})
-  if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp AND "testbench" IN_LIST ROOMS)
+  set(clock)
+  if(A_CLK_HZ)
+    set(clock CLK_HZ=2000000)
+  endif()
+  file(GLOB test CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
+  if(test AND "testbench" IN_LIST ROOMS)
     icesoc_verilate(${name}_slot TOP ${name} SOURCES ${files} DEPENDS ${targets} FLAGS ${A_FLAGS}
-                    INCLUDES ${CMAKE_SOURCE_DIR}/bus ${CMAKE_SOURCE_DIR}/hdl/ddr ${CMAKE_SOURCE_DIR}/hdl/system ${CMAKE_CURRENT_SOURCE_DIR})
+                    PARAMS ${clock} INCLUDES ${CMAKE_SOURCE_DIR}/bus ${CMAKE_SOURCE_DIR}/hdl/ddr ${CMAKE_SOURCE_DIR}/hdl/system ${CMAKE_SOURCE_DIR}/hdl/cdc ${CMAKE_CURRENT_SOURCE_DIR})
     set(labels rtl)
     if(A_VHDL)
       list(APPEND labels vhdl)
     endif()
     icesoc_test(test_ip_${name} SOURCES ${name}_test.cpp LIBS ${libs} ${name}_slot bench fsmc hw_core icec LABELS ${labels})
+    list(TRANSFORM clock PREPEND CORE_)
+    target_compile_definitions(test_ip_${name} PRIVATE ${clock})
   endif()
 endfunction()
 
-# What the listed cores bring, of one kind: icesoc_chip_property(OUT files)
+# The files of one kind that the listed cores bring: icesoc_chip_property(OUT files)
 function(icesoc_chip_property out what)
   set(all)
   foreach(name IN LISTS CHIP_CORES)
@@ -125,14 +154,30 @@ function(icesoc_chip)
     list(APPEND options --core ${name}=${regs})
     list(APPEND inputs ${regs})
   endforeach()
-  add_custom_command(OUTPUT ${GEN_DIR}/map.regs.json ${GEN_DIR}/soc_cores.vh ${GEN_DIR}/soc_cores.c
-                     ${GEN_DIR}/icesoc.svd ${GEN_DIR}/registers.html
-    COMMAND coremap ${CORES} --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options}
+  # Slice files of all cores go into one program.
+  icesoc_chip_property(slices slices)
+  set(check)
+  set(slice_files)
+  if(TARGET slice2c AND slices)
+    set(slice_includes)
+    foreach(s IN LISTS slices)
+      list(APPEND slice_files "$<TARGET_PROPERTY:${s},SLICE_FILE>")
+      list(APPEND slice_includes "$<TARGET_PROPERTY:${s},SLICE_INCLUDES>")
+    endforeach()
+    set(check COMMAND slice2c --one-program ${slice_includes} ${slice_files})
+  endif()
+  icesoc_chip_property(clocked clocked)
+  list(TRANSFORM clocked PREPEND "--clocked;")
+  add_custom_command(OUTPUT ${GEN_DIR}/map.regs.json ${GEN_DIR}/soc_cores.vh ${GEN_DIR}/soc_cores.c ${GEN_DIR}/soc_pins.h
+                     ${GEN_DIR}/core_pins.ucf ${GEN_DIR}/icesoc.svd ${GEN_DIR}/registers.html
+    ${check}
+    COMMAND coremap ${CORES} --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${clocked}
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             --block 1=modem=${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json --output-dir ${GEN_DIR}
     DEPENDS coremap ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${inputs}
             ${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json ${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json
-    VERBATIM COMMENT "Cores of the chip: ${CHIP_CORES}")
+            ${slice_files}
+    COMMAND_EXPAND_LISTS VERBATIM COMMENT "Cores of the chip: ${CHIP_CORES}")
   icesoc_regmap(${GEN_DIR}/map.regs.json)
   icesoc_chip_property(libs libs)
   icesoc_c90(soc_cores SOURCES ${GEN_DIR}/soc_cores.c LIBS ${libs} hw_core regs_map icec)

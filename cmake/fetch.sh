@@ -4,6 +4,7 @@
 # fetch: brings what Debian has but the packages in use leave out, without touching the system.
 #   cmake/fetch.sh ice DIR    internal transport headers of the installed ZeroC Ice, into DIR
 #   cmake/fetch.sh ghdl DIR   GHDL 5 (GHDL 2's Verilog output is wrong for `case`), DIR/ghdl runs it
+#   cmake/fetch.sh clang-format DIR   clang-format 14, DIR/clang-format runs it
 #   cmake/fetch.sh foreign DIR   the third-party cores that examples/foreign/files.list names, into DIR; from
 #                             ICESOC_RAW, a copy of raw.githubusercontent.com, if it is set
 # Kept in ${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network.
@@ -74,6 +75,21 @@ fetch_ice() {
     ln -sfn "$keep/Ice" "$target/Ice"
 }
 
+# Unpacks packages of the Debian release $1 into $keep/root; $2 says what they are.
+unpacked() {
+    suite=$1 name=$2
+    shift 2
+    [ ! -f "$keep/done" ] || return 0
+    echo "Fetching $name from Debian's $suite, kept apart from the system ..."
+    private_apt deb "$suite" update || fail "cannot reach the Debian mirror $(mirror)"
+    (cd "$work" && private_apt deb "$suite" download "$@") || fail "cannot get $name from $(mirror)"
+    mkdir -p "$keep/root"
+    for package in "$work"/*.deb; do
+        dpkg -x "$package" "$keep/root"
+    done
+    touch "$keep/done"
+}
+
 fetch_ghdl() {
     mkdir -p "$target"
     major=$(ghdl --version 2>/dev/null | sed -n 's/^GHDL \([0-9]*\).*/\1/p')
@@ -83,17 +99,7 @@ fetch_ghdl() {
         return
     fi
     keep=$cache/ghdl5
-    if [ ! -f "$keep/done" ]; then
-        echo "Fetching GHDL 5 from Debian 13 (7 MB, kept apart from the system) ..."
-        private_apt deb trixie update || fail "cannot reach the Debian mirror $(mirror)"
-        (cd "$work" && private_apt deb trixie download ghdl-mcode ghdl-common libgnat-14 libc6 libgcc-s1 \
-            libstdc++6 zlib1g gcc-14-base) || fail "cannot get GHDL 5 from $(mirror)"
-        mkdir -p "$keep/root"
-        for package in "$work"/*.deb; do
-            dpkg -x "$package" "$keep/root"
-        done
-        touch "$keep/done"
-    fi
+    unpacked trixie 'GHDL 5 (7 MB)' ghdl-mcode ghdl-common libgnat-14 libc6 libgcc-s1 libstdc++6 zlib1g gcc-14-base
     root=$keep/root
     lib=$(dirname "$(find "$root" -name 'ld-linux-*.so.2' -type f | head -n 1)")
     [ -n "$lib" ] || lib=$root/usr/lib/x86_64-linux-gnu
@@ -103,6 +109,20 @@ GHDL_PREFIX=$root/usr/lib/ghdl/mcode/vhdl exec "$lib/ld-linux-x86-64.so.2" \\
     --library-path "$root/usr/lib/x86_64-linux-gnu" "$root/usr/bin/ghdl-mcode" "\$@"
 EOF
     chmod +x "$target/ghdl"
+}
+
+# Other versions write some lines in another way, so that a check would depend on the machine.
+fetch_clang_format() {
+    mkdir -p "$target"
+    program=clang-format-14
+    if ! command -v $program >/dev/null; then
+        keep=$cache/clang-format-14
+        unpacked bookworm 'clang-format 14 (38 MB)' clang-format-14 libclang-cpp14 libllvm14 libz3-4 libxml2 libicu72
+        library=$(find "$keep/root" -name libLLVM-14.so.1)
+        program="env LD_LIBRARY_PATH=${library%/*} $keep/root/usr/bin/clang-format-14"
+    fi
+    printf '#!/bin/sh\nexec %s "$@"\n' "$program" >"$target/clang-format"
+    chmod +x "$target/clang-format"
 }
 
 # Each file by its commit and its checksum: what comes is what was tested.
@@ -134,6 +154,7 @@ trap 'exit 130' INT TERM
 case $what in
 ice) fetch_ice ;;
 ghdl) fetch_ghdl ;;
+clang-format) fetch_clang_format ;;
 foreign) fetch_foreign ;;
 *) fail "unknown: $what" ;;
 esac

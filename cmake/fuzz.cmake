@@ -5,10 +5,12 @@
 find_program(CLANG clang)
 find_program(CLANGXX clang++)
 
-# icesoc_fuzz(NAME HARNESS file.cpp SOURCES file.c... [INCLUDES dir...] [DEFINES name...] [DICT file] [RUNS n] [LABELS ...])
-# The program NAME, and a test of RUNS inputs from SEED: the number of inputs decides, never the time.
+# icesoc_fuzz(NAME HARNESS file.cpp SOURCES file... [INCLUDES dir...] [DEFINES name...] RUNS n [SEEDS folder] [DICT file]
+#             [LENGTH bytes] [LIBS file...] [LABELS ...] [DEPENDS ...])
+# The program NAME, and the test fuzz.NAME of RUNS inputs from SEED, of up to LENGTH (400) bytes: their number decides, never
+# the time. Inputs begin with those in SEEDS.
 function(icesoc_fuzz name)
-  cmake_parse_arguments(A "" "HARNESS;DICT;RUNS" "SOURCES;INCLUDES;DEFINES;LABELS" ${ARGN})
+  cmake_parse_arguments(A "" "HARNESS;DICT;RUNS;SEEDS;LENGTH" "SOURCES;INCLUDES;DEFINES;LIBS;LABELS;DEPENDS" ${ARGN})
   if(NOT CLANG OR NOT CLANGXX)
     message(WARNING "${name}: clang is missing, so it is not built; run 'make setup'")
     return()
@@ -27,25 +29,34 @@ function(icesoc_fuzz name)
   foreach(source IN LISTS A_SOURCES A_HARNESS)
     get_filename_component(path ${source} ABSOLUTE)
     get_filename_component(file ${path} NAME)
+    get_filename_component(folder ${path} DIRECTORY)
+    get_filename_component(folder ${folder} NAME)
+    set(object ${dir}/${folder}_${file}.o)
     set(compile ${CCACHE} ${CLANG} -std=c90)
     if(path MATCHES "\\.cpp$")
       set(compile ${CCACHE} ${CLANGXX} -std=c++17)
     endif()
-    add_custom_command(OUTPUT ${dir}/${file}.o
-      COMMAND ${compile} ${flags} -MMD -MF ${dir}/${file}.d -c ${path} -o ${dir}/${file}.o
-      DEPENDS ${path} DEPFILE ${dir}/${file}.d VERBATIM COMMENT "Fuzzer ${name}: ${file}")
-    list(APPEND objects ${dir}/${file}.o)
+    add_custom_command(OUTPUT ${object}
+      COMMAND ${compile} ${flags} -MMD -MF ${object}.d -c ${path} -o ${object}
+      DEPENDS ${path} DEPFILE ${object}.d VERBATIM COMMENT "Fuzzer ${name}: ${file}")
+    list(APPEND objects ${object})
   endforeach()
   add_custom_command(OUTPUT ${dir}/run
-    COMMAND ${CLANGXX} -fsanitize=fuzzer,address,undefined -o ${dir}/run ${objects}
+    COMMAND ${CLANGXX} -fsanitize=fuzzer,address,undefined -o ${dir}/run ${objects} ${A_LIBS}
     DEPENDS ${objects} VERBATIM COMMENT "Fuzzer ${name}")
-  add_custom_target(${name} ALL DEPENDS ${dir}/run)
-  set(arguments -max_len=400 -print_final_stats=0 -verbosity=0)
+  add_custom_target(fuzz_${name} ALL DEPENDS ${dir}/run ${A_DEPENDS})
+  if(NOT A_LENGTH)
+    set(A_LENGTH 400)
+  endif()
+  set(options -max_len=${A_LENGTH} -verbosity=0)
   if(A_DICT)
     get_filename_component(dict ${A_DICT} ABSOLUTE)
-    list(APPEND arguments -dict=${dict})
+    list(APPEND options -dict=${dict})
   endif()
-  add_test(NAME fuzz.${name} COMMAND ${CMAKE_SOURCE_DIR}/cmake/fuzz.sh
-           ${dir}/run ${A_RUNS} ${arguments})
+  set(seeds -)
+  if(A_SEEDS)
+    get_filename_component(seeds ${A_SEEDS} ABSOLUTE)
+  endif()
+  add_test(NAME fuzz.${name} COMMAND ${CMAKE_SOURCE_DIR}/cmake/fuzz.sh ${dir}/run ${A_RUNS} ${seeds} ${options})
   set_tests_properties(fuzz.${name} PROPERTIES LABELS "${A_LABELS}")
 endfunction()

@@ -1,12 +1,16 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# fuzz: program runs arguments...   Runs a libFuzzer program on so many inputs, from SEED (default 1).
+#
+# fuzz: runs a libFuzzer program on so many inputs, from SEED (default 1). Usage: fuzz.sh program runs seeds-folder|- option...
+# RUNS=1000000 goes on for longer. An input that does harm is printed.
 set -eu
-program=$1 runs=$2
-shift 2
+program=$1 runs=${RUNS:-$2} seeds=$3
+shift 3
+[ "$seeds" != - ] || seeds=
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-"$program" -seed="${SEED:-1}" -runs="$runs" -artifact_prefix="$work/" "$@" >"$work/log" 2>&1 || {
+mkdir "$work/found"
+"$program" -seed="${SEED:-1}" -runs="$runs" -artifact_prefix="$work/" "$@" "$work/found" $seeds >"$work/log" 2>&1 || {
     cat "$work/log" >&2
     for input in "$work"/crash-* "$work"/oom-* "$work"/timeout-*; do
         [ -f "$input" ] || continue
@@ -15,4 +19,4 @@ trap 'rm -rf "$work"' EXIT
     done
     exit 1
 }
-echo "$(basename "$program"): $runs inputs from seed ${SEED:-1}, none did harm"
+echo "$(basename "$(dirname "$program")"): $runs inputs from seed ${SEED:-1}, none did harm"

@@ -49,10 +49,11 @@ function(icesoc_c90 name)
   endif()
 endfunction()
 
-# icesoc_test(NAME SOURCES... [LIBS lib...] [LABELS label...] [ARGS ...])
-# A GoogleTest program whose cases CTest finds. Labels select: `ctest -L rtl`.
+# icesoc_test(NAME SOURCES... [LIBS lib...] [LABELS label...] [ARGS ...] [SANITIZED regexp])
+# A GoogleTest program whose cases CTest finds. Labels select: `ctest -L rtl`. SANITIZED: `make test` runs the cases of these
+# names once more with sanitizers.
 function(icesoc_test name)
-  cmake_parse_arguments(A "" "" "SOURCES;LIBS;LABELS;ARGS" ${ARGN})
+  cmake_parse_arguments(A "" "SANITIZED" "SOURCES;LIBS;LABELS;ARGS" ${ARGN})
   if(NOT TARGET clock_listener)
     add_library(clock_listener OBJECT ${CMAKE_SOURCE_DIR}/testbench/common/clock_listener.cpp)
     target_link_libraries(clock_listener PRIVATE GTest::gtest)
@@ -62,7 +63,21 @@ function(icesoc_test name)
   target_compile_options(${name} PRIVATE ${TOOL_OPTIONS})
   target_link_libraries(${name} PRIVATE ${A_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
   gtest_discover_tests(${name} TEST_PREFIX "${name}." EXTRA_ARGS ${A_ARGS}
-                       PROPERTIES LABELS "${A_LABELS}" DISCOVERY_TIMEOUT 60)
+                       DISCOVERY_TIMEOUT 60)
+  # CTest reads this after the cases are known; gtest_discover_tests itself takes the first of several labels only.
+  set(labels ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
+  file(WRITE ${labels} "foreach(t IN LISTS ${name}_TESTS)\n  set_tests_properties(\${t} PROPERTIES LABELS \"${A_LABELS}\")\n")
+  if(A_SANITIZED)
+    icesoc_sanitized(${name})
+    file(APPEND ${labels} "  if(t MATCHES \"${A_SANITIZED}\")\n    set_tests_properties(\${t} PROPERTIES LABELS \"${A_LABELS};sanitized\")\n  endif()\n")
+  endif()
+  file(APPEND ${labels} "endforeach()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labels})
+endfunction()
+
+# icesoc_sanitized(TARGET...): programs that the target `sanitized` builds, for tests of that label.
+function(icesoc_sanitized)
+  set_property(GLOBAL APPEND PROPERTY ICESOC_SANITIZED ${ARGN})
 endfunction()
 
 # icesoc_regmap(JSON): registers of one block, from its *.regs.json, as a Verilog include, a C header,
@@ -101,6 +116,7 @@ function(icesoc_verilate name)
   set(library) # modules that -y may find
   foreach(i IN LISTS A_INCLUDES)
     file(GLOB found CONFIGURE_DEPENDS ${i}/*.v ${i}/*.vh)
+    list(FILTER found EXCLUDE REGEX _proof[.]vh?$)
     list(APPEND library ${found})
   endforeach()
   foreach(p IN LISTS A_PARAMS)

@@ -1,10 +1,19 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# setup: installs the Debian packages that the project needs and the machine lacks.
-# Usage: cmake/setup.sh [--check]    --check only says what is missing (exit 1 if anything is)
+# setup: installs the Debian packages that `make run` needs and the machine lacks.
+# Usage: cmake/setup.sh [--tests] [--check]
+# --tests: those that tests, reports and debuggers need, too; --check: only says what is missing (exit 1 if anything is)
 
 set -eu
+tests='' check=''
+for word in "$@"; do
+    case $word in
+    --tests) tests=1 ;;
+    --check) check=1 ;;
+    *) echo "setup: '$word' is not an option: --tests, --check" >&2 && exit 2 ;;
+    esac
+done
 
 # package: what it is for
 packages='
@@ -26,18 +35,9 @@ nlohmann-json3-dev register descriptions, reports
 libfmt-dev text formatting
 libcli11-dev command lines
 libcpp-httplib-dev serves the page of make run
-libxml2-utils checks the generated SVD file and pages
 libpugixml-dev reads JUnit results
-libssl-dev AES of the modem model
-lcov coverage pages
-chromium opens the report pages in tests
-tshark reads the messages on the wire in tests
+libssl-dev AES of the modem model, checksums of Slice
 git finds what changed
-curl fetches the foreign cores of the examples
-slurmctld regression on a cluster, tested on loopback
-slurmd its node
-slurm-client its commands
-munge its authentication
 libstb-dev reads and writes pictures
 libmcpp-dev preprocessor of the Slice compiler
 libzeroc-ice-dev ZeroC Ice for C++
@@ -49,17 +49,33 @@ xplanet-images the default picture
 dpkg-dev unpacks source packages (headers of ZeroC Ice that its -dev package leaves out)
 gcc-arm-none-eabi the firmware for the Cortex-M3
 libunicorn-dev executes its instructions in the simulator
-gdb-multiarch debugs it there
 libnewlib-arm-none-eabi C library for it
 clang fuzzers of the link layer (libFuzzer)
 libclang-rt-dev their run time, which clang only recommends
+'
+# what tests, reports and debuggers need beside
+rest='
+libxml2-utils checks the generated SVD file and pages
+lcov coverage pages
+chromium opens the report pages in tests
+tshark reads the messages on the wire in tests
+curl fetches the foreign cores of the examples
+slurmctld regression on a cluster, tested on loopback
+slurmd its node
+slurm-client its commands
+munge its authentication
+gdb-multiarch debugs it there
 graphviz pictures of netlists
 man-db shows and checks the manual pages
 groff-base formats them
 '
+[ -z "$tests" ] || packages="$packages$rest"
+# Packages that one release has; cmake/fetch.sh brings their programs to the other.
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in
 1[3-9]) packages="$packages
 ghdl-mcode simulates and converts VHDL" ;;
+12) packages="$packages
+clang-format-14 holds the source to .clang-format" ;;
 esac
 
 if ! command -v dpkg-query >/dev/null 2>&1; then
@@ -80,7 +96,7 @@ missing=$(echo "$list" | cut -d' ' -f1)
 
 echo "Missing packages:"
 echo "$list" | sed 's/^\([^ ]*\) \(.*\)/    \1: \2/'
-[ "${1:-}" != --check ] || exit 1
+[ -z "$check" ] || exit 1
 
 sudo=''
 if [ "$(id -u)" != 0 ]; then

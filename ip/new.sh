@@ -10,6 +10,7 @@ case $ice in '' | /*) ;; *) ice=$PWD/$ice ;; esac
 cd "$(dirname "$0")/.."
 fail() { echo "new-ip: $*" >&2 && exit 1; }
 [ -n "$name" ] || fail "$usage"
+[ -n "$lang" ] || fail "LANG says the core's language: LANG=verilog or LANG=vhdl"
 case $lang in verilog | vhdl) ;; *) fail "LANG is verilog or vhdl, not '$lang'" ;; esac
 echo "$name" | grep -Eq '^[a-z][a-z0-9]*$|^[a-z][a-z0-9]+(_[a-z][a-z0-9]+)+$' ||
     fail "'$name': words of small letters and digits, joined by _, such as mixer or low_pass"
@@ -41,13 +42,13 @@ if [ -n "$ice" ]; then
     [ -x "$slice2c" ] || fail "there is no $slice2c: make build"
     work=$(mktemp -d)
     trap 'rm -rf "$work"' EXIT
-    cp "$ice" "$work/$name.ice"
-    "$slice2c" -I"$(dirname "$ice")" "$work/$name.ice" --output-dir "$work/c" --hw-regs "$work/regs" --hw-new-"$lang" "$work/new" ||
+    "$slice2c" -I"$(dirname "$ice")" "$ice" --output-dir "$work/c" --hw-regs "$work/regs" --hw-new-"$lang" "$work/new" ||
         fail "$ice is not an interface in hardware (above)"
     [ "$(ls "$work/regs")" = "$name.regs.json" ] ||
         fail "$ice has the cores $(basename -s .regs.json "$work"/regs/* | tr '\n' ' '): NAME is that of the only one"
     mkdir "$folder"
-    cp "$work/$name.ice" "$work"/new/* "$folder"
+    cp "$work"/new/* "$folder"
+    cp "$ice" "$folder/$name.ice"
     fill "ip/template/$lang/CMakeLists.txt.in" CMakeLists.txt
     fill ip/template/README.md.in README.md
     fill ip/template/interface/ground.py.in ground.py

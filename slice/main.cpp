@@ -2,14 +2,16 @@
 //
 // slice2c: Slice files into C90 stubs and skeletons for IceC.
 
-#include "compiler.h"
-#include "dependencies.h"
-#include "hw_generator.h"
-#include "preprocessor.h"
+#include "c/dependencies.h"
+#include "c/names.h"
+#include "front/front.h"
+#include "front/preprocessor.h"
+#include "hw/generator.h"
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <map>
 
 namespace fs = std::filesystem;
 
@@ -19,8 +21,8 @@ struct Options {
     std::vector<std::string> files, includes, defines, undefines;
     std::string outputDir = ".", includeDir, headerExtension = "h", sourceExtension = "c",
                 dependFile, hwVerilog, hwVhdl, hwRegisters, hwC, hwCpp, hwNewVerilog, hwNewVhdl;
-    bool preprocessOnly = false, depend = false, dependXml = false, validate = false,
-         checksums = false;
+    bool oneProgram = false, preprocessOnly = false, depend = false, dependXml = false,
+         validate = false, checksums = false;
     NameRules rules;
 };
 
@@ -35,17 +37,29 @@ std::vector<std::string> preprocessorOptions(const Options& o) {
     return list;
 }
 
+bool write(const fs::path& path, const std::string& text) {
+    std::ofstream out(path, std::ios::binary);
+    out << text;
+    out.close();
+    if (!out)
+        std::cerr << "slice2c: error: cannot write '" << path.string() << "'\n";
+    return !out.fail();
+}
+
+bool print(const std::string& text) {
+    std::cout << text << std::flush;
+    if (!std::cout)
+        std::cerr << "slice2c: error: cannot write to standard output\n";
+    return !std::cout.fail();
+}
+
 // All files or none: each is written beside its place and then moved there.
 bool save(const std::vector<GeneratedFile>& files, const std::string& directory) {
     std::error_code error;
     fs::create_directories(directory, error);
     for (const GeneratedFile& f : files) {
         fs::path path = fs::path(directory) / (f.name + ".tmp");
-        std::ofstream out(path, std::ios::binary);
-        out << f.text;
-        out.close();
-        if (!out) {
-            std::cerr << "slice2c: error: cannot write '" << path.string() << "'\n";
+        if (!write(path, f.text)) {
             for (const GeneratedFile& g : files)
                 fs::remove(fs::path(directory) / (g.name + ".tmp"), error);
             return false;
@@ -100,7 +114,36 @@ bool saveHardware(const std::vector<hw::Block>& blocks, const Options& o, const 
     return true;
 }
 
-bool compile(const std::string& file, const Options& o, Dependencies& dependencies) {
+// What the files of one program define, each with its place. C has one name for a definition of a
+// kind in all of them, and one header for files of one name.
+class Program {
+public:
+    void add(const Unit& unit, Diagnostics& diagnostics) {
+        std::string name = fs::path(unit.file).filename().string();
+        auto [header, isNew] = headers_.emplace(name, unit.file);
+        if (!isNew)
+            diagnostics.error({diagnostics.intern(unit.file), 1, 1},
+                              "'" + name + "' is the name of " + header->second +
+                                  " too; both go into one program: give one file another name");
+        for (const auto& d : unit.declarations) {
+            if (d->isForward || d->fromInclude)
+                continue;
+            std::string at = unit.file + ":" + std::to_string(d->at.line);
+            auto [other, isFirst] = definitions_.emplace(cName(*d), at);
+            if (!isFirst && other->second != at)
+                diagnostics.error(d->at, "'" + d->id() + "' is '" + other->first + "' in C, as " +
+                                             other->second +
+                                             " is; both go into one program: give a module or "
+                                             "a name another one");
+        }
+    }
+
+private:
+    std::map<std::string, std::string> headers_, definitions_;
+};
+
+bool compile(const std::string& file, const Options& o, Dependencies& dependencies,
+             Program& program) {
     if (fs::is_directory(file) || !std::ifstream(file)) {
         std::cerr << "slice2c: error: cannot read '" << file << "'\n";
         return false;
@@ -110,10 +153,8 @@ bool compile(const std::string& file, const Options& o, Dependencies& dependenci
         std::cerr << p.messages;
     if (!p.ok)
         return false;
-    if (o.preprocessOnly) {
-        std::cout << p.text;
-        return true;
-    }
+    if (o.preprocessOnly)
+        return print(p.text);
     CFileNames names = namesFor(file, o, p);
     if (o.depend || o.dependXml) {
         dependencies.add(file, names, p.files);
@@ -126,11 +167,14 @@ bool compile(const std::string& file, const Options& o, Dependencies& dependenci
     std::vector<hw::Block> blocks;
     if (diagnostics.errors() == 0 && wantsHardware(o))
         blocks = hw::mapHardware(unit, diagnostics);
+    if (diagnostics.errors() == 0 && o.oneProgram)
+        program.add(unit, diagnostics);
     if (diagnostics.errors()) {
         std::cerr << diagnostics.errors() << (diagnostics.errors() == 1 ? " error\n" : " errors\n");
         return false;
     }
-    return save(generateC(unit, names), o.outputDir) && saveHardware(blocks, o, names);
+    return o.oneProgram ||
+           (save(generateC(unit, names), o.outputDir) && saveHardware(blocks, o, names));
 }
 
 void describe(CLI::App& app, Options& o) {
@@ -157,6 +201,8 @@ void describe(CLI::App& app, Options& o) {
     app.add_flag("--depend", o.depend, "print make dependencies, generate nothing");
     app.add_flag("--depend-xml", o.dependXml, "print dependencies as XML, generate nothing");
     app.add_option("--depend-file", o.dependFile, "write dependencies to this file");
+    app.add_flag("--one-program", o.oneProgram,
+                 "generate nothing; say where two of the files define one name of C");
     app.add_flag("--validate", o.validate, "check the command line only");
     app.add_flag("--underscore", o.rules.underscore, "allow underscores in names");
     app.add_flag("--ice", o.rules.icePrefix, "allow names that begin with 'ice'");
@@ -182,11 +228,13 @@ int main(int argc, char** argv) {
     if (!o.dependFile.empty() && !o.dependXml)
         o.depend = true;
     Dependencies dependencies;
+    Program program;
     int failures = 0;
     for (const std::string& file : o.files)
-        failures += !compile(file, o, dependencies);
-    if ((o.depend || o.dependXml) && failures == 0 &&
-        !dependencies.print(o.dependXml, o.dependFile))
-        ++failures;
+        failures += !compile(file, o, dependencies, program);
+    if ((o.depend || o.dependXml) && failures == 0) {
+        std::string text = dependencies.text(o.dependXml);
+        failures += !(o.dependFile.empty() ? print(text) : write(o.dependFile, text));
+    }
     return failures ? 1 : 0;
 }

@@ -4,18 +4,19 @@
 # size: bytes of each firmware layer on a Cortex-M3 at -Os, beside the paper's Table II; RAM and stack;
 # against the budget, which a layer may not exceed.
 #
-# minimal: sw/apps/minimal, all layers linked with --gc-sections, -DICEC_MINIMAL and -DLINK_MINIMAL (sw/link/minimal); of each layer what is
-# in the image (text and read-only data; the C library and generated code are not counted, as in the paper).
-# full: everything that the layer's files hold, all options on, linked or not.
+# minimal: the program that flies (sw/apps/minimal, firmware/minimal.elf), with the minimal run time and link; of each layer what
+# is in the image (text and read-only data; the C library and generated code are not counted, as in the paper).
+# full: everything that the layer's files hold, linked or not.
 #
-# Usage: size.sh source-folder generated-folder output.json
+# Usage: size.sh source-folder generated-folder build-folder output.json
 
 set -eu
-[ $# = 3 ] || {
-    echo "usage: size.sh source-folder generated-folder output.json" >&2
+[ $# = 4 ] || {
+    echo "usage: size.sh source-folder generated-folder build-folder output.json" >&2
     exit 2
 }
-source=$(cd "$1" && pwd) gen=$(cd "$2" && pwd) json=$3
+source=$(cd "$1" && pwd) gen=$(cd "$2" && pwd) build=$(cd "$3" && pwd) json=$4
+map=$build/firmware/minimal.map
 for tool in arm-none-eabi-gcc awk; do
     command -v $tool >/dev/null || {
         echo "size: $tool is missing; run 'make setup'" >&2
@@ -33,39 +34,18 @@ includes="-I$gen -I$gen/slice/Autopilot"
 for d in base os os/host fsmc radio link icec icec/endpoints; do includes="$includes -I$source/sw/$d"; done
 layers='fsmc radio link icec endpoint'
 
-files() { # configuration, layer
-    case $1.$2 in
-    minimal.link) echo "$source"/sw/link/minimal/*.c "$source"/sw/link/link_bytes.c ;;
-    minimal.icec) sed "s,^,$source/sw/icec/," "$source/sw/icec/minimal/sources.txt" ;;
-    *.endpoint) echo "$source"/sw/icec/endpoints/xbee_endpoint.c ;;
-    *.app) echo "$source"/sw/apps/minimal/*.c "$gen"/slice/Autopilot/*.c ;;
-    *) echo "$source"/sw/"$2"/*.c ;;
-    esac
-}
-
-compile() { # configuration, flags: every file of every layer, a folder a layer
-    configuration=$1 folder=$work/$1
-    shift
-    for layer in $layers app; do
-        mkdir -p "$folder/$layer"
-        # shellcheck disable=SC2046,SC2086 # lists of words
-        (cd "$folder/$layer" && arm-none-eabi-gcc -std=c90 $target -Os -ffunction-sections -fdata-sections -fno-merge-constants \
-            -fstack-usage $includes "$@" -c $(files $configuration $layer))
-    done
-}
-
-compile minimal -DICEC_MINIMAL -DLINK_MINIMAL
-compile full
-# shellcheck disable=SC2086
-arm-none-eabi-gcc $target -nostartfiles --specs=nosys.specs --specs=nano.specs -Wl,--gc-sections -Wl,-e,main \
-    -Wl,-Map="$work/map" -o "$work/minimal.elf" "$work"/minimal/*/*.o 2>"$work/link.log" || {
-    cat "$work/link.log" >&2
-    exit 1
-}
+for layer in $layers; do
+    sources=$source/sw/$layer/*.c
+    [ $layer != endpoint ] || sources=$source/sw/icec/endpoints/xbee_endpoint.c
+    mkdir "$work/$layer"
+    # shellcheck disable=SC2086 # lists of words
+    (cd "$work/$layer" && arm-none-eabi-gcc -std=c90 $target -Os -ffunction-sections -fdata-sections -fno-merge-constants \
+        -fstack-usage $includes -c $sources)
+done
 
 # Bytes of the sections whose names match, of a layer's files, in the image.
 linked() { # layer, pattern
-    awk -v layer="/minimal/$1/" -v wanted="$2" '
+    awk -v layer="/minimal_$1.arm/" -v wanted="$2" '
         function add(size, file) { if (index(file, layer) && section ~ wanted) sum += hex(size) }
         function hex(text,  i, n) {
             for (i = 3; i <= length(text); ++i) n = n * 16 + index("0123456789abcdef", substr(text, i, 1)) - 1
@@ -75,15 +55,16 @@ linked() { # layer, pattern
         !live { next }
         /^ \.?[A-Za-z_]/ { section = $1; if (NF >= 4) add($3, $4); next }
         /^ +0x/ && NF == 3 { add($2, $3) }
-        END { print sum + 0 }' "$work/map"
+        END { print sum + 0 }' "$map"
 }
 
 whole() { # layer, column of size (1 text and read-only data, 2 data, 3 bss)
-    arm-none-eabi-size "$work/full/$1"/*.o | awk -v c="$2" 'NR > 1 {n += $c} END {print n + 0}'
+    arm-none-eabi-size "$work/$1"/*.o | awk -v c="$2" 'NR > 1 {n += $c} END {print n + 0}'
 }
 
-deepest() { # configuration, layer: the function with the largest frame
-    cat "$work/$1/$2"/*.su | awk -F '\t' '$2 > n {n = $2; split($1, f, ":"); name = f[4]} END {print n + 0, name}'
+deepest() { # layer: the function of the minimal program with the largest frame
+    find "$build/sw/apps/minimal_$1.arm" -name '*.su' -exec cat {} + |
+        awk -F '\t' '$2 > n {n = $2; split($1, f, ":"); name = f[4]} END {print n + 0, name}'
 }
 
 budget() { # configuration, layer
@@ -117,7 +98,7 @@ for layer in $layers; do
     large=$(whole $layer 1)
     largeRam=$(($(whole $layer 2) + $(whole $layer 3)))
     printf '%-10s %8d %8s %8d %8d %9d %s\n' $layer "$small" "$(paper $layer | sed s/^0$/-/)" "$large" "$ram" "$largeRam" \
-        "$(deepest minimal $layer)"
+        "$(deepest $layer)"
     entry "minimal.$layer" "$small" "$(paper $layer)"
     entry "full.$layer" "$large" 0
     check minimal $layer "$small"

@@ -38,7 +38,7 @@ class Reader {
 public:
     Reader(const json& base, const std::map<std::string, json>& descriptions)
         : descriptions_(descriptions), first_(constant(base, "SLOT_COUNT")),
-          memory_(constant(base, "BUFFERS")), memoryEnd_(1ul << constant(base, "DDR_BYTES_LOG2")) {
+          buffers_(constant(base, "BUFFERS")), memoryEnd_(1u << constant(base, "DDR_BYTES_LOG2")) {
         chip_.ports = constant(base, "NPI_PORT_COUNT");
         for (const json& c : base.at("constants"))
             if (std::string name = c.at("name"); name.rfind("SLOT_", 0) == 0)
@@ -51,6 +51,7 @@ public:
         for (unsigned n = 1; std::getline(in, line); ++n)
             read(line.substr(0, line.find('#')), n);
         giveSlots();
+        giveMemory();
         for (Core& c : chip_.cores)
             connect(c);
         std::sort(chip_.cores.begin(), chip_.cores.end(),
@@ -82,8 +83,8 @@ private:
         for (std::string word; words >> word;) {
             size_t equals = word.find('=');
             if (equals == std::string::npos || equals + 1 == word.size())
-                fail(n, fmt::format("'{}': after the core's folder come name=, identity=, slot= "
-                                    "and its input pins",
+                fail(n, fmt::format("'{}': after the core's folder come name=, identity=, slot=, "
+                                    "memory= and its pins",
                                     word));
             if (!given.emplace(word.substr(0, equals), word.substr(equals + 1)).second)
                 fail(n, fmt::format("'{}' is given twice", word.substr(0, equals)));
@@ -103,24 +104,29 @@ private:
         chip_.cores.push_back(c);
     }
 
+    [[noreturn]] static void noRoom(const Core& c, unsigned bytes) {
+        fail(c.line, fmt::format("no room in DDR3 for the {} bytes of '{}'", bytes, c.folder));
+    }
+
     void describe(Core& c, const json& j) {
         if (!j.contains("type"))
             fail(c.line,
                  fmt::format("'{}' has no type: its description is not a slot's", c.folder));
         if (j.value("memory_port", false))
             c.port = static_cast<int>(chip_.ports++);
-        c.memory = memory_;
         unsigned bytes = j.value("memory_bytes", 0u);
-        memory_ += (bytes + bufferAlignment - 1) / bufferAlignment * bufferAlignment;
-        if (memory_ > memoryEnd_)
-            fail(c.line, fmt::format("no room in DDR3 for the {} bytes of '{}'", bytes, c.folder));
+        if (bytes > memoryEnd_ - buffers_)
+            noRoom(c, bytes);
+        if (bytes)
+            for (c.memoryBytes = bufferAlignment; c.memoryBytes < bytes;)
+                c.memoryBytes *= 2;
         if (j.contains("servant")) {
             c.servantType = j.at("servant").at("type");
             c.servantHeader = j.at("servant").at("header");
         }
         for (const json& p : j.value("pins", json::array()))
             c.pins.push_back(
-                {p.at("name"), p.value("width", 1u), 0, "", p.value("internal", false)});
+                {p.at("name"), p.value("width", 1u), 0, "", p.value("internal", false), {}});
     }
 
     void set(Core& c, const std::string& key, const std::string& value) {
@@ -138,14 +144,45 @@ private:
             if (c.slot < first_ || c.slot >= slotLimit)
                 fail(c.line,
                      fmt::format("slot={}: {}..{} are for cores", value, first_, slotLimit - 1));
+        } else if (key == "memory") {
+            size_t read = 0;
+            try {
+                c.memory = static_cast<unsigned>(std::stoul(value, &read, 0));
+            } catch (const std::exception&) {
+            }
+            if (read != value.size() || !c.memoryBytes)
+                fail(c.line,
+                     fmt::format("memory={}: a byte address in DDR3, for a core with buffers",
+                                 value));
+            c.isPlaced = true;
         } else {
             for (Pin& p : c.pins)
-                if (p.name == key && !p.isOut()) {
+                if (p.name == key && value[0] == '@') {
+                    setPlaces(c, p, value);
+                    return;
+                } else if (p.name == key && !p.isOut()) {
                     p.source = value;
                     return;
                 }
             fail(c.line, fmt::format("'{}' has no input pin '{}'", c.folder, key));
         }
+    }
+
+    // pwm_o=@A4,B4: where the bits are on the board, from bit 0.
+    void setPlaces(const Core& c, Pin& p, const std::string& value) {
+        std::istringstream words(value.substr(1));
+        for (std::string place; std::getline(words, place, ',');) {
+            if (place.empty() || !std::all_of(place.begin(), place.end(), ::isalnum))
+                fail(c.line,
+                     fmt::format("{}={}: places are letters and digits, as @A4,B4", p.name, value));
+            auto [it, isNew] = places_.emplace(place, c.line);
+            if (!isNew)
+                fail(c.line, fmt::format("place {} is taken on line {}", place, it->second));
+            p.places.push_back(place);
+        }
+        if (p.places.size() != p.width)
+            fail(c.line, fmt::format("{}={}: {} places for {} bits", p.name, value, p.places.size(),
+                                     p.width));
     }
 
     void giveSlots() {
@@ -164,6 +201,47 @@ private:
                 fail(c.line, fmt::format("all {} slots are taken", slotLimit));
             c.slot = next;
             taken[next] = c.line;
+        }
+    }
+
+    // A wrapper keeps only the address bits above the size of its buffers, so each core's are at a
+    // multiple of it. Those that memory= places come first, the others into what is left, in order.
+    void giveMemory() {
+        std::vector<const Core*> placed;
+        auto neighbour = [&](const Core& c) -> const Core* {
+            for (const Core* other : placed)
+                if (c.memory < other->memory + other->memoryBytes &&
+                    other->memory < c.memory + c.memoryBytes)
+                    return other;
+            return nullptr;
+        };
+        for (Core& c : chip_.cores) {
+            if (!c.isPlaced)
+                continue;
+            if (c.memory % c.memoryBytes || c.memory < buffers_ || c.memory >= memoryEnd_)
+                fail(c.line,
+                     fmt::format("memory=0x{:X}: buffers of {} bytes begin at a multiple of "
+                                 "that, from 0x{:X} on and below 0x{:X}",
+                                 c.memory, c.memoryBytes, buffers_, memoryEnd_));
+            if (const Core* other = neighbour(c))
+                fail(c.line, fmt::format("memory=0x{:X} is within the buffers of line {}", c.memory,
+                                         other->line));
+            placed.push_back(&c);
+        }
+        unsigned next = buffers_;
+        for (Core& c : chip_.cores) {
+            if (c.isPlaced || !c.memoryBytes)
+                continue;
+            auto align = [&] { return (next + c.memoryBytes - 1) / c.memoryBytes * c.memoryBytes; };
+            c.memory = align();
+            while (const Core* other = neighbour(c)) {
+                next = other->memory + other->memoryBytes;
+                c.memory = align();
+            }
+            next = c.memory + c.memoryBytes;
+            if (next > memoryEnd_)
+                noRoom(c, c.memoryBytes);
+            placed.push_back(&c);
         }
     }
 
@@ -201,11 +279,11 @@ private:
 
     const std::map<std::string, json>& descriptions_;
     unsigned first_;
-    unsigned memory_;
-    unsigned long memoryEnd_;
+    unsigned buffers_, memoryEnd_; // DDR3 for cores
     Chip chip_;
     std::map<std::string, unsigned> names_; // to its line; 0: the platform's
     std::set<std::string> identities_;
+    std::map<std::string, unsigned> places_; // to their line
 };
 
 } // namespace

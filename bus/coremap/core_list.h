@@ -16,16 +16,21 @@ struct Pin {
     unsigned lsb = 0;        // in the chip's core_pins_i or core_pins_o; bits
     std::string source;      // instead of a pin: another core's output
     bool isInternal = false; // for other cores only: never a pin; an input that is not wired is 0
+    std::vector<std::string> places; // of its bits on the board, from bit 0; none: not said
+    bool isPin() const { return source.empty() && !isInternal; }
     bool isOut() const { return name.back() == 'o'; }
 };
 
 struct Core {
     std::string name, folder, identity;
     unsigned line = 0, slot = 0;
-    int port = -1;       // memory port; -1: none
-    unsigned memory = 0; // DDR3 byte address of its buffers
+    int port = -1;            // memory port; -1: none
+    unsigned memory = 0;      // DDR3 byte address of its buffers, a multiple of memoryBytes
+    unsigned memoryBytes = 0; // a power of two, or 0: no buffers
+    bool isPlaced = false;    // memory= says where
     std::string servantType, servantHeader;
     std::vector<Pin> pins;
+    bool hasClock = false; // the module has the parameter CLK_HZ
 };
 
 struct Chip {
@@ -34,14 +39,16 @@ struct Chip {
     unsigned pins[2] = {0, 0}; // bits used of core_pins_i, core_pins_o
 };
 
-// `list`: the file's text; `base`: the platform's map; `descriptions`: folder to its *.regs.json.
-// What is wrong is thrown, with the line.
+// Reads `list`, a file's text, into a chip. `base` is the platform's map; `descriptions` are the
+// cores' *.regs.json by folder. Throws for a line that is wrong, with its number.
 Chip readCores(const std::string& list, const nlohmann::json& base,
                const std::map<std::string, nlohmann::json>& descriptions);
 
 nlohmann::ordered_json mapOf(const Chip& chip, const nlohmann::ordered_json& base);
-std::string verilogOf(const Chip& chip);
-std::string instancesOf(const Chip& chip);
+std::string verilogOf(const Chip& chip);     // instances, for soc.v
+std::string instancesOf(const Chip& chip);   // servants, for the firmware
+std::string pinTableOf(const Chip& chip);    // pins by name, for the simulator
+std::string constraintsOf(const Chip& chip); // pins by place, for ISE
 
 // A populated slot, the platform's too, with its *.regs.json.
 struct Slot {

@@ -21,31 +21,6 @@ std::string bits(unsigned lsb, unsigned width) {
     return width == 1 ? fmt::format("[{}]", lsb) : fmt::format("[{}:{}]", lsb + width - 1, lsb);
 }
 
-struct Signal {
-    const char* name;
-    bool isOut;
-    unsigned width;
-};
-// A memory port as the master has it (docs/memory.md).
-constexpr Signal npi[] = {{"addr", true, 32},
-                          {"addr_req", true, 1},
-                          {"addr_ack", false, 1},
-                          {"rnw", true, 1},
-                          {"size", true, 4},
-                          {"rmw", true, 1},
-                          {"wr_data", true, 64},
-                          {"wr_be", true, 8},
-                          {"wr_push", true, 1},
-                          {"wr_empty", false, 1},
-                          {"wr_almost_full", false, 1},
-                          {"wr_flush", true, 1},
-                          {"rd_data", false, 64},
-                          {"rd_word", false, 4},
-                          {"rd_pop", true, 1},
-                          {"rd_empty", false, 1},
-                          {"rd_flush", true, 1},
-                          {"init_done", false, 1}};
-
 std::string instance(const Core& c) {
     std::string s = fmt::format("    // {}: ip/{}\n", c.name, c.folder), pins;
     for (const Pin& p : c.pins) {
@@ -63,20 +38,10 @@ std::string instance(const Core& c) {
         pins += fmt::format(",\n        .{}({})", p.name, at);
     }
     s += fmt::format(
-        "    {0} u_{1} (\n"
-        "        .clk_i(clk_i), .rst_i(rst),\n"
-        "        .bus_valid_i(slot_valid[{2}]), .bus_write_i(slot_write), "
-        ".bus_addr_i(slot_addr[4*{2} +: 4]),\n"
-        "        .bus_wdata_i(slot_wdata), .bus_ready_o(slot_ready[{2}]),\n"
-        "        .bus_rdata_o(slot_rdata[32*{2} +: 32]), .bus_error_o(slot_error[{2}]),\n"
-        "        .irq_o(slot_irq[{2}])",
-        c.folder, c.name, c.slot);
+        "    {0} {3}u_{1} (\n        .clk_i(clk_i), .rst_i(rst), `SLOT({2}), .irq_o(slot_irq[{2}])",
+        c.folder, c.name, c.slot, c.hasClock ? "#(.CLK_HZ(CLK_HZ)) " : "");
     if (c.port >= 0)
-        for (const Signal& n : npi)
-            s += fmt::format(",\n        .npi_{0}_{1}(npi_{0}[{2}{3}])", n.name,
-                             n.isOut ? "o" : "i", n.width == 1 ? "" : fmt::format("{}*", n.width),
-                             n.width == 1 ? std::to_string(c.port)
-                                          : fmt::format("{} +: {}", c.port, n.width));
+        s += fmt::format(", `NPI({})", c.port);
     return s + pins + "\n    );\n";
 }
 
@@ -103,9 +68,10 @@ ordered_json mapOf(const Chip& chip, const ordered_json& base) {
             add("NPI_PORT_" + upper(c.name), static_cast<unsigned>(c.port),
                 "memory port of the core " + c.name);
         add("MEMORY_" + upper(c.name), c.memory,
-            "DDR3 byte address of the buffers of the core " + c.name);
+            fmt::format("DDR3 byte address of the buffers of the core {}: {} bytes", c.name,
+                        c.memoryBytes));
         for (const Pin& p : c.pins)
-            if (p.source.empty() && !p.isInternal)
+            if (p.isPin())
                 add("PIN_" + upper(c.name + "_" + p.name), p.lsb,
                     fmt::format("bit of core_pins_{}, {} wide", p.isOut() ? 'o' : 'i', p.width));
     }
@@ -146,6 +112,32 @@ std::string verilogOf(const Chip& chip) {
     return s;
 }
 
+std::string pinTableOf(const Chip& chip) {
+    std::string s =
+        "// Generated from ip/cores.list: do not edit. Pins of cores, by name.\n"
+        "struct CorePin {\n    const char* name; // instance.port\n    unsigned lsb, width; // in "
+        "core_pins_i or core_pins_o\n    bool isOut;\n};\n"
+        "constexpr CorePin corePins[] = {\n";
+    for (const Core& c : chip.cores)
+        for (const Pin& p : c.pins)
+            if (p.isPin())
+                s += fmt::format("    {{\"{}.{}\", {}, {}, {}}},\n", c.name, p.name, p.lsb, p.width,
+                                 p.isOut());
+    return s + "    {nullptr, 0, 0, false}};\n";
+}
+
+std::string constraintsOf(const Chip& chip) {
+    std::string s = "# Generated from ip/cores.list: do not edit. Pins of cores, for ngdbuild "
+                    "(docs/ise.md).\n";
+    for (const Core& c : chip.cores)
+        for (const Pin& p : c.pins)
+            for (unsigned bit = 0; p.isPin() && bit < p.width; ++bit)
+                s += fmt::format("{}NET \"core_pins_{}<{}>\" LOC = \"{}\"; # {}.{}[{}]\n",
+                                 p.places.empty() ? "# " : "", p.isOut() ? 'o' : 'i', p.lsb + bit,
+                                 p.places.empty() ? "..." : p.places[bit], c.name, p.name, bit);
+    return s;
+}
+
 std::string instancesOf(const Chip& chip) {
     std::string s = "/* Generated from ip/cores.list: do not edit.\n"
                     " * The firmware's cores: what hw_instance.h declares. */\n"
@@ -162,8 +154,8 @@ std::string instancesOf(const Chip& chip) {
             continue;
         s += fmt::format(
             "\nstatic {0} {1};\n"
-            "static Hw_Status {1}_start(const Hw_Seam *seam, void *context) {{\n"
-            "    return {0}_init(&{1}, MAP_SLOT_{2}, MAP_MEMORY_{2}, seam, context);\n}}\n"
+            "static Hw_Status {1}_start(const Hw_Port *port, void *context) {{\n"
+            "    return {0}_init(&{1}, MAP_SLOT_{2}, MAP_MEMORY_{2}, port, context);\n}}\n"
             "static void {1}_interrupt(void) {{\n    {0}_interrupt(&{1});\n}}\n"
             "static U32 {1}_poll(U32 nowMs) {{\n    return {0}_poll(&{1}, nowMs);\n}}\n",
             c.servantType, "core_" + c.name, upper(c.name));

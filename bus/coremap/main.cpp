@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
 // coremap: the chip's cores, a line each in ip/cores.list, as map.regs.json (slots, memory ports,
-// buffers in DDR3, pins), soc_cores.vh (their instances, for soc.v) and soc_cores.c (their
-// servants).
+// buffers in DDR3, pins), soc_cores.vh (their instances, for soc.v), soc_cores.c (their servants),
+// soc_pins.h (for the simulator) and core_pins.ucf (for ISE).
 
 #include "core_list.h"
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -34,12 +35,14 @@ int main(int argc, char** argv) {
     CLI::App app{"Puts the cores of a list into the chip: address map, instances in Verilog, the "
                  "firmware's table."};
     std::string list, base, outputDir = ".";
-    std::vector<std::string> cores, blocks;
+    std::vector<std::string> cores, blocks, clocked;
     app.add_option("list", list,
-                   "a core a line: folder [name=] [identity=] [slot=] [input=core.output]")
+                   "a core a line: folder [name=] [identity=] [slot=] [memory=] "
+                   "[input=core.output] [pin=@places]")
         ->required();
     app.add_option("--base", base, "the platform's map.regs.json")->required();
     app.add_option("--core", cores, "folder=its description (*.regs.json)");
+    app.add_option("--clocked", clocked, "folder of a core with the parameter CLK_HZ");
     app.add_option("--block", blocks,
                    "slot=name=description of a block of the platform, for the pages");
     app.add_option("--output-dir", outputDir, "where the files go");
@@ -54,9 +57,13 @@ int main(int argc, char** argv) {
         }
         auto platform = nlohmann::ordered_json::parse(read(base));
         Chip chip = readCores(read(list), platform, descriptions);
+        for (Core& c : chip.cores)
+            c.hasClock = std::count(clocked.begin(), clocked.end(), c.folder) != 0;
         save(outputDir + "/map.regs.json", mapOf(chip, platform).dump(2) + "\n");
         save(outputDir + "/soc_cores.vh", verilogOf(chip));
         save(outputDir + "/soc_cores.c", instancesOf(chip));
+        save(outputDir + "/soc_pins.h", pinTableOf(chip));
+        save(outputDir + "/core_pins.ucf", constraintsOf(chip));
         std::vector<Slot> slots;
         for (const std::string& b : blocks) {
             size_t first = b.find('='), second = b.find('=', first + 1);

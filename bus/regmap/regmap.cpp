@@ -2,7 +2,7 @@
 //
 // regmap: turns the register description of a block (*.regs.json) into what each side includes:
 // <block>_regs.vh (Verilog localparams), <block>_regs.h (C90 macros), <block>_regs_pkg.vhd (VHDL
-// package), <block>_regs.md (page for people). Format of the description: docs/registers.md.
+// package), <block>_regs.md (page for people). Format of the description: docs/bus.md.
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -66,10 +66,9 @@ void addCommonWords(Block& b, const json& j) {
         mask.fields.push_back(f);
     }
     Register id{"ID", "ro", "type and version of the slot", 0, {}};
-    id.fields = {{"VERSION", "major and minor, 8 bits each", 0, 16},
-                 {"TYPE", "type id", 16, 16}};
-    b.constants.push_back({"ID_VALUE", "what word ID reads",
-                           number(j.at("type")) << 16 | number(j.at("version"))});
+    id.fields = {{"VERSION", "major and minor, 8 bits each", 0, 16}, {"TYPE", "type id", 16, 16}};
+    b.constants.push_back(
+        {"ID_VALUE", "what word ID reads", number(j.at("type")) << 16 | number(j.at("version"))});
     b.registers.insert(b.registers.begin(), {id, event, mask});
 }
 
@@ -79,8 +78,8 @@ void checkRegisters(const Block& b) {
         static const std::set<std::string> accesses = {"ro", "rw", "w1c", "ws"};
         check(r.word < wordsPerSlot, fmt::format("{}: word {} is not in 0..15", r.name, r.word));
         check(words.insert(r.word).second, fmt::format("{}: word {} is taken", r.name, r.word));
-        check(accesses.count(r.access), fmt::format("{}: access '{}' is not one of ro rw w1c ws",
-                                                    r.name, r.access));
+        check(accesses.count(r.access),
+              fmt::format("{}: access '{}' is not one of ro rw w1c ws", r.name, r.access));
         unsigned long used = 0;
         for (const Field& f : r.fields) {
             check(f.width > 0 && f.lsb + f.width <= 32,
@@ -116,7 +115,8 @@ Block parse(const json& j) {
 
 std::string verilog(const Block& b) {
     std::string s = fmt::format("// Generated from {}.regs.json: do not edit.\n"
-                                "// verilator lint_off UNUSEDPARAM\n", b.name);
+                                "// verilator lint_off UNUSEDPARAM\n",
+                                b.name);
     for (const Constant& c : b.constants)
         s += fmt::format("localparam [31:0] {}_{} = 32'h{:08X}; // {}\n", b.prefix, c.name, c.value,
                          c.doc);
@@ -150,7 +150,8 @@ std::string cHeader(const Block& b) {
 
 std::string vhdl(const Block& b) {
     std::string s = fmt::format("-- Generated from {0}.regs.json: do not edit.\n"
-                                "package {0}_regs_pkg is\n", b.name);
+                                "package {0}_regs_pkg is\n",
+                                b.name);
     for (const Constant& c : b.constants)
         if (c.value <= 0x7FFFFFFF)
             s += fmt::format("  constant {}_{} : natural := {}; -- {}\n", b.prefix, c.name, c.value,

@@ -1,12 +1,16 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# check: draws every waveform, with its signals' names, and feeds wavesvg what is wrong.
+# check: every drawing is today's, and has its signals' names; wavesvg says what is wrong with a waveform.
 set -eu
 tool=$1 folder=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 for wave in "$folder"/*.json; do
     "$tool" "$wave" "$work/out.svg"
+    cmp -s "$work/out.svg" "${wave%.json}.svg" || {
+        echo "${wave%.json}.svg is not drawn from $wave: ninja -C build/main docs_waves, and commit it" >&2
+        exit 1
+    }
     grep -o '"name": "[^"]*"' "$wave" | sed 's/.*: "//; s/"$//' | while read -r name; do
         grep -qF ">$name</text>" "$work/out.svg" || {
             echo "$wave: signal '$name' is not drawn" >&2

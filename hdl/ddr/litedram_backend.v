@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// litedram_backend: the arbiter's command stream on a 64-bit native port of LiteDRAM.
+// litedram_backend: puts the arbiter's command stream on a 64-bit native port of LiteDRAM.
 //
-// A command of n words becomes n commands of one word, one a clock. LiteDRAM takes and gives data
-// when the memory does, and waits for nobody: the words of a write are in a FIFO before its first
+// A command of n words becomes n commands of one word, one a clock. LiteDRAM takes and gives data when
+// the memory does, and never waits. The words of a write are therefore in a FIFO before its first
 // command, and a read command goes only when the read FIFO has a place for its word.
 
 `default_nettype none
@@ -62,13 +62,13 @@ module litedram_backend #(
     assign rd_valid_o         = !read_empty;
     assign dram_rdata_ready_o = !read_full;
 
-    // Words of reads that are under way or in the FIFO.
+    // `promised` counts the words of reads that are under way or in the FIFO.
     reg [READ_LOG2:0] promised;
     reg [4:0]         index;
     wire room  = !promised[READ_LOG2];
     wire taken = dram_cmd_valid_o && dram_cmd_ready_i;
 
-    // A command that has been shown stays: `promised` grows by commands only.
+    // A command that has been shown stays, because `promised` grows by commands only.
     assign dram_cmd_valid_o = cmd_valid_i && dram_init_done_i && (room || !cmd_read_i);
     assign dram_cmd_we_o    = !cmd_read_i;
     assign dram_cmd_addr_o  = {cmd_addr_i[ADDR_WIDTH-1:8], cmd_addr_i[7:3] | index};
@@ -89,50 +89,7 @@ module litedram_backend #(
     wire unused = &{1'b0, cmd_addr_i[2:0], 1'b0};
 
 `ifdef FORMAL
-    reg past = 1'b0;
-    initial assume (rst_i);
-    reg [7:0] words = 0;  // pushed, and not yet claimed by a command
-    reg [7:0] writes = 0; // commands whose word LiteDRAM has not yet taken
-    reg [7:0] reads = 0;  // commands whose word LiteDRAM has not yet given
-    wire pushed = wr_valid_i && wr_ready_o;
-    wire wrote  = taken && dram_cmd_we_o, read = taken && !dram_cmd_we_o;
-    always @(posedge clk_i) begin
-        past   <= 1'b1;
-        words  <= rst_i ? 8'd0 : words + {7'd0, pushed} - {7'd0, wrote};
-        writes <= rst_i ? 8'd0 : writes + {7'd0, wrote} - {7'd0, dram_wdata_ready_i};
-        reads  <= rst_i ? 8'd0 : reads + {7'd0, read} - {7'd0, dram_rdata_valid_i};
-        // The arbiter: 1, 2, 4 .. words, aligned, that fit the FIFO; stable until ready; the words of
-        // a write are there before its command.
-        assume ((cmd_last_i & (cmd_last_i + 5'd1)) == 5'd0);
-        assume (cmd_last_i < (1 << WRITE_LOG2));
-        assume ((cmd_addr_i[7:3] & cmd_last_i) == 5'd0);
-        assume (!cmd_valid_i || cmd_read_i || words + {3'd0, index} > {3'd0, cmd_last_i});
-        if (past && $past(cmd_valid_i) && !$past(cmd_ready_o) && !$past(rst_i))
-            assume (cmd_valid_i && $stable(cmd_read_i) && $stable(cmd_addr_i) && $stable(cmd_last_i));
-        // LiteDRAM: data only of commands that it took, in its own time.
-        assume (!(dram_wdata_ready_i && writes == 0));
-        assume (!(dram_rdata_valid_i && reads == 0));
-        if (past && $past(dram_init_done_i))
-            assume (dram_init_done_i);
-        if (past && !rst_i && !$past(rst_i)) begin
-            // It waits for nobody, and need not.
-            assert (!(dram_wdata_ready_i && !dram_wdata_valid_o));
-            assert (!(dram_rdata_valid_i && !dram_rdata_ready_o));
-            // A command that it has not taken stays.
-            if ($past(dram_cmd_valid_o) && !$past(dram_cmd_ready_i))
-                assert (dram_cmd_valid_o && $stable(dram_cmd_we_o) && $stable(dram_cmd_addr_o));
-            // Every word of a transfer in its turn, and then the next transfer.
-            if ($past(taken))
-                assert (index == ($past(cmd_ready_o) ? 5'd0 : $past(index) + 5'd1));
-            if (taken)
-                assert (dram_cmd_addr_o == cmd_addr_i[ADDR_WIDTH-1:3] + {{ADDR_WIDTH-8{1'b0}}, index});
-            assert (cmd_ready_o == (dram_cmd_ready_i && dram_cmd_valid_o && index == cmd_last_i) ||
-                    !cmd_valid_i);
-            cover (dram_wdata_ready_i && taken && !dram_cmd_we_o && index == 5'd1);
-            cover (promised == (1 << READ_LOG2) && cmd_valid_i && cmd_read_i);
-            cover ($past(taken) && $past(cmd_ready_o) && $past(cmd_last_i) == 5'd3);
-        end
-    end
+`include "litedram_backend_proof.vh"
 `endif
 `ifdef COVER_POINTS
     read_waits_for_room: cover property (@(posedge clk_i) cmd_valid_i && cmd_read_i && !room);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// mcb_backend: the arbiter's command stream on a 64-bit user port of the Spartan-6 MCB (UG388).
+// mcb_backend: puts the arbiter's command stream on a 64-bit user port of the Spartan-6 MCB (UG388).
 //
-// The MCB's read FIFO holds 64 words, and what does not fit is lost: a read waits until half of it,
+// The MCB's read FIFO holds 64 words and loses what does not fit. A read therefore waits until half of it,
 // the longest burst, is not promised to others.
 
 `default_nettype none
@@ -66,7 +66,7 @@ module mcb_backend #(
     assign rd_data_o   = mcb_rd_data_i;
     assign mcb_rd_en_o = rd_valid_o && rd_ready_i;
 
-    // Words of the read FIFO that are not promised, 0..64. Minus n is plus ~(n - 1).
+    // `free` is the number of words in the read FIFO that are not promised, 0..64. Minus n is plus ~(n - 1).
     reg  [6:0] free;
     wire       take = mcb_cmd_en_o && cmd_read_i;
     wire [7:0] next = {free, 1'b1} + {take ? {2'b11, ~cmd_last_i} : 7'd0, mcb_rd_en_o};
@@ -77,36 +77,7 @@ module mcb_backend #(
     wire unused = &{1'b0, next[0], 1'b0};
 
 `ifdef FORMAL
-    reg past = 1'b0;
-    initial assume (rst_i);
-    reg [7:0] asked = 0; // words of reads that were asked for and not yet taken
-    always @(posedge clk_i) begin
-        past <= 1'b1;
-        asked <= rst_i ? 8'd0
-                       : asked + (mcb_cmd_en_o && mcb_cmd_instr_o[0] ? {2'd0, mcb_cmd_bl_o} + 8'd1 : 8'd0)
-                               - {7'd0, mcb_rd_en_o};
-        // The MCB shows only words that it was asked for.
-        assume (mcb_rd_empty_i || asked != 0);
-        if (past && !rst_i) begin
-            // What the MCB refuses never happens; what is promised stays within 0..64.
-            assert (asked == 8'd64 - {1'b0, free} && free <= 7'd64);
-            assert (!(mcb_cmd_en_o && (mcb_cmd_full_i || !mcb_calib_done_i)));
-            assert (!(mcb_wr_en_o && mcb_wr_full_i));
-            assert (!(mcb_rd_en_o && mcb_rd_empty_i));
-            // Nothing is lost on the way.
-            assert (mcb_cmd_en_o == (cmd_valid_i && cmd_ready_o));
-            assert (mcb_wr_en_o == (wr_valid_i && wr_ready_o));
-            assert (mcb_rd_en_o == (rd_valid_o && rd_ready_i));
-            if (mcb_cmd_en_o)
-                assert (mcb_cmd_instr_o == {2'b00, cmd_read_i} && mcb_cmd_bl_o == {1'b0, cmd_last_i});
-            // Writes never wait for room of reads; reads wait only while more than half is promised.
-            if (mcb_calib_done_i && !mcb_cmd_full_i && (!cmd_read_i || asked <= 8'd32))
-                assert (cmd_ready_o);
-            cover (asked == 8'd64);
-            cover (cmd_valid_i && !cmd_ready_o && mcb_calib_done_i && !mcb_cmd_full_i);
-            cover (mcb_cmd_en_o && mcb_wr_en_o && mcb_rd_en_o);
-        end
-    end
+`include "mcb_backend_proof.vh"
 `endif
 `ifdef COVER_POINTS
     read_waits_for_room: cover property (@(posedge clk_i) cmd_valid_i && cmd_read_i && !room);

@@ -65,18 +65,15 @@ module npi_arbiter #(
 
     localparam PORT_BITS = PORTS > 4 ? 3 : PORTS > 2 ? 2 : 1;
 
-    // A request's bit is still up in the cycle of its acknowledgement.
+    // A request's bit is still high in the cycle of its acknowledgement.
     wire             full, granted;
     wire [PORTS-1:0] grant;
     npi_select #(.PORTS(PORTS), .URGENT(URGENT), .URGENT_RUN(URGENT_RUN)) u_select (
         .clk_i(clk_i), .rst_i(rst_i),
         .req_i(npi_addr_req_i), .enable_i(!full), .grant_o(grant), .any_o(granted), .ack_o(npi_addr_ack_o)
-`ifdef FORMAL
-        , .later_o(f_later)
-`endif
     );
 
-    // The chosen request: an OR, so that the last port is no later than the first. Of two ports one is enough to know.
+    // The chosen request is an OR, so that the last port is no slower than the first. Of two ports one bit tells.
     wire [PORTS-1:0]    pick = PORTS == 2 ? {grant[PORTS-1:1], !grant[1]} : grant;
     reg [ADDR_WIDTH-1:0] addr;
     reg [2:0]           size;
@@ -111,23 +108,8 @@ module npi_arbiter #(
         .cmd_last_o(cmd_last_o), .cmd_ready_i(cmd_ready_i),
         .back_valid_o(back_valid), .back_port_o(back_port), .back_index_o(back_index),
         .back_done_i(rd_valid_i && rd_ready_o)
-`ifdef FORMAL
-        , .kinds_o(f_kinds), .addrs_o(f_addrs), .places_o(f_places), .moved_o(f_moved), .moving_o(f_moving)
-`endif
     );
     assign cmd_addr_o = {cmd_word, 3'd0};
-
-`ifdef FORMAL // what parts hold, for u_proof
-    wire [((PORT_BITS+4)<<QUEUE_LOG2)-1:0]    f_kinds;
-    wire [((ADDR_WIDTH-3)<<QUEUE_LOG2)-1:0]   f_addrs;
-    wire [4*QUEUE_LOG2-1:0]                   f_places;
-    wire [4:0]                                f_moved;
-    wire [PORT_BITS+4:0]                      f_moving;
-    wire [PORTS-1:0]                          f_later;
-    wire [PORTS*2*(FIFO_LOG2+1)-1:0]          f_wr_indexes, f_rd_indexes;
-    wire [PORTS*(72<<FIFO_LOG2)-1:0]          f_wr_words;
-    wire [PORTS*(68<<FIFO_LOG2)-1:0]          f_rd_words;
-`endif
 
     // FIFOs of the ports.
     wire [64*PORTS-1:0] wr_datas;
@@ -146,10 +128,6 @@ module npi_arbiter #(
                 .pop_i(move_at[p] && wr_valid_o && wr_ready_i),
                 .data_o({wr_bes[8*p +: 8], wr_datas[64*p +: 64]}),
                 .empty_o(npi_wr_empty_o[p]), .full_o(npi_wr_almost_full_o[p])
-`ifdef FORMAL
-                , .words_o(f_wr_words[p*(72<<FIFO_LOG2) +: 72<<FIFO_LOG2])
-                , .indexes_o(f_wr_indexes[p*2*(FIFO_LOG2+1) +: 2*(FIFO_LOG2+1)])
-`endif
             );
             if (READ_FIFO[p]) begin : g_fifo
                 wire rd_full; // a requester has room for what it reads (rule 3)
@@ -159,10 +137,6 @@ module npi_arbiter #(
                     .pop_i(npi_rd_pop_i[p]),
                     .data_o({npi_rd_word_o[4*p +: 4], npi_rd_data_o[64*p +: 64]}),
                     .empty_o(npi_rd_empty_o[p]), .full_o(rd_full)
-`ifdef FORMAL
-                    , .words_o(f_rd_words[p*(68<<FIFO_LOG2) +: 68<<FIFO_LOG2])
-                    , .indexes_o(f_rd_indexes[p*2*(FIFO_LOG2+1) +: 2*(FIFO_LOG2+1)])
-`endif
                 );
                 assign back_free[p] = 1'b1;
                 wire unused = &{1'b0, rd_full, 1'b0};
@@ -171,10 +145,6 @@ module npi_arbiter #(
                 assign npi_rd_empty_o[p] = !(rd_valid_i && back_at[p]);
                 assign back_free[p] = npi_rd_pop_i[p];
                 wire unused = &{1'b0, npi_rd_flush_i[p], 1'b0};
-`ifdef FORMAL
-                assign f_rd_words[p*(68<<FIFO_LOG2) +: 68<<FIFO_LOG2] = 0;
-                assign f_rd_indexes[p*2*(FIFO_LOG2+1) +: 2*(FIFO_LOG2+1)] = 0;
-`endif
             end
         end
     endgenerate
@@ -200,27 +170,7 @@ module npi_arbiter #(
     wire unused = &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], move_at, 1'b0};
 
 `ifdef FORMAL
-    npi_arbiter_proof #(
-        .PORTS(PORTS), .READ_FIFO(READ_FIFO), .BLOCK(BLOCK_RAM), .PORT_BITS(PORT_BITS),
-        .ADDR_BITS(ADDR_WIDTH - 3), .FIFO_LOG2(FIFO_LOG2), .QUEUE_LOG2(QUEUE_LOG2)
-    ) u_proof (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .addr_i(npi_addr_i), .req_i(npi_addr_req_i), .ack_i(npi_addr_ack_o), .grant_i(grant),
-        .rnw_i(npi_rnw_i), .size_i(npi_size_i), .wr_data_i(npi_wr_data_i), .wr_be_i(npi_wr_be_i),
-        .wr_push_i(npi_wr_push_i), .wr_empty_i(npi_wr_empty_o), .wr_full_i(npi_wr_almost_full_o),
-        .wr_flush_i(npi_wr_flush_i), .rd_data_i(npi_rd_data_o), .rd_word_i(npi_rd_word_o),
-        .rd_pop_i(npi_rd_pop_i), .rd_empty_i(npi_rd_empty_o), .rd_flush_i(npi_rd_flush_i),
-        .cmd_valid_i(cmd_valid_o), .cmd_read_i(cmd_read_o), .cmd_addr_i(cmd_word),
-        .cmd_last_i(cmd_last_o), .cmd_ready_i(cmd_ready_i),
-        .wr_valid_i(wr_valid_o), .out_data_i(wr_data_o), .out_be_i(wr_be_o), .wr_ready_i(wr_ready_i),
-        .in_valid_i(rd_valid_i), .in_data_i(rd_data_i), .in_ready_i(rd_ready_o),
-        .moving_i(f_moving), .move_at_i(move_at), .later_i(f_later), .full_i(full),
-        .wr_pop_i(move_at[PORTS-1:0] & {PORTS{wr_valid_o && wr_ready_i}}), .wr_heads_i(wr_datas), .wr_head_bes_i(wr_bes),
-        .rd_push_i(back_at & {PORTS{rd_valid_i}} & back_free),
-        .wr_indexes_i(f_wr_indexes), .rd_indexes_i(f_rd_indexes),
-        .wr_words_i(f_wr_words), .rd_words_i(f_rd_words),
-        .kinds_i(f_kinds), .addrs_i(f_addrs), .places_i(f_places), .moved_i(f_moved), .came_i(back_index)
-    );
+`include "npi_arbiter_proof.vh"
 `endif
 `ifdef COVER_POINTS
     port_holds_up_back_end: cover property (@(posedge clk_i) rd_valid_i && |back_at && !rd_ready_o);

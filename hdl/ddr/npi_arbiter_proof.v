@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_arbiter_proof: npi_arbiter as a whole, its parts inside; only for the prover (formal.npi_arbiter_*).
+// npi_arbiter_proof: proves npi_arbiter as a whole, with its parts; only for the prover (formal.npi_arbiter_*).
 //
-// `me` is any port that keeps the rules of docs/memory.md; what the others do is free: they break nothing of it.
+// `me` is any port that keeps the rules of docs/memory.md; the others do what they like and harm nothing of it.
 // `mark` is any accepted request (every fourth, from any on), `w_mark` any word that `me` pushes, `r_mark` any that
-// it pops. So what is asserted of them holds for all:
+// it pops. The assertions on them therefore hold for all:
 // - commands are the accepted requests, in their order, each once, aligned; a write's after all its words;
 // - words of a write leave their own port's FIFO, in order, with the command's place in the back-end's stream;
 // - words of a read reach their own port, in order, each with its place in its transfer;
-// - no FIFO of `me` overflows or is read empty; flags say what is in it; what is wanted of it is there.
+// - no FIFO of `me` overflows or is read empty; its flags are true; a word that is wanted of it is there;
 // - a request stays visible to npi_select until it is granted, so that one's proven bound on waiting holds.
 //
 // The second half relates the harness's counts to the arbiter's registers: a fault is seen where it begins.
@@ -147,7 +147,7 @@ module npi_arbiter_proof #(
     wire        issues = cmd_valid_i && cmd_ready_i;
     wire [W-1:0] cmd_words = {2'd0, cmd_last_i} + 1'b1;
 
-    // The request that is accepted now.
+    // g_* is the request that is accepted now.
     reg [PORT_BITS-1:0] g_port;
     reg                 g_read;
     reg [2:0]           g_size;
@@ -168,7 +168,7 @@ module npi_arbiter_proof #(
     wire         g_any   = |grant_i;
     wire [W-1:0] g_words = words_of(g_size);
 
-    // The marked request, while it is in the arbiter: t_*; where its words begin in each count.
+    // t_* is the marked request while it is in the arbiter, and where its words begin in each count.
     reg                 t_live = 1'b0;
     reg [PORT_BITS-1:0] t_port;
     reg                 t_read;
@@ -182,11 +182,11 @@ module npi_arbiter_proof #(
     wire         t_mine  = t_port == me;
     wire [PORTS-1:0] t_one = {{(PORTS - 1){1'b0}}, 1'b1} << t_port;
 
-    // Where the words of each request in the queue begin in each count: all writes, all reads, `me`'s writes, reads.
+    // s_* are the places at which each queued request's words begin in the counts of all writes, all reads, `me`'s writes, reads.
     localparam SLOTS = 1 << Q;
     reg [W*SLOTS-1:0] s_w, s_r, s_wo, s_ro;
 
-    // The marked words, while they are in `me`'s FIFOs.
+    // w_value and r_value are the marked words while they are in `me`'s FIFOs.
     reg  [3:0] w_value;
     reg  [5:0] r_value;
     reg        r_have = 1'b0;
@@ -318,7 +318,7 @@ module npi_arbiter_proof #(
     wire [W-1:0] came_me  = back_kind[KIND-1:4] == me ? came : 0;
     wire [3:0] w_word = w_words[4*w_mark[F-1:0] +: 4];
     wire [5:0] r_word = r_words[6*r_mark[F-1:0] +: 6];
-    // A slot's beginnings; of the slot that is accepted next: the counts.
+    // b_* are s_*, with the counts themselves for the slot that is accepted next.
     reg [W*SLOTS-1:0] b_w, b_r, b_wo, b_ro;
     always @* begin
         b_w  = s_w;

@@ -8,7 +8,7 @@
 //   no port urgent:     N - 1 grants to other ports
 //   a port not urgent:  (N - U) * (URGENT_RUN + 1) - 1
 //   an urgent port:     U + (U - 1) / URGENT_RUN, with U < N; U - 1, with U = N
-// The proof is at the foot.
+// npi_select_proof proves these bounds.
 
 `default_nettype none
 
@@ -24,11 +24,8 @@ module npi_select #(
     output wire [PORTS-1:0] grant_o,  // one-hot, or 0
     output wire             any_o,    // a grant is given
     output reg  [PORTS-1:0] ack_o     // the grant of the cycle before
-`ifdef FORMAL // for npi_arbiter_proof
-    , output wire [PORTS-1:0] later_o
-`endif
 );
-    // later: the ports after the one of their class that was served last.
+    // `later` are the ports after the one of their class that was served last.
     reg [PORTS-1:0] later;
     reg [2:0]       run;
 
@@ -37,11 +34,11 @@ module npi_select #(
     wire [PORTS-1:0] normal  = asking & ~URGENT;
     wire             overdue = run == URGENT_RUN;
     wire [PORTS-1:0] members = |urgent && !(overdue && |normal) ? URGENT : ~URGENT;
-    // Who was served last is not in `later`, so the requests go here as they are: one input less a port.
+    // The port served last is not in `later`, so req_i serves here in place of `asking`: one input less a port.
     wire [PORTS-1:0] first   = req_i & later & members;
     wire [PORTS-1:0] turn    = asking & members;
 
-    // The lowest bit of each, and the ports above the one that is chosen: no carry chain for so few.
+    // The lowest bit of each, and the ports above the chosen one, without a carry chain: the ports are few.
     reg [PORTS-1:0] first_low, turn_low, above;
     integer i;
     always @* begin
@@ -76,50 +73,7 @@ module npi_select #(
     end
 
 `ifdef FORMAL
-    assign later_o = later;
-    reg past = 1'b0;
-    initial assume (rst_i);
-
-    (* anyconst *) reg [PORTS-1:0] me; // any one port, one-hot
-    localparam [5:0] N = PORTS;
-    reg  [5:0] waited = 0;             // grants to others since it began to wait
-    reg  [5:0] urgents, bound;
-    wire me_asks = |(me & asking);
-    integer q;
-    always @* begin
-        urgents = 6'd0;
-        for (q = 0; q < PORTS; q = q + 1)
-            urgents = urgents + {5'd0, URGENT[q]};
-        if (URGENT == 0 || &URGENT)
-            bound = N - 6'd1;
-        else if (!(|(me & URGENT)))
-            bound = (N - urgents) * ({3'd0, URGENT_RUN} + 6'd1) - 6'd1;
-        else
-            bound = urgents + (urgents - 6'd1) / {3'd0, URGENT_RUN};
-    end
-
-    always @(posedge clk_i) begin
-        past <= 1'b1;
-        assume (me != 0 && (me & (me - 1'b1)) == 0);
-        // A request stays until it is granted.
-        if (past && !rst_i && !$past(rst_i))
-            assume ((asking | ~$past(asking) | $past(grant_o)) == {PORTS{1'b1}});
-        if (rst_i || !me_asks || |(grant_o & me))
-            waited <= 6'd0;
-        else if (|grant_o)
-            waited <= waited + 6'd1;
-        if (past && !rst_i) begin
-            assert ((grant_o & (grant_o - 1'b1)) == 0);     // at most one
-            assert ((grant_o & ~asking) == 0);              // only to a requester
-            assert (|grant_o == (enable_i && |asking));     // no cycle is lost
-            assert (any_o == |grant_o);
-            assert ((later & ack_o) == 0);
-            assert (run <= URGENT_RUN);
-            assert (waited <= bound);
-            cover (waited == bound);
-            cover (&asking && |(grant_o & me));
-        end
-    end
+`include "npi_select_proof.vh"
 `endif
 `ifdef COVER_POINTS
     all_ask: cover property (@(posedge clk_i) &asking && enable_i);

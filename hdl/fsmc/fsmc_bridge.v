@@ -65,25 +65,23 @@ module fsmc_bridge #(
     output wire        npi_rd_pop_o,
     input  wire        npi_rd_empty_i,
     output wire        npi_rd_flush_o,
-`ifdef FORMAL
-    output wire        clear_o,   // what came before the access has been noted
-    output wire        excuse_o,  // an access to memory is let go
-    output wire [4:0]  async_o,   // what the parts have inside
-    output wire [9:0]  registers_o,
-    output wire [31:0] word_o,
-    output wire [44:0] taken_o,
-    output wire        excused_o,
-`endif
     input  wire        npi_init_done_i
 );
+    // A message as a module item is SystemVerilog: to Icarus and XST an unknown module says it.
+`ifdef VERILATOR
+    `define TELLS_ERRORS
+`endif
+`ifdef YOSYS
+    `define TELLS_ERRORS
+`endif
     generate
         if (MUXED >> 1 != 0 || SYNC >> 1 != 0 || WAIT_HIGH >> 1 != 0 || TIMEOUT_LOG2 < 1 || TIMEOUT_LOG2 > 24 ||
             POST_LOG2 < 2 || POST_LOG2 > 5 || BLOCK_LOG2 < 1 || BLOCK_LOG2 > 4 ||
             (SYNC != 0 && (LATENCY < 4 || LATENCY > 17))) begin : g_refused
-`ifdef __ICARUS__ // Verilog-2005 has no error message: an unknown module is one
-            fsmc_bridge_parameter_out_of_range u_refused ();
-`else
+`ifdef TELLS_ERRORS
             $error("fsmc_bridge: MUXED, SYNC, WAIT_HIGH are 0 or 1, LATENCY 4..17, TIMEOUT_LOG2 1..24, POST_LOG2 2..5, BLOCK_LOG2 1..4");
+`else
+            fsmc_bridge_parameter_out_of_range u_refused ();
 `endif
         end
     endgenerate
@@ -105,33 +103,32 @@ module fsmc_bridge #(
         end
     endgenerate
 
-    wire        wr_full, taken, writing;
+    wire        wr_async, wr_sync, wr_ne2_async, taken, writing;
     wire [1:0]  taken_ne, taken_be, seen;
-    wire [24:0] taken_addr;
+    wire [24:0] taken_addr, at;
     wire [15:0] taken_data;
-    wire        hit, hit_safe, room, busy, reg_done, hit_seen, safe_seen, excuse;
+    wire        hit, hit_safe, room, more_room, busy, reg_done, hit_seen, safe_seen, excuse;
     wire [15:0] mem_data, reg_data;
-    // Of NE1: writes, and the halfword being read.
+    // NE1's writes, and the halfword being read.
     wire        mem_wr, mem_reading, hit_was, safe_was, mem_queued;
-    wire [24:0] mem_wr_addr, mem_rd_addr;
+    wire [24:0] mem_wr_addr, mem_rd_addr, mem_rd_at;
     wire [15:0] mem_wr_data, burst_d;
     wire [1:0]  mem_wr_be;
     wire        burst_nwait_n;
+    wire        excused_read, excused_write; // the access under way has been let go
 
-    // What came before is noted, and registers are quiet.
-    wire clear = !wr_full && !taken && !busy;
+    // What came before is noted, and registers are quiet: for NWAIT, and for all that the clock decides.
+    wire clear      = !wr_async && !busy;
+    wire clear_sync = !wr_sync && !busy;
 
     fsmc_async u_fsmc_async (
-        .clk_i(clk_i), .rst_i(rst_i),
+        .clk_i(clk_i),
         .fsmc_a_i(address), .fsmc_d_i(fsmc_d_i), .fsmc_ne_n_i({fsmc_ne_n_i[1], fsmc_ne_n_i[0] || SYNC != 0}),
         .fsmc_noe_n_i(fsmc_noe_n_i), .fsmc_nwe_n_i(fsmc_nwe_n_i), .fsmc_nbl_n_i(fsmc_nbl_n_i),
-        .wr_full_o(wr_full), .wr_o(taken), .wr_ne_o(taken_ne), .wr_addr_o(taken_addr),
-        .wr_data_o(taken_data), .wr_be_o(taken_be),
-        .hit_i(hit && clear), .safe_i(hit_safe && clear),
-`ifdef FORMAL
-        .inside_o(async_o),
-`endif
-        .reading_o(seen), .hit_o(hit_seen), .safe_o(safe_seen), .writing_o(writing)
+        .wr_o(taken), .wr_ne_o(taken_ne), .wr_addr_o(taken_addr), .wr_data_o(taken_data), .wr_be_o(taken_be),
+        .wr_sync_o(wr_sync), .wr_async_o(wr_async), .wr_ne2_async_o(wr_ne2_async),
+        .hit_async_i(hit && clear), .safe_async_i(hit_safe && clear),
+        .reading_o(seen), .hit_o(hit_seen), .safe_o(safe_seen), .writing_o(writing), .at_o(at)
     );
 
     generate
@@ -146,14 +143,16 @@ module fsmc_bridge #(
                 .wr_valid_o(wr_valid), .wr_addr_o(mem_wr_addr), .wr_data_o(mem_wr_data),
                 .wr_be_o(mem_wr_be), .wr_ready_i(mem_wr),
                 .rd_valid_o(rd_valid), .rd_addr_o(mem_rd_addr), .rd_data_i(mem_data),
-                .rd_ready_i((hit && clear && !wr_valid) || excuse)
+                .rd_ready_i((hit && clear_sync && !wr_valid) || excuse)
             );
             // A read waits for the writes of the burst before.
             assign mem_queued  = wr_valid;
             assign mem_wr      = wr_valid && (room || excuse);
             assign mem_reading = rd_valid && !wr_valid;
-            assign hit_was     = hit && clear;
+            assign hit_was     = hit && clear_sync;
             assign safe_was    = 1'b1;
+            assign {excused_read, excused_write} = 2'b00; // each beat of a burst for itself
+            assign mem_rd_at   = mem_rd_addr;
             wire unused = &{1'b0, seen[0], hit_seen, safe_seen, hit_safe, taken_be, taken_ne[0], 1'b0};
         end else begin : g_async
             assign mem_queued  = 1'b0;
@@ -162,11 +161,25 @@ module fsmc_bridge #(
             assign mem_wr_data = taken_data;
             assign mem_wr_be   = taken_be;
             assign mem_rd_addr = address;
+            assign mem_rd_at   = at;
             assign mem_reading = seen[0];
             assign hit_was     = hit_seen;
             assign safe_was    = safe_seen;
             assign burst_d       = 16'd0;
             assign burst_nwait_n = 1'b1;
+            reg excused_read_q, excused_write_q;
+            assign excused_read  = excused_read_q;
+            assign excused_write = excused_write_q;
+            always @(posedge clk_i or posedge fsmc_noe_n_i)
+                if (fsmc_noe_n_i)
+                    excused_read_q <= 1'b0;
+                else if (excuse)
+                    excused_read_q <= 1'b1;
+            always @(posedge clk_i or posedge fsmc_nwe_n_i)
+                if (fsmc_nwe_n_i)
+                    excused_write_q <= 1'b0;
+                else if (excuse)
+                    excused_write_q <= 1'b1;
             wire unused = &{1'b0, fsmc_clk_i, mem_queued, 1'b0};
         end
     endgenerate
@@ -174,12 +187,10 @@ module fsmc_bridge #(
     // ---- An access to memory that has waited too long is let go, until its strobe rises; fsmc_registers does so for
     // registers.
     reg [TIMEOUT_LOG2:0] patience;
-    reg  excused;
     wire reg_restart;
     wire expired = patience[TIMEOUT_LOG2];
     wire waiting = (mem_reading && !hit_was) || ((writing || mem_queued) && !room);
-    assign excuse = expired && clear && waiting && (!excused || SYNC != 0); // each beat of a burst
-    wire rest    = fsmc_noe_n_i && fsmc_nwe_n_i;
+    assign excuse = expired && clear_sync && waiting && !excused_read && !excused_write;
 
     always @(posedge clk_i)
         if (rst_i || expired || (reg_restart && (busy || !waiting)))
@@ -187,16 +198,16 @@ module fsmc_bridge #(
         else
             patience <= patience + 1'b1;
 
-    always @(posedge clk_i or posedge rest)
-        if (rest)
-            excused <= 1'b0;
-        else if (excuse)
-            excused <= 1'b1;
-
-    wire read_ok  = ne2 ? reg_done : (hit && clear) || excused;
-    wire write_ok = ne2 ? clear : (clear && room) || excused;
-    wire waits = (ne1 || ne2) && ((!fsmc_noe_n_i && !read_ok) || (!fsmc_nwe_n_i && !write_ok));
-    assign fsmc_nwait_n_o = (WAIT_HIGH != 0) ^ (SYNC != 0 && ne1 ? burst_nwait_n : !waits);
+    // ---- NWAIT follows NE and NOE: until NOE falls an access is taken for a write, so that NWAIT is valid an address phase
+    // before a write's data phase begins. While reset is active, also without a clock, nothing waits.
+    // While the write before is on its way there must be room for both, as it was before that one's noting.
+    reg [1:0] room_for_both;
+    always @(posedge clk_i) room_for_both <= {room_for_both[0], more_room};
+    wire write_room = wr_async ? room_for_both[1] : room;
+    wire read_ok  = ne2 ? reg_done : (hit || excused_read) && clear;
+    wire write_ok = ne2 ? clear : !busy && !wr_ne2_async && (write_room || excused_write);
+    wire waits    = (ne1 || ne2) && !rst_i && !(fsmc_noe_n_i ? write_ok : read_ok);
+    assign fsmc_nwait_n_o = (WAIT_HIGH != 0) ^ (SYNC != 0 && ne1 ? burst_nwait_n || rst_i : !waits);
     assign fsmc_d_o       = ne2 ? reg_data : SYNC != 0 ? burst_d : mem_data;
     assign fsmc_d_oe_o    = (ne1 || ne2) && !fsmc_noe_n_i;
 
@@ -206,16 +217,14 @@ module fsmc_bridge #(
     fsmc_registers u_fsmc_registers (
         .clk_i(clk_i), .rst_i(rst_i),
         .wr_i(taken && taken_ne[1]), .wr_addr_i(taken_addr), .wr_data_i(taken_data),
-        .reading_i(seen[1]), .rd_addr_i(address), .ended_i(!ne2 || fsmc_noe_n_i),
+        .reading_i(seen[1]), .rd_addr_i(at), .rd_high_async_i(address[0]),
+        .ne_n_async_i(fsmc_ne_n_i[1]), .noe_n_async_i(fsmc_noe_n_i),
         .rd_done_o(reg_done), .rd_data_o(reg_data),
         .restart_o(reg_restart), .expired_i(expired),
         .busy_o(busy), .flush_o(reg_flush), .idle_i(mem_idle && !mem_queued),
         .error_o(reg_error), .error_memory_o(reg_error_memory), .error_write_o(reg_write),
         .bus_valid_o(bus_valid_o), .bus_write_o(bus_write_o), .bus_addr_o(bus_addr_o),
         .bus_wdata_o(bus_wdata_o), .bus_ready_i(bus_ready_i), .bus_rdata_i(bus_rdata_i),
-`ifdef FORMAL
-        .inside_o(registers_o), .word_o(word_o),
-`endif
         .bus_error_i(bus_error_i)
     );
 
@@ -224,9 +233,9 @@ module fsmc_bridge #(
     fsmc_memory #(.POST_LOG2(POST_LOG2), .BLOCK_LOG2(BLOCK_LOG2)) u_fsmc_memory (
         .clk_i(clk_i), .rst_i(rst_i), .page_i(page_i),
         .wr_i(mem_wr), .wr_addr_i(mem_wr_addr), .wr_data_i(mem_wr_data), .wr_be_i(mem_wr_be),
-        .wr_lost_o(wr_lost), .room_o(room),
-        .rd_addr_i(mem_rd_addr), .rd_used_i(mem_reading && hit_was),
-        .rd_miss_i(mem_reading && !hit_was && clear),
+        .wr_lost_o(wr_lost), .room_o(room), .more_room_o(more_room),
+        .rd_addr_async_i(mem_rd_addr), .rd_at_i(mem_rd_at), .rd_used_i(mem_reading && hit_was),
+        .rd_miss_i(mem_reading && !hit_was && clear_sync),
         .rd_hit_o(hit), .rd_safe_o(hit_safe), .rd_data_o(mem_data),
         .flush_i(reg_flush), .drop_i(reg_access), .idle_o(mem_idle),
         .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
@@ -246,23 +255,22 @@ module fsmc_bridge #(
     assign error_addr_o   = bus_addr_o;
     assign error_write_o  = reg_error ? reg_write : !mem_reading;
 
-    // ---- For a master that does not look at NWAIT: a write that found no room, and a read that did not
-    // find its data there from the beginning and did not wait for it (two clocks) either.
-    reg       reading_d, early;
-    reg [1:0] good;
-    assign late_o = wr_lost || (reading_d && !mem_reading && early);
+    // ---- For a master that does not look at NWAIT: a write that found no room, and a read whose data was not there a
+    // while ago in the second clock of its address, and that did not wait for it (two clocks) either. In the first clock the
+    // pins may still have moved. Reads of other addresses may follow each other without a rest that the clock sees.
+    reg [1:0] at_was, at_before, good;
+    reg       reading_d, second, early;
+    wire moved  = at_was != at_before && SYNC == 0;
+    wire starts = mem_reading && (moved || !reading_d);
+    assign late_o = wr_lost || (reading_d && (starts || !mem_reading) && early);
     always @(posedge clk_i) begin
+        {at_before, at_was} <= {at_was, at[1:0]};
         reading_d <= mem_reading && !rst_i;
+        second    <= starts;
         good      <= {hit_was && good[0] && reading_d, hit_was};
-        early     <= reading_d ? early && !good[1] : !safe_was;
+        early     <= !starts && (second ? !safe_was : early && !good[1]);
     end
 
-`ifdef FORMAL
-    assign clear_o  = clear;
-    assign excuse_o = excuse;
-    assign taken_o  = {wr_full, taken, taken_ne, taken_addr, taken_data};
-    assign excused_o = excused;
-`endif
     wire unused = &{1'b0, npi_wr_empty_i, npi_wr_almost_full_i, npi_rd_word_i, 1'b0};
 `ifdef COVER_POINTS
     read_excused: cover property (@(posedge clk_i) excuse && mem_reading);

@@ -44,14 +44,9 @@ module fsmc_bridge_proof #(
     wire [15:0] d = MUXED != 0 && !nadv_n_i ? a[15:0] : {14'd0, d_i};
     wire [15:0] d_out;
     wire        nwait_pin, nwait_n = nwait_pin ^ (WAIT_HIGH != 0);
-    wire        oe, access_error, error_write, late, clear, excuse;
+    wire        oe, access_error, error_write, late;
     wire [9:0]  error_addr, bus_addr;
     wire        bus_valid, bus_write, error_memory;
-    wire [4:0]  async;
-    wire [9:0]  registers;
-    wire [31:0] word;
-    wire [44:0] taken;
-    wire        excused;
     wire [31:0] bus_wdata;
     wire [31:0] bus_rdata = {14'd0, rdata_i[3:2], 14'd0, rdata_i[1:0]};
 
@@ -65,11 +60,52 @@ module fsmc_bridge_proof #(
         .bus_valid_o(bus_valid), .bus_write_o(bus_write), .bus_addr_o(bus_addr),
         .bus_wdata_o(bus_wdata), .bus_ready_i(ready_i), .bus_rdata_i(bus_rdata),
         .bus_error_i(error_i),
-        .clear_o(clear), .excuse_o(excuse), .async_o(async), .registers_o(registers), .word_o(word),
-        .taken_o(taken), .excused_o(excused),
         .npi_addr_ack_i(1'b0), .npi_wr_empty_i(1'b1), .npi_wr_almost_full_i(1'b0),
         .npi_rd_data_i(64'd0), .npi_rd_word_i(4'd0), .npi_rd_empty_i(1'b1), .npi_init_done_i(1'b1)
     );
+
+    // The bridge's registers: flatten joins these with those of the same name.
+    (* hierconn *) wire \u_fsmc_bridge.clear , \u_fsmc_bridge.excuse ;
+    (* hierconn *) wire [1:0] \u_fsmc_bridge.taken_ne ;
+    (* hierconn *) wire [24:0] \u_fsmc_bridge.taken_addr ;
+    (* hierconn *) wire [15:0] \u_fsmc_bridge.taken_data ;
+    (* hierconn, init = 1'b0 *) // flatten keeps no initial value of the joined wire
+                   wire \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.turned ,
+                        \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
+                        \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.turned_sync ,
+                        \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.last ,
+                        \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.earlier ;
+    (* hierconn *) wire [44:0] \u_fsmc_bridge.u_fsmc_async.taken ;
+    (* hierconn, init = 5'd0 *) wire [4:0] \u_fsmc_bridge.u_fsmc_async.u_access.bit_meta , \u_fsmc_bridge.u_fsmc_async.u_access.bit_sync ;
+    (* hierconn *) wire \u_fsmc_bridge.u_fsmc_registers.flushing , \u_fsmc_bridge.u_fsmc_registers.give ,
+                        \u_fsmc_bridge.u_fsmc_registers.answering , \u_fsmc_bridge.u_fsmc_registers.half_read ,
+                        \u_fsmc_bridge.u_fsmc_registers.half_write , \u_fsmc_bridge.u_fsmc_registers.asked_high ,
+                        \u_fsmc_bridge.u_fsmc_registers.given_up , \u_fsmc_bridge.u_fsmc_registers.seen ;
+    (* hierconn, init = 1'b0 *) wire \u_fsmc_bridge.u_fsmc_registers.u_done.bit_meta , \u_fsmc_bridge.u_fsmc_registers.u_done.bit_sync ;
+    (* hierconn *) wire [31:0] \u_fsmc_bridge.u_fsmc_registers.word ;
+    // An edge of a pin is seen by the clock's next edge: any phase of the two is there anyway.
+    (* hierconn *) wire \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.late , \u_fsmc_bridge.u_fsmc_registers.u_done.late ;
+    (* hierconn *) wire [4:0] \u_fsmc_bridge.u_fsmc_async.u_access.late ;
+    assign \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.late = 1'b0;
+    assign \u_fsmc_bridge.u_fsmc_registers.u_done.late = 1'b0;
+    assign \u_fsmc_bridge.u_fsmc_async.u_access.late = 5'd0;
+    wire clear = \u_fsmc_bridge.clear , excuse = \u_fsmc_bridge.excuse ;
+    // A write's turn as it goes through cdc_pulse, one bit each: before its first flip-flop .. its last.
+    wire [4:0]  turns = {\u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.turned ,
+                         \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
+                         \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.turned_sync ,
+                         \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.last ,
+                         \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.earlier };
+    wire [5:0]  async = {turns[4:1] ^ turns[3:0], \u_fsmc_bridge.u_fsmc_async.u_access.bit_meta [4],
+                         \u_fsmc_bridge.u_fsmc_async.u_access.bit_sync [4]};
+    wire [9:0]  registers = {\u_fsmc_bridge.u_fsmc_registers.flushing , \u_fsmc_bridge.u_fsmc_registers.give ,
+                             \u_fsmc_bridge.u_fsmc_registers.answering , \u_fsmc_bridge.u_fsmc_registers.half_read ,
+                             \u_fsmc_bridge.u_fsmc_registers.half_write , \u_fsmc_bridge.u_fsmc_registers.asked_high ,
+                             \u_fsmc_bridge.u_fsmc_registers.given_up ,
+                             \u_fsmc_bridge.u_fsmc_registers.u_done.bit_sync , \u_fsmc_bridge.u_fsmc_registers.u_done.bit_meta ,
+                             \u_fsmc_bridge.u_fsmc_registers.seen };
+    wire [44:0] taken = \u_fsmc_bridge.u_fsmc_async.taken ; // by NWE's edge
+    wire [42:0] copy  = {\u_fsmc_bridge.taken_ne , \u_fsmc_bridge.taken_addr , \u_fsmc_bridge.taken_data };
 
     // ---- The pins, a step ago, and what has happened
     reg        past = 1'b0, was_clk = 1'b1, was_ne1 = 1'b0, was_ne2 = 1'b0, was_noe = 1'b1, was_nwe = 1'b1;
@@ -142,7 +178,7 @@ module fsmc_bridge_proof #(
     end
 
     // ---- NWAIT
-    localparam [7:0] BOUND = 4 * ((1 << TIMEOUT_LOG2) + 1) + 12;
+    localparam [7:0] BOUND = 4 * ((1 << TIMEOUT_LOG2) + 1) + 14;
     generate
         if (WORDS == 0) begin : g_nwait
             reg [7:0] waited = 8'd0;
@@ -153,18 +189,18 @@ module fsmc_bridge_proof #(
                     waited <= waited + 8'd1;
                 assert (waited < BOUND);
             end
-            reg [1:0] since_ne1 = 2'd3; // clocks since an access to memory: fsmc_async's synchroniser
+            reg [2:0] since_ne1 = 3'd7; // clocks since an access to memory: fsmc_async's synchroniser
             always @(posedge step)
                 if (ne1_i && strobe)
-                    since_ne1 <= 2'd0;
-                else if (clock && since_ne1 != 2'd3)
-                    since_ne1 <= since_ne1 + 2'd1;
+                    since_ne1 <= 3'd0;
+                else if (clock && since_ne1 != 3'd7)
+                    since_ne1 <= since_ne1 + 3'd1;
             always @(posedge step) if (past) begin
                 if (ne2_i && access && let_go)
                     assert (nwait_n);
                 if (ne2_i && access && let_go && !noe_n_i)
                     assert (d_out[1:0] == was_out);
-                assert (rst || !excuse || since_ne1 <= 2'd2 || SYNC != 0);
+                assert (rst || !excuse || since_ne1 <= 3'd2 || SYNC != 0);
                 assert (!(ne2_i && !nwe_n_i && nwait_n) || clear);
                 assert (oe == (selected && !noe_n_i));
                 cover (waited > 8'd8 && was_access && access && nwait_n);
@@ -180,8 +216,8 @@ module fsmc_bridge_proof #(
                 .given_up_i(given_up), .nwait_n_i(nwait_n), .was_nwait_n_i(was_nwait), .d_i(d_out),
                 .valid_i(bus_valid), .write_i(bus_write), .addr_i(bus_addr), .wdata_i(bus_wdata),
                 .rdata_i(bus_rdata), .error_i(access_error && !error_memory), .error_write_i(error_write),
-                .error_addr_i(error_addr), .clear_i(clear), .async_i(async), .registers_i(registers),
-                .word_i(word), .taken_i(taken), .excused_i(excused)
+                .error_addr_i(error_addr), .async_i(async), .registers_i(registers),
+                .word_i(\u_fsmc_bridge.u_fsmc_registers.word ), .taken_i(taken), .copy_i(copy)
             );
         end
     endgenerate

@@ -45,7 +45,7 @@ module fsmc_burst #(
     fsmc_burst_pins #(.MUXED(MUXED), .LATENCY(LATENCY)) u_pins (
         .fsmc_clk_i(fsmc_clk_i), .fsmc_a_i(fsmc_a_i), .fsmc_d_i(fsmc_d_i), .fsmc_d_o(fsmc_d_o),
         .fsmc_ne_n_i(fsmc_ne_n_i), .fsmc_nwe_n_i(fsmc_nwe_n_i), .fsmc_nadv_n_i(fsmc_nadv_n_i),
-        .fsmc_nbl_n_i(fsmc_nbl_n_i), .fsmc_nwait_n_o(fsmc_nwait_n_o), .busy_i(busy_i),
+        .fsmc_nbl_n_i(fsmc_nbl_n_i), .fsmc_nwait_n_o(fsmc_nwait_n_o), .busy_async_i(busy_i),
         .begun_o(begun), .addr_o(addr), .push_o(push), .push_data_o(push_data), .full_i(full),
         .restart_o(restart), .pop_o(pop), .pop_data_i(pop_data), .empty_i(empty));
 
@@ -62,54 +62,32 @@ module fsmc_burst #(
         .read_clk_i(fsmc_clk_i), .restart_i(restart), .pop_i(pop), .data_o(pop_data), .empty_o(empty));
 
     // ---- Reads. Without reset: a burst that outlasts one gets its data after it.
-    reg [1:0] ended_s;
-    reg       reading;
+    wire        begun_sync;
+    wire [24:0] addr_sync; // when a session begins it has rested for longer than the FIFO's own synchronisers take
+    reg         reading;
     initial reading = 1'b0;
-    assign rd_valid_o = reading && !ended_s[1] && !no_room;
+    assign rd_valid_o = reading && begun_sync && !no_room;
+    cdc_bit u_begun (.clk_i(clk_i), .bit_async_i(begun), .bit_sync_o(begun_sync));
+    cdc_copy #(.WIDTH(25)) u_addr (.clk_i(clk_i), .bus_async_i(addr), .bus_sync_o(addr_sync));
 
     always @(posedge clk_i) begin
-        ended_s <= {ended_s[0], !begun};
         if (rd_valid_o && rd_ready_i)
             rd_addr_o <= rd_addr_o + 25'd1;
-        if (ended_s[1])
+        if (!begun_sync)
             reading <= 1'b0;
         if (begins) begin
             reading   <= 1'b1;
-            rd_addr_o <= addr; // stays for some clocks still, or nobody takes what it brings
+            rd_addr_o <= addr_sync;
         end
     end
 
     wire unused = &{1'b0, never_begins, 1'b0};
 
 `ifdef FORMAL
-    // This side alone: pins and FIFOs are cut off, and do what they are proven to do or more.
-    reg        past = 1'b0, was_begins = 1'b0;
-    reg [24:0] asked, count;  // address of this session; halfwords of it that went into the FIFO
-    always @(posedge clk_i) begin
-        past       <= 1'b1;
-        was_begins <= begins;
-        if (begins)
-            asked <= addr;
-        count <= begins ? 25'd0 : count + {24'd0, rd_valid_o && rd_ready_i};
-    end
-    reg known = 1'b0;         // a session has begun
-    always @(posedge clk_i)
-        known <= known || begins;
-    always @* begin
-        assume (!begins || no_room);
-        // What goes into the FIFO: the halfwords from the session's address on, in order.
-        if (rd_valid_o)
-            assert (known && !no_room && !begins);
-        if (known)
-            assert (rd_addr_o == asked + count);
-        assert (!reading || known);
-        assert (wr_valid_o == !none);
-        cover (past && rd_valid_o && count == 25'd3 && asked == 25'd9);
-        cover (was_begins && rd_valid_o);
-    end
+`include "fsmc_burst_proof.vh"
 `endif
 `ifdef COVER_POINTS
-    asks_for_what_does_not_fit: cover property (@(posedge clk_i) reading && !ended_s[1] && no_room);
+    asks_for_what_does_not_fit: cover property (@(posedge clk_i) reading && begun_sync && no_room);
     write_waits: cover property (@(posedge clk_i) wr_valid_o && !wr_ready_i);
     read_behind_writes: cover property (@(posedge clk_i) wr_valid_o && rd_valid_o);
 `endif

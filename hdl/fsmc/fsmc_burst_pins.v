@@ -23,7 +23,7 @@ module fsmc_burst_pins #(
     input  wire [1:0]  fsmc_nbl_n_i,
     output reg         fsmc_nwait_n_o,
     // accesses that must come first are under way: no write is accepted (another clock)
-    input  wire        busy_i,
+    input  wire        busy_async_i,
     // the burst: the address of a read stays until the next burst
     output reg         begun_o,
     output reg  [24:0] addr_o,      // of a write: of its next halfword
@@ -39,7 +39,8 @@ module fsmc_burst_pins #(
 );
     localparam [4:0] FIRST = LATENCY[4:0];
     reg        write, nwait_was;
-    reg [1:0]  busy_s;
+    wire       busy_sync;
+    cdc_bit u_busy (.clk_i(fsmc_clk_i), .bit_async_i(busy_async_i), .bit_sync_o(busy_sync));
     reg [4:0]  edges;  // since the address; stays at FIRST
     reg [15:0] stage;  // read, on its way to the pins
     wire       takes_address = !fsmc_ne_n_i && !begun_o && !fsmc_nadv_n_i;
@@ -76,12 +77,11 @@ module fsmc_burst_pins #(
                 edges <= edges + 5'd1;
             end
             // The edge that sees full_i may bring a halfword, and so may the next one.
-            fsmc_nwait_n_o <= begun_o && (write ? !full_i && !busy_s[1] : pop_o);
+            fsmc_nwait_n_o <= begun_o && (write ? !full_i && !busy_sync : pop_o);
         end
 
     always @(posedge fsmc_clk_i) begin
-        busy_s   <= {busy_s[0], busy_i};
-        stage    <= pop_data_i;
+                stage    <= pop_data_i;
         fsmc_d_o <= stage;
         if (takes_address)
             addr_o <= pin_addr;
@@ -90,108 +90,11 @@ module fsmc_burst_pins #(
     end
 
 `ifdef FORMAL
-    // Time goes in steps: an edge of FSMC_CLK, or one of NE1, or none. Pins are as they were before the edge.
-    (* gclk *) wire step;
-    localparam [4:0] DEPTH = 5'd16;
-    reg        past = 1'b0, was_clk = 1'b0, was_ne_n = 1'b1;
-    wire       edge_of_clk = past && fsmc_clk_i && !was_clk;
-    always @(posedge step) begin
-        past     <= 1'b1;
-        was_clk  <= fsmc_clk_i;
-        was_ne_n <= fsmc_ne_n_i;
-        // FSMC_CLK runs only while NE1 is low.
-        assume (past || (!fsmc_clk_i && fsmc_ne_n_i));
-        assume (!edge_of_clk || (!was_ne_n && !fsmc_ne_n_i));
-    end
-
-    // ---- The processor: NADV low at a burst's first edge only; NWE stays. From the LATENCYth edge on an edge moves a
-    // halfword if NWAIT was high at the edge before.
-    reg [4:0]  edge_no;  // edges of the burst so far, up to LATENCY
-    reg        ready, writes;
-    reg [24:0] beat;     // address of the halfword that moves next
-    reg [24:0] first;    // of the burst
-    wire first_edge = edge_no == 5'd0;
-    wire moves = edge_no >= FIRST && ready;
-    always @* begin
-        assume (fsmc_ne_n_i || fsmc_nadv_n_i == !first_edge);
-        assume (fsmc_ne_n_i || first_edge || fsmc_nwe_n_i == !writes);
-    end
-    always @(posedge fsmc_clk_i or posedge fsmc_ne_n_i)
-        if (fsmc_ne_n_i) begin
-            edge_no <= 5'd0;
-            ready   <= 1'b0;
-        end else begin
-            ready <= fsmc_nwait_n_o;
-            if (edge_no < FIRST)
-                edge_no <= edge_no + 5'd1;
-        end
-    always @(posedge fsmc_clk_i) begin
-        if (first_edge) begin
-            writes <= !fsmc_nwe_n_i;
-            beat   <= MUXED != 0 ? {fsmc_a_i[24:16], fsmc_d_i} : fsmc_a_i;
-            first  <= MUXED != 0 ? {fsmc_a_i[24:16], fsmc_d_i} : fsmc_a_i;
-        end else if (moves) begin
-            beat <= beat + 25'd1;
-        end
-    end
-
-    // ---- The FIFOs, as async_fifo is proven: what this side sees of a count falls, or rises, by itself.
-    reg [4:0] held = 5'd0;
-    (* anyseq *) reg [4:0] fewer;
-    always @* begin
-        assume (fewer <= held);
-        assume (full_i == (held >= DEPTH - 5'd2));
-    end
-    always @(posedge fsmc_clk_i)
-        held <= fewer + {4'd0, push_o};
-    // The halfword with number `place` that is popped in a burst.
-    (* anyconst *) reg [2:0] place;
-    reg [2:0]  popped, moved;
-    reg [15:0] value;
-    always @(posedge fsmc_clk_i or posedge fsmc_ne_n_i)
-        if (fsmc_ne_n_i) begin
-            popped <= 3'd0;
-            moved  <= 3'd0;
-        end else begin
-            popped <= popped + {2'd0, pop_o};
-            moved  <= moved + {2'd0, moves};
-        end
-    always @(posedge fsmc_clk_i)
-        if (pop_o && popped == place)
-            value <= pop_data_i;
-
-    always @* if (past && !fsmc_ne_n_i) begin
-        // Each halfword that the processor writes goes into the FIFO, with its address, and nothing else.
-        assert (push_o == (moves && writes));
-        if (push_o) begin
-            assert (held < DEPTH);
-            assert (push_data_o == {beat, ~fsmc_nbl_n_i, fsmc_d_i});
-        end
-        // Each one that it reads is the next of those that came, out of a FIFO that was restarted at the first edge.
-        assert (restart_o == (first_edge && fsmc_nwe_n_i));
-        assert (!pop_o || (!empty_i && !writes && !first_edge && addr_o == first));
-        if (moves && !writes && moved == place)
-            assert (fsmc_d_o == value);
-        // How it works, which the above follows from.
-        assert (begun_o == !first_edge && edges == edge_no && nwait_was == ready);
-        if (begun_o) begin
-            assert (write == writes && addr_o == (writes ? beat : first));
-            assert (writes || popped - moved == {2'd0, fsmc_nwait_n_o} + {2'd0, ready});
-            assert (!writes || held <= DEPTH - 5'd2 + {4'd0, !fsmc_nwait_n_o} + {4'd0, !fsmc_nwait_n_o && !ready});
-            if (!writes && fsmc_nwait_n_o && popped - 3'd1 == place)
-                assert (stage == value);
-            if (!writes && ready && moved == place)
-                assert (fsmc_d_o == value);
-        end
-        assert (edge_no >= FIRST - 5'd1 || !fsmc_nwait_n_o || writes);
-        cover (push_o && held == DEPTH - 5'd1);
-        cover (moves && !writes && moved == 3'd2 && place == 3'd2 && fsmc_d_o != 16'd0);
-        cover (moves && writes && beat != first);
-    end
+`include "fsmc_burst_pins_proof.vh"
 `endif
 `ifdef COVER_POINTS
     write_held_up: cover property (@(posedge fsmc_clk_i) begun_o && write && edges == FIRST && !nwait_was);
-    held_up_by_registers: cover property (@(posedge fsmc_clk_i) begun_o && write && edges == FIRST && busy_s[1]);
+    held_up_by_registers: cover property (@(posedge fsmc_clk_i) begun_o && write && edges == FIRST && busy_sync);
     read_held_up: cover property (@(posedge fsmc_clk_i) ahead && empty_i);
 `endif
 endmodule

@@ -21,8 +21,10 @@ module fsmc_registers (
     // reads: until the pin ends the access
     input  wire        reading_i,
     input  wire [24:0] rd_addr_i,
-    input  wire        ended_i,   // pins, asynchronous
-    output wire        rd_done_o, // rd_data_o is this access's; falls with ended_i
+    input  wire        rd_high_async_i, // pins: the high half is being read
+    input  wire        ne_n_async_i,    // pins: either one high ends the access
+    input  wire        noe_n_async_i,
+    output wire        rd_done_o, // rd_data_o is this access's; falls with the access
     output wire [15:0] rd_data_o,
     // time: counted while busy, from zero with each cycle of restart_o
     output wire        restart_o,
@@ -42,10 +44,6 @@ module fsmc_registers (
     output wire [31:0] bus_wdata_o,
     input  wire        bus_ready_i,
     input  wire [31:0] bus_rdata_i,
-`ifdef FORMAL
-    output wire [9:0]  inside_o,
-    output wire [31:0] word_o,
-`endif
     input  wire        bus_error_i
 );
     // One of them at most: memory takes what was posted; the slave answers (bus_valid_o); the
@@ -56,8 +54,8 @@ module fsmc_registers (
     reg        half_read, half_write; // word's high half, low: that of bus_addr_o's word is kept
     reg        asked_high; // by this read, whatever the pins say now
     reg        given_up;   // the read has ended early: nobody takes its answer
-    reg        give, done, seen;
-    reg [1:0]  done_s;
+    reg        give, seen, done_ne, done_noe;
+    wire       done_sync;
 
     wire idle     = !flushing && !bus_valid_o && !give && !answering;
     wire begins   = idle && (wr_i || reading_i);
@@ -73,8 +71,7 @@ module fsmc_registers (
     wire flushed  = flushing && (idle_i || expired_i);
     wire ends     = bus_valid_o && (bus_ready_i || expired_i);
 
-    assign rd_done_o     = done;
-    assign rd_data_o     = rd_addr_i[0] ? word[31:16] : word[15:0];
+    assign rd_data_o     = rd_high_async_i ? word[31:16] : word[15:0];
     assign busy_o        = !idle;
     assign restart_o     = idle || flushed;
     assign flush_o       = flushing;
@@ -82,15 +79,22 @@ module fsmc_registers (
     assign error_write_o = bus_write_o;
 
     // Set by the clock, cleared by the pins: the next read may begin a few nanoseconds later.
-    always @(posedge clk_i or posedge ended_i)
-        if (ended_i)
-            done <= 1'b0;
+    always @(posedge clk_i or posedge ne_n_async_i)
+        if (ne_n_async_i)
+            done_ne <= 1'b0;
         else if (give && !given_up)
-            done <= 1'b1;
+            done_ne <= 1'b1;
+    always @(posedge clk_i or posedge noe_n_async_i)
+        if (noe_n_async_i)
+            done_noe <= 1'b0;
+        else if (give && !given_up)
+            done_noe <= 1'b1;
+    wire done = done_ne && done_noe;
+    assign rd_done_o = done;
+    cdc_bit u_done (.clk_i(clk_i), .bit_async_i(done), .bit_sync_o(done_sync));
 
     always @(posedge clk_i) begin
-        done_s <= {done_s[0], done};
-        seen   <= !idle && (seen || done_s[1]);
+        seen   <= !idle && (seen || done_sync);
         give   <= at_once || (ends && !bus_write_o);
 
         if (begins) begin
@@ -114,7 +118,7 @@ module fsmc_registers (
             flushing <= transfer;
         if (flushed || ends)
             bus_valid_o <= flushed;
-        if (give || (answering && (given_up || (seen && !done_s[1]))))
+        if (give || (answering && (given_up || (seen && !done_sync))))
             answering <= give;
 
         // An error, too: written without looking at NWAIT, and lost; the word under way may get its data as the high half.
@@ -135,81 +139,7 @@ module fsmc_registers (
     end
 
 `ifdef FORMAL
-    assign inside_o = {flushing, give, answering, half_read, half_write, asked_high, given_up, done_s, seen};
-    assign word_o   = word;
-
-    // A hung slave is given up when expired_i says so: the rule that a transfer waits is not broken.
-    bus_rules #(.MASTER(1), .PATIENCE(1)) u_bus_rules (
-        .clk_i(clk_i), .rst_i(rst_i), .valid_i(bus_valid_o), .write_i(bus_write_o),
-        .addr_i(bus_addr_o), .wdata_i(bus_wdata_o), .ready_i(bus_ready_i), .rdata_i(bus_rdata_i),
-        .error_i(bus_error_i)
-    );
-    reg        past = 1'b0;
-    reg [3:0]  patience;  // the bridge's, shorter
-    reg [4:0]  stuck;     // clocks of this access without an answer
-    reg [31:0] last_read; // the word that the bus gave last
-    reg [15:0] last_low;  // low half written last
-    reg        low_word;  // to the word of bus_addr_o, nothing since
-    reg        low_read;  // the access begun last reads a low half
-    reg        was_busy = 1'b0;
-    reg [40:0] write_was;
-    always @* begin
-        // Pins: NWAIT keeps the next write, and its data, away until the one before is done.
-        assume (!(busy_o && wr_i));
-        assume (!(was_busy && busy_o) || write_was == {wr_addr_i, wr_data_i});
-        // Time, as the bridge counts it.
-        assume (expired_i == patience[3]);
-    end
-    always @(posedge clk_i) begin
-        past <= 1'b1;
-        if (past)
-            assume (!rst_i);
-        else
-            assume (rst_i);
-        was_busy <= busy_o;
-        write_was <= {wr_addr_i, wr_data_i};
-        patience <= restart_o || patience[3] || rst_i ? 4'd0 : patience + 4'd1;
-        stuck    <= !rst_i && (flushing || bus_valid_o) ? stuck + 5'd1 : 5'd0;
-        if (ends && !bus_write_o)
-            last_read <= bus_rdata_i;
-        if (begins && keep)
-            last_low <= wr_data_i;
-        low_word <= !rst_i && (begins ? wr_i && !wr_addr_i[0] && wr_addr_i[24:11] == 14'd0 : low_word);
-        if (begins)
-            low_read <= !wr_i && !rd_addr_i[0];
-
-        if (past && !rst_i) begin
-            // One thing at a time, so one transfer an access, and none that nobody began.
-            assert ({2'd0, flushing} + {2'd0, bus_valid_o} + {2'd0, give} + {2'd0, answering} <= 3'd1);
-            if (bus_valid_o && !$past(bus_valid_o))
-                assert ($past(flushing));
-            if (flushing && !$past(flushing))
-                assert ($past(idle && (wr_i || reading_i)));
-            // In one piece: a high half that is kept is of the word read last; a word is written
-            // with the low half that was written to it just before.
-            assert (!half_read || (word == last_read && low_read));
-            assert (!half_read || $past(half_read) || $past(reading_i));
-            assert (half_write == low_word);
-            assert (idle || !half_write);
-            assert (!flushing && !bus_valid_o || !half_read);
-            assert (!half_write || low == last_low);
-            if ((flushing || bus_valid_o) && bus_write_o)
-                assert (low == last_low);
-            // No waiting for ever: 2 time-outs and the steps between.
-            assert (!flushing || stuck <= patience);
-            assert (!bus_valid_o || stuck <= patience + 5'd9);
-            assert (stuck <= 5'd18);
-            // Memory writes come first, unless the memory hangs.
-            if (bus_valid_o && !$past(bus_valid_o))
-                assert ($past(idle_i) || $past(expired_i));
-            // An answer is for the access that asked for it.
-            assert (!$past(given_up && !begins) || !(done && !$past(done)));
-        end
-        cover (past && bus_valid_o && bus_write_o && bus_ready_i);
-        cover (past && done && rd_addr_i[0] && $past(half_read, 3));
-        cover (past && error_o && $past(expired_i));
-        cover (past && error_memory_o);
-    end
+`include "fsmc_registers_proof.vh"
 `endif
 `ifdef COVER_POINTS
     word_read: cover property (@(posedge clk_i) ends && !bus_write_o && bus_ready_i);

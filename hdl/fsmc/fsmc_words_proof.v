@@ -59,12 +59,11 @@ module fsmc_words_proof (
     input wire        error_write_i,
     input wire [9:0]  error_addr_i,
     // inside the bridge
-    input wire        clear_i,
-    input wire [4:0]  async_i,
+    input wire [5:0]  async_i,
     input wire [9:0]  registers_i,
     input wire [31:0] word_i,
-    input wire [44:0] taken_i,
-    input wire        excused_i
+    input wire [44:0] taken_i,    // by NWE's edge: NE2, NE1, byte lanes, address, data
+    input wire [42:0] copy_i     // its copy: NE2, NE1, address, data
 );
     (* gclk *) wire step;
     wire up = resets_i > 3'd1;
@@ -169,14 +168,11 @@ module fsmc_words_proof (
     end
 
     // ---- The harness's notes and the bridge's registers; all as they are in this step
-    wire [2:0]  full_s;
-    wire        s0, s1, flushing, give, answering, half_read, half_write, asked_high, given_up, seen, full, taken;
-    wire [1:0]  done_s, by;
-    wire [24:0] taken_at;
-    wire [15:0] taken_d;
-    assign {full_s, s0, s1} = async_i;
+    wire [3:0]  turn; // of a write, on its way through cdc_pulse
+    wire        s0, s1, flushing, give, answering, half_read, half_write, asked_high, given_up, seen;
+    wire [1:0]  done_s;
+    assign {turn, s0, s1} = async_i;
     assign {flushing, give, answering, half_read, half_write, asked_high, given_up, done_s, seen} = registers_i;
-    assign {full, taken, by, taken_at, taken_d} = taken_i;
     wire idle     = !flushing && !valid_i && !give && !answering;
     wire done     = reads && nwait_n_i;
     wire writing  = (flushing || valid_i) && write_i;
@@ -205,7 +201,7 @@ module fsmc_words_proof (
         if (rst_i)
             assert (!owed && !low_may && !low_sure && !half_may && !half_sure && !asked && !got && since == 3'd5 && !given_up_i && !gone2);
         if (rst_i && resets_i != 3'd0)
-            assert (idle && !half_read && !half_write && !full && full_s == 3'd0 && !s0 && !s1 && !done_s[0]);
+            assert (idle && !half_read && !half_write && turn == 4'd0);
         assert (!let_go_i || (was_access_i && was_nwait_n_i));
         assert (since <= 3'd5 && calm_i <= (let_go_i ? 2'd2 : 2'd0));
         assert (gone2 <= given_up_i);
@@ -213,25 +209,24 @@ module fsmc_words_proof (
     end
     always @* if (up) begin
         // A write on its way through fsmc_async.
-        assert (full == (since_n < 3'd2));
         case (since_n)
-            3'd0:    assert (full_s == 3'b000 || full_s == 3'b100 || full_s == 3'b110);
-            3'd1:    assert (full_s[1:0] == 2'b01);
-            3'd2:    assert (full_s == 3'b011);
-            3'd3:    assert (full_s == 3'b110);
-            3'd4:    assert (full_s == 3'b100);
-            default: assert (full_s == 3'b000);
+            3'd0:    assert (turn == 4'b1000 || turn == 4'b1001);
+            3'd1:    assert (turn == 4'b0100);
+            3'd2:    assert (turn == 4'b0010);
+            3'd3:    assert (turn == 4'b0001);
+            default: assert (turn == 4'b0000);
         endcase
         assert (since_n == 3'd5 || rest <= since_n);
         if (pending)
-            assert (by == {by2_n, !by2_n} && taken_d == {14'd0, last_n[1:0]} &&
-                    taken_at == {13'd0, last_n[5], 8'd0, last_n[4:2]});
+            assert ({taken_i[44:43], taken_i[40:0]} == {by2_n, !by2_n, 13'd0, last_n[5], 8'd0, last_n[4:2], 14'd0, last_n[1:0]});
+        // fsmc_registers has its data until the next write.
+        if (since_n == 3'd2 || (since_n != 3'd0 && !idle && write_i))
+            assert (copy_i == {taken_i[44:43], taken_i[40:0]});
 
         // One thing at a time.
         assert ({2'd0, flushing} + {2'd0, valid_i} + {2'd0, give} + {2'd0, answering} <= 3'd1);
         assert (!pending || idle);
         assert (idle || addr_i[9:2] == 8'd0);
-        assert (!(excused_i && access_i && !ne2_i) || clear_i);
         assert (!(ne2_i && access_i && let_go_i) || nwait_n_i);
 
         // Who reads, two clocks late.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modem: XBee modem controller: AT set-up, packets from and to rings in DDR3, interrupts.
+// modem: controls an XBee modem: AT set-up, packets from and to rings in DDR3, interrupts.
 //
 // Registers: hdl/modem/modem.regs.json. Behaviour: docs/modem.md.
 
@@ -49,7 +49,7 @@ module modem #(
 );
     `include "modem_regs.vh"
 
-    // An access waits a cycle: from then on no path begins in the bus's address decoder.
+    // An access waits a cycle, so that no path beyond begins in the bus's address decoder.
     reg         turn;
     wire        reg_write, reg_read;
     wire [3:0]  reg_addr;
@@ -57,9 +57,9 @@ module modem #(
     reg  [31:0] reg_rdata;
 
     wire control     = reg_write && reg_addr == MODEM_CONTROL;
-    reg  configure, reset_modem, rings_reset; // a cycle after the write: they go far
+    reg  configure, reset_modem, rings_reset; // a cycle after the write, because their paths are long
 
-    // What software writes is kept in LUT RAM: words 0..15 as the registers, the ID with them, 28..31 the key.
+    // Settings are kept in LUT RAM: words 0..15 are the registers with the ID, 28..31 the key.
     reg  [31:0] words [0:31];
     reg  [1:0]  key_index;
     wire        key_write = reg_write && reg_addr == MODEM_KEY;
@@ -77,8 +77,9 @@ module modem #(
 
     reg         ready, reset_n, pulse_ends, encrypt;
     reg  [7:0]  framing_errors, overruns, retries, unsents;
-    reg  [1:0]  cts_n_sync;
-    wire        cts = !cts_n_sync[1];
+    wire        cts_n_sync;
+    wire        cts = !cts_n_sync;
+    cdc_bit #(.INITIAL(1'b1)) u_cts (.clk_i(clk_i), .bit_async_i(modem_cts_n_i), .bit_sync_o(cts_n_sync));
 
     // AT sequencer
     wire        at_done, at_failed, at_retried, at_tx_valid;
@@ -92,7 +93,7 @@ module modem #(
     // Rings and packets
     wire        packet_tx_valid, tx_sent, rx_push, rx_overrun;
     wire [7:0]  packet_tx_data;
-    // The packet blocks' side of the API frames; in the transparent mode the UART itself.
+    // Bytes between the packet blocks and the API frames, in transparent mode the UART.
     wire        body_valid, body_last, body_ready, in_valid, in_error, in_end, in_bad, silent;
     wire [7:0]  body_data;
     wire        unsent; // one cycle: the modem gave a packet up
@@ -101,8 +102,8 @@ module modem #(
     wire [6:0]  tx_bytes, rx_bytes;
     wire        tx_waits = !tx_free[4];
     wire        rx_waits = !rx_free[4];
-    // In time for a byte that waits while the sixteenth packet is completed, a clock late after a
-    // release. A register: it is on the way to the word that is read.
+    // High in time for a byte that waits while the sixteenth packet is completed; low a clock after a
+    // release. A register, because it is on the path to the word that is read.
     reg         rx_full;
     wire [7:0]  put_bytes = reg_wdata[7:0];
     wire        put      = reg_write && reg_addr == MODEM_TX_PUT;
@@ -119,7 +120,7 @@ module modem #(
     assign modem_reset_n_o = reset_n;
     assign uart_valid = at_tx_valid || packet_tx_valid; // never both: not ready while the set-up runs
     assign uart_data  = at_tx_data | packet_tx_data;
-    // From a register, since it addresses the word that the processor reads, too: a ring that changes waits a clock.
+    // A register, because it also addresses the word that the processor reads: a change of ring waits a clock.
     reg writes;
     always @(posedge clk_i)
         writes <= wr_valid;
@@ -210,7 +211,7 @@ module modem #(
                 .valid_o(in_valid), .end_o(in_end), .bad_o(frame_bad), .unsent_o(unsent)
             );
             assign in_error = 1'b0;
-            assign in_bad   = frame_bad || !ready; // what a set-up cut off
+            assign in_bad   = frame_bad || !ready; // a set-up cuts off the frame under way
         end else begin : g_transparent
             assign packet_tx_valid = body_valid;
             assign packet_tx_data  = body_data;
@@ -236,7 +237,7 @@ module modem #(
         .clk_i(clk_i), .rst_i(rings_reset), .tick_i(bit_tick),
         .rx_valid_i(in_valid), .rx_data_i(rx_data), .rx_error_i(in_error),
         .rx_end_i(in_end), .rx_bad_i(in_bad), .silent_o(silent),
-        .rx_idle_i(rx_idle && !modem_rts_n_o), // a pause that was asked for ends no packet
+        .rx_idle_i(rx_idle && !modem_rts_n_o), // a pause that RTS asked for ends no packet
         .wr_valid_o(wr_valid), .wr_data_o(wr_data), .wr_index_o(wr_index), .wr_be_o(wr_be),
         .wr_ready_i(wr_ready), .wr_busy_i(wr_busy),
         .full_i(rx_full), .push_o(rx_push), .overrun_o(rx_overrun)
@@ -276,7 +277,6 @@ module modem #(
     end
 
     always @(posedge clk_i) begin
-        cts_n_sync <= {cts_n_sync[0], modem_cts_n_i};
         turn       <= bus_valid_i && !turn && !rst_i;
 
         configure   <= control && reg_wdata[MODEM_CONTROL_CONFIGURE_LSB] && !rst_i;
@@ -325,7 +325,6 @@ module modem #(
             unsents        <= 8'd0;
         end
         if (rst_i) begin
-            cts_n_sync <= 2'b11;
             ready      <= 1'b0;
             reset_n    <= 1'b1;
             pulse_ends <= 1'b0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_api_rx: takes packets out of API frames: 0x81, received from a 16-bit address; and 0x89, the
+// modem_api_rx: takes packets out of API frames 0x81, received from a 16-bit address, and reads 0x89, the
 // status of a packet that was sent. Other frames are passed over; silence ends any frame.
 //
 //   7E length(2) 81 source(2) signal options, the packet, checksum      7E 00 03 89 id status checksum
@@ -18,7 +18,7 @@ module modem_api_rx (
     // packet out
     output wire       valid_o,  // data_i is the packet's
     output reg        end_o,    // one cycle: it is complete
-    output reg        bad_o,    // one cycle: what came of it is not to be used
+    output reg        bad_o,    // one cycle: its bytes so far are not to be used
     // one cycle: a packet was given up by the modem
     output reg        unsent_o
 );
@@ -31,8 +31,8 @@ module modem_api_rx (
     reg [7:0] left;     // bytes before the checksum
     reg [2:0] head;     // bytes of the head to pass over
     reg       received; // the frame is a packet
-    reg       status;   // or its status, that says
-    reg       failed;
+    reg       status;   // the frame is the status of a packet
+    reg       failed;   // the status says that it was not sent
     reg [7:0] sum;
 
     assign valid_o = valid_i && state == DATA && received;
@@ -97,22 +97,7 @@ module modem_api_rx (
     end
 
 `ifdef FORMAL
-    reg past = 1'b0;
-    initial assume (rst_i);
-    reg open = 1'b0; // bytes of a packet were given, and neither its end nor that it is bad
-    always @(posedge clk_i) begin
-        past <= 1'b1;
-        open <= !rst_i && !end_o && !bad_o && (open || valid_o);
-        if (past && !$past(rst_i)) begin
-            assert (!(end_o && bad_o));
-            // Bytes are given inside a frame only, and a frame that gave some ends, one way or the other.
-            if (open && !end_o && !bad_o)
-                assert (received && (state == DATA || state == CHECKSUM));
-            assert (!(unsent_o && end_o));
-        end
-        cover (past && !rst_i && end_o && open);
-        cover (past && !rst_i && unsent_o);
-    end
+`include "modem_api_rx_proof.vh"
 `endif
 `ifdef COVER_POINTS
     wrong_checksum: cover property (@(posedge clk_i) bad_o && state == DELIMITER);

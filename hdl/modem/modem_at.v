@@ -2,10 +2,10 @@
 //
 // modem_at: finds the modem's baud rate and sets it up by AT commands, checking each reply.
 //
-// Steps (STATUS.STEP): 1 +++  2 MY  3 DH  4 DL  5 CH  6 ID  7 EE  8 KY (only with EE)  9 RO  10 D6
-// 11 D7  12 AP  13 BD  14 CN  15 the modem changes its rate. What is done in each is in the rows of
-// modem_at_rows; this is what carries them out. Step 1 is tried at the target rate, at 9600 (the
-// factory's), then at all rates from BD 7 down and at 250,000: its wait for an answer is the guard time
+// Steps (STATUS.STEP): 1 +++  2 MY  3 DH  4 DL  5 CH  6 ID  7 EE  8 KY (only with EE)  9 RN  10 RO
+// 11 D6  12 D7  13 AP  14 BD  15 CN  0 the modem changes its rate. What is done in each is in the rows of
+// modem_at_rows; this block carries them out. Step 1 is tried at the target rate, at 9600 (the
+// factory's), then at all rates from BD 7 down and at 250,000; its wait for an answer is the guard time
 // of the next try. Any other command that is refused or not answered is sent twice again.
 
 `default_nettype none
@@ -42,12 +42,12 @@ module modem_at #(
     localparam [3:0] ENTER = 4'd1;
     localparam [3:0] FACTORY_BD = 4'd3, HIGHEST_BD = 4'd7;
 
-    reg [5:0] place;    // of the step: its row
-    reg       fresh;    // the line is not idle yet: no time passes
+    reg [5:0] place;    // row of the step
+    reg       fresh;    // the line is not idle yet, so no time passes
     reg       steady;   // the character to send is there
     reg [3:0] value;    // last digit
-    reg       tried, walks; // a command: failed once, twice; step 1: the next rate is the factory's, the next lower
-    reg       heard_o, heard_k; // of the reply: "O", "OK"
+    reg       tried, walks; // a command failed once, twice; in step 1 the next rate is the factory's, the next lower
+    reg       heard_o, heard_k; // the reply ends in "O", in "OK"
     reg       ok, refused;      // one cycle: the reply is complete
     reg [3:0] same;             // three bits each of time and guard time
     reg       counts;           // they were to be compared
@@ -61,7 +61,7 @@ module modem_at #(
     wire passed = hear && ok;
     wire missed = !passed && ((limit && time_i[9]) || (refuse && refused));
     wire ended  = settle && time_i[4];
-    wire enters = limit && !refuse; // +++
+    wire enters = limit && !refuse; // step 1: +++
     wire gives_up = missed && walks && (!enters || bd_o[3]);
     wire goes   = next || passed || missed || ended;
 
@@ -71,7 +71,7 @@ module modem_at #(
         .limit_o(limit), .refuse_o(refuse), .skip_o(skip), .settle_o(settle), .data_o(data)
     );
 
-    // The rate below; below the lowest 250,000.
+    // The next lower rate; after the lowest comes 250,000.
     wire [3:0] lower = {bd_o[2:0] == 3'd0, bd_o[2] ^ (bd_o[1:0] == 2'd0), bd_o[1] ~^ bd_o[0], ~bd_o[0]};
 
     reg [3:0] nibble;
@@ -156,51 +156,7 @@ module modem_at #(
     end
 
 `ifdef FORMAL
-    localparam [3:0] EE = 4'd7, RO = 4'd9, LAST = 4'd15;
-    reg past = 1'b0;
-    initial assume (rst_i);
-    reg [23:0] heard = 24'd0; // the last three characters since the command
-    always @(posedge clk_i) begin
-        past <= 1'b1;
-        if (send)
-            heard <= 24'd0;
-        else if (rx_valid_i)
-            heard <= {heard[15:0], rx_data_i};
-        if (past && !rst_i && !$past(rst_i)) begin
-            // A row is carried out only while busy, and one that is gone never.
-            assert (busy_o || !(send || rate || guard || hear || limit || settle));
-            if ($past(goes || start))
-                assert (!(send || rate || guard || hear || limit || settle) && fresh);
-            // A step follows its predecessor, and only after "OK" and a return came.
-            if (passed)
-                assert (heard == {"OK", 8'h0D});
-            if (hear) begin
-                assert (!send);
-                assert (!heard_o || heard[7:0] == "O");
-                assert (!heard_k || heard[15:0] == "OK");
-            end
-            if (step_o != $past(step_o))
-                assert (($past(start) && step_o == ENTER) ||
-                        ($past(passed) && (step_o == $past(step_o) + 4'd1 ||
-                                           ($past(step_o) == EE && step_o == RO))));
-            // The end is success after the last step, or failure, never both.
-            assert (!(done_o && failed_o));
-            if (done_o)
-                assert ($past(settle) && step_o == LAST);
-            if (settle)
-                assert (step_o == LAST);
-            if ($past(busy_o) && !busy_o)
-                assert (done_o || failed_o);
-            // Nothing is sent while silence is kept, and what is offered stays until it is taken.
-            if (tx_valid_o)
-                assert (send && !guard);
-            if ($past(tx_valid_o) && !$past(tx_ready_i))
-                assert (tx_valid_o && $stable(tx_data_o));
-        end
-        cover (past && !rst_i && step_o == 4'd3);
-        cover (past && !rst_i && retried_o && !enters && step_o == 4'd2);
-        cover (past && !rst_i && digit && taken);
-    end
+`include "modem_at_proof.vh"
 `endif
 `ifdef COVER_POINTS
     tries_again: cover property (@(posedge clk_i) retried_o && !enters);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_at_rows: the AT set-up as rows in block RAM: what modem_at does at each place of each step.
+// modem_at_rows: holds the AT set-up as rows in block RAM: what modem_at does at each place of each step.
 //
-// A row has flags and eight bits of data: a character, or {word of the settings, its nibble}. Flags 0: nothing to do.
+// A row has flags and eight bits of data: a character, or {word of the settings, its nibble}. Without flags it does nothing.
 
 `default_nettype none
 
@@ -13,14 +13,14 @@ module modem_at_rows #(
     input  wire       clear_i, // the next row is 0
     input  wire [3:0] step_i,
     input  wire [5:0] place_i,
-    // of the row, a cycle later
-    output wire       send_o,   // a character ...
-    output wire       digit_o,  // ... that is the hex digit of a nibble
-    output wire       rate_o,   // the target's rate is taken
+    // the row, a cycle later
+    output wire       send_o,   // send a character
+    output wire       digit_o,  // the character is the hex digit of a nibble
+    output wire       rate_o,   // take the target's rate
     output wire       guard_o,  // wait for the guard time
     output wire       hear_o,   // OK ends the step
     output wire       limit_o,  // half a second without an answer is a failure
-    output wire       refuse_o, // so is another answer
+    output wire       refuse_o, // another answer is a failure, too
     output wire       skip_o,   // the next step is left out if the last digit was even
     output wire       settle_o, // wait until the modem has changed its rate, and end
     output wire [7:0] data_o
@@ -29,7 +29,7 @@ module modem_at_rows #(
 
     localparam [8:0] SEND = 9'd1,  DIGIT = 9'd2,  RATE   = 9'd4,  GUARD = 9'd8,
                      HEAR = 9'd16, LIMIT = 9'd32, REFUSE = 9'd64, SKIP  = 9'd128, SETTLE = 9'd256;
-    localparam KEY = 8, LAST = 15; // steps
+    localparam KEY = 8, RATE_OF = 14, LEAVE = 15; // steps; 0 is the one after LEAVE
     localparam [7:0] SETTINGS = {1'b0, MODEM_BAUD, 3'd0}; // rate and guard time
 
     // The letters after "AT" of a command: two or, with a constant value, three.
@@ -42,11 +42,12 @@ module modem_at_rows #(
             6:       letters = {8'd0, "ID"};
             7:       letters = {8'd0, "EE"};
             KEY:     letters = {8'd0, "KY"};
-            9:       letters = "RO3";
-            10:      letters = "D61"; // the modem heeds RTS
-            11:      letters = "D71"; // and drives CTS
-            12:      letters = API != 0 ? "AP1" : "AP0";
-            13:      letters = {8'd0, "BD"};
+            9:       letters = "RN3"; // a random wait of up to seven units before each try
+            10:      letters = "RO3";
+            11:      letters = "D61"; // the modem heeds RTS
+            12:      letters = "D71"; // the modem drives CTS
+            13:      letters = API != 0 ? "AP1" : "AP0";
+            RATE_OF: letters = {8'd0, "BD"};
             default: letters = {8'd0, "CN"};
         endcase
     endfunction
@@ -61,14 +62,14 @@ module modem_at_rows #(
         endcase
     endfunction
 
-    // Its value: so many digits of this word from this nibble on; the key is in four words.
+    // A command's value is so many digits of this word from this nibble on; the key is in four words.
     function integer digit_count(input integer step);
         case (step)
             2, 4, 6: digit_count = 4;
             5:       digit_count = 2;
             7:       digit_count = 1;
             KEY:     digit_count = 32;
-            13:      digit_count = 5;
+            RATE_OF: digit_count = 5;
             default: digit_count = 0;
         endcase
     endfunction
@@ -98,7 +99,7 @@ module modem_at_rows #(
         rows[64 + 4] = {GUARD | HEAR, SETTINGS};
         rows[64 + 5] = {HEAR | LIMIT, 8'd0};
         // "AT", letters, digits, return; then the answer
-        for (i = 2; i < LAST; i = i + 1) begin
+        for (i = 2; i <= LEAVE; i = i + 1) begin
             rows[64*i]     = {SEND, "A"};
             rows[64*i + 1] = {SEND, "T"};
             for (k = 0; k < letter_count(i); k = k + 1)
@@ -109,7 +110,7 @@ module modem_at_rows #(
             rows[64*i + 3 + letter_count(i) + digit_count(i)] =
                 {HEAR | LIMIT | REFUSE | (i == KEY - 1 ? SKIP : 9'd0), 8'd0};
         end
-        rows[64*LAST] = {SETTLE | RATE, SETTINGS};
+        rows[0] = {SETTLE | RATE, SETTINGS};
     end
 
     reg [16:0] now;

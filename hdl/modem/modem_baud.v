@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_baud: eight ticks a bit time, from a phase accumulator; rates below 38400 are 38400 / 2**n.
+// modem_baud: gives eight ticks a bit time, from a phase accumulator; rates below 38400 are 38400 / 2**n.
 //
 // Error of the mean rate: below 0.1 % for every code from 2 to 100 MHz.
 //
@@ -28,12 +28,12 @@ module modem_baud #(
     reg  [WIDTH:0]   phase; // its highest bit is the carry
     reg  [4:0]       count; // ticks of 38400 baud
 
-    // Not a case: Yosys would make a ROM of it, and put registers before it. Minus the step: only in a
-    // difference is the phase sure to be the operand that the carry chain takes without a LUT.
+    // A chain of conditions, because Yosys makes a ROM of a case and puts registers before it. The step is
+    // negative: only in a difference is the phase sure to be the operand that the carry chain takes without a LUT.
     localparam [WIDTH:0] FULL = 0;
     wire [WIDTH:0] minus = bd_i[3] ? FULL - BD8[WIDTH:0] : bd_i == 4'd7 ? FULL - BD7[WIDTH:0]
                          : bd_i == 4'd6 ? FULL - BD6[WIDTH:0] : FULL - BASE[WIDTH:0];
-    // Bits of count that must be 0.
+    // Bits of count that must be 0 for a tick.
     wire [4:0] hide = {bd_i < 4'd1, bd_i < 4'd2, bd_i < 4'd3, bd_i < 4'd4, bd_i < 4'd5};
 
     always @(posedge clk_i) begin

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_npi: one memory port for the receiver's and the transmitter's bytes, an access each.
+// modem_npi: shares one memory port between receiver and transmitter, an access for each byte.
 //
-// A byte an access costs no word buffers, and little time: 22,000 of them a second at most, in both
-// directions together, are below one percent of what the memory can do. Writes go first: the line does
-// not wait. A request that was taken is carried out, whatever becomes of the packet.
+// Accesses of a byte need no word buffers and cost little time: 22,000 a second at most, in both directions
+// together, are below one percent of what the memory can do. Writes go first, because the line does not
+// wait. A request that was taken is carried out, whatever becomes of the packet.
 
 `default_nettype none
 
 module modem_npi (
     input  wire        clk_i,
     input  wire        rst_i,
-    // base address of the ring (receive ring while wr_valid_i, else transmit ring), when it can be read
+    // base address of the ring (the receive ring while wr_valid_i, else the transmit ring), when it can be read
     input  wire [31:11] base_i,
     input  wire        base_valid_i,
     // write a byte: {buffer, word in it}, place in the word
@@ -20,8 +20,8 @@ module modem_npi (
     input  wire [7:0]  wr_be_i,
     input  wire [7:0]  wr_data_i,
     output wire        wr_ready_o,   // taken
-    output wire        wr_busy_o,    // one that was taken is not acknowledged yet
-    // read a byte: one that is withdrawn for a cycle is never done
+    output wire        wr_busy_o,    // a write that was taken is not acknowledged yet
+    // read a byte; a read that is withdrawn for a cycle is never done
     input  wire        rd_valid_i,
     input  wire [10:0] rd_addr_i,
     output wire        rd_done_o,    // one cycle, with the data
@@ -93,42 +93,7 @@ module modem_npi (
     end
 
 `ifdef FORMAL
-    reg past = 1'b0;
-    initial assume (rst_i);
-    reg [4:0] words = 5'd0; // pushed and not acknowledged
-    reg       owed  = 1'b0; // a word was asked for and has not come
-    always @(posedge clk_i) begin
-        past <= 1'b1;
-        // The memory answers a request only, and gives a word only for a read that it took.
-        assume (!npi_addr_ack_i || npi_addr_req_o);
-        assume (npi_rd_empty_i || owed);
-        if (npi_addr_req_o && npi_addr_ack_i && npi_rnw_o)
-            owed <= 1'b1;
-        else if (npi_rd_pop_o)
-            owed <= 1'b0;
-        words <= words + npi_wr_push_o - (npi_addr_req_o && npi_addr_ack_i && !npi_rnw_o);
-        if (rst_i) begin
-            words <= 5'd0;
-            owed  <= 1'b0;
-        end
-        if (past && !rst_i && !$past(rst_i)) begin
-            // A request stays, with its address, until it is acknowledged.
-            if ($past(npi_addr_req_o) && !$past(npi_addr_ack_i))
-                assert (npi_addr_req_o && $stable(npi_addr_o) && $stable(npi_rnw_o));
-            // One word of data before each write, never another.
-            assert (words == (state == WRITE));
-            assert (owed == (state == WAIT_WORD));
-            assert (!(npi_rd_pop_o && npi_rd_empty_i));
-            // A read that was withdrawn is never done, a write that was taken is requested.
-            if (rd_done_o)
-                assert ($past(rd_valid_i) && rd_valid_i && $past(wanted));
-            if ($past(wr_ready_o))
-                assert (wr_busy_o && npi_addr_o[10:3] == $past(wr_addr_i));
-        end
-        cover (past && !rst_i && wr_busy_o && npi_addr_ack_i);
-        cover (past && !rst_i && rd_done_o);
-        cover (past && !rst_i && npi_rd_pop_o && !rd_done_o);
-    end
+`include "modem_npi_proof.vh"
 `endif
 `ifdef COVER_POINTS
     write_goes_first: cover property (@(posedge clk_i) start && wr_valid_i && rd_valid_i);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_ring: sixteen buffers in turn: which are in use, and how many bytes each holds.
+// modem_ring: keeps which of sixteen buffers are in use, in turn, and how many bytes each holds.
 //
 // A push while full and a pop while empty are the user's errors; modem.v excludes them.
 
@@ -14,12 +14,12 @@ module modem_ring (
     input  wire       pop_i,   // the oldest is free again
     output wire [3:0] next_o,
     output wire [3:0] oldest_o,
-    output wire [6:0] bytes_o, // of the oldest
+    output wire [6:0] bytes_o, // bytes of the oldest
     output wire [4:0] free_o   // 0..16 buffers are not in use
 );
     reg [6:0] bytes [0:15];
-    reg [4:0] head; // of the next turn: sixteen beyond the oldest
-    reg [4:0] tail;
+    reg [4:0] head; // the oldest buffer, a turn (sixteen) ahead
+    reg [4:0] tail; // the next buffer to fill
 
     assign next_o   = tail[3:0];
     assign oldest_o = head[3:0];
@@ -38,38 +38,7 @@ module modem_ring (
     end
 
 `ifdef FORMAL
-    reg past = 1'b0;
-    initial assume (rst_i);
-    // Any one turn of any one buffer: its length comes out as it went in, in its place.
-    (* anyconst *) reg [4:0] place;
-    reg [6:0] length;
-    reg       inside = 1'b0;
-    wire [4:0] used = 5'd16 - free_o;
-    wire [4:0] oldest = head - 5'd16;
-    always @(posedge clk_i) begin
-        past <= 1'b1;
-        assume (!(push_i && free_o == 5'd0));
-        assume (!(pop_i && free_o == 5'd16));
-        if (push_i && tail == place) begin
-            length <= bytes_i;
-            inside <= 1'b1;
-        end
-        if ((pop_i && oldest == place) || rst_i)
-            inside <= 1'b0;
-        if (past) begin
-            assert (free_o <= 5'd16);
-            if ($past(rst_i))
-                assert (free_o == 5'd16);
-            if (inside) begin
-                assert ((place - oldest) < used);
-                assert (bytes[place[3:0]] == length);
-            end
-            if (inside && oldest == place)
-                assert (bytes_o == length && oldest_o == place[3:0]);
-            cover (free_o == 5'd0);
-            cover ($past(free_o) == 5'd0 && free_o == 5'd1 && inside);
-        end
-    end
+`include "modem_ring_proof.vh"
 `endif
 `ifdef COVER_POINTS
     is_full: cover property (@(posedge clk_i) free_o == 5'd0);

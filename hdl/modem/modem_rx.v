@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_rx: writes what comes from the modem into the receive ring, a packet a buffer.
+// modem_rx: writes bytes from the modem into the receive ring, a packet a buffer.
 //
 // A packet ends after the length that its first byte announces ((byte & 127) + 5, if that is at most
 // 100), at 100 bytes, after 3.2 characters of silence, or at a framing error; it is in memory before it
@@ -35,10 +35,10 @@ module modem_rx #(
     output wire       push_o,     // the packet is complete: wr_index_o bytes
     output reg        overrun_o   // one cycle: dropped
 );
-    reg [7:0] length;   // announced; what is above 100 does not count
+    reg [7:0] length;   // bytes announced; a number above 100 does not count
     reg [8:0] silence;  // ticks; 256 are 3.2 characters
     reg       pending;  // wr_data_o waits
-    reg       ending;   // the last byte is in wr_data_o or beyond
+    reg       ending;   // the last byte is in wr_data_o or written
     reg       dropping; // no buffer for this packet, or a byte of it was lost
     reg       deaf;     // bytes were lost: nothing is taken until there is silence
 
@@ -50,7 +50,7 @@ module modem_rx #(
     wire       silent  = silence[8];
     wire       late    = (rx_valid_i || rx_error_i || rx_end_i || rx_bad_i) && pending && !taken && !deaf;
     wire       done    = ending && !wr_busy_i;
-    // The index is at most 100: four of its bits tell 99.
+    // The index is at most 100, so four of its bits tell 99.
     wire       longest = (wr_index_o[6] && wr_index_o[5] && wr_index_o[1] && wr_index_o[0]) ||
                          (API == 0 && !first && {1'b0, count} == length);
     wire       cut     = API == 0 ? rx_error_i || silent : rx_end_i || rx_bad_i;
@@ -95,7 +95,7 @@ module modem_rx #(
         if (silent)
             deaf <= 1'b0;
         if (late) begin
-            // The byte before still waits: it is lost, and its packet, if that is not complete.
+            // The byte before still waits and is lost; so is its packet, if that is not complete.
             deaf    <= 1'b1;
             pending <= 1'b0;
             if (!ending) begin
@@ -116,54 +116,7 @@ module modem_rx #(
     end
 
 `ifdef FORMAL
-    localparam [6:0] LONGEST = 7'd100;
-    reg past = 1'b0;
-    initial assume (rst_i);
-    (* anyseq *) reg acknowledge;
-    reg       owed  = 1'b0; // a write was taken and is not acknowledged
-    reg [6:0] wrote = 7'd0; // bytes of this packet in memory or on the way
-    reg       lost  = 1'b0; // a byte of this packet was replaced before it was taken
-    reg [7:0] latest = 8'd0; // the latest
-    wire      write = wr_valid_o && wr_ready_i;
-    always @(posedge clk_i) begin
-        past <= 1'b1;
-        // modem_npi: one write at a time, whatever becomes of the packet.
-        assume (!wr_ready_i || (wr_valid_o && !owed));
-        assume (wr_busy_i == owed);
-        owed <= write || (owed && !acknowledge);
-        // modem.v: only a packet fills the ring, and that is known a clock later.
-        if (past)
-            assume (!full_i || $past(full_i) || $past(push_o));
-        wrote <= wrote + write;
-        if (rx_valid_i && !deaf)
-            latest <= rx_data_i;
-        if (rx_valid_i && !deaf && pending && !taken && !ending)
-            lost <= 1'b1;
-        if (done || rst_i) begin
-            wrote <= 7'd0;
-            lost  <= 1'b0;
-        end
-        if (past && !rst_i && !$past(rst_i)) begin
-            // An unreleased packet is never overwritten: nothing is written while the ring is full, and
-            // nothing beyond the longest packet; bytes go in turn, each to its place.
-            assert (!wr_valid_o || (!full_i && wr_index_o < LONGEST));
-            assert (wr_be_o == 8'd1 << wr_index_o[2:0]);
-            assert (!wr_valid_o || (wr_data_o == latest && wr_index_o == wrote && !lost));
-            // What is published was written whole, was acknowledged, and has a free buffer.
-            if (push_o)
-                assert (!owed && !wr_valid_o && !full_i && !lost &&
-                        wrote == wr_index_o && wrote != 7'd0 && wrote <= LONGEST);
-            // A dropped packet counts, once, and is never published.
-            assert (!(push_o && done && dropping));
-            assert (!$past(done && dropping) || overrun_o);
-            assert (!overrun_o || $past(late || dropping));
-            assert (!(overrun_o && $past(push_o && !late)));
-            assert (!lost || (ending && dropping));
-        end
-        cover (past && !rst_i && push_o && wrote == 7'd3);
-        cover (past && !rst_i && overrun_o && $past(full_i));
-        cover (past && !rst_i && lost && owed);
-    end
+`include "modem_rx_proof.vh"
 `endif
 `ifdef COVER_POINTS
     no_buffer: cover property (@(posedge clk_i) begins && full_i);

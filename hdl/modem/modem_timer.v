@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_timer: units of a millisecond and a sixteenth: the modem's clock is not ours.
+// modem_timer: counts units of a millisecond and a sixteenth: the margin covers the modem's own clock.
 
 `default_nettype none
 

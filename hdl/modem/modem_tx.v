@@ -2,8 +2,8 @@
 //
 // modem_tx: takes packets out of the transmit ring and sends them, each as one RF packet.
 //
-// After a packet of fewer than 100 bytes (95 where the modem encrypts) the line rests for four characters:
-// more than the modem's RO of 3, so that it sends the packet off. One of 100 (95) leaves by itself.
+// After a packet of fewer than 100 bytes (95 where the modem encrypts) the line rests for four characters.
+// That exceeds the modem's RO of 3, so the modem sends the packet off. One of 100 (95) leaves by itself.
 
 `default_nettype none
 
@@ -13,7 +13,7 @@ module modem_tx #(
     input  wire       clk_i,
     input  wire       rst_i,        // also drops the packet under way
     input  wire       enable_i,     // the modem is set up
-    input  wire       encrypt_i,    // and encrypts
+    input  wire       encrypt_i,    // the modem encrypts
     // oldest packet of the ring
     input  wire       packet_valid_i,
     input  wire [6:0] packet_bytes_i,
@@ -79,44 +79,7 @@ module modem_tx #(
     end
 
 `ifdef FORMAL
-    reg past = 1'b0;
-    initial assume (rst_i);
-    reg [6:0] out  = 7'd0; // bytes of this packet that have left
-    reg [7:0] read = 8'd0; // the latest byte read
-    wire      left = tx_valid_o && tx_ready_i;
-    always @(posedge clk_i) begin
-        past <= 1'b1;
-        // The ring keeps its oldest packet until it is sent; 1..100 bytes (modem.v).
-        if (past && $past(packet_valid_i) && !$past(sent_o) && !$past(rst_i))
-            assume (packet_valid_i && $stable(packet_bytes_i));
-        assume (packet_bytes_i >= 7'd1 && packet_bytes_i <= 7'd100);
-        assume (!rd_done_i || rd_valid_o); // modem_npi
-        out <= out + left;
-        if (rd_done_i)
-            read <= rd_data_i;
-        if (sent_o || begin_anew)
-            out <= 7'd0;
-        if (past && !rst_i && !$past(begin_anew)) begin
-            // A byte is read from a packet of the ring, in turn, once, never beyond its end.
-            assert (!rd_valid_o || (packet_valid_i && rd_index_o == out && out < packet_bytes_i));
-            assert (!tx_valid_o || (rd_index_o == out + 7'd1 && tx_last_o == (rd_index_o == packet_bytes_i)));
-            if (tx_valid_o)
-                assert (tx_data_o == read);
-            // Its buffer is released once, when all its bytes have left.
-            if (sent_o)
-                assert (packet_valid_i && out == packet_bytes_i && !$past(sent_o));
-        end
-        if (past) // what the proof rests on: which byte each state is at
-            case (state)
-                FETCH:   assert (sent_o ? packet_valid_i && rd_index_o == 7'd0 && out == packet_bytes_i :
-                                 rd_index_o == out && (out == 7'd0 || (packet_valid_i && out < packet_bytes_i)));
-                SEND:    assert (!sent_o && packet_valid_i && rd_index_o == out + 7'd1 && out < packet_bytes_i);
-                REST:    assert (!sent_o && packet_valid_i && rd_index_o == out && out == packet_bytes_i);
-                default: assert (0);
-            endcase
-        cover (past && !rst_i && out == 7'd3 && state == REST);
-        cover (past && !rst_i && tx_valid_o && !tx_last_o && rd_index_o == 7'd3);
-    end
+`include "modem_tx_proof.vh"
 `endif
 `ifdef COVER_POINTS
     modem_takes_none: cover property (@(posedge clk_i) state == SEND && !cts_i);

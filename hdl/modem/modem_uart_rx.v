@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_uart_rx: bytes in, 8N1, eight ticks a bit, each bit sampled within an eighth before its middle.
+// modem_uart_rx: receives bytes, 8N1, eight ticks a bit; samples each bit within an eighth before its middle.
 
 `default_nettype none
 
@@ -16,21 +16,21 @@ module modem_uart_rx (
     output reg        framing_error_o, // the stop bit was low: the byte is dropped
     output wire       idle_o           // no byte is on the line
 );
-    reg [1:0] sync;
+    wire      rxd_sync;
+    cdc_bit #(.INITIAL(1'b1)) u_rxd (.clk_i(clk_i), .bit_async_i(rxd_i), .bit_sync_o(rxd_sync));
     reg [2:0] ticks;
-    reg [8:0] bits;   // enter at the top, above a 1 that reaches the bottom with the eighth
-    reg       idle;   // no start bit was seen
-    reg       started; // ... and found to be one
-    reg       armed;  // the line has been high since the last byte
+    reg [8:0] bits;    // enter at the top, above a 1 that reaches the bottom with the eighth
+    reg       idle;    // no start bit was seen
+    reg       started; // the start bit was low in its middle, too
+    reg       armed;   // the line has been high since the last byte
 
-    wire line   = sync[1];
+    wire line   = rxd_sync;
     wire sample = tick_i && ticks == 3'd7;
 
     assign data_o = bits[8:1];
     assign idle_o = idle && line;
 
     always @(posedge clk_i) begin
-        sync            <= {sync[0], rxd_i};
         valid_o         <= 1'b0;
         framing_error_o <= 1'b0;
         if (tick_i)
@@ -55,53 +55,16 @@ module modem_uart_rx (
             end
         end
         if (rst_i) begin
-            sync   <= 2'b11;
-            idle   <= 1'b1;
-            started <= 1'b0;
-            armed  <= 1'b0;
+            idle            <= 1'b1;
+            started         <= 1'b0;
+            armed           <= 1'b0;
             valid_o         <= 1'b0;
             framing_error_o <= 1'b0;
         end
     end
 
 `ifdef FORMAL
-    // A sender of the same rate, a tick a clock: its byte comes, once, in the stop bit.
-    reg past = 1'b0;
-    wire busy = !idle;
-    initial assume (rst_i);
-    (* anyconst *) reg [7:0] sent;
-    reg [6:0] age = 7'd127; // ticks since the start bit's edge at sync[0]; 127: not yet
-    wire [9:0] frame = {1'b1, sent, 1'b0};
-    wire [6:0] before = age - 7'd1;
-    wire [3:0] got = (age - 7'd6) >> 3; // data bits sampled
-    always @(posedge clk_i) begin
-        past <= 1'b1;
-        assume (tick_i);
-        assume (!past || !rst_i);
-        assume (sync[0] == (age < 7'd80 ? frame[age[6:3]] : 1'b1));
-        if (age == 7'd127 && past && !rst_i && armed)
-            age <= 7'd0;
-        else if (age < 7'd90)
-            age <= age + 7'd1;
-        else
-            age <= 7'd127;
-        if (past) begin
-            assert (!framing_error_o);
-            assert (valid_o == (age == 7'd78));
-            if (valid_o)
-                assert (data_o == sent);
-            // The state in each clock of a frame, so that the proof need not find it.
-            assert (age <= 7'd90 || age == 7'd127);
-            assert (line == (age >= 7'd1 && age <= 7'd80 ? frame[before[6:3]] : 1'b1));
-            assert (busy == (age >= 7'd2 && age <= 7'd77));
-            if (busy)
-                assert (ticks == age[2:0] + 3'd2 && started == (age >= 7'd6));
-            if (busy && started)
-                assert (bits == (({1'b0, sent} << (4'd9 - got)) | (9'h100 >> got)));
-            assert (armed || age == 7'd127 || age > 7'd77);
-        end
-        cover (past && valid_o && sent == 8'h3C);
-    end
+`include "modem_uart_rx_proof.vh"
 `endif
 `ifdef COVER_POINTS
     framing_error: cover property (@(posedge clk_i) framing_error_o);

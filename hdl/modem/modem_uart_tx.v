@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_uart_tx: bytes out, 8N1, eight ticks a bit.
+// modem_uart_tx: sends bytes, 8N1, eight ticks a bit.
 
 `default_nettype none
 
@@ -16,11 +16,11 @@ module modem_uart_tx (
     output wire       txd_o
 );
     reg [2:0] ticks;
-    reg [8:0] bits;  // still to come: data below a 1, the stop bit, that ends them
+    reg [8:0] bits;  // bits to come: data below the stop bit's 1, which ends them
     reg       line;
     reg       busy;
 
-    // Bytes follow each other without a gap: a tick more a byte would cost 1.2 % of the line.
+    // Bytes follow each other without a gap; a tick more a byte would cost 1.2 % of the line.
     wire ends = busy && ticks == 3'd7 && bits == 9'd0;
     assign ready_o = tick_i && (!busy || ends);
     assign txd_o   = line;
@@ -48,29 +48,7 @@ module modem_uart_tx (
     end
 
 `ifdef FORMAL
-    // Any byte: what was taken is on the line: a start bit, eight bits, a stop bit, each eight ticks.
-    reg past = 1'b0;
-    initial assume (rst_i);
-    reg [7:0] sent;
-    reg [6:0] age = 7'd80; // ticks since the byte was taken; 80: it is over
-    wire [9:0] frame = {1'b1, sent, 1'b0};
-    always @(posedge clk_i) begin
-        past <= 1'b1;
-        if (rst_i) begin
-            age <= 7'd80;
-        end else if (valid_i && ready_o) begin
-            sent <= data_i;
-            age  <= 7'd0;
-        end else if (tick_i && age != 7'd80) begin
-            age <= age + 7'd1;
-        end
-        if (past) begin
-            assert (ready_o == (tick_i && age >= 7'd79));
-            assert (txd_o == (age == 7'd80 ? 1'b1 : frame[age[6:3]]));
-        end
-        cover (past && age == 7'd80 && $past(age) == 7'd79 && sent == 8'hA5);
-        cover (past && age == 7'd0 && $past(age) == 7'd79); // the next byte follows at once
-    end
+`include "modem_uart_tx_proof.vh"
 `endif
 `ifdef COVER_POINTS
     next_byte_at_once: cover property (@(posedge clk_i) tick_i && ends && valid_i);

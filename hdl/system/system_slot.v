@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// system_slot: slot 0: who this chip is, who interrupts, the DDR3 page, bus errors, the cycle count.
+// system_slot: slot 0, with the chip's identity, interrupt lines, the DDR3 page, bus errors and the cycle count.
 //
 // Registers: hdl/system/system.regs.json.
 
@@ -26,8 +26,8 @@ module system_slot #(
     // FSMC bridge
     output reg  [5:0]       page_o,         // DDR3 address bits 31..26
     input  wire             access_error_i, // one cycle
-    input  wire             error_memory_i, // of memory: shown as 0x3FF; else
-    input  wire [9:0]       error_addr_i,   // of this register
+    input  wire             error_memory_i, // the error is of memory, and shown as 0x3FF
+    input  wire [9:0]       error_addr_i,   // the register of the error, otherwise
     input  wire             error_write_i,
     input  wire             late_i
 );
@@ -105,27 +105,7 @@ module system_slot #(
     end
 
 `ifdef FORMAL
-    reg past = 1'b0;
-    initial assume (rst_i);
-    always @(posedge clk_i) begin
-        past <= 1'b1;
-        if (past && !rst_i && !$past(rst_i)) begin
-            // The place shown is that of the oldest error since the event was last clear.
-            if ($past(access_error_i && (!error_open || clearing)))
-                assert ({error_addr, error_write} == $past({error_addr_i | {10{error_memory_i}}, error_write_i}));
-            else
-                assert ({error_addr, error_write} == $past({error_addr, error_write}));
-            assert (error_open == ($past(access_error_i) || $past(error_open && !clearing)));
-            if (!$past(reg_read && reg_addr == SYSTEM_CYCLES_LO))
-                assert (cycles_high_latched == $past(cycles_high_latched));
-        end
-        cover (past && !rst_i && $past(access_error_i && clearing && error_open));
-    end
-    always @* begin
-        assert (irq_o == (own_irq || |slot_irq_i));
-        if (bus_valid_i && !bus_write_i && !rst_i && bus_addr_i == SYSTEM_EVENT)
-            assert ({bus_rdata_o[31:2], bus_rdata_o[0]} == {30'd0, error_open}); // event and place tell of the same error
-    end
+`include "system_slot_proof.vh"
 `endif
 `ifdef COVER_POINTS
     first_error_is_kept: cover property (@(posedge clk_i) access_error_i && error_open && !clearing);

@@ -21,9 +21,9 @@ static void set(const Ascon_Core* self, U32 word, U32 value) {
     FSMC_write(self->core.slot, word, value);
 }
 
-Hw_Status Ascon_Core_init(Ascon_Core* self, U32 slot, U32 memory, const Hw_Seam* seam,
+Hw_Status Ascon_Core_init(Ascon_Core* self, U32 slot, U32 memory, const Hw_Port* port,
                           void* context) {
-    Hw_Status status = Hw_Core_init(&self->core, slot, ASCON_ID_VALUE, seam, context);
+    Hw_Status status = Hw_Core_init(&self->core, slot, ASCON_ID_VALUE, port, context);
     if (status != HW_OK)
         return status;
     self->memory = memory;
@@ -78,7 +78,7 @@ static Ice_Status run(Ascon_Core* self, U32 control, const Cores_Bytes* associat
     self->core.done[REFUSED] = 0;
     set(self, ASCON_CONTROL, control);
     while (!self->core.done[DONE] && !self->core.done[REFUSED])
-        if (!self->core.seam->wait(self->core.context, DONE, TIMEOUT_MS) &&
+        if (!self->core.port->wait(self->core.context, DONE, TIMEOUT_MS) &&
             !self->core.done[DONE] && !self->core.done[REFUSED]) {
             set(self, ASCON_CONTROL, ASCON_CONTROL_ABORT_MASK);
             return ICE_TIMEOUT;

@@ -12,7 +12,7 @@ extern "C" {
 
 namespace {
 
-// What a servant only reads.
+// A list as the sequence that the servant reads.
 template <class List> Cores_Bytes bytes(const List& list) {
     return {static_cast<Ice_Int>(list.size()), const_cast<uint8_t*>(list.data())};
 }
@@ -21,7 +21,7 @@ TEST(AsconServant, SealsOpensAndHashes) {
     CoreSlot<Vascon_slot> slot;
     Random random(testSeed());
     static Ascon_Core core;
-    ASSERT_EQ(Ascon_Core_init(&core, coreSlot, coreMemory, &slot.seam, &slot), HW_OK);
+    ASSERT_EQ(Ascon_Core_init(&core, coreSlot, coreMemory, &slot.port, &slot), HW_OK);
     slot.core_ = &core.core;
     for (size_t size : {0u, 1u, 16u, 100u, 1024u}) {
         auto key = sixteen(static_cast<uint8_t>(random.next())),
@@ -60,7 +60,7 @@ TEST(AsconServant, SealsOpensAndHashes) {
 TEST(AsconServant, WhileTheCoreHangsNothingIsTakenForAnAnswer) {
     CoreSlot<Vascon_slot> slot;
     static Ascon_Core core;
-    ASSERT_EQ(Ascon_Core_init(&core, coreSlot, coreMemory, &slot.seam, &slot), HW_OK);
+    ASSERT_EQ(Ascon_Core_init(&core, coreSlot, coreMemory, &slot.port, &slot), HW_OK);
     slot.core_ = &core.core;
     auto key = sixteen(1), other = sixteen(2), nonce = sixteen(3);
     auto message = counted(7, 40);

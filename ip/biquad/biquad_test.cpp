@@ -75,7 +75,7 @@ TEST_F(BiquadCore, IsAButterworthLowPass) {
             }
         }
         EXPECT_NEAR(most / 20000, gain, 0.01) << hertz << " Hz";
-        // Of a gain of 1/(1 + a1 + a2) = 46 for what coefficients are off by, at most 2^-17.
+        // The coefficients are off by 2^-17 at most, times a gain of 1/(1 + a1 + a2) = 46.
         EXPECT_LT(difference, 20000 * 5 * 46.0 / 131072) << hertz << " Hz";
     }
 }

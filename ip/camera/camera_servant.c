@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * camera_servant: Cores::Camera by the core's registers through the FSMC; tells the application
- * where frames are.
+ * camera_servant: Cores::Camera by the core's registers through the FSMC; says where frames are
+ * (Hw_Frames).
  */
 #include "camera_servant.h"
 #include "camera_regs.h"
 #include "fsmc.h"
-#include "uav.h"
 
 #define STOP_READS 1000 /* of STATUS: a burst under way takes less than one of them */
 
@@ -18,12 +17,12 @@ static void set(const Camera_Core* self, U32 word, U32 value) {
     FSMC_write(self->core.slot, word, value);
 }
 
-Hw_Status Camera_Core_init(Camera_Core* self, U32 slot, U32 memory, const Hw_Seam* seam,
+Hw_Status Camera_Core_init(Camera_Core* self, U32 slot, U32 memory, const Hw_Port* port,
                            void* context) {
-    Hw_Status status = Hw_Core_init(&self->core, slot, CAMERA_ID_VALUE, seam, context);
+    Hw_Status status = Hw_Core_init(&self->core, slot, CAMERA_ID_VALUE, port, context);
     if (status != HW_OK)
         return status;
-    self->memory = memory;
+    self->core.memory = memory;
     set(self, CAMERA_MASK, 0); /* the core counts frames, and nobody waits for one */
     Cores_Camera_init(&self->servant);
     return HW_OK;
@@ -41,7 +40,7 @@ U32 Camera_Core_poll(Camera_Core* self, U32 nowMs) {
 
 static Ice_Status stop(Camera_Core* self) {
     int i;
-    UAV_setFrames(0, 0, 0, 0);
+    self->core.port->frames->width = 0;
     set(self, CAMERA_CONTROL, CAMERA_CONTROL_STOP_MASK);
     for (i = 0; i < STOP_READS; ++i)
         if (!(get(self, CAMERA_STATUS) & CAMERA_STATUS_ACTIVE_MASK))
@@ -52,6 +51,7 @@ static Ice_Status stop(Camera_Core* self) {
 Ice_Status Cores_Camera_capture(Cores_CameraPtr servant, Ice_Short width, Ice_Short height,
                                 const Ice_Current* current) {
     Camera_Core* self = (Camera_Core*)servant;
+    Hw_Frames* frames = self->core.port->frames;
     U32 stride;
     Ice_Status status = stop(self);
     (void)current;
@@ -65,12 +65,15 @@ Ice_Status Cores_Camera_capture(Cores_CameraPtr servant, Ice_Short width, Ice_Sh
         return ICE_UNKNOWN_EXCEPTION;
     set(self, CAMERA_SIZE,
         (U32)width << CAMERA_SIZE_WIDTH_LSB | (U32)height << CAMERA_SIZE_HEIGHT_LSB);
-    set(self, CAMERA_BASE, self->memory);
+    set(self, CAMERA_BASE, self->core.memory);
     set(self, CAMERA_STRIDE, stride);
     set(self, CAMERA_CONTROL, CAMERA_CONTROL_START_MASK);
     if (!(get(self, CAMERA_STATUS) & CAMERA_STATUS_ACTIVE_MASK))
         return ICE_UNKNOWN_EXCEPTION;
-    UAV_setFrames(self->memory, stride, (U32)width, (U32)height);
+    frames->base = self->core.memory;
+    frames->stride = stride;
+    frames->height = (U32)height;
+    frames->width = (U32)width;
     return ICE_OK;
 }
 

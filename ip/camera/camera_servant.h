@@ -12,10 +12,9 @@
 typedef struct Camera_Core {
     Cores_Camera servant;
     Hw_Core core;
-    U32 memory; /* DDR3 byte address of the buffers */
 } Camera_Core;
 
-Hw_Status Camera_Core_init(Camera_Core* self, U32 slot, U32 memory, const Hw_Seam* seam,
+Hw_Status Camera_Core_init(Camera_Core* self, U32 slot, U32 memory, const Hw_Port* port,
                            void* context);
 void Camera_Core_interrupt(Camera_Core* self);
 U32 Camera_Core_poll(Camera_Core* self, U32 nowMs);

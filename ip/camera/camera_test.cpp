@@ -102,7 +102,7 @@ TEST_F(CameraTest, EveryFrameIsInMemoryAsTheSensorSentIt) {
         configure(width, height);
         start();
         for (uint32_t i = 1; i <= 4; ++i) {
-            // What is written while the core is active is for the next START.
+            // Settings written while the core is active hold from the next START on.
             for (unsigned word : {CAMERA_SIZE, CAMERA_BASE, CAMERA_STRIDE}) {
                 uint32_t value = random_.next();
                 bus_.write(word, value);
@@ -138,7 +138,7 @@ TEST_F(CameraTest, FramesMayBeAsWideAndAsHighAsTheRegistersSay) {
 }
 
 TEST_F(CameraTest, FramesAreCountedModulo65536) {
-    // As fast as they can be dropped: a frame that begins ends the one before, which has no lines.
+    // Frames come as fast as they can be dropped: each ends the one before, which has no lines.
     slowest_ = 1;
     sensor_ = SensorModel({4, 2});
     start();

@@ -4,7 +4,6 @@
  */
 #include "vision_servant.h"
 #include "fsmc.h"
-#include "uav.h"
 #include "vision_regs.h"
 
 #define FRAME_TIMEOUT_MS 5000U /* a frame takes a tenth of that; a core that takes longer hangs */
@@ -19,16 +18,16 @@ static void set(const Vision_Core* self, U32 word, U32 value) {
     FSMC_write(self->core.slot, word, value);
 }
 
-Hw_Status Vision_Core_init(Vision_Core* self, U32 slot, U32 memory, const Hw_Seam* seam,
+Hw_Status Vision_Core_init(Vision_Core* self, U32 slot, U32 memory, const Hw_Port* port,
                            void* context) {
-    Hw_Status status = Hw_Core_init(&self->core, slot, VISION_ID_VALUE, seam, context);
-    (void)memory; /* frame and records are where the camera and the ground know them */
+    Hw_Status status = Hw_Core_init(&self->core, slot, VISION_ID_VALUE, port, context);
     self->busy = 0;
+    self->core.memory = memory;
     if (status != HW_OK)
         return status;
     Autopilot_HwProcessingEngine_init(&self->servant);
-    set(self, VISION_RESULT_BASE, UAV_RESULT);
-    set(self, VISION_RESULT_MAX, UAV_RESULT_MAX);
+    set(self, VISION_RESULT_BASE, memory);
+    set(self, VISION_RESULT_MAX, VISION_MEMORY_BYTES / VISION_RECORD_BYTES);
     set(self, VISION_THRESHOLD, 24);
     return HW_OK;
 }
@@ -69,7 +68,7 @@ static void readResults(Vision_Core* self) {
     for (i = 0; i < stored; ++i) {
         U8 record[VISION_RECORD_BYTES];
         Autopilot_Feature f;
-        FSMC_readMemory(UAV_RESULT + i * VISION_RECORD_BYTES, record, VISION_RECORD_BYTES);
+        FSMC_readMemory(self->core.memory + i * VISION_RECORD_BYTES, record, VISION_RECORD_BYTES);
         f.x = (Ice_Short)(record[0] | (U32)record[1] << 8);
         f.y = (Ice_Short)(record[2] | (U32)record[3] << 8);
         f.score = (Ice_Int)(record[4] | (U32)record[5] << 8);
@@ -79,12 +78,13 @@ static void readResults(Vision_Core* self) {
 
 /* Waits for the frame under way, if there is one. */
 static Ice_Status finishFrame(Vision_Core* self) {
-    U32 errorsBefore = UAV_busErrors();
+    const Hw_Port* port = self->core.port;
+    U32 errorsBefore = port->busErrors(self->core.context);
     if (!self->busy)
         return ICE_OK;
     while (!self->core.done[DONE] && !self->core.done[REFUSED])
-        if (!self->core.seam->wait(self->core.context, DONE, FRAME_TIMEOUT_MS) &&
-            !self->core.done[DONE] && !self->core.done[REFUSED]) {
+        if (!port->wait(self->core.context, DONE, FRAME_TIMEOUT_MS) && !self->core.done[DONE] &&
+            !self->core.done[REFUSED]) {
             set(self, VISION_MODE, 0);
             set(self, VISION_CONTROL, VISION_CONTROL_ABORT_MASK);
             /* While it hangs it stays busy; when no camera sent a frame there is none to end. */
@@ -95,9 +95,9 @@ static Ice_Status finishFrame(Vision_Core* self) {
     if (self->core.done[REFUSED] || (get(self, VISION_STATUS) & VISION_STATUS_ABORTED_MASK))
         return ICE_UNKNOWN_EXCEPTION;
     readResults(self);
-    if (UAV_busErrors() != errorsBefore)
+    if (port->busErrors(self->core.context) != errorsBefore)
         return ICE_UNKNOWN_EXCEPTION; /* the core hangs: what was read is nothing */
-    UAV_frameDone((U32)self->found);
+    port->frames->processed((U32)self->found);
     return ICE_OK;
 }
 
@@ -113,7 +113,7 @@ Ice_Status Autopilot_HwProcessingEngine_setParameterA(Autopilot_HwProcessingEngi
 Ice_Status Autopilot_HwProcessingEngine_startProcessing(Autopilot_HwProcessingEnginePtr servant,
                                                         const Ice_Current* current) {
     Vision_Core* self = (Vision_Core*)servant;
-    const Uav_Frames* camera = UAV_frames();
+    const Hw_Frames* frames = self->core.port->frames;
     Ice_Status status = finishFrame(self);
     (void)current;
     if (status == ICE_TIMEOUT)
@@ -121,17 +121,17 @@ Ice_Status Autopilot_HwProcessingEngine_startProcessing(Autopilot_HwProcessingEn
     self->busy = 1;
     self->core.done[DONE] = 0;
     self->core.done[REFUSED] = 0;
-    if (camera->width != 0U) {
-        set(self, VISION_FRAME_SIZE, camera->height << 16 | camera->width);
-        set(self, VISION_FRAME_BASE, camera->base);
-        set(self, VISION_FRAME_STRIDE, camera->stride);
+    if (frames->width != 0U) {
+        set(self, VISION_FRAME_SIZE, frames->height << 16 | frames->width);
+        set(self, VISION_FRAME_BASE, frames->base);
+        set(self, VISION_FRAME_STRIDE, frames->stride);
         set(self, VISION_MODE, VISION_MODE_FOLLOW_MASK);
     } else {
         U8 size[8];
-        FSMC_readMemory(UAV_FRAME_HEADER, size, sizeof size);
+        FSMC_readMemory(frames->pictureSize, size, sizeof size);
         set(self, VISION_FRAME_SIZE,
             (U32)size[0] | (U32)size[1] << 8 | (U32)size[4] << 16 | (U32)size[5] << 24);
-        set(self, VISION_FRAME_BASE, UAV_FRAME);
+        set(self, VISION_FRAME_BASE, frames->picture);
         set(self, VISION_CONTROL, VISION_CONTROL_START_MASK);
     }
     return ICE_OK;

@@ -19,7 +19,7 @@ typedef struct Vision_Core {
     Autopilot_Feature best[VISION_BEST];
 } Vision_Core;
 
-Hw_Status Vision_Core_init(Vision_Core* self, U32 slot, U32 memory, const Hw_Seam* seam,
+Hw_Status Vision_Core_init(Vision_Core* self, U32 slot, U32 memory, const Hw_Port* port,
                            void* context);
 void Vision_Core_interrupt(Vision_Core* self);
 U32 Vision_Core_poll(Vision_Core* self, U32 nowMs);

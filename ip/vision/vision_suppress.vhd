@@ -2,7 +2,7 @@
 --
 -- vision_suppress: keeps a score only where it is the greatest of its 3 x 3 neighbourhood.
 --
--- Of equal neighbours the first in scan order stays. A score that enters at column x leaves, kept or not,
+-- The first of equal neighbours in scan order stays. A score that enters at column x leaves, kept or not,
 -- one line and one column later; kept_o then belongs to the score before in the line above.
 
 library ieee;

@@ -6,19 +6,17 @@
 #include "map_regs.h"
 #include "system_regs.h"
 
-#define DDR_WINDOW 0x60000000UL
-#define CONTROL_WINDOW 0x64000000UL
-#define WINDOW_MASK ((1UL << MAP_DDR_WINDOW_LOG2) - 1UL)
+#define WINDOW_MASK ((1U << MAP_DDR_WINDOW_LOG2) - 1U)
 
-const Fsmc_Port* fsmc_port;
+const FSMC_Port* fsmc_port;
 void* fsmc_context;
 static U32 fsmcPage;
 
 static U32 wordAddress(U32 slot, U32 word) {
-    return (U32)CONTROL_WINDOW + ((slot & 63U) << 6 | (word & 15U) << 2);
+    return MAP_CONTROL_WINDOW + ((slot & 63U) << 6 | (word & 15U) << 2);
 }
 
-Fsmc_Status fsmc_identify(void) {
+FSMC_Status fsmc_identify(void) {
     if (FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID) >> 16 != SYSTEM_ID_VALUE >> 16)
         return FSMC_NO_DEVICE;
     fsmcPage = 0;
@@ -26,13 +24,13 @@ Fsmc_Status fsmc_identify(void) {
     return FSMC_OK;
 }
 
-Fsmc_Status FSMC_init(const Fsmc_Port* port, void* context) {
+FSMC_Status FSMC_init(const FSMC_Port* port, void* context) {
     U32 bank;
     fsmc_port = port;
     fsmc_context = context;
     for (bank = 0; bank < 2U; ++bank) {
-        port->write32(context, (U32)FSMC_REGISTERS + bank * 8U + 4U, (U32)BTR_VALUE);
-        port->write32(context, (U32)FSMC_REGISTERS + bank * 8U, (U32)BCR_VALUE);
+        port->write32(context, FSMC_BTR(bank), BTR_VALUE);
+        port->write32(context, FSMC_BCR(bank), BCR_VALUE);
     }
     return fsmc_identify();
 }
@@ -51,7 +49,7 @@ U32 fsmc_windowAddress(U32 address) {
         FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, page);
         fsmcPage = page;
     }
-    return (U32)(DDR_WINDOW + (address & WINDOW_MASK));
+    return MAP_DDR_WINDOW + (address & WINDOW_MASK);
 }
 
 void FSMC_readMemory(U32 address, U8* data, U32 bytes) {
@@ -87,7 +85,7 @@ void FSMC_writeMemory(U32 address, const U8* data, U32 bytes) {
     }
 }
 
-Fsmc_Status FSMC_checkError(U32* where) {
+FSMC_Status FSMC_checkError(U32* where) {
     if (!(FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_EVENT) & SYSTEM_EVENT_BUS_ERROR_MASK))
         return FSMC_OK;
     if (where)

@@ -4,6 +4,14 @@
  *
  * NE1 is a 64 MiB window into DDR3, NE2 the control space of 64 slots with 16 words of 32 bits
  * each (bus/map.regs.json). Data is 16 bits wide; a 32-bit word is two accesses, low half first.
+ *
+ *     if (FSMC_init(&port, 0) == FSMC_OK) {        (the chip answers)
+ *         FSMC_write(slot, word, 42);
+ *         value = FSMC_read(slot, word);
+ *         FSMC_writeMemory(0x1000, bytes, 100);    (DDR3, any address)
+ *         FSMC_readMemory(0x1000, bytes, 100);
+ *     }
+ *
  * Register accesses are re-entrant. Memory accesses are re-entrant as long as all of them stay in
  * one page of 64 MiB (the driver moves the page register where one does not): else the callers
  * lock.
@@ -13,42 +21,42 @@
 
 #include "base.h"
 
-/* What the driver stands on: the processor's loads and stores. On the target they are volatile
+/* The processor's loads and stores, which the driver needs. On the target they are volatile
  * accesses, on the host they go to the model of the FSMC peripheral and from there to the pins of
  * the RTL. Addresses are the Cortex-M3's: FSMC registers at 0xA0000000 (32 bits only), NE1 at
  * 0x60000000, NE2 at 0x64000000. The FSMC splits a 32-bit access to a window into two of 16 bits,
  * low half first, and no interrupt comes between the two: so FSMC_read and FSMC_write, one 32-bit
  * access each, are safe in tasks and interrupt routines alike. An 8-bit access uses one byte lane.
  */
-typedef struct Fsmc_Port {
+typedef struct FSMC_Port {
     U8 (*read8)(void* context, U32 address);
     void (*write8)(void* context, U32 address, U8 value);
     U16 (*read16)(void* context, U32 address);
     void (*write16)(void* context, U32 address, U16 value);
     U32 (*read32)(void* context, U32 address);
     void (*write32)(void* context, U32 address, U32 value);
-} Fsmc_Port;
+} FSMC_Port;
 
-typedef enum Fsmc_Status {
+typedef enum FSMC_Status {
     FSMC_OK = 0,
     FSMC_NO_DEVICE,  /* slot 0 does not identify itself as the system slot */
     FSMC_BUS_ERROR,  /* an access since the last check hit nothing, or waited for too long */
     FSMC_BAD_SETTING /* of a bank (fsmc_bank.h) */
-} Fsmc_Status;
+} FSMC_Status;
 
 /* Programs BCRx and BTRx of both banks (asynchronous mode 1, 16 bits, NWAIT) and looks for the
- * system slot. */
-Fsmc_Status FSMC_init(const Fsmc_Port* port, void* context);
+ * system slot. `port` must stay valid. Returns FSMC_OK or FSMC_NO_DEVICE. */
+FSMC_Status FSMC_init(const FSMC_Port* port, void* context);
 
-/* Registers: 32 bits, atomic. slot 0..63, word 0..15. */
+/* Read and write a register: 32 bits, atomic. slot 0..63, word 0..15. */
 U32 FSMC_read(U32 slot, U32 word);
 void FSMC_write(U32 slot, U32 word, U32 value);
 
-/* DDR3: any byte address of the chip (the page register follows), any length. */
+/* Copy from and to DDR3: any byte address of the chip (the page register follows), any length. */
 void FSMC_readMemory(U32 address, U8* data, U32 bytes);
 void FSMC_writeMemory(U32 address, const U8* data, U32 bytes);
 
-/* DDR3 at the bridge's full speed, 24 to 30 million halfwords a second, without NWAIT. `address` is
+/* Copy at the bridge's full speed, 24 to 30 million halfwords a second, without NWAIT. `address` is
  * even. Each part is checked by the bridge's LATE event and repeated with NWAIT where it came too
  * early; returns how many halfwords that were (0 unless others keep the memory very busy).
  * Meanwhile nobody else may use the DDR3 window: the caller locks, interrupt routines included.
@@ -57,8 +65,8 @@ void FSMC_setHclk(U32 hz);
 U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords);
 U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords);
 
-/* Reads and clears the bridge's error event. `where` (may be 0): slot * 16 + word, bit 16 for a
- * write. */
-Fsmc_Status FSMC_checkError(U32* where);
+/* Reads and clears the bridge's error event. Returns FSMC_OK, or FSMC_BUS_ERROR: then `where`, if
+ * it is not 0, gets slot * 16 + word of the last such access, bit 16 set for a write. */
+FSMC_Status FSMC_checkError(U32* where);
 
 #endif

@@ -5,34 +5,25 @@
 #include "fsmc_bank.h"
 #include "fsmc_private.h"
 
-#define BCR_MUXEN (1UL << 1)
-#define BCR_PSRAM (1UL << 2)
-#define BCR_NOR (1UL << 3 | 1UL << 6) /* MTYP 2, FACCEN */
-#define BCR_BURSTEN (1UL << 8)
-#define BCR_WAITPOL (1UL << 9)
-#define BCR_WAITEN (1UL << 13)
-#define BCR_EXTMOD (1UL << 14)
-#define BCR_ASYNCWAIT (1UL << 15)
-#define BCR_CBURSTRW (1UL << 19)
-/* bank on, 16 bits, write enable; bit 7 is reserved and 1 */
-#define BCR_ALWAYS (1UL << 0 | 1UL << 4 | 1UL << 7 | 1UL << 12)
-#define BTR_LONGEST 0x0000FF1FUL /* fields that a synchronous access does not use */
+/* Fields that a synchronous access does not use, at their longest. */
+#define BTR_LONGEST (BTR_ADDSET(15) | BTR_ADDHLD(1) | BTR_DATAST(255))
+#define BWTR_RESET 0x0FFFFFFFU
 
 typedef struct Values {
     U32 bcr, btr, bwtr;
 } Values;
 
-static int isExtended(Fsmc_Mode mode) {
+static int isExtended(FSMC_Mode mode) {
     return mode >= FSMC_MODE_A && mode <= FSMC_MODE_D;
 }
 
-static int timingIsBad(const Fsmc_Bank* bank, const Fsmc_Timing* time, Fsmc_Mode mode) {
+static int timingIsBad(const FSMC_Bank* bank, const FSMC_Timing* time, FSMC_Mode mode) {
     int holds = bank->muxed || mode == FSMC_MODE_D;
     return time->addset > 15U || time->addhld > 15U || (holds && time->addhld == 0U) ||
            time->datast < (bank->wait ? 4U : 1U);
 }
 
-static int isBad(const Fsmc_Bank* bank) {
+static int isBad(const FSMC_Bank* bank) {
     if (bank->busturn > 15U)
         return 1;
     if (bank->mode == FSMC_MODE_BURST)
@@ -44,41 +35,41 @@ static int isBad(const Fsmc_Bank* bank) {
 }
 
 /* BTR or BWTR; ACCMOD 0..3 are modes A to D. */
-static U32 timing(const Fsmc_Timing* time, U32 busturn, Fsmc_Mode mode) {
+static U32 timing(const FSMC_Timing* time, U32 busturn, FSMC_Mode mode) {
     U32 accmod = isExtended(mode) ? (U32)mode - (U32)FSMC_MODE_A : 0U;
-    return time->addset | (U32)time->addhld << 4 | (U32)time->datast << 8 | busturn << 16 |
-           accmod << 28;
+    return BTR_ADDSET(time->addset) | BTR_ADDHLD(time->addhld) | BTR_DATAST(time->datast) |
+           BTR_BUSTURN(busturn) | BTR_ACCMOD(accmod);
 }
 
-static Values valuesOf(const Fsmc_Bank* bank) {
+static Values valuesOf(const FSMC_Bank* bank) {
     Values v;
-    v.bcr = (U32)BCR_ALWAYS;
+    v.bcr = BCR_ALWAYS;
     if (bank->muxed)
-        v.bcr |= (U32)BCR_MUXEN;
+        v.bcr |= BCR_MUXEN;
     if (bank->waitHigh)
-        v.bcr |= (U32)BCR_WAITPOL;
-    v.bwtr = 0x0FFFFFFFUL; /* as after reset */
+        v.bcr |= BCR_WAITPOL;
+    v.bwtr = BWTR_RESET;
     if (bank->mode == FSMC_MODE_BURST) {
-        v.bcr |= (U32)(BCR_PSRAM | BCR_BURSTEN | BCR_WAITEN | BCR_CBURSTRW);
-        v.btr = (U32)BTR_LONGEST | (U32)bank->busturn << 16 | (U32)bank->clkdiv << 20 |
-                (U32)(bank->latency - 2U) << 24;
+        v.bcr |= BCR_MTYP_PSRAM | BCR_BURSTEN | BCR_WAITEN | BCR_CBURSTRW;
+        v.btr = BTR_LONGEST | BTR_BUSTURN(bank->busturn) | BTR_CLKDIV(bank->clkdiv) |
+                BTR_DATLAT(bank->latency - 2U);
         return v;
     }
     v.btr = timing(&bank->read, bank->busturn, bank->mode);
     if (bank->wait)
-        v.bcr |= (U32)BCR_ASYNCWAIT;
+        v.bcr |= BCR_ASYNCWAIT;
     if (bank->mode == FSMC_MODE_1 || bank->mode == FSMC_MODE_A)
-        v.bcr |= bank->psram ? (U32)BCR_PSRAM : 0U;
+        v.bcr |= bank->psram ? BCR_MTYP_PSRAM : 0U;
     else
-        v.bcr |= (U32)BCR_NOR;
+        v.bcr |= BCR_MTYP_NOR | BCR_FACCEN;
     if (isExtended(bank->mode)) {
-        v.bcr |= (U32)BCR_EXTMOD;
+        v.bcr |= BCR_EXTMOD;
         v.bwtr = timing(&bank->write, bank->busturn, bank->writeMode);
     }
     return v;
 }
 
-Fsmc_Status FSMC_initBanks(const Fsmc_Port* port, void* context, const Fsmc_Bank banks[2]) {
+FSMC_Status FSMC_initBanks(const FSMC_Port* port, void* context, const FSMC_Bank banks[2]) {
     U32 i;
     if (isBad(&banks[0]) || isBad(&banks[1]) || banks[1].mode == FSMC_MODE_BURST)
         return FSMC_BAD_SETTING;
@@ -86,10 +77,9 @@ Fsmc_Status FSMC_initBanks(const Fsmc_Port* port, void* context, const Fsmc_Bank
     fsmc_context = context;
     for (i = 0; i < 2U; ++i) {
         Values v = valuesOf(&banks[i]);
-        U32 at = (U32)FSMC_REGISTERS + i * 8U;
-        port->write32(context, at + 4U, v.btr);
-        port->write32(context, at + 0x104U, v.bwtr);
-        port->write32(context, at, v.bcr);
+        port->write32(context, FSMC_BTR(i), v.btr);
+        port->write32(context, FSMC_BWTR(i), v.bwtr);
+        port->write32(context, FSMC_BCR(i), v.bcr);
     }
     return fsmc_identify();
 }

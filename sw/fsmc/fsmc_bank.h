@@ -8,7 +8,7 @@
 
 #include "fsmc.h"
 
-typedef enum Fsmc_Mode {
+typedef enum FSMC_Mode {
     FSMC_MODE_1, /* SRAM: read and write alike */
     FSMC_MODE_2, /* NOR: read and write alike */
     FSMC_MODE_A, /* A to D: EXTMOD, writes have a mode and times of their own */
@@ -16,30 +16,31 @@ typedef enum Fsmc_Mode {
     FSMC_MODE_C,
     FSMC_MODE_D,
     FSMC_MODE_BURST /* synchronous PSRAM: BURSTEN, CBURSTRW, WAITEN, WAITCFG 0 */
-} Fsmc_Mode;
+} FSMC_Mode;
 
 /* In HCLK: ADDSET 0..15, ADDHLD 1..15 (mode D and multiplexed), DATAST 1..255 (4 at least with
  * NWAIT). */
-typedef struct Fsmc_Timing {
+typedef struct FSMC_Timing {
     U8 addset, addhld, datast;
-} Fsmc_Timing;
+} FSMC_Timing;
 
-typedef struct Fsmc_Bank {
-    Fsmc_Mode mode;
-    Fsmc_Mode writeMode;     /* of A to D, where mode is */
+typedef struct FSMC_Bank {
+    FSMC_Mode mode;
+    FSMC_Mode writeMode;     /* of A to D, where mode is */
     U8 psram;                /* MTYP of modes 1 and A: 1 PSRAM, 0 SRAM */
     U8 muxed;                /* MUXEN: address bits 15..0 on the data pins (the bridge's MUXED) */
     U8 wait;                 /* ASYNCWAIT: asynchronous accesses look at NWAIT */
     U8 waitHigh;             /* WAITPOL: NWAIT is active high (WAIT_HIGH) */
     U8 busturn;              /* BUSTURN, HCLK, 0..15 */
-    Fsmc_Timing read, write; /* modes 1 and 2: only `read`, for both */
+    FSMC_Timing read, write; /* modes 1 and 2: only `read`, for both */
     U8 clkdiv;               /* burst: FSMC_CLK = HCLK / (clkdiv + 1), 1..15 */
     U8 latency; /* burst: edges from the address to the first data, 2..17 (LATENCY): DATLAT + 2 */
-} Fsmc_Bank;
+} FSMC_Bank;
 
-/* As FSMC_init, with these settings of NE1 and NE2. FSMC_BAD_SETTING, and nothing written, where
- * one is reserved or out of range; NE2 cannot be FSMC_MODE_BURST. Streams (FSMC_streamRead, -Write)
- * are for the plain bridge and FSMC_init's settings only. */
-Fsmc_Status FSMC_initBanks(const Fsmc_Port* port, void* context, const Fsmc_Bank banks[2]);
+/* Does what FSMC_init does, with these settings of NE1 and NE2. Returns FSMC_BAD_SETTING, and
+ * writes nothing, where a setting is reserved or out of range; NE2 cannot be FSMC_MODE_BURST.
+ * Streams (FSMC_streamRead, FSMC_streamWrite) are for the plain bridge and FSMC_init's settings
+ * only. */
+FSMC_Status FSMC_initBanks(const FSMC_Port* port, void* context, const FSMC_Bank banks[2]);
 
 #endif

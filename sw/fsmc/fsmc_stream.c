@@ -7,41 +7,45 @@
 #include "map_regs.h"
 #include "system_regs.h"
 
-/* Mode A without NWAIT: the data phase is 2 HCLK, and an access takes ADDSET + 3. */
-#define STREAM_BCR (1UL << 0 | 1UL << 4 | 1UL << 7 | 1UL << 12 | 1UL << 14)
-#define STREAM_DATAST 2U
-/* Accesses/s at most (docs/fsmc.md): more than three clocks of 10 ns between edges of NWE; a read
- * has its data 16 ns after its address. */
+/* Mode A without NWAIT: an access takes ADDSET + DATAST + 1 HCLK. A write's data phase is 2 HCLK; a
+ * read is all data phase, so that NOE is low as early as the address is there. */
+#define STREAM_BCR (BCR_ALWAYS | BCR_EXTMOD)
+#define WRITE_DATAST 2U
+/* Accesses/s at most (docs/fsmc.md): 33.3 ns between edges of NWE; a read has its data 15 ns after
+ * HCLK's edge that moves its address, and the FSMC wants it HCLK + 4 ns before the end. */
 #define WRITE_HZ 30000000UL
 #define READ_HZ 25000000UL
 #define REGION 4096U /* bytes: the bridge does not read ahead beyond their multiples */
 #define BLOCK 64U
 
-static U8 writeAddset = 15, readAddset = 15; /* until FSMC_setHclk: slow, but right */
+static U8 writeAddset = 15, readDatast = 17; /* until FSMC_setHclk: slow, but right */
 
-static U8 addsetFor(U32 hclkHz, U32 accessHz) {
+/* HCLK cycles of an access, 4 at least. */
+static U32 cyclesFor(U32 hclkHz, U32 accessHz) {
     U32 cycles = (U32)((hclkHz + accessHz - 1U) / accessHz);
-    return (U8)(cycles < 4U ? 1U : cycles - 3U > 15U ? 15U : cycles - 3U);
+    return cycles < 4U ? 4U : cycles > 18U ? 18U : cycles;
 }
 
 void FSMC_setHclk(U32 hz) {
-    writeAddset = addsetFor(hz, WRITE_HZ);
-    readAddset = addsetFor(hz, READ_HZ);
+    writeAddset = (U8)(cyclesFor(hz, WRITE_HZ) - WRITE_DATAST - 1U);
+    readDatast = (U8)(cyclesFor(hz, READ_HZ) - 1U);
 }
 
 static void setBank(int fast) {
     if (fast) {
-        U32 rest = STREAM_DATAST << 8 | 1UL << 16;
-        fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS + 4U, rest | readAddset);
-        fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS + 0x104U, rest | writeAddset);
-        fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS, (U32)STREAM_BCR);
+        fsmc_port->write32(fsmc_context, FSMC_BTR(0), BTR_DATAST(readDatast) | BTR_BUSTURN(1));
+        fsmc_port->write32(fsmc_context, FSMC_BWTR(0),
+                           BTR_DATAST(WRITE_DATAST) | BTR_ADDSET(writeAddset) | BTR_BUSTURN(1));
+        fsmc_port->write32(fsmc_context, FSMC_BCR(0), STREAM_BCR);
     } else {
-        fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS, (U32)BCR_VALUE);
-        fsmc_port->write32(fsmc_context, (U32)FSMC_REGISTERS + 4U, (U32)BTR_VALUE);
+        fsmc_port->write32(fsmc_context, FSMC_BCR(0), BCR_VALUE);
+        fsmc_port->write32(fsmc_context, FSMC_BTR(0), BTR_VALUE);
     }
 }
 
-/* Was something too early since the last call? (The register access also ends what is posted.) */
+/* True if something was too early since the last call. The register access also ends what is
+ * posted.
+ */
 static int wasLate(void) {
     if (!(FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_EVENT) & SYSTEM_EVENT_LATE_MASK))
         return 0;
@@ -49,7 +53,7 @@ static int wasLate(void) {
     return 1;
 }
 
-/* Bytes up to the next multiple of `size`, at most `bytes`. */
+/* Returns the bytes up to the next multiple of `size`, at most `bytes`. */
 static U32 upTo(U32 address, U32 size, U32 bytes) {
     U32 left = size - (address & (size - 1U));
     return left < bytes ? left : bytes;
@@ -79,7 +83,7 @@ U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords) {
     return repeated;
 }
 
-/* With the bank's timing as it is set. */
+/* Reads with the bank's timing as it is set. */
 static void readHalfwords(U32 at, U16* data, U32 halfwords) {
     U32 i;
     for (i = 0; i < halfwords; ++i)

@@ -3,7 +3,7 @@
 // clock: simulated time is read from memory that the simulator writes.
 
 #include "clock.h"
-#include "status.h"
+#include "sim_status.h"
 
 #include <algorithm>
 #include <atomic>
@@ -63,7 +63,7 @@ Clock::Clock(const std::string& file) {
         throw std::system_error(error, std::generic_category(),
                                 "the clock of XBEEAT_CLOCK, '" + file + "'");
     simulation_ = static_cast<SimStatus*>(at);
-    if (!isWhole || std::memcmp(simulation_->magic, "ICESOC1", 8) != 0) {
+    if (!isWhole || !isSimStatus(simulation_)) {
         munmap(at, sizeof(SimStatus));
         throw std::system_error(EINVAL, std::generic_category(),
                                 "the clock of XBEEAT_CLOCK, '" + file +
@@ -95,7 +95,7 @@ int Clock::wait(pollfd* fds, nfds_t count, uint32_t us) {
     if (!simulation_)
         return pollUs(fds, count, us);
     const uint64_t begin = nowNs() / 1000;
-    // Who keeps step and does not wait at all would stop time, and might wait for it.
+    // A program that keeps step and never waits would stop time, and might wait for it.
     const uint64_t end =
         us == forever ? endOfTime : begin + (inStep() ? std::max(us, shortestUs) : us);
     const bool reads = std::any_of(fds, fds + count, [this](const pollfd& p) {

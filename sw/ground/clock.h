@@ -2,7 +2,7 @@
 //
 // clock: the time that an engine lives by: the machine's, or that of a simulated modem, so that a
 // slow machine makes a mission slow and no time-out early. A simulator names its file of counters
-// (testbench/sim/status.h) to the programs it starts in the environment variable XBEEAT_CLOCK.
+// (sim_status.h) to the programs it starts in the environment variable XBEEAT_CLOCK.
 
 #ifndef GROUND_CLOCK_H
 #define GROUND_CLOCK_H
@@ -18,9 +18,9 @@ namespace XBeeAT {
 
 class Clock {
 public:
-    // As the environment says.
+    // Lives by the file that XBEEAT_CLOCK names, or else by the machine.
     Clock();
-    // By this file; empty: by the machine. Throws std::system_error.
+    // Lives by this file; an empty name is the machine. Throws std::system_error.
     explicit Clock(const std::string& file);
     ~Clock();
     Clock(const Clock&) = delete;
@@ -28,7 +28,7 @@ public:
 
     static constexpr uint32_t forever = 0xFFFFFFFFu;
     uint32_t nowUs() const; // wraps around
-    // As poll, until something is ready or `us` have passed by this clock.
+    // Works as poll does: returns when something is ready or `us` have passed by this clock.
     int wait(pollfd* fds, nfds_t count, uint32_t us);
 
     // From now on simulated time waits for this thread: it stands still but during `wait`, and
@@ -36,7 +36,7 @@ public:
     // the simulator's modem is not on `device`.
     void keepStep(int serial, const std::string& device);
     void leaveStep();
-    // What went through `serial`, in bytes.
+    // Count the bytes that went through `serial`.
     void hasRead(size_t bytes);
     void hasWritten(size_t bytes);
 

@@ -8,14 +8,13 @@
 #include <cstdio>
 #include <fcntl.h>
 #include <map>
+#include <sys/socket.h>
 #include <system_error>
 #include <unistd.h>
 
 namespace XBeeAT {
 
 namespace {
-
-constexpr int ownChannels = 3; // 0..2 are opened by the ground, 3 by the UAV
 
 std::mutex registryMutex;
 std::map<std::string, std::weak_ptr<Engine>>& registry() {
@@ -26,6 +25,16 @@ std::map<std::string, std::weak_ptr<Engine>>& registry() {
 void makePipe(int pipeEnds[2]) {
     if (pipe2(pipeEnds, O_CLOEXEC | O_NONBLOCK) != 0)
         throw std::system_error(errno, std::generic_category(), "pipe");
+}
+
+// Small buffers, so that back-pressure reaches the caller.
+bool makePair(int ends[2]) {
+    constexpr int bytes = 4096;
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) != 0)
+        return false;
+    for (int end : {ends[0], ends[1]})
+        setsockopt(end, SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
+    return true;
 }
 
 } // namespace
@@ -58,13 +67,11 @@ std::shared_ptr<Engine> Engine::get(const Settings& settings, const Log& log) {
 Engine::Engine(const Settings& settings, const Log& log)
     : device_(settings.device), settings_(settings), log_(log), link_(new Link),
       pacer_(settings.characterUs(), LINK_MAX_FRAME) {
-    if (!serial_.open(device_))
-        throw std::system_error(errno, std::generic_category(),
-                                "cannot open serial port '" + device_ + "'");
+    serial_.open(device_);
     makePipe(wakePipe_);
     makePipe(acceptPipe_);
-    static const Link_Port port = {onTransmit, onRandom, onMessage, onChannel,
-                                   onState,    nullptr,  onWritable};
+    static const Link_Port port = {onTransmit, onRandom,  onMessage, onChannel,
+                                   onState,    onOutcome, onWritable};
     Link_init(link_.get(), &port, this, static_cast<U32>(settings.characterUs() * 16));
     thread_ = std::thread([this] { run(); });
 }
@@ -79,8 +86,6 @@ Engine::~Engine() {
     for (int fd : {wakePipe_[0], wakePipe_[1], acceptPipe_[0], acceptPipe_[1]})
         if (fd >= 0)
             close(fd);
-    for (int fd : accepted_)
-        close(fd);
 }
 
 void Engine::wake() {
@@ -89,30 +94,54 @@ void Engine::wake() {
     changed_.notify_all();
 }
 
+// Returns a free channel, `wanted` or (-1) any; -1 if there is none.
+int Engine::freeChannel(int wanted) {
+    const U32 now = clock_.nowUs(), idleUs = static_cast<U32>(settings_.idleMs) * 1000;
+    for (int i = 0; i < ownChannels; ++i) {
+        Stream& s = streams_[i];
+        if (s.is(Stream::State::Wanted) && s.isLeft()) // it gave up before the link was up
+            s.close();
+        if (idleUs && s.isIdle(now, idleUs)) {
+            s.sayGoodbye(now);
+            end(i, 1, "is idle, and another program waits");
+        }
+    }
+    for (int i = 0; i < ownChannels; ++i) {
+        int channel = wanted >= 0 ? wanted : (nextChannel_ + i) % ownChannels;
+        if (channel < ownChannels && streams_[channel].is(Stream::State::Closed)) {
+            nextChannel_ = (channel + 1) % ownChannels;
+            return channel;
+        }
+    }
+    return -1;
+}
+
 int Engine::connect(int channel) {
     std::lock_guard<std::mutex> lock(mutex_);
-    for (int i = 0; i < ownChannels; ++i) // who gave up before the link was up
-        if (streams_[i].wanted && streams_[i].isLeft())
-            streams_[i].close();
-    int chosen = -1;
-    for (int i = 0; i < ownChannels && chosen < 0; ++i) {
-        int candidate = channel >= 0 ? channel : (nextChannel_ + i) % ownChannels;
-        if (candidate < ownChannels && !streams_[candidate].isOpen())
-            chosen = candidate;
-    }
-    if (chosen < 0)
+    const int chosen = freeChannel(channel);
+    int ends[2];
+    if (chosen < 0 || !makePair(ends))
         return -1;
-    nextChannel_ = (chosen + 1) % ownChannels;
-    int programEnd = streams_[chosen].open(false);
-    streams_[chosen].wanted = programEnd >= 0;
+    streams_[chosen].want(ends[0], "the program on channel " + std::to_string(chosen));
     wake();
-    return programEnd;
+    return ends[1];
+}
+
+bool Engine::connect(int socket, const std::string& name) {
+    std::lock_guard<std::mutex> lock(mutex_);
+    const int chosen = freeChannel(-1);
+    if (chosen < 0)
+        return false;
+    streams_[chosen].want(socket, name);
+    log_(1, name + " is connected");
+    wake();
+    return true;
 }
 
 bool Engine::isWanted() const {
     bool wanted = false;
     for (const Stream& s : streams_)
-        wanted = wanted || s.wanted;
+        wanted = wanted || s.is(Stream::State::Wanted);
     return wanted;
 }
 
@@ -125,15 +154,44 @@ int Engine::listen() {
     return acceptPipe_[0];
 }
 
-int Engine::accept() {
-    std::lock_guard<std::mutex> lock(mutex_);
+int Engine::calledChannel() const {
     char byte;
     (void)!read(acceptPipe_[0], &byte, 1);
-    if (accepted_.empty())
+    for (int channel = ownChannels; channel < LINK_CHANNELS; ++channel)
+        if (streams_[channel].is(Stream::State::Called))
+            return channel;
+    return -1;
+}
+
+int Engine::accept() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    const int channel = calledChannel();
+    int ends[2];
+    if (channel < 0 || !makePair(ends))
         return -1;
-    int fd = accepted_.front();
-    accepted_.pop_front();
-    return fd;
+    streams_[channel].accept(ends[0], "the program on channel " + std::to_string(channel));
+    wake();
+    return ends[1];
+}
+
+void Engine::accept(int socket, const std::string& name) {
+    std::lock_guard<std::mutex> lock(mutex_);
+    const int channel = calledChannel();
+    if (channel < 0) { // the peer has closed it again
+        close(socket);
+        return;
+    }
+    streams_[channel].accept(socket, name);
+    log_(1, name + " is connected");
+    wake();
+}
+
+void Engine::refuse() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    const int channel = calledChannel();
+    if (channel >= 0)
+        end(channel, 1, "is refused");
+    wake();
 }
 
 void Engine::stopListening() {

@@ -14,7 +14,6 @@
 #include "stream.h"
 
 #include <condition_variable>
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -24,6 +23,8 @@ extern "C" {
 }
 
 namespace XBeeAT {
+
+constexpr int ownChannels = 3; // 0..2 are opened by the ground, 3 by the UAV
 
 class Engine {
 public:
@@ -35,14 +36,21 @@ public:
     Engine(const Engine&) = delete;
     Engine& operator=(const Engine&) = delete;
 
-    // A connection to the peer, on a channel of 0..2 or (-1) any free one. Returns the file
-    // descriptor of a stream; -1 if no channel is free. The peer speaks as soon as the link is up;
-    // a port that was lost is opened again for it. If there is no modem, the stream ends.
+    // Opens a connection to the peer, on a channel of 0..2 or (-1) any free one. Returns the
+    // program's end of it, a socket; -1 if no channel is free. The peer speaks as soon as the link
+    // is up; a port that was lost is opened again for it. If there is no modem, the socket ends.
     int connect(int channel);
+    // The same for a program that has a socket: true, and the engine owns it from now on; or no
+    // channel is free. `name` is for the log.
+    bool connect(int socket, const std::string& name);
     // The peer may open connections: each makes the returned descriptor readable, also after the
     // port was lost and found again. -1: taken already.
     int listen();
-    int accept(); // descriptor of the stream, -1: none
+    // Takes a connection that the peer opened: by a new socket, -1 if there is none; by one that
+    // the engine owns from now on; or not at all.
+    int accept();
+    void accept(int socket, const std::string& name);
+    void refuse();
     void stopListening();
 
     std::string statistics() const; // one line of text
@@ -57,14 +65,19 @@ private:
     void loop(std::unique_lock<std::mutex>& lock);
     bool downTooLong(U32 now);
     void fail(const std::string& text);
-    // As ModemSetup::Wait; negative: the engine is to stop, or the port is gone.
+    // Waits as ModemSetup::Wait does; negative: the engine is to stop, or the port is gone.
     int waitMs(int ms, bool forBytes);
     bool isWanted() const;
     void readSerial(U32 now);
     void writeSerial(U32 now);
-    void readProgram(int channel, U32 now);
-    bool sendMessages(int channel, U32 now);
+    int freeChannel(int wanted);
+    int calledChannel() const;
+    void servePrograms(const std::vector<pollfd>& fds, U32 now);
+    void sendMessages(U32 now);
+    bool sendMessage(int channel, U32 now);
+    void end(int channel, int level, const std::string& why);
     void openWanted(U32 now);
+    void reportLost();
     U32 beat(U32 now);
     void wake();
 
@@ -74,6 +87,7 @@ private:
     static int onMessage(void* context, int channel, const U8* data, U32 size);
     static void onChannel(void* context, int channel, int isOpen);
     static void onState(void* context, Link_State state);
+    static void onOutcome(void* context, int channel, U32 isCall, Link_Outcome outcome);
     static void onWritable(void* context);
 
     const std::string device_;
@@ -84,8 +98,10 @@ private:
     int wakePipe_[2] = {-1, -1}, acceptPipe_[2] = {-1, -1};
     // failed_: the port is lost, or no modem answered; complained_: and that was said as an error.
     bool stop_ = false, listening_ = false, failed_ = false, complained_ = false;
-    std::deque<int> accepted_;
-    int nextChannel_ = 0;
+    int nextChannel_ = 0; // the first that `connect` looks at
+    int turn_ = 0;        // the channel whose program sends next
+    bool full_ = false;   // the link has no room: nothing is read until it has
+    unsigned lost_ = 0;   // calls of programs that have left, which may not have arrived
     Stream streams_[LINK_CHANNELS];
     std::unique_ptr<Link> link_;
     std::vector<U8> serialOut_; // of a frame, not yet taken by the port

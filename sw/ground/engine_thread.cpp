@@ -11,13 +11,13 @@
 #include <cstring>
 #include <poll.h>
 #include <random>
+#include <system_error>
 #include <unistd.h>
 
 namespace XBeeAT {
 
 namespace {
 
-constexpr int ownChannels = 3;
 constexpr std::chrono::seconds retryEvery{5}; // while only a listener waits for the modem
 
 } // namespace
@@ -41,29 +41,29 @@ U32 Engine::onRandom(void*) {
 int Engine::onMessage(void* context, int channel, const U8* data, U32 size) {
     Engine& e = self(context);
     Stream& s = e.streams_[channel];
-    if (!s.isOpen())
-        return 0; // the program has closed: nobody wants it
-    // A slow program: the link holds the rest back.
-    return s.give(data, size, e.clock_.nowUs()) ? 0 : 1;
+    U32 now = e.clock_.nowUs();
+    bool isWanted = s.is(Stream::State::Open) || s.is(Stream::State::Called);
+    // The link delivers in order: to hold a message back would hold all other programs' back.
+    if (isWanted && !s.give(data, size, now))
+        e.end(channel, 0,
+              "does not read: " + std::to_string(Stream::mostUnread) + " bytes wait for it");
+    return 0;
 }
 
 void Engine::onChannel(void* context, int channel, int isOpen) {
     Engine& e = self(context);
     Stream& s = e.streams_[channel];
     if (!isOpen) {
-        if (!s.wanted)
-            s.close();
+        if (!s.is(Stream::State::Wanted))
+            e.lost_ += s.leave(e.clock_.nowUs());
         return;
     }
     if (channel < ownChannels || !e.listening_) {
         e.log_(1, "the peer opened channel " + std::to_string(channel) + ", and nobody listens");
-        Link_closeChannel(e.link_.get(), channel, e.clock_.nowUs());
+        Link_closeChannel(e.link_.get(), channel);
         return;
     }
-    int programEnd = s.open(true);
-    if (programEnd < 0)
-        return;
-    e.accepted_.push_back(programEnd);
+    s.call();
     char byte = 0;
     (void)!write(e.acceptPipe_[1], &byte, 1);
 }
@@ -75,13 +75,18 @@ void Engine::onState(void* context, Link_State state) {
     if (state == LINK_STATE_UP)
         return;
     for (Stream& s : e.streams_)
-        if (!s.wanted)
-            s.close();
+        if (!s.is(Stream::State::Wanted))
+            e.lost_ += s.leave(e.clock_.nowUs());
+}
+
+void Engine::onOutcome(void* context, int channel, U32 isCall, Link_Outcome outcome) {
+    const Stream& s = self(context).streams_[channel];
+    bool hasLeft = !s.is(Stream::State::Open) || s.ended();
+    self(context).lost_ += hasLeft && isCall && outcome == LINK_UNKNOWN;
 }
 
 void Engine::onWritable(void* context) {
-    for (Stream& s : self(context).streams_)
-        s.stuck = false;
+    self(context).full_ = false;
 }
 
 // ---- the modem's life ----
@@ -108,13 +113,14 @@ int Engine::waitMs(int ms, bool forBytes) {
     }
 }
 
-// The port is lost, or the modem: who is connected, or waits to be, must know.
+// Ends all connections, since the port or the modem is lost; those that wait for one, too.
 void Engine::fail(const std::string& text) {
     log_(complained_ ? 1 : 0, text);
     complained_ = failed_ = true;
     Link_stop(link_.get(), clock_.nowUs());
     for (Stream& s : streams_)
         s.close();
+    reportLost();
 }
 
 bool Engine::prepareModem(const Settings& settings) {
@@ -155,15 +161,19 @@ void Engine::waitForReason(std::unique_lock<std::mutex>& lock) {
         changed_.wait_for(lock, retryEvery, reason);
 }
 
-// From an open port to a lost one. A modem that was reset in flight has its own settings again
-// (nothing is written to its memory). It looks like a peer that is silent: so after a while the
-// modem is set up once more, and less and less often while nothing changes.
+// Runs the link from an open port to a lost one. A modem that was reset in flight has its own
+// settings again (nothing is written to its memory). It looks like a peer that is silent: so after
+// a while the modem is set up once more, and less and less often while nothing changes.
 void Engine::fly(std::unique_lock<std::mutex>& lock) {
     const Settings settings = settings_;
     const U32 down = static_cast<U32>(settings.downMs) * 1000;
     patienceUs_ = down;
-    if (failed_ && !serial_.open(device_))
-        return fail("cannot open serial port '" + device_ + "': " + std::strerror(errno));
+    try {
+        if (failed_)
+            serial_.open(device_);
+    } catch (const std::system_error& e) {
+        return fail(e.what());
+    }
     // A simulator waits for this thread as long as it flies.
     struct Step {
         Step(Clock& c, int serial, const std::string& device) : clock(c) {
@@ -190,7 +200,8 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
         loop(lock);
         if (stop_ || failed_)
             return;
-        log_(1, "the link is down: setting the modem up again");
+        log_(0, "no link for " + std::to_string((clock_.nowUs() - upAt_) / 1000000) +
+                    " s: is the UAV on, and in reach? Setting the modem up again");
         patienceUs_ = std::min(patienceUs_ * 2, 4 * down);
     }
 }
@@ -209,7 +220,7 @@ void Engine::readSerial(U32 now) {
     U8 bytes[512];
     ssize_t count = serial_.read(bytes, sizeof bytes);
     if (count > 0)
-        Link_receive(link_.get(), bytes, static_cast<U32>(count), 0, now);
+        Link_receive(link_.get(), bytes, static_cast<U32>(count), now);
     else if (count == 0 || (errno != EAGAIN && errno != EINTR))
         fail("serial port '" + device_ + "': " + (count == 0 ? "closed" : std::strerror(errno)));
 }
@@ -224,41 +235,82 @@ void Engine::writeSerial(U32 now) {
         serialOut_.erase(serialOut_.begin(), serialOut_.begin() + count);
 }
 
-// Whole messages from the program's stream to the link. False: the stream makes no sense.
-bool Engine::sendMessages(int channel, U32 now) {
+// Ends a program's connection: `why` completes a sentence about it.
+void Engine::end(int channel, int level, const std::string& why) {
     Stream& s = streams_[channel];
-    while (!s.wanted) {
-        Stream::Next next = s.next(LINK_MAX_MESSAGE);
-        if (next == Stream::Next::Senseless)
-            log_(0, "a message of " + std::to_string(s.size()) +
-                        " bytes does not fit the radio link (at most " +
-                        std::to_string(LINK_MAX_MESSAGE) + "): connection closed");
-        if (next != Stream::Next::Message)
-            return next == Stream::Next::None;
-        Link_Status status = Link_send(link_.get(), channel, s.data(), s.size(), 0, now);
-        s.stuck = status == LINK_FULL;
-        if (status != LINK_OK)
-            return status == LINK_FULL;
-        s.taken(now);
-    }
-    return true;
+    log_(level, s.name() + " " + why + ": connection closed");
+    s.close();
+    Link_closeChannel(link_.get(), channel);
 }
 
-void Engine::readProgram(int channel, U32 now) {
+// Sends the next message of a program. True: it went to the link.
+bool Engine::sendMessage(int channel, U32 now) {
     Stream& s = streams_[channel];
-    bool open = s.read();
-    if (sendMessages(channel, now) && open)
-        return;
-    Link_closeChannel(link_.get(), channel, now);
-    s.close();
+    if (!s.is(Stream::State::Open))
+        return false;
+    switch (s.next(LINK_MAX_MESSAGE)) {
+    case Stream::Next::Senseless:
+        end(channel, 0,
+            "sent a message of " + std::to_string(s.size()) +
+                " bytes, which does not fit the radio link (at most " +
+                std::to_string(LINK_MAX_MESSAGE) + ")");
+        return false;
+    case Stream::Next::None:
+        if (s.ended())
+            end(channel, 1, "has ended");
+        return false;
+    case Stream::Next::Message:
+        break;
+    }
+    Link_Status status = Link_send(link_.get(), channel, s.data(), s.size(), s.isCall());
+    full_ = status == LINK_FULL;
+    if (full_)
+        turn_ = channel;
+    else if (status == LINK_OK)
+        s.taken(now);
+    else
+        end(channel, 1, "has no channel any more");
+    return status == LINK_OK;
+}
+
+// Sends what the programs have written. They take turns, a message each, so that one that floods
+// leaves room for the others.
+void Engine::sendMessages(U32 now) {
+    for (int idle = 0; idle < LINK_CHANNELS && !full_; ++idle) {
+        int channel = turn_;
+        turn_ = (turn_ + 1) % LINK_CHANNELS;
+        if (sendMessage(channel, now))
+            idle = -1;
+    }
+}
+
+void Engine::servePrograms(const std::vector<pollfd>& fds, U32 now) {
+    for (size_t channel = 0; channel < LINK_CHANNELS; ++channel) {
+        Stream& s = streams_[channel];
+        s.write(now);
+        const pollfd& p = fds[channel];
+        if (p.fd >= 0 && p.fd == s.fd() && (p.events & POLLIN) && p.revents)
+            s.read(now);
+    }
+    openWanted(now);
+    sendMessages(now);
 }
 
 void Engine::openWanted(U32 now) {
     if (Link_state(link_.get()) != LINK_STATE_UP)
         return;
     for (int channel = 0; channel < ownChannels; ++channel)
-        if (streams_[channel].wanted && Link_openChannel(link_.get(), channel, now) == LINK_OK)
-            streams_[channel].wanted = false;
+        if (streams_[channel].is(Stream::State::Wanted) &&
+            Link_openChannel(link_.get(), channel) == LINK_OK)
+            streams_[channel].open(now);
+}
+
+// Logs the calls of programs that have left: nobody else is there to be told.
+void Engine::reportLost() {
+    if (lost_)
+        log_(0, "calls of programs that have left, and may not have reached the UAV: " +
+                    std::to_string(lost_));
+    lost_ = 0;
 }
 
 U32 Engine::beat(U32 now) {
@@ -268,47 +320,39 @@ U32 Engine::beat(U32 now) {
     return wait;
 }
 
-// Returns when the engine is to stop, has failed, or the link has been down for too long.
+// Moves bytes until the engine is to stop, has failed, or the link has been down for too long.
 void Engine::loop(std::unique_lock<std::mutex>& lock) {
     while (!stop_ && !failed_) {
         U32 now = clock_.nowUs();
         if (downTooLong(now))
             return;
-        openWanted(now);
+        reportLost();
         Link_poll(link_.get(), now);
         U32 deadline = std::min({Link_deadline(link_.get(), now), beat(now), pacer_.deadline(now)});
-        std::vector<pollfd> fds = {
-            {serial_.fd(), static_cast<short>(serialOut_.empty() ? POLLIN : POLLIN | POLLOUT), 0},
-            {wakePipe_[0], POLLIN, 0}};
-        for (Stream& s : streams_) {
-            short events = static_cast<short>((s.stuck || s.wanted ? 0 : POLLIN) |
-                                              (s.wantsWriting() ? POLLOUT : 0));
-            fds.push_back({s.wanted ? -1 : s.fd(), events, 0});
-        }
+        std::vector<pollfd> fds;
+        for (Stream& s : streams_)
+            fds.push_back(s.interest(!full_));
+        fds.push_back(
+            {serial_.fd(), static_cast<short>(serialOut_.empty() ? POLLIN : POLLIN | POLLOUT), 0});
+        fds.push_back({wakePipe_[0], POLLIN, 0});
+        const pollfd &serial = fds[LINK_CHANNELS], &wakes = fds[LINK_CHANNELS + 1];
         lock.unlock();
         clock_.wait(fds.data(), fds.size(), deadline);
         lock.lock();
         now = clock_.nowUs();
-        if (fds[1].revents) {
+        if (wakes.revents) {
             char bytes[64];
             (void)!read(wakePipe_[0], bytes, sizeof bytes);
         }
-        if (fds[0].revents & (POLLIN | POLLERR | POLLHUP))
+        if (serial.revents & (POLLIN | POLLERR | POLLHUP))
             readSerial(now);
         writeSerial(now);
-        for (int channel = 0; channel < LINK_CHANNELS; ++channel) {
-            pollfd& p = fds[2 + static_cast<size_t>(channel)];
-            Stream& s = streams_[channel];
-            if (p.fd < 0 || p.fd != s.fd())
-                continue;
-            s.write();
-            if ((p.revents & (POLLIN | POLLHUP | POLLERR)) || (!s.stuck && s.hasBytes()))
-                readProgram(channel, now);
-        }
+        servePrograms(fds, now);
     }
     if (!failed_) {
         Link_stop(link_.get(), clock_.nowUs());
         writeSerial(clock_.nowUs());
+        reportLost();
     }
 }
 

@@ -3,19 +3,20 @@
 // gateway: TCP to radio. Ice programs in any language and of any version reach the UAV's objects at
 // this machine's TCP port, several at a time, and the UAV reaches a server here. It links to no
 // Ice.
+//
+// It finds the sockets; the engine moves the bytes.
 
 #include "engine.h"
 
 #include <CLI/CLI.hpp>
 #include <arpa/inet.h>
-#include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <cstring>
-#include <fcntl.h>
+#include <deque>
+#include <fstream>
 #include <iostream>
-#include <list>
 #include <netdb.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -25,12 +26,18 @@
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
+using std::chrono::seconds;
+
 volatile sig_atomic_t stopSignal = 0;
+
+constexpr size_t mostWaiting = 64;    // clients without a channel
+constexpr seconds stationPatience{5}; // of the UAV, until the station has accepted
 
 struct Options {
     XBeeAT::Settings serial;
-    std::string listen = "127.0.0.1:10000", station;
-    int trace = 0, statistics = 0;
+    std::string listen = "127.0.0.1:10000", station, keyFile;
+    int trace = 0, statistics = 0, idle = 60, wait = 30;
 };
 
 struct Address {
@@ -39,13 +46,17 @@ struct Address {
 };
 
 Address resolve(const std::string& text) {
-    size_t colon = text.rfind(':');
+    const size_t colon = text.rfind(':');
     if (colon == std::string::npos)
         throw std::runtime_error("'" + text + "': give HOST:PORT");
+    const std::string port = text.substr(colon + 1);
+    const bool isNumber = port.find_first_not_of("0123456789") == std::string::npos;
+    // getaddrinfo would take it modulo 65536.
+    if (isNumber && (port.empty() || port.size() > 5 || std::stoul(port) > 65535))
+        throw std::runtime_error("'" + text + "': a port is 0 to 65535");
     addrinfo hints{}, *found = nullptr;
     hints.ai_socktype = SOCK_STREAM;
-    int error =
-        getaddrinfo(text.substr(0, colon).c_str(), text.substr(colon + 1).c_str(), &hints, &found);
+    int error = getaddrinfo(text.substr(0, colon).c_str(), port.c_str(), &hints, &found);
     if (error != 0)
         throw std::runtime_error("'" + text + "': " + gai_strerror(error));
     Address address;
@@ -55,10 +66,31 @@ Address resolve(const std::string& text) {
     return address;
 }
 
+// Small buffers, so that back-pressure reaches the program; a peer that has vanished without a word
+// is noticed after half a minute.
+void prepare(int fd) {
+    auto set = [fd](int level, int name, int value) {
+        setsockopt(fd, level, name, &value, sizeof value);
+    };
+    set(SOL_SOCKET, SO_SNDBUF, 8192);
+    set(SOL_SOCKET, SO_RCVBUF, 8192);
+    set(IPPROTO_TCP, TCP_NODELAY, 1);
+    set(SOL_SOCKET, SO_KEEPALIVE, 1);
+    set(IPPROTO_TCP, TCP_KEEPIDLE, 15);
+    set(IPPROTO_TCP, TCP_KEEPINTVL, 5);
+    set(IPPROTO_TCP, TCP_KEEPCNT, 3);
+}
+
+int newSocket(const Address& address) {
+    int fd = socket(address.bytes.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (fd >= 0)
+        prepare(fd);
+    return fd;
+}
+
 int listenAt(const std::string& where) {
     Address address = resolve(where);
-    int fd = socket(address.bytes.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    int yes = 1;
+    int fd = newSocket(address), yes = 1;
     setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     if (fd < 0 || bind(fd, reinterpret_cast<sockaddr*>(&address.bytes), address.size) != 0 ||
         listen(fd, 16) != 0)
@@ -74,169 +106,146 @@ unsigned portOf(int fd) {
                                             : reinterpret_cast<sockaddr_in&>(name).sin_port);
 }
 
-// Bytes in one direction, at most a buffer of them under way: back-pressure reaches the writer.
-class Pipe {
-public:
-    Pipe(int from, int to) : from_(from), to_(to) {}
-    bool wantsIn() const { return !ended_ && count_ == 0; }
-    bool wantsOut() const { return count_ > 0; }
-    // False: the connection is over.
-    bool move() {
-        if (wantsIn()) {
-            ssize_t got = recv(from_, bytes_, sizeof bytes_, 0);
-            if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR))
-                ended_ = true;
-            begin_ = 0;
-            count_ = got > 0 ? static_cast<size_t>(got) : 0;
-        }
-        if (wantsOut()) {
-            ssize_t put = send(to_, bytes_ + begin_, count_, MSG_NOSIGNAL);
-            if (put < 0 && errno != EAGAIN && errno != EINTR)
-                return false;
-            begin_ += put > 0 ? static_cast<size_t>(put) : 0;
-            count_ -= put > 0 ? static_cast<size_t>(put) : 0;
-        }
-        return !(ended_ && count_ == 0);
-    }
-
-private:
-    int from_, to_;
-    bool ended_ = false;
-    char bytes_[4096];
-    size_t begin_ = 0, count_ = 0;
-};
-
-// A TCP connection and a channel of the link.
-struct Session {
-    Session(int client, int channel, std::string who)
-        : tcp(client), radio(channel), name(std::move(who)) {}
-    ~Session() {
-        close(tcp);
-        close(radio);
-    }
-    Session(const Session&) = delete;
-    Session& operator=(const Session&) = delete;
-    int tcp, radio;
-    std::string name;
-    Pipe up{tcp, radio}, down{radio, tcp};
-};
-
 class Gateway {
 public:
     explicit Gateway(const Options& options) : options_(options) {
-        tcp_ = listenAt(options.listen);
+        listener_ = listenAt(options.listen);
         if (!options.station.empty())
             station_ = resolve(options.station);
-        openRadio();
-        std::cout << "gateway: port " << portOf(tcp_) << " leads to the UAV behind "
+        engine_ = XBeeAT::Engine::get(options.serial, [this](int level, const std::string& text) {
+            if (level <= options_.trace)
+                std::cerr << "gateway: " + text + "\n";
+        });
+        if (!options_.station.empty())
+            radioCalls_ = engine_->listen();
+        std::cout << "gateway: port " << portOf(listener_) << " leads to the UAV behind "
                   << engine_->device() << std::endl;
     }
     ~Gateway() {
-        sessions_.clear();
-        close(tcp_);
-        std::cout << "gateway: " << engine_->statistics() << std::endl;
+        for (Client& client : waiting_)
+            close(client.fd);
+        close(listener_);
+        close(toStation_);
+        sayStatistics();
     }
     Gateway(const Gateway&) = delete;
     Gateway& operator=(const Gateway&) = delete;
 
     void run() {
-        int said = 0;
-        while (!stopSignal) {
+        for (auto due = Clock::now() + seconds(options_.statistics); !stopSignal;) {
             wait();
-            acceptClient();
-            acceptUav();
-            for (auto it = sessions_.begin(); it != sessions_.end();) {
-                bool up = it->up.move(), down = it->down.move();
-                if (!up || !down)
-                    say(it->name + " has ended");
-                it = up && down ? std::next(it) : sessions_.erase(it);
-            }
-            if (options_.statistics > 0 && ++said >= options_.statistics) {
-                said = 0;
-                std::cout << "gateway: " << engine_->statistics() << std::endl;
+            acceptClients();
+            placeClients();
+            callStation();
+            if (options_.statistics > 0 && Clock::now() >= due) {
+                due += seconds(options_.statistics);
+                sayStatistics();
             }
         }
     }
 
 private:
-    void openRadio() {
-        engine_ = XBeeAT::Engine::get(options_.serial, [this](int level, const std::string& text) {
-            if (level <= options_.trace)
-                std::cerr << "gateway: " << text << std::endl;
-        });
-        if (!options_.station.empty())
-            radioCalls_ = engine_->listen();
-    }
-    void say(const std::string& text) {
-        if (options_.trace > 0)
-            std::cerr << "gateway: " << text << std::endl;
-    }
+    struct Client {
+        int fd;
+        std::string name;
+        Clock::time_point since;
+    };
+
+    void sayStatistics() { std::cout << "gateway: " + engine_->statistics() + "\n" << std::flush; }
+    void complain(const std::string& text) { std::cerr << "gateway: " + text + "\n"; }
+
     void wait() {
-        // A client that finds all channels taken waits in the listener's queue.
-        bool room = !lastRefused_; // else look again in a second
-        std::vector<pollfd> fds = {{room ? tcp_ : -1, POLLIN, 0}, {radioCalls_, POLLIN, 0}};
-        for (Session& s : sessions_) {
-            fds.push_back({s.tcp, events(s.up, s.down), 0});
-            fds.push_back({s.radio, events(s.down, s.up), 0});
+        // A program may leave its channel to one that waits at any time.
+        const int ms = waiting_.empty() && toStation_ < 0 ? 1000 : 50;
+        pollfd fds[] = {{waiting_.size() < mostWaiting ? listener_ : -1, POLLIN, 0},
+                        {toStation_ < 0 ? radioCalls_ : -1, POLLIN, 0},
+                        {toStation_, POLLOUT, 0}};
+        poll(fds, 3, ms);
+        isCalled_ = fds[1].revents != 0;
+        isAnswered_ = fds[2].revents != 0;
+    }
+    void acceptClients() {
+        while (waiting_.size() < mostWaiting) {
+            int fd = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+            if (fd < 0) {
+                noteFull(errno);
+                return;
+            }
+            prepare(fd);
+            waiting_.push_back({fd, "client " + std::to_string(++count_), Clock::now()});
         }
-        if (poll(fds.data(), fds.size(), 1000) == 0 || sessions_.size() < 3)
-            lastRefused_ = false;
     }
-    static short events(const Pipe& from, const Pipe& to) {
-        return static_cast<short>((from.wantsIn() ? POLLIN : 0) | (to.wantsOut() ? POLLOUT : 0));
+    // Without descriptors the listener stays readable.
+    void noteFull(int error) {
+        if (error == EAGAIN || error == EINTR || error == ECONNABORTED)
+            return;
+        complain(std::string("cannot accept a client: ") + std::strerror(error));
+        poll(nullptr, 0, 500);
     }
-    void acceptClient() {
-        pollfd ready{tcp_, POLLIN, 0};
-        if (poll(&ready, 1, 0) <= 0)
-            return;
-        int radio = engine_->connect(-1);
-        lastRefused_ = radio < 0;
-        if (lastRefused_)
-            return;
-        sockaddr_storage peer{};
-        socklen_t size = sizeof peer;
-        int fd =
-            accept4(tcp_, reinterpret_cast<sockaddr*>(&peer), &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
-        if (fd < 0) {
-            close(radio);
-            return;
+    void placeClients() {
+        while (!waiting_.empty()) {
+            Client& first = waiting_.front();
+            if (!engine_->connect(first.fd, first.name)) {
+                if (Clock::now() - first.since < seconds(options_.wait))
+                    return;
+                complain(first.name + " has waited " + std::to_string(options_.wait) +
+                         " s for one of the three channels: connection closed");
+                close(first.fd);
+            }
+            waiting_.pop_front();
         }
-        add(fd, radio, "client " + std::to_string(++count_));
     }
-    void acceptUav() {
-        pollfd ready{radioCalls_, POLLIN, 0};
-        if (radioCalls_ < 0 || poll(&ready, 1, 0) <= 0)
-            return;
-        int radio = engine_->accept();
-        if (radio < 0)
-            return;
-        int fd = socket(station_.bytes.ss_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
-        if (fd < 0 ||
-            connect(fd, reinterpret_cast<sockaddr*>(&station_.bytes), station_.size) != 0) {
-            std::cerr << "gateway: the UAV calls, and nobody listens at " << options_.station
-                      << ": " << std::strerror(errno) << std::endl;
-            close(fd);
-            close(radio);
-            return;
+    // The UAV's call, in two steps: the station may be far away.
+    void callStation() {
+        if (isCalled_) {
+            toStation_ = newSocket(station_);
+            stationDue_ = Clock::now() + stationPatience;
+            if (toStation_ < 0 || (connect(toStation_, reinterpret_cast<sockaddr*>(&station_.bytes),
+                                           station_.size) != 0 &&
+                                   errno != EINPROGRESS))
+                return refuse(errno);
+        } else if (isAnswered_) {
+            int error = 0;
+            socklen_t size = sizeof error;
+            getsockopt(toStation_, SOL_SOCKET, SO_ERROR, &error, &size);
+            if (error != 0)
+                return refuse(error);
+            engine_->accept(toStation_, "the UAV");
+            toStation_ = -1;
+        } else if (toStation_ >= 0 && Clock::now() >= stationDue_) {
+            refuse(ETIMEDOUT);
         }
-        fcntl(fd, F_SETFL, O_NONBLOCK);
-        add(fd, radio, "the UAV");
     }
-    void add(int fd, int radio, const std::string& name) {
-        int yes = 1;
-        setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-        sessions_.emplace_back(fd, radio, name);
-        say(name + " is connected");
+    void refuse(int error) {
+        complain("the UAV calls, and nobody listens at " + options_.station + ": " +
+                 std::strerror(error));
+        if (toStation_ >= 0)
+            close(toStation_);
+        toStation_ = -1;
+        engine_->refuse();
     }
 
     Options options_;
     std::shared_ptr<XBeeAT::Engine> engine_;
     Address station_;
-    int tcp_ = -1, radioCalls_ = -1;
-    bool lastRefused_ = false;
+    int listener_ = -1, radioCalls_ = -1, toStation_ = -1;
+    bool isCalled_ = false, isAnswered_ = false;
+    Clock::time_point stationDue_;
     unsigned count_ = 0;
-    std::list<Session> sessions_;
+    std::deque<Client> waiting_;
 };
+
+// Not from the command line, which every user of the machine can read.
+std::string readKey(const std::string& path) {
+    std::ifstream file(path);
+    std::string key;
+    if (!(file >> key))
+        throw std::runtime_error("cannot read a key from '" + path + "'");
+    if (key.size() > 32 || key.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
+        throw std::runtime_error("the AES key in '" + path +
+                                 "' must be up to 32 hexadecimal digits");
+    return key;
+}
 
 } // namespace
 
@@ -254,12 +263,19 @@ int main(int argc, char** argv) {
     app.add_option("-s,--source", s.source, "own 16-bit address")->check(CLI::Range(0, 0xFFFF));
     app.add_option("-c,--channel", s.rfChannel, "RF channel")->check(CLI::Range(0x0B, 0x1A));
     app.add_option("-i,--pan", s.pan, "network id")->check(CLI::Range(0, 0xFFFF));
-    app.add_option("-k,--key", s.key, "AES key, up to 32 hexadecimal digits");
+    app.add_option("-k,--key-file", o.keyFile,
+                   "file with the AES key, up to 32 hexadecimal digits; /dev/fd/3: a descriptor");
     app.add_option("-g,--guard", s.guardMs, "guard time of the modem as it is, ms")
         ->check(CLI::Range(2, 3300));
     app.add_flag("!--no-setup", s.setUp, "the modem is set up already");
     app.add_option("-l,--listen", o.listen, "HOST:PORT for clients; port 0: any, it is printed");
     app.add_option("--station", o.station, "HOST:PORT of the Ice server that the UAV calls");
+    app.add_option("--idle", o.idle,
+                   "seconds of silence after which a client makes room for one that waits")
+        ->check(CLI::Range(1, 3600));
+    app.add_option("--wait", o.wait,
+                   "seconds that a client waits for one of the three channels, then is turned away")
+        ->check(CLI::Range(1, 3600));
     app.add_option("-t,--trace", o.trace, "0 errors, 1 link and connections, 2 AT commands")
         ->check(CLI::Range(0, 2));
     app.add_option("--statistics", o.statistics, "print a line about every so many seconds");
@@ -269,6 +285,9 @@ int main(int argc, char** argv) {
     for (int signal : {SIGINT, SIGTERM, SIGHUP})
         sigaction(signal, &action, nullptr);
     try {
+        s.idleMs = o.idle * 1000;
+        if (!o.keyFile.empty())
+            s.key = readKey(o.keyFile);
         Gateway(o).run();
     } catch (const std::exception& e) {
         std::cerr << "gateway: error: " << e.what() << "\n";

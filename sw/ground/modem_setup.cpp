@@ -37,7 +37,7 @@ bool ModemSetup::pause(int ms) {
     return !stopped_;
 }
 
-// Up to the carriage return; what came by then if it does not come.
+// Returns the reply up to its carriage return; without one, what came in time.
 std::string ModemSetup::readReply(int timeoutMs) {
     std::string reply;
     for (int leftUs = timeoutMs * 1000;;) {
@@ -91,9 +91,9 @@ bool ModemSetup::command(const std::string& text) {
     return false;
 }
 
-// At the target rate first, since a modem that this has set up before is there; then the factory's;
-// then these with a longer guard time, because a modem keeps what it was once told (ATGT), and a
-// simulated one may be slower than the clock; then all rates. Times: docs/xbee.md.
+// Tries the target rate first, since a modem that this has set up before is there; then the
+// factory's; then these with a longer guard time, because a modem keeps what it was once told
+// (ATGT), and a simulated one may be slower than the clock; then all rates. Times: docs/xbee.md.
 bool ModemSetup::find() {
     const int guard = settings_.guardMs, longer = std::min(3 * guard, mostGuard);
     std::vector<std::pair<int, int>> candidates = {{settings_.baud, guard},
@@ -119,7 +119,7 @@ bool ModemSetup::run() {
     const Settings& s = settings_;
     if (!find() || !command("MY" + hex(s.source)) || !command("DH0") ||
         !command("DL" + hex(s.target)) || !command("CH" + hex(s.rfChannel)) ||
-        !command("ID" + hex(s.pan)) || !command("RO3") ||
+        !command("ID" + hex(s.pan)) || !command("RN3") || !command("RO3") ||
         (!s.key.empty() && (!command("EE1") || !command("KY" + s.key))))
         return false;
     encrypts_ = ask("EE") == "1";

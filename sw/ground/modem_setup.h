@@ -19,8 +19,8 @@ public:
     ModemSetup(SerialPort& serial, const Settings& settings, const Log& log, Wait wait)
         : serial_(serial), settings_(settings), log_(log), wait_(std::move(wait)) {}
 
-    // False: no modem answers, it refuses a command (logged), or `wait` gave up. About two guard
-    // times at the right rate at once, one more for each rate tried in vain.
+    // Sets the modem up. False: no modem answers, it refuses a command (logged), or `wait` gave up.
+    // About two guard times at the right rate at once, one more for each rate tried in vain.
     bool run();
     bool encrypts() const { return encrypts_; } // EE, after run()
 

@@ -235,10 +235,9 @@ public:
         o.channel = channel > 2 ? 255 : channel;
         return ICE_MAKE_SHARED(Endpoint, instance_, o);
     }
-    // Another thread may be parsing a proxy: the instance stays, and refuses connections from now on.
-    void destroy() override {
-        instance_->destroy();
-    }
+    // Another thread may be parsing a proxy: the instance stays, and refuses connections from now
+    // on.
+    void destroy() override { instance_->destroy(); }
     IceInternal::EndpointFactoryPtr clone(const IceInternal::ProtocolInstancePtr&) const override {
         return new Factory(instance_);
     }

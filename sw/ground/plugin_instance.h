@@ -33,7 +33,7 @@ inline void checkKey(const std::string& key, const std::string& where) {
             __FILE__, __LINE__, "the AES key of " + where + " must be up to 32 hexadecimal digits");
 }
 
-// What the endpoints of one communicator share: its properties and its logger.
+// Instance holds what the endpoints of one communicator share: its properties and its logger.
 class Instance : public IceUtil::Shared {
 public:
     explicit Instance(const Ice::CommunicatorPtr& communicator) : communicator_(communicator) {

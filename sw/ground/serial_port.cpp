@@ -5,16 +5,56 @@
 #include "serial_port.h"
 
 #include <asm/termbits.h> // struct termios2: any rate, 111,111 too
+#include <cerrno>
 #include <fcntl.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <system_error>
 #include <unistd.h>
 
 namespace XBeeAT {
 
-bool SerialPort::open(const std::string& device) {
+namespace {
+
+// The process that has locked a file; the kernel forgets the lock with the process.
+int userOf(int fd) {
+    struct flock lock {};
+    lock.l_type = F_WRLCK;
+    return fcntl(fd, F_GETLK, &lock) == 0 && lock.l_type != F_UNLCK ? lock.l_pid : 0;
+}
+
+bool isPty(int fd) {
+    struct stat node {};
+    return fstat(fd, &node) == 0 && major(node.st_rdev) >= 136 && major(node.st_rdev) <= 143;
+}
+
+} // namespace
+
+void SerialPort::open(const std::string& device) {
     close();
     fd_ = ::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    return fd_ >= 0;
+    struct flock lock {};
+    lock.l_type = F_WRLCK;
+    std::string why;
+    int error = fd_ < 0 ? errno : 0;
+    if (!error && !isatty(fd_)) {
+        error = ENOTTY;
+        why = ": it is no terminal";
+    } else if (!error && fcntl(fd_, F_SETLK, &lock) != 0) {
+        error = EBUSY;
+        why = ": process " + std::to_string(userOf(fd_)) + " uses it";
+    }
+    if (!error) {
+        // Terminal programs, too, are kept out; a pty would stay locked when this process is
+        // killed.
+        if (!isPty(fd_))
+            ioctl(fd_, TIOCEXCL);
+        return;
+    }
+    close();
+    throw std::system_error(error, std::generic_category(),
+                            "cannot open serial port '" + device + "'" + why);
 }
 
 void SerialPort::close() {

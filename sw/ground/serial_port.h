@@ -7,6 +7,7 @@
 
 #include "clock.h"
 
+#include <string>
 #include <sys/types.h>
 
 namespace XBeeAT {
@@ -18,14 +19,16 @@ public:
     SerialPort(const SerialPort&) = delete;
     SerialPort& operator=(const SerialPort&) = delete;
 
-    bool open(const std::string& device); // false: errno says why
+    // Throws std::system_error: also where it is no terminal, and where another process has opened
+    // it in this way.
+    void open(const std::string& device);
     void close();
     int fd() const { return fd_; }
-    // As the system's, without waiting.
+    // Work as the system's read and write do; they never wait.
     ssize_t read(void* bytes, size_t room);
     ssize_t write(const void* bytes, size_t size);
-    void drop(); // what has come by now
-    // In baud; a file that is no terminal takes no notice.
+    void drop(); // throws away what has come by now
+    // Sets the rate, in baud.
     void setSpeed(int baud);
 
 private:

@@ -20,8 +20,8 @@ struct Settings {
     std::string key;      // AES key, up to 32 hexadecimal digits; empty: the modem's setting stays
     int guardMs = 1000;   // of the modem as it is
     bool setUp = true;    // by AT commands
-    int downMs =
-        15000; // the link was down for so long: set the modem up again, it may have been reset
+    int downMs = 15000;   // without a link: set the modem up again, it may have been reset
+    int idleMs = 0;       // so long silent, a program makes room for one that waits; 0: never
 
     double characterUs() const { return 1e7 / (baud == 115200 ? 111111 : baud); }
 };

@@ -4,9 +4,7 @@
 
 #include "stream.h"
 
-#include <algorithm>
 #include <cerrno>
-#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -14,13 +12,14 @@ namespace XBeeAT {
 
 namespace {
 
-constexpr int bufferBytes = 4096; // of the socket: small, so that back-pressure reaches the caller
-constexpr size_t headerBytes = 14;
-
-// Of IceP's header: "The Ice Protocol" in the manual of ZeroC Ice.
-enum MessageType { request = 0, batch = 1, reply = 2, validate = 3 };
-constexpr size_t sizeAt = 10, typeAt = 8, idAt = 14;
+constexpr size_t bufferBytes = 4096, headerBytes = 14;
+constexpr U32 never = 0xFFFFFFFFu;
 constexpr U32 heartbeatUs = 5000000; // below any sensible Ice.ACM.Timeout
+constexpr U32 leavingUs = 10000000;
+
+// Message types and offsets of IceP: "The Ice Protocol" in the manual of ZeroC Ice.
+enum MessageType { request = 0, batch = 1, reply = 2, validate = 3, closeConnection = 4 };
+constexpr size_t typeAt = 8, sizeAt = 10, idAt = 14;
 
 bool isOver(ssize_t count) {
     return count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR);
@@ -28,31 +27,61 @@ bool isOver(ssize_t count) {
 
 } // namespace
 
-int Stream::open(bool isServer) {
-    close();
-    int ends[2];
-    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) != 0)
-        return -1;
-    for (int end : ends)
-        setsockopt(end, SOL_SOCKET, SO_SNDBUF, &bufferBytes, sizeof bufferBytes);
-    fd_ = ends[0];
-    isServer_ = isServer;
-    return ends[1];
+void Stream::want(int fd, const std::string& name) {
+    close(State::Wanted);
+    fd_ = fd;
+    name_ = name;
 }
 
-void Stream::close() {
+void Stream::call() {
+    close(State::Called);
+    isServer_ = true;
+}
+
+void Stream::accept(int fd, const std::string& name) {
+    state_ = State::Open;
+    fd_ = fd;
+    name_ = name;
+}
+
+void Stream::open(U32 nowUs) {
+    state_ = State::Open;
+    activeAt_ = nowUs;
+}
+
+unsigned Stream::leave(U32 nowUs) {
+    unsigned unsent = 0;
+    for (; ended_ && next(0xFFFFFFFFu) == Next::Message; taken(nowUs))
+        unsent += isCall();
+    state_ = State::Leaving;
+    leftAt_ = nowUs;
+    write(nowUs);
+    if (in_.empty())
+        close();
+    return unsent;
+}
+
+void Stream::close(State to) {
     if (fd_ >= 0)
         ::close(fd_);
     fd_ = -1;
+    state_ = to;
     out_.clear();
     in_.clear();
-    wanted = stuck = isServer_ = greeted_ = false;
+    ended_ = isServer_ = greeted_ = false;
     pending_ = 0;
 }
 
 bool Stream::isLeft() const {
-    pollfd waiting{fd_, 0, 0};
-    return poll(&waiting, 1, 0) > 0;
+    pollfd end{fd_, POLLRDHUP, 0};
+    char byte;
+    return poll(&end, 1, 0) > 0 && recv(fd_, &byte, 1, MSG_PEEK | MSG_DONTWAIT) <= 0;
+}
+
+pollfd Stream::interest(bool reads) const {
+    const bool wantsIn = reads && is(State::Open) && !ended_;
+    const int events = (wantsIn ? POLLIN : 0) | (in_.empty() ? 0 : POLLOUT);
+    return {events ? fd_ : -1, static_cast<short>(events), 0};
 }
 
 U32 Stream::messageSize() const {
@@ -61,12 +90,13 @@ U32 Stream::messageSize() const {
            static_cast<U32>(p[3]) << 24;
 }
 
-bool Stream::read() {
+void Stream::read(U32 nowUs) {
     U8 bytes[bufferBytes];
     ssize_t count = recv(fd_, bytes, sizeof bytes, 0);
     if (count > 0)
         out_.insert(out_.end(), bytes, bytes + count);
-    return !isOver(count);
+    ended_ = isOver(count);
+    activeAt_ = nowUs;
 }
 
 Stream::Next Stream::next(U32 longest) {
@@ -87,6 +117,10 @@ Stream::Next Stream::next(U32 longest) {
     return Next::None;
 }
 
+bool Stream::isCall() const {
+    return out_[typeAt] == request || out_[typeAt] == batch;
+}
+
 void Stream::taken(U32 nowUs) {
     bool wantsReply = out_[typeAt] == request && out_.size() >= idAt + 4 &&
                       (out_[idAt] | out_[idAt + 1] | out_[idAt + 2] | out_[idAt + 3]);
@@ -96,34 +130,52 @@ void Stream::taken(U32 nowUs) {
 }
 
 bool Stream::give(const U8* message, U32 size, U32 nowUs) {
-    if (!in_.empty())
+    if (in_.size() + size > mostUnread)
         return false;
-    in_.assign(message, message + size);
+    in_.insert(in_.end(), message, message + size);
     heardAt_ = nowUs;
     if (size > typeAt && message[typeAt] == reply && pending_)
         --pending_;
-    write();
+    write(nowUs);
     return true;
 }
 
-void Stream::write() {
+void Stream::write(U32 nowUs) {
     if (fd_ < 0 || in_.empty())
         return;
     ssize_t count = send(fd_, in_.data(), in_.size(), MSG_NOSIGNAL);
-    if (count > 0)
+    if (count > 0) {
         in_.erase(in_.begin(), in_.begin() + count);
-    else if (isOver(count))
+        activeAt_ = nowUs;
+    } else if (isOver(count)) {
         in_.clear();
+    }
+    if (is(State::Leaving) && in_.empty())
+        close();
 }
 
 U32 Stream::beat(U32 nowUs) {
     static const U8 heartbeat[headerBytes] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, validate, 0, 14};
-    if (fd_ < 0 || wanted || !pending_)
-        return 0xFFFFFFFFu;
-    if (nowUs - heardAt_ >= heartbeatUs)
+    if (is(State::Leaving)) {
+        if (nowUs - leftAt_ < leavingUs)
+            return leavingUs - (nowUs - leftAt_);
+        close();
+    }
+    if (!is(State::Open) || !pending_)
+        return never;
+    if (nowUs - heardAt_ >= heartbeatUs && in_.empty())
         (void)give(heartbeat, headerBytes, nowUs);
     U32 since = nowUs - heardAt_;
     return since < heartbeatUs ? heartbeatUs - since : 100000u;
+}
+
+bool Stream::isIdle(U32 nowUs, U32 forUs) const {
+    return is(State::Open) && !pending_ && in_.empty() && nowUs - activeAt_ >= forUs;
+}
+
+void Stream::sayGoodbye(U32 nowUs) {
+    static const U8 goodbye[headerBytes] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, closeConnection, 0, 14};
+    (void)give(goodbye, headerBytes, nowUs);
 }
 
 } // namespace XBeeAT

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// stream: one connection of the program: its end of a socket pair, and the Ice messages on it. It
-// knows nothing of Ice but the 14 bytes before each message and a request's number.
+// stream: one connection of a program: a socket, the Ice messages on it, and where it stands
+// between program and link. It knows nothing of Ice but the 14 bytes before each message and a
+// request's number.
 
 #ifndef GROUND_STREAM_H
 #define GROUND_STREAM_H
 
+#include <poll.h>
+#include <string>
 #include <vector>
 
 extern "C" {
@@ -16,51 +19,75 @@ namespace XBeeAT {
 
 class Stream {
 public:
+    enum class State {
+        Closed,
+        Wanted, // by the program; the link has yet to open the channel
+        Called, // by the peer; no program has taken it yet
+        Open,   // between program and link
+        Leaving // the link's channel is closed; the program has yet to take what came
+    };
+
     Stream() = default;
     ~Stream() { close(); }
     Stream(const Stream&) = delete;
     Stream& operator=(const Stream&) = delete;
 
-    // A new socket pair; returns the program's end, -1 on failure. `isServer`: the program is one,
-    // and its first ValidateConnection is its greeting.
-    int open(bool isServer);
-    void close();
-    bool isOpen() const { return fd_ >= 0; }
+    bool is(State state) const { return state_ == state; }
+    // Takes the program's socket (and closes it in the end), which must not block. `name`: in log
+    // lines. A program that was called is a server, and its first ValidateConnection is its
+    // greeting.
+    void want(int fd, const std::string& name);
+    void call(); // by the peer
+    void accept(int fd, const std::string& name);
+    void open(U32 nowUs);
+    // The link's channel is closed: the program may still take what came, for ten seconds. Returns
+    // the calls that were not sent, if the program is gone and cannot be told.
+    unsigned leave(U32 nowUs);
+    void close(State to = State::Closed);
+    const std::string& name() const { return name_; }
     int fd() const { return fd_; }
-    bool isLeft() const; // the program has closed its end, or has written already
+    // True if the program has closed its end, and left nothing to be read.
+    bool isLeft() const;
 
-    // From the program. False: it has closed.
-    bool read();
+    // Says what poll is to look for; fd -1 is nothing. `reads`: the link has room for messages.
+    pollfd interest(bool reads) const;
+    void read(U32 nowUs);                 // from the program, a buffer at most
+    bool ended() const { return ended_; } // the program sends no more
     enum class Next { None, Message, Senseless };
-    // The next whole message, at most `longest` bytes; heartbeats are left out, because the link
-    // itself knows whether the peer is there.
+    // Finds the next whole message, at most `longest` bytes. Heartbeats are left out, because the
+    // link itself knows whether the peer is there.
     Next next(U32 longest);
-    bool hasBytes() const { return !out_.empty(); } // whole messages or not
+    bool isCall() const; // the message is one
     const U8* data() const { return out_.data(); }
     U32 size() const { return messageSize(); } // also of one that makes no sense
     void taken(U32 nowUs);                     // the link has it
 
-    // To the program. False: the last one is not written yet.
+    // Hands the program a message. False: it has left 64 KiB unread.
     bool give(const U8* message, U32 size, U32 nowUs);
-    bool wantsWriting() const { return !in_.empty(); }
-    void write();
-    // A heartbeat, if the program waits for an answer and has heard nothing for a while: as a
-    // server that runs long would send it, but without air. Returns when to come again, in
-    // microseconds.
+    void write(U32 nowUs);
+    // Sends a heartbeat if the program waits for an answer and has heard nothing for a while: as a
+    // server that runs long would send it, but without air. Ends a leaving that takes too long.
+    // Returns when to come again, in microseconds.
     U32 beat(U32 nowUs);
+    // True if nothing is under way, and nothing was for so long.
+    bool isIdle(U32 nowUs, U32 forUs) const;
+    // Tells the program, in Ice's words, that the connection closes and it may open another one.
+    void sayGoodbye(U32 nowUs);
 
-    bool wanted = false; // to be opened when the link is up
-    bool stuck = false;  // the link's queue was full
+    static constexpr size_t mostUnread = 64 * 1024; // bytes
 
 private:
     U32 messageSize() const;
 
+    State state_ = State::Closed;
+    std::string name_;
     int fd_ = -1;
-    std::vector<U8> out_; // from the program
+    std::vector<U8> out_; // from the program: less than a message and a buffer
     std::vector<U8> in_;  // to the program, not yet written
-    bool isServer_ = false, greeted_ = false;
-    unsigned pending_ = 0; // two-way requests of the program that are not answered yet
-    U32 heardAt_ = 0;      // when it got its last message
+    bool ended_ = false, isServer_ = false, greeted_ = false;
+    unsigned pending_ = 0;          // two-way requests of the program that are not answered yet
+    U32 heardAt_ = 0;               // when it got its last message
+    U32 activeAt_ = 0, leftAt_ = 0; // when it last sent or took something; when it began to leave
 };
 
 } // namespace XBeeAT

@@ -13,10 +13,10 @@ enum { ID, EVENT, MASK, CONTROL, STATUS };
 
 typedef char hw_check_double[sizeof(double) == 8 ? 1 : -1];
 
-Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Seam* seam, void* context) {
+Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Port* port, void* context) {
     U32 i;
     self->slot = slot;
-    self->seam = seam;
+    self->port = port;
     self->context = context;
     for (i = 0; i < HW_OPERATIONS; ++i)
         self->done[i] = self->later[i] = 0;
@@ -35,7 +35,7 @@ void Hw_Core_interrupt(Hw_Core* self) {
     for (i = 0; i < HW_OPERATIONS; ++i)
         if (events & 1U << i) {
             self->done[i] = 1;
-            self->seam->post(self->context, i);
+            self->port->post(self->context, i);
         }
 }
 
@@ -52,7 +52,7 @@ Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms) {
     Hw_Core_act(self, operation);
     /* A post that is left from a call that was given up ends one wait early, and no more. */
     while (!self->done[operation])
-        if (!self->seam->wait(self->context, operation, ms) && !self->done[operation]) {
+        if (!self->port->wait(self->context, operation, ms) && !self->done[operation]) {
             FSMC_write(self->slot, CONTROL, RESET);
             return HW_TIMEOUT;
         }
@@ -61,14 +61,14 @@ Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms) {
 
 void Hw_Core_begin(Hw_Core* self, U32 operation, U32 ms) {
     self->done[operation] = 0;
-    self->deadline[operation] = self->seam->nowMs(self->context) + ms;
+    self->deadline[operation] = self->port->nowMs(self->context) + ms;
     Hw_Core_act(self, operation);
 }
 
 void Hw_Core_later(Hw_Core* self, U32 operation) {
     self->later[operation] = 1;
     /* The event may have been before, or the task may sleep longer than this one's time. */
-    self->seam->post(self->context, operation);
+    self->port->post(self->context, operation);
 }
 
 int Hw_Core_ended(Hw_Core* self, U32 operation, U32 nowMs, Hw_Status* status, U32* next) {

@@ -17,23 +17,38 @@ typedef enum Hw_Status {
     HW_WRONG_CORE, /* the slot's ID is another one */
     HW_BUSY,       /* the operation has not ended yet */
     HW_REFUSED,    /* by the core */
-    HW_TIMEOUT     /* no event in time; the core was reset */
+    HW_TIMEOUT,    /* no event in time; the core was reset */
+    HW_UNALIGNED   /* the buffers do not begin at a multiple of their size */
 } Hw_Status;
 
-/* How a task waits. On uC/OS-II: a semaphore (OSSemPend, OSSemPost); where several tasks call
- * operations that take time, one for each operation. */
-typedef struct Hw_Seam {
+/* Frames in DDR3, from whoever makes them to whoever processes them. A camera core's servant
+ * writes base, stride, width and height; the application sets the rest. */
+typedef struct Hw_Frames {
+    U32 base, stride;  /* byte address of the first of three buffers; bytes to the next */
+    U32 width, height; /* pixels; width 0: no camera runs, the picture is the frame */
+    U32 picture,
+        pictureSize; /* byte addresses of a picture, and of its width and height: 32 bits each */
+    void (*processed)(U32 findings); /* called for each frame that was processed */
+} Hw_Frames;
+
+/* What a core's servant needs from below: how its task waits, and what it shares with others. On
+ * uC/OS-II: a semaphore (OSSemPend, OSSemPost); where several tasks call operations that take
+ * time, one for each operation. */
+typedef struct Hw_Port {
     /* Until post was called for the operation since the last wait (1), or `ms` have passed (0). */
     int (*wait)(void* context, U32 operation, U32 ms);
     void (*post)(void* context, U32 operation);
     U32 (*nowMs)(void* context); /* of any beginning; wraps */
-} Hw_Seam;
+    /* Number of accesses so far that no register answered; what was read meanwhile is nothing. */
+    U32 (*busErrors)(void* context);
+    Hw_Frames* frames; /* 0: no core of the program works on frames */
+} Hw_Port;
 
 #define HW_NEVER 0xFFFFFFFFU
 
 typedef struct Hw_Core {
     U32 slot; /* 0..63 */
-    const Hw_Seam* seam;
+    const Hw_Port* port;
     void* context;
     volatile U8 done[HW_OPERATIONS];  /* set by the interrupt */
     U32 memory;                       /* DDR3 byte address of the buffers */
@@ -42,7 +57,7 @@ typedef struct Hw_Core {
 } Hw_Core;
 
 /* `id`: what the slot's word ID reads. Resets the core, clears its events, enables them. */
-Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Seam* seam, void* context);
+Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Port* port, void* context);
 /* When the slot's interrupt line is high, from the interrupt routine or a task. */
 void Hw_Core_interrupt(Hw_Core* self);
 

@@ -13,7 +13,7 @@ typedef struct Hw_Instance {
     const char* identity; /* 0 ends the table */
     U32 slot;             /* 2..63 */
     Ice_ObjectPtr servant;
-    Hw_Status (*start)(const Hw_Seam* seam, void* context);
+    Hw_Status (*start)(const Hw_Port* port, void* context);
     void (*interrupt)(void);
     /* Answers calls that are done or too late; returns after how many ms it wants to be called
      * again even without an event, or HW_NEVER. */

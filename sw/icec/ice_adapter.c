@@ -2,7 +2,8 @@
  *
  * ice_adapter: object adapters: which servant answers for which identity.
  */
-#include "ice_private.h"
+#include "ice_proxy.h"
+#include "ice_transport.h"
 
 #include <string.h>
 
@@ -13,7 +14,7 @@ static Ice_String part(const char* data, size_t size) {
     return s;
 }
 
-Ice_Identity Ice_parseIdentity(const char* text) {
+Ice_Identity icec_parseIdentity(const char* text) {
     Ice_Identity id;
     const char* slash = strchr(text, '/');
     id.category = part(text, slash ? (size_t)(slash - text) : 0);
@@ -21,7 +22,7 @@ Ice_Identity Ice_parseIdentity(const char* text) {
     return id;
 }
 
-const char* Ice_optionsOf(Ice_CommunicatorPtr ic, const char* text) {
+const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text) {
     Ice_String name = part(text, strcspn(text, " :"));
     return Ice_String_is(&name, ic->endpoint->name) ? text + name.size : 0;
 }
@@ -30,25 +31,25 @@ Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr
                                                              const char* name,
                                                              const char* endpoints,
                                                              Ice_ObjectAdapterPtr adapter) {
-    const char* options = endpoints ? Ice_optionsOf(ic, endpoints) : 0;
+    const char* options = endpoints ? icec_optionsOf(ic, endpoints) : 0;
     Ice_Status status = ICE_OK;
     memset(adapter, 0, sizeof *adapter);
     adapter->communicator = ic;
-    adapter->name = name;
+    (void)name;
     if (endpoints && !options)
         return ICE_NO_ENDPOINT;
-    Ice_lock(ic, ICE_LOCK_STATE);
+    icec_lock(ic, ICE_LOCK_STATE);
     if (endpoints)
         status = ic->endpoint->listen(ic->endpointContext, options);
     if (status == ICE_OK) {
         adapter->next = ic->adapters;
         ic->adapters = adapter;
     }
-    Ice_unlock(ic, ICE_LOCK_STATE);
+    icec_unlock(ic, ICE_LOCK_STATE);
     return status;
 }
 
-/* The entry of exactly this identity and facet, or -1. */
+/* Returns the entry of exactly this identity and facet; -1: there is none. */
 static int indexOf(Ice_ObjectAdapterPtr adapter, const Ice_Identity* id, const Ice_String* facet) {
     int s;
     for (s = 0; s < ICE_SERVANTS; ++s)
@@ -64,7 +65,7 @@ static Ice_Status change(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                          const Ice_Identity* id, Ice_String facet) {
     Ice_Status status = ICE_LIMIT;
     int s;
-    Ice_lock(adapter->communicator, ICE_LOCK_STATE);
+    icec_lock(adapter->communicator, ICE_LOCK_STATE);
     s = indexOf(adapter, id, &facet);
     if (!servant) {
         if (s >= 0)
@@ -79,13 +80,13 @@ static Ice_Status change(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                 status = ICE_OK;
             }
     }
-    Ice_unlock(adapter->communicator, ICE_LOCK_STATE);
+    icec_unlock(adapter->communicator, ICE_LOCK_STATE);
     return status;
 }
 
 static Ice_Status changeNamed(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                               const char* identity, const char* facet) {
-    Ice_Identity id = Ice_parseIdentity(identity);
+    Ice_Identity id = icec_parseIdentity(identity);
     return id.name.size ? change(adapter, servant, &id, Ice_String_from(facet)) : ICE_PARSE;
 }
 
@@ -127,15 +128,15 @@ Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter,
 }
 
 Ice_ObjectPtr Ice_ObjectAdapter_find(Ice_ObjectAdapterPtr adapter, const char* identity) {
-    Ice_Identity id = Ice_parseIdentity(identity);
+    Ice_Identity id = icec_parseIdentity(identity);
     Ice_String none = part("", 0);
     Ice_ObjectPtr found = 0;
     int s;
-    Ice_lock(adapter->communicator, ICE_LOCK_STATE);
+    icec_lock(adapter->communicator, ICE_LOCK_STATE);
     s = indexOf(adapter, &id, &none);
     if (s >= 0)
         found = adapter->servants[s].servant;
-    Ice_unlock(adapter->communicator, ICE_LOCK_STATE);
+    icec_unlock(adapter->communicator, ICE_LOCK_STATE);
     return found;
 }
 
@@ -149,19 +150,24 @@ void Ice_ObjectAdapter_deactivate(Ice_ObjectAdapterPtr adapter) {
 
 void Ice_ObjectAdapter_destroy(Ice_ObjectAdapterPtr adapter) {
     Ice_ObjectAdapterPtr* at;
-    Ice_lock(adapter->communicator, ICE_LOCK_STATE);
+    icec_lock(adapter->communicator, ICE_LOCK_STATE);
     for (at = &adapter->communicator->adapters; *at && *at != adapter; at = &(*at)->next)
         ;
     if (*at)
         *at = adapter->next;
-    Ice_unlock(adapter->communicator, ICE_LOCK_STATE);
+    icec_unlock(adapter->communicator, ICE_LOCK_STATE);
 }
 
 Ice_Status Ice_ObjectAdapter_createProxy(Ice_ObjectAdapterPtr adapter, const char* identity,
                                          Ice_ObjectPrxPtr prx) {
-    Ice_Identity id = Ice_parseIdentity(identity);
+    Ice_Identity id = icec_parseIdentity(identity);
+    return Ice_ObjectAdapter_createProxyTo(adapter, &id, prx);
+}
+
+Ice_Status Ice_ObjectAdapter_createProxyTo(Ice_ObjectAdapterPtr adapter,
+                                           const Ice_Identity* identity, Ice_ObjectPrxPtr prx) {
     Ice_Status status;
-    Ice_ObjectPrx_init(prx, adapter->communicator);
-    status = Ice_ObjectPrx_setIdentity(prx, &id.name, &id.category, 0);
-    return status == ICE_OK ? Ice_ObjectPrx_addEndpoint(prx, 0) : status;
+    icec_initProxy(prx, adapter->communicator);
+    status = icec_setIdentity(prx, &identity->name, &identity->category, 0);
+    return status == ICE_OK ? icec_addEndpoint(prx, 0) : status;
 }

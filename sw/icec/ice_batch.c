@@ -4,23 +4,22 @@
  *
  * A batch is a message of its own: its head, a count, and requests without ids.
  */
-#include "ice_private.h"
+#include "ice_message.h"
+#include "ice_transport.h"
 
 static void restart(Ice_Batch* batch) {
-    batch->os.size = 0;
-    batch->os.failed = 0;
     batch->count = 0;
-    Ice_beginMessage(&batch->os, ICE_BATCH);
+    icec_beginMessage(&batch->os, ICEC_BATCH);
     Ice_OutputStream_writeInt(&batch->os, 0);
 }
 
-/* Under ICE_LOCK_SEND, on an open connection. */
+/* Sends the batch on an open connection; under ICE_LOCK_SEND. */
 static Ice_Status flush(Ice_ObjectPrxPtr prx) {
     Ice_Batch* batch = prx->batch;
     Ice_Status status;
-    Ice_patchInt(&batch->os, ICE_HEADER, batch->count);
-    Ice_endMessage(&batch->os);
-    status = Ice_send(prx->communicator, prx->connection, &batch->os);
+    icec_patchInt(&batch->os, ICEC_HEADER, batch->count);
+    icec_endMessage(&batch->os);
+    status = icec_send(prx->communicator, prx->connection, &batch->os);
     restart(batch);
     return status;
 }
@@ -35,7 +34,7 @@ static Ice_Status keep(Ice_ObjectPrxPtr prx) {
         return ICE_MARSHAL;
     if (request->size > batch->os.capacity - batch->os.size && batch->count) {
         if (prx->connection < 0 ||
-            prx->communicator->connections[prx->connection].state != ICE_DONE)
+            prx->communicator->connections[prx->connection].state != ICE_CONNECTION_OPEN)
             return ICE_LIMIT;
         status = flush(prx);
     }
@@ -68,8 +67,8 @@ Ice_Status Ice_ObjectPrx_ice_flushBatchRequests(Ice_ObjectPrxPtr prx) {
     prx->batch = batch;
     if (status != ICE_OK)
         return status;
-    Ice_lock(prx->communicator, ICE_LOCK_SEND);
+    icec_lock(prx->communicator, ICE_LOCK_SEND);
     status = flush(prx);
-    Ice_unlock(prx->communicator, ICE_LOCK_SEND);
+    icec_unlock(prx->communicator, ICE_LOCK_SEND);
     return status;
 }

@@ -2,7 +2,7 @@
  *
  * ice_builtin: the operations that every object has, asked of objects elsewhere.
  */
-#include "ice_private.h"
+#include "ice_proxy.h"
 
 #define MODE (2 | ICE_RESULTS) /* idempotent */
 
@@ -46,6 +46,6 @@ Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx*
         return ICE_OK;
     status = Ice_ObjectPrx_ice_isA(self, id, &is);
     if (status != ICE_OK || !is)
-        Ice_ObjectPrx_init(self, from->communicator);
+        icec_initProxy(self, from->communicator);
     return status;
 }

@@ -2,7 +2,11 @@
  *
  * ice_communicator: the communicator: its parts, its properties, its loop.
  */
-#include "ice_private.h"
+#include "ice_calls.h"
+#include "ice_loop.h"
+#include "ice_message.h"
+#include "ice_receiver.h"
+#include "ice_transport.h"
 
 #include <string.h>
 
@@ -29,8 +33,7 @@ const Ice_Os Ice_Os_none = {noLock, noLock, neverWoken, noLock, oneTask};
 
 void Ice_initialize(Ice_CommunicatorPtr ic) {
     memset(ic, 0, sizeof *ic);
-    if (ICEC_TASKS)
-        ic->os = &Ice_Os_none;
+    ic->os = &Ice_Os_none;
     ic->receiver = -1;
 }
 
@@ -45,54 +48,38 @@ void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint* en
     ic->endpointContext = context;
 }
 
-static int isStopping(Ice_CommunicatorPtr ic) {
-    int is;
-    Ice_lock(ic, ICE_LOCK_STATE);
-    is = ic->stopping;
-    Ice_unlock(ic, ICE_LOCK_STATE);
-    return is;
-}
-
 void Ice_Communicator_waitForShutdown(Ice_CommunicatorPtr ic) {
-    Ice_Role role = ICEC_TASKS ? Ice_takeRole(ic, ICE_FOREVER) : ICE_ROLE_HAD;
-    while (role != ICE_ROLE_NONE && !isStopping(ic))
-        (void)Ice_receiveOne(ic, POLL_MS);
-    if (ICEC_TASKS && role == ICE_ROLE_TAKEN)
-        Ice_giveRole(ic); /* who waits for a reply receives it himself now */
+    Icec_Role role = icec_takeRole(ic, ICEC_FOREVER);
+    while (role != ICEC_ROLE_NONE && !icec_isStopping(ic))
+        (void)icec_receiveOne(ic, POLL_MS);
+    if (role == ICEC_ROLE_TAKEN)
+        icec_giveRole(ic); /* a task that waits for a reply receives it now */
 }
 
 Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     Ice_Status status = ICE_TIMEOUT;
-    U32 begin;
-    Ice_Role role;
-    if (!ICEC_TASKS)
-        return Ice_receiveOne(ic, timeoutMs);
-    begin = Ice_nowMs(ic);
-    role = Ice_takeRole(ic, timeoutMs);
-    if (role != ICE_ROLE_NONE) {
-        Ice_Int left = timeoutMs - (Ice_Int)(Ice_nowMs(ic) - begin);
-        status = Ice_receiveOne(ic, left > 0 ? left : 0);
+    U32 begin = icec_nowMs(ic);
+    Icec_Role role = icec_takeRole(ic, timeoutMs);
+    if (role != ICEC_ROLE_NONE) {
+        Ice_Int left = timeoutMs - (Ice_Int)(icec_nowMs(ic) - begin);
+        status = icec_receiveOne(ic, left > 0 ? left : 0);
     }
-    if (role == ICE_ROLE_TAKEN)
-        Ice_giveRole(ic);
+    if (role == ICEC_ROLE_TAKEN)
+        icec_giveRole(ic);
     return status;
 }
 
 void Ice_Communicator_shutdown(Ice_CommunicatorPtr ic) {
-    Ice_lock(ic, ICE_LOCK_STATE);
+    icec_lock(ic, ICE_LOCK_STATE);
     ic->stopping = 1;
-    Ice_unlock(ic, ICE_LOCK_STATE);
+    (void)ic->endpoint->listen(ic->endpointContext, 0);
+    icec_unlock(ic, ICE_LOCK_STATE);
     ic->endpoint->wake(ic->endpointContext);
-    if (ICEC_TASKS)
-        ic->os->wake(ic->osContext, ICE_SERVER_SLOT);
+    ic->os->wake(ic->osContext, ICEC_SERVER_SLOT);
 }
 
 static int isOpen(Ice_CommunicatorPtr ic, int connection) {
-    int is;
-    Ice_lock(ic, ICE_LOCK_STATE);
-    is = ic->connections[connection].state != ICE_FREE;
-    Ice_unlock(ic, ICE_LOCK_STATE);
-    return is;
+    return icec_connectionState(ic, connection) != ICE_CONNECTION_NONE;
 }
 
 static int anyOpen(Ice_CommunicatorPtr ic) {
@@ -104,19 +91,19 @@ static int anyOpen(Ice_CommunicatorPtr ic) {
 }
 
 void Ice_Communicator_destroy(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
-    U32 begin = Ice_nowMs(ic);
+    U32 begin = icec_nowMs(ic);
     Ice_Int left = timeoutMs;
     int c;
-    for (c = 0; c < ICE_CONNECTIONS; ++c)
-        if (isOpen(ic, c))
-            (void)Ice_sendPlain(ic, c, ICE_CLOSE);
+    Ice_Communicator_shutdown(ic);
     while (anyOpen(ic) && left > 0) {
+        for (c = 0; c < ICE_CONNECTIONS; ++c)
+            icec_askToClose(ic, c);
         (void)Ice_Communicator_poll(ic, left);
-        left = timeoutMs - (Ice_Int)(Ice_nowMs(ic) - begin);
+        left = timeoutMs - (Ice_Int)(icec_nowMs(ic) - begin);
     }
     for (c = 0; c < ICE_CONNECTIONS; ++c)
         if (isOpen(ic, c)) {
-            ic->endpoint->close(ic->endpointContext, c);
-            Ice_lose(ic, c, ICE_CONNECTION_LOST);
+            icec_closeConnection(ic, c);
+            icec_loseConnection(ic, c, ICE_CONNECTION_LOST);
         }
 }

@@ -1,10 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_message: heads of messages and encapsulations.
+ * ice_message: IceP's messages as bytes.
  */
-#include "ice_private.h"
+#include "ice_message.h"
 
-void Ice_patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value) {
+#include <string.h>
+
+#define TYPE_AT 8
+#define SIZE_AT 10
+
+void icec_patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value) {
     Ice_Int end = os->size;
     if (os->failed)
         return;
@@ -13,29 +18,40 @@ void Ice_patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value) {
     os->size = end;
 }
 
-const Ice_Byte Ice_head[ICE_HEADER] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, ICE_HEADER, 0, 0, 0};
+/* "IceP", versions of protocol and encoding, type, compression, size. */
+static const Ice_Byte head[ICEC_HEADER] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, ICEC_HEADER};
 
-void Ice_beginMessage(Ice_OutputStreamPtr os, Ice_Byte type) {
-    Ice_OutputStream_writeBlob(os, Ice_head, ICE_HEADER);
-    os->data[ICE_TYPE_AT] = type;
+void icec_beginMessage(Ice_OutputStreamPtr os, Ice_Byte type) {
+    Ice_OutputStream_init(os, os->data, os->capacity);
+    Ice_OutputStream_writeBlob(os, head, ICEC_HEADER);
+    os->data[TYPE_AT] = type;
 }
 
-void Ice_endMessage(Ice_OutputStreamPtr os) {
-    Ice_patchInt(os, 10, os->size);
+void icec_endMessage(Ice_OutputStreamPtr os) {
+    icec_patchInt(os, SIZE_AT, os->size);
 }
 
-Ice_Int Ice_beginEncapsulation(Ice_OutputStreamPtr os) {
+Ice_Int icec_readHead(Ice_InputStreamPtr is) {
+    Ice_Int type;
+    const Ice_Byte* begin = Ice_InputStream_readBlob(is, TYPE_AT);
+    if (!begin || memcmp(begin, head, TYPE_AT) != 0)
+        return -1;
+    type = Ice_InputStream_readShort(is) & 0xFEFF; /* compression 0 or 1 is none */
+    return Ice_InputStream_readInt(is) == is->size ? type : -1;
+}
+
+Ice_Int icec_beginEncapsulation(Ice_OutputStreamPtr os) {
     Ice_Int begin = os->size;
     Ice_OutputStream_writeInt(os, 6);
     Ice_OutputStream_writeShort(os, (Ice_Short)(1 | os->minor << 8));
     return begin;
 }
 
-void Ice_endEncapsulation(Ice_OutputStreamPtr os, Ice_Int begin) {
-    Ice_patchInt(os, begin, os->size - begin);
+void icec_endEncapsulation(Ice_OutputStreamPtr os, Ice_Int begin) {
+    icec_patchInt(os, begin, os->size - begin);
 }
 
-Ice_Status Ice_enterEncapsulation(Ice_InputStreamPtr is) {
+Ice_Status icec_enterEncapsulation(Ice_InputStreamPtr is) {
     U32 size = (U32)Ice_InputStream_readInt(is) - 6U;
     U32 version = (U16)Ice_InputStream_readShort(is); /* major, minor */
     if (size > (U32)(is->size - is->position))
@@ -45,24 +61,55 @@ Ice_Status Ice_enterEncapsulation(Ice_InputStreamPtr is) {
     return (version & 0xFEFFU) == 1U ? ICE_OK : ICE_PROTOCOL;
 }
 
-void Ice_writeFacet(Ice_OutputStreamPtr os, const Ice_String* facet) {
+void icec_writeFacet(Ice_OutputStreamPtr os, const Ice_String* facet) {
     Ice_OutputStream_writeByte(os, facet->size != 0);
     if (facet->size)
         Ice_OutputStream_writeString(os, *facet);
 }
 
-/* More than one is malformed, as it is to Ice. */
-void Ice_readFacet(Ice_InputStreamPtr is, Ice_String* facet) {
+void icec_readFacet(Ice_InputStreamPtr is, Ice_String* facet) {
     Ice_Byte n = Ice_InputStream_readByte(is);
     facet->size = 0;
     if (n > 1)
-        is->failed = 1;
-    else if (n == 1)
+        is->failed = ICE_FAILED_MALFORMED;
+    if (n)
         Ice_InputStream_takeString(is, facet);
 }
 
-void Ice_skipStrings(Ice_InputStreamPtr is, U32 count) {
+void icec_skipStrings(Ice_InputStreamPtr is, U32 count) {
     Ice_String skipped;
     for (; count && !is->failed; --count)
         Ice_InputStream_takeString(is, &skipped);
+}
+
+void icec_beginReply(Ice_OutputStreamPtr os, Ice_Int id) {
+    Ice_OutputStream_writeInt(os, id);
+    os->size = ICEC_REPLY_BODY; /* the status is written last */
+    (void)icec_beginEncapsulation(os);
+}
+
+void icec_endReply(Ice_OutputStreamPtr os, Ice_Status status, const Icec_Target* target) {
+    if (status > ICE_UNKNOWN_EXCEPTION)
+        status = status <= ICE_PROTOCOL ? ICE_UNKNOWN_LOCAL_EXCEPTION : ICE_UNKNOWN_EXCEPTION;
+    os->data[ICEC_REPLY_BODY - 1] = (Ice_Byte)status;
+    if (status <= ICE_USER_EXCEPTION) {
+        icec_endEncapsulation(os, ICEC_REPLY_BODY);
+    } else {
+        os->failed = 0;
+        os->size = ICEC_REPLY_BODY;
+        if (status <= ICE_OPERATION_NOT_EXIST)
+            Ice_OutputStream_writeBlob(os, target->data, target->size);
+        else
+            Ice_OutputStream_writeByte(os, 0); /* the reason, in no words */
+    }
+}
+
+Ice_Status icec_readReply(Ice_InputStreamPtr is) {
+    Ice_Status code = (Ice_Status)Ice_InputStream_readByte(is);
+    Ice_Status entered = ICE_OK;
+    if (code > ICE_UNKNOWN_EXCEPTION)
+        return ICE_MARSHAL;
+    if (code <= ICE_USER_EXCEPTION)
+        entered = icec_enterEncapsulation(is);
+    return entered != ICE_OK ? entered : code;
 }

@@ -14,14 +14,20 @@ typedef struct Ice_Servant {
 struct Ice_ObjectAdapter {
     Ice_CommunicatorPtr communicator;
     Ice_ObjectAdapterPtr next;
-    const char* name;
     Ice_Byte active;
     Ice_Servant servants[ICE_SERVANTS];
 };
 
+typedef enum Ice_CallState {
+    ICE_CALL_FREE,
+    ICE_CALL_BUILDING, /* its request is being written */
+    ICE_CALL_WAITING,  /* for the reply */
+    ICE_CALL_DONE      /* the reply is there, or never will be */
+} Ice_CallState;
+
 typedef struct Ice_Call {
-    Ice_Int state;
-    Ice_Int status; /* Ice_Status, once it is done */
+    Ice_CallState state;
+    Ice_Status status; /* once it is done */
     Ice_Int id;
     int connection;
     U32 begunMs;
@@ -32,14 +38,21 @@ typedef struct Ice_Call {
     Ice_Failure failure;
     U32* reply; /* the reply, and behind it its decoded sequences */
     Ice_Int replySize;
-    U32 replyData[ICEC_COPY_REPLIES ? ICE_REPLY_MAX / 4 : 1];
+    U32 replyData[ICE_REPLY_MAX / 4];
 } Ice_Call;
 
+typedef enum Ice_ConnectionState {
+    ICE_CONNECTION_NONE,
+    ICE_CONNECTION_VALIDATING, /* waits for the peer's first message */
+    ICE_CONNECTION_OPEN
+} Ice_ConnectionState;
+
 typedef struct Ice_Connection {
-    Ice_Int state;    /* 0 closed, 1 waits for the peer's first message, 2 open */
+    Ice_ConnectionState state;
     Ice_Byte pending; /* operations under way, or answered later */
+    Ice_Byte closing; /* the peer has been asked to close */
     U16 generation;   /* counts the connections that had this number; never 0 */
-    U32 spokeMs;      /* last sign of life */
+    U32 sentMs;       /* when a message was sent last */
 } Ice_Connection;
 
 /* Small members first: their offsets are short in the code. */
@@ -61,8 +74,8 @@ struct Ice_Communicator {
     Ice_Connection connections[ICE_CONNECTIONS];
     Ice_Call calls[ICE_CALLS];
     U32 arena[ICE_ARENA_BYTES / 4];
-    Ice_Byte requestData[ICEC_TASKS ? ICE_REQUEST_MAX : 1];
-    Ice_Byte in[ICEC_NESTING][ICE_MESSAGE_MAX], out[ICE_MESSAGE_MAX];
+    Ice_Byte requestData[ICE_REQUEST_MAX];
+    Ice_Byte in[ICE_NESTING][ICE_MESSAGE_MAX], out[ICE_RESULT_MAX];
 };
 
 #endif

@@ -2,19 +2,7 @@
  *
  * ice_option: options in proxy and endpoint strings: "-h host -p 10000 -v 'a b'".
  */
-#include "ice_seam.h"
-
-#include <stdlib.h>
-
-/* Where nothing is quoted. */
-static const char* findPlain(const char* options, char letter) {
-    while (options && *options) {
-        if (options[0] == '-' && options[1] == letter)
-            return options + 3;
-        ++options;
-    }
-    return 0;
-}
+#include "ice_port.h"
 
 const char* Ice_findOption(const char* options, char letter, Ice_Int* size) {
     int matches = 0; /* the word before was "-x" */
@@ -38,13 +26,4 @@ const char* Ice_findOption(const char* options, char letter, Ice_Int* size) {
             ++options;
     }
     return 0;
-}
-
-U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
-    Ice_Int size;
-    const char* at =
-        ICEC_DETAILS ? Ice_findOption(options, letter, &size) : findPlain(options, letter);
-    if (!at)
-        return otherwise;
-    return (U32)strtoul(at, 0, at[0] == '0' && at[1] == 'x' ? 16 : 10);
 }

@@ -2,7 +2,7 @@
  *
  * ice_properties: settings from a table of strings, and what is made from them.
  */
-#include "ice_private.h"
+#include "ice_proxy.h"
 
 #include <string.h>
 
@@ -49,7 +49,7 @@ Ice_Status Ice_Communicator_propertyToProxy(Ice_CommunicatorPtr ic, const char* 
                                             Ice_ObjectPrxPtr prx) {
     const char* text = find(ic, key, "");
     if (!text) {
-        Ice_ObjectPrx_init(prx, ic);
+        icec_initProxy(prx, ic);
         return ICE_PARSE;
     }
     return Ice_Communicator_stringToProxy(ic, text, prx);

@@ -5,24 +5,25 @@
  * Identity, facet and endpoints are kept as they are on the wire: most of what is done with them is
  * to send them.
  */
-#include "ice_private.h"
+#include "ice_proxy.h"
+#include "ice_message.h"
 
 #include <string.h>
 
 #define DEFAULT_TIMEOUT_MS 10000
 
-void Ice_ObjectPrx_init(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic) {
+void icec_initProxy(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic) {
     memset(prx, 0, sizeof *prx);
     prx->communicator = ic;
     prx->timeoutMs = DEFAULT_TIMEOUT_MS;
     prx->minor = 1;
     prx->endpointsSize = 2; /* no endpoints, no adapter's id */
-    if (ICE_CALLS > 1)
+    if (ICEC_FULL)
         prx->call = prx->connection = -1;
 }
 
-Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* name,
-                                     const Ice_String* category, const Ice_String* facet) {
+Ice_Status icec_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* name,
+                            const Ice_String* category, const Ice_String* facet) {
     Ice_OutputStream os;
     Ice_OutputStream_init(&os, prx->identity, ICE_IDENTITY_MAX);
     Ice_OutputStream_writeString(&os, *name);
@@ -31,14 +32,14 @@ Ice_Status Ice_ObjectPrx_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* nam
     else
         Ice_OutputStream_writeByte(&os, 0);
     if (facet)
-        Ice_writeFacet(&os, facet);
+        icec_writeFacet(&os, facet);
     else
         Ice_OutputStream_writeByte(&os, 0);
     prx->identitySize = (Ice_Byte)os.size;
     return os.failed ? ICE_LIMIT : ICE_OK;
 }
 
-Ice_Status Ice_ObjectPrx_addEndpoint(Ice_ObjectPrxPtr prx, const char* options) {
+Ice_Status icec_addEndpoint(Ice_ObjectPrxPtr prx, const char* options) {
     Ice_CommunicatorPtr ic = prx->communicator;
     Ice_OutputStream os;
     Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
@@ -66,8 +67,8 @@ Ice_String Ice_ObjectPrx_getFacet(const Ice_ObjectPrx* prx) {
     Ice_String facet;
     Ice_InputStream is;
     Ice_InputStream_init(&is, prx->identity, prx->identitySize);
-    Ice_skipStrings(&is, 2);
-    Ice_readFacet(&is, &facet);
+    icec_skipStrings(&is, 2);
+    icec_readFacet(&is, &facet);
     return facet;
 }
 
@@ -76,8 +77,8 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx)
         Ice_OutputStream_writeShort(os, 0); /* two empty strings */
         return;
     }
-    if (ICEC_ASYNC && prx->generation)
-        os->failed = 1; /* nobody else has this connection */
+    if (ICEC_FULL && prx->generation)
+        os->failed = ICE_FAILED_MALFORMED; /* nobody else has this connection */
     Ice_OutputStream_writeBlob(os, prx->identity, prx->identitySize);
     Ice_OutputStream_writeShort(os, (Ice_Short)(prx->mode | prx->secure << 8));
     if (os->minor != 0) /* protocol 1.0, the encoding */
@@ -98,14 +99,14 @@ static int keep(Ice_InputStreamPtr is, Ice_Int begin, Ice_ObjectPrxPtr prx) {
 void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr prx) {
     Ice_String name, category, facet;
     Ice_Int n, begin;
-    Ice_ObjectPrx_init(prx, ic ? ic : is->communicator);
+    icec_initProxy(prx, ic ? ic : is->communicator);
     Ice_InputStream_takeString(is, &name);
     Ice_InputStream_takeString(is, &category);
     if (name.size == 0)
         return;
-    Ice_readFacet(is, &facet);
-    if (is->failed || Ice_ObjectPrx_setIdentity(prx, &name, &category, &facet) != ICE_OK)
-        is->failed = 1;
+    icec_readFacet(is, &facet);
+    if (!is->failed && icec_setIdentity(prx, &name, &category, &facet) != ICE_OK)
+        is->failed = ICE_FAILED_IDENTITY;
     prx->mode = Ice_InputStream_readByte(is);
     prx->secure = Ice_InputStream_readBool(is);
     prx->minor = is->minor; /* an old peer says nothing, and means its own */
@@ -117,9 +118,9 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
     n = Ice_InputStream_readSequence(is, 8);
     begin = is->position;
     if (n == 0) {
-        Ice_skipStrings(is, 1);
-        if (!keep(is, begin, prx))
-            is->failed = 1;
+        icec_skipStrings(is, 1);
+        if (!is->failed && !keep(is, begin, prx))
+            is->failed = ICE_FAILED_ENDPOINT;
     }
     /* Endpoints that do not fit are left out, as long as one does. */
     for (; n > 0 && !is->failed; --n) {
@@ -129,9 +130,9 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         size = Ice_InputStream_readInt(is);
         (void)Ice_InputStream_readBlob(is, size < 6 ? -1 : size - 4);
         prx->endpoints[0] = (Ice_Byte)(prx->endpoints[0] + keep(is, begin, prx));
-        if (n == 1 && prx->endpoints[0] == 0)
-            is->failed = 1;
+        if (n == 1 && prx->endpoints[0] == 0 && !is->failed)
+            is->failed = ICE_FAILED_ENDPOINT;
     }
-    if (prx->mode > ICE_BATCH_DATAGRAM)
-        is->failed = 1;
+    if (prx->mode > ICE_BATCH_DATAGRAM && !is->failed)
+        is->failed = ICE_FAILED_MALFORMED;
 }

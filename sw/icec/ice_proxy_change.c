@@ -2,7 +2,7 @@
  *
  * ice_proxy_change: proxies that differ in one thing from another.
  */
-#include "ice_private.h"
+#include "ice_proxy.h"
 
 #include <string.h>
 
@@ -15,15 +15,15 @@ int Ice_ObjectPrx_equals(const Ice_ObjectPrx* a, const Ice_ObjectPrx* b) {
 }
 
 Ice_Status Ice_ObjectPrx_ice_identity(Ice_ObjectPrxPtr prx, const char* identity) {
-    Ice_Identity id = Ice_parseIdentity(identity);
-    return id.name.size ? Ice_ObjectPrx_setIdentity(prx, &id.name, &id.category, 0) : ICE_PARSE;
+    Ice_Identity id = icec_parseIdentity(identity);
+    return id.name.size ? icec_setIdentity(prx, &id.name, &id.category, 0) : ICE_PARSE;
 }
 
 Ice_Status Ice_ObjectPrx_ice_facet(Ice_ObjectPrxPtr prx, const char* facet) {
     Ice_ObjectPrx old = *prx;
     Ice_Identity id = Ice_ObjectPrx_getIdentity(&old);
     Ice_String text = Ice_String_from(facet);
-    return Ice_ObjectPrx_setIdentity(prx, &id.name, &id.category, &text);
+    return icec_setIdentity(prx, &id.name, &id.category, &text);
 }
 
 void Ice_ObjectPrx_ice_twoway(Ice_ObjectPrxPtr prx) {

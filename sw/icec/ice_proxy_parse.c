@@ -3,14 +3,24 @@
  * ice_proxy_parse: from a proxy's string to the proxy, after the manual's "Proxy and Endpoint
  * Syntax".
  */
-#include "ice_private.h"
+#include "ice_message.h"
+#include "ice_proxy.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define SPACES " \t\n\r"
 
-/* The next word, without its quotes; ends at a space, a colon or an at sign. Escapes stay as they
- * are. */
+U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
+    Ice_Int size;
+    const char* at = Ice_findOption(options, letter, &size);
+    if (!at)
+        return otherwise;
+    return (U32)strtoul(at, 0, at[0] == '0' && at[1] == 'x' ? 16 : 10);
+}
+
+/* Takes the next word, without its quotes; ends at a space, a colon or an at sign. Escapes stay as
+ * they are. */
 static const char* word(const char* text, Ice_String* found) {
     char quote = 0;
     text += strspn(text, SPACES);
@@ -49,7 +59,7 @@ static void unescape(Ice_String text, Ice_OutputStreamPtr os) {
     }
 }
 
-/* "name" or "category/name", where a slash may be escaped. */
+/* Parses "name" or "category/name", where a slash may be escaped. */
 static Ice_Status parseIdentity(Ice_String text, Ice_String facet, Ice_ObjectPrxPtr prx) {
     Ice_Byte bytes[ICE_IDENTITY_MAX];
     Ice_OutputStream os;
@@ -79,17 +89,17 @@ static Ice_Status parseIdentity(Ice_String text, Ice_String facet, Ice_ObjectPrx
         return ICE_LIMIT;
     if (parts[0].size == 0)
         return ICE_PARSE;
-    return Ice_ObjectPrx_setIdentity(prx, &parts[0], &parts[1], &parts[2]);
+    return icec_setIdentity(prx, &parts[0], &parts[1], &parts[2]);
 }
 
-/* 64 characters stand for six bits each. */
+/* Decodes base 64: each of 64 characters stands for six bits. */
 static void decodeBase64(const char* text, Ice_Int size, Ice_OutputStreamPtr os) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     U32 bits = 0, have = 0;
     for (; size > 0 && *text != '='; --size, ++text) {
         const char* digit = *text ? strchr(digits, *text) : 0;
         if (!digit) {
-            os->failed = 1;
+            os->failed = ICE_FAILED_MALFORMED;
             return;
         }
         bits = bits << 6 | (U32)(digit - digits);
@@ -101,7 +111,7 @@ static void decodeBase64(const char* text, Ice_Int size, Ice_OutputStreamPtr os)
     }
 }
 
-/* "opaque -t type -e encoding -v bytes in base 64": an endpoint that is only passed on. */
+/* Parses an endpoint that is only passed on: "opaque -t type -e encoding -v bytes in base 64". */
 static Ice_Status parseOpaque(const char* options, Ice_ObjectPrxPtr prx) {
     Ice_Int size, versionSize, begin;
     const char* value = Ice_findOption(options, 'v', &size);
@@ -124,7 +134,7 @@ static Ice_Status parseOpaque(const char* options, Ice_ObjectPrxPtr prx) {
     Ice_OutputStream_writeInt(&os, 0);
     Ice_OutputStream_writeShort(&os, (Ice_Short)(major | minor << 8));
     decodeBase64(value, size, &os);
-    Ice_endEncapsulation(&os, begin);
+    icec_endEncapsulation(&os, begin);
     if (os.failed)
         return ICE_LIMIT;
     prx->endpointsSize = (Ice_Byte)os.size;
@@ -132,7 +142,7 @@ static Ice_Status parseOpaque(const char* options, Ice_ObjectPrxPtr prx) {
     return ICE_OK;
 }
 
-/* "-x value" again and again; -z of tcp has none. */
+/* Tells whether the text is "-x value" again and again; -z of tcp has no value. */
 static int areOptions(const char* text) {
     Ice_String option, value;
     for (;;) {
@@ -158,11 +168,11 @@ static Ice_Status parseEndpoints(const char* text, Ice_ObjectPrxPtr prx) {
         do
             ++text;
         while (*text == ' ');
-        options = Ice_optionsOf(prx->communicator, text);
+        options = icec_optionsOf(prx->communicator, text);
         if (!areOptions(text + strcspn(text, SPACES ":")))
             status = ICE_PARSE;
         else if (options)
-            status = Ice_ObjectPrx_addEndpoint(prx, options);
+            status = icec_addEndpoint(prx, options);
         else if (strncmp(text, "opaque ", 7) == 0)
             status = parseOpaque(text + 7, prx);
         else
@@ -233,11 +243,11 @@ static Ice_Status parse(const char* text, Ice_ObjectPrxPtr prx) {
 Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char* proxy,
                                           Ice_ObjectPrxPtr prx) {
     Ice_Status status;
-    Ice_ObjectPrx_init(prx, ic);
+    icec_initProxy(prx, ic);
     if (proxy[strspn(proxy, SPACES)] == 0)
         return ICE_OK; /* the null proxy */
     status = parse(proxy, prx);
     if (status != ICE_OK)
-        Ice_ObjectPrx_init(prx, ic);
+        icec_initProxy(prx, ic);
     return status;
 }

@@ -2,7 +2,8 @@
  *
  * ice_proxy_print: a proxy as a string, as stock Ice prints it.
  */
-#include "ice_private.h"
+#include "ice_message.h"
+#include "ice_proxy.h"
 
 #include <string.h>
 
@@ -39,7 +40,7 @@ static void escape(Ice_OutputStreamPtr os, Ice_String text, char special) {
     }
 }
 
-/* With quotes where the text begun at `begin` needs them. */
+/* Puts the text that begins at `begin` into quotes where it needs them. */
 static void quote(Ice_OutputStreamPtr os, Ice_Int begin) {
     Ice_Int i;
     for (i = begin; i < os->size; ++i)

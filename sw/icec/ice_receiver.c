@@ -6,58 +6,60 @@
  * else a task that waits for a reply (a leader), for as long as it waits. `receiver` and `servers`
  * change under the state lock only; who gives the role up wakes who may want it.
  */
-#include "ice_private.h"
+#include "ice_receiver.h"
+#include "ice_calls.h"
+#include "ice_transport.h"
 
-/* Under the state lock. */
+/* Gives the role up, and wakes a task that may want it; under the state lock. */
 static void giveUp(Ice_CommunicatorPtr ic) {
     ic->receiver = -1;
     if (ic->servers)
-        ic->os->wake(ic->osContext, ICE_SERVER_SLOT);
+        ic->os->wake(ic->osContext, ICEC_SERVER_SLOT);
     else
-        Ice_wakeCalls(ic);
+        icec_wakeCalls(ic);
 }
 
-Ice_Role Ice_takeRole(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
+Icec_Role icec_takeRole(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     int task = ic->os->task(ic->osContext);
-    U32 begin = Ice_nowMs(ic);
-    Ice_Role role = ICE_ROLE_TAKEN;
-    Ice_lock(ic, ICE_LOCK_STATE);
+    U32 begin = icec_nowMs(ic);
+    Icec_Role role = ICEC_ROLE_TAKEN;
+    icec_lock(ic, ICE_LOCK_STATE);
     if (ic->receiver == task) {
-        role = ICE_ROLE_HAD;
+        role = ICEC_ROLE_HAD;
     } else {
         ++ic->servers; /* a leader that sees this gives the role up */
         while (ic->receiver >= 0) {
-            Ice_Int left = ICE_FOREVER;
-            if (timeoutMs != ICE_FOREVER)
-                left = timeoutMs - (Ice_Int)(Ice_nowMs(ic) - begin);
-            if (left <= 0 || (timeoutMs == ICE_FOREVER && ic->stopping))
+            Ice_Int left = ICEC_FOREVER;
+            if (timeoutMs != ICEC_FOREVER)
+                left = timeoutMs - (Ice_Int)(icec_nowMs(ic) - begin);
+            if (left <= 0 || (timeoutMs == ICEC_FOREVER && ic->stopping))
                 break;
-            Ice_unlock(ic, ICE_LOCK_STATE);
+            icec_unlock(ic, ICE_LOCK_STATE);
             ic->endpoint->wake(ic->endpointContext);
-            (void)ic->os->wait(ic->osContext, ICE_SERVER_SLOT, left);
-            Ice_lock(ic, ICE_LOCK_STATE);
+            (void)ic->os->wait(ic->osContext, ICEC_SERVER_SLOT, left);
+            icec_lock(ic, ICE_LOCK_STATE);
         }
         --ic->servers;
         if (ic->receiver >= 0)
-            role = ICE_ROLE_NONE;
+            role = ICEC_ROLE_NONE;
         else
             ic->receiver = task;
         if (ic->stopping && ic->servers)
-            ic->os->wake(ic->osContext, ICE_SERVER_SLOT); /* the next one that is to leave */
+            ic->os->wake(ic->osContext, ICEC_SERVER_SLOT); /* the next one that is to leave */
     }
-    Ice_unlock(ic, ICE_LOCK_STATE);
+    icec_unlock(ic, ICE_LOCK_STATE);
     return role;
 }
 
-void Ice_giveRole(Ice_CommunicatorPtr ic) {
-    Ice_lock(ic, ICE_LOCK_STATE);
+void icec_giveRole(Ice_CommunicatorPtr ic) {
+    icec_lock(ic, ICE_LOCK_STATE);
     giveUp(ic);
-    Ice_unlock(ic, ICE_LOCK_STATE);
+    icec_unlock(ic, ICE_LOCK_STATE);
 }
 
-int Ice_mayReceive(Ice_CommunicatorPtr ic, int* leads) {
+int icec_mayReceive(Ice_CommunicatorPtr ic, int* leads) {
     int task = ic->os->task(ic->osContext), may;
-    Ice_lock(ic, ICE_LOCK_STATE);
+    icec_lock(ic, ICE_LOCK_STATE);
     if (*leads && ic->servers) {
         *leads = 0;
         giveUp(ic);
@@ -66,6 +68,6 @@ int Ice_mayReceive(Ice_CommunicatorPtr ic, int* leads) {
         ic->receiver = task;
     }
     may = ic->receiver == task;
-    Ice_unlock(ic, ICE_LOCK_STATE);
+    icec_unlock(ic, ICE_LOCK_STATE);
     return may;
 }

@@ -2,45 +2,35 @@
  *
  * ice_reply: replies, and those that come later than their operation's end.
  */
-#include "ice_private.h"
+#include "ice_reply.h"
+#include "ice_transport.h"
 
-void Ice_finishReply(Ice_OutputStreamPtr os, Ice_Int id, Ice_Status status, const Ice_Byte* who,
-                     Ice_Int whoSize) {
-    Ice_Int end = os->size;
-    Ice_Status code = os->failed ? ICE_MARSHAL : status;
-    if (code > ICE_UNKNOWN_EXCEPTION)
-        code = code <= ICE_PROTOCOL ? ICE_UNKNOWN_LOCAL_EXCEPTION : ICE_UNKNOWN_EXCEPTION;
-    if (ICEC_ASYNC && code >= ICE_OBJECT_NOT_EXIST && code <= ICE_OPERATION_NOT_EXIST &&
-        whoSize == 0)
-        code = ICE_UNKNOWN_EXCEPTION;
-    os->failed = 0;
-    os->size = 0;
-    Ice_beginMessage(os, ICE_REPLY);
-    Ice_OutputStream_writeInt(os, id);
-    Ice_OutputStream_writeByte(os, (Ice_Byte)code);
-    if (code <= ICE_USER_EXCEPTION) {
-        (void)Ice_beginEncapsulation(os);
-        os->size = end;
-        Ice_endEncapsulation(os, ICE_REPLY_BODY);
-    } else if (code <= ICE_OPERATION_NOT_EXIST) {
-        Ice_OutputStream_writeBlob(os, who, whoSize);
-    } else if (ICEC_DETAILS) {
-        Ice_OutputStream_writeText(os, Ice_Status_text(status));
-    } else {
-        Ice_OutputStream_writeByte(os, 0);
-    }
-    Ice_endMessage(os);
+/* The head is written last: until then, its place may have been another reply's. */
+static void writeHead(Ice_OutputStreamPtr os, Ice_Int id) {
+    Ice_OutputStream head;
+    Ice_OutputStream_init(&head, os->data, ICEC_REPLY_HEAD);
+    icec_beginMessage(&head, ICEC_REPLY);
+    head.minor = os->minor;
+    icec_beginReply(&head, id);
 }
 
-int Ice_countPending(Ice_CommunicatorPtr ic, int connection, U16 generation, int change) {
-    Ice_Connection* c = &ic->connections[connection];
-    int same;
-    Ice_lock(ic, ICE_LOCK_STATE);
-    same = c->generation == generation && c->state == ICE_DONE;
-    if (same)
-        c->pending = (Ice_Byte)(c->pending + change);
-    Ice_unlock(ic, ICE_LOCK_STATE);
-    return same;
+Ice_Status icec_sendReply(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os,
+                          Ice_Int id, Ice_Status status, const Icec_Target* target) {
+    const char* reason;
+    if (os->failed)
+        status = ICE_MARSHAL;
+    reason = os->failed ? Ice_Failed_text(os->failed) : Ice_Status_text(status);
+    /* Where the request is gone, so are the names that this would repeat. */
+    if (!target && status >= ICE_OBJECT_NOT_EXIST && status <= ICE_OPERATION_NOT_EXIST)
+        status = ICE_UNKNOWN_EXCEPTION;
+    writeHead(os, id);
+    icec_endReply(os, status, target);
+    if (status > ICE_OPERATION_NOT_EXIST) {
+        os->size = ICEC_REPLY_BODY;
+        Ice_OutputStream_writeText(os, reason);
+    }
+    icec_endMessage(os);
+    return icec_send(ic, connection, os);
 }
 
 void Ice_Current_later(const Ice_Current* current, Ice_Reply* reply) {
@@ -53,9 +43,9 @@ void Ice_Current_later(const Ice_Current* current, Ice_Reply* reply) {
 
 Ice_OutputStreamPtr Ice_Reply_begin(Ice_Reply* reply) {
     Ice_CommunicatorPtr ic = reply->communicator;
-    Ice_lock(ic, ICE_LOCK_SEND);
-    Ice_initRequest(ic);
-    ic->request.size = ICE_REPLY_HEAD;
+    icec_lock(ic, ICE_LOCK_SEND);
+    Ice_OutputStream_init(&ic->request, ic->requestData, ICE_REQUEST_MAX);
+    ic->request.size = ICEC_REPLY_HEAD;
     ic->request.minor = reply->minor;
     return &ic->request;
 }
@@ -63,12 +53,13 @@ Ice_OutputStreamPtr Ice_Reply_begin(Ice_Reply* reply) {
 Ice_Status Ice_Reply_end(Ice_Reply* reply, Ice_Status status) {
     Ice_CommunicatorPtr ic = reply->communicator;
     Ice_Status sent = ICE_OK;
-    if (!Ice_countPending(ic, reply->connection, reply->generation, -1)) {
+    if (!icec_countPending(ic, reply->connection, reply->generation, -1)) {
         sent = ICE_CONNECTION_LOST;
     } else if (reply->id != 0) {
-        Ice_finishReply(&ic->request, reply->id, status, 0, 0);
-        sent = Ice_send(ic, reply->connection, &ic->request);
+        if (ic->request.failed == ICE_FAILED_RESULT)
+            ic->request.failed = ICE_FAILED_REQUEST;
+        sent = icec_sendReply(ic, reply->connection, &ic->request, reply->id, status, 0);
     }
-    Ice_unlock(ic, ICE_LOCK_SEND);
+    icec_unlock(ic, ICE_LOCK_SEND);
     return sent;
 }

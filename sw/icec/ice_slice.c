@@ -21,6 +21,11 @@ static void patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value) {
     os->size = end;
 }
 
+void icec_failRead(Ice_InputStreamPtr is, Ice_Failed why) {
+    if (!is->failed)
+        is->failed = (Ice_Byte)why;
+}
+
 Ice_Int Ice_OutputStream_startSize(Ice_OutputStreamPtr os) {
     Ice_OutputStream_writeInt(os, 0);
     return os->size - 4;
@@ -49,15 +54,15 @@ Ice_Int Ice_OutputStream_startSlice(Ice_OutputStreamPtr os, const char* typeId, 
     return begin;
 }
 
-void Ice_patchSize(Ice_OutputStreamPtr os, Ice_Int begin) {
+void icec_patchSize(Ice_OutputStreamPtr os, Ice_Int begin) {
     patchInt(os, begin, os->size - begin);
 }
 
-void Ice_finishSlice(Ice_OutputStreamPtr os, Ice_Int flags, Ice_Int size) {
+void icec_finishSlice(Ice_OutputStreamPtr os, Ice_Int flags, Ice_Int size) {
     if (os->sliceFlags & ICE_SLICE_OPTIONALS)
         Ice_OutputStream_writeByte(os, OPTIONAL_END);
     if (size >= 0)
-        Ice_patchSize(os, size);
+        icec_patchSize(os, size);
     if (os->values && os->values->writeTable(os))
         os->sliceFlags |= ICE_SLICE_TABLE;
     if (!os->failed)
@@ -74,9 +79,9 @@ void Ice_OutputStream_endSlice(Ice_OutputStreamPtr os, Ice_Int begin, Ice_Bool l
     is.position = begin + (os->minor != 0);
     (void)Ice_InputStream_readString(&is);
     if (os->minor != 0) {
-        Ice_finishSlice(os, begin, os->sliced ? is.position : -1);
+        icec_finishSlice(os, begin, os->sliced ? is.position : -1);
     } else {
-        Ice_patchSize(os, is.position);
+        icec_patchSize(os, is.position);
         os->sliceFlags = 0;
     }
 }
@@ -110,7 +115,7 @@ Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
     Ice_String id;
     Ice_Int begin, size = 0;
     if (is->sliceFlags & ICE_SLICE_LAST || is->failed || is->position == is->size) {
-        is->failed = 1; /* a base that is asked for and is not there */
+        icec_failRead(is, ICE_FAILED_MALFORMED); /* a base that is asked for and is not there */
         return none;
     }
     is->sliceFlags = is->minor != 0 ? Ice_InputStream_readByte(is) : ICE_SLICE_SIZE;
@@ -121,7 +126,7 @@ Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
     if (is->sliceFlags & ICE_SLICE_SIZE) {
         size = Ice_InputStream_readInt(is);
         if (size < 4 || size > is->size - begin)
-            is->failed = 1;
+            icec_failRead(is, ICE_FAILED_MALFORMED);
         else
             is->sliceEnd = begin + size;
     }
@@ -143,7 +148,7 @@ static void skipTable(Ice_InputStreamPtr is, int depth) {
             else
                 (void)Ice_InputStream_readSize(is);
             if (!(flags & ICE_SLICE_SIZE) || (flags & ICE_SLICE_TABLE && depth == 0))
-                is->failed = 1;
+                icec_failRead(is, ICE_FAILED_MALFORMED);
             (void)Ice_InputStream_readBlob(is, Ice_InputStream_readInt(is) - 4);
             if (flags & ICE_SLICE_TABLE && !is->failed)
                 skipTable(is, depth - 1);
@@ -151,7 +156,7 @@ static void skipTable(Ice_InputStreamPtr is, int depth) {
     }
 }
 
-/* The table of instances behind a slice. */
+/* Skips the table of instances behind a slice. */
 static void readTable(Ice_InputStreamPtr is) {
     Ice_Byte flags = is->sliceFlags;
     if (is->sliceFlags & ICE_SLICE_TABLE) {
@@ -175,10 +180,10 @@ void Ice_InputStream_endSlice(Ice_InputStreamPtr is) {
     if (is->sliceFlags & ICE_SLICE_OPTIONALS) {
         Ice_InputStream_skipOptionals(is);
         if (Ice_InputStream_readByte(is) != OPTIONAL_END)
-            is->failed = 1;
+            icec_failRead(is, ICE_FAILED_MALFORMED);
     }
     if (is->sliceEnd && is->position != is->sliceEnd)
-        is->failed = 1;
+        icec_failRead(is, ICE_FAILED_MALFORMED);
     readTable(is);
 }
 
@@ -198,7 +203,7 @@ static void skip(Ice_InputStreamPtr is, Ice_Int format) {
         if (is->values)
             is->values->skip(is);
         else if (Ice_InputStream_readSize(is) == 1)
-            is->failed = 1; /* an instance where none was expected */
+            icec_failRead(is, ICE_FAILED_MALFORMED); /* an instance where none was expected */
         break;
     default:
         (void)Ice_InputStream_readBlob(is, (Ice_Int)1 << format);
@@ -220,7 +225,7 @@ static Ice_Bool seek(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format) {
         }
         if (found == tag) {
             if ((head & 7) != format)
-                is->failed = 1;
+                icec_failRead(is, ICE_FAILED_MALFORMED);
             return !is->failed;
         }
         skip(is, head & 7);

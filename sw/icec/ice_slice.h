@@ -19,9 +19,12 @@ enum {
     ICE_SLICE_INSIDE = 0x80 /* never on the wire: a slice is under way */
 };
 
+/* Fails a stream that has not failed yet. */
+void icec_failRead(Ice_InputStreamPtr is, Ice_Failed why);
+
 /* Ends a slice of 1.1 whose flags stand at `flags`, and its size at `size` (-1: none). */
-void Ice_finishSlice(Ice_OutputStreamPtr os, Ice_Int flags, Ice_Int size);
-/* The size at `begin` counts itself. */
-void Ice_patchSize(Ice_OutputStreamPtr os, Ice_Int begin);
+void icec_finishSlice(Ice_OutputStreamPtr os, Ice_Int flags, Ice_Int size);
+/* Fills in the size of four bytes at `begin`; it counts itself. */
+void icec_patchSize(Ice_OutputStreamPtr os, Ice_Int begin);
 
 #endif

@@ -36,8 +36,10 @@ void Ice_OutputStream_init(Ice_OutputStreamPtr os, Ice_Byte* data, Ice_Int capac
 }
 
 void Ice_OutputStream_writeBlob(Ice_OutputStreamPtr os, const Ice_Byte* data, Ice_Int size) {
-    if (os->failed || size > os->capacity - os->size) {
-        os->failed = 1;
+    if (os->failed)
+        return;
+    if (size > os->capacity - os->size) {
+        os->failed = ICE_FAILED_RESULT;
         return;
     }
     if (size)
@@ -127,8 +129,10 @@ void Ice_InputStream_init(Ice_InputStreamPtr is, const Ice_Byte* data, Ice_Int s
 
 const Ice_Byte* Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size) {
     const Ice_Byte* at = is->data + is->position;
-    if (is->failed || (U32)size > (U32)(is->size - is->position)) { /* a negative one, too */
-        is->failed = 1;
+    if (is->failed)
+        return 0;
+    if ((U32)size > (U32)(is->size - is->position)) { /* a negative one, too */
+        is->failed = ICE_FAILED_MALFORMED;
         return 0;
     }
     is->position += size;
@@ -188,7 +192,7 @@ Ice_Int Ice_InputStream_readSize(Ice_InputStreamPtr is) {
     if (size == 255)
         size = Ice_InputStream_readInt(is);
     if (size < 0)
-        is->failed = 1;
+        is->failed = ICE_FAILED_MALFORMED;
     return is->failed ? 0 : size;
 }
 
@@ -211,14 +215,14 @@ Ice_Int Ice_InputStream_readEnum(Ice_InputStreamPtr is, Ice_Int largest) {
                                                        : largest < 32767 ? 2
                                                                          : 4);
     if (v < 0 || v > largest)
-        is->failed = 1;
+        is->failed = ICE_FAILED_MALFORMED;
     return is->failed ? 0 : v;
 }
 
 Ice_Int Ice_InputStream_readSequence(Ice_InputStreamPtr is, Ice_Int least) {
     Ice_Int count = Ice_InputStream_readSize(is);
     if (count > (is->size - is->position) / least)
-        is->failed = 1;
+        is->failed = ICE_FAILED_MALFORMED;
     return is->failed ? 0 : count;
 }
 
@@ -227,8 +231,10 @@ void* Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int byt
     void* at;
     if (count == 0)
         return 0;
-    if (is->failed || count > is->arenaSize * 4 / bytes) {
-        is->failed = 1;
+    if (is->failed)
+        return 0;
+    if (count > is->arenaSize * 4 / bytes) {
+        is->failed = ICE_FAILED_ARENA;
         return 0;
     }
     words = (count * bytes + 3) / 4;
@@ -236,7 +242,7 @@ void* Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int byt
     if ((size_t)(is->arena + is->arenaUsed) & 7U)
         ++is->arenaUsed;
     if (words > is->arenaSize - is->arenaUsed) {
-        is->failed = 1;
+        is->failed = ICE_FAILED_ARENA;
         return 0;
     }
     at = is->arena + is->arenaUsed;

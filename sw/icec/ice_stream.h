@@ -23,7 +23,7 @@ typedef struct Ice_Long {
     S32 high;
 } Ice_Long;
 
-/* Not terminated; points into a message, or at what the caller keeps. */
+/* A string by size: it is not terminated, and points into a message or at what the caller keeps. */
 typedef struct Ice_String {
     Ice_Int size;
     const char* data;
@@ -31,7 +31,7 @@ typedef struct Ice_String {
 
 Ice_String Ice_String_from(const char* terminated);
 int Ice_String_equals(Ice_String a, const char* terminated);
-/* The same by pointer: shorter code. */
+/* The same by pointer, which makes shorter code. */
 int Ice_String_is(const Ice_String* a, const char* terminated);
 int Ice_String_same(const Ice_String* a, const Ice_String* b);
 
@@ -39,11 +39,31 @@ struct Ice_Communicator;
 struct Ice_OutputValues; /* ice_value.h */
 struct Ice_InputValues;
 
+/* Why a stream failed: what came is not what it should be, or which limit was reached. The first
+ * reason stays. */
+typedef enum Ice_Failed {
+    ICE_FAILED_MALFORMED = 1,
+    ICE_FAILED_RESULT, /* the buffer is full: ICE_RESULT_MAX unless said otherwise */
+    ICE_FAILED_REQUEST,
+    ICE_FAILED_REPLY,
+    ICE_FAILED_ARENA,
+    ICE_FAILED_VALUES,
+    ICE_FAILED_VALUE_TYPES,
+    ICE_FAILED_IDENTITY,
+    ICE_FAILED_ENDPOINT,
+    ICE_FAILED_CALLS, /* of calls, not of streams: ICE_LIMIT */
+    ICE_FAILED_CONNECTIONS,
+    ICE_FAILED_NESTING
+} Ice_Failed;
+
+/* Says it in words: the limit, its macro and its value. */
+const char* Ice_Failed_text(Ice_Byte failed);
+
 typedef struct Ice_OutputStream {
     Ice_Byte* data;
     Ice_Int size, capacity;
-    Ice_Byte minor; /* encoding 1.minor */
-    Ice_Byte failed;
+    Ice_Byte minor;  /* encoding 1.minor */
+    Ice_Byte failed; /* Ice_Failed; 0: it has not */
     Ice_Byte
         sliced; /* user exceptions in the sliced format: a peer can skip slices it does not know */
     Ice_Byte sliceFlags;             /* of the slice under way */
@@ -77,13 +97,13 @@ void Ice_OutputStream_writeDouble(Ice_OutputStreamPtr os, Ice_Double v);
 void Ice_OutputStream_writeSize(Ice_OutputStreamPtr os, Ice_Int v);
 void Ice_OutputStream_writeString(Ice_OutputStreamPtr os, Ice_String v);
 void Ice_OutputStream_writeText(Ice_OutputStreamPtr os, const char* terminated);
-/* `largest`: the greatest enumerator, which chooses the width in encoding 1.0. */
+/* Writes an enumerator; `largest`, the greatest one, chooses the width in encoding 1.0. */
 void Ice_OutputStream_writeEnum(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int largest);
-/* A small one is a byte in both encodings. */
+/* An enumerator of a small enum is a byte in both encodings. */
 #define Ice_OutputStream_writeEnum(os, v, largest)                   \
     ((largest) < 127 ? Ice_OutputStream_writeByte(os, (Ice_Byte)(v)) \
                      : (Ice_OutputStream_writeEnum)(os, v, largest))
-/* A size of 4 bytes that does not count itself, filled in by endSize. */
+/* Leaves room for a size of 4 bytes that does not count itself; endSize fills it in. */
 Ice_Int Ice_OutputStream_startSize(Ice_OutputStreamPtr os);
 void Ice_OutputStream_endSize(Ice_OutputStreamPtr os, Ice_Int begin);
 
@@ -102,10 +122,11 @@ Ice_Int Ice_InputStream_readSize(Ice_InputStreamPtr is);
 Ice_String Ice_InputStream_readString(Ice_InputStreamPtr is);
 void Ice_InputStream_takeString(Ice_InputStreamPtr is, Ice_String* s);
 Ice_Int Ice_InputStream_readEnum(Ice_InputStreamPtr is, Ice_Int largest);
-/* Size of a sequence whose elements take at least `least` bytes each: more than is left fails. */
+/* Reads the size of a sequence whose elements take at least `least` bytes each; more than can be
+ * left fail the stream. */
 Ice_Int Ice_InputStream_readSequence(Ice_InputStreamPtr is, Ice_Int least);
-/* Room for `count` elements of `bytes` each, aligned to 8; 0 and a failed stream if there is none.
- */
+/* Returns room for `count` elements of `bytes` each, aligned to 8; 0, and the stream has failed, if
+ * there is none. */
 void* Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int bytes);
 
 /* ---- optional values: encoding 1.1 only ---- */
@@ -121,25 +142,27 @@ enum {
     ICE_OPTIONAL_CLASS
 };
 
-/* Begins a value that is there, behind the required ones, by ascending tag. 0: the encoding has no
- * optional values, write nothing. */
+/* Begins a value that is there, behind the required ones, by ascending tag. Returns 0 if the
+ * encoding has no optional values: then nothing is to be written. */
 Ice_Bool Ice_OutputStream_writeOptional(Ice_OutputStreamPtr os, Ice_Int tag, Ice_Int format);
-/* 1: the value is there and follows. Tags in between that nobody asked for are skipped. */
+/* Returns 1 if the value is there: it follows. Tags in between that nobody asked for are skipped.
+ */
 Ice_Bool Ice_InputStream_readOptional(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format);
-/* Skips what is left of them in the slice or encapsulation. */
+/* Skips the optional values that are left in the slice or encapsulation. */
 void Ice_InputStream_skipOptionals(Ice_InputStreamPtr is);
 
 /* ---- user exceptions: slices, the most derived one first ---- */
 
 void Ice_OutputStream_startException(Ice_OutputStreamPtr os, Ice_Bool usesClasses);
-/* The result is endSlice's `begin`. */
+/* Begins a slice. Returns endSlice's `begin`. */
 Ice_Int Ice_OutputStream_startSlice(Ice_OutputStreamPtr os, const char* typeId, Ice_Bool last);
 void Ice_OutputStream_endSlice(Ice_OutputStreamPtr os, Ice_Int begin, Ice_Bool last);
 
 void Ice_InputStream_startException(Ice_InputStreamPtr is);
-/* The type id of the slice that begins here; empty where there is none. */
+/* Begins to read a slice. Returns its type id, an empty one where there is no slice. */
 Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is);
-/* To the next slice. 0: there is none, or the format does not say where it begins. */
+/* Goes to the next slice. Returns 0 if there is none, or the format does not say where it begins.
+ */
 Ice_Bool Ice_InputStream_skipSlice(Ice_InputStreamPtr is);
 void Ice_InputStream_endSlice(Ice_InputStreamPtr is);
 

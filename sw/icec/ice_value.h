@@ -24,7 +24,7 @@ typedef struct Ice_ValueType Ice_ValueType;
 
 struct Ice_Value;
 
-/* A slice of a type that is not known here. */
+/* A slice that is kept: its type is not known here. */
 typedef struct Ice_UnknownSlice {
     struct Ice_UnknownSlice* next;     /* of the same instance, towards the base; 0: none */
     struct Ice_UnknownSlice* nextRead; /* of the message: the run time's */
@@ -40,7 +40,7 @@ typedef struct Ice_UnknownSlice {
     } * values;
 } Ice_UnknownSlice;
 
-/* What every class begins with. */
+/* The begin of every class instance. */
 typedef struct Ice_Value {
     const Ice_ValueType* type;
     const Ice_UnknownSlice* unknown; /* the most derived one; 0: none */
@@ -60,7 +60,7 @@ struct Ice_ValueType {
  * but unknown slices is there. */
 extern const Ice_ValueType Ice_Value_type;
 
-/* 1: the instance is of this type or of one derived from it; 0 for a null instance. */
+/* Returns 1 if the instance is of this type or of one derived from it; 0 for a null instance. */
 int Ice_Value_isA(const Ice_Value* v, const Ice_ValueType* type);
 
 typedef struct Ice_OutputValues {
@@ -75,7 +75,7 @@ typedef struct Ice_OutputValues {
 } Ice_OutputValues;
 
 void Ice_OutputStream_beginValues(Ice_OutputStreamPtr os, Ice_OutputValues* values);
-/* 0: null. More than ICE_VALUES_MAX fail the stream. */
+/* Writes an instance, 0 as the null instance. More than ICE_VALUES_MAX fail the stream. */
 void Ice_OutputStream_writeValue(Ice_OutputStreamPtr os, const Ice_Value* v);
 void Ice_OutputStream_endValues(Ice_OutputStreamPtr os);
 
@@ -107,10 +107,10 @@ void Ice_InputStream_endValues(Ice_InputStreamPtr is);
 
 /* ---- slices of exceptions that are not known, within beginValues and endValues ---- */
 
-/* As skipSlice; the slice, of type `id`, is put at the end of the list where the encoding has
- * slices that can be kept. The list begins as 0. */
+/* Skips a slice of type `id` as skipSlice does, and puts it at the end of the list where the
+ * encoding has slices that can be kept. The list begins as 0. */
 Ice_Bool Ice_InputStream_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_UnknownSlice** list);
-/* Before the exception's own slices; nothing where the format is not the sliced one. */
+/* Writes kept slices before the exception's own; nothing where the format is not the sliced one. */
 void Ice_OutputStream_writeUnknown(Ice_OutputStreamPtr os, const Ice_UnknownSlice* list);
 
 #endif

@@ -44,7 +44,7 @@ static void set(Ice_InputStreamPtr is, void* at, Ice_Int number, const Ice_Value
         patch->expected = expected;
         values->late = patch;
     } else if (!v || (expected && !Ice_Value_isA(v, expected))) {
-        is->failed = 1;
+        icec_failRead(is, ICE_FAILED_MALFORMED);
     } else {
         memcpy(at, &v, sizeof v);
     }
@@ -54,7 +54,7 @@ static void setLater(Ice_InputStreamPtr is, void* at, Ice_Int number,
                      const Ice_ValueType* expected) {
     Ice_InputValues* values = is->values;
     if (values->patchEnd == ICE_VALUES_MAX) {
-        is->failed = 1;
+        icec_failRead(is, ICE_FAILED_VALUES);
         return;
     }
     values->patches[values->patchEnd].at = at;
@@ -67,13 +67,13 @@ void Ice_InputStream_readValue(Ice_InputStreamPtr is, void* at, const Ice_ValueT
     Ice_Int number;
     memcpy(at, &none, sizeof none);
     if (!is->values)
-        is->failed = 1;
+        icec_failRead(is, ICE_FAILED_MALFORMED);
     if (is->failed)
         return;
     if (is->minor == 0) {
         number = Ice_InputStream_readInt(is);
         if (number > 0 || number < -ICE_VALUES_MAX)
-            is->failed = 1;
+            icec_failRead(is, number > 0 ? ICE_FAILED_MALFORMED : ICE_FAILED_VALUES);
         else if (number < 0)
             setLater(is, at, -number, expected);
         return;
@@ -85,7 +85,7 @@ void Ice_InputStream_readValue(Ice_InputStreamPtr is, void* at, const Ice_ValueT
         setLater(is, at, number, expected);
         return;
     }
-    number = Ice_readInstance(is, number);
+    number = icec_readInstance(is, number);
     if (!is->failed)
         set(is, at, number, expected, 0);
 }
@@ -93,32 +93,33 @@ void Ice_InputStream_readValue(Ice_InputStreamPtr is, void* at, const Ice_ValueT
 static void skip(Ice_InputStreamPtr is) {
     Ice_Int number = Ice_InputStream_readSize(is);
     if (number != 0 && !(is->sliceFlags & ICE_SLICE_TABLE))
-        (void)Ice_readInstance(is, number);
+        (void)icec_readInstance(is, number);
 }
 
-/* Behind a slice: the instances that its members, the patches from patchBegin, point at. */
+/* Reads the table behind a slice: instances at which its members, the patches from patchBegin,
+ * point. */
 static void readTable(Ice_InputStreamPtr is) {
     Ice_InputValues* values = is->values;
     Ice_Int count = Ice_InputStream_readSequence(is, 1), first = values->patchBegin;
     Ice_Int last = values->patchEnd, i, p;
     values->patchBegin = last;
     for (i = 1; i <= count && !is->failed; ++i) {
-        Ice_Int number = Ice_readInstance(is, Ice_InputStream_readSize(is));
+        Ice_Int number = icec_readInstance(is, Ice_InputStream_readSize(is));
         for (p = first; p < last && !is->failed; ++p)
             if (values->patches[p].number == i)
                 set(is, values->patches[p].at, number, values->patches[p].expected, 0);
     }
     for (p = first; p < last; ++p)
         if (values->patches[p].number > count)
-            is->failed = 1;
+            icec_failRead(is, ICE_FAILED_MALFORMED);
     values->patchBegin = first;
     values->patchEnd = first;
 }
 
-/* Behind the slices of an instance of 1.0: that of ::Ice::Object, with a size that is 0. */
+/* Reads the last slice of an instance of 1.0: that of ::Ice::Object, with a size that is 0. */
 static void readEnd10(Ice_InputStreamPtr is) {
     if (Ice_InputStream_readSize(is) != 0)
-        is->failed = 1;
+        icec_failRead(is, ICE_FAILED_MALFORMED);
 }
 
 /* Slices down to one whose type is known; where there is none, Ice_Value_type without a slice, in
@@ -126,27 +127,27 @@ static void readEnd10(Ice_InputStreamPtr is) {
 static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** list) {
     Ice_Bool isFirst;
     for (isFirst = 1;; isFirst = 0) {
-        Ice_SliceHead head;
-        Ice_startSlice(is, &head);
+        Icec_SliceHead head;
+        icec_startSlice(is, &head);
         if (is->minor == 0 && head.isObject && !isFirst) {
             readEnd10(is); /* nobody may point at it */
             return 0;
         }
         if (is->failed || (head.isObject && !isFirst)) {
-            is->failed = 1;
+            icec_failRead(is, ICE_FAILED_MALFORMED);
             return 0;
         }
         if (head.type)
             return head.type;
         if (is->sliceEnd == 0) {
-            is->failed = 1; /* the format does not say where it ends */
+            icec_failRead(is, ICE_FAILED_MALFORMED); /* the format does not say where it ends */
             return 0;
         }
         if (is->minor == 0) {
             is->position = is->sliceEnd;
             continue;
         }
-        *list = Ice_keepSlice(is, head.id, head.compactId);
+        *list = icec_keepSlice(is, head.id, head.compactId);
         if (!*list)
             return 0;
         if ((*list)->flags & ICE_SLICE_LAST)
@@ -155,11 +156,11 @@ static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** 
     }
 }
 
-/* The slices of one instance, which gets this number. */
+/* Reads the slices of one instance, which gets this number. */
 static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
     Ice_UnknownSlice* unknown = 0;
     const Ice_ValueType* type = knownType(is, &unknown);
-    Ice_SliceHead head;
+    Icec_SliceHead head;
     Ice_Value* v;
     if (is->failed || !type)
         return;
@@ -180,27 +181,28 @@ static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
         type->read(v, is);
         Ice_InputStream_endSlice(is);
         if (!type->base != (is->minor != 0 && is->sliceFlags & ICE_SLICE_LAST) && is->minor != 0)
-            is->failed = 1;
+            icec_failRead(is, ICE_FAILED_MALFORMED);
         else if (type->base)
-            Ice_startSlice(is, &head);
+            icec_startSlice(is, &head);
     }
     if (is->minor == 0 && !is->failed) {
-        Ice_startSlice(is, &head);
+        icec_startSlice(is, &head);
         if (!head.isObject)
-            is->failed = 1;
+            icec_failRead(is, ICE_FAILED_MALFORMED);
         readEnd10(is);
     }
 }
 
-Ice_Int Ice_readInstance(Ice_InputStreamPtr is, Ice_Int number) {
+Ice_Int icec_readInstance(Ice_InputStreamPtr is, Ice_Int number) {
     Ice_InputValues* values = is->values;
     Ice_Byte flags = is->sliceFlags;
     Ice_Int sliceEnd = is->sliceEnd, patchBegin = values->patchBegin;
-    if (is->failed || number < 1 || number > values->count + 1 ||
-        (number == 1 && values->count == ICE_VALUES_MAX)) {
-        is->failed = 1;
+    if (number < 1 || number > values->count + 1)
+        icec_failRead(is, ICE_FAILED_MALFORMED);
+    if (number == 1 && values->count == ICE_VALUES_MAX)
+        icec_failRead(is, ICE_FAILED_VALUES);
+    if (is->failed)
         return 0;
-    }
     if (number > 1)
         return number - 1;
     number = ++values->count;
@@ -222,7 +224,7 @@ void Ice_InputStream_endValues(Ice_InputStreamPtr is) {
         while (n-- > 0 && !is->failed) {
             Ice_Int number = Ice_InputStream_readInt(is);
             if (number < 1 || number > ICE_VALUES_MAX || values->known[number - 1]) {
-                is->failed = 1;
+                icec_failRead(is, ICE_FAILED_MALFORMED);
                 break;
             }
             if (number > values->count)
@@ -236,6 +238,6 @@ void Ice_InputStream_endValues(Ice_InputStreamPtr is) {
         set(is, values->patches[p].at, values->patches[p].number, values->patches[p].expected, 1);
     for (; values->late && !is->failed; values->late = values->late->next)
         set(is, values->late->at, values->late->number, values->late->expected, 1);
-    Ice_endUnknown(is);
+    icec_endUnknown(is);
     is->values = 0;
 }

@@ -29,20 +29,20 @@ static Ice_String typeByIndex(Ice_InputStreamPtr is) {
     Ice_Int index = Ice_InputStream_readSize(is);
     if (index >= 1 && index <= is->values->typeCount)
         return is->values->typeIds[index - 1];
-    is->failed = 1;
+    icec_failRead(is, ICE_FAILED_MALFORMED);
     return none;
 }
 
 static Ice_String typeByName(Ice_InputStreamPtr is) {
     Ice_String id = Ice_InputStream_readString(is);
     if (is->values->typeCount == ICE_VALUE_TYPES_MAX)
-        is->failed = 1;
+        icec_failRead(is, ICE_FAILED_VALUE_TYPES);
     else
         is->values->typeIds[is->values->typeCount++] = id;
     return id;
 }
 
-void Ice_startSlice(Ice_InputStreamPtr is, Ice_SliceHead* head) {
+void icec_startSlice(Ice_InputStreamPtr is, Icec_SliceHead* head) {
     const Ice_ValueType* const* type = is->values->types;
     Ice_Int begin, size;
     head->id = Ice_String_from("");
@@ -72,7 +72,7 @@ void Ice_startSlice(Ice_InputStreamPtr is, Ice_SliceHead* head) {
     if (is->sliceFlags & ICE_SLICE_SIZE) {
         size = Ice_InputStream_readInt(is);
         if (size < 4 || size > is->size - begin)
-            is->failed = 1;
+            icec_failRead(is, ICE_FAILED_MALFORMED);
         else
             is->sliceEnd = begin + size;
     }
@@ -85,11 +85,11 @@ void Ice_startSlice(Ice_InputStreamPtr is, Ice_SliceHead* head) {
             head->type = *type;
 }
 
-Ice_UnknownSlice* Ice_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int compactId) {
+Ice_UnknownSlice* icec_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int compactId) {
     Ice_Byte flags = is->sliceFlags, optionals = (flags & ICE_SLICE_OPTIONALS) != 0;
     Ice_UnknownSlice* slice;
     if (is->failed || is->sliceEnd - is->position < optionals) {
-        is->failed = 1;
+        icec_failRead(is, ICE_FAILED_MALFORMED);
         return 0;
     }
     slice = (Ice_UnknownSlice*)Ice_InputStream_allocate(is, 1, (Ice_Int)sizeof *slice);
@@ -107,7 +107,7 @@ Ice_UnknownSlice* Ice_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int co
         void* room = Ice_InputStream_allocate(is, count, (Ice_Int)sizeof *slice->values);
         memcpy(&slice->values, &room, sizeof room); /* its type has no name */
         for (i = 0; i < count && !is->failed; ++i)
-            slice->values[i].number = Ice_readInstance(is, Ice_InputStream_readSize(is));
+            slice->values[i].number = icec_readInstance(is, Ice_InputStream_readSize(is));
         slice->count = is->failed ? 0 : count;
     }
     slice->nextRead = is->values->unknown;
@@ -119,14 +119,14 @@ Ice_Bool Ice_InputStream_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Unk
     Ice_UnknownSlice* slice;
     if (is->minor == 0 || is->failed || is->sliceEnd == 0)
         return Ice_InputStream_skipSlice(is);
-    slice = Ice_keepSlice(is, id, -1);
+    slice = icec_keepSlice(is, id, -1);
     while (*list)
         list = &(*list)->next;
     *list = slice;
     return slice && !(slice->flags & ICE_SLICE_LAST) && is->position < is->size;
 }
 
-void Ice_endUnknown(Ice_InputStreamPtr is) {
+void icec_endUnknown(Ice_InputStreamPtr is) {
     Ice_InputValues* values = is->values;
     Ice_UnknownSlice* slice;
     Ice_Int i;

@@ -20,7 +20,7 @@ void Ice_OutputStream_beginValues(Ice_OutputStreamPtr os, Ice_OutputValues* valu
     os->values = values;
 }
 
-/* The instance's place in `known`; -1: it is new, and has the last place now. */
+/* Returns the instance's place in `known`; -1: it is new, and has the last place now. */
 static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value* v, Ice_Int* place) {
     Ice_OutputValues* values = os->values;
     Ice_Int i;
@@ -30,7 +30,7 @@ static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value* v, Ice_Int* plac
             return 0;
         }
     if (values->count == ICE_VALUES_MAX) {
-        os->failed = 1;
+        os->failed = ICE_FAILED_VALUES;
         return 0;
     }
     *place = values->count;
@@ -38,7 +38,7 @@ static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value* v, Ice_Int* plac
     return 1;
 }
 
-/* The number under which this type's name was written, 0: it was not, and has one now. */
+/* Returns the number under which this type's name was written; 0: it was not, and has one now. */
 static Ice_Int typeNumber(Ice_OutputStreamPtr os, Ice_String id) {
     Ice_OutputValues* values = os->values;
     Ice_Int i;
@@ -46,7 +46,7 @@ static Ice_Int typeNumber(Ice_OutputStreamPtr os, Ice_String id) {
         if (Ice_String_same(&values->types[i], &id))
             return i + 1;
     if (values->typeCount == ICE_VALUE_TYPES_MAX)
-        os->failed = 1;
+        os->failed = ICE_FAILED_VALUE_TYPES;
     else
         values->types[values->typeCount++] = id;
     return 0;
@@ -83,13 +83,13 @@ static void writeUnknown(Ice_OutputStreamPtr os, const Ice_UnknownSlice* slice,
         Ice_OutputStream_writeInt(os, 0);
         Ice_OutputStream_writeBlob(os, slice->data, slice->size);
         if (slice->count > ICE_VALUES_MAX - values->tableEnd) {
-            os->failed = 1;
+            os->failed = ICE_FAILED_VALUES;
             return;
         }
         for (; values->tableEnd - values->tableBegin < slice->count; ++values->tableEnd)
             values->table[values->tableEnd] =
                 slice->values[values->tableEnd - values->tableBegin].value;
-        Ice_finishSlice(os, begin, i);
+        icec_finishSlice(os, begin, i);
     }
 }
 
@@ -116,11 +116,11 @@ static void writeSlices11(Ice_OutputStreamPtr os, const Ice_Value* v) {
             Ice_OutputStream_writeInt(os, 0);
         body = os->size;
         type->write(v, os);
-        Ice_finishSlice(os, begin, os->sliced ? body - 4 : -1);
+        icec_finishSlice(os, begin, os->sliced ? body - 4 : -1);
     }
 }
 
-/* The instance itself, or its number. */
+/* Writes the instance itself, or its number. */
 static void writeInstance(Ice_OutputStreamPtr os, const Ice_Value* v) {
     Ice_Int place = 0, tableBegin = os->values->tableBegin;
     Ice_Byte flags = os->sliceFlags;
@@ -135,7 +135,8 @@ static void writeInstance(Ice_OutputStreamPtr os, const Ice_Value* v) {
     os->sliceFlags = flags;
 }
 
-/* Behind a slice: what its members pointed at. 0: there is nothing. */
+/* Writes the instances at which a slice's members pointed, behind it. Returns 0 if there are none.
+ */
 static Ice_Bool writeTable(Ice_OutputStreamPtr os) {
     Ice_OutputValues* values = os->values;
     Ice_Int begin = values->tableBegin, end = values->tableEnd, i;
@@ -155,7 +156,7 @@ static void writeIndirect(Ice_OutputStreamPtr os, const Ice_Value* v) {
         if (values->table[i] == v)
             break;
     if (i == ICE_VALUES_MAX) {
-        os->failed = 1;
+        os->failed = ICE_FAILED_VALUES;
         return;
     }
     if (i == values->tableEnd)
@@ -165,8 +166,10 @@ static void writeIndirect(Ice_OutputStreamPtr os, const Ice_Value* v) {
 
 void Ice_OutputStream_writeValue(Ice_OutputStreamPtr os, const Ice_Value* v) {
     Ice_Int place = 0;
-    if (os->failed || !os->values) {
-        os->failed = 1;
+    if (os->failed)
+        return;
+    if (!os->values) {
+        os->failed = ICE_FAILED_MALFORMED;
     } else if (os->minor == 0) {
         if (v)
             (void)placeOf(os, v, &place);
@@ -194,7 +197,7 @@ static void writeSlice10(Ice_OutputStreamPtr os, const Ice_ValueType* type, cons
         Ice_OutputStream_writeSize(os, 0); /* the facets of very old versions */
     else
         type->write(v, os);
-    Ice_patchSize(os, begin);
+    icec_patchSize(os, begin);
 }
 
 /* 1.0: in groups; what a group's members point at is the next one. */

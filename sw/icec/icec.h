@@ -2,15 +2,27 @@
  *
  * icec: a small peer of ZeroC Ice 3.7 in C90: communicator, object adapter, servants, proxies.
  *
- * No allocation: the caller owns every object named here, and keeps it while it is in use. So are
- * strings that are passed as `const char *`. Limits and options: ice_config.h. With ICEC_TASKS and
- * an Ice_Os, every function may be called by any task; a proxy object belongs to one task at a time
- * (copies are plain assignments). Names follow the paper's figures; the mapping is docs/icec.md.
+ *     Ice_initialize(&ic);
+ *     TcpEndpoint_init(&ic, &tcp);                     (a transport: endpoints/)
+ *     Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "A", "tcp -p 10000", &adapter);
+ *     M_Thing_init(&thing);                            (generated from Slice)
+ *     Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&thing, "thing");
+ *     Ice_ObjectAdapter_activate(&adapter);
+ *     Ice_Communicator_stringToProxy(&ic, "other:tcp -h ground -p 10000", &prx);
+ *     if (M_OtherPrx_op(&prx, in, &out) != ICE_OK)     (a call, generated)
+ *         ...                                          (Ice_ObjectPrx_failure says more)
+ *     Ice_Communicator_waitForShutdown(&ic);           (serves)
+ *
+ * Nothing is allocated: the caller owns every object named here, and keeps it while it is in use,
+ * and so it does strings that are passed as `const char*`. The limits are those of ice_config.h.
+ * With an Ice_Os every function may be called by any task; a proxy object belongs to one task at a
+ * time (copies are plain assignments). Names follow the paper's figures; docs/icec.md tells the
+ * rest.
  */
 #ifndef ICEC_H
 #define ICEC_H
 
-#include "ice_seam.h"
+#include "ice_port.h"
 
 typedef struct Ice_Communicator Ice_Communicator, *Ice_CommunicatorPtr;
 typedef struct Ice_ObjectAdapter Ice_ObjectAdapter, *Ice_ObjectAdapterPtr;
@@ -21,9 +33,10 @@ typedef struct Ice_Identity {
     Ice_String name, category;
 } Ice_Identity;
 
+/* An entry of a request context: an array of them ends with a key of 0. */
 typedef struct Ice_ContextEntry {
     const char *key, *value;
-} Ice_ContextEntry; /* in an array; a key of 0 ends it */
+} Ice_ContextEntry;
 
 /* ---- servants ---- */
 
@@ -39,8 +52,8 @@ typedef struct Ice_Current {
     Ice_InputStream context; /* use Ice_Current_context */
 } Ice_Current;
 
-/* Reads the parameters from `is`, runs the operation, writes the results to `os` (after the
- * servant's function has returned: until then `os` has no place of its own).
+/* Reads the parameters from `is`, runs the operation, and writes the results to `os`, after the
+ * servant's function has returned: until then `os` has no place of its own. Returns
  * ICE_OPERATION_NOT_EXIST where there is no such operation. */
 typedef Ice_Status (*Ice_Dispatch)(Ice_ObjectPtr self, const Ice_Current* current,
                                    Ice_InputStreamPtr is, Ice_OutputStreamPtr os);
@@ -51,10 +64,23 @@ struct Ice_Object {
     const char* id;         /* the most derived one */
 };
 
-/* 1: the caller's context has the key, and `value` is set. */
-Ice_Bool Ice_Current_context(const Ice_Current* current, const char* key, Ice_String* value);
+/* Runs an operation of a servant as a request does: ice_ping, ice_isA, ice_id and ice_ids are
+ * answered from its ids. A servant whose `ids` is 0 is asked these, too (full run time): it can
+ * forward what it does not know, or watch and pass on to another servant by this function. */
+Ice_Status Ice_Object_invoke(Ice_ObjectPtr servant, const Ice_Current* current,
+                             Ice_InputStreamPtr is, Ice_OutputStreamPtr os);
 
-/* The right to answer a call later; the servant's function returned ICE_LATER. */
+/* Looks a key of the caller's context up. Returns 1 if it is there, and sets `value`. */
+Ice_Bool Ice_Current_context(const Ice_Current* current, const char* key, Ice_String* value);
+/* Lists the caller's context: returns 1 and the entry of this index, from 0; 0 behind the last. */
+Ice_Bool Ice_Current_contextAt(const Ice_Current* current, Ice_Int index, Ice_String* key,
+                               Ice_String* value);
+/* Returns room for what the results point to, aligned to 8 bytes: it lies in the arena of the
+ * request (ICE_ARENA_BYTES, parameters included) and is valid until the reply has been sent, or the
+ * servant's function has returned ICE_LATER. 0: so much is not left. */
+void* Ice_Current_allocate(const Ice_Current* current, Ice_Int bytes);
+
+/* The right to answer a call later, of a servant whose function returns ICE_LATER. */
 typedef struct Ice_Reply {
     Ice_CommunicatorPtr communicator;
     Ice_Int id;
@@ -63,42 +89,50 @@ typedef struct Ice_Reply {
     Ice_Byte minor;
 } Ice_Reply;
 
+/* Fills `reply`; to be called while the operation runs. */
 void Ice_Current_later(const Ice_Current* current, Ice_Reply* reply);
-/* The stream for the results (or a user exception); to be followed by end. */
+/* Returns the stream for the results, or for a user exception; Ice_Reply_end must follow. */
 Ice_OutputStreamPtr Ice_Reply_begin(Ice_Reply* reply);
-/* Sends: ICE_OK and ICE_USER_EXCEPTION with what was written, any other status as the failure it
- * is. ICE_CONNECTION_LOST: who asked is gone. */
+/* Sends the reply: with ICE_OK and ICE_USER_EXCEPTION what was written, with any other status the
+ * failure that it is. Returns ICE_CONNECTION_LOST if the caller is gone. */
 Ice_Status Ice_Reply_end(Ice_Reply* reply, Ice_Status status);
 
 /* ---- object adapters ---- */
 
-/* `identity`: "name" or "category/name". ICE_LIMIT: it is taken, or there is no room. */
+/* Adds a servant. `identity` is "name" or "category/name", and is kept as a pointer. Returns
+ * ICE_LIMIT if it is taken, or if there are ICE_SERVANTS already; ICE_PARSE: it is no identity. */
 Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                                  const char* identity);
 Ice_Status Ice_ObjectAdapter_addFacet(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                                       const char* identity, const char* facet);
-/* Answers for every identity of the category that has no servant; "" for every category. */
+/* Adds a servant that answers for every identity of the category that has none of its own;
+ * "": for every category. */
 Ice_Status Ice_ObjectAdapter_addDefaultServant(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                                                const char* category);
+/* Remove what was added. ICE_OBJECT_NOT_EXIST: it was not. */
 Ice_Status Ice_ObjectAdapter_remove(Ice_ObjectAdapterPtr adapter, const char* identity);
 Ice_Status Ice_ObjectAdapter_removeFacet(Ice_ObjectAdapterPtr adapter, const char* identity,
                                          const char* facet);
 Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter,
                                                   const char* category);
+/* Returns the servant of exactly this identity, without a facet; 0: there is none. */
 Ice_ObjectPtr Ice_ObjectAdapter_find(Ice_ObjectAdapterPtr adapter, const char* identity);
+/* An adapter's objects exist while it is active. */
 void Ice_ObjectAdapter_activate(Ice_ObjectAdapterPtr adapter);
-/* Its objects do not exist until it is activated again. */
 void Ice_ObjectAdapter_deactivate(Ice_ObjectAdapterPtr adapter);
 void Ice_ObjectAdapter_destroy(Ice_ObjectAdapterPtr adapter);
-/* A proxy to an object of this adapter, to be passed to a peer. */
+/* Makes a proxy to an object of this adapter, to be passed to a peer; from "category/name", or from
+ * an identity as Ice_Current has it. ICE_LIMIT: ICE_IDENTITY_MAX or ICE_ENDPOINT_MAX. */
 Ice_Status Ice_ObjectAdapter_createProxy(Ice_ObjectAdapterPtr adapter, const char* identity,
                                          Ice_ObjectPrxPtr prx);
+Ice_Status Ice_ObjectAdapter_createProxyTo(Ice_ObjectAdapterPtr adapter,
+                                           const Ice_Identity* identity, Ice_ObjectPrxPtr prx);
 
 /* ---- proxies ---- */
 
 enum { ICE_TWOWAY, ICE_ONEWAY, ICE_BATCH_ONEWAY, ICE_DATAGRAM, ICE_BATCH_DATAGRAM };
 
-/* One-way requests that wait to be sent together. `data` is the caller's. */
+/* One-way requests that wait to be sent together. */
 typedef struct Ice_Batch {
     Ice_OutputStream os;
     Ice_Int count;
@@ -124,17 +158,18 @@ struct Ice_ObjectPrx {
     Ice_Byte endpoints[ICE_ENDPOINT_MAX]; /* as on the wire: count, endpoints; or 0, adapter's id */
 };
 
-/* What a failed call's reply said: of ICE_OBJECT_NOT_EXIST and its like who and what, else the
- * text. */
+/* The reason of a failed call: of ICE_OBJECT_NOT_EXIST and its like who and what; of failures at
+ * the peer its text; of ICE_MARSHAL and ICE_LIMIT which limit was reached, with its macro and
+ * value. */
 typedef struct Ice_Failure {
     Ice_Identity identity;
     Ice_String facet, operation;
     Ice_String unknown;
 } Ice_Failure;
 
-/* `proxy`: "identity [-t|-o|-O|-d|-D|-s] [-f facet] [-e 1.0|1.1]:transport options[:...]" or
- * "...@adapter", as in Ice's manual. The minimal configuration takes "name [-t|-o]:transport
- * options". */
+/* Makes a proxy from "identity [-t|-o|-O|-d|-D|-s] [-f facet] [-e 1.0|1.1]:transport options[:...]"
+ * or "...@adapter", as in Ice's manual; the minimal run time from "name [-t|-o]:transport options".
+ * ICE_PARSE: it is none; ICE_LIMIT: ICE_IDENTITY_MAX or ICE_ENDPOINT_MAX. */
 Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char* proxy,
                                           Ice_ObjectPrxPtr prx);
 /* Writes a terminated string of at most `size` bytes with the end mark. ICE_LIMIT: it does not fit.
@@ -150,27 +185,31 @@ Ice_Status Ice_ObjectPrx_ice_identity(Ice_ObjectPrxPtr prx, const char* identity
 Ice_Status Ice_ObjectPrx_ice_facet(Ice_ObjectPrxPtr prx, const char* facet);
 void Ice_ObjectPrx_ice_twoway(Ice_ObjectPrxPtr prx);
 void Ice_ObjectPrx_ice_oneway(Ice_ObjectPrxPtr prx);
-/* Calls are kept in `data` until flushed, or until it is full. */
+/* Keeps calls in `data`, which is the caller's, until they are flushed, or until it is full. */
 void Ice_ObjectPrx_ice_batchOneway(Ice_ObjectPrxPtr prx, Ice_Batch* batch, Ice_Byte* data,
                                    Ice_Int size);
 Ice_Status Ice_ObjectPrx_ice_flushBatchRequests(Ice_ObjectPrxPtr prx);
 void Ice_ObjectPrx_ice_context(Ice_ObjectPrxPtr prx, const Ice_ContextEntry* context); /* 0: none */
 void Ice_ObjectPrx_ice_invocationTimeout(Ice_ObjectPrxPtr prx, Ice_Int ms);
-/* Room for larger replies, aligned to 8: `bytes` for the reply and its decoded sequences together.
- */
+/* Gives the proxy's replies a buffer of their own, aligned to 8, instead of ICE_REPLY_MAX bytes of
+ * the communicator's: `bytes` for a reply and its decoded sequences together. */
 void Ice_ObjectPrx_setReplyBuffer(Ice_ObjectPrxPtr prx, U32* buffer, Ice_Int bytes);
 void Ice_ObjectPrx_ice_encodingVersion(Ice_ObjectPrxPtr prx, Ice_Byte minor);
 
 Ice_Status Ice_ObjectPrx_ice_ping(Ice_ObjectPrxPtr self);
 Ice_Status Ice_ObjectPrx_ice_isA(Ice_ObjectPrxPtr self, const char* id, Ice_Bool* result);
 Ice_Status Ice_ObjectPrx_ice_id(Ice_ObjectPrxPtr self, Ice_String* result);
-/* `self` becomes `from` if the object has the type, else null; the status says whether it could be
- * asked. */
+/* Makes `self` a copy of `from` if the object has the type, else null. Returns whether the object
+ * could be asked. */
 Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx* from,
                                      const char* id);
 /* Opens the connection that a call would use. */
 Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int* connection);
-/* Of the last call that was made through this object; until its next call. */
+/* Gives an indirect proxy ("object", "object@adapter") the endpoints that `locator` knows, a proxy
+ * to an Ice::Locator such as IceGrid's; a direct one stays as it is. They stay until this is called
+ * again on a fresh copy. ICE_NO_ENDPOINT: the locator knows none. */
+Ice_Status Ice_ObjectPrx_resolve(Ice_ObjectPrxPtr self, Ice_ObjectPrxPtr locator);
+/* Tells about the last call that was made through this object, until its next call. */
 void Ice_ObjectPrx_failure(const Ice_ObjectPrx* self, Ice_Failure* failure);
 
 /* For generated code. A call is begin, writes to the returned stream, invoke, reads, end. begin
@@ -187,46 +226,56 @@ Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status);
 typedef void (*Ice_Callback)(void* cookie, Ice_Status status, Ice_InputStreamPtr is);
 Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie);
 
-/* A null proxy is written for 0, and read as one of an empty name. `ic` 0: the stream's. */
+/* Write and read a proxy. 0 is written as the null proxy, which is read as one of an empty name;
+ * `ic` 0: the proxy is of the stream's communicator. */
 void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx);
 void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr prx);
 
 /* ---- communicator ---- */
 
 void Ice_initialize(Ice_CommunicatorPtr ic);
-/* Before any other call; `os` must stay valid. */
+/* Set the tasks' port, and the transport; to be called before any other function, and both must
+ * stay valid. */
 void Ice_Communicator_setOs(Ice_CommunicatorPtr ic, const Ice_Os* os, void* context);
 void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint* endpoint,
                                   void* context);
 
-/* `table`: strings "key=value", 0 ends. Of two with one key the first counts. */
+/* Takes properties from an array of strings "key=value" that ends with 0. Of two with one key the
+ * first counts. */
 void Ice_Communicator_setProperties(Ice_CommunicatorPtr ic, const char* const* table);
-const char* Ice_Communicator_getProperty(Ice_CommunicatorPtr ic,
-                                         const char* key); /* 0: not there */
+/* Returns the property's value; 0: it is not there. */
+const char* Ice_Communicator_getProperty(Ice_CommunicatorPtr ic, const char* key);
+/* Returns its value as a number, `otherwise` if it is not there or no number. */
 Ice_Int Ice_Communicator_getPropertyAsInt(Ice_CommunicatorPtr ic, const char* key,
                                           Ice_Int otherwise);
 Ice_Status Ice_Communicator_propertyToProxy(Ice_CommunicatorPtr ic, const char* key,
                                             Ice_ObjectPrxPtr prx);
 
-/* `endpoints`: name of the transport and its options, "xbee-at" or "tcp -p 10000". */
+/* Makes an adapter, inactive at first. `endpoints` names the transport and its options: "xbee-at"
+ * or "tcp -p 10000". ICE_NO_ENDPOINT: another transport, or the system refuses. */
 Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr ic,
                                                              const char* name,
                                                              const char* endpoints,
                                                              Ice_ObjectAdapterPtr adapter);
-/* With the property <name>.Endpoints; without it only connections that this side makes reach it. */
+/* Makes an adapter with the property <name>.Endpoints; without it, only connections that this side
+ * makes reach it. */
 Ice_Status Ice_Communicator_createObjectAdapter(Ice_CommunicatorPtr ic, const char* name,
                                                 Ice_ObjectAdapterPtr adapter);
-/* Receives and dispatches until Ice_Communicator_shutdown. Of several tasks one receives. */
+/* Receives and dispatches until Ice_Communicator_shutdown is called. Of several tasks one receives.
+ */
 void Ice_Communicator_waitForShutdown(Ice_CommunicatorPtr ic);
+/* Stops serving: no new connections are taken, and requests are not executed any more, which their
+ * callers are told by closing. Calls of this side go on. */
 void Ice_Communicator_shutdown(Ice_CommunicatorPtr ic);
-/* Handles at most one event; for programs with a loop of their own. ICE_TIMEOUT: there was none,
- * or another task received all the time. */
+/* Handles at most one event; for programs with a loop of their own. Returns ICE_TIMEOUT if there
+ * was none, or another task received all the time. */
 Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs);
-/* Closes every connection in good order: tells the peers, and waits up to timeoutMs for them. */
+/* Shuts down, and closes every connection in good order: waits up to timeoutMs for operations under
+ * way to be answered, and for the peers to close. */
 void Ice_Communicator_destroy(Ice_CommunicatorPtr ic, Ice_Int timeoutMs);
 
-/* A proxy to an object of the peer on this connection, whoever made it: calls go back on it. It
- * ends with the connection (ICE_CONNECTION_LOST), and cannot be passed to anybody. */
+/* Makes a proxy to an object of the peer on this connection, whoever made it: calls go back on it.
+ * It ends with the connection (ICE_CONNECTION_LOST), and cannot be passed to anybody. */
 Ice_Status Ice_Connection_createProxy(Ice_CommunicatorPtr ic, int connection, const char* identity,
                                       Ice_ObjectPrxPtr prx);
 /* Closes one connection in good order, without waiting for the peer. */

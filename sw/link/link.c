@@ -12,7 +12,7 @@ void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs1
     link->context = context;
     link->byteTimeUs16 = byteTimeUs16;
     link->longest = LINK_MAX_PAYLOAD;
-    Link_endSession(link, LINK_STATE_IDLE);
+    link_endSession(link, LINK_STATE_IDLE);
 }
 
 void Link_limitFrame(Link* link, U32 bytes) {
@@ -26,7 +26,7 @@ void Link_start(Link* link, U32 nowUs) {
     link->wanted = 1;
     link->paceUntil = nowUs;
     if (link->state == LINK_STATE_IDLE) {
-        Link_endSession(link, LINK_STATE_CONNECTING);
+        link_endSession(link, LINK_STATE_CONNECTING);
         link->port->state(link->context, LINK_STATE_CONNECTING);
     }
 }
@@ -35,10 +35,10 @@ void Link_stop(Link* link, U32 nowUs) {
     U8 frame[LINK_OVERHEAD];
     link->now = nowUs;
     link->wanted = 0;
-    link->hasCandidate = 0;
+    link->handshake.hasCandidate = 0;
     if (link->state == LINK_STATE_UP)
-        (void)Link_sendControl(link, frame, LINK_KIND_BYE, 0, 0);
-    Link_endSession(link, LINK_STATE_IDLE);
+        (void)link_sendControl(link, frame, LINK_KIND_BYE, 0, 0);
+    link_endSession(link, LINK_STATE_IDLE);
 }
 
 Link_State Link_state(const Link* link) {
@@ -47,44 +47,54 @@ Link_State Link_state(const Link* link) {
 
 void Link_poll(Link* link, U32 nowUs) {
     link->now = nowUs;
-    Link_pollInput(link);
-    Link_pollSession(link);
+    link_pollInput(link);
+    link_pollSession(link);
+    if (link->state == LINK_STATE_UP && !link_pollReceiver(link))
+        link_abort(link);
     if (link->state != LINK_STATE_UP)
         return;
-    Link_pollReceive(link);
-    Link_pollSend(link);
-    Link_pollAck(link);
+    link_pollSender(link);
+    link_pollAck(link);
 }
 
-static U32 sooner(U32 wait, U32 at, U32 now) {
-    if (LINK_BEFORE(at, now))
-        at = now;
-    return at - now < wait ? at - now : wait;
-}
+/* The sooner and the later of two times. */
+#define SOONER(a, b) (LINK_BEFORE(a, b) ? (a) : (b))
+#define LATER(a, b) (LINK_BEFORE(a, b) ? (b) : (a))
+
+#define FAR 0x7FFFFFFFU
 
 U32 Link_deadline(const Link* link, U32 nowUs) {
+    const Link_Sender* sender = &link->sender;
+    const Link_Receiver* receiver = &link->receiver;
     U32 soon = nowUs + LINK_POLL_EVERY;
-    U32 wait = 0xFFFFFFFFU;
+    U32 first = nowUs + FAR;
     U32 at;
-    if (link->inputCount)
-        wait = sooner(wait, link->inputAt + LINK_FRAME_GAP, nowUs);
+    if (link->parser.count)
+        first = link->parser.at + LINK_FRAME_GAP;
     if (link->state == LINK_STATE_CONNECTING)
-        wait = sooner(wait, link->helloAt, nowUs);
-    if (link->state != LINK_STATE_UP)
-        return wait;
-    at = link->heardAt + LINK_PING_AFTER;
-    wait = sooner(wait, LINK_BEFORE(at, link->pingAt) ? link->pingAt : at, nowUs);
-    if (link->sendBase != link->sendNext)
-        wait = sooner(wait, link->timerAt, nowUs);
-    if (link->work) {
-        at = link->paceUntil - LINK_SLACK(link);
-        wait = sooner(wait, LINK_BEFORE(at, soon) ? soon : at, nowUs);
+        first = SOONER(link->handshake.helloAt, first);
+    if (link->state == LINK_STATE_UP) {
+        at = link->heardAt + LINK_PING_AFTER;
+        at = LATER(at, link->pingAt);
+        first = SOONER(at, first);
+        if (sender->base != sender->next)
+            first = SOONER(sender->timerAt, first);
+        if (sender->hasWork) {
+            at = link->paceUntil - link_slack(link);
+            at = LATER(at, soon);
+            first = SOONER(at, first);
+        }
+        if (receiver->ackDue) {
+            at = receiver->ackNow ? soon : receiver->ackAt;
+            first = SOONER(at, first);
+        }
+        at = nowUs + LINK_OFFER_EVERY;
+        if (receiver->isHeld)
+            first = SOONER(at, first);
     }
-    if (link->ackDue)
-        wait = sooner(wait, link->ackNow ? soon : link->ackAt, nowUs);
-    if (link->messageHeld)
-        wait = sooner(wait, nowUs + LINK_OFFER_EVERY, nowUs);
-    return wait;
+    if (first == nowUs + FAR)
+        return 0xFFFFFFFFU;
+    return LINK_BEFORE(first, nowUs) ? 0 : first - nowUs;
 }
 
 const Link_Statistics* Link_statistics(const Link* link) {

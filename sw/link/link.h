@@ -1,7 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
  * link: reliable, ordered messages on four channels over a lossy packet radio.
- * Wire format: docs/link.md. The same source runs in the firmware and in the ground plugin.
+ *
+ *     static const Link_Port port = {transmit, random, onMessage, onChannel, onState, 0, 0};
+ *     static Link link;
+ *     Link_init(&link, &port, 0, 1440);                (a byte takes 90 us)
+ *     Link_start(&link, nowUs());                      (onState says when the session is up)
+ *     for (;;) {
+ *         Link_receive(&link, bytes, size, nowUs());   (what the radio brought, if anything)
+ *         Link_poll(&link, nowUs());
+ *         if (Link_openChannel(&link, 0) == LINK_OK)   (once; then, as often as wanted:)
+ *             Link_send(&link, 0, message, 12, 0);
+ *         sleep(Link_deadline(&link, nowUs()));        (or until the radio brings something)
+ *     }
+ *
+ * The same source runs in the firmware and in the ground's plugin. Wire format: docs/link.md.
  *
  * The layer owns no thread, no clock and no memory: the caller supplies the time in microseconds
  * (32 bits, it may wrap), calls Link_poll when Link_deadline is due, and keeps the Link object.
@@ -15,39 +28,23 @@
 
 #define LINK_CHANNELS 4
 #define LINK_MAX_FRAME 100U    /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
-#define LINK_MAX_ENCRYPTED 95U /* of one that the modem encrypts (Link_limitFrame) */
+#define LINK_MAX_ENCRYPTED 95U /* bytes of one that the modem encrypts (Link_limitFrame) */
 
-/* Options, for the compiler's command line; any two settings understand each other. LINK_MINIMAL
- * chooses the minimal layer (link_minimal.c), which has only LINK_MAX_MESSAGE of them and its own
- * LINK_LONGEST (for Link_limitFrame) and LINK_OUTCOMES; Link_start does nothing there: the peer
- * calls. */
+/* Sizes, for the compiler's command line; layers of different sizes understand each other.
+ * LINK_MINIMAL chooses the minimal layer (minimal/link_minimal.h), which has only LINK_MAX_MESSAGE
+ * of them. */
+#ifndef LINK_MAX_MESSAGE /* bytes of one message; a longer one from the peer ends the session */
 #ifdef LINK_MINIMAL
-#ifndef LINK_MAX_MESSAGE
 #define LINK_MAX_MESSAGE 1024U
+#else
+#define LINK_MAX_MESSAGE 8192U
 #endif
 #endif
 #ifndef LINK_WINDOW
-#define LINK_WINDOW 32U /* fragments in flight, a power of two up to 64; 1: stop and wait */
-#endif
-#ifndef LINK_HEADS
-#define LINK_HEADS 1 /* heads of IceP messages are sent once (link_head.c, 2.3 KiB of tables) */
-#endif
-#ifndef LINK_RIDE
-#define LINK_RIDE 1 /* acknowledgements ride on short messages */
-#endif
-#ifndef LINK_STATISTICS
-#define LINK_STATISTICS 1
-#endif
-#ifndef LINK_LIMIT
-#define LINK_LIMIT 1 /* Link_limitFrame has an effect */
-#endif
-#ifndef LINK_MAX_MESSAGE
-#define LINK_MAX_MESSAGE \
-    8192U /* bytes of one message; a longer one from the peer ends the session */
+#define LINK_WINDOW 32U /* fragments in flight, a power of two, 2..64 */
 #endif
 #ifndef LINK_SEND_BYTES
-#define LINK_SEND_BYTES \
-    16384U /* queue of outgoing messages, shared by the channels; a power of two */
+#define LINK_SEND_BYTES 16384U /* queue of outgoing messages, of all channels; a power of two */
 #endif
 #ifndef LINK_SEND_MESSAGES
 #define LINK_SEND_MESSAGES 32U /* messages, openings and closings in that queue, at most 128 */
@@ -75,19 +72,19 @@ typedef enum Link_Outcome {
 /* What the layer needs from its surroundings. `context` is passed back unchanged. */
 typedef struct Link_Port {
     /* Hands one frame (at most LINK_MAX_FRAME bytes, valid during the call only) to the radio as
-     * one RF packet. 0: taken; other: no room now, the layer offers it again at the next poll. */
+     * one RF packet. Returns 0: taken; other: no room now, the layer offers it again later. */
     int (*transmit)(void* context, const U8* frame, U32 size);
-    /* 32 bits that the peer cannot guess and that differ after a reboot. */
+    /* Returns 32 bits that the peer cannot guess and that differ after a reboot. */
     U32 (*random)(void* context);
-    /* A whole message has arrived; `data` is valid during the call only. 0: taken; other: no room
+    /* Takes a whole message; `data` is valid during the call only. Returns 0: taken; other: no room
      * now. Then the layer keeps it, offers it again at each poll, and lowers the peer's credit. */
     int (*message)(void* context, int channel, const U8* data, U32 size);
-    /* The peer opened or closed a channel (1, 0). All channels close when the session ends. */
+    /* The peer opened (1) or closed (0) a channel. All channels close when the session ends. */
     void (*channel)(void* context, int channel, int isOpen);
     /* The session came up or ended. */
     void (*state)(void* context, Link_State state);
-    /* What became of a message: `tag` is what Link_send was given. Exactly one call a message.
-     * May be 0, as may `writable`. */
+    /* Tells what became of a message: `tag` is what Link_send was given. Exactly one call a
+     * message. May be 0, as may `writable`. */
     void (*outcome)(void* context, int channel, U32 tag, Link_Outcome outcome);
     /* Room appeared after LINK_FULL. */
     void (*writable)(void* context);
@@ -95,24 +92,25 @@ typedef struct Link_Port {
 
 typedef struct Link Link; /* complete below, so that callers can place it; its fields are private */
 
+/* Counts since Link_init, over all sessions. */
 typedef struct Link_Statistics {
-    U32 framesSent, framesReceived; /* all kinds */
-    U32 bytesSent, bytesReceived;   /* on the air, payload and overhead */
-    U32 fragmentsResent;            /* data fragments sent more than once */
-    U32 acksSent;
-    U32 crcErrors, bytesSkipped; /* what resynchronisation threw away */
-    U32 duplicates;              /* fragments that had already arrived */
-    U32 messagesSent, messagesReceived;
-    U32 sessions;       /* times the link came up */
-    U32 roundTripUs;    /* smoothed estimate */
-    U32 headBytesSaved; /* by link_head.c, of what was sent */
+    U32 framesSent, framesReceived;     /* of all kinds */
+    U32 bytesSent, bytesReceived;       /* on the air, payload and overhead */
+    U32 fragmentsResent;                /* data fragments sent more than once */
+    U32 acksSent;                       /* alone or piggybacked */
+    U32 crcErrors, bytesSkipped;        /* what resynchronisation threw away */
+    U32 duplicates;                     /* fragments that had already arrived */
+    U32 messagesSent, messagesReceived; /* delivered ones */
+    U32 sessions;                       /* times the link came up */
+    U32 roundTripUs;                    /* no count: the smoothed estimate */
+    U32 headBytesSaved;                 /* by header compression, of what was sent */
 } Link_Statistics;
 
 /* Prepares `link`. `port` must stay valid; `byteTimeUs16` is the time of one byte on the slowest
  * part of the way, in 1/16 microseconds (111,111 baud: 1440), used for pacing and timers. */
 void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16);
 
-/* Bytes of the longest frame from now on, 32..LINK_MAX_FRAME: a modem that encrypts splits what is
+/* Limits frames to `bytes` from now on, 32..LINK_MAX_FRAME: a modem that encrypts splits what is
  * longer than LINK_MAX_ENCRYPTED. The two sides may differ. */
 void Link_limitFrame(Link* link, U32 bytes);
 
@@ -126,27 +124,28 @@ void Link_stop(Link* link, U32 nowUs);
 
 Link_State Link_state(const Link* link);
 
-/* Opens a channel, for both directions; the peer's `channel` callback says so. LINK_OK, LINK_DOWN,
- * LINK_FULL. */
-Link_Status Link_openChannel(Link* link, int channel, U32 nowUs);
+/* Opens a channel, for both directions; the peer's `channel` callback says so. Returns LINK_OK,
+ * LINK_DOWN, LINK_FULL or LINK_CLOSED. */
+Link_Status Link_openChannel(Link* link, int channel);
 
-/* Closes a channel behind the messages that were sent before. LINK_CLOSED: it was not open. */
-Link_Status Link_closeChannel(Link* link, int channel, U32 nowUs);
+/* Closes a channel behind the messages that were sent before; that needs no room now. Returns
+ * LINK_OK, LINK_DOWN, or LINK_CLOSED: it was not open. */
+Link_Status Link_closeChannel(Link* link, int channel);
 
-/* Queues a copy of a message of 1..LINK_MAX_MESSAGE bytes. */
-Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag, U32 nowUs);
+/* Queues a copy of a message of 1..LINK_MAX_MESSAGE bytes. `tag` is for the `outcome` callback. */
+Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag);
 
-/* Bytes from the radio, in any portions: packet boundaries are not relied upon.
- * `isPacketEnd` is 1 where the caller knows that a packet or a silence ends here (a hint for
- * resynchronisation after corruption), else 0. */
-void Link_receive(Link* link, const U8* bytes, U32 size, int isPacketEnd, U32 nowUs);
+/* Takes bytes from the radio, in any portions: packet boundaries are not relied upon. Calls back
+ * with what they complete. */
+void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs);
 
 /* Sends what is due: fragments, acknowledgements, retransmissions, HELLO. */
 void Link_poll(Link* link, U32 nowUs);
 
-/* When Link_poll must be called at the latest, in microseconds from now; 0xFFFFFFFF: no need. */
+/* Returns in how many microseconds Link_poll must be called at the latest; 0xFFFFFFFF: no need. */
 U32 Link_deadline(const Link* link, U32 nowUs);
 
+/* The counts, which go on counting. */
 const Link_Statistics* Link_statistics(const Link* link);
 
 #ifdef LINK_MINIMAL

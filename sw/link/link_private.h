@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_private: the fields of a Link, and what the layer's files share. Included by link.h only.
+ * link_private: the parts of a Link, and what the layer's files offer each other, from the bottom
+ * to the top. A file calls only what stands above it here. Included by link.h only.
  */
 #ifndef LINK_PRIVATE_H
 #define LINK_PRIVATE_H
 
 #include "link_wire.h"
 
-/* Payload of the longest frame that is sent. */
-#define LINK_LONGEST(link) (LINK_LIMIT ? (U32)(link)->longest : LINK_MAX_PAYLOAD)
-
-#define LINK_FEATURES \
-    ((LINK_HEADS ? LINK_FEATURE_HEADS : 0U) | (LINK_RIDE ? LINK_FEATURE_RIDE : 0U))
+#define LINK_FEATURES (LINK_FEATURE_COMPRESSION | LINK_FEATURE_PIGGYBACK)
 
 /* Times in microseconds. */
 #define LINK_ACK_DELAY 20000U    /* an acknowledgement waits this long for company */
@@ -21,29 +18,24 @@
 #define LINK_PING_AFTER 5000000U /* silence after which the peer is asked, ... */
 #define LINK_PING_EVERY 1000000U /* again, ... */
 #define LINK_DEAD_AFTER 9000000U /* and given up */
-#define LINK_RTO_FIRST 600000U
+#define LINK_RTO_FIRST 600000U   /* retransmission time-out, before the first sample; its limits */
 #define LINK_RTO_MIN 60000U
 #define LINK_RTO_MAX 2000000U
 #define LINK_FRAME_GAP 25000U  /* silence on the serial side after which half a frame is dropped */
 #define LINK_POLL_EVERY 1000U  /* while the radio has no room */
 #define LINK_OFFER_EVERY 5000U /* while nobody takes a message */
 
-#define LINK_SLACK(link) \
-    (LINK_MAX_FRAME * (link)->byteTimeUs16 >> 4) /* time of the longest frame */
 #define LINK_SLOT(seq) ((seq) & (LINK_WINDOW - 1U))
-#define LINK_COUNT(link, counter, by) \
-    ((void)(LINK_STATISTICS && ((link)->statistics.counter += (by)) != 0))
 
-#define LINK_HEAD_SLOTS 16U
-#define LINK_HEAD_BYTES 64U                    /* of one: up to 62, and the encoding's version */
-#define LINK_HEAD_ROOM (LINK_HEADS ? 96U : 0U) /* what may grow in front of a message */
-#define LINK_ESCAPE (LINK_HEADS ? 1U : 0U)     /* a byte that marks what is not Ice */
+#define LINK_HEAD_AT 18U    /* where a head begins in a request: behind header and request id */
+#define LINK_HEADS 16U      /* request heads that each direction keeps */
+#define LINK_HEAD_BYTES 64U /* of one: up to 62, and the encoding's version */
+#define LINK_HEAD_ROOM 96U  /* bytes that decompression may add in front of a message */
+#define LINK_ESCAPE 1U      /* a byte that marks what is not Ice */
 
-#define LINK_INPUT_BYTES (LINK_WINDOW > 1U ? 2U * LINK_MAX_FRAME : LINK_MAX_FRAME)
-
-/* What must hold for the options of link.h; a negative size stops the compiler. */
+/* Fails to compile where a size of link.h is out of range. */
 typedef char
-    Link_Check[LINK_WINDOW >= 1U && LINK_WINDOW <= 64U && !(LINK_WINDOW & (LINK_WINDOW - 1U)) &&
+    Link_Check[LINK_WINDOW >= 2U && LINK_WINDOW <= 64U && !(LINK_WINDOW & (LINK_WINDOW - 1U)) &&
                        !(LINK_SEND_BYTES & (LINK_SEND_BYTES - 1U)) && LINK_SEND_BYTES <= 32768U &&
                        LINK_SEND_BYTES > LINK_MAX_MESSAGE&& LINK_MAX_MESSAGE <= 32000U &&
                        LINK_SEND_MESSAGES >= 1U && LINK_SEND_MESSAGES <= 128U
@@ -53,123 +45,186 @@ typedef char
 /* What identifies a session: both nonces, and what follows from them. */
 typedef struct Link_Session {
     U32 nonce, peerNonce;
-    U16 seed;
-    U8 epoch, features; /* of both sides */
+    U32 key;
+    U8 features; /* those that both sides have */
 } Link_Session;
 
+typedef struct Link_Handshake {
+    U32 nonce; /* own, of the next session */
+    U32 helloAt, helloEvery;
+    Link_Session candidate; /* of a HELLO that was answered; its sender has not confirmed it yet */
+    U8 hasCandidate;
+} Link_Handshake;
+
 /* An entry of the send queue; without bytes it opens (LINK_FIRST) or closes a channel. */
-typedef struct Link_Item {
+typedef struct Link_Entry {
     U32 tag;
     U16 size;
-    U8 flags; /* LINK_FIRST, CH */
-} Link_Item;
+    U8 flags; /* LINK_FIRST, channel */
+} Link_Entry;
 
-enum { LINK_TO_SEND, LINK_SENT, LINK_ACKED };
+typedef struct Link_Queue {
+    U8 first, count;
+    U8 wasFull;     /* Link_send said LINK_FULL */
+    U32 sums;       /* check of the message that is being put in */
+    U32 head, tail; /* of the bytes, not reduced modulo LINK_SEND_BYTES */
+} Link_Queue;
 
-/* A fragment that was cut and is not acknowledged in order. */
+typedef enum Link_FragmentState { LINK_TO_SEND, LINK_SENT, LINK_ACKED } Link_FragmentState;
+
+/* A fragment that was cut from the queue and is not acknowledged in order. */
 typedef struct Link_Fragment {
-    U32 start;  /* in the byte ring */
+    U32 start;  /* in the queue's bytes */
     U32 sentAt; /* last time */
     U32 order;  /* number of its last transmission */
     U8 size, flags;
     U8 tries; /* 0, 1, more */
-    U8 state;
+    U8 state; /* Link_FragmentState */
 } Link_Fragment;
 
-/* Heads that have passed in one direction. */
+typedef struct Link_Sender {
+    U8 base, next;         /* SEQ: oldest unacknowledged, next new */
+    U8 credit, fullCredit; /* fragments that the peer takes: now, and the most it gave */
+    U8 hasWork;            /* there may be something to send */
+    U8 hasSample;          /* srtt and rttvar hold something */
+    U8 cutEntry;           /* the next fragment comes from this entry of the queue, ... */
+    U16 cutBytes;          /* of which so many bytes are cut already */
+    U32 cutAt;             /* in the queue's bytes */
+    U32 rto, srtt, rttvar; /* microseconds, as RFC 6298 names them */
+    U32 timerAt;           /* when the retransmission timer expires */
+    U32 order;             /* transmissions so far */
+} Link_Sender;
+
+typedef struct Link_Receiver {
+    U8 next;         /* SEQ expected */
+    U8 isAssembling; /* between F and L */
+    U8 isHeld;       /* the message is whole, but the program has not taken it */
+    U8 channel;      /* of the message */
+    U8 ackDue, ackNow;
+    U8 ackCount; /* fragments since the last acknowledgement */
+    U8 waiting;  /* slots in use */
+    U16 size;    /* of the message */
+    U32 ackAt;
+    U8* start; /* of the message */
+} Link_Receiver;
+
+/* A fragment that arrived before its turn. */
+typedef struct Link_Slot {
+    U8 isUsed, size, flags;
+    U8 bytes[LINK_MAX_PAYLOAD];
+} Link_Slot;
+
+typedef struct Link_Parser {
+    U8 count;
+    U8 outOfStep; /* no frame where one should begin: the next one needs confirmation */
+    U32 at;       /* time of the last byte */
+} Link_Parser;
+
+/* Request heads that have passed in one direction. */
 typedef struct Link_Heads {
     U32 lastRequest[LINK_CHANNELS], lastReply[LINK_CHANNELS];
     U8 next; /* slot that the next new one takes */
-    U8 size[LINK_HEAD_SLOTS];
-    U8 head[LINK_HEADS ? LINK_HEAD_SLOTS : 1U][LINK_HEAD_BYTES];
+    U8 size[LINK_HEADS];
+    U8 head[LINK_HEADS][LINK_HEAD_BYTES];
 } Link_Heads;
 
-/* A message as it goes out: bytes[0..prefix), `middle` bytes of its head, the rest from tailAt. */
+/* A compressed message: bytes[0..prefix), `middle` bytes of its head, the rest from tailAt. */
 typedef struct Link_Packed {
     U8 bytes[8];
     U32 prefix, middle, tailAt, tail;
 } Link_Packed;
 
-/* Small and often used fields first: a Cortex-M3 reaches them with short instructions. */
+/* What is small and often used comes first: a Cortex-M3 reaches it with short instructions. */
 struct Link {
-    U8 state;        /* Link_State */
-    U8 wanted;       /* Link_start was called */
-    U8 hasCandidate; /* a HELLO was answered, its sender has not confirmed yet */
-    U8 inputCount;
-    U8 longest;            /* Link_limitFrame's, without the overhead */
-    U8 outOfStep;          /* no frame where one should begin: the next one needs confirmation */
-    U8 sendBase, sendNext; /* oldest unacknowledged, next new */
-    U8 credit, fullCredit; /* the peer's: now, and the most it gave */
-    U8 work;               /* there may be something to send */
-    U8 wasFull;            /* Link_send said LINK_FULL */
-    U8 itemHead, itemCount, cutItem; /* the next fragment comes from cutItem, after the head */
-    U8 hasSample;
-    U8 receiveNext;
-    U8 messageOpen, messageHeld; /* between F and L; whole, but not taken yet */
-    U8 messageChannel;
-    U8 open;                     /* bit a channel: messages may be sent */
-    U8 closing;                  /* closed here, the peer's closing has not come yet */
-    U8 closeDue;                 /* closed by the peer, our closing is not queued yet */
-    U8 check[2];                 /* sums of the message being queued */
-    U8 ackDue, ackNow, ackCount; /* ackCount: fragments since the last acknowledgement */
-    U16 cutBegun;                /* bytes of cutItem that were cut */
-    U16 messageSize;
+    U8 state;    /* Link_State */
+    U8 wanted;   /* Link_start was called */
+    U8 longest;  /* payload of the longest frame that is sent */
+    U8 open;     /* a bit a channel: messages may be sent */
+    U8 closing;  /* closed here, the peer's closing has not come yet */
+    U8 closeDue; /* the own closing is not queued yet */
+    Link_Receiver receiver;
+    Link_Sender sender;
     U32 now;
     const Link_Port* port;
     void* context;
+    Link_Queue queue;
     U32 byteTimeUs16;
-    U32 helloNonce, helloAt, helloEvery;
-    U32 heardAt, pingAt;
     U32 paceUntil; /* when the serial side will have sent everything handed over */
-    U32 timeout, timerAt, smoothed, variance;
-    U32 order;                       /* transmissions so far */
-    U32 queueHead, queueTail, cutAt; /* in the byte ring, never reduced */
-    U32 inputAt, ackAt;
-    U8* messageStart;
-    Link_Session session, candidate;
+    U32 heardAt, pingAt;
+    Link_Session session;
+    Link_Parser parser;
     Link_Statistics statistics;
+    Link_Handshake handshake;
 
-    Link_Item items[LINK_SEND_MESSAGES];
-    Link_Fragment window[LINK_WINDOW];
-    U8 input[LINK_INPUT_BYTES];
-    U8 slotSize[LINK_WINDOW], slotFlags[LINK_WINDOW], slotUsed[LINK_WINDOW];
-    U8 slots[LINK_WINDOW > 1U ? LINK_WINDOW : 1U][LINK_MAX_PAYLOAD];
-    Link_Heads headsOut, headsIn;
+    U8 input[2U * LINK_MAX_FRAME];          /* the parser's */
+    Link_Fragment window[LINK_WINDOW];      /* the sender's */
+    Link_Entry entries[LINK_SEND_MESSAGES]; /* the queue's */
+    Link_Slot slots[LINK_WINDOW];           /* the receiver's, as is ... */
     U8 message[LINK_HEAD_ROOM + LINK_MAX_MESSAGE + LINK_ESCAPE + LINK_CHECK];
-    U8 queue[LINK_SEND_BYTES];
+    Link_Heads headsOut, headsIn;
+    U8 queued[LINK_SEND_BYTES]; /* the queue's */
 };
 
-/* frame */
-int Link_sendFrame(Link* link, U8* frame, U32 payload, U16 seed);
-int Link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 byte1, U32 size);
-void Link_pollInput(Link* link);
+/* link_output: adds header and checksum, and hands a frame to the radio. */
 
-/* session */
-void Link_onHandshake(Link* link, const U8* frame, Link_Kind kind);
-void Link_confirmCandidate(Link* link);
-void Link_endSession(Link* link, Link_State next);
-void Link_lose(Link* link);
-void Link_abort(Link* link);
-void Link_pollSession(Link* link);
+/* The time of the longest frame: one frame may wait behind the one that is being sent. */
+U32 link_slack(const Link* link);
+/* Sends a frame whose payload is there (link_seal). Returns 1: taken. */
+int link_sendFrame(Link* link, U8* frame, U32 header, U32 key);
+/* Sends a control frame whose payload, `size` bytes, is there. Returns 1: taken. */
+int link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 byte1, U32 size);
 
-/* send */
-void Link_resetSend(Link* link);
-void Link_put(Link* link, const U8* data, U32 size);
-void Link_onAck(Link* link, U32 cumulative, U32 credit, U32 bitmap);
-void Link_pollSend(Link* link);
+/* link_compression: heads of IceP messages are sent once. */
 
-/* receive */
-void Link_resetReceive(Link* link);
-void Link_onData(Link* link, U32 seq, U32 flags, const U8* data, U32 size);
-int Link_ackMayRide(const Link* link);
-void Link_ackIsSent(Link* link);
-void Link_pollReceive(Link* link);
-void Link_pollAck(Link* link);
+void link_resetHeads(Link* link);
+/* Says how the message is to be sent, if not as it is, which `packed` says on entry. */
+void link_compress(const Link* link, int channel, const U8* m, U32 size, Link_Packed* packed);
+/* Remembers the head of a message that is going out. */
+void link_noteSent(Link* link, int channel, const U8* m, U32 size);
+/* Restores the message that link->receiver holds. Returns 0 where it makes no sense. */
+int link_decompress(Link* link);
 
-/* head */
-void Link_resetHeads(Link* link);
-void Link_packHead(const Link* link, int channel, const U8* m, U32 size, Link_Packed* packed);
-void Link_putPacked(Link* link, int channel, const U8* m, U32 size, const Link_Packed* packed);
-int Link_unpackHead(Link* link); /* 0: it makes no sense */
+/* link_receiver: order, messages, acknowledgements. What returns int returns 0 where the peer broke
+ * the rules: nothing it sent can be trusted, so the session must end. */
+
+void link_resetReceiver(Link* link);
+int link_onData(Link* link, U32 seq, U32 flags, const U8* data, U32 size);
+/* Offers a held message again. */
+int link_pollReceiver(Link* link);
+/* True if an acknowledgement is due, and a piggybacked one says all of it. */
+int link_ackMayRide(const Link* link);
+void link_ackIsSent(Link* link);
+void link_pollAck(Link* link);
+
+/* link_queue: messages that wait to be sent; Link_send, Link_openChannel, Link_closeChannel. */
+
+#define LINK_RING(at) ((at) & (LINK_SEND_BYTES - 1U))
+Link_Entry* link_entryAt(Link* link, U32 index);
+/* Removes the oldest entry, reports a message's outcome, and tells that there is room again. */
+void link_popEntry(Link* link, Link_Outcome outcome);
+/* Queues the closings that had no room yet. The peer waits for each before the channel can be
+ * opened again. */
+void link_queueClosings(Link* link);
+
+/* link_sender: fragments, window, retransmission. */
+
+void link_resetSender(Link* link);
+void link_onAck(Link* link, U32 cumulative, U32 credit, U32 bitmap);
+void link_pollSender(Link* link);
+
+/* link_session: handshake, reboots, and a peer that has vanished. */
+
+void link_onHandshake(Link* link, const U8* frame, Link_Kind kind);
+void link_confirmCandidate(Link* link);
+void link_endSession(Link* link, Link_State next);
+/* Ends a session that the peer's wish or silence has ended. */
+void link_lose(Link* link);
+/* Ends a session because the peer broke the rules, and tells it. */
+void link_abort(Link* link);
+void link_pollSession(Link* link);
+
+/* link_input: finds frames in the bytes, and acts upon them; Link_receive. */
+
+void link_pollInput(Link* link);
 
 #endif

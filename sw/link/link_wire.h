@@ -1,28 +1,43 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_wire: the wire format (docs/link.md), for the full layer and the minimal one alike.
+ * link_wire: the wire format (docs/link.md): fields of a frame by name, checksums, numbers. Shared
+ * by the full layer and the minimal one; stands on nothing.
+ *
+ *   byte 0      control bit, length of the payload
+ *   byte 1      SEQ (data); what the kind says (control)
+ *   byte 2      F, L, A, epoch, channel (data); kind, epoch, features (control)
+ *   bytes 3..   payload
+ *   last two    CRC, high byte first
  */
 #ifndef LINK_WIRE_H
 #define LINK_WIRE_H
 
-#define LINK_OVERHEAD 5U
-#define LINK_MAX_PAYLOAD 95U
 #define LINK_VERSION 3U
+#define LINK_HEADER 3U
+#define LINK_CRC 2U
+#define LINK_OVERHEAD (LINK_HEADER + LINK_CRC)
+#define LINK_MAX_PAYLOAD 95U
 
-/* A message that travels in more bytes than these ends with a check over the whole. */
-#define LINK_UNCHECKED 20U
-#define LINK_CHECK 2U
-
-/* Byte 0 and byte 2 of a frame. */
+/* Byte 0. */
 #define LINK_CONTROL 0x80U
+#define LINK_LENGTH(frame) ((frame)[0] & 0x7FU)
+
+/* Byte 2: the flags of data, then what data and control frames share, then control frames'. */
 #define LINK_FIRST 0x80U
 #define LINK_LAST 0x40U
 #define LINK_ACK_NOW 0x20U
+#define LINK_CHANNEL(flags) ((flags)&3U)
+#define LINK_EPOCH(frame) ((U32)(frame)[2] >> 2 & 7U)
+#define LINK_KIND_BITS(kind) ((U32)(kind) << 5)
 
-/* What a side understands, in bits 1..0 of byte 2 of HELLO and HELLO-ACK; used if both do. */
-#define LINK_FEATURE_HEADS 1U
-#define LINK_FEATURE_RIDE 2U
-#define LINK_NO_SEED 0xFFFFU /* of the checksums outside a session */
+/* The three bytes of a header as a number, the low byte first. */
+#define LINK_HEADER_OF(byte0, byte1, byte2) ((byte0) | (U32)(byte1) << 8 | (U32)(byte2) << 16)
+#define LINK_CONTROL_HEADER(kind, byte1, size) \
+    LINK_HEADER_OF(LINK_CONTROL | (size), byte1, LINK_KIND_BITS(kind))
+
+/* What a side understands, in the low bits of byte 2 of HELLO and HELLO-ACK; used if both do. */
+#define LINK_FEATURE_COMPRESSION 1U
+#define LINK_FEATURE_PIGGYBACK 2U
 
 typedef enum Link_Kind {
     LINK_KIND_ACK,
@@ -31,25 +46,46 @@ typedef enum Link_Kind {
     LINK_KIND_RST,
     LINK_KIND_BYE,
     LINK_KIND_PING,
-    LINK_KIND_RIDE,     /* a whole message of one fragment with an acknowledgement */
-    LINK_KIND_RIDE_ASK, /* the same with LINK_ACK_NOW */
-    LINK_KIND_DATA      /* no control frame */
+    LINK_KIND_PIGGYBACK,     /* a whole message of one fragment, with an acknowledgement */
+    LINK_KIND_PIGGYBACK_ASK, /* the same, with LINK_ACK_NOW */
+    LINK_KIND_DATA           /* no control frame */
 } Link_Kind;
 
-/* Of two times, or two counts, that wrap. */
+/* The key of a session, which both sides make of their nonces: bits 31..29 are the epoch,
+ * bits 15..0 the seed of the CRCs. HELLO, HELLO-ACK and RST belong to no session: their seed is all
+ * ones. */
+#define LINK_KEY_EPOCH(key) ((key) >> 29)
+#define LINK_EPOCH_KEY(epoch) ((U32)(epoch) << 29)
+#define LINK_NO_SEED 0xFFFFU
+#define LINK_IS_HANDSHAKE(kind) ((U32)(kind) - (U32)LINK_KIND_HELLO <= 2U)
+
+/* A message that travels in more than LINK_UNCHECKED bytes ends with LINK_CHECK bytes of check. A
+ * fragment that lost its end, and has the next one's beginning in its place, has a good CRC once in
+ * 65,536 times: the check over the whole message finds these. */
+#define LINK_CHECK_AT(p) ((p)[0] | (U32)(p)[1] << 8)
+#define LINK_UNCHECKED 20U
+#define LINK_CHECK 2U
+
+/* True if time or count `a` precedes `b`; both may wrap (serial arithmetic, RFC 1982). */
 #define LINK_BEFORE(a, b) ((S32)((a) - (b)) < 0)
 
-/* link_bytes.c */
+/* Returns the CRC-16/CCITT of `size` bytes from the low 16 bits of `key` on; over a frame with its
+ * own CRC the result is 0. */
+U32 link_crc(U32 key, const U8* bytes, U32 size);
 
-/* CRC-16/CCITT; over a frame with its checksum the result is 0. */
-U16 Link_crc(U16 seed, const U8* bytes, U32 size);
-/* Fletcher's sums of a message: `size` bytes more. */
-void Link_sum(U8 sums[2], const U8* bytes, U32 size);
-/* 32 bits, the low byte first. */
-U32 Link_get32(const U8* p);
-void Link_put32(U8* p, U32 value);
-/* What both sides compute from their nonces, whoever called first: the seed of a session's
- * checksums; the result is its epoch. */
-U32 Link_mixNonces(U32 nonce, U32 peerNonce, U16* seed);
+/* Writes header and CRC around a frame's payload, which is there: `header` without the epoch, which
+ * `key` brings. Returns the frame's length. */
+U32 link_seal(U8* frame, U32 header, U32 key);
+
+/* Continues a message's check over `size` bytes more, from 0 on: Fletcher's two sums, which a
+ * message carries low byte first. */
+U32 link_sum(U32 sums, const U8* bytes, U32 size);
+
+/* Read and write 32 bits, the low byte first. */
+U32 link_get32(const U8* p);
+void link_put32(U8* p, U32 value);
+
+/* Returns the key of the session of two nonces, whoever called first. */
+U32 link_sessionKey(U32 nonce, U32 peerNonce);
 
 #endif

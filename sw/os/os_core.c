@@ -1,33 +1,29 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_core: scheduler, tasks, time and interrupts of the kernel. Preemptive, fixed priorities.
+ * os_core: scheduler, events, time and interrupts of the kernel. Preemptive, fixed priorities.
  */
 #include "os_core.h"
 
-#define IDLE_WORDS 128U
-
-OsKernel os_kernel;
+OS_Kernel os_kernel;
 INT8U OSPrioCur;
 
-static OS_STK idleStack[IDLE_WORDS];
-
-void OsSet_add(OsSet *set, U8 priority) {
+void OS_Set_add(OS_Set* set, U8 priority) {
     set->word[priority >> 5] |= 1U << (priority & 31U);
 }
 
-void OsSet_remove(OsSet *set, U8 priority) {
+void OS_Set_remove(OS_Set* set, U8 priority) {
     set->word[priority >> 5] &= ~(1U << (priority & 31U));
 }
 
-int OsSet_has(const OsSet *set, U8 priority) {
+int OS_Set_has(const OS_Set* set, U8 priority) {
     return (int)(set->word[priority >> 5] >> (priority & 31U) & 1U);
 }
 
 int OS_PriorityTaken(U8 priority) {
-    return os_kernel.byPriority[priority] != 0 || OsSet_has(&os_kernel.reserved, priority);
+    return os_kernel.byPriority[priority] != 0 || OS_Set_has(&os_kernel.reserved, priority);
 }
 
-U8 OsSet_first(const OsSet *set) {
+U8 OS_Set_first(const OS_Set* set) {
     U8 n = set->word[0] ? 0U : 32U;
     U32 bits = set->word[n >> 5];
     U8 half;
@@ -41,35 +37,10 @@ U8 OsSet_first(const OsSet *set) {
     return n;
 }
 
-static void idleTask(void *argument) {
-    (void)argument;
-    for (;;)
-        OSTaskIdleHook();
-}
-
-void OSInit(void) {
-    static const OsKernel empty;
-    OsTask stack;
-    os_kernel = empty;
-    stack.bottom = idleStack;
-    stack.words = IDLE_WORDS;
-    stack.options = OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR;
-    (void)OS_TaskMake(idleTask, 0, idleStack + IDLE_WORDS - 1, OS_LOWEST_PRIO, &stack);
-}
-
-void OSStart(void) {
-    if (os_kernel.running)
-        return;
-    os_kernel.running = 1;
-    os_kernel.current = os_kernel.byPriority[OsSet_first(&os_kernel.ready)];
-    OSPrioCur = os_kernel.current->priority;
-    OSStartHighRdy();
-}
-
-/* With interrupts disabled. */
+/* Switches to the highest ready task; interrupts are disabled. */
 static void switchToFirst(void) {
-    OsTask *from = os_kernel.current;
-    OsTask *to = os_kernel.byPriority[OsSet_first(&os_kernel.ready)];
+    OS_Task* from = os_kernel.current;
+    OS_Task* to = os_kernel.byPriority[OS_Set_first(&os_kernel.ready)];
     if (to != from) {
         os_kernel.current = to;
         OSPrioCur = to->priority;
@@ -119,7 +90,7 @@ void OSTimeDly(INT32U ticks) {
         return;
     OS_ENTER_CRITICAL();
     os_kernel.current->delay = ticks;
-    OsSet_remove(&os_kernel.ready, os_kernel.current->priority);
+    OS_Set_remove(&os_kernel.ready, os_kernel.current->priority);
     OS_EXIT_CRITICAL();
     OS_Sched();
 }
@@ -134,13 +105,13 @@ INT32U OSTimeGet(void) {
 }
 
 /* A delay or a time-out has run out: ready, whatever it waited for. */
-static void expire(OsTask *task) {
+static void expire(OS_Task* task) {
     if (task->event) {
-        OsSet_remove(&task->event->waiting, task->priority);
+        OS_Set_remove(&task->event->waiting, task->priority);
         task->event = 0;
         task->timedOut = 1;
     }
-    OsSet_add(&os_kernel.ready, task->priority);
+    OS_Set_add(&os_kernel.ready, task->priority);
 }
 
 void OSTimeTick(void) {
@@ -149,47 +120,47 @@ void OSTimeTick(void) {
     OS_ENTER_CRITICAL();
     ++os_kernel.ticks;
     for (i = 0; i <= OS_MAX_TASKS; ++i) {
-        OsTask *task = &os_kernel.tasks[i];
+        OS_Task* task = &os_kernel.tasks[i];
         if (task->used && task->delay && --task->delay == 0)
             expire(task);
     }
     OS_EXIT_CRITICAL();
 }
 
-U8 OS_EventWait(OS_EVENT *event, U32 timeout, OS_CPU_SR *cpu_sr) {
-    OsTask *task = os_kernel.current;
+U8 OS_EventWait(OS_EVENT* event, U32 timeout, OS_CPU_SR* cpu_sr) {
+    OS_Task* task = os_kernel.current;
     task->event = event;
     task->timedOut = 0;
     task->delay = timeout;
-    OsSet_remove(&os_kernel.ready, task->priority);
-    OsSet_add(&event->waiting, task->priority);
+    OS_Set_remove(&os_kernel.ready, task->priority);
+    OS_Set_add(&event->waiting, task->priority);
     OS_CPU_SR_Restore(*cpu_sr);
     OS_Sched();
     *cpu_sr = OS_CPU_SR_Save();
     return task->timedOut;
 }
 
-OsTask *OS_EventWake(OS_EVENT *event) {
-    U8 priority = OsSet_first(&event->waiting);
-    OsTask *task;
+OS_Task* OS_EventWake(OS_EVENT* event) {
+    U8 priority = OS_Set_first(&event->waiting);
+    OS_Task* task;
     if (priority > OS_LOWEST_PRIO)
         return 0;
     task = os_kernel.byPriority[priority];
-    OsSet_remove(&event->waiting, priority);
+    OS_Set_remove(&event->waiting, priority);
     task->event = 0;
     task->delay = 0;
-    OsSet_add(&os_kernel.ready, priority);
+    OS_Set_add(&os_kernel.ready, priority);
     return task;
 }
 
-static void moveInSet(OsSet *set, U8 from, U8 to) {
-    if (OsSet_has(set, from)) {
-        OsSet_remove(set, from);
-        OsSet_add(set, to);
+static void moveInSet(OS_Set* set, U8 from, U8 to) {
+    if (OS_Set_has(set, from)) {
+        OS_Set_remove(set, from);
+        OS_Set_add(set, to);
     }
 }
 
-void OS_ChangePriority(OsTask *task, U8 priority) {
+void OS_ChangePriority(OS_Task* task, U8 priority) {
     U8 old = task->priority;
     moveInSet(&os_kernel.ready, old, priority);
     if (task->event)
@@ -201,9 +172,9 @@ void OS_ChangePriority(OsTask *task, U8 priority) {
         OSPrioCur = priority;
 }
 
-OS_EVENT *OS_EventCreate(OsEventType type) {
+OS_EVENT* OS_EventCreate(OS_EventType type) {
     OS_CPU_SR cpu_sr;
-    OS_EVENT *found = 0;
+    OS_EVENT* found = 0;
     U32 i;
     if (os_kernel.interruptNesting)
         return 0;
@@ -217,7 +188,7 @@ OS_EVENT *OS_EventCreate(OsEventType type) {
     return found;
 }
 
-U8 OS_PendError(const OS_EVENT *event, OsEventType type) {
+U8 OS_PendError(const OS_EVENT* event, OS_EventType type) {
     if (!event)
         return OS_ERR_PEVENT_NULL;
     if (event->type != type)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_core: what the kernel's own files share, and the seam to a port (os_cpu). Not for
+ * os_core: what the kernel's own files share, and the processor's port (os_cpu). Not for
  * applications.
  */
 #ifndef OS_CORE_H
@@ -9,77 +9,81 @@
 #include "ucos_ii.h"
 
 /* A set of priorities: bit p of word p / 32. */
-typedef struct OsSet {
+typedef struct OS_Set {
     U32 word[2];
-} OsSet;
+} OS_Set;
 
-typedef enum OsEventType { OS_EVENT_FREE, OS_EVENT_SEM, OS_EVENT_MUTEX, OS_EVENT_Q } OsEventType;
+typedef enum OS_EventType { OS_EVENT_FREE, OS_EVENT_SEM, OS_EVENT_MUTEX, OS_EVENT_Q } OS_EventType;
 
-typedef struct OsTask {
-    OS_STK *stack; /* the port's: where the context was left */
+typedef struct OS_Task {
+    OS_STK* stack; /* the port's: where the context was left */
     U8 priority;   /* now; raised while the owner of a contended mutex */
     U8 base;       /* as created */
     U8 used;
     U8 timedOut;
     U32 delay;       /* ticks left, 0: none */
-    OS_EVENT *event; /* what it waits for */
-    void *message;   /* what OSQPost handed over */
-    OS_STK *bottom;  /* lowest address of the stack; 0: not known */
+    OS_EVENT* event; /* what it waits for */
+    void* message;   /* what OSQPost handed over */
+    OS_STK* bottom;  /* lowest address of the stack; 0: not known */
     U32 words;       /* its size */
     U16 options;     /* OS_TASK_OPT_... */
-} OsTask;
+} OS_Task;
 
 struct os_event {
-    OsEventType type;
+    OS_EventType type;
     U16 count;      /* semaphore: units; queue: entries */
     U16 size, head; /* queue */
-    void **slots;   /* queue */
-    OsTask *owner;  /* mutex */
+    void** slots;   /* queue */
+    OS_Task* owner; /* mutex */
     U8 ceiling;     /* mutex */
-    OsSet waiting;
+    OS_Set waiting;
 };
 
-typedef struct OsKernel {
-    OsSet ready;
-    OsSet reserved; /* ceilings of mutexes: no task may have them */
-    OsTask *byPriority[OS_LOWEST_PRIO + 1];
-    OsTask tasks[OS_MAX_TASKS + 1];
+typedef struct OS_Kernel {
+    OS_Set ready;
+    OS_Set reserved; /* ceilings of mutexes: no task may have them */
+    OS_Task* byPriority[OS_LOWEST_PRIO + 1];
+    OS_Task tasks[OS_MAX_TASKS + 1];
     OS_EVENT events[OS_MAX_EVENTS];
-    OsTask *current;
+    OS_Task* current;
     U32 ticks;
     U8 running, interruptNesting, lockNesting;
-} OsKernel;
+} OS_Kernel;
 
-extern OsKernel os_kernel;
+extern OS_Kernel os_kernel;
 
-void OsSet_add(OsSet *set, U8 priority);
-void OsSet_remove(OsSet *set, U8 priority);
-int OsSet_has(const OsSet *set, U8 priority);
-/* Lowest number in the set; OS_LOWEST_PRIO + 1 where it is empty. */
-U8 OsSet_first(const OsSet *set);
+void OS_Set_add(OS_Set* set, U8 priority);
+void OS_Set_remove(OS_Set* set, U8 priority);
+int OS_Set_has(const OS_Set* set, U8 priority);
+/* Returns the lowest number in the set, OS_LOWEST_PRIO + 1 where it is empty. */
+U8 OS_Set_first(const OS_Set* set);
 
-/* 1 where a task or a mutex has this priority. */
+/* True if a task or a mutex has this priority. */
 int OS_PriorityTaken(U8 priority);
-/* Creates a task, with interrupts disabled; of `stack` the bounds and options are used. */
-U8 OS_TaskMake(void (*task)(void *), void *argument, OS_STK *ptos, U8 priority, const OsTask *stack);
+/* Creates a task, with interrupts disabled, from `stack`: its bounds and options. Returns
+ * OS_ERR_NONE or OS_ERR_TASK_NO_MORE_TCB. */
+U8 OS_TaskMake(void (*task)(void*), void* argument, OS_STK* ptos, U8 priority,
+               const OS_Task* stack);
 /* Switches to the highest ready task, unless in an interrupt or locked. */
 void OS_Sched(void);
 /* Puts the current task to sleep on an event; back when it is signalled or `timeout` ticks are
  * over. Returns 1 on time-out. Call with interrupts disabled: the state is restored and saved
  * around it. */
-U8 OS_EventWait(OS_EVENT *event, U32 timeout, OS_CPU_SR *cpu_sr);
+U8 OS_EventWait(OS_EVENT* event, U32 timeout, OS_CPU_SR* cpu_sr);
 /* Makes the first waiting task ready and returns it; 0 where none waits. */
-OsTask *OS_EventWake(OS_EVENT *event);
-OS_EVENT *OS_EventCreate(OsEventType type);
-/* Error of a pend call for an event of this type, OS_ERR_NONE where it may go on. */
-U8 OS_PendError(const OS_EVENT *event, OsEventType type);
+OS_Task* OS_EventWake(OS_EVENT* event);
+/* Takes a free event; 0 where there is none, and in interrupts. */
+OS_EVENT* OS_EventCreate(OS_EventType type);
+/* Returns what is wrong with a pend call for an event of this type, OS_ERR_NONE where it may go on.
+ */
+U8 OS_PendError(const OS_EVENT* event, OS_EventType type);
 /* Gives a task another priority, wherever it is listed. */
-void OS_ChangePriority(OsTask *task, U8 priority);
+void OS_ChangePriority(OS_Task* task, U8 priority);
 
 /* The port. */
-OS_STK *OSTaskStkInit(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT16U opt);
-void OSStartHighRdy(void);              /* first switch: to os_kernel.current */
-void OSCtxSw(OsTask *from, OsTask *to); /* also from OSIntExit */
-void OSTaskIdleHook(void);              /* the idle task, again and again */
+OS_STK* OSTaskStkInit(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT16U opt);
+void OSStartHighRdy(void);                /* first switch: to os_kernel.current */
+void OSCtxSw(OS_Task* from, OS_Task* to); /* also from OSIntExit */
+void OSTaskIdleHook(void);                /* the idle task, again and again */
 
 #endif

@@ -4,14 +4,14 @@
  */
 #include "os_core.h"
 
-OS_EVENT *OSSemCreate(INT16U cnt) {
-    OS_EVENT *event = OS_EventCreate(OS_EVENT_SEM);
+OS_EVENT* OSSemCreate(INT16U cnt) {
+    OS_EVENT* event = OS_EventCreate(OS_EVENT_SEM);
     if (event)
         event->count = cnt;
     return event;
 }
 
-void OSSemPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr) {
+void OSSemPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr) {
     OS_CPU_SR cpu_sr;
     *perr = OS_PendError(pevent, OS_EVENT_SEM);
     if (*perr != OS_ERR_NONE)
@@ -24,7 +24,7 @@ void OSSemPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr) {
     OS_EXIT_CRITICAL();
 }
 
-INT16U OSSemAccept(OS_EVENT *pevent) {
+INT16U OSSemAccept(OS_EVENT* pevent) {
     OS_CPU_SR cpu_sr;
     INT16U count = 0;
     if (!pevent || pevent->type != OS_EVENT_SEM)
@@ -36,7 +36,7 @@ INT16U OSSemAccept(OS_EVENT *pevent) {
     return count;
 }
 
-INT8U OSSemPost(OS_EVENT *pevent) {
+INT8U OSSemPost(OS_EVENT* pevent) {
     OS_CPU_SR cpu_sr;
     INT8U error = OS_ERR_NONE;
     if (!pevent)
@@ -55,8 +55,8 @@ INT8U OSSemPost(OS_EVENT *pevent) {
     return error;
 }
 
-OS_EVENT *OSMutexCreate(INT8U prio, INT8U *perr) {
-    OS_EVENT *event;
+OS_EVENT* OSMutexCreate(INT8U prio, INT8U* perr) {
+    OS_EVENT* event;
     if (os_kernel.interruptNesting) {
         *perr = OS_ERR_CREATE_ISR;
         return 0;
@@ -73,14 +73,14 @@ OS_EVENT *OSMutexCreate(INT8U prio, INT8U *perr) {
     *perr = event ? OS_ERR_NONE : OS_ERR_PEVENT_NULL;
     if (event) {
         event->ceiling = prio;
-        OsSet_add(&os_kernel.reserved, prio);
+        OS_Set_add(&os_kernel.reserved, prio);
     }
     return event;
 }
 
-void OSMutexPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr) {
+void OSMutexPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr) {
     OS_CPU_SR cpu_sr;
-    OsTask *self = os_kernel.current;
+    OS_Task* self = os_kernel.current;
     *perr = OS_PendError(pevent, OS_EVENT_MUTEX);
     if (*perr != OS_ERR_NONE)
         return;
@@ -90,7 +90,7 @@ void OSMutexPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr) {
         if (self->priority <= pevent->ceiling)
             *perr = OS_ERR_PIP_LOWER; /* owned all the same, as in uC/OS-II */
     } else {
-        OsTask *owner = pevent->owner;
+        OS_Task* owner = pevent->owner;
         if (owner->priority > self->priority && owner->priority > pevent->ceiling)
             OS_ChangePriority(owner, pevent->ceiling);
         if (OS_EventWait(pevent, timeout, &cpu_sr))
@@ -99,9 +99,11 @@ void OSMutexPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr) {
     OS_EXIT_CRITICAL();
 }
 
-INT8U OSMutexPost(OS_EVENT *pevent) {
+INT8U OSMutexPost(OS_EVENT* pevent) {
     OS_CPU_SR cpu_sr;
-    OsTask *self = os_kernel.current;
+    OS_Task* self = os_kernel.current;
+    if (os_kernel.interruptNesting)
+        return OS_ERR_POST_ISR;
     if (!pevent)
         return OS_ERR_PEVENT_NULL;
     if (pevent->type != OS_EVENT_MUTEX)
@@ -117,8 +119,8 @@ INT8U OSMutexPost(OS_EVENT *pevent) {
     return OS_ERR_NONE;
 }
 
-OS_EVENT *OSQCreate(void **start, INT16U size) {
-    OS_EVENT *event = OS_EventCreate(OS_EVENT_Q);
+OS_EVENT* OSQCreate(void** start, INT16U size) {
+    OS_EVENT* event = OS_EventCreate(OS_EVENT_Q);
     if (event) {
         event->slots = start;
         event->size = size;
@@ -127,9 +129,9 @@ OS_EVENT *OSQCreate(void **start, INT16U size) {
     return event;
 }
 
-void *OSQPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr) {
+void* OSQPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr) {
     OS_CPU_SR cpu_sr;
-    void *message = 0;
+    void* message = 0;
     *perr = OS_PendError(pevent, OS_EVENT_Q);
     if (*perr != OS_ERR_NONE)
         return 0;
@@ -147,10 +149,10 @@ void *OSQPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr) {
     return message;
 }
 
-INT8U OSQPost(OS_EVENT *pevent, void *pmsg) {
+INT8U OSQPost(OS_EVENT* pevent, void* pmsg) {
     OS_CPU_SR cpu_sr;
     INT8U error = OS_ERR_NONE;
-    OsTask *task;
+    OS_Task* task;
     if (!pevent)
         return OS_ERR_PEVENT_NULL;
     if (pevent->type != OS_EVENT_Q)

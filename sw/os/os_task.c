@@ -4,8 +4,9 @@
  */
 #include "os_core.h"
 
-U8 OS_TaskMake(void (*task)(void *), void *argument, OS_STK *ptos, U8 priority, const OsTask *stack) {
-    OsTask *t = 0;
+U8 OS_TaskMake(void (*task)(void*), void* argument, OS_STK* ptos, U8 priority,
+               const OS_Task* stack) {
+    OS_Task* t = 0;
     U32 i;
     for (i = 0; i <= OS_MAX_TASKS && !t; ++i)
         if (!os_kernel.tasks[i].used)
@@ -23,11 +24,12 @@ U8 OS_TaskMake(void (*task)(void *), void *argument, OS_STK *ptos, U8 priority, 
         t->bottom[i] = 0;
     t->stack = OSTaskStkInit(task, argument, ptos, 0);
     os_kernel.byPriority[priority] = t;
-    OsSet_add(&os_kernel.ready, priority);
+    OS_Set_add(&os_kernel.ready, priority);
     return OS_ERR_NONE;
 }
 
-static INT8U create(void (*task)(void *), void *argument, OS_STK *ptos, U8 prio, const OsTask *stack) {
+static INT8U create(void (*task)(void*), void* argument, OS_STK* ptos, U8 prio,
+                    const OS_Task* stack) {
     OS_CPU_SR cpu_sr;
     INT8U error;
     if (prio >= OS_LOWEST_PRIO)
@@ -35,21 +37,22 @@ static INT8U create(void (*task)(void *), void *argument, OS_STK *ptos, U8 prio,
     if (os_kernel.interruptNesting)
         return OS_ERR_TASK_CREATE_ISR;
     OS_ENTER_CRITICAL();
-    error = OS_PriorityTaken(prio) ? OS_ERR_PRIO_EXIST : OS_TaskMake(task, argument, ptos, prio, stack);
+    error =
+        OS_PriorityTaken(prio) ? OS_ERR_PRIO_EXIST : OS_TaskMake(task, argument, ptos, prio, stack);
     OS_EXIT_CRITICAL();
     if (error == OS_ERR_NONE && os_kernel.running)
         OS_Sched();
     return error;
 }
 
-INT8U OSTaskCreate(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT8U prio) {
-    static const OsTask unknown;
+INT8U OSTaskCreate(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8U prio) {
+    static const OS_Task unknown;
     return create(task, p_arg, ptos, prio, &unknown);
 }
 
-INT8U OSTaskCreateExt(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT8U prio, INT16U id,
-                      OS_STK *pbos, INT32U stk_size, void *pext, INT16U opt) {
-    OsTask stack;
+INT8U OSTaskCreateExt(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8U prio, INT16U id,
+                      OS_STK* pbos, INT32U stk_size, void* pext, INT16U opt) {
+    OS_Task stack;
     (void)id;
     (void)pext;
     stack.bottom = pbos;
@@ -58,8 +61,8 @@ INT8U OSTaskCreateExt(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT8
     return create(task, p_arg, ptos, prio, &stack);
 }
 
-INT8U OSTaskStkChk(INT8U prio, OS_STK_DATA *p_stk_data) {
-    OsTask *task;
+INT8U OSTaskStkChk(INT8U prio, OS_STK_DATA* p_stk_data) {
+    OS_Task* task;
     U32 free = 0;
     if (prio > OS_LOWEST_PRIO)
         return OS_ERR_PRIO_INVALID;

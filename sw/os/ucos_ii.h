@@ -24,6 +24,7 @@ typedef U32 INT32U;
 #define OS_ERR_PEND_ISR 2U   /* pending from an interrupt */
 #define OS_ERR_POST_NULL_PTR 3U
 #define OS_ERR_PEVENT_NULL 4U
+#define OS_ERR_POST_ISR 5U /* a mutex has an owner, which no interrupt is */
 #define OS_ERR_PDATA_NULL 9U
 #define OS_ERR_TIMEOUT 10U
 #define OS_ERR_PEND_LOCKED 13U /* the scheduler is locked */
@@ -47,7 +48,7 @@ void OSInit(void);
 void OSStart(void);
 
 /* prio 0 (highest) .. OS_LOWEST_PRIO - 1, one task each. `ptos`: highest address of its stack. */
-INT8U OSTaskCreate(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT8U prio);
+INT8U OSTaskCreate(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8U prio);
 
 #define OS_TASK_OPT_NONE 0U
 #define OS_TASK_OPT_STK_CHK 1U /* OSTaskStkChk may be asked about it */
@@ -55,15 +56,15 @@ INT8U OSTaskCreate(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT8U p
 
 /* As OSTaskCreate, and the stack's bounds are known: `pbos` is its lowest address, `stk_size` its
  * size in OS_STK. `id` and `pext` are accepted as in uC/OS-II, and not used. */
-INT8U OSTaskCreateExt(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT8U prio, INT16U id,
-                      OS_STK *pbos, INT32U stk_size, void *pext, INT16U opt);
+INT8U OSTaskCreateExt(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8U prio, INT16U id,
+                      OS_STK* pbos, INT32U stk_size, void* pext, INT16U opt);
 
 typedef struct os_stk_data {
     INT32U OSFree, OSUsed; /* in OS_STK */
 } OS_STK_DATA;
 
 /* How much of a task's stack has ever been in use. */
-INT8U OSTaskStkChk(INT8U prio, OS_STK_DATA *p_stk_data);
+INT8U OSTaskStkChk(INT8U prio, OS_STK_DATA* p_stk_data);
 
 /* Priority of the running task (OSPrioCur of uC/OS-II, as a function). */
 INT8U OSTaskPrio(void);
@@ -75,20 +76,20 @@ INT32U OSTimeGet(void);
 void OSTimeTick(void); /* by the tick interrupt, between OSIntEnter and OSIntExit */
 
 /* timeout 0: for ever. *perr: OS_ERR_NONE, OS_ERR_TIMEOUT, or what was wrong with the call. */
-OS_EVENT *OSSemCreate(INT16U cnt);
-void OSSemPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr);
-INT8U OSSemPost(OS_EVENT *pevent);
-INT16U OSSemAccept(OS_EVENT *pevent);
+OS_EVENT* OSSemCreate(INT16U cnt);
+void OSSemPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr);
+INT8U OSSemPost(OS_EVENT* pevent);
+INT16U OSSemAccept(OS_EVENT* pevent);
 
 /* `prio` is the ceiling that an owner inherits while a higher-priority task waits; it must be free.
  */
-OS_EVENT *OSMutexCreate(INT8U prio, INT8U *perr);
-void OSMutexPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr);
-INT8U OSMutexPost(OS_EVENT *pevent);
+OS_EVENT* OSMutexCreate(INT8U prio, INT8U* perr);
+void OSMutexPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr);
+INT8U OSMutexPost(OS_EVENT* pevent);
 
-OS_EVENT *OSQCreate(void **start, INT16U size);
-void *OSQPend(OS_EVENT *pevent, INT32U timeout, INT8U *perr);
-INT8U OSQPost(OS_EVENT *pevent, void *pmsg);
+OS_EVENT* OSQCreate(void** start, INT16U size);
+void* OSQPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr);
+INT8U OSQPost(OS_EVENT* pevent, void* pmsg);
 
 void OSIntEnter(void);
 void OSIntExit(void);

@@ -48,7 +48,7 @@ static void setKey(const U8* key) {
 
 static void setUpController(const XBeeInitTypeDef* conf) {
     U32 guard = conf->guardMs ? conf->guardMs : DEFAULT_GUARD_MS;
-    U32 encrypt = LINK_LIMIT && conf->key ? 1U << MODEM_NET_ENCRYPT_LSB : 0U;
+    U32 encrypt = conf->key ? 1U << MODEM_NET_ENCRYPT_LSB : 0U;
     set(MODEM_CONTROL, MODEM_CONTROL_RESET_MODEM_MASK);
     OSTimeDly(OS_TICKS_PER_SEC / 2U); /* the modem boots in 50 to 500 ms */
     set(MODEM_BAUD, guard << MODEM_BAUD_GUARD_MS_LSB | (U32)conf->baud);
@@ -122,7 +122,7 @@ int Radio_transmit(void* context, const U8* frame, U32 size) {
     return 0;
 }
 
-U32 Radio_receive(Link* link, U32 nowUs) {
+U32 Radio_receive(Radio_OnPacket onPacket, void* context) {
     U8 packet[MODEM_BUFFER_BYTES];
     U32 packets = 0;
     for (; packets < 2U * BUFFERS; ++packets) {
@@ -137,7 +137,7 @@ U32 Radio_receive(Link* link, U32 nowUs) {
         set(MODEM_RX_RELEASE, 1);
         ++radio.counters.framesReceived;
         radio.counters.bytesCopiedIn += bytes;
-        Link_receive(link, packet, bytes, 0, nowUs);
+        onPacket(context, packet, bytes);
     }
     return packets;
 }

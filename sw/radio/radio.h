@@ -1,19 +1,29 @@
 /* SPDX-License-Identifier: MIT
  *
- * radio: driver of the modem controller (hdl/modem), and the task that runs the link layer on it.
+ * radio: driver of the modem controller (hdl/modem).
  *
- * Outgoing frames go into the circular output buffer in DDR3 (one buffer a frame, a fixed control
- * vector says which are in use); the controller reads them from there. Incoming packets are read
- * from the receive ring. The interrupt routine only notes the cause and wakes the task.
+ *     static const XBeeInitTypeDef conf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0};
+ *     static const Radio_Memory rings = {0x0000, 0x1000};
+ *     if (xbeeInit(&conf, &rings) != RADIO_OK)
+ *         ...                                     (Radio_failedStep says where)
+ *     for (;;) {
+ *         Radio_receive(onPacket, 0);             (calls onPacket for each packet)
+ *         Radio_transmit(0, frame, size);         (0: it is on its way)
+ *         OSSemPend(work, ...);                   (the interrupt routine posts it)
+ *     }
+ *
+ * The driver copies outgoing frames into a ring of buffers in DDR3, one frame a buffer, from which
+ * the controller sends them; it copies incoming packets out of the receive ring. All functions but
+ * Radio_interrupt belong to one task.
  */
 #ifndef RADIO_H
 #define RADIO_H
 
 #include "base.h"
-#include "link.h"
 
-/* BD codes of the modem. */
-typedef enum XBee_Baud {
+/* Baud rates, as the modem's BD command codes them. The names XBEE_BD_..., XBeeInitTypeDef and
+ * xbeeInit are the paper's (Figure 5). */
+typedef enum Radio_Baud {
     XBEE_BD_1200,
     XBEE_BD_2400,
     XBEE_BD_4800,
@@ -22,20 +32,19 @@ typedef enum XBee_Baud {
     XBEE_BD_38400,
     XBEE_BD_57600,
     XBEE_BD_115200
-} XBee_Baud;
+} Radio_Baud;
 
-/* As in the paper's Figure 5: {XBEE_BD_115200, source, target}. A zero after that means the
- * default. */
+/* Settings of the modem. The paper gives the first three; a zero in the others means the default.
+ */
 typedef struct XBeeInitTypeDef {
-    XBee_Baud baud;
-    U16 source;  /* MY */
-    U16 target;  /* DL */
+    Radio_Baud baud;
+    U16 source;  /* MY, the own address */
+    U16 target;  /* DL, the address of the ground's modem */
     U8 channel;  /* CH, default 0x0C */
     U16 pan;     /* ID, default 0x3332 */
-    U16 guardMs; /* guard time of the modem as it is now, default 1000 */
-    /* EE, KY: 16 bytes that every modem of the network has; 0: in the clear. A frame may then have
-     * LINK_MAX_ENCRYPTED bytes (Link_limitFrame); without the option LINK_LIMIT it is not heeded.
-     */
+    U16 guardMs; /* guard time around +++ as the modem has it now, default 1000 */
+    /* KY, the network's AES key of 16 bytes; 0: EE is 0, nothing is encrypted. An encrypted packet
+     * carries 95 bytes instead of 100 (Link_limitFrame). */
     const U8* key;
 } XBeeInitTypeDef;
 
@@ -46,37 +55,44 @@ typedef enum Radio_Status {
     RADIO_REFUSED    /* the modem refused a command: Radio_failedStep says which */
 } Radio_Status;
 
+/* Counts since the start. */
 typedef struct Radio_Counters {
     U32 framesSent, framesReceived;
-    U32 bytesCopiedOut, bytesCopiedIn; /* over the FSMC */
-    U32 ringFull;                      /* frames that had to wait for a buffer */
-    U32 interrupts;
-    U32 hardwareOverruns, framingErrors;
+    U32 bytesCopiedOut, bytesCopiedIn;   /* over the FSMC */
+    U32 ringFull;                        /* frames that found no free buffer */
+    U32 interrupts;                      /* calls of Radio_interrupt */
+    U32 hardwareOverruns, framingErrors; /* as the controller counts them (docs/modem.md) */
 } Radio_Counters;
 
-/* DDR3 addresses of the rings, each 2 KiB and a multiple of 128. */
+/* DDR3 byte addresses of the rings; each ring has 2 KiB and begins at a multiple of 128. */
 typedef struct Radio_Memory {
     U32 transmitRing, receiveRing;
 } Radio_Memory;
 
-/* Sets the controller and the modem up; blocks the calling task (about 4 s with default guard
- * times). */
+/* Resets the modem and sets controller and modem up. Blocks the calling task: about 4 s with a
+ * guard time of 1 s, up to 40 s where no modem answers. `memory` is copied. */
 Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory);
 
-/* The AT step that failed, as in the modem's STATUS.STEP. */
+/* After RADIO_NO_MODEM or RADIO_REFUSED: the step of the set-up that failed, as STATUS.STEP of the
+ * controller counts them (docs/modem.md). */
 U32 Radio_failedStep(void);
 
-/* Link_Port.transmit: copies a frame to the ring. 0 taken, 1 no buffer free. */
+/* Copies a frame of 1..128 bytes into the output ring. Returns 0, or 1 where no buffer is free.
+ * `context` is not used: the function fits Link_Port.transmit. */
 int Radio_transmit(void* context, const U8* frame, U32 size);
 
-/* Takes every packet out of the receive ring and feeds it to `link`. Returns the number of packets.
- */
-U32 Radio_receive(Link* link, U32 nowUs);
+/* Takes a packet; `bytes` are valid during the call only. */
+typedef void (*Radio_OnPacket)(void* context, const U8* bytes, U32 size);
 
-/* Interrupt routine part: reads and clears the modem's events; non-zero when there is work for the
- * task. */
+/* Takes the packets out of the receive ring, oldest first, and calls onPacket(context, ...) for
+ * each. Returns the number of packets. */
+U32 Radio_receive(Radio_OnPacket onPacket, void* context);
+
+/* Acknowledges the controller's interrupt. Returns the events that it reads and clears
+ * (MODEM_EVENT_...); non-zero: there is work for the task. For interrupt routines. */
 U32 Radio_interrupt(void);
 
+/* The counters, which go on counting. */
 const Radio_Counters* Radio_counters(void);
 
 #endif

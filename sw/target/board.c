@@ -2,9 +2,9 @@
  *
  * board: set-up of the STM32F2 (RM0033), and its interrupt routines.
  *
- * The FPGA's interrupt is a level on PB0; EXTI only sees its rising edge, so the routine works until
- * the pin is low. Interrupts that call the kernel have priorities of 0x40 and more: uC/OS-II's own port
- * masks these, and none above.
+ * The FPGA's interrupt is a level on PB0; EXTI only sees its rising edge, so the routine works
+ * until the pin is low. Interrupts that call the kernel have priorities of 0x40 and more:
+ * uC/OS-II's own port masks these, and none above.
  */
 #include "board.h"
 #include "boot.h"
@@ -21,37 +21,37 @@
 #define WATCHDOG_PRESCALER 3UL /* LSI / 32: about 1 kHz */
 #define WATCHDOG_MS 1000UL
 
-static U8 read8(void *context, U32 address) {
+static U8 read8(void* context, U32 address) {
     (void)context;
-    return *(volatile U8 *)address;
+    return *(volatile U8*)address;
 }
 
-static void write8(void *context, U32 address, U8 value) {
+static void write8(void* context, U32 address, U8 value) {
     (void)context;
-    *(volatile U8 *)address = value;
+    *(volatile U8*)address = value;
 }
 
-static U16 read16(void *context, U32 address) {
+static U16 read16(void* context, U32 address) {
     (void)context;
-    return *(volatile U16 *)address;
+    return *(volatile U16*)address;
 }
 
-static void write16(void *context, U32 address, U16 value) {
+static void write16(void* context, U32 address, U16 value) {
     (void)context;
-    *(volatile U16 *)address = value;
+    *(volatile U16*)address = value;
 }
 
-static U32 read32(void *context, U32 address) {
+static U32 read32(void* context, U32 address) {
     (void)context;
-    return *(volatile U32 *)address;
+    return *(volatile U32*)address;
 }
 
-static void write32(void *context, U32 address, U32 value) {
+static void write32(void* context, U32 address, U32 value) {
     (void)context;
-    *(volatile U32 *)address = value;
+    *(volatile U32*)address = value;
 }
 
-const Fsmc_Port board_fsmc = {read8, write8, read16, write16, read32, write32};
+const FSMC_Port board_fsmc = {read8, write8, read16, write16, read32, write32};
 
 static void startClock(void) {
     RCC_CR |= RCC_CR_HSEON;
@@ -75,8 +75,8 @@ static void usePinForFsmc(U32 port, U32 pin) {
         (GPIO_AFR(port, pin >> 3) & ~(15UL << 4U * (pin & 7U))) | GPIO_AF_FSMC << 4U * (pin & 7U);
 }
 
-/* Pins of the FSMC a port, from D (data sheet of the STM32F207, table 8): D0..15, A0..24, NOE, NWE, NWAIT,
- * NE1, NE2, NBL0, NBL1. */
+/* Pins of the FSMC a port, from D (data sheet of the STM32F207, table 8): D0..15, A0..24, NOE, NWE,
+ * NWAIT, NE1, NE2, NBL0, NBL1. */
 static const U16 fsmcPins[4] = {
     0xFFF3U, /* D: all but 2 and 3 (3 would be CLK) */
     0xFFFFU, /* E: all */
@@ -128,6 +128,9 @@ void Board_serveWatchdog(void) {
 void EXTI0_Handler(void) {
     OSIntEnter();
     EXTI_PR = 1UL << IRQ_PIN;
+    /* Read back: the edge is cleared before the pin is looked at. A clear that came later would
+     * take the edge of an interrupt that rises in between, and nobody would see its level. */
+    (void)EXTI_PR;
     while (GPIO_IDR(IRQ_PORT) >> IRQ_PIN & 1UL)
         UAV_irqHandler();
     OSIntExit();

@@ -8,11 +8,12 @@
 #include "fsmc.h"
 
 /* Loads and stores of the processor; the context is not used. */
-extern const Fsmc_Port board_fsmc;
+extern const FSMC_Port board_fsmc;
 
 /* 120 MHz from a crystal of 25 MHz, flash wait states; the pins of the FSMC. No RAM is used. */
 void Board_start(void);
-/* SysTick, the FPGA's interrupt and the watchdog. To be called with interrupts masked, before OSStart. */
+/* SysTick, the FPGA's interrupt and the watchdog. To be called with interrupts masked, before
+ * OSStart. */
 void Board_startInterrupts(void);
 /* Not called for a second, the watchdog resets the processor. */
 void Board_serveWatchdog(void);

@@ -36,7 +36,7 @@ void Boot_begin(void) {
 }
 
 int Boot_imageIsSound(void) {
-    const U32 *at;
+    const U32* at;
     RCC_AHB1ENR |= RCC_AHB1ENR_CRC;
     CRC_CR = 1;
     for (at = image_begin; at < image_end; ++at)
@@ -60,6 +60,7 @@ void Boot_fail(Boot_Reason why, U32 pc, U32 lr, U32 address) {
     boot_record.lr = lr;
     boot_record.address = address;
     boot_record.status = SCB_CFSR;
+    __asm__ volatile("dsb"); /* the record is in memory before the reset */
     SCB_AIRCR = SCB_AIRCR_RESET;
     for (;;)
         ;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * boot: why the firmware started, and what ended the run before; written to the system slot's SCRATCH
- * register at each start, where anybody who reaches the FPGA can read it.
+ * boot: why the firmware started, and what ended the run before; written to the system slot's
+ * SCRATCH register at each start, where anybody who reaches the FPGA can read it.
  *
  *   31..24  0xB0, so that a report can be told from other uses
  *   23..16  starts since power-on, modulo 256

@@ -28,8 +28,8 @@ ElfImage::ElfImage(const std::string& path) : path_(path) {
     std::vector<uint8_t> file((std::istreambuf_iterator<char>(in)), {});
     try {
         auto header = at<Elf32_Ehdr>(file, 0);
-        if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS32 ||
-            header.e_machine != EM_ARM)
+        if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 ||
+            header.e_ident[EI_CLASS] != ELFCLASS32 || header.e_machine != EM_ARM)
             throw std::runtime_error("it is no 32-bit ARM ELF file");
         for (unsigned i = 0; i < header.e_phnum; ++i) {
             auto p = at<Elf32_Phdr>(file, header.e_phoff + i * sizeof(Elf32_Phdr));
@@ -51,7 +51,8 @@ ElfImage::ElfImage(const std::string& path) : path_(path) {
                     throw std::runtime_error("a symbol has no name");
                 const char* text =
                     reinterpret_cast<const char*>(file.data()) + names.sh_offset + symbol.st_name;
-                std::string name(text, strnlen(text, file.size() - names.sh_offset - symbol.st_name));
+                std::string name(text,
+                                 strnlen(text, file.size() - names.sh_offset - symbol.st_name));
                 bool isFunction = ELF32_ST_TYPE(symbol.st_info) == STT_FUNC;
                 symbols_[name] = isFunction ? symbol.st_value & ~1u : symbol.st_value;
                 sizes_[name] = symbol.st_size;

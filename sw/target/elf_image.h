@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// elf_image: a program for the Cortex-M3 as its ELF file describes it: bytes of flash, symbols, checksum.
+// elf_image: a program for the Cortex-M3 as its ELF file describes it: bytes of flash, symbols,
+// checksum.
 
 #ifndef ELF_IMAGE_H
 #define ELF_IMAGE_H

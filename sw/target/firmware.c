@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * firmware: starts the kernel with the application and a task below all others that serves the watchdog:
- * it does so as long as no task of higher priority, and no interrupt, takes the processor for itself.
+ * firmware: starts the kernel with the application and a task below all others that serves the
+ * watchdog: it does so as long as no task of higher priority, and no interrupt, takes the processor
+ * for itself.
  */
 #include "firmware.h"
 #include "board.h"
@@ -17,7 +18,7 @@
 
 static OS_STK watchStack[WATCH_WORDS];
 
-static void watchTask(void *argument) {
+static void watchTask(void* argument) {
     (void)argument;
     for (;;) {
         Board_serveWatchdog();

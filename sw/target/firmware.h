@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * firmware: the program: kernel, application, watchdog task. Two files implement what differs between
- * kernels: own_kernel.c and ucos2/.
+ * firmware: the program: kernel, application, watchdog task. Two files implement what differs
+ * between kernels: own_kernel.c and ucos2/.
  */
 #ifndef FIRMWARE_H
 #define FIRMWARE_H

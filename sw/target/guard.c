@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * guard: the end of the running task's stack is out of bounds: an MPU region for reading only over 32 bytes.
+ * guard: the end of the running task's stack is out of bounds: an MPU region for reading only over
+ * 32 bytes.
  */
 #include "guard.h"
 #include "stm32f2.h"
@@ -10,7 +11,7 @@
 /* Never execute, read only (for OSTaskStkChk), 2^(4+1) bytes, on. */
 #define GUARD_RASR (1UL << 28 | 5UL << 24 | 4UL << 1 | 1UL)
 
-void Guard_place(const OS_STK *bottom) {
+void Guard_place(const OS_STK* bottom) {
     if (!bottom) {
         MPU_CTRL = 0;
         return;

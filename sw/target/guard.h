@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * guard: a task that runs over the end of its stack gets a MemManage fault before it harms another's.
+ * guard: a task that runs over the end of its stack gets a MemManage fault before it harms
+ * another's.
  */
 #ifndef GUARD_H
 #define GUARD_H
 
 #include "ucos_ii.h"
 
-/* Forbids writing to the lowest 32 bytes of a stack (those at a multiple of 32); 0 takes the guard away. Called at each
- * switch, interrupts off. */
-void Guard_place(const OS_STK *bottom);
+/* Forbids writing to the lowest 32 bytes of a stack (those at a multiple of 32); 0 takes the guard
+ * away. Called at each switch, interrupts off. */
+void Guard_place(const OS_STK* bottom);
 
 #endif

@@ -12,7 +12,7 @@ void OSTaskIdleHook(void) {
     __asm__ volatile("wfi");
 }
 
-void OS_TaskSwitched(OS_STK *bottom) {
+void OS_TaskSwitched(OS_STK* bottom) {
     Guard_place(bottom);
 }
 

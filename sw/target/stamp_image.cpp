@@ -7,8 +7,9 @@
 
 int main(int argc, char** argv) {
     if (argc != 2 || std::string(argv[1]) == "--help") {
-        std::cerr << "Usage: stamp_image firmware.elf\n"
-                     "Writes the CRC of the words image_begin .. image_end to the word at image_end.\n";
+        std::cerr
+            << "Usage: stamp_image firmware.elf\n"
+               "Writes the CRC of the words image_begin .. image_end to the word at image_end.\n";
         return argc == 2 ? 0 : 2;
     }
     try {

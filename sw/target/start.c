@@ -15,7 +15,7 @@ extern void PendSV_Handler(void);
 
 void Reset_Handler(void);
 void Fault_Handler(void);
-void Fault_entered(const U32 *frame, U32 number);
+void Fault_entered(const U32* frame, U32 number);
 
 /* The frame is on the stack that was in use, which bit 2 of EXC_RETURN says. */
 void __attribute__((naked)) Fault_Handler(void) {
@@ -27,11 +27,13 @@ void __attribute__((naked)) Fault_Handler(void) {
                      "b Fault_entered");
 }
 
-void Fault_entered(const U32 *frame, U32 number) {
+void Fault_entered(const U32* frame, U32 number) {
     static const Boot_Reason reasons[] = {BOOT_HARD_FAULT, BOOT_STACK_OVERFLOW, BOOT_BUS_FAULT,
                                           BOOT_USAGE_FAULT};
     U32 status = SCB_CFSR;
-    U32 address = status & SCB_CFSR_MMFARVALID ? SCB_MMFAR : status & SCB_CFSR_BFARVALID ? SCB_BFAR : 0;
+    U32 address = status & SCB_CFSR_MMFARVALID  ? SCB_MMFAR
+                  : status & SCB_CFSR_BFARVALID ? SCB_BFAR
+                                                : 0;
     Boot_Reason reason = number >= 3U && number <= 6U ? reasons[number - 3U] : BOOT_HARD_FAULT;
     Boot_fail(reason, frame[6], frame[5], address);
 }
@@ -62,8 +64,8 @@ __attribute__((section(".vectors"), used)) static const Vector vectors[16 + 7] =
     EXTI0_Handler};
 
 void Reset_Handler(void) {
-    U32 *to;
-    const U32 *from = data_load;
+    U32* to;
+    const U32* from = data_load;
     Board_start();
     for (to = data_begin; to < data_end;)
         *to++ = *from++;

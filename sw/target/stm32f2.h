@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * stm32f2: the registers of an STM32F2 that the firmware uses. Source: RM0033 (chapter and page names
- * at each block), and the ARMv7-M Architecture Reference Manual for the core's own.
+ * stm32f2: the registers of an STM32F2 that the firmware uses. Source: RM0033 (chapter and page
+ * names at each block), and the ARMv7-M Architecture Reference Manual for the core's own.
  */
 #ifndef STM32F2_H
 #define STM32F2_H
 
 #include "base.h"
 
-#define REG(address) (*(volatile U32 *)(address))
+#define REG(address) (*(volatile U32*)(address))
 
 /* Reset and clock control (RM0033, 5.3). */
 #define RCC_CR REG(0x40023800UL)
@@ -35,11 +35,13 @@
 #define RCC_CSR_SFTRST (1UL << 28)
 #define RCC_CSR_IWDGRST (1UL << 29)
 
-/* Flash interface (RM0033, 2.3; the PM0059): 3 wait states at 120 MHz and 3.3 V, caches and prefetch. */
+/* Flash interface (RM0033, 2.3; the PM0059): 3 wait states at 120 MHz and 3.3 V, caches and
+ * prefetch. */
 #define FLASH_ACR REG(0x40023C00UL)
 #define FLASH_ACR_120MHZ (3UL | 7UL << 8)
 
-/* CRC unit (RM0033, 3.4): polynomial 0x04C11DB7, from 0xFFFFFFFF, words, most significant bit first. */
+/* CRC unit (RM0033, 3.4): polynomial 0x04C11DB7, from 0xFFFFFFFF, words, most significant bit
+ * first. */
 #define CRC_DR REG(0x40023000UL)
 #define CRC_CR REG(0x40023008UL) /* 1: start again */
 
@@ -74,12 +76,12 @@
 #define SYST_CALIB REG(0xE000E01CUL) /* RM0033, 8.1.2: HCLK/8 ticks in one millisecond */
 #define SYST_CALIB_TENMS 0xFFFFFFUL
 #define NVIC_ISER(n) REG(0xE000E100UL + 4UL * (n))
-#define NVIC_IPR(n) (*(volatile U8 *)(0xE000E400UL + (n)))
+#define NVIC_IPR(n) (*(volatile U8*)(0xE000E400UL + (n)))
 #define SCB_ICSR REG(0xE000ED04UL)
 #define SCB_VTOR REG(0xE000ED08UL)
 #define SCB_AIRCR REG(0xE000ED0CUL)
 #define SCB_AIRCR_RESET 0x05FA0004UL
-#define SCB_SHPR(n) (*(volatile U8 *)(0xE000ED14UL + (n))) /* of exception n, 4..15 */
+#define SCB_SHPR(n) (*(volatile U8*)(0xE000ED14UL + (n))) /* of exception n, 4..15 */
 #define SCB_SHCSR REG(0xE000ED24UL)
 #define SCB_SHCSR_FAULTS (7UL << 16) /* usage, bus and memory faults have handlers of their own */
 #define SCB_CFSR REG(0xE000ED28UL)

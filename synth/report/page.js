@@ -41,7 +41,9 @@ function shape(tag, attributes, text) {
 function showVerdict() {
   const failures = data.designs.flatMap(d => d.failures), notes = data.designs.flatMap(d => d.notes);
   const box = byId("verdict");
-  box.append(element("p", failures.length ? "Failed" : "Within all budgets", failures.length ? "bad" : "good"));
+  const stale = data.designs.filter(d => d.error && !d.failures.length).length;
+  box.append(element("p", failures.length ? "Failed" : stale ? `${stale} of ${data.designs.length} designs changed since they were synthesised` : "Within all budgets",
+    failures.length ? "bad" : stale ? "soft" : "good"));
   for (const f of failures) box.append(element("p", f, "bad"));
   for (const n of notes) box.append(element("p", n, "soft"));
   byId("about").textContent = `${data.chip.name}, ${data.yosys}, commit ${data.commit || "unknown"}`;

@@ -145,34 +145,39 @@ std::vector<Change> changedInstances(const Costs& before, const Costs& after) {
     return sorted(std::move(changes));
 }
 
+std::vector<string> aboveLimits(const Row& row) {
+    const Figures& f = row.main->figures;
+    const std::map<string, int> now = {{"lut", f.lut}, {"ff", f.ff}, {"slices", f.slices.estimate}};
+    std::vector<string> texts;
+    for (const auto& [key, limit] : row.design->limits)
+        if (now.at(key) > limit)
+            texts.push_back(fmt::format("{}: {} {}, {} above the limit of {}", row.design->name,
+                                        now.at(key), key, now.at(key) - limit, limit));
+    return texts;
+}
+
 Verdict judge(const Row& row, const Baseline& baseline, const string& yosys, double goal) {
     Verdict v;
     const string& name = row.design->name;
+    if (!row.main->wanted && !row.main->error.empty())
+        return v;
     if (!row.main->error.empty()) {
         v.failures.push_back(fmt::format("{}: synthesis failed", name));
         return v;
     }
+    for (const Run* other : row.others)
+        if (other->wanted && !other->error.empty())
+            v.failures.push_back(
+                fmt::format("{}: synthesis for {} failed", row.design->name, other->family));
     const Figures& f = row.main->figures;
     const auto accepted = baseline.designs.find(name);
     const bool known = accepted != baseline.designs.end();
     // Another Yosys counts otherwise: what the accepted figures are by is what is judged.
     const bool comparable =
         baseline.yosys.empty() || shortVersion(baseline.yosys) == shortVersion(yosys);
-    const std::map<string, int> now = {{"lut", f.lut}, {"ff", f.ff}, {"slices", f.slices.estimate}};
-    for (const auto& [key, limit] : row.design->limits) {
-        if (now.at(key) <= limit)
-            continue;
-        const Accepted a = known ? accepted->second : Accepted{};
-        const int then = key == "lut" ? a.lut : key == "ff" ? a.ff : a.slices;
-        const string text = fmt::format("{}: {} {}, {} above the limit of {}", name, now.at(key),
-                                        key, now.at(key) - limit, limit);
-        if (!comparable)
-            v.notes.push_back(text + " (by another Yosys than the limit was set with)");
-        else if (known && then > limit)
-            v.notes.push_back(text + " (a target: the accepted figure is above it too)");
-        else
-            v.failures.push_back(text);
-    }
+    for (const string& text : aboveLimits(row))
+        comparable ? v.failures.push_back(text)
+                   : v.notes.push_back(text + " (by another Yosys than the limit was set with)");
     if (!known || !comparable)
         return v;
     const Accepted& a = accepted->second;

@@ -4,6 +4,7 @@
 
 #include "designs.h"
 
+#include "files.h"
 #include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
@@ -17,8 +18,7 @@ using nlohmann::json;
 namespace {
 
 bool endsWith(const std::string& name, const std::string& end) {
-    return name.size() > end.size() &&
-           name.compare(name.size() - end.size(), end.size(), end) == 0;
+    return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
 }
 
 // "// name: one sentence" at the head of a file, or what a converted core says of itself.

@@ -30,7 +30,7 @@ struct Plan {
     std::vector<Design> designs;
 };
 
-// The designs of the file, then every other module that has a file of its own; `*_rules` and `*_proof` are
-// properties, not hardware.
+// The designs of the file, then every other module that has a file of its own; `*_rules` and
+// `*_proof` are properties, not hardware.
 Plan readPlan(const std::filesystem::path& file, const Library& library,
               const std::filesystem::path& root);

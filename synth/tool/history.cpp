@@ -4,33 +4,28 @@
 
 #include "history.h"
 
-#include "runner.h"
+#include "process.h"
 
-#include <cstdio>
 #include <fmt/format.h>
-#include <memory>
 #include <sstream>
 
 using std::string;
 
 namespace {
 
-string git(const std::filesystem::path& source, const string& arguments) {
-    const string command = fmt::format("git -C \"{}\" {} 2>/dev/null", source.string(), arguments);
-    const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
-    string text;
-    char part[65536];
-    for (size_t n; pipe && (n = std::fread(part, 1, sizeof part, pipe.get())) > 0;)
-        text.append(part, n);
-    return text;
+string git(const std::filesystem::path& source, std::vector<string> arguments) {
+    arguments.insert(arguments.begin(), {"git", "-C", source.string()});
+    const Output out = run(arguments);
+    return out.status == 0 ? out.text : "";
 }
 
 } // namespace
 
 std::vector<Commit> history(const std::filesystem::path& source, size_t count) {
     std::vector<Commit> commits;
-    std::istringstream lines(git(
-        source, fmt::format("log -n {} --format=%h%x09%cs%x09%s -- synth/baseline.json", count)));
+    std::istringstream lines(
+        git(source, {"log", fmt::format("-n{}", count), "--format=%h%x09%cs%x09%s", "--",
+                     "synth/baseline.json"}));
     for (string line; std::getline(lines, line);) {
         std::istringstream fields(line);
         Commit c;
@@ -38,8 +33,7 @@ std::vector<Commit> history(const std::filesystem::path& source, size_t count) {
         std::getline(fields, c.date, '\t');
         std::getline(fields, c.subject);
         try {
-            c.baseline =
-                readBaseline(git(source, fmt::format("show {}:synth/baseline.json", c.id)));
+            c.baseline = readBaseline(git(source, {"show", c.id + ":synth/baseline.json"}));
         } catch (const std::exception&) {
             continue; // of another format, or the file was taken away: nothing to show
         }
@@ -50,7 +44,7 @@ std::vector<Commit> history(const std::filesystem::path& source, size_t count) {
 }
 
 string currentCommit(const std::filesystem::path& source) {
-    const string id = git(source, "rev-parse --short HEAD");
-    const bool changed = !git(source, "status --porcelain --untracked-files=no").empty();
+    const string id = git(source, {"rev-parse", "--short", "HEAD"});
+    const bool changed = !git(source, {"status", "--porcelain", "--untracked-files=no"}).empty();
     return id.substr(0, id.find('\n')) + (changed && !id.empty() ? "+" : "");
 }

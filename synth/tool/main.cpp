@@ -3,7 +3,7 @@
 // utilisation: what the chip and each of its parts take of the FPGA, beside limits and the paper.
 
 #include "designs.h"
-#include "lock.h"
+#include "files.h"
 #include "pictures.h"
 #include "report.h"
 #include "runner.h"
@@ -23,7 +23,7 @@ constexpr const char* mainFamily = "xc6s";
 
 struct Options {
     fs::path source = ".", generated = "build/main/gen", output = "build/synth";
-    std::vector<std::string> only, families{mainFamily, "xc7", "ecp5"};
+    std::vector<std::string> only, families{mainFamily};
     std::string yosys = "yosys";
     unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
     bool accept = false;
@@ -31,14 +31,6 @@ struct Options {
 };
 
 constexpr size_t shownCommits = 30;
-
-void writeFile(const fs::path& file, const std::string& text) {
-    std::ofstream out(file, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out)
-        throw std::runtime_error(fmt::format("cannot write {}", file.string()));
-}
 
 // Every folder of platform RTL, cores and what was generated, in this order.
 std::vector<fs::path> rtlFolders(const Options& o) {
@@ -52,18 +44,31 @@ std::vector<fs::path> rtlFolders(const Options& o) {
     return folders;
 }
 
+// The Verilog of all cores of the build, wherever it is.
+std::vector<fs::path> coreFiles(const Options& o) {
+    std::vector<fs::path> files;
+    std::ifstream list(o.generated / "cores.files");
+    for (std::string line; std::getline(list, line);)
+        if (fs::path(line).extension() == ".v" && fs::exists(line))
+            files.push_back(line);
+    return files;
+}
+
 void print(const Report& r) {
     for (const Row& row : r.rows)
-        if (row.design->beside && row.main->error.empty())
+        if (row.design->beside && row.main->wanted && row.main->error.empty())
             fmt::print("{}\n{}\n{}\n{}\n", row.design->title, paperTable(*r.plan, row).plain(),
                        costTable(*r.library, row, 2).plain(), pathTable(*r.plan, row, 5).plain());
-    fmt::print("{}", designTable(*r.plan, r.rows, countsOf(r.baseline)).plain());
+    std::vector<Row> wanted;
+    std::copy_if(r.rows.begin(), r.rows.end(), std::back_inserter(wanted),
+                 [](const Row& row) { return row.main->wanted; });
+    fmt::print("{}", designTable(*r.plan, wanted, countsOf(r.baseline)).plain());
     if (!r.baseline.yosys.empty() && shortVersion(r.baseline.yosys) != shortVersion(r.yosys))
         fmt::print("The accepted figures are by {}, these by {}: growth is not judged.\n",
                    shortVersion(r.baseline.yosys), shortVersion(r.yosys));
     std::string fresh;
     for (size_t i = 0; i < r.rows.size(); i++) {
-        if (r.baseline.designs.count(r.rows[i].design->name) == 0)
+        if (r.rows[i].main->wanted && r.baseline.designs.count(r.rows[i].design->name) == 0)
             fresh += " " + r.rows[i].design->name;
         for (const std::string& note : r.verdicts[i].notes)
             fmt::print("{}\n", note);
@@ -84,20 +89,30 @@ void writeReports(const Report& r, const Options& o) {
     fmt::print("Page: {}\n", (o.output / "report.html").string());
 }
 
-// Records what was measured; designs that were not are left as they are.
+// Records what was measured; designs that were not are left as they are. What is above a limit of
+// synth/designs.json is refused: a limit moves there, or not at all.
 int accept(const Report& r, const fs::path& file) {
     Baseline b = r.baseline;
     if (shortVersion(b.yosys) != shortVersion(r.yosys))
         b.designs.clear(); // figures of two versions do not belong together
     b.yosys = r.yosys;
-    if (r.whole)
-        b.designs.clear(); // designs that are gone
+    std::map<std::string, Accepted> kept; // without designs that are gone
     for (const Row& row : r.rows) {
+        const std::string& name = row.design->name;
+        if (!row.main->wanted) {
+            if (b.designs.count(name))
+                kept[name] = b.designs[name];
+            continue;
+        }
         if (!row.main->error.empty())
+            throw std::runtime_error(fmt::format("{} failed: nothing is accepted", name));
+        const auto above = aboveLimits(row);
+        if (!above.empty())
             throw std::runtime_error(
-                fmt::format("{} failed: nothing is accepted", row.design->name));
-        b.designs[row.design->name] = acceptedFrom(row.main->figures);
+                fmt::format("{}: nothing is accepted; limits are in synth/designs.json", above[0]));
+        kept[name] = acceptedFrom(row.main->figures);
     }
+    b.designs = kept;
     writeFile(file, written(b));
     fmt::print("Accepted: {}; commit it.\n", file.string());
     return 0;
@@ -107,7 +122,11 @@ int report(const Options& o) {
     if (!fs::is_directory(o.generated))
         throw std::runtime_error(fmt::format("{} is not there: build first", o.generated.string()));
     const std::vector<fs::path> folders = rtlFolders(o); // include files lie beside the modules
-    const Library library(folders, folders);
+    const std::vector<fs::path> files = coreFiles(o);
+    std::vector<fs::path> includes = folders;
+    for (const fs::path& file : files)
+        includes.push_back(file.parent_path());
+    const Library library(folders, includes, files);
     Plan plan = readPlan(o.source / "synth/designs.json", library, o.source);
     std::vector<std::string> wanted = o.only;
     if (!o.edif.empty())
@@ -116,16 +135,8 @@ int report(const Options& o) {
         if (std::none_of(plan.designs.begin(), plan.designs.end(),
                          [&](const Design& d) { return d.name == name; }))
             throw std::runtime_error(fmt::format("there is no design {}", name));
-    if (!o.only.empty())
-        plan.designs.erase(std::remove_if(plan.designs.begin(), plan.designs.end(),
-                                          [&](const Design& d) {
-                                              return std::find(o.only.begin(), o.only.end(),
-                                                               d.name) == o.only.end();
-                                          }),
-                           plan.designs.end());
-
-    const FolderLock lock(
-        o.output); // what another run is synthesising, this one finds in the cache
+    // What another run is synthesising, this one finds in the cache.
+    const FolderLock lock(o.output, "utilisation");
     const RunnerOptions options{o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs};
     if (!o.edif.empty()) {
         const auto design = std::find_if(plan.designs.begin(), plan.designs.end(),
@@ -137,22 +148,26 @@ int report(const Options& o) {
                    (o.output / "ise/verilog").string());
         return 0;
     }
+    const auto isWanted = [&](const Design& design) {
+        return o.only.empty() ||
+               std::find(o.only.begin(), o.only.end(), design.name) != o.only.end();
+    };
+    const std::string tree = treeState(o.source, "bus hdl ip slice synth");
     std::vector<Run> runs;
     for (const std::string& family : o.families)
         for (const Design& design : plan.designs)
-            runs.push_back({&design, family, {}, {}, {}, false});
+            runs.push_back({&design, family, {}, {}, {}, false, isWanted(design)});
     carryOut(runs, library, options);
     for (const Run& run : runs)
-        if (!run.error.empty())
+        if (run.wanted && !run.error.empty())
             fmt::print(stderr, "utilisation: {} for {}: {}\n", run.design->name, run.family,
                        run.error);
 
     Report r;
     r.plan = &plan;
     r.library = &library;
-    r.whole = o.only.empty();
     r.rows = rowsOf(plan, runs, mainFamily);
-    r.yosys = outputOf(fmt::format("\"{}\" -V", o.yosys));
+    r.yosys = versionOf(o.yosys);
     const fs::path accepted = o.source / "synth/baseline.json";
     r.baseline = readBaseline(fs::exists(accepted) ? readFile(accepted) : "");
     for (const Row& row : r.rows)
@@ -161,11 +176,11 @@ int report(const Options& o) {
     r.commit = currentCommit(o.source);
     r.pictures = drawNetlists(plan, library, options);
 
-    print(r);
-    if (r.whole && !o.accept)
-        writeReports(r, o);
     if (o.accept)
         return accept(r, accepted);
+    print(r);
+    writeReports(r, o);
+    writeFile(o.output / "tree", tree + "\n");
     return std::any_of(r.verdicts.begin(), r.verdicts.end(),
                        [](const Verdict& v) { return !v.failures.empty(); });
 }
@@ -181,13 +196,20 @@ int main(int argc, char** argv) {
         ->capture_default_str();
     app.add_option("--output", o.output, "folder of the reports")->capture_default_str();
     app.add_option("--design", o.only, "only this design (may be repeated)");
-    app.add_option("--family", o.families, "only these chips: xc6s (always), xc7, ecp5")
+    app.add_option("--family", o.families, "these chips, too, beside xc6s: xc7, ecp5")
         ->check(CLI::IsMember({"xc6s", "xc7", "ecp5"}));
     app.add_option("--yosys", o.yosys, "the program")->capture_default_str();
     app.add_option("--jobs", o.jobs, "synthesis runs at a time")->capture_default_str();
     app.add_flag("--accept", o.accept, "record these figures in synth/baseline.json");
     app.add_option("--edif", o.edif, "only write this design as EDIF for ISE, into the folder ise");
-    CLI11_PARSE(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+        return app.exit(help);
+    } catch (const CLI::ParseError& error) {
+        fmt::print(stderr, "utilisation: {}; see --help\n", error.what());
+        return 2;
+    }
     if (std::find(o.families.begin(), o.families.end(), mainFamily) == o.families.end())
         o.families.insert(o.families.begin(), mainFamily);
     try {

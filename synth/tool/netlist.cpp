@@ -4,6 +4,7 @@
 
 #include "netlist.h"
 
+#include "files.h"
 #include "sources.h"
 
 #include <algorithm>

@@ -4,10 +4,10 @@
 
 #include "pictures.h"
 
+#include "files.h"
+#include "process.h"
 #include <algorithm>
-#include <cstdlib>
 #include <fmt/format.h>
-#include <fstream>
 #include <mutex>
 
 namespace fs = std::filesystem;
@@ -33,21 +33,18 @@ string scriptFor(const Library& library, const Design& design, const fs::path& s
 void draw(const Library& library, const Design& design, const RunnerOptions& options,
           const fs::path& stem) {
     const string script = stem.string() + ".picture.ys", dot = stem.string() + ".dot";
-    std::ofstream(script) << scriptFor(library, design, stem);
+    writeFile(script, scriptFor(library, design, stem));
     string svg; // nothing, if it is too large
-    if (std::system(
-            fmt::format("\"{}\" -q -s \"{}\" >/dev/null 2>&1", options.yosys, script).c_str()) ==
-        0) {
+    if (run({options.yosys, "-q", "-s", script}).status == 0) {
         const string text = readFile(dot);
         if (static_cast<size_t>(std::count(text.begin(), text.end(), '\n')) <= mostLines &&
-            std::system(fmt::format("dot -Tsvg \"{0}\" -o \"{0}.svg\" 2>/dev/null", dot).c_str()) ==
-                0) {
+            run({"dot", "-Tsvg", dot, "-o", dot + ".svg"}).status == 0) {
             const string drawn = readFile(dot + ".svg");
             if (drawn.size() <= mostBytes && drawn.find("<svg") != string::npos)
                 svg = drawn.substr(drawn.find("<svg"));
         }
     }
-    std::ofstream(stem.string() + ".svg") << svg;
+    writeFile(stem.string() + ".svg", svg);
 }
 
 } // namespace
@@ -55,7 +52,9 @@ void draw(const Library& library, const Design& design, const RunnerOptions& opt
 std::map<string, string> drawNetlists(const Plan& plan, const Library& library,
                                       const RunnerOptions& options) {
     std::map<string, string> pictures;
-    if (outputOf("dot -V 2>&1").find("graphviz") == string::npos) {
+    try {
+        run({"dot", "-V"});
+    } catch (const std::runtime_error&) {
         fmt::print(stderr, "no netlist pictures: Graphviz' dot does not run\n");
         return pictures;
     }

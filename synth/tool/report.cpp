@@ -5,11 +5,11 @@
 
 #include "report.h"
 
+#include "files.h"
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 using nlohmann::json;
 using std::string;
@@ -104,13 +104,22 @@ string entriesJson(const Report& r) {
             entries.push_back(e);
         }
         for (const Run* other : row.others) {
+            if (!other->error.empty())
+                continue;
             entries.push_back(entry(row.design->name + " lut " + other->family, other->figures.lut,
                                     "LUT", command));
             entries.push_back(entry(row.design->name + " ff " + other->family, other->figures.ff,
                                     "flip-flops", command));
         }
     }
-    return entries.dump(1) + "\n";
+    json failures = json::array(), missing = json::array();
+    for (size_t i = 0; i < r.rows.size(); i++) {
+        for (const string& failure : r.verdicts[i].failures)
+            failures.push_back(failure.substr(0, failure.find('\n')));
+        if (!r.rows[i].main->wanted && !r.rows[i].main->error.empty())
+            missing.push_back(r.rows[i].design->name);
+    }
+    return json{{"failures", failures}, {"missing", missing}, {"entries", entries}}.dump(1) + "\n";
 }
 
 string markdown(const Report& r) {
@@ -192,18 +201,6 @@ string html(const Report& r, const string& page, const string& style, const stri
         data["history"].push_back(
             {{"id", c.id}, {"date", c.date}, {"subject", c.subject}, {"designs", designs}});
     }
-    string figures = data.dump();
-    for (size_t at = 0; (at = figures.find("</", at)) != string::npos; at += 3)
-        figures.replace(at, 2, "<\\/"); // a name must not end the script
-    string text = page;
-    const auto put = [&](const string& place, const string& what) {
-        const size_t at = text.find(place);
-        if (at == string::npos)
-            throw std::runtime_error("the page has no " + place);
-        text.replace(at, place.size(), what);
-    };
-    put("@STYLE@", style);
-    put("@SCRIPT@", script);
-    put("@DATA@", figures);
-    return text;
+    return filled(page,
+                  {{"@STYLE@", style}, {"@SCRIPT@", script}, {"@DATA@", scriptSafe(data.dump())}});
 }

@@ -16,7 +16,6 @@
 struct Report {
     const Plan* plan = nullptr;
     const Library* library = nullptr;
-    bool whole = true; // all designs, not only some
     std::vector<Row> rows;
     std::vector<Verdict> verdicts; // one for each row
     Baseline baseline;

@@ -4,20 +4,16 @@
 
 #include "runner.h"
 
+#include "files.h"
+#include "process.h"
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <fmt/format.h>
-#include <fstream>
-#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
 
 namespace fs = std::filesystem;
 
@@ -48,8 +44,8 @@ std::string scriptOf(const Run& run, const Library& library, const RunnerOptions
 }
 
 // The lines of a log that say what is wrong.
-std::string errorsIn(const fs::path& log) {
-    std::istringstream lines(readFile(log));
+std::string errorsIn(const std::string& log) {
+    std::istringstream lines(log);
     std::string line, errors, last;
     while (std::getline(lines, line)) {
         if (line.find("ERROR") != std::string::npos)
@@ -63,11 +59,11 @@ void synthesise(const Run& run, const Library& library, const RunnerOptions& opt
     const std::string part = run.netlist.string() + ".part";
     const std::string script = fs::path(run.netlist).replace_extension(".ys").string();
     const std::string log = fs::path(run.netlist).replace_extension(".log").string();
-    std::ofstream(script) << scriptOf(run, library, options, part);
-    const std::string command =
-        fmt::format("\"{}\" -q -s \"{}\" >\"{}\" 2>&1", options.yosys, script, log);
-    if (std::system(command.c_str()) != 0)
-        throw std::runtime_error(errorsIn(log) + "whole log: " + log);
+    writeFile(script, scriptOf(run, library, options, part));
+    const Output yosys = ::run({options.yosys, "-q", "-s", script});
+    writeFile(log, yosys.text);
+    if (yosys.status != 0)
+        throw std::runtime_error(errorsIn(yosys.text) + "whole log: " + log);
     fs::rename(part, run.netlist);
 }
 
@@ -84,15 +80,17 @@ void carryOutOne(Run& run, const Library& library, const RunnerOptions& options,
         run.figures = nlohmann::json::parse(readFile(kept)).get<Figures>();
         return;
     }
+    if (!run.cached && !run.wanted) {
+        run.error = "not synthesised since its sources changed";
+        return;
+    }
     if (!run.cached)
         synthesise(run, library, options);
     run.figures =
         figuresOf(readNetlist(run.netlist), run.family == "xc6s", [&](const std::string& path) {
             return library.filesAlong(run.design->top, path);
         });
-    const fs::path part = kept.string() + ".part";
-    std::ofstream(part) << nlohmann::json(run.figures);
-    fs::rename(part, kept);
+    writeFile(kept, nlohmann::json(run.figures).dump());
 }
 
 } // namespace
@@ -117,34 +115,30 @@ void writeEdif(const Design& design, const Library& library, const RunnerOptions
     fs::rename(run.netlist.string() + ".part.json", folder / (design.name + ".json"));
 }
 
-std::string outputOf(const std::string& command) {
-    const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
-    char line[512] = "";
-    if (!pipe || !std::fgets(line, sizeof line, pipe.get()))
-        return "";
-    const std::string result = line;
-    return result.substr(0, result.find_last_not_of("\r\n") + 1);
+std::string versionOf(const std::string& yosys) {
+    const std::string text = run({yosys, "-V"}).text;
+    return text.substr(0, text.find('\n'));
 }
 
 void carryOut(std::vector<Run>& runs, const Library& library, const RunnerOptions& options) {
-    const std::string version = outputOf(fmt::format("\"{}\" -V 2>/dev/null", options.yosys));
-    if (version.empty())
-        throw std::runtime_error(
-            fmt::format("'{}' does not run: is yosys installed?", options.yosys));
+    const std::string version = versionOf(options.yosys);
     fs::create_directories(options.cache);
     const std::string program = hexHash({readFile("/proc/self/exe")});
 
-    // The largest first: none of them is begun when all others are done.
+    // Designs with limits first, since these are looked at; then the largest: none of them is begun
+    // when all others are done.
     std::vector<std::pair<std::uintmax_t, size_t>> order;
     for (size_t i = 0; i < runs.size(); i++) {
         std::uintmax_t bytes = 0;
         for (const fs::path& file : library.filesOf(runs[i].design->top))
             bytes += fs::file_size(file);
-        order.emplace_back(bytes, i);
+        order.emplace_back(runs[i].design->limits.empty() ? bytes : UINTMAX_MAX, i);
     }
     std::stable_sort(order.begin(), order.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
 
+    const auto total =
+        std::count_if(runs.begin(), runs.end(), [](const Run& r) { return r.wanted; });
     std::atomic<size_t> done{0};
     std::mutex terminal;
     inParallel(options.jobs, runs.size(), [&](size_t place) {
@@ -157,35 +151,13 @@ void carryOut(std::vector<Run>& runs, const Library& library, const RunnerOption
         }
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
         const std::lock_guard<std::mutex> lock(terminal);
-        done++;
-        if (!runs[i].cached)
-            fmt::print(stderr, "[{}/{}] {} for {}: {} ({:.1f} s)\n", done.load(), runs.size(),
+        done += runs[i].wanted;
+        if (!runs[i].cached && runs[i].wanted)
+            fmt::print(stderr, "[{}/{}] {} for {}: {} ({:.1f} s)\n", done.load(), total,
                        runs[i].design->name, runs[i].family,
                        runs[i].error.empty()
                            ? fmt::format("{} LUT, {} FF", runs[i].figures.lut, runs[i].figures.ff)
                            : "failed",
                        took.count());
     });
-}
-
-void inParallel(unsigned jobs, size_t count, const std::function<void(size_t)>& work) {
-    std::atomic<size_t> next{0};
-    std::exception_ptr failed; // the first that work() throws: rethrown when all have ended
-    std::mutex failing;
-    std::vector<std::thread> threads;
-    for (unsigned k = 0; k < std::max(1u, jobs); k++)
-        threads.emplace_back([&] {
-            for (size_t i; (i = next++) < count;)
-                try {
-                    work(i);
-                } catch (...) {
-                    const std::lock_guard<std::mutex> lock(failing);
-                    if (!failed)
-                        failed = std::current_exception();
-                }
-        });
-    for (std::thread& thread : threads)
-        thread.join();
-    if (failed)
-        std::rethrow_exception(failed);
 }

@@ -8,7 +8,6 @@
 #include "figures.h"
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,6 +19,7 @@ struct Run {
     Figures figures;
     std::string error; // why there are no figures, "" if there are
     bool cached = false;
+    bool wanted = true; // false: only what is in the cache is told
 };
 
 struct RunnerOptions {
@@ -36,8 +36,5 @@ void carryOut(std::vector<Run>& runs, const Library& library, const RunnerOption
 void writeEdif(const Design& design, const Library& library, const RunnerOptions& options,
                const std::filesystem::path& folder);
 
-// Calls work(0) .. work(count - 1), `jobs` at a time.
-void inParallel(unsigned jobs, size_t count, const std::function<void(size_t)>& work);
-
-// First line of a program's output, "" if it does not run.
-std::string outputOf(const std::string& command);
+// What the program says of its version; throws if it does not run.
+std::string versionOf(const std::string& yosys);

@@ -4,12 +4,10 @@
 
 #include "sources.h"
 
+#include "files.h"
 #include <algorithm>
 #include <cctype>
-#include <cstdint>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 namespace fs = std::filesystem;
@@ -68,7 +66,8 @@ size_t closing(const std::vector<std::string>& t, size_t open) {
 }
 
 // Tokens of a file, and behind each include those of the file that it names, where that is known.
-std::vector<std::string> allTokens(const fs::path& file, const std::vector<fs::path>& includeFolders) {
+std::vector<std::string> allTokens(const fs::path& file,
+                                   const std::vector<fs::path>& includeFolders) {
     std::vector<std::string> result;
     for (const std::string& token : tokens(readFile(file))) {
         const bool isInclude = !result.empty() && result.back() == "`include";
@@ -111,38 +110,22 @@ void scan(const fs::path& file, const std::vector<fs::path>& includeFolders,
 
 } // namespace
 
-std::string readFile(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in)
-        throw std::runtime_error(fmt::format("cannot read {}", file.string()));
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-std::string hexHash(const std::vector<std::string>& contents) {
-    uint64_t hash = 14695981039346656037u;
-    const auto mix = [&](unsigned char c) { hash = (hash ^ c) * 1099511628211u; };
-    for (const std::string& content : contents) {
-        for (const char c : content)
-            mix(static_cast<unsigned char>(c));
-        for (size_t rest = content.size(), k = 0; k < 8; k++, rest >>= 8)
-            mix(static_cast<unsigned char>(rest)); // where one ends and the next begins
-    }
-    return fmt::format("{:016x}", hash);
-}
-
-Library::Library(const std::vector<fs::path>& folders, const std::vector<fs::path>& includeFolders)
+Library::Library(const std::vector<fs::path>& folders, const std::vector<fs::path>& includeFolders,
+                 const std::vector<fs::path>& files)
     : includeFolders_(includeFolders) {
     for (const fs::path& folder : folders) {
         if (!fs::is_directory(folder))
             throw std::runtime_error(fmt::format("{} is not a folder", folder.string()));
-        std::vector<fs::path> files;
+        std::vector<fs::path> found;
         for (const auto& entry : fs::directory_iterator(folder))
             if (entry.path().extension() == ".v")
-                files.push_back(entry.path());
-        std::sort(files.begin(), files.end());
-        for (const fs::path& file : files)
+                found.push_back(entry.path());
+        std::sort(found.begin(), found.end());
+        for (const fs::path& file : found)
             scan(file, includeFolders, modules_);
     }
+    for (const fs::path& file : files)
+        scan(file, includeFolders, modules_);
     for (auto& [name, module] : modules_) // what is not a module was no instance
         for (auto it = module.instances.begin(); it != module.instances.end();)
             it = has(it->second) ? std::next(it) : module.instances.erase(it);

@@ -13,15 +13,18 @@
 
 struct VerilogModule {
     std::filesystem::path file;
-    std::map<std::string, std::string> instances; // instance name -> module name
-    std::set<std::string> includes;               // "`include" file names
+    // Instance name -> module name; of one name there may be several, in branches of `ifdef or
+    // generate.
+    std::multimap<std::string, std::string> instances;
+    std::set<std::string> includes; // "`include" file names
 };
 
 class Library {
 public:
-    // All *.v of these folders; of two modules with one name the first folder's counts.
+    // All *.v of these folders, then these files; of two modules with one name the first counts.
     explicit Library(const std::vector<std::filesystem::path>& folders,
-                     const std::vector<std::filesystem::path>& includeFolders);
+                     const std::vector<std::filesystem::path>& includeFolders,
+                     const std::vector<std::filesystem::path>& files = {});
 
     const std::map<std::string, VerilogModule>& modules() const { return modules_; }
     bool has(const std::string& module) const { return modules_.count(module) != 0; }
@@ -43,6 +46,3 @@ private:
     std::map<std::string, VerilogModule> modules_;
     std::vector<std::filesystem::path> includeFolders_;
 };
-
-std::string readFile(const std::filesystem::path& file);       // throws if it cannot be read
-std::string hexHash(const std::vector<std::string>& contents); // FNV-1a, 64 bits

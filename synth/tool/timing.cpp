@@ -40,7 +40,8 @@ bool isAddress(const string& port) {
     return port[0] == 'A' || startsWith(port, "DPRA"); // ADDRA.., A0.., DPRA0..
 }
 
-// A memory's output follows its own port's address: DOA ADDRA, DPO DPRA0.., SPO A0..; the write port's not.
+// A memory's output follows its own port's address: DOA ADDRA, DPO DPRA0.., SPO A0..; the write
+// port's not.
 bool isRead(const string& address, const string& output) {
     if (startsWith(address, "ADDR"))
         return output.size() < 3 || address.back() == output[2];

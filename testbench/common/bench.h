@@ -19,7 +19,8 @@
 
 template <class Module> class Bench {
 public:
-    Bench() : context_(new VerilatedContext), observer_(*context_), top_(new Module(context_.get())) {}
+    Bench()
+        : context_(new VerilatedContext), observer_(*context_), top_(new Module(context_.get())) {}
     ~Bench() {
         top_->final();
         observer_.finish();
@@ -30,13 +31,14 @@ public:
     Module& top() { return *top_; }
     uint64_t cycles() const { return cycles_; }
 
-    // A synchronous model: `sample` sees the settled ports before each rising edge, `drive` sets
-    // inputs after it, as the model's registers would.
+    // Adds a synchronous model: `sample` sees the settled ports before each rising edge, `drive`
+    // sets inputs after it, as the model's registers would.
     void addModel(std::function<void()> sample, std::function<void()> drive) {
         models_.emplace_back(std::move(sample), std::move(drive));
     }
 
-    // One clock cycle: settle, models sample, rising edge, models drive, falling edge, settle.
+    // Passes one clock cycle: settle, models sample, rising edge, models drive, falling edge,
+    // settle.
     void tick() {
         top_->eval();
         for (auto& model : models_)

@@ -25,8 +25,8 @@ public:
         bench_.tick(); // the address comes a clock before valid, which is low between transfers
         top.bus_valid_i = 1;
         uint64_t start = bench_.cycles();
-        bench_.waitFor([&] { return top.bus_ready_o; }, "bus_ready_o at word " + std::to_string(word),
-                       64);
+        bench_.waitFor([&] { return top.bus_ready_o; },
+                       "bus_ready_o at word " + std::to_string(word), 64);
         Answer answer{top.bus_rdata_o, bool(top.bus_error_o),
                       static_cast<unsigned>(bench_.cycles() - start + 1)};
         bench_.tick();

@@ -22,10 +22,15 @@ extern "C" {
 #include "system_regs.h"
 }
 
-constexpr U32 coreSlot = 5, coreClocksOfMs = 100; // a simulated millisecond
+constexpr U32 coreSlot = 5;
+#ifdef CORE_CLK_HZ // of a core with that parameter
+constexpr U32 coreClocksOfMs = CORE_CLK_HZ / 1000;
+#else
+constexpr U32 coreClocksOfMs = 100; // few, so that time-outs end soon
+#endif
 constexpr U32 coreMemory = 0x01000000; // DDR3 byte address of the core's buffers, to the driver
 
-// The status of a call that neither succeeded nor threw one of its exceptions.
+// Status of a call that neither succeeded nor threw one of its exceptions.
 class CoreError : public std::runtime_error {
 public:
     explicit CoreError(Ice_Status status)
@@ -56,10 +61,10 @@ public:
 template <class Module> class CoreSlot {
 public:
     CoreSlot() {
-        static const Fsmc_Port port = {read<1>,       write<1, U8>, read<2>,
-                                       write<2, U16>, read<4>,      write<4, U32>};
+        static const FSMC_Port bus = {read<1>,       write<1, U8>, read<2>,
+                                      write<2, U16>, read<4>,      write<4, U32>};
         bench_.reset();
-        EXPECT_EQ(FSMC_init(&port, this), FSMC_OK);
+        EXPECT_EQ(FSMC_init(&bus, this), FSMC_OK);
     }
     static int wait(void* context, U32 operation, U32 ms) {
         auto& self = *static_cast<CoreSlot*>(context);
@@ -86,7 +91,7 @@ public:
             Hw_Core_interrupt(core_);
     }
 
-    // For generated proxies.
+    // The port that generated proxies take.
     void hw_start(Hw_Status status, Hw_Core& core) {
         EXPECT_EQ(status, HW_OK);
         core_ = &core;
@@ -100,8 +105,8 @@ public:
             throw exception;
         hw_check(status);
     }
-    // Until an operation that is answered later has ended, as the firmware's task polls for it:
-    // woken by the core's interrupt, or some milliseconds after the time it asked for.
+    // Polls until an operation that is answered later has ended, as the firmware's task does: woken
+    // by the core's interrupt, or some milliseconds after the time it asked for.
     void hw_finish(U32 operation) {
         Hw_Status status = HW_OK;
         U32 next = HW_NEVER;
@@ -116,7 +121,10 @@ public:
             throw CoreError(status == HW_TIMEOUT ? ICE_TIMEOUT : ICE_UNKNOWN_EXCEPTION);
     }
 
-    static constexpr Hw_Seam seam = {wait, post, nowMs};
+    static U32 busErrors(void* context) { return static_cast<CoreSlot*>(context)->errors_; }
+
+    static inline Hw_Frames frames{};
+    static constexpr Hw_Port port = {wait, post, nowMs, busErrors, &frames};
     Bench<Module> bench_;
     CoreMemory<Module> memory_{bench_};
     BusMaster<Module> bus_{bench_};

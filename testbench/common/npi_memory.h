@@ -26,7 +26,7 @@ public:
     }
     void setByte(uint32_t address, uint8_t value) { bytes_[address] = value; }
     void setStall(double stall) { stall_ = stall; }
-    // While held no request is acknowledged: a memory that hangs.
+    // Holds all requests: a memory that hangs.
     void hold(bool held) { held_ = held; }
     // Probability, each cycle, that a word of an acknowledged write stays in the write FIFO, as it
     // does while the memory is busy with other ports. 0: it leaves at the acknowledgement.

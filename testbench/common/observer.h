@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // observer: what a Verilated model leaves behind in builds that are made for looking: a waveform
-// (-DTRACE=ON; WAVE=file, WAVE_FROM and WAVE_TO in clocks) and coverage (-DCOVERAGE=ON; COVERAGE_DIR).
-// In other builds it only keeps the clock.
+// (-DTRACE=ON; WAVE=file, WAVE_FROM and WAVE_TO in clocks) and coverage (-DCOVERAGE=ON;
+// COVERAGE_DIR). In other builds it only keeps the clock.
 
 #ifndef OBSERVER_H
 #define OBSERVER_H
@@ -41,8 +41,9 @@ public:
 #ifdef ICESOC_COVERAGE
         static unsigned count = 0;
         if (const char* folder = std::getenv("COVERAGE_DIR"))
-            context_.coveragep()->write(
-                (std::string(folder) + "/" + std::to_string(getpid()) + "-" + std::to_string(count++) + ".dat").c_str());
+            context_.coveragep()->write((std::string(folder) + "/" + std::to_string(getpid()) +
+                                         "-" + std::to_string(count++) + ".dat")
+                                            .c_str());
 #endif
     }
 

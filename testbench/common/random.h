@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// random: a small generator with the same numbers on every machine (xorshift64*), and the seed of a test.
+// random: a small generator with the same numbers on every machine (xorshift64*), and the seed of a
+// test.
 
 #ifndef RANDOM_H
 #define RANDOM_H

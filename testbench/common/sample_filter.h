@@ -61,8 +61,9 @@ protected:
             expectFiltered(samples(256, random));
         }
     }
-    // Of a long block against a short one, without the driver's copying, when the memory keeps up.
-    // `control`, `start`, `event`: the operation's registers and bit.
+    // Clocks that one more sample costs: a long block against a short one, without the driver's
+    // copying, when the memory keeps up. `control`, `start`, `event`: the operation's registers and
+    // bit.
     double clocksOfASample(unsigned control, U32 start, unsigned event) {
         core_.memory_.setStall(0);
         auto clocksOf = [&](size_t count) {

@@ -56,8 +56,8 @@ CortexM3::Stop CortexM3::run(bool singleStep) {
 }
 
 void CortexM3::updateAttention() {
-    attention_ =
-        stopAsked_ || resetAsked_ || failure_ || synchronous_.number || exceptions_.deliverable() != 0;
+    attention_ = stopAsked_ || resetAsked_ || failure_ || synchronous_.number ||
+                 exceptions_.deliverable() != 0;
 }
 
 void CortexM3::onInstruction(uint32_t address) {
@@ -72,7 +72,8 @@ void CortexM3::onInstruction(uint32_t address) {
         if (skipped_ != 0) {
             unsigned cycles = skipped_;
             skipped_ = 0;
-            if (address == unitEnd_) { // instructions of an IT block that were not taken cost a cycle each
+            if (address ==
+                unitEnd_) { // instructions of an IT block that were not taken cost a cycle each
                 expected_ = address;
                 pass(cycles);
             }
@@ -116,12 +117,17 @@ void CortexM3::execute(uint32_t address, const Instruction& i) {
         skipped_ = i.conditional;
         break;
     }
-    case Instruction::Sleep: sleep(); break;
-    case Instruction::Masks: masksChanged_ = true; break;
+    case Instruction::Sleep:
+        sleep();
+        break;
+    case Instruction::Masks:
+        masksChanged_ = true;
+        break;
     case Instruction::Refused:
         failure_ = std::make_exception_ptr(std::runtime_error("WFE and SEV are not modelled"));
         break;
-    case Instruction::Plain: break;
+    case Instruction::Plain:
+        break;
     }
 }
 
@@ -160,7 +166,8 @@ void CortexM3::sleep() {
     uint64_t from = cycles();
     while (!exceptions_.wakes() && !stopAsked_ && !resetAsked_ && !failure_)
         passing([&] {
-            control_.pass(bus_.sleep(static_cast<unsigned>(std::min(control_.untilTick(), sleepStep))));
+            control_.pass(
+                bus_.sleep(static_cast<unsigned>(std::min(control_.untilTick(), sleepStep))));
         });
     sleeping_ += cycles() - from;
     asleep_ = false;
@@ -170,7 +177,8 @@ void CortexM3::updateMasks(uint32_t address) {
     masksChanged_ = false;
     exceptions_.setMasks(reg(Primask), reg(Basepri), reg(Faultmask));
     attention_ = attention_ || exceptions_.deliverable();
-    bool masked = reg(Primask) || reg(Faultmask) || (reg(Basepri) && reg(Basepri) <= watchedPriority_);
+    bool masked =
+        reg(Primask) || reg(Faultmask) || (reg(Basepri) && reg(Basepri) <= watchedPriority_);
     if (masked && !masked_) {
         maskedSince_ = cycles();
         maskedAt_ = executing_;
@@ -198,7 +206,8 @@ void CortexM3::pendInterrupt(unsigned number) {
 
 // ---- accesses ----
 
-template <class Access> uint32_t CortexM3::guardedAccess(uint32_t address, unsigned bytes, Access access) {
+template <class Access>
+uint32_t CortexM3::guardedAccess(uint32_t address, unsigned bytes, Access access) {
     if (failure_ || synchronous_.number)
         return 0; // the processor stops before the next instruction
     try {
@@ -259,7 +268,8 @@ bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
         currentException() == HardFault)
         return false;
     char text[80];
-    std::snprintf(text, sizeof text, "access of %u bytes to 0x%08X: the MPU forbids it", bytes, address);
+    std::snprintf(text, sizeof text, "access of %u bytes to 0x%08X: the MPU forbids it", bytes,
+                  address);
     synchronous_ = {MemManage, SystemControl::dataAccess | SystemControl::mmfarValid, text};
     control_.setFaultAddress(SystemControl::mmfarValid, address);
     attention_ = true;
@@ -275,7 +285,9 @@ bool CortexM3::debugRead(uint32_t address, void* data, uint32_t bytes) {
     auto* to = static_cast<uint8_t*>(data);
     try {
         while (bytes) {
-            unsigned size = address % 4 == 0 && bytes >= 4 ? 4 : address % 2 == 0 && bytes >= 2 ? 2 : 1;
+            unsigned size = address % 4 == 0 && bytes >= 4   ? 4
+                            : address % 2 == 0 && bytes >= 2 ? 2
+                                                             : 1;
             uint32_t value = 0;
             if (address >= 0xE0000000) {
                 if (!control_.read(address, size, value))
@@ -299,7 +311,9 @@ bool CortexM3::debugWrite(uint32_t address, const void* data, uint32_t bytes) {
     const auto* from = static_cast<const uint8_t*>(data);
     try {
         while (bytes) {
-            unsigned size = address % 4 == 0 && bytes >= 4 ? 4 : address % 2 == 0 && bytes >= 2 ? 2 : 1;
+            unsigned size = address % 4 == 0 && bytes >= 4   ? 4
+                            : address % 2 == 0 && bytes >= 2 ? 2
+                                                             : 1;
             uint32_t value = 0;
             std::memcpy(&value, from, size);
             if (address >= 0xE0000000) {

@@ -19,7 +19,7 @@
 #include <unicorn/unicorn.h>
 #include <vector>
 
-// What surrounds the processor. Addresses are the processor's.
+// CpuBus is what surrounds the processor. Addresses are the processor's.
 class CpuBus {
 public:
     virtual ~CpuBus() = default;
@@ -32,8 +32,8 @@ public:
     virtual void write(uint32_t address, unsigned bytes, uint32_t value) = 0;
     // `cycles` of HCLK pass outside of accesses. Not called again from within.
     virtual void pass(unsigned cycles) = 0;
-    // The processor sleeps: up to `limit` cycles pass, fewer if an interrupt line has changed. Returns
-    // how many have passed, at least 1.
+    // The processor sleeps: up to `limit` cycles pass, fewer if an interrupt line has changed.
+    // Returns how many have passed, at least 1.
     virtual unsigned sleep(unsigned limit) {
         pass(1);
         return limit ? 1 : 0;
@@ -59,31 +59,44 @@ public:
     CortexM3(const CortexM3&) = delete;
     CortexM3& operator=(const CortexM3&) = delete;
 
-    // Memory as a debugger sees it: flash and RAM, no side effects. False: not all of it is memory.
+    // Read and write flash and RAM, without side effects. False: not all of it is memory.
     bool readMemory(uint32_t address, void* data, uint32_t bytes) const;
     bool writeMemory(uint32_t address, const void* data, uint32_t bytes);
     void loadFlash(uint32_t address, const std::vector<uint8_t>& bytes);
-    // What a debugger asks for: memory, else registers and windows by accesses like the processor's own.
+    // Read and write as a debugger asks: memory, else registers and windows by accesses like the
+    // processor's own.
     bool debugRead(uint32_t address, void* data, uint32_t bytes);
     bool debugWrite(uint32_t address, const void* data, uint32_t bytes);
     uint32_t word(uint32_t address) const; // 0 where there is no memory
 
-    // Power-on or system reset: registers from the vector table; RAM stays.
+    // Resets as power-on or the system does: registers from the vector table; RAM stays.
     void reset();
     // Runs until stop(), a breakpoint or an exception of the bus that is no CpuBus::Error.
     enum class Stop { Asked, Breakpoint, Stepped };
     Stop run(bool singleStep = false);
-    // From the bus or a listener: run() returns before the next instruction.
+    // Called by the bus or a listener: run() returns before the next instruction.
     void stop() { stopAsked_ = attention_ = true; }
-    // A reset from outside (a watchdog): before the next instruction.
+    // Asks for a reset from outside (a watchdog), before the next instruction.
     void requestReset() { resetAsked_ = attention_ = true; }
 
-    // Interrupt lines, levels; from the bus.
+    // Sets the level of an interrupt line; called by the bus.
     void setInterrupt(unsigned number, bool high);
     void pendInterrupt(unsigned number);
 
     // R0..R12, SP, LR, PC, xPSR as 0..16; then MSP, PSP, PRIMASK, BASEPRI, FAULTMASK, CONTROL.
-    enum Register { Sp = 13, Lr, Pc, Xpsr, Msp, Psp, Primask, Basepri, Faultmask, Control, Registers };
+    enum Register {
+        Sp = 13,
+        Lr,
+        Pc,
+        Xpsr,
+        Msp,
+        Psp,
+        Primask,
+        Basepri,
+        Faultmask,
+        Control,
+        Registers
+    };
     uint32_t reg(int number) const;
     void setReg(int number, uint32_t value);
 
@@ -108,7 +121,8 @@ public:
     std::set<uint32_t> breakpoints; // addresses, bit 0 clear
     std::string lastFault;          // text of the last fault, for people
 
-    // Told of what happens: exceptions entered and left, a system reset before it is carried out.
+    // Listeners are told of what happens: exceptions entered and left, a system reset before it is
+    // carried out.
     struct Listener {
         std::function<void(unsigned number)> entered, left;
         std::function<void()> systemReset;

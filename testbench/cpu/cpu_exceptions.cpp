@@ -31,10 +31,11 @@ uint8_t* pages(uint32_t bytes) {
 
 int UnicornCalls::registerId(int number) {
     static const int ids[CortexM3::Registers] = {
-        UC_ARM_REG_R0,      UC_ARM_REG_R1,        UC_ARM_REG_R2,     UC_ARM_REG_R3,  UC_ARM_REG_R4,
-        UC_ARM_REG_R5,      UC_ARM_REG_R6,        UC_ARM_REG_R7,     UC_ARM_REG_R8,  UC_ARM_REG_R9,
-        UC_ARM_REG_R10,     UC_ARM_REG_R11,       UC_ARM_REG_R12,    UC_ARM_REG_SP,  UC_ARM_REG_LR,
-        UC_ARM_REG_PC,      UC_ARM_REG_XPSR,      UC_ARM_REG_MSP,    UC_ARM_REG_PSP, UC_ARM_REG_PRIMASK,
+        UC_ARM_REG_R0,      UC_ARM_REG_R1,        UC_ARM_REG_R2,     UC_ARM_REG_R3,
+        UC_ARM_REG_R4,      UC_ARM_REG_R5,        UC_ARM_REG_R6,     UC_ARM_REG_R7,
+        UC_ARM_REG_R8,      UC_ARM_REG_R9,        UC_ARM_REG_R10,    UC_ARM_REG_R11,
+        UC_ARM_REG_R12,     UC_ARM_REG_SP,        UC_ARM_REG_LR,     UC_ARM_REG_PC,
+        UC_ARM_REG_XPSR,    UC_ARM_REG_MSP,       UC_ARM_REG_PSP,    UC_ARM_REG_PRIMASK,
         UC_ARM_REG_BASEPRI, UC_ARM_REG_FAULTMASK, UC_ARM_REG_CONTROL};
     return ids[number];
 }
@@ -55,13 +56,16 @@ CortexM3::CortexM3(CpuBus& bus, const Config& config, const std::vector<Window>&
     for (const Window& w : all) {
         windows_.push_back(std::make_unique<MappedWindow>(MappedWindow{this, w.base}));
         void* user = windows_.back().get();
-        check(uc_mmio_map(uc_, w.base, w.bytes, UnicornCalls::read, user, UnicornCalls::write, user),
-              "window");
+        check(
+            uc_mmio_map(uc_, w.base, w.bytes, UnicornCalls::read, user, UnicornCalls::write, user),
+            "window");
     }
     uc_hook hook;
-    check(uc_hook_add(uc_, &hook, UC_HOOK_CODE, reinterpret_cast<void*>(UnicornCalls::code), this, 1, 0),
+    check(uc_hook_add(uc_, &hook, UC_HOOK_CODE, reinterpret_cast<void*>(UnicornCalls::code), this,
+                      1, 0),
           "hook");
-    check(uc_hook_add(uc_, &hook, UC_HOOK_INTR, reinterpret_cast<void*>(UnicornCalls::raised), this, 1, 0),
+    check(uc_hook_add(uc_, &hook, UC_HOOK_INTR, reinterpret_cast<void*>(UnicornCalls::raised), this,
+                      1, 0),
           "hook");
     check(uc_hook_add(uc_, &hook, UC_HOOK_MEM_READ | UC_HOOK_MEM_WRITE,
                       reinterpret_cast<void*>(UnicornCalls::access), this, config.ramBase,
@@ -83,7 +87,8 @@ bool CortexM3::readMemory(uint32_t address, void* data, uint32_t bytes) const {
     auto inside = [&](uint32_t base, uint32_t size) {
         return address >= base && uint64_t(address) + bytes <= uint64_t(base) + size;
     };
-    const uint8_t* at = inside(config_.ramBase, config_.ramBytes) ? ram_.get() + (address - config_.ramBase)
+    const uint8_t* at = inside(config_.ramBase, config_.ramBytes)
+                            ? ram_.get() + (address - config_.ramBase)
                         : inside(config_.flashBase, config_.flashBytes)
                             ? flash_.get() + (address - config_.flashBase)
                         : inside(0, config_.flashBytes) ? flash_.get() + address
@@ -102,7 +107,8 @@ bool CortexM3::writeMemory(uint32_t address, const void* data, uint32_t bytes) {
         !readMemory(address + bytes - 1, &was, 1))
         return false;
     for (uint32_t i = 0; i < bytes; ++i) { // flash: as a programmer writes it
-        uint32_t offset = (address >= config_.flashBase ? address - config_.flashBase : address) + i;
+        uint32_t offset =
+            (address >= config_.flashBase ? address - config_.flashBase : address) + i;
         flash_[offset] = static_cast<const uint8_t*>(data)[i];
         decoded_[offset >> 1].bytes = 0;
         if (offset >= 2)
@@ -177,15 +183,17 @@ void CortexM3::enter(unsigned number) {
     uint32_t xpsr = reg(Xpsr), sp = reg(Sp);
     uint32_t padding = control_.alignsStack() && (sp & 4) ? 4 : 0;
     uint32_t frame = sp - 32 - padding;
-    const uint32_t saved[8] = {reg(0),  reg(1),  reg(2), reg(3),
-                               reg(12), reg(Lr), pc_,    (xpsr & ~aligned) | (padding ? aligned : 0)};
+    const uint32_t saved[8] = {
+        reg(0),  reg(1),  reg(2), reg(3),
+        reg(12), reg(Lr), pc_,    (xpsr & ~aligned) | (padding ? aligned : 0)};
     bool guarded = control_.isForbidden(frame, 32, true);
     if (guarded || !writeMemory(frame, saved, 32)) {
         lastFault = "the stack pointer is bad at the entry of an exception";
-        control_.reportFault(guarded ? SystemControl::stackAccess : SystemControl::stackAccess << 8);
+        control_.reportFault(guarded ? SystemControl::stackAccess
+                                     : SystemControl::stackAccess << 8);
         unsigned derived = guarded ? MemManage : BusFault;
-        bool possible =
-            exceptions_[derived].enabled && exceptions_.priorityOf(derived) < exceptions_.runningPriority();
+        bool possible = exceptions_[derived].enabled &&
+                        exceptions_.priorityOf(derived) < exceptions_.runningPriority();
         if (!possible)
             control_.reportHardFault(SystemControl::forced);
         number = possible ? derived : unsigned(HardFault); // the frame is lost, as on the chip
@@ -199,8 +207,8 @@ void CortexM3::enter(unsigned number) {
 void CortexM3::leave() {
     uint32_t number = currentException(), how = raised_ ? pc_ | 1 : 0;
     uint32_t kind = how & 0xF;
-    bool valid =
-        number && (kind == 1 || kind == 9 || kind == 13) && (kind == 1) == (exceptions_.activeCount() > 1);
+    bool valid = number && (kind == 1 || kind == 9 || kind == 13) &&
+                 (kind == 1) == (exceptions_.activeCount() > 1);
     exceptions_.leave(number);
     if (number != NonMaskable)
         setReg(Faultmask, 0);
@@ -306,13 +314,19 @@ void CortexM3::handleRaised() {
         pc_ = executing_;
         breakpointHit_ = true; // a debugger's business; without one run() returns all the same
         return;
-    case Fetch: synchronous_ = {BusFault, SystemControl::instructionBus, "nothing to execute there"}; return;
+    case Fetch:
+        synchronous_ = {BusFault, SystemControl::instructionBus, "nothing to execute there"};
+        return;
     case NoCoprocessor:
         pc_ = executing_;
         synchronous_ = {UsageFault, SystemControl::noCoprocessor, "there is no such coprocessor"};
         return;
-    case State: synchronous_ = {UsageFault, SystemControl::invalidState, "a jump out of Thumb state"}; return;
-    default: pc_ = executing_; synchronous_ = {UsageFault, SystemControl::undefined, "undefined instruction"};
+    case State:
+        synchronous_ = {UsageFault, SystemControl::invalidState, "a jump out of Thumb state"};
+        return;
+    default:
+        pc_ = executing_;
+        synchronous_ = {UsageFault, SystemControl::undefined, "undefined instruction"};
     }
 }
 
@@ -326,7 +340,8 @@ void CortexM3::handleUnicorn(uc_err error) {
     char text[64];
     std::snprintf(text, sizeof text, "%s", uc_strerror(error));
     switch (error) {
-    case UC_ERR_OK: return;
+    case UC_ERR_OK:
+        return;
     case UC_ERR_READ_UNMAPPED:
     case UC_ERR_WRITE_UNMAPPED:
     case UC_ERR_WRITE_PROT:
@@ -334,9 +349,13 @@ void CortexM3::handleUnicorn(uc_err error) {
         synchronous_ = {BusFault, SystemControl::preciseBus, text};
         return;
     case UC_ERR_FETCH_UNMAPPED:
-    case UC_ERR_FETCH_PROT: synchronous_ = {BusFault, SystemControl::instructionBus, text}; return;
+    case UC_ERR_FETCH_PROT:
+        synchronous_ = {BusFault, SystemControl::instructionBus, text};
+        return;
     case UC_ERR_INSN_INVALID:
-    case UC_ERR_EXCEPTION: return undefinedAt(executing_);
-    default: throw std::runtime_error(std::string("libunicorn: ") + text);
+    case UC_ERR_EXCEPTION:
+        return undefinedAt(executing_);
+    default:
+        throw std::runtime_error(std::string("libunicorn: ") + text);
     }
 }

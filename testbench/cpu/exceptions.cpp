@@ -11,9 +11,12 @@ void Exceptions::reset() {
 
 int Exceptions::priorityOf(unsigned number) const {
     switch (number) {
-    case NonMaskable: return -2;
-    case HardFault: return -1;
-    default: return states_[number].priority;
+    case NonMaskable:
+        return -2;
+    case HardFault:
+        return -1;
+    default:
+        return states_[number].priority;
     }
 }
 
@@ -81,7 +84,8 @@ void Exceptions::update() {
         const State& s = states_[n];
         if (s.active)
             activePriority_ = std::min(activePriority_, groupOf(priorityOf(n)));
-        bool possible = n < MemManage || n == SupervisorCall || n == PendSv || n == SysTick || s.enabled;
+        bool possible =
+            n < MemManage || n == SupervisorCall || n == PendSv || n == SysTick || s.enabled;
         if (s.pending && possible && priorityOf(n) < bestExact) {
             best_ = n;
             bestExact = priorityOf(n);

@@ -53,11 +53,12 @@ public:
     // The masks of the processor.
     void setMasks(uint32_t primask, uint32_t basepri, uint32_t faultmask);
 
-    // The exception that must be entered now; 0: none.
+    // Returns the exception that must be entered now; 0: none.
     unsigned deliverable() const { return bestPriority_ < runningPriority_ ? best_ : 0; }
-    // As the processor sees it, with masks; `none` in thread mode without them.
+    // Returns the priority that the processor runs at, with masks; `none` in thread mode without
+    // them.
     int runningPriority() const { return runningPriority_; }
-    // The pending one of the highest priority, masked or not; 0: none.
+    // Returns the pending one of the highest priority, masked or not; 0: none.
     unsigned firstPending() const { return best_; }
     // WFI wakes by what would preempt if PRIMASK were 0 (B1.5.19).
     bool wakes() const { return bestPriority_ < sleepPriority_; }
@@ -72,7 +73,8 @@ private:
     unsigned group_ = 0, activeCount_ = 0;
     uint32_t primask_ = 0, basepri_ = 0, faultmask_ = 0;
     unsigned best_ = 0;
-    int bestPriority_ = none, activePriority_ = none, runningPriority_ = none, sleepPriority_ = none;
+    int bestPriority_ = none, activePriority_ = none, runningPriority_ = none,
+        sleepPriority_ = none;
 };
 
 #endif

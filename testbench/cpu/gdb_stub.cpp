@@ -22,10 +22,14 @@ constexpr int systemRegisters[] = {CortexM3::Msp,     CortexM3::Psp,       Corte
 const char* const description =
     "<?xml version=\"1.0\"?><!DOCTYPE target SYSTEM \"gdb-target.dtd\"><target version=\"1.0\">"
     "<architecture>arm</architecture><feature name=\"org.gnu.gdb.arm.m-profile\">"
-    "<reg name=\"r0\" bitsize=\"32\"/><reg name=\"r1\" bitsize=\"32\"/><reg name=\"r2\" bitsize=\"32\"/>"
-    "<reg name=\"r3\" bitsize=\"32\"/><reg name=\"r4\" bitsize=\"32\"/><reg name=\"r5\" bitsize=\"32\"/>"
-    "<reg name=\"r6\" bitsize=\"32\"/><reg name=\"r7\" bitsize=\"32\"/><reg name=\"r8\" bitsize=\"32\"/>"
-    "<reg name=\"r9\" bitsize=\"32\"/><reg name=\"r10\" bitsize=\"32\"/><reg name=\"r11\" bitsize=\"32\"/>"
+    "<reg name=\"r0\" bitsize=\"32\"/><reg name=\"r1\" bitsize=\"32\"/><reg name=\"r2\" "
+    "bitsize=\"32\"/>"
+    "<reg name=\"r3\" bitsize=\"32\"/><reg name=\"r4\" bitsize=\"32\"/><reg name=\"r5\" "
+    "bitsize=\"32\"/>"
+    "<reg name=\"r6\" bitsize=\"32\"/><reg name=\"r7\" bitsize=\"32\"/><reg name=\"r8\" "
+    "bitsize=\"32\"/>"
+    "<reg name=\"r9\" bitsize=\"32\"/><reg name=\"r10\" bitsize=\"32\"/><reg name=\"r11\" "
+    "bitsize=\"32\"/>"
     "<reg name=\"r12\" bitsize=\"32\"/><reg name=\"sp\" bitsize=\"32\" type=\"data_ptr\"/>"
     "<reg name=\"lr\" bitsize=\"32\"/><reg name=\"pc\" bitsize=\"32\" type=\"code_ptr\"/>"
     "<reg name=\"xpsr\" bitsize=\"32\" regnum=\"25\"/></feature>"
@@ -74,6 +78,8 @@ int registerOf(unsigned long number) {
 }
 
 const std::string error = "E01";
+constexpr int interrupt = 3;             // Ctrl-C
+constexpr size_t longestPacket = 0x4000; // bytes, as qSupported's answer says
 
 } // namespace
 
@@ -87,7 +93,8 @@ GdbStub::GdbStub(uint16_t port) {
     listener_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
     if (listener_ < 0 || bind(listener_, reinterpret_cast<sockaddr*>(&at), size) != 0 ||
-        listen(listener_, 1) != 0 || getsockname(listener_, reinterpret_cast<sockaddr*>(&at), &size) != 0)
+        listen(listener_, 1) != 0 ||
+        getsockname(listener_, reinterpret_cast<sockaddr*>(&at), &size) != 0)
         throw std::system_error(errno, std::generic_category(),
                                 "cannot listen on port " + std::to_string(port));
     port_ = ntohs(at.sin_port);
@@ -125,10 +132,14 @@ bool GdbStub::receive(std::string& packet) {
         int c;
         do
             c = nextByte();
-        while (c >= 0 && c != '$');
+        while (c == '+' || c == '-' || c == interrupt);
+        if (c != '$')
+            return false; // it has gone, or speaks something else
         packet.clear();
         unsigned sum = 0;
         while ((c = nextByte()) >= 0 && c != '#') {
+            if (packet.size() == longestPacket)
+                return false;
             packet += static_cast<char>(c);
             sum += static_cast<unsigned>(c);
         }
@@ -153,35 +164,61 @@ void GdbStub::send(const std::string& payload) {
 }
 
 bool GdbStub::wantsStop() {
-    if (connection_ < 0)
-        return false;
+    if (connection_ < 0) {
+        pollfd waiting{listener_, POLLIN, 0};
+        return poll(&waiting, 1, 0) > 0;
+    }
     uint8_t byte;
     ssize_t n = recv(connection_, &byte, 1, MSG_DONTWAIT);
-    return n == 0 || (n == 1 && byte == 3);
+    return n == 0 || (n == 1 && byte == interrupt);
 }
 
 bool GdbStub::serve(const Target& target, const std::function<bool()>& mayWait) {
-    over_ = detached_ = noAcknowledgement_ = false;
-    if (!accept(mayWait))
-        return false;
-    std::string packet;
-    while (!over_ && !detached_) {
-        if (!receive(packet))
-            detached_ = true; // it has gone: the program goes on
-        else
-            send(answer(target, packet));
+    over_ = detached_ = false;
+    while (accept(mayWait)) {
+        noAcknowledgement_ = false;
+        const bool talked = talks(target);
+        close(connection_);
+        connection_ = -1;
+        served_ = served_ || talked;
+        if (talked)
+            break;
     }
     target.cpu.breakpoints.clear();
-    close(connection_);
-    connection_ = -1;
-    return detached_;
+    return served_ && !over_;
+}
+
+// A debugger may be silent for hours, but it speaks first.
+void GdbStub::patient(bool on) {
+    timeval limit{on ? 0 : 2, 0};
+    setsockopt(connection_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+}
+
+// False: it was no debugger.
+bool GdbStub::talks(const Target& target) {
+    std::string packet;
+    bool talked = false;
+    patient(false);
+    while (!over_ && !detached_) {
+        if (receive(packet))
+            send(answer(target, packet));
+        else if (talked)
+            detached_ = true; // it has gone: the program goes on
+        else
+            return false;
+        talked = true;
+        patient(true);
+    }
+    return true;
 }
 
 std::string GdbStub::answer(const Target& target, const std::string& packet) {
     const std::string rest = packet.empty() ? "" : packet.substr(1);
     switch (packet.empty() ? 0 : packet[0]) {
-    case '?': return "T05";
-    case 'g': return readRegisters(target, 0, CortexM3::Xpsr);
+    case '?':
+        return "T05";
+    case 'g':
+        return readRegisters(target, 0, CortexM3::Xpsr);
     case 'G':
         for (int r = 0; r <= CortexM3::Xpsr && rest.size() >= static_cast<size_t>(8 * r + 8); ++r)
             target.cpu.setReg(r, wordOf(rest.substr(static_cast<size_t>(8 * r))));
@@ -198,19 +235,32 @@ std::string GdbStub::answer(const Target& target, const std::string& packet) {
         target.cpu.setReg(r, wordOf(end + 1));
         return "OK";
     }
-    case 'm': return readMemory(target, rest);
-    case 'M': return writeMemory(target, rest);
+    case 'm':
+        return readMemory(target, rest);
+    case 'M':
+        return writeMemory(target, rest);
     case 'Z':
-    case 'z': return breakpoint(target, packet);
-    case 'c': return resume(target, false);
-    case 's': return resume(target, true);
-    case 'H': return "OK";
-    case 'T': return "OK";
-    case 'D': detached_ = true; return "OK";
-    case 'k': over_ = true; return "OK";
+    case 'z':
+        return breakpoint(target, packet);
+    case 'c':
+        return resume(target, false);
+    case 's':
+        return resume(target, true);
+    case 'H':
+        return "OK";
+    case 'T':
+        return "OK";
+    case 'D':
+        detached_ = true;
+        return "OK";
+    case 'k':
+        over_ = true;
+        return "OK";
     case 'q':
-    case 'Q': return query(target, packet);
-    default: return ""; // not supported
+    case 'Q':
+        return query(target, packet);
+    default:
+        return ""; // not supported
     }
 }
 
@@ -240,7 +290,8 @@ std::string GdbStub::query(const Target& target, const std::string& packet) {
         } else if (command == "info") {
             text = target.describe();
         } else {
-            text = "monitor reset: power-on reset of the processor; monitor info: time, cycles, last fault\n";
+            text = "monitor reset: power-on reset of the processor; monitor info: time, cycles, "
+                   "last fault\n";
         }
         std::string hex;
         for (char c : text)
@@ -273,10 +324,12 @@ std::string GdbStub::readMemory(const Target& target, const std::string& argumen
 std::string GdbStub::writeMemory(const Target& target, const std::string& arguments) {
     unsigned address = 0, length = 0;
     size_t colon = arguments.find(':');
-    if (colon == std::string::npos || std::sscanf(arguments.c_str(), "%x,%x", &address, &length) != 2)
+    if (colon == std::string::npos ||
+        std::sscanf(arguments.c_str(), "%x,%x", &address, &length) != 2)
         return error;
     std::string bytes = bytesOf(arguments.substr(colon + 1));
-    return bytes.size() == length && target.cpu.debugWrite(address, bytes.data(), length) ? "OK" : error;
+    return bytes.size() == length && target.cpu.debugWrite(address, bytes.data(), length) ? "OK"
+                                                                                          : error;
 }
 
 std::string GdbStub::breakpoint(const Target& target, const std::string& packet) {

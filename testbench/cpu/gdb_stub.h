@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// gdb_stub: lets a debugger on this machine command a CortexM3: GDB's remote serial protocol over TCP on
-// the loopback interface. Registers, memory, breakpoints, step, continue, interrupt, `monitor reset`.
+// gdb_stub: lets a debugger on this machine command a CortexM3: GDB's remote serial protocol over
+// TCP on the loopback interface. Registers, memory, breakpoints, step, continue, interrupt,
+// `monitor reset`.
 
 #ifndef GDB_STUB_H
 #define GDB_STUB_H
@@ -13,8 +14,8 @@
 
 class GdbStub {
 public:
-    // What the debugger commands. `run` returns when the processor stops (or the simulation ends: then
-    // `isOver` is true); `describe` is the answer to `monitor info`.
+    // The target is what the debugger commands. `run` returns when the processor stops (or the
+    // simulation ends: then `isOver` is true); `describe` is the answer to `monitor info`.
     struct Target {
         CortexM3& cpu;
         std::function<CortexM3::Stop(bool singleStep)> run;
@@ -29,15 +30,20 @@ public:
     GdbStub& operator=(const GdbStub&) = delete;
     uint16_t port() const { return port_; }
 
-    // Waits for a debugger and obeys it. True: it has detached, the program is to go on; false: it has
-    // killed the program, or the simulation is over. `mayWait` false ends the waiting.
+    // Waits for a debugger, as long as `mayWait`, and obeys it; who does not begin as the protocol
+    // does is sent away. True: the program is to go on; false: the debugger has killed it, the
+    // simulation is over, or none has ever come.
     bool serve(const Target& target, const std::function<bool()>& mayWait);
-    // To be asked while the processor runs: the debugger wants it to stop (Ctrl-C), or has gone.
+    // True while the processor runs and is to stop: the debugger has sent Ctrl-C, or has gone, or
+    // another one waits.
     bool wantsStop();
+    bool hasServed() const { return served_; }
 
 private:
     bool accept(const std::function<bool()>& mayWait);
     bool receive(std::string& packet);
+    bool talks(const Target& target);
+    void patient(bool on);
     int nextByte();
     void send(const std::string& payload);
     std::string answer(const Target& target, const std::string& packet);
@@ -50,7 +56,7 @@ private:
 
     int listener_ = -1, connection_ = -1;
     uint16_t port_ = 0;
-    bool over_ = false, detached_ = false, noAcknowledgement_ = false;
+    bool over_ = false, detached_ = false, served_ = false, noAcknowledgement_ = false;
 };
 
 #endif

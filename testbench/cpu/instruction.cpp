@@ -37,14 +37,19 @@ Instruction narrow(uint16_t op) {
     if ((op & 0xF600) == 0xB400) // PUSH, POP
         return takes(1 + bits(op & 0x1FF));
     switch (op >> 12) {
-    case 4: return takes(op & 0x0800 ? 2 : 1); // LDR literal
-    case 5: return takes(2);                   // register offset
+    case 4:
+        return takes(op & 0x0800 ? 2 : 1); // LDR literal
+    case 5:
+        return takes(2); // register offset
     case 6:
     case 7:
     case 8:
-    case 9: return takes(op & 0x0800 ? 2 : 1);  // immediate offset: a store is buffered
-    case 12: return takes(1 + bits(op & 0xFF)); // LDM, STM
-    default: return i;
+    case 9:
+        return takes(op & 0x0800 ? 2 : 1); // immediate offset: a store is buffered
+    case 12:
+        return takes(1 + bits(op & 0xFF)); // LDM, STM
+    default:
+        return i;
     }
 }
 

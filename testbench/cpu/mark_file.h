@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// mark_file: a waveform (VCD, nanoseconds) of what the processor is at: exception, task, sleep. GTKWave
-// shows it on the same time axis as a waveform of the RTL.
+// mark_file: a waveform (VCD, nanoseconds) of what the processor is at: exception, task, sleep.
+// GTKWave shows it on the same time axis as a waveform of the RTL.
 
 #ifndef MARK_FILE_H
 #define MARK_FILE_H

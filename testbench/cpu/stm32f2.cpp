@@ -8,8 +8,8 @@
 namespace {
 
 constexpr uint32_t iwdg = 0x40003000, syscfg = 0x40013800, exti = 0x40013C00, gpio = 0x40020000,
-                   crcUnit = 0x40023000, rcc = 0x40023800, flashInterface = 0x40023C00, windows = 0x60000000,
-                   fsmcRegisters = 0xA0000000;
+                   crcUnit = 0x40023000, rcc = 0x40023800, flashInterface = 0x40023C00,
+                   windows = 0x60000000, fsmcRegisters = 0xA0000000;
 constexpr uint32_t ahb1Enable = rcc + 0x30, ahb3Enable = rcc + 0x38, apb2Enable = rcc + 0x44,
                    csr = rcc + 0x74;
 constexpr uint32_t padReset = 1u << 26, powerReset = 1u << 27, softwareReset = 1u << 28,
@@ -21,13 +21,14 @@ bool isIn(uint32_t address, uint32_t base, uint32_t bytes) {
     return address - base < bytes;
 }
 
-// Which pins of ports D..G the FSMC has (data sheet of the STM32F207, alternate functions).
+// The pins of ports D..G that the FSMC has (data sheet of the STM32F207, alternate functions).
 struct Pins {
     unsigned port;
     uint16_t pins;
     const char* name;
 };
-constexpr Pins fsmcPins[] = {{3, 0xFFF3, "D"}, {4, 0xFFFF, "E"}, {5, 0xF03F, "F"}, {6, 0x223F, "G"}};
+constexpr Pins fsmcPins[] = {
+    {3, 0xFFF3, "D"}, {4, 0xFFFF, "E"}, {5, 0xF03F, "F"}, {6, 0x223F, "G"}};
 
 } // namespace
 
@@ -84,7 +85,7 @@ void Stm32F2::pass(unsigned cycles) {
     lookAround();
 }
 
-// What is looked at now and then: the watchdog, and who wants to know that time has passed.
+// Looks after the watchdog, and tells who wants to know that time has passed.
 void Stm32F2::lookAround() {
     if (watchdog_.on && now_() >= watchdog_.due) {
         watchdog_.fired = true;
@@ -204,7 +205,8 @@ uint32_t Stm32F2::readPeripheral(uint32_t address) {
     }
     if (address == exti + 0x14)
         return pendingExti_;
-    if (isIn(address, exti, 0x14) || isIn(address, syscfg, 0x24) || isIn(address, flashInterface, 0x18))
+    if (isIn(address, exti, 0x14) || isIn(address, syscfg, 0x24) ||
+        isIn(address, flashInterface, 0x18))
         return stored(address);
     if (address == crcUnit)
         return crc_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // stm32f2: an STM32F2 as far as the firmware uses one: the Cortex-M3, flash, RAM, FSMC, and clock,
-// pins, EXTI, CRC unit and watchdog by RM0033. What is not here answers with a bus fault, and so does a
-// peripheral whose clock is off, or the FSMC while one of its pins is not switched to it.
+// pins, EXTI, CRC unit and watchdog by RM0033. What is not here answers with a bus fault, and so
+// does a peripheral whose clock is off, or the FSMC while one of its pins is not switched to it.
 
 #ifndef STM32F2_H
 #define STM32F2_H
@@ -31,9 +31,9 @@ public:
     void load(const std::string& elf);
     void powerOn();
     CortexM3::Stop run(bool singleStep = false) { return cpu_.run(singleStep); }
-    // The level at a pin of port B, 0..4, which EXTI can listen to.
+    // Sets the level at a pin of port B, 0..4, which EXTI can listen to.
     void setPinB(unsigned pin, bool high);
-    // Called whenever time has passed, at the pace of the pins.
+    // Sets what is called whenever time has passed, at the pace of the pins.
     void onTime(std::function<void()> called) { onTime_ = std::move(called); }
 
     struct Resets {

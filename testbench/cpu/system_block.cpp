@@ -41,20 +41,32 @@ bool SystemControl::readScb(uint32_t at, uint32_t& value) {
                    enabled = &Exceptions::State::enabled;
     value = 0;
     switch (at) {
-    case 0xD00: value = 0x412FC230; return true; // CPUID: r2p0, an STM32F2's
-    case 0xD04:                                  // ICSR; VECTACTIVE is the processor's IPSR
+    case 0xD00:
+        value = 0x412FC230;
+        return true; // CPUID: r2p0, an STM32F2's
+    case 0xD04:      // ICSR; VECTACTIVE is the processor's IPSR
         for (unsigned n = 1; n < Exceptions::count; ++n)
-            if ((*exceptions_)[n].active && exceptions_->priorityOf(n) <= exceptions_->runningPriority())
+            if ((*exceptions_)[n].active &&
+                exceptions_->priorityOf(n) <= exceptions_->runningPriority())
                 value = n;
-        value |= uint32_t(exceptions_->activeCount() <= 1) << 11 | exceptions_->firstPending() << 12;
+        value |= uint32_t(exceptions_->activeCount() <= 1) << 11 | exceptions_->firstPending()
+                                                                       << 12;
         flag(SysTick, 26, pending);
         flag(PendSv, 28, pending);
         flag(NonMaskable, 31, pending);
         return true;
-    case 0xD08: value = vtor_; return true;
-    case 0xD0C: value = keyOut << 16 | exceptions_->grouping() << 8; return true;
-    case 0xD10: value = scr_; return true;
-    case 0xD14: value = ccr_; return true;
+    case 0xD08:
+        value = vtor_;
+        return true;
+    case 0xD0C:
+        value = keyOut << 16 | exceptions_->grouping() << 8;
+        return true;
+    case 0xD10:
+        value = scr_;
+        return true;
+    case 0xD14:
+        value = ccr_;
+        return true;
     case 0xD18:
     case 0xD1C:
     case 0xD20:
@@ -67,11 +79,20 @@ bool SystemControl::readScb(uint32_t at, uint32_t& value) {
         flag(UsageFault, 12, pending), flag(MemManage, 13, pending), flag(BusFault, 14, pending);
         flag(MemManage, 16, enabled), flag(BusFault, 17, enabled), flag(UsageFault, 18, enabled);
         return true;
-    case 0xD28: value = cfsr_; return true;
-    case 0xD2C: value = hfsr_; return true;
-    case 0xD34: value = mmfar_; return true;
-    case 0xD38: value = bfar_; return true;
-    default: return false;
+    case 0xD28:
+        value = cfsr_;
+        return true;
+    case 0xD2C:
+        value = hfsr_;
+        return true;
+    case 0xD34:
+        value = mmfar_;
+        return true;
+    case 0xD38:
+        value = bfar_;
+        return true;
+    default:
+        return false;
     }
 }
 
@@ -89,14 +110,18 @@ bool SystemControl::writeScb(uint32_t at, uint32_t value) {
         if (value >> 25 & 1)
             exceptions_->pend(SysTick, false);
         return true;
-    case 0xD08: vtor_ = value & 0x3FFFFF80; return true;
+    case 0xD08:
+        vtor_ = value & 0x3FFFFF80;
+        return true;
     case 0xD0C:
         if (value >> 16 != keyIn)
             return true; // ignored without the key
         exceptions_->setGrouping(value >> 8);
         resetRequested_ = resetRequested_ || (value & 4);
         return true;
-    case 0xD10: scr_ = value; return !(value & 2); // SLEEPONEXIT is not modelled
+    case 0xD10:
+        scr_ = value;
+        return !(value & 2); // SLEEPONEXIT is not modelled
     case 0xD14:
         ccr_ = value;
         return !(value & 0x18); // nor are the traps of unaligned accesses and divisions by zero
@@ -112,20 +137,35 @@ bool SystemControl::writeScb(uint32_t at, uint32_t value) {
         exceptions_->enable(BusFault, value >> 17 & 1);
         exceptions_->enable(UsageFault, value >> 18 & 1);
         return true;
-    case 0xD28: cfsr_ &= ~value; return true;
-    case 0xD2C: hfsr_ &= ~value; return true;
-    case 0xD34: mmfar_ = value; return true;
-    case 0xD38: bfar_ = value; return true;
-    default: return false;
+    case 0xD28:
+        cfsr_ &= ~value;
+        return true;
+    case 0xD2C:
+        hfsr_ &= ~value;
+        return true;
+    case 0xD34:
+        mmfar_ = value;
+        return true;
+    case 0xD38:
+        bfar_ = value;
+        return true;
+    default:
+        return false;
     }
 }
 
 bool SystemControl::accessMpu(uint32_t at, bool write, uint32_t& value) {
     Region& region = region_[mpuRegion_];
     switch (at) {
-    case 0x0: value = regions << 8; return !write; // TYPE
-    case 0x4: write ? mpuControl_ = value& 7 : value = mpuControl_; break;
-    case 0x8: write ? mpuRegion_ = value& 7 : value = mpuRegion_; break;
+    case 0x0:
+        value = regions << 8;
+        return !write; // TYPE
+    case 0x4:
+        write ? mpuControl_ = value& 7 : value = mpuControl_;
+        break;
+    case 0x8:
+        write ? mpuRegion_ = value& 7 : value = mpuRegion_;
+        break;
     case 0xC:
         if (write && (value & 0x10)) // VALID: REGION is in the low bits
             mpuRegion_ = value & 7;
@@ -134,8 +174,11 @@ bool SystemControl::accessMpu(uint32_t at, bool write, uint32_t& value) {
         else
             value = region.rbar | mpuRegion_;
         break;
-    case 0x10: write ? region.rasr = value : value = region.rasr; break;
-    default: return false;
+    case 0x10:
+        write ? region.rasr = value : value = region.rasr;
+        break;
+    default:
+        return false;
     }
     if (write)
         updateGuards();

@@ -79,11 +79,16 @@ bool SystemControl::readWord(uint32_t address, uint32_t& value) {
         return true;
     };
     switch (at & ~0x7Fu) {
-    case 0x100: return bitsOf(0x100, [](auto& s) { return s.enabled; });
-    case 0x180: return bitsOf(0x180, [](auto& s) { return s.enabled; });
-    case 0x200: return bitsOf(0x200, [](auto& s) { return s.pending; });
-    case 0x280: return bitsOf(0x280, [](auto& s) { return s.pending; });
-    case 0x300: return bitsOf(0x300, [](auto& s) { return s.active; });
+    case 0x100:
+        return bitsOf(0x100, [](auto& s) { return s.enabled; });
+    case 0x180:
+        return bitsOf(0x180, [](auto& s) { return s.enabled; });
+    case 0x200:
+        return bitsOf(0x200, [](auto& s) { return s.pending; });
+    case 0x280:
+        return bitsOf(0x280, [](auto& s) { return s.pending; });
+    case 0x300:
+        return bitsOf(0x300, [](auto& s) { return s.active; });
     }
     if (at >= 0x400 && at < 0x400 + ((Exceptions::interrupts + 3) & ~3u)) {
         value = 0;
@@ -92,15 +97,25 @@ bool SystemControl::readWord(uint32_t address, uint32_t& value) {
         return true;
     }
     switch (at) {
-    case 0x004: value = (Exceptions::interrupts - 1) / 32; return true; // ICTR
+    case 0x004:
+        value = (Exceptions::interrupts - 1) / 32;
+        return true; // ICTR
     case 0x010:
         value = control_ | uint32_t(countFlag_) << 16;
         countFlag_ = false;
         return true;
-    case 0x014: value = load_; return true;
-    case 0x018: value = currentTicks(); return true;
-    case 0x01C: value = calibration_; return true;
-    case 0xDFC: value = demcr_; return true;
+    case 0x014:
+        value = load_;
+        return true;
+    case 0x018:
+        value = currentTicks();
+        return true;
+    case 0x01C:
+        value = calibration_;
+        return true;
+    case 0xDFC:
+        value = demcr_;
+        return true;
     }
     if (at >= 0xD90 && at < 0xDA8)
         return accessMpu(at - 0xD90, false, value);
@@ -125,14 +140,19 @@ bool SystemControl::writeWord(uint32_t address, uint32_t value) {
         return true;
     };
     switch (at & ~0x7Fu) {
-    case 0x100: return each(0x100, [&](unsigned n) { exceptions_->enable(n, true); });
-    case 0x180: return each(0x180, [&](unsigned n) { exceptions_->enable(n, false); });
-    case 0x200: return each(0x200, [&](unsigned n) { exceptions_->pend(n); });
-    case 0x280: return each(0x280, [&](unsigned n) { exceptions_->pend(n, false); });
+    case 0x100:
+        return each(0x100, [&](unsigned n) { exceptions_->enable(n, true); });
+    case 0x180:
+        return each(0x180, [&](unsigned n) { exceptions_->enable(n, false); });
+    case 0x200:
+        return each(0x200, [&](unsigned n) { exceptions_->pend(n); });
+    case 0x280:
+        return each(0x280, [&](unsigned n) { exceptions_->pend(n, false); });
     }
     if (at >= 0x400 && at < 0x400 + ((Exceptions::interrupts + 3) & ~3u)) {
         for (unsigned b = 0; b < 4 && at - 0x400 + b < Exceptions::interrupts; ++b)
-            exceptions_->setPriority(FirstInterrupt + at - 0x400 + b, static_cast<uint8_t>(value >> 8 * b));
+            exceptions_->setPriority(FirstInterrupt + at - 0x400 + b,
+                                     static_cast<uint8_t>(value >> 8 * b));
         return true;
     }
     switch (at) {
@@ -146,14 +166,18 @@ bool SystemControl::writeWord(uint32_t address, uint32_t value) {
             startSysTick(stoppedAt_ ? stoppedAt_ : uint64_t(load_) + 1);
         return true;
     }
-    case 0x014: load_ = value & 0xFFFFFF; return true;
+    case 0x014:
+        load_ = value & 0xFFFFFF;
+        return true;
     case 0x018: // any value clears it: it is loaded at the next tick
         stoppedAt_ = 0;
         countFlag_ = false;
         if (control_ & 1)
             startSysTick(uint64_t(load_) + 1);
         return true;
-    case 0xDFC: demcr_ = value; return true;
+    case 0xDFC:
+        demcr_ = value;
+        return true;
     case 0xF00: // STIR
         if ((value & 0x1FF) < Exceptions::interrupts)
             exceptions_->pend(FirstInterrupt + (value & 0x1FF));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // system_control: registers of a Cortex-M3's private peripheral bus (0xE0000000): SysTick, NVIC,
-// SCB, MPU as far as regions without access or only for reading go, and DWT's cycle counter. ARMv7-M ARM,
-// chapter B3.
+// SCB, MPU as far as regions without access or only for reading go, and DWT's cycle counter.
+// ARMv7-M ARM, chapter B3.
 
 #ifndef SYSTEM_CONTROL_H
 #define SYSTEM_CONTROL_H
@@ -36,7 +36,7 @@ public:
     bool takeResetRequest();
     bool alignsStack() const { return ccr_ & 1u << 9; }
 
-    // Whether the MPU forbids a data access from `start` on.
+    // True if the MPU forbids a data access from `start` on.
     bool isForbidden(uint32_t start, uint32_t bytes, bool write) const {
         return guards_ && hitsGuard(start, bytes, write);
     }
@@ -47,8 +47,8 @@ public:
     void setFaultAddress(uint32_t cfsrBits, uint32_t address);
     static constexpr uint32_t dataAccess = 1u << 1, stackAccess = 1u << 4, mmfarValid = 1u << 7,
                               preciseBus = 1u << 9, bfarValid = 1u << 15, undefined = 1u << 16,
-                              invalidState = 1u << 17, invalidReturn = 1u << 18, noCoprocessor = 1u << 19,
-                              instructionBus = 1u << 8, forced = 1u << 30;
+                              invalidState = 1u << 17, invalidReturn = 1u << 18,
+                              noCoprocessor = 1u << 19, instructionBus = 1u << 8, forced = 1u << 30;
 
 private:
     struct Region {

@@ -13,7 +13,8 @@ struct UnicornCalls {
         cpu(user).onInstruction(static_cast<uint32_t>(address));
     }
     static void raised(uc_engine*, uint32_t number, void* user) { cpu(user).onRaised(number); }
-    static void access(uc_engine*, uc_mem_type type, uint64_t address, int size, int64_t, void* user) {
+    static void access(uc_engine*, uc_mem_type type, uint64_t address, int size, int64_t,
+                       void* user) {
         cpu(user).onGuarded(static_cast<uint32_t>(address), static_cast<unsigned>(size),
                             type == UC_MEM_WRITE);
     }
@@ -23,7 +24,8 @@ struct UnicornCalls {
     }
     static void write(uc_engine*, uint64_t offset, unsigned size, uint64_t value, void* user) {
         auto& window = *static_cast<CortexM3::MappedWindow*>(user);
-        window.cpu->onWrite(window.base + static_cast<uint32_t>(offset), size, static_cast<uint32_t>(value));
+        window.cpu->onWrite(window.base + static_cast<uint32_t>(offset), size,
+                            static_cast<uint32_t>(value));
     }
     static int registerId(int number);
 };

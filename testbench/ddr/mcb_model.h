@@ -70,7 +70,15 @@ public:
             work();
     }
 
-    // A fault: no command begins and no word moves until it is over; what waits is carried out then.
+    // Clocks after which something happens by itself, less one; and so many clocks at once, in
+    // which the design does nothing.
+    uint64_t untilEvent() const {
+        return hung_ ? ~0ull : nextEvent_ > now_ + 1 ? nextEvent_ - now_ - 1 : 0;
+    }
+    void pass(uint64_t clocks) { now_ += clocks; }
+
+    // A fault: no command begins and no word moves until it is over; what waits is carried out
+    // then.
     void hang(bool on) { hung_ = on; }
 
     // Back door, for pictures and checks.

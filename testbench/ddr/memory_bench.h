@@ -45,6 +45,7 @@ public:
         bench.reset();
     }
 
+    static constexpr size_t size = bytes;
     void run(uint64_t cycles) {
         for (uint64_t i = 0; i < cycles; ++i)
             bench.tick();

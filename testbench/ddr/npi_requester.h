@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-// What a requester does.
+// The traffic that a requester makes.
 struct NpiTraffic {
     double ask = 1.0;    // chance, each cycle, of beginning a request when none is waiting
     double push = 1.0;   // ... that the next word of a write is pushed

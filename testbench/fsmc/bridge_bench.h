@@ -24,7 +24,8 @@ public:
 
     Bench<Bridge> bench;
     Bridge& top = bench.top();
-    FsmcPins pins;
+    FsmcPins pins;         // as the processor has them
+    FsmcPins* far = &pins; // as the design has them: others with delays
     NpiMemory<Bridge> memory;
     BusSlave<Bridge> slave;
     FsmcMaster master;
@@ -49,6 +50,12 @@ public:
         if (onTick)
             onTick();
     }
+    // Pins take their time from now on.
+    void delay(const FsmcCorner& corner, uint64_t seed, bool looksTwice) {
+        delayed_ = pins;
+        far = &delayed_;
+        master.delay(corner, delayed_, seed, looksTwice);
+    }
     void settle() {
         showPins();
         top.eval();
@@ -57,24 +64,26 @@ public:
     uint64_t clocks() const { return bench.cycles(); }
 
 private:
+    FsmcPins delayed_;
+
     void tickReset() {
         top.rst_i = 1;
         tick();
     }
     void showPins() {
-        top.fsmc_a_i = pins.a;
-        top.fsmc_d_i = pins.dOut ? pins.d : 0xDEAD; // a floating bus
-        top.fsmc_ne_n_i = pins.neN & 3;
-        top.fsmc_nbl_n_i = pins.nblN;
-        top.fsmc_noe_n_i = pins.noeN;
-        top.fsmc_nwe_n_i = pins.nweN;
-        top.fsmc_nadv_n_i = pins.nadvN;
-        top.fsmc_clk_i = pins.clk;
+        top.fsmc_a_i = far->a;
+        top.fsmc_d_i = far->dOut ? far->d : 0xDEAD; // a floating bus
+        top.fsmc_ne_n_i = far->neN & 3;
+        top.fsmc_nbl_n_i = far->nblN;
+        top.fsmc_noe_n_i = far->noeN;
+        top.fsmc_nwe_n_i = far->nweN;
+        top.fsmc_nadv_n_i = far->nadvN;
+        top.fsmc_clk_i = far->clk;
     }
     void seePins() {
-        pins.dFromDesign = top.fsmc_d_o;
-        pins.dDriven = top.fsmc_d_oe_o;
-        pins.nwaitN = top.fsmc_nwait_n_o;
+        far->dFromDesign = top.fsmc_d_o;
+        far->dDriven = top.fsmc_d_oe_o;
+        far->nwaitN = top.fsmc_nwait_n_o;
     }
 };
 

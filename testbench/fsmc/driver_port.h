@@ -15,7 +15,7 @@ extern "C" {
 inline FsmcMaster& masterOf(void* context) {
     return *static_cast<FsmcMaster*>(context);
 }
-inline const Fsmc_Port driverPort = {[](void* c, U32 a) -> U8 { return masterOf(c).read8(a); },
+inline const FSMC_Port driverPort = {[](void* c, U32 a) -> U8 { return masterOf(c).read8(a); },
                                      [](void* c, U32 a, U8 v) { masterOf(c).write8(a, v); },
                                      [](void* c, U32 a) -> U16 { return masterOf(c).read16(a); },
                                      [](void* c, U32 a, U16 v) { masterOf(c).write16(a, v); },

@@ -4,6 +4,7 @@
 
 #include "fsmc_master.h"
 #include "fsmc_fields.h"
+#include "pin_delays.h"
 #include <cstdio>
 
 namespace {
@@ -18,7 +19,21 @@ std::string hex(uint32_t value) {
 
 using namespace fsmc;
 
+FsmcMaster::FsmcMaster(FsmcPins& pins, Design design, unsigned hclkPerUnit, unsigned clkPerUnit)
+    : pins_(pins), design_(std::move(design)), hclkPerUnit_(hclkPerUnit), clkPerUnit_(clkPerUnit) {}
+
+FsmcMaster::~FsmcMaster() = default;
+
+void FsmcMaster::delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, bool looksTwice) {
+    constexpr int clk = 10000; // ps: 100 MHz
+    delays_ = std::make_unique<PinDelays>(pins_, far, design_, corner, seed,
+                                          static_cast<int>(clk * clkPerUnit_ / hclkPerUnit_), clk);
+    looksTwice_ = looksTwice;
+}
+
 void FsmcMaster::show() {
+    if (delays_)
+        return delays_->show(); // for a few ns both sides may drive the bus
     design_.settle();
     if (pins_.dDriven && pins_.dOut)
         throw FsmcError("data bus driven by both sides");
@@ -26,6 +41,10 @@ void FsmcMaster::show() {
 
 void FsmcMaster::passHclk(unsigned cycles) {
     hclks_ += cycles;
+    if (delays_) {
+        cycles_ += delays_->pass(cycles);
+        return;
+    }
     phase_ += cycles * clkPerUnit_;
     while (phase_ >= hclkPerUnit_) {
         phase_ -= hclkPerUnit_;
@@ -137,7 +156,7 @@ void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lane
     strobe = false;
     show();
     // The pins' delays leave no time for a NWAIT that does not follow the strobe itself.
-    if (free && isWaiting(access))
+    if (free && isWaiting(access) && !delays_)
         throw FsmcError(access.name + ": NWAIT went active after the strobe");
 }
 
@@ -152,7 +171,7 @@ unsigned FsmcMaster::waitPhase(const Access& access) {
     }
     bool free = !isWaiting(access);
     passHclk(access.timing.datast - 4);
-    if (free && isWaiting(access))
+    if (free && isWaiting(access) && !delays_)
         throw FsmcError(access.name + ": NWAIT went active after the strobe");
     for (unsigned waited = 0; isWaiting(access); ++waited) {
         if (waited > waitLimit)
@@ -160,7 +179,10 @@ unsigned FsmcMaster::waitPhase(const Access& access) {
                             std::to_string(waitLimit) + " HCLK cycles");
         passHclk(1);
     }
-    passHclk(2);
+    passHclk(1);
+    if (looksTwice_ && isWaiting(access))
+        return waitPhase(access);
+    passHclk(1);
     return 2;
 }
 
@@ -185,7 +207,9 @@ uint16_t FsmcMaster::readPins(uint32_t address) {
     if (ours != pins_.dDriven)
         throw FsmcError(access.name +
                         (ours ? ": nobody drives the data bus" : ": the FPGA drives the data bus"));
-    if (ours && pins_.dFromDesign != value) {
+    if (delays_)
+        value = pins_.dFromDesign;
+    if (ours && (delays_ ? !delays_->dataIsSetUp() : pins_.dFromDesign != value)) {
         if (access.bank->bcr & bcrAsyncWait)
             throw FsmcError(access.name + ": the data moved in its set-up time");
         value = static_cast<uint16_t>(~pins_.dFromDesign); // nobody knows what the processor gets
@@ -195,7 +219,7 @@ uint16_t FsmcMaster::readPins(uint32_t address) {
     pins_.neN = 0xF;
     pins_.nblN = 3;
     show();
-    if (pins_.dDriven)
+    if (pins_.dDriven && !delays_)
         throw FsmcError(access.name + ": the data bus is still driven after the access");
     return ours ? value : 0xFFFF; // another chip's bank: pulled up
 }
@@ -225,7 +249,7 @@ void FsmcMaster::abort(const Access& access, unsigned hclk) {
     pins_.nblN = 3;
     pins_.dOut = false;
     show();
-    if (pins_.dDriven)
+    if (pins_.dDriven && !delays_)
         throw FsmcError(access.name + ": given up, and the data bus is still driven");
     passHclk(8); // the reset of a processor takes far longer
 }

@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -33,6 +34,9 @@ struct FsmcPins {
     bool dDriven = false, nwaitN = true;
 };
 
+struct FsmcCorner;
+class PinDelays;
+
 class FsmcError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
@@ -45,9 +49,13 @@ public:
     struct Design {
         std::function<void()> tick, settle;
     };
-    FsmcMaster(FsmcPins& pins, Design design, unsigned hclkPerUnit = 6, unsigned clkPerUnit = 5)
-        : pins_(pins), design_(std::move(design)), hclkPerUnit_(hclkPerUnit),
-          clkPerUnit_(clkPerUnit) {}
+    FsmcMaster(FsmcPins& pins, Design design, unsigned hclkPerUnit = 6, unsigned clkPerUnit = 5);
+    ~FsmcMaster();
+
+    // From now on pins take their time (pin_delays.h): `far` are the pins as the design has them,
+    // `pins` stay the processor's. Asynchronous modes. Of RM0033's rule when NWAIT is looked at
+    // there are two readings: once, four HCLK before the end of the data phase, or again after it.
+    void delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, bool looksTwice);
 
     // Loads and stores of the processor. A 32-bit one to a window is two accesses, low half first.
     uint8_t read8(uint32_t address);
@@ -115,6 +123,8 @@ private:
     Design design_;
     unsigned hclkPerUnit_, clkPerUnit_; // in one unit of time so many cycles of each
     unsigned phase_ = 0;
+    std::unique_ptr<PinDelays> delays_;
+    bool looksTwice_ = false;
     Bank banks_[4] = {{0x000030DB}, {0x000030D2}, {0x000030D2}, {0x000030D2}};
     // The access before, for the turnaround.
     bool lastWrite_ = false, lastHeld_ = false;

@@ -3,9 +3,10 @@
 // live_state: files into one JSON object.
 
 #include "live_state.h"
-#include "status.h"
+#include "sim_status.h"
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -95,7 +96,7 @@ json LiveState::slots(const std::string& bytes) const {
 json LiveState::now() const {
     json state = {{"calls", json::array()}, {"features", json::array()}, {"slots", json::array()}};
     std::string status = contents(folder_ + "/status");
-    if (status.size() >= sizeof(SimStatus) && status.compare(0, 7, "ICESOC1") == 0) {
+    if (status.size() >= sizeof(SimStatus) && isSimStatus(status.data())) {
         uint64_t values[7];
         std::memcpy(values, status.data() + 8, sizeof values);
         const char* const names[] = {"ns",      "cycles", "bytesUp", "bytesDown",
@@ -107,7 +108,7 @@ json LiveState::now() const {
     std::istringstream calls(contents(folder_ + "/calls.jsonl"));
     for (std::string line; std::getline(calls, line);) {
         json row = json::parse(line, nullptr, false); // the last one may be half written
-        if (row.is_discarded())
+        if (!row.is_object())
             continue;
         if (row.contains("features")) {
             state["features"] = row["features"];
@@ -116,7 +117,11 @@ json LiveState::now() const {
             state["calls"].push_back(row);
         }
     }
-    state["frame"] = std::ifstream(folder_ + "/before.png").good();
-    state["over"] = std::ifstream(folder_ + "/report.json").good();
+    using namespace std::filesystem;
+    std::error_code none;
+    const path frame = folder_ + "/before.png", report = folder_ + "/report.json";
+    state["frame"] = exists(frame);
+    // A report that is older than the picture is of the mission before.
+    state["over"] = exists(report) && last_write_time(report, none) >= last_write_time(frame, none);
     return state;
 }

@@ -12,7 +12,8 @@
 
 namespace {
 httplib::Server* running = nullptr;
-}
+constexpr size_t mostConnections = 128;
+} // namespace
 
 int main(int argc, char** argv) {
     CLI::App app{"Serves the page that shows a mission as it runs, on 127.0.0.1."};
@@ -37,6 +38,25 @@ int main(int argc, char** argv) {
             response.status = file ? 200 : 404;
             response.set_content(bytes.str(), "image/png");
         });
+        // Each connection is a thread, one request long; what says nothing for a second is closed.
+        server.new_task_queue = [] { return new httplib::ThreadPool(mostConnections); };
+        server.set_keep_alive_max_count(1);
+        server.set_keep_alive_timeout(1);
+        server.set_read_timeout(1);
+        server.set_write_timeout(1);
+        server.set_payload_max_length(0);
+        // A page of another host may have this address by another name; and no part of a file is
+        // worth a header of ranges.
+        server.set_pre_routing_handler(
+            [&](const httplib::Request& request, httplib::Response& response) {
+                const std::string at = request.get_header_value("Host");
+                const std::string number = ":" + std::to_string(port);
+                const bool isOurs = at == "127.0.0.1" + number || at == "localhost" + number;
+                if (isOurs && !request.has_header("Range"))
+                    return httplib::Server::HandlerResponse::Unhandled;
+                response.status = isOurs ? 416 : 403;
+                return httplib::Server::HandlerResponse::Handled;
+            });
         // The library's default, SO_REUSEPORT, would let two pages have one port.
         server.set_socket_options([](socket_t socket) {
             int yes = 1;

@@ -4,6 +4,7 @@
 
 #include "camera.h"
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 #include <memory>
 #include <stdexcept>
@@ -37,8 +38,8 @@ Frame loadFrame(const std::string& path, int width, int height) {
     frame.width = std::min(width, w / factor) / 8 * 8;
     frame.height = std::min(height, h / factor);
     if (frame.width < leastSide || frame.height < leastSide)
-        throw std::runtime_error("'" + path + "' is " + std::to_string(w) + " x " + std::to_string(h) +
-                                 " pixels: too small, 8 x 8 at least");
+        throw std::runtime_error("'" + path + "' is " + std::to_string(w) + " x " +
+                                 std::to_string(h) + " pixels: too small, 8 x 8 at least");
     int left = (w - frame.width * factor) / 2, top = (h - frame.height * factor) / 2;
     for (int y = 0; y < frame.height; ++y)
         for (int x = 0; x < frame.width; ++x) {
@@ -52,6 +53,17 @@ Frame loadFrame(const std::string& path, int width, int height) {
 }
 
 void savePng(const std::string& path, const Frame& frame) {
-    if (!stbi_write_png(path.c_str(), frame.width, frame.height, 1, frame.pixels.data(), frame.width))
-        throw std::runtime_error("cannot write '" + path + "': is the disk full, or the folder read-only?");
+    const std::string beside = path + ".new";
+    std::ofstream file(beside, std::ios::binary);
+    auto put = [](void* to, void* bytes, int size) {
+        static_cast<std::ofstream*>(to)->write(static_cast<const char*>(bytes), size);
+    };
+    stbi_write_png_to_func(put, &file, frame.width, frame.height, 1, frame.pixels.data(),
+                           frame.width);
+    file.close();
+    if (!file || std::rename(beside.c_str(), path.c_str()) != 0) {
+        std::remove(beside.c_str());
+        throw std::runtime_error("cannot write '" + path +
+                                 "': is the disk full, or the folder read-only?");
+    }
 }

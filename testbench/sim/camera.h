@@ -14,8 +14,9 @@ struct Frame {
     std::vector<uint8_t> pixels;
 };
 
-// The middle of the picture, made smaller by a whole factor where it is at least twice the wanted
-// size. The width becomes a multiple of 8. Throws std::runtime_error that says what is wrong.
+// Returns the middle of the picture, made smaller by a whole factor where it is at least twice the
+// wanted size. The width becomes a multiple of 8. Throws std::runtime_error that says what is
+// wrong.
 Frame loadFrame(const std::string& path, int width, int height);
 void savePng(const std::string& path, const Frame& frame);
 

@@ -5,8 +5,8 @@
 #ifndef GROUND_H
 #define GROUND_H
 
-#include "soc_model.h"
 #include "random.h"
+#include "soc_model.h"
 #include <map>
 #include <memory>
 #include <string>
@@ -18,7 +18,8 @@ extern "C" {
 
 class Ground {
 public:
-    static constexpr uint16_t guardMs = 20; // of the tests' modems: the default, a second, is idle time
+    static constexpr uint16_t guardMs =
+        20; // of the tests' modems: the default, a second, is idle time
     static XBee::Options uavModem() {
         XBee::Options options;
         options.name = "uav";
@@ -32,7 +33,7 @@ public:
         modem_ = std::make_unique<XBee>(line_, air, options);
         start();
     }
-    // A fresh program on the ground: what was before is forgotten.
+    // Begins as a fresh program on the ground: what was before is forgotten.
     void start() {
         static const Link_Port port = {transmit, random, message, nothing, state, outcome, nullptr};
         Link_init(link_.get(), &port, this, 1440);
@@ -45,18 +46,21 @@ public:
         clock_ += (now - now_) * hurry;
         now_ = now;
         modem_->advance(now);
-        if (running && now >= nextPoll_) {
+        const bool due = now >= nextPoll_;
+        if (due)
             nextPoll_ = now + 1'000'000;
+        if (due && running) {
             if (!line_.received.empty())
-                Link_receive(link_.get(), line_.received.data(), static_cast<U32>(line_.received.size()), 0, us());
+                Link_receive(link_.get(), line_.received.data(),
+                             static_cast<U32>(line_.received.size()), us());
             line_.received.clear();
             Link_poll(link_.get(), us());
         }
         return std::min(modem_->nextEvent(), nextPoll_);
     }
     bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
-    void open() { Link_openChannel(link_.get(), 0, us()); }
-    // A two-way call of an object; `parameters` as encoded. Mode 0 normal, 2 idempotent.
+    void open() { Link_openChannel(link_.get(), 0); }
+    // Makes a two-way call of an object; `parameters` as encoded. Mode 0 is normal, 2 idempotent.
     void call(int id, const std::string& object, const std::string& operation, int mode = 0,
               const std::vector<uint8_t>& parameters = {}) {
         std::vector<uint8_t> m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, 0, 0, 0, 0};
@@ -82,7 +86,7 @@ public:
         for (int i = 0; i < 4; ++i)
             m[static_cast<size_t>(10 + i)] = static_cast<uint8_t>(m.size() >> (8 * i));
         U32 size = static_cast<U32>(m.size());
-        if (Link_send(link_.get(), 0, m.data(), size, size, us()) == LINK_OK)
+        if (Link_send(link_.get(), 0, m.data(), size, size) == LINK_OK)
             backlog_ += size;
     }
     void ping(int id, const std::string& object) { call(id, object, "ice_ping", 2); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// m3_machine: the chip's interrupt goes to PB0; the processor's time is the time of its FSMC's pins.
+// m3_machine: the chip's interrupt goes to PB0; the processor's time is the time of its FSMC's
+// pins.
 
 #include "m3_machine.h"
 #include <cstdio>
@@ -13,8 +14,9 @@ Stm32F2::Config configOf(uint32_t hclkHz) {
     if (hclkHz == 0)
         return {1, static_cast<uint32_t>(pinHclkHz)};
     if (hclkHz < pinHclkHz || hclkHz % pinHclkHz || hclkHz % 8000)
-        throw std::runtime_error("HCLK of " + std::to_string(hclkHz) + " Hz: give 0 or a multiple of " +
-                                 std::to_string(pinHclkHz) + " Hz");
+        throw std::runtime_error("HCLK of " + std::to_string(hclkHz) +
+                                 " Hz: give 0 or a multiple of " + std::to_string(pinHclkHz) +
+                                 " Hz");
     return {static_cast<unsigned>(hclkHz / pinHclkHz), hclkHz};
 }
 
@@ -22,9 +24,11 @@ Stm32F2::Config configOf(uint32_t hclkHz) {
 
 M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll)
     : soc_(soc), poll_(std::move(poll)),
-      stm32_(soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz)) {
+      stm32_(
+          soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz)) {
     stm32_.load(config.firmware);
-    uint32_t guardAt = config.guardMs ? stm32_.image()->symbol("uav_guardMs") : 0;
+    const bool asks = config.guardMs && stm32_.image()->has("uav_guardMs");
+    uint32_t guardAt = asks ? stm32_.image()->symbol("uav_guardMs") : 0;
     stm32_.onTime([this, guardAt, guardMs = config.guardMs] {
         if (soc_.cycles() < nextPoll_)
             return;
@@ -38,7 +42,9 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
     soc_.onIrq([this](bool high) { stm32_.setPinB(0, high); });
 }
 
-M3Machine::~M3Machine() { soc_.onIrq(nullptr); }
+M3Machine::~M3Machine() {
+    soc_.onIrq(nullptr);
+}
 
 void M3Machine::powerOn() {
     if (!powered_)
@@ -56,17 +62,22 @@ void M3Machine::run() {
 void M3Machine::debug(GdbStub& stub) {
     powerOn();
     GdbStub::Target target{
-        cpu(), [this](bool step) { return stm32_.run(step); }, [this] { stm32_.powerOn(); }, [this] { return over_; },
+        cpu(), [this](bool step) { return stm32_.run(step); }, [this] { stm32_.powerOn(); },
+        [this] { return over_; },
         [this] {
             char text[160];
-            std::snprintf(text, sizeof text, "%.6f s simulated, %llu instructions, %llu cycles; last fault: ",
-                          static_cast<double>(soc_.now()) / 1e9, static_cast<unsigned long long>(cpu().instructions()),
+            std::snprintf(text, sizeof text,
+                          "%.6f s simulated, %llu instructions, %llu cycles; last fault: ",
+                          static_cast<double>(soc_.now()) / 1e9,
+                          static_cast<unsigned long long>(cpu().instructions()),
                           static_cast<unsigned long long>(cpu().cycles()));
             return text + (cpu().lastFault.empty() ? std::string("none") : cpu().lastFault) + "\n";
         }};
     stub_ = &stub;
-    bool goesOn = stub.serve(target, [this] { return poll_(); });
+    // Between two debuggers the program runs.
+    auto mayWait = [&] { return poll_() && (!stub.hasServed() || stub.wantsStop()); };
+    while (!over_ && stub.serve(target, mayWait))
+        while (!over_ && !stub.wantsStop())
+            stm32_.run();
     stub_ = nullptr;
-    if (goesOn)
-        run();
 }

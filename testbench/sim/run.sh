@@ -3,14 +3,16 @@
 #
 # run: the mission: simulator and ground station. Usage: run.sh build-folder --image F --size WxH
 #      --threshold N --loss P --seed N --out DIR --cpu host|m3 --firmware ELF --port N (of the live page; 0: any)
-#      --guard MS (of the modems) --live 1 (the page stays until Ctrl-C) --cores "ascon fir" (also fly these cores' parts, ip/*/ground.py)
+#      --guard MS (of the modems) --patience S (for the first answer of the UAV) --live 1 (the page stays until Ctrl-C) --cores "ascon fir" (also fly these cores' parts, ip/*/ground.py)
+#      --pins FILE (drives the inputs of cores, docs/simulation.md; outputs go to DIR/pins.log)
+#      --app uav|minimal (the program of Table II, by --cpu m3)
 #      --sensor 1 (the picture comes through the camera core, which hands it to the vision core; camera's part is flown)
 
 set -eu
 build=$1
 shift
 here=$(cd "$(dirname "$0")/../.." && pwd)
-image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host guard=1000 port=0 live='' cores='' sensor='' firmware=$build/firmware/uav.elf
+image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host app=uav guard=1000 patience=300 port=0 live='' cores='' sensor='' pins='' firmware=$build/firmware/uav.elf
 while [ $# -gt 0 ]; do
     case $1 in
     --image) image=$2 ;;
@@ -20,11 +22,14 @@ while [ $# -gt 0 ]; do
     --seed) seed=$2 ;;
     --out) out=$2 ;;
     --cpu) cpu=$2 ;;
+    --app) app=$2 ;;
     --port) port=$2 ;;
     --guard) guard=$2 ;;
+    --patience) patience=$2 ;;
     --live) live=$2 ;;
     --cores) cores=$2 ;;
     --sensor) sensor=${2:+--sensor} ;;
+    --pins) pins=$2 ;;
     --firmware) firmware=$2 ;;
     *)
         echo "run: unknown option $1" >&2
@@ -33,8 +38,25 @@ while [ $# -gt 0 ]; do
     esac
     shift 2
 done
+case $threshold in
+'' | *[!0-9]* | ????*) bad=1 ;;
+*) bad=$((threshold > 255)) ;;
+esac
+[ "$bad" = 0 ] || { echo "run: THRESHOLD is 0..255 grey levels, not '$threshold'" >&2 && exit 2; }
 mkdir -p "$out"
-rm -f "$out/after.png" "$out/report.md" "$out/report.json" "$out/calls.jsonl" "$out/status"
+exec 9>"$out/lock" # until the last of this flight's programs has ended
+flock -n 9 || { echo "run: another flight is under way in $out; give this one a folder of its own: OUT=build/other" >&2 && exit 1; }
+case $app:$cpu in
+uav:*) ;;
+minimal:m3)
+    exec setpriv --pdeathsig TERM "$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu m3 \
+        --guard "$guard" --firmware "$build/firmware/minimal.elf" -- /usr/bin/python3 "$here/sw/apps/minimal/ground.py" '{device}' \
+        --frame '{frame}' --reference "$build/testbench/sim/vision-reference" "--Ice.Plugin.XBeeAT=$build/ground/xbeeat:createXBeeAT" \
+        '--XBeeAT.Guard={guard}'
+    ;;
+minimal:*) echo "run: the minimal program is an ARM binary: give CPU=m3" >&2 && exit 2 ;;
+*) echo "run: there is no program '$app': uav, minimal" >&2 && exit 2 ;;
+esac
 parts=''
 [ -z "$sensor" ] || case " $cores " in *' camera '*) ;; *) cores="$cores camera" ;; esac
 listed=$(sed -n 's/^CORES:[A-Z]*=//p' "$build/CMakeCache.txt")
@@ -46,20 +68,30 @@ for core in $cores; do
     }
     parts="$parts --core $here/ip/$core"
 done
-"$build/testbench/live/icesoc-live" --dir "$out" --port "$port" --registers "$build/gen/registers.list" &
+# Each process ends with the one that started it, however that ends.
+setpriv --pdeathsig TERM "$build/testbench/live/icesoc-live" --dir "$out" --port "$port" --registers "$build/gen/registers.list" &
 page=$!
 trap 'kill $page 2>/dev/null || true' EXIT
-# The simulator has Ctrl-C, too, and ends first. A shell that a signal ends itself would leave the page behind.
-trap 'echo "run: stopped before the mission was over" >&2; exit 130' INT
-trap 'echo "run: stopped before the mission was over" >&2; exit 143' TERM
-status=0
 # shellcheck disable=SC2086 # a list of words
-"$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" --guard "$guard" --firmware "$firmware" $sensor -- \
+setpriv --pdeathsig TERM "$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" --guard "$guard" --firmware "$firmware" $sensor ${pins:+--pins "$pins"} -- \
     /usr/bin/python3 "$here/sw/ground/clients/mission.py" --device '{device}' --frame '{frame}' \
-    --status '{status}' --guard '{guard}' --out "$out" --plugin "$build/ground" --slice "$here/sw/apps/uav/Autopilot.ice" \
-    --reference "$build/testbench/sim/vision-reference" --threshold "$threshold" --loss "$loss" $sensor $parts || status=$?
+    --status '{status}' --guard '{guard}' --out '{out}' --patience "$patience" --plugin "$build/ground" --slice "$here/sw/apps/uav/Autopilot.ice" \
+    --reference "$build/testbench/sim/vision-reference" --threshold "$threshold" --loss "$loss" $sensor $parts &
+sim=$!
+stop() { # exit status
+    echo "run: stopped before the mission was over" >&2
+    kill $sim 2>/dev/null || true
+    wait $sim || true
+    exit "$1"
+}
+trap 'stop 130' INT
+trap 'stop 143' TERM HUP
+status=0
+wait $sim || status=$?
 if [ $status = 0 ]; then
     echo "Pictures and report: $out/before.png $out/after.png $out/report.md"
+elif [ $status -gt 128 ]; then
+    echo "The mission failed: the simulator, or the ground's program, was ended by signal $((status - 128))." >&2
 else
     echo "The mission failed (exit status $status)." >&2
 fi

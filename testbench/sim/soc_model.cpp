@@ -9,12 +9,14 @@
 SocModel::SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerUnit,
                    unsigned clkPerUnit)
     : context_(new VerilatedContext), observer_(*context_), top_(new VSoc(context_.get())),
+      span_(*top_, clkHz),
       fsmc_(pins_, {[this] { tick(); }, [this] { settle(); }}, hclkPerUnit, clkPerUnit), air_(air),
       modem_(line_, air, std::move(modemOptions)) {
     top_->modem_rxd_i = 1;
 }
 
 SocModel::~SocModel() {
+    Verilated::threadContextp(context_.get()); // which the chip's scopes leave; not a later model's
     top_->final();
     observer_.finish();
 }
@@ -25,7 +27,8 @@ void SocModel::reset() {
     for (int i = 0; i < 8; ++i)
         tick();
     top_->rst_i = 0;
-    while (!memory_.pins.calibDone)
+    // The chip's reset ends some clocks after the pin's, through flip-flops.
+    for (int i = 0; i < 8 || !memory_.pins.calibDone; ++i)
         tick();
 }
 
@@ -37,12 +40,41 @@ void SocModel::timeModels() {
     nextEvent_ = std::min(air_.nextEvent(), modem_.nextEvent());
     if (others_)
         nextEvent_ = std::min(nextEvent_, others_(time));
+    if (top_->modem_rxd_i != line_.rxd() || top_->modem_cts_n_i != line_.ctsN())
+        span_.forget();
     top_->modem_rxd_i = line_.rxd();
     top_->modem_cts_n_i = line_.ctsN();
 }
 
+// Clocks until a model outside of the chip has something to do.
+uint64_t SocModel::mayBeQuiet() const {
+    if (!skips_ || now() >= nextEvent_ || (drive_ && cycles_ >= driveAt_))
+        return 0;
+    uint64_t clocks = std::min((nextEvent_ - now() - 1) / clkNs, memory_.untilEvent());
+    return drive_ ? std::min(clocks, driveAt_ - cycles_) : clocks;
+}
+
+// Gives the chip the clocks that it is owed.
+void SocModel::pay() {
+    if (!owed_)
+        return;
+    uint64_t left = span_.pass(owed_);
+    memory_.pass(owed_ - left);
+    owed_ = 0;
+    for (cycles_ -= left; left; --left)
+        evaluate();
+}
+
+// Ends a quiet span: an input is about to change.
+void SocModel::wake() {
+    pay();
+    quiet_ = 0;
+    span_.forget();
+}
+
 // The processor's pins, between two clock edges.
 void SocModel::settle() {
+    wake();
     VSoc& top = *top_;
     top.fsmc_a_i = pins_.a;
     top.fsmc_d_i = pins_.d;
@@ -58,15 +90,27 @@ void SocModel::settle() {
 }
 
 void SocModel::tick() {
-    // The design is settled: by settle() if the processor's pins have changed, else by the last tick.
+    if (quiet_) {
+        passQuiet(cycles_ + 1);
+        return;
+    }
+    pay();
+    if (drive_ && cycles_ >= driveAt_)
+        driveAt_ = drive_();
+    evaluate();
+    quiet_ = span_.look(mayBeQuiet());
+}
+
+void SocModel::evaluate() {
+    // The design is settled: by settle() if the processor's pins have changed, else by the last
+    // tick.
     VSoc& top = *top_;
-    if (drive_)
-        drive_();
     sampleMcb(top, memory_);
 
     top.clk_i = 1;
     top.eval();
     ++cycles_;
+    ++evaluated_;
     observer_.step(top, cycles_, 0);
     driveMcb(top, memory_);
     if (top.modem_txd_o != txd_) {
@@ -80,6 +124,11 @@ void SocModel::tick() {
         modem_.resetPin(!resetN_, now());
         line_.setRts(!rtsN_, now());
         nextEvent_ = 0;
+    }
+    if (top.core_pins_o != corePins_) {
+        corePins_ = top.core_pins_o;
+        if (corePinsChanged_)
+            corePinsChanged_(corePins_);
     }
     if (top.irq_o != irq_) {
         irq_ = top.irq_o;
@@ -95,4 +144,5 @@ void SocModel::tick() {
     pins_.dFromDesign = top.fsmc_d_o;
     pins_.dDriven = top.fsmc_d_oe_o;
     pins_.nwaitN = top.fsmc_nwait_n_o;
+    span_.sample();
 }

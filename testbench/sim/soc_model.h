@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // soc_model: the Verilated chip with its memory, its modem and its processor's FSMC: one clock.
+//
+// Clocks in which only counters of the chip would move are not evaluated but owed: they count at
+// once, and are added to the chip's counters before anything looks at it (quiet_span.h).
 
 #ifndef SOC_MODEL_H
 #define SOC_MODEL_H
@@ -9,57 +12,105 @@
 #include "fsmc_master.h"
 #include "mcb_model.h"
 #include "observer.h"
+#include "quiet_span.h"
 #include "rf_channel.h"
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <verilated.h>
 
 class SocModel {
 public:
-    static constexpr uint64_t clkHz = 2'000'000; // see docs/simulation.md
+    static constexpr uint64_t clkHz = SOC_CLK_HZ; // make run CLK_HZ=
     static constexpr uint64_t clkNs = 1'000'000'000 / clkHz;
 
-    // HCLK to clkHz: 120 MHz to 100 MHz, scaled down, unless stated otherwise.
+    // The ratio is that of HCLK to clkHz: 120 MHz to 100 MHz, scaled down, unless stated otherwise.
     SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerUnit = 6,
              unsigned clkPerUnit = 5);
     ~SocModel();
 
     void reset();
     void tick(); // one clock cycle
+
+    // Clock cycles that pass at once, as far as the chip is quiet, up to clock `until`.
+    void passQuiet(uint64_t until) {
+        if (until > cycles_) {
+            uint64_t clocks = std::min(quiet_, until - cycles_);
+            quiet_ -= clocks;
+            owed_ += clocks;
+            cycles_ += clocks;
+        }
+    }
+    // For comparisons: each clock is evaluated from now on, or no longer.
+    void evaluateAll(bool all) {
+        wake();
+        skips_ = !all;
+    }
+    uint64_t evaluated() const { return evaluated_; } // clocks
+
+    // All of the chip's state, as it is now.
+    const VSoc& chip() {
+        pay();
+        return *top_;
+    }
     uint64_t cycles() const { return cycles_; }
     uint64_t now() const { return cycles_ * clkNs; }
     bool irq() const { return top_->irq_o; }
 
-    // The pins of cores (MAP_PIN_...): inputs as they are from the next settling on.
-    void setCorePins(uint32_t value) { top_->core_pins_i = value; }
+    // Sets the input pins of cores (MAP_PIN_...), from the next settling on.
+    void setCorePins(uint32_t value) {
+        wake();
+        top_->core_pins_i = value;
+    }
+    uint32_t corePins() const { return top_->core_pins_o; }
 
-    // Before each clock: what drives those pins.
-    void onClock(std::function<void()> drive) { drive_ = std::move(drive); }
+    // Sets what drives those pins; called before a clock, it returns the count of clocks (cycles())
+    // at which it wants to be called again.
+    void onClock(std::function<uint64_t()> drive) { drive_ = std::move(drive); }
+    // Told of each change of the cores' outputs.
+    void onCorePins(std::function<void(uint32_t)> changed) {
+        corePinsChanged_ = std::move(changed);
+    }
 
     FsmcMaster& fsmc() { return fsmc_; }
-    McbModel& memory() { return memory_; }
+    McbModel& memory() {
+        wake(); // it may be about to hang, or no longer
+        return memory_;
+    }
     XBee& modem() { return modem_; }
 
-    // Something else that has events in simulated time (the ground's modem): it is called when due.
+    // Adds something that has events in simulated time (the ground's modem): it is called when due.
     void onTime(std::function<uint64_t(uint64_t now)> advance) { others_ = std::move(advance); }
 
-    // Told of each edge of the interrupt line.
+    // Sets who is told of each edge of the interrupt line.
     void onIrq(std::function<void(bool high)> edge) { irqEdge_ = std::move(edge); }
 
 private:
     void timeModels();
     void settle();
+    void evaluate();
+    void pay();
+    void wake();
+    uint64_t mayBeQuiet() const;
 
     std::unique_ptr<VerilatedContext> context_;
     Observer<VSoc> observer_;
     std::unique_ptr<VSoc> top_;
+    QuietSpan span_;
+    bool skips_ = true;
+    uint64_t quiet_ = 0; // clocks to come that need not be evaluated
+    uint64_t owed_ = 0;  // clocks that have passed and were not
+    uint64_t evaluated_ = 0;
     FsmcPins pins_;
     FsmcMaster fsmc_;
     McbModel memory_;
     RfChannel& air_;
     UartPins line_;
     XBee modem_;
-    std::function<void()> drive_;
+    std::function<uint64_t()> drive_;
+    uint64_t driveAt_ = 0; // clock at which it is called again
+    std::function<void(uint32_t)> corePinsChanged_;
+    uint32_t corePins_ = 0;
     std::function<uint64_t(uint64_t)> others_;
     uint64_t cycles_ = 0, nextEvent_ = 0;
     std::function<void(bool)> irqEdge_;

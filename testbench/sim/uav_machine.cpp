@@ -11,7 +11,9 @@ extern "C" {
 namespace {
 
 // The firmware's port is a table of C functions; the machine is their context.
-SocModel* socOf(void* context) { return static_cast<SocModel*>(context); }
+SocModel* socOf(void* context) {
+    return static_cast<SocModel*>(context);
+}
 
 template <class F> auto access(void* context, F f) {
     auto result = f(socOf(context)->fsmc());
@@ -19,7 +21,7 @@ template <class F> auto access(void* context, F f) {
     return result;
 }
 
-const Fsmc_Port fsmcPort = {
+const FSMC_Port fsmcPort = {
     [](void* c, U32 a) { return access(c, [=](FsmcMaster& m) { return m.read8(a); }); },
     [](void* c, U32 a, U8 v) { access(c, [=](FsmcMaster& m) { return m.write8(a, v), 0; }); },
     [](void* c, U32 a) { return access(c, [=](FsmcMaster& m) { return m.read16(a); }); },
@@ -32,11 +34,16 @@ constexpr uint64_t ownTickCycles = SocModel::clkHz / OS_TICKS_PER_SEC;
 } // namespace
 
 UavMachine::UavMachine(SocModel& soc, std::function<bool()> poll, Firmware firmware)
-    : soc_(soc), poll_(std::move(poll)), firmware_(std::move(firmware)), tickCycles_(ownTickCycles) {}
+    : soc_(soc), poll_(std::move(poll)), firmware_(std::move(firmware)),
+      tickCycles_(ownTickCycles) {}
 
-void UavMachine::hurry(unsigned times) { tickCycles_ = ownTickCycles / times; }
+void UavMachine::hurry(unsigned times) {
+    tickCycles_ = ownTickCycles / times;
+}
 
-bool UavMachine::pending() const { return soc_.cycles() >= nextTick_ || (soc_.irq() && firmware_.irqEnabled()); }
+bool UavMachine::pending() const {
+    return soc_.cycles() >= nextTick_ || (soc_.irq() && firmware_.irqEnabled());
+}
 
 void UavMachine::serve() {
     if (soc_.cycles() >= nextTick_) {
@@ -50,9 +57,10 @@ void UavMachine::serve() {
 }
 
 void UavMachine::idle() {
-    do
+    do {
         soc_.tick();
-    while (!pending());
+        soc_.passQuiet(nextTick_);
+    } while (!pending());
 }
 
 void UavMachine::run() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // uav_machine: runs the firmware's host build on a SocModel: bus accesses, interrupts, the tick.
-// Which firmware is a table of its entrances; without one it is the UAV's application.
+// A table of entrances says which firmware; without one it is the UAV's application.
 
 #ifndef UAV_MACHINE_H
 #define UAV_MACHINE_H
@@ -17,21 +17,23 @@ extern "C" {
 
 class UavMachine {
 public:
-    // As in uav.h: what is called at boot (it creates the tasks), and at the FPGA's interrupt.
+    // The entrances, as in uav.h: one is called at boot (it creates the tasks), one at the FPGA's
+    // interrupt.
     struct Firmware {
-        std::function<void(const Fsmc_Port*, void*)> start = UAV_start;
+        std::function<void(const FSMC_Port*, void*)> start = UAV_start;
         std::function<void()> irqHandler = UAV_irqHandler;
         std::function<bool()> irqEnabled = [] { return UAV_irqEnabled() != 0; };
     };
 
     // `poll` is called about once a simulated millisecond; when it returns false, run() ends.
-    UavMachine(SocModel& soc, std::function<bool()> poll) : UavMachine(soc, std::move(poll), Firmware()) {}
+    UavMachine(SocModel& soc, std::function<bool()> poll)
+        : UavMachine(soc, std::move(poll), Firmware()) {}
     UavMachine(SocModel& soc, std::function<bool()> poll, Firmware firmware);
 
     // Boots the firmware and runs it until poll says so; exceptions of the models come through.
     void run();
 
-    // From now on the firmware's clock ticks so many times as fast as the fabric's: for spans in which
+    // Makes the firmware's clock tick so many times as fast as the fabric's: for spans in which
     // nothing happens but the firmware's own time-outs. The modem's times are then too long for it.
     void hurry(unsigned times);
 

@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
     }
     try {
         Frame frame = loadFrame(argv[1], 1024, 4096);
-        auto corners = detectCorners(frame.pixels.data(), frame.width, frame.height, std::atoi(argv[2]));
+        auto corners =
+            detectCorners(frame.pixels.data(), frame.width, frame.height, std::atoi(argv[2]));
         std::printf("{\"found\": %zu, \"best\": [", corners.size());
         const char* separator = "";
         for (const Feature& f : strongest(corners, 64)) {

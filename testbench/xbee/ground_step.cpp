@@ -3,11 +3,13 @@
 // ground_step: the simulator's side of keeping step.
 
 #include "ground_step.h"
-#include "status.h"
+#include "sim_status.h"
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <sched.h>
 #include <unistd.h>
 
@@ -19,10 +21,23 @@ uint64_t load(const uint64_t& field) {
     return __atomic_load_n(&field, __ATOMIC_ACQUIRE);
 }
 
+pid_t processOf(uint64_t keeper) {
+    return static_cast<pid_t>(keeper & 0xFFFFFFFFu);
+}
+
+// True if a debugger or SIGSTOP holds the process: "PID (NAME) T ..." in its stat.
+bool isHeld(pid_t process) {
+    std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+    std::string text;
+    std::getline(file, text);
+    const size_t name = text.rfind(") ");
+    return name != std::string::npos && (text[name + 2] == 'T' || text[name + 2] == 't');
+}
+
 } // namespace
 
-GroundStep::GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> goOn)
-    : status_(status), goOn_(std::move(goOn)) {
+GroundStep::GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> goOn, double patience)
+    : status_(status), goOn_(std::move(goOn)), patience_(patience) {
     std::strncpy(status_.device, pty.path().c_str(), sizeof status_.device - 1);
     pty.keepCount({[this] { return load(status_.keeper); },
                    [this](uint64_t keeper, size_t bytes) { given(keeper, bytes); },
@@ -46,9 +61,13 @@ bool GroundStep::holds(uint64_t now) const {
 // A program that was killed has not said good-bye.
 void GroundStep::dismissTheDead() {
     uint64_t keeper = load(status_.keeper);
-    if (keeper && kill(static_cast<pid_t>(keeper & 0xFFFFFFFFu), 0) != 0 && errno == ESRCH)
-        __atomic_compare_exchange_n(&status_.keeper, &keeper, uint64_t(0), false, __ATOMIC_SEQ_CST,
-                                    __ATOMIC_SEQ_CST);
+    if (keeper && kill(processOf(keeper), 0) != 0 && errno == ESRCH)
+        dismiss(keeper);
+}
+
+void GroundStep::dismiss(uint64_t keeper) {
+    __atomic_compare_exchange_n(&status_.keeper, &keeper, uint64_t(0), false, __ATOMIC_SEQ_CST,
+                                __ATOMIC_SEQ_CST);
 }
 
 void GroundStep::wait(uint64_t now) {
@@ -60,11 +79,21 @@ void GroundStep::wait(uint64_t now) {
             sched_yield();
         else
             usleep(napUs);
-        if (turn % turnsBetweenQuestions == 0) {
-            if (!goOn_())
-                break;
-            dismissTheDead();
+        if (turn % turnsBetweenQuestions != 0)
+            continue;
+        const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - begin;
+        const uint64_t keeper = load(status_.keeper);
+        if (!goOn_()) {
+            dismiss(keeper);
+        } else if (waited.count() > patience_ && !isHeld(processOf(keeper))) {
+            std::fprintf(
+                stderr,
+                "simulated time stood still for %.0f s: process %d keeps step with it, and "
+                "neither sleeps nor reads %s; it is waited for no longer\n",
+                patience_, static_cast<int>(processOf(keeper)), status_.device);
+            dismiss(keeper);
         }
+        dismissTheDead();
     }
     waitedNs_ += static_cast<uint64_t>((std::chrono::steady_clock::now() - begin).count());
 }

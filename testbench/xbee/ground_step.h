@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // ground_step: simulated time waits for the program on the ground that keeps step with it
-// (status.h), however seldom a busy machine lets that program run.
+// (sim_status.h), however seldom a busy machine lets that program run.
 
 #ifndef GROUND_STEP_H
 #define GROUND_STEP_H
@@ -13,8 +13,10 @@ struct SimStatus;
 
 class GroundStep {
 public:
-    // `goOn`: asked about each 10 ms while time stands still; false: wait no longer.
-    GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> goOn);
+    // `goOn`: asked about each 10 ms while time stands still; false: wait no longer. A program that
+    // holds time for `patience` seconds of the wall clock, and that no debugger holds, is waited
+    // for no longer, and stderr says so.
+    GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> goOn, double patience = 60);
     GroundStep(const GroundStep&) = delete;
     GroundStep& operator=(const GroundStep&) = delete;
 
@@ -28,9 +30,11 @@ private:
     void given(uint64_t keeper, size_t bytes);
     bool holds(uint64_t now) const;
     void dismissTheDead();
+    void dismiss(uint64_t keeper);
 
     SimStatus& status_;
     std::function<bool()> goOn_;
+    double patience_;
     uint64_t waitedNs_ = 0;
 };
 

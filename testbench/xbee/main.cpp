@@ -121,6 +121,7 @@ int main(int argc, char** argv) {
     double delayMs = 0, duration = 0;
     uint64_t seed = testSeed(), bootMs = 50;
     bool verbose = false;
+    std::string trace;
     addSettings(app, "a", settingsA);
     addSettings(app, "b", settingsB);
     auto chance = [&](const char* option, double& value, const char* what) {
@@ -135,7 +136,13 @@ int main(int argc, char** argv) {
     chance("--corruption", weather.corruption, "Packets with a wrong byte");
     chance("--try-loss", weather.tryLoss, "Loss of one try; the MAC tries again");
     chance("--ack-loss", weather.ackLoss, "Loss of an acknowledgement: duplicates");
-    app.add_flag("--contention", weather.contention, "Carrier sense, waits and collisions");
+    chance("--interference", weather.interference, "Share of each 20 ms in which others are heard");
+    app.add_option("--distance", weather.distance, "Metres in free space, with fading; 0: none")
+        ->check(CLI::Range(0.0, 1e5));
+    app.add_option("--trace", trace, "CSV of loss, RSSI and delay, in place of these")
+        ->check(CLI::ExistingFile);
+    app.add_flag("--perfect", weather.perfect,
+                 "Both directions at once, no collisions, modems that need no time");
     app.add_option("--delay", delayMs, "Delay beyond the time on the air, ms")
         ->check(CLI::Range(0.0, 10000.0));
     app.add_option("--boot", bootMs, "Boot time of the modems, ms")->check(CLI::Range(0, 5000));
@@ -159,6 +166,8 @@ int main(int argc, char** argv) {
         });
     std::setvbuf(stdout, nullptr, _IOLBF, 0);
     try {
+        if (!trace.empty())
+            air.weather.trace = std::make_shared<RfTrace>(trace);
         Modem a, b;
         power(a, air, "a", settingsA, {{"MY", 1}, {"DL", 2}});
         power(b, air, "b", settingsB, {{"MY", 2}, {"DL", 1}});

@@ -1,20 +1,39 @@
 // SPDX-License-Identifier: MIT
 //
-// rf_channel: packets in flight.
+// rf_channel: carries packets through the air, loses, damages and doubles them.
 
 #include "rf_channel.h"
 #include <algorithm>
+#include <cmath>
 
 namespace {
 
 constexpr uint64_t ccaNs = 128'000, turnaroundNs = 192'000, backoffUnitNs = 320'000;
+constexpr uint64_t byteNs = 32'000, ackNs = turnaroundNs + 11 * byteNs, gapNs = 640'000; // LIFS
 constexpr unsigned longestBackoff = 5, mostBackoffs = 4; // 802.15.4: macMaxBE, macMaxCSMABackoffs
+constexpr uint64_t roundNs = 200'000'000;                // RR: the wait for an acknowledgement
+constexpr uint32_t roundSpreadUs = 48'000;               // and at most so much more, at random
+constexpr double sensitivity = -92;                      // dBm; XBee-PRO: -100
+constexpr double jitter = 0.05;                          // share of a modem's own time, unverified
+
+// PHY header, MAC header with 16-bit addresses, checksum: 17 bytes; an address of 64 bits has 6
+// more.
+size_t frameBytes(const RfPacket& packet) {
+    bool longSource = packet.encrypted || packet.from64;
+    return 17 + 2u * packet.header + 6u * packet.wide + 6u * longSource + packet.bytes.size();
+}
+
+// From carrier sense to the end of the acknowledgement.
+uint64_t tryNs(const RfPacket& packet) {
+    return ccaNs + turnaroundNs + frameBytes(packet) * byteNs + (packet.acknowledged ? ackNs : 0);
+}
 
 } // namespace
 
 uint64_t RfChannel::airTimeNs(size_t bytes) {
-    // CCA, turnaround, 19 bytes of PHY and MAC header at 250 kbit/s, acknowledgement, LIFS.
-    return ccaNs + turnaroundNs + (19 + bytes) * 32'000 + 544'000 + 640'000;
+    RfPacket packet;
+    packet.bytes.resize(bytes);
+    return tryNs(packet) + gapNs;
 }
 
 void RfChannel::leave(XBee* modem) {
@@ -24,53 +43,82 @@ void RfChannel::leave(XBee* modem) {
             flight.sender = nullptr;
 }
 
-RfChannel::Outcome RfChannel::fate() {
+RfChannel::Outcome RfChannel::fate(uint64_t now) {
     inBurst_ = weather.burstBegin > 0 &&
                (inBurst_ ? !random_.chance(weather.burstEnd) : random_.chance(weather.burstBegin));
-    if (random_.chance(inBurst_ ? weather.burstLoss : weather.loss))
+    double loss = weather.trace ? weather.trace->at(now).loss : weather.loss;
+    if (random_.chance(inBurst_ ? weather.burstLoss : loss))
         return Outcome::Lost;
     return random_.chance(weather.corruption) ? Outcome::Corrupted : Outcome::Delivered;
+}
+
+uint64_t RfChannel::delayNs(uint64_t now) const {
+    return weather.trace ? weather.trace->at(now).delayNs : weather.delayNs;
+}
+
+// Draws the strength of one try and says whether it is below the receiver's sensitivity.
+bool RfChannel::faded(RfPacket& packet) {
+    if (weather.distance <= 0)
+        return false;
+    double share = (random_.next() + 1.0) / 4294967296.0;
+    packet.rssi = weather.meanRssi() + 10 * std::log10(-std::log(share) + 1e-9);
+    return packet.rssi < sensitivity;
 }
 
 void RfChannel::transmit(XBee* sender, RfPacket packet, uint64_t now) {
     ++counters_.packets;
     counters_.bytes += packet.bytes.size();
-    uint64_t air = airTimeNs(packet.bytes.size());
-    Outcome outcome = fate();
+    if (weather.trace)
+        packet.rssi = weather.trace->at(now).rssi;
+    else if (weather.distance > 0)
+        packet.rssi = weather.meanRssi();
+    Outcome outcome = fate(now);
     bool doubled = weather.duplication > 0 && random_.chance(weather.duplication);
-    unsigned tries = packet.tries;
-    Flight flight{sender, std::move(packet), tries - 1, outcome, false, false, 0, 0, nullptr};
+    Flight flight{sender, packet, packet.tries - 1, packet.rounds, packet.copies - 1, outcome,
+                  false,  false};
     if (doubled && outcome != Outcome::Lost) {
         ++counters_.duplicated;
         Flight copy = flight;
         copy.again = true;
-        events_.emplace(now + 2 * air + weather.delayNs, std::move(copy));
+        events_.emplace(now + 2 * (tryNs(packet) + gapNs) + delayNs(now), std::move(copy));
     }
-    start(std::move(flight), now);
+    start(std::move(flight), now, std::max(now, sender->busyUntil()));
+}
+
+uint64_t RfChannel::jittered(uint64_t ns) {
+    double share = 1 + jitter * (2.0 * random_.next() / 4294967296.0 - 1);
+    return weather.perfect ? 0 : static_cast<uint64_t>(static_cast<double>(ns) * share);
 }
 
 // With RN there is a random wait before the first carrier sense already.
-void RfChannel::start(Flight flight, uint64_t now) {
+void RfChannel::start(Flight flight, uint64_t now, uint64_t ready) {
     flight.backoffs = 0;
-    if (!weather.contention || !flight.packet.backoff)
+    if (!weather.perfect && flight.packet.backoff)
+        ready += random_.below(1u << flight.packet.backoff) * backoffUnitNs;
+    if (ready <= now)
         return begin(std::move(flight), now);
     flight.begins = true;
-    uint64_t wait = random_.below(1u << flight.packet.backoff) * backoffUnitNs;
-    events_.emplace(now + wait, std::move(flight));
+    events_.emplace(ready, std::move(flight));
 }
 
-// One try: at once, or, where modems share the channel, when it is clear. Two that begin within the
-// time from carrier sense to the first symbol do not hear each other.
+// One try, when the channel is clear. Two modems that begin within the time from carrier sense to
+// the first symbol do not hear each other, and none hears while it sends.
 void RfChannel::begin(Flight flight, uint64_t now) {
-    uint64_t air = airTimeNs(flight.packet.bytes.size()), extra = weather.delayNs;
+    uint64_t end = now + tryNs(flight.packet);
     flight.begins = false;
-    if (weather.contention) {
+    if (flight.sender && flight.sender->busyUntil() > now) {
+        flight.begins = true;
+        uint64_t ready = flight.sender->busyUntil();
+        events_.emplace(ready, std::move(flight));
+        return;
+    }
+    if (!weather.perfect) {
         onAir_.remove_if([&](auto& other) { return other->end <= now; });
         auto mine = std::make_shared<OnAir>();
         mine->channel = flight.packet.channel;
         mine->begin = now + ccaNs + turnaroundNs;
-        mine->end = now + air;
-        bool busy = false;
+        mine->end = end;
+        bool busy = weather.interferes(now, now + ccaNs);
         for (auto& other : onAir_)
             busy = busy || (other->channel == mine->channel && other->begin < now + ccaNs);
         if (busy && flight.backoffs++ == mostBackoffs)
@@ -88,18 +136,26 @@ void RfChannel::begin(Flight flight, uint64_t now) {
                     ++counters_.collisions;
                 other->collided = mine->collided = true;
             }
+        mine->collided = mine->collided || weather.interferes(mine->begin, mine->end);
         onAir_.push_back(mine);
         flight.onAir = mine;
     }
-    counters_.airNs += air;
-    events_.emplace(now + air + extra, std::move(flight));
+    counters_.airNs += end + gapNs - now;
+    events_.emplace(end + gapNs + delayNs(now), std::move(flight));
 }
 
+// The MAC's next try, or, with RR, the first of its next round.
 void RfChannel::retry(Flight flight, uint64_t now) {
-    --flight.triesLeft;
-    ++flight.unanswered;
+    uint64_t ready = now - delayNs(now);
     ++counters_.retries;
-    start(std::move(flight), now - weather.delayNs);
+    if (flight.triesLeft) {
+        --flight.triesLeft;
+    } else {
+        --flight.roundsLeft;
+        flight.triesLeft = flight.packet.tries - 1;
+        ready += roundNs + random_.below(roundSpreadUs) * 1000ull;
+    }
+    start(std::move(flight), now, ready);
 }
 
 void RfChannel::finish(Flight& flight, Outcome outcome, uint64_t now) {
@@ -109,51 +165,66 @@ void RfChannel::finish(Flight& flight, Outcome outcome, uint64_t now) {
         listener_(now, flight.packet, outcome);
     if (!flight.sender || flight.again)
         return;
-    bool arrived = outcome == Outcome::Delivered || outcome == Outcome::Corrupted;
+    // A modem acknowledges what its full buffer then drops.
+    bool arrived = outcome != Outcome::Lost && outcome != Outcome::Nobody && flight.answered;
     XBee::Fate fate = outcome == Outcome::NoClearChannel       ? XBee::Fate::NoClearChannel
                       : arrived || !flight.packet.acknowledged ? XBee::Fate::Sent
                                                                : XBee::Fate::NoAck;
     // Residual loss stands for tries that all failed.
-    unsigned unanswered = outcome == Outcome::Lost && flight.packet.acknowledged
-                              ? flight.packet.tries
+    unsigned unanswered = !flight.packet.acknowledged ? 0
+                          : outcome == Outcome::Lost
+                              ? flight.packet.tries * (1 + flight.packet.rounds)
                               : flight.unanswered;
     flight.sender->transmitted(now, fate, unanswered);
 }
 
 RfChannel::Outcome RfChannel::deliver(Flight& flight, uint64_t now) {
-    bool found = false, taken = false;
+    Outcome outcome = Outcome::Nobody;
     for (XBee* modem : modems_) {
         if (modem == flight.sender || !modem->hears(flight.packet))
             continue;
-        found = true;
-        taken = modem->receive(flight.packet, now) || taken;
+        XBee::Reception reception = modem->receive(flight.packet, now);
+        if (reception == XBee::Reception::Taken)
+            outcome = flight.outcome;
+        else if (reception == XBee::Reception::NoRoom && outcome == Outcome::Nobody)
+            outcome = Outcome::NoRoom;
     }
-    return !found ? Outcome::Nobody : !taken ? Outcome::NoRoom : flight.outcome;
+    return outcome;
 }
 
 void RfChannel::land(Flight flight, uint64_t now) {
-    bool mayRetry = flight.triesLeft > 0 && !flight.again;
+    bool mayRetry = (flight.triesLeft || flight.roundsLeft) && !flight.again;
     bool missed = flight.onAir && flight.onAir->collided;
     flight.onAir.reset();
     if (flight.outcome == Outcome::Lost)
         return finish(flight, Outcome::Lost, now);
-    if (missed || (weather.tryLoss > 0 && random_.chance(weather.tryLoss))) {
-        if (mayRetry)
-            return retry(std::move(flight), now);
-        return finish(flight, Outcome::Lost, now);
+    missed =
+        faded(flight.packet) || missed || (weather.tryLoss > 0 && random_.chance(weather.tryLoss));
+    if (missed && mayRetry) {
+        ++flight.unanswered;
+        return retry(std::move(flight), now);
     }
-    if (flight.outcome == Outcome::Corrupted) {
+    if (missed && !flight.copiesLeft)
+        return finish(flight, Outcome::Lost, now);
+    if (flight.outcome == Outcome::Corrupted && !missed) {
         ++counters_.corrupted;
         auto& bytes = flight.packet.bytes;
         bytes[random_.below(static_cast<uint32_t>(bytes.size()))] ^=
             static_cast<uint8_t>(1 + random_.below(255));
     }
-    Outcome outcome = deliver(flight, now);
-    bool unheard = flight.packet.acknowledged && outcome == flight.outcome && weather.ackLoss > 0 &&
-                   random_.chance(weather.ackLoss);
-    if ((outcome == Outcome::NoRoom || unheard) && mayRetry) {
-        flight.outcome = Outcome::Delivered;
-        return retry(std::move(flight), now);
+    Outcome outcome = missed ? Outcome::Lost : deliver(flight, now);
+    if (flight.copiesLeft && !flight.again) {
+        --flight.copiesLeft;
+        return start(std::move(flight), now, now);
+    }
+    flight.answered =
+        outcome != Outcome::Nobody && !(weather.ackLoss > 0 && random_.chance(weather.ackLoss));
+    if (flight.packet.acknowledged && !flight.answered && !flight.again) {
+        ++flight.unanswered;
+        if (mayRetry) {
+            flight.outcome = Outcome::Delivered;
+            return retry(std::move(flight), now);
+        }
     }
     finish(flight, outcome, now);
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// rf_channel: the air between modems: delay, loss, bursts of loss, duplication, corruption, lost
-// acknowledgements, collisions, by seed.
+// rf_channel: the air between modems, half duplex and shared: carrier sense, random waits,
+// collisions, tries and acknowledgements of the MAC, and the weather (rf_weather.h), by seed.
 
 #ifndef RF_CHANNEL_H
 #define RF_CHANNEL_H
 
 #include "random.h"
+#include "rf_weather.h"
 #include "xbee.h"
 #include <functional>
 #include <list>
@@ -14,19 +15,7 @@
 
 class RfChannel {
 public:
-    // Each a probability unless it says otherwise.
-    struct Weather {
-        // Residual loss of a packet in one direction, after the MAC's tries; costs no air time
-        // more.
-        double loss = 0;
-        double burstBegin = 0, burstEnd = 0.2, burstLoss = 0.9; // Gilbert-Elliott, per packet
-        double duplication = 0, corruption = 0;
-        uint64_t delayNs = 0; // beyond the time on the air
-        // The MAC itself: one try is lost, or its acknowledgement, and it tries again.
-        double tryLoss = 0, ackLoss = 0;
-        // Modems share the channel: carrier sense, random waits (RN), collisions.
-        bool contention = false;
-    };
+    using Weather = RfWeather;
     enum class Outcome { Delivered, Lost, Corrupted, Nobody, NoRoom, NoClearChannel };
     struct Counters {
         uint64_t packets = 0, bytes = 0, lost = 0, duplicated = 0, corrupted = 0;
@@ -43,37 +32,44 @@ public:
 
     void join(XBee* modem) { modems_.push_back(modem); }
     void leave(XBee* modem);
-    // The sender hears transmitted() when the packet has left or was given up.
+    // Sends a packet when its modem is no longer busy; the sender hears transmitted() when the
+    // packet has left or was given up.
     void transmit(XBee* sender, RfPacket packet, uint64_t now);
+    // A time of a modem's own work: it varies by a twentieth; 0 in perfect air.
+    uint64_t jittered(uint64_t ns);
     void advance(uint64_t now);
     uint64_t nextEvent() const { return events_.empty() ? never : events_.begin()->first; }
 
-    // Time on the air of n payload bytes with the MAC's acknowledgement: docs/modem.md.
+    // Time on the air of n payload bytes from one 16-bit address to another, with the maker's
+    // header, carrier sense, the MAC's acknowledgement and the gap after it: docs/models.md.
     static uint64_t airTimeNs(size_t bytes);
 
 private:
-    struct OnAir { // one try, where modems share the channel
+    struct OnAir { // one try
         uint8_t channel;
-        uint64_t begin, end;
+        uint64_t begin, end; // of the frame; of its acknowledgement
         bool collided = false;
     };
     struct Flight {
         XBee* sender;
         RfPacket packet;
-        unsigned triesLeft;
+        unsigned triesLeft, roundsLeft, copiesLeft; // of the MAC; by RR; of a broadcast with RR
         Outcome outcome;
         bool again;  // a duplicate: the sender has been told already
         bool begins; // still has to find the channel clear
         unsigned backoffs = 0, unanswered = 0;
-        std::shared_ptr<OnAir> onAir;
+        bool answered = true; // the last try's acknowledgement came
+        std::shared_ptr<OnAir> onAir = nullptr;
     };
-    void start(Flight flight, uint64_t now);
+    void start(Flight flight, uint64_t now, uint64_t ready);
     void begin(Flight flight, uint64_t now);
     void land(Flight flight, uint64_t now);
     void retry(Flight flight, uint64_t now);
     void finish(Flight& flight, Outcome outcome, uint64_t now);
     Outcome deliver(Flight& flight, uint64_t now);
-    Outcome fate();
+    Outcome fate(uint64_t now);
+    bool faded(RfPacket& packet);
+    uint64_t delayNs(uint64_t now) const;
 
     Random random_;
     bool inBurst_ = false;

@@ -30,9 +30,14 @@ struct RfPacket {
     bool acknowledged = true; // MM 0 or 2, and no broadcast
     bool sequenced = false;   // with a header and RR: the receiver drops what it has already
     uint16_t sequence = 0;
-    uint64_t serial = 0;  // the sender's, for decryption
-    unsigned tries = 4;   // the first and the MAC's retries, times 1 + RR
-    unsigned backoff = 0; // RN
+    uint64_t serial = 0;    // the sender's, for decryption
+    bool encrypted = false; // EE
+    bool from64 = false;    // the sender has no 16-bit address
+    unsigned tries = 4;     // the first and the MAC's retries
+    unsigned rounds = 0;    // RR: times that all tries are made again
+    unsigned copies = 1;    // of a broadcast: RR + 2 with RR
+    unsigned backoff = 0;   // RN
+    double rssi = -40;      // dBm at the receiver
 };
 
 class XBee : private SerialClient {
@@ -48,7 +53,9 @@ public:
         uint64_t overflow = 0;      // bytes lost: the serial input buffer was full
         uint64_t framingErrors = 0; // wrong stop bit, or the host's baud rate is too far off
         uint64_t commands = 0, refused = 0;
-        uint64_t packetsSent = 0, packetsReceived = 0, packetsDropped = 0;
+        uint64_t packetsSent = 0, packetsReceived = 0;
+        uint64_t packetsDropped = 0;    // acknowledged, but the buffer to the host was full
+        uint64_t packetsUnreadable = 0; // encrypted, and EE is 0 here, or the other way round
         uint64_t duplicatesDropped = 0, badFrames = 0; // API frames with a wrong checksum or type
     };
 
@@ -82,8 +89,12 @@ public:
 
     // From the channel.
     bool hears(const RfPacket& packet) const; // is it for this modem?
-    // False: no room in the buffer to the host; the sender tries again.
-    bool receive(const RfPacket& packet, uint64_t now);
+    // Absent: it is off or boots. NoRoom: acknowledged, and lost, since the buffer to the host is
+    // full.
+    enum class Reception { Absent, NoRoom, Taken };
+    Reception receive(const RfPacket& packet, uint64_t now);
+    // It is at work on packets until then, and sends none.
+    uint64_t busyUntil() const { return busyUntil_; }
     // The packet in flight is done with. `unanswered` tries had no acknowledgement.
     enum class Fate { Sent, NoAck, NoClearChannel };
     void transmitted(uint64_t now, Fate fate = Fate::Sent, unsigned unanswered = 0);
@@ -104,7 +115,9 @@ private:
     void silence(uint64_t now);
     void sendPackets(uint64_t now);
     void launch(RfPacket packet, uint64_t now);
+    void work(uint64_t now, bool encrypted);
     RfPacket addressed() const;
+    void setTries(RfPacket& packet) const;
     uint64_t serial() const;
     void updateCts();
     uint64_t charNs() const;
@@ -144,6 +157,7 @@ private:
     size_t flushCount_ = 0;      // bytes of it that must leave now
     std::deque<uint8_t> output_; // to the host
     bool inFlight_ = false, cts_ = true;
+    uint64_t busyUntil_ = 0;
     uint16_t sequence_ = 0;
     uint32_t frameCounter_ = 0;                 // of encrypted packets, since power on
     std::map<uint16_t, uint16_t> lastSequence_; // of each sender

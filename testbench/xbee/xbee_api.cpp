@@ -83,10 +83,9 @@ void XBee::apiSend(const Bytes& frame, uint64_t now) {
         packet.to64 = packet.to64 << 8 | frame[2 + i];
     packet.to = static_cast<uint16_t>(packet.to64);
     bool noAck = frame[head - 1] & 0x01; // option: no acknowledgement
-    if (noAck || (packet.to == 0xFFFF && !packet.wide)) {
+    if (noAck || (packet.to == 0xFFFF && !packet.wide))
         packet.acknowledged = false;
-        packet.tries = 1;
-    }
+    setTries(packet);
     packet.bytes.assign(frame.begin() + static_cast<std::ptrdiff_t>(head), frame.end());
     apiQueue_.push_back({frame[1], std::move(packet)});
     updateCts();
@@ -153,11 +152,15 @@ void XBee::apiReply(const Bytes& frame) {
     }
 }
 
-// 0x81: a packet from a 16-bit address: source, RSSI, options, data.
+// 0x81: a packet from a 16-bit address: source, RSSI, options, data. 0x80: from one of 64 bits.
 void XBee::apiReceived(const RfPacket& packet) {
     bool broadcast = !packet.wide && packet.to == 0xFFFF;
-    Bytes frame = {0x81, static_cast<uint8_t>(packet.from >> 8), static_cast<uint8_t>(packet.from),
-                   static_cast<uint8_t>(active_.at("DB")), static_cast<uint8_t>(broadcast ? 2 : 0)};
+    Bytes frame = {static_cast<uint8_t>(packet.from64 ? 0x80 : 0x81)};
+    for (int byte = packet.from64 ? 7 : 1; byte >= 0; --byte)
+        frame.push_back(
+            static_cast<uint8_t>((packet.from64 ? packet.serial : packet.from) >> (8 * byte)));
+    frame.push_back(static_cast<uint8_t>(active_.at("DB")));
+    frame.push_back(broadcast ? 2 : 0);
     frame.insert(frame.end(), packet.bytes.begin(), packet.bytes.end());
     apiReply(frame);
 }

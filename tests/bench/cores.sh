@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# cores: what the cores' block tests measure, beside what a memory port gives. Usage: cores.sh build-folder output.json
+# cores: what the cores' block tests measure, beside what a memory port gives. Usage: cores.sh build-folder output.json [--brief]
 # A port moves 8 bytes a clock in each direction (docs/memory.md); the fabric's clock is 100 MHz.
 set -eu
 case ${1:-} in -h | --help | '') sed -n '4,5s/^# //p' "$0" && exit 0 ;; esac
@@ -17,7 +17,7 @@ measure() {
     printf '%-34s %s bytes a clock: %s\n' "$1" "$bytes" "$line"
     entries="$entries${entries:+, }{\"name\": \"$1\", \"value\": $bytes, \"unit\": \"bytes a clock\", \"limit\": 8, \"share\": $(echo "$bytes" | awk '{print $1 / 8}'), \"command\": \"make bench\"}"
 }
-measure 'vision core, frame read' tests/ip/vision/test_vision '*OnePixelAClock*' 's/^\([0-9.]*\) clocks a pixel.*/\1/p' '1 / $1'
+measure 'vision core, frame read' ip/vision/test_ip_vision '*OnePixelAClock*' 's/^\([0-9.]*\) clocks a pixel.*/\1/p' '1 / $1'
 measure 'Ascon-AEAD128, each direction' ip/ascon/test_ip_ascon '*Speed*' 's/.*AEAD128 \([0-9.]*\) bytes.*/\1/p' '$1'
 measure 'Ascon-Hash256, read' ip/ascon/test_ip_ascon '*Speed*' 's/.*Hash256 \([0-9.]*\).*/\1/p' '$1'
 measure 'FIR filter, each direction' ip/fir/test_ip_fir '*OneSampleAClock*' 's/^\([0-9.]*\) clocks a sample.*/\1/p' '2 / $1'

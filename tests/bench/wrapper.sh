@@ -1,9 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# wrapper: source-folder slice2c out.json ghdl   What generating a wrapper costs: LUTs and flip-flops of the one of a new core (ip/template)
-# in Verilog, in VHDL, and of wrapper_minimum.v, written by hand, which is shown to do the same clock by clock, from reset on.
+# wrapper: what generating a wrapper costs: LUTs and flip-flops of the one of a new core (ip/template) in Verilog, in VHDL,
+# and of wrapper_minimum.v, written by hand, which is shown to do the same clock by clock, from reset on.
+# Usage: wrapper.sh source-folder slice2c ghdl out.json [--brief]     --brief: fewer clocks, and the size of the last only
 set -eu
-source=$1 slice2c=$2 json=$3 ghdl=$4
+source=$1 slice2c=$2 ghdl=$3 json=$4 clocks=13
+[ "${5:-}" != --brief ] || clocks=6
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 sed 's/@NAME@/sample/g; s/@TYPE@/Sample/g; s/@MODULE@/Cores/g' "$source/ip/template/NAME.ice.in" >"$work/sample.ice"
@@ -12,24 +14,25 @@ sed 's/@NAME@/sample/g; s/@TYPE@/Sample/g; s/@MODULE@/Cores/g' "$source/ip/templ
 "$ghdl" --synth --std=08 --workdir="$work" --out=verilog sample_wrapper >"$work/from_vhdl.v"
 generated="$source/bus/bus_registers.v $source/bus/bus_wrapper.v $work/sample_wrapper.v" minimum=$source/tests/bench/wrapper_minimum.v
 
-# Equal: a reset for a clock, then whatever may come for 12 more: a write, what it begins, its end, reads of all that.
+# Equal: a reset for two clocks, then whatever may come for 12 more: a write, what it begins, its end, reads of all that.
 timeout 120 yosys -q -p "read_verilog -I$source/bus $generated $minimum; hierarchy -check; proc; flatten
     miter -equiv -flatten sample_wrapper wrapper_minimum both; hierarchy -top both; opt -full
-    sat -verify -seq 1 -set-at 1 in_rst_i 1 -seq 1 -prove trigger 0 -tempinduct-baseonly -maxsteps 13 both" >"$work/equal" 2>&1 || {
+    sat -verify -set-at 1 in_rst_i 1 -set-at 2 in_rst_i 1 -seq 2 -prove trigger 0 -tempinduct-baseonly -maxsteps $clocks both" >"$work/equal" 2>&1 || {
     cat "$work/equal" && echo 'wrapper: wrapper_minimum.v does something else' >&2 && exit 1
 }
 
 size() { # top, files: "luts flip-flops"
     top=$1 && shift
-    sed -e "s|@INCLUDES@|-I$source/bus|; s|@SOURCES@|$*|; s|@PARAMETERS@||; s|@TOP@|$top|" -e '/^select A:top/,$d' \
-        "$source/synth/yosys/xc6s.ys" >"$work/$top.ys"
+    sed -e "s|@INCLUDES@|-I$source/bus|; s|@SOURCES@|$*|; s|@PARAMETERS@||; s|@TOP@|$top|" -e "/@MAP@/r $source/synth/yosys/xilinx_map.ys" \
+        -e '/@MAP@/d; /^select A:top/,$d' "$source/synth/yosys/xc6s.ys" >"$work/$top.ys"
     echo "tee -o $work/$top.stat stat" >>"$work/$top.ys"
     yosys -q -s "$work/$top.ys" >"$work/$top.log" 2>&1 || { cat "$work/$top.log" >&2 && exit 1; }
     awk '$1 ~ /^LUT[1-6]$/ { l += $2 } $1 ~ /^FD/ { f += $2 } END { print l + 0, f + 0 }' "$work/$top.stat"
 }
 # shellcheck disable=SC2086 # a list of files
-a=$(size sample_wrapper $generated)
 b=$(size wrapper_minimum "$minimum")
+[ "${5:-}" != --brief ] || { echo "the one by hand: $b LUTs and flip-flops" && exit 0; }
+a=$(size sample_wrapper $generated)
 c=$(size sample_wrapper "$work/from_vhdl.v")
 mkdir -p "$(dirname "$json")"
 echo "$a $b $c" | awk -v json="$json" '{

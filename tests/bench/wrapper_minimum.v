@@ -18,7 +18,7 @@ module wrapper_minimum (
     output wire        bus_error_o,
     output wire        irq_o,
     // the core: ports as the wrapper's
-    output wire        core_rst_o,
+    output reg         core_rst_o,
     output wire        set_offset_start_o,
     output wire [31:0] set_offset_offset_o,
     output wire        add_start_o,
@@ -41,7 +41,6 @@ module wrapper_minimum (
     assign bus_ready_o         = 1'b1;
     assign bus_error_o         = bus_addr_i > 4'd9;
     assign irq_o               = event_done && mask[2];
-    assign core_rst_o          = rst_i || (control && bus_wdata_i[31]);
     assign set_offset_start_o  = control && bus_wdata_i[0];
     assign add_start_o         = control && bus_wdata_i[1];
     assign sum_to_start_o      = control && bus_wdata_i[2] && !busy;
@@ -65,6 +64,7 @@ module wrapper_minimum (
     end
 
     always @(posedge clk_i) begin
+        core_rst_o <= rst_i || (control && bus_wdata_i[31]);
         event_done <= (event_done && !(write && bus_addr_i == 4'd1 && bus_wdata_i[2])) || done;
         busy       <= (busy && !done) || sum_to_start_o;
         refused    <= (refused && !done && !sum_to_start_o) || (done && sum_to_refused_i);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// axi4lite_test: the adapter against AXI4-Lite slaves that are ready late, answer late, err and hang.
+// axi4lite_test: the adapter against AXI4-Lite slaves that are ready late, answer late, err and
+// hang.
 
 #include "VAxi4Lite.h"
 #include "bus_master.h"

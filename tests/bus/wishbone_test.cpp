@@ -173,13 +173,29 @@ template <class Module> void interrupt(bool pipelined) {
     EXPECT_FALSE(top.irq_o);
 }
 
-TEST(WishboneClassic, RandomTraffic) { randomTraffic<VWishboneClassic>(false); }
-TEST(WishboneClassic, ErrorsAndHangs) { misbehaviour<VWishboneClassic>(false); }
-TEST(WishboneClassic, AnswersAroundTheTimeOut) { aroundTheTimeOut<VWishboneClassic>(false); }
-TEST(WishbonePipelined, AnswersAroundTheTimeOut) { aroundTheTimeOut<VWishbonePipelined>(true); }
-TEST(WishboneClassic, Interrupt) { interrupt<VWishboneClassic>(false); }
-TEST(WishbonePipelined, RandomTraffic) { randomTraffic<VWishbonePipelined>(true); }
-TEST(WishbonePipelined, ErrorsAndHangs) { misbehaviour<VWishbonePipelined>(true); }
-TEST(WishbonePipelined, Interrupt) { interrupt<VWishbonePipelined>(true); }
+TEST(WishboneClassic, RandomTraffic) {
+    randomTraffic<VWishboneClassic>(false);
+}
+TEST(WishboneClassic, ErrorsAndHangs) {
+    misbehaviour<VWishboneClassic>(false);
+}
+TEST(WishboneClassic, AnswersAroundTheTimeOut) {
+    aroundTheTimeOut<VWishboneClassic>(false);
+}
+TEST(WishbonePipelined, AnswersAroundTheTimeOut) {
+    aroundTheTimeOut<VWishbonePipelined>(true);
+}
+TEST(WishboneClassic, Interrupt) {
+    interrupt<VWishboneClassic>(false);
+}
+TEST(WishbonePipelined, RandomTraffic) {
+    randomTraffic<VWishbonePipelined>(true);
+}
+TEST(WishbonePipelined, ErrorsAndHangs) {
+    misbehaviour<VWishbonePipelined>(true);
+}
+TEST(WishbonePipelined, Interrupt) {
+    interrupt<VWishbonePipelined>(true);
+}
 
 } // namespace

@@ -42,7 +42,7 @@ sh tests/mutants/run.sh --jobs 1 >run.log 2>&1 || fail "a bug that its test catc
 grep -q '^caught *tiny/wrong ' run.log || fail "the bug was not caught"
 grep -q '"caught": 1, "total": 1, "score": 100.0' build/mutants/summary.json || fail "no summary"
 
-# What an interrupted run had planted is taken out, or the tests would fail without a bug.
+# A bug that an interrupted run had planted is taken out, or the tests would fail without a bug.
 cp build/mutants/0/tiny.c build/mutants/0/tiny.c.orig
 sed -i 's/2 \*/3 */' build/mutants/0/tiny.c
 bug comment test_tiny 's/doubles/halves/'

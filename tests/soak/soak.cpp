@@ -29,7 +29,7 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-// What message `id` of a side looks like: everything follows from the two.
+// Makes message `id` of a side: every byte follows from the two.
 Bytes messageOf(uint32_t side, uint32_t id) {
     Random r(uint64_t(side) << 40 | id);
     uint32_t kind = r.below(10), size = r.below(40) ? r.below(60) : r.below(LINK_MAX_MESSAGE - 100);
@@ -82,7 +82,7 @@ public:
         now_ = now;
         line_.received.clear();
         out_.clear();
-        // What was on its way when the power went: its program would call it unknown.
+        // Messages on their way when the power went: their program would call them unknown.
         totals_.unknown += outstanding_.size();
         outstanding_.clear();
         Link_init(link_.get(), &port, this, 1440);
@@ -93,7 +93,7 @@ public:
         modem_->advance(now);
         for (; !out_.empty() && line_.mayTalk(); out_.pop_front())
             line_.send({out_.front()}, now);
-        Link_receive(link_.get(), line_.received.data(), static_cast<U32>(line_.received.size()), 0,
+        Link_receive(link_.get(), line_.received.data(), static_cast<U32>(line_.received.size()),
                      us());
         line_.received.clear();
         Link_poll(link_.get(), us());
@@ -126,9 +126,9 @@ private:
         Bytes m = messageOf(side_, nextId_);
         int channel = static_cast<int>(nextId_ % LINK_CHANNELS);
         Link_Status status =
-            Link_send(link_.get(), channel, m.data(), static_cast<U32>(m.size()), nextId_, us());
+            Link_send(link_.get(), channel, m.data(), static_cast<U32>(m.size()), nextId_);
         if (status == LINK_CLOSED)
-            Link_openChannel(link_.get(), channel, us());
+            Link_openChannel(link_.get(), channel);
         if (status != LINK_OK)
             return;
         outstanding_.emplace(nextId_++, false);
@@ -163,7 +163,8 @@ private:
         auto it = outstanding_.find(id);
         if (it != outstanding_.end())
             it->second = true;
-        // What was skipped must not be on its way any more with the sender still believing in it.
+        // A message that was skipped must not be on its way any more with the sender still
+        // believing in it.
         for (uint32_t skipped = lastArrived_ + 1; skipped < id; ++skipped)
             if (outstanding_.count(skipped))
                 fault("was skipped", skipped);

@@ -6,6 +6,7 @@
 #            what it synthesised is left in the folder `kept`, where the other cases begin
 #   growth   a register more fails with its name; accepting it passes; a second run takes all from the cache
 #   slow     a longer path than the clock allows fails with its ends
+#   partial  one design alone: the page has all; of those that have changed it says so; the limits hold, whatever is accepted
 #   broken   a syntax error is told with its file and line, and the other designs are reported nevertheless
 #   twice    of two runs at once the second waits, says so, and takes what the first has made
 #   edif     the netlist for ISE is whole
@@ -31,7 +32,7 @@ has() { grep -q -- "$1" "$work/log" || { cat "$work/log" >&2; fail "no '$1' in t
 
 case $case in
 counts)
-    run --family xc6s || fail "$(cat "$work/log")"
+    run || fail "$(cat "$work/log")"
     value() { sed -n "s/.*\"cells\":{\([^}]*\)}.*/\1/p" "$work"/out/cache/"$1".xc6s.*.figures; }
     value wide | grep -q '"CARRY4":4' || fail "a counter of 16 bits has four: the parameter was not set"
     value store | grep -q '"RAM32M":1' || fail "32 x 6 bits are one RAM32M"
@@ -45,31 +46,44 @@ counts)
     cp -r out/cache "$kept"
     ;;
 growth)
-    run --family xc6s --accept || fail "$(cat "$work/log")"
-    run --family xc6s || fail "what was accepted does not pass: $(cat "$work/log")"
+    run --accept || fail "$(cat "$work/log")"
+    run || fail "what was accepted does not pass: $(cat "$work/log")"
     if grep -q '^\[' "$work/log"; then fail "a second run synthesised again"; fi
     sed -i 's/^    wire \[5:0\] word;/&\n    reg [11:0] extra;/; s/^        data_o <= word/        extra <= {extra[5:0], word};\n        data_o <= extra[11:6] ^ word/' \
         "$project/hdl/blocks/pair.v"
-    if run --family xc6s; then fail "twelve flip-flops more pass"; fi
+    if run; then fail "twelve flip-flops more pass"; fi
     has 'FAILED whole:'
     has 'extra +.*FF'
     [ "$(grep -c '^\[' "$work/log")" = 1 ] || fail "more was synthesised than what has changed"
-    run --family xc6s --accept && run --family xc6s || fail "the accepted growth does not pass"
+    run --accept && run || fail "the accepted growth does not pass"
     ;;
 slow)
-    run --family xc6s --accept || fail "$(cat "$work/log")"
+    run --accept || fail "$(cat "$work/log")"
     sed -i 's/^    wire \[5:0\] word;/&\n    reg [31:0] chain;\n    wire [31:0] a = chain + {chain[7:0], chain[31:8]}, b = a ^ (a + {a[15:0], a[31:16]}), c = b + {b[3:0], b[31:4]}, d = c ^ (c + {c[10:0], c[31:11]}), e = d ^ (d + {d[12:0], d[31:13]}), f = e + {e[5:0], e[31:6]};/; s/^        data_o <= word/        chain <= f ^ word;\n        data_o <= chain[31:26] ^ word/' \
         "$project/hdl/blocks/pair.v"
-    if run --family xc6s; then fail "a chain of adders passes"; fi
+    if run; then fail "a chain of adders passes"; fi
     has 'FAILED whole: [0-9]* MHz; accepted were [0-9]*, the least is 100'
     has 'chain.* to .*chain.* levels'
     ;;
+partial)
+    run || fail "$(cat "$work/log")"
+    sed -i 's/^    wire \[5:0\] word;/&\n    wire unused = 1;/' "$project/hdl/blocks/pair.v"
+    run --design store || fail "$(cat "$work/log")"
+    if grep -q '^wide ' "$work/log"; then fail "a design that was not asked for is in the table"; fi
+    grep -q '"missing": *\[ *"whole" *\]' out/report.json || tr -d ' \n' <out/report.json | grep -q '"missing":\["whole"\]' ||
+        fail "what has changed since is not told: $(head -20 out/report.json)"
+    grep -q '"name": "wide lut"' out/report.json || fail "what has not changed is not in the report"
+    sed -i 's/"lut": 40/"lut": 1/' "$project/synth/designs.json"
+    if run --accept; then fail "a figure above its limit is accepted"; fi
+    has 'above the limit of 1: nothing is accepted'
+    ;;
 broken)
     echo 'module broken(input wire a_i); assign b = ; endmodule' >"$project/hdl/blocks/broken.v"
-    if run --family xc6s; then fail "a syntax error passes"; fi
+    if run; then fail "a syntax error passes"; fi
     has 'broken.v:1: ERROR: syntax error'
     has "^wide "
     has '^broken .*failed'
+    grep -q '"broken: synthesis failed"' out/report.json || fail "the failure is not in report.json"
     ;;
 twice)
     # The first one's Yosys begins when the second has been seen to wait (or, if it never does, after 20 s).
@@ -84,17 +98,17 @@ SH
     chmod +x "$work/slow"
     rm -rf out
     : >second
-    "$program" --source project --generated gen --output out --family xc6s --yosys "$work/slow" >first 2>&1 &
+    "$program" --source project --generated gen --output out --yosys "$work/slow" >first 2>&1 &
     first=$!
     until [ -d out/cache ] || ! kill -0 $first 2>/dev/null; do sleep 0.1; done # it has the folder
-    "$program" --source project --generated gen --output out --family xc6s --yosys "$work/slow" >second 2>&1 || fail "the second: $(cat second)"
+    "$program" --source project --generated gen --output out --yosys "$work/slow" >second 2>&1 || fail "the second: $(cat second)"
     wait $first || fail "the first: $(cat first)"
     grep -q 'waiting for another run in out' second || fail "the second did not wait: $(cat second)"
     [ "$(grep -c '^\[' first)" -gt 0 ] || fail "the first synthesised nothing: $(cat first)"
     if grep -q '^\[' second; then fail "the second synthesised again: $(cat second)"; fi
     ;;
 page)
-    run || fail "$(cat "$work/log")"
+    run --family xc7 --family ecp5 || fail "$(cat "$work/log")"
     page=$work/out/report.html
     [ "$(wc -c <"$page")" -lt 2000000 ] || fail "the page has 2 MB or more"
     if grep -Eo '(src|href)="?https?:' "$page"; then fail "the page needs the network"; fi

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int clocksOfBit = 100, clockNs = 10;
 
-// What sits at the other end of the line.
+// The device at the other end of the line.
 class Device : public SerialClient {
 public:
     void fromHost(uint8_t byte, uint64_t) override { received.push_back(byte); }

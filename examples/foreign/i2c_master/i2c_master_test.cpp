@@ -11,7 +11,7 @@ extern "C" {
 
 namespace {
 
-// What a device sees of a line: a level counts once it has lasted longer than the spikes of up to
+// A line as a device sees it: a level counts once it has lasted longer than the spikes of up to
 // 50 ns which a device must not see (UM10204, table 10: tSP). This core makes one: it lets go of
 // SDA for one clock when it sees its own start, as its slave half then resets the master half
 // (slave_reset in i2c_master_byte_ctrl.v).

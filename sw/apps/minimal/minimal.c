@@ -2,20 +2,21 @@
  *
  * minimal: the smallest program that has all layers: one loop, no tasks, a server and a client.
  *
- * It is what `make size` measures (docs/icec.md): Slice of the paper's Figure 3, the engine's
- * servant as in its Figure 5, and calls to the ground station, two-way (ice_ping) and one-way
- * (vehicleState), over the xbee-at endpoint, the link, the modem and the FSMC.
+ * It is what `make size` measures (docs/icec.md), and it flies: `make run CPU=m3 APP=minimal`.
+ * Slice of the paper's Figure 3, the engine's servant as in its Figure 5, and calls to the ground
+ * station, two-way and one-way, over the xbee-at endpoint, the link, the modem and the FSMC.
  */
+#include "minimal.h"
 #include "Autopilot.h"
-#include "fsmc.h"
+#include "board.h"
+#include "map_regs.h"
 #include "radio.h"
+#include "uav.h"
 #include "ucos_ii.h"
+#include "vision_regs.h"
 #include "xbee_endpoint.h"
 
 #define BYTE_TIME_US16 1440U /* 111,111 baud */
-#define ENGINE_SLOT 2U
-
-volatile INT32U minimal_ticks; /* milliseconds, counted by SysTick */
 
 static Ice_Communicator ic;
 static Ice_ObjectAdapter adapter;
@@ -23,120 +24,107 @@ static Autopilot_HwProcessingEngine servant;
 static XBeeATEndpoint endpoint;
 static Link radioLink;
 
-/* ---- the processor ---- */
-
-static U8 read8(void *context, U32 address) {
-    (void)context;
-    return *(volatile U8 *)address;
-}
-
-static void write8(void *context, U32 address, U8 value) {
-    (void)context;
-    *(volatile U8 *)address = value;
-}
-
-static U16 read16(void *context, U32 address) {
-    (void)context;
-    return *(volatile U16 *)address;
-}
-
-static void write16(void *context, U32 address, U16 value) {
-    (void)context;
-    *(volatile U16 *)address = value;
-}
-
-static U32 read32(void *context, U32 address) {
-    (void)context;
-    return *(volatile U32 *)address;
-}
-
-static void write32(void *context, U32 address, U32 value) {
-    (void)context;
-    *(volatile U32 *)address = value;
-}
-
-static const Fsmc_Port processor = {read8, write8, read16, write16, read32, write32};
-
-/* What the radio driver asks of an OS. */
+/* Sleeps; all that the radio driver asks of an OS. */
 void OSTimeDly(INT32U ticks) {
     INT32U begin = minimal_ticks;
     while (minimal_ticks - begin < ticks)
-        ;
+        Minimal_sleep();
 }
 
 /* ---- the link, polled ---- */
 
-static U32 nowMs(void *context) {
+static U32 nowMs(void* context) {
     (void)context;
     return minimal_ticks;
 }
 
-static U32 nowUs(void *context) {
+static U32 nowUs(void* context) {
     (void)context;
     return minimal_ticks * 1000U;
 }
 
-static int work(void *context, Ice_Int timeoutMs) {
+static void onPacket(void* context, const U8* bytes, U32 size) {
+    Link_receive(&radioLink, bytes, size, nowUs(context));
+}
+
+static void pollLink(void) {
+    (void)Radio_receive(onPacket, 0);
+    Link_poll(&radioLink, nowUs(0));
+}
+
+static int work(void* context, Ice_Int timeoutMs) {
     INT32U begin = minimal_ticks;
     (void)context;
-    do {
-        (void)Radio_receive(&radioLink, nowUs(0));
-        Link_poll(&radioLink, nowUs(0));
-    } while (endpoint.events == 0 && (Ice_Int)(minimal_ticks - begin) < timeoutMs);
+    pollLink();
+    while (endpoint.events == 0 && (Ice_Int)(minimal_ticks - begin) < timeoutMs) {
+        Minimal_sleep();
+        pollLink();
+    }
     return 0;
 }
 
-static const XBeeATPort endpointPort = {0, 0, 0, work, 0, nowUs, nowMs};
+static const XBeeATEndpoint_Port endpointPort = {0, 0, 0, work, 0, nowMs};
 
-static U32 randomWord(void *context) {
+static U32 randomWord(void* context) {
     static U32 state;
     (void)context;
     return state = state * 1664525U + 1013904223U + minimal_ticks;
 }
 
-static int onMessage(void *context, int channel, const U8 *data, U32 size) {
+static int onMessage(void* context, int channel, const U8* data, U32 size) {
     (void)context;
     return XBeeATEndpoint_onMessage(&endpoint, channel, data, size);
 }
 
-static void onChannel(void *context, int channel, int isOpen) {
+static void onChannel(void* context, int channel, int isOpen) {
     (void)context;
     XBeeATEndpoint_onChannel(&endpoint, channel, isOpen);
 }
 
-static void onState(void *context, Link_State state) {
+static void onState(void* context, Link_State state) {
     (void)context;
     XBeeATEndpoint_onState(&endpoint, state);
 }
 
 static const Link_Port linkPort = {Radio_transmit, randomWord, onMessage, onChannel, onState, 0, 0};
 
-/* ---- the servant: registers through the FSMC ---- */
+/* ---- the servant: registers of the vision core, through the FSMC ---- */
 
 Ice_Status Autopilot_HwProcessingEngine_setParameterA(Autopilot_HwProcessingEnginePtr self,
-                                                      Ice_Short value, const Ice_Current *current) {
+                                                      Ice_Short value, const Ice_Current* current) {
     (void)self;
     (void)current;
-    FSMC_write(ENGINE_SLOT, 4, (U32)value);
+    FSMC_write(MAP_SLOT_VISION, VISION_THRESHOLD, (U32)value);
     return ICE_OK;
 }
 
 Ice_Status Autopilot_HwProcessingEngine_startProcessing(Autopilot_HwProcessingEnginePtr self,
-                                                        const Ice_Current *current) {
+                                                        const Ice_Current* current) {
+    U8 size[8]; /* width and height, written by the camera */
     (void)self;
     (void)current;
-    FSMC_write(ENGINE_SLOT, 0, 1);
+    FSMC_readMemory(UAV_FRAME_HEADER, size, 8);
+    FSMC_write(MAP_SLOT_VISION, VISION_FRAME_BASE, UAV_FRAME);
+    FSMC_write(MAP_SLOT_VISION, VISION_FRAME_SIZE,
+               (U32)size[0] | (U32)size[1] << 8 | (U32)size[4] << 16 | (U32)size[5] << 24);
+    FSMC_write(MAP_SLOT_VISION, VISION_RESULT_BASE, MAP_MEMORY_VISION);
+    FSMC_write(MAP_SLOT_VISION, VISION_RESULT_MAX, 0);
+    FSMC_write(MAP_SLOT_VISION, VISION_CONTROL, VISION_CONTROL_START_MASK);
     return ICE_OK;
 }
 
+/* Returns the last frame's result; `cycles` is 0 while the core is at work. */
 Ice_Status Autopilot_HwProcessingEngine_getResult(Autopilot_HwProcessingEnginePtr self,
-                                                  Autopilot_ResultType *res,
-                                                  const Ice_Current *current) {
+                                                  Autopilot_ResultType* res,
+                                                  const Ice_Current* current) {
     (void)self;
     (void)current;
-    res->found = (Ice_Int)FSMC_read(ENGINE_SLOT, 5);
-    res->cycles = (Ice_Int)FSMC_read(ENGINE_SLOT, 6);
+    res->found = res->cycles = 0;
     res->best.size = 0;
+    if (FSMC_read(MAP_SLOT_VISION, VISION_STATUS) & VISION_STATUS_BUSY_MASK)
+        return ICE_OK;
+    res->found = (Ice_Int)FSMC_read(MAP_SLOT_VISION, VISION_FOUND);
+    res->cycles = (Ice_Int)FSMC_read(MAP_SLOT_VISION, VISION_CYCLES);
     return ICE_OK;
 }
 
@@ -148,7 +136,7 @@ int main(void) {
     static Ice_ObjectPrx station, stationOneway, self;
     Autopilot_ParamSeq params = {0, 0};
 
-    if (FSMC_init(&processor, 0) != FSMC_OK || xbeeInit(&xbeeConf, &rings) != RADIO_OK)
+    if (FSMC_init(&board_fsmc, 0) != FSMC_OK || xbeeInit(&xbeeConf, &rings) != RADIO_OK)
         return 1;
     Link_init(&radioLink, &linkPort, 0, BYTE_TIME_US16);
     Link_start(&radioLink, nowUs(0));
@@ -163,8 +151,10 @@ int main(void) {
     (void)Ice_Communicator_stringToProxy(&ic, "station:xbee-at -a 0x0000", &station);
     (void)Ice_Communicator_stringToProxy(&ic, "station -o:xbee-at -a 0x0000", &stationOneway);
     (void)Ice_ObjectAdapter_createProxy(&adapter, "hwengine1", &self);
-    if (Autopilot_StationPrx_vehicleState(&station, &self, &params) == ICE_OK)
-        (void)Autopilot_StationPrx_vehicleState(&stationOneway, &self, &params);
+    /* Until the link is up and the station listens, calls are served. */
+    while (Autopilot_StationPrx_vehicleState(&station, &self, &params) != ICE_OK)
+        (void)Ice_Communicator_poll(&ic, 1000);
+    (void)Autopilot_StationPrx_vehicleState(&stationOneway, &self, &params);
 
     Ice_Communicator_waitForShutdown(&ic);
     return 0;

@@ -31,7 +31,7 @@ void PAPER_useRadio(Ice_CommunicatorPtr ic) {
     (void)OSTaskCreate(UAV_radioTask, 0, &radioStack[STACK_WORDS - 1], PRIO_RADIO);
 }
 
-void PAPER_start(const Fsmc_Port *port, void *context) {
+void PAPER_start(const FSMC_Port* port, void* context) {
     irqEnabled = 0;
     if (FSMC_init(port, context) != FSMC_OK)
         return;

@@ -19,39 +19,39 @@
 
 Ice_Status
 Autopilot_HwProcessingEngine_setParameterA(Autopilot_HwProcessingEnginePtr self, /* [1] */
-                                           Ice_Short value, const Ice_Current *current) {
+                                           Ice_Short value, const Ice_Current* current) {
     (void)self, (void)current;
     FSMC_write(MAP_SLOT_VISION, VISION_THRESHOLD, (U32)value); /* [2] */
     return ICE_OK;
 }
 
 Ice_Status Autopilot_HwProcessingEngine_startProcessing(Autopilot_HwProcessingEnginePtr self,
-                                                        const Ice_Current *current) {
+                                                        const Ice_Current* current) {
     (void)self, (void)current;
     FSMC_write(MAP_SLOT_VISION, VISION_FRAME_BASE, UAV_FRAME);
     FSMC_write(MAP_SLOT_VISION, VISION_FRAME_SIZE, 96U | 64U << 16);
-    FSMC_write(MAP_SLOT_VISION, VISION_RESULT_BASE, UAV_RESULT);
-    FSMC_write(MAP_SLOT_VISION, VISION_RESULT_MAX, UAV_RESULT_MAX);
+    FSMC_write(MAP_SLOT_VISION, VISION_RESULT_BASE, MAP_MEMORY_VISION);
+    FSMC_write(MAP_SLOT_VISION, VISION_RESULT_MAX, VISION_MEMORY_BYTES / VISION_RECORD_BYTES);
     FSMC_write(MAP_SLOT_VISION, VISION_CONTROL, VISION_CONTROL_START_MASK);
     return ICE_OK;
 }
 
 Ice_Status Autopilot_HwProcessingEngine_getResult(Autopilot_HwProcessingEnginePtr self,
-                                                  Autopilot_ResultType *res,
-                                                  const Ice_Current *current) {
+                                                  Autopilot_ResultType* res,
+                                                  const Ice_Current* current) {
     (void)self, (void)current;
     res->found = (Ice_Int)FSMC_read(MAP_SLOT_VISION, VISION_FOUND);
     return ICE_OK;
 }
 
 Ice_Status Autopilot_Vehicle_isAlive(Autopilot_VehiclePtr self, Ice_Short sessionId,
-                                     Ice_Bool *result, const Ice_Current *current) {
+                                     Ice_Bool* result, const Ice_Current* current) {
     (void)self, (void)sessionId, (void)current;
     *result = 1;
     return ICE_OK;
 }
 
-void appMainTask(void *argument) {
+void appMainTask(void* argument) {
     static Ice_Communicator ic;
     static Ice_ObjectAdapter adapter;
     static Autopilot_HwProcessingEngine servant;

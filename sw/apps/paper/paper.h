@@ -8,16 +8,16 @@
 #include "fsmc.h"
 #include "icec.h"
 
-/* The program's task. */
-void appMainTask(void *argument);
+/* Runs the program; its only task of its own. */
+void appMainTask(void* argument);
 
 /* XBeeATEndpoint_init, the link and the task below it, and IceC's locks. */
 void PAPER_useRadio(Ice_CommunicatorPtr ic);
 
 /* Creates the task; call between OSInit and OSStart. */
-void PAPER_start(const Fsmc_Port *port, void *context);
+void PAPER_start(const FSMC_Port* port, void* context);
 
-/* The FPGA's interrupt, a level; and whether it is unmasked. */
+/* Handles the FPGA's interrupt, a level; tells whether it is unmasked. */
 void PAPER_irqHandler(void);
 int PAPER_irqEnabled(void);
 

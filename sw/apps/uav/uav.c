@@ -15,16 +15,17 @@
 
 Ice_Communicator uav_ic;
 
-static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STACK_WORDS], coresStack[STACK_WORDS];
+static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STACK_WORDS],
+    coresStack[STACK_WORDS];
 static Ice_ObjectAdapter adapter;
 static Autopilot_Vehicle vehicle;
-static OS_EVENT *report; /* a frame is done: tell the station */
+static OS_EVENT* report; /* a frame is done: tell the station */
 static U32 frames, corners;
 static U8 irqEnabled;
 static U32 busErrors, busErrorPlace; /* written by the interrupt only */
 
-Ice_Status Autopilot_Vehicle_isAlive(Autopilot_VehiclePtr self, Ice_Short sessionId, Ice_Bool *result,
-                                     const Ice_Current *current) {
+Ice_Status Autopilot_Vehicle_isAlive(Autopilot_VehiclePtr self, Ice_Short sessionId,
+                                     Ice_Bool* result, const Ice_Current* current) {
     (void)self;
     (void)sessionId;
     (void)current;
@@ -32,7 +33,7 @@ Ice_Status Autopilot_Vehicle_isAlive(Autopilot_VehiclePtr self, Ice_Short sessio
     return ICE_OK;
 }
 
-static void setParam(Autopilot_Param *param, Ice_Byte *data, Autopilot_ParamId id, U32 value) {
+static void setParam(Autopilot_Param* param, Ice_Byte* data, Autopilot_ParamId id, U32 value) {
     int i;
     for (i = 0; i < 4; ++i)
         data[i] = (Ice_Byte)(value >> (8 * i));
@@ -43,7 +44,7 @@ static void setParam(Autopilot_Param *param, Ice_Byte *data, Autopilot_ParamId i
 }
 
 /* Tells the ground station about the vehicle whenever a frame is done. */
-static void clientTask(void *argument) {
+static void clientTask(void* argument) {
     static Ice_ObjectPrx station, self;
     Autopilot_Param params[5];
     Ice_Byte data[5][4];
@@ -55,7 +56,7 @@ static void clientTask(void *argument) {
     list.size = 5;
     list.data = params;
     for (;;) {
-        const Radio_Counters *radio;
+        const Radio_Counters* radio;
         OSSemPend(report, 0, &error);
         radio = Radio_counters();
         setParam(&params[0], data[0], Autopilot_uptimeMs, OSTimeGet() * (1000U / OS_TICKS_PER_SEC));
@@ -63,25 +64,28 @@ static void clientTask(void *argument) {
         setParam(&params[2], data[2], Autopilot_cornersFound, corners);
         setParam(&params[3], data[3], Autopilot_radioBytesSent, radio->bytesCopiedOut);
         setParam(&params[4], data[4], Autopilot_radioBytesReceived, radio->bytesCopiedIn);
-        /* A station that does not listen is no fault of the vehicle's: the next frame tries again. */
+        /* A station that does not listen is no fault of the vehicle's: the next frame tries again.
+         */
         (void)Autopilot_StationPrx_vehicleState(&station, &self, &list);
     }
 }
 
-/* With the stack's bounds, so that its end is guarded and its use can be asked for. */
-static void createTask(void (*task)(void *), OS_STK *stack, INT8U priority) {
-    (void)OSTaskCreateExt(task, 0, &stack[STACK_WORDS - 1], priority, priority, stack, STACK_WORDS, 0,
-                          OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);
+/* Creates a task with its stack's bounds, so that the end is guarded and the use can be asked for.
+ */
+static void createTask(void (*task)(void*), OS_STK* stack, INT8U priority) {
+    (void)OSTaskCreateExt(task, 0, &stack[STACK_WORDS - 1], priority, priority, stack, STACK_WORDS,
+                          0, OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);
 }
 
-static void appMainTask(void *argument) {
+static void appMainTask(void* argument) {
     (void)argument;
     irqEnabled = 1;
 
     Ice_initialize(&uav_ic);
     Ice_Communicator_setOs(&uav_ic, &uav_iceOs, 0);
     UAV_useRadio(&uav_ic);
-    (void)Ice_Communicator_createObjectAdapterWithEndpoints(&uav_ic, "Adapter", "xbee-at", &adapter);
+    (void)Ice_Communicator_createObjectAdapterWithEndpoints(&uav_ic, "Adapter", "xbee-at",
+                                                            &adapter);
     Ice_ObjectAdapter_activate(&adapter);
     UAV_startCores(&adapter);
     Autopilot_Vehicle_init(&vehicle);
@@ -126,7 +130,7 @@ int UAV_irqEnabled(void) {
     return irqEnabled;
 }
 
-int UAV_start(const Fsmc_Port *port, void *context) {
+int UAV_start(const FSMC_Port* port, void* context) {
     irqEnabled = 0;
     busErrors = 0;
     frames = 0;

@@ -13,7 +13,6 @@
 static OS_EVENT *waiter, *work; /* the task that waits within an operation; the task below */
 static U32 missing;
 static U8 isStarted[MAP_CORES];
-static Uav_Frames source;
 
 /* One task waits, the one that serves calls; it looks itself whether the event was its own. */
 static int waitEvent(void* context, U32 operation, U32 ms) {
@@ -36,31 +35,26 @@ static U32 nowMs(void* context) {
     return OSTimeGet() * MS_PER_TICK;
 }
 
-static const Hw_Seam seam = {waitEvent, postEvent, nowMs};
-
-void UAV_setFrames(U32 base, U32 stride, U32 width, U32 height) {
-    source.base = base;
-    source.stride = stride;
-    source.width = width;
-    source.height = height;
+static U32 errorsOnTheBus(void* context) {
+    (void)context;
+    return UAV_busErrors();
 }
 
-const Uav_Frames* UAV_frames(void) {
-    return &source;
-}
+static Hw_Frames frames = {0, 0, 0, 0, UAV_FRAME, UAV_FRAME_HEADER, UAV_frameDone};
+static const Hw_Port port = {waitEvent, postEvent, nowMs, errorsOnTheBus, &frames};
 
 void UAV_initCores(void) {
     waiter = OSSemCreate(0);
     work = OSSemCreate(0);
     missing = 0;
-    UAV_setFrames(0, 0, 0, 0);
+    frames.width = 0;
 }
 
 void UAV_startCores(Ice_ObjectAdapterPtr adapter) {
     U32 i;
     for (i = 0; hw_instances[i].identity; ++i) {
         const Hw_Instance* core = &hw_instances[i];
-        isStarted[i] = core->start(&seam, 0) == HW_OK;
+        isStarted[i] = core->start(&port, 0) == HW_OK;
         if (!isStarted[i] ||
             Ice_ObjectAdapter_add(adapter, core->servant, core->identity) != ICE_OK)
             ++missing;

@@ -19,22 +19,26 @@
 
 extern Ice_Communicator uav_ic;
 extern Link uav_link;
-extern OS_EVENT *uav_radioWork; /* the radio task has something to do */
+extern OS_EVENT* uav_radioWork; /* the radio task has something to do */
 
 /* Microseconds since the start, from the OS's ticks. */
 U32 UAV_nowUs(void);
 
 /* Radio task: sets the modem up, runs the link, and sets it up again if the link stays down. */
 void UAV_initRadio(void);
-void UAV_radioTask(void *argument);
+void UAV_radioTask(void* argument);
 void UAV_useRadio(Ice_CommunicatorPtr ic);
 extern const Ice_Os uav_iceOs;
 void UAV_initIceOs(void);
 
-/* Cores (uav_cores.c): their servants, their task; `lines`: interrupt lines of slots 0..31 and 32..63. */
+/* Counts a processed frame with its corners, and has the station told. */
+void UAV_frameDone(U32 corners);
+
+/* Cores (uav_cores.c): their servants, their task; `lines`: interrupt lines of slots 0..31
+ * and 32..63. */
 void UAV_initCores(void);
 void UAV_startCores(Ice_ObjectAdapterPtr adapter);
-void UAV_coresTask(void *argument);
+void UAV_coresTask(void* argument);
 void UAV_coresInterrupt(const U32 lines[2]);
 
 #endif

@@ -2,85 +2,83 @@
  *
  * uav_radio: the radio task, and what IceC's endpoint needs of it.
  */
-#include "uav_private.h"
-#include "uav.h"
 #include "radio.h"
+#include "uav.h"
+#include "uav_private.h"
 
 #define BYTE_TIME_US16 1440U /* 111,111 baud */
-#define DOWN_LIMIT (15U * OS_TICKS_PER_SEC) /* then the modem may have lost its settings: set it up again */
+#define DOWN_LIMIT \
+    (15U * OS_TICKS_PER_SEC) /* then the modem may have lost its settings: set it up again */
 
 Link uav_link;
-OS_EVENT *uav_radioWork;
-const U8 *uav_radioKey;
+OS_EVENT* uav_radioWork;
+const U8* uav_radioKey;
 U16 uav_guardMs;
 
 static XBeeATEndpoint endpoint;
-static OS_EVENT *linkMutex;
-static OS_EVENT *iceEvent;
+static OS_EVENT* linkMutex;
+static OS_EVENT* iceEvent;
 static U32 randomState;
 
 U32 UAV_nowUs(void) {
     return OSTimeGet() * (1000000U / OS_TICKS_PER_SEC);
 }
 
-static void lockLink(void *context) {
+static void lockLink(void* context) {
     INT8U error;
     (void)context;
     OSMutexPend(linkMutex, 0, &error);
 }
 
-static void unlockLink(void *context) {
+static void unlockLink(void* context) {
     (void)context;
     (void)OSMutexPost(linkMutex);
 }
 
-static void kick(void *context) {
+static void kick(void* context) {
     (void)context;
     (void)OSSemPost(uav_radioWork);
 }
 
-static int waitEvent(void *context, Ice_Int timeoutMs) {
+static int waitEvent(void* context, Ice_Int timeoutMs) {
     INT8U error;
     (void)context;
     OSSemPend(iceEvent, (INT32U)timeoutMs, &error);
     return error == OS_ERR_NONE;
 }
 
-static void signalEvent(void *context) {
+static void signalEvent(void* context) {
     (void)context;
     (void)OSSemPost(iceEvent);
 }
 
-static U32 nowOf(void *context) {
-    (void)context;
-    return UAV_nowUs();
-}
-
-static U32 nowMsOf(void *context) {
+static U32 nowMsOf(void* context) {
     (void)context;
     return OSTimeGet() * (1000U / OS_TICKS_PER_SEC);
 }
 
-static const XBeeATPort endpointPort = {lockLink, unlockLink, kick, waitEvent, signalEvent, nowOf, nowMsOf};
+static const XBeeATEndpoint_Port endpointPort = {lockLink,  unlockLink,  kick,
+                                                 waitEvent, signalEvent, nowMsOf};
 
-/* Not for secrets: two boots must differ, and the count of boots in DDR3 sees to that. */
-static U32 randomWord(void *context) {
+/* Returns a random word, not fit for secrets: two boots must differ, and the count of boots in DDR3
+ * sees to that. */
+static U32 randomWord(void* context) {
     (void)context;
     randomState = randomState * 1664525U + 1013904223U + OSTimeGet();
     return randomState ^ randomState >> 15;
 }
 
-static int onMessage(void *context, int channel, const U8 *data, U32 size) {
+static int onMessage(void* context, int channel, const U8* data, U32 size) {
     (void)context;
     return XBeeATEndpoint_onMessage(&endpoint, channel, data, size);
 }
 
-static void onChannel(void *context, int channel, int isOpen) {
+static void onChannel(void* context, int channel, int isOpen) {
     (void)context;
     XBeeATEndpoint_onChannel(&endpoint, channel, isOpen);
 }
 
-static void onState(void *context, Link_State state) {
+static void onState(void* context, Link_State state) {
     (void)context;
     XBeeATEndpoint_onState(&endpoint, state);
 }
@@ -90,7 +88,8 @@ static const Link_Port linkPort = {Radio_transmit, randomWord, onMessage, onChan
 static void seedRandom(void) {
     U8 count[4];
     FSMC_readMemory(UAV_BOOTS, count, 4);
-    randomState = ((U32)count[0] | (U32)count[1] << 8 | (U32)count[2] << 16 | (U32)count[3] << 24) + 1U;
+    randomState =
+        ((U32)count[0] | (U32)count[1] << 8 | (U32)count[2] << 16 | (U32)count[3] << 24) + 1U;
     count[0] = (U8)randomState;
     count[1] = (U8)(randomState >> 8);
     count[2] = (U8)(randomState >> 16);
@@ -123,7 +122,12 @@ static void setUpModem(void) {
         OSTimeDly(OS_TICKS_PER_SEC);
 }
 
-void UAV_radioTask(void *argument) {
+static void onPacket(void* context, const U8* bytes, U32 size) {
+    (void)context;
+    Link_receive(&uav_link, bytes, size, UAV_nowUs());
+}
+
+void UAV_radioTask(void* argument) {
     INT8U error;
     U32 upAt;
     (void)argument;
@@ -139,7 +143,7 @@ void UAV_radioTask(void *argument) {
             upAt = OSTimeGet();
         }
         lockLink(0);
-        (void)Radio_receive(&uav_link, UAV_nowUs());
+        (void)Radio_receive(onPacket, 0);
         Link_poll(&uav_link, UAV_nowUs());
         wait = Link_deadline(&uav_link, UAV_nowUs());
         if (Link_state(&uav_link) == LINK_STATE_UP)
@@ -153,8 +157,8 @@ void UAV_radioTask(void *argument) {
 
 /* ---- IceC's tasks ---- */
 
-static OS_EVENT *callDone[ICE_CALLS + 1]; /* the last: of tasks that want to receive */
-static OS_EVENT *iceMutex[2]; /* by ICE_LOCK_STATE and ICE_LOCK_SEND */
+static OS_EVENT* callDone[ICE_CALLS + 1]; /* the last: of tasks that want to receive */
+static OS_EVENT* iceMutex[2];             /* by ICE_LOCK_STATE and ICE_LOCK_SEND */
 
 void UAV_initIceOs(void) {
     INT8U error;
@@ -165,30 +169,30 @@ void UAV_initIceOs(void) {
         callDone[c] = OSSemCreate(0);
 }
 
-static void lockIce(void *context, int which) {
+static void lockIce(void* context, int which) {
     INT8U error;
     (void)context;
     OSMutexPend(iceMutex[which], 0, &error);
 }
 
-static void unlockIce(void *context, int which) {
+static void unlockIce(void* context, int which) {
     (void)context;
     (void)OSMutexPost(iceMutex[which]);
 }
 
-static int waitCall(void *context, int slot, Ice_Int timeoutMs) {
+static int waitCall(void* context, int slot, Ice_Int timeoutMs) {
     INT8U error;
     (void)context;
     OSSemPend(callDone[slot], (INT32U)timeoutMs, &error);
     return error == OS_ERR_NONE;
 }
 
-static void wakeCall(void *context, int slot) {
+static void wakeCall(void* context, int slot) {
     (void)context;
     (void)OSSemPost(callDone[slot]);
 }
 
-static int taskOf(void *context) {
+static int taskOf(void* context) {
     (void)context;
     return OSTaskPrio();
 }

@@ -7,6 +7,7 @@ the picture, and serves Station, which the UAV calls. All of it over the radio.
 """
 
 import argparse
+import contextlib
 import importlib.util
 import json
 import mmap
@@ -22,7 +23,7 @@ from PIL import Image, ImageDraw
 
 
 class Air:
-    """The simulator's counters (testbench/sim/status.h); on real hardware there are none."""
+    """The simulator's counters (sw/ground/sim_status.h); on real hardware there are none."""
 
     FORMAT = struct.Struct("<8s7Q")
 
@@ -40,13 +41,31 @@ class Air:
         return dict(zip(names, fields[1:]))
 
 
+RESULTS = ("after.png", "report.md", "report.json", "calls.jsonl")
+
+
+@contextlib.contextmanager
+def whole(path):
+    """Where to write a file that takes the name `path` when it is complete."""
+    beside = path + ".new"
+    try:
+        yield beside
+        os.replace(beside, path)
+    finally:
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(beside)
+
+
 class Log:
     """One line a call, for people, and rows for the report."""
 
     def __init__(self, air, out):
         self.air = air
         self.rows = []
-        self.live = open(os.path.join(out, "calls.jsonl"), "w")  # the page of `make run` follows it
+        for name in RESULTS:  # of the mission before; a link is removed, and what it leads to stays
+            with contextlib.suppress(FileNotFoundError):
+                os.remove(os.path.join(out, name))
+        self.live = open(os.path.join(out, "calls.jsonl"), "x")  # the page of `make run` follows it
         self.lock = threading.Lock()
         self.start = time.monotonic()
 
@@ -100,6 +119,8 @@ def parse_arguments():
     parser.add_argument("--sensor", action="store_true", help="the frame comes through the camera core")
     parser.add_argument("--loss", default="0", help="noted in the report")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
+    parser.add_argument("--patience", type=int, default=300,
+                        help="seconds that the UAV's first answer may take")
     parser.add_argument("--trace", type=int, default=0, help="XBeeAT.Trace: 0, 1 or 2")
     return parser.parse_args()
 
@@ -155,7 +176,8 @@ def draw(frame, result, path):
         r = 4 + 8 * f.score // max(strongest, 1)
         pen.ellipse((x - r, y - r, x + r, y + r), outline=(255, 80, 0), width=2)
         pen.point((x, y), fill=(0, 255, 80))
-    picture.save(path)
+    with whole(path) as beside:
+        picture.save(beside, format="PNG")
 
 
 def check_against_reference(args, result):
@@ -183,10 +205,10 @@ def report(args, log, result, station, air):
     lines += ["", "| corner | x | y | score |", "|---|---|---|---|"]
     lines += ["| %d | %d | %d | %d |" % (i + 1, f.x, f.y, f.score)
               for i, f in enumerate(result.best)]
-    with open(os.path.join(args.out, "report.md"), "w") as f:
+    with whole(os.path.join(args.out, "report.md")) as beside, open(beside, "w") as f:
         f.write("\n".join(lines) + "\n")
     totals = air.read() or {}
-    with open(os.path.join(args.out, "report.json"), "w") as f:
+    with whole(os.path.join(args.out, "report.json")) as beside, open(beside, "w") as f:
         json.dump({"calls": log.rows, "found": result.found, "cycles": result.cycles,
                    "vehicle": station.params, "air": totals}, f, indent=2)
 
@@ -210,9 +232,11 @@ def fly(args, communicator):
     adapter = communicator.createObjectAdapter("Station")
     adapter.add(station, communicator.stringToIdentity("station"))
     adapter.activate()
-    log.say("setting the ground's modem up on %s" % args.device)
+    log.say("setting the ground's modem up on %s; the UAV has %d s to answer" % (
+        args.device, args.patience))
 
-    where = "xbee-at -d %s -a 0x0001 -s 0x0000 -t 300000" % args.device
+    where = "xbee-at -d %s -a 0x0001 -s 0x0000 -t %d" % (
+        args.device, 1000 * args.patience // 2)  # Ice tries twice
     base = communicator.stringToProxy("hwengine1:" + where)
     engine = log.call("ground -> UAV", "checkedCast(hwengine1)",
                       lambda: Autopilot.HwProcessingEnginePrx.checkedCast(base))
@@ -262,6 +286,9 @@ def main():
         return 0
     except KeyboardInterrupt:
         return 130
+    except Ice.ConnectTimeoutException:
+        print("mission: no link for %d s: is the UAV on, and in reach?" % args.patience, file=sys.stderr)
+        return 1
     except (Ice.Exception, RuntimeError, OSError, subprocess.CalledProcessError) as e:
         print("mission: %s" % e, file=sys.stderr)
         return 1

@@ -8,8 +8,8 @@
 
 #include <string.h>
 
-Ice_Status LoopEndpoint_inject(LoopEndpoint *self, Ice_EventKind kind, int connection,
-                               const Ice_Byte *message, Ice_Int size) {
+Ice_Status LoopEndpoint_inject(LoopEndpoint* self, Ice_EventKind kind, int connection,
+                               const Ice_Byte* message, Ice_Int size) {
     unsigned at = (self->head + self->count) % LOOP_EVENTS;
     if (self->count == LOOP_EVENTS || size > ICE_MESSAGE_MAX)
         return ICE_LIMIT;
@@ -24,8 +24,8 @@ Ice_Status LoopEndpoint_inject(LoopEndpoint *self, Ice_EventKind kind, int conne
     return ICE_OK;
 }
 
-static Ice_Status receive(void *context, Ice_Byte *buffer, Ice_Int timeoutMs, Ice_Event *event) {
-    LoopEndpoint *self = context;
+static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event) {
+    LoopEndpoint* self = context;
     U32 begin = *self->nowMs;
     while (self->count == 0 && (Ice_Int)(*self->nowMs - begin) < timeoutMs) {
         /* The peer's turn, unless it is the peer that waits for this side. */
@@ -50,9 +50,9 @@ static Ice_Status receive(void *context, Ice_Byte *buffer, Ice_Int timeoutMs, Ic
     return ICE_OK;
 }
 
-static Ice_Status sendMessage(void *context, int connection, const Ice_Byte *message,
+static Ice_Status sendMessage(void* context, int connection, const Ice_Byte* message,
                               Ice_Int size) {
-    LoopEndpoint *self = context;
+    LoopEndpoint* self = context;
     if (!self->open[connection])
         return ICE_CONNECTION_LOST;
     if (self->tap)
@@ -62,8 +62,8 @@ static Ice_Status sendMessage(void *context, int connection, const Ice_Byte *mes
                : ICE_OK;
 }
 
-static Ice_Status connectTo(void *context, const Ice_Byte *encoded, Ice_Int size, int *connection) {
-    LoopEndpoint *self = context;
+static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection) {
+    LoopEndpoint* self = context;
     if (size != 9 || encoded[0] != (LOOP_ENDPOINT_TYPE & 0xFF) ||
         encoded[1] != LOOP_ENDPOINT_TYPE >> 8)
         return ICE_NO_ENDPOINT;
@@ -79,10 +79,10 @@ static Ice_Status connectTo(void *context, const Ice_Byte *encoded, Ice_Int size
 
 /* 1: the peer closed already, and its report is taken back; the connection may be a new one by now.
  */
-static int isOver(LoopEndpoint *self, int connection) {
+static int isOver(LoopEndpoint* self, int connection) {
     unsigned i;
     for (i = 0; i < self->count; ++i) {
-        Ice_Event *event = &self->events[(self->head + i) % LOOP_EVENTS];
+        Ice_Event* event = &self->events[(self->head + i) % LOOP_EVENTS];
         if (event->kind == ICE_EVENT_CLOSED && event->connection == connection) {
             event->kind = ICE_EVENT_NONE;
             return 1;
@@ -91,8 +91,8 @@ static int isOver(LoopEndpoint *self, int connection) {
     return 0;
 }
 
-static void closeConnection(void *context, int connection) {
-    LoopEndpoint *self = context;
+static void closeConnection(void* context, int connection) {
+    LoopEndpoint* self = context;
     if (isOver(self, connection))
         return;
     if (self->open[connection] && self->peer)
@@ -100,13 +100,13 @@ static void closeConnection(void *context, int connection) {
     self->open[connection] = 0;
 }
 
-static Ice_Status listenTo(void *context, const char *options) {
+static Ice_Status listenTo(void* context, const char* options) {
     (void)context;
     (void)options;
     return ICE_OK;
 }
 
-static void encode(void *context, const char *options, Ice_OutputStreamPtr os) {
+static void encode(void* context, const char* options, Ice_OutputStreamPtr os) {
     (void)context;
     Ice_OutputStream_writeShort(os, LOOP_ENDPOINT_TYPE);
     Ice_OutputStream_writeInt(os, 7);
@@ -114,26 +114,26 @@ static void encode(void *context, const char *options, Ice_OutputStreamPtr os) {
     Ice_OutputStream_writeByte(os, (Ice_Byte)Ice_numberOption(options, 'c', 0));
 }
 
-static Ice_Bool print(void *context, const Ice_Byte *encoded, Ice_Int size,
+static Ice_Bool print(void* context, const Ice_Byte* encoded, Ice_Int size,
                       Ice_OutputStreamPtr text) {
     (void)context;
     if (size != 9 || encoded[0] != (LOOP_ENDPOINT_TYPE & 0xFF) ||
         encoded[1] != LOOP_ENDPOINT_TYPE >> 8)
         return 0;
-    Ice_OutputStream_writeBlob(text, (const Ice_Byte *)(encoded[8] ? "loop -c 1" : "loop -c 0"), 9);
+    Ice_OutputStream_writeBlob(text, (const Ice_Byte*)(encoded[8] ? "loop -c 1" : "loop -c 0"), 9);
     return 1;
 }
 
-static void wakeUp(void *context) {
+static void wakeUp(void* context) {
     (void)context; /* one task: it is awake */
 }
 
-static U32 nowMs(void *context) {
-    LoopEndpoint *self = context;
+static U32 nowMs(void* context) {
+    LoopEndpoint* self = context;
     return *self->nowMs;
 }
 
-void LoopEndpoint_init(Ice_CommunicatorPtr ic, LoopEndpoint *self) {
+void LoopEndpoint_init(Ice_CommunicatorPtr ic, LoopEndpoint* self) {
     static const Ice_Endpoint endpoint = {"loop",          receive,  sendMessage, connectTo,
                                           closeConnection, listenTo, encode,      wakeUp,
                                           nowMs,           print};
@@ -143,7 +143,7 @@ void LoopEndpoint_init(Ice_CommunicatorPtr ic, LoopEndpoint *self) {
     Ice_Communicator_setEndpoint(ic, &endpoint, self);
 }
 
-void LoopEndpoint_join(LoopEndpoint *a, LoopEndpoint *b) {
+void LoopEndpoint_join(LoopEndpoint* a, LoopEndpoint* b) {
     a->peer = b;
     b->peer = a;
     b->nowMs = a->nowMs;

@@ -17,8 +17,8 @@ typedef struct LoopEndpoint LoopEndpoint;
 
 struct LoopEndpoint {
     Ice_CommunicatorPtr ic;
-    LoopEndpoint *peer; /* 0: none */
-    U32 *nowMs;         /* the clock that both ends share */
+    LoopEndpoint* peer; /* 0: none */
+    U32* nowMs;         /* the clock that both ends share */
     U32 ownNowMs;
     Ice_Byte first; /* connections that this side makes: this number, and this + 2 */
     Ice_Byte open[ICE_CONNECTIONS];
@@ -28,15 +28,15 @@ struct LoopEndpoint {
     Ice_Event events[LOOP_EVENTS];
     Ice_Byte data[LOOP_EVENTS][ICE_MESSAGE_MAX];
     /* Sees every message that is sent; may be 0. */
-    void (*tap)(void *context, int connection, const Ice_Byte *message, Ice_Int size);
-    void *tapContext;
+    void (*tap)(void* context, int connection, const Ice_Byte* message, Ice_Int size);
+    void* tapContext;
 };
 
-void LoopEndpoint_init(Ice_CommunicatorPtr ic, LoopEndpoint *self);
-/* What one sends, the other receives. */
-void LoopEndpoint_join(LoopEndpoint *a, LoopEndpoint *b);
-/* As if a peer did it. ICE_LIMIT: more is waiting than fits. */
-Ice_Status LoopEndpoint_inject(LoopEndpoint *self, Ice_EventKind kind, int connection,
-                               const Ice_Byte *message, Ice_Int size);
+void LoopEndpoint_init(Ice_CommunicatorPtr ic, LoopEndpoint* self);
+/* Joins two sides: one receives what the other sends. */
+void LoopEndpoint_join(LoopEndpoint* a, LoopEndpoint* b);
+/* Plays a peer: queues an event. ICE_LIMIT: the queue is full. */
+Ice_Status LoopEndpoint_inject(LoopEndpoint* self, Ice_EventKind kind, int connection,
+                               const Ice_Byte* message, Ice_Int size);
 
 #endif

@@ -15,7 +15,7 @@
 #include <string.h>
 #include <unistd.h>
 
-void Tcp_encode(void* context, const char* options, Ice_OutputStreamPtr os) {
+void TcpEndpoint_encode(void* context, const char* options, Ice_OutputStreamPtr os) {
     TcpEndpoint* self = context;
     const char* timeout;
     Ice_Int size;
@@ -36,7 +36,7 @@ void Tcp_encode(void* context, const char* options, Ice_OutputStreamPtr os) {
     Ice_OutputStream_writeBool(os, 0); /* no compression */
 }
 
-int Tcp_decode(const Ice_Byte* encoded, Ice_Int size, Tcp_Address* address) {
+int TcpEndpoint_decode(const Ice_Byte* encoded, Ice_Int size, TcpEndpoint_Address* address) {
     Ice_InputStream is;
     Ice_InputStream_init(&is, encoded, size);
     if (Ice_InputStream_readShort(&is) != TCP_ENDPOINT_TYPE)
@@ -48,11 +48,12 @@ int Tcp_decode(const Ice_Byte* encoded, Ice_Int size, Tcp_Address* address) {
     return !is.failed;
 }
 
-Ice_Bool Tcp_print(void* context, const Ice_Byte* encoded, Ice_Int size, Ice_OutputStreamPtr text) {
-    Tcp_Address at;
+Ice_Bool TcpEndpoint_print(void* context, const Ice_Byte* encoded, Ice_Int size,
+                           Ice_OutputStreamPtr text) {
+    TcpEndpoint_Address at;
     char line[64];
     (void)context;
-    if (!Tcp_decode(encoded, size, &at))
+    if (!TcpEndpoint_decode(encoded, size, &at))
         return 0;
     Ice_OutputStream_writeBlob(text, (const Ice_Byte*)"tcp -h ", 7);
     if (memchr(at.host.data, ':', (size_t)at.host.size))
@@ -68,7 +69,7 @@ Ice_Bool Tcp_print(void* context, const Ice_Byte* encoded, Ice_Int size, Ice_Out
     return 1;
 }
 
-int Tcp_resolve(const Tcp_Address* address, Tcp_Place* places) {
+int TcpEndpoint_resolve(const TcpEndpoint_Address* address, TcpEndpoint_Place* places) {
     struct addrinfo hints, *found, *each;
     char name[256], service[8];
     int later, count = 0;
@@ -92,16 +93,30 @@ int Tcp_resolve(const Tcp_Address* address, Tcp_Place* places) {
     return count;
 }
 
-int Tcp_open(const Tcp_Place* to, Ice_Int timeoutMs) {
+void TcpEndpoint_tune(int fd) {
+    int on = 1;
+    (void)setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    (void)setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
+#ifdef TCP_USER_TIMEOUT /* Linux: seconds until the first probe, between probes, milliseconds in \
+                           all */
+    {
+        int idle = 30, between = 10, all = 60000;
+        (void)setsockopt(fd, IPPROTO_TCP, TCP_KEEPIDLE, &idle, sizeof idle);
+        (void)setsockopt(fd, IPPROTO_TCP, TCP_KEEPINTVL, &between, sizeof between);
+        (void)setsockopt(fd, IPPROTO_TCP, TCP_USER_TIMEOUT, &all, sizeof all);
+    }
+#endif
+}
+
+int TcpEndpoint_open(const TcpEndpoint_Place* to, Ice_Int timeoutMs) {
     struct pollfd wait;
-    int failed = 1, on = 1;
+    int failed = 1;
     socklen_t size = sizeof failed;
     wait.fd = socket(to->at.ss_family, SOCK_STREAM, 0);
     wait.events = POLLOUT;
     if (wait.fd < 0)
         return -1;
     (void)fcntl(wait.fd, F_SETFL, O_NONBLOCK);
-    (void)setsockopt(wait.fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     if (connect(wait.fd, (const struct sockaddr*)&to->at, to->size) == 0)
         failed = 0;
     else if (errno == EINPROGRESS && poll(&wait, 1, timeoutMs) == 1)
@@ -110,6 +125,5 @@ int Tcp_open(const Tcp_Place* to, Ice_Int timeoutMs) {
         (void)close(wait.fd);
         return -1;
     }
-    (void)fcntl(wait.fd, F_SETFL, 0);
     return wait.fd;
 }

@@ -7,27 +7,32 @@
 
 #include "tcp_endpoint.h"
 
-typedef struct Tcp_Address {
+typedef struct TcpEndpoint_Address {
     Ice_String host; /* a numeric address or a name, in the encoded endpoint */
     Ice_Int port;
     Ice_Int timeoutMs; /* for connecting; negative: none */
-} Tcp_Address;
+} TcpEndpoint_Address;
 
 /* `encode` and `print` of Ice_Endpoint. */
-void Tcp_encode(void* context, const char* options, Ice_OutputStreamPtr os);
-Ice_Bool Tcp_print(void* context, const Ice_Byte* encoded, Ice_Int size, Ice_OutputStreamPtr text);
+void TcpEndpoint_encode(void* context, const char* options, Ice_OutputStreamPtr os);
+Ice_Bool TcpEndpoint_print(void* context, const Ice_Byte* encoded, Ice_Int size,
+                           Ice_OutputStreamPtr text);
 /* 0: another transport's, or malformed. */
-int Tcp_decode(const Ice_Byte* encoded, Ice_Int size, Tcp_Address* address);
+int TcpEndpoint_decode(const Ice_Byte* encoded, Ice_Int size, TcpEndpoint_Address* address);
 
-/* A numeric address or a name: its first TCP_PLACES addresses, those of IPv4 first as in Ice. How
+/* Resolves a numeric address or a name to its first TCP_PLACES addresses, those of IPv4 first as in
+ * Ice. Returns how
  * many; 0: there is none. */
 #define TCP_PLACES 8
-typedef struct Tcp_Place {
+typedef struct TcpEndpoint_Place {
     struct sockaddr_storage at;
     socklen_t size;
-} Tcp_Place;
-int Tcp_resolve(const Tcp_Address* address, Tcp_Place* places);
-/* connect with a time limit; the socket blocks again afterwards. -1: refused, or not in time. */
-int Tcp_open(const Tcp_Place* to, Ice_Int timeoutMs);
+} TcpEndpoint_Place;
+int TcpEndpoint_resolve(const TcpEndpoint_Address* address, TcpEndpoint_Place* places);
+/* Connects with a time limit. Returns the socket; -1: refused, or not in time. */
+int TcpEndpoint_open(const TcpEndpoint_Place* to, Ice_Int timeoutMs);
+
+/* Sets a connection's options: nothing is held back, and a peer that is gone is noticed. */
+void TcpEndpoint_tune(int fd);
 
 #endif

@@ -4,20 +4,14 @@
  */
 #define _POSIX_C_SOURCE 200809L
 #include "tcp_address.h"
+#include "tcp_traffic.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
-
-static int freeSlot(TcpEndpoint* self) {
-    int c;
-    for (c = 0; c < ICE_CONNECTIONS; ++c)
-        if (self->connections[c].fd < 0)
-            return c;
-    return -1;
-}
 
 static void lock(TcpEndpoint* self) {
     (void)pthread_mutex_lock(&self->lock);
@@ -27,8 +21,9 @@ static void unlock(TcpEndpoint* self) {
     (void)pthread_mutex_unlock(&self->lock);
 }
 
-/* Under the lock. Where a task is sending, the number stays taken until it has noticed. */
-static void closeOne(TcpConnection* c) {
+/* Closes a connection, under the lock. While a task is sending, the number stays taken until that
+ * task has noticed. */
+static void closeOne(TcpEndpoint_Connection* c) {
     if (c->fd >= 0 && c->sending) {
         (void)shutdown(c->fd, SHUT_RDWR);
         c->over = 1;
@@ -52,32 +47,35 @@ static void wakeUp(void* context) {
     (void)!write(self->pipe[1], "", 1);
 }
 
-static void use(TcpConnection* c, int fd, Ice_Byte accepted) {
+static void use(TcpEndpoint_Connection* c, int fd, Ice_Byte accepted) {
+    memset(c, 0, sizeof *c);
     c->fd = fd;
     c->accepted = accepted;
     c->told = !accepted;
-    c->sending = c->over = 0;
-    c->have = 0;
+    c->usedMs = TcpEndpoint_nowMs(0);
+    TcpEndpoint_tune(fd);
 }
 
-/* Size of the message at the front; 0: not whole yet, -1: it is none, or too long. */
-static Ice_Int frontSize(const TcpConnection* c) {
+/* Returns the size of the message at the front; 0: it is not whole yet, -1: it is none, or too
+ * long.
+ */
+static Ice_Int frontSize(const TcpEndpoint_Connection* c) {
     Ice_InputStream is;
     Ice_Int size;
-    if (c->have < 14)
+    if (c->have < TCP_HEAD)
         return 0;
     Ice_InputStream_init(&is, c->data + 10, 4);
     size = Ice_InputStream_readInt(&is);
-    if (memcmp(c->data, "IceP", 4) != 0 || size < 14 || size > ICE_MESSAGE_MAX)
+    if (memcmp(c->data, "IceP", 4) != 0 || size < TCP_HEAD || size > ICE_MESSAGE_MAX)
         return -1;
     return size <= c->have ? size : 0;
 }
 
-/* One event that needs no waiting. 1: there was one. */
+/* Takes an event that needs no waiting. Returns 1 if there was one. */
 static int ready(TcpEndpoint* self, Ice_Byte* buffer, Ice_Event* event) {
     int i;
     for (i = 0; i < ICE_CONNECTIONS; ++i) {
-        TcpConnection* c = &self->connections[i];
+        TcpEndpoint_Connection* c = &self->connections[i];
         Ice_Int size;
         event->connection = i;
         if (c->fd < 0 || c->over)
@@ -95,6 +93,7 @@ static int ready(TcpEndpoint* self, Ice_Byte* buffer, Ice_Event* event) {
         }
         if (size > 0) {
             memcpy(buffer, c->data, (size_t)size);
+            TcpEndpoint_note(c, buffer, size);
             memmove(c->data, c->data + size, (size_t)(c->have - size));
             c->have -= size;
             event->kind = ICE_EVENT_MESSAGE;
@@ -105,21 +104,34 @@ static int ready(TcpEndpoint* self, Ice_Byte* buffer, Ice_Event* event) {
     return 0;
 }
 
-static void acceptOne(TcpEndpoint* self) {
-    int fd = accept(self->listener, 0, 0), slot = freeSlot(self);
-    if (fd >= 0 && slot >= 0)
-        use(&self->connections[slot], fd, 1);
-    else if (fd >= 0)
-        (void)close(fd); /* a task of ours has connected meanwhile and has the last number */
+/* Accepts a connection; where all numbers are taken, ends another one first. */
+static void acceptOne(TcpEndpoint* self, Ice_Event* event) {
+    int slot = TcpEndpoint_freeSlot(self), fd;
+    Ice_Int idle;
+    if (slot < 0) {
+        slot = TcpEndpoint_idlest(self, &idle);
+        if (slot < 0 || idle < self->idleMs)
+            return;
+        TcpEndpoint_sendHead(&self->connections[slot], TCP_CLOSE);
+        closeOne(&self->connections[slot]);
+        event->kind = ICE_EVENT_CLOSED;
+        event->connection = slot;
+        return;
+    }
+    fd = accept(self->listener, 0, 0);
+    if (fd < 0)
+        return;
+    (void)fcntl(fd, F_SETFL, O_NONBLOCK);
+    use(&self->connections[slot], fd, 1);
 }
 
 static void takeBytes(TcpEndpoint* self, int connection, Ice_Event* event) {
-    TcpConnection* c = &self->connections[connection];
+    TcpEndpoint_Connection* c = &self->connections[connection];
     long got = (long)recv(c->fd, c->data + c->have, (size_t)(ICE_MESSAGE_MAX - c->have), 0);
-    if (got > 0) {
+    if (got > 0)
         c->have += (Ice_Int)got;
+    if (got > 0 || (got < 0 && (errno == EAGAIN || errno == EINTR)))
         return;
-    }
     closeOne(c);
     event->kind = ICE_EVENT_CLOSED;
     event->connection = connection;
@@ -130,12 +142,13 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     struct pollfd fds[ICE_CONNECTIONS + 2];
     int i, is;
     lock(self);
+    timeoutMs = TcpEndpoint_keepUp(self, timeoutMs);
     is = ready(self, buffer, event);
     for (i = 0; i < ICE_CONNECTIONS; ++i) {
         fds[i].fd = self->connections[i].over ? -1 : self->connections[i].fd;
         fds[i].events = POLLIN;
     }
-    fds[ICE_CONNECTIONS].fd = freeSlot(self) >= 0 ? self->listener : -1;
+    fds[ICE_CONNECTIONS].fd = TcpEndpoint_listenerFor(self, &timeoutMs);
     unlock(self);
     if (is)
         return ICE_OK;
@@ -149,9 +162,9 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
         (void)!read(self->pipe[0], &byte, 1);
     }
     lock(self);
-    if (fds[ICE_CONNECTIONS].revents & POLLIN)
-        acceptOne(self);
     event->kind = ICE_EVENT_NONE;
+    if (fds[ICE_CONNECTIONS].revents & POLLIN)
+        acceptOne(self, event);
     for (i = 0; i < ICE_CONNECTIONS && event->kind == ICE_EVENT_NONE; ++i)
         if (self->connections[i].fd == fds[i].fd && fds[i].fd >= 0 && fds[i].revents)
             takeBytes(self, i, event);
@@ -163,23 +176,22 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
 
 static Ice_Status sendAll(void* context, int connection, const Ice_Byte* message, Ice_Int size) {
     TcpEndpoint* self = context;
-    TcpConnection* c = &self->connections[connection];
+    TcpEndpoint_Connection* c = &self->connections[connection];
     int fd, ends;
     lock(self);
     fd = c->over ? -1 : c->fd;
     c->sending = fd >= 0;
+    if (c->sending) {
+        c->spoke = 1;
+        TcpEndpoint_note(c, message, size);
+    }
     unlock(self);
     if (fd < 0)
         return ICE_CONNECTION_LOST;
-    while (size > 0) {
-        long sent = (long)send(fd, message, (size_t)size, MSG_NOSIGNAL);
-        if (sent <= 0)
-            break;
-        message += sent;
-        size -= (Ice_Int)sent;
-    }
+    size -= TcpEndpoint_sendSome(fd, message, size, self->sendMs);
     lock(self);
     c->sending = 0;
+    c->sentMs = TcpEndpoint_nowMs(0);
     ends = size > 0 || c->over;
     if (c->over)
         closeOne(c);
@@ -189,12 +201,12 @@ static Ice_Status sendAll(void* context, int connection, const Ice_Byte* message
     return ends ? ICE_CONNECTION_LOST : ICE_OK;
 }
 
-/* The connection that was made to this peer, or -1. */
-static int connectionTo(TcpEndpoint* self, const Tcp_Place* to) {
+/* Returns the connection that was made to this peer; -1: there is none. */
+static int connectionTo(TcpEndpoint* self, const TcpEndpoint_Place* to) {
     int slot, found = -1;
     lock(self);
     for (slot = 0; slot < ICE_CONNECTIONS && found < 0; ++slot) {
-        const TcpConnection* c = &self->connections[slot];
+        const TcpEndpoint_Connection* c = &self->connections[slot];
         if (c->fd >= 0 && !c->over && !c->accepted && c->peerSize == to->size &&
             memcmp(&c->peer, &to->at, to->size) == 0)
             found = slot;
@@ -207,12 +219,12 @@ static int connectionTo(TcpEndpoint* self, const Tcp_Place* to) {
  * the server may listen on one of them only, as on 127.0.0.1 where localhost is ::1, too. */
 static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection) {
     TcpEndpoint* self = context;
-    Tcp_Place places[TCP_PLACES];
-    Tcp_Address address;
+    TcpEndpoint_Place places[TCP_PLACES];
+    TcpEndpoint_Address address;
     int slot, count, turn, fd = -1;
-    if (!Tcp_decode(encoded, size, &address))
+    if (!TcpEndpoint_decode(encoded, size, &address))
         return ICE_NO_ENDPOINT;
-    count = Tcp_resolve(&address, places);
+    count = TcpEndpoint_resolve(&address, places);
     if (count == 0)
         return ICE_NO_ENDPOINT;
     *connection = -1;
@@ -221,16 +233,17 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
     if (*connection >= 0)
         return ICE_OK;
     lock(self);
-    slot = freeSlot(self);
+    slot = TcpEndpoint_freeSlot(self);
     unlock(self);
     if (slot < 0)
         return ICE_LIMIT;
     for (turn = 0; fd < 0 && turn < count; ++turn)
-        fd = Tcp_open(&places[turn], address.timeoutMs);
+        fd = TcpEndpoint_open(&places[turn], address.timeoutMs);
     if (fd < 0)
         return ICE_CONNECTION_LOST;
     lock(self);
-    slot = freeSlot(self); /* the other side of another connection may have been faster */
+    slot =
+        TcpEndpoint_freeSlot(self); /* the other side of another connection may have been faster */
     if (slot >= 0) {
         use(&self->connections[slot], fd, 0);
         self->connections[slot].peer = places[turn - 1].at;
@@ -244,11 +257,25 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
     return slot >= 0 ? ICE_OK : ICE_LIMIT;
 }
 
+static void stopListening(TcpEndpoint* self) {
+    lock(self);
+    if (self->listener >= 0) {
+        (void)shutdown(self->listener, SHUT_RDWR); /* the receiver may be waiting on it */
+        (void)close(self->listener);
+    }
+    self->listener = -1;
+    unlock(self);
+}
+
 static Ice_Status listenTo(void* context, const char* options) {
     TcpEndpoint* self = context;
-    Tcp_Place places[TCP_PLACES], *at = &places[0];
-    Tcp_Address here;
+    TcpEndpoint_Place places[TCP_PLACES], *at = &places[0];
+    TcpEndpoint_Address here;
     int on = 1;
+    if (!options) {
+        stopListening(self);
+        return ICE_OK;
+    }
     if (self->listener >= 0)
         return ICE_LIMIT; /* one port a communicator */
     here.host.data = Ice_findOption(options, 'h', &here.host.size);
@@ -257,7 +284,7 @@ static Ice_Status listenTo(void* context, const char* options) {
         here.host.size = 9;
     }
     here.port = (Ice_Int)Ice_numberOption(options, 'p', 0);
-    if (here.host.size >= (Ice_Int)sizeof self->host || !Tcp_resolve(&here, places))
+    if (here.host.size >= (Ice_Int)sizeof self->host || !TcpEndpoint_resolve(&here, places))
         return ICE_NO_ENDPOINT;
     memcpy(self->host, here.host.data, (size_t)here.host.size);
     self->host[here.host.size] = 0;
@@ -265,8 +292,9 @@ static Ice_Status listenTo(void* context, const char* options) {
     if (self->listener < 0)
         return ICE_NO_ENDPOINT;
     (void)setsockopt(self->listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    (void)fcntl(self->listener, F_SETFL, O_NONBLOCK); /* a peer may be gone before it is accepted */
     if (bind(self->listener, (struct sockaddr*)&at->at, at->size) != 0 ||
-        listen(self->listener, 4) != 0 ||
+        listen(self->listener, SOMAXCONN) != 0 ||
         getsockname(self->listener, (struct sockaddr*)&at->at, &at->size) != 0) {
         (void)close(self->listener);
         self->listener = -1;
@@ -277,20 +305,24 @@ static Ice_Status listenTo(void* context, const char* options) {
     return ICE_OK;
 }
 
-static U32 nowMs(void* context) {
-    struct timespec now;
-    (void)context;
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return (U32)now.tv_sec * 1000U + (U32)(now.tv_nsec / 1000000);
-}
-
 Ice_Status TcpEndpoint_init(Ice_CommunicatorPtr ic, TcpEndpoint* self) {
-    static const Ice_Endpoint endpoint = {"tcp",    receive,    sendAll, connectTo, closeConnection,
-                                          listenTo, Tcp_encode, wakeUp,  nowMs,     Tcp_print};
+    static const Ice_Endpoint endpoint = {"tcp",
+                                          receive,
+                                          sendAll,
+                                          connectTo,
+                                          closeConnection,
+                                          listenTo,
+                                          TcpEndpoint_encode,
+                                          wakeUp,
+                                          TcpEndpoint_nowMs,
+                                          TcpEndpoint_print};
     int c;
     memset(self, 0, sizeof *self);
     strcpy(self->host, "127.0.0.1");
     self->listener = -1;
+    self->sendMs = 2000;
+    self->heartbeatMs = ICE_HEARTBEAT_MS;
+    self->idleMs = 1000;
     for (c = 0; c < ICE_CONNECTIONS; ++c)
         self->connections[c].fd = -1;
     if (pthread_mutex_init(&self->lock, 0) != 0 || pipe(self->pipe) != 0)
@@ -303,8 +335,7 @@ void TcpEndpoint_destroy(TcpEndpoint* self) {
     int c;
     for (c = 0; c < ICE_CONNECTIONS; ++c)
         closeOne(&self->connections[c]);
-    if (self->listener >= 0)
-        (void)close(self->listener);
+    stopListening(self);
     (void)close(self->pipe[0]);
     (void)close(self->pipe[1]);
     (void)pthread_mutex_destroy(&self->lock);

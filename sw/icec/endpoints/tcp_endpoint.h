@@ -4,6 +4,11 @@
  *
  * Options: -h name or address, IPv4 or IPv6 (default 127.0.0.1), -p port (0: the system chooses),
  * -t milliseconds for connecting (default 60000). One adapter of a communicator can listen.
+ *
+ * Peers of any manners: sending waits for a peer that does not read for sendMs, then closes; a
+ * silent connection carries a heartbeat each heartbeatMs (Ice 3.8 cuts others after 60 s); where
+ * all numbers are taken, a new peer displaces the one that has been idle longest, if for idleMs; a
+ * peer that is gone without a word is noticed within about a minute.
  */
 #ifndef TCP_ENDPOINT_H
 #define TCP_ENDPOINT_H
@@ -15,23 +20,28 @@
 
 #define TCP_ENDPOINT_TYPE 1
 
-typedef struct TcpConnection {
+typedef struct TcpEndpoint_Connection {
     int fd;                       /* -1: free */
     Ice_Byte accepted, told;      /* told: OPENED has been reported */
     Ice_Byte sending, over;       /* over: closed, but for the task that still sends */
+    Ice_Byte spoke;               /* this side has sent a message */
+    U32 sentMs;                   /* when it did so last */
+    U32 usedMs;                   /* when a request or reply came or went last */
+    Ice_Int owed;                 /* replies that are to come or go */
     struct sockaddr_storage peer; /* of a connection made by this side */
     socklen_t peerSize;
     Ice_Int have;
     Ice_Byte data[ICE_MESSAGE_MAX];
-} TcpConnection;
+} TcpEndpoint_Connection;
 
 typedef struct TcpEndpoint {
     int listener; /* -1: none */
     int port;     /* that it listens on */
     char host[64];
     int pipe[2];
+    Ice_Int sendMs, heartbeatMs, idleMs; /* may be changed after TcpEndpoint_init */
     pthread_mutex_t lock; /* of what follows: the receiver's, the sender's and who connects */
-    TcpConnection connections[ICE_CONNECTIONS];
+    TcpEndpoint_Connection connections[ICE_CONNECTIONS];
 } TcpEndpoint;
 
 /* ICE_NO_ENDPOINT if the system refuses. */

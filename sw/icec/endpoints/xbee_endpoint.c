@@ -10,32 +10,32 @@
 #define BODY 7
 #define RETRIES 100 /* of what the link has no room for now, 20 ms apart */
 
-/* Of an encoded endpoint: type, 13 bytes of encapsulation, encoding 1.1. */
+/* The head of an encoded endpoint: type, 13 bytes of encapsulation, encoding 1.1. */
 static const Ice_Byte head[HEAD] = {
     XBEE_ENDPOINT_TYPE & 0xFF, XBEE_ENDPOINT_TYPE >> 8, 6 + BODY, 0, 0, 0, 1, 1};
 
-/* What is waiting, a bit each: in this order it is told. */
+/* Pending events, one bit each, delivered lowest bit first. */
 #define EVENT(kind, channel) \
     (1U << (((U32)(kind)-ICE_EVENT_MESSAGE) * LINK_CHANNELS + (U32)(channel)))
 
-/* One task needs none of these: it polls the link itself while it waits. */
+/* The task of the minimal run time needs none of these: it polls the link itself while it waits. */
 static void lock(XBeeATEndpoint* self) {
-    if (ICEC_TASKS)
+    if (ICEC_FULL)
         self->port->lock(self->context);
 }
 
 static void unlock(XBeeATEndpoint* self) {
-    if (ICEC_TASKS)
+    if (ICEC_FULL)
         self->port->unlock(self->context);
 }
 
 static void kick(XBeeATEndpoint* self) {
-    if (ICEC_TASKS)
+    if (ICEC_FULL)
         self->port->kick(self->context);
 }
 
 static void signal(XBeeATEndpoint* self) {
-    if (ICEC_TASKS)
+    if (ICEC_FULL)
         self->port->signal(self->context);
 }
 
@@ -44,7 +44,7 @@ static void report(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     signal(self);
 }
 
-/* 1: this report was still waiting, and is taken back. */
+/* Takes a report back. Returns 1 if it was still waiting. */
 static int takeBack(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     if (!(self->events & EVENT(kind, channel)))
         return 0;
@@ -107,7 +107,7 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
 static Link_Status openOwn(XBeeATEndpoint* self) {
     Link_Status status = LINK_OK;
     if (!self->ownOpen) {
-        status = Link_openChannel(self->link, XBEE_OWN_CHANNEL, self->port->nowUs(self->context));
+        status = Link_openChannel(self->link, XBEE_OWN_CHANNEL);
         if (status == LINK_OK) {
             self->ownOpen = 1; /* and the end of the last connection is not the end of this one */
             (void)takeBack(self, ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL);
@@ -123,9 +123,7 @@ static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* me
     int tries = 0;
     for (;;) {
         lock(self);
-        status = message ? Link_send(self->link, connection, message, (U32)size, 0,
-                                     self->port->nowUs(self->context))
-                         : openOwn(self);
+        status = message ? Link_send(self->link, connection, message, (U32)size, 0) : openOwn(self);
         unlock(self);
         kick(self);
         if (status != LINK_FULL || ++tries > RETRIES)
@@ -154,7 +152,7 @@ static void closeChannel(void* context, int connection) {
     lock(self);
     /* The peer may have closed already; the channel may be a new one by now. */
     if (!takeBack(self, ICE_EVENT_CLOSED, connection)) {
-        (void)Link_closeChannel(self->link, connection, self->port->nowUs(self->context));
+        (void)Link_closeChannel(self->link, connection);
         if (connection == XBEE_OWN_CHANNEL)
             self->ownOpen = 0;
     }
@@ -219,10 +217,10 @@ static void wakeUp(void* context) {
 }
 
 void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoint* self, Link* link,
-                         U16 address, const XBeeATPort* port, void* context) {
+                         U16 address, const XBeeATEndpoint_Port* port, void* context) {
     static const Ice_Endpoint endpoint = {
         "xbee-at", receive, sendMessage, connectTo, closeChannel,
-        listenTo,  encode,  wakeUp,      nowMs,     ICEC_DETAILS ? print : 0};
+        listenTo,  encode,  wakeUp,      nowMs,     ICEC_FULL ? print : 0};
     (void)name;
     memset(self, 0, sizeof *self);
     self->link = link;

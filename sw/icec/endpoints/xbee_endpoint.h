@@ -16,22 +16,21 @@
 #define XBEE_OWN_CHANNEL 3 /* that this side opens; 0..2 where it is the ground */
 #endif
 
-/* What the endpoint needs from the application: the link belongs to the radio task. Without
- * ICEC_TASKS there is one task, which polls the link in `wait`: lock, unlock, kick and signal are
- * not called, and may be 0. */
-typedef struct XBeeATPort {
+/* The endpoint's port to the application, whose radio task owns the link. In the
+ * minimal run time there is one task, which polls the link in `wait`: lock, unlock, kick and signal
+ * are not called, and may be 0. */
+typedef struct XBeeATEndpoint_Port {
     void (*lock)(void* context); /* around every use of the link, callbacks included */
     void (*unlock)(void* context);
     void (*kick)(void* context);                   /* makes the radio task poll the link soon */
     int (*wait)(void* context, Ice_Int timeoutMs); /* for signal; 1: signalled */
     void (*signal)(void* context);
-    U32 (*nowUs)(void* context);
     U32 (*nowMs)(void* context);
-} XBeeATPort;
+} XBeeATEndpoint_Port;
 
 typedef struct XBeeATEndpoint {
     Link* link;
-    const XBeeATPort* port;
+    const XBeeATEndpoint_Port* port;
     void* context;
     U16 address;      /* own, MY */
     U32 events;       /* what waits to be told; 0: nothing */
@@ -42,9 +41,9 @@ typedef struct XBeeATEndpoint {
 
 /* Makes `name` (always "xbee-at") known to the communicator. */
 void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoint* self, Link* link,
-                         U16 address, const XBeeATPort* port, void* context);
+                         U16 address, const XBeeATEndpoint_Port* port, void* context);
 
-/* To be called from the link's callbacks of these names, under the lock. */
+/* Take what the link reports; to be called by its callbacks of these names, under the lock. */
 int XBeeATEndpoint_onMessage(XBeeATEndpoint* self, int channel, const U8* data, U32 size);
 void XBeeATEndpoint_onChannel(XBeeATEndpoint* self, int channel, int isOpen);
 void XBeeATEndpoint_onState(XBeeATEndpoint* self, Link_State state);

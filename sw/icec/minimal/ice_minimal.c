@@ -7,24 +7,19 @@
  * way have an Ice_Status, ICE_LATER as long as the peer's answer is waited for. The functions are
  * those of icec.h; the streams, proxies and tables of operations are the full run time's.
  */
-#include "ice_private.h"
+#include "ice_message.h"
+#include "ice_proxy.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static U32 nowMs(Ice_CommunicatorPtr ic) {
     return ic->endpoint->nowMs(ic->endpointContext);
 }
 
-static Ice_OutputStreamPtr begin(Ice_CommunicatorPtr ic, Ice_Byte type) {
-    Ice_OutputStreamPtr os = &ic->os;
-    Ice_OutputStream_init(os, ic->out, ICE_MESSAGE_MAX);
-    Ice_beginMessage(os, type);
-    return os;
-}
-
 static Ice_Status send(Ice_CommunicatorPtr ic, int connection) {
     Ice_OutputStreamPtr os = &ic->os;
-    Ice_endMessage(os);
+    icec_endMessage(os);
     return ic->endpoint->send(ic->endpointContext, connection, os->data, os->size);
 }
 
@@ -59,29 +54,30 @@ static Ice_Status run(const Ice_Current* current, Ice_InputStreamPtr is, Ice_Out
 }
 
 static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is) {
-    Ice_OutputStreamPtr os = begin(ic, ICE_REPLY);
-    Ice_Int who, whoSize, id = Ice_InputStream_readInt(is);
+    Ice_OutputStreamPtr os = &ic->os;
+    Ice_Int id = Ice_InputStream_readInt(is);
     Ice_Status status;
     Ice_Current current;
+    Icec_Target target;
     current.communicator = ic;
     current.adapter = ic->adapter;
     current.connection = connection;
-    who = is->position;
+    target.size = is->position;
+    target.data = is->data + target.size;
     Ice_InputStream_takeString(is, &current.name);
     Ice_InputStream_takeString(is, &current.category);
     current.facet.size = Ice_InputStream_readByte(is); /* how many: one is too many */
-    Ice_skipStrings(is, (U32)current.facet.size);
+    icec_skipStrings(is, (U32)current.facet.size);
     Ice_InputStream_takeString(is, &current.operation);
-    whoSize = is->position - who;
+    target.size = is->position - target.size;
     current.mode = Ice_InputStream_readByte(is);
-    Ice_skipStrings(is, 2U * (U32)Ice_InputStream_readSize(is)); /* the context */
-    status = Ice_enterEncapsulation(is);
+    icec_skipStrings(is, 2U * (U32)Ice_InputStream_readSize(is)); /* the context */
+    status = icec_enterEncapsulation(is);
     if (status == ICE_MARSHAL)
         return ICE_CONNECTION_LOST;
-    Ice_OutputStream_writeInt(os, id);
+    icec_beginMessage(os, ICEC_REPLY);
     os->minor = is->minor & 1U;
-    os->size = ICE_REPLY_BODY;
-    (void)Ice_beginEncapsulation(os);
+    icec_beginReply(os, id);
     if (status == ICE_OK) {
         ic->busy = 1;
         status = run(&current, is, os);
@@ -89,61 +85,37 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
         if (is->failed | os->failed)
             status = ICE_MARSHAL;
     }
-    if (id == 0)
-        return ICE_OK;
-    if (status > ICE_UNKNOWN_EXCEPTION)
-        status = status <= ICE_PROTOCOL ? ICE_UNKNOWN_LOCAL_EXCEPTION : ICE_UNKNOWN_EXCEPTION;
-    os->data[ICE_REPLY_BODY - 1] = (Ice_Byte)status;
-    if (status <= ICE_USER_EXCEPTION) {
-        Ice_endEncapsulation(os, ICE_REPLY_BODY);
-    } else {
-        os->failed = 0;
-        os->size = ICE_REPLY_BODY;
-        if (status <= ICE_OPERATION_NOT_EXIST)
-            Ice_OutputStream_writeBlob(os, is->data + who, whoSize);
-        else
-            Ice_OutputStream_writeByte(os, 0); /* the reason, in no words */
+    if (id != 0) {
+        icec_endReply(os, status, &target);
+        (void)send(ic, connection);
     }
-    (void)send(ic, connection);
     return ICE_OK;
 }
 
 /* ---- what arrives ---- */
 
-/* From a reply's status byte on. */
-static Ice_Status readReply(Ice_InputStreamPtr is) {
-    Ice_Status code = (Ice_Status)Ice_InputStream_readByte(is), entered;
-    if (code > ICE_UNKNOWN_EXCEPTION)
-        return ICE_MARSHAL;
-    if (code <= ICE_USER_EXCEPTION) {
-        entered = Ice_enterEncapsulation(is);
-        if (entered != ICE_OK)
-            return entered;
-    }
-    return code;
-}
-
-/* ICE_OK, or why the connection is to be closed; what is malformed loses it. */
+/* Returns ICE_OK, or why the connection is to be closed; what is malformed loses it. */
 static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, Ice_Int size) {
     Ice_InputStreamPtr is = &ic->is;
-    Ice_Int type;
     Ice_InputStream_init(is, ic->in, size);
     is->communicator = ic;
     is->arena = ic->arena;
     is->arenaSize = ICE_ARENA_BYTES / 4;
-    is->position = ICE_TYPE_AT;
-    type = Ice_InputStream_readShort(is) & 0xFEFF; /* and compression: 0 or 1 is none */
-    if (Ice_InputStream_readInt(is) != size || memcmp(ic->in, Ice_head, ICE_TYPE_AT) != 0)
-        return ICE_CONNECTION_LOST;
-    if (type == ICE_REQUEST)
+    switch (icec_readHead(is)) {
+    case ICEC_REQUEST:
         return dispatch(ic, connection, is);
-    if (type == ICE_VALIDATE)
+    case ICEC_REPLY:
+        if (Ice_InputStream_readInt(is) == ic->id && connection == ic->connection)
+            ic->call = (Ice_Byte)icec_readReply(is); /* another one came too late */
+        return ICE_OK;
+    case ICEC_VALIDATE:
         ic->connections[connection] = ICE_OK;
-    else if (type != ICE_REPLY)
-        return type == ICE_CLOSE ? ICE_CONNECTION_CLOSED : ICE_CONNECTION_LOST;
-    else if (Ice_InputStream_readInt(is) == ic->id && connection == ic->connection)
-        ic->call = (Ice_Byte)readReply(is); /* another one came too late */
-    return ICE_OK;
+        return ICE_OK;
+    case ICEC_CLOSE:
+        return ICE_CONNECTION_CLOSED;
+    default:
+        return ICE_CONNECTION_LOST;
+    }
 }
 
 Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
@@ -155,7 +127,7 @@ Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
         return ICE_TIMEOUT;
     if (event.kind == ICE_EVENT_OPENED) { /* who accepts a connection speaks first */
         ic->connections[event.connection] = ICE_OK;
-        (void)begin(ic, ICE_VALIDATE);
+        icec_beginMessage(&ic->os, ICEC_VALIDATE);
         (void)send(ic, event.connection);
         return ICE_OK;
     }
@@ -201,7 +173,7 @@ static Ice_Status connect(Ice_ObjectPrxPtr self) {
 Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char* operation,
                                         Ice_Byte mode) {
     Ice_CommunicatorPtr ic = self->communicator;
-    Ice_OutputStreamPtr os;
+    Ice_OutputStreamPtr os = &ic->os;
     self->status = ICE_LIMIT;
     if (ic->busy)
         return 0;
@@ -209,14 +181,14 @@ Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char* opera
     if (self->mode != ICE_TWOWAY && mode & ICE_RESULTS)
         return 0;
     self->status = (Ice_Byte)connect(self);
-    os = begin(ic, ICE_REQUEST);
+    icec_beginMessage(os, ICEC_REQUEST);
     os->minor = self->minor;
     ic->id += 2;
     Ice_OutputStream_writeInt(os, self->mode == ICE_TWOWAY ? ic->id : 0);
     Ice_OutputStream_writeBlob(os, self->identity, self->identitySize);
     Ice_OutputStream_writeText(os, operation);
     Ice_OutputStream_writeShort(os, mode & ~ICE_RESULTS); /* and no context */
-    ic->body = Ice_beginEncapsulation(os);
+    ic->body = icec_beginEncapsulation(os);
     return os;
 }
 
@@ -229,7 +201,7 @@ Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr* is) {
         status = ICE_MARSHAL;
     if (status != ICE_OK)
         return status;
-    Ice_endEncapsulation(&ic->os, ic->body);
+    icec_endEncapsulation(&ic->os, ic->body);
     ic->connection = self->connection;
     ic->call = ICE_LATER;
     status = send(ic, self->connection);
@@ -242,18 +214,27 @@ Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {
 
 /* ---- proxies' strings ---- */
 
-/* The options behind the transport's name, or 0 where the text names another transport. */
+U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
+    for (; options && *options; ++options)
+        if (options[0] == '-' && options[1] == letter) { /* nothing is quoted here */
+            options += 3;
+            return (U32)strtoul(options, 0, options[0] == '0' && options[1] == 'x' ? 16 : 10);
+        }
+    return otherwise;
+}
+
+/* Returns the options behind the transport's name; 0: the text names another transport. */
 static const char* optionsOf(Ice_CommunicatorPtr ic, const char* text) {
     size_t size = strlen(ic->endpoint->name);
     return strncmp(text, ic->endpoint->name, size) == 0 && text[size] <= ' ' ? text + size : 0;
 }
 
-/* "name [-t|-o]:transport options"; without a transport: of an object here. */
+/* Parses "name [-t|-o]:transport options"; without a transport, the proxy is of an object here. */
 static Ice_Status parse(Ice_CommunicatorPtr ic, const char* text, Ice_ObjectPrxPtr prx) {
     size_t size = strcspn(text, " :");
     const char* options = strchr(text, ':');
     Ice_OutputStream os;
-    Ice_ObjectPrx_init(prx, ic);
+    icec_initProxy(prx, ic);
     if (size - 1U > ICE_IDENTITY_MAX - 4U)
         return ICE_LIMIT;
     prx->identity[0] = (Ice_Byte)size;
@@ -318,6 +299,7 @@ void Ice_ObjectAdapter_deactivate(Ice_ObjectAdapterPtr adapter) {
 void Ice_initialize(Ice_CommunicatorPtr ic) {
     memset(ic, 0, sizeof *ic);
     memset(ic->connections, ICE_CONNECTION_LOST, sizeof ic->connections);
+    Ice_OutputStream_init(&ic->os, ic->out, ICE_RESULT_MAX);
     ic->id = 1;
 }
 

@@ -29,7 +29,7 @@ struct Ice_Communicator {
     Ice_OutputStream os; /* in `out`: a request, or a reply */
     Ice_InputStream is;  /* in `in` */
     U32 arena[ICE_ARENA_BYTES / 4];
-    Ice_Byte in[ICE_MESSAGE_MAX], out[ICE_MESSAGE_MAX];
+    Ice_Byte in[ICE_MESSAGE_MAX], out[ICE_RESULT_MAX];
 };
 
 #endif

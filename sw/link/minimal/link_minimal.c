@@ -19,28 +19,17 @@
 #define FRAME_GAP 0x6200U    /* 25 ms of silence, behind which a frame begins */
 #define POLL_EVERY 1000U     /* while something is to be done at once */
 
-/* Of a channel; LINK_FIRST and LINK_LAST: what is to be sent about it. */
+/* State of a channel, beside LINK_FIRST and LINK_LAST: what is to be sent about it. */
 #define OPEN 1U
 #define CLOSING 2U /* closed here, the peer's closing has not come yet */
 #define DUE (LINK_FIRST | LINK_LAST)
 
-/* What link->frame holds from its byte 3 on; `header`: the bytes before, the low one first. */
+/* Sends link->frame, whose payload is there (link_seal). What the radio has no room for is as good
+ * as lost. */
 static void transmit(Link* link, U32 header) {
-    U8* frame = link->frame;
-    U32 size = (header & 0x7FU) + LINK_OVERHEAD - 2U;
-    U32 crc;
-    frame[0] = (U8)header;
-    frame[1] = (U8)(header >> 8);
-    frame[2] = (U8)(header >> 16 | (U32)link->epoch << 2);
-    crc = Link_crc((U16)link->seed, frame, size);
-    frame[size] = (U8)(crc >> 8);
-    frame[size + 1U] = (U8)crc;
-    /* What the radio has no room for is as good as lost. */
-    (void)link->port->transmit(link->context, frame, size + 2U);
+    (void)link->port->transmit(link->context, link->frame,
+                               link_seal(link->frame, header, link->key));
 }
-
-#define HEADER(byte0, byte1, byte2) ((byte0) | (U32)(byte1) << 8 | (U32)(byte2) << 16)
-#define CONTROL(kind, byte1, size) HEADER(LINK_CONTROL | (size), byte1, (U32)(kind) << 5)
 
 static void report(Link* link, Link_Outcome outcome) {
     if (!LINK_OUTCOMES || link->outSize == 0)
@@ -68,8 +57,7 @@ static void lose(Link* link) {
 /* ---- what arrives ---- */
 
 static void onHello(Link* link, const U8* frame) {
-    U32 peerNonce = Link_get32(frame + 3);
-    U16 seed;
+    U32 peerNonce = link_get32(frame + LINK_HEADER);
     if (peerNonce != link->peerNonce) { /* else our answer was lost */
         lose(link);
         link->peerNonce = peerNonce;
@@ -78,12 +66,11 @@ static void onHello(Link* link, const U8* frame) {
         link->state = LINK_STATE_UP;
         link->port->state(link->context, LINK_STATE_UP);
     }
-    link->seed = LINK_NO_SEED;
-    Link_put32(link->frame + 3, link->nonce);
-    Link_put32(link->frame + 7, peerNonce);
-    transmit(link, CONTROL(LINK_KIND_HELLO_ACK, LINK_VERSION, 8));
-    link->epoch = (U8)Link_mixNonces(link->nonce, peerNonce, &seed);
-    link->seed = seed;
+    link->key = LINK_NO_SEED;
+    link_put32(link->frame + LINK_HEADER, link->nonce);
+    link_put32(link->frame + LINK_HEADER + 4, peerNonce);
+    transmit(link, LINK_CONTROL_HEADER(LINK_KIND_HELLO_ACK, LINK_VERSION, 8));
+    link->key = link_sessionKey(link->nonce, peerNonce);
 }
 
 static void onChannel(Link* link, U32 channel, U32 isOpen) {
@@ -100,7 +87,7 @@ static void onChannel(Link* link, U32 channel, U32 isOpen) {
 /* The fragment that is expected. A message on a channel that was closed here is dropped. */
 static void onData(Link* link, const U8* frame, U32 size) {
     U32 flags = frame[2];
-    U32 channel = flags & 3U;
+    U32 channel = LINK_CHANNEL(flags);
     U32 have = link->messageSize + size;
     if (size == 0) {
         onChannel(link, channel, flags >> 7);
@@ -109,14 +96,11 @@ static void onData(Link* link, const U8* frame, U32 size) {
             lose(link);
             return;
         }
-        memcpy(link->message + link->messageSize, frame + 3, size);
+        memcpy(link->message + link->messageSize, frame + LINK_HEADER, size);
         if (flags & LINK_LAST) {
             if (have > LINK_UNCHECKED) {
-                U8 sums[LINK_CHECK];
                 have -= LINK_CHECK;
-                sums[0] = sums[1] = 0;
-                Link_sum(sums, link->message, have);
-                if (memcmp(sums, link->message + have, LINK_CHECK) != 0) {
+                if (link_sum(0, link->message, have) != LINK_CHECK_AT(link->message + have)) {
                     lose(link);
                     return;
                 }
@@ -146,19 +130,18 @@ static void onAck(Link* link, U32 cumulative) {
 static void takeFrame(Link* link, const U8* frame, U32 size) {
     int isControl = frame[0] >> 7;
     U32 kind = frame[2] >> 5;
-    U32 epoch = frame[2] >> 2 & 7U;
-    if (isControl && kind - LINK_KIND_HELLO < 3U) {
-        if (Link_crc(LINK_NO_SEED, frame, size) != 0)
+    U32 epoch = LINK_EPOCH(frame);
+    if (isControl && LINK_IS_HANDSHAKE(kind)) {
+        if (link_crc(LINK_NO_SEED, frame, size) != 0)
             return;
         if (kind == LINK_KIND_HELLO && frame[1] == LINK_VERSION)
             onHello(link, frame);
-        else if (kind == LINK_KIND_RST && epoch == link->epoch)
+        else if (kind == LINK_KIND_RST && epoch == LINK_KEY_EPOCH(link->key))
             lose(link);
     } else if (link->state != LINK_STATE_UP) { /* somebody talks in a session of before */
-        link->epoch = (U8)epoch;
-        link->seed = LINK_NO_SEED;
-        transmit(link, CONTROL(LINK_KIND_RST, 0, 0U));
-    } else if (epoch == link->epoch && Link_crc((U16)link->seed, frame, size) == 0) {
+        link->key = LINK_EPOCH_KEY(epoch) | LINK_NO_SEED;
+        transmit(link, LINK_CONTROL_HEADER(LINK_KIND_RST, 0, 0U));
+    } else if (epoch == LINK_KEY_EPOCH(link->key) && link_crc(link->key, frame, size) == 0) {
         link->heardAt = link->inputAt;
         if (isControl && kind == LINK_KIND_ACK) {
             onAck(link, frame[1]);
@@ -172,13 +155,12 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
     }
 }
 
-void Link_receive(Link* link, const U8* bytes, U32 size, int isPacketEnd, U32 nowUs) {
-    (void)isPacketEnd; /* silence will tell */
+void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
     if (nowUs - link->inputAt > FRAME_GAP)
         link->inputCount = 0;
     link->inputAt = nowUs;
     while (size--) {
-        U32 whole = (link->input[0] & 0x7FU) + LINK_OVERHEAD;
+        U32 whole = LINK_LENGTH(link->input) + LINK_OVERHEAD;
         link->input[link->inputCount++] = *bytes++;
         if (link->inputCount == whole) {
             takeFrame(link, link->input, whole);
@@ -224,8 +206,8 @@ void Link_poll(Link* link, U32 nowUs) {
     }
     if (link->ackDue) {
         link->ackDue = 0;
-        link->frame[3] = 1; /* credit */
-        transmit(link, CONTROL(LINK_KIND_ACK, link->receiveNext, 1U));
+        link->frame[LINK_HEADER] = 1; /* credit */
+        transmit(link, LINK_CONTROL_HEADER(LINK_KIND_ACK, link->receiveNext, 1U));
     }
     if (!link->flags) {
         link->flags = (U8)cut(link);
@@ -233,8 +215,8 @@ void Link_poll(Link* link, U32 nowUs) {
     }
     if (link->flags && !LINK_BEFORE(nowUs, link->timerAt)) {
         link->timerAt = nowUs + link->retryUs;
-        memcpy(link->frame + 3, link->out + link->outAt, link->size);
-        transmit(link, HEADER(link->size, link->sendNext, link->flags));
+        memcpy(link->frame + LINK_HEADER, link->out + link->outAt, link->size);
+        transmit(link, LINK_HEADER_OF(link->size, link->sendNext, link->flags));
     }
 }
 
@@ -269,7 +251,7 @@ void Link_start(Link* link, U32 nowUs) {
 void Link_stop(Link* link, U32 nowUs) {
     (void)nowUs;
     if (link->state == LINK_STATE_UP)
-        transmit(link, CONTROL(LINK_KIND_BYE, 0, 0U));
+        transmit(link, LINK_CONTROL_HEADER(LINK_KIND_BYE, 0, 0U));
     lose(link);
 }
 
@@ -283,15 +265,14 @@ const Link_Statistics* Link_statistics(const Link* link) {
     return &none;
 }
 
-/* Of the channel; 0: there is no session, or no such channel. */
+/* Returns the channel's state; 0: there is no session, or no such channel. */
 static U8* channelOf(Link* link, int channel) {
     return link->state == LINK_STATE_UP && (U32)channel < LINK_CHANNELS ? link->channels + channel
                                                                         : 0;
 }
 
-Link_Status Link_openChannel(Link* link, int channel, U32 nowUs) {
+Link_Status Link_openChannel(Link* link, int channel) {
     U8* c = channelOf(link, channel);
-    (void)nowUs;
     if (!c)
         return LINK_DOWN;
     if (*c & (LINK_LAST | CLOSING))
@@ -300,9 +281,8 @@ Link_Status Link_openChannel(Link* link, int channel, U32 nowUs) {
     return LINK_OK;
 }
 
-Link_Status Link_closeChannel(Link* link, int channel, U32 nowUs) {
+Link_Status Link_closeChannel(Link* link, int channel) {
     U8* c = channelOf(link, channel);
-    (void)nowUs;
     if (!c || !(*c & OPEN))
         return LINK_CLOSED;
     if (*c & LINK_FIRST)
@@ -311,9 +291,8 @@ Link_Status Link_closeChannel(Link* link, int channel, U32 nowUs) {
     return LINK_OK;
 }
 
-Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag, U32 nowUs) {
+Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag) {
     const U8* c = channelOf(link, channel);
-    (void)nowUs;
     if (!c || !(*c & OPEN))
         return LINK_CLOSED;
     if (size - 1U >= LINK_MAX_MESSAGE)
@@ -322,10 +301,9 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
         return LINK_FULL;
     memcpy(link->out, data, size);
     if (size > LINK_UNCHECKED) {
-        U8* sums = link->out + size;
-        sums[0] = sums[1] = 0;
-        Link_sum(sums, data, size);
-        size += LINK_CHECK;
+        U32 sums = link_sum(0, data, size);
+        link->out[size++] = (U8)sums;
+        link->out[size++] = (U8)(sums >> 8);
     }
     link->outSize = size;
     link->channel = (U8)channel;

@@ -8,18 +8,21 @@
 #include "link_wire.h"
 
 #ifndef LINK_LONGEST
-#define LINK_LONGEST LINK_MAX_PAYLOAD /* payload of a frame; 90 where the modem encrypts */
+#define LINK_LONGEST                                                            \
+    LINK_MAX_PAYLOAD /* bytes of a frame's payload; 90 where the modem encrypts \
+                      */
 #endif
 #ifndef LINK_OUTCOMES
 #define LINK_OUTCOMES 0 /* 1: `outcome` and `writable` are called */
 #endif
 
-#define LINK_INPUT_BYTES 132 /* so that no length that a frame may claim goes beyond */
+#define LINK_INPUT_BYTES                                                    \
+    (0x7FU + LINK_OVERHEAD) /* no length that a frame may claim goes beyond \
+                             */
 
 /* Small and often used fields first: a Cortex-M3 reaches them with short instructions. */
 struct Link {
     U8 state; /* Link_State */
-    U8 epoch;
     /* From here on all is 0 when a session begins. */
     U8 channels[LINK_CHANNELS]; /* what is open, and what is to be said about it */
     U8 sendNext;                /* SEQ of the fragment in flight, or of the next one */
@@ -32,7 +35,7 @@ struct Link {
     U32 messageSize;    /* so far */
     U32 peerNonce;      /* 0: no session */
     /* Up to here. */
-    U32 nonce, seed;
+    U32 nonce, key;
     U32 timerAt; /* when the fragment in flight goes out again, ... */
     U32 retryUs; /* and how long after the last time */
     U32 inputAt, heardAt;

@@ -77,7 +77,7 @@ void entry() {
     switchTo(port.caller);
 }
 
-Coroutine* coroutineOf(const OsTask* task) {
+Coroutine* coroutineOf(const OS_Task* task) {
     return reinterpret_cast<Coroutine*>(task->stack);
 }
 
@@ -156,7 +156,7 @@ void OSStartHighRdy(void) {
     switchTo(*coroutineOf(os_kernel.current));
 }
 
-void OSCtxSw(OsTask* from, OsTask* to) {
+void OSCtxSw(OS_Task* from, OS_Task* to) {
     (void)from;
     switchTo(*coroutineOf(to));
 }

@@ -6,22 +6,22 @@
 #include "os_m3.h"
 #include "os_core.h"
 
-#define ICSR (*(volatile U32 *)0xE000ED04UL)
+#define ICSR (*(volatile U32*)0xE000ED04UL)
 #define ICSR_PENDSVSET (1UL << 28)
-#define SHPR3 (*(volatile U32 *)0xE000ED20UL)
+#define SHPR3 (*(volatile U32*)0xE000ED20UL)
 #define XPSR_THUMB 0x01000000UL
 
-U32 *OS_Switch(U32 *sp); /* called by os_switch.S */
+U32* OS_Switch(U32* sp); /* called by os_switch.S */
 
-static OsTask *running; /* whose context the processor holds; 0 before the first switch */
+static OS_Task* running; /* whose context the processor holds; 0 before the first switch */
 
 static void taskReturned(void) {
     OS_StackFault(0xFFU); /* a task must not return; it is told as what it is */
 }
 
-OS_STK *OSTaskStkInit(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT16U opt) {
+OS_STK* OSTaskStkInit(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT16U opt) {
     /* The frame must begin at a multiple of 8 (AAPCS). */
-    OS_STK *stack = (OS_STK *)((U32)(ptos + 1) & ~7UL);
+    OS_STK* stack = (OS_STK*)((U32)(ptos + 1) & ~7UL);
     int i;
     (void)opt;
     *--stack = XPSR_THUMB;
@@ -35,10 +35,11 @@ OS_STK *OSTaskStkInit(void (*task)(void *p_arg), void *p_arg, OS_STK *ptos, INT1
     return stack;
 }
 
-void OSCtxSw(OsTask *from, OsTask *to) {
+void OSCtxSw(OS_Task* from, OS_Task* to) {
     (void)from;
     (void)to; /* os_kernel.current, when PendSV runs */
     ICSR = ICSR_PENDSVSET;
+    __asm__ volatile("dsb"); /* PendSV is pending before the caller enables interrupts */
 }
 
 void OSStartHighRdy(void) {
@@ -53,7 +54,7 @@ void OSStartHighRdy(void) {
 
 /* By PendSV, interrupts off: `sp` is where the running task's registers are; returns the next
  * one's. */
-U32 *OS_Switch(U32 *sp) {
+U32* OS_Switch(U32* sp) {
     if (running) {
         running->stack = sp;
         if (running->bottom && (sp < running->bottom || *running->bottom != 0))

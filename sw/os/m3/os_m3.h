@@ -9,7 +9,7 @@
 
 /* Called by PendSV before a task goes on, interrupts off; `bottom` is the lowest address of its
  * stack, 0 where unknown (OSTaskCreate): the place of a guard. */
-void OS_TaskSwitched(OS_STK *bottom);
+void OS_TaskSwitched(OS_STK* bottom);
 
 /* The task with this priority has run over the end of its stack (255: a task has returned). Does
  * not return. */

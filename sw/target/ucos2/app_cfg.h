@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * app_cfg: configuration of uC/OS-II's ARMv7-M port. Interrupts of priority 0x40 and more may call it.
+ * app_cfg: configuration of uC/OS-II's ARMv7-M port. Interrupts of priority 0x40 and more may call
+ * it.
  */
 #ifndef APP_CFG_H
 #define APP_CFG_H
@@ -8,7 +9,8 @@
 #define CPU_CFG_KA_IPL_BOUNDARY 4u
 #define CPU_CFG_NVIC_PRIO_BITS 4u
 
-/* What our kernel offers besides: something that is different for each task, whatever it inherits. */
+/* What our kernel offers besides: something that is different for each task, whatever it inherits.
+ */
 #define OSTaskPrio() ((INT8U)(OSTCBCur - OSTCBTbl))
 
 #endif

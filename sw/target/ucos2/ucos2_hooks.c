@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ucos2_hooks: what the real uC/OS-II asks of an application, and the name under which our vectors know its
- * PendSV handler.
+ * ucos2_hooks: what the real uC/OS-II asks of an application, and the name under which our vectors
+ * know its PendSV handler.
  */
 #include "guard.h"
 
@@ -21,21 +21,20 @@ void App_TaskSwHook(void) {
     Guard_place(OSTCBHighRdy->OSTCBStkBottom);
 }
 
-void App_TaskCreateHook(OS_TCB *ptcb) {
+void App_TaskCreateHook(OS_TCB* ptcb) {
     (void)ptcb;
 }
 
-void App_TaskDelHook(OS_TCB *ptcb) {
+void App_TaskDelHook(OS_TCB* ptcb) {
     (void)ptcb;
 }
 
-void App_TaskReturnHook(OS_TCB *ptcb) {
+void App_TaskReturnHook(OS_TCB* ptcb) {
     (void)ptcb;
 }
 
-void App_TaskStatHook(void) {
-}
+void App_TaskStatHook(void) {}
 
-void App_TCBInitHook(OS_TCB *ptcb) {
+void App_TCBInitHook(OS_TCB* ptcb) {
     (void)ptcb;
 }

@@ -15,7 +15,7 @@ chip() { # name, the list: the chip in $work/name
     printf '%b' "$2" >"$out/cores.list"
     "$coremap" "$out/cores.list" --base "$source/bus/map.regs.json" --core "led=$data/led.regs.json" \
         --core "adder=$data/adder.regs.json" --core "mover=$data/mover.regs.json" \
-        --block "0=system=$source/hdl/system/system.regs.json" --output-dir "$out" 2>"$out/messages"
+        --clocked mover --block "0=system=$source/hdl/system/system.regs.json" --output-dir "$out" 2>"$out/messages"
 }
 accepted() {
     chip "$@" || { cat "$out/messages" && fail "refused: $2"; }
@@ -49,7 +49,7 @@ is NPI_PORT_COUNT 0x4
 is NPI_PORT_MOVER 0x2
 is NPI_PORT_CAMERA 0x3
 is MEMORY_MOVER 0x1000000
-is MEMORY_CAMERA 0x1000500
+is MEMORY_CAMERA 0x1000800
 # The pages are XML and HTML that others read; the registers are where the map has them.
 # CMSIS-SVD.xsd: ARM's schema 1.3.9 (CMSIS_5, commit 51f8f89), Apache-2.0 as its header says.
 xmllint --noout --schema "$(dirname "$0")/CMSIS-SVD.xsd" "$out/icesoc.svd" 2>"$work/svd" || { cat "$work/svd" && fail 'icesoc.svd is not as ARM wants it'; }
@@ -61,9 +61,26 @@ address=$(xmllint --xpath 'string(//peripheral[name="CAMERA"]/baseAddress)' "$ou
 xmllint --html --noout "$out/registers.html" 2>"$work/html" || { cat "$work/html" && fail 'registers.html'; }
 is PIN_CAMERA_SEEN_O 0xB
 grep -q '"eye"' "$out/soc_cores.c" || fail 'the identity is not in the table'
+accepted pins 'led name=eye button_i=@A4\nmover seen_o=@B1 level_o=@C1,C2,C3,C4,C5,C6,C7,C8,C9\n'
+grep -qx '    {"eye.button_i", 0, 1, false},' "$out/soc_pins.h" || fail 'the pin is not in the table'
+grep -qx 'NET "core_pins_i<0>" LOC = "A4"; # eye.button_i\[0\]' "$out/core_pins.ucf" || fail 'the place is not in the constraints'
+grep -qx '# NET "core_pins_o<0>" LOC = "..."; # eye.led_o\[0\]' "$out/core_pins.ucf" || fail 'the pin without a place is not listed'
+grep -qx 'NET "core_pins_o<10>" LOC = "C9"; # mover.level_o\[8\]' "$out/core_pins.ucf" || fail 'the last bit has not its place'
+grep -q 'led u_eye' "$out/soc_cores.vh" && grep -q 'mover #(.CLK_HZ(CLK_HZ)) u_mover' "$out/soc_cores.vh" || fail 'the clock goes to the wrong cores'
 accepted hole 'led slot=63\n'
 is SLOT_COUNT 0x40
 
+accepted placed 'mover\nmover name=last memory=0x1000800\nmover name=camera\n'
+is MEMORY_MOVER 0x1000000
+is MEMORY_LAST 0x1000800
+is MEMORY_CAMERA 0x1001000
+
+refused 'memory=0x1000400: buffers of 2048 bytes begin at a multiple' 'mover memory=0x1000400\n'
+refused 'memory=0x0: buffers of 2048 bytes begin' 'mover memory=0\n'
+refused 'memory=0x8000000: buffers' 'mover memory=0x8000000\n'
+refused '2: error: memory=0x1000800 is within the buffers of line 1' 'mover memory=0x1000800\nmover name=b memory=0x1000800\n'
+refused 'memory=1x: a byte address' 'mover memory=1x\n'
+refused 'memory=0x1000000: a byte address in DDR3, for a core with buffers' 'led memory=0x1000000\n'
 refused "1: error: there is no core 'nobody'" 'nobody\n'
 refused "2: error: 'led' is on line 1 already; name=" 'led\nled\n'
 refused "3: error: slot 7 is taken on line 2" '#\nled slot=7\nadder slot=7\n'
@@ -76,6 +93,9 @@ refused "identity 'a' is taken" 'led identity=a\nadder identity=a\n'
 refused "'slot' is given twice" 'led slot=3 slot=4\n'
 refused "'as' *: after the core's folder" 'led as\n'
 refused "has no input pin 'colour'" 'led colour=red\n'
+refused 'button_i=@A4,A5: 2 places for 1 bits' 'led button_i=@A4,A5\n'
+refused '2: error: place A4 is taken on line 1' 'led button_i=@A4\nled name=b led_o=@A4\n'
+refused 'places are letters and digits' 'led button_i=@A-4\n'
 refused "no core's output of 1 bits" 'led button_i=mover.nothing_o\n'
 refused "pins of a direction" 'mover\nmover name=a\nmover name=b\nmover name=c\n'
 "$coremap" --help | grep -q 'a core a line' || fail 'no help'

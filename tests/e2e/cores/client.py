@@ -62,6 +62,14 @@ with Ice.initialize(data) as ic:
         fails(Ice.UnknownException, later.result)
         expect(identity + ".sumTo after that", core.sumTo(4), 10)
 
+    servo = Demo.ServoPrx.checkedCast(ic.stringToProxy("servo" + where))
+    servo.setPulse(2, 1500)
+    for _ in range(2000):  # the simulator's script raises the pin
+        if servo.fault():
+            break
+    servo.clear()
+    expect("servo.fault after clear", servo.fault(), False)
+
     scaler = Demo.ScalerPrx.checkedCast(ic.stringToProxy("scaler" + where))
     watcher = Watcher()
     adapter = ic.createObjectAdapter("Ground")

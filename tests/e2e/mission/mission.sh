@@ -95,10 +95,22 @@ twice)
     wait $first || { cat "$out/a.log" && exit 1; }
     check_output "$out/a" && check_output "$out/b"
     ;;
+odd_names) # words of the shell, of make and of the simulator in a folder's name are only a name
+    odd="$out/a'b \"c\" {device} {out}x \`touch $out/oops\` \$(touch $out/oops)"
+    run "$odd" --image $image && check_output "$odd"
+    make --no-print-directory -s -C "$source" -n run BUILD="$build" OUT="$(echo "$odd" | sed 's/\$/$$/g')" | sed -n '/run.sh/,$p' |
+        sed 's/^testbench.*run.sh/set --/' >"$out/words"
+    sh -c '. "$1" && while [ "$1" != --out ]; do shift; done && [ "$2" = "$0" ]' "$odd" "$out/words" || { cat "$out/words" && exit 1; }
+    [ ! -e "$out/oops" ]
+    ;;
 picture_bad)
+    mkdir "$out/mine" && echo mine >"$out/mine/report.md" && ln -s "$out/mine/report.md" "$out/calls.jsonl" && cp "$out/mine/report.md" "$out"
     echo "this is no picture" >"$out/bad.png"
     fails_with "is no picture that can be read" run "$out" --image "$out/bad.png"
+    # Nothing in the folder is touched where the start is refused.
+    [ "$(cat "$out/report.md" "$out/calls.jsonl")" = "$(printf 'mine\nmine')" ]
     ;;
+threshold_wrong) fails_with "THRESHOLD is 0..255 grey levels, not '999'" run "$out" --image $image --threshold 999 ;;
 picture_missing) fails_with "cannot read picture" run "$out" --image /nowhere.png ;;
 device_missing)
     fails_with "cannot open serial port '/dev/no-such-port'" /usr/bin/python3 "$source/sw/ground/clients/mission.py" \
@@ -121,6 +133,8 @@ interrupted)
         kill -0 $pid || { cat "$out/log" && exit 1; }
         sleep 0.1
     done
+    if run "$out" --image $image >"$out/second" 2>&1; then echo "a second flight in one folder" && exit 1; fi
+    grep -q 'another flight is under way' "$out/second" || { cat "$out/second" && exit 1; }
     pkill -INT -f "icesoc-sim.*$out" # the simulator; Ctrl-C would reach all of them
     status=0
     wait $pid || status=$?

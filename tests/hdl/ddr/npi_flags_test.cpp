@@ -13,7 +13,7 @@
 
 namespace {
 
-// Of both back-ends: a memory before the edge, and after it.
+// Both back-ends: these sample a memory before the edge and drive it after.
 template <class Module> void sample(Module& top, McbModel& memory) {
     sampleMcb(top, memory);
 }

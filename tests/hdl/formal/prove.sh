@@ -22,10 +22,11 @@ file=$(find "$source/bus" "$source/hdl" "$source/ip" -name "$module.v")
     echo "$module: no $module.v below bus, hdl or ip" >&2
     exit 2
 }
-files=$(ls "$source"/bus/*.v "$source"/hdl/system/*.v "$(dirname "$file")"/*.v | sort -u)
+proof=${file%.v}_proof.vh # included at the module's foot
+files=$(ls "$source"/bus/*.v "$source"/hdl/system/*.v "$source"/hdl/cdc/*.v "$(dirname "$file")"/*.v | sort -u)
 # Several clocks (a proof with `gclk`): every edge is an input of its own.
 clocks=async2sync
-! grep -q gclk "$file" || clocks='memory_map; clk2fflogic'
+! grep -qs gclk "$file" "$proof" || clocks='memory_map; clk2fflogic'
 # -nosdff -nodffe: AIGER has plain flip-flops only. The module's outputs are dropped: abc would take
 # them for properties.
 gates='memory_map; opt -full; techmap; opt -fast -nosdff -nodffe; dfflegalize -cell $_DFF_P_ 01; delete -output w:*'
@@ -34,9 +35,11 @@ aiger='opt_clean; abc -g AND -fast; opt_clean; write_aiger -zinit -map'
 cat >prove.ys <<END
 read_verilog -formal -sv -I${GEN_DIR:-.} $(echo $files)
 $parameters
+hierarchy -top $module
+proc
+flatten
 prep -top $module -nordff
 memory_nordff
-flatten
 $clocks
 dffunmap
 chformal -early

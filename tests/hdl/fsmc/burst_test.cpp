@@ -28,7 +28,7 @@ template <class Bridge>
 void setUp(BridgeBench<Bridge>& b, unsigned clkdiv, unsigned latency, bool muxed,
            bool waitHigh = false) {
     b.slave.words[0] = SYSTEM_ID_VALUE;
-    Fsmc_Bank banks[2] = {};
+    FSMC_Bank banks[2] = {};
     banks[0].mode = FSMC_MODE_BURST;
     banks[0].clkdiv = static_cast<U8>(clkdiv);
     banks[0].latency = static_cast<U8>(latency);

@@ -25,7 +25,7 @@ constexpr uint32_t base = bcrEnable | bcrWidth16 | bcrWriteEnable | bcrAsyncWait
 
 struct Mode {
     const char* name;
-    Fsmc_Bank bank;
+    FSMC_Bank bank;
 };
 // mode, of writes, PSRAM, muxed, wait, wait high, BUSTURN, {ADDSET, ADDHLD, DATAST} of reads,
 // writes
@@ -56,7 +56,7 @@ template <class Bridge> void traffic(const Mode& mode, unsigned hclk, unsigned c
     Random random(testSeed() + hclk);
     b.top.page_i = random.below(64); // of the memory; as the system slot has it
     const uint32_t page = static_cast<uint32_t>(b.top.page_i) << 26;
-    const Fsmc_Bank banks[2] = {mode.bank, mode.bank};
+    const FSMC_Bank banks[2] = {mode.bank, mode.bank};
     ASSERT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
     for (uint32_t reg : {0xA0000000u, 0xA0000004u, 0xA0000104u}) // NE3, another chip, as NE1
         b.master.write32(reg + 0x10, b.master.read32(reg));
@@ -131,8 +131,8 @@ TEST(Modes, NwaitActiveHighAndSmallBuffers) {
 TEST(Modes, WhatADoorbellDropsOnItsWayIsNotTakenForFresh) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0.1, 168, 100);
     b.slave.words[0] = SYSTEM_ID_VALUE;
-    const Fsmc_Bank bank = {FSMC_MODE_1, {}, 0, 0, 1, 0, 0, {2, 1, 4}, {}, 0, 0};
-    const Fsmc_Bank banks[2] = {bank, bank};
+    const FSMC_Bank bank = {FSMC_MODE_1, {}, 0, 0, 1, 0, 0, {2, 1, 4}, {}, 0, 0};
+    const FSMC_Bank banks[2] = {bank, bank};
     ASSERT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
     Random random(testSeed());
     for (int i = 0; i < 1000 && !HasFailure(); ++i) {
@@ -156,32 +156,32 @@ TEST(Modes, WhatADoorbellDropsOnItsWayIsNotTakenForFresh) {
 
 TEST(Modes, TheDriverRefusesWhatTheManualForbids) {
     BridgeBench<VFsmcBridge> b(testSeed());
-    const Fsmc_Bank good = plainModes[8].bank; // D
+    const FSMC_Bank good = plainModes[8].bank; // D
     auto refuses = [&](unsigned bank, auto change) {
-        Fsmc_Bank banks[2] = {good, good};
+        FSMC_Bank banks[2] = {good, good};
         change(banks[bank]);
         return FSMC_initBanks(&driverPort, &b.master, banks) == FSMC_BAD_SETTING;
     };
     for (unsigned bank : {0u, 1u}) {
-        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.read.datast = 3; })) << "NWAIT is not seen";
-        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.wait = 0, x.write.datast = 0; }));
-        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.write.addhld = 0; }))
+        EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.read.datast = 3; })) << "NWAIT is not seen";
+        EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.wait = 0, x.write.datast = 0; }));
+        EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.write.addhld = 0; }))
             << "reserved in mode D";
-        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.read.addset = 16; }));
-        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.read.addhld = 16; }));
-        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.busturn = 16; }));
-        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.writeMode = FSMC_MODE_1; }));
-        EXPECT_TRUE(refuses(bank, [](Fsmc_Bank& x) { x.mode = static_cast<Fsmc_Mode>(7); }));
+        EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.read.addset = 16; }));
+        EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.read.addhld = 16; }));
+        EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.busturn = 16; }));
+        EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.writeMode = FSMC_MODE_1; }));
+        EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.mode = static_cast<FSMC_Mode>(7); }));
         for (unsigned clkdiv : {0u, 16u})
-            EXPECT_TRUE(refuses(bank, [=](Fsmc_Bank& x) {
+            EXPECT_TRUE(refuses(bank, [=](FSMC_Bank& x) {
                 x.mode = FSMC_MODE_BURST, x.latency = 5, x.clkdiv = static_cast<U8>(clkdiv);
             }));
         for (unsigned latency : {1u, 18u})
-            EXPECT_TRUE(refuses(bank, [=](Fsmc_Bank& x) {
+            EXPECT_TRUE(refuses(bank, [=](FSMC_Bank& x) {
                 x.mode = FSMC_MODE_BURST, x.clkdiv = 3, x.latency = static_cast<U8>(latency);
             }));
     }
-    EXPECT_TRUE(refuses(1, [](Fsmc_Bank& x) {
+    EXPECT_TRUE(refuses(1, [](FSMC_Bank& x) {
         x.mode = FSMC_MODE_BURST, x.clkdiv = 3, x.latency = 5;
     })) << "NE2 is asynchronous";
     EXPECT_THROW(b.master.read16(control), FsmcError) << "bank 2 is off: nothing was written";

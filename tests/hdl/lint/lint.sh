@@ -4,7 +4,7 @@
 # A variant is a parameter and its value, or several with commas; what is in `refused` must not elaborate.
 set -eu
 module=$1 source=$2 gen=$3
-folders="$source/bus $source/hdl/fsmc $source/hdl/ddr $source/hdl/modem $source/hdl/system"
+folders="$source/bus $source/hdl/fsmc $source/hdl/ddr $source/hdl/modem $source/hdl/system $source/hdl/cdc"
 core=$(ls "$source"/ip/*/"$module.v" 2>/dev/null || true)
 [ -z "$core" ] || folders="$folders $(dirname "$core")"
 file=$(for f in $folders; do ls "$f/$module.v" 2>/dev/null || true; done)

@@ -68,7 +68,8 @@ TEST_F(ModemApi, PacketsLeaveWithoutAPauseEachAsOneRfPacket) {
 TEST_F(ModemApi, EachPacketGoesToTheTargetOfItsTime) {
     ready();
     std::vector<uint16_t> targets;
-    air_.onPacket([&](uint64_t, const RfPacket& p, RfChannel::Outcome) { targets.push_back(p.to); });
+    air_.onPacket(
+        [&](uint64_t, const RfPacket& p, RfChannel::Outcome) { targets.push_back(p.to); });
     const std::vector<uint16_t> wanted = {0x5A5A, 0xA5A5, 0x0000, 0xFF00};
     for (unsigned i = 0; i < wanted.size(); ++i) {
         bus_.write(MODEM_ADDR, uint32_t(wanted[i]) << MODEM_ADDR_TARGET_LSB | 0x0001);

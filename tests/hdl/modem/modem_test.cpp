@@ -84,6 +84,7 @@ TEST_F(ModemTest, TheKeyIsSentOnlyWithEncryption) {
     EXPECT_EQ(near_->parameter("EE"), 0u);
     EXPECT_EQ(near_->parameter("D6"), 1u);
     EXPECT_EQ(near_->parameter("D7"), 1u);
+    EXPECT_EQ(near_->parameter("RN"), 3u) << "modems that write in step";
 }
 
 TEST_F(ModemTest, PacketsLeaveEachAsOneRfPacket) {
@@ -293,7 +294,7 @@ TEST_F(ModemTest, APacketThatASetUpInterruptsIsSentAgainWhole) {
 class ModemWithdrawnRead : public ModemTest {
 protected:
     // CONTROL is written so many clocks after the read of the packet's second word has begun.
-    // With `hangs` memory gives that word when the packet is awaited (sentAgain).
+    // If `hangs`, memory gives that word only when the packet is awaited (sentAgain).
     void interrupt(unsigned buffer, unsigned clocks, uint32_t control, bool hangs = false) {
         packet_ = ramp(20, static_cast<uint8_t>(16 * buffer));
         uint32_t second = txRing + 128 * buffer + 8;

@@ -24,7 +24,7 @@ refused() { # words of the message, arguments
 }
 refused 'usage'
 refused 'usage' '' verilog
-refused "not ''" fir
+refused 'LANG=verilog or LANG=vhdl' fir
 refused "not 'c'" fir c
 refused 'small letters' Fir verilog
 refused 'small letters' 2fir verilog
@@ -45,6 +45,8 @@ chmod +x "$work/build/slice/slice2c"
 refused "there is no file" fir verilog "$work/build" "$work/none.ice"
 echo 'module M { interface Fir { void f(); }; };' >"$work/a.ice"
 refused 'is not an interface in hardware' fir verilog "$work/build" "$work/a.ice"
+echo 'module M { [":hw"] interface Fir { void f(string s); }; };' >"$work/a.ice"
+refused "^$work/a.ice:1:" fir verilog "$work/build" "$work/a.ice"
 echo 'module M { [":hw"] interface Iir { void f(); }; };' >"$work/a.ice"
 refused "has the cores iir : NAME is that of the only one" fir verilog "$work/build" "$work/a.ice"
 echo 'module M { [":hw"] interface LowPass { ["hw:long"] int f(short a); }; };' >"$work/a.ice"
@@ -71,7 +73,7 @@ rm -r "$work/ip/taker"
 for wrong in '' nobody template ../bus; do
     ! "$work/ip/rm.sh" "$wrong" 2>"$work/log" && grep -q 'rm-ip: ' "$work/log" || { echo "rm-ip takes '$wrong'" && exit 1; }
 done
-# What is not committed stays, unless forced.
+# Uncommitted work stays, unless forced.
 (cd "$work" && git init -q . && "$work/ip/new.sh" fir verilog "$work/build" >/dev/null)
 ! "$work/ip/rm.sh" fir 2>"$work/log" && grep -q 'not committed' "$work/log" && [ -d "$work/ip/fir" ] || { echo 'rm-ip loses work' && exit 1; }
 FORCE=1 "$work/ip/rm.sh" fir >/dev/null

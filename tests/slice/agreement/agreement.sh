@@ -10,7 +10,7 @@ mkdir -p "$work"
 cd "$work"
 awk '/^\/\/ (ok|warning|error): / { n++; file = sprintf("case%03d.ice", n) } n { print > file }' "$cases"
 
-# What a compiler says of a file: "0" or "1", and the line of its first message.
+# Prints a compiler's verdict on a file: "0" or "1", and the line of its first message.
 said() { # compiler, file
     status=0
     "$1" "$2" --output-dir out >log 2>&1 || status=1

@@ -15,6 +15,7 @@ golden)
         command -v $cc >/dev/null || continue
         $cc $flags -I"$sw/base" -I"$sw/icec" -I"$work" -fsyntax-only "$work"/*.c
     done
+    g++ -Wall -Wextra -Werror -I"$sw/base" -I"$sw/icec" -fsyntax-only -include "$work"/*.h -x c++ /dev/null
     sed -i "s|^.*/||" "$work/messages"
     [ -z "${UPDATE_GOLDENS:-}" ] || { rm -rf "$expected"; cp -r "$work" "$expected"; }
     diff -ru "$expected" "$work"

@@ -124,4 +124,33 @@ expect 1 'expected the module' "$slice2c" bad.ice slice/Lib/Base.ice --output-di
 printf 'module A_b { struct iceS { int x; }; };' >names.ice
 expect 1 'underscore' "$slice2c" names.ice --output-dir x
 expect 0 '' "$slice2c" --underscore --ice names.ice --output-dir x
+
+# Lines: what the preprocessor has no room for is an error that says where, also in an included file.
+{ printf 'module L { // ' && head -c 70000 /dev/zero | tr '\0' x && printf '\n};\n'; } >long.ice
+printf '\n#include <long.ice>\n' >includes.ice
+expect 1 'long.ice:1: error: the line is too long' "$slice2c" long.ice
+expect 1 'long.ice:1: error: the line is too long' "$slice2c" -I . includes.ice
+{ printf 'module L { struct S { int a; }; };' && yes '          \' | head -8000; } >joined.ice
+expect 1 'joined.ice:[0-9]*: error: the line is too long' "$slice2c" joined.ice
+# Line ends of another system, or none, are not spoken of.
+printf 'module L {\r\n struct S { int a; };\r\n};' >crlf.ice
+printf '#include <crlf.ice>\nmodule M { struct T { L::S a; }; };' >without.ice
+expect 0 '' "$slice2c" -I . crlf.ice without.ice --output-dir x
+[ ! -s log ] || { cat log && fail 'a line end is spoken of'; }
+# A full disk.
+for option in -E --depend --depend-xml; do
+    ! "$slice2c" $option crlf.ice >/dev/full 2>log || fail "$option: no error although nothing could be written"
+    grep -q 'cannot write' log || fail "$option does not say that it cannot write"
+done
+
+# Files of one program: no two names of theirs are one name in C.
+mkdir -p one/other
+printf 'module Cores { sequence<byte> Bytes; interface Fir { void f(); }; };\n' >one/fir.ice
+printf '// a core\nmodule Cores { sequence<byte> Bytes; interface Crc { void f(); }; };\n' >one/crc.ice
+printf 'module Other { interface Fir { void f(); }; };\n' >one/other/fir.ice
+printf '#include <fir.ice>\nmodule Cores { interface User { void f(Bytes b); }; };\n' >one/user.ice
+expect 1 "crc.ice:2:31: error: '::Cores::Bytes' is 'Cores_Bytes' in C, as one/fir.ice:1 is" "$slice2c" --one-program one/fir.ice one/crc.ice
+expect 1 "'fir.ice' is the name of one/fir.ice too" "$slice2c" --one-program one/fir.ice one/other/fir.ice
+expect 0 '' "$slice2c" --one-program -Ione one/fir.ice one/user.ice
+[ ! -e fir.h ] || fail '--one-program generated something'
 echo 'commandline: all as expected'

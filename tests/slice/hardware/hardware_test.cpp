@@ -22,7 +22,7 @@ constexpr U32 slot = coreSlot, clocksOfMs = coreClocksOfMs;
 class CalculatorServant : public ::testing::Test {
 protected:
     CalculatorServant() {
-        EXPECT_EQ(Demo_Calculator_Core_init(&core_, slot, 0, &slot_.seam, &slot_), HW_OK);
+        EXPECT_EQ(Demo_Calculator_Core_init(&core_, slot, 0, &slot_.port, &slot_), HW_OK);
         slot_.core_ = &core_.core;
     }
     ~CalculatorServant() override { EXPECT_EQ(slot_.errors_, 0u) << "accesses to no register"; }
@@ -40,7 +40,7 @@ protected:
 TEST_F(CalculatorServant, IdentityIsTypeAndVersionOfTheInterface) {
     EXPECT_EQ(FSMC_read(slot, 0), 0x43410102u);
     Hw_Core other;
-    EXPECT_EQ(Hw_Core_init(&other, slot, 0x43410103, &slot_.seam, &slot_), HW_WRONG_CORE);
+    EXPECT_EQ(Hw_Core_init(&other, slot, 0x43410103, &slot_.port, &slot_), HW_WRONG_CORE);
 }
 
 TEST_F(CalculatorServant, SettersReachTheCoreAndGettersReadIt) {
@@ -124,7 +124,7 @@ TEST_F(CalculatorServant, OtherCallsGoOnWhileALongOneIsUnderWay) {
 class WideEchoServant : public ::testing::Test {
 protected:
     WideEchoServant() {
-        EXPECT_EQ(Demo_WideEcho_Core_init(&core_, slot, 0, &slot_.seam, &slot_), HW_OK);
+        EXPECT_EQ(Demo_WideEcho_Core_init(&core_, slot, 0, &slot_.port, &slot_), HW_OK);
         slot_.core_ = &core_.core;
         VWideEchoSlot& top = slot_.bench_.top();
         slot_.bench_.addModel([&top, this] { nothings_ += top.nothing_start_o; },
@@ -190,7 +190,7 @@ TEST_F(WideEchoServant, ADoneWithoutAStartIsNoEvent) {
 TEST(VhdlCore, IsCalledAsOneInVerilog) {
     CoreSlot<VHttpLevelSlot> rig;
     Demo_HTTPLevel_Core core{};
-    ASSERT_EQ(Demo_HTTPLevel_Core_init(&core, slot, 0, &rig.seam, &rig), HW_OK);
+    ASSERT_EQ(Demo_HTTPLevel_Core_init(&core, slot, 0, &rig.port, &rig), HW_OK);
     for (unsigned level : {0u, 0x5Au, 0xFFu}) {
         Ice_Byte read = 1;
         ASSERT_EQ(Demo_HTTPLevel_setLevel(&core.servant, static_cast<Ice_Byte>(level), nullptr),

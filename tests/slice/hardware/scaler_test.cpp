@@ -39,6 +39,15 @@ TEST_F(Scaler, SequencesOfEveryLengthGoThroughMemoryAndBack) {
     }
 }
 
+TEST_F(Scaler, BuffersThatDoNotBeginAtAMultipleOfTheirSizeAreRefused) {
+    Demo_Scaler_Core other;
+    for (U32 past : {128u, 256u, 384u})
+        EXPECT_EQ(Demo_Scaler_Core_init(&other, coreSlot, coreMemory + past, &core_.port, &core_),
+                  HW_UNALIGNED);
+    EXPECT_EQ(Demo_Scaler_Core_init(&other, coreSlot, coreMemory + 512, &core_.port, &core_),
+              HW_OK);
+}
+
 TEST_F(Scaler, TooManyElementsAreRefusedBeforeTheCoreSeesThem) {
     try {
         shift(std::vector<Ice_Short>(101), 1);

@@ -4,6 +4,10 @@
 
 #include "pair.h"
 
+extern "C" {
+#include "ice_calls.h"
+}
+
 namespace {
 
 TEST_F(Calls, ResultsComeBack) {
@@ -204,6 +208,53 @@ TEST_F(Calls, LargeRepliesNeedTheProxysOwnBuffer) {
     alignas(8) static U32 buffer[2048];
     Ice_ObjectPrx_setReplyBuffer(&prx, buffer, sizeof buffer);
     EXPECT_EQ(call(prx, "op", 0, &out), ICE_OK);
+}
+
+// What the failure of the last call says.
+std::string reason(const Ice_ObjectPrx& prx) {
+    Ice_Failure failure;
+    Ice_ObjectPrx_failure(&prx, &failure);
+    return str(failure.unknown);
+}
+
+TEST_F(Calls, EveryLimitIsSaidWithItsNameAndValue) {
+    static Ice_Byte much[ICE_MESSAGE_MAX];
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    Ice_Int out;
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+        if (str(current.operation) == "arena")
+            (void)Ice_InputStream_allocate(is, 1000, 8);
+        else
+            Ice_OutputStream_writeBlob(os, much, str(current.operation) == "reply" ? 2000 : 8190);
+        return ICE_OK;
+    };
+    EXPECT_EQ(call(prx, "arena", 0, &out), ICE_UNKNOWN_LOCAL_EXCEPTION);
+    EXPECT_EQ(reason(prx), "::Ice::MarshalException: over ICE_ARENA_BYTES (2048)");
+    EXPECT_EQ(call(prx, "message", 0, &out), ICE_UNKNOWN_LOCAL_EXCEPTION);
+    EXPECT_EQ(reason(prx), "::Ice::MarshalException: over ICE_RESULT_MAX (8192)");
+    EXPECT_EQ(call(prx, "reply", 0, &out), ICE_MARSHAL);
+    EXPECT_EQ(
+        reason(prx),
+        "::Ice::MarshalException: over ICE_REPLY_MAX (1024): see Ice_ObjectPrx_setReplyBuffer");
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(&prx, "op", 0);
+    Ice_InputStreamPtr is;
+    Ice_OutputStream_writeBlob(os, much, sizeof much);
+    EXPECT_EQ(Ice_ObjectPrx_end(&prx, Ice_ObjectPrx_invoke(&prx, &is)), ICE_MARSHAL);
+    EXPECT_EQ(reason(prx), "::Ice::MarshalException: over ICE_REQUEST_MAX (8192)");
+    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr from, Ice_OutputStreamPtr) {
+        (void)Ice_InputStream_readLong(from);
+        return ICE_OK;
+    };
+    EXPECT_EQ(call(prx, "op"), ICE_UNKNOWN_LOCAL_EXCEPTION);
+    EXPECT_EQ(reason(prx),
+              "::Ice::MarshalException: malformed, or not of the type that is expected");
+    std::vector<Ice_ObjectPrx> busy(ICE_CALLS, prx);
+    for (Ice_ObjectPrx& each : busy)
+        each.call = icec_takeCall(&here().ic);
+    EXPECT_EQ(call(prx, "op"), ICE_LIMIT);
+    EXPECT_EQ(reason(prx), "::Ice::MemoryLimitException: over ICE_CALLS (4)");
+    for (Ice_ObjectPrx& each : busy)
+        icec_freeCall(&here().ic, each.call);
 }
 
 } // namespace

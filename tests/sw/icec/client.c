@@ -11,15 +11,15 @@
 static Ice_Communicator ic;
 static TcpEndpoint tcp;
 
-#define CHECK(condition)                                                                                       \
-    do {                                                                                                       \
-        if (!(condition)) {                                                                                    \
-            printf("client.c:%d: not true: %s\n", __LINE__, #condition);                                       \
-            return 1;                                                                                          \
-        }                                                                                                      \
+#define CHECK(condition)                                                 \
+    do {                                                                 \
+        if (!(condition)) {                                              \
+            printf("client.c:%d: not true: %s\n", __LINE__, #condition); \
+            return 1;                                                    \
+        }                                                                \
     } while (0)
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
     static Interop_ServicePrx service, oneway, nobody, dead;
     Interop_Item data[3];
     Interop_Items items, back;
@@ -48,7 +48,7 @@ int main(int argc, char **argv) {
         CHECK(sum == 3 * i);
     }
     for (i = 0; i < 3; ++i) {
-        static const char *const names[] = {"one", "two", "three"};
+        static const char* const names[] = {"one", "two", "three"};
         data[i].name = Ice_String_from(names[i]);
         data[i].amount = -i;
         data[i].colour = (Interop_Colour)i;
@@ -64,6 +64,21 @@ int main(int argc, char **argv) {
         CHECK(Interop_ServicePrx_notify(&oneway, Ice_String_from("hello")) == ICE_OK);
     CHECK(Interop_ServicePrx_notifications(&service, &sum) == ICE_OK && sum == 5);
     CHECK(Interop_ServicePrx_fail(&service) == ICE_UNKNOWN_EXCEPTION);
+#ifndef ICEC_MINIMAL
+    {
+        static const char* const indirect[] = {"service@Adapter", "service"};
+        static Ice_ObjectPrx locator;
+        sprintf(text, "locator:tcp -h 127.0.0.1 -p %.8s", argv[1]);
+        CHECK(Ice_Communicator_stringToProxy(&ic, text, &locator) == ICE_OK);
+        for (i = 0; i < 2; ++i) {
+            CHECK(Ice_Communicator_stringToProxy(&ic, indirect[i], &nobody) == ICE_OK);
+            CHECK(Ice_ObjectPrx_resolve(&nobody, &locator) == ICE_OK);
+            CHECK(Interop_ServicePrx_add(&nobody, 1, 2, &sum) == ICE_OK && sum == 3);
+        }
+        CHECK(Ice_Communicator_stringToProxy(&ic, "service@Other", &nobody) == ICE_OK);
+        CHECK(Ice_ObjectPrx_resolve(&nobody, &locator) == ICE_NO_ENDPOINT);
+    }
+#endif
     CHECK(Interop_ServicePrx_shutdown(&service) == ICE_OK);
     TcpEndpoint_destroy(&tcp);
     printf("client: all calls as expected\n");

@@ -115,6 +115,49 @@ TEST_F(Calls, DestroyClosesInGoodOrder) {
     EXPECT_FALSE(there().loop.open[0]);
 }
 
+TEST_F(Calls, AfterShutdownNothingIsExecutedAndCallersKnowIt) {
+    Ice_ObjectPrx prx = here().proxy("thing:loop"), other = here().proxy("thing:loop -c 1");
+    ASSERT_EQ(call(prx, "op"), ICE_OK);
+    Ice_Communicator_shutdown(&there().ic);
+    EXPECT_EQ(call(prx, "op"), ICE_CONNECTION_CLOSED) << "repeating it elsewhere is safe";
+    EXPECT_EQ(call(other, "op"), ICE_CONNECTION_LOST) << "no new connection is taken";
+    EXPECT_EQ(servant_.calls, 1);
+}
+
+TEST_F(Calls, DestroyWaitsForAnswersThatComeLater) {
+    Ice_Reply later{};
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        Ice_Current_later(&current, &later);
+        return ICE_LATER;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    Ice_Status status = ICE_LIMIT;
+    ASSERT_NE(Ice_ObjectPrx_begin(&prx, "op", 0), nullptr);
+    ASSERT_EQ(Ice_ObjectPrx_invokeAsync(
+                  &prx,
+                  [](void* cookie, Ice_Status s, Ice_InputStreamPtr) {
+                      *static_cast<Ice_Status*>(cookie) = s;
+                  },
+                  &status),
+              ICE_OK);
+    settle();
+    // A call of the other side's own, whose failure comes while that side destroys itself.
+    Ice_ObjectPrx own = there().proxy("nobody:loop");
+    ASSERT_NE(Ice_ObjectPrx_begin(&own, "op", 0), nullptr);
+    ASSERT_EQ(Ice_ObjectPrx_invokeAsync(
+                  &own,
+                  [](void* cookie, Ice_Status, Ice_InputStreamPtr) {
+                      (void)Ice_Reply_begin(static_cast<Ice_Reply*>(cookie));
+                      EXPECT_EQ(Ice_Reply_end(static_cast<Ice_Reply*>(cookie), ICE_OK), ICE_OK);
+                  },
+                  &later),
+              ICE_OK);
+    Ice_Communicator_destroy(&there().ic, 100);
+    settle();
+    EXPECT_EQ(status, ICE_OK);
+    EXPECT_FALSE(here().loop.open[0]);
+}
+
 TEST_F(Calls, AGracefulCloseSaysThatNothingWasExecuted) {
     servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
         Ice_Connection_close(&there().ic, current.connection);

@@ -26,7 +26,7 @@ Ice_Status serve(Ice_ObjectPtr, const Ice_Current* current, Ice_InputStreamPtr i
                  Ice_OutputStreamPtr os) {
     Ice_ObjectPrx prx;
     Ice_String value;
-    if (ICEC_CONTEXTS)
+    if (ICEC_FULL)
         (void)Ice_Current_context(current, "key", &value);
     Ice_InputStream_readPrx(is, nullptr, &prx);
     Ice_Int n = Ice_InputStream_readSequence(is, 1);
@@ -38,7 +38,7 @@ Ice_Status serve(Ice_ObjectPtr, const Ice_Current* current, Ice_InputStreamPtr i
         if (Ice_InputStream_readOptional(is, tag, ICE_OPTIONAL_VSIZE))
             (void)Ice_InputStream_readString(is);
     Ice_InputStream_skipOptionals(is);
-    if (ICEC_ASYNC && current->mode == 3) {
+    if (ICEC_FULL && current->mode == 3) {
         static Ice_Reply later;
         Ice_Current_later(current, &later);
         (void)Ice_Reply_begin(&later);
@@ -67,7 +67,7 @@ void inject(Ice_Byte type, const uint8_t* body, size_t size) {
                               static_cast<Ice_Int>(m.size()));
 }
 
-// What comes while a call of this side waits, for replies to be about something.
+// Delivers a message while a call of this side waits, so that replies are about something.
 // `answers`: with that call's id.
 void messageDuringCall(Ice_Byte type, bool answers, std::vector<uint8_t> body) {
     static Ice_ObjectPrx prx;
@@ -80,7 +80,7 @@ void messageDuringCall(Ice_Byte type, bool answers, std::vector<uint8_t> body) {
     if (answers)
         body.insert(body.begin(), os->data + 14, os->data + 18);
     inject(type, body.data(), body.size());
-    if (ICEC_ASYNC) {
+    if (ICEC_FULL) {
         (void)Ice_ObjectPrx_invokeAsync(&prx, take, nullptr);
         (void)Ice_Communicator_poll(&ic, 0);
         return;
@@ -102,8 +102,7 @@ void start() {
         abort();
     Ice_ObjectAdapter_activate(&adapter);
     if (Ice_ObjectAdapter_add(&adapter, &servant, "thing") != ICE_OK ||
-        (ICEC_ASYNC &&
-         Ice_ObjectAdapter_addDefaultServant(&adapter, &servant, "cat") != ICE_OK))
+        (ICEC_FULL && Ice_ObjectAdapter_addDefaultServant(&adapter, &servant, "cat") != ICE_OK))
         abort();
 }
 

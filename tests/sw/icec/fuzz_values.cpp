@@ -57,7 +57,7 @@ struct Parameters {
 bool read(Parameters& p, const Bytes& bytes, Ice_Byte minor, size_t arenaBegin) {
     Ice_InputStream is = reader(bytes, minor, arenaBegin);
     Ice_InputValues values;
-    Ice_InputStream_beginValues(&is, &values, Graph_valueTypes);
+    Ice_InputStream_beginValues(&is, &values, Graph_ice_valueTypes);
     Ice_InputStream_readValue(&is, &p.a, &Graph_Node_type);
     Ice_InputStream_readValue(&is, &p.b, nullptr);
     Ice_InputStream_endValues(&is);

@@ -135,6 +135,112 @@ TEST_F(Manual, ADispatchMayPassACallOn) { // an interceptor, a forwarding Blobje
     EXPECT_EQ(servant_.calls, 1);
 }
 
+TEST_F(Manual, AServantWithoutTypeIdsIsAskedEverything) { // a forwarder of objects it does not know
+    static Ice_ObjectPtr target;
+    static std::vector<std::string> seen;
+    target = &servant_.base;
+    seen.clear();
+    Ice_Object forwarder{};
+    forwarder.dispatch = [](Ice_ObjectPtr, const Ice_Current* current, Ice_InputStreamPtr is,
+                            Ice_OutputStreamPtr os) {
+        seen.push_back(str(current->operation));
+        return Ice_Object_invoke(target, current, is, os);
+    };
+    ASSERT_EQ(Ice_ObjectAdapter_add(&there().adapter, &forwarder, "any"), ICE_OK);
+    Ice_ObjectPrx prx = here().proxy("any:loop");
+    Ice_Bool is = 0;
+    Ice_String id{};
+    EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OK);
+    EXPECT_EQ(Ice_ObjectPrx_ice_isA(&prx, "::Test::Thing", &is), ICE_OK);
+    EXPECT_TRUE(is);
+    EXPECT_EQ(Ice_ObjectPrx_ice_id(&prx, &id), ICE_OK);
+    EXPECT_EQ(str(id), "::Test::Thing");
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    EXPECT_EQ(seen, (std::vector<std::string>{"ice_ping", "ice_isA", "ice_id", "op"}));
+    target = nullptr; // the target is gone: its forwarder says so, for ice_ping, too
+    forwarder.dispatch = [](Ice_ObjectPtr, const Ice_Current*, Ice_InputStreamPtr,
+                            Ice_OutputStreamPtr) { return ICE_OBJECT_NOT_EXIST; };
+    EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OBJECT_NOT_EXIST);
+}
+
+TEST_F(Manual, AServantHasRoomForItsResults) {
+    servant_.run = [](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+        Ice_Int wanted = Ice_InputStream_readInt(is);
+        auto* room = static_cast<Ice_Byte*>(Ice_Current_allocate(&current, wanted));
+        EXPECT_EQ(reinterpret_cast<size_t>(room) % 8, 0u);
+        if (room)
+            std::memset(room, 0x55, static_cast<size_t>(wanted));
+        Ice_OutputStream_writeInt(os, room ? room[wanted - 1] : -1);
+        return ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    Ice_Int out = 0;
+    EXPECT_EQ(call(prx, "op", ICE_ARENA_BYTES, &out), ICE_OK);
+    EXPECT_EQ(out, 0x55);
+    EXPECT_EQ(call(prx, "op", ICE_ARENA_BYTES + 8, &out), ICE_OK) << "the servant says what then";
+    EXPECT_EQ(out, -1);
+    EXPECT_EQ(call(prx, "op", 1, &out), ICE_OK) << "each call has all of it";
+    EXPECT_EQ(out, 0x55);
+}
+
+TEST_F(Manual, AContextIsListed) {
+    std::string seen;
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        Ice_String key, value;
+        for (Ice_Int i = 0; Ice_Current_contextAt(&current, i, &key, &value); ++i)
+            seen += str(key) + "=" + str(value) + ";";
+        EXPECT_FALSE(Ice_Current_contextAt(&current, -1, &key, &value));
+        return ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    EXPECT_EQ(seen, "");
+    const Ice_ContextEntry context[] = {{"a", "b"}, {"who", ""}, {nullptr, nullptr}};
+    Ice_ObjectPrx_ice_context(&prx, context);
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    EXPECT_EQ(seen, "a=b;who=;");
+}
+
+TEST_F(Manual, AProxyIsMadeFromTheIdentityThatIsAskedFor) {
+    Ice_ObjectPrx self{};
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        Ice_Identity id = {current.name, current.category};
+        return Ice_ObjectAdapter_createProxyTo(current.adapter, &id, &self);
+    };
+    EXPECT_EQ(Ice_ObjectAdapter_add(&there().adapter, &servant_.base, "cat/x"), ICE_OK);
+    Ice_ObjectPrx prx = here().proxy("cat/x:loop");
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    EXPECT_EQ(written(self), "cat/x -t -e 1.1:loop -c 0");
+}
+
+TEST_F(Manual, ALocatorTellsWhereAnIndirectProxyLeads) {
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+        std::string wanted = str(Ice_InputStream_readString(is));
+        EXPECT_EQ(current.mode, 2);
+        Ice_ObjectPrx known = there().proxy("");
+        if (str(current.operation) == "findAdapterById" && wanted == "A")
+            known = there().proxy("dummy:loop -c 1");
+        else if (str(current.operation) == "findObjectById" && wanted == "x")
+            known = there().proxy("x@A");
+        Ice_OutputStream_writePrx(os, &known);
+        return ICE_OK;
+    };
+    Ice_ObjectPrx locator = here().proxy("thing:loop");
+    for (const char* string : {"x@A", "x"}) {
+        Ice_ObjectPrx prx = here().proxy(string);
+        EXPECT_EQ(call(prx, "op"), ICE_NO_ENDPOINT);
+        EXPECT_EQ(Ice_ObjectPrx_resolve(&prx, &locator), ICE_OK) << string;
+        EXPECT_EQ(written(prx), "x -t -e 1.1:loop -c 1");
+        int calls = servant_.calls;
+        EXPECT_EQ(Ice_ObjectPrx_resolve(&prx, &locator), ICE_OK) << "it is direct";
+        EXPECT_EQ(servant_.calls, calls);
+    }
+    for (const char* string : {"x@B", "y"}) {
+        Ice_ObjectPrx prx = here().proxy(string);
+        EXPECT_EQ(Ice_ObjectPrx_resolve(&prx, &locator), ICE_NO_ENDPOINT) << string;
+    }
+}
+
 TEST_F(Manual, WhatCannotBeCalledSaysSoAndTravelsOn) {
     for (const char* string : {"x -t -e 1.1 @ adapter", "x -t -e 1.1:opaque -t 2 -e 1.1 -v QUI=",
                                "x -d -e 1.1:loop -c 0", "x -D -e 1.1:loop -c 0", "x -t -e 1.1"}) {

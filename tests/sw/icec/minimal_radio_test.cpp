@@ -43,23 +43,22 @@ protected:
             [](void* c, Link_State state) { XBeeATEndpoint_onState(&of(c).endpoint_, state); },
             nullptr,
             nullptr};
-        static const XBeeATPort port = {[](void*) {},
-                                        [](void*) {},
-                                        [](void* c) { Link_poll(of(c).link_.get(), of(c).nowUs_); },
-                                        [](void* c, Ice_Int ms) {
-                                            MinimalRadio& m = of(c);
-                                            m.waits_ = true;
-                                            for (Ice_Int i = 0; i < ms && m.endpoint_.events == 0;
-                                                 ++i) {
-                                                m.step();
-                                                m.stackPoll_();
-                                            }
-                                            m.waits_ = false;
-                                            return 0;
-                                        },
-                                        [](void*) {},
-                                        [](void* c) { return of(c).nowUs_; },
-                                        [](void* c) { return of(c).nowUs_ / 1000; }};
+        static const XBeeATEndpoint_Port port = {
+            [](void*) {},
+            [](void*) {},
+            [](void* c) { Link_poll(of(c).link_.get(), of(c).nowUs_); },
+            [](void* c, Ice_Int ms) {
+                MinimalRadio& m = of(c);
+                m.waits_ = true;
+                for (Ice_Int i = 0; i < ms && m.endpoint_.events == 0; ++i) {
+                    m.step();
+                    m.stackPoll_();
+                }
+                m.waits_ = false;
+                return 0;
+            },
+            [](void*) {},
+            [](void* c) { return of(c).nowUs_ / 1000; }};
         Link_init(link_.get(), &linkPort, this, 1440);
         Ice_initialize(ic_.get());
         XBeeATEndpoint_init(ic_.get(), "xbee-at", &endpoint_, link_.get(), 0, &port, this);
@@ -148,7 +147,7 @@ private:
         nowUs_ += 1000;
         for (; arrived(toGround_); toGround_.pop_front())
             Link_receive(link_.get(), toGround_.front().second.data(),
-                         static_cast<U32>(toGround_.front().second.size()), 0, nowUs_);
+                         static_cast<U32>(toGround_.front().second.size()), nowUs_);
         Link_poll(link_.get(), nowUs_);
     }
     bool arrived(const std::deque<std::pair<U32, Bytes>>& air) const {

@@ -29,7 +29,7 @@ static int work(void* context, Ice_Int timeoutMs) {
         U8 bytes[LINK_MAX_FRAME];
         U32 size;
         while ((size = world->receive(worldContext, bytes)) != 0)
-            Link_receive(&radioLink, bytes, size, 0, nowUs(context));
+            Link_receive(&radioLink, bytes, size, nowUs(context));
         Link_poll(&radioLink, nowUs(context));
         if (endpoint.events || (Ice_Int)((nowUs(context) - begin) / 1000U) >= timeoutMs)
             return 0;
@@ -37,7 +37,7 @@ static int work(void* context, Ice_Int timeoutMs) {
     }
 }
 
-static const XBeeATPort endpointPort = {0, 0, 0, work, 0, nowUs, nowMs};
+static const XBeeATEndpoint_Port endpointPort = {0, 0, 0, work, 0, nowMs};
 
 static int transmit(void* context, const U8* frame, U32 size) {
     (void)context;

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""peer: stock ZeroC Ice in Python. `peer.py client [minimal] PORT` or `peer.py server` (prints its port).
+"""peer: stock ZeroC Ice in Python. `peer.py client [minimal] PORT`, `peer.py crowd PORT` or `peer.py server` (prints its port).
 
 minimal: the server has IceC's minimal configuration."""
 
@@ -13,6 +13,8 @@ import Ice
 
 Ice.loadSlice(os.path.join(os.path.dirname(__file__), "Interop.ice"))
 import Interop  # noqa: E402
+
+CROWD = 20
 
 
 class CallbackI(Interop.Callback):
@@ -88,7 +90,37 @@ def client(ic, port, minimal):
         s.close()
     assert service.add(20, 22) == 42
     service.shutdown()
+    expect(Ice.LocalException, service.ice_ping)
     print("peer: all calls as expected")
+
+
+def crowd(port):
+    """Many programs at once that stay connected: each is served, and served again."""
+    where = "service:tcp -h 127.0.0.1 -p " + port
+    failed = []
+
+    def one(number):
+        try:
+            with Ice.initialize() as ic:
+                service = Interop.ServicePrx.uncheckedCast(ic.stringToProxy(where))
+                for i in range(3):
+                    assert service.add(number, i) == number + i
+                start.wait()  # all are there, and far more than the server has numbers for
+                assert service.add(number, 1) == number + 1
+        except (Ice.Exception, AssertionError) as e:
+            failed.append("client %d: %r" % (number, e))
+            start.abort()
+
+    start = threading.Barrier(CROWD)
+    threads = [threading.Thread(target=one, args=(i,)) for i in range(CROWD)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not failed, failed
+    with Ice.initialize() as ic:
+        Interop.ServicePrx.uncheckedCast(ic.stringToProxy(where)).shutdown()
+    print("peer: %d clients at once were served" % CROWD)
 
 
 class ServiceI(Interop.Service):
@@ -120,9 +152,30 @@ class ServiceI(Interop.Service):
         current.adapter.getCommunicator().shutdown()
 
 
+class LocatorI(Ice.Locator):
+    """As IceGrid's: knows the adapter by its name, and one object by itself."""
+
+    def __init__(self, adapter):
+        self.adapter = adapter
+
+    def findAdapterById(self, name, current):
+        if name != "Adapter":
+            raise Ice.AdapterNotFoundException()
+        return self.adapter.createDirectProxy(Ice.stringToIdentity("dummy"))
+
+    def findObjectById(self, identity, current):
+        if identity.name != "service":
+            raise Ice.ObjectNotFoundException()
+        return self.adapter.getCommunicator().stringToProxy("service @ Adapter")
+
+    def getRegistry(self, current):
+        return None
+
+
 def server(ic):
     adapter = ic.createObjectAdapterWithEndpoints("Adapter", "tcp -h 127.0.0.1")
     adapter.add(ServiceI(), ic.stringToIdentity("service"))
+    adapter.add(LocatorI(adapter), ic.stringToIdentity("locator"))
     adapter.activate()
     print(adapter.getPublishedEndpoints()[0].getInfo().port, flush=True)
     ic.waitForShutdown()
@@ -135,5 +188,7 @@ data.properties = properties
 with Ice.initialize(data) as communicator:
     if sys.argv[1] == "client":
         client(communicator, sys.argv[-1], "minimal" in sys.argv)
+    elif sys.argv[1] == "crowd":
+        crowd(sys.argv[-1])
     else:
         server(communicator)

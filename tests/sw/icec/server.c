@@ -18,23 +18,24 @@ static int hasCallback;
 static Interop_Item reversed[64];
 static char joinedText[1024];
 
-Ice_Status Interop_Service_add(Interop_ServicePtr self, Ice_Int a, Ice_Int b, Ice_Int *result,
-                               const Ice_Current *current) {
+Ice_Status Interop_Service_add(Interop_ServicePtr self, Ice_Int a, Ice_Int b, Ice_Int* result,
+                               const Ice_Current* current) {
     (void)self;
     (void)current;
     *result = a + b;
     return ICE_OK;
 }
 
-Ice_Status Interop_Service_reverse(Interop_ServicePtr self, const Interop_Items *items, Ice_String *joined,
-                                   Interop_Items *result, const Ice_Current *current) {
+Ice_Status Interop_Service_reverse(Interop_ServicePtr self, const Interop_Items* items,
+                                   Ice_String* joined, Interop_Items* result,
+                                   const Ice_Current* current) {
     Ice_Int i, at = 0;
     (void)self;
     (void)current;
     if (items->size > 64)
         return ICE_LIMIT;
     for (i = 0; i < items->size; ++i) {
-        const Interop_Item *item = &items->data[i];
+        const Interop_Item* item = &items->data[i];
         reversed[items->size - 1 - i] = *item;
         if (at + item->name.size > (Ice_Int)sizeof joinedText)
             return ICE_LIMIT;
@@ -48,37 +49,38 @@ Ice_Status Interop_Service_reverse(Interop_ServicePtr self, const Interop_Items 
     return ICE_OK;
 }
 
-Ice_Status Interop_Service_echo(Interop_ServicePtr self, const Interop_Bytes *data, Interop_Bytes *result,
-                                const Ice_Current *current) {
+Ice_Status Interop_Service_echo(Interop_ServicePtr self, const Interop_Bytes* data,
+                                Interop_Bytes* result, const Ice_Current* current) {
     (void)self;
     (void)current;
     *result = *data;
     return ICE_OK;
 }
 
-Ice_Status Interop_Service_notify(Interop_ServicePtr self, Ice_String text, const Ice_Current *current) {
+Ice_Status Interop_Service_notify(Interop_ServicePtr self, Ice_String text,
+                                  const Ice_Current* current) {
     (void)self;
     (void)current;
     notifications += Ice_String_equals(text, "hello");
     return ICE_OK;
 }
 
-Ice_Status Interop_Service_notifications(Interop_ServicePtr self, Ice_Int *result,
-                                         const Ice_Current *current) {
+Ice_Status Interop_Service_notifications(Interop_ServicePtr self, Ice_Int* result,
+                                         const Ice_Current* current) {
     (void)self;
     (void)current;
     *result = notifications;
     return ICE_OK;
 }
 
-Ice_Status Interop_Service_fail(Interop_ServicePtr self, const Ice_Current *current) {
+Ice_Status Interop_Service_fail(Interop_ServicePtr self, const Ice_Current* current) {
     (void)self;
     (void)current;
     return ICE_UNKNOWN_EXCEPTION;
 }
 
-Ice_Status Interop_Service_work(Interop_ServicePtr self, const Interop_CallbackPrx *prx,
-                                const Ice_Current *current) {
+Ice_Status Interop_Service_work(Interop_ServicePtr self, const Interop_CallbackPrx* prx,
+                                const Ice_Current* current) {
     (void)self;
     (void)current;
     callback = *prx;
@@ -86,7 +88,7 @@ Ice_Status Interop_Service_work(Interop_ServicePtr self, const Interop_CallbackP
     return ICE_OK;
 }
 
-Ice_Status Interop_Service_shutdown(Interop_ServicePtr self, const Ice_Current *current) {
+Ice_Status Interop_Service_shutdown(Interop_ServicePtr self, const Ice_Current* current) {
     (void)self;
     (void)current;
     Ice_Communicator_shutdown(&ic);
@@ -95,8 +97,8 @@ Ice_Status Interop_Service_shutdown(Interop_ServicePtr self, const Ice_Current *
 
 int main(void) {
     Ice_initialize(&ic);
-    if (TcpEndpoint_init(&ic, &tcp) != ICE_OK ||
-        Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "Adapter", "tcp", &adapter) != ICE_OK)
+    if (TcpEndpoint_init(&ic, &tcp) != ICE_OK || Ice_Communicator_createObjectAdapterWithEndpoints(
+                                                     &ic, "Adapter", "tcp", &adapter) != ICE_OK)
         return 1;
     Interop_Service_init(&service);
     if (Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&service, "service") != ICE_OK)

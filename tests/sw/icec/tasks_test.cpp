@@ -197,7 +197,8 @@ TEST_F(Tasks, CallWhileTwoServe) {
     second.join();
 }
 
-// Who polls takes the role from who waits for a reply, and gives it back, over and over.
+// A task that polls takes the leader's role from one that waits for a reply, and gives it back,
+// over and over.
 TEST_F(Tasks, CallWhileTwoPollNowAndThen) {
     std::atomic<bool> over{false};
     auto poll = [&] {
@@ -267,18 +268,18 @@ TEST_F(Tasks, TryEachAddressOfAName) {
         EXPECT_EQ(out, 8);
     }
     int open = 0;
-    for (const TcpConnection& c : client_->tcp.connections)
+    for (const TcpEndpoint_Connection& c : client_->tcp.connections)
         open += c.fd >= 0;
     EXPECT_EQ(open, 1);
 }
 
 TEST_F(Tasks, PreferIPv4AsIceDoes) {
-    Tcp_Address address = {};
+    TcpEndpoint_Address address = {};
     address.host.data = "mixed.test";
     address.host.size = 10;
     address.port = 4061;
-    Tcp_Place places[TCP_PLACES];
-    ASSERT_EQ(Tcp_resolve(&address, places), 2);
+    TcpEndpoint_Place places[TCP_PLACES];
+    ASSERT_EQ(TcpEndpoint_resolve(&address, places), 2);
     EXPECT_EQ(places[0].at.ss_family, AF_INET);
     EXPECT_EQ(reinterpret_cast<sockaddr_in&>(places[0].at).sin_port, htons(4061));
     EXPECT_EQ(places[1].at.ss_family, AF_INET6);

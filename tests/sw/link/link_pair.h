@@ -19,7 +19,7 @@ extern "C" {
 #include <string>
 #include <vector>
 
-// What the radio does to a packet, each by chance.
+// The radio's faults, each by chance, of a packet.
 struct Weather {
     double loss = 0, duplication = 0, corruption = 0;
     uint32_t delayUs = 8000;
@@ -140,7 +140,7 @@ private:
         while (!from.air.empty() && from.air.front().arrives <= nowUs) {
             Side::Packet packet = from.air.front();
             from.air.pop_front();
-            Link_receive(to.link(), packet.bytes.data(), static_cast<U32>(packet.bytes.size()), 0,
+            Link_receive(to.link(), packet.bytes.data(), static_cast<U32>(packet.bytes.size()),
                          now32());
         }
     }

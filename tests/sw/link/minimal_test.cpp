@@ -37,8 +37,8 @@ protected:
             },
             limitUs);
     }
-    // What arrived is a part of what was sent, in order and unchanged, and holds all that was
-    // reported as delivered.
+    // The messages that arrived are a part of those sent, in order and unchanged, and hold all that
+    // was reported as delivered.
     static void check(const Sent& sent, const Peer& sender, const Peer& receiver) {
         ASSERT_EQ(sender.outcomes.size(), sent.size()) << "messages not reported";
         size_t next = 0;
@@ -93,7 +93,7 @@ TEST_P(Minimal, GarbageOnTheLineDoesNotDisturbTheSession) {
         Bytes noise(1 + random_.below(150));
         for (auto& byte : noise)
             byte = static_cast<uint8_t>(random_.next());
-        b_.receive(b_.link(), noise.data(), static_cast<U32>(noise.size()), 0, us());
+        b_.receive(b_.link(), noise.data(), static_cast<U32>(noise.size()), us());
         traffic(3 * (i + 1), 200'000);
     }
     EXPECT_TRUE(traffic(180, 100'000'000)) << "seed " << testSeed();
@@ -122,7 +122,7 @@ TEST_P(MinimalOnce, AMillionRandomBytesAreSurvived) {
     for (int i = 0; i < 1000; ++i) {
         for (auto& byte : noise)
             byte = static_cast<uint8_t>(random_.next());
-        b_.receive(b_.link(), noise.data(), 1000, 0, us());
+        b_.receive(b_.link(), noise.data(), 1000, us());
         run(2000);
     }
     ASSERT_TRUE(until([&] { return bothUp(); }, 60'000'000));

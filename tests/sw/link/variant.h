@@ -77,10 +77,10 @@ public:
     bool isUp() { return state(link()) == LINK_STATE_UP; }
     U32 us() const { return static_cast<U32>(now); }
     Link_Status send(int channel, const Bytes& m, U32 tag) {
-        return send_(link(), channel, m.data(), static_cast<U32>(m.size()), tag, us());
+        return send_(link(), channel, m.data(), static_cast<U32>(m.size()), tag);
     }
-    Link_Status open(int channel) { return open_(link(), channel, us()); }
-    Link_Status close(int channel) { return close_(link(), channel, us()); }
+    Link_Status open(int channel) { return open_(link(), channel); }
+    Link_Status close(int channel) { return close_(link(), channel); }
 
     decltype(&Link_init) init;
     decltype(&Link_start) start;
@@ -141,7 +141,7 @@ protected:
                 while (!from->air.empty() && from->air.front().first <= now_) {
                     Bytes bytes = from->air.front().second;
                     from->air.pop_front();
-                    to->receive(to->link(), bytes.data(), static_cast<U32>(bytes.size()), 0, us());
+                    to->receive(to->link(), bytes.data(), static_cast<U32>(bytes.size()), us());
                 }
                 to->poll(to->link(), us());
             }

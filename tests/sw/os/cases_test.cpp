@@ -50,4 +50,6 @@ extern "C" void Runner_interrupt(void) {
     OsHost::interruptPoint();
 }
 
-extern "C" void Runner_passTime(void) { OsHost::interruptPoint(); }
+extern "C" void Runner_passTime(void) {
+    OsHost::interruptPoint();
+}

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * m3_runner: runs one case on a Cortex-M3: vectors, tick, the interrupt, and a breakpoint at the end.
+ * m3_runner: runs one case on a Cortex-M3: vectors, tick, the interrupt, and a breakpoint at the
+ * end.
  */
 #include "os_cases.h"
 #include "stm32f2.h"
@@ -47,8 +48,8 @@ __attribute__((section(".vectors"), used)) static const Vector vectors[17] = {st
                                                                               Irq_Handler};
 
 void Reset_Handler(void) {
-    U32 *to;
-    const U32 *from = data_load;
+    U32* to;
+    const U32* from = data_load;
     for (to = data_begin; to < data_end;)
         *to++ = *from++;
     for (to = bss_begin; to < bss_end;)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// m3_test: the cases of os_cases.c on the Cortex-M3's port: the ARM binary on the model of the processor.
+// m3_test: the cases of os_cases.c on the Cortex-M3's port: the ARM binary on the model of the
+// processor.
 
 #include "plain_bus.h"
 #include <cstdlib>
@@ -24,11 +25,13 @@ TEST_P(OsM3Cases, SaysWhatTheManualSays) {
     const OsCase& c = os_cases[GetParam()];
     PlainCpu m3(program());
     m3.setVariable("selected_case", GetParam());
-    EXPECT_EQ(m3.run(1'000'000), 1) << m3.cpu.lastFault << " pc in " << m3.image.functionAt(m3.cpu.reg(CortexM3::Pc));
+    EXPECT_EQ(m3.run(1'000'000), 1)
+        << m3.cpu.lastFault << " pc in " << m3.image.functionAt(m3.cpu.reg(CortexM3::Pc));
     EXPECT_EQ(m3.text("os_said"), c.expected);
 }
 
-// An interrupt before any instruction wakes the higher task, so the switch may be anywhere in the computation.
+// An interrupt before any instruction wakes the higher task, so the switch may be anywhere in the
+// computation.
 TEST(OsM3, ASwitchAtAnyInstructionLosesNoRegister) {
     unsigned number = 0;
     while (std::string(os_cases[number].name) != "RegistersSurviveSwitches")
@@ -45,8 +48,10 @@ TEST(OsM3, ASwitchAtAnyInstructionLosesNoRegister) {
             instructions += where == 0 && !said; // up to where the computation has ended
         };
         m3.setVariable("selected_case", number);
-        ASSERT_EQ(m3.run(1'000'000), 1) << m3.cpu.lastFault << ", interrupted at instruction " << where;
-        ASSERT_EQ(m3.text("os_said"), os_cases[number].expected) << "interrupted at instruction " << where;
+        ASSERT_EQ(m3.run(1'000'000), 1)
+            << m3.cpu.lastFault << ", interrupted at instruction " << where;
+        ASSERT_EQ(m3.text("os_said"), os_cases[number].expected)
+            << "interrupted at instruction " << where;
     }
     EXPECT_GT(instructions, 500u);
 }

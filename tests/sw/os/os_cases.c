@@ -10,14 +10,14 @@ char os_said[512];
 
 static OS_STK stacks[STACKS][OS_CASE_WORDS];
 static unsigned stacksUsed;
-OS_EVENT *osCase_sem;
+OS_EVENT* osCase_sem;
 
 void OsCase_begin(void) {
     os_said[0] = 0;
     stacksUsed = 0;
 }
 
-void OsCase_say(const char *word) {
+void OsCase_say(const char* word) {
     unsigned at = 0;
     while (os_said[at])
         ++at;
@@ -38,14 +38,14 @@ void OsCase_sayNumber(unsigned value) {
     OsCase_say(digits + at);
 }
 
-OS_STK *OsCase_stack(void) {
+OS_STK* OsCase_stack(void) {
     return &stacks[stacksUsed++][OS_CASE_WORDS - 1];
 }
 
-INT8U OsCase_task(void (*body)(void *), INT8U priority) {
-    OS_STK *top = OsCase_stack();
-    INT8U error = OSTaskCreateExt(body, 0, top, priority, priority, top - (OS_CASE_WORDS - 1), OS_CASE_WORDS, 0,
-                                  OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);
+INT8U OsCase_task(void (*body)(void*), INT8U priority) {
+    OS_STK* top = OsCase_stack();
+    INT8U error = OSTaskCreateExt(body, 0, top, priority, priority, top - (OS_CASE_WORDS - 1),
+                                  OS_CASE_WORDS, 0, OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);
     if (error != OS_ERR_NONE)
         --stacksUsed;
     return error;
@@ -56,7 +56,7 @@ void OsCase_end(void) {
         OSTimeDly(1000);
 }
 
-void OsCase_waitsForSem(void *p) {
+void OsCase_waitsForSem(void* p) {
     INT8U error;
     (void)p;
     OsCase_say("high-waits");
@@ -65,14 +65,15 @@ void OsCase_waitsForSem(void *p) {
     OsCase_end();
 }
 
-void OsCase_created(void *p) {
+void OsCase_created(void* p) {
     (void)p;
     OsCase_say("created");
     OsCase_end();
 }
 
 const OsCase os_cases[] = {
-    {"APostLetsTheHigherTaskGoOnAtOnce", OsCase_preempting, 0, 4, "high-waits low-posts high-goes 0 low-ends "},
+    {"APostLetsTheHigherTaskGoOnAtOnce", OsCase_preempting, 0, 4,
+     "high-waits low-posts high-goes 0 low-ends "},
     {"ACreatedTaskOfHigherPriorityRunsAtOnce", OsCase_creating, 0, 4,
      "creates created 0 40 goes-on 0 ends created "},
     {"TimeOutsCountTicks", OsCase_timing, 0, 20, "10 7 10 3 1 10 2 2 "},
@@ -80,13 +81,16 @@ const OsCase os_cases[] = {
     {"TheHighestTaskGetsTheUnit", OsCase_choosing, 0, 4, "gives 7 9 12 gave "},
     {"AnOwnerInheritsTheCeiling", OsCase_inheriting, 0, 10,
      "high-wants low-works-at 2 high-has middle low-ends-at 20 "},
-    {"AnOwnerInheritsInTheListWhereItWaits", OsCase_inheritingInAList, 0, 10, "owner high-has rival "},
+    {"AnOwnerInheritsInTheListWhereItWaits", OsCase_inheritingInAList, 0, 10,
+     "owner high-has rival "},
     {"MutexErrors", OsCase_mutexErrors, 0, 4, "0 120 0 100 1 4 4 1 40 40 42 "},
-    {"QueuesKeepOrderAndReportFull", OsCase_queueing, 0, 8, "0 0 0 30 m0 m1 m2 0 m3 none 10 4 1 none 1 "},
+    {"QueuesKeepOrderAndReportFull", OsCase_queueing, 0, 8,
+     "0 0 0 30 m0 m1 m2 0 m3 none 10 4 1 none 1 "},
     {"AMessageGoesToTheHighestTask", OsCase_handingOver, 0, 4, "7 m1 12 m2 posted "},
     {"InterruptsMayPostAndNotWait", OsCase_interrupting, OsCase_interruptRoutine, 4,
-     "high-waits background 2 2 2 60 1 16 irq high-goes ends "},
-    {"CriticalSectionsHoldInterruptsBack", OsCase_masking, OsCase_saysIrq, 4, "critical irq after "},
+     "high-waits background 2 2 5 2 60 1 16 irq high-goes ends "},
+    {"CriticalSectionsHoldInterruptsBack", OsCase_masking, OsCase_saysIrq, 4,
+     "critical irq after "},
     {"ALockedSchedulerDoesNotSwitch", OsCase_locking, OsCase_saysIrq, 4,
      "high-waits 13 irq still-locked high-goes ends "},
     {"DelaysEndInOrderOfPriority", OsCase_delaying, 0, 12, "9 10 9 10 9 10 "},

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * os_cases: programs that use uC/OS-II's API, and what its manual says they do ("MicroC/OS-II, The
- * Real-Time Kernel", chapter 16). They run on the host's port, on the Cortex-M3's, and on request on the
- * real uC/OS-II: one text is expected of all.
+ * Real-Time Kernel", chapter 16). They run on the host's port, on the Cortex-M3's, and on request
+ * on the real uC/OS-II: one text is expected of all.
  */
 #ifndef OS_CASES_H
 #define OS_CASES_H
@@ -10,11 +10,12 @@
 #include "ucos_ii.h"
 
 typedef struct OsCase {
-    const char *name;
-    void (*prepare)(void);   /* between OSInit and OSStart */
-    void (*interrupt)(void); /* what the interrupt routine does, between OSIntEnter and OSIntExit; or 0 */
-    unsigned ticks;          /* then the case is over */
-    const char *expected;    /* what was said */
+    const char* name;
+    void (*prepare)(void); /* between OSInit and OSStart */
+    void (*interrupt)(
+        void);      /* what the interrupt routine does, between OSIntEnter and OSIntExit; or 0 */
+    unsigned ticks; /* then the case is over */
+    const char* expected; /* what was said */
 } OsCase;
 
 extern const OsCase os_cases[];
@@ -23,7 +24,8 @@ extern char os_said[512]; /* by the case that ran last */
 
 /* By the runner: an interrupt arrives now. */
 void Runner_interrupt(void);
-/* An interrupt that has become possible is served by the end of this (at once on a real processor). */
+/* An interrupt that has become possible is served by the end of this (at once on a real processor).
+ */
 void Runner_passTime(void);
 
 #endif

@@ -5,12 +5,12 @@
 #include "os_cases_private.h"
 
 static OS_EVENT *sem, *sem2, *mutex, *queue;
-static void *slots[3];
+static void* slots[3];
 static INT8U err;
 
 /* ---- time-outs count ticks ---- */
 
-static void timesOut(void *p) {
+static void timesOut(void* p) {
     INT32U start;
     (void)p;
     start = OSTimeGet();
@@ -30,7 +30,7 @@ static void timesOut(void *p) {
     OsCase_end();
 }
 
-static void holdsMutex(void *p) {
+static void holdsMutex(void* p) {
     (void)p;
     OSMutexPend(mutex, 0, &err);
     OsCase_end();
@@ -47,7 +47,7 @@ void OsCase_timing(void) {
 
 /* ---- semaphores count to 65535; of several tasks the highest gets the unit ---- */
 
-static void countsSem(void *p) {
+static void countsSem(void* p) {
     (void)p;
     OsCase_sayNumber(OSSemAccept(sem));
     OsCase_sayNumber(OSSemAccept(sem));
@@ -75,14 +75,14 @@ void OsCase_counting(void) {
     (void)OsCase_task(countsSem, 9);
 }
 
-static void takesUnit(void *p) {
+static void takesUnit(void* p) {
     (void)p;
     OSSemPend(sem, 0, &err);
     OsCase_sayNumber(OSPrioCur);
     OsCase_end();
 }
 
-static void givesUnits(void *p) {
+static void givesUnits(void* p) {
     (void)p;
     OsCase_say("gives");
     (void)OSSemPost(sem);
@@ -105,12 +105,12 @@ void OsCase_choosing(void) {
 
 static char messages[4];
 
-static void sayMessage(void *message) {
-    static const char *const names[] = {"m0", "m1", "m2", "m3"};
-    OsCase_say(message ? names[(char *)message - messages] : "none");
+static void sayMessage(void* message) {
+    static const char* const names[] = {"m0", "m1", "m2", "m3"};
+    OsCase_say(message ? names[(char*)message - messages] : "none");
 }
 
-static void usesQueue(void *p) {
+static void usesQueue(void* p) {
     int i;
     (void)p;
     for (i = 0; i < 4; ++i)
@@ -135,8 +135,8 @@ void OsCase_queueing(void) {
     (void)OsCase_task(usesQueue, 9);
 }
 
-static void getsMessage(void *p) {
-    void *message;
+static void getsMessage(void* p) {
+    void* message;
     (void)p;
     message = OSQPend(queue, 0, &err);
     OsCase_sayNumber(OSPrioCur);
@@ -144,7 +144,7 @@ static void getsMessage(void *p) {
     OsCase_end();
 }
 
-static void postsMessages(void *p) {
+static void postsMessages(void* p) {
     (void)p;
     (void)OSQPost(queue, &messages[1]);
     (void)OSQPost(queue, &messages[2]);

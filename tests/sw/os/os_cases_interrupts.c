@@ -5,7 +5,7 @@
 #include "os_cases_private.h"
 
 static OS_EVENT *mutex, *queue;
-static void *slots[3];
+static void* slots[3];
 static INT8U err;
 
 /* ---- interrupts ---- */
@@ -16,6 +16,7 @@ void OsCase_interruptRoutine(void) {
     OsCase_sayNumber(e);
     OSMutexPend(mutex, 0, &e);
     OsCase_sayNumber(e);
+    OsCase_sayNumber(OSMutexPost(mutex));
     (void)OSQPend(queue, 0, &e);
     OsCase_sayNumber(e);
     OsCase_sayNumber(OsCase_task(OsCase_created, 30));
@@ -27,7 +28,7 @@ void OsCase_interruptRoutine(void) {
     OsCase_say("irq");
 }
 
-static void interrupted(void *p) {
+static void interrupted(void* p) {
     (void)p;
     OsCase_say("background");
     Runner_interrupt();
@@ -48,7 +49,7 @@ void OsCase_saysIrq(void) {
     OsCase_say("irq");
 }
 
-static void disablesInterrupts(void *p) {
+static void disablesInterrupts(void* p) {
     OS_CPU_SR cpu_sr;
     (void)p;
     OS_ENTER_CRITICAL();

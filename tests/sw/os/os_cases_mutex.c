@@ -9,7 +9,7 @@ static INT8U err;
 
 /* ---- priority inheritance ---- */
 
-static void lowOwner(void *p) {
+static void lowOwner(void* p) {
     (void)p;
     OSMutexPend(mutex, 0, &err);
     OSTimeDly(2);
@@ -21,7 +21,7 @@ static void lowOwner(void *p) {
     OsCase_end();
 }
 
-static void highWants(void *p) {
+static void highWants(void* p) {
     (void)p;
     OSTimeDly(1);
     OsCase_say("high-wants");
@@ -31,7 +31,7 @@ static void highWants(void *p) {
     OsCase_end();
 }
 
-static void middle(void *p) {
+static void middle(void* p) {
     (void)p;
     OSTimeDly(2);
     OsCase_say("middle");
@@ -47,7 +47,7 @@ void OsCase_inheriting(void) {
 }
 
 /* The owner waits for something else while it inherits: it is moved in that list, too. */
-static void ownerWaits(void *p) {
+static void ownerWaits(void* p) {
     (void)p;
     OSMutexPend(mutex, 0, &err);
     OSSemPend(sem, 0, &err);
@@ -56,14 +56,14 @@ static void ownerWaits(void *p) {
     OsCase_end();
 }
 
-static void rivalWaits(void *p) {
+static void rivalWaits(void* p) {
     (void)p;
     OSSemPend(sem, 0, &err);
     OsCase_say("rival");
     OsCase_end();
 }
 
-static void wantsMutex(void *p) {
+static void wantsMutex(void* p) {
     (void)p;
     OSTimeDly(1);
     OSMutexPend(mutex, 0, &err);
@@ -72,7 +72,7 @@ static void wantsMutex(void *p) {
     OsCase_end();
 }
 
-static void postsLate(void *p) {
+static void postsLate(void* p) {
     (void)p;
     OSTimeDly(2);
     (void)OSSemPost(sem);
@@ -92,7 +92,7 @@ void OsCase_inheritingInAList(void) {
 
 /* ---- mutexes: errors ---- */
 
-static void mutexOwner(void *p) {
+static void mutexOwner(void* p) {
     (void)p;
     OSMutexPend(mutex, 0, &err);
     OsCase_sayNumber(err);
@@ -102,7 +102,7 @@ static void mutexOwner(void *p) {
     OsCase_end();
 }
 
-static void mutexStranger(void *p) {
+static void mutexStranger(void* p) {
     (void)p;
     OsCase_sayNumber(OSMutexPost(mutex));
     OsCase_sayNumber(OSMutexPost(sem));

@@ -9,7 +9,7 @@ static INT8U err;
 
 /* ---- a post lets the task of higher priority go on at once ---- */
 
-static void postsSem(void *p) {
+static void postsSem(void* p) {
     (void)p;
     OsCase_say("low-posts");
     OsCase_sayNumber(OSSemPost(osCase_sem));
@@ -26,7 +26,7 @@ void OsCase_preempting(void) {
 
 /* ---- a task that creates one of higher priority is preempted by it ---- */
 
-static void creates(void *p) {
+static void creates(void* p) {
     (void)p;
     OsCase_say("creates");
     OsCase_sayNumber(OsCase_task(OsCase_created, 4));
@@ -44,7 +44,7 @@ void OsCase_creating(void) {
 
 /* ---- the scheduler's lock ---- */
 
-static void locks(void *p) {
+static void locks(void* p) {
     (void)p;
     OSSchedLock();
     OSSchedLock();
@@ -70,7 +70,7 @@ void OsCase_locking(void) {
 
 /* ---- delays, and who runs when they end ---- */
 
-static void pulses(void *p) {
+static void pulses(void* p) {
     int i;
     (void)p;
     for (i = 0; i < 3; ++i) {
@@ -88,7 +88,7 @@ void OsCase_delaying(void) {
 
 /* ---- stacks ---- */
 
-static void looksAtStacks(void *p) {
+static void looksAtStacks(void* p) {
     OS_STK_DATA data;
     (void)p;
     OsCase_sayNumber(OSTaskStkChk(9, &data));
@@ -130,13 +130,13 @@ static unsigned scramble(unsigned a) {
 
 static unsigned disturbances;
 
-static void computes(void *p) {
+static void computes(void* p) {
     (void)p;
     OsCase_sayNumber(scramble(1));
     OsCase_end();
 }
 
-static void disturbs(void *p) {
+static void disturbs(void* p) {
     (void)p;
     for (;;) {
         OSSemPend(osCase_sem, 0, &err);

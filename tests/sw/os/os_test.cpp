@@ -18,8 +18,8 @@ namespace {
 class Os : public ::testing::Test {
 protected:
     void SetUp() override {
-        OsHost::setMachine({[this] { idle(); }, [this] { return tickPending_ || irq_; },
-                            [this] { serve(); }});
+        OsHost::setMachine(
+            {[this] { idle(); }, [this] { return tickPending_ || irq_; }, [this] { serve(); }});
         OSInit();
     }
 

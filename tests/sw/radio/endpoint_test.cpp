@@ -16,14 +16,12 @@ namespace {
 class RadioEndpoint : public ::testing::Test {
 protected:
     RadioEndpoint() {
-        static const XBeeATPort port = {
-            [](void*) {},
-            [](void*) {},
-            [](void*) {},
-            [](void* c, Ice_Int ms) { return self(c).pair_.run(static_cast<U32>(ms) * 1000), 0; },
-            [](void*) {},
-            [](void* c) { return self(c).pair_.now32(); },
-            [](void* c) { return self(c).pair_.now32() / 1000; }};
+        static const XBeeATEndpoint_Port port = {[](void*) {},
+                                                 [](void*) {},
+                                                 [](void*) {},
+                                                 [](void* c, Ice_Int ms) { return self(c).pair_.run(static_cast<U32>(ms) * 1000), 0; },
+                                                 [](void*) {},
+                                                 [](void* c) { return self(c).pair_.now32() / 1000; }};
         Ice_initialize(&ic_);
         XBeeATEndpoint_init(&ic_, "xbee-at", &endpoint_, pair_.b.link(), 1, &port, this);
     }
@@ -77,7 +75,7 @@ TEST_F(RadioEndpoint, TheEndOfTheLastOwnConnectionDoesNotEndTheNext) {
     ASSERT_TRUE(pair_.connect());
     ASSERT_EQ(connect(), ICE_OK);
     pair_.run(500000);
-    Link_closeChannel(pair_.a.link(), 3, pair_.now32());
+    Link_closeChannel(pair_.a.link(), 3);
     pair_.run(500000);
     XBeeATEndpoint_onChannel(&endpoint_, 3, 0); // nobody has looked yet
     ASSERT_EQ(connect(), ICE_OK);
@@ -89,12 +87,12 @@ TEST_F(RadioEndpoint, ConnectingWaitsUntilTheLastClosingIsAnswered) {
     ASSERT_EQ(connect(), ICE_OK);
     pair_.run(500000);
     ops().close(ic_.endpointContext, 3);
-    EXPECT_EQ(Link_openChannel(pair_.b.link(), 3, pair_.now32()), LINK_FULL);
+    EXPECT_EQ(Link_openChannel(pair_.b.link(), 3), LINK_FULL);
     EXPECT_EQ(connect(), ICE_OK);
 }
 
-// As the ground's plugin writes them (test_radio_ice, EndpointsKeepTheirOptionsAsText...), so far
-// as the UAV has them.
+// Options are written as the ground's plugin writes them (test_radio_ice,
+// EndpointsKeepTheirOptionsAsText...), so far as the UAV has them.
 TEST_F(RadioEndpoint, AnEndpointsOptionsAreInTheProxysTextAgain) {
     auto text = [&](const char* proxy) {
         Ice_ObjectPrx prx;

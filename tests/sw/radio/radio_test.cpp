@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 extern "C" {
+#include "link.h"
 #include "map_regs.h"
 #include "radio.h"
 #include "ucos_ii.h"
@@ -46,6 +47,10 @@ public:
         Link_init(link_.get(), &port, this, 1440);
     }
     Link* link() { return link_.get(); }
+    static void onPacket(void* c, const U8* bytes, U32 size) {
+        Link_receive(static_cast<Peer*>(c)->link(), bytes, size,
+                     OSTimeGet() * (1000000U / OS_TICKS_PER_SEC));
+    }
     bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
     std::vector<std::vector<uint8_t>> received;
 
@@ -68,7 +73,7 @@ protected:
                 nextPoll_ = now + 1'000'000;
                 U32 us = static_cast<U32>(now / 1000);
                 Link_receive(farPeer_.link(), farLine_.received.data(),
-                             static_cast<U32>(farLine_.received.size()), 0, us);
+                             static_cast<U32>(farLine_.received.size()), us);
                 farLine_.received.clear();
                 Link_poll(farPeer_.link(), us);
             }
@@ -88,7 +93,7 @@ protected:
         };
         irqOn_ = false;
         UavMachine::Firmware firmware;
-        firmware.start = [this](const Fsmc_Port* port, void* context) {
+        firmware.start = [this](const FSMC_Port* port, void* context) {
             realPort_ = port;
             ASSERT_EQ(FSMC_init(port, context), FSMC_OK);
             OSTaskCreate([](void*) { task(); }, nullptr, &stack[1023], 5);
@@ -111,7 +116,7 @@ protected:
     // Runs the near link on the driver until `done`.
     template <class Done> bool talk(Done done, int limitMs) {
         for (int i = 0; i < limitMs; ++i) {
-            Radio_receive(nearPeer_.link(), us());
+            Radio_receive(nearPeer_.onPacket, &nearPeer_);
             Link_poll(nearPeer_.link(), us());
             if (done())
                 return true;
@@ -138,7 +143,7 @@ protected:
     bool farLinkRuns_ = false, irqOn_ = false;
     U32 events_ = 0;
     uint64_t nextPoll_ = 0;
-    const Fsmc_Port* realPort_ = nullptr;
+    const FSMC_Port* realPort_ = nullptr;
 };
 
 TEST_F(Radio, SetsTheModemUpAsItIsToldTo) {
@@ -170,8 +175,8 @@ TEST_F(Radio, ARefusedCommandIsReportedWithItsStep) {
 
 TEST_F(Radio, ASlotThatIsNoModemControllerIsReported) {
     run([&] {
-        static const Fsmc_Port* real;
-        static Fsmc_Port lying;
+        static const FSMC_Port* real;
+        static FSMC_Port lying;
         real = realPort_;
         lying = *real;
         lying.read32 = [](void* c, U32 address) {
@@ -213,18 +218,20 @@ TEST_F(Radio, FramesLeaveInOrderAndUnchangedAndAFullRingSaysSo) {
 }
 
 TEST_F(Radio, ALinkRunsOverItBothWays) {
+    air_.weather.perfect =
+        true; // a modem that keeps up with its line: no packet holds parts of two frames
     run([&] {
         ASSERT_EQ(init(), RADIO_OK);
         ASSERT_TRUE(connect());
         const U32 before = Radio_counters()->bytesCopiedIn;
         const uint64_t fromModem = soc_.modem().counters().bytesToHost;
-        ASSERT_EQ(Link_openChannel(nearPeer_.link(), 0, us()), LINK_OK);
+        ASSERT_EQ(Link_openChannel(nearPeer_.link(), 0), LINK_OK);
         std::vector<uint8_t> message(700, 0x5A);
         for (U32 tag = 0; tag < 5; ++tag)
-            ASSERT_EQ(Link_send(nearPeer_.link(), 0, message.data(), 700, tag, us()), LINK_OK);
+            ASSERT_EQ(Link_send(nearPeer_.link(), 0, message.data(), 700, tag), LINK_OK);
         ASSERT_TRUE(talk([&] { return farPeer_.received.size() == 5; }, 5000));
         for (U32 tag = 0; tag < 5; ++tag)
-            ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 700, tag, us()), LINK_OK);
+            ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 700, tag), LINK_OK);
         ASSERT_TRUE(talk([&] { return nearPeer_.received.size() == 5; }, 5000));
         talk([] { return false; }, 100);
         EXPECT_EQ(nearPeer_.received[4], message);
@@ -239,10 +246,10 @@ TEST_F(Radio, ATaskThatSleepsLosesNoMessage) {
     run([&] {
         ASSERT_EQ(init(), RADIO_OK);
         ASSERT_TRUE(connect());
-        ASSERT_EQ(Link_openChannel(farPeer_.link(), 0, us()), LINK_OK);
+        ASSERT_EQ(Link_openChannel(farPeer_.link(), 0), LINK_OK);
         for (U32 i = 0; i < 30; ++i) {
             std::vector<uint8_t> message(300, static_cast<uint8_t>(i));
-            ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 300, i, us()), LINK_OK);
+            ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 300, i), LINK_OK);
         }
         OSTimeDly(OS_TICKS_PER_SEC); // more packets than the ring has room for come meanwhile
         ASSERT_TRUE(talk([&] { return nearPeer_.received.size() == 30; }, 20000));
@@ -263,9 +270,9 @@ TEST_F(Radio, AModemThatWasResetIsSetUpAgain) {
         EXPECT_EQ(soc_.modem().parameter("BD"), 3u);
         ASSERT_EQ(init(), RADIO_OK);
         EXPECT_EQ(soc_.modem().parameter("BD"), 7u);
-        Link_openChannel(nearPeer_.link(), 0, us());
+        Link_openChannel(nearPeer_.link(), 0);
         const U8 bytes[3] = {1, 2, 3};
-        Link_send(nearPeer_.link(), 0, bytes, 3, 0, us());
+        Link_send(nearPeer_.link(), 0, bytes, 3, 0);
         EXPECT_TRUE(talk([&] { return farPeer_.received.size() == 1; }, 10000));
     });
 }
@@ -283,6 +290,7 @@ protected:
 };
 
 TEST_F(EncryptedRadio, WithTheSameKeyMessagesArriveAndNoFrameIsSplit) {
+    air_.weather.perfect = true; // a modem that keeps up with its line
     size_t longest = 0, packets = 0;
     air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
         longest = std::max(longest, packet.bytes.size());
@@ -293,15 +301,15 @@ TEST_F(EncryptedRadio, WithTheSameKeyMessagesArriveAndNoFrameIsSplit) {
         limitFrames();
         ASSERT_EQ(init(0, 0, key), RADIO_OK);
         ASSERT_TRUE(connect());
-        ASSERT_EQ(Link_openChannel(nearPeer_.link(), 0, us()), LINK_OK);
+        ASSERT_EQ(Link_openChannel(nearPeer_.link(), 0), LINK_OK);
         ASSERT_TRUE(talk([&] { return Link_statistics(nearPeer_.link())->framesSent > 2; }, 1000));
         talk([] { return false; }, 100);
         packets = 0;
         U32 before = Link_statistics(nearPeer_.link())->framesSent +
                      Link_statistics(farPeer_.link())->framesSent;
-        ASSERT_EQ(Link_send(nearPeer_.link(), 0, message.data(), 2000, 0, us()), LINK_OK);
+        ASSERT_EQ(Link_send(nearPeer_.link(), 0, message.data(), 2000, 0), LINK_OK);
         ASSERT_TRUE(talk([&] { return farPeer_.received.size() == 1; }, 5000));
-        ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 2000, 0, us()), LINK_OK);
+        ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 2000, 0), LINK_OK);
         ASSERT_TRUE(talk([&] { return nearPeer_.received.size() == 1; }, 5000));
         talk([] { return false; }, 100);
         EXPECT_EQ(packets, Link_statistics(nearPeer_.link())->framesSent +
@@ -320,7 +328,7 @@ TEST_F(EncryptedRadio, WithAnotherKeyThereIsNoSession) {
     run([&] {
         limitFrames();
         ASSERT_EQ(init(0, 0, other), RADIO_OK);
-        EXPECT_FALSE(connect(1000));
+        EXPECT_FALSE(connect(3000));
     });
     EXPECT_GT(far_.counters().packetsReceived, 3u) << "garbage, not silence";
 }

@@ -9,13 +9,33 @@ namespace {
 
 class Cpu : public ::testing::Test {
 protected:
-    // In the order of cpu_cases.c.
+    // The order is that of cpu_cases.c.
     enum Case {
-        Nesting, SamePriority, LowestNumberFirst, SubPriority, Primask, Basepri, Faultmask, SwitchLast,
-        SupervisorCallCase, Ticks, SleepMasked, BusFaultCase, NoMemory, Escalation, UndefinedInstruction, ArmState,
-        LockUp, Guard, Process, Alignment, Cycles, ResetRequest, Work
+        Nesting,
+        SamePriority,
+        LowestNumberFirst,
+        SubPriority,
+        Primask,
+        Basepri,
+        Faultmask,
+        SwitchLast,
+        SupervisorCallCase,
+        Ticks,
+        SleepMasked,
+        BusFaultCase,
+        NoMemory,
+        Escalation,
+        UndefinedInstruction,
+        ArmState,
+        LockUp,
+        Guard,
+        Process,
+        Alignment,
+        Cycles,
+        ResetRequest,
+        Work
     };
-    // What the case says until it ends.
+    // Runs a case and returns what it prints.
     std::string run(Case number) {
         m3.setVariable("selected", number);
         EXPECT_EQ(m3.run(100'000), 1) << m3.cpu.lastFault << ", said " << m3.text("said");
@@ -26,19 +46,34 @@ protected:
     PlainCpu m3{CASES_ELF};
 };
 
-TEST_F(Cpu, AnInterruptOfHigherPriorityPreempts) { EXPECT_EQ(run(Nesting), "abBA"); }
-TEST_F(Cpu, OneOfTheSamePriorityWaits) { EXPECT_EQ(run(SamePriority), "aAbB"); }
-TEST_F(Cpu, OfEqualOnesTheLowestNumberComesFirst) { EXPECT_EQ(run(LowestNumberFirst), "aAbBcC"); }
-TEST_F(Cpu, SubPrioritiesOrderAndDoNotPreempt) { EXPECT_EQ(run(SubPriority), "aAcCbB"); }
+TEST_F(Cpu, AnInterruptOfHigherPriorityPreempts) {
+    EXPECT_EQ(run(Nesting), "abBA");
+}
+TEST_F(Cpu, OneOfTheSamePriorityWaits) {
+    EXPECT_EQ(run(SamePriority), "aAbB");
+}
+TEST_F(Cpu, OfEqualOnesTheLowestNumberComesFirst) {
+    EXPECT_EQ(run(LowestNumberFirst), "aAbBcC");
+}
+TEST_F(Cpu, SubPrioritiesOrderAndDoNotPreempt) {
+    EXPECT_EQ(run(SubPriority), "aAcCbB");
+}
 
 TEST_F(Cpu, PrimaskHoldsBackAndUnmaskingIsExact) {
     EXPECT_EQ(run(Primask), "1aA2");
-    EXPECT_EQ(value(0), 5u); // r0 when the handler ran: no instruction behind CPSIE has been executed
+    EXPECT_EQ(value(0),
+              5u); // r0 when the handler ran: no instruction behind CPSIE has been executed
 }
 
-TEST_F(Cpu, BasepriHoldsBackItsPriorityAndBelow) { EXPECT_EQ(run(Basepri), "1bB2aA3"); }
-TEST_F(Cpu, FaultmaskHoldsBackAll) { EXPECT_EQ(run(Faultmask), "1aA2"); }
-TEST_F(Cpu, PendSvRunsBehindInterrupts) { EXPECT_EQ(run(SwitchLast), "aAp"); }
+TEST_F(Cpu, BasepriHoldsBackItsPriorityAndBelow) {
+    EXPECT_EQ(run(Basepri), "1bB2aA3");
+}
+TEST_F(Cpu, FaultmaskHoldsBackAll) {
+    EXPECT_EQ(run(Faultmask), "1aA2");
+}
+TEST_F(Cpu, PendSvRunsBehindInterrupts) {
+    EXPECT_EQ(run(SwitchLast), "aAp");
+}
 
 TEST_F(Cpu, SvcEntersAtOnceAndReturnsBehindItself) {
     EXPECT_EQ(run(SupervisorCallCase), "s.");
@@ -52,7 +87,9 @@ TEST_F(Cpu, SysTickHasItsPeriodExactly) {
     EXPECT_GT(m3.cpu.sleepingCycles(), 2000u);
 }
 
-TEST_F(Cpu, SleepEndsThoughPrimaskIsSet) { EXPECT_EQ(run(SleepMasked), "wt."); }
+TEST_F(Cpu, SleepEndsThoughPrimaskIsSet) {
+    EXPECT_EQ(run(SleepMasked), "wt.");
+}
 
 TEST_F(Cpu, AnAccessThatNobodyAnswersIsAPreciseBusFault) {
     EXPECT_EQ(run(BusFaultCase), "u.");
@@ -145,7 +182,8 @@ TEST_F(Cpu, AnInterruptAtAnyInstructionDoesNotChangeAResult) {
         };
         other.setVariable("selected", Work);
         ASSERT_EQ(other.run(100'000), 1) << where;
-        ASSERT_EQ(other.cpu.word(other.image.symbol("value")), expected) << "interrupted at instruction " << where;
+        ASSERT_EQ(other.cpu.word(other.image.symbol("value")), expected)
+            << "interrupted at instruction " << where;
     }
 }
 

@@ -54,11 +54,33 @@ errors)
     port=$(sed -n 's,.*127.0.0.1:\([0-9]*\)/.*,\1,p' "$out/first")
     expect 'is the port taken' "$live" --dir "$out" --registers "$build/gen/registers.list" --port "$port"
     # Nothing has run in this folder yet: the page still answers; and only on the loopback interface.
-    python3 - "$port" <<'PY'
+    python3 - "$port" "$out" <<'PY'
 import json, sys, urllib.request, urllib.error
 base = "http://127.0.0.1:%s/" % sys.argv[1]
 state = json.load(urllib.request.urlopen(base + "state"))
 assert state["calls"] == [] and state["slots"] == [] and not state["frame"], state
+# Other names of this address, ranges, rows that are none, and clients that are slow or say nothing.
+import http.client, socket, time
+def status(headers):
+    c = http.client.HTTPConnection("127.0.0.1", int(sys.argv[1]), timeout=10)
+    c.request("GET", "/live.js", headers=headers)
+    return c.getresponse().status
+assert status({}) == 200
+assert status({"Host": "evil.example:" + sys.argv[1]}) == 403
+assert status({"Range": "bytes=" + ",".join("0-%d" % i for i in range(400, 800))}) == 416
+with open(sys.argv[2] + "/calls.jsonl", "w") as f:
+    f.write('7\n[1, 2]\n"text"\n{"at": 1.0, "who": "a", "what": "b"}\n{"half')
+state = json.load(urllib.request.urlopen(base + "state"))
+assert [c["who"] for c in state["calls"]] == ["a"], state
+crowd = [socket.create_connection(("127.0.0.1", int(sys.argv[1]))) for i in range(400)]
+for s in crowd[:20]:
+    s.send(b"GET / HTTP/1.1\r\nHost: ")
+begin = time.monotonic()
+assert status({}) == 200
+took = time.monotonic() - begin
+assert took < 8, "%.1f s behind 400 idle connections" % took
+for s in crowd:
+    s.close()
 for path, status in (("", 200), ("live.js", 200), ("frame.png", 404), ("../main.cpp", 404)):
     try:
         got = urllib.request.urlopen(base + path).status

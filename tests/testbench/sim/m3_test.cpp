@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// m3_test: the firmware's ARM binary on the RTL: the same mission as the host build's, bit by bit, and
-// what ends it: watchdog, faults, a corrupt image.
+// m3_test: the firmware's ARM binary on the RTL: the same mission as the host build's, bit by bit,
+// and what ends it: watchdog, faults, a corrupt image.
 
 #include "ground.h"
 #include "m3_machine.h"
@@ -21,12 +21,15 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-// One flight: the air, both modems, the chip, and a ground station that works through a list of calls.
+// One flight: the air, both modems, the chip, and a ground station that works through a list of
+// calls.
 struct Flight {
     explicit Flight(double loss = 0) {
         air.weather.loss = loss;
         uav_guardMs = Ground::guardMs; // the host build's
-        air.onPacket([this](uint64_t, const RfPacket& p, RfChannel::Outcome) { packets.push_back({p.from, p.bytes}); });
+        air.onPacket([this](uint64_t, const RfPacket& p, RfChannel::Outcome) {
+            packets.push_back({p.from, p.bytes});
+        });
         soc.onTime([this](uint64_t now) { return ground.advance(now); });
         soc.reset();
         Random random(testSeed());
@@ -50,7 +53,7 @@ struct Flight {
         return true;
     }
     bool inTime(double seconds) const { return static_cast<double>(soc.now()) < seconds * 1e9; }
-    // From then on as after a restart of the ground's program.
+    // Goes on as after a restart of the ground's program.
     void forget() {
         ground.replies.clear();
         opened = false;
@@ -62,7 +65,9 @@ struct Flight {
     }
     void mission() {
         pings(2);
-        calls.push_back([this](int id) { ground.call(id, "hwengine1", "setParameterA", 0, {30, 0}); });
+        calls.push_back([this](int id) {
+            ground.call(id, "hwengine1", "setParameterA", 0, {30, 0});
+        });
         calls.push_back([this](int id) { ground.call(id, "hwengine1", "startProcessing"); });
         calls.push_back([this](int id) { ground.call(id, "hwengine1", "getResult"); });
         calls.push_back([this](int id) { ground.call(id, "uav", "isAlive", 0, {7, 0}); });
@@ -92,7 +97,9 @@ M3Machine::Config firmwareAt(uint32_t hclkHz) {
 }
 const M3Machine::Config firmware = firmwareAt(120'000'000);
 
-Boot_Reason reasonOf(uint32_t report) { return static_cast<Boot_Reason>(report >> 8 & 0xFF); }
+Boot_Reason reasonOf(uint32_t report) {
+    return static_cast<Boot_Reason>(report >> 8 & 0xFF);
+}
 
 size_t differingBytes(const Bytes& a, const Bytes& b) {
     size_t n = 0;
@@ -101,9 +108,9 @@ size_t differingBytes(const Bytes& a, const Bytes& b) {
     return n;
 }
 
-// The clock cycles that the core measured of itself depend on who else uses the memory just then: four
-// bytes of getResult's reply, the only ones that may differ between the builds; and with them the checksums of the
-// packet that holds them, and of the one that ends the message.
+// The clock cycles that the core measured of itself depend on who else uses the memory just then:
+// four bytes of getResult's reply, the only ones that may differ between the builds; and with them
+// the checksums of the packet that holds them, and of the one that ends the message.
 constexpr size_t cyclesAt = 29, cyclesBytes = 4, checksumBytes = 2;
 constexpr int packetsThatMayDiffer = 2;
 
@@ -144,8 +151,8 @@ TEST(CortexM3Firmware, LosesNothingAtTenPercentLossAndAtTheBoardsCycleRatio) {
     EXPECT_GT(f.air.counters().lost, 0u);
 }
 
-// One flight, several accidents: a core that hangs, a processor that hangs, the FSMC switched off, a stack that
-// runs over. Each is told in the system slot, and the link comes back by itself.
+// One flight, several accidents: a core that hangs, a processor that hangs, the FSMC switched off,
+// a stack that runs over. Each is told in the system slot, and the link comes back by itself.
 TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     Flight f;
     f.pings(2);
@@ -162,7 +169,8 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     };
     auto script = [&] {
         switch (phase) {
-        case 0: // a register that nobody answers for: an event, an interrupt, and the flight goes on
+        case 0: // a register that nobody answers for: an event, an interrupt, and the flight goes
+                // on
             if (f.step())
                 return true;
             EXPECT_EQ(busErrors(), 0u);
@@ -176,7 +184,8 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
             EXPECT_EQ(busErrors(), 1u);
             EXPECT_EQ(m3->cpu().word(m3->stm32().image()->symbol("busErrorPlace")), 33u * 16 + 5);
             f.ground.ping(100, "hwengine1"); // on its way when ...
-            m3->cpu().setReg(CortexM3::Faultmask, 1); // ... nothing gets through to the processor any more
+            m3->cpu().setReg(CortexM3::Faultmask,
+                             1); // ... nothing gets through to the processor any more
             phase = 2;
             return true;
         case 2: // the ground is told; the link comes up again
@@ -190,13 +199,15 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
         case 3:
             if (f.step())
                 return true;
-            f.soc.fsmc().write32(0xA0000008, 0x000030D2); // NE2 is switched off: the next register access fails
+            f.soc.fsmc().write32(0xA0000008,
+                                 0x000030D2); // NE2 is switched off: the next register access fails
             phase = 4;
             return true;
         case 4:
             if (m3->stm32().resets().software == 0 || reported() != BOOT_BUS_FAULT)
                 return true;
-            EXPECT_EQ(m3->cpu().word(m3->stm32().image()->symbol("boot_record") + 20) & 0xFF000000, 0x64000000u); // where
+            EXPECT_EQ(m3->cpu().word(m3->stm32().image()->symbol("boot_record") + 20) & 0xFF000000,
+                      0x64000000u); // where
             since = f.soc.cycles();
             phase = 5;
             return true;
@@ -204,11 +215,13 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
             if (f.soc.cycles() < since + SocModel::clkHz / 100 || m3->cpu().currentException() != 0)
                 return true;
             bool own = m3->stm32().image()->has("idleStack");
-            m3->cpu().setReg(CortexM3::Psp, m3->stm32().image()->symbol(own ? "idleStack" : "OSTaskIdleStk") + 56);
+            m3->cpu().setReg(CortexM3::Psp,
+                             m3->stm32().image()->symbol(own ? "idleStack" : "OSTaskIdleStk") + 56);
             phase = 6;
             return true;
         }
-        default: return reported() != BOOT_STACK_OVERFLOW;
+        default:
+            return reported() != BOOT_STACK_OVERFLOW;
         }
     };
     M3Machine machine(f.soc, firmware, [&] { return script() && f.inTime(60); });
@@ -220,15 +233,17 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     EXPECT_EQ(f.scratch() >> 16 & 0xFF, 4u) << "starts since power-on";
 }
 
-// The memory holds its port: accesses end by the bridge's time-out, each is a bus error with its place, no reset;
-// when the memory is back, the flight goes on.
+// The memory holds its port: accesses end by the bridge's time-out, each is a bus error with its
+// place, no reset; when the memory is back, the flight goes on.
 TEST(CortexM3Firmware, AHungMemoryIsReportedAndTheFlightGoesOn) {
     Flight f;
     f.pings(2);
     int phase = 0;
     uint64_t since = 0;
     M3Machine* m3 = nullptr;
-    auto variable = [&](const char* name) { return m3->cpu().word(m3->stm32().image()->symbol(name)); };
+    auto variable = [&](const char* name) {
+        return m3->cpu().word(m3->stm32().image()->symbol(name));
+    };
     auto script = [&] {
         switch (phase) {
         case 0:
@@ -255,7 +270,8 @@ TEST(CortexM3Firmware, AHungMemoryIsReportedAndTheFlightGoesOn) {
             f.calls.push_back([&f](int id) { f.ground.ping(id, "uav"); });
             phase = 3;
             return true;
-        default: return f.step() || f.ground.replies.count(3) == 0;
+        default:
+            return f.step() || f.ground.replies.count(3) == 0;
         }
     };
     M3Machine machine(f.soc, firmware, [&] { return script() && f.inTime(60); });
@@ -282,7 +298,8 @@ TEST(CortexM3Firmware, ACorruptImageIsRefusedWithItsReason) {
         byte = static_cast<uint8_t>(byte ^ 1u << random.below(8));
         machine.cpu().writeMemory(at, &byte, 1);
         machine.run();
-        EXPECT_EQ(reasonOf(f.scratch()), BOOT_IMAGE_CORRUPT) << "flipped a bit at 0x" << std::hex << at;
+        EXPECT_EQ(reasonOf(f.scratch()), BOOT_IMAGE_CORRUPT)
+            << "flipped a bit at 0x" << std::hex << at;
         EXPECT_EQ(f.soc.modem().parameter("BD"), 3u) << "the firmware has started";
     }
 }

@@ -134,7 +134,8 @@ TEST_F(Soc, ThePageRegisterReachesTheUpperHalf) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0);
 }
 
-// Each address line alone, each data line both ways: a line that is cut or crossed shows. 128 MiB are there.
+// Each address line alone, each data line both ways: a line that is cut or crossed shows. 128 MiB
+// are there.
 TEST_F(Soc, EveryLineToTheMemoryIsConnected) {
     uint32_t page = 0;
     auto place = [&](uint32_t address) {
@@ -156,7 +157,8 @@ TEST_F(Soc, EveryLineToTheMemoryIsConnected) {
     }
     for (auto [address, value] : expected)
         EXPECT_EQ(fsmc_.read16(place(address)), value) << std::hex << address;
-    for (unsigned bit = 0; bit < 6; ++bit) { // the page register keeps what has no memory behind it, too
+    for (unsigned bit = 0; bit < 6;
+         ++bit) { // the page register keeps what has no memory behind it, too
         write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 1u << bit);
         EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_PAGE), 1u << bit);
     }
@@ -167,7 +169,8 @@ TEST_F(Soc, EveryLineToTheSlotsIsConnected) {
     for (unsigned bit = 0; bit < 32; ++bit) {
         write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, 1u << bit);
         EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH), 1u << bit);
-        uint32_t address = 1u << bit & 0xFFFFF800; // a ring of the modem's lies at a multiple of 2048
+        uint32_t address =
+            1u << bit & 0xFFFFF800; // a ring of the modem's lies at a multiple of 2048
         write(MAP_SLOT_MODEM, MODEM_TX_BASE, address);
         EXPECT_EQ(read(MAP_SLOT_MODEM, MODEM_TX_BASE), address);
     }

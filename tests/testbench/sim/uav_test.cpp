@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// uav_test: RTL, modems, radio and firmware together, deterministic: the ground is the same link layer
-// in this process, and requests are written byte by byte.
+// uav_test: RTL, modems, radio and firmware together, deterministic: the ground is the same link
+// layer in this process, and requests are written byte by byte.
 
 #include "ground.h"
 #include "uav_machine.h"
@@ -83,56 +83,61 @@ TEST_F(Uav, TheGroundGoesAwayAndComesBack) {
     auto first = pinging(3), second = pinging(3);
     int phase = 0;
     uint64_t since = 0;
-    fly([&] {
-        if (phase == 0 && first()) {
-            ground_.running = false; // the program is killed
-            since = soc_.now();
-            machine_->hurry(10);
-            phase = 1;
-        }
-        if (phase == 1 && soc_.now() - since > 1'200'000'000) { // 12 s by the UAV's clock
-            EXPECT_NE(Link_state(&uav_link), LINK_STATE_UP) << "the UAV has not noticed";
-            machine_->hurry(1);
-            ground_.start();
-            phase = 2;
-        }
-        return phase == 2 && second();
-    }, 20);
+    fly(
+        [&] {
+            if (phase == 0 && first()) {
+                ground_.running = false; // the program is killed
+                since = soc_.now();
+                machine_->hurry(10);
+                phase = 1;
+            }
+            if (phase == 1 && soc_.now() - since > 1'200'000'000) { // 12 s by the UAV's clock
+                EXPECT_NE(Link_state(&uav_link), LINK_STATE_UP) << "the UAV has not noticed";
+                machine_->hurry(1);
+                ground_.start();
+                phase = 2;
+            }
+            return phase == 2 && second();
+        },
+        20);
 }
 
 TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
     auto first = pinging(3), second = pinging(3);
     int phase = 0;
     uint64_t since = 0;
-    fly([&] {
-        if (phase == 0 && first()) {
-            ground_.ping(100, "hwengine1"); // while this is on its way ...
-            since = soc_.now();
-            phase = 1;
-        }
-        if (phase == 1 && soc_.now() - since > 8'000'000) {
-            soc_.modem().resetPin(true, soc_.now()); // ... the UAV's modem loses its settings
-            soc_.modem().resetPin(false, soc_.now() + 1000);
-            EXPECT_EQ(soc_.modem().parameter("BD"), 3u);
-            machine_->hurry(10);
-            ground_.hurry = 10;
-            phase = 2;
-        }
-        // The link is given up after 9 s of silence, the modem set up again 15 s later, in its own time.
-        if (ground_.hurry > 1 && soc_.now() - since > 2'350'000'000) {
-            EXPECT_NE(Link_state(&uav_link), LINK_STATE_UP) << "the UAV has not noticed";
-            EXPECT_EQ(soc_.modem().parameter("BD"), 3u);
-            machine_->hurry(1);
-            ground_.hurry = 1;
-        }
-        if (phase == 2 && !ground_.isUp())
-            phase = 3;
-        if (phase == 3 && ground_.isUp()) {
-            ground_.replies.clear();
-            phase = 4;
-        }
-        return phase == 4 && second();
-    }, 20);
+    fly(
+        [&] {
+            if (phase == 0 && first()) {
+                ground_.ping(100, "hwengine1"); // while this is on its way ...
+                since = soc_.now();
+                phase = 1;
+            }
+            if (phase == 1 && soc_.now() - since > 8'000'000) {
+                soc_.modem().resetPin(true, soc_.now()); // ... the UAV's modem loses its settings
+                soc_.modem().resetPin(false, soc_.now() + 1000);
+                EXPECT_EQ(soc_.modem().parameter("BD"), 3u);
+                machine_->hurry(10);
+                ground_.hurry = 10;
+                phase = 2;
+            }
+            // The link is given up after 9 s of silence, the modem set up again 15 s later, in its
+            // own time.
+            if (ground_.hurry > 1 && soc_.now() - since > 2'350'000'000) {
+                EXPECT_NE(Link_state(&uav_link), LINK_STATE_UP) << "the UAV has not noticed";
+                EXPECT_EQ(soc_.modem().parameter("BD"), 3u);
+                machine_->hurry(1);
+                ground_.hurry = 1;
+            }
+            if (phase == 2 && !ground_.isUp())
+                phase = 3;
+            if (phase == 3 && ground_.isUp()) {
+                ground_.replies.clear();
+                phase = 4;
+            }
+            return phase == 4 && second();
+        },
+        20);
     EXPECT_EQ(soc_.modem().parameter("BD"), 7u);
 }
 
@@ -140,16 +145,18 @@ TEST_F(Uav, GarbageOnTheGroundsSerialLineIsSurvived) {
     Random random(testSeed());
     auto ping = pinging(20);
     uint64_t next = 0;
-    fly([&] {
-        if (ground_.isUp() && soc_.now() > next) {
-            std::vector<uint8_t> bytes(1 + random.below(40));
-            for (auto& byte : bytes)
-                byte = static_cast<uint8_t>(random.next());
-            ground_.noise(bytes);
-            next = soc_.now() + 150'000'000;
-        }
-        return ping();
-    }, 60);
+    fly(
+        [&] {
+            if (ground_.isUp() && soc_.now() > next) {
+                std::vector<uint8_t> bytes(1 + random.below(40));
+                for (auto& byte : bytes)
+                    byte = static_cast<uint8_t>(random.next());
+                ground_.noise(bytes);
+                next = soc_.now() + 150'000'000;
+            }
+            return ping();
+        },
+        60);
 }
 
 TEST_F(Uav, TheSameSeedGivesTheSameRun) {

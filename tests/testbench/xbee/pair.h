@@ -30,6 +30,7 @@ protected:
         air.onPacket([this](uint64_t time, const RfPacket& packet, RfChannel::Outcome outcome) {
             packets.push_back({time, packet.bytes, outcome});
         });
+        air.weather.perfect = perfect;
         run(20 * ms);
     }
     void run(uint64_t ns) {
@@ -44,7 +45,7 @@ protected:
     static Bytes bytes(const std::string& text) { return {text.begin(), text.end()}; }
     static std::string text(const Bytes& data) { return {data.begin(), data.end()}; }
     void send(const std::string& data) { lineA.send(bytes(data), now); }
-    // What `a` has given its host since the last call.
+    // Returns what `a` has given its host since the last call.
     std::string heard() {
         std::string data = text(lineA.received);
         lineA.received.clear();
@@ -73,6 +74,7 @@ protected:
         Bytes bytes;
         RfChannel::Outcome outcome;
     };
+    bool perfect = true; // RfWeather's, from power() on
     uint64_t now = 0;
     RfChannel air{testSeed()};
     HostLine lineA, lineB;

@@ -14,7 +14,7 @@ fail() {
     exit 1
 }
 "$program" --help | grep -q 'Two XBee' || fail "--help"
-for wrong in '--loss 2' '--a ZZ=1' '--a MY=G' '--a CH=1' '--b MY' '--nonsense' "--link-a $work/none/x"; do
+for wrong in '--loss 2' '--a ZZ=1' '--a MY=G' '--a CH=1' '--b MY' '--nonsense' '--trace /dev/null' "--link-a $work/none/x"; do
     # shellcheck disable=SC2086
     if "$program" $wrong --duration 0.1 >"$work/out" 2>&1; then fail "took $wrong"; fi
     [ -s "$work/out" ] || fail "said nothing about $wrong"

@@ -23,19 +23,19 @@ static U32 room[4096]; /* for replies */
         }                                                                \
     } while (0)
 
-static int equal(const Everything_Numbers *a, const Everything_Numbers *b) {
+static int equal(const Everything_Numbers* a, const Everything_Numbers* b) {
     return a->b == b->b && a->y == b->y && a->s == b->s && a->i == b->i && a->l.low == b->l.low &&
            a->l.high == b->l.high && a->f == b->f && a->d == b->d;
 }
 
 /* By their strings: a peer may encode endpoints anew. */
-static int alike(const Ice_ObjectPrx *a, const Ice_ObjectPrx *b) {
+static int alike(const Ice_ObjectPrx* a, const Ice_ObjectPrx* b) {
     char x[400], y[400];
     return Ice_Communicator_proxyToString(a, x, sizeof x) == ICE_OK &&
            Ice_Communicator_proxyToString(b, y, sizeof y) == ICE_OK && strcmp(x, y) == 0;
 }
 
-static void fill(Everything_Numbers *n) {
+static void fill(Everything_Numbers* n) {
     n->b = 1, n->y = 200, n->s = -3, n->i = 1 << 30;
     n->l.low = 0xFFFFFFF0U, n->l.high = -5;
     n->f = 0.5F, n->d = -1e300;
@@ -145,7 +145,7 @@ static int types(void) {
     CHECK(Everything_TesterPrx_echoNode(&tester, &node, &nodeBack) == ICE_OK);
     CHECK(nodeBack->id == 1 && nodeBack->next->id == 2 && nodeBack->next->next == nodeBack);
     CHECK(Ice_Value_isA(&nodeBack->next->ice_value, &Everything_Leaf_type));
-    CHECK(Ice_String_equals(((Everything_Leaf *)nodeBack->next)->name, "leaf"));
+    CHECK(Ice_String_equals(((Everything_Leaf*)nodeBack->next)->name, "leaf"));
     return 0;
 }
 
@@ -183,8 +183,8 @@ static int exceptions(void) {
     return 0;
 }
 
-static Ice_Status ask(Everything_WatcherPtr self, Ice_Int question, Ice_Int *result,
-                      const Ice_Current *current) {
+static Ice_Status ask(Everything_WatcherPtr self, Ice_Int question, Ice_Int* result,
+                      const Ice_Current* current) {
     (void)self, (void)current;
     *result = 10 * question;
     return ICE_OK;
@@ -192,7 +192,7 @@ static Ice_Status ask(Everything_WatcherPtr self, Ice_Int question, Ice_Int *res
 
 static int finished;
 
-static void completed(Everything_Tester_later_Async *self) {
+static void completed(Everything_Tester_later_Async* self) {
     finished += self->done;
 }
 
@@ -253,7 +253,7 @@ static int modes(void) {
 }
 
 /* A class that is called, by its own proxy and by those of its base and of what it implements. */
-static int classes(const char *port) {
+static int classes(const char* port) {
     Everything_ShapeDisp_area_Exception ex;
     Everything_SquarePrx square;
     Everything_ShapePrx shape;
@@ -323,7 +323,7 @@ static int lost(void) {
     return 0;
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
     Ice_ObjectPrx base;
     char text[128];
     Ice_Byte minor;

@@ -6,7 +6,7 @@
 #include "tester.h"
 #include "ucos_ii.h"
 
-void appMainTask(void *argument) {
+void appMainTask(void* argument) {
     static Ice_Communicator ic;
     static Ice_ObjectAdapter adapter;
     (void)argument;

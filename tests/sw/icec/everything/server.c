@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 int main(void) {
-    static const char *const properties[] = {"Adapter.Endpoints=tcp -h 127.0.0.1", 0};
+    static const char* const properties[] = {"Adapter.Endpoints=tcp -h 127.0.0.1", 0};
     static Ice_Communicator ic;
     static TcpEndpoint tcp;
     static Ice_ObjectAdapter adapter;

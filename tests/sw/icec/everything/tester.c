@@ -17,86 +17,86 @@ static struct {
 static int waitingCount;
 static Ice_Int total;
 
-Ice_Status Everything_Tester_echoNumbers(Everything_TesterPtr self, const Everything_Numbers *v,
-                                         Everything_Numbers *same, Everything_Numbers *result,
-                                         const Ice_Current *current) {
+Ice_Status Everything_Tester_echoNumbers(Everything_TesterPtr self, const Everything_Numbers* v,
+                                         Everything_Numbers* same, Everything_Numbers* result,
+                                         const Ice_Current* current) {
     (void)self, (void)current;
     *same = *result = *v;
     return ICE_OK;
 }
 
-Ice_Status Everything_Tester_echoMixed(Everything_TesterPtr self, const Everything_Mixed *v,
-                                       Everything_Mixed *result, const Ice_Current *current) {
+Ice_Status Everything_Tester_echoMixed(Everything_TesterPtr self, const Everything_Mixed* v,
+                                       Everything_Mixed* result, const Ice_Current* current) {
     (void)self, (void)current;
     *result = *v;
     return ICE_OK;
 }
 
-Ice_Status Everything_Tester_echoMixeds(Everything_TesterPtr self, const Everything_Mixeds *v,
-                                        Ice_Int *count, Everything_Mixeds *result,
-                                        const Ice_Current *current) {
+Ice_Status Everything_Tester_echoMixeds(Everything_TesterPtr self, const Everything_Mixeds* v,
+                                        Ice_Int* count, Everything_Mixeds* result,
+                                        const Ice_Current* current) {
     (void)self, (void)current;
     *result = *v;
     *count = v->size;
     return ICE_OK;
 }
 
-Ice_Status Everything_Tester_echoBytes(Everything_TesterPtr self, const Everything_Bytes *v,
-                                       Everything_Bytes *result, const Ice_Current *current) {
+Ice_Status Everything_Tester_echoBytes(Everything_TesterPtr self, const Everything_Bytes* v,
+                                       Everything_Bytes* result, const Ice_Current* current) {
     (void)self, (void)current;
     *result = *v;
     return ICE_OK;
 }
 
-Ice_Status Everything_Tester_echoSequences(Everything_TesterPtr self, const Everything_Bools *a,
-                                           const Everything_Shorts *b, const Everything_Ints *c,
-                                           const Everything_Longs *d, const Everything_Floats *e,
-                                           const Everything_Doubles *f, const Everything_Strings *g,
-                                           const Everything_StringLists *h, Everything_Bools *aa,
-                                           Everything_Shorts *bb, Everything_Ints *cc,
-                                           Everything_Longs *dd, Everything_Floats *ee,
-                                           Everything_Doubles *ff, Everything_Strings *gg,
-                                           Everything_StringLists *hh, const Ice_Current *current) {
+Ice_Status Everything_Tester_echoSequences(Everything_TesterPtr self, const Everything_Bools* a,
+                                           const Everything_Shorts* b, const Everything_Ints* c,
+                                           const Everything_Longs* d, const Everything_Floats* e,
+                                           const Everything_Doubles* f, const Everything_Strings* g,
+                                           const Everything_StringLists* h, Everything_Bools* aa,
+                                           Everything_Shorts* bb, Everything_Ints* cc,
+                                           Everything_Longs* dd, Everything_Floats* ee,
+                                           Everything_Doubles* ff, Everything_Strings* gg,
+                                           Everything_StringLists* hh, const Ice_Current* current) {
     (void)self, (void)current;
     *aa = *a, *bb = *b, *cc = *c, *dd = *d, *ee = *e, *ff = *f, *gg = *g, *hh = *h;
     return ICE_OK;
 }
 
-Ice_Status Everything_Tester_echoCounts(Everything_TesterPtr self, const Everything_Counts *v,
-                                        Everything_Counts *result, const Ice_Current *current) {
+Ice_Status Everything_Tester_echoCounts(Everything_TesterPtr self, const Everything_Counts* v,
+                                        Everything_Counts* result, const Ice_Current* current) {
     (void)self, (void)current;
     *result = *v;
     return ICE_OK;
 }
 
-Ice_Status Everything_Tester_echoLists(Everything_TesterPtr self, const Everything_Lists *v,
-                                       Everything_Lists *result, const Ice_Current *current) {
+Ice_Status Everything_Tester_echoLists(Everything_TesterPtr self, const Everything_Lists* v,
+                                       Everything_Lists* result, const Ice_Current* current) {
     (void)self, (void)current;
     *result = *v;
     return ICE_OK;
 }
 
-Ice_Status Everything_Tester_echoProxy(Everything_TesterPtr self, const Ice_ObjectPrx *v,
-                                       Ice_ObjectPrx *result, const Ice_Current *current) {
+Ice_Status Everything_Tester_echoProxy(Everything_TesterPtr self, const Ice_ObjectPrx* v,
+                                       Ice_ObjectPrx* result, const Ice_Current* current) {
     (void)self, (void)current;
     *result = *v;
     return ICE_OK;
 }
 
-Ice_Status Everything_Tester_echoProxies(Everything_TesterPtr self, const Everything_Proxies *v,
-                                         Everything_Proxies *result, const Ice_Current *current) {
+Ice_Status Everything_Tester_echoProxies(Everything_TesterPtr self, const Everything_Proxies* v,
+                                         Everything_Proxies* result, const Ice_Current* current) {
     (void)self, (void)current;
     *result = *v;
     return ICE_OK;
 }
 
 Ice_Status Everything_Tester_echoOptionals(Everything_TesterPtr self, Ice_Int required,
-                                           const Ice_String *a, const Everything_Numbers *b,
-                                           const Everything_Ints *c, Ice_Bool *has_aa,
-                                           Ice_String *aa, Ice_Bool *has_bb, Everything_Numbers *bb,
-                                           Ice_Bool *has_cc, Everything_Ints *cc,
-                                           Ice_Bool *has_result, Ice_Int *result,
-                                           const Ice_Current *current) {
+                                           const Ice_String* a, const Everything_Numbers* b,
+                                           const Everything_Ints* c, Ice_Bool* has_aa,
+                                           Ice_String* aa, Ice_Bool* has_bb, Everything_Numbers* bb,
+                                           Ice_Bool* has_cc, Everything_Ints* cc,
+                                           Ice_Bool* has_result, Ice_Int* result,
+                                           const Ice_Current* current) {
     (void)self, (void)current;
     *has_aa = a != 0, *has_bb = b != 0, *has_cc = c != 0;
     if (a)
@@ -110,29 +110,36 @@ Ice_Status Everything_Tester_echoOptionals(Everything_TesterPtr self, Ice_Int re
     return ICE_OK;
 }
 
-Ice_Status Everything_Tester_echoNode(Everything_TesterPtr self, const Everything_Node *v,
-                                      Everything_Node **result, const Ice_Current *current) {
+Ice_Status Everything_Tester_echoNode(Everything_TesterPtr self, const Everything_Node* v,
+                                      Everything_Node** result, const Ice_Current* current) {
     (void)self, (void)current;
-    *result = (Everything_Node *)v;
+    *result = (Everything_Node*)v;
     return ICE_OK;
 }
 
-static void fillWorse(Everything_Worse *worse) {
+static void fillWorse(Everything_Worse* worse) {
     worse->base.reason = Ice_String_from("worse");
     worse->how = 7;
 }
 
 /* By `how` - 11, as the peers count. */
-static const Ice_Status failures[] = {
-    ICE_OBJECT_NOT_EXIST, ICE_FACET_NOT_EXIST,    ICE_OPERATION_NOT_EXIST,
-    ICE_USER_EXCEPTION,   ICE_UNKNOWN_EXCEPTION,  ICE_MARSHAL,
-    ICE_TIMEOUT,          ICE_CONNECTION_LOST,    ICE_NO_ENDPOINT,
-    ICE_LIMIT,            ICE_PROTOCOL,           ICE_UNKNOWN_LOCAL_EXCEPTION,
-    ICE_UNKNOWN_USER_EXCEPTION};
+static const Ice_Status failures[] = {ICE_OBJECT_NOT_EXIST,
+                                      ICE_FACET_NOT_EXIST,
+                                      ICE_OPERATION_NOT_EXIST,
+                                      ICE_USER_EXCEPTION,
+                                      ICE_UNKNOWN_EXCEPTION,
+                                      ICE_MARSHAL,
+                                      ICE_TIMEOUT,
+                                      ICE_CONNECTION_LOST,
+                                      ICE_NO_ENDPOINT,
+                                      ICE_LIMIT,
+                                      ICE_PROTOCOL,
+                                      ICE_UNKNOWN_LOCAL_EXCEPTION,
+                                      ICE_UNKNOWN_USER_EXCEPTION};
 
 Ice_Status Everything_Tester_fail(Everything_TesterPtr self, Ice_Int how,
-                                  Everything_Tester_fail_Exception *ex,
-                                  const Ice_Current *current) {
+                                  Everything_Tester_fail_Exception* ex,
+                                  const Ice_Current* current) {
     static Everything_Counts_Entry entry;
     (void)self, (void)current;
     switch (how) {
@@ -162,8 +169,8 @@ Ice_Status Everything_Tester_fail(Everything_TesterPtr self, Ice_Int how,
 }
 
 Ice_Status Everything_Tester_failSliced(Everything_TesterPtr self, Ice_Int how,
-                                        Everything_Tester_failSliced_Exception *ex,
-                                        const Ice_Current *current) {
+                                        Everything_Tester_failSliced_Exception* ex,
+                                        const Ice_Current* current) {
     (void)self, (void)current;
     if (how != 2)
         return ICE_UNKNOWN_EXCEPTION;
@@ -172,8 +179,8 @@ Ice_Status Everything_Tester_failSliced(Everything_TesterPtr self, Ice_Int how,
     return ICE_USER_EXCEPTION;
 }
 
-Ice_Status Everything_Tester_context(Everything_TesterPtr self, Ice_String key, Ice_String *result,
-                                     const Ice_Current *current) {
+Ice_Status Everything_Tester_context(Everything_TesterPtr self, Ice_String key, Ice_String* result,
+                                     const Ice_Current* current) {
     static char text[64];
     (void)self;
     if (key.size >= (Ice_Int)sizeof text)
@@ -185,8 +192,8 @@ Ice_Status Everything_Tester_context(Everything_TesterPtr self, Ice_String key, 
     return ICE_OK;
 }
 
-Ice_Status Everything_Tester_whoAmI(Everything_TesterPtr self, Ice_String *result,
-                                    const Ice_Current *current) {
+Ice_Status Everything_Tester_whoAmI(Everything_TesterPtr self, Ice_String* result,
+                                    const Ice_Current* current) {
     static char text[200];
     (void)self;
     sprintf(text, "%.*s/%.*s -f %.*s mode %d", (int)current->category.size, current->category.data,
@@ -197,8 +204,8 @@ Ice_Status Everything_Tester_whoAmI(Everything_TesterPtr self, Ice_String *resul
 }
 
 Ice_Status Everything_Tester_callBack(Everything_TesterPtr self,
-                                      const Everything_WatcherPrx *watcher, Ice_Int times,
-                                      Ice_Int *result, const Ice_Current *current) {
+                                      const Everything_WatcherPrx* watcher, Ice_Int times,
+                                      Ice_Int* result, const Ice_Current* current) {
     Everything_WatcherPrx prx = *watcher;
     Ice_Status status = ICE_OK;
     Ice_Int sum = 0, i;
@@ -213,7 +220,7 @@ Ice_Status Everything_Tester_callBack(Everything_TesterPtr self,
 }
 
 Ice_Status Everything_Tester_later(Everything_TesterPtr self, Ice_Int v,
-                                   const Ice_Current *current) {
+                                   const Ice_Current* current) {
     (void)self;
     if (waitingCount == WAITING_MAX)
         return ICE_LIMIT;
@@ -222,8 +229,8 @@ Ice_Status Everything_Tester_later(Everything_TesterPtr self, Ice_Int v,
     return ICE_LATER;
 }
 
-Ice_Status Everything_Tester_release(Everything_TesterPtr self, Ice_Int *result,
-                                     const Ice_Current *current) {
+Ice_Status Everything_Tester_release(Everything_TesterPtr self, Ice_Int* result,
+                                     const Ice_Current* current) {
     Everything_Tester_later_Exception ex;
     (void)self, (void)current;
     *result = waitingCount;
@@ -240,20 +247,20 @@ Ice_Status Everything_Tester_release(Everything_TesterPtr self, Ice_Int *result,
 }
 
 Ice_Status Everything_Tester_note(Everything_TesterPtr self, Ice_Int v,
-                                  const Ice_Current *current) {
+                                  const Ice_Current* current) {
     (void)self, (void)current;
     total += v;
     return ICE_OK;
 }
 
-Ice_Status Everything_Tester_sum(Everything_TesterPtr self, Ice_Int *result,
-                                 const Ice_Current *current) {
+Ice_Status Everything_Tester_sum(Everything_TesterPtr self, Ice_Int* result,
+                                 const Ice_Current* current) {
     (void)self, (void)current;
     *result = total;
     return ICE_OK;
 }
 
-Ice_Status Everything_Tester_shutdown(Everything_TesterPtr self, const Ice_Current *current) {
+Ice_Status Everything_Tester_shutdown(Everything_TesterPtr self, const Ice_Current* current) {
     (void)self;
     Ice_Communicator_shutdown(current->communicator);
     return ICE_OK;
@@ -263,16 +270,16 @@ Ice_Status Everything_Tester_shutdown(Everything_TesterPtr self, const Ice_Curre
 static Everything_SquareDisp square;
 static Ice_Int side;
 
-Ice_Status Everything_SquareDisp_label(Everything_LabelledPtr self, Ice_String *result,
-                                       const Ice_Current *current) {
+Ice_Status Everything_SquareDisp_label(Everything_LabelledPtr self, Ice_String* result,
+                                       const Ice_Current* current) {
     (void)self, (void)current;
     *result = Ice_String_from("square");
     return ICE_OK;
 }
 
-Ice_Status Everything_SquareDisp_area(Everything_ShapeDispPtr self, Ice_Int scale, Ice_Int *result,
-                                      Everything_ShapeDisp_area_Exception *ex,
-                                      const Ice_Current *current) {
+Ice_Status Everything_SquareDisp_area(Everything_ShapeDispPtr self, Ice_Int scale, Ice_Int* result,
+                                      Everything_ShapeDisp_area_Exception* ex,
+                                      const Ice_Current* current) {
     (void)self, (void)current;
     *result = scale * side * side;
     ex->type = Everything_ShapeDisp_area_Failure;
@@ -281,7 +288,7 @@ Ice_Status Everything_SquareDisp_area(Everything_ShapeDispPtr self, Ice_Int scal
 }
 
 Ice_Status Everything_SquareDisp_grow(Everything_SquareDispPtr self, Ice_Int by,
-                                      const Ice_Current *current) {
+                                      const Ice_Current* current) {
     Ice_Reply reply;
     (void)self;
     side += by;

@@ -91,7 +91,7 @@ struct Shop_Mark {
 void Shop_Mark_init(Shop_Mark *v);
 
 /* The classes that can be received; 0 ends. */
-extern const Ice_ValueType *const called_valueTypes[];
+extern const Ice_ValueType *const called_ice_valueTypes[];
 
 /* ---- ::Shop::Priced ---- */
 

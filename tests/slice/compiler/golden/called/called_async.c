@@ -52,7 +52,7 @@ static void Shop_BookPrx_next_completed(void *cookie, Ice_Status status, Ice_Inp
     Shop_BookDisp_next_Async *call = (Shop_BookDisp_next_Async *)cookie;
     if (status == ICE_OK) {
         Ice_InputValues values;
-        Ice_InputStream_beginValues(is, &values, called_valueTypes);
+        Ice_InputStream_beginValues(is, &values, called_ice_valueTypes);
         Ice_InputStream_readValue(is, &call->result, &Shop_Ware_type);
         Ice_InputStream_endValues(is);
         if (is->failed)
@@ -66,12 +66,12 @@ static void Shop_BookPrx_next_completed(void *cookie, Ice_Status status, Ice_Inp
 
 Ice_Status Shop_BookPrx_next_async(Shop_BookPrxPtr self, const Shop_Ware *last,
         Shop_BookDisp_next_Async *call) {
-    Ice_OutputValues values;
+    Ice_OutputValues ice_values;
     Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "next", ICE_NORMAL | ICE_RESULTS);
     if (!os)
         return (Ice_Status)self->status;
     os->sliced = 1;
-    Ice_OutputStream_beginValues(os, &values);
+    Ice_OutputStream_beginValues(os, &ice_values);
     Ice_OutputStream_writeValue(os, (const Ice_Value *)last);
     Ice_OutputStream_endValues(os);
     call->done = 0;

@@ -57,20 +57,20 @@ void Shop_BookPrx_uncheckedCast(Shop_BookPrxPtr self, const Ice_ObjectPrx *from)
 }
 
 Ice_Status Shop_BookPrx_next(Shop_BookPrxPtr self, const Shop_Ware *last, Shop_Ware **result) {
-    Ice_OutputValues values;
-    Ice_InputValues received;
+    Ice_OutputValues ice_values;
+    Ice_InputValues ice_received;
     Ice_InputStreamPtr is = 0;
     Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "next", ICE_NORMAL | ICE_RESULTS);
     Ice_Status status;
     if (!os)
         return (Ice_Status)self->status;
     os->sliced = 1;
-    Ice_OutputStream_beginValues(os, &values);
+    Ice_OutputStream_beginValues(os, &ice_values);
     Ice_OutputStream_writeValue(os, (const Ice_Value *)last);
     Ice_OutputStream_endValues(os);
     status = Ice_ObjectPrx_invoke(self, &is);
     if (status == ICE_OK) {
-        Ice_InputStream_beginValues(is, &received, called_valueTypes);
+        Ice_InputStream_beginValues(is, &ice_received, called_ice_valueTypes);
         Ice_InputStream_readValue(is, result, &Shop_Ware_type);
         Ice_InputStream_endValues(is);
     }

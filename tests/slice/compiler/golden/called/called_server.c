@@ -2,15 +2,15 @@
  * Dispatch: from requests to the application's servants. */
 #include "called.h"
 
-static Ice_Status dispatch_Shop_Priced_price(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Shop_Priced_price(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Shop_Priced_Operations *operations = (const Shop_Priced_Operations *)table;
+    const Shop_Priced_Operations *ice_operations = (const Shop_Priced_Operations *)ice_table;
     Ice_Int result;
     Ice_Status status;
-    if (!operations->price)
+    if (!ice_operations->price)
         return ICE_OPERATION_NOT_EXIST;
     (void)is;
-    status = operations->price((Shop_PricedPtr)self, &result, current);
+    status = ice_operations->price((Shop_PricedPtr)self, &result, current);
     if (status == ICE_OK) {
         Ice_OutputStream_writeInt(os, result);
     }
@@ -44,17 +44,17 @@ void Shop_Priced_init(Shop_PricedPtr self) {
     Shop_Priced_initWith(self, &operations);
 }
 
-static Ice_Status dispatch_Shop_WareDisp_take(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Shop_WareDisp_take(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Shop_WareDisp_Operations *operations = (const Shop_WareDisp_Operations *)table;
+    const Shop_WareDisp_Operations *ice_operations = (const Shop_WareDisp_Operations *)ice_table;
     Ice_Int howMany;
     Ice_Status status;
-    if (!operations->take)
+    if (!ice_operations->take)
         return ICE_OPERATION_NOT_EXIST;
     howMany = Ice_InputStream_readInt(is);
     if (is->failed)
         return ICE_MARSHAL;
-    status = operations->take((Shop_WareDispPtr)self, howMany, current);
+    status = ice_operations->take((Shop_WareDispPtr)self, howMany, current);
     (void)os;
     return status == ICE_OK ? ICE_UNKNOWN_EXCEPTION : status; /* ICE_LATER was due */
 }
@@ -107,31 +107,31 @@ void Shop_WareDisp_init(Shop_WareDispPtr self) {
     Shop_WareDisp_initWith(self, &operations);
 }
 
-static Ice_Status dispatch_Shop_BookDisp_next(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Shop_BookDisp_next(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Shop_BookDisp_Operations *operations = (const Shop_BookDisp_Operations *)table;
-    Ice_InputValues values;
+    const Shop_BookDisp_Operations *ice_operations = (const Shop_BookDisp_Operations *)ice_table;
+    Ice_InputValues ice_values;
     Shop_Ware *last;
     Ice_Status status;
-    if (!operations->next)
+    if (!ice_operations->next)
         return ICE_OPERATION_NOT_EXIST;
-    Ice_InputStream_beginValues(is, &values, called_valueTypes);
+    Ice_InputStream_beginValues(is, &ice_values, called_ice_valueTypes);
     Ice_InputStream_readValue(is, &last, &Shop_Ware_type);
     Ice_InputStream_endValues(is);
     if (is->failed)
         return ICE_MARSHAL;
-    status = operations->next((Shop_BookDispPtr)self, last, current);
+    status = ice_operations->next((Shop_BookDispPtr)self, last, current);
     (void)os;
     return status == ICE_OK ? ICE_UNKNOWN_EXCEPTION : status; /* ICE_LATER was due */
 }
 
 Ice_Status Shop_BookDisp_next_response(Ice_Reply *reply, const Shop_Ware *result) {
-    Ice_OutputValues sent;
+    Ice_OutputValues ice_sent;
     Ice_OutputStreamPtr os = Ice_Reply_begin(reply);
     if (!os)
         return ICE_CONNECTION_LOST;
     os->sliced = 1;
-    Ice_OutputStream_beginValues(os, &sent);
+    Ice_OutputStream_beginValues(os, &ice_sent);
     Ice_OutputStream_writeValue(os, (const Ice_Value *)result);
     Ice_OutputStream_endValues(os);
     return Ice_Reply_end(reply, ICE_OK);

@@ -160,7 +160,7 @@ Ice_Status Shop_WareDisp_take_Exception_readFromInputStream(Shop_WareDisp_take_E
     return v->type == Shop_WareDisp_take_none ? ICE_UNKNOWN_USER_EXCEPTION : ICE_USER_EXCEPTION;
 }
 
-const Ice_ValueType *const called_valueTypes[] = {
+const Ice_ValueType *const called_ice_valueTypes[] = {
     &Shop_Thing_type,
     &Shop_Ware_type,
     &Shop_Book_type,

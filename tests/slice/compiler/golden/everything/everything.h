@@ -283,7 +283,7 @@ void Outer_Reopened_writeToOutputStream(const Outer_Reopened *v, Ice_OutputStrea
 void Outer_Reopened_readFromInputStream(Outer_Reopened *v, Ice_InputStreamPtr is);
 
 /* The classes that can be received; 0 ends. */
-extern const Ice_ValueType *const everything_valueTypes[];
+extern const Ice_ValueType *const everything_ice_valueTypes[];
 
 /* ---- ::Outer::Base ---- */
 

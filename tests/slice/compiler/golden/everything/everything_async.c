@@ -96,9 +96,9 @@ Ice_Status Outer_ServicePrx_work_async(Outer_ServicePrxPtr self, Ice_Int amount,
     if (limit && Ice_OutputStream_writeOptional(os, 1, ICE_OPTIONAL_F4))
         Ice_OutputStream_writeInt(os, *limit);
     if (weights && Ice_OutputStream_writeOptional(os, 2, ICE_OPTIONAL_FSIZE)) {
-        Ice_Int at = Ice_OutputStream_startSize(os);
+        Ice_Int ice_at = Ice_OutputStream_startSize(os);
         Outer_Weights_writeToOutputStream(weights, os);
-        Ice_OutputStream_endSize(os, at);
+        Ice_OutputStream_endSize(os, ice_at);
     }
     call->done = 0;
     return Ice_ObjectPrx_invokeAsync(self, Outer_ServicePrx_work_completed, call);
@@ -127,14 +127,14 @@ Ice_Status Outer_ServicePrx_maybe_async(Outer_ServicePrxPtr self, const Outer_Sh
     if (!os)
         return (Ice_Status)self->status;
     if (shapes && Ice_OutputStream_writeOptional(os, 1, ICE_OPTIONAL_FSIZE)) {
-        Ice_Int at = Ice_OutputStream_startSize(os);
+        Ice_Int ice_at = Ice_OutputStream_startSize(os);
         Outer_Shapes_writeToOutputStream(shapes, os);
-        Ice_OutputStream_endSize(os, at);
+        Ice_OutputStream_endSize(os, ice_at);
     }
     if (later && Ice_OutputStream_writeOptional(os, 2, ICE_OPTIONAL_FSIZE)) {
-        Ice_Int at = Ice_OutputStream_startSize(os);
+        Ice_Int ice_at = Ice_OutputStream_startSize(os);
         Ice_OutputStream_writePrx(os, later);
-        Ice_OutputStream_endSize(os, at);
+        Ice_OutputStream_endSize(os, ice_at);
     }
     if (bytes && Ice_OutputStream_writeOptional(os, 3, ICE_OPTIONAL_VSIZE))
         Outer_Bytes_writeToOutputStream(bytes, os);
@@ -157,7 +157,7 @@ static void Outer_ServicePrx_graph_completed(void *cookie, Ice_Status status,
     Outer_Service_graph_Async *call = (Outer_Service_graph_Async *)cookie;
     if (status == ICE_OK) {
         Ice_InputValues values;
-        Ice_InputStream_beginValues(is, &values, everything_valueTypes);
+        Ice_InputStream_beginValues(is, &values, everything_ice_valueTypes);
         Outer_Nodes_readFromInputStream(&call->all, is);
         Ice_InputStream_readValue(is, &call->result, &Outer_Node_type);
         Ice_InputStream_endValues(is);
@@ -174,12 +174,12 @@ static void Outer_ServicePrx_graph_completed(void *cookie, Ice_Status status,
 
 Ice_Status Outer_ServicePrx_graph_async(Outer_ServicePrxPtr self, const Outer_Node *root,
         const Ice_Value *any, Outer_Service_graph_Async *call) {
-    Ice_OutputValues values;
+    Ice_OutputValues ice_values;
     Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "graph", ICE_NORMAL | ICE_RESULTS);
     if (!os)
         return (Ice_Status)self->status;
     os->sliced = 1;
-    Ice_OutputStream_beginValues(os, &values);
+    Ice_OutputStream_beginValues(os, &ice_values);
     Ice_OutputStream_writeValue(os, (const Ice_Value *)root);
     Ice_OutputStream_writeValue(os, (const Ice_Value *)any);
     Ice_OutputStream_endValues(os);

@@ -71,9 +71,9 @@ Ice_Status Outer_ServicePrx_work(Outer_ServicePrxPtr self, Ice_Int amount, const
     if (limit && Ice_OutputStream_writeOptional(os, 1, ICE_OPTIONAL_F4))
         Ice_OutputStream_writeInt(os, *limit);
     if (weights && Ice_OutputStream_writeOptional(os, 2, ICE_OPTIONAL_FSIZE)) {
-        Ice_Int at = Ice_OutputStream_startSize(os);
+        Ice_Int ice_at = Ice_OutputStream_startSize(os);
         Outer_Weights_writeToOutputStream(weights, os);
-        Ice_OutputStream_endSize(os, at);
+        Ice_OutputStream_endSize(os, ice_at);
     }
     status = Ice_ObjectPrx_invoke(self, &is);
     if (status == ICE_OK) {
@@ -98,14 +98,14 @@ Ice_Status Outer_ServicePrx_maybe(Outer_ServicePrxPtr self, const Outer_Shapes *
     if (!os)
         return (Ice_Status)self->status;
     if (shapes && Ice_OutputStream_writeOptional(os, 1, ICE_OPTIONAL_FSIZE)) {
-        Ice_Int at = Ice_OutputStream_startSize(os);
+        Ice_Int ice_at = Ice_OutputStream_startSize(os);
         Outer_Shapes_writeToOutputStream(shapes, os);
-        Ice_OutputStream_endSize(os, at);
+        Ice_OutputStream_endSize(os, ice_at);
     }
     if (later && Ice_OutputStream_writeOptional(os, 2, ICE_OPTIONAL_FSIZE)) {
-        Ice_Int at = Ice_OutputStream_startSize(os);
+        Ice_Int ice_at = Ice_OutputStream_startSize(os);
         Ice_OutputStream_writePrx(os, later);
-        Ice_OutputStream_endSize(os, at);
+        Ice_OutputStream_endSize(os, ice_at);
     }
     if (bytes && Ice_OutputStream_writeOptional(os, 3, ICE_OPTIONAL_VSIZE))
         Outer_Bytes_writeToOutputStream(bytes, os);
@@ -131,21 +131,21 @@ Ice_Status Outer_ServicePrx_maybe(Outer_ServicePrxPtr self, const Outer_Shapes *
 Ice_Status Outer_ServicePrx_graph(Outer_ServicePrxPtr self, const Outer_Node *root,
         const Ice_Value *any, Outer_Nodes *all, Outer_Node **result,
         Outer_Service_graph_Exception *ex) {
-    Ice_OutputValues values;
-    Ice_InputValues received;
+    Ice_OutputValues ice_values;
+    Ice_InputValues ice_received;
     Ice_InputStreamPtr is = 0;
     Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "graph", ICE_NORMAL | ICE_RESULTS);
     Ice_Status status;
     if (!os)
         return (Ice_Status)self->status;
     os->sliced = 1;
-    Ice_OutputStream_beginValues(os, &values);
+    Ice_OutputStream_beginValues(os, &ice_values);
     Ice_OutputStream_writeValue(os, (const Ice_Value *)root);
     Ice_OutputStream_writeValue(os, (const Ice_Value *)any);
     Ice_OutputStream_endValues(os);
     status = Ice_ObjectPrx_invoke(self, &is);
     if (status == ICE_OK) {
-        Ice_InputStream_beginValues(is, &received, everything_valueTypes);
+        Ice_InputStream_beginValues(is, &ice_received, everything_ice_valueTypes);
         Outer_Nodes_readFromInputStream(all, is);
         Ice_InputStream_readValue(is, result, &Outer_Node_type);
         Ice_InputStream_endValues(is);

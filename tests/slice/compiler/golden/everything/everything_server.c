@@ -4,29 +4,29 @@
 
 #include <string.h>
 
-static Ice_Status dispatch_Outer_Base_name(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Outer_Base_name(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Outer_Base_Operations *operations = (const Outer_Base_Operations *)table;
+    const Outer_Base_Operations *ice_operations = (const Outer_Base_Operations *)ice_table;
     Ice_String result;
     Ice_Status status;
-    if (!operations->name)
+    if (!ice_operations->name)
         return ICE_OPERATION_NOT_EXIST;
     (void)is;
-    status = operations->name((Outer_BasePtr)self, &result, current);
+    status = ice_operations->name((Outer_BasePtr)self, &result, current);
     if (status == ICE_OK) {
         Ice_OutputStream_writeString(os, result);
     }
     return status;
 }
 
-static Ice_Status dispatch_Outer_Base_init_(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Outer_Base_init_(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Outer_Base_Operations *operations = (const Outer_Base_Operations *)table;
+    const Outer_Base_Operations *ice_operations = (const Outer_Base_Operations *)ice_table;
     Ice_Status status;
-    if (!operations->init)
+    if (!ice_operations->init)
         return ICE_OPERATION_NOT_EXIST;
     (void)is;
-    status = operations->init((Outer_BasePtr)self, current);
+    status = ice_operations->init((Outer_BasePtr)self, current);
     (void)os;
     return status;
 }
@@ -59,22 +59,22 @@ void Outer_Base_init(Outer_BasePtr self) {
     Outer_Base_initWith(self, &operations);
 }
 
-static Ice_Status dispatch_Outer_Service_find(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Outer_Service_find(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Outer_Service_Operations *operations = (const Outer_Service_Operations *)table;
+    const Outer_Service_Operations *ice_operations = (const Outer_Service_Operations *)ice_table;
     Ice_String key;
     Outer_Point where;
     Ice_Bool result;
     Outer_Service_find_Exception ex;
     Ice_Status status;
-    if (!operations->find)
+    if (!ice_operations->find)
         return ICE_OPERATION_NOT_EXIST;
     key = Ice_InputStream_readString(is);
     if (is->failed)
         return ICE_MARSHAL;
     memset(&ex, 0, sizeof ex);
     ex.type = Outer_Service_find_none;
-    status = operations->find((Outer_ServicePtr)self, key, &where, &result, &ex, current);
+    status = ice_operations->find((Outer_ServicePtr)self, key, &where, &result, &ex, current);
     if (status == ICE_OK) {
         Outer_Point_writeToOutputStream(&where, os);
         Ice_OutputStream_writeBool(os, result);
@@ -84,16 +84,16 @@ static Ice_Status dispatch_Outer_Service_find(Ice_ObjectPtr self, const void *ta
     return status;
 }
 
-static Ice_Status dispatch_Outer_Service_work(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Outer_Service_work(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Outer_Service_Operations *operations = (const Outer_Service_Operations *)table;
+    const Outer_Service_Operations *ice_operations = (const Outer_Service_Operations *)ice_table;
     Ice_Int amount;
     Ice_Bool has_limit;
     Ice_Int limit;
     Ice_Bool has_weights;
     Outer_Weights weights;
     Ice_Status status;
-    if (!operations->work)
+    if (!ice_operations->work)
         return ICE_OPERATION_NOT_EXIST;
     amount = Ice_InputStream_readInt(is);
     has_limit = Ice_InputStream_readOptional(is, 1, ICE_OPTIONAL_F4);
@@ -106,7 +106,7 @@ static Ice_Status dispatch_Outer_Service_work(Ice_ObjectPtr self, const void *ta
     }
     if (is->failed)
         return ICE_MARSHAL;
-    status = operations->work((Outer_ServicePtr)self, amount, has_limit ? &limit : 0,
+    status = ice_operations->work((Outer_ServicePtr)self, amount, has_limit ? &limit : 0,
             has_weights ? &weights : 0, current);
     (void)os;
     return status == ICE_OK ? ICE_UNKNOWN_EXCEPTION : status; /* ICE_LATER was due */
@@ -132,9 +132,9 @@ Ice_Status Outer_Service_work_exception(Ice_Reply *reply, const Outer_Service_wo
     return Ice_Reply_end(reply, ICE_USER_EXCEPTION);
 }
 
-static Ice_Status dispatch_Outer_Service_maybe(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Outer_Service_maybe(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Outer_Service_Operations *operations = (const Outer_Service_Operations *)table;
+    const Outer_Service_Operations *ice_operations = (const Outer_Service_Operations *)ice_table;
     Ice_Bool has_shapes;
     Outer_Shapes shapes;
     Ice_Bool has_bytes;
@@ -150,7 +150,7 @@ static Ice_Status dispatch_Outer_Service_maybe(Ice_ObjectPtr self, const void *t
     Ice_Bool has_result;
     Ice_String result;
     Ice_Status status;
-    if (!operations->maybe)
+    if (!ice_operations->maybe)
         return ICE_OPERATION_NOT_EXIST;
     has_shapes = Ice_InputStream_readOptional(is, 1, ICE_OPTIONAL_FSIZE);
     if (has_shapes) {
@@ -181,7 +181,7 @@ static Ice_Status dispatch_Outer_Service_maybe(Ice_ObjectPtr self, const void *t
     if (is->failed)
         return ICE_MARSHAL;
     has_result = 0;
-    status = operations->maybe((Outer_ServicePtr)self, has_shapes ? &shapes : 0,
+    status = ice_operations->maybe((Outer_ServicePtr)self, has_shapes ? &shapes : 0,
             has_bytes ? &bytes : 0, has_later ? &later : 0, has_p ? &p : 0, has_l ? &l : 0,
             has_points ? &points : 0, &has_result, &result, current);
     if (status == ICE_OK) {
@@ -191,20 +191,20 @@ static Ice_Status dispatch_Outer_Service_maybe(Ice_ObjectPtr self, const void *t
     return status;
 }
 
-static Ice_Status dispatch_Outer_Service_graph(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Outer_Service_graph(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Outer_Service_Operations *operations = (const Outer_Service_Operations *)table;
-    Ice_InputValues values;
-    Ice_OutputValues sent;
+    const Outer_Service_Operations *ice_operations = (const Outer_Service_Operations *)ice_table;
+    Ice_InputValues ice_values;
+    Ice_OutputValues ice_sent;
     Outer_Node *root;
     Ice_Value *any;
     Outer_Nodes all;
     Outer_Node *result;
     Outer_Service_graph_Exception ex;
     Ice_Status status;
-    if (!operations->graph)
+    if (!ice_operations->graph)
         return ICE_OPERATION_NOT_EXIST;
-    Ice_InputStream_beginValues(is, &values, everything_valueTypes);
+    Ice_InputStream_beginValues(is, &ice_values, everything_ice_valueTypes);
     Ice_InputStream_readValue(is, &root, &Outer_Node_type);
     Ice_InputStream_readValue(is, &any, 0);
     Ice_InputStream_endValues(is);
@@ -212,10 +212,10 @@ static Ice_Status dispatch_Outer_Service_graph(Ice_ObjectPtr self, const void *t
         return ICE_MARSHAL;
     memset(&ex, 0, sizeof ex);
     ex.type = Outer_Service_graph_none;
-    status = operations->graph((Outer_ServicePtr)self, root, any, &all, &result, &ex, current);
+    status = ice_operations->graph((Outer_ServicePtr)self, root, any, &all, &result, &ex, current);
     os->sliced = 1;
     if (status == ICE_OK) {
-        Ice_OutputStream_beginValues(os, &sent);
+        Ice_OutputStream_beginValues(os, &ice_sent);
         Outer_Nodes_writeToOutputStream(&all, os);
         Ice_OutputStream_writeValue(os, (const Ice_Value *)result);
         Ice_OutputStream_endValues(os);
@@ -225,37 +225,37 @@ static Ice_Status dispatch_Outer_Service_graph(Ice_ObjectPtr self, const void *t
     return status;
 }
 
-static Ice_Status dispatch_Outer_Service_void(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Outer_Service_void(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Outer_Service_Operations *operations = (const Outer_Service_Operations *)table;
+    const Outer_Service_Operations *ice_operations = (const Outer_Service_Operations *)ice_table;
     Ice_Int self_;
     Ice_Int result_;
     Outer_Key key;
     Ice_Status status;
-    if (!operations->void_)
+    if (!ice_operations->void_)
         return ICE_OPERATION_NOT_EXIST;
     self_ = Ice_InputStream_readInt(is);
     result_ = Ice_InputStream_readInt(is);
     Outer_Key_readFromInputStream(&key, is);
     if (is->failed)
         return ICE_MARSHAL;
-    status = operations->void_((Outer_ServicePtr)self, self_, result_, &key, current);
+    status = ice_operations->void_((Outer_ServicePtr)self, self_, result_, &key, current);
     (void)os;
     return status;
 }
 
-static Ice_Status dispatch_Outer_Service_any(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Outer_Service_any(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Outer_Service_Operations *operations = (const Outer_Service_Operations *)table;
+    const Outer_Service_Operations *ice_operations = (const Outer_Service_Operations *)ice_table;
     Outer_ServicePrx service;
     Ice_ObjectPrx result;
     Ice_Status status;
-    if (!operations->any)
+    if (!ice_operations->any)
         return ICE_OPERATION_NOT_EXIST;
     Ice_InputStream_readPrx(is, 0, &service);
     if (is->failed)
         return ICE_MARSHAL;
-    status = operations->any((Outer_ServicePtr)self, &service, &result, current);
+    status = ice_operations->any((Outer_ServicePtr)self, &service, &result, current);
     if (status == ICE_OK) {
         Ice_OutputStream_writePrx(os, &result);
     }
@@ -300,15 +300,15 @@ void Outer_Service_init(Outer_ServicePtr self) {
     Outer_Service_initWith(self, &operations);
 }
 
-static Ice_Status dispatch_Outer_Second_Pinged_ping(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Outer_Second_Pinged_ping(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Outer_Second_Pinged_Operations *operations =
-            (const Outer_Second_Pinged_Operations *)table;
+    const Outer_Second_Pinged_Operations *ice_operations =
+            (const Outer_Second_Pinged_Operations *)ice_table;
     Ice_Status status;
-    if (!operations->ping)
+    if (!ice_operations->ping)
         return ICE_OPERATION_NOT_EXIST;
     (void)is;
-    status = operations->ping((Outer_Second_PingedPtr)self, current);
+    status = ice_operations->ping((Outer_Second_PingedPtr)self, current);
     (void)os;
     return status;
 }
@@ -376,14 +376,14 @@ void Outer_Both_init(Outer_BothPtr self) {
     Outer_Both_initWith(self, &operations);
 }
 
-static Ice_Status dispatch_Outer_Later_done(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Outer_Later_done(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Outer_Later_Operations *operations = (const Outer_Later_Operations *)table;
+    const Outer_Later_Operations *ice_operations = (const Outer_Later_Operations *)ice_table;
     Ice_Status status;
-    if (!operations->done)
+    if (!ice_operations->done)
         return ICE_OPERATION_NOT_EXIST;
     (void)is;
-    status = operations->done((Outer_LaterPtr)self, current);
+    status = ice_operations->done((Outer_LaterPtr)self, current);
     (void)os;
     return status;
 }

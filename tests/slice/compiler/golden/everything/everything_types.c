@@ -454,7 +454,7 @@ void Outer_WithClass_writeToOutputStream(const Outer_WithClass *v, Ice_OutputStr
 void Outer_WithClass_readFromInputStream(Outer_WithClass *v, Ice_InputStreamPtr is) {
     Ice_InputValues values;
     v->ice_unknown = 0;
-    Ice_InputStream_beginValues(is, &values, everything_valueTypes);
+    Ice_InputStream_beginValues(is, &values, everything_ice_valueTypes);
     Ice_InputStream_startException(is);
     for (;;) {
         Ice_String id = Ice_InputStream_startSlice(is);
@@ -554,7 +554,7 @@ Ice_Status Outer_Service_find_Exception_readFromInputStream(Outer_Service_find_E
     Ice_UnknownSlice *unknown = 0;
     Ice_String id;
     v->type = Outer_Service_find_none;
-    Ice_InputStream_beginValues(is, &values, everything_valueTypes);
+    Ice_InputStream_beginValues(is, &values, everything_ice_valueTypes);
     Ice_InputStream_startException(is);
     do {
         id = Ice_InputStream_startSlice(is);
@@ -623,7 +623,7 @@ Ice_Status Outer_Service_graph_Exception_readFromInputStream(Outer_Service_graph
     Ice_UnknownSlice *unknown = 0;
     Ice_String id;
     v->type = Outer_Service_graph_none;
-    Ice_InputStream_beginValues(is, &values, everything_valueTypes);
+    Ice_InputStream_beginValues(is, &values, everything_ice_valueTypes);
     Ice_InputStream_startException(is);
     do {
         id = Ice_InputStream_startSlice(is);
@@ -639,7 +639,7 @@ Ice_Status Outer_Service_graph_Exception_readFromInputStream(Outer_Service_graph
     return v->type == Outer_Service_graph_none ? ICE_UNKNOWN_USER_EXCEPTION : ICE_USER_EXCEPTION;
 }
 
-const Ice_ValueType *const everything_valueTypes[] = {
+const Ice_ValueType *const everything_ice_valueTypes[] = {
     &Outer_Node_type,
     &Outer_Leaf_type,
     &Outer_Empty_type,

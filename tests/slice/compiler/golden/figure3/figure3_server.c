@@ -3,47 +3,47 @@
 #include "figure3.h"
 
 static Ice_Status dispatch_Autopilot_HwProcessingEngine_setParameterA(Ice_ObjectPtr self,
-        const void *table,
+        const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Autopilot_HwProcessingEngine_Operations *operations =
-            (const Autopilot_HwProcessingEngine_Operations *)table;
+    const Autopilot_HwProcessingEngine_Operations *ice_operations =
+            (const Autopilot_HwProcessingEngine_Operations *)ice_table;
     Ice_Short value;
     Ice_Status status;
-    if (!operations->setParameterA)
+    if (!ice_operations->setParameterA)
         return ICE_OPERATION_NOT_EXIST;
     value = Ice_InputStream_readShort(is);
     if (is->failed)
         return ICE_MARSHAL;
-    status = operations->setParameterA((Autopilot_HwProcessingEnginePtr)self, value, current);
+    status = ice_operations->setParameterA((Autopilot_HwProcessingEnginePtr)self, value, current);
     (void)os;
     return status;
 }
 
 static Ice_Status dispatch_Autopilot_HwProcessingEngine_startProcessing(Ice_ObjectPtr self,
-        const void *table,
+        const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Autopilot_HwProcessingEngine_Operations *operations =
-            (const Autopilot_HwProcessingEngine_Operations *)table;
+    const Autopilot_HwProcessingEngine_Operations *ice_operations =
+            (const Autopilot_HwProcessingEngine_Operations *)ice_table;
     Ice_Status status;
-    if (!operations->startProcessing)
+    if (!ice_operations->startProcessing)
         return ICE_OPERATION_NOT_EXIST;
     (void)is;
-    status = operations->startProcessing((Autopilot_HwProcessingEnginePtr)self, current);
+    status = ice_operations->startProcessing((Autopilot_HwProcessingEnginePtr)self, current);
     (void)os;
     return status;
 }
 
 static Ice_Status dispatch_Autopilot_HwProcessingEngine_getResult(Ice_ObjectPtr self,
-        const void *table,
+        const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Autopilot_HwProcessingEngine_Operations *operations =
-            (const Autopilot_HwProcessingEngine_Operations *)table;
+    const Autopilot_HwProcessingEngine_Operations *ice_operations =
+            (const Autopilot_HwProcessingEngine_Operations *)ice_table;
     Autopilot_ResultType res;
     Ice_Status status;
-    if (!operations->getResult)
+    if (!ice_operations->getResult)
         return ICE_OPERATION_NOT_EXIST;
     (void)is;
-    status = operations->getResult((Autopilot_HwProcessingEnginePtr)self, &res, current);
+    status = ice_operations->getResult((Autopilot_HwProcessingEnginePtr)self, &res, current);
     if (status == ICE_OK) {
         Autopilot_ResultType_writeToOutputStream(&res, os);
     }
@@ -84,18 +84,19 @@ void Autopilot_HwProcessingEngine_init(Autopilot_HwProcessingEnginePtr self) {
     Autopilot_HwProcessingEngine_initWith(self, &operations);
 }
 
-static Ice_Status dispatch_Autopilot_Vehicle_isAlive(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Autopilot_Vehicle_isAlive(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Autopilot_Vehicle_Operations *operations = (const Autopilot_Vehicle_Operations *)table;
+    const Autopilot_Vehicle_Operations *ice_operations =
+            (const Autopilot_Vehicle_Operations *)ice_table;
     Ice_Short sessionId;
     Ice_Bool result;
     Ice_Status status;
-    if (!operations->isAlive)
+    if (!ice_operations->isAlive)
         return ICE_OPERATION_NOT_EXIST;
     sessionId = Ice_InputStream_readShort(is);
     if (is->failed)
         return ICE_MARSHAL;
-    status = operations->isAlive((Autopilot_VehiclePtr)self, sessionId, &result, current);
+    status = ice_operations->isAlive((Autopilot_VehiclePtr)self, sessionId, &result, current);
     if (status == ICE_OK) {
         Ice_OutputStream_writeBool(os, result);
     }
@@ -130,19 +131,20 @@ void Autopilot_Vehicle_init(Autopilot_VehiclePtr self) {
     Autopilot_Vehicle_initWith(self, &operations);
 }
 
-static Ice_Status dispatch_Autopilot_Station_vehicleState(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Autopilot_Station_vehicleState(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Autopilot_Station_Operations *operations = (const Autopilot_Station_Operations *)table;
+    const Autopilot_Station_Operations *ice_operations =
+            (const Autopilot_Station_Operations *)ice_table;
     Autopilot_VehiclePrx uav;
     Autopilot_ParamSeq params;
     Ice_Status status;
-    if (!operations->vehicleState)
+    if (!ice_operations->vehicleState)
         return ICE_OPERATION_NOT_EXIST;
     Ice_InputStream_readPrx(is, 0, &uav);
     Autopilot_ParamSeq_readFromInputStream(&params, is);
     if (is->failed)
         return ICE_MARSHAL;
-    status = operations->vehicleState((Autopilot_StationPtr)self, &uav, &params, current);
+    status = ice_operations->vehicleState((Autopilot_StationPtr)self, &uav, &params, current);
     (void)os;
     return status;
 }

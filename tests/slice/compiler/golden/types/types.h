@@ -64,6 +64,26 @@ void Outer_Inner_Doubles_readFromInputStream(Outer_Inner_Doubles *v, Ice_InputSt
 
 #define Outer_Inner_Answer ((Ice_Int)42)
 
+typedef struct Outer_Inner_Refused {
+    Ice_Int why;
+} Outer_Inner_Refused;
+void Outer_Inner_Refused_init(Outer_Inner_Refused *v);
+void Outer_Inner_Refused_writeToOutputStream(const Outer_Inner_Refused *v, Ice_OutputStreamPtr os);
+void Outer_Inner_Refused_readFromInputStream(Outer_Inner_Refused *v, Ice_InputStreamPtr is);
+/* Without the head: this type's slice and those of its bases. */
+void Outer_Inner_Refused_writeSlices(const Outer_Inner_Refused *v, Ice_OutputStreamPtr os);
+void Outer_Inner_Refused_readSlices(Outer_Inner_Refused *v, Ice_InputStreamPtr is);
+
+typedef struct Outer_Refused {
+    Ice_String text;
+} Outer_Refused;
+void Outer_Refused_init(Outer_Refused *v);
+void Outer_Refused_writeToOutputStream(const Outer_Refused *v, Ice_OutputStreamPtr os);
+void Outer_Refused_readFromInputStream(Outer_Refused *v, Ice_InputStreamPtr is);
+/* Without the head: this type's slice and those of its bases. */
+void Outer_Refused_writeSlices(const Outer_Refused *v, Ice_OutputStreamPtr os);
+void Outer_Refused_readSlices(Outer_Refused *v, Ice_InputStreamPtr is);
+
 /* ---- ::Outer::Base ---- */
 
 #define Outer_Base_ice_staticId "::Outer::Base"
@@ -101,6 +121,24 @@ Ice_Status Outer_Base_name(Outer_BasePtr self, Ice_String *result, const Ice_Cur
 
 /* ---- ::Outer::Derived ---- */
 
+/* What Outer_Derived_self throws: `type` says which member of `u` it is. */
+typedef struct Outer_Derived_self_Exception {
+    enum {
+        Outer_Derived_self_none
+        , Outer_Derived_self_Outer_Inner_Refused
+        , Outer_Derived_self_Refused
+    } type;
+    union {
+        Outer_Inner_Refused Outer_Inner_Refused_;
+        Outer_Refused Refused;
+    } u;
+} Outer_Derived_self_Exception;
+void Outer_Derived_self_Exception_writeToOutputStream(const Outer_Derived_self_Exception *v,
+        Ice_OutputStreamPtr os);
+/* ICE_USER_EXCEPTION; ICE_UNKNOWN_USER_EXCEPTION: none of these; ICE_MARSHAL. */
+Ice_Status Outer_Derived_self_Exception_readFromInputStream(Outer_Derived_self_Exception *v,
+        Ice_InputStreamPtr is);
+
 #define Outer_Derived_ice_staticId "::Outer::Derived"
 Ice_Status Outer_DerivedPrx_checkedCast(Outer_DerivedPrxPtr self, const Ice_ObjectPrx *from);
 void Outer_DerivedPrx_uncheckedCast(Outer_DerivedPrxPtr self, const Ice_ObjectPrx *from);
@@ -111,7 +149,7 @@ Ice_Status Outer_DerivedPrx_echo(Outer_DerivedPrxPtr self, const Outer_Inner_Row
         const Outer_Inner_Names *names, Outer_Inner_Doubles *sums, Outer_Inner_Rows *result);
 
 Ice_Status Outer_DerivedPrx_self(Outer_DerivedPrxPtr self, const Ice_ObjectPrx *any, Ice_Bool int_,
-        Outer_DerivedPrx *result);
+        Outer_DerivedPrx *result, Outer_Derived_self_Exception *ex);
 
 /* Asynchronous calls: the caller keeps the object until it is done. */
 
@@ -132,6 +170,7 @@ typedef struct Outer_Derived_self_Async {
     Ice_Bool done;
     Ice_Status status;
     Outer_DerivedPrx result;
+    Outer_Derived_self_Exception exception;
 } Outer_Derived_self_Async;
 Ice_Status Outer_DerivedPrx_self_async(Outer_DerivedPrxPtr self, const Ice_ObjectPrx *any,
         Ice_Bool int_, Outer_Derived_self_Async *call);
@@ -148,7 +187,7 @@ typedef struct Outer_Derived_Operations {
             const Outer_Inner_Names *names, Outer_Inner_Doubles *sums, Outer_Inner_Rows *result,
             const Ice_Current *current);
     Ice_Status (*self_)(Outer_DerivedPtr self, const Ice_ObjectPrx *any, Ice_Bool int_,
-            Outer_DerivedPrx *result, const Ice_Current *current);
+            Outer_DerivedPrx *result, Outer_Derived_self_Exception *ex, const Ice_Current *current);
 } Outer_Derived_Operations;
 extern const Ice_Interface Outer_Derived_ice_interface;
 void Outer_Derived_initWith(Outer_DerivedPtr self, const Outer_Derived_Operations *operations);
@@ -160,7 +199,7 @@ Ice_Status Outer_Derived_echo(Outer_DerivedPtr self, const Outer_Inner_Rows *row
         const Outer_Inner_Names *names, Outer_Inner_Doubles *sums, Outer_Inner_Rows *result,
         const Ice_Current *current);
 Ice_Status Outer_Derived_self(Outer_DerivedPtr self, const Ice_ObjectPrx *any, Ice_Bool int_,
-        Outer_DerivedPrx *result, const Ice_Current *current);
+        Outer_DerivedPrx *result, Outer_Derived_self_Exception *ex, const Ice_Current *current);
 
 #ifdef __cplusplus
 }

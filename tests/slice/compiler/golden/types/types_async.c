@@ -57,6 +57,8 @@ static void Outer_DerivedPrx_self_completed(void *cookie, Ice_Status status,
         if (is->failed)
             status = ICE_MARSHAL;
     }
+    if (status == ICE_USER_EXCEPTION)
+        status = Outer_Derived_self_Exception_readFromInputStream(&call->exception, is);
     call->status = status;
     call->done = 1;
     if (call->completed)

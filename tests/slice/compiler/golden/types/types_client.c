@@ -49,7 +49,7 @@ Ice_Status Outer_DerivedPrx_echo(Outer_DerivedPrxPtr self, const Outer_Inner_Row
 }
 
 Ice_Status Outer_DerivedPrx_self(Outer_DerivedPrxPtr self, const Ice_ObjectPrx *any, Ice_Bool int_,
-        Outer_DerivedPrx *result) {
+        Outer_DerivedPrx *result, Outer_Derived_self_Exception *ex) {
     Ice_InputStreamPtr is = 0;
     Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "self", ICE_NORMAL | ICE_RESULTS);
     Ice_Status status;
@@ -61,5 +61,7 @@ Ice_Status Outer_DerivedPrx_self(Outer_DerivedPrxPtr self, const Ice_ObjectPrx *
     if (status == ICE_OK) {
         Ice_InputStream_readPrx(is, 0, result);
     }
+    if (status == ICE_USER_EXCEPTION && ex)
+        status = Outer_Derived_self_Exception_readFromInputStream(ex, is);
     return Ice_ObjectPrx_end(self, status);
 }

@@ -2,15 +2,15 @@
  * Dispatch: from requests to the application's servants. */
 #include "types.h"
 
-static Ice_Status dispatch_Outer_Base_name(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Outer_Base_name(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Outer_Base_Operations *operations = (const Outer_Base_Operations *)table;
+    const Outer_Base_Operations *ice_operations = (const Outer_Base_Operations *)ice_table;
     Ice_String result;
     Ice_Status status;
-    if (!operations->name)
+    if (!ice_operations->name)
         return ICE_OPERATION_NOT_EXIST;
     (void)is;
-    status = operations->name((Outer_BasePtr)self, &result, current);
+    status = ice_operations->name((Outer_BasePtr)self, &result, current);
     if (status == ICE_OK) {
         Ice_OutputStream_writeString(os, result);
     }
@@ -44,21 +44,21 @@ void Outer_Base_init(Outer_BasePtr self) {
     Outer_Base_initWith(self, &operations);
 }
 
-static Ice_Status dispatch_Outer_Derived_echo(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Outer_Derived_echo(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Outer_Derived_Operations *operations = (const Outer_Derived_Operations *)table;
+    const Outer_Derived_Operations *ice_operations = (const Outer_Derived_Operations *)ice_table;
     Outer_Inner_Rows rows;
     Outer_Inner_Names names;
     Outer_Inner_Doubles sums;
     Outer_Inner_Rows result;
     Ice_Status status;
-    if (!operations->echo)
+    if (!ice_operations->echo)
         return ICE_OPERATION_NOT_EXIST;
     Outer_Inner_Rows_readFromInputStream(&rows, is);
     Outer_Inner_Names_readFromInputStream(&names, is);
     if (is->failed)
         return ICE_MARSHAL;
-    status = operations->echo((Outer_DerivedPtr)self, &rows, &names, &sums, &result, current);
+    status = ice_operations->echo((Outer_DerivedPtr)self, &rows, &names, &sums, &result, current);
     if (status == ICE_OK) {
         Outer_Inner_Doubles_writeToOutputStream(&sums, os);
         Outer_Inner_Rows_writeToOutputStream(&result, os);
@@ -66,23 +66,27 @@ static Ice_Status dispatch_Outer_Derived_echo(Ice_ObjectPtr self, const void *ta
     return status;
 }
 
-static Ice_Status dispatch_Outer_Derived_self(Ice_ObjectPtr self, const void *table,
+static Ice_Status dispatch_Outer_Derived_self(Ice_ObjectPtr self, const void *ice_table,
         const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-    const Outer_Derived_Operations *operations = (const Outer_Derived_Operations *)table;
+    const Outer_Derived_Operations *ice_operations = (const Outer_Derived_Operations *)ice_table;
     Ice_ObjectPrx any;
     Ice_Bool int_;
     Outer_DerivedPrx result;
+    Outer_Derived_self_Exception ex;
     Ice_Status status;
-    if (!operations->self_)
+    if (!ice_operations->self_)
         return ICE_OPERATION_NOT_EXIST;
     Ice_InputStream_readPrx(is, 0, &any);
     int_ = Ice_InputStream_readBool(is);
     if (is->failed)
         return ICE_MARSHAL;
-    status = operations->self_((Outer_DerivedPtr)self, &any, int_, &result, current);
+    ex.type = Outer_Derived_self_none;
+    status = ice_operations->self_((Outer_DerivedPtr)self, &any, int_, &result, &ex, current);
     if (status == ICE_OK) {
         Ice_OutputStream_writePrx(os, &result);
     }
+    if (status == ICE_USER_EXCEPTION)
+        Outer_Derived_self_Exception_writeToOutputStream(&ex, os);
     return status;
 }
 

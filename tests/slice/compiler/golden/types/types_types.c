@@ -83,3 +83,104 @@ void Outer_Inner_Doubles_readFromInputStream(Outer_Inner_Doubles *v, Ice_InputSt
     for (i = 0; i < v->size; ++i)
         v->data[i] = Ice_InputStream_readDouble(is);
 }
+
+void Outer_Inner_Refused_init(Outer_Inner_Refused *v) {
+    memset(v, 0, sizeof *v);
+}
+
+void Outer_Inner_Refused_writeSlices(const Outer_Inner_Refused *v, Ice_OutputStreamPtr os) {
+    Ice_Int slice = Ice_OutputStream_startSlice(os, "::Outer::Inner::Refused", 1);
+    Ice_OutputStream_writeInt(os, v->why);
+    Ice_OutputStream_endSlice(os, slice, 1);
+}
+
+void Outer_Inner_Refused_readSlices(Outer_Inner_Refused *v, Ice_InputStreamPtr is) {
+    v->why = Ice_InputStream_readInt(is);
+    Ice_InputStream_endSlice(is);
+}
+
+void Outer_Inner_Refused_writeToOutputStream(const Outer_Inner_Refused *v, Ice_OutputStreamPtr os) {
+    Ice_OutputStream_startException(os, 0);
+    Outer_Inner_Refused_writeSlices(v, os);
+}
+
+void Outer_Inner_Refused_readFromInputStream(Outer_Inner_Refused *v, Ice_InputStreamPtr is) {
+    Ice_InputStream_startException(is);
+    for (;;) {
+        Ice_String id = Ice_InputStream_startSlice(is);
+        if (Ice_String_equals(id, "::Outer::Inner::Refused"))
+            break;
+        if (!Ice_InputStream_skipSlice(is)) {
+            is->failed = 1;
+            break;
+        }
+    }
+    Outer_Inner_Refused_readSlices(v, is);
+}
+
+void Outer_Refused_init(Outer_Refused *v) {
+    memset(v, 0, sizeof *v);
+}
+
+void Outer_Refused_writeSlices(const Outer_Refused *v, Ice_OutputStreamPtr os) {
+    Ice_Int slice = Ice_OutputStream_startSlice(os, "::Outer::Refused", 1);
+    Ice_OutputStream_writeString(os, v->text);
+    Ice_OutputStream_endSlice(os, slice, 1);
+}
+
+void Outer_Refused_readSlices(Outer_Refused *v, Ice_InputStreamPtr is) {
+    v->text = Ice_InputStream_readString(is);
+    Ice_InputStream_endSlice(is);
+}
+
+void Outer_Refused_writeToOutputStream(const Outer_Refused *v, Ice_OutputStreamPtr os) {
+    Ice_OutputStream_startException(os, 0);
+    Outer_Refused_writeSlices(v, os);
+}
+
+void Outer_Refused_readFromInputStream(Outer_Refused *v, Ice_InputStreamPtr is) {
+    Ice_InputStream_startException(is);
+    for (;;) {
+        Ice_String id = Ice_InputStream_startSlice(is);
+        if (Ice_String_equals(id, "::Outer::Refused"))
+            break;
+        if (!Ice_InputStream_skipSlice(is)) {
+            is->failed = 1;
+            break;
+        }
+    }
+    Outer_Refused_readSlices(v, is);
+}
+
+void Outer_Derived_self_Exception_writeToOutputStream(const Outer_Derived_self_Exception *v,
+        Ice_OutputStreamPtr os) {
+    switch (v->type) {
+    case Outer_Derived_self_Outer_Inner_Refused:
+        Outer_Inner_Refused_writeToOutputStream(&v->u.Outer_Inner_Refused_, os);
+        break;
+    case Outer_Derived_self_Refused:
+        Outer_Refused_writeToOutputStream(&v->u.Refused, os);
+        break;
+    default:
+        os->failed = 1; /* the servant has not said which */
+    }
+}
+
+Ice_Status Outer_Derived_self_Exception_readFromInputStream(Outer_Derived_self_Exception *v,
+        Ice_InputStreamPtr is) {
+    v->type = Outer_Derived_self_none;
+    Ice_InputStream_startException(is);
+    do {
+        Ice_String id = Ice_InputStream_startSlice(is);
+        if (Ice_String_equals(id, "::Outer::Inner::Refused")) {
+            v->type = Outer_Derived_self_Outer_Inner_Refused;
+            Outer_Inner_Refused_readSlices(&v->u.Outer_Inner_Refused_, is);
+        } else if (Ice_String_equals(id, "::Outer::Refused")) {
+            v->type = Outer_Derived_self_Refused;
+            Outer_Refused_readSlices(&v->u.Refused, is);
+        }
+    } while (v->type == Outer_Derived_self_none && Ice_InputStream_skipSlice(is));
+    if (is->failed)
+        return ICE_MARSHAL;
+    return v->type == Outer_Derived_self_none ? ICE_UNKNOWN_USER_EXCEPTION : ICE_USER_EXCEPTION;
+}

@@ -15,7 +15,7 @@ extern "C" {
 template <class Module> class CalculatorProxy : public CoreSlot<Module> {
 public:
     CalculatorProxy() {
-        this->hw_start(Demo_Calculator_Core_init(&core_, coreSlot, coreMemory, &this->seam, this), core_.core);
+        this->hw_start(Demo_Calculator_Core_init(&core_, coreSlot, coreMemory, &this->port, this), core_.core);
     }
     void setMode(Demo_Mode mode, Ice_Bool negate, Ice_Byte shift) {
         this->hw_check(Demo_Calculator_setMode(&core_.servant, mode, negate, shift, nullptr));

@@ -15,7 +15,7 @@ extern "C" {
 template <class Module> class WideEchoProxy : public CoreSlot<Module> {
 public:
     WideEchoProxy() {
-        this->hw_start(Demo_WideEcho_Core_init(&core_, coreSlot, coreMemory, &this->seam, this), core_.core);
+        this->hw_start(Demo_WideEcho_Core_init(&core_, coreSlot, coreMemory, &this->port, this), core_.core);
     }
     Ice_Long negate(Ice_Long v) {
         Ice_Long result{};

@@ -18,8 +18,8 @@ static Ice_Status hwStatus(Hw_Status status) {
 }
 
 Hw_Status Demo_WideEcho_Core_init(Demo_WideEcho_Core *self, U32 slot, U32 memory,
-        const Hw_Seam *seam, void *context) {
-    Hw_Status status = Hw_Core_init(&self->core, slot, WIDE_ECHO_ID_VALUE, seam, context);
+        const Hw_Port *port, void *context) {
+    Hw_Status status = Hw_Core_init(&self->core, slot, WIDE_ECHO_ID_VALUE, port, context);
     Demo_WideEcho_init(&self->servant);
     self->core.memory = memory;
     return status;

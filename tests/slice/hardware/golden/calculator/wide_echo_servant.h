@@ -14,7 +14,7 @@ typedef struct Demo_WideEcho_Core {
 /* Resets the core. HW_WRONG_CORE: the slot holds another one, or another version.
  * memory: DDR3 byte address of its buffers. */
 Hw_Status Demo_WideEcho_Core_init(Demo_WideEcho_Core *self, U32 slot, U32 memory,
-        const Hw_Seam *seam, void *context);
+        const Hw_Port *port, void *context);
 /* To be called when the slot's line is high, from the interrupt routine or a task. */
 void Demo_WideEcho_Core_interrupt(Demo_WideEcho_Core *self);
 /* Answers what is done or too late, and tells of events; to be called by a task after an

@@ -15,7 +15,7 @@ extern "C" {
 template <class Module> class ScalerProxy : public CoreSlot<Module> {
 public:
     ScalerProxy() {
-        this->hw_start(Demo_Scaler_Core_init(&core_, coreSlot, coreMemory, &this->seam, this), core_.core);
+        this->hw_start(Demo_Scaler_Core_init(&core_, coreSlot, coreMemory, &this->port, this), core_.core);
     }
     void setLimit(Ice_Short limit) {
         this->hw_check(Demo_Scaler_setLimit(&core_.servant, limit, nullptr));

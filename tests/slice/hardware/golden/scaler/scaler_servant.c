@@ -17,12 +17,14 @@ static Ice_Status hwStatus(Hw_Status status) {
     }
 }
 
-Hw_Status Demo_Scaler_Core_init(Demo_Scaler_Core *self, U32 slot, U32 memory, const Hw_Seam *seam,
+Hw_Status Demo_Scaler_Core_init(Demo_Scaler_Core *self, U32 slot, U32 memory, const Hw_Port *port,
         void *context) {
-    Hw_Status status = Hw_Core_init(&self->core, slot, SCALER_ID_VALUE, seam, context);
+    Hw_Status status = Hw_Core_init(&self->core, slot, SCALER_ID_VALUE, port, context);
     Demo_Scaler_init(&self->servant);
     Hw_Listener_init(&self->watch);
     self->core.memory = memory;
+    if (memory & 511U)
+        return HW_UNALIGNED;
     if (status == HW_OK)
         FSMC_write(slot, SCALER_MEMORY, memory >> 9);
     return status;

@@ -15,7 +15,7 @@ extern "C" {
 template <class Module> class StoreProxy : public CoreSlot<Module> {
 public:
     StoreProxy() {
-        this->hw_start(Demo_Store_Core_init(&core_, coreSlot, coreMemory, &this->seam, this), core_.core);
+        this->hw_start(Demo_Store_Core_init(&core_, coreSlot, coreMemory, &this->port, this), core_.core);
     }
     Ice_Byte exchange(const Demo_Vector *v, const Demo_Peaks *peaks, Demo_Bytes *bytes,
             Demo_Vector *w) {

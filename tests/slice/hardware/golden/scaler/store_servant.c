@@ -6,11 +6,13 @@
 
 typedef char store_layout_of_Demo_Peak[sizeof(Demo_Peak) == 4 ? 1 : -1];
 
-Hw_Status Demo_Store_Core_init(Demo_Store_Core *self, U32 slot, U32 memory, const Hw_Seam *seam,
+Hw_Status Demo_Store_Core_init(Demo_Store_Core *self, U32 slot, U32 memory, const Hw_Port *port,
         void *context) {
-    Hw_Status status = Hw_Core_init(&self->core, slot, STORE_ID_VALUE, seam, context);
+    Hw_Status status = Hw_Core_init(&self->core, slot, STORE_ID_VALUE, port, context);
     Demo_Store_init(&self->servant);
     self->core.memory = memory;
+    if (memory & 8191U)
+        return HW_UNALIGNED;
     if (status == HW_OK)
         FSMC_write(slot, STORE_MEMORY, memory >> 13);
     return status;

@@ -13,8 +13,8 @@ typedef struct Demo_Store_Core {
 } Demo_Store_Core;
 
 /* Resets the core. HW_WRONG_CORE: the slot holds another one, or another version.
- * memory: DDR3 byte address of its buffers, a multiple of 8192. */
-Hw_Status Demo_Store_Core_init(Demo_Store_Core *self, U32 slot, U32 memory, const Hw_Seam *seam,
+ * memory: DDR3 byte address of its buffers, a multiple of 8192 (else HW_UNALIGNED). */
+Hw_Status Demo_Store_Core_init(Demo_Store_Core *self, U32 slot, U32 memory, const Hw_Port *port,
         void *context);
 /* To be called when the slot's line is high, from the interrupt routine or a task. */
 void Demo_Store_Core_interrupt(Demo_Store_Core *self);

@@ -15,7 +15,7 @@ extern "C" {
 template <class Module> class HTTPLevelProxy : public CoreSlot<Module> {
 public:
     HTTPLevelProxy() {
-        this->hw_start(Demo_HTTPLevel_Core_init(&core_, coreSlot, coreMemory, &this->seam, this), core_.core);
+        this->hw_start(Demo_HTTPLevel_Core_init(&core_, coreSlot, coreMemory, &this->port, this), core_.core);
     }
     void setLevel(Ice_Byte level) {
         this->hw_check(Demo_HTTPLevel_setLevel(&core_.servant, level, nullptr));

@@ -5,8 +5,8 @@
 #include "fsmc.h"
 
 Hw_Status Demo_HTTPLevel_Core_init(Demo_HTTPLevel_Core *self, U32 slot, U32 memory,
-        const Hw_Seam *seam, void *context) {
-    Hw_Status status = Hw_Core_init(&self->core, slot, HTTP_LEVEL_ID_VALUE, seam, context);
+        const Hw_Port *port, void *context) {
+    Hw_Status status = Hw_Core_init(&self->core, slot, HTTP_LEVEL_ID_VALUE, port, context);
     Demo_HTTPLevel_init(&self->servant);
     self->core.memory = memory;
     return status;

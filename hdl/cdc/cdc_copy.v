@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+//
+// cdc_copy: one register that follows a bus of another clock, or of pins.
+//
+// A copy is one value for all that is decided from it, but an arbitrary one while the bus moves. It is used only where a
+// synchronised flag says that the bus has rested since the clock before (cdc_bus), or where any value does no harm.
+// Reset: none. Constraint: a clock's period from the bus to the copy.
+
+`default_nettype none
+
+module cdc_copy #(
+    parameter WIDTH = 8
+) (
+    input  wire             clk_i,
+    input  wire [WIDTH-1:0] bus_async_i,
+    output wire [WIDTH-1:0] bus_sync_o
+);
+    (* SHREG_EXTRACT = "NO", KEEP = "TRUE" *) reg [WIDTH-1:0] bus_copy;
+    assign bus_sync_o = bus_copy;
+    always @(posedge clk_i) bus_copy <= bus_async_i;
+endmodule

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+//
+// modem_api_rx_proof: each packet ends once, complete or bad.
+// Included at the foot of modem_api_rx.v, only for the prover.
+
+    reg past = 1'b0;
+    initial assume (rst_i);
+    reg open = 1'b0; // bytes of a packet were given, and neither its end nor that it is bad
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        open <= !rst_i && !end_o && !bad_o && (open || valid_o);
+        if (past && !$past(rst_i)) begin
+            assert (!(end_o && bad_o));
+            // Bytes are given inside a frame only, and a frame that gave some ends, one way or the other.
+            if (open && !end_o && !bad_o)
+                assert (received && (state == DATA || state == CHECKSUM));
+            assert (!(unsent_o && end_o));
+        end
+        cover (past && !rst_i && end_o && open);
+        cover (past && !rst_i && unsent_o);
+    end

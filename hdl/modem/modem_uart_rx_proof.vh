@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+//
+// modem_uart_rx_proof: a byte from a sender of the same rate comes once, in its stop bit.
+// Included at the foot of modem_uart_rx.v, only for the prover.
+
+    // The sender gives a tick a clock.
+    reg past = 1'b0;
+    wire busy = !idle;
+    initial assume (rst_i);
+    (* anyconst *) reg [7:0] sent;
+    (* hierconn, init = 1'b1 *) wire \u_rxd.bit_meta ;
+    reg [6:0] age = 7'd127; // ticks since the start bit's edge at the first flip-flop; 127: not yet
+    wire [9:0] frame = {1'b1, sent, 1'b0};
+    wire [6:0] before = age - 7'd1;
+    wire [3:0] got = (age - 7'd6) >> 3; // data bits sampled
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        assume (tick_i);
+        assume (!past || !rst_i);
+        assume (\u_rxd.bit_meta  == (age < 7'd80 ? frame[age[6:3]] : 1'b1));
+        if (age == 7'd127 && past && !rst_i && armed)
+            age <= 7'd0;
+        else if (age < 7'd90)
+            age <= age + 7'd1;
+        else
+            age <= 7'd127;
+        if (past) begin
+            assert (!framing_error_o);
+            assert (valid_o == (age == 7'd78));
+            if (valid_o)
+                assert (data_o == sent);
+            // The state in each clock of a frame, so that the proof need not find it.
+            assert (age <= 7'd90 || age == 7'd127);
+            assert (line == (age >= 7'd1 && age <= 7'd80 ? frame[before[6:3]] : 1'b1));
+            assert (busy == (age >= 7'd2 && age <= 7'd77));
+            if (busy)
+                assert (ticks == age[2:0] + 3'd2 && started == (age >= 7'd6));
+            if (busy && started)
+                assert (bits == (({1'b0, sent} << (4'd9 - got)) | (9'h100 >> got)));
+            assert (armed || age == 7'd127 || age > 7'd77);
+            // A tick that samples nothing moves `ticks` alone: the simulator skips it.
+            if (!$past(rst_i) && $past(busy && ticks != 3'd7))
+                assert (busy && {bits, started, armed} == $past({bits, started, armed}));
+        end
+        cover (past && valid_o && sent == 8'h3C);
+    end

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+//
+// system_slot_proof: events, errors and the reset register do as the register table says.
+// Included at the foot of system_slot.v, only for the prover.
+
+    reg past = 1'b0;
+    initial assume (rst_i);
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        if (past && !rst_i && !$past(rst_i)) begin
+            // The place shown is that of the oldest error since the event was last clear.
+            if ($past(access_error_i && (!error_open || clearing)))
+                assert ({error_addr, error_write} == $past({error_addr_i | {10{error_memory_i}}, error_write_i}));
+            else
+                assert ({error_addr, error_write} == $past({error_addr, error_write}));
+            assert (error_open == ($past(access_error_i) || $past(error_open && !clearing)));
+            if (!$past(reg_read && reg_addr == SYSTEM_CYCLES_LO))
+                assert (cycles_high_latched == $past(cycles_high_latched));
+        end
+        cover (past && !rst_i && $past(access_error_i && clearing && error_open));
+    end
+    always @* begin
+        assert (irq_o == (own_irq || |slot_irq_i));
+        if (bus_valid_i && !bus_write_i && !rst_i && bus_addr_i == SYSTEM_EVENT)
+            assert ({bus_rdata_o[31:2], bus_rdata_o[0]} == {30'd0, error_open}); // event and place tell of the same error
+    end

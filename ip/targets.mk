@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+#
+# Cores: begin one, test one, look at one, take one away (docs/recipes.md).
+IP ?=
+TEST ?=
+ICE ?=
+FORCE ?=
+
+# LANG is the core's language here, not that of messages, for which programs would take it; the environment's is the latter.
+new-ip: language = $(if $(filter command,$(origin LANG)),$(LANG),$(filter verilog vhdl,$(LANG)))
+new-ip: export LC_ALL := C.UTF-8
+new-ip: $(BUILD)/build.ninja ## begin a core: NAME=low_pass LANG=verilog|vhdl [ICE=file] writes ip/low_pass, which builds and passes its test
+	@[ -z '$(ICE)' ] || $(NINJA) --quiet slice2c
+	@ip/new.sh '$(NAME)' '$(language)' '$(BUILD)' '$(ICE)'
+
+TOP ?=
+BUS ?=
+FILES ?=
+new-foreign: ## put a third-party core in Verilog into a slot: NAME=my_uart TOP=its_module BUS=wishbone|axil|memory FILES="a.v b.v"
+	@ip/new_foreign.py '$(NAME)' '$(TOP)' '$(BUS)' 'ip/$(NAME)' $(FILES)
+.PHONY: new-foreign
+
+FOREIGN := i2c_master axil_uart spi_master
+# Put into slots by new-foreign: slot=module=bus=repository.
+FOREIGN_NEW := foreign_aes=aes=memory=aes foreign_uart=wbuart=wishbone=wbuart32
+foreign_slots = $(foreach f,$(FOREIGN_NEW),$(firstword $(subst =, ,$(f))))
+# Third-party cores come from the network, so they are no part of the rest.
+foreign: setup-tests ## put third-party cores (Wishbone, AXI4-Lite and plain buses in Verilog, records in VHDL) through the recipe and test them; downloads them
+	@cmake/fetch.sh foreign build/foreign-cores
+	@rm -rf build/foreign-cores/slots
+	@for f in $(FOREIGN_NEW); do \
+	    echo "$$f" | { IFS='=' read -r slot top bus from; \
+	        ip/new_foreign.py "$$slot" "$$top" "$$bus" "$(CURDIR)/build/foreign-cores/slots/$$slot" $(CURDIR)/build/foreign-cores/"$$from"/*.v >/dev/null; } || exit 1; \
+	done
+	@cmake -S . -B build/foreign -G Ninja -DROOMS="bus;slice;sw;hdl;ip;testbench" -DFOREIGN_CORES='$(CURDIR)/build/foreign-cores' \
+	    -DCORE_FOLDERS='$(subst $(eval ) ,;,$(FOREIGN:%=$(CURDIR)/examples/foreign/%) $(foreign_slots:%=$(CURDIR)/build/foreign-cores/slots/%))' >/dev/null
+	@ninja -C build/foreign -j $(JOBS) --quiet $(FOREIGN:%=test_ip_%) $(foreign_slots:%=test_ip_%)
+	@ctest --test-dir build/foreign --output-on-failure --no-tests=error -R '^test_ip_($(subst $(eval ) ,|,$(FOREIGN) $(foreign_slots)))[.]'
+.PHONY: foreign
+
+# Folders of cores outside of ip/, separated by ;: the build folder keeps them. CORE_FOLDERS=none: none from now on.
+CORE_FOLDERS ?=
+core-folders: $(BUILD)/build.ninja
+	@[ -z '$(CORE_FOLDERS)' ] || cmake '-DCORE_FOLDERS=$(filter-out none,$(CORE_FOLDERS))' $(BUILD) >$(BUILD)/core-folders.log 2>&1 || \
+	    { grep -A6 'CMake Error' $(BUILD)/core-folders.log >&2; exit 1; }
+.PHONY: core-folders
+
+ip-test: core-folders ## build and test one core: IP=fir (CORE_FOLDERS=/path/to/it where it is not in ip/)
+	@SEED=$(SEED) ip/test.sh '$(BUILD)' '$(IP)' '$(JOBS)'
+
+ip-synth: core-folders ## utilisation of one core: IP=fir (CORE_FOLDERS=/path/to/it where it is not in ip/)
+	@grep -qx '$(or $(IP),none)' $(BUILD)/cores.known || { echo "ip-synth: IP=name of a core, not '$(IP)'" >&2; exit 1; }
+	@$(MAKE) --no-print-directory synth DESIGN='$(IP)'
+
+wave: $(BUILD)/build.ninja ## waveform of one test of a core, for GTKWave: IP=fir TEST=Impulse
+	@JOBS=$(JOBS) ip/wave.sh '$(IP)' '$(TEST)'
+
+rm-ip: ## take a core away: NAME=low_pass, its folder and its line (FORCE=1: with changes that are not committed)
+	@FORCE='$(FORCE)' ip/rm.sh '$(NAME)' '$(BUILD)'
+.PHONY: new-ip ip-test ip-synth wave rm-ip

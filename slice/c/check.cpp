@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+//
+// check: what Slice allows and C90 does not.
+
+#include "c/generator.h"
+#include "c/names.h"
+#include "c/operations.h"
+#include "c/types.h"
+#include <algorithm>
+#include <set>
+#include <unordered_map>
+
+namespace {
+
+using DKind = Declaration::Kind;
+
+// Holds a ":hw" interface to what fits into registers: numbers, enums, structs and sequences of
+// them, exceptions of these, and proxies of callback interfaces.
+void checkHardware(const Declaration& d, Diagnostics& diagnostics) {
+    std::string who = "interface '" + d.name + "' is hardware ([\":hw\"]): '";
+    const char* kinds = "a number, an enum, a struct or a sequence of them";
+    for (const Operation& o : d.operations) {
+        if (!factsOf(o.result).isNumeric)
+            diagnostics.error(o.at, who + o.name + "' must return " + kinds);
+        for (const Declaration* e : o.throws)
+            for (const Declaration* part = e; part; part = part->base())
+                for (const Field& f : part->fields)
+                    if (!factsOf(f.type).isNumeric || f.isOptional)
+                        diagnostics.error(o.at, who + o.name + "' throws '" + e->name +
+                                                    "', whose '" + f.name + "' is not " + kinds);
+        for (const Field& p : o.parameters)
+            if (p.isOptional ||
+                !(factsOf(p.type).isNumeric || (p.type.kind == Type::Kind::Proxy && !p.isOut)))
+                diagnostics.error(p.at, who + p.name + "' must be " + kinds +
+                                            ", or the proxy of a callback interface");
+    }
+}
+
+void checkMetadata(const Declaration& d, Diagnostics& diagnostics) {
+    for (const std::string& m : d.metadata) {
+        if (m.compare(0, 2, "c:") != 0)
+            continue;
+        bool isList = d.kind == DKind::Sequence || d.kind == DKind::Dictionary;
+        if (m.compare(0, 6, "c:max:") == 0 && isList) {
+            std::string number = m.substr(6);
+            bool digits = !number.empty() && number.size() <= 5 &&
+                          number.find_first_not_of("0123456789") == std::string::npos;
+            int n = digits ? std::stoi(number) : 0;
+            if (n < 1 || n > 65535)
+                diagnostics.error(d.at, "[\"" + m + "\"]: the maximum is a number, 1..65535");
+        } else if (m != "c:scoped" || d.kind != DKind::Enum) {
+            diagnostics.warning(d.at, "metadata [\"" + m + "\"] means nothing here",
+                                Diagnostics::Metadata);
+        }
+    }
+}
+
+// The names that the generated C has at file scope, each with the Slice name it comes from.
+class CNames {
+public:
+    CNames(const Unit& unit, Diagnostics& diagnostics) : unit_(unit), diagnostics_(diagnostics) {}
+
+    void add(const std::string& c, const std::string& slice, const Location& at) {
+        auto [it, isNew] = names_.emplace(c, slice);
+        if (!isNew && it->second != slice && said_.insert(slice).second) // once for each
+            diagnostics_.error(at, "'" + slice + "' becomes '" + c + "' in C, as '" + it->second +
+                                       "' does");
+    }
+    void add(const Declaration& d) {
+        std::string c = cName(d), id = d.id();
+        switch (d.kind) {
+        case DKind::Interface:
+            interface(d);
+            break;
+        case DKind::Class:
+            proxy(d);
+            each(c, {"", "_declared", "_init", "_read", "_type", "_write"}, id, d.at);
+            break;
+        case DKind::Enum:
+            add(c, id, d.at);
+            for (const Enumerator& e : d.enumerators)
+                addEnumerator(d, e);
+            break;
+        case DKind::Constant:
+            add(c, id, d.at);
+            break;
+        default:
+            each(c,
+                 {"", "_Entry", "_find", "_init", "_readFromInputStream", "_readSlices",
+                  "_writeSlices", "_writeToOutputStream"},
+                 id, d.at);
+        }
+    }
+    // A member or parameter must not hide a name of file scope that its function may use, nor be a
+    // macro. Only a name with an underscore can.
+    void checkInner(const std::string& c, const std::string& slice, const Location& at) {
+        auto it = names_.find(c);
+        if (it != names_.end())
+            diagnostics_.error(at, "'" + slice + "' is in C the name that '" + it->second +
+                                       "' has there");
+    }
+
+private:
+    void each(const std::string& c, std::initializer_list<const char*> suffixes,
+              const std::string& slice, const Location& at) {
+        for (const char* suffix : suffixes)
+            add(c + suffix, slice, at);
+    }
+    void interface(const Declaration& d) {
+        std::string c = cName(d), id = d.id();
+        proxy(d);
+        each(c, {"", "Ptr", "_Operations", "_ice_interface", "_ice_type", "_init", "_initWith"}, id,
+             d.at);
+        for (const char* own : {"bases_", "dispatch_", "operations_"})
+            add(own + c, id, d.at);
+        if (d.fromInclude)
+            return; // its own file was held to these names
+        for (const Declaration* from : lineage(d))
+            for (const Operation& o : from->operations) {
+                std::string slice = from->id() + "::" + o.name;
+                each(c + "_" + cOperation(o.name),
+                     {"", "_Async", "_Exception", "_exception", "_none", "_response",
+                      "_Exception_readFromInputStream", "_Exception_writeToOutputStream"},
+                     slice, o.at);
+                each(cProxy(d) + "_" + cOperation(o.name), {"", "_async", "_completed"}, slice,
+                     o.at);
+                add("dispatch_" + operationName(d, o), slice, o.at);
+                auto family = mayThrow(unit_, o);
+                for (const Declaration* e : family)
+                    add(operationName(d, o) + "_" + exceptionLabel(o, family, *e),
+                        slice + " throws " + e->id(), o.at);
+            }
+    }
+    void proxy(const Declaration& d) {
+        std::string ofValue = cName(d.ofClass ? *d.ofClass : d);
+        add(ofValue + "_ice_staticId", d.id(), d.at);
+        each(cProxy(d), {"", "Ptr", "_checkedCast", "_declared", "_uncheckedCast"}, d.id(), d.at);
+    }
+    void addEnumerator(const Declaration& d, const Enumerator& e) {
+        std::string c = cEnumerator(d, e.name), id = d.id() + "::" + e.name;
+        auto [it, isNew] = names_.emplace(c, id);
+        if (!isNew && it->second != id)
+            diagnostics_.error(e.at,
+                               "'" + id + "' becomes '" + c + "' in C, as '" + it->second +
+                                   "' does; [\"c:scoped\"] before the enum puts its name between");
+    }
+
+    const Unit& unit_;
+    Diagnostics& diagnostics_;
+    std::unordered_map<std::string, std::string> names_;
+    std::set<std::string> said_;
+};
+
+void checkInner(const Declaration& d, CNames& names) {
+    for (const Field& f : d.fields)
+        names.checkInner(cMember(d, f), f.name, f.at);
+    for (const Operation& o : d.operations) {
+        names.checkInner(cIdentifier(o.name), o.name, o.at);
+        for (const Field& p : o.parameters)
+            names.checkInner(cParameter(o, p), p.name, p.at);
+        for (const Declaration* e : o.throws)
+            names.checkInner(exceptionMember(o, o.throws, *e), e->name, o.at);
+    }
+}
+
+} // namespace
+
+void checkC(const Unit& unit, Diagnostics& diagnostics) {
+    CNames names(unit, diagnostics);
+    std::string base = unit.file.substr(unit.file.rfind('/') + 1);
+    base.resize(std::min(base.rfind('.'), base.size()));
+    for (const char* own : {"_ice_valueTypes", "_sliceChecksums"})
+        names.add(cFileName(base, own), base + own, {});
+    for (const auto& d : unit.declarations)
+        if (!d->isLocal)
+            names.add(*d);
+    for (const auto& d : unit.declarations) {
+        if (d->isLocal)
+            continue;
+        checkInner(*d, names);
+        if (d->ofClass) // the rest is said of the class
+            continue;
+        checkMetadata(*d, diagnostics);
+        if (d->kind == DKind::Interface && d->isHardware())
+            checkHardware(*d, diagnostics);
+    }
+    for (const std::string& m : unit.metadata)
+        if (m.compare(0, 2, "c:") == 0 && m.compare(0, 10, "c:include:") != 0)
+            diagnostics.warning({diagnostics.intern(unit.file), 1, 1},
+                                "metadata [[\"" + m + "\"]] means nothing here",
+                                Diagnostics::Metadata);
+}

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+//
+// client: proxies: synchronous calls in one file, asynchronous ones in another.
+
+#include "c/files.h"
+#include "c/members.h"
+#include "c/names.h"
+
+namespace {
+
+std::string mode(const Operation& o) {
+    std::string m = o.idempotent ? "ICE_IDEMPOTENT" : "ICE_NORMAL";
+    return hasResults(o) || !o.throws.empty() ? m + " | ICE_RESULTS" : m;
+}
+
+// Writes the declarations that both kinds of calls begin with.
+void beginCall(Writer& w, const Operation& o) {
+    w.line("Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, \"{op}\", {mode});",
+           {{"op", o.name}, {"mode", mode(o)}});
+}
+
+void writeParameters(Writer& w, const Declaration& d, const Operation& o) {
+    w.line("if (!os)");
+    w.nested("return (Ice_Status)self->status;");
+    if (sendsClasses(o) && isSliced(d, o))
+        w.line("os->sliced = 1;");
+    writeWithValues(w, inSlots(o), "ice_values");
+}
+
+void syncFunction(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
+    w.block(proxySignature(d, o), {}, [&] {
+        if (sendsClasses(o))
+            w.line("Ice_OutputValues ice_values;");
+        if (returnsClasses(o))
+            w.line("Ice_InputValues ice_received;");
+        w.line("Ice_InputStreamPtr is = 0;");
+        beginCall(w, o);
+        w.line("Ice_Status status;");
+        writeParameters(w, d, o);
+        w.line("status = Ice_ObjectPrx_invoke(self, &is);");
+        if (hasResults(o)) {
+            w.block("if (status == ICE_OK)", {},
+                    [&] { readWithValues(w, c, outSlots(o, "*"), "ice_received"); });
+        }
+        if (!o.throws.empty()) {
+            w.line("if (status == ICE_USER_EXCEPTION && ex)");
+            w.nested("status = " + exceptionType(d, o) + "_readFromInputStream(ex, is);");
+        }
+        w.line("return Ice_ObjectPrx_end(self, status);");
+    });
+}
+
+void casts(Writer& w, const Declaration& d) {
+    Writer::Values v = {{"p", cProxy(d)}, {"c", cName(d.ofClass ? *d.ofClass : d)}};
+    w.blank();
+    w.block("Ice_Status {p}_checkedCast({p}Ptr self, const Ice_ObjectPrx *from)", v,
+            [&] { w.line("return Ice_ObjectPrx_checkedCast(self, from, {c}_ice_staticId);", v); });
+    w.blank();
+    w.block("void {p}_uncheckedCast({p}Ptr self, const Ice_ObjectPrx *from)", v,
+            [&] { w.line("*self = *from;"); });
+}
+
+void completedFunction(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
+    Writer::Values v = {{"p", cProxy(d) + "_" + cOperation(o.name)},
+                        {"t", operationName(d, o) + "_Async"}};
+    w.block("static void {p}_completed(void *cookie, Ice_Status status, Ice_InputStreamPtr is)", v,
+            [&] {
+                w.line("{t} *call = ({t} *)cookie;", v);
+                if (hasResults(o)) {
+                    w.block("if (status == ICE_OK)", {}, [&] {
+                        if (returnsClasses(o))
+                            w.line("Ice_InputValues values;");
+                        readWithValues(w, c, outSlots(o, "call->"), "values");
+                        w.line("if (is->failed)");
+                        w.nested("status = ICE_MARSHAL;");
+                    });
+                }
+                if (!o.throws.empty()) {
+                    w.line("if (status == ICE_USER_EXCEPTION)");
+                    w.nested("status = " + exceptionType(d, o) +
+                             "_readFromInputStream(&call->exception, is);");
+                }
+                if (!hasResults(o) && o.throws.empty())
+                    w.line("(void)is;");
+                w.line("call->status = status;");
+                w.line("call->done = 1;");
+                w.line("if (call->completed)");
+                w.nested("call->completed(call);");
+            });
+}
+
+void asyncFunction(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
+    w.blank();
+    completedFunction(w, c, d, o);
+    w.blank();
+    w.block(asyncSignature(d, o), {}, [&] {
+        if (sendsClasses(o))
+            w.line("Ice_OutputValues ice_values;");
+        beginCall(w, o);
+        writeParameters(w, d, o);
+        w.line("call->done = 0;");
+        w.line("return Ice_ObjectPrx_invokeAsync(self, " + cProxy(d) + "_" + cOperation(o.name) +
+               "_completed, call);");
+    });
+}
+
+} // namespace
+
+std::string clientFile(const CContext& c) {
+    Writer w = c.beginSource("Proxies: calls to objects elsewhere.");
+    c.each(Declaration::Kind::Interface, [&](const Declaration& d) {
+        if (d.isForward)
+            return;
+        casts(w, d);
+        for (const Operation& o : d.operations) {
+            w.blank();
+            syncFunction(w, c, d, o);
+        }
+    });
+    return w.text();
+}
+
+std::string asyncFile(const CContext& c) {
+    Writer w = c.beginSource("Proxies: asynchronous calls.");
+    c.eachOperation([&](const Declaration& d, const Operation& o) { asyncFunction(w, c, d, o); });
+    return w.text();
+}

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+//
+// context: what all generated files of a unit have in common.
+
+#ifndef SLICE_C_CONTEXT_H
+#define SLICE_C_CONTEXT_H
+
+#include "c/generator.h"
+#include "c/operations.h"
+#include "c/writer.h"
+
+struct CContext {
+    const Unit& unit;
+    const CFileNames& names;
+
+    std::string header() const;
+    // The name of the table of classes that this unit knows, which are those that can be received.
+    std::string valueTable() const;
+    // The name of the table of checksums.
+    std::string checksumTable() const;
+    bool usesClasses() const;
+    Writer begin(const std::string& what) const;
+    Writer beginSource(const std::string& what) const;
+
+    // Calls `f` for each declaration of the main file of this kind, local ones aside.
+    template <class F> void each(Declaration::Kind kind, F f) const {
+        for (const auto& d : unit.declarations)
+            if (d->kind == kind && !d->fromInclude && !d->isLocal)
+                f(*d);
+    }
+    // Calls `f` for each interface of the main file with each of its own operations.
+    template <class F> void eachOperation(F f) const {
+        each(Declaration::Kind::Interface, [&](const Declaration& d) {
+            for (const Operation& o : d.operations)
+                f(d, o);
+        });
+    }
+};
+
+#endif

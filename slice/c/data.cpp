@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+//
+// data: the types file: marshalling of structs, sequences and dictionaries, defaults, constants.
+
+#include "c/checksums.h"
+#include "c/files.h"
+#include "c/members.h"
+#include "c/names.h"
+
+namespace {
+
+using DKind = Declaration::Kind;
+
+std::string element(const Declaration& d) {
+    return d.kind == DKind::Dictionary ? cName(d) + "_Entry" : cType(d.element);
+}
+
+int leastElementSize(const Declaration& d) {
+    return leastWireSize(d.element) + (d.kind == DKind::Dictionary ? leastWireSize(d.key) : 0);
+}
+
+// The slots of one element: a key and a value, or the element alone.
+std::vector<Slot> elementSlots(const Declaration& d) {
+    Slot s{&d.element, "v->data[i]", "&v->data[i]", false, 0, ""};
+    if (d.kind == DKind::Sequence)
+        return {s};
+    return {{&d.key, "v->data[i].key", "&v->data[i].key", false, 0, ""},
+            {&d.element, "v->data[i].value", "&v->data[i].value", false, 0, ""}};
+}
+
+void loop(Writer& w, const Declaration& d, void (*each)(Writer&, const std::vector<Slot>&)) {
+    std::string head = "for (i = 0; i < v->size; ++i)";
+    if (d.kind == DKind::Dictionary) {
+        w.block(head, {}, [&] { each(w, elementSlots(d)); });
+    } else {
+        w.line(head);
+        w.indented([&] { each(w, elementSlots(d)); }); // one statement
+    }
+}
+
+void writeFunction(Writer& w, const Declaration& d) {
+    bool bytes = d.kind == DKind::Sequence && d.element.kind == Type::Kind::Byte;
+    int maximum = statedMaximum(d);
+    w.blank();
+    w.block("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os)", {{"c", cName(d)}},
+            [&] {
+                if (!bytes)
+                    w.line("Ice_Int i;");
+                if (maximum) {
+                    w.block("if (v->size > " + std::to_string(maximum) + ")", {}, [&] {
+                        w.line("os->failed = 1;");
+                        w.line("return;");
+                    });
+                }
+                w.line("Ice_OutputStream_writeSize(os, v->size);");
+                if (bytes)
+                    w.line("Ice_OutputStream_writeBlob(os, v->data, v->size);");
+                else
+                    loop(w, d, writeSlots);
+            });
+}
+
+void readElsewhere(Writer& w, const Declaration& d) {
+    Writer::Values v = {{"e", element(d)}};
+    w.line("v->data = ({e}" + std::string(v[0].second.back() == '*' ? "*" : " *") +
+               ")Ice_InputStream_allocate(is, v->size, (Ice_Int)sizeof *v->data);",
+           v);
+    w.line("if (!v->data)");
+    w.nested("v->size = 0;");
+}
+
+void readFunction(Writer& w, const Declaration& d) {
+    bool bytes = d.kind == DKind::Sequence && d.element.kind == Type::Kind::Byte;
+    int maximum = statedMaximum(d);
+    w.blank();
+    w.block("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is)", {{"c", cName(d)}}, [&] {
+        if (bytes && maximum)
+            w.line("const Ice_Byte *bytes;");
+        else if (!bytes)
+            w.line("Ice_Int i;");
+        w.line("v->size = Ice_InputStream_readSequence(is, " + std::to_string(leastElementSize(d)) +
+               ");");
+        if (maximum)
+            w.block("if (v->size > " + std::to_string(maximum) + ")", {}, [&] {
+                w.line("v->size = 0;");
+                w.line("is->failed = 1;");
+            });
+        if (bytes && maximum) {
+            w.line("bytes = Ice_InputStream_readBlob(is, v->size);");
+            w.line("if (bytes)");
+            w.nested("memcpy(v->data, bytes, (size_t)v->size);");
+        } else if (bytes) {
+            w.line("/* In place: the bytes stay in the message. */");
+            w.line("v->data = (Ice_Byte *)Ice_InputStream_readBlob(is, v->size);");
+            w.line("if (!v->data)");
+            w.nested("v->size = 0;");
+        } else {
+            if (!maximum)
+                readElsewhere(w, d);
+            loop(w, d, readSlots);
+        }
+    });
+}
+
+void findFunction(Writer& w, const Declaration& d) {
+    if (isByPointer(d.key) || d.key.kind == Type::Kind::Long)
+        return;
+    bool isString = d.key.kind == Type::Kind::String;
+    w.blank();
+    w.block(cVariable(d.element, "*" + cName(d) + "_find") + "(const " + cName(d) + " *v, " +
+                cVariable(d.key, "key") + ")",
+            {}, [&] {
+                w.line("Ice_Int i;");
+                w.line("for (i = 0; i < v->size; ++i)");
+                if (isString) {
+                    w.line("    if (Ice_String_same(&v->data[i].key, &key))");
+                } else {
+                    w.line("    if (v->data[i].key == key)");
+                }
+                std::string type = cType(d.element);
+                w.line("        return (" + type + (type.back() == '*' ? "*" : " *") +
+                       ")&v->data[i].value;");
+                w.line("return 0;");
+            });
+}
+
+void structFunctions(Writer& w, const Declaration& d) {
+    if (!isRuntimeType(d) || !d.fields.empty())
+        initFunction(w, d);
+    w.blank();
+    w.block("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os)", {{"c", cName(d)}},
+            [&] { writeSlots(w, memberSlots(d)); });
+    w.blank();
+    w.block("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is)", {{"c", cName(d)}},
+            [&] { readSlots(w, memberSlots(d)); });
+}
+
+} // namespace
+
+std::string typesFile(const CContext& c) {
+    Writer w = c.beginSource("Marshalling of types and exceptions.");
+    w.blank();
+    w.line("#include <string.h>");
+    c.each(DKind::Constant, [&](const Declaration& d) {
+        if (d.element.kind != Type::Kind::Long)
+            return;
+        w.blank();
+        w.line("const Ice_Long " + cName(d) + " = " + cValue(d.value, d.element) + ";");
+    });
+    for (const auto& d : c.unit.declarations) {
+        if (d->fromInclude || d->isLocal || d->isForward)
+            continue;
+        switch (d->kind) {
+        case DKind::Struct:
+            structFunctions(w, *d);
+            break;
+        case DKind::Sequence:
+        case DKind::Dictionary:
+            writeFunction(w, *d);
+            readFunction(w, *d);
+            if (d->kind == DKind::Dictionary)
+                findFunction(w, *d);
+            break;
+        case DKind::Exception:
+            exceptionFunctions(w, c, *d);
+            break;
+        case DKind::Class:
+            classFunctions(w, *d);
+            break;
+        default:
+            break;
+        }
+    }
+    c.eachOperation([&](const Declaration& d, const Operation& o) {
+        if (!o.throws.empty())
+            thrownFunctions(w, c, d, o);
+    });
+    if (c.usesClasses())
+        valueTypeTable(w, c);
+    if (c.names.checksums) {
+        w.blank();
+        w.line("const Ice_SliceChecksum " + c.checksumTable() + "[] = {");
+        for (const auto& [id, checksum] : checksums(c.unit))
+            w.line("    {\"" + id + "\", \"" + checksum + "\"},");
+        w.line("    {0, 0}};");
+    }
+    return w.text();
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+//
+// dependencies: paths, and printing.
+
+#include "c/dependencies.h"
+#include <filesystem>
+#include <sstream>
+
+namespace fs = std::filesystem;
+
+std::string headerOf(const std::string& included, const std::string& file,
+                     const std::vector<std::string>& includeDirs, const std::string& extension) {
+    fs::path path = fs::weakly_canonical(included), best;
+    auto consider = [&](const fs::path& dir) {
+        fs::path relative = path.lexically_relative(fs::weakly_canonical(dir));
+        bool isUnder = !relative.empty() && *relative.begin() != "..";
+        if (isUnder && (best.empty() || relative.string().size() < best.string().size()))
+            best = relative;
+    };
+    for (const std::string& d : includeDirs)
+        consider(d);
+    if (best.empty())
+        consider(fs::absolute(file).parent_path());
+    if (best.empty())
+        best = path;
+    return best.replace_extension(extension).generic_string();
+}
+
+namespace {
+
+// The preprocessor makes paths absolute; below the current folder they are written without it.
+std::string shown(const std::string& file) {
+    fs::path path = fs::weakly_canonical(file),
+             relative = path.lexically_relative(fs::current_path());
+    return relative.empty() || *relative.begin() == ".." ? path.string() : relative.string();
+}
+
+} // namespace
+
+void Dependencies::add(const std::string& file, const CFileNames& names,
+                       const std::vector<std::string>& files) {
+    entries_.push_back({file, names, {}});
+    for (const std::string& f : files)
+        if (shown(f) != shown(file))
+            entries_.back().dependsOn.push_back(shown(f));
+}
+
+std::string Dependencies::text(bool xml) const {
+    std::ostringstream out;
+    if (xml)
+        out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<dependencies>\n";
+    for (const Entry& e : entries_) {
+        if (xml) {
+            out << "  <source name=\"" << e.file << "\">\n";
+            for (const std::string& d : e.dependsOn)
+                out << "    <dependsOn name=\"" << d << "\"/>\n";
+            out << "  </source>\n";
+            continue;
+        }
+        const std::string& base = e.names.base;
+        out << base << '.' << e.names.headerExtension;
+        for (const char* part : {"_types", "_client", "_async", "_server"})
+            out << ' ' << base << part << '.' << e.names.sourceExtension;
+        out << ": \\\n " << e.file;
+        for (const std::string& d : e.dependsOn)
+            out << " \\\n " << d;
+        out << '\n';
+    }
+    if (xml)
+        out << "</dependencies>\n";
+    return out.str();
+}

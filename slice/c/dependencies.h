@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+//
+// dependencies: what --depend prints, and where the headers of included Slice files are.
+
+#ifndef SLICE_C_DEPENDENCIES_H
+#define SLICE_C_DEPENDENCIES_H
+
+#include "c/generator.h"
+#include <string>
+#include <vector>
+
+// The header for `included` as it is named in an #include: the shortest path from one of the -I
+// folders, else from the folder of `file`.
+std::string headerOf(const std::string& included, const std::string& file,
+                     const std::vector<std::string>& includeDirs, const std::string& extension);
+
+class Dependencies {
+public:
+    // `files`: the Slice file itself and all that it includes.
+    void add(const std::string& file, const CFileNames& names,
+             const std::vector<std::string>& files);
+    // The dependencies as rules for make, or as XML as Ice's compilers write it.
+    std::string text(bool xml) const;
+
+private:
+    struct Entry {
+        std::string file;
+        CFileNames names;
+        std::vector<std::string> dependsOn;
+    };
+    std::vector<Entry> entries_;
+};
+
+#endif

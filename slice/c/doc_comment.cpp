@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+//
+// doc_comment: cleaning and rewording.
+
+#include "c/doc_comment.h"
+
+namespace {
+
+void replaceAll(std::string& s, std::string_view from, std::string_view to) {
+    for (size_t at = 0; (at = s.find(from, at)) != std::string::npos; at += to.size())
+        s.replace(at, from.size(), to);
+}
+
+// "{@link Name#op}" becomes "Name.op".
+void plainLinks(std::string& s) {
+    for (size_t at = 0; (at = s.find("{@link", at)) != std::string::npos;) {
+        size_t close = s.find('}', at);
+        if (close == std::string::npos)
+            return;
+        size_t begin = s.find_first_not_of(' ', at + 6);
+        std::string name = s.substr(begin, close - begin);
+        if (!name.empty() && name[0] == '#')
+            name.erase(0, 1);
+        replaceAll(name, "#", ".");
+        s.replace(at, close - at + 1, name);
+    }
+}
+
+// "@param name text" becomes "name: text".
+void plainTag(std::string& s) {
+    auto is = [&](std::string_view tag) { return s.compare(0, tag.size(), tag) == 0; };
+    if (is("@param ")) {
+        s.erase(0, 7);
+        size_t end = s.find(' ');
+        if (end != std::string::npos)
+            s.insert(end, ":");
+    } else if (is("@return ")) {
+        s.replace(0, 8, "result: ");
+    } else if (is("@throws ")) {
+        s.erase(0, 1);
+        size_t end = s.find(' ', 7);
+        if (end != std::string::npos)
+            s.insert(end, ":");
+    } else if (is("@deprecated")) {
+        s.replace(0, 11, "Deprecated:");
+    } else if (is("@see ")) {
+        s.erase(0, 1);
+    }
+}
+
+} // namespace
+
+std::vector<std::string> docLines(const std::string& doc) {
+    std::vector<std::string> lines;
+    for (size_t at = 0; at <= doc.size();) {
+        size_t end = std::min(doc.find('\n', at), doc.size());
+        std::string line = doc.substr(at, end - at);
+        at = end + 1;
+        size_t begin = line.find_first_not_of(" \t*/\r");
+        line = begin == std::string::npos
+                   ? ""
+                   : line.substr(begin, line.find_last_not_of(" \t\r") - begin + 1);
+        plainLinks(line);
+        plainTag(line);
+        replaceAll(line, "*/", "* /");
+        replaceAll(line, "/*", "/ *");
+        if (!line.empty() || (!lines.empty() && !lines.back().empty()))
+            lines.push_back(line);
+    }
+    while (!lines.empty() && lines.back().empty())
+        lines.pop_back();
+    return lines;
+}
+
+void writeDoc(Writer& w, const std::string& doc, const std::vector<std::string>& metadata) {
+    std::vector<std::string> lines = docLines(doc);
+    for (const std::string& m : metadata)
+        if (m.compare(0, 9, "deprecate") == 0)
+            lines.push_back("Deprecated" +
+                            (m.size() > 10 ? ": " + m.substr(10) : std::string(".")));
+    if (lines.empty())
+        return;
+    for (size_t i = 0; i < lines.size(); ++i) {
+        std::string text = (i == 0 ? "/* " : lines[i].empty() ? " *" : " * ") + lines[i];
+        w.line(text + (i + 1 == lines.size() ? " */" : ""));
+    }
+}

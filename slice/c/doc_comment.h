@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+//
+// doc_comment: doc comments of Slice as comments of C.
+
+#ifndef SLICE_C_DOC_COMMENT_H
+#define SLICE_C_DOC_COMMENT_H
+
+#include "c/writer.h"
+#include "front/ast.h"
+#include <string>
+#include <vector>
+
+// The text without stars and margins; @param, @return, @throws and {@link} in plain words.
+std::vector<std::string> docLines(const std::string& doc);
+// Writes it, with a line for ["deprecate"]; nothing where there is neither.
+void writeDoc(Writer& w, const std::string& doc, const std::vector<std::string>& metadata = {});
+
+#endif

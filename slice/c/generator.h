@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+//
+// generator: a unit as C90 for IceC: a header and four sources (docs/slice-mapping.md).
+
+#ifndef SLICE_C_GENERATOR_H
+#define SLICE_C_GENERATOR_H
+
+#include "front/ast.h"
+#include <string>
+#include <vector>
+
+struct GeneratedFile {
+    std::string name, text;
+};
+
+struct CFileNames {
+    std::string base;                  // "Printer"
+    std::string headerExtension = "h"; // without the dot
+    std::string sourceExtension = "c";
+    std::string path;                  // of the header, as others include it: its guard
+    std::string includeDir;            // before the header's name in the sources, may be empty
+    bool checksums = false;            // a table of them, too
+    std::vector<std::string> includes; // headers of the Slice files that the main file includes
+};
+
+// Says what C cannot map, or would map to one name twice. Call it before generateC.
+void checkC(const Unit& unit, Diagnostics& diagnostics);
+
+std::vector<GeneratedFile> generateC(const Unit& unit, const CFileNames& names);
+
+#endif

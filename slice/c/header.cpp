@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: MIT
+//
+// header: the header: types, constants, proxies, servants.
+
+#include "c/doc_comment.h"
+#include "c/files.h"
+#include "c/names.h"
+
+namespace {
+
+using DKind = Declaration::Kind;
+
+// "ICE_METRICS_ICE_H" of Ice/Metrics.ice
+std::string guardOf(const CContext& c) {
+    std::string path = c.names.path.empty() ? c.header() : c.names.path;
+    std::string guard = path.substr(0, path.rfind('.')) + "_ICE_" + c.names.headerExtension;
+    for (char& ch : guard) {
+        bool isSmall = ch >= 'a' && ch <= 'z';
+        bool isKept = (ch >= '0' && ch <= '9') || (ch >= 'A' && ch <= 'Z');
+        ch = isSmall ? static_cast<char>(ch - 32) : isKept ? ch : '_';
+    }
+    return guard[0] >= '0' && guard[0] <= '9' ? "SLICE_" + guard : guard;
+}
+
+// Interfaces and classes may be declared by several files: C90 wants one typedef.
+void forwardDeclarations(Writer& w, const CContext& c) {
+    for (const auto& d : c.unit.declarations) {
+        bool isClass = d->kind == DKind::Class;
+        if (d->fromInclude || d->isLocal || d->ofClass || (!isClass && d->kind != DKind::Interface))
+            continue;
+        Writer::Values v = {{"c", cName(*d)}};
+        w.blank();
+        w.line(isClass ? "#ifndef {c}_declared" : "#ifndef {c}Prx_declared", v);
+        w.line(isClass ? "#define {c}_declared" : "#define {c}Prx_declared", v);
+        if (isClass) {
+            w.line("typedef struct {c} {c};", v);
+            w.line("extern const Ice_ValueType {c}_type;", v);
+        }
+        w.line("typedef Ice_ObjectPrx {c}Prx, *{c}PrxPtr;", v);
+        w.line("#endif");
+    }
+}
+
+void declareConstant(Writer& w, const Declaration& d) {
+    std::string value = cValue(d.value, d.element), name = cName(d);
+    switch (d.element.kind) {
+    case Type::Kind::Long:
+        w.line("extern const Ice_Long " + name + ";");
+        break;
+    case Type::Kind::String:
+        w.line("#define " + name + " " + value);
+        break;
+    default:
+        w.line("#define " + name + " ((" + cType(d.element) + ")" +
+               (value[0] == '-' ? "(" + value + ")" : value) + ")");
+    }
+}
+
+void declareEnum(Writer& w, const Declaration& d) {
+    w.block(
+        "typedef enum " + cName(d), {},
+        [&] {
+            for (size_t i = 0; i < d.enumerators.size(); ++i) {
+                const Enumerator& e = d.enumerators[i];
+                writeDoc(w, e.doc);
+                w.line(cEnumerator(d, e.name) + " = " + std::to_string(e.value) +
+                       (i + 1 < d.enumerators.size() ? "," : ""));
+            }
+        },
+        "} " + cName(d) + ";");
+}
+
+void declareFields(Writer& w, const Declaration& d) {
+    for (const Field& f : d.fields) {
+        writeDoc(w, f.doc, f.metadata);
+        if (f.isOptional)
+            w.line("Ice_Bool has_" + f.name + ";");
+        w.line(cVariable(f.type, cMember(d, f)) + ";");
+    }
+}
+
+// The members of a sequence or dictionary of `element`.
+void declareElements(Writer& w, const Declaration& d, const std::string& element) {
+    int maximum = statedMaximum(d);
+    bool pointer = element.back() == '*';
+    w.block(
+        "typedef struct " + cName(d), {},
+        [&] {
+            w.line("Ice_Int size;");
+            std::string name = maximum ? "data[" + std::to_string(maximum) + "]" : "*data";
+            w.line(element + (pointer ? "" : " ") + name + ";");
+        },
+        "} " + cName(d) + ";");
+}
+
+bool hasFind(const Declaration& d) {
+    return !isByPointer(d.key) && d.key.kind != Type::Kind::Long;
+}
+
+void declareStruct(Writer& w, const Declaration& d) {
+    Writer::Values v = {{"c", cName(d)}};
+    bool isClass = d.kind == DKind::Class;
+    // A class is a type already.
+    w.block(
+        isClass ? "struct {c}" : "typedef struct {c}", v,
+        [&] {
+            if (d.base())
+                w.line(cName(*d.base()) + " base;");
+            else if (isClass)
+                w.line("Ice_Value ice_value;");
+            bool keeps = !isClass && d.preserves() && !(d.base() && d.base()->preserves());
+            if (keeps)
+                w.line(
+                    "Ice_UnknownSlice *ice_unknown; /* what it is besides, most derived first */");
+            declareFields(w, d);
+            if (!isClass && !d.base() && d.fields.empty() && !keeps)
+                w.line("Ice_Byte ice_unused; /* C90 has no empty structs */");
+        },
+        isClass ? "};" : "} " + cName(d) + ";");
+}
+
+void declareType(Writer& w, const Declaration& d) {
+    Writer::Values v = {{"c", cName(d)}};
+    switch (d.kind) {
+    case DKind::Sequence: {
+        declareElements(w, d, cType(d.element));
+        break;
+    }
+    case DKind::Dictionary:
+        w.block(
+            "typedef struct {c}_Entry", v,
+            [&] {
+                w.line(cVariable(d.key, "key") + ";");
+                w.line(cVariable(d.element, "value") + ";");
+            },
+            "} " + cName(d) + "_Entry;");
+        declareElements(w, d, cName(d) + "_Entry");
+        break;
+    default:
+        if (!isRuntimeType(d))
+            declareStruct(w, d);
+    }
+    bool isPlain = d.kind == DKind::Struct || d.kind == DKind::Exception;
+    if (isPlain || d.kind == DKind::Class)
+        w.line("void {c}_init({c} *v);", v);
+    if (d.kind == DKind::Class)
+        return;
+    w.line("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os);", v);
+    w.line("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is);", v);
+    if (d.kind == DKind::Exception) {
+        w.line("/* Without the head: this type's slice and those of its bases. */");
+        w.line("void {c}_writeSlices(const {c} *v, Ice_OutputStreamPtr os);", v);
+        w.line("void {c}_readSlices({c} *v, Ice_InputStreamPtr is);", v);
+    }
+    if (d.kind == DKind::Dictionary && hasFind(d))
+        w.line(cVariable(d.element, "*" + cName(d) + "_find") + "(const " + cName(d) + " *v, " +
+               cVariable(d.key, "key") + ");");
+}
+
+void declare(Writer& w, const Declaration& d) {
+    if (d.fromInclude || d.isLocal || d.kind == DKind::Interface || d.isForward)
+        return;
+    w.blank();
+    writeDoc(w, d.doc, d.metadata);
+    if (d.kind == DKind::Constant)
+        declareConstant(w, d);
+    else if (d.kind == DKind::Enum)
+        declareEnum(w, d);
+    else
+        declareType(w, d);
+}
+
+void declareThrown(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
+    auto family = mayThrow(c.unit, o);
+    std::string op = operationName(d, o), type = exceptionType(d, o);
+    w.blank();
+    w.line("/* What {op} throws: `type` says which member of `u` it is. */", {{"op", op}});
+    w.block(
+        "typedef struct " + type, {},
+        [&] {
+            w.line("enum {");
+            w.line("    " + op + "_none");
+            for (const Declaration* e : family)
+                w.line("    , " + op + "_" + exceptionLabel(o, family, *e));
+            w.line("} type;");
+            w.block(
+                "union", {},
+                [&] {
+                    for (const Declaration* e : family)
+                        w.line(cName(*e) + " " + exceptionMember(o, family, *e) + ";");
+                },
+                "} u;");
+        },
+        "} " + type + ";");
+    w.line("void " + type + "_writeToOutputStream(const " + type + " *v, Ice_OutputStreamPtr os);");
+    w.line("/* ICE_USER_EXCEPTION; ICE_UNKNOWN_USER_EXCEPTION: none of these; ICE_MARSHAL. */");
+    w.line("Ice_Status " + type + "_readFromInputStream(" + type + " *v, Ice_InputStreamPtr is);");
+}
+
+void declareAsync(Writer& w, const Declaration& d, const Operation& o) {
+    std::string type = operationName(d, o) + "_Async";
+    w.blank();
+    w.block(
+        "typedef struct " + type, {},
+        [&] {
+            w.line("void (*completed)(struct " + type + " *self);");
+            w.line("void *context;");
+            w.line("Ice_Bool done;");
+            w.line("Ice_Status status;");
+            for (const Slot& s : outSlots(o, "")) {
+                if (s.isOptional)
+                    w.line("Ice_Bool " + s.has + ";");
+                w.line(cVariable(*s.type, s.value) + ";");
+            }
+            if (!o.throws.empty())
+                w.line(exceptionType(d, o) + " exception;");
+        },
+        "} " + type + ";");
+    w.line(asyncSignature(d, o) + ";");
+}
+
+void declareProxy(Writer& w, const Declaration& d) {
+    Writer::Values v = {{"p", cProxy(d)}, {"c", cName(d.ofClass ? *d.ofClass : d)}, {"id", d.id()}};
+    w.blank();
+    w.line("#define {c}_ice_staticId \"{id}\"", v);
+    w.line("Ice_Status {p}_checkedCast({p}Ptr self, const Ice_ObjectPrx *from);", v);
+    w.line("void {p}_uncheckedCast({p}Ptr self, const Ice_ObjectPrx *from);", v);
+    for (const Declaration* from : lineage(d))
+        for (const Operation& o : from->operations) {
+            if (from == &d) {
+                w.blank();
+                writeDoc(w, o.doc, o.metadata);
+                w.line(proxySignature(d, o) + ";");
+                continue;
+            }
+            Writer::Values names = {
+                {"c", cProxy(d)}, {"from", cProxy(*from)}, {"op", cOperation(o.name)}};
+            w.line("#define {c}_{op} {from}_{op}", names);
+            w.line("#define {c}_{op}_async {from}_{op}_async", names);
+        }
+}
+
+void declareServant(Writer& w, const Declaration& d) {
+    Writer::Values v = {{"c", cName(d)}};
+    w.blank();
+    w.block(
+        "typedef struct {c}", v,
+        [&] {
+            w.line("Ice_Object base;");
+            w.line("const struct {c}_Operations *operations;", v);
+        },
+        "} " + cName(d) + ", *" + cName(d) + "Ptr;");
+    w.blank();
+    w.line("/* A servant's operations; 0 for one that it does not have. */");
+    w.block(
+        "typedef struct {c}_Operations", v,
+        [&] {
+            for (const Declaration* base : d.bases)
+                w.line(cName(*base) + "_Operations " + cName(*base) + "_;");
+            for (const Operation& o : d.operations)
+                w.line(servantSignature(d, o, "(*" + cIdentifier(o.name) + ")") + ";");
+            if (d.bases.empty() && d.operations.empty())
+                w.line("Ice_Byte ice_unused; /* C90 has no empty structs */");
+        },
+        "} " + cName(d) + "_Operations;");
+    w.line("extern const Ice_Interface {c}_ice_interface;", v);
+    w.line("void {c}_initWith({c}Ptr self, const {c}_Operations *operations);", v);
+    w.blank();
+    w.line("/* With the operations below, which the application writes. */");
+    w.line("void {c}_init({c}Ptr self);", v);
+    for (const Declaration* from : lineage(d))
+        for (const Operation& o : from->operations)
+            w.line(servantSignature(*from, o, cName(d) + "_" + cOperation(o.name)) + ";");
+}
+
+void declareResponses(Writer& w, const Declaration& d) {
+    bool first = true;
+    for (const Operation& o : d.operations) {
+        if (!isAmd(d, o))
+            continue;
+        if (first) {
+            w.blank();
+            w.line("/* Answers to calls for which the servant returned ICE_LATER. */");
+        }
+        first = false;
+        w.line(responseSignature(d, o) + ";");
+        if (!o.throws.empty())
+            w.line("Ice_Status " + operationName(d, o) + "_exception(Ice_Reply *reply, const " +
+                   exceptionType(d, o) + " *ex);");
+    }
+}
+
+void declareInterface(Writer& w, const CContext& c, const Declaration& d) {
+    if (d.isForward)
+        return;
+    w.blank();
+    w.line(d.isHardware() ? "/* ---- " + d.id() + ", implemented in hardware ---- */"
+                          : "/* ---- " + d.id() + " ---- */");
+    writeDoc(w, d.doc, d.metadata);
+    for (const Operation& o : d.operations)
+        if (!o.throws.empty())
+            declareThrown(w, c, d, o);
+    declareProxy(w, d);
+    if (!d.operations.empty()) {
+        w.blank();
+        w.line("/* Asynchronous calls: the caller keeps the object until it is done. */");
+    }
+    for (const Operation& o : d.operations)
+        declareAsync(w, d, o);
+    declareServant(w, d);
+    declareResponses(w, d);
+}
+
+} // namespace
+
+std::string headerFile(const CContext& c) {
+    Writer w = c.begin("Types, proxies and servants. Mapping: docs/slice-mapping.md.");
+    std::string guard = guardOf(c);
+    w.line("#ifndef " + guard);
+    w.line("#define " + guard);
+    w.blank();
+    w.line("#include \"ice_operation.h\"");
+    if (c.usesClasses())
+        w.line("#include \"ice_value.h\"");
+    if (c.names.checksums)
+        w.line("#include \"ice_checksum.h\"");
+    for (const std::string& include : c.names.includes)
+        w.line("#include \"" + include + "\"");
+    for (const std::string& m : c.unit.metadata)
+        if (m.compare(0, 10, "c:include:") == 0)
+            w.line("#include \"" + m.substr(10) + "\"");
+    w.blank();
+    w.line("#ifdef __cplusplus");
+    w.line("extern \"C\" {");
+    w.line("#endif");
+    forwardDeclarations(w, c);
+    for (const auto& d : c.unit.declarations)
+        declare(w, *d);
+    if (c.usesClasses()) {
+        w.blank();
+        w.line("/* The classes that can be received; 0 ends. */");
+        w.line("extern const Ice_ValueType *const " + c.valueTable() + "[];");
+    }
+    if (c.names.checksums) {
+        w.blank();
+        w.line("/* Of this file's definitions; an id of 0 ends. */");
+        w.line("extern const Ice_SliceChecksum " + c.checksumTable() + "[];");
+    }
+    c.each(DKind::Interface, [&](const Declaration& d) { declareInterface(w, c, d); });
+    w.blank();
+    w.line("#ifdef __cplusplus");
+    w.line("}");
+    w.line("#endif");
+    w.blank();
+    w.line("#endif");
+    return w.text();
+}

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+//
+// names: names and spellings of the C90 mapping (docs/slice-mapping.md).
+
+#ifndef SLICE_C_NAMES_H
+#define SLICE_C_NAMES_H
+
+#include "front/ast.h"
+#include <string>
+
+// Module_Sub_Name
+std::string cName(const Declaration& d);
+// Module_Sub_NamePrx, of an interface or a class
+std::string cProxy(const Declaration& d);
+// Names of one part, which share a scope with names of the generated code's own. These own names
+// are listed in names.cpp, or begin with "ice_" or "Ice_"; a user's name that is one of them, or
+// C's, gets an underscore behind it. No name in Slice ends with an underscore.
+std::string cIdentifier(const std::string& name);
+// The name of a member of struct, class or exception `d`.
+std::string cMember(const Declaration& d, const Field& member);
+// The name of a parameter: of functions, as a member of the asynchronous call, as a variable.
+std::string cParameter(const Operation& o, const Field& parameter);
+// The part of an operation's functions' names behind the interface's.
+std::string cOperation(const std::string& name);
+// The C type of a value.
+std::string cType(const Type& type);
+// An enumerator's constant.
+std::string cEnumerator(const Declaration& owner, const std::string& name);
+// A constant's value as an expression; Long: an initialiser {low, high}.
+std::string cValue(const Literal& value, const Type& type);
+// The name of something that a generated file has once: "File_what".
+std::string cFileName(const std::string& base, const char* what);
+// "text" with escapes, so that any bytes survive.
+std::string cString(const std::string& bytes);
+// Whether icec.h declares the type itself; only its stream functions are generated.
+bool isRuntimeType(const Declaration& d);
+// The elements that a sequence or dictionary has room for; 0 if its data lies elsewhere.
+int statedMaximum(const Declaration& d);
+
+#endif

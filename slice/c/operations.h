@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+//
+// operations: operations and exceptions as C sees them: signatures, lists of parameters.
+
+#ifndef SLICE_C_OPERATIONS_H
+#define SLICE_C_OPERATIONS_H
+
+#include "c/types.h"
+#include "front/ast.h"
+#include <string>
+#include <vector>
+
+// Base interfaces first, without repetition; the interface itself comes last.
+std::vector<const Declaration*> lineage(const Declaration& interface);
+
+// The exceptions that an operation may throw: those it lists, and what this unit derives from them.
+std::vector<const Declaration*> mayThrow(const Unit& unit, const Operation& o);
+// An exception in M_I_op_Exception: its constant is M_I_op_<label>, its member of the union
+// <member>.
+std::string exceptionLabel(const Operation& o, const std::vector<const Declaration*>& family,
+                           const Declaration& exception);
+std::string exceptionMember(const Operation& o, const std::vector<const Declaration*>& family,
+                            const Declaration& exception);
+
+bool hasResults(const Operation& o);
+bool isAmd(const Declaration& owner, const Operation& o);
+bool isSliced(const Declaration& owner, const Operation& o);
+// Whether classes are among the in parameters; among the results.
+bool sendsClasses(const Operation& o);
+bool returnsClasses(const Operation& o);
+// Whether one of the slots holds a class; whether one does that is not optional (encoding 1.0 has a
+// list of instances then).
+bool anyClass(const std::vector<Slot>& slots);
+bool anyRequiredClass(const std::vector<Slot>& slots);
+
+// "M_I_op"
+std::string operationName(const Declaration& owner, const Operation& o);
+std::string exceptionType(const Declaration& owner, const Operation& o);
+
+// Lists of C parameters, each with a comma before it (", Ice_Int a, const M_S *b"): the in
+// parameters; out parameters and the result as pointers; these as values that a response sends.
+std::string inParameters(const Operation& o);
+std::string outParameters(const Declaration& owner, const Operation& o);
+std::string responseParameters(const Operation& o);
+
+std::string proxySignature(const Declaration& d, const Operation& o);
+std::string asyncSignature(const Declaration& d, const Operation& o);
+// Whether it may throw an exception that keeps unknown slices.
+bool throwsPreserved(const Unit& unit, const Operation& o);
+// `name` is a function's, or "(*op)"; `self` the servant's type.
+std::string servantSignature(const Declaration& owner, const Operation& o, const std::string& name);
+std::string responseSignature(const Declaration& d, const Operation& o);
+
+// Parameters as slots: in parameters as the proxy's function has them; as variables; results behind
+// `object` ("*" for pointers, "call->" for members, "" for variables); results of a response.
+std::vector<Slot> inSlots(const Operation& o);
+std::vector<Slot> inVariables(const Operation& o);
+std::vector<Slot> outSlots(const Operation& o, const std::string& object);
+std::vector<Slot> responseSlots(const Operation& o);
+
+#endif

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+//
+// types: how values are passed, written and read: pieces of C that the generators put together.
+
+#ifndef SLICE_C_TYPES_H
+#define SLICE_C_TYPES_H
+
+#include "c/writer.h"
+#include "front/ast.h"
+#include <string>
+#include <vector>
+
+// Whether it is passed by const pointer: all but scalars, strings, enums and pointers to classes.
+bool isByPointer(const Type& type);
+bool isEnum(const Type& type);
+bool isClass(const Type& type); // a pointer to an Ice_Value
+
+// The least bytes that a value takes on the wire; whether there can be more.
+int leastWireSize(const Type& type);
+bool isVariable(const Type& type);
+// Whether a class is in it, at any depth.
+bool containsClass(const Type& type);
+
+// A declaration of `name`: "Ice_Int x", "M_Node *x".
+std::string cVariable(const Type& type, const std::string& name);
+
+// One value in a list of members or parameters that is written or read.
+struct Slot {
+    const Type* type = nullptr;
+    std::string value;   // its lvalue
+    std::string pointer; // its address
+    bool isOptional = false;
+    int tag = 0;
+    std::string has; // whether it is there: a condition to write by, an lvalue to read into
+};
+
+// Sorts slots as they are on the wire: required ones in their order, then the optional by tag.
+std::vector<Slot> wireOrder(std::vector<Slot> slots);
+void writeSlots(Writer& w, const std::vector<Slot>& slots);
+void readSlots(Writer& w, const std::vector<Slot>& slots);
+
+std::string writeStatement(const Type& type, const std::string& value, const std::string& pointer);
+std::string readStatement(const Type& type, const std::string& value, const std::string& pointer);
+
+#endif

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+//
+// writer: indented text for generators: templates look like their output, {name} is filled in.
+
+#ifndef SLICE_C_WRITER_H
+#define SLICE_C_WRITER_H
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+class Writer {
+public:
+    using Values = std::vector<std::pair<std::string_view, std::string>>;
+
+    // `{name}` with a known name is replaced; any other brace is text. A line of code that is
+    // longer than 100 columns is broken behind a comma or an operator.
+    void line(std::string_view text = {}, const Values& values = {});
+    // Writes `body` one step to the right.
+    template <class Body> void indented(Body body) {
+        ++indent_;
+        body();
+        --indent_;
+    }
+    template <class Body>
+    void block(std::string_view head, const Values& values, Body body,
+               std::string_view tail = "}") {
+        line(std::string(head) + " {", values);
+        indented(body);
+        line(tail, values);
+    }
+    // The one statement of an `if` or a loop.
+    void nested(std::string_view text, const Values& values = {}) {
+        indented([&] { line(text, values); });
+    }
+    void blank() { out_ += '\n'; }
+    const std::string& text() const { return out_; }
+
+private:
+    static std::string fill(std::string_view text, const Values& values);
+
+    size_t indent_ = 0;
+    std::string out_;
+};
+
+#endif

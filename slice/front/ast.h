@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+//
+// ast: what a Slice file and the files it includes declare. Made by the parser, which has resolved
+// every name and checked what Slice demands; read by the generators.
+//
+//   Unit         declarations in the order of the source, those of included files among them
+//   Declaration  one enum, struct, sequence, dictionary, interface, class, exception or constant
+//   Operation    of an interface;  Field: a member or a parameter;  Type: of a field
+
+#ifndef SLICE_FRONT_AST_H
+#define SLICE_FRONT_AST_H
+
+#include "front/diagnostics.h"
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+struct Declaration;
+
+struct Type {
+    enum class Kind {
+        Void,
+        Bool,
+        Byte,
+        Short,
+        Int,
+        Long,
+        Float,
+        Double,
+        String,
+        Named,      // `declaration`: enum, struct, sequence, dictionary or class
+        Proxy,      // `declaration`: the interface; 0 for Object*
+        Value,      // any class: Object or Value; with `declaration`, an interface by value
+        LocalObject // only within local definitions
+    };
+    Kind kind = Kind::Void;
+    Declaration* declaration = nullptr;
+};
+
+// The value of a constant, or of a member's default.
+struct Literal {
+    enum class Kind { None, Bool, Integer, Floating, String, Enumerator };
+    Kind kind = Kind::None;
+    int64_t integer = 0; // Bool, Integer; Enumerator: its value
+    double floating = 0; // Floating
+    std::string written; // String, Enumerator: as checksums have it
+    std::string text;    // Floating as written; String as bytes of UTF-8; Enumerator's name
+    const Declaration* owner = nullptr; // Enumerator's enum
+};
+
+struct Field {
+    Type type;
+    std::string name, doc;
+    Location at;
+    bool isOut = false; // of an operation's parameter
+    bool isOptional = false;
+    int tag = 0;   // of an optional one
+    Literal value; // default of a member
+    std::vector<std::string> metadata;
+};
+
+struct Operation {
+    std::string name, doc;
+    Type result; // Void where there is none
+    bool isResultOptional = false;
+    int resultTag = 0;
+    std::vector<Field> parameters; // in the order of the source, ins before outs
+    std::vector<const Declaration*> throws;
+    bool idempotent = false;
+    Location at;
+    std::vector<std::string> metadata;
+};
+
+struct Enumerator {
+    std::string name, doc;
+    int64_t value = 0;
+    Location at;
+};
+
+struct Declaration {
+    enum class Kind { Enum, Struct, Sequence, Dictionary, Interface, Class, Exception, Constant };
+    Kind kind = Kind::Enum;
+    std::string name, doc;
+    std::vector<std::string> scope; // modules, outermost first
+    Location at;
+    bool fromInclude = false;
+    bool isLocal = false;
+    bool isForward = false; // an interface or class that is declared, but not defined here
+    std::vector<std::string> metadata;
+
+    std::vector<Enumerator> enumerators;   // Enum
+    bool hasValues = false;                // Enum: some are written down
+    std::vector<Field> fields;             // Struct, Class, Exception: own members
+    Type key, element;                     // Dictionary; Sequence: element; Constant: its type
+    Literal value;                         // Constant
+    std::vector<const Declaration*> bases; // Interface: any; Class, Exception: at most one
+    std::vector<const Declaration*> implemented; // Class: interfaces
+    std::vector<Operation> operations;           // Interface, Class: own ones
+    const Declaration* ofClass = nullptr;        // Interface: it is what this class is called by
+    int compactId = -1;                          // Class; -1: none
+
+    // What is true of all values of a type; set when its definition is complete.
+    struct Facts {
+        int leastWireSize = 1;  // bytes
+        bool isVariable = true; // longer ones are possible
+        bool hasClass = false;  // a class is in it, at any depth
+        bool isKey = false;     // it can be a dictionary's key
+        bool hasSequence = false;
+        bool isNumeric = true; // numbers, enums, structs and sequences of them only
+    } facts;
+    void complete();
+
+    std::string id() const; // ::Module::Sub::Name
+    bool isHardware() const { return hasMetadata(":hw"); }
+    bool hasMetadata(const std::string& directive) const;
+    // The text behind "prefix:" in the metadata; empty if there is none.
+    std::string metadataValue(const std::string& prefix) const;
+    // Whether it is `other`, or derived from it.
+    bool isA(const Declaration& other) const;
+    // Whether slices of unknown derived types are kept: ["preserve-slice"] is here or at a base.
+    bool preserves() const {
+        return hasMetadata("preserve-slice") || (base() && base()->preserves());
+    }
+    const Declaration* base() const { return bases.empty() ? nullptr : bases.front(); }
+};
+
+struct Unit {
+    std::string file; // as given on the command line
+    std::vector<std::unique_ptr<Declaration>> declarations;
+    std::vector<std::string> metadata; // [["..."]] of the main file
+};
+
+Declaration::Facts factsOf(const Type& type);
+bool hasMetadata(const std::vector<std::string>& metadata, const std::string& directive);
+std::string metadataValue(const std::vector<std::string>& metadata, const std::string& prefix);
+
+#endif

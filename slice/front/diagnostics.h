@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+//
+// diagnostics: errors and warnings with file, line, column, the source line and a caret.
+
+#ifndef SLICE_FRONT_DIAGNOSTICS_H
+#define SLICE_FRONT_DIAGNOSTICS_H
+
+#include <map>
+#include <ostream>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+struct Location {
+    std::string_view file;    // kept by Diagnostics::intern
+    int line = 0, column = 0; // both from 1
+};
+
+class Diagnostics {
+public:
+    // What `[["suppress-warning:..."]]` names.
+    enum Category { General, Deprecated, Metadata };
+
+    explicit Diagnostics(std::ostream& out) : out_(out) {}
+    Diagnostics(const Diagnostics&) = delete;
+    Diagnostics& operator=(const Diagnostics&) = delete;
+
+    void error(const Location& at, const std::string& text);
+    void warning(const Location& at, const std::string& text, Category category = General);
+    // No warnings of this category (General: none at all) from this file on.
+    void suppress(std::string_view file, Category category) {
+        suppressed_.insert({file, category});
+    }
+
+    int errors() const { return errors_; }
+    // A copy that lives as long as this object.
+    std::string_view intern(std::string_view text);
+
+private:
+    void print(const Location& at, const char* kind, const std::string& text);
+    const std::vector<std::string>& lines(std::string_view file);
+
+    std::ostream& out_;
+    int errors_ = 0;
+    std::set<std::string, std::less<>> names_;
+    std::set<std::pair<std::string_view, Category>> suppressed_;
+    std::map<std::string_view, std::vector<std::string>> files_;
+};
+
+#endif

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+//
+// lexer: preprocessed Slice text into tokens, with the place in the original files.
+
+#ifndef SLICE_FRONT_LEXER_H
+#define SLICE_FRONT_LEXER_H
+
+#include "front/diagnostics.h"
+#include <string_view>
+#include <vector>
+
+struct Token {
+    enum class Kind { Identifier, Integer, Float, String, Symbol, End };
+    Kind kind;
+    std::string_view text; // as written; of a string, what stands between the quotes
+    std::string_view doc;  // the doc comment before it, without /** and */
+    Location at;
+    bool escaped; // identifier written with a backslash
+};
+
+// Tokens point into `text`. The last one is End.
+std::vector<Token> tokenize(std::string_view text, std::string_view file, Diagnostics& diagnostics);
+
+#endif

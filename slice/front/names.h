@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+//
+// names: Slice's keywords, and which identifiers Slice allows.
+
+#ifndef SLICE_FRONT_NAMES_H
+#define SLICE_FRONT_NAMES_H
+
+#include "front/diagnostics.h"
+#include <string>
+#include <string_view>
+
+struct NameRules {
+    bool underscore = false; // underscores are allowed
+    bool icePrefix = false;  // names may begin with "ice"
+};
+
+bool isKeyword(std::string_view word);
+
+// Says what is wrong with the name of something that is declared.
+void checkName(std::string_view name, const NameRules& rules, const Location& at,
+               Diagnostics& diagnostics);
+
+std::string lowerCase(std::string_view text);
+
+#endif

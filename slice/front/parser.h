@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+//
+// parser: tokens into the declarations of a unit, every name resolved; errors are said, and passed.
+
+#ifndef SLICE_FRONT_PARSER_H
+#define SLICE_FRONT_PARSER_H
+
+#include "front/ast.h"
+#include "front/lexer.h"
+#include "front/names.h"
+
+// "struct"; "int", "::M::I*"
+const char* kindName(Declaration::Kind kind);
+std::string typeName(const Type& type);
+
+// `mainFile` is the file on the command line; what comes from others is marked fromInclude.
+Unit parse(const std::vector<Token>& tokens, const std::string& mainFile, NameRules rules,
+           Diagnostics& diagnostics);
+
+#endif

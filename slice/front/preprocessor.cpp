@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+//
+// preprocessor: one run of libmcpp over a file, output in memory.
+
+#include "front/preprocessor.h"
+extern "C" {
+#include <mcpp_lib.h>
+}
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+namespace {
+
+void addOnce(std::vector<std::string>& list, const std::string& name) {
+    if (std::find(list.begin(), list.end(), name) == list.end())
+        list.push_back(name);
+}
+
+// Follows the markers: #line 1 "file" enters a file, any other name returns to one around it.
+void findFiles(Preprocessed& p) {
+    std::vector<std::string> open;
+    for (size_t at = 0; (at = p.text.find("#line ", at)) != std::string::npos;) {
+        size_t begin = at, end = std::min(p.text.find('\n', at), p.text.size());
+        at = end;
+        if (begin > 0 && p.text[begin - 1] != '\n')
+            continue;
+        size_t quote = p.text.find('"', begin), close = p.text.rfind('"', end);
+        if (quote >= end || close <= quote)
+            continue;
+        std::string name = p.text.substr(quote + 1, close - quote - 1);
+        auto around = std::find(open.begin(), open.end(), name);
+        if (around != open.end()) {
+            open.erase(around + 1, open.end());
+            continue;
+        }
+        if (open.size() == 1)
+            addOnce(p.includes, name);
+        open.push_back(name);
+        addOnce(p.files, name);
+    }
+}
+
+// libmcpp's room for a line, with those that a backslash at the end joins to it.
+constexpr size_t longestLine = 65500;
+
+// The line of `file`, or of a file that it includes, that libmcpp has no room for, as a message.
+std::string tooLongLine(const std::filesystem::path& file, const std::vector<std::string>& options,
+                        std::set<std::filesystem::path>& seen) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in || !seen.insert(file.lexically_normal()).second)
+        return "";
+    size_t length = 0, number = 0;
+    for (std::string line; std::getline(in, line);) {
+        ++number;
+        length += line.size();
+        if (length > longestLine)
+            return file.string() + ":" + std::to_string(number) +
+                   ": error: the line is too long: a line, with those that '\\' joins to it, has "
+                   "at "
+                   "most " +
+                   std::to_string(longestLine) + " bytes\n";
+        if (!line.empty() && line.back() == '\\')
+            continue;
+        length = 0;
+        size_t hash = line.find_first_not_of(" \t");
+        if (hash == std::string::npos || line[hash] != '#')
+            continue;
+        size_t open = line.find_first_of("\"<", hash), close = line.find_last_of("\">");
+        if (open == std::string::npos || close <= open || line.find("include") > open)
+            continue;
+        std::string name = line.substr(open + 1, close - open - 1);
+        std::vector<std::filesystem::path> folders = {file.parent_path()};
+        for (const std::string& o : options)
+            if (o.compare(0, 2, "-I") == 0)
+                folders.emplace_back(o.substr(2));
+        for (const auto& folder : folders)
+            if (std::string message = tooLongLine(folder / name, options, seen); !message.empty())
+                return message;
+    }
+    return "";
+}
+
+// Takes out what Ice's compilers do not say either: line ends of another system, and a missing one.
+std::string withoutLineEnds(const std::string& messages) {
+    std::istringstream in(messages);
+    std::string kept;
+    bool isSkipped = false;
+    for (std::string line; std::getline(in, line);) {
+        bool continues = !line.empty() && line[0] == ' '; // the source, or where it is included
+        isSkipped = (isSkipped && continues) ||
+                    line.find(": warning: Converted [CR+LF] to [LF]") != std::string::npos ||
+                    line.find(" with no newline, supplemented newline") != std::string::npos;
+        if (!isSkipped)
+            kept += line + '\n';
+    }
+    return kept;
+}
+
+} // namespace
+
+Preprocessed preprocess(const std::string& file, const std::vector<std::string>& options) {
+    // -C: comments stay, for doc comments; -k: columns stay, for messages. The version macros are
+    // those that Ice's own compilers of 3.7 define.
+    std::vector<std::string> arguments = {"mcpp",
+                                          "-C",
+                                          "-k",
+                                          "-e",
+                                          "en_us.utf8",
+                                          "-D__SLICE2C__",
+                                          "-DICE_VERSION=30708",
+                                          "-D__ICE_VERSION__=30708"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    arguments.push_back(file);
+    std::vector<char*> argv;
+    for (std::string& a : arguments)
+        argv.push_back(a.data());
+
+    Preprocessed result;
+    std::set<std::filesystem::path> seen;
+    result.messages = tooLongLine(file, options, seen);
+    if (!result.messages.empty())
+        return result;
+    mcpp_use_mem_buffers(1);
+    result.ok = mcpp_lib_main(static_cast<int>(argv.size()), argv.data()) == 0;
+    if (const char* text = mcpp_get_mem_buffer(OUT))
+        result.text = text;
+    if (const char* messages = mcpp_get_mem_buffer(ERR))
+        result.messages = withoutLineEnds(messages);
+    mcpp_use_mem_buffers(1); // frees them
+    findFiles(result);
+    return result;
+}

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+//
+// preprocessor: #include, #define and #if by libmcpp.
+
+#ifndef SLICE_FRONT_PREPROCESSOR_H
+#define SLICE_FRONT_PREPROCESSOR_H
+
+#include <string>
+#include <vector>
+
+struct Preprocessed {
+    bool ok = false;
+    std::string text;                  // with #line markers and comments
+    std::string messages;              // the preprocessor's own
+    std::vector<std::string> files;    // the file and all that it includes, at any depth
+    std::vector<std::string> includes; // what it includes itself
+};
+
+// `options`: -I, -D, -U as the C preprocessor takes them.
+Preprocessed preprocess(const std::string& file, const std::vector<std::string>& options);
+
+#endif

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+//
+// symbols: lookup by Slice's scoping rules.
+
+#include "front/symbols.h"
+#include "front/names.h"
+
+Symbol* Symbols::find(const std::string& id) {
+    auto it = table_.find(lowerCase(id));
+    return it == table_.end() ? nullptr : &it->second;
+}
+
+Symbol* Symbols::declare(const std::string& scope, const std::string& name, const Location& at,
+                         bool& isNew) {
+    std::string id = scope + "::" + name, key = lowerCase(id);
+    if (hasChanged(scope, name, at))
+        return nullptr;
+    auto [it, inserted] = table_.try_emplace(key);
+    isNew = inserted;
+    Symbol& symbol = it->second;
+    if (isNew) {
+        symbol.id = id;
+        symbol.at = at;
+    } else if (symbol.id != id) {
+        diagnostics_.error(at, "'" + name + "' differs in capitals only from '" + symbol.id +
+                                   "', line " + std::to_string(symbol.at.line));
+        return nullptr;
+    }
+    return &symbol;
+}
+
+bool Symbols::hasChanged(const std::string& user, const std::string& name, const Location& at) {
+    std::string key = lowerCase(user + "::" + name);
+    auto used = used_.find(key);
+    if (used == used_.end() || used->second == key)
+        return false;
+    diagnostics_.error(at, "'" + name + "' has changed meaning: it was used as '" + used->second +
+                               "' in this scope before");
+    return true;
+}
+
+Symbol* Symbols::resolve(const std::string& scope, const std::string& written, const Location& at,
+                         const std::string& user) {
+    bool absolute = written.compare(0, 2, "::") == 0;
+    std::string inner = absolute ? "" : scope;
+    for (;;) {
+        std::string id = absolute ? written : inner + "::" + written;
+        if (Symbol* s = find(id)) {
+            if (s->id != id)
+                diagnostics_.error(at, "'" + written + "' is written with other capitals than '" +
+                                           s->id + "', line " + std::to_string(s->at.line));
+            if (!absolute) {
+                std::string first = lowerCase(written.substr(0, written.find("::")));
+                used_.emplace(lowerCase(user) + "::" + first, lowerCase(inner) + "::" + first);
+            }
+            return s;
+        }
+        if (absolute || inner.empty())
+            return nullptr;
+        inner.resize(inner.rfind("::"));
+    }
+}
+
+void Symbols::declareBare(const std::string& scope, const std::string& name, Symbol* enumerator) {
+    bare_[scope + "::" + name].push_back(enumerator);
+}
+
+const std::vector<Symbol*>& Symbols::bare(std::string scope, const std::string& name) const {
+    static const std::vector<Symbol*> none;
+    for (;;) {
+        auto it = bare_.find(scope + "::" + name);
+        if (it != bare_.end())
+            return it->second;
+        if (scope.empty())
+            return none;
+        scope.resize(scope.rfind("::"));
+    }
+}

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+//
+// calls: operations and events of a hardware interface into words and buffers; what is allowed.
+
+#include "c/names.h"
+#include "c/operations.h"
+#include "hw/words.h"
+#include <algorithm>
+
+namespace hw {
+namespace {
+
+constexpr unsigned defaultTimeout = 1000, longestTimeout = 60000; // ms
+constexpr unsigned mostElements = 65535;
+
+class CallMapper {
+public:
+    CallMapper(const Declaration& d, const Unit& unit, Block& block, Diagnostics& diagnostics)
+        : d_(d), unit_(unit), block_(block), diagnostics_(diagnostics) {}
+
+    int run() {
+        for (const Operation& o : d_.operations)
+            if (isListener(o))
+                addListener(o);
+            else
+                addOperation(o);
+        if (offset_) {
+            block_.memoryBytes = bufferAlignment;
+            while (block_.memoryBytes < offset_)
+                block_.memoryBytes *= 2;
+        }
+        return errors_;
+    }
+
+private:
+    void error(const Location& at, const std::string& text) {
+        ++errors_;
+        diagnostics_.error(at, "interface '" + d_.name + "' in hardware: " + text);
+    }
+    void keys(const std::vector<std::string>& metadata, const std::vector<std::string>& known,
+              const Location& at) {
+        errors_ += checkKeys(metadata, known, "interface '" + d_.name + "'", at, diagnostics_);
+    }
+
+    static bool isListener(const Operation& o) {
+        return std::any_of(o.parameters.begin(), o.parameters.end(),
+                           [](const Field& p) { return p.type.kind == Type::Kind::Proxy; });
+    }
+
+    Call begin(const Operation& o, const Declaration& owner) {
+        Call call;
+        call.owner = &owner;
+        call.operation = &o;
+        call.name = snakeCase(o.name);
+        call.bit = static_cast<unsigned>(block_.calls.size());
+        call.timeout = defaultTimeout;
+        return call;
+    }
+
+    void addOperation(const Operation& o) {
+        Call call = begin(o, d_);
+        keys(o.metadata, {"hw:long", "hw:word", "hw:max"}, o.at);
+        std::string limit = metadataValue(o.metadata, "hw:long");
+        call.isLong = !limit.empty() || hasMetadata(o.metadata, "hw:long");
+        call.isAmd = isAmd(d_, o);
+        if (!limit.empty() && !number(limit, 1, longestTimeout, call.timeout))
+            error(o.at, "[\"hw:long:" + limit + "\"]: the time is in ms, 1.." +
+                            std::to_string(longestTimeout));
+        if (call.isAmd && !call.isLong)
+            error(o.at,
+                  "'" + o.name + "' is [\"amd\"], and done at once; [\"hw:long\"] takes time");
+        call.thrown = o.throws;
+        for (const Declaration* e : o.throws)
+            call.labels.push_back(operationName(d_, o) + "_" +
+                                  exceptionLabel(o, mayThrow(unit_, o), *e));
+        for (const Field& p : o.parameters)
+            if (!p.isOut)
+                addParameter(call, p);
+        if (!call.thrown.empty())
+            addCode(call.words, call.thrown.size());
+        for (const Field& p : o.parameters)
+            if (p.isOut)
+                addParameter(call, p);
+        addResult(call);
+        for (size_t i = 0; i < call.thrown.size(); ++i)
+            addException(call, static_cast<unsigned>(i + 1));
+        block_.calls.push_back(call);
+    }
+
+    void addParameter(Call& call, const Field& p) {
+        keys(p.metadata, {"hw:word", "hw:max"}, p.at);
+        std::string c = cParameter(*call.operation, p);
+        if (p.isOut || isByPointer(p.type))
+            c = "*" + c;
+        add(call, p.type, p.isOptional, snakeCase(p.name), c, p.isOut, p.metadata, p.at);
+    }
+
+    void addResult(Call& call) {
+        const Operation& o = *call.operation;
+        std::string word = metadataValue(o.metadata, "hw:word");
+        if (o.result.kind != Type::Kind::Void)
+            add(call, o.result, o.isResultOptional, "result", "*result", true, o.metadata, o.at);
+        else if (!word.empty())
+            error(o.at, "[\"hw:word:" + word + "\"]: '" + o.name + "' has no result");
+    }
+
+    void addException(Call& call, unsigned index) {
+        const Declaration& e = *call.thrown[index - 1];
+        std::string object =
+            "ex->u." + exceptionMember(*call.operation, mayThrow(unit_, *call.operation), e) + ".";
+        for (const Declaration* d = &e; d; d = d->base(), object += "base.")
+            for (const Field& f : d->fields) {
+                std::string name = snakeCase(e.name) + "_" + snakeCase(f.name);
+                if (f.isOptional || !isMappable(f.type)) {
+                    error(call.operation->at, "'" + f.name + "' of '" + e.name +
+                                                  "' does not fit into registers: numbers, bools, "
+                                                  "enums and structs of them do");
+                    continue;
+                }
+                std::vector<Word> words;
+                size_t kept = shared(call, true, words);
+                size_t before = kept ? words.back().pieces.size() : 0;
+                addValue(words, f.type, name, object + cMember(*d, f), true);
+                for (Word& w : words) {
+                    for (size_t i = before; i < w.pieces.size(); ++i)
+                        w.pieces[i].exception = index;
+                    before = 0;
+                    call.words.push_back(w);
+                }
+            }
+    }
+
+    // void listen(Watcher* watcher): the operations of Watcher are events.
+    void addListener(const Operation& o) {
+        const Type& type = o.parameters.front().type;
+        if (o.parameters.size() != 1 || o.parameters.front().isOut || !type.declaration ||
+            type.declaration->isForward || o.result.kind != Type::Kind::Void || !o.throws.empty())
+            return error(o.at, "'" + o.name +
+                                   "' has a proxy; an operation that registers one has "
+                                   "it as its only parameter, and no result");
+        keys(o.metadata, {}, o.at);
+        Listener l{&o, type.declaration, snakeCase(o.name), block_.calls.size(), 0};
+        for (const Declaration* d : lineage(*type.declaration))
+            for (const Operation& event : d->operations) {
+                if (event.result.kind != Type::Kind::Void || !event.throws.empty() ||
+                    std::any_of(event.parameters.begin(), event.parameters.end(),
+                                [](const Field& p) { return p.isOut; })) {
+                    error(o.at, "'" + event.name + "' of '" + d->name +
+                                    "' is an event; it has no results, and throws nothing");
+                    continue;
+                }
+                Call call = begin(event, *d);
+                call.isEvent = true;
+                for (const Field& p : event.parameters)
+                    addEventValue(call, p, o.at);
+                block_.calls.push_back(call);
+            }
+        l.count = block_.calls.size() - l.first;
+        block_.listeners.push_back(l);
+    }
+
+    void addEventValue(Call& call, const Field& p, const Location& at) {
+        std::string c = "*" + cParameter(*call.operation, p);
+        if (p.isOptional || !isMappable(p.type))
+            return error(at, "'" + p.name + "' of the event '" + call.operation->name +
+                                 "' does not fit into registers: numbers, bools, enums and structs "
+                                 "of them do");
+        addValue(call.words, p.type, snakeCase(p.name), c, true);
+    }
+
+    // The last word, where what follows may go on in it; it is moved to `words`.
+    size_t shared(Call& call, bool isOut, std::vector<Word>& words) {
+        if (call.words.empty() || call.words.back().isOut != isOut || call.words.back().number)
+            return 0;
+        words.push_back(call.words.back());
+        call.words.pop_back();
+        return 1;
+    }
+
+    void add(Call& call, const Type& type, bool isOptional, const std::string& name,
+             const std::string& c, bool isOut, const std::vector<std::string>& metadata,
+             const Location& at) {
+        std::string what = "'" + name + "' of '" + call.operation->name + "'";
+        std::string wanted = metadataValue(metadata, "hw:word");
+        std::string most = metadataValue(metadata, "hw:max");
+        if (isOptional)
+            return error(at, what + " is optional; a register is always there");
+        if (!isSequence(type) && !isMappable(type))
+            return error(at, what + " does not fit into registers: numbers, bools, enums and "
+                                    "structs of them do");
+        if (!isSequence(type) && !most.empty())
+            return error(at, "[\"hw:max:" + most + "\"]: " + what + " is no sequence");
+        std::vector<Word> words;
+        if (wanted.empty())
+            shared(call, isOut, words);
+        if (isSequence(type))
+            addSequence(words, type, what, name, c, isOut, most, at);
+        else
+            addValue(words, type, name, c, isOut);
+        unsigned first = 0;
+        if (!wanted.empty() && !number(wanted, firstWord + 1, slotWords - 1, first))
+            error(at, "[\"hw:word:" + wanted + "\"]: words " + std::to_string(firstWord + 1) +
+                          ".." + std::to_string(slotWords - 1) + " can be chosen");
+        for (Word& w : words) {
+            if (first)
+                w.number = first++;
+            call.words.push_back(w);
+        }
+    }
+
+    void addSequence(std::vector<Word>& words, const Type& type, const std::string& what,
+                     const std::string& name, const std::string& c, bool isOut,
+                     const std::string& most, const Location& at) {
+        unsigned bytes = elementBytes(type);
+        if (bytes == 0)
+            return error(at, what + " has elements that do not fit into a buffer: numbers, bools "
+                                    "and structs of them do");
+        int stated = statedMaximum(*type.declaration);
+        unsigned count = stated > 0 ? static_cast<unsigned>(stated) : 0;
+        unsigned limit = count ? count : mostElements;
+        if (!most.empty() && !number(most, 1, limit, count))
+            return error(at, "[\"hw:max:" + most + "\"]: elements, 1.." + std::to_string(limit));
+        if (count == 0)
+            return error(at, what + " is a sequence: [\"hw:max:N\"] before it says how many "
+                                    "elements its buffer in DDR3 has");
+        addCount(words, type, name, c, isOut, count, offset_);
+        offset_ += (count * bytes + bufferAlignment - 1) / bufferAlignment * bufferAlignment;
+    }
+
+    const Declaration& d_;
+    const Unit& unit_;
+    Block& block_;
+    Diagnostics& diagnostics_;
+    unsigned offset_ = 0; // bytes of buffers so far
+    int errors_ = 0;
+};
+
+} // namespace
+
+bool number(const std::string& text, unsigned low, unsigned high, unsigned& value) {
+    bool hex = text.compare(0, 2, "0x") == 0;
+    std::string digits = hex ? text.substr(2) : text;
+    if (digits.empty() || digits.size() > 8 ||
+        digits.find_first_not_of(hex ? "0123456789abcdefABCDEF" : "0123456789") !=
+            std::string::npos)
+        return false;
+    unsigned long n = std::stoul(digits, nullptr, hex ? 16 : 10);
+    value = static_cast<unsigned>(n);
+    return n >= low && n <= high;
+}
+
+int checkKeys(const std::vector<std::string>& metadata, const std::vector<std::string>& known,
+              const std::string& who, const Location& at, Diagnostics& diagnostics) {
+    int errors = 0;
+    for (const std::string& m : metadata)
+        if (m.compare(0, 3, "hw:") == 0 &&
+            std::find(known.begin(), known.end(), m.substr(0, m.find(':', 3))) == known.end()) {
+            diagnostics.error(at, who + " in hardware: [\"" + m + "\"] means nothing here");
+            ++errors;
+        }
+    return errors;
+}
+
+int mapCalls(const Declaration& d, const Unit& unit, Block& block, Diagnostics& diagnostics) {
+    return CallMapper(d, unit, block, diagnostics).run();
+}
+
+} // namespace hw

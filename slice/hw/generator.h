@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+//
+// generator: what is made of a hardware interface, one function a file (docs/hw-mapping.md).
+
+#ifndef SLICE_HW_GENERATOR_H
+#define SLICE_HW_GENERATOR_H
+
+#include "c/generator.h"
+#include "hw/map.h"
+
+namespace hw {
+
+GeneratedFile registersFile(const Block& b, const CFileNames& names); // <block>.regs.json
+GeneratedFile verilogFile(const Block& b, const CFileNames& names);   // <block>_wrapper.v
+GeneratedFile vhdlFile(const Block& b, const CFileNames& names);      // <block>_wrapper.vhd
+GeneratedFile servantHeader(const Block& b, const CFileNames& names); // <block>_servant.h
+GeneratedFile servantSource(const Block& b, const CFileNames& names); // <block>_servant.c
+
+GeneratedFile proxyFile(const Block& b, const CFileNames& names); // <block>_proxy.h
+
+// A core to begin with: <block>.v, <block>.vhd, <block>_test.cpp
+GeneratedFile verilogSkeleton(const Block& b, const CFileNames& names);
+GeneratedFile vhdlSkeleton(const Block& b, const CFileNames& names);
+GeneratedFile testSkeleton(const Block& b, const CFileNames& names);
+
+} // namespace hw
+
+#endif

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+//
+// map: interfaces into slots: what is allowed, who gets which word.
+
+#include "hw/map.h"
+#include "hw/words.h"
+#include <algorithm>
+#include <map>
+
+namespace hw {
+namespace {
+
+class Mapper {
+public:
+    Mapper(const Declaration& d, const Unit& unit, Diagnostics& diagnostics)
+        : d_(d), unit_(unit), diagnostics_(diagnostics) {
+        block_.interface = &d;
+        block_.name = snakeCase(d.name);
+    }
+
+    Block run() {
+        identity();
+        pins();
+        if (!d_.bases.empty())
+            error(d_.at, "has a base; each slot is one interface by itself");
+        errors_ += mapCalls(d_, unit_, block_, diagnostics_);
+        if (block_.calls.size() > mostOperations)
+            error(d_.at, "has " + std::to_string(block_.calls.size()) +
+                             " operations and events; CONTROL has bits for " +
+                             std::to_string(mostOperations));
+        if (errors_ == 0)
+            place();
+        if (errors_ == 0)
+            checkPorts();
+        return block_;
+    }
+
+private:
+    void error(const Location& at, const std::string& text) {
+        ++errors_;
+        diagnostics_.error(at, "interface '" + d_.name + "' in hardware: " + text);
+    }
+
+    // [":hw", "hw:type:0x4144", "hw:version:0x0100"]; by default the name's first letters, and 1.0.
+    void identity() {
+        std::string letters = upperCase(d_.name + "_");
+        block_.type = static_cast<unsigned>(letters[0]) << 8 | static_cast<unsigned>(letters[1]);
+        block_.version = 0x0100;
+        errors_ += checkKeys(d_.metadata, {"hw:type", "hw:version", "hw:pin"},
+                             "interface '" + d_.name + "'", d_.at, diagnostics_);
+        for (auto [key, value] :
+             {std::pair{"hw:type", &block_.type}, std::pair{"hw:version", &block_.version}}) {
+            std::string text = d_.metadataValue(key);
+            if (!text.empty() && !number(text, 0, 0xFFFF, *value))
+                error(d_.at, "[\"" + std::string(key) + ":" + text + "\"] is not 0..0xFFFF");
+        }
+    }
+
+    // [":hw", "hw:pin:pwm_o:4", "hw:pin:fault_i"]: name and width of ports that are pins.
+    void pins() {
+        for (const std::string& m : d_.metadata) {
+            if (m.compare(0, 6, "hw:pin") != 0)
+                continue;
+            Pin pin;
+            std::string rest = m.substr(std::min<size_t>(m.size(), 7));
+            size_t colon = rest.find(':');
+            pin.name = rest.substr(0, colon);
+            bool isGood = pin.name.size() > 2 && std::islower(pin.name[0]) &&
+                          pin.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
+                              std::string::npos &&
+                          pin.name[pin.name.size() - 2] == '_' &&
+                          (pin.name.back() == 'i' || pin.name.back() == 'o') &&
+                          (colon == std::string::npos ||
+                           number(rest.substr(colon + 1), 1, mostPins, pin.width));
+            if (!isGood)
+                error(d_.at, "[\"" + m +
+                                 "\"]: the port's name in small letters, with _i or _o at "
+                                 "its end, and its width, 1.." +
+                                 std::to_string(mostPins) + ": [\"hw:pin:pwm_o:4\"]");
+            else if (isSlotPort(pin.name))
+                error(d_.at, "[\"" + m + "\"]: '" + pin.name + "' is a port of every core");
+            else if (std::any_of(block_.pins.begin(), block_.pins.end(),
+                                 [&](const Pin& p) { return p.name == pin.name; }))
+                error(d_.at, "[\"" + m + "\"]: the pin '" + pin.name + "' is there twice");
+            block_.pins.push_back(pin);
+        }
+    }
+
+    static bool isSlotPort(const std::string& name) {
+        return name.compare(0, 4, "bus_") == 0 || name.compare(0, 4, "npi_") == 0 ||
+               name == "clk_i" || name == "rst_i" || name == "irq_o";
+    }
+
+    // Chosen words first, then the others in order into what is left.
+    void place() {
+        std::map<unsigned, std::string> taken = {{control, "CONTROL"}};
+        if (block_.hasLong())
+            taken[status] = "STATUS";
+        unsigned needed = static_cast<unsigned>(taken.size());
+        std::string list = block_.hasLong() ? "CONTROL 1, STATUS 1" : "CONTROL 1";
+        if (block_.memoryBytes) {
+            ++needed;
+            list += ", MEMORY 1";
+        }
+        for (Call& call : block_.calls) {
+            unsigned counts[2] = {0, 0};
+            for (Word& w : call.words) {
+                w.name = upperCase(call.name) + (w.isOut ? "_OUT" : "_IN") +
+                         std::to_string(counts[w.isOut]++);
+                if (w.number >= slotWords)
+                    error(call.operation->at, w.name + " would be word " +
+                                                  std::to_string(w.number) +
+                                                  "; 15 is the slot's last");
+                else if (w.number && !taken.emplace(w.number, w.name).second)
+                    error(call.operation->at, w.name + " wants word " + std::to_string(w.number) +
+                                                  ", which is " + taken[w.number] + "'s");
+            }
+            needed += counts[0] + counts[1];
+            if (counts[0] + counts[1])
+                list += ", '" + call.operation->name + "' " + std::to_string(counts[0]) + " in " +
+                        std::to_string(counts[1]) + " out";
+        }
+        constexpr unsigned room = slotWords - firstWord;
+        if (needed > room)
+            error(d_.at, "needs " + std::to_string(needed) + " words, a slot has " +
+                             std::to_string(room) + ": " + list);
+        if (errors_)
+            return;
+        unsigned next = firstWord;
+        if (block_.memoryBytes) {
+            while (taken.count(next))
+                ++next;
+            block_.memoryWord = next;
+            taken[next] = "MEMORY";
+        }
+        for (Call& call : block_.calls)
+            for (Word& w : call.words)
+                if (w.number == 0) {
+                    while (taken.count(next))
+                        ++next;
+                    w.number = next;
+                    taken[next] = w.name;
+                }
+    }
+
+    // Two names of Slice may give one name of a port: aB and a_b, a member x of p and p_x.
+    void checkPorts() {
+        std::map<std::string, std::string> ports;
+        for (const char* own : {"clk", "rst", "bus_valid", "bus_write", "bus_addr", "bus_wdata",
+                                "bus_ready", "bus_rdata", "bus_error", "irq", "core_rst"})
+            ports[own] = "the wrapper";
+        for (const Call& call : block_.calls) {
+            auto take = [&](const std::string& port) {
+                auto [it, isNew] = ports.emplace(call.name + "_" + port, call.operation->name);
+                if (!isNew)
+                    error(call.operation->at, "'" + call.operation->name + "' needs the port '" +
+                                                  it->first + "', as '" + it->second + "' does");
+            };
+            take(call.isEvent ? "event" : "start");
+            if (call.isEvent)
+                take("taken");
+            if (call.isLong) {
+                take("done");
+                take("refused");
+            }
+            for (const Word& w : call.words)
+                for (const Piece& p : w.pieces)
+                    if (p.portLsb == 0) {
+                        take(p.name);
+                        if (p.isCount)
+                            take(baseName(p));
+                    }
+        }
+    }
+
+    const Declaration& d_;
+    const Unit& unit_;
+    Diagnostics& diagnostics_;
+    Block block_;
+    int errors_ = 0;
+};
+
+} // namespace
+
+bool Block::hasLong() const {
+    return std::any_of(calls.begin(), calls.end(), [](const Call& c) { return c.isLong; });
+}
+
+unsigned Block::memoryLsb() const {
+    unsigned lsb = 0;
+    while (1u << lsb < memoryBytes)
+        ++lsb;
+    return lsb;
+}
+
+unsigned Block::events() const {
+    unsigned count = 0;
+    for (const Call& c : calls)
+        if (c.isLong || c.isEvent)
+            count = c.bit + 1;
+    return count;
+}
+
+std::vector<const Word*> Block::words() const {
+    std::vector<const Word*> list;
+    for (const Call& c : calls)
+        for (const Word& w : c.words)
+            list.push_back(&w);
+    std::sort(list.begin(), list.end(),
+              [](const Word* a, const Word* b) { return a->number < b->number; });
+    return list;
+}
+
+std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics) {
+    std::vector<Block> blocks;
+    std::map<std::string, const Declaration*> names;
+    for (const auto& d : unit.declarations) {
+        if (d->kind != Declaration::Kind::Interface || !d->isHardware() || d->fromInclude ||
+            d->isForward || d->isLocal)
+            continue;
+        blocks.push_back(Mapper(*d, unit, diagnostics).run());
+        auto [it, isNew] = names.emplace(blocks.back().name, d.get());
+        if (!isNew)
+            diagnostics.error(d->at, "'" + d->id() + "' becomes '" + it->first +
+                                         "' in hardware, as '" + it->second->id() + "' does");
+    }
+    if (blocks.empty() && diagnostics.errors() == 0)
+        diagnostics.error({diagnostics.intern(unit.file), 1, 1},
+                          "there is no interface with [\":hw\"] in this file");
+    return blocks;
+}
+
+} // namespace hw

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+//
+// map: which register of a slot each value of a [":hw"] interface is in (docs/hw-mapping.md).
+
+#ifndef SLICE_HW_MAP_H
+#define SLICE_HW_MAP_H
+
+#include "front/ast.h"
+#include <string>
+#include <vector>
+
+namespace hw {
+
+constexpr unsigned firstWord = 3, slotWords = 16; // ID, EVENT and MASK come before
+constexpr unsigned control = 3, status = 4;
+constexpr unsigned bufferAlignment = 128; // bytes: bursts begin there
+constexpr unsigned mostPins = 32;         // of a core, in a direction
+constexpr unsigned mostOperations = 16, refusedLsb = 16, resetBit = 31;
+
+// A scalar, or half of one of 64 bits: a field of a word, and bits of a port.
+struct Piece {
+    Type type;
+    std::string name; // a_x: of parameter a, member x
+    std::string c;    // as the servant's function has it: a->x
+    unsigned lsb = 0, width = 0;
+    unsigned portLsb = 0, portWidth = 0;
+    unsigned exception = 0; // 0: of the call or its results; else a member of the n-th exception
+    bool isCode = false;    // not a value: 0, or which exception it is
+    // The number of elements of a sequence: it is in DDR3, `offset` bytes behind the slot's
+    // buffers.
+    bool isCount = false;
+    unsigned offset = 0, most = 0, elementBytes = 0;
+};
+
+struct Word {
+    unsigned number = 0;
+    std::string name; // ADD_IN0
+    bool isOut = false;
+    std::vector<Piece> pieces;
+    unsigned width() const { return pieces.back().lsb + pieces.back().width; }
+};
+
+// An operation, a call of the core's; or an event, a call by it, of an operation of a callback
+// interface.
+struct Call {
+    const Operation* operation = nullptr;
+    bool isEvent = false;
+    bool isAmd = false;                     // long, and the processor goes on meanwhile
+    const Declaration* owner = nullptr;     // whose operation it is
+    std::vector<const Declaration*> thrown; // codes 1, 2, ...
+    std::vector<std::string> labels;        // their constants in C
+    std::string name;                       // snake_case
+    unsigned bit = 0;                       // in CONTROL, STATUS, EVENT and MASK
+    bool isLong = false;
+    unsigned timeout = 0; // milliseconds
+    std::vector<Word> words;
+};
+
+// An operation that registers a proxy whose operations are events.
+struct Listener {
+    const Operation* operation = nullptr;
+    const Declaration* interface = nullptr;
+    std::string name;            // snake_case
+    size_t first = 0, count = 0; // of Block::calls
+};
+
+// A pin of the chip that the core has as a port, beside its slot's.
+struct Pin {
+    std::string name; // ends in _i or _o
+    unsigned width = 1;
+    bool isOut() const { return name.back() == 'o'; }
+};
+
+struct Block {
+    const Declaration* interface = nullptr;
+    std::string name; // snake_case
+    unsigned type = 0, version = 0;
+    std::vector<Call> calls;
+    std::vector<Listener> listeners;
+    std::vector<Pin> pins;
+    unsigned memoryWord = 0;  // MEMORY; 0: no sequences
+    unsigned memoryBytes = 0; // of all buffers: a power of two
+
+    bool hasLong() const;
+    unsigned memoryLsb() const; // MEMORY holds the address from this bit on
+    unsigned events() const;    // bits of EVENT that are used, from bit 0
+    // Every word between CONTROL and the slot's end, by number.
+    std::vector<const Word*> words() const;
+};
+
+// All hardware interfaces of the unit's main file; errors are in `diagnostics`.
+std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics);
+
+// The calls of an interface, not yet placed. Returns the number of errors.
+int mapCalls(const Declaration& d, const Unit& unit, Block& block, Diagnostics& diagnostics);
+// A whole number, decimal or 0x..., within [low, high].
+bool number(const std::string& text, unsigned low, unsigned high, unsigned& value);
+// Metadata that begins with hw: must be one of `known`.
+int checkKeys(const std::vector<std::string>& metadata, const std::vector<std::string>& known,
+              const std::string& who, const Location& at, Diagnostics& diagnostics);
+
+std::string snakeCase(const std::string& name);
+std::string upperCase(std::string text);
+
+} // namespace hw
+
+#endif

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: MIT
+//
+// skeleton: a core to begin with, in Verilog or VHDL, which answers every call of its interface
+// with zeros; and a test that calls them all. For make new-ip; from then on its author's.
+
+#include "c/names.h"
+#include "c/operations.h"
+#include "c/writer.h"
+#include "hw/generator.h"
+#include "hw/ports.h"
+#include <algorithm>
+#include <cctype>
+
+namespace hw {
+namespace {
+
+// A slot's ports, a memory port's (docs/bus.md, docs/memory.md), and pins.
+std::vector<Port> corePorts(const Block& b) {
+    std::vector<Port> list;
+    for (const Port& p : wrapperPorts(b)) {
+        if (p.name == "core_rst_o")
+            break;
+        list.push_back(p);
+    }
+    if (b.memoryBytes)
+        for (const Port& p : std::vector<Port>{{"npi_addr_o", true, 32, "memory port"},
+                                               {"npi_addr_req_o", true, 1, ""},
+                                               {"npi_addr_ack_i", false, 1, ""},
+                                               {"npi_rnw_o", true, 1, ""},
+                                               {"npi_size_o", true, 4, ""},
+                                               {"npi_rmw_o", true, 1, ""},
+                                               {"npi_wr_data_o", true, 64, ""},
+                                               {"npi_wr_be_o", true, 8, ""},
+                                               {"npi_wr_push_o", true, 1, ""},
+                                               {"npi_wr_empty_i", false, 1, ""},
+                                               {"npi_wr_almost_full_i", false, 1, ""},
+                                               {"npi_wr_flush_o", true, 1, ""},
+                                               {"npi_rd_data_i", false, 64, ""},
+                                               {"npi_rd_word_i", false, 4, ""},
+                                               {"npi_rd_pop_o", true, 1, ""},
+                                               {"npi_rd_empty_i", false, 1, ""},
+                                               {"npi_rd_flush_o", true, 1, ""},
+                                               {"npi_init_done_i", false, 1, ""}})
+            list.push_back(p);
+    for (const Pin& p : b.pins)
+        list.push_back({p.name, p.isOut(), p.width, &p == &b.pins.front() ? "pins" : ""});
+    return list;
+}
+
+// True for ports that the wrapper does not have: the memory port's, and pins.
+bool isOwn(const Block& b, const Port& p) {
+    return p.name.rfind("npi_", 0) == 0 ||
+           std::any_of(b.pins.begin(), b.pins.end(),
+                       [&](const Pin& pin) { return pin.name == p.name; });
+}
+
+// The wrapper's ports towards the core.
+std::vector<Port> innerPorts(const Block& b) {
+    std::vector<Port> list = wrapperPorts(b);
+    list.erase(list.begin(), std::find_if(list.begin(), list.end(),
+                                          [](const Port& p) { return p.name == "core_rst_o"; }));
+    return list;
+}
+
+std::string signalOf(const Port& p) {
+    return p.name.substr(0, p.name.size() - 2);
+}
+
+std::string range(unsigned width, bool vhdl) {
+    std::string top = std::to_string(width - 1);
+    if (vhdl)
+        return width == 1 ? "std_logic" : "std_logic_vector(" + top + " downto 0)";
+    return width == 1 ? "" : "[" + top + ":0] ";
+}
+
+bool isDone(const Block& b, const Port& p) {
+    for (const Call& c : b.calls)
+        if (c.isLong && p.name == c.name + "_done_i")
+            return true;
+    return false;
+}
+
+std::string callOf(const Port& done) {
+    return done.name.substr(0, done.name.size() - 7);
+}
+
+void head(Writer& w, const Block& b, const char* comment) {
+    std::string c = comment;
+    w.line(c + " SPDX-License-Identifier: MIT");
+    w.line(c);
+    w.line(c + " " + b.name + ": answers every call of " + b.interface->id() +
+           " with zeros; registers by the generated " + b.name + "_wrapper.");
+    w.line();
+}
+
+std::string verilogCore(const Block& b) {
+    Writer w;
+    head(w, b, "//");
+    w.line("`default_nettype none");
+    w.line();
+    w.line("module " + b.name + " (");
+    auto outer = corePorts(b);
+    for (const Port& p : outer) {
+        if (!p.group.empty())
+            w.line("    // " + p.group);
+        w.line(std::string("    ") + (p.isOut ? "output wire " : "input  wire ") +
+               range(p.width, false) + p.name + (&p == &outer.back() ? "" : ","));
+    }
+    w.line(");");
+    std::string unused, connections;
+    for (const Port& p : innerPorts(b)) {
+        std::string name = signalOf(p);
+        if (isDone(b, p))
+            w.line("    reg  " + name + ";");
+        else
+            w.line("    wire " + range(p.width, false) + name +
+                   (p.isOut ? "" : " = " + std::to_string(p.width) + "'d0") + ";");
+        if (p.isOut)
+            unused += name + ", ";
+        connections += ",\n        ." + p.name + "(" + name + ")";
+    }
+    w.line();
+    w.line("    " + b.name + "_wrapper u_wrapper (");
+    w.line("        .clk_i(clk_i), .rst_i(rst_i),");
+    w.line(
+        "        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),");
+    w.line(
+        "        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),");
+    w.line("        .bus_error_o(bus_error_o), .irq_o(irq_o)" + connections);
+    w.line("    );");
+    for (const Port& p : innerPorts(b))
+        if (isDone(b, p)) {
+            w.line();
+            w.line("    always @(posedge clk_i)");
+            w.line("        " + signalOf(p) + " <= " + callOf(p) + "_start && !core_rst;");
+        }
+    w.line();
+    for (const Port& p : outer)
+        if (isOwn(b, p)) {
+            if (p.isOut)
+                w.line("    assign " + p.name + " = " + std::to_string(p.width) + "'d0;");
+            else
+                unused += p.name + ", ";
+        }
+    w.line("    wire unused = &{1'b0, " + unused + "1'b0};");
+    w.line("endmodule");
+    return w.text();
+}
+
+std::string zeroed(const std::string& name, const Port& p) {
+    return "  " + name + " <= " + (p.width == 1 ? "'0'" : "(others => '0')") + ";";
+}
+
+std::string vhdlCore(const Block& b) {
+    Writer w;
+    head(w, b, "--");
+    w.line("library ieee;");
+    w.line("use ieee.std_logic_1164.all;");
+    w.line();
+    w.line("entity " + b.name + " is");
+    w.line("  port (");
+    auto outer = corePorts(b);
+    for (const Port& p : outer) {
+        if (!p.group.empty())
+            w.line("    -- " + p.group);
+        w.line("    " + p.name + " : " + (p.isOut ? "out " : "in  ") + range(p.width, true) +
+               (&p == &outer.back() ? "" : ";"));
+    }
+    w.line("  );");
+    w.line("end entity;");
+    w.line();
+    w.line("architecture rtl of " + b.name + " is");
+    std::string connections;
+    std::vector<std::string> zeros, dones;
+    for (const Port& p : innerPorts(b)) {
+        std::string name = signalOf(p);
+        w.line("  signal " + name + " : " + range(p.width, true) + ";");
+        connections += std::string(",\n      ") + p.name + " => " + name;
+        if (isDone(b, p))
+            dones.push_back("      " + name + " <= " + callOf(p) + "_start and not core_rst;");
+        else if (!p.isOut)
+            zeros.push_back(zeroed(name, p));
+    }
+    for (const Port& p : outer)
+        if (p.isOut && isOwn(b, p))
+            zeros.push_back(zeroed(p.name, p));
+    w.line("begin");
+    w.line();
+    w.line("  u_wrapper : entity work." + b.name + "_wrapper");
+    w.line("    port map (");
+    w.line("      clk_i => clk_i, rst_i => rst_i,");
+    w.line(
+        "      bus_valid_i => bus_valid_i, bus_write_i => bus_write_i, bus_addr_i => bus_addr_i,");
+    w.line("      bus_wdata_i => bus_wdata_i, bus_ready_o => bus_ready_o, bus_rdata_o => "
+           "bus_rdata_o,");
+    w.line("      bus_error_o => bus_error_o, irq_o => irq_o" + connections + ");");
+    w.line();
+    if (!zeros.empty()) {
+        for (const std::string& line : zeros)
+            w.line(line);
+        w.line();
+    }
+    if (!dones.empty()) {
+        w.line("  ends : process (clk_i)");
+        w.line("  begin");
+        w.line("    if rising_edge(clk_i) then");
+        for (const std::string& line : dones)
+            w.line(line);
+        w.line("    end if;");
+        w.line("  end process;");
+        w.line();
+    }
+    w.line("end architecture;");
+    return w.text();
+}
+
+} // namespace
+
+GeneratedFile verilogSkeleton(const Block& b, const CFileNames&) {
+    return {b.name + ".v", verilogCore(b)};
+}
+
+GeneratedFile vhdlSkeleton(const Block& b, const CFileNames&) {
+    return {b.name + ".vhd", vhdlCore(b)};
+}
+
+GeneratedFile testSkeleton(const Block& b, const CFileNames&) {
+    Writer w;
+    w.line("// SPDX-License-Identifier: MIT");
+    w.line("//");
+    w.line("// " + b.name + "_test: calls every operation of the core.");
+    w.line();
+    w.line("#include \"V" + b.name + "_slot.h\"");
+    w.line("#include \"" + b.name + "_proxy.h\"");
+    for (const Call& c : b.calls) {
+        if (c.isEvent)
+            continue;
+        std::string name = c.operation->name, arguments;
+        name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+        w.line();
+        w.block("TEST(" + b.interface->name + "Core, Answers" + name + ")", {}, [&] {
+            w.line(b.interface->name + "Proxy<V" + b.name + "_slot> core;");
+            for (const Slot& s : inVariables(*c.operation)) {
+                w.line(cVariable(*s.type, s.value) + "{};");
+                arguments +=
+                    (arguments.empty() ? "" : ", ") + (isByPointer(*s.type) ? s.pointer : s.value);
+            }
+            for (const Field& p : c.operation->parameters)
+                if (p.isOut) {
+                    std::string out = cParameter(*c.operation, p);
+                    w.line(cVariable(p.type, out) + "{};");
+                    arguments += (arguments.empty() ? "&" : ", &") + out;
+                }
+            w.line("core." + cIdentifier(c.operation->name) + "(" + arguments + ");");
+        });
+    }
+    return {b.name + "_test.cpp", w.text()};
+}
+
+} // namespace hw

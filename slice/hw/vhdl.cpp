@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: MIT
+//
+// vhdl: the wrapper in VHDL, for designs that are VHDL throughout: an entity with the Verilog
+// wrapper's ports that does the same clock by clock, in VHDL-93 and later.
+
+#include "c/writer.h"
+#include "hw/generator.h"
+#include "hw/ports.h"
+#include "hw/words.h"
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
+namespace hw {
+namespace {
+
+std::string number(unsigned n) {
+    return std::to_string(n);
+}
+
+std::string vectorType(unsigned width) {
+    return "std_logic_vector(" + number(width - 1) + " downto 0)";
+}
+
+// `width` bits of a vector; one bit of it is a std_logic.
+std::string slice(const std::string& vector, unsigned lsb, unsigned width) {
+    return vector + "(" + (width == 1 ? "" : number(lsb + width - 1) + " downto ") + number(lsb) +
+           ")";
+}
+
+std::string address(unsigned word) {
+    std::string bits;
+    for (unsigned b = 4; b-- > 0;)
+        bits += word >> b & 1 ? '1' : '0';
+    return '"' + bits + '"';
+}
+
+std::string hex(unsigned value) {
+    char text[16];
+    std::snprintf(text, sizeof text, "X\"%08X\"", value);
+    return text;
+}
+
+std::string signalOf(const Word& word) {
+    std::string name = word.name;
+    for (char& c : name)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return name;
+}
+
+// A port, or the bits of it that a piece is.
+std::string portOf(const Call& c, const Piece& p, bool isResult) {
+    std::string port = c.name + "_" + p.name + (isResult ? "_i" : "_o");
+    return p.portWidth > 32 ? slice(port, p.portLsb, p.width) : port;
+}
+
+unsigned eventBits(const Block& b) {
+    return std::max(b.events(), 1u);
+}
+
+void entity(Writer& w, const Block& b) {
+    w.line("entity " + b.name + "_wrapper is");
+    w.line("  port (");
+    auto list = wrapperPorts(b);
+    for (const Port& p : list) {
+        if (!p.group.empty())
+            w.line("    -- " + p.group);
+        w.line("    " + p.name + " : " + (p.isOut ? "out " : "in  ") +
+               (p.width == 1 ? "std_logic" : vectorType(p.width)) +
+               (&p == &list.back() ? "" : ";"));
+    }
+    w.line("  );");
+    w.line("end entity;");
+}
+
+void signals(Writer& w, const Block& b) {
+    w.line("  signal writes, core_rst : std_logic;");
+    w.line("  signal act : std_logic_vector(31 downto 0); -- CONTROL, while it is written");
+    w.line("  signal happened, event_bits, mask_bits : " + vectorType(eventBits(b)) + ";");
+    if (b.memoryWord)
+        w.line("  signal memory : " + vectorType(32 - b.memoryLsb()) + ";");
+    for (const Word* word : b.words())
+        if (!word->isOut)
+            w.line("  signal " + signalOf(*word) + " : " + vectorType(word->width()) + ";");
+    for (const Call& c : b.calls)
+        if (c.isLong)
+            w.line("  signal " + c.name + "_start, " + c.name + "_done, " + c.name + "_busy, " +
+                   c.name + "_refused : std_logic;");
+}
+
+// Writes the signals that start and end calls, and `happened`, one bit for each call that can end
+// or be an event.
+void events(Writer& w, const Block& b) {
+    for (const Call& c : b.calls)
+        if (c.isLong) {
+            w.line("  " + c.name + "_start <= " + slice("act", c.bit, 1) + " and not " + c.name +
+                   "_busy;");
+            w.line("  " + c.name + "_done <= " + c.name + "_done_i and " + c.name + "_busy;");
+        }
+    for (unsigned bit = 0; bit < eventBits(b); ++bit) {
+        std::string what = "'0'";
+        if (bit < b.calls.size() && b.calls[bit].isLong)
+            what = b.calls[bit].name + "_done";
+        else if (bit < b.calls.size() && b.calls[bit].isEvent)
+            what = b.calls[bit].name + "_event_i";
+        w.line("  " + slice("happened", bit, 1) + " <= " + what + ";");
+    }
+    w.line("  irq_o <= '0' when (event_bits and mask_bits) = \"" + std::string(eventBits(b), '0') +
+           "\" else '1';");
+}
+
+// Writes the busy bits: a call is busy from start to done; a start while busy and a done while not
+// are ignored.
+void longCalls(Writer& w, const Block& b) {
+    w.line();
+    w.line("  long_operations : process (clk_i)");
+    w.line("  begin");
+    w.line("    if rising_edge(clk_i) then");
+    for (const Call& c : b.calls)
+        if (c.isLong) {
+            w.line("      {n}_busy <= ({n}_busy and not {n}_done) or {n}_start;", {{"n", c.name}});
+            w.line("      {n}_refused <= ({n}_refused and not {n}_done and not {n}_start)",
+                   {{"n", c.name}});
+            w.line("        or ({n}_done and {n}_refused_i);", {{"n", c.name}});
+        }
+    w.line("      if core_rst = '1' then");
+    for (const Call& c : b.calls)
+        if (c.isLong) {
+            w.line("        " + c.name + "_busy <= '0';");
+            w.line("        " + c.name + "_refused <= '0';");
+        }
+    w.line("      end if;");
+    w.line("    end if;");
+    w.line("  end process;");
+}
+
+void registers(Writer& w, const Block& b) {
+    auto written = [](unsigned width) { return "bus_wdata_i(" + number(width - 1) + " downto 0)"; };
+    std::string from = written(eventBits(b));
+    std::vector<std::string> cleared = {"event_bits", "mask_bits"};
+    w.line();
+    w.line("  registers : process (clk_i)");
+    w.line("  begin");
+    w.line("    if rising_edge(clk_i) then");
+    w.line("      -- an event in the cycle of its clear stays set");
+    w.line("      event_bits <= event_bits or happened;");
+    w.line("      if writes = '1' then");
+    w.line("        case bus_addr_i is");
+    w.line("          when " + address(1) + " => event_bits <= (event_bits and not " + from +
+           ") or happened;");
+    w.line("          when " + address(2) + " => mask_bits <= " + from + ";");
+    auto store = [&](unsigned word, const std::string& name, unsigned width) {
+        w.line("          when " + address(word) + " => " + name + " <= " + written(width) + ";");
+        cleared.push_back(name);
+    };
+    if (b.memoryWord)
+        store(b.memoryWord, "memory", 32 - b.memoryLsb());
+    for (const Word* word : b.words())
+        if (!word->isOut)
+            store(word->number, signalOf(*word), word->width());
+    w.line("          when others => null;");
+    w.line("        end case;");
+    w.line("      end if;");
+    w.line("      if rst_i = '1' then");
+    for (const std::string& name : cleared)
+        w.line("        " + name + " <= (others => '0');");
+    w.line("      end if;");
+    w.line("    end if;");
+    w.line("  end process;");
+}
+
+// The lines of the case statement that say what each word reads as. Appends to `signals` the
+// signals that they read.
+std::vector<std::string> shownWords(const Block& b, std::string& signals) {
+    std::vector<std::string> lines;
+    auto word = [&](unsigned n, const std::string& name) {
+        lines.push_back("      when " + address(n) + " => -- " + name);
+    };
+    auto show = [&](unsigned lsb, unsigned width, const std::string& what) {
+        lines.push_back("        " + slice("data", lsb, width) + " := " + what + ";");
+    };
+    auto vector = [&](unsigned width, const std::string& what) {
+        lines.push_back("        data(" + number(width - 1) + " downto 0) := " + what + ";");
+        signals += ", " + what;
+    };
+    word(0, "ID");
+    lines.push_back("        data := " + hex(b.type << 16 | b.version) + ";");
+    word(1, "EVENT");
+    vector(eventBits(b), "event_bits");
+    word(2, "MASK");
+    vector(eventBits(b), "mask_bits");
+    word(control, "CONTROL");
+    lines.push_back("        null;");
+    if (b.hasLong())
+        word(status, "STATUS");
+    for (const Call& c : b.calls)
+        if (c.isLong) {
+            show(c.bit, 1, c.name + "_busy");
+            show(refusedLsb + c.bit, 1, c.name + "_refused");
+            signals += ", " + c.name + "_busy, " + c.name + "_refused";
+        }
+    if (b.memoryWord) {
+        word(b.memoryWord, "MEMORY");
+        vector(32 - b.memoryLsb(), "memory");
+    }
+    for (const Call& c : b.calls)
+        for (const Word& own : c.words) {
+            word(own.number, own.name);
+            if (!own.isOut)
+                vector(own.width(), signalOf(own));
+            else
+                for (const Piece& p : own.pieces) {
+                    show(p.lsb, p.width, portOf(c, p, true));
+                    if (p.portLsb == 0)
+                        signals += ", " + c.name + "_" + p.name + "_i";
+                }
+        }
+    return lines;
+}
+
+void reads(Writer& w, const Block& b) {
+    std::string list = "bus_addr_i";
+    std::vector<std::string> words = shownWords(b, list);
+    w.line();
+    // within 100 columns
+    std::string head = "  reads : process (" + list + ")";
+    for (size_t at; head.size() > 100; head.erase(0, at)) {
+        at = head.rfind(", ", 97) + 1;
+        w.line(head.substr(0, at));
+        head.replace(at, 1, 19, ' ');
+    }
+    w.line(head);
+    w.line("    variable data : std_logic_vector(31 downto 0);");
+    w.line("  begin");
+    w.line("    data := (others => '0');");
+    w.line("    bus_error_o <= '0';");
+    w.line("    case bus_addr_i is");
+    for (const std::string& line : words)
+        w.line(line);
+    w.line("      when others =>");
+    w.line("        bus_error_o <= '1';");
+    w.line("    end case;");
+    w.line("    bus_rdata_o <= data;");
+    w.line("  end process;");
+}
+
+void calls(Writer& w, const Block& b) {
+    for (const Call& c : b.calls) {
+        w.line();
+        w.line("  " + c.name + (c.isEvent ? "_taken_o <= " : "_start_o <= ") +
+               (c.isLong ? c.name + "_start" : slice("act", c.bit, 1)) + ";");
+        for (const Word& word : c.words)
+            for (const Piece& p : word.pieces) {
+                // The buffers begin at a multiple of their size, so nothing is added.
+                if (p.isCount) {
+                    std::string bits;
+                    for (unsigned bit = b.memoryLsb(); bit-- > 0;)
+                        bits += p.offset >> bit & 1 ? '1' : '0';
+                    w.line("  " + c.name + "_" + baseName(p) + "_o <= memory & \"" + bits +
+                           "\"; -- " + number(p.offset) + " bytes behind the first buffer");
+                }
+                if (!word.isOut)
+                    w.line("  " + portOf(c, p, false) +
+                           " <= " + slice(signalOf(word), p.lsb, p.width) + ";");
+            }
+    }
+}
+
+} // namespace
+
+GeneratedFile vhdlFile(const Block& b, const CFileNames& names) {
+    Writer w;
+    w.line("-- Generated by slice2c from " + names.base + ".ice: do not edit.");
+    w.line("--");
+    w.line("-- " + b.name + "_wrapper: registers of " + b.interface->id() +
+           " (docs/hw-mapping.md), one slot.");
+    w.line("--");
+    w.line("-- <operation>_start_o is high for one clock; parameters are stable from then on.");
+    w.line("-- Results hold from the clock after it, or from done, until the next start.");
+    if (b.memoryWord)
+        w.line("-- <..>_base_o: DDR3 byte address of a sequence, a multiple of 128; <..>_count: "
+               "elements.");
+    w.line("-- <operation>_done_i ends an operation that takes time; refused_i is read with it.");
+    w.line();
+    w.line("library ieee;");
+    w.line("use ieee.std_logic_1164.all;");
+    w.line();
+    entity(w, b);
+    w.line();
+    w.line("architecture rtl of " + b.name + "_wrapper is");
+    signals(w, b);
+    w.line("begin");
+    w.line();
+    w.line("  bus_ready_o <= '1';");
+    w.line("  writes <= bus_valid_i and bus_write_i;");
+    w.line("  act <= bus_wdata_i when writes = '1' and bus_addr_i = " + address(control) +
+           " else " + hex(0) + ";");
+    w.line("  -- A clock after the write, from a register: the whole core hangs on it.");
+    w.line("  core_rst_o <= core_rst;");
+    w.line("  core_resets : process (clk_i)");
+    w.line("  begin");
+    w.line("    if rising_edge(clk_i) then");
+    w.line("      core_rst <= rst_i or " + slice("act", resetBit, 1) + ";");
+    w.line("    end if;");
+    w.line("  end process;");
+    events(w, b);
+    registers(w, b);
+    if (b.hasLong())
+        longCalls(w, b);
+    reads(w, b);
+    calls(w, b);
+    w.line();
+    w.line("end architecture;");
+    return {b.name + "_wrapper.vhd", w.text()};
+}
+
+} // namespace hw

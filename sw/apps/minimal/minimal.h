@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * minimal: what the smallest program and its start share.
+ */
+#ifndef MINIMAL_H
+#define MINIMAL_H
+
+#include "base.h"
+
+extern volatile U32 minimal_ticks; /* milliseconds since the start */
+
+/* Sleeps until the next tick. */
+void Minimal_sleep(void);
+
+/* The program; returns where the FPGA or the modem does not answer. */
+int main(void);
+
+#endif

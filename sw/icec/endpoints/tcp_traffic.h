@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * tcp_traffic: what goes over a connection and when. All but nowMs and sendSome are called under
+ * the endpoint's lock.
+ */
+#ifndef TCP_TRAFFIC_H
+#define TCP_TRAFFIC_H
+
+#include "tcp_endpoint.h"
+
+enum { TCP_REQUEST, TCP_BATCH, TCP_REPLY, TCP_VALIDATE, TCP_CLOSE }; /* types of messages */
+#define TCP_HEAD 14
+
+U32 TcpEndpoint_nowMs(void* context);
+/* Returns a free number; -1: there is none. */
+int TcpEndpoint_freeSlot(const TcpEndpoint* self);
+
+/* Notes a message that came or went; a heartbeat is no use of its connection. */
+void TcpEndpoint_note(TcpEndpoint_Connection* c, const Ice_Byte* message, Ice_Int size);
+/* Sends a message that is nothing but its head, if the system takes it at once. */
+void TcpEndpoint_sendHead(TcpEndpoint_Connection* c, Ice_Byte type);
+/* Sends the heartbeats that are due. Returns how long there is nothing to do, at most timeoutMs. */
+Ice_Int TcpEndpoint_keepUp(TcpEndpoint* self, Ice_Int timeoutMs);
+/* Sends for at most `ms`. Returns how many bytes the system took. */
+Ice_Int TcpEndpoint_sendSome(int fd, const Ice_Byte* message, Ice_Int size, Ice_Int ms);
+
+/* Returns the accepted connection that has been idle longest, and for how long; -1: none is. */
+int TcpEndpoint_idlest(TcpEndpoint* self, Ice_Int* idle);
+/* Returns the listener if a connection can be accepted now; else -1, and timeoutMs is shortened to
+ * when one may be. */
+int TcpEndpoint_listenerFor(TcpEndpoint* self, Ice_Int* timeoutMs);
+
+#endif

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_calls: the table of pending calls.
+ */
+#include "ice_calls.h"
+#include "ice_message.h"
+#include "ice_transport.h"
+
+#include <string.h>
+
+int icec_takeCall(Ice_CommunicatorPtr ic) {
+    int c, slot = -1;
+    icec_lock(ic, ICE_LOCK_STATE);
+    for (c = 0; c < ICE_CALLS && slot < 0; ++c)
+        if (ic->calls[c].state == ICE_CALL_FREE) {
+            ic->calls[c].state = ICE_CALL_BUILDING;
+            ic->calls[c].callback = 0;
+            slot = c;
+        }
+    icec_unlock(ic, ICE_LOCK_STATE);
+    return slot;
+}
+
+void icec_freeCall(Ice_CommunicatorPtr ic, int slot) {
+    icec_lock(ic, ICE_LOCK_STATE);
+    ic->calls[slot].state = ICE_CALL_FREE;
+    icec_unlock(ic, ICE_LOCK_STATE);
+}
+
+Ice_CallState icec_callState(Ice_CommunicatorPtr ic, int slot) {
+    Ice_CallState state;
+    icec_lock(ic, ICE_LOCK_STATE);
+    state = ic->calls[slot].state;
+    icec_unlock(ic, ICE_LOCK_STATE);
+    return state;
+}
+
+void icec_wakeCalls(Ice_CommunicatorPtr ic) {
+    int c;
+    for (c = 0; c < ICE_CALLS; ++c)
+        if (ic->calls[c].state != ICE_CALL_FREE)
+            ic->os->wake(ic->osContext, c);
+}
+
+/* ---- the end of a call ---- */
+
+static const Ice_Byte nothing[1] = {0}; /* the reply of calls that get none */
+
+/* Ends the call `id` if it still waits: tells the waiting task, or calls back. */
+static void finish(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id, Ice_Status status,
+                   Ice_InputStreamPtr is) {
+    Ice_Callback callback = 0;
+    void* cookie = 0;
+    icec_lock(ic, ICE_LOCK_STATE);
+    if (call->state == ICE_CALL_WAITING && call->id == id) {
+        callback = call->callback;
+        cookie = call->cookie;
+        call->status = status;
+        /* The callback may make the next call. */
+        call->state = callback ? ICE_CALL_FREE : ICE_CALL_DONE;
+        if (!callback)
+            ic->os->wake(ic->osContext, (int)(call - ic->calls));
+    }
+    icec_unlock(ic, ICE_LOCK_STATE);
+    if (callback)
+        callback(cookie, status, is);
+}
+
+void icec_loseConnection(Ice_CommunicatorPtr ic, int connection, Ice_Status status) {
+    Ice_InputStream none;
+    int c;
+    Ice_InputStream_init(&none, nothing, 0);
+    icec_lock(ic, ICE_LOCK_STATE);
+    ic->connections[connection].state = ICE_CONNECTION_NONE;
+    icec_wakeCalls(ic); /* some may wait for the connection */
+    icec_unlock(ic, ICE_LOCK_STATE);
+    for (c = 0; c < ICE_CALLS; ++c) {
+        Ice_Call* call = &ic->calls[c];
+        Ice_Int id;
+        int isLost;
+        icec_lock(ic, ICE_LOCK_STATE);
+        isLost = call->state == ICE_CALL_WAITING && call->connection == connection;
+        id = call->id;
+        icec_unlock(ic, ICE_LOCK_STATE);
+        if (isLost)
+            finish(ic, call, id, status, &none);
+    }
+}
+
+/* Finds an asynchronous call whose time is over, and its id; 0: there is none. Shortens `waitMs` to
+ * when the next one's is. */
+static Ice_Call* expiredCall(Ice_CommunicatorPtr ic, Ice_Int* id, Ice_Int* waitMs) {
+    U32 now = icec_nowMs(ic);
+    Ice_Call *call, *expired = 0;
+    icec_lock(ic, ICE_LOCK_STATE);
+    for (call = ic->calls; call < ic->calls + ICE_CALLS; ++call) {
+        Ice_Int left = call->timeoutMs - (Ice_Int)(now - call->begunMs);
+        if (call->state != ICE_CALL_WAITING || !call->callback)
+            continue;
+        if (left <= 0) {
+            expired = call;
+            *id = call->id;
+        } else if (left < *waitMs) {
+            *waitMs = left;
+        }
+    }
+    icec_unlock(ic, ICE_LOCK_STATE);
+    return expired;
+}
+
+Ice_Int icec_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
+    Ice_InputStream none;
+    Ice_Call* call;
+    Ice_Int id;
+    while ((call = expiredCall(ic, &id, &waitMs)) != 0) {
+        Ice_InputStream_init(&none, nothing, 0);
+        finish(ic, call, id, ICE_TIMEOUT, &none);
+    }
+    return waitMs;
+}
+
+/* ---- replies ---- */
+
+/* Reads what a failed reply says. */
+static void readFailure(Ice_InputStreamPtr is, Ice_Status status, Ice_Failure* failure) {
+    if (status == ICE_MARSHAL && is->failed)
+        failure->unknown = Ice_String_from(Ice_Failed_text(is->failed));
+    if (status > ICE_UNKNOWN_EXCEPTION || status <= ICE_USER_EXCEPTION)
+        return;
+    if (status > ICE_OPERATION_NOT_EXIST) {
+        failure->unknown = Ice_InputStream_readString(is);
+        return;
+    }
+    failure->identity.name = Ice_InputStream_readString(is);
+    failure->identity.category = Ice_InputStream_readString(is);
+    icec_readFacet(is, &failure->facet);
+    failure->operation = Ice_InputStream_readString(is);
+}
+
+/* Copies what is left of the message to the buffer of the task that waits, and `is` with it. */
+static void keepReply(Ice_Call* call, Ice_InputStreamPtr is) {
+    Ice_CommunicatorPtr ic = is->communicator;
+    Ice_Int size = is->size - is->position;
+    if (size > call->replySize) {
+        is->failed = ICE_FAILED_REPLY;
+        return;
+    }
+    memcpy(call->reply, is->data + is->position, (size_t)size);
+    Ice_InputStream_init(is, (const Ice_Byte*)call->reply, size);
+    size = (size + 7) / 8 * 2; /* in words: the arena begins at a multiple of 8 */
+    is->arena = call->reply + size;
+    is->arenaSize = call->replySize / 4 - size;
+    is->communicator = ic;
+}
+
+/* 0: the call timed out, or there never was one. */
+static Ice_Call* waitingCall(Ice_CommunicatorPtr ic, int connection, Ice_Int id) {
+    Ice_Call* call;
+    for (call = ic->calls; call < ic->calls + ICE_CALLS; ++call)
+        if (call->state == ICE_CALL_WAITING && call->id == id && call->connection == connection)
+            return call;
+    return 0;
+}
+
+void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is) {
+    Ice_Int id = Ice_InputStream_readInt(is);
+    Ice_Call* call;
+    int isAsynchronous = 0;
+    icec_lock(ic, ICE_LOCK_STATE); /* so that it does not time out meanwhile */
+    call = waitingCall(ic, connection, id);
+    if (call && call->callback) {
+        isAsynchronous = 1;
+    } else if (call) {
+        keepReply(call, is);
+        call->status = icec_readReply(is);
+        readFailure(is, call->status, &call->failure);
+        call->is = *is;
+        call->state = ICE_CALL_DONE;
+        ic->os->wake(ic->osContext, (int)(call - ic->calls));
+    }
+    icec_unlock(ic, ICE_LOCK_STATE);
+    if (isAsynchronous) {
+        Ice_Status status;
+        icec_giveArena(ic, is);
+        status = icec_readReply(is);
+        readFailure(is, status, &call->failure);
+        finish(ic, call, id, status, is);
+    }
+}

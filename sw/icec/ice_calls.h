@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_calls: the table of calls that this side has made and whose replies are to come.
+ */
+#ifndef ICE_CALLS_H
+#define ICE_CALLS_H
+
+#include "icec.h"
+
+/* Takes a free slot for a call that is being built. -1: all are taken. */
+int icec_takeCall(Ice_CommunicatorPtr ic);
+void icec_freeCall(Ice_CommunicatorPtr ic, int slot);
+Ice_CallState icec_callState(Ice_CommunicatorPtr ic, int slot);
+
+/* Hands a reply, read behind its head, to the call that waits for it. */
+void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
+/* Ends asynchronous calls whose time is over. Returns how long none of the others can be, at most
+ * `waitMs`. */
+Ice_Int icec_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs);
+/* Marks a connection as closed, and fails its calls with `status`. */
+void icec_loseConnection(Ice_CommunicatorPtr ic, int connection, Ice_Status status);
+/* Wakes every task that is making a call; under the state lock. */
+void icec_wakeCalls(Ice_CommunicatorPtr ic);
+
+#endif

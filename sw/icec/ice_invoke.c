@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_invoke: calls made through proxies: connect, request, wait, reply.
+ */
+#include "ice_calls.h"
+#include "ice_loop.h"
+#include "ice_message.h"
+#include "ice_transport.h"
+
+#include <string.h>
+
+/* Notes which limit was reached, or what else is wrong, for Ice_ObjectPrx_failure. */
+static Ice_Status fail(Ice_ObjectPrxPtr self, Ice_Status status, int why) {
+    Ice_Call* call = &self->communicator->calls[self->call];
+    call->failure.unknown = Ice_String_from(Ice_Failed_text((Ice_Byte)why));
+    return status;
+}
+
+/* ---- connecting ---- */
+
+static int isValidating(Ice_CommunicatorPtr ic, int connection) {
+    return icec_connectionState(ic, connection) == ICE_CONNECTION_VALIDATING;
+}
+
+/* Connects to one endpoint, or to what is there already. */
+static Ice_Status open(Ice_ObjectPrxPtr self, const Ice_Byte* endpoint, Ice_Int size) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    Ice_Status status;
+    icec_lock(ic, ICE_LOCK_STATE);
+    status = ic->endpoint->connect(ic->endpointContext, endpoint, size, &self->connection);
+    if (status == ICE_OK && ic->connections[self->connection].state == ICE_CONNECTION_NONE)
+        icec_openConnection(ic, self->connection, ICE_CONNECTION_VALIDATING);
+    icec_unlock(ic, ICE_LOCK_STATE);
+    return status;
+}
+
+/* Tries the proxy's endpoints in turn, and waits for the peer's first message. */
+static Ice_Status connect(Ice_ObjectPrxPtr self) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    Ice_Status status = ICE_NO_ENDPOINT;
+    Ice_ConnectionState state;
+    Ice_InputStream is;
+    int n;
+    if (self->mode >= ICE_DATAGRAM)
+        return ICE_NO_ENDPOINT;
+    if (self->generation) /* a fixed proxy's only connection */
+        return icec_countPending(ic, self->connection, self->generation, 0) ? ICE_OK
+                                                                            : ICE_CONNECTION_LOST;
+    Ice_InputStream_init(&is, self->endpoints + 1, self->endpointsSize - 1);
+    for (n = self->endpoints[0]; n > 0 && status != ICE_OK; --n) {
+        Ice_Int begin = is.position;
+        (void)Ice_InputStream_readShort(&is);
+        (void)Ice_InputStream_readBlob(&is, Ice_InputStream_readInt(&is) - 4);
+        status = open(self, is.data + begin, is.position - begin);
+    }
+    if (status != ICE_OK)
+        return status == ICE_LIMIT ? fail(self, status, ICE_FAILED_CONNECTIONS) : status;
+    status = icec_await(ic, isValidating, self->connection, self->call, self->timeoutMs);
+    state = icec_connectionState(ic, self->connection);
+    if (state == ICE_CONNECTION_VALIDATING)
+        return status == ICE_LIMIT ? fail(self, status, ICE_FAILED_NESTING) : status;
+    return state == ICE_CONNECTION_OPEN ? ICE_OK : ICE_CONNECTION_LOST;
+}
+
+Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int* connection) {
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "", 0); /* for a slot to wait in */
+    if (!os)
+        return (Ice_Status)self->status;
+    icec_unlock(self->communicator, ICE_LOCK_SEND);
+    *connection = self->connection;
+    return Ice_ObjectPrx_end(self, (Ice_Status)self->status);
+}
+
+/* ---- requests ---- */
+
+static void writeContext(Ice_OutputStreamPtr os, const Ice_ContextEntry* context) {
+    Ice_Int n = 0;
+    while (context && context[n].key)
+        ++n;
+    Ice_OutputStream_writeSize(os, n);
+    for (; n > 0; --n, ++context) {
+        Ice_OutputStream_writeText(os, context->key);
+        Ice_OutputStream_writeText(os, context->value);
+    }
+}
+
+/* Writes a request up to its parameters; in a batch it has neither head nor id. */
+static void beginRequest(Ice_ObjectPrxPtr self, const char* operation, Ice_Byte mode) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    Ice_OutputStreamPtr os = &ic->request;
+    Ice_OutputStream_init(os, ic->requestData, ICE_REQUEST_MAX);
+    if (!self->batch) {
+        Ice_Call* call = &ic->calls[self->call];
+        call->id = 0;
+        if (self->mode == ICE_TWOWAY) {
+            ic->lastId = (ic->lastId & 0x3FFFFFFF) + 1; /* never 0: that is a one-way request */
+            call->id = ic->lastId;
+        }
+        icec_beginMessage(os, ICEC_REQUEST);
+        Ice_OutputStream_writeInt(os, call->id);
+    }
+    os->minor = self->minor;
+    Ice_OutputStream_writeBlob(os, self->identity, self->identitySize);
+    Ice_OutputStream_writeText(os, operation);
+    Ice_OutputStream_writeByte(os, mode & (Ice_Byte)~ICE_RESULTS);
+    writeContext(os, self->context);
+    ic->requestBody = icec_beginEncapsulation(os);
+}
+
+Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char* operation,
+                                        Ice_Byte mode) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    self->status = self->mode != ICE_TWOWAY && mode & ICE_RESULTS ? ICE_TWOWAY_ONLY : ICE_LIMIT;
+    if (self->status == ICE_TWOWAY_ONLY)
+        return 0;
+    self->call = icec_takeCall(ic);
+    if (self->call < 0)
+        return 0;
+    memset(&ic->calls[self->call].failure, 0, sizeof ic->calls[0].failure);
+    self->status = self->batch ? ICE_OK : (Ice_Byte)connect(self);
+    icec_lock(ic, ICE_LOCK_SEND);
+    beginRequest(self, operation, mode);
+    return &ic->request;
+}
+
+/* Registers the call before its reply can be there. */
+static void registerCall(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    Ice_Call* call = &ic->calls[self->call];
+    icec_lock(ic, ICE_LOCK_STATE);
+    call->connection = self->connection;
+    call->callback = callback;
+    call->cookie = cookie;
+    call->timeoutMs = self->timeoutMs;
+    call->begunMs = icec_nowMs(ic);
+    call->reply = self->reply ? self->reply : call->replyData;
+    call->replySize = self->reply ? self->replySize : (Ice_Int)sizeof call->replyData;
+    if (self->mode == ICE_TWOWAY)
+        call->state = ICE_CALL_WAITING;
+    icec_unlock(ic, ICE_LOCK_STATE);
+}
+
+static Ice_Status sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie) {
+    Ice_OutputStreamPtr os = &self->communicator->request;
+    icec_endEncapsulation(os, self->communicator->requestBody);
+    if (self->batch)
+        return self->batch->keep(self);
+    icec_endMessage(os);
+    if (self->status != ICE_OK)
+        return (Ice_Status)self->status;
+    if (os->failed)
+        return fail(self, ICE_MARSHAL,
+                    os->failed == ICE_FAILED_RESULT ? ICE_FAILED_REQUEST : os->failed);
+    registerCall(self, callback, cookie);
+    return icec_send(self->communicator, self->connection, os);
+}
+
+/* Sends, and gives the buffer back. */
+static Ice_Status sendAndUnlock(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie) {
+    Ice_Status status = sendRequest(self, callback, cookie);
+    icec_unlock(self->communicator, ICE_LOCK_SEND);
+    return status;
+}
+
+/* ---- replies ---- */
+
+static int isWaiting(Ice_CommunicatorPtr ic, int slot) {
+    return icec_callState(ic, slot) == ICE_CALL_WAITING;
+}
+
+Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr* is) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    Ice_Call* call = &ic->calls[self->call];
+    Ice_Status status = sendAndUnlock(self, 0, 0);
+    if (status != ICE_OK || self->mode != ICE_TWOWAY)
+        return status;
+    status = icec_await(ic, isWaiting, self->call, self->call, self->timeoutMs);
+    if (icec_callState(ic, self->call) == ICE_CALL_DONE)
+        status = call->status;
+    else if (status == ICE_LIMIT)
+        status = fail(self, status, ICE_FAILED_NESTING);
+    *is = &call->is;
+    return status;
+}
+
+Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    int slot = self->call;
+    Ice_Status status = sendAndUnlock(self, callback, cookie);
+    if (status != ICE_OK || self->mode != ICE_TWOWAY)
+        return Ice_ObjectPrx_end(self, status);
+    /* A task that receives already must not sleep past this call's time. */
+    if (isWaiting(ic, slot))
+        ic->endpoint->wake(ic->endpointContext);
+    return ICE_OK;
+}
+
+Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    const Ice_Call* call = &ic->calls[self->call];
+    if (status <= ICE_USER_EXCEPTION && icec_callState(ic, self->call) == ICE_CALL_DONE &&
+        call->is.failed)
+        status = fail(self, ICE_MARSHAL, call->is.failed);
+    icec_freeCall(ic, self->call);
+    return status;
+}
+
+void Ice_ObjectPrx_failure(const Ice_ObjectPrx* self, Ice_Failure* failure) {
+    if (self->call >= 0)
+        *failure = self->communicator->calls[self->call].failure;
+    else
+        memset(failure, 0, sizeof *failure);
+    if (self->call < 0 && self->status == ICE_LIMIT)
+        failure->unknown = Ice_String_from(Ice_Failed_text(ICE_FAILED_CALLS));
+}

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_locator: from an indirect proxy to a direct one, by a locator such as IceGrid's.
+ */
+#include "ice_proxy.h"
+
+#include <string.h>
+
+#define MODE (2 | ICE_RESULTS) /* idempotent */
+
+/* Asks for the adapter that the proxy names, or for the object itself. */
+static Ice_Status find(const Ice_ObjectPrx* prx, Ice_ObjectPrxPtr locator, Ice_ObjectPrxPtr found) {
+    int byAdapter = prx->endpoints[1] != 0; /* the size of the adapter's id */
+    Ice_OutputStreamPtr os =
+        Ice_ObjectPrx_begin(locator, byAdapter ? "findAdapterById" : "findObjectById", MODE);
+    Ice_InputStreamPtr is;
+    Ice_Status status;
+    if (!os)
+        return (Ice_Status)locator->status;
+    if (byAdapter) {
+        Ice_OutputStream_writeBlob(os, prx->endpoints + 1, prx->endpointsSize - 1);
+    } else {
+        Ice_Identity id = Ice_ObjectPrx_getIdentity(prx);
+        Ice_OutputStream_writeString(os, id.name);
+        Ice_OutputStream_writeString(os, id.category);
+    }
+    status = Ice_ObjectPrx_invoke(locator, &is);
+    if (status == ICE_OK)
+        Ice_InputStream_readPrx(is, prx->communicator, found);
+    status = Ice_ObjectPrx_end(locator, status);
+    return status == ICE_USER_EXCEPTION ? ICE_NO_ENDPOINT : status; /* it is not registered */
+}
+
+Ice_Status Ice_ObjectPrx_resolve(Ice_ObjectPrxPtr self, Ice_ObjectPrxPtr locator) {
+    Ice_ObjectPrx asked = *self, found;
+    Ice_Status status = ICE_OK;
+    int steps = 2; /* an object may be known by its adapter, and that by its endpoints */
+    while (status == ICE_OK && asked.endpoints[0] == 0 && steps-- > 0) {
+        status = find(&asked, locator, &found);
+        if (status == ICE_OK && Ice_ObjectPrx_isNull(&found))
+            return ICE_NO_ENDPOINT;
+        asked = found;
+    }
+    if (status == ICE_OK && asked.endpoints[0] == 0)
+        return ICE_NO_ENDPOINT;
+    if (status == ICE_OK) {
+        memcpy(self->endpoints, asked.endpoints, sizeof self->endpoints);
+        self->endpointsSize = asked.endpointsSize;
+    }
+    return status;
+}

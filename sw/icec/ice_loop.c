@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_loop: what arrives on connections, and waiting for it.
+ */
+#include "ice_loop.h"
+#include "ice_calls.h"
+#include "ice_dispatch.h"
+#include "ice_message.h"
+#include "ice_receiver.h"
+#include "ice_transport.h"
+
+/* Opens a connection for calls, on the peer's first message. */
+static void validate(Ice_CommunicatorPtr ic, int connection) {
+    icec_lock(ic, ICE_LOCK_STATE);
+    ic->connections[connection].state = ICE_CONNECTION_OPEN;
+    icec_wakeCalls(ic);
+    icec_unlock(ic, ICE_LOCK_STATE);
+}
+
+/* Returns ICE_OK, or why the connection is to be closed; what is malformed loses it. */
+static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_Byte* in,
+                              Ice_Int size) {
+    Ice_InputStream is;
+    Ice_Int type;
+    Ice_InputStream_init(&is, in, size);
+    is.communicator = ic;
+    type = icec_readHead(&is);
+    switch (type) {
+    case ICEC_REQUEST:
+        return icec_dispatchRequest(ic, connection, &is);
+    case ICEC_BATCH:
+        return icec_dispatchBatch(ic, connection, &is);
+    case ICEC_REPLY:
+        icec_takeReply(ic, connection, &is);
+        return ICE_OK;
+    case ICEC_VALIDATE:
+        validate(ic, connection);
+        return ICE_OK;
+    case ICEC_CLOSE:
+        return ICE_CONNECTION_CLOSED;
+    default:
+        /* What is compressed cannot be answered; this says that it was not executed. */
+        if (type > 0xFF)
+            (void)icec_sendHead(ic, connection, ICEC_CLOSE);
+        return ICE_CONNECTION_LOST;
+    }
+}
+
+static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ice_Event* event) {
+    int connection = event->connection;
+    Ice_Status end = ICE_CONNECTION_LOST;
+    if (event->kind == ICE_EVENT_NONE)
+        return ICE_TIMEOUT;
+    if (event->kind == ICE_EVENT_OPENED && icec_isStopping(ic)) {
+        icec_closeConnection(ic, connection);
+        return ICE_OK;
+    }
+    if (event->kind == ICE_EVENT_OPENED) { /* the side that accepts a connection speaks first */
+        icec_lock(ic, ICE_LOCK_STATE);
+        icec_openConnection(ic, connection, ICE_CONNECTION_OPEN);
+        icec_unlock(ic, ICE_LOCK_STATE);
+        (void)icec_sendHead(ic, connection, ICEC_VALIDATE);
+        return ICE_OK;
+    }
+    if (event->kind == ICE_EVENT_MESSAGE) {
+        end = takeMessage(ic, connection, in, event->size);
+        if (end == ICE_OK)
+            return ICE_OK;
+        icec_closeConnection(ic, connection);
+    }
+    icec_loseConnection(ic, connection, end);
+    return ICE_OK;
+}
+
+/* Finds a connection whose callers wait for an operation and are due a heartbeat; -1: none.
+ * Shortens `waitMs` to when the next one is. */
+static int heartbeatDue(Ice_CommunicatorPtr ic, Ice_Int* waitMs) {
+    U32 now = icec_nowMs(ic);
+    int c, due = -1;
+    icec_lock(ic, ICE_LOCK_STATE);
+    for (c = 0; c < ICE_CONNECTIONS; ++c) {
+        const Ice_Connection* connection = &ic->connections[c];
+        Ice_Int left = ICE_HEARTBEAT_MS - (Ice_Int)(now - connection->sentMs);
+        if (connection->state != ICE_CONNECTION_OPEN || !connection->pending)
+            continue;
+        if (left <= 0)
+            due = c;
+        else if (left < *waitMs)
+            *waitMs = left;
+    }
+    icec_unlock(ic, ICE_LOCK_STATE);
+    return due;
+}
+
+/* Sends the heartbeats that are due. Returns how long none is, at most `waitMs`. */
+static Ice_Int sendHeartbeats(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
+    int due;
+    while ((due = heartbeatDue(ic, &waitMs)) >= 0)
+        (void)icec_sendHead(ic, due, ICEC_VALIDATE);
+    return waitMs;
+}
+
+Ice_Status icec_receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
+    Ice_Event event;
+    Ice_Status status;
+    Ice_Byte* in;
+    if (ic->depth == ICE_NESTING)
+        return ICE_LIMIT;
+    in = ic->in[ic->depth];
+    timeoutMs = icec_expireCalls(ic, sendHeartbeats(ic, timeoutMs));
+    event.kind = ICE_EVENT_NONE;
+    ++ic->depth;
+    status = ic->endpoint->receive(ic->endpointContext, in, timeoutMs, &event);
+    if (status == ICE_OK)
+        status = takeEvent(ic, in, &event);
+    --ic->depth;
+    return status;
+}
+
+Ice_Status icec_await(Ice_CommunicatorPtr ic, int (*waits)(Ice_CommunicatorPtr ic, int which),
+                      int which, int slot, Ice_Int timeoutMs) {
+    U32 begin = icec_nowMs(ic);
+    Ice_Status status = ICE_OK;
+    int leads = 0;
+    while (waits(ic, which)) {
+        Ice_Int left = timeoutMs - (Ice_Int)(icec_nowMs(ic) - begin);
+        status = ICE_TIMEOUT;
+        if (left <= 0)
+            break;
+        if (!icec_mayReceive(ic, &leads))
+            (void)ic->os->wait(ic->osContext, slot, left);
+        else
+            status = icec_receiveOne(ic, left);
+        if (status != ICE_OK && status != ICE_TIMEOUT)
+            break;
+        status = ICE_OK;
+    }
+    if (leads)
+        icec_giveRole(ic); /* the next one takes over */
+    return status;
+}

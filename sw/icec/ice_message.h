@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_message: IceP's messages as bytes, for the full and the minimal run time: their heads, their
+ * check, requests, replies, encapsulations.
+ */
+#ifndef ICE_MESSAGE_H
+#define ICE_MESSAGE_H
+
+#include "icec.h"
+
+enum { ICEC_REQUEST, ICEC_BATCH, ICEC_REPLY, ICEC_VALIDATE, ICEC_CLOSE }; /* types of messages */
+#define ICEC_HEADER 14
+#define ICEC_REPLY_BODY 19 /* where a reply's encapsulation begins: behind header, id, status */
+#define ICEC_REPLY_HEAD 25 /* where a reply's results begin */
+
+/* Empties a stream, and writes the head of a message; icec_endMessage fills its size in. */
+void icec_beginMessage(Ice_OutputStreamPtr os, Ice_Byte type);
+void icec_endMessage(Ice_OutputStreamPtr os);
+/* Checks the head of a message of is->size bytes, and goes behind it. Returns the message's type,
+ * greater than 0xFF if it is compressed; -1 if it is no message of IceP 1.0. */
+Ice_Int icec_readHead(Ice_InputStreamPtr is);
+
+/* Overwrites the four bytes at `at`. */
+void icec_patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value);
+
+/* Writes size and encoding of an encapsulation, and returns its begin, which icec_endEncapsulation
+ * takes to fill the size in. */
+Ice_Int icec_beginEncapsulation(Ice_OutputStreamPtr os);
+void icec_endEncapsulation(Ice_OutputStreamPtr os, Ice_Int begin);
+/* Narrows `is` to the encapsulation that follows. ICE_MARSHAL: it is malformed; ICE_PROTOCOL: its
+ * encoding is neither 1.0 nor 1.1. */
+Ice_Status icec_enterEncapsulation(Ice_InputStreamPtr is);
+
+/* Writes and reads a facet as on the wire: a sequence of no string or one. More are malformed, as
+ * they are to Ice. */
+void icec_writeFacet(Ice_OutputStreamPtr os, const Ice_String* facet);
+void icec_readFacet(Ice_InputStreamPtr is, Ice_String* facet);
+void icec_skipStrings(Ice_InputStreamPtr is, U32 count);
+
+/* Identity, facet and operation of a request as its bytes: failed replies repeat them. */
+typedef struct Icec_Target {
+    const Ice_Byte* data;
+    Ice_Int size;
+} Icec_Target;
+
+/* Writes a reply from its id to the begin of its results. */
+void icec_beginReply(Ice_OutputStreamPtr os, Ice_Int id);
+/* Fills the reply's status in. A failure replaces the results; its reason in words is empty. */
+void icec_endReply(Ice_OutputStreamPtr os, Ice_Status status, const Icec_Target* target);
+/* Reads a reply's status, and narrows `is` to its results or exception. Returns the status, or why
+ * they cannot be read. */
+Ice_Status icec_readReply(Ice_InputStreamPtr is);
+
+#endif

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_port: what IceC needs from below: a transport, and tasks where there are several.
+ */
+#ifndef ICE_PORT_H
+#define ICE_PORT_H
+
+#include "ice_stream.h"
+
+typedef enum Ice_Status {
+    /* The first eight have the numbers that replies have on the wire. */
+    ICE_OK = 0,
+    ICE_USER_EXCEPTION, /* the reply is one; its body is in the stream */
+    ICE_OBJECT_NOT_EXIST,
+    ICE_FACET_NOT_EXIST,
+    ICE_OPERATION_NOT_EXIST,
+    ICE_UNKNOWN_LOCAL_EXCEPTION, /* the peer's run time failed */
+    ICE_UNKNOWN_USER_EXCEPTION,  /* an exception that the operation does not declare */
+    ICE_UNKNOWN_EXCEPTION,       /* the peer failed otherwise */
+    /* The next two are local exceptions to the peer, the others unknown ones. */
+    ICE_MARSHAL,  /* a message is not what it should be, or does not fit */
+    ICE_PROTOCOL, /* not IceP 1.0, compressed, or an encoding other than 1.0 and 1.1 */
+    ICE_TIMEOUT,
+    ICE_CONNECTION_LOST,   /* a call under way may or may not have been executed */
+    ICE_NO_ENDPOINT,       /* unknown transport, or a proxy without endpoints */
+    ICE_LIMIT,             /* one of the constants of ice_config.h */
+    ICE_CONNECTION_CLOSED, /* the peer closed in good order: the call was not executed */
+    ICE_PARSE,             /* a proxy, identity or endpoint string that is none */
+    ICE_TWOWAY_ONLY,       /* results are wanted through a oneway or batch proxy */
+    ICE_LATER              /* from a servant: the reply comes later (Ice_Reply) */
+} Ice_Status;
+
+const char* Ice_Status_text(Ice_Status status);
+
+/* An event that a transport reports to its communicator. */
+typedef enum Ice_EventKind {
+    ICE_EVENT_NONE,
+    ICE_EVENT_MESSAGE,
+    ICE_EVENT_CLOSED,
+    ICE_EVENT_OPENED
+} Ice_EventKind;
+
+typedef struct Ice_Event {
+    Ice_EventKind kind;
+    int connection; /* 0..ICE_CONNECTIONS-1, the transport's number */
+    Ice_Int size;   /* of the message, which lies in the buffer that receive was given */
+} Ice_Event;
+
+/* The port to a transport, which moves whole IceP messages on numbered connections. connect, close
+ * and listen are called under the communicator's state lock, send by one task at a time, receive by
+ * one task at a time. */
+typedef struct Ice_Endpoint {
+    const char* name; /* in proxy strings: "xbee-at", "tcp" */
+    /* Waits up to timeoutMs for one event. `buffer` takes a message of up to ICE_MESSAGE_MAX bytes,
+     * and is not touched after the return. OPENED is reported of connections that the peer made. */
+    Ice_Status (*receive)(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event);
+    /* Sends one message. ICE_CONNECTION_LOST: the connection is over; CLOSED is reported, too. */
+    Ice_Status (*send)(void* context, int connection, const Ice_Byte* message, Ice_Int size);
+    /* Connects to one endpoint as in a proxy on the wire (2-byte type + encapsulation). An open
+     * connection to the same peer is used again. ICE_NO_ENDPOINT: the type is another transport's.
+     */
+    Ice_Status (*connect)(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection);
+    /* Closes a connection; CLOSED is not reported of it. */
+    void (*close)(void* context, int connection);
+    /* Takes connections from peers from now on; options 0: no more. */
+    Ice_Status (*listen)(void* context, const char* options);
+    /* Writes an endpoint as on the wire from options such as "-a 1 -p 3" (up to their end, or a
+     * colon that is not quoted); options 0: the endpoint that a proxy to an object of this side
+     * carries. */
+    void (*encode)(void* context, const char* options, Ice_OutputStreamPtr os);
+    /* Makes receive return early; may be called from any task. */
+    void (*wake)(void* context);
+    /* Returns milliseconds since any time; wraps. */
+    U32 (*nowMs)(void* context);
+    /* Writes name and options of an encoded endpoint as characters. Returns 0 for a type of another
+     * transport. The pointer itself may be 0: then endpoints print as opaque. */
+    Ice_Bool (*print)(void* context, const Ice_Byte* encoded, Ice_Int size,
+                      Ice_OutputStreamPtr text);
+} Ice_Endpoint;
+
+/* Finds the value behind "-x", without its quotes; for transports. 0: there is none. */
+const char* Ice_findOption(const char* options, char letter, Ice_Int* size);
+/* Returns the value as a number, decimal or 0x...; `otherwise` where there is none. */
+U32 Ice_numberOption(const char* options, char letter, U32 otherwise);
+
+/* The two locks: SEND holds the buffer and order of requests for as long as one is written and
+ * sent, STATE the communicator's tables, briefly. A task that holds SEND may take STATE, not the
+ * reverse.
+ */
+enum { ICE_LOCK_STATE, ICE_LOCK_SEND };
+
+/* The tasks' port: what IceC needs where several tasks use one communicator. The version for a
+ * single task is Ice_Os_none. */
+typedef struct Ice_Os {
+    void (*lock)(void* context, int which);
+    void (*unlock)(void* context, int which);
+    /* Sleeps until wake of this slot (0..ICE_CALLS) or the time is over; a wake that came before
+     * counts. One task waits on each, on the last any number, of which one is woken. 1: woken. */
+    int (*wait)(void* context, int slot, Ice_Int timeoutMs);
+    void (*wake)(void* context, int slot);
+    /* Returns a number that differs from task to task, 0 or greater. */
+    int (*task)(void* context);
+} Ice_Os;
+
+extern const Ice_Os Ice_Os_none;
+
+#endif

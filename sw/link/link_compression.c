@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_compression: header compression: the heads of IceP messages are sent once, and named by a
+ * byte afterwards.
+ *
+ * The only file of this layer that knows what an Ice message looks like ("The Ice Protocol" in the
+ * manual of ZeroC Ice 3.7). Both sides keep, for each direction, the last LINK_HEADS heads of
+ * requests (identity, facet, operation, mode, context, encoding) and each channel's last request
+ * ids. A session delivers everything once and in order, so both tables stay equal without a word
+ * about them. What is not recognised goes as it is. Tokens: docs/link.md.
+ */
+#include "link.h"
+
+#include <string.h>
+
+#define HEADER 14U       /* magic, versions, type, compression, size */
+#define ENCAPSULATION 6U /* its size and encoding version */
+#define MOST_HEAD (LINK_HEAD_BYTES - 2U)
+
+#define TOKEN_REQUEST 0x80U /* bit 4: the channel's next id, else oneway; bits 3..0: slot */
+#define TOKEN_LITERAL                                                                           \
+    0xA0U                 /* bits 1..0: 0 oneway, 1 next id, 2 id follows; then length and head \
+                           */
+#define TOKEN_REPLY 0xB0U /* bit 1: id follows, else next; bit 0: status and body as they are */
+#define TOKEN_VALIDATE 0xC0U
+#define TOKEN_CLOSE 0xC1U /* or one more: with the compression byte set */
+#define TOKEN_AS_IT_IS 0xFFU
+
+enum { REQUEST = 0, REPLY = 2, VALIDATE = 3, CLOSE = 4 };
+
+static const U8 magic[8] = {'I', 'c', 'e', 'P', 1, 0, 1, 0};
+
+void link_resetHeads(Link* link) {
+    memset(&link->headsOut, 0, sizeof link->headsOut);
+    memset(&link->headsIn, 0, sizeof link->headsIn);
+}
+
+/* True for a whole message of this type, of `least` bytes at least. */
+static int isMessage(const U8* m, U32 size, U32 type, U32 least) {
+    return size >= least && memcmp(m, magic, sizeof magic) == 0 && m[8] == type &&
+           link_get32(m + 10) == size;
+}
+
+/* Returns the length of a request's head, from its identity to its context; 0: none that can be
+ * learned. */
+static U32 headOf(const U8* m, U32 size) {
+    U32 at = LINK_HEAD_AT;
+    int strings;
+    if (!isMessage(m, size, REQUEST, LINK_HEAD_AT) || m[9] != 0)
+        return 0;
+    for (strings = 0; strings < 4; ++strings) { /* name, category, facet, operation */
+        if (at >= size || m[at] == 255)
+            return 0;
+        if (strings == 2 && m[at] > 1)
+            return 0;
+        if (strings == 2 && m[at++] == 0)
+            continue;
+        if (at >= size || m[at] == 255)
+            return 0;
+        at += 1U + m[at];
+    }
+    ++at; /* mode */
+    if (at >= size || m[at++] != 0)
+        return 0; /* a context is seldom the same twice */
+    if (at + ENCAPSULATION > size || link_get32(m + at) != size - at)
+        return 0;
+    return at - LINK_HEAD_AT <= MOST_HEAD ? at - LINK_HEAD_AT : 0;
+}
+
+/* Returns the slot that holds this head and encoding; LINK_HEADS: none. */
+static U32 find(const Link_Heads* heads, const U8* head, U32 size, const U8* version) {
+    U32 slot;
+    for (slot = 0; slot < LINK_HEADS; ++slot)
+        if (heads->size[slot] == size + 2U && memcmp(heads->head[slot], head, size) == 0 &&
+            memcmp(heads->head[slot] + size, version, 2) == 0)
+            break;
+    return slot;
+}
+
+/* Remembers, on both sides alike, a message that has passed. */
+static void note(Link_Heads* heads, int channel, const U8* m, U32 size) {
+    U32 head = headOf(m, size);
+    const U8* version = m + LINK_HEAD_AT + head + 4;
+    if (head) {
+        if (link_get32(m + HEADER))
+            heads->lastRequest[channel] = link_get32(m + HEADER);
+        if (find(heads, m + LINK_HEAD_AT, head, version) == LINK_HEADS) {
+            U8* entry = heads->head[heads->next];
+            heads->size[heads->next] = (U8)(head + 2U);
+            memcpy(entry, m + LINK_HEAD_AT, head);
+            memcpy(entry + head, version, 2);
+            heads->next = (U8)((heads->next + 1U) % LINK_HEADS);
+        }
+    } else if (isMessage(m, size, REPLY, LINK_HEAD_AT + 1U)) {
+        heads->lastReply[channel] = link_get32(m + HEADER);
+    }
+}
+
+static void packRequest(const Link_Heads* heads, int channel, const U8* m, U32 size, U32 head,
+                        Link_Packed* packed) {
+    U32 id = link_get32(m + HEADER);
+    U32 mode = id == 0 ? 0U : id == heads->lastRequest[channel] + 1U ? 1U : 2U;
+    U32 slot = find(heads, m + LINK_HEAD_AT, head, m + LINK_HEAD_AT + head + 4);
+    packed->tailAt = LINK_HEAD_AT + head + ENCAPSULATION;
+    packed->prefix = 1;
+    if (slot < LINK_HEADS && mode < 2U) {
+        packed->bytes[0] = (U8)(TOKEN_REQUEST | mode << 4 | slot);
+    } else {
+        packed->bytes[0] = (U8)(TOKEN_LITERAL | mode);
+        if (mode == 2U) {
+            link_put32(packed->bytes + 1, id);
+            packed->prefix = 5;
+        }
+        packed->bytes[packed->prefix++] = (U8)head;
+        packed->middle = head;
+        packed->tailAt -= 2U; /* the encoding's version */
+    }
+    packed->tail = size - packed->tailAt;
+}
+
+static void packReply(const Link_Heads* heads, int channel, const U8* m, U32 size,
+                      Link_Packed* packed) {
+    static const U8 version[2] = {1, 1};
+    U32 id = link_get32(m + HEADER);
+    int isPlain = size >= LINK_HEAD_AT + 1U + ENCAPSULATION && m[LINK_HEAD_AT] == 0 &&
+                  link_get32(m + LINK_HEAD_AT + 1U) == size - LINK_HEAD_AT - 1U &&
+                  memcmp(m + LINK_HEAD_AT + 5U, version, 2) == 0;
+    U32 hasId = id != heads->lastReply[channel] + 1U;
+    packed->bytes[0] = (U8)(TOKEN_REPLY | hasId << 1 | (U32)!isPlain);
+    packed->prefix = 1;
+    if (hasId) {
+        link_put32(packed->bytes + 1, id);
+        packed->prefix = 5;
+    }
+    packed->tailAt = LINK_HEAD_AT + (isPlain ? 1U + ENCAPSULATION : 0U);
+    packed->tail = size - packed->tailAt;
+}
+
+void link_compress(const Link* link, int channel, const U8* m, U32 size, Link_Packed* packed) {
+    U32 head = headOf(m, size);
+    if (head) {
+        packRequest(&link->headsOut, channel, m, size, head, packed);
+    } else if (isMessage(m, size, REPLY, LINK_HEAD_AT + 1U) && m[9] == 0) {
+        packReply(&link->headsOut, channel, m, size, packed);
+    } else if (size == HEADER && m[9] < 2 &&
+               (isMessage(m, size, CLOSE, HEADER) ||
+                (m[9] == 0 && isMessage(m, size, VALIDATE, HEADER)))) {
+        packed->bytes[0] = (U8)(m[8] == VALIDATE ? TOKEN_VALIDATE : TOKEN_CLOSE + m[9]);
+        packed->prefix = 1;
+        packed->tail = 0;
+    } else if (m[0] >= TOKEN_REQUEST) {
+        packed->bytes[0] = TOKEN_AS_IT_IS;
+        packed->prefix = 1;
+    }
+}
+
+void link_noteSent(Link* link, int channel, const U8* m, U32 size) {
+    note(&link->headsOut, channel, m, size);
+}
+
+/* Writes what stood between header and body of a request, token `*p`, in front of the body. Returns
+ * the start, or 0 where it makes no sense. */
+static U8* unpackRequest(const Link_Heads* heads, U32 channel, U8* p, const U8* end) {
+    U8 head[LINK_HEAD_BYTES]; /* a copy: what is written may lie over it */
+    U32 token = *p++;
+    U32 mode = token < TOKEN_LITERAL ? token >> 4 & 1U : token & 3U;
+    U32 id = mode == 1U ? heads->lastRequest[channel] + 1U : 0;
+    U32 n;
+    if (token < TOKEN_LITERAL) {
+        n = heads->size[token & 15U];
+        memcpy(head, heads->head[token & 15U], sizeof head);
+    } else {
+        if (token > TOKEN_LITERAL + 2U || end - p < (mode == 2U ? 5 : 1))
+            return 0;
+        if (mode == 2U) {
+            id = link_get32(p);
+            p += 4;
+        }
+        n = *p++ + 2U;
+        if (n > LINK_HEAD_BYTES || end - p < (int)n)
+            return 0;
+        memcpy(head, p, n);
+        p += n;
+    }
+    if (n < 2U)
+        return 0; /* an empty slot */
+    p -= 2;
+    memcpy(p, head + n - 2U, 2);
+    p -= 4;
+    link_put32(p, (U32)(end - p));
+    p -= n - 2U;
+    memcpy(p, head, n - 2U);
+    p -= 4;
+    link_put32(p, id);
+    return p;
+}
+
+/* The same for a reply. */
+static U8* unpackReply(const Link_Heads* heads, U32 channel, U8* p, const U8* end) {
+    U32 token = *p++;
+    U32 id = heads->lastReply[channel] + 1U;
+    if (token > TOKEN_REPLY + 3U)
+        return 0;
+    if (token & 2U) {
+        if (end - p < 4)
+            return 0;
+        id = link_get32(p);
+        p += 4;
+    }
+    if (!(token & 1U)) {
+        p -= 7;
+        p[0] = 0;
+        link_put32(p + 1, (U32)(end - p) - 1U);
+        p[5] = p[6] = 1;
+    }
+    p -= 4;
+    link_put32(p, id);
+    return p;
+}
+
+/* Restores the message at `p`. Returns its start, or 0 where it makes no sense. */
+static U8* unpack(const Link_Heads* heads, U32 channel, U8* p, U8* end) {
+    U32 token = *p;
+    U32 type = REQUEST;
+    U32 compression = 0;
+    if (token < TOKEN_REQUEST)
+        return p;
+    if (token == TOKEN_AS_IT_IS)
+        return p + 1;
+    if (token >= TOKEN_VALIDATE) {
+        if (token > TOKEN_CLOSE + 1U || end - p != 1)
+            return 0;
+        type = token == TOKEN_VALIDATE ? VALIDATE : CLOSE;
+        compression = token == TOKEN_CLOSE + 1U;
+        p = end;
+    } else if (token >= TOKEN_REPLY) {
+        type = REPLY;
+        p = unpackReply(heads, channel, p, end);
+    } else {
+        p = unpackRequest(heads, channel, p, end);
+    }
+    if (!p)
+        return 0;
+    p -= HEADER;
+    memcpy(p, magic, sizeof magic);
+    p[8] = (U8)type;
+    p[9] = (U8)compression;
+    link_put32(p + 10, (U32)(end - p));
+    return p;
+}
+
+int link_decompress(Link* link) {
+    Link_Receiver* receiver = &link->receiver;
+    U8* end = receiver->start + receiver->size;
+    U8* p = unpack(&link->headsIn, receiver->channel, receiver->start, end);
+    if (!p || p == end || (U32)(end - p) > LINK_MAX_MESSAGE)
+        return 0;
+    receiver->start = p;
+    receiver->size = (U16)(end - p);
+    note(&link->headsIn, receiver->channel, p, receiver->size);
+    return 1;
+}

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_input: finds frames in a stream of bytes, and gives each to the part that it is for.
+ */
+#include "link.h"
+
+#include <string.h>
+
+/* Whose checksum a frame has. */
+typedef enum Owner { NOBODY, HANDSHAKE, SESSION, CANDIDATE } Owner;
+
+static int hasGoodCrc(const U8* frame, U32 key) {
+    return link_crc(key, frame, LINK_LENGTH(frame) + LINK_OVERHEAD) == 0;
+}
+
+static Link_Kind kindOf(const U8* frame) {
+    return frame[0] & LINK_CONTROL ? (Link_Kind)(frame[2] >> 5) : LINK_KIND_DATA;
+}
+
+/* True if a header makes sense; this keeps chance from passing garbage on to the checksum. */
+static int isPlausible(const U8* frame) {
+    static const U8 sizes[] = {1, 4, 8, 0, 0, 0}; /* by Link_Kind */
+    U32 payload = LINK_LENGTH(frame);
+    Link_Kind kind = kindOf(frame);
+    if (kind == LINK_KIND_DATA)
+        return payload != 0 || (frame[2] & LINK_LAST);
+    if (kind > LINK_KIND_PING)
+        return payload >= 2U;
+    return payload == sizes[kind] || (kind == LINK_KIND_ACK && payload == 5U);
+}
+
+/* Returns whose a whole frame is: the session's, or that of one that a HELLO announced. */
+static Owner ownerOf(const Link* link, const U8* frame) {
+    const Link_Session* candidate = &link->handshake.candidate;
+    U32 epoch = LINK_EPOCH(frame);
+    if (!isPlausible(frame))
+        return NOBODY;
+    if (LINK_IS_HANDSHAKE(kindOf(frame)))
+        return hasGoodCrc(frame, LINK_NO_SEED) ? HANDSHAKE : NOBODY;
+    if (link->state == LINK_STATE_UP && epoch == LINK_KEY_EPOCH(link->session.key) &&
+        hasGoodCrc(frame, link->session.key))
+        return SESSION;
+    return link->handshake.hasCandidate && epoch == LINK_KEY_EPOCH(candidate->key) &&
+                   hasGoodCrc(frame, candidate->key)
+               ? CANDIDATE
+               : NOBODY;
+}
+
+/* Tells whether a frame that the search has found may be believed. The search at every byte behind
+ * something that was no frame might find one by chance; so there a frame counts only if it ends
+ * where the bytes end, or a good one follows. Returns 1 yes, 0 no, -1 not known yet. */
+static int isConfirmed(const Link* link, const U8* next, U32 left, int isEnd) {
+    U32 payload;
+    if (left == 0)
+        return 1;
+    payload = LINK_LENGTH(next);
+    if (payload > LINK_MAX_PAYLOAD)
+        return 0;
+    if (left < payload + LINK_OVERHEAD)
+        return isEnd ? 0 : -1;
+    return ownerOf(link, next) != NOBODY;
+}
+
+static int onPiggyback(Link* link, const U8* frame) {
+    const U8* payload = frame + LINK_HEADER;
+    U32 flags = LINK_FIRST | LINK_LAST | LINK_CHANNEL(frame[2]);
+    if (kindOf(frame) == LINK_KIND_PIGGYBACK_ASK)
+        flags |= LINK_ACK_NOW;
+    /* Such a frame is not sent while a message is held: the whole window is open. */
+    link_onAck(link, payload[0], link->sender.fullCredit, 0);
+    return link_onData(link, frame[1], flags, payload + 1, LINK_LENGTH(frame) - 1U);
+}
+
+/* Acts upon a good frame. */
+static void takeFrame(Link* link, const U8* frame, Owner owner) {
+    const U8* payload = frame + LINK_HEADER;
+    U32 size = LINK_LENGTH(frame);
+    Link_Kind kind = kindOf(frame);
+    int isFair = 1;
+    if (owner == HANDSHAKE) {
+        link_onHandshake(link, frame, kind);
+        return;
+    }
+    if (owner == CANDIDATE)
+        link_confirmCandidate(link);
+    link->heardAt = link->now;
+    if (kind == LINK_KIND_DATA) {
+        isFair = link_onData(link, frame[1], frame[2], payload, size);
+    } else if (kind == LINK_KIND_ACK) {
+        link_onAck(link, frame[1], payload[0], size == 5U ? link_get32(payload + 1) : 0);
+    } else if (kind == LINK_KIND_BYE) {
+        link_lose(link);
+    } else if (kind == LINK_KIND_PING) {
+        link->receiver.ackDue = link->receiver.ackNow = 1;
+    } else {
+        isFair = onPiggyback(link, frame);
+    }
+    if (!isFair)
+        link_abort(link);
+}
+
+/* Tells a peer that talks in a session that is not known here, but not too often. */
+static void refuse(Link* link, const U8* frame) {
+    U8 reset[LINK_OVERHEAD];
+    if (link->state != LINK_STATE_IDLE || LINK_BEFORE(link->now, link->pingAt))
+        return;
+    link->pingAt = link->now + LINK_HELLO_FIRST;
+    link->session.key = LINK_EPOCH_KEY(LINK_EPOCH(frame));
+    (void)link_sendControl(link, reset, LINK_KIND_RST, 0, 0);
+}
+
+/* Takes all whole frames out of the bytes; returns how many bytes it is done with. After a bad
+ * frame it goes on at the next byte. `isEnd`: a silence follows, so half a frame will never become
+ * whole.
+ */
+static U32 parse(Link* link, const U8* bytes, U32 count, int isEnd) {
+    Link_Parser* parser = &link->parser;
+    U32 used = 0;
+    while (used < count) {
+        const U8* frame = bytes + used;
+        U32 left = count - used;
+        U32 size = LINK_LENGTH(frame) + LINK_OVERHEAD;
+        if (size <= LINK_MAX_FRAME && left < size && !isEnd)
+            break;
+        if (size <= LINK_MAX_FRAME && left >= size) {
+            Owner owner = ownerOf(link, frame);
+            int confirmed = 1;
+            if (owner != NOBODY && parser->outOfStep)
+                confirmed = isConfirmed(link, frame + size, left - size, isEnd);
+            if (confirmed < 0)
+                break;
+            if (confirmed && owner != NOBODY) {
+                parser->outOfStep = 0;
+                takeFrame(link, frame, owner);
+                ++link->statistics.framesReceived;
+                link->statistics.bytesReceived += size;
+                used += size;
+                continue;
+            }
+        }
+        if (!parser->outOfStep) {
+            ++link->statistics.crcErrors;
+            if (left >= LINK_OVERHEAD)
+                refuse(link, frame);
+        }
+        parser->outOfStep = 1;
+        ++link->statistics.bytesSkipped;
+        ++used;
+    }
+    return used;
+}
+
+/* Parses what was kept, and keeps what is no whole frame yet. */
+static void parseKept(Link* link, int isEnd) {
+    Link_Parser* parser = &link->parser;
+    U32 used = parse(link, link->input, parser->count, isEnd);
+    parser->count = (U8)(parser->count - used);
+    memmove(link->input, link->input + used, parser->count);
+}
+
+void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
+    Link_Parser* parser = &link->parser;
+    link->now = nowUs;
+    while (size) {
+        U32 part = sizeof link->input - parser->count;
+        if (parser->count == 0) {
+            /* The usual case, a whole frame: it is read where it is. */
+            U32 used = parse(link, bytes, size, 0);
+            bytes += used;
+            size -= used;
+        }
+        if (part > size)
+            part = size;
+        memcpy(link->input + parser->count, bytes, part);
+        parser->count = (U8)(parser->count + part);
+        parser->at = nowUs;
+        bytes += part;
+        size -= part;
+        parseKept(link, 0);
+    }
+}
+
+void link_pollInput(Link* link) {
+    const Link_Parser* parser = &link->parser;
+    if (parser->count && !LINK_BEFORE(link->now, parser->at + LINK_FRAME_GAP))
+        parseKept(link, 1);
+}

@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_receiver: puts fragments in order, messages together, and acknowledges.
+ */
+#include "link.h"
+
+#include <string.h>
+
+void link_resetReceiver(Link* link) {
+    Link_Receiver* receiver = &link->receiver;
+    U32 i;
+    for (i = 0; i < LINK_WINDOW; ++i)
+        link->slots[i].isUsed = 0;
+    receiver->next = 0;
+    receiver->isAssembling = receiver->isHeld = receiver->waiting = 0;
+    receiver->ackCount = receiver->ackDue = receiver->ackNow = 0;
+    link->open = link->closing = link->closeDue = 0;
+}
+
+/* The peer opens or closes a channel. */
+static void onChannel(Link* link, U32 channel, int isOpen) {
+    U32 bit = 1U << channel;
+    if (link->closing & bit) {
+        if (!isOpen)
+            link->closing = (U8)(link->closing & ~bit); /* the answer to the own closing */
+        return;
+    }
+    if (isOpen == (link->open >> channel & 1))
+        return;
+    link->open = (U8)(link->open ^ bit);
+    if (!isOpen)
+        link->closeDue = (U8)(link->closeDue | bit);
+    link->port->channel(link->context, (int)channel, isOpen);
+}
+
+/* Offers a whole message to the program; one on a channel that was closed here is dropped. What
+ * nobody takes is not acknowledged either: its last fragment counts as not yet here. */
+static void deliver(Link* link) {
+    Link_Receiver* receiver = &link->receiver;
+    receiver->isHeld = 0;
+    if (!(link->open >> receiver->channel & 1))
+        return;
+    if (link->port->message(link->context, receiver->channel, receiver->start, receiver->size) !=
+        0) {
+        receiver->isHeld = 1;
+        --receiver->next;
+    } else {
+        ++link->statistics.messagesReceived;
+    }
+}
+
+/* Adds a fragment to its message. Returns 0 where it does not belong there. */
+static int append(Link* link, U32 flags, const U8* data, U32 size) {
+    Link_Receiver* receiver = &link->receiver;
+    if (flags & LINK_FIRST) {
+        receiver->isAssembling = 1;
+        receiver->size = 0;
+        receiver->channel = (U8)LINK_CHANNEL(flags);
+    }
+    if (!receiver->isAssembling || LINK_CHANNEL(flags) != receiver->channel ||
+        size > LINK_MAX_MESSAGE + LINK_ESCAPE + LINK_CHECK - receiver->size)
+        return 0;
+    memcpy(link->message + LINK_HEAD_ROOM + receiver->size, data, size);
+    receiver->size = (U16)(receiver->size + size);
+    return 1;
+}
+
+/* Takes the check off the whole message. Returns 0 where it is wrong. */
+static int uncheck(Link_Receiver* receiver) {
+    U32 size = receiver->size - LINK_CHECK;
+    if (receiver->size <= LINK_UNCHECKED)
+        return 1;
+    receiver->size = (U16)size;
+    return link_sum(0, receiver->start, size) == LINK_CHECK_AT(receiver->start + size);
+}
+
+/* Takes the next fragment in order. Returns 0 where the peer broke the rules. */
+static int accept(Link* link, U32 flags, const U8* data, U32 size) {
+    Link_Receiver* receiver = &link->receiver;
+    ++receiver->next;
+    if (size == 0) {
+        onChannel(link, LINK_CHANNEL(flags), (flags & LINK_FIRST) != 0);
+        return 1;
+    }
+    if (!append(link, flags, data, size))
+        return 0;
+    if (!(flags & LINK_LAST))
+        return 1;
+    receiver->isAssembling = 0;
+    receiver->start = link->message + LINK_HEAD_ROOM;
+    if (!uncheck(receiver))
+        return 0;
+    if (link->session.features & LINK_FEATURE_COMPRESSION ? !link_decompress(link)
+                                                          : receiver->size > LINK_MAX_MESSAGE)
+        return 0;
+    deliver(link);
+    return 1;
+}
+
+/* Takes what is in order out of the slots, unless a message is held. Returns 0 where the peer broke
+ * the rules. */
+static int drain(Link* link) {
+    Link_Receiver* receiver = &link->receiver;
+    for (;;) {
+        Link_Slot* slot = &link->slots[LINK_SLOT(receiver->next)];
+        if (receiver->isHeld || !slot->isUsed)
+            return 1;
+        slot->isUsed = 0;
+        --receiver->waiting;
+        if (!accept(link, slot->flags, slot->bytes, slot->size))
+            return 0;
+    }
+}
+
+int link_onData(Link* link, U32 seq, U32 flags, const U8* data, U32 size) {
+    Link_Receiver* receiver = &link->receiver;
+    U32 ahead = (U8)(seq - receiver->next);
+    Link_Slot* slot = &link->slots[LINK_SLOT(seq)];
+    if (!receiver->ackDue) {
+        receiver->ackDue = 1;
+        receiver->ackAt = link->now + LINK_ACK_DELAY;
+    }
+    if (++receiver->ackCount >= LINK_ACK_EVERY || (flags & LINK_ACK_NOW) || ahead != 0)
+        receiver->ackNow = 1;
+    if (ahead == 0 && !receiver->isHeld) /* the usual case: straight into the message */
+        return accept(link, flags, data, size) && drain(link);
+    if (ahead != 0 && ahead < LINK_WINDOW && !slot->isUsed) {
+        slot->isUsed = 1;
+        ++receiver->waiting;
+        slot->flags = (U8)flags;
+        slot->size = (U8)size;
+        memcpy(slot->bytes, data, size);
+    } else {
+        ++link->statistics.duplicates; /* the acknowledgement was lost, or it is being resent */
+        receiver->ackNow = 1;
+    }
+    return 1;
+}
+
+/* Returns which fragments behind the next expected one have arrived; bit n: SEQ + 1 + n. */
+static U32 gaps(const Link* link) {
+    U32 bitmap = 0;
+    U32 i;
+    for (i = 1; i < LINK_WINDOW && i <= 32U; ++i)
+        if (link->slots[LINK_SLOT(link->receiver.next + i)].isUsed)
+            bitmap |= 1U << (i - 1U);
+    return bitmap;
+}
+
+int link_ackMayRide(const Link* link) {
+    const Link_Receiver* receiver = &link->receiver;
+    return receiver->ackDue && !receiver->isHeld && !receiver->waiting &&
+           (link->session.features & LINK_FEATURE_PIGGYBACK);
+}
+
+void link_ackIsSent(Link* link) {
+    ++link->statistics.acksSent;
+    link->receiver.ackDue = link->receiver.ackNow = link->receiver.ackCount = 0;
+}
+
+int link_pollReceiver(Link* link) {
+    Link_Receiver* receiver = &link->receiver;
+    if (!receiver->isHeld)
+        return 1;
+    ++receiver->next;
+    deliver(link);
+    if (receiver->isHeld)
+        return 1;
+    receiver->ackDue = receiver->ackNow = 1; /* the credit has changed */
+    return drain(link);
+}
+
+void link_pollAck(Link* link) {
+    const Link_Receiver* receiver = &link->receiver;
+    U8 frame[LINK_OVERHEAD + 5U];
+    U8* payload = frame + LINK_HEADER;
+    U32 bitmap;
+    if (!receiver->ackDue || (!receiver->ackNow && LINK_BEFORE(link->now, receiver->ackAt)))
+        return;
+    bitmap = gaps(link);
+    /* A message that nobody takes keeps the window where it is. */
+    payload[0] = (U8)(receiver->isHeld ? receiver->waiting + 1U : LINK_WINDOW);
+    link_put32(payload + 1, bitmap);
+    if (link_sendControl(link, frame, LINK_KIND_ACK, receiver->next, bitmap ? 5U : 1U))
+        link_ackIsSent(link);
+}

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_wire: checksums and numbers of the wire format.
+ */
+#include "link.h"
+
+/* CRC-16/CCITT, polynomial 0x1021, MSB first, without a table: x ^= x >> 4 (Sarwate, by shifts). */
+U32 link_crc(U32 key, const U8* bytes, U32 size) {
+    U32 crc = key & 0xFFFFU;
+    while (size--) {
+        U32 x = (crc >> 8 ^ *bytes++) & 0xFFU;
+        x ^= x >> 4;
+        crc = (crc << 8 ^ x << 12 ^ x << 5 ^ x) & 0xFFFFU;
+    }
+    return crc;
+}
+
+U32 link_seal(U8* frame, U32 header, U32 key) {
+    U32 size = (header & 0x7FU) + LINK_HEADER;
+    U32 crc;
+    frame[0] = (U8)header;
+    frame[1] = (U8)(header >> 8);
+    frame[2] = (U8)(header >> 16 | LINK_KEY_EPOCH(key) << 2);
+    crc = link_crc(key, frame, size);
+    frame[size++] = (U8)(crc >> 8);
+    frame[size++] = (U8)crc;
+    return size;
+}
+
+/* Fletcher's sums modulo 256: unlike a second CRC they have nothing in common with the fragments'.
+ */
+U32 link_sum(U32 sums, const U8* bytes, U32 size) {
+    U32 plain = sums & 0xFFU;
+    U32 second = sums >> 8;
+    while (size--) {
+        plain += *bytes++;
+        second += plain;
+    }
+    return (plain & 0xFFU) | (second & 0xFFU) << 8;
+}
+
+U32 link_get32(const U8* p) {
+    return (U32)p[0] | (U32)p[1] << 8 | (U32)p[2] << 16 | (U32)p[3] << 24;
+}
+
+void link_put32(U8* p, U32 value) {
+    p[0] = (U8)value;
+    p[1] = (U8)(value >> 8);
+    p[2] = (U8)(value >> 16);
+    p[3] = (U8)(value >> 24);
+}
+
+U32 link_sessionKey(U32 nonce, U32 peerNonce) {
+    U8 bytes[4];
+    U32 mix = (nonce ^ peerNonce) * 2654435761U + nonce + peerNonce;
+    link_put32(bytes, mix);
+    return LINK_EPOCH_KEY(LINK_KEY_EPOCH(mix)) | link_crc(0x1D0FU, bytes, 4);
+}

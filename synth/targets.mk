@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: MIT
+#
+# DESIGN=modem: one design only, of the others what is known; FAMILY="xc7 ecp5": these chips, too
+DESIGN ?=
+FAMILY ?=
+
+synth: setup-tests $(BUILD)/build.ninja ## utilisation: LUTs, flip-flops, slices of the chip and each part, against limits and paper
+	@$(NINJA) --quiet synth_inputs
+	@$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) \
+	    $(DESIGN:%=--design %) $(addprefix --family ,$(FAMILY))
+.PHONY: synth
+
+synth-accept: $(BUILD)/build.ninja ## record today's utilisation as what is wanted (synth/baseline.json)
+	@$(NINJA) --quiet synth_inputs
+	@$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) --accept $(DESIGN:%=--design %)
+.PHONY: synth-accept
+
+synth-edif: $(BUILD)/build.ninja ## the chip as EDIF for Xilinx ISE, in build/synth/ise (DESIGN=soc)
+	@$(NINJA) --quiet synth_inputs
+	@$(BUILD)/synth/utilisation --generated $(BUILD)/gen --edif $(or $(DESIGN),soc)
+.PHONY: synth-edif

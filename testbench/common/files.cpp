@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+
+#include "files.h"
+#include "process.h"
+
+#include <cerrno>
+#include <cstdint>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
+#include <sys/file.h>
+#include <system_error>
+#include <unistd.h>
+
+namespace fs = std::filesystem;
+
+std::string readFile(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in)
+        throw std::runtime_error(fmt::format("cannot read {}", file.string()));
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void writeFile(const fs::path& file, const std::string& text) {
+    const fs::path part = file.string() + ".part";
+    std::ofstream out(part, std::ios::binary);
+    out << text;
+    out.close();
+    if (!out)
+        throw std::runtime_error(fmt::format("cannot write {}: is the disk full?", part.string()));
+    fs::rename(part, file);
+}
+
+std::string hexHash(const std::vector<std::string>& contents) {
+    uint64_t hash = 14695981039346656037u;
+    const auto mix = [&](unsigned char c) { hash = (hash ^ c) * 1099511628211u; };
+    for (const std::string& content : contents) {
+        for (const char c : content)
+            mix(static_cast<unsigned char>(c));
+        for (size_t rest = content.size(), k = 0; k < 8; k++, rest >>= 8)
+            mix(static_cast<unsigned char>(rest)); // where one ends and the next begins
+    }
+    return fmt::format("{:016x}", hash);
+}
+
+std::map<std::string, std::string> fileHashes(const fs::path& source) {
+    std::map<std::string, std::string> hashes;
+    std::istringstream lines(
+        run({"git", "-C", source.string(), "ls-files", "-co", "--exclude-standard"}).text);
+    for (std::string line; std::getline(lines, line);)
+        if (fs::is_regular_file(source / line))
+            hashes[line] = hexHash({readFile(source / line)});
+    return hashes;
+}
+
+std::string treeState(const fs::path& source, const std::string& folders) {
+    std::vector<std::string> contents;
+    for (const auto& [file, hash] : fileHashes(source))
+        if ((" " + folders + " ").find(" " + file.substr(0, file.find('/')) + " ") !=
+            std::string::npos)
+            contents.insert(contents.end(), {file, hash});
+    return folders + ": " + hexHash(contents);
+}
+
+std::string filled(std::string page, const std::map<std::string, std::string>& places) {
+    for (const auto& [place, text] : places) {
+        const size_t at = page.find(place);
+        if (at == std::string::npos)
+            throw std::runtime_error("the page has no " + place);
+        page.replace(at, place.size(), text);
+    }
+    return page;
+}
+
+std::string scriptSafe(std::string json) {
+    for (size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3)
+        json.replace(at, 2, "<\\/");
+    return json;
+}
+
+FolderLock::FolderLock(const fs::path& folder, const std::string& program) {
+    fs::create_directories(folder);
+    const fs::path file = folder / "lock";
+    const auto check = [&](int result) {
+        if (result < 0)
+            throw std::system_error(errno, std::generic_category(), file.string());
+        return result;
+    };
+    file_ = check(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
+    if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
+        std::string holder = readFile(file);
+        fmt::print(stderr, "{}: waiting for another run in {}{} ...\n", program, folder.string(),
+                   holder.empty() ? "" : " (process " + holder + ")");
+        int result;
+        while ((result = flock(file_, LOCK_EX)) != 0 && errno == EINTR)
+            ;
+        check(result);
+    }
+    const std::string me = std::to_string(getpid());
+    check(ftruncate(file_, 0));
+    check(static_cast<int>(write(file_, me.data(), me.size())));
+}
+
+FolderLock::~FolderLock() {
+    close(file_);
+}

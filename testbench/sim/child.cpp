@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+//
+// child: fork, and the kernel's promise to end the child with its parent.
+
+#include "child.h"
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <system_error>
+#include <thread>
+#include <unistd.h>
+
+std::string filledIn(const std::string& word, const std::map<std::string, std::string>& places) {
+    std::string result;
+    for (size_t at = 0; at < word.size();) {
+        auto place = places.begin();
+        while (place != places.end() && word.compare(at, place->first.size(), place->first) != 0)
+            ++place;
+        const bool found = place != places.end();
+        result += found ? place->second : std::string(1, word[at]);
+        at += found ? place->first.size() : 1;
+    }
+    return result;
+}
+
+void Child::start(const std::vector<std::string>& command,
+                  const std::map<std::string, std::string>& places) {
+    std::vector<std::string> words;
+    std::vector<char*> argv;
+    for (const std::string& word : command)
+        words.push_back(filledIn(word, places));
+    for (std::string& word : words)
+        argv.push_back(word.data());
+    argv.push_back(nullptr);
+    name_ = words.front();
+    const pid_t parent = getpid();
+    pid_ = fork();
+    if (pid_ < 0)
+        throw std::system_error(errno, std::generic_category(), "cannot start '" + name_ + "'");
+    if (pid_ > 0)
+        return;
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != parent) // it has ended in between
+        _exit(143);
+    execvp(argv[0], argv.data());
+    std::fprintf(stderr, "icesoc-sim: cannot start '%s': %s\n", argv[0], std::strerror(errno));
+    _exit(127);
+}
+
+bool Child::runs() {
+    int status;
+    if (pid_ > 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
+        pid_ = 0;
+        status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+        if (WIFSIGNALED(status) && !asked_)
+            std::fprintf(stderr, "icesoc-sim: '%s' was ended by signal %d (%s)\n", name_.c_str(),
+                         WTERMSIG(status), strsignal(WTERMSIG(status)));
+    }
+    return pid_ > 0;
+}
+
+void Child::stop() {
+    asked_ = true;
+    for (int i = 0; runs(); ++i) {
+        if (i == 0)
+            kill(pid_, SIGINT);
+        else if (i == 150)
+            kill(pid_, SIGKILL);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+}

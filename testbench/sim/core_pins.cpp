@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+//
+// core_pins: a script's lines into changes of pins, in the order of their times.
+
+#include "core_pins.h"
+#include "soc_pins.h"
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+namespace {
+
+struct Change {
+    uint64_t ns;
+    uint32_t mask, bits;
+};
+
+uint32_t maskOf(const CorePin& pin) {
+    return static_cast<uint32_t>((uint64_t(1) << pin.width) - 1) << pin.lsb;
+}
+
+std::vector<Change> readScript(const std::string& path) {
+    std::ifstream in(path);
+    if (!in)
+        throw std::runtime_error("cannot read '" + path + "'");
+    std::vector<Change> changes;
+    std::string line;
+    for (unsigned n = 1; std::getline(in, line); ++n) {
+        auto fail = [&](const std::string& text) {
+            throw std::runtime_error(path + ":" + std::to_string(n) + ": " + text);
+        };
+        std::istringstream words(line.substr(0, line.find('#')));
+        double ms = 0;
+        std::string name, value, more;
+        if (words >> std::ws; words.eof())
+            continue;
+        if (!(words >> ms >> name >> value) || ms < 0 || words >> more)
+            fail("a change is milliseconds, a pin as servo.fault_i, and its value");
+        const CorePin* pin = corePins;
+        while (pin->name && (pin->isOut || name != pin->name))
+            ++pin;
+        if (!pin->name)
+            fail("no core of this chip has the input pin '" + name + "'");
+        size_t read = 0;
+        unsigned long number = 0;
+        try {
+            number = std::stoul(value, &read, 0);
+        } catch (const std::exception&) {
+        }
+        if (read != value.size() || number >> pin->width)
+            fail("'" + value + "' does not fit into the " + std::to_string(pin->width) +
+                 " bits of " + name);
+        changes.push_back({static_cast<uint64_t>(ms * 1e6), maskOf(*pin),
+                           static_cast<uint32_t>(number) << pin->lsb});
+    }
+    std::stable_sort(changes.begin(), changes.end(),
+                     [](const Change& a, const Change& b) { return a.ns < b.ns; });
+    return changes;
+}
+
+} // namespace
+
+void connectPins(SocModel& soc, const std::string& script, const std::string& logFile) {
+    std::shared_ptr<std::FILE> file(std::fopen(logFile.c_str(), "w"), [](std::FILE* f) {
+        if (f)
+            std::fclose(f);
+    });
+    if (!file)
+        throw std::runtime_error("cannot write '" + logFile + "'");
+    soc.onClock([&soc, changes = readScript(script), next = size_t(0),
+                 inputs = uint32_t(0)]() mutable {
+        for (; next < changes.size() && changes[next].ns <= soc.now(); ++next) {
+            inputs = (inputs & ~changes[next].mask) | changes[next].bits;
+            soc.setCorePins(inputs);
+        }
+        return next < changes.size() ? (changes[next].ns + SocModel::clkNs - 1) / SocModel::clkNs
+                                     : ~uint64_t(0);
+    });
+    auto log = [&soc, file](uint32_t changed, uint32_t outputs) {
+        for (const CorePin* pin = corePins; pin->name; ++pin)
+            if (pin->isOut && (changed & maskOf(*pin)))
+                std::fprintf(file.get(), "%.4f %s %u\n", static_cast<double>(soc.now()) / 1e6,
+                             pin->name, (outputs & maskOf(*pin)) >> pin->lsb);
+    };
+    soc.onCorePins([log, before = soc.corePins()](uint32_t outputs) mutable {
+        log(before ^ outputs, outputs);
+        before = outputs;
+    });
+    log(~0u, soc.corePins());
+}

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+//
+// flight: the models are made and connected, the ground's program is started, the processor runs.
+
+#include "flight.h"
+#include "app.h"
+#include "core_pins.h"
+#include "mark_file.h"
+#include "sensor.h"
+#include "uav_machine.h"
+
+extern "C" {
+#include "uav.h"
+}
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <unistd.h>
+
+volatile sig_atomic_t Flight::stopSignal = 0;
+
+namespace {
+
+constexpr uint64_t clockStepNs = 100'000; // of the time that other programs read
+
+Frame pictureFor(const Flight::Options& o) {
+    int width = 0, height = 0;
+    if (std::sscanf(o.size.c_str(), "%dx%d", &width, &height) != 2 || width < 8 || width > 1024 ||
+        height < 8 || height > 4096)
+        throw std::runtime_error("size '" + o.size + "': give WIDTHxHEIGHT, 8x8 to 1024x4096");
+    return loadFrame(o.image, width, height);
+}
+
+// The counters' place, in a folder that has the picture.
+std::string prepared(const Flight::Options& o, const Frame& frame) {
+    std::filesystem::create_directories(o.out);
+    savePng(o.out + "/before.png", frame);
+    return o.out + "/status";
+}
+
+XBee::Options modem(const char* name, uint16_t guard) {
+    XBee::Options options;
+    options.name = name;
+    options.set["GT"] = guard;
+    return options;
+}
+
+void loadCamera(SocModel& soc, const Frame& frame) {
+    uint8_t* memory = soc.memory().data();
+    const uint32_t size[2] = {static_cast<uint32_t>(frame.width),
+                              static_cast<uint32_t>(frame.height)};
+    std::memcpy(memory + UAV_FRAME_HEADER, size, sizeof size);
+    std::memcpy(memory + UAV_FRAME, frame.pixels.data(), frame.pixels.size());
+}
+
+std::vector<uint8_t> keyBytes(const std::string& digits) {
+    std::vector<uint8_t> key;
+    for (size_t i = 0; i + 1 < digits.size(); i += 2)
+        key.push_back(static_cast<uint8_t>(std::stoul(digits.substr(i, 2), nullptr, 16)));
+    return key;
+}
+
+// Says what the processor did, and what stopped it, if anything did.
+void reportProcessor(M3Machine& machine) {
+    CortexM3& cpu = machine.cpu();
+    const Stm32F2::Resets& resets = machine.stm32().resets();
+    double cycles = static_cast<double>(cpu.cycles());
+    std::printf("icesoc-sim: Cortex-M3: %llu instructions; asleep %.1f %% of the time, %.2f %% in "
+                "bus accesses; "
+                "resets: %u software, %u watchdog\n",
+                static_cast<unsigned long long>(cpu.instructions()),
+                100 * static_cast<double>(cpu.sleepingCycles()) / cycles,
+                100 * static_cast<double>(cpu.busCycles()) / cycles, resets.software,
+                resets.watchdog);
+    if (!cpu.lastFault.empty())
+        std::printf("icesoc-sim: last fault: %s in %s\n", cpu.lastFault.c_str(),
+                    machine.stm32().image()->functionAt(cpu.reg(CortexM3::Pc)).c_str());
+}
+
+} // namespace
+
+Flight::Flight(const Options& options)
+    : o_(options), frame_(pictureFor(o_)), status_(prepared(o_, frame_)), air_(o_.seed),
+      ground_(pty_, air_, modem("ground", o_.guard)), soc_(air_, modem("uav", o_.guard)),
+      step_(*status_, pty_, [this] { return isWanted(); }),
+      pace_(o_.speed == "real"  ? 1
+            : o_.speed == "max" ? 0
+                                : std::stod(o_.speed)) {
+    air_.weather = o_.weather;
+    uav_guardMs = o_.guard;
+    connectModels();
+    if (!o_.pins.empty())
+        connectPins(soc_, o_.pins, o_.out + "/pins.log");
+    placePicture();
+    soc_.evaluateAll(o_.everyClock);
+    soc_.reset();
+    watchRegisters();
+}
+
+void Flight::connectModels() {
+    soc_.onTime([this](uint64_t now) {
+        ground_.advance(now);
+        status_.set(now); // the ground's clock
+        step_.wait(now);
+        return std::min(
+            {ground_.nextEvent(), std::max(step_.nextEvent(), now + 1), now + clockStepNs});
+    });
+    air_.onPacket([this](uint64_t, const RfPacket& packet, RfChannel::Outcome outcome) {
+        (packet.from == 1 ? status_->bytesDown : status_->bytesUp) += packet.bytes.size();
+        ++status_->packets;
+        status_->lost += outcome != RfChannel::Outcome::Delivered;
+    });
+}
+
+void Flight::placePicture() {
+    if (o_.sensor)
+        connectSensor(soc_, frame_);
+    else
+        loadCamera(soc_, frame_);
+    const uint32_t boots =
+        static_cast<uint32_t>(o_.seed * 1000 + static_cast<uint64_t>(getpid()) * 77);
+    std::memcpy(soc_.memory().data() + UAV_BOOTS, &boots, sizeof boots);
+}
+
+void Flight::watchRegisters() {
+    soc_.fsmc().onWord = [this](uint32_t address, uint32_t value, bool isWrite) {
+        constexpr uint32_t control = 0x64000000, bytes = 4096; // NE2
+        if (address - control >= bytes)
+            return;
+        status_->registers[(address - control) / 4] = value;
+        status_->seen[(address - control) / 4] = isWrite ? 2 : 1;
+    };
+}
+
+void Flight::startProgram() {
+    setenv("XBEEAT_CLOCK", std::filesystem::absolute(o_.out + "/status").c_str(), 1);
+    if (!o_.command.empty())
+        child_.start(o_.command, {{"{device}", pty_.path()},
+                                  {"{frame}", o_.out + "/before.png"},
+                                  {"{status}", o_.out + "/status"},
+                                  {"{guard}", std::to_string(o_.guard)},
+                                  {"{out}", o_.out}});
+}
+
+bool Flight::isWanted() {
+    return !stopSignal && (o_.command.empty() || child_.runs());
+}
+
+// Says once if the chip is hardly ever quiet: such a flight is slow at the board's clock.
+void Flight::adviseOnClock() {
+    constexpr uint64_t enough = 20'000'000;
+    if (o_.quiet || o_.everyClock || advised_ || soc_.evaluated() < enough ||
+        2 * soc_.evaluated() < soc_.cycles() || SocModel::clkHz <= 2'000'000)
+        return;
+    advised_ = true;
+    std::cout
+        << "icesoc-sim: something in the chip moves in nearly every clock (a core that counts "
+           "by itself?), so that none is skipped: make run CLK_HZ=2000000 is quicker"
+        << std::endl;
+}
+
+// About once a simulated millisecond.
+bool Flight::poll() {
+    adviseOnClock();
+    status_->cycles = soc_.cycles();
+    status_->wallNs = pace_.workedNs() - step_.waitedNs();
+    pace_.keep(soc_.now());
+    bool over = o_.duration > 0 && static_cast<double>(soc_.now()) >= o_.duration * 1e9;
+    return !over && isWanted();
+}
+
+void Flight::runProcessor() {
+    if (o_.cpu == "m3")
+        runOnCortexM3();
+    else
+        UavMachine(
+            soc_, [this] { return poll(); }, simulatedFirmware(keyBytes(o_.key)))
+            .run();
+}
+
+void Flight::runOnCortexM3() {
+    M3Machine machine(soc_, {o_.firmware, o_.hclk, o_.guard}, [this] { return poll(); });
+    std::optional<MarkFile> marks;
+    if (!o_.marks.empty())
+        marks.emplace(o_.marks, machine.stm32(), [this] { return soc_.now(); });
+    if (o_.gdb >= 0) {
+        GdbStub stub(static_cast<uint16_t>(o_.gdb));
+        std::cout << "icesoc-sim: waiting for a debugger: gdb-multiarch " << o_.firmware
+                  << " -ex 'target remote localhost:" << stub.port() << "'" << std::endl;
+        machine.debug(stub);
+    } else {
+        machine.run();
+    }
+    if (!o_.quiet)
+        reportProcessor(machine);
+}
+
+void Flight::report() {
+    double worked = static_cast<double>(pace_.workedNs() - step_.waitedNs()) / 1e9;
+    std::printf("icesoc-sim: %.1f s simulated, %.2f million clocks/s while it worked (real time is "
+                "%.1f; %.1f %% of the clocks were evaluated), %llu packets on the air, %llu lost\n",
+                static_cast<double>(soc_.now()) / 1e9,
+                static_cast<double>(soc_.cycles()) / worked / 1e6, SocModel::clkHz / 1e6,
+                100 * static_cast<double>(soc_.evaluated()) / static_cast<double>(soc_.cycles()),
+                static_cast<unsigned long long>(status_->packets),
+                static_cast<unsigned long long>(status_->lost));
+}
+
+int Flight::run() {
+    if (!o_.quiet)
+        std::cout << "icesoc-sim: UAV is up, frame " << frame_.width << " x " << frame_.height
+                  << ", the ground's modem is " << pty_.path() << std::endl;
+    startProgram();
+    runProcessor();
+    child_.stop();
+    if (!o_.quiet)
+        report();
+    return stopSignal ? 128 + stopSignal : child_.status();
+}

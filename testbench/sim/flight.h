@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+//
+// flight: one run of the simulated UAV with its modem, the air, and the ground's modem on a pty;
+// and, as its child, the program that uses that pty.
+
+#ifndef FLIGHT_H
+#define FLIGHT_H
+
+#include "camera.h"
+#include "child.h"
+#include "ground_step.h"
+#include "m3_machine.h"
+#include "pace.h"
+#include "soc_model.h"
+#include "status_file.h"
+#include <csignal>
+
+class Flight {
+public:
+    struct Options {
+        std::string key; // 32 hexadecimal digits
+        std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
+                           firmware = FIRMWARE_ELF;
+        uint32_t hclk = 120'000'000;
+        uint16_t guard = 1000;
+        int gdb = -1;
+        std::string marks, pins;
+        RfWeather weather;
+        double duration = 0;
+        uint64_t seed = 1;
+        bool everyClock = false, quiet = false, sensor = false;
+        std::vector<std::string> command;
+    };
+
+    // Makes the folder and what the ground finds in it: the counters, before.png. Throws
+    // std::runtime_error, before it changes anything, where the options or the picture are wrong.
+    explicit Flight(const Options& options);
+    Flight(const Flight&) = delete;
+    Flight& operator=(const Flight&) = delete;
+
+    // Flies until the program has ended, the time is over, or `stopSignal` is set. Returns the
+    // program's exit status, or that of a shell which the signal ends.
+    int run();
+
+    static volatile sig_atomic_t stopSignal;
+
+private:
+    void connectModels();
+    void watchRegisters();
+    void placePicture();
+    void startProgram();
+    void runProcessor();
+    void runOnCortexM3();
+    bool isWanted();
+    void adviseOnClock();
+    bool poll();
+    void report();
+
+    const Options o_;
+    const Frame frame_;
+    StatusFile status_;
+    RfChannel air_;
+    PtyLine pty_;
+    XBee ground_;
+    SocModel soc_;
+    Child child_;
+    GroundStep step_;
+    Pace pace_;
+    bool advised_ = false;
+};
+
+#endif

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+//
+// quiet_span: compares the chip's state over a clock, and adds skipped clocks to its counters.
+
+#include "quiet_span.h"
+#include "VSoc.h"
+#include "VSoc___024root.h"
+#include <algorithm>
+#include <cstring>
+
+namespace {
+
+constexpr uint32_t phaseMask = (1u << 18) - 1, phaseCarry = 1u << 18; // modem_baud.v
+constexpr unsigned everyCarryTicks = 5; // from this code of the baud rate on
+constexpr uint8_t lastTick = 7;         // modem_uart_rx.v, modem_uart_tx.v
+constexpr uint64_t worth = 4;           // fewer clocks than these are evaluated
+constexpr uint64_t margin = 2;          // clocks before an event that are evaluated
+constexpr uint64_t settling = 8; // clocks after a carry in which its tick may still have effects
+constexpr unsigned longest = 32; // clocks between two looks at a busy chip
+
+#define PHASE soc__DOT__u_modem__DOT__u_baud__DOT__phase
+#define PRESCALER soc__DOT__u_modem__DOT__u_baud__DOT__count
+#define RATE soc__DOT__u_modem__DOT__u_baud__DOT__bd_i
+#define TICK soc__DOT__u_modem__DOT__u_baud__DOT__tick_o
+#define TIMER soc__DOT__u_modem__DOT__u_timer__DOT__clocks
+#define RX soc__DOT__u_modem__DOT__u_uart_rx__DOT__ticks
+#define TX soc__DOT__u_modem__DOT__u_uart_tx__DOT__ticks
+#define CYCLES soc__DOT__u_system_slot__DOT__cycles
+
+// Copies one member of `from` into the image of another moment.
+template <class T>
+void copyInto(std::vector<unsigned char>& image, const VSoc___024root& from, const T& member) {
+    auto at = reinterpret_cast<const unsigned char*>(&member) -
+              reinterpret_cast<const unsigned char*>(&from);
+    std::memcpy(image.data() + at, &member, sizeof member);
+}
+
+} // namespace
+
+QuietSpan::QuietSpan(VSoc& top, uint64_t clkHz)
+    : top_(top), timerLast_(static_cast<uint32_t>(clkHz / 16000 * 17 - 2)),
+      image_(sizeof(VSoc___024root)) {}
+
+QuietSpan::Counters QuietSpan::counters() const {
+    const VSoc___024root& r = *top_.rootp;
+    return {r.CYCLES, r.PHASE, r.TIMER, r.PRESCALER, r.RX, r.TX};
+}
+
+void QuietSpan::takeImage() {
+    std::memcpy(image_.data(), top_.rootp, image_.size());
+    before_ = counters();
+    hasImage_ = true;
+    isFixed_ = false;
+    ticks_ = 0;
+    nullAge_ = 0;
+}
+
+// True if all state is that of the image, but for the counters.
+bool QuietSpan::isLikeImage() {
+    const VSoc___024root& r = *top_.rootp;
+    copyInto(image_, r, r.CYCLES);
+    copyInto(image_, r, r.PHASE);
+    copyInto(image_, r, r.PRESCALER);
+    copyInto(image_, r, r.TIMER);
+    copyInto(image_, r, r.RX);
+    copyInto(image_, r, r.TX);
+    return std::memcmp(image_.data(), &r, image_.size()) == 0;
+}
+
+void QuietSpan::beginPause() {
+    hasImage_ = false;
+    patience_ = std::min(patience_ + patience_ / 2 + 1, longest);
+    pause_ = patience_;
+}
+
+uint64_t QuietSpan::age(uint64_t phase) const {
+    return step_ ? (phase & phaseMask) / step_ : ~0ull;
+}
+
+// Clocks until a counter has its event, less the margin.
+uint64_t QuietSpan::untilEvent(const Counters& now, uint64_t most) const {
+    uint64_t clocks = most;
+    if (timerRuns_)
+        clocks = std::min<uint64_t>(clocks, timerLast_ - std::min(now.timer, timerLast_));
+    uint64_t carries = nullAge_ ? ~0ull >> 32 : 0; // that may be passed
+    if (rxStep_)
+        carries = std::min<uint64_t>(carries, lastTick - now.rx);
+    if (txStep_)
+        carries = std::min<uint64_t>(carries, lastTick - now.tx);
+    if (step_)
+        clocks = std::min<uint64_t>(clocks,
+                                    (((carries + 1) << 18) - 1 - (now.phase & phaseMask)) / step_);
+    return clocks > margin ? clocks - margin : 0;
+}
+
+// Learns from the clocks since the image was last compared how its counters move. False if they
+// have moved in another way than they do.
+bool QuietSpan::learn(const Counters& now) {
+    const uint8_t rx = (now.rx - before_.rx) & lastTick, tx = (now.tx - before_.tx) & lastTick;
+    if (!isFixed_) { // the clock after the image was taken
+        uint32_t timerStep = now.timer - before_.timer;
+        step_ = (now.phase - before_.phase) & phaseMask;
+        timerRuns_ = timerStep == 1;
+        rxStep_ = txStep_ = 0;
+        isFixed_ = now.cycles - before_.cycles == 1 && timerStep <= 1 && !ticks_ && !rx && !tx;
+        return isFixed_;
+    }
+    if (ticks_ && !nullAge_) {
+        if (ticks_ > 1 || rx > 1 || tx > 1 || ((rx | tx) && top_.rootp->RATE < everyCarryTicks))
+            return false;
+        rxStep_ = rx;
+        txStep_ = tx;
+        nullAge_ = std::max<uint64_t>(age(now.phase), margin);
+    }
+    return rx == ((rxStep_ * ticks_) & lastTick) && tx == ((txStep_ * ticks_) & lastTick);
+}
+
+void QuietSpan::sample() {
+    ticks_ += top_.rootp->TICK;
+}
+
+uint64_t QuietSpan::look(uint64_t most) {
+    if (pause_) {
+        --pause_;
+        return 0;
+    }
+    if (most < worth)
+        return 0;
+    Counters now = counters();
+    if (now.phase & phaseCarry || top_.rootp->TICK)
+        return 0; // a tick is on its way
+    if (!hasImage_) {
+        takeImage();
+        return 0;
+    }
+    if (!isLikeImage() || !learn(now)) {
+        if (isFixed_ && age(now.phase) < settling) // a tick that had an effect
+            takeImage();
+        else
+            beginPause();
+        return 0;
+    }
+    patience_ = 0;
+    before_ = now;
+    ticks_ = 0;
+    uint64_t clocks = untilEvent(now, most);
+    return clocks >= worth ? clocks : 0;
+}
+
+uint64_t QuietSpan::pass(uint64_t clocks) {
+    VSoc___024root& r = *top_.rootp;
+    const uint64_t low = r.PHASE & phaseMask;
+    uint64_t passed = clocks;
+    while (passed && low + passed * step_ > phaseMask && age(low + passed * step_) < nullAge_)
+        --passed;
+    const uint64_t phase = low + passed * step_, ticks = phase >> 18;
+    r.CYCLES += passed;
+    r.PHASE = static_cast<uint32_t>(phase & phaseMask);
+    r.PRESCALER = static_cast<uint8_t>((r.PRESCALER + ticks) & 31);
+    r.RX = static_cast<uint8_t>((r.RX + rxStep_ * ticks) & lastTick);
+    r.TX = static_cast<uint8_t>((r.TX + txStep_ * ticks) & lastTick);
+    if (timerRuns_)
+        r.TIMER += static_cast<uint32_t>(passed);
+    before_ = counters();
+    return clocks - passed;
+}

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+//
+// quiet_span: finds out for how many clocks nothing of the chip would move but its counters, and
+// adds these clocks to the counters at once.
+//
+// It compares, it does not assume. All state of the Verilated chip is compared over a clock; if
+// only the counters below have moved, by their step, the same holds for each clock that follows,
+// until a counter has its event or an input moves: the next state follows from state and inputs
+// alone. A core that counts by itself is therefore never skipped.
+//
+//   cycles of the system slot   one a clock; no event
+//   clocks of the modem's timer one a clock, or held; its event is a tick of 17/16 ms
+//   phase of the baud rate      a step a clock; a carry is its event: an eighth of a bit time
+//   ticks of the UART's halves  one a tick of the baud rate, or held; the tick at 7 is an event
+//
+// A tick of the baud rate is skipped, too, once the chip has been seen to come back to the very
+// same state after one, but for these counters (proven: modem_uart_rx_proof.vh,
+// modem_uart_tx_proof.vh).
+
+#ifndef QUIET_SPAN_H
+#define QUIET_SPAN_H
+
+#include <cstdint>
+#include <vector>
+
+class VSoc;
+
+class QuietSpan {
+public:
+    QuietSpan(VSoc& top, uint64_t clkHz);
+
+    // To be called after each clock that was evaluated.
+    void sample();
+
+    // Returns for how many clocks, at most `most`, the chip is quiet from here on; 0 if it is not,
+    // or not known to be.
+    uint64_t look(uint64_t most);
+
+    // Adds `clocks`, at most those that look() has returned, to the counters. Returns how many it
+    // left: those that a tick of the baud rate is on its way in, and that must be evaluated.
+    uint64_t pass(uint64_t clocks);
+
+    // To be called where an input changes.
+    void forget() { hasImage_ = false; }
+
+private:
+    struct Counters {
+        uint64_t cycles;
+        uint32_t phase, timer;
+        uint8_t prescaler, rx, tx; // prescaler: counts the carries of phase
+    };
+
+    Counters counters() const;
+    void takeImage();
+    bool isLikeImage();
+    void beginPause();
+    bool learn(const Counters& now);
+    uint64_t age(uint64_t phase) const; // clocks since the last carry
+    uint64_t untilEvent(const Counters& now, uint64_t most) const;
+
+    VSoc& top_;
+    uint32_t timerLast_;
+    std::vector<unsigned char> image_; // a state of the chip
+    bool hasImage_ = false;
+    Counters before_{};    // the counters when it was last compared
+    bool isFixed_ = false; // nothing but counters moves in the image
+    uint32_t step_ = 0;    // of the phase, a clock
+    bool timerRuns_ = false;
+    unsigned ticks_ = 0;   // of the baud rate, since the image was last compared
+    uint64_t nullAge_ = 0; // clocks after a carry the chip is back at the image; 0: not known
+    uint8_t rxStep_ = 0, txStep_ = 0;   // of the UART's ticks, a tick
+    unsigned patience_ = 0, pause_ = 0; // clocks before the next look at a busy chip
+};
+
+#endif

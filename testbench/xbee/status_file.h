@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+//
+// status_file: a simulator's counters (sim_status.h) in a file that other programs map.
+
+#ifndef STATUS_FILE_H
+#define STATUS_FILE_H
+
+#include "sim_status.h"
+#include <cerrno>
+#include <fcntl.h>
+#include <string>
+#include <sys/mman.h>
+#include <system_error>
+#include <unistd.h>
+
+class StatusFile {
+public:
+    // Throws std::system_error, also where the disk is full: a file with holes would end in SIGBUS.
+    explicit StatusFile(const std::string& path) {
+        unlink(path.c_str()); // what a link leads to is not ours to write
+        int fd = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+        int error = fd < 0 ? errno : posix_fallocate(fd, 0, sizeof(SimStatus));
+        void* at =
+            error ? MAP_FAILED
+                  : mmap(nullptr, sizeof(SimStatus), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+        if (!error && at == MAP_FAILED)
+            error = errno;
+        if (fd >= 0)
+            close(fd);
+        if (error)
+            throw std::system_error(error, std::generic_category(), "cannot write '" + path + "'");
+        status_ = static_cast<SimStatus*>(at);
+        std::memcpy(status_->magic, simMagic, sizeof simMagic);
+    }
+    ~StatusFile() { munmap(status_, sizeof(SimStatus)); }
+    StatusFile(const StatusFile&) = delete;
+    StatusFile& operator=(const StatusFile&) = delete;
+
+    SimStatus& operator*() const { return *status_; }
+    SimStatus* operator->() const { return status_; }
+    uint64_t ns() const { return __atomic_load_n(&status_->ns, __ATOMIC_ACQUIRE); }
+    void set(uint64_t ns) { __atomic_store_n(&status_->ns, ns, __ATOMIC_RELEASE); }
+
+private:
+    SimStatus* status_;
+};
+
+#endif

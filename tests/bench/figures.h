@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+//
+// figures: what a bench measures, collected into the JSON file that `make bench` leaves.
+//
+//   int main(int argc, char** argv) {
+//       Figures figures("Speed of the FSMC bridge.");
+//       return figures.run(argc, argv, [&] {
+//           figures.add("read", 12.5, "clocks", 10); // 10 is what the pins allow
+//       });
+//   }
+//
+// Usage of every bench: PROGRAM OUTPUT.json [--brief]
+
+#ifndef FIGURES_H
+#define FIGURES_H
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+class Figures {
+public:
+    explicit Figures(const std::string& what) : app{what} {
+        app.add_option("output", output_, "JSON file for the figures")->required();
+        app.add_flag("--brief", brief, "measures just enough to show that the bench works");
+    }
+    CLI::App app;       // for options of a bench's own
+    bool brief = false; // a second's worth; no figure is judged
+
+    // Adds a figure. `limit` is what it is compared with: a physical bound, or a budget.
+    nlohmann::json& add(const std::string& name, double value, const std::string& unit,
+                        double limit = 0) {
+        nlohmann::json entry = {
+            {"name", name}, {"value", value}, {"unit", unit}, {"command", "make bench"}};
+        if (limit > 0) {
+            entry["limit"] = limit;
+            entry["share"] = value / limit;
+        }
+        return entries_.emplace_back(std::move(entry));
+    }
+    // Says that a figure is not what is wanted; the bench then ends with status 1.
+    void miss(const std::string& what) {
+        if (!brief)
+            missed_ += app.get_name() + ": " + what + "\n";
+    }
+    // Reads the command line, measures, writes the file. Returns the exit status.
+    template <class Measure> int run(int argc, char** argv, const Measure& measure) {
+        namespace fs = std::filesystem;
+        app.name(fs::path(argv[0]).filename().string());
+        CLI11_PARSE(app, argc, argv);
+        try {
+            measure();
+            fs::create_directories(fs::absolute(output_).parent_path());
+            std::ofstream file(output_);
+            file << entries_.dump(1) << '\n';
+            if (!file.flush())
+                throw std::runtime_error("cannot write " + output_);
+            std::cout << "Written: " << output_ << '\n' << std::flush;
+        } catch (const std::exception& error) {
+            std::cerr << app.get_name() << ": error: " << error.what() << '\n';
+            return 1;
+        }
+        std::cerr << missed_;
+        return missed_.empty() ? 0 : 1;
+    }
+
+private:
+    std::string output_, missed_;
+    nlohmann::json entries_ = nlohmann::json::array();
+};
+
+#endif

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: MIT
+//
+// firmware: what the firmware costs on the Cortex-M3, measured while it flies against the
+// RTL.
+//
+// Cycles are those of the board: the processor's own, and for accesses the HCLK cycles at the
+// FSMC's pins (the simulator's fabric is slower than the board's; its pins keep the ratio of 6 to
+// 5).
+
+#include "figures.h"
+#include "ground.h"
+#include "m3_machine.h"
+
+extern "C" {
+#include "uav.h"
+}
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+
+namespace {
+
+constexpr double hclk = 120e6, hclkPerClk = 1.2;
+constexpr double entering = 12,
+                 leaving = 10; // cycles of exceptions, which the model counts around its calls
+constexpr unsigned fpgaInterrupt = FirstInterrupt + 6; // EXTI0
+constexpr uint8_t fpgaPriority = 0x50;
+constexpr double serialLimit = 11'111; // bytes a second at 111,111 baud
+
+Figures figures("The firmware on the Cortex-M3 model against the RTL.");
+
+void say(const std::string& name, double value, const std::string& unit, double limit = 0,
+         const std::string& remark = "") {
+    figures.add(name, value, unit, limit);
+    char text[40] = "";
+    if (limit > 0)
+        std::snprintf(text, sizeof text, "(limit %g)", limit);
+    std::printf("%-52s %10.4g %-14s %s %s\n", name.c_str(), value, unit.c_str(), text,
+                remark.c_str());
+    if (limit > 0 && value > limit)
+        figures.miss(name + " is over its limit");
+}
+
+struct Range {
+    double least = 1e30, most = 0, sum = 0;
+    unsigned n = 0;
+    void add(double v) {
+        least = std::min(least, v);
+        most = std::max(most, v);
+        sum += v;
+        ++n;
+    }
+    double mean() const { return n ? sum / n : 0; }
+};
+
+// The vehicle with its ground station, in the air.
+class Flight {
+public:
+    // `scaled` 1: the board's ratio of clocks; 50: the processor's time in the radio's.
+    Flight(const std::string& elf, double scaled)
+        : warp(scaled),
+          machine(soc, {elf, scaled > 1 ? static_cast<uint32_t>(hclk) : 0, Ground::guardMs},
+                  [this] { return poll(); }) {
+        soc.onTime([this](uint64_t now) { return ground.advance(now); });
+        soc.reset();
+        const uint32_t size[2] = {48, 32};
+        std::memcpy(soc.memory().data() + UAV_FRAME_HEADER, size, sizeof size);
+        until([this] { return ground.isUp(); }, 20, "the link");
+        ground.open();
+        until([this] { return ground.validated; }, 5, "the connection");
+    }
+    // Runs until `done`, asked each simulated millisecond; fails after `seconds`.
+    void until(std::function<bool()> done, double seconds, const char* what) {
+        done_ = std::move(done);
+        uint64_t end = soc.now() + static_cast<uint64_t>(seconds * 1e9);
+        late_ = false;
+        end_ = end;
+        machine.run();
+        if (late_)
+            throw std::runtime_error(std::string(what) + " has not happened within " +
+                                     std::to_string(seconds) + " simulated seconds");
+    }
+    void wait(double seconds) {
+        uint64_t end = soc.now() + static_cast<uint64_t>(seconds * 1e9);
+        until([this, end] { return soc.now() >= end; }, seconds + 1, "waiting");
+    }
+    // Cycles on the board: all that the processor was awake for, and of these waiting for the FSMC.
+    double awake() { return own() + waiting(); }
+    double waiting() { return static_cast<double>(cpu().busCycles()) / warp; }
+    double own() {
+        return static_cast<double>(cpu().cycles()) - static_cast<double>(cpu().sleepingCycles()) -
+               static_cast<double>(cpu().busCycles());
+    }
+    CortexM3& cpu() { return machine.cpu(); }
+    double seconds() const { return static_cast<double>(soc.now()) / 1e9; }
+
+    double warp;
+    RfChannel air{1};
+    Ground ground{air, 6};
+    SocModel soc{air, Ground::uavModem()};
+    M3Machine machine;
+
+private:
+    bool poll() {
+        late_ = soc.now() > end_;
+        return !late_ && !done_();
+    }
+    std::function<bool()> done_;
+    uint64_t end_ = 0;
+    bool late_ = false;
+};
+
+void stopListening(Flight& f) {
+    f.cpu().listener.entered = f.cpu().listener.left = nullptr;
+    f.cpu().listener.instruction = nullptr;
+}
+
+void measureLatencies(Flight& f) {
+    auto interrupts = std::make_shared<Range>();
+    auto switches = std::make_shared<Range>();
+    auto routines = std::make_shared<Range>();
+    auto rose = std::make_shared<uint64_t>(
+        0); // in clocks of the fabric: exact within an access, and in sleep
+    auto begin = std::make_shared<std::array<double, Exceptions::count>>();
+    f.soc.onIrq([&f, rose](bool high) {
+        if (high)
+            *rose = f.soc.cycles();
+        f.machine.stm32().setPinB(0, high);
+    });
+    f.cpu().listener.entered = [=, &f](unsigned n) {
+        (*begin)[n] = f.awake();
+        if (n == fpgaInterrupt && *rose) {
+            interrupts->add(static_cast<double>(f.soc.cycles() - *rose) * hclkPerClk + entering);
+            *rose = 0;
+        }
+    };
+    f.cpu().listener.left = [=, &f](unsigned n) {
+        if (n == PendSv)
+            switches->add(f.awake() - (*begin)[n] + leaving);
+        if (n == fpgaInterrupt)
+            routines->add(f.awake() - (*begin)[n]);
+    };
+    f.cpu().countMasked(fpgaPriority);
+    int sent = 0;
+    f.until(
+        [&] {
+            if (static_cast<int>(f.ground.replies.size()) == sent && sent < 10) {
+                ++sent;
+                if (sent % 5 == 1)
+                    f.ground.call(sent, "hwengine1", "startProcessing");
+                else if (sent % 5 == 3)
+                    f.ground.call(sent, "hwengine1", "getResult");
+                else
+                    f.ground.call(sent, "uav", "isAlive", 0, {7, 0});
+            }
+            return f.ground.replies.size() == 10;
+        },
+        20, "ten calls");
+    stopListening(f);
+    say("interrupt latency, least", interrupts->least, "cycles");
+    say("interrupt latency, mean", interrupts->mean(), "cycles");
+    say("interrupt latency, most", interrupts->most, "cycles");
+    say("interrupt routine of the FPGA, most", routines->most, "cycles", 0,
+        "the tick waits for so long");
+    say("task switch (PendSV with entry and return), mean", switches->mean(), "cycles");
+    say("task switch, most", switches->most, "cycles");
+    const auto& masked = f.cpu().longestMasked();
+    say("interrupts off, longest", static_cast<double>(masked.cycles) / hclk * 1e6, "us", 20,
+        "in " + f.machine.stm32().image()->functionAt(masked.from));
+}
+
+void measureCalls(Flight& f, int calls) {
+    const uint32_t servant = f.machine.stm32().image()->symbol("Autopilot_Vehicle_isAlive"),
+                   transmit = f.machine.stm32().image()->symbol("Radio_transmit");
+    Range toServant, back;
+    double interruptAt = 0, servantAt = -1;
+    f.cpu().listener.entered = [&](unsigned n) {
+        if (n == fpgaInterrupt)
+            interruptAt = f.awake();
+    };
+    f.cpu().listener.instruction = [&](uint32_t address) {
+        if (address == servant) {
+            servantAt = f.awake();
+            toServant.add(servantAt - interruptAt);
+        } else if (address == transmit && servantAt >= 0) {
+            back.add(f.awake() - servantAt);
+            servantAt = -1;
+        }
+    };
+    f.ground.replies.clear();
+    int sent = 0;
+    double awake = f.awake(), waiting = f.waiting(), began = f.seconds();
+    f.until(
+        [&] {
+            if (static_cast<int>(f.ground.replies.size()) == sent && sent < calls) {
+                ++sent;
+                f.ground.call(sent, "uav", "isAlive", 0, {7, 0});
+            }
+            return static_cast<int>(f.ground.replies.size()) == calls;
+        },
+        30, "the calls");
+    awake = f.awake() - awake;
+    waiting = f.waiting() - waiting;
+    double took = f.seconds() - began;
+    stopListening(f);
+    double idle = f.awake(), idleFrom = f.seconds();
+    f.wait(2);
+    idle = (f.awake() - idle) / (f.seconds() - idleFrom); // a second
+    double aCall = (awake - idle * took) / calls, aTrip = took / calls;
+    say("processor load, idle link (tick of 1 kHz)", 100 * idle / hclk, "%");
+    say("call: radio interrupt to servant, mean", toServant.mean(), "cycles");
+    say("call: servant to first frame of the reply, mean", back.mean(), "cycles");
+    say("call: all of its cycles, ticks not counted", aCall, "cycles", 0, "with acknowledgements");
+    say("call: share of the FSMC in its cycles", 100 * waiting / awake, "%");
+    say("call: round trip", aTrip * 1e3, "ms");
+    say("platform's share of a call's round trip", 100 * aCall / hclk / aTrip, "%", 2);
+}
+
+void measureStream(Flight& f) {
+    // One-way requests of 1 KB to nobody: link, IceC's dispatcher, no servant, no reply.
+    f.ground.replies.clear();
+    uint64_t bytes = 0;
+    const std::vector<uint8_t> load(1000, 0x55);
+    auto feed = [&] {
+        while (f.ground.backlog() < 4000)
+            f.ground.call(0, "nobody", "listen", 0, load);
+        return false;
+    };
+    double end = f.seconds() + 1; // under way
+    f.until([&] { return feed() || f.seconds() > end; }, 3, "the stream");
+    double awake = f.awake(), waiting = f.waiting(), began = f.seconds();
+    bytes = f.ground.deliveredBytes;
+    end = f.seconds() + 5;
+    f.until([&] { return feed() || f.seconds() > end; }, 8, "the stream");
+    double took = f.seconds() - began,
+           goodput = static_cast<double>(f.ground.deliveredBytes - bytes) / took;
+    say("full stream: goodput", goodput / 1e3, "kB/s", 0, "messages of 1 KB, no loss");
+    say("full stream: goodput, share of the serial limit", 100 * goodput / serialLimit, "%");
+    say("full stream: processor load at 120 MHz", 100 * (f.awake() - awake) / took / hclk, "%", 5);
+    say("full stream: share of the FSMC in that",
+        100 * (f.waiting() - waiting) / (f.awake() - awake), "%");
+    say("full stream: cycles a byte", (f.awake() - awake) / (goodput * took), "cycles");
+}
+
+// From the message's last byte at IceC's endpoint to the first frame of its reply, of a ping.
+void measurePings(Flight& f, const std::string& program) {
+    constexpr size_t calls = 20;
+    const ElfImage& image = *f.machine.stm32().image();
+    const uint32_t message = image.symbol("XBeeATEndpoint_onMessage"),
+                   answered = image.symbol("icec_endReply"),
+                   transmit = image.symbol("Radio_transmit");
+    Range took;
+    double from = -1;
+    bool isAnswered = false;
+    f.cpu().listener.instruction = [&](uint32_t address) {
+        if (address == message)
+            from = f.awake(), isAnswered = false;
+        else if (address == answered)
+            isAnswered = true;
+        else if (address == transmit && from >= 0 && isAnswered)
+            took.add(f.awake() - from), from = -1;
+    };
+    f.ground.replies.clear();
+    int sent = 0;
+    f.until(
+        [&] {
+            if (static_cast<int>(f.ground.replies.size()) == sent && sent < calls)
+                f.ground.ping(++sent, "hwengine1");
+            return f.ground.replies.size() == calls;
+        },
+        60, "twenty pings");
+    stopListening(f);
+    say(program + ": ping, message to first frame of the reply", took.mean(), "cycles");
+    say(program + ": RAM with all objects and tasks' stacks",
+        image.symbol("bss_end") - image.symbol("data_begin"), "bytes");
+}
+
+// High-water marks: stacks are filled with zeros at the start.
+void measureStacks(Flight& f) {
+    const ElfImage& image = *f.machine.stm32().image();
+    for (const char* name :
+         {"radioStack", "serverStack", "clientStack", "watchStack", "idleStack", "OSTaskIdleStk"}) {
+        if (!image.has(name)) // the idle task's is called otherwise in the real uC/OS-II
+            continue;
+        uint32_t words = image.size(name) / 4, free = 0;
+        while (free < words && f.cpu().word(image.symbol(name) + 4 * free) == 0)
+            ++free;
+        say(std::string("stack used: ") + name, 4.0 * (words - free), "bytes", 4.0 * words);
+    }
+}
+
+// The one stack of the minimal program; RAM is zero at power-on.
+void measureMinimal(const std::string& elf) {
+    Flight f(elf, 1);
+    measurePings(f, "minimal");
+    const ElfImage& image = *f.machine.stm32().image();
+    uint32_t bottom = image.symbol("stack_bottom"), top = image.symbol("stack_top"), at = bottom;
+    while (at < top && f.cpu().word(at) == 0)
+        at += 4;
+    say("minimal: stack used", top - at, "bytes", top - bottom);
+}
+
+// A loop of the firmware's: the checksum over the image at start-up.
+void measureSpeed(const std::string& elf) {
+    using Clock = std::chrono::steady_clock;
+    auto rate = [&](Stm32F2& stm32) {
+        double best = 0;
+        for (int i = 0; i < 3; ++i) {
+            uint64_t from = stm32.cpu().instructions();
+            auto start = Clock::now();
+            stm32.powerOn();
+            stm32.cpu().breakpoints = {stm32.image()->symbol("Firmware_run")};
+            stm32.run();
+            stm32.cpu().breakpoints.clear();
+            double took = std::chrono::duration<double>(Clock::now() - start).count();
+            best =
+                std::max(best, static_cast<double>(stm32.cpu().instructions() - from) / took / 1e6);
+        }
+        return best;
+    };
+    FsmcPins pins;
+    FsmcMaster nothing(pins, {[] {}, [] {}});
+    Stm32F2 alone(nothing, [] { return uint64_t(0); }, {});
+    alone.load(elf);
+    say("simulated instructions a second, without the RTL", rate(alone), "million/s");
+    RfChannel air(1);
+    SocModel soc(air, {});
+    soc.reset();
+    M3Machine machine(soc, {elf, 0}, [] { return true; });
+    say("simulated instructions a second, with the RTL", rate(machine.stm32()), "million/s", 0,
+        "in lock-step");
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    std::string elf, minimal;
+    figures.app.add_option("--firmware", elf, "ELF file")->required();
+    figures.app.add_option("--minimal", minimal, "ELF file of the minimal program, to be compared");
+    return figures.run(argc, argv, [&] {
+        std::printf("Setting modems up, waiting for the link ...\n");
+        if (!figures.brief) {
+            Flight atBoardsRatio(elf, 1);
+            measureLatencies(atBoardsRatio);
+            if (!minimal.empty()) {
+                measurePings(atBoardsRatio, "full");
+                measureMinimal(minimal);
+            }
+        }
+        Flight f(elf, hclk / (SocModel::clkHz * hclkPerClk));
+        measureCalls(f, figures.brief ? 1 : 20);
+        if (!figures.brief) {
+            measureStream(f);
+            measureSpeed(elf);
+        }
+        measureStacks(f);
+    });
+}

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+//
+// fsmc: the FSMC bridge's speed in the whole chip: the real driver, the pins, the bridge,
+// the arbiter, the MCB and DDR3.
+
+#include "driver_port.h"
+#include "figures.h"
+#include "random.h"
+#include "soc_model.h"
+#include <fmt/format.h>
+
+extern "C" {
+#include "map_regs.h"
+#include "system_regs.h"
+}
+
+namespace {
+
+constexpr double fabricHz = 100e6, wantedRate = 25e6; // accesses/s at the pins
+constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
+
+Figures figures("Speed of the FSMC bridge with the real driver, up to DDR3.");
+
+// A chip with its driver, at an HCLK in MHz; the fabric runs at 100 MHz.
+struct Chip {
+    Chip(unsigned hclkMhz, uint64_t seed) : air(seed), soc(air, {}, hclkMhz, 100) {
+        soc.reset();
+        if (FSMC_init(&driverPort, &soc.fsmc()) != FSMC_OK)
+            throw std::runtime_error("the chip does not answer");
+        FSMC_setHclk(hclkMhz * 1000000);
+        FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
+    }
+    template <class F> double clocks(F f) {
+        uint64_t start = soc.cycles();
+        f();
+        return static_cast<double>(soc.cycles() - start);
+    }
+    RfChannel air;
+    SocModel soc;
+};
+
+// Blocks by the driver, everything included: setting the bank up, reading ahead, the check at the
+// end.
+double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
+    Chip chip(hclk, seed);
+    Random random(seed);
+    std::vector<U16> out(halfwords), in(halfwords);
+    for (auto& value : out)
+        value = static_cast<U16>(random.next());
+    U32 repeated = 0;
+    double least = 1;
+    // An access takes whole HCLK: the pins' limit is what the driver's timing leaves at this HCLK
+    // (docs/fsmc.md).
+    auto show = [&](const char* what, double clocks, unsigned cycles, double wanted) {
+        double rate = halfwords / clocks * fabricHz, limit = hclk * 1e6 / cycles;
+        fmt::print("HCLK {:3} MHz  {:<40} {:6.2f} M/s {:6.1f} % {:4} HCLK {:6.2f} M/s {:6.1f} %",
+                   hclk, what, rate / 1e6, 100 * rate / wantedRate, cycles, limit / 1e6,
+                   100 * rate / limit);
+        fmt::print(wanted > 0 ? "   {:.0f} % wanted\n" : "\n", 100 * wanted);
+        figures.add(fmt::format("FSMC, HCLK {} MHz, {}", hclk, what), rate / 1e6,
+                    "million halfwords/s", limit / 1e6);
+        if (wanted > 0)
+            least = std::min(least, rate / limit / wanted);
+    };
+    unsigned readCycles = (hclk + 24) / 25;
+    show("sequential writes, stream",
+         chip.clocks([&] { repeated += FSMC_streamWrite(0x10000, out.data(), halfwords); }), 4,
+         0.99);
+    show("sequential reads, stream",
+         chip.clocks([&] { repeated += FSMC_streamRead(0x10000, in.data(), halfwords); }),
+         readCycles, 0.95);
+    right = right && in == out && repeated == 0;
+    std::vector<U8> bytes(2 * halfwords);
+    show("sequential writes, NWAIT (driver's copy)",
+         chip.clocks([&] { FSMC_writeMemory(0x90000, bytes.data(), 2 * halfwords); }), 7, 0);
+    show("sequential reads, NWAIT (driver's copy)",
+         chip.clocks([&] { FSMC_readMemory(0x90000, bytes.data(), 2 * halfwords); }), 7, 0);
+    return least;
+}
+
+// A picture of 320 x 240 bytes into DDR3 and back, as the firmware has it: with NWAIT, and as a
+// stream.
+void frame(unsigned hclk, uint64_t seed, bool& right, uint32_t halfwords = 320 * 240 / 2) {
+    Chip chip(hclk, seed);
+    Random random(seed);
+    std::vector<U16> out(halfwords), in(halfwords);
+    auto show = [&](const char* what, double clocks) {
+        fmt::print("HCLK {:3} MHz  frame of 320 x 240, {:<24} {:8.0f} clocks, {:5.2f} a halfword\n",
+                   hclk, what, clocks, clocks / halfwords);
+        figures.add(fmt::format("FSMC, HCLK {} MHz, frame of 320 x 240, {}", hclk, what),
+                    clocks / fabricHz * 1e3, "ms");
+    };
+    auto bytes = [](std::vector<U16>& v) { return reinterpret_cast<U8*>(v.data()); };
+    auto pass = [&](const char* writes, const char* reads, auto write, auto read) {
+        for (auto& value : out)
+            value = static_cast<U16>(random.next());
+        show(writes, chip.clocks(write));
+        show(reads, chip.clocks(read));
+        right = right && in == out;
+    };
+    pass(
+        "written with NWAIT", "read with NWAIT",
+        [&] { FSMC_writeMemory(0x10000, bytes(out), 2 * halfwords); },
+        [&] { FSMC_readMemory(0x10000, bytes(in), 2 * halfwords); });
+    pass(
+        "written as a stream", "read as a stream",
+        [&] { FSMC_streamWrite(0x10000, out.data(), halfwords); },
+        [&] { FSMC_streamRead(0x10000, in.data(), halfwords); });
+}
+
+void single(unsigned hclk, uint64_t seed, int count) {
+    Chip chip(hclk, seed);
+    Random random(seed);
+    FsmcMaster& master = chip.soc.fsmc();
+    double hclks = 100.0 / hclk; // clocks of the fabric in one HCLK
+    auto show = [&](const char* what, double least, const std::function<void()>& access) {
+        double sum = chip.clocks([&] {
+            for (int i = 0; i < count; ++i)
+                access();
+        });
+        fmt::print("HCLK {:3} MHz  {:<38} {:6.1f} clocks, {:5.1f} at least\n", hclk, what,
+                   sum / count, least);
+        figures.add(fmt::format("FSMC, HCLK {} MHz, {}", hclk, what), sum / count, "clocks", least);
+    };
+    // At least: ADDSET 2, DATAST 4 and 1 HCLK of hold or turnaround; a read that waits ends 4 HCLK
+    // after NWAIT and is seen through two flip-flops (1 to 2 clocks, 1.5 on average), then a clock
+    // each for noting it, for the request and for what comes back.
+    double access = 7 * hclks, waits = (2 + 4 + 1) * hclks + 1.5;
+    show("register word, 32 bits, write", 2 * access,
+         [&] { master.write32(control + 4 * SYSTEM_SCRATCH, 1); });
+    show("register word, 32 bits, read", waits + 3 + access,
+         [&] { master.read32(control + 4 * SYSTEM_SCRATCH); });
+    show("random 16-bit write", access,
+         [&] { master.write16(ddr + 2 * random.below(1u << 24), 1); });
+    FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
+    show("random 16-bit read", waits + 3, [&] { master.read16(ddr + 2 * random.below(1u << 24)); });
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    return figures.run(argc, argv, [] {
+        const uint64_t seed = testSeed();
+        const uint32_t halfwords = figures.brief ? 64 : 32768;
+        bool right = true;
+        fmt::print("Blocks of {} halfwords; share of 25 million accesses/s, HCLK of an access, the "
+                   "pins' limit with it, share of that\n",
+                   halfwords);
+        double least = streams(100, seed, halfwords, right);
+        least = std::min(least, streams(120, seed, halfwords, right));
+        fmt::print("\nA frame, in clocks of 100 MHz\n");
+        for (unsigned hclk : {100, 120})
+            figures.brief ? frame(hclk, seed, right, 64) : frame(hclk, seed, right);
+        fmt::print("\nSingle accesses, in clocks of 100 MHz\n");
+        for (unsigned hclk : {100, 120})
+            single(hclk, seed, figures.brief ? 5 : 500);
+        if (!right)
+            throw std::runtime_error("what was read is not what was written, or was repeated");
+        if (least < 1)
+            figures.miss("a stream is slower than wanted");
+    });
+}

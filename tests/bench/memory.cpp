@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+//
+// memory: speed, latency and fairness of the memory controllers, next to their back-ends'
+// limits.
+
+#include "VMemoryLitedram2.h"
+#include "VMemoryLitedram4.h"
+#include "VMemoryLitedram8.h"
+#include "VMemoryMcb2.h"
+#include "VMemoryMcb4.h"
+#include "VMemoryMcb8.h"
+#include "direct_drive.h"
+#include "figures.h"
+#include "memory_bench.h"
+#include <fmt/format.h>
+
+namespace {
+
+Figures figures("Speed, latency and fairness of the memory controllers.");
+unsigned outstanding = 64; // words that a port asks for before it has them
+
+struct Mcb {
+    using Backend = McbBackend;
+    static constexpr const char* name = "MCB";
+    template <class Requests> static uint64_t direct(size_t bytes, const Requests& requests) {
+        return directMcb(bytes, requests);
+    }
+};
+struct Litedram {
+    using Backend = LitedramBackend;
+    static constexpr const char* name = "LiteDRAM";
+    template <class Requests> static uint64_t direct(size_t bytes, const Requests& requests) {
+        return directLitedram(bytes, requests);
+    }
+};
+
+struct Mix {
+    const char* name;
+    double evenPorts, oddPorts; // share of writes
+};
+constexpr Mix mixes[] = {{"reads", 0, 0},
+                         {"writes", 1, 1},
+                         {"ports 0, 2 .. read, 1, 3 .. write", 0, 1},
+                         {"each port reads and writes", 0.5, 0.5}};
+
+// Every port streams through its own part of the memory. Returns the worst share of the limit.
+template <class Module, class Kind, unsigned ports>
+double stream(const Mix& mix, unsigned size, uint64_t cycles, uint64_t seed) {
+    using Bench = MemoryBench<Module, typename Kind::Backend, ports>;
+    Bench bench(seed);
+    for (unsigned p = 0; p < ports; ++p) {
+        NpiTraffic& t = bench.requesters.traffic(p);
+        t.writes = p % 2 ? mix.oddPorts : mix.evenPorts;
+        t.minSize = t.maxSize = size;
+        t.byteEnables = t.anyLineWord = false;
+        t.sequential = true;
+        t.outstanding = outstanding;
+        t.bytes = Bench::size / ports;
+        t.base = p * t.bytes;
+    }
+    using Requesters = NpiRequesters<Module>;
+    std::vector<typename Requesters::Accepted> accepted;
+    bench.requesters.log = &accepted;
+    bench.requesters.stop();
+    bench.run(200); // calibration
+    uint64_t start = bench.bench.cycles();
+    uint64_t before = bench.backend.model.wordsRead + bench.backend.model.wordsWritten;
+    bench.requesters.go();
+    bench.run(cycles);
+    bench.requesters.stop();
+    const auto& model = bench.backend.model;
+    bench.bench.waitFor(
+        [&] {
+            uint64_t asked = 0;
+            for (const auto& a : accepted)
+                asked += a.words;
+            return bench.requesters.idle() &&
+                   model.wordsRead + model.wordsWritten == before + asked;
+        },
+        "the end", 20000);
+    uint64_t clocks = bench.bench.cycles() - start;
+    double words = 0, sum = 0, squares = 0, least = 1e30, most = 0;
+    for (unsigned p = 0; p < ports; ++p) {
+        const auto& c = bench.requesters.counters(p);
+        double mine = static_cast<double>(c.readWords + c.writeWords);
+        words += mine;
+        sum += mine;
+        squares += mine * mine;
+        least = std::min(least, mine);
+        most = std::max(most, mine);
+    }
+    double limit = words / static_cast<double>(Kind::direct(Bench::size, accepted));
+    double rate = words / static_cast<double>(clocks), jain = sum * sum / (ports * squares);
+    std::string name =
+        fmt::format("{}, {} ports, {} bytes, {}", Kind::name, ports, 8u << size, mix.name);
+    fmt::print("{:<68} {:6.3f} {:6.3f} {:6.1f} % {:7.4f} {:6.3f}\n", name, rate, limit,
+               100 * rate / limit, jain, least / most);
+    figures.add(name, rate, "words of 64 bits a clock", limit);
+    figures.add(name + ", fairness (Jain)", jain, "1 = equal", 1);
+    return rate / limit;
+}
+
+template <class M2, class M4, class M8, class Kind> double streams(uint64_t cycles, uint64_t seed) {
+    double worst = 1e9;
+    for (unsigned size : {3u, 4u, 5u})
+        for (const Mix& mix : mixes) {
+            worst = std::min(worst, stream<M2, Kind, 2>(mix, size, cycles, seed));
+            worst = std::min(worst, stream<M4, Kind, 4>(mix, size, cycles, seed));
+            worst = std::min(worst, stream<M8, Kind, 8>(mix, size, cycles, seed));
+        }
+    return worst;
+}
+
+// From the request to the first word popped, one port alone and with all others streaming.
+template <class Module, class Kind, unsigned ports> void latency(uint64_t cycles, uint64_t seed) {
+    for (unsigned size = 0; size <= 5; ++size) {
+        double mean[2], most[2];
+        for (bool loaded : {false, true}) {
+            MemoryBench<Module, typename Kind::Backend, ports> bench(seed);
+            for (unsigned p = 0; p < ports; ++p) {
+                NpiTraffic& t = bench.requesters.traffic(p);
+                t.ask = p == 0 ? 0.02 : loaded ? 1 : 0;
+                t.writes = p == 0 ? 0 : 0.5;
+                t.minSize = t.maxSize = p == 0 ? size : 4;
+            }
+            bench.run(cycles);
+            const auto& c = bench.requesters.counters(0);
+            mean[loaded] = static_cast<double>(c.latencySum) / static_cast<double>(c.reads);
+            most[loaded] = static_cast<double>(c.latencyMax);
+        }
+        std::string name =
+            fmt::format("{}, {} ports, read of {} bytes", Kind::name, ports, 8u << size);
+        fmt::print("{:<50} {:8.1f} {:8.0f} {:8.1f} {:8.0f}\n", name, mean[0], most[0], mean[1],
+                   most[1]);
+        figures.add(name + ", latency alone", mean[0], "clocks");
+        figures.add(name + ", latency, others streaming", mean[1], "clocks");
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    figures.app.add_option("--outstanding", outstanding, "words that a port asks for ahead")
+        ->check(CLI::Range(32, 256));
+    return figures.run(argc, argv, [] {
+        const uint64_t cycles = figures.brief ? 500 : 20000, seed = testSeed();
+        fmt::print("Streaming ports; words of 64 bits a clock, and what the same requests reach "
+                   "when the memory model is driven directly\n"
+                   "{:<68} {:>6} {:>6} {:>8} {:>7} {:>6}\n",
+                   "", "rate", "limit", "share", "Jain", "min/max");
+        double worst = streams<VMemoryMcb2, VMemoryMcb4, VMemoryMcb8, Mcb>(cycles, seed);
+        worst = std::min(
+            worst,
+            streams<VMemoryLitedram2, VMemoryLitedram4, VMemoryLitedram8, Litedram>(cycles, seed));
+        figures.add("memory controllers, least share of the limit", worst, "of 1", 0.95);
+        fmt::print("least share of a limit: {:.1f} %, 95 is wanted\n", 100 * worst);
+        if (worst < 0.95)
+            figures.miss("a memory controller is below 95 % of its limit");
+
+        fmt::print("\nRead latency, from the request to the first word, in clocks\n"
+                   "{:<50} {:>8} {:>8} {:>8} {:>8}\n",
+                   "", "alone", "most", "loaded", "most");
+        latency<VMemoryMcb2, Mcb, 2>(cycles, seed);
+        latency<VMemoryMcb4, Mcb, 4>(cycles, seed);
+        latency<VMemoryMcb8, Mcb, 8>(cycles, seed);
+        latency<VMemoryLitedram2, Litedram, 2>(cycles, seed);
+    });
+}

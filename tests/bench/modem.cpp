@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+//
+// modem: simulated time that the modem's set-up takes, by guard time and by the rate at
+// which the modem is found: by the modem controller, from CONFIGURE to CONFIGURED, and by the
+// ground's engine.
+
+#include "VModem.h"
+#include "bench.h"
+#include "bus_master.h"
+#include "figures.h"
+#include "modem_regs.h"
+#include "modem_setup.h"
+#include "npi_memory.h"
+#include "rf_channel.h"
+#include <cstdio>
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace {
+
+constexpr uint64_t clkNs = 500;
+
+// ms; 0 if the set-up failed.
+double setUpMs(uint32_t guardMs, uint32_t bd) {
+    Bench<VModem> bench;
+    BusMaster<VModem> bus(bench);
+    NpiMemory<VModem> memory(bench, 0, 1);
+    RfChannel air(1);
+    UartPins pins;
+    XBee::Options options;
+    options.set = {{"GT", guardMs}, {"BD", bd}};
+    XBee modem(pins, air, options);
+    bool txd = true;
+    bench.addModel(
+        [&] {
+            if (bench.top().modem_txd_o != txd) {
+                txd = bench.top().modem_txd_o;
+                pins.setTxd(txd, bench.cycles() * clkNs);
+            }
+        },
+        [&] {
+            modem.advance(bench.cycles() * clkNs);
+            bench.top().modem_rxd_i = pins.rxd();
+            bench.top().modem_cts_n_i = pins.ctsN();
+        });
+    bench.reset();
+    bus.write(MODEM_MASK, 0x7F);
+    bus.write(MODEM_ADDR, 1);
+    bus.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | 0x0C);
+    bus.write(MODEM_BAUD, guardMs << MODEM_BAUD_GUARD_MS_LSB | 7);
+    uint64_t begin = bench.cycles();
+    bus.write(MODEM_CONTROL, MODEM_CONTROL_CONFIGURE_MASK);
+    bench.waitFor([&] { return bench.top().irq_o; }, "the end of the set-up", 100'000'000);
+    bool done = bus.read(MODEM_EVENT) & MODEM_EVENT_CONFIGURED_MASK;
+    return done ? static_cast<double>((bench.cycles() - begin) * clkNs) / 1e6 : 0;
+}
+
+// The same by the program on the ground, on a pty; its pauses are what makes time pass.
+double groundSetUpMs(uint32_t guardMs, uint32_t bd) {
+    RfChannel air(1);
+    PtyLine pty;
+    XBee::Options options;
+    options.set = {{"GT", guardMs}, {"BD", bd}};
+    XBee modem(pty, air, options);
+    XBeeAT::Settings settings;
+    settings.guardMs = static_cast<int>(guardMs);
+    uint64_t now = 0;
+    XBeeAT::Clock clock{""};
+    XBeeAT::SerialPort serial(clock);
+    serial.open(pty.path());
+    XBeeAT::Log log = [](int, const std::string&) {};
+    XBeeAT::ModemSetup setup(serial, settings, log, [&](int ms, bool forBytes) {
+        const uint64_t begin = now;
+        pollfd bytes = {serial.fd(), POLLIN, 0};
+        while (now < begin + static_cast<uint64_t>(ms) * 1'000'000 &&
+               !(forBytes && poll(&bytes, 1, 0) > 0)) {
+            now += 50'000;
+            modem.advance(now);
+        }
+        return static_cast<int>((now - begin) / 1000);
+    });
+    bool done = setup.run() && modem.parameter("BD") == 7;
+    return done ? static_cast<double>(now) / 1e6 : 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Figures figures("The simulated time of the modem's set-up.");
+    return figures.run(argc, argv, [&] {
+        struct Case {
+            const char* name;
+            uint32_t guardMs, bd;
+        };
+        const Case cases[] = {
+            {"set-up, modem as from the factory (9600), guard time 1000 ms", 1000, 3},
+            {"set-up, modem at the rate already, guard time 1000 ms", 1000, 7},
+            {"set-up, modem as from the factory (9600), guard time 20 ms", 20, 3},
+            {"set-up, modem at the rate already, guard time 20 ms", 20, 7},
+            {"set-up, modem at 1200 baud, found last but one, guard time 20 ms", 20, 0}};
+        struct Side {
+            const char* name;
+            double (*measure)(uint32_t, uint32_t);
+        };
+        const Side sides[] = {{"controller", setUpMs}, {"ground", groundSetUpMs}};
+        for (const Side& side : sides)
+            for (const Case& c : cases) {
+                if (figures.brief && (c.guardMs > 20 || c.bd != 7))
+                    continue;
+                double ms = side.measure(c.guardMs, c.bd);
+                // Two guard times are in the modem's manual; above them are commands and search.
+                double floor = 2.0 * c.guardMs;
+                std::string name = std::string(side.name) + ": " + c.name;
+                if (ms == 0)
+                    throw std::runtime_error(name + ": the set-up failed");
+                std::printf("%-78s %8.1f ms  (two guard times: %.0f)\n", name.c_str(), ms, floor);
+                figures.add(name, ms, "ms simulated")
+                    .update({{"peer", floor}, {"ratio", ms / floor}});
+            }
+    });
+}

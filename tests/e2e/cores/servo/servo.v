@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+//
+// servo: pulses of given lengths on four pins, until the fault pin is high.
+
+`default_nettype none
+
+module servo #(
+    parameter CLK_HZ = 100000000 // Hz
+) (
+    input  wire        clk_i,
+    input  wire        rst_i,
+    // register bus
+    input  wire        bus_valid_i,
+    input  wire        bus_write_i,
+    input  wire [3:0]  bus_addr_i,
+    input  wire [31:0] bus_wdata_i,
+    output wire        bus_ready_o,
+    output wire [31:0] bus_rdata_o,
+    output wire        bus_error_o,
+    output wire        irq_o,
+    // pins
+    output wire [3:0]  pwm_o,
+    input  wire        fault_i
+);
+    localparam PERIOD = 2000; // microseconds
+
+    wire        core_rst, set_pulse, clear, fault_start;
+    wire [7:0]  channel;
+    wire [15:0] pulse;
+
+    servo_wrapper u_wrapper (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
+        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
+        .bus_error_o(bus_error_o), .irq_o(irq_o), .core_rst_o(core_rst),
+        .set_pulse_start_o(set_pulse), .set_pulse_channel_o(channel),
+        .set_pulse_microseconds_o(pulse), .fault_start_o(fault_start), .fault_result_i(fault),
+        .clear_start_o(clear)
+    );
+
+    // A microsecond is CLK_HZ / 1000000 clocks: the remainder is carried, whatever the clock.
+    reg [31:0] fraction;
+    wire       next = fraction + 32'd1000000 >= CLK_HZ;
+    reg [10:0] now; // microseconds of the period
+    reg [1:0]  fault_meta;
+    reg        fault;
+    reg [15:0] length [0:3];
+    reg [3:0]  pulses;
+    integer    i;
+    assign pwm_o = pulses;
+
+    always @(posedge clk_i) begin
+        fraction   <= fraction + 32'd1000000 - (next ? CLK_HZ : 32'd0);
+        fault_meta <= {fault_meta[0], fault_i};
+        if (next)
+            now <= {21'd0, now} == PERIOD - 1 ? 11'd0 : now + 11'd1;
+        for (i = 0; i < 4; i = i + 1)
+            pulses[i] <= {5'd0, now} < length[i] && !fault;
+        if (set_pulse && channel < 8'd4)
+            length[channel[1:0]] <= pulse;
+        fault <= fault_meta[1] || (fault && !clear);
+        if (rst_i || core_rst) begin
+            fraction <= 32'd0;
+            now      <= 11'd0;
+            fault    <= 1'b0;
+            pulses   <= 4'd0;
+            for (i = 0; i < 4; i = i + 1)
+                length[i] <= 16'd0;
+        end
+    end
+
+    wire unused = &{1'b0, fault_start, 1'b0};
+endmodule

@@ -1,0 +1,247 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""faults: what becomes of a mission when one of its processes is killed or stopped, or when it is refused
+something; at moments drawn from a seed. docs/faults.md has the table that this checks.
+
+Usage: faults.py source-folder build-folder out-folder [--seed N] [--moments N] [--only FAULT]
+"""
+
+import argparse
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+IMAGE = "/usr/share/xplanet/images/earth.jpg"
+DEATHS = 2.0  # seconds in which all processes of a mission follow the first
+LONGEST = 240.0  # seconds of a mission on a busy machine
+
+
+def children(of):
+    """Process ids below one, by the kernel's lists; one that ends meanwhile has none."""
+    found = []
+    try:
+        for task in os.listdir("/proc/%d/task" % of):
+            with open("/proc/%d/task/%s/children" % (of, task)) as f:
+                for child in map(int, f.read().split()):
+                    found += [child] + children(child)
+    except (FileNotFoundError, ProcessLookupError):
+        pass
+    return found
+
+
+def command_of(pid):
+    try:
+        with open("/proc/%d/cmdline" % pid) as f:
+            return f.read().replace("\0", " ")
+    except OSError:
+        return ""
+
+
+def lives(pid):
+    try:
+        with open("/proc/%d/stat" % pid) as f:
+            return f.read().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+class Mission:
+    """A mission that runs, and its processes by name."""
+    NAMES = {"ground": "mission.py --device", "simulator": "sim/icesoc-sim", "page": "live/icesoc-live"}
+
+    def __init__(self, source, build, out, prefix=(), options=()):
+        self.out = out
+        os.makedirs(out, exist_ok=True)
+        self.log = open(out + ".log", "w+")
+        self.begin = time.monotonic()
+        self.run = subprocess.Popen(
+            [*(word.replace("$0", out) for word in prefix), source + "/testbench/sim/run.sh", build, "--image", IMAGE, "--size", "96x64", "--guard", "20",
+             "--out", out, *options], stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True)
+
+    def all(self):
+        return [self.run.pid] + children(self.run.pid)
+
+    def find(self, name):
+        """The process of that name, as soon as it is there; None: the mission ended first."""
+        while name != "run" and self.run.poll() is None:
+            for pid in children(self.run.pid):
+                if self.NAMES[name] in command_of(pid) and "setpriv" not in command_of(pid):
+                    return pid
+            time.sleep(0.005)
+        return self.run.pid if name == "run" else None
+
+    def wait(self, seconds):
+        try:
+            return self.run.wait(seconds)
+        except subprocess.TimeoutExpired:
+            return None
+
+    def text(self):
+        self.log.seek(0)
+        return self.log.read()
+
+    def succeeded(self):
+        return self.run.returncode == 0 and all(
+            os.path.getsize(os.path.join(self.out, f)) for f in ("after.png", "report.md", "report.json"))
+
+    def kill(self):
+        """For the test's own end: whatever is left."""
+        for pid in self.all():
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+        self.run.wait()
+
+
+def gone(pids, seconds):
+    end = time.monotonic() + seconds
+    while any(map(lives, pids)):
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.01)
+    return True
+
+
+class Fault(AssertionError):
+    pass
+
+
+def expect(condition, mission, text):
+    if not condition:
+        raise Fault("%s\n%s" % (text, mission.text()))
+
+
+def is_whole(out):
+    """No file is half written: pictures decode, reports parse; nothing is left beside."""
+    from PIL import Image
+    for name in os.listdir(out):
+        path = os.path.join(out, name)
+        if name.endswith(".png"):
+            Image.open(path).load()
+        elif name.endswith(".json"):
+            json.load(open(path))
+        elif name.endswith(".new"):
+            return False
+    return True
+
+
+def killed(start, name, moment):
+    m = start()
+    pid = m.find(name)
+    time.sleep(moment)
+    everybody = m.all()
+    if pid is None or m.run.poll() is not None or not lives(pid):
+        return "too late"
+    os.kill(pid, signal.SIGKILL)
+    if name == "page":  # only a view
+        expect(m.wait(LONGEST) == 0 and m.succeeded(), m, "the mission needs the page")
+        return "the mission goes on"
+    expect(gone(everybody, DEATHS), m, "still there after %.0f s: %s" % (
+        DEATHS, [command_of(p) for p in everybody if lives(p)]))
+    m.run.wait()
+    if name != "run":
+        expect("signal 9" in m.text(), m, "nobody says what happened")
+        expect(m.run.returncode != 0 or m.succeeded(), m, "it says that it succeeded")
+    return "all end"
+
+
+def stopped(start, name, moment):
+    m = start()
+    pid = m.find(name)
+    time.sleep(moment)
+    if pid is None or m.run.poll() is not None or not lives(pid):
+        return "too late"
+    os.kill(pid, signal.SIGSTOP)
+    time.sleep(3)
+    os.kill(pid, signal.SIGCONT)
+    expect(m.wait(LONGEST) == 0 and m.succeeded(), m, "it did not survive a pause of 3 s")
+    return "goes on"
+
+
+def disk_full(start, name, moment):
+    """The folder is a file system of its own, of few blocks; what is in it at the end is copied."""
+    script = "mount -t tmpfs -o size=%d none $0 || exit 9; status=0; \"$@\" || status=$?; cp -a $0 $0.kept; exit $status"
+    m = start(prefix=["unshare", "--map-root-user", "--mount", "sh", "-c", script % (4096 * int(1 + moment)), "sh"])
+    status = m.wait(LONGEST)
+    expect(status is not None and status != 9, m, "it hangs")
+    expect("Traceback" not in m.text() and "Bus error" not in m.text(), m, "that is no message")
+    expect(is_whole(m.out + ".kept"), m, "a file is cut short")
+    expect(status == 0 or "No space left" in m.text() or "disk full" in m.text(), m, "nobody says why")
+    return "fails with a message" if status else "has room enough"
+
+
+def no_descriptors(start, name, moment):
+    m = start(prefix=["prlimit", "--nofile=%d" % (8 + int(4 * moment))])
+    status = m.wait(60)
+    expect(status is not None, m, "it hangs")
+    expect(status != 0 or m.succeeded(), m, "it says that it succeeded")
+    expect(status == 0 or m.text().strip(), m, "it fails without a word")
+    return "fails with a message" if status else "succeeds"
+
+
+def port_taken(start, name, moment):
+    import socket
+    with socket.create_server(("127.0.0.1", 0)) as s:
+        m = start(options=["--port", str(s.getsockname()[1])])
+        expect(m.wait(LONGEST) == 0 and m.succeeded(), m, "the mission needs the page")
+        expect("is the port taken" in m.text(), m, "nobody says that there is no page")
+    return "the mission goes on"
+
+
+def silent_air(start, name, moment):
+    m = start(options=["--loss", "1", "--patience", "20"])
+    expect(m.wait(90) not in (None, 0), m, "it succeeded, or goes on without end")
+    expect("no link for" in m.text() and "20 s to answer" in m.text(), m, "nobody says what is missing")
+    return "fails after its patience"
+
+
+FAULTS = [(killed, n) for n in ("ground", "simulator", "run", "page")] + \
+         [(stopped, n) for n in ("ground", "simulator", "page")] + \
+         [(f, "") for f in (disk_full, no_descriptors, port_taken, silent_air)]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("source")
+    parser.add_argument("build")
+    parser.add_argument("out")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--moments", type=int, default=1, help="of each fault")
+    parser.add_argument("--only", default="", help="faults whose name contains this")
+    args = parser.parse_args()
+    draw = random.Random(args.seed)
+    shutil.rmtree(args.out, ignore_errors=True)
+    os.makedirs(args.out)
+    failed = 0
+    for fault, name in FAULTS:
+        title = (fault.__name__ + " " + name).strip()
+        moments = [draw.uniform(0, 6) for _ in range(args.moments)]
+        for number, moment in enumerate(moments):
+            if args.only not in title:
+                continue
+            missions = []
+
+            def start(prefix=(), options=()):
+                missions.append(Mission(args.source, args.build, "%s/%s-%d" % (
+                    args.out, title.replace(" ", "-"), number), prefix, options))
+                return missions[-1]
+
+            try:
+                print("%-20s after %.2f s: %s" % (title, moment, fault(start, name, moment)), flush=True)
+            except Fault as e:
+                failed += 1
+                print("%-20s after %.2f s: FAILED: %s" % (title, moment, e), flush=True)
+            finally:
+                for m in missions:
+                    m.kill()
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+//
+// corners_test: the bridge at the end of real wires: pins with delays and skew of their own, in
+// each corner, at several HCLK, with both readings of when the FSMC looks at NWAIT.
+
+#include "VFsmcBridge.h"
+#include "bridge_bench.h"
+#include "driver_port.h"
+#include "fsmc_fields.h"
+#include "pin_delays.h"
+extern "C" {
+#include "fsmc_bank.h"
+#include "map_regs.h"
+#include "system_regs.h"
+}
+#include <gtest/gtest.h>
+#include <map>
+
+namespace {
+
+constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
+
+// Each case in a bench of its own, with its name in every message.
+template <class Case> void inEveryCorner(double stall, Case&& run) {
+    for (unsigned corner = 0; corner < fsmcCornerCount; ++corner)
+        for (unsigned hclk : {60u, 100u, 120u})
+            for (bool looksTwice : {false, true}) {
+                SCOPED_TRACE(std::string(fsmcCorners[corner].name) + ", HCLK " +
+                             std::to_string(hclk) + " MHz, looks " +
+                             (looksTwice ? "twice" : "once") +
+                             ", SEED=" + std::to_string(testSeed()));
+                BridgeBench<VFsmcBridge> b(testSeed() + hclk, stall, hclk, 100);
+                b.slave.words[MAP_SLOT_SYSTEM * 16 + SYSTEM_ID] = SYSTEM_ID_VALUE;
+                b.slave.clearWord =
+                    MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT; // as the system slot does it
+                b.lateMask = SYSTEM_EVENT_LATE_MASK;
+                b.delay(fsmcCorners[corner], testSeed() + corner, looksTwice);
+                run(b, hclk);
+                if (testing::Test::HasFailure())
+                    return;
+            }
+}
+
+// Words to a slow slave, so that each write waits for the one before; memory in between.
+void traffic(BridgeBench<VFsmcBridge>& b, uint64_t seed) {
+    Random random(seed);
+    std::map<uint32_t, uint16_t> memory;
+    std::map<uint32_t, uint32_t> words;
+    uint32_t place = 0;
+    for (int i = 0; i < 300 && !testing::Test::HasFailure(); ++i) {
+        if (random.chance(0.1))
+            place = 2 * random.below(0x1FF0000);
+        uint32_t word = 64 + random.below(900), v = random.next();
+        switch (random.below(5)) {
+        case 0:
+            for (unsigned k = 0; k < 8; ++k) // one right behind the other
+                b.master.write32(control + 4 * (word + k), words[word + k] = v + k);
+            break;
+        case 1:
+            EXPECT_EQ(b.master.read32(control + 4 * word), words[word]) << "register " << word;
+            break;
+        case 2:
+        case 3:
+            for (unsigned k = 1 + random.below(20); k; --k, place += 2)
+                b.master.write16(ddr + place, memory[place] = static_cast<uint16_t>(v * k));
+            break;
+        default:
+            place = place < 20 ? place : place - 2 * random.below(10);
+            EXPECT_EQ(b.master.read16(ddr + place), memory[place]) << "access " << i;
+        }
+    }
+    b.master.read32(control);
+    EXPECT_EQ(b.errors, 0u);
+    for (auto [at, value] : memory)
+        EXPECT_EQ(b.memory.byte(at) | b.memory.byte(at + 1) << 8, value) << std::hex << at;
+    for (auto [at, value] : words)
+        EXPECT_EQ(b.slave.words[at], value) << "register " << at;
+}
+
+TEST(Corners, NoAccessIsLostWithTheDriversTiming) {
+    for (double stall : {0.3, 0.95})
+        inEveryCorner(stall, [](BridgeBench<VFsmcBridge>& b, unsigned hclk) {
+            ASSERT_EQ(FSMC_init(&driverPort, &b.master), FSMC_OK);
+            traffic(b, testSeed() + hclk);
+        });
+}
+
+// Where NOE falls behind the address phase a read's NWAIT comes later: DATAST 6.
+TEST(Corners, EveryModeWithTimeForNwait) {
+    for (FSMC_Mode mode : {FSMC_MODE_A, FSMC_MODE_2, FSMC_MODE_B, FSMC_MODE_C, FSMC_MODE_D})
+        inEveryCorner(0.9, [mode](BridgeBench<VFsmcBridge>& b, unsigned hclk) {
+            const FSMC_Bank bank = {mode, mode, 0, 0, 1, 0, 1, {2, 2, 6}, {2, 2, 6}, 0, 0};
+            const FSMC_Bank banks[2] = {bank, bank};
+            ASSERT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
+            traffic(b, testSeed() + hclk);
+        });
+}
+
+TEST(Corners, StreamsAreRightAtFullSpeed) {
+    inEveryCorner(0, [](BridgeBench<VFsmcBridge>& b, unsigned hclk) {
+        ASSERT_EQ(FSMC_init(&driverPort, &b.master), FSMC_OK);
+        FSMC_setHclk(hclk * 1000000);
+        Random random(testSeed());
+        std::vector<uint16_t> out(4000), in(out.size());
+        for (auto& value : out)
+            value = static_cast<uint16_t>(random.next());
+        const U32 count = static_cast<U32>(out.size());
+        uint64_t start = b.master.hclks();
+        EXPECT_EQ(FSMC_streamWrite(0x400, out.data(), count), 0u) << "repeated";
+        double write = static_cast<double>(count) / static_cast<double>(b.master.hclks() - start);
+        start = b.master.hclks();
+        EXPECT_EQ(FSMC_streamRead(0x400, in.data(), count), 0u) << "repeated";
+        double read = static_cast<double>(count) / static_cast<double>(b.master.hclks() - start);
+        EXPECT_EQ(in, out);
+        for (unsigned i = 0; i < count; ++i)
+            EXPECT_EQ(b.memory.byte(0x400 + 2 * i) | b.memory.byte(0x401 + 2 * i) << 8, out[i])
+                << i;
+        if (hclk == 100) { // shares of 25 M/s
+            EXPECT_GT(write * 4, 0.99);
+            EXPECT_GT(read * 4, 0.95);
+        }
+    });
+}
+
+// A chip that waits for its PLL must not stop the processor's bus.
+TEST(Corners, NothingWaitsWhileResetIsActiveAlsoWithoutAClock) {
+    BridgeBench<VFsmcBridge> b(testSeed());
+    b.top.rst_i = 1;
+    for (unsigned ne : {0xEu, 0xDu})
+        for (bool write : {false, true}) {
+            b.pins.neN = static_cast<uint8_t>(ne);
+            b.pins.noeN = write;
+            b.pins.nweN = !write;
+            b.settle();
+            EXPECT_TRUE(b.pins.nwaitN) << "NE " << ne << (write ? ", writing" : ", reading");
+            b.pins.neN = 0xF, b.pins.noeN = b.pins.nweN = true;
+            b.settle();
+        }
+}
+
+} // namespace

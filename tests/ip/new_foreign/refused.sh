@@ -1,0 +1,28 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# refused: new_foreign.py work-folder   What make new-foreign refuses, with a reason and nothing written.
+set -eu
+new=$1 work=$2
+here=$(cd "$(dirname "$0")" && pwd)
+rm -rf "$work"
+mkdir -p "$work"
+refused() { # words of the message, arguments
+    words=$1
+    shift
+    ! "$new" "$@" >"$work/log" 2>&1 || { echo "accepted: $*" && exit 1; }
+    grep -q -- "$words" "$work/log" && ! grep -q Traceback "$work/log" || { cat "$work/log" && echo "'$words' is not said: $*" && exit 1; }
+    [ ! -e "$work/out" ] || { echo "something was written: $*" && exit 1; }
+}
+echo 'module pads(input clk, inout sda); endmodule' >"$work/pads.v"
+echo 'module broken(input clk;' >"$work/broken.v"
+refused 'usage: make new-foreign' my_port wb_port wishbone "$work/out"
+refused "not 'spi'" my_port wb_port spi "$work/out" "$here/wb_port.v"
+refused 'is there already' my_port wb_port wishbone "$work" "$here/wb_port.v"
+refused 'small letters' My wb_port wishbone "$work/out" "$here/wb_port.v"
+refused "not the module's own name" wb_port wb_port wishbone "$work/out" "$here/wb_port.v"
+refused 'no Verilog file' my_port wb_port wishbone "$work/out" "$work/none.v"
+refused 'does not elaborate nobody' my_port nobody wishbone "$work/out" "$here/wb_port.v"
+refused 'does not elaborate broken' my_port broken wishbone "$work/out" "$work/broken.v"
+refused "inout port 'sda'" my_port pads wishbone "$work/out" "$work/pads.v"
+refused 'has no port for awvalid' my_port wb_port axil "$work/out" "$here/wb_port.v"
+echo 'refused: all as expected'

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+//
+// wb_port: a Wishbone core as others write them: 8 bits, word addresses, an interrupt, pins.
+
+module wb_port (
+    input            wb_clk_i, wb_rst_i,
+    input      [1:0] wb_adr_i,
+    input      [7:0] wb_dat_i,
+    output reg [7:0] wb_dat_o,
+    input            wb_we_i, wb_stb_i, wb_cyc_i,
+    output reg       wb_ack_o,
+    output           wb_inta_o,
+    input      [7:0] port_in,
+    output reg [7:0] port_out
+);
+    assign wb_inta_o = port_in[7];
+    always @(posedge wb_clk_i) begin
+        wb_ack_o <= wb_stb_i && wb_cyc_i && !wb_ack_o;
+        wb_dat_o <= wb_adr_i == 2'd0 ? port_in : port_out;
+        if (wb_stb_i && wb_cyc_i && wb_we_i && wb_adr_i == 2'd1)
+            port_out <= wb_dat_i;
+        if (wb_rst_i)
+            port_out <= 8'd0;
+    end
+endmodule

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+//
+// failures: what a person needs of a failed test: why, its log, how to repeat it, who fails alike,
+// a waveform.
+
+#ifndef FAILURES_H
+#define FAILURES_H
+
+#include "runner.h"
+
+struct Failure {
+    Result result;
+    std::string reason; // the line that says what went wrong
+    std::string
+        bucket; // the reason without its numbers: failures of one bucket have one cause, likely
+    std::string repeat; // one command
+    std::string log;    // file
+    std::string wave;   // FST or VCD file, or ""
+    std::string save;   // GTKWave save file, or ""
+};
+
+// Keeps the logs, and the traces of proofs, in <out>/failures/. Proofs come first, then the tests
+// of single blocks, missions last.
+std::vector<Failure> examine(const std::vector<Result>& results, const std::vector<Test>& tests,
+                             const std::string& out);
+
+// Runs failed RTL tests again in a build with waveforms (build/trace), and keeps the clocks around
+// the failure. Says on the terminal what it does; a test that cannot be traced has none.
+void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
+              const std::string& source, unsigned jobs, unsigned limit);
+
+#endif

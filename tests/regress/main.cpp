@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: MIT
+//
+// regress: runs chosen tests, keeps what failed, remembers, and writes the pages. `make regress`
+// calls it.
+
+#include "failures.h"
+#include "files.h"
+#include "history.h"
+#include "lights.h"
+#include "process.h"
+#include "report.h"
+#include "seeds.h"
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fmt/format.h>
+#include <iostream>
+#include <map>
+#include <random>
+#include <regex>
+#include <unistd.h>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Options {
+    std::string source = ".", build = "build/main", out = "build/regress", seed = "1",
+                launcher = "local", tree;
+    Selection selection;
+    unsigned jobs = 2, repeat = 1, waves = 3;
+    bool list = false, kept = false, make = false;
+};
+
+std::vector<Test> choose(const std::vector<Test>& all, const Selection& selection,
+                         const History& history) {
+    std::vector<Test> chosen;
+    std::regex name(selection.name);
+    const bool exact = std::any_of(all.begin(), all.end(),
+                                   [&](const Test& test) { return test.name == selection.name; });
+    for (const Test& test : all) {
+        if (!selection.block.empty() && !blockWords(test).count(selection.block))
+            continue;
+        if (isUnbuilt(test)) { // its cases and labels are not known: any of them may be meant
+            chosen.push_back(test);
+            continue;
+        }
+        bool label = selection.label.empty() || std::find(test.labels.begin(), test.labels.end(),
+                                                          selection.label) != test.labels.end();
+        if (!label || !(exact ? test.name == selection.name : std::regex_search(test.name, name)))
+            continue;
+        if (selection.changed && history.passedWith(test.name) == test.print)
+            continue;
+        if (selection.failed && history.last(test.name) != "f")
+            continue;
+        chosen.push_back(test);
+    }
+    return chosen;
+}
+
+// What a person who mistyped wants to see.
+std::string known(const std::vector<Test>& all) {
+    std::set<std::string> labels, places;
+    for (const Test& test : all) {
+        labels.insert(test.labels.begin(), test.labels.end());
+        places.insert(test.place);
+    }
+    std::string text = "labels:";
+    for (const std::string& label : labels)
+        text += " " + label;
+    text += "\nfolders:";
+    for (const std::string& place : places)
+        text += " " + place;
+    return text;
+}
+
+// Says how far the run is: on a terminal in one line that is written anew, else at each tenth. A
+// failure is told at once.
+class Progress {
+public:
+    Progress(const std::vector<Test>& tests, const History& history, unsigned jobs) : jobs_(jobs) {
+        for (const Test& test : tests)
+            left_ += seconds_[test.name] = history.seconds(test.name);
+    }
+    void start(const std::string& name) { running_.insert(name); }
+    void end(const Result& result, unsigned done, unsigned total) {
+        running_.erase(result.name);
+        left_ -= seconds_[result.name];
+        if (result.status == "failed") {
+            ++failed_;
+            line(fmt::format("FAILED {} ({:.1f} s)", result.name, result.seconds), true);
+        }
+        const auto left = static_cast<unsigned>(std::max(0.0, left_) / jobs_);
+        line(fmt::format("{} of {}, {} failed, {}:{:02} left: {}", done, total, failed_, left / 60,
+                         left % 60, fmt::join(running_, " ")),
+             !terminal_ && 10 * done / total != 10 * (done - 1) / total);
+    }
+    void done() { line("", false); }
+
+private:
+    void line(const std::string& text, bool keep) {
+        if (!terminal_ && !keep)
+            return;
+        if (terminal_)
+            std::cout << '\r' << text.substr(0, 110) << "\033[K";
+        else
+            std::cout << text;
+        if (keep)
+            std::cout << '\n';
+        std::cout << std::flush;
+    }
+    const bool terminal_ = isatty(1);
+    const unsigned jobs_;
+    double left_ = 0;
+    std::map<std::string, double> seconds_;
+    std::set<std::string> running_;
+    unsigned failed_ = 0;
+};
+
+std::string commitOf(const std::string& source) {
+    Output out = run({"git", "-C", source, "describe", "--always", "--dirty", "--abbrev=10"});
+    return out.status == 0 ? out.text.substr(0, out.text.find('\n')) : "unknown";
+}
+
+void summary(const nlohmann::json& data, const std::vector<Failure>& failures,
+             const std::string& out) {
+    std::vector<std::vector<const Failure*>> groups; // in the order of their first failures
+    for (const Failure& failure : failures) {
+        auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& members) {
+            return members[0]->bucket == failure.bucket;
+        });
+        if (group == groups.end())
+            group = groups.emplace(groups.end());
+        group->push_back(&failure);
+    }
+    for (const auto& members : groups) {
+        std::cout << fmt::format("\n{} x  {}\n", members.size(), members[0]->reason.substr(0, 200));
+        for (const Failure* failure : members) {
+            std::cout << "    " << failure->repeat << "\n        log " << failure->log << '\n';
+            if (!failure->wave.empty())
+                std::cout << "        gtkwave "
+                          << (failure->save.empty() ? failure->wave : failure->save) << '\n';
+        }
+    }
+    if (!data["flaky"].empty()) {
+        std::cout << "\nFlaky:";
+        for (auto& name : data["flaky"])
+            std::cout << ' ' << name.get<std::string>();
+        std::cout << '\n';
+    }
+    std::vector<std::pair<double, std::string>> longest;
+    for (const auto& row : data["results"])
+        longest.emplace_back(row.at(2).get<double>(), row.at(0).get<std::string>());
+    std::sort(longest.rbegin(), longest.rend());
+    longest.resize(std::min<size_t>(longest.size(), 3));
+    std::cout << "\nThe longest:";
+    for (const auto& [seconds, name] : longest)
+        std::cout << fmt::format(" {} {:.1f} s", name, seconds);
+    std::cout << '\n';
+    if (!data["seeds"].empty())
+        std::cout << fmt::format(
+            "\n{} failing seeds are kept: make regress KEPT=1 runs them again\n",
+            data["seeds"].size());
+    std::cout << '\n' << lightsText(data["lights"]);
+    std::cout << fmt::format("{} passed, {} failed, {} skipped in {:.0f} s; {}/report.html\n",
+                             data["passed"].get<int>(), data["failed"].get<int>(),
+                             data["skipped"].get<int>(), data["seconds"].get<double>(), out);
+}
+
+struct Round {
+    std::string seed;
+    std::vector<Test> tests;
+};
+
+// The chosen tests once for each seed; or each test that failed once, with the seeds that showed
+// it.
+std::vector<Round> roundsOf(const std::vector<Test>& chosen, const Options& options,
+                            FailingSeeds& seeds) {
+    std::vector<Round> rounds;
+    if (!options.kept) {
+        uint64_t seed =
+            options.seed == "random" ? std::random_device{}() : std::stoull(options.seed);
+        for (unsigned i = 0; i < options.repeat; ++i)
+            rounds.push_back({std::to_string(seed + i), chosen});
+        return rounds;
+    }
+    for (const auto& [seed, names] : seeds.bySeed()) {
+        Round round{seed, {}};
+        for (const Test& test : chosen)
+            if (std::find(names.begin(), names.end(), test.name) != names.end())
+                round.tests.push_back(test);
+        if (!round.tests.empty())
+            rounds.push_back(std::move(round));
+    }
+    return rounds;
+}
+
+// Builds what the chosen tests need; their cases are known afterwards only.
+void build(const Options& options, const History& history) {
+    std::set<std::string> targets;
+    for (const Test& test : choose(listTests(options.build), options.selection, history))
+        for (const std::string& target : targetsOf(test, options.build))
+            targets.insert(target);
+    if (targets.count("all") || options.selection.changed)
+        targets = {"all"};
+    std::vector<std::string> command = {"ninja", "-C", options.build};
+    command.insert(command.end(), targets.begin(), targets.end());
+    std::cout << fmt::format("Building {} ...\n", fmt::join(targets, " ")) << std::flush;
+    Output out = run(command);
+    if (out.status != 0)
+        throw std::runtime_error("it does not build:\n" + out.text);
+}
+
+int regress(const Options& options) {
+    if (!options.tree.empty()) {
+        std::cout << treeState(options.source, options.tree) << '\n';
+        return 0;
+    }
+    const FolderLock lock(options.out, "regress");
+    History history(options.out + "/history.jsonl");
+    if (history.damaged())
+        std::cout << fmt::format("{} damaged lines of {}/history.jsonl are left out\n",
+                                 history.damaged(), options.out);
+    if (options.make)
+        build(options, history);
+    auto all = listTests(options.build);
+    fingerprint(all, options.source, options.build);
+    auto chosen = choose(all, options.selection, history);
+    if (chosen.empty()) {
+        if (options.selection.changed || options.selection.failed) {
+            std::cout << "Nothing to run: no test "
+                      << (options.selection.failed ? "failed" : "changed")
+                      << " since the last run.\n";
+            return 0;
+        }
+        std::cerr << "regress: no test is chosen by this.\n" << known(all) << '\n';
+        return 2;
+    }
+    if (options.list) {
+        for (const Test& test : chosen)
+            std::cout << test.name << '\n';
+        return 0;
+    }
+    FailingSeeds seeds(options.out + "/seeds.jsonl");
+    for (const std::string& gone : seeds.forgetOthers(all))
+        std::cout << gone << " is no test any more: its seeds are forgotten\n";
+    auto rounds = roundsOf(chosen, options, seeds);
+    if (rounds.empty()) {
+        std::cout << "Nothing to run: no seed is kept that made one of these tests fail.\n";
+        return 0;
+    }
+    auto start = std::chrono::steady_clock::now();
+    std::vector<Result> results;
+    for (const Round& round : rounds) {
+        Progress progress(round.tests, history, options.jobs);
+        RunOptions how{options.build,
+                       options.out,
+                       round.seed,
+                       options.jobs,
+                       [&](const std::string& name) { progress.start(name); },
+                       [&](const Result& result, unsigned done, unsigned total) {
+                           progress.end(result, done, total);
+                       }};
+        std::cout << fmt::format("{} tests, SEED={}\n", round.tests.size(), round.seed)
+                  << std::flush;
+        auto part =
+            options.launcher == "slurm" ? runSlurm(round.tests, how) : runHere(round.tests, how);
+        progress.done();
+        results.insert(results.end(), part.begin(), part.end());
+    }
+    double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    auto failures = examine(results, all, options.out);
+    addWaves(failures, all, options.source, options.jobs, options.waves);
+    const std::string commit = commitOf(options.source);
+    history.add(History::makeRun(chosen, results, commit, seconds));
+    seeds.update(results, commit);
+    auto data = gather(history, all, results, failures, options.source);
+    data["seeds"] = seeds.list();
+    writeReports(data, options.out);
+    Properties properties;
+    for (const Failure& failure : failures) {
+        auto& of =
+            properties[failure.result.name] = {{"repeat", failure.repeat}, {"log", failure.log}};
+        if (!failure.wave.empty())
+            of["wave"] = failure.wave;
+    }
+    writeJUnit(options.out + "/junit.xml", results, properties);
+    summary(data, failures, options.out);
+    return failures.empty() ? 0 : 1;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    CLI::App app("Runs the regression: chosen tests, in parallel, with history, waveforms of "
+                 "failures and a page.\n"
+                 "Exit status 0: all passed; 1: some failed; 2: it could not run.");
+    app.add_option("--source", options.source, "root of the tree")->capture_default_str();
+    app.add_option("--build", options.build, "build folder with the tests")->capture_default_str();
+    app.add_option("--out", options.out, "where reports go")->capture_default_str();
+    app.add_option("--name", options.selection.name, "regular expression on test names");
+    app.add_option("--block", options.selection.block, "one block: modem, link, bus, ...");
+    app.add_option("--label", options.selection.label,
+                   "one label: rtl, formal, lint, firmware, ...");
+    app.add_flag("--changed", options.selection.changed,
+                 "only tests whose program or sources changed since they passed");
+    app.add_flag("--rerun-failed", options.selection.failed,
+                 "only tests that failed in their last run");
+    app.add_flag("--kept", options.kept,
+                 "only tests that failed with some seed and have not passed with it since, with "
+                 "these seeds")
+        ->excludes("--rerun-failed")
+        ->excludes("--changed");
+    app.add_option("--seed", options.seed, "seed of the random tests, or `random`")
+        ->capture_default_str()
+        ->check([](const std::string& seed) {
+            const bool number = !seed.empty() && seed.size() < 20 &&
+                                seed.find_first_not_of("0123456789") == std::string::npos;
+            return number || seed == "random" ? ""
+                                              : "'" + seed + "' is neither a number nor `random`";
+        });
+    app.add_option("--repeat", options.repeat, "so many runs, each with the next seed")
+        ->check(CLI::Range(1, 1000));
+    app.add_option("--jobs", options.jobs, "tests at once")->check(CLI::Range(1, 256));
+    app.add_option("--waves", options.waves, "waveforms of at most so many failures")
+        ->capture_default_str();
+    app.add_option("--launcher", options.launcher, "local or slurm")
+        ->check(CLI::IsMember({"local", "slurm"}));
+    app.add_flag("--make", options.make, "build what the chosen tests need first");
+    app.add_option("--tree", options.tree, "only print the state of these folders");
+    app.add_flag("--list", options.list, "only say which tests are chosen");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+        return app.exit(help);
+    } catch (const CLI::ParseError& error) {
+        std::cerr << "regress: " << error.what() << "; see --help\n";
+        return 2;
+    }
+    try {
+        return regress(options);
+    } catch (const std::exception& error) {
+        std::cerr << "regress: " << error.what() << '\n';
+        return 2;
+    }
+}

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+
+#include "report.h"
+#include "files.h"
+#include "lights.h"
+#include "page.h"
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <sstream>
+#include <stdexcept>
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+json readJson(const std::string& path) {
+    std::ifstream in(path);
+    return in ? json::parse(in, nullptr, false) : json();
+}
+
+json readMutants(const std::string& path) {
+    std::ifstream in(path);
+    json rows = json::array();
+    for (std::string line; std::getline(in, line);) {
+        std::istringstream cells(line);
+        std::string name, result, test, seconds;
+        std::getline(cells, name, '\t');
+        std::getline(cells, result, '\t');
+        std::getline(cells, test, '\t');
+        std::getline(cells, seconds, '\t');
+        rows.push_back({name, result, test, seconds});
+    }
+    return rows;
+}
+
+// The page has room for so much; all of it is in coverage's own summary.
+void shorten(json& missed) {
+    constexpr size_t shown = 40;
+    if (!missed.is_array() || missed.size() <= shown)
+        return;
+    size_t more = missed.size() - shown;
+    missed.erase(missed.begin() + shown, missed.end());
+    missed.push_back(fmt::format("and {} more", more));
+}
+
+// What prove.sh says: "X: proven, 47 clauses with 33 flops", "X: 2 covers reached".
+json proofsOf(const std::vector<Result>& results) {
+    json rows = json::array();
+    static const std::regex proven("proven[,]? *([^\n]*)"), bounded("bounded, ([0-9]+) clocks"),
+        covers("([0-9]+) covers reached");
+    for (const Result& result : results) {
+        if (result.name.rfind("formal.", 0) != 0)
+            continue;
+        std::smatch match;
+        auto text = [&](const std::regex& what) {
+            return std::regex_search(result.log, match, what) ? match[1].str() : std::string("-");
+        };
+        rows.push_back({result.name.substr(7), result.status, text(bounded), text(proven),
+                        text(covers), result.seconds});
+    }
+    return rows;
+}
+
+std::string badge(unsigned passed, unsigned failed) {
+    std::string value =
+        failed ? fmt::format("{} failed", failed) : fmt::format("{} passed", passed);
+    unsigned width = 74 + 7 * static_cast<unsigned>(value.size()) + 14;
+    return fmt::format(
+        R"(<svg xmlns="http://www.w3.org/2000/svg" width="{0}" height="20" role="img" aria-label="regression: {1}">)"
+        R"(<rect width="{0}" height="20" rx="3" fill="#555"/><rect x="78" width="{2}" height="20" rx="3" fill="{3}"/>)"
+        R"(<g fill="#fff" font-family="DejaVu Sans,Verdana,sans-serif" font-size="11">)"
+        R"(<text x="6" y="14">regression</text><text x="85" y="14">{1}</text></g></svg>)"
+        "\n",
+        width, value, width - 78, failed ? "#c0392b" : "#2e8b57");
+}
+
+std::string markdown(const json& data) {
+    std::string text =
+        fmt::format("# Regression: {} passed, {} failed, {} skipped\n\n", data["passed"].get<int>(),
+                    data["failed"].get<int>(), data["skipped"].get<int>());
+    text += fmt::format("Commit `{}`, {:.0f} s.\n", data["commit"].get<std::string>(),
+                        data["seconds"].get<double>());
+    text += "\n| light | | |\n|---|---|---|\n";
+    for (auto& each : data["lights"])
+        text += fmt::format("| {} | {} | {} |\n", each["name"].get<std::string>(),
+                            each["state"].get<std::string>(), each["text"].get<std::string>());
+    if (!data["failures"].empty()) {
+        text += "\n| bucket | test | repeat |\n|---|---|---|\n";
+        for (auto& f : data["failures"])
+            text += fmt::format(
+                "| {} | {} | `{}` |\n",
+                std::regex_replace(f["bucket"].get<std::string>(), std::regex("\\|"), "\\|"),
+                f["name"].get<std::string>(), f["repeat"].get<std::string>());
+    }
+    if (!data["flaky"].empty()) {
+        text += "\nFlaky (passed and failed with the same code):\n";
+        for (auto& name : data["flaky"])
+            text += "- " + name.get<std::string>() + "\n";
+    }
+    if (!data["seeds"].empty()) {
+        text += "\nSeeds that failed, and have not passed since (`make regress KEPT=1`):\n";
+        for (auto& kept : data["seeds"])
+            text += fmt::format("- {} SEED={}\n", kept["test"].get<std::string>(),
+                                kept["seed"].get<std::string>());
+    }
+    return text;
+}
+
+} // namespace
+
+json gather(const History& history, const std::vector<Test>& tests,
+            const std::vector<Result>& results, const std::vector<Failure>& failures,
+            const std::string& source) {
+    const std::string build = source + "/build";
+    json data = history.runs().back();
+    data.erase("tests");
+    std::map<std::string, const Test*> byName;
+    for (const Test& test : tests)
+        byName[test.name] = &test;
+    auto& rows = data["results"] = json::array();
+    for (const Result& result : results) {
+        const Test* test = byName.count(result.name) ? byName[result.name] : nullptr;
+        json ends = json::array(); // the last ten, newest last
+        for (auto run = history.runs().rbegin(); run != history.runs().rend() && ends.size() < 10;
+             ++run)
+            if (auto it = run->at("tests").find(result.name); it != run->at("tests").end())
+                ends.insert(ends.begin(), it->at(0));
+        rows.push_back({result.name, result.status, result.seconds, test ? test->place : "",
+                        test && !test->labels.empty() ? test->labels[0] : "", result.seed, ends});
+    }
+    auto& bad = data["failures"] = json::array();
+    for (const Failure& failure : failures)
+        bad.push_back({{"name", failure.result.name},
+                       {"bucket", failure.bucket},
+                       {"reason", failure.reason},
+                       {"repeat", failure.repeat},
+                       {"log", failure.log},
+                       {"wave", failure.wave},
+                       {"save", failure.save},
+                       {"tail", failure.result.log.substr(failure.result.log.size() > 3000
+                                                              ? failure.result.log.size() - 3000
+                                                              : 0)}});
+    data["trees"] = json::object();
+    data["flaky"] = history.flaky();
+    auto& past = data["history"] = json::array();
+    for (size_t i = history.runs().size() > 60 ? history.runs().size() - 60 : 0;
+         i < history.runs().size(); ++i) {
+        const json& run = history.runs()[i];
+        past.push_back({run["time"], run["commit"], run["passed"], run["failed"], run["seconds"]});
+    }
+    data["proofs"] = proofsOf(results);
+    data["mutants"] = readMutants(build + "/mutants/results.tsv");
+    for (auto& [key, path] :
+         std::map<std::string, std::string>{{"coverage", build + "/coverage/summary.json"},
+                                            {"utilisation", build + "/synth/report.json"},
+                                            {"speed", build + "/bench/speed.json"}}) {
+        json found = readJson(path);
+        if (!found.is_discarded() && !found.is_null())
+            data[key] = found;
+    }
+    json simulator = readJson(build + "/bench/simulator.json");
+    if (simulator.is_array() && data.contains("speed"))
+        data["speed"]["entries"].insert(data["speed"]["entries"].end(), simulator.begin(),
+                                        simulator.end());
+    if (data.contains("coverage"))
+        for (json& file : data["coverage"]["files"])
+            shorten(file["missed"]);
+    for (auto& [name, folder] : std::map<std::string, std::string>{{"mutants", "mutants"},
+                                                                   {"coverage", "coverage"},
+                                                                   {"size", "synth"},
+                                                                   {"speed", "bench"}})
+        if (std::string file = build + "/" + folder + "/tree"; fs::exists(file)) {
+            std::string state = readFile(file);
+            data["trees"][name] = state.substr(0, state.find('\n'));
+        }
+    data["lights"] = lightsOf(data, source);
+    return data;
+}
+
+void writeReports(const json& data, const std::string& out) {
+    writeFile(out + "/report.html",
+              filled(reportPage, {{"/*DATA*/null", scriptSafe(data.dump())}}));
+    writeFile(out + "/report.json", data.dump(1));
+    writeFile(out + "/summary.md", markdown(data));
+    writeFile(out + "/badge.svg",
+              badge(data["passed"].get<unsigned>(), data["failed"].get<unsigned>()));
+}

@@ -1,0 +1,30 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# make: every target of the list can be made, as far as make itself knows; a mistyped variable is an error. Usage: make.sh source-folder build-folder
+set -eu
+cd "$1"
+targets=$(make --no-print-directory help | sed -n 's/^  make \([a-z-]*\) .*/\1/p')
+[ "$(echo "$targets" | wc -l)" -gt 15 ] || { echo "make help lists: $targets" >&2 && exit 1; }
+for target in $targets; do
+    make -n "$target" NAME=x LANG=verilog IP=fir >/dev/null
+done
+make -n run CORES='ascon fir' IMAGE='a picture=1.jpg' >/dev/null
+if said=$(make help CORE=ascon 2>&1); then echo "CORE=ascon is accepted" >&2 && exit 1; fi
+echo "$said" | grep -q 'there is no variable CORE;' || { echo "$said" >&2 && exit 1; }
+
+# The compiler's cache serves another clone.
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export CCACHE_DIR="$work/cache"
+for clone in a b; do
+    mkdir -p "$work/$clone/build"
+    cp Makefile "$work/$clone"
+    echo 'int one(void) { return __LINE__; }' >"$work/$clone/one.c"
+    make -s -C "$work/$clone" --eval 'one: ; @cd build && ccache cc -c $(CURDIR)/one.c' one
+done
+ccache --print-stats | grep -q '^\(direct\|preprocessed\)_cache_hit.1$' || { ccache --print-stats >&2 && exit 1; }
+
+# What `make test` runs with sanitizers: a program without the label would go unseen.
+for program in test_os test_link test_engine test_icec; do
+    grep -q sanitized "$2"/tests/sw/*/"${program}_labels.cmake" || { echo "$program: no case is labelled sanitized" >&2 && exit 1; }
+done

@@ -1,0 +1,219 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# regress.sh: the regression tool on a small project of its own, with tests that pass, fail, flicker and crash.
+# Usage: regress.sh case regress-binary work-folder source-folder build-folder
+set -eu
+case=$1 regress=$2 work=$3 source=$4 build=$5
+cluster=$source/tests/regress/test/slurm_cluster.sh
+fail() {
+    echo "$case: $*" >&2
+    [ ! -f out.txt ] || cat out.txt >&2
+    exit 1
+}
+has() { grep -q -- "$1" "${2:-out.txt}" || fail "'$1' is not in ${2:-the output}"; }
+hasNot() { ! grep -q -- "$1" "${2:-out.txt}" || fail "'$1' is in ${2:-the output}"; }
+
+# A project: test_a passes, test_b fails alike for all seeds but 7, test_c as the file `flicker` says, test_d crashes.
+rm -rf "$work"
+mkdir -p "$work/tests/room"
+cd "$work"
+git init -q . && git config user.email a@b && git config user.name a
+cat >CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(small NONE)
+enable_testing()
+add_subdirectory(tests/room)
+END
+cat >tests/room/CMakeLists.txt <<'END'
+set(t ${CMAKE_CURRENT_SOURCE_DIR}/t.sh)
+foreach(n a.One a.Two b.Bad c.Flicker d.Crash)
+  add_test(NAME test_${n} COMMAND ${t} ${n})
+  set_tests_properties(test_${n} PROPERTIES LABELS rtl)
+endforeach()
+add_test(NAME formal.thing COMMAND ${t} formal)
+set_tests_properties(formal.thing PROPERTIES LABELS formal)
+END
+cat >tests/room/t.sh <<'END'
+#!/bin/sh
+case $1 in
+b.Bad) [ "$SEED" = 7 ] || { echo "x.cpp:12: Failure"; echo "value $SEED is not 7 </script>"; exit 1; } ;;
+c.Flicker) [ ! -e ../../../../flicker ] ;;
+d.Crash) kill -SEGV $$ ;;
+formal) echo "thing: bounded, 6 clocks"; echo "thing: proven, 12 clauses with 3 flops"; echo "thing: 2 covers reached" ;;
+esac
+END
+chmod +x tests/room/t.sh
+echo build >.gitignore
+cmake -S . -B build/main -G Ninja >/dev/null
+git add . && git commit -qm one
+run() { status=0; "$regress" "$@" >out.txt 2>&1 || status=$?; }
+
+case $case in
+results)
+    run --seed 5
+    [ $status -eq 1 ] || fail "exit status $status, not 1"
+    has "4 passed, 2 failed, 0 skipped"
+    has "make test NAME='^test_b\\\\.Bad\$\$' SEED=5"
+    has "value 5 is not 7" build/regress/failures/test_b.Bad-5.log
+    has 'failures="2"' build/regress/junit.xml
+    has "2 failed" build/regress/badge.svg
+    has "test_d.Crash" build/regress/summary.md
+    has "1 x  \*\*\*Exception: SegFault" # a crash without a word
+    hasNot "not 7 </script>" build/regress/report.html
+    [ "$(wc -c <build/regress/report.html)" -lt 2000000 ] || fail "the page is over 2 MB"
+    ;;
+blame) # of one bug, one group; a test's own last word; what is nearest to the cause first
+    cat >>tests/room/CMakeLists.txt <<'END'
+foreach(i 1 2 3)
+  add_test(NAME test_g.Case${i} COMMAND sh -c "printf 'x.cpp:1: Failure\nExpected 1, got 2\n[  FAILED  ] g.Case${i} (${i}7 ms)\n'; exit 1")
+endforeach()
+add_test(NAME mission.x COMMAND sh -c "echo 'Ice.Exception: not served, as expected'; echo 'the picture differs'; exit 1")
+add_test(NAME formal.broken COMMAND sh -c "echo 'Assert failed in broken'; touch '${CMAKE_BINARY_DIR}/t.vcd'; echo 'broken: trace: ${CMAKE_BINARY_DIR}/t.vcd'; exit 1")
+END
+    cmake build/main >/dev/null
+    run --name 'test_g|mission|formal'
+    has '^3 x  Expected 1, got 2$'
+    has '^1 x  the picture differs$'
+    [ "$(grep -m1 ' x  ' out.txt)" = '1 x  Assert failed in broken' ] || fail "the proof is not told first"
+    has 'gtkwave build/regress/failures/formal.broken.vcd'
+    [ -f build/regress/failures/formal.broken.vcd ] || fail "the proof's trace is not kept"
+    has '<property name="wave" value="build/regress/failures/formal.broken.vcd"' build/regress/junit.xml
+    has '^The longest: .* s '
+    ;;
+company) # progress, one run at a time, words for what was mistyped, no more built than is needed
+    run --name 'a.One|formal'
+    has '^2 of 2, 0 failed, 0:00 left'
+    run --seed abc
+    [ $status -eq 2 ] || fail "exit status $status, not 2, for a seed that is none"
+    has "'abc' is neither a number nor .random"
+    SLURM_CONF=/nowhere run --launcher slurm
+    [ $status -eq 2 ] && has 'SLURM_CONF' || fail "no word of what a cluster needs"
+    run --jobs none
+    [ $status -eq 2 ] || fail "exit status $status, not 2, for a bad option"
+    has "^regress: .*see --help"
+    printf 'add_test(NAME test_a.OneMore COMMAND true)\n' >>tests/room/CMakeLists.txt
+    run --make --name test_a.One
+    has '^Building all'
+    has '^1 passed' # an exact name is one test
+    printf 'add_test(NAME test_late_NOT_BUILT COMMAND false)\nset_tests_properties(test_late_NOT_BUILT PROPERTIES LABELS other)\n' >>tests/room/CMakeLists.txt
+    cmake build/main >/dev/null
+    run --label formal
+    has '1 passed, 1 failed' # what is not built may be of that label: it is not left out
+    (flock build/regress/lock sleep 2) &
+    sleep 0.3
+    run --name a.One
+    has 'waiting for another run in build/regress'
+    wait
+    ;;
+selection)
+    run --block room --list && [ "$(wc -l <out.txt)" -eq 6 ] || fail "block room"
+    run --block thing --list && [ "$(cat out.txt)" = formal.thing ] || fail "block thing"
+    run --label formal --list && [ "$(cat out.txt)" = formal.thing ] || fail "label formal"
+    run --name One --list && [ "$(cat out.txt)" = test_a.One ] || fail "name One"
+    run --name nothing
+    [ $status -eq 2 ] || fail "exit status $status, not 2, where nothing is chosen"
+    has "labels: formal rtl"
+    run --build nowhere
+    [ $status -eq 2 ] || fail "exit status $status, not 2, without a build"
+    ;;
+again)
+    run
+    run --rerun-failed
+    has "2 tests, SEED=1"
+    run --changed
+    has "2 tests, SEED=1" # what passed has not changed
+    echo "# changed" >>tests/room/t.sh
+    run --changed
+    has "6 tests, SEED=1"
+    run --name 'a.One' --repeat 3 --seed 7
+    has "SEED=9"
+    has "3 passed, 0 failed"
+    ;;
+flaky)
+    run
+    hasNot Flaky
+    touch flicker
+    run
+    has "Flaky: test_c.Flicker"
+    has "test_c.Flicker" build/regress/summary.md
+    echo '{"damaged' >>build/regress/history.jsonl
+    run --name One
+    has "1 damaged lines"
+    [ $status -eq 0 ] || fail "a damaged history stops the run"
+    ;;
+seeds)
+    run --kept
+    [ $status -eq 0 ] || fail "exit status $status, not 0, where no seed is kept"
+    has "no seed is kept"
+    run --name 'test_[ab]' --seed random --repeat 2
+    [ $status -eq 1 ] || fail "exit status $status, not 1"
+    seeds=$(sed -n 's/^3 tests, SEED=//p' out.txt)
+    [ "$(echo "$seeds" | wc -l)" -eq 2 ] || fail "not two seeds"
+    for seed in $seeds; do has "\"seed\":\"$seed\",\"since\":.*\"test\":\"test_b.Bad\"" build/regress/seeds.jsonl; done
+    hasNot test_a build/regress/seeds.jsonl
+    run --name 'test_[ab]' --seed 7 # passes with another seed: the others stay
+    has "2 failing seeds are kept"
+    run --kept --name 'a[.]' # none of these
+    has "no seed is kept"
+    run --kept
+    [ $status -eq 1 ] || fail "exit status $status, not 1, where kept seeds still fail"
+    for seed in $seeds; do has "^1 tests, SEED=$seed"; done
+    has "0 passed, 2 failed"
+    has '"times":2' build/regress/seeds.jsonl
+    has "test_b.Bad SEED=${seeds##*
+}" build/regress/summary.md
+    has '"seeds":\[{' build/regress/report.html
+    sed -i 's/^b.Bad).*/b.Bad) ;;/' tests/room/t.sh # the bug is mended
+    run --kept
+    [ $status -eq 0 ] || fail "exit status $status, not 0, when kept seeds pass"
+    [ ! -s build/regress/seeds.jsonl ] || fail "seeds that pass are kept"
+    ;;
+slurm)
+    command -v slurmctld >/dev/null 2>&1 || PATH=$PATH:/usr/sbin
+    status=0
+    "$cluster" cluster "$regress" --launcher slurm --seed 3 >out.txt 2>&1 || status=$?
+    [ $status -eq 1 ] || fail "exit status $status, not 1"
+    has "4 passed, 2 failed, 0 skipped"
+    has "value 3 is not 7" build/regress/failures/test_b.Bad-3.log
+    ;;
+page)
+    run
+    chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$work/chromium" \
+        --virtual-time-budget=5000 --dump-dom "file://$work/build/regress/report.html" >dom.html 2>chromium.log ||
+        fail "chromium: $(tail -3 chromium.log)"
+    has '2 failed' dom.html
+    has 'id="results"' dom.html
+    has 'test_c.Flicker' dom.html
+    has 'class="dot dp"' dom.html
+    has '12 clauses with 3 flops' dom.html
+    has 'id="seeds"' dom.html
+    has 'value 1 is not 7' dom.html
+    has 'href="failures/test_b.Bad-1.log"' dom.html
+    hasNot 'src="http\|href="http' build/regress/report.html # offline
+    ;;
+large) # more than this project has: the page stays small
+    cat >>tests/room/CMakeLists.txt <<'END'
+foreach(i RANGE 1 400)
+  add_test(NAME test_with_a_long_name.AndManyCases.Number/${i} COMMAND ${t} a.${i})
+endforeach()
+foreach(i RANGE 1 30)
+  add_test(NAME test_loud.Case${i} COMMAND sh -c "seq 1 20000; exit 1")
+endforeach()
+END
+    mkdir -p build/coverage build/mutants
+    awk 'BEGIN { printf "{\"total\": 97.1, \"toggles\": 95.2, \"files\": ["
+        for (f = 0; f < 300; f++) {
+            printf "%s{\"file\": \"hdl/block/some_module_%d.v\", \"percent\": 97, \"lines\": 200, \"gate\": 95, \"toggles\": 96, \"toggle_points\": 900, \"toggle_gate\": 95, \"why\": \"\", \"missed\": [", f ? "," : "", f
+            for (m = 0; m < 500; m++) printf "%s\"%d: some_signal_of_it[%d]\"", m ? "," : "", m, m
+            printf "]}" }
+        print "]}" }' >build/coverage/summary.json
+    awk 'BEGIN { for (i = 0; i < 400; i++) printf "block/some_seeded_bug_%d\tcaught\ttest_block.Case\t7\n", i }' >build/mutants/results.tsv
+    cmake build/main >/dev/null
+    run
+    has "404 passed, 32 failed"
+    [ "$(wc -c <build/regress/report.html)" -lt 2000000 ] || fail "the page has $(wc -c <build/regress/report.html) bytes"
+    ;;
+lights_*) . "$source/tests/regress/test/lights.sh" ;;
+*) fail "no such case" ;;
+esac

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+//
+// test_list: every test that CTest knows, where it lives, and which of them a person asked for.
+
+#ifndef TEST_LIST_H
+#define TEST_LIST_H
+
+#include <set>
+#include <string>
+#include <vector>
+
+struct Test {
+    unsigned number; // CTest's, from 1
+    std::string name;
+    std::string place; // folder below tests/: "hdl/modem"
+    std::vector<std::string> labels;
+    std::vector<std::string> command;
+    std::string print; // changes when what the test runs changes (fingerprint)
+};
+
+struct Selection {
+    std::string name;  // regular expression on the name
+    std::string block; // a word of the name or of the place: "modem", "link"
+    std::string label;
+    bool changed = false; // only tests whose fingerprint differs from their last pass
+    bool failed = false;  // only those that failed in the last run
+};
+
+// All tests of a build folder; throws std::runtime_error when CTest cannot say.
+std::vector<Test> listTests(const std::string& build);
+
+// What the tests of each label or folder depend on besides their program: fills Test::print.
+// `source` is the root of the tree; only files that Git knows count.
+void fingerprint(std::vector<Test>& tests, const std::string& source, const std::string& build);
+
+// True for a program that is not built, in the place of its cases.
+bool isUnbuilt(const Test& test);
+
+// What ninja must build for a test; "all" where that is not known.
+std::vector<std::string> targetsOf(const Test& test, const std::string& build);
+
+// The words that --block compares with: of the folder, and of the name up to the case.
+std::set<std::string> blockWords(const Test& test);
+
+#endif

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+//
+// compiler_fuzz: libFuzzer's entry: any text through lexer, parser, checks and generator. What has
+// no errors must give C; nothing may crash, hang or leak (built with sanitizers).
+
+#include "c/generator.h"
+#include "front/front.h"
+#include <cstdint>
+#include <cstdlib>
+#include <sstream>
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    std::string text(reinterpret_cast<const char*>(data), size);
+    std::ostringstream out;
+    Diagnostics diagnostics(out);
+    Unit unit = compileUnit(text, "Fuzz.ice", {}, diagnostics);
+    if (diagnostics.errors() == 0)
+        checkC(unit, diagnostics);
+    if (diagnostics.errors() > 0) {
+        if (out.str().empty())
+            std::abort(); // errors without a message
+        return 0;
+    }
+    CFileNames names;
+    names.base = "Fuzz";
+    names.checksums = true;
+    if (generateC(unit, names).empty())
+        std::abort();
+    return 0;
+}

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+//
+// chip_soak_test: the real thing for long: stock Ice with the plugin and IceC on the RTL call each
+// other over a bad radio, while UAV, modems and the ground's program start again. No message wrong,
+// doubled or out of order; each answered, or reported by a status that says so.
+//
+//   SOAK_SECONDS=600 build/main/tests/sw/ground/chip/test_chip_soak (simulated seconds; default 5)
+
+#include "../reported.h"
+#include "chip_world.h"
+#include "random.h"
+#include <cstdlib>
+#include <future>
+#include <gtest/gtest.h>
+#include <set>
+
+extern "C" {
+#include "echo_uav.h"
+}
+
+namespace {
+
+RadioTest::Bytes pattern(int id, size_t size) {
+    RadioTest::Bytes bytes(size);
+    for (size_t i = 0; i < size; ++i)
+        bytes[i] = static_cast<Ice::Byte>(i * 7 + static_cast<size_t>(id) * 31);
+    return bytes;
+}
+
+// Messages have numbers that rise with each of their sender's: the sender in the upper bits.
+class Book {
+public:
+    void arrived(int id, const RadioTest::Bytes& data) {
+        std::lock_guard<std::mutex> lock(mutex_);
+        doubled += !seen_.insert(id).second;
+        int& last = last_[id >> 24];
+        outOfOrder += id < last;
+        last = std::max(last, id);
+        wrong += data != pattern(id, data.size());
+        ++executed;
+    }
+    unsigned executed = 0, doubled = 0, outOfOrder = 0, wrong = 0;
+
+private:
+    std::mutex mutex_;
+    std::set<int> seen_;
+    std::map<int, int> last_;
+};
+
+// The object on the ground that the UAV calls.
+class Station : public RadioTest::Echo {
+public:
+    explicit Station(Book& book) : book_(book) {}
+    RadioTest::Bytes repeat(int id, RadioTest::Bytes data, const Ice::Current&) override {
+        book_.arrived(id, data);
+        return data;
+    }
+    void note(int id, const Ice::Current&) override { book_.arrived(id, {}); }
+    void take(int, RadioTest::Bytes, const Ice::Current&) override {}
+    RadioTest::Bytes fetch(int, const Ice::Current&) override { return {}; }
+    int noted(const Ice::Current&) override { return 0; }
+    int callBack(int, const Ice::Current&) override { return 0; }
+    int callStation(int, const Ice::Current&) override { return 0; }
+
+private:
+    Book& book_;
+};
+
+class ChipSoak : public ::testing::Test {
+protected:
+    static double wanted() {
+        const char* text = std::getenv("SOAK_SECONDS");
+        return text && *text ? std::atof(text) : 5;
+    }
+    // ---- the UAV's side, in the world's thread ----
+    static ChipSoak& self(void* context) { return *static_cast<ChipSoak*>(context); }
+    static void executed(void* context, int id, const U8* data, int size) {
+        self(context).up_.arrived(id, RadioTest::Bytes(data, data + size));
+    }
+    static int next(void* context, int* id, U8* data, int* isOneway) {
+        ChipSoak& s = self(context);
+        Random& random = s.uavRandom_;
+        if (s.stop_ || random.below(4)) // now and then: the call before has taken its time
+            return -1;
+        const int uav = 9 << 24;
+        *id = uav | ++s.uavSent_;
+        *isOneway = random.below(4) == 0;
+        const U32 size = random.below(12) ? random.below(200) : random.below(ECHO_UAV_LONGEST);
+        s.uavMessage_ = pattern(*id, *isOneway ? 0 : size);
+        std::copy(s.uavMessage_.begin(), s.uavMessage_.end(), data);
+        return static_cast<int>(s.uavMessage_.size());
+    }
+    static void outcome(void* context, int, int status, const char* text, const U8* answer,
+                        int size) {
+        ChipSoak& s = self(context);
+        if (status != 0) {
+            ++s.uavReported_;
+            ++s.uavReports_[text];
+        } else {
+            ++s.uavAnswered_;
+            const RadioTest::Bytes bytes(answer, answer + size);
+            s.uavWrong_ += bytes != s.uavMessage_;
+        }
+    }
+
+    // ---- the ground's side ----
+    void startGround() {
+        auto fresh = world_.client();
+        auto adapter = fresh->createObjectAdapter("Station");
+        adapter->add(std::make_shared<Station>(down_), Ice::stringToIdentity("station"));
+        adapter->activate();
+        ground_.start(fresh);
+    }
+    void work(int worker) {
+        Random random(testSeed() * 100 + static_cast<uint64_t>(worker));
+        for (int number = 1; !stop_; number += 2) {
+            const int id = worker << 24 | number;
+            const auto ground = ground_.get();
+            try {
+                auto echo = world_.echo(ground, std::to_string(worker));
+                if (random.below(4) == 0) // reported by nobody if it is lost: it is oneway
+                    echo->ice_oneway()->note(id);
+                const U32 size = random.below(12) ? random.below(200) : random.below(7000);
+                const auto data = pattern(id + 1, size);
+                ++calls_;
+                const auto answer = echo->repeat(id + 1, data);
+                ++(answer == data ? answered_ : wrong_);
+            } catch (const Ice::Exception& e) {
+                note(ground, e);
+            }
+        }
+    }
+    void note(const Ice::CommunicatorPtr& ground, const Ice::Exception& e) {
+        {
+            std::lock_guard<std::mutex> lock(mutex_);
+            ++reports_[e.ice_id()];
+            if (!ground_.isReport(ground, e.ice_id()))
+                faults_.insert(e.ice_id());
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    void misfortune(Random& random, unsigned kind) {
+        switch (kind) {
+        case 0:
+            world_.reboot();
+            ++reboots_;
+            break;
+        case 1:
+        case 2:
+            world_.with([&] {
+                XBee& modem = kind == 1 ? world_.soc.modem() : world_.groundModem;
+                modem.resetPin(true, world_.soc.now());
+                modem.resetPin(false, world_.soc.now() + 1000);
+            });
+            ++modemResets_;
+            break;
+        case 3:
+            ground_.end(); // with it the engine goes: a program that ends
+            startGround();
+            ++groundStarts_;
+            break;
+        default:
+            world_.with([&] {
+                RfChannel::Weather w;
+                w.loss = random.below(4) ? random.below(30) / 100.0 : 0;
+                w.burstBegin = random.below(2) ? 0.05 : 0;
+                w.duplication = random.below(3) ? 0.1 : 0;
+                w.corruption = random.below(3) ? 0.03 : 0;
+                world_.air.weather = w;
+            });
+        }
+    }
+    void report() {
+        std::printf("chip soak: %.0f s simulated; ground to UAV: %u calls, %u answered, %u "
+                    "executed; UAV to "
+                    "ground: %u sent, %u answered, %u reported, %u executed; %u reboots of the "
+                    "UAV, %u resets "
+                    "of modems, %u starts of the ground\n",
+                    static_cast<double>(world_.ns()) / 1e9, calls_.load(), answered_.load(),
+                    up_.executed, uavSent_, uavAnswered_.load(), uavReported_.load(),
+                    down_.executed, reboots_, modemResets_, groundStarts_);
+        std::fflush(stdout);
+    }
+
+    Book up_, down_;
+    std::atomic<bool> stop_{false};
+    std::atomic<unsigned> calls_{0}, answered_{0}, wrong_{0};
+    std::atomic<unsigned> uavAnswered_{0}, uavReported_{0}, uavWrong_{0};
+    Random uavRandom_{testSeed() + 7};
+    RadioTest::Bytes uavMessage_;
+    int uavSent_ = 0;
+    std::map<std::string, unsigned> uavReports_;
+    unsigned reboots_ = 0, modemResets_ = 0, groundStarts_ = 0;
+    std::mutex mutex_;
+    std::map<std::string, unsigned> reports_;
+    std::set<std::string> faults_;
+    const EchoUav_Port port_{executed, next, outcome};
+    ChipWorld world_{testSeed(), port_, this};
+    GroundProgram ground_;
+};
+
+TEST_F(ChipSoak, EveryMessageIsRightOnceInOrderOrReported) {
+    struct AtEnd { // also of an exception: the workers hear of it before they are waited for
+        ~AtEnd() { stop = true; }
+        std::atomic<bool>& stop;
+    };
+    startGround();
+    std::vector<std::future<void>> workers; // joined however this ends
+    for (int w = 1; w <= 3; ++w)
+        workers.push_back(std::async(std::launch::async, [this, w] { work(w); }));
+    AtEnd atEnd{stop_};
+    Random random(testSeed());
+    world_.sleep(2); // set-up, and some good weather
+    const uint64_t begin = world_.ns(), end = begin + static_cast<uint64_t>(wanted() * 1e9);
+    misfortune(random, 4); // weather
+    unsigned events = 0;
+    auto said = std::chrono::steady_clock::now();
+    while (world_.ns() < end) {
+        misfortune(random,
+                   events < 4 ? (events * 2 + 3) % 5 : random.below(6)); // 3 0 2 4, then any
+        ++events;
+        world_.sleep(0.7 + random.below(1000) / 1000.0);
+        if (std::chrono::steady_clock::now() - said > std::chrono::seconds(15)) {
+            said = std::chrono::steady_clock::now();
+            report();
+        }
+    }
+    stop_ = true;
+    world_.with([&] { world_.air.weather = {}; });
+    for (auto& worker : workers)
+        worker.get();
+    bool works = false;
+    for (int tries = 0; tries < 20 && !works; ++tries) {
+        try {
+            const int id = 8 << 24 | (tries + 1);
+            const auto data = pattern(id, 500);
+            // Takes one of the three connections: a fourth would wait.
+            works = world_.echo(ground_.get(), "1")->repeat(id, data) == data;
+        } catch (const Ice::Exception&) {
+            world_.sleep(0.2);
+        }
+    }
+    EXPECT_TRUE(works) << "no call succeeds in good weather";
+    ground_.end();
+    report();
+    unsigned reported = 0;
+    for (auto& [name, count] : reports_)
+        reported += count;
+    EXPECT_EQ(wrong_ + uavWrong_ + up_.wrong + down_.wrong, 0u) << "wrong; SEED " << testSeed();
+    EXPECT_EQ(up_.doubled + down_.doubled, 0u) << "doubled; SEED " << testSeed();
+    EXPECT_EQ(up_.outOfOrder + down_.outOfOrder, 0u) << "out of order; SEED " << testSeed();
+    EXPECT_GT(answered_, 0u);
+    EXPECT_GT(uavAnswered_, 0u);
+    EXPECT_LE(answered_, up_.executed);
+    EXPECT_GE(answered_ + wrong_ + reported, calls_.load())
+        << "calls of which nothing was said; SEED " << testSeed();
+    // A reboot takes the call under way with it.
+    EXPECT_LE(uavAnswered_ + uavReported_, static_cast<unsigned>(uavSent_));
+    EXPECT_GE(uavAnswered_ + uavReported_ + reboots_ + 1, static_cast<unsigned>(uavSent_));
+    for (auto& fault : faults_)
+        ADD_FAILURE() << "a call ended with " << fault << "; SEED " << testSeed();
+}
+
+} // namespace

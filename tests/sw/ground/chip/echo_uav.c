@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * echo_uav: servant, client task, boot.
+ */
+#include "echo_uav.h"
+#include "Echo.h"
+#include "map_regs.h"
+#include "radio.h"
+#include "system_regs.h"
+#include "uav.h"
+#include "uav_private.h"
+
+#define STACK_WORDS 1024
+#define PAUSE_TICKS (OS_TICKS_PER_SEC / 100U) /* while there is no message to send */
+#define TIMEOUT_MS 20000                      /* of a call of the ground */
+
+static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STACK_WORDS];
+static Ice_Communicator ic;
+static Ice_ObjectAdapter adapter;
+static RadioTest_Echo servant;
+static Ice_Int notes;
+static U8 irqEnabled;
+static const EchoUav_Port* port;
+static void* portContext;
+static Ice_Byte sent[ECHO_UAV_LONGEST], fetched[8192];
+static U32 replyBuffer[2 * 8192 / 4]; /* a reply, and its decoded sequence */
+
+void EchoUav_setPort(const EchoUav_Port* tests, void* context) {
+    port = tests;
+    portContext = context;
+}
+
+/* ---- servant ---- */
+
+Ice_Status RadioTest_Echo_repeat(RadioTest_EchoPtr self, Ice_Int id, const RadioTest_Bytes* data,
+                                 RadioTest_Bytes* result, const Ice_Current* current) {
+    (void)self, (void)current;
+    port->executed(portContext, id, data->data, data->size);
+    *result = *data;
+    return ICE_OK;
+}
+
+Ice_Status RadioTest_Echo_take(RadioTest_EchoPtr self, Ice_Int id, const RadioTest_Bytes* data,
+                               const Ice_Current* current) {
+    (void)self, (void)current;
+    port->executed(portContext, id, data->data, data->size);
+    return ICE_OK;
+}
+
+Ice_Status RadioTest_Echo_fetch(RadioTest_EchoPtr self, Ice_Int size, RadioTest_Bytes* result,
+                                const Ice_Current* current) {
+    (void)self, (void)current;
+    if (size < 0 || (U32)size > sizeof fetched)
+        return ICE_LIMIT;
+    result->size = size;
+    result->data = fetched;
+    return ICE_OK;
+}
+
+Ice_Status RadioTest_Echo_note(RadioTest_EchoPtr self, Ice_Int id, const Ice_Current* current) {
+    (void)self, (void)current;
+    ++notes;
+    port->executed(portContext, id, 0, 0);
+    return ICE_OK;
+}
+
+Ice_Status RadioTest_Echo_noted(RadioTest_EchoPtr self, Ice_Int* result,
+                                const Ice_Current* current) {
+    (void)self, (void)current;
+    *result = notes;
+    return ICE_OK;
+}
+
+static Ice_Status sum(RadioTest_ListenerPrxPtr listener, Ice_Int times, Ice_Int* total) {
+    Ice_Status status = ICE_OK;
+    Ice_Int i, answer;
+    *total = 0;
+    for (i = 0; i < times && status == ICE_OK; ++i) {
+        status = RadioTest_ListenerPrx_heard(listener, i, &answer);
+        *total += answer;
+    }
+    return status;
+}
+
+Ice_Status RadioTest_Echo_callBack(RadioTest_EchoPtr self, Ice_Int times, Ice_Int* result,
+                                   const Ice_Current* current) {
+    RadioTest_ListenerPrx listener;
+    Ice_Status status = Ice_Connection_createProxy(&ic, current->connection, "listener", &listener);
+    (void)self;
+    return status == ICE_OK ? sum(&listener, times, result) : status;
+}
+
+Ice_Status RadioTest_Echo_callStation(RadioTest_EchoPtr self, Ice_Int times, Ice_Int* result,
+                                      const Ice_Current* current) {
+    RadioTest_ListenerPrx listener;
+    Ice_Status status =
+        Ice_Communicator_stringToProxy(&ic, "listener:xbee-at -a 0x0000", &listener);
+    (void)self, (void)current;
+    return status == ICE_OK ? sum(&listener, times, result) : status;
+}
+
+/* ---- tasks ---- */
+
+/* Calls the ground, one message at a time. */
+static void clientTask(void* argument) {
+    static RadioTest_EchoPrx twoway, oneway;
+    (void)argument;
+    (void)Ice_Communicator_stringToProxy(&ic, "station:xbee-at -a 0x0000", &twoway);
+    Ice_ObjectPrx_ice_invocationTimeout(&twoway, TIMEOUT_MS);
+    Ice_ObjectPrx_setReplyBuffer(&twoway, replyBuffer, (Ice_Int)sizeof replyBuffer);
+    oneway = twoway;
+    Ice_ObjectPrx_ice_oneway(&oneway);
+    for (;;) {
+        RadioTest_Bytes data, answer;
+        Ice_Status status;
+        int id, isOneway;
+        data.data = sent;
+        data.size = port->next(portContext, &id, sent, &isOneway);
+        if (data.size < 0) {
+            OSTimeDly(PAUSE_TICKS);
+            continue;
+        }
+        answer.size = 0;
+        answer.data = 0;
+        if (isOneway)
+            status = RadioTest_EchoPrx_note(&oneway, id);
+        else
+            status = RadioTest_EchoPrx_repeat(&twoway, id, &data, &answer);
+        port->outcome(portContext, id, (int)status, Ice_Status_text(status), answer.data,
+                      answer.size);
+    }
+}
+
+static void mainTask(void* argument) {
+    (void)argument;
+    Ice_initialize(&ic);
+    Ice_Communicator_setOs(&ic, &uav_iceOs, 0);
+    UAV_useRadio(&ic);
+    (void)Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "Adapter", "xbee-at", &adapter);
+    RadioTest_Echo_init(&servant);
+    (void)Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&servant, "echo");
+    Ice_ObjectAdapter_activate(&adapter);
+    (void)OSTaskCreate(UAV_radioTask, 0, &radioStack[STACK_WORDS - 1], PRIO_RADIO);
+    (void)OSTaskCreate(clientTask, 0, &clientStack[STACK_WORDS - 1], PRIO_CLIENT);
+    Ice_Communicator_waitForShutdown(&ic);
+    for (;;)
+        OSTimeDly(OS_TICKS_PER_SEC);
+}
+
+void EchoUav_irqHandler(void) {
+    if (FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_LO) >> MAP_SLOT_MODEM & 1U) {
+        (void)Radio_interrupt();
+        (void)OSSemPost(uav_radioWork);
+    }
+}
+
+int EchoUav_irqEnabled(void) {
+    return irqEnabled;
+}
+
+void EchoUav_start(const FSMC_Port* fsmc, void* context) {
+    irqEnabled = 0;
+    notes = 0;
+    if (FSMC_init(fsmc, context) != FSMC_OK)
+        return;
+    UAV_initRadio();
+    UAV_initIceOs();
+    irqEnabled = 1;
+    (void)OSTaskCreate(mainTask, 0, &serverStack[STACK_WORDS - 1], PRIO_SERVER);
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * echo_uav: a firmware that serves Echo over the radio and calls the ground's Echo, on IceC, link,
+ * driver and kernel as the UAV's application has them.
+ */
+#ifndef ECHO_UAV_H
+#define ECHO_UAV_H
+
+#include "fsmc.h"
+
+/* The test's callbacks: what it allows and what it hears. The firmware's tasks call them. */
+typedef struct EchoUav_Port {
+    /* An operation with an id was executed here, with this data. */
+    void (*executed)(void* context, int id, const U8* data, int size);
+    /* The next message to the ground: its id, its bytes written to `data`; returns their number, or
+     * -1: none now. `isOneway`: as note(id), without bytes. */
+    int (*next)(void* context, int* id, U8* data, int* isOneway);
+    /* The outcome of a call: `status` 0, and the answer's bytes unless it was oneway; else a status
+     * of ice_status.c with its text. */
+    void (*outcome)(void* context, int id, int status, const char* text, const U8* answer,
+                    int size);
+} EchoUav_Port;
+
+#define ECHO_UAV_LONGEST 4000 /* bytes of a message to the ground */
+
+/* Before the first boot. */
+void EchoUav_setPort(const EchoUav_Port* port, void* context);
+
+/* These do what UAV_start and its like do (uav.h). */
+void EchoUav_start(const FSMC_Port* fsmc, void* context);
+void EchoUav_irqHandler(void);
+int EchoUav_irqEnabled(void);
+
+#endif

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+//
+// crowd_test: programs at one engine that do not read, that send more than the link carries, or
+// that leave.
+
+#include "wire.h"
+#include <gtest/gtest.h>
+#include <thread>
+
+namespace {
+
+// A program's end of a connection; nothing blocks.
+class Program {
+public:
+    explicit Program(int fd) : fd_(fd) {}
+    ~Program() { leave(); }
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+    void leave() {
+        if (fd_ >= 0)
+            close(fd_);
+        fd_ = -1;
+    }
+    void send(const Bytes& bytes) { out_.insert(out_.end(), bytes.begin(), bytes.end()); }
+    void write() {
+        ssize_t count = ::send(fd_, out_.data(), out_.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (count > 0) {
+            out_.erase(out_.begin(), out_.begin() + count);
+            written += static_cast<size_t>(count);
+        }
+        cutOff = cutOff || (count < 0 && errno != EAGAIN);
+    }
+    void read() {
+        uint8_t bytes[4096];
+        ssize_t count = recv(fd_, bytes, sizeof bytes, MSG_DONTWAIT);
+        got += static_cast<size_t>(std::max<ssize_t>(count, 0));
+        cutOff = cutOff || count == 0;
+    }
+    size_t unwritten() const { return out_.size(); }
+    size_t written = 0, got = 0;
+    bool cutOff = false;
+
+private:
+    int fd_;
+    Bytes out_;
+};
+
+class Crowd : public ::testing::Test {
+protected:
+    // A call and its answer.
+    void echoes(Program& program, size_t size = 30) {
+        const size_t want = program.got + size;
+        program.send(message(1, size));
+        EXPECT_TRUE(wire_.until(
+            [&] {
+                program.write();
+                program.read();
+                return program.got >= want || program.cutOff;
+            },
+            30))
+            << "no answer within 30 s; the engine's log:\n"
+            << wire_.log();
+        EXPECT_FALSE(program.cutOff);
+    }
+    Wire wire_;
+    std::shared_ptr<XBeeAT::Engine> engine_ = wire_.engine();
+};
+
+TEST_F(Crowd, WhoNeverReadsIsCutOffAndNobodyIsBehindIt) {
+    Program deaf(engine_->connect(0)), other(engine_->connect(1));
+    echoes(deaf);
+    for (int i = 0; i < 40 && !HasFailure(); ++i) {
+        deaf.send(message(2, 4000));
+        wire_.until(
+            [&] {
+                deaf.write();
+                return deaf.unwritten() == 0 || deaf.cutOff;
+            },
+            1);
+        echoes(other);
+    }
+    EXPECT_TRUE(wire_.until(
+        [&] {
+            deaf.write();
+            deaf.send({0});
+            return deaf.cutOff;
+        },
+        30));
+    EXPECT_NE(wire_.log().find("does not read"), std::string::npos) << wire_.log();
+    echoes(other, 8000);
+}
+
+TEST_F(Crowd, WhatAProgramHasWrittenArrivesAlthoughItLeaves) {
+    wire_.echo = false;
+    Program program(engine_->connect(0));
+    constexpr unsigned count = 10'000;
+    const Bytes oneway = message(1);
+    for (unsigned i = 0; i < count; ++i)
+        program.send(oneway);
+    size_t most = 0; // bytes between the program and the peer
+    ASSERT_TRUE(wire_.until([&] {
+        program.write();
+        most = std::max(most, program.written - wire_.received[0] * oneway.size());
+        return program.unwritten() == 0;
+    }));
+    program.leave();
+    EXPECT_TRUE(wire_.until([&] { return wire_.received[0] > 0 && !wire_.open[0]; }));
+    EXPECT_EQ(wire_.received[0], count) << wire_.log();
+    EXPECT_LT(most, 64u * 1024) << "the engine reads more than it can send";
+}
+
+TEST_F(Crowd, CallsThatTheLinkCouldNotDeliverAreReportedWhenTheirProgramHasLeft) {
+    Program program(engine_->connect(0));
+    echoes(program);
+    Bytes call = message(1);
+    call[8] = 0; // a request
+    for (int i = 0; i < 20; ++i)
+        program.send(call);
+    program.write();
+    program.leave();
+    while (wire_.log().find("has ended") == std::string::npos) // the UAV hears nothing
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    engine_.reset();
+    EXPECT_NE(wire_.log().find("may not have reached the UAV: 20"), std::string::npos)
+        << wire_.log();
+}
+
+TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
+    for (unsigned round = 0; round < 3; ++round) {
+        std::vector<std::unique_ptr<Program>> flood;
+        for (int i = 0; i < 3; ++i) {
+            flood.push_back(std::make_unique<Program>(engine_->connect(-1)));
+            echoes(*flood.back());
+            for (int k = 0; k < 2000; ++k)
+                flood.back()->send(message(1));
+        }
+        const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(200);
+        wire_.until([&] {
+            for (auto& program : flood)
+                program->write();
+            return std::chrono::steady_clock::now() > end;
+        });
+        flood.clear(); // in the midst of it
+        for (int i = 0; i < 3; ++i) {
+            unsigned openings = 2 * round + 1;
+            int fd = -1;
+            ASSERT_TRUE(wire_.until([&] { return (fd = engine_->connect(i)) >= 0; }));
+            Program next(fd);
+            echoes(next);
+            EXPECT_EQ(wire_.openings[i], ++openings) << "the UAV greets nobody";
+        }
+        wire_.until([] {
+            static int n;
+            return ++n % 50 == 0;
+        });
+    }
+}
+
+// One that floods has no more of the link than one that calls now and then.
+TEST_F(Crowd, AFloodLeavesRoomForOthers) {
+    Program flood(engine_->connect(0)), other(engine_->connect(1));
+    wire_.until([&] {
+        if (flood.unwritten() < 100'000)
+            flood.send(message(1, 1000));
+        flood.write();
+        flood.read();
+        return flood.got > 100'000;
+    });
+    for (int i = 0; i < 20; ++i) {
+        const size_t want = other.got + 30;
+        other.send(message(1));
+        const auto begin = std::chrono::steady_clock::now();
+        ASSERT_TRUE(wire_.until([&] {
+            if (flood.unwritten() < 100'000)
+                flood.send(message(1, 1000));
+            flood.write();
+            flood.read();
+            other.write();
+            other.read();
+            return other.got >= want;
+        }));
+        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+    }
+}
+
+} // namespace

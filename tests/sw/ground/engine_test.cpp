@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: MIT
+//
+// engine_test: the ground's engine on a pty with a modem behind it.
+
+#include "engine.h"
+#include "rig.h"
+#include "wire.h"
+#include <csignal>
+#include <cstdlib>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace {
+
+class EngineTest : public ::testing::Test {
+protected:
+    XBeeAT::Settings settings() {
+        XBeeAT::Settings s;
+        s.device = rig_.pty.path();
+        s.guardMs = Rig::guardMs;
+        s.downMs = 300;
+        return s;
+    }
+    std::shared_ptr<XBeeAT::Engine> start() {
+        return XBeeAT::Engine::get(settings(), [this](int level, const std::string& text) {
+            std::lock_guard<std::mutex> lock(logMutex_);
+            log_ += std::to_string(level) + " " + text + "\n";
+        });
+    }
+    std::string log() {
+        std::lock_guard<std::mutex> lock(logMutex_);
+        return log_;
+    }
+    bool logged(const std::string& text) {
+        std::lock_guard<std::mutex> lock(logMutex_);
+        return log_.find(text) != std::string::npos;
+    }
+    // A call and its answer, byte by byte.
+    void echoes(int fd, uint8_t tag, size_t size = 30) {
+        writeAll(fd, message(tag, size));
+        Bytes got = readAll(fd, size);
+        EXPECT_TRUE(got == message(tag, size))
+            << got.size() << " of " << size << " bytes; the engine's log:\n"
+            << log();
+    }
+
+    std::mutex logMutex_;
+    std::string log_;
+    Rig rig_{testSeed()};
+};
+
+TEST_F(EngineTest, MessagesGoBothWaysOnSeveralConnections) {
+    rig_.with([&] { rig_.echo = true; });
+    auto engine = start();
+    int fds[3];
+    for (int& fd : fds) {
+        fd = engine->connect(-1);
+        ASSERT_GE(fd, 0);
+    }
+    EXPECT_EQ(engine->connect(-1), -1) << "a fourth connection";
+    for (uint8_t tag = 1; tag < 4; ++tag)
+        for (int fd : fds)
+            echoes(fd, tag, 20u * tag);
+    echoes(fds[1], 9, 8192);
+    for (int fd : fds)
+        close(fd);
+}
+
+TEST_F(EngineTest, AModemThatIsResetInFlightIsSetUpAgain) {
+    rig_.with([&] { rig_.echo = true; });
+    auto engine = start();
+    int fd = engine->connect(0);
+    echoes(fd, 1);
+    rig_.with([&] {
+        rig_.ground->resetPin(true, rig_.ns());
+        rig_.ground->resetPin(false, rig_.ns() + 1000);
+        EXPECT_EQ(rig_.ground->parameter("BD"), 3u);
+    });
+    EXPECT_TRUE(readAll(fd, 1).empty()); // the connection is reported lost ...
+    close(fd);
+    fd = engine->connect(0); // ... and the next one waits until the link is back
+    echoes(fd, 2);
+    close(fd);
+    EXPECT_EQ(rig_.with([&] { return rig_.ground->parameter("BD"); }), 7u);
+    EXPECT_EQ(rig_.with([&] { return rig_.ground->parameter("RN"); }), 3u);
+    EXPECT_TRUE(logged("Setting the modem up again"));
+}
+
+TEST_F(EngineTest, AMessageThatIsTooLongEndsItsConnectionOnly) {
+    rig_.with([&] { rig_.echo = true; });
+    auto engine = start();
+    int good = engine->connect(0), bad = engine->connect(1);
+    echoes(good, 1);
+    writeAll(bad, message(2, 9000));
+    EXPECT_TRUE(readAll(bad, 1).empty());
+    EXPECT_TRUE(logged("does not fit the radio link"));
+    echoes(good, 3);
+    close(good);
+    close(bad);
+}
+
+TEST_F(EngineTest, WhoGivesUpBeforeTheLinkIsUpFreesItsChannel) {
+    rig_.with([&] { rig_.echo = true; });
+    auto engine = start();
+    int fd = engine->connect(1);
+    ASSERT_GE(fd, 0);
+    EXPECT_EQ(engine->connect(1), -1);
+    close(fd);
+    fd = engine->connect(1);
+    ASSERT_GE(fd, 0);
+    echoes(fd, 1);
+    close(fd);
+}
+
+TEST_F(EngineTest, HeartbeatsTakeNoAir) {
+    auto engine = start();
+    int fd = engine->connect(0);
+    ASSERT_TRUE(rig_.until([&] { return rig_.isUp() && !rig_.opened.empty(); }));
+    // Ice sends a two-way request, then heartbeats while the answer takes its time.
+    Bytes request = message(1, 40), heartbeat = message(0, 14);
+    request[8] = 0;
+    heartbeat[8] = 3;
+    writeAll(fd, request);
+    ASSERT_TRUE(rig_.until([&] { return rig_.received.size() == 1; }));
+    for (int i = 0; i < 10; ++i)
+        writeAll(fd, heartbeat);
+    EXPECT_EQ(readAll(fd, 14), heartbeat); // after 5 s, from the engine, for the UAV says nothing
+    rig_.with([&] {
+        EXPECT_EQ(rig_.received.size(), 1u) << "a heartbeat crossed the air";
+        Bytes reply = message(1, 30);
+        reply[8] = 2;
+        Link_send(rig_.link(), 0, reply.data(), 30, 0);
+    });
+    EXPECT_EQ(readAll(fd, 30)[8], 2);
+    close(fd);
+}
+
+TEST_F(EngineTest, TheKeyIsSetAndNeverLogged) {
+    XBeeAT::Settings s = settings();
+    s.key = "0123456789ABCDEF";
+    auto engine = XBeeAT::Engine::get(s, [this](int, const std::string& text) {
+        std::lock_guard<std::mutex> lock(logMutex_);
+        log_ += text + "\n";
+    });
+    ASSERT_TRUE(rig_.until([&] { return rig_.ground->parameter("EE") == 1; }));
+    ASSERT_TRUE(rig_.until([&] { return !rig_.ground->inCommandMode(); }));
+    EXPECT_TRUE(logged("ATKY: OK"));
+    EXPECT_FALSE(logged("0123456789ABCDEF"));
+}
+
+TEST_F(EngineTest, TheUavMayCallWhenSomebodyListens) {
+    auto engine = start();
+    int ready = engine->listen();
+    ASSERT_GE(ready, 0);
+    EXPECT_EQ(engine->listen(), -1) << "a second listener";
+    ASSERT_TRUE(rig_.until([&] { return rig_.isUp(); }));
+    rig_.with([&] {
+        Link_openChannel(rig_.link(), 3);
+        Bytes m = message(5);
+        Link_send(rig_.link(), 3, m.data(), static_cast<U32>(m.size()), 0);
+    });
+    pollfd p{ready, POLLIN, 0};
+    ASSERT_EQ(poll(&p, 1, 60000), 1);
+    int fd = engine->accept();
+    ASSERT_GE(fd, 0);
+    EXPECT_EQ(readAll(fd, 30), message(5));
+    close(fd);
+}
+
+// A modem that was given up once is no end: the same listener is called when it is back.
+TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
+    rig_.with([&] {
+        rig_.echo = true;
+        rig_.ground->power(false, rig_.ns());
+    });
+    auto engine = start();
+    int ready = engine->listen();
+    int fd = engine->connect(0);
+    EXPECT_TRUE(readAll(fd, 1).empty()); // nobody answers: who waits is told
+    close(fd);
+    EXPECT_TRUE(logged("0 no modem answers"));
+    rig_.with([&] { rig_.ground->power(true, rig_.ns()); });
+    fd = engine->connect(0);
+    ASSERT_GE(fd, 0);
+    echoes(fd, 1);
+    rig_.with([&] {
+        Link_openChannel(rig_.link(), 3);
+        Bytes m = message(5);
+        Link_send(rig_.link(), 3, m.data(), static_cast<U32>(m.size()), 0);
+    });
+    pollfd p{ready, POLLIN, 0};
+    ASSERT_EQ(poll(&p, 1, 60000), 1);
+    int called = engine->accept();
+    ASSERT_GE(called, 0);
+    EXPECT_EQ(readAll(called, 30), message(5));
+    close(called);
+    close(fd);
+}
+
+// Nobody connects: a listener alone has the modem tried again.
+TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
+    rig_.with([&] { rig_.ground->power(false, rig_.ns()); });
+    auto engine = start();
+    ASSERT_GE(engine->listen(), 0);
+    while (!logged("given up"))
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    rig_.with([&] { rig_.ground->power(true, rig_.ns()); });
+    EXPECT_TRUE(rig_.until([&] { return rig_.isUp(); }));
+}
+
+// BYTES=10000000 from the line, and noise from a program for each 64 KiB of them: nothing hangs or
+// falls over, and afterwards the link works.
+TEST(Engine, RandomBytesFromTheLineAndFromProgramsAreSurvived) {
+    const char* more = std::getenv("BYTES");
+    const size_t total = more ? std::strtoul(more, nullptr, 0) : 10'000'000;
+    Wire wire;
+    Random random(testSeed());
+    auto engine = wire.engine();
+    Bytes noise(65536);
+    for (size_t done = 0; done < total; done += noise.size()) {
+        for (auto& byte : noise)
+            byte = static_cast<uint8_t>(random.next());
+        wire.flood(noise);
+        int fd = engine->connect(0);
+        if (fd >= 0) { // nonsense instead of a message ends the connection
+            (void)!send(fd, noise.data(), noise.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+            close(fd);
+        }
+    }
+    int fd = -1;
+    ASSERT_TRUE(wire.until([&] { return fd >= 0 || (fd = engine->connect(1)) >= 0; }));
+    Bytes m = message(5, 500), answer;
+    writeAll(fd, m);
+    ASSERT_TRUE(wire.until([&] {
+        U8 bytes[512];
+        ssize_t count = recv(fd, bytes, sizeof bytes, MSG_DONTWAIT);
+        answer.insert(answer.end(), bytes, bytes + std::max<ssize_t>(count, 0));
+        return answer.size() >= m.size();
+    })) << "the link did not recover, seed "
+        << testSeed();
+    EXPECT_EQ(answer, m);
+    std::printf("engine of the plugin: %zu bytes of noise from the line, more from programs that "
+                "talk no Ice: the "
+                "link works\n",
+                total);
+    close(fd);
+}
+
+std::string refusal(const std::string& device) {
+    XBeeAT::Settings s;
+    s.device = device;
+    try {
+        XBeeAT::Engine::get(s, [](int, const std::string&) {});
+    } catch (const std::system_error& e) {
+        return e.what();
+    }
+    return "none";
+}
+
+TEST(Engine, AFileThatIsNoTerminalIsRefusedAndStaysAsItIs) {
+    char name[] = "/tmp/icesoc-file-XXXXXX";
+    const int fd = mkstemp(name);
+    EXPECT_NE(refusal(name).find("no terminal"), std::string::npos) << refusal(name);
+    EXPECT_EQ(lseek(fd, 0, SEEK_END), 0);
+    close(fd);
+    unlink(name);
+}
+
+TEST(Engine, APortThatAnotherProgramUsesIsRefusedWithItsNumber) {
+    Wire wire;
+    int ready[2];
+    ASSERT_EQ(pipe(ready), 0);
+    const pid_t first = fork();
+    if (first == 0) {
+        XBeeAT::Clock clock("");
+        XBeeAT::SerialPort port(clock);
+        port.open(wire.path());
+        (void)!write(ready[1], "", 1);
+        pause();
+    }
+    char byte;
+    ASSERT_EQ(read(ready[0], &byte, 1), 1);
+    EXPECT_NE(refusal(wire.path()).find("process " + std::to_string(first)), std::string::npos)
+        << refusal(wire.path());
+    kill(first, SIGKILL);
+    waitpid(first, nullptr, 0);
+    EXPECT_EQ(refusal(wire.path()), "none") << "nothing is left of one that was killed";
+    close(ready[0]);
+    close(ready[1]);
+}
+
+TEST(Engine, ADeviceThatCannotBeOpenedIsAnError) {
+    XBeeAT::Settings s;
+    s.device = "/dev/no-such-port";
+    EXPECT_THROW(XBeeAT::Engine::get(s, [](int, const std::string&) {}), std::system_error);
+}
+
+} // namespace

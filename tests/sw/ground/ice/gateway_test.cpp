@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+//
+// gateway_test: icesoc-gateway between the radio and stock Ice programs that know nothing of it.
+
+#include "world.h"
+#include <csignal>
+#include <cstdlib>
+#include <future>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <utility>
+
+namespace {
+
+// The program, its output read until it says its port.
+class GatewayProgram {
+public:
+    explicit GatewayProgram(std::vector<std::string> arguments) {
+        int ends[2];
+        if (pipe2(ends, O_CLOEXEC) != 0)
+            throw std::runtime_error("no pipe");
+        arguments.insert(arguments.begin(), GATEWAY);
+        std::vector<char*> argv;
+        for (auto& argument : arguments)
+            argv.push_back(argument.data());
+        argv.push_back(nullptr);
+        pid_ = fork();
+        if (pid_ == 0) {
+            dup2(ends[1], 1);
+            dup2(ends[1], 2);
+            close_range(3, ~0u, 0); // Ice's sockets are inherited otherwise
+            execv(argv[0], argv.data());
+            _exit(127);
+        }
+        close(ends[1]);
+        out_ = ends[0];
+    }
+    ~GatewayProgram() {
+        if (pid_ > 0)
+            stop();
+        close(out_);
+    }
+    // -1: it ended without one.
+    int port() {
+        size_t at;
+        while ((at = said_.find("port ")) == std::string::npos ||
+               said_.find(" leads") == std::string::npos)
+            if (!read())
+                return -1;
+        return std::atoi(said_.c_str() + at + 5);
+    }
+    // Ends it; its exit status.
+    int stop() {
+        kill(pid_, SIGINT);
+        return wait();
+    }
+    int wait() {
+        while (read())
+            ;
+        int status = 0;
+        waitpid(pid_, &status, 0);
+        pid_ = 0;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+    const std::string& said() const { return said_; }
+
+private:
+    bool read() {
+        char bytes[512];
+        ssize_t count = ::read(out_, bytes, sizeof bytes);
+        if (count > 0)
+            said_.append(bytes, static_cast<size_t>(count));
+        return count > 0;
+    }
+    pid_t pid_ = 0;
+    int out_ = -1;
+    std::string said_;
+};
+
+class Gateway : public ::testing::Test {
+protected:
+    GatewayProgram start(std::vector<std::string> more = {}) {
+        std::vector<std::string> arguments = {
+            "-d", world_.rig.pty.path(), "-g", std::to_string(Rig::guardMs), "-l", "127.0.0.1:0"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return GatewayProgram(arguments);
+    }
+    // A program without the plugin.
+    static Ice::CommunicatorPtr plain() {
+        Ice::InitializationData data;
+        data.properties = Ice::createProperties();
+        data.properties->setProperty("Ice.Default.InvocationTimeout", "60000");
+        data.properties->setProperty("Ice.RetryIntervals", "-1");
+        return Ice::initialize(data);
+    }
+    static std::string endpoint(int port) {
+        return "tcp -h 127.0.0.1 -t 60000 -p " + std::to_string(port);
+    }
+    static std::shared_ptr<RadioTest::EchoPrx> proxy(const Ice::CommunicatorPtr& ic, int port) {
+        return Ice::uncheckedCast<RadioTest::EchoPrx>(ic->stringToProxy("echo:" + endpoint(port)));
+    }
+    World world_{testSeed()};
+};
+
+// Three have a channel of the radio each; the others wait for one.
+TEST_F(Gateway, FiveProgramsAtOnceShareThreeChannels) {
+    GatewayProgram gateway = start();
+    int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    std::vector<std::thread> programs;
+    for (int p = 0; p < 5; ++p)
+        programs.emplace_back([&, p] {
+            try {
+                Ice::CommunicatorHolder ic(plain());
+                auto echo = proxy(ic.communicator(), port);
+                for (int i = 0; i < 5; ++i)
+                    EXPECT_EQ(echo->repeat(10 * p + i, World::pattern(p, 100)),
+                              World::pattern(p, 100));
+            } catch (const std::exception& e) {
+                ADD_FAILURE() << "program " << p << ": " << e.what();
+            }
+        });
+    for (auto& program : programs)
+        program.join();
+    EXPECT_EQ(gateway.stop(), 0);
+    EXPECT_NE(gateway.said().find("messages out"), std::string::npos) << gateway.said();
+}
+
+TEST_F(Gateway, TheUavCallsTheStationBehindIt) {
+    Ice::CommunicatorHolder ic(plain());
+    auto adapter = ic->createObjectAdapterWithEndpoints("Station", "tcp -h 127.0.0.1");
+    adapter->add(std::make_shared<ListenerServant>(), Ice::stringToIdentity("station"));
+    adapter->activate();
+    auto info =
+        std::dynamic_pointer_cast<Ice::TCPEndpointInfo>(adapter->getEndpoints()[0]->getInfo());
+    GatewayProgram gateway =
+        start({"-t", "1", "--station", "127.0.0.1:" + std::to_string(info->port)});
+    int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    EXPECT_EQ(proxy(ic.communicator(), port)->callStation(10), 90);
+    // Nobody at --station: the UAV is told so, and the gateway goes on.
+    adapter->destroy();
+    EXPECT_ANY_THROW(proxy(ic.communicator(), port)->callStation(1));
+    EXPECT_EQ(proxy(ic.communicator(), port)->repeat(1, {1, 2}), (RadioTest::Bytes{1, 2}));
+    EXPECT_EQ(gateway.stop(), 0);
+    EXPECT_NE(gateway.said().find("nobody listens at 127.0.0.1"), std::string::npos);
+}
+
+TEST_F(Gateway, PythonWithoutThePlugin) {
+    GatewayProgram gateway = start();
+    int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    std::string command = "/usr/bin/python3 '" CLIENT "' '" SLICE "' '' '" + endpoint(port) + "' 0";
+    EXPECT_EQ(std::system(command.c_str()), 0) << "the gateway said:\n" << gateway.said();
+}
+
+TEST_F(Gateway, AModemThatComesBackIsUsedAgain) {
+    GatewayProgram gateway = start({"-t", "1"});
+    int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    Ice::CommunicatorHolder ic(plain());
+    world_.rig.with([&] { world_.rig.ground->power(false, world_.rig.ns()); });
+    EXPECT_ANY_THROW(proxy(ic.communicator(), port)->ice_ping()); // no modem: the connection ends
+    world_.rig.with([&] { world_.rig.ground->power(true, world_.rig.ns()); });
+    bool back = false;
+    for (int tries = 0; tries < 10 && !back; ++tries) // a busy machine may miss guard times
+        try {
+            proxy(ic.communicator(), port)->ice_ping();
+            back = true;
+        } catch (const Ice::LocalException&) {
+        }
+    EXPECT_TRUE(back);
+}
+
+// A TCP connection that says nothing.
+class SilentClient {
+public:
+    explicit SilentClient(int port) : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+        sockaddr_in to{};
+        to.sin_family = AF_INET;
+        to.sin_port = htons(static_cast<uint16_t>(port));
+        to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        EXPECT_EQ(connect(fd_, reinterpret_cast<sockaddr*>(&to), sizeof to), 0);
+    }
+    SilentClient(SilentClient&& other) : fd_(std::exchange(other.fd_, -1)) {}
+    ~SilentClient() {
+        if (fd_ >= 0)
+            close(fd_);
+    }
+    // Bytes until the connection ends; or -1, after ten seconds.
+    int untilTheEnd() {
+        for (int got = 0;;) {
+            pollfd p{fd_, POLLIN, 0};
+            char bytes[64];
+            if (poll(&p, 1, 10'000) <= 0)
+                return -1;
+            ssize_t count = recv(fd_, bytes, sizeof bytes, 0);
+            if (count <= 0)
+                return got;
+            got += static_cast<int>(count);
+        }
+    }
+    // The UAV's server has greeted it: so it has a channel.
+    bool isGreeted() {
+        char bytes[14];
+        return recv(fd_, bytes, sizeof bytes, MSG_WAITALL) == sizeof bytes;
+    }
+
+private:
+    int fd_;
+};
+
+TEST_F(Gateway, ASilentClientMakesRoomForOneThatWaits) {
+    GatewayProgram gateway = start({"--idle", "1"});
+    const int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    std::vector<SilentClient> silent;
+    for (int i = 0; i < 3; ++i) {
+        silent.emplace_back(port);
+        ASSERT_TRUE(silent.back().isGreeted());
+    }
+    Ice::CommunicatorHolder ic(plain());
+    EXPECT_EQ(proxy(ic.communicator(), port)->repeat(1, {1, 2}), (RadioTest::Bytes{1, 2}));
+    EXPECT_EQ(silent[0].untilTheEnd(), 14) << "Ice's own good-bye";
+}
+
+TEST_F(Gateway, WhoWaitsForAChannelIsTurnedAwayAfterAWhile) {
+    GatewayProgram gateway = start({"--idle", "3600", "--wait", "1"});
+    const int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    std::vector<SilentClient> silent;
+    for (int i = 0; i < 3; ++i) {
+        silent.emplace_back(port);
+        ASSERT_TRUE(silent.back().isGreeted());
+    }
+    EXPECT_EQ(SilentClient(port).untilTheEnd(), 0);
+    gateway.stop();
+    EXPECT_NE(gateway.said().find("client 4 has waited 1 s"), std::string::npos) << gateway.said();
+}
+
+TEST_F(Gateway, StatisticsComeEverySoManySeconds) {
+    GatewayProgram gateway = start({"--statistics", "2"});
+    const int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    const auto begin = std::chrono::steady_clock::now();
+    while (std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(2500))
+        SilentClient{port}; // each wakes it up
+    gateway.stop();
+    size_t lines = 0;
+    for (size_t at = 0; (at = gateway.said().find("messages out", at)) != std::string::npos; ++at)
+        ++lines;
+    const std::chrono::duration<double> lasted = std::chrono::steady_clock::now() - begin;
+    EXPECT_GE(lines, 2u) << "one after two seconds, one at the end";
+    EXPECT_LE(lines, 2 + static_cast<size_t>(lasted.count() / 2));
+}
+
+TEST(GatewayOptions, WrongOnesAreRefused) {
+    for (std::vector<std::string> wrong :
+         {std::vector<std::string>{},
+          {"-d", "/dev/no-such-port"},
+          {"-d", "/dev/null", "-l", "nonsense"},
+          {"-d", "/dev/null", "-a", "65536"},
+          {"-d", "/dev/null", "-l", "127.0.0.1:70000"},
+          {"-d", "/dev/null", "-l", "127.0.0.1:0", "-k", "/no/such/file"},
+          {"-d", "/dev/null", "-l", "127.0.0.1:0", "--station", "x"}}) {
+        GatewayProgram gateway(wrong);
+        EXPECT_NE(gateway.wait(), 0);
+        EXPECT_FALSE(gateway.said().empty());
+    }
+}
+
+} // namespace

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+//
+// rig: the other end of the ground's serial port: a modem on a pty, the air, and a UAV that is a
+// modem and a link layer. Its thread follows the machine's clock, but waits for an engine that
+// keeps step with it: where many tests run at once, time passes slowly and no time-out is early.
+
+#ifndef RIG_H
+#define RIG_H
+
+#include "clock_file.h"
+#include "ground_step.h"
+#include "rf_channel.h"
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+extern "C" {
+#include "link.h"
+}
+
+class Rig {
+public:
+    using Bytes = std::vector<uint8_t>;
+
+    explicit Rig(uint64_t seed) : air(seed), random_(seed), link_(new Link) {
+        XBee::Options g, u;
+        g.name = "ground";
+        g.set = {{"GT", guardMs}, {"D6", 1}};
+        u.name = "uav";
+        u.set = {{"BD", 7}, {"MY", 1}, {"DL", 0}};
+        ground = std::make_unique<XBee>(pty, air, g);
+        uav = std::make_unique<XBee>(line_, air, u);
+        bootUav();
+        thread_ = std::thread([this] { run(); });
+    }
+    ~Rig() {
+        stop_ = true;
+        thread_.join();
+    }
+    // Runs `f` between two steps of the models.
+    template <class F> auto with(F f) {
+        std::lock_guard<std::mutex> lock(mutex_);
+        return f();
+    }
+    // Waits until `done`; the limit only keeps a broken test from hanging.
+    template <class F> bool until(F done, int seconds = 60) {
+        auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
+        while (!with(done)) {
+            if (std::chrono::steady_clock::now() > end)
+                return false;
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        return true;
+    }
+    // The UAV's processor starts again: all that its link knew is gone.
+    void bootUav() {
+        static const Link_Port port = {onTransmit, onRandom, onMessage, onChannel,
+                                       onState,    nullptr,  nullptr};
+        Link_init(link_.get(), &port, this, 1440);
+        Link_start(link_.get(), us());
+        opened.clear();
+    }
+    Link* link() { return link_.get(); }
+    U32 us() const { return static_cast<U32>(now_ / 1000); }
+    uint64_t ns() const { return now_; }
+    bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
+
+    static constexpr uint32_t guardMs = 20;
+    RfChannel air;
+    PtyLine pty;
+    std::unique_ptr<XBee> ground, uav;
+    std::vector<std::pair<int, Bytes>> received;
+    std::vector<std::pair<int, int>> opened; // channel, 1 open, 0 close
+    bool echo = false, refuse = false, uavRuns = true;
+    // If set, takes a message instead of the UAV keeping it; called in the rig's thread, locked.
+    std::function<int(int channel, const U8* data, U32 size)> take;
+    std::function<void(int channel, bool isOpen)> opening;
+    std::function<void()> step;
+
+private:
+    static Rig& self(void* c) { return *static_cast<Rig*>(c); }
+    static int onTransmit(void* c, const U8* frame, U32 size) {
+        self(c).line_.send({frame, frame + size}, self(c).now_);
+        return 0;
+    }
+    static U32 onRandom(void* c) { return self(c).random_.next(); }
+    static int onMessage(void* c, int channel, const U8* data, U32 size) {
+        Rig& r = self(c);
+        if (r.take)
+            return r.take(channel, data, size);
+        if (r.refuse || (r.echo && Link_send(r.link(), channel, data, size, 0) == LINK_FULL))
+            return 1;
+        r.received.emplace_back(channel, Bytes(data, data + size));
+        return 0;
+    }
+    static void onChannel(void* c, int channel, int isOpen) {
+        if (self(c).opening)
+            self(c).opening(channel, isOpen != 0);
+        else
+            self(c).opened.emplace_back(channel, isOpen);
+    }
+    static void onState(void*, Link_State) {}
+
+    void run() {
+        using Steady = std::chrono::steady_clock;
+        constexpr uint64_t longestNs = 1'000'000; // between two looks at the models
+        for (auto last = Steady::now(); !stop_;) {
+            waiting_ = Steady::now();
+            step_.wait(now_);
+            {
+                std::lock_guard<std::mutex> lock(mutex_);
+                auto now = Steady::now();
+                now_ += std::min(static_cast<uint64_t>((now - last).count()), longestNs);
+                last = now;
+                clock_.set(now_);
+                air.advance(now_);
+                ground->advance(now_);
+                uav->advance(now_);
+                if (uavRuns) {
+                    Link_receive(link(), line_.received.data(),
+                                 static_cast<U32>(line_.received.size()), us());
+                    if (step)
+                        step();
+                    Link_poll(link(), us());
+                }
+                line_.received.clear();
+            }
+            std::this_thread::sleep_for(std::chrono::microseconds(300));
+        }
+    }
+
+    // An engine whose thread waits for the test is not waited for.
+    bool goesOn() const {
+        return !stop_ && std::chrono::steady_clock::now() - waiting_ < std::chrono::seconds(5);
+    }
+
+    HostLine line_;
+    Random random_;
+    std::unique_ptr<Link> link_;
+    std::atomic<bool> stop_{false};
+    uint64_t now_ = 0;
+    ClockFile clock_;
+    std::chrono::steady_clock::time_point waiting_;
+    GroundStep step_{*clock_, pty, [this] { return goesOn(); }};
+    std::mutex mutex_;
+    std::thread thread_;
+};
+
+#endif

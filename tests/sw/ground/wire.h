@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+//
+// wire: a serial port with a link layer behind it and no modem: bytes as fast as they are taken.
+// And what programs write and read.
+
+#ifndef WIRE_H
+#define WIRE_H
+
+#include "engine.h"
+#include "random.h"
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <fcntl.h>
+#include <memory>
+#include <mutex>
+#include <poll.h>
+#include <pty.h>
+#include <stdexcept>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+#include <vector>
+
+using Bytes = std::vector<uint8_t>;
+
+// A message as Ice frames it; nothing of it but the size is looked at.
+inline Bytes message(uint8_t tag, size_t size = 30) {
+    Bytes m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 7, 0, 0, 0, 0, 0};
+    m.resize(size, tag);
+    for (int i = 0; i < 4; ++i)
+        m[10 + i] = static_cast<uint8_t>(size >> 8 * i);
+    return m;
+}
+
+// Reads `size` bytes; fewer if the stream ends.
+inline Bytes readAll(int fd, size_t size) {
+    Bytes bytes(size);
+    size_t got = 0;
+    while (got < size) {
+        pollfd p{fd, POLLIN, 0};
+        if (poll(&p, 1, 60000) <= 0)
+            break;
+        ssize_t count = recv(fd, bytes.data() + got, size - got, 0);
+        if (count == 0 || (count < 0 && errno != EAGAIN))
+            break;
+        got += count > 0 ? static_cast<size_t>(count) : 0;
+    }
+    bytes.resize(got);
+    return bytes;
+}
+
+inline void writeAll(int fd, const Bytes& bytes) {
+    for (size_t done = 0; done < bytes.size();) {
+        pollfd p{fd, POLLOUT, 0};
+        if (poll(&p, 1, 60000) <= 0)
+            break;
+        ssize_t count = send(fd, bytes.data() + done, bytes.size() - done, MSG_NOSIGNAL);
+        if (count < 0 && errno != EAGAIN)
+            break;
+        done += count > 0 ? static_cast<size_t>(count) : 0;
+    }
+}
+
+class Wire {
+public:
+    Wire() {
+        static const Link_Port port = {
+            [](void* c, const U8* f, U32 n) { return self(c).put(f, n); },
+            [](void* c) { return self(c).random_.next(); },
+            [](void* c, int channel, const U8* d, U32 n) { return self(c).take(channel, d, n); },
+            [](void* c, int channel, int isOpen) {
+                self(c).open[channel] = isOpen != 0;
+                self(c).openings[channel] += isOpen != 0;
+            },
+            [](void*, Link_State) {},
+            nullptr,
+            nullptr};
+        Link_init(link_.get(), &port, this, 16); // a fast way: nothing to pace
+        Link_start(link_.get(), us());
+        if (openpty(&master_, &slave_, name_, nullptr, nullptr) != 0)
+            throw std::runtime_error("no pty");
+        termios raw;
+        tcgetattr(slave_, &raw);
+        cfmakeraw(&raw);
+        tcsetattr(slave_, TCSANOW, &raw);
+        fcntl(master_, F_SETFL, O_NONBLOCK);
+    }
+    ~Wire() {
+        close(slave_);
+        close(master_);
+    }
+    // An engine at the other end of the wire, as fast as the machine.
+    std::shared_ptr<XBeeAT::Engine> engine() {
+        XBeeAT::Settings s;
+        s.device = name_;
+        s.setUp = false;
+        s.baud = 10'000'000;
+        return XBeeAT::Engine::get(s, [this](int level, const std::string& text) {
+            std::lock_guard<std::mutex> lock(logMutex_);
+            log_ += std::to_string(level) + " " + text + "\n";
+        });
+    }
+    std::string path() const { return name_; }
+    std::string log() {
+        std::lock_guard<std::mutex> lock(logMutex_);
+        return log_;
+    }
+    // Puts bytes on the wire, throws away what comes.
+    void flood(const Bytes& bytes) {
+        for (size_t done = 0; done < bytes.size();) {
+            pollfd p{master_, POLLIN | POLLOUT, 0};
+            poll(&p, 1, 60000);
+            U8 sink[512];
+            (void)!read(master_, sink, sizeof sink);
+            ssize_t count = write(master_, bytes.data() + done, bytes.size() - done);
+            done += count > 0 ? static_cast<size_t>(count) : 0;
+        }
+    }
+    // The peer's link runs until `done`.
+    template <class F> bool until(F done, int seconds = 60) {
+        for (auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
+             !done();) {
+            if (std::chrono::steady_clock::now() > end)
+                return false;
+            pollfd p{master_, POLLIN, 0};
+            poll(&p, 1, 2);
+            U8 bytes[512];
+            ssize_t count = read(master_, bytes, sizeof bytes);
+            if (count > 0)
+                Link_receive(link_.get(), bytes, static_cast<U32>(count), us());
+            Link_poll(link_.get(), us());
+        }
+        return true;
+    }
+
+    bool echo = true;
+    bool open[LINK_CHANNELS] = {};
+    unsigned openings[LINK_CHANNELS] = {}, received[LINK_CHANNELS] = {}; // messages
+
+private:
+    int take(int channel, const U8* data, U32 size) {
+        if (echo && Link_send(link_.get(), channel, data, size, 0) == LINK_FULL)
+            return 1;
+        ++received[channel];
+        return 0;
+    }
+    static Wire& self(void* c) { return *static_cast<Wire*>(c); }
+    static U32 us() {
+        return static_cast<U32>(std::chrono::duration_cast<std::chrono::microseconds>(
+                                    std::chrono::steady_clock::now().time_since_epoch())
+                                    .count());
+    }
+    int put(const U8* f, U32 n) { return write(master_, f, n) == static_cast<ssize_t>(n) ? 0 : 1; }
+    std::mutex logMutex_;
+    std::string log_;
+    int master_ = -1, slave_ = -1;
+    char name_[128];
+    Random random_{testSeed()};
+    std::unique_ptr<Link> link_{new Link};
+};
+
+#endif

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: MIT
+//
+// tcp_test: IceC's tcp transport and peers of any manners: many at once, silent, dead or greedy
+// ones, and those that cut a connection on which nothing is said (Ice 3.8).
+
+#include "wire.h"
+
+#include <arpa/inet.h>
+#include <atomic>
+#include <chrono>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <thread>
+#include <unistd.h>
+
+extern "C" {
+#include "tcp_endpoint.h"
+}
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+int msSince(Clock::time_point begin) {
+    return static_cast<int>(
+        std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - begin).count());
+}
+
+// A peer that is no Ice at all: a socket, and what is written to it.
+class Peer {
+public:
+    explicit Peer(int port) : fd_(socket(AF_INET, SOCK_STREAM, 0)) {
+        sockaddr_in at{};
+        at.sin_family = AF_INET;
+        at.sin_port = htons(static_cast<uint16_t>(port));
+        at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        fcntl(fd_, F_SETFL, O_NONBLOCK);
+        (void)!connect(fd_, reinterpret_cast<sockaddr*>(&at), sizeof at);
+    }
+    explicit Peer(int listener, bool) : fd_(accept(listener, nullptr, nullptr)) {
+        fcntl(fd_, F_SETFL, O_NONBLOCK);
+    }
+    Peer(Peer&& other) noexcept : fd_(other.fd_) { other.fd_ = -1; }
+    Peer& operator=(Peer&& other) noexcept {
+        std::swap(fd_, other.fd_);
+        return *this;
+    }
+    ~Peer() {
+        if (fd_ >= 0)
+            close(fd_);
+    }
+    bool isConnected(int ms) {
+        pollfd wait{fd_, POLLOUT, 0};
+        int error = 1;
+        socklen_t size = sizeof error;
+        return poll(&wait, 1, ms) == 1 &&
+               getsockopt(fd_, SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0;
+    }
+    bool send(const Bytes& m) {
+        return ::send(fd_, m.data(), m.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(m.size());
+    }
+    // The next message; empty: none within `ms`, or the end.
+    Bytes receive(int ms) {
+        Bytes m(14);
+        if (!read(m.data(), 14, ms))
+            return {};
+        m.resize(static_cast<size_t>(m[10] | m[11] << 8));
+        if (!read(m.data() + 14, m.size() - 14, ms))
+            return {};
+        return m;
+    }
+
+private:
+    bool read(Ice_Byte* to, size_t size, int ms) {
+        Clock::time_point begin = Clock::now();
+        while (size > 0) {
+            pollfd wait{fd_, POLLIN, 0};
+            if (poll(&wait, 1, std::max(0, ms - msSince(begin))) != 1)
+                return false;
+            ssize_t got = recv(fd_, to, size, 0);
+            if (got <= 0)
+                return false;
+            to += got;
+            size -= static_cast<size_t>(got);
+        }
+        return true;
+    }
+    int fd_;
+};
+
+class Tcp : public ::testing::Test {
+protected:
+    Tcp() : ic_(std::make_unique<Ice_Communicator>()), tcp_(std::make_unique<TcpEndpoint>()) {
+        Ice_initialize(ic_.get());
+        EXPECT_EQ(TcpEndpoint_init(ic_.get(), tcp_.get()), ICE_OK);
+        EXPECT_EQ(
+            Ice_Communicator_createObjectAdapterWithEndpoints(ic_.get(), "A", "tcp", &adapter_),
+            ICE_OK);
+        EXPECT_EQ(Ice_ObjectAdapter_add(&adapter_, &servant_.base, "thing"), ICE_OK);
+        Ice_ObjectAdapter_activate(&adapter_);
+    }
+    ~Tcp() override {
+        stop();
+        TcpEndpoint_destroy(tcp_.get());
+    }
+    void stop() {
+        stop_ = true;
+        if (task_.joinable())
+            task_.join();
+    }
+    void serve() {
+        task_ = std::thread([this] {
+            while (!stop_) {
+                (void)Ice_Communicator_poll(ic_.get(), 20);
+                if (shutsDown_)
+                    Ice_Communicator_shutdown(ic_.get());
+                isShutDown_ = shutsDown_.load();
+            }
+        });
+    }
+    // Sends a ping and waits for its reply; heartbeats in between are passed over.
+    static bool ping(Peer& peer, int ms = 3000) {
+        if (!peer.isConnected(ms) || !peer.send(request(7, requestBody("thing", "ice_ping"))))
+            return false;
+        for (;;) {
+            Bytes m = peer.receive(ms);
+            if (m.empty() || m[8] == 2)
+                return !m.empty();
+        }
+    }
+    int port() const { return tcp_->port; }
+
+    std::unique_ptr<Ice_Communicator> ic_;
+    std::unique_ptr<TcpEndpoint> tcp_;
+    Ice_ObjectAdapter adapter_;
+    Servant servant_;
+    std::atomic<bool> stop_{false}, shutsDown_{false}, isShutDown_{false};
+    std::thread task_;
+};
+
+TEST_F(Tcp, AHundredClientsAtOnceAreServed) {
+    std::vector<Peer> peers;
+    for (int i = 0; i < 100; ++i)
+        peers.emplace_back(port());
+    for (Peer& peer : peers)
+        ASSERT_TRUE(peer.isConnected(100)) << "the system keeps them until they are accepted";
+    serve();
+    while (!peers.empty()) { // those that are served make room
+        ASSERT_TRUE(ping(peers.front())) << peers.size() << " to come";
+        peers.erase(peers.begin());
+    }
+}
+
+TEST_F(Tcp, AClientThatNeverReadsStopsNobodyForLong) {
+    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr os) {
+        static const Ice_Byte much[8000] = {0};
+        Ice_OutputStream_writeBlob(os, much, sizeof much);
+        return ICE_OK;
+    };
+    tcp_->sendMs = 200;
+    serve();
+    Peer greedy(port()), other(port());
+    ASSERT_TRUE(greedy.isConnected(1000));
+    Clock::time_point begin = Clock::now();
+    while (greedy.send(request(1, requestBody("thing", "much"))) && msSince(begin) < 3000)
+        ;
+    EXPECT_TRUE(ping(other, 3000));
+}
+
+TEST_F(Tcp, ANewPeerDisplacesTheOneThatHasBeenIdleLongest) {
+    tcp_->idleMs = 100;
+    serve();
+    std::vector<Peer> idle;
+    for (int i = 0; i < ICE_CONNECTIONS; ++i) {
+        idle.emplace_back(port());
+        ASSERT_TRUE(ping(idle.back()));
+    }
+    Peer other(port());
+    EXPECT_TRUE(ping(other, 2000));
+    EXPECT_EQ(idle[0].receive(1000), message(4, {})) << "CloseConnection: it may come again";
+    EXPECT_TRUE(ping(idle[1])) << "nobody else was closed";
+}
+
+TEST_F(Tcp, APeerWhoseOperationIsUnderWayIsNotDisplaced) {
+    tcp_->idleMs = 50;
+    Ice_Reply later{};
+    std::atomic<bool> asked{false};
+    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        Ice_Current_later(&current, &later);
+        asked = true;
+        return ICE_LATER;
+    };
+    serve();
+    std::vector<Peer> peers;
+    peers.emplace_back(port());
+    ASSERT_TRUE(peers[0].isConnected(1000));
+    ASSERT_TRUE(peers[0].send(request(3, requestBody("thing", "slow"))));
+    while (!asked)
+        std::this_thread::yield();
+    for (int i = 1; i <= ICE_CONNECTIONS; ++i) {
+        peers.emplace_back(port());
+        ASSERT_TRUE(ping(peers.back())) << i;
+    }
+    EXPECT_EQ(peers[1].receive(1000), message(4, {})) << "the idlest of the others";
+    EXPECT_EQ(peers[0].receive(1000), message(3, {}));
+    EXPECT_TRUE(peers[0].receive(100).empty()) << "it still waits";
+}
+
+TEST_F(Tcp, AConnectionWithoutCallsCarriesHeartbeats) { // Ice 3.8: else it is cut
+    tcp_->heartbeatMs = 50;
+    serve();
+    Peer peer(port());
+    ASSERT_TRUE(ping(peer));
+    for (int i = 0; i < 10; ++i)
+        ASSERT_EQ(peer.receive(500), message(3, {})) << i;
+    EXPECT_TRUE(ping(peer));
+}
+
+// A server that does what Ice 3.8 documents: it cuts a connection on which it gets nothing.
+TEST_F(Tcp, AServerThatCutsSilentConnectionsKeepsThisOne) {
+    tcp_->heartbeatMs = 50;
+    int listener = socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in at{};
+    socklen_t size = sizeof at;
+    at.sin_family = AF_INET;
+    at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    ASSERT_EQ(bind(listener, reinterpret_cast<sockaddr*>(&at), size), 0);
+    ASSERT_EQ(listen(listener, 1), 0);
+    getsockname(listener, reinterpret_cast<sockaddr*>(&at), &size);
+    int requests = 0, heartbeats = 0;
+    std::thread server([&] {
+        Peer peer(listener, true);
+        peer.send(message(3, {}));
+        for (;;) {
+            Bytes m = peer.receive(250); // its idle time-out
+            if (m.empty())
+                return;
+            (m[8] == 0 ? requests : heartbeats) += 1;
+            if (m[8] == 0) {
+                Bytes reply = {m[14], m[15], m[16], m[17], 0, 6, 0, 0, 0, 1, 1};
+                peer.send(message(2, reply));
+            }
+        }
+    });
+    Ice_ObjectPrx prx;
+    std::string where = "thing:tcp -p " + std::to_string(ntohs(at.sin_port));
+    ASSERT_EQ(Ice_Communicator_stringToProxy(ic_.get(), where.c_str(), &prx), ICE_OK);
+    EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OK);
+    int connection = prx.connection;
+    Clock::time_point begin = Clock::now();
+    while (msSince(begin) < 1000)
+        (void)Ice_Communicator_poll(ic_.get(), 20);
+    EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OK);
+    EXPECT_EQ(prx.connection, connection);
+    Ice_Communicator_destroy(ic_.get(), 500);
+    server.join();
+    EXPECT_EQ(requests, 2);
+    EXPECT_GT(heartbeats, 5);
+    close(listener);
+}
+
+TEST_F(Tcp, APeerThatIsGoneWithoutAWordIsLookedFor) {
+    serve();
+    Peer peer(port());
+    ASSERT_TRUE(ping(peer));
+    stop();
+    int on = 0;
+    socklen_t size = sizeof on;
+    for (const auto& c : tcp_->connections)
+        if (c.fd >= 0)
+            (void)getsockopt(c.fd, SOL_SOCKET, SO_KEEPALIVE, &on, &size);
+    EXPECT_EQ(on, 1);
+}
+
+TEST_F(Tcp, AfterShutdownNobodyListens) {
+    serve();
+    Peer before(port());
+    ASSERT_TRUE(ping(before));
+    int was = port();
+    shutsDown_ = true;
+    while (!isShutDown_)
+        std::this_thread::yield();
+    Peer after(was);
+    EXPECT_FALSE(after.isConnected(500));
+    ASSERT_TRUE(before.send(request(8, requestBody("thing", "ice_ping"))));
+    EXPECT_EQ(before.receive(1000), message(4, {}));
+}
+
+} // namespace

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+//
+// fuzz_link: libFuzzer target of the link layer. The input is a little program: bytes for the
+// receiver, with or without a good checksum, time, messages to send. Two links: one gets it all,
+// the other is its peer, so that a session comes up first. Nothing may crash, hang, or write where
+// it should not.
+//
+// An input byte names the step (mod 8), the next its argument n:
+//   0,1 n bytes as they are    2,3 a frame of n bytes, checksum of the session added   4 the same,
+//   of the handshake    5 n ms pass    6 a message of n bytes is sent on channel n mod 4, opened if
+//   need be 7 n frames of the peer's come through
+
+#include <cstdint>
+#include <cstring>
+#include <deque>
+#include <memory>
+#include <vector>
+
+extern "C" {
+#include "link.h"
+}
+
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+
+struct Node {
+    std::unique_ptr<Link> link{new Link};
+    std::deque<Bytes> out;
+    uint32_t nonce = 1;
+    uint64_t sum = 0; // so that every byte handed over is read
+    bool busy = false;
+};
+
+Node& node(void* c) {
+    return *static_cast<Node*>(c);
+}
+
+const Link_Port port = {
+    [](void* c, const U8* f, U32 n) {
+        if (node(c).out.size() > 50)
+            return 1;
+        node(c).out.emplace_back(f, f + n);
+        return 0;
+    },
+    [](void* c) { return node(c).nonce = node(c).nonce * 1664525u + 1013904223u; },
+    [](void* c, int channel, const U8* d, U32 n) {
+        if (n < 1 || n > LINK_MAX_MESSAGE || channel < 0 || channel >= LINK_CHANNELS)
+            __builtin_trap();
+        for (U32 i = 0; i < n; ++i)
+            node(c).sum += d[i];
+        return node(c).busy ? 1 : 0;
+    },
+    [](void* c, int channel, int isOpen) {
+        node(c).sum += static_cast<uint64_t>(channel + isOpen);
+    },
+    [](void* c, Link_State state) { node(c).sum += state; },
+    [](void* c, int, U32 tag, Link_Outcome) { node(c).sum += tag; },
+    [](void* c) { ++node(c).sum; }};
+
+class Machine {
+public:
+    Machine() {
+        for (Node* n : {&a_, &b_}) {
+            Link_init(n->link.get(), &port, n, 1440);
+            Link_start(n->link.get(), now_);
+            n->nonce += 77;
+        }
+        for (int i = 0; i < 3; ++i) {
+            pass(400);
+            cross(a_, b_, 99);
+            cross(b_, a_, 99);
+        }
+    }
+    void run(const uint8_t* p, size_t size) {
+        while (size >= 2) {
+            uint8_t step = p[0] & 7, n = p[1];
+            p += 2;
+            size -= 2;
+            size_t take = step < 5 ? (n < size ? n : size) : 0;
+            Bytes bytes(p, p + take);
+            p += take;
+            size -= take;
+            if (step < 2)
+                feed(bytes);
+            else if (step < 5)
+                feed(frame(bytes, step == 4 ? LINK_NO_SEED : a_.link->session.key));
+            else if (step == 5)
+                pass(n);
+            else if (step == 6)
+                send(n);
+            else
+                cross(b_, a_, n);
+            a_.busy = n & 0x40 && step == 5;
+        }
+        a_.busy = false;
+        pass(12000);
+    }
+
+private:
+    static Bytes frame(Bytes bytes, U32 key) {
+        if (bytes.size() < 3)
+            return bytes;
+        if (bytes.size() > 98)
+            bytes.resize(98);
+        bytes[0] = static_cast<uint8_t>((bytes[0] & 0x80) | (bytes.size() - 3));
+        U32 crc = link_crc(key, bytes.data(), static_cast<U32>(bytes.size()));
+        bytes.push_back(static_cast<uint8_t>(crc >> 8));
+        bytes.push_back(static_cast<uint8_t>(crc));
+        return bytes;
+    }
+    void feed(const Bytes& bytes) {
+        Link_receive(a_.link.get(), bytes.data(), static_cast<U32>(bytes.size()), now_);
+    }
+    void pass(unsigned ms) {
+        for (unsigned i = 0; i < ms; i += 20) {
+            now_ += 20000;
+            Link_poll(a_.link.get(), now_);
+            Link_poll(b_.link.get(), now_);
+            cross(a_, b_, 1);
+        }
+    }
+    void send(uint8_t n) {
+        Bytes message(n, n);
+        Link_Status status = Link_send(a_.link.get(), n % 4, message.data(), n, n);
+        if (status == LINK_CLOSED)
+            Link_openChannel(a_.link.get(), n % 4);
+        if (n == 255)
+            Link_closeChannel(a_.link.get(), 3);
+    }
+    void cross(Node& from, Node& to, unsigned count) {
+        for (; count && !from.out.empty(); --count) {
+            Bytes bytes = from.out.front();
+            from.out.pop_front();
+            Link_receive(to.link.get(), bytes.data(), static_cast<U32>(bytes.size()), now_);
+        }
+    }
+    Node a_, b_;
+    U32 now_ = 0xFFFFF000u;
+};
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    Machine().run(data, size);
+    return 0;
+}

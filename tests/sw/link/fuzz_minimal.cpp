@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+//
+// link_minimal_fuzz: libFuzzer target of the minimal link layer. The input is a little program:
+// bytes for the receiver, with or without a good checksum, time, messages to send. Nothing may
+// crash, hang, or write where it should not, and no message may be of an impossible size.
+//
+// An input byte names the step (mod 8), the next its argument n:
+//   0 n bytes as they are   1, 2 a frame of n bytes, the session's epoch and checksum added   3 a
+//   data frame in order of n bytes, with flags and channel from the input   4 HELLO with nonce n
+//   5 n ms pass   6 a message of n (large n: many) bytes on channel n mod 4, opened if need be;
+//   every fourth closes it   7 the program takes messages (n even) or not
+
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+extern "C" {
+#include "link.h"
+}
+
+namespace {
+
+struct Node {
+    std::unique_ptr<Link> link{new Link};
+    uint64_t sum = 0; // so that every byte handed over is read
+    uint32_t nonce = 1, frames = 0;
+    bool busy = false;
+};
+
+Node& node(void* c) {
+    return *static_cast<Node*>(c);
+}
+
+const Link_Port port = {
+    [](void* c, const U8* f, U32 n) {
+        if (n < LINK_OVERHEAD || n > LINK_MAX_FRAME || (f[0] & 0x7FU) + LINK_OVERHEAD != n)
+            __builtin_trap();
+        for (U32 i = 0; i < n; ++i)
+            node(c).sum += f[i];
+        return ++node(c).frames % 16 == 0 ? 1 : 0;
+    },
+    [](void* c) { return node(c).nonce = node(c).nonce * 1664525u + 1013904223u; },
+    [](void* c, int channel, const U8* d, U32 n) {
+        if (n < 1 || n > LINK_MAX_MESSAGE || channel < 0 || channel >= LINK_CHANNELS)
+            __builtin_trap();
+        for (U32 i = 0; i < n; ++i)
+            node(c).sum += d[i];
+        return node(c).busy ? 1 : 0;
+    },
+    [](void* c, int channel, int isOpen) {
+        node(c).sum += static_cast<uint64_t>(channel + isOpen);
+    },
+    [](void* c, Link_State state) { node(c).sum += state; },
+    [](void* c, int, U32 tag, Link_Outcome) { node(c).sum += tag; },
+    [](void* c) { ++node(c).sum; }};
+
+void feed(Link* link, std::vector<uint8_t> frame, U32 key, U32 now) {
+    U32 crc = link_crc(key, frame.data(), static_cast<U32>(frame.size()));
+    frame.push_back(static_cast<uint8_t>(crc >> 8));
+    frame.push_back(static_cast<uint8_t>(crc));
+    Link_receive(link, frame.data(), static_cast<U32>(frame.size()), now);
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    Node self;
+    Link* link = self.link.get();
+    std::vector<uint8_t> large(LINK_MAX_MESSAGE, 0x5A);
+    U32 now = 0xFFFFF000u;
+    Link_init(link, &port, &self, 1440);
+    feed(link, {0x84, LINK_VERSION, 0x20, 1, 2, 3, 4}, LINK_NO_SEED, now);
+    for (size_t at = 0; at + 2 <= size;) {
+        unsigned step = data[at] & 7, n = data[at + 1];
+        at += 2;
+        auto bytes = [&](size_t count) {
+            count = count < size - at ? count : size - at;
+            std::vector<uint8_t> taken(data + at, data + at + count);
+            at += count;
+            return taken;
+        };
+        if (step == 0) {
+            auto raw = bytes(n);
+            Link_receive(link, raw.data(), static_cast<U32>(raw.size()), now);
+        } else if (step <= 3) {
+            auto frame = bytes(3 + n % (LINK_MAX_PAYLOAD + 1));
+            if (frame.size() < 3)
+                continue;
+            frame[0] = static_cast<uint8_t>((step == 3 ? 0 : frame[0] & 0x80) | (frame.size() - 3));
+            frame[2] = static_cast<uint8_t>((frame[2] & ~0x1C) | LINK_KEY_EPOCH(link->key) << 2);
+            if (step == 3)
+                frame[1] = link->receiveNext;
+            now += 30000; // a silence, so that the frame is seen
+            feed(link, frame, link->key, now);
+        } else if (step == 4) {
+            now += 30000;
+            feed(link, {0x84, LINK_VERSION, 0x20, static_cast<uint8_t>(n), 2, 3, 4}, LINK_NO_SEED,
+                 now);
+        } else if (step == 5) {
+            now += n * 1000u * (n & 1 ? 1u : 40u);
+        } else if (step == 6) {
+            int channel = static_cast<int>(n % 4);
+            if (Link_send(link, channel, large.data(), n * 5u, n) == LINK_CLOSED)
+                (void)Link_openChannel(link, channel);
+            else if (n / 4 % 4 == 3)
+                (void)Link_closeChannel(link, channel);
+        } else {
+            self.busy = n & 1;
+        }
+        Link_poll(link, now);
+        (void)Link_deadline(link, now);
+    }
+    Link_stop(link, now);
+    return 0;
+}

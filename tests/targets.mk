@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+
+# MINUTES=60 goes on for an hour: a third the link alone, a third stock Ice through the plugin to a stock server, a third
+# to IceC on the chip's RTL (there simulated seconds). Then noise:
+# FUZZED bytes into the modem controller's UART (10,000,000 take 5 minutes of a core), 10,000,000 into
+# the link layer and the plugin's engine.
+MINUTES ?= 4
+FUZZED  ?= 1000000
+third   := $$(echo $(MINUTES) | awk '{print $$1 / 3}')
+seconds := $$(echo $(MINUTES) | awk '{print $$1 * 20}')
+
+soak: $(BUILD)/build.ninja ## endurance of the radio: MINUTES=4 of messages and of stock Ice's calls, bad weather, reboots; FUZZED=1000000 bytes of noise; SEED=1
+	@$(NINJA) --quiet soak test_radio_ice test_chip_soak test_engine test_modem_soak test_link
+	@$(BUILD)/tests/soak/soak --minutes $(third) --seed $(SEED)
+	@SEED=$(SEED) SOAK_SECONDS=$(seconds) $(BUILD)/tests/sw/ground/ice/test_radio_ice --gtest_brief=1 --gtest_filter='IceSoak*'
+	@SEED=$(SEED) SOAK_SECONDS=$(seconds) $(BUILD)/tests/sw/ground/chip/test_chip_soak --gtest_brief=1
+	@SEED=$(SEED) $(BUILD)/tests/sw/link/test_link --gtest_brief=1 --gtest_filter='*TenMillion*'
+	@SEED=$(SEED) $(BUILD)/tests/sw/ground/test_engine --gtest_brief=1 --gtest_filter='Engine.RandomBytes*'
+	@SEED=$(SEED) SOAK_BYTES=$(FUZZED) $(BUILD)/tests/hdl/modem/test_modem_soak --gtest_brief=1
+.PHONY: soak
+
+# The regression: the tests of `make test` with selection, history, waveforms of failures and a page.
+BLOCK    ?=
+REPEAT   ?= 1
+WAVES    ?= 3
+LAUNCHER ?= local
+CHANGED  ?=
+FAILED   ?=
+KEPT     ?=
+# Seeds that `make nightly` draws
+NIGHTLY  ?= 3
+
+regress: setup-tests $(BUILD)/build.ninja ## run the regression, write build/regress/report.html (NAME= BLOCK= LABEL= CHANGED=1 FAILED=1 KEPT=1 SEED=n|random REPEAT=n LAUNCHER=slurm)
+	@$(NINJA) --quiet regress
+	@$(BUILD)/tests/regress/regress --make --build $(BUILD) --jobs $(TESTS) --seed $(SEED) --repeat $(REPEAT) --waves $(WAVES) \
+	    --launcher $(LAUNCHER) $(if $(NAME),--name '$(NAME)') $(if $(BLOCK),--block '$(BLOCK)') \
+	    $(if $(LABEL),--label '$(LABEL)') $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed) $(if $(KEPT),--kept)
+
+# Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them.
+nightly: setup-tests build ## what a timer runs: seeds that have failed, then the regression with fresh seeds (NIGHTLY=3 of them)
+	@status=0; tool="$(BUILD)/tests/regress/regress --build $(BUILD) --jobs $(TESTS) --waves $(WAVES) --launcher $(LAUNCHER)"; \
+	    $$tool --kept $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
+	    $$tool --seed random --repeat $(NIGHTLY) $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
+	    exit $$status
+
+# MOMENTS=1000: as many as a night has; each is drawn from SEED.
+MOMENTS ?= 10
+faults: $(BUILD)/build.ninja ## kill, stop and starve each process of a mission at ten moments drawn from a seed (MOMENTS=10 SEED=1 NAME=killed), expect docs/faults.md
+	@$(NINJA) mission
+	@/usr/bin/python3 tests/e2e/mission/faults.py "$(CURDIR)" "$(BUILD)" build/faults --seed $(SEED) --moments $(MOMENTS) $(if $(NAME),--only '$(NAME)')
+
+proofs: $(BUILD)/build.ninja ## run all formal proofs, print the processor time of all together
+	@$(NINJA) regmaps
+	@ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error -L formal
+	@cat $(BUILD)/tests/hdl/formal/*/cpu | awk '{ n += $$1 } END { printf "%d proofs, %.0f s of a processor\n", NR, n }'
+
+# Gates: tests/regress/coverage_gates.json
+coverage: setup-tests $(BUILD)/build.ninja ## lines, branches and toggles that the tests reach, write build/coverage/html
+	@$(NINJA) coverage regress
+	@tests/regress/coverage.sh $(BUILD) $(JOBS)
+
+.PHONY: regress nightly faults proofs coverage

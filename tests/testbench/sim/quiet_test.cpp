@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+//
+// quiet_test: a flight in which quiet clocks pass at once is, clock by clock, the one in which each
+// is evaluated. COMPARE_MS=1000 compares a second of it.
+
+#include "VSoc___024root.h"
+#include "ground.h"
+#include "uav_machine.h"
+#include <cstdlib>
+#include <gtest/gtest.h>
+
+namespace {
+
+struct Event {
+    uint64_t clock;
+    uint32_t what, value;
+    bool operator==(const Event& o) const {
+        return clock == o.clock && what == o.what && value == o.value;
+    }
+};
+
+struct Flight {
+    std::vector<Event> events;
+    std::vector<unsigned char> chip, memory;
+    uint64_t clocks = 0, evaluated = 0;
+    size_t replies = 0;
+};
+
+// Of the flight, from reset on and from the first call on, so many are compared.
+uint64_t comparedNs() {
+    const char* text = std::getenv("COMPARE_MS");
+    return static_cast<uint64_t>(1e6 * (text ? std::atof(text) : 40));
+}
+
+// Flies until the first call is answered, and a little longer.
+Flight fly(bool evaluateAll) {
+    Flight f;
+    RfChannel air(testSeed());
+    Ground ground(air, testSeed() + 5);
+    SocModel soc(air, Ground::uavModem());
+    uav_guardMs = Ground::guardMs;
+    auto note = [&](uint32_t what, uint32_t value) {
+        f.events.push_back({soc.cycles(), what, value});
+    };
+    soc.onTime([&](uint64_t now) { return ground.advance(now); });
+    soc.onIrq([&](bool high) { note(0, high); });
+    soc.fsmc().onWord = [&](uint32_t address, uint32_t value, bool isWrite) {
+        note(address | isWrite, value);
+    };
+    air.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome outcome) {
+        note(1, static_cast<uint32_t>(packet.bytes.size() << 8) | static_cast<uint32_t>(outcome));
+    });
+    soc.reset();
+    soc.evaluateAll(evaluateAll);
+    int sent = 0;
+    bool opened = false;
+    uint64_t called = 0;
+    UavMachine machine(soc, [&] {
+        if (!opened && ground.isUp()) {
+            ground.open();
+            opened = true;
+        }
+        if (ground.validated && !called) {
+            called = soc.now();
+            f.clocks -= soc.cycles();
+            f.evaluated -= soc.evaluated();
+            soc.evaluateAll(evaluateAll);
+        } else if (!called && soc.now() > comparedNs() / 10) {
+            soc.evaluateAll(false);
+        }
+        if (called && static_cast<int>(ground.replies.size()) == sent)
+            ground.ping(++sent, "hwengine1");
+        return (!called || soc.now() < called + comparedNs()) && soc.now() < 20'000'000'000;
+    });
+    machine.run();
+    // The state lies between the first pin and the model's pointer to itself.
+    const auto& root = *soc.chip().rootp;
+    f.chip.assign(reinterpret_cast<const unsigned char*>(&root.clk_i),
+                  reinterpret_cast<const unsigned char*>(&root.vlSymsp));
+    f.memory.assign(soc.memory().data(), soc.memory().data() + soc.memory().size());
+    f.clocks += soc.cycles();
+    f.evaluated += soc.evaluated();
+    f.replies = ground.replies.size();
+    return f;
+}
+
+TEST(Quiet, AFlightIsTheSameWithQuietClocksPassedAtOnce) {
+    Flight quick = fly(false), slow = fly(true);
+    EXPECT_EQ(quick.clocks, slow.clocks);
+    EXPECT_EQ(quick.replies, slow.replies);
+    ASSERT_EQ(quick.events.size(), slow.events.size());
+    for (size_t i = 0; i < quick.events.size(); ++i)
+        ASSERT_TRUE(quick.events[i] == slow.events[i])
+            << "event " << i << " in clock " << quick.events[i].clock << ", not "
+            << slow.events[i].clock;
+    EXPECT_TRUE(quick.memory == slow.memory);
+    EXPECT_TRUE(quick.chip == slow.chip);
+    EXPECT_GT(quick.replies, 0u);
+    EXPECT_GT(quick.events.size(), 100u);
+    EXPECT_EQ(slow.evaluated, slow.clocks);
+    EXPECT_LT(quick.evaluated * 2, quick.clocks);
+    std::printf("%.1f million clocks, %.2f million evaluated, %zu events, %zu replies\n",
+                static_cast<double>(quick.clocks) / 1e6, static_cast<double>(quick.evaluated) / 1e6,
+                quick.events.size(), quick.replies);
+}
+
+} // namespace

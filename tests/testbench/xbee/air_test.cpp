@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+//
+// air_test: the air as it is: one direction at a time, the modem's own time, retries by RR, fading,
+// interference, recorded traces. Sources of the figures: docs/models.md.
+
+#include "pair.h"
+#include <cstdio>
+#include <fstream>
+
+namespace {
+
+class TrueAir : public Pair {
+protected:
+    TrueAir() { perfect = false; }
+    // Keeps a modem's input buffer full, as CTS allows.
+    static void fill(HostLine& line, uint64_t now) {
+        if (line.cts())
+            line.send(Bytes(10, 'x'), now);
+    }
+    // Bits a second at both hosts together while `a`, and `b` if asked, send without a pause.
+    double throughput(bool both) {
+        const uint64_t begin = now, seconds = 4;
+        lineA.received.clear();
+        lineB.received.clear();
+        while (now - begin < seconds * 1000 * ms) {
+            fill(lineA, now);
+            if (both)
+                fill(lineB, now);
+            run(ms / 2);
+        }
+        double bytes = static_cast<double>(lineA.received.size() + lineB.received.size());
+        return 8 * bytes / seconds;
+    }
+};
+using Retries = TrueAir;
+
+TEST_F(TrueAir, FullPacketsLeaveAt80KilobitsASecond) {
+    power({{"BD", 7}}, {{"BD", 7}});
+    EXPECT_NEAR(throughput(false), 80e3, 2e3);
+}
+
+TEST_F(TrueAir, AndAt47WithEncryption) {
+    power({{"BD", 7}, {"EE", 1}}, {{"BD", 7}, {"EE", 1}});
+    EXPECT_NEAR(throughput(false), 47e3, 1e3);
+}
+
+TEST_F(TrueAir, BothDirectionsAtOnceShareWhatOneHas) {
+    power({{"BD", 7}, {"RN", 3}}, {{"BD", 7}, {"RN", 3}});
+    double both = throughput(true);
+    EXPECT_LT(both, 85e3) << "twice 80 kb/s would be full duplex";
+    EXPECT_GT(both, 65e3);
+    double heardA = static_cast<double>(lineA.received.size());
+    EXPECT_NEAR(heardA / static_cast<double>(lineB.received.size()), 1, 0.15);
+}
+
+// Hosts that write in step: without RN most packets are lost, with RN 3 hardly any.
+TEST_F(TrueAir, RNSavesModemsThatWriteInStep) {
+    for (uint32_t rn : {0u, 3u}) {
+        power({{"BD", 7}, {"RN", rn}}, {{"BD", 7}, {"RN", rn}});
+        uint64_t lost = air.counters().lost;
+        for (int i = 0; i < 100; ++i) {
+            send(std::string(100, 'x'));
+            lineB.send(Bytes(100, 'y'), now);
+            run(40 * ms);
+        }
+        lost = air.counters().lost - lost;
+        EXPECT_TRUE(rn ? lost <= 2 : lost >= 80) << "RN " << rn << ": " << lost << " of 200";
+    }
+}
+
+TEST_F(TrueAir, AnEncryptedFrameCarriesItsSendersAddressAndFiveBytes) {
+    perfect = true;
+    power({{"EE", 1}, {"RO", 0}}, {{"EE", 1}});
+    uint64_t begin = now;
+    send("x");
+    run(10 * ms);
+    EXPECT_EQ(packets[0].time - begin, RfChannel::airTimeNs(1 + 5 + 6));
+}
+
+TEST_F(Retries, WithRRTheTriesAreMadeAgainAfter200To248Milliseconds) {
+    power({{"RR", 1}, {"RO", 0}});
+    air.weather.tryLoss = 1;
+    auto tries = [this] { return air.counters().airNs / RfChannel::airTimeNs(1); };
+    send("x");
+    run(200 * ms); // the first four take 13 of them
+    EXPECT_EQ(tries(), 4u);
+    run(100 * ms);
+    EXPECT_EQ(tries(), 8u);
+}
+
+TEST_F(Retries, ABroadcastGoesRRAndTwoTimesAndArrivesOnce) {
+    for (uint32_t rr : {0u, 2u}) {
+        power({{"DL", 0xFFFF}, {"RR", rr}, {"RO", 0}});
+        uint64_t before = air.counters().airNs;
+        send("x");
+        run(100 * ms);
+        EXPECT_EQ((air.counters().airNs - before) / (RfChannel::airTimeNs(1) - 544'000),
+                  rr ? rr + 2 : 1);
+        EXPECT_EQ(heardB(), "x");
+    }
+}
+
+TEST_F(Retries, AModemThatIsNotThereCostsAllTries) {
+    power({{"DL", 9}, {"RO", 0}});
+    send("x");
+    run(100 * ms);
+    EXPECT_EQ(air.counters().retries, 3u);
+    EXPECT_EQ(a->parameter("EA"), 4u);
+}
+
+TEST_F(Retries, WithRRAFailureHasAStatusOfItsOwn) {
+    for (uint32_t rr : {0u, 1u}) {
+        power({{"AP", 1}, {"RR", rr}});
+        air.weather.tryLoss = 1;
+        heard();
+        lineA.send({0x7E, 0x00, 0x06, 0x01, 0x01, 0x00, 0x02, 0x00, 'x', 0x83}, now);
+        run(500 * ms);
+        std::string status = heard();
+        ASSERT_EQ(status.size(), 7u);
+        EXPECT_EQ(static_cast<uint8_t>(status[5]), rr ? 0x21 : 0x01);
+    }
+}
+
+TEST_F(TrueAir, A64BitSourceComesInFrames80) {
+    power({{"MY", 0xFFFE}, {"RO", 0}}, {{"AP", 1}});
+    heardB();
+    send("x");
+    run(50 * ms);
+    std::string frame = heardB();
+    ASSERT_EQ(frame.size(), 16u);
+    EXPECT_EQ(static_cast<uint8_t>(frame[3]), 0x80);
+    EXPECT_EQ(frame.substr(4, 8), std::string("\x00\x13\xA2\x00\x00\x00\x00\x0A", 8));
+    EXPECT_EQ(static_cast<uint8_t>(frame[12]), 40) << "-dBm";
+}
+
+// A microwave oven, on for half of each 20 ms.
+TEST_F(TrueAir, AnInterferersShareOfTheTimeIsLost) {
+    power({{"BD", 7}, {"RN", 2}}, {{"BD", 7}});
+    double without = throughput(false);
+    air.weather.interference = 0.5;
+    double with = throughput(false);
+    EXPECT_LT(with, 0.8 * without);
+    EXPECT_GT(with, 0.2 * without);
+}
+
+TEST_F(TrueAir, StrengthFallsWithDistanceAndTriesFade) {
+    power({{"RO", 0}});
+    air.weather.distance = 100; // 80 dB: 12 dB above the sensitivity
+    for (int i = 0; i < 200; ++i) {
+        send("x");
+        run(50 * ms);
+    }
+    double missed = static_cast<double>(air.counters().retries) /
+                    (200.0 + static_cast<double>(air.counters().retries));
+    EXPECT_NEAR(missed, 0.06, 0.04) << "Rayleigh: 1 - exp(-10^-1.2)";
+    air.weather.distance = 10000;
+    send("y");
+    run(50 * ms);
+    EXPECT_EQ(heardB().find('y'), std::string::npos);
+}
+
+class Traces : public TrueAir {
+protected:
+    std::string write(const std::string& text) {
+        std::string path = ::testing::TempDir() + "xbee_trace.csv";
+        std::ofstream(path) << text;
+        return path;
+    }
+    std::string fault(const std::string& text) {
+        try {
+            RfTrace trace(write(text));
+        } catch (const std::runtime_error& error) {
+            std::string what = error.what();
+            return what.substr(what.find(".csv") + 4);
+        }
+        return "";
+    }
+};
+
+TEST_F(Traces, AreFollowedRowByRow) {
+    power({{"RO", 0}});
+    uint64_t second = 1000 * ms;
+    air.weather.trace = std::make_shared<RfTrace>(
+        write("time_s,loss,rssi_dbm,delay_ms\n0,0,-50,0\n1,1,-90,0\n2,0,-70,30\n"));
+    now = second / 2;
+    send("a");
+    run(50 * ms);
+    EXPECT_EQ(heardB(), "a");
+    EXPECT_EQ(b->parameter("DB"), 50u);
+    run(second);
+    send("b");
+    run(50 * ms);
+    EXPECT_EQ(heardB(), "");
+    run(second);
+    send("c");
+    run(30 * ms);
+    EXPECT_EQ(heardB(), "") << "delayed";
+    run(30 * ms);
+    EXPECT_EQ(heardB(), "c");
+    EXPECT_EQ(b->parameter("DB"), 70u);
+}
+
+TEST_F(Traces, ThatAreWrongAreRefusedWithTheirLine) {
+    const std::string head = "time_s,loss,rssi_dbm,delay_ms\n";
+    EXPECT_EQ(fault("time,loss\n"), ":1: the heading is not 'time_s,loss,rssi_dbm,delay_ms'");
+    EXPECT_EQ(fault(head + "0,0,-50\n"), ":2: not four numbers");
+    EXPECT_EQ(fault(head + "0,2,-50,0\n"),
+              ":2: time and delay are not negative, loss is from 0 to 1");
+    EXPECT_EQ(fault(head + "1,0,-50,0\n1,0,-50,0\n"), ":3: time does not grow");
+    EXPECT_EQ(fault(head), ":2: there is no row");
+}
+
+} // namespace

@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""arrows: holds every #include to the table of rooms in docs/architecture.md, and libraries to having no circles.
+
+    arrows.py TREE                the includes of TREE, a checkout
+    arrows.py --circles LIBRARY [PREFIX...]   the object files of a static library: none needs one that needs it
+                                  back; files whose names begin with one PREFIX count as one (natural recursion)
+
+A row of the table is "| `room` | `room it may use`, ... |"; a room is a folder, the longest that fits a file. A file
+may include from its own room and from those its row names. Exit status 1: an arrow that no row allows, or a circle.
+"""
+import os
+import re
+import subprocess
+import sys
+
+PAGE = "docs/architecture.md"
+
+
+def read_table(tree):
+    """The rooms that PAGE lists, each with the set of rooms that it may use."""
+    rooms = {}
+    for line in open(os.path.join(tree, PAGE)):
+        row = re.match(r"\| (`[^|]*`) \| ([^|]*)\|", line)
+        if row:
+            used = set(re.findall(r"`([^`]+)`", row.group(2)))
+            for room in re.findall(r"`([^`]+)`", row.group(1)):
+                rooms[room] = used
+    return rooms
+
+
+def tracked(tree):
+    """Paths of the C, C++ and Verilog files of the checkout that people write."""
+    names = subprocess.run(["git", "-C", tree, "ls-files", "-co", "--exclude-standard"],
+                           capture_output=True, text=True, check=True).stdout.split("\n")
+    return [n for n in names
+            if re.search(r"\.(c|h|cpp|v|vh|in)$", n) and "/golden" not in n and "/errors/" not in n
+            and os.path.isfile(os.path.join(tree, n))]
+
+
+def room_of(path, rooms):
+    """The room of a file; the tests and test vectors that lie beside a core are of the room `tests`."""
+    if re.search(r"_(test|vectors)\.(cpp|h)$", path):
+        return "tests"
+    while path:
+        path = os.path.dirname(path)
+        if path in rooms:
+            return path
+    return None
+
+
+def wrong_arrows(tree):
+    rooms = read_table(tree)
+    if not rooms:
+        return [f"{PAGE}: has no table of rooms"]
+    files = tracked(tree)
+    by_name = {}
+    for path in files:
+        by_name.setdefault(os.path.basename(path), []).append(path)
+    wrong = [f"{PAGE}: `{room}` is no folder" for room in sorted(rooms) if not os.path.isdir(os.path.join(tree, room))]
+    wrong += [f"{PAGE}: `{used}`, which `{room}` may use, has no row" for room in sorted(rooms)
+              for used in sorted(rooms[room]) if used not in rooms]
+    for path in files:
+        room = room_of(path, rooms)
+        if not room:
+            wrong.append(f"{path}: its folder is in no room of {PAGE}")
+            continue
+        for number, line in enumerate(open(os.path.join(tree, path), errors="replace"), 1):
+            include = re.match(r'\s*[#`]include "([^"]+)"', line)
+            if not include:
+                continue
+            name = include.group(1)
+            places = [p for p in by_name.get(os.path.basename(name), [])
+                      if ("/" + p).endswith("/" + name.replace("../", ""))]
+            # A generated header has no place. Of several files of one name, one that may be used is meant.
+            targets = {room_of(p, rooms) for p in places}
+            if targets and room not in targets and not targets & rooms[room]:
+                wrong.append(f"{path}:{number}: {room} may not use {' or '.join(sorted(map(str, targets)))} ({name})")
+    return wrong
+
+
+def circles(library, prefixes):
+    """Circles among a library's object files, each as a sentence. Files of one prefix count as one."""
+    defines, needs = {}, {}
+    for line in subprocess.run(["nm", "-A", library], capture_output=True, text=True, check=True).stdout.split("\n"):
+        part = re.match(r".*?:([^:]+):\s*\S*\s+([A-Za-z]) (\S+)$", line)
+        if not part:
+            continue
+        file, kind, symbol = part.groups()
+        file = next((p for p in prefixes if file.startswith(p)), file)
+        if kind == "U":
+            needs.setdefault(file, set()).add(symbol)
+        elif kind.isupper():
+            defines[symbol] = file
+    uses = {f: {defines[s]: s for s in names if defines.get(s, f) != f} for f, names in needs.items()}
+    found, done = [], set()
+
+    def visit(file, way):
+        if file in way:
+            circle = way[way.index(file):] + [file]
+            found.append(", ".join(f"{a} needs {uses[a][b]} of {b}" for a, b in zip(circle, circle[1:])))
+        elif file not in done:
+            for used in sorted(uses.get(file, {})):
+                visit(used, way + [file])
+            done.add(file)
+
+    for file in sorted(uses):
+        visit(file, [])
+    return found
+
+
+def main(words):
+    if len(words) >= 2 and words[0] == "--circles":
+        wrong = circles(words[1], words[2:])
+    elif len(words) == 1 and not words[0].startswith("-"):
+        wrong = wrong_arrows(words[0])
+    else:
+        sys.exit(__doc__)
+    print("\n".join(wrong))
+    return 1 if wrong else 0
+
+
+sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""pages: holds every Markdown page to what a reader may expect.
+
+    pages.py TREE
+
+A link leads to a file of the repository, a path in backquotes exists, lines outside of tables and code have at most
+100 columns, and docs/architecture.md lists every page of docs/. Exit status 1, and a line for each that does not hold.
+"""
+import os
+import re
+import subprocess
+import sys
+
+ROOMS = "hdl|bus|ip|slice|sw|testbench|synth|tests|docs|cmake|examples"
+
+
+def exists(tree, path, files):
+    """True if a path that a page names is in the repository; a folder, a name without its ending or a pattern, too."""
+    path = path.rstrip("/")
+    pattern = "^" + re.escape(path).replace(r"\*", "[^/]*") + r"(/|$|\.)"
+    return any(re.match(pattern, f) for f in files)
+
+
+def check(tree, page, files):
+    code = False
+    for number, line in enumerate(open(os.path.join(tree, page)), 1):
+        line = line.rstrip("\n")
+        if re.match(r"\s*```", line):
+            code = not code
+        if code:
+            continue
+        if len(line) > 100 and not line.startswith("|") and not re.match(r"\s*[`\[!]\S*$", line):
+            yield f"{page}:{number}: {len(line)} columns"
+        for target in re.findall(r"\]\(([^)#\s]+)[^)]*\)", line):
+            if "://" not in target:
+                path = os.path.normpath(os.path.join(os.path.dirname(page), target))
+                if not exists(tree, path, files):
+                    yield f"{page}:{number}: links to {path}, which is not in the repository"
+        for path in re.findall(rf"`((?:{ROOMS})/[\w./*-]+)`", line):
+            if not re.search("low_pass|my_uart", path) and not exists(tree, path, files):  # the recipes' own examples
+                yield f"{page}:{number}: there is no {path}"
+
+
+def main(words):
+    if len(words) != 1 or words[0].startswith("-"):
+        sys.exit(__doc__)
+    tree = words[0]
+    files = subprocess.run(["git", "-C", tree, "ls-files", "-co", "--exclude-standard"],
+                           capture_output=True, text=True, check=True).stdout.split("\n")
+    pages = [f for f in files if f.endswith(".md") and os.path.exists(os.path.join(tree, f))]
+    wrong = [w for page in pages for w in check(tree, page, files)]
+    index = open(os.path.join(tree, "docs/architecture.md")).read()
+    wrong += [f"docs/architecture.md: its index has no {page}" for page in pages if re.match(r"docs/[^/]*$", page)
+              and f"({os.path.basename(page)})" not in index and not page.endswith("architecture.md")]
+    print("\n".join(wrong))
+    return 1 if wrong else 0
+
+
+sys.exit(main(sys.argv[1:]))

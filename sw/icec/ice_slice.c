@@ -110,26 +110,28 @@ void Ice_InputStream_startException(Ice_InputStreamPtr is) {
     is->sliceFlags = 0;
 }
 
+Ice_Int icec_readSliceEnd(Ice_InputStreamPtr is, Ice_Byte flags) {
+    Ice_Int begin = is->position, size;
+    if (!(flags & ICE_SLICE_SIZE))
+        return 0;
+    size = Ice_InputStream_readInt(is);
+    if (size >= 4 && size <= is->size - begin)
+        return begin + size;
+    icec_failRead(is, ICE_FAILED_MALFORMED);
+    return 0;
+}
+
 Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
     static const Ice_String none = {0, ""};
     Ice_String id;
-    Ice_Int begin, size = 0;
     if (is->sliceFlags & ICE_SLICE_LAST || is->failed || is->position == is->size) {
         icec_failRead(is, ICE_FAILED_MALFORMED); /* a base that is asked for and is not there */
         return none;
     }
     is->sliceFlags = is->minor != 0 ? Ice_InputStream_readByte(is) : ICE_SLICE_SIZE;
     is->sliceFlags |= ICE_SLICE_INSIDE;
-    is->sliceEnd = 0;
     id = Ice_InputStream_readString(is);
-    begin = is->position;
-    if (is->sliceFlags & ICE_SLICE_SIZE) {
-        size = Ice_InputStream_readInt(is);
-        if (size < 4 || size > is->size - begin)
-            icec_failRead(is, ICE_FAILED_MALFORMED);
-        else
-            is->sliceEnd = begin + size;
-    }
+    is->sliceEnd = icec_readSliceEnd(is, is->sliceFlags);
     return is->failed ? none : id;
 }
 
@@ -139,6 +141,7 @@ static void skipTable(Ice_InputStreamPtr is, int depth) {
     Ice_Int count = Ice_InputStream_readSequence(is, 1);
     while (count-- > 0 && !is->failed) {
         Ice_Byte flags = ICE_SLICE_LAST;
+        Ice_Int end;
         if (Ice_InputStream_readSize(is) != 1)
             continue; /* one that was there before */
         do {
@@ -149,7 +152,9 @@ static void skipTable(Ice_InputStreamPtr is, int depth) {
                 (void)Ice_InputStream_readSize(is);
             if (!(flags & ICE_SLICE_SIZE) || (flags & ICE_SLICE_TABLE && depth == 0))
                 icec_failRead(is, ICE_FAILED_MALFORMED);
-            (void)Ice_InputStream_readBlob(is, Ice_InputStream_readInt(is) - 4);
+            end = icec_readSliceEnd(is, flags);
+            if (!is->failed)
+                is->position = end;
             if (flags & ICE_SLICE_TABLE && !is->failed)
                 skipTable(is, depth - 1);
         } while (!(flags & ICE_SLICE_LAST) && !is->failed);

@@ -22,6 +22,10 @@ enum {
 /* Fails a stream that has not failed yet. */
 void icec_failRead(Ice_InputStreamPtr is, Ice_Failed why);
 
+/* Reads the size of a slice with these flags: four bytes, which count themselves. Returns where the
+ * slice ends; 0: it has no size, or one that fails the stream. */
+Ice_Int icec_readSliceEnd(Ice_InputStreamPtr is, Ice_Byte flags);
+
 /* Ends a slice of 1.1 whose flags stand at `flags`, and its size at `size` (-1: none). */
 void icec_finishSlice(Ice_OutputStreamPtr os, Ice_Int flags, Ice_Int size);
 /* Fills in the size of four bytes at `begin`; it counts itself. */

@@ -44,7 +44,6 @@ static Ice_String typeByName(Ice_InputStreamPtr is) {
 
 void icec_startSlice(Ice_InputStreamPtr is, Icec_SliceHead* head) {
     const Ice_ValueType* const* type = is->values->types;
-    Ice_Int begin, size;
     head->id = Ice_String_from("");
     head->compactId = -1;
     head->type = 0;
@@ -67,15 +66,7 @@ void icec_startSlice(Ice_InputStreamPtr is, Icec_SliceHead* head) {
             break;
         }
     }
-    is->sliceEnd = 0;
-    begin = is->position;
-    if (is->sliceFlags & ICE_SLICE_SIZE) {
-        size = Ice_InputStream_readInt(is);
-        if (size < 4 || size > is->size - begin)
-            icec_failRead(is, ICE_FAILED_MALFORMED);
-        else
-            is->sliceEnd = begin + size;
-    }
+    is->sliceEnd = icec_readSliceEnd(is, is->sliceFlags);
     head->isObject = (Ice_Bool)(Ice_String_equals(head->id, Ice_Value_type.id) != 0);
     if (head->isObject)
         head->type = &Ice_Value_type;

@@ -122,6 +122,23 @@ TEST(Stream, OptionalsOfEveryFormatAreSkipped) {
     }
 }
 
+// A peer's size may be the least that there is; what is subtracted from it must not wrap.
+TEST(Stream, ASliceOfAnyWrongSizeIsMalformed) {
+    for (uint32_t size : {0x80000000U, 0x80000003U, 0xFFFFFFFFU, 0U, 3U, 5U, 0x7FFFFFFFU}) {
+        Bytes wire = {0x39, 1, 'x', 4, 0, 0, 0, // the last slice: a name, a size, a table behind it
+                      1,    1,                  // of one instance,
+                      0x31, 1, 'y'};            // whose slice has a name and this size
+        for (int shift = 0; shift < 32; shift += 8)
+            wire.push_back(static_cast<Ice_Byte>(size >> shift));
+        Ice_InputStream is;
+        Ice_InputStream_init(&is, wire.data(), static_cast<Ice_Int>(wire.size()));
+        (void)Ice_InputStream_startSlice(&is);
+        ASSERT_FALSE(is.failed);
+        Ice_InputStream_endSlice(&is);
+        EXPECT_EQ(is.failed, ICE_FAILED_MALFORMED) << size;
+    }
+}
+
 TEST(Stream, OptionalTagsAreWrittenShortAndLong) {
     Ice_Byte bytes[20];
     Ice_OutputStream os;

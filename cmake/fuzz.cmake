@@ -5,7 +5,7 @@
 find_program(CLANG clang)
 find_program(CLANGXX clang++)
 
-# icesoc_fuzz(NAME HARNESS file.cpp SOURCES file... [INCLUDES dir...] [DEFINES name...] RUNS n [SEEDS folder] [DICT file]
+# icesoc_fuzz(NAME HARNESS file.cpp SOURCES file... [INCLUDES dir...] [DEFINES name...] RUNS n [SEEDS file-or-folder] [DICT file]
 #             [LENGTH bytes] [LIBS file...] [LABELS ...] [DEPENDS ...])
 # The program NAME, and the test fuzz.NAME of RUNS inputs from SEED, of up to LENGTH (400) bytes: their number decides, never
 # the time. Inputs begin with those in SEEDS.

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# fuzz: runs a libFuzzer program on so many inputs, from SEED (default 1). Usage: fuzz.sh program runs seeds-folder|- option...
-# RUNS=1000000 goes on for longer. An input that does harm is printed.
+# fuzz: runs a libFuzzer program on so many inputs, from SEED (default 1). Usage: fuzz.sh program runs seeds|- option...
+# seeds: a folder of inputs, or a file with one a line in hex ("#" begins a comment). RUNS=1000000 goes on for longer.
+# An input that does harm is printed.
 set -eu
 program=$1 runs=${RUNS:-$2} seeds=$3
 shift 3
@@ -10,6 +11,13 @@ shift 3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/found"
+if [ -f "$seeds" ]; then
+    mkdir "$work/seeds"
+    python3 -c 'import sys
+for number, line in enumerate(sys.stdin):
+    open(f"{sys.argv[1]}/{number}", "wb").write(bytes.fromhex(line.partition("#")[0]))' "$work/seeds" <"$seeds"
+    seeds=$work/seeds
+fi
 # Addresses are among what is compared with, and so among what is tried: where the system lets one
 # choose, they are the same each time, and so are the inputs.
 alike=$(setarch -R true 2>/dev/null && echo "setarch -R" || :)

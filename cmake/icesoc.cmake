@@ -37,6 +37,16 @@ elseif(SANITIZE)
   add_link_options(-fsanitize=address,undefined)
 endif()
 
+# icesoc_folders(PATTERN...): adds the folders that have a CMakeLists.txt, by name.
+function(icesoc_folders)
+  list(TRANSFORM ARGN APPEND /CMakeLists.txt)
+  file(GLOB found CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${ARGN})
+  foreach(folder IN LISTS found)
+    get_filename_component(folder ${folder} DIRECTORY)
+    add_subdirectory(${folder})
+  endforeach()
+endfunction()
+
 # icesoc_c90(NAME SOURCES... [INCLUDES dir...] [LIBS lib...])
 # A firmware layer as a static library, C90 to the letter.
 function(icesoc_c90 name)

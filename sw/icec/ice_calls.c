@@ -137,7 +137,8 @@ static void readFailure(Ice_InputStreamPtr is, Ice_Status status, Ice_Failure* f
     failure->operation = Ice_InputStream_readString(is);
 }
 
-/* Copies what is left of the message to the buffer of the task that waits, and `is` with it. */
+/* Copies the rest of the message to the waiting task's buffer; the call's stream then reads the
+ * copy. */
 static void keepReply(Ice_Call* call, Ice_InputStreamPtr is) {
     Ice_CommunicatorPtr ic = is->communicator;
     Ice_Int size = is->size - is->position;
@@ -153,7 +154,7 @@ static void keepReply(Ice_Call* call, Ice_InputStreamPtr is) {
     is->communicator = ic;
 }
 
-/* 0: the call timed out, or there never was one. */
+/* Returns the call that waits for the reply `id`; 0: it timed out, or there never was one. */
 static Ice_Call* waitingCall(Ice_CommunicatorPtr ic, int connection, Ice_Int id) {
     Ice_Call* call;
     for (call = ic->calls; call < ic->calls + ICE_CALLS; ++call)

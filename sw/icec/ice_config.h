@@ -8,12 +8,6 @@
 #ifndef ICE_CONFIG_H
 #define ICE_CONFIG_H
 
-#ifdef ICEC_MINIMAL
-#define ICEC_FULL 0
-#else
-#define ICEC_FULL 1
-#endif
-
 #ifndef ICE_MESSAGE_MAX /* bytes of a message that comes in, header included (LINK_MAX_MESSAGE) */
 #define ICE_MESSAGE_MAX 8192
 #endif

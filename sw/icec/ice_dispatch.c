@@ -6,8 +6,8 @@
 #include "ice_reply.h"
 #include "ice_transport.h"
 
-/* How well a servant's entry answers for a target: an exact one before its category's default
- * servant before the default servant of all. */
+/* Grades a servant's entry against a target: an exact one comes before its category's default
+ * servant, and that before the default servant of all. */
 enum { NO_MATCH, DEFAULT_OF_ALL, DEFAULT_OF_CATEGORY, EXACT };
 
 static int match(const Ice_Servant* entry, const Ice_Current* current, Ice_Status* status) {

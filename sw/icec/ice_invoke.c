@@ -189,7 +189,7 @@ Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callbac
     Ice_Status status = sendAndUnlock(self, callback, cookie);
     if (status != ICE_OK || self->mode != ICE_TWOWAY)
         return Ice_ObjectPrx_end(self, status);
-    /* A task that receives already must not sleep past this call's time. */
+    /* Waking the receiving task lets it shorten its sleep to this call's time. */
     if (isWaiting(ic, slot))
         ic->endpoint->wake(ic->endpointContext);
     return ICE_OK;

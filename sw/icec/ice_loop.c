@@ -17,7 +17,8 @@ static void validate(Ice_CommunicatorPtr ic, int connection) {
     icec_unlock(ic, ICE_LOCK_STATE);
 }
 
-/* Returns ICE_OK, or why the connection is to be closed; what is malformed loses it. */
+/* Handles a message. Returns ICE_OK, or why the connection is to be closed: a malformed message
+ * loses it. */
 static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_Byte* in,
                               Ice_Int size) {
     Ice_InputStream is;
@@ -39,7 +40,8 @@ static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_
     case ICEC_CLOSE:
         return ICE_CONNECTION_CLOSED;
     default:
-        /* What is compressed cannot be answered; this says that it was not executed. */
+        /* A compressed request cannot be answered; closing tells its caller that it was not
+         * executed. */
         if (type > 0xFF)
             (void)icec_sendHead(ic, connection, ICEC_CLOSE);
         return ICE_CONNECTION_LOST;

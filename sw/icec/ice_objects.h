@@ -5,6 +5,8 @@
 #ifndef ICE_OBJECTS_H
 #define ICE_OBJECTS_H
 
+#define ICEC_FULL 1 /* the run time has all features, and serves several tasks */
+
 typedef struct Ice_Servant {
     Ice_ObjectPtr servant; /* 0: free */
     Ice_Identity identity; /* name of no characters: default servant of the category */

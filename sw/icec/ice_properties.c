@@ -10,7 +10,7 @@ void Ice_Communicator_setProperties(Ice_CommunicatorPtr ic, const char* const* t
     ic->properties = table;
 }
 
-/* `suffix` is what follows the key's first part. */
+/* Returns the value of the property whose key is `key` followed by `suffix`; 0: it is not there. */
 static const char* find(Ice_CommunicatorPtr ic, const char* key, const char* suffix) {
     const char* const* entry;
     size_t n = strlen(key), m = strlen(suffix);

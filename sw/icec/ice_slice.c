@@ -135,8 +135,8 @@ Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
     return is->failed ? none : id;
 }
 
-/* Past the table of instances behind a slice, where nobody wants them. `depth`: of tables of the
- * instances themselves, lest a peer fills the stack. */
+/* Skips a table of instances behind a slice. `depth` bounds tables within its instances, so that a
+ * peer cannot fill the stack. */
 static void skipTable(Ice_InputStreamPtr is, int depth) {
     Ice_Int count = Ice_InputStream_readSequence(is, 1);
     while (count-- > 0 && !is->failed) {
@@ -161,7 +161,8 @@ static void skipTable(Ice_InputStreamPtr is, int depth) {
     }
 }
 
-/* Skips the table of instances behind a slice. */
+/* Reads the table of instances behind a slice, if it has one; without a reader of values it is
+ * skipped. */
 static void readTable(Ice_InputStreamPtr is) {
     Ice_Byte flags = is->sliceFlags;
     if (is->sliceFlags & ICE_SLICE_TABLE) {

@@ -15,7 +15,7 @@ Ice_String Ice_String_from(const char* terminated) {
 }
 
 int Ice_String_same(const Ice_String* a, const Ice_String* b) {
-    /* An empty string may lead nowhere. */
+    /* An empty string may have no address. */
     return a->size == b->size && (a->size == 0 || memcmp(a->data, b->data, (size_t)a->size) == 0);
 }
 

@@ -39,7 +39,7 @@ struct Ice_Communicator;
 struct Ice_OutputValues; /* ice_value.h */
 struct Ice_InputValues;
 
-/* Why a stream failed: what came is not what it should be, or which limit was reached. The first
+/* The reasons for which a stream fails: malformed bytes, or the limit that was reached. The first
  * reason stays. */
 typedef enum Ice_Failed {
     ICE_FAILED_MALFORMED = 1,
@@ -56,7 +56,7 @@ typedef enum Ice_Failed {
     ICE_FAILED_NESTING
 } Ice_Failed;
 
-/* Says it in words: the limit, its macro and its value. */
+/* Returns the reason in words: the limit, its macro and its value. */
 const char* Ice_Failed_text(Ice_Byte failed);
 
 typedef struct Ice_OutputStream {

@@ -24,7 +24,7 @@ typedef struct Ice_ValueType Ice_ValueType;
 
 struct Ice_Value;
 
-/* A slice that is kept: its type is not known here. */
+/* A kept slice, whose type is not known here. */
 typedef struct Ice_UnknownSlice {
     struct Ice_UnknownSlice* next;     /* of the same instance, towards the base; 0: none */
     struct Ice_UnknownSlice* nextRead; /* of the message: the run time's */
@@ -56,8 +56,8 @@ struct Ice_ValueType {
     void (*read)(void* object, Ice_InputStreamPtr is);
 };
 
-/* The class of all classes, ::Ice::Object: instances without members, and those of which nothing
- * but unknown slices is there. */
+/* The class ::Ice::Object: the type of instances without members, and of those received with
+ * unknown slices only. */
 extern const Ice_ValueType Ice_Value_type;
 
 /* Returns 1 if the instance is of this type or of one derived from it; 0 for a null instance. */

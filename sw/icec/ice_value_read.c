@@ -26,8 +26,8 @@ void Ice_InputStream_beginValues(Ice_InputStreamPtr is, Ice_InputValues* values,
     is->values = values;
 }
 
-/* Sets a pointer to the instance of this number, which has begun; where its type is still being
- * looked for, once the message is read. */
+/* Sets a pointer to the instance of this number, at once, or at the end of the message if the
+ * instance's type is not known yet. */
 static void set(Ice_InputStreamPtr is, void* at, Ice_Int number, const Ice_ValueType* expected,
                 Ice_Bool last) {
     Ice_InputValues* values = is->values;
@@ -122,8 +122,8 @@ static void readEnd10(Ice_InputStreamPtr is) {
         icec_failRead(is, ICE_FAILED_MALFORMED);
 }
 
-/* Slices down to one whose type is known; where there is none, Ice_Value_type without a slice, in
- * 1.0 nothing: its slices cannot be kept. */
+/* Skips slices down to one whose type is known. Without one the instance becomes an Ice_Value_type
+ * without a slice; in 1.0, which cannot keep slices, nothing. */
 static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** list) {
     Ice_Bool isFirst;
     for (isFirst = 1;; isFirst = 0) {

@@ -67,7 +67,8 @@ static void writeType(Ice_OutputStreamPtr os, Ice_String id, Ice_Int compactId) 
         Ice_OutputStream_writeString(os, id);
 }
 
-/* Slices that were kept. An exception's have no flags for their type: it is a string. */
+/* Writes the slices that were kept. Those of an exception have no flags for their type, which is a
+ * string. */
 static void writeUnknown(Ice_OutputStreamPtr os, const Ice_UnknownSlice* slice,
                          Ice_Bool isException) {
     Ice_OutputValues* values = os->values;
@@ -200,7 +201,8 @@ static void writeSlice10(Ice_OutputStreamPtr os, const Ice_ValueType* type, cons
     icec_patchSize(os, begin);
 }
 
-/* 1.0: in groups; what a group's members point at is the next one. */
+/* Ends the values. In 1.0 the instances follow here in groups: a group holds what the members of
+ * the group before point at. */
 void Ice_OutputStream_endValues(Ice_OutputStreamPtr os) {
     Ice_OutputValues* values = os->values;
     while (os->minor == 0 && !os->failed && values->written < values->count) {

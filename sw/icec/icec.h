@@ -33,7 +33,7 @@ typedef struct Ice_Identity {
     Ice_String name, category;
 } Ice_Identity;
 
-/* An entry of a request context: an array of them ends with a key of 0. */
+/* An entry of a request context. An array of them ends with a key of 0. */
 typedef struct Ice_ContextEntry {
     const char *key, *value;
 } Ice_ContextEntry;
@@ -117,7 +117,7 @@ Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter,
                                                   const char* category);
 /* Returns the servant of exactly this identity, without a facet; 0: there is none. */
 Ice_ObjectPtr Ice_ObjectAdapter_find(Ice_ObjectAdapterPtr adapter, const char* identity);
-/* An adapter's objects exist while it is active. */
+/* Activating makes an adapter's objects exist for callers; deactivating and destroying end that. */
 void Ice_ObjectAdapter_activate(Ice_ObjectAdapterPtr adapter);
 void Ice_ObjectAdapter_deactivate(Ice_ObjectAdapterPtr adapter);
 void Ice_ObjectAdapter_destroy(Ice_ObjectAdapterPtr adapter);
@@ -132,14 +132,14 @@ Ice_Status Ice_ObjectAdapter_createProxyTo(Ice_ObjectAdapterPtr adapter,
 
 enum { ICE_TWOWAY, ICE_ONEWAY, ICE_BATCH_ONEWAY, ICE_DATAGRAM, ICE_BATCH_DATAGRAM };
 
-/* One-way requests that wait to be sent together. */
+/* A buffer of one-way requests that are sent together. */
 typedef struct Ice_Batch {
     Ice_OutputStream os;
     Ice_Int count;
     Ice_Status (*keep)(Ice_ObjectPrxPtr prx); /* the run time's */
 } Ice_Batch;
 
-/* Members that code uses first: their offsets are short. */
+/* A proxy. Members that code uses most come first: their offsets are short. */
 struct Ice_ObjectPrx {
     Ice_CommunicatorPtr communicator;
     int call;          /* the slot of the last call, -1 none */
@@ -158,9 +158,9 @@ struct Ice_ObjectPrx {
     Ice_Byte endpoints[ICE_ENDPOINT_MAX]; /* as on the wire: count, endpoints; or 0, adapter's id */
 };
 
-/* The reason of a failed call: of ICE_OBJECT_NOT_EXIST and its like who and what; of failures at
- * the peer its text; of ICE_MARSHAL and ICE_LIMIT which limit was reached, with its macro and
- * value. */
+/* The reason of a failed call: identity, facet and operation for ICE_OBJECT_NOT_EXIST and its like,
+ * the peer's text for failures at the peer, the limit with its macro and value for ICE_MARSHAL and
+ * ICE_LIMIT. */
 typedef struct Ice_Failure {
     Ice_Identity identity;
     Ice_String facet, operation;
@@ -212,10 +212,10 @@ Ice_Status Ice_ObjectPrx_resolve(Ice_ObjectPrxPtr self, Ice_ObjectPrxPtr locator
 /* Tells about the last call that was made through this object, until its next call. */
 void Ice_ObjectPrx_failure(const Ice_ObjectPrx* self, Ice_Failure* failure);
 
-/* For generated code. A call is begin, writes to the returned stream, invoke, reads, end. begin
- * returns 0, with the reason in self->status, where all calls are taken, and where the mode says
- * that there are results and the proxy is none for them. Between begin and invoke no other call is
- * made. */
+/* The four steps of a call in generated code: begin, writes to the returned stream, invoke,
+ * reads, end. begin returns 0, with the reason in self->status, if all calls are taken, or if
+ * `mode` has ICE_RESULTS and the proxy is oneway or batch. No other call may be made between
+ * begin and invoke. */
 #define ICE_RESULTS 0x80 /* in `mode`: the operation has results or exceptions */
 Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char* operation,
                                         Ice_Byte mode);

@@ -77,8 +77,8 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
                       : ICE_OK;
 }
 
-/* 1: the peer closed already, and its report is taken back; the connection may be a new one by now.
- */
+/* Returns 1 if the peer closed already, and takes its report back: the connection may be a new one
+ * by now. */
 static int isOver(LoopEndpoint* self, int connection) {
     unsigned i;
     for (i = 0; i < self->count; ++i) {

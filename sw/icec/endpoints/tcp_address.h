@@ -17,7 +17,7 @@ typedef struct TcpEndpoint_Address {
 void TcpEndpoint_encode(void* context, const char* options, Ice_OutputStreamPtr os);
 Ice_Bool TcpEndpoint_print(void* context, const Ice_Byte* encoded, Ice_Int size,
                            Ice_OutputStreamPtr text);
-/* 0: another transport's, or malformed. */
+/* Decodes an endpoint. Returns 0 if it is another transport's, or malformed. */
 int TcpEndpoint_decode(const Ice_Byte* encoded, Ice_Int size, TcpEndpoint_Address* address);
 
 /* Resolves a numeric address or a name to its first TCP_PLACES addresses, those of IPv4 first as in

@@ -215,8 +215,8 @@ static int connectionTo(TcpEndpoint* self, const TcpEndpoint_Place* to) {
     return found;
 }
 
-/* One connection a peer is kept and used again. A name's addresses are tried one after the other:
- * the server may listen on one of them only, as on 127.0.0.1 where localhost is ::1, too. */
+/* Returns the open connection to this peer, or makes it. A name's addresses are tried one after the
+ * other: the server may listen on one of them only, as on 127.0.0.1 where localhost is ::1, too. */
 static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection) {
     TcpEndpoint* self = context;
     TcpEndpoint_Place places[TCP_PLACES];

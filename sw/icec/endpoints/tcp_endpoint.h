@@ -44,7 +44,7 @@ typedef struct TcpEndpoint {
     TcpEndpoint_Connection connections[ICE_CONNECTIONS];
 } TcpEndpoint;
 
-/* ICE_NO_ENDPOINT if the system refuses. */
+/* Makes "tcp" known to the communicator. ICE_NO_ENDPOINT: the system refuses. */
 Ice_Status TcpEndpoint_init(Ice_CommunicatorPtr ic, TcpEndpoint* self);
 void TcpEndpoint_destroy(TcpEndpoint* self);
 

@@ -68,8 +68,8 @@ void XBeeATEndpoint_onChannel(XBeeATEndpoint* self, int channel, int isOpen) {
         return;
     if (channel == XBEE_OWN_CHANNEL)
         self->ownOpen = 0;
-    /* A connection that came and went while nobody looked is no news: so a channel has at most a
-     * closing and then an opening waiting, however often the ground starts again. */
+    /* An opening that nobody has seen is taken back by its closing: so at most a closing and then
+     * an opening wait for a channel, however often the ground starts again. */
     if (isOpen || !takeBack(self, ICE_EVENT_OPENED, channel))
         report(self, isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel);
 }
@@ -79,7 +79,8 @@ void XBeeATEndpoint_onState(XBeeATEndpoint* self, Link_State state) {
         XBeeATEndpoint_onChannel(self, XBEE_OWN_CHANNEL, 0);
 }
 
-/* The buffer is the link's only while this waits: what comes at another time, the link keeps. */
+/* Waits for one event. The link may write `buffer` only meanwhile; at other times the link keeps
+ * what comes. */
 static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event) {
     XBeeATEndpoint* self = context;
     U32 first = 0;

@@ -94,7 +94,8 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
 
 /* ---- what arrives ---- */
 
-/* Returns ICE_OK, or why the connection is to be closed; what is malformed loses it. */
+/* Handles a message. Returns ICE_OK, or why the connection is to be closed: a malformed message
+ * loses it. */
 static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, Ice_Int size) {
     Ice_InputStreamPtr is = &ic->is;
     Ice_InputStream_init(is, ic->in, size);

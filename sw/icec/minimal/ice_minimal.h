@@ -5,6 +5,8 @@
 #ifndef ICE_MINIMAL_H
 #define ICE_MINIMAL_H
 
+#define ICEC_FULL 0
+
 struct Ice_ObjectAdapter {
     Ice_CommunicatorPtr communicator;
     struct {

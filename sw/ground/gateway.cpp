@@ -278,7 +278,8 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1, 3600));
     app.add_option("-t,--trace", o.trace, "0 errors, 1 link and connections, 2 AT commands")
         ->check(CLI::Range(0, 2));
-    app.add_option("--statistics", o.statistics, "print a line about every so many seconds");
+    app.add_option("--statistics", o.statistics, "print a line about every so many seconds")
+        ->check(CLI::Range(0, 86400));
     CLI11_PARSE(app, argc, argv);
     struct sigaction action {};
     action.sa_handler = [](int signal) { stopSignal = signal; };

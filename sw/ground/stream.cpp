@@ -96,7 +96,8 @@ void Stream::read(U32 nowUs) {
     if (count > 0)
         out_.insert(out_.end(), bytes, bytes + count);
     ended_ = isOver(count);
-    activeAt_ = nowUs;
+    if (out_.size() >= headerBytes && out_.size() >= messageSize()) // parts of one are no activity
+        activeAt_ = nowUs;
 }
 
 Stream::Next Stream::next(U32 longest) {
@@ -170,7 +171,7 @@ U32 Stream::beat(U32 nowUs) {
 }
 
 bool Stream::isIdle(U32 nowUs, U32 forUs) const {
-    return is(State::Open) && !pending_ && in_.empty() && nowUs - activeAt_ >= forUs;
+    return is(State::Open) && !pending_ && nowUs - activeAt_ >= forUs;
 }
 
 void Stream::sayGoodbye(U32 nowUs) {

@@ -69,7 +69,8 @@ public:
     // server that runs long would send it, but without air. Ends a leaving that takes too long.
     // Returns when to come again, in microseconds.
     U32 beat(U32 nowUs);
-    // True if nothing is under way, and nothing was for so long.
+    // True if the program waits for no answer, and for so long has neither sent a whole message nor
+    // taken a byte.
     bool isIdle(U32 nowUs, U32 forUs) const;
     // Tells the program, in Ice's words, that the connection closes and it may open another one.
     void sayGoodbye(U32 nowUs);

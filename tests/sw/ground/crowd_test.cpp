@@ -156,6 +156,60 @@ TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
     }
 }
 
+// Three programs that keep their channels without a use: answers are left unread, or a message
+// never ends. A fourth that waits has one of theirs after a while.
+class Keepers : public ::testing::Test {
+protected:
+    // The fourth's connection, while the three do `meanwhile` again and again.
+    template <class F> void theFourthIsServed(F meanwhile) {
+        int fd = -1;
+        EXPECT_TRUE(wire_.until(
+            [&] {
+                for (auto& keeper : keepers_)
+                    meanwhile(*keeper);
+                return (fd = engine_->connect(-1)) >= 0;
+            },
+            30));
+        Program fourth(fd);
+        fourth.send(message(1));
+        EXPECT_TRUE(wire_.until(
+            [&] {
+                fourth.write();
+                fourth.read();
+                return fourth.got > 0;
+            },
+            30))
+            << wire_.log();
+    }
+    void SetUp() override {
+        for (int i = 0; i < 3; ++i)
+            keepers_.push_back(std::make_unique<Program>(engine_->connect(i)));
+    }
+    Wire wire_;
+    std::shared_ptr<XBeeAT::Engine> engine_ = wire_.engine(300);
+    std::vector<std::unique_ptr<Program>> keepers_;
+};
+
+TEST_F(Keepers, AnswersThatAreNotRead) {
+    for (auto& keeper : keepers_)
+        for (int i = 0; i < 10; ++i)
+            keeper->send(message(1, 4000)); // more than the socket takes, less than ends it
+    theFourthIsServed([](Program& keeper) { keeper.write(); });
+}
+
+TEST_F(Keepers, AMessageThatNeverEnds) {
+    for (auto& keeper : keepers_) {
+        const Bytes whole = message(1, 8000);
+        keeper->send({whole.begin(), whole.begin() + 14});
+    }
+    unsigned calls = 0;
+    theFourthIsServed([&](Program& keeper) {
+        if (++calls % 20 == 0)
+            keeper.send({1});
+        keeper.write();
+    });
+}
+
 // One that floods has no more of the link than one that calls now and then.
 TEST_F(Crowd, AFloodLeavesRoomForOthers) {
     Program flood(engine_->connect(0)), other(engine_->connect(1));

@@ -91,11 +91,12 @@ public:
         close(master_);
     }
     // An engine at the other end of the wire, as fast as the machine.
-    std::shared_ptr<XBeeAT::Engine> engine() {
+    std::shared_ptr<XBeeAT::Engine> engine(int idleMs = 0) {
         XBeeAT::Settings s;
         s.device = name_;
         s.setUp = false;
         s.baud = 10'000'000;
+        s.idleMs = idleMs;
         return XBeeAT::Engine::get(s, [this](int level, const std::string& text) {
             std::lock_guard<std::mutex> lock(logMutex_);
             log_ += std::to_string(level) + " " + text + "\n";

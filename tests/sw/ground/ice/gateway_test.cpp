@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <future>
 #include <gtest/gtest.h>
+#include <map>
 #include <poll.h>
 #include <sys/wait.h>
 #include <utility>
@@ -255,18 +256,24 @@ TEST_F(Gateway, StatisticsComeEverySoManySeconds) {
     EXPECT_LE(lines, 2 + static_cast<size_t>(lasted.count() / 2));
 }
 
-TEST(GatewayOptions, WrongOnesAreRefused) {
-    for (std::vector<std::string> wrong :
-         {std::vector<std::string>{},
-          {"-d", "/dev/no-such-port"},
-          {"-d", "/dev/null", "-l", "nonsense"},
-          {"-d", "/dev/null", "-a", "65536"},
-          {"-d", "/dev/null", "-l", "127.0.0.1:70000"},
-          {"-d", "/dev/null", "-l", "127.0.0.1:0", "-k", "/no/such/file"},
-          {"-d", "/dev/null", "-l", "127.0.0.1:0", "--station", "x"}}) {
-        GatewayProgram gateway(wrong);
-        EXPECT_NE(gateway.wait(), 0);
-        EXPECT_FALSE(gateway.said().empty());
+TEST(GatewayOptions, WrongOnesAreRefusedByName) {
+    const std::pair<std::map<std::string, std::string>, std::string> cases[] = {
+        {{}, "it is no terminal"},
+        {{{"-d", "/dev/no-such-port"}}, "No such file"},
+        {{{"-l", "nonsense"}}, "give HOST:PORT"},
+        {{{"-l", "127.0.0.1:70000"}}, "a port is 0 to 65535"},
+        {{{"-a", "65536"}}, "--address"},
+        {{{"-k", "/no/such/file"}}, "cannot read a key"},
+        {{{"--statistics", "-5"}}, "--statistics"},
+        {{{"--station", "x"}}, "give HOST:PORT"}};
+    for (auto [options, said] : cases) {
+        options.insert({{"-d", "/dev/null"}, {"-l", "127.0.0.1:0"}});
+        std::vector<std::string> words;
+        for (const auto& [name, value] : options)
+            words.insert(words.end(), {name, value});
+        GatewayProgram gateway(words);
+        EXPECT_GT(gateway.wait(), 0) << said;
+        EXPECT_NE(gateway.said().find(said), std::string::npos) << gateway.said();
     }
 }
 

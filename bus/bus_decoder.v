@@ -31,7 +31,8 @@ module bus_decoder #(
 );
     wire [5:0] slot = bus_addr_i[9:4];
 
-    // One-hot AND-OR with constant indices: no multiplier for the solvers, no priority for the mapper.
+    // The multiplexer is a one-hot AND-OR with constant indices: no multiplier for the solvers, no
+    // priority for the mapper.
     reg [SLOTS-1:0] selected;
     reg             mapped, write;
     integer s;

@@ -51,7 +51,7 @@ module bus_rules #(
                      || (write_i == write_was && addr_i == addr_was && (!write_i || wdata_i == wdata_was));
     // The address and the direction are there a clock before valid: the decoder relies on it.
     wire early     = !valid_i || !past || (addr_i == addr_was && write_i == write_was);
-    // Between two transfers valid is low: what a write does may take a clock.
+    // Valid is low between two transfers: what a write does may take a clock.
     wire paused    = !valid_i || !ended;
     wire withdrawn = waiting && !valid_i && waited < PATIENCE;
     // Slave: an answer in time; an error comes without data.
@@ -66,7 +66,7 @@ module bus_rules #(
                 assert (paused);
                 assert (!withdrawn);
                 assume (!leaking);
-                // A slave may hang: `late` is not assumed away.
+                // A slave may hang, so `late` is not assumed away.
             end
         end else begin : g_slave
             always @* if (!rst_i) begin

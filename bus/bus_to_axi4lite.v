@@ -109,7 +109,7 @@ module bus_to_axi4lite #(
         .arvalid_i(axi_arvalid_o), .arready_i(axi_arready_i), .araddr_i(axi_araddr_o),
         .rvalid_i(axi_rvalid_i), .rready_i(axi_rready_o), .rdata_i(axi_rdata_i),
         .rresp_i(axi_rresp_i), .write_open_o(write_open), .read_open_o(read_open));
-    // An answered access is answered by its own transfer, with what the core said.
+    // Each answered access is answered by its own transfer, with what the core said.
     wire window = bus_valid_i && bus_addr_i[3] && bus_ready_o && !bus_error_o;
     always @* if (!rst_i && window) begin
         assert (open && address[4:2] == bus_addr_i[2:0]);

@@ -49,7 +49,7 @@ module wishbone_rules #(
         if (past && $past(rst_i))
             assert (!cyc_i && !stb_i);                    // 3.20: reset ends everything
         if (past && !rst_i && !$past(rst_i)) begin
-            // 3.60: what qualifies a strobe stays until the strobe is taken
+            // Rule 3.60: what qualifies a strobe stays until the strobe is taken.
             if ($past(stb_i && !taken && !abort_i)) begin
                 assert (stb_i && cyc_i);
                 assert (we_i == $past(we_i) && adr_i == $past(adr_i));

@@ -53,7 +53,7 @@ bool print(const std::string& text) {
     return !std::cout.fail();
 }
 
-// All files or none: each is written beside its place and then moved there.
+// Saves all files or none: each is written beside its place and then moved there.
 bool save(const std::vector<GeneratedFile>& files, const std::string& directory) {
     std::error_code error;
     fs::create_directories(directory, error);
@@ -114,8 +114,8 @@ bool saveHardware(const std::vector<hw::Block>& blocks, const Options& o, const 
     return true;
 }
 
-// What the files of one program define, each with its place. C has one name for a definition of a
-// kind in all of them, and one header for files of one name.
+// The definitions of the files of one program, each with its place. C has one name for a definition
+// of a kind in all of them, and one header for files of one name.
 class Program {
 public:
     void add(const Unit& unit, Diagnostics& diagnostics) {

@@ -204,8 +204,9 @@ private:
         }
     }
 
-    // A wrapper keeps only the address bits above the size of its buffers, so each core's are at a
-    // multiple of it. Those that memory= places come first, the others into what is left, in order.
+    // Places buffers. A wrapper keeps only the address bits above the size of its buffers, so each
+    // core's are at a multiple of it. Those that memory= places come first, the others into what is
+    // left, in order.
     void giveMemory() {
         std::vector<const Core*> placed;
         auto neighbour = [&](const Core& c) -> const Core* {
@@ -253,7 +254,7 @@ private:
                     for (const Pin& q : other.pins)
                         if (other.name + "." + q.name == p.source && q.isOut())
                             from = &q;
-                // A neighbour that is not in the chip is none.
+                // A neighbour that is not in the chip is ignored.
                 std::string owner = p.source.substr(0, p.source.find('.'));
                 if (p.isInternal && std::none_of(chip_.cores.begin(), chip_.cores.end(),
                                                  [&](const Core& o) { return o.name == owner; })) {

@@ -50,7 +50,7 @@ std::string instancesOf(const Chip& chip);   // servants, for the firmware
 std::string pinTableOf(const Chip& chip);    // pins by name, for the simulator
 std::string constraintsOf(const Chip& chip); // pins by place, for ISE
 
-// A populated slot, the platform's too, with its *.regs.json.
+// A populated slot, the platform's included, with its *.regs.json.
 struct Slot {
     std::string name;
     unsigned number;

@@ -91,8 +91,8 @@ public:
                  id, d.at);
         }
     }
-    // A member or parameter must not hide a name of file scope that its function may use, nor be a
-    // macro. Only a name with an underscore can.
+    // Checks the name of a member or parameter: it must not hide a name of file scope that its
+    // function may use, nor be a macro. Only a name with an underscore can.
     void checkInner(const std::string& c, const std::string& slice, const Location& at) {
         auto it = names_.find(c);
         if (it != names_.end())

@@ -65,7 +65,7 @@ static std::set<const Declaration*> mentioned(const Unit& unit) {
     return found;
 }
 
-// An interface by value is an instance without members.
+// Writes the types of interfaces passed by value: instances without members.
 static void interfaceTypes(Writer& w, const std::vector<const Declaration*>& interfaces) {
     if (interfaces.empty())
         return;

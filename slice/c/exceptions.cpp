@@ -8,7 +8,7 @@
 
 namespace {
 
-// Whether its members, or those of its bases, hold classes.
+// True if its members, or those of its bases, hold classes.
 bool hasClasses(const Declaration& d) {
     return anyClass(memberSlots(d)) || (d.base() && hasClasses(*d.base()));
 }
@@ -22,7 +22,7 @@ std::string unknownOf(const Declaration& d) {
     return d.base() && d.base()->preserves() ? "base." + unknownOf(*d.base()) : "ice_unknown";
 }
 
-// Whether reading and writing it needs a table of instances; kept slices may hold instances too.
+// True if reading and writing it needs a table of instances; kept slices may hold instances too.
 bool needsTables(const Declaration& d) {
     return hasClasses(d) || d.preserves();
 }

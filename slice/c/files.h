@@ -13,10 +13,10 @@ std::string clientFile(const CContext& c);
 std::string asyncFile(const CContext& c);
 std::string serverFile(const CContext& c);
 
-// An exception's functions, and those of the union of what an operation throws.
+// Write an exception's functions, and those of the union of what an operation throws.
 void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d);
 void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o);
-// A class's descriptor with its functions, and the table of all descriptors.
+// Write a class's descriptor with its functions, and the table of all descriptors.
 void classFunctions(Writer& w, const Declaration& d);
 void valueTypeTable(Writer& w, const CContext& c);
 

@@ -100,7 +100,7 @@ bool hasFind(const Declaration& d) {
 void declareStruct(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", cName(d)}};
     bool isClass = d.kind == DKind::Class;
-    // A class is a type already.
+    // A class has its typedef already.
     w.block(
         isClass ? "struct {c}" : "typedef struct {c}", v,
         [&] {

@@ -24,15 +24,15 @@ std::string cParameter(const Operation& o, const Field& parameter);
 std::string cOperation(const std::string& name);
 // The C type of a value.
 std::string cType(const Type& type);
-// An enumerator's constant.
+// The name of an enumerator's constant.
 std::string cEnumerator(const Declaration& owner, const std::string& name);
-// A constant's value as an expression; Long: an initialiser {low, high}.
+// A constant's value as an expression; a Long's is an initialiser {low, high}.
 std::string cValue(const Literal& value, const Type& type);
 // The name of something that a generated file has once: "File_what".
 std::string cFileName(const std::string& base, const char* what);
 // "text" with escapes, so that any bytes survive.
 std::string cString(const std::string& bytes);
-// Whether icec.h declares the type itself; only its stream functions are generated.
+// True if icec.h declares the type itself; only its stream functions are generated.
 bool isRuntimeType(const Declaration& d);
 // The elements that a sequence or dictionary has room for; 0 if its data lies elsewhere.
 int statedMaximum(const Declaration& d);

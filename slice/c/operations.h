@@ -15,8 +15,8 @@ std::vector<const Declaration*> lineage(const Declaration& interface);
 
 // The exceptions that an operation may throw: those it lists, and what this unit derives from them.
 std::vector<const Declaration*> mayThrow(const Unit& unit, const Operation& o);
-// An exception in M_I_op_Exception: its constant is M_I_op_<label>, its member of the union
-// <member>.
+// The label of an exception in M_I_op_Exception, whose constant is M_I_op_<label>; and its member
+// of the union.
 std::string exceptionLabel(const Operation& o, const std::vector<const Declaration*>& family,
                            const Declaration& exception);
 std::string exceptionMember(const Operation& o, const std::vector<const Declaration*>& family,
@@ -25,11 +25,11 @@ std::string exceptionMember(const Operation& o, const std::vector<const Declarat
 bool hasResults(const Operation& o);
 bool isAmd(const Declaration& owner, const Operation& o);
 bool isSliced(const Declaration& owner, const Operation& o);
-// Whether classes are among the in parameters; among the results.
+// True if classes are among the in parameters (sends), among the results (returns).
 bool sendsClasses(const Operation& o);
 bool returnsClasses(const Operation& o);
-// Whether one of the slots holds a class; whether one does that is not optional (encoding 1.0 has a
-// list of instances then).
+// True if one of the slots holds a class; if one that is not optional does (encoding 1.0 has a list
+// of instances then).
 bool anyClass(const std::vector<Slot>& slots);
 bool anyRequiredClass(const std::vector<Slot>& slots);
 
@@ -45,7 +45,7 @@ std::string responseParameters(const Operation& o);
 
 std::string proxySignature(const Declaration& d, const Operation& o);
 std::string asyncSignature(const Declaration& d, const Operation& o);
-// Whether it may throw an exception that keeps unknown slices.
+// True if it may throw an exception that keeps unknown slices.
 bool throwsPreserved(const Unit& unit, const Operation& o);
 // `name` is a function's, or "(*op)"; `self` the servant's type.
 std::string servantSignature(const Declaration& owner, const Operation& o, const std::string& name);

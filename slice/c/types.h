@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-// Whether it is passed by const pointer: all but scalars, strings, enums and pointers to classes.
+// True if it is passed by const pointer: all but scalars, strings, enums and pointers to classes.
 bool isByPointer(const Type& type);
 bool isEnum(const Type& type);
 bool isClass(const Type& type); // a pointer to an Ice_Value
@@ -18,13 +18,13 @@ bool isClass(const Type& type); // a pointer to an Ice_Value
 // The least bytes that a value takes on the wire; whether there can be more.
 int leastWireSize(const Type& type);
 bool isVariable(const Type& type);
-// Whether a class is in it, at any depth.
+// True if a class is in it, at any depth.
 bool containsClass(const Type& type);
 
 // A declaration of `name`: "Ice_Int x", "M_Node *x".
 std::string cVariable(const Type& type, const std::string& name);
 
-// One value in a list of members or parameters that is written or read.
+// A value in a list of members or parameters that is written or read.
 struct Slot {
     const Type* type = nullptr;
     std::string value;   // its lvalue

@@ -43,7 +43,7 @@ void Writer::line(std::string_view text, const Values& values) {
                 break;
             }
         }
-        // Not within a string.
+        // A line is not broken within a string.
         if (at == std::string::npos || at >= filled.size() || filled.find('"') < at)
             break;
         out_.append(indent, ' ').append(filled, 0, at - 1) += '\n';

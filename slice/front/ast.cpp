@@ -71,7 +71,7 @@ Declaration::Facts factsOf(const Type& type) {
 void Declaration::complete() {
     auto join = [&](const Type& type) {
         Facts f = factsOf(type);
-        // A size that no message reaches will do.
+        // The bound keeps sums small; no message reaches this size.
         facts.leastWireSize = std::min(facts.leastWireSize + f.leastWireSize, 1000000);
         facts.isVariable |= f.isVariable;
         facts.hasClass |= f.hasClass;

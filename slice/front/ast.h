@@ -100,7 +100,7 @@ struct Declaration {
     const Declaration* ofClass = nullptr;        // Interface: it is what this class is called by
     int compactId = -1;                          // Class; -1: none
 
-    // What is true of all values of a type; set when its definition is complete.
+    // Facts about all values of a type; set when its definition is complete.
     struct Facts {
         int leastWireSize = 1;  // bytes
         bool isVariable = true; // longer ones are possible
@@ -116,9 +116,9 @@ struct Declaration {
     bool hasMetadata(const std::string& directive) const;
     // The text behind "prefix:" in the metadata; empty if there is none.
     std::string metadataValue(const std::string& prefix) const;
-    // Whether it is `other`, or derived from it.
+    // True if it is `other`, or derived from it.
     bool isA(const Declaration& other) const;
-    // Whether slices of unknown derived types are kept: ["preserve-slice"] is here or at a base.
+    // True if slices of unknown derived types are kept: ["preserve-slice"] is here or at a base.
     bool preserves() const {
         return hasMetadata("preserve-slice") || (base() && base()->preserves());
     }

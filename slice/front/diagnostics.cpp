@@ -6,7 +6,7 @@
 #include <fstream>
 
 void Diagnostics::error(const Location& at, const std::string& text) {
-    // A broken file says enough in its first hundred errors.
+    // The most errors of a file that are printed.
     if (++errors_ <= 100)
         print(at, "error", text);
 }

@@ -19,7 +19,7 @@ struct Location {
 
 class Diagnostics {
 public:
-    // What `[["suppress-warning:..."]]` names.
+    // Categories of warnings, as `[["suppress-warning:..."]]` names them.
     enum Category { General, Deprecated, Metadata };
 
     explicit Diagnostics(std::ostream& out) : out_(out) {}
@@ -28,13 +28,13 @@ public:
 
     void error(const Location& at, const std::string& text);
     void warning(const Location& at, const std::string& text, Category category = General);
-    // No warnings of this category (General: none at all) from this file on.
+    // Suppresses this category's warnings (General: all) from this file on.
     void suppress(std::string_view file, Category category) {
         suppressed_.insert({file, category});
     }
 
     int errors() const { return errors_; }
-    // A copy that lives as long as this object.
+    // Copies the text; the copy lives as long as this object.
     std::string_view intern(std::string_view text);
 
 private:

@@ -27,7 +27,7 @@
 // The unit of a preprocessed file; errors are in `diagnostics`.
 Unit compileUnit(const std::string& text, const std::string& file, NameRules rules,
                  Diagnostics& diagnostics);
-// Behind each class that can be called, an interface that holds its operations; a part of
+// Adds, behind each class that can be called, an interface that holds its operations; a part of
 // compileUnit.
 void addClassInterfaces(Unit& unit);
 

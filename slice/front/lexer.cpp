@@ -51,7 +51,7 @@ private:
         while (position_ < position)
             advance();
     }
-    // A token from `begin` to here.
+    // Adds a token that reaches from `begin` to here.
     void add(Token::Kind kind, size_t begin, const Location& at, bool escaped = false) {
         tokens_.push_back({kind, text_.substr(begin, position_ - begin), doc_, at, escaped});
         doc_ = {};

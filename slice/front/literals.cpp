@@ -62,7 +62,7 @@ private:
         at.column += static_cast<int>(position_);
         diagnostics_.error(at, text);
     }
-    // Up to `most` digits of the base.
+    // Reads up to `most` digits of the base.
     uint32_t digits(size_t most, bool hex, size_t& count) {
         uint32_t v = 0;
         for (count = 0; count < most && position_ < text_.size(); ++count, ++position_) {

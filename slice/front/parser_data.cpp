@@ -104,7 +104,7 @@ void Parser::classDefinition() {
     braces(d, [&] { member(d, true); });
 }
 
-// A data member; a class's operation too.
+// Parses a data member; in a class, an operation too.
 void Parser::member(Declaration& d, bool mayBeOptional) {
     size_t start = position_;
     Field f;
@@ -138,7 +138,7 @@ void Parser::member(Declaration& d, bool mayBeOptional) {
         error(begin, "a member cannot be void");
     checkLocal(f.type, d.isLocal, "member '" + f.name + "'", begin);
     checkMember(d, f);
-    // It would have no end, and whoever walks through it neither.
+    // A type that contains itself would have no end, nor would a walk through it.
     bool containsItself = f.type.declaration == &d && f.type.kind == Type::Kind::Named && !isClass;
     if (containsItself)
         error(f.at, "a " + std::string(kindName(d.kind)) + " cannot contain itself");

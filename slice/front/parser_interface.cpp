@@ -56,7 +56,7 @@ void collect(const Declaration& d, std::set<const Declaration*>& seen,
         list.push_back({&o, &d});
 }
 
-// An interface's or a class's own and those it inherits, each once.
+// Returns the operations of an interface or class, its own and those it inherits, each once.
 std::vector<OwnedOperation> allOperations(const Declaration& d) {
     std::set<const Declaration*> seen;
     std::vector<OwnedOperation> list;
@@ -66,7 +66,7 @@ std::vector<OwnedOperation> allOperations(const Declaration& d) {
 
 } // namespace
 
-// Two bases must not bring different operations of one name.
+// Checks that no two bases bring different operations of one name.
 void Parser::checkBases(const Declaration& d) {
     std::vector<OwnedOperation> list = allOperations(d);
     for (size_t i = 0; i < list.size(); ++i)
@@ -145,7 +145,7 @@ void Parser::checkOperation(const Declaration& d, const Operation& o) {
                       "operation '" + o.name + "' has the name of a member, '" + f.name + "'");
 }
 
-// A class's member must not have the name of an operation.
+// Checks that a class's member does not have the name of an operation.
 void Parser::checkMemberOfClass(const Declaration& d, const Field& f) {
     for (const auto& [operation, from] : allOperations(d))
         if (lowerCase(operation->name) == lowerCase(f.name))

@@ -42,7 +42,7 @@ private:
     void expectEnd(const std::string& what); // a '}'
     [[noreturn]] void fail(const std::string& expected);
     void error(const Location& at, const std::string& text) { diagnostics_.error(at, text); }
-    // A name that is declared here, checked.
+    // Reads a name that is declared here, and checks it.
     std::string name(const std::string& what);
     std::string scopedName(const std::string& what);
     void recover();
@@ -91,7 +91,7 @@ private:
     Literal literal(const Type& type, const std::string& what);
     Literal namedLiteral(const Type& type, const std::string& what);
     Literal convert(Literal value, const Type& type, const std::string& what, const Location& at);
-    // A number from 0 on; -1 after an error.
+    // Reads a number from 0 on; -1 after an error.
     int32_t number(const std::string& what, bool mayBeEnumerator);
     Symbol* resolve(const std::string& written, const Location& at);
     Symbol* resolveValue(const std::string& written, const Location& at);
@@ -110,7 +110,7 @@ private:
     std::map<std::string_view, bool> isMain_;
     std::set<std::string_view> begun_; // files whose definitions have begun
     std::map<int, std::string> compactIds_;
-    // Of the definition under way.
+    // State of the definition under way.
     Metadata metadata_;
     std::string doc_;
     bool local_ = false;

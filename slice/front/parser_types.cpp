@@ -38,7 +38,7 @@ Symbol* Parser::resolve(const std::string& written, const Location& at) {
     return symbols_.resolve(scopeId_, written, at, user_.empty() ? scopeId_ : user_);
 }
 
-// Whatever is not local must not hold what is.
+// Checks that only local types hold local ones.
 void Parser::checkLocal(const Type& type, bool local, const std::string& what, const Location& at) {
     bool isLocal =
         type.kind == Kind::LocalObject || (type.declaration && type.declaration->isLocal);
@@ -154,7 +154,7 @@ Parser::Optional Parser::optional() {
     return o;
 }
 
-// A constant, or an enumerator, which Ice still allows without its enum's name.
+// Finds a constant, or an enumerator, which Ice still allows without its enum's name.
 Symbol* Parser::resolveValue(const std::string& written, const Location& at) {
     if (Symbol* s = resolve(written, at))
         return s;
@@ -182,7 +182,7 @@ Symbol* Parser::resolveValue(const std::string& written, const Location& at) {
 Literal Parser::namedLiteral(const Type& type, const std::string& what) {
     Location begin = token().at;
     std::string written = scopedName("a value");
-    // An enumerator of the type itself needs no scope.
+    // An enumerator of the value's own type needs no scope.
     Symbol* s = nullptr;
     if (type.declaration && type.declaration->kind == Declaration::Kind::Enum &&
         written.find("::") == std::string::npos)

@@ -34,7 +34,7 @@ public:
     // a type, must not give the name another meaning later.
     Symbol* resolve(const std::string& scope, const std::string& written, const Location& at,
                     const std::string& user);
-    // Whether `user` has used the name for something else before; says so as an error.
+    // True if `user` has used the name for something else before; says so as an error.
     bool hasChanged(const std::string& user, const std::string& name, const Location& at);
     // Enumerators of any enum in the scope, or around it, with this name: Ice still allows them
     // bare.

@@ -18,7 +18,7 @@ GeneratedFile servantSource(const Block& b, const CFileNames& names); // <block>
 
 GeneratedFile proxyFile(const Block& b, const CFileNames& names); // <block>_proxy.h
 
-// A core to begin with: <block>.v, <block>.vhd, <block>_test.cpp
+// Files to begin a core with: <block>.v, <block>.vhd, <block>_test.cpp
 GeneratedFile verilogSkeleton(const Block& b, const CFileNames& names);
 GeneratedFile vhdlSkeleton(const Block& b, const CFileNames& names);
 GeneratedFile testSkeleton(const Block& b, const CFileNames& names);

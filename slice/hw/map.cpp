@@ -143,7 +143,8 @@ private:
                 }
     }
 
-    // Two names of Slice may give one name of a port: aB and a_b, a member x of p and p_x.
+    // Checks that no two names of Slice give one name of a port, as aB and a_b do, or a member x of
+    // p and p_x.
     void checkPorts() {
         std::map<std::string, std::string> ports;
         for (const char* own : {"clk", "rst", "bus_valid", "bus_write", "bus_addr", "bus_wdata",

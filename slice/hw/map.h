@@ -17,7 +17,7 @@ constexpr unsigned bufferAlignment = 128; // bytes: bursts begin there
 constexpr unsigned mostPins = 32;         // of a core, in a direction
 constexpr unsigned mostOperations = 16, refusedLsb = 16, resetBit = 31;
 
-// A scalar, or half of one of 64 bits: a field of a word, and bits of a port.
+// A scalar, or half of one of 64 bits, as a field of a word and bits of a port.
 struct Piece {
     Type type;
     std::string name; // a_x: of parameter a, member x
@@ -40,7 +40,7 @@ struct Word {
     unsigned width() const { return pieces.back().lsb + pieces.back().width; }
 };
 
-// An operation, a call of the core's; or an event, a call by it, of an operation of a callback
+// A call of the core's operation, or an event: a call by the core, of an operation of a callback
 // interface.
 struct Call {
     const Operation* operation = nullptr;
@@ -64,7 +64,7 @@ struct Listener {
     size_t first = 0, count = 0; // of Block::calls
 };
 
-// A pin of the chip that the core has as a port, beside its slot's.
+// A pin of the chip that the core has as a port beside its slot's.
 struct Pin {
     std::string name; // ends in _i or _o
     unsigned width = 1;
@@ -84,18 +84,18 @@ struct Block {
     bool hasLong() const;
     unsigned memoryLsb() const; // MEMORY holds the address from this bit on
     unsigned events() const;    // bits of EVENT that are used, from bit 0
-    // Every word between CONTROL and the slot's end, by number.
+    // Returns every word between CONTROL and the slot's end, by number.
     std::vector<const Word*> words() const;
 };
 
-// All hardware interfaces of the unit's main file; errors are in `diagnostics`.
+// Maps all hardware interfaces of the unit's main file; errors are in `diagnostics`.
 std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics);
 
-// The calls of an interface, not yet placed. Returns the number of errors.
+// Maps the calls of an interface, which are not placed yet. Returns the number of errors.
 int mapCalls(const Declaration& d, const Unit& unit, Block& block, Diagnostics& diagnostics);
-// A whole number, decimal or 0x..., within [low, high].
+// Parses a whole number, decimal or 0x..., within [low, high]. False: it is none.
 bool number(const std::string& text, unsigned low, unsigned high, unsigned& value);
-// Metadata that begins with hw: must be one of `known`.
+// Checks that metadata that begins with hw: is one of `known`. Returns the number of errors.
 int checkKeys(const std::vector<std::string>& metadata, const std::vector<std::string>& known,
               const std::string& who, const Location& at, Diagnostics& diagnostics);
 

@@ -11,7 +11,7 @@
 namespace hw {
 namespace {
 
-// A string of JSON whose text may also stand in a comment of C.
+// Quotes a string for JSON; its text may also stand in a comment of C.
 std::string quoted(const std::string& text) {
     std::string s = "\"";
     for (size_t i = 0; i < text.size(); ++i) {

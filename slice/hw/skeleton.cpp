@@ -14,7 +14,7 @@
 namespace hw {
 namespace {
 
-// A slot's ports, a memory port's (docs/bus.md, docs/memory.md), and pins.
+// The ports of a core: its slot's, a memory port's (docs/bus.md, docs/memory.md), and pins.
 std::vector<Port> corePorts(const Block& b) {
     std::vector<Port> list;
     for (const Port& p : wrapperPorts(b)) {

@@ -65,7 +65,7 @@ std::string roomOf(const Call& c, const Piece& p) {
     return c.name + "_" + p.name.substr(0, p.name.size() - 5) + "data";
 }
 
-// A sequence in DDR3 is laid out as the array in C is.
+// Writes the reading of a sequence; it is laid out in DDR3 as the array in C is.
 void readSequence(Writer& w, const Call& c, const Piece& p, const std::string& count) {
     std::string sequence = lvalue(p), bytes = std::to_string(p.elementBytes) + "U";
     w.line(sequence + ".size = (Ice_Int)" + count + ";");

@@ -76,7 +76,7 @@ void parameters(Writer& w, const Block& b) {
     w.line("    );");
 }
 
-// One bit for each call up to the last that has an event.
+// A binary constant with a bit for each call up to the last that has an event.
 template <class Choose> std::string bits(const Block& b, Choose choose) {
     std::string text;
     for (unsigned bit = b.events(); bit-- > 0;)

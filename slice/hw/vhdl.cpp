@@ -48,7 +48,7 @@ std::string signalOf(const Word& word) {
     return name;
 }
 
-// A port, or the bits of it that a piece is.
+// The port of a piece, or the bits of it that the piece is.
 std::string portOf(const Call& c, const Piece& p, bool isResult) {
     std::string port = c.name + "_" + p.name + (isResult ? "_i" : "_o");
     return p.portWidth > 32 ? slice(port, p.portLsb, p.width) : port;

@@ -9,7 +9,7 @@
 
 namespace hw {
 
-// Whether it is a number, a bool, an enum, or a struct of these.
+// True if it is a number, a bool, an enum, or a struct of these.
 bool isMappable(const Type& type);
 // Appends the value's scalars. Those that follow each other share a word where they fit; a scalar
 // of 64 bits takes two words, low one first. `c` is the lvalue in C; "*p" for what p points to.

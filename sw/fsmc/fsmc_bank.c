@@ -34,7 +34,7 @@ static int isBad(const FSMC_Bank* bank) {
            (!isExtended(bank->writeMode) || timingIsBad(bank, &bank->write, bank->writeMode));
 }
 
-/* BTR or BWTR; ACCMOD 0..3 are modes A to D. */
+/* Returns a BTR or BWTR; its ACCMOD 0..3 are the modes A to D. */
 static U32 timing(const FSMC_Timing* time, U32 busturn, FSMC_Mode mode) {
     U32 accmod = isExtended(mode) ? (U32)mode - (U32)FSMC_MODE_A : 0U;
     return BTR_ADDSET(time->addset) | BTR_ADDHLD(time->addhld) | BTR_DATAST(time->datast) |

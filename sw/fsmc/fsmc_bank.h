@@ -18,8 +18,8 @@ typedef enum FSMC_Mode {
     FSMC_MODE_BURST /* synchronous PSRAM: BURSTEN, CBURSTRW, WAITEN, WAITCFG 0 */
 } FSMC_Mode;
 
-/* In HCLK: ADDSET 0..15, ADDHLD 1..15 (mode D and multiplexed), DATAST 1..255 (4 at least with
- * NWAIT). */
+/* Times of an access in HCLK: ADDSET 0..15, ADDHLD 1..15 (mode D and multiplexed), DATAST 1..255 (4
+ * at least with NWAIT). */
 typedef struct FSMC_Timing {
     U8 addset, addhld, datast;
 } FSMC_Timing;

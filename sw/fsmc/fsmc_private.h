@@ -37,7 +37,7 @@
 #define BTR_DATLAT(n) ((U32)(n) << 24)
 #define BTR_ACCMOD(n) ((U32)(n) << 28)
 
-/* What all modes have: bank on, 16 bits, write enable. */
+/* The bits that all modes set: bank on, 16 bits, write enable. */
 #define BCR_ALWAYS (BCR_MBKEN | BCR_MWID_16 | BCR_RESERVED | BCR_WREN)
 /* FSMC_init's settings: mode 1 with NWAIT, active low. ADDSET 2: NWAIT, which follows the pins in
  * less than 16 ns, is valid when the data phase begins; DATAST 4 is the least with NWAIT

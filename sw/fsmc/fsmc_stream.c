@@ -97,11 +97,13 @@ U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords) {
         U32 part = upTo(address, REGION, 2U * halfwords) / 2U;
         U32 at = fsmc_windowAddress(address);
         if (address & (BLOCK - 1U)) {
-            /* Only from the beginning of a block is there time to fetch the next one. */
+            /* A block is read from its beginning, since only then is there time to fetch the next
+             * one. */
             part = upTo(address, BLOCK, 2U * part) / 2U;
             readHalfwords(at, data, part);
         } else {
-            /* Two reads in a block fetch it; that of its end waits until all of it is there. */
+            /* Two reads in a block make the bridge fetch it; the one at its end waits until all of
+             * it is there. */
             (void)fsmc_port->read16(fsmc_context, at);
             (void)fsmc_port->read16(fsmc_context, at + BLOCK - 2U);
             setBank(1);

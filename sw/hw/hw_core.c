@@ -50,7 +50,8 @@ void Hw_Core_act(const Hw_Core* self, U32 operation) {
 Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms) {
     self->done[operation] = 0;
     Hw_Core_act(self, operation);
-    /* A post that is left from a call that was given up ends one wait early, and no more. */
+    /* A post left from a call that was given up ends one wait early, so the event itself
+     * decides. */
     while (!self->done[operation])
         if (!self->port->wait(self->context, operation, ms) && !self->done[operation]) {
             FSMC_write(self->slot, CONTROL, RESET);
@@ -67,7 +68,8 @@ void Hw_Core_begin(Hw_Core* self, U32 operation, U32 ms) {
 
 void Hw_Core_later(Hw_Core* self, U32 operation) {
     self->later[operation] = 1;
-    /* The event may have been before, or the task may sleep longer than this one's time. */
+    /* A post wakes the polling task: the event may be over already, or this deadline be the
+     * earliest. */
     self->port->post(self->context, operation);
 }
 
@@ -109,7 +111,7 @@ float Hw_float(U32 bits) {
     return value;
 }
 
-/* Both the Cortex-M3 and the host have the low word first. */
+/* Returns one half of a double; the Cortex-M3 and the host both store the low word first. */
 U32 Hw_doubleBits(double value, int high) {
     U32 words[2];
     memcpy(words, &value, sizeof words);

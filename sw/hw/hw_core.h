@@ -31,15 +31,16 @@ typedef struct Hw_Frames {
     void (*processed)(U32 findings); /* called for each frame that was processed */
 } Hw_Frames;
 
-/* What a core's servant needs from below: how its task waits, and what it shares with others. On
- * uC/OS-II: a semaphore (OSSemPend, OSSemPost); where several tasks call operations that take
- * time, one for each operation. */
+/* The port of a core's servant to what lies below: how its task waits, and what it shares with
+ * others. On uC/OS-II: a semaphore (OSSemPend, OSSemPost); where several tasks call operations that
+ * take time, one for each operation. */
 typedef struct Hw_Port {
-    /* Until post was called for the operation since the last wait (1), or `ms` have passed (0). */
+    /* Waits until post is called for the operation (returns 1), or `ms` have passed (0). A post
+     * since the last wait counts. */
     int (*wait)(void* context, U32 operation, U32 ms);
     void (*post)(void* context, U32 operation);
     U32 (*nowMs)(void* context); /* of any beginning; wraps */
-    /* Number of accesses so far that no register answered; what was read meanwhile is nothing. */
+    /* Returns how many accesses so far no register answered; what they read is not valid. */
     U32 (*busErrors)(void* context);
     Hw_Frames* frames; /* 0: no core of the program works on frames */
 } Hw_Port;
@@ -56,26 +57,29 @@ typedef struct Hw_Core {
     U32 deadline[HW_OPERATIONS];      /* ms, of those */
 } Hw_Core;
 
-/* `id`: what the slot's word ID reads. Resets the core, clears its events, enables them. */
+/* Sets a core up: resets it, clears its events, enables them. `id` is what the slot's word ID must
+ * read; HW_WRONG_CORE: it reads another. */
 Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Port* port, void* context);
-/* When the slot's interrupt line is high, from the interrupt routine or a task. */
+/* Takes the slot's events while its interrupt line is high; for the interrupt routine or a task. */
 void Hw_Core_interrupt(Hw_Core* self);
 
-/* For generated servants. ready: may parameters be written? act: an operation that is done at
- * once. run: one that takes time, until it is done or `ms` have passed without its event. */
+/* Steps of an operation, for generated servants. ready: HW_OK if parameters may be written. act:
+ * starts the operation. run: starts it and waits until it is done, or `ms` have passed without its
+ * event. */
 Hw_Status Hw_Core_ready(const Hw_Core* self, U32 operation);
 void Hw_Core_act(const Hw_Core* self, U32 operation);
 Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms);
 
-/* One that is answered later. begin: act, and the time runs. later: from now on ended tells of it.
- * ended: 1 when it has ended, with how; else 0, and `next` is at most the time that it has left. */
+/* Steps of an operation that is answered later. begin: starts it, and its time. later: leaves the
+ * end to the task that polls. ended: returns 1 and the status if it has ended, else 0; `next`
+ * becomes at most the time that it has left. */
 void Hw_Core_begin(Hw_Core* self, U32 operation, U32 ms);
 void Hw_Core_later(Hw_Core* self, U32 operation);
 int Hw_Core_ended(Hw_Core* self, U32 operation, U32 nowMs, Hw_Status* status, U32* next);
-/* 1: the core has raised the event since the last time. */
+/* Returns 1 if the core has raised the event since the last call. */
 int Hw_Core_event(Hw_Core* self, U32 event);
 
-/* IEEE 754 as it is in registers. */
+/* Convert between numbers and their IEEE 754 bits in registers. */
 U32 Hw_floatBits(float value);
 float Hw_float(U32 bits);
 U32 Hw_doubleBits(double value, int high);

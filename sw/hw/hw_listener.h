@@ -12,10 +12,10 @@ typedef struct Hw_Listener {
     volatile U8 count; /* of changes; its lowest bit says which proxy holds */
 } Hw_Listener;
 
-/* None. */
+/* Makes a listener without a proxy. */
 void Hw_Listener_init(Hw_Listener* self);
 void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy);
-/* A copy; 0: there is none. */
+/* Copies the proxy. Returns 0 if there is none. */
 int Hw_Listener_get(const Hw_Listener* self, Ice_ObjectPrx* proxy);
 
 #endif

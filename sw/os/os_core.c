@@ -104,7 +104,7 @@ INT32U OSTimeGet(void) {
     return ticks;
 }
 
-/* A delay or a time-out has run out: ready, whatever it waited for. */
+/* Makes a task ready whose delay or time-out has run out, whatever it waited for. */
 static void expire(OS_Task* task) {
     if (task->event) {
         OS_Set_remove(&task->event->waiting, task->priority);

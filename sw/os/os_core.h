@@ -80,7 +80,7 @@ U8 OS_PendError(const OS_EVENT* event, OS_EventType type);
 /* Gives a task another priority, wherever it is listed. */
 void OS_ChangePriority(OS_Task* task, U8 priority);
 
-/* The port. */
+/* The processor's port, in os_cpu and beside it. */
 OS_STK* OSTaskStkInit(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT16U opt);
 void OSStartHighRdy(void);                /* first switch: to os_kernel.current */
 void OSCtxSw(OS_Task* from, OS_Task* to); /* also from OSIntExit */

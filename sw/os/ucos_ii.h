@@ -47,15 +47,16 @@ void OSInit(void);
 /* Runs the tasks; does not return on the target. */
 void OSStart(void);
 
-/* prio 0 (highest) .. OS_LOWEST_PRIO - 1, one task each. `ptos`: highest address of its stack. */
+/* Creates a task. `prio` is 0 (highest) .. OS_LOWEST_PRIO - 1, one task each; `ptos` is the highest
+ * address of its stack. */
 INT8U OSTaskCreate(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8U prio);
 
 #define OS_TASK_OPT_NONE 0U
 #define OS_TASK_OPT_STK_CHK 1U /* OSTaskStkChk may be asked about it */
 #define OS_TASK_OPT_STK_CLR 2U /* the stack is filled with zeros, which OSTaskStkChk counts */
 
-/* As OSTaskCreate, and the stack's bounds are known: `pbos` is its lowest address, `stk_size` its
- * size in OS_STK. `id` and `pext` are accepted as in uC/OS-II, and not used. */
+/* Creates a task as OSTaskCreate does, with its stack's bounds: `pbos` is its lowest address,
+ * `stk_size` its size in OS_STK. `id` and `pext` are accepted as in uC/OS-II, and not used. */
 INT8U OSTaskCreateExt(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8U prio, INT16U id,
                       OS_STK* pbos, INT32U stk_size, void* pext, INT16U opt);
 
@@ -63,10 +64,10 @@ typedef struct os_stk_data {
     INT32U OSFree, OSUsed; /* in OS_STK */
 } OS_STK_DATA;
 
-/* How much of a task's stack has ever been in use. */
+/* Tells how much of a task's stack has ever been in use. */
 INT8U OSTaskStkChk(INT8U prio, OS_STK_DATA* p_stk_data);
 
-/* Priority of the running task (OSPrioCur of uC/OS-II, as a function). */
+/* Returns the priority of the running task (OSPrioCur of uC/OS-II, as a function). */
 INT8U OSTaskPrio(void);
 
 extern INT8U OSPrioCur; /* priority at which the running task runs; not to be written */

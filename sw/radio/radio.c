@@ -38,7 +38,7 @@ static void set(U32 word, U32 value) {
     FSMC_write(MAP_SLOT_MODEM, word, value);
 }
 
-/* Highest word first. */
+/* Writes the key's words, the highest first. */
 static void setKey(const U8* key) {
     U32 i;
     for (i = 0; i < 16U; i += 4U)
@@ -93,7 +93,7 @@ U32 Radio_failedStep(void) {
     return radio.failedStep;
 }
 
-/* Buffers whose packets have left become free, oldest first. */
+/* Frees the buffers whose packets have left, oldest first. */
 static void reclaim(void) {
     U32 busy = BUFFERS - (get(MODEM_TX_STATE) & MODEM_TX_STATE_FREE_MASK);
     while (radio.used > busy) {

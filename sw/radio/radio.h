@@ -73,8 +73,8 @@ typedef struct Radio_Memory {
  * guard time of 1 s, up to 40 s where no modem answers. `memory` is copied. */
 Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory);
 
-/* After RADIO_NO_MODEM or RADIO_REFUSED: the step of the set-up that failed, as STATUS.STEP of the
- * controller counts them (docs/modem.md). */
+/* Returns the step of the set-up that failed, after RADIO_NO_MODEM or RADIO_REFUSED, as STATUS.STEP
+ * of the controller counts them (docs/modem.md). */
 U32 Radio_failedStep(void);
 
 /* Copies a frame of 1..128 bytes into the output ring. Returns 0, or 1 where no buffer is free.
@@ -92,7 +92,7 @@ U32 Radio_receive(Radio_OnPacket onPacket, void* context);
  * (MODEM_EVENT_...); non-zero: there is work for the task. For interrupt routines. */
 U32 Radio_interrupt(void);
 
-/* The counters, which go on counting. */
+/* Returns the counters, which go on counting. */
 const Radio_Counters* Radio_counters(void);
 
 #endif

@@ -10,14 +10,15 @@
 /* Loads and stores of the processor; the context is not used. */
 extern const FSMC_Port board_fsmc;
 
-/* 120 MHz from a crystal of 25 MHz, flash wait states; the pins of the FSMC. No RAM is used. */
+/* Sets up the clock (120 MHz from a crystal of 25 MHz), flash wait states and the FSMC's pins. Uses
+ * no RAM. */
 void Board_start(void);
-/* SysTick, the FPGA's interrupt and the watchdog. To be called with interrupts masked, before
- * OSStart. */
+/* Starts SysTick, the FPGA's interrupt and the watchdog. To be called with interrupts masked,
+ * before OSStart. */
 void Board_startInterrupts(void);
-/* Not called for a second, the watchdog resets the processor. */
+/* Serves the watchdog, which resets the processor if this is not called for a second. */
 void Board_serveWatchdog(void);
-/* Priority of the task that runs, 255: none does yet. */
+/* Returns the priority of the running task; 255 if none runs yet. */
 U32 Board_task(void);
 
 /* Interrupt routines, for the vectors. */

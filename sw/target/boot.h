@@ -27,7 +27,7 @@ typedef enum Boot_Reason {
 
 #define BOOT_REPORT_MARK 0xB0U
 
-/* What the last fault left behind; survives resets, not power-off. */
+/* The record of the last fault; survives resets, not power-off. */
 typedef struct Boot_Record {
     U32 magic;
     U32 starts;  /* since power-on */
@@ -40,17 +40,17 @@ typedef struct Boot_Record {
 
 extern Boot_Record boot_record; /* of the run before, once Boot_begin has been called */
 
-/* First of all: counts the start, reads why it is one. */
+/* Counts the start and finds its reason; to be called before anything else. */
 void Boot_begin(void);
-/* 1: the checksum that the build has put behind the image is right. */
+/* Returns 1 if the checksum that the build has put behind the image is right. */
 int Boot_imageIsSound(void);
-/* The word for SCRATCH. */
+/* Returns the word for SCRATCH. */
 U32 Boot_report(void);
-/* The next start is to give this reason, whatever ends the run. */
+/* Makes the next start report this reason, whatever ends the run. */
 void Boot_note(Boot_Reason reason);
 /* Keeps what happened and resets the processor. */
 void Boot_fail(Boot_Reason reason, U32 pc, U32 lr, U32 address);
-/* A corrupt image: says so in SCRATCH, and sleeps for ever. */
+/* Reports a corrupt image in SCRATCH, and sleeps for ever. */
 void Boot_refuse(void);
 
 #endif

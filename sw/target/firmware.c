@@ -35,7 +35,7 @@ void Firmware_run(void) {
     } else {
         Boot_note(BOOT_NO_FPGA); /* nobody serves the watchdog: the next try is in a second */
     }
-    /* From here on interrupts wait for the first task: they call the kernel. */
+    /* Interrupts call the kernel, and so wait from here on for the first task. */
     __asm__ volatile("cpsid i");
     Board_startInterrupts();
     OSStart();

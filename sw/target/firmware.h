@@ -8,7 +8,7 @@
 
 #include "ucos_ii.h"
 
-/* From reset, once memory is set up; does not return. */
+/* Runs the program, from reset once memory is set up; does not return. */
 void Firmware_run(void);
 
 #endif

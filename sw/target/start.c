@@ -17,7 +17,8 @@ void Reset_Handler(void);
 void Fault_Handler(void);
 void Fault_entered(const U32* frame, U32 number);
 
-/* The frame is on the stack that was in use, which bit 2 of EXC_RETURN says. */
+/* Enters a fault's handler with the frame's address: bit 2 of EXC_RETURN says which stack was in
+ * use. */
 void __attribute__((naked)) Fault_Handler(void) {
     __asm__ volatile("tst lr, #4\n\t"
                      "ite eq\n\t"

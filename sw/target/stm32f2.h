@@ -53,7 +53,7 @@
 #define GPIO_AFR(port, half) GPIO(port, 0x20UL + 4UL * (half)) /* four bits a pin */
 #define GPIO_AF_FSMC 12UL
 
-/* Which pin an EXTI line listens to, and the lines (RM0033, 7.2 and 8.3). */
+/* Pins that EXTI lines listen to, and the lines (RM0033, 7.2 and 8.3). */
 #define SYSCFG_EXTICR(n) REG(0x40013808UL + 4UL * (n)) /* four bits a line: the port */
 #define EXTI_IMR REG(0x40013C00UL)
 #define EXTI_RTSR REG(0x40013C08UL)

@@ -99,7 +99,7 @@ Baseline readBaseline(const string& text) {
     return b;
 }
 
-// A line for each instance, so that a commit's difference can be read.
+// Writes a line for each instance, so that a commit's difference can be read.
 string written(const Baseline& b) {
     string text = fmt::format("{{\n\"yosys\": {},\n\"designs\": {{", json(b.yosys).dump());
     const char* betweenDesigns = "\n";
@@ -172,7 +172,8 @@ Verdict judge(const Row& row, const Baseline& baseline, const string& yosys, dou
     const Figures& f = row.main->figures;
     const auto accepted = baseline.designs.find(name);
     const bool known = accepted != baseline.designs.end();
-    // Another Yosys counts otherwise: what the accepted figures are by is what is judged.
+    // Another Yosys counts otherwise: a design is judged only by the version of the accepted
+    // figures.
     const bool comparable =
         baseline.yosys.empty() || shortVersion(baseline.yosys) == shortVersion(yosys);
     for (const string& text : aboveLimits(row))

@@ -29,7 +29,7 @@ Accepted acceptedFrom(const Figures& figures);
 AcceptedCounts countsOf(const Baseline& baseline);
 std::string shortVersion(const std::string& yosys); // "Yosys 0.23"
 
-// A signal or a module whose cost is another now.
+// A signal or a module whose cost has changed.
 struct Change {
     std::string name;
     Cost before, after;
@@ -39,16 +39,16 @@ struct Change {
 std::vector<Change> changedSignals(const Costs& before, const Costs& after);
 std::vector<Change> changedInstances(const Costs& before, const Costs& after);
 
-// What is wrong with a design, and what is only to be told.
+// Findings of a design: errors, and notes that only tell.
 struct Verdict {
     std::vector<std::string> failures, notes;
 };
-// A budget is the accepted figure and a little more, since optimisation is no exact science: 3 % +
-// 4 LUTs, 1 % + 2 flip-flops. A limit must be kept, whatever is accepted. So must the clock
-// (`goal`, MHz) by a design that was accepted with it; one that was accepted below it may lose a
-// tenth.
+// Judges a design. Its budget is the accepted figure and a little more, since optimisation is no
+// exact science: 3 % + 4 LUTs, 1 % + 2 flip-flops. A limit must be kept, whatever is accepted. So
+// must the clock (`goal`, MHz) by a design that was accepted with it; one that was accepted below
+// it may lose a tenth.
 Verdict judge(const Row& row, const Baseline& baseline, const std::string& yosys, double goal);
-// What is above a limit of synth/designs.json, a sentence each.
+// Returns a sentence for each limit of synth/designs.json that is exceeded.
 std::vector<std::string> aboveLimits(const Row& row);
 int lutBudget(int accepted);
 int ffBudget(int accepted);

@@ -32,7 +32,7 @@ struct Options {
 
 constexpr size_t shownCommits = 30;
 
-// Every folder of platform RTL, cores and what was generated, in this order.
+// Returns every folder of platform RTL, cores and generated files, in this order.
 std::vector<fs::path> rtlFolders(const Options& o) {
     std::vector<fs::path> folders{o.source / "synth", o.source / "hdl", o.source / "bus"};
     for (const char* room : {"hdl", "ip"})
@@ -135,7 +135,7 @@ int report(const Options& o) {
         if (std::none_of(plan.designs.begin(), plan.designs.end(),
                          [&](const Design& d) { return d.name == name; }))
             throw std::runtime_error(fmt::format("there is no design {}", name));
-    // What another run is synthesising, this one finds in the cache.
+    // A design that another run is synthesising is then found in the cache.
     const FolderLock lock(o.output, "utilisation");
     const RunnerOptions options{o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs};
     if (!o.edif.empty()) {

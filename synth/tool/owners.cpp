@@ -67,7 +67,7 @@ private:
         return best;
     }
 
-    // Of several names of one net the one in the module that the cell comes from.
+    // The best of several names of one net is the one in the module that the cell comes from.
     string nameFor(const Cell& cell, const std::vector<Netlist::Name>& names) {
         for (const Netlist::Name& name : names) {
             const string path = splitName(name.name).first;

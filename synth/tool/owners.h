@@ -30,7 +30,8 @@ using Costs = std::map<std::pair<std::string, std::string>, Cost>;
 // Files (names only) of the modules along an instance path, the top's included.
 using FilesAlong = std::function<std::set<std::string>(const std::string& path)>;
 
-// For each cell the signal with its path, "u_modem.u_at.state"; "" if nothing near it has a name.
+// Returns, for each cell, the signal with its path, "u_modem.u_at.state"; "" if nothing near it has
+// a name.
 std::vector<std::string> ownersOf(const Netlist& netlist, const FilesAlong& filesAlong);
 Costs costsOf(const Netlist& netlist, const std::vector<std::string>& owners);
 Cost costOf(const Cell& cell);

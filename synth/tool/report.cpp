@@ -45,7 +45,8 @@ json instancesJson(const Costs& costs) { // {path: [LUT, FF]}
     return j;
 }
 
-// As the cache has them, without the costs (costsJson), and what is calculated from them.
+// The figures as the cache has them, without the costs (costsJson), and what is calculated from
+// them.
 json figuresJson(const Figures& f) {
     json j = f;
     j.erase("costs");

@@ -26,6 +26,7 @@ struct Report {
 
 std::string entriesJson(const Report& report); // docs: the contract of all figures
 std::string markdown(const Report& report);
-// From the files of synth/report: "@STYLE@", "@SCRIPT@" and "@DATA@" in the page are replaced.
+// Writes the page from the files of synth/report: "@STYLE@", "@SCRIPT@" and "@DATA@" in it are
+// replaced.
 std::string html(const Report& report, const std::string& page, const std::string& style,
                  const std::string& script);

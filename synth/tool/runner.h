@@ -32,9 +32,10 @@ struct RunnerOptions {
 // Carries all runs out, says on stderr which is done. A failed run does not stop the others.
 void carryOut(std::vector<Run>& runs, const Library& library, const RunnerOptions& options);
 
-// A design as EDIF, FOLDER/<name>.edf, by the script edif.ys; its Verilog in FOLDER/verilog.
+// Writes a design as EDIF, FOLDER/<name>.edf, by the script edif.ys, and its Verilog to
+// FOLDER/verilog.
 void writeEdif(const Design& design, const Library& library, const RunnerOptions& options,
                const std::filesystem::path& folder);
 
-// What the program says of its version; throws if it does not run.
+// Returns what the program says of its version; throws if it does not run.
 std::string versionOf(const std::string& yosys);

@@ -88,7 +88,7 @@ Slices slicesOf(const Netlist& n) {
             wide++;
         } else if (cell.type == "CARRY4") {
             carry++;
-            // A bit whose S is no LUT of its own takes a site as a route-through.
+            // A carry bit whose S is no LUT of its own takes a site as a route-through.
             for (const int bit : cell.pin("S")->bits) {
                 const auto it = n.driver.find(bit);
                 if (bit >= 0 && (it == n.driver.end() || lutInputs(n.cells[it->second].type) == 0))

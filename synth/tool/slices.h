@@ -22,9 +22,9 @@ struct Slices {
     int controlSets = 0; // distinct (clock, enable, set/reset)
 };
 
-// What map makes of so many LUT sites and flip-flops: (sites + share * flip-flops) / 4, where
-// `share` is how many flip-flops find no place beside a LUT that is used. Calibrated with published
-// reports of map for Spartan-6 (tests/synth/slices_test.cpp has them).
+// Estimates the slices that map makes of so many LUT sites and flip-flops: (sites + share *
+// flip-flops) / 4, where `share` is how many flip-flops find no place beside a LUT that is used.
+// Calibrated with published reports of map for Spartan-6 (tests/synth/slices_test.cpp has them).
 constexpr double usualShare = 0.55, leastShare = 0.13, mostShare = 0.97;
 constexpr double usualPairing = 0.12; // LUTs that map saves by pairing: 1 to 18 % in those reports
 double occupiedSlices(double sites, double flipFlops, double share);

@@ -21,7 +21,8 @@ struct VerilogModule {
 
 class Library {
 public:
-    // All *.v of these folders, then these files; of two modules with one name the first counts.
+    // Finds all *.v of these folders, then these files; of two modules with one name the first
+    // counts.
     explicit Library(const std::vector<std::filesystem::path>& folders,
                      const std::vector<std::filesystem::path>& includeFolders,
                      const std::vector<std::filesystem::path>& files = {});

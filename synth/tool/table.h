@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-// What is shown of a design: its runs by family.
+// The rows of a design: its runs by family.
 struct Row {
     const Design* design = nullptr;
     const Run* main = nullptr; // Spartan-6
@@ -35,7 +35,7 @@ TextTable paperTable(const Plan& plan, const Row& row);
 using AcceptedCounts = std::map<std::string, std::pair<int, int>>;
 TextTable designTable(const Plan& plan, const std::vector<Row>& rows,
                       const AcceptedCounts& accepted);
-// Where a design's cost is: the instances, with all below them.
+// Writes where a design's cost is: the instances, with all below them.
 TextTable costTable(const Library& library, const Row& row, size_t depth);
 TextTable pathTable(const Plan& plan, const Row& row, size_t count);
 std::string percent(double part, double whole); // "18.9 %"

@@ -40,15 +40,15 @@ bool isAddress(const string& port) {
     return port[0] == 'A' || startsWith(port, "DPRA"); // ADDRA.., A0.., DPRA0..
 }
 
-// A memory's output follows its own port's address: DOA ADDRA, DPO DPRA0.., SPO A0..; the write
-// port's not.
+// True if a memory's output follows this address port: DOA follows ADDRA, DPO DPRA0.., SPO A0..;
+// none follows the write port.
 bool isRead(const string& address, const string& output) {
     if (startsWith(address, "ADDR"))
         return output.size() < 3 || address.back() == output[2];
     return startsWith(address, "DPRA") ? output == "DPO" : output != "DPO";
 }
 
-// An address that nothing is written at: no path ends there.
+// True for an address port that nothing is written at: no path ends there.
 bool isReadOnly(const string& port) {
     return port == "ADDRA" || port == "ADDRB" || port == "ADDRC" || startsWith(port, "DPRA");
 }
@@ -72,7 +72,8 @@ double endDelay(const string& type, const string& port) {
     return lutRamSetup;
 }
 
-// Of a combinational cell from a pin (bit i of it) to an output (bit o); negative: no such path.
+// The delay of a combinational cell from a pin (bit i of it) to an output (bit o); negative: no
+// such path.
 double throughDelay(const Cell& cell, const Pin& from, size_t i, const Pin& to, size_t o) {
     if (cell.type != "CARRY4")
         return startsWith(cell.type, "MUXF") ? wideMux : lut;
@@ -112,7 +113,7 @@ public:
     }
 
     double net(int bit, int reader) const {
-        // From a LUT into the flip-flop, wide multiplexer or carry beside it no wire is needed.
+        // No wire is needed from a LUT into the flip-flop, wide multiplexer or carry beside it.
         const auto readers = n_.readers.find(bit);
         const int fanout =
             readers == n_.readers.end() ? 0 : static_cast<int>(readers->second.size());

@@ -151,7 +151,7 @@ int main(void) {
     (void)Ice_Communicator_stringToProxy(&ic, "station:xbee-at -a 0x0000", &station);
     (void)Ice_Communicator_stringToProxy(&ic, "station -o:xbee-at -a 0x0000", &stationOneway);
     (void)Ice_ObjectAdapter_createProxy(&adapter, "hwengine1", &self);
-    /* Until the link is up and the station listens, calls are served. */
+    /* Calls are served while the link comes up and the station does not listen yet. */
     while (Autopilot_StationPrx_vehicleState(&station, &self, &params) != ICE_OK)
         (void)Ice_Communicator_poll(&ic, 1000);
     (void)Autopilot_StationPrx_vehicleState(&stationOneway, &self, &params);

@@ -64,8 +64,7 @@ static void clientTask(void* argument) {
         setParam(&params[2], data[2], Autopilot_cornersFound, corners);
         setParam(&params[3], data[3], Autopilot_radioBytesSent, radio->bytesCopiedOut);
         setParam(&params[4], data[4], Autopilot_radioBytesReceived, radio->bytesCopiedIn);
-        /* A station that does not listen is no fault of the vehicle's: the next frame tries again.
-         */
+        /* The result is ignored: a station that does not listen yet is told of the next frame. */
         (void)Autopilot_StationPrx_vehicleState(&station, &self, &list);
     }
 }

@@ -14,7 +14,8 @@ static OS_EVENT *waiter, *work; /* the task that waits within an operation; the 
 static U32 missing;
 static U8 isStarted[MAP_CORES];
 
-/* One task waits, the one that serves calls; it looks itself whether the event was its own. */
+/* Waits for any operation's event: one task waits, the one that serves calls, and checks itself
+ * whether the event was its own. */
 static int waitEvent(void* context, U32 operation, U32 ms) {
     INT8U error;
     (void)context;
@@ -82,7 +83,7 @@ void UAV_coresTask(void* argument) {
                 U32 ms = hw_instances[i].poll(nowMs(0));
                 next = ms < next ? ms : next;
             }
-        /* 0 would be for ever. */
+        /* OSSemPend would take 0 as for ever. */
         OSSemPend(work, next == HW_NEVER ? 0 : (INT32U)(next / MS_PER_TICK + 1U), &error);
     }
 }

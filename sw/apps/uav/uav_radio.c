@@ -117,7 +117,7 @@ static void setUpModem(void) {
     xbeeConf.key = uav_radioKey;
     xbeeConf.guardMs = uav_guardMs;
     Link_limitFrame(&uav_link, uav_radioKey ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME);
-    /* A modem that is dead now may be back later: the vehicle flies on and tries again. */
+    /* The vehicle flies on without its modem and tries again: the modem may come back. */
     while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)
         OSTimeDly(OS_TICKS_PER_SEC);
 }
@@ -149,7 +149,7 @@ void UAV_radioTask(void* argument) {
         if (Link_state(&uav_link) == LINK_STATE_UP)
             upAt = OSTimeGet();
         unlockLink(0);
-        /* At least a tick, so that a full ring is not asked again and again. */
+        /* The wait is at least a tick, so that a full ring is not polled. */
         wait = wait > 1000000U ? OS_TICKS_PER_SEC : wait * OS_TICKS_PER_SEC / 1000000U;
         OSSemPend(uav_radioWork, wait ? wait : 1U, &error);
     }

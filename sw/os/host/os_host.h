@@ -13,7 +13,7 @@
 namespace OsHost {
 
 struct Machine {
-    // Nothing to do: let time pass up to the next interrupt.
+    // Lets time pass up to the next interrupt: no task is ready.
     std::function<void()> idle;
     // True while an interrupt is pending; then `serve` runs its handler (between OSIntEnter and
     // OSIntExit), which must make `pending` false or the handler is entered again.
@@ -21,10 +21,11 @@ struct Machine {
     std::function<void()> serve;
 };
 
-// Before OSInit. The machine must outlive run().
+// Sets the machine, which must outlive run(). To be called before OSInit.
 void setMachine(Machine machine);
 
-// OSStart, but it returns: when stop() is called, or with the exception that left a task.
+// Does what OSStart does, but returns: when stop() is called, or with the exception that left a
+// task.
 void run();
 
 // Leaves run() from within a task, an interrupt or idle. Tasks do not go on afterwards.

@@ -52,8 +52,8 @@ void OSStartHighRdy(void) {
         ;
 }
 
-/* By PendSV, interrupts off: `sp` is where the running task's registers are; returns the next
- * one's. */
+/* Switches the context; PendSV calls it with interrupts off. `sp` is where the running task's
+ * registers are; returns where the next one's are. */
 U32* OS_Switch(U32* sp) {
     if (running) {
         running->stack = sp;

@@ -8,7 +8,7 @@
 
 namespace {
 
-using Names = std::pair<const char*, const char*>;
+using Names = std::pair<std::string, std::string>;
 
 class Options : public ::testing::TestWithParam<Names>, public Radio {
 protected:

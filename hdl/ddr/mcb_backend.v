@@ -42,10 +42,12 @@ module mcb_backend #(
 );
     generate
         if (ADDR_WIDTH < 9 || ADDR_WIDTH > 30) begin : g_refused
-`ifdef __ICARUS__ // as in npi_arbiter
-            mcb_backend_ADDR_WIDTH_9_to_30 u_refused ();
-`else
+`ifdef VERILATOR // as in npi_arbiter
             $error("mcb_backend: ADDR_WIDTH is 9..30");
+`elsif YOSYS
+            $error("mcb_backend: ADDR_WIDTH is 9..30");
+`else
+            mcb_backend_ADDR_WIDTH_9_to_30 u_refused ();
 `endif
         end
     endgenerate

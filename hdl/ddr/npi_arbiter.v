@@ -55,17 +55,20 @@ module npi_arbiter #(
 );
     generate
         if (PORTS < 2 || PORTS > 8 || URGENT_RUN == 0 || ADDR_WIDTH < 9 || ADDR_WIDTH > 32) begin : g_refused
-`ifdef __ICARUS__ // Verilog-2005 has no error message: an unknown module is one
-            npi_arbiter_PORTS_2_to_8_URGENT_RUN_1_to_7_ADDR_WIDTH_9_to_32 u_refused ();
-`else
+            // A message as a module item is SystemVerilog: to Icarus and XST an unknown module says it.
+`ifdef VERILATOR
             $error("npi_arbiter: PORTS is 2..8, URGENT_RUN 1..7, ADDR_WIDTH 9..32");
+`elsif YOSYS
+            $error("npi_arbiter: PORTS is 2..8, URGENT_RUN 1..7, ADDR_WIDTH 9..32");
+`else
+            npi_arbiter_PORTS_2_to_8_URGENT_RUN_1_to_7_ADDR_WIDTH_9_to_32 u_refused ();
 `endif
         end
     endgenerate
 
     localparam PORT_BITS = PORTS > 4 ? 3 : PORTS > 2 ? 2 : 1;
 
-    // A request's bit is still high in the cycle of its acknowledgement.
+    // The bit of a request is still high in the cycle of its acknowledgement.
     wire             full, granted;
     wire [PORTS-1:0] grant;
     npi_select #(.PORTS(PORTS), .URGENT(URGENT), .URGENT_RUN(URGENT_RUN)) u_select (

@@ -60,7 +60,8 @@ module npi_fifo #(
             reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
             reg [WIDTH-1:0] word;
             reg             empty;
-            // Only words of the clocks before are read: the RAM is never read where it is being written.
+            // The RAM gives only words of earlier clocks: it is never read where it is being
+            // written.
             wire fetch = empty || pop_i;
             wire ready = next != write_index;
             assign empty_o = empty;

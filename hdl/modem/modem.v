@@ -49,7 +49,7 @@ module modem #(
 );
     `include "modem_regs.vh"
 
-    // An access waits a cycle, so that no path beyond begins in the bus's address decoder.
+    // An access waits a cycle, so that no path beyond it begins in the bus's address decoder.
     reg         turn;
     wire        reg_write, reg_read;
     wire [3:0]  reg_addr;
@@ -120,7 +120,8 @@ module modem #(
     assign modem_reset_n_o = reset_n;
     assign uart_valid = at_tx_valid || packet_tx_valid; // never both: not ready while the set-up runs
     assign uart_data  = at_tx_data | packet_tx_data;
-    // A register, because it also addresses the word that the processor reads: a change of ring waits a clock.
+    // `writes` is a register because it also addresses the word that the processor reads: a change
+    // of ring waits a clock.
     reg writes;
     always @(posedge clk_i)
         writes <= wr_valid;

@@ -62,7 +62,8 @@ module modem_at_rows #(
         endcase
     endfunction
 
-    // A command's value is so many digits of this word from this nibble on; the key is in four words.
+    // The value of a command is digit_count digits of a word, from the nibble that the next
+    // function gives; the key is in four words.
     function integer digit_count(input integer step);
         case (step)
             2, 4, 6: digit_count = 4;

@@ -28,8 +28,9 @@ module modem_baud #(
     reg  [WIDTH:0]   phase; // its highest bit is the carry
     reg  [4:0]       count; // ticks of 38400 baud
 
-    // A chain of conditions, because Yosys makes a ROM of a case and puts registers before it. The step is
-    // negative: only in a difference is the phase sure to be the operand that the carry chain takes without a LUT.
+    // The step is chosen by a chain of conditions, because Yosys makes a ROM of a case and puts
+    // registers before it. It is negative: only in a difference is the phase sure to be the operand
+    // that the carry chain takes without a LUT.
     localparam [WIDTH:0] FULL = 0;
     wire [WIDTH:0] minus = bd_i[3] ? FULL - BD8[WIDTH:0] : bd_i == 4'd7 ? FULL - BD7[WIDTH:0]
                          : bd_i == 4'd6 ? FULL - BD6[WIDTH:0] : FULL - BASE[WIDTH:0];

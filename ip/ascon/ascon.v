@@ -85,7 +85,8 @@ module ascon (
         .reg_rdata_i(is_job ? job[reg_addr[2:0]] : reg_addr == ASCON_STATUS ? status : 32'd0),
         .event_i({refused, done}), .irq_o(irq_o));
 
-    // A command acts a clock later, from registers: 448 flip-flops hang on FORGET. No access comes between.
+    // Commands act a clock later, from registers: 448 flip-flops hang on FORGET. No access comes
+    // between.
     wire start   = idle && |command[2:0] && command[4:3] == 2'd0;
     wire aead    = !command[ASCON_CONTROL_HASH_LSB];
     wire go      = start && bad == 8'd0 && (!aead || (key_words[2] && nonce_words[2]));
@@ -169,7 +170,7 @@ module ascon (
     wire [63:0] sum      = chosen ^ operand; // encrypted, decrypted, a tag (its difference) or a digest
     (* keep *) wire [63:0] added    = ((decrypt && in_word && pass == MESSAGE ? sum : operand) & mask) ^ pad;
 
-    // Which halves of which words take it.
+    // The bits of `takes` choose the halves of words that take the sum.
     wire absorbs = step && pass != WIPE;
     wire [9:0] takes = {{2{(state == ADD_KEY && index[0]) || state == SEPARATE}} | {put_nonce && nonce_words[1:0] == 2'd3,
                                                                                    put_nonce && nonce_words[1:0] == 2'd2},

@@ -45,7 +45,7 @@ U32 Ascon_Core_poll(Ascon_Core* self, U32 nowMs) {
     return HW_NEVER;
 }
 
-/* A key or a nonce: four words, little-endian. */
+/* Writes a key or a nonce: four words, little-endian. */
 static void setFour(const Ascon_Core* self, U32 word, const U8* bytes) {
     int i;
     for (i = 0; i < KEY_BYTES; i += 4)
@@ -58,8 +58,9 @@ static int fits(const Cores_Bytes* bytes) {
     return bytes->size <= ASCON_LIMIT;
 }
 
-/* It hangs: a message that was given up is not yet ended, since the memory does not answer. A key,
- * a nonce or a start would be ignored, and its end be taken for that of the next one. */
+/* Returns 1 if the core hangs: a message that was given up is not yet ended, since the memory does
+ * not answer. It would ignore a key, a nonce or a start, and the end of the old message would be
+ * taken for that of the next one. */
 static int hangs(const Ascon_Core* self) {
     return (FSMC_read(self->core.slot, ASCON_STATUS) & ASCON_STATUS_BUSY_MASK) != 0;
 }

@@ -12,7 +12,7 @@ extern "C" {
 
 namespace {
 
-// A list as the sequence that the servant reads.
+// Returns a list as the sequence that the servant reads.
 template <class List> Cores_Bytes bytes(const List& list) {
     return {static_cast<Ice_Int>(list.size()), const_cast<uint8_t*>(list.data())};
 }
@@ -70,7 +70,7 @@ TEST(AsconServant, WhileTheCoreHangsNothingIsTakenForAnAnswer) {
     ASSERT_EQ(Cores_Ascon_setKey(&core.servant, &k, nullptr), ICE_OK);
     slot.memory_.hold(true);
     EXPECT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_TIMEOUT);
-    // It is still busy with that, and would ignore these.
+    // The core is still busy with that, and would ignore these.
     EXPECT_EQ(Cores_Ascon_setKey(&core.servant, &o, nullptr), ICE_TIMEOUT);
     EXPECT_EQ(Cores_Ascon_forget(&core.servant, nullptr), ICE_TIMEOUT);
     EXPECT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_TIMEOUT);

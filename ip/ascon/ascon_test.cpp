@@ -191,7 +191,8 @@ TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
         ASSERT_EQ(hex(sealed.text), hex(want.text)) << associated.size() << ", " << message.size();
         ASSERT_EQ(hex(sealed.tag), hex(want.tag));
         EXPECT_EQ(memory_.byte(tagBase_ + 16), 0) << "16 bytes, no more";
-        // Any one bit of what is protected makes it invalid, and nothing of the message is left.
+        // Each bit of what is protected is changed in turn: the tag is wrong, and nothing of the
+        // message is left.
         auto forged = sealed;
         auto forgedAd = associated;
         uint8_t bit = static_cast<uint8_t>(1u << random_.below(8));
@@ -237,7 +238,8 @@ TEST_F(AsconTest, ADigestWaitsForRoomInTheMemorysFifo) {
 
 TEST_F(AsconTest, CountsSizesOfUpTo16MiB) {
     put(ASCON_KEY, sixteen(0));
-    // A bit that is not counted makes an empty message of it, or one for which nothing is read.
+    // A size bit that is not counted makes an empty message of it, or one for which nothing is
+    // read.
     auto goesOn = [&](uint32_t how) {
         uint64_t before = memory_.reads();
         put(ASCON_NONCE, sixteen(1));
@@ -299,7 +301,7 @@ TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
         << "three words of a nonce";
     bus_.write(ASCON_NONCE, 7);
     EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_DONE_MASK);
-    // A nonce that is begun, and dropped.
+    // A nonce is begun and dropped.
     sizes(0, 5);
     load(source_, counted(9, 5));
     bus_.write(ASCON_NONCE, 0x12345678);

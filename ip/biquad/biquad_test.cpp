@@ -116,7 +116,7 @@ TEST_F(BiquadCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
     Random random(testSeed());
     auto list = samples(64, random);
     for (int clocks = 1; clocks < 400; clocks += 23) {
-        // By hand, as the servant does after a time-out: start, then reset the core.
+        // The steps of the servant after a time-out: start, then reset the core.
         set(1, {30000, 20000, 10000, 5000, 2500}); // until the reset
         filter(list);
         core_.bus_.write(BIQUAD_CONTROL, 1u << 2);

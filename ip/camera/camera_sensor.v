@@ -24,7 +24,8 @@ module camera_sensor (
     reg [7:0] data;
     reg       owes_line_end, owes_frame_start, lost;
 
-    // No reset in this domain: the pins say where the sensor is, and a frame is whole or is not taken.
+    // This domain has no reset: the pins say where the sensor is, and a frame is whole or is not
+    // taken.
     initial begin
         {vsync, vsync_before, href, href_before} = 4'd0;
         {owes_line_end, owes_frame_start, lost}  = 3'd0;

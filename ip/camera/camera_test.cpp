@@ -247,7 +247,7 @@ TEST_F(CameraTest, TheFrameThatAnotherCoreHasIsNotOverwritten) {
     }
 }
 
-// Also in the very clock in which the next frame is kept: what is taken is whole, and stays until
+// The clock in which the next frame is kept is among them: what is taken is whole, and stays until
 // the next is taken.
 TEST_F(CameraTest, AnotherCoreTakesAFrameInAnyClock) {
     constexpr int w = 8, h = 1;
@@ -378,7 +378,7 @@ TEST_F(CameraTest, APixelEachFabricClockWhenTheMemoryKeepsUp) {
     double rate = pixelsPerClock(1); // the pixel clock is as fast as the fabric's
     std::printf("%.3f pixels a clock, and none lost\n", rate);
     EXPECT_GE(rate, 0.999);
-    // A pixel clock that is slower is seen in the figure: edges 1 or 2 half periods apart.
+    // A slower pixel clock shows in the figure: its edges are 1 or 2 half periods apart.
     EXPECT_NEAR(pixelsPerClock(2), 2.0 / 3, 0.02);
 }
 

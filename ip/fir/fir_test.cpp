@@ -79,7 +79,7 @@ TEST_F(FirCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
     Random random(testSeed());
     auto list = samples(256, random);
     for (int clocks = 1; clocks < 190; clocks += 7) {
-        // By hand, as the servant does after a time-out: start, then reset the core.
+        // The steps of the servant after a time-out: start, then reset the core.
         filter(list);
         core_.bus_.write(FIR_CONTROL, 1u << 3);
         for (int i = 0; i < clocks; ++i)

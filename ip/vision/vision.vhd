@@ -71,8 +71,9 @@ architecture rtl of vision is
   signal cycles        : unsigned(31 downto 0);
   signal aborted, stop : std_logic;
   signal word          : natural range 0 to 15;
-  -- A clock after the bus wrote them, so that address decoder and frame control are not one path; what is written to
-  -- other registers meanwhile comes too late for this frame, as it should.
+  -- Commands act a clock after the bus wrote them, so that address decoder and frame control are
+  -- not one path; what is written to other registers meanwhile comes too late for this frame, as it
+  -- should.
   signal start, abort  : std_logic;
   signal written       : std_logic; -- a register was, so that size_ok is not of what it holds now
   signal size_ok       : std_logic; -- of the registers a clock ago
@@ -89,7 +90,8 @@ architecture rtl of vision is
   signal fill          : unsigned(3 downto 0); -- steps until the first score, then the first kept one
   signal take, real_pixel, pixel_valid, pixel_take, last : std_logic;
   signal streaming     : std_logic; -- state = STREAM and not stop
-  -- A clock behind `take`: everything from the window on moves by this register, whose fan-out has the clock to itself.
+  -- `step` is `take` a clock later: everything from the window on moves by this register, whose
+  -- fan-out has the clock to itself.
   signal step          : std_logic;
   signal step_x        : unsigned(9 downto 0);
   signal pixel, step_pixel : std_logic_vector(7 downto 0);

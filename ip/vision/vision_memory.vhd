@@ -117,7 +117,7 @@ begin
         word <= x"00" & word(63 downto 8);
         left <= '0' & left(7 downto 1);
       end if;
-      -- Whether the port has a word only `left` needs to know.
+      -- `word` may take what is no word: only `left` needs to know whether the port has one.
       if refill = '1' then
         word <= npi_rd_data_i;
       end if;

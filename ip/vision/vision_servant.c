@@ -87,7 +87,7 @@ static Ice_Status finishFrame(Vision_Core* self) {
             !self->core.done[REFUSED]) {
             set(self, VISION_MODE, 0);
             set(self, VISION_CONTROL, VISION_CONTROL_ABORT_MASK);
-            /* While it hangs it stays busy; when no camera sent a frame there is none to end. */
+            /* A core that hangs stays busy; where no camera sent a frame there is none to end. */
             self->busy = (get(self, VISION_STATUS) & VISION_STATUS_BUSY_MASK) != 0;
             return ICE_TIMEOUT;
         }

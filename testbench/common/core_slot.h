@@ -57,7 +57,7 @@ public:
     explicit CoreMemory(Bench<Module>& bench) : NpiMemory<Module>(bench, 0.2, testSeed()) {}
 };
 
-// One core in a slot, the driver's port, the interrupt and the wait.
+// A core in a slot, with the driver's port, the interrupt and the wait.
 template <class Module> class CoreSlot {
 public:
     CoreSlot() {

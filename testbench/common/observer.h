@@ -22,7 +22,7 @@
 
 template <class Module> class Observer {
 public:
-    // Before the model is made.
+    // Prepares the recording; to be called before the model is made.
     explicit Observer(VerilatedContext& context) : context_(context) {
 #ifdef ICESOC_TRACE
         context_.traceEverOn(true);
@@ -32,7 +32,7 @@ public:
         name_ = name ? name : "";
 #endif
     }
-    // Before the model is destroyed: it owns the counters.
+    // Ends the recording; to be called before the model, which owns the counters, is destroyed.
     void finish() {
 #ifdef ICESOC_TRACE
         if (wave_)
@@ -47,7 +47,7 @@ public:
 #endif
     }
 
-    // After each half of a clock: `half` is 0 with the clock high, 1 with it low.
+    // Records a half of a clock: `half` is 0 with the clock high, 1 with it low.
     void step(Module& top, uint64_t clock, unsigned half) {
         observedClock = clock;
 #ifdef ICESOC_TRACE

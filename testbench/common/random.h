@@ -21,7 +21,7 @@ public:
         state_ ^= state_ >> 27;
         return static_cast<uint32_t>((state_ * 0x2545F4914F6CDD1Dull) >> 32);
     }
-    // 0 .. bound-1
+    // Returns a number in 0 .. bound-1.
     uint32_t below(uint32_t bound) { return static_cast<uint32_t>(uint64_t(next()) * bound >> 32); }
     bool chance(double probability) { return next() < probability * 4294967296.0; }
 

@@ -23,7 +23,7 @@
 class CpuBus {
 public:
     virtual ~CpuBus() = default;
-    // An access that the chip's bus answers with an error: it becomes a BusFault with this text.
+    // The bus's answer to an access that fails: it becomes a BusFault with this text.
     class Error : public std::runtime_error {
     public:
         using std::runtime_error::runtime_error;

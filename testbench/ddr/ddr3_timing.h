@@ -41,8 +41,9 @@ public:
     unsigned bank(uint32_t address) const { return address / part_.rowBytes % banks; }
     uint32_t row(uint32_t address) const { return address / part_.rowBytes / banks; }
 
-    // One burst, not before `at` and after all those before it: the clock of its READ or WRITE
-    // command. The row is opened, and another closed, as need be; refreshes that are due go first.
+    // Places one burst, not before `at` and after all those before it. Returns the clock of its
+    // READ or WRITE command. The row is opened, and another closed, as need be; refreshes that are
+    // due go first.
     uint64_t access(uint64_t at, bool read, uint32_t address) {
         at = refresh(at);
         Bank& b = banks_[bank(address)];
@@ -73,7 +74,7 @@ public:
         b.open = false;
         b.mayActivate = std::max(b.mayActivate, precharge(b, 0) + part_.tRP);
     }
-    // A refresh on demand, not before `at`: when it is over.
+    // Refreshes on demand, not before `at`. Returns the clock in which it is over.
     uint64_t refreshNow(uint64_t at) {
         uint64_t start = at;
         for (Bank& b : banks_) { // precharge all

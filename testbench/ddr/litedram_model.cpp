@@ -55,7 +55,7 @@ void LitedramModel::takeWrite() {
     ++wordsWritten;
 }
 
-// One command of the port a clock, when the device can take it.
+// Takes at most one command of the port a clock, when the device can take it.
 void LitedramModel::issue() {
     if (commands_.empty() || commands_.front().at > now_ || free_ >= (now_ + 1) * memoryClocks)
         return;

@@ -8,7 +8,7 @@
 
 #include "litedram_model.h"
 
-// Before the edge, with the design's outputs settled: what it does.
+// Samples the design's settled outputs before the edge.
 template <class Module> void sampleLitedram(Module& top, LitedramModel& memory) {
     LitedramModel::Pins& m = memory.pins;
     m.cmdValid = top.dram_cmd_valid_o;
@@ -24,7 +24,7 @@ template <class Module> void sampleLitedram(Module& top, LitedramModel& memory) 
     memory.cycle();
 }
 
-// After the edge: what it sees.
+// Drives the design's inputs after the edge.
 template <class Module> void driveLitedram(Module& top, const LitedramModel& memory) {
     const LitedramModel::Pins& m = memory.pins;
     top.dram_wdata_ready_i = m.wdataReady;

@@ -50,7 +50,7 @@ void McbModel::takeCommand() {
     nextEvent_ = std::min(nextEvent_, now_ + timing_.commandWay);
 }
 
-// Whatever is due: words that come or go, commands that can begin. Then says when to look again.
+// Does what is due: words come or go, commands begin. Then says when to look again.
 void McbModel::work() {
     pins.calibDone = now_ >= timing_.calibration;
     while (!releases_.empty() && releases_.front().at <= now_) {

@@ -77,8 +77,8 @@ public:
     }
     void pass(uint64_t clocks) { now_ += clocks; }
 
-    // A fault: no command begins and no word moves until it is over; what waits is carried out
-    // then.
+    // Injects a fault: no command begins and no word moves until it is over; what waits is carried
+    // out then.
     void hang(bool on) { hung_ = on; }
 
     // Back door, for pictures and checks.

@@ -7,7 +7,7 @@
 
 #include "mcb_model.h"
 
-// Before the edge: what the design does.
+// Samples the design's settled outputs before the edge.
 template <class Module> void sampleMcb(Module& top, McbModel& memory) {
     McbModel::Pins& m = memory.pins;
     m.cmdEn = top.mcb_cmd_en_o;
@@ -25,7 +25,7 @@ template <class Module> void sampleMcb(Module& top, McbModel& memory) {
     memory.cycle();
 }
 
-// After the edge: what it sees.
+// Drives the design's inputs after the edge.
 template <class Module> void driveMcb(Module& top, const McbModel& memory) {
     const McbModel::Pins& m = memory.pins;
     top.mcb_cmd_full_i = m.cmdFull;

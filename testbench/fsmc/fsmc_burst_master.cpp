@@ -8,8 +8,8 @@
 
 using namespace fsmc;
 
-// One FSMC_CLK: pins have changed at its falling edge; data and NWAIT are sampled at the rising
-// one.
+// Passes one FSMC_CLK: pins have changed at its falling edge; data and NWAIT are sampled at the
+// rising one.
 bool FsmcMaster::clockEdge(const Access& access, uint16_t& data) {
     unsigned period = (access.bank->btr >> 20 & 0xF) + 1;
     passHclk(period - period / 2);

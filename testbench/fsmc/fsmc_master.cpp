@@ -123,7 +123,7 @@ bool FsmcMaster::isWaiting(const Access& access) const {
            pins_.nwaitN == bool(access.bank->bcr & bcrWaitHigh);
 }
 
-// From NE low to the beginning of the data phase; the strobe is low afterwards.
+// Drives the pins from NE low to the beginning of the data phase; the strobe is low afterwards.
 void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lanes) {
     bool early = access.write ? access.mode == '2'
                               : access.mode == '1' || access.mode == '2' || access.mode == 'B';
@@ -186,7 +186,7 @@ unsigned FsmcMaster::waitPhase(const Access& access) {
     return 2;
 }
 
-// What the pins must show when an access ends.
+// Checks the pins at the end of an access.
 void FsmcMaster::endOfAccess(const Access& access) {
     if (isWaiting(access))
         throw FsmcError(access.name + ": NWAIT went active too late to be seen");

@@ -44,17 +44,18 @@ public:
 
 class FsmcMaster {
 public:
-    // What the master needs of the design: `tick` clocks it once with the pins as they are,
-    // `settle` shows it changed pins between two clock edges. Both update the design's side.
+    // The master's port to the design: `tick` clocks it once with the pins as they are, `settle`
+    // shows it changed pins between two clock edges. Both update the design's side.
     struct Design {
         std::function<void()> tick, settle;
     };
     FsmcMaster(FsmcPins& pins, Design design, unsigned hclkPerUnit = 6, unsigned clkPerUnit = 5);
     ~FsmcMaster();
 
-    // From now on pins take their time (pin_delays.h): `far` are the pins as the design has them,
-    // `pins` stay the processor's. Asynchronous modes. Of RM0033's rule when NWAIT is looked at
-    // there are two readings: once, four HCLK before the end of the data phase, or again after it.
+    // Gives pins delays from now on (pin_delays.h), in asynchronous modes: `far` are the pins as
+    // the design has them, `pins` stay the processor's. `looksTwice` chooses between two readings
+    // of RM0033's rule when NWAIT is looked at: once, four HCLK before the end of the data phase,
+    // or again after it.
     void delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, bool looksTwice);
 
     // Loads and stores of the processor. A 32-bit one to a window is two accesses, low half first.
@@ -65,19 +66,19 @@ public:
     uint32_t read32(uint32_t address);
     void write32(uint32_t address, uint32_t value);
 
-    // Told of each 32-bit access to a window, after it: who only looks.
+    // Called after each 32-bit access to a window, for those who only look.
     std::function<void(uint32_t address, uint32_t value, bool isWrite)> onWord;
 
-    // An access that the processor gives up (its reset): NE and strobe rise together, NE first,
-    // after so many HCLK cycles of the data phase, whatever NWAIT says. Asynchronous modes.
+    // Begin an access that the processor gives up (its reset): NE and strobe rise together, NE
+    // first, after so many HCLK cycles of the data phase, whatever NWAIT says. Asynchronous modes.
     void abortRead(uint32_t address, unsigned hclk);
     void abortWrite(uint32_t address, uint16_t value, unsigned hclk);
     // Synchronous bursts of halfwords (BURSTEN, and CBURSTRW for writes; FSMC_CLK, DATLAT, NWAIT
     // one clock ahead): what an AHB burst to such a bank becomes.
     std::vector<uint16_t> readBurst(uint32_t address, unsigned halfwords);
     void writeBurst(uint32_t address, const std::vector<uint16_t>& values, uint8_t lanes = 3);
-    // A read burst that the processor gives up after so many edges of FSMC_CLK, whatever NWAIT
-    // says; the first one takes the address.
+    // Begins a read burst that the processor gives up after so many edges of FSMC_CLK, whatever
+    // NWAIT says; the first one takes the address.
     void abortReadBurst(uint32_t address, unsigned edges);
     // HCLK cycles in which the processor does something else.
     void idle(unsigned hclk) { passHclk(hclk); }

@@ -122,7 +122,7 @@ int PinDelays::delayOf(unsigned pin) {
            between(clock ? corner_.clockIn : corner_.padIn);
 }
 
-// A pin's changes keep their order.
+// Schedules a pin's change; its changes keep their order.
 void PinDelays::at(int64_t time, unsigned pin, bool level, bool toDesign) {
     int64_t& last = toDesign ? last_[pin] : lastOut_[pin];
     last = std::max(time, last);
@@ -138,7 +138,7 @@ void PinDelays::show() {
     pass(0);
 }
 
-// A pin changes at the design, or at the processor.
+// Lets a pin's change arrive at the design or at the processor.
 void PinDelays::arrive(unsigned pin, bool level) {
     bool captures = (arrived_ >> selectBit & 3) != 3;
     if (pin == nwe && level && captures) {

@@ -11,15 +11,15 @@
 #include <map>
 #include <random>
 
-// From the least to the most, in ps. Equal ends: no skew.
+// A delay in ps, random between two bounds. Equal bounds: no skew.
 struct PinDelay {
     int least, most;
 };
 
-// A corner: of the STM32F2's pads (its data sheet's asynchronous tables, rounded to the safe side:
-// from HCLK's edge to the pin), the board, and Spartan-6's pads and routing up to the first
-// flip-flop or LUT, and from the last one. What is allowed in the chip is what synth/ise/chip.ucf
-// demands of it.
+// A corner of delays: the STM32F2's pads (its data sheet's asynchronous tables, rounded to the safe
+// side: from HCLK's edge to the pin), the board, and Spartan-6's pads and routing up to the first
+// flip-flop or LUT, and from the last one. The chip's share is what synth/ise/chip.ucf demands of
+// it.
 struct FsmcCorner {
     const char* name;
     PinDelay address, data, lanes, select, strobe; // processor

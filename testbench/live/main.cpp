@@ -38,15 +38,15 @@ int main(int argc, char** argv) {
             response.status = file ? 200 : 404;
             response.set_content(bytes.str(), "image/png");
         });
-        // Each connection is a thread, one request long; what says nothing for a second is closed.
+        // A connection is a thread, one request long; one that says nothing for a second is closed.
         server.new_task_queue = [] { return new httplib::ThreadPool(mostConnections); };
         server.set_keep_alive_max_count(1);
         server.set_keep_alive_timeout(1);
         server.set_read_timeout(1);
         server.set_write_timeout(1);
         server.set_payload_max_length(0);
-        // A page of another host may have this address by another name; and no part of a file is
-        // worth a header of ranges.
+        // The handler refuses pages of other hosts that have this address by another name, and
+        // headers of ranges: no part of a file is worth one.
         server.set_pre_routing_handler(
             [&](const httplib::Request& request, httplib::Response& response) {
                 const std::string at = request.get_header_value("Host");

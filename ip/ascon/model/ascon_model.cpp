@@ -50,8 +50,8 @@ private:
 
 enum class Direction { Absorb, Encrypt, Decrypt };
 
-// All of `in`, padded, `rate` bytes at a time, with `rounds` between; `out` unless it is only
-// absorbed.
+// Passes all of `in`, padded, `rate` bytes at a time, with `rounds` between. Returns the output,
+// which is empty if `in` is only absorbed.
 AsconBytes pass(State& state, const AsconBytes& in, size_t rate, int rounds, Direction direction) {
     AsconBytes out;
     for (size_t i = 0; i < in.size(); ++i) {

@@ -20,7 +20,7 @@ struct AsconSealed {
 
 AsconSealed asconEncrypt(const AsconKey& key, const AsconKey& nonce, const AsconBytes& associated,
                          const AsconBytes& message);
-// Nothing if the tag is wrong.
+// Returns the message, or nothing if the tag is wrong.
 std::optional<AsconBytes> asconDecrypt(const AsconKey& key, const AsconKey& nonce,
                                        const AsconBytes& associated, const AsconSealed& sealed);
 std::array<uint8_t, 32> asconHash(const AsconBytes& message);

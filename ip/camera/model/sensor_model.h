@@ -46,7 +46,7 @@ public:
         }
     }
     bool isIdle() const { return pins_.empty(); }
-    // At the next pixel clock; between frames once all have gone.
+    // Returns the pins at the next pixel clock; blank ones once all frames have gone.
     Pins next() {
         if (pins_.empty())
             return {};

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # check: golden|errors|compile slice2c file.ice-or-folder work-folder sw-folder
-# UPDATE_GOLDENS=1 rewrites what is expected.
+# UPDATE_GOLDENS=1 rewrites what is expected; a new golden begins as an empty file of a generated file's name.
 set -eu
 kind=$1 slice2c=$2 ice=$3 work=$4 sw=$5
 rm -rf "$work"
@@ -17,8 +17,10 @@ golden)
     done
     g++ -Wall -Wextra -Werror -I"$sw/base" -I"$sw/icec" -fsyntax-only -include "$work"/*.h -x c++ /dev/null
     sed -i "s|^.*/||" "$work/messages"
-    [ -z "${UPDATE_GOLDENS:-}" ] || { rm -rf "$expected"; cp -r "$work" "$expected"; }
-    diff -ru "$expected" "$work"
+    for file in "$expected"/*; do
+        [ -z "${UPDATE_GOLDENS:-}" ] || cp "$work/${file##*/}" "$file"
+        diff -u "$file" "$work/${file##*/}"
+    done
     ;;
 errors)
     cd "$(dirname "$ice")"

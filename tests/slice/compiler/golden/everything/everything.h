@@ -267,6 +267,16 @@ typedef struct Outer_Inner_Laters {
 void Outer_Inner_Laters_writeToOutputStream(const Outer_Inner_Laters *v, Ice_OutputStreamPtr os);
 void Outer_Inner_Laters_readFromInputStream(Outer_Inner_Laters *v, Ice_InputStreamPtr is);
 
+typedef struct Outer_Inner_Failure {
+    Ice_Int why;
+} Outer_Inner_Failure;
+void Outer_Inner_Failure_init(Outer_Inner_Failure *v);
+void Outer_Inner_Failure_writeToOutputStream(const Outer_Inner_Failure *v, Ice_OutputStreamPtr os);
+void Outer_Inner_Failure_readFromInputStream(Outer_Inner_Failure *v, Ice_InputStreamPtr is);
+/* Without the head: this type's slice and those of its bases. */
+void Outer_Inner_Failure_writeSlices(const Outer_Inner_Failure *v, Ice_OutputStreamPtr os);
+void Outer_Inner_Failure_readSlices(Outer_Inner_Failure *v, Ice_InputStreamPtr is);
+
 typedef struct Again_P {
     Outer_Point point;
     Outer_Level level;
@@ -390,6 +400,28 @@ void Outer_Service_graph_Exception_writeToOutputStream(const Outer_Service_graph
 Ice_Status Outer_Service_graph_Exception_readFromInputStream(Outer_Service_graph_Exception *v,
         Ice_InputStreamPtr is);
 
+/* What Outer_Service_any throws: `type` says which member of `u` it is. */
+typedef struct Outer_Service_any_Exception {
+    enum {
+        Outer_Service_any_none
+        , Outer_Service_any_Failure
+        , Outer_Service_any_Deep
+        , Outer_Service_any_WithClass
+        , Outer_Service_any_Outer_Inner_Failure
+    } type;
+    union {
+        Outer_Failure Failure;
+        Outer_Deep Deep;
+        Outer_WithClass WithClass;
+        Outer_Inner_Failure Outer_Inner_Failure_;
+    } u;
+} Outer_Service_any_Exception;
+void Outer_Service_any_Exception_writeToOutputStream(const Outer_Service_any_Exception *v,
+        Ice_OutputStreamPtr os);
+/* ICE_USER_EXCEPTION; ICE_UNKNOWN_USER_EXCEPTION: none of these; ICE_MARSHAL. */
+Ice_Status Outer_Service_any_Exception_readFromInputStream(Outer_Service_any_Exception *v,
+        Ice_InputStreamPtr is);
+
 #define Outer_Service_ice_staticId "::Outer::Service"
 Ice_Status Outer_ServicePrx_checkedCast(Outer_ServicePrxPtr self, const Ice_ObjectPrx *from);
 void Outer_ServicePrx_uncheckedCast(Outer_ServicePrxPtr self, const Ice_ObjectPrx *from);
@@ -423,7 +455,7 @@ Ice_Status Outer_ServicePrx_void(Outer_ServicePrxPtr self, Ice_Int self_, Ice_In
         const Outer_Key *key);
 
 Ice_Status Outer_ServicePrx_any(Outer_ServicePrxPtr self, const Outer_ServicePrx *service,
-        Ice_ObjectPrx *result);
+        Ice_ObjectPrx *result, Outer_Service_any_Exception *ex);
 
 /* Asynchronous calls: the caller keeps the object until it is done. */
 
@@ -492,6 +524,7 @@ typedef struct Outer_Service_any_Async {
     Ice_Bool done;
     Ice_Status status;
     Ice_ObjectPrx result;
+    Outer_Service_any_Exception exception;
 } Outer_Service_any_Async;
 Ice_Status Outer_ServicePrx_any_async(Outer_ServicePrxPtr self, const Outer_ServicePrx *service,
         Outer_Service_any_Async *call);
@@ -518,7 +551,7 @@ typedef struct Outer_Service_Operations {
     Ice_Status (*void_)(Outer_ServicePtr self, Ice_Int self_, Ice_Int result_,
             const Outer_Key *key, const Ice_Current *current);
     Ice_Status (*any)(Outer_ServicePtr self, const Outer_ServicePrx *service,
-            Ice_ObjectPrx *result, const Ice_Current *current);
+            Ice_ObjectPrx *result, Outer_Service_any_Exception *ex, const Ice_Current *current);
 } Outer_Service_Operations;
 extern const Ice_Interface Outer_Service_ice_interface;
 void Outer_Service_initWith(Outer_ServicePtr self, const Outer_Service_Operations *operations);
@@ -541,7 +574,7 @@ Ice_Status Outer_Service_graph(Outer_ServicePtr self, const Outer_Node *root, co
 Ice_Status Outer_Service_void(Outer_ServicePtr self, Ice_Int self_, Ice_Int result_,
         const Outer_Key *key, const Ice_Current *current);
 Ice_Status Outer_Service_any(Outer_ServicePtr self, const Outer_ServicePrx *service,
-        Ice_ObjectPrx *result, const Ice_Current *current);
+        Ice_ObjectPrx *result, Outer_Service_any_Exception *ex, const Ice_Current *current);
 
 /* Answers to calls for which the servant returned ICE_LATER. */
 Ice_Status Outer_Service_work_response(Ice_Reply *reply, const Ice_Double *took,
@@ -641,7 +674,7 @@ Ice_Status Outer_Both_graph(Outer_ServicePtr self, const Outer_Node *root, const
 Ice_Status Outer_Both_void(Outer_ServicePtr self, Ice_Int self_, Ice_Int result_,
         const Outer_Key *key, const Ice_Current *current);
 Ice_Status Outer_Both_any(Outer_ServicePtr self, const Outer_ServicePrx *service,
-        Ice_ObjectPrx *result, const Ice_Current *current);
+        Ice_ObjectPrx *result, Outer_Service_any_Exception *ex, const Ice_Current *current);
 Ice_Status Outer_Both_ping(Outer_Second_PingedPtr self, const Ice_Current *current);
 
 /* ---- ::Outer::Later ---- */

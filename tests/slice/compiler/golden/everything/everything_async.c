@@ -216,6 +216,8 @@ static void Outer_ServicePrx_any_completed(void *cookie, Ice_Status status, Ice_
         if (is->failed)
             status = ICE_MARSHAL;
     }
+    if (status == ICE_USER_EXCEPTION)
+        status = Outer_Service_any_Exception_readFromInputStream(&call->exception, is);
     call->status = status;
     call->done = 1;
     if (call->completed)

@@ -170,7 +170,7 @@ Ice_Status Outer_ServicePrx_void(Outer_ServicePrxPtr self, Ice_Int self_, Ice_In
 }
 
 Ice_Status Outer_ServicePrx_any(Outer_ServicePrxPtr self, const Outer_ServicePrx *service,
-        Ice_ObjectPrx *result) {
+        Ice_ObjectPrx *result, Outer_Service_any_Exception *ex) {
     Ice_InputStreamPtr is = 0;
     Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "any", ICE_NORMAL | ICE_RESULTS);
     Ice_Status status;
@@ -181,6 +181,8 @@ Ice_Status Outer_ServicePrx_any(Outer_ServicePrxPtr self, const Outer_ServicePrx
     if (status == ICE_OK) {
         Ice_InputStream_readPrx(is, 0, result);
     }
+    if (status == ICE_USER_EXCEPTION && ex)
+        status = Outer_Service_any_Exception_readFromInputStream(ex, is);
     return Ice_ObjectPrx_end(self, status);
 }
 

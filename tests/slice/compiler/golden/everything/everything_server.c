@@ -249,16 +249,21 @@ static Ice_Status dispatch_Outer_Service_any(Ice_ObjectPtr self, const void *ice
     const Outer_Service_Operations *ice_operations = (const Outer_Service_Operations *)ice_table;
     Outer_ServicePrx service;
     Ice_ObjectPrx result;
+    Outer_Service_any_Exception ex;
     Ice_Status status;
     if (!ice_operations->any)
         return ICE_OPERATION_NOT_EXIST;
     Ice_InputStream_readPrx(is, 0, &service);
     if (is->failed)
         return ICE_MARSHAL;
-    status = ice_operations->any((Outer_ServicePtr)self, &service, &result, current);
+    memset(&ex, 0, sizeof ex);
+    ex.type = Outer_Service_any_none;
+    status = ice_operations->any((Outer_ServicePtr)self, &service, &result, &ex, current);
     if (status == ICE_OK) {
         Ice_OutputStream_writePrx(os, &result);
     }
+    if (status == ICE_USER_EXCEPTION)
+        Outer_Service_any_Exception_writeToOutputStream(&ex, os);
     return status;
 }
 

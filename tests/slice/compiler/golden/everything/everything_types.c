@@ -499,6 +499,40 @@ void Outer_Inner_Laters_readFromInputStream(Outer_Inner_Laters *v, Ice_InputStre
         Ice_InputStream_readPrx(is, 0, &v->data[i]);
 }
 
+void Outer_Inner_Failure_init(Outer_Inner_Failure *v) {
+    memset(v, 0, sizeof *v);
+}
+
+void Outer_Inner_Failure_writeSlices(const Outer_Inner_Failure *v, Ice_OutputStreamPtr os) {
+    Ice_Int slice = Ice_OutputStream_startSlice(os, "::Outer::Inner::Failure", 1);
+    Ice_OutputStream_writeInt(os, v->why);
+    Ice_OutputStream_endSlice(os, slice, 1);
+}
+
+void Outer_Inner_Failure_readSlices(Outer_Inner_Failure *v, Ice_InputStreamPtr is) {
+    v->why = Ice_InputStream_readInt(is);
+    Ice_InputStream_endSlice(is);
+}
+
+void Outer_Inner_Failure_writeToOutputStream(const Outer_Inner_Failure *v, Ice_OutputStreamPtr os) {
+    Ice_OutputStream_startException(os, 0);
+    Outer_Inner_Failure_writeSlices(v, os);
+}
+
+void Outer_Inner_Failure_readFromInputStream(Outer_Inner_Failure *v, Ice_InputStreamPtr is) {
+    Ice_InputStream_startException(is);
+    for (;;) {
+        Ice_String id = Ice_InputStream_startSlice(is);
+        if (Ice_String_equals(id, "::Outer::Inner::Failure"))
+            break;
+        if (!Ice_InputStream_skipSlice(is)) {
+            is->failed = 1;
+            break;
+        }
+    }
+    Outer_Inner_Failure_readSlices(v, is);
+}
+
 void Again_P_init(Again_P *v) {
     memset(v, 0, sizeof *v);
     Outer_Point_init(&v->point);
@@ -637,6 +671,57 @@ Ice_Status Outer_Service_graph_Exception_readFromInputStream(Outer_Service_graph
     if (is->failed)
         return ICE_MARSHAL;
     return v->type == Outer_Service_graph_none ? ICE_UNKNOWN_USER_EXCEPTION : ICE_USER_EXCEPTION;
+}
+
+void Outer_Service_any_Exception_writeToOutputStream(const Outer_Service_any_Exception *v,
+        Ice_OutputStreamPtr os) {
+    switch (v->type) {
+    case Outer_Service_any_Failure:
+        Outer_Failure_writeToOutputStream(&v->u.Failure, os);
+        break;
+    case Outer_Service_any_Deep:
+        Outer_Deep_writeToOutputStream(&v->u.Deep, os);
+        break;
+    case Outer_Service_any_WithClass:
+        Outer_WithClass_writeToOutputStream(&v->u.WithClass, os);
+        break;
+    case Outer_Service_any_Outer_Inner_Failure:
+        Outer_Inner_Failure_writeToOutputStream(&v->u.Outer_Inner_Failure_, os);
+        break;
+    default:
+        os->failed = 1; /* the servant has not said which */
+    }
+}
+
+Ice_Status Outer_Service_any_Exception_readFromInputStream(Outer_Service_any_Exception *v,
+        Ice_InputStreamPtr is) {
+    Ice_InputValues values;
+    Ice_UnknownSlice *unknown = 0;
+    Ice_String id;
+    v->type = Outer_Service_any_none;
+    Ice_InputStream_beginValues(is, &values, everything_ice_valueTypes);
+    Ice_InputStream_startException(is);
+    do {
+        id = Ice_InputStream_startSlice(is);
+        if (Ice_String_equals(id, "::Outer::Failure")) {
+            v->type = Outer_Service_any_Failure;
+            Outer_Failure_readSlices(&v->u.Failure, is);
+        } else if (Ice_String_equals(id, "::Outer::Deep")) {
+            v->type = Outer_Service_any_Deep;
+            Outer_Deep_readSlices(&v->u.Deep, is);
+        } else if (Ice_String_equals(id, "::Outer::WithClass")) {
+            v->type = Outer_Service_any_WithClass;
+            Outer_WithClass_readSlices(&v->u.WithClass, is);
+            v->u.WithClass.ice_unknown = unknown;
+        } else if (Ice_String_equals(id, "::Outer::Inner::Failure")) {
+            v->type = Outer_Service_any_Outer_Inner_Failure;
+            Outer_Inner_Failure_readSlices(&v->u.Outer_Inner_Failure_, is);
+        }
+    } while (v->type == Outer_Service_any_none && Ice_InputStream_keepSlice(is, id, &unknown));
+    Ice_InputStream_endValues(is);
+    if (is->failed)
+        return ICE_MARSHAL;
+    return v->type == Outer_Service_any_none ? ICE_UNKNOWN_USER_EXCEPTION : ICE_USER_EXCEPTION;
 }
 
 const Ice_ValueType *const everything_ice_valueTypes[] = {

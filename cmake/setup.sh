@@ -34,7 +34,6 @@ libgmock-dev test framework
 nlohmann-json3-dev register descriptions, reports
 libfmt-dev text formatting
 libcli11-dev command lines
-libcpp-httplib-dev serves the page of make run
 libpugixml-dev reads JUnit results
 libssl-dev AES of the modem model, checksums of Slice
 git finds what changed

@@ -17,13 +17,6 @@ using nlohmann::json;
 
 namespace {
 
-std::string contents(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
 json parsed(const std::string& path) {
     json value = json::parse(contents(path), nullptr, false);
     if (value.is_discarded())
@@ -37,6 +30,13 @@ std::string lower(std::string text) {
 }
 
 } // namespace
+
+std::string contents(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
 
 LiveState::LiveState(std::string folder, const std::string& registers)
     : folder_(std::move(folder)) {
@@ -93,7 +93,7 @@ json LiveState::slots(const std::string& bytes) const {
     return list;
 }
 
-json LiveState::now() const {
+std::string LiveState::now() const {
     json state = {{"calls", json::array()}, {"features", json::array()}, {"slots", json::array()}};
     std::string status = contents(folder_ + "/status");
     if (status.size() >= sizeof(SimStatus) && isSimStatus(status.data())) {
@@ -120,8 +120,9 @@ json LiveState::now() const {
     using namespace std::filesystem;
     std::error_code none;
     const path frame = folder_ + "/before.png", report = folder_ + "/report.json";
-    state["frame"] = exists(frame);
+    state["frame"] = exists(frame, none);
     // A report that is older than the picture is of the mission before.
-    state["over"] = exists(report) && last_write_time(report, none) >= last_write_time(frame, none);
-    return state;
+    state["over"] =
+        exists(report, none) && last_write_time(report, none) >= last_write_time(frame, none);
+    return state.dump();
 }

@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+// Returns what is in a file; nothing if it cannot be read.
+std::string contents(const std::string& path);
+
 class LiveState {
 public:
     // folder: of status, calls.jsonl, before.png. registers: a file that lists the blocks'
@@ -17,9 +20,9 @@ public:
     // std::runtime_error where it cannot be read.
     LiveState(std::string folder, const std::string& registers);
 
-    // {"air": {...}, "calls": [...], "features": [[x, y, score]], "found": n, "frame": bool,
+    // JSON: {"air": {...}, "calls": [...], "features": [[x, y, score]], "found": n, "frame": bool,
     // "slots": [...]}; what is not there yet is missing or empty.
-    nlohmann::json now() const;
+    std::string now() const;
 
 private:
     struct Block {

@@ -59,26 +59,39 @@ import json, sys, urllib.request, urllib.error
 base = "http://127.0.0.1:%s/" % sys.argv[1]
 state = json.load(urllib.request.urlopen(base + "state"))
 assert state["calls"] == [] and state["slots"] == [] and not state["frame"], state
-# Other names of this address, ranges, rows that are none, and clients that are slow or say nothing.
-import http.client, socket, time
+# Other names of this address, rows that are none, and clients that are slow, endless or say nothing.
+import http.client, socket
+port = int(sys.argv[1])
 def status(headers):
-    c = http.client.HTTPConnection("127.0.0.1", int(sys.argv[1]), timeout=10)
+    c = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
     c.request("GET", "/live.js", headers=headers)
     return c.getresponse().status
+ours = "127.0.0.1:%d" % port
 assert status({}) == 200
-assert status({"Host": "evil.example:" + sys.argv[1]}) == 403
-assert status({"Range": "bytes=" + ",".join("0-%d" % i for i in range(400, 800))}) == 416
-with open(sys.argv[2] + "/calls.jsonl", "w") as f:
-    f.write('7\n[1, 2]\n"text"\n{"at": 1.0, "who": "a", "what": "b"}\n{"half')
+assert status({"Host": "evil.example:%d" % port}) == 403
+assert status({"Host": ours, "HOST": "evil.example"}) == 403
+assert status({"Range": "bytes=" + ",".join("0-%d" % i for i in range(400, 800))}) == 200, "the whole of it"
+def talk(data):
+    with socket.create_connection(("127.0.0.1", port), timeout=60) as s:
+        s.sendall(data)
+        return s.recv(1000)
+assert b" 400 " in talk(b"EHLO\r\n\r\n")
+assert b" 405 " in talk(b"POST /state HTTP/1.1\r\nHost: %s\r\n\r\n" % ours.encode())
+endless = socket.create_connection(("127.0.0.1", port))
+try:
+    for i in range(10000):
+        endless.sendall(b"GET / HTTP/1.1\r\n" + b"A: b\r\n" * 1000)
+    assert False, "a request without an end"
+except ConnectionError:
+    pass
+with open(sys.argv[2] + "/calls.jsonl", "wb") as f:
+    f.write(b'7\n[1, 2]\n"text"\n{"what": "\xff"}\n{"at": 1.0, "who": "a", "what": "b"}\n{"half')
 state = json.load(urllib.request.urlopen(base + "state"))
 assert [c["who"] for c in state["calls"]] == ["a"], state
-crowd = [socket.create_connection(("127.0.0.1", int(sys.argv[1]))) for i in range(400)]
-for s in crowd[:20]:
+crowd = [socket.create_connection(("127.0.0.1", port)) for i in range(400)]
+for s in crowd[-20:]:
     s.send(b"GET / HTTP/1.1\r\nHost: ")
-begin = time.monotonic()
 assert status({}) == 200
-took = time.monotonic() - begin
-assert took < 8, "%.1f s behind 400 idle connections" % took
 for s in crowd:
     s.close()
 for path, status in (("", 200), ("live.js", 200), ("frame.png", 404), ("../main.cpp", 404)):

@@ -83,12 +83,13 @@ module fsmc_bridge_proof #(
                         \u_fsmc_bridge.u_fsmc_registers.given_up , \u_fsmc_bridge.u_fsmc_registers.seen ;
     (* hierconn, init = 1'b0 *) wire \u_fsmc_bridge.u_fsmc_registers.u_done.bit_meta , \u_fsmc_bridge.u_fsmc_registers.u_done.bit_sync ;
     (* hierconn *) wire [31:0] \u_fsmc_bridge.u_fsmc_registers.word ;
-    // An edge of a pin is seen by the clock's next edge: any phase of the two is there anyway.
+    // Each synchroniser may see what its input was a clock ago; with WORDS, whose assertions carry themselves, it does not.
     (* hierconn *) wire \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.late , \u_fsmc_bridge.u_fsmc_registers.u_done.late ;
     (* hierconn *) wire [4:0] \u_fsmc_bridge.u_fsmc_async.u_access.late ;
-    assign \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.late = 1'b0;
-    assign \u_fsmc_bridge.u_fsmc_registers.u_done.late = 1'b0;
-    assign \u_fsmc_bridge.u_fsmc_async.u_access.late = 5'd0;
+    (* anyseq *) reg late_write, late_done, late_access;
+    assign \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.late = late_write && WORDS == 0;
+    assign \u_fsmc_bridge.u_fsmc_registers.u_done.late = late_done && WORDS == 0;
+    assign \u_fsmc_bridge.u_fsmc_async.u_access.late = {5{late_access && WORDS == 0}};
     wire clear = \u_fsmc_bridge.clear , excuse = \u_fsmc_bridge.excuse ;
     // A write's turn as it goes through cdc_pulse, one bit each: before its first flip-flop .. its last.
     wire [4:0]  turns = {\u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.turned ,
@@ -116,6 +117,7 @@ module fsmc_bridge_proof #(
     reg        let_go = 1'b0; // NWAIT has been seen inactive in this access
     reg [2:0]  rest = 3'd0;   // clocks since NWE's last edge, or an access that was given up
     reg [1:0]  calm = 2'd0;   // clocks since then
+    localparam [1:0] CALM = WORDS == 0 ? 2'd3 : 2'd2; // a synchroniser sees a level that long
     reg        latched = 1'b0; // NADV has been low in this access
     reg        held = 1'b0;   // a write's strobe has risen, NE not yet
     reg        given_up = 1'b0; // the access before
@@ -126,7 +128,7 @@ module fsmc_bridge_proof #(
     wire same     = {ne1_i, ne2_i, beyond_i, a_i} == {was_ne1, was_ne2, was_beyond, was_a};
     wire ended    = was_access && !strobe && selected; // write: the strobe first
     wire wrote    = was_access && !was_nwe && ended;
-    wire gives_up = was_access && !selected && (was_noe || calm != 2'd2);
+    wire gives_up = was_access && !selected && (was_noe || calm != CALM);
 
     always @(posedge step) begin
         past <= 1'b1;
@@ -141,7 +143,7 @@ module fsmc_bridge_proof #(
             calm   <= 2'd0;
         end else if (was_access) begin
             let_go <= 1'b1;
-            if (clock && calm != 2'd2)
+            if (clock && calm != CALM)
                 calm <= calm + 2'd1;
         end
         held <= (wrote || held) && selected;
@@ -200,7 +202,7 @@ module fsmc_bridge_proof #(
                     assert (nwait_n);
                 if (ne2_i && access && let_go && !noe_n_i)
                     assert (d_out[1:0] == was_out);
-                assert (rst || !excuse || since_ne1 <= 3'd2 || SYNC != 0);
+                assert (rst || !excuse || since_ne1 <= 3'd3 || SYNC != 0);
                 assert (!(ne2_i && !nwe_n_i && nwait_n) || clear);
                 assert (oe == (selected && !noe_n_i));
                 cover (waited > 8'd8 && was_access && access && nwait_n);

@@ -90,6 +90,19 @@ function(icesoc_sanitized)
   set_property(GLOBAL APPEND PROPERTY ICESOC_SANITIZED ${ARGN})
 endfunction()
 
+# icesoc_uncertain(PROGRAM seeds [gtest filter]): the cases of an icesoc_test once more, with synchronisers that take old or new
+# at random (hdl/cdc/cdc_random.vh): tests cdc.<program>.<seed>. The numbers drawn follow from the seed and from SEED.
+function(icesoc_uncertain program seeds)
+  set(filter ${ARGN})
+  if(NOT filter)
+    set(filter *)
+  endif()
+  foreach(seed RANGE 1 ${seeds})
+    add_test(NAME cdc.${program}.${seed} COMMAND ${program} --gtest_brief=1 "--gtest_filter=${filter}")
+    set_tests_properties(cdc.${program}.${seed} PROPERTIES LABELS "rtl;cdc" ENVIRONMENT CDC_SEED=${seed})
+  endforeach()
+endfunction()
+
 # icesoc_regmap(JSON): registers of one block, from its *.regs.json, as a Verilog include, a C header,
 # a VHDL package and a Markdown page in ${GEN_DIR}; target regmap_<block>, interface library regs_<block>.
 function(icesoc_regmap json)

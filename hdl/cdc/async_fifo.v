@@ -40,8 +40,10 @@ module async_fifo #(
     reg [TOP:0]  to_reader, to_writer;          // session and pointer, in the clock of the side that sends them
     wire [TOP:0] to_reader_async, to_writer_async;
     wire [TOP:0] to_reader_sync, to_writer_sync;
-    cdc_bit #(.WIDTH(LOG2+2)) u_to_reader (.clk_i(read_clk_i), .bit_async_i(to_reader_async), .bit_sync_o(to_reader_sync));
-    cdc_bit #(.WIDTH(LOG2+2)) u_to_writer (.clk_i(write_clk_i), .bit_async_i(to_writer_async), .bit_sync_o(to_writer_sync));
+    cdc_bit #(.WIDTH(LOG2+2), .EXACT(1)) u_to_reader (
+        .clk_i(read_clk_i), .bit_async_i(to_reader_async), .bit_sync_o(to_reader_sync));
+    cdc_bit #(.WIDTH(LOG2+2), .EXACT(1)) u_to_writer (
+        .clk_i(write_clk_i), .bit_async_i(to_writer_async), .bit_sync_o(to_writer_sync));
     reg          session;                       // the writer's; it is sent a clock after the pointer has become 0
     reg          waiting;                       // a restart waits until the one before it has been answered
 
@@ -108,6 +110,11 @@ module async_fifo #(
 
 `ifdef FORMAL
 `include "async_fifo_proof.vh"
+`elsif VERILATOR
+    cdc_skew #(.WIDTH(LOG2+2)) u_skew_to_reader (
+        .src_clk_i(write_clk_i), .bits_i(to_reader), .dst_clk_i(read_clk_i), .bits_o(to_reader_async));
+    cdc_skew #(.WIDTH(LOG2+2)) u_skew_to_writer (
+        .src_clk_i(read_clk_i), .bits_i(to_writer), .dst_clk_i(write_clk_i), .bits_o(to_writer_async));
 `else
     assign to_reader_async = to_reader;
     assign to_writer_async = to_writer;

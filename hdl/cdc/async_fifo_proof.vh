@@ -5,8 +5,6 @@
 // It is included in the module's body. Time goes in steps, each with an edge of either clock, of both or of none.
 // A bit that changed in the step before the other clock's edge may arrive old or new, each bit by itself.
 
-    (* hierconn *) wire [TOP:0] \u_to_reader.late , \u_to_writer.late ; // lateness is modelled here
-    assign \u_to_reader.late = 0, \u_to_writer.late = 0;
     (* hierconn, init = 8'd0 *) wire [TOP:0] \u_to_reader.bit_meta , \u_to_writer.bit_meta ;
 
     (* gclk *) wire step;

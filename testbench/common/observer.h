@@ -3,11 +3,15 @@
 // observer: what a Verilated model leaves behind in builds that are made for looking: a waveform
 // (-DTRACE=ON; WAVE=file, WAVE_FROM and WAVE_TO in clocks) and coverage (-DCOVERAGE=ON;
 // COVERAGE_DIR). In other builds it only keeps the clock.
+//
+// With CDC_SEED in the environment, a number, the synchronisers of the model are uncertain
+// (hdl/cdc/cdc_random.vh); the numbers drawn follow from it and from SEED.
 
 #ifndef OBSERVER_H
 #define OBSERVER_H
 
 #include "observed_clock.h"
+#include "random.h"
 #include <cstdlib>
 #include <memory>
 #include <string>
@@ -24,6 +28,10 @@ template <class Module> class Observer {
 public:
     // Prepares the recording; to be called before the model is made.
     explicit Observer(VerilatedContext& context) : context_(context) {
+        const uint64_t seed = number("CDC_SEED", 0);
+        const char* arguments[] = {"", "+cdc_random"};
+        context_.commandArgs(seed ? 2 : 1, arguments);
+        context_.randSeed(static_cast<int>(Random(testSeed() * 1000 + seed).next() | 1));
 #ifdef ICESOC_TRACE
         context_.traceEverOn(true);
         from_ = number("WAVE_FROM", 0);

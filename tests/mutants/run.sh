@@ -64,6 +64,7 @@ try() { # test log
     export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
     case $1 in
     test_*) target=${1%%.*} ;;
+    cdc.*) target=${1#cdc.} && target=${target%.*} ;;
     vhdl.*) target=${1#vhdl.}_vectors ;;
     slice.hardware.vhdl.*) target="slice2c ghdl" ;;
     slice.*) target=slice2c ;;

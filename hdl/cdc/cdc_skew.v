@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+//
+// cdc_skew: what arrives in dst_clk_i of bits that step with src_clk_i; only for simulation (cdc_random.vh).
+//
+// A bit that the last edge of src_clk_i has changed, since the last one of dst_clk_i, arrives as it is or as it was, each
+// bit by itself. So a count in Gray code arrives as one of two; one in binary as a number that it never had.
+
+`default_nettype none
+
+`ifdef VERILATOR
+module cdc_skew #(
+    parameter WIDTH = 4
+) (
+    input  wire             src_clk_i,
+    input  wire [WIDTH-1:0] bits_i,
+    input  wire             dst_clk_i,
+    output wire [WIDTH-1:0] bits_o
+);
+    localparam TOGETHER = 0;
+    `include "cdc_random.vh"
+    reg [WIDTH-1:0] before_step, before_edge, drawn;
+    always @(posedge src_clk_i)
+        before_step <= bits_i;
+    always @(posedge dst_clk_i) begin
+        before_edge <= bits_i;
+        if (bits_i != before_edge)
+            drawn <= late({WIDTH{1'b1}});
+    end
+    assign bits_o = bits_i ^ (drawn & (bits_i ^ before_step) & (bits_i ^ before_edge));
+endmodule
+`endif

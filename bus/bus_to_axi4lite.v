@@ -10,7 +10,7 @@
 
 module bus_to_axi4lite #(
     parameter [31:0] ID_VALUE   = 32'd0,
-    parameter        ADDR_WIDTH = 12,  // of the core's byte addresses, 6..32
+    parameter        ADDR_WIDTH = 12,  // of the core's byte addresses, 3..32
     parameter        TIMEOUT    = 255  // clocks, 1..255
 ) (
     input  wire                  clk_i,

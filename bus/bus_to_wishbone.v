@@ -10,7 +10,7 @@
 
 module bus_to_wishbone #(
     parameter [31:0] ID_VALUE   = 32'd0,
-    parameter        ADDR_WIDTH = 12,  // of the core's byte addresses, 6..32
+    parameter        ADDR_WIDTH = 12,  // of the core's byte addresses, 3..32
     parameter        TIMEOUT    = 255, // clocks, 1..255
     parameter        PIPELINED  = 0    // 1: STALL_I is observed, STB_O lasts until it is low
 ) (

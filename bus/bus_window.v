@@ -4,7 +4,8 @@
 //
 //   0..2  ID, EVENT, MASK (bus_wrapper); EVENT bit 0: the core's interrupt line was high,
 //         bit 1: TIMEOUT, the core did not answer
-//   3     PAGE rw: byte address in the core of word 8, a multiple of 32
+//   3     PAGE rw: byte address in the core of word 8, a multiple of 32; 0 if the core has eight words or less, which
+//         then repeat
 //   8..15 the core's words at PAGE + 0, 4, .. 28
 //
 // A core that does not answer within TIMEOUT clocks, or answers with an error, ends the access with
@@ -15,7 +16,7 @@
 
 module bus_window #(
     parameter [31:0] ID_VALUE   = 32'd0,
-    parameter        ADDR_WIDTH = 12,  // of the core's byte addresses, 6..32
+    parameter        ADDR_WIDTH = 12,  // of the core's byte addresses, 3..32
     parameter        TIMEOUT    = 255  // clocks, 1..255
 ) (
     input  wire                  clk_i,
@@ -41,13 +42,26 @@ module bus_window #(
     // the core's interrupt line, a level of clk_i
     input  wire                  irq_i
 );
+    generate
+        if (ADDR_WIDTH < 3 || ADDR_WIDTH > 32 || TIMEOUT < 1 || TIMEOUT > 255) begin : g_refused
+`ifdef VERILATOR // as in npi_arbiter
+            $error("bus_window: ADDR_WIDTH is 3..32, TIMEOUT 1..255");
+`elsif YOSYS
+            $error("bus_window: ADDR_WIDTH is 3..32, TIMEOUT 1..255");
+`else
+            bus_window_parameter_out_of_range u_refused ();
+`endif
+        end
+    endgenerate
+
     localparam [3:0] PAGE = 4'd3;
+    localparam WIDTH = ADDR_WIDTH > 5 ? ADDR_WIDTH : 6; // with a page
 
     wire        own_ready, own_error, reg_write, reg_read;
     wire [31:0] own_rdata;
     wire [3:0]  reg_addr;
     wire [31:0] reg_wdata;
-    reg  [ADDR_WIDTH-1:5] page;
+    reg  [WIDTH-1:5] page;
     reg  [7:0]  patience;
 
     wire window   = bus_addr_i[3];
@@ -67,14 +81,15 @@ module bus_window #(
     );
 
     generate
-        if (ADDR_WIDTH == 32) begin : g_full
+        if (WIDTH == 32) begin : g_full
             assign page_value = {page, 5'd0};
         end else begin : g_part
-            assign page_value = {{(32-ADDR_WIDTH){1'b0}}, page, 5'd0};
+            assign page_value = {{(32-WIDTH){1'b0}}, page, 5'd0};
         end
     endgenerate
     assign write_o = bus_write_i;
-    assign addr_o  = {page, bus_addr_i[2:0], 2'b00};
+    wire [WIDTH-1:0] place = {page, bus_addr_i[2:0], 2'b00};
+    assign addr_o  = place[ADDR_WIDTH-1:0];
     assign wdata_o = bus_wdata_i;
 
     wire good = busy_o && done_i && !error_i;
@@ -83,21 +98,21 @@ module bus_window #(
     assign bus_rdata_o = window ? rdata_i & {32{good}} : own_rdata;
 
     always @(posedge clk_i) begin
-        if (reg_write && reg_addr == PAGE)
-            page <= reg_wdata[ADDR_WIDTH-1:5];
+        if (reg_write && reg_addr == PAGE && ADDR_WIDTH > 5)
+            page <= reg_wdata[WIDTH-1:5];
         busy_o <= wanted && !end_now && (busy_o || idle_i);
         if (!wanted || end_now)
             patience <= TIMEOUT[7:0];
         else
             patience <= patience - 8'd1;
         if (rst_i) begin
-            page     <= {(ADDR_WIDTH-5){1'b0}};
+            page     <= {(WIDTH-5){1'b0}};
             busy_o   <= 1'b0;
             patience <= TIMEOUT[7:0];
         end
     end
 
-    wire unused = &{1'b0, reg_read, reg_wdata, 1'b0};
+    wire unused = &{1'b0, reg_read, reg_wdata, place, 1'b0};
 
 `ifdef FORMAL
     bus_rules #(.LIMIT(TIMEOUT + 1), .PATIENCE(TIMEOUT + 2)) u_rules (

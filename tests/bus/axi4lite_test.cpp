@@ -21,11 +21,14 @@ public:
     }
     double wait = 0; // probability a clock, on every channel
     bool hang = false, err = false;
+    unsigned hangs = 0; // clocks that it still does, if not 0
     std::map<uint32_t, uint32_t> memory;
     unsigned responses = 0;
 
 private:
     void sample() {
+        if (hangs && !--hangs)
+            hang = false;
         if (top_.axi_bvalid_i && top_.axi_bready_o) {
             bValid_ = aw_ = w_ = false;
             ++responses;
@@ -130,7 +133,7 @@ TEST_F(Axi4Lite, ALateResponseIsNotTheNextAnswer) {
     EXPECT_EQ(answer.cycles, 41u) << "TIMEOUT is 40 clocks";
     EXPECT_EQ(bus_.read(1), timeoutEvent);
     EXPECT_TRUE(bus_.transfer(false, firstWord + 1, 0).error) << "the core still owes the first";
-    slave_.hang = false;
+    slave_.hangs = 5; // it answers in the midst of the next access
     EXPECT_EQ(bus_.read(firstWord + 1), 0xBBBBu);
     EXPECT_EQ(bus_.read(firstWord), 0xAAAAu);
     bus_.write(firstWord, 7);

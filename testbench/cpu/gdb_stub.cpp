@@ -6,6 +6,7 @@
 #include <arpa/inet.h>
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -168,9 +169,10 @@ bool GdbStub::wantsStop() {
         pollfd waiting{listener_, POLLIN, 0};
         return poll(&waiting, 1, 0) > 0;
     }
-    uint8_t byte;
-    ssize_t n = recv(connection_, &byte, 1, MSG_DONTWAIT);
-    return n == 0 || (n == 1 && byte == interrupt);
+    char bytes[4096]; // what is no Ctrl-C must not be in the way of one, nor of the end
+    const ssize_t n = recv(connection_, bytes, sizeof bytes, MSG_DONTWAIT);
+    return n > 0 ? std::memchr(bytes, interrupt, static_cast<size_t>(n)) != nullptr
+                 : n == 0 || (errno != EAGAIN && errno != EINTR);
 }
 
 bool GdbStub::serve(const Target& target, const std::function<bool()>& mayWait) {
@@ -280,7 +282,7 @@ std::string GdbStub::query(const Target& target, const std::string& packet) {
         std::string all = description;
         if (offset >= all.size())
             return "l";
-        return (offset + length >= all.size() ? "l" : "m") + all.substr(offset, length);
+        return (length >= all.size() - offset ? "l" : "m") + all.substr(offset, length);
     }
     if (packet.rfind(monitor, 0) == 0) {
         std::string command = bytesOf(packet.substr(monitor.size())), text;
@@ -328,8 +330,11 @@ std::string GdbStub::writeMemory(const Target& target, const std::string& argume
         std::sscanf(arguments.c_str(), "%x,%x", &address, &length) != 2)
         return error;
     std::string bytes = bytesOf(arguments.substr(colon + 1));
-    return bytes.size() == length && target.cpu.debugWrite(address, bytes.data(), length) ? "OK"
-                                                                                          : error;
+    const bool isHex =
+        arguments.find_first_not_of("0123456789abcdefABCDEF", colon + 1) == std::string::npos;
+    return isHex && bytes.size() == length && target.cpu.debugWrite(address, bytes.data(), length)
+               ? "OK"
+               : error;
 }
 
 std::string GdbStub::breakpoint(const Target& target, const std::string& packet) {

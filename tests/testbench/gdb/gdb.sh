@@ -16,31 +16,6 @@ while ! grep -q 'target remote' "$out/sim.log"; do
     sleep 0.1
 done
 port=$(sed -n "s/.*localhost:\([0-9]*\)'.*/\1/p" "$out/sim.log")
-# A client that is no debugger is sent away: a web page's request with a packet in it, a packet without an end, silence. One that
-# leaves while the processor runs makes room for the next.
-python3 - "$port" <<'PY'
-import socket, sys, time
-def talk(bytes, seconds=20):
-    s = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
-    s.settimeout(seconds)
-    try:
-        s.sendall(bytes)
-        return s.recv(64)
-    except ConnectionError:
-        return b""
-def packet(text):
-    return b"$%s#%02x" % (text, sum(text) & 255)
-assert talk(b"POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" + packet(b"k")) == b""
-assert talk(b"$" + b"m" * 100000) == b""
-assert talk(b"") == b""
-s = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
-s.sendall(packet(b"?"))
-s.recv(64)
-s.sendall(b"+" + packet(b"c"))
-time.sleep(0.5)
-s.close()
-assert talk(b"GET /") == b"", "the processor runs, and a web page comes"
-PY
 cat >"$out/commands" <<E1
 set confirm off
 set width 0

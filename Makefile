@@ -77,7 +77,7 @@ run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground st
 test: setup-tests build ## run all tests; firmware, models and IceC once more with sanitizers
 ifneq ($(LABEL)$(NAME),)
 	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(TESTS) --output-on-failure --no-tests=error \
-	    $(if $(LABEL),-L '$(LABEL)') $(if $(NAME),-R '$(NAME)')
+	    $(if $(LABEL),-L '$(LABEL)') $(if $(NAME),-R '$(NAME)') $(if $(filter zeroc,$(LABEL)),-C zeroc)
 else
 	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(TESTS) --output-on-failure --no-tests=error
 	@[ -f build/sanitized/build.ninja ] || cmake -S . -B build/sanitized -G Ninja -DSANITIZE=ON \

@@ -7,6 +7,7 @@
 #   cmake/fetch.sh clang-format DIR   clang-format 14, DIR/clang-format runs it
 #   cmake/fetch.sh foreign DIR   the third-party cores that examples/foreign/files.list names, into DIR; from
 #                             ICESOC_RAW, a copy of raw.githubusercontent.com, if it is set
+#   cmake/fetch.sh zeroc DIR  ZeroC's test suites for Python, 3.7.8, into DIR; exit status 77: there is no network
 # Kept in ${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network.
 
 set -eu
@@ -144,6 +145,27 @@ fetch_foreign() {
     done
 }
 
+# Debian keeps the released source as it was: its checksum says that it is the one that was tested.
+fetch_zeroc() {
+    keep=$cache/zeroc-3.7.8
+    if [ ! -f "$keep/done" ]; then
+        url=$(mirror)
+        url=${url%/}/pool/main/z/zeroc-ice/zeroc-ice_3.7.8.orig.tar.xz
+        echo "Fetching ZeroC's test suites ($url, 7 MB) ..."
+        curl --fail --silent --show-error --location --max-time 300 -o "$work/file" "$url" || {
+            echo "fetch: cannot get $url: is there a network? Only ZeroC's own test suites need it" >&2
+            exit 77
+        }
+        echo "c48f9e43d65e2b1f5e2af747fd86e7718b5e344b4e9d9a7dc73a84dd0be61f66  $work/file" | sha256sum --check --status ||
+            fail "$url is not the file that was tested (sha256)"
+        mkdir -p "$keep"
+        tar -xJf "$work/file" -C "$keep" --strip-components=3 ice-3.7.8/python/test || fail "cannot unpack $url"
+        touch "$keep/done"
+    fi
+    mkdir -p "$target"
+    cp -r "$keep/." "$target"
+}
+
 mkdir -p "$cache"
 # One at a time: two builds may want the same.
 exec 9>"$cache/lock"
@@ -156,5 +178,6 @@ ice) fetch_ice ;;
 ghdl) fetch_ghdl ;;
 clang-format) fetch_clang_format ;;
 foreign) fetch_foreign ;;
+zeroc) fetch_zeroc ;;
 *) fail "unknown: $what" ;;
 esac

@@ -39,7 +39,7 @@ void classFunctions(Writer& w, const Declaration& d) {
 }
 
 // The classes that the main file's types mention and do not define, and the interfaces that they
-// mention by value.
+// mention by value, with those derived from these.
 static std::set<const Declaration*> mentioned(const Unit& unit) {
     std::set<const Declaration*> found;
     auto add = [&](const Type& t) {
@@ -62,6 +62,10 @@ static std::set<const Declaration*> mentioned(const Unit& unit) {
                 add(p.type);
         }
     }
+    for (const auto& d : unit.declarations) // bases come before what derives from them
+        for (const Declaration* base : d->bases)
+            if (d->kind == Declaration::Kind::Interface && found.count(base))
+                found.insert(d.get());
     return found;
 }
 

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * server: a suite's servants over tcp. Prints its port, serves until `shutdown`.
+ */
+#include "servant.h"
+#include "tcp_endpoint.h"
+
+#include <stdio.h>
+
+int main(void) {
+    static Ice_Communicator ic;
+    static TcpEndpoint tcp;
+    static Ice_ObjectAdapter adapter;
+    Ice_initialize(&ic);
+    if (TcpEndpoint_init(&ic, &tcp) != ICE_OK ||
+        Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "A", "tcp -h 127.0.0.1", &adapter) !=
+            ICE_OK ||
+        Suite_serve(&adapter) != ICE_OK)
+        return 1;
+    Ice_ObjectAdapter_activate(&adapter);
+    printf("%d\n", tcp.port);
+    fflush(stdout);
+    Ice_Communicator_waitForShutdown(&ic);
+    Ice_Communicator_destroy(&ic, 2000);
+    TcpEndpoint_destroy(&tcp);
+    return 0;
+}

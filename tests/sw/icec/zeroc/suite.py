@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""suite: runs ZeroC's own test client of a suite, and counts its checks.
+
+suite.py FOLDER SUITE RUN [--Ice.Property=value...] ENDPOINT|PORT
+
+A check is a call of the client's test(), true or not. The client stops at its first failure; here each statement goes on by
+itself, so that one failure hides no other one. What fails must stand in by_design.txt, with a reason, and the number of checks
+passed may not fall below the one in expected.txt.
+"""
+import argparse
+import ast
+import fnmatch
+import importlib.abc
+import importlib.util
+import os
+import sys
+import threading
+
+
+import Ice
+
+OWN = os.path.dirname(os.path.abspath(__file__))
+passed = 0
+failures = {}  # "File.py:line": text
+lock = threading.Lock()
+PATIENCE = 3
+
+
+def check(truth):
+    global passed
+    if not truth:
+        raise RuntimeError("test assertion failed")
+    with lock:
+        passed += 1
+
+
+def failed(where, error):
+    if isinstance(error, Ice.ConnectionRefusedException):
+        print("the server is gone, after", list(failures.items())[-1:])
+        sys.stdout.flush()
+        os._exit(1)
+    with lock:
+        failures.setdefault(where, "%s: %s" % (type(error).__name__, str(error).strip().replace("\n", " ")[:160]))
+
+
+def wait(self, timeout=None, wait=threading.Condition.wait):
+    """The clients' callbacks tell a condition that they were called: not for ever, where one failed."""
+    if not wait(self, timeout or PATIENCE) and timeout is None:
+        raise RuntimeError("nothing came")
+
+
+class Guard(ast.NodeTransformer):
+    """Puts each statement of a function outside `try` into a `try` of its own."""
+
+    def __init__(self, name):
+        self.name = name
+
+    def visit_Try(self, node):
+        return self.guarded(node)  # what is in it knows which exceptions it wants
+
+    def visit_FunctionDef(self, node):
+        node.body = [self.visit(s) for s in node.body]
+        return node
+
+    def visit_ClassDef(self, node):
+        node.body = [self.visit(s) if isinstance(s, ast.FunctionDef) else s for s in node.body]
+        return node
+
+    def visit_With(self, node):
+        node.body = [self.visit(s) for s in node.body]
+        return self.guarded(node)
+
+    visit_For = visit_With
+
+    def visit_While(self, node):
+        return self.guarded(node)  # it may wait for what failed
+
+    def visit_If(self, node):
+        node.body = [self.visit(s) for s in node.body]
+        node.orelse = [self.visit(s) for s in node.orelse]
+        return self.guarded(node)
+
+    def generic_visit(self, node):
+        plain = isinstance(node, (ast.Expr, ast.Assign, ast.AugAssign))
+        return self.guarded(node) if plain else node
+
+    def guarded(self, node):
+        note = ast.parse("__failed__(%r, __error__)" % ("%s:%d" % (self.name, node.lineno))).body
+        handler = ast.ExceptHandler(type=ast.Name("Exception", ast.Load()), name="__error__", body=note)
+        return ast.copy_location(ast.Try(body=[node], handlers=[handler], orelse=[], finalbody=[]), node)
+
+
+class Loader(importlib.abc.Loader):
+    def __init__(self, path):
+        self.path = path
+
+    def exec_module(self, module):
+        tree = ast.parse(open(self.path).read(), self.path)
+        tree.body = [s for s in tree.body if getattr(s, "name", "") != "test"]
+        if module.__name__ != "Client":
+            guard = Guard(os.path.basename(self.path))
+            tree.body = [guard.visit(s) if isinstance(s, (ast.FunctionDef, ast.ClassDef)) else s for s in tree.body]
+        module.test, module.__failed__ = check, failed
+        exec(compile(ast.fix_missing_locations(tree), self.path, "exec"), module.__dict__)
+
+
+class Finder(importlib.abc.MetaPathFinder):
+    """The suite's own modules, each statement guarded."""
+
+    def find_spec(self, name, path, target=None):
+        file = os.path.join(os.getcwd(), name + ".py")
+        return importlib.util.spec_from_file_location(name, file, loader=Loader(file)) if os.path.exists(file) else None
+
+
+def designed(run):
+    """{place: reason} of by_design.txt for this run."""
+    found = {}
+    for line in open(os.path.join(OWN, "by_design.txt")):
+        if line.strip() and not line.startswith("#"):
+            runs, places, reason = line.split(None, 2)
+            if fnmatch.fnmatch(run, runs):
+                file, lines = places.split(":")
+                found.update(("%s:%s" % (file, n), reason.strip()) for n in lines.split(","))
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("folder")
+    parser.add_argument("suite")
+    parser.add_argument("run", help="what the run is called: SUITE-tcp-1.1")
+    parser.add_argument("rest", nargs=argparse.REMAINDER, help="Ice properties, then an endpoint or a port")
+    a = parser.parse_args()
+    where = a.rest.pop()
+    endpoint = where if not where.isdigit() else "tcp -h 127.0.0.1 -p " + where
+    properties = dict(word[2:].split("=", 1) for word in a.rest)
+    os.chdir(os.path.join(a.folder, "Ice", a.suite))
+    sys.meta_path.insert(0, Finder())
+    sys.path.append(a.folder)
+    import TestHelper
+    threading.Condition.wait = wait
+
+    def createTestProperties(self, args=[], create=TestHelper.TestHelper.createTestProperties):
+        made = create(self, list(args))
+        for key, value in properties.items():
+            made.setProperty(key, value)
+        return made
+
+    TestHelper.TestHelper.createTestProperties = createTestProperties
+    TestHelper.TestHelper.getTestEndpoint = lambda *_, **__: endpoint
+    import Client
+    try:
+        Client.Client().run([])
+    except Exception as error:
+        failed("Client.py:0", error)
+
+    reasons = designed(a.run)
+    byReason = {}
+    unknown = 0
+    print()
+    for place, text in sorted(failures.items()):
+        reason = reasons.get(place, reasons.get(place.split(":")[0] + ":*"))
+        if reason is None:
+            unknown += 1
+            print("FAILED %s: %s" % (place, text))
+        else:
+            byReason.setdefault(reason, []).append(place)
+    for reason, places in byReason.items():
+        print("by design, %s: %s" % (reason, " ".join(places)))
+    expected = dict(line.split() for line in open(os.path.join(OWN, "expected.txt")) if not line.startswith("#"))
+    wanted = int(expected.get(a.run, 0))
+    print("%s: %d checks passed (%d expected), %d by design, %d failed"
+          % (a.run, passed, wanted, len(failures) - unknown, unknown))
+    sys.stdout.flush()
+    os._exit(0 if unknown == 0 and passed >= wanted else 1)  # a suite may leave threads that wait
+
+
+main()

@@ -10,7 +10,6 @@
 #include <chrono>
 #include <cstring>
 #include <poll.h>
-#include <random>
 #include <system_error>
 #include <unistd.h>
 
@@ -33,9 +32,8 @@ int Engine::onTransmit(void* context, const U8* frame, U32 size) {
     return 0;
 }
 
-U32 Engine::onRandom(void*) {
-    static std::random_device device;
-    return device();
+U32 Engine::onRandom(void* context) {
+    return self(context).settings_.random();
 }
 
 int Engine::onMessage(void* context, int channel, const U8* data, U32 size) {

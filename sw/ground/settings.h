@@ -6,6 +6,7 @@
 #define GROUND_SETTINGS_H
 
 #include <functional>
+#include <random>
 #include <string>
 
 namespace XBeeAT {
@@ -22,6 +23,9 @@ struct Settings {
     bool setUp = true;    // by AT commands
     int downMs = 15000;   // without a link: set the modem up again, it may have been reset
     int idleMs = 0;       // so long silent, a program makes room for one that waits; 0: never
+
+    // Of sessions' numbers; a test may have its own.
+    std::function<unsigned()> random = [] { return std::random_device()(); };
 
     double characterUs() const { return 1e7 / (baud == 115200 ? 111111 : baud); }
 };

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+//
+// fuzz_engine: libFuzzer target of the ground's engine: its serial input and what programs send. An
+// input is a little program of steps; between them the engine runs with a link layer at the other
+// end of the wire, so that sessions come up. Nothing may crash, hang or leak, and a message that is
+// handed to a program is whole.
+//
+// The first byte's lowest bit: the modem is set up first. Then a byte names the step (mod 8), the
+// next its argument n:
+//   0 n bytes of noise on the serial line    1 a frame of the peer's is harmed
+//   2 n frames are lost    3,4 a program (n mod 3) writes a message of the bytes behind
+//   5 it writes n bytes as they are    6 it leaves, and (n > 127) comes anew    7 8 n ms pass
+//
+// Clock and serial port are this file's: so the engine's thread runs alone, by the input's time.
+
+#include "engine.h"
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+
+void expect(bool condition) {
+    if (!condition)
+        std::abort();
+}
+
+// Takes what the engine hands to a program, in any pieces.
+class Program {
+public:
+    ~Program() { leave(); }
+    void come(XBeeAT::Engine& engine) {
+        if (fd_ < 0)
+            fd_ = engine.connect(-1);
+    }
+    void leave() {
+        if (fd_ >= 0)
+            close(fd_);
+        fd_ = -1;
+        in_.clear();
+    }
+    void write(const Bytes& bytes) const {
+        if (fd_ >= 0)
+            (void)!send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    }
+    void read() {
+        uint8_t bytes[4096];
+        ssize_t count = fd_ < 0 ? 0 : recv(fd_, bytes, sizeof bytes, MSG_DONTWAIT);
+        if (count > 0)
+            in_.insert(in_.end(), bytes, bytes + count);
+        while (in_.size() >= 14) {
+            uint32_t size;
+            std::memcpy(&size, in_.data() + 10, sizeof size);
+            expect(std::memcmp(in_.data(), "IceP", 4) == 0 && size >= 14 &&
+                   size <= LINK_MAX_MESSAGE);
+            if (in_.size() < size)
+                break;
+            in_.erase(in_.begin(), in_.begin() + size);
+        }
+    }
+
+private:
+    int fd_ = -1;
+    Bytes in_;
+};
+
+// What one input lives in: the wire, the peer's link, programs, time.
+class World {
+public:
+    World(const uint8_t* data, size_t size) : at_(data), end_(data + size) {
+        static const Link_Port port = {
+            [](void* w, const U8* f, U32 n) {
+                self(w).frames_.emplace_back(f, f + n);
+                return 0;
+            },
+            [](void* w) { return self(w).random(); },
+            [](void* w, int channel, const U8* d, U32 n) { // an echo
+                return Link_send(self(w).peer_.get(), channel, d, n, 0) == LINK_FULL ? 1 : 0;
+            },
+            [](void*, int, int) {},
+            [](void*, Link_State) {},
+            nullptr,
+            nullptr};
+        Link_init(peer_.get(), &port, this, 1440);
+        Link_start(peer_.get(), now);
+    }
+    ~World() { close(serial); }
+    void run() {
+        XBeeAT::Settings settings;
+        settings.device = "fuzz";
+        settings.setUp = at_ < end_ && (*at_++ & 1);
+        settings.guardMs = 2;
+        settings.idleMs = 2000;
+        settings.random = [this] { return random(); };
+        std::unique_lock<std::mutex> lock(mutex_);
+        engine_ = XBeeAT::Engine::get(settings, [this](int, const std::string& text) {
+            if (text.find("given up") != std::string::npos) // it waits for a new connection
+                end();
+        });
+        engine_->listen();
+        for (Program& program : programs_)
+            program.come(*engine_);
+        stage_ = Stage::Goes;
+        changed_.notify_all();
+        changed_.wait(lock, [this] { return stage_ == Stage::Over; });
+        lock.unlock();
+        engine_.reset();
+    }
+
+    // ---- the engine's clock and port ----
+    U32 now = 0xFFFFF000u;
+    std::deque<uint8_t> toEngine;
+    const int serial = eventfd(0, EFD_CLOEXEC);
+
+    void fromEngine(const uint8_t* bytes, size_t size) {
+        Link_receive(peer_.get(), bytes, static_cast<U32>(size), now);
+        if (bytes[0] == 'A' || bytes[0] == '+') // what a modem would understand
+            for (char c : {'O', 'K', '\r'})
+                toEngine.push_back(static_cast<uint8_t>(c));
+    }
+    // Returns, as the engine's clock does, when something is ready or `us` have passed.
+    int wait(pollfd* fds, nfds_t count, uint32_t us) {
+        std::unique_lock<std::mutex> lock(mutex_);
+        changed_.wait(lock, [this] { return stage_ != Stage::Begins; });
+        lock.unlock();
+        for (;;) {
+            if (stage_ == Stage::Over)
+                return poll(fds, count, -1);
+            int ready = poll(fds, count, 0);
+            for (nfds_t i = 0; i < count; ++i)
+                if (fds[i].fd == serial && (fds[i].events & POLLIN) && !toEngine.empty()) {
+                    ready += !fds[i].revents;
+                    fds[i].revents |= POLLIN;
+                }
+            now += 10; // even an engine that is always busy comes to the input's end
+            if (ready && ++busy_ % 64)
+                return ready;
+            const uint32_t step = std::min(us, 10'000u);
+            pass(step);
+            us -= us == XBeeAT::Clock::forever ? 0 : step;
+            if (us == 0)
+                return ready;
+        }
+    }
+
+private:
+    enum class Stage { Begins, Goes, Over };
+    static World& self(void* w) { return *static_cast<World*>(w); }
+
+    uint32_t random() { return nonce_ = nonce_ * 1664525u + 1013904223u; }
+    void end() {
+        std::lock_guard<std::mutex> lock(mutex_);
+        stage_ = Stage::Over;
+        changed_.notify_all();
+    }
+    void pass(uint32_t us) {
+        now += us;
+        Link_poll(peer_.get(), now);
+        deliver();
+        for (Program& program : programs_)
+            program.read();
+        pause_ -= std::min(pause_, us + 1);
+        if (pause_ == 0)
+            next();
+    }
+    void deliver() {
+        for (Bytes& frame : frames_) {
+            if (lose_ > 0) {
+                --lose_;
+                continue;
+            }
+            frame[harm_ % frame.size()] ^= harm_;
+            harm_ = 0;
+            toEngine.insert(toEngine.end(), frame.begin(), frame.end());
+        }
+        frames_.clear();
+    }
+    Bytes take(size_t count) {
+        count = std::min(count, static_cast<size_t>(end_ - at_));
+        at_ += count;
+        return Bytes(at_ - count, at_);
+    }
+    // Does the next step of the input; behind the last, time passes until all time-outs have come.
+    void next() {
+        if (end_ - at_ < 2) {
+            pause_ = 1'000'000;
+            if (rest_-- == 0)
+                end();
+            return;
+        }
+        const uint8_t step = *at_++ & 7, n = *at_++;
+        Program& program = programs_[n % 3];
+        if (step == 0) {
+            const Bytes noise = take(n);
+            toEngine.insert(toEngine.end(), noise.begin(), noise.end());
+        } else if (step == 1) {
+            harm_ = n;
+        } else if (step == 2) {
+            lose_ = n;
+        } else if (step < 5) {
+            Bytes message = {'I', 'c', 'e', 'P', 1, 0, 1, 0, static_cast<uint8_t>(n % 5), 0};
+            const Bytes body = take(n);
+            const U32 size = static_cast<U32>(14 + body.size());
+            for (int i = 0; i < 4; ++i)
+                message.push_back(static_cast<uint8_t>(size >> 8 * i));
+            message.insert(message.end(), body.begin(), body.end());
+            program.write(message);
+        } else if (step == 5) {
+            program.write(take(n));
+        } else if (step == 6) {
+            program.leave();
+            if (n & 0x80)
+                program.come(*engine_);
+        } else {
+            pause_ = n * 8000u;
+        }
+    }
+
+    const uint8_t *at_, *end_;
+    uint32_t nonce_ = 1, pause_ = 0;
+    unsigned lose_ = 0, rest_ = 20, busy_ = 0;
+    uint8_t harm_ = 0;
+    std::vector<Bytes> frames_;
+    std::unique_ptr<Link> peer_{new Link};
+    std::shared_ptr<XBeeAT::Engine> engine_;
+    Program programs_[3];
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::atomic<Stage> stage_{Stage::Begins};
+};
+
+World* world;
+
+} // namespace
+
+namespace XBeeAT {
+
+Clock::Clock() = default;
+Clock::~Clock() = default;
+uint32_t Clock::nowUs() const {
+    return world->now;
+}
+int Clock::wait(pollfd* fds, nfds_t count, uint32_t us) {
+    return world->wait(fds, count, us);
+}
+void Clock::keepStep(int, const std::string&) {}
+void Clock::leaveStep() {}
+
+void SerialPort::open(const std::string&) {
+    fd_ = world->serial;
+}
+void SerialPort::close() {}
+void SerialPort::setSpeed(int) {}
+ssize_t SerialPort::read(void* bytes, size_t room) {
+    std::deque<uint8_t>& from = world->toEngine;
+    const size_t count = std::min(room, from.size());
+    if (count == 0) {
+        errno = EAGAIN;
+        return -1;
+    }
+    std::copy_n(from.begin(), count, static_cast<uint8_t*>(bytes));
+    from.erase(from.begin(), from.begin() + static_cast<ptrdiff_t>(count));
+    return static_cast<ssize_t>(count);
+}
+ssize_t SerialPort::write(const void* bytes, size_t size) {
+    world->fromEngine(static_cast<const uint8_t*>(bytes), size);
+    return static_cast<ssize_t>(size);
+}
+void SerialPort::drop() {
+    world->toEngine.clear();
+}
+
+} // namespace XBeeAT
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    World here(data, size);
+    world = &here;
+    here.run();
+    return 0;
+}

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+//
+// fuzz_gdb: libFuzzer target of the GDB stub. Nothing may crash or hang, whatever a debugger says.
+//
+// Each line of an input is a packet, and gets its frame and checksum; one that begins with ! goes
+// as it is. The processor does not run: "continue" stops at once.
+
+#include "gdb_stub.h"
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+#include <utility>
+
+namespace {
+
+class Nobody : public CpuBus {
+public:
+    uint32_t read(uint32_t, unsigned) override { throw Error("nobody answers"); }
+    void write(uint32_t, unsigned, uint32_t) override { throw Error("nobody answers"); }
+    void pass(unsigned) override {}
+    unsigned takeWaited() override { return 0; }
+};
+
+std::string framed(const std::string& line) {
+    if (!line.empty() && line[0] == '!')
+        return line.substr(1);
+    unsigned sum = 0;
+    for (char c : line)
+        sum += static_cast<uint8_t>(c);
+    const char* const digits = "0123456789abcdef";
+    return "$" + line + "#" + digits[sum >> 4 & 15] + digits[sum & 15];
+}
+
+int connected(uint16_t port) {
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    to.sin_port = htons(port);
+    const int fd = socket(AF_INET, SOCK_STREAM, 0);
+    if (connect(fd, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0)
+        abort();
+    return fd;
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    static Nobody bus;
+    static CortexM3 cpu(bus, CortexM3::Config(), {{0x60000000, 0x1000}});
+    static GdbStub stub(0);
+    const GdbStub::Target target{cpu, [](bool) { return CortexM3::Stop::Breakpoint; }, [] {},
+                                 [] { return false; }, [] { return std::string("nothing\n"); }};
+    std::string bytes, line;
+    for (size_t i = 0; i <= size; ++i)
+        if (i == size || data[i] == '\n') {
+            bytes += framed(line);
+            line.clear();
+        } else {
+            line += static_cast<char>(data[i]);
+        }
+    const int fd = connected(stub.port());
+    (void)!send(fd, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    shutdown(fd, SHUT_WR);
+    bool isNew = true;
+    stub.serve(target, [&] { return std::exchange(isNew, false); });
+    const linger reset{1, 0}; // no port stays behind
+    setsockopt(fd, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
+    close(fd);
+    return 0;
+}

@@ -40,6 +40,7 @@ public:
         : descriptions_(descriptions), first_(constant(base, "SLOT_COUNT")),
           buffers_(constant(base, "BUFFERS")), memoryEnd_(1u << constant(base, "DDR_BYTES_LOG2")) {
         chip_.ports = constant(base, "NPI_PORT_COUNT");
+        chip_.registers = constant(base, "CONTROL_WINDOW");
         for (const json& c : base.at("constants"))
             if (std::string name = c.at("name"); name.rfind("SLOT_", 0) == 0)
                 names_[lower(name.substr(5))] = 0;

@@ -36,6 +36,7 @@ struct Core {
 struct Chip {
     std::vector<Core> cores; // by slot
     unsigned slots = 0, ports = 0;
+    unsigned registers = 0;    // the processor's address of slot 0
     unsigned pins[2] = {0, 0}; // bits used of core_pins_i, core_pins_o
 };
 
@@ -53,9 +54,10 @@ std::string constraintsOf(const Chip& chip); // pins by place, for ISE
 // A populated slot, the platform's included, with its *.regs.json.
 struct Slot {
     std::string name;
-    unsigned number;
+    unsigned number, address; // address: the processor's
     nlohmann::json description;
 };
+constexpr unsigned slotBytes = 64;
 std::string svdOf(const std::vector<Slot>& slots);
 std::string htmlOf(const std::vector<Slot>& slots);
 

@@ -9,8 +9,6 @@ using nlohmann::json;
 
 namespace {
 
-constexpr unsigned control = 0x64000000, slotBytes = 64; // NE2, docs/fsmc.md
-
 std::string escaped(const std::string& text) {
     std::string s;
     for (char c : text)
@@ -92,10 +90,10 @@ std::string svdRegister(const json& r) {
 }
 
 std::string htmlBlock(const Slot& slot) {
-    std::string s = fmt::format("<h2 id=\"{0}\">{0}</h2>\n<p>{1} Slot {2}, 0x{3:08X}.</p>\n"
-                                "<table>\n<tr><th>word<th>register<th>access<th>bits<th>meaning\n",
-                                slot.name, escaped(slot.description.at("doc")), slot.number,
-                                control + slotBytes * slot.number);
+    std::string s =
+        fmt::format("<h2 id=\"{0}\">{0}</h2>\n<p>{1} Slot {2}, 0x{3:08X}.</p>\n"
+                    "<table>\n<tr><th>word<th>register<th>access<th>bits<th>meaning\n",
+                    slot.name, escaped(slot.description.at("doc")), slot.number, slot.address);
     for (const json& r : registersOf(slot.description)) {
         s += fmt::format("<tr><td>{}<td><b>{}</b><td>{}<td><td>{}\n", r.at("word").get<unsigned>(),
                          r.at("name").get<std::string>(), r.at("access").get<std::string>(),
@@ -131,8 +129,7 @@ std::string svdOf(const std::vector<Slot>& slots) {
             "<offset>0</offset>\n"
             "        <size>0x{:X}</size>\n        <usage>registers</usage>\n      </addressBlock>\n"
             "      <registers>\n",
-            upper(slot.name), escaped(slot.description.at("doc")),
-            control + slotBytes * slot.number, slotBytes);
+            upper(slot.name), escaped(slot.description.at("doc")), slot.address, slotBytes);
         for (const json& r : registersOf(slot.description))
             s += svdRegister(r);
         s += "      </registers>\n    </peripheral>\n";

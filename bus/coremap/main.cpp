@@ -65,16 +65,19 @@ int main(int argc, char** argv) {
         save(outputDir + "/soc_pins.h", pinTableOf(chip));
         save(outputDir + "/core_pins.ucf", constraintsOf(chip));
         std::vector<Slot> slots;
+        auto add = [&](const std::string& name, unsigned slot, const nlohmann::json& description) {
+            slots.push_back({name, slot, chip.registers + slotBytes * slot, description});
+        };
         for (const std::string& b : blocks) {
             size_t first = b.find('='), second = b.find('=', first + 1);
             if (second == std::string::npos)
                 throw std::runtime_error("1: error: --block slot=name=file, not '" + b + "'");
-            slots.push_back({b.substr(first + 1, second - first - 1),
-                             static_cast<unsigned>(std::stoul(b.substr(0, first))),
-                             nlohmann::json::parse(read(b.substr(second + 1)))});
+            add(b.substr(first + 1, second - first - 1),
+                static_cast<unsigned>(std::stoul(b.substr(0, first))),
+                nlohmann::json::parse(read(b.substr(second + 1))));
         }
         for (const Core& c : chip.cores)
-            slots.push_back({c.name, c.slot, descriptions.at(c.folder)});
+            add(c.name, c.slot, descriptions.at(c.folder));
         save(outputDir + "/icesoc.svd", svdOf(slots));
         save(outputDir + "/registers.html", htmlOf(slots));
     } catch (const std::exception& e) {

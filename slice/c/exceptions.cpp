@@ -27,14 +27,7 @@ bool needsTables(const Declaration& d) {
     return hasClasses(d) || d.preserves();
 }
 
-} // namespace
-
-void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d) {
-    Writer::Values v = {
-        {"c", cName(d)}, {"id", d.id()}, {"classes", requiresClasses(d) ? "1" : "0"}};
-    bool classes = needsTables(d), preserves = d.preserves();
-    initFunction(w, d);
-    w.blank();
+void slicesFunctions(Writer& w, const Declaration& d, const Writer::Values& v) {
     w.block("void {c}_writeSlices(const {c} *v, Ice_OutputStreamPtr os)", v, [&] {
         std::string last = d.base() ? "0" : "1";
         w.line("Ice_Int slice = Ice_OutputStream_startSlice(os, \"{id}\", " + last + ");", v);
@@ -56,7 +49,10 @@ void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d) {
             w.line("(void)v;");
         }
     });
-    w.blank();
+}
+
+void writeFunction(Writer& w, const Declaration& d, const Writer::Values& v) {
+    bool classes = needsTables(d);
     w.block("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os)", v, [&] {
         if (classes) {
             w.line("Ice_OutputValues values;");
@@ -64,18 +60,21 @@ void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d) {
             w.line("values.pending = {classes};", v);
         }
         w.line("Ice_OutputStream_startException(os, {classes});", v);
-        if (preserves)
+        if (d.preserves())
             w.line("Ice_OutputStream_writeUnknown(os, v->" + unknownOf(d) + ");");
         w.line("{c}_writeSlices(v, os);", v);
         if (classes)
             w.line("Ice_OutputStream_endValues(os);");
     });
-    w.blank();
+}
+
+void readFunction(Writer& w, const CContext& c, const Declaration& d, const Writer::Values& v) {
+    bool classes = needsTables(d);
     w.block("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is)", v, [&] {
         std::string skip = "Ice_InputStream_skipSlice(is)";
         if (classes)
             w.line("Ice_InputValues values;");
-        if (preserves) {
+        if (d.preserves()) {
             skip = "Ice_InputStream_keepSlice(is, id, &v->" + unknownOf(d) + ")";
             w.line("v->" + unknownOf(d) + " = 0;");
         }
@@ -95,6 +94,20 @@ void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d) {
         if (classes)
             w.line("Ice_InputStream_endValues(is);");
     });
+}
+
+} // namespace
+
+void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d) {
+    const Writer::Values v = {
+        {"c", cName(d)}, {"id", d.id()}, {"classes", requiresClasses(d) ? "1" : "0"}};
+    initFunction(w, d);
+    w.blank();
+    slicesFunctions(w, d, v);
+    w.blank();
+    writeFunction(w, d, v);
+    w.blank();
+    readFunction(w, c, d, v);
 }
 
 void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {

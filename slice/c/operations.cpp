@@ -166,7 +166,8 @@ std::string outParameters(const Declaration& owner, const Operation& o) {
     return list;
 }
 
-std::string responseParameters(const Operation& o) {
+// The results as values that a response sends.
+static std::string responseParameters(const Operation& o) {
     std::string list;
     for (const Result& r : results(o))
         list += ", " + passed(*r.type, r.name, r.isOptional);

@@ -32,7 +32,6 @@
 #define RCC_CSR REG(0x40023874UL)
 #define RCC_CSR_RMVF (1UL << 24) /* clears the flags below */
 #define RCC_CSR_PORRST (1UL << 27)
-#define RCC_CSR_SFTRST (1UL << 28)
 #define RCC_CSR_IWDGRST (1UL << 29)
 
 /* Flash interface (RM0033, 2.3; the PM0059): 3 wait states at 120 MHz and 3.3 V, caches and
@@ -66,7 +65,6 @@
 #define IWDG_KR_REFRESH 0xAAAAUL
 #define IWDG_PR REG(0x40003004UL) /* prescaler 4 << n */
 #define IWDG_RLR REG(0x40003008UL)
-#define IWDG_SR REG(0x4000300CUL) /* not 0: an update is under way */
 
 /* The core (ARMv7-M ARM, B3). */
 #define SYST_CSR REG(0xE000E010UL)
@@ -78,7 +76,6 @@
 #define NVIC_ISER(n) REG(0xE000E100UL + 4UL * (n))
 #define NVIC_IPR(n) (*(volatile U8*)(0xE000E400UL + (n)))
 #define SCB_ICSR REG(0xE000ED04UL)
-#define SCB_VTOR REG(0xE000ED08UL)
 #define SCB_AIRCR REG(0xE000ED0CUL)
 #define SCB_AIRCR_RESET 0x05FA0004UL
 #define SCB_SHPR(n) (*(volatile U8*)(0xE000ED14UL + (n))) /* of exception n, 4..15 */

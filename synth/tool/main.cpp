@@ -118,7 +118,7 @@ int accept(const Report& r, const fs::path& file) {
     return 0;
 }
 
-int report(const Options& o) {
+Library rtlOf(const Options& o) {
     if (!fs::is_directory(o.generated))
         throw std::runtime_error(fmt::format("{} is not there: build first", o.generated.string()));
     const std::vector<fs::path> folders = rtlFolders(o); // include files lie beside the modules
@@ -126,8 +126,11 @@ int report(const Options& o) {
     std::vector<fs::path> includes = folders;
     for (const fs::path& file : files)
         includes.push_back(file.parent_path());
-    const Library library(folders, includes, files);
-    Plan plan = readPlan(o.source / "synth/designs.json", library, o.source);
+    return Library(folders, includes, files);
+}
+
+// Throws if a design that the command line names is not in the plan.
+void checkNames(const Plan& plan, const Options& o) {
     std::vector<std::string> wanted = o.only;
     if (!o.edif.empty())
         wanted.push_back(o.edif);
@@ -135,24 +138,26 @@ int report(const Options& o) {
         if (std::none_of(plan.designs.begin(), plan.designs.end(),
                          [&](const Design& d) { return d.name == name; }))
             throw std::runtime_error(fmt::format("there is no design {}", name));
-    // A design that another run is synthesising is then found in the cache.
-    const FolderLock lock(o.output, "utilisation");
-    const RunnerOptions options{o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs};
-    if (!o.edif.empty()) {
-        const auto design = std::find_if(plan.designs.begin(), plan.designs.end(),
-                                         [&](const Design& d) { return d.name == o.edif; });
-        fmt::print(stderr, "{} as EDIF ...\n", o.edif);
-        writeEdif(*design, library, options, o.output / "ise");
-        fmt::print("{} and its Verilog in {}; docs/ise.md says how to go on.\n",
-                   (o.output / "ise" / (o.edif + ".edf")).string(),
-                   (o.output / "ise/verilog").string());
-        return 0;
-    }
+}
+
+void edif(const Plan& plan, const Library& library, const RunnerOptions& options,
+          const Options& o) {
+    const auto design = std::find_if(plan.designs.begin(), plan.designs.end(),
+                                     [&](const Design& d) { return d.name == o.edif; });
+    fmt::print(stderr, "{} as EDIF ...\n", o.edif);
+    writeEdif(*design, library, options, o.output / "ise");
+    fmt::print("{} and its Verilog in {}; docs/ise.md says how to go on.\n",
+               (o.output / "ise" / (o.edif + ".edf")).string(),
+               (o.output / "ise/verilog").string());
+}
+
+// Synthesises the wanted designs for each family; the others come from the cache.
+std::vector<Run> synthesise(const Plan& plan, const Library& library, const RunnerOptions& options,
+                            const Options& o) {
     const auto isWanted = [&](const Design& design) {
         return o.only.empty() ||
                std::find(o.only.begin(), o.only.end(), design.name) != o.only.end();
     };
-    const std::string tree = treeState(o.source, "bus hdl ip slice synth");
     std::vector<Run> runs;
     for (const std::string& family : o.families)
         for (const Design& design : plan.designs)
@@ -162,6 +167,22 @@ int report(const Options& o) {
         if (run.wanted && !run.error.empty())
             fmt::print(stderr, "utilisation: {} for {}: {}\n", run.design->name, run.family,
                        run.error);
+    return runs;
+}
+
+int report(const Options& o) {
+    const Library library = rtlOf(o);
+    const Plan plan = readPlan(o.source / "synth/designs.json", library, o.source);
+    checkNames(plan, o);
+    // A design that another run is synthesising is then found in the cache.
+    const FolderLock lock(o.output, "utilisation");
+    const RunnerOptions options{o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs};
+    if (!o.edif.empty()) {
+        edif(plan, library, options, o);
+        return 0;
+    }
+    const std::string tree = treeState(o.source, "bus hdl ip slice synth");
+    const std::vector<Run> runs = synthesise(plan, library, options, o);
 
     Report r;
     r.plan = &plan;

@@ -136,7 +136,7 @@ public:
     unsigned errors_ = 0;
 
 private:
-    static constexpr U32 ddr = 0x60000000, control = 0x64000000; // NE1, NE2
+    static constexpr U32 ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
     U32 inMemory(U32 address) const { return address - ddr - coreMemory + memoryAt_; }
     U32 access(bool isWrite, U32 address, U32 value) {
         if (address < control || address >= control + 0x1000)

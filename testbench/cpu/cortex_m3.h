@@ -104,7 +104,6 @@ public:
     uint64_t instructions() const { return instructions_; }
     uint64_t sleepingCycles() const { return sleeping_; }
     uint64_t busCycles() const { return waited_; } // waiting for windows
-    bool isAsleep() const { return asleep_; }
     bool isLockedUp() const { return lockedUp_; }
     unsigned currentException() const;
     Exceptions& exceptions() { return exceptions_; }

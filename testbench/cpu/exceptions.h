@@ -47,7 +47,6 @@ public:
     void enter(unsigned number); // pending becomes active
     void leave(unsigned number);
     const State& operator[](unsigned number) const { return states_[number]; }
-    bool anyActive() const { return activeCount_ != 0; }
     unsigned activeCount() const { return activeCount_; }
 
     // The masks of the processor.

@@ -50,10 +50,6 @@ public:
 
     NpiTraffic& traffic(unsigned port) { return ports_[port].traffic; }
     const Counters& counters(unsigned port) const { return ports_[port].counters; }
-    void clearCounters() {
-        for (Port& port : ports_)
-            port.counters = Counters();
-    }
     std::vector<uint8_t>& reference() { return reference_; }
     void stop() { stopped_ = true; } // no new requests; what is under way ends
     void go() { stopped_ = false; }

@@ -42,14 +42,13 @@ void FsmcMaster::show() {
 void FsmcMaster::passHclk(unsigned cycles) {
     hclks_ += cycles;
     if (delays_) {
-        cycles_ += delays_->pass(cycles);
+        delays_->pass(cycles);
         return;
     }
     phase_ += cycles * clkPerUnit_;
     while (phase_ >= hclkPerUnit_) {
         phase_ -= hclkPerUnit_;
         design_.tick();
-        ++cycles_;
         if (pins_.dDriven && pins_.dOut)
             throw FsmcError("data bus driven by both sides");
     }

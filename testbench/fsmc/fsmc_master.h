@@ -84,8 +84,7 @@ public:
     void idle(unsigned hclk) { passHclk(hclk); }
 
     uint64_t accesses() const { return accesses_; }
-    uint64_t hclks() const { return hclks_; }             // HCLK cycles of all accesses and pauses
-    uint64_t cyclesInAccesses() const { return cycles_; } // of the design's clock
+    uint64_t hclks() const { return hclks_; } // HCLK cycles of all accesses and pauses
 
 private:
     struct Bank {
@@ -130,7 +129,7 @@ private:
     // The access before, for the turnaround.
     bool lastWrite_ = false, lastHeld_ = false;
     unsigned lastIndex_ = 0, lastBusturn_ = 0;
-    uint64_t accesses_ = 0, cycles_ = 0, hclks_ = 0;
+    uint64_t accesses_ = 0, hclks_ = 0;
 };
 
 #endif

@@ -166,9 +166,8 @@ void PinDelays::settled() {
     shown_ = out;
 }
 
-unsigned PinDelays::pass(unsigned hclks) {
+void PinDelays::pass(unsigned hclks) {
     int64_t end = now_ + int64_t(hclks) * hclk_;
-    unsigned edges = 0;
     for (;;) {
         int64_t change = changes_.empty() ? end + 1 : changes_.begin()->first;
         if (std::min(change, nextEdge_) > end)
@@ -176,7 +175,6 @@ unsigned PinDelays::pass(unsigned hclks) {
         if (nextEdge_ <= change) {
             now_ = nextEdge_;
             nextEdge_ += clk_;
-            ++edges;
             design_.tick();
             settled();
             continue;
@@ -199,5 +197,4 @@ unsigned PinDelays::pass(unsigned hclks) {
             dataMoved_ = now_;
     }
     now_ = end;
-    return edges;
 }

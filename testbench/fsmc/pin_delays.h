@@ -41,8 +41,8 @@ public:
 
     // Sends on what has changed at the processor's pins.
     void show();
-    // Lets time pass; runs the design's clock while it does. Returns the edges of that.
-    unsigned pass(unsigned hclks);
+    // Lets time pass; runs the design's clock while it does.
+    void pass(unsigned hclks);
     // True if the data at the processor's pins has rested for its set-up time.
     bool dataIsSetUp() const { return now_ - dataMoved_ >= corner_.readSetup + hclk_; }
 

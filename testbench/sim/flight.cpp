@@ -5,6 +5,7 @@
 #include "flight.h"
 #include "app.h"
 #include "core_pins.h"
+#include "map_regs.h"
 #include "mark_file.h"
 #include "sensor.h"
 #include "uav_machine.h"
@@ -128,7 +129,7 @@ void Flight::placePicture() {
 
 void Flight::watchRegisters() {
     soc_.fsmc().onWord = [this](uint32_t address, uint32_t value, bool isWrite) {
-        constexpr uint32_t control = 0x64000000, bytes = 4096; // NE2
+        constexpr uint32_t control = MAP_CONTROL_WINDOW, bytes = 4096;
         if (address - control >= bytes)
             return;
         status_->registers[(address - control) / 4] = value;

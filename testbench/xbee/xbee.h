@@ -73,11 +73,6 @@ public:
     void power(bool on, uint64_t now);
     // Answers ERROR to this command, as a firmware that lacks it does ("" for none).
     void refuseCommand(const std::string& letters) { refuse_ = letters; }
-    // Does not answer this command at all ("" for none): a reply that was lost on the wire.
-    void ignoreCommand(const std::string& letters, unsigned times = ~0u) {
-        ignore_ = letters;
-        ignoreTimes_ = times;
-    }
 
     const std::string& name() const { return options_.name; }
     uint32_t parameter(const std::string& letters) const { return active_.at(letters); }
@@ -161,8 +156,7 @@ private:
     uint16_t sequence_ = 0;
     uint32_t frameCounter_ = 0;                 // of encrypted packets, since power on
     std::map<uint16_t, uint16_t> lastSequence_; // of each sender
-    std::string refuse_, ignore_;
-    unsigned ignoreTimes_ = 0;
+    std::string refuse_;
     std::string key_, writtenKey_;
     // API
     struct ApiPacket {

@@ -102,10 +102,6 @@ std::string XBee::execute(const std::string& line, uint64_t now) {
     value.erase(0, value.find_first_not_of(' '));
     for (char& c : letters)
         c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    if (letters == ignore_ && ignoreTimes_ > 0) {
-        --ignoreTimes_;
-        return "";
-    }
     if (letters == refuse_)
         return "ERROR\r";
     std::string answer = value.empty() ? order(letters, now) : "";

@@ -219,7 +219,8 @@ void measureCalls(Flight& f, int calls) {
 }
 
 void measureStream(Flight& f) {
-    // One-way requests of 1 KB to nobody: link, IceC's dispatcher, no servant, no reply.
+    // Floods the vehicle with one-way requests of 1 KB to nobody: link and IceC's dispatcher work,
+    // no servant, no reply.
     f.ground.replies.clear();
     uint64_t bytes = 0;
     const std::vector<uint8_t> load(1000, 0x55);
@@ -244,7 +245,8 @@ void measureStream(Flight& f) {
     say("full stream: cycles a byte", (f.awake() - awake) / (goodput * took), "cycles");
 }
 
-// From the message's last byte at IceC's endpoint to the first frame of its reply, of a ping.
+// Measures from the message's last byte at IceC's endpoint to the first frame of its reply, of a
+// ping.
 void measurePings(Flight& f, const std::string& program) {
     constexpr size_t calls = 20;
     const ElfImage& image = *f.machine.stm32().image();
@@ -302,7 +304,7 @@ void measureMinimal(const std::string& elf) {
     say("minimal: stack used", top - at, "bytes", top - bottom);
 }
 
-// A loop of the firmware's: the checksum over the image at start-up.
+// Measures a loop of the firmware's: the checksum over the image at start-up.
 void measureSpeed(const std::string& elf) {
     using Clock = std::chrono::steady_clock;
     auto rate = [&](Stm32F2& stm32) {

@@ -17,7 +17,7 @@ extern "C" {
 namespace {
 
 constexpr double fabricHz = 100e6, wantedRate = 25e6; // accesses/s at the pins
-constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
+constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
 Figures figures("Speed of the FSMC bridge with the real driver, up to DDR3.");
 
@@ -49,8 +49,8 @@ double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
         value = static_cast<U16>(random.next());
     U32 repeated = 0;
     double least = 1;
-    // An access takes whole HCLK: the pins' limit is what the driver's timing leaves at this HCLK
-    // (docs/fsmc.md).
+    // Prints a row. An access takes whole HCLK: the limit of the pins is what the driver's timing
+    // leaves at this HCLK (docs/fsmc.md).
     auto show = [&](const char* what, double clocks, unsigned cycles, double wanted) {
         double rate = halfwords / clocks * fabricHz, limit = hclk * 1e6 / cycles;
         fmt::print("HCLK {:3} MHz  {:<40} {:6.2f} M/s {:6.1f} % {:4} HCLK {:6.2f} M/s {:6.1f} %",
@@ -78,8 +78,8 @@ double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
     return least;
 }
 
-// A picture of 320 x 240 bytes into DDR3 and back, as the firmware has it: with NWAIT, and as a
-// stream.
+// Copies a picture of 320 x 240 bytes into DDR3 and back, as the firmware has it: with NWAIT, and
+// as a stream.
 void frame(unsigned hclk, uint64_t seed, bool& right, uint32_t halfwords = 320 * 240 / 2) {
     Chip chip(hclk, seed);
     Random random(seed);
@@ -122,9 +122,9 @@ void single(unsigned hclk, uint64_t seed, int count) {
                    sum / count, least);
         figures.add(fmt::format("FSMC, HCLK {} MHz, {}", hclk, what), sum / count, "clocks", least);
     };
-    // At least: ADDSET 2, DATAST 4 and 1 HCLK of hold or turnaround; a read that waits ends 4 HCLK
-    // after NWAIT and is seen through two flip-flops (1 to 2 clocks, 1.5 on average), then a clock
-    // each for noting it, for the request and for what comes back.
+    // The least time: ADDSET 2, DATAST 4 and 1 HCLK of hold or turnaround; a read that waits ends 4
+    // HCLK after NWAIT and is seen through two flip-flops (1 to 2 clocks, 1.5 on average), then a
+    // clock each for noting it, for the request and for what comes back.
     double access = 7 * hclks, waits = (2 + 4 + 1) * hclks + 1.5;
     show("register word, 32 bits, write", 2 * access,
          [&] { master.write32(control + 4 * SYSTEM_SCRATCH, 1); });

@@ -46,7 +46,8 @@ void measure(Figures& figures) {
             heard = now;
     });
     soc.fsmc().onWord = [&](uint32_t address, uint32_t value, bool isWrite) {
-        constexpr uint32_t threshold = 0x64000000 + 64 * MAP_SLOT_VISION + 4 * VISION_THRESHOLD;
+        constexpr uint32_t threshold =
+            MAP_CONTROL_WINDOW + 64 * MAP_SLOT_VISION + 4 * VISION_THRESHOLD;
         if (isWrite && address == threshold && sent && value == static_cast<uint32_t>(sent) &&
             !written)
             written = soc.now();

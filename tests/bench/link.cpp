@@ -22,7 +22,8 @@ namespace {
 
 // The modem's own time for a packet, and the mean wait of RN 3 (docs/models.md); ms.
 constexpr double modemMs = 4.688, waitMs = 3.5 * 0.320;
-// One way: full packets through the modem, which is slower than its serial port at 111,111 baud.
+// The limit one way: full packets through the modem, which is slower than its serial port at
+// 111,111 baud.
 constexpr double mostBytesPerSecond = 100 / (modemMs + waitMs + 5.312) * 1000;
 
 // One end's link: counts what arrives, and may echo it in another size.

@@ -54,7 +54,7 @@ public:
     }
 
 private:
-    // A program after the other, until all have been.
+    // Runs one program after the other, until all have been served.
     void work() {
         for (unsigned program; (program = next_++) < programs_;) {
             int fd;

@@ -43,7 +43,7 @@ constexpr Mix mixes[] = {{"reads", 0, 0},
                          {"ports 0, 2 .. read, 1, 3 .. write", 0, 1},
                          {"each port reads and writes", 0.5, 0.5}};
 
-// Every port streams through its own part of the memory. Returns the worst share of the limit.
+// Streams on every port through its own part of the memory. Returns the worst share of the limit.
 template <class Module, class Kind, unsigned ports>
 double stream(const Mix& mix, unsigned size, uint64_t cycles, uint64_t seed) {
     using Bench = MemoryBench<Module, typename Kind::Backend, ports>;
@@ -111,7 +111,7 @@ template <class M2, class M4, class M8, class Kind> double streams(uint64_t cycl
     return worst;
 }
 
-// From the request to the first word popped, one port alone and with all others streaming.
+// Measures from the request to the first word popped, one port alone and with all others streaming.
 template <class Module, class Kind, unsigned ports> void latency(uint64_t cycles, uint64_t seed) {
     for (unsigned size = 0; size <= 5; ++size) {
         double mean[2], most[2];

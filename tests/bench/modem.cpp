@@ -108,7 +108,8 @@ int main(int argc, char** argv) {
                 if (figures.brief && (c.guardMs > 20 || c.bd != 7))
                     continue;
                 double ms = side.measure(c.guardMs, c.bd);
-                // Two guard times are in the modem's manual; above them are commands and search.
+                // The limit has the two guard times of the modem's manual; commands and search come
+                // on top.
                 double floor = 2.0 * c.guardMs;
                 std::string name = std::string(side.name) + ": " + c.name;
                 if (ms == 0)

@@ -96,7 +96,7 @@ private:
             world_.sleep(0.001);
         return since(begin, heard_.lastNs);
     }
-    // Two calls under way, so that the line does not rest between them.
+    // Two calls are under way, so that the line does not rest between them.
     double fetched(uint64_t begin) {
         std::deque<std::future<RadioTest::Bytes>> calls;
         for (int i = 0; i < messages; ++i) {

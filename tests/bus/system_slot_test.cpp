@@ -50,8 +50,8 @@ TEST_F(SystemSlot, EveryLineIsSummarisedAndDrivesTheOne) {
         uint64_t lines = bus_.read(SYSTEM_IRQ_LO) | uint64_t(bus_.read(SYSTEM_IRQ_HI)) << 32;
         EXPECT_EQ(lines, 1ull << slot);
     }
-    // A line that falls before software looks leaves nothing behind: a spurious interrupt shows no
-    // slot.
+    // A spurious interrupt shows no slot: a line that falls before software looks leaves nothing
+    // behind.
     top.slot_irq_i = 0;
     top.eval();
     EXPECT_FALSE(top.irq_o);
@@ -75,7 +75,7 @@ TEST_F(SystemSlot, TheFirstErrorIsKeptUntilItIsCleared) {
     EXPECT_EQ(bus_.read(SYSTEM_ERROR_ADDR), 0x3FFu) << "of memory";
 }
 
-// An error in the very clock in which the event is cleared is a new one: event and place agree.
+// An error in the clock in which the event is cleared is a new one: event and place agree.
 TEST_F(SystemSlot, AnErrorWhileItIsClearedIsANewOne) {
     error(0x001, false);
     VSystemSlot& top = bench_.top();

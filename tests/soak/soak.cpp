@@ -57,7 +57,7 @@ public:
     bool mayTalk() const { return cts_; }
 };
 
-// One end: modem, link, program. What it knows of its peer's messages it needs to check them only.
+// One end: modem, link and program. Its knowledge of the peer's messages serves only to check them.
 class End {
 public:
     End(uint32_t side, RfChannel& air, Random& random, Totals& totals)
@@ -151,7 +151,7 @@ private:
         ++totals_.received;
         return 0;
     }
-    // By the receiver: was this the next, or a later one, of mine, and is it whole?
+    // Checks a message for its receiver: it is the next or a later one of this end, and whole.
     void check(int channel, const Bytes& bytes) {
         uint32_t id = lastArrived_;
         do
@@ -192,7 +192,7 @@ public:
         ground_.setPeer(&uav_);
         uav_.setPeer(&ground_);
     }
-    // One simulated second of whatever happens.
+    // Passes one simulated second of whatever happens.
     void second() {
         weather();
         misfortune();

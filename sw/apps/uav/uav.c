@@ -22,7 +22,7 @@ static Autopilot_Vehicle vehicle;
 static OS_EVENT* report; /* a frame is done: tell the station */
 static U32 frames, corners;
 static U8 irqEnabled;
-static U32 busErrors, busErrorPlace; /* written by the interrupt only */
+static U32 busErrors; /* written by the interrupt only */
 
 Ice_Status Autopilot_Vehicle_isAlive(Autopilot_VehiclePtr self, Ice_Short sessionId,
                                      Ice_Bool* result, const Ice_Current* current) {
@@ -102,10 +102,6 @@ U32 UAV_busErrors(void) {
     return busErrors;
 }
 
-U32 UAV_busErrorPlace(void) {
-    return busErrorPlace;
-}
-
 void UAV_frameDone(U32 found) {
     ++frames;
     corners += found;
@@ -116,7 +112,7 @@ void UAV_irqHandler(void) {
     U32 lines[2];
     lines[0] = FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_LO);
     lines[1] = MAP_SLOT_COUNT > 32U ? FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_HI) : 0U;
-    if ((lines[0] >> MAP_SLOT_SYSTEM & 1U) && FSMC_checkError(&busErrorPlace) == FSMC_BUS_ERROR)
+    if ((lines[0] >> MAP_SLOT_SYSTEM & 1U) && FSMC_checkError(0) == FSMC_BUS_ERROR)
         ++busErrors;
     if (lines[0] >> MAP_SLOT_MODEM & 1U) {
         (void)Radio_interrupt();

@@ -27,13 +27,12 @@ extern U16 uav_guardMs;
  * tasks. */
 int UAV_start(const FSMC_Port* port, void* context);
 
-/* Accesses that no register answered, or whose core hung until the bridge gave up: how many, and
- * where the last one was (slot * 16 + word, bit 16 for a write). */
+/* Returns how many accesses no register answered, or whose core hung until the
+ * bridge gave up. */
 U32 UAV_busErrors(void);
-U32 UAV_busErrorPlace(void);
 
-/* Cores of ip/cores.list that are not in their slot, or in another version, or not served for want
- * of room. */
+/* Returns how many cores of ip/cores.list are not in their slot, or in another version, or not
+ * served for want of room. */
 U32 UAV_missingCores(void);
 
 /* Handles the FPGA's interrupt, a level; tells whether it is unmasked. */

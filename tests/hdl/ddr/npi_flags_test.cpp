@@ -13,7 +13,7 @@
 
 namespace {
 
-// Both back-ends: these sample a memory before the edge and drive it after.
+// These work on both back-ends: they sample a memory before the edge and drive it after.
 template <class Module> void sample(Module& top, McbModel& memory) {
     sampleMcb(top, memory);
 }

@@ -16,7 +16,7 @@ extern "C" {
 
 namespace {
 
-constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
+constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
 class Bridge : public ::testing::Test {
 protected:
@@ -27,7 +27,7 @@ protected:
         doorbell(); // its last write is posted
     }
     static uint32_t at(uint32_t word) { return control + 4 * word; }
-    // A register access, after which all writes have reached the memory.
+    // Waits by a register access, after which all writes have reached the memory.
     void doorbell() { b_.master.read32(at(0)); }
 
     BridgeBench<VFsmcBridge> b_{testSeed()};
@@ -217,7 +217,8 @@ TEST_F(Bridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x80), 0);
 }
 
-// A write that finds no room is let go like a read, with an error each; after the last place, lost.
+// Writes that find no room are let go like reads, with an error each; after the last place they are
+// lost.
 TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     b_.slave.clearWord = MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT; // as the system slot does it
     b_.lateMask = SYSTEM_EVENT_LATE_MASK;

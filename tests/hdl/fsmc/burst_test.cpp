@@ -11,6 +11,7 @@
 #include "pin_waves.h"
 extern "C" {
 #include "fsmc_bank.h"
+#include "map_regs.h"
 #include "system_regs.h"
 }
 #include <cstdlib>
@@ -21,7 +22,7 @@ extern "C" {
 
 namespace {
 
-constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
+constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
 // NE1: PSRAM, bursts both ways, FSMC_CLK = HCLK / (clkdiv + 1); NE2: mode 1, or multiplexed.
 template <class Bridge>
@@ -204,7 +205,7 @@ TEST(Burst, AReadBehindBurstsThatAreGivenUpGetsItsOwnData) {
     }
 }
 
-// 25 MHz of FSMC_CLK: a beat each, but for address, latency and pause of a burst.
+// At 25 MHz of FSMC_CLK a burst takes a clock a beat, besides its address, latency and pause.
 TEST(Burst, LongBurstsReachThePinLimit) {
     BridgeBench<VFsmcBridgeSync> b(testSeed(), 0, 100, 100);
     setUp(b, 3, 5, false);

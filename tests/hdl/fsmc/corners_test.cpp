@@ -18,9 +18,9 @@ extern "C" {
 
 namespace {
 
-constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
+constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
-// Each case in a bench of its own, with its name in every message.
+// Runs each case in a bench of its own, with its name in every message.
 template <class Case> void inEveryCorner(double stall, Case&& run) {
     for (unsigned corner = 0; corner < fsmcCornerCount; ++corner)
         for (unsigned hclk : {60u, 100u, 120u})
@@ -85,7 +85,7 @@ TEST(Corners, NoAccessIsLostWithTheDriversTiming) {
         });
 }
 
-// Where NOE falls behind the address phase a read's NWAIT comes later: DATAST 6.
+// NOE falls behind the address phase, and so a read's NWAIT comes later: DATAST 6.
 TEST(Corners, EveryModeWithTimeForNwait) {
     for (FSMC_Mode mode : {FSMC_MODE_A, FSMC_MODE_2, FSMC_MODE_B, FSMC_MODE_C, FSMC_MODE_D})
         inEveryCorner(0.9, [mode](BridgeBench<VFsmcBridge>& b, unsigned hclk) {

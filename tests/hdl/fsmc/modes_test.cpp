@@ -11,6 +11,7 @@
 #include "fsmc_fields.h"
 extern "C" {
 #include "fsmc_bank.h"
+#include "map_regs.h"
 #include "system_regs.h"
 }
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ using namespace fsmc;
 
 namespace {
 
-constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
+constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 constexpr uint32_t base = bcrEnable | bcrWidth16 | bcrWriteEnable | bcrAsyncWait;
 
 struct Mode {

@@ -114,7 +114,8 @@ TEST_F(ModemApi, ASpoiltFrameIsDroppedAndTheNextIsWhole) {
     EXPECT_EQ(take(), packet(30, 8));
 }
 
-// Without pauses, so that only a frame's own end brings the receiver back to the next.
+// Frames follow without pauses, so that only a frame's own end brings the receiver back to the
+// next.
 TEST_F(ModemApi, FramesOfOtherTypesAndTooLongOnesArePassedOver) {
     ready();
     Random random(testSeed());

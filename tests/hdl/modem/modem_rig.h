@@ -64,7 +64,7 @@ protected:
             memory_.setByte(txRing + 128 * buffer + static_cast<uint32_t>(i), packet[i]);
         bus_.write(MODEM_TX_PUT, static_cast<uint32_t>(packet.size()));
     }
-    // A packet as the link layer's: the first byte gives the length.
+    // Returns a packet like the link layer's: the first byte gives the length.
     static std::vector<uint8_t> frame(unsigned size, uint8_t tag) {
         std::vector<uint8_t> bytes(size, tag);
         bytes[0] = static_cast<uint8_t>(size - 5);
@@ -81,10 +81,11 @@ protected:
         return packet;
     }
 
-    // Without those of the set-up, which may have to search the rate.
+    // Returns the counted errors without the retries of the set-up, which may have to search the
+    // rate.
     uint32_t errors() { return bus_.read(MODEM_ERRORS) & ~MODEM_ERRORS_RETRIES_MASK; }
-    // Bytes from the modem's side to the clock, and such as the model would not send; it is silent
-    // then.
+    // Drive the line from the modem's side to the clock, also as the model would not, which is
+    // silent then.
     void level(bool high, unsigned clocks) {
         noise_ = !high;
         for (unsigned i = 0; i < clocks; ++i)

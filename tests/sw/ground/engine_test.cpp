@@ -170,7 +170,7 @@ TEST_F(EngineTest, TheUavMayCallWhenSomebodyListens) {
     close(fd);
 }
 
-// A modem that was given up once is no end: the same listener is called when it is back.
+// A modem that was given up once may return: the same listener is called then.
 TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     rig_.with([&] {
         rig_.echo = true;
@@ -200,7 +200,7 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     close(fd);
 }
 
-// Nobody connects: a listener alone has the modem tried again.
+// A listener alone has the modem tried again, though nobody connects.
 TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
     rig_.with([&] { rig_.ground->power(false, rig_.ns()); });
     auto engine = start();

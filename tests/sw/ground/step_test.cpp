@@ -50,7 +50,7 @@ protected:
             step.wait(status_->ns);
         }
     }
-    // Beside it a program that keeps step, until it returns.
+    // Runs a program that keeps step beside it, until it returns.
     void beside(const std::function<void(Clock&, SerialPort&)>& program) {
         std::atomic<bool> over{false};
         std::thread thread([&] {
@@ -85,7 +85,7 @@ TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
             ASSERT_EQ(clock.nowUs(), begin) << "time passed while the program worked";
             ASSERT_EQ(port.write(&i, 1), 1);
             pollfd fds[] = {{port.fd(), POLLIN, 0}};
-            // 90 us a byte and way, and the pty is looked at every 100 us.
+            // A byte takes 90 us each way, and the pty is looked at every 100 us.
             ASSERT_EQ(clock.wait(fds, 1, 1'000'000), 1);
             ASSERT_LE(clock.nowUs() - begin, 500u);
             uint8_t byte = 0;
@@ -98,7 +98,7 @@ TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
     });
 }
 
-// One follows the other between two looks at the pty: an engine that gave up and tries again.
+// An engine that gave up and tries again follows the other between two looks at the pty.
 TEST_F(Step, WhoKeepsStepNextIsHeardFromTheFirstByte) {
     beside([&](Clock& clock, SerialPort& port) {
         for (uint8_t i = 0; i < 240; ++i) {

@@ -22,10 +22,10 @@ extern const OsCase os_cases[];
 extern const unsigned os_caseCount;
 extern char os_said[512]; /* by the case that ran last */
 
-/* By the runner: an interrupt arrives now. */
+/* Makes an interrupt arrive now; implemented by the runner. */
 void Runner_interrupt(void);
-/* An interrupt that has become possible is served by the end of this (at once on a real processor).
- */
+/* Serves an interrupt that has become possible (a real processor does so at once); implemented by
+ * the runner. */
 void Runner_passTime(void);
 
 #endif

@@ -12,7 +12,8 @@
 void OsCase_begin(void); /* of a case: nothing is said, no stack is used */
 void OsCase_say(const char* word);
 void OsCase_sayNumber(unsigned value);
-/* On a stack of its own, with its priority as its number; OSTaskCreateExt's result. */
+/* Creates a task on a stack of its own, with its priority as its number. Returns OSTaskCreateExt's
+ * result. */
 INT8U OsCase_task(void (*body)(void*), INT8U priority);
 void OsCase_end(void);      /* of a task */
 OS_STK* OsCase_stack(void); /* the top of one that is free */

@@ -180,8 +180,8 @@ TEST_F(Radio, ASlotThatIsNoModemControllerIsReported) {
         real = realPort_;
         lying = *real;
         lying.read32 = [](void* c, U32 address) {
-            return address == 0x64000000U + 64U * MAP_SLOT_MODEM ? 0x12345678U
-                                                                 : real->read32(c, address);
+            return address == MAP_CONTROL_WINDOW + 64U * MAP_SLOT_MODEM ? 0x12345678U
+                                                                        : real->read32(c, address);
         };
         ASSERT_EQ(FSMC_init(&lying, &soc_), FSMC_OK);
         EXPECT_EQ(init(), RADIO_NO_DEVICE);

@@ -28,10 +28,10 @@ TEST(Follow, EachFrameOfTheSensorBecomesCorners) {
         fsmc.write32(0xA0000000 + 8 * bank, 0x00009091);
     }
     auto write = [&](uint32_t slot, uint32_t word, uint32_t value) {
-        fsmc.write32(0x64000000 + 64 * slot + 4 * word, value);
+        fsmc.write32(MAP_CONTROL_WINDOW + 64 * slot + 4 * word, value);
     };
     auto read = [&](uint32_t slot, uint32_t word) {
-        return fsmc.read32(0x64000000 + 64 * slot + 4 * word);
+        return fsmc.read32(MAP_CONTROL_WINDOW + 64 * slot + 4 * word);
     };
     write(MAP_SLOT_CAMERA, CAMERA_SIZE, height << 16 | width);
     write(MAP_SLOT_CAMERA, CAMERA_BASE, base);

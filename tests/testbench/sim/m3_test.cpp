@@ -74,7 +74,7 @@ struct Flight {
         calls.push_back([this](int id) { ground.ping(id, "nobody"); });
     }
     uint32_t scratch() {
-        return soc.fsmc().read32(0x64000000 + 64 * MAP_SLOT_SYSTEM + 4 * SYSTEM_SCRATCH);
+        return soc.fsmc().read32(MAP_CONTROL_WINDOW + 64 * MAP_SLOT_SYSTEM + 4 * SYSTEM_SCRATCH);
     }
 
     struct Packet {
@@ -174,7 +174,7 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
             if (f.step())
                 return true;
             EXPECT_EQ(busErrors(), 0u);
-            (void)f.soc.fsmc().read32(0x64000000 + 64 * 33 + 4 * 5);
+            (void)f.soc.fsmc().read32(MAP_CONTROL_WINDOW + 64 * 33 + 4 * 5);
             since = f.soc.cycles();
             phase = 1;
             return true;
@@ -207,7 +207,7 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
             if (m3->stm32().resets().software == 0 || reported() != BOOT_BUS_FAULT)
                 return true;
             EXPECT_EQ(m3->cpu().word(m3->stm32().image()->symbol("boot_record") + 20) & 0xFF000000,
-                      0x64000000u); // where
+                      MAP_CONTROL_WINDOW); // where
             since = f.soc.cycles();
             phase = 5;
             return true;
@@ -252,7 +252,7 @@ TEST(CortexM3Firmware, AHungMemoryIsReportedAndTheFlightGoesOn) {
             EXPECT_EQ(variable("busErrors"), 0u);
             f.soc.memory().hang(true);
             f.ground.ping(100, "hwengine1"); // its packet is to be read from the memory
-            (void)f.soc.fsmc().read16(0x60000000);
+            (void)f.soc.fsmc().read16(MAP_DDR_WINDOW);
             since = f.soc.cycles();
             phase = 1;
             return true;

@@ -11,7 +11,7 @@
 
 namespace {
 
-constexpr uint32_t ddr = 0x60000000, control = 0x64000000;
+constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
 class Soc : public ::testing::Test {
 protected:

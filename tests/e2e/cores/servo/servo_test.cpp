@@ -9,7 +9,7 @@ namespace {
 
 class Servo : public ::testing::Test {
 protected:
-    // How long a pin is high within one period of 2 ms.
+    // Returns how long a pin is high within one period of 2 ms.
     unsigned microsecondsHigh(unsigned channel) {
         unsigned clocks = 0;
         for (unsigned i = 0; i < 2 * coreClocksOfMs; ++i) {

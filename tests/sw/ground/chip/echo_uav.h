@@ -10,7 +10,7 @@
 
 /* The test's callbacks: what it allows and what it hears. The firmware's tasks call them. */
 typedef struct EchoUav_Port {
-    /* An operation with an id was executed here, with this data. */
+    /* Called when an operation with an id has been executed here, with this data. */
     void (*executed)(void* context, int id, const U8* data, int size);
     /* The next message to the ground: its id, its bytes written to `data`; returns their number, or
      * -1: none now. `isOneway`: as note(id), without bytes. */
@@ -23,7 +23,7 @@ typedef struct EchoUav_Port {
 
 #define ECHO_UAV_LONGEST 4000 /* bytes of a message to the ground */
 
-/* Before the first boot. */
+/* Sets the program up; to be called before the first boot. */
 void EchoUav_setPort(const EchoUav_Port* port, void* context);
 
 /* These do what UAV_start and its like do (uav.h). */

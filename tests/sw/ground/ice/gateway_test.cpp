@@ -42,7 +42,7 @@ public:
             stop();
         close(out_);
     }
-    // -1: it ended without one.
+    // Returns the port that the gateway says it has; -1: it ended without one.
     int port() {
         size_t at;
         while ((at = said_.find("port ")) == std::string::npos ||

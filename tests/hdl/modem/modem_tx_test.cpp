@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+//
+// modem_tx_test: packets to the modem, pin by pin.
+
+#include "modem_test.h"
+
+namespace {
+
+// Bytes that count up from `tag`, behind the length.
+std::vector<uint8_t> ramp(unsigned size, uint8_t tag) {
+    std::vector<uint8_t> bytes(size);
+    bytes[0] = static_cast<uint8_t>(size - 5);
+    for (unsigned i = 1; i < size; ++i)
+        bytes[i] = static_cast<uint8_t>(tag + i);
+    return bytes;
+}
+
+TEST_F(ModemTest, PacketsLeaveEachAsOneRfPacket) {
+    ready();
+    std::vector<size_t> sizes;
+    air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome outcome) {
+        EXPECT_EQ(outcome, RfChannel::Outcome::Delivered);
+        sizes.push_back(packet.bytes.size());
+    });
+    std::vector<uint8_t> expected;
+    const std::vector<unsigned> lengths = {1, 7, 8, 9, 100, 100, 64, 33, 5};
+    for (size_t i = 0; i < lengths.size(); ++i) {
+        std::vector<uint8_t> packet(lengths[i], static_cast<uint8_t>(i + 1));
+        put(static_cast<unsigned>(i), packet);
+        expected.insert(expected.end(), packet.begin(), packet.end());
+        runMs(16); // else the modem, busy on the air, may join two that wait in it
+    }
+    EXPECT_EQ(plain_.received, expected);
+    EXPECT_EQ(sizes, std::vector<size_t>(lengths.begin(), lengths.end()));
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_DONE_MASK);
+    EXPECT_EQ(bus_.read(MODEM_TX_STATE), 9u << 8 | 16u);
+}
+
+// A modem that encrypts sends a packet off at 95 bytes: no rest is needed after one of these.
+TEST_F(ModemTest, EncryptedPacketsOf95BytesFollowEachOther) {
+    power(quick());
+    bus_.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | 1u << MODEM_NET_ENCRYPT_LSB | 0x0C);
+    for (int word = 0; word < 4; ++word)
+        bus_.write(MODEM_KEY, 0);
+    configure();
+    takeEvents();
+    std::vector<size_t> sizes;
+    air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
+        sizes.push_back(packet.bytes.size());
+    });
+    for (unsigned i = 0; i < 10; ++i)
+        put(i, frame(95, static_cast<uint8_t>(i)));
+    double begin = static_cast<double>(now());
+    for (int tenths = 0; tenths < 2000 && (bus_.read(MODEM_TX_STATE) & 0xFF) != 16; ++tenths)
+        runMs(0.1);
+    EXPECT_LT((static_cast<double>(now()) - begin) / 1e6, 950 * 0.09 + 1)
+        << "ms; rests would be 3.6";
+    runMs(10);
+    EXPECT_EQ(sizes, std::vector<size_t>(10, 100)) << "with the cipher's five bytes";
+}
+
+TEST_F(ModemTest, ShortPacketsInARowAreNotJoined) {
+    ready();
+    std::vector<size_t> sizes;
+    air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
+        sizes.push_back(packet.bytes.size());
+    });
+    put(0, frame(40, 1));
+    put(1, frame(40, 2));
+    runMs(30);
+    EXPECT_EQ(sizes, (std::vector<size_t>{40, 40}));
+}
+
+// A word that memory gives for a packet that is no longer under way must not become a byte of the
+// one that is, even if it comes after the set-up.
+class ModemWithdrawnRead : public ModemTest {
+protected:
+    // CONTROL is written so many clocks after the read of the packet's second word has begun.
+    // If `hangs`, memory gives that word only when the packet is awaited (sentAgain).
+    void interrupt(unsigned buffer, unsigned clocks, uint32_t control, bool hangs = false) {
+        packet_ = ramp(20, static_cast<uint8_t>(16 * buffer));
+        uint32_t second = txRing + 128 * buffer + 8;
+        plain_.received.clear();
+        put(buffer, packet_);
+        bench_.waitFor(
+            [&] { return bench_.top().npi_addr_req_o && bench_.top().npi_addr_o == second; },
+            "the second word");
+        memory_.hold(hangs);
+        for (unsigned i = 0; i < clocks; ++i)
+            bench_.tick();
+        bus_.write(MODEM_CONTROL, control);
+    }
+    void setUp() {
+        bench_.waitFor([&] { return bench_.top().irq_o; }, "the end of the set-up", 1'000'000);
+        EXPECT_TRUE(takeEvents() & MODEM_EVENT_CONFIGURED_MASK);
+    }
+    // The bytes that had left, and the packet.
+    void sentAgain(const std::string& when) {
+        memory_.hold(false);
+        runMs(12);
+        size_t left = plain_.received.size() - packet_.size();
+        ASSERT_TRUE(left == 8 || left == 9) << plain_.received.size() << when;
+        std::vector<uint8_t> expected(packet_.begin(), packet_.begin() + static_cast<long>(left));
+        expected.insert(expected.end(), packet_.begin(), packet_.end());
+        EXPECT_EQ(plain_.received, expected) << when;
+        EXPECT_EQ(bus_.read(MODEM_TX_STATE) & MODEM_TX_STATE_FREE_MASK, 16u) << when;
+        EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_DONE_MASK) << when;
+    }
+    std::vector<uint8_t> packet_;
+};
+
+TEST_F(ModemWithdrawnRead, ASetUpAtAnyClockOfIt) {
+    ready();
+    memory_.setStall(0.8);
+    for (unsigned clocks = 0; clocks < 10; ++clocks) {
+        interrupt(clocks, clocks, MODEM_CONTROL_CONFIGURE_MASK);
+        setUp();
+        sentAgain(", clock " + std::to_string(clocks) + ", SEED " + std::to_string(testSeed()));
+    }
+}
+
+TEST_F(ModemWithdrawnRead, ItsWordComesAfterTheSetUp) {
+    ready();
+    interrupt(0, 0, MODEM_CONTROL_CONFIGURE_MASK, true);
+    setUp();
+    sentAgain("");
+}
+
+TEST_F(ModemWithdrawnRead, ItsWordComesAfterAResetForAnotherPacket) {
+    power(quick({{"BD", 7}})); // at once found after the reset
+    configure();
+    takeEvents();
+    interrupt(0, 0, MODEM_CONTROL_RESET_MODEM_MASK, true);
+    runMs(60);
+    configure();
+    takeEvents();
+    plain_.received.clear();
+    put(0, ramp(30, 100));
+    memory_.hold(false);
+    runMs(12);
+    EXPECT_EQ(plain_.received, ramp(30, 100));
+    EXPECT_EQ(bus_.read(MODEM_TX_STATE), 1u << 8 | 16u);
+}
+
+TEST_F(ModemRingsMeet, APutInTheClockInWhichAPacketHasBeenSent) {
+    readyAtOnce();
+    put(0, {1});
+    uint64_t begin = bench_.cycles();
+    bench_.waitFor([&] { return bench_.top().irq_o; }, "the end of a packet");
+    uint64_t lasts = bench_.cycles() - begin;
+    takeEvents();
+    std::vector<uint8_t> expected = {1};
+    for (unsigned i = 0; i < 16 * rounds; ++i) {
+        unsigned before = i % 16; // clocks
+        std::string when = std::to_string(before) + ", SEED " + std::to_string(testSeed());
+        unsigned buffer = expected.size() % 16, after = (buffer + 2) % 16;
+        level(true, random_.below(9));
+        for (unsigned packet = 0; packet < 2; ++packet) {
+            memory_.setByte(txRing + 128 * ((buffer + packet) % 16),
+                            static_cast<uint8_t>(expected.size()));
+            expected.push_back(static_cast<uint8_t>(expected.size()));
+        }
+        bus_.write(MODEM_TX_PUT, 1);
+        tickUntil(bench_.cycles() + lasts - before);
+        bus_.write(MODEM_TX_PUT, 1);
+        runMs(0.1); // the first has left
+        EXPECT_EQ(bus_.read(MODEM_TX_STATE), after << 8 | 15u) << when;
+        runMs(0.5);
+        EXPECT_EQ(bus_.read(MODEM_TX_STATE), after << 8 | 16u) << when;
+    }
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_DONE_MASK);
+    runMs(20);
+    EXPECT_EQ(plain_.received, expected) << "each once, in turn";
+}
+
+TEST_F(ModemTest, AModemThatIsFullHoldsTheControllerBack) {
+    ready();
+    air_.weather.delayNs = 200'000'000; // each packet keeps the modem busy
+    for (unsigned i = 0; i < 6; ++i)
+        put(i, frame(100, static_cast<uint8_t>(i)));
+    runMs(1500);
+    EXPECT_EQ(near_->counters().overflow, 0u);
+    EXPECT_EQ(plain_.received.size(), 600u);
+}
+
+} // namespace

@@ -30,7 +30,8 @@ struct Core {
     bool isPlaced = false;    // memory= says where
     std::string servantType, servantHeader;
     std::vector<Pin> pins;
-    bool hasClock = false; // the module has the parameter CLK_HZ
+    std::string constraints; // <folder>.ucf beside its description, or nothing
+    bool hasClock = false;   // the module has the parameter CLK_HZ
 };
 
 struct Chip {

@@ -126,6 +126,24 @@ std::string pinTableOf(const Chip& chip) {
     return s + "    {nullptr, 0, 0, false}};\n";
 }
 
+// The core's own constraints: @name@ is the instance, @port@ its pads, those of a bus as a list.
+static std::string ownConstraints(const Core& c) {
+    std::string s = c.constraints;
+    auto replace = [&s](const std::string& what, const std::string& with) {
+        for (size_t at = s.find(what); at != std::string::npos; at = s.find(what, at))
+            s.replace(at, what.size(), with);
+    };
+    replace("@name@", c.name);
+    for (const Pin& p : c.pins) {
+        std::string pads;
+        for (unsigned bit = 0; p.isPin() && bit < p.width; ++bit)
+            pads += fmt::format("{}core_pins_{}<{}>", bit ? "\" : \"" : "", p.isOut() ? 'o' : 'i',
+                                p.lsb + bit);
+        replace("@" + p.name + "@", pads);
+    }
+    return s;
+}
+
 std::string constraintsOf(const Chip& chip) {
     std::string s = "# Generated from ip/cores.list: do not edit. Pins of cores, for ngdbuild "
                     "(docs/ise.md).\n";
@@ -135,6 +153,8 @@ std::string constraintsOf(const Chip& chip) {
                 s += fmt::format("{}NET \"core_pins_{}<{}>\" LOC = \"{}\"; # {}.{}[{}]\n",
                                  p.places.empty() ? "# " : "", p.isOut() ? 'o' : 'i', p.lsb + bit,
                                  p.places.empty() ? "..." : p.places[bit], c.name, p.name, bit);
+    for (const Core& c : chip.cores)
+        s += ownConstraints(c);
     return s;
 }
 

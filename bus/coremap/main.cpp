@@ -7,6 +7,7 @@
 #include "core_list.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -49,16 +50,23 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     try {
         std::map<std::string, nlohmann::json> descriptions;
+        std::map<std::string, std::string> constraints;
         for (const std::string& c : cores) {
             size_t equals = c.find('=');
             if (equals == std::string::npos)
                 throw std::runtime_error("1: error: --core folder=file, not '" + c + "'");
-            descriptions[c.substr(0, equals)] = nlohmann::json::parse(read(c.substr(equals + 1)));
+            std::string folder = c.substr(0, equals), file = c.substr(equals + 1);
+            descriptions[folder] = nlohmann::json::parse(read(file));
+            auto own = std::filesystem::path(file).replace_filename(folder + ".ucf");
+            if (std::filesystem::exists(own))
+                constraints[folder] = read(own.string());
         }
         auto platform = nlohmann::ordered_json::parse(read(base));
         Chip chip = readCores(read(list), platform, descriptions);
-        for (Core& c : chip.cores)
+        for (Core& c : chip.cores) {
             c.hasClock = std::count(clocked.begin(), clocked.end(), c.folder) != 0;
+            c.constraints = constraints[c.folder];
+        }
         save(outputDir + "/map.regs.json", mapOf(chip, platform).dump(2) + "\n");
         save(outputDir + "/soc_cores.vh", verilogOf(chip));
         save(outputDir + "/soc_cores.c", instancesOf(chip));

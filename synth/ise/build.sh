@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: MIT
 #
 # build: from soc.edf to a bitstream with Xilinx ISE 14.7: XST for the wrapper, ngdbuild, map, par, trce, bitgen.
-# Usage: synth/ise/build.sh [--xst] [--part xc6slx16-2-csg324] soc.edf mig-folder output-folder [board.ucf]
+# Usage: synth/ise/build.sh [--xst] [--part xc6slx16-2-csg324] soc.edf mig-folder output-folder core_pins.ucf board.ucf
 #   soc.edf      from `make synth-edif`
-#   mig-folder   user_design of a MIG core called "mig": its rtl/*.v and par/*.ucf are used
+#   mig-folder   user_design of a MIG core called "mig": its rtl/*.v and par/mig.ucf are used
+#   *.ucf        build/main/gen/core_pins.ucf, and your board's (synth/ise/board.ucf is an example)
 #   --xst        XST synthesises soc as well, from the folder verilog beside soc.edf, given instead of it
 set -eu
 usage() {
-    sed -n 's/^# \{0,1\}//; 5,8p' "$0"
+    sed -n 's/^# \{0,1\}//; 5,9p' "$0"
     exit "$1"
 }
 part=xc6slx16-2-csg324 whole='' xst_includes=''
@@ -22,10 +23,10 @@ while [ $# -gt 0 ]; do
     esac
     shift
 done
-[ $# -ge 3 ] || usage 2 >&2
+[ $# -eq 5 ] || usage 2 >&2
 source=$(cd "$(dirname "$0")" && pwd)
-soc=$1 mig=$2 output=$3 board=${4:-}
-for needed in "$soc" "$mig" ${board:+"$board"}; do
+soc=$1 mig=$2 output=$3
+for needed in "$soc" "$mig/par/mig.ucf" "$4" "$5"; do
     [ -e "$needed" ] || { echo "build: $needed is not there" >&2 && exit 2; }
 done
 for program in xst ngdbuild map par trce bitgen; do
@@ -35,6 +36,7 @@ for program in xst ngdbuild map par trce bitgen; do
     }
 done
 mkdir -p "$output"
+"$source/merge_ucf.py" "$mig/par/mig.ucf" "$source/chip.ucf" "$4" "$5" >"$output/all.ucf"
 soc=$(cd "$(dirname "$soc")" && pwd)/$(basename "$soc") mig=$(cd "$mig" && pwd)
 cd "$output"
 : >chip.prj
@@ -57,8 +59,6 @@ run
 ${xst_includes:--sd $(dirname "$soc")}
 XST
 xst -ifn chip.xst -ofn chip.syr
-ucf=$source/chip.ucf
-cat "$ucf" "$mig"/par/*.ucf ${board:+"$board"} >all.ucf
 ngdbuild -p "$part" -sd "$(dirname "$soc")" -uc all.ucf chip.ngc chip.ngd
 map -w -p "$part" -ol high -o chip_map.ncd chip.ngd chip.pcf
 par -w -ol high chip_map.ncd chip.ncd chip.pcf

@@ -1,0 +1,189 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""constraints: finds what of the chip no constraint names.
+
+Usage: constraints.py NETLIST FOLDER-OF-merge_ucf FILE.ucf...
+
+NETLIST is Yosys' JSON of chip.v, flattened, with MIG's core as a cell. Every path from pad or clock to clock, to pad and to
+an asynchronous reset needs a PERIOD, an OFFSET, a FROM:TO, a MAXDELAY or a TIG; every pad but those of MIG a standard and a
+place. Then each such statement is taken away in turn: one without which nothing is missing is told, too. Exit status 1 if
+anything is told.
+"""
+
+import json
+import re
+import sys
+from fnmatch import fnmatchcase as matches
+from functools import lru_cache
+
+NETLIST, FOLDER, *FILES = sys.argv[1:]
+sys.path.insert(0, FOLDER)
+sys.dont_write_bytecode = True
+from merge_ucf import statements  # noqa: E402
+
+fnmatchcase = lru_cache(None)(matches)
+
+OF_MIG = "mcb3_"
+
+
+def pad_name(port, index, width):
+    return port if width == 1 else f"{port}<{index}>"
+
+
+def read_netlist():
+    """Pairs (start, end); a start or an end is ("pad", name), ("clock", names of the net), a start ("ram",
+    names of its clock), an end ("reset", the clock of what it resets)."""
+    module = json.load(open(NETLIST))["modules"]["chip"]
+    names, source, comb, sinks = {}, {}, {}, []
+    pads = []
+    for name, port in module["ports"].items():
+        for index, bit in enumerate(port["bits"]):
+            pad = pad_name(name, index, len(port["bits"]))
+            names.setdefault(bit, set()).add(pad)
+            if name.startswith(OF_MIG):
+                continue
+            pads.append(pad)
+            if port["direction"] == "output":
+                sinks.append((("pad", pad), bit))
+            else:
+                source[bit] = ("pad", pad)
+    for name, net in module["netnames"].items():
+        if len(net["bits"]) == 1:
+            names.setdefault(net["bits"][0], set()).add(name)
+    clock = lambda bit: ("clock", tuple(sorted(names.get(bit, ["?"]), key=len)[:4]))
+    for cell in module["cells"].values():
+        kind, nets, way = cell["type"], cell["connections"], cell["port_directions"]
+        ins = [p for p in nets if way[p] == "input"]
+        outs = [p for p in nets if way[p] != "input"]
+        if kind == "mig":
+            own = clock(nets["c3_clk0"][0])
+            for port in nets:
+                for bit in nets[port] if not port.startswith((OF_MIG, "c3_sys", "c3_clk")) and "_clk" not in port else []:
+                    if port in ins:
+                        sinks.append((own, bit))
+                    else:
+                        source[bit] = own
+        elif kind.startswith("$mem"):
+            own = clock((nets["WR_CLK"] or ["?"])[0])
+            for port in ("WR_ADDR", "WR_DATA", "WR_EN"):
+                sinks += [(own, bit) for bit in nets[port]]
+            for bit in nets["RD_DATA"]:
+                comb[bit] = list(nets["RD_ADDR"]) + ([("ram", own[1])] if nets["WR_CLK"] else [])
+        elif kind == "$tribuf" or "CLK" not in nets:
+            needs = [bit for p in ins for bit in nets[p]]
+            for p in outs:
+                for bit in nets[p]:
+                    if bit in source and source[bit][0] == "pad":  # a pad both ways
+                        sinks += [(source[bit], need) for need in needs]
+                    else:
+                        comb[bit] = needs
+        else:
+            own = clock(nets["CLK"][0])
+            for p in ins:
+                if p in ("ARST", "ALOAD", "SET", "CLR"):
+                    sinks += [(("reset", own), bit) for bit in nets[p]]
+                elif p != "CLK":
+                    sinks += [(own, bit) for bit in nets[p]]
+            for bit in nets["Q"]:
+                source[bit] = own
+    origins, visited = {}, set()  # of a net: starts
+
+    def known(bit):
+        if isinstance(bit, tuple):
+            return frozenset([bit])
+        if isinstance(bit, str) or (bit not in source and bit not in comb):
+            return frozenset()
+        return frozenset([source[bit]]) if bit in source else origins.get(bit)
+
+    for _, first in sinks:
+        stack = [first]
+        while stack:
+            bit = stack[-1]
+            if known(bit) is not None:
+                stack.pop()
+                continue
+            todo = [b for b in comb[bit] if known(b) is None and b not in visited] if bit not in visited else []
+            visited.add(bit)
+            if todo:
+                stack += todo
+            else:
+                origins[bit] = frozenset().union(*(known(b) or () for b in comb[bit]))
+                stack.pop()
+    pairs = {(start, end) for end, bit in sinks for start in known(bit)}
+    return pads, pairs
+
+
+def names_in(text):
+    return re.findall(r'"([^"]+)"', text)
+
+
+class Constraints:
+    def __init__(self, lines):
+        self.groups, self.paths, self.tig, self.nets, self.offsets, self.periods = {}, [], [], [], [], set()
+        for line in lines:
+            if found := re.match(r'NET "([^"]+)" TNM_NET = "([^"]+)"', line):
+                self.groups[found[2]] = ("clock", [found[1]])
+            elif found := re.match(r'NET "([^"]+)" TIG', line):
+                self.tig.append(found[1])
+            elif found := re.match(r'NET "([^"]+)" (.*)', line):
+                self.nets.append((found[1], found[2]))
+            elif found := re.match(r'TIMEGRP "([^"]+)" = PADS\((.*)\)', line):
+                self.groups[found[1]] = ("pad", names_in(found[2]))
+            elif found := re.match(r'TIMEGRP "([^"]+)" OFFSET = IN .* VALID .* BEFORE "([^"]+)"', line):
+                self.offsets.append((found[1], found[2]))
+            elif found := re.match(r'TIMESPEC "[^"]+" = PERIOD "([^"]+)"', line):
+                self.periods.add(found[1])
+            elif found := re.match(r'TIMESPEC "[^"]+" = FROM (\S+) TO (\S+) ', line):
+                self.paths.append((found[1].strip('"'), found[2].strip('"')))
+
+    def has(self, group, point):
+        if group in ("FFS", "RAMS"):
+            return point[0] == {"FFS": "clock", "RAMS": "ram"}[group]
+        kind, patterns = self.groups.get(group, ("none", []))
+        members = [point[1]] if point[0] == "pad" else point[1]
+        return (kind == "pad") == (point[0] == "pad") and any(fnmatchcase(m, p) for m in members for p in patterns)
+
+    def says(self, pad, word):
+        return any(fnmatchcase(pad, net) and re.search(rf"\b{word}\b", what) for net, what in self.nets)
+
+    def covers(self, start, end):
+        if start[0] == "pad" and any(fnmatchcase(start[1], net) for net in self.tig):
+            return True
+        if end[0] == "reset":
+            if start[0] == "pad":
+                return self.says(re.sub(r"<(\d+)>", r"_\1", start[1]) + "_IBUF", "MAXDELAY")
+            end = end[1]
+        if start[0] != "pad" and start[1] == end[1]:
+            return any(self.has(group, start) for group in self.periods)
+        if start[0] == "pad" and end[0] == "clock":
+            if any(self.has(group, start) and clock in end[1] for group, clock in self.offsets):
+                return True
+        return any(self.has(a, start) and self.has(b, end) for a, b in self.paths)
+
+    def missing(self, pads, pairs):
+        told = {f"{tell(start)} to {tell(end)}: no constraint" for start, end in pairs if not self.covers(start, end)}
+        for pad in pads:
+            told |= {f"pad {pad}: no {word}" for word in ("IOSTANDARD", "LOC")
+                     if not self.says(pad, word) and not (word == "LOC" and pad in unused)}
+        return told
+
+
+def tell(point):
+    if point[0] == "reset":
+        return f"asynchronous reset of {tell(point[1])}"
+    return f"pad {point[1]}" if point[0] == "pad" else f"{point[0]} {point[1][0]}"
+
+
+all_pads, all_pairs = read_netlist()
+unused = {pad for pad in all_pads if pad.startswith("core_pins") and
+          not any(("pad", pad) in pair for pair in all_pairs) and
+          not any(end[0] == "clock" and pad in end[1] or start[0] == "clock" and pad in start[1] for start, end in all_pairs)}
+lines = [line for path in FILES for _, line in statements(path)]
+bad = sorted(Constraints(lines).missing(all_pads, all_pairs))
+if not bad:
+    for index, line in enumerate(lines):
+        if re.match(r"TIMESPEC|TIMEGRP|.*(MAXDELAY|TNM_NET|TIG|IOSTANDARD|LOC)\b", line):
+            if not Constraints(lines[:index] + lines[index + 1:]).missing(all_pads, all_pairs):
+                bad.append(f"without '{line}' nothing is missing")
+print("\n".join(bad) if bad else f"{len(all_pairs)} kinds of paths, {len(all_pads)} pads")
+sys.exit(1 if bad or not all_pairs else 0)

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -112,26 +113,32 @@ public:
                                     x + w / 2, 0, y + 27);
             last = state;
         }
+        for (const auto& [style, path] : paths_)
+            svg_ += fmt::format("<path d='{}' class='{}'/>\n", path, style);
+        paths_.clear();
     }
     void text(double x, double y, const std::string& text, const char* style) {
         svg_ +=
             fmt::format("<text x='{}' y='{}' class='{}'>{}</text>\n", x, y, style, escape(text));
     }
-    void grid(double x, double top, double bottom) {
-        svg_ += fmt::format("<path d='M{0},{1} V{2}' class='grid'/>\n", x, top, bottom);
+    void grid(int lines, double top, double bottom) {
+        svg_ += "<path d='";
+        for (int i = 0; i < lines; ++i)
+            svg_ += fmt::format("M{},{} V{}", left_ + unit_ * i, top, bottom);
+        svg_ += "' class='grid'/>\n";
     }
     const std::string& svg() const { return svg_; }
 
 private:
-    void line(const std::string& path, const char* style = "line") {
-        svg_ += fmt::format("<path d='{}' class='{}'/>\n", path, style);
-    }
+    // A signal's lines of one style are one path.
+    void line(const std::string& path, const char* style = "line") { paths_[style] += path; }
     void plain(char last, char state, bool same, double x, double y, double w) {
         double to = y + level(state), from = same || !last || isClock(last) ? to : y + level(last);
         if (isBus(last) || last == 'x')
             from = to;
-        line(fmt::format("M{},{} L{},{} H{}", x, from, x + (from != to ? slope : 0), to, x + w),
-             state == 'u' || state == 'd' ? "weak" : "line");
+        std::string begin =
+            same ? "" : fmt::format("M{},{} L{},{}", x, from, x + (from != to ? slope : 0), to);
+        line(begin + fmt::format(" H{}", x + w), state == 'u' || state == 'd' ? "weak" : "line");
     }
     void clock(char c, double x, double y, double w) {
         bool rising = c == 'p' || c == 'P';
@@ -155,6 +162,7 @@ private:
 
     double unit_, left_;
     std::string svg_;
+    std::map<std::string, std::string> paths_; // of the signal under way, by style
 };
 
 std::string render(const Json& wave) {
@@ -176,8 +184,7 @@ std::string render(const Json& wave) {
     double width = names + unit * cycles + 12, height = bottom + (foot.empty() ? 8 : 26);
 
     Drawing drawing(unit, names);
-    for (int i = 0; i <= static_cast<int>(cycles); ++i)
-        drawing.grid(names + unit * i, top, bottom);
+    drawing.grid(static_cast<int>(cycles) + 1, top, bottom);
     double y = top;
     for (const Signal& s : signals) {
         drawing.text(6 + 12.0 * s.depth, y + mid + 5, s.name, s.heading ? "group" : "name");

@@ -126,17 +126,21 @@ bool Parser::isMain(std::string_view file) {
     return it->second;
 }
 
+// Reads strings up to `end`, with commas between.
+void Parser::metadataStrings(Metadata& found, std::string_view end) {
+    do {
+        if (!at(Token::Kind::String))
+            fail("a string of metadata");
+        found.emplace_back(token().text);
+        ++position_;
+    } while (accept(","));
+    expect(end);
+}
+
 Parser::Metadata Parser::metadata() {
     Metadata found;
-    while (accept("[")) {
-        do {
-            if (!at(Token::Kind::String))
-                fail("a string of metadata");
-            found.emplace_back(token().text);
-            ++position_;
-        } while (accept(","));
-        expect("]");
-    }
+    while (accept("["))
+        metadataStrings(found, "]");
     return found;
 }
 
@@ -163,13 +167,7 @@ void Parser::fileMetadata() {
     Location begin = token().at;
     ++position_;
     Metadata found;
-    do {
-        if (!at(Token::Kind::String))
-            fail("a string of metadata");
-        found.emplace_back(token().text);
-        ++position_;
-    } while (accept(","));
-    expect("]]");
+    metadataStrings(found, "]]");
     if (begun_.count(begin.file))
         error(begin, "metadata of the file must come before its first definition");
     for (const std::string& m : found) {

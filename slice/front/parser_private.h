@@ -53,6 +53,7 @@ private:
 
     // ---- files and metadata (parser.cpp)
     bool isMain(std::string_view file);
+    void metadataStrings(Metadata& found, std::string_view end);
     Metadata metadata();
     void fileMetadata();
     void suppressWarnings(const std::string& metadata, std::string_view file);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// ports: the ports of a generated wrapper, for both languages.
+// ports: the head and the ports of a generated wrapper, for both languages.
 
 #ifndef SLICE_HW_PORTS_H
 #define SLICE_HW_PORTS_H
 
+#include "c/writer.h"
 #include "hw/map.h"
 
 namespace hw {
@@ -17,6 +18,8 @@ struct Port {
 };
 
 std::vector<Port> wrapperPorts(const Block& b);
+// Writes the comment that a wrapper begins with; `mark` begins its lines.
+void wrapperHead(Writer& w, const Block& b, const std::string& base, const std::string& mark);
 
 } // namespace hw
 

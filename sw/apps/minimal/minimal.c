@@ -71,22 +71,13 @@ static U32 randomWord(void* context) {
     return state = state * 1664525U + 1013904223U + minimal_ticks;
 }
 
-static int onMessage(void* context, int channel, const U8* data, U32 size) {
-    (void)context;
-    return XBeeATEndpoint_onMessage(&endpoint, channel, data, size);
-}
-
-static void onChannel(void* context, int channel, int isOpen) {
-    (void)context;
-    XBeeATEndpoint_onChannel(&endpoint, channel, isOpen);
-}
-
-static void onState(void* context, Link_State state) {
-    (void)context;
-    XBeeATEndpoint_onState(&endpoint, state);
-}
-
-static const Link_Port linkPort = {Radio_transmit, randomWord, onMessage, onChannel, onState, 0, 0};
+static const Link_Port linkPort = {Radio_transmit,
+                                   randomWord,
+                                   XBeeATEndpoint_onMessage,
+                                   XBeeATEndpoint_onChannel,
+                                   XBeeATEndpoint_onState,
+                                   0,
+                                   0};
 
 /* ---- the servant: registers of the vision core, through the FSMC ---- */
 
@@ -138,7 +129,7 @@ int main(void) {
 
     if (FSMC_init(&board_fsmc, 0) != FSMC_OK || xbeeInit(&xbeeConf, &rings) != RADIO_OK)
         return 1;
-    Link_init(&radioLink, &linkPort, 0, BYTE_TIME_US16);
+    Link_init(&radioLink, &linkPort, &endpoint, BYTE_TIME_US16);
     Link_start(&radioLink, nowUs(0));
 
     Ice_initialize(&ic);

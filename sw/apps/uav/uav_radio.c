@@ -68,22 +68,13 @@ static U32 randomWord(void* context) {
     return randomState ^ randomState >> 15;
 }
 
-static int onMessage(void* context, int channel, const U8* data, U32 size) {
-    (void)context;
-    return XBeeATEndpoint_onMessage(&endpoint, channel, data, size);
-}
-
-static void onChannel(void* context, int channel, int isOpen) {
-    (void)context;
-    XBeeATEndpoint_onChannel(&endpoint, channel, isOpen);
-}
-
-static void onState(void* context, Link_State state) {
-    (void)context;
-    XBeeATEndpoint_onState(&endpoint, state);
-}
-
-static const Link_Port linkPort = {Radio_transmit, randomWord, onMessage, onChannel, onState, 0, 0};
+static const Link_Port linkPort = {Radio_transmit,
+                                   randomWord,
+                                   XBeeATEndpoint_onMessage,
+                                   XBeeATEndpoint_onChannel,
+                                   XBeeATEndpoint_onState,
+                                   0,
+                                   0};
 
 static void seedRandom(void) {
     U8 count[4];
@@ -104,7 +95,7 @@ void UAV_initRadio(void) {
     uav_radioWork = OSSemCreate(0);
     iceEvent = OSSemCreate(0);
     linkMutex = OSMutexCreate(PRIO_MUTEX, &error);
-    Link_init(&uav_link, &linkPort, 0, BYTE_TIME_US16);
+    Link_init(&uav_link, &linkPort, &endpoint, BYTE_TIME_US16);
 }
 
 void UAV_useRadio(Ice_CommunicatorPtr ic) {

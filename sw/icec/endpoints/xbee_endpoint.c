@@ -52,7 +52,8 @@ static int takeBack(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     return 1;
 }
 
-int XBeeATEndpoint_onMessage(XBeeATEndpoint* self, int channel, const U8* data, U32 size) {
+int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 size) {
+    XBeeATEndpoint* self = context;
     /* Opening and closing come before it in order, so nothing else may be waiting. */
     if (!self->buffer || self->events)
         return 1;
@@ -63,7 +64,8 @@ int XBeeATEndpoint_onMessage(XBeeATEndpoint* self, int channel, const U8* data, 
     return 0;
 }
 
-void XBeeATEndpoint_onChannel(XBeeATEndpoint* self, int channel, int isOpen) {
+void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
+    XBeeATEndpoint* self = context;
     if (channel == XBEE_OWN_CHANNEL && isOpen)
         return;
     if (channel == XBEE_OWN_CHANNEL)
@@ -74,7 +76,8 @@ void XBeeATEndpoint_onChannel(XBeeATEndpoint* self, int channel, int isOpen) {
         report(self, isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel);
 }
 
-void XBeeATEndpoint_onState(XBeeATEndpoint* self, Link_State state) {
+void XBeeATEndpoint_onState(void* context, Link_State state) {
+    XBeeATEndpoint* self = context;
     if (state != LINK_STATE_UP && self->ownOpen)
         XBeeATEndpoint_onChannel(self, XBEE_OWN_CHANNEL, 0);
 }

@@ -43,9 +43,9 @@ typedef struct XBeeATEndpoint {
 void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoint* self, Link* link,
                          U16 address, const XBeeATEndpoint_Port* port, void* context);
 
-/* Take what the link reports; to be called by its callbacks of these names, under the lock. */
-int XBeeATEndpoint_onMessage(XBeeATEndpoint* self, int channel, const U8* data, U32 size);
-void XBeeATEndpoint_onChannel(XBeeATEndpoint* self, int channel, int isOpen);
-void XBeeATEndpoint_onState(XBeeATEndpoint* self, Link_State state);
+/* Callbacks for Link_Port, to be called under the lock; `self` is the XBeeATEndpoint. */
+int XBeeATEndpoint_onMessage(void* self, int channel, const U8* data, U32 size);
+void XBeeATEndpoint_onChannel(void* self, int channel, int isOpen);
+void XBeeATEndpoint_onState(void* self, Link_State state);
 
 #endif

@@ -49,21 +49,6 @@ static U32 randomWord(void* context) {
     return state = state * 1664525U + nowUs(context);
 }
 
-static int onMessage(void* context, int channel, const U8* data, U32 size) {
-    (void)context;
-    return XBeeATEndpoint_onMessage(&endpoint, channel, data, size);
-}
-
-static void onChannel(void* context, int channel, int isOpen) {
-    (void)context;
-    XBeeATEndpoint_onChannel(&endpoint, channel, isOpen);
-}
-
-static void onState(void* context, Link_State state) {
-    (void)context;
-    XBeeATEndpoint_onState(&endpoint, state);
-}
-
 static Ice_Status dispatch(Ice_ObjectPtr self, const Ice_Current* current, Ice_InputStreamPtr is,
                            Ice_OutputStreamPtr os) {
     Ice_Int value = Ice_InputStream_readInt(is);
@@ -79,12 +64,18 @@ static Ice_Status dispatch(Ice_ObjectPtr self, const Ice_Current* current, Ice_I
 }
 
 void Stack_init(const Stack_World* w, void* context) {
-    static const Link_Port linkPort = {transmit, randomWord, onMessage, onChannel, onState, 0, 0};
+    static const Link_Port linkPort = {transmit,
+                                       randomWord,
+                                       XBeeATEndpoint_onMessage,
+                                       XBeeATEndpoint_onChannel,
+                                       XBeeATEndpoint_onState,
+                                       0,
+                                       0};
     static const char* const ids[] = {"::Ice::Object", 0};
     world = w;
     worldContext = context;
     served = lastNotified = 0;
-    Link_init(&radioLink, &linkPort, 0, 1440);
+    Link_init(&radioLink, &linkPort, &endpoint, 1440);
     Link_start(&radioLink, nowUs(0));
     Ice_initialize(&ic);
     XBeeATEndpoint_init(&ic, "xbee-at", &endpoint, &radioLink, 1, &endpointPort, 0);

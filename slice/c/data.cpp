@@ -38,6 +38,13 @@ void loop(Writer& w, const Declaration& d, void (*each)(Writer&, const std::vect
     }
 }
 
+// Fails a stream whose sequence has more elements than Slice allows.
+static void overBound(Writer& w, const Declaration& d, const std::string& stream) {
+    w.line(stream + "->failed = ICE_FAILED_BOUND;");
+    w.line(stream + "->bound = \"::Ice::MarshalException: over [\\\"c:max:" +
+           std::to_string(statedMaximum(d)) + "\\\"] of " + d.id() + "\";");
+}
+
 void writeFunction(Writer& w, const Declaration& d) {
     bool bytes = d.kind == DKind::Sequence && d.element.kind == Type::Kind::Byte;
     int maximum = statedMaximum(d);
@@ -48,7 +55,7 @@ void writeFunction(Writer& w, const Declaration& d) {
                     w.line("Ice_Int i;");
                 if (maximum) {
                     w.block("if (v->size > " + std::to_string(maximum) + ")", {}, [&] {
-                        w.line("os->failed = 1;");
+                        overBound(w, d, "os");
                         w.line("return;");
                     });
                 }
@@ -83,7 +90,7 @@ void readFunction(Writer& w, const Declaration& d) {
         if (maximum)
             w.block("if (v->size > " + std::to_string(maximum) + ")", {}, [&] {
                 w.line("v->size = 0;");
-                w.line("is->failed = 1;");
+                overBound(w, d, "is");
             });
         if (bytes && maximum) {
             w.line("bytes = Ice_InputStream_readBlob(is, v->size);");

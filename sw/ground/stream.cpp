@@ -15,6 +15,7 @@ namespace {
 constexpr size_t bufferBytes = 4096, headerBytes = 14;
 constexpr U32 never = 0xFFFFFFFFu;
 constexpr U32 heartbeatUs = 5000000; // below any sensible Ice.ACM.Timeout
+constexpr U32 signUs = 10000000;     // Ice 3.8 cuts a connection on which nothing comes for 60 s
 constexpr U32 leavingUs = 10000000;
 
 // Message types and offsets of IceP: "The Ice Protocol" in the manual of ZeroC Ice.
@@ -68,7 +69,7 @@ void Stream::close(State to) {
     state_ = to;
     out_.clear();
     in_.clear();
-    ended_ = isServer_ = greeted_ = false;
+    ended_ = isServer_ = greeted_ = owesSign_ = false;
     pending_ = 0;
 }
 
@@ -96,8 +97,13 @@ void Stream::read(U32 nowUs) {
     if (count > 0)
         out_.insert(out_.end(), bytes, bytes + count);
     ended_ = isOver(count);
-    if (out_.size() >= headerBytes && out_.size() >= messageSize()) // parts of one are no activity
-        activeAt_ = nowUs;
+    if (out_.size() >= headerBytes && out_.size() >= messageSize()) { // a part is no activity
+        if (!owesSign_)
+            owesSince_ = nowUs;
+        owesSign_ = true;
+        if (out_[typeAt] != validate)
+            activeAt_ = nowUs;
+    }
 }
 
 Stream::Next Stream::next(U32 longest) {
@@ -135,6 +141,7 @@ bool Stream::give(const U8* message, U32 size, U32 nowUs) {
         return false;
     in_.insert(in_.end(), message, message + size);
     heardAt_ = nowUs;
+    owesSign_ = false;
     if (size > typeAt && message[typeAt] == reply && pending_)
         --pending_;
     write(nowUs);
@@ -162,12 +169,18 @@ U32 Stream::beat(U32 nowUs) {
             return leavingUs - (nowUs - leftAt_);
         close();
     }
-    if (!is(State::Open) || !pending_)
+    if (!is(State::Open) || !(pending_ || owesSign_))
         return never;
-    if (nowUs - heardAt_ >= heartbeatUs && in_.empty())
+    const U32 since = nowUs - (pending_ ? heardAt_ : owesSince_);
+    const U32 limit = pending_ ? heartbeatUs : signUs;
+    if (since < limit)
+        return limit - since;
+    if (in_.empty()) {
+        const U32 activeAt = activeAt_;
         (void)give(heartbeat, headerBytes, nowUs);
-    U32 since = nowUs - heardAt_;
-    return since < heartbeatUs ? heartbeatUs - since : 100000u;
+        activeAt_ = activeAt;
+    }
+    return 100000u;
 }
 
 bool Stream::isIdle(U32 nowUs, U32 forUs) const {

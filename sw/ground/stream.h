@@ -66,7 +66,10 @@ public:
     bool give(const U8* message, U32 size, U32 nowUs);
     void write(U32 nowUs);
     // Sends a heartbeat if the program waits for an answer and has heard nothing for a while: as a
-    // server that runs long would send it, but without air. Ends a leaving that takes too long.
+    // server that runs long would send it, but without air. One also follows what a program has
+    // sent that waits for nothing, a heartbeat of its own too: Ice 3.8 cuts connections that are
+    // silent. Ice 3.7 is silent itself while idle, and hears none, so that it can close its idle
+    // connections. Ends a leaving that takes too long.
     // Returns when to come again, in microseconds.
     U32 beat(U32 nowUs);
     // True if the program waits for no answer, and for so long has neither sent a whole message nor
@@ -86,6 +89,8 @@ private:
     std::vector<U8> out_; // from the program: less than a message and a buffer
     std::vector<U8> in_;  // to the program, not yet written
     bool ended_ = false, isServer_ = false, greeted_ = false;
+    bool owesSign_ = false;         // the program has sent something since it heard something, ...
+    U32 owesSince_ = 0;             // ... then
     unsigned pending_ = 0;          // two-way requests of the program that are not answered yet
     U32 heardAt_ = 0;               // when it got its last message
     U32 activeAt_ = 0, leftAt_ = 0; // when it last sent or took something; when it began to leave

@@ -124,7 +124,7 @@ Ice_Int icec_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
 /* Reads what a failed reply says. */
 static void readFailure(Ice_InputStreamPtr is, Ice_Status status, Ice_Failure* failure) {
     if (status == ICE_MARSHAL && is->failed)
-        failure->unknown = Ice_String_from(Ice_Failed_text(is->failed));
+        failure->unknown = Ice_String_from(Ice_Failed_text(is->failed, is->bound));
     if (status > ICE_UNKNOWN_EXCEPTION || status <= ICE_USER_EXCEPTION)
         return;
     if (status > ICE_OPERATION_NOT_EXIST) {

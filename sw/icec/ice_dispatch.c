@@ -96,8 +96,10 @@ static Ice_Status runCounted(Ice_ObjectPtr servant, const Ice_Current* current,
     Ice_Status status;
     ic->decoding = is;
     status = Ice_Object_invoke(servant, current, is, os);
-    if (status == ICE_OK && is->failed)
+    if (is->failed && (status == ICE_OK || status == ICE_MARSHAL)) {
         os->failed = is->failed;
+        os->bound = is->bound;
+    }
     ic->decoding = outer;
     if (status == ICE_LATER || !icec_countPending(ic, current->connection, generation, -1))
         *answers = 0;

@@ -12,7 +12,8 @@
 /* Notes which limit was reached, or what else is wrong, for Ice_ObjectPrx_failure. */
 static Ice_Status fail(Ice_ObjectPrxPtr self, Ice_Status status, int why) {
     Ice_Call* call = &self->communicator->calls[self->call];
-    call->failure.unknown = Ice_String_from(Ice_Failed_text((Ice_Byte)why));
+    call->failure.unknown =
+        Ice_String_from(Ice_Failed_text((Ice_Byte)why, self->communicator->request.bound));
     return status;
 }
 
@@ -211,5 +212,5 @@ void Ice_ObjectPrx_failure(const Ice_ObjectPrx* self, Ice_Failure* failure) {
     else
         memset(failure, 0, sizeof *failure);
     if (self->call < 0 && self->status == ICE_LIMIT)
-        failure->unknown = Ice_String_from(Ice_Failed_text(ICE_FAILED_CALLS));
+        failure->unknown = Ice_String_from(Ice_Failed_text(ICE_FAILED_CALLS, 0));
 }

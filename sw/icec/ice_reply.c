@@ -20,7 +20,7 @@ Ice_Status icec_sendReply(Ice_CommunicatorPtr ic, int connection, Ice_OutputStre
     const char* reason;
     if (os->failed)
         status = ICE_MARSHAL;
-    reason = os->failed ? Ice_Failed_text(os->failed) : Ice_Status_text(status);
+    reason = os->failed ? Ice_Failed_text(os->failed, os->bound) : Ice_Status_text(status);
     /* A request that is gone took with it the names that this failure would repeat. */
     if (!target && status >= ICE_OBJECT_NOT_EXIST && status <= ICE_OPERATION_NOT_EXIST)
         status = ICE_UNKNOWN_EXCEPTION;

@@ -34,7 +34,7 @@ const char* Ice_Status_text(Ice_Status status) {
 #define OVER(macro) NAMED("::Ice::MarshalException", #macro, macro)
 #define LIMIT(macro) NAMED("::Ice::MemoryLimitException", #macro, macro)
 
-const char* Ice_Failed_text(Ice_Byte failed) {
+const char* Ice_Failed_text(Ice_Byte failed, const char* bound) {
     static const char* const texts[] = {
         "ok",
         "::Ice::MarshalException: malformed, or not of the type that is expected",
@@ -49,5 +49,7 @@ const char* Ice_Failed_text(Ice_Byte failed) {
         LIMIT(ICE_CALLS),
         LIMIT(ICE_CONNECTIONS),
         LIMIT(ICE_NESTING)};
+    if (failed == ICE_FAILED_BOUND)
+        return bound;
     return failed < sizeof texts / sizeof texts[0] ? texts[failed] : texts[1];
 }

@@ -53,11 +53,12 @@ typedef enum Ice_Failed {
     ICE_FAILED_ENDPOINT,
     ICE_FAILED_CALLS, /* of calls, not of streams: ICE_LIMIT */
     ICE_FAILED_CONNECTIONS,
-    ICE_FAILED_NESTING
+    ICE_FAILED_NESTING,
+    ICE_FAILED_BOUND /* of a type in Slice, ["c:max:N"]: the stream's `bound` says which */
 } Ice_Failed;
 
-/* Returns the reason in words: the limit, its macro and its value. */
-const char* Ice_Failed_text(Ice_Byte failed);
+/* Returns the reason in words: the limit, its macro and its value. `bound`: the stream's. */
+const char* Ice_Failed_text(Ice_Byte failed, const char* bound);
 
 typedef struct Ice_OutputStream {
     Ice_Byte* data;
@@ -67,6 +68,7 @@ typedef struct Ice_OutputStream {
     Ice_Byte
         sliced; /* user exceptions in the sliced format: a peer can skip slices it does not know */
     Ice_Byte sliceFlags;             /* of the slice under way */
+    const char* bound;               /* the reason in words, with ICE_FAILED_BOUND */
     struct Ice_OutputValues* values; /* classes; 0: none so far */
 } Ice_OutputStream, *Ice_OutputStreamPtr;
 
@@ -76,6 +78,7 @@ typedef struct Ice_InputStream {
     Ice_Byte minor;
     Ice_Byte failed;
     Ice_Byte sliceFlags;                   /* of the slice under way; 0: none */
+    const char* bound;                     /* the reason in words, with ICE_FAILED_BOUND */
     Ice_Int sliceEnd;                      /* 0: not known */
     U32* arena;                            /* for decoded sequences */
     Ice_Int arenaUsed, arenaSize;          /* in words of 4 bytes */

@@ -19,6 +19,8 @@ extern "C" {
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <map>
+#include <unordered_map>
 
 namespace {
 
@@ -218,6 +220,60 @@ void measureCalls(Flight& f, int calls) {
     say("platform's share of a call's round trip", 100 * aCall / hclk / aTrip, "%", 2);
 }
 
+// Where a call's cycles go, by function, without what its callees take; the table is printed.
+void profileCalls(Flight& f, int calls) {
+    struct Cost {
+        double cycles = 0;
+        unsigned entered = 0;
+    };
+    const ElfImage& image = *f.machine.stm32().image();
+    std::map<std::string, Cost> costs;
+    std::unordered_map<uint32_t, std::pair<Cost*, bool>> places; // and whether a function begins
+    auto spend = [&](double share) {
+        auto before = std::make_shared<double>(f.awake());
+        auto last = std::make_shared<Cost*>(nullptr);
+        f.cpu().listener.instruction = [&, share, before, last](uint32_t address) {
+            double now = f.awake();
+            if (*last)
+                (*last)->cycles += share * (now - *before);
+            *before = now;
+            auto [place, isNew] = places.try_emplace(address);
+            if (isNew) {
+                std::string name = image.functionAt(address);
+                name = name.substr(0, name.find('+'));
+                place->second = {&costs[name], image.has(name) && image.symbol(name) == address};
+            }
+            *last = place->second.first;
+            (*last)->entered += place->second.second && share > 0;
+        };
+    };
+    f.ground.replies.clear();
+    int sent = 0;
+    double began = f.seconds();
+    spend(1.0 / calls);
+    f.until(
+        [&] {
+            if (static_cast<int>(f.ground.replies.size()) == sent && sent < calls)
+                f.ground.call(++sent, "uav", "isAlive", 0, {7, 0});
+            return static_cast<int>(f.ground.replies.size()) == calls;
+        },
+        30, "the calls");
+    spend(-1.0 / calls); // what an idle link takes in that time does not count
+    f.wait(f.seconds() - began);
+    stopListening(f);
+    std::vector<std::pair<double, std::string>> sorted;
+    double all = 0;
+    for (const auto& [name, cost] : costs)
+        sorted.emplace_back(cost.cycles, name), all += cost.cycles;
+    std::sort(sorted.rbegin(), sorted.rend());
+    std::printf("\nA call, by function: cycles of its own, share, times entered (of %.0f cycles)\n",
+                all);
+    for (size_t i = 0; i < sorted.size() && i < 40; ++i)
+        std::printf("  %-36s %8.0f %6.1f %% %8.1f\n", sorted[i].second.c_str(), sorted[i].first,
+                    100 * sorted[i].first / all, 1.0 * costs[sorted[i].second].entered / calls);
+    std::printf("\n");
+}
+
 void measureStream(Flight& f) {
     // Floods the vehicle with one-way requests of 1 KB to nobody: link and IceC's dispatcher work,
     // no servant, no reply.
@@ -354,6 +410,7 @@ int main(int argc, char** argv) {
         Flight f(elf, hclk / (SocModel::clkHz * hclkPerClk));
         measureCalls(f, figures.brief ? 1 : 20);
         if (!figures.brief) {
+            profileCalls(f, 20);
             measureStream(f);
             measureSpeed(elf);
         }

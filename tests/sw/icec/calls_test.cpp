@@ -222,14 +222,21 @@ TEST_F(Calls, EveryLimitIsSaidWithItsNameAndValue) {
     Ice_ObjectPrx prx = here().proxy("thing:loop");
     Ice_Int out;
     servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-        if (str(current.operation) == "arena")
+        if (str(current.operation) == "arena") {
             (void)Ice_InputStream_allocate(is, 1000, 8);
-        else
+            return ICE_MARSHAL; // as generated code does
+        }
+        if (str(current.operation) == "bound") {
+            is->failed = ICE_FAILED_BOUND;
+            is->bound = "over a bound of Slice";
+        } else
             Ice_OutputStream_writeBlob(os, much, str(current.operation) == "reply" ? 2000 : 8190);
         return ICE_OK;
     };
     EXPECT_EQ(call(prx, "arena", 0, &out), ICE_UNKNOWN_LOCAL_EXCEPTION);
     EXPECT_EQ(reason(prx), "::Ice::MarshalException: over ICE_ARENA_BYTES (2048)");
+    EXPECT_EQ(call(prx, "bound", 0, &out), ICE_UNKNOWN_LOCAL_EXCEPTION);
+    EXPECT_EQ(reason(prx), "over a bound of Slice");
     EXPECT_EQ(call(prx, "message", 0, &out), ICE_UNKNOWN_LOCAL_EXCEPTION);
     EXPECT_EQ(reason(prx), "::Ice::MarshalException: over ICE_RESULT_MAX (8192)");
     EXPECT_EQ(call(prx, "reply", 0, &out), ICE_MARSHAL);
@@ -238,6 +245,10 @@ TEST_F(Calls, EveryLimitIsSaidWithItsNameAndValue) {
         "::Ice::MarshalException: over ICE_REPLY_MAX (1024): see Ice_ObjectPrx_setReplyBuffer");
     Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(&prx, "op", 0);
     Ice_InputStreamPtr is;
+    os->failed = ICE_FAILED_BOUND, os->bound = "another one";
+    EXPECT_EQ(Ice_ObjectPrx_end(&prx, Ice_ObjectPrx_invoke(&prx, &is)), ICE_MARSHAL);
+    EXPECT_EQ(reason(prx), "another one");
+    os = Ice_ObjectPrx_begin(&prx, "op", 0);
     Ice_OutputStream_writeBlob(os, much, sizeof much);
     EXPECT_EQ(Ice_ObjectPrx_end(&prx, Ice_ObjectPrx_invoke(&prx, &is)), ICE_MARSHAL);
     EXPECT_EQ(reason(prx), "::Ice::MarshalException: over ICE_REQUEST_MAX (8192)");

@@ -24,7 +24,7 @@ OWN = os.path.dirname(os.path.abspath(__file__))
 passed = 0
 failures = {}  # "File.py:line": text
 lock = threading.Lock()
-PATIENCE = 3
+PATIENCE = 3  # seconds
 
 
 def check(truth):
@@ -126,6 +126,7 @@ def designed(run):
 
 
 def main():
+    global PATIENCE
     parser = argparse.ArgumentParser()
     parser.add_argument("folder")
     parser.add_argument("suite")
@@ -139,6 +140,8 @@ def main():
     sys.meta_path.insert(0, Finder())
     sys.path.append(a.folder)
     import TestHelper
+    if not endpoint.startswith("tcp"):
+        PATIENCE = 60
     threading.Condition.wait = wait
 
     def createTestProperties(self, args=[], create=TestHelper.TestHelper.createTestProperties):

@@ -59,7 +59,8 @@ void Outer_Defaults_readFromInputStream(Outer_Defaults *v, Ice_InputStreamPtr is
 void Outer_Points_writeToOutputStream(const Outer_Points *v, Ice_OutputStreamPtr os) {
     Ice_Int i;
     if (v->size > 4) {
-        os->failed = 1;
+        os->failed = ICE_FAILED_BOUND;
+        os->bound = "::Ice::MarshalException: over [\"c:max:4\"] of ::Outer::Points";
         return;
     }
     Ice_OutputStream_writeSize(os, v->size);
@@ -72,7 +73,8 @@ void Outer_Points_readFromInputStream(Outer_Points *v, Ice_InputStreamPtr is) {
     v->size = Ice_InputStream_readSequence(is, 4);
     if (v->size > 4) {
         v->size = 0;
-        is->failed = 1;
+        is->failed = ICE_FAILED_BOUND;
+        is->bound = "::Ice::MarshalException: over [\"c:max:4\"] of ::Outer::Points";
     }
     for (i = 0; i < v->size; ++i)
         Outer_Point_readFromInputStream(&v->data[i], is);
@@ -80,7 +82,8 @@ void Outer_Points_readFromInputStream(Outer_Points *v, Ice_InputStreamPtr is) {
 
 void Outer_Key_writeToOutputStream(const Outer_Key *v, Ice_OutputStreamPtr os) {
     if (v->size > 16) {
-        os->failed = 1;
+        os->failed = ICE_FAILED_BOUND;
+        os->bound = "::Ice::MarshalException: over [\"c:max:16\"] of ::Outer::Key";
         return;
     }
     Ice_OutputStream_writeSize(os, v->size);
@@ -92,7 +95,8 @@ void Outer_Key_readFromInputStream(Outer_Key *v, Ice_InputStreamPtr is) {
     v->size = Ice_InputStream_readSequence(is, 1);
     if (v->size > 16) {
         v->size = 0;
-        is->failed = 1;
+        is->failed = ICE_FAILED_BOUND;
+        is->bound = "::Ice::MarshalException: over [\"c:max:16\"] of ::Outer::Key";
     }
     bytes = Ice_InputStream_readBlob(is, v->size);
     if (bytes)
@@ -161,7 +165,8 @@ Outer_Points *Outer_Shapes_find(const Outer_Shapes *v, Ice_String key) {
 void Outer_Weights_writeToOutputStream(const Outer_Weights *v, Ice_OutputStreamPtr os) {
     Ice_Int i;
     if (v->size > 3) {
-        os->failed = 1;
+        os->failed = ICE_FAILED_BOUND;
+        os->bound = "::Ice::MarshalException: over [\"c:max:3\"] of ::Outer::Weights";
         return;
     }
     Ice_OutputStream_writeSize(os, v->size);
@@ -176,7 +181,8 @@ void Outer_Weights_readFromInputStream(Outer_Weights *v, Ice_InputStreamPtr is) 
     v->size = Ice_InputStream_readSequence(is, 9);
     if (v->size > 3) {
         v->size = 0;
-        is->failed = 1;
+        is->failed = ICE_FAILED_BOUND;
+        is->bound = "::Ice::MarshalException: over [\"c:max:3\"] of ::Outer::Weights";
     }
     for (i = 0; i < v->size; ++i) {
         v->data[i].key = (Outer_Level)Ice_InputStream_readEnum(is, 16);

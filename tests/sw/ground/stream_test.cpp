@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+//
+// stream_test: signs of life for a program that cuts silent connections, in simulated time.
+
+#include "stream.h"
+#include "wire.h"
+#include <gtest/gtest.h>
+
+namespace {
+
+using XBeeAT::Stream;
+
+// What Ice 3.8 documents: a connection on which nothing comes for 60 s (Ice.Connection.IdleTimeout)
+// is cut; who has written nothing for half of it sends a heartbeat. Ice 3.7 never sends one
+// unasked.
+class Program {
+public:
+    Program() {
+        int pair[2];
+        if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, pair) != 0)
+            throw std::runtime_error("no sockets");
+        fd_ = pair[0];
+        stream.want(pair[1], "program");
+        stream.open(0);
+    }
+    ~Program() { close(fd_); }
+
+    void send(uint8_t type, U32 seconds) {
+        Bytes m = message(0, 14);
+        m[8] = type;
+        writeAll(fd_, m);
+        wroteAt_ = seconds;
+        stream.read(seconds * 1000000);
+        while (stream.next(8192) == Stream::Next::Message) {
+            ++onTheAir;
+            stream.taken(seconds * 1000000);
+        }
+    }
+    // The second passes. `isNew`: the program is of Ice 3.8.
+    void pass(U32 seconds, bool isNew) {
+        if (isNew && seconds - wroteAt_ >= 30)
+            send(3, seconds);
+        (void)stream.beat(seconds * 1000000);
+        uint8_t bytes[100];
+        ssize_t count = recv(fd_, bytes, sizeof bytes, 0);
+        heard += count > 0;
+        heardAt_ = count > 0 ? seconds : heardAt_;
+        silence = std::max(silence, seconds - heardAt_);
+    }
+
+    Stream stream;
+    unsigned onTheAir = 0, heard = 0;
+    U32 silence = 0; // the longest, in seconds
+
+private:
+    int fd_ = -1;
+    U32 wroteAt_ = 0, heardAt_ = 0;
+};
+
+TEST(Stream, AProgramThatCutsSilentConnectionsHearsSignsOfLifeWhileIdle) {
+    Program program;
+    for (U32 second = 1; second < 1200; ++second)
+        program.pass(second, true);
+    EXPECT_LT(program.silence, 45u);
+    EXPECT_EQ(program.onTheAir, 0u);
+}
+
+TEST(Stream, AndWhileItSendsAndNothingComesBack) {
+    Program program;
+    for (U32 second = 1; second < 1200; ++second) {
+        if (second % 7 == 0)
+            program.send(1, second); // a batch: nobody answers it
+        program.pass(second, true);
+    }
+    EXPECT_LT(program.silence, 45u);
+    EXPECT_EQ(program.onTheAir, 1199u / 7);
+}
+
+TEST(Stream, SignsOfLifeAreNoActivity) {
+    Program program;
+    program.send(1, 1);
+    for (U32 second = 2; second < 100; ++second)
+        program.pass(second, true);
+    EXPECT_TRUE(program.stream.isIdle(100000000, 98000000));
+    EXPECT_GT(program.heard, 1u);
+}
+
+// They would keep its own time-out (Ice.ACM) from closing the connection.
+TEST(Stream, AProgramOfTheOldKindIsLeftAloneWhileIdle) {
+    Program program;
+    program.send(1, 1);
+    for (U32 second = 2; second < 1200; ++second)
+        program.pass(second, false);
+    EXPECT_LE(program.heard, 1u);
+}
+
+} // namespace

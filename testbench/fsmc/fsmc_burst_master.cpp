@@ -5,6 +5,7 @@
 
 #include "fsmc_fields.h"
 #include "fsmc_master.h"
+#include "pin_delays.h"
 
 using namespace fsmc;
 
@@ -15,6 +16,7 @@ bool FsmcMaster::clockEdge(const Access& access, uint16_t& data) {
     passHclk(period - period / 2);
     data = pins_.dFromDesign;
     bool ready = pins_.nwaitN != bool(access.bank->bcr & bcrWaitHigh);
+    inTime_ = !delays_ || delays_->isSetUpForClock();
     pins_.clk = true;
     show();
     passHclk(period / 2);
@@ -67,6 +69,8 @@ std::vector<uint16_t> FsmcMaster::readBurst(uint32_t address, unsigned halfwords
     bool ready = false;
     for (unsigned edge = 1, waited = 0; values.size() < halfwords; ++edge) {
         bool next = clockEdge(access, data);
+        if (!inTime_)
+            throw FsmcError(access.name + ": data or NWAIT moves in the set-up time of FSMC_CLK");
         if (edge >= latency && ready)
             values.push_back(data), waited = 0;
         else if (++waited > waitLimit)
@@ -103,6 +107,8 @@ void FsmcMaster::writeBurst(uint32_t address, const std::vector<uint16_t>& value
         pins_.d = values[done];
         show();
         bool next = clockEdge(access, nothing);
+        if (!inTime_)
+            throw FsmcError(access.name + ": NWAIT moves in the set-up time of FSMC_CLK");
         if (edge >= latency && ready)
             ++done, waited = 0;
         else if (++waited > waitLimit)

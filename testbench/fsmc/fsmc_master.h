@@ -52,7 +52,7 @@ public:
     FsmcMaster(FsmcPins& pins, Design design, unsigned hclkPerUnit = 6, unsigned clkPerUnit = 5);
     ~FsmcMaster();
 
-    // Gives pins delays from now on (pin_delays.h), in asynchronous modes: `far` are the pins as
+    // Gives pins delays from now on (pin_delays.h): `far` are the pins as
     // the design has them, `pins` stay the processor's. `looksTwice` chooses between two readings
     // of RM0033's rule when NWAIT is looked at: once, four HCLK before the end of the data phase,
     // or again after it.
@@ -125,6 +125,7 @@ private:
     unsigned phase_ = 0;
     std::unique_ptr<PinDelays> delays_;
     bool looksTwice_ = false;
+    bool inTime_ = true; // data and NWAIT were set up at FSMC_CLK's last rising edge
     Bank banks_[4] = {{0x000030DB}, {0x000030D2}, {0x000030D2}, {0x000030D2}};
     // The access before, for the turnaround.
     bool lastWrite_ = false, lastHeld_ = false;

@@ -12,9 +12,13 @@ constexpr unsigned nwaitOut = 17, drivenOut = 16;
 
 } // namespace
 
-// Address to read data and NE to NWAIT are 10 ns through the chip at most, and 15 ns with the rest.
+// Sources: the tables of the two data sheets (STM32F2, "FSMC characteristics"; Spartan-6, DS162,
+// IOB and CLB switching) could not be had. The values of the pads are from memory, rounded to the
+// safe side, and not compared with them. Routing in the chip is what synth/ise/chip.ucf allows it;
+// boards are 2 cm to 8 cm. Address to read data and NE to NWAIT are 10 ns through the chip at most,
+// and 15 ns with the rest.
 const FsmcCorner fsmcCorners[] = {
-    {"no delay", none, none, none, none, none, none, none, none, none, 0, 0, 4000},
+    {"no delay", none, none, none, none, none, none, none, none, none, 0, 0, 4000, 6000},
     {"fast",
      none,
      none,
@@ -27,7 +31,8 @@ const FsmcCorner fsmcCorners[] = {
      {2500, 2500},
      1000,
      500,
-     4000},
+     4000,
+     6000},
     {"slow",
      {4000, 4000},
      {9000, 9000},
@@ -40,7 +45,8 @@ const FsmcCorner fsmcCorners[] = {
      {7000, 7000},
      1000,
      500,
-     4000},
+     4000,
+     6000},
     {"late strobes",
      none,
      none,
@@ -53,7 +59,8 @@ const FsmcCorner fsmcCorners[] = {
      {7000, 7000},
      1000,
      500,
-     4000},
+     4000,
+     6000},
     {"early strobes",
      {4000, 4000},
      {9000, 9000},
@@ -66,7 +73,8 @@ const FsmcCorner fsmcCorners[] = {
      {7000, 7000},
      1000,
      500,
-     4000},
+     4000,
+     6000},
     {"every pin its own",
      {0, 4000},
      {0, 9000},
@@ -79,7 +87,8 @@ const FsmcCorner fsmcCorners[] = {
      {2500, 7000},
      1000,
      500,
-     4000},
+     4000,
+     6000},
 };
 const unsigned fsmcCornerCount = sizeof fsmcCorners / sizeof *fsmcCorners;
 
@@ -93,7 +102,7 @@ PinDelays::PinDelays(FsmcPins& near, FsmcPins& far, FsmcMaster::Design design,
 uint64_t PinDelays::driven(const FsmcPins& p) {
     return (p.a & 0x1FFFFFFu) | uint64_t(p.d) << dataBit | uint64_t(p.nblN & 3) << laneBit |
            uint64_t(p.neN & 15) << selectBit | uint64_t(p.nweN) << nwe | uint64_t(p.noeN) << noe |
-           uint64_t(p.nadvN) << nadv | uint64_t(p.dOut) << drives;
+           uint64_t(p.nadvN) << nadv | uint64_t(p.dOut) << drives | uint64_t(p.clk) << burst;
 }
 
 void PinDelays::drive(FsmcPins& p, uint64_t levels) {
@@ -105,6 +114,7 @@ void PinDelays::drive(FsmcPins& p, uint64_t levels) {
     p.noeN = levels >> noe & 1;
     p.nadvN = levels >> nadv & 1;
     p.dOut = levels >> drives & 1;
+    p.clk = levels >> burst & 1;
 }
 
 int PinDelays::between(PinDelay delay) {
@@ -112,7 +122,7 @@ int PinDelays::between(PinDelay delay) {
 }
 
 int PinDelays::delayOf(unsigned pin) {
-    bool clock = pin == nwe || pin == nadv;
+    bool clock = pin == nwe || pin == nadv || pin == burst;
     PinDelay processor = pin < dataBit                    ? corner_.address
                          : pin < laneBit || pin == drives ? corner_.data
                          : pin < selectBit                ? corner_.lanes
@@ -131,7 +141,7 @@ void PinDelays::at(int64_t time, unsigned pin, bool level, bool toDesign) {
 
 void PinDelays::show() {
     uint64_t levels = driven(near_);
-    for (unsigned pin = 0; pin <= drives; ++pin)
+    for (unsigned pin = 0; pin <= burst; ++pin)
         if ((levels ^ sent_) >> pin & 1)
             at(now_ + delayOf(pin), pin, levels >> pin & 1, true);
     sent_ = levels;
@@ -140,14 +150,17 @@ void PinDelays::show() {
 
 // Lets a pin's change arrive at the design or at the processor.
 void PinDelays::arrive(unsigned pin, bool level) {
-    bool captures = (arrived_ >> selectBit & 3) != 3;
-    if (pin == nwe && level && captures) {
+    bool selected = (arrived_ >> selectBit & 3) != 3;
+    if (!selected)
+        inBurst_ = false;
+    if (level && selected && (pin == burst || (pin == nwe && !inBurst_))) {
+        inBurst_ = pin == burst;
         if (now_ - inputMoved_ < corner_.setup)
-            throw FsmcError("a pin moved in the set-up time of NWE's rising edge");
-        nweRose_ = now_;
-    } else if (pin < nwe && pin != drives) {
-        if (now_ - nweRose_ < corner_.hold)
-            throw FsmcError("a pin moved in the hold time of NWE's rising edge");
+            throw FsmcError("a pin moved in the set-up time of NWE's or FSMC_CLK's rising edge");
+        captured_ = now_;
+    } else if (pin < nwe || (inBurst_ && pin < drives)) {
+        if (now_ - captured_ < corner_.hold)
+            throw FsmcError("a pin moved in the hold time of NWE's or FSMC_CLK's rising edge");
         inputMoved_ = now_;
     }
     arrived_ = (arrived_ & ~(uint64_t(1) << pin)) | uint64_t(level) << pin;
@@ -193,8 +206,7 @@ void PinDelays::pass(unsigned hclks) {
         else
             near_.dFromDesign = static_cast<uint16_t>((near_.dFromDesign & ~(1u << c.pin)) |
                                                       unsigned(c.level) << c.pin);
-        if (c.pin != nwaitOut)
-            dataMoved_ = now_;
+        (c.pin == nwaitOut ? nwaitMoved_ : dataMoved_) = now_;
     }
     now_ = end;
 }

@@ -7,6 +7,7 @@
 #define PIN_DELAYS_H
 
 #include "fsmc_master.h"
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <random>
@@ -16,18 +17,18 @@ struct PinDelay {
     int least, most;
 };
 
-// A corner of delays: the STM32F2's pads (its data sheet's asynchronous tables, rounded to the safe
-// side: from HCLK's edge to the pin), the board, and Spartan-6's pads and routing up to the first
-// flip-flop or LUT, and from the last one. The chip's share is what synth/ise/chip.ucf demands of
-// it.
+// A corner of delays: the STM32F2's pads (from HCLK's edge to the pin), the board, and Spartan-6's
+// pads and routing up to the first flip-flop or LUT, and from the last one. The chip's share is
+// what synth/ise/chip.ucf demands of it.
 struct FsmcCorner {
     const char* name;
     PinDelay address, data, lanes, select, strobe; // processor
     PinDelay board;                                // each way
-    PinDelay padIn, clockIn;                       // clockIn: NWE and NADV, as clocks
+    PinDelay padIn, clockIn;                       // clockIn: NWE, NADV, FSMC_CLK, as clocks
     PinDelay padOut;                               // LUTs and pad
-    int setup, hold;                               // of the design's capture by NWE
+    int setup, hold;                               // of the design's capture by NWE, by FSMC_CLK
     int readSetup;                                 // of the FSMC, before HCLK's length
+    int burstSetup; // of the FSMC, before FSMC_CLK's rising edge: data and NWAIT
 };
 
 extern const FsmcCorner fsmcCorners[];
@@ -43,11 +44,24 @@ public:
     void show();
     // Lets time pass; runs the design's clock while it does.
     void pass(unsigned hclks);
-    // True if the data at the processor's pins has rested for its set-up time.
+    // True if the data at the processor's pins has rested for its set-up time: that of an
+    // asynchronous read, that of FSMC_CLK's rising edge.
     bool dataIsSetUp() const { return now_ - dataMoved_ >= corner_.readSetup + hclk_; }
+    bool isSetUpForClock() const {
+        return now_ - std::max(dataMoved_, nwaitMoved_) >= corner_.burstSetup;
+    }
 
 private:
-    enum { dataBit = 25, laneBit = 41, selectBit = 43, nwe = 47, noe = 48, nadv = 49, drives = 50 };
+    enum {
+        dataBit = 25,
+        laneBit = 41,
+        selectBit = 43,
+        nwe = 47,
+        noe = 48,
+        nadv = 49,
+        drives = 50,
+        burst = 51
+    };
     static uint64_t driven(const FsmcPins& pins);
     static void drive(FsmcPins& pins, uint64_t levels);
     int between(PinDelay delay);
@@ -64,9 +78,11 @@ private:
     FsmcMaster::Design design_;
     const FsmcCorner& corner_;
     std::mt19937_64 random_;
-    int64_t now_ = 0, nextEdge_, nweRose_ = -1000000, inputMoved_ = 0, dataMoved_ = 0;
+    int64_t now_ = 0, nextEdge_, captured_ = -1000000, inputMoved_ = 0, dataMoved_ = 0,
+            nwaitMoved_ = 0;
     int hclk_, clk_;
     uint64_t sent_, arrived_;
+    bool inBurst_ = false;      // FSMC_CLK has risen in this access
     uint32_t shown_ = 1u << 17; // the design's outputs as they are: data, its driver, NWAIT
     int64_t last_[64] = {}, lastOut_[18] = {};
     std::multimap<int64_t, Change> changes_;

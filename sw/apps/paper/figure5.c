@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
  * Figure 5 of the paper, upper half: the server on the UAV, as printed but for what is marked:
+ *
  *   [1] servants get `self`, so that two cores of a kind can be told apart, and `current`; they
- * return a status; Figure 3 calls the operation setParameterA [2] FSMC_write(...) filled in: word 1
- * of the vision core's slot is its threshold, word 0 starts it [3] xbeeInit is called by the radio
- * task (uav_radio.c, with the same xbeeConf), which also repeats it when the modem has lost its
- * settings [4] XBeeATEndpoint_init(&ic, "xbee-at"), with the link that it stands on, and that
- * link's task [5] Figure 3's Vehicle is served as well getResult, which the figure leaves out
- * ("[...]"), follows the same pattern.
+ *       return a status; Figure 3 calls the operation setParameterA
+ *   [2] FSMC_write(...) is filled in: word 1 of the vision core's slot is its threshold
+ *   [3] xbeeInit is called by the radio task (uav_radio.c, with the same xbeeConf), which also
+ *       repeats it when the modem has lost its settings
+ *   [4] XBeeATEndpoint_init(&ic, "xbee-at"), with the link that it stands on, and its task
+ *   [5] Figure 3's Vehicle is served as well
+ *
+ * getResult, which the figure leaves out ("[...]"), follows the same pattern.
  */
 #include "Figure3.h"
 #include "fsmc.h"

@@ -6,9 +6,12 @@
 // it should not.
 //
 // An input byte names the step (mod 8), the next its argument n:
-//   0,1 n bytes as they are    2,3 a frame of n bytes, checksum of the session added   4 the same,
-//   of the handshake    5 n ms pass    6 a message of n bytes is sent on channel n mod 4, opened if
-//   need be 7 n frames of the peer's come through
+//   0, 1  n bytes as they are
+//   2, 3  a frame of n bytes, checksum of the session added
+//   4     the same, of the handshake
+//   5     n ms pass
+//   6     a message of n bytes is sent on channel n mod 4, opened if need be
+//   7     n frames of the peer's come through
 
 #include <cstdint>
 #include <cstring>

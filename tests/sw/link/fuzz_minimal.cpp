@@ -5,10 +5,14 @@
 // crash, hang, or write where it should not, and no message may be of an impossible size.
 //
 // An input byte names the step (mod 8), the next its argument n:
-//   0 n bytes as they are   1, 2 a frame of n bytes, the session's epoch and checksum added   3 a
-//   data frame in order of n bytes, with flags and channel from the input   4 HELLO with nonce n
-//   5 n ms pass   6 a message of n (large n: many) bytes on channel n mod 4, opened if need be;
-//   every fourth closes it   7 the program takes messages (n even) or not
+//   0     n bytes as they are
+//   1, 2  a frame of n bytes, the session's epoch and checksum added
+//   3     a data frame in order of n bytes, with flags and channel from the input
+//   4     HELLO with nonce n
+//   5     n ms pass
+//   6     a message of n (large n: many) bytes on channel n mod 4, opened if need be; every fourth
+//         closes it
+//   7     the program takes messages (n even) or not
 
 #include <cstdint>
 #include <cstring>

@@ -94,7 +94,7 @@
             end
             if (back_valid_o && back == place)
                 assert (issued && is_read && back_port_o == kind[KIND-1:4]);
-            // What is offered stays until it is taken.
+            // An offered command or move stays until it is taken.
             if (!$past(rst_i)) begin
                 if ($past(cmd_valid_o) && !$past(cmd_ready_i))
                     assert (cmd_valid_o && $stable(cmd_read_o) && $stable(cmd_addr_o) &&

@@ -74,8 +74,8 @@ public:
         callback->connectors(list);
     }
     IceInternal::AcceptorPtr acceptor(const std::string&) const override {
-        // What listens here is reached at this side's own address: so it is published, and so a
-        // proxy to the peer on the same device is not taken for an object of this process.
+        // The acceptor publishes this side's own address, where it is reached; so a proxy to the
+        // peer on the same device is not taken for an object of this process.
         return new Acceptor(instance_, o_,
                             with([](EndpointOptions& o) { o.serial.target = o.serial.source; }));
     }

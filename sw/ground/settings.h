@@ -24,7 +24,7 @@ struct Settings {
     int downMs = 15000;   // without a link: set the modem up again, it may have been reset
     int idleMs = 0;       // so long silent, a program makes room for one that waits; 0: never
 
-    // Of sessions' numbers; a test may have its own.
+    // Returns a random number for sessions; a test may have its own source.
     std::function<unsigned()> random = [] { return std::random_device()(); };
 
     double characterUs() const { return 1e7 / (baud == 115200 ? 111111 : baud); }

@@ -14,7 +14,7 @@
 #include <map>
 #include <string>
 
-// What there is to GET.
+// The paths that can be got, with their content.
 class Pages {
 public:
     using Content = std::function<std::string()>; // empty: not there yet

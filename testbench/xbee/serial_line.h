@@ -13,7 +13,7 @@
 
 constexpr uint64_t never = ~uint64_t(0);
 
-// What the modem does with bytes.
+// The modem's side of a line: takes and gives bytes.
 class SerialClient {
 public:
     virtual void fromHost(uint8_t byte, uint64_t now) = 0;
@@ -183,7 +183,8 @@ public:
 
 private:
     bool speedFits() const;
-    // What an idle wire may have carried since it was looked at last: a byte at least.
+    // Returns the time (ns) in which an idle wire may have carried bytes unseen: a look's period
+    // and a byte.
     double lookBack() const { return 1e6 + 10 * bitNs_; }
     void readAhead(uint64_t now);
     size_t fetch(uint8_t* bytes, size_t room);

@@ -17,8 +17,9 @@ std::string strip(std::string text) {
     return begin == std::string::npos ? "" : text.substr(begin, end - begin + 1);
 }
 
-// What the test itself says last: GoogleTest's lines after the first "Failure", else the last line
-// of the log. Not what a runner adds: names, times and counts differ where causes do not.
+// Returns the test's own last words: GoogleTest's lines after the first "Failure", else the last
+// line of the log. Words of a runner are left out: names, times and counts differ where causes do
+// not.
 std::string reasonOf(const std::string& log) {
     static const std::regex runners(R"(^\[|^at clock cycle|tests? (ran|FAILED|PASSED)|)"
                                     R"(^\s*\d+ FAILED|note:|trace: |Running main)",
@@ -48,8 +49,8 @@ std::string bucketOf(const std::string& reason) {
     return std::regex_replace(std::regex_replace(reason, paths, ""), numbers, "#").substr(0, 160);
 }
 
-// What is looked at first: proofs, which name the property; then checks of sources; then tests of
-// one block, of the chip, of the firmware; whole missions last.
+// Ranks a test by when to look at its failure: first proofs, which name the property; then checks
+// of sources; then tests of one block, of the chip, of the firmware; whole missions last.
 int rankOf(const std::string& name, const std::vector<Test>& tests) {
     std::string text = name;
     for (const Test& test : tests)

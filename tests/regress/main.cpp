@@ -59,7 +59,7 @@ std::vector<Test> choose(const std::vector<Test>& all, const Selection& selectio
     return chosen;
 }
 
-// What a person who mistyped wants to see.
+// Lists the labels and folders there are, for a person who mistyped one.
 std::string known(const std::vector<Test>& all) {
     std::set<std::string> labels, places;
     for (const Test& test : all) {

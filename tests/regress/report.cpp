@@ -47,7 +47,8 @@ void shorten(json& missed) {
     missed.push_back(fmt::format("and {} more", more));
 }
 
-// What prove.sh says: "X: proven, 47 clauses with 33 flops", "X: 2 covers reached".
+// Collects the results of prove.sh from logs: "X: proven, 47 clauses with 33 flops", "X: 2 covers
+// reached".
 json proofsOf(const std::vector<Result>& results) {
     json rows = json::array();
     static const std::regex proven("proven[,]? *([^\n]*)"), bounded("bounded, ([0-9]+) clocks"),

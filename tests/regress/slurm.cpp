@@ -36,7 +36,7 @@ void writeJob(const std::string& path, const std::vector<Test>& tests, const Run
 
 volatile std::sig_atomic_t interrupted = 0;
 
-// What a task left, or nothing yet.
+// Reads the result that a task left. False: there is none yet.
 bool resultOf(const std::string& junit, Result& result) {
     if (!fs::exists(junit))
         return false;

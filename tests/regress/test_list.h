@@ -29,14 +29,14 @@ struct Selection {
 // All tests of a build folder; throws std::runtime_error when CTest cannot say.
 std::vector<Test> listTests(const std::string& build);
 
-// What the tests of each label or folder depend on besides their program: fills Test::print.
-// `source` is the root of the tree; only files that Git knows count.
+// Fills Test::print: a fingerprint of what the tests of each label or folder depend on besides
+// their program. `source` is the root of the tree; only files that Git knows count.
 void fingerprint(std::vector<Test>& tests, const std::string& source, const std::string& build);
 
 // True for a program that is not built, in the place of its cases.
 bool isUnbuilt(const Test& test);
 
-// What ninja must build for a test; "all" where that is not known.
+// Returns the targets that ninja must build for a test; "all" where they are not known.
 std::vector<std::string> targetsOf(const Test& test, const std::string& build);
 
 // The words that --block compares with: of the folder, and of the name up to the case.

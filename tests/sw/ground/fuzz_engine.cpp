@@ -72,7 +72,7 @@ private:
     Bytes in_;
 };
 
-// What one input lives in: the wire, the peer's link, programs, time.
+// The surroundings of one input: the wire, the peer's link, programs, time.
 class World {
 public:
     World(const uint8_t* data, size_t size) : at_(data), end_(data + size) {

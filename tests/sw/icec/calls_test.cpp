@@ -210,7 +210,7 @@ TEST_F(Calls, LargeRepliesNeedTheProxysOwnBuffer) {
     EXPECT_EQ(call(prx, "op", 0, &out), ICE_OK);
 }
 
-// What the failure of the last call says.
+// Returns the reason of the last call's failure.
 std::string reason(const Ice_ObjectPrx& prx) {
     Ice_Failure failure;
     Ice_ObjectPrx_failure(&prx, &failure);

@@ -26,7 +26,7 @@ struct Flight {
     size_t replies = 0;
 };
 
-// Of the flight, from reset on and from the first call on, so many are compared.
+// Returns how much of the flight is compared (ns), from reset on and from the first call on.
 uint64_t comparedNs() {
     const char* text = std::getenv("COMPARE_MS");
     return static_cast<uint64_t>(1e6 * (text ? std::atof(text) : 40));

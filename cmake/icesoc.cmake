@@ -177,8 +177,9 @@ function(icesoc_verilate name)
   if(COVERAGE)
     set(slow -O0)
   endif()
-  # Verilator's own makefile appends -Os; OPT_FAST is the way in (measured: twice the speed).
-  add_custom_command(OUTPUT ${lib}
+  # Verilator's own makefile appends -Os; OPT_FAST is the way in (measured: twice the speed). The headers are said to be
+  # made here, so that what includes them is compiled again in the same run of ninja, not in the next one.
+  add_custom_command(OUTPUT ${lib} BYPRODUCTS ${dir}/V${name}.h ${dir}/V${name}___024root.h
     COMMAND ${VERILATOR} ${flags} ${sources}
     COMMAND ${CMAKE_COMMAND} -E env CCACHE_DIR=$ENV{CCACHE_DIR}
             make -s -C ${dir} -f V${name}.mk V${name}__ALL.a

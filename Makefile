@@ -16,7 +16,7 @@ THRESHOLD ?= 24
 # Which tests: LABEL=rtl, NAME=regular-expression
 LABEL ?=
 NAME  ?=
-OUT   ?= build/run
+OUT   ?= $(if $(REPLAY),build/replay,build/run)
 # host: the firmware's host build; m3: its ARM binary on a model of the Cortex-M3
 CPU   ?= host
 # uav: the mission; minimal: the program of Table II, with CPU=m3
@@ -32,6 +32,10 @@ CLK_HZ ?= 100000000
 CAMERA ?=
 # PINS=file: drives the inputs of cores (docs/simulation.md)
 PINS ?=
+# Folder of a flight (its OUT) that make run and make gdb fly again, bit by bit; FROM=1.5 TO=1.6: its waveform, in s
+REPLAY ?=
+FROM  ?=
+TO    ?=
 # Folder of the real uC/OS-II: the firmware is built with it, too, and CPU=m3 flies it (docs/ucos2.md)
 UCOS2 ?=
 
@@ -47,7 +51,7 @@ help: ## this list
 	@echo
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 	@echo
-	@echo "Variables: IMAGE=file SIZE=320x240 THRESHOLD=24 LOSS=0.1 SEED=1 OUT=build/run CPU=host|m3 APP=uav|minimal LIVE=1 PORT=8080 CORES=ascon CAMERA=1 PINS=file CLK_HZ=2000000 (make run);"
+	@echo "Variables: IMAGE=file SIZE=320x240 THRESHOLD=24 LOSS=0.1 SEED=1 OUT=build/run CPU=host|m3 APP=uav|minimal LIVE=1 PORT=8080 CORES=ascon CAMERA=1 PINS=file CLK_HZ=2000000 REPLAY=build/run FROM=1.5 TO=1.6 (make run);"
 	@echo "           LABEL=rtl|vhdl|formal|lint|firmware|interop|e2e NAME=regexp SEED=1 (make test)"
 
 setup: ## install the Debian packages that make run needs and the machine lacks
@@ -69,7 +73,8 @@ quoted = '$(subst ','\'',$(1))'
 run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground station, pictures in build/run
 	@grep -q '^CLK_HZ:STRING=$(CLK_HZ)$$' $(BUILD)/CMakeCache.txt || cmake -S . -B $(BUILD) -DCLK_HZ='$(CLK_HZ)' >/dev/null
 	@$(NINJA) mission $(if $(filter minimal,$(APP)),firmware_minimal)
-	@testbench/sim/run.sh "$(BUILD)" --app $(call quoted,$(APP)) --image $(call quoted,$(IMAGE)) --size $(call quoted,$(SIZE)) \
+	@$(if $(REPLAY),exec testbench/sim/replay.sh "$(BUILD)" $(call quoted,$(REPLAY)) $(call quoted,$(OUT)) $(call quoted,$(FROM)) $(call quoted,$(TO));) \
+	testbench/sim/run.sh "$(BUILD)" --app $(call quoted,$(APP)) --image $(call quoted,$(IMAGE)) --size $(call quoted,$(SIZE)) \
 	    --threshold $(call quoted,$(THRESHOLD)) --loss $(call quoted,$(LOSS)) --seed $(call quoted,$(SEED)) --out $(call quoted,$(OUT)) \
 	    --cpu $(call quoted,$(CPU)) --port $(call quoted,$(PORT)) $(if $(LIVE),--live 1) $(if $(CORES),--cores $(call quoted,$(CORES))) \
 	    $(if $(CAMERA),--sensor 1) $(if $(PINS),--pins $(call quoted,$(PINS))) $(if $(UCOS2),--firmware "$(BUILD)/firmware/uav_ucos2.elf")
@@ -102,7 +107,8 @@ firmware: $(BUILD)/build.ninja ## the firmware for the STM32F2: ELF and map in b
 gdb: setup-tests $(BUILD)/build.ninja ## debug the firmware's ARM binary against the RTL with gdb-multiarch
 	@$(NINJA) mission
 	@mkdir -p "$(OUT)"
-	@testbench/sim/gdb.sh "$(BUILD)" --image $(call quoted,$(IMAGE)) --size $(call quoted,$(SIZE)) --seed $(call quoted,$(SEED)) --out $(call quoted,$(OUT))
+	@testbench/sim/gdb.sh "$(BUILD)" --out $(call quoted,$(OUT)) $(if $(REPLAY),--replay $(call quoted,$(REPLAY)),--cpu m3 --image $(call quoted,$(IMAGE)) \
+	    --size $(call quoted,$(SIZE)) --seed $(call quoted,$(SEED)))
 
 size: $(BUILD)/build.ninja ## bytes of each firmware layer on a Cortex-M3, beside the paper's
 	@$(NINJA) size

@@ -80,6 +80,11 @@ void CortexM3::onInstruction(uint32_t address) {
         }
         if (attention_)
             updateAttention();
+        if (instructions_ != boundaries_[1]) {
+            boundaries_[0] = boundaries_[1];
+            boundaries_[1] = instructions_;
+        }
+        stepped_ = stepped_ || (limit_ && instructions_ >= limit_);
         if (attention_ || stepped_) {
             uc_emu_stop(uc_);
             return;

@@ -74,6 +74,11 @@ public:
     // Runs until stop(), a breakpoint or an exception of the bus that is no CpuBus::Error.
     enum class Stop { Asked, Breakpoint, Stepped };
     Stop run(bool singleStep = false);
+    // Stops (Stop::Stepped), too, where `instructions()` has reached this; 0: nowhere. Within an IT
+    // block it cannot.
+    void setLimit(uint64_t instructions) { limit_ = instructions; }
+    // The last count of instructions before the present one at which the processor could stop.
+    uint64_t lastStop() const { return boundaries_[0]; }
     // Called by the bus or a listener: run() returns before the next instruction.
     void stop() { stopAsked_ = attention_ = true; }
     // Asks for a reset from outside (a watchdog), before the next instruction.
@@ -181,6 +186,7 @@ private:
     } synchronous_; // fault of the instruction under way
     std::exception_ptr failure_;
     uint64_t instructions_ = 0, sleeping_ = 0, waited_ = 0;
+    uint64_t limit_ = 0, boundaries_[2] = {0, 0};
     uint8_t watchedPriority_ = 0xFF;
     bool masked_ = false;
     uint64_t maskedSince_ = 0;

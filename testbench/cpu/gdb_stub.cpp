@@ -224,6 +224,7 @@ std::string GdbStub::answer(const Target& target, const std::string& packet) {
     case 'G':
         for (int r = 0; r <= CortexM3::Xpsr && rest.size() >= static_cast<size_t>(8 * r + 8); ++r)
             target.cpu.setReg(r, wordOf(rest.substr(static_cast<size_t>(8 * r))));
+        target.changed();
         return "OK";
     case 'p': {
         int r = registerOf(std::strtoul(rest.c_str(), nullptr, 16));
@@ -235,11 +236,13 @@ std::string GdbStub::answer(const Target& target, const std::string& packet) {
         if (r < 0 || *end != '=')
             return error;
         target.cpu.setReg(r, wordOf(end + 1));
+        target.changed();
         return "OK";
     }
     case 'm':
         return readMemory(target, rest);
     case 'M':
+        target.changed();
         return writeMemory(target, rest);
     case 'Z':
     case 'z':
@@ -248,6 +251,8 @@ std::string GdbStub::answer(const Target& target, const std::string& packet) {
         return resume(target, false);
     case 's':
         return resume(target, true);
+    case 'b':
+        return back(target, packet);
     case 'H':
         return "OK";
     case 'T':
@@ -269,7 +274,8 @@ std::string GdbStub::answer(const Target& target, const std::string& packet) {
 std::string GdbStub::query(const Target& target, const std::string& packet) {
     const std::string features = "qXfer:features:read:target.xml:", monitor = "qRcmd,";
     if (packet.rfind("qSupported", 0) == 0)
-        return "PacketSize=4000;qXfer:features:read+;QStartNoAckMode+";
+        return std::string("PacketSize=4000;qXfer:features:read+;QStartNoAckMode+") +
+               (target.back ? ";ReverseStep+;ReverseContinue+" : "");
     if (packet == "QStartNoAckMode") {
         noAcknowledgement_ = true;
         return "OK";
@@ -350,9 +356,20 @@ std::string GdbStub::breakpoint(const Target& target, const std::string& packet)
 
 std::string GdbStub::resume(const Target& target, bool singleStep) {
     CortexM3::Stop why = target.run(singleStep);
+    const std::string edge = target.edge();
+    if (!edge.empty())
+        return "T05replaylog:" + edge + ";";
     if (target.isOver()) {
         over_ = true;
         return "W00"; // the program has ended
     }
     return why == CortexM3::Stop::Asked ? "T02" : "T05"; // SIGINT, SIGTRAP
+}
+
+// "bs" and "bc": the run backwards.
+std::string GdbStub::back(const Target& target, const std::string& packet) {
+    if (!target.back || (packet != "bs" && packet != "bc"))
+        return "";
+    target.back(packet == "bs");
+    return "T05replaylog:begin;";
 }

@@ -22,6 +22,12 @@ public:
         std::function<void()> reset;
         std::function<bool()> isOver;
         std::function<std::string()> describe;
+        // Goes back, where that can be done: one stop, or to the last breakpoint. Returns where
+        // there is nothing before; else the process that goes on returns from `run`.
+        std::function<void(bool singleStep)> back;
+        // Where a run that can go back has ended: "begin" or "end" of what there is, or "".
+        std::function<std::string()> edge;
+        std::function<void()> changed; // the debugger has written registers or memory
     };
     // Listens on 127.0.0.1; port 0 is any free one. Throws std::system_error where it is taken.
     explicit GdbStub(uint16_t port);
@@ -53,6 +59,7 @@ private:
     std::string writeMemory(const Target& target, const std::string& arguments);
     std::string breakpoint(const Target& target, const std::string& packet);
     std::string resume(const Target& target, bool singleStep);
+    std::string back(const Target& target, const std::string& packet);
 
     int listener_ = -1, connection_ = -1;
     uint16_t port_ = 0;

@@ -5,6 +5,7 @@
 #include "flight.h"
 #include "app.h"
 #include "core_pins.h"
+#include "files.h"
 #include "map_regs.h"
 #include "mark_file.h"
 #include "sensor.h"
@@ -27,6 +28,7 @@ volatile sig_atomic_t Flight::stopSignal = 0;
 namespace {
 
 constexpr uint64_t clockStepNs = 100'000; // of the time that other programs read
+constexpr uint64_t digestNs = 100'000'000;
 
 Frame pictureFor(const Flight::Options& o) {
     int width = 0, height = 0;
@@ -58,6 +60,22 @@ void loadCamera(SocModel& soc, const Frame& frame) {
     std::memcpy(memory + UAV_FRAME, frame.pixels.data(), frame.pixels.size());
 }
 
+uint32_t bootsOf(const Flight::Options& o) {
+    return o.replayed ? o.replayed->head().at("boots").get<uint32_t>()
+                      : static_cast<uint32_t>(o.seed * 1000 + static_cast<uint64_t>(getpid()) * 77);
+}
+
+// The first line of the recording; nothing in a replay.
+std::unique_ptr<RecordedLine> record(const Flight::Options& o, SerialLine& line, uint32_t boots) {
+    if (o.replayed)
+        return nullptr;
+    nlohmann::json head = {{"flight", o.words}, {"boots", boots}, {"clkHz", SocModel::clkHz}};
+    for (const std::string& file : {o.pins, o.trace, o.cpu == "m3" ? o.firmware : ""})
+        if (!file.empty())
+            head["hashes"][std::filesystem::absolute(file)] = hexHash({readFile(file)});
+    return std::make_unique<RecordedLine>(line, o.out + "/flight.jsonl", head);
+}
+
 std::vector<uint8_t> keyBytes(const std::string& digits) {
     std::vector<uint8_t> key;
     for (size_t i = 0; i + 1 < digits.size(); i += 2)
@@ -69,7 +87,7 @@ std::vector<uint8_t> keyBytes(const std::string& digits) {
 void reportProcessor(M3Machine& machine) {
     CortexM3& cpu = machine.cpu();
     const Stm32F2::Resets& resets = machine.stm32().resets();
-    double cycles = static_cast<double>(cpu.cycles());
+    double cycles = std::max(1.0, static_cast<double>(cpu.cycles()));
     std::printf("icesoc-sim: Cortex-M3: %llu instructions; asleep %.1f %% of the time, %.2f %% in "
                 "bus accesses; "
                 "resets: %u software, %u watchdog\n",
@@ -85,9 +103,11 @@ void reportProcessor(M3Machine& machine) {
 } // namespace
 
 Flight::Flight(const Options& options)
-    : o_(options), frame_(pictureFor(o_)), status_(prepared(o_, frame_)), air_(o_.seed),
-      ground_(pty_, air_, modem("ground", o_.guard)), soc_(air_, modem("uav", o_.guard)),
-      step_(*status_, pty_, [this] { return isWanted(); }),
+    : o_(options), frame_(pictureFor(o_)), boots_(bootsOf(o_)), status_(prepared(o_, frame_)),
+      air_(o_.seed), recorded_(record(o_, pty_, boots_)),
+      ground_(recorded_ ? static_cast<SerialLine&>(*recorded_) : *o_.replayed, air_,
+              modem("ground", o_.guard)),
+      soc_(air_, modem("uav", o_.guard)), step_(*status_, pty_, [this] { return isWanted(); }),
       pace_(o_.speed == "real"  ? 1
             : o_.speed == "max" ? 0
                                 : std::stod(o_.speed)) {
@@ -122,14 +142,13 @@ void Flight::placePicture() {
         connectSensor(soc_, frame_);
     else
         loadCamera(soc_, frame_);
-    const uint32_t boots =
-        static_cast<uint32_t>(o_.seed * 1000 + static_cast<uint64_t>(getpid()) * 77);
-    std::memcpy(soc_.memory().data() + UAV_BOOTS, &boots, sizeof boots);
+    std::memcpy(soc_.memory().data() + UAV_BOOTS, &boots_, sizeof boots_);
 }
 
 void Flight::watchRegisters() {
     soc_.fsmc().onWord = [this](uint32_t address, uint32_t value, bool isWrite) {
         constexpr uint32_t control = MAP_CONTROL_WINDOW, bytes = 4096;
+        accesses_.add(soc_.cycles(), address, value, isWrite);
         if (address - control >= bytes)
             return;
         status_->registers[(address - control) / 4] = value;
@@ -164,13 +183,36 @@ void Flight::adviseOnClock() {
         << std::endl;
 }
 
+// Writes down how far the flight has come, or holds it against what was written.
+void Flight::mark(const char* what, const nlohmann::json& value) {
+    if (recorded_)
+        recorded_->note(soc_.now(), what, value);
+    else if (o_.gdb < 0) // who debugs may change what he looks at
+        o_.replayed->compare(soc_.now(), what, value);
+}
+
+// Keeps the recording, and evaluates each clock of the span that is looked at.
+void Flight::watch() {
+    if (soc_.now() >= nextDigest_) {
+        nextDigest_ += digestNs;
+        mark("digest", accesses_.text());
+    }
+    const double seconds = static_cast<double>(soc_.now()) / 1e9, pollSeconds = 1e-3;
+    const bool looks = seconds >= o_.from - pollSeconds && seconds <= o_.to;
+    if (looks != looks_)
+        soc_.evaluateAll(looks || o_.everyClock);
+    looks_ = looks;
+}
+
 // About once a simulated millisecond.
 bool Flight::poll() {
     adviseOnClock();
+    watch();
     status_->cycles = soc_.cycles();
     status_->wallNs = pace_.workedNs() - step_.waitedNs();
     pace_.keep(soc_.now());
     bool over = o_.duration > 0 && static_cast<double>(soc_.now()) >= o_.duration * 1e9;
+    over = over || (o_.replayed && soc_.now() >= o_.replayed->endNs());
     return !over && isWanted();
 }
 
@@ -192,7 +234,7 @@ void Flight::runOnCortexM3() {
         GdbStub stub(static_cast<uint16_t>(o_.gdb));
         std::cout << "icesoc-sim: waiting for a debugger: gdb-multiarch " << o_.firmware
                   << " -ex 'target remote localhost:" << stub.port() << "'" << std::endl;
-        machine.debug(stub);
+        machine.debug(stub, o_.replayed != nullptr);
     } else {
         machine.run();
     }
@@ -209,15 +251,26 @@ void Flight::report() {
                 100 * static_cast<double>(soc_.evaluated()) / static_cast<double>(soc_.cycles()),
                 static_cast<unsigned long long>(status_->packets),
                 static_cast<unsigned long long>(status_->lost));
+    if (o_.replayed && o_.gdb < 0 && !stopSignal)
+        std::puts(o_.replayed->isWhole()
+                      ? "icesoc-sim: bit by bit the flight that was recorded"
+                      : "icesoc-sim: the recording ends here, as its simulator did");
 }
 
 int Flight::run() {
     if (!o_.quiet)
         std::cout << "icesoc-sim: UAV is up, frame " << frame_.width << " x " << frame_.height
-                  << ", the ground's modem is " << pty_.path() << std::endl;
+                  << ", "
+                  << (recorded_ ? "the ground's modem is " + pty_.path() : "the flight is replayed")
+                  << std::endl;
     startProgram();
     runProcessor();
     child_.stop();
+    if (recorded_ || !stopSignal)
+        mark("end", {{"clocks", soc_.cycles()},
+                     {"packets", status_->packets},
+                     {"lost", status_->lost},
+                     {"accesses", accesses_.text()}});
     if (!o_.quiet)
         report();
     return stopSignal ? 128 + stopSignal : child_.status();

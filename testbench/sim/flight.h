@@ -11,9 +11,11 @@
 #include "ground_step.h"
 #include "m3_machine.h"
 #include "pace.h"
+#include "recording.h"
 #include "soc_model.h"
 #include "status_file.h"
 #include <csignal>
+#include <memory>
 
 class Flight {
 public:
@@ -24,22 +26,29 @@ public:
         uint32_t hclk = 120'000'000;
         uint16_t guard = 1000;
         int gdb = -1;
-        std::string marks, pins;
+        std::string marks, pins, trace; // files
         RfWeather weather;
         double duration = 0;
         uint64_t seed = 1;
         bool everyClock = false, quiet = false, sensor = false;
         std::vector<std::string> command;
+        std::vector<std::string> words; // of the command line, which the recording keeps
+        // What is flown again, if anything is; and the span of a waveform in s, each of whose
+        // clocks is evaluated.
+        std::shared_ptr<ReplayedLine> replayed;
+        double from = 0, to = 0;
     };
 
-    // Makes the folder and what the ground finds in it: the counters, before.png. Throws
-    // std::runtime_error, before it changes anything, where the options or the picture are wrong.
+    // Makes the folder and what the ground finds in it: the counters, before.png; and the
+    // recording, unless one is replayed. Throws std::runtime_error, before it changes anything,
+    // where the options or the picture are wrong.
     explicit Flight(const Options& options);
     Flight(const Flight&) = delete;
     Flight& operator=(const Flight&) = delete;
 
     // Flies until the program has ended, the time is over, or `stopSignal` is set. Returns the
-    // program's exit status, or that of a shell which the signal ends.
+    // program's exit status, or that of a shell which the signal ends. A replay throws
+    // std::runtime_error where it departs from the recording.
     int run();
 
     static volatile sig_atomic_t stopSignal;
@@ -53,20 +62,26 @@ private:
     void runOnCortexM3();
     bool isWanted();
     void adviseOnClock();
+    void mark(const char* what, const nlohmann::json& value);
+    void watch();
     bool poll();
     void report();
 
     const Options o_;
     const Frame frame_;
+    const uint32_t boots_; // the count of starts in memory; no two flights begin with the same
     StatusFile status_;
     RfChannel air_;
     PtyLine pty_;
+    std::unique_ptr<RecordedLine> recorded_; // none in a replay
     XBee ground_;
     SocModel soc_;
     Child child_;
     GroundStep step_;
     Pace pace_;
-    bool advised_ = false;
+    bool advised_ = false, looks_ = false;
+    AccessDigest accesses_;
+    uint64_t nextDigest_ = 0;
 };
 
 #endif

@@ -7,7 +7,7 @@ set -eu
 build=$1
 shift
 log=$(mktemp)
-"$build/testbench/sim/icesoc-sim" --cpu m3 --gdb 0 --speed max "$@" >"$log" 2>&1 &
+"$build/testbench/sim/icesoc-sim" --gdb 0 --speed max "$@" >"$log" 2>&1 &
 pid=$!
 trap 'kill $pid 2>/dev/null || true; rm -f "$log"' EXIT
 while ! grep -q 'target remote' "$log"; do

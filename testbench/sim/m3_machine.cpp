@@ -4,6 +4,7 @@
 // pins.
 
 #include "m3_machine.h"
+#include <algorithm>
 #include <cstdio>
 
 namespace {
@@ -36,7 +37,8 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
         if (guardAt)
             cpu().writeMemory(guardAt, &guardMs, sizeof guardMs);
         over_ = !poll_();
-        if (over_ || (stub_ && stub_->wantsStop()))
+        isAsked_ = isAsked_ || (stub_ && stub_->wantsStop());
+        if (over_ || isAsked_ || (checkpoints_ && soc_.now() >= nextCopyNs_))
             cpu().stop();
     });
     soc_.onIrq([this](bool high) { stm32_.setPinB(0, high); });
@@ -59,10 +61,13 @@ void M3Machine::run() {
         stm32_.run();
 }
 
-void M3Machine::debug(GdbStub& stub) {
-    powerOn();
+// ---- under a debugger ----
+
+GdbStub::Target M3Machine::target() {
     GdbStub::Target target{
-        cpu(), [this](bool step) { return stm32_.run(step); }, [this] { stm32_.powerOn(); },
+        cpu(),
+        [this](bool step) { return resume(step); },
+        [this] { stm32_.powerOn(); },
         [this] { return over_; },
         [this] {
             char text[160];
@@ -72,12 +77,97 @@ void M3Machine::debug(GdbStub& stub) {
                           static_cast<unsigned long long>(cpu().instructions()),
                           static_cast<unsigned long long>(cpu().cycles()));
             return text + (cpu().lastFault.empty() ? std::string("none") : cpu().lastFault) + "\n";
+        },
+        nullptr,
+        [this] {
+            return !checkpoints_ ? "" : over_ ? "end" : isAtBegin_ ? "begin" : "";
+        },
+        [this] {
+            if (checkpoints_)
+                checkpoints_->forgetBehind(cpu().instructions());
         }};
+    if (checkpoints_)
+        target.back = [this](bool step) { goBack(step); };
+    return target;
+}
+
+void M3Machine::debug(GdbStub& stub, bool canGoBack) {
+    powerOn();
     stub_ = &stub;
     // Between two debuggers the program runs.
     auto mayWait = [&] { return poll_() && (!stub.hasServed() || stub.wantsStop()); };
-    while (!over_ && stub.serve(target, mayWait))
+    do {
+        checkpoints_ = canGoBack ? std::make_unique<Checkpoints>() : nullptr;
+        nextCopyNs_ = soc_.now();
+        const bool goesOn = stub.serve(target(), mayWait);
+        checkpoints_ = nullptr;
+        if (!goesOn)
+            break;
         while (!over_ && !stub.wantsStop())
             stm32_.run();
+    } while (!over_);
     stub_ = nullptr;
+}
+
+// Runs as the debugger says, and leaves copies behind: each 50 ms, later each sixteenth of the
+// time.
+CortexM3::Stop M3Machine::resume(bool singleStep) {
+    constexpr uint64_t copyNs = 50'000'000;
+    isAtBegin_ = isAsked_ = false;
+    for (;;) {
+        if (checkpoints_ && soc_.now() >= nextCopyNs_) {
+            nextCopyNs_ = soc_.now() + std::max(copyNs, soc_.now() / 16);
+            const uint64_t from = cpu().instructions();
+            if (auto order = checkpoints_->freeze(from))
+                return follow(*order, from);
+        }
+        const CortexM3::Stop why = stm32_.run(singleStep);
+        if (why != CortexM3::Stop::Asked || over_ || isAsked_)
+            return why;
+    }
+}
+
+// Goes back to the last place before this one where the processor can stop, or to the last
+// breakpoint: a copy looks for it, and a second one goes there. Returns if there is nothing before.
+void M3Machine::goBack(bool singleStep) {
+    const uint64_t here = cpu().instructions();
+    if (checkpoints_->isFirst(here))
+        return;
+    using Order = Checkpoints::Order;
+    checkpoints_->wake(
+        here - 1, {singleStep ? Order::LastStop : Order::LastBreakpoint, here, cpu().breakpoints});
+}
+
+// Runs to this count of instructions. False: a breakpoint came first.
+bool M3Machine::runTo(uint64_t instructions) {
+    CortexM3::Stop why = CortexM3::Stop::Asked;
+    cpu().setLimit(instructions);
+    while (why == CortexM3::Stop::Asked && cpu().instructions() < instructions && !over_)
+        why = stm32_.run();
+    cpu().setLimit(0);
+    return why != CortexM3::Stop::Breakpoint;
+}
+
+// Does what this copy, which stands at `from`, was woken for.
+CortexM3::Stop M3Machine::follow(const Checkpoints::Order& order, uint64_t from) {
+    using Order = Checkpoints::Order;
+    cpu().breakpoints.clear();
+    if (order.goal == Order::LastBreakpoint) {
+        cpu().breakpoints = order.breakpoints;
+        uint64_t found = 0;
+        if (order.breakpoints.count(cpu().reg(CortexM3::Pc)))
+            found = from;
+        while (!runTo(order.place))
+            if (cpu().instructions() < order.place)
+                found = cpu().instructions();
+        if (!found && !checkpoints_->isFirst(from))
+            checkpoints_->wake(from - 1, {Order::LastBreakpoint, from, order.breakpoints});
+        checkpoints_->wake(std::max(found, from), {Order::Stop, found, order.breakpoints});
+    }
+    runTo(order.place);
+    if (order.goal == Order::LastStop)
+        checkpoints_->wake(from, {Order::Stop, cpu().lastStop(), order.breakpoints});
+    cpu().breakpoints = order.breakpoints;
+    isAtBegin_ = order.place == 0;
+    return CortexM3::Stop::Stepped;
 }

@@ -6,9 +6,11 @@
 #ifndef M3_MACHINE_H
 #define M3_MACHINE_H
 
+#include "checkpoints.h"
 #include "gdb_stub.h"
 #include "soc_model.h"
 #include "stm32f2.h"
+#include <memory>
 
 class M3Machine {
 public:
@@ -32,14 +34,20 @@ public:
     void run();
 
     // Runs as a debugger commands. It begins when one connects, goes on freely when it detaches,
-    // and obeys the next one.
-    void debug(GdbStub& stub);
+    // and obeys the next one. `canGoBack`: nothing outside of this process takes part, so that the
+    // debugger may run it backwards; and at the end it still can.
+    void debug(GdbStub& stub, bool canGoBack);
 
     Stm32F2& stm32() { return stm32_; }
     CortexM3& cpu() { return stm32_.cpu(); }
 
 private:
     void powerOn();
+    GdbStub::Target target();
+    CortexM3::Stop resume(bool singleStep);
+    CortexM3::Stop follow(const Checkpoints::Order& order, uint64_t from);
+    bool runTo(uint64_t instructions);
+    void goBack(bool singleStep);
 
     SocModel& soc_;
     GdbStub* stub_ = nullptr;
@@ -47,6 +55,10 @@ private:
     Stm32F2 stm32_;
     uint64_t nextPoll_ = 0;
     bool powered_ = false, over_ = false;
+    std::unique_ptr<Checkpoints> checkpoints_; // while a debugger may go back
+    uint64_t nextCopyNs_ = 0;
+    bool isAsked_ = false; // the debugger wants the processor to stop
+    bool isAtBegin_ = false;
 };
 
 #endif

@@ -2,17 +2,26 @@
 //
 // icesoc-sim: options of a simulated flight.
 
+#include "files.h"
 #include "flight.h"
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-int main(int argc, char** argv) {
+namespace {
+
+struct CommandLine {
+    Flight::Options o;
+    std::string replay, wave;
     CLI::App app{
         "Simulates the UAV: RTL, DDR3, firmware, modems, radio. The ground's modem is a pty.\n"
         "Words of COMMAND: {device} the pty, {frame} the camera's picture, {status} counters, "
         "{guard}, {out}."};
-    Flight::Options o;
-    app.add_option("--image", o.image, "picture for the camera: PNG, JPEG or PGM")->required();
+    CommandLine();
+    void parse(std::vector<std::string> words);
+};
+
+CommandLine::CommandLine() {
+    app.add_option("--image", o.image, "picture for the camera: PNG, JPEG or PGM");
     app.add_flag("--sensor", o.sensor,
                  "the picture comes through the camera core's pins, not into memory");
     app.add_option("--pins", o.pins,
@@ -27,8 +36,7 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(0.0, 1.0));
     app.add_option("--distance", o.weather.distance, "metres in free space, with fading; 0: none")
         ->check(CLI::Range(0.0, 1e5));
-    std::string trace;
-    app.add_option("--trace", trace,
+    app.add_option("--trace", o.trace,
                    "CSV of loss, RSSI and delay (docs/models.md), in place of --loss");
     app.add_option("--seed", o.seed, "of the radio's misfortunes");
     app.add_option("--key", o.key,
@@ -41,6 +49,13 @@ int main(int argc, char** argv) {
     app.add_option("--guard", o.guard,
                    "guard time of both modems, ms; a ground station must know it: {guard}")
         ->check(CLI::Range(2, 3300));
+    app.add_option(
+        "--replay", replay,
+        "fly the flight again that was recorded in this folder, as it was, without its "
+        "command; beside it --out, --gdb, --marks, --wave, --every-clock and --speed count");
+    app.add_option("--wave", wave, "write a waveform (FST) of a replay to this file");
+    app.add_option("--from", o.from, "s, where the waveform begins");
+    app.add_option("--to", o.to, "s, where it ends");
     app.add_flag("--every-clock", o.everyClock, "evaluate each clock, quiet ones too (slow)");
     app.add_option("--out", o.out, "folder for before.png and the counters");
     app.add_option("--speed", o.speed,
@@ -60,23 +75,95 @@ int main(int argc, char** argv) {
     app.add_flag("--quiet", o.quiet, "say nothing");
     app.add_option("command", o.command, "program to run against the modem, behind --");
     app.positionals_at_end();
-    CLI11_PARSE(app, argc, argv);
+}
+
+void CommandLine::parse(std::vector<std::string> words) {
+    o.words.assign(words.begin(), std::find(words.begin(), words.end(), "--"));
+    std::reverse(words.begin(), words.end()); // as CLI11 wants them
+    app.parse(words);
+}
+
+void writeWave(const CommandLine& line) {
+    if (line.wave.empty())
+        return;
+#ifdef ICESOC_TRACE
+    auto clocks = [](double seconds) {
+        return std::to_string(
+            static_cast<uint64_t>(seconds * static_cast<double>(SocModel::clkHz)));
+    };
+    setenv("WAVE", line.wave.c_str(), 1); // observer.h
+    setenv("WAVE_FROM", clocks(line.o.from).c_str(), 1);
+    setenv("WAVE_TO", clocks(line.o.to).c_str(), 1);
+#else
+    throw std::runtime_error("this simulator writes no waveforms: the one in build/trace does "
+                             "(make run REPLAY=" +
+                             line.replay + " FROM=1.5 TO=1.6)");
+#endif
+}
+
+// The options of the flight that was recorded, and how this one is to be looked at.
+Flight::Options recorded(const CommandLine& now) {
+    auto replayed = std::make_shared<ReplayedLine>(now.replay + "/flight.jsonl");
+    const nlohmann::json& head = replayed->head();
+    if (head.at("clkHz") != SocModel::clkHz)
+        throw std::runtime_error("that flight had a clock of " + head.at("clkHz").dump() +
+                                 " Hz: make run REPLAY=" + now.replay +
+                                 " CLK_HZ=" + head.at("clkHz").dump());
+    CommandLine then;
+    then.parse(head.at("flight"));
+    Flight::Options o = then.o;
+    for (const auto& [file, hash] : head.value("hashes", std::map<std::string, std::string>()))
+        if (hexHash({readFile(file)}) != hash)
+            throw std::runtime_error("'" + file +
+                                     "' is not what it was when that flight was recorded");
+    if (std::filesystem::weakly_canonical(now.o.out) ==
+        std::filesystem::weakly_canonical(now.replay))
+        throw std::runtime_error("the replay needs a folder of its own: give another --out than '" +
+                                 now.replay + "'");
+    o.image = now.replay + "/before.png";
+    o.replayed = replayed;
+    o.out = now.o.out;
+    o.speed = now.app.count("--speed") ? now.o.speed : "max";
+    o.gdb = now.o.gdb;
+    o.marks = now.o.marks;
+    o.everyClock = now.o.everyClock;
+    o.quiet = now.o.quiet;
+    o.from = now.o.from;
+    o.to = now.o.to;
+    return o;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CommandLine line;
+    try {
+        line.parse({argv + 1, argv + argc});
+    } catch (const CLI::ParseError& e) {
+        return line.app.exit(e);
+    }
     struct sigaction action {};
     action.sa_handler = [](int signal) { Flight::stopSignal = signal; };
     for (int signal : {SIGINT, SIGTERM, SIGHUP})
         sigaction(signal, &action, nullptr);
-    if (o.cpu == "m3" && !o.key.empty()) {
-        std::cerr << "icesoc-sim: --key needs --cpu host: the ARM binary has its own\n";
-        return 2;
-    }
-    if (o.cpu != "m3" && (o.gdb >= 0 || !o.marks.empty())) {
-        std::cerr << "icesoc-sim: --gdb and --marks need --cpu m3\n";
-        return 2;
-    }
     try {
-        if (!trace.empty())
-            o.weather.trace = std::make_shared<RfTrace>(trace);
+        Flight::Options o = line.replay.empty() ? line.o : recorded(line);
+        if (o.image.empty())
+            throw std::invalid_argument("give --image, the picture for the camera");
+        if (line.replay.empty() && !line.wave.empty())
+            throw std::invalid_argument(
+                "--wave needs --replay: a flight is recorded, then looked at");
+        if (o.cpu == "m3" && !o.key.empty())
+            throw std::invalid_argument("--key needs --cpu host: the ARM binary has its own");
+        if (o.cpu != "m3" && (o.gdb >= 0 || !o.marks.empty()))
+            throw std::invalid_argument("--gdb and --marks need --cpu m3");
+        writeWave(line);
+        if (!o.trace.empty())
+            o.weather.trace = std::make_shared<RfTrace>(o.trace);
         return Flight(o).run();
+    } catch (const std::invalid_argument& e) {
+        std::cerr << "icesoc-sim: " << e.what() << "\n";
+        return 2;
     } catch (const std::exception& e) {
         std::cerr << "icesoc-sim: error: " << e.what() << "\n";
         return 1;

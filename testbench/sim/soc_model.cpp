@@ -6,9 +6,20 @@
 #include "mcb_pins.h"
 #include <algorithm>
 
+namespace {
+
+// A model without threads of its own: of a process that forks only the calling one goes on.
+VerilatedContext* oneThread() {
+    auto* context = new VerilatedContext;
+    context->threads(1);
+    return context;
+}
+
+} // namespace
+
 SocModel::SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerUnit,
                    unsigned clkPerUnit)
-    : context_(new VerilatedContext), observer_(*context_), top_(new VSoc(context_.get())),
+    : context_(oneThread()), observer_(*context_), top_(new VSoc(context_.get())),
       span_(*top_, clkHz),
       fsmc_(pins_, {[this] { tick(); }, [this] { settle(); }}, hclkPerUnit, clkPerUnit), air_(air),
       modem_(line_, air, std::move(modemOptions)) {

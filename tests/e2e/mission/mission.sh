@@ -32,9 +32,34 @@ fails_with() {
         exit 1
     }
 }
+# The flight in a folder is flown again from its recording; further words are options.
+replay() {
+    "$build/testbench/sim/icesoc-sim" --out "$out/replay" --replay "$@"
+}
+# The same, with this text among what it says.
+replays_with() {
+    text=$1
+    shift
+    replay "$@" >"$out/replay.log" 2>&1 && grep -q -- "$text" "$out/replay.log" || { cat "$out/replay.log" && exit 1; }
+}
 case $case in
 plain) run "$out" --image $image && check_output "$out" ;;
-loss) run "$out" --image $image --loss 0.1 --seed "${SEED:-1}" && check_output "$out" ;;
+loss) # and again from its recording, whose time is the one for looking
+    run "$out" --image $image --loss 0.1 --seed "${SEED:-1}" && check_output "$out"
+    replays_with 'bit by bit the flight that was recorded' "$out" --from 0.5 --to 0.51
+    # Cut short by a kill; altered; of another file; into its own folder; waveforms are another build's.
+    mkdir "$out/cut" "$out/other"
+    cp "$out/before.png" "$out/cut" && cp "$out/before.png" "$out/other"
+    head -c "$(($(wc -c <"$out/flight.jsonl") / 2))" "$out/flight.jsonl" >"$out/cut/flight.jsonl"
+    replays_with 'the recording ends here' "$out/cut"
+    sed 's/"up":"2b/"up":"2c/' "$out/flight.jsonl" >"$out/other/flight.jsonl"
+    fails_with 'not the flight that was recorded: it departs between' replay "$out/other"
+    echo '{"no": "flight"}' >"$out/other/flight.jsonl"
+    fails_with 'is no recording of a flight: line 1' replay "$out/other"
+    fails_with 'the replay needs a folder of its own' "$build/testbench/sim/icesoc-sim" --replay "$out" --out "$out"
+    fails_with 'writes no waveforms' replay "$out" --wave "$out/wave.fst"
+    fails_with 'no flight was recorded in' "$source/testbench/sim/replay.sh" "$build" "$out/nowhere" "$out/replay"
+    ;;
 cores) # every core that has a part in a mission
     parts=$(cd "$source/ip" && awk '/^[^#]/ { print $1 }' cores.list | while read -r core; do [ ! -f "$core/ground.py" ] || echo "$core"; done)
     run "$out" --image $image --cores "$parts" && check_output "$out"
@@ -47,6 +72,7 @@ sensor) # the picture goes through the camera's pins and the vision core, and ne
     ;;
 m3) # the ARM binary
     run "$out" --image $image --cpu m3 && check_output "$out"
+    replays_with 'bit by bit the flight that was recorded' "$out"
     ;;
 cpp) # the C++11 library of the plugin, a C++ client, and a proxy that goes through its string form
     "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --guard $guard -- \

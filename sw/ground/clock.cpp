@@ -95,7 +95,8 @@ int Clock::wait(pollfd* fds, nfds_t count, uint32_t us) {
     if (!simulation_)
         return pollUs(fds, count, us);
     const uint64_t begin = nowNs() / 1000;
-    // A program that keeps step and never waits would stop time, and might wait for it.
+    // A program that keeps step waits for shortestUs at least: one that never waits would stop
+    // time, and might wait for it.
     const uint64_t end =
         us == forever ? endOfTime : begin + (inStep() ? std::max(us, shortestUs) : us);
     const bool reads = std::any_of(fds, fds + count, [this](const pollfd& p) {

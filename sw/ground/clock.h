@@ -31,9 +31,9 @@ public:
     // Works as poll does: returns when something is ready or `us` have passed by this clock.
     int wait(pollfd* fds, nfds_t count, uint32_t us);
 
-    // From now on simulated time waits for this thread: it stands still but during `wait`, and
-    // until all has been read that `serial` was given. Of no effect by the machine's clock, or if
-    // the simulator's modem is not on `device`.
+    // Makes simulated time wait for this thread from now on: it stands still except during `wait`,
+    // and until all has been read that `serial` was given. Has no effect by the machine's clock, or
+    // if the simulator's modem is not on `device`.
     void keepStep(int serial, const std::string& device);
     void leaveStep();
     // Count the bytes that went through `serial`.

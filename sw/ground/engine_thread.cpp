@@ -90,7 +90,7 @@ void Engine::onWritable(void* context) {
 // ---- the modem's life ----
 
 int Engine::waitMs(int ms, bool forBytes) {
-    // A port that is gone ends the wait, too: where its simulator has ended, time stands still.
+    // The wait ends if the port is gone, too: where its simulator has ended, time stands still.
     pollfd fds[] = {{wakePipe_[0], POLLIN, 0},
                     {serial_.fd(), static_cast<short>(forBytes ? POLLIN : 0), 0}};
     const U32 begin = clock_.nowUs(), us = static_cast<U32>(ms) * 1000;
@@ -139,8 +139,8 @@ bool Engine::prepareModem(const Settings& settings) {
     return true;
 }
 
-// A port that is lost or a modem that does not answer is no end: who connects, or listens, has it
-// tried again.
+// Flies again and again: a lost port or a modem that does not answer is tried again for a program
+// that connects or listens.
 void Engine::run() {
     std::unique_lock<std::mutex> lock(mutex_);
     while (!stop_) {
@@ -172,7 +172,7 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
     } catch (const std::system_error& e) {
         return fail(e.what());
     }
-    // A simulator waits for this thread as long as it flies.
+    // Keeps step: a simulator waits for this thread as long as it flies.
     struct Step {
         Step(Clock& c, int serial, const std::string& device) : clock(c) {
             clock.keepStep(serial, device);

@@ -175,7 +175,7 @@ private:
             waiting_.push_back({fd, "client " + std::to_string(++count_), Clock::now()});
         }
     }
-    // Without descriptors the listener stays readable.
+    // Notes that descriptors are used up: the listener stays readable without them.
     void noteFull(int error) {
         if (error == EAGAIN || error == EINTR || error == ECONNABORTED)
             return;
@@ -235,7 +235,7 @@ private:
     std::deque<Client> waiting_;
 };
 
-// Not from the command line, which every user of the machine can read.
+// Reads the key from a file: every user of the machine can read the command line.
 std::string readKey(const std::string& path) {
     std::ifstream file(path);
     std::string key;

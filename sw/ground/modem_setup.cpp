@@ -77,7 +77,7 @@ std::string ModemSetup::ask(const std::string& text) {
     if (serial_.write(line.data(), line.size()) != static_cast<ssize_t>(line.size()))
         return "";
     std::string reply = readReply(replyMs);
-    // A key is a secret.
+    // A key is a secret: its command is logged without it.
     log_(2, "AT" + (text.compare(0, 2, "KY") ? text : text.substr(0, 2)) + ": " + reply);
     return reply;
 }

@@ -25,7 +25,7 @@ public:
         : instance_(instance), o_(options) {}
 
     void streamWriteImpl(Ice::OutputStream* s) const override {
-        // Only what a peer can use: never the device of this machine.
+        // A proxy carries only what a peer can use: never the device of this machine.
         s->write(static_cast<Ice::Short>(o_.serial.target));
         s->write(static_cast<Ice::Byte>(o_.channel));
         s->write(o_.timeoutMs);

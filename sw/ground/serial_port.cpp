@@ -77,7 +77,8 @@ ssize_t SerialPort::write(const void* bytes, size_t size) {
     return count;
 }
 
-// Not by TCFLSH: a byte that was given must be read, for those who count (clock.h).
+// Drops what has come by reading it, not by TCFLSH: a byte that was given must be read, for those
+// who count (clock.h).
 void SerialPort::drop() {
     char bytes[256];
     while (read(bytes, sizeof bytes) > 0)

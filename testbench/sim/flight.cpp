@@ -204,7 +204,7 @@ void Flight::watch() {
     looks_ = looks;
 }
 
-// About once a simulated millisecond.
+// Looks after the flight, about once a simulated millisecond.
 bool Flight::poll() {
     adviseOnClock();
     watch();

@@ -29,7 +29,7 @@ class QuietSpan {
 public:
     QuietSpan(VSoc& top, uint64_t clkHz);
 
-    // To be called after each clock that was evaluated.
+    // Notes the chip's state; to be called after each clock that was evaluated.
     void sample();
 
     // Returns for how many clocks, at most `most`, the chip is quiet from here on; 0 if it is not,
@@ -40,7 +40,7 @@ public:
     // left: those that a tick of the baud rate is on its way in, and that must be evaluated.
     uint64_t pass(uint64_t clocks);
 
-    // To be called where an input changes.
+    // Forgets the noted state; to be called where an input changes.
     void forget() { hasImage_ = false; }
 
 private:

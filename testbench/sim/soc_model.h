@@ -41,14 +41,14 @@ public:
             cycles_ += clocks;
         }
     }
-    // For comparisons: each clock is evaluated from now on, or no longer.
+    // Evaluates each clock from now on, or no longer; for comparisons.
     void evaluateAll(bool all) {
         wake();
         skips_ = !all;
     }
     uint64_t evaluated() const { return evaluated_; } // clocks
 
-    // All of the chip's state, as it is now.
+    // Returns all of the chip's state, as it is now.
     const VSoc& chip() {
         pay();
         return *top_;

@@ -22,7 +22,7 @@ public:
 
     // Returns when the program lets time pass beyond `now`; at once if none keeps step.
     void wait(uint64_t now);
-    // When the program wakes up, in simulated ns.
+    // Returns when the program wakes up, in simulated ns.
     uint64_t nextEvent() const;
     uint64_t waitedNs() const { return waitedNs_; } // of the wall clock
 

@@ -60,7 +60,8 @@ bool PtyLine::speedFits() const {
     return std::fabs(settings.c_ospeed - modem) <= 0.045 * modem;
 }
 
-// All that the program has written by now; the kernel takes a moment from one end to the other.
+// Reads all that the program has written by now; the kernel takes a moment from one end to the
+// other.
 void PtyLine::readAhead(uint64_t now) {
     uint64_t counter = count_.keeper ? count_.keeper() : 0;
     if (counter != counter_)
@@ -93,7 +94,8 @@ size_t PtyLine::fetch(uint8_t* bytes, size_t room) {
 
 void PtyLine::readHost(uint64_t now) {
     uint8_t bytes[64];
-    // Only what the wire could have carried by now, so that nothing is read ahead of flow control.
+    // Takes only what the wire could have carried by now, so that nothing is read ahead of flow
+    // control.
     if (!counter_)
         rxFree_ = std::max(rxFree_, static_cast<double>(now) - lookBack());
     size_t room = 0;

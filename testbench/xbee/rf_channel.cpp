@@ -23,7 +23,7 @@ size_t frameBytes(const RfPacket& packet) {
     return 17 + 2u * packet.header + 6u * packet.wide + 6u * longSource + packet.bytes.size();
 }
 
-// From carrier sense to the end of the acknowledgement.
+// The time from carrier sense to the end of the acknowledgement.
 uint64_t tryNs(const RfPacket& packet) {
     return ccaNs + turnaroundNs + frameBytes(packet) * byteNs + (packet.acknowledged ? ackNs : 0);
 }
@@ -101,8 +101,8 @@ void RfChannel::start(Flight flight, uint64_t now, uint64_t ready) {
     events_.emplace(ready, std::move(flight));
 }
 
-// One try, when the channel is clear. Two modems that begin within the time from carrier sense to
-// the first symbol do not hear each other, and none hears while it sends.
+// Makes one try, when the channel is clear. Two modems that begin within the time from carrier
+// sense to the first symbol do not hear each other, and none hears while it sends.
 void RfChannel::begin(Flight flight, uint64_t now) {
     uint64_t end = now + tryNs(flight.packet);
     flight.begins = false;

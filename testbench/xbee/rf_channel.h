@@ -35,7 +35,7 @@ public:
     // Sends a packet when its modem is no longer busy; the sender hears transmitted() when the
     // packet has left or was given up.
     void transmit(XBee* sender, RfPacket packet, uint64_t now);
-    // A time of a modem's own work: it varies by a twentieth; 0 in perfect air.
+    // Returns a time of a modem's own work: it varies by a twentieth; 0 in perfect air.
     uint64_t jittered(uint64_t ns);
     void advance(uint64_t now);
     uint64_t nextEvent() const { return events_.empty() ? never : events_.begin()->first; }

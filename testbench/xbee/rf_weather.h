@@ -28,7 +28,7 @@ private:
     std::vector<Row> rows_;
 };
 
-// Each a probability unless it says otherwise.
+// The weather of the air; each is a probability unless it says otherwise.
 struct RfWeather {
     // Residual loss of a packet in one direction, after the MAC's tries; costs no more air time.
     double loss = 0;
@@ -43,10 +43,10 @@ struct RfWeather {
     // a try that meets it is lost. A microwave oven: about half of 20 ms (50 Hz).
     double interference = 0;
     uint64_t interferencePeriodNs = 20'000'000;
-    // In place of loss and delay above.
+    // A record of a link, which stands in place of loss and delay above.
     std::shared_ptr<const RfTrace> trace;
-    // For unit tests: both directions at once, no carrier sense, no collisions, and modems that
-    // need no time of their own. No radio has this air.
+    // Perfect air, for unit tests: both directions at once, no carrier sense, no collisions, and
+    // modems that need no time of their own. No radio has this air.
     bool perfect = false;
 
     bool interferes(uint64_t from, uint64_t to) const;

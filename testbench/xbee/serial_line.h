@@ -31,7 +31,7 @@ public:
     // Takes effect when no byte is on the line.
     virtual void setBitTime(double ns) { bitNs_ = ns; }
     virtual void setCts(bool accepts) { cts_ = accepts; }
-    // Whether the host's RTS stops the modem (D6); a line without RTS takes no notice.
+    // True if the host's RTS stops the modem (D6); a line without RTS takes no notice.
     void setHeedRts(bool heeds) { heedsRts_ = heeds; }
     virtual void advance(uint64_t now) = 0;
     virtual uint64_t nextEvent() const = 0;
@@ -137,7 +137,8 @@ private:
     uint8_t rxByte_ = 0, txByte_ = 0;
 };
 
-// No wire at all: the host is C++ in the same process, which calls send and reads `received`.
+// A line without a wire: the host is C++ in the same process, which calls send and reads
+// `received`.
 class HostLine : public SerialLine {
 public:
     void send(const std::vector<uint8_t>& bytes, uint64_t now) {

@@ -155,7 +155,7 @@ void XBee::dataByte(uint8_t byte, uint64_t now) {
     sendPackets(now);
 }
 
-// After the guard time the characters held back were the command sequence, or data.
+// Decides after the guard time: the characters held back were the command sequence, or data.
 void XBee::silence(uint64_t now) {
     if (pluses_ && now - lastByte_ >= guardNs()) {
         if (pluses_ == 3)

@@ -82,13 +82,13 @@ public:
     bool cts() const { return cts_; }
     const Counters& counters() const { return counters_; }
 
-    // From the channel.
+    // Called by the channel, up to transmitted().
     bool hears(const RfPacket& packet) const; // is it for this modem?
     // Absent: it is off or boots. NoRoom: acknowledged, and lost, since the buffer to the host is
     // full.
     enum class Reception { Absent, NoRoom, Taken };
     Reception receive(const RfPacket& packet, uint64_t now);
-    // It is at work on packets until then, and sends none.
+    // Returns until when it is at work on packets, and sends none.
     uint64_t busyUntil() const { return busyUntil_; }
     // The packet in flight is done with. `unanswered` tries had no acknowledgement.
     enum class Fate { Sent, NoAck, NoClearChannel };

@@ -60,7 +60,7 @@ public:
         }
         return "";
     }
-    // Those that explain nothing: what they speak of is reached, or gone.
+    // Returns the rules that explain nothing: what they speak of is reached, or gone.
     std::vector<std::string> stale() const {
         std::vector<std::string> list;
         for (const Rule& rule : rules_)

@@ -21,7 +21,7 @@ public:
 
     // Fingerprint with which a test last passed, or "".
     std::string passedWith(const std::string& test) const;
-    // How a test ended in the newest run that had it: "p", "f", "s" or "".
+    // Returns how a test ended in the newest run that had it: "p", "f", "s" or "".
     std::string last(const std::string& test) const;
     // Seconds that a test took in the newest run that had it, or 0.
     double seconds(const std::string& test) const;
@@ -33,7 +33,8 @@ public:
                                   double seconds);
 
 private:
-    // How a test ended in the newest run that had it, and ended so: [how, seconds, print, seed].
+    // Returns how a test ended in the newest run that had it, and ended so: [how, seconds, print,
+    // seed].
     nlohmann::json newest(const std::string& test, const std::string& how) const;
 
     std::string path_;

@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-// From what report.cpp has gathered: [{name, state, text}]. The text of a red light says what is
-// wrong. `source` is the tree whose state the measurements are compared with.
+// Makes the lights from what report.cpp has gathered: [{name, state, text}]. The text of a red
+// light says what is wrong. `source` is the tree whose state the measurements are compared with.
 nlohmann::json lightsOf(const nlohmann::json& data, const std::string& source);
 
-// For the terminal, a line a light.
+// Prints a line a light for the terminal.
 std::string lightsText(const nlohmann::json& lights);
 
 #endif

@@ -16,7 +16,7 @@ namespace {
 
 const std::string notBuilt = "_NOT_BUILT"; // what CTest calls a program without its cases
 
-// Which folders a test that is no program of its own reads.
+// Returns the folders that a test reads which is no program of its own.
 std::vector<std::string> readsOf(const Test& test) {
     if (test.place.find("formal") != std::string::npos ||
         test.place.find("lint") != std::string::npos)

@@ -26,7 +26,7 @@ struct Selection {
     bool failed = false;  // only those that failed in the last run
 };
 
-// All tests of a build folder; throws std::runtime_error when CTest cannot say.
+// Returns all tests of a build folder; throws std::runtime_error when CTest cannot say.
 std::vector<Test> listTests(const std::string& build);
 
 // Fills Test::print: a fingerprint of what the tests of each label or folder depend on besides

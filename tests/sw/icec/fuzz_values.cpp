@@ -106,7 +106,7 @@ template <class What> void roundTrip(const What& what) {
     }
 }
 
-// A message of the graph that the bytes describe.
+// Writes a message of the graph that the bytes describe.
 template <class What> Bytes described(const uint8_t* data, size_t size, Format format) {
     static Graph_Leaf nodes[8];
     static Graph_Plain plain;

@@ -98,7 +98,7 @@ protected:
             idle(1);
         ASSERT_EQ(Link_state(link_.get()), LINK_STATE_UP);
     }
-    // Both sides' loops for so many milliseconds.
+    // Runs both sides' loops for so many milliseconds.
     void idle(int ms) {
         for (; ms > 0; --ms) {
             step();
@@ -142,7 +142,7 @@ private:
         std::copy(packet.begin(), packet.end(), bytes);
         return static_cast<U32>(packet.size());
     }
-    // 1 ms of time, and of the ground's link.
+    // Passes 1 ms of time, and of the ground's link.
     void step() {
         nowUs_ += 1000;
         for (; arrived(toGround_); toGround_.pop_front())

@@ -122,7 +122,7 @@ TEST_F(Minimal, StringsThatAreNoProxiesSaySo) {
                      1, 1,   1,   0x50, 0x4C, 7,   0, 0, 0, 1, 1, 0}));
 }
 
-// A peer that is played by hand: connection 0 is the one that this side makes.
+// Plays a peer by hand: connection 0 is the one that this side makes.
 class MinimalPeer : public ::testing::Test {
 protected:
     MinimalPeer() {

@@ -63,7 +63,7 @@ struct Side {
     }
 };
 
-// A call of one int parameter and one int result.
+// Makes a call of one int parameter and one int result.
 inline Ice_Status call(Ice_ObjectPrx& prx, const char* operation, Ice_Int in = 0,
                        Ice_Int* out = nullptr, Ice_Byte mode = 0) {
     Ice_InputStreamPtr is = nullptr;

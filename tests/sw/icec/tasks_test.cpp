@@ -19,8 +19,8 @@ extern "C" {
 #include "tcp_address.h"
 }
 
-// In place of the system's: "twofold.test" is 127.0.0.2 and 127.0.0.1, "mixed.test" is ::1 and
-// 127.0.0.1.
+// A resolver in place of the system's: "twofold.test" is 127.0.0.2 and 127.0.0.1, "mixed.test" is
+// ::1 and 127.0.0.1.
 static addrinfo* inFront(const char* address, const char* port, addrinfo* rest) {
     addrinfo numeric = {}, *one = nullptr;
     numeric.ai_flags = AI_NUMERICHOST;

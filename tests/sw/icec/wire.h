@@ -8,7 +8,7 @@
 
 using Bytes = std::vector<Ice_Byte>;
 
-// A message whose size is filled in.
+// Returns a message whose size is filled in.
 inline Bytes message(Ice_Byte type, Bytes body, Ice_Byte compression = 0) {
     Bytes m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, type, compression};
     size_t size = 14 + body.size();
@@ -23,7 +23,7 @@ inline void addString(Bytes& to, const std::string& s) {
     to.insert(to.end(), s.begin(), s.end());
 }
 
-// From the identity on.
+// Writes a request from the identity on.
 inline Bytes requestBody(const std::string& name, const std::string& operation, Ice_Byte minor = 1,
                          Bytes parameters = {}) {
     Bytes b;

@@ -28,7 +28,7 @@ static int equal(const Everything_Numbers* a, const Everything_Numbers* b) {
            a->l.high == b->l.high && a->f == b->f && a->d == b->d;
 }
 
-/* By their strings: a peer may encode endpoints anew. */
+/* Compares proxies by their strings: a peer may encode endpoints anew. */
 static int alike(const Ice_ObjectPrx* a, const Ice_ObjectPrx* b) {
     char x[400], y[400];
     return Ice_Communicator_proxyToString(a, x, sizeof x) == ICE_OK &&
@@ -41,7 +41,7 @@ static void fill(Everything_Numbers* n) {
     n->f = 0.5F, n->d = -1e300;
 }
 
-/* Every type of sequence, those within sequences and dictionaries too. */
+/* Tries every type of sequence, those within sequences and dictionaries too. */
 static int sequences(void) {
     static Ice_Bool bools[] = {1, 0};
     static Ice_Short shorts[] = {-1, 32767};
@@ -252,7 +252,7 @@ static int modes(void) {
     return 0;
 }
 
-/* A class that is called, by its own proxy and by those of its base and of what it implements. */
+/* Calls a class, by its own proxy and by those of its base and of what it implements. */
 static int classes(const char* port) {
     Everything_ShapeDisp_area_Exception ex;
     Everything_SquarePrx square;

@@ -38,7 +38,7 @@ Numbers numbers(int i = 1) {
     return {true, 200, static_cast<short>(-3 * i), 1 << 30, -(1LL << 62) + i, 0.5F, -1e300};
 }
 
-// By their strings: IceC and Ice may encode endpoints differently.
+// Compares proxies by their strings: IceC and Ice may encode endpoints differently.
 bool alike(const std::shared_ptr<Ice::ObjectPrx>& a, const std::shared_ptr<Ice::ObjectPrx>& b) {
     return a ? b && a->ice_toString() == b->ice_toString() : !b;
 }

@@ -89,7 +89,7 @@ public:
     }
     int callBack(std::shared_ptr<WatcherPrx> watcher, int times,
                  const Ice::Current& current) override {
-        // Over the caller's own connection: it may listen nowhere.
+        // Calls over the caller's own connection: it may listen nowhere.
         auto bound =
             Ice::uncheckedCast<WatcherPrx>(current.con->createProxy(watcher->ice_getIdentity()));
         int sum = 0;

@@ -122,7 +122,7 @@ static void fillWorse(Everything_Worse* worse) {
     worse->how = 7;
 }
 
-/* By `how` - 11, as the peers count. */
+/* The failures by `how` - 11, as the peers count. */
 static const Ice_Status failures[] = {ICE_OBJECT_NOT_EXIST,
                                       ICE_FACET_NOT_EXIST,
                                       ICE_OPERATION_NOT_EXIST,

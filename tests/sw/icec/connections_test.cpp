@@ -9,10 +9,7 @@ namespace {
 
 TEST_F(Calls, AnAnswerForALostConnectionIsRefused) {
     Ice_Reply later{};
-    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-        Ice_Current_later(&current, &later);
-        return ICE_LATER;
-    };
+    servant_.answerLater(later);
     Ice_ObjectPrx prx = here().proxy("thing:loop");
     prx.timeoutMs = 5;
     EXPECT_EQ(call(prx, "slow"), ICE_TIMEOUT);
@@ -52,24 +49,14 @@ TEST_F(Calls, TheCallersConnectionCarriesCallsBack) {
 
 TEST_F(Calls, TimeOutsAreKeptAndLateRepliesPassedOver) {
     Ice_Reply later{};
-    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-        Ice_Current_later(&current, &later);
-        return ICE_LATER;
-    };
+    servant_.answerLater(later);
     Ice_ObjectPrx prx = here().proxy("thing:loop");
     Ice_ObjectPrx_ice_invocationTimeout(&prx, 250);
     U32 begin = *here().loop.nowMs;
     EXPECT_EQ(call(prx, "op"), ICE_TIMEOUT);
     EXPECT_EQ(*here().loop.nowMs - begin, 250u);
     Ice_Status status = ICE_OK;
-    ASSERT_NE(Ice_ObjectPrx_begin(&prx, "op", 0), nullptr);
-    ASSERT_EQ(Ice_ObjectPrx_invokeAsync(
-                  &prx,
-                  [](void* cookie, Ice_Status s, Ice_InputStreamPtr) {
-                      *static_cast<Ice_Status*>(cookie) = s;
-                  },
-                  &status),
-              ICE_OK);
+    callAsync(prx, "op", status);
     (void)Ice_Communicator_poll(&here().ic, 249);
     EXPECT_EQ(status, ICE_OK);
     (void)Ice_Communicator_poll(&here().ic, 249);
@@ -91,10 +78,7 @@ TEST_F(Calls, WhoWaitsForALongOperationGetsSignsOfLife) {
         *static_cast<int*>(context) += message[8] == 3; // ValidateConnection
     };
     Ice_Reply later{};
-    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-        Ice_Current_later(&current, &later);
-        return ICE_LATER;
-    };
+    servant_.answerLater(later);
     Ice_ObjectPrx prx = here().proxy("thing:loop");
     prx.timeoutMs = 5 * ICE_HEARTBEAT_MS + 100;
     EXPECT_EQ(call(prx, "op"), ICE_TIMEOUT);
@@ -126,20 +110,10 @@ TEST_F(Calls, AfterShutdownNothingIsExecutedAndCallersKnowIt) {
 
 TEST_F(Calls, DestroyWaitsForAnswersThatComeLater) {
     Ice_Reply later{};
-    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-        Ice_Current_later(&current, &later);
-        return ICE_LATER;
-    };
+    servant_.answerLater(later);
     Ice_ObjectPrx prx = here().proxy("thing:loop");
     Ice_Status status = ICE_LIMIT;
-    ASSERT_NE(Ice_ObjectPrx_begin(&prx, "op", 0), nullptr);
-    ASSERT_EQ(Ice_ObjectPrx_invokeAsync(
-                  &prx,
-                  [](void* cookie, Ice_Status s, Ice_InputStreamPtr) {
-                      *static_cast<Ice_Status*>(cookie) = s;
-                  },
-                  &status),
-              ICE_OK);
+    callAsync(prx, "op", status);
     settle();
     // A call of the other side's own, whose failure comes while that side destroys itself.
     Ice_ObjectPrx own = there().proxy("nobody:loop");

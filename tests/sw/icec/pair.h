@@ -36,6 +36,13 @@ struct Servant {
         base.id = ids[1];
         run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) { return ICE_OK; };
     }
+    // Makes operations leave their answer to `later`.
+    void answerLater(Ice_Reply& later) {
+        run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+            Ice_Current_later(&current, &later);
+            return ICE_LATER;
+        };
+    }
     static Ice_Status dispatch(Ice_ObjectPtr self, const Ice_Current* current,
                                Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
         auto* servant = reinterpret_cast<Servant*>(self);
@@ -76,6 +83,15 @@ inline Ice_Status call(Ice_ObjectPrx& prx, const char* operation, Ice_Int in = 0
     if (status == ICE_OK && out)
         *out = Ice_InputStream_readInt(is);
     return Ice_ObjectPrx_end(&prx, status);
+}
+
+// Makes a call without parameters that sets `status` when its reply is there.
+inline void callAsync(Ice_ObjectPrx& prx, const char* operation, Ice_Status& status) {
+    ASSERT_NE(Ice_ObjectPrx_begin(&prx, operation, 0), nullptr);
+    auto done = [](void* cookie, Ice_Status s, Ice_InputStreamPtr) {
+        *static_cast<Ice_Status*>(cookie) = s;
+    };
+    ASSERT_EQ(Ice_ObjectPrx_invokeAsync(&prx, done, &status), ICE_OK);
 }
 
 class Pair : public ::testing::Test {

@@ -52,17 +52,15 @@ function showPaper() {
   const d = usable.find(d => d.paper);
   if (!d) return;
   byId("paper-title").textContent = d.title;
-  const names = { ff: "flip-flops", lut: "LUTs", slices: "slices (estimate)" };
+  const names = { ff: "flip-flops", lut: "LUTs of the netlist", map: "LUTs as map counts them, with route-throughs",
+    slices: `slices (estimate, ${(100 * data.slicesError).toFixed(0)} % off on average)` };
   fill(byId("paper"), ["", "here", data.chip.name, "paper", "here / paper", "limit", "accepted", ""],
-    ["ff", "lut", "with", "slices"].map(k => {
-      if (k === "with") {
-        const n = d.figures.lut + d.figures.through;
-        return ["with carry route-throughs", n, share(n, data.chip.lut), "", (n / data.paper.lut).toFixed(2), "", "", ""];
-      }
-      const value = d.figures[k], limit = d.limits[k];
-      return [names[k], value + (k === "slices" ? ` (${d.figures.low} to ${d.figures.high})` : ""),
+    ["ff", "lut", "map", "slices"].map(row => {
+      const k = row === "map" ? "lut" : row, limit = d.limits[k];
+      const value = d.figures[k] + (row === "map" ? d.figures.through : 0);
+      return [names[row], value + (k === "slices" ? ` (${d.figures.low} to ${d.figures.high})` : ""),
         share(value, data.chip[k]), `${data.paper[k]} (${share(data.paper[k], data.chip[k])})`,
-        (value / data.paper[k]).toFixed(2), limit ?? "", d.accepted ? `${d.accepted[k]} (${signed(value - d.accepted[k])})` : "",
+        (value / data.paper[k]).toFixed(2), limit ?? "", d.accepted && row !== "map" ? `${d.accepted[k]} (${signed(value - d.accepted[k])})` : "",
         limit === undefined ? "" : value <= limit ? ["ok", "good"] : [`${value - limit} over`, "bad"]];
     }));
 }

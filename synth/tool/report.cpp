@@ -96,7 +96,8 @@ string entriesJson(const Report& r) {
         };
         add("lut", f.lut, "LUT");
         add("ff", f.ff, "flip-flops");
-        add("slices", f.slices.estimate, "slices, estimated");
+        add("slices", f.slices.estimate,
+            fmt::format("slices, estimated, {:.0f} % off on average", 100 * slicesError));
         if (!f.timing.paths.empty()) {
             json e = entry(row.design->name + " clock", rounded(f.mhz(), 1),
                            "MHz, estimated, at least", command);
@@ -152,6 +153,7 @@ string html(const Report& r, const string& page, const string& style, const stri
                    {"slices", r.plan->chip.slices},
                    {"mhz", r.plan->chip.mhz}}},
                  {"slowGrade", slowGrade},
+                 {"slicesError", slicesError},
                  {"designs", json::array()},
                  {"history", json::array()},
                  {"pictures", r.pictures}};

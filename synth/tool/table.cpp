@@ -83,11 +83,11 @@ TextTable paperTable(const Plan& plan, const Row& row) {
                                         : fmt::format("{} over", value - limit->second)});
     };
     line("flip-flops", "ff", f.ff, plan.chip.ff);
-    line("LUTs", "lut", f.lut, plan.chip.lut);
-    const int all = f.lut + f.slices.through;
-    t.add({"with carry route-throughs", std::to_string(all), percent(all, plan.chip.lut), "",
-           fmt::format("{:.2f}", static_cast<double>(all) / plan.paper.at("lut")), "", ""});
-    line("slices (estimate)", "slices", f.slices.estimate, plan.chip.slices);
+    line("LUTs of the netlist", "lut", f.lut, plan.chip.lut);
+    line("LUTs as map counts them, with route-throughs", "lut", f.lut + f.slices.through,
+         plan.chip.lut);
+    line(fmt::format("slices (estimate, {:.0f} % off on average)", 100 * slicesError), "slices",
+         f.slices.estimate, plan.chip.slices);
     return t;
 }
 

@@ -32,7 +32,13 @@ taken=$(find bus hdl ip sw testbench -name "$name.regs.json" -o -name "${name}_w
 taken=$(grep -rliE --include='*.v' --include='*.vhd' "^ *(module|entity) +${name}(_wrapper)?\b" bus hdl ip synth || true)
 [ -z "$taken" ] || fail "there is a module '$name' in $taken"
 type=$(echo "$name" | sed -E 's/(^|_)([a-z])/\U\2/g')
-folder=ip/$name
+# The folder takes its place when it is complete.
+mkdir -p "$build"
+work=$(mktemp -d "$build/new-ip.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM HUP
+folder=$work/$name
+mkdir "$folder"
 fill() { # template, target
     sed "s/@NAME@/$name/g; s/@TYPE@/$type/g; s/@MODULE@/Cores/g" "$1" >"$folder/$2"
 }
@@ -40,13 +46,10 @@ if [ -n "$ice" ]; then
     [ -f "$ice" ] || fail "there is no file '$ice'"
     slice2c=$build/slice/slice2c
     [ -x "$slice2c" ] || fail "there is no $slice2c: make build"
-    work=$(mktemp -d)
-    trap 'rm -rf "$work"' EXIT
     "$slice2c" -I"$(dirname "$ice")" "$ice" --output-dir "$work/c" --hw-regs "$work/regs" --hw-new-"$lang" "$work/new" ||
         fail "$ice is not an interface in hardware (above)"
     [ "$(ls "$work/regs")" = "$name.regs.json" ] ||
         fail "$ice has the cores $(basename -s .regs.json "$work"/regs/* | tr '\n' ' '): NAME is that of the only one"
-    mkdir "$folder"
     cp "$work"/new/* "$folder"
     cp "$ice" "$folder/$name.ice"
     fill "ip/template/$lang/CMakeLists.txt.in" CMakeLists.txt
@@ -54,11 +57,12 @@ if [ -n "$ice" ]; then
     fill ip/template/interface/ground.py.in ground.py
     sed -i 's/^Adds an offset, and sums 1..count:/Answers every call with zeros:/' "$folder/README.md"
 else
-    mkdir "$folder"
     for file in ip/template/*.in "ip/template/$lang"/*.in; do
         fill "$file" "$(basename "$file" .in | sed "s/^NAME/$name/")"
     done
 fi
+mv "$folder" ip
+folder=ip/$name
 # A build folder notices the new one by itself; it is asked now, while the folder can be taken back.
 if [ -f "$build/build.ninja" ] && ! cmake "$build" >"$build/new-ip.log" 2>&1; then
     rm -r "$folder"

@@ -47,8 +47,9 @@ nightly: setup-tests build ## what a timer runs: seeds that have failed, the reg
 # MOMENTS=1000: as many as a night has; each is drawn from SEED.
 MOMENTS ?= 10
 faults: $(BUILD)/build.ninja ## kill, stop and starve each process of a mission at ten moments drawn from a seed (MOMENTS=10 SEED=1 NAME=killed), expect docs/faults.md
-	@$(NINJA) mission
-	@/usr/bin/python3 tests/e2e/mission/faults.py "$(CURDIR)" "$(BUILD)" build/faults --seed $(SEED) --moments $(MOMENTS) $(if $(NAME),--only '$(NAME)')
+	@$(NINJA) mission clock_step regress utilisation regmaps
+	@[ -n '$(NAME)' ] || SEED=$(SEED) tests/regress/test/interrupted.py . "$(BUILD)" build/faults/interrupted $(MOMENTS) new_ip regress synth
+	@/usr/bin/python3 tests/e2e/mission/faults.py "$(CURDIR)" "$(BUILD)" build/faults --seed $(SEED) --moments $(MOMENTS) --deaths 2 $(if $(NAME),--only '$(NAME)')
 
 proofs: $(BUILD)/build.ninja ## run all formal proofs, print the processor time of all together
 	@$(NINJA) regmaps
@@ -60,4 +61,4 @@ coverage: setup-tests $(BUILD)/build.ninja ## lines, branches and toggles that t
 	@$(NINJA) coverage regress
 	@tests/regress/coverage.sh $(BUILD) $(JOBS)
 
-.PHONY: regress nightly faults proofs coverage
+.PHONY: regress nightly threads faults proofs coverage

@@ -13,7 +13,8 @@
 Output run(const std::vector<std::string>& command,
            const std::map<std::string, std::string>& environment,
            const std::function<void(const std::string& line)>& onLine) {
-    std::string words = "exec env"; // env: the shell is gone, and signals reach the program
+    // The shell is gone, and signals reach the program; it ends with us, however we do.
+    std::string words = "exec setpriv --pdeathsig TERM env";
     for (const auto& [name, value] : environment)
         words += " " + quoted(name + "=" + value);
     for (const std::string& word : command)

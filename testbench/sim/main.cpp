@@ -164,6 +164,9 @@ int main(int argc, char** argv) {
     } catch (const std::invalid_argument& e) {
         std::cerr << "icesoc-sim: " << e.what() << "\n";
         return 2;
+    } catch (const std::bad_alloc&) {
+        std::cerr << "icesoc-sim: error: out of memory; a flight takes about 200 MB\n";
+        return 1;
     } catch (const std::exception& e) {
         std::cerr << "icesoc-sim: error: " << e.what() << "\n";
         return 1;

@@ -78,9 +78,17 @@ class Log:
             self.live.write(json.dumps(dict(row, at=round(time.monotonic() - self.start, 3))) + "\n")
             self.live.flush()
 
+    def remind(self, what, answered):
+        seconds = 0
+        while not answered.wait(15):
+            seconds += 15
+            self.say("no answer to %s for %d s" % (what, seconds))
+
     def call(self, who, what, function):
         """Runs the call; its result, with the air it took written down."""
         before, wall = self.air.read(), time.monotonic()
+        answered = threading.Event()
+        threading.Thread(target=self.remind, args=(what, answered), daemon=True).start()
         try:
             result = function()
             outcome = ""
@@ -88,6 +96,7 @@ class Log:
             outcome = " failed: " + type(e).__name__
             raise
         finally:
+            answered.set()
             ms = (time.monotonic() - wall) * 1000
             after = self.air.read()
             row = {"who": who, "what": what + outcome, "wall_ms": round(ms, 1)}
@@ -120,7 +129,7 @@ def parse_arguments():
     parser.add_argument("--loss", default="0", help="noted in the report")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
     parser.add_argument("--patience", type=int, default=300,
-                        help="seconds that the UAV's first answer may take")
+                        help="seconds that each answer of the UAV may take")
     parser.add_argument("--trace", type=int, default=0, help="XBeeAT.Trace: 0, 1 or 2")
     return parser.parse_args()
 
@@ -132,7 +141,7 @@ def initialize(args):
         "XBeeAT.Trace": str(args.trace),
         "Ice.ThreadPool.Client.Size": "2",
         "Ice.ThreadPool.Server.Size": "2",
-        "Ice.Default.InvocationTimeout": "300000",
+        "Ice.Default.InvocationTimeout": str(1000 * args.patience),
         "Ice.ACM.Close": "0",
         "XBeeAT.Guard": str(args.guard),
         "Station.Endpoints": "xbee-at -d %s -a 0x0001 -s 0x0000" % args.device,
@@ -261,8 +270,8 @@ def fly(args, communicator):
     log.say("%d corners; the core took %d cycles" % (result.found, result.cycles))
     log.follow({"features": [[f.x, f.y, f.score] for f in result.best], "found": result.found})
 
-    if not station.called.wait(300):
-        raise RuntimeError("the UAV did not call Station.vehicleState within 300 s")
+    if not station.called.wait(args.patience):
+        raise RuntimeError("the UAV did not call Station.vehicleState within %d s" % args.patience)
     if not station.alive:
         raise RuntimeError("uav.isAlive answered %r" % station.alive)
     if args.reference:
@@ -286,8 +295,8 @@ def main():
         return 0
     except KeyboardInterrupt:
         return 130
-    except Ice.ConnectTimeoutException:
-        print("mission: no link for %d s: is the UAV on, and in reach?" % args.patience, file=sys.stderr)
+    except Ice.TimeoutException:
+        print("mission: no answer for %d s: is the UAV on, and in reach?" % args.patience, file=sys.stderr)
         return 1
     except (Ice.Exception, RuntimeError, OSError, subprocess.CalledProcessError) as e:
         print("mission: %s" % e, file=sys.stderr)

@@ -10,6 +10,7 @@ import argparse
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -17,7 +18,6 @@ import sys
 import time
 
 IMAGE = "/usr/share/xplanet/images/earth.jpg"
-DEATHS = 2.0  # seconds in which all processes of a mission follow the first
 LONGEST = 240.0  # seconds of a mission on a busy machine
 
 
@@ -131,7 +131,7 @@ def is_whole(out):
     return True
 
 
-def killed(start, name, moment):
+def killed(start, name, moment, deaths):
     m = start()
     pid = m.find(name)
     time.sleep(moment)
@@ -142,16 +142,18 @@ def killed(start, name, moment):
     if name == "page":  # only a view
         expect(m.wait(LONGEST) == 0 and m.succeeded(), m, "the mission needs the page")
         return "the mission goes on"
-    expect(gone(everybody, DEATHS), m, "still there after %.0f s: %s" % (
-        DEATHS, [command_of(p) for p in everybody if lives(p)]))
+    begin = time.monotonic()
+    expect(gone(everybody, deaths), m, "still there after %.0f s: %s" % (
+        deaths, [command_of(p) for p in everybody if lives(p)]))
+    took = time.monotonic() - begin
     m.run.wait()
     if name != "run":
         expect("signal 9" in m.text(), m, "nobody says what happened")
         expect(m.run.returncode != 0 or m.succeeded(), m, "it says that it succeeded")
-    return "all end"
+    return "all end, within %.1f s" % took
 
 
-def stopped(start, name, moment):
+def stopped(start, name, moment, deaths):
     m = start()
     pid = m.find(name)
     time.sleep(moment)
@@ -164,7 +166,7 @@ def stopped(start, name, moment):
     return "goes on"
 
 
-def disk_full(start, name, moment):
+def disk_full(start, name, moment, deaths):
     """The folder is a file system of its own, of few blocks; what is in it at the end is copied."""
     script = "mount -t tmpfs -o size=%d none $0 || exit 9; status=0; \"$@\" || status=$?; cp -a $0 $0.kept; exit $status"
     m = start(prefix=["unshare", "--map-root-user", "--mount", "sh", "-c", script % (4096 * int(1 + moment)), "sh"])
@@ -176,7 +178,7 @@ def disk_full(start, name, moment):
     return "fails with a message" if status else "has room enough"
 
 
-def no_descriptors(start, name, moment):
+def no_descriptors(start, name, moment, deaths):
     m = start(prefix=["prlimit", "--nofile=%d" % (8 + int(4 * moment))])
     status = m.wait(60)
     expect(status is not None, m, "it hangs")
@@ -185,7 +187,7 @@ def no_descriptors(start, name, moment):
     return "fails with a message" if status else "succeeds"
 
 
-def port_taken(start, name, moment):
+def port_taken(start, name, moment, deaths):
     import socket
     with socket.create_server(("127.0.0.1", 0)) as s:
         m = start(options=["--port", str(s.getsockname()[1])])
@@ -194,16 +196,40 @@ def port_taken(start, name, moment):
     return "the mission goes on"
 
 
-def silent_air(start, name, moment):
-    m = start(options=["--loss", "1", "--patience", "20"])
-    expect(m.wait(90) not in (None, 0), m, "it succeeded, or goes on without end")
-    expect("no link for" in m.text() and "20 s to answer" in m.text(), m, "nobody says what is missing")
-    return "fails after its patience"
+def no_memory(start, name, moment, deaths):
+    """Each process has from 8 to 800 MB of addresses."""
+    m = start(prefix=["prlimit", "--as=%d" % (8e6 * 100 ** (moment / 6))])
+    status = m.wait(LONGEST)
+    expect(status is not None, m, "it hangs")
+    expect(status != 0 or m.succeeded(), m, "it says that it succeeded")
+    expect(status == 0 or m.text().strip(), m, "it fails without a word")
+    expect(not re.search("bad_alloc|Traceback", m.text()), m, "that is no message")
+    expect(is_whole(m.out), m, "a file is cut short")
+    return "fails with a message" if status else "succeeds"
+
+
+def clock_step(start, name, moment, deaths):
+    """The clock of the day goes an hour forward and two back, again and again."""
+    m = start(prefix=["env", "LD_PRELOAD=" + CLOCK_STEP])
+    expect(m.wait(LONGEST) == 0 and m.succeeded(), m, "it lives by the clock of the day")
+    expect("cannot be preloaded" not in m.text(), m, "no clock was stepped")
+    return "goes on"
+
+
+def air(loss):
+    def bad_air(start, name, moment, deaths):
+        m = start(options=["--loss", loss, "--patience", "20", "--seed", str(int(1000 * moment))])
+        status = m.wait(LONGEST)
+        expect(status is not None, m, "it goes on without end")
+        expect(status == 0 and m.succeeded() or re.search("mission: .*(no answer for 20 s|Exception)", m.text()), m, "nobody says what is missing")
+        return "fails after its patience" if status else "succeeds"
+    bad_air.__name__ = "loss of " + loss
+    return bad_air
 
 
 FAULTS = [(killed, n) for n in ("ground", "simulator", "run", "page")] + \
          [(stopped, n) for n in ("ground", "simulator", "page")] + \
-         [(f, "") for f in (disk_full, no_descriptors, port_taken, silent_air)]
+         [(f, "") for f in (disk_full, no_descriptors, no_memory, clock_step, port_taken, air("0.9"), air("1"))]
 
 
 def main():
@@ -213,8 +239,11 @@ def main():
     parser.add_argument("out")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--moments", type=int, default=1, help="of each fault")
+    parser.add_argument("--deaths", type=float, default=LONGEST, help="seconds in which all processes of a mission follow the first")
     parser.add_argument("--only", default="", help="faults whose name contains this")
     args = parser.parse_args()
+    global CLOCK_STEP
+    CLOCK_STEP = os.path.abspath(args.build) + "/tests/e2e/mission/libclock_step.so"
     draw = random.Random(args.seed)
     shutil.rmtree(args.out, ignore_errors=True)
     os.makedirs(args.out)
@@ -233,7 +262,7 @@ def main():
                 return missions[-1]
 
             try:
-                print("%-20s after %.2f s: %s" % (title, moment, fault(start, name, moment)), flush=True)
+                print("%-20s after %.2f s: %s" % (title, moment, fault(start, name, moment, args.deaths)), flush=True)
             except Fault as e:
                 failed += 1
                 print("%-20s after %.2f s: FAILED: %s" % (title, moment, e), flush=True)

@@ -143,7 +143,7 @@ public:
             now += 10; // even an engine that is always busy comes to the input's end
             if (ready && ++busy_ % 64)
                 return ready;
-            const uint32_t step = std::min(us, 10'000u);
+            const uint32_t step = std::min(us, at_ < end_ ? 10'000u : 200'000u);
             pass(step);
             us -= us == XBeeAT::Clock::forever ? 0 : step;
             if (us == 0)

@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""interrupted: make regress, make synth and make new-ip are ended at moments drawn from a seed, by Ctrl-C (INT to all),
+TERM or KILL; no process is left, and the next run is right.
+
+Usage: interrupted.py source-folder build-folder work-folder moments new_ip|regress|synth...      SEED=1
+"""
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+LONGEST = 300  # seconds: ends a hang
+source, build, work = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
+moments, tools = int(sys.argv[4]), sys.argv[5:]
+
+
+def members(session):
+    """Processes of a session, but for those that have ended."""
+    found = []
+    for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text().rsplit(")", 1)[1].split()
+        except OSError:
+            continue
+        if int(fields[3]) == session and fields[0] != "Z":
+            found.append(int(stat.parent.name))
+    return found
+
+
+def interrupt(command, number, moment, where):
+    """Starts it, ends it; true if it still ran."""
+    with open(work / "log", "w") as log:
+        run = subprocess.Popen(command, cwd=where, stdout=log, stderr=log, start_new_session=True)
+        try:
+            run.wait(moment)
+            return False
+        except subprocess.TimeoutExpired:
+            (os.killpg if number == signal.SIGINT else os.kill)(run.pid, number)
+        run.wait(LONGEST)
+        end = time.monotonic() + LONGEST
+        while members(run.pid):
+            assert time.monotonic() < end, "left over: %s" % members(run.pid)
+            time.sleep(0.05)
+        return True
+
+
+def regress():
+    out = work / "regress"
+    return ([build / "tests/regress/regress", "--source", source, "--build", build, "--out", out, "--name", "^tree.pages$"], source, 1.5,
+            lambda: [row[:2] for row in json.loads((out / "report.json").read_text())["results"]])
+
+
+def synth():
+    out = work / "synth"
+    return ([build / "synth/utilisation", "--source", source, "--generated", build / "gen", "--output", out, "--design", "npi_arbiter"], source, 6,
+            lambda: (out / "report.json").read_text())
+
+
+def new_ip():
+    tree = work / "tree"
+    for folder in ("bus", "hdl", "sw", "testbench", "synth", "ip"):
+        (tree / folder).mkdir(parents=True)
+    shutil.copy(source / "ip/new.sh", tree / "ip")
+    shutil.copytree(source / "ip/template", tree / "ip/template")
+    core = tree / "ip/low_pass"
+
+    def written():
+        files = {path.name: path.read_bytes() for path in core.iterdir()}
+        shutil.rmtree(core)
+        return files
+    return ["sh", "-c", "[ -d ip/low_pass ] || ip/new.sh low_pass vhdl none"], tree, 0.15, written
+
+
+def main():
+    shutil.rmtree(work, ignore_errors=True)
+    work.mkdir(parents=True)
+    draw = random.Random(int(os.environ.get("SEED", 1)))
+    for tool in tools:
+        command, where, longest, result = {"new_ip": new_ip, "regress": regress, "synth": synth}[tool]()
+        subprocess.run(command, cwd=where, check=True, stdout=subprocess.DEVNULL, timeout=LONGEST)
+        right = result()
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL) * moments:
+            moment = draw.uniform(0, longest)
+            shutil.rmtree(work / tool, ignore_errors=True)  # what the run before has kept
+            cut = interrupt(command, number, moment, where)
+            subprocess.run(command, cwd=where, check=True, stdout=subprocess.DEVNULL, timeout=LONGEST)
+            assert result() == right, "%s: another result after %s at %.2f s" % (tool, number.name, moment)
+            print("%-8s %-7s at %.2f s%s: the next run is right" % (tool, number.name, moment, "" if cut else " (too late)"), flush=True)
+
+
+main()

@@ -27,6 +27,12 @@ void writeParameters(Writer& w, const Declaration& d, const Operation& o) {
     writeWithValues(w, inSlots(o), "ice_values");
 }
 
+// An exception comes that the operation does not declare: Python's servants can throw any.
+void refuseException(Writer& w) {
+    w.line("if (status == ICE_USER_EXCEPTION)");
+    w.nested("status = ICE_UNKNOWN_USER_EXCEPTION;");
+}
+
 void syncFunction(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
     w.block(proxySignature(d, o), {}, [&] {
         if (sendsClasses(o))
@@ -46,6 +52,8 @@ void syncFunction(Writer& w, const CContext& c, const Declaration& d, const Oper
             w.line("if (status == ICE_USER_EXCEPTION && ex)");
             w.nested("status = " + exceptionType(d, o) + "_readFromInputStream(ex, is);");
         }
+        if (o.throws.empty())
+            refuseException(w);
         w.line("return Ice_ObjectPrx_end(self, status);");
     });
 }
@@ -80,6 +88,8 @@ void completedFunction(Writer& w, const CContext& c, const Declaration& d, const
                     w.nested("status = " + exceptionType(d, o) +
                              "_readFromInputStream(&call->exception, is);");
                 }
+                if (o.throws.empty())
+                    refuseException(w);
                 if (!hasResults(o) && o.throws.empty())
                     w.line("(void)is;");
                 w.line("call->status = status;");

@@ -24,17 +24,13 @@ int OS_PriorityTaken(U8 priority) {
 }
 
 U8 OS_Set_first(const OS_Set* set) {
-    U8 n = set->word[0] ? 0U : 32U;
-    U32 bits = set->word[n >> 5];
-    U8 half;
+    /* A bit times a de Bruijn sequence: its five upper bits differ for each of the 32. */
+    static const U8 place[32] = {0,  1,  28, 2,  29, 14, 24, 3, 30, 22, 20, 15, 25, 17, 4,  8,
+                                 31, 27, 13, 23, 21, 19, 16, 7, 26, 12, 18, 6,  11, 5,  10, 9};
+    U32 n = set->word[0] ? 0U : 32U, bits = set->word[n >> 5];
     if (bits == 0)
         return OS_LOWEST_PRIO + 1U;
-    for (half = 16U; half; half >>= 1)
-        if (!(bits & ((1U << half) - 1U))) {
-            bits >>= half;
-            n = (U8)(n + half);
-        }
-    return n;
+    return (U8)(n + place[((bits & (0U - bits)) * 0x077CB531U) >> 27]);
 }
 
 /* Switches to the highest ready task; interrupts are disabled. */

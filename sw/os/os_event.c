@@ -102,6 +102,8 @@ void OSMutexPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr) {
 INT8U OSMutexPost(OS_EVENT* pevent) {
     OS_CPU_SR cpu_sr;
     OS_Task* self = os_kernel.current;
+    U8 priority = self->priority;
+    int mayRun; /* another task: one that waited, or now that this one has its own priority again */
     if (os_kernel.interruptNesting)
         return OS_ERR_POST_ISR;
     if (!pevent)
@@ -114,8 +116,10 @@ INT8U OSMutexPost(OS_EVENT* pevent) {
     if (self->priority == pevent->ceiling && self->priority != self->base)
         OS_ChangePriority(self, self->base);
     pevent->owner = OS_EventWake(pevent);
+    mayRun = pevent->owner || self->priority != priority;
     OS_EXIT_CRITICAL();
-    OS_Sched();
+    if (mayRun)
+        OS_Sched();
     return OS_ERR_NONE;
 }
 

@@ -9,6 +9,8 @@ static void Shop_PricedPrx_price_completed(void *cookie, Ice_Status status, Ice_
         if (is->failed)
             status = ICE_MARSHAL;
     }
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     call->status = status;
     call->done = 1;
     if (call->completed)
@@ -58,6 +60,8 @@ static void Shop_BookPrx_next_completed(void *cookie, Ice_Status status, Ice_Inp
         if (is->failed)
             status = ICE_MARSHAL;
     }
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     call->status = status;
     call->done = 1;
     if (call->completed)

@@ -20,6 +20,8 @@ Ice_Status Shop_PricedPrx_price(Shop_PricedPrxPtr self, Ice_Int *result) {
     if (status == ICE_OK) {
         *result = Ice_InputStream_readInt(is);
     }
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     return Ice_ObjectPrx_end(self, status);
 }
 
@@ -74,6 +76,8 @@ Ice_Status Shop_BookPrx_next(Shop_BookPrxPtr self, const Shop_Ware *last, Shop_W
         Ice_InputStream_readValue(is, result, &Shop_Ware_type);
         Ice_InputStream_endValues(is);
     }
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     return Ice_ObjectPrx_end(self, status);
 }
 

@@ -9,6 +9,8 @@ static void Outer_BasePrx_name_completed(void *cookie, Ice_Status status, Ice_In
         if (is->failed)
             status = ICE_MARSHAL;
     }
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     call->status = status;
     call->done = 1;
     if (call->completed)
@@ -25,6 +27,8 @@ Ice_Status Outer_BasePrx_name_async(Outer_BasePrxPtr self, Outer_Base_name_Async
 
 static void Outer_BasePrx_init__completed(void *cookie, Ice_Status status, Ice_InputStreamPtr is) {
     Outer_Base_init__Async *call = (Outer_Base_init__Async *)cookie;
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     (void)is;
     call->status = status;
     call->done = 1;
@@ -114,6 +118,8 @@ static void Outer_ServicePrx_maybe_completed(void *cookie, Ice_Status status,
         if (is->failed)
             status = ICE_MARSHAL;
     }
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     call->status = status;
     call->done = 1;
     if (call->completed)
@@ -190,6 +196,8 @@ Ice_Status Outer_ServicePrx_graph_async(Outer_ServicePrxPtr self, const Outer_No
 static void Outer_ServicePrx_void_completed(void *cookie, Ice_Status status,
         Ice_InputStreamPtr is) {
     Outer_Service_void_Async *call = (Outer_Service_void_Async *)cookie;
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     (void)is;
     call->status = status;
     call->done = 1;
@@ -237,6 +245,8 @@ Ice_Status Outer_ServicePrx_any_async(Outer_ServicePrxPtr self, const Outer_Serv
 static void Outer_Second_PingedPrx_ping_completed(void *cookie, Ice_Status status,
         Ice_InputStreamPtr is) {
     Outer_Second_Pinged_ping_Async *call = (Outer_Second_Pinged_ping_Async *)cookie;
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     (void)is;
     call->status = status;
     call->done = 1;
@@ -255,6 +265,8 @@ Ice_Status Outer_Second_PingedPrx_ping_async(Outer_Second_PingedPrxPtr self,
 
 static void Outer_LaterPrx_done_completed(void *cookie, Ice_Status status, Ice_InputStreamPtr is) {
     Outer_Later_done_Async *call = (Outer_Later_done_Async *)cookie;
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     (void)is;
     call->status = status;
     call->done = 1;

@@ -20,6 +20,8 @@ Ice_Status Outer_BasePrx_name(Outer_BasePrxPtr self, Ice_String *result) {
     if (status == ICE_OK) {
         *result = Ice_InputStream_readString(is);
     }
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     return Ice_ObjectPrx_end(self, status);
 }
 
@@ -30,6 +32,8 @@ Ice_Status Outer_BasePrx_init_(Outer_BasePrxPtr self) {
     if (!os)
         return (Ice_Status)self->status;
     status = Ice_ObjectPrx_invoke(self, &is);
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     return Ice_ObjectPrx_end(self, status);
 }
 
@@ -125,6 +129,8 @@ Ice_Status Outer_ServicePrx_maybe(Outer_ServicePrxPtr self, const Outer_Shapes *
         if (*has_result)
             *result = Ice_InputStream_readString(is);
     }
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     return Ice_ObjectPrx_end(self, status);
 }
 
@@ -166,6 +172,8 @@ Ice_Status Outer_ServicePrx_void(Outer_ServicePrxPtr self, Ice_Int self_, Ice_In
     Ice_OutputStream_writeInt(os, result_);
     Outer_Key_writeToOutputStream(key, os);
     status = Ice_ObjectPrx_invoke(self, &is);
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     return Ice_ObjectPrx_end(self, status);
 }
 
@@ -203,6 +211,8 @@ Ice_Status Outer_Second_PingedPrx_ping(Outer_Second_PingedPrxPtr self) {
     if (!os)
         return (Ice_Status)self->status;
     status = Ice_ObjectPrx_invoke(self, &is);
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     return Ice_ObjectPrx_end(self, status);
 }
 
@@ -229,5 +239,7 @@ Ice_Status Outer_LaterPrx_done(Outer_LaterPrxPtr self) {
     if (!os)
         return (Ice_Status)self->status;
     status = Ice_ObjectPrx_invoke(self, &is);
+    if (status == ICE_USER_EXCEPTION)
+        status = ICE_UNKNOWN_USER_EXCEPTION;
     return Ice_ObjectPrx_end(self, status);
 }

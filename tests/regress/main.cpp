@@ -212,45 +212,19 @@ void build(const Options& options, const History& history) {
         throw std::runtime_error("it does not build:\n" + out.text);
 }
 
-int regress(const Options& options) {
-    if (!options.tree.empty()) {
-        std::cout << treeState(options.source, options.tree) << '\n';
+// Says why no test is chosen. Returns the exit status.
+int nothingChosen(const Options& options, const std::vector<Test>& all) {
+    if (options.selection.changed || options.selection.failed) {
+        std::cout << "Nothing to run: no test " << (options.selection.failed ? "failed" : "changed")
+                  << " since the last run.\n";
         return 0;
     }
-    const FolderLock lock(options.out, "regress");
-    History history(options.out + "/history.jsonl");
-    if (history.damaged())
-        std::cout << fmt::format("{} damaged lines of {}/history.jsonl are left out\n",
-                                 history.damaged(), options.out);
-    if (options.make)
-        build(options, history);
-    auto all = listTests(options.build);
-    fingerprint(all, options.source, options.build);
-    auto chosen = choose(all, options.selection, history);
-    if (chosen.empty()) {
-        if (options.selection.changed || options.selection.failed) {
-            std::cout << "Nothing to run: no test "
-                      << (options.selection.failed ? "failed" : "changed")
-                      << " since the last run.\n";
-            return 0;
-        }
-        std::cerr << "regress: no test is chosen by this.\n" << known(all) << '\n';
-        return 2;
-    }
-    if (options.list) {
-        for (const Test& test : chosen)
-            std::cout << test.name << '\n';
-        return 0;
-    }
-    FailingSeeds seeds(options.out + "/seeds.jsonl");
-    for (const std::string& gone : seeds.forgetOthers(all))
-        std::cout << gone << " is no test any more: its seeds are forgotten\n";
-    auto rounds = roundsOf(chosen, options, seeds);
-    if (rounds.empty()) {
-        std::cout << "Nothing to run: no seed is kept that made one of these tests fail.\n";
-        return 0;
-    }
-    auto start = std::chrono::steady_clock::now();
+    std::cerr << "regress: no test is chosen by this.\n" << known(all) << '\n';
+    return 2;
+}
+
+std::vector<Result> run(const std::vector<Round>& rounds, const Options& options,
+                        History& history) {
     std::vector<Result> results;
     for (const Round& round : rounds) {
         Progress progress(round.tests, history, options.jobs);
@@ -269,6 +243,52 @@ int regress(const Options& options) {
         progress.done();
         results.insert(results.end(), part.begin(), part.end());
     }
+    return results;
+}
+
+Properties propertiesOf(const std::vector<Failure>& failures) {
+    Properties properties;
+    for (const Failure& failure : failures) {
+        auto& of =
+            properties[failure.result.name] = {{"repeat", failure.repeat}, {"log", failure.log}};
+        if (!failure.wave.empty())
+            of["wave"] = failure.wave;
+    }
+    return properties;
+}
+
+int regress(const Options& options) {
+    if (!options.tree.empty()) {
+        std::cout << treeState(options.source, options.tree) << '\n';
+        return 0;
+    }
+    const FolderLock lock(options.out, "regress");
+    History history(options.out + "/history.jsonl");
+    if (history.damaged())
+        std::cout << fmt::format("{} damaged lines of {}/history.jsonl are left out\n",
+                                 history.damaged(), options.out);
+    if (options.make)
+        build(options, history);
+    auto all = listTests(options.build);
+    fingerprint(all, options.source, options.build);
+    auto chosen = choose(all, options.selection, history);
+    if (chosen.empty())
+        return nothingChosen(options, all);
+    if (options.list) {
+        for (const Test& test : chosen)
+            std::cout << test.name << '\n';
+        return 0;
+    }
+    FailingSeeds seeds(options.out + "/seeds.jsonl");
+    for (const std::string& gone : seeds.forgetOthers(all))
+        std::cout << gone << " is no test any more: its seeds are forgotten\n";
+    auto rounds = roundsOf(chosen, options, seeds);
+    if (rounds.empty()) {
+        std::cout << "Nothing to run: no seed is kept that made one of these tests fail.\n";
+        return 0;
+    }
+    auto start = std::chrono::steady_clock::now();
+    auto results = run(rounds, options, history);
     double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     auto failures = examine(results, all, options.out);
@@ -279,14 +299,7 @@ int regress(const Options& options) {
     auto data = gather(history, all, results, failures, options.source);
     data["seeds"] = seeds.list();
     writeReports(data, options.out);
-    Properties properties;
-    for (const Failure& failure : failures) {
-        auto& of =
-            properties[failure.result.name] = {{"repeat", failure.repeat}, {"log", failure.log}};
-        if (!failure.wave.empty())
-            of["wave"] = failure.wave;
-    }
-    writeJUnit(options.out + "/junit.xml", results, properties);
+    writeJUnit(options.out + "/junit.xml", results, propertiesOf(failures));
     summary(data, failures, options.out);
     return failures.empty() ? 0 : 1;
 }

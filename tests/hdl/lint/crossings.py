@@ -74,28 +74,29 @@ def main():
             for port in outs:
                 for bit in nets[port]:
                     comb[bit] = needs
-    seen = {}
+    seen, visited = {}, set()
 
     def origins(bit):
-        """Registers and pins that a net depends on: {clock: one of them}."""
-        stack, done, found = [bit], set(), {}
+        """Registers and pins that a net depends on: {clock: one of them}; each net is looked at once."""
+        stack = [bit]
         while stack:
-            b = stack.pop()
-            if isinstance(b, tuple):
-                found.setdefault(b[1], "a memory")
-            elif b in done or b in "01xz" if isinstance(b, str) else b in done:
-                continue
+            b = stack[-1]
+            if b in seen:
+                stack.pop()
+            elif isinstance(b, tuple):
+                seen[b] = {b[1]: "a memory"}
             elif b in source:
-                found.setdefault(source[b], names.get(b, "?"))
-            elif b in comb:
-                done.add(b)
-                if b in seen:
-                    for key, value in seen[b].items():
-                        found.setdefault(key, value)
+                seen[b] = {source[b]: names.get(b, "?")}
+            elif b not in comb:
+                seen[b] = {}
+            else:
+                later = [n for n in comb[b] if n not in seen and n not in visited] if b not in visited else []
+                visited.add(b)
+                if later:
+                    stack += later
                 else:
-                    stack += comb[b]
-        seen[bit] = found
-        return found
+                    seen[b] = {of: through for n in comb[b] for of, through in seen.get(n, {}).items()}
+        return seen[bit]
 
     bad = set()
     for name, own, data in sinks:

@@ -6,7 +6,7 @@ set -eu
 top=$1 clock=$2 source=$3 gen=$4 work=$5 parameters=$6
 shift 6
 mkdir -p "$work"
-folders="$source/bus $source/hdl/fsmc $source/hdl/ddr $source/hdl/modem $source/hdl/system $source/hdl/cdc $source/hdl $source/synth"
+folders="$gen $(ls -d "$source"/ip/*/ | tr "\n" " ") $source/bus $source/hdl/fsmc $source/hdl/ddr $source/hdl/modem $source/hdl/system $source/hdl/cdc $source/hdl $source/synth"
 file=$(for f in $folders; do ls "$f/$top.v" 2>/dev/null || true; done)
 libraries=$(for f in $folders; do printf ' -libdir %s' "$f"; done)
 yosys -q -p "verilog_defaults -add -I$gen -I$source/hdl/system; read_verilog $file; $parameters hierarchy -top $top $libraries;

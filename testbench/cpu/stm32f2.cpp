@@ -93,22 +93,32 @@ void Stm32F2::lookAround() {
         cpu_.requestReset();
     }
     if (onTime_)
-        onTime_();
+        wantedNs_ = onTime_();
 }
 
 unsigned Stm32F2::sleep(unsigned limit) {
-    constexpr unsigned step = 64; // HCLK at the pins
+    const unsigned each = config_.coreCyclesPerHclk;
+    const uint64_t until = std::min<uint64_t>(wantedNs_, watchdog_.on ? watchdog_.due : ~0ull);
     unsigned passed = 0;
     lineChanged_ = false;
-    for (unsigned n = 0; n < step && passed < limit && !lineChanged_; ++n) {
-        unsigned cycles = std::min(config_.coreCyclesPerHclk - carry_, limit - passed);
+    do {
+        // Most of it at once, where the design is quiet; by HCLK where it is not.
+        const uint64_t now = now_();
+        const unsigned hclks =
+            now < until ? fsmc_.idleQuiet((carry_ + limit - passed) / each, until - now) : 0;
+        if (hclks) {
+            passed += hclks * each - carry_;
+            carry_ = 0;
+            continue;
+        }
+        const unsigned cycles = std::min(each - carry_, limit - passed);
         passed += cycles;
         carry_ += cycles;
-        if (carry_ == config_.coreCyclesPerHclk) {
+        if (carry_ == each) {
             carry_ = 0;
             fsmc_.idle(1);
         }
-    }
+    } while (passed < limit && !lineChanged_ && now_() < until);
     lookAround();
     return passed;
 }

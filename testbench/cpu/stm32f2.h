@@ -33,8 +33,9 @@ public:
     CortexM3::Stop run(bool singleStep = false) { return cpu_.run(singleStep); }
     // Sets the level at a pin of port B, 0..4, which EXTI can listen to.
     void setPinB(unsigned pin, bool high);
-    // Sets what is called whenever time has passed, at the pace of the pins.
-    void onTime(std::function<void()> called) { onTime_ = std::move(called); }
+    // Sets what is called whenever time has passed, at the pace of the pins. It returns the time in
+    // ns at which it wants to be called; until then a processor that sleeps need not call it.
+    void onTime(std::function<uint64_t()> called) { onTime_ = std::move(called); }
 
     struct Resets {
         unsigned power = 0, software = 0, watchdog = 0;
@@ -62,7 +63,8 @@ private:
     FsmcMaster& fsmc_;
     std::function<uint64_t()> now_;
     Config config_;
-    std::function<void()> onTime_;
+    std::function<uint64_t()> onTime_;
+    uint64_t wantedNs_ = 0; // when it wants to be called
     CortexM3 cpu_;
     std::optional<ElfImage> image_;
     std::map<uint32_t, uint32_t> registers_; // that only store

@@ -54,6 +54,20 @@ void FsmcMaster::passHclk(unsigned cycles) {
     }
 }
 
+unsigned FsmcMaster::idleQuiet(unsigned hclk, uint64_t ns) {
+    if (delays_ || !design_.passQuiet)
+        return 0;
+    const uint64_t clocks =
+        design_.passQuiet((phase_ + uint64_t(hclk) * clkPerUnit_) / hclkPerUnit_, ns);
+    if (clocks == 0)
+        return 0;
+    // Up to the last of these clocks, as in steps.
+    const uint64_t cycles = (clocks * hclkPerUnit_ - phase_ + clkPerUnit_ - 1) / clkPerUnit_;
+    phase_ += static_cast<unsigned>(cycles * clkPerUnit_ - clocks * hclkPerUnit_);
+    hclks_ += cycles;
+    return static_cast<unsigned>(cycles);
+}
+
 uint32_t& FsmcMaster::fsmcRegister(uint32_t address) {
     uint32_t offset = address - registersAt;
     if (offset < 32 && offset % 4 == 0) {

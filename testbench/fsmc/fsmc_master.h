@@ -45,9 +45,12 @@ public:
 class FsmcMaster {
 public:
     // The master's port to the design: `tick` clocks it once with the pins as they are, `settle`
-    // shows it changed pins between two clock edges. Both update the design's side.
+    // shows it changed pins between two clock edges. Both update the design's side. `passQuiet`
+    // passes up to so many clocks, and up to so many ns, in which nothing of the design moves, and
+    // returns how many; a design without it is never quiet.
     struct Design {
         std::function<void()> tick, settle;
+        std::function<uint64_t(uint64_t clocks, uint64_t ns)> passQuiet = nullptr;
     };
     FsmcMaster(FsmcPins& pins, Design design, unsigned hclkPerUnit = 6, unsigned clkPerUnit = 5);
     ~FsmcMaster();
@@ -82,6 +85,9 @@ public:
     void abortReadBurst(uint32_t address, unsigned edges);
     // HCLK cycles in which the processor does something else.
     void idle(unsigned hclk) { passHclk(hclk); }
+    // Passes up to so many HCLK cycles, and not many more than so many ns, as far as the design is
+    // quiet. Returns how many have passed.
+    unsigned idleQuiet(unsigned hclk, uint64_t ns);
 
     uint64_t accesses() const { return accesses_; }
     uint64_t hclks() const { return hclks_; } // HCLK cycles of all accesses and pauses

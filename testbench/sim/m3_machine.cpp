@@ -32,7 +32,7 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
     uint32_t guardAt = asks ? stm32_.image()->symbol("uav_guardMs") : 0;
     stm32_.onTime([this, guardAt, guardMs = config.guardMs] {
         if (soc_.cycles() < nextPoll_)
-            return;
+            return nextPoll_ * SocModel::clkNs;
         nextPoll_ = soc_.cycles() + SocModel::clkHz / 1000;
         if (guardAt)
             cpu().writeMemory(guardAt, &guardMs, sizeof guardMs);
@@ -40,6 +40,7 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
         isAsked_ = isAsked_ || (stub_ && stub_->wantsStop());
         if (over_ || isAsked_ || (checkpoints_ && soc_.now() >= nextCopyNs_))
             cpu().stop();
+        return nextPoll_ * SocModel::clkNs;
     });
     soc_.onIrq([this](bool high) { stm32_.setPinB(0, high); });
 }

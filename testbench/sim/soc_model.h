@@ -32,14 +32,14 @@ public:
     void reset();
     void tick(); // one clock cycle
 
-    // Clock cycles that pass at once, as far as the chip is quiet, up to clock `until`.
-    void passQuiet(uint64_t until) {
-        if (until > cycles_) {
-            uint64_t clocks = std::min(quiet_, until - cycles_);
-            quiet_ -= clocks;
-            owed_ += clocks;
-            cycles_ += clocks;
-        }
+    // Clock cycles that pass at once, as far as the chip is quiet, up to clock `until`. Returns how
+    // many they were.
+    uint64_t passQuiet(uint64_t until) {
+        const uint64_t clocks = until > cycles_ ? std::min(quiet_, until - cycles_) : 0;
+        quiet_ -= clocks;
+        owed_ += clocks;
+        cycles_ += clocks;
+        return clocks;
     }
     // Evaluates each clock from now on, or no longer; for comparisons.
     void evaluateAll(bool all) {

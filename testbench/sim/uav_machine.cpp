@@ -59,7 +59,7 @@ void UavMachine::serve() {
 void UavMachine::idle() {
     do {
         soc_.tick();
-        soc_.passQuiet(nextTick_);
+        (void)soc_.passQuiet(nextTick_);
     } while (!pending());
 }
 

@@ -22,7 +22,8 @@ static Autopilot_Vehicle vehicle;
 static OS_EVENT* report; /* a frame is done: tell the station */
 static U32 frames, corners;
 static U8 irqEnabled;
-static U32 busErrors; /* written by the interrupt only */
+/* Written by the interrupt only; where the last one was is for a debugger. */
+static U32 busErrors, busErrorPlace;
 
 Ice_Status Autopilot_Vehicle_isAlive(Autopilot_VehiclePtr self, Ice_Short sessionId,
                                      Ice_Bool* result, const Ice_Current* current) {
@@ -112,7 +113,7 @@ void UAV_irqHandler(void) {
     U32 lines[2];
     lines[0] = FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_LO);
     lines[1] = MAP_SLOT_COUNT > 32U ? FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_HI) : 0U;
-    if ((lines[0] >> MAP_SLOT_SYSTEM & 1U) && FSMC_checkError(0) == FSMC_BUS_ERROR)
+    if ((lines[0] >> MAP_SLOT_SYSTEM & 1U) && FSMC_checkError(&busErrorPlace) == FSMC_BUS_ERROR)
         ++busErrors;
     if (lines[0] >> MAP_SLOT_MODEM & 1U) {
         (void)Radio_interrupt();

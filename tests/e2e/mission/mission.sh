@@ -72,7 +72,7 @@ sensor) # the picture goes through the camera's pins and the vision core, and ne
     ;;
 m3) # the ARM binary
     run "$out" --image $image --cpu m3 && check_output "$out"
-    replays_with 'bit by bit the flight that was recorded' "$out"
+    replays_with 'bit by bit the flight that was recorded' "$out" --from 0.5 --to 0.51
     ;;
 cpp) # the C++11 library of the plugin, a C++ client, and a proxy that goes through its string form
     "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --guard $guard -- \

@@ -68,7 +68,7 @@ void Child::stop() {
     for (int i = 0; runs(); ++i) {
         if (i == 0)
             kill(pid_, SIGINT);
-        else if (i == 150)
+        else if (i == 100)
             kill(pid_, SIGKILL);
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }

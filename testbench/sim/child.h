@@ -27,7 +27,7 @@ public:
                const std::map<std::string, std::string>& places);
     // True while it runs. If a signal ends it, stderr says so.
     bool runs();
-    // Asks it to end, and waits for a second and a half at most until it has.
+    // Asks it to end, and waits for a second at most until it has.
     void stop();
     int status() const { return status_; } // as a shell has it
 

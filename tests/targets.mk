@@ -36,9 +36,9 @@ regress: setup-tests $(BUILD)/build.ninja ## run the regression, write build/reg
 	    --launcher $(LAUNCHER) $(if $(NAME),--name '$(NAME)') $(if $(BLOCK),--block '$(BLOCK)') \
 	    $(if $(LABEL),--label '$(LABEL)') $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed) $(if $(KEPT),--kept)
 
-# Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them.
+# Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them. COMPARE_MS: test_quiet compares a second.
 nightly: setup-tests build ## what a timer runs: seeds that have failed, the regression with fresh seeds (NIGHTLY=3 of them), ZeroC's own suites
-	@status=0; tool="$(BUILD)/tests/regress/regress --build $(BUILD) --jobs $(TESTS) --waves $(WAVES) --launcher $(LAUNCHER)"; \
+	@status=0; export COMPARE_MS=1000; tool="$(BUILD)/tests/regress/regress --build $(BUILD) --jobs $(TESTS) --waves $(WAVES) --launcher $(LAUNCHER)"; \
 	    $$tool --kept $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
 	    $$tool --seed random --repeat $(NIGHTLY) $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
 	    ctest --test-dir $(BUILD) -C zeroc -L zeroc -j $(TESTS) --output-on-failure || status=$$?; \

@@ -37,6 +37,7 @@ SocModel::~SocModel() {
 }
 
 void SocModel::reset() {
+    wake();
     top_->rst_i = 1;
     settle();
     for (int i = 0; i < 8; ++i)

@@ -11,13 +11,18 @@
 #include "os_cfg.h"
 #include "os_cpu.h"
 
+typedef U8 BOOLEAN;
 typedef U8 INT8U;
 typedef U16 INT16U;
 typedef U32 INT32U;
 
+#define OS_FALSE 0U
+#define OS_TRUE 1U
+
 #define OS_ERR_NONE 0U
 #define OS_ERR_EVENT_TYPE 1U /* the event is of another kind */
 #define OS_ERR_PEND_ISR 2U   /* pending from an interrupt */
+#define OS_ERR_POST_NULL_PTR 3U
 #define OS_ERR_PEVENT_NULL 4U
 #define OS_ERR_POST_ISR 5U /* a mutex has an owner, which no interrupt is */
 #define OS_ERR_PDATA_NULL 9U
@@ -25,6 +30,7 @@ typedef U32 INT32U;
 #define OS_ERR_PEND_LOCKED 13U /* the scheduler is locked */
 #define OS_ERR_CREATE_ISR 16U
 #define OS_ERR_Q_FULL 30U
+#define OS_ERR_Q_EMPTY 31U
 #define OS_ERR_PRIO_EXIST 40U /* the priority is taken */
 #define OS_ERR_PRIO_INVALID 42U
 #define OS_ERR_SEM_OVF 51U
@@ -45,6 +51,7 @@ void OSStart(void);
  * address of its stack. */
 INT8U OSTaskCreate(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8U prio);
 
+#define OS_TASK_OPT_NONE 0U
 #define OS_TASK_OPT_STK_CHK 1U /* OSTaskStkChk may be asked about it */
 #define OS_TASK_OPT_STK_CLR 2U /* the stack is filled with zeros, which OSTaskStkChk counts */
 

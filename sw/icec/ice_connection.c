@@ -10,12 +10,17 @@
 Ice_Status Ice_Connection_createProxy(Ice_CommunicatorPtr ic, int connection, const char* identity,
                                       Ice_ObjectPrxPtr prx) {
     Ice_Identity id = icec_parseIdentity(identity);
+    return Ice_Connection_createProxyTo(ic, connection, &id, prx);
+}
+
+Ice_Status Ice_Connection_createProxyTo(Ice_CommunicatorPtr ic, int connection,
+                                        const Ice_Identity* identity, Ice_ObjectPrxPtr prx) {
     icec_initProxy(prx, ic);
     if (icec_connectionState(ic, connection) == ICE_CONNECTION_NONE)
         return ICE_CONNECTION_LOST;
     prx->connection = connection;
     prx->generation = ic->connections[connection].generation;
-    return icec_setIdentity(prx, &id.name, &id.category, 0);
+    return icec_setIdentity(prx, &identity->name, &identity->category, 0);
 }
 
 void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection) {

@@ -275,9 +275,12 @@ Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs);
 void Ice_Communicator_destroy(Ice_CommunicatorPtr ic, Ice_Int timeoutMs);
 
 /* Makes a proxy to an object of the peer on this connection, whoever made it: calls go back on it.
- * It ends with the connection (ICE_CONNECTION_LOST), and cannot be passed to anybody. */
+ * It ends with the connection (ICE_CONNECTION_LOST), and cannot be passed to anybody. From
+ * "category/name", or from an identity as Ice_ObjectPrx_getIdentity has it. */
 Ice_Status Ice_Connection_createProxy(Ice_CommunicatorPtr ic, int connection, const char* identity,
                                       Ice_ObjectPrxPtr prx);
+Ice_Status Ice_Connection_createProxyTo(Ice_CommunicatorPtr ic, int connection,
+                                        const Ice_Identity* identity, Ice_ObjectPrxPtr prx);
 /* Closes one connection in good order, without waiting for the peer. */
 void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection);
 

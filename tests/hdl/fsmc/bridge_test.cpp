@@ -236,6 +236,7 @@ TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     for (; done < before + 4; ++done)
         fsmc_.write16(ddr + 8 * done, value(done));
     EXPECT_EQ(b_.errors, 4u);
+    fsmc_.idle(8); // the last one has been noted
     b_.memory.hold(false);
     for (unsigned i = 0; i < done; ++i)
         EXPECT_EQ(fsmc_.read16(ddr + 8 * i), i < before + 2 ? value(i) : 0) << "write " << i;

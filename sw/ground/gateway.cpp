@@ -31,7 +31,7 @@ using std::chrono::seconds;
 
 volatile sig_atomic_t stopSignal = 0;
 
-constexpr size_t mostWaiting = 64;    // clients without a channel
+constexpr size_t mostWaiting = 256;   // clients without a channel
 constexpr seconds stationPatience{5}; // of the UAV, until the station has accepted
 
 struct Options {
@@ -93,7 +93,7 @@ int listenAt(const std::string& where) {
     int fd = newSocket(address), yes = 1;
     setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     if (fd < 0 || bind(fd, reinterpret_cast<sockaddr*>(&address.bytes), address.size) != 0 ||
-        listen(fd, 16) != 0)
+        listen(fd, SOMAXCONN) != 0)
         throw std::system_error(errno, std::generic_category(), "cannot listen at " + where);
     return fd;
 }

@@ -19,6 +19,12 @@ soak: $(BUILD)/build.ninja ## endurance of the radio: MINUTES=4 of messages and 
 	@SEED=$(SEED) SOAK_BYTES=$(FUZZED) $(BUILD)/tests/hdl/modem/test_modem_soak --gtest_brief=1
 .PHONY: soak
 
+# Simulated time: an hour of it is minutes of a processor.
+fly: $(BUILD)/build.ninja ## a long flight: MINUTES=4 of stock Ice's calls now and then, loss, reboots of UAV, modems and ground; SEED=1
+	@$(NINJA) --quiet test_chip_soak
+	@SEED=$(SEED) SOAK_REST=10 SOAK_SECONDS=$$(echo $(MINUTES) | awk '{print $$1 * 60}') $(BUILD)/tests/sw/ground/chip/test_chip_soak --gtest_brief=1
+.PHONY: fly
+
 # The regression: the tests of `make test` with selection, history, waveforms of failures and a page.
 BLOCK    ?=
 REPEAT   ?= 1

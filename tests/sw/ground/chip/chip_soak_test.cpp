@@ -5,6 +5,8 @@
 // doubled or out of order; each answered, or reported by a status that says so.
 //
 //   SOAK_SECONDS=600 build/main/tests/sw/ground/chip/test_chip_soak (simulated seconds; default 5)
+//   SOAK_REST=10 has each caller rest for so many seconds on average; misfortunes are rarer by as
+//   much. That is a flight (make fly): most of its clocks pass at once.
 
 #include "../reported.h"
 #include "chip_world.h"
@@ -72,6 +74,11 @@ protected:
         const char* text = std::getenv("SOAK_SECONDS");
         return text && *text ? std::atof(text) : 5;
     }
+    static double rest() {
+        const char* text = std::getenv("SOAK_REST");
+        return text && *text ? std::atof(text) : 0;
+    }
+    static double rest(Random& random) { return rest() * (0.5 + random.below(1000) / 1000.0); }
     // ---- the UAV's side, in the world's thread ----
     static ChipSoak& self(void* context) { return *static_cast<ChipSoak*>(context); }
     static void executed(void* context, int id, const U8* data, int size) {
@@ -80,8 +87,10 @@ protected:
     static int next(void* context, int* id, U8* data, int* isOneway) {
         ChipSoak& s = self(context);
         Random& random = s.uavRandom_;
-        if (s.stop_ || random.below(4)) // now and then: the call before has taken its time
+        // Now and then: the call before has taken its time.
+        if (s.stop_ || random.below(4) || s.world_.ns() < s.uavDue_)
             return -1;
+        s.uavDue_ = s.world_.ns() + static_cast<uint64_t>(1e9 * rest(random));
         const int uav = 9 << 24;
         *id = uav | ++s.uavSent_;
         *isOneway = random.below(4) == 0;
@@ -128,6 +137,7 @@ protected:
             } catch (const Ice::Exception& e) {
                 note(ground, e);
             }
+            world_.sleep(rest(random));
         }
     }
     void note(const Ice::CommunicatorPtr& ground, const Ice::Exception& e) {
@@ -189,6 +199,7 @@ protected:
     Random uavRandom_{testSeed() + 7};
     RadioTest::Bytes uavMessage_;
     int uavSent_ = 0;
+    uint64_t uavDue_ = 0; // ns, its next call
     std::map<std::string, unsigned> uavReports_;
     unsigned reboots_ = 0, modemResets_ = 0, groundStarts_ = 0;
     std::mutex mutex_;
@@ -219,7 +230,7 @@ TEST_F(ChipSoak, EveryMessageIsRightOnceInOrderOrReported) {
         misfortune(random,
                    events < 4 ? (events * 2 + 3) % 5 : random.below(6)); // 3 0 2 4, then any
         ++events;
-        world_.sleep(0.7 + random.below(1000) / 1000.0);
+        world_.sleep((0.7 + random.below(1000) / 1000.0) * (1 + rest()));
         if (std::chrono::steady_clock::now() - said > std::chrono::seconds(15)) {
             said = std::chrono::steady_clock::now();
             report();

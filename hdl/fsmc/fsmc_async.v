@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_async: the pins of an asynchronous access in clk_i: what NWE's rising edge writes, and who reads.
+// fsmc_async: takes the pins of an asynchronous access into clk_i: each write once, and which bank is being read.
 //
-// As in an SRAM, a write happens when NWE rises while NE is low: address, data and byte lanes are
-// registered by that very edge (the STM32 holds them for one HCLK after it). So an access that is
-// given up, NE rising first, writes nothing, and there is no minimum for the time that NWE rests.
-// wr_o follows two to three clocks later, for one cycle. The next edge may come when the copy of the
-// write has been taken (cdc_bus): two clocks later and what the paths differ by, so 33.3 ns leave 13 ns for delays.
+// A write happens when NWE rises while NE is low, as in an SRAM: that very edge registers address, data and byte
+// lanes (the STM32 holds them for one HCLK after it). An access that is given up, NE rising first, therefore
+// writes nothing, and NWE has no minimum high time.
+// wr_o follows two to three clocks later, for one cycle. The next edge may come when cdc_bus has copied the write,
+// which is two clocks and the paths' skew later, so 33.3 ns leave 13 ns for delays.
 
 `default_nettype none
 
@@ -19,23 +19,23 @@ module fsmc_async (
     input  wire        fsmc_noe_n_i,
     input  wire        fsmc_nwe_n_i,
     input  wire [1:0]  fsmc_nbl_n_i,
-    // a write: from wr_o on the rest is stable until NWE rises again
+    // writes: the fields of one are stable from wr_o until NWE rises again
     output wire        wr_o,         // one cycle
-    output wire [1:0]  wr_ne_o,      // one of them: NE2, NE1
+    output wire [1:0]  wr_ne_o,      // one bit is set: bit 1 NE2, bit 0 NE1
     output wire [24:0] wr_addr_o,
     output wire [15:0] wr_data_o,
     output wire [1:0]  wr_be_o,
-    output wire        wr_sync_o,    // from two clocks after NWE's edge until a clock after wr_o
-    // for NWAIT, asynchronous to clk_i: from NWE's edge until a clock after wr_o
+    output wire        wr_sync_o,    // high from two clocks after NWE's edge until a clock after wr_o
+    // pending write, for NWAIT, asynchronous to clk_i: high from NWE's edge until a clock after wr_o
     output wire        wr_async_o,
-    output wire        wr_ne2_async_o, // it is one of NE2
+    output wire        wr_ne2_async_o, // the pending write is one of NE2
     // accesses under way
-    input  wire        hit_async_i,  // what the address on the pins asks for is there
-    input  wire        safe_async_i, // and has been for a while
-    output wire [1:0]  reading_o,    // NE2, NE1
-    output wire        hit_o,        // hit and safe as they were in the same moment as reading_o
+    input  wire        hit_async_i,  // the data for the address on the pins is there
+    input  wire        safe_async_i, // it was there a clock ago, too
+    output wire [1:0]  reading_o,    // a read is under way: bit 1 NE2, bit 0 NE1
+    output wire        hit_o,        // hit_async_i and safe_async_i, sampled together with reading_o
     output wire        safe_o,
-    output wire        writing_o,    // NE1
+    output wire        writing_o,    // a write to NE1 is under way
     output wire [24:0] at_o          // the address a clock later than reading_o; arbitrary while the pins change
 );
     wire [1:0] ne = ~fsmc_ne_n_i;

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_bridge: the STM32's FSMC to DDR3 (NE1) and to the register bus (NE2), 16 bits; docs/fsmc.md.
+// fsmc_bridge: connects the STM32's 16-bit FSMC to DDR3 (NE1) and to the register bus (NE2); docs/fsmc.md.
 //
-// Asynchronous accesses of modes 1, A, 2, B, C and D; with SYNC, bursts for NE1. Reads that are not there yet, and writes for
-// which there is no room, hold NWAIT low; it depends on the pins combinationally. Every access waits
-// until the write before it has been noted and a register write before it has been carried out.
-// An access that waits for 2**TIMEOUT_LOG2 clocks is let go with access_error_o, never NWAIT for ever.
+// It takes asynchronous accesses of modes 1, A, 2, B, C and D; with SYNC, bursts for NE1. NWAIT depends on the pins
+// combinationally and is low while a read's data is not there yet or a write has no room. Every access waits
+// until the write before it has been handed over to clk_i and a register write before it has been carried out.
+// An access that has waited for 2**TIMEOUT_LOG2 clocks is let go with access_error_o, so NWAIT is never low for ever.
 
 `default_nettype none
 
 module fsmc_bridge #(
     parameter MUXED        = 0, // 1: address bits 15..0 come on the data pins while NADV is low
     parameter SYNC         = 0, // 1: NE1 is a synchronous PSRAM with bursts (fsmc_burst)
-    parameter LATENCY      = 5, // then: FSMC_CLK edges from the address to the first data, DATLAT + 2
+    parameter LATENCY      = 5, // with SYNC: FSMC_CLK edges from the address to the first data, DATLAT + 2
     parameter WAIT_HIGH    = 0, // 1: NWAIT is active high (WAITPOL = 1)
     parameter TIMEOUT_LOG2 = 12,
     parameter POST_LOG2    = 4, // see fsmc_memory
@@ -35,8 +35,8 @@ module fsmc_bridge #(
     // system slot
     input  wire [5:0]  page_i,
     output wire        access_error_o, // one cycle
-    output wire        error_memory_o, // of memory, else
-    output wire [9:0]  error_addr_o,   // of this register
+    output wire        error_memory_o, // 1: the error is one of memory
+    output wire [9:0]  error_addr_o,   // register of the error, if it is not one of memory
     output wire        error_write_o,
     output wire        late_o,         // one cycle: an access came too early and did not wait
     // register bus
@@ -67,7 +67,7 @@ module fsmc_bridge #(
     output wire        npi_rd_flush_o,
     input  wire        npi_init_done_i
 );
-    // A message as a module item is SystemVerilog: to Icarus and XST an unknown module says it.
+    // $error as a module item is SystemVerilog; for Icarus and XST the name of an unknown module is the message.
 `ifdef VERILATOR
     `define TELLS_ERRORS
 `endif
@@ -109,7 +109,7 @@ module fsmc_bridge #(
     wire [15:0] taken_data;
     wire        hit, hit_safe, room, more_room, busy, reg_done, hit_seen, safe_seen, excuse;
     wire [15:0] mem_data, reg_data;
-    // NE1's writes, and the halfword being read.
+    // These signals are the writes to NE1, and the halfword of NE1 that is being read.
     wire        mem_wr, mem_reading, hit_was, safe_was, mem_queued;
     wire [24:0] mem_wr_addr, mem_rd_addr, mem_rd_at;
     wire [15:0] mem_wr_data, burst_d;
@@ -117,7 +117,7 @@ module fsmc_bridge #(
     wire        burst_nwait_n;
     wire        excused_read, excused_write; // the access under way has been let go
 
-    // What came before is noted, and registers are quiet: for NWAIT, and for all that the clock decides.
+    // clear, for NWAIT, and clear_sync, for decisions in clk_i, say that the write before is handed over and registers are idle.
     wire clear      = !wr_async && !busy;
     wire clear_sync = !wr_sync && !busy;
 
@@ -151,7 +151,7 @@ module fsmc_bridge #(
             assign mem_reading = rd_valid && !wr_valid;
             assign hit_was     = hit && clear_sync;
             assign safe_was    = 1'b1;
-            assign {excused_read, excused_write} = 2'b00; // each beat of a burst for itself
+            assign {excused_read, excused_write} = 2'b00; // a time-out lets go one beat of a burst at a time
             assign mem_rd_at   = mem_rd_addr;
             wire unused = &{1'b0, seen[0], hit_seen, safe_seen, hit_safe, taken_be, taken_ne[0], 1'b0};
         end else begin : g_async
@@ -184,7 +184,7 @@ module fsmc_bridge #(
         end
     endgenerate
 
-    // ---- An access to memory that has waited too long is let go, until its strobe rises; fsmc_registers does so for
+    // ---- Time-out: an access to memory that has waited too long is let go, until its strobe rises; fsmc_registers does so for
     // registers.
     reg [TIMEOUT_LOG2:0] patience;
     wire reg_restart;
@@ -198,9 +198,9 @@ module fsmc_bridge #(
         else
             patience <= patience + 1'b1;
 
-    // ---- NWAIT follows NE and NOE: until NOE falls an access is taken for a write, so that NWAIT is valid an address phase
-    // before a write's data phase begins. While reset is active, also without a clock, nothing waits.
-    // While the write before is on its way there must be room for both, as it was before that one's noting.
+    // ---- NWAIT follows NE and NOE: an access counts as a write until NOE falls, so that NWAIT is valid an address phase
+    // before a write's data phase begins. No access waits while reset is active, even without a clock.
+    // A write that follows one still being handed over needs room for both, as counted before the first was posted.
     reg [1:0] room_for_both;
     always @(posedge clk_i) room_for_both <= {room_for_both[0], more_room};
     wire write_room = wr_async ? room_for_both[1] : room;
@@ -255,8 +255,8 @@ module fsmc_bridge #(
     assign error_addr_o   = bus_addr_o;
     assign error_write_o  = reg_error ? reg_write : !mem_reading;
 
-    // ---- For a master that does not look at NWAIT: a write that found no room, and a read whose data was not there a
-    // while ago in the second clock of its address, and that did not wait for it (two clocks) either. In the first clock the
+    // ---- late_o tells of a master that ignores NWAIT: of a write that found no room, and of a read that ends although its
+    // data was neither safe (rd_safe_o) in the second clock of its address nor there for two clocks since. In the first clock the
     // pins may still have moved. Reads of other addresses may follow each other without a rest that the clock sees.
     reg [1:0] at_was, at_before, good;
     reg       reading_d, second, early;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_bridge_proof: what the processor may rely on at the pins of fsmc_bridge; only for the prover.
+// fsmc_bridge_proof: states what the processor may rely on at the pins of fsmc_bridge; only for the prover.
 //
-// Time goes in steps; in each the clock and the pins may change, so any ratio and phase is there. The memory
-// (fsmc_memory, with its own proof) is free: it answers when and what it likes, also never. A slave of
-// the register bus likewise. Properties of the parts are left to their own proofs.
+// Time goes in steps; clock and pins may change in each, so every ratio and phase is covered. The memory
+// (fsmc_memory, with its own proof) is free: it answers when and what it likes, or never, and so does a slave of
+// the register bus. The parts have proofs of their own for their properties.
 //
 // - NWAIT is not active for ever: it ends within two time-outs and what the synchronisers take.
 // - Once NWAIT is inactive in an access to a register it stays so, and data on the pins stays.
-// - A write to a register goes on only when what came before it has been noted, and no other access than one to memory
-//   is let go as one that has waited too long, however short the time-out.
-// WORDS = 1 instead: 32-bit register words are atomic (fsmc_words_proof).
+// - A write to a register goes on only when the write before it is handed over and registers are idle. The bridge's time-out
+//   lets go only accesses to memory, however short it is.
+// With WORDS = 1 something else is proven: 32-bit register words are atomic (fsmc_words_proof).
 
 `default_nettype none
 
@@ -64,7 +64,7 @@ module fsmc_bridge_proof #(
         .npi_rd_data_i(64'd0), .npi_rd_word_i(4'd0), .npi_rd_empty_i(1'b1), .npi_init_done_i(1'b1)
     );
 
-    // The bridge's registers: flatten joins these with those of the same name.
+    // These wires are the bridge's registers: flatten joins them with those of the same name.
     (* hierconn *) wire \u_fsmc_bridge.clear , \u_fsmc_bridge.excuse ;
     (* hierconn *) wire [1:0] \u_fsmc_bridge.taken_ne ;
     (* hierconn *) wire [24:0] \u_fsmc_bridge.taken_addr ;
@@ -83,7 +83,7 @@ module fsmc_bridge_proof #(
                         \u_fsmc_bridge.u_fsmc_registers.given_up , \u_fsmc_bridge.u_fsmc_registers.seen ;
     (* hierconn, init = 1'b0 *) wire \u_fsmc_bridge.u_fsmc_registers.u_done.bit_meta , \u_fsmc_bridge.u_fsmc_registers.u_done.bit_sync ;
     (* hierconn *) wire [31:0] \u_fsmc_bridge.u_fsmc_registers.word ;
-    // Each synchroniser may see what its input was a clock ago; with WORDS, whose assertions carry themselves, it does not.
+    // Each synchroniser may see what its input was a clock ago; with WORDS, whose assertions are inductive, it does not.
     (* hierconn *) wire \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.late , \u_fsmc_bridge.u_fsmc_registers.u_done.late ;
     (* hierconn *) wire [4:0] \u_fsmc_bridge.u_fsmc_async.u_access.late ;
     (* anyseq *) reg late_write, late_done, late_access;
@@ -91,7 +91,7 @@ module fsmc_bridge_proof #(
     assign \u_fsmc_bridge.u_fsmc_registers.u_done.late = late_done && WORDS == 0;
     assign \u_fsmc_bridge.u_fsmc_async.u_access.late = {5{late_access && WORDS == 0}};
     wire clear = \u_fsmc_bridge.clear , excuse = \u_fsmc_bridge.excuse ;
-    // A write's turn as it goes through cdc_pulse, one bit each: before its first flip-flop .. its last.
+    // `turns` is a write's toggle on its way through cdc_pulse: the source's flip-flop first, then those in clk_i to the last.
     wire [4:0]  turns = {\u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.turned ,
                          \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
                          \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.turned_sync ,
@@ -105,28 +105,28 @@ module fsmc_bridge_proof #(
                              \u_fsmc_bridge.u_fsmc_registers.given_up ,
                              \u_fsmc_bridge.u_fsmc_registers.u_done.bit_sync , \u_fsmc_bridge.u_fsmc_registers.u_done.bit_meta ,
                              \u_fsmc_bridge.u_fsmc_registers.seen };
-    wire [44:0] taken = \u_fsmc_bridge.u_fsmc_async.taken ; // by NWE's edge
+    wire [44:0] taken = \u_fsmc_bridge.u_fsmc_async.taken ; // registered by NWE's edge
     wire [42:0] copy  = {\u_fsmc_bridge.taken_ne , \u_fsmc_bridge.taken_addr , \u_fsmc_bridge.taken_data };
 
-    // ---- The pins, a step ago, and what has happened
+    // ---- These registers hold the pins of a step ago, and the history of the access
     reg        past = 1'b0, was_clk = 1'b1, was_ne1 = 1'b0, was_ne2 = 1'b0, was_noe = 1'b1, was_nwe = 1'b1;
     reg        was_beyond = 1'b0, was_nwait = 1'b1;
     reg [2:0]  was_a = 3'd0;
     reg [1:0]  was_d = 2'd0, was_nbl = 2'd0, was_out = 2'd0;
     reg [2:0]  resets = 3'd0; // clocks of reset
     reg        let_go = 1'b0; // NWAIT has been seen inactive in this access
-    reg [2:0]  rest = 3'd0;   // clocks since NWE's last edge, or an access that was given up
-    reg [1:0]  calm = 2'd0;   // clocks since then
+    reg [2:0]  rest = 3'd0;   // clocks since NWE's last edge, or since an access was given up
+    reg [1:0]  calm = 2'd0;   // clocks since NWAIT was seen inactive
     localparam [1:0] CALM = WORDS == 0 ? 2'd3 : 2'd2; // a synchroniser sees a level that long
     reg        latched = 1'b0; // NADV has been low in this access
-    reg        held = 1'b0;   // a write's strobe has risen, NE not yet
-    reg        given_up = 1'b0; // the access before
+    reg        held = 1'b0;   // a write's strobe has risen, NE has not yet
+    reg        given_up = 1'b0; // the access before was given up
     wire clock    = past && clk_i && !was_clk;
     wire selected = ne1_i || ne2_i, was_selected = was_ne1 || was_ne2;
     wire strobe   = !noe_n_i || !nwe_n_i, was_strobe = !was_noe || !was_nwe;
     wire access   = selected && strobe, was_access = was_selected && was_strobe;
     wire same     = {ne1_i, ne2_i, beyond_i, a_i} == {was_ne1, was_ne2, was_beyond, was_a};
-    wire ended    = was_access && !strobe && selected; // write: the strobe first
+    wire ended    = was_access && !strobe && selected; // the strobe rises before NE, as in a write
     wire wrote    = was_access && !was_nwe && ended;
     wire gives_up = was_access && !selected && (was_noe || calm != CALM);
 
@@ -155,26 +155,26 @@ module fsmc_bridge_proof #(
     end
 
     always @* begin
-        // Reset for some clocks, with the pins at rest.
+        // Reset lasts for some clocks, with the pins at rest.
         assume (past || (clk_i && !selected));
         assume (!rst || (!selected && !strobe));
-        // The processor: one bank, one strobe; they fall while selected or together; address stable.
+        // The processor uses one bank and one strobe; strobes fall while selected or together with NE; the address is stable.
         assume (!(ne1_i && ne2_i) && (noe_n_i || nwe_n_i));
         assume (!(was_selected && selected) || same);
         assume (!(was_access && strobe) || {noe_n_i, nwe_n_i} == {was_noe, was_nwe});
         assume (selected || was_selected || !strobe || was_strobe);
         assume (!(was_access && !nwe_n_i && access) || (d_i == was_d && nbl_n_i == was_nbl));
         assume (!wrote || (d_i == was_d && nbl_n_i == was_nbl));
-        // Multiplexed: the address is latched before the strobe falls.
+        // A multiplexed address is latched before the strobe falls.
         assume (!strobe || nadv_n_i);
         assume (MUXED == 0 || !access || latched);
         assume (SYNC == 0 || !ne1_i);
-        // A strobe rises when NWAIT was inactive, or after NE: given up, and then it rests for a while.
+        // A strobe rises when NWAIT was inactive, or after NE: then the access is given up, and the strobe rests for a while.
         assume (!wrote || let_go);
         assume (!(was_strobe && !was_selected) || !strobe || !selected);
         assume (!held || !strobe);
-        assume (!ended || wrote); // a read: NE and NOE together, two clocks after NWAIT at least (FSMC: 4 HCLK)
-        // Three clocks between edges of NWE (fsmc_async), four after an access that was given up.
+        assume (!ended || wrote); // a read ends with NE and NOE together, at least two clocks after NWAIT (FSMC: 4 HCLK)
+        // Edges of NWE are at least three clocks apart (fsmc_async), and four after an access that was given up.
         assume (!wrote || rest >= 3'd3);
         assume (!(given_up && access) || rest >= 3'd4);
     end
@@ -191,7 +191,7 @@ module fsmc_bridge_proof #(
                     waited <= waited + 8'd1;
                 assert (waited < BOUND);
             end
-            reg [2:0] since_ne1 = 3'd7; // clocks since an access to memory: fsmc_async's synchroniser
+            reg [2:0] since_ne1 = 3'd7; // clocks since an access to memory: fsmc_async's synchroniser is late by some
             always @(posedge step)
                 if (ne1_i && strobe)
                     since_ne1 <= 3'd0;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_burst: synchronous bursts of PSRAM (NE1, FSMC_CLK) to halfword writes and reads in clk_i.
+// fsmc_burst: turns synchronous bursts of PSRAM (NE1, FSMC_CLK) into halfword writes and reads in clk_i.
 //
-// fsmc_burst_pins has the pins, in FSMC_CLK. Two FIFOs (async_fifo) are all that crosses: of writes, and of a burst's
-// reads, which restarts with each read burst; its restart brings the address with it. Here reads are asked for, as
-// many as the FIFO takes, as long as the burst lasts.
+// fsmc_burst_pins serves the pins, in FSMC_CLK. Data crosses to clk_i through two FIFOs (async_fifo): one of writes, and
+// one of a burst's reads, which each read burst restarts; the restart brings the address with it. This module asks for
+// as many reads as the FIFO takes, as long as the burst lasts.
 
 `default_nettype none
 
@@ -24,15 +24,15 @@ module fsmc_burst #(
     input  wire        fsmc_nadv_n_i,
     input  wire [1:0]  fsmc_nbl_n_i,
     output wire        fsmc_nwait_n_o,
-    // accesses that must come first are under way: no write is accepted
+    // order: no write is accepted while accesses that must come first are under way
     input  wire        busy_i,
-    // writes, in clk_i: the oldest
+    // oldest write, in clk_i
     output wire        wr_valid_o,
     output wire [24:0] wr_addr_o,
     output wire [15:0] wr_data_o,
     output wire [1:0]  wr_be_o,
     input  wire        wr_ready_i,
-    // reads, in clk_i: the halfword wanted next
+    // halfword to be read next, in clk_i
     output wire        rd_valid_o,
     output reg  [24:0] rd_addr_o,
     input  wire [15:0] rd_data_i,
@@ -61,9 +61,9 @@ module fsmc_burst #(
         .write_clk_i(clk_i), .push_i(rd_valid_o && rd_ready_i), .data_i(rd_data_i), .full_o(no_room), .begins_o(begins),
         .read_clk_i(fsmc_clk_i), .restart_i(restart), .pop_i(pop), .data_o(pop_data), .empty_o(empty));
 
-    // ---- Reads. Without reset: a burst that outlasts one gets its data after it.
+    // ---- Reads have no reset: a burst that outlasts a reset gets its data after it.
     wire        begun_sync;
-    wire [24:0] addr_sync; // when a session begins it has rested for longer than the FIFO's own synchronisers take
+    wire [24:0] addr_sync; // stable, when a session begins, for longer than the FIFO's own synchronisers take
     reg         reading;
     initial reading = 1'b0;
     assign rd_valid_o = reading && begun_sync && !no_room;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_burst_pins: the pins of synchronous bursts (NE1), in FSMC_CLK: halfwords into one FIFO, out of another.
+// fsmc_burst_pins: serves the pins of synchronous bursts (NE1) in FSMC_CLK: writes go into one FIFO, reads come from another.
 //
-// FSMC_CLK runs only during a burst; NE1 high ends it and resets what belongs to it. The edge with NADV low takes
-// the address (and NWE low: a write); data is on LATENCY edges later (BTR.DATLAT + 2) and on every edge
-// from there. NWAIT is one edge ahead (BCR.WAITCFG = 0): low at an edge, the next edge has no data.
+// FSMC_CLK runs only during a burst; NE1 high ends it and resets what belongs to it. The edge with NADV low takes the
+// address, and NWE low makes it a write; data follows LATENCY edges later (BTR.DATLAT + 2) and on every edge
+// from there. NWAIT is one edge ahead (BCR.WAITCFG = 0): where it is low at an edge, the next edge has no data.
 
 `default_nettype none
 
@@ -22,15 +22,15 @@ module fsmc_burst_pins #(
     input  wire        fsmc_nadv_n_i,
     input  wire [1:0]  fsmc_nbl_n_i,
     output reg         fsmc_nwait_n_o,
-    // accesses that must come first are under way: no write is accepted (another clock)
+    // order: no write is accepted while accesses that must come first are under way (another clock)
     input  wire        busy_async_i,
-    // the burst: the address of a read stays until the next burst
+    // burst: the address of a read stays until the next burst
     output reg         begun_o,
-    output reg  [24:0] addr_o,      // of a write: of its next halfword
+    output reg  [24:0] addr_o,      // in a write: address of its next halfword
     // FIFO of writes
     output wire        push_o,
     output wire [42:0] push_data_o, // address, byte lanes, data
-    input  wire        full_i,      // two more still fit
+    input  wire        full_i,      // at most two more fit
     // FIFO of a burst's reads
     output wire        restart_o,
     output wire        pop_o,
@@ -41,8 +41,8 @@ module fsmc_burst_pins #(
     reg        write, nwait_was;
     wire       busy_sync;
     cdc_bit u_busy (.clk_i(fsmc_clk_i), .bit_async_i(busy_async_i), .bit_sync_o(busy_sync));
-    reg [4:0]  edges;  // since the address; stays at FIRST
-    reg [15:0] stage;  // read, on its way to the pins
+    reg [4:0]  edges;  // edges since the address; stays at FIRST
+    reg [15:0] stage;  // halfword read, on its way to the pins
     wire       takes_address = !fsmc_ne_n_i && !begun_o && !fsmc_nadv_n_i;
     wire       ahead = begun_o && !write && edges >= FIRST - 5'd2; // the edge after next has data
     wire [24:0] pin_addr;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_burst_pins_proof: what is proven of fsmc_burst_pins (formal.fsmc_burst_pins); included at its foot, only for the prover.
+// fsmc_burst_pins_proof: a burst moves each halfword once, in order; only for the prover (formal.fsmc_burst_pins).
 
-    // Time goes in steps: an edge of FSMC_CLK, or one of NE1, or none. Pins are as they were before the edge.
+    // Time goes in steps: a step is an edge of FSMC_CLK, one of NE1, or neither. Pins are taken as they were before the edge.
     (* gclk *) wire step;
     localparam [4:0] DEPTH = 5'd16;
     reg        past = 1'b0, was_clk = 1'b0, was_ne_n = 1'b1;
@@ -16,12 +16,12 @@
         assume (!edge_of_clk || (!was_ne_n && !fsmc_ne_n_i));
     end
 
-    // ---- The processor: NADV low at a burst's first edge only; NWE stays. From the LATENCYth edge on an edge moves a
+    // ---- The processor drives NADV low at a burst's first edge only, and keeps NWE. From the LATENCYth edge on an edge moves a
     // halfword if NWAIT was high at the edge before.
     reg [4:0]  edge_no;  // edges of the burst so far, up to LATENCY
     reg        ready, writes;
     reg [24:0] beat;     // address of the halfword that moves next
-    reg [24:0] first;    // of the burst
+    reg [24:0] first;    // address of the burst's first halfword
     wire first_edge = edge_no == 5'd0;
     wire moves = edge_no >= FIRST && ready;
     always @* begin
@@ -47,7 +47,7 @@
         end
     end
 
-    // ---- The FIFOs, as async_fifo is proven: what this side sees of a count falls, or rises, by itself.
+    // ---- The FIFOs behave as async_fifo is proven to: the count that this side sees falls, or rises, by itself.
     reg [4:0] held = 5'd0;
     (* anyseq *) reg [4:0] fewer;
     always @* begin
@@ -56,7 +56,7 @@
     end
     always @(posedge fsmc_clk_i)
         held <= fewer + {4'd0, push_o};
-    // The halfword with number `place` that is popped in a burst.
+    // `value` is the halfword with number `place` that is popped in a burst.
     (* anyconst *) reg [2:0] place;
     reg [2:0]  popped, moved;
     reg [15:0] value;
@@ -79,12 +79,12 @@
             assert (held < DEPTH);
             assert (push_data_o == {beat, ~fsmc_nbl_n_i, fsmc_d_i});
         end
-        // Each one that it reads is the next of those that came, out of a FIFO that was restarted at the first edge.
+        // Each halfword that it reads is the next of those that came, out of a FIFO that was restarted at the first edge.
         assert (restart_o == (first_edge && fsmc_nwe_n_i));
         assert (!pop_o || (!empty_i && !writes && !first_edge && addr_o == first));
         if (moves && !writes && moved == place)
             assert (fsmc_d_o == value);
-        // How it works, which the above follows from.
+        // These invariants carry the proof of the above.
         assert (begun_o == !first_edge && edges == edge_no && nwait_was == ready);
         if (begun_o) begin
             assert (write == writes && addr_o == (writes ? beat : first));

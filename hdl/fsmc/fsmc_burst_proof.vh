@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_burst_proof: what is proven of fsmc_burst (formal.fsmc_burst); included at its foot, only for the prover.
+// fsmc_burst_proof: fsmc_burst asks for the halfwords of a burst in order; only for the prover (formal.fsmc_burst).
 
-    // This side alone: pins and FIFOs are cut off, and do what they are proven to do or more.
+    // Only the side of clk_i is proven: pins and FIFOs are cut off, and do what they are proven to do or more.
     reg        past = 1'b0, was_begins = 1'b0;
     reg [24:0] asked, count;  // address of this session; halfwords of it that went into the FIFO
     always @(posedge clk_i) begin
@@ -17,7 +17,7 @@
         known <= known || begins;
     always @* begin
         assume (!begins || no_room);
-        // What goes into the FIFO: the halfwords from the session's address on, in order.
+        // The halfwords from the session's address on go into the FIFO, in order.
         if (rd_valid_o)
             assert (known && !no_room && !begins);
         if (known)

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_memory: halfword writes posted and merged into words of four, halfword reads from a buffer that reads ahead.
+// fsmc_memory: posts halfword writes, merged into words of four, and reads halfwords from a buffer that reads ahead.
 //
-// Writes: fsmc_post. Reads: two buffers of one block each, for blocks of even and of odd number. A first
-// miss fetches one word, a second one in the same block the block; from then on the next block is fetched
+// fsmc_post has the writes. Reads come from two buffers of one block each, for blocks of even and of odd number. A first
+// miss fetches one word, a second one in the same block fetches the block; from then on the next block is fetched
 // as soon as a block is entered, up to the next multiple of 4 KiB (the upper address bits are kept once).
-// Order: no word is fetched while a write waits; a write, or drop_i, drops all that was read, also what
-// is still on its way. So a read never gives what is older than a write before it.
+// No word is fetched while a write waits; a write, or drop_i, drops all that was read, also what
+// is still on its way. So a read never gives data that is older than a write before it.
 
 `default_nettype none
 
@@ -20,19 +20,19 @@ module fsmc_memory #(
     input  wire                 clk_i,
     input  wire                 rst_i,
     input  wire [5:0]           page_i,    // address bits above the window; writes need idle_o while it changes
-    // writes: one cycle each, with room_o or they are lost
+    // writes: one cycle each; one that comes without room_o is lost
     input  wire                 wr_i,
     input  wire [ADDR_BITS-1:0] wr_addr_i, // halfword
     input  wire [WIDTH-1:0]     wr_data_i,
     input  wire [1:0]           wr_be_i,
-    output wire                 wr_lost_o, // in the cycle of wr_i
+    output wire                 wr_lost_o, // in the cycle of wr_i: there was no room
     output wire                 room_o,    // for two halfwords at least
     output wire                 more_room_o, // for three
-    // reads: combinational, from pins; rd_miss_i asks for what is not there, at the copy of the address in clk_i
+    // reads: combinational, from pins; rd_miss_i asks for missing data, at rd_at_i, the copy of the address in clk_i
     input  wire [ADDR_BITS-1:0] rd_addr_async_i, // halfword
     input  wire [ADDR_BITS-1:0] rd_at_i,
     input  wire                 rd_used_i, // the halfword is being read
-    input  wire                 rd_miss_i, // somebody waits for it
+    input  wire                 rd_miss_i, // a read waits for its data
     output wire                 rd_hit_o,
     output wire                 rd_safe_o, // a hit, in a block that was there a clock ago
     output wire [WIDTH-1:0]     rd_data_o,
@@ -54,9 +54,9 @@ module fsmc_memory #(
     input  wire                 npi_rd_empty_i,
     input  wire                 npi_init_done_i
 );
-    localparam WORD  = ADDR_BITS - 2;                // bits of a word address:
-    localparam UPPER = WORD - REGION_LOG2;           // region,
-    localparam PAIR  = REGION_LOG2 - BLOCK_LOG2 - 1; // pair of blocks in it, block, word
+    localparam WORD  = ADDR_BITS - 2;                // bits of a word address
+    localparam UPPER = WORD - REGION_LOG2;           // of these, the region's
+    localparam PAIR  = REGION_LOG2 - BLOCK_LOG2 - 1; // of these, those of the pair of blocks in a region; block and word follow
     localparam BLOCK = 1 << BLOCK_LOG2;
 
     // ---- Posted writes
@@ -71,13 +71,13 @@ module fsmc_memory #(
         .word_taken_i(npi_addr_ack_i && !npi_rnw_o)
     );
 
-    // ---- What was read
-    reg [UPPER-1:0]      upper;           // of both blocks
-    reg [PAIR-1:0]       pair0, pair1;    // of the even and the odd block
-    reg [1:0]            full, settled;   // bit n: block n has all its words; had them before
+    // ---- Read buffer
+    reg [UPPER-1:0]      upper;           // region of both blocks
+    reg [PAIR-1:0]       pair0, pair1;    // pair of the even and of the odd block
+    reg [1:0]            full, settled;   // bit n: block n has all its words; it had them a clock ago
     reg                  current;         // the block being read
-    reg                  ahead;           // the other one is its successor, or will be
-    // The fetch, and what it has brought: words below fetch_word, or with `single` that one.
+    reg                  ahead;           // the other block holds its successor, or will
+    // A fetch has brought the words below fetch_word or, with have_single, that word alone.
     reg                  wanted, busy, stale, single, have_single;
     reg                  fetch_block;
     reg [BLOCK_LOG2-1:0] fetch_word;
@@ -105,8 +105,8 @@ module fsmc_memory #(
     wire [2*WIDTH-1:0] rd_pairs = rd_addr_async_i[1] ? rd_line[4*WIDTH-1:2*WIDTH] : rd_line[2*WIDTH-1:0];
     assign rd_data_o = rd_addr_async_i[0] ? rd_pairs[2*WIDTH-1:WIDTH] : rd_pairs[WIDTH-1:0];
 
-    // ---- What to fetch: decided from the copy alone. While the pins move it may name any place: one in vain is read then,
-    // but tags and words fit each other.
+    // ---- The next fetch is decided from the copy of the address alone. While the pins move the copy may name any place: a word
+    // is then read in vain, but tags and words fit each other.
     wire [BLOCK_LOG2-1:0] at_word  = rd_at_i[BLOCK_LOG2+1:2];
     wire                  at_block = rd_at_i[BLOCK_LOG2+2];
     wire [PAIR-1:0]       at_pair  = rd_at_i[REGION_LOG2+1:BLOCK_LOG2+3];
@@ -124,7 +124,7 @@ module fsmc_memory #(
     wire border   = current && &pair1;         // the last block of a region
     wire next     = rd_used_i && at_whole && !ahead && at_block == current && !border && !fetching;
 
-    // ---- The port: posted words first
+    // ---- The port takes posted words first
     wire start      = !npi_addr_req_o && npi_init_done_i && (post_valid || wanted);
     wire start_read = start && !post_valid;
     wire [WORD-1:0] fetch_addr = {upper, fetch_block ? pair1 : pair0, fetch_block, fetch_word};

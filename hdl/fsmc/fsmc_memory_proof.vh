@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_memory_proof: what is proven of fsmc_memory (formal.fsmc_memory); included at its foot, only for the prover.
+// fsmc_memory_proof: a read of fsmc_memory gives what was written last; only for the prover (formal.fsmc_memory).
 
-    // The halfword that fsmc_post_proof looks at, what others write there, and what is there.
+    // fsmc_post_proof provides the halfword under observation, the writes of others to it, and its values.
     (* hierconn *) wire [ADDR_BITS-1:0] \u_fsmc_post.place ;
     (* hierconn *) wire \u_fsmc_post.foreign ;
     (* hierconn *) wire [WIDTH-1:0] \u_fsmc_post.memory , \u_fsmc_post.newest ;
@@ -13,10 +13,10 @@
 
     reg past = 1'b0;
     reg untold = 1'b0;         // others have written since the last drop_i
-    // The port's side: words pushed, and the words of a read, in order, as the memory had them.
+    // The port's model counts the words pushed, and gives the words of a read in order, as the memory had them.
     reg [POST_LOG2-1:0] pushed; // words without a request that was acknowledged
     reg [4:0] to_come;
-    reg [WORD-1:0] coming;     // address of the next one
+    reg [WORD-1:0] coming;     // address of the next word to come
     reg [WIDTH-1:0] coming_data;
     wire taken = npi_addr_req_o && npi_addr_ack_i;
     wire [WORD-1:0] npi_word = npi_addr_o[ADDR_BITS:3];
@@ -24,7 +24,7 @@
     wire [1:0] lane = place[1:0];
     wire [WIDTH-1:0] came = lane[1] ? (lane[0] ? npi_rd_data_i[4*WIDTH-1:3*WIDTH] : npi_rd_data_i[3*WIDTH-1:2*WIDTH])
                                     : (lane[0] ? npi_rd_data_i[2*WIDTH-1:WIDTH] : npi_rd_data_i[WIDTH-1:0]);
-    // The part of it that the buffer has.
+    // `kept` is the halfword under observation as the read buffer has it.
     wire [BLOCK_LOG2-1:0] place_in_block = place[BLOCK_LOG2+1:2];
     wire place_block = place[BLOCK_LOG2+2];
     wire [4*WIDTH-1:0] place_line = line[{place_block, place_in_block}];
@@ -66,13 +66,13 @@
         end
 
         if (past && !rst_i) begin
-            // Coherence: a read gives what the processor wrote last, or others before drop_i.
+            // A read gives what the processor wrote last, or what others wrote before drop_i.
             if (rd_hit_o && rd_addr_async_i == place && !untold)
                 assert (rd_data_o == newest);
             assert (!rd_safe_o || rd_hit_o);
             if (idle_o)
                 assert (memory == newest);
-            // The port's rules: one read at a time, data of a write before its request, aligned.
+            // The port's rules hold: one read at a time, data of a write before its request, aligned blocks.
             if (npi_addr_req_o) begin
                 assert (!npi_rnw_o || to_come == 5'd0);
                 assert (npi_rnw_o || pushed != 0);
@@ -83,7 +83,7 @@
                 assert ($stable(npi_addr_o));
             end
             assert (pushed == \u_fsmc_post.count );
-            // How it works, which the above follows from.
+            // These invariants carry the proof of the above.
             assert (!(wanted && busy));
             assert (!wanted || single || fetch_word == 0);
             assert (!stale || busy);

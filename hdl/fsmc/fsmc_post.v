@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_post: halfword writes merged into words of four; closed words go to the memory port, addresses queue.
+// fsmc_post: merges halfword writes into words of four, pushes closed words to the memory port and queues their addresses.
 //
 // A halfword joins the open word if it belongs to it. The word is closed when all its bytes are there,
 // when a write elsewhere comes, and with flush_i: its data goes into the port's write FIFO at once, its
@@ -25,7 +25,7 @@ module fsmc_post #(
     output wire                 more_room_o, // for three
     input  wire                 flush_i,
     output wire                 idle_o,    // nothing is open and nothing waits
-    // a word is closed
+    // word that is being closed
     output wire                 push_o,    // one cycle
     output reg  [4*WIDTH-1:0]   push_data_o,
     output wire [7:0]           push_be_o,
@@ -37,7 +37,7 @@ module fsmc_post #(
     localparam WORD = ADDR_BITS - 2;
 
     reg [WORD-1:0] addrs [0:(1<<LOG2)-1];
-    // head..tail-1 are closed. Initial values: as in npi_queue.
+    // Words head..tail-1 are closed. Initial values keep Yosys from keeping them twice (npi_queue).
     reg [LOG2-1:0] head = 0, tail = 0;
     reg            open;
     reg [WORD-1:0] open_addr;
@@ -45,7 +45,7 @@ module fsmc_post #(
 
     wire       joins = open_addr == wr_addr_i[ADDR_BITS-1:2];
     wire [LOG2-1:0] count = tail - head;
-    wire full   = &count; // the open word has no successor: it stays open
+    wire full   = &count; // no closed word more fits, so the open one stays open
     wire close  = open && !full && (&open_be || flush_i || (wr_i && !joins));
     wire accept = wr_i && !(full && open && !joins);
 
@@ -54,7 +54,7 @@ module fsmc_post #(
     assign room_o       = !(&count[LOG2-1:1] || (open && count == (1 << LOG2) - 3));
     localparam [LOG2-1:0] LOW = 3;
     assign more_room_o  = !(&(count | LOW) && (count[0] || count[1] || open));
-    assign word_valid_o = head != tail; // sooner there than count
+    assign word_valid_o = head != tail; // a shorter path than count != 0
     assign idle_o       = !open && !word_valid_o;
     assign word_addr_o  = addrs[head];
     assign push_o       = close;

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_post_proof: what is proven of fsmc_post (formal.fsmc_post); included at its foot, only for the prover.
+// fsmc_post_proof: every halfword that fsmc_post accepts reaches the memory, in order; only for the prover (formal.fsmc_post).
 
-    // The halfword that the proof looks at, any; what others write there while nothing waits.
+    // `place` is the halfword under observation, any; others may write there while nothing waits.
     (* anyconst *) reg [ADDR_BITS-1:0] place;
     (* anyseq *) reg foreign;
     (* anyseq *) reg [WIDTH-1:0] foreign_data;
-    reg [WIDTH-1:0] memory, newest; // what the memory has there; what was written there last
+    reg [WIDTH-1:0] memory, newest; // the memory's value there; the value written there last
     localparam HALF = WIDTH / 2, DEPTH = 1 << LOG2;
     reg past = 1'b0;
     wire [1:0] place_lane = place[1:0];
-    // The port's write FIFO: of every word the halfword that is looked at, and its byte enables.
+    // The model of the port's write FIFO keeps, of every word, the halfword under observation and its byte enables.
     reg [WIDTH+1:0] fifo [0:DEPTH-1];
     wire [WIDTH+1:0] open_half = {push_be_o[2*place_lane +: 2], push_data_o[WIDTH*place_lane +: WIDTH]};
     always @(posedge clk_i)
         if (push_o)
             fifo[tail] <= open_half;
 
-    // What the memory will have when all that waits has been written, oldest first: the open word is
-    // the last of `after`.
+    // `after` is the memory's value after each word that waits has been written, oldest first; the open word is
+    // the last of them.
     wire [WIDTH*(DEPTH+1)-1:0] after;
     assign after[WIDTH-1:0] = memory;
     genvar q;
@@ -66,7 +66,7 @@
 
         if (past && !rst_i) begin
             assert (final_value == newest);
-            // Two writes may come before anybody has seen that there is room no more.
+            // Two writes may come before the processor can see that there is no room.
             assert (!wr_lost_o || !$past(room_o));
             // The oldest word stays as it is until it is taken.
             if ($past(word_valid_o && !word_taken_i && !rst_i))

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_registers: 32-bit words of the register bus in two halves of 16 bits, low half first, each word in one piece.
+// fsmc_registers: reads and writes 32-bit words of the register bus in two 16-bit halves, low half first, each word in one piece.
 //
 // Reading the low half reads the word and keeps its high half; writing the low half keeps it, writing
 // the high half writes the word. A high half alone is read afresh; written alone it is an error.
 // Writes are posted: busy_o is high from the cycle after wr_i until the word has been written, and
 // every other access waits for that. Before a transfer all memory writes are flushed.
-// Time that has expired ends the wait for a slave with an error; a memory that does not take the writes
+// expired_i ends the wait for a slave with an error; a memory that does not take the writes
 // in time is reported, and the transfer goes on.
 
 `default_nettype none
@@ -26,7 +26,7 @@ module fsmc_registers (
     input  wire        noe_n_async_i,
     output wire        rd_done_o, // rd_data_o is this access's; falls with the access
     output wire [15:0] rd_data_o,
-    // time: counted while busy, from zero with each cycle of restart_o
+    // time-out: the bridge counts while busy, from zero with each cycle of restart_o
     output wire        restart_o,
     input  wire        expired_i,
     // order with memory
@@ -46,14 +46,14 @@ module fsmc_registers (
     input  wire [31:0] bus_rdata_i,
     input  wire        bus_error_i
 );
-    // One of them at most: memory takes what was posted; the slave answers (bus_valid_o); the
-    // processor ends its read. None: nothing to do.
+    // At most one of these waits: flushing, for memory to take what was posted; bus_valid_o, for the slave's answer; answering,
+    // for the processor to end its read. With none of them, and no give, there is nothing to do.
     reg        flushing, answering;
-    reg [31:0] word;       // last read
+    reg [31:0] word;       // word read last
     reg [15:0] low;        // low half written last
-    reg        half_read, half_write; // word's high half, low: that of bus_addr_o's word is kept
-    reg        asked_high; // by this read, whatever the pins say now
-    reg        given_up;   // the read has ended early: nobody takes its answer
+    reg        half_read, half_write; // of bus_addr_o's word the high half is kept from a read, the low half from a write
+    reg        asked_high; // this read is of the high half, whatever the pins say now
+    reg        given_up;   // the read has ended early; its answer is dropped
     reg        give, seen, done_ne, done_noe;
     wire       done_sync;
 
@@ -78,7 +78,7 @@ module fsmc_registers (
     assign bus_wdata_o   = {wr_data_i, low};
     assign error_write_o = bus_write_o;
 
-    // Set by the clock, cleared by the pins: the next read may begin a few nanoseconds later.
+    // The clock sets these flip-flops and the pins clear them, because the next read may begin a few nanoseconds later.
     always @(posedge clk_i or posedge ne_n_async_i)
         if (ne_n_async_i)
             done_ne <= 1'b0;
@@ -121,7 +121,7 @@ module fsmc_registers (
         if (give || (answering && (given_up || (seen && !done_sync))))
             answering <= give;
 
-        // An error, too: written without looking at NWAIT, and lost; the word under way may get its data as the high half.
+        // A write while busy, by a master that ignores NWAIT, is lost, and an error: the word under way may get its data.
         error_o <= (begins && !keep && !kept && wrong) || (ends && (bus_error_i || !bus_ready_i)) ||
                    (wr_i && !idle);
         error_memory_o <= flushing && expired_i && !idle_i;

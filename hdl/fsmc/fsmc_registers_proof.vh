@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_registers_proof: what is proven of fsmc_registers (formal.fsmc_registers); included at its foot, only for the prover.
+// fsmc_registers_proof: an access makes at most one transfer, of a whole word; only for the prover (formal.fsmc_registers).
 
     // A hung slave is given up when expired_i says so: the rule that a transfer waits is not broken.
     bus_rules #(.MASTER(1), .PATIENCE(1)) u_bus_rules (
@@ -9,19 +9,19 @@
         .error_i(bus_error_i)
     );
     reg        past = 1'b0;
-    reg [3:0]  patience;  // the bridge's, shorter
+    reg [3:0]  patience;  // the bridge's time-out count, shorter
     reg [4:0]  stuck;     // clocks of this access without an answer
     reg [31:0] last_read; // the word that the bus gave last
     reg [15:0] last_low;  // low half written last
-    reg        low_word;  // to the word of bus_addr_o, nothing since
+    reg        low_word;  // the low half of bus_addr_o's word has been written, and nothing since
     reg        low_read;  // the access begun last reads a low half
     reg        was_busy = 1'b0;
     reg [40:0] write_was;
     always @* begin
-        // Pins: NWAIT keeps the next write, and its data, away until the one before is done.
+        // NWAIT at the pins keeps the next write, and its data, away until the one before is done.
         assume (!(busy_o && wr_i));
         assume (!(was_busy && busy_o) || write_was == {wr_addr_i, wr_data_i});
-        // Time, as the bridge counts it.
+        // Time-outs come as the bridge counts them.
         assume (expired_i == patience[3]);
     end
     always @(posedge clk_i) begin
@@ -43,13 +43,13 @@
             low_read <= !wr_i && !rd_addr_i[0];
 
         if (past && !rst_i) begin
-            // One thing at a time, so one transfer an access, and none that nobody began.
+            // An access makes one transfer at most, one at a time, and no transfer comes without an access.
             assert ({2'd0, flushing} + {2'd0, bus_valid_o} + {2'd0, give} + {2'd0, answering} <= 3'd1);
             if (bus_valid_o && !$past(bus_valid_o))
                 assert ($past(flushing));
             if (flushing && !$past(flushing))
                 assert ($past(idle && (wr_i || reading_i)));
-            // In one piece: a high half that is kept is of the word read last; a word is written
+            // Words stay whole: a high half that is kept is of the word read last; a word is written
             // with the low half that was written to it just before.
             assert (!half_read || (word == last_read && low_read));
             assert (!half_read || $past(half_read) || $past(reading_i));
@@ -59,14 +59,14 @@
             assert (!half_write || low == last_low);
             if ((flushing || bus_valid_o) && bus_write_o)
                 assert (low == last_low);
-            // No waiting for ever: 2 time-outs and the steps between.
+            // Waiting ends after two time-outs and the steps between.
             assert (!flushing || stuck <= patience);
             assert (!bus_valid_o || stuck <= patience + 5'd9);
             assert (stuck <= 5'd18);
             // Memory writes come first, unless the memory hangs.
             if (bus_valid_o && !$past(bus_valid_o))
                 assert ($past(idle_i) || $past(expired_i));
-            // An answer is for the access that asked for it.
+            // An answer goes only to the access that asked for it.
             assert (!$past(given_up && !begins) || !(done && !$past(done)));
         end
         cover (past && bus_valid_o && bus_write_o && bus_ready_i);

@@ -2,19 +2,19 @@
 //
 // fsmc_words_proof: 32-bit register words are atomic at the pins of fsmc_bridge; only for the prover (in fsmc_bridge_proof).
 //
-// For any sequence of accesses, completed or given up at any moment, to registers, beyond them and to memory:
+// These hold for any sequence of accesses, completed or given up at any moment, to registers, beyond them and to memory:
 // - A word written to the bus is that of the processor's last two completed register accesses: low half, then high half of
-//   the same word; its address, too. An access that was given up writes nothing.
+//   the same word; so is its address. An access that was given up writes nothing.
 // - A write of a high half, or beyond the slots, yields exactly one transfer or one report of an error, before the next
 //   register access goes on: a transfer if its low half came just before, with not even the attempt of a read between; an
 //   error if it did not. A write of a low half yields neither.
-// - A read gives half of the word that the bus gave last, which is of its address: in this access, from a transfer that
-//   began in it; or, a high half, in the read of its low half just before. If nothing at all was between the two it is always
-//   the latter: both halves are of one transfer. Between them may be reads that were given up; one of those may have
-//   been that of the low half. Beyond the slots it is 0.
-// - There is no more than one transfer for each read, also for one that was given up, and none without.
+// - A read gives half of the word that the bus gave last, and that word is of the read's address. Its transfer began in this
+//   access or, for a high half, in the read of its low half just before. If nothing at all was between those two it is always
+//   the latter: both halves are of one transfer. Otherwise reads that were given up may lie between; one of those may have
+//   been that of the low half. A read beyond the slots gives 0.
+// - Each read, also one that was given up, makes one transfer at most, and no transfer comes without a read.
 //
-// The second half relates the harness's notes to the bridge's registers: with it all assertions together carry themselves
+// The second half relates the harness's notes to the bridge's registers: with it all assertions together are inductive
 // over two steps, so runs of any length are proven.
 
 `default_nettype none
@@ -48,26 +48,26 @@ module fsmc_words_proof (
     input wire        given_up_i,
     input wire        nwait_n_i,
     input wire        was_nwait_n_i,
-    input wire [15:0] d_i,        // read
+    input wire [15:0] d_i,        // data that the processor reads
     // register bus
     input wire        valid_i,
     input wire        write_i,
     input wire [9:0]  addr_i,
     input wire [31:0] wdata_i,
     input wire [31:0] rdata_i,
-    input wire        error_i,    // access_error, not of memory
+    input wire        error_i,    // access_error, but not one of memory
     input wire        error_write_i,
     input wire [9:0]  error_addr_i,
     // inside the bridge
     input wire [5:0]  async_i,
     input wire [9:0]  registers_i,
     input wire [31:0] word_i,
-    input wire [44:0] taken_i,    // by NWE's edge: NE2, NE1, byte lanes, address, data
+    input wire [44:0] taken_i,    // registered by NWE's edge: NE2, NE1, byte lanes, address, data
     input wire [42:0] copy_i     // its copy: NE2, NE1, address, data
 );
     (* gclk *) wire step;
     wire up = resets_i > 3'd1;
-    function [31:0] wide; // two bits of each half, as the harness drives them
+    function [31:0] wide; // widens a word of two bits a half, as the harness drives them
         input [3:0] word;
         wide = {14'd0, word[3:2], 14'd0, word[1:0]};
     endfunction
@@ -83,14 +83,14 @@ module fsmc_words_proof (
     wire read_done = was_reads && !selected_i && !gives_up_i;
     wire begins    = valid_i && !was_valid;
     wire ends      = was_valid && !valid_i;
-    wire reports   = clock_i && error_i && error_write_i && !(ends && was_write); // an error of its own
-    // RM0033: NWE rises before NE; given up: after it.
+    wire reports   = clock_i && error_i && error_write_i && !(ends && was_write); // an error that is no transfer's
+    // NWE rises before NE (RM0033), or after it where the access is given up; never in the same step.
     always @* assume (!(was_access_i && !selected_i && !was_nwe_i) || !nwe_n_i);
 
     // ---- Writes
-    reg       low_may = 1'b0, low_sure = 1'b0; // the low half written last is the bridge's to use: perhaps, surely
+    reg       low_may = 1'b0, low_sure = 1'b0; // the bridge holds the low half written last: perhaps, for certain
     reg [1:0] low_at = 2'd0, low = 2'd0;
-    reg       owed = 1'b0, may = 1'b0, sure = 1'b0; // a transfer or an error: may, must it be a transfer
+    reg       owed = 1'b0, may = 1'b0, sure = 1'b0; // a transfer or an error is due; it may be, must be a transfer
     reg [1:0] word_at = 2'd0;
     reg [3:0] word = 4'd0;
     wire keeps    = !was_beyond_i && !was_a_i[0];
@@ -123,7 +123,7 @@ module fsmc_words_proof (
     end
 
     // ---- Reads: transfers
-    reg  unread = 1'b0, forgotten = 1'b0; // one has yet to begin for this access, for one that was given up
+    reg  unread = 1'b0, forgotten = 1'b0; // a transfer has yet to begin for this access, for one that was given up
     wire fetches     = begins && !write_i;
     wire unread_n    = reads && (!was_reads || (unread && !(fetches && !forgotten)));
     wire forgotten_n = (forgotten && !fetches) || (gives_up_i && was_reads && unread && !(fetches && !forgotten));
@@ -132,14 +132,14 @@ module fsmc_words_proof (
     always @* if (up && fetches)
         assert (unread || forgotten);
 
-    // ---- Reads: data; of any word, `its`
+    // ---- Reads: data, of any word `its`
     (* anyconst *) reg [1:0] its;
     reg       asked = 1'b0, got = 1'b0;          // a transfer has begun in this access; it has ended
-    reg       half_may = 1'b0, half_sure = 1'b0; // the high half is there: perhaps, surely
+    reg       half_may = 1'b0, half_sure = 1'b0; // the high half of `its` is there: perhaps, for certain
     reg [1:0] answer_at = 2'd0;
     reg [3:0] answer = 4'd0;
     wire answered = ends && !was_write;
-    wire mine     = !was_beyond_i && was_a_i == {its, 1'b0}; // the access that ends: its low half
+    wire mine     = !was_beyond_i && was_a_i == {its, 1'b0}; // the access that ends is one to the low half of `its`
     wire asked_n  = access_i && (asked || (fetches && reads));
     wire got_n    = access_i && (got || (answered && was_reads && asked && was_addr == a_i[2:1]));
     wire half_may_n  = wrote ? 1'b0 : read_done ? mine : half_may || (gives_up_i && was_reads && mine);
@@ -167,8 +167,8 @@ module fsmc_words_proof (
         cover (a_i == {its, 1'b1} && !beyond_i && half_may && !half_sure && !got_n);
     end
 
-    // ---- The harness's notes and the bridge's registers; all as they are in this step
-    wire [3:0]  turn; // of a write, on its way through cdc_pulse
+    // ---- The harness's notes agree with the bridge's registers; all are as they are in this step
+    wire [3:0]  turn; // a write's toggle on its way through cdc_pulse
     wire        s0, s1, flushing, give, answering, half_read, half_write, asked_high, given_up, seen;
     wire [1:0]  done_s;
     assign {turn, s0, s1} = async_i;
@@ -176,9 +176,9 @@ module fsmc_words_proof (
     wire idle     = !flushing && !valid_i && !give && !answering;
     wire done     = reads && nwait_n_i;
     wire writing  = (flushing || valid_i) && write_i;
-    wire fetching = (flushing || valid_i || give) && !write_i && !given_up; // for an access that is not known to be over
+    wire fetching = (flushing || valid_i || give) && !write_i && !given_up; // the access may still be under way
 
-    // Clocks since a write's strobe has risen, and whose it was; since an access was given up, and whether it read a register.
+    // `since` counts clocks since a write's strobe rose, by2 is its bank; gone2: the access given up last read a register.
     reg  [2:0] since = 3'd5;
     reg        by2 = 1'b0, gone2 = 1'b0;
     reg  [5:0] last = 6'd0;
@@ -208,7 +208,7 @@ module fsmc_words_proof (
         assert (!gone2_n || (!half_sure_n && !low_sure_n));
     end
     always @* if (up) begin
-        // A write on its way through fsmc_async.
+        // A write's toggle moves through fsmc_async by one flip-flop a clock.
         case (since_n)
             3'd0:    assert (turn == 4'b1000 || turn == 4'b1001);
             3'd1:    assert (turn == 4'b0100);
@@ -219,17 +219,17 @@ module fsmc_words_proof (
         assert (since_n == 3'd5 || rest <= since_n);
         if (pending)
             assert ({taken_i[44:43], taken_i[40:0]} == {by2_n, !by2_n, 13'd0, last_n[5], 8'd0, last_n[4:2], 14'd0, last_n[1:0]});
-        // fsmc_registers has its data until the next write.
+        // The copy of a write stays for fsmc_registers until the next write.
         if (since_n == 3'd2 || (since_n != 3'd0 && !idle && write_i))
             assert (copy_i == {taken_i[44:43], taken_i[40:0]});
 
-        // One thing at a time.
+        // fsmc_registers does one thing at a time.
         assert ({2'd0, flushing} + {2'd0, valid_i} + {2'd0, give} + {2'd0, answering} <= 3'd1);
         assert (!pending || idle);
         assert (idle || addr_i[9:2] == 8'd0);
         assert (!(ne2_i && access_i && let_go_i) || nwait_n_i);
 
-        // Who reads, two clocks late.
+        // The synchronised strobe of a register read, s0 and s1, follows the pins two clocks late.
         assert (since_n != 3'd0 || (!s0 && !s1));
         assert (since_n != 3'd1 || !s1);
         assert (!done_s[0] || (s0 && s1));
@@ -268,7 +268,7 @@ module fsmc_words_proof (
             assert ((valid_i && !write_i) || (give && rest != 3'd0) ||
                     ((give || answering) && s1 && !given_up && (!seen || done_s[1]) && (!s0 || done_s != 2'b10)));
 
-        // The word read last.
+        // The word that is kept is the one read last.
         if (half_read) begin
             assert (!flushing && !valid_i && !write_i);
             assert (word_i[31:16] == {14'd0, answer_n[3:2]} && addr_i == {8'd0, answer_at_n});
@@ -293,7 +293,7 @@ module fsmc_words_proof (
                     (reads && !beyond_i && a_i == {its, 1'b1} && ((give && !given_up) || done)));
         end
 
-        // The half written last, and what is to become of the write of the other.
+        // The low half written last is kept for the write of its high half, which is a transfer only then.
         assert (!half_write || idle);
         if (!pending2) begin
             assert (!half_write || (low_may_n && wdata_i[15:0] == {14'd0, low_n} && addr_i == {8'd0, low_at_n}));

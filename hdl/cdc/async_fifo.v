@@ -30,9 +30,9 @@ module async_fifo #(
     input  wire             restart_i,  // one cycle, without pop_i
     input  wire             pop_i,      // only while empty_o is low
     output wire [WIDTH-1:0] data_o,     // valid while empty_o is low
-    output wire             empty_o     // no word of this session is there
+    output wire             empty_o     // there is no word of this session
 );
-    localparam TOP = LOG2 + 1; // bit of the session in what crosses; the pointer is below it
+    localparam TOP = LOG2 + 1; // number of the session's bit in what crosses; the pointer is below it
     localparam [LOG2:0] DEPTH = 1 << LOG2;
 
     reg [WIDTH-1:0] words [0:(1<<LOG2)-1];

@@ -75,7 +75,7 @@
             assert (written - w1 <= written - w2 && written - w2 <= count);
         if (!answered)
             assert (taken == 0);
-        // From this follows that the reader takes words in order, unchanged, and of its own session.
+        // The reader therefore takes words in order, unchanged, and of its own session.
         if (!empty_o) begin
             assert (same && noted == note);
             if (taken == place)

@@ -3,10 +3,10 @@
 // cdc_bit: two flip-flops take bits of another clock, or of a pin, into clk_i.
 //
 // Each bit arrives by itself, one to three clocks late; a level is seen for certain if it lasts for two clocks. A bus
-// therefore goes through it only in Gray code, or as bits that mean nothing together (TOGETHER says otherwise:
-// routing holds their skew below the time that they rest, docs/fsmc.md).
-// Reset: none; INITIAL until two clocks have come. Constraint: at most a period of clk_i to bit_meta (FROM:TO), and
-// the whole period from bit_meta to bit_sync.
+// therefore goes through it only in Gray code, or as bits that are independent of each other. With TOGETHER they are not:
+// routing holds their skew below the time that they rest (docs/fsmc.md).
+// There is no reset: the output is INITIAL until two clocks have come. Constraint: at most a period of clk_i to bit_meta
+// (FROM:TO), and the whole period from bit_meta to bit_sync.
 // In proofs, and in simulation with +cdc_random, bit_meta may take what the input was a clock ago: metastability and
 // routing can do no more.
 
@@ -14,8 +14,8 @@
 
 module cdc_bit #(
     parameter             WIDTH    = 1,
-    parameter             TOGETHER = 0, // 1: uncertainty is the same for all bits
-    parameter             EXACT    = 0, // 1: nothing is late here, but on its way here (cdc_skew)
+    parameter             TOGETHER = 0, // 1: all bits are late together, or none is
+    parameter             EXACT    = 0, // 1: no bit is late here; cdc_skew on the way here makes them late
     parameter [WIDTH-1:0] INITIAL  = 0
 ) (
     input  wire             clk_i,
@@ -37,7 +37,7 @@ module cdc_bit #(
     end
 `elsif FORMAL
     reg  [WIDTH-1:0] bit_was;
-    wire [WIDTH-1:0] late; // free
+    wire [WIDTH-1:0] late; // free for the prover
     wire [WIDTH-1:0] old = EXACT != 0 ? {WIDTH{1'b0}} : TOGETHER != 0 ? {WIDTH{late[0]}} : late;
     initial bit_was = INITIAL;
     always @(posedge clk_i) begin

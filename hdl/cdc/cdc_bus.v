@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_bus: words of src_clk_i, each handed over once in dst_clk_i, two to three clocks later.
+// cdc_bus: hands each word of src_clk_i over once in dst_clk_i, two to three clocks later.
 //
-// A word stays in the source's register, a copy of it is taken in the clock in which the event's second
+// A word stays in the source's register; a copy of it is taken in the clock in which the event's second
 // flip-flop turns, so the next word may come two dst_clk_i clocks and the paths' skew later, without a handshake.
-// Reset: none. Constraint: a dst_clk_i period from src_data's register to the copy, and that of cdc_bit.
+// There is no reset. Constraint: a dst_clk_i period from src_data's register to the copy, and that of cdc_bit.
 
 `default_nettype none
 
@@ -18,7 +18,7 @@ module cdc_bus #(
     input  wire             dst_clk_i,
     output wire             dst_valid_o,    // one cycle
     output wire [WIDTH-1:0] dst_data_o,     // from dst_valid_o until src_clk_i takes the next word
-    output wire             pending_sync_o, // as dst_clk_i knows it
+    output wire             pending_sync_o, // pending_async_o as dst_clk_i sees it
     output wire             pending_async_o // a word has not been handed over yet
 );
     always @(posedge src_clk_i)

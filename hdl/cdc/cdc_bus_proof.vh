@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_bus_proof: what is proven of cdc_bus (formal.cdc_bus); included at its foot, only for the prover.
+// cdc_bus_proof: cdc_bus hands each word over once, in order, unchanged; only for the prover (formal.cdc_bus).
 //
-// Time goes in steps; in each either clock and the data may change as they like: no ratio, no phase.
+// Time goes in steps; either clock and the data may change in each, so every ratio and phase is covered.
 // An input that changes together with an edge is seen as it was before it; cdc_bit may see it a clock later.
 
     (* gclk *) wire step;
     reg past = 1'b0, was_src = 1'b1, was_clk = 1'b1, was_valid = 1'b0, known = 1'b0;
     reg [WIDTH-1:0] was_data = 0;
     reg was_given = 1'b0;
-    reg [WIDTH-1:0] older = 0, newer = 0; // words that have not been handed over; `newer` else the last one
+    reg [WIDTH-1:0] older = 0, newer = 0; // words that have not been handed over; with none, `newer` is the last one
     reg [1:0] count = 2'd0;
     reg [2:0] clocks = 3'd3;             // edges of dst_clk_i since the last word's edge
     wire rise        = past && src_clk_i && !was_src;
@@ -35,10 +35,10 @@
         end else if (edge_of_clk && clocks != 3'd7) begin
             clocks <= clocks + 3'd1;
         end
-        // Three edges of the clock, at least, between two of src_clk_i that hand over. Ringing is shorter.
+        // Two edges of src_clk_i that hand over are at least three edges of dst_clk_i apart; ringing is closer.
         assume (!new_write || clocks >= 3'd3);
     end
-    wire [1:0] left = count - {1'b0, handed}; // in this step
+    wire [1:0] left = count - {1'b0, handed}; // words left in this step
     always @* if (past) begin
         // Each word is noted at once and handed over once, in order, as it was.
         assert (!handed || count != 2'd0);
@@ -49,7 +49,7 @@
             assert (dst_data_o == (left == 2'd2 ? older : newer));
         end
         assert (left == 2'd0 || clocks + {2'd0, edge_of_clk} <= 3'd3 || (clocks == 3'd3 && handed));
-        // The copy of the last one stays until the next.
+        // The copy of the last word stays until the next.
         if (known && left == 2'd0)
             assert (dst_data_o == newer);
         cover (rings);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_skew: what arrives in dst_clk_i of bits that step with src_clk_i; only for simulation (cdc_random.vh).
+// cdc_skew: models how bits that step with src_clk_i arrive in dst_clk_i; only for simulation (cdc_random.vh).
 //
 // A bit that the last edge of src_clk_i has changed, since the last one of dst_clk_i, arrives as it is or as it was, each
-// bit by itself. So a count in Gray code arrives as one of two; one in binary as a number that it never had.
+// bit by itself. So a count in Gray code arrives as one of two values; one in binary may arrive as a value that it never had.
 
 `default_nettype none
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// system_slot: slot 0, with the chip's identity, interrupt lines, the DDR3 page, bus errors and the cycle count.
+// system_slot: slot 0 shows the chip's identity, interrupt lines, the DDR3 page, bus errors and the cycle count.
 //
-// Registers: hdl/system/system.regs.json.
+// hdl/system/system.regs.json lists the registers.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// system_slot_proof: events, errors and the reset register do as the register table says.
-// Included at the foot of system_slot.v, only for the prover.
+// system_slot_proof: events, errors and the cycle count's latch do as the register table says.
+// It is included at the foot of system_slot.v, only for the prover.
 
     reg past = 1'b0;
     initial assume (rst_i);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// wiring: the signals of slots and memory ports, once for all who wire blocks together: the chip,
+// wiring: macros declare and connect the signals of slots and memory ports for all that wires blocks together: the chip,
 // its generated cores, and the synthesis of Table I (docs/bus.md, docs/memory.md).
 
-// Wires between the bus decoder and `count` slots; interrupt lines of slots 1 and up.
+// SLOT_WIRES declares the wires between the bus decoder and `count` slots; interrupt lines are those of slots 1 and up.
 `define SLOT_WIRES(count) \
     wire [(count)-1:0]    slot_valid, slot_ready, slot_error; \
     wire [32*(count)-1:0] slot_rdata; \
@@ -12,13 +12,13 @@
     wire                  slot_write; \
     wire [(count)-1:1]    slot_irq;
 
-// Connections of the block in slot n.
+// SLOT connects the block in slot n.
 `define SLOT(n) \
     .bus_valid_i(slot_valid[n]), .bus_write_i(slot_write), .bus_addr_i(slot_addr[4*(n) +: 4]), \
     .bus_wdata_i(slot_wdata), .bus_ready_o(slot_ready[n]), .bus_rdata_o(slot_rdata[32*(n) +: 32]), \
     .bus_error_o(slot_error[n])
 
-// Wires of `count` memory ports.
+// NPI_WIRES declares the wires of `count` memory ports.
 `define NPI_WIRES(count) \
     wire [32*(count)-1:0] npi_addr; \
     wire [(count)-1:0]    npi_addr_req, npi_addr_ack, npi_rnw, npi_rmw, npi_wr_push, npi_wr_empty; \
@@ -28,7 +28,7 @@
     wire [64*(count)-1:0] npi_wr_data, npi_rd_data; \
     wire [8*(count)-1:0]  npi_wr_be;
 
-// Connections of the block with memory port n.
+// NPI connects the block with memory port n.
 `define NPI(n) \
     .npi_addr_o(npi_addr[32*(n) +: 32]), .npi_addr_req_o(npi_addr_req[n]), \
     .npi_addr_ack_i(npi_addr_ack[n]), .npi_rnw_o(npi_rnw[n]), .npi_size_o(npi_size[4*(n) +: 4]), \
@@ -40,7 +40,7 @@
     .npi_rd_empty_i(npi_rd_empty[n]), .npi_rd_flush_o(npi_rd_flush[n]), \
     .npi_init_done_i(npi_init_done[n])
 
-// Connections of the memory behind all ports.
+// NPI_MEMORY connects the memory behind all ports.
 `define NPI_MEMORY \
     .npi_addr_i(npi_addr), .npi_addr_req_i(npi_addr_req), .npi_addr_ack_o(npi_addr_ack), \
     .npi_rnw_i(npi_rnw), .npi_size_i(npi_size), .npi_rmw_i(npi_rmw), .npi_wr_data_i(npi_wr_data), \

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * link: reliable, ordered messages on four channels over a lossy packet radio.
+ * link: carries reliable, ordered messages on four channels over a lossy packet radio.
  *
  *     static const Link_Port port = {transmit, random, onMessage, onChannel, onState, 0, 0};
  *     static Link link;
  *     Link_init(&link, &port, 0, 1440);                (a byte takes 90 us)
  *     Link_start(&link, nowUs());                      (onState says when the session is up)
  *     for (;;) {
- *         Link_receive(&link, bytes, size, nowUs());   (what the radio brought, if anything)
+ *         Link_receive(&link, bytes, size, nowUs());   (bytes from the radio, if any)
  *         Link_poll(&link, nowUs());
  *         if (Link_openChannel(&link, 0) == LINK_OK)   (once; then, as often as wanted:)
  *             Link_send(&link, 0, message, 12, 0);
@@ -30,7 +30,7 @@
 #define LINK_MAX_FRAME 100U    /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
 #define LINK_MAX_ENCRYPTED 95U /* bytes of one that the modem encrypts (Link_limitFrame) */
 
-/* Sizes, for the compiler's command line; layers of different sizes understand each other.
+/* These sizes can be set on the command line; layers of different sizes understand each other.
  * LINK_MINIMAL chooses the minimal layer (minimal/link_minimal.h), which has only LINK_MAX_MESSAGE
  * of them. */
 #ifndef LINK_MAX_MESSAGE /* bytes of one message; a longer one from the peer ends the session */
@@ -69,7 +69,7 @@ typedef enum Link_Outcome {
     LINK_UNKNOWN    /* the session ended first: it may or may not have arrived */
 } Link_Outcome;
 
-/* What the layer needs from its surroundings. `context` is passed back unchanged. */
+/* A port gives the layer what it needs from outside. `context` is passed back unchanged. */
 typedef struct Link_Port {
     /* Hands one frame (at most LINK_MAX_FRAME bytes, valid during the call only) to the radio as
      * one RF packet. Returns 0: taken; other: no room now, the layer offers it again later. */
@@ -79,20 +79,20 @@ typedef struct Link_Port {
     /* Takes a whole message; `data` is valid during the call only. Returns 0: taken; other: no room
      * now. Then the layer keeps it, offers it again at each poll, and lowers the peer's credit. */
     int (*message)(void* context, int channel, const U8* data, U32 size);
-    /* The peer opened (1) or closed (0) a channel. All channels close when the session ends. */
+    /* Tells that the peer opened (1) or closed (0) a channel. All close when the session ends. */
     void (*channel)(void* context, int channel, int isOpen);
-    /* The session came up or ended. */
+    /* Tells that the session came up or ended. */
     void (*state)(void* context, Link_State state);
     /* Tells what became of a message: `tag` is what Link_send was given. Exactly one call a
      * message. May be 0, as may `writable`. */
     void (*outcome)(void* context, int channel, U32 tag, Link_Outcome outcome);
-    /* Room appeared after LINK_FULL. */
+    /* Tells that room appeared after LINK_FULL. */
     void (*writable)(void* context);
 } Link_Port;
 
 typedef struct Link Link; /* complete below, so that callers can place it; its fields are private */
 
-/* Counts since Link_init, over all sessions. */
+/* The counts run from Link_init on, over all sessions. */
 typedef struct Link_Statistics {
     U32 framesSent, framesReceived;     /* of all kinds */
     U32 bytesSent, bytesReceived;       /* on the air, payload and overhead */
@@ -102,7 +102,7 @@ typedef struct Link_Statistics {
     U32 duplicates;                     /* fragments that had already arrived */
     U32 messagesSent, messagesReceived; /* delivered ones */
     U32 sessions;                       /* times the link came up */
-    U32 roundTripUs;                    /* no count: the smoothed estimate */
+    U32 roundTripUs;                    /* the smoothed estimate, not a count */
     U32 headBytesSaved;                 /* by header compression, of what was sent */
 } Link_Statistics;
 

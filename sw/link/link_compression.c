@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_compression: header compression: the heads of IceP messages are sent once, and named by a
- * byte afterwards.
+ * link_compression: compresses the heads of IceP messages: each is sent once, and named by a byte
+ * afterwards.
  *
- * The only file of this layer that knows what an Ice message looks like ("The Ice Protocol" in the
- * manual of ZeroC Ice 3.7). Both sides keep, for each direction, the last LINK_HEADS heads of
- * requests (identity, facet, operation, mode, context, encoding) and each channel's last request
+ * It is the only file of this layer that knows what an Ice message looks like ("The Ice Protocol"
+ * in the manual of ZeroC Ice 3.7). Both sides keep, for each direction, the last LINK_HEADS heads
+ * of requests (identity, facet, operation, mode, context, encoding) and each channel's last request
  * ids. A session delivers everything once and in order, so both tables stay equal without a word
- * about them. What is not recognised goes as it is. Tokens: docs/link.md.
+ * about them. A message that is not recognised goes as it is. Tokens: docs/link.md.
  */
 #include "link.h"
 
@@ -35,7 +35,7 @@ void link_resetHeads(Link* link) {
     memset(&link->headsIn, 0, sizeof link->headsIn);
 }
 
-/* True for a whole message of this type, of `least` bytes at least. */
+/* Returns 1 for a whole message of this type, of `least` bytes at least. */
 static int isMessage(const U8* m, U32 size, U32 type, U32 least) {
     return size >= least && memcmp(m, magic, sizeof magic) == 0 && m[8] == type &&
            link_get32(m + 10) == size;
@@ -158,10 +158,10 @@ void link_noteSent(Link* link, int channel, const U8* m, U32 size) {
     note(&link->headsOut, channel, m, size);
 }
 
-/* Writes what stood between header and body of a request, token `*p`, in front of the body. Returns
- * the start, or 0 where it makes no sense. */
+/* Expands the token and prefix of a request at `p` to the fields before its body. Returns their
+ * start, or 0 if it is malformed. */
 static U8* unpackRequest(const Link_Heads* heads, U32 channel, U8* p, const U8* end) {
-    U8 head[LINK_HEAD_BYTES]; /* a copy: what is written may lie over it */
+    U8 head[LINK_HEAD_BYTES]; /* a copy, because the output may overwrite it */
     U32 token = *p++;
     U32 mode = token < TOKEN_LITERAL ? token >> 4 & 1U : token & 3U;
     U32 id = mode == 1U ? heads->lastRequest[channel] + 1U : 0;
@@ -195,7 +195,7 @@ static U8* unpackRequest(const Link_Heads* heads, U32 channel, U8* p, const U8* 
     return p;
 }
 
-/* The same for a reply. */
+/* Does the same for a reply. */
 static U8* unpackReply(const Link_Heads* heads, U32 channel, U8* p, const U8* end) {
     U32 token = *p++;
     U32 id = heads->lastReply[channel] + 1U;
@@ -218,7 +218,7 @@ static U8* unpackReply(const Link_Heads* heads, U32 channel, U8* p, const U8* en
     return p;
 }
 
-/* Restores the message at `p`. Returns its start, or 0 where it makes no sense. */
+/* Restores the message at `p`. Returns its start, or 0 if it is malformed. */
 static U8* unpack(const Link_Heads* heads, U32 channel, U8* p, U8* end) {
     U32 token = *p;
     U32 type = REQUEST;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_queue: messages, openings and closings that wait to be cut into fragments.
+ * link_queue: holds the messages, openings and closings that wait to be cut into fragments.
  */
 #include "link.h"
 
@@ -8,7 +8,7 @@ Link_Entry* link_entryAt(Link* link, U32 index) {
     return &link->entries[(link->queue.first + index) % LINK_SEND_MESSAGES];
 }
 
-/* Adds bytes of the newest entry, and continues its check. */
+/* Appends bytes to the newest entry, and continues its check. */
 static void put(Link* link, const U8* data, U32 size) {
     Link_Queue* queue = &link->queue;
     queue->sums = link_sum(queue->sums, data, size);
@@ -46,7 +46,7 @@ void link_popEntry(Link* link, Link_Outcome outcome) {
     queue->first = (U8)((queue->first + 1U) % LINK_SEND_MESSAGES);
     --queue->count;
     queue->head += entry->size;
-    if (entry->size) { /* no opening or closing */
+    if (entry->size) { /* a message, not an opening or closing */
         link->statistics.messagesSent += outcome == LINK_DELIVERED;
         if (link->port->outcome)
             link->port->outcome(link->context, (int)LINK_CHANNEL(entry->flags), tag, outcome);
@@ -59,7 +59,7 @@ void link_popEntry(Link* link, Link_Outcome outcome) {
     }
 }
 
-/* Whether the channel can be used, or opened. */
+/* Returns whether the channel can be used or, without `mustBeOpen`, opened. */
 static Link_Status check(const Link* link, int channel, int mustBeOpen) {
     if (channel < 0 || channel >= LINK_CHANNELS)
         return LINK_CLOSED;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_session: handshake, reboots, and a peer that has vanished.
+ * link_session: makes and ends sessions: handshake, reboots, and a peer that has vanished.
  *
  * HELLO carries a nonce; the answer carries the peer's. Both nonces make the session's epoch and
  * the seed of its checksums, so a frame of another session is never taken for one of this. A side
@@ -19,7 +19,7 @@ static void makeCandidate(Link* link, U32 peerNonce, U32 features) {
     link->handshake.hasCandidate = 1;
 }
 
-/* Leaves the session, if there is one; what it was is forgotten, and reported. */
+/* Ends the session, if there is one: clears its state and reports its end. */
 void link_endSession(Link* link, Link_State next) {
     int wasUp = link->state == LINK_STATE_UP;
     U32 open = link->open;
@@ -63,7 +63,7 @@ void link_confirmCandidate(Link* link) {
 static void onHello(Link* link, U32 peerNonce, U32 features) {
     U8 answer[LINK_OVERHEAD + 8U];
     Link_Session* session = &link->session;
-    /* The same HELLO once more: the answer was lost. */
+    /* A HELLO that comes again means that the answer was lost, and gets the same one. */
     if (link->state != LINK_STATE_UP || peerNonce != session->peerNonce) {
         session = &link->handshake.candidate;
         makeCandidate(link, peerNonce, features);

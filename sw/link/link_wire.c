@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_wire: checksums and numbers of the wire format.
+ * link_wire: computes the checksums of the wire format, and reads and writes its numbers.
  */
 #include "link.h"
 
-/* CRC-16/CCITT, polynomial 0x1021, MSB first, without a table: x ^= x >> 4 (Sarwate, by shifts). */
+/* It is CRC-16/CCITT, polynomial 0x1021, MSB first, without a table: x ^= x >> 4 does Sarwate's
+ * step by shifts. */
 U32 link_crc(U32 key, const U8* bytes, U32 size) {
     U32 crc = key & 0xFFFFU;
     while (size--) {
@@ -27,8 +28,8 @@ U32 link_seal(U8* frame, U32 header, U32 key) {
     return size;
 }
 
-/* Fletcher's sums modulo 256: unlike a second CRC they have nothing in common with the fragments'.
- */
+/* These are Fletcher's sums modulo 256: unlike a second CRC they have nothing in common with the
+ * fragments' CRC. */
 U32 link_sum(U32 sums, const U8* bytes, U32 size) {
     U32 plain = sums & 0xFFU;
     U32 second = sums >> 8;

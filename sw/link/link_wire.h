@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_wire: the wire format (docs/link.md): fields of a frame by name, checksums, numbers. Shared
- * by the full layer and the minimal one; stands on nothing.
+ * link_wire: names the fields of a frame, and declares checksums and numbers of the wire format
+ * (docs/link.md). The full layer and the minimal one share it; it includes nothing.
  *
  *   byte 0      control bit, length of the payload
  *   byte 1      SEQ (data); what the kind says (control)
@@ -22,7 +22,7 @@
 #define LINK_CONTROL 0x80U
 #define LINK_LENGTH(frame) ((frame)[0] & 0x7FU)
 
-/* Byte 2: the flags of data, then what data and control frames share, then control frames'. */
+/* Byte 2: the flags of data frames, the channel and epoch, the kind of control frames. */
 #define LINK_FIRST 0x80U
 #define LINK_LAST 0x40U
 #define LINK_ACK_NOW 0x20U
@@ -35,7 +35,7 @@
 #define LINK_CONTROL_HEADER(kind, byte1, size) \
     LINK_HEADER_OF(LINK_CONTROL | (size), byte1, LINK_KIND_BITS(kind))
 
-/* What a side understands, in the low bits of byte 2 of HELLO and HELLO-ACK; used if both do. */
+/* A feature is a low bit of byte 2 of HELLO and HELLO-ACK; it is used if both sides set it. */
 #define LINK_FEATURE_COMPRESSION 1U
 #define LINK_FEATURE_PIGGYBACK 2U
 
@@ -48,10 +48,10 @@ typedef enum Link_Kind {
     LINK_KIND_PING,
     LINK_KIND_PIGGYBACK,     /* a whole message of one fragment, with an acknowledgement */
     LINK_KIND_PIGGYBACK_ASK, /* the same, with LINK_ACK_NOW */
-    LINK_KIND_DATA           /* no control frame */
+    LINK_KIND_DATA           /* not a control frame */
 } Link_Kind;
 
-/* The key of a session, which both sides make of their nonces: bits 31..29 are the epoch,
+/* Both sides make a session's key of their two nonces: bits 31..29 are the epoch,
  * bits 15..0 the seed of the CRCs. HELLO, HELLO-ACK and RST belong to no session: their seed is all
  * ones. */
 #define LINK_KEY_EPOCH(key) ((key) >> 29)
@@ -73,8 +73,8 @@ typedef enum Link_Kind {
  * own CRC the result is 0. */
 U32 link_crc(U32 key, const U8* bytes, U32 size);
 
-/* Writes header and CRC around a frame's payload, which is there: `header` without the epoch, which
- * `key` brings. Returns the frame's length. */
+/* Writes header and CRC around the payload that `frame` already holds; `header` comes without the
+ * epoch, which is `key`'s. Returns the frame's length in bytes. */
 U32 link_seal(U8* frame, U32 header, U32 key);
 
 /* Continues a message's check over `size` bytes more, from 0 on: Fletcher's two sums, which a

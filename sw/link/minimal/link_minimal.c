@@ -1,31 +1,31 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_minimal: the side that is called, in 1.3 KiB of code: the same wire format and functions as
- * the full layer's, stop and wait, one message in the queue.
+ * link_minimal: the link layer of a side that only answers, in 1.3 KiB of code. It has the full
+ * layer's wire format and functions, works by stop and wait, and queues one message.
  *
- * It never calls: the peer's HELLO makes the session, another one ends it, and so do 9 s without a
- * good frame, BYE and RST. Every fragment asks for an acknowledgement
- * at once and goes out again when the timer is over. A message that nobody takes is not
- * acknowledged, so its last fragment comes again. After a bad frame the next one is looked for
- * behind a silence, which stop and wait sees to.
+ * It sends no HELLO: the peer's makes the session; another one ends it, and so do 9 s without a
+ * good frame, BYE and RST. Every fragment asks for an acknowledgement at once and goes out again
+ * when its timer expires. A message that the program does not take is not acknowledged, so its last
+ * fragment comes again. After a bad frame the next one is looked for behind a silence, which the
+ * peer's wait for an acknowledgement leaves.
  */
 #include "link.h"
 
 #include <stddef.h>
 #include <string.h>
 
-/* Times in microseconds, of few bits: such a constant is part of the instruction. */
+/* Times are in microseconds and of few bits: such a constant is part of the instruction. */
 #define DEAD_AFTER 0x890000U /* 9.0 s */
 #define FRAME_GAP 0x6200U    /* 25 ms of silence, behind which a frame begins */
 #define POLL_EVERY 1000U     /* while something is to be done at once */
 
-/* State of a channel, beside LINK_FIRST and LINK_LAST: what is to be sent about it. */
+/* A channel's state is these bits, and LINK_FIRST or LINK_LAST for what is to be sent about it. */
 #define OPEN 1U
 #define CLOSING 2U /* closed here, the peer's closing has not come yet */
 #define DUE (LINK_FIRST | LINK_LAST)
 
-/* Sends link->frame, whose payload is there (link_seal). What the radio has no room for is as good
- * as lost. */
+/* Sends link->frame, which holds its payload (link_seal). A frame for which the radio has no room
+ * is lost, as on the air. */
 static void transmit(Link* link, U32 header) {
     (void)link->port->transmit(link->context, link->frame,
                                link_seal(link->frame, header, link->key));
@@ -40,7 +40,7 @@ static void report(Link* link, Link_Outcome outcome) {
         link->port->writable(link->context);
 }
 
-/* Leaves the session, if there is one; what it was is forgotten, and reported. */
+/* Ends the session, if there is one: clears its fields and reports its end. */
 static void lose(Link* link) {
     int channel;
     if (link->state != LINK_STATE_UP)
@@ -54,11 +54,11 @@ static void lose(Link* link) {
     link->port->state(link->context, LINK_STATE_IDLE);
 }
 
-/* ---- what arrives ---- */
+/* ---- receiving ---- */
 
 static void onHello(Link* link, const U8* frame) {
     U32 peerNonce = link_get32(frame + LINK_HEADER);
-    if (peerNonce != link->peerNonce) { /* else our answer was lost */
+    if (peerNonce != link->peerNonce) { /* an equal one: our answer was lost */
         lose(link);
         link->peerNonce = peerNonce;
         link->nonce = link->port->random(link->context);
@@ -84,7 +84,7 @@ static void onChannel(Link* link, U32 channel, U32 isOpen) {
     }
 }
 
-/* The fragment that is expected. A message on a channel that was closed here is dropped. */
+/* Takes the fragment that is expected. A message on a channel that was closed here is dropped. */
 static void onData(Link* link, const U8* frame, U32 size) {
     U32 flags = frame[2];
     U32 channel = LINK_CHANNEL(flags);
@@ -138,7 +138,7 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
             onHello(link, frame);
         else if (kind == LINK_KIND_RST && epoch == LINK_KEY_EPOCH(link->key))
             lose(link);
-    } else if (link->state != LINK_STATE_UP) { /* somebody talks in a session of before */
+    } else if (link->state != LINK_STATE_UP) { /* the peer is in an earlier session */
         link->key = LINK_EPOCH_KEY(epoch) | LINK_NO_SEED;
         transmit(link, LINK_CONTROL_HEADER(LINK_KIND_RST, 0, 0U));
     } else if (epoch == LINK_KEY_EPOCH(link->key) && link_crc(link->key, frame, size) == 0) {
@@ -169,9 +169,9 @@ void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
     }
 }
 
-/* ---- what goes out ---- */
+/* ---- sending ---- */
 
-/* The next fragment: openings come first, closings after the message. */
+/* Returns the next fragment's flags; 0: none. Openings come first, closings after the message. */
 static U32 cut(Link* link) {
     U32 size, channel, flags;
     link->size = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_minimal: the fields of a Link in the minimal layer. Included by link.h only.
+ * link_minimal: defines a Link in the minimal layer. Only link.h includes it.
  */
 #ifndef LINK_MINIMAL_H
 #define LINK_MINIMAL_H
@@ -20,10 +20,10 @@
     (0x7FU + LINK_OVERHEAD) /* no length that a frame may claim goes beyond \
                              */
 
-/* Small and often used fields first: a Cortex-M3 reaches them with short instructions. */
+/* Small and often used fields come first: a Cortex-M3 reaches them with short instructions. */
 struct Link {
     U8 state; /* Link_State */
-    /* From here on all is 0 when a session begins. */
+    /* The fields from here on are 0 when a session begins. */
     U8 channels[LINK_CHANNELS]; /* what is open, and what is to be said about it */
     U8 sendNext;                /* SEQ of the fragment in flight, or of the next one */
     U8 receiveNext;             /* SEQ expected */
@@ -34,10 +34,10 @@ struct Link {
     U32 size;           /* bytes of the fragment in flight */
     U32 messageSize;    /* so far */
     U32 peerNonce;      /* 0: no session */
-    /* Up to here. */
+    /* The fields that begin at 0 end here. */
     U32 nonce, key;
-    U32 timerAt; /* when the fragment in flight goes out again, ... */
-    U32 retryUs; /* and how long after the last time */
+    U32 timerAt; /* the fragment in flight goes out again then, */
+    U32 retryUs; /* and this long after that */
     U32 inputAt, heardAt;
     U32 inputCount;
     const Link_Port* port;

@@ -36,7 +36,7 @@ module async_fifo #(
     localparam [LOG2:0] DEPTH = 1 << LOG2;
 
     reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
-    reg [LOG2:0] written, taken;                // one bit more than the address
+    reg [LOG2:0] written, taken;                // pointers, one bit wider than the address
     reg [TOP:0]  to_reader, to_writer;          // session and pointer, in the clock of the side that sends them
     wire [TOP:0] to_reader_async, to_writer_async;
     wire [TOP:0] to_reader_sync, to_writer_sync;
@@ -44,7 +44,7 @@ module async_fifo #(
         .clk_i(read_clk_i), .bit_async_i(to_reader_async), .bit_sync_o(to_reader_sync));
     cdc_bit #(.WIDTH(LOG2+2), .EXACT(1)) u_to_writer (
         .clk_i(write_clk_i), .bit_async_i(to_writer_async), .bit_sync_o(to_writer_sync));
-    reg          session;                       // the writer's; it is sent a clock after the pointer has become 0
+    reg          session;                       // the writer's session; it is sent a clock after the pointer has become 0
     reg          waiting;                       // a restart waits until the one before it has been answered
 
     initial begin

@@ -46,7 +46,7 @@
     wire [LOG2:0] w1 = binary(\u_to_reader.bit_meta [LOG2:0]), w2 = binary(to_reader_sync[LOG2:0]);
     wire [LOG2:0] t1 = binary(\u_to_writer.bit_meta [LOG2:0]), t2 = binary(to_writer_sync[LOG2:0]);
     wire [LOG2:0] held_seen = written - t2, count = written - taken;
-    // The session's flip goes round: from the reader through a synchroniser to the writer, and back through the other.
+    // The session's flip makes a round: from the reader through a synchroniser to the writer, and back through the other.
     wire [6:0] round = {to_writer[TOP], \u_to_writer.bit_meta [TOP], to_writer_sync[TOP], session, to_reader[TOP],
                         \u_to_reader.bit_meta [TOP], to_reader_sync[TOP]};
     wire [5:0] flips = round[6:1] ^ round[5:0];
@@ -61,7 +61,7 @@
         assert ((flips & (flips - 6'd1)) == 6'd0);
         assert (to_reader[LOG2:0] == (written ^ (written >> 1)) && to_writer[LOG2:0] == (taken ^ (taken >> 1)));
         if (same) begin
-            // The FIFO never holds more than fits; a side sees the other late, never ahead of the truth.
+            // The FIFO never holds more words than fit; each side sees the other's pointer late, never early.
             assert (count <= DEPTH && held_seen <= DEPTH);
             assert (taken - t1 <= taken - t2);
             assert (full_o == (held_seen >= DEPTH - SPARE));

@@ -17,7 +17,7 @@ module cdc_bus #(
     output reg  [WIDTH-1:0] src_data_o,     // the word taken last, in src_clk_i
     input  wire             dst_clk_i,
     output wire             dst_valid_o,    // one cycle
-    output wire [WIDTH-1:0] dst_data_o,     // from dst_valid_o until src_clk_i takes the next word
+    output wire [WIDTH-1:0] dst_data_o,     // valid from dst_valid_o until src_clk_i takes the next word
     output wire             pending_sync_o, // pending_async_o as dst_clk_i sees it
     output wire             pending_async_o // a word has not been handed over yet
 );

@@ -40,7 +40,7 @@
     end
     wire [1:0] left = count - {1'b0, handed}; // words left in this step
     always @* if (past) begin
-        // Each word is noted at once and handed over once, in order, as it was.
+        // Each word is pending at once and handed over once, in order, as it was.
         assert (!handed || count != 2'd0);
         assert (left <= 2'd1 || dst_valid_o);
         assert (left == 2'd0 || pending_async_o);

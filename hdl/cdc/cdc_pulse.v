@@ -15,7 +15,7 @@ module cdc_pulse (
     input  wire dst_clk_i,
     output wire dst_valid_o,
     output wire pending_sync_o, // pending_async_o as dst_clk_i sees it
-    output wire pending_async_o // from the event's edge until a clock after dst_valid_o; of either clock
+    output wire pending_async_o // high from the event's edge until a clock after dst_valid_o; moves with either clock
 );
     reg  turned, last, earlier;
     wire turned_sync;

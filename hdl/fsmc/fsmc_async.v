@@ -13,14 +13,14 @@
 module fsmc_async (
     input  wire        clk_i,
     // FSMC pins
-    input  wire [24:0] fsmc_a_i,     // halfword address, latched where multiplexed
+    input  wire [24:0] fsmc_a_i,     // halfword address; a multiplexed one comes latched
     input  wire [15:0] fsmc_d_i,
     input  wire [1:0]  fsmc_ne_n_i,
     input  wire        fsmc_noe_n_i,
     input  wire        fsmc_nwe_n_i,
     input  wire [1:0]  fsmc_nbl_n_i,
     // writes: the fields of one are stable from wr_o until NWE rises again
-    output wire        wr_o,         // one cycle
+    output wire        wr_o,         // a write arrives, one cycle
     output wire [1:0]  wr_ne_o,      // one bit is set: bit 1 NE2, bit 0 NE1
     output wire [24:0] wr_addr_o,
     output wire [15:0] wr_data_o,

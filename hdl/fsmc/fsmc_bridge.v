@@ -30,11 +30,11 @@ module fsmc_bridge #(
     input  wire        fsmc_nwe_n_i,
     input  wire [1:0]  fsmc_nbl_n_i,
     input  wire        fsmc_nadv_n_i,
-    input  wire        fsmc_clk_i,     // with SYNC
+    input  wire        fsmc_clk_i,     // used with SYNC
     output wire        fsmc_nwait_n_o,
     // system slot
     input  wire [5:0]  page_i,
-    output wire        access_error_o, // one cycle
+    output wire        access_error_o, // an access ended with an error, one cycle
     output wire        error_memory_o, // 1: the error is one of memory
     output wire [9:0]  error_addr_o,   // register of the error, if it is not one of memory
     output wire        error_write_o,

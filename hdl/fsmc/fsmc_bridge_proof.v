@@ -17,18 +17,18 @@
 `ifdef FORMAL
 module fsmc_bridge_proof #(
     parameter MUXED        = 0,
-    parameter SYNC         = 0, // 1: NE2 only; the bursts (fsmc_burst) are free
+    parameter SYNC         = 0, // 1: the processor uses NE2 only; bursts (fsmc_burst) are free
     parameter WAIT_HIGH    = 0,
     parameter TIMEOUT_LOG2 = 1,
-    parameter WORDS        = 0  // 1: only that 32-bit words are atomic (fsmc_words_proof)
+    parameter WORDS        = 0  // 1: proves only that 32-bit words are atomic (fsmc_words_proof)
 ) (
     input wire        clk_i,
-    // pins; addresses of 8 halfwords, and one beyond the slots; two bits of data in a halfword
+    // pins: addresses are 8 halfwords, and one beyond the slots; a halfword has two bits of data
     input wire        ne1_i,
     input wire        ne2_i,
     input wire        noe_n_i,
     input wire        nwe_n_i,
-    input wire        nadv_n_i, // with MUXED
+    input wire        nadv_n_i, // used with MUXED
     input wire        beyond_i,
     input wire [2:0]  a_i,
     input wire [1:0]  d_i,
@@ -113,11 +113,11 @@ module fsmc_bridge_proof #(
     reg        was_beyond = 1'b0, was_nwait = 1'b1;
     reg [2:0]  was_a = 3'd0;
     reg [1:0]  was_d = 2'd0, was_nbl = 2'd0, was_out = 2'd0;
-    reg [2:0]  resets = 3'd0; // clocks of reset
+    reg [2:0]  resets = 3'd0; // clocks of reset so far, up to 2
     reg        let_go = 1'b0; // NWAIT has been seen inactive in this access
     reg [2:0]  rest = 3'd0;   // clocks since NWE's last edge, or since an access was given up
     reg [1:0]  calm = 2'd0;   // clocks since NWAIT was seen inactive
-    localparam [1:0] CALM = WORDS == 0 ? 2'd3 : 2'd2; // a synchroniser sees a level that long
+    localparam [1:0] CALM = WORDS == 0 ? 2'd3 : 2'd2; // clocks in which a synchroniser is sure to see a level
     reg        latched = 1'b0; // NADV has been low in this access
     reg        held = 1'b0;   // a write's strobe has risen, NE has not yet
     reg        given_up = 1'b0; // the access before was given up

@@ -4,7 +4,7 @@
 
     // Only the side of clk_i is proven: pins and FIFOs are cut off, and do what they are proven to do or more.
     reg        past = 1'b0, was_begins = 1'b0;
-    reg [24:0] asked, count;  // address of this session; halfwords of it that went into the FIFO
+    reg [24:0] asked, count;  // address of this session; number of its halfwords that went into the FIFO
     always @(posedge clk_i) begin
         past       <= 1'b1;
         was_begins <= begins;

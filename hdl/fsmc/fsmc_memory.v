@@ -11,8 +11,8 @@
 `default_nettype none
 
 module fsmc_memory #(
-    parameter ADDR_BITS   = 25, // of a halfword address
-    parameter WIDTH       = 16, // of a halfword; proofs take less
+    parameter ADDR_BITS   = 25, // bits of a halfword address
+    parameter WIDTH       = 16, // bits of a halfword; proofs take less
     parameter POST_LOG2   = 4,  // 2**POST_LOG2 - 1 closed words can wait
     parameter BLOCK_LOG2  = 3,  // 2**BLOCK_LOG2 words in a block, 1..4
     parameter REGION_LOG2 = 9   // 2**REGION_LOG2 words: reads ahead do not cross their multiples
@@ -22,14 +22,14 @@ module fsmc_memory #(
     input  wire [5:0]           page_i,    // address bits above the window; writes need idle_o while it changes
     // writes: one cycle each; one that comes without room_o is lost
     input  wire                 wr_i,
-    input  wire [ADDR_BITS-1:0] wr_addr_i, // halfword
+    input  wire [ADDR_BITS-1:0] wr_addr_i, // halfword address
     input  wire [WIDTH-1:0]     wr_data_i,
     input  wire [1:0]           wr_be_i,
     output wire                 wr_lost_o, // in the cycle of wr_i: there was no room
-    output wire                 room_o,    // for two halfwords at least
-    output wire                 more_room_o, // for three
+    output wire                 room_o,    // there is room for two halfwords at least
+    output wire                 more_room_o, // there is room for three
     // reads: combinational, from pins; rd_miss_i asks for missing data, at rd_at_i, the copy of the address in clk_i
-    input  wire [ADDR_BITS-1:0] rd_addr_async_i, // halfword
+    input  wire [ADDR_BITS-1:0] rd_addr_async_i, // halfword address
     input  wire [ADDR_BITS-1:0] rd_at_i,
     input  wire                 rd_used_i, // the halfword is being read
     input  wire                 rd_miss_i, // a read waits for its data
@@ -128,7 +128,7 @@ module fsmc_memory #(
     wire start      = !npi_addr_req_o && npi_init_done_i && (post_valid || wanted);
     wire start_read = start && !post_valid;
     wire [WORD-1:0] fetch_addr = {upper, fetch_block ? pair1 : pair0, fetch_block, fetch_word};
-    reg [5:0] page; // of the request: stays until it is acknowledged
+    reg [5:0] page; // page of the request: stays until it is acknowledged
     always @(posedge clk_i)
         if (!npi_addr_req_o)
             page <= page_i;

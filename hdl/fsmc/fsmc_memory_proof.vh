@@ -14,7 +14,7 @@
     reg past = 1'b0;
     reg untold = 1'b0;         // others have written since the last drop_i
     // The port's model counts the words pushed, and gives the words of a read in order, as the memory had them.
-    reg [POST_LOG2-1:0] pushed; // words without a request that was acknowledged
+    reg [POST_LOG2-1:0] pushed; // words pushed whose request has not been acknowledged
     reg [4:0] to_come;
     reg [WORD-1:0] coming;     // address of the next word to come
     reg [WIDTH-1:0] coming_data;

@@ -9,20 +9,20 @@
 `default_nettype none
 
 module fsmc_post #(
-    parameter ADDR_BITS = 25, // of a halfword address
-    parameter WIDTH     = 16, // of a halfword
+    parameter ADDR_BITS = 25, // bits of a halfword address
+    parameter WIDTH     = 16, // bits of a halfword
     parameter LOG2      = 4   // 2**LOG2 - 1 closed words can wait; the port's FIFO has room for them
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,
     // writes: one cycle each
     input  wire                 wr_i,
-    input  wire [ADDR_BITS-1:0] wr_addr_i, // halfword
+    input  wire [ADDR_BITS-1:0] wr_addr_i, // halfword address
     input  wire [WIDTH-1:0]     wr_data_i,
     input  wire [1:0]           wr_be_i,
     output wire                 wr_lost_o, // in the cycle of wr_i: there was no room
-    output wire                 room_o,    // for two halfwords at least
-    output wire                 more_room_o, // for three
+    output wire                 room_o,    // there is room for two halfwords at least
+    output wire                 more_room_o, // there is room for three
     input  wire                 flush_i,
     output wire                 idle_o,    // nothing is open and nothing waits
     // word that is being closed

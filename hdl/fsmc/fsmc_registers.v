@@ -2,10 +2,10 @@
 //
 // fsmc_registers: reads and writes 32-bit words of the register bus in two 16-bit halves, low half first, each word in one piece.
 //
-// Reading the low half reads the word and keeps its high half; writing the low half keeps it, writing
+// A read of the low half reads the word and keeps its high half; a write of the low half keeps it, and a write of
 // the high half writes the word. A high half alone is read afresh; written alone it is an error.
 // Writes are posted: busy_o is high from the cycle after wr_i until the word has been written, and
-// every other access waits for that. Before a transfer all memory writes are flushed.
+// every other access waits for that. All memory writes are flushed before a transfer.
 // expired_i ends the wait for a slave with an error; a memory that does not take the writes
 // in time is reported, and the transfer goes on.
 
@@ -16,7 +16,7 @@ module fsmc_registers (
     input  wire        rst_i,
     // writes: one cycle; address and data stay until the next
     input  wire        wr_i,
-    input  wire [24:0] wr_addr_i, // halfword
+    input  wire [24:0] wr_addr_i, // halfword address
     input  wire [15:0] wr_data_i,
     // reads: until the pin ends the access
     input  wire        reading_i,
@@ -24,7 +24,7 @@ module fsmc_registers (
     input  wire        rd_high_async_i, // pins: the high half is being read
     input  wire        ne_n_async_i,    // pins: either one high ends the access
     input  wire        noe_n_async_i,
-    output wire        rd_done_o, // rd_data_o is this access's; falls with the access
+    output wire        rd_done_o, // rd_data_o is the data of this access; falls with the access
     output wire [15:0] rd_data_o,
     // time-out: the bridge counts while busy, from zero with each cycle of restart_o
     output wire        restart_o,

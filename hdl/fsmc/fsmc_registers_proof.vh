@@ -2,7 +2,7 @@
 //
 // fsmc_registers_proof: an access makes at most one transfer, of a whole word; only for the prover (formal.fsmc_registers).
 
-    // A hung slave is given up when expired_i says so: the rule that a transfer waits is not broken.
+    // A hung slave is given up as soon as expired_i says so, which PATIENCE = 1 makes bus_rules allow.
     bus_rules #(.MASTER(1), .PATIENCE(1)) u_bus_rules (
         .clk_i(clk_i), .rst_i(rst_i), .valid_i(bus_valid_o), .write_i(bus_write_o),
         .addr_i(bus_addr_o), .wdata_i(bus_wdata_o), .ready_i(bus_ready_i), .rdata_i(bus_rdata_i),

@@ -63,7 +63,7 @@ module fsmc_words_proof (
     input wire [9:0]  registers_i,
     input wire [31:0] word_i,
     input wire [44:0] taken_i,    // registered by NWE's edge: NE2, NE1, byte lanes, address, data
-    input wire [42:0] copy_i     // its copy: NE2, NE1, address, data
+    input wire [42:0] copy_i     // copy of taken_i in clk_i: NE2, NE1, address, data
 );
     (* gclk *) wire step;
     wire up = resets_i > 3'd1;
@@ -190,7 +190,7 @@ module fsmc_words_proof (
     wire [1:0] calm    = !access_i || !nwait_n_i ? 2'd0 : was_access_i && clock_i && calm_i != 2'd2 ? calm_i + 2'd1 : calm_i;
     always @(posedge step)
         {since, by2, last, gone2} <= {since_n, by2_n, last_n, gone2_n};
-    wire pending  = since_n < 3'd3; // not yet known to fsmc_registers
+    wire pending  = since_n < 3'd3; // the write is not yet known to fsmc_registers
     wire pending2 = pending && by2_n;
     wire last_low = !last_n[5] && !last_n[2];
     wire paired   = half_write && !last_n[5] && last_n[2] && addr_i == {8'd0, last_n[4:3]};
@@ -249,7 +249,7 @@ module fsmc_words_proof (
         assert (!done || (answering && s0 && s1 && !given_up && done_s != 2'b10 && (!seen || done_s == 2'b11)));
         assert (!done || calm != 2'd2 || done_s[0]);
 
-        // The read that goes on is that of the pins, or was given up just now.
+        // The read in progress is that of the pins, or was given up just now.
         if (fetching && reads)
             assert (s0 && s1 && addr_i == {8'd0, a_i[2:1]} && asked_high == a_i[0] && (give || !beyond_i));
         if (fetching && !reads) begin

@@ -28,7 +28,7 @@
 
 #define LINK_CHANNELS 4
 #define LINK_MAX_FRAME 100U    /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
-#define LINK_MAX_ENCRYPTED 95U /* bytes of one that the modem encrypts (Link_limitFrame) */
+#define LINK_MAX_ENCRYPTED 95U /* bytes of one that is encrypted (Link_limitFrame) */
 
 /* These sizes can be set on the command line; layers of different sizes understand each other.
  * LINK_MINIMAL chooses the minimal layer (minimal/link_minimal.h), which has only LINK_MAX_MESSAGE
@@ -98,12 +98,12 @@ typedef struct Link_Statistics {
     U32 bytesSent, bytesReceived;       /* on the air, payload and overhead */
     U32 fragmentsResent;                /* data fragments sent more than once */
     U32 acksSent;                       /* alone or piggybacked */
-    U32 crcErrors, bytesSkipped;        /* what resynchronisation threw away */
+    U32 crcErrors, bytesSkipped;        /* dropped by resynchronisation */
     U32 duplicates;                     /* fragments that had already arrived */
     U32 messagesSent, messagesReceived; /* delivered ones */
     U32 sessions;                       /* times the link came up */
     U32 roundTripUs;                    /* the smoothed estimate, not a count */
-    U32 headBytesSaved;                 /* by header compression, of what was sent */
+    U32 headBytesSaved;                 /* saved by header compression in sending */
 } Link_Statistics;
 
 /* Prepares `link`. `port` must stay valid; `byteTimeUs16` is the time of one byte on the slowest
@@ -142,10 +142,10 @@ void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs);
 /* Sends what is due: fragments, acknowledgements, retransmissions, HELLO. */
 void Link_poll(Link* link, U32 nowUs);
 
-/* Returns in how many microseconds Link_poll must be called at the latest; 0xFFFFFFFF: no need. */
+/* Returns the time in microseconds until Link_poll must be called; 0xFFFFFFFF: no need. */
 U32 Link_deadline(const Link* link, U32 nowUs);
 
-/* The counts, which go on counting. */
+/* Returns the counts, which go on counting. */
 const Link_Statistics* Link_statistics(const Link* link);
 
 #ifdef LINK_MINIMAL

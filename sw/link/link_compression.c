@@ -14,7 +14,7 @@
 #include <string.h>
 
 #define HEADER 14U       /* magic, versions, type, compression, size */
-#define ENCAPSULATION 6U /* its size and encoding version */
+#define ENCAPSULATION 6U /* size and encoding version of the parameters */
 #define MOST_HEAD (LINK_HEAD_BYTES - 2U)
 
 #define TOKEN_REQUEST 0x80U /* bit 4: the channel's next id, else oneway; bits 3..0: slot */

@@ -42,7 +42,7 @@ module modem_at_rows #(
             6:       letters = {8'd0, "ID"};
             7:       letters = {8'd0, "EE"};
             KEY:     letters = {8'd0, "KY"};
-            9:       letters = "RN3"; // a random wait of up to seven units before each try
+            9:       letters = "RN2"; // a random wait of up to three units before each try
             10:      letters = "RO3";
             11:      letters = "D61"; // the modem heeds RTS
             12:      letters = "D71"; // the modem drives CTS

@@ -119,7 +119,7 @@ bool ModemSetup::run() {
     const Settings& s = settings_;
     if (!find() || !command("MY" + hex(s.source)) || !command("DH0") ||
         !command("DL" + hex(s.target)) || !command("CH" + hex(s.rfChannel)) ||
-        !command("ID" + hex(s.pan)) || !command("RN3") || !command("RO3") ||
+        !command("ID" + hex(s.pan)) || !command("RN2") || !command("RO3") ||
         (!s.key.empty() && (!command("EE1") || !command("KY" + s.key))))
         return false;
     encrypts_ = ask("EE") == "1";

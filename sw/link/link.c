@@ -54,7 +54,9 @@ void Link_poll(Link* link, U32 nowUs) {
     if (link->state != LINK_STATE_UP)
         return;
     link_pollSender(link);
-    link_pollAck(link);
+    if (!link->sender.hasWork) /* else it leaves with the next fragment */
+        link_pollAck(link);
+    (void)link_flush(link);
 }
 
 /* The sooner and the later of two times. */
@@ -77,10 +79,12 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
         at = link->heardAt + LINK_PING_AFTER;
         at = LATER(at, link->pingAt);
         first = SOONER(at, first);
+        if (link->packed)
+            first = soon;
         if (sender->base != sender->next)
             first = SOONER(sender->timerAt, first);
         if (sender->hasWork) {
-            at = link->paceUntil - link_slack(link);
+            at = link->paceUntil - link->slack;
             at = LATER(at, soon);
             first = SOONER(at, first);
         }

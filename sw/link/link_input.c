@@ -131,6 +131,7 @@ static U32 parse(Link* link, const U8* bytes, U32 count, int isEnd) {
                 break;
             if (confirmed && owner != NOBODY) {
                 parser->outOfStep = 0;
+                link->heard = (U8)size;
                 takeFrame(link, frame, owner);
                 ++link->statistics.framesReceived;
                 link->statistics.bytesReceived += size;

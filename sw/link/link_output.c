@@ -4,21 +4,70 @@
  */
 #include "link.h"
 
-/* Characters of silence behind a frame that does not fill its packet: they send the packet off. */
+#include <string.h>
+
+/* Microseconds that a modem takes for a packet beside its bytes: its own work, carrier sense, the
+ * random wait, headers, the MAC's acknowledgement (docs/models.md); and for a byte on the air. */
+#define PACKET_US 7250U
+#define PACKET_ENCRYPTED_US 13450U
+#define BYTE_US 32U
+
+/* A packet that was heard since the last own one takes more than its time from the own ones: it
+ * must be handled, and the two may collide. Quarters of its time that the next one waits. */
+#define HEARD_QUARTERS 5U
+
+/* Microseconds for which a packet behind a short one waits longer: a modem that still has the short
+ * one in its buffer joins the two, and cuts all later ones in the middle. */
+#define SHORT_MARGIN 1500U
+
+/* Characters of silence behind a short packet, which send it off. */
 #define SILENCE 4U
 
-U32 link_slack(const Link* link) {
-    return LINK_MAX_FRAME * link->byteTimeUs16 >> 4;
+/* Room that a packet must have left for another fragment, and for an acknowledgement behind it. */
+#define LEAST 32U
+
+/* The time of a packet: on the line, or in the modem, whichever is longer. */
+static U32 timeOf(const Link* link, U32 size) {
+    U32 line = (size + SILENCE) * link->byteTimeUs16 >> 4;
+    U32 modem =
+        size * BYTE_US +
+        (link->longest > LINK_MAX_ENCRYPTED - LINK_OVERHEAD ? PACKET_US : PACKET_ENCRYPTED_US);
+    return line > modem ? line : modem;
+}
+
+U32 link_room(const Link* link) {
+    return (U32)link->longest - link->packed;
+}
+
+int link_flush(Link* link) {
+    if (!link->packed)
+        return 1;
+    if (link->port->transmit(link->context, link->packet, link->packed) != 0)
+        return 0;
+    if (LINK_BEFORE(link->paceUntil, link->now))
+        link->paceUntil = link->now;
+    link->slack = timeOf(link, link->packed);
+    link->paceUntil += link->slack;
+    if (link->packed <= link->longest)
+        link->slack -= SHORT_MARGIN;
+    if (link->heard)
+        link->paceUntil += timeOf(link, link->heard) * HEARD_QUARTERS >> 2;
+    link->packed = link->heard = 0;
+    return 1;
+}
+
+int link_isOpen(Link* link) {
+    if (link->packed && link->packed + LEAST > link->longest && !link_flush(link))
+        return 0;
+    return link->packed || !LINK_BEFORE(link->now + link->slack, link->paceUntil);
 }
 
 int link_sendFrame(Link* link, U8* frame, U32 header, U32 key) {
     U32 size = link_seal(frame, header, key);
-    U32 silence = size < link->longest + LINK_OVERHEAD ? SILENCE : 0;
-    if (link->port->transmit(link->context, frame, size) != 0)
+    if (size > link_room(link) + LINK_OVERHEAD && !link_flush(link))
         return 0;
-    if (LINK_BEFORE(link->paceUntil, link->now))
-        link->paceUntil = link->now;
-    link->paceUntil += (size + silence) * link->byteTimeUs16 >> 4;
+    memcpy(link->packet + link->packed, frame, size);
+    link->packed = (U8)(link->packed + size);
     ++link->statistics.framesSent;
     link->statistics.bytesSent += size;
     return 1;
@@ -31,5 +80,5 @@ int link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 byte1, U32 size)
         header |= LINK_HEADER_OF(0U, 0U, LINK_FEATURES);
         key |= LINK_NO_SEED;
     }
-    return link_sendFrame(link, frame, header, key);
+    return link_sendFrame(link, frame, header, key) && link_flush(link);
 }

@@ -11,8 +11,7 @@
 #define LINK_FEATURES (LINK_FEATURE_COMPRESSION | LINK_FEATURE_PIGGYBACK)
 
 /* Times in microseconds. */
-#define LINK_ACK_DELAY 20000U    /* an acknowledgement waits this long for company */
-#define LINK_ACK_EVERY 8U        /* or for so many fragments */
+#define LINK_ACK_DELAY 30000U    /* silence behind data after which it is acknowledged unasked */
 #define LINK_HELLO_FIRST 300000U /* between HELLOs, doubled up to ... */
 #define LINK_HELLO_LAST 2000000U
 #define LINK_PING_AFTER 5000000U /* silence after which the peer is asked, ... */
@@ -24,6 +23,8 @@
 #define LINK_FRAME_GAP 25000U  /* silence on the serial side after which half a frame is dropped */
 #define LINK_POLL_EVERY 1000U  /* while the radio has no room */
 #define LINK_OFFER_EVERY 5000U /* while nobody takes a message */
+
+#define LINK_ACK_ROOM (LINK_OVERHEAD + 5U) /* bytes of the longest acknowledgement */
 
 #define LINK_SLOT(seq) ((seq) & (LINK_WINDOW - 1U))
 
@@ -86,6 +87,9 @@ typedef struct Link_Sender {
     U8 base, next;         /* SEQ: oldest unacknowledged, next new */
     U8 credit, fullCredit; /* fragments that the peer takes: now, and the most it gave */
     U8 hasWork;            /* there may be something to send */
+    U8 isLossy;            /* the newest acknowledgement had gaps */
+    U8 isLate;             /* the timer has expired since the last answer */
+    U8 unasked;            /* transmissions since one asked for an acknowledgement, or one came */
     U8 hasSample;          /* srtt and rttvar hold something */
     U8 cutEntry;           /* the next fragment comes from this entry of the queue, ... */
     U16 cutBytes;          /* of which so many bytes are cut already */
@@ -101,9 +105,8 @@ typedef struct Link_Receiver {
     U8 isHeld;       /* the message is whole, but the program has not taken it */
     U8 channel;      /* of the message */
     U8 ackDue, ackNow;
-    U8 ackCount; /* fragments since the last acknowledgement */
-    U8 waiting;  /* slots in use */
-    U16 size;    /* of the message */
+    U8 waiting; /* slots in use */
+    U16 size;   /* of the message */
     U32 ackAt;
     U8* start; /* of the message */
 } Link_Receiver;
@@ -142,6 +145,8 @@ struct Link {
     U8 open;     /* a bit a channel: messages may be sent */
     U8 closing;  /* closed here, the peer's closing has not come yet */
     U8 closeDue; /* the own closing is not queued yet */
+    U8 packed;   /* bytes in the packet */
+    U8 heard;    /* bytes of a frame that came since the last packet left */
     Link_Receiver receiver;
     Link_Sender sender;
     U32 now;
@@ -149,13 +154,15 @@ struct Link {
     void* context;
     Link_Queue queue;
     U32 byteTimeUs16;
-    U32 paceUntil; /* when the serial side will have sent everything handed over */
+    U32 slack;     /* so much before then the next packet is handed over */
+    U32 paceUntil; /* when the modem will have sent everything handed over */
     U32 heardAt, pingAt;
     Link_Session session;
     Link_Parser parser;
     Link_Statistics statistics;
     Link_Handshake handshake;
 
+    U8 packet[LINK_MAX_FRAME];              /* frames that leave together */
     U8 input[2U * LINK_MAX_FRAME];          /* the parser's */
     Link_Fragment window[LINK_WINDOW];      /* the sender's */
     Link_Entry entries[LINK_SEND_MESSAGES]; /* the queue's */
@@ -165,13 +172,17 @@ struct Link {
     U8 queued[LINK_SEND_BYTES]; /* the queue's */
 };
 
-/* link_output: adds header and checksum, and hands a frame to the radio. */
+/* link_output: adds header and checksum, puts frames into packets, and hands these to the radio. */
 
-/* The time of the longest frame: one frame may wait behind the one that is being sent. */
-U32 link_slack(const Link* link);
-/* Sends a frame whose payload is there (link_seal). Returns 1: taken. */
+/* True if a fragment may go out now: the packet has room, or the modem has for a new one. */
+int link_isOpen(Link* link);
+/* Bytes of payload that a frame may have to fit into the packet, at least if link_isOpen. */
+U32 link_room(const Link* link);
+/* Hands the packet to the radio. Returns 0: it had no room, the packet stays. */
+int link_flush(Link* link);
+/* Puts a frame whose payload is there (link_seal) into the packet. Returns 1: taken. */
 int link_sendFrame(Link* link, U8* frame, U32 header, U32 key);
-/* Sends a control frame whose payload, `size` bytes, is there. Returns 1: taken. */
+/* Sends a control frame whose payload, `size` bytes, is there, at once. Returns 1: taken. */
 int link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 byte1, U32 size);
 
 /* link_compression: heads of IceP messages are sent once. */

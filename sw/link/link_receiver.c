@@ -13,7 +13,7 @@ void link_resetReceiver(Link* link) {
         link->slots[i].isUsed = 0;
     receiver->next = 0;
     receiver->isAssembling = receiver->isHeld = receiver->waiting = 0;
-    receiver->ackCount = receiver->ackDue = receiver->ackNow = 0;
+    receiver->ackDue = receiver->ackNow = 0;
     link->open = link->closing = link->closeDue = 0;
 }
 
@@ -116,11 +116,9 @@ int link_onData(Link* link, U32 seq, U32 flags, const U8* data, U32 size) {
     Link_Receiver* receiver = &link->receiver;
     U32 ahead = (U8)(seq - receiver->next);
     Link_Slot* slot = &link->slots[LINK_SLOT(seq)];
-    if (!receiver->ackDue) {
-        receiver->ackDue = 1;
-        receiver->ackAt = link->now + LINK_ACK_DELAY;
-    }
-    if (++receiver->ackCount >= LINK_ACK_EVERY || (flags & LINK_ACK_NOW) || ahead != 0)
+    receiver->ackDue = 1;
+    receiver->ackAt = link->now + LINK_ACK_DELAY;
+    if (flags & LINK_ACK_NOW)
         receiver->ackNow = 1;
     if (ahead == 0 && !receiver->isHeld) /* the usual case: straight into the message */
         return accept(link, flags, data, size) && drain(link);
@@ -155,7 +153,7 @@ int link_ackMayRide(const Link* link) {
 
 void link_ackIsSent(Link* link) {
     ++link->statistics.acksSent;
-    link->receiver.ackDue = link->receiver.ackNow = link->receiver.ackCount = 0;
+    link->receiver.ackDue = link->receiver.ackNow = 0;
 }
 
 int link_pollReceiver(Link* link) {

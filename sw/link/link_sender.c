@@ -11,8 +11,10 @@
 #define IN_FLIGHT(sender) ((U8)((sender)->next - (sender)->base))
 #define FRAGMENT(link, seq) (&(link)->window[LINK_SLOT(seq)])
 
-/* In flight, these ask the peer for an acknowledgement at once: the window runs dry soon. */
-#define ASK_FROM (LINK_WINDOW * 3U / 4U)
+/* One transmission of so many asks for an acknowledgement, which costs a turn on a half-duplex air:
+ * few where nothing is lost; but what is lost keeps the window from moving on. */
+#define ASK_EVERY 16U
+#define ASK_LOSSY 6U
 
 void link_resetSender(Link* link) {
     Link_Sender* sender = &link->sender;
@@ -39,7 +41,11 @@ static int cut(Link* link) {
         inFlight >= LINK_WINDOW)
         return 0;
     left = entry->size - sender->cutBytes;
-    size = left < link->longest ? left : link->longest;
+    size = link_room(link);
+    if (link->receiver.ackNow && (sender->cutBytes || left >= size))
+        size -= LINK_ACK_ROOM; /* it leaves in the same packet */
+    if (size > left)
+        size = left;
     f->start = sender->cutAt;
     f->size = (U8)size;
     f->flags = entry->flags;
@@ -54,25 +60,36 @@ static int cut(Link* link) {
         sender->cutBytes = 0;
         ++sender->cutEntry;
     }
-    if (inFlight == 0)
-        sender->timerAt = link->now + sender->rto;
     ++sender->next;
+    return 1;
+}
+
+/* True if the peer should answer a fragment at once: one of so many, the last that its credit
+ * covers, and the last one that is sent again. */
+static int mustAsk(const Link* link, U8 seq) {
+    U32 place = (U8)(seq - link->sender.base) + 1U;
+    if (link->sender.unasked >= (link->sender.isLossy ? ASK_LOSSY : ASK_EVERY) - 1U ||
+        place >= link->sender.credit)
+        return 1;
+    if (!FRAGMENT(link, seq)->tries)
+        return 0;
+    while (++seq != link->sender.next)
+        if (FRAGMENT(link, seq)->state == LINK_TO_SEND)
+            return 0;
     return 1;
 }
 
 /* Puts a fragment's payload into a frame. Returns the header: of data, or of a control frame that
  * takes an acknowledgement along, as may a short message that is whole. */
-static U32 build(const Link* link, U8 seq, U8* frame) {
+static U32 build(const Link* link, U8 seq, int isAsked, U8* frame) {
     const Link_Fragment* f = FRAGMENT(link, seq);
     U8* p = frame + LINK_HEADER;
     U32 size = f->size;
     U32 at = f->start;
-    /* The peer should answer at once when the window runs dry or something was lost. */
-    int asks = f->tries || (U8)(seq - link->sender.base) + 1U >= ASK_FROM;
-    U32 header = LINK_HEADER_OF(size, seq, f->flags | (asks ? LINK_ACK_NOW : 0U));
-    if ((f->flags & LINK_FIRST) && (f->flags & LINK_LAST) && size && size < link->longest &&
+    U32 header = LINK_HEADER_OF(size, seq, f->flags | (isAsked ? LINK_ACK_NOW : 0U));
+    if ((f->flags & LINK_FIRST) && (f->flags & LINK_LAST) && size && size < link_room(link) &&
         link_ackMayRide(link)) {
-        header = LINK_CONTROL_HEADER(asks ? LINK_KIND_PIGGYBACK_ASK : LINK_KIND_PIGGYBACK, seq,
+        header = LINK_CONTROL_HEADER(isAsked ? LINK_KIND_PIGGYBACK_ASK : LINK_KIND_PIGGYBACK, seq,
                                      size + 1U) |
                  LINK_HEADER_OF(0U, 0U, LINK_CHANNEL(f->flags));
         *p++ = link->receiver.next;
@@ -87,8 +104,8 @@ static int transmit(Link* link, U8 seq) {
     Link_Sender* sender = &link->sender;
     Link_Fragment* f = FRAGMENT(link, seq);
     U8 frame[LINK_MAX_FRAME];
-    U32 header = build(link, seq, frame);
-    U32 at;
+    int isAsked = mustAsk(link, seq);
+    U32 header = build(link, seq, isAsked, frame);
     if (!link_sendFrame(link, frame, header, link->session.key))
         return 0;
     if (header & LINK_CONTROL)
@@ -100,16 +117,14 @@ static int transmit(Link* link, U8 seq) {
     f->order = ++sender->order;
     f->sentAt = link->now;
     f->state = LINK_SENT;
-    at = link->paceUntil + sender->rto / 2U;
-    if (LINK_BEFORE(sender->timerAt, at))
-        sender->timerAt = at;
+    sender->unasked = (U8)(isAsked ? 0U : sender->unasked + 1U);
+    sender->timerAt = link->now + sender->rto;
     return 1;
 }
 
 /* Takes a round trip into the estimate (RFC 6298). */
 static void sample(Link* link, U32 roundTrip) {
     Link_Sender* sender = &link->sender;
-    U32 rto;
     if (!sender->hasSample) {
         sender->srtt = roundTrip;
         sender->rttvar = roundTrip / 2U;
@@ -121,13 +136,21 @@ static void sample(Link* link, U32 roundTrip) {
         sender->rttvar += error / 4U - sender->rttvar / 4U;
         sender->srtt += roundTrip / 8U - sender->srtt / 8U;
     }
-    rto = sender->srtt + 4U * sender->rttvar + LINK_ACK_DELAY;
+    link->statistics.roundTripUs = sender->srtt;
+}
+
+/* Sets the time-out anew, since the peer has answered. */
+static void setTimer(Link* link) {
+    Link_Sender* sender = &link->sender;
+    U32 rto = sender->srtt + 2U * sender->rttvar;
+    if (!sender->hasSample)
+        rto = LINK_RTO_FIRST;
     if (rto < LINK_RTO_MIN)
         rto = LINK_RTO_MIN;
     if (rto > LINK_RTO_MAX)
         rto = LINK_RTO_MAX;
     sender->rto = rto;
-    link->statistics.roundTripUs = sender->srtt;
+    sender->timerAt = link->now + rto;
 }
 
 /* Marks as lost what was sent before `order` and is not acknowledged: it goes out again. */
@@ -148,28 +171,30 @@ static void sendAgain(Link* link, U32 order) {
  * lost. */
 static void markAcked(Link* link, U32 advance, U32 bitmap) {
     Link_Sender* sender = &link->sender;
-    U32 newest = 0;
-    U32 hasNews = 0;
+    const Link_Fragment* newest = 0;
     U32 i;
     for (i = 0; i < IN_FLIGHT(sender); ++i) {
         Link_Fragment* f = FRAGMENT(link, sender->base + i);
         U32 elapsed = link->now - f->sentAt;
-        if (i >= advance && (i == advance || !(bitmap >> (i - advance - 1U) & 1U)))
-            continue;
-        if (f->state == LINK_ACKED || f->tries == 0)
+        U32 isHere = i < advance;
+        if (i > advance) {
+            isHere = bitmap & 1U;
+            bitmap >>= 1;
+        }
+        if (!isHere || f->state == LINK_ACKED || f->tries == 0)
             continue;
         f->state = LINK_ACKED;
-        if (f->tries == 1U)
-            sample(link, elapsed);
-        else if (elapsed < sender->srtt - sender->srtt / 4U)
+        if (f->tries != 1U && elapsed < sender->srtt - sender->srtt / 4U)
             continue; /* sooner than a round trip: this answers an earlier transmission */
-        if (!hasNews || LINK_BEFORE(newest, f->order))
-            newest = f->order;
-        hasNews = 1;
+        if (!newest || LINK_BEFORE(newest->order, f->order))
+            newest = f;
     }
-    if (hasNews) {
-        sender->timerAt = link->now + sender->rto;
-        sendAgain(link, newest);
+    if (newest) {
+        if (newest->tries == 1U && !sender->isLate)
+            sample(link, link->now - newest->sentAt);
+        sender->isLate = sender->unasked = 0;
+        setTimer(link);
+        sendAgain(link, newest->order);
     }
 }
 
@@ -182,6 +207,7 @@ void link_onAck(Link* link, U32 cumulative, U32 credit, U32 bitmap) {
     if (sender->fullCredit < credit)
         sender->fullCredit = (U8)credit;
     sender->hasWork = 1;
+    sender->isLossy = bitmap != 0;
     markAcked(link, advance, bitmap);
     while (advance--) {
         if (FRAGMENT(link, sender->base++)->flags & LINK_LAST) {
@@ -206,17 +232,21 @@ void link_pollSender(Link* link) {
     if (link->closeDue)
         link_queueClosings(link);
     if (sender->base != sender->next && !LINK_BEFORE(link->now, sender->timerAt)) {
-        sendAgain(link, sender->order + 1U);
+        FRAGMENT(link, sender->base)->state = LINK_TO_SEND; /* its answer tells the rest */
+        sender->hasWork = sender->isLate = 1;
         /* Loss here is the radio's, no congestion: doubling would only prolong a bad tail. */
         sender->rto += sender->rto / 4U;
         if (sender->rto > LINK_RTO_MAX)
             sender->rto = LINK_RTO_MAX;
         sender->timerAt = link->now + sender->rto;
     }
-    while (sender->hasWork && !LINK_BEFORE(link->now + link_slack(link), link->paceUntil)) {
-        if (!nextFragment(link, &seq))
+    while (sender->hasWork && link_isOpen(link)) {
+        if (!nextFragment(link, &seq)) {
             sender->hasWork = 0;
-        else if (!transmit(link, seq))
             return;
+        }
+        if (!transmit(link, seq))
+            return;
+        link_pollAck(link);
     }
 }

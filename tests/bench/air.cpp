@@ -17,6 +17,7 @@ extern "C" {
 namespace {
 
 constexpr U32 byteTimeUs16 = 1440;
+unsigned leastExponent = 2; // RN, as controller and ground set it
 const char* const key = "0123456789ABCDEF0123456789ABCDEF";
 
 class End {
@@ -63,9 +64,12 @@ private:
     static End& self(void* c) { return *static_cast<End*>(c); }
     static XBee::Options options(unsigned address, bool encrypted) {
         XBee::Options o;
-        o.set = {
-            {"BD", 7}, {"MY", address}, {"DL", 1 - address}, {"D7", 1}, {"EE", encrypted ? 1u : 0u},
-            {"RN", 3u}};
+        o.set = {{"BD", 7},
+                 {"MY", address},
+                 {"DL", 1 - address},
+                 {"D7", 1},
+                 {"EE", encrypted ? 1u : 0u},
+                 {"RN", leastExponent}};
         if (encrypted)
             o.key = key;
         return o;
@@ -193,6 +197,7 @@ void roundTrips(bool encrypted) {
 } // namespace
 
 int main(int argc, char** argv) {
+    figures.app.add_option("--rn", leastExponent, "RN of both modems")->check(CLI::Range(0u, 3u));
     return figures.run(argc, argv, [&] {
         for (bool encrypted : {false, true}) {
             for (bool both : {false, true})

@@ -20,8 +20,8 @@ extern "C" {
 
 namespace {
 
-// The modem's own time for a packet, and the mean wait of RN 3 (docs/models.md); ms.
-constexpr double modemMs = 4.688, waitMs = 3.5 * 0.320;
+// The modem's own time for a packet, and the mean wait of RN 2 (docs/models.md); ms.
+constexpr double modemMs = 4.688, waitMs = 1.5 * 0.320;
 // The limit one way: full packets through the modem, which is slower than its serial port at
 // 111,111 baud.
 constexpr double mostBytesPerSecond = 100 / (modemMs + waitMs + 5.312) * 1000;
@@ -162,7 +162,7 @@ private:
     unsigned guardMs_;
     RfChannel air_{testSeed()};
     TimedLine line_;
-    XBee ground_{line_, air_, modem(1000, {{"BD", 7}, {"MY", 0}, {"DL", 1}, {"D7", 1}, {"RN", 3}})};
+    XBee ground_{line_, air_, modem(1000, {{"BD", 7}, {"MY", 0}, {"DL", 1}, {"D7", 1}, {"RN", 2}})};
     SocModel soc_{air_, modem(guardMs_, {})};
     bool irqOn_ = false;
     OS_EVENT* work_ = nullptr;

@@ -72,7 +72,7 @@ TEST_F(ModemTest, TheKeyIsSentOnlyWithEncryption) {
     EXPECT_EQ(near_->parameter("EE"), 0u);
     EXPECT_EQ(near_->parameter("D6"), 1u);
     EXPECT_EQ(near_->parameter("D7"), 1u);
-    EXPECT_EQ(near_->parameter("RN"), 3u) << "modems that write in step";
+    EXPECT_EQ(near_->parameter("RN"), 2u) << "modems that write in step";
 }
 
 TEST_F(ModemTest, WrongPutsAreRefused) {

@@ -85,7 +85,7 @@ TEST_F(EngineTest, AModemThatIsResetInFlightIsSetUpAgain) {
     echoes(fd, 2);
     close(fd);
     EXPECT_EQ(rig_.with([&] { return rig_.ground->parameter("BD"); }), 7u);
-    EXPECT_EQ(rig_.with([&] { return rig_.ground->parameter("RN"); }), 3u);
+    EXPECT_EQ(rig_.with([&] { return rig_.ground->parameter("RN"); }), 2u);
     EXPECT_TRUE(logged("Setting the modem up again"));
 }
 

@@ -24,10 +24,10 @@ public:
         std::function<std::string()> describe;
         // Goes back, where that can be done: one stop, or to the last breakpoint. Returns where
         // there is nothing before; else the process that goes on returns from `run`.
-        std::function<void(bool singleStep)> back;
+        std::function<void(bool singleStep)> back = nullptr;
         // Where a run that can go back has ended: "begin" or "end" of what there is, or "".
-        std::function<std::string()> edge;
-        std::function<void()> changed; // the debugger has written registers or memory
+        std::function<std::string()> edge = [] { return ""; };
+        std::function<void()> changed = [] {}; // the debugger has written registers or memory
     };
     // Listens on 127.0.0.1; port 0 is any free one. Throws std::system_error where it is taken.
     explicit GdbStub(uint16_t port);

@@ -218,12 +218,11 @@ TEST_F(Crowd, AFloodLeavesRoomForOthers) {
             flood.send(message(1, 1000));
         flood.write();
         flood.read();
-        return flood.got > 100'000;
+        return flood.got > 20'000;
     });
-    for (int i = 0; i < 20; ++i) {
-        const size_t want = other.got + 30;
+    for (int i = 0; i < 3; ++i) {
+        const size_t want = other.got + 30, before = flood.got;
         other.send(message(1));
-        const auto begin = std::chrono::steady_clock::now();
         ASSERT_TRUE(wire_.until([&] {
             if (flood.unwritten() < 100'000)
                 flood.send(message(1, 1000));
@@ -233,7 +232,8 @@ TEST_F(Crowd, AFloodLeavesRoomForOthers) {
             other.read();
             return other.got >= want;
         }));
-        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+        // What is queued for the link goes first, not all that the flood has to say.
+        EXPECT_LT(flood.got - before, 60'000u);
     }
 }
 

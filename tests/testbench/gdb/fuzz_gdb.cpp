@@ -49,8 +49,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     static Nobody bus;
     static CortexM3 cpu(bus, CortexM3::Config(), {{0x60000000, 0x1000}});
     static GdbStub stub(0);
-    const GdbStub::Target target{cpu, [](bool) { return CortexM3::Stop::Breakpoint; }, [] {},
-                                 [] { return false; }, [] { return std::string("nothing\n"); }};
+    const GdbStub::Target target{cpu,
+                                 [](bool) { return CortexM3::Stop::Breakpoint; },
+                                 [] {},
+                                 [] { return false; },
+                                 [] { return std::string("nothing\n"); },
+                                 [](bool) {}};
     std::string bytes, line;
     for (size_t i = 0; i <= size; ++i)
         if (i == size || data[i] == '\n') {

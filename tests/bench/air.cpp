@@ -8,6 +8,7 @@
 #include "frame_pacer.h"
 #include "rf_channel.h"
 #include "timed_line.h"
+#include <array>
 #include <cstdio>
 
 extern "C" {
@@ -106,8 +107,8 @@ private:
 
 class World {
 public:
-    World(const RfWeather& weather, bool encrypted)
-        : a(air, 0, encrypted, testSeed() + 1), b(air, 1, encrypted, testSeed() + 2) {
+    World(const RfWeather& weather, bool encrypted, uint64_t seed = testSeed())
+        : air(seed), a(air, 0, encrypted, seed + 1), b(air, 1, encrypted, seed + 2) {
         air.weather = weather;
         Link_start(a.link(), 0);
         until([&] { return a.isUp() && b.isUp(); }, 60);
@@ -126,18 +127,16 @@ public:
         }
     }
     uint64_t now = 0;
-    RfChannel air{testSeed()};
+    RfChannel air;
     End a, b;
 };
 
 Figures figures("The radio link on a half-duplex air with the modems' own limits.");
 
-void goodput(double loss, bool encrypted, bool both) {
-    RfWeather weather;
-    weather.loss = loss;
-    World w(weather, encrypted);
+// Bytes a second that come to the second and to the first modem, in so many seconds.
+std::array<double, 2> flow(World& w, bool both, uint64_t seconds) {
     const std::vector<U8> message(LINK_MAX_MESSAGE / 4, 1);
-    const uint64_t start = w.now, seconds = figures.brief ? 1 : 20;
+    const uint64_t start = w.now;
     auto feed = [&](End& end) {
         while (Link_send(end.link(), 0, message.data(), static_cast<U32>(message.size()), 0) ==
                LINK_OK)
@@ -151,18 +150,34 @@ void goodput(double loss, bool encrypted, bool both) {
             return w.now >= start + seconds * 1'000'000'000;
         },
         1e9);
-    double rate[2] = {0, 0};
-    for (int i = 0; i < 2; ++i) {
-        const End& to = i ? w.a : w.b;
-        rate[i] = to.lastAt > start
-                      ? static_cast<double>(to.bytes) * 1e9 / static_cast<double>(to.lastAt - start)
-                      : 0;
+    std::array<double, 2> rate = {0, 0};
+    for (const End* to : {&w.b, &w.a})
+        if (to->lastAt > start)
+            rate[to == &w.a] =
+                static_cast<double>(to->bytes) * 1e9 / static_cast<double>(to->lastAt - start);
+    return rate;
+}
+
+// The mean over some seeds: single runs differ by a tenth.
+void goodput(double loss, bool encrypted, bool both) {
+    RfWeather weather;
+    weather.loss = loss;
+    const unsigned runs = figures.brief ? 1 : 9;
+    double rate[2] = {0, 0}, least = 1e9, most = 0;
+    for (unsigned run = 0; run < runs; ++run) {
+        World w(weather, encrypted, testSeed() + 10 * run);
+        const auto one = flow(w, both, figures.brief ? 1 : 20);
+        for (int i = 0; i < 2; ++i)
+            rate[i] += one[i] / runs;
+        least = std::min(least, one[0] + one[1]);
+        most = std::max(most, one[0] + one[1]);
     }
     const double limit = encrypted ? 47000.0 / 8 : 10000;
     const double all = rate[0] + rate[1];
-    std::printf("%s, %s, %2.0f %% lost: %5.0f + %5.0f bytes/s, %.1f %% of %.0f\n",
+    std::printf("%s, %s, %2.0f %% lost: %5.0f + %5.0f bytes/s, %.1f %% of %.0f (%.1f to %.1f)\n",
                 encrypted ? "encrypted" : "clear    ", both ? "both ways" : "one way  ", loss * 100,
-                rate[0], rate[1], all / limit * 100, limit);
+                rate[0], rate[1], all / limit * 100, limit, least / limit * 100,
+                most / limit * 100);
     char name[80];
     std::snprintf(name, sizeof name, "goodput %s %s, loss %.2f", both ? "both ways" : "one way",
                   encrypted ? "encrypted" : "in the clear", loss);

@@ -6,6 +6,7 @@
 #include "pair.h"
 #include <cstdio>
 #include <fstream>
+#include <unistd.h>
 
 namespace {
 
@@ -161,10 +162,10 @@ TEST_F(TrueAir, StrengthFallsWithDistanceAndTriesFade) {
 
 class Traces : public TrueAir {
 protected:
+    ~Traces() override { std::remove(path_.c_str()); }
     std::string write(const std::string& text) {
-        std::string path = ::testing::TempDir() + "xbee_trace.csv";
-        std::ofstream(path) << text;
-        return path;
+        std::ofstream(path_) << text;
+        return path_;
     }
     std::string fault(const std::string& text) {
         try {
@@ -175,6 +176,10 @@ protected:
         }
         return "";
     }
+
+private:
+    // Two of these tests may run at once.
+    const std::string path_ = ::testing::TempDir() + "trace." + std::to_string(getpid()) + ".csv";
 };
 
 TEST_F(Traces, AreFollowedRowByRow) {

@@ -156,7 +156,10 @@ int main(int argc, char** argv) {
         if (o.cpu == "m3" && !o.key.empty())
             throw std::invalid_argument("--key needs --cpu host: the ARM binary has its own");
         if (o.cpu != "m3" && (o.gdb >= 0 || !o.marks.empty()))
-            throw std::invalid_argument("--gdb and --marks need --cpu m3");
+            throw std::invalid_argument(
+                o.replayed ? "that flight was flown by the firmware's host build; GDB needs one of "
+                             "the ARM binary: make run CPU=m3"
+                           : "--gdb and --marks need --cpu m3");
         writeWave(line);
         if (!o.trace.empty())
             o.weather.trace = std::make_shared<RfTrace>(o.trace);

@@ -57,6 +57,7 @@ loss) # and again from its recording, whose time is the one for looking
     echo '{"no": "flight"}' >"$out/other/flight.jsonl"
     fails_with 'is no recording of a flight: line 1' replay "$out/other"
     fails_with 'the replay needs a folder of its own' "$build/testbench/sim/icesoc-sim" --replay "$out" --out "$out"
+    fails_with "flown by the firmware's host build" replay "$out" --gdb 0
     fails_with 'writes no waveforms' replay "$out" --wave "$out/wave.fst"
     fails_with 'no flight was recorded in' "$source/testbench/sim/replay.sh" "$build" "$out/nowhere" "$out/replay"
     ;;

@@ -10,7 +10,7 @@
 // - Once NWAIT is inactive in an access to a register it stays so, and data on the pins stays.
 // - A write to a register goes on only when the write before it is handed over and registers are idle. The bridge's time-out
 //   lets go only accesses to memory, however short it is.
-// With WORDS = 1 something else is proven: 32-bit register words are atomic (fsmc_words_proof).
+// WORDS = 1 proves something else: 32-bit register words are atomic (fsmc_words_proof).
 
 `default_nettype none
 

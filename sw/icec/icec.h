@@ -15,7 +15,7 @@
  *
  * Nothing is allocated: the caller owns every object named here, and keeps it while it is in use,
  * and so it does strings that are passed as `const char*`. The limits are those of ice_config.h.
- * With an Ice_Os every function may be called by any task; a proxy object belongs to one task at a
+ * Any task may call every function where an Ice_Os is set; a proxy object belongs to one task at a
  * time (copies are plain assignments). Names follow the paper's figures; docs/icec.md tells the
  * rest.
  */

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* Whose checksum a frame has. */
+/* The party whose checksum a frame has. */
 typedef enum Owner { NOBODY, HANDSHAKE, SESSION, CANDIDATE } Owner;
 
 static int hasGoodCrc(const U8* frame, U32 key) {

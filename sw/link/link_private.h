@@ -137,7 +137,7 @@ typedef struct Link_Packed {
     U32 prefix, middle, tailAt, tail;
 } Link_Packed;
 
-/* What is small and often used comes first: a Cortex-M3 reaches it with short instructions. */
+/* The link. Small members that are often used come first: short instructions reach them. */
 struct Link {
     U8 state;    /* Link_State */
     U8 wanted;   /* Link_start was called */

@@ -4,7 +4,7 @@
 // (-DTRACE=ON; WAVE=file, WAVE_FROM and WAVE_TO in clocks) and coverage (-DCOVERAGE=ON;
 // COVERAGE_DIR). In other builds it only keeps the clock.
 //
-// With CDC_SEED in the environment, a number, the synchronisers of the model are uncertain
+// CDC_SEED, a number in the environment, makes the model's synchronisers uncertain
 // (hdl/cdc/cdc_random.vh); the numbers drawn follow from it and from SEED.
 
 #ifndef OBSERVER_H

@@ -89,7 +89,7 @@ std::optional<Checkpoints::Order> Checkpoints::freeze(uint64_t place) {
     return std::nullopt;
 }
 
-// What a frozen copy does: each time that it is woken it sends a copy of itself. Returns in that.
+// Holds a frozen copy; each time that it is woken it forks. Returns in the forked process only.
 std::optional<Checkpoints::Order> Checkpoints::sleep() {
     sigset_t all, wakes, before;
     sigfillset(&all);

@@ -17,7 +17,7 @@
 
 class Checkpoints {
 public:
-    // What the copy that is woken is to do. Places are counts of instructions.
+    // The task of a copy that is woken. Places are counts of instructions.
     struct Order {
         enum Goal {
             Stop,          // run to `place`, and stop there

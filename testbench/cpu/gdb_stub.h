@@ -25,7 +25,7 @@ public:
         // Goes back, where that can be done: one stop, or to the last breakpoint. Returns where
         // there is nothing before; else the process that goes on returns from `run`.
         std::function<void(bool singleStep)> back = nullptr;
-        // Where a run that can go back has ended: "begin" or "end" of what there is, or "".
+        // Tells where a run that can go back has ended: "begin" or "end" of what there is, or "".
         std::function<std::string()> edge = [] { return ""; };
         std::function<void()> changed = [] {}; // the debugger has written registers or memory
     };

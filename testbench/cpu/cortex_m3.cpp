@@ -47,22 +47,29 @@ CortexM3::Stop CortexM3::run(bool singleStep) {
         }
         if (unsigned number = exceptions_.deliverable())
             enter(number);
+        if (staleCode_)
+            for (uint32_t base : {0u, config_.flashBase})
+                uc_ctl_remove_cache(uc_, base, base + config_.flashBytes - 1);
+        staleCode_ = false;
         updateAttention();
         raised_ = 0;
         uc_err error = uc_emu_start(uc_, pc_ | 1, 0, 0, 0);
         uc_reg_read(uc_, UC_ARM_REG_PC, &pc_);
+        settleFlash();
         handleUnicorn(error);
     }
 }
 
 void CortexM3::updateAttention() {
-    attention_ = stopAsked_ || resetAsked_ || failure_ || synchronous_.number ||
+    attention_ = stopAsked_ || resetAsked_ || failure_ || synchronous_.number || staleCode_ ||
                  exceptions_.deliverable() != 0;
 }
 
 void CortexM3::onInstruction(uint32_t address) {
     if (masksChanged_)
         updateMasks(address);
+    if (!stores_.empty())
+        settleFlash();
     bool inUnit = skipped_ != 0 && address > executing_ && address < unitEnd_;
     if (!inUnit) {
         if (failure_ || synchronous_.number || raised_) {
@@ -85,6 +92,8 @@ void CortexM3::onInstruction(uint32_t address) {
             boundaries_[1] = instructions_;
         }
         stepped_ = stepped_ || (limit_ && instructions_ >= limit_);
+        if (cycles() < flashFree_ && isFlash(address) && !attention_)
+            waitForFlash();
         if (attention_ || stepped_) {
             uc_emu_stop(uc_);
             return;
@@ -178,6 +187,26 @@ void CortexM3::sleep() {
     asleep_ = false;
 }
 
+// Passes the time until instructions can be fetched from flash again, up to where something else is
+// to be looked after.
+void CortexM3::waitForFlash() {
+    const uint64_t from = cycles();
+    while (cycles() < flashFree_ && !stopAsked_ && !resetAsked_ && !failure_)
+        passing([&] {
+            const uint64_t wanted = std::min(flashFree_ - cycles(), control_.untilTick());
+            control_.pass(bus_.sleep(static_cast<unsigned>(std::min(wanted, sleepStep))));
+        });
+    stalled_ += cycles() - from;
+    updateAttention();
+}
+
+// Puts back what libunicorn has stored to flash by itself.
+void CortexM3::settleFlash() {
+    for (auto s = stores_.rbegin(); s != stores_.rend(); ++s)
+        std::memcpy(flash_.get() + s->offset, s->was, s->bytes);
+    stores_.clear();
+}
+
 void CortexM3::updateMasks(uint32_t address) {
     masksChanged_ = false;
     exceptions_.setMasks(reg(Primask), reg(Basepri), reg(Faultmask));
@@ -266,6 +295,27 @@ void CortexM3::onWrite(uint32_t address, unsigned bytes, uint32_t value) {
     });
     if (address >= 0xE0000000 && control_.takeResetRequest())
         requestReset();
+}
+
+// Called before libunicorn stores to flash; what the bus makes of it is what counts.
+void CortexM3::onFlashWrite(uint32_t offset, unsigned bytes, uint32_t value) {
+    settleFlash();
+    guardedAccess(config_.flashBase + offset, bytes, [&](bool) {
+        bus_.writeFlash(offset, bytes, value);
+        return 0u;
+    });
+    FlashStore store{offset, bytes, {}};
+    std::memcpy(store.was, flash_.get() + offset, bytes);
+    stores_.push_back(store);
+}
+
+void CortexM3::flashChanged(uint32_t offset, uint32_t bytes) {
+    const uint32_t first = offset >= 2 ? offset / 2 - 1 : 0; // a long instruction may begin before
+    for (uint32_t at = first; at < (offset + bytes + 1) / 2; ++at) {
+        staleCode_ = staleCode_ || decoded_[at].bytes;
+        decoded_[at].bytes = 0;
+    }
+    attention_ = attention_ || staleCode_;
 }
 
 bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {

@@ -38,6 +38,10 @@ public:
         pass(1);
         return limit ? 1 : 0;
     }
+    // A store to flash at this offset. The memory itself is whose it is to change.
+    virtual void writeFlash(uint32_t, unsigned, uint32_t) {
+        throw Error("flash is not written by stores");
+    }
     // HCLK cycles that the access just made took; the processor waited for so long.
     virtual unsigned takeWaited() = 0;
 };
@@ -67,6 +71,12 @@ public:
     // processor's own.
     bool debugRead(uint32_t address, void* data, uint32_t bytes);
     bool debugWrite(uint32_t address, const void* data, uint32_t bytes);
+    uint8_t* flash() { return flash_.get(); }
+    // Bytes of flash have changed; called by the bus.
+    void flashChanged(uint32_t offset, uint32_t bytes);
+    // No instruction can be fetched from flash for so many cycles; called by the bus.
+    void stallFlash(uint64_t cycles) { flashFree_ = this->cycles() + cycles; }
+    uint64_t stalledCycles() const { return stalled_; }
     uint32_t word(uint32_t address) const; // 0 where there is no memory
 
     // Resets as power-on or the system does: registers from the vector table; RAM stays.
@@ -141,6 +151,12 @@ private:
     void onRaised(uint32_t number);
     uint32_t onRead(uint32_t address, unsigned bytes);
     void onWrite(uint32_t address, unsigned bytes, uint32_t value);
+    void onFlashWrite(uint32_t offset, unsigned bytes, uint32_t value);
+    bool isFlash(uint32_t address) const {
+        return address < config_.flashBytes || address - config_.flashBase < config_.flashBytes;
+    }
+    void settleFlash();
+    void waitForFlash();
     bool onGuarded(uint32_t address, unsigned bytes, bool write);
     template <class Access> uint32_t guardedAccess(uint32_t address, unsigned bytes, Access access);
     const Instruction& instructionAt(uint32_t address);
@@ -186,6 +202,16 @@ private:
     } synchronous_; // fault of the instruction under way
     std::exception_ptr failure_;
     uint64_t instructions_ = 0, sleeping_ = 0, waited_ = 0;
+    // libunicorn carries a store to flash out by itself: what was there is put back, and the bus
+    // changes it.
+    struct FlashStore {
+        uint32_t offset;
+        unsigned bytes;
+        uint8_t was[8];
+    };
+    std::vector<FlashStore> stores_; // of the instruction under way
+    bool staleCode_ = false;         // translated code is no longer what flash has
+    uint64_t flashFree_ = 0, stalled_ = 0;
     uint64_t limit_ = 0, boundaries_[2] = {0, 0};
     uint8_t watchedPriority_ = 0xFF;
     bool masked_ = false;

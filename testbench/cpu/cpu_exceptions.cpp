@@ -49,7 +49,7 @@ CortexM3::CortexM3(CpuBus& bus, const Config& config, const std::vector<Window>&
     check(uc_open(UC_ARCH_ARM, static_cast<uc_mode>(UC_MODE_THUMB | UC_MODE_MCLASS), &uc_), "open");
     check(uc_ctl_set_cpu_model(uc_, UC_CPU_ARM_CORTEX_M3), "Cortex-M3");
     for (uint32_t base : {0u, config.flashBase})
-        map(base, config.flashBytes, flash_.get(), UC_PROT_READ | UC_PROT_EXEC);
+        map(base, config.flashBytes, flash_.get(), UC_PROT_ALL);
     map(config.ramBase, config.ramBytes, ram_.get(), UC_PROT_ALL);
     std::vector<Window> all = windows;
     all.push_back({0xE0000000, 0x100000});
@@ -71,6 +71,11 @@ CortexM3::CortexM3(CpuBus& bus, const Config& config, const std::vector<Window>&
                       reinterpret_cast<void*>(UnicornCalls::access), this, config.ramBase,
                       uint64_t(config.ramBase) + config.ramBytes - 1),
           "hook");
+    for (uint32_t base : {0u, config.flashBase})
+        check(uc_hook_add(uc_, &hook, UC_HOOK_MEM_WRITE,
+                          reinterpret_cast<void*>(UnicornCalls::flashWrite), this, base,
+                          uint64_t(base) + config.flashBytes - 1),
+              "hook");
 }
 
 CortexM3::~CortexM3() {
@@ -106,16 +111,10 @@ bool CortexM3::writeMemory(uint32_t address, const void* data, uint32_t bytes) {
     if (address >= config_.ramBase || !readMemory(address, &was, 1) ||
         !readMemory(address + bytes - 1, &was, 1))
         return false;
-    for (uint32_t i = 0; i < bytes; ++i) { // flash: as a programmer writes it
-        uint32_t offset =
-            (address >= config_.flashBase ? address - config_.flashBase : address) + i;
-        flash_[offset] = static_cast<const uint8_t*>(data)[i];
-        decoded_[offset >> 1].bytes = 0;
-        if (offset >= 2)
-            decoded_[(offset >> 1) - 1].bytes = 0;
-    }
-    for (uint32_t base : {0u, config_.flashBase})
-        uc_ctl_remove_cache(uc_, base, base + config_.flashBytes - 1);
+    // Flash, as a programmer writes it.
+    const uint32_t offset = address >= config_.flashBase ? address - config_.flashBase : address;
+    std::memcpy(flash_.get() + offset, data, bytes);
+    flashChanged(offset, bytes);
     return true;
 }
 
@@ -154,6 +153,7 @@ unsigned CortexM3::currentException() const {
 void CortexM3::reset() {
     control_.reset();
     lockedUp_ = false;
+    flashFree_ = 0;
     synchronous_.number = 0;
     raised_ = skipped_ = unitEnd_ = expected_ = 0;
     masksChanged_ = masked_ = false;

@@ -35,7 +35,9 @@ constexpr Pins fsmcPins[] = {
 Stm32F2::Stm32F2(FsmcMaster& fsmc, std::function<uint64_t()> now, Config config)
     : fsmc_(fsmc), now_(std::move(now)), config_(config),
       cpu_(*this, {0x08000000, 0x100000, 0x20000000, 0x20000, config.hclkHz / 8 / 1000},
-           {{0x40000000, 0x80000}, {windows, 0x10000000}, {fsmcRegisters, 0x1000}}) {
+           {{0x40000000, 0x80000}, {windows, 0x10000000}, {fsmcRegisters, 0x1000}}),
+      flash_(cpu_.flash(), now_) {
+    flash_.onChange = [this](uint32_t at, uint32_t bytes) { cpu_.flashChanged(at, bytes); };
     cpu_.listener.systemReset = [this] {
         bool byWatchdog = watchdog_.fired;
         ++(byWatchdog ? resets_.watchdog : resets_.software);
@@ -58,6 +60,7 @@ void Stm32F2::powerOn() {
 }
 
 void Stm32F2::resetPeripherals() {
+    flash_.reset();
     registers_.clear();
     registers_[rcc] = 0x83;           // HSI on and ready
     registers_[rcc + 4] = 0x24003010; // PLLCFGR
@@ -171,6 +174,17 @@ void Stm32F2::write(uint32_t address, unsigned bytes, uint32_t value) {
     waited_ += static_cast<unsigned>(fsmc_.hclks() - before) * config_.coreCyclesPerHclk;
 }
 
+void Stm32F2::writeFlash(uint32_t offset, unsigned bytes, uint32_t value) {
+    flash_.store(offset, bytes, value);
+    waitForFlash();
+}
+
+// One bank: while it is erased or written, no instruction comes from it.
+void Stm32F2::waitForFlash() {
+    if (const uint64_t ns = flash_.busyNs())
+        cpu_.stallFlash(ns * (config_.hclkHz / 1000) / 1'000'000 + 1);
+}
+
 void Stm32F2::requireFsmc() {
     if (fsmcUsable_)
         return;
@@ -215,9 +229,10 @@ uint32_t Stm32F2::readPeripheral(uint32_t address) {
     }
     if (address == exti + 0x14)
         return pendingExti_;
-    if (isIn(address, exti, 0x14) || isIn(address, syscfg, 0x24) ||
-        isIn(address, flashInterface, 0x18))
+    if (isIn(address, exti, 0x14) || isIn(address, syscfg, 0x24))
         return stored(address);
+    if (isIn(address, flashInterface, 0x18))
+        return flash_.read(address - flashInterface);
     if (address == crcUnit)
         return crc_;
     if (address == iwdg + 0x4)
@@ -244,10 +259,16 @@ void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
     } else if (address == exti + 0x14) {
         pendingExti_ &= ~value;
         updateExti();
-    } else if (isIn(address, exti, 0x14) || isIn(address, syscfg, 0x24) ||
-               isIn(address, flashInterface, 0x18)) {
+    } else if (isIn(address, exti, 0x14) || isIn(address, syscfg, 0x24)) {
         stored(address) = value;
         updateExti();
+    } else if (isIn(address, flashInterface, 0x18)) {
+        try {
+            flash_.write(address - flashInterface, value);
+        } catch (const Stm32Flash::WrongKey& e) {
+            throw Error(e.what());
+        }
+        waitForFlash();
     } else if (address == crcUnit) {
         crc_ ^= value;
         for (int bit = 0; bit < 32; ++bit)

@@ -10,6 +10,7 @@
 #include "cortex_m3.h"
 #include "elf_image.h"
 #include "fsmc_master.h"
+#include "stm32_flash.h"
 #include <functional>
 #include <map>
 #include <optional>
@@ -26,6 +27,7 @@ public:
     Stm32F2(FsmcMaster& fsmc, std::function<uint64_t()> now, Config config);
 
     CortexM3& cpu() { return cpu_; }
+    Stm32Flash& flash() { return flash_; }
     const ElfImage* image() const { return image_ ? &*image_ : nullptr; }
 
     void load(const std::string& elf);
@@ -45,6 +47,7 @@ public:
 private:
     uint32_t read(uint32_t address, unsigned bytes) override;
     void write(uint32_t address, unsigned bytes, uint32_t value) override;
+    void writeFlash(uint32_t offset, unsigned bytes, uint32_t value) override;
     void pass(unsigned cycles) override;
     unsigned sleep(unsigned limit) override;
     void lookAround();
@@ -55,6 +58,7 @@ private:
     void writeWatchdog(uint32_t offset, uint32_t value);
     void requireClock(uint32_t address) const;
     void requireFsmc();
+    void waitForFlash();
     void updateExti();
     void resetPeripherals();
     uint64_t watchdogNs() const;
@@ -66,6 +70,7 @@ private:
     std::function<uint64_t()> onTime_;
     uint64_t wantedNs_ = 0; // when it wants to be called
     CortexM3 cpu_;
+    Stm32Flash flash_;
     std::optional<ElfImage> image_;
     std::map<uint32_t, uint32_t> registers_; // that only store
     unsigned carry_ = 0, waited_ = 0;

@@ -18,6 +18,13 @@ struct UnicornCalls {
         cpu(user).onGuarded(static_cast<uint32_t>(address), static_cast<unsigned>(size),
                             type == UC_MEM_WRITE);
     }
+    static void flashWrite(uc_engine*, uc_mem_type, uint64_t address, int size, int64_t value,
+                           void* user) {
+        CortexM3& m3 = cpu(user);
+        const auto at = static_cast<uint32_t>(address);
+        m3.onFlashWrite(at >= m3.config_.flashBase ? at - m3.config_.flashBase : at,
+                        static_cast<unsigned>(size), static_cast<uint32_t>(value));
+    }
     static uint64_t read(uc_engine*, uint64_t offset, unsigned size, void* user) {
         auto& window = *static_cast<CortexM3::MappedWindow*>(user);
         return window.cpu->onRead(window.base + static_cast<uint32_t>(offset), size);

@@ -87,12 +87,8 @@ void icec_loseConnection(Ice_CommunicatorPtr ic, int connection, Ice_Status stat
     }
 }
 
-/* Finds an asynchronous call whose time is over, and its id; 0: there is none. Shortens `waitMs` to
- * when the next one's is. */
-static Ice_Call* expiredCall(Ice_CommunicatorPtr ic, Ice_Int* id, Ice_Int* waitMs) {
-    U32 now = icec_nowMs(ic);
+Ice_Call* icec_expiredCall(Ice_CommunicatorPtr ic, U32 now, Ice_Int* id, Ice_Int* waitMs) {
     Ice_Call *call, *expired = 0;
-    icec_lock(ic, ICE_LOCK_STATE);
     for (call = ic->calls; call < ic->calls + ICE_CALLS; ++call) {
         Ice_Int left = call->timeoutMs - (Ice_Int)(now - call->begunMs);
         if (call->state != ICE_CALL_WAITING || !call->callback)
@@ -104,19 +100,13 @@ static Ice_Call* expiredCall(Ice_CommunicatorPtr ic, Ice_Int* id, Ice_Int* waitM
             *waitMs = left;
         }
     }
-    icec_unlock(ic, ICE_LOCK_STATE);
     return expired;
 }
 
-Ice_Int icec_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
+void icec_expireCall(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id) {
     Ice_InputStream none;
-    Ice_Call* call;
-    Ice_Int id;
-    while ((call = expiredCall(ic, &id, &waitMs)) != 0) {
-        Ice_InputStream_init(&none, nothing, 0);
-        finish(ic, call, id, ICE_TIMEOUT, &none);
-    }
-    return waitMs;
+    Ice_InputStream_init(&none, nothing, 0);
+    finish(ic, call, id, ICE_TIMEOUT, &none);
 }
 
 /* ---- replies ---- */

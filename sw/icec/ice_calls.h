@@ -14,9 +14,11 @@ Ice_CallState icec_callState(Ice_CommunicatorPtr ic, int slot);
 
 /* Hands a reply, read behind its head, to the call that waits for it. */
 void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
-/* Ends asynchronous calls whose time is over. Returns how long none of the others can be, at most
- * `waitMs`. */
-Ice_Int icec_expireCalls(Ice_CommunicatorPtr ic, Ice_Int waitMs);
+/* Finds an asynchronous call whose time is over, and its id; 0: there is none. Shortens `waitMs` to
+ * when the next one's is; under the state lock. */
+Ice_Call* icec_expiredCall(Ice_CommunicatorPtr ic, U32 now, Ice_Int* id, Ice_Int* waitMs);
+/* Ends that call, unless it has ended meanwhile. */
+void icec_expireCall(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id);
 /* Marks a connection as closed, and fails its calls with `status`. */
 void icec_loseConnection(Ice_CommunicatorPtr ic, int connection, Ice_Status status);
 /* Wakes every task that is making a call; under the state lock. */

@@ -6,6 +6,8 @@
 #include "ice_reply.h"
 #include "ice_transport.h"
 
+#include <string.h>
+
 /* Grades a servant's entry against a target: an exact one comes before its category's default
  * servant, and that before the default servant of all. */
 enum { NO_MATCH, DEFAULT_OF_ALL, DEFAULT_OF_CATEGORY, EXACT };
@@ -43,8 +45,8 @@ static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current* current, Ice_Stat
                 current->adapter = adapter;
             }
         }
-    if (servant)
-        ++ic->connections[current->connection].pending;
+    if (servant && ic->connections[current->connection].pending++ == 0)
+        ic->connections[current->connection].signMs = icec_nowMs(ic);
     icec_unlock(ic, ICE_LOCK_STATE);
     return servant;
 }
@@ -72,7 +74,7 @@ static Ice_Status writeIds(Ice_ObjectPtr servant, Ice_OutputStreamPtr os) {
 Ice_Status Ice_Object_invoke(Ice_ObjectPtr servant, const Ice_Current* current,
                              Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
     const Ice_String* operation = &current->operation;
-    if (!servant->ids)
+    if (!servant->ids || operation->size < 4 || memcmp(operation->data, "ice_", 4) != 0)
         return servant->dispatch(servant, current, is, os);
     if (Ice_String_is(operation, "ice_ping"))
         return ICE_OK;

@@ -74,32 +74,44 @@ static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ic
     return ICE_OK;
 }
 
-/* Finds a connection whose callers wait for an operation and are due a heartbeat; -1: none.
- * Shortens `waitMs` to when the next one is. */
-static int heartbeatDue(Ice_CommunicatorPtr ic, Ice_Int* waitMs) {
-    U32 now = icec_nowMs(ic);
+/* Finds a connection whose callers wait for an operation and are due a heartbeat, which it notes;
+ * -1: none. Shortens `waitMs` to when the next one is; under the state lock. */
+static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
     int c, due = -1;
-    icec_lock(ic, ICE_LOCK_STATE);
-    for (c = 0; c < ICE_CONNECTIONS; ++c) {
-        const Ice_Connection* connection = &ic->connections[c];
-        Ice_Int left = ICE_HEARTBEAT_MS - (Ice_Int)(now - connection->sentMs);
+    for (c = 0; c < ICE_CONNECTIONS && due < 0; ++c) {
+        Ice_Connection* connection = &ic->connections[c];
+        Ice_Int left = ICE_HEARTBEAT_MS - (Ice_Int)(now - connection->signMs);
         if (connection->state != ICE_CONNECTION_OPEN || !connection->pending)
             continue;
-        if (left <= 0)
+        if (left <= 0) {
             due = c;
-        else if (left < *waitMs)
+            connection->signMs = now;
+        } else if (left < *waitMs) {
             *waitMs = left;
+        }
     }
-    icec_unlock(ic, ICE_LOCK_STATE);
     return due;
 }
 
-/* Sends the heartbeats that are due. Returns how long none is, at most `waitMs`. */
-static Ice_Int sendHeartbeats(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
-    int due;
-    while ((due = heartbeatDue(ic, &waitMs)) >= 0)
-        (void)icec_sendHead(ic, due, ICEC_VALIDATE);
-    return waitMs;
+/* Sends the heartbeats that are due, and ends the asynchronous calls whose time is over. Returns
+ * how long none is, at most `waitMs`. */
+static Ice_Int keepTimes(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
+    for (;;) {
+        U32 now = icec_nowMs(ic);
+        Ice_Int id = 0;
+        Ice_Call* call;
+        int due;
+        icec_lock(ic, ICE_LOCK_STATE);
+        due = heartbeatDue(ic, now, &waitMs);
+        call = icec_expiredCall(ic, now, &id, &waitMs);
+        icec_unlock(ic, ICE_LOCK_STATE);
+        if (due >= 0)
+            (void)icec_sendHead(ic, due, ICEC_VALIDATE);
+        if (call)
+            icec_expireCall(ic, call, id);
+        if (due < 0 && !call)
+            return waitMs;
+    }
 }
 
 Ice_Status icec_receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
@@ -109,7 +121,7 @@ Ice_Status icec_receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     if (ic->depth == ICE_NESTING)
         return ICE_LIMIT;
     in = ic->in[ic->depth];
-    timeoutMs = icec_expireCalls(ic, sendHeartbeats(ic, timeoutMs));
+    timeoutMs = keepTimes(ic, timeoutMs);
     event.kind = ICE_EVENT_NONE;
     ++ic->depth;
     status = ic->endpoint->receive(ic->endpointContext, in, timeoutMs, &event);

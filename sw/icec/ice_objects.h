@@ -54,7 +54,7 @@ typedef struct Ice_Connection {
     Ice_Byte pending; /* operations under way, or answered later */
     Ice_Byte closing; /* the peer has been asked to close */
     U16 generation;   /* counts the connections that had this number; never 0 */
-    U32 sentMs;       /* when a message was sent last */
+    U32 signMs;       /* when callers that wait had the last sign of life, or began to wait */
 } Ice_Connection;
 
 /* Small members first: their offsets are short in the code. */

@@ -10,11 +10,7 @@ U32 icec_nowMs(Ice_CommunicatorPtr ic) {
 }
 
 Ice_Status icec_send(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os) {
-    Ice_Status status = ic->endpoint->send(ic->endpointContext, connection, os->data, os->size);
-    icec_lock(ic, ICE_LOCK_STATE);
-    ic->connections[connection].sentMs = icec_nowMs(ic);
-    icec_unlock(ic, ICE_LOCK_STATE);
-    return status;
+    return ic->endpoint->send(ic->endpointContext, connection, os->data, os->size);
 }
 
 Ice_Status icec_sendHead(Ice_CommunicatorPtr ic, int connection, Ice_Byte type) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_core: scheduler, events, time and interrupts of the kernel. Preemptive, fixed priorities.
+ * os_core: scheduler, time and interrupts of the kernel. Preemptive, fixed priorities.
  */
 #include "os_core.h"
 
@@ -123,32 +123,6 @@ void OSTimeTick(void) {
     OS_EXIT_CRITICAL();
 }
 
-U8 OS_EventWait(OS_EVENT* event, U32 timeout, OS_CPU_SR* cpu_sr) {
-    OS_Task* task = os_kernel.current;
-    task->event = event;
-    task->timedOut = 0;
-    task->delay = timeout;
-    OS_Set_remove(&os_kernel.ready, task->priority);
-    OS_Set_add(&event->waiting, task->priority);
-    OS_CPU_SR_Restore(*cpu_sr);
-    OS_Sched();
-    *cpu_sr = OS_CPU_SR_Save();
-    return task->timedOut;
-}
-
-OS_Task* OS_EventWake(OS_EVENT* event) {
-    U8 priority = OS_Set_first(&event->waiting);
-    OS_Task* task;
-    if (priority > OS_LOWEST_PRIO)
-        return 0;
-    task = os_kernel.byPriority[priority];
-    OS_Set_remove(&event->waiting, priority);
-    task->event = 0;
-    task->delay = 0;
-    OS_Set_add(&os_kernel.ready, priority);
-    return task;
-}
-
 static void moveInSet(OS_Set* set, U8 from, U8 to) {
     if (OS_Set_has(set, from)) {
         OS_Set_remove(set, from);
@@ -166,30 +140,4 @@ void OS_ChangePriority(OS_Task* task, U8 priority) {
     task->priority = priority;
     if (task == os_kernel.current)
         OSPrioCur = priority;
-}
-
-OS_EVENT* OS_EventCreate(OS_EventType type) {
-    OS_CPU_SR cpu_sr;
-    OS_EVENT* found = 0;
-    U32 i;
-    if (os_kernel.interruptNesting)
-        return 0;
-    OS_ENTER_CRITICAL();
-    for (i = 0; i < OS_MAX_EVENTS && !found; ++i)
-        if (os_kernel.events[i].type == OS_EVENT_FREE)
-            found = &os_kernel.events[i];
-    if (found)
-        found->type = type;
-    OS_EXIT_CRITICAL();
-    return found;
-}
-
-U8 OS_PendError(const OS_EVENT* event, OS_EventType type) {
-    if (!event)
-        return OS_ERR_PEVENT_NULL;
-    if (event->type != type)
-        return OS_ERR_EVENT_TYPE;
-    if (os_kernel.interruptNesting)
-        return OS_ERR_PEND_ISR;
-    return os_kernel.lockNesting ? OS_ERR_PEND_LOCKED : OS_ERR_NONE;
 }

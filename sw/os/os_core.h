@@ -66,17 +66,6 @@ U8 OS_TaskMake(void (*task)(void*), void* argument, OS_STK* ptos, U8 priority,
                const OS_Task* stack);
 /* Switches to the highest ready task, unless in an interrupt or locked. */
 void OS_Sched(void);
-/* Puts the current task to sleep on an event; back when it is signalled or `timeout` ticks are
- * over. Returns 1 on time-out. Call with interrupts disabled: the state is restored and saved
- * around it. */
-U8 OS_EventWait(OS_EVENT* event, U32 timeout, OS_CPU_SR* cpu_sr);
-/* Makes the first waiting task ready and returns it; 0 where none waits. */
-OS_Task* OS_EventWake(OS_EVENT* event);
-/* Takes a free event; 0 where there is none, and in interrupts. */
-OS_EVENT* OS_EventCreate(OS_EventType type);
-/* Returns what is wrong with a pend call for an event of this type, OS_ERR_NONE where it may go on.
- */
-U8 OS_PendError(const OS_EVENT* event, OS_EventType type);
 /* Gives a task another priority, wherever it is listed. */
 void OS_ChangePriority(OS_Task* task, U8 priority);
 

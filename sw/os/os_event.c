@@ -4,8 +4,68 @@
  */
 #include "os_core.h"
 
+/* Takes a free event; 0 where there is none, and in interrupts. */
+static OS_EVENT* create(OS_EventType type) {
+    OS_CPU_SR cpu_sr;
+    OS_EVENT* found = 0;
+    U32 i;
+    if (os_kernel.interruptNesting)
+        return 0;
+    OS_ENTER_CRITICAL();
+    for (i = 0; i < OS_MAX_EVENTS && !found; ++i)
+        if (os_kernel.events[i].type == OS_EVENT_FREE)
+            found = &os_kernel.events[i];
+    if (found)
+        found->type = type;
+    OS_EXIT_CRITICAL();
+    return found;
+}
+
+/* Returns what is wrong with a pend call for an event of this type, OS_ERR_NONE where it may go on.
+ */
+static U8 pendError(const OS_EVENT* event, OS_EventType type) {
+    if (!event)
+        return OS_ERR_PEVENT_NULL;
+    if (event->type != type)
+        return OS_ERR_EVENT_TYPE;
+    if (os_kernel.interruptNesting)
+        return OS_ERR_PEND_ISR;
+    return os_kernel.lockNesting ? OS_ERR_PEND_LOCKED : OS_ERR_NONE;
+}
+
+/* Puts the current task to sleep on an event; back when it is signalled or `timeout` ticks are
+ * over. Returns 1 on time-out. Interrupts are disabled: their state is restored and saved around
+ * it. */
+static U8 waitFor(OS_EVENT* event, U32 timeout, OS_CPU_SR* cpu_sr) {
+    OS_Task* task = os_kernel.current;
+    task->event = event;
+    task->timedOut = 0;
+    task->delay = timeout;
+    OS_Set_remove(&os_kernel.ready, task->priority);
+    OS_Set_add(&event->waiting, task->priority);
+    OS_CPU_SR_Restore(*cpu_sr);
+    OS_Sched();
+    *cpu_sr = OS_CPU_SR_Save();
+    return task->timedOut;
+}
+
+/* Makes the first waiting task ready and returns it; 0 where none waits. */
+static OS_Task* wake(OS_EVENT* event) {
+    U8 priority;
+    OS_Task* task;
+    if (!(event->waiting.word[0] | event->waiting.word[1]))
+        return 0;
+    priority = OS_Set_first(&event->waiting);
+    task = os_kernel.byPriority[priority];
+    OS_Set_remove(&event->waiting, priority);
+    task->event = 0;
+    task->delay = 0;
+    OS_Set_add(&os_kernel.ready, priority);
+    return task;
+}
+
 OS_EVENT* OSSemCreate(INT16U cnt) {
-    OS_EVENT* event = OS_EventCreate(OS_EVENT_SEM);
+    OS_EVENT* event = create(OS_EVENT_SEM);
     if (event)
         event->count = cnt;
     return event;
@@ -13,13 +73,13 @@ OS_EVENT* OSSemCreate(INT16U cnt) {
 
 void OSSemPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr) {
     OS_CPU_SR cpu_sr;
-    *perr = OS_PendError(pevent, OS_EVENT_SEM);
+    *perr = pendError(pevent, OS_EVENT_SEM);
     if (*perr != OS_ERR_NONE)
         return;
     OS_ENTER_CRITICAL();
     if (pevent->count)
         --pevent->count;
-    else if (OS_EventWait(pevent, timeout, &cpu_sr))
+    else if (waitFor(pevent, timeout, &cpu_sr))
         *perr = OS_ERR_TIMEOUT;
     OS_EXIT_CRITICAL();
 }
@@ -44,7 +104,7 @@ INT8U OSSemPost(OS_EVENT* pevent) {
     if (pevent->type != OS_EVENT_SEM)
         return OS_ERR_EVENT_TYPE;
     OS_ENTER_CRITICAL();
-    if (!OS_EventWake(pevent)) {
+    if (!wake(pevent)) {
         if (pevent->count < 65535U)
             ++pevent->count;
         else
@@ -69,7 +129,7 @@ OS_EVENT* OSMutexCreate(INT8U prio, INT8U* perr) {
         *perr = OS_ERR_PRIO_EXIST;
         return 0;
     }
-    event = OS_EventCreate(OS_EVENT_MUTEX);
+    event = create(OS_EVENT_MUTEX);
     *perr = event ? OS_ERR_NONE : OS_ERR_PEVENT_NULL;
     if (event) {
         event->ceiling = prio;
@@ -81,7 +141,7 @@ OS_EVENT* OSMutexCreate(INT8U prio, INT8U* perr) {
 void OSMutexPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr) {
     OS_CPU_SR cpu_sr;
     OS_Task* self = os_kernel.current;
-    *perr = OS_PendError(pevent, OS_EVENT_MUTEX);
+    *perr = pendError(pevent, OS_EVENT_MUTEX);
     if (*perr != OS_ERR_NONE)
         return;
     OS_ENTER_CRITICAL();
@@ -93,7 +153,7 @@ void OSMutexPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr) {
         OS_Task* owner = pevent->owner;
         if (owner->priority > self->priority && owner->priority > pevent->ceiling)
             OS_ChangePriority(owner, pevent->ceiling);
-        if (OS_EventWait(pevent, timeout, &cpu_sr))
+        if (waitFor(pevent, timeout, &cpu_sr))
             *perr = OS_ERR_TIMEOUT;
     }
     OS_EXIT_CRITICAL();
@@ -115,7 +175,7 @@ INT8U OSMutexPost(OS_EVENT* pevent) {
     OS_ENTER_CRITICAL();
     if (self->priority == pevent->ceiling && self->priority != self->base)
         OS_ChangePriority(self, self->base);
-    pevent->owner = OS_EventWake(pevent);
+    pevent->owner = wake(pevent);
     mayRun = pevent->owner || self->priority != priority;
     OS_EXIT_CRITICAL();
     if (mayRun)
@@ -124,7 +184,7 @@ INT8U OSMutexPost(OS_EVENT* pevent) {
 }
 
 OS_EVENT* OSQCreate(void** start, INT16U size) {
-    OS_EVENT* event = OS_EventCreate(OS_EVENT_Q);
+    OS_EVENT* event = create(OS_EVENT_Q);
     if (event) {
         event->slots = start;
         event->size = size;
@@ -136,7 +196,7 @@ OS_EVENT* OSQCreate(void** start, INT16U size) {
 void* OSQPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr) {
     OS_CPU_SR cpu_sr;
     void* message = 0;
-    *perr = OS_PendError(pevent, OS_EVENT_Q);
+    *perr = pendError(pevent, OS_EVENT_Q);
     if (*perr != OS_ERR_NONE)
         return 0;
     OS_ENTER_CRITICAL();
@@ -144,7 +204,7 @@ void* OSQPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr) {
         message = pevent->slots[pevent->head];
         pevent->head = (U16)((pevent->head + 1U) % pevent->size);
         --pevent->count;
-    } else if (OS_EventWait(pevent, timeout, &cpu_sr)) {
+    } else if (waitFor(pevent, timeout, &cpu_sr)) {
         *perr = OS_ERR_TIMEOUT;
     } else {
         message = os_kernel.current->message;
@@ -162,7 +222,7 @@ INT8U OSQPost(OS_EVENT* pevent, void* pmsg) {
     if (pevent->type != OS_EVENT_Q)
         return OS_ERR_EVENT_TYPE;
     OS_ENTER_CRITICAL();
-    task = OS_EventWake(pevent);
+    task = wake(pevent);
     if (task) {
         task->message = pmsg;
     } else if (pevent->count < pevent->size) {

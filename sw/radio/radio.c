@@ -84,8 +84,7 @@ Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory) {
         radio.failedStep = (get(MODEM_STATUS) & MODEM_STATUS_STEP_MASK) >> MODEM_STATUS_STEP_LSB;
         return radio.failedStep <= 1U ? RADIO_NO_MODEM : RADIO_REFUSED;
     }
-    set(MODEM_MASK,
-        MODEM_MASK_TX_DONE_MASK | MODEM_MASK_RX_PACKET_MASK | MODEM_MASK_RX_OVERRUN_MASK);
+    set(MODEM_MASK, MODEM_MASK_RX_PACKET_MASK | MODEM_MASK_RX_OVERRUN_MASK);
     return RADIO_OK;
 }
 

@@ -214,10 +214,11 @@ void measureCalls(Flight& f, int calls) {
     say("processor load, idle link (tick of 1 kHz)", 100 * idle / hclk, "%");
     say("call: radio interrupt to servant, mean", toServant.mean(), "cycles");
     say("call: servant to first frame of the reply, mean", back.mean(), "cycles");
-    say("call: all of its cycles, ticks not counted", aCall, "cycles", 0, "with acknowledgements");
+    say("call: all of its cycles, ticks not counted", aCall, "cycles", 11970,
+        "with acknowledgements");
     say("call: share of the FSMC in its cycles", 100 * waiting / awake, "%");
     say("call: round trip", aTrip * 1e3, "ms");
-    say("platform's share of a call's round trip", 100 * aCall / hclk / aTrip, "%", 2);
+    say("platform's share of a call's round trip", 100 * aCall / hclk / aTrip, "%", 1);
 }
 
 // Where a call's cycles go, by function, without what its callees take; the table is printed.

@@ -55,8 +55,11 @@ static int takeBack(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
 int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 size) {
     XBeeATEndpoint* self = context;
     /* Opening and closing come before it in order, so nothing else may be waiting. */
-    if (!self->buffer || self->events)
+    if (!self->buffer || self->events) {
+        if (ICEC_FULL)
+            self->held = 1;
         return 1;
+    }
     memcpy(self->buffer, data, size);
     self->buffer = 0;
     self->size = (Ice_Int)size;
@@ -89,9 +92,13 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     U32 first = 0;
     lock(self);
     if (!self->events) {
+        int held = ICEC_FULL && self->held;
+        if (held)
+            self->held = 0;
         self->buffer = buffer;
         unlock(self);
-        kick(self); /* the link may hold a message */
+        if (held)
+            kick(self);
         (void)self->port->wait(self->context, timeoutMs);
         lock(self);
         self->buffer = 0;

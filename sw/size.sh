@@ -31,8 +31,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 target="-mcpu=cortex-m3 -mthumb"
 includes="-I$gen -I$gen/slice/Autopilot"
-for d in base os os/host fsmc radio link icec icec/endpoints; do includes="$includes -I$source/sw/$d"; done
-layers='fsmc radio link icec endpoint'
+for d in base os os/host fsmc radio crypto link icec icec/endpoints; do includes="$includes -I$source/sw/$d"; done
+layers='fsmc radio crypto link icec endpoint'
 
 for layer in $layers; do
     sources=$source/sw/$layer/*.c
@@ -63,7 +63,7 @@ whole() { # layer, column of size (1 text and read-only data, 2 data, 3 bss)
 }
 
 deepest() { # layer: the function of the minimal program with the largest frame
-    find "$build/sw/apps/minimal_$1.arm" -name '*.su' -exec cat {} + |
+    find "$build/sw/apps/" -path "*/minimal_$1.arm/*.su" -exec cat {} + |
         awk -F '\t' '$2 > n {n = $2; split($1, f, ":"); name = f[4]} END {print n + 0, name}'
 }
 

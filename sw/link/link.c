@@ -11,13 +11,34 @@ void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs1
     link->port = port;
     link->context = context;
     link->byteTimeUs16 = byteTimeUs16;
+    link->overhead = LINK_OVERHEAD;
     link->longest = LINK_MAX_PAYLOAD;
     link_endSession(link, LINK_STATE_IDLE);
 }
 
 void Link_limitFrame(Link* link, U32 bytes) {
-    link->longest = (U8)(bytes - LINK_OVERHEAD);
+    link->longest = (U8)(bytes - link->overhead);
 }
+
+#if LINK_SECURE
+
+void Link_setKey(Link* link, int slot, const U8* key) {
+    link->longest = (U8)(link->longest + link->overhead - LINK_SECURE_OVERHEAD);
+    if (!LINK_IS_SECURE(link)) {
+        link->overhead = LINK_SECURE_OVERHEAD;
+        link->handshake.slot = 1; /* the first HELLO goes out under slot 0 */
+        link_drawNonce(link);     /* a longer one */
+    }
+    if (Link_keyInUse(link) == slot)
+        link_lose(link);
+    link_setSecret(&link->secrets, slot, key);
+}
+
+int Link_keyInUse(const Link* link) {
+    return LINK_IS_SECURE(link) && link->state == LINK_STATE_UP ? link->session.slot : -1;
+}
+
+#endif
 
 void Link_start(Link* link, U32 nowUs) {
     link->now = nowUs;
@@ -32,12 +53,12 @@ void Link_start(Link* link, U32 nowUs) {
 }
 
 void Link_stop(Link* link, U32 nowUs) {
-    U8 frame[LINK_OVERHEAD];
+    U8 frame[LINK_MAX_OVERHEAD];
     link->now = nowUs;
     link->wanted = 0;
     link->handshake.hasCandidate = 0;
     if (link->state == LINK_STATE_UP)
-        (void)link_sendControl(link, frame, LINK_KIND_BYE, 0, 0);
+        (void)link_sendControl(link, frame, LINK_KIND_BYE, 0, 0, 0);
     link_endSession(link, LINK_STATE_IDLE);
 }
 
@@ -49,6 +70,8 @@ void Link_poll(Link* link, U32 nowUs) {
     link->now = nowUs;
     link_pollInput(link);
     link_pollSession(link);
+    if (LINK_IS_SECURE(link))
+        link_pollKeyed(link);
     if (link->state == LINK_STATE_UP && !link_pollReceiver(link))
         link_abort(link);
     if (link->state != LINK_STATE_UP)
@@ -73,10 +96,15 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
     U32 at;
     if (link->parser.count)
         first = link->parser.at + LINK_FRAME_GAP;
-    if (link->state == LINK_STATE_CONNECTING)
+    if (link->state == LINK_STATE_CONNECTING || link->handshake.isUnconfirmed)
         first = SOONER(link->handshake.helloAt, first);
+    at = link->handshake.firstAnswer + LINK_NONCE_LIFE;
+    if (link->handshake.isAnswered)
+        first = SOONER(at, first);
     if (link->state == LINK_STATE_UP) {
         at = link->heardAt + LINK_PING_AFTER;
+        if (LINK_IS_SECURE(link) && LINK_BEFORE(link->watch.provenAt + LINK_PROOF_AFTER, at))
+            at = link->watch.provenAt + LINK_PROOF_AFTER;
         at = LATER(at, link->pingAt);
         first = SOONER(at, first);
         if (link->packed)

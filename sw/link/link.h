@@ -30,6 +30,22 @@
 #define LINK_MAX_FRAME 100U    /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
 #define LINK_MAX_ENCRYPTED 95U /* bytes of one that is encrypted (Link_limitFrame) */
 
+/* With a key (Link_setKey) frames are encrypted and end with a tag in place of the CRC.
+ * LINK_SECURE 0 leaves that out; LINK_TAG are the bytes of a tag, 4..16, the same on both sides
+ * (docs/link.md says what 4 of them risk). */
+#ifndef LINK_SECURE
+#ifdef LINK_MINIMAL
+#define LINK_SECURE 0
+#else
+#define LINK_SECURE 1
+#endif
+#endif
+#ifndef LINK_TAG
+#define LINK_TAG 8U
+#endif
+#define LINK_KEY_BYTES 16U
+#define LINK_KEYS 2 /* slots for keys, so that one can take the other's place */
+
 /* These sizes can be set on the command line; layers of different sizes understand each other.
  * LINK_MINIMAL chooses the minimal layer (minimal/link_minimal.h), which has only LINK_MAX_MESSAGE
  * of them. */
@@ -74,7 +90,8 @@ typedef struct Link_Port {
     /* Hands one frame (at most LINK_MAX_FRAME bytes, valid during the call only) to the radio as
      * one RF packet. Returns 0: taken; other: no room now, the layer offers it again later. */
     int (*transmit)(void* context, const U8* frame, U32 size);
-    /* Returns 32 bits that the peer cannot guess and that differ after a reboot. */
+    /* Returns 32 bits that the peer cannot guess and that differ after a reboot. With a key: bits
+     * of a true random source, since keys follow from them. */
     U32 (*random)(void* context);
     /* Takes a whole message; `data` is valid during the call only. Returns 0: taken; other: no room
      * now. Then the layer keeps it, offers it again at each poll, and lowers the peer's credit. */
@@ -113,6 +130,17 @@ void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs1
 /* Limits frames to `bytes` from now on, 32..LINK_MAX_FRAME: a modem that encrypts splits what is
  * longer than LINK_MAX_ENCRYPTED. The two sides may differ. */
 void Link_limitFrame(Link* link, U32 bytes);
+
+/* Gives the vehicle's key, LINK_KEY_BYTES bytes that both sides have, for slot 0 or 1; it is
+ * copied. `key` 0 wipes the slot, and ends a session that was made with it. From the first key on
+ * sessions are authenticated and encrypted; a peer without the key is refused, and nothing falls
+ * back, not even where both slots are wiped: then there is no session. HELLO goes out under the
+ * keys of both slots in turn; one under either is answered. To be called after Link_init. */
+void Link_setKey(Link* link, int slot, const U8* key);
+
+/* Returns the slot of the key that the present session was made with; -1: there is no session, or
+ * it is open. */
+int Link_keyInUse(const Link* link);
 
 /* Starts the handshake. Both sides may do so; either one's HELLO makes the session. A side that
  * never calls it still answers a HELLO. After the peer has vanished the layer goes back to

@@ -18,22 +18,22 @@ static Link_Kind kindOf(const U8* frame) {
 }
 
 /* True if a header makes sense; this keeps chance from passing garbage on to the checksum. */
-static int isPlausible(const U8* frame) {
-    static const U8 sizes[] = {1, 4, 8, 0, 0, 0}; /* by Link_Kind */
+static int isPlausible(const Link* link, const U8* frame) {
+    static const U8 sizes[2][6] = {{1, 4, 8, 0, 0, 0}, {1, 8, 16, 16, 0, 0}}; /* by Link_Kind */
     U32 payload = LINK_LENGTH(frame);
     Link_Kind kind = kindOf(frame);
     if (kind == LINK_KIND_DATA)
         return payload != 0 || (frame[2] & LINK_LAST);
     if (kind > LINK_KIND_PING)
         return payload >= 2U;
-    return payload == sizes[kind] || (kind == LINK_KIND_ACK && payload == 5U);
+    return payload == sizes[LINK_IS_SECURE(link)][kind] || (kind == LINK_KIND_ACK && payload == 5U);
 }
 
 /* Returns whose a whole frame is: the session's, or that of one that a HELLO announced. */
 static Owner ownerOf(const Link* link, const U8* frame) {
     const Link_Session* candidate = &link->handshake.candidate;
     U32 epoch = LINK_EPOCH(frame);
-    if (!isPlausible(frame))
+    if (!isPlausible(link, frame))
         return NOBODY;
     if (LINK_IS_HANDSHAKE(kindOf(frame)))
         return hasGoodCrc(frame, LINK_NO_SEED) ? HANDSHAKE : NOBODY;
@@ -43,6 +43,52 @@ static Owner ownerOf(const Link* link, const U8* frame) {
     return link->handshake.hasCandidate && epoch == LINK_KEY_EPOCH(candidate->key) &&
                    hasGoodCrc(frame, candidate->key)
                ? CANDIDATE
+               : NOBODY;
+}
+
+/* Returns whether the search may look at a frame, which takes so many rounds of Ascon: however many
+ * headers an attacker's bytes pretend to hold, they do not keep the processor busy. */
+static int mayTry(Link* link, U32 rounds) {
+    if (!link->parser.outOfStep)
+        return 1;
+    if (link->watch.rounds < rounds)
+        return 0;
+    link->watch.rounds -= rounds;
+    return 1;
+}
+
+/* Decrypts a frame under the session's key, where its numbers say that it is for now. */
+static int decrypt(Link* link, U8* frame) {
+    U32 number = link->sender.base; /* whose lowest byte is near byte 1 */
+    U32 acked = 0;
+    Link_Kind kind = kindOf(frame);
+    if (kind >= LINK_KIND_PIGGYBACK) /* or data */
+        number = link->receiver.next;
+    if (kind == LINK_KIND_PIGGYBACK || kind == LINK_KIND_PIGGYBACK_ASK)
+        acked = link_extend(link->sender.base, frame[LINK_HEADER]);
+    if (kind == LINK_KIND_PING)
+        number = frame[2] & LINK_PING_ANSWER ? link->watch.pingsSent : link->watch.pingsSeen;
+    if (kind == LINK_KIND_BYE)
+        number = frame[1];
+    if (link_unprotect(frame, link->session.keys.receive, link_extend(number, frame[1]), acked))
+        return 1;
+    ++link->watch.failures;
+    return 0;
+}
+
+/* The same as ownerOf, with a key; copies the frame, and decrypts the copy. */
+static Owner decipher(Link* link, const U8* frame, U8* copy) {
+    U32 size = LINK_LENGTH(frame);
+    if (!isPlausible(link, frame))
+        return NOBODY;
+    memcpy(copy, frame, size + link->overhead);
+    if (LINK_IS_HANDSHAKE(kindOf(frame)))
+        return mayTry(link, LINK_ROUNDS_HANDSHAKE) && link_isGenuine(link, copy, kindOf(frame))
+                   ? HANDSHAKE
+                   : NOBODY;
+    return link->state == LINK_STATE_UP && LINK_EPOCH(frame) == LINK_KEY_EPOCH(link->session.key) &&
+                   mayTry(link, LINK_ROUNDS_OF(size)) && decrypt(link, copy)
+               ? SESSION
                : NOBODY;
 }
 
@@ -75,38 +121,56 @@ static int onPiggyback(Link* link, const U8* frame) {
 static void takeFrame(Link* link, const U8* frame, Owner owner) {
     const U8* payload = frame + LINK_HEADER;
     U32 size = LINK_LENGTH(frame);
+    U32 duplicates = link->statistics.duplicates;
     Link_Kind kind = kindOf(frame);
     int isFair = 1;
     if (owner == HANDSHAKE) {
-        link_onHandshake(link, frame, kind);
+        if (LINK_IS_SECURE(link))
+            link_onGenuine(link, frame, kind);
+        else
+            link_onHandshake(link, frame, kind);
         return;
     }
     if (owner == CANDIDATE)
         link_confirmCandidate(link);
-    link->heardAt = link->now;
+    if (!LINK_IS_SECURE(link))
+        link->heardAt = link->now;
+    link->handshake.isUnconfirmed = 0;
+    if (!LINK_BEFORE(link->now, link->pingAt))
+        link->pingAt = link->now; /* or it would in time be so old that it reads as a future time */
     if (kind == LINK_KIND_DATA) {
         isFair = link_onData(link, frame[1], frame[2], payload, size);
     } else if (kind == LINK_KIND_ACK) {
         link_onAck(link, frame[1], payload[0], size == 5U ? link_get32(payload + 1) : 0);
     } else if (kind == LINK_KIND_BYE) {
         link_lose(link);
+    } else if (kind == LINK_KIND_PING && LINK_IS_SECURE(link)) {
+        link_onPing(link, frame);
     } else if (kind == LINK_KIND_PING) {
         link->receiver.ackDue = link->receiver.ackNow = 1;
     } else {
         isFair = onPiggyback(link, frame);
     }
+    /* What was heard before may be an attacker's recording, and is no sign of life; link_onAck and
+     * link_onPing look themselves. */
+    if (kind >= LINK_KIND_PIGGYBACK && duplicates == link->statistics.duplicates)
+        link->heardAt = link->now;
     if (!isFair)
         link_abort(link);
 }
 
 /* Tells a peer that talks in a session that is not known here, but not too often. */
 static void refuse(Link* link, const U8* frame) {
-    U8 reset[LINK_OVERHEAD];
-    if (link->state != LINK_STATE_IDLE || LINK_BEFORE(link->now, link->pingAt))
+    U8 reset[LINK_MAX_OVERHEAD];
+    if (link->state != LINK_STATE_IDLE || link->now - link->pingAt < LINK_HELLO_FIRST)
         return;
-    link->pingAt = link->now + LINK_HELLO_FIRST;
+    link->pingAt = link->now;
+    if (LINK_IS_SECURE(link)) { /* its answer makes a new session */
+        link_call(link);
+        return;
+    }
     link->session.key = LINK_EPOCH_KEY(LINK_EPOCH(frame));
-    (void)link_sendControl(link, reset, LINK_KIND_RST, 0, 0);
+    (void)link_sendControl(link, reset, LINK_KIND_RST, 0, 0, LINK_FEATURES);
 }
 
 /* Takes all whole frames out of the bytes; returns how many bytes it is done with. After a bad
@@ -115,24 +179,26 @@ static void refuse(Link* link, const U8* frame) {
  */
 static U32 parse(Link* link, const U8* bytes, U32 count, int isEnd) {
     Link_Parser* parser = &link->parser;
+    U8 copy[LINK_MAX_FRAME];
     U32 used = 0;
     while (used < count) {
         const U8* frame = bytes + used;
         U32 left = count - used;
-        U32 size = LINK_LENGTH(frame) + LINK_OVERHEAD;
+        U32 size = LINK_LENGTH(frame) + link->overhead;
         if (size <= LINK_MAX_FRAME && left < size && !isEnd)
             break;
         if (size <= LINK_MAX_FRAME && left >= size) {
-            Owner owner = ownerOf(link, frame);
+            int isSecure = LINK_IS_SECURE(link);
+            Owner owner = isSecure ? decipher(link, frame, copy) : ownerOf(link, frame);
             int confirmed = 1;
-            if (owner != NOBODY && parser->outOfStep)
+            if (owner != NOBODY && parser->outOfStep && !isSecure)
                 confirmed = isConfirmed(link, frame + size, left - size, isEnd);
             if (confirmed < 0)
                 break;
             if (confirmed && owner != NOBODY) {
                 parser->outOfStep = 0;
                 link->heard = (U8)size;
-                takeFrame(link, frame, owner);
+                takeFrame(link, isSecure ? copy : frame, owner);
                 ++link->statistics.framesReceived;
                 link->statistics.bytesReceived += size;
                 used += size;
@@ -141,7 +207,7 @@ static U32 parse(Link* link, const U8* bytes, U32 count, int isEnd) {
         }
         if (!parser->outOfStep) {
             ++link->statistics.crcErrors;
-            if (left >= LINK_OVERHEAD)
+            if (left >= link->overhead)
                 refuse(link, frame);
         }
         parser->outOfStep = 1;
@@ -162,6 +228,9 @@ static void parseKept(Link* link, int isEnd) {
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
     Link_Parser* parser = &link->parser;
     link->now = nowUs;
+    link->watch.rounds += LINK_ROUNDS_A_BYTE * (size < LINK_MAX_FRAME ? size : LINK_MAX_FRAME);
+    if (link->watch.rounds > LINK_ROUNDS_AT_ONCE)
+        link->watch.rounds = LINK_ROUNDS_AT_ONCE;
     while (size) {
         U32 part = sizeof link->input - parser->count;
         if (parser->count == 0) {

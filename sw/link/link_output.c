@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_output: frames go out: checksum, pacing, counts.
+ * link_output: frames go out: checksum or tag, pacing, counts.
  */
 #include "link.h"
 
@@ -31,7 +31,7 @@ static U32 timeOf(const Link* link, U32 size) {
     U32 line = (size + SILENCE) * link->byteTimeUs16 >> 4;
     U32 modem =
         size * BYTE_US +
-        (link->longest > LINK_MAX_ENCRYPTED - LINK_OVERHEAD ? PACKET_US : PACKET_ENCRYPTED_US);
+        (link->longest + link->overhead > LINK_MAX_ENCRYPTED ? PACKET_US : PACKET_ENCRYPTED_US);
     return line > modem ? line : modem;
 }
 
@@ -62,9 +62,34 @@ int link_isOpen(Link* link) {
     return link->packed || !LINK_BEFORE(link->now + link->slack, link->paceUntil);
 }
 
-int link_sendFrame(Link* link, U8* frame, U32 header, U32 key) {
-    U32 size = link_seal(frame, header, key);
-    if (size > link_room(link) + LINK_OVERHEAD && !link_flush(link))
+/* Completes a frame under the session's key. Returns its size in bytes. */
+static U32 protect(const Link* link, U8* frame, U32 header, U32 number) {
+    const U8* key = link->session.keys.send;
+    U32 acked = 0;
+    if (header & LINK_CONTROL) {
+        U32 kind = header >> 21 & 7U;
+        if (kind == LINK_KIND_HELLO)
+            key = link->secrets.hello[link->handshake.slot];
+        if (kind == LINK_KIND_HELLO_ACK)
+            key = link->handshake.candidate.keys.send;
+        if (kind >= LINK_KIND_PIGGYBACK)
+            acked = link->receiver.next;
+    }
+    return link_protect(frame, header | LINK_KEY_EPOCH(link->session.key) << 18, key, number,
+                        acked);
+}
+
+int link_sendFrame(Link* link, U8* frame, U32 header, U32 number) {
+    U32 key = link->session.key;
+    U32 size;
+    if (LINK_IS_SECURE(link)) {
+        size = protect(link, frame, header, number);
+    } else {
+        if ((header & LINK_CONTROL) && LINK_IS_HANDSHAKE(header >> 21 & 7U))
+            key |= LINK_NO_SEED;
+        size = link_seal(frame, header, key);
+    }
+    if (size > link_room(link) + link->overhead && !link_flush(link))
         return 0;
     memcpy(link->packet + link->packed, frame, size);
     link->packed = (U8)(link->packed + size);
@@ -73,12 +98,7 @@ int link_sendFrame(Link* link, U8* frame, U32 header, U32 key) {
     return 1;
 }
 
-int link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 byte1, U32 size) {
-    U32 header = LINK_CONTROL_HEADER(kind, byte1, size);
-    U32 key = link->session.key;
-    if (LINK_IS_HANDSHAKE(kind)) {
-        header |= LINK_HEADER_OF(0U, 0U, LINK_FEATURES);
-        key |= LINK_NO_SEED;
-    }
-    return link_sendFrame(link, frame, header, key) && link_flush(link);
+int link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 number, U32 size, U32 flags) {
+    U32 header = LINK_CONTROL_HEADER(kind, (U8)number, size) | LINK_HEADER_OF(0U, 0U, flags);
+    return link_sendFrame(link, frame, header, number) && link_flush(link);
 }

@@ -20,11 +20,30 @@
 #define LINK_RTO_FIRST 600000U   /* retransmission time-out, before the first sample; its limits */
 #define LINK_RTO_MIN 60000U
 #define LINK_RTO_MAX 2000000U
-#define LINK_FRAME_GAP 25000U  /* silence on the serial side after which half a frame is dropped */
-#define LINK_POLL_EVERY 1000U  /* while the radio has no room */
-#define LINK_OFFER_EVERY 5000U /* while nobody takes a message */
+#define LINK_FRAME_GAP 25000U /* silence on the serial side after which half a frame is dropped */
+#define LINK_ANSWER_EVERY 100000U /* between answers to HELLO with a key, while a session is up */
+#define LINK_NONCE_LIFE 9000000U  /* for which an answered HELLO's nonces can make a session */
+#define LINK_PROOF_AFTER 5000000U /* silence of answers after which the peer is asked, ... */
+#define LINK_PROOF_LAST 27000000U /* and given up, whatever else was heard */
+#define LINK_POLL_EVERY 1000U     /* while the radio has no room */
+#define LINK_OFFER_EVERY 5000U    /* while nobody takes a message */
 
-#define LINK_ACK_ROOM (LINK_OVERHEAD + 5U) /* bytes of the longest acknowledgement */
+/* Numbers at which a session with a key ends, and a new one begins: of fragments sent, and of
+ * frames whose tag was wrong. */
+#define LINK_LAST_NUMBER 0xFFFF0000U
+#define LINK_MOST_FAILURES 0x40000000U
+
+/* The search for frames in garbage may compute so many rounds of Ascon for each byte received, and
+ * so many at once. */
+#define LINK_ROUNDS_A_BYTE 3U
+#define LINK_ROUNDS_AT_ONCE 300U
+#define LINK_ROUNDS_HANDSHAKE 136U
+#define LINK_ROUNDS_OF(payload) (24U + (payload) / 2U)
+
+/* True if a key was given: from then on for good. */
+#define LINK_IS_SECURE(link) (LINK_SECURE && (link)->overhead != LINK_OVERHEAD)
+
+#define LINK_ACK_ROOM(link) ((link)->overhead + 5U) /* bytes of the longest acknowledgement */
 
 #define LINK_SLOT(seq) ((seq) & (LINK_WINDOW - 1U))
 
@@ -45,17 +64,34 @@ typedef char
 
 /* What identifies a session: both nonces, and what follows from them. */
 typedef struct Link_Session {
-    U32 nonce, peerNonce;
+    U8 nonce[LINK_NONCE_BYTES],
+        peerNonce[LINK_NONCE_BYTES]; /* without a key the first four bytes */
     U32 key;
     U8 features; /* those that both sides have */
+    U8 slot;     /* of the key that the session was made with */
+    Link_Keys keys;
 } Link_Session;
 
 typedef struct Link_Handshake {
-    U32 nonce; /* own, of the next session */
+    U8 nonce[LINK_NONCE_BYTES]; /* own, of the next session */
     U32 helloAt, helloEvery;
     Link_Session candidate; /* of a HELLO that was answered; its sender has not confirmed it yet */
     U8 hasCandidate;
+    U8 slot;          /* with a key: that of the last HELLO */
+    U8 isAnswered;    /* a HELLO was answered with `nonce`, ... */
+    U8 isUnconfirmed; /* the peer may not know of the session yet */
+    U32 firstAnswer;  /* ... first at this time, ... */
+    U32 lastAnswer;   /* last at this one */
 } Link_Handshake;
+
+/* With a key: what a session has seen. */
+typedef struct Link_Watch {
+    U32 pingsSent, pingsAnswered; /* numbers of the newest own PING, and of that last answered */
+    U32 pingsSeen;                /* number of the peer's newest PING */
+    U32 provenAt;                 /* when the peer has last answered something that was new */
+    U32 failures;                 /* frames whose tag was wrong */
+    U32 rounds;                   /* of Ascon that the search may compute now */
+} Link_Watch;
 
 /* An entry of the send queue; without bytes it opens (LINK_FIRST) or closes a channel. */
 typedef struct Link_Entry {
@@ -84,7 +120,7 @@ typedef struct Link_Fragment {
 } Link_Fragment;
 
 typedef struct Link_Sender {
-    U8 base, next;         /* SEQ: oldest unacknowledged, next new */
+    U32 base, next; /* numbers, of which SEQ is the lowest byte: oldest unacknowledged, next new */
     U8 credit, fullCredit; /* fragments that the peer takes: now, and the most it gave */
     U8 hasWork;            /* there may be something to send */
     U8 isLossy;            /* the newest acknowledgement had gaps */
@@ -100,7 +136,7 @@ typedef struct Link_Sender {
 } Link_Sender;
 
 typedef struct Link_Receiver {
-    U8 next;         /* SEQ expected */
+    U32 next;        /* number expected */
     U8 isAssembling; /* between F and L */
     U8 isHeld;       /* the message is whole, but the program has not taken it */
     U8 channel;      /* of the message */
@@ -145,6 +181,7 @@ struct Link {
     U8 open;     /* a bit a channel: messages may be sent */
     U8 closing;  /* closed here, the peer's closing has not come yet */
     U8 closeDue; /* the own closing is not queued yet */
+    U8 overhead; /* of a frame: of one without a key, or with one */
     U8 packed;   /* bytes in the packet */
     U8 heard;    /* bytes of a frame that came since the last packet left */
     Link_Receiver receiver;
@@ -161,6 +198,8 @@ struct Link {
     Link_Parser parser;
     Link_Statistics statistics;
     Link_Handshake handshake;
+    Link_Secrets secrets;
+    Link_Watch watch;
 
     U8 packet[LINK_MAX_FRAME];              /* frames that leave together */
     U8 input[2U * LINK_MAX_FRAME];          /* the parser's */
@@ -180,10 +219,12 @@ int link_isOpen(Link* link);
 U32 link_room(const Link* link);
 /* Hands the packet to the radio. Returns 0: it had no room, the packet stays. */
 int link_flush(Link* link);
-/* Puts a frame whose payload is there (link_seal) into the packet. Returns 1: taken. */
-int link_sendFrame(Link* link, U8* frame, U32 header, U32 key);
-/* Sends a control frame whose payload, `size` bytes, is there, at once. Returns 1: taken. */
-int link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 byte1, U32 size);
+/* Puts a frame whose payload is there into the packet. `number`: that of which byte 1 of the header
+ * is the lowest byte. Returns 1: taken. */
+int link_sendFrame(Link* link, U8* frame, U32 header, U32 number);
+/* Sends a control frame whose payload, `size` bytes, is there, at once; byte 1 is the lowest byte
+ * of `number`. `flags`: the low bits of byte 2. Returns 1: taken. */
+int link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 number, U32 size, U32 flags);
 
 /* link_compression: heads of IceP messages are sent once. */
 
@@ -226,6 +267,15 @@ void link_pollSender(Link* link);
 /* link_session: handshake, reboots, and a peer that has vanished. */
 
 void link_onHandshake(Link* link, const U8* frame, Link_Kind kind);
+void link_call(Link* link);
+/* Bytes of a nonce in the frames of the handshake. */
+U32 link_nonceBytes(const Link* link);
+/* Draws the nonce of the next session. */
+void link_drawNonce(Link* link);
+/* Prepares the session that the peer's nonce and the own one make. */
+void link_makeCandidate(Link* link, const U8* peerNonce, U32 features);
+/* Sends a frame of both nonces. */
+void link_sendHandshake(Link* link, const Link_Session* session, Link_Kind kind);
 void link_confirmCandidate(Link* link);
 void link_endSession(Link* link, Link_State next);
 /* Ends a session that the peer's wish or silence has ended. */
@@ -233,6 +283,15 @@ void link_lose(Link* link);
 /* Ends a session because the peer broke the rules, and tells it. */
 void link_abort(Link* link);
 void link_pollSession(Link* link);
+
+/* link_keyed: the handshake with a key, and proofs that the peer lives. */
+
+/* Returns whether a frame of the handshake is the peer's, of now, and of use here. */
+int link_isGenuine(Link* link, U8* frame, Link_Kind kind);
+/* Acts upon one that is. */
+void link_onGenuine(Link* link, const U8* frame, Link_Kind kind);
+void link_onPing(Link* link, const U8* frame);
+void link_pollKeyed(Link* link);
 
 /* link_input: finds frames in the bytes, and acts upon them; Link_receive. */
 

@@ -107,7 +107,7 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     if (isCompressed)
         link_compress(link, channel, data, size, &packed);
     total = packed.prefix + packed.middle + packed.tail;
-    checkSize = total > LINK_UNCHECKED ? LINK_CHECK : 0;
+    checkSize = total > LINK_UNCHECKED && !LINK_IS_SECURE(link) ? LINK_CHECK : 0;
     entry = enqueue(link, LINK_FIRST | (U32)channel, total + checkSize);
     if (!entry)
         return LINK_FULL;

@@ -66,9 +66,10 @@ static int append(Link* link, U32 flags, const U8* data, U32 size) {
 }
 
 /* Takes the check off the whole message. Returns 0 where it is wrong. */
-static int uncheck(Link_Receiver* receiver) {
+static int uncheck(Link* link) {
+    Link_Receiver* receiver = &link->receiver;
     U32 size = receiver->size - LINK_CHECK;
-    if (receiver->size <= LINK_UNCHECKED)
+    if (receiver->size <= LINK_UNCHECKED || LINK_IS_SECURE(link))
         return 1;
     receiver->size = (U16)size;
     return link_sum(0, receiver->start, size) == LINK_CHECK_AT(receiver->start + size);
@@ -88,7 +89,7 @@ static int accept(Link* link, U32 flags, const U8* data, U32 size) {
         return 1;
     receiver->isAssembling = 0;
     receiver->start = link->message + LINK_HEAD_ROOM;
-    if (!uncheck(receiver))
+    if (!uncheck(link))
         return 0;
     if (link->session.features & LINK_FEATURE_COMPRESSION ? !link_decompress(link)
                                                           : receiver->size > LINK_MAX_MESSAGE)
@@ -170,7 +171,7 @@ int link_pollReceiver(Link* link) {
 
 void link_pollAck(Link* link) {
     const Link_Receiver* receiver = &link->receiver;
-    U8 frame[LINK_OVERHEAD + 5U];
+    U8 frame[LINK_MAX_OVERHEAD + 5U];
     U8* payload = frame + LINK_HEADER;
     U32 bitmap;
     if (!receiver->ackDue || (!receiver->ackNow && LINK_BEFORE(link->now, receiver->ackAt)))
@@ -179,6 +180,6 @@ void link_pollAck(Link* link) {
     /* A message that nobody takes keeps the window where it is. */
     payload[0] = (U8)(receiver->isHeld ? receiver->waiting + 1U : LINK_WINDOW);
     link_put32(payload + 1, bitmap);
-    if (link_sendControl(link, frame, LINK_KIND_ACK, receiver->next, bitmap ? 5U : 1U))
+    if (link_sendControl(link, frame, LINK_KIND_ACK, receiver->next, bitmap ? 5U : 1U, 0))
         link_ackIsSent(link);
 }

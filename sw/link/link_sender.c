@@ -8,7 +8,7 @@
  */
 #include "link.h"
 
-#define IN_FLIGHT(sender) ((U8)((sender)->next - (sender)->base))
+#define IN_FLIGHT(sender) ((sender)->next - (sender)->base)
 #define FRAGMENT(link, seq) (&(link)->window[LINK_SLOT(seq)])
 
 /* One transmission of so many asks for an acknowledgement, which costs a turn on a half-duplex air:
@@ -43,7 +43,7 @@ static int cut(Link* link) {
     left = entry->size - sender->cutBytes;
     size = link_room(link);
     if (link->receiver.ackNow && (sender->cutBytes || left >= size))
-        size -= LINK_ACK_ROOM; /* it leaves in the same packet */
+        size -= LINK_ACK_ROOM(link); /* it leaves in the same packet */
     if (size > left)
         size = left;
     f->start = sender->cutAt;
@@ -66,8 +66,8 @@ static int cut(Link* link) {
 
 /* True if the peer should answer a fragment at once: one of so many, the last that its credit
  * covers, and the last one that is sent again. */
-static int mustAsk(const Link* link, U8 seq) {
-    U32 place = (U8)(seq - link->sender.base) + 1U;
+static int mustAsk(const Link* link, U32 seq) {
+    U32 place = seq - link->sender.base + 1U;
     if (link->sender.unasked >= (link->sender.isLossy ? ASK_LOSSY : ASK_EVERY) - 1U ||
         place >= link->sender.credit)
         return 1;
@@ -81,18 +81,18 @@ static int mustAsk(const Link* link, U8 seq) {
 
 /* Puts a fragment's payload into a frame. Returns the header: of data, or of a control frame that
  * takes an acknowledgement along, as may a short message that is whole. */
-static U32 build(const Link* link, U8 seq, int isAsked, U8* frame) {
+static U32 build(const Link* link, U32 seq, int isAsked, U8* frame) {
     const Link_Fragment* f = FRAGMENT(link, seq);
     U8* p = frame + LINK_HEADER;
     U32 size = f->size;
     U32 at = f->start;
-    U32 header = LINK_HEADER_OF(size, seq, f->flags | (isAsked ? LINK_ACK_NOW : 0U));
+    U32 header = LINK_HEADER_OF(size, (U8)seq, f->flags | (isAsked ? LINK_ACK_NOW : 0U));
     if ((f->flags & LINK_FIRST) && (f->flags & LINK_LAST) && size && size < link_room(link) &&
         link_ackMayRide(link)) {
-        header = LINK_CONTROL_HEADER(isAsked ? LINK_KIND_PIGGYBACK_ASK : LINK_KIND_PIGGYBACK, seq,
-                                     size + 1U) |
+        header = LINK_CONTROL_HEADER(isAsked ? LINK_KIND_PIGGYBACK_ASK : LINK_KIND_PIGGYBACK,
+                                     (U8)seq, size + 1U) |
                  LINK_HEADER_OF(0U, 0U, LINK_CHANNEL(f->flags));
-        *p++ = link->receiver.next;
+        *p++ = (U8)link->receiver.next;
     }
     while (size--)
         *p++ = link->queued[LINK_RING(at++)];
@@ -100,13 +100,13 @@ static U32 build(const Link* link, U8 seq, int isAsked, U8* frame) {
 }
 
 /* Sends a fragment. Returns 1: handed over. */
-static int transmit(Link* link, U8 seq) {
+static int transmit(Link* link, U32 seq) {
     Link_Sender* sender = &link->sender;
     Link_Fragment* f = FRAGMENT(link, seq);
     U8 frame[LINK_MAX_FRAME];
     int isAsked = mustAsk(link, seq);
     U32 header = build(link, seq, isAsked, frame);
-    if (!link_sendFrame(link, frame, header, link->session.key))
+    if (!link_sendFrame(link, frame, header, seq))
         return 0;
     if (header & LINK_CONTROL)
         link_ackIsSent(link);
@@ -156,7 +156,7 @@ static void setTimer(Link* link) {
 /* Marks as lost what was sent before `order` and is not acknowledged: it goes out again. */
 static void sendAgain(Link* link, U32 order) {
     Link_Sender* sender = &link->sender;
-    U8 seq;
+    U32 seq;
     for (seq = sender->base; seq != sender->next; ++seq) {
         Link_Fragment* f = FRAGMENT(link, seq);
         if (f->state == LINK_SENT && LINK_BEFORE(f->order, order)) {
@@ -184,6 +184,7 @@ static void markAcked(Link* link, U32 advance, U32 bitmap) {
         if (!isHere || f->state == LINK_ACKED || f->tries == 0)
             continue;
         f->state = LINK_ACKED;
+        link->heardAt = link->watch.provenAt = link->now;
         if (f->tries != 1U && elapsed < sender->srtt - sender->srtt / 4U)
             continue; /* sooner than a round trip: this answers an earlier transmission */
         if (!newest || LINK_BEFORE(newest->order, f->order))
@@ -218,7 +219,7 @@ void link_onAck(Link* link, U32 cumulative, U32 credit, U32 bitmap) {
 }
 
 /* Finds what is to be sent next; new fragments are cut as they are wanted. Returns 0: nothing. */
-static int nextFragment(Link* link, U8* seq) {
+static int nextFragment(Link* link, U32* seq) {
     Link_Sender* sender = &link->sender;
     for (*seq = sender->base; *seq != sender->next; ++*seq)
         if (FRAGMENT(link, *seq)->state == LINK_TO_SEND)
@@ -228,7 +229,7 @@ static int nextFragment(Link* link, U8* seq) {
 
 void link_pollSender(Link* link) {
     Link_Sender* sender = &link->sender;
-    U8 seq;
+    U32 seq;
     if (link->closeDue)
         link_queueClosings(link);
     if (sender->base != sender->next && !LINK_BEFORE(link->now, sender->timerAt)) {

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
  * link_wire: names the fields of a frame, and declares checksums and numbers of the wire format
- * (docs/link.md). The full layer and the minimal one share it; it includes nothing.
+ * (docs/link.md). The full layer and the minimal one share it; only link.h includes it.
  *
  *   byte 0      control bit, length of the payload
  *   byte 1      SEQ (data); what the kind says (control)
  *   byte 2      F, L, A, epoch, channel (data); kind, epoch, features (control)
  *   bytes 3..   payload
- *   last two    CRC, high byte first
+ *   last two    CRC, high byte first; with a key: the tag, LINK_TAG bytes
  */
 #ifndef LINK_WIRE_H
 #define LINK_WIRE_H
@@ -17,6 +17,8 @@
 #define LINK_CRC 2U
 #define LINK_OVERHEAD (LINK_HEADER + LINK_CRC)
 #define LINK_MAX_PAYLOAD 95U
+#define LINK_SECURE_OVERHEAD (LINK_HEADER + LINK_TAG)
+#define LINK_MAX_OVERHEAD (LINK_HEADER + 16U)
 
 /* Byte 0. */
 #define LINK_CONTROL 0x80U
@@ -38,6 +40,7 @@
 /* A feature is a low bit of byte 2 of HELLO and HELLO-ACK; it is used if both sides set it. */
 #define LINK_FEATURE_COMPRESSION 1U
 #define LINK_FEATURE_PIGGYBACK 2U
+#define LINK_PING_ANSWER 1U /* with a key: the same bit of a PING that answers one */
 
 typedef enum Link_Kind {
     LINK_KIND_ACK,
@@ -57,6 +60,7 @@ typedef enum Link_Kind {
 #define LINK_KEY_EPOCH(key) ((key) >> 29)
 #define LINK_EPOCH_KEY(epoch) ((U32)(epoch) << 29)
 #define LINK_NO_SEED 0xFFFFU
+#define LINK_KIND_CONFIRM LINK_KIND_RST /* with a key: the answer to HELLO-ACK; there is no RST */
 #define LINK_IS_HANDSHAKE(kind) ((U32)(kind) - (U32)LINK_KIND_HELLO <= 2U)
 
 /* A message that travels in more than LINK_UNCHECKED bytes ends with LINK_CHECK bytes of check. A
@@ -87,5 +91,39 @@ void link_put32(U8* p, U32 value);
 
 /* Returns the key of the session of two nonces, whoever called first. */
 U32 link_sessionKey(U32 nonce, U32 peerNonce);
+
+/* link_secure: what a key does to a frame, and how a session gets its own (docs/link.md). */
+
+#define LINK_NONCE_BYTES 8U /* of each side's nonce in a secure handshake */
+
+/* The keys of a session, one a direction. */
+typedef struct Link_Keys {
+    U8 send[LINK_KEY_BYTES], receive[LINK_KEY_BYTES];
+} Link_Keys;
+
+/* What a Link knows of the keys that it was given. */
+typedef struct Link_Secrets {
+    U8 set; /* a bit a slot */
+    U8 key[LINK_KEYS][LINK_KEY_BYTES];
+    U8 hello[LINK_KEYS][LINK_KEY_BYTES]; /* those of HELLOs, which follow from them */
+} Link_Secrets;
+
+/* Sets a slot, or wipes it (`key` 0). */
+void link_setSecret(Link_Secrets* secrets, int slot, const U8* key);
+
+/* Makes the keys of the session of two different nonces, LINK_NONCE_BYTES each. */
+void link_deriveKeys(const U8* secret, const U8* nonce, const U8* peerNonce, Link_Keys* keys);
+
+/* Returns the number whose lowest byte is `byte`, as near to the expected one as can be. */
+U32 link_extend(U32 expected, U32 byte);
+
+/* Writes the header, which has its epoch, encrypts the payload that `frame` already holds, and adds
+ * the tag. `number` is what byte 1 is the lowest byte of; `acked` the same of the first byte of the
+ * payload of a PIGGYBACK. Returns the frame's length in bytes. */
+U32 link_protect(U8* frame, U32 header, const U8* key, U32 number, U32 acked);
+
+/* Decrypts the payload of a whole frame in its place. Returns 0 where its tag is wrong; then
+ * what was decrypted is wiped. */
+int link_unprotect(U8* frame, const U8* key, U32 number, U32 acked);
 
 #endif

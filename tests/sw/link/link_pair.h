@@ -31,12 +31,17 @@ class Side {
 public:
     using Bytes = std::vector<uint8_t>;
 
-    explicit Side(uint64_t seed) : random_(seed), link_(std::make_unique<Link>()) { boot(); }
+    explicit Side(uint64_t seed, const Bytes& key = {})
+        : random_(seed), link_(std::make_unique<Link>()), key_(key) {
+        boot();
+    }
 
     // Forgets everything, as after a power cut.
     void boot() {
         static const Link_Port port = {transmit, random, message, channel, state, outcome, nullptr};
         Link_init(link_.get(), &port, this, byteTimeUs16);
+        if (!key_.empty())
+            Link_setKey(link_.get(), 0, key_.data());
         air.clear();
         serialFreeUs = 0;
     }
@@ -99,11 +104,13 @@ private:
 
     Random random_;
     std::unique_ptr<Link> link_;
+    const Bytes key_;
 };
 
 class Pair {
 public:
-    explicit Pair(uint64_t seed) : a(seed * 2 + 1), b(seed * 2 + 2) {}
+    explicit Pair(uint64_t seed, const Side::Bytes& key = {})
+        : a(seed * 2 + 1, key), b(seed * 2 + 2, key) {}
 
     void setWeather(Weather weather) { a.weather = b.weather = weather; }
 

@@ -76,7 +76,8 @@ private:
 class LinkSeeds : public ::testing::TestWithParam<int> {
 protected:
     uint64_t seed_ = testSeed() * 1000 + static_cast<uint64_t>(GetParam());
-    Pair pair_{seed_};
+    // Every second one with a key.
+    Pair pair_{seed_, Side::Bytes(GetParam() % 2 ? LINK_KEY_BYTES : 0, 0x5A)};
 };
 
 TEST(LinkLayer, HandshakeBringsBothSidesUpAndChannelsOpenInOrder) {
@@ -240,7 +241,7 @@ TEST(LinkLayer, TenMillionRandomBytesAreSurvived) {
     std::printf("link layer: 10000000 bytes of noise in a session, it works\n");
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, LinkSeeds, ::testing::Range(0, 5));
+INSTANTIATE_TEST_SUITE_P(Seeds, LinkSeeds, ::testing::Range(0, 8));
 
 // A wrong message whose CRC-16 is right, which comes once in 65,536 times: here at once, by adding
 // the polynomial.

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ascon: encrypts and authenticates a message by Ascon-AEAD128 (NIST SP 800-232).
+ *
+ *     Ascon ascon;
+ *     Ascon_begin(&ascon, key, nonce);
+ *     Ascon_associate(&ascon, head, headSize);        (what is only authenticated, if any; once)
+ *     Ascon_crypt(&ascon, message, size, 0);          (once, also with no bytes)
+ *     Ascon_end(&ascon, key, tag);
+ *
+ * A nonce must never be used twice with one key. Neither branches nor addresses depend on secrets.
+ */
+#ifndef ASCON_H
+#define ASCON_H
+
+#include "base.h"
+
+#define ASCON_KEY_BYTES 16U
+#define ASCON_NONCE_BYTES 16U
+#define ASCON_TAG_BYTES 16U
+
+/* The state: five words of 64 bits, each as its low and its high half. */
+typedef struct Ascon {
+    U32 half[10];
+} Ascon;
+
+/* Starts a message under `key` and `nonce`, of 16 bytes each. */
+void Ascon_begin(Ascon* ascon, const U8* key, const U8* nonce);
+
+/* Takes in the associated data, all of it. It is left out where there are none. */
+void Ascon_associate(Ascon* ascon, const U8* bytes, U32 size);
+
+/* Encrypts or decrypts the message in its place. What is decrypted must not be used before its tag
+ * has been found right. */
+void Ascon_crypt(Ascon* ascon, U8* bytes, U32 size, int isDecryption);
+
+/* Writes the tag of 16 bytes, and wipes the state. */
+void Ascon_end(Ascon* ascon, const U8* key, U8* tag);
+
+/* Returns whether the bytes are the same, in a time that does not tell where they differ. */
+int Ascon_isSame(const U8* a, const U8* b, U32 size);
+
+/* Overwrites with zeros, also where the compiler thinks that nobody will look. */
+void Ascon_wipe(void* bytes, U32 size);
+
+#endif

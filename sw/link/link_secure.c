@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_secure: encrypts and authenticates frames by Ascon-AEAD128, and derives the keys.
+ *
+ * All of a frame that is not encrypted is part of its nonce: the numbers that its bytes stand for,
+ * the header, and up to five bytes of a payload in clear. So a fragment that goes out again with
+ * another flag or acknowledgement has another nonce, the same nonce always means the same frame,
+ * and a frame that is replayed where its numbers mean something else is wrong.
+ */
+#include "link.h"
+
+#if LINK_SECURE
+
+#include "ascon.h"
+
+#include <string.h>
+
+#define CLEAR_AT 11U /* where the payload in clear begins in a nonce, ... */
+#define CLEAR_MOST 5U
+
+/* Returns how many bytes at the payload's beginning are not encrypted: of a control frame all, of
+ * a PIGGYBACK the acknowledgement. */
+static U32 clearOf(const U8* frame) {
+    if (!(frame[0] & LINK_CONTROL))
+        return 0;
+    return LINK_LENGTH(frame) && frame[2] >> 5 >= LINK_KIND_PIGGYBACK ? 1U : LINK_LENGTH(frame);
+}
+
+static void makeNonce(U8* nonce, const U8* frame, U32 number, U32 acked) {
+    U32 clear = clearOf(frame);
+    U32 kind = (U32)frame[2] >> 5;
+    memset(nonce, 0, ASCON_NONCE_BYTES);
+    link_put32(nonce, number);
+    link_put32(nonce + 4, acked);
+    if ((frame[0] & LINK_CONTROL) && LINK_IS_HANDSHAKE(kind))
+        memcpy(nonce, frame + LINK_HEADER, LINK_NONCE_BYTES);
+    memcpy(nonce + 8, frame, LINK_HEADER);
+    memcpy(nonce + CLEAR_AT, frame + LINK_HEADER, clear < CLEAR_MOST ? clear : CLEAR_MOST);
+}
+
+/* Encrypts or decrypts the payload; `tag` is what it should end with. */
+static void crypt(U8* frame, const U8* key, U32 number, U32 acked, int isDecryption, U8* tag) {
+    U8 nonce[ASCON_NONCE_BYTES];
+    U32 clear = clearOf(frame);
+    Ascon ascon;
+    makeNonce(nonce, frame, number, acked);
+    Ascon_begin(&ascon, key, nonce);
+    Ascon_crypt(&ascon, frame + LINK_HEADER + clear, LINK_LENGTH(frame) - clear, isDecryption);
+    Ascon_end(&ascon, key, tag);
+}
+
+U32 link_protect(U8* frame, U32 header, const U8* key, U32 number, U32 acked) {
+    U32 size = (header & 0x7FU) + LINK_HEADER;
+    U8 tag[ASCON_TAG_BYTES];
+    frame[0] = (U8)header;
+    frame[1] = (U8)(header >> 8);
+    frame[2] = (U8)(header >> 16);
+    crypt(frame, key, number, acked, 0, tag);
+    memcpy(frame + size, tag, LINK_TAG);
+    return size + LINK_TAG;
+}
+
+int link_unprotect(U8* frame, const U8* key, U32 number, U32 acked) {
+    U32 size = LINK_LENGTH(frame);
+    U8 tag[ASCON_TAG_BYTES];
+    crypt(frame, key, number, acked, 1, tag);
+    if (Ascon_isSame(tag, frame + LINK_HEADER + size, LINK_TAG))
+        return 1;
+    Ascon_wipe(frame + LINK_HEADER + clearOf(frame), size - clearOf(frame));
+    return 0;
+}
+
+/* The keystream of a nonce of which each half is one side's, the smaller half first, so that both
+ * sides make the same: the first key is that of the side with the smaller one. The text is never
+ * sent, so what an attacker may learn of one such keystream tells nothing of another. */
+void link_deriveKeys(const U8* secret, const U8* nonce, const U8* peerNonce, Link_Keys* keys) {
+    U8 both[ASCON_NONCE_BYTES], tag[ASCON_TAG_BYTES];
+    U8 text[2U * LINK_KEY_BYTES];
+    int isFirst = memcmp(nonce, peerNonce, LINK_NONCE_BYTES) < 0;
+    Ascon ascon;
+    memcpy(both, isFirst ? nonce : peerNonce, LINK_NONCE_BYTES);
+    memcpy(both + LINK_NONCE_BYTES, isFirst ? peerNonce : nonce, LINK_NONCE_BYTES);
+    memset(text, 0, sizeof text);
+    Ascon_begin(&ascon, secret, both);
+    Ascon_crypt(&ascon, text, sizeof text, 0);
+    Ascon_end(&ascon, secret, tag);
+    memcpy(isFirst ? keys->send : keys->receive, text, LINK_KEY_BYTES);
+    memcpy(isFirst ? keys->receive : keys->send, text + LINK_KEY_BYTES, LINK_KEY_BYTES);
+    Ascon_wipe(text, sizeof text);
+}
+
+/* The HELLOs' key comes from two equal nonces, which no session has. */
+void link_setSecret(Link_Secrets* secrets, int slot, const U8* key) {
+    static const U8 none[LINK_NONCE_BYTES];
+    Link_Keys keys;
+    Ascon_wipe(secrets->key[slot], LINK_KEY_BYTES);
+    Ascon_wipe(secrets->hello[slot], LINK_KEY_BYTES);
+    secrets->set = (U8)(secrets->set & ~(1U << slot));
+    if (!key)
+        return;
+    memcpy(secrets->key[slot], key, LINK_KEY_BYTES);
+    link_deriveKeys(key, none, none, &keys);
+    memcpy(secrets->hello[slot], keys.send, LINK_KEY_BYTES);
+    Ascon_wipe(&keys, sizeof keys);
+    secrets->set = (U8)(secrets->set | 1U << slot);
+}
+
+U32 link_extend(U32 expected, U32 byte) {
+    U32 ahead = (byte - expected) & 0xFFU;
+    return expected + ahead - (ahead & 0x80U) * 2U;
+}
+
+#endif

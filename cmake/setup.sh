@@ -35,6 +35,7 @@ nlohmann-json3-dev register descriptions, reports
 libfmt-dev text formatting
 libcli11-dev command lines
 libpugixml-dev reads JUnit results
+libsodium-dev signatures of firmware (Ed25519)
 libssl-dev AES of the modem model, checksums of Slice
 git finds what changed
 libstb-dev reads and writes pictures

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * signature: calls of libsodium; the host's build links Debian's, the chip's the same sources.
+ */
+#include "signature.h"
+
+#include <sodium/crypto_hash_sha512.h>
+#include <sodium/crypto_sign_ed25519.h>
+
+int Signature_isGood(const U8* signature, const U8* message, U32 bytes, const U8* key) {
+    return crypto_sign_ed25519_verify_detached(signature, message, bytes, key) == 0;
+}
+
+void Signature_digest(const U8* data, U32 bytes, U8* digest) {
+    (void)crypto_hash_sha512(digest, data, bytes);
+}

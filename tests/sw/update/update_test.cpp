@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: MIT
+//
+// update_test: slots and receiver over the model of the STM32F2's flash: the power is cut at every
+// erase and every written word, and there is always an image that boots.
+
+#include "random.h"
+#include "stm32_flash.h"
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <gtest/gtest.h>
+#include <sodium.h>
+#include <vector>
+
+extern "C" {
+#include "receiver.h"
+#include "signature.h"
+}
+
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+constexpr uint32_t product = 0x55415631, imageBytes = 1024, chunk = 256;
+
+struct Keys {
+    explicit Keys(uint8_t seed) {
+        std::array<uint8_t, crypto_sign_SEEDBYTES> from;
+        from.fill(seed);
+        crypto_sign_seed_keypair(open.data(), secret.data(), from.data());
+    }
+    std::array<uint8_t, crypto_sign_PUBLICKEYBYTES> open;
+    std::array<uint8_t, crypto_sign_SECRETKEYBYTES> secret;
+};
+const Keys ours(1), others(2);
+
+struct Image {
+    Slots_Header header;
+    Bytes bytes;
+};
+
+void sign(Image& image, const Keys& keys) {
+    crypto_sign_detached(image.header.signature, nullptr,
+                         reinterpret_cast<const uint8_t*>(&image.header), SLOTS_SIGNED_BYTES,
+                         keys.secret.data());
+}
+
+Image makeImage(uint32_t version, uint32_t slot, uint32_t size = imageBytes) {
+    Image image;
+    image.bytes.resize(size);
+    Random random(testSeed() + version);
+    for (uint8_t& b : image.bytes)
+        b = static_cast<uint8_t>(random.below(256));
+    image.header = {SLOTS_MAGIC, product, version, size, Slots_at(slot) + SLOTS_IMAGE_AT, {}, {}};
+    Signature_digest(image.bytes.data(), size, image.header.digest);
+    sign(image, ours);
+    return image;
+}
+
+struct PowerCut {};
+
+// The flash with its power, and the firmware that boots from it.
+class Vehicle {
+public:
+    explicit Vehicle(uint64_t seed = 1)
+        : flash_(
+              memory.data(), [this] { return now_; }, seed),
+          port{memory.data(), this, erase, program, Signature_isGood, Signature_digest} {
+        std::copy(ours.open.begin(), ours.open.end(), memory.begin() + SLOTS_KEY_AT);
+        flash_.onOperation = [this] {
+            if (flash_.operations() == cutAt) {
+                now_ += flash_.busyNs() / 2;
+                throw PowerCut();
+            }
+        };
+    }
+    // As a programmer leaves it: slot 0 has a confirmed image, slot 1 something else.
+    void deliver(uint32_t version) {
+        put(0, makeImage(version, 0));
+        for (Slots_State state : {SLOTS_READY, SLOTS_TRIED, SLOTS_CONFIRMED})
+            set(0, state);
+        std::fill_n(memory.begin() + Slots_at(1), 3 * imageBytes, uint8_t{0x11});
+    }
+    void put(uint32_t slot, const Image& image) {
+        std::memcpy(&memory[Slots_at(slot)], &image.header, sizeof image.header);
+        std::copy(image.bytes.begin(), image.bytes.end(),
+                  memory.begin() + Slots_at(slot) + SLOTS_IMAGE_AT);
+    }
+    void set(uint32_t slot, Slots_State state) {
+        const uint32_t value = SLOTS_TRUE;
+        std::memcpy(&memory[Slots_at(slot) + state], &value, 4);
+    }
+    // Power comes; returns the version that runs.
+    uint32_t boot() {
+        flash_.reset();
+        const uint32_t slot = Slots_choose(&port, product);
+        EXPECT_NE(slot, SLOTS_NONE);
+        if (slot == SLOTS_NONE)
+            return 0;
+        Receiver_init(&receiver, &port, product, slot);
+        const Slots_Header* header = Slots_header(&port, slot);
+        const Image wanted = makeImage(header->version, slot, header->bytes);
+        EXPECT_TRUE(std::equal(wanted.bytes.begin(), wanted.bytes.end(),
+                               memory.begin() + Slots_at(slot) + SLOTS_IMAGE_AT));
+        return header->version;
+    }
+    void work() {
+        while (Receiver_work(&receiver))
+            ;
+    }
+    Receiver_Reason begin(const Image& image) {
+        const Receiver_Reason reason = Receiver_begin(&receiver, &image.header);
+        work();
+        return reason == RECEIVER_OK ? receiver.reason : reason;
+    }
+    Receiver_Reason send(const Image& image) {
+        while (receiver.received < image.header.bytes) {
+            const uint32_t at = receiver.received, size = std::min(chunk, image.header.bytes - at);
+            if (auto reason = Receiver_write(&receiver, at, &image.bytes[at], size))
+                return reason;
+        }
+        const Receiver_Reason reason = Receiver_finish(&receiver);
+        work();
+        return reason == RECEIVER_OK ? receiver.reason : reason;
+    }
+    // What the ground does until this version is confirmed, whatever runs now.
+    void updateTo(uint32_t version) {
+        for (uint32_t runs = boot(); runs != version; runs = boot()) {
+            const Image image = makeImage(version, Receiver_slot(&receiver));
+            ASSERT_EQ(begin(image), RECEIVER_OK);
+            ASSERT_EQ(send(image), RECEIVER_OK);
+        }
+        ASSERT_EQ(Receiver_confirm(&receiver), RECEIVER_OK);
+    }
+    uint64_t operations() const { return flash_.operations(); }
+
+    Bytes memory = Bytes(Stm32Flash::bytes, 0xFF);
+    uint64_t cutAt = 0;
+
+private:
+    uint64_t now_ = 0;
+    Stm32Flash flash_;
+
+public:
+    Slots_Port port;
+    Receiver receiver{};
+
+private:
+    static Vehicle& of(void* context) { return *static_cast<Vehicle*>(context); }
+    int control(uint32_t value) {
+        flash_.write(Stm32Flash::Keyr, 0x45670123);
+        flash_.write(Stm32Flash::Keyr, 0xCDEF89AB);
+        flash_.write(Stm32Flash::Cr, 2 << 8 | value);
+        return 1;
+    }
+    int done() {
+        now_ += flash_.busyNs();
+        const uint32_t status = flash_.read(Stm32Flash::Sr);
+        flash_.write(Stm32Flash::Cr, Stm32Flash::Lock);
+        return status == 0;
+    }
+    static int erase(void* context, uint32_t sector) {
+        of(context).control(Stm32Flash::Ser | sector << 3 | Stm32Flash::Strt);
+        return of(context).done();
+    }
+    static int program(void* context, uint32_t offset, uint32_t word) {
+        of(context).control(Stm32Flash::Pg);
+        of(context).flash_.store(offset, 4, word);
+        return of(context).done();
+    }
+};
+
+TEST(Signature, IsEd25519AsInRfc8032) {
+    const Bytes key = {0xd7, 0x5a, 0x98, 0x01, 0x82, 0xb1, 0x0a, 0xb7, 0xd5, 0x4b, 0xfe,
+                       0xd3, 0xc9, 0x64, 0x07, 0x3a, 0x0e, 0xe1, 0x72, 0xf3, 0xda, 0xa6,
+                       0x23, 0x25, 0xaf, 0x02, 0x1a, 0x68, 0xf7, 0x07, 0x51, 0x1a};
+    Bytes signature = {0xe5, 0x56, 0x43, 0x00, 0xc3, 0x60, 0xac, 0x72, 0x90, 0x86, 0xe2, 0xcc, 0x80,
+                       0x6e, 0x82, 0x8a, 0x84, 0x87, 0x7f, 0x1e, 0xb8, 0xe5, 0xd9, 0x74, 0xd8, 0x73,
+                       0xe0, 0x65, 0x22, 0x49, 0x01, 0x55, 0x5f, 0xb8, 0x82, 0x15, 0x90, 0xa3, 0x3b,
+                       0xac, 0xc6, 0x1e, 0x39, 0x70, 0x1c, 0xf9, 0xb4, 0x6b, 0xd2, 0x5b, 0xf5, 0xf0,
+                       0x59, 0x5b, 0xbe, 0x24, 0x65, 0x51, 0x41, 0x43, 0x8e, 0x7a, 0x10, 0x0b};
+    const uint8_t none = 0;
+    EXPECT_EQ(Signature_isGood(signature.data(), &none, 0, key.data()), 1);
+    signature[5] ^= 1;
+    EXPECT_EQ(Signature_isGood(signature.data(), &none, 0, key.data()), 0);
+}
+
+TEST(Update, ANewImageIsTriedAndStaysWhenItIsConfirmed) {
+    Vehicle vehicle;
+    vehicle.deliver(1);
+    vehicle.updateTo(2);
+    EXPECT_EQ(vehicle.boot(), 2u);
+    vehicle.updateTo(3); // and back into the first slot
+    EXPECT_EQ(vehicle.boot(), 3u);
+}
+
+TEST(Update, AnImageThatIsNotConfirmedIsTriedOnce) {
+    Vehicle vehicle;
+    vehicle.deliver(1);
+    vehicle.boot();
+    const Image image = makeImage(2, 1);
+    EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
+    EXPECT_EQ(vehicle.send(image), RECEIVER_OK);
+    EXPECT_EQ(vehicle.boot(), 2u);
+    EXPECT_TRUE(Receiver_isOnTrial(&vehicle.receiver));
+    EXPECT_EQ(vehicle.begin(makeImage(3, 0)), RECEIVER_ON_TRIAL); // it would erase the way back
+    EXPECT_EQ(vehicle.boot(), 1u);
+    EXPECT_EQ(vehicle.receiver.reason, RECEIVER_WENT_BACK);
+    EXPECT_EQ(vehicle.boot(), 1u);
+}
+
+TEST(Update, WhatIsNotForThisVehicleLeavesItUntouched) {
+    Vehicle vehicle;
+    vehicle.deliver(5);
+    vehicle.boot();
+    const Bytes before = vehicle.memory;
+    Image foreign = makeImage(6, 1), unsignedOne = makeImage(6, 1), otherKey = makeImage(6, 1);
+    foreign.header.product ^= 1;
+    sign(foreign, ours);
+    ++unsignedOne.header.version;
+    sign(otherKey, others);
+    EXPECT_EQ(vehicle.begin(foreign), RECEIVER_FOREIGN);
+    EXPECT_EQ(vehicle.begin(makeImage(6, 0)), RECEIVER_FOREIGN); // linked for the other slot
+    EXPECT_EQ(vehicle.begin(makeImage(5, 1)), RECEIVER_OLD);
+    EXPECT_EQ(vehicle.begin(makeImage(4, 1)), RECEIVER_OLD);
+    EXPECT_EQ(vehicle.begin(unsignedOne), RECEIVER_UNSIGNED);
+    EXPECT_EQ(vehicle.begin(otherKey), RECEIVER_UNSIGNED);
+    EXPECT_EQ(vehicle.receiver.state, RECEIVER_IDLE);
+    EXPECT_EQ(vehicle.memory, before);
+    EXPECT_EQ(vehicle.operations(), 0u);
+}
+
+TEST(Update, NoHeaderOfWhichABitWasChangedIsTaken) {
+    Vehicle vehicle;
+    vehicle.deliver(1);
+    vehicle.boot();
+    for (size_t bit = 0; bit < 8 * sizeof(Slots_Header); ++bit) {
+        Image image = makeImage(2, 1);
+        reinterpret_cast<uint8_t*>(&image.header)[bit / 8] ^= static_cast<uint8_t>(1 << bit % 8);
+        EXPECT_NE(vehicle.begin(image), RECEIVER_OK) << "bit " << bit;
+    }
+    EXPECT_EQ(vehicle.operations(), 0u);
+}
+
+TEST(Update, WithoutAKeyNothingIsTaken) {
+    Vehicle vehicle;
+    vehicle.deliver(1);
+    vehicle.boot();
+    std::fill_n(vehicle.memory.begin() + SLOTS_KEY_AT, SLOTS_KEY_BYTES, uint8_t{0xFF});
+    EXPECT_EQ(vehicle.begin(makeImage(2, 1)), RECEIVER_UNSIGNED);
+}
+
+TEST(Update, ADamagedOrCutImageIsNotStarted) {
+    Vehicle vehicle;
+    vehicle.deliver(1);
+    vehicle.boot();
+    Image image = makeImage(2, 1);
+    EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
+    EXPECT_EQ(Receiver_write(&vehicle.receiver, 0, image.bytes.data(), chunk), RECEIVER_OK);
+    EXPECT_EQ(Receiver_finish(&vehicle.receiver), RECEIVER_NOT_BEGUN);
+    EXPECT_EQ(vehicle.boot(), 1u);
+    EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
+    image.bytes[700] ^= 4;
+    EXPECT_EQ(vehicle.send(image), RECEIVER_DAMAGED);
+    EXPECT_EQ(vehicle.boot(), 1u);
+    vehicle.updateTo(2); // and it can be sent anew
+    EXPECT_EQ(vehicle.boot(), 2u);
+}
+
+TEST(Update, PiecesComeInOrderAndInWords) {
+    Vehicle vehicle;
+    vehicle.deliver(1);
+    vehicle.boot();
+    const Image image = makeImage(2, 1);
+    const uint8_t* bytes = image.bytes.data();
+    EXPECT_EQ(Receiver_write(&vehicle.receiver, 0, bytes, 4), RECEIVER_NOT_BEGUN);
+    EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
+    EXPECT_EQ(Receiver_write(&vehicle.receiver, 4, bytes, 4), RECEIVER_MISPLACED);
+    EXPECT_EQ(Receiver_write(&vehicle.receiver, 0, bytes, 6), RECEIVER_MISPLACED);
+    EXPECT_EQ(Receiver_write(&vehicle.receiver, 0, bytes, imageBytes + 4), RECEIVER_MISPLACED);
+    EXPECT_EQ(Receiver_write(&vehicle.receiver, 0, bytes, imageBytes), RECEIVER_OK);
+    EXPECT_EQ(Receiver_write(&vehicle.receiver, 512, bytes + 512, 512), RECEIVER_OK); // once more
+    EXPECT_EQ(Receiver_write(&vehicle.receiver, imageBytes, bytes, 4), RECEIVER_MISPLACED);
+    EXPECT_EQ(Receiver_write(&vehicle.receiver, 0xFFFFFFFC, bytes, 8), RECEIVER_MISPLACED);
+}
+
+TEST(Update, ItGoesOnWhereTheLossOfPowerLeftIt) {
+    Vehicle vehicle;
+    vehicle.deliver(1);
+    vehicle.boot();
+    const Image image = makeImage(2, 1);
+    EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
+    EXPECT_EQ(Receiver_write(&vehicle.receiver, 0, image.bytes.data(), 768), RECEIVER_OK);
+    EXPECT_EQ(vehicle.boot(), 1u);
+    const uint64_t before = vehicle.operations();
+    EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
+    EXPECT_EQ(vehicle.receiver.received, 764u);
+    EXPECT_EQ(vehicle.operations(), before);
+    EXPECT_EQ(vehicle.send(image), RECEIVER_OK);
+    EXPECT_EQ(vehicle.boot(), 2u);
+}
+
+TEST(Update, AnImageThatRotsIsNotStarted) {
+    Vehicle vehicle;
+    vehicle.deliver(1);
+    vehicle.updateTo(2);
+    vehicle.memory[Slots_at(1) + SLOTS_IMAGE_AT + 99] ^= 1;
+    EXPECT_EQ(vehicle.boot(), 1u); // better than nothing
+}
+
+TEST(Update, AnOlderImageThatWasNeverTriedIsNotStarted) {
+    Vehicle vehicle;
+    vehicle.deliver(5);
+    std::fill_n(vehicle.memory.begin() + Slots_at(1), SLOTS_BYTES, uint8_t{0xFF});
+    vehicle.put(1, makeImage(4, 1));
+    vehicle.set(1, SLOTS_READY);
+    EXPECT_EQ(vehicle.boot(), 5u);
+    vehicle.put(1, makeImage(6, 1));
+    EXPECT_EQ(vehicle.boot(), 6u);
+}
+
+// Cuts the power at each operation of an update in turn, and once more at a random one later.
+TEST(Update, WhereverThePowerIsCutThereIsAnImageThatBoots) {
+    Vehicle whole;
+    whole.deliver(1);
+    whole.updateTo(2);
+    const uint64_t all = whole.operations();
+    ASSERT_GT(all, imageBytes / 4);
+    uint64_t cuts = 0, wentBack = 0;
+    Random random(testSeed());
+    for (uint64_t first = 1; first <= all; ++first) {
+        Vehicle vehicle(testSeed() * 1000 + first);
+        vehicle.deliver(1);
+        vehicle.cutAt = first;
+        for (;;) {
+            try {
+                vehicle.updateTo(2);
+                break;
+            } catch (const PowerCut&) {
+                ++cuts;
+                vehicle.cutAt =
+                    cuts % 2 ? 0
+                             : vehicle.operations() + 1 + random.below(static_cast<unsigned>(all));
+                wentBack += vehicle.receiver.running == 1;
+            }
+        }
+        vehicle.cutAt = 0;
+        ASSERT_EQ(vehicle.boot(), 2u) << "cut at operation " << first << " of " << all;
+    }
+    EXPECT_GE(cuts, all);
+    RecordProperty("operations", static_cast<int>(all));
+    RecordProperty("cuts", static_cast<int>(cuts));
+    EXPECT_GT(wentBack, 0u); // some cuts are in the trial
+}
+
+} // namespace

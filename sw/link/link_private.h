@@ -12,8 +12,7 @@
 
 /* Times in microseconds. */
 #define LINK_ACK_DELAY 30000U    /* silence behind data after which it is acknowledged unasked */
-#define LINK_HELLO_FIRST 300000U /* between HELLOs, doubled up to ... */
-#define LINK_HELLO_LAST 2000000U
+#define LINK_HELLO_LAST 2000000U /* between HELLOs, at most */
 #define LINK_PING_AFTER 5000000U /* silence after which the peer is asked, ... */
 #define LINK_PING_EVERY 1000000U /* again, ... */
 #define LINK_DEAD_AFTER 9000000U /* and given up */
@@ -21,17 +20,10 @@
 #define LINK_RTO_MIN 60000U
 #define LINK_RTO_MAX 2000000U
 #define LINK_FRAME_GAP 25000U /* silence on the serial side after which half a frame is dropped */
-#define LINK_ANSWER_EVERY 100000U /* between answers to HELLO with a key, while a session is up */
-#define LINK_NONCE_LIFE 9000000U  /* for which an answered HELLO's nonces can make a session */
 #define LINK_PROOF_AFTER 5000000U /* silence of answers after which the peer is asked, ... */
 #define LINK_PROOF_LAST 27000000U /* and given up, whatever else was heard */
 #define LINK_POLL_EVERY 1000U     /* while the radio has no room */
 #define LINK_OFFER_EVERY 5000U    /* while nobody takes a message */
-
-/* Numbers at which a session with a key ends, and a new one begins: of fragments sent, and of
- * frames whose tag was wrong. */
-#define LINK_LAST_NUMBER 0xFFFF0000U
-#define LINK_MOST_FAILURES 0x40000000U
 
 /* The search for frames in garbage may compute so many rounds of Ascon for each byte received, and
  * so many at once. */

@@ -12,6 +12,7 @@
 #ifndef LINK_WIRE_H
 #define LINK_WIRE_H
 
+#define LINK_HELLO_FIRST 300000U /* microseconds between HELLOs, at least */
 #define LINK_VERSION 3U
 #define LINK_HEADER 3U
 #define LINK_CRC 2U
@@ -95,6 +96,16 @@ U32 link_sessionKey(U32 nonce, U32 peerNonce);
 /* link_secure: what a key does to a frame, and how a session gets its own (docs/link.md). */
 
 #define LINK_NONCE_BYTES 8U /* of each side's nonce in a secure handshake */
+
+/* Microseconds between answers to HELLO while a session is up, and for which nonces of an answered
+ * HELLO can make a session. */
+#define LINK_ANSWER_EVERY 100000U
+#define LINK_NONCE_LIFE 9000000U
+
+/* Numbers at which a session with a key ends, and a new one begins: of fragments sent, and of
+ * frames whose tag was wrong. */
+#define LINK_LAST_NUMBER 0xFFFF0000U
+#define LINK_MOST_FAILURES 0x40000000U
 
 /* The keys of a session, one a direction. */
 typedef struct Link_Keys {

@@ -16,20 +16,37 @@
 #define LINK_OUTCOMES 0 /* 1: `outcome` and `writable` are called */
 #endif
 
-#define LINK_INPUT_BYTES                                                    \
-    (0x7FU + LINK_OVERHEAD) /* no length that a frame may claim goes beyond \
-                             */
+/* No length that a frame may claim goes beyond. */
+#define LINK_INPUT_BYTES (0x7FU + (LINK_SECURE ? LINK_SECURE_OVERHEAD : LINK_OVERHEAD))
+
+/* True if a key was given: from then on for good. */
+#define LINK_IS_SECURE(link) (LINK_SECURE && (link)->overhead != LINK_OVERHEAD)
+
+/* With a key: the handshake's parts. */
+typedef struct Link_Keyed {
+    Link_Secrets secrets;
+    Link_Keys keys;                   /* of the session */
+    U8 nonces[2U * LINK_NONCE_BYTES]; /* of the session: the peer's, the own one */
+    U8 nonce[LINK_NONCE_BYTES];       /* own, of the next session */
+    U8 slot;                          /* of the session's key */
+    U8 isAnswered;                    /* a HELLO was answered with `nonce`, ... */
+    U8 isCalled;                      /* a HELLO was sent with it */
+    U32 firstAnswer;                  /* ... first at this time */
+    U32 lastFrame;                    /* when the handshake last sent one */
+    U32 pingsSeen;                    /* number of the peer's newest PING */
+} Link_Keyed;
 
 /* Small and often used fields come first: a Cortex-M3 reaches them with short instructions. */
 struct Link {
-    U8 state; /* Link_State */
+    U8 state;    /* Link_State */
+    U8 overhead; /* of a frame: of one without a key, or with one */
     /* The fields from here on are 0 when a session begins. */
     U8 channels[LINK_CHANNELS]; /* OPEN, CLOSING, and what is to be sent */
-    U8 sendNext;                /* SEQ of the fragment in flight, or of the next one */
-    U8 receiveNext;             /* SEQ expected */
     U8 ackDue;
     U8 flags;           /* byte 2 of the fragment in flight; 0: there is none */
     U8 channel;         /* channel of the message going out */
+    U32 sendNext;       /* number of the fragment in flight, or of the next one: SEQ extended */
+    U32 receiveNext;    /* number expected */
     U32 outSize, outAt; /* bytes of the message going out, and of it acknowledged */
     U32 size;           /* bytes of the fragment in flight */
     U32 messageSize;    /* bytes received of the message coming in */
@@ -47,6 +64,21 @@ struct Link {
     U8 frame[LINK_MAX_FRAME]; /* the frame going out */
     U8 out[LINK_MAX_MESSAGE + LINK_CHECK];
     U8 message[LINK_MAX_MESSAGE + LINK_CHECK];
+#if LINK_SECURE
+    Link_Keyed keyed;
+#endif
 };
+
+/* Ends the session, if there is one: clears its fields and reports its end. */
+void link_lose(Link* link);
+
+/* link_minimal_keyed */
+
+void link_forgetKeys(Link* link);
+/* Sends link->frame, which holds its payload, under the session's key. `number`: that of which byte
+ * 1 of the header is the lowest byte. */
+void link_transmitKeyed(Link* link, U32 header, U32 number);
+/* Takes the frame in link->input. Returns 1 if it is of the session, not a PING, and decrypted. */
+int link_takeKeyed(Link* link);
 
 #endif

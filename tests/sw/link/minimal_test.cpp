@@ -12,7 +12,10 @@ using Sent = std::vector<std::pair<int, Bytes>>;
 
 class Minimal : public ::testing::TestWithParam<int>, public Radio {
 protected:
-    Minimal() : Radio("full", "minimal", testSeed() * 1000 + static_cast<uint64_t>(GetParam())) {}
+    // Every second one with a key.
+    Minimal()
+        : Radio("full", "minimal", testSeed() * 1000 + static_cast<uint64_t>(GetParam()),
+                Bytes(GetParam() % 2 ? LINK_KEY_BYTES : 0, 0x5A)) {}
 
     void offer(Peer& from, Sent& sent, unsigned most) {
         if (sent.size() >= most)
@@ -103,10 +106,10 @@ TEST_P(Minimal, GarbageOnTheLineDoesNotDisturbTheSession) {
         EXPECT_NE(event, "down");
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, Minimal, ::testing::Range(0, 4));
+INSTANTIATE_TEST_SUITE_P(Seeds, Minimal, ::testing::Range(0, 6));
 
 class MinimalOnce : public Minimal {};
-INSTANTIATE_TEST_SUITE_P(Once, MinimalOnce, ::testing::Values(0));
+INSTANTIATE_TEST_SUITE_P(Once, MinimalOnce, ::testing::Range(0, 2));
 
 TEST_P(MinimalOnce, TenThousandSmallMessagesWrapTheNumbersManyTimes) {
     ASSERT_TRUE(connect());

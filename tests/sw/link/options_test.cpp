@@ -5,14 +5,18 @@
 
 #include "variant.h"
 #include <gtest/gtest.h>
+#include <tuple>
 
 namespace {
 
-using Names = std::pair<std::string, std::string>;
+// Of A, of B, and whether they have a key.
+using Names = std::tuple<std::string, std::string, bool>;
 
 class Options : public ::testing::TestWithParam<Names>, public Radio {
 protected:
-    Options() : Radio(GetParam().first, GetParam().second, testSeed()) {}
+    Options()
+        : Radio(std::get<0>(GetParam()), std::get<1>(GetParam()), testSeed(),
+                Bytes(std::get<2>(GetParam()) ? LINK_KEY_BYTES : 0, 0x5A)) {}
 };
 
 TEST_P(Options, MessagesGoBothWaysThroughLoss) {
@@ -53,12 +57,16 @@ TEST_P(Options, AMessageThatIsTooLongForThePeerIsReported) {
     EXPECT_TRUE(until([&] { return bothUp(); }, 20'000'000));
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, Options,
-                         ::testing::Values(Names{"full", "full"}, Names{"full", "small"},
-                                           Names{"small", "full"}, Names{"small", "small"},
-                                           Names{"window64", "full"}, Names{"small", "window64"},
-                                           Names{"full", "minimal"}, Names{"window64", "minimal"},
-                                           Names{"small", "minimal"}));
+INSTANTIATE_TEST_SUITE_P(
+    Variants, Options,
+    ::testing::Values(Names{"full", "full", false}, Names{"full", "small", false},
+                      Names{"small", "full", false}, Names{"small", "small", false},
+                      Names{"window64", "full", false}, Names{"small", "window64", false},
+                      Names{"full", "minimal", false}, Names{"window64", "minimal", false},
+                      Names{"small", "minimal", false}, Names{"open", "full", false},
+                      Names{"full", "small", true}, Names{"window64", "full", true},
+                      Names{"full", "minimal", true}, Names{"small", "minimal", true},
+                      Names{"tag4", "tag4", true}, Names{"tag4", "minimal_tag4", true}));
 
 TEST(LinkOptions, MemoryIsWhatTheDocumentationSays) {
     for (auto variant : {"full", "window64", "small", "minimal"})

@@ -23,7 +23,8 @@ using Bytes = std::vector<uint8_t>;
 // A variant's functions, and a Link of its size.
 class Peer {
 public:
-    Peer(const std::string& variant, uint64_t seed) : random_(seed) {
+    Peer(const std::string& variant, uint64_t seed, const Bytes& key = {})
+        : random_(seed), key_(key) {
         std::string path = VARIANTS + variant + ".so";
         library_ = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
         if (!library_)
@@ -34,6 +35,8 @@ public:
         load(poll, "Link_poll");
         load(deadline, "Link_deadline");
         load(receive, "Link_receive");
+        if (!key.empty())
+            load(setKey, "Link_setKey");
         load(send_, "Link_send");
         load(open_, "Link_openChannel");
         load(close_, "Link_closeChannel");
@@ -71,6 +74,8 @@ public:
             },
             nullptr};
         init(link(), &port, this, 1440);
+        if (!key_.empty())
+            setKey(link(), 0, key_.data());
         air.clear();
     }
     Link* link() { return reinterpret_cast<Link*>(memory_.data()); }
@@ -89,6 +94,7 @@ public:
     decltype(&Link_deadline) deadline;
     decltype(&Link_receive) receive;
     decltype(&Link_state) state;
+    decltype(&Link_setKey) setKey;
     U32 (*size)();
     U32 (*maxMessage)();
     std::deque<std::pair<uint64_t, Bytes>> air; // to the other side, with the time of arrival
@@ -124,14 +130,15 @@ private:
     decltype(&Link_closeChannel) close_;
     Random random_;
     void* library_;
+    const Bytes key_;
     std::vector<uint64_t> memory_;
 };
 
 // Two peers and the time, in steps of the firmware's tick.
 class Radio {
 public:
-    Radio(const std::string& a, const std::string& b, uint64_t seed)
-        : a_(a, seed * 2), b_(b, seed * 2 + 1) {}
+    Radio(const std::string& a, const std::string& b, uint64_t seed, const Bytes& key = {})
+        : a_(a, seed * 2, key), b_(b, seed * 2 + 1, key) {}
 
 protected:
     template <class Done> bool until(Done done, uint64_t limitUs) {

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_minimal_keyed: what a key adds to the minimal layer: the handshake of link_keyed.c, as the
+ * side that answers, tags, and PING.
+ *
+ * HELLO is sent once where frames of an unknown session come, in place of RST.
+ */
+#include "link.h"
+
+#if LINK_SECURE
+
+#include "ascon.h"
+
+#include <string.h>
+
+static void draw(Link* link) {
+    link_put32(link->keyed.nonce, link->port->random(link->context));
+    link_put32(link->keyed.nonce + 4, link->port->random(link->context));
+    link->keyed.isAnswered = link->keyed.isCalled = 0;
+}
+
+static void transmit(Link* link, U32 header, const U8* key, U32 number) {
+    header |= LINK_KEY_EPOCH(link->key) << 18;
+    (void)link->port->transmit(link->context, link->frame,
+                               link_protect(link->frame, header, key, number, 0));
+}
+
+void link_forgetKeys(Link* link) {
+    Ascon_wipe(&link->keyed.keys, sizeof link->keyed.keys);
+}
+
+void link_transmitKeyed(Link* link, U32 header, U32 number) {
+    transmit(link, header, link->keyed.keys.send, number);
+}
+
+/* Sends a frame of the handshake that carries the own nonce, and the peer's if there is one. */
+static void sendHandshake(Link* link, Link_Kind kind, const U8* peerNonce, const U8* key) {
+    U8* payload = link->frame + LINK_HEADER;
+    U32 size = LINK_NONCE_BYTES;
+    memcpy(payload, link->keyed.nonce, LINK_NONCE_BYTES);
+    if (peerNonce) {
+        memcpy(payload + LINK_NONCE_BYTES, peerNonce, LINK_NONCE_BYTES);
+        size += LINK_NONCE_BYTES;
+    }
+    link->keyed.lastFrame = link->inputAt;
+    transmit(link, LINK_CONTROL_HEADER(kind, LINK_VERSION, size), key, 0);
+}
+
+/* Begins the session whose keys those are. */
+static void begin(Link* link, const U8* nonces, const Link_Keys* keys, int slot) {
+    Link_Keyed* keyed = &link->keyed;
+    link_lose(link);
+    keyed->keys = *keys;
+    keyed->slot = (U8)slot;
+    keyed->pingsSeen = 0;
+    memcpy(keyed->nonces, nonces, sizeof keyed->nonces);
+    link->key = link_sessionKey(link_get32(nonces), link_get32(nonces + LINK_NONCE_BYTES));
+    link->heardAt = link->inputAt;
+    link->state = LINK_STATE_UP;
+    link->port->state(link->context, LINK_STATE_UP);
+}
+
+/* Takes a frame of the handshake if it is good under the key of a slot. Returns 1: it is. */
+static int takeUnder(Link* link, int slot, Link_Kind kind) {
+    Link_Keyed* keyed = &link->keyed;
+    const U8* nonces = link->input + LINK_HEADER;
+    Link_Keys keys;
+    int isGood;
+    if (!(keyed->secrets.set >> slot & 1))
+        return 0;
+    link_deriveKeys(keyed->secrets.key[slot], keyed->nonce, nonces, &keys);
+    isGood = link_unprotect(
+        link->input, kind == LINK_KIND_HELLO ? keyed->secrets.hello[slot] : keys.receive, 0, 0);
+    if (isGood && kind == LINK_KIND_HELLO) {
+        sendHandshake(link, LINK_KIND_HELLO_ACK, nonces, keys.send);
+        if (!keyed->isAnswered)
+            keyed->firstAnswer = link->inputAt;
+        keyed->isAnswered = 1;
+    } else if (isGood) {
+        begin(link, nonces, &keys, slot);
+        if (kind == LINK_KIND_HELLO_ACK)
+            sendHandshake(link, LINK_KIND_CONFIRM, nonces, keys.send);
+        draw(link);
+        link->ackDue = 1; /* so that the peer hears */
+    }
+    Ascon_wipe(&keys, sizeof keys);
+    return isGood;
+}
+
+/* Takes HELLO, HELLO-ACK or CONFIRM, if it is of use here. */
+static void takeHandshake(Link* link, Link_Kind kind) {
+    Link_Keyed* keyed = &link->keyed;
+    const U8* nonces = link->input + LINK_HEADER;
+    int isUp = link->state == LINK_STATE_UP;
+    if (keyed->isAnswered && link->inputAt - keyed->firstAnswer >= LINK_NONCE_LIFE)
+        draw(link);
+    if (kind == LINK_KIND_HELLO) {
+        if (LINK_LENGTH(link->input) != LINK_NONCE_BYTES ||
+            (isUp && (link->inputAt - keyed->lastFrame < LINK_ANSWER_EVERY ||
+                      memcmp(nonces, keyed->nonces, LINK_NONCE_BYTES) == 0)))
+            return;
+    } else if (LINK_LENGTH(link->input) != 2U * LINK_NONCE_BYTES) {
+        return;
+    } else if (isUp && kind == LINK_KIND_CONFIRM &&
+               memcmp(nonces, keyed->nonces, sizeof keyed->nonces) == 0) {
+        link->ackDue |= link_unprotect(link->input, keyed->keys.receive, 0, 0) != 0;
+        return;
+    } else if (memcmp(nonces + LINK_NONCE_BYTES, keyed->nonce, LINK_NONCE_BYTES) != 0 ||
+               !(kind == LINK_KIND_CONFIRM ? keyed->isAnswered : keyed->isCalled && !isUp)) {
+        return;
+    }
+    if (memcmp(nonces, keyed->nonce, LINK_NONCE_BYTES) != 0 && !takeUnder(link, 0, kind))
+        (void)takeUnder(link, 1, kind);
+}
+
+int link_takeKeyed(Link* link) {
+    Link_Keyed* keyed = &link->keyed;
+    U8* frame = link->input;
+    U32 kind = (U32)frame[2] >> 5;
+    U32 number = link->receiveNext; /* whose lowest byte is near byte 1 */
+    int isControl = frame[0] >> 7;
+    if (isControl && LINK_IS_HANDSHAKE(kind)) {
+        if (frame[1] == LINK_VERSION)
+            takeHandshake(link, (Link_Kind)kind);
+        return 0;
+    }
+    if (link->state != LINK_STATE_UP) { /* the peer is in an earlier session */
+        if (keyed->secrets.set && link->inputAt - keyed->lastFrame >= LINK_HELLO_FIRST) {
+            keyed->isCalled = 1;
+            sendHandshake(link, LINK_KIND_HELLO, 0,
+                          keyed->secrets.hello[!(keyed->secrets.set & 1)]);
+        }
+        return 0;
+    }
+    if (LINK_EPOCH(frame) != LINK_KEY_EPOCH(link->key) ||
+        (isControl && kind >= LINK_KIND_PIGGYBACK))
+        return 0;
+    if (isControl)
+        number = kind == LINK_KIND_ACK    ? link->sendNext + 1U
+                 : kind == LINK_KIND_PING ? keyed->pingsSeen
+                                          : 0;
+    number = link_extend(number, frame[1]);
+    if (!link_unprotect(frame, keyed->keys.receive, number, 0))
+        return 0;
+    if (!isControl || kind != LINK_KIND_PING)
+        return 1;
+    if (LINK_BEFORE(keyed->pingsSeen, number)) {
+        keyed->pingsSeen = number;
+        link->heardAt = link->inputAt;
+        link_transmitKeyed(link,
+                           LINK_CONTROL_HEADER(LINK_KIND_PING, (U8)number, 0U) |
+                               LINK_HEADER_OF(0U, 0U, LINK_PING_ANSWER),
+                           number);
+    }
+    return 0;
+}
+
+void Link_setKey(Link* link, int slot, const U8* key) {
+    if (!LINK_IS_SECURE(link)) {
+        link->overhead = LINK_SECURE_OVERHEAD;
+        draw(link);
+    }
+    if (Link_keyInUse(link) == slot)
+        link_lose(link);
+    link_setSecret(&link->keyed.secrets, slot, key);
+}
+
+int Link_keyInUse(const Link* link) {
+    return LINK_IS_SECURE(link) && link->state == LINK_STATE_UP ? link->keyed.slot : -1;
+}
+
+#endif

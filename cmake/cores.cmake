@@ -28,15 +28,15 @@ if(instances GREATER 7)
 endif()
 
 # icesoc_core(NAME [ICE file.ice | REGS name.regs.json] [VERILOG file...] [VHDL file...] [SERVANT file.c...]
-#             [SLICE name...] [INCLUDES dir...] [FLAGS ...] [LIBRARY name] [CLK_HZ])
+#             [SLICE name...] [INCLUDES dir...] [FLAGS ...] [LIBRARY name] [DEPENDS target...] [CLK_HZ])
 # The core NAME: a module or entity NAME with a slot's ports. ICE: its [":hw"] interface, from which
 # registers, wrapper and servant are made; else REGS describes its registers, and SERVANT is written by hand, for
-# interfaces of SLICE: files, or names given to icesoc_slice. <NAME>_test.cpp beside it becomes test_ip_<NAME>, with the model V<NAME>_slot.
-# FLAGS: Verilator's, for a foreign core's style. LIBRARY: the VHDL library that its files say they are in.
+# interfaces of SLICE: files, or names given to icesoc_slice; without SERVANT it is that of sw/hw/registers. <NAME>_test.cpp beside it becomes test_ip_<NAME>, with the model V<NAME>_slot.
+# FLAGS: Verilator's, for a foreign core's style. LIBRARY: the VHDL library that its files say they are in. DEPENDS: what makes VERILOG files that are generated.
 # CLK_HZ: the module has a parameter of that name, the clock in Hz: 100 MHz on the board and in the simulator; 2 MHz
 # in <NAME>_test.cpp.
 function(icesoc_core name)
-  cmake_parse_arguments(A "CLK_HZ" "ICE;REGS;LIBRARY" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS" ${ARGN})
+  cmake_parse_arguments(A "CLK_HZ" "ICE;REGS;LIBRARY" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS;DEPENDS" ${ARGN})
   list(TRANSFORM A_VHDL PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_VERILOG PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_SERVANT PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
@@ -49,7 +49,7 @@ function(icesoc_core name)
     set(clocked ${name})
   endif()
   set(files ${A_VERILOG})
-  set(targets)
+  set(targets ${A_DEPENDS})
   set(wrapper)
   set(arm_sources ${A_SERVANT})
   set(arm_includes ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/sw/hw)
@@ -95,6 +95,14 @@ function(icesoc_core name)
       icesoc_c90(${name}_servants SOURCES ${A_SERVANT}
                  LIBS ${servers} hw_core regs_${name})
       list(APPEND libs ${name}_servants)
+    else()
+      set(dir ${CMAKE_SOURCE_DIR}/sw/hw/registers)
+      set(slice ${GEN_DIR}/slice/Registers)
+      list(APPEND arm_sources ${dir}/hw_registers.c ${slice}/Registers_types.c ${slice}/Registers_server.c)
+      list(APPEND arm_includes ${dir} ${slice})
+      list(APPEND arm_targets Registers_slice)
+      list(APPEND slices Registers_slice)
+      list(APPEND libs hw_registers)
     endif()
   endif()
   if(A_VHDL)

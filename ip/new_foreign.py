@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""new_foreign: puts a third-party core in Verilog into a slot (docs/recipes.md).
+"""new_foreign: puts a third-party core in Verilog or VHDL into a slot (docs/recipes.md).
 
-    new_foreign.py NAME TOP wishbone|axil|memory FOLDER FILE...
+    new_foreign.py NAME TOP wishbone|axil|memory|own FOLDER [ROLE=port...] FILE...
 
-Reads the ports of the module TOP with Yosys and writes into FOLDER, which must not exist: NAME.v, which connects TOP to
-the slot; its registers; a test; CMakeLists.txt. Ports that are neither bus, clock, reset nor interrupt become pins.
+Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v, which connects TOP to
+the slot; its registers, with the names that TOP has for their addresses; a test; what a mission calls of it;
+CMakeLists.txt. ROLE=port says what a port is for, instead of its name. Ports that are neither bus, clock, reset nor
+interrupt become pins. VHDL is read by GHDL, which the environment names.
 """
 import json
 import os
@@ -14,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 
+HERE = os.path.dirname(os.path.abspath(__file__))
 CLOCKS = {"clk", "aclk", "clock"}
 RESETS = {"rst", "reset", "arst", "rstn", "resetn", "aresetn", "nrst"}
 INTERRUPTS = {"int", "inta", "irq", "interrupt"}
@@ -25,8 +28,13 @@ WISHBONE = {"input": {"cyc": "cyc", "stb": "stb", "we": "we", "adr": "adr", "add
 # "memory": chip select, write enable, address of a word, data; what is read is there in the same clock.
 MEMORY = {"cs": "stb", "ce": "stb", "we": "we", "address": "adr", "addr": "adr", "write_data": "wdata", "wdata": "wdata",
           "din": "wdata", "read_data": "rdata", "rdata": "rdata", "dout": "rdata"}
-NEEDED = {"memory": ["stb", "we", "adr", "wdata", "rdata"], "wishbone": ["cyc", "stb", "we", "wdata", "rdata", "ack"], "axil": [n for n in AXI if not n.endswith("prot")]}
-BUSES = {"wishbone": "Wishbone", "axil": "AXI4-Lite", "memory": "select, address and data"}
+# Words for ROLE=port. select is high until the answer, strobe for one clock; read and write beside neither are both.
+ROLES = {"select": "stb", "strobe": "strobe", "read": "re", "write": "we", "address": "adr", "enables": "sel",
+         "wdata": "wdata", "rdata": "rdata", "ack": "ack", "error": "err", "clock": "clock", "reset": "reset",
+         "resetn": "resetn", "interrupt": "interrupt", "pin": ""}
+NEEDED = {"memory": ["stb", "we", "adr", "wdata", "rdata"], "wishbone": ["cyc", "stb", "we", "wdata", "rdata", "ack"],
+          "axil": [n for n in AXI if not n.endswith("prot")], "own": ["we", "wdata", "rdata"]}
+BUSES = {"wishbone": "Wishbone", "axil": "AXI4-Lite", "memory": "select, address and data", "own": "a bus of its own"}
 SLOT = """    input  wire        clk_i,
     input  wire        rst_i,
     // register bus
@@ -48,9 +56,34 @@ def fail(text):
     sys.exit("new-foreign: " + text)
 
 
+def is_vhdl(file):
+    return file.endswith((".vhd", ".vhdl"))
+
+
+def text_of(file):
+    with open(file, errors="replace") as f:
+        return f.read()
+
+
+def converted(top, files, work):
+    """The entity `top` as one file of Verilog."""
+    out = os.path.join(work, top + ".v")
+    run = subprocess.run([os.path.join(HERE, "../cmake/vhdl_to_verilog.sh"), os.environ.get("GHDL", "ghdl"), work, top, out] + files,
+                         capture_output=True, text=True)
+    if run.returncode:
+        fail(f"GHDL does not convert {top}:\n{run.stdout}{run.stderr}".rstrip())
+    return [out]
+
+
 def read_module(top, files):
     """The module `top` as Yosys has it: its ports in order, and the names of its parameters."""
+    kind, flags = ("entity", re.I) if is_vhdl(files[0]) else ("module", 0)
+    there = [m for f in files for m in re.findall(rf"^\s*{kind}\s+(\w+)", text_of(f), re.M | flags)]
+    if top not in there:
+        fail(f"there is no {kind} '{top}' in FILES; there is {', '.join(there) or 'none'}")
     with tempfile.TemporaryDirectory() as work:
+        if kind == "entity":
+            files = converted(top, files, work)
         out = os.path.join(work, "top.json")
         folders = " ".join("-I" + d for d in sorted({os.path.dirname(f) for f in files}))
         run = subprocess.run(["yosys", "-q", "-p", f"read_verilog -defer {folders} {' '.join(files)}; hierarchy -top {top}; "
@@ -68,17 +101,64 @@ def role(name, port, bus):
     if port["direction"] == "input" and CLOCKS & set(tokens):
         return "clock"
     if port["direction"] == "input" and RESETS & set(tokens):
-        return "reset"
+        return "resetn" if re.search(r"((rst|reset)n|_n|nrst)(_i)?$", name.lower()) else "reset"
     if bus == "memory":
         found = [MEMORY[base]] if (base := re.sub(r"^[io]_|_[io]$", "", name.lower())) in MEMORY else []
     elif bus == "axil":
         found = [t for t in tokens if t in AXI]
-    else:
+    elif bus == "wishbone":
         is_bus = "wb" in tokens or len(tokens) <= 2
         found = [WISHBONE[port["direction"]][t] for t in tokens if is_bus and t in WISHBONE[port["direction"]]]
+    else:
+        found = []
     if found:
         return found[0]
     return "interrupt" if port["direction"] == "output" and INTERRUPTS & set(tokens) else ""
+
+
+def roles_of(top, bus, ports, given):
+    """Each port's role; `given` is ROLE=port."""
+    roles = {n: role(n, p, bus) for n, p in ports.items()}
+    for word in given:
+        what, port = word.split("=", 1)
+        if what not in ROLES:
+            fail(f"PORTS: '{what}' is none of {', '.join(ROLES)}")
+        if port not in ports:
+            fail(f"PORTS: {top} has no port '{port}': {', '.join(ports)}")
+        is_answer_role = ROLES[what] in ("rdata", "ack", "err", "interrupt")
+        if ROLES[what] and is_answer_role != (ports[port]["direction"] == "output"):
+            fail(f"PORTS: {what} is an {'output' if is_answer_role else 'input'} of a core, and '{port}' is not")
+        roles[port] = ROLES[what]
+    missing = [r for r in NEEDED[bus] + ["clock"] if r not in roles.values()]
+    if missing:
+        say = {v: k for k, v in ROLES.items()} if bus == "own" else {}
+        fail(f"{top} has no port for {', '.join(say.get(m, m) for m in missing)}: {', '.join(ports)}"
+             + ("; say which by PORTS='write=port ...'" if bus == "own" else ""))
+    if "strobe" in roles.values() and "ack" not in roles.values():
+        fail("PORTS: a strobe of one clock needs an ack; what answers in the same clock has select")
+    return roles
+
+
+def names_of(top, files, bits):
+    """Names of the core's words by their addresses: the constants of the file with `top` that are as wide as its
+    address. KEY0 and KEY7 at a distance of 7 stand for those between, too."""
+    text = next((t for t in map(text_of, files) if re.search(rf"^\s*module\s+{top}\b", t, re.M)), "")
+    text = re.sub(r"//.*", "", text)
+    base = {"h": 16, "d": 10, "b": 2}
+    found = [(n, int(digits, base[b.lower()])) for part in re.findall(r"\blocalparam\b([^;]*);", text)
+             for n, b, digits in re.findall(rf"(\w+)\s*=\s*{bits}'([hdb])([0-9a-fA-F_]+)", part, re.I)]
+    if len(found) < 2 or len({v for _, v in found}) < len(found):
+        return {}
+    prefix = os.path.commonprefix([n for n, _ in found])
+    prefix = prefix[:prefix.rfind("_") + 1]
+    names = {v: n[len(prefix):].upper() for n, v in found}
+    for value, name in list(names.items()):
+        word, first = re.fullmatch(r"(.*?)(\d*)", name).groups()
+        for last, other in [(v, n) for v, n in names.items() if v > value]:
+            if first and re.fullmatch(rf"{word}\d+", other) and int(other[len(word):]) - int(first) == last - value:
+                names.update({value + i: f"{word}{int(first) + i}" for i in range(last - value)})
+    return {v: ("CORE_" + n if n in ("ID", "EVENT", "MASK", "PAGE") or not n[0].isalpha() else n)
+            for v, n in sorted(names.items())}
 
 
 def pin_name(name, port):
@@ -92,34 +172,38 @@ def vector(width):
 
 
 def address(signal, port):
-    """Connection of an address: byte addresses where the port has bits of them, else a register for each address."""
+    """Connection of an address, and the bits that count words: byte addresses where the port has bits of them, else a
+    word for each address."""
     width, lsb = len(port["bits"]), port.get("offset", 0)
     if lsb == 0 and signal == "adr" and width < 16:
-        return f"adr[{width + 1}:2]", 1 << width
-    return f"{signal}[{width + lsb - 1}:{lsb}]", 1 << max(0, width + lsb - 2)
+        return f"adr[{width + 1}:2]", width
+    return f"{signal}[{width + lsb - 1}:{lsb}]", max(0, width + lsb - 2)
 
 
 def write_verilog(name, top, bus, ports, roles, parameters):
     by_role = {r: (n, p) for n, p in ports.items() if (r := roles[n])}
-    registers, connections, extra, interrupts = 8, [], [], []
+    word_bits, data_width, connections, extra, interrupts = 0, 32, [], [], []
     adr_bits = 6
+    # Without a select, read and write are strobes.
+    strobes = {} if {"stb", "strobe"} & set(by_role) else {"we": "stb && we", "re": "stb && !we"}
     for n, p in ports.items():
         width, r = len(p["bits"]), roles[n]
         if r == "clock":
             to = "clk_i"
-        elif r == "reset":
-            to = "!rst_i" if re.search(r"((rst|reset)n|_n|nrst)(_i)?$", n.lower()) else "rst_i"
+        elif r in ("reset", "resetn"):
+            to = "rst_i" if r == "reset" else "!rst_i"
+        elif bus == "own" and r in ("strobe", "re", "we"):
+            to = strobes.get(r, {"strobe": "stb", "re": "!we"}.get(r, r))
         elif r == "interrupt":
             to = f"interrupt_{len(interrupts)}"
             interrupts.append(to)
         elif r in ("adr", "awaddr", "araddr"):
-            to, count = address(r, p)
-            registers = min(registers, count)
+            to, word_bits = address(r, p)
             adr_bits = max(adr_bits, int(re.search(r"\[(\d+):", to).group(1)) + 1)
         elif r in ("wdata", "sel", "wstrb") and width < {"wdata": 32, "sel": 4, "wstrb": 4}[r]:
             to = f"{r}[{width - 1}:0]"
         elif r == "rdata":
-            to = "rdata" if width == 32 else f"rdata[{width - 1}:0]"
+            to, data_width = "rdata" if width == 32 else f"rdata[{width - 1}:0]", width
             if width < 32:
                 extra.append(f"    assign rdata[31:{width}] = {32 - width}'d0;")
         elif r:
@@ -129,7 +213,7 @@ def write_verilog(name, top, bus, ports, roles, parameters):
         connections.append(f".{n}({to})")
     widths = {"adr": adr_bits, "sel": 4, "wdata": 32, "rdata": 32, "awaddr": adr_bits, "araddr": adr_bits, "wstrb": 4,
               "bresp": 2, "rresp": 2, "awprot": 3, "arprot": 3}
-    answers = {"ack": "stb"} if bus == "memory" else {}
+    answers = {"ack": "stb"} if bus in ("memory", "own") else {}
     signals = AXI if bus == "axil" else ["cyc", "stb", "we", "adr", "sel", "wdata", "rdata", "ack", "err", "rty", "stall"]
     wires = "\n".join(f"    wire {vector(widths.get(s, 1))}{s}{'' if s in by_role or not is_answer(s) else ' = ' + answers.get(s, zero(widths, s))};"
                       for s in signals)
@@ -138,7 +222,7 @@ def write_verilog(name, top, bus, ports, roles, parameters):
     pins = [(pin_name(n, p), p) for n, p in ports.items() if not roles[n]]
     pin_ports = "".join(f",\n    {p['direction']:6} wire {vector(len(p['bits']))}{n}" for n, p in pins)
     levels = " #(.ARST_LVL(1'b1))" if "ARST_LVL" in parameters else ""
-    pipelined = ", .PIPELINED(1)" if "stall" in by_role else ""
+    pipelined = ", .PIPELINED(1)" if {"stall", "strobe"} & set(by_role) else ""
     irq = " || ".join(interrupts) or "1'b0"
     unused = ", ".join(s for s in signals if not is_answer(s))
     adapter_module = "bus_to_axi4lite" if bus == "axil" else "bus_to_wishbone"
@@ -168,7 +252,7 @@ module {name} (
 {chr(10).join(extra)}{chr(10) if extra else ""}    wire unused = &{{1'b0, {unused}, 1'b0}};
 endmodule
 """
-    return text, registers, pins
+    return text, word_bits, adr_bits, data_width, pins
 
 
 def is_answer(signal):
@@ -179,19 +263,22 @@ def zero(widths, signal):
     return f"{widths.get(signal, 1)}'d0"
 
 
-def description(name, top, bus, registers, pins):
+def description(name, top, bus, words, adr_bits, data_width, pins):
+    """*.regs.json; `words` are the names of the core's words by their addresses."""
     letters = (name.replace("_", "") + "x").upper()
-    lines = [{"word": 3, "name": "PAGE", "access": "rw", "doc": "byte address in the core of word 8"}]
-    lines += [{"word": 8 + r, "name": f"REG{r}", "access": "rw", "doc": f"the core's register {r}, at PAGE + {4 * r}"}
-              for r in range(registers)]
+    width = {} if data_width >= 32 else {"width": data_width}
+    registers = [{"word": 3, "name": "PAGE", "access": "rw", "doc": "byte address in the core of word 8", "fields": [
+        {"name": "ADDRESS", "lsb": 0, "width": adr_bits, "doc": "a multiple of 32"}]}]
+    registers += [{"word": 8 + a % 8, "page": a // 8 * 32, "name": n, "access": "rw", **width,
+                   "doc": f"at {4 * a:#x} in the core"} for a, n in words.items()]
     return {"block": name, "doc": f"The third-party core {top}, by {BUSES[bus]}.",
             "type": f"0x{ord(letters[0]):02X}{ord(letters[1]):02X}", "version": "0x0100",
-            "pins": [{"name": n, "width": len(p["bits"])} for n, p in pins], "registers": lines,
+            "pins": [{"name": n, "width": len(p["bits"])} for n, p in pins], "registers": registers,
             "events": [{"name": "CORE", "bit": 0, "doc": "the core's interrupt line was high"},
                        {"name": "TIMEOUT", "bit": 1, "doc": "the core did not answer"}]}
 
 
-def test_of(name):
+def test_of(name, first):
     suite = "".join(w.capitalize() for w in name.split("_"))
     return f"""// SPDX-License-Identifier: MIT
 //
@@ -208,8 +295,8 @@ namespace {{
 TEST({suite}, IsInItsSlotAndAnswers) {{
     CoreSlot<V{name}_slot> slot;
     EXPECT_EQ(slot.bus_.read(0), {name.upper()}_ID_VALUE);
-    slot.bus_.write({name.upper()}_PAGE, 0);
-    auto answer = slot.bus_.transfer(false, {name.upper()}_REG0, 0);
+    slot.bus_.write({name.upper()}_PAGE, {name.upper()}_{first}_PAGE);
+    auto answer = slot.bus_.transfer(false, {name.upper()}_{first}, 0);
     EXPECT_FALSE(answer.error);
     EXPECT_EQ(slot.bus_.read(1) & {name.upper()}_EVENT_TIMEOUT_MASK, 0u);
 }}
@@ -218,42 +305,77 @@ TEST({suite}, IsInItsSlotAndAnswers) {{
 """
 
 
+def ground_of(name, folder, first):
+    slice_folder = os.path.relpath(os.path.join(HERE, "../sw/hw/registers"), folder)
+    return f'''# SPDX-License-Identifier: MIT
+\"""{name}'s part of a mission: its registers are listed, and one is read.\"""
+import os
+
+
+def slices(folder):
+    return [os.path.join(folder, "{slice_folder}/Registers.ice")]
+
+
+def fly(log, proxy, report):
+    import Hw  # made by loadSlice
+
+    core = Hw.RegistersPrx.checkedCast(proxy("{name}"))
+    registers = log.call("ground -> UAV", "{name}.list()", core.list)
+    log.say("{name}: " + " ".join(r.name for r in registers))
+    value = log.call("ground -> UAV", "{name}.get({first})", lambda: core.get("{first}"))
+    log.say("{name}: {first} is 0x%X" % value)
+'''
+
+
 def main(words):
     if len(words) < 5:
-        sys.exit("usage: make new-foreign NAME=my_uart TOP=module BUS=wishbone|axil|memory FILES='a.v b.v'")
-    name, top, bus, folder, *files = words
+        sys.exit("usage: make new-foreign NAME=my_uart TOP=module BUS=wishbone|axil|memory|own FILES='a.v b.v' [PORTS='write=we ...']")
+    name, top, bus, folder, *rest = words
+    given, files = [w for w in rest if "=" in w], [w for w in rest if "=" not in w]
     if bus not in NEEDED:
-        fail(f"BUS is wishbone, axil or memory, not '{bus}'")
+        fail(f"BUS is {', '.join(NEEDED)}, not '{bus}'")
     if not re.fullmatch(r"[a-z][a-z0-9]+(_[a-z0-9]+)*", name) or name == top:
         fail(f"'{name}': words of small letters and digits, joined by _, and not the module's own name")
+    if not re.fullmatch(r"[A-Za-z_]\w*", top):
+        fail(f"TOP is the name of a module or an entity, not '{top}'")
     if os.path.exists(folder):
         fail(f"{folder} is there already")
     files = [os.path.abspath(f) for f in files]
     for f in files:
-        if not f.endswith(".v") or not os.path.isfile(f):
-            fail(f"there is no Verilog file '{f}'")
+        if " " in f or not f.endswith((".v", ".vhd", ".vhdl")) or not os.path.isfile(f):
+            fail(f"there is no Verilog or VHDL file '{f}' (in whose name no space may be: makefiles have none)")
+    if not files or len({is_vhdl(f) for f in files}) > 1:
+        fail("FILES are all Verilog or all VHDL, and at least one")
     ports, parameters = read_module(top, files)
     two_way = [n for n, p in ports.items() if p["direction"] == "inout"]
     if two_way:
         fail(f"{top} has the inout port '{two_way[0]}': tri-states belong to the chip's pads; take a top without")
-    roles = {n: role(n, p, bus) for n, p in ports.items()}
-    missing = [r for r in NEEDED[bus] + ["clock"] if r not in roles.values()]
-    if missing:
-        fail(f"{top} has no port for {', '.join(missing)}: {', '.join(ports)}")
-    verilog, registers, pins = write_verilog(name, top, bus, ports, roles, parameters)
+    roles = roles_of(top, bus, ports, given)
+    verilog, word_bits, adr_bits, data_width, pins = write_verilog(name, top, bus, ports, roles, parameters)
+    words = names_of(top, files, word_bits) or {a: f"REG{a}" for a in range(min(8, 1 << word_bits))}
+    first = next(iter(words.values()))
+    if is_vhdl(files[0]):
+        build = (f"icesoc_vhdl(NAME {top} SOURCES\n  " + "\n  ".join(files) + ")\n"
+                 f"icesoc_core({name} REGS {name}.regs.json FLAGS -Wno-lint -Wno-style DEPENDS {top}_verilog\n"
+                 f"  VERILOG {name}.v ${{GEN_DIR}}/{top}.v)\n")
+    else:
+        build = (f"icesoc_core({name} REGS {name}.regs.json FLAGS -Wno-lint -Wno-style "
+                 + " ".join("-I" + d for d in sorted({os.path.dirname(f) for f in files})) + f"\n  VERILOG {name}.v "
+                 + "\n  ".join(files) + ")\n")
+    registers = description(name, top, bus, words, adr_bits, data_width, pins)
     os.makedirs(folder)
-    for file, text in ((f"{name}.v", verilog), (f"{name}_test.cpp", test_of(name)),
-                       (f"{name}.regs.json", json.dumps(description(name, top, bus, registers, pins), indent=2) + "\n"),
-                       ("CMakeLists.txt", "# SPDX-License-Identifier: MIT\n"
-                        f"icesoc_core({name} REGS {name}.regs.json FLAGS -Wno-lint -Wno-style "
-                        + " ".join("-I" + d for d in sorted({os.path.dirname(f) for f in files})) + f"\n  VERILOG {name}.v "
-                        + "\n  ".join(files) + ")\n")):
+    for file, text in ((f"{name}.v", verilog), (f"{name}_test.cpp", test_of(name, first)),
+                       (f"{name}.regs.json", json.dumps(registers, indent=2) + "\n"),
+                       ("ground.py", ground_of(name, folder, first)),
+                       ("CMakeLists.txt", "# SPDX-License-Identifier: MIT\n" + build)):
         with open(os.path.join(folder, file), "w") as out:
             out.write(text)
     print(f"{folder}: {' '.join(sorted(os.listdir(folder)))}")
     for n in ports:
         print(f"  {n}: {roles[n] or 'pin ' + pin_name(n, ports[n])}")
-    print(f"Next: look at the ports above; name the registers in {name}.regs.json; make ip-test IP={name}")
+    print(f"  registers: {' '.join(words.values())}")
+    print(f"Next: look at the ports and registers above; make ip-test IP={name}; a line {name} in ip/cores.list; "
+          f"make run CORES={name}")
 
 
 main(sys.argv[1:])

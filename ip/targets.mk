@@ -16,8 +16,10 @@ new-ip: $(BUILD)/build.ninja ## begin a core: NAME=low_pass LANG=verilog|vhdl [I
 TOP ?=
 BUS ?=
 FILES ?=
-new-foreign: ## put a third-party core in Verilog into a slot: NAME=my_uart TOP=its_module BUS=wishbone|axil|memory FILES="a.v b.v"
-	@ip/new_foreign.py '$(NAME)' '$(TOP)' '$(BUS)' 'ip/$(NAME)' $(FILES)
+PORTS ?=
+new-foreign: $(BUILD)/build.ninja ## put a third-party core into a slot: NAME=my_uart TOP=its_module BUS=wishbone|axil|memory|own FILES="a.v b.v" [PORTS="write=we ack=done"]
+	@$(if $(filter %.vhd %.vhdl,$(FILES)),$(NINJA) --quiet ghdl)
+	@GHDL='$(BUILD)/ghdl/ghdl' ip/new_foreign.py '$(NAME)' '$(TOP)' '$(BUS)' 'ip/$(NAME)' $(PORTS) $(FILES)
 .PHONY: new-foreign
 
 FOREIGN := i2c_master axil_uart spi_master
@@ -25,17 +27,21 @@ FOREIGN := i2c_master axil_uart spi_master
 FOREIGN_NEW := foreign_aes=aes=memory=aes foreign_uart=wbuart=wishbone=wbuart32
 foreign_slots = $(foreach f,$(FOREIGN_NEW),$(firstword $(subst =, ,$(f))))
 # Third-party cores come from the network, so they are no part of the rest.
-foreign: setup-tests ## put third-party cores (Wishbone, AXI4-Lite and plain buses in Verilog, records in VHDL) through the recipe and test them; downloads them
+foreign: setup-tests ## put third-party cores (Wishbone, AXI4-Lite and plain buses in Verilog, records in VHDL) through the recipe, test them and call them by radio; downloads them
 	@cmake/fetch.sh foreign build/foreign-cores
 	@rm -rf build/foreign-cores/slots
 	@for f in $(FOREIGN_NEW); do \
 	    echo "$$f" | { IFS='=' read -r slot top bus from; \
 	        ip/new_foreign.py "$$slot" "$$top" "$$bus" "$(CURDIR)/build/foreign-cores/slots/$$slot" $(CURDIR)/build/foreign-cores/"$$from"/*.v >/dev/null; } || exit 1; \
 	done
-	@cmake -S . -B build/foreign -G Ninja -DROOMS="bus;slice;sw;hdl;ip;testbench" -DFOREIGN_CORES='$(CURDIR)/build/foreign-cores' \
+	@cmake -S . -B build/foreign -G Ninja -DROOMS="bus;slice;sw;hdl;ip;testbench" -DCLK_HZ=2000000 \
+	    -DCORES='$(CURDIR)/examples/foreign/cores.list' -DFOREIGN_CORES='$(CURDIR)/build/foreign-cores' \
 	    -DCORE_FOLDERS='$(subst $(eval ) ,;,$(FOREIGN:%=$(CURDIR)/examples/foreign/%) $(foreign_slots:%=$(CURDIR)/build/foreign-cores/slots/%))' >/dev/null
-	@ninja -C build/foreign -j $(JOBS) --quiet $(FOREIGN:%=test_ip_%) $(foreign_slots:%=test_ip_%)
+	@ninja -C build/foreign -j $(JOBS) --quiet $(FOREIGN:%=test_ip_%) $(foreign_slots:%=test_ip_%) vehicle
 	@ctest --test-dir build/foreign --output-on-failure --no-tests=error -R '^test_ip_($(subst $(eval ) ,|,$(FOREIGN) $(foreign_slots)))[.]'
+	@build/foreign/testbench/sim/icesoc-sim --size 96x64 --image $(IMAGE) --out build/foreign/flight --guard 20 -- \
+	    /usr/bin/python3 examples/foreign/call.py '{device}' '{guard}' '{status}' build/foreign/ground/xbeeat:createXBeeAT \
+	    sw/hw/registers/Registers.ice
 .PHONY: foreign
 
 # Folders of cores outside of ip/, separated by ;: the build folder keeps them. CORE_FOLDERS=none: none from now on.

@@ -32,6 +32,8 @@ struct Core {
     std::vector<Pin> pins;
     std::string constraints; // <folder>.ucf beside its description, or nothing
     bool hasClock = false;   // the module has the parameter CLK_HZ
+    // Without a servant of its own it has the one of sw/hw/registers.
+    bool isGeneric() const { return servantType.empty(); }
 };
 
 struct Chip {

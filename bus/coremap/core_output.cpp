@@ -158,30 +158,43 @@ std::string constraintsOf(const Chip& chip) {
     return s;
 }
 
+// The C of one core's servant: its own, or the one that any core's registers have.
+static std::string servantOf(const Core& c) {
+    std::string table, init = c.servantType, arguments = "MAP_MEMORY_" + upper(c.name);
+    if (c.isGeneric()) {
+        std::string block = upper(c.folder);
+        table = fmt::format("static const Hw_Register core_{}_table[] = {{{}_TABLE}};\n", c.name,
+                            block);
+        init = "Hw_Registers_Core";
+        arguments = fmt::format("{0}_ID_VALUE, core_{1}_table,\n        "
+                                "(Ice_Int)(sizeof core_{1}_table / sizeof core_{1}_table[0])",
+                                block, c.name);
+    }
+    return fmt::format("\n{4}static {0} {1};\n"
+                       "static Hw_Status {1}_start(const Hw_Port *port, void *context) {{\n"
+                       "    return {0}_init(&{1}, MAP_SLOT_{2}, {3}, port, context);\n}}\n"
+                       "static void {1}_interrupt(void) {{\n    {0}_interrupt(&{1});\n}}\n"
+                       "static U32 {1}_poll(U32 nowMs) {{\n    return {0}_poll(&{1}, nowMs);\n}}\n",
+                       init, "core_" + c.name, upper(c.name), arguments, table);
+}
+
 std::string instancesOf(const Chip& chip) {
     std::string s = "/* Generated from ip/cores.list: do not edit.\n"
                     " * The firmware's cores: what hw_instance.h declares. */\n"
                     "#include \"hw_instance.h\"\n#include \"map_regs.h\"\n",
-                table;
+                servants, table;
     std::set<std::string> headers;
-    for (const Core& c : chip.cores)
-        if (!c.servantType.empty())
-            headers.insert(c.servantHeader);
-    for (const std::string& h : headers)
-        s += fmt::format("#include \"{}\"\n", h);
     for (const Core& c : chip.cores) {
-        if (c.servantType.empty())
-            continue;
-        s += fmt::format(
-            "\nstatic {0} {1};\n"
-            "static Hw_Status {1}_start(const Hw_Port *port, void *context) {{\n"
-            "    return {0}_init(&{1}, MAP_SLOT_{2}, MAP_MEMORY_{2}, port, context);\n}}\n"
-            "static void {1}_interrupt(void) {{\n    {0}_interrupt(&{1});\n}}\n"
-            "static U32 {1}_poll(U32 nowMs) {{\n    return {0}_poll(&{1}, nowMs);\n}}\n",
-            c.servantType, "core_" + c.name, upper(c.name));
+        headers.insert(c.isGeneric() ? c.folder + "_regs.h" : c.servantHeader);
+        if (c.isGeneric())
+            headers.insert("hw_registers.h");
+        servants += servantOf(c);
         table += fmt::format("    {{\"{0}\", MAP_SLOT_{1}, (Ice_ObjectPtr)&{2}.servant, {2}_start, "
                              "{2}_interrupt, {2}_poll}},\n",
                              c.identity, upper(c.name), "core_" + c.name);
     }
-    return s + "\nconst Hw_Instance hw_instances[] = {\n" + table + "    {0, 0, 0, 0, 0, 0}};\n";
+    for (const std::string& h : headers)
+        s += fmt::format("#include \"{}\"\n", h);
+    return s + servants + "\nconst Hw_Instance hw_instances[] = {\n" + table +
+           "    {0, 0, 0, 0, 0, 0}};\n";
 }

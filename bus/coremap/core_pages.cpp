@@ -66,12 +66,14 @@ std::string svdAccess(const std::string& access) {
 }
 
 std::string svdRegister(const json& r) {
-    std::string access = r.at("access"), s;
+    std::string access = r.at("access"), s, group;
+    if (int page = r.value("page", -1); page >= 0)
+        group = fmt::format("          <alternateGroup>PAGE_0x{:X}</alternateGroup>\n", page);
     s += fmt::format(
         "        <register>\n          <name>{}</name>\n          <description>{}</description>\n"
-        "          <addressOffset>0x{:X}</addressOffset>\n          <access>{}</access>\n",
-        r.at("name").get<std::string>(), escaped(r.at("doc")), 4 * r.at("word").get<unsigned>(),
-        svdAccess(access));
+        "{}          <addressOffset>0x{:X}</addressOffset>\n          <access>{}</access>\n",
+        r.at("name").get<std::string>(), escaped(r.at("doc")), group,
+        4 * r.at("word").get<unsigned>(), svdAccess(access));
     if (access == "w1c")
         s += "          <modifiedWriteValues>oneToClear</modifiedWriteValues>\n";
     json fields = r.value("fields", json::array());
@@ -95,9 +97,11 @@ std::string htmlBlock(const Slot& slot) {
                     "<table>\n<tr><th>word<th>register<th>access<th>bits<th>meaning\n",
                     slot.name, escaped(slot.description.at("doc")), slot.number, slot.address);
     for (const json& r : registersOf(slot.description)) {
-        s += fmt::format("<tr><td>{}<td><b>{}</b><td>{}<td><td>{}\n", r.at("word").get<unsigned>(),
-                         r.at("name").get<std::string>(), r.at("access").get<std::string>(),
-                         escaped(r.at("doc")));
+        int page = r.value("page", -1);
+        s += fmt::format(
+            "<tr><td>{}{}<td><b>{}</b><td>{}<td><td>{}\n", r.at("word").get<unsigned>(),
+            page < 0 ? "" : fmt::format(", PAGE 0x{:X}", page), r.at("name").get<std::string>(),
+            r.at("access").get<std::string>(), escaped(r.at("doc")));
         for (const json& f : r.value("fields", json::array())) {
             unsigned lsb = f.at("lsb"), width = f.at("width");
             s += fmt::format("<tr><td><td>{}<td><td>{}<td>{}\n", f.at("name").get<std::string>(),

@@ -27,8 +27,9 @@ struct Field {
 };
 struct Register {
     std::string name, access, doc;
-    unsigned word = 0;
-    std::vector<Field> fields;
+    unsigned word = 0, width = 32;
+    int page = -1; // what PAGE is to be for it: a byte address in a core behind an adapter
+    std::vector<Field> fields{};
 };
 struct Constant {
     std::string name, doc;
@@ -58,14 +59,14 @@ void check(bool ok, const std::string& what) {
 
 // Adds the words every slot begins with: who it is, its sticky events, their mask.
 void addCommonWords(Block& b, const json& j) {
-    Register event{"EVENT", "w1c", "sticky events; write 1 to clear", 1, {}};
-    Register mask{"MASK", "rw", "1: the event drives the interrupt line", 2, {}};
+    Register event{"EVENT", "w1c", "sticky events; write 1 to clear", 1};
+    Register mask{"MASK", "rw", "1: the event drives the interrupt line", 2};
     for (const json& e : j.value("events", json::array())) {
         Field f{e.at("name"), e.at("doc"), e.at("bit").get<unsigned>(), 1};
         event.fields.push_back(f);
         mask.fields.push_back(f);
     }
-    Register id{"ID", "ro", "type and version of the slot", 0, {}};
+    Register id{"ID", "ro", "type and version of the slot", 0};
     id.fields = {{"VERSION", "major and minor, 8 bits each", 0, 16}, {"TYPE", "type id", 16, 16}};
     b.constants.push_back(
         {"ID_VALUE", "what word ID reads", number(j.at("type")) << 16 | number(j.at("version"))});
@@ -73,11 +74,15 @@ void addCommonWords(Block& b, const json& j) {
 }
 
 void checkRegisters(const Block& b) {
-    std::set<unsigned> words;
+    std::set<std::pair<unsigned, int>> words;
     for (const Register& r : b.registers) {
         static const std::set<std::string> accesses = {"ro", "rw", "w1c", "ws"};
         check(r.word < wordsPerSlot, fmt::format("{}: word {} is not in 0..15", r.name, r.word));
-        check(words.insert(r.word).second, fmt::format("{}: word {} is taken", r.name, r.word));
+        check(words.insert({r.word, r.page}).second && (r.page < 0 || !words.count({r.word, -1})),
+              fmt::format("{}: word {} is taken", r.name, r.word));
+        check(r.page < 0 || (r.word >= 8 && r.page % 32 == 0),
+              fmt::format("{}: only words 8..15 have a page, a multiple of 32", r.name));
+        check(r.width > 0 && r.width <= 32, fmt::format("{}: its width is 1..32 bits", r.name));
         check(accesses.count(r.access),
               fmt::format("{}: access '{}' is not one of ro rw w1c ws", r.name, r.access));
         unsigned long used = 0;
@@ -101,7 +106,9 @@ Block parse(const json& j) {
     for (const json& c : j.value("constants", json::array()))
         b.constants.push_back({c.at("name"), c.at("doc"), number(c.at("value"))});
     for (const json& r : j.at("registers")) {
-        Register out{r.at("name"), r.at("access"), r.at("doc"), r.at("word").get<unsigned>(), {}};
+        Register out{r.at("name"),          r.at("access"),
+                     r.at("doc"),           r.at("word").get<unsigned>(),
+                     r.value("width", 32u), r.value("page", -1)};
         for (const json& f : r.value("fields", json::array()))
             out.fields.push_back({f.at("name"), f.at("doc"), f.at("lsb").get<unsigned>(),
                                   f.at("width").get<unsigned>()});
@@ -130,6 +137,22 @@ std::string verilog(const Block& b) {
     return s + "// verilator lint_on UNUSEDPARAM\n";
 }
 
+// Registers and fields as initialisers of Hw_Register (sw/hw/registers).
+std::string table(const Block& b) {
+    std::string s = fmt::format("\n#define {}_TABLE", b.prefix);
+    auto entry = [&](const Register& r, const std::string& name, unsigned lsb, unsigned width) {
+        s += fmt::format(" \\\n    {{{{{}, \"{}\"}}, Hw_{}, {}, {}, {}, {}}},", name.size(), name,
+                         r.access, r.word, lsb, width, r.page);
+    };
+    for (const Register& r : b.registers) {
+        entry(r, r.name, 0, r.width);
+        for (const Field& f : r.fields)
+            entry(r, r.name + "." + f.name, f.lsb, f.width);
+    }
+    s.back() = '\n'; // C90 has no comma there
+    return s;
+}
+
 std::string cHeader(const Block& b) {
     std::string s = fmt::format("/* Generated from {0}.regs.json: do not edit.\n * {1} */\n"
                                 "#ifndef {2}_REGS_H\n#define {2}_REGS_H\n\n",
@@ -139,12 +162,16 @@ std::string cHeader(const Block& b) {
     for (const Register& r : b.registers) {
         s += fmt::format("\n#define {}_{} {}U /* {}: {} */\n", b.prefix, r.name, r.word, r.access,
                          r.doc);
+        if (r.page >= 0)
+            s += fmt::format("#define {}_{}_PAGE 0x{:X}U\n", b.prefix, r.name, r.page);
         for (const Field& f : r.fields)
             s += fmt::format("#define {0}_{1}_{2}_LSB {3}U /* {4} */\n"
                              "#define {0}_{1}_{2}_MASK 0x{5:X}U\n",
                              b.prefix, r.name, f.name, f.lsb, f.doc,
                              ((1ul << f.width) - 1) << f.lsb);
     }
+    if (b.isSlot)
+        s += table(b);
     return s + "\n#endif\n";
 }
 
@@ -177,7 +204,9 @@ std::string markdown(const Block& b) {
     if (!b.registers.empty())
         s += "\n| word | register | access | bits | meaning |\n|---|---|---|---|---|\n";
     for (const Register& r : b.registers) {
-        s += fmt::format("| {} | **{}** | {} | | {} |\n", r.word, r.name, r.access, r.doc);
+        s += fmt::format("| {}{} | **{}** | {} | {} | {} |\n", r.word,
+                         r.page < 0 ? "" : fmt::format(", PAGE 0x{:X}", r.page), r.name, r.access,
+                         r.width < 32 ? fmt::format("{}..0", r.width - 1) : "", r.doc);
         for (const Field& f : r.fields)
             s += fmt::format("| | {} | | {} | {} |\n", f.name,
                              f.width == 1 ? fmt::format("{}", f.lsb)

@@ -26,7 +26,7 @@ public:
         top.bus_valid_i = 1;
         uint64_t start = bench_.cycles();
         bench_.waitFor([&] { return top.bus_ready_o; },
-                       "bus_ready_o at word " + std::to_string(word), 64);
+                       "bus_ready_o at word " + std::to_string(word), slowest);
         Answer answer{top.bus_rdata_o, bool(top.bus_error_o),
                       static_cast<unsigned>(bench_.cycles() - start + 1)};
         bench_.tick();
@@ -38,6 +38,7 @@ public:
     void write(unsigned word, uint32_t data) { transfer(true, word, data); }
 
 private:
+    static constexpr unsigned slowest = 256; // clocks: an adapter's TIMEOUT and one (docs/bus.md)
     Bench<Module>& bench_;
 };
 

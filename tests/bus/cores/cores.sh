@@ -19,12 +19,12 @@ chip() { # name, the list: the chip in $work/name
 }
 accepted() {
     chip "$@" || { cat "$out/messages" && fail "refused: $2"; }
-    "$regmap" "$out/map.regs.json" --output-dir "$out"
+    for regs in "$out/map.regs.json" "$data"/*.regs.json; do "$regmap" "$regs" --output-dir "$out"; done
     # shellcheck disable=SC2086 # a list of folders
     verilator --lint-only -Wall -I"$out" $(for f in "$out" "$data" "$source"/bus "$source"/hdl/* "$gen"; do [ ! -d "$f" ] || echo "-y $f"; done) \
         -I"$gen" --top-module soc "$source/hdl/soc.v"
     gcc -std=c90 -pedantic -Wall -Wextra -Wmissing-prototypes -Werror -fsyntax-only -I"$out" -I"$data" -I"$source/sw/hw" \
-        -I"$source/sw/icec" -I"$source/sw/base" "$out/soc_cores.c"
+        -I"$source/sw/hw/registers" -I"$gen/slice/Registers" -I"$source/sw/icec" -I"$source/sw/base" "$out/soc_cores.c"
 }
 refused() { # words of the message, the list
     ! chip refused "$2" || fail "accepted: $2"
@@ -61,6 +61,8 @@ address=$(xmllint --xpath 'string(//peripheral[name="CAMERA"]/baseAddress)' "$ou
 xmllint --html --noout "$out/registers.html" 2>"$work/html" || { cat "$work/html" && fail 'registers.html'; }
 is PIN_CAMERA_SEEN_O 0xB
 grep -q '"eye"' "$out/soc_cores.c" || fail 'the identity is not in the table'
+grep -q '{"camera", MAP_SLOT_CAMERA, .*core_camera_start' "$out/soc_cores.c" && grep -q 'core_camera_table\[\] = {MOVER_TABLE}' "$out/soc_cores.c" ||
+    fail 'a core without a servant has not that of its registers'
 accepted pins 'led name=eye button_i=@A4\nmover seen_o=@B1 level_o=@C1,C2,C3,C4,C5,C6,C7,C8,C9\n'
 grep -qx '    {"eye.button_i", 0, 1, false},' "$out/soc_pins.h" || fail 'the pin is not in the table'
 grep -qx 'NET "core_pins_i<0>" LOC = "A4"; # eye.button_i\[0\]' "$out/core_pins.ucf" || fail 'the place is not in the constraints'

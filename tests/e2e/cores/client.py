@@ -12,6 +12,7 @@ for file in files:
     Ice.loadSlice("", [file])
 import Cores  # noqa: E402
 import Demo  # noqa: E402
+import Hw  # noqa: E402
 
 
 def expect(what, value, wanted):
@@ -69,6 +70,27 @@ with Ice.initialize(data) as ic:
             break
     servo.clear()
     expect("servo.fault after clear", servo.fault(), False)
+
+    # Third-party cores, whose interface are their registers.
+    port = Hw.RegistersPrx.checkedCast(ic.stringToProxy("port" + where))
+    expect("port.wait", port.wait(10000), ["CORE"])  # the simulator's script raises the pin
+    expect("port.LEVELS", port.get("LEVELS"), 0x83)
+    expect("port.list", [(r.name, r.word, r.width) for r in port.list() if r.access == Hw.Access.rw and r.page == 0],
+           [("LEVELS", 8, 8), ("DRIVEN", 9, 8)])
+    port.set("DRIVEN", 0x5A)
+    expect("port.DRIVEN", port.get("0x4"), 0x5A)
+    expect("reason", fails(Hw.RegisterError, port.set, "DRIVEN", 256).reason, "DRIVEN takes 0 to 255")
+    waits = port.waitAsync(600000)
+    requests = Hw.RegistersPrx.checkedCast(ic.stringToProxy("my_requests" + where))
+    requests.set("REG2", 0xFFFFFFFF)
+    expect("my_requests.REG2", requests.get("REG2"), 0xFFFFFFFF)
+    for call in (lambda: requests.get("REG3"), lambda: requests.set("REG3", 1)):
+        expect("reason", fails(Hw.RegisterError, call).reason, "REG3: the core does not answer, or refuses the address")
+    expect("my_requests.wait", requests.wait(0), ["TIMEOUT"])
+    lamps = Hw.RegistersPrx.checkedCast(ic.stringToProxy("my_lamps" + where))
+    lamps.set("REG0", 0x1234)
+    expect("my_lamps", [lamps.get("REG0"), lamps.get("REG1"), lamps.get("REG1")], [0x1234, 1, 2])
+    expect("port.wait, still high", waits.result(), ["CORE"])
 
     scaler = Demo.ScalerPrx.checkedCast(ic.stringToProxy("scaler" + where))
     watcher = Watcher()

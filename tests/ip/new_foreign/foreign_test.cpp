@@ -16,10 +16,10 @@ TEST(Wishbone, RegistersReachThePinsAndTheInterruptComesThrough) {
     CoreSlot<Vmy_port_slot> slot;
     auto& top = slot.bench_.top();
     slot.bus_.write(MY_PORT_PAGE, 0);
-    slot.bus_.write(MY_PORT_REG1, 0xA5);
+    slot.bus_.write(MY_PORT_DRIVEN, 0xA5);
     EXPECT_EQ(top.port_out_o, 0xA5);
     top.port_in_i = 0x42;
-    EXPECT_EQ(slot.bus_.read(MY_PORT_REG0), 0x42u);
+    EXPECT_EQ(slot.bus_.read(MY_PORT_LEVELS), 0x42u);
     EXPECT_EQ(slot.bus_.read(1), 0u);
     top.port_in_i = 0x80;
     slot.tick();

@@ -13,11 +13,13 @@ module wb_port (
     input      [7:0] port_in,
     output reg [7:0] port_out
 );
+    localparam [1:0] PORT_LEVELS = 2'd0, // named, as far as make new-foreign is concerned
+                     PORT_DRIVEN = 2'b01;
     assign wb_inta_o = port_in[7];
     always @(posedge wb_clk_i) begin
         wb_ack_o <= wb_stb_i && wb_cyc_i && !wb_ack_o;
-        wb_dat_o <= wb_adr_i == 2'd0 ? port_in : port_out;
-        if (wb_stb_i && wb_cyc_i && wb_we_i && wb_adr_i == 2'd1)
+        wb_dat_o <= wb_adr_i == PORT_LEVELS ? port_in : port_out;
+        if (wb_stb_i && wb_cyc_i && wb_we_i && wb_adr_i == PORT_DRIVEN)
             port_out <= wb_dat_i;
         if (wb_rst_i)
             port_out <= 8'd0;

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * hw_registers: Hw::Registers (Registers.ice) by the registers of a core in a slot; shaped as
+ * slice2c's servants are (docs/hw-mapping.md). The table is <BLOCK>_TABLE of <block>_regs.h.
+ */
+#ifndef HW_REGISTERS_H
+#define HW_REGISTERS_H
+
+#include "Registers.h"
+#include "hw_core.h"
+
+#define HW_REGISTERS_EVENTS 32
+
+typedef struct Hw_Registers_Core {
+    Hw_Registers servant;
+    U32 slot; /* 0..63 */
+    const Hw_Port* port;
+    void* context;
+    const Hw_Register* table;
+    Ice_Int count;
+    volatile U8 came;  /* set by the interrupt: the slot has an event */
+    volatile U8 waits; /* a call of wait is to be answered */
+    U32 deadline;      /* ms, of that call */
+    Ice_Reply reply;
+    Ice_String events[HW_REGISTERS_EVENTS]; /* of its answer */
+    char reason[400];                       /* of the last exception */
+} Hw_Registers_Core;
+
+/* Sets a servant up: takes the slot's events away and masks them. `id` is what the slot's word ID
+ * must read; HW_WRONG_CORE: it reads another. */
+Hw_Status Hw_Registers_Core_init(Hw_Registers_Core* self, U32 slot, U32 id,
+                                 const Hw_Register* table, Ice_Int count, const Hw_Port* port,
+                                 void* context);
+void Hw_Registers_Core_interrupt(Hw_Registers_Core* self);
+U32 Hw_Registers_Core_poll(Hw_Registers_Core* self, U32 nowMs);
+
+#endif

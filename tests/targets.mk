@@ -50,12 +50,14 @@ nightly: setup-tests build ## what a timer runs: seeds that have failed, the reg
 	    ctest --test-dir $(BUILD) -C zeroc -L zeroc -j $(TESTS) --output-on-failure || status=$$?; \
 	    exit $$status
 
-# MOMENTS=1000: as many as a night has; each is drawn from SEED.
+# MOMENTS of each fault are drawn from each of SEEDS seeds, the first of which is SEED. Tools are interrupted for the first.
 MOMENTS ?= 10
-faults: $(BUILD)/build.ninja ## kill, stop and starve each process of a mission at ten moments drawn from a seed (MOMENTS=10 SEED=1 NAME=killed), expect docs/faults.md
+SEEDS   ?= 1
+faults: $(BUILD)/build.ninja ## kill, stop and starve each process of a mission at ten moments drawn from a seed (MOMENTS=10 SEED=1 SEEDS=1 NAME=killed), expect docs/faults.md
 	@$(NINJA) mission clock_step regress utilisation regmaps
 	@[ -n '$(NAME)' ] || SEED=$(SEED) tests/regress/test/interrupted.py . "$(BUILD)" build/faults/interrupted $(MOMENTS) new_ip regress synth
-	@/usr/bin/python3 tests/e2e/mission/faults.py "$(CURDIR)" "$(BUILD)" build/faults --seed $(SEED) --moments $(MOMENTS) --deaths 2 $(if $(NAME),--only '$(NAME)')
+	@/usr/bin/python3 tests/e2e/mission/faults.py "$(CURDIR)" "$(BUILD)" build/faults/missions --seed $(SEED) --seeds $(SEEDS) --moments $(MOMENTS) \
+	    --jobs $(JOBS) --deaths 2 $(if $(NAME),--only '$(NAME)')
 
 proofs: $(BUILD)/build.ninja ## run all formal proofs, print the processor time of all together
 	@$(NINJA) regmaps

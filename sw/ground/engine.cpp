@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <fcntl.h>
 #include <map>
 #include <sys/socket.h>
@@ -167,8 +168,14 @@ int Engine::accept() {
     std::lock_guard<std::mutex> lock(mutex_);
     const int channel = calledChannel();
     int ends[2];
-    if (channel < 0 || !makePair(ends))
+    if (channel < 0)
         return -1;
+    if (!makePair(ends)) { // nobody would answer the UAV
+        log_(0, std::string("the UAV calls, and no socket can be made: ") + std::strerror(errno));
+        end(channel, 1, "is refused");
+        wake();
+        return -1;
+    }
     streams_[channel].accept(ends[0], "the program on channel " + std::to_string(channel));
     wake();
     return ends[1];

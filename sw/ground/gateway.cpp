@@ -37,7 +37,7 @@ constexpr seconds stationPatience{5}; // of the UAV, until the station has accep
 struct Options {
     XBeeAT::Settings serial;
     std::string listen = "127.0.0.1:10000", station, keyFile;
-    int trace = 0, statistics = 0, idle = 60, wait = 30;
+    int trace = 0, statistics = 0, idle = 60, wait = 30, vanished = 30;
 };
 
 struct Address {
@@ -56,7 +56,10 @@ Address resolve(const std::string& text) {
         throw std::runtime_error("'" + text + "': a port is 0 to 65535");
     addrinfo hints{}, *found = nullptr;
     hints.ai_socktype = SOCK_STREAM;
-    int error = getaddrinfo(text.substr(0, colon).c_str(), port.c_str(), &hints, &found);
+    std::string host = text.substr(0, colon);
+    if (host.size() > 2 && host.front() == '[' && host.back() == ']') // as in URLs: [::1]:10000
+        host = host.substr(1, host.size() - 2);
+    int error = getaddrinfo(host.c_str(), port.c_str(), &hints, &found);
     if (error != 0)
         throw std::runtime_error("'" + text + "': " + gai_strerror(error));
     Address address;
@@ -66,9 +69,9 @@ Address resolve(const std::string& text) {
     return address;
 }
 
-// Small buffers, so that back-pressure reaches the program; a peer that has vanished without a word
-// is noticed after half a minute.
-void prepare(int fd) {
+// Small buffers, so that back-pressure reaches the program. A peer that has vanished without a word
+// is noticed after so many seconds: by keep-alive, or by what it does not acknowledge.
+void prepare(int fd, int vanished) {
     auto set = [fd](int level, int name, int value) {
         setsockopt(fd, level, name, &value, sizeof value);
     };
@@ -76,21 +79,22 @@ void prepare(int fd) {
     set(SOL_SOCKET, SO_RCVBUF, 8192);
     set(IPPROTO_TCP, TCP_NODELAY, 1);
     set(SOL_SOCKET, SO_KEEPALIVE, 1);
-    set(IPPROTO_TCP, TCP_KEEPIDLE, 15);
-    set(IPPROTO_TCP, TCP_KEEPINTVL, 5);
+    set(IPPROTO_TCP, TCP_KEEPIDLE, vanished / 2);
+    set(IPPROTO_TCP, TCP_KEEPINTVL, vanished / 6);
     set(IPPROTO_TCP, TCP_KEEPCNT, 3);
+    set(IPPROTO_TCP, TCP_USER_TIMEOUT, 1000 * vanished);
 }
 
-int newSocket(const Address& address) {
+int newSocket(const Address& address, int vanished) {
     int fd = socket(address.bytes.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (fd >= 0)
-        prepare(fd);
+        prepare(fd, vanished);
     return fd;
 }
 
-int listenAt(const std::string& where) {
+int listenAt(const std::string& where, int vanished) {
     Address address = resolve(where);
-    int fd = newSocket(address), yes = 1;
+    int fd = newSocket(address, vanished), yes = 1;
     setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     if (fd < 0 || bind(fd, reinterpret_cast<sockaddr*>(&address.bytes), address.size) != 0 ||
         listen(fd, SOMAXCONN) != 0)
@@ -109,7 +113,7 @@ unsigned portOf(int fd) {
 class Gateway {
 public:
     explicit Gateway(const Options& options) : options_(options) {
-        listener_ = listenAt(options.listen);
+        listener_ = listenAt(options.listen, options.vanished);
         if (!options.station.empty())
             station_ = resolve(options.station);
         engine_ = XBeeAT::Engine::get(options.serial, [this](int level, const std::string& text) {
@@ -171,7 +175,7 @@ private:
                 noteFull(errno);
                 return;
             }
-            prepare(fd);
+            prepare(fd, options_.vanished);
             waiting_.push_back({fd, "client " + std::to_string(++count_), Clock::now()});
         }
     }
@@ -198,7 +202,7 @@ private:
     // The UAV's call, in two steps: the station may be far away.
     void callStation() {
         if (isCalled_) {
-            toStation_ = newSocket(station_);
+            toStation_ = newSocket(station_, options_.vanished);
             stationDue_ = Clock::now() + stationPatience;
             if (toStation_ < 0 || (connect(toStation_, reinterpret_cast<sockaddr*>(&station_.bytes),
                                            station_.size) != 0 &&
@@ -268,7 +272,8 @@ int main(int argc, char** argv) {
     app.add_option("-g,--guard", s.guardMs, "guard time of the modem as it is, ms")
         ->check(CLI::Range(2, 3300));
     app.add_flag("!--no-setup", s.setUp, "the modem is set up already");
-    app.add_option("-l,--listen", o.listen, "HOST:PORT for clients; port 0: any, it is printed");
+    app.add_option("-l,--listen", o.listen,
+                   "HOST:PORT for clients, [::1]:PORT too; port 0: any, it is printed");
     app.add_option("--station", o.station, "HOST:PORT of the Ice server that the UAV calls");
     app.add_option("--idle", o.idle,
                    "seconds of silence after which a client makes room for one that waits")
@@ -276,6 +281,9 @@ int main(int argc, char** argv) {
     app.add_option("--wait", o.wait,
                    "seconds that a client waits for one of the three channels, then is turned away")
         ->check(CLI::Range(1, 3600));
+    app.add_option("--vanished", o.vanished,
+                   "seconds after which a client that has vanished without a word is given up")
+        ->check(CLI::Range(6, 3600));
     app.add_option("-t,--trace", o.trace, "0 errors, 1 link and connections, 2 AT commands")
         ->check(CLI::Range(0, 2));
     app.add_option("--statistics", o.statistics, "print a line about every so many seconds")

@@ -1,24 +1,29 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """faults: what becomes of a mission when one of its processes is killed or stopped, or when it is refused
-something; at moments drawn from a seed. docs/faults.md has the table that this checks.
+something; at moments drawn from seeds. docs/faults.md has the table that this checks.
 
-Usage: faults.py source-folder build-folder out-folder [--seed N] [--moments N] [--only FAULT]
+A moment is a time of the flight: 0.3 seconds since its process began, then simulated seconds, of which a flight has
+about 1.7. So each moment is within the flight, whatever the machine's speed.
 """
 
 import argparse
+import concurrent.futures
 import json
 import os
 import random
 import re
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import time
 
 IMAGE = "/usr/share/xplanet/images/earth.jpg"
 LONGEST = 240.0  # seconds of a mission on a busy machine
+REAL = 0.3       # seconds of a moment before the simulated ones
+LAST = 2.0       # moment
 
 
 def children(of):
@@ -60,7 +65,7 @@ class Mission:
         self.log = open(out + ".log", "w+")
         self.begin = time.monotonic()
         self.run = subprocess.Popen(
-            [*(word.replace("$0", out) for word in prefix), source + "/testbench/sim/run.sh", build, "--image", IMAGE, "--size", "96x64", "--guard", "20",
+            [*(word.replace("$0", out) for word in prefix), source + "/testbench/sim/run.sh", build, "--image", IMAGE, "--size", "48x32", "--guard", "20",
              "--out", out, *options], stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True)
 
     def all(self):
@@ -74,6 +79,20 @@ class Mission:
                     return pid
             time.sleep(0.005)
         return self.run.pid if name == "run" else None
+
+    def pass_time(self, moment):
+        """Comes back at that moment of the flight, or when it is over."""
+        time.sleep(min(moment, REAL))
+        while self.run.poll() is None and self.simulated() < moment - REAL:
+            time.sleep(0.002)
+
+    def simulated(self):
+        """Seconds; from the simulator's counters (sw/ground/sim_status.h)."""
+        try:
+            with open(os.path.join(self.out, "status"), "rb") as f:
+                return struct.unpack("<8sQ", f.read(16))[1] / 1e9
+        except (FileNotFoundError, struct.error):
+            return 0
 
     def wait(self, seconds):
         try:
@@ -89,6 +108,12 @@ class Mission:
         return self.run.returncode == 0 and all(
             os.path.getsize(os.path.join(self.out, f)) for f in ("after.png", "report.md", "report.json"))
 
+    def remove(self):
+        for path in (self.out, self.out + ".kept"):
+            shutil.rmtree(path, ignore_errors=True)
+        self.log.close()
+        os.remove(self.out + ".log")
+
     def kill(self):
         """For the test's own end: whatever is left."""
         for pid in self.all():
@@ -97,6 +122,11 @@ class Mission:
             except ProcessLookupError:
                 pass
         self.run.wait()
+
+
+def share(moment):
+    """For faults that are no moment but a quantity: 0 to 1."""
+    return moment / LAST
 
 
 def gone(pids, seconds):
@@ -134,7 +164,7 @@ def is_whole(out):
 def killed(start, name, moment, deaths):
     m = start()
     pid = m.find(name)
-    time.sleep(moment)
+    m.pass_time(moment)
     everybody = m.all()
     if pid is None or m.run.poll() is not None or not lives(pid):
         return "too late"
@@ -156,7 +186,7 @@ def killed(start, name, moment, deaths):
 def stopped(start, name, moment, deaths):
     m = start()
     pid = m.find(name)
-    time.sleep(moment)
+    m.pass_time(moment)
     if pid is None or m.run.poll() is not None or not lives(pid):
         return "too late"
     os.kill(pid, signal.SIGSTOP)
@@ -169,7 +199,7 @@ def stopped(start, name, moment, deaths):
 def disk_full(start, name, moment, deaths):
     """The folder is a file system of its own, of few blocks; what is in it at the end is copied."""
     script = "mount -t tmpfs -o size=%d none $0 || exit 9; status=0; \"$@\" || status=$?; cp -a $0 $0.kept; exit $status"
-    m = start(prefix=["unshare", "--map-root-user", "--mount", "sh", "-c", script % (4096 * int(1 + moment)), "sh"])
+    m = start(prefix=["unshare", "--map-root-user", "--mount", "sh", "-c", script % (4096 * int(1 + 7 * share(moment))), "sh"])
     status = m.wait(LONGEST)
     expect(status is not None and status != 9, m, "it hangs")
     expect("Traceback" not in m.text() and "Bus error" not in m.text(), m, "that is no message")
@@ -179,8 +209,8 @@ def disk_full(start, name, moment, deaths):
 
 
 def no_descriptors(start, name, moment, deaths):
-    m = start(prefix=["prlimit", "--nofile=%d" % (8 + int(4 * moment))])
-    status = m.wait(60)
+    m = start(prefix=["prlimit", "--nofile=%d" % (8 + int(25 * share(moment)))], options=["--patience", "16"])
+    status = m.wait(LONGEST)
     expect(status is not None, m, "it hangs")
     expect(status != 0 or m.succeeded(), m, "it says that it succeeded")
     expect(status == 0 or m.text().strip(), m, "it fails without a word")
@@ -198,7 +228,7 @@ def port_taken(start, name, moment, deaths):
 
 def no_memory(start, name, moment, deaths):
     """Each process has from 8 to 800 MB of addresses."""
-    m = start(prefix=["prlimit", "--as=%d" % (8e6 * 100 ** (moment / 6))])
+    m = start(prefix=["prlimit", "--as=%d" % (8e6 * 100 ** share(moment))])
     status = m.wait(LONGEST)
     expect(status is not None, m, "it hangs")
     expect(status != 0 or m.succeeded(), m, "it says that it succeeded")
@@ -218,10 +248,10 @@ def clock_step(start, name, moment, deaths):
 
 def air(loss):
     def bad_air(start, name, moment, deaths):
-        m = start(options=["--loss", loss, "--patience", "20", "--seed", str(int(1000 * moment))])
+        m = start(options=["--loss", loss, "--patience", "16", "--seed", str(int(1000 * moment))])
         status = m.wait(LONGEST)
         expect(status is not None, m, "it goes on without end")
-        expect(status == 0 and m.succeeded() or re.search("mission: .*(no answer for 20 s|Exception)", m.text()), m, "nobody says what is missing")
+        expect(status == 0 and m.succeeded() or re.search("mission: .*(no answer for 16 s|Exception)", m.text()), m, "nobody says what is missing")
         return "fails after its patience" if status else "succeeds"
     bad_air.__name__ = "loss of " + loss
     return bad_air
@@ -232,43 +262,57 @@ FAULTS = [(killed, n) for n in ("ground", "simulator", "run", "page")] + \
          [(f, "") for f in (disk_full, no_descriptors, no_memory, clock_step, port_taken, air("0.9"), air("1"))]
 
 
+def undergo(args, fault, name, seed, number, moment):
+    """One fault at one moment; true if all was as it should be."""
+    title = (fault.__name__ + " " + name).strip()
+    missions = []
+
+    def start(prefix=(), options=()):
+        missions.append(Mission(args.source, args.build, "%s/%d-%s-%d" % (
+            args.out, seed, title.replace(" ", "-"), number), prefix, options))
+        return missions[-1]
+
+    try:
+        said = fault(start, name, moment, args.deaths)
+    except Fault as e:
+        said = "FAILED: %s" % e
+    finally:
+        for m in missions:
+            m.kill()
+    print("%4d %-20s at %.2f: %s" % (seed, title, moment, said), flush=True)
+    if said.startswith("FAILED"):
+        return False
+    for m in missions:
+        m.remove()
+    return True
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("source")
     parser.add_argument("build")
     parser.add_argument("out")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--moments", type=int, default=1, help="of each fault")
+    parser.add_argument("--seed", type=int, default=1, help="the first")
+    parser.add_argument("--seeds", type=int, default=1, help="how many")
+    parser.add_argument("--moments", type=int, default=1, help="of each fault and seed")
+    parser.add_argument("--jobs", type=int, default=1, help="missions at a time")
     parser.add_argument("--deaths", type=float, default=LONGEST, help="seconds in which all processes of a mission follow the first")
     parser.add_argument("--only", default="", help="faults whose name contains this")
     args = parser.parse_args()
     global CLOCK_STEP
     CLOCK_STEP = os.path.abspath(args.build) + "/tests/e2e/mission/libclock_step.so"
-    draw = random.Random(args.seed)
     shutil.rmtree(args.out, ignore_errors=True)
     os.makedirs(args.out)
-    failed = 0
-    for fault, name in FAULTS:
-        title = (fault.__name__ + " " + name).strip()
-        moments = [draw.uniform(0, 6) for _ in range(args.moments)]
-        for number, moment in enumerate(moments):
-            if args.only not in title:
-                continue
-            missions = []
-
-            def start(prefix=(), options=()):
-                missions.append(Mission(args.source, args.build, "%s/%s-%d" % (
-                    args.out, title.replace(" ", "-"), number), prefix, options))
-                return missions[-1]
-
-            try:
-                print("%-20s after %.2f s: %s" % (title, moment, fault(start, name, moment, args.deaths)), flush=True)
-            except Fault as e:
-                failed += 1
-                print("%-20s after %.2f s: FAILED: %s" % (title, moment, e), flush=True)
-            finally:
-                for m in missions:
-                    m.kill()
+    with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
+        runs = []
+        for seed in range(args.seed, args.seed + args.seeds):
+            draw = random.Random(seed)
+            for fault, name in FAULTS:
+                moments = [draw.uniform(0, LAST) for _ in range(args.moments)]
+                if args.only in fault.__name__ + " " + name:
+                    runs += [pool.submit(undergo, args, fault, name, seed, number, moment) for number, moment in enumerate(moments)]
+        failed = sum(not run.result() for run in runs)
+    print("faults: %d moments of seeds %d to %d, %d failed" % (len(runs), args.seed, args.seed + args.seeds - 1, failed))
     return 1 if failed else 0
 
 

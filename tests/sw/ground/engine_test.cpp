@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -168,6 +169,25 @@ TEST_F(EngineTest, TheUavMayCallWhenSomebodyListens) {
     ASSERT_GE(fd, 0);
     EXPECT_EQ(readAll(fd, 30), message(5));
     close(fd);
+}
+
+TEST_F(EngineTest, ACallOfTheUavThatNoDescriptorIsLeftForIsRefusedAndReported) {
+    auto engine = start();
+    const int ready = engine->listen();
+    ASSERT_TRUE(rig_.until([&] { return rig_.isUp(); }));
+    rig_.with([&] { Link_openChannel(rig_.link(), 3); });
+    pollfd p{ready, POLLIN, 0};
+    ASSERT_EQ(poll(&p, 1, 60000), 1);
+    rlimit limit;
+    ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &limit), 0);
+    const rlimit none = {0, limit.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+    EXPECT_EQ(engine->accept(), -1);
+    ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &limit), 0);
+    EXPECT_TRUE(logged("0 the UAV calls, and no socket can be made: Too many open files"));
+    EXPECT_TRUE(rig_.until([&] {
+        return std::count(rig_.opened.begin(), rig_.opened.end(), std::make_pair(3, 0)) == 1;
+    }));
 }
 
 // A modem that was given up once may return: the same listener is called then.

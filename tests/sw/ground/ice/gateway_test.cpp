@@ -5,8 +5,10 @@
 #include "world.h"
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <future>
 #include <gtest/gtest.h>
+#include <linux/filter.h>
 #include <map>
 #include <poll.h>
 #include <sys/wait.h>
@@ -81,9 +83,10 @@ private:
 
 class Gateway : public ::testing::Test {
 protected:
-    GatewayProgram start(std::vector<std::string> more = {}) {
+    GatewayProgram start(std::vector<std::string> more = {},
+                         const std::string& at = "127.0.0.1:0") {
         std::vector<std::string> arguments = {
-            "-d", world_.rig.pty.path(), "-g", std::to_string(Rig::guardMs), "-l", "127.0.0.1:0"};
+            "-d", world_.rig.pty.path(), "-g", std::to_string(Rig::guardMs), "-l", at};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return GatewayProgram(arguments);
     }
@@ -174,6 +177,18 @@ TEST_F(Gateway, AModemThatComesBackIsUsedAgain) {
     EXPECT_TRUE(back);
 }
 
+TEST_F(Gateway, ListensAtAnIPv6Address) {
+    if (std::ifstream("/proc/net/if_inet6").peek() == EOF)
+        GTEST_SKIP() << "this machine has no IPv6";
+    GatewayProgram gateway = start({}, "[::1]:0");
+    const int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    Ice::CommunicatorHolder ic(plain());
+    auto echo = Ice::uncheckedCast<RadioTest::EchoPrx>(
+        ic->stringToProxy("echo:tcp -h \"::1\" -t 60000 -p " + std::to_string(port)));
+    EXPECT_EQ(echo->repeat(1, {1, 2}), (RadioTest::Bytes{1, 2}));
+}
+
 // A TCP connection that says nothing.
 class SilentClient {
 public:
@@ -208,9 +223,44 @@ public:
         return recv(fd_, bytes, sizeof bytes, MSG_WAITALL) == sizeof bytes;
     }
 
+    // From here on no packet reaches it, as if its machine were off: the kernel drops them.
+    void vanish() {
+        sock_filter none = BPF_STMT(BPF_RET | BPF_K, 0);
+        const sock_fprog filter = {1, &none};
+        ASSERT_EQ(setsockopt(fd_, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof filter), 0);
+    }
+    // Calls ice_ping of echo.
+    void ping() {
+        const std::string parameters("\1\0\0\0\4echo\0\0\10ice_ping\1\0\6\0\0\0\1\1", 29);
+        const std::string head("IceP\1\0\1\0\0\0\53\0\0\0", 14);
+        ASSERT_EQ(send(fd_, (head + parameters).data(), 43, MSG_NOSIGNAL), 43);
+    }
+
 private:
     int fd_;
 };
+
+// Three have the channels and vanish, with a reply under way and without.
+TEST_F(Gateway, AClientThatVanishesWithoutAWordIsGivenUp) {
+    GatewayProgram gateway = start({"--idle", "3600", "--wait", "100", "--vanished", "6"});
+    const int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    std::vector<SilentClient> vanished, others;
+    for (int i = 0; i < 3; ++i) {
+        vanished.emplace_back(port);
+        ASSERT_TRUE(vanished.back().isGreeted());
+    }
+    for (SilentClient& client : vanished) {
+        client.vanish();
+        if (&client != &vanished[0])
+            client.ping();
+    }
+    for (int i = 0; i < 3; ++i)
+        others.emplace_back(port);
+    for (SilentClient& client : others)
+        EXPECT_TRUE(client.isGreeted());
+    gateway.stop();
+}
 
 TEST_F(Gateway, ASilentClientMakesRoomForOneThatWaits) {
     GatewayProgram gateway = start({"--idle", "1"});
@@ -262,6 +312,7 @@ TEST(GatewayOptions, WrongOnesAreRefusedByName) {
         {{{"-d", "/dev/no-such-port"}}, "No such file"},
         {{{"-l", "nonsense"}}, "give HOST:PORT"},
         {{{"-l", "127.0.0.1:70000"}}, "a port is 0 to 65535"},
+        {{{"-l", "[::1"}}, "[::1"},
         {{{"-a", "65536"}}, "--address"},
         {{{"-k", "/no/such/file"}}, "cannot read a key"},
         {{{"--statistics", "-5"}}, "--statistics"},

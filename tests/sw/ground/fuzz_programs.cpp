@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+//
+// fuzz_programs: libFuzzer target of what a client of the gateway, or a program with the plugin,
+// sends: bytes in any pieces on a socket, that the engine's Stream makes messages of. Each message
+// must be one that was sent, whole and in its turn; what comes back must be whole messages, too.
+//
+// The first byte's lowest bit: the program is a server that the UAV called. Then a byte names the
+// step (mod 8), the next its argument n:
+//   0,1 the n bytes behind are sent    2,3 a head of kind n mod 5 and they are    4 an answer of n
+//   bytes is given to the program 5 the program reads n bytes    6 it sends no more    7 n tenths
+//   of a second pass
+
+#include "stream.h"
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace {
+
+using XBeeAT::Stream;
+
+constexpr U32 longest = 8192;
+
+void expect(bool condition) {
+    if (!condition)
+        std::abort();
+}
+
+size_t sizeOf(const U8* head) {
+    U32 size;
+    std::memcpy(&size, head + 10, sizeof size);
+    return size;
+}
+
+std::vector<U8> headOf(U8 kind, size_t size) {
+    return {
+        'I', 'c', 'e', 'P', 1, 0, 1, 0, kind, 0, static_cast<U8>(size), static_cast<U8>(size >> 8),
+        0,   0};
+}
+
+class World {
+public:
+    explicit World(bool isServer) {
+        expect(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends_) == 0);
+        if (isServer) {
+            stream_.call();
+            stream_.accept(ends_[0], "a server");
+        } else {
+            stream_.want(ends_[0], "a client");
+            stream_.open(now_);
+        }
+        validatesComeThrough_ = isServer;
+    }
+    ~World() { close(ends_[1]); }
+    World(const World&) = delete;
+    World& operator=(const World&) = delete;
+
+    void step(int what, size_t n, const U8* bytes, size_t left) {
+        if (what == 2 || what == 3) {
+            const std::vector<U8> head = headOf(static_cast<U8>(n % 5), 14 + std::min(n, left));
+            sendBytes(head.data(), head.size());
+        }
+        if (what < 4)
+            sendBytes(bytes, std::min(n, left));
+        else if (what == 4)
+            answer(n);
+        else if (what == 5)
+            readSome(n);
+        else if (what == 6)
+            shutdown(ends_[1], SHUT_WR);
+        else
+            now_ += static_cast<U32>(n) * 100'000;
+        run();
+    }
+    void finish() {
+        (void)stream_.leave(now_);
+        for (int i = 0; i < 300 && !stream_.is(Stream::State::Closed); ++i) {
+            readSome(4096);
+            now_ += 100'000;
+            stream_.write(now_);
+            (void)stream_.beat(now_);
+        }
+        expect(stream_.is(Stream::State::Closed));
+    }
+
+private:
+    void sendBytes(const U8* bytes, size_t size) {
+        const ssize_t count = send(ends_[1], bytes, size, MSG_NOSIGNAL);
+        if (count > 0)
+            sent_.insert(sent_.end(), bytes, bytes + count);
+    }
+    void answer(size_t n) {
+        std::vector<U8> message = headOf(2, 14 + n);
+        message.resize(14 + n, 0x55);
+        if (stream_.is(Stream::State::Open))
+            (void)stream_.give(message.data(), static_cast<U32>(message.size()), now_);
+    }
+    void readSome(size_t n) {
+        U8 bytes[4096];
+        const ssize_t count = recv(ends_[1], bytes, std::min(n, sizeof bytes), MSG_DONTWAIT);
+        if (count > 0)
+            got_.insert(got_.end(), bytes, bytes + count);
+        while (got_.size() >= 14) {
+            const size_t size = sizeOf(got_.data());
+            expect(std::memcmp(got_.data(), "IceP", 4) == 0 && size >= 14 && size < 300);
+            if (got_.size() < size)
+                return;
+            got_.erase(got_.begin(), got_.begin() + static_cast<std::ptrdiff_t>(size));
+        }
+    }
+    // What the engine's thread does with it.
+    void run() {
+        if (!stream_.is(Stream::State::Open))
+            return;
+        pollfd p = stream_.interest(true);
+        if (p.fd >= 0 && poll(&p, 1, 0) > 0) {
+            if (p.revents & (POLLIN | POLLHUP))
+                stream_.read(now_);
+            if (p.revents & POLLOUT)
+                stream_.write(now_);
+        }
+        for (;;) {
+            const Stream::Next next = stream_.next(longest);
+            skipValidates();
+            if (next == Stream::Next::Senseless) {
+                expect(!makesSense());
+                return stream_.close();
+            }
+            if (next == Stream::Next::None)
+                break;
+            take();
+        }
+        (void)stream_.beat(now_);
+        (void)stream_.isIdle(now_, 60'000'000);
+    }
+    bool makesSense() const {
+        return sent_.size() < 14 || (sizeOf(sent_.data()) >= 14 && sizeOf(sent_.data()) <= longest);
+    }
+    void skipValidates() {
+        while (!validatesComeThrough_ && sent_.size() >= 14 && sent_[8] == 3 && makesSense() &&
+               sizeOf(sent_.data()) <= sent_.size())
+            sent_.erase(sent_.begin(),
+                        sent_.begin() + static_cast<std::ptrdiff_t>(sizeOf(sent_.data())));
+    }
+    void take() {
+        const size_t size = stream_.size();
+        validatesComeThrough_ = validatesComeThrough_ && sent_[8] != 3;
+        expect(size >= 14 && size <= longest && size <= sent_.size());
+        expect(std::equal(sent_.begin(), sent_.begin() + static_cast<std::ptrdiff_t>(size),
+                          stream_.data()));
+        (void)stream_.isCall();
+        stream_.taken(now_);
+        sent_.erase(sent_.begin(), sent_.begin() + static_cast<std::ptrdiff_t>(size));
+    }
+
+    int ends_[2];
+    U32 now_ = 0xFFFFF000u;
+    bool validatesComeThrough_; // the first: a server's greeting
+    std::vector<U8> sent_;      // and not yet taken
+    std::vector<U8> got_;
+    Stream stream_;
+};
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    if (size == 0)
+        return 0;
+    World world((data[0] & 1) != 0);
+    for (size_t at = 1; at + 2 <= size;) {
+        const int what = data[at] & 7;
+        const size_t n = data[at + 1];
+        at += 2;
+        world.step(what, n, data + at, size - at);
+        if (what < 4)
+            at += std::min(n, size - at);
+    }
+    world.finish();
+    return 0;
+}

@@ -65,6 +65,7 @@ slurmd its node
 slurm-client its commands
 munge its authentication
 gdb-multiarch debugs it there
+gtkwave shows waveforms, and reads those of failures for the page
 graphviz pictures of netlists
 man-db shows and checks the manual pages
 groff-base formats them

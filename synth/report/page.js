@@ -80,11 +80,15 @@ const columns = [
   ["sets", d => d.figures.sets], ["carry", d => d.figures.carry], ["RAM16", d => d.figures.ram], ["DSP", d => d.figures.dsp],
   ["pins", d => d.figures.pins], ["slices", d => d.figures.slices], ["from-to", d => d.figures.low, d => `${d.figures.low}-${d.figures.high}`],
   ["levels", d => d.figures.timing.paths[0]?.levels ?? 0],
-  ["MHz", d => d.figures.mhz, d => d.figures.mhz ? [d.figures.mhz.toFixed(0), d.figures.mhz < data.chip.mhz ? "bad" : ""] : ""],
+  ["MHz", d => d.figures.mhz, d => d.figures.mhz ? [clock(d.figures), d.figures.mhz < data.chip.mhz ? "bad" : ""] : ""],
 ];
 for (const family of Object.keys(usable[0]?.others ?? {}))
   for (const key of ["lut", "ff"])
     columns.push([`${family} ${key.toUpperCase()}`, d => d.others?.[family]?.[key] ?? 0]);
+// The clock, and between which it is with the netlist in other orders.
+function clock(f) {
+  return f.mhz.toFixed(0) + (f.clocks.length ? ` (${f.mhzRange.map(mhz => mhz.toFixed(0)).join("-")})` : "");
+}
 function change(d, key) {
   if (!d.accepted) return ["new", "soft"];
   const by = d.figures[key] - d.accepted[key];

@@ -4,6 +4,7 @@
 
 #include "figures.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -25,8 +26,23 @@ bool isMultiplier(const std::string& type) {
 
 } // namespace
 
-double Figures::mhz() const {
+double Figures::clock() const {
     return timing.paths.empty() ? 0 : 1000 / (timing.paths.front().ns * slowGrade);
+}
+
+double Figures::mhz() const {
+    std::vector<double> all = clocks;
+    all.push_back(clock());
+    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::nth_element(all.begin(), middle, all.end());
+    return *middle;
+}
+
+std::pair<double, double> Figures::mhzRange() const {
+    std::pair<double, double> range{clock(), clock()};
+    for (const double mhz : clocks)
+        range = {std::min(range.first, mhz), std::max(range.second, mhz)};
+    return range;
 }
 
 int Figures::luts(int inputs) const {
@@ -101,7 +117,8 @@ void to_json(json& j, const Figures& f) {
          {"ff", f.ff},       {"carry", f.carry},     {"ram", f.ram},         {"dsp", f.dsp},
          {"pins", f.pins},   {"costs", costs},       {"timing", f.timing},   {"slices", s.estimate},
          {"low", s.low},     {"high", s.high},       {"slicem", s.slicem},   {"sites", s.sites},
-         {"pairs", s.pairs}, {"through", s.through}, {"sets", s.controlSets}};
+         {"pairs", s.pairs}, {"through", s.through}, {"sets", s.controlSets},
+         {"clocks", f.clocks}};
 }
 
 void from_json(const json& j, Figures& f) {
@@ -117,6 +134,7 @@ void from_json(const json& j, Figures& f) {
     for (const json& c : j.at("costs"))
         f.costs[{c[0], c[1]}] = {c[2], c[3], c[4], c[5]};
     j.at("timing").get_to(f.timing);
+    j.at("clocks").get_to(f.clocks);
     f.slices = {j.at("low"),   j.at("slices"), j.at("high"),    j.at("slicem"),
                 j.at("sites"), j.at("pairs"),  j.at("through"), j.at("sets")};
 }

@@ -11,6 +11,8 @@
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 struct Figures {
     std::map<std::string, int> cells; // by type, as Yosys names them
@@ -26,9 +28,15 @@ struct Figures {
     Timing timing; // only for Spartan-6
     Costs costs;
 
+    // What clock() is with the netlist in other orders.
+    std::vector<double> clocks;
+
     // Clock rate that the longest path allows, MHz; 0 if there is no path. At the slower speed
     // grade.
+    double clock() const;
+    // The median of all orders' clocks, which is judged; the slowest and the fastest of them.
     double mhz() const;
+    std::pair<double, double> mhzRange() const;
     int luts(int inputs) const; // logic LUTs of so many inputs
 };
 

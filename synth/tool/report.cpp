@@ -51,6 +51,7 @@ json figuresJson(const Figures& f) {
     json j = f;
     j.erase("costs");
     j["mhz"] = rounded(f.mhz(), 1);
+    j["mhzRange"] = {rounded(f.mhzRange().first, 1), rounded(f.mhzRange().second, 1)};
     for (int inputs = 1; inputs <= 6; inputs++)
         j["luts"].push_back(f.luts(inputs));
     for (json& path : j["timing"]["paths"]) {

@@ -91,6 +91,15 @@ TextTable paperTable(const Plan& plan, const Row& row) {
     return t;
 }
 
+// The clock, and between which it is with the netlist in other orders: "114 (103-118)".
+static string clockText(const Figures& f) {
+    const auto [slowest, fastest] = f.mhzRange();
+    if (f.timing.paths.empty())
+        return "";
+    return f.clocks.empty() ? fmt::format("{:.0f}", f.mhz())
+                            : fmt::format("{:.0f} ({:.0f}-{:.0f})", f.mhz(), slowest, fastest);
+}
+
 TextTable designTable(const Plan& plan, const std::vector<Row>& rows,
                       const AcceptedCounts& accepted) {
     TextTable t;
@@ -131,7 +140,7 @@ TextTable designTable(const Plan& plan, const std::vector<Row>& rows,
             line.push_back(std::to_string(value));
         line.push_back(fmt::format("{}-{}", f.slices.low, f.slices.high));
         line.push_back(f.timing.paths.empty() ? "" : std::to_string(f.timing.paths[0].levels));
-        line.push_back(f.timing.paths.empty() ? "" : fmt::format("{:.0f}", f.mhz()));
+        line.push_back(clockText(f));
         for (const Run* other : row.others) {
             line.push_back(other->error.empty() ? std::to_string(other->figures.lut) : "failed");
             line.push_back(other->error.empty() ? std::to_string(other->figures.ff) : "");

@@ -7,6 +7,7 @@
 #define FAILURES_H
 
 #include "runner.h"
+#include <nlohmann/json_fwd.hpp>
 
 struct Failure {
     Result result;
@@ -28,5 +29,10 @@ std::vector<Failure> examine(const std::vector<Result>& results, const std::vect
 // the failure. Says on the terminal what it does; a test that cannot be traced has none.
 void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
               const std::string& source, unsigned jobs, unsigned limit);
+
+// Returns the end of a waveform, VCD or FST (by fst2vcd): {from, to, signals: [[name, bits, [time,
+// value, ...]], ...], more: signals left out}; those that move, the outermost first. Null: it is
+// empty.
+nlohmann::json drawingOf(const std::string& wave);
 
 #endif

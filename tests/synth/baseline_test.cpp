@@ -106,6 +106,19 @@ TEST(Baseline, AClockThatWasReachedMustBeReached) {
                                   HasSubstr("u_a.from to u_b.to D, 7 levels"))));
 }
 
+TEST(Baseline, TheMedianOfAllOrdersIsJudged) {
+    Fixture f;
+    f.slow(8.0);
+    f.baseline.designs["block"] = acceptedFrom(f.run.figures);
+    f.slow(8.4); // 99 MHz
+    f.run.figures.clocks = {103, 118, 96, 102};
+    EXPECT_NEAR(f.run.figures.mhz(), 102, 0.01);
+    EXPECT_EQ(f.run.figures.mhzRange(), std::pair(96.0, 118.0));
+    EXPECT_THAT(f.verdict().failures, IsEmpty());
+    f.run.figures.clocks = {98, 118, 96, 102};
+    EXPECT_THAT(f.verdict().failures, SizeIs(1));
+}
+
 TEST(Baseline, AClockThatWasNotReachedMayLoseATenth) {
     Fixture f;
     f.slow(10.0);

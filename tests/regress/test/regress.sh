@@ -178,11 +178,24 @@ slurm)
     has "value 3 is not 7" build/regress/failures/test_b.Bad-3.log
     ;;
 page)
+    cat >t.vcd <<'END'
+$timescale 1ns $end $scope module top $end $var wire 1 ! clk_i $end $scope module u_fifo $end $var wire 1 ! clk_i $end
+$var reg 8 " level [7:0] $end $upscope $end $upscope $end $enddefinitions $end
+#0 0! b0 " #5 1! #10 0! b10100111 " #15 1!
+END
+    cat >>tests/room/CMakeLists.txt <<'END'
+add_test(NAME formal.broken COMMAND sh -c "echo 'Assert failed in broken'; echo 'broken: trace: ${CMAKE_SOURCE_DIR}/t.vcd'; exit 1")
+END
+    cmake build/main >/dev/null
     run
     chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$work/chromium" \
         --virtual-time-budget=5000 --dump-dom "file://$work/build/regress/report.html" >dom.html 2>chromium.log ||
         fail "chromium: $(tail -3 chromium.log)"
-    has '2 failed' dom.html
+    has '3 failed' dom.html
+    has 'class="waveform"' dom.html
+    has '>top.clk_i<' dom.html     # the outermost of its names
+    has '>top.u_fifo.level<' dom.html
+    has '>a7<' dom.html
     has 'id="results"' dom.html
     has 'test_c.Flicker' dom.html
     has 'class="dot dp"' dom.html

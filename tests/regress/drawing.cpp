@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+//
+// drawing: the last moments of a waveform, as the page draws them.
+
+#include "failures.h"
+#include "files.h"
+#include "process.h"
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+using nlohmann::json;
+
+namespace {
+
+constexpr size_t shownMoments = 600, shownSignals = 80;
+
+struct Signal {
+    std::string name; // with its scopes: "TOP.bridge.u_write.full"
+    unsigned bits = 1;
+    size_t depth = 0; // scopes around it
+    std::vector<std::pair<uint64_t, std::string>> changes;
+};
+
+// A value in hexadecimal, "x" or "z" where a bit of it is; one bit as it is.
+std::string shortened(const std::string& bits) {
+    if (bits.size() <= 1)
+        return bits;
+    const size_t strange = bits.find_first_not_of("01");
+    if (strange != std::string::npos)
+        return bits.substr(strange, 1);
+    std::string digits;
+    for (size_t end = bits.size(); end > 0; end -= std::min<size_t>(4, end)) {
+        unsigned digit = 0;
+        for (size_t i = end > 4 ? end - 4 : 0; i < end; ++i)
+            digit = 2 * digit + static_cast<unsigned>(bits[i] - '0');
+        digits.insert(digits.begin(), "0123456789abcdef"[digit]);
+    }
+    return digits;
+}
+
+// Reads a VCD file (IEEE 1364-2005, 18.2). A signal that goes by several names has its outermost.
+std::map<std::string, Signal> readVcd(const std::string& text, std::vector<uint64_t>& moments) {
+    std::map<std::string, Signal> signals; // by the file's identifier
+    std::vector<std::string> scopes;
+    std::istringstream words(text);
+    uint64_t now = 0;
+    for (std::string word; words >> word;) {
+        std::string kind, id, name;
+        if (word == "$scope") {
+            words >> kind >> name;
+            scopes.push_back(name);
+        } else if (word == "$upscope") {
+            scopes.pop_back();
+        } else if (word == "$var") {
+            Signal signal;
+            words >> kind >> signal.bits >> id >> name;
+            for (const std::string& scope : scopes)
+                signal.name += scope + ".";
+            signal.name += name;
+            signal.depth = scopes.size();
+            const auto known = signals.find(id);
+            if (known == signals.end() || signal.depth < known->second.depth)
+                signals[id] = signal;
+        } else if (word[0] == '#') {
+            now = std::stoull(word.substr(1));
+            moments.push_back(now);
+        } else if (word[0] == 'b') {
+            words >> id;
+            signals[id].changes.emplace_back(now, word.substr(1));
+        } else if (word[0] != '$' && word.size() > 1 && std::string("01xz").find(word[0]) < 4) {
+            signals[word.substr(1)].changes.emplace_back(now, word.substr(0, 1));
+        }
+    }
+    return signals;
+}
+
+} // namespace
+
+json drawingOf(const std::string& wave) {
+    const bool compressed = wave.size() > 4 && wave.compare(wave.size() - 4, 4, ".fst") == 0;
+    const std::string text = compressed ? run({"fst2vcd", "-f", wave}).text : readFile(wave);
+    std::vector<uint64_t> moments;
+    std::map<std::string, Signal> signals = readVcd(text, moments);
+    if (moments.empty())
+        return nullptr;
+    const uint64_t from =
+        moments[moments.size() > shownMoments ? moments.size() - shownMoments : 0];
+    std::vector<const Signal*> order;
+    for (const auto& [id, signal] : signals)
+        if (!signal.changes.empty() && signal.changes.back().first > from) // it moves
+            order.push_back(&signal);
+    std::stable_sort(order.begin(), order.end(), [](const Signal* a, const Signal* b) {
+        return std::pair(a->depth, a->name) < std::pair(b->depth, b->name);
+    });
+    json drawing = {{"from", from}, {"to", moments.back()}, {"signals", json::array()}};
+    drawing["more"] = order.size() - std::min(order.size(), shownSignals);
+    order.resize(std::min(order.size(), shownSignals));
+    for (const Signal* signal : order) {
+        json changes = json::array(); // time, value, time, value; the first one is from before
+        for (size_t i = 0; i < signal->changes.size(); ++i) {
+            const auto& [time, value] = signal->changes[i];
+            if (i + 1 < signal->changes.size() && signal->changes[i + 1].first <= from)
+                continue;
+            changes.push_back(std::max(time, from));
+            changes.push_back(shortened(value));
+        }
+        drawing["signals"].push_back({signal->name, signal->bits, changes});
+    }
+    return drawing;
+}

@@ -52,6 +52,7 @@ Plan readPlan(const fs::path& file, const Library& library, const fs::path& root
         for (const auto& [name, value] : parameters.items())
             design.parameters[name] = value.is_string() ? value.get<std::string>() : value.dump();
         design.limits = d.value("limits", std::map<std::string, int>());
+        design.orders = d.value("orders", 0);
         plan.designs.push_back(design);
     }
     for (const auto& [name, module] : library.modules()) {

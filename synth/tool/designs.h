@@ -22,6 +22,7 @@ struct Design {
     std::map<std::string, std::string> parameters;
     std::map<std::string, int> limits; // "lut", "ff", "slices": not to be exceeded
     bool beside = false;               // the paper has figures for it
+    int orders = 0; // further orders of inputs and outputs in which it is mapped: one clock is luck
 };
 
 struct Plan {

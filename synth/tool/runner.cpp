@@ -19,12 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Orders of the netlist's inputs and outputs in which a design with limits is mapped beside its
-// own: the mapping is a heuristic, and one order's clock is luck.
-constexpr int furtherOrders = 4;
-
 int ordersOf(const Run& run) {
-    return run.family == "xc6s" && !run.design->limits.empty() ? furtherOrders : 0;
+    return run.family == "xc6s" ? run.design->orders : 0;
 }
 
 std::string netlistOfOrder(const fs::path& netlist, int order) {

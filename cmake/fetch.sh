@@ -7,6 +7,7 @@
 #   cmake/fetch.sh clang-format DIR   clang-format 14, DIR/clang-format runs it
 #   cmake/fetch.sh foreign DIR   the third-party cores that examples/foreign/files.list names, into DIR; from
 #                             ICESOC_RAW, a copy of raw.githubusercontent.com, if it is set
+#   cmake/fetch.sh sodium DIR the sources of libsodium that check a signature, for the chip
 #   cmake/fetch.sh zeroc DIR  ZeroC's test suites for Python, 3.7.8, into DIR; exit status 77: there is no network
 # Kept in ${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network.
 
@@ -145,21 +146,38 @@ fetch_foreign() {
     done
 }
 
-# Debian keeps the released source as it was: its checksum says that it is the one that was tested.
+# Brings a released source as Debian keeps it to $work/file: its checksum says that it is the one that was tested. $1: path in
+# the pool, $2: checksum. Exit status 1: there is no network.
+released() {
+    url=$(mirror)
+    url=${url%/}/pool/main/$1
+    echo "Fetching $url ..."
+    /usr/lib/apt/apt-helper -qq -o APT::Sandbox::User=root download-file "$url" "$work/file" "SHA256:$2" >/dev/null
+}
+
+fetch_sodium() {
+    keep=$cache/sodium-1.0.18
+    if [ ! -f "$keep/done" ]; then
+        released libs/libsodium/libsodium_1.0.18.orig.tar.gz d59323c6b712a1519a5daf710b68f5e7fde57040845ffec53850911f10a5d4f4 ||
+            fail "cannot get the source of libsodium from $(mirror): check the network, then run make again"
+        mkdir -p "$keep"
+        tar -xzf "$work/file" -C "$keep" --strip-components=3 libsodium-1.0.18/src/libsodium || fail "cannot unpack libsodium"
+        touch "$keep/done"
+    fi
+    rm -rf "$target"
+    mkdir -p "$target"
+    cp -r "$keep/." "$target"
+}
+
 fetch_zeroc() {
     keep=$cache/zeroc-3.7.8
     if [ ! -f "$keep/done" ]; then
-        url=$(mirror)
-        url=${url%/}/pool/main/z/zeroc-ice/zeroc-ice_3.7.8.orig.tar.xz
-        echo "Fetching ZeroC's test suites ($url, 7 MB) ..."
-        curl --fail --silent --show-error --location --max-time 300 -o "$work/file" "$url" || {
-            echo "fetch: cannot get $url: is there a network? Only ZeroC's own test suites need it" >&2
+        released z/zeroc-ice/zeroc-ice_3.7.8.orig.tar.xz c48f9e43d65e2b1f5e2af747fd86e7718b5e344b4e9d9a7dc73a84dd0be61f66 || {
+            echo "fetch: cannot get ZeroC's test suites: is there a network? Only these need it" >&2
             exit 77
         }
-        echo "c48f9e43d65e2b1f5e2af747fd86e7718b5e344b4e9d9a7dc73a84dd0be61f66  $work/file" | sha256sum --check --status ||
-            fail "$url is not the file that was tested (sha256)"
         mkdir -p "$keep"
-        tar -xJf "$work/file" -C "$keep" --strip-components=3 ice-3.7.8/python/test || fail "cannot unpack $url"
+        tar -xJf "$work/file" -C "$keep" --strip-components=3 ice-3.7.8/python/test || fail "cannot unpack ZeroC's test suites"
         touch "$keep/done"
     fi
     mkdir -p "$target"
@@ -178,6 +196,7 @@ ice) fetch_ice ;;
 ghdl) fetch_ghdl ;;
 clang-format) fetch_clang_format ;;
 foreign) fetch_foreign ;;
+sodium) fetch_sodium ;;
 zeroc) fetch_zeroc ;;
 *) fail "unknown: $what" ;;
 esac

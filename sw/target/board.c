@@ -8,6 +8,7 @@
  */
 #include "board.h"
 #include "boot.h"
+#include "clock.h"
 #include "stm32f2.h"
 #include "uav.h"
 #include "ucos_ii.h"
@@ -53,22 +54,6 @@ static void write32(void* context, U32 address, U32 value) {
 
 const FSMC_Port board_fsmc = {read8, write8, read16, write16, read32, write32};
 
-static void startClock(void) {
-    RCC_CR |= RCC_CR_HSEON;
-    while (!(RCC_CR & RCC_CR_HSERDY))
-        ;
-    /* The PLL makes 25 MHz / 25 * 240 / 2 = 120 MHz, and / 5 = 48 MHz, which the firmware does not
-     * use. */
-    RCC_PLLCFGR = 25UL | 240UL << 6 | 0UL << 16 | 1UL << 22 | 5UL << 24;
-    RCC_CR |= RCC_CR_PLLON;
-    while (!(RCC_CR & RCC_CR_PLLRDY))
-        ;
-    FLASH_ACR = FLASH_ACR_120MHZ;
-    RCC_CFGR = RCC_CFGR_APB1_DIV4 | RCC_CFGR_APB2_DIV2 | RCC_CFGR_SW_PLL;
-    while ((RCC_CFGR & RCC_CFGR_SWS_MASK) != RCC_CFGR_SWS_PLL)
-        ;
-}
-
 static void usePinForFsmc(U32 port, U32 pin) {
     GPIO_MODER(port) = (GPIO_MODER(port) & ~(3UL << 2U * pin)) | 2UL << 2U * pin;
     GPIO_OSPEEDR(port) |= 3UL << 2U * pin;
@@ -96,7 +81,7 @@ static void startPins(void) {
 }
 
 void Board_start(void) {
-    startClock();
+    Clock_start();
     startPins();
 }
 

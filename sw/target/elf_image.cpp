@@ -3,8 +3,8 @@
 // elf_image: ELF by the structures of <elf.h>; little-endian hosts only, as everywhere here.
 
 #include "elf_image.h"
+#include <algorithm>
 #include <cstring>
-#include <elf.h>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -17,6 +17,13 @@ template <class T> T at(const std::vector<uint8_t>& file, size_t offset) {
         throw std::runtime_error("it ends too early");
     std::memcpy(&value, file.data() + offset, sizeof value);
     return value;
+}
+
+uint32_t addWord(uint32_t crc, uint32_t word) {
+    crc ^= word;
+    for (int bit = 0; bit < 32; ++bit)
+        crc = crc & 0x80000000 ? crc << 1 ^ 0x04C11DB7 : crc << 1;
+    return crc;
 }
 
 } // namespace
@@ -38,10 +45,12 @@ ElfImage::ElfImage(const std::string& path) : path_(path) {
             if (size_t(p.p_offset) + p.p_filesz > file.size())
                 throw std::runtime_error("it ends too early");
             auto begin = file.begin() + p.p_offset;
-            segments_.push_back({p.p_paddr, p.p_offset, {begin, begin + p.p_filesz}});
+            segments_.push_back({p.p_paddr, p.p_vaddr, p.p_offset, {begin, begin + p.p_filesz}});
         }
         for (unsigned i = 0; i < header.e_shnum; ++i) {
             auto s = at<Elf32_Shdr>(file, header.e_shoff + i * sizeof(Elf32_Shdr));
+            if (s.sh_type == SHT_REL)
+                readRelocations(file, header, s);
             if (s.sh_type != SHT_SYMTAB)
                 continue;
             auto names = at<Elf32_Shdr>(file, header.e_shoff + s.sh_link * sizeof(Elf32_Shdr));
@@ -62,6 +71,20 @@ ElfImage::ElfImage(const std::string& path) : path_(path) {
         }
     } catch (const std::exception& e) {
         throw std::runtime_error("firmware '" + path + "': " + e.what());
+    }
+}
+
+// Keeps those of what is loaded.
+void ElfImage::readRelocations(const std::vector<uint8_t>& file, const Elf32_Ehdr& header,
+                               const Elf32_Shdr& section) {
+    const auto of = at<Elf32_Shdr>(file, header.e_shoff + section.sh_info * sizeof(Elf32_Shdr));
+    const auto symbols =
+        at<Elf32_Shdr>(file, header.e_shoff + section.sh_link * sizeof(Elf32_Shdr));
+    for (size_t n = 0; (of.sh_flags & SHF_ALLOC) && n < section.sh_size / sizeof(Elf32_Rel); ++n) {
+        const auto r = at<Elf32_Rel>(file, section.sh_offset + n * sizeof(Elf32_Rel));
+        const auto symbol =
+            at<Elf32_Sym>(file, symbols.sh_offset + ELF32_R_SYM(r.r_info) * sizeof(Elf32_Sym));
+        relocations_.push_back({r.r_offset, ELF32_R_TYPE(r.r_info), symbol.st_value});
     }
 }
 
@@ -86,12 +109,42 @@ uint32_t ElfImage::wordAt(uint32_t address) const {
 
 uint32_t ElfImage::checksum() const {
     uint32_t crc = 0xFFFFFFFF;
-    for (uint32_t a = symbol("image_begin"); a < symbol("image_end"); a += 4) {
-        crc ^= wordAt(a);
-        for (int bit = 0; bit < 32; ++bit)
-            crc = crc & 0x80000000 ? crc << 1 ^ 0x04C11DB7 : crc << 1;
-    }
+    for (uint32_t a = symbol("image_begin"); a < symbol("image_end"); a += 4)
+        crc = addWord(crc, wordAt(a));
     return crc;
+}
+
+std::vector<uint8_t> ElfImage::movedTo(uint32_t address) const {
+    const uint32_t begin = symbol("image_begin"), end = symbol("image_end");
+    if (relocations_.empty())
+        throw std::runtime_error("firmware '" + path_ +
+                                 "' was linked without --emit-relocs: it cannot be moved");
+    std::vector<uint8_t> image(end + 4 - begin, 0xFF);
+    const auto word = [&image](uint32_t offset) { return image.data() + offset; };
+    for (const Segment& s : segments_)
+        if (s.address >= begin && s.address + s.bytes.size() <= begin + image.size())
+            std::copy(s.bytes.begin(), s.bytes.end(), word(s.address - begin));
+    for (const Relocation& r : relocations_) {
+        if (r.type == R_ARM_THM_PC22 || r.type == R_ARM_THM_JUMP24 || r.type == R_ARM_NONE)
+            continue; // distances stay
+        if (r.type != R_ARM_ABS32 && r.type != R_ARM_TARGET1)
+            throw std::runtime_error("firmware '" + path_ + "' has a relocation of type " +
+                                     std::to_string(r.type) + ": compile with -mword-relocations");
+        if (r.symbol < begin || r.symbol > end)
+            continue; // RAM and registers stay where they are
+        for (const Segment& s : segments_)
+            if (r.at >= s.runAt && r.at + 4 <= s.runAt + s.bytes.size()) {
+                uint8_t* where = word(s.address - begin + (r.at - s.runAt));
+                uint32_t value = at<uint32_t>(image, static_cast<size_t>(where - image.data()));
+                value += address - begin;
+                std::memcpy(where, &value, sizeof value);
+            }
+    }
+    uint32_t crc = 0xFFFFFFFF;
+    for (uint32_t offset = 0; offset < end - begin; offset += 4)
+        crc = addWord(crc, at<uint32_t>(image, offset));
+    std::memcpy(word(end - begin), &crc, sizeof crc);
+    return image;
 }
 
 void ElfImage::stamp() const {

@@ -7,6 +7,7 @@
 #define ELF_IMAGE_H
 
 #include <cstdint>
+#include <elf.h>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ public:
 
     struct Segment {
         uint32_t address; // where it is loaded, in flash
+        uint32_t runAt;   // where the program has it: for variables' first values, RAM
         uint32_t offset;  // in the file
         std::vector<uint8_t> bytes;
     };
@@ -33,11 +35,21 @@ public:
     // Writes it into the file, where image_end is.
     void stamp() const;
 
+    // The bytes of flash from image_begin on, as they must be at another address, checksum
+    // included. For programs that were linked with --emit-relocs.
+    std::vector<uint8_t> movedTo(uint32_t address) const;
+
 private:
+    struct Relocation {
+        uint32_t at, type, symbol; // address in the running program; of <elf.h>; its value
+    };
+    void readRelocations(const std::vector<uint8_t>& file, const Elf32_Ehdr& header,
+                         const Elf32_Shdr& section);
     uint32_t wordAt(uint32_t address) const;
 
     std::string path_;
     std::vector<Segment> segments_;
+    std::vector<Relocation> relocations_;
     std::map<std::string, uint32_t> symbols_, sizes_;
     std::map<uint32_t, std::string> functions_;
 };

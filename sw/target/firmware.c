@@ -7,10 +7,12 @@
 #include "firmware.h"
 #include "board.h"
 #include "boot.h"
+#include "loader.h"
 #include "map_regs.h"
 #include "stm32f2.h"
 #include "system_regs.h"
 #include "uav.h"
+#include "uav_update.h"
 
 #define PRIO_WATCH 60U
 
@@ -26,8 +28,15 @@ static void watchTask(void* argument) {
     }
 }
 
+static void restart(void) {
+    SCB_AIRCR = SCB_AIRCR_RESET;
+}
+
 void Firmware_run(void) {
     OSInit();
+    uav_slots = Loader_slots(&uav_slot);
+    uav_product = LOADER_PRODUCT;
+    uav_restart = restart;
     if (UAV_start(&board_fsmc, 0)) {
         FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, Boot_report());
         (void)OSTaskCreateExt(watchTask, 0, &watchStack[WATCH_WORDS - 1], PRIO_WATCH, 0, watchStack,

@@ -38,6 +38,18 @@
  * prefetch. */
 #define FLASH_ACR REG(0x40023C00UL)
 #define FLASH_ACR_120MHZ (3UL | 7UL << 8)
+#define FLASH_KEYR REG(0x40023C04UL)
+#define FLASH_KEY1 0x45670123UL
+#define FLASH_KEY2 0xCDEF89ABUL
+#define FLASH_SR REG(0x40023C0CUL)
+#define FLASH_SR_ERRORS 0xF2UL /* OPERR, WRPERR, PGAERR, PGPERR, PGSERR; write 1 to clear */
+#define FLASH_SR_BSY (1UL << 16)
+#define FLASH_CR REG(0x40023C10UL)
+#define FLASH_CR_PG 1UL
+#define FLASH_CR_SER 2UL /* sector number in bits 6..3 */
+#define FLASH_CR_X32 (2UL << 8)
+#define FLASH_CR_STRT (1UL << 16)
+#define FLASH_CR_LOCK (1UL << 31)
 
 /* CRC unit (RM0033, 3.4): polynomial 0x04C11DB7, from 0xFFFFFFFF, words, most significant bit
  * first. */
@@ -76,6 +88,7 @@
 #define NVIC_ISER(n) REG(0xE000E100UL + 4UL * (n))
 #define NVIC_IPR(n) (*(volatile U8*)(0xE000E400UL + (n)))
 #define SCB_ICSR REG(0xE000ED04UL)
+#define SCB_VTOR REG(0xE000ED08UL)
 #define SCB_AIRCR REG(0xE000ED0CUL)
 #define SCB_AIRCR_RESET 0x05FA0004UL
 #define SCB_SHPR(n) (*(volatile U8*)(0xE000ED14UL + (n))) /* of exception n, 4..15 */

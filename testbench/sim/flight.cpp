@@ -19,6 +19,7 @@ extern "C" {
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <optional>
 #include <unistd.h>
@@ -70,7 +71,7 @@ std::unique_ptr<RecordedLine> record(const Flight::Options& o, SerialLine& line,
     if (o.replayed)
         return nullptr;
     nlohmann::json head = {{"flight", o.words}, {"boots", boots}, {"clkHz", SocModel::clkHz}};
-    for (const std::string& file : {o.pins, o.trace, o.cpu == "m3" ? o.firmware : ""})
+    for (const std::string& file : {o.pins, o.trace, o.flash, o.cpu == "m3" ? o.firmware : ""})
         if (!file.empty())
             head["hashes"][std::filesystem::absolute(file)] = hexHash({readFile(file)});
     return std::make_unique<RecordedLine>(line, o.out + "/flight.jsonl", head);
@@ -226,7 +227,11 @@ void Flight::runProcessor() {
 }
 
 void Flight::runOnCortexM3() {
-    M3Machine machine(soc_, {o_.firmware, o_.hclk, o_.guard}, [this] { return poll(); });
+    std::string flash = o_.flash.empty() ? "" : readFile(o_.flash);
+    if (!o_.flash.empty() && flash.size() != Stm32Flash::bytes)
+        throw std::runtime_error("'" + o_.flash + "' is not the 1 MiB of a chip's flash");
+    M3Machine machine(soc_, {o_.firmware, o_.hclk, o_.guard, {flash.begin(), flash.end()}},
+                      [this] { return poll(); });
     std::optional<MarkFile> marks;
     if (!o_.marks.empty())
         marks.emplace(o_.marks, machine.stm32(), [this] { return soc_.now(); });
@@ -237,6 +242,11 @@ void Flight::runOnCortexM3() {
         machine.debug(stub, o_.replayed != nullptr);
     } else {
         machine.run();
+    }
+    if (!o_.flash.empty()) {
+        machine.stm32().flash().reset(); // the power goes
+        std::ofstream(o_.flash, std::ios::binary)
+            .write(reinterpret_cast<const char*>(machine.cpu().flash()), Stm32Flash::bytes);
     }
     if (!o_.quiet)
         reportProcessor(machine);

@@ -28,7 +28,9 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
       stm32_(
           soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz)) {
     stm32_.load(config.firmware);
-    const bool asks = config.guardMs && stm32_.image()->has("uav_guardMs");
+    if (!config.flash.empty())
+        cpu().loadFlash(0x08000000, config.flash);
+    const bool asks = config.guardMs && config.flash.empty() && stm32_.image()->has("uav_guardMs");
     uint32_t guardAt = asks ? stm32_.image()->symbol("uav_guardMs") : 0;
     stm32_.onTime([this, guardAt, guardMs = config.guardMs] {
         if (soc_.cycles() < nextPoll_)

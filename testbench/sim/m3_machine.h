@@ -24,6 +24,8 @@ public:
         // Written to uav_guardMs (uav.h) after each start, as a debugger would, in ms; 0, or a
         // program that has no such variable: it is left alone.
         uint16_t guardMs = 0;
+        // The whole of flash, in place of the program's; the program is for its symbols then.
+        std::vector<uint8_t> flash = {};
     };
     // `poll` is called about once a simulated millisecond; when it returns false, run() ends.
     M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll);

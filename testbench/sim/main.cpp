@@ -67,6 +67,8 @@ CommandLine::CommandLine() {
                    "host: the firmware's host build; m3: its ARM binary on a Cortex-M3 model")
         ->check(CLI::IsMember({"host", "m3"}));
     app.add_option("--firmware", o.firmware, "ELF file for --cpu m3");
+    app.add_option("--flash", o.flash,
+                   "the chip's flash with --cpu m3, 1 MiB by pack_update; it is kept there");
     app.add_option("--hclk", o.hclk,
                    "of the Cortex-M3, Hz in simulated time; 0: 6/5 of the fabric's clock");
     app.add_option("--gdb", o.gdb, "wait for GDB on this port of the loopback interface; 0: any")
@@ -155,6 +157,8 @@ int main(int argc, char** argv) {
                 "--wave needs --replay: a flight is recorded, then looked at");
         if (o.cpu == "m3" && !o.key.empty())
             throw std::invalid_argument("--key needs --cpu host: the ARM binary has its own");
+        if (!o.flash.empty() && (o.cpu != "m3" || o.guard != 1000))
+            throw std::invalid_argument("--flash needs --cpu m3, and the modems' usual guard time");
         if (o.cpu != "m3" && (o.gdb >= 0 || !o.marks.empty()))
             throw std::invalid_argument(
                 o.replayed ? "that flight was flown by the firmware's host build; GDB needs one of "

@@ -5,6 +5,7 @@
 #      --threshold N --loss P --seed N --out DIR --cpu host|m3 --firmware ELF --port N (of the live page; 0: any)
 #      --guard MS (of the modems) --patience S (for the first answer of the UAV) --live 1 (the page stays until Ctrl-C) --cores "ascon fir" (also fly these cores' parts, ip/*/ground.py)
 #      --pins FILE (drives the inputs of cores, docs/simulation.md; outputs go to DIR/pins.log)
+#      --update ELF (sends this firmware to a vehicle whose flash is DIR/flash.bin, made if there is none; by --cpu m3)
 #      --app uav|minimal (the program of Table II, by --cpu m3)
 #      --sensor 1 (the picture comes through the camera core, which hands it to the vision core; camera's part is flown)
 
@@ -12,7 +13,7 @@ set -eu
 build=$1
 shift
 here=$(cd "$(dirname "$0")/../.." && pwd)
-image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host app=uav guard=1000 patience=300 port=0 live='' cores='' sensor='' pins='' firmware=$build/firmware/uav.elf
+image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host app=uav guard=1000 patience=300 port=0 live='' cores='' sensor='' pins='' update='' firmware=$build/firmware/uav.elf
 while [ $# -gt 0 ]; do
     case $1 in
     --image) image=$2 ;;
@@ -31,6 +32,7 @@ while [ $# -gt 0 ]; do
     --sensor) sensor=${2:+--sensor} ;;
     --pins) pins=$2 ;;
     --firmware) firmware=$2 ;;
+    --update) update=$2 ;;
     *)
         echo "run: unknown option $1" >&2
         exit 2
@@ -57,6 +59,15 @@ minimal:m3)
 minimal:*) echo "run: the minimal program is an ARM binary: give CPU=m3" >&2 && exit 2 ;;
 *) echo "run: there is no program '$app': uav, minimal" >&2 && exit 2 ;;
 esac
+if [ -n "$update" ]; then
+    pack=$build/sw/target/pack_update
+    key=$build/update.key # private, made at first use
+    [ -f "$out/flash.bin" ] || "$pack" vehicle "$build/firmware/loader.elf" "$firmware" 1 "$key" "$out/flash.bin"
+    "$pack" image "$update" "$(date +%s)" "$key" "$out/new.update"
+    exec setpriv --pdeathsig TERM "$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" \
+        --cpu m3 --firmware "$firmware" --flash "$out/flash.bin" -- /usr/bin/python3 "$here/sw/ground/clients/update.py" "$out/new.update" \
+        --device '{device}' --plugin "$build/ground" --slice "$here/sw/apps/uav/Update.ice" --patience "$patience"
+fi
 parts=''
 [ -z "$sensor" ] || case " $cores " in *' camera '*) ;; *) cores="$cores camera" ;; esac
 listed=$(sed -n 's/^CORES:[A-Z]*=//p' "$build/CMakeCache.txt")

@@ -90,6 +90,7 @@ static void appMainTask(void* argument) {
     UAV_startCores(&adapter);
     Autopilot_Vehicle_init(&vehicle);
     (void)Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&vehicle, "uav");
+    UAV_startUpdate(&adapter);
 
     createTask(UAV_radioTask, radioStack, PRIO_RADIO);
     createTask(UAV_coresTask, coresStack, PRIO_CORES);

@@ -16,6 +16,7 @@
 #define PRIO_SERVER 10U
 #define PRIO_CORES 11U
 #define PRIO_CLIENT 12U
+#define PRIO_UPDATE 40U
 
 extern Ice_Communicator uav_ic;
 extern Link uav_link;
@@ -30,6 +31,9 @@ void UAV_radioTask(void* argument);
 void UAV_useRadio(Ice_CommunicatorPtr ic);
 extern const Ice_Os uav_iceOs;
 void UAV_initIceOs(void);
+
+/* Serves new firmware (uav_update.c), if there are slots for it. */
+void UAV_startUpdate(Ice_ObjectAdapterPtr adapter);
 
 /* Counts a processed frame with its corners, and has the station told. */
 void UAV_frameDone(U32 corners);

@@ -1,0 +1,192 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""update: sends new firmware to a vehicle, sees it start, and confirms it. Stock ZeroC Ice.
+
+The package is what pack_update has signed. It goes on where a loss of the link, or of the vehicle's power, has
+left it; so does this program when it is started again. A refused package leaves the vehicle as it was.
+"""
+
+import argparse
+import os
+import struct
+import sys
+import time
+
+import Ice
+
+HEADER = struct.Struct("<5I64s64s")  # sw/update/slots.h
+MAGIC = 0x1CE50C02
+PIECE, PIECES_ON_THE_WAY = 4096, 3
+TEXT = {
+    "foreignImage": "the package is not for this kind of vehicle",
+    "oldVersion": "its version is not above the vehicle's confirmed one",
+    "wrongSignature": "it is not signed with this vehicle's key",
+    "damagedImage": "what arrived is not what was signed; try again",
+    "busyNow": "another update is under way",
+    "onTrial": "the vehicle runs firmware that is not confirmed yet; it goes back in a minute",
+    "flashFault": "the vehicle's flash does not take it",
+    "wentBack": "the new firmware was started and went back: it was not confirmed in time, or crashed",
+}
+
+
+class Failed(Exception):
+    """The update is over; the text says why."""
+
+
+def read_package(path):
+    """The package's (header, image) by the offset in flash that the image is linked for."""
+    with open(path, "rb") as f:
+        data = f.read()
+    images, at = {}, 0
+    while at < len(data):
+        head = data[at:at + HEADER.size]
+        if len(head) < HEADER.size:
+            raise Failed("'%s' is no package, or is cut short: pack_update makes them" % path)
+        magic, _, _, size, base = HEADER.unpack(head)[:5]
+        image = data[at + HEADER.size:at + HEADER.size + size]
+        if magic != MAGIC or len(image) < size:
+            raise Failed("'%s' is no package, or is cut short: pack_update makes them" % path)
+        images[base] = head, image
+        at += HEADER.size + size
+    if not images:
+        raise Failed("'%s' is empty" % path)
+    return images
+
+
+class Vehicle:
+    def __init__(self, proxy, patience):
+        self.proxy, self.patience = proxy, patience
+
+    def persist(self, function):
+        """The function's result, tried again while the vehicle does not answer."""
+        end = time.monotonic() + self.patience
+        while True:
+            try:
+                return function()
+            except Ice.ObjectNotExistException:
+                raise Failed("this vehicle was not started by a boot loader: its firmware cannot come over the air")
+            except Ice.LocalException as e:
+                if time.monotonic() > end:
+                    raise Failed("no answer for %d s (%s): is the vehicle on, and in reach?"
+                                 % (self.patience, type(e).__name__))
+                time.sleep(0.2)
+
+    def status(self):
+        return self.persist(self.proxy.getStatus)
+
+    def expect(self, reason):
+        if str(reason) != "none":
+            raise Failed(TEXT.get(str(reason), str(reason)))
+
+    def wait_while(self, *phases):
+        """The status, when the vehicle is in none of these phases; why it refused, if it did."""
+        while True:
+            status = self.status()
+            if str(status.phase) not in phases:
+                break
+            time.sleep(0.1)
+        if str(status.phase) == "idle":
+            self.expect(status.last)
+        return status
+
+    def send(self, image, say):
+        """Sends what the vehicle does not have yet, several pieces at a time."""
+        received = self.status().received
+        begun, first = time.monotonic(), received
+        on_the_way, at, shown = [], received, 0
+        while at < len(image) or on_the_way:
+            while at < len(image) and len(on_the_way) < PIECES_ON_THE_WAY:
+                piece = image[at:at + PIECE]
+                on_the_way.append((at + len(piece), self.proxy.writeAsync(at, piece)))
+                at += len(piece)
+            received, future = on_the_way.pop(0)
+            self.expect(future.result())
+            if received == len(image) or received - shown >= len(image) // 10:
+                shown = received
+                say("%d of %d bytes" % (received, len(image)))
+        return len(image) - first, time.monotonic() - begun
+
+
+def update(vehicle, images, say):
+    """Brings the vehicle to the package's version, confirmed."""
+    version = HEADER.unpack(next(iter(images.values()))[0])[2]
+    status = vehicle.status()
+    say("the vehicle runs version %d%s" % (status.running, ", on trial" if status.trial else ""))
+    if status.running == version:
+        if not status.trial:
+            say("version %d is confirmed already" % version)
+            return
+    else:
+        if status.slot not in images:
+            raise Failed("the package has no image for the vehicle's free slot")
+        header, image = images[status.slot]
+        vehicle.expect(vehicle.persist(lambda: vehicle.proxy.begin(header)))
+        while True:
+            try:
+                vehicle.wait_while("preparing", "erasing")
+                sent, seconds = vehicle.send(image, say)
+                vehicle.expect(vehicle.proxy.finish())
+                break
+            except Ice.LocalException as e:
+                say("the link was lost (%s): going on where it was" % type(e).__name__)
+                if str(vehicle.status().phase) == "idle":
+                    vehicle.expect(vehicle.persist(lambda: vehicle.proxy.begin(header)))
+        say("%d bytes sent; the vehicle checks them" % sent)
+        vehicle.wait_while("checking")
+        say("version %d is signed and whole; it starts" % version)
+        while True:
+            status = vehicle.status()
+            if status.running == version:
+                break
+            if str(status.last) != "none":
+                vehicle.expect(status.last)
+            time.sleep(0.2)
+    vehicle.expect(vehicle.persist(vehicle.proxy.confirm))
+    say("version %d runs and is confirmed" % version)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("package", help="what pack_update has written")
+    parser.add_argument("--device", help="serial port of the modem")
+    parser.add_argument("--proxy", help="in place of --device: where the object is, as 'update:tcp -h host -p 4061'")
+    parser.add_argument("--plugin", help="folder of libxbeeat.so.37")
+    parser.add_argument("--slice", required=True, help="Update.ice")
+    parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
+    parser.add_argument("--patience", type=int, default=120, help="seconds without an answer until it gives up")
+    args = parser.parse_args()
+    start = time.monotonic()
+
+    def say(text):
+        print("%7.3f s  %s" % (time.monotonic() - start, text), flush=True)
+
+    communicator = None
+    try:
+        images = read_package(args.package)
+        Ice.loadSlice("-I" + (Ice.getSliceDir() or ".") + " " + args.slice)
+        import Update  # made by loadSlice
+        data = Ice.InitializationData()
+        data.properties = Ice.createProperties()
+        settings = {"Ice.Default.InvocationTimeout": "60000", "Ice.ACM.Close": "0", "Ice.RetryIntervals": "-1"}
+        if args.plugin:
+            settings["Ice.Plugin.XBeeAT"] = os.path.join(args.plugin, "xbeeat") + ":createXBeeAT"
+            settings["XBeeAT.Guard"] = str(args.guard)
+        for key, value in settings.items():
+            data.properties.setProperty(key, value)
+        communicator = Ice.initialize(data)
+        where = args.proxy or "update:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % args.device
+        proxy = Update.FirmwarePrx.uncheckedCast(communicator.stringToProxy(where))
+        update(Vehicle(proxy, args.patience), images, say)
+        return 0
+    except KeyboardInterrupt:
+        return 130
+    except (Failed, Ice.Exception, OSError) as e:
+        print("update: %s" % e, file=sys.stderr)
+        return 1
+    finally:
+        if communicator:
+            communicator.destroy()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * clock: oscillator, PLL, dividers (RM0033, 5.2).
+ */
+#include "clock.h"
+#include "stm32f2.h"
+
+void Clock_start(void) {
+    if ((RCC_CFGR & RCC_CFGR_SWS_MASK) == RCC_CFGR_SWS_PLL)
+        return; /* by the boot loader */
+    RCC_CR |= RCC_CR_HSEON;
+    while (!(RCC_CR & RCC_CR_HSERDY))
+        ;
+    /* The PLL makes 25 MHz / 25 * 240 / 2 = 120 MHz, and / 5 = 48 MHz, which the firmware does not
+     * use. */
+    RCC_PLLCFGR = 25UL | 240UL << 6 | 0UL << 16 | 1UL << 22 | 5UL << 24;
+    RCC_CR |= RCC_CR_PLLON;
+    while (!(RCC_CR & RCC_CR_PLLRDY))
+        ;
+    FLASH_ACR = FLASH_ACR_120MHZ;
+    RCC_CFGR = RCC_CFGR_APB1_DIV4 | RCC_CFGR_APB2_DIV2 | RCC_CFGR_SW_PLL;
+    while ((RCC_CFGR & RCC_CFGR_SWS_MASK) != RCC_CFGR_SWS_PLL)
+        ;
+}

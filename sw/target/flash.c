@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * flash: unlocked only for as long as an operation lasts.
+ */
+#include "flash.h"
+#include "stm32f2.h"
+
+static void unlock(void) {
+    if (FLASH_CR & FLASH_CR_LOCK) {
+        FLASH_KEYR = FLASH_KEY1;
+        FLASH_KEYR = FLASH_KEY2;
+    }
+    FLASH_SR = FLASH_SR_ERRORS; /* a chip may come out of reset with some set */
+}
+
+static int done(void) {
+    U32 status;
+    while (FLASH_SR & FLASH_SR_BSY)
+        ;
+    status = FLASH_SR;
+    FLASH_CR = FLASH_CR_LOCK;
+    return !(status & FLASH_SR_ERRORS);
+}
+
+int Flash_erase(void* context, U32 sector) {
+    (void)context;
+    unlock();
+    FLASH_CR = FLASH_CR_X32 | FLASH_CR_SER | sector << 3;
+    FLASH_CR = FLASH_CR_X32 | FLASH_CR_SER | sector << 3 | FLASH_CR_STRT;
+    return done();
+}
+
+int Flash_program(void* context, U32 offset, U32 word) {
+    (void)context;
+    unlock();
+    FLASH_CR = FLASH_CR_X32 | FLASH_CR_PG;
+    REG(FLASH_BASE + offset) = word;
+    return done();
+}

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * loader: checks the slots' images and starts one. It has no variables: its stack is at the end of
+ * RAM, where the firmware keeps nothing that is to survive a reset.
+ */
+#include "loader.h"
+#include "clock.h"
+#include "flash.h"
+#include "signature.h"
+#include "stm32f2.h"
+
+#define TRIAL_PRESCALER 6UL /* LSI / 256: 8 ms */
+#define TRIAL_RELOAD 1250UL /* 10 s until the new firmware serves the watchdog itself */
+
+typedef void (*Vector)(void);
+
+extern void stack_top(void); /* loader.ld */
+
+void Reset_Handler(void);
+
+/* A fault in the loader: the next try may be luckier. */
+static void restart(void) {
+    SCB_AIRCR = SCB_AIRCR_RESET;
+    for (;;)
+        ;
+}
+
+__attribute__((section(".vectors"), used)) static const Vector vectors[16] = {
+    stack_top, /* not a function: the first word is the stack pointer */
+    Reset_Handler, restart, restart, restart, restart, restart};
+
+__attribute__((section(".services"), used)) static const Loader_Services services = {
+    LOADER_MAGIC, Signature_isGood, Signature_digest};
+
+static const Slots_Port port = {
+    (const U8*)FLASH_BASE, 0, Flash_erase, Flash_program, Signature_isGood, Signature_digest};
+
+/* Starts the program whose vectors are there. */
+static void __attribute__((naked, noreturn)) jump(const U32* at) {
+    __asm__ volatile("ldrd r1, r2, [r0]\n\t"
+                     "msr msp, r1\n\t"
+                     "bx r2");
+    (void)at;
+}
+
+void Reset_Handler(void) {
+    U32 slot;
+    Clock_start();
+    slot = Slots_choose(&port, LOADER_PRODUCT);
+    if (slot == SLOTS_NONE) /* nothing here can be helped by radio */
+        for (;;)
+            __asm__ volatile("wfi");
+    if (!Slots_is(&port, slot, SLOTS_CONFIRMED)) {
+        IWDG_KR = IWDG_KR_START;
+        IWDG_KR = IWDG_KR_UNLOCK;
+        IWDG_PR = TRIAL_PRESCALER;
+        IWDG_RLR = TRIAL_RELOAD;
+        IWDG_KR = IWDG_KR_REFRESH;
+    }
+    SCB_VTOR = FLASH_BASE + Slots_at(slot) + SLOTS_IMAGE_AT;
+    jump((const U32*)SCB_VTOR);
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * loader: the boot loader in flash sectors 0 and 1, which starts the firmware of a slot, and what
+ * it offers to that firmware (docs/update.md).
+ */
+#ifndef LOADER_H
+#define LOADER_H
+
+#include "slots.h"
+
+#define LOADER_PRODUCT 0x31564155UL /* "UAV1" */
+#define LOADER_MAGIC 0x1CE50C03UL
+
+/* Lies behind the loader's vectors, so that images need not bring libsodium along. */
+typedef struct Loader_Services {
+    U32 magic;
+    int (*isSigned)(const U8* signature, const U8* message, U32 bytes, const U8* key);
+    void (*digest)(const U8* data, U32 bytes, U8* digest);
+} Loader_Services;
+#define LOADER_SERVICES ((const Loader_Services*)0x08000040UL)
+
+/* What the firmware sees of the slots; 0: no loader has started it. `running` becomes its slot. */
+const Slots_Port* Loader_slots(U32* running);
+
+#endif

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * loader_client: the firmware's side of the boot loader.
+ */
+#include "flash.h"
+#include "loader.h"
+#include "stm32f2.h"
+
+#define WATCHDOG_LONGEST 0xFFFUL
+
+extern U32 image_begin[]; /* firmware.ld */
+
+static Slots_Port port;
+
+/* The watchdog is not served while the processor stands still; it has 4 s for that, 2.8 where its
+ * oscillator is at its fastest. */
+static int erase(void* context, U32 sector) {
+    const U32 usual = IWDG_RLR;
+    int good;
+    IWDG_KR = IWDG_KR_UNLOCK;
+    IWDG_RLR = WATCHDOG_LONGEST;
+    IWDG_KR = IWDG_KR_REFRESH;
+    good = Flash_erase(context, sector);
+    IWDG_KR = IWDG_KR_UNLOCK;
+    IWDG_RLR = usual;
+    IWDG_KR = IWDG_KR_REFRESH;
+    return good;
+}
+
+const Slots_Port* Loader_slots(U32* running) {
+    for (*running = 0; *running < SLOTS_COUNT; ++*running)
+        if ((U32)image_begin == FLASH_BASE + Slots_at(*running) + SLOTS_IMAGE_AT &&
+            LOADER_SERVICES->magic == LOADER_MAGIC) {
+            port.flash = (const U8*)FLASH_BASE;
+            port.erase = erase;
+            port.program = Flash_program;
+            port.isSigned = LOADER_SERVICES->isSigned;
+            port.digest = LOADER_SERVICES->digest;
+            return &port;
+        }
+    return 0;
+}

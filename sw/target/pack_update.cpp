@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+//
+// pack_update: signs a firmware for both slots of a vehicle, or fills the flash of a new one.
+//
+// A package is, for each slot, the signed header (sw/update/slots.h) and the image linked for it.
+
+#include "elf_image.h"
+#include <cstring>
+#include <fcntl.h>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <limits>
+#include <sodium.h>
+#include <stdexcept>
+#include <sys/stat.h>
+#include <unistd.h>
+
+extern "C" {
+#include "flash.h"
+#include "loader.h"
+}
+
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+
+constexpr char usage[] =
+    "Usage: pack_update image NEW.elf VERSION KEYFILE NEW.update\n"
+    "       pack_update vehicle LOADER.elf FIRMWARE.elf VERSION KEYFILE FLASH.bin\n"
+    "image: signs the firmware, to be sent to a vehicle. vehicle: the flash of a new vehicle, "
+    "with\n"
+    "boot loader, public key and a confirmed firmware. KEYFILE is the private key, which is made,\n"
+    "and kept from other users, if there is none. VERSION: 1 to 4294967294.\n";
+
+[[noreturn]] void fail(const std::string& text) {
+    throw std::runtime_error(text);
+}
+
+void save(const std::string& path, const Bytes& bytes) {
+    std::ofstream out(path, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(bytes.data()),
+              static_cast<std::streamsize>(bytes.size()));
+    if (!out.flush())
+        fail("cannot write '" + path + "'");
+}
+
+// The private key of a file, which holds its seed.
+struct Keys {
+    explicit Keys(const std::string& path) {
+        Bytes seed(crypto_sign_SEEDBYTES);
+        std::ifstream in(path, std::ios::binary);
+        if (in) {
+            struct stat found {};
+            if (stat(path.c_str(), &found) == 0 && (found.st_mode & 077))
+                fail("others may read the private key '" + path + "': chmod 600 '" + path + "'");
+            const Bytes file((std::istreambuf_iterator<char>(in)), {});
+            if (file.size() != seed.size())
+                fail("'" + path + "' is no private key: a file of " + std::to_string(seed.size()) +
+                     " bytes is");
+            seed = file;
+        } else {
+            randombytes_buf(seed.data(), seed.size());
+            const int out = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0600);
+            if (out < 0 || write(out, seed.data(), seed.size()) != ssize_t(seed.size()) ||
+                close(out) != 0)
+                fail("cannot write the private key '" + path + "'");
+            std::cout << "pack_update: made a new key pair: " << path
+                      << " signs for vehicles that are filled with it\n";
+        }
+        crypto_sign_seed_keypair(open_.data(), secret.data(), seed.data());
+    }
+    Bytes open_ = Bytes(crypto_sign_PUBLICKEYBYTES), secret = Bytes(crypto_sign_SECRETKEYBYTES);
+};
+
+uint32_t versionOf(const std::string& text) {
+    char* end = nullptr;
+    const unsigned long long version = std::strtoull(text.c_str(), &end, 10);
+    if (text.empty() || *end || version == 0 || version >= std::numeric_limits<uint32_t>::max())
+        fail("version '" + text + "': give 1 to 4294967294");
+    return static_cast<uint32_t>(version);
+}
+
+// Header and image for a slot.
+std::pair<Bytes, Bytes> sign(const ElfImage& elf, uint32_t slot, uint32_t version,
+                             const Keys& keys) {
+    Slots_Header header{};
+    const uint32_t base = Slots_at(slot) + SLOTS_IMAGE_AT;
+    Bytes image = elf.movedTo(FLASH_BASE + base);
+    if (image.size() > SLOTS_IMAGE_BYTES)
+        fail("the firmware has " + std::to_string(image.size()) + " bytes, a slot has " +
+             std::to_string(SLOTS_IMAGE_BYTES));
+    header.magic = SLOTS_MAGIC;
+    header.product = LOADER_PRODUCT;
+    header.version = version;
+    header.bytes = static_cast<uint32_t>(image.size());
+    header.base = base;
+    crypto_hash_sha512(header.digest, image.data(), image.size());
+    Bytes bytes(sizeof header);
+    std::memcpy(bytes.data(), &header, sizeof header);
+    crypto_sign_detached(bytes.data() + SLOTS_SIGNED_BYTES, nullptr, bytes.data(),
+                         SLOTS_SIGNED_BYTES, keys.secret.data());
+    return {bytes, image};
+}
+
+void packImage(const std::string& elf, uint32_t version, const std::string& key,
+               const std::string& output) {
+    const ElfImage firmware(elf);
+    const Keys keys(key);
+    Bytes all;
+    for (uint32_t slot = 0; slot < SLOTS_COUNT; ++slot) {
+        const auto [header, image] = sign(firmware, slot, version, keys);
+        all.insert(all.end(), header.begin(), header.end());
+        all.insert(all.end(), image.begin(), image.end());
+    }
+    save(output, all);
+}
+
+void fillVehicle(const std::string& loader, const std::string& elf, uint32_t version,
+                 const std::string& key, const std::string& output) {
+    const ElfImage firmware(elf), boot(loader);
+    const Keys keys(key);
+    Bytes flash(1 << 20, 0xFF);
+    const auto put = [&flash](size_t offset, const Bytes& bytes) {
+        if (offset + bytes.size() > flash.size())
+            fail("the boot loader does not fit into flash");
+        std::copy(bytes.begin(), bytes.end(), flash.begin() + static_cast<std::ptrdiff_t>(offset));
+    };
+    for (const ElfImage::Segment& s : boot.segments())
+        put(s.address - FLASH_BASE, s.bytes);
+    put(SLOTS_KEY_AT, keys.open_);
+    const auto [header, image] = sign(firmware, 0, version, keys);
+    put(Slots_at(0), header);
+    put(Slots_at(0) + SLOTS_IMAGE_AT, image);
+    const uint32_t isTrue = SLOTS_TRUE;
+    for (uint32_t state : {SLOTS_READY, SLOTS_TRIED, SLOTS_CONFIRMED})
+        std::memcpy(&flash[Slots_at(0) + state], &isTrue, sizeof isTrue);
+    save(output, flash);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const std::vector<std::string> word(argv + 1, argv + argc);
+    try {
+        if (sodium_init() < 0)
+            fail("libsodium does not start");
+        if (word.size() == 5 && word[0] == "image")
+            packImage(word[1], versionOf(word[2]), word[3], word[4]);
+        else if (word.size() == 6 && word[0] == "vehicle")
+            fillVehicle(word[1], word[2], versionOf(word[3]), word[4], word[5]);
+        else {
+            const bool asked = word.size() == 1 && word[0] == "--help";
+            (asked ? std::cout : std::cerr) << usage;
+            return asked ? 0 : 2;
+        }
+    } catch (const std::exception& e) {
+        std::cerr << "pack_update: error: " << e.what() << "\n";
+        return 1;
+    }
+    return 0;
+}

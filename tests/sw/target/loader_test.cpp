@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+//
+// loader_test: the boot loader's ARM binary, which starts the firmware that it should, from flash
+// as a programmer fills it.
+
+#include "stm32f2.h"
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <sys/stat.h>
+#include <unistd.h>
+
+extern "C" {
+#include "loader.h"
+}
+
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+constexpr uint32_t flashBase = 0x08000000;
+
+// A folder of its own for each process, as tests run side by side.
+struct Folder {
+    Folder() { std::filesystem::create_directories(path); }
+    ~Folder() { std::filesystem::remove_all(path); }
+    int pack(const std::string& words) const {
+        return std::system(("cd " + path + " && " PACK_UPDATE " " + words + " >said 2>&1").c_str());
+    }
+    Bytes read(const std::string& name) const {
+        std::ifstream in(path + "/" + name, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    std::string said() const {
+        const Bytes text = read("said");
+        return {text.begin(), text.end()};
+    }
+    std::string path = FOLDER + std::to_string(getpid());
+};
+
+class Loader : public ::testing::Test {
+protected:
+    void fill() {
+        ASSERT_EQ(folder.pack("vehicle " FIRMWARE "loader.elf " FIRMWARE "uav.elf 7 key flash"), 0)
+            << folder.said();
+        chip.cpu().loadFlash(flashBase, folder.read("flash"));
+    }
+    // What a complete update leaves in the second slot.
+    void receive(int version, const char* key = "key") {
+        ASSERT_EQ(folder.pack("image " FIRMWARE "uav.elf " + std::to_string(version) + " " + key +
+                              " update"),
+                  0)
+            << folder.said();
+        const Bytes package = folder.read("update");
+        const auto half = package.begin() + static_cast<std::ptrdiff_t>(package.size() / 2);
+        const auto image = half + sizeof(Slots_Header);
+        const uint32_t at = flashBase + Slots_at(1);
+        chip.cpu().loadFlash(at, Bytes(SLOTS_IMAGE_AT, 0xFF));
+        chip.cpu().loadFlash(at, {half, image});
+        chip.cpu().loadFlash(at + SLOTS_IMAGE_AT, {image, package.end()});
+        const uint32_t isTrue = SLOTS_TRUE;
+        chip.cpu().writeMemory(at + SLOTS_READY, &isTrue, 4);
+    }
+    // Power comes; returns the slot whose firmware's first instruction is reached, -1: none is.
+    int boot() {
+        chip.powerOn();
+        const uint64_t begun = chip.cpu().cycles();
+        chip.cpu().breakpoints.clear();
+        for (uint32_t slot = 0; slot < SLOTS_COUNT; ++slot)
+            chip.cpu().breakpoints.insert(entry(slot));
+        chip.onTime([&] {
+            if (chip.cpu().cycles() - begun > 100'000'000)
+                chip.cpu().stop();
+            return uint64_t(0);
+        });
+        const auto why = chip.run();
+        cycles = chip.cpu().cycles() - begun;
+        if (why != CortexM3::Stop::Breakpoint)
+            return -1;
+        return chip.cpu().reg(CortexM3::Pc) == entry(0) ? 0 : 1;
+    }
+    uint32_t entry(uint32_t slot) {
+        return chip.cpu().word(flashBase + Slots_at(slot) + SLOTS_IMAGE_AT + 4) & ~1u;
+    }
+    uint32_t vectorTable() {
+        uint32_t vtor = 0;
+        chip.cpu().debugRead(0xE000ED08, &vtor, 4);
+        return vtor;
+    }
+
+    Folder folder;
+    uint64_t cycles = 0;
+    FsmcPins pins;
+    FsmcMaster fsmc{pins, {[] {}, [] {}, [](uint64_t clocks, uint64_t) { return clocks; }}};
+    Stm32F2 chip{fsmc, [this] { return fsmc.hclks() * 25 / 3; }, {}};
+};
+
+TEST_F(Loader, StartsTheFirmwareOfANewVehicle) {
+    fill();
+    EXPECT_EQ(boot(), 0);
+    EXPECT_EQ(vectorTable(), flashBase + Slots_at(0) + SLOTS_IMAGE_AT);
+    EXPECT_EQ(chip.cpu().reg(CortexM3::Sp), chip.cpu().word(vectorTable()));
+    EXPECT_LT(cycles, 60'000'000u); // half a second
+    RecordProperty("cycles", static_cast<int>(cycles));
+}
+
+TEST_F(Loader, TriesANewOneOnceAndGoesBack) {
+    fill();
+    receive(8);
+    EXPECT_EQ(boot(), 1);
+    EXPECT_EQ(boot(), 0);
+    EXPECT_EQ(boot(), 0);
+}
+
+TEST_F(Loader, StartsNeitherAnOlderOneNorOneOfAnotherKey) {
+    fill();
+    receive(6);
+    EXPECT_EQ(boot(), 0);
+    receive(8, "foreignKey");
+    EXPECT_EQ(boot(), 0);
+}
+
+TEST_F(Loader, OfAnEmptyChipStartsNothing) {
+    const ElfImage loader(FIRMWARE "loader.elf");
+    chip.cpu().loadFlash(flashBase, Bytes(Stm32Flash::bytes, 0xFF));
+    for (const ElfImage::Segment& s : loader.segments())
+        chip.cpu().loadFlash(s.address, s.bytes);
+    EXPECT_EQ(boot(), -1);
+    EXPECT_GT(chip.cpu().sleepingCycles(), 1'000'000u);
+}
+
+TEST_F(Loader, OffersItsChecksToTheFirmware) {
+    fill();
+    const Loader_Services* services = LOADER_SERVICES;
+    const auto at = static_cast<uint32_t>(reinterpret_cast<uintptr_t>(services));
+    EXPECT_EQ(chip.cpu().word(at), LOADER_MAGIC);
+    const ElfImage loader(FIRMWARE "loader.elf");
+    EXPECT_EQ(chip.cpu().word(at + 4), loader.symbol("Signature_isGood") | 1);
+    EXPECT_EQ(chip.cpu().word(at + 8), loader.symbol("Signature_digest") | 1);
+}
+
+TEST(PackUpdate, SaysWhatIsWrong) {
+    Folder folder;
+    EXPECT_NE(folder.pack("image /dev/null 2 key update"), 0);
+    EXPECT_NE(folder.said().find("/dev/null"), std::string::npos) << folder.said();
+    EXPECT_NE(folder.pack("image " FIRMWARE "uav.elf 0 key update"), 0);
+    EXPECT_NE(folder.said().find("give 1 to 4294967294"), std::string::npos) << folder.said();
+    EXPECT_NE(folder.pack("image " FIRMWARE "loader.elf 2 key update"), 0);
+    EXPECT_NE(folder.said().find("--emit-relocs"), std::string::npos) << folder.said();
+    EXPECT_EQ(folder.pack("image " FIRMWARE "uav.elf 2 key update"), 0);
+    struct stat key {};
+    EXPECT_EQ(stat((folder.path + "/key").c_str(), &key), 0);
+    EXPECT_EQ(key.st_mode & 0777, 0600u);
+    ::chmod((folder.path + "/key").c_str(), 0644);
+    EXPECT_NE(folder.pack("image " FIRMWARE "uav.elf 2 key update"), 0);
+    EXPECT_NE(folder.said().find("chmod 600"), std::string::npos) << folder.said();
+}
+
+} // namespace

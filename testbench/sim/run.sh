@@ -66,7 +66,7 @@ if [ -n "$update" ]; then
     "$pack" image "$update" "$(date +%s)" "$key" "$out/new.update"
     exec setpriv --pdeathsig TERM "$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" \
         --cpu m3 --firmware "$firmware" --flash "$out/flash.bin" -- /usr/bin/python3 "$here/sw/ground/clients/update.py" "$out/new.update" \
-        --device '{device}' --plugin "$build/ground" --slice "$here/sw/apps/uav/Update.ice" --patience "$patience"
+        --device '{device}' --status '{status}' --plugin "$build/ground" --slice "$here/sw/apps/uav/Update.ice" --patience "$patience"
 fi
 parts=''
 [ -z "$sensor" ] || case " $cores " in *' camera '*) ;; *) cores="$cores camera" ;; esac

@@ -53,6 +53,22 @@ def read_package(path):
     return images
 
 
+class Clock:
+    """The vehicle's time in s and the bytes on the air to it: the simulator's (sim_status.h), else the wall clock's and none."""
+
+    FORMAT = struct.Struct("<8s3Q")
+
+    def __init__(self, path):
+        self.path = path
+
+    def read(self):
+        if not self.path:
+            return time.monotonic(), 0
+        with open(self.path, "rb") as f:
+            _, ns, _, up = self.FORMAT.unpack(f.read(self.FORMAT.size))
+        return ns / 1e9, up
+
+
 class Vehicle:
     def __init__(self, proxy, patience):
         self.proxy, self.patience = proxy, patience
@@ -89,10 +105,10 @@ class Vehicle:
             self.expect(status.last)
         return status
 
-    def send(self, image, say):
+    def send(self, image, say, clock):
         """Sends what the vehicle does not have yet, several pieces at a time."""
-        received = self.status().received
-        begun, first = time.monotonic(), received
+        received = first = self.status().received
+        begun, air = clock.read()
         on_the_way, at, shown = [], received, 0
         while at < len(image) or on_the_way:
             while at < len(image) and len(on_the_way) < PIECES_ON_THE_WAY:
@@ -104,10 +120,12 @@ class Vehicle:
             if received == len(image) or received - shown >= len(image) // 10:
                 shown = received
                 say("%d of %d bytes" % (received, len(image)))
-        return len(image) - first, time.monotonic() - begun
+        end, air_end = clock.read()
+        say("sent %d bytes in %.2f s%s; the vehicle checks them" % (
+            len(image) - first, end - begun, ", %d bytes on the air" % (air_end - air) if air_end else ""))
 
 
-def update(vehicle, images, say):
+def update(vehicle, images, say, clock):
     """Brings the vehicle to the package's version, confirmed."""
     version = HEADER.unpack(next(iter(images.values()))[0])[2]
     status = vehicle.status()
@@ -124,14 +142,13 @@ def update(vehicle, images, say):
         while True:
             try:
                 vehicle.wait_while("preparing", "erasing")
-                sent, seconds = vehicle.send(image, say)
+                vehicle.send(image, say, clock)
                 vehicle.expect(vehicle.proxy.finish())
                 break
             except Ice.LocalException as e:
                 say("the link was lost (%s): going on where it was" % type(e).__name__)
                 if str(vehicle.status().phase) == "idle":
                     vehicle.expect(vehicle.persist(lambda: vehicle.proxy.begin(header)))
-        say("%d bytes sent; the vehicle checks them" % sent)
         vehicle.wait_while("checking")
         say("version %d is signed and whole; it starts" % version)
         while True:
@@ -152,6 +169,7 @@ def main():
     parser.add_argument("--proxy", help="in place of --device: where the object is, as 'update:tcp -h host -p 4061'")
     parser.add_argument("--plugin", help="folder of libxbeeat.so.37")
     parser.add_argument("--slice", required=True, help="Update.ice")
+    parser.add_argument("--status", help="the simulator's counters")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
     parser.add_argument("--patience", type=int, default=120, help="seconds without an answer until it gives up")
     args = parser.parse_args()
@@ -176,7 +194,7 @@ def main():
         communicator = Ice.initialize(data)
         where = args.proxy or "update:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % args.device
         proxy = Update.FirmwarePrx.uncheckedCast(communicator.stringToProxy(where))
-        update(Vehicle(proxy, args.patience), images, say)
+        update(Vehicle(proxy, args.patience), images, say, Clock(args.status))
         return 0
     except KeyboardInterrupt:
         return 130

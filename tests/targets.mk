@@ -42,6 +42,14 @@ regress: setup-tests $(BUILD)/build.ninja ## run the regression, write build/reg
 	    --launcher $(LAUNCHER) $(if $(NAME),--name '$(NAME)') $(if $(BLOCK),--block '$(BLOCK)') \
 	    $(if $(LABEL),--label '$(LABEL)') $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed) $(if $(KEPT),--kept)
 
+# TEST=test_fifo.Fifo.Wraps GOOD=commit that it passed at (the last one noted) BAD=HEAD
+TEST ?=
+GOOD ?=
+BAD  ?= HEAD
+bisect: setup-tests $(BUILD)/build.ninja ## find the commit since which a test fails: TEST=test_fifo.Fifo.Wraps (GOOD=commit BAD=commit SEED=n)
+	@$(NINJA) --quiet regress
+	@tests/regress/bisect.sh $(BUILD)/tests/regress/regress $(call quoted,$(TEST)) $(call quoted,$(GOOD)) $(call quoted,$(BAD)) $(call quoted,$(SEED)) $(JOBS)
+
 # Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them. COMPARE_MS: test_quiet compares a second.
 nightly: setup-tests build ## what a timer runs: seeds that have failed, the regression with fresh seeds (NIGHTLY=3 of them), ZeroC's own suites
 	@status=0; export COMPARE_MS=1000; tool="$(BUILD)/tests/regress/regress --build $(BUILD) --jobs $(TESTS) --waves $(WAVES) --launcher $(LAUNCHER)"; \
@@ -69,4 +77,4 @@ coverage: setup-tests $(BUILD)/build.ninja ## lines, branches and toggles that t
 	@$(NINJA) coverage regress
 	@tests/regress/coverage.sh $(BUILD) $(JOBS)
 
-.PHONY: regress nightly threads faults proofs coverage
+.PHONY: regress bisect nightly threads faults proofs coverage

@@ -31,10 +31,10 @@ json judge(const std::string& name, const std::string& good, const std::string& 
 }
 
 // Rows of `results` are [name, status, ...]; proofs are the tests named formal.*
-json ofTests(const json& results, bool proofs) {
+json ofTests(const json& data, bool proofs) {
     std::vector<std::string> bad;
     unsigned passed = 0;
-    for (const json& row : results) {
+    for (const json& row : data.at("results")) {
         std::string name = row.at(0), status = row.at(1);
         if ((name.rfind("formal.", 0) == 0) != proofs)
             continue;
@@ -44,8 +44,10 @@ json ofTests(const json& results, bool proofs) {
     }
     if (bad.empty() && passed == 0)
         return missing(proofs ? "proofs" : "tests", "none ran");
-    return judge(proofs ? "proofs" : "tests",
-                 fmt::format("{} {}", passed, proofs ? "hold" : "passed"), "failed", bad);
+    std::string good = fmt::format("{} {}", passed, proofs ? "hold" : "passed");
+    if (const unsigned left = data.at("left").at(proofs ? "proofs" : "tests"))
+        good += fmt::format(", {} did not run", left);
+    return judge(proofs ? "proofs" : "tests", good, "failed", bad);
 }
 
 json ofMutants(const json& rows) {
@@ -113,7 +115,7 @@ json ofSize(const json& utilisation) {
 } // namespace
 
 json lightsOf(const json& data, const std::string& source) {
-    json lights = {ofTests(data.at("results"), false), ofTests(data.at("results"), true)};
+    json lights = {ofTests(data, false), ofTests(data, true)};
     // A measurement keeps the state of the tree that it measured (treeState).
     const auto add = [&](json light) {
         const std::string tree = data.at("trees").value(light["name"].get<std::string>(), "");

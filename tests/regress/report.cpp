@@ -9,6 +9,7 @@
 #include <fstream>
 #include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -133,6 +134,13 @@ json gather(const History& history, const std::vector<Test>& tests,
         rows.push_back({result.name, result.status, result.seconds, test ? test->place : "",
                         test && !test->labels.empty() ? test->labels[0] : "", result.seed, ends});
     }
+    std::set<std::string> ran;
+    for (const Result& result : results)
+        ran.insert(result.name);
+    unsigned left[2] = {0, 0}; // tests and proofs that were not chosen
+    for (const Test& test : tests)
+        left[test.name.rfind("formal.", 0) == 0] += ran.count(test.name) == 0;
+    data["left"] = {{"tests", left[0]}, {"proofs", left[1]}};
     auto& bad = data["failures"] = json::array();
     for (const Failure& failure : failures)
         bad.push_back({{"name", failure.result.name},

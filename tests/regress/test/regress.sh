@@ -84,6 +84,8 @@ END
 company) # progress, one run at a time, words for what was mistyped, no more built than is needed
     run --name 'a.One|formal'
     has '^2 of 2, 0 failed, 0:00 left'
+    has '^tests  *green  1 passed, 4 did not run$'
+    has '^proofs  *green  1 hold$'
     run --seed abc
     [ $status -eq 2 ] || fail "exit status $status, not 2, for a seed that is none"
     has "'abc' is neither a number nor .random"
@@ -168,6 +170,29 @@ seeds)
     run --kept
     [ $status -eq 0 ] || fail "exit status $status, not 0, when kept seeds pass"
     [ ! -s build/regress/seeds.jsonl ] || fail "seeds that pass are kept"
+    ;;
+bisect) # of five commits the third breaks test_a.One; the second does not configure; the checkout stays as it is
+    : >change && git add change && git commit -qm "something else"
+    echo 'broken(' >>CMakeLists.txt && git commit -qam "does not configure"
+    git revert --no-edit HEAD >/dev/null
+    run --name a.One # passes, and is noted
+    sed -i 's/^case .1 in/&\na.One) exit 1 ;;/' tests/room/t.sh && git commit -qam "breaks it"
+    for n in 1 2; do echo $n >change && git commit -qam "later $n"; done
+    echo mine >change
+    git status --short >before.txt
+    bisect() { status=0; "$source/tests/regress/bisect.sh" "$regress" "$@" >out.txt 2>&1 || status=$?; }
+    bisect test_a.One
+    [ $status -eq 0 ] || fail "exit status $status, not 0"
+    has '^since [0-9a-f]* breaks it (a, '
+    bisect test_a.One "$(git rev-list --max-parents=0 HEAD)"
+    has '^since [0-9a-f]* breaks it (a, '
+    [ "$(cat change)" = mine ] && [ ! -e build/bisect/tree ] || fail "the checkout is changed"
+    bisect test_a.Two "$(git rev-list --max-parents=0 HEAD)"
+    [ $status -eq 2 ] && has 'passes at' || fail "a test that passes"
+    bisect test_b.Bad
+    [ $status -eq 2 ] && has 'GOOD= names one' || fail "no commit to begin with"
+    bisect test_a.One nonsense
+    [ $status -eq 2 ] && has 'no commit nonsense' || fail "a commit that is none"
     ;;
 slurm)
     command -v slurmctld >/dev/null 2>&1 || PATH=$PATH:/usr/sbin

@@ -12,52 +12,56 @@
 
 #define RATE 16U /* bytes of a block */
 
-/* A half of a word turned right by 0 < n < 32, when `next` is the half above it. */
-#define TURNED(half, next, n) ((half) >> (n) | (next) << (32 - (n)))
-
-/* Mixes the word whose halves are at w with itself turned right by m and n, less than 32. */
-#define DIFFUSE(w, m, n)                                        \
-    low = (w)[0];                                               \
-    high = (w)[1];                                              \
-    (w)[0] = low ^ TURNED(low, high, m) ^ TURNED(low, high, n); \
-    (w)[1] = high ^ TURNED(high, low, m) ^ TURNED(high, low, n);
+/* A half of a word turned right by 0 < n < 32, when `next` is the half above it. The parts are
+ * joined by ^, since the processor shifts an operand of that at no cost. */
+#define TURNED(half, next, n) ((half) >> (n) ^ (next) << (32 - (n)))
 
 /* The S-box of 5 bits, 32 times at once, on one half of each word. */
-static void substitute(U32* half) {
-    U32 x1 = half[2];
-    U32 x3 = half[6];
-    U32 x0 = half[0] ^ half[8];
-    U32 x2 = half[4] ^ x1;
-    U32 x4 = half[8] ^ x3;
-    U32 y0 = x0 ^ (~x1 & x2);
-    U32 y2 = x2 ^ (~x3 & x4);
-    U32 y4 = x4 ^ (~x0 & x1);
-    half[2] = x1 ^ (~x2 & x3) ^ y0;
-    half[6] = x3 ^ (~x4 & x0) ^ y2;
-    half[0] = y0 ^ y4;
-    half[4] = ~y2;
-    half[8] = y4;
-}
+#define SUBSTITUTE(x0, x1, x2, x3, x4) \
+    x0 ^= x4;                          \
+    x4 ^= x3;                          \
+    x2 ^= x1;                          \
+    y0 = x0 ^ (x2 & ~x1);              \
+    y1 = x1 ^ (x3 & ~x2);              \
+    y2 = x2 ^ (x4 & ~x3);              \
+    x3 ^= x0 & ~x4;                    \
+    x4 ^= x1 & ~x0;                    \
+    x1 = y1 ^ y0;                      \
+    x3 ^= y2;                          \
+    x0 = y0 ^ x4;                      \
+    x2 = ~y2;
+
+/* Mixes a word with itself turned right by m and by n. l and h, k and i are its two halves for each
+ * of the turns: low, high; for one by more than 32, which is taken off, the other way round. */
+#define DIFFUSE(low, high, l, h, m, k, i, n)         \
+    y0 = low ^ TURNED(l, h, m) ^ TURNED(k, i, n);    \
+    high = high ^ TURNED(h, l, m) ^ TURNED(i, k, n); \
+    low = y0;
 
 static void permute(U32* half, U32 constant) {
-    U32 low, high;
+    U32 a = half[0], b = half[2], c = half[4], d = half[6], e = half[8]; /* low halves of words */
+    U32 A = half[1], B = half[3], C = half[5], D = half[7], E = half[9]; /* high ones */
+    U32 y0, y1, y2;
     for (; constant != ROUNDS_END; constant -= ROUND_STEP) {
-        half[4] ^= constant;
-        substitute(half);
-        substitute(half + 1);
-        DIFFUSE(half, 19, 28)
-        DIFFUSE(half + 4, 1, 6)
-        DIFFUSE(half + 6, 10, 17)
-        /* These turn by more than 32: the halves change places. */
-        low = half[2];
-        high = half[3];
-        half[2] = low ^ TURNED(high, low, 29) ^ TURNED(high, low, 7);
-        half[3] = high ^ TURNED(low, high, 29) ^ TURNED(low, high, 7);
-        low = half[8];
-        high = half[9];
-        half[8] = low ^ TURNED(low, high, 7) ^ TURNED(high, low, 9);
-        half[9] = high ^ TURNED(high, low, 7) ^ TURNED(low, high, 9);
+        c ^= constant;
+        SUBSTITUTE(a, b, c, d, e)
+        SUBSTITUTE(A, B, C, D, E)
+        DIFFUSE(a, A, a, A, 19, a, A, 28)
+        DIFFUSE(b, B, B, b, 29, B, b, 7) /* by 61 and 39 */
+        DIFFUSE(c, C, c, C, 1, c, C, 6)
+        DIFFUSE(d, D, d, D, 10, d, D, 17)
+        DIFFUSE(e, E, e, E, 7, E, e, 9) /* by 7 and 41 */
     }
+    half[0] = a;
+    half[1] = A;
+    half[2] = b;
+    half[3] = B;
+    half[4] = c;
+    half[5] = C;
+    half[6] = d;
+    half[7] = D;
+    half[8] = e;
+    half[9] = E;
 }
 
 /* Adds bytes to the state, from a half on; one at a time, as they may lie anywhere. */

@@ -54,21 +54,25 @@ static int isUnder(Link* link, int slot, U8* frame, Link_Kind kind) {
     return link_unprotect(frame, key, 0, 0);
 }
 
+/* Returns whether a HELLO was answered just now, and none is to be before long. */
+static int hasAnswered(const Link* link) {
+    return link->state == LINK_STATE_UP &&
+           link->now - link->handshake.lastAnswer < LINK_ANSWER_EVERY;
+}
+
 int link_isGenuine(Link* link, U8* frame, Link_Kind kind) {
     const Link_Handshake* handshake = &link->handshake;
     const U8* nonces = frame + LINK_HEADER;
     int isUp = link->state == LINK_STATE_UP;
+    if (kind == LINK_KIND_HELLO && hasAnswered(link))
+        return 1; /* onHello ignores it; the next frame is behind it */
     if (frame[1] != LINK_VERSION || isSameNonce(nonces, handshake->nonce))
         return 0; /* the own ones, reflected */
-    if (kind == LINK_KIND_HELLO) {
-        if (isUp && link->now - handshake->lastAnswer < LINK_ANSWER_EVERY)
-            return 0;
-    } else if (kind == LINK_KIND_CONFIRM && isOfSession(link, nonces)) {
+    if (kind == LINK_KIND_CONFIRM && isOfSession(link, nonces))
         return link_unprotect(frame, link->session.keys.receive, 0, 0);
-    } else if (!isSameNonce(nonces + LINK_NONCE_BYTES, handshake->nonce) ||
-               (kind == LINK_KIND_CONFIRM ? !handshake->isAnswered : isUp)) {
+    if (kind != LINK_KIND_HELLO && (!isSameNonce(nonces + LINK_NONCE_BYTES, handshake->nonce) ||
+                                    (kind == LINK_KIND_CONFIRM ? !handshake->isAnswered : isUp)))
         return 0;
-    }
     if (isUnder(link, 0, frame, kind) || isUnder(link, 1, frame, kind))
         return 1;
     forgetCandidate(link);
@@ -83,6 +87,9 @@ static void begin(Link* link) {
 
 static void onHello(Link* link, const U8* frame) {
     Link_Handshake* handshake = &link->handshake;
+    if (hasAnswered(link))
+        return;
+    handshake->lastAnswer = link->now;
     if (link->state == LINK_STATE_UP && isSameNonce(frame + LINK_HEADER, link->session.peerNonce)) {
         if (handshake->isUnconfirmed) /* the peer has not heard the CONFIRM */
             link_sendHandshake(link, &link->session, LINK_KIND_CONFIRM);
@@ -91,7 +98,6 @@ static void onHello(Link* link, const U8* frame) {
     makeKeyed(link, handshake->candidate.slot, frame);
     link_sendHandshake(link, &handshake->candidate, LINK_KIND_HELLO_ACK);
     forgetCandidate(link);
-    handshake->lastAnswer = link->now;
     if (!handshake->isAnswered)
         handshake->firstAnswer = link->now;
     handshake->isAnswered = 1;

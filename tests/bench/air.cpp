@@ -21,11 +21,16 @@ constexpr U32 byteTimeUs16 = 1440;
 unsigned leastExponent = 2; // RN, as controller and ground set it
 const char* const key = "0123456789ABCDEF0123456789ABCDEF";
 
+// Who encrypts: nobody, the modems, or the link layer with a key (docs/link.md).
+enum Mode { Clear, Encrypted, Keyed };
+const char* const columns[] = {"clear    ", "encrypted", "keyed    "};
+const char* const names[] = {"in the clear", "encrypted", "with a key"};
+
 class End {
 public:
-    End(RfChannel& air, unsigned address, bool encrypted, uint64_t seed)
-        : modem_(line_, air, options(address, encrypted)),
-          pacer_(90, encrypted ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME), random_(seed) {
+    End(RfChannel& air, unsigned address, Mode mode, uint64_t seed)
+        : modem_(line_, air, options(address, mode)),
+          pacer_(90, mode == Encrypted ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME), random_(seed) {
         static const Link_Port port = {
             [](void* c, const U8* f, U32 n) { return self(c).transmit(f, n); },
             [](void* c) { return self(c).random_.next(); },
@@ -35,7 +40,9 @@ public:
             nullptr,
             nullptr};
         Link_init(link(), &port, this, byteTimeUs16);
-        if (encrypted)
+        if (mode == Keyed)
+            Link_setKey(link(), 0, reinterpret_cast<const U8*>(key));
+        if (mode == Encrypted)
             Link_limitFrame(link(), LINK_MAX_ENCRYPTED);
     }
     Link* link() { return link_.get(); }
@@ -63,15 +70,15 @@ public:
 
 private:
     static End& self(void* c) { return *static_cast<End*>(c); }
-    static XBee::Options options(unsigned address, bool encrypted) {
+    static XBee::Options options(unsigned address, Mode mode) {
         XBee::Options o;
         o.set = {{"BD", 7},
                  {"MY", address},
                  {"DL", 1 - address},
                  {"D7", 1},
-                 {"EE", encrypted ? 1u : 0u},
+                 {"EE", mode == Encrypted ? 1u : 0u},
                  {"RN", leastExponent}};
-        if (encrypted)
+        if (mode == Encrypted)
             o.key = key;
         return o;
     }
@@ -107,8 +114,8 @@ private:
 
 class World {
 public:
-    World(const RfWeather& weather, bool encrypted, uint64_t seed = testSeed())
-        : air(seed), a(air, 0, encrypted, seed + 1), b(air, 1, encrypted, seed + 2) {
+    World(const RfWeather& weather, Mode mode, uint64_t seed = testSeed())
+        : air(seed), a(air, 0, mode, seed + 1), b(air, 1, mode, seed + 2) {
         air.weather = weather;
         Link_start(a.link(), 0);
         until([&] { return a.isUp() && b.isUp(); }, 60);
@@ -159,34 +166,33 @@ std::array<double, 2> flow(World& w, bool both, uint64_t seconds) {
 }
 
 // The mean over some seeds: single runs differ by a tenth.
-void goodput(double loss, bool encrypted, bool both) {
+void goodput(double loss, Mode mode, bool both) {
     RfWeather weather;
     weather.loss = loss;
     const unsigned runs = figures.brief ? 1 : 9;
     double rate[2] = {0, 0}, least = 1e9, most = 0;
     for (unsigned run = 0; run < runs; ++run) {
-        World w(weather, encrypted, testSeed() + 10 * run);
+        World w(weather, mode, testSeed() + 10 * run);
         const auto one = flow(w, both, figures.brief ? 1 : 20);
         for (int i = 0; i < 2; ++i)
             rate[i] += one[i] / runs;
         least = std::min(least, one[0] + one[1]);
         most = std::max(most, one[0] + one[1]);
     }
-    const double limit = encrypted ? 47000.0 / 8 : 10000;
+    const double limit = mode == Encrypted ? 47000.0 / 8 : 10000;
     const double all = rate[0] + rate[1];
     std::printf("%s, %s, %2.0f %% lost: %5.0f + %5.0f bytes/s, %.1f %% of %.0f (%.1f to %.1f)\n",
-                encrypted ? "encrypted" : "clear    ", both ? "both ways" : "one way  ", loss * 100,
-                rate[0], rate[1], all / limit * 100, limit, least / limit * 100,
-                most / limit * 100);
+                columns[mode], both ? "both ways" : "one way  ", loss * 100, rate[0], rate[1],
+                all / limit * 100, limit, least / limit * 100, most / limit * 100);
     char name[80];
     std::snprintf(name, sizeof name, "goodput %s %s, loss %.2f", both ? "both ways" : "one way",
-                  encrypted ? "encrypted" : "in the clear", loss);
+                  names[mode], loss);
     figures.add(name, all, "bytes/s", limit);
 }
 
-void roundTrips(bool encrypted) {
-    World w(RfWeather(), encrypted);
-    for (U32 size : {1u, 20u, 94u - (encrypted ? 5u : 0u)}) {
+void roundTrips(Mode mode) {
+    World w(RfWeather(), mode);
+    for (U32 size : {1u, 20u, 94u - (mode == Encrypted ? 5u : mode == Keyed ? 6u : 0u)}) {
         std::vector<double> times;
         w.b.echoSize = size;
         const std::vector<U8> message(size, 1);
@@ -200,11 +206,9 @@ void roundTrips(bool encrypted) {
             w.until([&] { return w.now >= rest; }, 5);
         }
         std::sort(times.begin(), times.end());
-        std::printf("%s: round trip of %2u bytes: median %.1f ms, longest %.1f\n",
-                    encrypted ? "encrypted" : "clear    ", size, times[times.size() / 2],
-                    times.back());
-        figures.add("round trip of " + std::to_string(size) + " bytes " +
-                        (encrypted ? "encrypted" : "in the clear"),
+        std::printf("%s: round trip of %2u bytes: median %.1f ms, longest %.1f\n", columns[mode],
+                    size, times[times.size() / 2], times.back());
+        figures.add("round trip of " + std::to_string(size) + " bytes " + names[mode],
                     times[times.size() / 2], "ms");
     }
 }
@@ -214,12 +218,12 @@ void roundTrips(bool encrypted) {
 int main(int argc, char** argv) {
     figures.app.add_option("--rn", leastExponent, "RN of both modems")->check(CLI::Range(0u, 3u));
     return figures.run(argc, argv, [&] {
-        for (bool encrypted : {false, true}) {
+        for (Mode mode : {Clear, Encrypted, Keyed}) {
             for (bool both : {false, true})
                 for (double loss : {0.0, 0.01, 0.1, 0.3})
                     if (!figures.brief || loss == 0.1)
-                        goodput(loss, encrypted, both);
-            roundTrips(encrypted);
+                        goodput(loss, mode, both);
+            roundTrips(mode);
         }
     });
 }

@@ -3,6 +3,7 @@
 // options_test: link layers compiled with different sizes, and the minimal one, understand each
 // other.
 
+#include "ice_messages.h"
 #include "variant.h"
 #include <gtest/gtest.h>
 #include <tuple>
@@ -67,6 +68,42 @@ INSTANTIATE_TEST_SUITE_P(
                       Names{"full", "small", true}, Names{"window64", "full", true},
                       Names{"full", "minimal", true}, Names{"small", "minimal", true},
                       Names{"tag4", "tag4", true}, Names{"tag4", "minimal_tag4", true}));
+
+// Bytes on the air of a call and its reply, acknowledgements included: without a key, with tags of
+// 8 bytes and of 4; beside MAVLink 2, whose signature takes 13 bytes a frame.
+class CallBytes : public ::testing::TestWithParam<Names>, public Radio {
+protected:
+    CallBytes()
+        : Radio(std::get<0>(GetParam()), std::get<1>(GetParam()), testSeed(),
+                Bytes(std::get<2>(GetParam()) ? LINK_KEY_BYTES : 0, 0x5A)) {}
+};
+
+TEST_P(CallBytes, ACallAndItsReplyTakeFewerThanMavlink) {
+    const bool isSecure = std::get<2>(GetParam());
+    ASSERT_TRUE(connect());
+    a_.open(0);
+    run(400'000);
+    uint64_t before = 0;
+    for (uint32_t id = 1; id <= 2; ++id) {
+        before = a_.sent + b_.sent;
+        a_.send(0, IceMessages::request(id, "hwengine1", "setParameterA", {24, 0}), id);
+        ASSERT_TRUE(until([&] { return b_.received.size() == id; }, 1'000'000));
+        b_.send(0, IceMessages::reply(id, {}), id);
+        ASSERT_TRUE(until([&] { return a_.received.size() == id; }, 1'000'000));
+        run(400'000);
+    }
+    const uint64_t took = a_.sent + b_.sent - before;
+    const uint64_t tag = !isSecure ? LINK_CRC : std::get<0>(GetParam()) == "tag4" ? 4 : LINK_TAG;
+    std::printf("setParameterA(short) and its reply, %s: %u bytes on the air; MAVLink 2: %u\n",
+                isSecure ? std::get<0>(GetParam()).c_str() : "open", unsigned(took),
+                isSecure ? 58u + 35 : 45u + 22);
+    EXPECT_EQ(took, 21 + 3 * (tag - LINK_CRC));
+}
+
+INSTANTIATE_TEST_SUITE_P(Tags, CallBytes,
+                         ::testing::Values(Names{"full", "full", false},
+                                           Names{"full", "full", true},
+                                           Names{"tag4", "tag4", true}));
 
 TEST(LinkOptions, MemoryIsWhatTheDocumentationSays) {
     for (auto variant : {"full", "window64", "small", "minimal"})

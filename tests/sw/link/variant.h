@@ -35,6 +35,7 @@ public:
         load(poll, "Link_poll");
         load(deadline, "Link_deadline");
         load(receive, "Link_receive");
+        load(statistics, "Link_statistics");
         if (!key.empty())
             load(setKey, "Link_setKey");
         load(send_, "Link_send");
@@ -94,6 +95,7 @@ public:
     decltype(&Link_deadline) deadline;
     decltype(&Link_receive) receive;
     decltype(&Link_state) state;
+    decltype(&Link_statistics) statistics;
     decltype(&Link_setKey) setKey;
     U32 (*size)();
     U32 (*maxMessage)();
@@ -104,6 +106,7 @@ public:
     bool refuse = false; // takes no message
     double loss = 0, duplication = 0, corruption = 0;
     uint64_t now = 0, free = 0;
+    uint64_t sent = 0; // bytes
 
 private:
     template <class F> void load(F& f, const char* name) {
@@ -116,6 +119,7 @@ private:
         if (free > now + 30000)
             return 1;
         free = std::max(free, now) + bytes * 90;
+        sent += bytes;
         if (random_.chance(loss))
             return 0;
         Bytes packet(frame, frame + bytes);

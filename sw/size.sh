@@ -34,14 +34,21 @@ includes="-I$gen -I$gen/slice/Autopilot"
 for d in base os os/host fsmc radio crypto link icec icec/endpoints; do includes="$includes -I$source/sw/$d"; done
 layers='fsmc radio crypto link icec endpoint'
 
-for layer in $layers; do
-    sources=$source/sw/$layer/*.c
-    [ $layer != endpoint ] || sources=$source/sw/icec/endpoints/xbee_endpoint.c
-    mkdir "$work/$layer"
+compile() { # folder, sources and definitions
+    mkdir "$work/$1"
     # shellcheck disable=SC2086 # lists of words
-    (cd "$work/$layer" && arm-none-eabi-gcc -std=c90 $target -Os -ffunction-sections -fdata-sections -fno-merge-constants \
-        -fstack-usage $includes -c $sources)
+    (cd "$work/$1" && shift && arm-none-eabi-gcc -std=c90 $target -Os -ffunction-sections -fdata-sections \
+        -fno-merge-constants -fstack-usage $includes -c "$@")
+}
+for layer in $layers; do
+    case $layer in
+    endpoint) compile endpoint "$source"/sw/icec/endpoints/xbee_endpoint.c ;;
+    *) compile "$layer" "$source/sw/$layer"/*.c ;;
+    esac
 done
+compile open -DLINK_SECURE=0 "$source"/sw/link/*.c
+compile keyed -DLINK_MINIMAL -DLINK_SECURE=1 "$source"/sw/link/minimal/*.c "$source"/sw/link/link_wire.c \
+    "$source"/sw/link/link_secure.c
 
 # Bytes of the sections whose names match, of a layer's files, in the image.
 linked() { # layer, pattern
@@ -107,6 +114,12 @@ for layer in $layers; do
 done
 printf '%-10s %8d %8d %8d\n' all $minimalTotal $paperTotal $fullTotal
 entry minimal.all $minimalTotal $paperTotal
+open=$(whole open 1) keyed=$(whole keyed 1)
+check open link "$open"
+check keyed link "$keyed"
+entry "full.link without keys" "$open" 0
+entry "minimal.link with keys" "$keyed" 0
+echo "The full link without keys (LINK_SECURE=0): $open; the minimal one with them (LINK_SECURE=1): $keyed, and crypto"
 echo "RAM of the minimal program with all objects: $(linked app '^[.](data|bss)|^COMMON') bytes, of generated code and servants: $(linked app '^[.](text|rodata)') bytes of text"
 mkdir -p "$(dirname "$json")"
 printf '[%s]\n' "$entries" >"$json"

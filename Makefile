@@ -30,6 +30,9 @@ CORES ?=
 CLK_HZ ?= 100000000
 # CAMERA=1: the picture comes through the camera core's pins, and the vision core takes it from there
 CAMERA ?=
+# KEY=file: the link's key, of vehicle and ground (sw/ground/key_file.h); without one, a demo key; OPEN=1: in the clear
+KEY   ?=
+OPEN  ?=
 # PINS=file: drives the inputs of cores (docs/simulation.md)
 PINS ?=
 # Folder of a flight (its OUT) that make run and make gdb fly again, bit by bit; FROM=1.5 TO=1.6: its waveform, in s
@@ -53,7 +56,7 @@ help: ## this list
 	@echo
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 	@echo
-	@echo "Variables: IMAGE=file SIZE=320x240 THRESHOLD=24 LOSS=0.1 SEED=1 OUT=build/run CPU=host|m3 APP=uav|minimal LIVE=1 PORT=8080 CORES=ascon CAMERA=1 PINS=file UPDATE=new.elf CLK_HZ=2000000 REPLAY=build/run FROM=1.5 TO=1.6 (make run);"
+	@echo "Variables: IMAGE=file SIZE=320x240 THRESHOLD=24 LOSS=0.1 SEED=1 OUT=build/run CPU=host|m3 APP=uav|minimal LIVE=1 PORT=8080 CORES=ascon CAMERA=1 PINS=file KEY=file OPEN=1 UPDATE=new.elf CLK_HZ=2000000 REPLAY=build/run FROM=1.5 TO=1.6 (make run);"
 	@echo "           LABEL=rtl|vhdl|formal|lint|firmware|interop|e2e NAME=regexp SEED=1 (make test)"
 
 setup: ## install the Debian packages that make run needs and the machine lacks
@@ -79,7 +82,7 @@ run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground st
 	testbench/sim/run.sh "$(BUILD)" --app $(call quoted,$(APP)) --image $(call quoted,$(IMAGE)) --size $(call quoted,$(SIZE)) \
 	    --threshold $(call quoted,$(THRESHOLD)) --loss $(call quoted,$(LOSS)) --seed $(call quoted,$(SEED)) --out $(call quoted,$(OUT)) \
 	    --cpu $(call quoted,$(CPU)) --port $(call quoted,$(PORT)) $(if $(LIVE),--live 1) $(if $(CORES),--cores $(call quoted,$(CORES))) \
-	    $(if $(CAMERA),--sensor 1) $(if $(PINS),--pins $(call quoted,$(PINS))) $(if $(UPDATE),--update $(call quoted,$(UPDATE))) $(if $(UCOS2),--firmware "$(BUILD)/firmware/uav_ucos2.elf")
+	    $(if $(CAMERA),--sensor 1) $(if $(PINS),--pins $(call quoted,$(PINS))) $(if $(KEY),--key $(call quoted,$(KEY))) $(if $(OPEN),--open 1) $(if $(UPDATE),--update $(call quoted,$(UPDATE))) $(if $(UCOS2),--firmware "$(BUILD)/firmware/uav_ucos2.elf")
 
 test: setup-tests build ## run all tests; firmware, models and IceC once more with sanitizers
 ifneq ($(LABEL)$(NAME),)

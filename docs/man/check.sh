@@ -13,8 +13,8 @@ warnings=$(LC_ALL=C.UTF-8 MANWIDTH=100 man --warnings -l "$page" 2>&1 >/dev/null
 [ -z "$warnings" ] || say "$warnings"
 if [ -d "$subject" ]; then
     wanted=$(sed -n 's/.*find(option).*/&/p' "$subject"/*.cpp "$subject"/*.h | grep -o '"-[-a-z]*"' | head -1 | grep -o -- '-[a-z]'
-        grep -ho 'XBeeAT\.[A-Z][a-z]*' "$subject"/*.cpp "$subject"/*.h | sort -u)
-    found=$(grep -o 'XBeeAT\.[A-Z][a-z]*' "$page" | sort -u)
+        grep -ho 'XBeeAT\.[A-Z][A-Za-z]*' "$subject"/*.cpp "$subject"/*.h | sort -u)
+    found=$(grep -o 'XBeeAT\.[A-Z][A-Za-z]*' "$page" | sort -u)
 else
     wanted=$("$subject" --help 2>&1 | grep -o -- '--[a-z-]*' | sort -u)
     found=$(grep -o -- '--[a-z-]*[a-z]' "$page" | sort -u)

@@ -45,21 +45,29 @@ std::shared_ptr<Engine> Engine::get(const Settings& settings, const Log& log) {
     auto& engines = registry();
     for (auto it = engines.begin(); it != engines.end();)
         it = it->second.expired() ? engines.erase(it) : std::next(it);
+    // Who has a key is not to talk in the clear because another was here before.
+    auto shared = [&](std::shared_ptr<Engine> engine) {
+        std::lock_guard<std::mutex> inner(engine->mutex_);
+        if (engine->settings_.keys != settings.keys)
+            throw std::system_error(EBUSY, std::generic_category(),
+                                    "'" + engine->device_ +
+                                        "' is in use with other keys: all who share a device give "
+                                        "the same key file and address");
+        if (engine->failed_ && !settings.device.empty())
+            engine->settings_ = settings;
+        return engine;
+    };
     if (settings.device.empty()) {
         if (engines.size() == 1)
             if (auto engine = engines.begin()->second.lock())
-                return engine;
+                return shared(engine);
         throw std::system_error(
             ENODEV, std::generic_category(),
             "xbee-at endpoint without -d, XBeeAT.Device not set, and not exactly "
             "one device in use");
     }
-    if (auto engine = engines[settings.device].lock()) {
-        std::lock_guard<std::mutex> inner(engine->mutex_);
-        if (engine->failed_)
-            engine->settings_ = settings;
-        return engine;
-    }
+    if (auto engine = engines[settings.device].lock())
+        return shared(engine);
     std::shared_ptr<Engine> engine(new Engine(settings, log));
     engines[settings.device] = engine;
     return engine;
@@ -74,6 +82,8 @@ Engine::Engine(const Settings& settings, const Log& log)
     static const Link_Port port = {onTransmit, onRandom,  onMessage, onChannel,
                                    onState,    onOutcome, onWritable};
     Link_init(link_.get(), &port, this, static_cast<U32>(settings.characterUs() * 16));
+    for (size_t slot = 0; slot < settings.keys.size(); ++slot)
+        Link_setKey(link_.get(), static_cast<int>(slot), settings.keys[slot].data());
     thread_ = std::thread([this] { run(); });
 }
 
@@ -84,6 +94,10 @@ Engine::~Engine() {
     }
     wake();
     thread_.join();
+    for (size_t slot = 0; slot < settings_.keys.size(); ++slot) {
+        Link_setKey(link_.get(), static_cast<int>(slot), nullptr);
+        explicit_bzero(settings_.keys[slot].data(), settings_.keys[slot].size());
+    }
     for (int fd : {wakePipe_[0], wakePipe_[1], acceptPipe_[0], acceptPipe_[1]})
         if (fd >= 0)
             close(fd);

@@ -69,7 +69,11 @@ void Engine::onChannel(void* context, int channel, int isOpen) {
 void Engine::onState(void* context, Link_State state) {
     Engine& e = self(context);
     static const char* const names[] = {"idle", "connecting", "up"};
-    e.log_(1, "link " + std::string(names[state]));
+    const bool isSecure = Link_keyInUse(e.link_.get()) >= 0;
+    e.log_(1, "link " + std::string(names[state]) +
+                  (state != LINK_STATE_UP ? ""
+                   : isSecure             ? ", secure"
+                                          : ", in the clear"));
     if (state == LINK_STATE_UP)
         return;
     for (Stream& s : e.streams_)
@@ -199,7 +203,9 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
         if (stop_ || failed_)
             return;
         log_(0, "no link for " + std::to_string((clock_.nowUs() - upAt_) / 1000000) +
-                    " s: is the UAV on, and in reach? Setting the modem up again");
+                    " s: is the UAV on, in reach, and " +
+                    (settings.keys.empty() ? "without a key as this side is" : "has it this key") +
+                    "? Setting the modem up again");
         patienceUs_ = std::min(patienceUs_ * 2, 4 * down);
     }
 }

@@ -15,7 +15,6 @@
 #include <csignal>
 #include <cstring>
 #include <deque>
-#include <fstream>
 #include <iostream>
 #include <netdb.h>
 #include <netinet/tcp.h>
@@ -36,7 +35,7 @@ constexpr seconds stationPatience{5}; // of the UAV, until the station has accep
 
 struct Options {
     XBeeAT::Settings serial;
-    std::string listen = "127.0.0.1:10000", station, keyFile;
+    std::string listen = "127.0.0.1:10000", station, keyFile, modemKeyFile;
     int trace = 0, statistics = 0, idle = 60, wait = 30, vanished = 30;
 };
 
@@ -239,15 +238,14 @@ private:
     std::deque<Client> waiting_;
 };
 
-// Reads the key from a file: every user of the machine can read the command line.
-std::string readKey(const std::string& path) {
-    std::ifstream file(path);
-    std::string key;
-    if (!(file >> key))
-        throw std::runtime_error("cannot read a key from '" + path + "'");
-    if (key.size() > 32 || key.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
-        throw std::runtime_error("the AES key in '" + path +
-                                 "' must be up to 32 hexadecimal digits");
+// Reads the modem's key from a file: every user of the machine can read the command line.
+std::string readModemKey(const std::string& path) {
+    std::string key = XBeeAT::readSecret(path);
+    key.erase(key.find_last_not_of(" \n") + 1);
+    if (key.empty() || key.size() > 32 ||
+        key.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
+        throw std::runtime_error("the modem's AES key in '" + path +
+                                 "' must be 1 to 32 hexadecimal digits");
     return key;
 }
 
@@ -267,8 +265,12 @@ int main(int argc, char** argv) {
     app.add_option("-s,--source", s.source, "own 16-bit address")->check(CLI::Range(0, 0xFFFF));
     app.add_option("-c,--channel", s.rfChannel, "RF channel")->check(CLI::Range(0x0B, 0x1A));
     app.add_option("-i,--pan", s.pan, "network id")->check(CLI::Range(0, 0xFFFF));
-    app.add_option("-k,--key-file", o.keyFile,
-                   "file with the AES key, up to 32 hexadecimal digits; /dev/fd/3: a descriptor");
+    app.add_option(
+        "--key", o.keyFile,
+        "file (mode 0600) with the vehicle's key, 32 hexadecimal digits, or a line "
+        "\"0x0001 KEY\" for each vehicle; /dev/fd/3: a descriptor. Without: in the clear");
+    app.add_option("--modem-key", o.modemKeyFile,
+                   "file (mode 0600) with the modems' AES key, up to 32 hexadecimal digits");
     app.add_option("-g,--guard", s.guardMs, "guard time of the modem as it is, ms")
         ->check(CLI::Range(2, 3300));
     app.add_flag("!--no-setup", s.setUp, "the modem is set up already");
@@ -296,7 +298,9 @@ int main(int argc, char** argv) {
     try {
         s.idleMs = o.idle * 1000;
         if (!o.keyFile.empty())
-            s.key = readKey(o.keyFile);
+            s.keys = XBeeAT::KeyFile(o.keyFile).of(s.target);
+        if (!o.modemKeyFile.empty())
+            s.modemKey = readModemKey(o.modemKeyFile);
         Gateway(o).run();
     } catch (const std::exception& e) {
         std::cerr << "gateway: error: " << e.what() << "\n";

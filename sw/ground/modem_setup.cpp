@@ -120,7 +120,7 @@ bool ModemSetup::run() {
     if (!find() || !command("MY" + hex(s.source)) || !command("DH0") ||
         !command("DL" + hex(s.target)) || !command("CH" + hex(s.rfChannel)) ||
         !command("ID" + hex(s.pan)) || !command("RN2") || !command("RO3") ||
-        (!s.key.empty() && (!command("EE1") || !command("KY" + s.key))))
+        (!s.modemKey.empty() && (!command("EE1") || !command("KY" + s.modemKey))))
         return false;
     encrypts_ = ask("EE") == "1";
     if (!command("BD" + hex(codeOf(s.baud))) || !command("CN"))

@@ -141,8 +141,8 @@ protected:
         if (option == "-d")
             o_.serial.device = argument;
         else if (option == "-k") { // a secret: it is never printed
-            checkKey(argument, "an xbee-at endpoint");
-            o_.serial.key = argument;
+            checkModemKey(argument, "an xbee-at endpoint");
+            o_.serial.modemKey = argument;
         } else if (option != "-h") // tolerated: there is no host
             number(option[1], argument, endpoint);
         return true;

@@ -27,7 +27,7 @@ struct EndpointOptions {
 };
 
 // The key itself is in no message.
-inline void checkKey(const std::string& key, const std::string& where) {
+inline void checkModemKey(const std::string& key, const std::string& where) {
     if (key.size() > 32 || key.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
         throw Ice::EndpointParseException(
             __FILE__, __LINE__, "the AES key of " + where + " must be up to 32 hexadecimal digits");
@@ -43,8 +43,16 @@ public:
         defaults_.serial.device = p->getProperty("XBeeAT.Device");
         defaults_.serial.baud = p->getPropertyAsIntWithDefault("XBeeAT.Baud", 115200);
         defaults_.serial.guardMs = p->getPropertyAsIntWithDefault("XBeeAT.Guard", 1000);
-        defaults_.serial.key = p->getProperty("XBeeAT.Key");
-        checkKey(defaults_.serial.key, "property XBeeAT.Key");
+        defaults_.serial.modemKey = p->getProperty("XBeeAT.ModemKey");
+        checkModemKey(defaults_.serial.modemKey, "property XBeeAT.ModemKey");
+        const std::string keyFile = p->getProperty("XBeeAT.KeyFile");
+        try {
+            if (!keyFile.empty())
+                keys_ = KeyFile(keyFile);
+        } catch (const std::runtime_error& e) {
+            throw Ice::PluginInitializationException(__FILE__, __LINE__,
+                                                     std::string("xbee-at: ") + e.what());
+        }
         defaults_.serial.downMs = 1000 * p->getPropertyAsIntWithDefault("XBeeAT.Down", 15);
         defaults_.serial.setUp = p->getPropertyAsIntWithDefault("XBeeAT.Setup", 1) > 0;
     }
@@ -58,7 +66,9 @@ public:
         Ice::LoggerPtr logger = communicator_->getLogger();
         int trace = trace_;
         try {
-            engine_ = Engine::get(o.serial, [logger, trace](int level, const std::string& text) {
+            Settings settings = o.serial;
+            settings.keys = keys_.of(settings.target);
+            engine_ = Engine::get(settings, [logger, trace](int level, const std::string& text) {
                 if (level == 0)
                     logger->error("xbee-at: " + text);
                 else if (level <= trace)
@@ -67,6 +77,9 @@ public:
         } catch (const std::system_error& e) {
             logger->error(std::string("xbee-at: ") + e.what());
             throw Ice::ConnectFailedException(__FILE__, __LINE__, e.code().value());
+        } catch (const std::runtime_error& e) {
+            logger->error(std::string("xbee-at: ") + e.what());
+            throw Ice::ConnectFailedException(__FILE__, __LINE__, EACCES);
         }
         return engine_;
     }
@@ -82,6 +95,7 @@ private:
     std::mutex mutex_; // of communicator_ and engine_
     Ice::CommunicatorPtr communicator_;
     EndpointOptions defaults_;
+    KeyFile keys_;
     int trace_ = 0;
     bool statistics_ = false;
     std::shared_ptr<Engine> engine_; // kept while the communicator lives: set-up takes seconds

@@ -5,6 +5,8 @@
 #ifndef GROUND_SETTINGS_H
 #define GROUND_SETTINGS_H
 
+#include "key_file.h"
+
 #include <functional>
 #include <random>
 #include <string>
@@ -18,7 +20,8 @@ struct Settings {
     int target = 0x0001;  // DL
     int rfChannel = 0x0C; // CH
     int pan = 0x3332;     // ID
-    std::string key;      // AES key, up to 32 hexadecimal digits; empty: the modem's setting stays
+    LinkKeys keys;        // of the link's sessions
+    std::string modemKey; // AES, up to 32 hexadecimal digits; empty: the modem's setting stays
     int guardMs = 1000;   // of the modem as it is
     bool setUp = true;    // by AT commands
     int downMs = 15000;   // without a link: set the modem up again, it may have been reset

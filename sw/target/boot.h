@@ -22,7 +22,8 @@ typedef enum Boot_Reason {
     BOOT_BUS_FAULT = 6,      /* an access that nobody answers */
     BOOT_USAGE_FAULT = 7,    /* an instruction that is none */
     BOOT_HARD_FAULT = 8,
-    BOOT_NO_FPGA = 9 /* the system slot does not answer; only in Boot_record */
+    BOOT_NO_FPGA = 9, /* the system slot does not answer; only in Boot_record */
+    BOOT_NO_KEY = 10  /* the vehicle was neither given a key nor opened */
 } Boot_Reason;
 
 #define BOOT_REPORT_MARK 0xB0U

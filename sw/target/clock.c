@@ -11,8 +11,8 @@ void Clock_start(void) {
     RCC_CR |= RCC_CR_HSEON;
     while (!(RCC_CR & RCC_CR_HSERDY))
         ;
-    /* The PLL makes 25 MHz / 25 * 240 / 2 = 120 MHz, and / 5 = 48 MHz, which the firmware does not
-     * use. */
+    /* The PLL makes 25 MHz / 25 * 240 / 2 = 120 MHz, and / 5 = 48 MHz for the random number
+     * generator. */
     RCC_PLLCFGR = 25UL | 240UL << 6 | 0UL << 16 | 1UL << 22 | 5UL << 24;
     RCC_CR |= RCC_CR_PLLON;
     while (!(RCC_CR & RCC_CR_PLLRDY))

@@ -9,6 +9,7 @@
 #include "boot.h"
 #include "loader.h"
 #include "map_regs.h"
+#include "secrets.h"
 #include "stm32f2.h"
 #include "system_regs.h"
 #include "uav.h"
@@ -33,16 +34,22 @@ static void restart(void) {
 }
 
 void Firmware_run(void) {
+    UAV_Status status;
     OSInit();
     uav_slots = Loader_slots(&uav_slot);
     uav_product = LOADER_PRODUCT;
     uav_restart = restart;
-    if (UAV_start(&board_fsmc, 0)) {
+    Secrets_start();
+    UAV_useBoard(&secrets_board, 0);
+    status = UAV_start(&board_fsmc, 0);
+    if (status != UAV_NO_FPGA)
         FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, Boot_report());
+    if (status == UAV_OK) {
         (void)OSTaskCreateExt(watchTask, 0, &watchStack[WATCH_WORDS - 1], PRIO_WATCH, 0, watchStack,
                               WATCH_WORDS, 0, OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);
     } else {
-        Boot_note(BOOT_NO_FPGA); /* nobody serves the watchdog: the next try is in a second */
+        /* Nobody serves the watchdog: the next try is in a second. */
+        Boot_note(status == UAV_NO_KEY ? BOOT_NO_KEY : BOOT_NO_FPGA);
     }
     /* Interrupts call the kernel, and so wait from here on for the first task. */
     __asm__ volatile("cpsid i");

@@ -25,8 +25,13 @@
 #define RCC_CFGR_APB2_DIV2 (4UL << 13)
 #define RCC_AHB1ENR REG(0x40023830UL) /* GPIOA 0 .. GPIOI 8, CRC 12 */
 #define RCC_AHB1ENR_CRC (1UL << 12)
+#define RCC_AHB1ENR_BKPSRAM (1UL << 18)
+#define RCC_AHB2ENR REG(0x40023834UL)
+#define RCC_AHB2ENR_RNG (1UL << 6)
 #define RCC_AHB3ENR REG(0x40023838UL)
 #define RCC_AHB3ENR_FSMC (1UL << 0)
+#define RCC_APB1ENR REG(0x40023840UL)
+#define RCC_APB1ENR_PWR (1UL << 28)
 #define RCC_APB2ENR REG(0x40023844UL)
 #define RCC_APB2ENR_SYSCFG (1UL << 14)
 #define RCC_CSR REG(0x40023874UL)
@@ -55,6 +60,22 @@
  * first. */
 #define CRC_DR REG(0x40023000UL)
 #define CRC_CR REG(0x40023008UL) /* 1: start again */
+
+/* Random number generator (RM0033, 20.4), from the PLL's 48 MHz. */
+#define RNG_CR REG(0x50060800UL)
+#define RNG_CR_RNGEN (1UL << 2)
+#define RNG_SR REG(0x50060804UL)
+#define RNG_SR_DRDY (1UL << 0)
+#define RNG_SR_CEIS (1UL << 5)
+#define RNG_SR_SEIS (1UL << 6)
+#define RNG_DR REG(0x50060808UL)
+
+/* Power control (RM0033, 4.4), and the 4 KiB that VBAT keeps (4.1.2), in words. */
+#define PWR_CR REG(0x40007000UL)
+#define PWR_CR_DBP (1UL << 8) /* the backup domain may be written */
+#define PWR_CSR REG(0x40007004UL)
+#define PWR_CSR_BRE (1UL << 9) /* its regulator keeps it without VDD */
+#define BKPSRAM(word) REG(0x40024000UL + 4UL * (word))
 
 /* General-purpose pins (RM0033, 6.4). Port 0 is A. */
 #define GPIO(port, offset) REG(0x40020000UL + 0x400UL * (U32)(port) + (offset))

@@ -9,9 +9,10 @@ namespace {
 
 constexpr uint32_t iwdg = 0x40003000, syscfg = 0x40013800, exti = 0x40013C00, gpio = 0x40020000,
                    crcUnit = 0x40023000, rcc = 0x40023800, flashInterface = 0x40023C00,
+                   backupSram = 0x40024000, power = 0x40007000, rng = 0x50060800,
                    windows = 0x60000000, fsmcRegisters = 0xA0000000;
-constexpr uint32_t ahb1Enable = rcc + 0x30, ahb3Enable = rcc + 0x38, apb2Enable = rcc + 0x44,
-                   csr = rcc + 0x74;
+constexpr uint32_t ahb1Enable = rcc + 0x30, ahb2Enable = rcc + 0x34, ahb3Enable = rcc + 0x38,
+                   apb1Enable = rcc + 0x40, apb2Enable = rcc + 0x44, csr = rcc + 0x74;
 constexpr uint32_t padReset = 1u << 26, powerReset = 1u << 27, softwareReset = 1u << 28,
                    watchdogReset = 1u << 29;
 constexpr uint64_t lsiNs = 31'250; // one cycle of 32 kHz
@@ -19,6 +20,10 @@ constexpr unsigned extiVector = 6; // of line 0; up to line 4 each has its own
 
 bool isIn(uint32_t address, uint32_t base, uint32_t bytes) {
     return address - base < bytes;
+}
+
+bool isPeripheral(uint32_t address) {
+    return isIn(address, 0x40000000, 0x80000) || isIn(address, rng & ~0xFFFu, 0x1000);
 }
 
 // The pins of ports D..G that the FSMC has (data sheet of the STM32F207, alternate functions).
@@ -35,7 +40,10 @@ constexpr Pins fsmcPins[] = {
 Stm32F2::Stm32F2(FsmcMaster& fsmc, std::function<uint64_t()> now, Config config)
     : fsmc_(fsmc), now_(std::move(now)), config_(config),
       cpu_(*this, {0x08000000, 0x100000, 0x20000000, 0x20000, config.hclkHz / 8 / 1000},
-           {{0x40000000, 0x80000}, {windows, 0x10000000}, {fsmcRegisters, 0x1000}}),
+           {{0x40000000, 0x80000},
+            {rng & ~0xFFFu, 0x1000},
+            {windows, 0x10000000},
+            {fsmcRegisters, 0x1000}}),
       flash_(cpu_.flash(), now_) {
     flash_.onChange = [this](uint32_t at, uint32_t bytes) { cpu_.flashChanged(at, bytes); };
     cpu_.listener.systemReset = [this] {
@@ -69,6 +77,7 @@ void Stm32F2::resetPeripherals() {
     watchdog_ = {};
     crc_ = 0xFFFFFFFF;
     pendingExti_ = 0;
+    random_.reset();
     fsmcUsable_ = false;
     for (uint32_t bank = 0; bank < 4; ++bank) {
         fsmc_.write32(fsmcRegisters + 8 * bank, bank ? 0x30D2 : 0x30DB);
@@ -135,7 +144,7 @@ unsigned Stm32F2::takeWaited() {
 // ---- the bus ----
 
 uint32_t Stm32F2::read(uint32_t address, unsigned bytes) {
-    if (isIn(address, 0x40000000, 0x80000)) {
+    if (isPeripheral(address)) {
         if (bytes != 4)
             throw Error("peripheral registers are read in words");
         return readPeripheral(address);
@@ -154,7 +163,7 @@ uint32_t Stm32F2::read(uint32_t address, unsigned bytes) {
 }
 
 void Stm32F2::write(uint32_t address, unsigned bytes, uint32_t value) {
-    if (isIn(address, 0x40000000, 0x80000)) {
+    if (isPeripheral(address)) {
         if (bytes != 4)
             throw Error("peripheral registers are written in words");
         return writePeripheral(address, value);
@@ -202,15 +211,19 @@ void Stm32F2::requireFsmc() {
     fsmcUsable_ = true;
 }
 
+bool Stm32F2::isSet(uint32_t address, unsigned bit) const {
+    auto found = registers_.find(address);
+    return found != registers_.end() && (found->second >> bit & 1);
+}
+
 void Stm32F2::requireClock(uint32_t address) const {
-    auto on = [&](uint32_t enable, unsigned bit) {
-        auto found = registers_.find(enable);
-        return found != registers_.end() && (found->second >> bit & 1);
-    };
-    bool ok = isIn(address, gpio, 0x2400)     ? on(ahb1Enable, (address - gpio) / 0x400)
-              : isIn(address, crcUnit, 0x400) ? on(ahb1Enable, 12)
-              : isIn(address, syscfg, 0x400)  ? on(apb2Enable, 14)
-                                              : true;
+    bool ok = isIn(address, gpio, 0x2400)       ? isSet(ahb1Enable, (address - gpio) / 0x400)
+              : isIn(address, crcUnit, 0x400)   ? isSet(ahb1Enable, 12)
+              : isIn(address, backupSram, 4096) ? isSet(ahb1Enable, 18)
+              : isIn(address, rng, 12)          ? isSet(ahb2Enable, 6)
+              : isIn(address, power, 8)         ? isSet(apb1Enable, 28)
+              : isIn(address, syscfg, 0x400)    ? isSet(apb2Enable, 14)
+                                                : true;
     if (!ok)
         throw Error("the peripheral's clock is off (RCC)");
 }
@@ -235,6 +248,12 @@ uint32_t Stm32F2::readPeripheral(uint32_t address) {
         return flash_.read(address - flashInterface);
     if (address == crcUnit)
         return crc_;
+    if (isIn(address, power, 8))
+        return stored(address) | (stored(address) >> 6 & 8); // the regulator is ready at once
+    if (isIn(address, backupSram, 4096))
+        return backup_[(address - backupSram) / 4];
+    if (isIn(address, rng, 12)) // the PLL makes its clock
+        return random_.read(address - rng, now_(), isSet(rcc, 24));
     if (address == iwdg + 0x4)
         return watchdog_.prescaler;
     if (address == iwdg + 0x8)
@@ -276,6 +295,13 @@ void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
     } else if (address == crcUnit + 8) {
         if (value & 1)
             crc_ = 0xFFFFFFFF;
+    } else if (isIn(address, power, 8)) {
+        stored(address) = value;
+    } else if (isIn(address, backupSram, 4096)) {
+        if (isSet(power, 8)) // PWR_CR.DBP; without it the write is lost, as on the chip
+            backup_[(address - backupSram) / 4] = value;
+    } else if (isIn(address, rng, 12)) {
+        random_.write(address - rng, value, now_());
     } else if (isIn(address, iwdg, 0x10)) {
         writeWatchdog(address - iwdg, value);
     } else {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // stm32f2: an STM32F2 as far as the firmware uses one: the Cortex-M3, flash, RAM, FSMC, and clock,
-// pins, EXTI, CRC unit and watchdog by RM0033. What is not here answers with a bus fault, and so
-// does a peripheral whose clock is off, or the FSMC while one of its pins is not switched to it.
+// pins, EXTI, CRC unit, watchdog, random numbers and backup SRAM by RM0033. What is not here
+// answers with a bus fault, and so does a peripheral whose clock is off, or the FSMC while one of
+// its pins is not switched to it.
 
 #ifndef STM32F2_H
 #define STM32F2_H
@@ -10,7 +11,9 @@
 #include "cortex_m3.h"
 #include "elf_image.h"
 #include "fsmc_master.h"
+#include "random_block.h"
 #include "stm32_flash.h"
+#include <array>
 #include <functional>
 #include <map>
 #include <optional>
@@ -22,6 +25,7 @@ public:
         // where the fabric's clock is scaled down: so many of the processor's for one at the pins.
         unsigned coreCyclesPerHclk = 1;
         uint32_t hclkHz = 120'000'000; // of the processor, in simulated time
+        uint64_t seed = 1;             // of the random number generator
     };
     // `now` is simulated time in ns.
     Stm32F2(FsmcMaster& fsmc, std::function<uint64_t()> now, Config config);
@@ -38,6 +42,9 @@ public:
     // Sets what is called whenever time has passed, at the pace of the pins. It returns the time in
     // ns at which it wants to be called; until then a processor that sleeps need not call it.
     void onTime(std::function<uint64_t()> called) { onTime_ = std::move(called); }
+
+    // The 4 KiB that VBAT keeps, whatever becomes of power and resets.
+    std::array<uint32_t, 1024>& backup() { return backup_; }
 
     struct Resets {
         unsigned power = 0, software = 0, watchdog = 0;
@@ -57,6 +64,7 @@ private:
     void writePeripheral(uint32_t address, uint32_t value);
     void writeWatchdog(uint32_t offset, uint32_t value);
     void requireClock(uint32_t address) const;
+    bool isSet(uint32_t address, unsigned bit) const;
     void requireFsmc();
     void waitForFlash();
     void updateExti();
@@ -73,6 +81,8 @@ private:
     Stm32Flash flash_;
     std::optional<ElfImage> image_;
     std::map<uint32_t, uint32_t> registers_; // that only store
+    RandomBlock random_{config_.seed};
+    std::array<uint32_t, 1024> backup_{};
     unsigned carry_ = 0, waited_ = 0;
     uint32_t resetFlags_ = 0, crc_ = 0xFFFFFFFF, pinsB_ = 0, pendingExti_ = 0;
     bool fsmcUsable_ = false, lineChanged_ = false;

@@ -8,7 +8,8 @@
 #include "uav_machine.h"
 #include <vector>
 
-// `radioKey`: 16 bytes of the modem's AES key, or none. Throws if the firmware cannot encrypt.
-UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& radioKey);
+// `modemKey`: 16 bytes of the modem's AES key, or none; `isSecure`: the link has a key. Throws if
+// the firmware cannot encrypt.
+UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& modemKey, bool isSecure);
 
 #endif

@@ -9,8 +9,8 @@ extern "C" {
 #include "paper.h"
 }
 
-UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& radioKey) {
-    if (!radioKey.empty())
-        throw std::runtime_error("--key: the paper's firmware talks in the clear");
+UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& modemKey, bool isSecure) {
+    if (!modemKey.empty() || isSecure)
+        throw std::runtime_error("--key, --modem-key: the paper's firmware talks in the clear");
     return {PAPER_start, PAPER_irqHandler, [] { return PAPER_irqEnabled() != 0; }};
 }

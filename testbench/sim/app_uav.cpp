@@ -4,9 +4,9 @@
 
 #include "app.h"
 
-UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& radioKey) {
+UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& modemKey, bool) {
     static std::vector<uint8_t> key;
-    key = radioKey;
-    uav_radioKey = key.empty() ? nullptr : key.data();
+    key = modemKey;
+    uav_modemKey = key.empty() ? nullptr : key.data();
     return {};
 }

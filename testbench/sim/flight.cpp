@@ -6,6 +6,7 @@
 #include "app.h"
 #include "core_pins.h"
 #include "files.h"
+#include "key_file.h"
 #include "map_regs.h"
 #include "mark_file.h"
 #include "sensor.h"
@@ -61,16 +62,20 @@ void loadCamera(SocModel& soc, const Frame& frame) {
     std::memcpy(memory + UAV_FRAME, frame.pixels.data(), frame.pixels.size());
 }
 
-uint32_t bootsOf(const Flight::Options& o) {
-    return o.replayed ? o.replayed->head().at("boots").get<uint32_t>()
-                      : static_cast<uint32_t>(o.seed * 1000 + static_cast<uint64_t>(getpid()) * 77);
+// The key that the vehicle has: where a next one is on its way, the one before it.
+std::vector<uint8_t> keyOf(const Flight::Options& o) {
+    constexpr int address = 1;
+    if (o.keyFile.empty())
+        return {};
+    const XBeeAT::LinkKey key = XBeeAT::KeyFile(o.keyFile).of(address).back();
+    return {key.begin(), key.end()};
 }
 
 // The first line of the recording; nothing in a replay.
-std::unique_ptr<RecordedLine> record(const Flight::Options& o, SerialLine& line, uint32_t boots) {
+std::unique_ptr<RecordedLine> record(const Flight::Options& o, SerialLine& line) {
     if (o.replayed)
         return nullptr;
-    nlohmann::json head = {{"flight", o.words}, {"boots", boots}, {"clkHz", SocModel::clkHz}};
+    nlohmann::json head = {{"flight", o.words}, {"clkHz", SocModel::clkHz}};
     for (const std::string& file : {o.pins, o.trace, o.flash, o.cpu == "m3" ? o.firmware : ""})
         if (!file.empty())
             head["hashes"][std::filesystem::absolute(file)] = hexHash({readFile(file)});
@@ -104,8 +109,8 @@ void reportProcessor(M3Machine& machine) {
 } // namespace
 
 Flight::Flight(const Options& options)
-    : o_(options), frame_(pictureFor(o_)), boots_(bootsOf(o_)), status_(prepared(o_, frame_)),
-      air_(o_.seed), recorded_(record(o_, pty_, boots_)),
+    : o_(options), frame_(pictureFor(o_)), key_(keyOf(o_)), status_(prepared(o_, frame_)),
+      air_(o_.seed), recorded_(record(o_, pty_)),
       ground_(recorded_ ? static_cast<SerialLine&>(*recorded_) : *o_.replayed, air_,
               modem("ground", o_.guard)),
       soc_(air_, modem("uav", o_.guard)), step_(*status_, pty_, [this] { return isWanted(); }),
@@ -143,7 +148,6 @@ void Flight::placePicture() {
         connectSensor(soc_, frame_);
     else
         loadCamera(soc_, frame_);
-    std::memcpy(soc_.memory().data() + UAV_BOOTS, &boots_, sizeof boots_);
 }
 
 void Flight::watchRegisters() {
@@ -221,16 +225,23 @@ void Flight::runProcessor() {
     if (o_.cpu == "m3")
         runOnCortexM3();
     else
-        UavMachine(
-            soc_, [this] { return poll(); }, simulatedFirmware(keyBytes(o_.key)))
-            .run();
+        runOnHost();
+}
+
+void Flight::runOnHost() {
+    UavMachine machine(
+        soc_, [this] { return poll(); }, simulatedFirmware(keyBytes(o_.modemKey), !key_.empty()));
+    machine.board = SimulatedBoard(o_.seed);
+    machine.board.provide(key_);
+    machine.run();
 }
 
 void Flight::runOnCortexM3() {
     std::string flash = o_.flash.empty() ? "" : readFile(o_.flash);
     if (!o_.flash.empty() && flash.size() != Stm32Flash::bytes)
         throw std::runtime_error("'" + o_.flash + "' is not the 1 MiB of a chip's flash");
-    M3Machine machine(soc_, {o_.firmware, o_.hclk, o_.guard, {flash.begin(), flash.end()}},
+    M3Machine machine(soc_,
+                      {o_.firmware, o_.hclk, o_.guard, {flash.begin(), flash.end()}, key_, o_.seed},
                       [this] { return poll(); });
     std::optional<MarkFile> marks;
     if (!o_.marks.empty())

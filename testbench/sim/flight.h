@@ -20,7 +20,8 @@
 class Flight {
 public:
     struct Options {
-        std::string key; // 32 hexadecimal digits
+        std::string modemKey; // 32 hexadecimal digits
+        std::string keyFile;  // of the link; none: the vehicle is open
         std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
                            firmware = FIRMWARE_ELF;
         uint32_t hclk = 120'000'000;
@@ -59,6 +60,7 @@ private:
     void placePicture();
     void startProgram();
     void runProcessor();
+    void runOnHost();
     void runOnCortexM3();
     bool isWanted();
     void adviseOnClock();
@@ -69,7 +71,7 @@ private:
 
     const Options o_;
     const Frame frame_;
-    const uint32_t boots_; // the count of starts in memory; no two flights begin with the same
+    const std::vector<uint8_t> key_; // of the link
     StatusFile status_;
     RfChannel air_;
     PtyLine pty_;

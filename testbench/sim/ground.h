@@ -37,6 +37,8 @@ public:
     void start() {
         static const Link_Port port = {transmit, random, message, nothing, state, outcome, nullptr};
         Link_init(link_.get(), &port, this, 1440);
+        if (!key.empty())
+            Link_setKey(link_.get(), 0, key.data());
         Link_start(link_.get(), us());
         replies.clear();
         backlog_ = 0;
@@ -97,6 +99,8 @@ public:
     int delivered = 0, unknown = 0;               // what became of messages
     uint64_t deliveredBytes = 0;                  // of messages that were acknowledged
     size_t backlog() const { return backlog_; }   // bytes of messages that are not yet delivered
+    std::vector<uint8_t> key; // of the link, from the next start on; none: in the clear
+    const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
     bool validated = false, running = true;
     unsigned hurry = 1; // the link's clock runs so many times as fast (UavMachine::hurry)
 

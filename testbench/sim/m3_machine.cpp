@@ -4,6 +4,7 @@
 // pins.
 
 #include "m3_machine.h"
+#include "simulated_board.h"
 #include <algorithm>
 #include <cstdio>
 
@@ -11,14 +12,14 @@ namespace {
 
 constexpr uint64_t pinHclkHz = SocModel::clkHz * 6 / 5; // as FsmcMaster plays it
 
-Stm32F2::Config configOf(uint32_t hclkHz) {
+Stm32F2::Config configOf(uint32_t hclkHz, uint64_t seed) {
     if (hclkHz == 0)
-        return {1, static_cast<uint32_t>(pinHclkHz)};
+        return {1, static_cast<uint32_t>(pinHclkHz), seed};
     if (hclkHz < pinHclkHz || hclkHz % pinHclkHz || hclkHz % 8000)
         throw std::runtime_error("HCLK of " + std::to_string(hclkHz) +
                                  " Hz: give 0 or a multiple of " + std::to_string(pinHclkHz) +
                                  " Hz");
-    return {static_cast<unsigned>(hclkHz / pinHclkHz), hclkHz};
+    return {static_cast<unsigned>(hclkHz / pinHclkHz), hclkHz, seed};
 }
 
 } // namespace
@@ -26,8 +27,11 @@ Stm32F2::Config configOf(uint32_t hclkHz) {
 M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll)
     : soc_(soc), poll_(std::move(poll)),
       stm32_(
-          soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz)) {
+          soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz, config.seed)) {
     stm32_.load(config.firmware);
+    SimulatedBoard board;
+    board.provide(config.key);
+    std::copy(board.words.begin(), board.words.end(), stm32_.backup().begin());
     if (!config.flash.empty())
         cpu().loadFlash(0x08000000, config.flash);
     const bool asks = config.guardMs && config.flash.empty() && stm32_.image()->has("uav_guardMs");

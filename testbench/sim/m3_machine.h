@@ -26,6 +26,9 @@ public:
         uint16_t guardMs = 0;
         // The whole of flash, in place of the program's; the program is for its symbols then.
         std::vector<uint8_t> flash = {};
+        // The link's key, as from the factory, 16 bytes; none: the vehicle is open.
+        std::vector<uint8_t> key = {};
+        uint64_t seed = 1; // of the random number generator
     };
     // `poll` is called about once a simulated millisecond; when it returns false, run() ends.
     M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll);

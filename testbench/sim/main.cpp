@@ -39,7 +39,9 @@ CommandLine::CommandLine() {
     app.add_option("--trace", o.trace,
                    "CSV of loss, RSSI and delay (docs/models.md), in place of --loss");
     app.add_option("--seed", o.seed, "of the radio's misfortunes");
-    app.add_option("--key", o.key,
+    app.add_option("--key", o.keyFile,
+                   "file with the vehicle's key, as the ground's (XBeeAT.KeyFile); without: open");
+    app.add_option("--modem-key", o.modemKey,
                    "the UAV's modem encrypts with this AES key, 32 hexadecimal digits")
         ->check([](const std::string& text) {
             bool good = text.size() == 32 &&
@@ -155,8 +157,8 @@ int main(int argc, char** argv) {
         if (line.replay.empty() && !line.wave.empty())
             throw std::invalid_argument(
                 "--wave needs --replay: a flight is recorded, then looked at");
-        if (o.cpu == "m3" && !o.key.empty())
-            throw std::invalid_argument("--key needs --cpu host: the ARM binary has its own");
+        if (o.cpu == "m3" && !o.modemKey.empty())
+            throw std::invalid_argument("--modem-key needs --cpu host: the ARM binary has its own");
         if (!o.flash.empty() && (o.cpu != "m3" || o.guard != 1000))
             throw std::invalid_argument("--flash needs --cpu m3, and the modems' usual guard time");
         if (o.cpu != "m3" && (o.gdb >= 0 || !o.marks.empty()))

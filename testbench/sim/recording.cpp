@@ -6,8 +6,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <stdexcept>
+#include <sys/stat.h>
+#include <unistd.h>
 
 using nlohmann::json;
 
@@ -21,7 +24,13 @@ std::string AccessDigest::text() const {
 }
 
 RecordedLine::RecordedLine(SerialLine& line, const std::string& file, const json& head)
-    : line_(line), file_(file) {
+    : line_(line) {
+    // The words of the flight may hold the modem's key: nobody else reads them.
+    const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    if (fd < 0 || fchmod(fd, 0600) != 0)
+        throw std::runtime_error("cannot write '" + file + "': " + std::strerror(errno));
+    close(fd);
+    file_.open(file);
     line.attach(this);
     file_ << head.dump() << std::endl;
     if (!file_)
@@ -135,7 +144,7 @@ void ReplayedLine::compare(uint64_t ns, const char* what, const json& value) {
     if (mark.at("ns") != ns || !mark.contains(what) || mark.at(what) != value)
         throw std::runtime_error(fmt::format(
             "this is not the flight that was recorded: it departs between {:.3f} and {:.3f} s. "
-            "Chip, firmware and simulator must be the same as then",
+            "Chip, firmware, simulator and key must be the same as then",
             static_cast<double>(agreedNs_) / 1e9, static_cast<double>(ns) / 1e9));
     agreedNs_ = ns;
 }

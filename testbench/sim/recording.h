@@ -5,7 +5,7 @@
 //
 // The simulator is deterministic but for the bytes that the ground's program puts on its serial
 // port, and when. The file is JSON Lines, one object each:
-//   {"flight": {options}, "boots": n, "clkHz": n, "hashes": {file: hash}}   the first line
+//   {"flight": {options}, "clkHz": n, "hashes": {file: hash}}   the first line
 //   {"ns": time, "up": "hexadecimal"}        bytes from the program to its modem
 //   {"ns": time, "spoilt": n}                bytes with a wrong stop bit
 //   {"ns": time, "down": n}                  bytes that the modem handed to the program

@@ -7,13 +7,14 @@
 #      --pins FILE (drives the inputs of cores, docs/simulation.md; outputs go to DIR/pins.log)
 #      --update ELF (sends this firmware to a vehicle whose flash is DIR/flash.bin, made if there is none; by --cpu m3)
 #      --app uav|minimal (the program of Table II, by --cpu m3)
+#      --key FILE (the link's, of vehicle and ground; none: that of build/demo.key, made once) --open 1 (in the clear)
 #      --sensor 1 (the picture comes through the camera core, which hands it to the vision core; camera's part is flown)
 
 set -eu
 build=$1
 shift
 here=$(cd "$(dirname "$0")/../.." && pwd)
-image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host app=uav guard=1000 patience=300 port=0 live='' cores='' sensor='' pins='' update='' firmware=$build/firmware/uav.elf
+image='' size=320x240 threshold=24 loss=0 seed=1 out=build/run cpu=host app=uav guard=1000 patience=300 port=0 live='' cores='' sensor='' pins='' key='' open='' update='' firmware=$build/firmware/uav.elf
 while [ $# -gt 0 ]; do
     case $1 in
     --image) image=$2 ;;
@@ -31,6 +32,8 @@ while [ $# -gt 0 ]; do
     --cores) cores=$2 ;;
     --sensor) sensor=${2:+--sensor} ;;
     --pins) pins=$2 ;;
+    --key) key=$2 ;;
+    --open) open=$2 ;;
     --firmware) firmware=$2 ;;
     --update) update=$2 ;;
     *)
@@ -45,6 +48,16 @@ case $threshold in
 *) bad=$((threshold > 255)) ;;
 esac
 [ "$bad" = 0 ] || { echo "run: THRESHOLD is 0..255 grey levels, not '$threshold'" >&2 && exit 2; }
+[ -z "$open" ] || [ -z "$key" ] || { echo "run: OPEN=1 flies in the clear, KEY='$key' does not: give one of them" >&2 && exit 2; }
+if [ -z "$open$key" ] && [ "$app" = uav ]; then
+    key=$(dirname "$build")/demo.key
+    if [ ! -e "$key" ]; then
+        new=$(mktemp "$key.XXXXXX") # mode 0600
+        od -An -vtx1 -N16 /dev/urandom | tr -d ' \n' >"$new"
+        ! ln "$new" "$key" 2>/dev/null || echo "run: made a demo key, $key: ground and vehicle share it; KEY=file takes yours, OPEN=1 none"
+        rm -f "$new"
+    fi
+fi
 mkdir -p "$out"
 exec 9>"$out/lock" # until the last of this flight's programs has ended
 flock -n 9 || { echo "run: another flight is under way in $out; give this one a folder of its own: OUT=build/other" >&2 && exit 1; }
@@ -61,12 +74,12 @@ minimal:*) echo "run: the minimal program is an ARM binary: give CPU=m3" >&2 && 
 esac
 if [ -n "$update" ]; then
     pack=$build/sw/target/pack_update
-    key=$build/update.key # private, made at first use
-    [ -f "$out/flash.bin" ] || "$pack" vehicle "$build/firmware/loader.elf" "$firmware" 1 "$key" "$out/flash.bin"
-    "$pack" image "$update" "$(date +%s)" "$key" "$out/new.update"
+    signing=$build/update.key # private, made at first use
+    [ -f "$out/flash.bin" ] || "$pack" vehicle "$build/firmware/loader.elf" "$firmware" 1 "$signing" "$out/flash.bin"
+    "$pack" image "$update" "$(date +%s)" "$signing" "$out/new.update"
     exec setpriv --pdeathsig TERM "$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" \
-        --cpu m3 --firmware "$firmware" --flash "$out/flash.bin" -- /usr/bin/python3 "$here/sw/ground/clients/update.py" "$out/new.update" \
-        --device '{device}' --status '{status}' --plugin "$build/ground" --slice "$here/sw/apps/uav/Update.ice" --patience "$patience"
+        --cpu m3 --firmware "$firmware" --flash "$out/flash.bin" ${key:+--key "$key"} -- /usr/bin/python3 "$here/sw/ground/clients/update.py" "$out/new.update" \
+        --device '{device}' --status '{status}' --plugin "$build/ground" --slice "$here/sw/apps/uav/Update.ice" --patience "$patience" ${key:+--key "$key"}
 fi
 parts=''
 [ -z "$sensor" ] || case " $cores " in *' camera '*) ;; *) cores="$cores camera" ;; esac
@@ -84,10 +97,10 @@ setpriv --pdeathsig TERM "$build/testbench/live/icesoc-live" --dir "$out" --port
 page=$!
 trap 'kill $page 2>/dev/null || true' EXIT
 # shellcheck disable=SC2086 # a list of words
-setpriv --pdeathsig TERM "$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" --guard "$guard" --firmware "$firmware" $sensor ${pins:+--pins "$pins"} -- \
+setpriv --pdeathsig TERM "$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" --guard "$guard" --firmware "$firmware" $sensor ${pins:+--pins "$pins"} ${key:+--key "$key"} -- \
     /usr/bin/python3 "$here/sw/ground/clients/mission.py" --device '{device}' --frame '{frame}' \
     --status '{status}' --guard '{guard}' --out '{out}' --patience "$patience" --plugin "$build/ground" --slice "$here/sw/apps/uav/Autopilot.ice" \
-    --reference "$build/testbench/sim/vision-reference" --threshold "$threshold" --loss "$loss" $sensor $parts &
+    --reference "$build/testbench/sim/vision-reference" --threshold "$threshold" --loss "$loss" ${key:+--key "$key"} $sensor $parts &
 sim=$!
 stop() { # exit status
     echo "run: stopped before the mission was over" >&2

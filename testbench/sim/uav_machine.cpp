@@ -67,6 +67,7 @@ void UavMachine::run() {
     nextTick_ = soc_.cycles() + tickCycles_;
     OsHost::setMachine({[this] { idle(); }, [this] { return pending(); }, [this] { serve(); }});
     OSInit();
+    board.use();
     firmware_.start(&fsmcPort, &soc_);
     OsHost::run();
 }

@@ -7,8 +7,10 @@
 #define UAV_MACHINE_H
 
 #include "os_host.h"
+#include "simulated_board.h"
 #include "soc_model.h"
 #include <functional>
+#include <stdexcept>
 
 extern "C" {
 #include "fsmc.h"
@@ -20,7 +22,10 @@ public:
     // The entrances, as in uav.h: one is called at boot (it creates the tasks), one at the FPGA's
     // interrupt.
     struct Firmware {
-        std::function<void(const FSMC_Port*, void*)> start = UAV_start;
+        std::function<void(const FSMC_Port*, void*)> start = [](const FSMC_Port* port, void* soc) {
+            if (UAV_start(port, soc) == UAV_NO_KEY)
+                throw std::runtime_error("the vehicle was neither given a key nor opened");
+        };
         std::function<void()> irqHandler = UAV_irqHandler;
         std::function<bool()> irqEnabled = [] { return UAV_irqEnabled() != 0; };
     };
@@ -32,6 +37,8 @@ public:
 
     // Boots the firmware and runs it until poll says so; exceptions of the models come through.
     void run();
+
+    SimulatedBoard board; // of the UAV's application
 
     // Makes the firmware's clock tick so many times as fast as the fabric's: for spans in which
     // nothing happens but the firmware's own time-outs. The modem's times are then too long for it.

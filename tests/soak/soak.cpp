@@ -2,9 +2,11 @@
 //
 // soak: two link layers over two XBee models and a bad radio, for as long as one likes: random
 // messages both ways, loss, bursts, corruption, duplication; reboots of the UAV, of the ground and
-// of modems. None wrong, none doubled, none out of order, each delivered or reported: the first
-// that is not ends it.
+// of modems; with --attacked a key on both sides, and a third modem that does its worst. None
+// wrong, none doubled, none out of order, each delivered or reported: the first that is not ends
+// it.
 
+#include "attacker.h"
 #include "ice_messages.h"
 #include "rf_channel.h"
 #include <CLI/CLI.hpp>
@@ -60,8 +62,8 @@ public:
 // One end: modem, link and program. Its knowledge of the peer's messages serves only to check them.
 class End {
 public:
-    End(uint32_t side, RfChannel& air, Random& random, Totals& totals)
-        : side_(side), random_(random), totals_(totals), link_(new Link) {
+    End(uint32_t side, RfChannel& air, Random& random, Totals& totals, bool hasKey)
+        : side_(side), random_(random), totals_(totals), hasKey_(hasKey), link_(new Link) {
         XBee::Options options;
         options.name = side ? "uav" : "ground";
         options.set = {{"BD", 7}, {"MY", side}, {"DL", 1 - side}, {"D7", 1}};
@@ -86,6 +88,9 @@ public:
         totals_.unknown += outstanding_.size();
         outstanding_.clear();
         Link_init(link_.get(), &port, this, 1440);
+        static const U8 key[LINK_KEY_BYTES] = {1, 2, 3};
+        if (hasKey_)
+            Link_setKey(link_.get(), 0, key);
         Link_start(link_.get(), us());
     }
     void advance(uint64_t now, double rate) {
@@ -174,6 +179,7 @@ private:
     uint32_t side_;
     Random& random_;
     Totals& totals_;
+    const bool hasKey_;
     FlowLine line_;
     std::deque<uint8_t> out_; // handed over, not yet on the line
     std::unique_ptr<XBee> modem_;
@@ -188,7 +194,9 @@ private:
 
 class Soak {
 public:
-    explicit Soak(uint64_t seed) : random_(seed), air_(seed + 1) {
+    Soak(uint64_t seed, bool attacked)
+        : random_(seed), air_(seed + 1), attacked_(attacked), attacker_(air_, seed + 2),
+          ground_(0, air_, random_, totals_, attacked), uav_(1, air_, random_, totals_, attacked) {
         ground_.setPeer(&uav_);
         uav_.setPeer(&ground_);
     }
@@ -218,6 +226,7 @@ public:
             throw Fault("messages are neither delivered nor reported in good weather");
     }
     const Totals& totals() const { return totals_; }
+    uint64_t hostile() const { return attacker_.sent(); }
     double seconds() const { return static_cast<double>(now_) / 1e9; }
     const RfChannel::Counters& air() const { return air_.counters(); }
     uint64_t resent() const {
@@ -227,6 +236,11 @@ public:
 private:
     void step(double rate) {
         air_.advance(now_);
+        if (attacked_) {
+            attacker_.advance(now_);
+            if (rate > 0 && random_.chance(0.01))
+                attacker_.doMischief(now_);
+        }
         ground_.advance(now_, rate);
         uav_.advance(now_, rate);
     }
@@ -268,7 +282,9 @@ private:
     Random random_;
     RfChannel air_;
     Totals totals_;
-    End ground_{0, air_, random_, totals_}, uav_{1, air_, random_, totals_};
+    const bool attacked_;
+    Attacker attacker_;
+    End ground_, uav_;
     uint64_t now_ = 0;
     double rate_ = 0.1;
 };
@@ -287,11 +303,13 @@ int main(int argc, char** argv) {
         ->check(CLI::PositiveNumber);
     app.add_option("--messages", messages, "stop after so many instead, however long it takes");
     app.add_option("--seed", seed, "of everything that happens (default: $SEED, or 1)");
+    bool attacked = false;
+    app.add_flag("--attacked", attacked, "by a third modem that has no key; the two have one");
     CLI11_PARSE(app, argc, argv);
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
     auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-    Soak soak(seed);
+    Soak soak(seed, attacked);
     auto report = [&] {
         const Totals& t = soak.totals();
         std::printf("soak: %7.0f s simulated in %4.0f s: %llu messages sent, %llu received, %llu "
@@ -334,6 +352,9 @@ int main(int argc, char** argv) {
                      static_cast<unsigned long long>(seed), soak.seconds());
         return 1;
     }
+    if (attacked)
+        std::printf("soak: %llu hostile packets\n",
+                    static_cast<unsigned long long>(soak.hostile()));
     std::printf("soak: none wrong, none doubled, none out of order, each delivered or reported\n");
     return 0;
 }

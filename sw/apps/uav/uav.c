@@ -7,6 +7,7 @@
 #include "modem_regs.h"
 #include "radio.h"
 #include "system_regs.h"
+#include "uav_keys.h"
 #include "uav_private.h"
 
 #include <string.h>
@@ -19,6 +20,7 @@ static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STA
     coresStack[STACK_WORDS];
 static Ice_ObjectAdapter adapter;
 static Autopilot_Vehicle vehicle;
+static Autopilot_KeyRing keys;
 static OS_EVENT* report; /* a frame is done: tell the station */
 static U32 frames, corners;
 static U8 irqEnabled;
@@ -31,6 +33,22 @@ Ice_Status Autopilot_Vehicle_isAlive(Autopilot_VehiclePtr self, Ice_Short sessio
     (void)sessionId;
     (void)current;
     *result = 1;
+    return ICE_OK;
+}
+
+Ice_Status Autopilot_KeyRing_setNextKey(Autopilot_KeyRingPtr self, const Autopilot_ByteSeq* key,
+                                        Ice_Bool* result, const Ice_Current* current) {
+    (void)self;
+    (void)current;
+    *result = key->size == (Ice_Int)LINK_KEY_BYTES && UAV_nextKey(key->data);
+    return ICE_OK;
+}
+
+Ice_Status Autopilot_KeyRing_count(Autopilot_KeyRingPtr self, Ice_Int* result,
+                                   const Ice_Current* current) {
+    (void)self;
+    (void)current;
+    *result = UAV_countKeys();
     return ICE_OK;
 }
 
@@ -91,6 +109,8 @@ static void appMainTask(void* argument) {
     Autopilot_Vehicle_init(&vehicle);
     (void)Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&vehicle, "uav");
     UAV_startUpdate(&adapter);
+    Autopilot_KeyRing_init(&keys);
+    (void)Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&keys, "keys");
 
     createTask(UAV_radioTask, radioStack, PRIO_RADIO);
     createTask(UAV_coresTask, coresStack, PRIO_CORES);
@@ -127,19 +147,20 @@ int UAV_irqEnabled(void) {
     return irqEnabled;
 }
 
-int UAV_start(const FSMC_Port* port, void* context) {
+UAV_Status UAV_start(const FSMC_Port* port, void* context) {
     irqEnabled = 0;
     busErrors = 0;
     frames = 0;
     corners = 0;
     if (FSMC_init(port, context) != FSMC_OK)
-        return 0;
+        return UAV_NO_FPGA;
+    if (!UAV_initRadio())
+        return UAV_NO_KEY;
     FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);
     FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_MASK, SYSTEM_MASK_BUS_ERROR_MASK);
-    UAV_initRadio();
     UAV_initIceOs();
     report = OSSemCreate(0);
     UAV_initCores();
     createTask(appMainTask, serverStack, PRIO_SERVER);
-    return 1;
+    return UAV_OK;
 }

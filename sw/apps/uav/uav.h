@@ -11,21 +11,25 @@
 #define UAV_TRANSMIT_RING 0x00000000U
 #define UAV_RECEIVE_RING 0x00001000U
 #define UAV_FRAME 0x00100000U /* the camera's picture */
-#define UAV_BOOTS \
-    0x000FFF00U /* counts boots, so that no two have the same nonces; any first value */
 #define UAV_FRAME_HEADER \
     0x000FFF80U /* its width and height, two 32-bit words, written by the camera */
 
-/* The radio's AES key, 16 bytes that stay valid; 0, as at first: in the clear. Read when the tasks
- * start. */
-extern const U8* uav_radioKey;
+/* The modem's AES key, 16 bytes that stay valid; 0, as at first: it does not encrypt. Read when the
+ * tasks start. The keys of the link are the board's (uav_keys.h). */
+extern const U8* uav_modemKey;
 
 /* Guard time of the radio's modem as it is, in ms; 0, as at first: the factory's 1000. */
 extern U16 uav_guardMs;
 
-/* Creates the tasks; call between OSInit and OSStart. 0: the FPGA does not answer, there are no
- * tasks. */
-int UAV_start(const FSMC_Port* port, void* context);
+typedef enum UAV_Status {
+    UAV_OK,
+    UAV_NO_FPGA, /* it does not answer */
+    UAV_NO_KEY   /* the vehicle was neither given a key nor opened */
+} UAV_Status;
+
+/* Creates the tasks; call between OSInit and OSStart, after UAV_useBoard. Unless UAV_OK, there are
+ * none. */
+UAV_Status UAV_start(const FSMC_Port* port, void* context);
 
 /* Returns how many accesses no register answered, or whose core hung until the
  * bridge gave up. */

@@ -26,7 +26,8 @@ extern OS_EVENT* uav_radioWork; /* the radio task has something to do */
 U32 UAV_nowUs(void);
 
 /* Radio task: sets the modem up, runs the link, and sets it up again if the link stays down. */
-void UAV_initRadio(void);
+int UAV_initRadio(void);        /* 0: the vehicle has no key, and is not open */
+int UAV_nextKey(const U8* key); /* UAV_setNextKey for a servant */
 void UAV_radioTask(void* argument);
 void UAV_useRadio(Ice_CommunicatorPtr ic);
 extern const Ice_Os uav_iceOs;

@@ -4,6 +4,7 @@
  */
 #include "radio.h"
 #include "uav.h"
+#include "uav_keys.h"
 #include "uav_private.h"
 
 #define BYTE_TIME_US16 1440U /* 111,111 baud */
@@ -12,13 +13,12 @@
 
 Link uav_link;
 OS_EVENT* uav_radioWork;
-const U8* uav_radioKey;
+const U8* uav_modemKey;
 U16 uav_guardMs;
 
 static XBeeATEndpoint endpoint;
 static OS_EVENT* linkMutex;
 static OS_EVENT* iceEvent;
-static U32 randomState;
 
 U32 UAV_nowUs(void) {
     return OSTimeGet() * (1000000U / OS_TICKS_PER_SEC);
@@ -60,54 +60,41 @@ static U32 nowMsOf(void* context) {
 static const XBeeATEndpoint_Port endpointPort = {lockLink,  unlockLink,  kick,
                                                  waitEvent, signalEvent, nowMsOf};
 
-/* Returns a random word, not fit for secrets: two boots must differ, and the count of boots in DDR3
- * sees to that. */
-static U32 randomWord(void* context) {
-    (void)context;
-    randomState = randomState * 1664525U + 1013904223U + OSTimeGet();
-    return randomState ^ randomState >> 15;
-}
-
 static const Link_Port linkPort = {Radio_transmit,
-                                   randomWord,
+                                   UAV_random,
                                    XBeeATEndpoint_onMessage,
                                    XBeeATEndpoint_onChannel,
                                    XBeeATEndpoint_onState,
                                    0,
                                    0};
 
-static void seedRandom(void) {
-    U8 count[4];
-    FSMC_readMemory(UAV_BOOTS, count, 4);
-    randomState =
-        ((U32)count[0] | (U32)count[1] << 8 | (U32)count[2] << 16 | (U32)count[3] << 24) + 1U;
-    count[0] = (U8)randomState;
-    count[1] = (U8)(randomState >> 8);
-    count[2] = (U8)(randomState >> 16);
-    count[3] = (U8)(randomState >> 24);
-    FSMC_writeMemory(UAV_BOOTS, count, 4);
-    randomState *= 2654435761U;
-}
-
-void UAV_initRadio(void) {
+int UAV_initRadio(void) {
     INT8U error;
-    seedRandom();
     uav_radioWork = OSSemCreate(0);
     iceEvent = OSSemCreate(0);
     linkMutex = OSMutexCreate(PRIO_MUTEX, &error);
     Link_init(&uav_link, &linkPort, &endpoint, BYTE_TIME_US16);
+    return UAV_giveKeys(&uav_link) || UAV_isOpen();
 }
 
 void UAV_useRadio(Ice_CommunicatorPtr ic) {
     XBeeATEndpoint_init(ic, "xbee-at", &endpoint, &uav_link, 1, &endpointPort, 0);
 }
 
+int UAV_nextKey(const U8* key) {
+    int isSet;
+    lockLink(0);
+    isSet = UAV_setNextKey(&uav_link, key);
+    unlockLink(0);
+    return isSet;
+}
+
 static void setUpModem(void) {
     XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0};
     static const Radio_Memory rings = {UAV_TRANSMIT_RING, UAV_RECEIVE_RING};
-    xbeeConf.key = uav_radioKey;
+    xbeeConf.key = uav_modemKey;
     xbeeConf.guardMs = uav_guardMs;
-    Link_limitFrame(&uav_link, uav_radioKey ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME);
+    Link_limitFrame(&uav_link, uav_modemKey ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME);
     /* The vehicle flies on without its modem and tries again: the modem may come back. */
     while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)
         OSTimeDly(OS_TICKS_PER_SEC);
@@ -136,6 +123,7 @@ void UAV_radioTask(void* argument) {
         lockLink(0);
         (void)Radio_receive(onPacket, 0);
         Link_poll(&uav_link, UAV_nowUs());
+        (void)UAV_confirmKey(&uav_link);
         wait = Link_deadline(&uav_link, UAV_nowUs());
         if (Link_state(&uav_link) == LINK_STATE_UP)
             upAt = OSTimeGet();

@@ -127,6 +127,7 @@ def parse_arguments():
                         help="also fly the part of this core: FOLDER/ground.py")
     parser.add_argument("--sensor", action="store_true", help="the frame comes through the camera core")
     parser.add_argument("--loss", default="0", help="noted in the report")
+    parser.add_argument("--key", default="", help="file with the link's key; without: in the clear")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
     parser.add_argument("--patience", type=int, default=300,
                         help="seconds that each answer of the UAV may take")
@@ -144,6 +145,7 @@ def initialize(args):
         "Ice.Default.InvocationTimeout": str(1000 * args.patience),
         "Ice.ACM.Close": "0",
         "XBeeAT.Guard": str(args.guard),
+        "XBeeAT.KeyFile": args.key,
         "Station.Endpoints": "xbee-at -d %s -a 0x0001 -s 0x0000" % args.device,
     }.items():
         properties.setProperty(key, value)
@@ -296,7 +298,7 @@ def main():
     except KeyboardInterrupt:
         return 130
     except Ice.TimeoutException:
-        print("mission: no answer for %d s: is the UAV on, and in reach?" % args.patience, file=sys.stderr)
+        print("mission: no answer for %d s: is the UAV on, in reach, and has it the same key?" % args.patience, file=sys.stderr)
         return 1
     except (Ice.Exception, RuntimeError, OSError, subprocess.CalledProcessError) as e:
         print("mission: %s" % e, file=sys.stderr)

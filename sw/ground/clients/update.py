@@ -170,6 +170,7 @@ def main():
     parser.add_argument("--plugin", help="folder of libxbeeat.so.37")
     parser.add_argument("--slice", required=True, help="Update.ice")
     parser.add_argument("--status", help="the simulator's counters")
+    parser.add_argument("--key", default="", help="file with the link's key; without: in the clear")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
     parser.add_argument("--patience", type=int, default=120, help="seconds without an answer until it gives up")
     args = parser.parse_args()
@@ -189,6 +190,7 @@ def main():
         if args.plugin:
             settings["Ice.Plugin.XBeeAT"] = os.path.join(args.plugin, "xbeeat") + ":createXBeeAT"
             settings["XBeeAT.Guard"] = str(args.guard)
+            settings["XBeeAT.KeyFile"] = args.key
         for key, value in settings.items():
             data.properties.setProperty(key, value)
         communicator = Ice.initialize(data)

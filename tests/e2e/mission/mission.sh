@@ -43,7 +43,31 @@ replays_with() {
     replay "$@" >"$out/replay.log" 2>&1 && grep -q -- "$text" "$out/replay.log" || { cat "$out/replay.log" && exit 1; }
 }
 case $case in
-plain) run "$out" --image $image && check_output "$out" ;;
+plain) # secure, as each flight that does not say otherwise; its recording and its key are nobody else's to read
+    run "$out" --image $image && check_output "$out"
+    grep -q -- "\"--key\",\"$(dirname "$build")/demo.key\"" "$out/flight.jsonl"
+    [ "$(stat -c %a "$out/flight.jsonl" "$(dirname "$build")/demo.key" | sort -u)" = 600 ]
+    ;;
+open) # in the clear, because that was asked for
+    run "$out" --image $image --open 1 && check_output "$out"
+    ! grep -q -- '--key' "$out/flight.jsonl"
+    fails_with "give one of them" run "$out" --image $image --open 1 --key "$out/any.key"
+    ;;
+keys) # what the ground, the vehicle and their start say of keys that are not fit
+    umask 077
+    echo 000102030405060708090a0b0c0d0e0f >"$out/a.key"
+    echo 000102030405060708090a0b0c0d0e0e >"$out/b.key"
+    echo 0001020304 >"$out/short.key" && cp "$out/a.key" "$out/others.key" && chmod 644 "$out/others.key"
+    fails_with "32 hexadecimal digits" run "$out" --image $image --key "$out/short.key"
+    fails_with "chmod 600" run "$out" --image $image --key "$out/others.key"
+    fails_with "openssl rand" run "$out" --image $image --key "$out/no.key"
+    # Neither another key nor none ever comes to a session with this vehicle.
+    for ground in "--XBeeAT.KeyFile=$out/b.key" --XBeeAT.KeyFile=; do
+        fails_with 'Timeout' "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --guard $guard --key "$out/a.key" -- \
+            "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d "{device}" -a 0x0001 -g {guard} -t 3000' 1 "$ground" --Ice.RetryIntervals=-1
+    done
+    fails_with "chmod 600" "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d /dev/null' 1 "--XBeeAT.KeyFile=$out/others.key"
+    ;;
 loss) # and again from its recording, whose time is the one for looking
     run "$out" --image $image --loss 0.1 --seed "${SEED:-1}" && check_output "$out"
     replays_with 'bit by bit the flight that was recorded' "$out" --from 0.5 --to 0.51
@@ -106,10 +130,18 @@ stopped) # the ground's program gets no processor for four seconds amidst the se
     ;;
 encrypted) # both modems by the same AES key: the controller sets one, the endpoint's -k the other
     key=00112233445566778899AABBCCDDEEFF
-    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --key $key --guard $guard -- \
+    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --modem-key $key --guard $guard -- \
         "$build/sw/ground/ground_ping" "hwengine1:xbee-at -d \"{device}\" -a 0x0001 -k $key -g {guard} -t 60000" 3 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
     grep -q 'it is a ::Autopilot::HwProcessingEngine' "$out/log"
     ! grep -q $key "$out/log" || { echo "the key is in the output" && exit 1; }
+    ;;
+new_key) # a key follows another over the link, and the old one opens nothing any more
+    (umask 077 && echo 0x0001 000102030405060708090a0b0c0d0e0f >"$out/the.key")
+    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --guard $guard --key "$out/the.key" -- \
+        /usr/bin/python3 "$source/sw/ground/clients/change_key.py" --device '{device}' --guard '{guard}' --key "$out/the.key" \
+        --plugin "$build/ground" --slice "$source/sw/apps/uav/Autopilot.ice" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+    grep -q 'have a new key' "$out/log" && [ "$(stat -c %a "$out/the.key")" = 600 ]
+    grep -Eq '^0x0001 [0-9a-f]{32}$' "$out/the.key" && ! grep -q 000102030405 "$out/the.key"
     ;;
 gateway) # two stock clients at once, through TCP
     "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --guard $guard -- \

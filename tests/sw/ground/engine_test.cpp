@@ -139,9 +139,9 @@ TEST_F(EngineTest, HeartbeatsTakeNoAir) {
     close(fd);
 }
 
-TEST_F(EngineTest, TheKeyIsSetAndNeverLogged) {
+TEST_F(EngineTest, TheModemsKeyIsSetAndNeverLogged) {
     XBeeAT::Settings s = settings();
-    s.key = "0123456789ABCDEF";
+    s.modemKey = "0123456789ABCDEF";
     auto engine = XBeeAT::Engine::get(s, [this](int, const std::string& text) {
         std::lock_guard<std::mutex> lock(logMutex_);
         log_ += text + "\n";

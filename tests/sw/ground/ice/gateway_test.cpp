@@ -314,7 +314,8 @@ TEST(GatewayOptions, WrongOnesAreRefusedByName) {
         {{{"-l", "127.0.0.1:70000"}}, "a port is 0 to 65535"},
         {{{"-l", "[::1"}}, "[::1"},
         {{{"-a", "65536"}}, "--address"},
-        {{{"-k", "/no/such/file"}}, "cannot read a key"},
+        {{{"--key", "/no/such/file"}}, "openssl rand -hex 16"},
+        {{{"--modem-key", "/no/such/file"}}, "No such file"},
         {{{"--statistics", "-5"}}, "--statistics"},
         {{{"--station", "x"}}, "give HOST:PORT"}};
     for (auto [options, said] : cases) {

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * uav_keys: slots of keys, and how one follows another.
+ */
+#include "uav_keys.h"
+
+#include <string.h>
+
+#define SLOT_WORDS 5U
+#define CHECK 4U     /* of a slot: written last, removed first */
+#define STATE_AT 10U /* what follows, or nothing */
+#define STATE_OPEN 0x4F50454EU
+#define STATE_NEXT 0x4E455830U /* and the slot that has the next key, if both have one */
+#define CHECK_SEED 0x4B455931U
+#define KEY_WORDS (LINK_KEY_BYTES / 4U)
+
+static const UAV_Board* board;
+static void* boardContext;
+static int nextSlot; /* has the next key, and the other one the old; -1: there is but one */
+
+void UAV_useBoard(const UAV_Board* ours, void* context) {
+    board = ours;
+    boardContext = context;
+}
+
+U32 UAV_random(void* unused) {
+    (void)unused;
+    return board->random(boardContext);
+}
+
+static U32 load(int slot, U32 word) {
+    return board->load(boardContext, (U32)slot * SLOT_WORDS + word);
+}
+
+static void store(int slot, U32 word, U32 value) {
+    board->store(boardContext, (U32)slot * SLOT_WORDS + word, value);
+}
+
+/* Returns the check of a key: it is for power that failed, not for attackers. Never 0. */
+static U32 checkOf(const U32* words) {
+    U32 check = CHECK_SEED, i;
+    for (i = 0; i < KEY_WORDS; ++i)
+        check = (check ^ words[i]) * 0x01000193U + i;
+    return check | 1U;
+}
+
+static void wipe(volatile U8* bytes, U32 size) {
+    while (size--)
+        *bytes++ = 0;
+}
+
+int UAV_readKey(int slot, U8* key) {
+    U32 words[KEY_WORDS], i;
+    int isKey;
+    for (i = 0; i < KEY_WORDS; ++i)
+        words[i] = load(slot, i);
+    isKey = load(slot, CHECK) == checkOf(words);
+    for (i = 0; i < LINK_KEY_BYTES; ++i)
+        key[i] = isKey ? (U8)(words[i / 4U] >> 8U * (i % 4U)) : 0;
+    wipe((volatile U8*)words, sizeof words);
+    return isKey;
+}
+
+/* Writes a slot; without a key it is emptied. */
+static void writeKey(int slot, const U8* key) {
+    U32 words[KEY_WORDS], i;
+    store(slot, CHECK, 0);
+    memset(words, 0, sizeof words);
+    for (i = 0; key && i < LINK_KEY_BYTES; ++i)
+        words[i / 4U] |= (U32)key[i] << 8U * (i % 4U);
+    for (i = 0; i < KEY_WORDS; ++i)
+        store(slot, i, words[i]);
+    if (key)
+        store(slot, CHECK, checkOf(words));
+    wipe((volatile U8*)words, sizeof words);
+}
+
+void UAV_provide(const U8* key) {
+    board->store(boardContext, STATE_AT, key ? 0 : STATE_OPEN);
+    writeKey(1, 0);
+    writeKey(0, key);
+}
+
+int UAV_countKeys(void) {
+    U8 key[LINK_KEY_BYTES];
+    int count = UAV_readKey(0, key) + UAV_readKey(1, key);
+    wipe(key, sizeof key);
+    return count;
+}
+
+int UAV_isOpen(void) {
+    return UAV_countKeys() == 0 && board->load(boardContext, STATE_AT) == STATE_OPEN;
+}
+
+int UAV_giveKeys(Link* link) {
+    U8 key[LINK_KEY_BYTES];
+    int slot, count = 0;
+    for (slot = 0; slot < UAV_KEY_SLOTS; ++slot)
+        if (UAV_readKey(slot, key)) {
+            Link_setKey(link, slot, key);
+            ++count;
+        }
+    wipe(key, sizeof key);
+    nextSlot = count < UAV_KEY_SLOTS ? -1 : (int)(board->load(boardContext, STATE_AT) - STATE_NEXT);
+    return count;
+}
+
+int UAV_setNextKey(Link* link, const U8* key) {
+    U8 present[LINK_KEY_BYTES];
+    int inUse = Link_keyInUse(link), slot = 1 - inUse, isSame;
+    if (inUse < 0)
+        return 0;
+    isSame = UAV_readKey(inUse, present) && memcmp(present, key, sizeof present) == 0;
+    wipe(present, sizeof present);
+    if (isSame)
+        return 1;
+    /* The state comes first: where both slots have a key, it says which is the next one. */
+    writeKey(slot, 0);
+    board->store(boardContext, STATE_AT, STATE_NEXT + (U32)slot);
+    writeKey(slot, key);
+    Link_setKey(link, slot, key);
+    nextSlot = slot;
+    return 1;
+}
+
+int UAV_confirmKey(Link* link) {
+    if (nextSlot < 0 || Link_keyInUse(link) != nextSlot)
+        return 0;
+    writeKey(1 - nextSlot, 0);
+    Link_setKey(link, 1 - nextSlot, 0);
+    nextSlot = -1;
+    return 1;
+}

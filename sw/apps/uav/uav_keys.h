@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * uav_keys: the vehicle's keys, in memory that keeps them without power: two slots, of which one
+ * is in use and the other takes the key that is to follow it.
+ *
+ * A vehicle has a key, or it was opened on purpose, or it does not start. Power may fail at any
+ * word: a slot is then as it was, empty, or as it was to be, and the other one is not touched.
+ */
+#ifndef UAV_KEYS_H
+#define UAV_KEYS_H
+
+#include "link.h"
+
+#define UAV_KEY_SLOTS 2
+#define UAV_KEY_WORDS 11U /* a slot: four words of key, its check; then the state */
+
+/* What the microcontroller has for secrets. `context` is passed back unchanged. */
+typedef struct UAV_Board {
+    /* Returns 32 bits that nobody can guess. */
+    U32 (*random)(void* context);
+    /* Reads and writes words 0..UAV_KEY_WORDS - 1, which keep their values without power. */
+    U32 (*load)(void* context, U32 word);
+    void (*store)(void* context, U32 word, U32 value);
+} UAV_Board;
+
+/* Sets the board, which must stay valid; to be called before all else. */
+void UAV_useBoard(const UAV_Board* board, void* context);
+
+/* Returns 32 bits that nobody can guess. */
+U32 UAV_random(void* unused);
+
+/* Provides the vehicle, in its factory, with this key alone; 0: opens it, who has a radio may call
+ * it. */
+void UAV_provide(const U8* key);
+
+/* Reads a slot's key. Returns 0: it has none. */
+int UAV_readKey(int slot, U8* key);
+
+/* Returns how many slots have a key. */
+int UAV_countKeys(void);
+
+/* Returns 1 if the vehicle has no key and was opened. */
+int UAV_isOpen(void);
+
+/* Gives the link the keys of both slots; returns how many there are. */
+int UAV_giveKeys(Link* link);
+
+/* Puts the next key into the slot that is not in use. Returns 0: the session has no key, so that
+ * everybody on the air would read the new one. The key in use once more is no change. */
+int UAV_setNextKey(Link* link, const U8* key);
+
+/* Removes the old key once a session is up under the next one, which its peer then has. Returns 1
+ * if it did. */
+int UAV_confirmKey(Link* link);
+
+#endif

@@ -1,0 +1,103 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""change_key: gives a vehicle a new key over the link, and the key file with it.
+
+Whatever is cut off and whenever, vehicle and file have a key in common, and the next run goes on where this one
+ended: the file has both keys before the vehicle hears of the new one; the vehicle has both until a session has come
+up under the new one; the file loses the old one behind that.
+"""
+
+import argparse
+import contextlib
+import os
+import secrets
+import sys
+
+import Ice
+
+
+def write(path, lines):
+    """The file with these lines, whole or not at all, for its owner alone."""
+    beside = path + ".new"
+    with contextlib.suppress(FileNotFoundError):
+        os.remove(beside)
+    with open(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as f:
+        f.write("\n".join(lines) + "\n")
+        f.flush()
+        os.fsync(f.fileno())
+    return beside
+
+
+def keys_of(lines, address):
+    """The line of the vehicle and its words, KEY [NEXT]; without one of its own, that of all."""
+    found = None
+    for number, line in enumerate(lines):
+        words = line.split("#")[0].split()
+        if words and words[0].startswith("0x"):
+            if int(words[0], 16) == address:
+                return number, words[1:]
+        elif words:
+            found = len(lines), words
+    if not found:
+        raise RuntimeError("the key file has no line for the vehicle 0x%04x" % address)
+    return found
+
+
+def talk(args, key_file, what):
+    """Calls `what` with the vehicle's KeyRing, in a session of its own."""
+    data = Ice.InitializationData()
+    data.properties = Ice.createProperties()
+    for name, value in {"Ice.Plugin.XBeeAT": os.path.join(args.plugin, "xbeeat") + ":createXBeeAT",
+                        "Ice.Default.InvocationTimeout": str(1000 * args.patience),
+                        "XBeeAT.Guard": str(args.guard), "XBeeAT.KeyFile": key_file}.items():
+        data.properties.setProperty(name, value)
+    communicator = Ice.initialize(data)
+    try:
+        import Autopilot  # made by loadSlice
+        return what(Autopilot.KeyRingPrx.uncheckedCast(communicator.stringToProxy(
+            "keys:xbee-at -d %s -a 0x%04x -t %d" % (args.device, args.address, 1000 * args.patience))))
+    finally:
+        communicator.destroy()
+
+
+def change(args):
+    with open(args.key) as f:
+        lines = f.read().splitlines()
+    number, keys = keys_of(lines, args.address)
+    if len(keys) == 1:
+        keys.append(secrets.token_hex(16))
+    name = "0x%04x " % args.address
+    lines[number:number + 1] = [name + " ".join(keys)]
+    os.replace(write(args.key, lines), args.key)
+    if not talk(args, args.key, lambda ring: ring.setNextKey(bytes.fromhex(keys[1]))):
+        raise RuntimeError("the vehicle refuses a new key: was the session in the clear?")
+    lines[number] = name + keys[1]
+    new = write(args.key, lines)
+    if talk(args, new, lambda ring: ring.count()) != 1:
+        raise RuntimeError("the vehicle has not taken the new key; both are in the file: try again")
+    os.replace(new, args.key)
+    print("change_key: vehicle 0x%04x and %s have a new key; the old one opens nothing any more" % (
+        args.address, args.key))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--device", required=True, help="serial port of the modem")
+    parser.add_argument("--key", required=True, help="key file; it is rewritten")
+    parser.add_argument("--plugin", required=True, help="folder of libxbeeat.so.37")
+    parser.add_argument("--slice", required=True, help="Autopilot.ice")
+    parser.add_argument("--address", type=lambda text: int(text, 0), default=1, help="of the vehicle")
+    parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
+    parser.add_argument("--patience", type=int, default=60, help="seconds that an answer may take")
+    args = parser.parse_args()
+    Ice.loadSlice("-I" + (Ice.getSliceDir() or ".") + " " + args.slice)
+    try:
+        change(args)
+        return 0
+    except (Ice.Exception, RuntimeError, OSError, ValueError) as e:
+        print("change_key: %s" % e, file=sys.stderr)
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+//
+// key_file: opens, checks and parses.
+
+#include "key_file.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fcntl.h>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace XBeeAT {
+
+namespace {
+
+constexpr int anyVehicle = -1;
+constexpr size_t mostBytes = 65536;
+const char* const hexadecimal = "0123456789abcdefABCDEF";
+
+[[noreturn]] void refuse(const std::string& path, const std::string& why) {
+    throw std::runtime_error("key file '" + path + "'" + why);
+}
+
+void checkOwner(const std::string& path, const struct stat& file) {
+    if (!S_ISREG(file.st_mode) && !S_ISFIFO(file.st_mode))
+        refuse(path, " is neither a file nor a pipe");
+    if (file.st_uid != geteuid() && file.st_uid != 0)
+        refuse(path, " belongs to another user: chown it to the one who flies");
+    if (file.st_mode & 077) {
+        char mode[8];
+        std::snprintf(mode, sizeof mode, "%04o", file.st_mode & 07777);
+        refuse(path, std::string(" is open to others (mode ") + mode + "): chmod 600 '" + path +
+                         "', and change the key if anybody may have read it");
+    }
+}
+
+bool isKey(const std::string& word) {
+    return word.size() == 32 && word.find_first_not_of(hexadecimal) == std::string::npos;
+}
+
+LinkKey keyOf(const std::string& digits) {
+    LinkKey key;
+    for (size_t i = 0; i < key.size(); ++i)
+        key[i] = static_cast<unsigned char>(std::stoul(digits.substr(2 * i, 2), nullptr, 16));
+    return key;
+}
+
+// Returns the address that a word gives; negative: it gives none.
+int addressOf(const std::string& word) {
+    const bool isNumber = word.rfind("0x", 0) == 0 && word.size() > 2 && word.size() <= 6 &&
+                          word.find_first_not_of(hexadecimal, 2) == std::string::npos;
+    return isNumber ? std::stoi(word, nullptr, 16) : -1;
+}
+
+} // namespace
+
+std::string readSecret(const std::string& path) {
+    const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (fd < 0)
+        refuse(path, std::string(": ") + std::strerror(errno) +
+                         "; (umask 077; openssl rand -hex 16 >FILE) makes one");
+    std::unique_ptr<const int, void (*)(const int*)> closer(&fd, [](const int* f) { close(*f); });
+    struct stat file;
+    if (fstat(fd, &file) != 0)
+        refuse(path, std::string(": ") + std::strerror(errno));
+    checkOwner(path, file);
+    std::string text;
+    char bytes[512];
+    ssize_t count;
+    while ((count = read(fd, bytes, sizeof bytes)) > 0 && text.size() <= mostBytes)
+        text.append(bytes, static_cast<size_t>(count));
+    explicit_bzero(bytes, sizeof bytes);
+    if (count < 0)
+        refuse(path, std::string(": ") + std::strerror(errno));
+    if (text.size() > mostBytes)
+        refuse(path, " is too long for one");
+    return text;
+}
+
+KeyFile::KeyFile(const std::string& path) : path_(path) {
+    std::string text = readSecret(path), line;
+    std::istringstream lines(text);
+    for (int number = 1; std::getline(lines, line); ++number) {
+        std::istringstream words(line.substr(0, line.find('#')));
+        std::vector<std::string> word;
+        for (std::string w; words >> w;)
+            word.push_back(w);
+        if (word.empty())
+            continue;
+        const int address = addressOf(word[0]);
+        if (address >= 0)
+            word.erase(word.begin());
+        bool good = word.size() == 1 || word.size() == 2;
+        for (const std::string& w : word)
+            good = good && isKey(w);
+        const std::string where = ", line " + std::to_string(number) + ": ";
+        if (!good)
+            refuse(path, where + "give [ADDRESS] KEY [NEXT], a key as 32 hexadecimal digits, an "
+                                 "address as 0x0001");
+        LinkKeys& keys = keys_[address < 0 ? anyVehicle : address];
+        if (!keys.empty())
+            refuse(path, where + "there is a line for this vehicle already");
+        for (const std::string& w : word)
+            keys.insert(keys.begin(), keyOf(w));
+    }
+    explicit_bzero(text.data(), text.size());
+    if (keys_.empty())
+        refuse(path, " has no key in it; (umask 077; openssl rand -hex 16 >FILE) makes one");
+}
+
+LinkKeys KeyFile::of(int address) const {
+    if (path_.empty())
+        return {};
+    auto found = keys_.find(address);
+    if (found == keys_.end())
+        found = keys_.find(anyVehicle);
+    if (found == keys_.end()) {
+        char text[64];
+        std::snprintf(text, sizeof text, " has no line for the vehicle 0x%04x", address);
+        refuse(path_, text);
+    }
+    return found->second;
+}
+
+} // namespace XBeeAT

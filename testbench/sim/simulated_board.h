@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+//
+// simulated_board: what the vehicle has for secrets, where its firmware runs on the host: random
+// numbers by a seed, the Cortex-M3 model's, and words that keep their values without power. At
+// first it is open.
+
+#ifndef SIMULATED_BOARD_H
+#define SIMULATED_BOARD_H
+
+#include "random_block.h"
+#include <array>
+#include <vector>
+
+extern "C" {
+#include "uav_keys.h"
+}
+
+class SimulatedBoard {
+public:
+    using Words = std::array<uint32_t, UAV_KEY_WORDS>;
+
+    explicit SimulatedBoard(uint64_t seed = 1) : random_(seed) {
+        (void)RandomBlock::next(random_); // as secrets.c does
+        provide({});
+    }
+    // Makes it the firmware's.
+    void use() { UAV_useBoard(&port(), this); }
+    // Gives the vehicle its key, 16 bytes, as its factory does; none: opens it.
+    void provide(const std::vector<uint8_t>& key) {
+        use();
+        UAV_provide(key.empty() ? nullptr : key.data());
+    }
+    Words words{};
+
+private:
+    static SimulatedBoard& self(void* context) { return *static_cast<SimulatedBoard*>(context); }
+    static const UAV_Board& port() {
+        static const UAV_Board board = {
+            [](void* c) -> U32 { return RandomBlock::next(self(c).random_); },
+            [](void* c, U32 word) -> U32 { return self(c).words.at(word); },
+            [](void* c, U32 word, U32 value) { self(c).words.at(word) = value; }};
+        return board;
+    }
+    uint64_t random_;
+};
+
+#endif

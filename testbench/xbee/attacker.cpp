@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+//
+// attacker: what it makes of what it heard.
+
+#include "attacker.h"
+
+namespace {
+
+constexpr size_t mostBytes = 100; // of a packet
+constexpr uint16_t uav = 1, ground = 0;
+
+XBee::Options modemOfNobody() {
+    XBee::Options options;
+    options.name = "attacker";
+    options.set = {{"MY", 0x0BAD}, {"DL", uav}};
+    return options;
+}
+
+} // namespace
+
+Attacker::Attacker(RfChannel& air, uint64_t seed)
+    : air_(air), random_(seed), modem_(line_, air, modemOfNobody()) {
+    air.onPacket([this](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
+        // Its own come back as the link's: they are not told apart on the air.
+        if (heard_.size() < 100'000)
+            heard_.push_back(packet);
+    });
+}
+
+void Attacker::send(uint16_t from, uint16_t to, Bytes bytes, uint64_t now) {
+    RfPacket packet;
+    packet.from = from;
+    packet.to = to;
+    packet.pan = static_cast<uint16_t>(modem_.parameter("ID"));
+    packet.channel = static_cast<uint8_t>(modem_.parameter("CH"));
+    bytes.resize(std::min(bytes.size(), mostBytes));
+    packet.bytes = std::move(bytes);
+    ++sent_;
+    air_.transmit(&modem_, packet, now);
+}
+
+// One of the newest half of the time, else any.
+const RfPacket& Attacker::recalled() {
+    const auto count = static_cast<uint32_t>(heard_.size());
+    const uint32_t span = random_.below(2) ? count : std::min(count, 20u);
+    return heard_[count - 1 - random_.below(span)];
+}
+
+// Control frames of every kind and epoch, and data, whose tag is a guess.
+Attacker::Bytes Attacker::invented() {
+    Bytes bytes;
+    while (bytes.size() < mostBytes && (bytes.empty() || random_.below(4))) {
+        const uint32_t size = random_.below(2) ? random_.below(20) : 0;
+        bytes.push_back(static_cast<uint8_t>(size | (random_.below(4) ? 0x80 : 0)));
+        bytes.push_back(static_cast<uint8_t>(random_.below(2) ? 3 : random_.next()));
+        for (uint32_t i = 0; i < 1 + size + 8; ++i)
+            bytes.push_back(static_cast<uint8_t>(random_.next()));
+    }
+    return bytes;
+}
+
+void Attacker::doMischief(uint64_t now) {
+    if (heard_.empty() || random_.below(4) == 0) {
+        const bool up = random_.below(2);
+        return send(up ? ground : uav, up ? uav : ground, invented(), now);
+    }
+    const RfPacket& packet = recalled();
+    Bytes bytes = packet.bytes;
+    uint16_t from = packet.from, to = packet.to;
+    const auto size = static_cast<uint32_t>(bytes.size());
+    switch (random_.below(6)) {
+    case 0:
+        std::swap(from, to);
+        break;
+    case 1:
+        if (size)
+            bytes[random_.below(size)] ^= static_cast<uint8_t>(1u << random_.below(8));
+        break;
+    case 2:
+        bytes.resize(random_.below(size + 1));
+        break;
+    case 3: {
+        const Bytes& more = recalled().bytes;
+        bytes.insert(bytes.begin(), more.begin(), more.end());
+        break;
+    }
+    default: // as it was
+        break;
+    }
+    if (!bytes.empty())
+        send(from, to, bytes, now);
+}

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+//
+// keys_test: the vehicle's key slots: a key that follows another, with the power cut at every word
+// that is written, and a ground that gives up at every step.
+
+#include "link_pair.h"
+#include <array>
+#include <gtest/gtest.h>
+
+extern "C" {
+#include "uav_keys.h"
+}
+
+namespace {
+
+using Key = std::array<U8, LINK_KEY_BYTES>;
+
+constexpr Key oldKey = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16},
+              newKey = {101, 102, 103, 104, 105, 106, 107, 108,
+                        109, 110, 111, 112, 113, 114, 115, 116},
+              foreignKey = {9};
+
+// A vehicle (b) with its slots, and a ground (a) with a key file.
+class Vehicle : public Pair {
+public:
+    explicit Vehicle(uint64_t seed) : Pair(seed) {
+        UAV_useBoard(&board, this);
+        UAV_provide(oldKey.data());
+        bootVehicle();
+    }
+    void bootVehicle() {
+        cutAfter = never;
+        isDead = false;
+        b.boot();
+        keys = UAV_giveKeys(b.link());
+        Link_start(b.link(), now32());
+    }
+    // The ground's program starts with this key file; true: a session has come up.
+    bool meets(const std::vector<Key>& file, uint64_t patienceUs = 20'000'000) {
+        a.boot();
+        for (size_t slot = 0; slot < file.size(); ++slot)
+            Link_setKey(a.link(), static_cast<int>(slot), file[slot].data());
+        Link_start(a.link(), now32());
+        const U32 sessions = Link_statistics(b.link())->sessions;
+        auto isOver = [&] { // the vehicle, too, is in the new session
+            UAV_confirmKey(b.link());
+            return isDead || (bothUp() && Link_statistics(b.link())->sessions != sessions);
+        };
+        const bool isMet = runUntil(isOver, patienceUs) && !isDead;
+        UAV_confirmKey(b.link());
+        return isMet && !isDead;
+    }
+    // The whole change, as sw/ground/clients/change_key.py makes it, or its first steps. Returns
+    // what is then in the ground's file.
+    std::vector<Key> change(int steps = 3) {
+        const std::vector<Key> before = {oldKey}, both = {newKey, oldKey}, after = {newKey};
+        if (steps < 1)
+            return before;
+        if (steps < 2 || !meets(before) || !UAV_setNextKey(b.link(), newKey.data()) || isDead)
+            return both;
+        return steps < 3 || !meets(after) || UAV_countKeys() != 1 ? both : after;
+    }
+    bool hasKey(const Key& wanted) {
+        Key key{};
+        for (int slot = 0; slot < UAV_KEY_SLOTS; ++slot)
+            if (UAV_readKey(slot, key.data()) && key == wanted)
+                return true;
+        return false;
+    }
+
+    static constexpr unsigned never = ~0u;
+    std::array<U32, UAV_KEY_WORDS> words{};
+    unsigned stores = 0, cutAfter = never; // then power fails
+    bool isDead = false;
+    int keys = 0;
+
+private:
+    static Vehicle& self(void* context) { return *static_cast<Vehicle*>(context); }
+    static constexpr UAV_Board board = {
+        [](void*) -> U32 { return 4; },
+        [](void* c, U32 word) -> U32 { return self(c).words.at(word); },
+        [](void* c, U32 word, U32 value) {
+            Vehicle& v = self(c);
+            v.isDead = v.isDead || v.stores++ == v.cutAfter;
+            if (!v.isDead)
+                v.words.at(word) = value;
+        }};
+};
+
+TEST(Keys, AVehicleHasAKeyOrIsOpenOrNeither) {
+    Vehicle vehicle(1);
+    EXPECT_EQ(UAV_countKeys(), 1);
+    EXPECT_FALSE(UAV_isOpen());
+    UAV_provide(nullptr);
+    EXPECT_EQ(UAV_countKeys(), 0);
+    EXPECT_TRUE(UAV_isOpen());
+    vehicle.words = {}; // the battery was empty
+    EXPECT_EQ(UAV_countKeys(), 0);
+    EXPECT_FALSE(UAV_isOpen());
+}
+
+TEST(Keys, ASlotThatWasSpoiltIsEmpty) {
+    Vehicle vehicle(1);
+    for (U32 bit = 0; bit < 5 * 32; ++bit) {
+        vehicle.words[bit / 32] ^= 1u << bit % 32;
+        EXPECT_EQ(UAV_countKeys(), 0) << bit;
+        vehicle.words[bit / 32] ^= 1u << bit % 32;
+    }
+    EXPECT_EQ(UAV_countKeys(), 1);
+}
+
+TEST(Keys, OneFollowsAnotherAndTheOldOneOpensNothing) {
+    Vehicle vehicle(testSeed());
+    EXPECT_EQ(vehicle.change(), std::vector<Key>{newKey});
+    EXPECT_FALSE(vehicle.hasKey(oldKey));
+    EXPECT_FALSE(vehicle.meets({oldKey}, 5'000'000));
+    EXPECT_TRUE(vehicle.meets({newKey}));
+    vehicle.bootVehicle();
+    EXPECT_FALSE(vehicle.meets({oldKey}, 5'000'000));
+    EXPECT_TRUE(vehicle.meets({newKey}));
+}
+
+TEST(Keys, AGroundWithoutTheKeyIsRefused) {
+    Vehicle vehicle(testSeed());
+    EXPECT_FALSE(vehicle.meets({}, 5'000'000)) << "in the clear";
+    EXPECT_FALSE(vehicle.meets({foreignKey}, 5'000'000));
+    EXPECT_FALSE(UAV_setNextKey(vehicle.b.link(), newKey.data())) << "without a session";
+    EXPECT_TRUE(vehicle.meets({foreignKey, oldKey})) << "one of two serves";
+}
+
+TEST(Keys, ASessionUnderTheOldKeyKeepsBoth) {
+    Vehicle vehicle(testSeed());
+    vehicle.change(2);
+    vehicle.bootVehicle();
+    EXPECT_EQ(vehicle.keys, 2);
+    ASSERT_TRUE(vehicle.meets({oldKey}));
+    EXPECT_EQ(UAV_countKeys(), 2);
+    ASSERT_TRUE(vehicle.meets({newKey}));
+    EXPECT_EQ(UAV_countKeys(), 1);
+    EXPECT_TRUE(vehicle.hasKey(newKey));
+}
+
+TEST(Keys, TheKeyInUseAgainIsNoChangeAndAnotherNextKeyReplacesTheFirst) {
+    Vehicle vehicle(testSeed());
+    ASSERT_TRUE(vehicle.meets({oldKey}));
+    EXPECT_TRUE(UAV_setNextKey(vehicle.b.link(), oldKey.data()));
+    EXPECT_EQ(UAV_countKeys(), 1);
+    EXPECT_TRUE(UAV_setNextKey(vehicle.b.link(), foreignKey.data()));
+    EXPECT_TRUE(UAV_setNextKey(vehicle.b.link(), newKey.data()));
+    EXPECT_FALSE(vehicle.hasKey(foreignKey));
+    EXPECT_TRUE(vehicle.hasKey(newKey) && vehicle.hasKey(oldKey));
+}
+
+// Wherever the ground gives up, what is in its file opens the vehicle.
+TEST(Keys, AGroundThatGivesUpKeepsAKeyThatWorks) {
+    for (int steps = 0; steps <= 3; ++steps) {
+        Vehicle vehicle(testSeed());
+        const std::vector<Key> file = vehicle.change(steps);
+        vehicle.bootVehicle();
+        EXPECT_TRUE(vehicle.meets(file)) << steps;
+    }
+}
+
+TEST(Keys, PowerThatFailsAtAnyWordLeavesAKeyThatWorks) {
+    bool wasCut = true;
+    for (unsigned cut = 0; wasCut; ++cut) {
+        Vehicle vehicle(testSeed());
+        vehicle.cutAfter = vehicle.stores + cut;
+        const std::vector<Key> file = vehicle.change();
+        wasCut = vehicle.isDead;
+        vehicle.bootVehicle();
+        ASSERT_GE(vehicle.keys, 1) << "after " << cut << " words";
+        ASSERT_TRUE(vehicle.meets(file)) << "after " << cut << " words";
+        vehicle.bootVehicle();
+        // And the change can be made again.
+        ASSERT_TRUE(vehicle.meets({newKey, oldKey})) << "after " << cut << " words";
+        ASSERT_TRUE(UAV_setNextKey(vehicle.b.link(), newKey.data()));
+        ASSERT_TRUE(vehicle.meets({newKey})) << "after " << cut << " words";
+        EXPECT_EQ(UAV_countKeys(), 1);
+    }
+}
+
+} // namespace

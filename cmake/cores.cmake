@@ -18,11 +18,11 @@ foreach(line IN LISTS lines)
   endif()
 endforeach()
 list(REMOVE_DUPLICATES CHIP_CORES)
-# The object adapter has room for every core's servant beside the UAV's own: 8 servants by default (sw/icec/ice_config.h),
+# The object adapter has room for every core's servant beside the three of the UAV: 8 servants by default (sw/icec/ice_config.h),
 # more where the list is longer, on the host and, by ARM_DEFINES, in the firmware.
 set(ARM_DEFINES)
-if(instances GREATER 7)
-  math(EXPR servants "${instances} + 1")
+if(instances GREATER 5)
+  math(EXPR servants "${instances} + 3")
   add_compile_definitions(ICE_SERVANTS=${servants})
   set(ARM_DEFINES ICE_SERVANTS=${servants})
 endif()

@@ -51,12 +51,29 @@ bisect: setup-tests $(BUILD)/build.ninja ## find the commit since which a test f
 	@$(NINJA) --quiet regress
 	@tests/regress/bisect.sh $(BUILD)/tests/regress/regress $(call quoted,$(TEST)) $(call quoted,$(GOOD)) $(call quoted,$(BAD)) $(call quoted,$(SEED)) $(JOBS)
 
+# build/sanitized is that of make test. What Python loads is left out: its own program would need the sanitizer, too.
+ROOMS_OF_PROGRAMS = bus;slice;sw;hdl;ip;testbench;tests
+GUARDED = test_engine gateway test_radio_ice
+WITHOUT_PYTHON = --gtest_brief=1 --gtest_filter='-*Python*'
+sanitizers: setup-tests $(BUILD)/build.ninja ## tests of engine, gateway, plugin and page with AddressSanitizer, of the first three with ThreadSanitizer; fuzzers of page and debugger's stub
+	@[ -f build/sanitized/build.ninja ] || cmake -S . -B build/sanitized -G Ninja -DSANITIZE=ON -DROOMS="$(ROOMS_OF_PROGRAMS)" >/dev/null
+	@[ -f build/thread/build.ninja ] || cmake -S . -B build/thread -G Ninja -DSANITIZE=thread -DROOMS="$(ROOMS_OF_PROGRAMS)" >/dev/null
+	@cmake/ninja.sh build/sanitized -j $(JOBS) $(GUARDED) icesoc-live
+	@cmake/ninja.sh build/thread -j $(JOBS) $(GUARDED)
+	@$(NINJA) fuzz_page fuzz_gdb
+	@status=0; for build in sanitized thread; do for test in test_engine ice/test_radio_ice; do \
+	    ASAN_OPTIONS=detect_leaks=0 TSAN_OPTIONS=suppressions=$(CURDIR)/tests/sw/ground/threads.supp \
+	    build/$$build/tests/sw/ground/$$test $(WITHOUT_PYTHON) || status=1; done; done; \
+	    tests/testbench/live/live.sh . build/sanitized errors build/sanitized/live || status=1; \
+	    ctest --test-dir $(BUILD) -R '^fuzz[.](page|gdb)$$' --output-on-failure || status=1; exit $$status
+
 # Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them. COMPARE_MS: test_quiet compares a second.
-nightly: setup-tests build ## what a timer runs: seeds that have failed, the regression with fresh seeds (NIGHTLY=3 of them), ZeroC's own suites
+nightly: setup-tests build ## what a timer runs: seeds that have failed, the regression with fresh seeds (NIGHTLY=3 of them), ZeroC's own suites, faults, sanitizers
 	@status=0; export COMPARE_MS=1000; tool="$(BUILD)/tests/regress/regress --build $(BUILD) --jobs $(TESTS) --waves $(WAVES) --launcher $(LAUNCHER)"; \
 	    $$tool --kept $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
 	    $$tool --seed random --repeat $(NIGHTLY) $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
 	    ctest --test-dir $(BUILD) -C zeroc -L zeroc -j $(TESTS) --output-on-failure || status=$$?; \
+	    $(MAKE) faults SEED=$$(date +%Y%m%d) || status=$$?; $(MAKE) sanitizers || status=$$?; \
 	    exit $$status
 
 # MOMENTS of each fault are drawn from each of SEEDS seeds, the first of which is SEED. Tools are interrupted for the first.
@@ -78,4 +95,4 @@ coverage: setup-tests $(BUILD)/build.ninja ## lines, branches and toggles that t
 	@$(NINJA) coverage regress
 	@tests/regress/coverage.sh $(BUILD) $(JOBS)
 
-.PHONY: regress bisect nightly threads faults proofs coverage
+.PHONY: regress bisect nightly sanitizers faults proofs coverage

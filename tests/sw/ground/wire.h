@@ -33,13 +33,13 @@ inline Bytes message(uint8_t tag, size_t size = 30) {
     return m;
 }
 
-// Reads `size` bytes; fewer if the stream ends.
-inline Bytes readAll(int fd, size_t size) {
+// Reads `size` bytes; fewer if the stream ends, or nothing comes for so long.
+inline Bytes readAll(int fd, size_t size, int patienceMs = 60'000) {
     Bytes bytes(size);
     size_t got = 0;
     while (got < size) {
         pollfd p{fd, POLLIN, 0};
-        if (poll(&p, 1, 60000) <= 0)
+        if (poll(&p, 1, patienceMs) <= 0)
             break;
         ssize_t count = recv(fd, bytes.data() + got, size - got, 0);
         if (count == 0 || (count < 0 && errno != EAGAIN))

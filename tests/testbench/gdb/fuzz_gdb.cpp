@@ -7,6 +7,9 @@
 
 #include "gdb_stub.h"
 #include <arpa/inet.h>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -38,8 +41,14 @@ int connected(uint16_t port) {
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     to.sin_port = htons(port);
     const int fd = socket(AF_INET, SOCK_STREAM, 0);
-    if (connect(fd, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0)
-        abort();
+    // In a long run the machine may be out of ports for a moment: 500 connections a second.
+    while (connect(fd, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0) {
+        if (errno != EADDRNOTAVAIL) {
+            perror("fuzz_gdb: cannot connect to the stub");
+            abort();
+        }
+        usleep(10'000);
+    }
     return fd;
 }
 

@@ -50,7 +50,7 @@ errors)
     "$live" --dir "$out" --registers "$build/gen/registers.list" >"$out/first" &
     first=$!
     trap 'kill $first 2>/dev/null || true' EXIT
-    while ! grep -q 127.0.0.1 "$out/first" 2>/dev/null; do kill -0 $first && sleep 0.1; done
+    while ! grep -q 127.0.0.1 "$out/first" 2>/dev/null; do kill -0 $first || fail "the page has ended"; sleep 0.1; done
     port=$(sed -n 's,.*127.0.0.1:\([0-9]*\)/.*,\1,p' "$out/first")
     expect 'is the port taken' "$live" --dir "$out" --registers "$build/gen/registers.list" --port "$port"
     # Nothing has run in this folder yet: the page still answers; and only on the loopback interface.

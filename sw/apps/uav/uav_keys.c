@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define SLOT_WORDS 5U
-#define CHECK 4U     /* of a slot: written last, removed first */
+#define CHECK 4U     /* of a slot: right for no other words */
 #define STATE_AT 10U /* what follows, or nothing */
 #define STATE_OPEN 0x4F50454EU
 #define STATE_NEXT 0x4E455830U /* and the slot that has the next key, if both have one */
@@ -64,14 +64,12 @@ int UAV_readKey(int slot, U8* key) {
 /* Writes a slot; without a key it is emptied. */
 static void writeKey(int slot, const U8* key) {
     U32 words[KEY_WORDS], i;
-    store(slot, CHECK, 0);
     memset(words, 0, sizeof words);
     for (i = 0; key && i < LINK_KEY_BYTES; ++i)
         words[i / 4U] |= (U32)key[i] << 8U * (i % 4U);
     for (i = 0; i < KEY_WORDS; ++i)
         store(slot, i, words[i]);
-    if (key)
-        store(slot, CHECK, checkOf(words));
+    store(slot, CHECK, key ? checkOf(words) : 0);
     wipe((volatile U8*)words, sizeof words);
 }
 

@@ -172,6 +172,10 @@ TEST(Keys, PowerThatFailsAtAnyWordLeavesAKeyThatWorks) {
         ASSERT_GE(vehicle.keys, 1) << "after " << cut << " words";
         ASSERT_TRUE(vehicle.meets(file)) << "after " << cut << " words";
         vehicle.bootVehicle();
+        if (vehicle.hasKey(newKey)) { // the old one goes, as if nothing had been
+            ASSERT_TRUE(vehicle.meets({newKey})) << "after " << cut << " words";
+            EXPECT_EQ(UAV_countKeys(), 1) << "after " << cut << " words";
+        }
         // And the change can be made again.
         ASSERT_TRUE(vehicle.meets({newKey, oldKey})) << "after " << cut << " words";
         ASSERT_TRUE(UAV_setNextKey(vehicle.b.link(), newKey.data()));

@@ -304,6 +304,16 @@ TEST(CortexM3Firmware, ACorruptImageIsRefusedWithItsReason) {
     }
 }
 
+TEST(CortexM3Firmware, WithoutAKeyItDoesNotStartAndTriesAgain) {
+    Flight f;
+    M3Machine machine(f.soc, firmware, [&] { return f.inTime(2.2); });
+    machine.stm32().backup().fill(0); // the battery was empty
+    machine.run();
+    EXPECT_EQ(reasonOf(f.scratch()), BOOT_NO_KEY);
+    EXPECT_GE(machine.stm32().resets().watchdog, 1u);
+    EXPECT_EQ(f.soc.modem().parameter("BD"), 3u) << "the firmware has started";
+}
+
 TEST(CortexM3Firmware, TheSameSeedGivesTheSameRunToTheInstruction) {
     uint64_t instructions[2], cycles[2];
     for (int run = 0; run < 2; ++run) {

@@ -128,8 +128,9 @@ void link_onPing(Link* link, const U8* frame) {
     if (frame[2] & LINK_PING_ANSWER) {
         number = link_extend(watch->pingsSent, frame[1]);
         if (LINK_BEFORE(watch->pingsAnswered, number) && !LINK_BEFORE(watch->pingsSent, number)) {
-            watch->pingsAnswered = number;
-            link->heardAt = watch->provenAt = link->now;
+            watch->pingsAnswered = watch->pingsSent;
+            watch->provenAt = watch->askedAt; /* the answer itself may have been held back */
+            link->heardAt = link->now;
         }
         return;
     }
@@ -164,6 +165,8 @@ void link_pollKeyed(Link* link) {
         link_lose(link);
     } else if ((silence >= LINK_PING_AFTER || proof >= LINK_PROOF_AFTER) &&
                !LINK_BEFORE(now, link->pingAt)) {
+        if (watch->pingsAnswered == watch->pingsSent)
+            watch->askedAt = now;
         (void)link_sendControl(link, frame, LINK_KIND_PING, ++watch->pingsSent, 0, 0);
         link->pingAt = now + LINK_PING_EVERY;
     }

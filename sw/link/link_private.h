@@ -78,9 +78,10 @@ typedef struct Link_Handshake {
 
 /* With a key: what a session has seen. */
 typedef struct Link_Watch {
-    U32 pingsSent, pingsAnswered; /* numbers of the newest own PING, and of that last answered */
+    U32 pingsSent, pingsAnswered; /* numbers of the newest own PING, and up to which that is over */
+    U32 askedAt;                  /* when the first PING after that was sent */
     U32 pingsSeen;                /* number of the peer's newest PING */
-    U32 provenAt;                 /* when the peer has last answered something that was new */
+    U32 provenAt;                 /* the peer lived then or later, as its last answer proves */
     U32 failures;                 /* frames whose tag was wrong */
     U32 rounds;                   /* of Ascon that the search may compute now */
 } Link_Watch;

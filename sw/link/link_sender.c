@@ -184,7 +184,7 @@ static void markAcked(Link* link, U32 advance, U32 bitmap) {
         if (!isHere || f->state == LINK_ACKED || f->tries == 0)
             continue;
         f->state = LINK_ACKED;
-        link->heardAt = link->watch.provenAt = link->now;
+        link->heardAt = link->now;
         if (f->tries != 1U && elapsed < sender->srtt - sender->srtt / 4U)
             continue; /* sooner than a round trip: this answers an earlier transmission */
         if (!newest || LINK_BEFORE(newest->order, f->order))

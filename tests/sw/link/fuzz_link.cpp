@@ -7,11 +7,13 @@
 //
 // An input byte names the step (mod 8), the next its argument n:
 //   0, 1  n bytes as they are
-//   2, 3  a frame of n bytes, checksum of the session added
+//   2, 3  a frame of n bytes, checksum (under a key: tag) of the session added
 //   4     the same, of the handshake
 //   5     n ms pass
 //   6     a message of n bytes is sent on channel n mod 4, opened if need be
 //   7     n frames of the peer's come through
+//
+// With -DKEYED both have a key, and the fuzzer knows it.
 
 #include <cstdint>
 #include <cstring>
@@ -34,6 +36,8 @@ struct Node {
     uint64_t sum = 0; // so that every byte handed over is read
     bool busy = false;
 };
+
+const U8 key[LINK_KEY_BYTES] = {1, 2, 3};
 
 Node& node(void* c) {
     return *static_cast<Node*>(c);
@@ -66,6 +70,9 @@ public:
     Machine() {
         for (Node* n : {&a_, &b_}) {
             Link_init(n->link.get(), &port, n, 1440);
+#ifdef KEYED
+            Link_setKey(n->link.get(), 0, key);
+#endif
             Link_start(n->link.get(), now_);
             n->nonce += 77;
         }
@@ -87,7 +94,7 @@ public:
             if (step < 2)
                 feed(bytes);
             else if (step < 5)
-                feed(frame(bytes, step == 4 ? LINK_NO_SEED : a_.link->session.key));
+                feed(frame(bytes, step == 4));
             else if (step == 5)
                 pass(n);
             else if (step == 6)
@@ -101,15 +108,60 @@ public:
     }
 
 private:
-    static Bytes frame(Bytes bytes, U32 key) {
-        if (bytes.size() < 3)
+    // What A takes for its peer's, where the rest makes sense.
+    Bytes frame(Bytes bytes, bool isHandshake) const {
+        const size_t most = LINK_MAX_FRAME - a_.link->overhead + LINK_HEADER;
+        if (bytes.size() < LINK_HEADER)
             return bytes;
-        if (bytes.size() > 98)
-            bytes.resize(98);
-        bytes[0] = static_cast<uint8_t>((bytes[0] & 0x80) | (bytes.size() - 3));
-        U32 crc = link_crc(key, bytes.data(), static_cast<U32>(bytes.size()));
+        if (bytes.size() > most)
+            bytes.resize(most);
+        bytes[0] = static_cast<uint8_t>((bytes[0] & 0x80) | (bytes.size() - LINK_HEADER));
+        if (a_.link->overhead != LINK_OVERHEAD)
+            return sealed(bytes, isHandshake);
+        U32 crc = link_crc(isHandshake ? LINK_NO_SEED : a_.link->session.key, bytes.data(),
+                           static_cast<U32>(bytes.size()));
         bytes.push_back(static_cast<uint8_t>(crc >> 8));
         bytes.push_back(static_cast<uint8_t>(crc));
+        return bytes;
+    }
+    // The same under a key. A HELLO is under its own; the others of the handshake are for the
+    // nonce of now, from a peer whose nonce is in the input.
+    Bytes sealed(Bytes bytes, bool isHandshake) const {
+        const Link* link = a_.link.get();
+        const U8* under = link->session.keys.receive;
+        Link_Keys keys;
+        U32 kind = bytes[2] >> 5 & 7;
+        U32 number = link->receiver.next, acked = 0;
+        if (isHandshake) {
+            kind = LINK_KIND_HELLO + kind % 3;
+            bytes.resize(LINK_HEADER + (kind == LINK_KIND_HELLO ? 8 : 16));
+            bytes[0] = static_cast<uint8_t>(0x80 | (bytes.size() - LINK_HEADER));
+            bytes[1] = LINK_VERSION;
+            bytes[2] = static_cast<uint8_t>((bytes[2] & 3) | kind << 5);
+            under = link->secrets.hello[0];
+            if (kind != LINK_KIND_HELLO) {
+                std::memcpy(&bytes[LINK_HEADER + 8], link->handshake.nonce, LINK_NONCE_BYTES);
+                link_deriveKeys(key, link->handshake.nonce, &bytes[LINK_HEADER], &keys);
+                under = keys.receive;
+            }
+        } else {
+            bytes[2] =
+                static_cast<uint8_t>((bytes[2] & ~0x1C) | LINK_KEY_EPOCH(link->session.key) << 2);
+            if (bytes[0] & LINK_CONTROL) {
+                if (kind == LINK_KIND_ACK)
+                    number = link->sender.base;
+                else if (kind == LINK_KIND_PING)
+                    number = bytes[2] & 1 ? link->watch.pingsSent : link->watch.pingsSeen;
+                else if (kind >= LINK_KIND_PIGGYBACK && bytes.size() > LINK_HEADER)
+                    acked = link_extend(link->sender.base, bytes[LINK_HEADER]);
+                if (kind == LINK_KIND_BYE)
+                    number = bytes[1];
+            }
+        }
+        number = link_extend(number, bytes[1]);
+        const U32 header = bytes[0] | U32(bytes[1]) << 8 | U32(bytes[2]) << 16;
+        bytes.resize(bytes.size() + LINK_TAG);
+        link_protect(bytes.data(), header, under, number, acked);
         return bytes;
     }
     void feed(const Bytes& bytes) {

@@ -97,14 +97,6 @@ module soc #(
         .slot_error_i(slot_error)
     );
 
-    system_slot #(.SLOTS(SLOTS), .CLK_HZ(CLK_HZ)) u_system_slot (
-        .clk_i(clk_i), .rst_i(rst),
-        `SLOT(MAP_SLOT_SYSTEM),
-        .slot_irq_i(slot_irq), .irq_o(irq), .page_o(page),
-        .access_error_i(access_error), .error_memory_i(error_memory),
-        .error_addr_i(error_addr), .error_write_i(error_write), .late_i(late)
-    );
-
     modem #(.CLK_HZ(CLK_HZ)) u_modem (
         .clk_i(clk_i), .rst_i(rst),
         `SLOT(MAP_SLOT_MODEM),
@@ -114,8 +106,16 @@ module soc #(
         .modem_rts_n_o(modem_rts_n_o), .modem_reset_n_o(modem_reset_n_o)
     );
 
-    // Cores: generated from ip/cores.list.
+    // Cores and the hashes of all slots' registers: generated from ip/cores.list.
     `include "soc_cores.vh"
+
+    system_slot #(.SLOTS(SLOTS), .CLK_HZ(CLK_HZ), .CONTRACTS(CONTRACTS)) u_system_slot (
+        .clk_i(clk_i), .rst_i(rst),
+        `SLOT(MAP_SLOT_SYSTEM),
+        .slot_irq_i(slot_irq), .irq_o(irq), .page_o(page),
+        .access_error_i(access_error), .error_memory_i(error_memory),
+        .error_addr_i(error_addr), .error_write_i(error_write), .late_i(late)
+    );
 
     wire unused = &{1'b0, slot_addr, 1'b0}; // of slots without a core
 

@@ -5,6 +5,7 @@
 #ifndef CORE_LIST_H
 #define CORE_LIST_H
 
+#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -49,8 +50,6 @@ Chip readCores(const std::string& list, const nlohmann::json& base,
                const std::map<std::string, nlohmann::json>& descriptions);
 
 nlohmann::ordered_json mapOf(const Chip& chip, const nlohmann::ordered_json& base);
-std::string verilogOf(const Chip& chip);     // instances, for soc.v
-std::string instancesOf(const Chip& chip);   // servants, for the firmware
 std::string pinTableOf(const Chip& chip);    // pins by name, for the simulator
 std::string constraintsOf(const Chip& chip); // pins by place, for ISE
 
@@ -61,6 +60,10 @@ struct Slot {
     nlohmann::json description;
 };
 constexpr unsigned slotBytes = 64;
+// The hash of what software relies on in a block's registers: places, widths, accesses, names.
+uint32_t contractOf(const nlohmann::json& description);
+std::string verilogOf(const Chip& chip, const std::vector<Slot>& slots);   // instances, for soc.v
+std::string instancesOf(const Chip& chip, const std::vector<Slot>& slots); // for the firmware
 std::string svdOf(const std::vector<Slot>& slots);
 std::string htmlOf(const std::vector<Slot>& slots);
 

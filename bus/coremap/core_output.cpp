@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <set>
 
+using nlohmann::json;
 using nlohmann::ordered_json;
 
 namespace {
@@ -58,6 +59,10 @@ ordered_json mapOf(const Chip& chip, const ordered_json& base) {
     auto add = [&](const std::string& name, unsigned value, const std::string& doc) {
         constants.push_back({{"name", name}, {"value", value}, {"doc", doc}});
     };
+    for (const auto& c : base["constants"])
+        if (c["name"] == "SLOT_COUNT")
+            add("CONTRACTS", c["value"].get<unsigned>() + static_cast<unsigned>(chip.cores.size()),
+                "slots that are not empty: the platform's and the cores'");
     set("SLOT_COUNT", chip.slots);
     set("NPI_PORT_COUNT", chip.ports);
     add("CORES", std::max<unsigned>(1, static_cast<unsigned>(chip.cores.size())),
@@ -78,9 +83,39 @@ ordered_json mapOf(const Chip& chip, const ordered_json& base) {
     return map;
 }
 
-std::string verilogOf(const Chip& chip) {
+uint32_t contractOf(const json& description) {
+    std::vector<std::string> lines = {description.at("type").dump()};
+    for (const json& r : description.at("registers")) {
+        auto name = r.at("name").get<std::string>();
+        lines.push_back(fmt::format("{} {} {} {} {}", r.at("word").get<unsigned>(),
+                                    r.value("page", -1), name, r.at("access").get<std::string>(),
+                                    r.value("width", 32u)));
+        for (const json& f : r.value("fields", json::array()))
+            lines.push_back(fmt::format("{}.{} {} {}", name, f.at("name").get<std::string>(),
+                                        f.at("lsb").get<unsigned>(),
+                                        f.at("width").get<unsigned>()));
+    }
+    for (const json& e : description.value("events", json::array()))
+        lines.push_back(
+            fmt::format("{} {}", e.at("name").get<std::string>(), e.at("bit").get<unsigned>()));
+    std::sort(lines.begin(), lines.end()); // the order in the file does not matter
+    uint32_t hash = 0x811C9DC5;            // FNV-1a
+    for (const std::string& line : lines)
+        for (char c : line + "\n")
+            hash = (hash ^ static_cast<unsigned char>(c)) * 0x01000193;
+    return hash;
+}
+
+std::string verilogOf(const Chip& chip, const std::vector<Slot>& slots) {
     std::string s =
         "// Generated from ip/cores.list: do not edit. Cores in their slots, for soc.v.\n\n";
+    std::vector<uint32_t> contracts(chip.slots);
+    for (const Slot& slot : slots)
+        contracts.at(slot.number) = contractOf(slot.description);
+    std::string list;
+    for (uint32_t contract : contracts)
+        list = fmt::format("32'h{:08X}{}{}", contract, list.empty() ? "" : ", ", list);
+    s += fmt::format("    localparam [32*{}-1:0] CONTRACTS = {{{}}};\n\n", chip.slots, list);
     for (const Core& c : chip.cores)
         for (const Pin& p : c.pins)
             if (p.isOut())
@@ -178,7 +213,7 @@ static std::string servantOf(const Core& c) {
                        init, "core_" + c.name, upper(c.name), arguments, table);
 }
 
-std::string instancesOf(const Chip& chip) {
+std::string instancesOf(const Chip& chip, const std::vector<Slot>& slots) {
     std::string s = "/* Generated from ip/cores.list: do not edit.\n"
                     " * The firmware's cores: what hw_instance.h declares. */\n"
                     "#include \"hw_instance.h\"\n#include \"map_regs.h\"\n",
@@ -195,6 +230,11 @@ std::string instancesOf(const Chip& chip) {
     }
     for (const std::string& h : headers)
         s += fmt::format("#include \"{}\"\n", h);
-    return s + servants + "\nconst Hw_Instance hw_instances[] = {\n" + table +
-           "    {0, 0, 0, 0, 0, 0}};\n";
+    s += servants + "\nconst Hw_Instance hw_instances[] = {\n" + table +
+         "    {0, 0, 0, 0, 0, 0}};\n\nconst Hw_Contract hw_contracts[MAP_CONTRACTS] = {";
+    for (size_t i = 0; i < slots.size(); ++i)
+        s += fmt::format("{}\n    {{{{{}, \"{}\"}}, {}, 0, (Ice_Int)0x{:08X}U}}", i ? "," : "",
+                         slots[i].name.size(), slots[i].name, slots[i].number,
+                         contractOf(slots[i].description));
+    return s + "};\n";
 }

@@ -68,8 +68,6 @@ int main(int argc, char** argv) {
             c.constraints = constraints[c.folder];
         }
         save(outputDir + "/map.regs.json", mapOf(chip, platform).dump(2) + "\n");
-        save(outputDir + "/soc_cores.vh", verilogOf(chip));
-        save(outputDir + "/soc_cores.c", instancesOf(chip));
         save(outputDir + "/soc_pins.h", pinTableOf(chip));
         save(outputDir + "/core_pins.ucf", constraintsOf(chip));
         std::vector<Slot> slots;
@@ -86,6 +84,8 @@ int main(int argc, char** argv) {
         }
         for (const Core& c : chip.cores)
             add(c.name, c.slot, descriptions.at(c.folder));
+        save(outputDir + "/soc_cores.vh", verilogOf(chip, slots));
+        save(outputDir + "/soc_cores.c", instancesOf(chip, slots));
         save(outputDir + "/icesoc.svd", svdOf(slots));
         save(outputDir + "/registers.html", htmlOf(slots));
     } catch (const std::exception& e) {

@@ -8,7 +8,8 @@
 
 module system_slot #(
     parameter SLOTS  = 3,         // populated slots, this one included
-    parameter CLK_HZ = 100000000  // Hz
+    parameter CLK_HZ = 100000000, // Hz
+    parameter [32*SLOTS-1:0] CONTRACTS = {SLOTS{32'd0}} // hashes of the slots' registers, from slot 0 on
 ) (
     input  wire             clk_i,
     input  wire             rst_i,
@@ -42,11 +43,12 @@ module system_slot #(
     reg [63:0] cycles;
     reg [9:0]  error_addr;
     reg        error_write, error_open;
+    reg [5:0]  contract_slot; // whose hash CONTRACT shows
     wire [63:0] lines = {{(64-SLOTS){1'b0}}, slot_irq_i, own_irq};
 
     bus_wrapper #(
         .ID_VALUE (SYSTEM_ID_VALUE),
-        .WORDS    (16'h0FF8),
+        .WORDS    (16'h1FF8),
         .EVENTS   (2)
     ) u_wrapper (
         .clk_i(clk_i), .rst_i(rst_i),
@@ -60,6 +62,15 @@ module system_slot #(
 
     assign irq_o = |lines;
 
+    // A constant of six inputs a bit.
+    reg [31:0] contract;
+    integer    s;
+    always @* begin
+        contract = 32'd0;
+        for (s = 0; s < SLOTS; s = s + 1)
+            contract = contract | ({32{{26'd0, contract_slot} == s}} & CONTRACTS[32*s +: 32]);
+    end
+
     always @* begin
         case (reg_addr)
             SYSTEM_SLOTS:      reg_rdata = SLOTS;
@@ -71,6 +82,7 @@ module system_slot #(
             SYSTEM_SCRATCH:    reg_rdata = scratch;
             SYSTEM_CYCLES_LO:  reg_rdata = cycles[31:0];
             SYSTEM_CYCLES_HI:  reg_rdata = cycles_high_latched;
+            SYSTEM_CONTRACT:   reg_rdata = contract;
             default:           reg_rdata = 32'd0;
         endcase
     end
@@ -83,6 +95,8 @@ module system_slot #(
             cycles_high_latched <= cycles[63:32];
         if (reg_write && reg_addr == SYSTEM_PAGE)
             page_o <= reg_wdata[5:0];
+        if (reg_write && reg_addr == SYSTEM_CONTRACT)
+            contract_slot <= reg_wdata[5:0];
         if (reg_write && reg_addr == SYSTEM_SCRATCH)
             scratch <= reg_wdata;
         // The first error is kept until the event has been cleared; one that comes with the clear is new.
@@ -98,6 +112,7 @@ module system_slot #(
             cycles_high_latched <= 32'd0;
             page_o      <= 6'd0;
             scratch     <= 32'd0;
+            contract_slot <= 6'd0;
             error_open  <= 1'b0;
             error_addr  <= 10'd0;
             error_write <= 1'b0;

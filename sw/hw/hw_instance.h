@@ -6,8 +6,9 @@
 #ifndef HW_INSTANCE_H
 #define HW_INSTANCE_H
 
+#include "Registers.h"
 #include "hw_core.h"
-#include "icec.h"
+#include "map_regs.h"
 
 typedef struct Hw_Instance {
     const char* identity; /* 0 ends the table */
@@ -21,5 +22,8 @@ typedef struct Hw_Instance {
 } Hw_Instance;
 
 extern const Hw_Instance hw_instances[];
+
+/* The hashes of the registers that the firmware was built with, a line a slot; `chip` is 0. */
+extern const Hw_Contract hw_contracts[MAP_CONTRACTS];
 
 #endif

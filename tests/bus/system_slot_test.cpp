@@ -36,7 +36,14 @@ TEST_F(SystemSlot, SaysWhatItIs) {
     bus_.write(SYSTEM_PAGE, 0xFFFFFFFF);
     EXPECT_EQ(bus_.read(SYSTEM_PAGE), 0x3Fu);
     EXPECT_EQ(bench_.top().page_o, 0x3F);
-    for (unsigned word = SYSTEM_CYCLES_HI + 1; word < 16; ++word)
+    for (unsigned slot = 0; slot < 64; ++slot) { // the parameter has those of slots 0 and 39
+        bus_.write(SYSTEM_CONTRACT, slot);
+        EXPECT_EQ(bus_.read(SYSTEM_CONTRACT), slot == 0    ? 0x12345678u
+                                              : slot == 39 ? 0x9ABCDEF0u
+                                                           : 0u)
+            << slot;
+    }
+    for (unsigned word = SYSTEM_CONTRACT + 1; word < 16; ++word)
         EXPECT_TRUE(bus_.transfer(false, word, 0).error) << word;
 }
 

@@ -3,8 +3,8 @@
  * uav_cores: the servants of the cores in ip/cores.list: their start, their interrupts, and the
  * task that answers calls which a core takes its time for.
  */
+#include "hw_contracts.h"
 #include "hw_instance.h"
-#include "map_regs.h"
 #include "uav.h"
 #include "uav_private.h"
 
@@ -13,6 +13,8 @@
 static OS_EVENT *waiter, *work; /* the task that waits within an operation; the task below */
 static U32 missing;
 static U8 isStarted[MAP_CORES];
+static Hw_Contract contracts[MAP_CONTRACTS];
+static Hw_Chip chip;
 
 /* Waits for any operation's event: one task waits, the one that serves calls, and checks itself
  * whether the event was its own. */
@@ -51,11 +53,23 @@ void UAV_initCores(void) {
     frames.width = 0;
 }
 
+Ice_Status Hw_Chip_contracts(Hw_ChipPtr self, Hw_ContractSeq* result, const Ice_Current* current) {
+    (void)self;
+    (void)current;
+    result->size = MAP_CONTRACTS;
+    result->data = contracts;
+    return ICE_OK;
+}
+
 void UAV_startCores(Ice_ObjectAdapterPtr adapter) {
     U32 i;
+    Hw_Contracts_read(contracts, hw_contracts, MAP_CONTRACTS);
+    Hw_Chip_init(&chip);
+    (void)Ice_ObjectAdapter_add(adapter, (Ice_ObjectPtr)&chip, "chip");
     for (i = 0; hw_instances[i].identity; ++i) {
         const Hw_Instance* core = &hw_instances[i];
-        isStarted[i] = core->start(&port, 0) == HW_OK;
+        isStarted[i] = Hw_Contracts_hold(contracts, MAP_CONTRACTS, core->slot) &&
+                       core->start(&port, 0) == HW_OK;
         if (!isStarted[i] ||
             Ice_ObjectAdapter_add(adapter, core->servant, core->identity) != ICE_OK)
             ++missing;

@@ -235,6 +235,27 @@ def part_of(folder):
     return module
 
 
+def differences(chip):
+    """The blocks whose registers are others in the chip than in the firmware, in words."""
+    return ["%s: its registers have the hash 0x%08X in the chip, 0x%08X in the firmware"
+            % (c.block, c.chip & 0xFFFFFFFF, c.firmware & 0xFFFFFFFF)
+            for c in chip.contracts() if c.chip != c.firmware]
+
+
+def explain(communicator, args, failure):
+    """Why the UAV has no such object: a core that differs from what the firmware was built for is not served."""
+    Ice.loadSlice("", [os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../hw/registers/Registers.ice")])
+    import Hw  # made by loadSlice
+    text = "the UAV has no object '%s'" % failure.id.name
+    with contextlib.suppress(Ice.Exception):  # a UAV without the object chip
+        found = differences(Hw.ChipPrx.uncheckedCast(communicator.stringToProxy(
+            "chip:xbee-at -d %s -a 0x0001 -s 0x0000" % args.device)))
+        if found:
+            text += "; ".join(["", *found]) + ": build both anew from one ip/cores.list, the firmware by make firmware, " \
+                "the chip by make synth-edif (docs/ise.md)"
+    return text
+
+
 def fly(args, communicator):
     import Autopilot  # made by loadSlice
     air = Air(args.status)
@@ -297,6 +318,9 @@ def main():
         return 0
     except KeyboardInterrupt:
         return 130
+    except Ice.ObjectNotExistException as e:
+        print("mission: " + explain(communicator, args, e), file=sys.stderr)
+        return 1
     except Ice.TimeoutException:
         print("mission: no answer for %d s: is the UAV on, in reach, and has it the same key?" % args.patience, file=sys.stderr)
         return 1

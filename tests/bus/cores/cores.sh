@@ -69,6 +69,21 @@ grep -qx 'NET "core_pins_i<0>" LOC = "A4"; # eye.button_i\[0\]' "$out/core_pins.
 grep -qx '# NET "core_pins_o<0>" LOC = "..."; # eye.led_o\[0\]' "$out/core_pins.ucf" || fail 'the pin without a place is not listed'
 grep -qx 'NET "core_pins_o<10>" LOC = "C9"; # mover.level_o\[8\]' "$out/core_pins.ucf" || fail 'the last bit has not its place'
 grep -q 'led u_eye' "$out/soc_cores.vh" && grep -q 'mover #(.CLK_HZ(CLK_HZ)) u_mover' "$out/soc_cores.vh" || fail 'the clock goes to the wrong cores'
+# Chip and firmware have the same hash of a core's registers, which says when these change, and not when their words do.
+contract() { sed -n "s/.*\"$1\"}, [0-9]*, 0, (Ice_Int)0x\([0-9A-F]*\)U.*/\1/p" "$out/soc_cores.c"; }
+before=$(contract mover)
+[ -n "$before" ] && grep -q "CONTRACTS = {32'h$before, 32'h$(contract eye), 32'h0\{8\}, 32'h$(contract system)};" "$out/soc_cores.vh" ||
+    { cat "$out/soc_cores.vh" && fail 'the chip has other hashes than the firmware'; }
+changed() { # sed's command for the mover's description: the hash with it
+    mkdir -p "$work/changed"
+    sed "$1" "$data/mover.regs.json" >"$work/changed/mover.regs.json"
+    "$coremap" "$out/cores.list" --base "$source/bus/map.regs.json" --core "led=$data/led.regs.json" \
+        --core "mover=$work/changed/mover.regs.json" --output-dir "$out"
+    contract mover
+}
+[ "$(changed 's/With a memory/Having a memory/')" = "$before" ] || fail 'words of a description change the hash'
+[ "$(changed 's/"registers": /&[{"word": 3, "name": "A", "access": "rw", "doc": ""}], "none": /')" != "$before" ] ||
+    fail 'a register does not change the hash'
 accepted hole 'led slot=63\n'
 is SLOT_COUNT 0x40
 

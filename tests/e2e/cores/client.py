@@ -2,10 +2,14 @@
 # SPDX-License-Identifier: MIT
 """Calls new cores in a UAV's FPGA by radio: client.py DEVICE GUARD STATUS PLUGIN File.ice ..."""
 
+import os
 import sys
 import threading
 
 import Ice
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../sw/ground/clients"))
+import mission  # noqa: E402
 
 device, guard, status, plugin, *files = sys.argv[1:]
 for file in files:
@@ -70,6 +74,20 @@ with Ice.initialize(data) as ic:
             break
     servo.clear()
     expect("servo.fault after clear", servo.fault(), False)
+
+    # The chip is the one that the firmware was built for; a mission says it where it is not.
+    chip = Hw.ChipPrx.checkedCast(ic.stringToProxy("chip" + where))
+    contracts = chip.contracts()
+    expect("blocks", [c.block for c in contracts],
+           ["system", "modem", "sample_verilog", "scaler", "servo", "port", "my_requests", "my_lamps", "sample_vhdl"])
+    expect("contracts", mission.differences(chip), [])
+
+    class Other:
+        @staticmethod
+        def contracts():
+            return [contracts[0], Hw.Contract("fir", 5, 0x12, -1)]
+    expect("differences", mission.differences(Other),
+           ["fir: its registers have the hash 0x00000012 in the chip, 0xFFFFFFFF in the firmware"])
 
     # Third-party cores, whose interface are their registers.
     port = Hw.RegistersPrx.checkedCast(ic.stringToProxy("port" + where))

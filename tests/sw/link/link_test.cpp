@@ -280,6 +280,22 @@ TEST(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {
     EXPECT_TRUE(pair.b.received.empty());
 }
 
+// The time of the last PING is by then so old that it would read as a future one.
+TEST(LinkLayer, ASilenceAfterFortyMinutesOfTrafficIsAskedAbout) {
+    Pair pair(testSeed());
+    ASSERT_TRUE(pair.connect());
+    ASSERT_EQ(Link_openChannel(pair.a.link(), 0), LINK_OK);
+    const U8 byte = 1;
+    for (U32 tag = 0; tag < 800; ++tag) {
+        Link_send(pair.a.link(), 0, &byte, 1, tag);
+        pair.run(3000000);
+    }
+    pair.run(15000000);
+    EXPECT_EQ(Link_statistics(pair.a.link())->sessions, 1u);
+    EXPECT_EQ(Link_statistics(pair.b.link())->sessions, 1u);
+    EXPECT_TRUE(pair.bothUp());
+}
+
 TEST(LinkLayer, AMessageThatIsNotTakenWaitsAndStopsTheSender) {
     Pair pair(testSeed());
     ASSERT_TRUE(pair.connect());

@@ -60,11 +60,15 @@ struct Range {
 // The vehicle with its ground station, in the air.
 class Flight {
 public:
-    // `scaled` 1: the board's ratio of clocks; 50: the processor's time in the radio's.
-    Flight(const std::string& elf, double scaled)
+    // `scaled` 1: the board's ratio of clocks; 50: the processor's time in the radio's. `key`: the
+    // link's, if any.
+    Flight(const std::string& elf, double scaled, const std::vector<uint8_t>& key = {})
         : warp(scaled),
-          machine(soc, {elf, scaled > 1 ? static_cast<uint32_t>(hclk) : 0, Ground::guardMs},
+          machine(soc,
+                  {elf, scaled > 1 ? static_cast<uint32_t>(hclk) : 0, Ground::guardMs, {}, key},
                   [this] { return poll(); }) {
+        ground.key = key;
+        ground.start();
         soc.onTime([this](uint64_t now) { return ground.advance(now); });
         soc.reset();
         const uint32_t size[2] = {48, 32};
@@ -275,7 +279,7 @@ void profileCalls(Flight& f, int calls) {
     std::printf("\n");
 }
 
-void measureStream(Flight& f) {
+void measureStream(Flight& f, const std::string& what) {
     // Floods the vehicle with one-way requests of 1 KB to nobody: link and IceC's dispatcher work,
     // no servant, no reply.
     f.ground.replies.clear();
@@ -294,12 +298,12 @@ void measureStream(Flight& f) {
     f.until([&] { return feed() || f.seconds() > end; }, 8, "the stream");
     double took = f.seconds() - began,
            goodput = static_cast<double>(f.ground.deliveredBytes - bytes) / took;
-    say("full stream: goodput", goodput / 1e3, "kB/s", 0, "messages of 1 KB, no loss");
-    say("full stream: goodput, share of the serial limit", 100 * goodput / serialLimit, "%");
-    say("full stream: processor load at 120 MHz", 100 * (f.awake() - awake) / took / hclk, "%", 5);
-    say("full stream: share of the FSMC in that",
-        100 * (f.waiting() - waiting) / (f.awake() - awake), "%");
-    say("full stream: cycles a byte", (f.awake() - awake) / (goodput * took), "cycles");
+    say(what + ": goodput", goodput / 1e3, "kB/s", 0, "messages of 1 KB, no loss");
+    say(what + ": goodput, share of the serial limit", 100 * goodput / serialLimit, "%");
+    say(what + ": processor load at 120 MHz", 100 * (f.awake() - awake) / took / hclk, "%", 5);
+    say(what + ": share of the FSMC in that", 100 * (f.waiting() - waiting) / (f.awake() - awake),
+        "%");
+    say(what + ": cycles a byte", (f.awake() - awake) / (goodput * took), "cycles");
 }
 
 // Measures from the message's last byte at IceC's endpoint to the first frame of its reply, of a
@@ -412,9 +416,14 @@ int main(int argc, char** argv) {
         measureCalls(f, figures.brief ? 1 : 20);
         if (!figures.brief) {
             profileCalls(f, 20);
-            measureStream(f);
+            measureStream(f, "full stream");
             measureSpeed(elf);
         }
         measureStacks(f);
+        if (!figures.brief) {
+            Flight keyed(elf, hclk / (SocModel::clkHz * hclkPerClk),
+                         std::vector<uint8_t>(LINK_KEY_BYTES, 1));
+            measureStream(keyed, "full stream under a key");
+        }
     });
 }

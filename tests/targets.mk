@@ -74,6 +74,7 @@ nightly: setup-tests build ## what a timer runs: seeds that have failed, the reg
 	    $$tool --seed random --repeat $(NIGHTLY) $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
 	    ctest --test-dir $(BUILD) -C zeroc -L zeroc -j $(TESTS) --output-on-failure || status=$$?; \
 	    $(MAKE) faults SEED=$$(date +%Y%m%d) || status=$$?; $(MAKE) sanitizers || status=$$?; \
+	    ctest --test-dir $(BUILD) -C nightly -L nightly -j $(TESTS) --output-on-failure || status=$$?; \
 	    exit $$status
 
 # MOMENTS of each fault are drawn from each of SEEDS seeds, the first of which is SEED. Tools are interrupted for the first.

@@ -99,6 +99,28 @@ m3) # the ARM binary
     run "$out" --image $image --cpu m3 && check_output "$out"
     replays_with 'bit by bit the flight that was recorded' "$out" --from 0.5 --to 0.51
     ;;
+update) # new firmware: a wrong file, a vehicle of another key, a loss of power amidst, then into a slot that has to be erased
+    send() { run "$out" --image $image --cpu m3 --update "$build/firmware/uav.elf"; }
+    says() { grep -q -- "$1" "$out/log" || { cat "$out/log" && echo "expected: $1" && exit 1; }; }
+    fails_with 'no 32-bit ARM ELF file' run "$out" --image $image --cpu m3 --update "$source/Makefile"
+    "$build/sw/target/pack_update" vehicle "$build/firmware/loader.elf" "$build/firmware/uav.elf" 1 "$out/other.key" "$out/flash.bin"
+    cp "$out/flash.bin" "$out/flash.was"
+    fails_with "not signed with this vehicle's key" send
+    cmp "$out/flash.bin" "$out/flash.was"
+    head -c 50000 "$out/new.update" >"$out/cut.update"
+    fails_with 'is cut short' "$source/sw/ground/clients/update.py" "$out/cut.update" --slice "$source/sw/apps/uav/Update.ice"
+    "$build/sw/target/pack_update" vehicle "$build/firmware/loader.elf" "$build/firmware/uav.elf" 1 "$build/update.key" "$out/flash.bin"
+    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --cpu m3 --flash "$out/flash.bin" --duration 8 -- \
+        "$source/sw/ground/clients/update.py" "$out/new.update" --device '{device}' --plugin "$build/ground" \
+        --slice "$source/sw/apps/uav/Update.ice" >"$out/log" 2>&1 || true
+    says 'the vehicle runs version 1$'
+    ! cmp -s "$out/flash.bin" "$out/flash.was" || { echo "nothing was written" && exit 1; }
+    for runs in 1 2; do
+        send >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+        says 'runs and is confirmed'
+        says '1 software, 0 watchdog'
+    done
+    ;;
 cpp) # the C++11 library of the plugin, a C++ client, and a proxy that goes through its string form
     "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --guard $guard -- \
         "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d "{device}" -a 0x0001 -p 2 -g {guard} -t 300000' 3 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }

@@ -7,6 +7,7 @@
 #   cmake/fetch.sh clang-format DIR   clang-format 14, DIR/clang-format runs it
 #   cmake/fetch.sh foreign DIR   the third-party cores that examples/foreign/files.list names, into DIR; from
 #                             ICESOC_RAW, a copy of raw.githubusercontent.com, if it is set
+#   cmake/fetch.sh lz4 DIR    the source of LZ4, which unpacks firmware on the chip
 #   cmake/fetch.sh sodium DIR the sources of libsodium that check a signature, for the chip
 #   cmake/fetch.sh zeroc DIR  ZeroC's test suites for Python, 3.7.8, into DIR; exit status 77: there is no network
 # Kept in ${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network.
@@ -155,13 +156,13 @@ released() {
     /usr/lib/apt/apt-helper -qq -o APT::Sandbox::User=root download-file "$url" "$work/file" "SHA256:$2" >/dev/null
 }
 
-fetch_sodium() {
-    keep=$cache/sodium-1.0.18
+# $1: name for people and the cache; $2: path in the pool; $3: checksum; $4: folder in it, $5 levels deep.
+fetch_source() {
+    keep=$cache/$1
     if [ ! -f "$keep/done" ]; then
-        released libs/libsodium/libsodium_1.0.18.orig.tar.gz d59323c6b712a1519a5daf710b68f5e7fde57040845ffec53850911f10a5d4f4 ||
-            fail "cannot get the source of libsodium from $(mirror): check the network, then run make again"
+        released "$2" "$3" || fail "cannot get the source of $1 from $(mirror): check the network, then run make again"
         mkdir -p "$keep"
-        tar -xzf "$work/file" -C "$keep" --strip-components=3 libsodium-1.0.18/src/libsodium || fail "cannot unpack libsodium"
+        tar -xzf "$work/file" -C "$keep" --strip-components="$5" "$4" || fail "cannot unpack $1"
         touch "$keep/done"
     fi
     rm -rf "$target"
@@ -196,7 +197,9 @@ ice) fetch_ice ;;
 ghdl) fetch_ghdl ;;
 clang-format) fetch_clang_format ;;
 foreign) fetch_foreign ;;
-sodium) fetch_sodium ;;
+lz4) fetch_source lz4-1.9.4 l/lz4/lz4_1.9.4.orig.tar.gz 0b0e3aa07c8c063ddf40b082bdf7e37a1562bda40a0ff5272957f3e987e0e54b lz4-1.9.4/lib 2 ;;
+sodium) fetch_source sodium-1.0.18 libs/libsodium/libsodium_1.0.18.orig.tar.gz \
+    d59323c6b712a1519a5daf710b68f5e7fde57040845ffec53850911f10a5d4f4 libsodium-1.0.18/src/libsodium 3 ;;
 zeroc) fetch_zeroc ;;
 *) fail "unknown: $what" ;;
 esac

@@ -36,6 +36,8 @@ libfmt-dev text formatting
 libcli11-dev command lines
 libpugixml-dev reads JUnit results
 libsodium-dev signatures of firmware (Ed25519)
+liblz4-dev unpacks firmware that comes by radio
+python3-lz4 packs it
 libssl-dev AES of the modem model, checksums of Slice
 git finds what changed
 libstb-dev reads and writes pictures

@@ -8,10 +8,13 @@
 #include "receiver.h"
 #include "uav_private.h"
 
+#include <lz4.h>
 #include <string.h>
 
 #define STACK_WORDS 1152 /* a signature takes 3.5 KB */
 #define PERIOD (OS_TICKS_PER_SEC / 10U)
+#define PIECE_BYTES 4096
+#define DICTIONARY_BYTES 65535U
 #define TRIAL_S 60U  /* then firmware that nobody has confirmed goes */
 #define RESTART_S 1U /* for the answers that are under way */
 
@@ -56,11 +59,30 @@ Ice_Status Update_Firmware_begin(Update_FirmwarePtr self, const Update_Header* s
     return answer(Receiver_begin(&receiver, &header), result);
 }
 
-Ice_Status Update_Firmware_write(Update_FirmwarePtr self, Ice_Int offset, const Update_Piece* bytes,
-                                 Update_Reason* result, const Ice_Current* current) {
+/* Returns the piece's bytes, 0 if they are not what was promised. Compressed ones are unpacked by
+ * what of the image is in flash, so nothing is lost with the power. */
+static const U8* unpack(U32 offset, Ice_Int size, const Update_Piece* bytes) {
+    static U8 unpacked[PIECE_BYTES];
+    const U32 known = offset < DICTIONARY_BYTES ? offset : DICTIONARY_BYTES;
+    const U8* image = uav_slots->flash + Slots_at(Receiver_slot(&receiver)) + SLOTS_IMAGE_AT;
+    if (bytes->size == size)
+        return bytes->data;
+    if (bytes->size > size || offset > receiver.received ||
+        LZ4_decompress_safe_usingDict((const char*)bytes->data, (char*)unpacked, bytes->size,
+                                      PIECE_BYTES, (const char*)(image + (offset - known)),
+                                      (int)known) != size)
+        return 0;
+    return unpacked;
+}
+
+Ice_Status Update_Firmware_write(Update_FirmwarePtr self, Ice_Int offset, Ice_Int size,
+                                 const Update_Piece* bytes, Update_Reason* result,
+                                 const Ice_Current* current) {
+    const U8* data = unpack((U32)offset, size, bytes);
     (void)self;
     (void)current;
-    *result = (Update_Reason)Receiver_write(&receiver, (U32)offset, bytes->data, (U32)bytes->size);
+    *result = data ? (Update_Reason)Receiver_write(&receiver, (U32)offset, data, (U32)size)
+                   : Update_misplacedPiece;
     return ICE_OK;
 }
 

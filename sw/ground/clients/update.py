@@ -13,10 +13,11 @@ import sys
 import time
 
 import Ice
+import lz4.block
 
 HEADER = struct.Struct("<5I64s64s")  # sw/update/slots.h
 MAGIC = 0x1CE50C02
-PIECE, PIECES_ON_THE_WAY = 4096, 3
+PIECE, PIECES_ON_THE_WAY, DICTIONARY = 4096, 3, 65535
 TEXT = {
     "foreignImage": "the package is not for this kind of vehicle",
     "oldVersion": "its version is not above the vehicle's confirmed one",
@@ -113,7 +114,9 @@ class Vehicle:
         while at < len(image) or on_the_way:
             while at < len(image) and len(on_the_way) < PIECES_ON_THE_WAY:
                 piece = image[at:at + PIECE]
-                on_the_way.append((at + len(piece), self.proxy.writeAsync(at, piece)))
+                packed = lz4.block.compress(piece, mode="high_compression", compression=12, store_size=False,
+                                            dict=image[max(0, at - DICTIONARY):at])
+                on_the_way.append((at + len(piece), self.proxy.writeAsync(at, len(piece), min(piece, packed, key=len))))
                 at += len(piece)
             received, future = on_the_way.pop(0)
             self.expect(future.result())

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+//
+// uav_update_test: new firmware over the air to the firmware's host build, whose flash is memory of
+// this process.
+
+#include "ground.h"
+#include "uav_machine.h"
+#include <algorithm>
+#include <cstring>
+#include <gtest/gtest.h>
+#include <lz4.h>
+#include <sodium.h>
+
+extern "C" {
+#include "signature.h"
+#include "uav_update.h"
+}
+
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+constexpr uint32_t product = 77, imageBytes = 1024, half = imageBytes / 2;
+bool restarted; // the firmware has asked for it
+
+struct Flash {
+    static int erase(void* context, U32 sector) {
+        auto& bytes = static_cast<Flash*>(context)->bytes;
+        const uint32_t at = (sector - 4) * SLOTS_SECTOR_BYTES;
+        std::fill_n(bytes.begin() + at, SLOTS_SECTOR_BYTES, uint8_t{0xFF});
+        return 1;
+    }
+    static int program(void* context, U32 offset, U32 word) {
+        for (unsigned i = 0; i < 4; ++i)
+            static_cast<Flash*>(context)->bytes[offset + i] &= static_cast<uint8_t>(word >> 8 * i);
+        return 1;
+    }
+    Bytes bytes = Bytes(1 << 20, 0xFF);
+    Slots_Port port{bytes.data(), this, erase, program, Signature_isGood, Signature_digest};
+};
+
+class UavUpdate : public ::testing::Test {
+protected:
+    void SetUp() override {
+        Bytes open(crypto_sign_PUBLICKEYBYTES), seed(crypto_sign_SEEDBYTES, 9);
+        crypto_sign_seed_keypair(open.data(), secret.data(), seed.data());
+        std::copy(open.begin(), open.end(), flash.bytes.begin() + SLOTS_KEY_AT);
+        const Slots_Header running = headerOf(5, 0);
+        std::memcpy(&flash.bytes[Slots_at(0)], &running, sizeof running);
+        Slots_set(&flash.port, 0, SLOTS_CONFIRMED);
+        flash.bytes[Slots_at(1) + 3] = 0; // it is to be erased
+        for (size_t i = 0; i < imageBytes; ++i)
+            image[i] = static_cast<uint8_t>(i * i / 64); // its halves are alike
+        std::copy_n(image.begin(), half - 16, image.begin() + half);
+        uav_slots = &flash.port;
+        uav_slot = 0;
+        uav_product = product;
+        uav_restart = [] { restarted = true; };
+        restarted = false;
+        uav_guardMs = Ground::guardMs;
+        soc.onTime([this](uint64_t now) { return ground.advance(now); });
+        soc.reset();
+    }
+    void TearDown() override { uav_slots = nullptr; }
+
+    Slots_Header headerOf(uint32_t version, uint32_t slot) {
+        Slots_Header header{
+            SLOTS_MAGIC, product, version, imageBytes, Slots_at(slot) + SLOTS_IMAGE_AT, {}, {}};
+        Signature_digest(image.data(), imageBytes, header.digest);
+        crypto_sign_detached(header.signature, nullptr, reinterpret_cast<uint8_t*>(&header),
+                             SLOTS_SIGNED_BYTES, secret.data());
+        return header;
+    }
+    Bytes encoded(const Slots_Header& header) {
+        Bytes bytes(1 + sizeof header, static_cast<uint8_t>(sizeof header));
+        std::memcpy(&bytes[1], &header, sizeof header);
+        return bytes;
+    }
+    static Bytes piece(uint32_t offset, uint32_t size, const Bytes& data) {
+        Bytes bytes;
+        const auto count = static_cast<uint32_t>(data.size());
+        for (uint32_t number : {offset, size})
+            for (int i = 0; i < 4; ++i)
+                bytes.push_back(static_cast<uint8_t>(number >> 8 * i));
+        bytes.push_back(255);
+        for (int i = 0; i < 4; ++i)
+            bytes.push_back(static_cast<uint8_t>(count >> 8 * i));
+        bytes.insert(bytes.end(), data.begin(), data.end());
+        return bytes;
+    }
+    // The second half of the image, packed by the first.
+    Bytes packedHalf() {
+        LZ4_stream_t stream;
+        LZ4_initStream(&stream, sizeof stream);
+        LZ4_loadDict(&stream, reinterpret_cast<const char*>(image.data()), half);
+        Bytes packed(half);
+        packed.resize(static_cast<size_t>(
+            LZ4_compress_fast_continue(&stream, reinterpret_cast<const char*>(&image[half]),
+                                       reinterpret_cast<char*>(packed.data()), half, half, 1)));
+        return packed;
+    }
+    // A call, and the first byte that it must be answered with; 0xFF: any. Calls of getStatus are
+    // repeated until it comes.
+    struct Step {
+        const char* operation;
+        Bytes parameters;
+        uint8_t wanted;
+    };
+    // Makes the calls, one after the other, and goes on until `over`.
+    void fly(const std::vector<Step>& steps, const std::function<bool()>& over) {
+        size_t step = 0;
+        int sent = 0;
+        bool opened = false, done = false;
+        const auto isStatus = [&](size_t at) {
+            return std::strcmp(steps[at].operation, "getStatus") == 0;
+        };
+        UavMachine machine(soc, [&] {
+            if (!opened && ground.isUp()) {
+                ground.open();
+                opened = true;
+            }
+            if (ground.validated && step < steps.size() &&
+                sent == static_cast<int>(ground.replies.size())) {
+                if (sent) {
+                    const uint8_t answer = ground.messages[sent].at(25);
+                    const bool waits = isStatus(step) && answer != steps[step].wanted;
+                    if (!waits) {
+                        EXPECT_EQ(answer, steps[step].wanted) << "step " << step;
+                    }
+                    step += !waits;
+                }
+                if (step < steps.size())
+                    ground.call(++sent, "update", steps[step].operation, isStatus(step) ? 2 : 0,
+                                steps[step].parameters);
+            }
+            done = step == steps.size() && over();
+            return !done && !HasFailure() && static_cast<double>(soc.now()) < 4e9;
+        });
+        machine.run();
+        EXPECT_TRUE(done) << "at step " << step;
+    }
+
+    Flash flash;
+    Bytes image = Bytes(imageBytes), secret = Bytes(crypto_sign_SECRETKEYBYTES);
+    RfChannel air{testSeed()};
+    Ground ground{air, testSeed() + 5};
+    SocModel soc{air, Ground::uavModem()};
+};
+
+// Numbers of Update.ice.
+enum : uint8_t { None, Foreign, Old, WrongSignature, Misplaced = 8 };
+enum : uint8_t { Idle, Receiving = 3, Ready = 5 };
+
+TEST_F(UavUpdate, AnImageComesInPiecesPackedOrNotAndIsStarted) {
+    const Bytes first(image.begin(), image.begin() + half), packed = packedHalf();
+    ASSERT_LT(packed.size(), half / 4);
+    fly({{"getStatus", {}, Idle},
+         {"begin", encoded(headerOf(6, 1)), None},
+         {"getStatus", {}, Receiving},
+         {"write", piece(half, half, packed), Misplaced}, // before what it is packed by
+         {"write", piece(0, half, first), None},
+         {"write", piece(half, half + 4, packed), Misplaced},
+         {"write", piece(half, half, packed), None},
+         {"finish", {}, None},
+         {"getStatus", {}, Ready}},
+        [] { return restarted; });
+    EXPECT_EQ(Slots_choose(&flash.port, product), 1u);
+    EXPECT_TRUE(
+        std::equal(image.begin(), image.end(), flash.bytes.begin() + Slots_at(1) + SLOTS_IMAGE_AT));
+}
+
+TEST_F(UavUpdate, WhatIsRefusedChangesNothing) {
+    const Bytes before = flash.bytes;
+    Slots_Header changed = headerOf(6, 1);
+    ++changed.bytes, changed.bytes += 3;
+    fly({{"begin", encoded(headerOf(5, 1)), Old},
+         {"begin", encoded(headerOf(6, 0)), Foreign},
+         {"begin", {3, 1, 2, 3}, Foreign}, // no header at all
+         {"begin", encoded(changed), None},
+         {"getStatus", {}, Idle}},
+        [] { return true; });
+    EXPECT_EQ(ground.messages.rbegin()->second.at(26), WrongSignature);
+    EXPECT_EQ(flash.bytes, before);
+    EXPECT_FALSE(restarted);
+}
+
+} // namespace

@@ -183,4 +183,13 @@ TEST_F(UavUpdate, WhatIsRefusedChangesNothing) {
     EXPECT_FALSE(restarted);
 }
 
+TEST_F(UavUpdate, FirmwareThatNobodyConfirmsGoesAfterAMinute) {
+    std::fill_n(flash.bytes.begin() + Slots_at(0) + SLOTS_CONFIRMED, 4, uint8_t{0xFF});
+    UavMachine machine(soc, [&] { return !restarted && static_cast<double>(soc.now()) < 2e9; });
+    machine.hurry(100);
+    machine.run();
+    EXPECT_TRUE(restarted);
+    EXPECT_GT(static_cast<double>(soc.now()), 0.6e9);
+}
+
 } // namespace

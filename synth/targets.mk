@@ -3,11 +3,14 @@
 # DESIGN=modem: one design only, of the others what is known; FAMILY="xc7 ecp5": these chips, too
 DESIGN ?=
 FAMILY ?=
+# BASE=main: and what has changed since that commit, as Markdown
+BASE   ?=
 
-synth: setup-tests $(BUILD)/build.ninja ## utilisation: LUTs, flip-flops, slices of the chip and each part, against limits and paper
+synth: setup-tests $(BUILD)/build.ninja ## utilisation: LUTs, flip-flops, slices of the chip and each part, against limits and paper (DESIGN=modem FAMILY=xc7 BASE=main)
 	@$(NINJA) --quiet synth_inputs
 	@$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) \
 	    $(DESIGN:%=--design %) $(addprefix --family ,$(FAMILY))
+	@$(if $(BASE),synth/compare.sh $(BUILD)/synth/utilisation $(call quoted,$(BASE)) $(JOBS))
 .PHONY: synth
 
 synth-accept: $(BUILD)/build.ninja ## record today's utilisation as what is wanted (synth/baseline.json)

@@ -27,7 +27,8 @@ struct Options {
     std::string yosys = "yosys";
     unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
     bool accept = false;
-    std::string edif; // a design's name
+    std::string edif;    // a design's name
+    std::string compare; // another report.json
 };
 
 constexpr size_t shownCommits = 30;
@@ -222,6 +223,9 @@ int main(int argc, char** argv) {
     app.add_option("--yosys", o.yosys, "the program")->capture_default_str();
     app.add_option("--jobs", o.jobs, "synthesis runs at a time")->capture_default_str();
     app.add_flag("--accept", o.accept, "record these figures in synth/baseline.json");
+    app.add_option("--compare", o.compare,
+                   "only tell how the last report differs from this report.json")
+        ->check(CLI::ExistingFile);
     app.add_option("--edif", o.edif, "only write this design as EDIF for ISE, into the folder ise");
     try {
         app.parse(argc, argv);
@@ -234,6 +238,10 @@ int main(int argc, char** argv) {
     if (std::find(o.families.begin(), o.families.end(), mainFamily) == o.families.end())
         o.families.insert(o.families.begin(), mainFamily);
     try {
+        if (!o.compare.empty()) {
+            fmt::print("{}", differences(readFile(o.compare), readFile(o.output / "report.json")));
+            return 0;
+        }
         return report(o);
     } catch (const std::exception& e) {
         fmt::print(stderr, "utilisation: {}\n", e.what());

@@ -143,6 +143,43 @@ string markdown(const Report& r) {
     return text;
 }
 
+string differences(const string& before, const string& after) {
+    std::map<string, std::map<string, std::pair<json, json>>> designs; // by name and kind of figure
+    const auto note = [&](const string& text, json std::pair<json, json>::*member) {
+        const json report = json::parse(text);
+        for (const json& e : report.at("entries")) {
+            const string name = e.at("name");
+            const size_t space = name.rfind(' ');
+            designs[name.substr(0, space)][name.substr(space + 1)].*member = e.at("value");
+        }
+    };
+    note(before, &std::pair<json, json>::first);
+    note(after, &std::pair<json, json>::second);
+    TextTable t;
+    t.add({"design", "LUT", "FF", "slices", "MHz"});
+    bool isAny = false;
+    for (auto& [name, figures] : designs) {
+        std::vector<string> line{name};
+        bool differs = false;
+        for (const char* kind : {"lut", "ff", "slices", "clock"}) {
+            const auto& [then, now] = figures[kind];
+            differs |= then != now;
+            const auto text = [](const json& value) {
+                return value.is_null() ? "" : fmt::format("{:g}", value.get<double>());
+            };
+            line.push_back(then == now      ? text(now)
+                           : then.is_null() ? text(now) + " (new)"
+                           : now.is_null()  ? "gone"
+                                            : fmt::format("{} -> {} ({:+g})", text(then), text(now),
+                                                          now.get<double>() - then.get<double>()));
+        }
+        if (differs)
+            t.add(line);
+        isAny |= differs;
+    }
+    return isAny ? t.markdown() : "No figure of any design differs.\n";
+}
+
 string html(const Report& r, const string& page, const string& style, const string& script) {
     json data = {{"yosys", shortVersion(r.yosys)},
                  {"commit", r.commit},

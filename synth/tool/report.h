@@ -26,6 +26,9 @@ struct Report {
 
 std::string entriesJson(const Report& report); // docs: the contract of all figures
 std::string markdown(const Report& report);
+// The differences between two files of entriesJson as a table in Markdown; what only one of them
+// has is new or gone.
+std::string differences(const std::string& before, const std::string& after);
 // Writes the page from the files of synth/report: "@STYLE@", "@SCRIPT@" and "@DATA@" in it are
 // replaced.
 std::string html(const Report& report, const std::string& page, const std::string& style,

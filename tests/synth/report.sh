@@ -9,6 +9,7 @@
 #   partial  one design alone: the page has all; of those that have changed it says so; the limits hold, whatever is accepted
 #   broken   a syntax error is told with its file and line, and the other designs are reported nevertheless
 #   twice    of two runs at once the second waits, says so, and takes what the first has made
+#   compare  what has changed since another commit, as Markdown
 #   edif     the netlist for ISE is whole
 #   page     the page in Chromium: tables, chart, sorting, looking inside, differences; one file, no network
 set -eu
@@ -141,6 +142,29 @@ JS
     has 'paper 50 (0.3 %); points 3; choices 1;'
     grep -q '"peer": 100' "$work/out/report.json" || fail "report.json has no figure of the paper"
     grep -q '^| whole |' "$work/out/report.md" || fail "report.md has no table of designs"
+    ;;
+compare)
+    cd project
+    cp -r "$source/synth/compare.sh" synth/
+    mkdir -p build/main/gen build/synth
+    cp -r ../out/cache build/synth/
+    printf 'cmake_minimum_required(VERSION 3.25)\nproject(small NONE)\nadd_custom_target(synth_inputs COMMAND ${CMAKE_COMMAND} -E make_directory gen)\n' >CMakeLists.txt
+    echo build >.gitignore
+    git init -q . && git add . && git -c user.name=a -c user.email=a@b commit -qm "The first one"
+    "$program" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+    synth/compare.sh "$program" HEAD >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+    has '^No figure of any design differs'
+    sed -i 's/"WIDTH": 16/"WIDTH": 17/; s/"name": "wide"/"name": "wider"/' synth/designs.json
+    sed -i 's/^    wire \[5:0\] word;/&\n    reg [11:0] extra;/; s/^        data_o <= word/        extra <= {extra[5:0], word};\n        data_o <= extra[11:6] ^ word/' hdl/blocks/pair.v
+    "$program" >"$work/log" 2>&1 || [ $? -eq 1 ] || fail "$(cat "$work/log")" # it has grown
+    synth/compare.sh "$program" HEAD >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+    has '^Utilisation since .* (The first one):'
+    has '^| whole | .* | [0-9]* -> [0-9]* (+12) |'
+    has '^| wide | gone | gone |'
+    has '^| wider | [0-9]* (new) |'
+    cmp -s build/synth/compare.md "$work/log" || grep -q '^| wider ' build/synth/compare.md || fail "compare.md is not there"
+    if synth/compare.sh "$program" nonsense >"$work/log" 2>&1; then fail "a commit that is none"; fi
+    has 'there is no commit nonsense'
     ;;
 edif)
     # The netlist that ISE reads has every cell that Yosys counts, once, and well-formed parentheses.

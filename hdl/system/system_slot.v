@@ -43,7 +43,7 @@ module system_slot #(
     reg [63:0] cycles;
     reg [9:0]  error_addr;
     reg        error_write, error_open;
-    reg [5:0]  contract_slot; // whose hash CONTRACT shows
+    reg [31:0] contract;      // the hash of the slot that was asked for
     wire [63:0] lines = {{(64-SLOTS){1'b0}}, slot_irq_i, own_irq};
 
     bus_wrapper #(
@@ -62,13 +62,13 @@ module system_slot #(
 
     assign irq_o = |lines;
 
-    // A constant of six inputs a bit.
-    reg [31:0] contract;
+    // It is found while it is asked for, so that what is read comes from a register.
+    reg [31:0] asked;
     integer    s;
     always @* begin
-        contract = 32'd0;
+        asked = 32'd0;
         for (s = 0; s < SLOTS; s = s + 1)
-            contract = contract | ({32{{26'd0, contract_slot} == s}} & CONTRACTS[32*s +: 32]);
+            asked = asked | ({32{{26'd0, reg_wdata[5:0]} == s}} & CONTRACTS[32*s +: 32]);
     end
 
     always @* begin
@@ -96,7 +96,7 @@ module system_slot #(
         if (reg_write && reg_addr == SYSTEM_PAGE)
             page_o <= reg_wdata[5:0];
         if (reg_write && reg_addr == SYSTEM_CONTRACT)
-            contract_slot <= reg_wdata[5:0];
+            contract <= asked;
         if (reg_write && reg_addr == SYSTEM_SCRATCH)
             scratch <= reg_wdata;
         // The first error is kept until the event has been cleared; one that comes with the clear is new.
@@ -112,7 +112,7 @@ module system_slot #(
             cycles_high_latched <= 32'd0;
             page_o      <= 6'd0;
             scratch     <= 32'd0;
-            contract_slot <= 6'd0;
+            contract    <= CONTRACTS[31:0];
             error_open  <= 1'b0;
             error_addr  <= 10'd0;
             error_write <= 1'b0;

@@ -331,7 +331,7 @@ void measurePings(Flight& f, const std::string& program) {
         [&] {
             if (static_cast<int>(f.ground.replies.size()) == sent && sent < calls)
                 f.ground.ping(++sent, "hwengine1");
-            return f.ground.replies.size() == calls;
+            return static_cast<int>(f.ground.replies.size()) == calls;
         },
         60, "twenty pings");
     stopListening(f);

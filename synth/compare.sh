@@ -24,6 +24,8 @@ echo "Building what $(git log -1 --format='%h (%s)') synthesises ..." >&2
     echo "compare: $commit does not build: $base/build.log" >&2
     exit 2
 }
+mkdir -p build/synth
+ln -sfn "$here/build/synth/cache" build/synth/cache # what both have is synthesised once
 # Status 1: that commit is beyond its own budget, which is not the question here.
 "$program" --jobs "$jobs" >build.log || [ $? -eq 1 ] || exit 2
 cd "$here"

@@ -34,7 +34,7 @@ has() { grep -q -- "$1" "$work/log" || { cat "$work/log" >&2; fail "no '$1' in t
 case $case in
 counts)
     run || fail "$(cat "$work/log")"
-    has '^wide .* [0-9]* ([0-9]*-[0-9]*)$' # the clock, and that of two other orders
+    has '^wide .* [0-9]* ([0-9]*-[0-9]*)$' # the clock, and from where to where it goes in other orders
     value() { sed -n "s/.*\"cells\":{\([^}]*\)}.*/\1/p" "$work"/out/cache/"$1".xc6s.*.figures; }
     value wide | grep -q '"CARRY4":4' || fail "a counter of 16 bits has four: the parameter was not set"
     value store | grep -q '"RAM32M":1' || fail "32 x 6 bits are one RAM32M"

@@ -24,7 +24,8 @@ timeout 120 yosys -q -p "read_verilog -I$source/bus $generated $minimum; hierarc
 size() { # top, files: "luts flip-flops"
     top=$1 && shift
     sed -e "s|@INCLUDES@|-I$source/bus|; s|@SOURCES@|$*|; s|@PARAMETERS@||; s|@TOP@|$top|" -e "/@MAP@/r $source/synth/yosys/xilinx_map.ys" \
-        -e '/@MAP@/d; /^select A:top/,$d' "$source/synth/yosys/xc6s.ys" >"$work/$top.ys"
+        -e '/@MAP@/d; /^select A:top/,$d' "$source/synth/yosys/xc6s.ys" |
+        sed 's|@ORDER@||' >"$work/$top.ys"
     echo "tee -o $work/$top.stat stat" >>"$work/$top.ys"
     yosys -q -s "$work/$top.ys" >"$work/$top.log" 2>&1 || { cat "$work/$top.log" >&2 && exit 1; }
     awk '$1 ~ /^LUT[1-6]$/ { l += $2 } $1 ~ /^FD/ { f += $2 } END { print l + 0, f + 0 }' "$work/$top.stat"

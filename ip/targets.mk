@@ -56,7 +56,7 @@ ip-test: core-folders ## build and test one core: IP=fir (CORE_FOLDERS=/path/to/
 
 ip-synth: core-folders ## utilisation of one core, alone and in the chip: IP=fir (CORE_FOLDERS=/path/to/it where it is not in ip/)
 	@grep -qx '$(or $(IP),none)' $(BUILD)/cores.known || { echo "ip-synth: IP=name of a core, not '$(IP)'" >&2; exit 1; }
-	@$(MAKE) --no-print-directory synth DESIGN='$(IP)'
+	@make --no-print-directory synth DESIGN='$(IP)'
 	@ip/cost.py synth/baseline.json '$(BUILD)/gen/map.regs.json' '$(IP)'
 
 wave: $(BUILD)/build.ninja ## waveform of one test of a core, for GTKWave: IP=fir TEST=Impulse

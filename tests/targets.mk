@@ -67,13 +67,14 @@ sanitizers: setup-tests $(BUILD)/build.ninja ## tests of engine, gateway, plugin
 	    tests/testbench/live/live.sh . build/sanitized errors build/sanitized/live || status=1; \
 	    ctest --test-dir $(BUILD) -R '^fuzz[.](page|gdb)$$' --output-on-failure || status=1; exit $$status
 
+# Not by $$(MAKE), which `make -n` would carry out, and the whole line with it.
 # Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them. COMPARE_MS: test_quiet compares a second; HOSTILE: packets of test_link.
 nightly: setup-tests build ## what a timer runs: seeds that have failed, the regression with fresh seeds (NIGHTLY=3 of them), ZeroC's own suites, faults, sanitizers
 	@status=0; export COMPARE_MS=1000 HOSTILE=10000000; tool="$(BUILD)/tests/regress/regress --build $(BUILD) --jobs $(TESTS) --waves $(WAVES) --launcher $(LAUNCHER)"; \
 	    $$tool --kept $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
 	    $$tool --seed random --repeat $(NIGHTLY) $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
 	    ctest --test-dir $(BUILD) -C zeroc -L zeroc -j $(TESTS) --output-on-failure || status=$$?; \
-	    $(MAKE) faults SEED=$$(date +%Y%m%d) || status=$$?; $(MAKE) sanitizers || status=$$?; \
+	    make faults SEED=$$(date +%Y%m%d) || status=$$?; make sanitizers || status=$$?; \
 	    ctest --test-dir $(BUILD) -C nightly -L nightly -j $(TESTS) --output-on-failure || status=$$?; \
 	    exit $$status
 

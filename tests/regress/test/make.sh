@@ -5,6 +5,8 @@ set -eu
 cd "$1"
 targets=$(make --no-print-directory help | sed -n 's/^  make \([a-z-]*\) .*/\1/p')
 [ "$(echo "$targets" | wc -l)" -gt 15 ] || { echo "make help lists: $targets" >&2 && exit 1; }
+# A recipe with $(MAKE) in it would be carried out in spite of -n.
+if grep -n '^	.*\$(MAKE)' Makefile ./*/targets.mk; then echo "say make, not \$(MAKE)" >&2 && exit 1; fi
 for target in $targets; do
     make -n "$target" NAME=x LANG=verilog IP=fir >/dev/null
 done

@@ -119,7 +119,7 @@ void Parser::member(Declaration& d, bool mayBeOptional) {
     Optional o;
     if (!isIdempotent) {
         o = optional();
-        f.type = type(d.isLocal);
+        f.type = type();
     }
     if (isClass && (isIdempotent || returnsNothing || isSymbol("(", 1))) {
         if (!d.isLocal && d.operations.empty())
@@ -170,7 +170,7 @@ void Parser::sequence() {
     expect("<");
     Metadata elementMetadata = metadata();
     Location begin = token().at;
-    Type element = type(local_);
+    Type element = type();
     expect(">");
     Declaration& d = declareType(Declaration::Kind::Sequence, false);
     d.element = element;
@@ -185,11 +185,11 @@ void Parser::dictionary() {
     expect("<");
     (void)metadata();
     Location keyAt = token().at;
-    Type key = type(local_);
+    Type key = type();
     expect(",");
     (void)metadata();
     Location valueAt = token().at;
-    Type value = type(local_);
+    Type value = type();
     expect(">");
     Declaration& d = declareType(Declaration::Kind::Dictionary, false);
     d.key = key;
@@ -210,7 +210,7 @@ void Parser::dictionary() {
 
 void Parser::constant() {
     (void)metadata();
-    Type t = type(false);
+    Type t = type();
     Declaration& d = declareType(Declaration::Kind::Constant, false);
     d.element = t;
     expect("=");

@@ -102,7 +102,7 @@ void Parser::operation(Declaration& d) {
     o.idempotent = acceptWord("idempotent");
     Optional result = optional();
     Location begin = token().at;
-    o.result = type(d.isLocal);
+    o.result = type();
     o.isResultOptional = result.present;
     o.resultTag = result.tag;
     if (result.present && o.result.kind == Type::Kind::Void)
@@ -166,7 +166,7 @@ void Parser::parameters(Operation& o, const Declaration& owner) {
             fail("a type; 'out' stands before metadata");
         Optional tag = optional();
         Location begin = token().at;
-        p.type = type(owner.isLocal);
+        p.type = type();
         p.isOptional = tag.present;
         p.tag = tag.tag;
         p.at = token().at;

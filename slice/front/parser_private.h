@@ -86,7 +86,7 @@ private:
     void checkBases(const Declaration& d);
 
     // ---- types and values (parser_types.cpp)
-    Type type(bool local);
+    Type type();
     Type namedType();
     Optional optional();
     Literal literal(const Type& type, const std::string& what);

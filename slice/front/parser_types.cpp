@@ -46,7 +46,7 @@ void Parser::checkLocal(const Type& type, bool local, const std::string& what, c
         error(at, what + " cannot have the local type '" + typeName(type) + "'");
 }
 
-Type Parser::type(bool local) {
+Type Parser::type() {
     Type t;
     const Token& begin = token();
     if (!at(Token::Kind::Identifier) && !isSymbol("::"))

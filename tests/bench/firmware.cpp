@@ -309,7 +309,7 @@ void measureStream(Flight& f, const std::string& what) {
 // Measures from the message's last byte at IceC's endpoint to the first frame of its reply, of a
 // ping.
 void measurePings(Flight& f, const std::string& program) {
-    constexpr size_t calls = 20;
+    constexpr int calls = 20;
     const ElfImage& image = *f.machine.stm32().image();
     const uint32_t message = image.symbol("XBeeATEndpoint_onMessage"),
                    answered = image.symbol("icec_endReply"),

@@ -55,7 +55,8 @@ template <class Bridge> void traffic(const Mode& mode, unsigned hclk, unsigned c
     BridgeBench<Bridge> b(testSeed(), 0.2, hclk, clk);
     b.slave.words[0] = SYSTEM_ID_VALUE;
     Random random(testSeed() + hclk);
-    b.top.page_i = random.below(64); // of the memory; as the system slot has it
+    b.top.page_i =
+        static_cast<uint8_t>(random.below(64)); // of the memory; as the system slot has it
     const uint32_t page = static_cast<uint32_t>(b.top.page_i) << 26;
     const FSMC_Bank banks[2] = {mode.bank, mode.bank};
     ASSERT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);

@@ -79,7 +79,7 @@ def compare(old, new):
             breaking.append(f"{name} has {now_width} bits, and had {width}")
         elif now_width > width:
             compatible.append(f"{name} has {now_width} bits, and had {width}")
-        # What could only be read, and can be written too, breaks nobody.
+        # A register that could only be read, and can be written now, breaks nobody.
         if now_access != access and "." not in name:
             ((compatible if (access, now_access) == ("ro", "rw") else breaking)
              .append(f"{name} is {now_access}, and was {access}"))

@@ -45,7 +45,7 @@ std::shared_ptr<Engine> Engine::get(const Settings& settings, const Log& log) {
     auto& engines = registry();
     for (auto it = engines.begin(); it != engines.end();)
         it = it->second.expired() ? engines.erase(it) : std::next(it);
-    // Who has a key is not to talk in the clear because another was here before.
+    // A program that has a key does not talk in the clear because another was here before.
     auto shared = [&](std::shared_ptr<Engine> engine) {
         std::lock_guard<std::mutex> inner(engine->mutex_);
         if (engine->settings_.keys != settings.keys)

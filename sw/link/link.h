@@ -30,7 +30,7 @@
 #define LINK_MAX_FRAME 100U    /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
 #define LINK_MAX_ENCRYPTED 95U /* bytes of one that is encrypted (Link_limitFrame) */
 
-/* With a key (Link_setKey) frames are encrypted and end with a tag in place of the CRC.
+/* Frames are encrypted with a key (Link_setKey), and end with a tag in place of the CRC.
  * LINK_SECURE 0 leaves that out; LINK_TAG are the bytes of a tag, 4..16, the same on both sides
  * (docs/link.md says what 4 of them risk). */
 #ifndef LINK_SECURE

@@ -76,7 +76,7 @@ typedef struct Link_Handshake {
     U32 lastAnswer;   /* last at this one */
 } Link_Handshake;
 
-/* With a key: what a session has seen. */
+/* The watch notes what a session with a key has seen. */
 typedef struct Link_Watch {
     U32 pingsSent, pingsAnswered; /* numbers of the newest own PING, and up to which that is over */
     U32 askedAt;                  /* when the first PING after that was sent */

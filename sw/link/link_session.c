@@ -7,7 +7,7 @@
  * that has answered a HELLO stays in its old session until the first frame of the new one arrives:
  * a HELLO that was delayed on the air cannot end a session.
  *
- * With a key (link_keyed.c) all this is proven.
+ * All this is proven with a key (link_keyed.c).
  */
 #include "link.h"
 

@@ -112,7 +112,7 @@ typedef struct Link_Keys {
     U8 send[LINK_KEY_BYTES], receive[LINK_KEY_BYTES];
 } Link_Keys;
 
-/* What a Link knows of the keys that it was given. */
+/* The secrets of a Link: the keys that it was given, and what follows from them. */
 typedef struct Link_Secrets {
     U8 set; /* a bit a slot */
     U8 key[LINK_KEYS][LINK_KEY_BYTES];

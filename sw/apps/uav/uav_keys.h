@@ -14,7 +14,7 @@
 #define UAV_KEY_SLOTS 2
 #define UAV_KEY_WORDS 11U /* a slot: four words of key, its check; then the state */
 
-/* What the microcontroller has for secrets. `context` is passed back unchanged. */
+/* The board keeps secrets and draws random numbers. `context` is passed back unchanged. */
 typedef struct UAV_Board {
     /* Returns 32 bits that nobody can guess. */
     U32 (*random)(void* context);

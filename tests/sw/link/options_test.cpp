@@ -71,12 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Bytes on the air of a call and its reply, acknowledgements included: without a key, with tags of
 // 8 bytes and of 4; beside MAVLink 2, whose signature takes 13 bytes a frame.
-class CallBytes : public ::testing::TestWithParam<Names>, public Radio {
-protected:
-    CallBytes()
-        : Radio(std::get<0>(GetParam()), std::get<1>(GetParam()), testSeed(),
-                Bytes(std::get<2>(GetParam()) ? LINK_KEY_BYTES : 0, 0x5A)) {}
-};
+class CallBytes : public Options {};
 
 TEST_P(CallBytes, ACallAndItsReplyTakeFewerThanMavlink) {
     const bool isSecure = std::get<2>(GetParam());

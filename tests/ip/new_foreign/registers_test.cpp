@@ -5,12 +5,11 @@
 #include "Vmy_port_slot.h"
 #include "Vmy_requests_slot.h"
 #include "core_slot.h"
+#include "pair.h"
 #include <gmock/gmock.h>
-#include <memory>
 #include <optional>
 extern "C" {
 #include "hw_registers.h"
-#include "loop_endpoint.h"
 #include "my_port_regs.h"
 #include "my_requests_regs.h"
 }
@@ -20,23 +19,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-std::string str(Ice_String s) {
-    return {s.data, static_cast<size_t>(s.size)};
-}
-
-struct Side {
-    Ice_Communicator ic;
-    LoopEndpoint loop;
-    Ice_ObjectAdapter adapter;
-    Side() {
-        Ice_initialize(&ic);
-        LoopEndpoint_init(&ic, &loop);
-        EXPECT_EQ(Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "A", "loop", &adapter),
-                  ICE_OK);
-        Ice_ObjectAdapter_activate(&adapter);
-    }
-};
 
 // A core in its slot, its servant, and a proxy to it.
 template <class Module> class Served {

@@ -96,9 +96,9 @@ else
 	@SEED=$(SEED) ctest --test-dir build/sanitized -j $(TESTS) --output-on-failure --no-tests=error -L sanitized
 endif
 
-mutants: setup-tests $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect its test to fail (BLOCK=bus for one block)
+mutants: setup-tests $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect its test to fail (BLOCK=bus, or BLOCK=bus/name)
 	@$(NINJA) regress
-	@tests/mutants/run.sh --jobs $(JOBS) $(if $(BLOCK),--block '$(BLOCK)')
+	@tests/mutants/run.py --jobs $(JOBS) $(if $(BLOCK),--block '$(BLOCK)')
 
 bench: $(BUILD)/build.ninja ## measure everything that has a figure (tests/bench), write build/bench/*.json and docs/figures.md
 	@$(NINJA) bench_programs regress

@@ -1,0 +1,223 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Plants each seeded bug in a copy of the tree and expects the test it names to fail.
+
+The bugs of a block stand in tests/mutants/<block>.bugs, a core's in ip/<core>/<core>.bugs, between
+empty lines:
+
+    name: what the bug does, in a sentence.
+    the test that catches it, as ctest names it
+    file
+    -the line, or lines, of the file that go
+    +what stands there instead
+
+A line that begins with a space stays; lines that go and stay must be found once in the file. `@@`
+begins another change of the same file, a line with a slash another file.
+
+Leaves build/mutants/results.tsv (name, result, test, seconds) and summary.json (the score by block).
+Exit status 1: a bug survived, is no longer found in its file, or does not build.
+"""
+import argparse, collections, fcntl, glob, json, os, pathlib, queue, re, shutil, subprocess, sys, time
+from concurrent.futures import ThreadPoolExecutor
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+WORK = TOP / "build/mutants"
+
+
+class Bug:
+    def __init__(self, block, text):
+        head, self.test, *lines = text.split("\n")
+        name, _, does = head.partition(": ")
+        self.name = f"{block}/{name}"
+        self.changes = []  # file, lines that are there, lines that come in their place
+        for line in lines:
+            if line[0] not in " +-@":
+                file = line
+            if line[0] not in " +-":
+                self.changes.append((file, [], []))
+                continue
+            self.changes[-1][1].extend([line[1:]] if line[0] != "+" else [])
+            self.changes[-1][2].extend([line[1:]] if line[0] != "-" else [])
+        if not does or not self.changes:
+            raise ValueError
+
+    def planted(self, root):
+        """The texts of the files with the bug in them; ValueError if it does not fit."""
+        texts = {}
+        for file, before, after in self.changes:
+            text = texts.get(file) or "\n" + (root / file).read_text()
+            old, new = ("\n" + "".join(line + "\n" for line in part) for part in (before, after))
+            if text.count(old) != 1 or old == new:
+                raise ValueError(f"its lines stand {text.count(old)} times in {file}: give those of today's source")
+            texts[file] = text.replace(old, new)
+        return {file: text[1:] for file, text in texts.items()}
+
+
+def bugs(chosen):
+    """The bugs of a block (`*`: of all), or the one of block/name."""
+    block, _, name = chosen.partition("/")
+    files = sorted(glob.glob(f"tests/mutants/{block}.bugs") + glob.glob(f"ip/{block}/{block}.bugs"))
+    found = []
+    for file in files:
+        for text in pathlib.Path(file).read_text().strip("\n").split("\n\n"):
+            try:
+                found.append(Bug(pathlib.Path(file).stem, text))
+            except (ValueError, IndexError, UnboundLocalError):
+                sys.exit(f"mutants: {file}: not a bug as `tests/mutants/run.py --help` shows it: {text[:60]}")
+    found = [bug for bug in found if not name or bug.name == chosen]
+    return found or sys.exit(f"mutants: no {chosen} in tests/mutants/*.bugs and ip/*/*.bugs")
+
+
+def prepare(copy):
+    """A copy of the tree for a worker, with its own build folder."""
+    copy.mkdir(parents=True, exist_ok=True)
+    for kept in copy.rglob("*.orig"):  # what an interrupted run had planted
+        restore(kept.with_suffix(""))
+    listed = subprocess.run(["git", "ls-files", "-coz", "--exclude-standard"], stdout=subprocess.PIPE, check=True)
+    subprocess.run(["xargs", "-0", "cp", "-pu", "--parents", "-t", copy], input=listed.stdout, stderr=subprocess.DEVNULL)
+    if not (copy / "build/main/build.ninja").exists():
+        made = subprocess.run(["cmake", "-S", ".", "-B", "build/main", "-G", "Ninja"], cwd=copy, env=environment(copy),
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if made.returncode:
+            sys.exit(made.stdout)
+
+
+def environment(copy):
+    return {**os.environ, "CCACHE_BASEDIR": str(copy), "CCACHE_NOHASHDIR": "1"}
+
+
+def restore(file):
+    """Puts the file as it was back, newer than what was built from the bug."""
+    os.replace(f"{file}.orig", file)
+    os.utime(file)
+
+
+def targets(test, copy):
+    """What must be built for a test."""
+    kind, _, rest = test.partition(".")
+    if kind.startswith("test_"):
+        return [kind]
+    if kind == "cdc":
+        return [rest.rpartition(".")[0]]
+    if kind == "vhdl":
+        return [f"{rest}_vectors"]
+    if kind == "slice":
+        return ["slice2c"] + ["ghdl"] * rest.startswith("hardware.vhdl.")
+    if kind == "interop":  # the programs that its command names
+        shown = subprocess.run(["ctest", "--test-dir", "build/main", "--show-only=json-v1", "-R", f"^{re.escape(test)}$"],
+                               cwd=copy, stdout=subprocess.PIPE, text=True).stdout
+        return re.findall(f'^ *"{re.escape(str(copy))}/build/main/([^"]*)"', shown, re.M)
+    return ["regmaps"]
+
+
+def attempt(test, copy, log):
+    """Builds what a test needs and runs it: "passes", "fails" or "does not build"."""
+    build = ["nice", "ninja", "-C", "build/main", "-j", "1", *targets(test, copy)]
+    run = ["ctest", "--test-dir", "build/main", "-R", f"^{re.escape(test)}(\\.|$)", "--no-tests=error", "--output-on-failure"]
+    with open(log, "w") as out:
+        for command, otherwise in (build, "does not build"), (run, "fails"):
+            if subprocess.run(command, cwd=copy, env=environment(copy), stdout=out, stderr=out).returncode:
+                break
+        else:
+            return "passes"
+    # A proof must fail by its properties, not by a file that cannot be read.
+    said = re.search("an assertion fails|not proven|not reached", log.read_text(errors="replace"))
+    return "does not build" if test.startswith("formal.") and not said else otherwise
+
+
+def try_bug(bug, copy):
+    start = time.monotonic()
+    try:
+        planted = bug.planted(copy)
+    except (OSError, ValueError):
+        planted, result = {}, "does not apply"
+    for file, text in planted.items():
+        shutil.copy2(copy / file, f"{copy / file}.orig")
+        (copy / file).write_text(text)
+    if planted:
+        result = attempt(bug.test, copy, WORK / (bug.name.replace("/", "-") + ".log"))
+        result = {"passes": "SURVIVED", "fails": "caught"}.get(result, result)
+    for file in planted:
+        restore(copy / file)
+    row = [bug.name, result, bug.test, str(round(time.monotonic() - start))]
+    print("%-14s %-36s %s (%s s)" % (result, bug.name, *row[2:]), flush=True)
+    return row
+
+
+def check(chosen):
+    """Whether each bug is found in today's tree; builds nothing."""
+    bad = 0
+    for bug in chosen:
+        try:
+            bug.planted(TOP)
+        except (OSError, ValueError) as error:
+            print(f"{bug.name}: does not apply: {error}")
+            bad = 1
+    return bad
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--block", default="*", help="the bugs of one block or core, or a single one as block/name (default: all)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many are tried at once")
+    parser.add_argument("--check", action="store_true", help="only look whether each is found in its file")
+    options = parser.parse_args()
+    os.chdir(TOP)
+    chosen = bugs(options.block)
+    if options.check:
+        return check(chosen)
+    WORK.mkdir(parents=True, exist_ok=True)
+    lock = open(WORK / "lock", "w")  # two runs would plant their bugs in the same copies
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        print("mutants: another run is at work in build/mutants; waiting for its end ...", file=sys.stderr, flush=True)
+        fcntl.flock(lock, fcntl.LOCK_EX)
+    # The state that all blocks were measured from, for the regression's light.
+    if options.block == "*" and os.access("build/main/tests/regress/regress", os.X_OK):
+        with open(WORK / "tree", "w") as tree:
+            subprocess.run(["build/main/tests/regress/regress", "--tree", "bus hdl ip slice sw testbench tests"], stdout=tree)
+    copies = queue.Queue()
+    for number in range(options.jobs):
+        prepare(WORK / str(number))
+        copies.put(WORK / str(number))
+
+    def in_copy(work):
+        copy = copies.get()
+        try:
+            return work(copy)
+        finally:
+            copies.put(copy)
+
+    with ThreadPoolExecutor(options.jobs) as pool:
+        # The tests must pass without a bug, or "caught" says nothing.
+        tests = sorted({bug.test for bug in chosen})
+        logs = [WORK / f"baseline.{test}.log" for test in tests]
+        for test, log, result in zip(tests, logs, pool.map(lambda t, l: in_copy(lambda c: attempt(t, c, l)), tests, logs)):
+            if result != "passes":
+                sys.stderr.write(log.read_text(errors="replace"))
+                pool.shutdown(cancel_futures=True)
+                sys.exit(f"mutants: {test} fails without any mutant: mend that first")
+            log.unlink()
+        rows = list(pool.map(lambda bug: in_copy(lambda copy: try_bug(bug, copy)), chosen))
+    # Results of other blocks stay from an earlier run, unless the bug is gone.
+    results = WORK / "results.tsv"
+    there = {bug.name for bug in bugs("*")}
+    earlier = [line.split("\t") for line in results.read_text().splitlines()] if results.exists() else []
+    all_rows = {row[0]: row for row in earlier + rows if row[0] in there}
+    results.write_text("".join("\t".join(row) + "\n" for row in all_rows.values()))
+    blocks = collections.defaultdict(lambda: {"caught": 0, "total": 0})
+    for name, result, *_ in all_rows.values():
+        blocks[name.split("/")[0]]["total"] += 1
+        blocks[name.split("/")[0]]["caught"] += result == "caught"
+    caught = sum(block["caught"] for block in blocks.values())
+    (WORK / "summary.json").write_text(json.dumps({
+        "caught": caught, "total": len(all_rows), "score": round(100 * caught / len(all_rows), 1),
+        "not_caught": [row[0] for row in all_rows.values() if row[1] != "caught"], "blocks": blocks}))
+    now = sum(row[1] == "caught" for row in rows)
+    print(f"mutants: {now} of {len(rows)} caught (build/mutants/results.tsv, summary.json)")
+    return now != len(rows)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -7,8 +7,9 @@
 #include "map_regs.h"
 #include "system_regs.h"
 
-/* Mode A without NWAIT: an access takes ADDSET + DATAST + 1 HCLK. A write's data phase is 2 HCLK; a
- * read is all data phase, so that NOE is low as early as the address is there. */
+/* Mode A without NWAIT: an access takes ADDSET + DATAST + 1 HCLK. A write's data phase is 2 HCLK,
+ * and its BUSTURN 0, since some FSMCs have it between two writes, too; a read is all data phase, so
+ * that NOE is low as early as the address is there. */
 #define STREAM_BCR (BCR_ALWAYS | BCR_EXTMOD)
 #define WRITE_DATAST 2U
 /* Accesses/s at most (docs/fsmc.md): 33.3 ns between edges of NWE; a read has its data 15 ns after
@@ -35,7 +36,7 @@ static void setBank(int fast) {
     if (fast) {
         fsmc_port->write32(fsmc_context, FSMC_BTR(0), BTR_DATAST(readDatast) | BTR_BUSTURN(1));
         fsmc_port->write32(fsmc_context, FSMC_BWTR(0),
-                           BTR_DATAST(WRITE_DATAST) | BTR_ADDSET(writeAddset) | BTR_BUSTURN(1));
+                           BTR_DATAST(WRITE_DATAST) | BTR_ADDSET(writeAddset));
         fsmc_port->write32(fsmc_context, FSMC_BCR(0), STREAM_BCR);
     } else {
         fsmc_port->write32(fsmc_context, FSMC_BCR(0), BCR_VALUE);

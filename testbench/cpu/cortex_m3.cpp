@@ -15,7 +15,14 @@
 
 namespace {
 constexpr uint64_t sleepStep = 1 << 20; // cycles that the surroundings may pass at once
+constexpr unsigned storeCycles = 14;    // the FSMC's for a register word
+
+std::string accessText(uint32_t address, unsigned bytes, const char* what) {
+    char text[64];
+    std::snprintf(text, sizeof text, "access of %u bytes to 0x%08X: ", bytes, address);
+    return std::string(text) + what;
 }
+} // namespace
 
 CortexM3::Stop CortexM3::run(bool singleStep) {
     singleStep_ = singleStep;
@@ -70,6 +77,8 @@ void CortexM3::onInstruction(uint32_t address) {
         updateMasks(address);
     if (!stores_.empty())
         settleFlash();
+    if (store_.bytes && cycles() >= store_.due)
+        drainStore();
     bool inUnit = skipped_ != 0 && address > executing_ && address < unitEnd_;
     if (!inUnit) {
         if (failure_ || synchronous_.number || raised_) {
@@ -132,7 +141,11 @@ void CortexM3::execute(uint32_t address, const Instruction& i) {
         break;
     }
     case Instruction::Sleep:
+        drainStore();
         sleep();
+        break;
+    case Instruction::Barrier:
+        drainStore();
         break;
     case Instruction::Masks:
         masksChanged_ = true;
@@ -240,6 +253,35 @@ void CortexM3::pendInterrupt(unsigned number) {
 
 // ---- accesses ----
 
+// The processor has waited for the access that the bus has just made.
+void CortexM3::passWaited() {
+    const unsigned waited = bus_.takeWaited();
+    waited_ += waited;
+    control_.pass(waited);
+    attention_ = attention_ || exceptions_.deliverable();
+}
+
+// Carries a store out. Its fault comes when it does, and has no address.
+template <class Store> void CortexM3::store(uint32_t address, unsigned bytes, Store store) {
+    try {
+        store();
+        passWaited();
+    } catch (const CpuBus::Error& e) {
+        (void)bus_.takeWaited();
+        reportStoreFault(accessText(address, bytes, e.what()));
+    } catch (...) {
+        failure_ = std::current_exception();
+    }
+    attention_ = attention_ || failure_;
+}
+
+void CortexM3::drainStore() {
+    const BufferedStore s = store_;
+    store_.bytes = 0;
+    if (s.bytes)
+        store(s.address, s.bytes, [&] { bus_.write(s.address, s.bytes, s.value); });
+}
+
 template <class Access>
 uint32_t CortexM3::guardedAccess(uint32_t address, unsigned bytes, Access access) {
     if (failure_ || synchronous_.number)
@@ -253,18 +295,14 @@ uint32_t CortexM3::guardedAccess(uint32_t address, unsigned bytes, Access access
             attention_ = attention_ || exceptions_.deliverable() || stopAsked_;
             return value;
         }
+        drainStore();
         value = access(false);
-        unsigned waited = bus_.takeWaited();
-        waited_ += waited;
-        control_.pass(waited);
-        attention_ = attention_ || exceptions_.deliverable();
+        passWaited();
         return value;
     } catch (const CpuBus::Error& e) {
         (void)bus_.takeWaited();
-        char text[64];
-        std::snprintf(text, sizeof text, "access of %u bytes to 0x%08X: ", bytes, address);
         synchronous_ = {BusFault, SystemControl::preciseBus | SystemControl::bfarValid,
-                        text + std::string(e.what())};
+                        accessText(address, bytes, e.what())};
         control_.setFaultAddress(SystemControl::bfarValid, address);
     } catch (...) {
         failure_ = std::current_exception();
@@ -286,6 +324,11 @@ uint32_t CortexM3::onRead(uint32_t address, unsigned bytes) {
 }
 
 void CortexM3::onWrite(uint32_t address, unsigned bytes, uint32_t value) {
+    if (address < 0xE0000000 && control_.buffersStores() && !failure_ && !synchronous_.number) {
+        drainStore();
+        store_ = {address, value, bytes, cycles() + storeCycles};
+        return;
+    }
     guardedAccess(address, bytes, [&](bool own) {
         if (!own)
             bus_.write(address, bytes, value);
@@ -300,10 +343,10 @@ void CortexM3::onWrite(uint32_t address, unsigned bytes, uint32_t value) {
 // Called before libunicorn stores to flash; what the bus makes of it is what counts.
 void CortexM3::onFlashWrite(uint32_t offset, unsigned bytes, uint32_t value) {
     settleFlash();
-    guardedAccess(config_.flashBase + offset, bytes, [&](bool) {
-        bus_.writeFlash(offset, bytes, value);
-        return 0u;
-    });
+    if (failure_ || synchronous_.number)
+        return;
+    drainStore();
+    store(config_.flashBase + offset, bytes, [&] { bus_.writeFlash(offset, bytes, value); });
     FlashStore store{offset, bytes, {}};
     std::memcpy(store.was, flash_.get() + offset, bytes);
     stores_.push_back(store);
@@ -319,6 +362,7 @@ void CortexM3::flashChanged(uint32_t offset, uint32_t bytes) {
 }
 
 bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
+    drainStore(); // RAM is behind the same bus
     if (!control_.isForbidden(address, bytes, write) || synchronous_.number ||
         currentException() == HardFault)
         return false;
@@ -337,6 +381,7 @@ bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
 bool CortexM3::debugRead(uint32_t address, void* data, uint32_t bytes) {
     if (readMemory(address, data, bytes))
         return true;
+    drainStore();
     auto* to = static_cast<uint8_t*>(data);
     try {
         while (bytes) {
@@ -363,6 +408,7 @@ bool CortexM3::debugRead(uint32_t address, void* data, uint32_t bytes) {
 bool CortexM3::debugWrite(uint32_t address, const void* data, uint32_t bytes) {
     if (writeMemory(address, data, bytes))
         return true;
+    drainStore();
     const auto* from = static_cast<const uint8_t*>(data);
     try {
         while (bytes) {

@@ -149,6 +149,9 @@ private:
     void onInstruction(uint32_t address);
     void execute(uint32_t address, const Instruction& i);
     void onRaised(uint32_t number);
+    template <class Store> void store(uint32_t address, unsigned bytes, Store store);
+    void drainStore();
+    void reportStoreFault(const std::string& text);
     uint32_t onRead(uint32_t address, unsigned bytes);
     void onWrite(uint32_t address, unsigned bytes, uint32_t value);
     void onFlashWrite(uint32_t offset, unsigned bytes, uint32_t value);
@@ -157,6 +160,7 @@ private:
     }
     void settleFlash();
     void waitForFlash();
+    void passWaited();
     bool onGuarded(uint32_t address, unsigned bytes, bool write);
     template <class Access> uint32_t guardedAccess(uint32_t address, unsigned bytes, Access access);
     const Instruction& instructionAt(uint32_t address);
@@ -200,6 +204,13 @@ private:
         uint32_t cfsrBits = 0;
         std::string text;
     } synchronous_; // fault of the instruction under way
+    // The write buffer of one entry (TRM r2p1, 3.5): a store to a window that is not carried out
+    // yet.
+    struct BufferedStore {
+        uint32_t address = 0, value = 0;
+        unsigned bytes = 0; // 0: the buffer is empty
+        uint64_t due = 0;   // in cycles
+    } store_;
     std::exception_ptr failure_;
     uint64_t instructions_ = 0, sleeping_ = 0, waited_ = 0;
     // libunicorn carries a store to flash out by itself: what was there is put back, and the bus

@@ -155,6 +155,7 @@ void CortexM3::reset() {
     lockedUp_ = false;
     flashFree_ = 0;
     synchronous_.number = 0;
+    store_.bytes = 0;
     raised_ = skipped_ = unitEnd_ = expected_ = 0;
     masksChanged_ = masked_ = false;
     setReg(Xpsr, thumb);
@@ -179,6 +180,7 @@ void CortexM3::jumpTo(unsigned number) {
 }
 
 void CortexM3::enter(unsigned number) {
+    drainStore();
     bool handler = currentException() != 0, process = !handler && (reg(Control) & 2);
     uint32_t xpsr = reg(Xpsr), sp = reg(Sp);
     uint32_t padding = control_.alignsStack() && (sp & 4) ? 4 : 0;
@@ -225,6 +227,7 @@ void CortexM3::leave() {
         pass(chainCycles);
         return;
     }
+    drainStore();
     int stack = kind == 13 ? Psp : Msp;
     uint32_t frame = reg(stack), saved[8];
     if (!readMemory(frame, saved, 32)) {
@@ -246,6 +249,19 @@ void CortexM3::leave() {
 }
 
 // ---- faults ----
+
+// The fault of a store that the processor has gone on behind: it waits for its priority.
+void CortexM3::reportStoreFault(const std::string& text) {
+    char where[40];
+    std::snprintf(where, sizeof where, " (a store before 0x%08X)", expected_);
+    lastFault = text + where;
+    control_.reportFault(SystemControl::impreciseBus);
+    const bool possible = exceptions_[BusFault].enabled;
+    if (!possible)
+        control_.reportHardFault(SystemControl::forced);
+    exceptions_.pend(possible ? BusFault : HardFault);
+    attention_ = true;
+}
 
 void CortexM3::fault(unsigned number, uint32_t cfsrBits, const std::string& text) {
     char where[40];
@@ -342,8 +358,11 @@ void CortexM3::handleUnicorn(uc_err error) {
     switch (error) {
     case UC_ERR_OK:
         return;
-    case UC_ERR_READ_UNMAPPED:
     case UC_ERR_WRITE_UNMAPPED:
+        pc_ = expected_;
+        reportStoreFault(text);
+        return;
+    case UC_ERR_READ_UNMAPPED:
     case UC_ERR_WRITE_PROT:
         pc_ = executing_;
         synchronous_ = {BusFault, SystemControl::preciseBus, text};

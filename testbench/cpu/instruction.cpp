@@ -83,5 +83,7 @@ Instruction decodeInstruction(uint16_t first, uint16_t second) {
         i.kind = Instruction::Masks;
         i.cycles = 2;
     }
+    if (first == 0xF3BF && (second & 0xFFE0) == 0x8F40)
+        i.kind = Instruction::Barrier;
     return i;
 }

@@ -11,10 +11,11 @@
 struct Instruction {
     enum Kind : uint8_t {
         Plain,
-        If,     // IT: the `conditional` instructions behind it are one unit with it
-        Sleep,  // WFI
-        Masks,  // CPS or MSR: may change PRIMASK, BASEPRI or FAULTMASK
-        Refused // WFE, SEV: the model has no event register
+        If,      // IT: the `conditional` instructions behind it are one unit with it
+        Sleep,   // WFI
+        Barrier, // DSB, DMB: wait for the write buffer
+        Masks,   // CPS or MSR: may change PRIMASK, BASEPRI or FAULTMASK
+        Refused  // WFE, SEV: the model has no event register
     };
     uint8_t bytes = 2;       // 2 or 4
     uint8_t cycles = 1;      // Cortex-M3 TRM r2p1, table 3-1, without the refill of a taken branch

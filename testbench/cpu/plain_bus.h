@@ -56,6 +56,12 @@ struct PlainCpu {
             if (limit)
                 limit();
         }
+        void write(uint32_t address, unsigned bytes, uint32_t value) override {
+            if (!onWrite)
+                return PlainBus::write(address, bytes, value);
+            onWrite(address, value);
+        }
+        std::function<void(uint32_t address, uint32_t value)> onWrite;
         std::function<void()> limit;
     } bus;
     ElfImage image;

@@ -100,6 +100,9 @@ bool SystemControl::readWord(uint32_t address, uint32_t& value) {
     case 0x004:
         value = (Exceptions::interrupts - 1) / 32;
         return true; // ICTR
+    case 0x008:
+        value = actlr_;
+        return true;
     case 0x010:
         value = control_ | uint32_t(countFlag_) << 16;
         countFlag_ = false;
@@ -156,6 +159,9 @@ bool SystemControl::writeWord(uint32_t address, uint32_t value) {
         return true;
     }
     switch (at) {
+    case 0x008:
+        actlr_ = value;
+        return !(value & ~2u); // only DISDEFWBUF is modelled
     case 0x010: {
         stoppedAt_ = currentTicks();
         bool wasOn = control_ & 1;

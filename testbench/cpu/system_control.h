@@ -34,6 +34,7 @@ public:
 
     uint32_t vectorTable() const { return vtor_; }
     bool takeResetRequest();
+    bool buffersStores() const { return !(actlr_ & 1u << 1); } // ACTLR.DISDEFWBUF
     bool alignsStack() const { return ccr_ & 1u << 9; }
 
     // True if the MPU forbids a data access from `start` on.
@@ -46,9 +47,10 @@ public:
     void reportHardFault(uint32_t hfsrBits) { hfsr_ |= hfsrBits; }
     void setFaultAddress(uint32_t cfsrBits, uint32_t address);
     static constexpr uint32_t dataAccess = 1u << 1, stackAccess = 1u << 4, mmfarValid = 1u << 7,
-                              preciseBus = 1u << 9, bfarValid = 1u << 15, undefined = 1u << 16,
-                              invalidState = 1u << 17, invalidReturn = 1u << 18,
-                              noCoprocessor = 1u << 19, instructionBus = 1u << 8, forced = 1u << 30;
+                              preciseBus = 1u << 9, impreciseBus = 1u << 10, bfarValid = 1u << 15,
+                              undefined = 1u << 16, invalidState = 1u << 17,
+                              invalidReturn = 1u << 18, noCoprocessor = 1u << 19,
+                              instructionBus = 1u << 8, forced = 1u << 30;
 
 private:
     struct Region {
@@ -73,7 +75,8 @@ private:
     uint64_t cycles_ = 0, tickDue_ = ~0ull;
     uint32_t control_ = 0, load_ = 0, stoppedAt_ = 0;
     bool countFlag_ = false;
-    uint32_t vtor_ = 0, scr_ = 0, ccr_ = 0x200, cfsr_ = 0, hfsr_ = 0, mmfar_ = 0, bfar_ = 0;
+    uint32_t actlr_ = 0, vtor_ = 0, scr_ = 0, ccr_ = 0x200, cfsr_ = 0, hfsr_ = 0, mmfar_ = 0,
+             bfar_ = 0;
     uint32_t demcr_ = 0, dwtControl_ = 0;
     uint64_t cycleCountFrom_ = 0;
     bool resetRequested_ = false;

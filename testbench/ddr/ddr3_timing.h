@@ -33,13 +33,20 @@ constexpr Ddr3Part mt41j128m8{
 
 class Ddr3Timing {
 public:
-    explicit Ddr3Timing(const Ddr3Part& part) : part_(part), nextRefresh_(part.tREFI) {}
+    // `refreshLater`: clocks that the controller adds to tRP between precharging all and a refresh.
+    explicit Ddr3Timing(const Ddr3Part& part, unsigned refreshLater = 0)
+        : part_(part), refreshLater_(refreshLater), nextRefresh_(part.tREFI) {}
 
     const Ddr3Part& part() const { return part_; }
     uint64_t rowHits = 0, rowMisses = 0, refreshes = 0, turnarounds = 0;
 
     unsigned bank(uint32_t address) const { return address / part_.rowBytes % banks; }
     uint32_t row(uint32_t address) const { return address / part_.rowBytes / banks; }
+
+    bool isOpen(uint32_t address) const {
+        const Bank& b = banks_[bank(address)];
+        return b.open && b.row == row(address);
+    }
 
     // Places one burst, not before `at` and after all those before it. Returns the clock of its
     // READ or WRITE command. The row is opened, and another closed, as need be; refreshes that are
@@ -79,7 +86,7 @@ public:
         uint64_t start = at;
         for (Bank& b : banks_) { // precharge all
             if (b.open)
-                start = std::max(start, precharge(b, at) + part_.tRP);
+                start = std::max(start, precharge(b, at) + part_.tRP + refreshLater_);
             start = std::max(start, b.mayActivate);
             b.open = false;
         }
@@ -131,6 +138,7 @@ private:
     }
 
     const Ddr3Part part_;
+    const unsigned refreshLater_;
     Bank banks_[banks];
     uint64_t window_[4] = {}, activations_ = 0, lastActivated_ = 0;
     uint64_t lastCas_ = 0, nextRefresh_;

@@ -91,6 +91,11 @@ void McbModel::start(const Command& command) {
     unsigned burstBytes = device_.part().burstBytes;
     for (unsigned left = command.words; left > 0;) {
         unsigned words = std::min(left, (burstBytes - address % burstBytes) / 8);
+        if (lastWasRead_ && !read)
+            at = std::max(at, readEnd_ + readToWrite);
+        else if (lastWasRead_ && !device_.isOpen(address))
+            at = std::max(at, readEnd_);
+        lastWasRead_ = read;
         uint64_t cas = device_.access(at, read, address);
         read ? readBurst(address, words, cas) : writeBurst(address, words, cas);
         address += 8 * words;
@@ -103,8 +108,8 @@ void McbModel::start(const Command& command) {
 }
 
 void McbModel::readBurst(uint32_t address, unsigned words, uint64_t cas) {
-    uint64_t end = cas + device_.part().cl + 4;
-    uint64_t at = (end + memoryClocks - 1) / memoryClocks + timing_.dataWay;
+    readEnd_ = cas + device_.part().cl + 4;
+    uint64_t at = (readEnd_ + memoryClocks - 1) / memoryClocks + timing_.dataWay;
     for (unsigned w = 0; w < words; ++w) {
         uint64_t value;
         std::memcpy(&value, memory_.data() + address + 8 * w, 8);

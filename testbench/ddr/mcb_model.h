@@ -12,10 +12,11 @@
 //   a word that comes from the memory while the read FIFO is full (rd_overflow)
 //
 // Behind it, commands are carried out one after another, in bursts of 8 on a device of 16 bits at
-// DDR3-800 (ddr3_timing.h), four memory clocks to one of the design: 100 MHz. A row is opened as
-// soon as the burst before has its command. Addresses are ROW_BANK_COLUMN, MIG's default. The way
-// through the FIFOs, both clock crossings and the PHY are two constants (Timing), an estimate:
-// UG388 gives the read latency as a range that depends on the configuration.
+// DDR3-800 (ddr3_timing.h), four memory clocks to one of the design: 100 MHz. As Xilinx AR36413
+// says, a write waits for the end of the data of the read before, and so does an activate; a row is
+// else opened as soon as the burst before has its command. Addresses are ROW_BANK_COLUMN, MIG's
+// default. The way through the FIFOs, both clock crossings and the PHY are two constants (Timing),
+// an estimate: UG388 gives the read latency as a range that depends on the configuration.
 
 #ifndef MCB_MODEL_H
 #define MCB_MODEL_H
@@ -36,6 +37,8 @@ class McbModel {
 public:
     static constexpr unsigned commandDepth = 4, dataDepth = 64;
     static constexpr unsigned memoryClocks = 4; // of the memory to one of the design
+    // JESD79-3, 3.3.1: 200 us in reset and 500 us until CKE; calibration: an estimate, 300 us.
+    static constexpr unsigned startClocks = 100'000;
 
     // Pins of the user port; the design's side is set before cycle().
     struct Pins {
@@ -53,13 +56,14 @@ public:
 
     // Clocks of the design.
     struct Timing {
-        unsigned calibration = 64; // shortened: the real one takes about 100 us
+        unsigned calibration = 64; // shortened: a real start takes startClocks
         unsigned commandWay = 6;   // from cmd_en to the memory's command
         unsigned dataWay = 5;      // from the memory's last word of a burst to rd_empty
     };
 
     explicit McbModel(size_t bytes = size_t(128) << 20) : McbModel(bytes, Timing()) {}
-    McbModel(size_t bytes, Timing timing) : memory_(bytes), timing_(timing), device_(mt41j64m16) {}
+    McbModel(size_t bytes, Timing timing)
+        : memory_(bytes), timing_(timing), device_(mt41j64m16, refreshLater) {}
 
     // One clock cycle: what the design does at the edge, then what it sees after it.
     void cycle() {
@@ -76,6 +80,13 @@ public:
         return hung_ ? ~0ull : nextEvent_ > now_ + 1 ? nextEvent_ - now_ - 1 : 0;
     }
     void pass(uint64_t clocks) { now_ += clocks; }
+
+    // The memory starts again, as after power-on, and takes so many clocks.
+    void restart(unsigned clocks) {
+        timing_.calibration = static_cast<unsigned>(now_) + clocks;
+        pins.calibDone = false;
+        nextEvent_ = 0;
+    }
 
     // Injects a fault: no command begins and no word moves until it is over; what waits is carried
     // out then.
@@ -119,6 +130,10 @@ private:
     Ddr3Timing device_;
     bool hung_ = false;
     uint64_t now_ = 0, nextEvent_ = 0;
+    // AR36413: memory clocks added to a refresh; from the end of a read's data to a write.
+    static constexpr unsigned refreshLater = 2, readToWrite = 3;
+    uint64_t readEnd_ = 0; // memory clock in which the data of the last read ends
+    bool lastWasRead_ = false;
     uint64_t free_ = 0;       // memory clock from which the next command may begin
     unsigned promised_ = 0;   // words of the write FIFO that commands have claimed
     unsigned writeCount_ = 0; // words in the write FIFO, as its user sees it

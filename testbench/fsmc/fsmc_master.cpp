@@ -104,7 +104,7 @@ FsmcMaster::Access FsmcMaster::decode(uint32_t address, bool write) {
                   write,
                   muxed,
                   mode,
-                  {timing & 0xF, timing >> 4 & 0xF, timing >> 8 & 0xFF},
+                  {timing & 0xF, timing >> 4 & 0xF, timing >> 8 & 0xFF, timing >> 16 & 0xF},
                   std::string(write ? "writing " : "reading ") + hex(address)};
     if (access.timing.datast == 0 || ((muxed || mode == 'D') && access.timing.addhld == 0))
         throw FsmcError(access.name + ": DATAST or ADDHLD is 0, which is reserved");
@@ -120,14 +120,14 @@ void FsmcMaster::turnaround(const Access& access) {
     if (lastHeld_)
         pause = lastBusturn_;
     else if (lastWrite_)
-        pause = access.write && access.index == lastIndex_ ? 0 : lastBusturn_;
+        pause = !pausesWrites_ && access.write && access.index == lastIndex_ ? 0 : lastBusturn_;
     if (accesses_)
         passHclk(pause);
     ++accesses_;
     lastWrite_ = access.write;
     lastHeld_ = held;
     lastIndex_ = access.index;
-    lastBusturn_ = access.bank->btr >> 16 & 0xF;
+    lastBusturn_ = access.timing.busturn;
 }
 
 // The bank looks at NWAIT, and it is active.

@@ -61,6 +61,11 @@ public:
     // or again after it.
     void delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, bool looksTwice);
 
+    // Whether BUSTURN also applies between two writes to a bank: RM0033 promises that it does not,
+    // on an STM32F407 it does between the halves of a word (community.st.com, thread 309858), of
+    // BWTR where that is in use.
+    void pauseWrites(bool pauses) { pausesWrites_ = pauses; }
+
     // Loads and stores of the processor. A 32-bit one to a window is two accesses, low half first.
     uint8_t read8(uint32_t address);
     void write8(uint32_t address, uint8_t value);
@@ -97,7 +102,7 @@ private:
         uint32_t bcr, btr = 0x0FFFFFFF, bwtr = 0x0FFFFFFF; // reset values
     };
     struct Timing {
-        unsigned addset, addhld, datast;
+        unsigned addset, addhld, datast, busturn;
     };
     struct Access {
         Bank* bank;
@@ -130,7 +135,7 @@ private:
     unsigned hclkPerUnit_, clkPerUnit_; // in one unit of time so many cycles of each
     unsigned phase_ = 0;
     std::unique_ptr<PinDelays> delays_;
-    bool looksTwice_ = false;
+    bool looksTwice_ = false, pausesWrites_ = true;
     bool inTime_ = true; // data and NWAIT were set up at FSMC_CLK's last rising edge
     Bank banks_[4] = {{0x000030DB}, {0x000030D2}, {0x000030D2}, {0x000030D2}};
     // The access before, for the turnaround.

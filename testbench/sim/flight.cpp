@@ -124,7 +124,7 @@ Flight::Flight(const Options& options)
         connectPins(soc_, o_.pins, o_.out + "/pins.log");
     placePicture();
     soc_.evaluateAll(o_.everyClock);
-    soc_.reset();
+    soc_.reset(true);
     watchRegisters();
 }
 

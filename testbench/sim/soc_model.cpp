@@ -36,15 +36,17 @@ SocModel::~SocModel() {
     observer_.finish();
 }
 
-void SocModel::reset() {
+void SocModel::reset(bool memoryStarts) {
     wake();
+    if (memoryStarts)
+        memory_.restart(McbModel::startClocks);
     top_->rst_i = 1;
     settle();
     for (int i = 0; i < 8; ++i)
         tick();
     top_->rst_i = 0;
     // The chip's reset ends some clocks after the pin's, through flip-flops.
-    for (int i = 0; i < 8 || !memory_.pins.calibDone; ++i)
+    for (int i = 0; i < 8 || !(memoryStarts || memory_.pins.calibDone); ++i)
         tick();
 }
 

@@ -29,7 +29,9 @@ public:
              unsigned clkPerUnit = 5);
     ~SocModel();
 
-    void reset();
+    // Resets the chip. Without `memoryStarts` the memory is ready at the end; with it, it starts in
+    // that moment, as on a board whose processor does not wait for it: a millisecond.
+    void reset(bool memoryStarts = false);
     void tick(); // one clock cycle
 
     // Clock cycles that pass at once, as far as the chip is quiet, up to clock `until`. Returns how

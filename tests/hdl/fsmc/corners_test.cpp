@@ -28,7 +28,7 @@ template <class Case> void inEveryCorner(double stall, Case&& run) {
             for (bool looksTwice : {false, true}) {
                 SCOPED_TRACE(std::string(fsmcCorners[corner].name) + ", HCLK " +
                              std::to_string(hclk) + " MHz, looks " +
-                             (looksTwice ? "twice" : "once") +
+                             (looksTwice ? "twice, pauses between writes" : "once") +
                              ", SEED=" + std::to_string(testSeed()));
                 BridgeBench<VFsmcBridge> b(testSeed() + hclk, stall, hclk, 100);
                 b.slave.words[MAP_SLOT_SYSTEM * 16 + SYSTEM_ID] = SYSTEM_ID_VALUE;
@@ -36,6 +36,7 @@ template <class Case> void inEveryCorner(double stall, Case&& run) {
                     MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT; // as the system slot does it
                 b.lateMask = SYSTEM_EVENT_LATE_MASK;
                 b.delay(fsmcCorners[corner], testSeed() + corner, looksTwice);
+                b.master.pauseWrites(looksTwice);
                 run(b, hclk);
                 if (testing::Test::HasFailure())
                     return;

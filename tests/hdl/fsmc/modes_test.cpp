@@ -57,6 +57,7 @@ template <class Bridge> void traffic(const Mode& mode, unsigned hclk, unsigned c
     Random random(testSeed() + hclk);
     b.top.page_i =
         static_cast<uint8_t>(random.below(64)); // of the memory; as the system slot has it
+    b.master.pauseWrites(random.chance(0.5));
     const uint32_t page = static_cast<uint32_t>(b.top.page_i) << 26;
     const FSMC_Bank banks[2] = {mode.bank, mode.bank};
     ASSERT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
@@ -124,6 +125,25 @@ TEST(Modes, NwaitActiveHighAndSmallBuffers) {
         mode.bank.waitHigh = 1;
         traffic<VFsmcBridgeWaitHigh>(mode, 120, 100);
     }
+}
+
+// As on an STM32F407, and as RM0033 has it.
+TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
+    BridgeBench<VFsmcBridge> b(testSeed(), 0, 120, 100);
+    b.slave.words[0] = SYSTEM_ID_VALUE;
+    FSMC_Bank bank = {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 0, {2, 1, 4}, {2, 1, 4}, 0, 0};
+    auto hclksOfAWord = [&](uint8_t busturn, bool pauses) {
+        bank.busturn = busturn;
+        const FSMC_Bank banks[2] = {bank, bank};
+        EXPECT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
+        b.master.pauseWrites(pauses);
+        (void)b.master.read32(control);
+        const uint64_t start = b.master.hclks();
+        b.master.write32(ddr, 1);
+        return b.master.hclks() - start;
+    };
+    EXPECT_EQ(hclksOfAWord(3, true), hclksOfAWord(0, true) + 3);
+    EXPECT_EQ(hclksOfAWord(3, false), hclksOfAWord(0, false));
 }
 
 // A doorbell right behind a read drops what is read ahead, on its way or even asked for in that

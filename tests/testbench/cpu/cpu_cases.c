@@ -67,11 +67,16 @@ static const Action cases[] = {Case_nesting,      Case_samePriority, Case_lowest
                                Case_noMemory,     Case_escalation,   Case_undefinedInstruction,
                                Case_armState,     Case_lockUp,       Case_guard,
                                Case_process,      Case_alignment,    Case_cycles,
-                               Case_resetRequest, Case_work,         Case_pend0};
+                               Case_resetRequest, Case_work,         Case_storeFault,
+                               Case_unbuffered,   Case_storeMasked,  Case_lateAck,
+                               Case_pend0};
 
-__attribute__((section(".vectors"), used)) static const Vector vectors[20] = {
-    stack_top, Reset_Handler, Handler, Handler, Handler, Handler, Handler, 0,       0,      0, 0,
-    Handler,   Handler,       0,       Handler, Handler, Handler, Handler, Handler, Handler};
+__attribute__((section(".vectors"), used)) static const Vector vectors[22] = {
+    stack_top, Reset_Handler, Handler, Handler, Handler,
+    Handler,   Handler,       0,       0,       0,
+    0,         Handler,       Handler, 0,       Handler,
+    Handler,   Handler,       Handler, Handler, Handler,
+    Case_ack,  Case_ackWait};
 
 void Reset_Handler(void) {
     U32* to;

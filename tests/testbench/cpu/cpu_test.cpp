@@ -33,7 +33,11 @@ protected:
         Alignment,
         Cycles,
         ResetRequest,
-        Work
+        Work,
+        StoreFault,
+        UnbufferedStore,
+        StoreFaultMasked,
+        LateAcknowledge
     };
     // Runs a case and returns what it prints.
     std::string run(Case number) {
@@ -91,15 +95,48 @@ TEST_F(Cpu, SleepEndsThoughPrimaskIsSet) {
     EXPECT_EQ(run(SleepMasked), "wt.");
 }
 
-TEST_F(Cpu, AnAccessThatNobodyAnswersIsAPreciseBusFault) {
+TEST_F(Cpu, ALoadThatNobodyAnswersIsAPreciseBusFault) {
     EXPECT_EQ(run(BusFaultCase), "u.");
     EXPECT_EQ(value(0), 1u << 9 | 1u << 15); // PRECISERR, BFARVALID
     EXPECT_EQ(value(1), 0x60000010u);
 }
 
+// TRM r2p1, 3.5: the fault of a store comes later, and has no address.
+TEST_F(Cpu, TheFaultOfAStoreIsImpreciseAndABarrierWaitsForIt) {
+    EXPECT_EQ(run(StoreFault), "u.");
+    EXPECT_EQ(value(0), 1u << 10); // IMPRECISERR
+    EXPECT_EQ(value(1), 0u);
+    EXPECT_EQ(value(4), 2u); // what stood between the store and the DSB had been executed
+}
+
+TEST_F(Cpu, WithoutTheWriteBufferTheFaultOfAStoreIsPrecise) {
+    EXPECT_EQ(run(UnbufferedStore), "u.");
+    EXPECT_EQ(value(0), 1u << 9 | 1u << 15);
+    EXPECT_EQ(value(1), 0x60000010u);
+    EXPECT_EQ(value(4), 0u);
+}
+
+TEST_F(Cpu, TheFaultOfAStoreWaitsWhileItIsMasked) {
+    EXPECT_EQ(run(StoreFaultMasked), "1u2");
+    EXPECT_EQ(value(2), 0u) << "no hard fault";
+}
+
+TEST_F(Cpu, AnAcknowledgementWithoutABarrierMayEnterTheRoutineAgain) {
+    std::vector<unsigned> entered;
+    unsigned line = 0;
+    m3.bus.onWrite = [&](uint32_t address, uint32_t value) {
+        if (address == 0x60000000)
+            line = value;
+        m3.cpu.setInterrupt(line, address == 0x60000000);
+    };
+    m3.cpu.listener.entered = [&](unsigned number) { entered.push_back(number - 16); };
+    run(LateAcknowledge);
+    EXPECT_EQ(entered, (std::vector<unsigned>{4, 4, 5}));
+}
+
 TEST_F(Cpu, WhereThereIsNoMemoryOrItIsFlashAWriteIsABusFault) {
     EXPECT_EQ(run(NoMemory), "u.u.");
-    EXPECT_EQ(value(0) & 1u << 9, 1u << 9);
+    EXPECT_EQ(value(0), 1u << 10);
 }
 
 TEST_F(Cpu, WithoutAHandlerOfItsOwnAFaultIsAHardFault) {

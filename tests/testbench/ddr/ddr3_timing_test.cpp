@@ -68,6 +68,12 @@ TEST(Ddr3Timing, RefreshComesEveryTrefiAndTakesTrfc) {
     EXPECT_EQ(device.refreshes, 1282u);
 }
 
+TEST(Ddr3Timing, AControllerMayRefreshLater) {
+    Ddr3Timing device(mt41j64m16, 2);
+    device.access(100, true, 0);
+    EXPECT_EQ(device.access(3120, true, 0), 3120u + 6 + 2 + 44 + 6);
+}
+
 TEST(Ddr3Timing, AClosedBankNeedsNoPrecharge) {
     Ddr3Timing device(mt41j64m16);
     uint64_t cas = device.access(100, true, 0);

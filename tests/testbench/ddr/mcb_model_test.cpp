@@ -82,6 +82,38 @@ TEST_F(Mcb, ReadLatencyIsTheSumOfItsParts) {
     EXPECT_EQ(waitForWord() + 1, 6u + 3 + 5) << "a row hit: CL 6 and burst 4 are 3 clocks";
 }
 
+// AR36413, 2: the write waits for the end of the read's data, 2 cycles, and 1 at the pins.
+TEST_F(Mcb, AWriteWaitsForTheDataOfTheReadBefore) {
+    auto clocksUntilEmpty = [&](bool behindRead) {
+        push(1);
+        if (behindRead)
+            command(read, 0, 8);
+        command(write, 64, 1);
+        unsigned clocks = 0;
+        for (; !memory_.pins.wrEmpty; ++clocks)
+            cycle();
+        cycle(100);
+        return clocks;
+    };
+    (void)clocksUntilEmpty(true); // opens the row
+    // Memory clocks from the read's first command: the last of its four bursts is commanded at 12
+    // and its data is over at 12 + 6 + 4, so the write comes at 25; alone it would at 4, a clock of
+    // the design later.
+    EXPECT_EQ(clocksUntilEmpty(true), clocksUntilEmpty(false) + (25 - 4) / 4);
+}
+
+// AR36413, 3: only one command at a time; an activate waits for the data of the read before.
+TEST_F(Mcb, AnActivateWaitsForTheDataOfTheReadBefore) {
+    constexpr uint32_t bank = 2048;
+    command(read, 0, 2);
+    command(read, bank, 2);
+    waitForWord();
+    pop();
+    pop();
+    // CL 6 and burst 4 of the first end with its words; tRCD 6, CL 6, burst 4 of the second
+    EXPECT_EQ(waitForWord() + 2, 16u / 4);
+}
+
 TEST_F(Mcb, PrechargingInstructionsCloseTheRow) {
     command(readPrecharge, 0, 1);
     waitForWord();
@@ -155,6 +187,16 @@ TEST_F(Mcb, ReadWordsThatDoNotFitAreLost) {
     command(read, 512, 1);
     refuses([&] { cycle(200); }, "read FIFO overflow");
     EXPECT_TRUE(memory_.pins.rdOverflow);
+}
+
+TEST(McbStart, AStartOfTheMemoryTakesAMillisecondOfThisClock) {
+    McbModel memory(1 << 20);
+    memory.restart(McbModel::startClocks);
+    for (unsigned i = 1; i < McbModel::startClocks; ++i)
+        memory.cycle();
+    EXPECT_FALSE(memory.pins.calibDone);
+    memory.cycle();
+    EXPECT_TRUE(memory.pins.calibDone);
 }
 
 TEST(McbStart, NoCommandBeforeCalibration) {

@@ -31,7 +31,7 @@ struct Flight {
             packets.push_back({p.from, p.bytes});
         });
         soc.onTime([this](uint64_t now) { return ground.advance(now); });
-        soc.reset();
+        soc.reset(true);
         Random random(testSeed());
         const uint32_t size[2] = {48, 32};
         std::memcpy(soc.memory().data() + UAV_FRAME_HEADER, size, sizeof size);

@@ -178,6 +178,23 @@ TEST_F(Soc, EveryLineToTheSlotsIsConnected) {
         read(slot, 0);
 }
 
+// As on a board whose processor is there before the DDR3 has started: nothing hangs, what was too
+// early is told, and what was posted is kept.
+TEST_F(Soc, AnAccessWhileTheMemoryStartsIsToldAndLaterOnesAreRight) {
+    soc_.reset(true);
+    fsmc_.write16(ddr + 0x100, 0x1234);
+    (void)fsmc_.read16(ddr);
+    EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_EVENT),
+              SYSTEM_EVENT_BUS_ERROR_MASK | SYSTEM_EVENT_LATE_MASK);
+    EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_ERROR_ADDR) & 0x3FF, 0x3FFu);
+    EXPECT_LT(soc_.cycles(), 30'000u);
+    while (soc_.cycles() < 2 * McbModel::startClocks)
+        soc_.tick();
+    write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK | SYSTEM_EVENT_LATE_MASK);
+    EXPECT_EQ(fsmc_.read16(ddr + 0x100), 0x1234);
+    EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_EVENT), 0u);
+}
+
 TEST_F(Soc, AccessesTakeThisLong) {
     auto measure = [&](const char* what, const std::function<void()>& access) {
         uint64_t start = soc_.cycles();

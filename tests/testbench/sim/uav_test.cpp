@@ -18,7 +18,7 @@ protected:
     void SetUp() override {
         uav_guardMs = Ground::guardMs;
         soc_.onTime([this](uint64_t now) { return ground_.advance(now); });
-        soc_.reset();
+        soc_.reset(true);
     }
     // Runs the firmware with a script: called each millisecond until it returns true.
     void fly(std::function<bool()> script, double limitSeconds) {
@@ -166,7 +166,7 @@ TEST_F(Uav, TheSameSeedGivesTheSameRun) {
     Ground ground(air, testSeed() + 5);
     SocModel soc(air, Ground::uavModem());
     soc.onTime([&](uint64_t now) { return ground.advance(now); });
-    soc.reset();
+    soc.reset(true);
     int sent = 0;
     bool opened = false;
     UavMachine machine(soc, [&] {

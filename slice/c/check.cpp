@@ -74,7 +74,7 @@ public:
             break;
         case DKind::Class:
             proxy(d);
-            each(c, {"", "_declared", "_init", "_read", "_type", "_write"}, id, d.at);
+            each(c, {"", "_cast", "_declared", "_init", "_read", "_type", "_write"}, id, d.at);
             break;
         case DKind::Enum:
             add(c, id, d.at);

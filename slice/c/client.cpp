@@ -50,7 +50,7 @@ void syncFunction(Writer& w, const CContext& c, const Declaration& d, const Oper
         }
         if (!o.throws.empty()) {
             w.line("if (status == ICE_USER_EXCEPTION && ex)");
-            w.nested("status = " + exceptionType(d, o) + "_readFromInputStream(ex, is);");
+            w.nested("status = " + c.thrownAs(o) + "_Exception_readFromInputStream(ex, is);");
         }
         if (o.throws.empty())
             refuseException(w);
@@ -85,8 +85,8 @@ void completedFunction(Writer& w, const CContext& c, const Declaration& d, const
                 }
                 if (!o.throws.empty()) {
                     w.line("if (status == ICE_USER_EXCEPTION)");
-                    w.nested("status = " + exceptionType(d, o) +
-                             "_readFromInputStream(&call->exception, is);");
+                    w.nested("status = " + c.thrownAs(o) +
+                             "_Exception_readFromInputStream(&call->exception, is);");
                 }
                 if (o.throws.empty())
                     refuseException(w);

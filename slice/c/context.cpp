@@ -5,6 +5,19 @@
 #include "c/context.h"
 #include "c/names.h"
 
+CContext::CContext(const Unit& unit, const CFileNames& names) : unit(unit), names(names) {
+    std::map<std::vector<std::string>, std::string> first; // by the constants and their types
+    eachOperation([&](const Declaration& d, const Operation& o) {
+        auto family = mayThrow(unit, o);
+        std::vector<std::string> key;
+        for (const Declaration* e : family) {
+            key.push_back(e->id());
+            key.push_back(exceptionLabel(o, family, *e));
+        }
+        thrown_[&o] = first.emplace(key, operationName(d, o)).first->second;
+    });
+}
+
 std::string CContext::header() const {
     return names.base + "." + names.headerExtension;
 }

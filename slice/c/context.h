@@ -8,11 +8,13 @@
 #include "c/generator.h"
 #include "c/operations.h"
 #include "c/writer.h"
+#include <map>
 
 struct CContext {
     const Unit& unit;
     const CFileNames& names;
 
+    CContext(const Unit& unit, const CFileNames& names);
     std::string header() const;
     // The name of the table of classes that this unit knows, which are those that can be received.
     std::string valueTable() const;
@@ -21,6 +23,10 @@ struct CContext {
     bool usesClasses() const;
     Writer begin(const std::string& what) const;
     Writer beginSource(const std::string& what) const;
+    // Returns the prefix ("M_I_op") of the union of what an operation of this file throws: the
+    // first operation's that throws the same, so that what one threw is thrown again by an
+    // assignment.
+    const std::string& thrownAs(const Operation& o) const { return thrown_.at(&o); }
 
     // Calls `f` for each declaration of the main file of this kind, local ones aside.
     template <class F> void each(Declaration::Kind kind, F f) const {
@@ -35,6 +41,9 @@ struct CContext {
                 f(d, o);
         });
     }
+
+private:
+    std::map<const Operation*, std::string> thrown_;
 };
 
 #endif

@@ -179,7 +179,7 @@ std::string typesFile(const CContext& c) {
         }
     }
     c.eachOperation([&](const Declaration& d, const Operation& o) {
-        if (!o.throws.empty())
+        if (!o.throws.empty() && c.thrownAs(o) == operationName(d, o))
             thrownFunctions(w, c, d, o);
     });
     if (c.usesClasses())

@@ -143,8 +143,10 @@ void declareType(Writer& w, const Declaration& d) {
     bool isPlain = d.kind == DKind::Struct || d.kind == DKind::Exception;
     if (isPlain || d.kind == DKind::Class)
         w.line("void {c}_init({c} *v);", v);
-    if (d.kind == DKind::Class)
+    if (d.kind == DKind::Class) {
+        w.line("#define {c}_cast(v) (({c} *)Ice_Value_cast(v, &{c}_type))", v);
         return;
+    }
     w.line("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os);", v);
     w.line("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is);", v);
     if (d.kind == DKind::Exception) {
@@ -174,6 +176,17 @@ void declareThrown(Writer& w, const CContext& c, const Declaration& d, const Ope
     auto family = mayThrow(c.unit, o);
     std::string op = operationName(d, o), type = exceptionType(d, o);
     w.blank();
+    if (c.thrownAs(o) != op) {
+        Writer::Values v = {{"op", op}, {"as", c.thrownAs(o)}};
+        w.line("/* {op} throws what {as} does: one union serves both. */", v);
+        w.line("typedef {as}_Exception {op}_Exception;", v);
+        w.line("#define {op}_none {as}_none", v);
+        for (const Declaration* e : family)
+            w.line("#define {op}_" + exceptionLabel(o, family, *e) + " {as}_" +
+                       exceptionLabel(o, family, *e),
+                   v);
+        return;
+    }
     w.line("/* What {op} throws: `type` says which member of `u` it is. */", {{"op", op}});
     w.block(
         "typedef struct " + type, {},

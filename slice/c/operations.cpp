@@ -11,11 +11,13 @@ namespace {
 
 const char* const resultName = "result";
 
-// The declaration of an in parameter or response value; an optional one is a pointer, 0 for none.
-std::string passed(const Type& t, const std::string& name, bool isOptional) {
-    if (isByPointer(t) || isOptional)
-        return "const " + cVariable(t, isClass(t) ? "const *" + name : "*" + name);
-    return isClass(t) ? "const " + cVariable(t, name) : cVariable(t, name);
+// The declaration of an in parameter or response value; an optional one is a pointer, 0 for none. A
+// received instance is the servant's, which may change it or return it.
+std::string passed(const Type& t, const std::string& name, bool isOptional, bool isReceived) {
+    bool isPointer = isByPointer(t) || isOptional;
+    if (isClass(t))
+        return (isReceived ? "" : "const ") + cVariable(t, isPointer ? "const *" + name : name);
+    return isPointer ? "const " + cVariable(t, "*" + name) : cVariable(t, name);
 }
 
 Slot passedSlot(const Type& t, const std::string& name, bool isOptional, int tag) {
@@ -146,11 +148,11 @@ std::string exceptionType(const Declaration& owner, const Operation& o) {
     return operationName(owner, o) + "_Exception";
 }
 
-std::string inParameters(const Operation& o) {
+std::string inParameters(const Operation& o, bool isReceived) {
     std::string list;
     for (const Field& p : o.parameters)
         if (!p.isOut)
-            list += ", " + passed(p.type, cParameter(o, p), p.isOptional);
+            list += ", " + passed(p.type, cParameter(o, p), p.isOptional, isReceived);
     return list;
 }
 
@@ -170,7 +172,7 @@ std::string outParameters(const Declaration& owner, const Operation& o) {
 static std::string responseParameters(const Operation& o) {
     std::string list;
     for (const Result& r : results(o))
-        list += ", " + passed(*r.type, r.name, r.isOptional);
+        list += ", " + passed(*r.type, r.name, r.isOptional, false);
     return list;
 }
 
@@ -186,7 +188,8 @@ std::string asyncSignature(const Declaration& d, const Operation& o) {
 
 std::string servantSignature(const Declaration& owner, const Operation& o,
                              const std::string& name) {
-    std::string list = "Ice_Status " + name + "(" + cName(owner) + "Ptr self" + inParameters(o);
+    std::string list =
+        "Ice_Status " + name + "(" + cName(owner) + "Ptr self" + inParameters(o, true);
     if (!isAmd(owner, o))
         list += outParameters(owner, o);
     return list + ", const Ice_Current *current)";

@@ -38,8 +38,9 @@ std::string operationName(const Declaration& owner, const Operation& o);
 std::string exceptionType(const Declaration& owner, const Operation& o);
 
 // Lists of C parameters, each with a comma before it (", Ice_Int a, const M_S *b"): the in
-// parameters; out parameters and the result as pointers.
-std::string inParameters(const Operation& o);
+// parameters (as a servant receives them, or a proxy takes them); out parameters and the result as
+// pointers.
+std::string inParameters(const Operation& o, bool isReceived = false);
 std::string outParameters(const Declaration& owner, const Operation& o);
 
 std::string proxySignature(const Declaration& d, const Operation& o);

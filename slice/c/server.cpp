@@ -15,10 +15,8 @@ std::string servantCall(const Declaration& d, const Operation& o) {
     std::string call =
         "status = ice_operations->" + cIdentifier(o.name) + "((" + cName(d) + "Ptr)self";
     for (const Slot& s : inVariables(o)) {
-        std::string address =
-            isClass(*s.type) ? "(const " + cType(*s.type) + "const *)" + s.pointer : s.pointer;
         if (s.isOptional)
-            call += ", " + s.has + " ? " + address + " : 0";
+            call += ", " + s.has + " ? " + s.pointer + " : 0";
         else
             call += ", " + (isByPointer(*s.type) ? s.pointer : s.value);
     }
@@ -63,7 +61,7 @@ void readParameters(Writer& w, const CContext& c, const Operation& o) {
     w.nested("return ICE_MARSHAL;");
 }
 
-void writeResults(Writer& w, const Declaration& d, const Operation& o) {
+void writeResults(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
     std::vector<Slot> outs = outSlots(o, "");
     bool sliced = isSliced(d, o);
     if (sliced && (!o.throws.empty() || returnsClasses(o)))
@@ -72,7 +70,7 @@ void writeResults(Writer& w, const Declaration& d, const Operation& o) {
         w.block("if (status == ICE_OK)", {}, [&] { writeWithValues(w, outs, "ice_sent"); });
     if (!o.throws.empty()) {
         w.line("if (status == ICE_USER_EXCEPTION)");
-        w.nested(exceptionType(d, o) + "_writeToOutputStream(&ex, os);");
+        w.nested(c.thrownAs(o) + "_Exception_writeToOutputStream(&ex, os);");
     }
     if (outs.empty() && o.throws.empty())
         w.line("(void)os;");
@@ -106,13 +104,13 @@ void dispatchOperation(Writer& w, const CContext& c, const Declaration& d, const
             else
                 w.line("return status;");
         } else {
-            writeResults(w, d, o);
+            writeResults(w, c, d, o);
         }
     });
     w.line("}");
 }
 
-void responseFunctions(Writer& w, const Declaration& d, const Operation& o) {
+void responseFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
     auto begin = [&] {
         w.line("Ice_OutputStreamPtr os = Ice_Reply_begin(reply);");
         w.line("if (!os)");
@@ -134,7 +132,7 @@ void responseFunctions(Writer& w, const Declaration& d, const Operation& o) {
     w.block("Ice_Status {n}_exception(Ice_Reply *reply, const {n}_Exception *ex)",
             {{"n", operationName(d, o)}}, [&] {
                 begin();
-                w.line(exceptionType(d, o) + "_writeToOutputStream(ex, os);");
+                w.line(c.thrownAs(o) + "_Exception_writeToOutputStream(ex, os);");
                 w.line("return Ice_Reply_end(reply, ICE_USER_EXCEPTION);");
             });
 }
@@ -221,7 +219,7 @@ std::string serverFile(const CContext& c) {
             w.blank();
             dispatchOperation(w, c, d, o);
             if (isAmd(d, o))
-                responseFunctions(w, d, o);
+                responseFunctions(w, c, d, o);
         }
         w.blank();
         interfaceTable(w, d);

@@ -62,6 +62,9 @@ extern const Ice_ValueType Ice_Value_type;
 
 /* Returns 1 if the instance is of this type or of one derived from it; 0 for a null instance. */
 int Ice_Value_isA(const Ice_Value* v, const Ice_ValueType* type);
+/* Returns the instance `v` of any class if it is of this type or of one derived from it, else 0.
+ * Generated M_Node_cast(v) gives it as an M_Node*. */
+void* Ice_Value_cast(const void* v, const Ice_ValueType* type);
 
 typedef struct Ice_OutputValues {
     const Ice_Value* known[ICE_VALUES_MAX]; /* in the order of their numbers */

@@ -24,6 +24,10 @@ int Ice_Value_isA(const Ice_Value* v, const Ice_ValueType* type) {
     return t != 0;
 }
 
+void* Ice_Value_cast(const void* v, const Ice_ValueType* type) {
+    return Ice_Value_isA((const Ice_Value*)v, type) ? (void*)v : 0;
+}
+
 static Ice_String typeByIndex(Ice_InputStreamPtr is) {
     static const Ice_String none = {0, ""};
     Ice_Int index = Ice_InputStream_readSize(is);

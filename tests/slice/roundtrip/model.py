@@ -192,7 +192,7 @@ class Model:
     @staticmethod
     def c_parameter(t, name, optional=False):
         if t.kind == "class":
-            return "const %s%s%s" % (t.c(), "const *" if optional else "", name)
+            return "%s%s%s" % (t.c(), "const *" if optional else "", name)
         if t.by_pointer() or optional:
             return "const %s *%s" % (t.c(), name)
         return "%s %s" % (t.c(), name)
@@ -200,16 +200,14 @@ class Model:
     def c_text(self):
         out = ['#include "echo.h"', "static U32 room[16384];"]
         for i, t in enumerate(self.types):
-            value = "(%s)v" % t.c() if t.kind == "class" else "*v" if t.by_pointer() else "v"
+            value = "*v" if t.by_pointer() else "v"
             for form in self.formats(t):
                 out.append("Ice_Status T_Echo_plain%d%s(T_EchoPtr self, %s, %s *w, %s *result, const Ice_Current *current) {" % (
                     i, form, self.c_parameter(t, "v"), t.c(), t.c()))
                 out.append("    (void)self, (void)current; *w = %s; *result = %s; return ICE_OK; }" % (value, value))
-            value = "(%s)*v" % t.c() if t.kind == "class" else "*v"
             out.append("Ice_Status T_Echo_maybe%d(T_EchoPtr self, %s, Ice_Bool *has_w, %s *w, Ice_Bool *has_result, %s *result, "
                        "const Ice_Current *current) {" % (i, self.c_parameter(t, "v", True), t.c(), t.c()))
-            out.append("    (void)self, (void)current; *has_w = *has_result = v != 0; if (v) { *w = %s; *result = %s; } return ICE_OK; }"
-                       % (value, value))
+            out.append("    (void)self, (void)current; *has_w = *has_result = v != 0; if (v) *w = *result = *v; return ICE_OK; }")
         for e in self.exceptions:
             for form in ("Compact", "Sliced"):
                 self.c_raise(out, e, form)
@@ -217,8 +215,8 @@ class Model:
                        "const Ice_Current *current) {" % (e.name, e.name))
             out.append("    T_EchoPrx prx = *to; (void)self, (void)current; Ice_ObjectPrx_setReplyBuffer(&prx, room, sizeof room);")
             out.append("    return T_EchoPrx_forward%s(&prx, 0, ex); }" % e.name)
-        out.append("Ice_Status T_Echo_any(T_EchoPtr self, const Ice_Value *v, Ice_Value **w, Ice_Value **result, "
-                   "const Ice_Current *current) { (void)self, (void)current; *w = *result = (Ice_Value *)v; return ICE_OK; }")
+        out.append("Ice_Status T_Echo_any(T_EchoPtr self, Ice_Value *v, Ice_Value **w, Ice_Value **result, "
+                   "const Ice_Current *current) { (void)self, (void)current; *w = *result = v; return ICE_OK; }")
         out.append("Ice_Status T_Echo_shutdown(T_EchoPtr self, const Ice_Current *current) "
                    "{ (void)self; Ice_Communicator_shutdown(current->communicator); return ICE_OK; }")
         return "\n".join(out) + "\n"
@@ -231,11 +229,10 @@ class Model:
         level, path = e, "ex->u.%s" % e.name
         while level:
             for name, t, tag in level.fields:
-                cast = "(%s)" % t.c() if t.kind == "class" else ""
                 if tag is None:
-                    out.append("    %s.%s = %s%s%s;" % (path, name, cast, "*" if t.by_pointer() else "", name))
+                    out.append("    %s.%s = %s%s;" % (path, name, "*" if t.by_pointer() else "", name))
                 else:
-                    out.append("    %s.has_%s = %s != 0; if (%s) %s.%s = %s*%s;" % (path, name, name, name, path, name, cast, name))
+                    out.append("    %s.has_%s = %s != 0; if (%s) %s.%s = *%s;" % (path, name, name, name, path, name, name))
             level, path = level.base, path + ".base"
         out.append("    return ICE_USER_EXCEPTION; }")
 

@@ -26,10 +26,10 @@ def parameters(text):
     return [re.fullmatch(r"(.*?)(\w+)", w).groups() for w in words]
 
 
-def echo(found):
+def echo(found, classes):
     """Copies in parameters to the out parameters of their types, in order."""
     plain = lambda t: t.replace("const", "").replace("*", "").strip()
-    isOut = lambda t: t.rstrip().endswith("*") and not t.startswith("const")
+    isOut = lambda t: "const" not in t and t.count("*") > (plain(t) in classes)
     optional = {n[4:] for t, n in found if n.startswith("has_")}
     sources = [(t, n) for t, n in found if not isOut(t)]
     used, lines = {}, []
@@ -40,8 +40,7 @@ def echo(found):
         source, value = same[min(used.get(plain(kind), 0), len(same) - 1)]
         used[plain(kind)] = used.get(plain(kind), 0) + 1
         levels = source.count("*") - (kind.count("*") - 1)  # a class is a pointer on both sides
-        copy = "*%s = (%s)%s%s;" % (name, kind.rstrip()[:-1], "*" * levels, value) \
-            if kind.count("*") == 2 else "*%s = %s%s;" % (name, "*" * levels, value)
+        copy = "*%s = %s%s;" % (name, "*" * levels, value)
         if name in optional:
             copy = "if ((*has_%s = %s != 0))\n        %s" % (name, value, copy)
         lines.append(copy)
@@ -51,9 +50,11 @@ def echo(found):
 def main():
     head, rest = open(sys.argv[1]).read().split("\n%%\n")
     rest = re.sub(r"\n[ \t]+", "\n ", rest)
-    signatures = {}
+    signatures, classes = {}, {"Ice_Value"}
     for header in sys.argv[2:]:
-        for name, own, between in PROTOTYPE.findall(open(header).read()):
+        text = open(header).read()
+        classes.update(re.findall(r"#define (\w+)_cast\(", text))
+        for name, own, between in PROTOTYPE.findall(text):
             signatures[name] = (own, parameters(between))
     print("/* Made by servant.py from %s. */\n%s" % (sys.argv[1].split("/")[-1], head))
     prefixes, done = [""], set()
@@ -71,7 +72,7 @@ def main():
             for name in set(found) - done:
                 done.add(name)
                 own, these = signatures[name]
-                text = echo(these) if body is None else body.strip().replace("\x01", "\n    ")
+                text = echo(these, classes) if body is None else body.strip().replace("\x01", "\n    ")
                 voids = "".join(" (void)%s;" % n for n in ["self", "current"] + [n for _, n in these])
                 print("\nIce_Status %s(%s self,%s const Ice_Current* current) {\n    %s\n    {\n    %s\n    }\n"
                       "    return ICE_OK;\n}" % (name, own, "".join(" %s%s," % p for p in these), voids.strip(), text))

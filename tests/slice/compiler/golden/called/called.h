@@ -65,6 +65,7 @@ struct Shop_Thing {
     Ice_String name;
 };
 void Shop_Thing_init(Shop_Thing *v);
+#define Shop_Thing_cast(v) ((Shop_Thing *)Ice_Value_cast(v, &Shop_Thing_type))
 
 /* What is for sale. */
 struct Shop_Ware {
@@ -72,11 +73,13 @@ struct Shop_Ware {
     Ice_Int amount;
 };
 void Shop_Ware_init(Shop_Ware *v);
+#define Shop_Ware_cast(v) ((Shop_Ware *)Ice_Value_cast(v, &Shop_Ware_type))
 
 struct Shop_Book {
     Shop_Ware base;
 };
 void Shop_Book_init(Shop_Book *v);
+#define Shop_Book_cast(v) ((Shop_Book *)Ice_Value_cast(v, &Shop_Book_type))
 
 struct Shop_Plain {
     Shop_Thing base;
@@ -84,11 +87,13 @@ struct Shop_Plain {
     Shop_ThingPrx of;
 };
 void Shop_Plain_init(Shop_Plain *v);
+#define Shop_Plain_cast(v) ((Shop_Plain *)Ice_Value_cast(v, &Shop_Plain_type))
 
 struct Shop_Mark {
     Ice_Value ice_value;
 };
 void Shop_Mark_init(Shop_Mark *v);
+#define Shop_Mark_cast(v) ((Shop_Mark *)Ice_Value_cast(v, &Shop_Mark_type))
 
 /* The classes that can be received; 0 ends. */
 extern const Ice_ValueType *const called_ice_valueTypes[];
@@ -223,7 +228,7 @@ typedef struct Shop_BookDisp {
 /* A servant's operations; 0 for one that it does not have. */
 typedef struct Shop_BookDisp_Operations {
     Shop_WareDisp_Operations Shop_WareDisp_;
-    Ice_Status (*next)(Shop_BookDispPtr self, const Shop_Ware *last, const Ice_Current *current);
+    Ice_Status (*next)(Shop_BookDispPtr self, Shop_Ware *last, const Ice_Current *current);
 } Shop_BookDisp_Operations;
 extern const Ice_Interface Shop_BookDisp_ice_interface;
 void Shop_BookDisp_initWith(Shop_BookDispPtr self, const Shop_BookDisp_Operations *operations);
@@ -232,8 +237,7 @@ void Shop_BookDisp_initWith(Shop_BookDispPtr self, const Shop_BookDisp_Operation
 void Shop_BookDisp_init(Shop_BookDispPtr self);
 Ice_Status Shop_BookDisp_price(Shop_PricedPtr self, Ice_Int *result, const Ice_Current *current);
 Ice_Status Shop_BookDisp_take(Shop_WareDispPtr self, Ice_Int howMany, const Ice_Current *current);
-Ice_Status Shop_BookDisp_next(Shop_BookDispPtr self, const Shop_Ware *last,
-        const Ice_Current *current);
+Ice_Status Shop_BookDisp_next(Shop_BookDispPtr self, Shop_Ware *last, const Ice_Current *current);
 
 /* Answers to calls for which the servant returned ICE_LATER. */
 Ice_Status Shop_BookDisp_next_response(Ice_Reply *reply, const Shop_Ware *result);

@@ -227,6 +227,7 @@ struct Outer_Node {
     Outer_Node *parent;
 };
 void Outer_Node_init(Outer_Node *v);
+#define Outer_Node_cast(v) ((Outer_Node *)Ice_Value_cast(v, &Outer_Node_type))
 
 struct Outer_Leaf {
     Outer_Node base;
@@ -235,11 +236,13 @@ struct Outer_Leaf {
     Outer_Level level;
 };
 void Outer_Leaf_init(Outer_Leaf *v);
+#define Outer_Leaf_cast(v) ((Outer_Leaf *)Ice_Value_cast(v, &Outer_Leaf_type))
 
 struct Outer_Empty {
     Ice_Value ice_value;
 };
 void Outer_Empty_init(Outer_Empty *v);
+#define Outer_Empty_cast(v) ((Outer_Empty *)Ice_Value_cast(v, &Outer_Empty_type))
 
 typedef struct Outer_WithClass {
     Outer_Failure base;
@@ -545,9 +548,8 @@ typedef struct Outer_Service_Operations {
             const Outer_Bytes *bytes, const Outer_LaterPrx *later, const Outer_Point *p,
             const Outer_Level *l, const Outer_Points *points, Ice_Bool *has_result,
             Ice_String *result, const Ice_Current *current);
-    Ice_Status (*graph)(Outer_ServicePtr self, const Outer_Node *root, const Ice_Value *any,
-            Outer_Nodes *all, Outer_Node **result, Outer_Service_graph_Exception *ex,
-            const Ice_Current *current);
+    Ice_Status (*graph)(Outer_ServicePtr self, Outer_Node *root, Ice_Value *any, Outer_Nodes *all,
+            Outer_Node **result, Outer_Service_graph_Exception *ex, const Ice_Current *current);
     Ice_Status (*void_)(Outer_ServicePtr self, Ice_Int self_, Ice_Int result_,
             const Outer_Key *key, const Ice_Current *current);
     Ice_Status (*any)(Outer_ServicePtr self, const Outer_ServicePrx *service,
@@ -568,7 +570,7 @@ Ice_Status Outer_Service_maybe(Outer_ServicePtr self, const Outer_Shapes *shapes
         const Outer_Bytes *bytes, const Outer_LaterPrx *later, const Outer_Point *p,
         const Outer_Level *l, const Outer_Points *points, Ice_Bool *has_result, Ice_String *result,
         const Ice_Current *current);
-Ice_Status Outer_Service_graph(Outer_ServicePtr self, const Outer_Node *root, const Ice_Value *any,
+Ice_Status Outer_Service_graph(Outer_ServicePtr self, Outer_Node *root, Ice_Value *any,
         Outer_Nodes *all, Outer_Node **result, Outer_Service_graph_Exception *ex,
         const Ice_Current *current);
 Ice_Status Outer_Service_void(Outer_ServicePtr self, Ice_Int self_, Ice_Int result_,
@@ -668,7 +670,7 @@ Ice_Status Outer_Both_maybe(Outer_ServicePtr self, const Outer_Shapes *shapes,
         const Outer_Bytes *bytes, const Outer_LaterPrx *later, const Outer_Point *p,
         const Outer_Level *l, const Outer_Points *points, Ice_Bool *has_result, Ice_String *result,
         const Ice_Current *current);
-Ice_Status Outer_Both_graph(Outer_ServicePtr self, const Outer_Node *root, const Ice_Value *any,
+Ice_Status Outer_Both_graph(Outer_ServicePtr self, Outer_Node *root, Ice_Value *any,
         Outer_Nodes *all, Outer_Node **result, Outer_Service_graph_Exception *ex,
         const Ice_Current *current);
 Ice_Status Outer_Both_void(Outer_ServicePtr self, Ice_Int self_, Ice_Int result_,

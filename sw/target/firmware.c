@@ -36,8 +36,8 @@ static void restart(void) {
 void Firmware_run(void) {
     UAV_Status status;
     OSInit();
-    uav_slots = Loader_slots(&uav_slot);
-    uav_product = LOADER_PRODUCT;
+    uav_update[UAV_FIRMWARE].slots = Loader_slots(&uav_update[UAV_FIRMWARE].running);
+    uav_update[UAV_FIRMWARE].product = LOADER_PRODUCT;
     uav_restart = restart;
     Secrets_start();
     UAV_useBoard(&secrets_board, 0);

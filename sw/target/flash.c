@@ -5,6 +5,8 @@
 #include "flash.h"
 #include "stm32f2.h"
 
+#include <string.h>
+
 static void unlock(void) {
     if (FLASH_CR & FLASH_CR_LOCK) {
         FLASH_KEYR = FLASH_KEY1;
@@ -22,7 +24,13 @@ static int done(void) {
     return !(status & FLASH_SR_ERRORS);
 }
 
-int Flash_erase(void* context, U32 sector) {
+void Flash_read(void* context, U32 offset, U8* bytes, U32 count) {
+    (void)context;
+    memcpy(bytes, (const U8*)FLASH_BASE + offset, count);
+}
+
+int Flash_erase(void* context, U32 offset) {
+    const U32 sector = 4U + offset / 0x20000U;
     (void)context;
     unlock();
     FLASH_CR = FLASH_CR_X32 | FLASH_CR_SER | sector << 3;
@@ -30,10 +38,15 @@ int Flash_erase(void* context, U32 sector) {
     return done();
 }
 
-int Flash_program(void* context, U32 offset, U32 word) {
+int Flash_program(void* context, U32 offset, const U8* bytes, U32 count) {
+    U32 i;
     (void)context;
     unlock();
     FLASH_CR = FLASH_CR_X32 | FLASH_CR_PG;
-    REG(FLASH_BASE + offset) = word;
+    for (i = 0; i < count; i += 4) {
+        U32 word;
+        memcpy(&word, bytes + i, sizeof word);
+        REG(FLASH_BASE + offset + i) = word;
+    }
     return done();
 }

@@ -10,9 +10,10 @@
 
 #define FLASH_BASE 0x08000000UL
 
-/* Erase a sector; program a word at an offset. They return 1 if no error flag was set; the context
- * is not used. */
-int Flash_erase(void* context, U32 sector);
-int Flash_program(void* context, U32 offset, U32 word);
+/* Read, erase a sector of 128 KiB by its offset, program words: functions of a Slots_Port. The
+ * latter two return 1 if no error flag was set; the context is not used. */
+void Flash_read(void* context, U32 offset, U8* bytes, U32 count);
+int Flash_erase(void* context, U32 offset);
+int Flash_program(void* context, U32 offset, const U8* bytes, U32 count);
 
 #endif

@@ -32,8 +32,11 @@ __attribute__((section(".vectors"), used)) static const Vector vectors[16] = {
 __attribute__((section(".services"), used)) static const Loader_Services services = {
     LOADER_MAGIC, Signature_isGood, Signature_digest};
 
-static const Slots_Port port = {
-    (const U8*)FLASH_BASE, 0, Flash_erase, Flash_program, Signature_isGood, Signature_digest};
+static const Slots_Port port = {&slots_firmware,      0,
+                                Flash_read,           Flash_erase,
+                                Flash_program,        Signature_isGood,
+                                Signature_digest,     (const U8*)FLASH_BASE + SLOTS_KEY_AT,
+                                (const U8*)FLASH_BASE};
 
 /* Starts the program whose vectors are there. */
 static void __attribute__((naked, noreturn)) jump(const U32* at) {
@@ -57,6 +60,6 @@ void Reset_Handler(void) {
         IWDG_RLR = TRIAL_RELOAD;
         IWDG_KR = IWDG_KR_REFRESH;
     }
-    SCB_VTOR = FLASH_BASE + Slots_at(slot) + SLOTS_IMAGE_AT;
+    SCB_VTOR = FLASH_BASE + Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT;
     jump((const U32*)SCB_VTOR);
 }

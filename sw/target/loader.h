@@ -9,13 +9,13 @@
 #include "slots.h"
 
 #define LOADER_PRODUCT 0x31564155UL /* "UAV1" */
-#define LOADER_MAGIC 0x1CE50C03UL
+#define LOADER_MAGIC 0x1CE50C04UL
 
 /* Lies behind the loader's vectors, so that images need not bring libsodium along. */
 typedef struct Loader_Services {
     U32 magic;
     int (*isSigned)(const U8* signature, const U8* message, U32 bytes, const U8* key);
-    void (*digest)(const U8* data, U32 bytes, U8* digest);
+    void (*digest)(Slots_Read read, void* context, U32 offset, U32 bytes, U8* digest);
 } Loader_Services;
 #define LOADER_SERVICES ((const Loader_Services*)0x08000040UL)
 

@@ -14,13 +14,13 @@ static Slots_Port port;
 
 /* The watchdog is not served while the processor stands still; it has 4 s for that, 2.8 where its
  * oscillator is at its fastest. */
-static int erase(void* context, U32 sector) {
+static int erase(void* context, U32 offset) {
     const U32 usual = IWDG_RLR;
     int good;
     IWDG_KR = IWDG_KR_UNLOCK;
     IWDG_RLR = WATCHDOG_LONGEST;
     IWDG_KR = IWDG_KR_REFRESH;
-    good = Flash_erase(context, sector);
+    good = Flash_erase(context, offset);
     IWDG_KR = IWDG_KR_UNLOCK;
     IWDG_RLR = usual;
     IWDG_KR = IWDG_KR_REFRESH;
@@ -29,9 +29,12 @@ static int erase(void* context, U32 sector) {
 
 const Slots_Port* Loader_slots(U32* running) {
     for (*running = 0; *running < SLOTS_COUNT; ++*running)
-        if ((U32)image_begin == FLASH_BASE + Slots_at(*running) + SLOTS_IMAGE_AT &&
+        if ((U32)image_begin == FLASH_BASE + Slots_at(&slots_firmware, *running) + SLOTS_IMAGE_AT &&
             LOADER_SERVICES->magic == LOADER_MAGIC) {
-            port.flash = (const U8*)FLASH_BASE;
+            port.layout = &slots_firmware;
+            port.key = (const U8*)FLASH_BASE + SLOTS_KEY_AT;
+            port.mapped = (const U8*)FLASH_BASE;
+            port.read = Flash_read;
             port.erase = erase;
             port.program = Flash_program;
             port.isSigned = LOADER_SERVICES->isSigned;

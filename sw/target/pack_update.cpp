@@ -85,11 +85,11 @@ uint32_t versionOf(const std::string& text) {
 std::pair<Bytes, Bytes> sign(const ElfImage& elf, uint32_t slot, uint32_t version,
                              const Keys& keys) {
     Slots_Header header{};
-    const uint32_t base = Slots_at(slot) + SLOTS_IMAGE_AT;
+    const uint32_t base = Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT;
     Bytes image = elf.movedTo(FLASH_BASE + base);
-    if (image.size() > SLOTS_IMAGE_BYTES)
+    if (image.size() > slots_firmware.bytes - SLOTS_IMAGE_AT)
         fail("the firmware has " + std::to_string(image.size()) + " bytes, a slot has " +
-             std::to_string(SLOTS_IMAGE_BYTES));
+             std::to_string(slots_firmware.bytes - SLOTS_IMAGE_AT));
     header.magic = SLOTS_MAGIC;
     header.product = LOADER_PRODUCT;
     header.version = version;
@@ -130,11 +130,11 @@ void fillVehicle(const std::string& loader, const std::string& elf, uint32_t ver
         put(s.address - FLASH_BASE, s.bytes);
     put(SLOTS_KEY_AT, keys.open_);
     const auto [header, image] = sign(firmware, 0, version, keys);
-    put(Slots_at(0), header);
-    put(Slots_at(0) + SLOTS_IMAGE_AT, image);
+    put(Slots_at(&slots_firmware, 0), header);
+    put(Slots_at(&slots_firmware, 0) + SLOTS_IMAGE_AT, image);
     const uint32_t isTrue = SLOTS_TRUE;
     for (uint32_t state : {SLOTS_READY, SLOTS_TRIED, SLOTS_CONFIRMED})
-        std::memcpy(&flash[Slots_at(0) + state], &isTrue, sizeof isTrue);
+        std::memcpy(&flash[Slots_at(&slots_firmware, 0) + state], &isTrue, sizeof isTrue);
     save(output, flash);
 }
 

@@ -7,52 +7,61 @@
 
 #include <string.h>
 
-U32 Receiver_slot(const Receiver* self) {
-    return self->running ^ 1U;
+#define CHUNK 256U /* bytes that are read, or programmed, at once */
+
+static U32 slotAt(const Receiver* self) {
+    return Slots_at(self->port->layout, self->slot);
 }
 
-static const U8* slotBytes(const Receiver* self) {
-    return self->port->flash + Slots_at(Receiver_slot(self));
-}
-
-static U32 wordAt(const U8* bytes) {
-    return (U32)bytes[0] | (U32)bytes[1] << 8 | (U32)bytes[2] << 16 | (U32)bytes[3] << 24;
-}
-
-static int isErased(const U8* from, U32 bytes) {
-    while (bytes && wordAt(from) == SLOTS_ERASED) {
-        from += 4;
-        bytes -= 4;
+static int isErased(const Receiver* self, U32 at, U32 bytes) {
+    U8 chunk[CHUNK];
+    U32 i, size;
+    for (; bytes; at += size, bytes -= size) {
+        size = bytes < CHUNK ? bytes : CHUNK;
+        self->port->read(self->port->context, at, chunk, size);
+        for (i = 0; i < size; ++i)
+            if (chunk[i] != 0xFFU)
+                return 0;
     }
-    return bytes == 0;
+    return 1;
 }
 
-/* Programs words, and reads them back. */
+static int holds(const Receiver* self, U32 at, const U8* data, U32 bytes) {
+    U8 chunk[CHUNK];
+    self->port->read(self->port->context, at, chunk, bytes);
+    return memcmp(chunk, data, bytes) == 0;
+}
+
+/* Programs bytes, where they are not there yet, and reads them back. */
 static int put(const Receiver* self, U32 at, const U8* data, U32 bytes) {
     const Slots_Port* port = self->port;
-    U32 i;
-    for (i = 0; i < bytes; i += 4)
-        if (wordAt(port->flash + at + i) != wordAt(data + i) &&
-            !port->program(port->context, at + i, wordAt(data + i)))
+    U32 size;
+    for (; bytes; at += size, data += size, bytes -= size) {
+        size = CHUNK - at % CHUNK;
+        if (size > bytes)
+            size = bytes;
+        if (!holds(self, at, data, size) &&
+            !(port->program(port->context, at, data, size) && holds(self, at, data, size)))
             return 0;
-    return memcmp(port->flash + at, data, bytes) == 0;
+    }
+    return 1;
 }
 
-/* Returns 1 if this header is in flash, and nothing has come behind the image. */
+/* Returns 1 if this header is in flash, and its image is neither ready nor given up. */
 static int hasBegun(const Receiver* self, const Slots_Header* header) {
-    return memcmp(slotBytes(self), header, sizeof *header) == 0 &&
-           isErased(slotBytes(self) + SLOTS_READY, SLOTS_IMAGE_AT - SLOTS_READY);
+    return holds(self, slotAt(self), (const U8*)header, (U32)sizeof *header) &&
+           isErased(self, slotAt(self) + SLOTS_READY, SLOTS_IMAGE_AT - SLOTS_READY) &&
+           isErased(self, slotAt(self) + self->port->layout->readyAt, 4);
 }
 
-/* Takes up the image whose header is in flash. Its last word may be half written; it comes again.
- */
+/* Takes up the image whose header is in flash. What was written last may be so in part; it comes
+ * again. */
 static void takeUp(Receiver* self) {
-    const U8* image = slotBytes(self) + SLOTS_IMAGE_AT;
-    self->received = self->header.bytes;
-    while (self->received && wordAt(image + self->received - 4U) == SLOTS_ERASED)
-        self->received -= 4U;
-    if (self->received)
-        self->received -= 4U;
+    const U32 at = slotAt(self) + SLOTS_IMAGE_AT;
+    self->received = (self->header.bytes - 1U) & ~(CHUNK - 1U);
+    while (self->received && isErased(self, at + self->received, 4) &&
+           isErased(self, at + self->received, CHUNK))
+        self->received -= CHUNK;
     self->state = RECEIVER_RECEIVING;
 }
 
@@ -63,37 +72,40 @@ static void end(Receiver* self, Receiver_Reason reason) {
 
 /* Gives the image up: it must be sent anew, to an erased slot. */
 static void spoil(Receiver* self, Receiver_Reason reason) {
-    (void)self->port->program(self->port->context, Slots_at(Receiver_slot(self)) + SLOTS_READY, 0);
+    static const U8 never[4] = {0, 0, 0, 0};
+    (void)self->port->program(self->port->context, slotAt(self) + self->port->layout->readyAt,
+                              never, sizeof never);
     end(self, reason);
 }
 
 void Receiver_init(Receiver* self, const Slots_Port* port, U32 product, U32 running) {
-    const U32 slot = running ^ 1U;
     memset(self, 0, sizeof *self);
     self->port = port;
     self->product = product;
     self->running = running;
-    self->header = *Slots_header(port, slot);
-    if (!Slots_fits(&self->header, slot, product))
+    self->slot = port->layout->logAt ? 1U : running ^ 1U;
+    Slots_header(port, running, &self->header);
+    self->version = self->header.version;
+    self->confirmed = Slots_confirmed(port, product);
+    self->isOnTrial = !Slots_is(port, running, SLOTS_CONFIRMED);
+    Slots_header(port, self->slot, &self->header);
+    if (self->slot == running || !Slots_fits(port->layout, &self->header, self->slot, product))
         return;
     if (hasBegun(self, &self->header))
         takeUp(self);
-    else if (Slots_is(port, slot, SLOTS_TRIED) && !Slots_is(port, slot, SLOTS_CONFIRMED))
+    else if (Slots_is(port, self->slot, SLOTS_TRIED) &&
+             !Slots_is(port, self->slot, SLOTS_CONFIRMED))
         self->reason = RECEIVER_WENT_BACK;
-}
-
-int Receiver_isOnTrial(const Receiver* self) {
-    return !Slots_is(self->port, self->running, SLOTS_CONFIRMED);
 }
 
 Receiver_Reason Receiver_begin(Receiver* self, const Slots_Header* header) {
     if (self->state != RECEIVER_IDLE && self->state != RECEIVER_RECEIVING)
         return RECEIVER_BUSY;
-    if (Receiver_isOnTrial(self))
+    if (self->isOnTrial)
         return RECEIVER_ON_TRIAL;
-    if (!Slots_fits(header, Receiver_slot(self), self->product))
+    if (!Slots_fits(self->port->layout, header, self->slot, self->product))
         return RECEIVER_FOREIGN;
-    if (header->version <= Slots_confirmed(self->port, self->product))
+    if (header->version <= self->confirmed)
         return RECEIVER_OLD;
     self->header = *header;
     self->received = 0;
@@ -124,7 +136,12 @@ Receiver_Reason Receiver_finish(Receiver* self) {
 }
 
 Receiver_Reason Receiver_confirm(Receiver* self) {
-    return Slots_set(self->port, self->running, SLOTS_CONFIRMED) ? RECEIVER_OK : RECEIVER_FLASH;
+    if (self->isOnTrial && !Slots_set(self->port, self->running, SLOTS_CONFIRMED))
+        return RECEIVER_FLASH;
+    self->isOnTrial = 0;
+    if (self->confirmed < self->version)
+        self->confirmed = self->version;
+    return RECEIVER_OK;
 }
 
 /* Checks that the header is signed, and looks whether its image is here in part. */
@@ -140,25 +157,25 @@ static void prepare(Receiver* self) {
 /* Erases the first sector that the image needs and that is not empty; where all are, writes the
  * header. The header's own sector is the first, so that what is left of an image is none. */
 static void erase(Receiver* self) {
-    const U32 slot = Receiver_slot(self), end_ = SLOTS_IMAGE_AT + self->header.bytes;
+    const Slots_Port* port = self->port;
+    const U32 at = slotAt(self), size = port->layout->sectorBytes;
     U32 i;
-    for (i = 0; i * SLOTS_SECTOR_BYTES < end_; ++i)
-        if (!isErased(slotBytes(self) + i * SLOTS_SECTOR_BYTES, SLOTS_SECTOR_BYTES)) {
-            if (!self->port->erase(self->port->context,
-                                   SLOTS_FIRST_SECTOR + slot * SLOTS_SECTORS + i))
+    for (i = 0; i < SLOTS_IMAGE_AT + self->header.bytes; i += size)
+        if (!isErased(self, at + i, size)) {
+            if (!Slots_retire(port, self->slot) || !port->erase(port->context, at + i))
                 end(self, RECEIVER_FLASH);
             return;
         }
-    if (put(self, Slots_at(slot), (const U8*)&self->header, (U32)sizeof self->header))
+    if (put(self, at, (const U8*)&self->header, (U32)sizeof self->header))
         self->state = RECEIVER_RECEIVING;
     else
         end(self, RECEIVER_FLASH);
 }
 
 static void check(Receiver* self) {
-    if (!Slots_isWhole(self->port, Receiver_slot(self)))
+    if (!Slots_isWhole(self->port, self->slot, &self->header))
         spoil(self, RECEIVER_DAMAGED);
-    else if (Slots_set(self->port, Receiver_slot(self), SLOTS_READY))
+    else if (Slots_set(self->port, self->slot, SLOTS_READY))
         self->state = RECEIVER_READY;
     else
         end(self, RECEIVER_FLASH);

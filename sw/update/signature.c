@@ -11,6 +11,15 @@ int Signature_isGood(const U8* signature, const U8* message, U32 bytes, const U8
     return crypto_sign_ed25519_verify_detached(signature, message, bytes, key) == 0;
 }
 
-void Signature_digest(const U8* data, U32 bytes, U8* digest) {
-    (void)crypto_hash_sha512(digest, data, bytes);
+void Signature_digest(Slots_Read read, void* context, U32 offset, U32 bytes, U8* digest) {
+    crypto_hash_sha512_state state;
+    U8 part[256];
+    U32 size;
+    (void)crypto_hash_sha512_init(&state);
+    for (; bytes; offset += size, bytes -= size) {
+        size = bytes < sizeof part ? bytes : (U32)sizeof part;
+        read(context, offset, part, size);
+        (void)crypto_hash_sha512_update(&state, part, size);
+    }
+    (void)crypto_hash_sha512_final(&state, digest);
 }

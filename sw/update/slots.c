@@ -1,76 +1,132 @@
 /* SPDX-License-Identifier: MIT
  *
- * slots: the choice that the boot loader makes.
+ * slots: the choice that the boot loader makes, and what a start makes of the FPGA's bitstream.
  */
 #include "slots.h"
 
 #include <string.h>
 
-U32 Slots_at(U32 slot) {
-    return SLOTS_AT + slot * SLOTS_BYTES;
+#define SYNC_WORD 0x665599AAU /* AA 99 55 66 (UG380, Table 5-6), the low byte first */
+
+const Slots_Layout slots_firmware = {0x20000U, 0x60000U, 0x20000U, SLOTS_READY, SLOTS_TRUE, 0};
+const Slots_Layout slots_fpga = {0x80000U,  0x80000U, 0x10000U, SLOTS_IMAGE_AT + SLOTS_SYNC_AT,
+                                 SYNC_WORD, 0xFF000U};
+
+U32 Slots_at(const Slots_Layout* layout, U32 slot) {
+    return layout->at + slot * layout->bytes;
 }
 
-const Slots_Header* Slots_header(const Slots_Port* port, U32 slot) {
-    return (const Slots_Header*)(const void*)(port->flash + Slots_at(slot));
+void Slots_header(const Slots_Port* port, U32 slot, Slots_Header* header) {
+    port->read(port->context, Slots_at(port->layout, slot), (U8*)header, (U32)sizeof *header);
 }
 
-static U32 word(const Slots_Port* port, U32 slot, Slots_State state) {
-    return *(const volatile U32*)(const void*)(port->flash + Slots_at(slot) + (U32)state);
+static U32 stateAt(const Slots_Port* port, U32 slot, Slots_State state) {
+    return Slots_at(port->layout, slot) +
+           (state == SLOTS_READY ? port->layout->readyAt : (U32)state);
+}
+
+static U32 valueOf(const Slots_Port* port, Slots_State state) {
+    return state == SLOTS_READY ? port->layout->ready : SLOTS_TRUE;
 }
 
 int Slots_is(const Slots_Port* port, U32 slot, Slots_State state) {
-    return word(port, slot, state) == SLOTS_TRUE;
+    U32 word;
+    port->read(port->context, stateAt(port, slot, state), (U8*)&word, sizeof word);
+    return word == valueOf(port, state);
 }
 
 int Slots_set(const Slots_Port* port, U32 slot, Slots_State state) {
-    return Slots_is(port, slot, state) ||
-           (port->program(port->context, Slots_at(slot) + (U32)state, SLOTS_TRUE) &&
-            Slots_is(port, slot, state));
+    const U32 value = valueOf(port, state);
+    return Slots_is(port, slot, state) || (port->program(port->context, stateAt(port, slot, state),
+                                                         (const U8*)&value, sizeof value) &&
+                                           Slots_is(port, slot, state));
 }
 
-int Slots_fits(const Slots_Header* header, U32 slot, U32 product) {
+int Slots_fits(const Slots_Layout* layout, const Slots_Header* header, U32 slot, U32 product) {
     return header->magic == SLOTS_MAGIC && header->product == product && header->version != 0U &&
            header->version != SLOTS_ERASED && header->bytes != 0U && header->bytes % 4U == 0U &&
-           header->bytes <= SLOTS_IMAGE_BYTES && header->base == Slots_at(slot) + SLOTS_IMAGE_AT;
+           header->bytes <= layout->bytes - SLOTS_IMAGE_AT &&
+           header->base == Slots_at(layout, slot) + SLOTS_IMAGE_AT;
 }
 
 int Slots_isSigned(const Slots_Port* port, const Slots_Header* header) {
-    return port->isSigned(header->signature, (const U8*)header, (U32)SLOTS_SIGNED_BYTES,
-                          port->flash + SLOTS_KEY_AT);
+    return port->isSigned(header->signature, (const U8*)header, (U32)SLOTS_SIGNED_BYTES, port->key);
 }
 
-int Slots_isWhole(const Slots_Port* port, U32 slot) {
-    const Slots_Header* header = Slots_header(port, slot);
+int Slots_isWhole(const Slots_Port* port, U32 slot, const Slots_Header* header) {
     U8 digest[SLOTS_DIGEST_BYTES];
-    port->digest(port->flash + header->base, header->bytes, digest);
+    port->digest(port->read, port->context, Slots_at(port->layout, slot) + SLOTS_IMAGE_AT,
+                 header->bytes, digest);
     return memcmp(digest, header->digest, sizeof digest) == 0;
 }
 
 static int isSound(const Slots_Port* port, U32 slot, U32 product) {
-    return Slots_fits(Slots_header(port, slot), slot, product) &&
-           Slots_is(port, slot, SLOTS_READY) && Slots_isSigned(port, Slots_header(port, slot)) &&
-           Slots_isWhole(port, slot);
+    Slots_Header header;
+    Slots_header(port, slot, &header);
+    return Slots_fits(port->layout, &header, slot, product) && Slots_is(port, slot, SLOTS_READY) &&
+           Slots_isSigned(port, &header) && Slots_isWhole(port, slot, &header);
 }
 
-U32 Slots_confirmed(const Slots_Port* port, U32 product) {
-    U32 slot, highest = 0;
-    for (slot = 0; slot < SLOTS_COUNT; ++slot) {
-        const Slots_Header* header = Slots_header(port, slot);
-        if (Slots_fits(header, slot, product) && Slots_is(port, slot, SLOTS_CONFIRMED) &&
-            header->version > highest)
-            highest = header->version;
+/* Returns the highest version of the log. An entry is a version and its complement; another one was
+ * cut by a loss of power. `end` becomes the offset of the first empty entry. */
+static U32 readLog(const Slots_Port* port, U32* end) {
+    U32 highest = 0, entry[2];
+    for (*end = 0; port->layout->logAt && *end < SLOTS_LOG_BYTES; *end += (U32)sizeof entry) {
+        port->read(port->context, port->layout->logAt + *end, (U8*)entry, sizeof entry);
+        if ((entry[0] & entry[1]) == SLOTS_ERASED)
+            break;
+        if (entry[0] == ~entry[1] && entry[0] > highest)
+            highest = entry[0];
     }
     return highest;
 }
 
+U32 Slots_confirmed(const Slots_Port* port, U32 product) {
+    U32 slot, end, highest = readLog(port, &end);
+    for (slot = 0; slot < SLOTS_COUNT; ++slot) {
+        Slots_Header header;
+        Slots_header(port, slot, &header);
+        if (Slots_fits(port->layout, &header, slot, product) &&
+            Slots_is(port, slot, SLOTS_CONFIRMED) && header.version > highest)
+            highest = header.version;
+    }
+    return highest;
+}
+
+int Slots_retire(const Slots_Port* port, U32 slot) {
+    static const U32 none = 0;
+    Slots_Header header;
+    U32 entry[2], end;
+    if (!Slots_is(port, slot, SLOTS_READY))
+        return 1;
+    Slots_header(port, slot, &header);
+    if (port->layout->logAt && Slots_is(port, slot, SLOTS_CONFIRMED) &&
+        readLog(port, &end) < header.version) {
+        entry[0] = header.version;
+        entry[1] = ~header.version;
+        if (end == SLOTS_LOG_BYTES || !port->program(port->context, port->layout->logAt + end,
+                                                     (const U8*)entry, sizeof entry))
+            return 0;
+    }
+    return port->program(port->context, stateAt(port, slot, SLOTS_READY), (const U8*)&none,
+                         sizeof none) &&
+           !Slots_is(port, slot, SLOTS_READY);
+}
+
+static U32 versionOf(const Slots_Port* port, U32 slot) {
+    Slots_Header header;
+    Slots_header(port, slot, &header);
+    return header.version;
+}
+
 U32 Slots_choose(const Slots_Port* port, U32 product) {
     const U32 confirmed = Slots_confirmed(port, product);
-    const U32 newer = Slots_header(port, 1)->version > Slots_header(port, 0)->version ? 1U : 0U;
+    const U32 newer = versionOf(port, 1) > versionOf(port, 0) ? 1U : 0U;
     U32 slot, i;
     for (i = 0; i < SLOTS_COUNT; ++i) { /* new ones */
         slot = newer ^ i;
         if (!Slots_is(port, slot, SLOTS_TRIED) && !Slots_is(port, slot, SLOTS_CONFIRMED) &&
-            Slots_header(port, slot)->version > confirmed && isSound(port, slot, product) &&
+            versionOf(port, slot) > confirmed && isSound(port, slot, product) &&
             Slots_set(port, slot, SLOTS_TRIED))
             return slot;
     }
@@ -81,4 +137,14 @@ U32 Slots_choose(const Slots_Port* port, U32 product) {
             return slot;
     }
     return SLOTS_NONE;
+}
+
+int Slots_settleFpga(const Slots_Port* port) {
+    if (!Slots_is(port, 1, SLOTS_READY) || Slots_is(port, 1, SLOTS_CONFIRMED))
+        return 0;
+    if (Slots_is(port, 1, SLOTS_TRIED))
+        (void)Slots_retire(port, 1);
+    else
+        (void)Slots_set(port, 1, SLOTS_TRIED);
+    return 1;
 }

@@ -11,19 +11,11 @@
 
 #include "base.h"
 
-/* Offsets in flash, in bytes: sectors 5..7 and 8..10; the public key has sector 2 for itself. */
 #define SLOTS_COUNT 2U
 #define SLOTS_NONE SLOTS_COUNT
-#define SLOTS_AT 0x20000U
-#define SLOTS_BYTES 0x60000U
-#define SLOTS_SECTOR_BYTES 0x20000U
-#define SLOTS_FIRST_SECTOR 5U
-#define SLOTS_SECTORS 3U
-#define SLOTS_KEY_AT 0x8000U
 #define SLOTS_KEY_BYTES 32U
-
+#define SLOTS_KEY_AT 0x8000U  /* in the processor's flash: sector 2 is the public key's */
 #define SLOTS_IMAGE_AT 0x200U /* in a slot; Cortex-M3's vectors are aligned to 512 bytes */
-#define SLOTS_IMAGE_BYTES (SLOTS_BYTES - SLOTS_IMAGE_AT)
 
 #define SLOTS_MAGIC 0x1CE50C02U
 #define SLOTS_DIGEST_BYTES 64U    /* SHA-512 */
@@ -35,52 +27,82 @@ typedef struct Slots_Header {
     U32 product; /* which vehicle it is for */
     U32 version; /* 1..0xFFFFFFFE */
     U32 bytes;   /* of the image, a multiple of 4 */
-    U32 base;    /* offset in flash that the image is linked for: its vectors' */
+    U32 base;    /* offset in flash that the image is for: its first byte's */
     U8 digest[SLOTS_DIGEST_BYTES];
     U8 signature[SLOTS_SIGNATURE_BYTES];
 } Slots_Header;
 
 #define SLOTS_SIGNED_BYTES (sizeof(Slots_Header) - SLOTS_SIGNATURE_BYTES)
 
-/* State words, by their offset in a slot, and the value that makes each of them true. */
+/* State words, by their offset in a slot. */
 typedef enum Slots_State {
-    SLOTS_READY = 0x1C0,    /* the whole image is there, and was checked */
+    SLOTS_READY = 0x1C0,    /* the whole image is there, and was checked (or Slots_Layout.ready) */
     SLOTS_TRIED = 0x1D0,    /* it was started once */
     SLOTS_CONFIRMED = 0x1E0 /* it was said to be good */
 } Slots_State;
-#define SLOTS_TRUE 0x600DF1A5U
+#define SLOTS_TRUE 0x600DF1A5U /* makes a state true */
 #define SLOTS_ERASED 0xFFFFFFFFU
 
-/* The flash, and the checks, of whoever runs this. Functions that return int return 1 for success.
- */
+/* Where things are in a flash. */
+typedef struct Slots_Layout {
+    U32 at, bytes;      /* of slot 0; slot 1 is behind it */
+    U32 sectorBytes;    /* that are erased at once */
+    U32 readyAt, ready; /* READY's place in a slot, and the value that makes it true */
+    U32 logAt;          /* of what confirmed images were erased; 0: slots take turns */
+} Slots_Layout;
+
+/* The processor's flash: sectors 5..7 and 8..10. */
+extern const Slots_Layout slots_firmware;
+/* The FPGA's: slot 0 has the golden bitstream, which is never written, slot 1 the one that is tried
+ * first. READY is that one's sync word, without which the FPGA takes it for nothing. */
+extern const Slots_Layout slots_fpga;
+#define SLOTS_SYNC_AT 16U /* in a bitstream */
+#define SLOTS_LOG_BYTES 0x1000U
+
+/* Reads bytes at an offset in flash. */
+typedef void (*Slots_Read)(void* context, U32 offset, U8* bytes, U32 count);
+
+/* A flash, and the checks, of whoever runs this. Functions that return int return 1 for success. */
 typedef struct Slots_Port {
-    const U8* flash; /* its first byte */
+    const Slots_Layout* layout;
     void* context;
-    int (*erase)(void* context, U32 sector);
-    int (*program)(void* context, U32 offset, U32 word); /* one word; only clears bits */
+    Slots_Read read;
+    int (*erase)(void* context, U32 offset); /* the sector that begins there */
+    /* Programs bytes, in words and within 256 that begin at a multiple of that; only clears bits.
+     */
+    int (*program)(void* context, U32 offset, const U8* bytes, U32 count);
     int (*isSigned)(const U8* signature, const U8* message, U32 bytes, const U8* key);
-    void (*digest)(const U8* data, U32 bytes, U8* digest);
+    void (*digest)(Slots_Read read, void* context, U32 offset, U32 bytes, U8* digest);
+    const U8* key;    /* the vehicle's public one */
+    const U8* mapped; /* the flash, if it is the processor's own memory; else 0 */
 } Slots_Port;
 
 /* Returns the slot's offset in flash. */
-U32 Slots_at(U32 slot);
-/* Returns the header at the slot's beginning, whatever is there. */
-const Slots_Header* Slots_header(const Slots_Port* port, U32 slot);
+U32 Slots_at(const Slots_Layout* layout, U32 slot);
+/* Reads what is at the slot's beginning, whatever it is. */
+void Slots_header(const Slots_Port* port, U32 slot, Slots_Header* header);
 int Slots_is(const Slots_Port* port, U32 slot, Slots_State state);
 /* Makes a state true; 0: the flash does not take it. */
 int Slots_set(const Slots_Port* port, U32 slot, Slots_State state);
 /* Returns 1 if the header could be one of an image for this slot and product. */
-int Slots_fits(const Slots_Header* header, U32 slot, U32 product);
+int Slots_fits(const Slots_Layout* layout, const Slots_Header* header, U32 slot, U32 product);
 /* Returns 1 if the header is signed with the vehicle's key; it need not be in flash. */
 int Slots_isSigned(const Slots_Port* port, const Slots_Header* header);
 /* Returns 1 if the digest of the image in the slot is the header's. */
-int Slots_isWhole(const Slots_Port* port, U32 slot);
+int Slots_isWhole(const Slots_Port* port, U32 slot, const Slots_Header* header);
 /* Returns the highest version that was confirmed; 0: none. */
 U32 Slots_confirmed(const Slots_Port* port, U32 product);
+/* Takes READY from a slot that is to be erased, and logs its version if it was confirmed: what is
+ * erased in part is never started. */
+int Slots_retire(const Slots_Port* port, U32 slot);
 
 /* Returns the slot whose image is to run, SLOTS_NONE if there is none: one that is new, once; else
  * the newest that was confirmed; else any that is sound. Every image that it names is signed and
  * whole. */
 U32 Slots_choose(const Slots_Port* port, U32 product);
+
+/* Looks at the FPGA's flash at a start. A bitstream that is new is tried once; one that was tried
+ * and not confirmed is retired. Returns 1: the FPGA is to load its configuration anew. */
+int Slots_settleFpga(const Slots_Port* port);
 
 #endif

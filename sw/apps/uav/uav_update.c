@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_update: the servant of new firmware, and the task that does what takes long: below all
- * others but the watchdog's, one signature, sector or digest at a time.
+ * uav_update: the servants of new firmware and bitstreams, and the task that does what takes long:
+ * below all others but the watchdog's, one signature, sector or digest at a time.
  */
 #include "uav_update.h"
 #include "Update.h"
@@ -18,26 +18,29 @@
 #define TRIAL_S 60U  /* then firmware that nobody has confirmed goes */
 #define RESTART_S 1U /* for the answers that are under way */
 
-const Slots_Port* uav_slots;
-U32 uav_slot, uav_product;
+UAV_Update uav_update[UAV_UPDATABLES];
 void (*uav_restart)(void);
 
 static OS_STK stack[STACK_WORDS];
 static OS_EVENT* work;
-static Receiver receiver;
-static Update_Firmware servant;
+static Receiver receivers[UAV_UPDATABLES];
+static Update_Firmware servants[UAV_UPDATABLES];
+
+static Receiver* receiverOf(Update_FirmwarePtr servant) {
+    return &receivers[servant - servants];
+}
 
 Ice_Status Update_Firmware_getStatus(Update_FirmwarePtr self, Update_Status* result,
                                      const Ice_Current* current) {
-    (void)self;
+    const Receiver* receiver = receiverOf(self);
     (void)current;
-    result->phase = (Update_State)receiver.state;
-    result->last = (Update_Reason)receiver.reason;
-    result->slot = (Ice_Int)(Slots_at(Receiver_slot(&receiver)) + SLOTS_IMAGE_AT);
-    result->running = (Ice_Int)Slots_header(uav_slots, uav_slot)->version;
-    result->trial = (Ice_Bool)Receiver_isOnTrial(&receiver);
-    result->confirmed = (Ice_Int)Slots_confirmed(uav_slots, uav_product);
-    result->received = (Ice_Int)receiver.received;
+    result->phase = (Update_State)receiver->state;
+    result->last = (Update_Reason)receiver->reason;
+    result->slot = (Ice_Int)(Slots_at(receiver->port->layout, receiver->slot) + SLOTS_IMAGE_AT);
+    result->running = (Ice_Int)receiver->version;
+    result->trial = (Ice_Bool)receiver->isOnTrial;
+    result->confirmed = (Ice_Int)receiver->confirmed;
+    result->received = (Ice_Int)receiver->received;
     return ICE_OK;
 }
 
@@ -52,25 +55,31 @@ static Ice_Status answer(Receiver_Reason reason, Update_Reason* result) {
 Ice_Status Update_Firmware_begin(Update_FirmwarePtr self, const Update_Header* signedHeader,
                                  Update_Reason* result, const Ice_Current* current) {
     Slots_Header header;
-    (void)self;
     (void)current;
     memset(&header, 0, sizeof header);
     memcpy(&header, signedHeader->data, (size_t)signedHeader->size);
-    return answer(Receiver_begin(&receiver, &header), result);
+    return answer(Receiver_begin(receiverOf(self), &header), result);
 }
 
 /* Returns the piece's bytes, 0 if they are not what was promised. Compressed ones are unpacked by
- * what of the image is in flash, so nothing is lost with the power. */
-static const U8* unpack(U32 offset, Ice_Int size, const Update_Piece* bytes) {
+ * what of the image is in flash, where the processor can read that as memory: so nothing is lost
+ * with the power. */
+static const U8* unpack(const Receiver* receiver, U32 offset, Ice_Int size,
+                        const Update_Piece* bytes) {
     static U8 unpacked[PIECE_BYTES];
-    const U32 known = offset < DICTIONARY_BYTES ? offset : DICTIONARY_BYTES;
-    const U8* image = uav_slots->flash + Slots_at(Receiver_slot(&receiver)) + SLOTS_IMAGE_AT;
+    const U8* known = unpacked;
+    U32 count = 0;
+    if (receiver->port->mapped) {
+        count = offset < DICTIONARY_BYTES ? offset : DICTIONARY_BYTES;
+        known = receiver->port->mapped + Slots_at(receiver->port->layout, receiver->slot) +
+                SLOTS_IMAGE_AT + offset - count;
+    }
     if (bytes->size == size)
         return bytes->data;
-    if (bytes->size > size || offset > receiver.received ||
-        LZ4_decompress_safe_usingDict((const char*)bytes->data, (char*)unpacked, bytes->size,
-                                      PIECE_BYTES, (const char*)(image + (offset - known)),
-                                      (int)known) != size)
+    if (bytes->size > size || offset > receiver->received)
+        return 0;
+    if (LZ4_decompress_safe_usingDict((const char*)bytes->data, (char*)unpacked, bytes->size,
+                                      PIECE_BYTES, (const char*)known, (int)count) != size)
         return 0;
     return unpacked;
 }
@@ -78,27 +87,42 @@ static const U8* unpack(U32 offset, Ice_Int size, const Update_Piece* bytes) {
 Ice_Status Update_Firmware_write(Update_FirmwarePtr self, Ice_Int offset, Ice_Int size,
                                  const Update_Piece* bytes, Update_Reason* result,
                                  const Ice_Current* current) {
-    const U8* data = unpack((U32)offset, size, bytes);
-    (void)self;
+    Receiver* receiver = receiverOf(self);
+    const U8* data = unpack(receiver, (U32)offset, size, bytes);
     (void)current;
-    *result = data ? (Update_Reason)Receiver_write(&receiver, (U32)offset, data, (U32)size)
+    *result = data ? (Update_Reason)Receiver_write(receiver, (U32)offset, data, (U32)size)
                    : Update_misplacedPiece;
     return ICE_OK;
 }
 
 Ice_Status Update_Firmware_finish(Update_FirmwarePtr self, Update_Reason* result,
                                   const Ice_Current* current) {
-    (void)self;
     (void)current;
-    return answer(Receiver_finish(&receiver), result);
+    return answer(Receiver_finish(receiverOf(self)), result);
 }
 
 Ice_Status Update_Firmware_confirm(Update_FirmwarePtr self, Update_Reason* result,
                                    const Ice_Current* current) {
-    (void)self;
     (void)current;
-    *result = (Update_Reason)Receiver_confirm(&receiver);
+    *result = (Update_Reason)Receiver_confirm(receiverOf(self));
     return ICE_OK;
+}
+
+/* Does a step of each, and returns whether one has more to do. */
+static int workOn(U32 uptime) {
+    int more = 0, i;
+    for (i = 0; i < UAV_UPDATABLES; ++i) {
+        Receiver* receiver = &receivers[i];
+        if (!receiver->port)
+            continue;
+        more |= Receiver_work(receiver);
+        if (receiver->state == RECEIVER_READY ||
+            (receiver->isOnTrial && uptime > TRIAL_S * OS_TICKS_PER_SEC)) {
+            OSTimeDly(RESTART_S * OS_TICKS_PER_SEC);
+            uav_restart();
+        }
+    }
+    return more;
 }
 
 static void updateTask(void* argument) {
@@ -107,22 +131,25 @@ static void updateTask(void* argument) {
     (void)argument;
     for (;;) {
         OSSemPend(work, PERIOD, &error);
-        while (Receiver_work(&receiver))
+        while (workOn(OSTimeGet() - begun))
             OSTimeDly(PERIOD); /* an erase stops everything: others come first */
-        if (receiver.state == RECEIVER_READY ||
-            (Receiver_isOnTrial(&receiver) && OSTimeGet() - begun > TRIAL_S * OS_TICKS_PER_SEC)) {
-            OSTimeDly(RESTART_S * OS_TICKS_PER_SEC);
-            uav_restart();
-        }
     }
 }
 
 void UAV_startUpdate(Ice_ObjectAdapterPtr adapter) {
-    if (!uav_slots)
+    static const char* const names[UAV_UPDATABLES] = {"update", "fpga"};
+    int i;
+    for (i = 0; i < UAV_UPDATABLES; ++i) {
+        const UAV_Update* update = &uav_update[i];
+        receivers[i].port = 0;
+        if (!update->slots)
+            continue;
+        Receiver_init(&receivers[i], update->slots, update->product, update->running);
+        Update_Firmware_init(&servants[i]);
+        (void)Ice_ObjectAdapter_add(adapter, (Ice_ObjectPtr)&servants[i], names[i]);
+    }
+    if (!uav_update[UAV_FIRMWARE].slots)
         return;
-    Receiver_init(&receiver, uav_slots, uav_product, uav_slot);
-    Update_Firmware_init(&servant);
-    (void)Ice_ObjectAdapter_add(adapter, (Ice_ObjectPtr)&servant, "update");
     work = OSSemCreate(0);
     (void)OSTaskCreateExt(updateTask, 0, &stack[STACK_WORDS - 1], PRIO_UPDATE, PRIO_UPDATE, stack,
                           STACK_WORDS, 0, OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);

@@ -1,16 +1,24 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_update: what new firmware over the air needs of the board.
+ * uav_update: what new firmware, and new bitstreams, over the air need of the board.
  */
 #ifndef UAV_UPDATE_H
 #define UAV_UPDATE_H
 
 #include "slots.h"
 
-/* The slots of firmware in flash, which of them runs, the kind of vehicle, and what starts the
- * processor anew; 0, as at first: new firmware does not come over the air. */
-extern const Slots_Port* uav_slots;
-extern U32 uav_slot, uav_product;
+/* What can be renewed: firmware, as the object "update", and the FPGA's bitstream, as "fpga". */
+typedef enum UAV_Updatable { UAV_FIRMWARE, UAV_BITSTREAM, UAV_UPDATABLES } UAV_Updatable;
+
+/* The flash of each, 0 as at first: it does not come over the air; which slot runs, and for which
+ * kind of vehicle it is. */
+typedef struct UAV_Update {
+    const Slots_Port* slots;
+    U32 running, product;
+} UAV_Update;
+extern UAV_Update uav_update[UAV_UPDATABLES];
+
+/* Starts the processor anew. */
 extern void (*uav_restart)(void);
 
 #endif

@@ -55,7 +55,7 @@ protected:
         const Bytes package = folder.read("update");
         const auto half = package.begin() + static_cast<std::ptrdiff_t>(package.size() / 2);
         const auto image = half + sizeof(Slots_Header);
-        const uint32_t at = flashBase + Slots_at(1);
+        const uint32_t at = flashBase + Slots_at(&slots_firmware, 1);
         chip.cpu().loadFlash(at, Bytes(SLOTS_IMAGE_AT, 0xFF));
         chip.cpu().loadFlash(at, {half, image});
         chip.cpu().loadFlash(at + SLOTS_IMAGE_AT, {image, package.end()});
@@ -81,7 +81,8 @@ protected:
         return chip.cpu().reg(CortexM3::Pc) == entry(0) ? 0 : 1;
     }
     uint32_t entry(uint32_t slot) {
-        return chip.cpu().word(flashBase + Slots_at(slot) + SLOTS_IMAGE_AT + 4) & ~1u;
+        return chip.cpu().word(flashBase + Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT + 4) &
+               ~1u;
     }
     uint32_t vectorTable() {
         uint32_t vtor = 0;
@@ -99,7 +100,7 @@ protected:
 TEST_F(Loader, StartsTheFirmwareOfANewVehicle) {
     fill();
     EXPECT_EQ(boot(), 0);
-    EXPECT_EQ(vectorTable(), flashBase + Slots_at(0) + SLOTS_IMAGE_AT);
+    EXPECT_EQ(vectorTable(), flashBase + Slots_at(&slots_firmware, 0) + SLOTS_IMAGE_AT);
     EXPECT_EQ(chip.cpu().reg(CortexM3::Sp), chip.cpu().word(vectorTable()));
     EXPECT_LT(cycles, 60'000'000u); // half a second
     RecordProperty("cycles", static_cast<int>(cycles));

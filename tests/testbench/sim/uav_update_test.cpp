@@ -23,19 +23,27 @@ constexpr uint32_t product = 77, imageBytes = 1024, half = imageBytes / 2;
 bool restarted; // the firmware has asked for it
 
 struct Flash {
-    static int erase(void* context, U32 sector) {
-        auto& bytes = static_cast<Flash*>(context)->bytes;
-        const uint32_t at = (sector - 4) * SLOTS_SECTOR_BYTES;
-        std::fill_n(bytes.begin() + at, SLOTS_SECTOR_BYTES, uint8_t{0xFF});
-        return 1;
-    }
-    static int program(void* context, U32 offset, U32 word) {
-        for (unsigned i = 0; i < 4; ++i)
-            static_cast<Flash*>(context)->bytes[offset + i] &= static_cast<uint8_t>(word >> 8 * i);
-        return 1;
+    static uint8_t* at(void* context, U32 offset) {
+        return static_cast<Flash*>(context)->bytes.data() + offset;
     }
     Bytes bytes = Bytes(1 << 20, 0xFF);
-    Slots_Port port{bytes.data(), this, erase, program, Signature_isGood, Signature_digest};
+    Slots_Port port{
+        &slots_firmware,
+        this,
+        [](void* c, U32 offset, U8* to, U32 count) { std::copy_n(at(c, offset), count, to); },
+        [](void* c, U32 offset) {
+            std::fill_n(at(c, offset), slots_firmware.sectorBytes, uint8_t{0xFF});
+            return 1;
+        },
+        [](void* c, U32 offset, const U8* from, U32 count) {
+            for (U32 i = 0; i < count; ++i)
+                at(c, offset)[i] &= from[i];
+            return 1;
+        },
+        Signature_isGood,
+        Signature_digest,
+        bytes.data() + SLOTS_KEY_AT,
+        bytes.data()};
 };
 
 class UavUpdate : public ::testing::Test {
@@ -45,27 +53,30 @@ protected:
         crypto_sign_seed_keypair(open.data(), secret.data(), seed.data());
         std::copy(open.begin(), open.end(), flash.bytes.begin() + SLOTS_KEY_AT);
         const Slots_Header running = headerOf(5, 0);
-        std::memcpy(&flash.bytes[Slots_at(0)], &running, sizeof running);
+        std::memcpy(&flash.bytes[Slots_at(&slots_firmware, 0)], &running, sizeof running);
         Slots_set(&flash.port, 0, SLOTS_CONFIRMED);
-        flash.bytes[Slots_at(1) + 3] = 0; // it is to be erased
+        flash.bytes[Slots_at(&slots_firmware, 1) + 3] = 0; // it is to be erased
         for (size_t i = 0; i < imageBytes; ++i)
             image[i] = static_cast<uint8_t>(i * i / 64); // its halves are alike
         std::copy_n(image.begin(), half - 16, image.begin() + half);
-        uav_slots = &flash.port;
-        uav_slot = 0;
-        uav_product = product;
+        uav_update[UAV_FIRMWARE] = {&flash.port, 0, product};
         uav_restart = [] { restarted = true; };
         restarted = false;
         uav_guardMs = Ground::guardMs;
         soc.onTime([this](uint64_t now) { return ground.advance(now); });
         soc.reset();
     }
-    void TearDown() override { uav_slots = nullptr; }
+    void TearDown() override { uav_update[UAV_FIRMWARE] = {}; }
 
     Slots_Header headerOf(uint32_t version, uint32_t slot) {
-        Slots_Header header{
-            SLOTS_MAGIC, product, version, imageBytes, Slots_at(slot) + SLOTS_IMAGE_AT, {}, {}};
-        Signature_digest(image.data(), imageBytes, header.digest);
+        Slots_Header header{SLOTS_MAGIC,
+                            product,
+                            version,
+                            imageBytes,
+                            Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT,
+                            {},
+                            {}};
+        crypto_hash_sha512(header.digest, image.data(), imageBytes);
         crypto_sign_detached(header.signature, nullptr, reinterpret_cast<uint8_t*>(&header),
                              SLOTS_SIGNED_BYTES, secret.data());
         return header;
@@ -164,8 +175,8 @@ TEST_F(UavUpdate, AnImageComesInPiecesPackedOrNotAndIsStarted) {
          {"getStatus", {}, Ready}},
         [] { return restarted; });
     EXPECT_EQ(Slots_choose(&flash.port, product), 1u);
-    EXPECT_TRUE(
-        std::equal(image.begin(), image.end(), flash.bytes.begin() + Slots_at(1) + SLOTS_IMAGE_AT));
+    EXPECT_TRUE(std::equal(image.begin(), image.end(),
+                           flash.bytes.begin() + Slots_at(&slots_firmware, 1) + SLOTS_IMAGE_AT));
 }
 
 TEST_F(UavUpdate, WhatIsRefusedChangesNothing) {
@@ -184,7 +195,8 @@ TEST_F(UavUpdate, WhatIsRefusedChangesNothing) {
 }
 
 TEST_F(UavUpdate, FirmwareThatNobodyConfirmsGoesAfterAMinute) {
-    std::fill_n(flash.bytes.begin() + Slots_at(0) + SLOTS_CONFIRMED, 4, uint8_t{0xFF});
+    std::fill_n(flash.bytes.begin() + Slots_at(&slots_firmware, 0) + SLOTS_CONFIRMED, 4,
+                uint8_t{0xFF});
     UavMachine machine(soc, [&] { return !restarted && static_cast<double>(soc.now()) < 2e9; });
     machine.hurry(100);
     machine.run();

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+//
+// spartan6_boot: packets by UG380, tables 5-23 to 5-30; the CRC's 22 bits as public readers of
+// bitstreams have found them out (prjcombine).
+
+#include "spartan6_boot.h"
+#include <random>
+
+namespace {
+
+enum Register : unsigned {
+    Crc = 0,
+    Fdri = 3,
+    Cmd = 5,
+    Cor1 = 10,
+    Lout = 9,
+    IdCode = 14,
+    Csbo = 18,
+    General1 = 19
+};
+enum Command : uint16_t { Wcfg = 1, Start = 5, Rcrc = 7, Desync = 13, Iprog = 14 };
+constexpr uint16_t crcBypass = 0x10;                            // of COR1
+constexpr uint32_t noCrc = 0x9876DEFC, watchdogClocks = 0xFFFF; // CWDT's default
+
+void addCrc(uint32_t& crc, unsigned reg, uint16_t word) {
+    crc <<= 1;
+    if (crc & 0x400000)
+        crc ^= 0x409081;
+    crc ^= word | reg << 16;
+}
+
+} // namespace
+
+void Spartan6Boot::configure(const std::vector<uint8_t>& flash) {
+    running.reset();
+    isStuck = false;
+    strikes = 0;
+    clocks = 0;
+    uint32_t address = 0;
+    for (unsigned stage = 0; stage < 3; ++stage) { // header, MultiBoot, golden
+        if (stage)
+            address = uint32_t(general_[2 * stage - 1] & 0xFF) << 16 | general_[2 * stage - 2];
+        End end = End::Failed;
+        for (unsigned i = 0; i < 3 && end == End::Failed; ++i) {
+            end = load(flash, address);
+            strikes += end == End::Failed;
+        }
+        if (end == End::Done)
+            running = address;
+        isStuck = end == End::Stuck;
+        if (end == End::Done || end == End::Stuck || (stage == 0 && end == End::Failed))
+            return;
+    }
+}
+
+Spartan6Boot::End Spartan6Boot::load(const std::vector<uint8_t>& flash, uint32_t address) {
+    size_t at = address;
+    const auto byte = [&] {
+        clocks += 8;
+        return at < flash.size() ? flash[at++] : uint8_t(0xFF);
+    };
+    const auto word = [&] {
+        const uint8_t high = byte();
+        return static_cast<uint16_t>(high << 8 | byte());
+    };
+    uint32_t last = 0;
+    for (const uint64_t begun = clocks; last != 0xAA995566; last = last << 8 | byte())
+        if (clocks - begun > watchdogClocks)
+            return End::Failed;
+    uint32_t crc = 0;
+    bool isStarted = false, hasCrc = true, isOurs = false;
+    while (at < flash.size()) {
+        const uint16_t header = word();
+        const unsigned type = header >> 13, operation = header >> 11 & 3, reg = header >> 5 & 63;
+        uint32_t count = header & 31;
+        if (type == 1 && operation == 0)
+            continue; // NOP
+        if ((type != 1 && type != 2) || operation != 2)
+            return End::Stuck;
+        if (type == 2) {
+            count = uint32_t(word()) << 16;
+            count |= word();
+        }
+        uint32_t value = 0;
+        for (uint32_t i = 0; i < count && at < flash.size(); ++i) {
+            const uint16_t data = word();
+            value = value << 16 | data;
+            if (reg != Crc && reg != Lout && reg != Csbo)
+                addCrc(crc, reg, data);
+        }
+        if (reg == Fdri) { // its CRC follows unasked
+            if (!isOurs)
+                return End::Failed;
+            value = uint32_t(word()) << 16;
+            value |= word();
+        }
+        if (reg == Crc || reg == Fdri) {
+            if (value != (hasCrc ? crc : noCrc))
+                return End::Failed;
+        } else if (reg == Cor1) {
+            hasCrc = !(value & crcBypass);
+        } else if (reg == IdCode) {
+            isOurs = (value & 0x0FFFFFFF) == (idCode & 0x0FFFFFFF);
+        } else if (reg >= General1 && reg < General1 + 4) {
+            general_[reg - General1] = static_cast<uint16_t>(value);
+        } else if (reg == Cmd && value == Rcrc) {
+            crc = 0;
+        } else if (reg == Cmd && value == Start) {
+            isStarted = true;
+        } else if (reg == Cmd && value == Iprog) {
+            return End::Iprog;
+        } else if (reg == Cmd && value == Desync) {
+            return isStarted ? End::Done : End::Stuck;
+        }
+    }
+    return End::Stuck; // it clocks on for ever
+}
+
+std::vector<uint8_t> standInBitstream(uint32_t seed, uint32_t frameWords, uint32_t idCode) {
+    std::vector<uint8_t> bits(16, 0xFF);
+    uint32_t crc = 0;
+    const auto put = [&bits](uint32_t word) {
+        bits.push_back(static_cast<uint8_t>(word >> 8));
+        bits.push_back(static_cast<uint8_t>(word));
+    };
+    const auto put32 = [&](uint32_t value) {
+        put(value >> 16);
+        put(value);
+    };
+    const auto write = [&](unsigned reg, const std::vector<uint16_t>& words) {
+        put(1 << 13 | 2 << 11 | reg << 5 | static_cast<uint32_t>(words.size()));
+        for (uint16_t word : words) {
+            put(word);
+            addCrc(crc, reg, word);
+        }
+    };
+    put32(0xAA995566);
+    write(Cmd, {Rcrc});
+    crc = 0;
+    write(IdCode, {static_cast<uint16_t>(idCode >> 16), static_cast<uint16_t>(idCode)});
+    for (int i = 0; i < 32; ++i) // about as far as ISE's frames are from the sync word
+        put(0x2000);
+    write(Cmd, {Wcfg});
+    put(2 << 13 | 2 << 11 | Fdri << 5);
+    put32(frameWords);
+    std::mt19937 random(seed);
+    for (uint32_t i = 0; i < frameWords; ++i) {
+        // Most of a design's frames are empty.
+        const auto word = i % 64 < 16 ? static_cast<uint16_t>(random()) : uint16_t(0);
+        put(word);
+        addCrc(crc, Fdri, word);
+    }
+    put32(crc);
+    write(Cmd, {Start});
+    put(1 << 13 | 2 << 11 | Crc << 5 | 2);
+    put32(crc);
+    write(Cmd, {Desync});
+    for (int i = 0; i < 16; ++i)
+        put(0x2000);
+    return bits;
+}

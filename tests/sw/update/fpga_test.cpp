@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+//
+// fpga_test: a new bitstream on its way into the FPGA's flash: the power is cut at every erase and
+// every written page, and there is always a bitstream that configures the FPGA.
+
+#include "keys.h"
+#include "random.h"
+#include "spartan6_boot.h"
+#include "spi_flash.h"
+#include <cstring>
+#include <gtest/gtest.h>
+
+extern "C" {
+#include "receiver.h"
+#include "signature.h"
+#include "spi_nor.h"
+}
+
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+constexpr uint32_t product = 0x46504731, chunk = 4096;
+const Keys ours(1);
+const uint32_t golden = Slots_at(&slots_fpga, 0) + SLOTS_IMAGE_AT,
+               multiBoot = Slots_at(&slots_fpga, 1) + SLOTS_IMAGE_AT;
+
+// The bitstream of a version, without its sync word, and with its header.
+struct Image {
+    explicit Image(uint32_t version, uint32_t slot = 1, uint32_t frameWords = 33'200)
+        : bytes(standInBitstream(version, frameWords)) {
+        std::fill_n(bytes.begin() + SLOTS_SYNC_AT, 4, uint8_t{0xFF});
+        bytes.resize((bytes.size() + 3) / 4 * 4, 0xFF);
+        header = {SLOTS_MAGIC,
+                  product,
+                  version,
+                  static_cast<uint32_t>(bytes.size()),
+                  Slots_at(&slots_fpga, slot) + SLOTS_IMAGE_AT,
+                  {},
+                  {}};
+        crypto_hash_sha512(header.digest, bytes.data(), bytes.size());
+        ours.sign(header);
+    }
+    Bytes bytes;
+    Slots_Header header;
+};
+
+struct PowerCut {};
+
+// The FPGA's flash, the FPGA, and the processor that both are wired to.
+class Fpga : public ::testing::Test {
+protected:
+    Fpga() { fill(1); }
+    ~Fpga() override { flash_ = nullptr; }
+
+    // As the factory leaves it: a golden bitstream, and the header that looks for a newer one.
+    void fill(uint64_t seed) {
+        flash = SpiFlash([] { return now_; }, seed);
+        flash_ = &flash;
+        flash.onOperation = [this] {
+            if (flash.operations() == cutAt) {
+                now_ += flash.busyNs() / 2;
+                throw PowerCut();
+            }
+        };
+        const Image image(1, 0);
+        const auto at = [&](uint32_t offset) { return flash.memory.begin() + offset; };
+        std::memcpy(&*at(golden - SLOTS_IMAGE_AT), &image.header, sizeof image.header);
+        std::copy(image.bytes.begin(), image.bytes.end(), at(golden));
+        const Bytes sync = {0xAA, 0x99, 0x55, 0x66};
+        std::copy(sync.begin(), sync.end(), at(golden + SLOTS_SYNC_AT));
+        const uint32_t isTrue = SLOTS_TRUE;
+        std::memcpy(&*at(golden - SLOTS_IMAGE_AT + SLOTS_CONFIRMED), &isTrue, 4);
+        Bytes header(16, 0xFF);
+        for (uint32_t word :
+             {0xAA99u, 0x5566u, 0x3261u, multiBoot & 0xFFFF, 0x3281u, 0x0300 | multiBoot >> 16,
+              0x32A1u, golden & 0xFFFF, 0x32C1u, 0x0300 | golden >> 16, 0x30A1u, 0x000Eu}) {
+            header.push_back(static_cast<uint8_t>(word >> 8));
+            header.push_back(static_cast<uint8_t>(word));
+        }
+        std::copy(header.begin(), header.end(), at(0));
+    }
+    // Power comes, or the processor starts anew; returns the version that configures the FPGA.
+    uint32_t boot() {
+        if (Slots_settleFpga(&port))
+            fpga.configure(flash.memory);
+        EXPECT_TRUE(fpga.running.has_value()) << (fpga.isStuck ? "stuck" : "nothing configures");
+        const uint32_t slot = Slots_is(&port, 1, SLOTS_READY);
+        EXPECT_EQ(fpga.running.value_or(0), slot ? multiBoot : golden);
+        Receiver_init(&receiver, &port, product, slot);
+        return receiver.version;
+    }
+    uint32_t powerOn() {
+        flash.powerOff();
+        fpga.configure(flash.memory); // before the processor has done anything
+        EXPECT_TRUE(fpga.running.has_value()) << (fpga.isStuck ? "stuck" : "nothing configures");
+        return boot();
+    }
+    Receiver_Reason begin(const Image& image) {
+        const Receiver_Reason reason = Receiver_begin(&receiver, &image.header);
+        work();
+        return reason ? reason : receiver.reason;
+    }
+    void work() {
+        while (Receiver_work(&receiver))
+            ;
+    }
+    Receiver_Reason send(const Image& image) {
+        while (receiver.received < image.bytes.size()) {
+            const uint32_t at = receiver.received;
+            const auto size = std::min<uint32_t>(chunk, image.header.bytes - at);
+            if (auto reason = Receiver_write(&receiver, at, &image.bytes[at], size))
+                return reason;
+        }
+        const Receiver_Reason reason = Receiver_finish(&receiver);
+        work();
+        return reason ? reason : receiver.reason;
+    }
+    // What the ground does until this version is confirmed, whatever runs now.
+    void updateTo(uint32_t version) {
+        const Image image(version);
+        for (uint32_t runs = powerOn(); runs != version; runs = boot()) {
+            ASSERT_EQ(begin(image), RECEIVER_OK);
+            ASSERT_EQ(send(image), RECEIVER_OK);
+        }
+        ASSERT_EQ(Receiver_confirm(&receiver), RECEIVER_OK);
+    }
+
+    static inline uint64_t now_ = 0;
+    static inline SpiFlash* flash_ = nullptr;
+    static constexpr SpiNor_Bus bus{[](int isLow) { flash_->select(isLow != 0); },
+                                    [](U8 byte) { return flash_->transfer(byte); },
+                                    [] { now_ += flash_->busyNs(); }};
+    SpiFlash flash{[] { return now_; }};
+    uint64_t cutAt = 0;
+    Spartan6Boot fpga;
+    Slots_Port port{&slots_fpga,      const_cast<SpiNor_Bus*>(&bus),
+                    SpiNor_read,      SpiNor_erase,
+                    SpiNor_program,   Signature_isGood,
+                    Signature_digest, ours.open.data(),
+                    nullptr};
+    Receiver receiver{};
+};
+
+TEST_F(Fpga, ANewBitstreamIsTriedAndStaysWhenItIsConfirmed) {
+    EXPECT_EQ(powerOn(), 1u);
+    updateTo(2);
+    EXPECT_EQ(powerOn(), 2u);
+    updateTo(3);
+    EXPECT_EQ(powerOn(), 3u);
+    EXPECT_EQ(receiver.isOnTrial, 0);
+}
+
+TEST_F(Fpga, ABitstreamThatIsNotConfirmedIsTriedOnce) {
+    powerOn();
+    const Image image(2);
+    EXPECT_EQ(begin(image), RECEIVER_OK);
+    EXPECT_EQ(send(image), RECEIVER_OK);
+    EXPECT_EQ(boot(), 2u);
+    EXPECT_EQ(receiver.isOnTrial, 1);
+    EXPECT_EQ(begin(Image(3)), RECEIVER_ON_TRIAL);
+    EXPECT_EQ(boot(), 1u);
+    EXPECT_EQ(receiver.reason, RECEIVER_WENT_BACK);
+    EXPECT_EQ(powerOn(), 1u);
+}
+
+// Signed, but made wrongly: the FPGA hangs on it, and the processor's next start takes it back.
+TEST_F(Fpga, ABitstreamThatHangsTheFpgaIsTakenBack) {
+    powerOn();
+    Image image(2);
+    image.bytes[SLOTS_SYNC_AT + 4] = 0; // no packet
+    crypto_hash_sha512(image.header.digest, image.bytes.data(), image.bytes.size());
+    ours.sign(image.header);
+    EXPECT_EQ(begin(image), RECEIVER_OK);
+    EXPECT_EQ(send(image), RECEIVER_OK);
+    EXPECT_EQ(Slots_settleFpga(&port), 1);
+    fpga.configure(flash.memory);
+    EXPECT_TRUE(fpga.isStuck);
+    EXPECT_EQ(boot(), 1u);
+}
+
+TEST_F(Fpga, WhatIsNotForItLeavesItUntouched) {
+    powerOn();
+    updateTo(5);
+    powerOn();
+    const Bytes before = flash.memory;
+    Image foreign(6), changed(6);
+    foreign.header.product ^= 1;
+    ours.sign(foreign.header);
+    ++changed.header.version;
+    EXPECT_EQ(begin(foreign), RECEIVER_FOREIGN);
+    EXPECT_EQ(begin(Image(6, 0)), RECEIVER_FOREIGN); // over the golden one
+    EXPECT_EQ(begin(Image(5)), RECEIVER_OLD);
+    EXPECT_EQ(begin(changed), RECEIVER_UNSIGNED);
+    EXPECT_EQ(flash.memory, before);
+}
+
+TEST_F(Fpga, AVersionThatWasConfirmedIsRememberedWhenItIsErased) {
+    updateTo(5);
+    EXPECT_EQ(begin(Image(6)), RECEIVER_OK);
+    EXPECT_EQ(powerOn(), 1u); // 5 is gone, 6 has not come
+    EXPECT_EQ(begin(Image(4)), RECEIVER_OLD);
+    updateTo(6);
+}
+
+TEST_F(Fpga, ADamagedBitstreamNeverGetsItsSyncWord) {
+    powerOn();
+    Image image(2);
+    EXPECT_EQ(begin(image), RECEIVER_OK);
+    image.bytes[60'000] ^= 4;
+    EXPECT_EQ(send(image), RECEIVER_DAMAGED);
+    EXPECT_EQ(powerOn(), 1u);
+    updateTo(2);
+}
+
+// Cuts the power at each operation of an update in turn, over an older bitstream, and once more at
+// a random one later.
+TEST_F(Fpga, WhereverThePowerIsCutABitstreamConfiguresIt) {
+    updateTo(2);
+    const uint64_t before = flash.operations();
+    updateTo(3);
+    const uint64_t all = flash.operations() - before;
+    ASSERT_GT(all, 250u);
+    uint64_t cuts = 0, toGolden = 0;
+    Random random(testSeed());
+    const uint64_t often = 5, times = 20; // the first ones are erases, which leave anything
+    for (uint64_t i = 0; i < all + often * times; ++i) {
+        const uint64_t first = 1 + (i < all ? i : i % often);
+        fill(testSeed() * 1000 + i);
+        cutAt = 0;
+        updateTo(2);
+        cutAt = flash.operations() + first;
+        for (;;) {
+            try {
+                updateTo(3);
+                break;
+            } catch (const PowerCut&) {
+                ++cuts;
+                cutAt = cuts % 2
+                            ? 0
+                            : flash.operations() + 1 + random.below(static_cast<unsigned>(all));
+                toGolden += powerOn() == 1;
+            }
+        }
+        cutAt = 0;
+        ASSERT_EQ(powerOn(), 3u) << "cut at operation " << first << " of " << all;
+    }
+    EXPECT_GE(cuts, all);
+    EXPECT_GT(toGolden, 0u);
+    RecordProperty("operations", static_cast<int>(all));
+    RecordProperty("cuts", static_cast<int>(cuts));
+}
+
+} // namespace

@@ -100,7 +100,7 @@ private:
     bool stop_ = false, listening_ = false, failed_ = false, complained_ = false;
     int nextChannel_ = 0; // the first that `connect` looks at
     int turn_ = 0;        // the channel whose program sends next
-    bool full_ = false;   // the link has no room: nothing is read until it has
+    unsigned full_ = 0;   // a bit a channel: the link has no room for its message, it is not read
     unsigned lost_ = 0;   // calls of programs that have left, which may not have arrived
     Stream streams_[LINK_CHANNELS];
     std::unique_ptr<Link> link_;

@@ -18,6 +18,7 @@ namespace XBeeAT {
 namespace {
 
 constexpr std::chrono::seconds retryEvery{5}; // while only a listener waits for the modem
+constexpr U32 briefBytes = 128; // of a message that one fragment takes, its head compressed
 
 } // namespace
 
@@ -88,7 +89,7 @@ void Engine::onOutcome(void* context, int channel, U32 isCall, Link_Outcome outc
 }
 
 void Engine::onWritable(void* context) {
-    self(context).full_ = false;
+    self(context).full_ = 0;
 }
 
 // ---- the modem's life ----
@@ -266,11 +267,14 @@ bool Engine::sendMessage(int channel, U32 now) {
     case Stream::Next::Message:
         break;
     }
-    Link_Status status = Link_send(link_.get(), channel, s.data(), s.size(), s.isCall());
-    full_ = status == LINK_FULL;
-    if (full_)
-        turn_ = channel;
-    else if (status == LINK_OK)
+    const bool mustWait = full_ && s.size() > briefBytes;
+    const Link_Status status =
+        mustWait ? LINK_FULL : Link_send(link_.get(), channel, s.data(), s.size(), s.isCall());
+    if (status == LINK_FULL) {
+        if (!full_)
+            turn_ = channel;
+        full_ |= 1u << channel;
+    } else if (status == LINK_OK)
         s.taken(now);
     else
         end(channel, 1, "has no channel any more");
@@ -278,13 +282,15 @@ bool Engine::sendMessage(int channel, U32 now) {
 }
 
 // Sends what the programs have written. They take turns, a message each, so that one that floods
-// leaves room for the others.
+// leaves room for the others. While one waits for room the others send only brief ones, which the
+// link has a reserve for.
 void Engine::sendMessages(U32 now) {
-    for (int idle = 0; idle < LINK_CHANNELS && !full_; ++idle) {
-        int channel = turn_;
-        turn_ = (turn_ + 1) % LINK_CHANNELS;
-        if (sendMessage(channel, now))
+    for (int idle = 0, channel = turn_; idle < LINK_CHANNELS; ++idle) {
+        if (!full_)
+            turn_ = (channel + 1) % LINK_CHANNELS;
+        if (!(full_ >> channel & 1) && sendMessage(channel, now))
             idle = -1;
+        channel = (channel + 1) % LINK_CHANNELS;
     }
 }
 
@@ -335,7 +341,7 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
         U32 deadline = std::min({Link_deadline(link_.get(), now), beat(now), pacer_.deadline(now)});
         std::vector<pollfd> fds;
         for (Stream& s : streams_)
-            fds.push_back(s.interest(!full_));
+            fds.push_back(s.interest(!(full_ >> (&s - streams_) & 1)));
         fds.push_back(
             {serial_.fd(), static_cast<short>(serialOut_.empty() ? POLLIN : POLLIN | POLLOUT), 0});
         fds.push_back({wakePipe_[0], POLLIN, 0});

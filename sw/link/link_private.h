@@ -45,11 +45,16 @@
 #define LINK_HEAD_ROOM 96U  /* bytes that decompression may add in front of a message */
 #define LINK_ESCAPE 1U      /* a byte that marks what is not Ice */
 
+/* Bytes of the queue that only messages of one fragment may take, so that they need not wait until
+ * there is room for them behind long ones. */
+#define LINK_RESERVE 256U
+
 /* Fails to compile where a size of link.h is out of range. */
 typedef char
     Link_Check[LINK_WINDOW >= 2U && LINK_WINDOW <= 64U && !(LINK_WINDOW & (LINK_WINDOW - 1U)) &&
                        !(LINK_SEND_BYTES & (LINK_SEND_BYTES - 1U)) && LINK_SEND_BYTES <= 32768U &&
-                       LINK_SEND_BYTES > LINK_MAX_MESSAGE&& LINK_MAX_MESSAGE <= 32000U &&
+                       LINK_SEND_BYTES > LINK_MAX_MESSAGE + LINK_RESERVE&& LINK_MAX_MESSAGE <=
+                           32000U &&
                        LINK_SEND_MESSAGES >= 1U && LINK_SEND_MESSAGES <= 128U
                    ? 1
                    : -1];
@@ -90,8 +95,11 @@ typedef struct Link_Watch {
 typedef struct Link_Entry {
     U32 tag;
     U16 size;
-    U8 flags; /* LINK_FIRST, channel */
+    U8 flags; /* LINK_FIRST, channel; and these: */
 } Link_Entry;
+#define LINK_ENTRY_LEARNS 4U /* the peer learns a head from it: it keeps its place */
+#define LINK_ENTRY_AHEAD 8U  /* it has overtaken what stands before it */
+#define LINK_ENTRY_ENDED 16U /* its outcome is known; it waits for those before it */
 
 typedef struct Link_Queue {
     U8 first, count;
@@ -110,6 +118,7 @@ typedef struct Link_Fragment {
     U8 size, flags;
     U8 tries; /* 0, 1, more */
     U8 state; /* Link_FragmentState */
+    U8 entry; /* of Link.entries, that it was cut from */
 } Link_Fragment;
 
 typedef struct Link_Sender {
@@ -120,7 +129,8 @@ typedef struct Link_Sender {
     U8 isLate;             /* the timer has expired since the last answer */
     U8 unasked;            /* transmissions since one asked for an acknowledgement, or one came */
     U8 hasSample;          /* srtt and rttvar hold something */
-    U8 cutEntry;           /* the next fragment comes from this entry of the queue, ... */
+    U8 isAhead;            /* the newest fragment has overtaken a long message */
+    U8 cutEntry;           /* the next fragment in order is of this entry of the queue, ... */
     U16 cutBytes;          /* of which so many bytes are cut already */
     U32 cutAt;             /* in the queue's bytes */
     U32 rto, srtt, rttvar; /* microseconds, as RFC 6298 names them */
@@ -132,12 +142,14 @@ typedef struct Link_Receiver {
     U32 next;        /* number expected */
     U8 isAssembling; /* between F and L */
     U8 isHeld;       /* the message is whole, but the program has not taken it */
-    U8 channel;      /* of the message */
+    U8 channel;      /* of the message that is whole, ... */
+    U8 longChannel;  /* and of the long one that is being put together */
     U8 ackDue, ackNow;
     U8 waiting; /* slots in use */
-    U16 size;   /* of the message */
+    U16 size;   /* of the two, as channel */
+    U16 longSize;
     U32 ackAt;
-    U8* start; /* of the message */
+    U8* start; /* of the whole message */
 } Link_Receiver;
 
 /* A fragment that arrived before its turn. */
@@ -200,6 +212,7 @@ struct Link {
     Link_Entry entries[LINK_SEND_MESSAGES]; /* the queue's */
     Link_Slot slots[LINK_WINDOW];           /* the receiver's, as is ... */
     U8 message[LINK_HEAD_ROOM + LINK_MAX_MESSAGE + LINK_ESCAPE + LINK_CHECK];
+    U8 brief[LINK_HEAD_ROOM + LINK_MAX_PAYLOAD]; /* a message of one fragment */
     Link_Heads headsOut, headsIn;
     U8 queued[LINK_SEND_BYTES]; /* the queue's */
 };
@@ -245,8 +258,9 @@ void link_pollAck(Link* link);
 
 #define LINK_RING(at) ((at) & (LINK_SEND_BYTES - 1U))
 Link_Entry* link_entryAt(Link* link, U32 index);
-/* Removes the oldest entry, reports a message's outcome, and tells that there is room again. */
-void link_popEntry(Link* link, Link_Outcome outcome);
+/* Ends an entry, removes those that wait for nothing any more, reports a message's outcome, and
+ * tells that there is room again. */
+void link_endEntry(Link* link, Link_Entry* entry, Link_Outcome outcome);
 /* Queues the closings that had no room yet. The peer waits for each before the channel can be
  * opened again. */
 void link_queueClosings(Link* link);

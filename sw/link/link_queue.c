@@ -20,8 +20,8 @@ static void put(Link* link, const U8* data, U32 size) {
 static Link_Entry* enqueue(Link* link, U32 flags, U32 size) {
     Link_Queue* queue = &link->queue;
     Link_Entry* entry;
-    if (queue->count == LINK_SEND_MESSAGES ||
-        size > LINK_SEND_BYTES - (queue->tail - queue->head)) {
+    if (queue->count == LINK_SEND_MESSAGES || size + (size > link->longest ? LINK_RESERVE : 0U) >
+                                                  LINK_SEND_BYTES - (queue->tail - queue->head)) {
         queue->wasFull = 1;
         return 0;
     }
@@ -39,17 +39,20 @@ void link_queueClosings(Link* link) {
             link->closeDue = (U8)(link->closeDue ^ 1U << channel);
 }
 
-void link_popEntry(Link* link, Link_Outcome outcome) {
+void link_endEntry(Link* link, Link_Entry* entry, Link_Outcome outcome) {
     Link_Queue* queue = &link->queue;
-    const Link_Entry* entry = link_entryAt(link, 0);
-    U32 tag = entry->tag;
-    queue->first = (U8)((queue->first + 1U) % LINK_SEND_MESSAGES);
-    --queue->count;
-    queue->head += entry->size;
-    if (entry->size) { /* a message, not an opening or closing */
+    Link_Entry ended = *entry;
+    entry->flags |= LINK_ENTRY_ENDED;
+    while (queue->count && (link_entryAt(link, 0)->flags & LINK_ENTRY_ENDED)) {
+        queue->head += link_entryAt(link, 0)->size;
+        queue->first = (U8)((queue->first + 1U) % LINK_SEND_MESSAGES);
+        --queue->count;
+        --link->sender.cutEntry;
+    }
+    if (ended.size) { /* a message, not an opening or closing */
         link->statistics.messagesSent += outcome == LINK_DELIVERED;
         if (link->port->outcome)
-            link->port->outcome(link->context, (int)LINK_CHANNEL(entry->flags), tag, outcome);
+            link->port->outcome(link->context, (int)LINK_CHANNEL(ended.flags), ended.tag, outcome);
     }
     if (queue->wasFull && outcome == LINK_DELIVERED) {
         queue->wasFull = 0;
@@ -112,6 +115,8 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     if (!entry)
         return LINK_FULL;
     entry->tag = tag;
+    if (packed.middle)
+        entry->flags |= LINK_ENTRY_LEARNS;
     queue->sums = 0;
     put(link, packed.bytes, packed.prefix);
     put(link, data + LINK_HEAD_AT, packed.middle);

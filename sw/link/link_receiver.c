@@ -49,19 +49,30 @@ static void deliver(Link* link) {
     }
 }
 
-/* Adds a fragment to its message. Returns 0 where it does not belong there. */
+/* Adds a fragment to its message; one of one fragment may stand between those of a long one.
+ * Returns 0 where it does not belong there. */
 static int append(Link* link, U32 flags, const U8* data, U32 size) {
     Link_Receiver* receiver = &link->receiver;
-    if (flags & LINK_FIRST) {
-        receiver->isAssembling = 1;
-        receiver->size = 0;
-        receiver->channel = (U8)LINK_CHANNEL(flags);
+    U8* to = link->brief + LINK_HEAD_ROOM;
+    receiver->start = to;
+    receiver->size = (U16)size;
+    receiver->channel = (U8)LINK_CHANNEL(flags);
+    if (!(flags & LINK_FIRST) || !(flags & LINK_LAST)) {
+        if (receiver->isAssembling == ((flags & LINK_FIRST) != 0))
+            return 0;
+        if (flags & LINK_FIRST) {
+            receiver->longSize = 0;
+            receiver->longChannel = receiver->channel;
+        }
+        if (receiver->channel != receiver->longChannel ||
+            size > LINK_MAX_MESSAGE + LINK_ESCAPE + LINK_CHECK - receiver->longSize)
+            return 0;
+        receiver->start = link->message + LINK_HEAD_ROOM;
+        to = receiver->start + receiver->longSize;
+        receiver->size = receiver->longSize = (U16)(receiver->longSize + size);
+        receiver->isAssembling = !(flags & LINK_LAST);
     }
-    if (!receiver->isAssembling || LINK_CHANNEL(flags) != receiver->channel ||
-        size > LINK_MAX_MESSAGE + LINK_ESCAPE + LINK_CHECK - receiver->size)
-        return 0;
-    memcpy(link->message + LINK_HEAD_ROOM + receiver->size, data, size);
-    receiver->size = (U16)(receiver->size + size);
+    memcpy(to, data, size);
     return 1;
 }
 
@@ -87,8 +98,6 @@ static int accept(Link* link, U32 flags, const U8* data, U32 size) {
         return 0;
     if (!(flags & LINK_LAST))
         return 1;
-    receiver->isAssembling = 0;
-    receiver->start = link->message + LINK_HEAD_ROOM;
     if (!uncheck(link))
         return 0;
     if (link->session.features & LINK_FEATURE_COMPRESSION ? !link_decompress(link)

@@ -19,48 +19,92 @@
 void link_resetSender(Link* link) {
     Link_Sender* sender = &link->sender;
     while (link->queue.count)
-        link_popEntry(link, LINK_UNKNOWN);
+        link_endEntry(link, link_entryAt(link, 0), LINK_UNKNOWN);
     sender->cutAt = link->queue.tail = link->queue.head;
     sender->base = sender->next = 0;
     sender->credit = sender->fullCredit = LINK_WINDOW;
-    sender->cutEntry = sender->hasWork = sender->hasSample = 0;
+    sender->cutEntry = sender->isAhead = sender->hasWork = sender->hasSample = 0;
     sender->cutBytes = 0;
     sender->rto = LINK_RTO_FIRST;
+}
+
+/* Finds a message of one fragment, an opening or a closing that may overtake the long message whose
+ * turn it is: of another channel than all that it overtakes, in the order of the heads that the
+ * peer learns, and never two in a row. `start` becomes where its bytes are. Returns 0: none. */
+static Link_Entry* findAhead(Link* link, U32* start) {
+    Link_Sender* sender = &link->sender;
+    Link_Entry* entry = link_entryAt(link, sender->cutEntry);
+    U32 channels = 0;
+    U32 i;
+    if (sender->isAhead || entry->size - sender->cutBytes <= link->longest ||
+        !(link->session.features & LINK_FEATURE_PIGGYBACK))
+        return 0;
+    *start = sender->cutAt - sender->cutBytes;
+    for (i = sender->cutEntry; !(entry->flags & LINK_ENTRY_LEARNS);) {
+        if (!(entry->flags & LINK_ENTRY_AHEAD))
+            channels |= 1U << LINK_CHANNEL(entry->flags);
+        *start += entry->size;
+        if (++i == link->queue.count)
+            break;
+        entry = link_entryAt(link, i);
+        if (entry->size <= link->longest &&
+            !(entry->flags & (LINK_ENTRY_AHEAD | LINK_ENTRY_LEARNS)) &&
+            !(channels >> LINK_CHANNEL(entry->flags) & 1U))
+            return entry;
+    }
+    return 0;
+}
+
+/* Cuts `size` bytes off an entry into the window. */
+static void cutOff(Link* link, const Link_Entry* entry, U32 start, U32 size, U32 flags) {
+    Link_Fragment* f = FRAGMENT(link, link->sender.next++);
+    f->start = start;
+    f->size = (U8)size;
+    f->flags = (U8)flags;
+    f->state = LINK_TO_SEND;
+    f->tries = 0;
+    f->entry = (U8)(entry - link->entries);
 }
 
 /* Cuts the next fragment from the queue into the window. Returns 0: nothing to cut, or no room. */
 static int cut(Link* link) {
     Link_Sender* sender = &link->sender;
-    const Link_Entry* entry = link_entryAt(link, sender->cutEntry);
-    Link_Fragment* f = FRAGMENT(link, sender->next);
+    Link_Entry* entry = link_entryAt(link, sender->cutEntry);
+    Link_Entry* ahead;
     U32 inFlight = IN_FLIGHT(sender);
-    U32 left, size;
+    U32 flags = entry->flags & (LINK_FIRST | 3U);
+    U32 left, size, start;
     /* Without credit one goes out all the same: its acknowledgement tells when there is credit
      * again. */
     if (sender->cutEntry == link->queue.count || (inFlight && inFlight >= sender->credit) ||
         inFlight >= LINK_WINDOW)
         return 0;
+    ahead = findAhead(link, &start);
+    sender->isAhead = ahead != 0;
+    if (ahead) {
+        ahead->flags |= LINK_ENTRY_AHEAD;
+        cutOff(link, ahead, start, ahead->size, (ahead->flags & (LINK_FIRST | 3U)) | LINK_LAST);
+        return 1;
+    }
     left = entry->size - sender->cutBytes;
     size = link_room(link);
     if (link->receiver.ackNow && (sender->cutBytes || left >= size))
         size -= LINK_ACK_ROOM(link); /* it leaves in the same packet */
     if (size > left)
         size = left;
-    f->start = sender->cutAt;
-    f->size = (U8)size;
-    f->flags = entry->flags;
     if (sender->cutBytes)
-        f->flags = (U8)LINK_CHANNEL(f->flags);
-    f->state = LINK_TO_SEND;
-    f->tries = 0;
+        flags = LINK_CHANNEL(flags);
+    if (left == size)
+        flags |= LINK_LAST;
+    cutOff(link, entry, sender->cutAt, size, flags);
     sender->cutAt += size;
     sender->cutBytes = (U16)(sender->cutBytes + size);
-    if (left == size) {
-        f->flags |= LINK_LAST;
-        sender->cutBytes = 0;
-        ++sender->cutEntry;
-    }
-    ++sender->next;
+    if (left != size)
+        return 1;
+    sender->cutBytes = 0;
+    while (++sender->cutEntry < link->queue.count &&
+           ((entry = link_entryAt(link, sender->cutEntry))->flags & LINK_ENTRY_AHEAD))
+        sender->cutAt += entry->size;
     return 1;
 }
 
@@ -211,10 +255,9 @@ void link_onAck(Link* link, U32 cumulative, U32 credit, U32 bitmap) {
     sender->isLossy = bitmap != 0;
     markAcked(link, advance, bitmap);
     while (advance--) {
-        if (FRAGMENT(link, sender->base++)->flags & LINK_LAST) {
-            --sender->cutEntry;
-            link_popEntry(link, LINK_DELIVERED);
-        }
+        const Link_Fragment* f = FRAGMENT(link, sender->base++);
+        if (f->flags & LINK_LAST)
+            link_endEntry(link, &link->entries[f->entry], LINK_DELIVERED);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "figures.h"
 #include "frame_pacer.h"
+#include "modem_floor.h"
 #include "rf_channel.h"
 #include "timed_line.h"
 #include <array>
@@ -18,7 +19,8 @@ extern "C" {
 namespace {
 
 constexpr U32 byteTimeUs16 = 1440;
-unsigned leastExponent = 2; // RN, as controller and ground set it
+unsigned leastExponent = 2;            // RN, as controller and ground set it
+constexpr int pictures = 0, calls = 1; // channels
 const char* const key = "0123456789ABCDEF0123456789ABCDEF";
 
 // Who encrypts: nobody, the modems, or the link layer with a key (docs/link.md).
@@ -55,6 +57,8 @@ public:
         now_ = now;
         modem_.advance(now);
         write();
+        if (feed)
+            fill();
         if (now >= nextPoll_ || !line_.received.empty()) {
             U32 us = static_cast<U32>(now / 1000);
             Link_receive(link(), line_.received.data(), static_cast<U32>(line_.received.size()),
@@ -65,8 +69,14 @@ public:
         }
         return std::min({modem_.nextEvent(), nextPoll_, nextWrite_});
     }
-    U32 echoSize = 0, messages = 0;
-    uint64_t bytes = 0, lastAt = 0;
+    U32 echoSize = 0, messages = 0, called = 0; // called: messages of channel `calls`
+    uint64_t bytes = 0, lastAt = 0, calledAt = 0;
+    bool feed = false; // sends pictures as fast as they go
+    void fill(U32 size = LINK_MAX_MESSAGE) {
+        static const std::vector<U8> message(LINK_MAX_MESSAGE, 1);
+        while (Link_send(link(), pictures, message.data(), size, 0) == LINK_OK)
+            ;
+    }
 
 private:
     static End& self(void* c) { return *static_cast<End*>(c); }
@@ -100,7 +110,11 @@ private:
         ++messages;
         bytes += size;
         lastAt = now_;
-        if (echoSize)
+        if (channel == calls) {
+            ++called;
+            calledAt = now_;
+        }
+        if (echoSize && channel == calls)
             Link_send(link(), channel, answer, echoSize, 0);
         return 0;
     }
@@ -119,8 +133,10 @@ public:
         air.weather = weather;
         Link_start(a.link(), 0);
         until([&] { return a.isUp() && b.isUp(); }, 60);
-        Link_openChannel(a.link(), 0);
-        until([&] { return Link_openChannel(b.link(), 0) == LINK_OK; }, 60);
+        for (int channel : {pictures, calls}) {
+            Link_openChannel(a.link(), channel);
+            until([&] { return Link_openChannel(b.link(), channel) == LINK_OK; }, 60);
+        }
         const uint64_t rest = now + 500'000'000;
         until([&] { return now >= rest; }, 10);
     }
@@ -142,18 +158,12 @@ Figures figures("The radio link on a half-duplex air with the modems' own limits
 
 // Bytes a second that come to the second and to the first modem, in so many seconds.
 std::array<double, 2> flow(World& w, bool both, uint64_t seconds) {
-    const std::vector<U8> message(LINK_MAX_MESSAGE / 4, 1);
     const uint64_t start = w.now;
-    auto feed = [&](End& end) {
-        while (Link_send(end.link(), 0, message.data(), static_cast<U32>(message.size()), 0) ==
-               LINK_OK)
-            ;
-    };
     w.until(
         [&] {
-            feed(w.a);
+            w.a.fill(LINK_MAX_MESSAGE / 4);
             if (both)
-                feed(w.b);
+                w.b.fill(LINK_MAX_MESSAGE / 4);
             return w.now >= start + seconds * 1'000'000'000;
         },
         1e9);
@@ -190,26 +200,74 @@ void goodput(double loss, Mode mode, bool both) {
     figures.add(name, all, "bytes/s", limit);
 }
 
+void allGoodput(Mode mode) {
+    for (bool both : {false, true})
+        for (double loss : {0.0, 0.01, 0.1, 0.3})
+            if (!figures.brief || loss == 0.1)
+                goodput(loss, mode, both);
+}
+
+// Calls `count` times with a message of `size` bytes, which comes back, and returns the times
+// in ms, sorted.
+std::vector<double> callTimes(World& w, U32 size, int count) {
+    std::vector<double> times;
+    const std::vector<U8> message(size, 1);
+    w.b.echoSize = size;
+    for (int i = 0; i < (figures.brief ? 1 : count); ++i) {
+        const U32 before = w.a.called;
+        const uint64_t start = w.now;
+        Link_send(w.a.link(), calls, message.data(), size, 0);
+        w.until([&] { return w.a.called > before; }, 60);
+        times.push_back(static_cast<double>(w.a.calledAt - start) / 1e6);
+        const uint64_t rest = w.now + 160'000'000 + static_cast<uint64_t>(i) * 330'000;
+        w.until([&] { return w.now >= rest; }, 5);
+    }
+    std::sort(times.begin(), times.end());
+    return times;
+}
+
 void roundTrips(Mode mode) {
+    const U32 overhead = mode == Keyed ? LINK_SECURE_OVERHEAD : LINK_OVERHEAD;
+    const U32 packet = mode == Encrypted ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME;
+    const U32 longest = packet - overhead - 1 - (mode == Keyed ? 0 : LINK_CHECK);
     World w(RfWeather(), mode);
-    for (U32 size : {1u, 20u, 94u - (mode == Encrypted ? 5u : mode == Keyed ? 6u : 0u)}) {
-        std::vector<double> times;
-        w.b.echoSize = size;
-        const std::vector<U8> message(size, 1);
-        for (int i = 0; i < (figures.brief ? 1 : 31); ++i) {
-            U32 before = w.a.messages;
-            uint64_t start = w.now;
-            Link_send(w.a.link(), 0, message.data(), size, 0);
-            w.until([&] { return w.a.messages > before; }, 5);
-            times.push_back(static_cast<double>(w.a.lastAt - start) / 1e6);
-            uint64_t rest = w.now + 160'000'000 + static_cast<uint64_t>(i) * 330'000;
-            w.until([&] { return w.now >= rest; }, 5);
+    for (U32 size : {1u, 5u, 10u, 20u, 40u, 60u, 80u, longest, 94u}) {
+        const auto times = callTimes(w, size, 31);
+        const double median = times[times.size() / 2];
+        const U32 check = mode == Keyed || size <= LINK_UNCHECKED ? 0 : LINK_CHECK;
+        const U32 frames = size + check + overhead > packet ? 2 : 1;
+        const U32 onLine = size + check + frames * overhead;
+        // The answer takes the acknowledgement along: a byte more.
+        const double floor = floorMs(onLine, onLine + 1, mode == Encrypted);
+        std::printf("%s: round trip of %2u bytes: median %.1f ms, longest %.1f; floor %.1f, ratio "
+                    "%.2f (wanted 1.15)\n",
+                    columns[mode], size, median, times.back(), floor, median / floor);
+        figures.add("round trip of " + std::to_string(size) + " bytes " + names[mode], median, "ms",
+                    floor);
+    }
+}
+
+// A call of one byte while pictures of 8 KB come from the one that is called, one behind the
+// other.
+void headOfLine(Mode mode) {
+    for (double loss : {0.0, 0.1}) {
+        RfWeather weather;
+        weather.loss = loss;
+        double median[2] = {0, 0}, tail[2] = {0, 0};
+        for (bool isBusy : {false, true}) {
+            World w(weather, mode);
+            w.b.feed = isBusy;
+            const auto times = callTimes(w, 1, 201);
+            median[isBusy] = times[times.size() / 2];
+            tail[isBusy] = times[times.size() * 95 / 100];
         }
-        std::sort(times.begin(), times.end());
-        std::printf("%s: round trip of %2u bytes: median %.1f ms, longest %.1f\n", columns[mode],
-                    size, times[times.size() / 2], times.back());
-        figures.add("round trip of " + std::to_string(size) + " bytes " + names[mode],
-                    times[times.size() / 2], "ms");
+        std::printf("%s, %2.0f %% lost: call of 1 byte: median %.1f ms, 95 of 100 below %.1f; "
+                    "behind pictures %.1f and %.1f: %.1f and %.1f times (wanted 3)\n",
+                    columns[mode], loss * 100, median[0], tail[0], median[1], tail[1],
+                    median[1] / median[0], tail[1] / tail[0]);
+        char name[80];
+        std::snprintf(name, sizeof name, "call behind pictures %s, loss %.2f", names[mode], loss);
+        figures.add(name, median[1], "ms", median[0]);
     }
 }
 
@@ -217,13 +275,14 @@ void roundTrips(Mode mode) {
 
 int main(int argc, char** argv) {
     figures.app.add_option("--rn", leastExponent, "RN of both modems")->check(CLI::Range(0u, 3u));
+    std::string only;
+    const std::map<std::string, void (*)(Mode)> parts = {
+        {"goodput", allGoodput}, {"round-trips", roundTrips}, {"head-of-line", headOfLine}};
+    figures.app.add_option("part", only, "only this part")->check(CLI::IsMember(parts));
     return figures.run(argc, argv, [&] {
-        for (Mode mode : {Clear, Encrypted, Keyed}) {
-            for (bool both : {false, true})
-                for (double loss : {0.0, 0.01, 0.1, 0.3})
-                    if (!figures.brief || loss == 0.1)
-                        goodput(loss, mode, both);
-            roundTrips(mode);
-        }
+        for (auto& [name, measure] : parts)
+            for (Mode mode : {Clear, Encrypted, Keyed})
+                if (only.empty() || name == only)
+                    measure(mode);
     });
 }

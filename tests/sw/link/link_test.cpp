@@ -46,23 +46,25 @@ public:
             limitUs);
     }
 
-    // Every message is reported; what was received is a part of what was sent, in order, unchanged,
-    // and holds everything reported as delivered.
+    // Every message is reported; what was received is a part of what was sent, on each channel in
+    // order, unchanged, and holds everything reported as delivered.
     static void check(const std::vector<std::pair<uint32_t, Side::Bytes>>& sent, const Side& sender,
                       const Side& receiver) {
         ASSERT_EQ(sender.outcomes.size(), sent.size()) << "messages not reported";
-        size_t next = 0;
+        std::deque<Side::Bytes> received[LINK_CHANNELS];
+        for (auto& [channel, bytes] : receiver.received)
+            received[channel].push_back(bytes);
         for (size_t i = 0; i < sent.size(); ++i) {
-            bool arrived = next < receiver.received.size() &&
-                           receiver.received[next].second == sent[i].second &&
-                           receiver.received[next].first == static_cast<int>(sent[i].first);
+            auto& here = received[sent[i].first];
+            bool arrived = !here.empty() && here.front() == sent[i].second;
             if (arrived)
-                ++next;
+                here.pop_front();
             if (sender.outcomes.at(static_cast<uint32_t>(i)) == LINK_DELIVERED) {
                 EXPECT_TRUE(arrived) << "message " << i << " was reported delivered";
             }
         }
-        EXPECT_EQ(next, receiver.received.size()) << "messages doubled, wrong or out of order";
+        for (auto& left : received)
+            EXPECT_TRUE(left.empty()) << left.size() << " messages doubled, wrong or out of order";
     }
 
     std::vector<std::pair<uint32_t, Side::Bytes>> sentA, sentB;
@@ -117,11 +119,15 @@ TEST(LinkLayer, SizesAreChecked) {
         EXPECT_EQ(Link_closeChannel(pair.a.link(), channel), LINK_CLOSED);
     }
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), LINK_MAX_MESSAGE, 0), LINK_OK);
-    // Each takes two bytes more, its check.
-    const U32 rest = LINK_SEND_BYTES - LINK_MAX_MESSAGE - 4;
+    // Each takes two bytes more, its check; short messages have a reserve.
+    const U32 rest = LINK_SEND_BYTES - LINK_RESERVE - LINK_MAX_MESSAGE - 4;
+    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), rest + 1, 1), LINK_FULL);
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), rest, 1), LINK_OK);
+    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), LINK_MAX_PAYLOAD + 1, 2), LINK_FULL);
+    for (U32 left = LINK_RESERVE, tag = 2; left; ++tag, left -= std::min(left, 20u))
+        EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), std::min(left, 20u), tag), LINK_OK);
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), 1, 2), LINK_FULL);
-    ASSERT_TRUE(pair.runUntil([&] { return pair.a.outcomes.size() == 2; }, 10000000));
+    ASSERT_TRUE(pair.runUntil([&] { return pair.a.outcomes.size() == 15; }, 10000000));
     EXPECT_EQ(pair.b.received[0].second.size(), LINK_MAX_MESSAGE);
     EXPECT_EQ(pair.b.received[1].second.size(), rest);
 }

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+//
+// overtaking_test: short messages overtake the rest of a long one on another channel, and nothing
+// else does.
+
+#include "ice_messages.h"
+#include "variant.h"
+#include <gtest/gtest.h>
+
+namespace {
+
+// What arrives: channel and size of each message.
+using Arrived = std::vector<std::pair<int, size_t>>;
+
+// The variant of B; A is a full one. Whether they have a key.
+class Overtaking : public ::testing::TestWithParam<std::tuple<std::string, bool>>, public Radio {
+protected:
+    Overtaking()
+        : Radio("full", std::get<0>(GetParam()), testSeed(),
+                Bytes(std::get<1>(GetParam()) ? LINK_KEY_BYTES : 0, 0x5A)) {}
+    void SetUp() override {
+        ASSERT_TRUE(connect());
+        for (int channel : {0, 1, 2})
+            ASSERT_EQ(a_.open(channel), LINK_OK);
+        run(500'000);
+    }
+    void send(int channel, const Bytes& m) { ASSERT_EQ(a_.send(channel, m, tag_++), LINK_OK); }
+    // Returns how long one message of 10 bytes takes; microseconds.
+    uint64_t call() {
+        const size_t before = b_.received.size();
+        const uint64_t start = now_;
+        send(1, Bytes(10, 2));
+        EXPECT_TRUE(until([&] { return b_.received.size() > before; }, 5'000'000));
+        EXPECT_EQ(b_.received.back(), std::make_pair(1, Bytes(10, 2)));
+        return now_ - start;
+    }
+    // Waits until all is reported as delivered.
+    Arrived arrived() {
+        EXPECT_TRUE(until([&] { return a_.outcomes.size() == tag_; }, 60'000'000));
+        for (auto& [tag, outcome] : a_.outcomes)
+            EXPECT_EQ(outcome, LINK_DELIVERED) << "message " << tag;
+        Arrived list;
+        for (auto& [channel, bytes] : b_.received)
+            list.emplace_back(channel, bytes.size());
+        return list;
+    }
+    uint32_t tag_ = 0;
+};
+
+class FullOvertaking : public Overtaking {};
+
+TEST_P(FullOvertaking, ACallTakesAtMostThreeTimesAsLongBehindAPicture) {
+    const uint64_t idle = call();
+    run(200'000);
+    for (int i = 0; i < 5; ++i) {
+        send(0, Bytes(1000, 1)); // a picture, 90 ms of the line each
+        send(0, Bytes(1000, 1));
+        run(30'000);
+        EXPECT_LE(call(), 3 * idle);
+        run(500'000);
+    }
+}
+
+TEST_P(FullOvertaking, OnlyAcrossChannelsAndTheLongOneComesWhole) {
+    send(0, Bytes(1000, 1));
+    send(0, Bytes(11, 1)); // behind the picture of its channel
+    run(20'000);
+    send(1, Bytes(300, 3));
+    send(1, Bytes(12, 3)); // behind a long one of its channel
+    send(2, Bytes(13, 4));
+    send(2, Bytes(14, 4));
+    a_.close(2);
+    const Arrived all = arrived();
+    EXPECT_EQ(all, (Arrived{{2, 13}, {2, 14}, {0, 1000}, {0, 11}, {1, 300}, {1, 12}}));
+    for (auto& [channel, bytes] : b_.received)
+        EXPECT_EQ(bytes, Bytes(bytes.size(), bytes.front()));
+    EXPECT_EQ(b_.events.back(), "close 2");
+}
+
+// Both sides number the heads of requests alike only if they pass in the order of Link_send.
+TEST_P(FullOvertaking, NothingOvertakesAHeadThatThePeerLearns) {
+    auto request = [](uint32_t id, const char* operation, size_t size) {
+        return IceMessages::request(id, "uav", operation, Bytes(size, 5));
+    };
+    send(1, request(1, "known", 1));
+    run(300'000);
+    b_.received.clear();
+    send(0, request(1, "picture", 500));
+    send(1, request(2, "picture", 1)); // by the head that the picture brings
+    send(0, request(2, "picture", 700));
+    send(1, request(3, "fresh", 1)); // brings one
+    send(2, request(0, "known", 2));
+    send(0, request(3, "picture", 900));
+    send(1, request(4, "known", 3)); // overtakes only that one
+    (void)arrived();
+    const std::vector<std::pair<int, Bytes>> expected = {
+        {0, request(1, "picture", 500)}, {1, request(2, "picture", 1)},
+        {0, request(2, "picture", 700)}, {1, request(3, "fresh", 1)},
+        {2, request(0, "known", 2)},     {1, request(4, "known", 3)},
+        {0, request(3, "picture", 900)}};
+    EXPECT_EQ(b_.received, expected);
+}
+
+TEST_P(FullOvertaking, ManyShortOnesLeaveTheLongOneHalf) {
+    send(0, Bytes(800, 1));
+    EXPECT_TRUE(until(
+        [&] {
+            if (a_.send(1, Bytes(80, 2), tag_) == LINK_OK)
+                ++tag_;
+            return b_.received.size() && b_.received.back().first == 0;
+        },
+        5'000'000));
+    EXPECT_LE(b_.received.size(), 12u); // as many as it has fragments
+    EXPECT_GE(b_.received.size(), 6u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Peers, FullOvertaking,
+                         ::testing::Values(std::make_tuple("full", false),
+                                           std::make_tuple("full", true),
+                                           std::make_tuple("small", false),
+                                           std::make_tuple("open", false)));
+
+TEST_P(Overtaking, NothingOvertakesTowardsTheMinimalLayer) {
+    send(0, Bytes(900, 1));
+    run(100'000);
+    send(1, Bytes(10, 2));
+    EXPECT_EQ(arrived(), (Arrived{{0, 900}, {1, 10}}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Peers, Overtaking,
+                         ::testing::Values(std::make_tuple("minimal", false),
+                                           std::make_tuple("minimal", true)));
+
+} // namespace

@@ -104,8 +104,12 @@ U32 link_sessionKey(U32 nonce, U32 peerNonce);
 
 /* Numbers at which a session with a key ends, and a new one begins: of fragments sent, and of
  * frames whose tag was wrong. */
+#ifndef LINK_LAST_NUMBER
 #define LINK_LAST_NUMBER 0xFFFF0000U
+#endif
+#ifndef LINK_MOST_FAILURES
 #define LINK_MOST_FAILURES (LINK_TAG >= 8U ? 0x40000000U : 0x10000U)
+#endif
 
 /* The keys of a session, one a direction. */
 typedef struct Link_Keys {

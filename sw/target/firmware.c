@@ -7,6 +7,7 @@
 #include "firmware.h"
 #include "board.h"
 #include "boot.h"
+#include "fpga.h"
 #include "loader.h"
 #include "map_regs.h"
 #include "secrets.h"
@@ -38,6 +39,10 @@ void Firmware_run(void) {
     OSInit();
     uav_update[UAV_FIRMWARE].slots = Loader_slots(&uav_update[UAV_FIRMWARE].running);
     uav_update[UAV_FIRMWARE].product = LOADER_PRODUCT;
+    uav_update[UAV_BITSTREAM].product = FPGA_PRODUCT;
+    if (uav_update[UAV_FIRMWARE].slots)
+        uav_update[UAV_BITSTREAM].slots =
+            Fpga_slots(uav_update[UAV_FIRMWARE].slots, &uav_update[UAV_BITSTREAM].running);
     uav_restart = restart;
     Secrets_start();
     UAV_useBoard(&secrets_board, 0);

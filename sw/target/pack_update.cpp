@@ -5,6 +5,7 @@
 // A package is, for each slot, the signed header (sw/update/slots.h) and the image linked for it.
 
 #include "elf_image.h"
+#include <algorithm>
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
@@ -18,6 +19,7 @@
 
 extern "C" {
 #include "flash.h"
+#include "fpga.h"
 #include "loader.h"
 }
 
@@ -27,10 +29,13 @@ using Bytes = std::vector<uint8_t>;
 
 constexpr char usage[] =
     "Usage: pack_update image NEW.elf VERSION KEYFILE NEW.update\n"
+    "       pack_update bitstream NEW.bit VERSION KEYFILE NEW.update\n"
     "       pack_update vehicle LOADER.elf FIRMWARE.elf VERSION KEYFILE FLASH.bin\n"
-    "image: signs the firmware, to be sent to a vehicle. vehicle: the flash of a new vehicle, "
-    "with\n"
-    "boot loader, public key and a confirmed firmware. KEYFILE is the private key, which is made,\n"
+    "       pack_update fpga GOLDEN.bit VERSION KEYFILE FLASH.bin\n"
+    "image, bitstream: signs firmware, or the FPGA's .bit or .bin, to be sent to a vehicle.\n"
+    "vehicle: the flash of a new vehicle, with boot loader, public key and a confirmed firmware.\n"
+    "fpga: the FPGA's, with the bitstream that is always there. KEYFILE is the private key, which "
+    "is made,\n"
     "and kept from other users, if there is none. VERSION: 1 to 4294967294.\n";
 
 [[noreturn]] void fail(const std::string& text) {
@@ -81,17 +86,17 @@ uint32_t versionOf(const std::string& text) {
     return static_cast<uint32_t>(version);
 }
 
-// Header and image for a slot.
-std::pair<Bytes, Bytes> sign(const ElfImage& elf, uint32_t slot, uint32_t version,
-                             const Keys& keys) {
+// The signed header of an image for a slot, and the image.
+std::pair<Bytes, Bytes> sign(const Bytes& image, const Slots_Layout& layout, uint32_t slot,
+                             uint32_t product, uint32_t version, const Keys& keys) {
     Slots_Header header{};
-    const uint32_t base = Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT;
-    Bytes image = elf.movedTo(FLASH_BASE + base);
-    if (image.size() > slots_firmware.bytes - SLOTS_IMAGE_AT)
-        fail("the firmware has " + std::to_string(image.size()) + " bytes, a slot has " +
-             std::to_string(slots_firmware.bytes - SLOTS_IMAGE_AT));
+    const uint32_t base = Slots_at(&layout, slot) + SLOTS_IMAGE_AT,
+                   room = layout.bytes - SLOTS_IMAGE_AT - (layout.logAt ? SLOTS_LOG_BYTES : 0);
+    if (image.size() > room)
+        fail("the image has " + std::to_string(image.size()) + " bytes, a slot has " +
+             std::to_string(room));
     header.magic = SLOTS_MAGIC;
-    header.product = LOADER_PRODUCT;
+    header.product = product;
     header.version = version;
     header.bytes = static_cast<uint32_t>(image.size());
     header.base = base;
@@ -101,6 +106,68 @@ std::pair<Bytes, Bytes> sign(const ElfImage& elf, uint32_t slot, uint32_t versio
     crypto_sign_detached(bytes.data() + SLOTS_SIGNED_BYTES, nullptr, bytes.data(),
                          SLOTS_SIGNED_BYTES, keys.secret.data());
     return {bytes, image};
+}
+
+std::pair<Bytes, Bytes> sign(const ElfImage& elf, uint32_t slot, uint32_t version,
+                             const Keys& keys) {
+    const Bytes image = elf.movedTo(FLASH_BASE + Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT);
+    return sign(image, slots_firmware, slot, LOADER_PRODUCT, version, keys);
+}
+
+constexpr uint8_t sync[] = {0xAA, 0x99, 0x55, 0x66};
+
+// A bitstream from SLOTS_SYNC_AT before its sync word on, which is left out: the vehicle adds it.
+Bytes readBitstream(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    const Bytes file((std::istreambuf_iterator<char>(in)), {});
+    const auto end =
+        file.begin() + static_cast<std::ptrdiff_t>(std::min<size_t>(file.size(), 4096));
+    const auto found = std::search(file.begin(), end, std::begin(sync), std::end(sync));
+    if (found == end)
+        fail("'" + path +
+             "' is no bitstream: a .bit or .bin by BitGen has a sync word, AA 99 55 66");
+    Bytes bits(SLOTS_SYNC_AT, 0xFF);
+    bits.insert(bits.end(), found, file.end());
+    std::fill_n(bits.begin() + SLOTS_SYNC_AT, sizeof sync, uint8_t{0xFF});
+    bits.resize((bits.size() + 3) / 4 * 4, 0xFF);
+    return bits;
+}
+
+void packBitstream(const std::string& path, uint32_t version, const std::string& key,
+                   const std::string& output) {
+    auto [header, image] =
+        sign(readBitstream(path), slots_fpga, 1, FPGA_PRODUCT, version, Keys(key));
+    header.insert(header.end(), image.begin(), image.end());
+    save(output, header);
+}
+
+// The header at address 0 sends the FPGA to slot 1, and if that fails to slot 0 (UG380, chapter 7).
+void fillFpga(const std::string& path, uint32_t version, const std::string& key,
+              const std::string& output) {
+    Bytes flash(2 << 20, 0xFF);
+    const uint32_t slots[2] = {Slots_at(&slots_fpga, 0), Slots_at(&slots_fpga, 1)},
+                   next = slots[1] + SLOTS_IMAGE_AT, golden = slots[0] + SLOTS_IMAGE_AT,
+                   read = 0x0300;                          // the flash's instruction
+    const uint32_t words[] = {0xAA99, 0x5566,              // sync word
+                              0x3261, next & 0xFFFF,       // GENERAL1
+                              0x3281, read | next >> 16,   // GENERAL2
+                              0x32A1, golden & 0xFFFF,     // GENERAL3
+                              0x32C1, read | golden >> 16, // GENERAL4
+                              0x30A1, 0x000E,              // CMD: IPROG
+                              0x2000, 0x2000};             // no operation
+    auto at = flash.begin() + SLOTS_SYNC_AT;
+    for (uint32_t word : words) {
+        *at++ = static_cast<uint8_t>(word >> 8);
+        *at++ = static_cast<uint8_t>(word);
+    }
+    const auto [header, image] =
+        sign(readBitstream(path), slots_fpga, 0, FPGA_PRODUCT, version, Keys(key));
+    std::copy(header.begin(), header.end(), flash.begin() + slots[0]);
+    std::copy(image.begin(), image.end(), flash.begin() + golden);
+    std::copy(std::begin(sync), std::end(sync), flash.begin() + golden + SLOTS_SYNC_AT);
+    const uint32_t isTrue = SLOTS_TRUE;
+    std::memcpy(&flash[slots[0] + SLOTS_CONFIRMED], &isTrue, sizeof isTrue);
+    save(output, flash);
 }
 
 void packImage(const std::string& elf, uint32_t version, const std::string& key,
@@ -147,6 +214,10 @@ int main(int argc, char** argv) {
             fail("libsodium does not start");
         if (word.size() == 5 && word[0] == "image")
             packImage(word[1], versionOf(word[2]), word[3], word[4]);
+        else if (word.size() == 5 && word[0] == "bitstream")
+            packBitstream(word[1], versionOf(word[2]), word[3], word[4]);
+        else if (word.size() == 5 && word[0] == "fpga")
+            fillFpga(word[1], versionOf(word[2]), word[3], word[4]);
         else if (word.size() == 6 && word[0] == "vehicle")
             fillVehicle(word[1], word[2], versionOf(word[3]), word[4], word[5]);
         else {

@@ -33,6 +33,7 @@
 #define RCC_APB1ENR REG(0x40023840UL)
 #define RCC_APB1ENR_PWR (1UL << 28)
 #define RCC_APB2ENR REG(0x40023844UL)
+#define RCC_APB2ENR_SPI1 (1UL << 12)
 #define RCC_APB2ENR_SYSCFG (1UL << 14)
 #define RCC_CSR REG(0x40023874UL)
 #define RCC_CSR_RMVF (1UL << 24) /* clears the flags below */
@@ -80,8 +81,10 @@
 /* General-purpose pins (RM0033, 6.4). Port 0 is A. */
 #define GPIO(port, offset) REG(0x40020000UL + 0x400UL * (U32)(port) + (offset))
 #define GPIO_MODER(port) GPIO(port, 0x00UL)   /* two bits a pin: 0 input, 2 alternate function */
+#define GPIO_OTYPER(port) GPIO(port, 0x04UL)  /* a bit a pin: 1 is open drain */
 #define GPIO_OSPEEDR(port) GPIO(port, 0x08UL) /* two bits a pin: 3 is 100 MHz */
 #define GPIO_IDR(port) GPIO(port, 0x10UL)
+#define GPIO_BSRR(port) GPIO(port, 0x18UL) /* a bit a pin: sets 15..0, resets 31..16 */
 #define GPIO_AFR(port, half) GPIO(port, 0x20UL + 4UL * (half)) /* four bits a pin */
 #define GPIO_AF_FSMC 12UL
 
@@ -90,6 +93,13 @@
 #define EXTI_IMR REG(0x40013C00UL)
 #define EXTI_RTSR REG(0x40013C08UL)
 #define EXTI_PR REG(0x40013C14UL) /* write 1 to clear */
+
+/* SPI 1 (RM0033, 25.5). */
+#define SPI1_CR1 REG(0x40013000UL)
+#define SPI1_CR1_MASTER 0x0344UL /* on, master, PCLK2 / 2, mode 0, no NSS pin */
+#define SPI1_SR REG(0x40013008UL)
+#define SPI1_SR_RXNE 1UL
+#define SPI1_DR REG(0x4001300CUL)
 
 /* Independent watchdog (RM0033, 18.3), clocked by LSI, about 32 kHz. */
 #define IWDG_KR REG(0x40003000UL)
@@ -109,6 +119,7 @@
 #define NVIC_ISER(n) REG(0xE000E100UL + 4UL * (n))
 #define NVIC_IPR(n) (*(volatile U8*)(0xE000E400UL + (n)))
 #define SCB_ICSR REG(0xE000ED04UL)
+#define SCB_ICSR_PENDSTCLR (1UL << 25)
 #define SCB_VTOR REG(0xE000ED08UL)
 #define SCB_AIRCR REG(0xE000ED0CUL)
 #define SCB_AIRCR_RESET 0x05FA0004UL

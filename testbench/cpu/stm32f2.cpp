@@ -9,7 +9,7 @@ namespace {
 
 constexpr uint32_t iwdg = 0x40003000, syscfg = 0x40013800, exti = 0x40013C00, gpio = 0x40020000,
                    crcUnit = 0x40023000, rcc = 0x40023800, flashInterface = 0x40023C00,
-                   backupSram = 0x40024000, power = 0x40007000, rng = 0x50060800,
+                   backupSram = 0x40024000, spi = 0x40013000, power = 0x40007000, rng = 0x50060800,
                    windows = 0x60000000, fsmcRegisters = 0xA0000000;
 constexpr uint32_t ahb1Enable = rcc + 0x30, ahb2Enable = rcc + 0x34, ahb3Enable = rcc + 0x38,
                    apb1Enable = rcc + 0x40, apb2Enable = rcc + 0x44, csr = rcc + 0x74;
@@ -64,6 +64,10 @@ void Stm32F2::powerOn() {
     ++resets_.power;
     resetFlags_ = padReset | powerReset;
     resetPeripherals();
+    if (spiFlash_) {
+        spiFlash_->powerOff();
+        configureFpga();
+    }
     cpu_.reset();
 }
 
@@ -74,6 +78,7 @@ void Stm32F2::resetPeripherals() {
     registers_[rcc + 4] = 0x24003010; // PLLCFGR
     registers_[gpio] = 0xA8000000;    // debug pins of port A
     registers_[gpio + 0x400] = 0x280; // and of port B
+    updateFpgaPins();
     watchdog_ = {};
     crc_ = 0xFFFFFFFF;
     pendingExti_ = 0;
@@ -151,6 +156,8 @@ uint32_t Stm32F2::read(uint32_t address, unsigned bytes) {
     }
     uint64_t before = fsmc_.hclks();
     requireFsmc();
+    if (!isFpgaDone())
+        return 0;
     try {
         uint32_t value = bytes == 1   ? fsmc_.read8(address)
                          : bytes == 2 ? fsmc_.read16(address)
@@ -170,6 +177,8 @@ void Stm32F2::write(uint32_t address, unsigned bytes, uint32_t value) {
     }
     uint64_t before = fsmc_.hclks();
     requireFsmc();
+    if (!isFpgaDone())
+        return;
     try {
         if (bytes == 1)
             fsmc_.write8(address, static_cast<uint8_t>(value));
@@ -222,6 +231,7 @@ void Stm32F2::requireClock(uint32_t address) const {
               : isIn(address, backupSram, 4096) ? isSet(ahb1Enable, 18)
               : isIn(address, rng, 12)          ? isSet(ahb2Enable, 6)
               : isIn(address, power, 8)         ? isSet(apb1Enable, 28)
+              : isIn(address, spi, 0x400)       ? isSet(apb2Enable, 12)
               : isIn(address, syscfg, 0x400)    ? isSet(apb2Enable, 14)
                                                 : true;
     if (!ok)
@@ -231,7 +241,10 @@ void Stm32F2::requireClock(uint32_t address) const {
 uint32_t Stm32F2::readPeripheral(uint32_t address) {
     requireClock(address);
     if (isIn(address, gpio, 0x2400) && (address & 0x3FF) < 0x28)
-        return (address & 0x3FF) == 0x10 ? (address == gpio + 0x410 ? pinsB_ : 0) : stored(address);
+        return (address & 0x3FF) != 0x10 ? stored(address)
+               : address == gpio + 0x410 ? pinsB_
+               : address == gpio + 0x810 ? uint32_t(isFpgaDone()) << 1
+                                         : 0;
     if (isIn(address, rcc, 0x88)) {
         uint32_t value = stored(address);
         if (address == rcc) // oscillators and PLL are ready at once
@@ -246,6 +259,8 @@ uint32_t Stm32F2::readPeripheral(uint32_t address) {
         return stored(address);
     if (isIn(address, flashInterface, 0x18))
         return flash_.read(address - flashInterface);
+    if (isIn(address, spi, 0x24)) // a byte is through as soon as it is written
+        return address == spi + 8 ? 3 : address == spi + 12 ? spiIn_ : stored(address);
     if (address == crcUnit)
         return crc_;
     if (isIn(address, power, 8))
@@ -266,8 +281,17 @@ uint32_t Stm32F2::readPeripheral(uint32_t address) {
 void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
     requireClock(address);
     if (isIn(address, gpio, 0x2400) && (address & 0x3FF) < 0x28) {
-        stored(address) = value;
+        if ((address & 0x3FF) == 0x18)
+            stored(address - 4) = (stored(address - 4) & ~(value >> 16)) | (value & 0xFFFF);
+        else
+            stored(address) = value;
         fsmcUsable_ = false;
+        updateFpgaPins();
+    } else if (address == spi + 12) {
+        spiIn_ = spiFlash_ ? spiFlash_->transfer(static_cast<uint8_t>(value)) : 0xFF;
+        waited_ += 32; // at half of PCLK2, as the driver has it
+    } else if (isIn(address, spi, 0x24)) {
+        stored(address) = value;
     } else if (isIn(address, rcc, 0x88)) {
         stored(address) = value;
         fsmcUsable_ = false;
@@ -345,4 +369,32 @@ void Stm32F2::updateExti() {
     lineChanged_ = true;
     for (unsigned line = 0; line < 5; ++line)
         cpu_.setInterrupt(extiVector + line, (pendingExti_ & stored(exti)) >> line & 1);
+}
+
+// ---- the FPGA's configuration ----
+
+bool Stm32F2::drivesLow(uint32_t port, unsigned pin) const {
+    const uint32_t base = gpio + 0x400 * port;
+    return isSet(base, 2 * pin) && !isSet(base, 2 * pin + 1) && !isSet(base + 0x14, pin);
+}
+
+void Stm32F2::updateFpgaPins() {
+    if (!spiFlash_)
+        return;
+    spiFlash_->select(drivesLow(0, 4));
+    const bool was = isProgramLow_;
+    isProgramLow_ = drivesLow(2, 0);
+    if (isProgramLow_)
+        fpga_.running.reset();
+    else if (was)
+        configureFpga();
+}
+
+void Stm32F2::configureFpga() {
+    if (stored(gpio) >> 8 & 0xFF)
+        throw Error("the FPGA reads its flash while the processor drives that bus (port A, 4..7)");
+    fpga_.configure(spiFlash_->memory);
+    fpgaDoneAt_ = now_() + fpga_.clocks * 1'000'000'000 / Spartan6Boot::cclkHz;
+    if (onReconfigured)
+        onReconfigured();
 }

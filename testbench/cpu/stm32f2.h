@@ -12,6 +12,8 @@
 #include "elf_image.h"
 #include "fsmc_master.h"
 #include "random_block.h"
+#include "spartan6_boot.h"
+#include "spi_flash.h"
 #include "stm32_flash.h"
 #include <array>
 #include <functional>
@@ -43,6 +45,13 @@ public:
     // ns at which it wants to be called; until then a processor that sleeps need not call it.
     void onTime(std::function<uint64_t()> called) { onTime_ = std::move(called); }
 
+    // Wires the FPGA's flash to SPI 1 (PA4..7) and to the FPGA, PROGRAM_B to PC0, DONE to PC1.
+    // Without it the FPGA is configured, by nobody. The flash loses its power with the processor.
+    void wireFpga(SpiFlash& flash) { spiFlash_ = &flash; }
+    const Spartan6Boot& fpga() const { return fpga_; }
+    // Called when the FPGA has lost its configuration, and is about to have one.
+    std::function<void()> onReconfigured;
+
     // The 4 KiB that VBAT keeps, whatever becomes of power and resets.
     std::array<uint32_t, 1024>& backup() { return backup_; }
 
@@ -68,6 +77,10 @@ private:
     void requireFsmc();
     void waitForFlash();
     void updateExti();
+    void updateFpgaPins();
+    void configureFpga();
+    bool isFpgaDone() const { return !spiFlash_ || (fpga_.running && now_() >= fpgaDoneAt_); }
+    bool drivesLow(uint32_t port, unsigned pin) const;
     void resetPeripherals();
     uint64_t watchdogNs() const;
     uint32_t& stored(uint32_t address) { return registers_[address]; }
@@ -86,6 +99,11 @@ private:
     unsigned carry_ = 0, waited_ = 0;
     uint32_t resetFlags_ = 0, crc_ = 0xFFFFFFFF, pinsB_ = 0, pendingExti_ = 0;
     bool fsmcUsable_ = false, lineChanged_ = false;
+    SpiFlash* spiFlash_ = nullptr;
+    Spartan6Boot fpga_;
+    uint64_t fpgaDoneAt_ = 0;
+    bool isProgramLow_ = false;
+    uint8_t spiIn_ = 0xFF;
     struct {
         bool on = false, unlocked = false, fired = false;
         uint32_t prescaler = 0, reload = 0xFFF;

@@ -76,7 +76,8 @@ std::unique_ptr<RecordedLine> record(const Flight::Options& o, SerialLine& line)
     if (o.replayed)
         return nullptr;
     nlohmann::json head = {{"flight", o.words}, {"clkHz", SocModel::clkHz}};
-    for (const std::string& file : {o.pins, o.trace, o.flash, o.cpu == "m3" ? o.firmware : ""})
+    for (const std::string& file :
+         {o.pins, o.trace, o.flash, o.fpgaFlash, o.cpu == "m3" ? o.firmware : ""})
         if (!file.empty())
             head["hashes"][std::filesystem::absolute(file)] = hexHash({readFile(file)});
     return std::make_unique<RecordedLine>(line, o.out + "/flight.jsonl", head);
@@ -87,6 +88,15 @@ std::vector<uint8_t> keyBytes(const std::string& digits) {
     for (size_t i = 0; i + 1 < digits.size(); i += 2)
         key.push_back(static_cast<uint8_t>(std::stoul(digits.substr(i, 2), nullptr, 16)));
     return key;
+}
+
+// What a file has for a flash; nothing, if there is no file.
+std::vector<uint8_t> flashOf(const std::string& file, size_t size, const std::string& whose) {
+    const std::string bytes = file.empty() ? "" : readFile(file);
+    if (!file.empty() && bytes.size() != size)
+        throw std::runtime_error("'" + file + "' is not the " + std::to_string(size >> 20) +
+                                 " MiB of " + whose + " flash: pack_update makes such");
+    return {bytes.begin(), bytes.end()};
 }
 
 // Says what the processor did, and what stopped it, if anything did.
@@ -237,11 +247,9 @@ void Flight::runOnHost() {
 }
 
 void Flight::runOnCortexM3() {
-    std::string flash = o_.flash.empty() ? "" : readFile(o_.flash);
-    if (!o_.flash.empty() && flash.size() != Stm32Flash::bytes)
-        throw std::runtime_error("'" + o_.flash + "' is not the 1 MiB of a chip's flash");
-    M3Machine machine(soc_,
-                      {o_.firmware, o_.hclk, o_.guard, {flash.begin(), flash.end()}, key_, o_.seed},
+    const std::vector<uint8_t> flash = flashOf(o_.flash, Stm32Flash::bytes, "the chip's"),
+                               fpga = flashOf(o_.fpgaFlash, SpiFlash::bytes, "the FPGA's");
+    M3Machine machine(soc_, {o_.firmware, o_.hclk, o_.guard, flash, fpga, key_, o_.seed},
                       [this] { return poll(); });
     std::optional<MarkFile> marks;
     if (!o_.marks.empty())
@@ -259,6 +267,9 @@ void Flight::runOnCortexM3() {
         std::ofstream(o_.flash, std::ios::binary)
             .write(reinterpret_cast<const char*>(machine.cpu().flash()), Stm32Flash::bytes);
     }
+    if (!o_.fpgaFlash.empty())
+        std::ofstream(o_.fpgaFlash, std::ios::binary)
+            .write(reinterpret_cast<const char*>(machine.fpgaFlash().data()), SpiFlash::bytes);
     if (!o_.quiet)
         reportProcessor(machine);
 }

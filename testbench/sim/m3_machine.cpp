@@ -25,7 +25,7 @@ Stm32F2::Config configOf(uint32_t hclkHz, uint64_t seed) {
 } // namespace
 
 M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll)
-    : soc_(soc), poll_(std::move(poll)),
+    : soc_(soc), poll_(std::move(poll)), fpgaFlash_([&soc] { return soc.now(); }, config.seed),
       stm32_(
           soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz, config.seed)) {
     stm32_.load(config.firmware);
@@ -34,6 +34,11 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
     std::copy(board.words.begin(), board.words.end(), stm32_.backup().begin());
     if (!config.flash.empty())
         cpu().loadFlash(0x08000000, config.flash);
+    if (!config.fpgaFlash.empty()) {
+        fpgaFlash_.memory = config.fpgaFlash;
+        stm32_.wireFpga(fpgaFlash_);
+        stm32_.onReconfigured = [this] { soc_.reset(true); };
+    }
     const bool asks = config.guardMs && config.flash.empty() && stm32_.image()->has("uav_guardMs");
     uint32_t guardAt = asks ? stm32_.image()->symbol("uav_guardMs") : 0;
     stm32_.onTime([this, guardAt, guardMs = config.guardMs] {

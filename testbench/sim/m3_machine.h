@@ -26,6 +26,8 @@ public:
         uint16_t guardMs = 0;
         // The whole of flash, in place of the program's; the program is for its symbols then.
         std::vector<uint8_t> flash = {};
+        // The FPGA's configuration flash; none: it needs no configuration.
+        std::vector<uint8_t> fpgaFlash = {};
         // The link's key, as from the factory, 16 bytes; none: the vehicle is open.
         std::vector<uint8_t> key = {};
         uint64_t seed = 1; // of the random number generator
@@ -44,6 +46,7 @@ public:
     void debug(GdbStub& stub, bool canGoBack);
 
     Stm32F2& stm32() { return stm32_; }
+    const std::vector<uint8_t>& fpgaFlash() const { return fpgaFlash_.memory; }
     CortexM3& cpu() { return stm32_.cpu(); }
 
 private:
@@ -57,6 +60,7 @@ private:
     SocModel& soc_;
     GdbStub* stub_ = nullptr;
     std::function<bool()> poll_;
+    SpiFlash fpgaFlash_;
     Stm32F2 stm32_;
     uint64_t nextPoll_ = 0;
     bool powered_ = false, over_ = false;

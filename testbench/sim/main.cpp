@@ -71,6 +71,8 @@ CommandLine::CommandLine() {
     app.add_option("--firmware", o.firmware, "ELF file for --cpu m3");
     app.add_option("--flash", o.flash,
                    "the chip's flash with --cpu m3, 1 MiB by pack_update; it is kept there");
+    app.add_option("--fpga-flash", o.fpgaFlash,
+                   "the FPGA's configuration flash beside --flash, 2 MiB by pack_update; kept too");
     app.add_option("--hclk", o.hclk,
                    "of the Cortex-M3, Hz in simulated time; 0: 6/5 of the fabric's clock");
     app.add_option("--gdb", o.gdb, "wait for GDB on this port of the loopback interface; 0: any")
@@ -161,6 +163,8 @@ int main(int argc, char** argv) {
             throw std::invalid_argument("--modem-key needs --cpu host: the ARM binary has its own");
         if (!o.flash.empty() && (o.cpu != "m3" || o.guard != 1000))
             throw std::invalid_argument("--flash needs --cpu m3, and the modems' usual guard time");
+        if (!o.fpgaFlash.empty() && o.flash.empty())
+            throw std::invalid_argument("--fpga-flash needs --flash: the boot loader's checks");
         if (o.cpu != "m3" && (o.gdb >= 0 || !o.marks.empty()))
             throw std::invalid_argument(
                 o.replayed ? "that flight was flown by the firmware's host build; GDB needs one of "

@@ -5,7 +5,8 @@
 #      --threshold N --loss P --seed N --out DIR --cpu host|m3 --firmware ELF --port N (of the live page; 0: any)
 #      --guard MS (of the modems) --patience S (for the first answer of the UAV) --live 1 (the page stays until Ctrl-C) --cores "ascon fir" (also fly these cores' parts, ip/*/ground.py)
 #      --pins FILE (drives the inputs of cores, docs/simulation.md; outputs go to DIR/pins.log)
-#      --update ELF (sends this firmware to a vehicle whose flash is DIR/flash.bin, made if there is none; by --cpu m3)
+#      --update ELF|BIT|BIN (sends this firmware, or this bitstream, to a vehicle whose flash is DIR/flash.bin, and its
+#      FPGA's DIR/fpga.bin; both are made if there are none; by --cpu m3)
 #      --app uav|minimal (the program of Table II, by --cpu m3)
 #      --key FILE (the link's, of vehicle and ground; none: that of build/demo.key, made once) --open 1 (in the clear)
 #      --sensor 1 (the picture comes through the camera core, which hands it to the vision core; camera's part is flown)
@@ -76,9 +77,17 @@ if [ -n "$update" ]; then
     pack=$build/sw/target/pack_update
     signing=$build/update.key # private, made at first use
     [ -f "$out/flash.bin" ] || "$pack" vehicle "$build/firmware/loader.elf" "$firmware" 1 "$signing" "$out/flash.bin"
-    "$pack" image "$update" "$(date +%s)" "$signing" "$out/new.update"
+    if [ ! -f "$out/fpga.bin" ]; then # no ISE here: the golden bitstream stands in for one
+        "$build/testbench/cpu/stand_in_bitstream" "$out/golden.bin" 1 10000
+        "$pack" fpga "$out/golden.bin" 1 "$signing" "$out/fpga.bin"
+    fi
+    case $update in
+    *.bit | *.bin) kind=bitstream ;;
+    *) kind=image ;;
+    esac
+    "$pack" $kind "$update" "$(date +%s)" "$signing" "$out/new.update"
     exec setpriv --pdeathsig TERM "$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" \
-        --cpu m3 --firmware "$firmware" --flash "$out/flash.bin" ${key:+--key "$key"} -- /usr/bin/python3 "$here/sw/ground/clients/update.py" "$out/new.update" \
+        --cpu m3 --firmware "$firmware" --flash "$out/flash.bin" --fpga-flash "$out/fpga.bin" ${key:+--key "$key"} -- /usr/bin/python3 "$here/sw/ground/clients/update.py" "$out/new.update" \
         --device '{device}' --status '{status}' --plugin "$build/ground" --slice "$here/sw/apps/uav/Update.ice" --patience "$patience" ${key:+--key "$key"}
 fi
 parts=''

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""update: sends new firmware to a vehicle, sees it start, and confirms it. Stock ZeroC Ice.
+"""update: sends new firmware, or a bitstream, to a vehicle, sees it start, and confirms it. Stock ZeroC Ice.
 
 The package is what pack_update has signed. It goes on where a loss of the link, or of the vehicle's power, has
 left it; so does this program when it is started again. A refused package leaves the vehicle as it was.
@@ -18,6 +18,7 @@ import lz4.block
 
 HEADER = struct.Struct("<5I64s64s")  # sw/update/slots.h
 MAGIC = 0x1CE50C02
+OBJECTS = {0x31564155: "update", 0x31475046: "fpga"}  # by product
 PIECE, PIECES_ON_THE_WAY, DICTIONARY = 4096, 3, 65535
 TEXT = {
     "foreignImage": "the package is not for this kind of vehicle",
@@ -25,9 +26,9 @@ TEXT = {
     "wrongSignature": "it is not signed with this vehicle's key",
     "damagedImage": "what arrived is not what was signed; try again",
     "busyNow": "another update is under way",
-    "onTrial": "the vehicle runs firmware that is not confirmed yet; it goes back in a minute",
+    "onTrial": "what the vehicle runs is not confirmed yet; it goes back in a minute",
     "flashFault": "the vehicle's flash does not take it",
-    "wentBack": "the new firmware was started and went back: it was not confirmed in time, or crashed",
+    "wentBack": "the new one was started and went back: it was not confirmed in time, or crashed",
 }
 
 
@@ -36,7 +37,7 @@ class Failed(Exception):
 
 
 def read_package(path):
-    """The package's (header, image) by the offset in flash that the image is linked for."""
+    """The object that the package is for, and its (header, image) by the offset in flash of the image."""
     with open(path, "rb") as f:
         data = f.read()
     images, at = {}, 0
@@ -44,15 +45,15 @@ def read_package(path):
         head = data[at:at + HEADER.size]
         if len(head) < HEADER.size:
             raise Failed("'%s' is no package, or is cut short: pack_update makes them" % path)
-        magic, _, _, size, base = HEADER.unpack(head)[:5]
+        magic, product, _, size, base = HEADER.unpack(head)[:5]
         image = data[at + HEADER.size:at + HEADER.size + size]
-        if magic != MAGIC or len(image) < size:
+        if magic != MAGIC or product not in OBJECTS or len(image) < size:
             raise Failed("'%s' is no package, or is cut short: pack_update makes them" % path)
         images[base] = head, image
         at += HEADER.size + size
     if not images:
         raise Failed("'%s' is empty" % path)
-    return images
+    return OBJECTS[product], images
 
 
 class Clock:
@@ -105,7 +106,8 @@ class Vehicle:
             try:
                 return function()
             except Ice.ObjectNotExistException:
-                raise Failed("this vehicle was not started by a boot loader: its firmware cannot come over the air")
+                raise Failed("this vehicle has no object '%s': it was not started by a boot loader, or its FPGA has no"
+                             " flash that the processor reaches" % self.proxy.ice_getIdentity().name)
             except Ice.LocalException as e:
                 if time.monotonic() > end:
                     raise Failed("no answer for %d s (%s): is the vehicle on, and in reach?"
@@ -130,7 +132,7 @@ class Vehicle:
             self.expect(status.last)
         return status
 
-    def send(self, image, say, clock):
+    def send(self, image, dictionary, say, clock):
         """Sends what the vehicle does not have yet, several pieces at a time."""
         received = first = self.status().received
         begun, air = clock.read()
@@ -139,7 +141,7 @@ class Vehicle:
             while at < len(image) and len(on_the_way) < PIECES_ON_THE_WAY:
                 piece = image[at:at + PIECE]
                 packed = lz4.block.compress(piece, mode="high_compression", compression=12, store_size=False,
-                                            dict=image[max(0, at - DICTIONARY):at])
+                                            dict=image[max(0, at - dictionary):at])
                 on_the_way.append((at + len(piece), self.proxy.writeAsync(at, len(piece), min(piece, packed, key=len))))
                 at += len(piece)
             received, future = on_the_way.pop(0)
@@ -165,13 +167,15 @@ def update(vehicle, images, say, clock):
         if status.slot not in images:
             raise Failed("the package has no image for the vehicle's free slot")
         header, image = images[status.slot]
+        # The vehicle's processor cannot read the FPGA's flash as memory.
+        dictionary = DICTIONARY if vehicle.proxy.ice_getIdentity().name == "update" else 0
         watch = Watch(vehicle.proxy, clock)
         watch.start()
         vehicle.expect(vehicle.persist(lambda: vehicle.proxy.begin(header)))
         while True:
             try:
                 vehicle.wait_while("preparing", "erasing")
-                vehicle.send(image, say, clock)
+                vehicle.send(image, dictionary, say, clock)
                 vehicle.expect(vehicle.proxy.finish())
                 break
             except Ice.LocalException as e:
@@ -211,7 +215,7 @@ def main():
 
     communicator = None
     try:
-        images = read_package(args.package)
+        name, images = read_package(args.package)
         Ice.loadSlice("-I" + (Ice.getSliceDir() or ".") + " " + args.slice)
         import Update  # made by loadSlice
         data = Ice.InitializationData()
@@ -224,7 +228,7 @@ def main():
         for key, value in settings.items():
             data.properties.setProperty(key, value)
         communicator = Ice.initialize(data)
-        where = args.proxy or "update:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % args.device
+        where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % (name, args.device)
         proxy = Update.FirmwarePrx.uncheckedCast(communicator.stringToProxy(where))
         update(Vehicle(proxy, args.patience), images, say, Clock(args.status))
         return 0

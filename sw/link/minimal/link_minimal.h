@@ -34,6 +34,7 @@ typedef struct Link_Keyed {
     U32 firstAnswer;                  /* ... first at this time */
     U32 lastFrame;                    /* when the handshake last sent one */
     U32 pingsSeen;                    /* number of the peer's newest PING */
+    U32 failures;                     /* frames of the session whose tag was wrong */
 } Link_Keyed;
 
 /* Small and often used fields come first: a Cortex-M3 reaches them with short instructions. */

@@ -52,7 +52,7 @@ static void begin(Link* link, const U8* nonces, const Link_Keys* keys, int slot)
     link_lose(link);
     keyed->keys = *keys;
     keyed->slot = (U8)slot;
-    keyed->pingsSeen = 0;
+    keyed->pingsSeen = keyed->failures = 0;
     memcpy(keyed->nonces, nonces, sizeof keyed->nonces);
     link->key = link_sessionKey(link_get32(nonces), link_get32(nonces + LINK_NONCE_BYTES));
     link->heardAt = link->inputAt;
@@ -140,8 +140,11 @@ int link_takeKeyed(Link* link) {
                  : kind == LINK_KIND_PING ? keyed->pingsSeen
                                           : 0;
     number = link_extend(number, frame[1]);
-    if (!link_unprotect(frame, keyed->keys.receive, number, 0))
+    if (!link_unprotect(frame, keyed->keys.receive, number, 0)) {
+        if (++keyed->failures >= LINK_MOST_FAILURES)
+            link_lose(link);
         return 0;
+    }
     if (!isControl || kind != LINK_KIND_PING)
         return 1;
     if (LINK_BEFORE(keyed->pingsSeen, number)) {

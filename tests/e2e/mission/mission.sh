@@ -99,7 +99,7 @@ m3) # the ARM binary
     run "$out" --image $image --cpu m3 && check_output "$out"
     replays_with 'bit by bit the flight that was recorded' "$out" --from 0.5 --to 0.51
     ;;
-update) # new firmware: a wrong file, a vehicle of another key, a loss of power amidst, then into a slot that has to be erased
+update) # new firmware: a wrong file, a vehicle of another key, a loss of power amidst, then into a slot that has to be erased; a crash; bitstreams
     send() { run "$out" --image $image --cpu m3 --update "$build/firmware/uav.elf"; }
     says() { grep -q -- "$1" "$out/log" || { cat "$out/log" && echo "expected: $1" && exit 1; }; }
     fails_with 'no 32-bit ARM ELF file' run "$out" --image $image --cpu m3 --update "$source/Makefile"
@@ -119,6 +119,23 @@ update) # new firmware: a wrong file, a vehicle of another key, a loss of power 
         send >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
         says 'runs and is confirmed'
         says '1 software, 0 watchdog'
+    done
+    # Firmware that crashes as soon as it is started: the one before it is back, by itself.
+    cp "$build/firmware/uav.elf" "$out/crashes.elf"
+    at=$(arm-none-eabi-nm "$out/crashes.elf" | sed -n 's/ T Firmware_run$//p')
+    from=$(arm-none-eabi-objdump -h "$out/crashes.elf" | awk '$2 == ".text" { print "0x" $6 " - 0x" $4 }')
+    printf '\377\336' | dd of="$out/crashes.elf" bs=1 seek=$((0x$at + $from)) conv=notrunc 2>/dev/null # UDF
+    "$build/sw/target/stamp_image" "$out/crashes.elf"
+    ! run "$out" --image $image --cpu m3 --update "$out/crashes.elf" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+    says 'is signed and whole; it starts'
+    says 'was started and went back'
+    says '2 software, 0 watchdog'
+    # A bitstream: one that is none, and one that configures the FPGA.
+    fails_with 'has a sync word, AA 99 55 66' run "$out" --image $image --cpu m3 --update "$build/firmware/uav.bin"
+    "$build/testbench/cpu/stand_in_bitstream" "$out/new.bin" 2 10000
+    for runs in 1 2; do
+        run "$out" --image $image --cpu m3 --update "$out/new.bin" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+        says 'runs and is confirmed'
     done
     ;;
 cpp) # the C++11 library of the plugin, a C++ client, and a proxy that goes through its string form

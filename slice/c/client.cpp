@@ -9,7 +9,9 @@
 namespace {
 
 std::string mode(const Operation& o) {
-    std::string m = o.idempotent ? "ICE_IDEMPOTENT" : "ICE_NORMAL";
+    std::string m = !o.idempotent                            ? "ICE_NORMAL"
+                    : hasMetadata(o.metadata, "nonmutating") ? "ICE_NONMUTATING"
+                                                             : "ICE_IDEMPOTENT";
     return hasResults(o) || !o.throws.empty() ? m + " | ICE_RESULTS" : m;
 }
 

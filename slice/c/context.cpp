@@ -5,7 +5,7 @@
 #include "c/context.h"
 #include "c/names.h"
 
-CContext::CContext(const Unit& unit, const CFileNames& names) : unit(unit), names(names) {
+CContext::CContext(const Unit& ofFile, const CFileNames& ofFiles) : unit(ofFile), names(ofFiles) {
     std::map<std::vector<std::string>, std::string> first; // by the constants and their types
     eachOperation([&](const Declaration& d, const Operation& o) {
         auto family = mayThrow(unit, o);

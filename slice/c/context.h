@@ -14,7 +14,7 @@ struct CContext {
     const Unit& unit;
     const CFileNames& names;
 
-    CContext(const Unit& unit, const CFileNames& names);
+    CContext(const Unit& ofFile, const CFileNames& ofFiles);
     std::string header() const;
     // The name of the table of classes that this unit knows, which are those that can be received.
     std::string valueTable() const;

@@ -4,18 +4,18 @@
  */
 #include "ice_proxy.h"
 
-#define MODE (2 | ICE_RESULTS) /* idempotent */
+#define MODE 1 /* nonmutating, as Ice's peers send them */
 
 Ice_Status Ice_ObjectPrx_ice_ping(Ice_ObjectPrxPtr self) {
     Ice_InputStreamPtr is;
-    if (!Ice_ObjectPrx_begin(self, "ice_ping", 2))
+    if (!Ice_ObjectPrx_begin(self, "ice_ping", MODE))
         return (Ice_Status)self->status;
     return Ice_ObjectPrx_end(self, Ice_ObjectPrx_invoke(self, &is));
 }
 
 Ice_Status Ice_ObjectPrx_ice_isA(Ice_ObjectPrxPtr self, const char* id, Ice_Bool* result) {
     Ice_InputStreamPtr is;
-    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "ice_isA", MODE);
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "ice_isA", MODE | ICE_RESULTS);
     Ice_Status status;
     if (!os)
         return (Ice_Status)self->status;
@@ -29,7 +29,7 @@ Ice_Status Ice_ObjectPrx_ice_isA(Ice_ObjectPrxPtr self, const char* id, Ice_Bool
 Ice_Status Ice_ObjectPrx_ice_id(Ice_ObjectPrxPtr self, Ice_String* result) {
     Ice_InputStreamPtr is;
     Ice_Status status;
-    if (!Ice_ObjectPrx_begin(self, "ice_id", MODE))
+    if (!Ice_ObjectPrx_begin(self, "ice_id", MODE | ICE_RESULTS))
         return (Ice_Status)self->status;
     status = Ice_ObjectPrx_invoke(self, &is);
     if (status == ICE_OK)

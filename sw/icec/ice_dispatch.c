@@ -18,12 +18,11 @@ static int match(const Ice_Servant* entry, const Ice_Current* current, Ice_Statu
         return NO_MATCH;
     if (id->name.size == 0 && id->category.size == 0)
         return DEFAULT_OF_ALL;
-    if (!Ice_String_same(&id->category, &current->category))
+    if ((id->name.size && !Ice_String_same(&id->name, &current->name)) ||
+        !Ice_String_same(&id->category, &current->category))
         return NO_MATCH;
     if (id->name.size == 0)
         return DEFAULT_OF_CATEGORY;
-    if (!Ice_String_same(&id->name, &current->name))
-        return NO_MATCH;
     *status = ICE_FACET_NOT_EXIST;
     return Ice_String_same(&entry->facet, &current->facet) ? EXACT : NO_MATCH;
 }

@@ -37,7 +37,7 @@ void link_resetHeads(Link* link) {
 
 /* Returns 1 for a whole message of this type, of `least` bytes at least. */
 static int isMessage(const U8* m, U32 size, U32 type, U32 least) {
-    return size >= least && memcmp(m, magic, sizeof magic) == 0 && m[8] == type &&
+    return size >= least && m[8] == type && memcmp(m, magic, sizeof magic) == 0 &&
            link_get32(m + 10) == size;
 }
 
@@ -77,9 +77,8 @@ static U32 find(const Link_Heads* heads, const U8* head, U32 size, const U8* ver
     return slot;
 }
 
-/* Remembers, on both sides alike, a message that has passed. */
-static void note(Link_Heads* heads, int channel, const U8* m, U32 size) {
-    U32 head = headOf(m, size);
+/* Remembers, on both sides alike, a message that has passed. `head`: what headOf returned. */
+static void note(Link_Heads* heads, int channel, const U8* m, U32 size, U32 head) {
     const U8* version = m + LINK_HEAD_AT + head + 4;
     if (head) {
         if (link_get32(m + HEADER))
@@ -138,6 +137,7 @@ static void packReply(const Link_Heads* heads, int channel, const U8* m, U32 siz
 
 void link_compress(const Link* link, int channel, const U8* m, U32 size, Link_Packed* packed) {
     U32 head = headOf(m, size);
+    packed->head = head;
     if (head) {
         packRequest(&link->headsOut, channel, m, size, head, packed);
     } else if (isMessage(m, size, REPLY, LINK_HEAD_AT + 1U) && m[9] == 0) {
@@ -154,8 +154,8 @@ void link_compress(const Link* link, int channel, const U8* m, U32 size, Link_Pa
     }
 }
 
-void link_noteSent(Link* link, int channel, const U8* m, U32 size) {
-    note(&link->headsOut, channel, m, size);
+void link_noteSent(Link* link, int channel, const U8* m, U32 size, U32 head) {
+    note(&link->headsOut, channel, m, size, head);
 }
 
 /* Expands the token and prefix of a request at `p` to the fields before its body. Returns their
@@ -257,6 +257,6 @@ int link_decompress(Link* link) {
         return 0;
     receiver->start = p;
     receiver->size = (U16)(end - p);
-    note(&link->headsIn, receiver->channel, p, receiver->size);
+    note(&link->headsIn, receiver->channel, p, receiver->size, headOf(p, receiver->size));
     return 1;
 }

@@ -172,10 +172,11 @@ typedef struct Link_Heads {
     U8 head[LINK_HEADS][LINK_HEAD_BYTES];
 } Link_Heads;
 
-/* A compressed message: bytes[0..prefix), `middle` bytes of its head, the rest from tailAt. */
+/* A compressed message: bytes[0..prefix), `middle` bytes of its head, the rest from tailAt; `head`:
+ * the bytes of its head, 0: none that is remembered. */
 typedef struct Link_Packed {
     U8 bytes[8];
-    U32 prefix, middle, tailAt, tail;
+    U32 prefix, middle, tailAt, tail, head;
 } Link_Packed;
 
 /* The link. Small members that are often used come first: short instructions reach them. */
@@ -237,8 +238,8 @@ int link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 number, U32 size
 void link_resetHeads(Link* link);
 /* Says how the message is to be sent, if not as it is, which `packed` says on entry. */
 void link_compress(const Link* link, int channel, const U8* m, U32 size, Link_Packed* packed);
-/* Remembers the head of a message that is going out. */
-void link_noteSent(Link* link, int channel, const U8* m, U32 size);
+/* Remembers the head of a message that is going out, as long as link_compress has said. */
+void link_noteSent(Link* link, int channel, const U8* m, U32 size, U32 head);
 /* Restores the message that link->receiver holds. Returns 0 where it makes no sense. */
 int link_decompress(Link* link);
 

@@ -177,7 +177,7 @@ void measureLatencies(Flight& f) {
         "in " + f.machine.stm32().image()->functionAt(masked.from));
 }
 
-void measureCalls(Flight& f, int calls) {
+void measureCalls(Flight& f, int calls, const std::string& what, double cycles, double share) {
     const uint32_t servant = f.machine.stm32().image()->symbol("Autopilot_Vehicle_isAlive"),
                    transmit = f.machine.stm32().image()->symbol("Radio_transmit");
     Range toServant, back;
@@ -215,14 +215,14 @@ void measureCalls(Flight& f, int calls) {
     f.wait(2);
     idle = (f.awake() - idle) / (f.seconds() - idleFrom); // a second
     double aCall = (awake - idle * took) / calls, aTrip = took / calls;
-    say("processor load, idle link (tick of 1 kHz)", 100 * idle / hclk, "%");
-    say("call: radio interrupt to servant, mean", toServant.mean(), "cycles");
-    say("call: servant to first frame of the reply, mean", back.mean(), "cycles");
-    say("call: all of its cycles, ticks not counted", aCall, "cycles", 11970,
+    say(what + ": processor load without any (tick of 1 kHz)", 100 * idle / hclk, "%");
+    say(what + ": radio interrupt to servant, mean", toServant.mean(), "cycles");
+    say(what + ": servant to first frame of the reply, mean", back.mean(), "cycles");
+    say(what + ": all of its cycles, ticks not counted", aCall, "cycles", cycles,
         "with acknowledgements");
-    say("call: share of the FSMC in its cycles", 100 * waiting / awake, "%");
-    say("call: round trip", aTrip * 1e3, "ms");
-    say("platform's share of a call's round trip", 100 * aCall / hclk / aTrip, "%", 1);
+    say(what + ": share of the FSMC in its cycles", 100 * waiting / awake, "%");
+    say(what + ": round trip", aTrip * 1e3, "ms");
+    say(what + ": the platform's share of the round trip", 100 * aCall / hclk / aTrip, "%", share);
 }
 
 // Where a call's cycles go, by function, without what its callees take; the table is printed.
@@ -413,7 +413,7 @@ int main(int argc, char** argv) {
             }
         }
         Flight f(elf, hclk / (SocModel::clkHz * hclkPerClk));
-        measureCalls(f, figures.brief ? 1 : 20);
+        measureCalls(f, figures.brief ? 1 : 20, "call", 11970, 1);
         if (!figures.brief) {
             profileCalls(f, 20);
             measureStream(f, "full stream");
@@ -423,6 +423,8 @@ int main(int argc, char** argv) {
         if (!figures.brief) {
             Flight keyed(elf, hclk / (SocModel::clkHz * hclkPerClk),
                          std::vector<uint8_t>(LINK_KEY_BYTES, 1));
+            measureCalls(keyed, 20, "call under a key", 0, 2);
+            profileCalls(keyed, 20);
             measureStream(keyed, "full stream under a key");
         }
     });

@@ -7,20 +7,28 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 int Suite_minor;
-static const char* port;
+static char** ports;
 static int passed, failed;
 
-Ice_ObjectPrx Suite_proxy(Ice_CommunicatorPtr ic, const char* identity) {
+Ice_ObjectPrx Suite_proxyAt(Ice_CommunicatorPtr ic, const char* identity, int adapter) {
+    static U32 room[16384]; /* a few suites' replies are large */
     Ice_ObjectPrx prx;
     char text[100];
-    sprintf(text, "%.40s:tcp -h 127.0.0.1 -p %.9s", identity, port);
+    sprintf(text, "%.40s:tcp -h 127.0.0.1 -p %.9s", identity, ports[adapter]);
     memset(&prx, 0, sizeof prx);
     CHECK(Ice_Communicator_stringToProxy(ic, text, &prx) == ICE_OK);
     Ice_ObjectPrx_ice_encodingVersion(&prx, (Ice_Byte)Suite_minor);
+    Ice_ObjectPrx_setReplyBuffer(&prx, room, sizeof room);
     return prx;
+}
+
+int Suite_alike(const Ice_ObjectPrx* a, const Ice_ObjectPrx* b) {
+    char texts[2][300] = {"a", "b"};
+    (void)Ice_Communicator_proxyToString(a, texts[0], sizeof texts[0]);
+    (void)Ice_Communicator_proxyToString(b, texts[1], sizeof texts[1]);
+    return strcmp(texts[0], texts[1]) == 0;
 }
 
 void Suite_check(int is, const char* what, int line) {
@@ -33,10 +41,10 @@ void Suite_check(int is, const char* what, int line) {
 int main(int argc, char** argv) {
     static Ice_Communicator ic;
     static TcpEndpoint tcp;
-    if (argc != 3)
+    if (argc != 4)
         return 2;
     Suite_minor = atoi(argv[1] + 2);
-    port = argv[2];
+    ports = argv + 2;
     Ice_initialize(&ic);
     if (TcpEndpoint_init(&ic, &tcp) != ICE_OK)
         return 2;

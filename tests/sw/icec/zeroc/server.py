@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""server: ZeroC's own server of a suite: server.py FOLDER SUITE ENCODING. Prints its port, serves until `shutdown`."""
+"""server: ZeroC's own server of a suite: server.py FOLDER SUITE ENCODING. Prints its adapters' ports, two, serves until `shutdown`."""
 import os
 import socket
 import sys
@@ -8,9 +8,10 @@ import sys
 import Ice
 
 folder, suite, encoding = sys.argv[1:]
-with socket.socket() as free:
-    free.bind(("127.0.0.1", 0))
-    port = free.getsockname()[1]
+with socket.socket() as first, socket.socket() as second:
+    for free in first, second:
+        free.bind(("127.0.0.1", 0))
+    ports = first.getsockname()[1], second.getsockname()[1]
 os.chdir(os.path.join(folder, "Ice", suite))
 sys.path[:0] = [".", folder]
 import TestHelper  # noqa: E402
@@ -23,12 +24,12 @@ def createTestProperties(self, args=[], create=TestHelper.TestHelper.createTestP
 
 
 def waitForShutdown(self, wait=Ice.CommunicatorI.waitForShutdown):
-    print(port, flush=True)
+    print(*ports, flush=True)
     wait(self)
 
 
 Ice.CommunicatorI.waitForShutdown = waitForShutdown
 TestHelper.TestHelper.createTestProperties = createTestProperties
-TestHelper.TestHelper.getTestEndpoint = lambda *_, num=0, **__: "tcp -h 127.0.0.1 -p %d" % (0 if num else port)
+TestHelper.TestHelper.getTestEndpoint = lambda *_, num=0, **__: "tcp -h 127.0.0.1 -p %d" % (ports[num] if num < 2 else 0)
 import Server  # noqa: E402
 Server.Server().run([])

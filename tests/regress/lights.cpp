@@ -112,10 +112,30 @@ json ofSize(const json& utilisation) {
     return ofEntries("size", utilisation.at("entries"), "make synth");
 }
 
+json ofPlan(const json& plan) {
+    std::vector<std::string> bad;
+    size_t proven = 0;
+    for (const json& each : plan) {
+        proven += each.at("state") == "proven";
+        if (each.at("state") == "failed")
+            bad.push_back(each.at("text"));
+    }
+    json all = judge("plan", fmt::format("{} requirements of docs/ are proven", proven),
+                     fmt::format("of {} requirements of docs/ are not proven", plan.size()), bad);
+    if (bad.empty() && proven < plan.size())
+        all = light("plan", "grey",
+                    fmt::format("{} of {} requirements of docs/ are proven; tests of the others "
+                                "have not run with these sources",
+                                proven, plan.size()));
+    return all;
+}
+
 } // namespace
 
 json lightsOf(const json& data, const std::string& source) {
     json lights = {ofTests(data, false), ofTests(data, true)};
+    if (!data.at("plan").empty())
+        lights.push_back(ofPlan(data["plan"]));
     // A measurement keeps the state of the tree that it measured (treeState).
     const auto add = [&](json light) {
         const std::string tree = data.at("trees").value(light["name"].get<std::string>(), "");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// lights: a run in six lights: tests, proofs, mutants, coverage, size, speed. Green, red, or grey:
-// not measured, or the sources have changed since.
+// lights: a run in seven lights: tests, proofs, plan, mutants, coverage, size, speed. Green, red,
+// or grey: not measured, or the sources have changed since.
 
 #ifndef LIGHTS_H
 #define LIGHTS_H

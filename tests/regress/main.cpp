@@ -7,6 +7,7 @@
 #include "files.h"
 #include "history.h"
 #include "lights.h"
+#include "plan.h"
 #include "process.h"
 #include "report.h"
 #include "seeds.h"
@@ -30,7 +31,7 @@ struct Options {
                 launcher = "local", tree;
     Selection selection;
     unsigned jobs = 2, repeat = 1, waves = 3;
-    bool list = false, kept = false, make = false;
+    bool list = false, kept = false, make = false, plan = false;
 };
 
 std::vector<Test> choose(const std::vector<Test>& all, const Selection& selection,
@@ -262,6 +263,14 @@ int regress(const Options& options) {
         std::cout << treeState(options.source, options.tree) << '\n';
         return 0;
     }
+    if (options.plan) {
+        const auto plan = readPlan(options.source + "/tests/plan.md");
+        const auto wrong = unmatched(plan, listTests(options.build));
+        for (const std::string& each : wrong)
+            std::cout << each << '\n';
+        std::cout << fmt::format("{} requirements\n", plan.size());
+        return plan.empty() || !wrong.empty();
+    }
     const FolderLock lock(options.out, "regress");
     History history(options.out + "/history.jsonl");
     if (history.damaged())
@@ -344,6 +353,8 @@ int main(int argc, char** argv) {
         ->check(CLI::IsMember({"local", "slurm"}));
     app.add_flag("--make", options.make, "build what the chosen tests need first");
     app.add_option("--tree", options.tree, "only print the state of these folders");
+    app.add_flag("--plan", options.plan,
+                 "only look whether each pattern of tests/plan.md matches a test");
     app.add_flag("--list", options.list, "only say which tests are chosen");
     try {
         app.parse(argc, argv);

@@ -4,6 +4,7 @@
 #include "files.h"
 #include "lights.h"
 #include "page.h"
+#include "plan.h"
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -98,6 +99,16 @@ std::string markdown(const json& data) {
                 std::regex_replace(f["bucket"].get<std::string>(), std::regex("\\|"), "\\|"),
                 f["name"].get<std::string>(), f["repeat"].get<std::string>());
     }
+    bool first = true;
+    for (auto& each : data["plan"])
+        if (each["state"] == "failed") {
+            text +=
+                first ? "\n| requirement that is not proven | page | tests |\n|---|---|---|\n" : "";
+            text += fmt::format("| {} | {} | {} |\n", each["text"].get<std::string>(),
+                                each["page"].get<std::string>(),
+                                fmt::join(each["open"].get<std::vector<std::string>>(), ", "));
+            first = false;
+        }
     if (!data["flaky"].empty()) {
         text += "\nFlaky (passed and failed with the same code):\n";
         for (auto& name : data["flaky"])
@@ -187,6 +198,7 @@ json gather(const History& history, const std::vector<Test>& tests,
             std::string state = readFile(file);
             data["trees"][name] = state.substr(0, state.find('\n'));
         }
+    data["plan"] = judgePlan(readPlan(source + "/tests/plan.md"), tests, history);
     data["lights"] = lightsOf(data, source);
     return data;
 }

@@ -63,6 +63,42 @@ results)
     hasNot "not 7 </script>" build/regress/report.html
     [ "$(wc -c <build/regress/report.html)" -lt 2000000 ] || fail "the page is over 2 MB"
     ;;
+plan) # which requirement is proven, failed, has not run with these sources, or has no test
+    cat >tests/plan.md <<'END'
+## [thing](../docs/thing.md)
+| requirement | proven by |
+|---|---|
+| It works | `test_a.*` `formal.thing` |
+| It stands | `test_a.One` `test_b.*` |
+| It flies | `test_c.Nobody*` |
+END
+    run --plan
+    [ $status -eq 1 ] && has '^no test is called test_c.Nobody\*, which is to prove: It flies$' || fail "a pattern without a test"
+    sed -i '$d' tests/plan.md
+    run --plan
+    [ $status -eq 0 ] && has '^2 requirements$' || fail "each pattern has a test"
+    run --name 'a.One'
+    has '^plan  *grey   *0 of 2 requirements'
+    run --name 'a[.]|formal'
+    has '^plan  *grey   *1 of 2 requirements'
+    run --name 'b.Bad'
+    has '^plan  *red  *1 of 2 requirements of docs/ are not proven: It stands$'
+    has '^| It stands | thing | test_b.Bad |$' build/regress/summary.md
+    has '"open":\["test_b.Bad"\],"page":"thing","patterns":\["test_a.One","test_b.\*"\],"state":"failed"' build/regress/report.html
+    run --name 'b.Bad' --seed 7
+    has '^plan  *green  *2 requirements'
+    echo "# changed" >>tests/room/t.sh
+    run --name 'a.One'
+    has '^plan  *grey   *0 of 2 requirements'
+    printf 'add_test(NAME test_late_NOT_BUILT COMMAND false)\n' >>tests/room/CMakeLists.txt
+    cmake build/main >/dev/null
+    echo '| It comes | `test_late.One` |' >>tests/plan.md
+    run --plan
+    [ $status -eq 0 ] || fail "a program that is not built may have any test"
+    echo '| It has no test | |' >>tests/plan.md
+    run --plan
+    [ $status -eq 2 ] && has 'plan.md:7: not' || fail "a line that is none is not told"
+    ;;
 blame) # of one bug, one group; a test's own last word; what is nearest to the cause first
     cat >>tests/room/CMakeLists.txt <<'END'
 foreach(i 1 2 3)

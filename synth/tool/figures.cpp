@@ -118,7 +118,8 @@ void to_json(json& j, const Figures& f) {
         {"ff", f.ff},       {"carry", f.carry},     {"ram", f.ram},          {"dsp", f.dsp},
         {"pins", f.pins},   {"costs", costs},       {"timing", f.timing},    {"slices", s.estimate},
         {"low", s.low},     {"high", s.high},       {"slicem", s.slicem},    {"sites", s.sites},
-        {"pairs", s.pairs}, {"through", s.through}, {"sets", s.controlSets}, {"clocks", f.clocks}};
+        {"pairs", s.pairs}, {"through", s.through}, {"sets", s.controlSets}, {"clocks", f.clocks},
+        {"otherLuts", f.otherLuts}};
 }
 
 void from_json(const json& j, Figures& f) {
@@ -135,6 +136,7 @@ void from_json(const json& j, Figures& f) {
         f.costs[{c[0], c[1]}] = {c[2], c[3], c[4], c[5]};
     j.at("timing").get_to(f.timing);
     j.at("clocks").get_to(f.clocks);
+    j.at("otherLuts").get_to(f.otherLuts);
     f.slices = {j.at("low"),   j.at("slices"), j.at("high"),    j.at("slicem"),
                 j.at("sites"), j.at("pairs"),  j.at("through"), j.at("sets")};
 }

@@ -28,7 +28,8 @@ struct Figures {
     Timing timing; // only for Spartan-6
     Costs costs;
 
-    // What clock() is with the netlist in other orders.
+    // What lut and clock() are with the netlist in other orders; this one has the median of LUTs.
+    std::vector<int> otherLuts;
     std::vector<double> clocks;
 
     // Clock rate that the longest path allows, MHz; 0 if there is no path. At the slower speed

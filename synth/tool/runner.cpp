@@ -109,10 +109,21 @@ void carryOutOne(Run& run, const Library& library, const RunnerOptions& options,
     const FilesAlong filesAlong = [&](const std::string& path) {
         return library.filesAlong(run.design->top, path);
     };
-    run.figures = figuresOf(readNetlist(run.netlist), run.family == "xc6s", filesAlong);
+    std::vector<Figures> orders{
+        figuresOf(readNetlist(run.netlist), run.family == "xc6s", filesAlong)};
     for (int order = 1; order <= ordersOf(run); order++)
-        run.figures.clocks.push_back(
-            figuresOf(readNetlist(netlistOfOrder(run.netlist, order)), true, filesAlong).clock());
+        orders.push_back(
+            figuresOf(readNetlist(netlistOfOrder(run.netlist, order)), true, filesAlong));
+    std::stable_sort(orders.begin(), orders.end(),
+                     [](const Figures& a, const Figures& b) { return a.lut < b.lut; });
+    const size_t middle = orders.size() / 2;
+    run.figures = orders[middle];
+    for (size_t order = 0; order < orders.size(); order++) {
+        if (order == middle)
+            continue;
+        run.figures.otherLuts.push_back(orders[order].lut); // rising
+        run.figures.clocks.push_back(orders[order].clock());
+    }
     writeFile(kept, nlohmann::json(run.figures).dump());
 }
 

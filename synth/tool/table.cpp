@@ -91,7 +91,14 @@ TextTable paperTable(const Plan& plan, const Row& row) {
     return t;
 }
 
-// The clock, and between which it is with the netlist in other orders: "114 (103-118)".
+// The LUTs, and between which they are with the netlist in other orders: "863 (858-865)".
+static string lutText(const Figures& f) {
+    return f.otherLuts.empty() ? std::to_string(f.lut)
+                               : fmt::format("{} ({}-{})", f.lut, f.otherLuts.front(),
+                                             f.otherLuts.back());
+}
+
+// The clock, the same way.
 static string clockText(const Figures& f) {
     const auto [slowest, fastest] = f.mhzRange();
     if (f.timing.paths.empty())
@@ -125,7 +132,7 @@ TextTable designTable(const Plan& plan, const std::vector<Row>& rows,
                                             : fmt::format("{:+d}", now - then);
         };
         const auto [luts, flipFlops] = before == accepted.end() ? std::pair(0, 0) : before->second;
-        std::vector<string> line{row.design->name, std::to_string(f.lut), change(f.lut, luts),
+        std::vector<string> line{row.design->name, lutText(f), change(f.lut, luts),
                                  percent(f.lut, plan.chip.lut),
                                  std::to_string(f.luts(1) + f.luts(2))};
         for (int inputs = 3; inputs <= 6; inputs++)

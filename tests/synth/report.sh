@@ -35,6 +35,7 @@ case $case in
 counts)
     run || fail "$(cat "$work/log")"
     has '^wide .* [0-9]* ([0-9]*-[0-9]*)$' # the clock, and from where to where it goes in other orders
+    has '^wide  *[0-9]* ([0-9]*-[0-9]*) ' # and the LUTs
     value() { sed -n "s/.*\"cells\":{\([^}]*\)}.*/\1/p" "$work"/out/cache/"$1".xc6s.*.figures; }
     value wide | grep -q '"CARRY4":4' || fail "a counter of 16 bits has four: the parameter was not set"
     value store | grep -q '"RAM32M":1' || fail "32 x 6 bits are one RAM32M"

@@ -113,13 +113,13 @@ void to_json(json& j, const Figures& f) {
     for (const auto& [owner, c] : f.costs)
         costs.push_back({owner.first, owner.second, c.lut, c.memory, c.ff, c.carry});
     const Slices& s = f.slices;
-    j = {
-        {"cells", f.cells}, {"lut", f.lut},         {"lutRam", f.lutRam},    {"shift", f.shift},
-        {"ff", f.ff},       {"carry", f.carry},     {"ram", f.ram},          {"dsp", f.dsp},
-        {"pins", f.pins},   {"costs", costs},       {"timing", f.timing},    {"slices", s.estimate},
-        {"low", s.low},     {"high", s.high},       {"slicem", s.slicem},    {"sites", s.sites},
-        {"pairs", s.pairs}, {"through", s.through}, {"sets", s.controlSets}, {"clocks", f.clocks},
-        {"otherLuts", f.otherLuts}};
+    j = {{"cells", f.cells},      {"lut", f.lut},       {"lutRam", f.lutRam},
+         {"shift", f.shift},      {"ff", f.ff},         {"carry", f.carry},
+         {"ram", f.ram},          {"dsp", f.dsp},       {"pins", f.pins},
+         {"costs", costs},        {"timing", f.timing}, {"slices", s.estimate},
+         {"low", s.low},          {"high", s.high},     {"slicem", s.slicem},
+         {"sites", s.sites},      {"pairs", s.pairs},   {"through", s.through},
+         {"sets", s.controlSets}, {"clocks", f.clocks}, {"otherLuts", f.otherLuts}};
 }
 
 void from_json(const json& j, Figures& f) {

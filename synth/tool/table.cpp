@@ -93,9 +93,9 @@ TextTable paperTable(const Plan& plan, const Row& row) {
 
 // The LUTs, and between which they are with the netlist in other orders: "863 (858-865)".
 static string lutText(const Figures& f) {
-    return f.otherLuts.empty() ? std::to_string(f.lut)
-                               : fmt::format("{} ({}-{})", f.lut, f.otherLuts.front(),
-                                             f.otherLuts.back());
+    return f.otherLuts.empty()
+               ? std::to_string(f.lut)
+               : fmt::format("{} ({}-{})", f.lut, f.otherLuts.front(), f.otherLuts.back());
 }
 
 // The clock, the same way.

@@ -50,7 +50,7 @@ static void crypt(U8* frame, const U8* key, U32 number, U32 acked, int isDecrypt
 }
 
 U32 link_protect(U8* frame, U32 header, const U8* key, U32 number, U32 acked) {
-    U32 size = (header & 0x7FU) + LINK_HEADER;
+    U32 size = LINK_LENGTH_OF(header) + LINK_HEADER;
     U8 tag[ASCON_TAG_BYTES];
     frame[0] = (U8)header;
     frame[1] = (U8)(header >> 8);

@@ -17,7 +17,7 @@ U32 link_crc(U32 key, const U8* bytes, U32 size) {
 }
 
 U32 link_seal(U8* frame, U32 header, U32 key) {
-    U32 size = (header & 0x7FU) + LINK_HEADER;
+    U32 size = LINK_LENGTH_OF(header) + LINK_HEADER;
     U32 crc;
     frame[0] = (U8)header;
     frame[1] = (U8)(header >> 8);

@@ -23,7 +23,8 @@
 
 /* Byte 0. */
 #define LINK_CONTROL 0x80U
-#define LINK_LENGTH(frame) ((frame)[0] & 0x7FU)
+#define LINK_LENGTH_OF(header) ((header)&0x7FU)
+#define LINK_LENGTH(frame) LINK_LENGTH_OF((frame)[0])
 
 /* Byte 2: the flags of data frames, the channel and epoch, the kind of control frames. */
 #define LINK_FIRST 0x80U

@@ -15,55 +15,12 @@
 //
 // With -DKEYED both have a key, and the fuzzer knows it.
 
-#include <cstdint>
+#include "fuzz_node.h"
 #include <cstring>
-#include <deque>
-#include <memory>
-#include <vector>
-
-extern "C" {
-#include "link.h"
-}
 
 namespace {
 
-using Bytes = std::vector<uint8_t>;
-
-struct Node {
-    std::unique_ptr<Link> link{new Link};
-    std::deque<Bytes> out;
-    uint32_t nonce = 1;
-    uint64_t sum = 0; // so that every byte handed over is read
-    bool busy = false;
-};
-
 const U8 key[LINK_KEY_BYTES] = {1, 2, 3};
-
-Node& node(void* c) {
-    return *static_cast<Node*>(c);
-}
-
-const Link_Port port = {
-    [](void* c, const U8* f, U32 n) {
-        if (node(c).out.size() > 50)
-            return 1;
-        node(c).out.emplace_back(f, f + n);
-        return 0;
-    },
-    [](void* c) { return node(c).nonce = node(c).nonce * 1664525u + 1013904223u; },
-    [](void* c, int channel, const U8* d, U32 n) {
-        if (n < 1 || n > LINK_MAX_MESSAGE || channel < 0 || channel >= LINK_CHANNELS)
-            __builtin_trap();
-        for (U32 i = 0; i < n; ++i)
-            node(c).sum += d[i];
-        return node(c).busy ? 1 : 0;
-    },
-    [](void* c, int channel, int isOpen) {
-        node(c).sum += static_cast<uint64_t>(channel + isOpen);
-    },
-    [](void* c, Link_State state) { node(c).sum += state; },
-    [](void* c, int, U32 tag, Link_Outcome) { node(c).sum += tag; },
-    [](void* c) { ++node(c).sum; }};
 
 class Machine {
 public:
@@ -118,11 +75,7 @@ private:
         bytes[0] = static_cast<uint8_t>((bytes[0] & 0x80) | (bytes.size() - LINK_HEADER));
         if (a_.link->overhead != LINK_OVERHEAD)
             return sealed(bytes, isHandshake);
-        U32 crc = link_crc(isHandshake ? LINK_NO_SEED : a_.link->session.key, bytes.data(),
-                           static_cast<U32>(bytes.size()));
-        bytes.push_back(static_cast<uint8_t>(crc >> 8));
-        bytes.push_back(static_cast<uint8_t>(crc));
-        return bytes;
+        return checked(bytes, isHandshake ? LINK_NO_SEED : a_.link->session.key);
     }
     // The same under a key. A HELLO is under its own; the others of the handshake are for the
     // nonce of now, from a peer whose nonce is in the input.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// link_minimal_fuzz: libFuzzer target of the minimal link layer. The input is a little program:
+// fuzz_minimal: libFuzzer target of the minimal link layer. The input is a little program:
 // bytes for the receiver, with or without a good checksum, time, messages to send. Nothing may
 // crash, hang, or write where it should not, and no message may be of an impossible size.
 //
@@ -14,56 +14,13 @@
 //         closes it
 //   7     the program takes messages (n even) or not
 
-#include <cstdint>
-#include <cstring>
-#include <memory>
-#include <vector>
-
-extern "C" {
-#include "link.h"
-}
+#include "fuzz_node.h"
 
 namespace {
 
-struct Node {
-    std::unique_ptr<Link> link{new Link};
-    uint64_t sum = 0; // so that every byte handed over is read
-    uint32_t nonce = 1, frames = 0;
-    bool busy = false;
-};
-
-Node& node(void* c) {
-    return *static_cast<Node*>(c);
-}
-
-const Link_Port port = {
-    [](void* c, const U8* f, U32 n) {
-        if (n < LINK_OVERHEAD || n > LINK_MAX_FRAME || (f[0] & 0x7FU) + LINK_OVERHEAD != n)
-            __builtin_trap();
-        for (U32 i = 0; i < n; ++i)
-            node(c).sum += f[i];
-        return ++node(c).frames % 16 == 0 ? 1 : 0;
-    },
-    [](void* c) { return node(c).nonce = node(c).nonce * 1664525u + 1013904223u; },
-    [](void* c, int channel, const U8* d, U32 n) {
-        if (n < 1 || n > LINK_MAX_MESSAGE || channel < 0 || channel >= LINK_CHANNELS)
-            __builtin_trap();
-        for (U32 i = 0; i < n; ++i)
-            node(c).sum += d[i];
-        return node(c).busy ? 1 : 0;
-    },
-    [](void* c, int channel, int isOpen) {
-        node(c).sum += static_cast<uint64_t>(channel + isOpen);
-    },
-    [](void* c, Link_State state) { node(c).sum += state; },
-    [](void* c, int, U32 tag, Link_Outcome) { node(c).sum += tag; },
-    [](void* c) { ++node(c).sum; }};
-
-void feed(Link* link, std::vector<uint8_t> frame, U32 key, U32 now) {
-    U32 crc = link_crc(key, frame.data(), static_cast<U32>(frame.size()));
-    frame.push_back(static_cast<uint8_t>(crc >> 8));
-    frame.push_back(static_cast<uint8_t>(crc));
-    Link_receive(link, frame.data(), static_cast<U32>(frame.size()), now);
+void feed(Link* link, const Bytes& frame, U32 key, U32 now) {
+    const Bytes bytes = checked(frame, key);
+    Link_receive(link, bytes.data(), static_cast<U32>(bytes.size()), now);
 }
 
 } // namespace
@@ -71,7 +28,7 @@ void feed(Link* link, std::vector<uint8_t> frame, U32 key, U32 now) {
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     Node self;
     Link* link = self.link.get();
-    std::vector<uint8_t> large(LINK_MAX_MESSAGE, 0x5A);
+    Bytes large(LINK_MAX_MESSAGE, 0x5A);
     U32 now = 0xFFFFF000u;
     Link_init(link, &port, &self, 1440);
     feed(link, {0x84, LINK_VERSION, 0x20, 1, 2, 3, 4}, LINK_NO_SEED, now);
@@ -80,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         at += 2;
         auto bytes = [&](size_t count) {
             count = count < size - at ? count : size - at;
-            std::vector<uint8_t> taken(data + at, data + at + count);
+            Bytes taken(data + at, data + at + count);
             at += count;
             return taken;
         };
@@ -111,9 +68,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
                 (void)Link_closeChannel(link, channel);
         } else {
             self.busy = n & 1;
+            self.out.clear(); // before that the radio may have been full
         }
         Link_poll(link, now);
         (void)Link_deadline(link, now);
+        for (const Bytes& frame : self.out)
+            if (LINK_LENGTH(frame) + LINK_OVERHEAD != frame.size())
+                __builtin_trap();
     }
     Link_stop(link, now);
     return 0;

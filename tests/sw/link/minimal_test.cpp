@@ -4,6 +4,7 @@
 // reboots, garbage, channels, messages that nobody takes.
 
 #include "variant.h"
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace {
@@ -104,6 +105,27 @@ TEST_P(Minimal, GarbageOnTheLineDoesNotDisturbTheSession) {
     EXPECT_EQ(b_.events.front(), "up");
     for (auto& event : b_.events)
         EXPECT_NE(event, "down");
+}
+
+// Who sends the beginning of a frame each 20 ms leaves no silence behind which one could begin.
+TEST_P(Minimal, BeginningsOfFramesBetweenPacketsDoNotStopIt) {
+    ASSERT_TRUE(connect());
+    uint64_t at = now_;
+    const bool isOver = until(
+        [&] {
+            offer(a_, sentA_, 60);
+            offer(b_, sentB_, 60);
+            if (now_ >= at) {
+                const Bytes cut(1 + random_.below(3), 0x7F);
+                b_.receive(b_.link(), cut.data(), static_cast<U32>(cut.size()), us());
+                at += 20'000;
+            }
+            return a_.outcomes.size() == 60 && b_.outcomes.size() == 60;
+        },
+        100'000'000);
+    EXPECT_TRUE(isOver) << a_.outcomes.size() << " and " << b_.outcomes.size() << " messages";
+    checkBoth();
+    EXPECT_EQ(std::count(b_.events.begin(), b_.events.end(), "up"), 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Minimal, ::testing::Range(0, 6));

@@ -17,7 +17,7 @@ const Bytes key(LINK_KEY_BYTES, 0x5A), otherKey(LINK_KEY_BYTES, 0x5B);
 std::vector<Bytes> framesOf(const Bytes& packet) {
     std::vector<Bytes> frames;
     for (size_t at = 0; at + LINK_SECURE_OVERHEAD <= packet.size();) {
-        size_t size = (packet[at] & 0x7Fu) + LINK_SECURE_OVERHEAD;
+        size_t size = LINK_LENGTH(&packet[at]) + LINK_SECURE_OVERHEAD;
         frames.emplace_back(packet.begin() + static_cast<long>(at),
                             packet.begin() + static_cast<long>(std::min(at + size, packet.size())));
         at += size;
@@ -107,7 +107,7 @@ protected:
                      2,
                      3,
                      4};
-            frame.resize(frame[0] & 0x7Fu ? 7 : 3);
+            frame.resize(LINK_LENGTH(frame) ? 7 : 3);
             U32 crc = link_crc(LINK_NO_SEED, frame.data(), static_cast<U32>(frame.size()));
             frame.push_back(static_cast<uint8_t>(crc >> 8));
             frame.push_back(static_cast<uint8_t>(crc));

@@ -34,14 +34,16 @@ LAUNCHER ?= local
 CHANGED  ?=
 FAILED   ?=
 KEPT     ?=
+BUDGET   ?=
 # Seeds that `make nightly` draws
 NIGHTLY  ?= 3
 
-regress: setup-tests $(BUILD)/build.ninja ## run the regression, write build/regress/report.html (NAME= BLOCK= LABEL= CHANGED=1 FAILED=1 KEPT=1 SEED=n|random REPEAT=n LAUNCHER=slurm)
+regress: setup-tests $(BUILD)/build.ninja ## run the regression, write build/regress/report.html (NAME= BLOCK= LABEL= CHANGED=1 FAILED=1 KEPT=1 BUDGET=60s SEED=n|random REPEAT=n LAUNCHER=slurm)
 	@$(NINJA) --quiet regress
 	@$(BUILD)/tests/regress/regress --make --build $(BUILD) --jobs $(TESTS) --seed $(SEED) --repeat $(REPEAT) --waves $(WAVES) \
 	    --launcher $(LAUNCHER) $(if $(NAME),--name '$(NAME)') $(if $(BLOCK),--block '$(BLOCK)') \
-	    $(if $(LABEL),--label '$(LABEL)') $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed) $(if $(KEPT),--kept)
+	    $(if $(LABEL),--label '$(LABEL)') $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed) $(if $(KEPT),--kept) \
+	    $(if $(BUDGET),--budget '$(BUDGET)')
 
 # TEST=test_fifo.Fifo.Wraps GOOD=commit that it passed at (the last one noted) BAD=HEAD
 TEST ?=

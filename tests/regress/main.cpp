@@ -3,11 +3,11 @@
 // regress: runs chosen tests, keeps what failed, remembers, and writes the pages. `make regress`
 // calls it.
 
+#include "budget.h"
 #include "failures.h"
 #include "files.h"
 #include "history.h"
 #include "lights.h"
-#include "plan.h"
 #include "process.h"
 #include "report.h"
 #include "seeds.h"
@@ -31,6 +31,7 @@ struct Options {
                 launcher = "local", tree;
     Selection selection;
     unsigned jobs = 2, repeat = 1, waves = 3;
+    double budget = 0; // seconds; 0: as long as it takes
     bool list = false, kept = false, make = false, plan = false;
 };
 
@@ -283,6 +284,12 @@ int regress(const Options& options) {
     auto chosen = choose(all, options.selection, history);
     if (chosen.empty())
         return nothingChosen(options, all);
+    if (options.budget > 0) {
+        chosen = withinBudget(chosen, options.budget, options.jobs, options.build, history,
+                              readPlan(options.source + "/tests/plan.md"));
+        if (chosen.empty())
+            throw std::runtime_error("no test is so short: give it a larger budget");
+    }
     if (options.list) {
         for (const Test& test : chosen)
             std::cout << test.name << '\n';
@@ -344,6 +351,10 @@ int main(int argc, char** argv) {
             return number || seed == "random" ? ""
                                               : "'" + seed + "' is neither a number nor `random`";
         });
+    app.add_option("--budget", options.budget,
+                   "only the tests that are worth most in so much time: 60s, 5m")
+        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}}))
+        ->check(CLI::PositiveNumber);
     app.add_option("--repeat", options.repeat, "so many runs, each with the next seed")
         ->check(CLI::Range(1, 1000));
     app.add_option("--jobs", options.jobs, "tests at once")->check(CLI::Range(1, 256));

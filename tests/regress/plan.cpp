@@ -13,14 +13,13 @@ bool matches(const std::string& pattern, const std::string& name) {
     return fnmatch(pattern.c_str(), name.c_str(), FNM_NOESCAPE) == 0;
 }
 
-// A test whose program is not built stands for all of its cases.
+} // namespace
+
 bool mayMatch(const std::string& pattern, const Test& test) {
     return isUnbuilt(test)
                ? matches(pattern.substr(0, pattern.find('.')), targetsOf(test, ".").at(0))
                : matches(pattern, test.name);
 }
-
-} // namespace
 
 std::vector<Requirement> readPlan(const std::string& file) {
     static const std::regex heading(R"(## \[([a-z0-9-]+)\]\(.*\))"),

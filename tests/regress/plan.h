@@ -18,8 +18,10 @@ struct Requirement {
 // requirement.
 std::vector<Requirement> readPlan(const std::string& file);
 
-// Returns the patterns that match no test of `tests`, "text: pattern". A program that is not built
-// may have any test.
+// True if a pattern matches a test's name. A program that is not built stands for all of its cases.
+bool mayMatch(const std::string& pattern, const Test& test);
+
+// Returns the patterns that match no test of `tests`, "text: pattern".
 std::vector<std::string> unmatched(const std::vector<Requirement>& plan,
                                    const std::vector<Test>& tests);
 

@@ -99,6 +99,34 @@ END
     run --plan
     [ $status -eq 2 ] && has 'plan.md:7: not' || fail "a line that is none is not told"
     ;;
+budget) # seconds as the history says, not as a clock does
+    mkdir -p build/regress
+    run --name 'a[.]|c[.]|formal' # passes
+    took() { sed -i "s/\"test_$1\":\[\"\(.\)\",[0-9.e-]*/\"test_$1\":[\"\1\",$2/" build/regress/history.jsonl; }
+    took a.One 10 && took a.Two 9 && took c.Flicker 20
+    sed -i 's/"formal.thing":\["p",[0-9.e-]*/"formal.thing":["p",100/' build/regress/history.jsonl
+    best() { run --jobs 1 --list "$@" && tr '\n' ' ' <out.txt; }
+    first=$(best --budget 40s --name 'a[.]|c[.]|formal') # the second of a program brings nothing; formal.thing is too long
+    [ "$first" = "test_a.Two test_c.Flicker test_a.One " ] || fail "first $first"
+    first=$(best --budget 29s --name 'a[.]|c[.]|formal')
+    [ "$first" = "test_a.Two test_c.Flicker " ] || fail "within 29 s $first"
+    printf '## [x](y)\n| It works | `test_c.*` |\n| It stands | `*.Flicker` |\n| It flies | `*_c*` |\n| It lands | `*_c.F*` |\n' >tests/plan.md
+    first=$(best --budget 1m --name 'a[.]|c[.]|formal') # four lines of the plan in 20 s
+    [ "$first" = "test_c.Flicker test_a.Two test_a.One " ] || fail "with a plan $first"
+    first=$(best --budget 2m) # what has not passed yet comes before
+    [ "$first" = "test_b.Bad test_d.Crash test_c.Flicker test_a.Two test_a.One " ] || fail "of all $first"
+    touch flicker
+    run --name 'c.Flicker'
+    took c.Flicker 20
+    first=$(best --budget 1m)
+    [ "$first" = "test_c.Flicker test_b.Bad test_d.Crash test_a.Two test_a.One " ] || fail "after a failure $first"
+    run --budget 1m --jobs 1
+    has '^5 tests, SEED=1'
+    run --budget 0.001s
+    [ $status -eq 2 ] && has 'no test is so short' || fail "a budget for nothing"
+    run --budget soon
+    [ $status -eq 2 ] && has '^regress: .*see --help' || fail "a budget that is none"
+    ;;
 blame) # of one bug, one group; a test's own last word; what is nearest to the cause first
     cat >>tests/room/CMakeLists.txt <<'END'
 foreach(i 1 2 3)

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+//
+// known_answers: NIST SP 800-232's known answers. A test's own answers are written as the
+// standard's authors published theirs, and the text's SHA-256 must be that of the published file.
+
+#ifndef KNOWN_ANSWERS_H
+#define KNOWN_ANSWERS_H
+
+#include "ascon_bytes.h"
+#include <array>
+#include <functional>
+#include <openssl/sha.h>
+
+// The files of github.com/ascon/ascon-c: 1089 answers of crypto_aead/asconaead128,
+// LWC_AEAD_KAT_128_128.txt, and 1025 of crypto_hash/asconhash256, LWC_HASH_KAT_128_256.txt.
+constexpr char aeadFile[] = "BBBC34692FE05E5FDA0A3B025585622AB3E3747495E5E3655B29AAE8C2A4BD33";
+constexpr char hashFile[] = "B7D6FBC51362F0D62BC7E57B21F3E83242983434A7C92320A4956D915749DF17";
+
+inline std::string sha256(const std::string& text) {
+    std::array<uint8_t, SHA256_DIGEST_LENGTH> digest;
+    SHA256(reinterpret_cast<const uint8_t*>(text.data()), text.size(), digest.data());
+    return hex(digest);
+}
+
+// `seal` returns the text with its tag behind it, for key 00 01 .., nonce 10 11 .., and these.
+inline std::string aeadAnswers(const std::function<AsconBytes(const AsconBytes& associated,
+                                                              const AsconBytes& message)>& seal) {
+    std::string text;
+    int count = 0;
+    for (size_t size = 0; size <= 32; ++size)
+        for (size_t associatedSize = 0; associatedSize <= 32; ++associatedSize) {
+            const AsconBytes associated = counted(0x30, associatedSize),
+                             message = counted(0x20, size);
+            text += "Count = " + std::to_string(++count) + "\nKey = " + hex(counted(0, 16)) +
+                    "\nNonce = " + hex(counted(0x10, 16)) + "\nPT = " + hex(message) +
+                    "\nAD = " + hex(associated) + "\nCT = " + hex(seal(associated, message)) +
+                    "\n\n";
+        }
+    return sha256(text);
+}
+
+inline std::string hashAnswers(const std::function<AsconBytes(const AsconBytes& message)>& hash) {
+    std::string text;
+    for (size_t size = 0; size <= 1024; ++size)
+        text += "Count = " + std::to_string(size + 1) + "\nMsg = " + hex(counted(0, size)) +
+                "\nMD = " + hex(hash(counted(0, size))) + "\n\n";
+    return sha256(text);
+}
+
+#endif

@@ -28,15 +28,15 @@ if(instances GREATER 4)
 endif()
 
 # icesoc_core(NAME [ICE file.ice | REGS name.regs.json] [VERILOG file...] [VHDL file...] [SERVANT file.c...]
-#             [SLICE name...] [INCLUDES dir...] [FLAGS ...] [LIBRARY name] [DEPENDS target...] [CLK_HZ])
+#             [SLICE name...] [INCLUDES dir...] [FLAGS ...] [LIBRARY name] [DEPENDS target...] [CLK_HZ] [IDLE])
 # The core NAME: a module or entity NAME with a slot's ports. ICE: its [":hw"] interface, from which
 # registers, wrapper and servant are made; else REGS describes its registers, and SERVANT is written by hand, for
 # interfaces of SLICE: files, or names given to icesoc_slice; without SERVANT it is that of sw/hw/registers. <NAME>_test.cpp beside it becomes test_ip_<NAME>, with the model V<NAME>_slot.
 # FLAGS: Verilator's, for a foreign core's style. LIBRARY: the VHDL library that its files say they are in. DEPENDS: what makes VERILOG files that are generated.
 # CLK_HZ: the module has a parameter of that name, the clock in Hz: 100 MHz on the board and in the simulator; 2 MHz
-# in <NAME>_test.cpp.
+# in <NAME>_test.cpp. IDLE: it has an output idle_o, so that its clock can have a gate (hdl/system/core_gate.v).
 function(icesoc_core name)
-  cmake_parse_arguments(A "CLK_HZ" "ICE;REGS;LIBRARY" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS;DEPENDS" ${ARGN})
+  cmake_parse_arguments(A "CLK_HZ;IDLE" "ICE;REGS;LIBRARY" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS;DEPENDS" ${ARGN})
   list(TRANSFORM A_VHDL PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_VERILOG PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_SERVANT PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
@@ -47,6 +47,10 @@ function(icesoc_core name)
   set(clocked)
   if(A_CLK_HZ)
     set(clocked ${name})
+  endif()
+  set(idle)
+  if(A_IDLE)
+    set(idle ${name})
   endif()
   set(files ${A_VERILOG})
   set(targets ${A_DEPENDS})
@@ -110,7 +114,7 @@ function(icesoc_core name)
     list(APPEND targets ${name}_verilog)
     list(APPEND A_FLAGS -Wno-PINCONNECTEMPTY) # GHDL's way to write `open`
   endif()
-  foreach(what files targets regs libs clocked slices arm_sources arm_includes arm_targets)
+  foreach(what files targets regs libs clocked idle slices arm_sources arm_includes arm_targets)
     set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_${what} ${${what}})
   endforeach()
   set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_flags ${A_FLAGS})
@@ -173,10 +177,12 @@ function(icesoc_chip)
   endif()
   icesoc_chip_property(clocked clocked)
   list(TRANSFORM clocked PREPEND "--clocked;")
+  icesoc_chip_property(idle idle)
+  list(TRANSFORM idle PREPEND "--idle;")
   add_custom_command(OUTPUT ${GEN_DIR}/map.regs.json ${GEN_DIR}/soc_cores.vh ${GEN_DIR}/soc_cores.c ${GEN_DIR}/soc_pins.h
                      ${GEN_DIR}/core_pins.ucf ${GEN_DIR}/icesoc.svd ${GEN_DIR}/registers.html
     ${check}
-    COMMAND coremap ${CORES} --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${clocked}
+    COMMAND coremap ${CORES} --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${clocked} ${idle}
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             --block 1=modem=${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json --output-dir ${GEN_DIR}
     DEPENDS coremap ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${inputs}

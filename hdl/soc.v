@@ -6,7 +6,8 @@
 `default_nettype none
 
 module soc #(
-    parameter CLK_HZ = 100000000 // Hz
+    parameter CLK_HZ = 100000000, // Hz
+    parameter GATES  = 0          // 1: the clock of each core that says when it is idle has a gate (core_gate.v)
 ) (
     input  wire        clk_i,
     input  wire        rst_i,

@@ -85,7 +85,7 @@ private:
             size_t equals = word.find('=');
             if (equals == std::string::npos || equals + 1 == word.size())
                 fail(n, fmt::format("'{}': after the core's folder come name=, identity=, slot=, "
-                                    "memory= and its pins",
+                                    "memory=, gate= and its pins",
                                     word));
             if (!given.emplace(word.substr(0, equals), word.substr(equals + 1)).second)
                 fail(n, fmt::format("'{}' is given twice", word.substr(0, equals)));
@@ -156,6 +156,10 @@ private:
                      fmt::format("memory={}: a byte address in DDR3, for a core with buffers",
                                  value));
             c.isPlaced = true;
+        } else if (key == "gate") {
+            if (value != "on")
+                fail(c.line, fmt::format("gate={}: on, or without the word", value));
+            c.hasGate = true;
         } else {
             for (Pin& p : c.pins)
                 if (p.name == key && value[0] == '@') {

@@ -33,6 +33,8 @@ struct Core {
     std::vector<Pin> pins;
     std::string constraints; // <folder>.ucf beside its description, or nothing
     bool hasClock = false;   // the module has the parameter CLK_HZ
+    bool saysIdle = false;   // the module has the output idle_o
+    bool hasGate = false;    // its clock stands still while it is idle, on the board, too
     // Without a servant of its own it has the one of sw/hw/registers.
     bool isGeneric() const { return servantType.empty(); }
 };

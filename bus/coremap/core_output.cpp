@@ -38,9 +38,17 @@ std::string instance(const Core& c) {
         }
         pins += fmt::format(",\n        .{}({})", p.name, at);
     }
+    if (c.saysIdle) {
+        s += fmt::format("    wire clk_{0}, idle_{0};\n"
+                         "    core_gate #(.GATED({2})) u_gate_{0} (.clk_i(clk_i), .rst_i(rst), "
+                         ".access_i(slot_valid[{1}]), .idle_i(idle_{0}), .clk_o(clk_{0}));\n",
+                         c.name, c.slot, c.hasGate ? "1" : "GATES");
+        pins = fmt::format(", .idle_o(idle_{})", c.name) + pins;
+    }
     s += fmt::format(
-        "    {0} {3}u_{1} (\n        .clk_i(clk_i), .rst_i(rst), `SLOT({2}), .irq_o(slot_irq[{2}])",
-        c.folder, c.name, c.slot, c.hasClock ? "#(.CLK_HZ(CLK_HZ)) " : "");
+        "    {0} {3}u_{1} (\n        .clk_i({4}), .rst_i(rst), `SLOT({2}), .irq_o(slot_irq[{2}])",
+        c.folder, c.name, c.slot, c.hasClock ? "#(.CLK_HZ(CLK_HZ)) " : "",
+        c.saysIdle ? "clk_" + c.name : "clk_i");
     if (c.port >= 0)
         s += fmt::format(", `NPI({})", c.port);
     return s + pins + "\n    );\n";
@@ -143,7 +151,7 @@ std::string verilogOf(const Chip& chip, const std::vector<Slot>& slots) {
     if (chip.pins[1] < 32)
         s += fmt::format("    assign core_pins_o{} = {}'d0;\n",
                          bits(chip.pins[1], 32 - chip.pins[1]), 32 - chip.pins[1]);
-    s += "    wire unused_pins = &{1'b0, core_pins_i, 1'b0};\n";
+    s += "    wire unused_pins = &{1'b0, core_pins_i, GATES != 0, 1'b0};\n";
     return s;
 }
 

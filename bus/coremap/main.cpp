@@ -36,14 +36,15 @@ int main(int argc, char** argv) {
     CLI::App app{"Puts the cores of a list into the chip: address map, instances in Verilog, the "
                  "firmware's table."};
     std::string list, base, outputDir = ".";
-    std::vector<std::string> cores, blocks, clocked;
+    std::vector<std::string> cores, blocks, clocked, idle;
     app.add_option("list", list,
-                   "a core a line: folder [name=] [identity=] [slot=] [memory=] "
+                   "a core a line: folder [name=] [identity=] [slot=] [memory=] [gate=on] "
                    "[input=core.output] [pin=@places]")
         ->required();
     app.add_option("--base", base, "the platform's map.regs.json")->required();
     app.add_option("--core", cores, "folder=its description (*.regs.json)");
     app.add_option("--clocked", clocked, "folder of a core with the parameter CLK_HZ");
+    app.add_option("--idle", idle, "folder of a core with the output idle_o");
     app.add_option("--block", blocks,
                    "slot=name=description of a block of the platform, for the pages");
     app.add_option("--output-dir", outputDir, "where the files go");
@@ -65,6 +66,10 @@ int main(int argc, char** argv) {
         Chip chip = readCores(read(list), platform, descriptions);
         for (Core& c : chip.cores) {
             c.hasClock = std::count(clocked.begin(), clocked.end(), c.folder) != 0;
+            c.saysIdle = std::count(idle.begin(), idle.end(), c.folder) != 0;
+            if (c.hasGate && !c.saysIdle)
+                throw std::runtime_error(std::to_string(c.line) + ": error: gate=on: '" + c.folder +
+                                         "' has no output idle_o (icesoc_core(... IDLE))");
             c.constraints = constraints[c.folder];
         }
         save(outputDir + "/map.regs.json", mapOf(chip, platform).dump(2) + "\n");

@@ -47,4 +47,8 @@ module modem_baud #(
             tick_o <= 1'b0;
         end
     end
+
+`ifdef FORMAL
+`include "modem_baud_proof.vh"
+`endif
 endmodule

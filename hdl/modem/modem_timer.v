@@ -30,4 +30,8 @@ module modem_timer #(
         if (rst_i || clear_i)
             time_o <= 12'd0;
     end
+
+`ifdef FORMAL
+`include "modem_timer_proof.vh"
+`endif
 endmodule

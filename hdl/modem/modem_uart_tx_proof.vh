@@ -24,7 +24,10 @@
             assert (txd_o == (age == 7'd80 ? 1'b1 : frame[age[6:3]]));
             // A tick within a bit moves `ticks` alone: the simulator skips it.
             if (!$past(rst_i) && $past(busy && ticks != 3'd7))
-                assert ({busy, bits, line} == $past({busy, bits, line}));
+                assert ({busy, bits, line} == $past({busy, bits, line}) && ticks == $past(ticks) + {2'd0, $past(tick_i)});
+            // Without a tick nothing moves.
+            if (!$past(rst_i) && !$past(tick_i))
+                assert ({busy, bits, line, ticks} == $past({busy, bits, line, ticks}));
         end
         cover (past && age == 7'd80 && $past(age) == 7'd79 && sent == 8'hA5);
         cover (past && age == 7'd0 && $past(age) == 7'd79); // the next byte follows at once

@@ -16,6 +16,7 @@ module fir (
     output wire [31:0] bus_rdata_o,
     output wire        bus_error_o,
     output wire        irq_o,
+    output wire        idle_o, // no call is under way
     // memory port
     output wire [31:0] npi_addr_o,
     output wire        npi_addr_req_o,
@@ -102,6 +103,7 @@ module fir (
         .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o),
         .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),
         .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i), .npi_init_done_i(npi_init_done_i));
+    assign idle_o         = !busy && idle;
     assign npi_rmw_o      = 1'b0;
     assign npi_wr_flush_o = 1'b0;
     assign npi_rd_flush_o = 1'b0;

@@ -22,6 +22,7 @@ entity vision is
     bus_rdata_o          : out std_logic_vector(31 downto 0);
     bus_error_o          : out std_logic;
     irq_o                : out std_logic;
+    idle_o               : out std_logic; -- no frame is under way, none is waited for
     -- frames of another core, in buffers 1..3 (FOLLOW)
     frame_valid_i        : in  std_logic := '0';
     frame_index_i        : in  std_logic_vector(1 downto 0) := "00";
@@ -131,6 +132,7 @@ begin
   idle   <= '1' when state = WAIT_FOR_START and go = '0' else '0';
   accept <= (start or offered) and size_ok and idle;
   frame_take_o <= offered and size_ok;
+  idle_o <= idle and quiet and not follow;
 
   with frame_index_i select first_pixel <=
     frame_base when "01",

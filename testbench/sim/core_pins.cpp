@@ -5,11 +5,13 @@
 #include "core_pins.h"
 #include "soc_pins.h"
 #include <algorithm>
-#include <cstdio>
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <fstream>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
+#include <unistd.h>
 #include <vector>
 
 namespace {
@@ -22,6 +24,30 @@ struct Change {
 uint32_t maskOf(const CorePin& pin) {
     return static_cast<uint32_t>((uint64_t(1) << pin.width) - 1) << pin.lsb;
 }
+
+// The file ends behind what this process has written: a copy of it that a debugger has sent back
+// writes over what came later.
+class PinLog {
+public:
+    explicit PinLog(const std::string& file)
+        : fd_(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+        if (fd_ < 0)
+            throw std::runtime_error("cannot write '" + file + "'");
+    }
+    ~PinLog() { close(fd_); }
+    PinLog(const PinLog&) = delete;
+    PinLog& operator=(const PinLog&) = delete;
+
+    void add(const std::string& line) {
+        const ssize_t written = pwrite(fd_, line.data(), line.size(), end_);
+        end_ += std::max<ssize_t>(written, 0);
+        (void)!ftruncate(fd_, end_);
+    }
+
+private:
+    int fd_;
+    off_t end_ = 0;
+};
 
 std::vector<Change> readScript(const std::string& path) {
     std::ifstream in(path);
@@ -65,12 +91,7 @@ std::vector<Change> readScript(const std::string& path) {
 } // namespace
 
 void connectPins(SocModel& soc, const std::string& script, const std::string& logFile) {
-    std::shared_ptr<std::FILE> file(std::fopen(logFile.c_str(), "w"), [](std::FILE* f) {
-        if (f)
-            std::fclose(f);
-    });
-    if (!file)
-        throw std::runtime_error("cannot write '" + logFile + "'");
+    auto file = std::make_shared<PinLog>(logFile);
     soc.onClock([&soc, changes = readScript(script), next = size_t(0),
                  inputs = uint32_t(0)]() mutable {
         for (; next < changes.size() && changes[next].ns <= soc.now(); ++next) {
@@ -83,8 +104,8 @@ void connectPins(SocModel& soc, const std::string& script, const std::string& lo
     auto log = [&soc, file](uint32_t changed, uint32_t outputs) {
         for (const CorePin* pin = corePins; pin->name; ++pin)
             if (pin->isOut && (changed & maskOf(*pin)))
-                std::fprintf(file.get(), "%.4f %s %u\n", static_cast<double>(soc.now()) / 1e6,
-                             pin->name, (outputs & maskOf(*pin)) >> pin->lsb);
+                file->add(fmt::format("{:.4f} {} {}\n", static_cast<double>(soc.now()) / 1e6,
+                                      pin->name, (outputs & maskOf(*pin)) >> pin->lsb));
     };
     soc.onCorePins([log, before = soc.corePins()](uint32_t outputs) mutable {
         log(before ^ outputs, outputs);

@@ -63,6 +63,7 @@ private:
     void runOnHost();
     void runOnCortexM3();
     bool isWanted();
+    double millionsPerSecond() const; // clocks
     void adviseOnClock();
     void mark(const char* what, const nlohmann::json& value);
     void watch();

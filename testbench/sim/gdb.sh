@@ -10,11 +10,7 @@ log=$(mktemp)
 "$build/testbench/sim/icesoc-sim" --gdb 0 --speed max "$@" >"$log" 2>&1 &
 pid=$!
 trap 'kill $pid 2>/dev/null || true; rm -f "$log"' EXIT
-while ! grep -q 'target remote' "$log"; do
-    kill -0 $pid 2>/dev/null || { cat "$log" >&2 && exit 1; }
-    sleep 0.1
-done
+port=$("$(dirname "$0")/gdb_port.sh" "$log" $pid)
 cat "$log"
-port=$(sed -n "s/.*localhost:\([0-9]*\)'.*/\1/p" "$log")
 trap '' INT # Ctrl-C is GDB's: it stops the processor
 gdb-multiarch -q "$build/firmware/uav.elf" -ex 'set remotetimeout unlimited' -ex "target remote localhost:$port"

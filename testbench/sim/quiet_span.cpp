@@ -5,8 +5,10 @@
 #include "quiet_span.h"
 #include "VSoc.h"
 #include "VSoc___024root.h"
+#include "soc_state.h"
 #include <algorithm>
 #include <cstring>
+#include <set>
 
 namespace {
 
@@ -17,6 +19,7 @@ constexpr uint64_t worth = 4;           // fewer clocks than these are evaluated
 constexpr uint64_t margin = 2;          // clocks before an event that are evaluated
 constexpr uint64_t settling = 8; // clocks after a carry in which its tick may still have effects
 constexpr unsigned longest = 32; // clocks between two looks at a busy chip
+constexpr uint64_t blameEvery = 256; // looks at a busy chip
 
 #define PHASE soc__DOT__u_modem__DOT__u_baud__DOT__phase
 #define PRESCALER soc__DOT__u_modem__DOT__u_baud__DOT__count
@@ -71,6 +74,30 @@ void QuietSpan::beginPause() {
     hasImage_ = false;
     patience_ = std::min(patience_ + patience_ / 2 + 1, longest);
     pause_ = patience_;
+}
+
+// Notes, now and then, which blocks have moved since the image, but for the known counters.
+void QuietSpan::blame() {
+    if (++busyLooks_ % blameEvery)
+        return;
+    ++blamed_;
+    std::set<std::string> blocks;
+    for (const std::string& path : SocState::differences(image_, SocState::of(*top_.rootp)))
+        if (path.rfind("u_", 0) == 0)
+            blocks.insert(path.substr(2, path.find('.') - 2));
+    for (const std::string& block : blocks)
+        ++movers_[block];
+}
+
+std::string QuietSpan::mover() const {
+    std::string name;
+    unsigned most = blamed_ / 2;
+    for (const auto& [block, looks] : movers_)
+        if (looks > most) {
+            name = block;
+            most = looks;
+        }
+    return name;
 }
 
 uint64_t QuietSpan::age(uint64_t phase) const {
@@ -134,6 +161,7 @@ uint64_t QuietSpan::look(uint64_t most) {
         return 0;
     }
     if (!isLikeImage() || !learn(now)) {
+        blame();
         if (isFixed_ && age(now.phase) < settling) // a tick that had an effect
             takeImage();
         else

@@ -21,6 +21,8 @@
 #define QUIET_SPAN_H
 
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 class VSoc;
@@ -40,6 +42,10 @@ public:
     // left: those that a tick of the baud rate is on its way in, and that must be evaluated.
     uint64_t pass(uint64_t clocks);
 
+    // Returns the block that keeps the chip from being quiet, by its name, as far as one does: it
+    // has moved in most of the clocks that were not passed. Empty: none.
+    std::string mover() const;
+
     // Forgets the noted state; to be called where an input changes.
     void forget() { hasImage_ = false; }
 
@@ -54,6 +60,7 @@ private:
     void takeImage();
     bool isLikeImage();
     void beginPause();
+    void blame();
     bool learn(const Counters& now);
     uint64_t age(uint64_t phase) const; // clocks since the last carry
     uint64_t untilEvent(const Counters& now, uint64_t most) const;
@@ -68,8 +75,11 @@ private:
     bool timerRuns_ = false;
     unsigned ticks_ = 0;   // of the baud rate, since the image was last compared
     uint64_t nullAge_ = 0; // clocks after a carry the chip is back at the image; 0: not known
-    uint8_t rxStep_ = 0, txStep_ = 0;   // of the UART's ticks, a tick
-    unsigned patience_ = 0, pause_ = 0; // clocks before the next look at a busy chip
+    uint8_t rxStep_ = 0, txStep_ = 0;        // of the UART's ticks, a tick
+    unsigned patience_ = 0, pause_ = 0;      // clocks before the next look at a busy chip
+    uint64_t busyLooks_ = 0;                 // that found the chip busy
+    unsigned blamed_ = 0;                    // of these, in which it was noted what had moved
+    std::map<std::string, unsigned> movers_; // blocks, by the looks in which they had moved
 };
 
 #endif

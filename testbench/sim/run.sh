@@ -128,6 +128,12 @@ elif [ $status -gt 128 ]; then
 else
     echo "The mission failed (exit status $status)." >&2
 fi
+if [ $status != 0 ] && [ -s "$out/flight.jsonl" ]; then # the last checkpoint that is 10 ms before its end, or more
+    span=$(sed -n 's/.*"digest".*"ns":\([0-9]*\).*/\1 checkpoint/p; s/.*"ns":\([0-9]*\).*/\1/p' "$out/flight.jsonl" |
+        awk '{ end = $1 } $2 { before = last; last = $1 } END { if (end - last > 1e7) before = last; printf "FROM=%.3f TO=%.3f", before / 1e9, end / 1e9 }')
+    echo "Its end as a waveform: make run REPLAY='$out' $span" >&2
+    [ "$cpu" != m3 ] || echo "Its end, and backwards from there: make gdb REPLAY='$out'" >&2
+fi
 if [ -n "$live" ] && [ $status = 0 ]; then
     echo "The page stays until Ctrl-C."
     trap 'echo "The page is closed."; exit 0' INT TERM

@@ -15,7 +15,7 @@ chip() { # name, the list: the chip in $work/name
     printf '%b' "$2" >"$out/cores.list"
     "$coremap" "$out/cores.list" --base "$source/bus/map.regs.json" --core "led=$data/led.regs.json" \
         --core "adder=$data/adder.regs.json" --core "mover=$data/mover.regs.json" \
-        --clocked mover --block "0=system=$source/hdl/system/system.regs.json" --output-dir "$out" 2>"$out/messages"
+        --clocked mover --idle adder --block "0=system=$source/hdl/system/system.regs.json" --output-dir "$out" 2>"$out/messages"
 }
 accepted() {
     chip "$@" || { cat "$out/messages" && fail "refused: $2"; }
@@ -84,6 +84,12 @@ changed() { # sed's command for the mover's description: the hash with it
 [ "$(changed 's/With a memory/Having a memory/')" = "$before" ] || fail 'words of a description change the hash'
 [ "$(changed 's/"registers": /&[{"word": 3, "name": "A", "access": "rw", "doc": ""}], "none": /')" != "$before" ] ||
     fail 'a register does not change the hash'
+# Only who says when he is idle can have a gate; who has one in the list has it on the board, too.
+accepted gates 'adder gate=on\nadder name=other\nled\n'
+grep -q 'core_gate #(.GATED(1)) u_gate_adder .*slot_valid\[2\].*clk_adder' "$out/soc_cores.vh" && grep -q '.clk_i(clk_adder)' "$out/soc_cores.vh" ||
+    fail 'the core that asked for a gate has none'
+grep -q 'core_gate #(.GATED(GATES)) u_gate_other' "$out/soc_cores.vh" || fail 'a core that asked for no gate has one on the board'
+! grep -q u_gate_led "$out/soc_cores.vh" || fail 'a core that does not say when it is idle has a gate'
 accepted hole 'led slot=63\n'
 is SLOT_COUNT 0x40
 
@@ -113,6 +119,8 @@ refused "has no input pin 'colour'" 'led colour=red\n'
 refused 'button_i=@A4,A5: 2 places for 1 bits' 'led button_i=@A4,A5\n'
 refused '2: error: place A4 is taken on line 1' 'led button_i=@A4\nled name=b led_o=@A4\n'
 refused 'places are letters and digits' 'led button_i=@A-4\n'
+refused "1: error: gate=on: 'led' has no output idle_o" 'led gate=on\n'
+refused 'gate=off: on, or without the word' 'adder gate=off\n'
 refused "no core's output of 1 bits" 'led button_i=mover.nothing_o\n'
 refused "pins of a direction" 'mover\nmover name=a\nmover name=b\nmover name=c\n'
 "$coremap" --help | grep -q 'a core a line' || fail 'no help'

@@ -39,4 +39,5 @@ echo '500 port.port_in_i 0x83' >>"$work/pins"
 # Pulses of 1.5 ms, whatever the clock; the fault pin ended one of them or none.
 awk '$2 == "servo.pwm_o" && $3 == 4 { up = $1 } $2 == "servo.pwm_o" && $3 == 0 && up { n += $1 - up > 1.499 && $1 - up < 1.501; all++; up = 0 }
      END { exit !(n > 10 && all - n <= 1) }' "$work/pins.log" || { tail "$work/pins.log" && echo 'the pulses are not 1.5 ms long' && exit 1; }
+grep -q "'servo' moves in nearly every clock" "$work/log" || { cat "$work/log" && echo 'who keeps the chip from being quiet is not said' && exit 1; }
 grep -q 'cores: all as expected' "$work/log" || { cat "$work/log" && exit 1; }

@@ -237,6 +237,10 @@ interrupted)
     status=0
     wait $pid || status=$?
     [ $status = 130 ] || { cat "$out/log"; echo "exit status $status; expected 130"; exit 1; }
+    # What it offers for looking at its end leads there.
+    span=$(sed -n "s#^Its end as a waveform: make run REPLAY='$out' FROM=\([0-9.]*\) TO=\([0-9.]*\)\$#\1 --to \2#p" "$out/log")
+    # shellcheck disable=SC2086 # words
+    replays_with 'the recording ends here\|bit by bit' "$out" --from ${span:?nothing is offered}
     ! pgrep -f "mission.py.*$out" || { echo "the ground station still runs" && exit 1; }
     ;;
 esac

@@ -36,6 +36,7 @@ fsmc_bridge)
     variants='MUXED=1 SYNC=1 SYNC=1,MUXED=1 WAIT_HIGH=1,TIMEOUT_LOG2=24 SYNC=1,WAIT_HIGH=1,LATENCY=4 SYNC=1,LATENCY=17,TIMEOUT_LOG2=1 POST_LOG2=2,BLOCK_LOG2=4 POST_LOG2=3,BLOCK_LOG2=1 POST_LOG2=5,BLOCK_LOG2=2'
     refused='SYNC=1,LATENCY=3 SYNC=1,LATENCY=18 SYNC=2 POST_LOG2=1 POST_LOG2=6 BLOCK_LOG2=0 BLOCK_LOG2=5 TIMEOUT_LOG2=0' ;;
 system_slot) variants='SLOTS=2 SLOTS=63' ;;
+core_gate) folders="$folders $source/tests/hdl/lint" variants='GATED=1' ;; # BUFGCE.v
 *) variants='' ;;
 esac
 search=$(for f in $folders ${core:+"$gen"}; do echo "-y $f -I$f"; done)

@@ -11,11 +11,7 @@ mkdir -p "$out"
 "$sim" --replay "$out/flight" --out "$out" --gdb 0 >"$out/sim.log" 2>&1 &
 pid=$!
 trap 'kill $pid 2>/dev/null || true' EXIT
-while ! grep -q 'target remote' "$out/sim.log"; do
-    kill -0 $pid || { cat "$out/sim.log" && exit 1; }
-    sleep 0.1
-done
-port=$(sed -n "s/.*localhost:\([0-9]*\)'.*/\1/p" "$out/sim.log")
+port=$("$(dirname "$0")/../../../testbench/sim/gdb_port.sh" "$out/sim.log" $pid)
 # Where it is, as a line "NAME instructions pc"; going on from a place must lead to the same one each time.
 cat >"$out/commands" <<E1
 set confirm off

@@ -16,7 +16,8 @@ module adder (
     output wire [31:0] bus_rdata_o,
     output wire        bus_error_o,
     // interrupt
-    output wire        irq_o
+    output wire        irq_o,
+    output wire        idle_o
 );
     bus_registers #(.ID_VALUE(32'h41440100)) u_registers (
         .clk_i(clk_i), .rst_i(rst_i),
@@ -25,6 +26,7 @@ module adder (
         .bus_error_o(bus_error_o), .value_o(value), .value_i(416'd0), .strobe_o(strobe), .wdata_o(wdata),
         .event_i(1'b0), .irq_o(irq_o)
     );
+    assign idle_o = 1'b1;
     wire [415:0] value;
     wire [12:0]  strobe;
     wire [31:0]  wdata;

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+//
+// modem_timer_proof: n clocks are one step of n, up to the tick: what the simulator adds at once.
+// Included at the foot of modem_timer.v, only for the prover.
+
+    (* anyseq *) reg begins; // a span
+    reg        past = 1'b0, spans = 1'b0;
+    reg [16:0] then, n;
+    reg [11:0] time_then;
+    wire [17:0] sum = {1'b0, then} + {1'b0, n};
+    initial assume (rst_i);
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        n    <= n + 17'd1;
+        if (rst_i || clear_i || sum > {1'b0, LAST})
+            spans <= 1'b0;
+        if (begins && !rst_i && !clear_i && !tick_o) begin
+            spans     <= 1'b1;
+            then      <= clocks;
+            time_then <= time_o;
+            n         <= 17'd1;
+        end
+        if (past) begin
+            // The state, so that the proof need not find it.
+            assert (clocks <= LAST + 17'd1 && (tick_o || clocks != LAST + 17'd1));
+            if (spans) begin
+                assert (n != 17'd0 && sum <= {1'b0, LAST} + 18'd1);
+                assert ({1'b0, clocks} == sum && time_o == time_then);
+                assert (tick_o == (sum == {1'b0, LAST} + 18'd1)); // not earlier, and not a clock late
+            end
+        end
+        cover (past && spans && tick_o && n > 17'd1);
+    end

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+//
+// core_gate: the clock of a core; with GATED it stands still while the core is idle, 16 clocks after it became so.
+//
+// The 16 clocks are for what runs on behind a core's idleness: pipelines that empty themselves. On Xilinx's
+// FPGAs the gate is a BUFGCE; its enable comes from flip-flops of clk_i and a few LUTs.
+
+`default_nettype none
+
+module core_gate #(
+    parameter GATED = 0 // 1: there is a gate; 0: the clock as it is, and no logic
+) (
+    input  wire clk_i,
+    input  wire rst_i,
+    input  wire access_i, // the core's slot is accessed
+    input  wire idle_i,   // without an access, nothing in the core will move 16 clocks from now
+    output wire clk_o
+);
+    generate
+        if (GATED == 0) begin : g_none
+            assign clk_o = clk_i;
+            wire unused = &{1'b0, rst_i, access_i, idle_i, 1'b0};
+        end else begin : g_gate
+            reg  [4:0] rest; // clocks of rest, 16 at most
+            wire       active = rst_i || access_i || !idle_i;
+            wire       run    = active || !rest[4];
+            always @(posedge clk_i)
+                rest <= active ? 5'd0 : rest + {4'd0, !rest[4]};
+`ifdef VERILATOR
+            reg open; // as the BUFGCE: the enable counts as it is before the clock rises
+            reg ungated;
+            initial ungated = $test$plusargs("ungated") != 0; // for comparisons
+            always_latch
+                if (!clk_i)
+                    open = run;
+            assign clk_o = clk_i && (open || ungated);
+`elsif FORMAL
+            assign clk_o = clk_i;
+`include "core_gate_proof.vh"
+`else
+            BUFGCE u_buffer (.I(clk_i), .CE(run), .O(clk_o));
+`endif
+        end
+    endgenerate
+endmodule

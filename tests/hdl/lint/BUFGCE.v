@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+//
+// BUFGCE: the ports of Xilinx's clock buffer with an enable (UG382), for lint.
+
+(* blackbox *)
+module BUFGCE (
+    input  wire I,
+    input  wire CE,
+    output wire O
+);
+endmodule

@@ -253,6 +253,43 @@ static int modes(void) {
     return 0;
 }
 
+/* What asynchronous calls bring is looked at where it is valid. */
+static int right;
+
+static void gotNode(Everything_Tester_echoNode_Async* self) {
+    right += self->status == ICE_OK && self->result->id == 7 && self->result->next == self->result;
+}
+
+static void gotOptionals(Everything_Tester_echoOptionals_Async* self) {
+    right += self->status == ICE_OK && self->has_aa == tester.minor && !self->has_bb &&
+             (!tester.minor || (Ice_String_equals(self->aa, "a") && self->result == 5));
+}
+
+static void gotWorse(Everything_Tester_failSliced_Async* self) {
+    right += self->status == ICE_USER_EXCEPTION &&
+             self->exception.type == Everything_Tester_failSliced_Worse &&
+             Ice_String_equals(self->exception.u.Worse.base.reason, "worse");
+}
+
+static int asynchronous(void) {
+    static Everything_Node node;
+    static Everything_Tester_echoNode_Async nodes;
+    static Everything_Tester_echoOptionals_Async optionals;
+    static Everything_Tester_failSliced_Async sliced;
+    Ice_String a = Ice_String_from("a");
+    Everything_Node_init(&node);
+    node.id = 7, node.next = &node;
+    right = 0;
+    nodes.completed = gotNode, optionals.completed = gotOptionals, sliced.completed = gotWorse;
+    CHECK(Everything_TesterPrx_echoNode_async(&tester, &node, &nodes) == ICE_OK);
+    CHECK(Everything_TesterPrx_echoOptionals_async(&tester, 5, &a, 0, 0, &optionals) == ICE_OK);
+    CHECK(Everything_TesterPrx_failSliced_async(&tester, 2, &sliced) == ICE_OK);
+    while (!nodes.done || !optionals.done || !sliced.done)
+        (void)Ice_Communicator_poll(&ic, 10000); /* sending has woken the first one */
+    CHECK(right == 3);
+    return 0;
+}
+
 /* Calls a class, by its own proxy and by those of its base and of what it implements. */
 static int classes(const char* port) {
     Everything_ShapeDisp_area_Exception ex;
@@ -348,7 +385,7 @@ int main(int argc, char** argv) {
     CHECK(Everything_TesterPrx_checkedCast(&tester, &base) == ICE_OK);
     for (minor = 0; minor < 2; ++minor) {
         Ice_ObjectPrx_ice_encodingVersion(&tester, minor);
-        if (types() || sequences() || exceptions())
+        if (types() || sequences() || exceptions() || asynchronous())
             return 1;
     }
     if (modes() || classes(argv[argc - 1]) || volume(slow))

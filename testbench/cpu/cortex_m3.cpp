@@ -203,13 +203,11 @@ void CortexM3::sleep() {
 // Passes the time until instructions can be fetched from flash again, up to where something else is
 // to be looked after.
 void CortexM3::waitForFlash() {
-    const uint64_t from = cycles();
     while (cycles() < flashFree_ && !stopAsked_ && !resetAsked_ && !failure_)
         passing([&] {
             const uint64_t wanted = std::min(flashFree_ - cycles(), control_.untilTick());
             control_.pass(bus_.sleep(static_cast<unsigned>(std::min(wanted, sleepStep))));
         });
-    stalled_ += cycles() - from;
     updateAttention();
 }
 

@@ -76,7 +76,6 @@ public:
     void flashChanged(uint32_t offset, uint32_t bytes);
     // No instruction can be fetched from flash for so many cycles; called by the bus.
     void stallFlash(uint64_t cycles) { flashFree_ = this->cycles() + cycles; }
-    uint64_t stalledCycles() const { return stalled_; }
     uint32_t word(uint32_t address) const; // 0 where there is no memory
 
     // Resets as power-on or the system does: registers from the vector table; RAM stays.
@@ -222,7 +221,7 @@ private:
     };
     std::vector<FlashStore> stores_; // of the instruction under way
     bool staleCode_ = false;         // translated code is no longer what flash has
-    uint64_t flashFree_ = 0, stalled_ = 0;
+    uint64_t flashFree_ = 0;
     uint64_t limit_ = 0, boundaries_[2] = {0, 0};
     uint8_t watchedPriority_ = 0xFF;
     bool masked_ = false;

@@ -25,10 +25,6 @@ constexpr uint32_t timing(unsigned addset, unsigned datast, unsigned busturn = 0
                           unsigned addhld = 1, unsigned accmod = 0) {
     return addset | addhld << 4 | datast << 8 | busturn << 16 | accmod << 28;
 }
-// BTR of a synchronous bank: FSMC_CLK = HCLK / (clkdiv + 1), first data after datlat + 2 of them.
-constexpr uint32_t burstTiming(unsigned clkdiv, unsigned datlat) {
-    return clkdiv << 20 | datlat << 24 | 0x0000FF1Fu;
-}
 
 } // namespace fsmc
 

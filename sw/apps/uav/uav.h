@@ -35,10 +35,6 @@ UAV_Status UAV_start(const FSMC_Port* port, void* context);
  * bridge gave up. */
 U32 UAV_busErrors(void);
 
-/* Returns how many cores of ip/cores.list are not in their slot, or in another version, or not
- * served for want of room. */
-U32 UAV_missingCores(void);
-
 /* Handles the FPGA's interrupt, a level; tells whether it is unmasked. */
 void UAV_irqHandler(void);
 int UAV_irqEnabled(void);

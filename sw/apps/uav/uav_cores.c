@@ -11,7 +11,6 @@
 #define MS_PER_TICK (1000U / OS_TICKS_PER_SEC)
 
 static OS_EVENT *waiter, *work; /* the task that waits within an operation; the task below */
-static U32 missing;
 static U8 isStarted[MAP_CORES];
 static Hw_Contract contracts[MAP_CONTRACTS];
 static Hw_Chip chip;
@@ -49,7 +48,6 @@ static const Hw_Port port = {waitEvent, postEvent, nowMs, errorsOnTheBus, &frame
 void UAV_initCores(void) {
     waiter = OSSemCreate(0);
     work = OSSemCreate(0);
-    missing = 0;
     frames.width = 0;
 }
 
@@ -70,14 +68,9 @@ void UAV_startCores(Ice_ObjectAdapterPtr adapter) {
         const Hw_Instance* core = &hw_instances[i];
         isStarted[i] = Hw_Contracts_hold(contracts, MAP_CONTRACTS, core->slot) &&
                        core->start(&port, 0) == HW_OK;
-        if (!isStarted[i] ||
-            Ice_ObjectAdapter_add(adapter, core->servant, core->identity) != ICE_OK)
-            ++missing;
+        if (isStarted[i]) /* else a call of it gets ObjectNotExistException */
+            (void)Ice_ObjectAdapter_add(adapter, core->servant, core->identity);
     }
-}
-
-U32 UAV_missingCores(void) {
-    return missing;
 }
 
 void UAV_coresInterrupt(const U32 lines[2]) {

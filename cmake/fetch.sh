@@ -5,6 +5,7 @@
 #   cmake/fetch.sh ice DIR    internal transport headers of the installed ZeroC Ice, into DIR
 #   cmake/fetch.sh ghdl DIR   GHDL 5 (GHDL 2's Verilog output is wrong for `case`), DIR/ghdl runs it
 #   cmake/fetch.sh clang-format DIR   clang-format 14, DIR/clang-format runs it
+#   cmake/fetch.sh nextpnr DIR   nextpnr for ECP5, DIR/nextpnr-ecp5 runs it; names of files are absolute
 #   cmake/fetch.sh foreign DIR   the third-party cores that examples/foreign/files.list names, into DIR; from
 #                             ICESOC_RAW, a copy of raw.githubusercontent.com, if it is set
 #   cmake/fetch.sh lz4 DIR    the source of LZ4, which unpacks firmware on the chip
@@ -114,6 +115,26 @@ EOF
     chmod +x "$target/ghdl"
 }
 
+# The program looks for its chips where Debian would install them: the copy here looks in its own folder, as long a name.
+fetch_nextpnr() {
+    mkdir -p "$target"
+    keep=$cache/nextpnr-0.7
+    boost='libboost-filesystem1.83.0 libboost-iostreams1.83.0 libboost-program-options1.83.0 libboost-thread1.83.0'
+    # shellcheck disable=SC2086
+    unpacked trixie 'nextpnr for ECP5 (14 MB)' nextpnr-ecp5 nextpnr-ecp5-chipdb $boost libpython3.13 libpython3.13-minimal \
+        libpython3.13-stdlib libexpat1 zlib1g libbz2-1.0 liblzma5 libzstd1 libc6 libgcc-s1 libstdc++6 gcc-14-base
+    root=$keep/root
+    program=$root/usr/bin/nextpnr-ecp5-here
+    ln -sfn usr/share/nextpnr "$root/npr"
+    LC_ALL=C sed 's#/usr/share/nextpnr/#/proc/self/cwd/npr/#g' "$root/usr/bin/nextpnr-ecp5" >"$program"
+    lib=$root/usr/lib/$(uname -m)-linux-gnu
+    cat >"$target/nextpnr-ecp5" <<EOF
+#!/bin/sh
+cd "$root" && PYTHONHOME=$root/usr exec "$(find "$lib" -name 'ld-linux-*')" --library-path "$lib" "$program" "\$@"
+EOF
+    chmod +x "$target/nextpnr-ecp5"
+}
+
 # Other versions write some lines in another way, so that a check would depend on the machine.
 fetch_clang_format() {
     mkdir -p "$target"
@@ -196,6 +217,7 @@ case $what in
 ice) fetch_ice ;;
 ghdl) fetch_ghdl ;;
 clang-format) fetch_clang_format ;;
+nextpnr) fetch_nextpnr ;;
 foreign) fetch_foreign ;;
 lz4) fetch_source lz4-1.9.4 l/lz4/lz4_1.9.4.orig.tar.gz 0b0e3aa07c8c063ddf40b082bdf7e37a1562bda40a0ff5272957f3e987e0e54b lz4-1.9.4/lib 2 ;;
 sodium) fetch_source sodium-1.0.18 libs/libsodium/libsodium_1.0.18.orig.tar.gz \

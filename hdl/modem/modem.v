@@ -59,15 +59,24 @@ module modem #(
     wire control     = reg_write && reg_addr == MODEM_CONTROL;
     reg  configure, reset_modem, rings_reset; // a cycle after the write, because their paths are long
 
-    // Settings are kept in LUT RAM: words 0..15 are the registers with the ID, 28..31 the key.
+    // Settings are kept in block RAM: words 0..15 are the registers with the ID, 28..31 the key. A word is there a
+    // clock after its index, and valid if it was not the processor's, which may have written it in that clock.
+    (* ram_style = "block", no_rw_check *)
     reg  [31:0] words [0:31];
     reg  [1:0]  key_index;
     wire        key_write = reg_write && reg_addr == MODEM_KEY;
     wire [4:0]  at_word;
     wire [4:0]  ring_word;
     wire        at_busy;
-    wire [4:0]  word_index = turn ? {1'b0, bus_addr_i} : at_word | (at_busy ? 5'd0 : ring_word);
-    wire [31:0] word       = words[word_index];
+    wire [4:0]  word_index = bus_valid_i ? {1'b0, bus_addr_i} : at_word | (at_busy ? 5'd0 : ring_word);
+    reg  [31:0] word;
+    reg  [4:0]  word_at;
+    reg         word_valid;
+    always @(posedge clk_i) begin
+        word       <= words[word_index];
+        word_at    <= word_index;
+        word_valid <= !bus_valid_i;
+    end
 
     // Time
     wire        ms_tick, at_clear;
@@ -173,7 +182,7 @@ module modem #(
         .clk_i(clk_i), .rst_i(rings_reset), .clear_o(at_clear), .time_i(waited),
         .start_i(configure && reset_n), .busy_o(at_busy), .done_o(at_done),
         .failed_o(at_failed), .retried_o(at_retried), .step_o(at_step), .bd_o(bd_now),
-        .word_o(at_word), .word_i(word), .word_valid_i(!turn),
+        .word_o(at_word), .word_i(word), .word_valid_i(word_valid && word_at == at_word),
         .tx_valid_o(at_tx_valid), .tx_data_o(at_tx_data), .tx_ready_i(tx_ready),
         .rx_valid_i(rx_valid), .rx_data_i(rx_data)
     );
@@ -246,7 +255,7 @@ module modem #(
 
     modem_npi u_npi (
         .clk_i(clk_i), .rst_i(rst_i),
-        .base_i(word[31:11]), .base_valid_i(!turn && !at_busy && writes == wr_valid),
+        .base_i(word[31:11]), .base_valid_i(word_valid && word_at == ring_word && writes == wr_valid),
         .wr_valid_i(wr_valid), .wr_addr_i({rx_next, wr_index[6:3]}), .wr_be_i(wr_be), .wr_data_i(wr_data),
         .wr_ready_o(wr_ready), .wr_busy_o(wr_busy),
         .rd_valid_i(rd_valid), .rd_addr_i({tx_buffer, rd_index}),

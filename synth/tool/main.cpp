@@ -5,6 +5,7 @@
 #include "designs.h"
 #include "files.h"
 #include "pictures.h"
+#include "placement.h"
 #include "report.h"
 #include "runner.h"
 #include "table.h"
@@ -27,6 +28,7 @@ struct Options {
     std::string yosys = "yosys";
     unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
     bool accept = false;
+    std::string nextpnr; // places the designs for ECP5
     std::string edif;    // a design's name
     std::string compare; // another report.json
 };
@@ -202,6 +204,11 @@ int report(const Options& o) {
         return accept(r, accepted);
     print(r);
     writeReports(r, o);
+    if (!o.nextpnr.empty()) {
+        const TextTable table = placed(r.rows, o.nextpnr, o.jobs);
+        fmt::print("\n{}", table.plain());
+        writeFile(o.output / "placed.md", table.markdown());
+    }
     writeFile(o.output / "tree", tree + "\n");
     return std::any_of(r.verdicts.begin(), r.verdicts.end(),
                        [](const Verdict& v) { return !v.failures.empty(); });
@@ -226,6 +233,7 @@ int main(int argc, char** argv) {
     app.add_option("--compare", o.compare,
                    "only tell how the last report differs from this report.json")
         ->check(CLI::ExistingFile);
+    app.add_option("--place", o.nextpnr, "place the designs for ECP5 by this nextpnr-ecp5");
     app.add_option("--edif", o.edif, "only write this design as EDIF for ISE, into the folder ise");
     try {
         app.parse(argc, argv);
@@ -237,6 +245,9 @@ int main(int argc, char** argv) {
     }
     if (std::find(o.families.begin(), o.families.end(), mainFamily) == o.families.end())
         o.families.insert(o.families.begin(), mainFamily);
+    if (!o.nextpnr.empty() &&
+        std::find(o.families.begin(), o.families.end(), "ecp5") == o.families.end())
+        o.families.push_back("ecp5");
     try {
         if (!o.compare.empty()) {
             fmt::print("{}", differences(readFile(o.compare), readFile(o.output / "report.json")));

@@ -10,6 +10,7 @@
 #   broken   a syntax error is told with its file and line, and the other designs are reported nevertheless
 #   twice    of two runs at once the second waits, says so, and takes what the first has made
 #   compare  what has changed since another commit, as Markdown
+#   place    a design placed with five seeds: clock, estimate, utilisation; placed once; a failure is told
 #   edif     the netlist for ISE is whole
 #   page     the page in Chromium: tables, chart, sorting, looking inside, differences; one file, no network
 set -eu
@@ -166,6 +167,29 @@ compare)
     cmp -s build/synth/compare.md "$work/log" || grep -q '^| wider ' build/synth/compare.md || fail "compare.md is not there"
     if synth/compare.sh "$program" nonsense >"$work/log" 2>&1; then fail "a commit that is none"; fi
     has 'there is no commit nonsense'
+    ;;
+place)
+    cat >nextpnr <<'EOF'
+#!/bin/sh
+while [ $# -gt 0 ]; do
+    case $1 in --seed) seed=$2 ;; --report) report=$2 ;; --json) netlist=$2 ;; esac
+    shift
+done
+[ ! -e fail ] || { echo "ERROR: no room"; exit 1; }
+[ -s "$netlist" ] || exit 1
+echo "$seed" >>calls
+echo "{\"fmax\":{\"fast\":{\"achieved\":300},\"slow\":{\"achieved\":$((200 - seed * seed))}},
+  \"utilization\":{\"TRELLIS_COMB\":{\"used\":50,\"available\":1000},\"TRELLIS_FF\":{\"used\":7}}}" >"$report"
+EOF
+    chmod +x nextpnr
+    run --design whole --place "$work/nextpnr" || fail "$(cat "$work/log")"
+    has '^whole  *191  *175  *199  *[0-9]*  *50  *7  *5.0 %'
+    run --design whole --place "$work/nextpnr" || fail "$(cat "$work/log")"
+    [ "$(wc -l <calls)" = 5 ] || fail "placed $(wc -l <calls) times: five seeds, once each"
+    touch fail
+    rm out/cache/*.placed.3
+    if run --design whole --place "$work/nextpnr"; then fail "a placement that fails passes"; fi
+    has 'cannot place whole: ERROR: no room'
     ;;
 edif)
     # The netlist that ISE reads has every cell that Yosys counts, once, and well-formed parentheses.

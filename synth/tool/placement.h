@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+//
+// placement: designs placed and routed on an ECP5 by nextpnr, to compare the estimates with.
+
+#pragma once
+
+#include "table.h"
+
+// Places each of these runs (of family "ecp5") with five seeds; what the cache has is not placed
+// again. Returns a row for each: fmax, the estimate for Spartan-6, utilisation. Throws with
+// nextpnr's message if it fails.
+TextTable placed(const std::vector<Row>& rows, const std::string& nextpnr, unsigned jobs);

@@ -13,6 +13,7 @@ constexpr uint64_t byteNs = 32'000, ackNs = turnaroundNs + 11 * byteNs, gapNs = 
 constexpr unsigned longestBackoff = 5, mostBackoffs = 4; // 802.15.4: macMaxBE, macMaxCSMABackoffs
 constexpr uint64_t roundNs = 200'000'000;                // RR: the wait for an acknowledgement
 constexpr uint32_t roundSpreadUs = 48'000;               // and at most so much more, at random
+constexpr uint64_t burstStepNs = 10'000'000;             // a full packet's time
 constexpr double sensitivity = -92;                      // dBm; XBee-PRO: -100
 constexpr double jitter = 0.05;                          // share of a modem's own time, unverified
 
@@ -44,8 +45,14 @@ void RfChannel::leave(XBee* modem) {
 }
 
 RfChannel::Outcome RfChannel::fate(uint64_t now) {
-    inBurst_ = weather.burstBegin > 0 &&
-               (inBurst_ ? !random_.chance(weather.burstEnd) : random_.chance(weather.burstBegin));
+    // A step for this packet, and one for each that there was time for: a burst passes, too, while
+    // nobody sends.
+    const uint64_t quiet = std::min<uint64_t>((now - fateAt_) / burstStepNs, 1000);
+    fateAt_ = now;
+    for (uint64_t steps = std::max<uint64_t>(quiet, 1); weather.burstBegin > 0 && steps; --steps)
+        inBurst_ =
+            inBurst_ ? !random_.chance(weather.burstEnd) : random_.chance(weather.burstBegin);
+    inBurst_ = inBurst_ && weather.burstBegin > 0;
     double loss = weather.trace ? weather.trace->at(now).loss : weather.loss;
     if (random_.chance(inBurst_ ? weather.burstLoss : loss))
         return Outcome::Lost;

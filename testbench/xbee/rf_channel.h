@@ -73,6 +73,7 @@ private:
 
     Random random_;
     bool inBurst_ = false;
+    uint64_t fateAt_ = 0; // of the last packet
     std::vector<XBee*> modems_;
     std::multimap<uint64_t, Flight> events_;
     std::list<std::shared_ptr<OnAir>> onAir_;

@@ -51,6 +51,42 @@ const RfTrace::Row& RfTrace::at(uint64_t ns) const {
     return next == rows_.begin() ? *next : *std::prev(next);
 }
 
+const std::vector<std::pair<std::string, RfWeather>>& RfWeather::published() {
+    static const auto all = [] {
+        std::vector<std::pair<std::string, RfWeather>> list;
+        auto add = [&](const std::string& name) -> RfWeather& {
+            return list.emplace_back(name, RfWeather()).second;
+        };
+        auto bursts = [&](const char* name, double begin, double end, double inside,
+                          double outside) {
+            RfWeather& w = add(name);
+            w.burstBegin = begin, w.burstEnd = end, w.burstLoss = inside, w.loss = outside;
+        };
+        bursts("bursts, long", 0.01, 0.08, 1, 0.02);
+        bursts("bursts, mean", 0.03, 0.4, 0.95, 0.01);
+        bursts("bursts, frequent", 0.08, 0.5, 0.9, 0);
+        add("a quarter of the tries lost").tryLoss = 0.25;
+        for (unsigned metres : {100u, 200u, 300u, 400u})
+            add(std::to_string(metres) + " m, fading").distance = metres;
+        for (unsigned percent : {10u, 25u, 50u})
+            add("interferer " + std::to_string(percent) + " %").interference = percent / 100.0;
+        return list;
+    }();
+    return all;
+}
+
+RfWeather RfWeather::drawn(Random& random, unsigned mostLoss) {
+    RfWeather w;
+    const size_t kind = random.below(static_cast<uint32_t>(3 * published().size()));
+    if (kind < published().size())
+        w = published()[kind].second;
+    else if (kind < 2 * published().size())
+        w.loss = random.below(mostLoss) / 100.0;
+    w.duplication = random.below(2) ? 0 : 0.1;
+    w.corruption = random.below(2) ? 0 : 0.03;
+    return w;
+}
+
 bool RfWeather::interferes(uint64_t from, uint64_t to) const {
     if (interference <= 0)
         return false;

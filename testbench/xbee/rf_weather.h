@@ -5,6 +5,7 @@
 #ifndef RF_WEATHER_H
 #define RF_WEATHER_H
 
+#include "random.h"
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -32,7 +33,7 @@ private:
 struct RfWeather {
     // Residual loss of a packet in one direction, after the MAC's tries; costs no more air time.
     double loss = 0;
-    double burstBegin = 0, burstEnd = 0.2, burstLoss = 0.9; // Gilbert-Elliott, per packet
+    double burstBegin = 0, burstEnd = 0.2, burstLoss = 0.9; // Gilbert-Elliott, per packet or 10 ms
     double duplication = 0, corruption = 0;
     uint64_t delayNs = 0; // beyond the time on the air
     // The MAC itself: one try is lost, or its acknowledgement, and it tries again.
@@ -48,6 +49,13 @@ struct RfWeather {
     // Perfect air, for unit tests: both directions at once, no carrier sense, no collisions, and
     // modems that need no time of their own. No radio has this air.
     bool perfect = false;
+
+    // Losses in bursts as on flights, and tries lost as in the field; distance in the clear; an
+    // interferer. Sources: docs/models.md.
+    static const std::vector<std::pair<std::string, RfWeather>>& published();
+    // Draws one of these, independent losses below `mostLoss` percent, or none; with doubled and
+    // damaged packets now and then.
+    static RfWeather drawn(Random& random, unsigned mostLoss);
 
     bool interferes(uint64_t from, uint64_t to) const;
     double meanRssi() const; // dBm, of a modem of 0 dBm at `distance`

@@ -36,7 +36,9 @@ public:
         static const Link_Port port = {
             [](void* c, const U8* f, U32 n) { return self(c).transmit(f, n); },
             [](void* c) { return self(c).random_.next(); },
-            [](void* c, int channel, const U8*, U32 n) { return self(c).onMessage(channel, n); },
+            [](void* c, int channel, const U8* m, U32 n) {
+                return self(c).onMessage(channel, m, n);
+            },
             [](void*, int, int) {},
             [](void*, Link_State) {},
             nullptr,
@@ -69,13 +71,16 @@ public:
         }
         return std::min({modem_.nextEvent(), nextPoll_, nextWrite_});
     }
-    U32 echoSize = 0, messages = 0, called = 0; // called: messages of channel `calls`
-    uint64_t bytes = 0, lastAt = 0, calledAt = 0;
-    bool feed = false; // sends pictures as fast as they go
+    U32 echoSize = 0, called = 0;                 // called: messages of channel `calls`
+    uint64_t bytes = 0, lastAt = 0, calledAt = 0; // bytes, last one: of channel `pictures`
+    bool feed = false;                            // sends pictures as fast as they go
+    // Each picture is full of its number.
     void fill(U32 size = LINK_MAX_MESSAGE) {
-        static const std::vector<U8> message(LINK_MAX_MESSAGE, 1);
-        while (Link_send(link(), pictures, message.data(), size, 0) == LINK_OK)
-            ;
+        for (;; ++sent_) {
+            const std::vector<U8> message(size, static_cast<U8>(sent_));
+            if (Link_send(link(), pictures, message.data(), size, 0) != LINK_OK)
+                return;
+        }
     }
 
 private:
@@ -105,16 +110,19 @@ private:
         U32 wait = pacer_.deadline(us);
         nextWrite_ = wait == 0xFFFFFFFFu ? never : now_ + wait * 1000ull;
     }
-    int onMessage(int channel, U32 size) {
+    int onMessage(int channel, const U8* message, U32 size) {
         static const U8 answer[LINK_MAX_PAYLOAD] = {1};
-        ++messages;
-        bytes += size;
-        lastAt = now_;
-        if (channel == calls) {
-            ++called;
-            calledAt = now_;
+        if (channel == pictures) {
+            const std::vector<U8> expected(size, static_cast<U8>(received_++));
+            if (!std::equal(expected.begin(), expected.end(), message))
+                throw std::runtime_error("a message was lost, doubled or changed");
+            bytes += size;
+            lastAt = now_;
+            return 0;
         }
-        if (echoSize && channel == calls)
+        ++called;
+        calledAt = now_;
+        if (echoSize)
             Link_send(link(), channel, answer, echoSize, 0);
         return 0;
     }
@@ -124,6 +132,7 @@ private:
     Random random_;
     std::unique_ptr<Link> link_{new Link};
     uint64_t now_ = 0, nextPoll_ = 0, nextWrite_ = never;
+    unsigned sent_ = 0, received_ = 0; // pictures
 };
 
 class World {
@@ -176,9 +185,7 @@ std::array<double, 2> flow(World& w, bool both, uint64_t seconds) {
 }
 
 // The mean over some seeds: single runs differ by a tenth.
-void goodput(double loss, Mode mode, bool both) {
-    RfWeather weather;
-    weather.loss = loss;
+void goodput(const std::string& what, const RfWeather& weather, Mode mode, bool both) {
     const unsigned runs = figures.brief ? 1 : 9;
     double rate[2] = {0, 0}, least = 1e9, most = 0;
     for (unsigned run = 0; run < runs; ++run) {
@@ -191,20 +198,30 @@ void goodput(double loss, Mode mode, bool both) {
     }
     const double limit = mode == Encrypted ? 47000.0 / 8 : 10000;
     const double all = rate[0] + rate[1];
-    std::printf("%s, %s, %2.0f %% lost: %5.0f + %5.0f bytes/s, %.1f %% of %.0f (%.1f to %.1f)\n",
-                columns[mode], both ? "both ways" : "one way  ", loss * 100, rate[0], rate[1],
+    std::printf("%s, %s, %s: %5.0f + %5.0f bytes/s, %.1f %% of %.0f (%.1f to %.1f)\n",
+                columns[mode], both ? "both ways" : "one way  ", what.c_str(), rate[0], rate[1],
                 all / limit * 100, limit, least / limit * 100, most / limit * 100);
-    char name[80];
-    std::snprintf(name, sizeof name, "goodput %s %s, loss %.2f", both ? "both ways" : "one way",
-                  names[mode], loss);
-    figures.add(name, all, "bytes/s", limit);
+    figures.add(std::string("goodput ") + (both ? "both ways " : "one way ") + names[mode] + ", " +
+                    what,
+                all, "bytes/s", limit);
 }
 
 void allGoodput(Mode mode) {
     for (bool both : {false, true})
-        for (double loss : {0.0, 0.01, 0.1, 0.3})
-            if (!figures.brief || loss == 0.1)
-                goodput(loss, mode, both);
+        for (const char* loss : {"0.00", "0.01", "0.10", "0.30"}) {
+            RfWeather weather;
+            weather.loss = std::stod(loss);
+            if (!figures.brief || weather.loss == 0.1)
+                goodput("loss " + std::string(loss), weather, mode, both);
+        }
+}
+
+void allWeather(Mode mode) {
+    const auto& all = RfWeather::published();
+    for (bool both : {false, true})
+        for (auto& [what, weather] : all)
+            if (!figures.brief || &weather == &all.front().second)
+                goodput(what, weather, mode, both);
 }
 
 // Calls `count` times with a message of `size` bytes, which comes back, and returns the times
@@ -276,8 +293,10 @@ void headOfLine(Mode mode) {
 int main(int argc, char** argv) {
     figures.app.add_option("--rn", leastExponent, "RN of both modems")->check(CLI::Range(0u, 3u));
     std::string only;
-    const std::map<std::string, void (*)(Mode)> parts = {
-        {"goodput", allGoodput}, {"round-trips", roundTrips}, {"head-of-line", headOfLine}};
+    const std::map<std::string, void (*)(Mode)> parts = {{"goodput", allGoodput},
+                                                         {"round-trips", roundTrips},
+                                                         {"head-of-line", headOfLine},
+                                                         {"weather", allWeather}};
     figures.app.add_option("part", only, "only this part")->check(CLI::IsMember(parts));
     return figures.run(argc, argv, [&] {
         for (auto& [name, measure] : parts)

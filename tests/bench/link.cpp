@@ -2,10 +2,11 @@
 //
 // link: the radio link's figures in simulated time: link layer and driver in the firmware's
 // kernel, FSMC, RTL, UART, modems, air; on the ground the same link layer behind a serial line at
-// 111,111 baud. Beside each the physical limit (docs/link.md).
+// 111,111 baud; in the clear and under a key. Beside each the physical limit (docs/link.md).
 
 #include "figures.h"
 #include "frame_pacer.h"
+#include "modem_floor.h"
 #include "rf_channel.h"
 #include "timed_line.h"
 #include "uav_machine.h"
@@ -19,6 +20,8 @@ extern "C" {
 }
 
 namespace {
+
+const char* const modes[] = {"in the clear", "with a key"}; // by hasKey
 
 // The modem's own time for a packet, and the mean wait of RN 2 (docs/models.md); ms.
 constexpr double modemMs = 4.688, waitMs = 1.5 * 0.320;
@@ -66,8 +69,12 @@ private:
 
 class World {
 public:
-    explicit World(double loss, unsigned guardMs) : guardMs_(guardMs) {
+    explicit World(double loss, unsigned guardMs, bool hasKey = false) : guardMs_(guardMs) {
         air_.weather.loss = loss;
+        static const U8 key[LINK_KEY_BYTES] = {1, 2, 3};
+        if (hasKey)
+            for (End* end : {&near, &far})
+                Link_setKey(end->link(), 0, key);
         soc_.onTime([this](uint64_t now) {
             ground_.advance(now);
             write(now);
@@ -185,8 +192,8 @@ public:
 
 Figures figures("The radio link through the RTL, in simulated time.");
 
-void goodput(double loss, double target, bool down) {
-    World w(loss, 20);
+void goodput(double loss, double target, bool down, bool hasKey) {
+    World w(loss, 20, hasKey);
     w.run([&] {
         w.connect();
         const std::vector<U8> message(945, 1);
@@ -204,33 +211,30 @@ void goodput(double loss, double target, bool down) {
             300);
         double rate =
             static_cast<double>(to.bytes) / (static_cast<double>(to.lastAt - start) / 1e9);
-        std::printf("goodput %s, %4.0f %% lost: %7.0f bytes/s, %.1f %% of %.0f (target %.0f %%), "
-                    "%u fragments sent "
-                    "again\n",
-                    down ? "UAV to ground" : "ground to UAV", loss * 100, rate,
+        std::printf("goodput %s %s, %4.0f %% lost: %7.0f bytes/s, %.1f %% of %.0f (wanted %.0f "
+                    "%%), %u fragments sent again\n",
+                    down ? "UAV to ground" : "ground to UAV", modes[hasKey], loss * 100, rate,
                     rate / mostBytesPerSecond * 100, mostBytesPerSecond, target * 100,
                     from.statistics().fragmentsResent);
         char name[80];
-        std::snprintf(name, sizeof name, "goodput %s, loss %.2f",
-                      down ? "UAV to ground" : "ground to UAV", loss);
+        std::snprintf(name, sizeof name, "goodput %s %s, loss %.2f",
+                      down ? "UAV to ground" : "ground to UAV", modes[hasKey], loss);
         figures.add(name, rate, "bytes/s", mostBytesPerSecond);
     });
 }
 
-// The floor: serial ports, modems and the air, nothing else. Bytes as the modem sees them. The far
-// modem is at work on what it has received while its serial port takes it out and brings the
-// answer.
-double floorMs(double out, double back) {
-    double serial = (out + back) * 0.09;
-    return serial + std::max(modemMs, serial) + 2 * (modemMs + waitMs) +
-           2 * (0.128 + 0.192 + 0.544) + (19 + out + 19 + back) * 0.032;
-}
-
-void roundTrips() {
-    World w(0, 20);
+void roundTrips(bool hasKey) {
+    World w(0, 20, hasKey);
+    const U32 overhead = hasKey ? LINK_SECURE_OVERHEAD : LINK_OVERHEAD;
     w.run([&] {
         w.connect();
-        for (auto [out, back] : {std::pair<U32, U32>{20, 10}, {40, 25}, {94, 94}}) {
+        for (auto [out, back] : {std::pair<U32, U32>{1, 1},
+                                 {5, 2},
+                                 {20, 10},
+                                 {40, 25},
+                                 {60, 60},
+                                 {86, 86},
+                                 {94, 94}}) {
             std::vector<double> times;
             w.far.echoSize = back;
             const std::vector<U8> message(out, 1);
@@ -244,13 +248,21 @@ void roundTrips() {
                 w.until([&] { return w.now() >= rest; }, 5);
             }
             std::sort(times.begin(), times.end());
-            double median = times[times.size() / 2], floor = floorMs(out + 5, back + 6);
-            std::printf("round trip, %2u bytes out and %2u back (%u and %u on the line): median "
-                        "%.1f ms, longest %.1f, "
-                        "floor %.1f, ratio %.2f (target 1.15)\n",
-                        out, back, out + 5, back + 6, median, times.back(), floor, median / floor);
-            figures.add("round trip " + std::to_string(out) + "/" + std::to_string(back), median,
-                        "ms", floor);
+            // What is longer than 20 bytes has a check unless there is a key; the answer takes the
+            // acknowledgement along.
+            auto onLine = [&](U32 size) {
+                size += hasKey || size <= LINK_UNCHECKED ? 0 : LINK_CHECK;
+                return size + overhead * (size + overhead > LINK_MAX_FRAME ? 2 : 1);
+            };
+            const U32 there = onLine(out), here = onLine(back) + 1;
+            const double median = times[times.size() / 2], floor = floorMs(there, here);
+            std::printf("round trip %s, %2u bytes out and %2u back (%u and %u on the line): median "
+                        "%.1f ms, longest %.1f, floor %.1f, ratio %.2f (wanted 1.15)\n",
+                        modes[hasKey], out, back, there, here, median, times.back(), floor,
+                        median / floor);
+            figures.add("round trip " + std::to_string(out) + "/" + std::to_string(back) + " " +
+                            modes[hasKey],
+                        median, "ms", floor);
         }
         w.far.echoSize = 0;
     });
@@ -331,9 +343,10 @@ void hostTime() {
 
 void allGoodput() {
     const double targets[][2] = {{0, 0.95}, {0.01, 0.94}, {0.1, 0.88}, {0.3, 0.70}};
-    for (bool down : {true, false})
-        for (auto [loss, target] : targets)
-            goodput(loss, target, down);
+    for (bool hasKey : {false, true})
+        for (bool down : {true, false})
+            for (auto [loss, target] : targets)
+                goodput(loss, target, down, hasKey);
 }
 
 } // namespace
@@ -343,7 +356,7 @@ int main(int argc, char** argv) {
     const std::map<std::string, std::function<void()>> parts = {
         {"set-up", [] { setUp(1000), setUp(20); }},
         {"goodput", allGoodput},
-        {"round-trips", roundTrips},
+        {"round-trips", [] { roundTrips(false), roundTrips(true); }},
         {"copies", copies},
         {"host", hostTime}};
     figures.app.add_option("part", only, "only this part")->check(CLI::IsMember(parts));

@@ -248,13 +248,8 @@ private:
     void weather() {
         if (random_.below(8))
             return;
-        RfChannel::Weather w;
-        w.loss = random_.below(2) ? 0 : random_.below(40) / 100.0;
-        w.burstBegin = random_.below(3) ? 0 : 0.05;
-        w.duplication = random_.below(2) ? 0 : 0.1;
-        w.corruption = random_.below(2) ? 0 : 0.05;
-        w.delayNs = random_.below(2) ? 0 : random_.below(20) * msNs;
-        air_.weather = w;
+        air_.weather = RfWeather::drawn(random_, 40);
+        air_.weather.delayNs = random_.below(2) ? 0 : random_.below(20) * msNs;
         rate_ = random_.below(3)
                     ? 0.02
                     : 0.2; // messages a half millisecond: light, or more than it carries

@@ -5,6 +5,7 @@
 #include "chip_world.h"
 #include <condition_variable>
 #include <cstdlib>
+#include <unistd.h>
 
 extern "C" {
 #include "echo_uav.h"
@@ -18,11 +19,20 @@ XBee::Options ChipWorld::modem(const char* name, std::map<std::string, uint32_t>
     return options;
 }
 
-ChipWorld::ChipWorld(uint64_t seed, const EchoUav_Port& port, void* context)
-    : air(seed), groundModem(pty_, air, modem("ground", {{"BD", 7}, {"DL", 1}, {"D6", 1}})),
+ChipWorld::ChipWorld(uint64_t seed, const EchoUav_Port& port, void* context, bool hasKey)
+    : seed_(seed), air(seed),
+      groundModem(pty_, air, modem("ground", {{"BD", 7}, {"DL", 1}, {"D6", 1}})),
       soc(air, modem("uav", {{"BD", 7}, {"MY", 1}, {"DL", 0}})),
       step_(*clock_, pty_, [this] { return !stop_; }) {
     uav_guardMs = guardMs_;
+    if (hasKey) {
+        char name[] = "/tmp/chip_key.XXXXXX"; // of mode 0600
+        const int file = mkstemp(name);
+        const std::string digits(2 * LINK_KEY_BYTES, '5');
+        if (file < 0 || write(file, digits.data(), digits.size()) < 0 || close(file) < 0)
+            throw std::runtime_error("no file for a key");
+        keyFile_ = name;
+    }
     EchoUav_setPort(&port, context);
     soc.onTime([this](uint64_t now) { return advance(now); });
     thread_ = std::thread([this] { run(); });
@@ -31,6 +41,8 @@ ChipWorld::ChipWorld(uint64_t seed, const EchoUav_Port& port, void* context)
 ChipWorld::~ChipWorld() {
     stop_ = true;
     thread_.join();
+    if (!keyFile_.empty())
+        unlink(keyFile_.c_str());
 }
 
 uint64_t ChipWorld::advance(uint64_t now) {
@@ -55,12 +67,15 @@ void ChipWorld::run() {
     firmware.irqHandler = EchoUav_irqHandler;
     firmware.irqEnabled = [] { return EchoUav_irqEnabled() != 0; };
     try {
-        while (!stop_) {
+        for (uint64_t boots = 0; !stop_; ++boots) {
             reboot_ = false;
             soc.reset();
-            UavMachine(
-                soc, [this] { return !stop_ && !reboot_; }, firmware)
-                .run();
+            UavMachine machine(
+                soc, [this] { return !stop_ && !reboot_; }, firmware);
+            machine.board = SimulatedBoard(1000 * seed_ + boots);
+            machine.board.provide(
+                std::vector<uint8_t>(keyFile_.empty() ? 0 : LINK_KEY_BYTES, 0x55));
+            machine.run();
         }
     } catch (const std::exception& e) { // a model says that the chip did wrong: nobody can go on
         std::fprintf(stderr, "chip: error: %s\n", e.what());
@@ -104,6 +119,8 @@ Ice::CommunicatorPtr ChipWorld::client(std::map<std::string, std::string> more) 
         {"XBeeAT.Down", "2"},
         {"Station.Endpoints", endpoint()},
         {"Station.ThreadPool.Size", "1"}}; // so that order can be seen
+    if (!keyFile_.empty())
+        all["XBeeAT.KeyFile"] = keyFile_;
     for (auto& [name, value] : more)
         all[name] = value;
     for (auto& [name, value] : all)

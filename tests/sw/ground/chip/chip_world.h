@@ -20,8 +20,9 @@ struct EchoUav_Port; // echo_uav.h
 
 class ChipWorld {
 public:
-    // `port`: what the firmware calls, in this world's thread.
-    ChipWorld(uint64_t seed, const EchoUav_Port& port, void* context);
+    // `port`: what the firmware calls, in this world's thread. Ground and UAV share a key, or speak
+    // in the clear.
+    ChipWorld(uint64_t seed, const EchoUav_Port& port, void* context, bool hasKey = false);
     ~ChipWorld();
     ChipWorld(const ChipWorld&) = delete;
     ChipWorld& operator=(const ChipWorld&) = delete;
@@ -45,6 +46,8 @@ private:
     static XBee::Options modem(const char* name, std::map<std::string, uint32_t> set);
 
     static constexpr uint32_t guardMs_ = 20;
+    const uint64_t seed_;
+    std::string keyFile_; // empty: in the clear
     ClockFile clock_;
 
 public: // in the world's thread only

@@ -56,11 +56,7 @@ protected:
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     void weather(Random& random) {
-        RfChannel::Weather w;
-        w.loss = random.below(2) ? 0 : random.below(30) / 100.0;
-        w.burstBegin = random.below(3) ? 0 : 0.05;
-        w.duplication = random.below(2) ? 0 : 0.1;
-        w.corruption = random.below(2) ? 0 : 0.03;
+        const RfWeather w = RfWeather::drawn(random, 30);
         world_.rig.with([&] { world_.rig.air.weather = w; });
     }
     void reset(XBee& modem) {

@@ -77,8 +77,7 @@ static U32 find(const Link_Heads* heads, const U8* head, U32 size, const U8* ver
     return slot;
 }
 
-/* Remembers, on both sides alike, a message that has passed. `head`: what headOf returned. */
-static void note(Link_Heads* heads, int channel, const U8* m, U32 size, U32 head) {
+void link_note(Link_Heads* heads, int channel, const U8* m, U32 size, U32 head) {
     const U8* version = m + LINK_HEAD_AT + head + 4;
     if (head) {
         if (link_get32(m + HEADER))
@@ -152,10 +151,6 @@ void link_compress(const Link* link, int channel, const U8* m, U32 size, Link_Pa
         packed->bytes[0] = TOKEN_AS_IT_IS;
         packed->prefix = 1;
     }
-}
-
-void link_noteSent(Link* link, int channel, const U8* m, U32 size, U32 head) {
-    note(&link->headsOut, channel, m, size, head);
 }
 
 /* Expands the token and prefix of a request at `p` to the fields before its body. Returns their
@@ -257,6 +252,6 @@ int link_decompress(Link* link) {
         return 0;
     receiver->start = p;
     receiver->size = (U16)(end - p);
-    note(&link->headsIn, receiver->channel, p, receiver->size, headOf(p, receiver->size));
+    link_note(&link->headsIn, receiver->channel, p, receiver->size, headOf(p, receiver->size));
     return 1;
 }

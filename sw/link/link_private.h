@@ -238,8 +238,8 @@ int link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 number, U32 size
 void link_resetHeads(Link* link);
 /* Says how the message is to be sent, if not as it is, which `packed` says on entry. */
 void link_compress(const Link* link, int channel, const U8* m, U32 size, Link_Packed* packed);
-/* Remembers the head of a message that is going out, as long as link_compress has said. */
-void link_noteSent(Link* link, int channel, const U8* m, U32 size, U32 head);
+/* Remembers, on both sides alike, a message that has passed, whose head is so long. */
+void link_note(Link_Heads* heads, int channel, const U8* m, U32 size, U32 head);
 /* Restores the message that link->receiver holds. Returns 0 where it makes no sense. */
 int link_decompress(Link* link);
 

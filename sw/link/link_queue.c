@@ -122,7 +122,7 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     put(link, data + LINK_HEAD_AT, packed.middle);
     put(link, data + packed.tailAt, packed.tail);
     if (isCompressed) {
-        link_noteSent(link, channel, data, size, packed.head);
+        link_note(&link->headsOut, channel, data, size, packed.head);
         link->statistics.headBytesSaved += size - total;
     }
     trailer[0] = (U8)queue->sums;

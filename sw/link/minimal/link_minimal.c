@@ -161,7 +161,7 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
     } else {
         link->ackDue = 1;
         if (!isControl && frame[1] == (U8)link->receiveNext)
-            onData(link, frame, size - link->overhead);
+            onData(link, frame, size - LINK_OVERHEAD_OF(link));
     }
     /* With a key, what was heard before may be an attacker's recording, and is no sign of life. */
     if (!LINK_IS_SECURE(link) || link->sendNext + link->receiveNext != before)
@@ -172,7 +172,7 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
 static int isWhole(const Link* link, const U8* bytes, U32 size) {
     U32 at = 0;
     while (at < size)
-        at += LINK_LENGTH(bytes + at) + link->overhead;
+        at += LINK_LENGTH(bytes + at) + LINK_OVERHEAD_OF(link);
     return at == size;
 }
 
@@ -181,7 +181,7 @@ void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
         link->inputCount = 0;
     link->inputAt = nowUs;
     while (size--) {
-        U32 whole = LINK_LENGTH(link->input) + link->overhead;
+        U32 whole = LINK_LENGTH(link->input) + LINK_OVERHEAD_OF(link);
         link->input[link->inputCount++] = *bytes++;
         if (link->inputCount == whole) {
             takeFrame(link, link->input, whole);
@@ -210,8 +210,8 @@ static U32 cut(Link* link) {
     flags = link->channel;
     if (!link->outAt)
         flags |= LINK_FIRST;
-    if (size > LINK_LONGEST + LINK_OVERHEAD - link->overhead)
-        size = LINK_LONGEST + LINK_OVERHEAD - link->overhead;
+    if (size > LINK_LONGEST + LINK_OVERHEAD - LINK_OVERHEAD_OF(link))
+        size = LINK_LONGEST + LINK_OVERHEAD - LINK_OVERHEAD_OF(link);
     else
         flags |= LINK_LAST;
     link->size = size;

@@ -19,8 +19,10 @@
 /* No length that a frame may claim goes beyond. */
 #define LINK_INPUT_BYTES (0x7FU + (LINK_SECURE ? LINK_SECURE_OVERHEAD : LINK_OVERHEAD))
 
+/* Bytes that a frame has beside its payload: known to the compiler where there are no keys. */
+#define LINK_OVERHEAD_OF(link) (LINK_SECURE ? (link)->overhead : LINK_OVERHEAD)
 /* True if a key was given: from then on for good. */
-#define LINK_IS_SECURE(link) (LINK_SECURE && (link)->overhead != LINK_OVERHEAD)
+#define LINK_IS_SECURE(link) (LINK_OVERHEAD_OF(link) != LINK_OVERHEAD)
 
 /* With a key: the handshake's parts. */
 typedef struct Link_Keyed {

@@ -33,8 +33,8 @@ endif()
 # registers, wrapper and servant are made; else REGS describes its registers, and SERVANT is written by hand, for
 # interfaces of SLICE: files, or names given to icesoc_slice; without SERVANT it is that of sw/hw/registers. <NAME>_test.cpp beside it becomes test_ip_<NAME>, with the model V<NAME>_slot.
 # FLAGS: Verilator's, for a foreign core's style. LIBRARY: the VHDL library that its files say they are in. DEPENDS: what makes VERILOG files that are generated.
-# CLK_HZ: the module has a parameter of that name, the clock in Hz: 100 MHz on the board and in the simulator; 2 MHz
-# in <NAME>_test.cpp. IDLE: it has an output idle_o, so that its clock can have a gate (hdl/system/core_gate.v).
+# CLK_HZ: the module has a parameter of that name, the clock in Hz: 100 MHz on the board, in <NAME>_test.cpp and in
+# the simulator, unless it is told another. IDLE: it has an output idle_o, so that its clock can have a gate (hdl/system/core_gate.v).
 function(icesoc_core name)
   cmake_parse_arguments(A "CLK_HZ;IDLE" "ICE;REGS;LIBRARY" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS;DEPENDS" ${ARGN})
   list(TRANSFORM A_VHDL PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
@@ -121,7 +121,7 @@ function(icesoc_core name)
   set_property(GLOBAL APPEND PROPERTY ICESOC_CORES ${name})
   set(clock)
   if(A_CLK_HZ)
-    set(clock CLK_HZ=2000000)
+    set(clock CLK_HZ=100000000)
   endif()
   file(GLOB test CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
   if(test AND "testbench" IN_LIST ROOMS)

@@ -7,6 +7,7 @@
 
 #include "random.h"
 #include "soc_model.h"
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -92,6 +93,19 @@ public:
             backlog_ += size;
     }
     void ping(int id, const std::string& object) { call(id, object, "ice_ping", 2); }
+    // Returns a script, to be called again and again: it connects, pings each time the ping before
+    // is answered, and returns true once `count` are.
+    std::function<bool()> pinging(int count, const std::string& object = "hwengine1") {
+        return [this, count, object, sent = 0, opened = false]() mutable {
+            if (!opened && isUp()) {
+                open();
+                opened = true;
+            }
+            if (validated && static_cast<int>(replies.size()) == sent && sent < count)
+                ping(++sent, object);
+            return static_cast<int>(replies.size()) == count;
+        };
+    }
     void noise(const std::vector<uint8_t>& bytes) { line_.send(bytes, now_); }
 
     std::map<int, int> replies;                   // request id to reply status

@@ -1,12 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# reverse: Debian's GDB runs a recorded flight backwards. Usage: reverse.sh icesoc-sim firmware.elf out-folder
+# reverse: Debian's GDB runs a recorded flight backwards, a secure one. Usage: reverse.sh icesoc-sim firmware.elf out-folder
 set -eu
 sim=$1 elf=$2 out=$3
 rm -rf "$out"
 mkdir -p "$out"
-"$sim" --image /usr/share/xplanet/images/earth.jpg --size 96x64 --cpu m3 --firmware "$elf" --speed max --duration 0.3 \
+(umask 077 && echo 000102030405060708090a0b0c0d0e0f >"$out/a.key")
+"$sim" --image /usr/share/xplanet/images/earth.jpg --size 96x64 --cpu m3 --firmware "$elf" --speed max --duration 0.3 --key "$out/a.key" \
     --out "$out/flight" --quiet
 "$sim" --replay "$out/flight" --out "$out" --gdb 0 >"$out/sim.log" 2>&1 &
 pid=$!

@@ -49,19 +49,6 @@ protected:
         machine.run();
         EXPECT_TRUE(done) << "not done after " << limitSeconds << " simulated seconds";
     }
-    // Calls one after the other; done when all are answered.
-    std::function<bool()> calling(int count) {
-        return [=, sent = 0, opened = false]() mutable {
-            if (!opened && ground_.isUp()) {
-                ground_.open();
-                opened = true;
-            }
-            if (ground_.validated && static_cast<int>(ground_.replies.size()) == sent &&
-                sent < count)
-                ground_.ping(++sent, "hwengine1");
-            return static_cast<int>(ground_.replies.size()) == count;
-        };
-    }
     void expectAllAnswered(size_t count) {
         EXPECT_EQ(ground_.replies.size(), count);
         for (auto& [id, status] : ground_.replies)
@@ -97,7 +84,7 @@ Bytes blindResets(bool withTags) {
 
 TEST_F(Attack, InTheClearEightBlindResetsEndASession) {
     start({});
-    auto first = calling(3);
+    auto first = ground_.pinging(3);
     int phase = 0;
     fly(
         [&] {
@@ -112,7 +99,7 @@ TEST_F(Attack, InTheClearEightBlindResetsEndASession) {
 
 TEST_F(Attack, WithAKeyResetsEndNothing) {
     start(vehicleKey);
-    auto calls = calling(20);
+    auto calls = ground_.pinging(20);
     uint64_t next = 0;
     fly(
         [&] {
@@ -134,7 +121,7 @@ TEST_F(Attack, WithAKeyResetsEndNothing) {
 TEST_F(Attack, WithAKeyNothingComesOfAnyMischief) {
     start(vehicleKey);
     period_ = 25 * ms;
-    auto first = calling(15), second = calling(15), third = calling(15);
+    auto first = ground_.pinging(15), second = ground_.pinging(15), third = ground_.pinging(15);
     int phase = 0;
     fly(
         [&] {

@@ -48,7 +48,10 @@ Flight fly(bool evaluateAll) {
     auto note = [&](uint32_t what, uint32_t value) {
         f.events.push_back({soc.cycles(), what, value});
     };
-    soc.onTime([&](uint64_t now) { return ground.advance(now); });
+    soc.onTime([&](uint64_t now) {
+        note(2, 0); // the modems and the air have something to do
+        return ground.advance(now);
+    });
     soc.onIrq([&](bool high) { note(0, high); });
     soc.fsmc().onWord = [&](uint32_t address, uint32_t value, bool isWrite) {
         note(address | isWrite, value);

@@ -31,21 +31,6 @@ protected:
         machine.run();
         EXPECT_TRUE(done) << "not done after " << limitSeconds << " simulated seconds";
     }
-    // Connects, then pings until `count` replies have come.
-    std::function<bool()> pinging(int count, const std::string& object = "hwengine1") {
-        auto sent = std::make_shared<int>(0);
-        auto opened = std::make_shared<bool>(false);
-        return [=, this_ = this] {
-            Ground& g = this_->ground_;
-            if (!*opened && g.isUp()) {
-                g.open();
-                *opened = true;
-            }
-            if (g.validated && static_cast<int>(g.replies.size()) == *sent && *sent < count)
-                g.ping(++*sent, object);
-            return static_cast<int>(g.replies.size()) == count;
-        };
-    }
 
     RfChannel air_{testSeed()};
     Ground ground_{air_, testSeed() + 5};
@@ -54,19 +39,19 @@ protected:
 };
 
 TEST_F(Uav, AnswersPings) {
-    fly(pinging(20), 20);
+    fly(ground_.pinging(20), 20);
     for (auto& [id, status] : ground_.replies)
         EXPECT_EQ(status, 0) << id;
 }
 
 TEST_F(Uav, AnObjectThatDoesNotExistIsSaidNotToExist) {
-    fly(pinging(1, "nobody"), 20);
+    fly(ground_.pinging(1, "nobody"), 20);
     EXPECT_EQ(ground_.replies[1], 2);
 }
 
 TEST_F(Uav, TenPercentLossIsNotNoticed) {
     air_.weather.loss = 0.1;
-    fly(pinging(40), 60);
+    fly(ground_.pinging(40), 60);
     for (auto& [id, status] : ground_.replies)
         EXPECT_EQ(status, 0) << id;
     EXPECT_GT(air_.counters().lost, 0u);
@@ -75,12 +60,12 @@ TEST_F(Uav, TenPercentLossIsNotNoticed) {
 TEST_F(Uav, CorruptionAndDuplicationAreNotNoticed) {
     air_.weather.corruption = 0.03;
     air_.weather.duplication = 0.1;
-    fly(pinging(40), 60);
+    fly(ground_.pinging(40), 60);
     EXPECT_EQ(ground_.replies.size(), 40u);
 }
 
 TEST_F(Uav, TheGroundGoesAwayAndComesBack) {
-    auto first = pinging(3), second = pinging(3);
+    auto first = ground_.pinging(3), second = ground_.pinging(3);
     int phase = 0;
     uint64_t since = 0;
     fly(
@@ -103,7 +88,7 @@ TEST_F(Uav, TheGroundGoesAwayAndComesBack) {
 }
 
 TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
-    auto first = pinging(3), second = pinging(3);
+    auto first = ground_.pinging(3), second = ground_.pinging(3);
     int phase = 0;
     uint64_t since = 0;
     fly(
@@ -143,7 +128,7 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
 
 TEST_F(Uav, GarbageOnTheGroundsSerialLineIsSurvived) {
     Random random(testSeed());
-    auto ping = pinging(20);
+    auto ping = ground_.pinging(20);
     uint64_t next = 0;
     fly(
         [&] {
@@ -160,24 +145,14 @@ TEST_F(Uav, GarbageOnTheGroundsSerialLineIsSurvived) {
 }
 
 TEST_F(Uav, TheSameSeedGivesTheSameRun) {
-    fly(pinging(5), 20);
+    fly(ground_.pinging(5), 20);
     uint64_t cycles = soc_.cycles();
     RfChannel air(testSeed());
     Ground ground(air, testSeed() + 5);
     SocModel soc(air, Ground::uavModem());
     soc.onTime([&](uint64_t now) { return ground.advance(now); });
     soc.reset(true);
-    int sent = 0;
-    bool opened = false;
-    UavMachine machine(soc, [&] {
-        if (!opened && ground.isUp()) {
-            ground.open();
-            opened = true;
-        }
-        if (ground.validated && static_cast<int>(ground.replies.size()) == sent && sent < 5)
-            ground.ping(++sent, "hwengine1");
-        return ground.replies.size() < 5;
-    });
+    UavMachine machine(soc, [script = ground.pinging(5)] { return !script(); });
     machine.run();
     EXPECT_EQ(soc.cycles(), cycles);
 }

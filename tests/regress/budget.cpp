@@ -45,13 +45,23 @@ std::vector<Test> withinBudget(std::vector<Test> tests, double seconds, unsigned
                                const std::string& build, const History& history,
                                const std::vector<Requirement>& plan) {
     const auto notes = notesOf(build);
+    const auto secondsOf = [&](const Test& test) {
+        const auto note = notes.find(test.name);
+        const double takes = history.seconds(test.name);
+        return std::max(shortest, takes > 0                                 ? takes
+                                  : note != notes.end() && note->second > 0 ? note->second
+                                                                            : 1);
+    };
+    std::map<std::string, double> setUp; // seconds by fixture
+    for (const Test& test : tests)
+        for (const std::string& fixture : test.sets)
+            setUp[fixture] += secondsOf(test);
     std::vector<Candidate> candidates;
     for (Test& test : tests) {
         const std::string name = test.name;
-        const auto note = notes.find(name);
-        double takes = history.seconds(name);
-        if (takes == 0)
-            takes = note != notes.end() && note->second > 0 ? note->second : 1;
+        double takes = secondsOf(test);
+        for (const std::string& fixture : test.needs)
+            takes += setUp[fixture];
         const int rank = failedLately(name, history)              ? 0
                          : history.passedWith(name) != test.print ? 1
                                                                   : 2;
@@ -61,7 +71,7 @@ std::vector<Test> withinBudget(std::vector<Test> tests, double seconds, unsigned
             for (const std::string& pattern : each.patterns)
                 if (mayMatch(pattern, test))
                     brings.insert("plan " + each.text + pattern);
-        candidates.push_back({std::move(test), std::max(takes, shortest), rank, brings});
+        candidates.push_back({std::move(test), takes, rank, brings});
     }
     std::vector<Test> chosen;
     std::set<std::string> had;

@@ -47,6 +47,10 @@ std::vector<Test> listTests(const std::string& build) {
         for (auto& property : entry.value("properties", nlohmann::json::array())) {
             if (property.at("name") == "LABELS")
                 test.labels = property.at("value").get<std::vector<std::string>>();
+            if (property.at("name") == "FIXTURES_REQUIRED")
+                test.needs = property.at("value").get<std::vector<std::string>>();
+            if (property.at("name") == "FIXTURES_SETUP")
+                test.sets = property.at("value").get<std::vector<std::string>>();
             if (property.at("name") == "WORKING_DIRECTORY") {
                 std::string folder = property.at("value");
                 test.place = folder.rfind(below, 0) == 0 ? folder.substr(below.size())

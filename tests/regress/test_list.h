@@ -14,6 +14,7 @@ struct Test {
     std::string name;
     std::string place; // folder below tests/: "hdl/modem"
     std::vector<std::string> labels;
+    std::vector<std::string> needs, sets; // CTest's fixtures: what sets them up runs before
     std::vector<std::string> command;
     std::string print; // changes when what the test runs changes (fingerprint)
 };

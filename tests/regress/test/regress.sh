@@ -120,6 +120,10 @@ budget) # seconds as the history says, not as a clock does
     took c.Flicker 20
     first=$(best --budget 1m)
     [ "$first" = "test_c.Flicker test_b.Bad test_d.Crash test_a.Two test_a.One " ] || fail "after a failure $first"
+    printf 'set_tests_properties(test_b.Bad PROPERTIES FIXTURES_SETUP f)\nset_tests_properties(test_d.Crash PROPERTIES FIXTURES_REQUIRED f)\n' >>tests/room/CMakeLists.txt
+    cmake build/main >/dev/null
+    first=$(best --budget 1.5s)
+    [ "$first" = "test_b.Bad " ] || fail "where one needs the other $first"
     run --budget 1m --jobs 1
     has '^5 tests, SEED=1'
     run --budget 0.001s

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// page: the utilisation report at work: tables to sort, a chart to look into, history, differences.
+// page: the utilisation report at work: tables to sort, trees to fold, history, differences.
 "use strict";
 const data = JSON.parse(document.getElementById("data").textContent);
 const byId = id => document.getElementById(id);
 const share = (part, whole) => (100 * part / whole).toFixed(1) + " %";
 const signed = n => n > 0 ? "+" + n : String(n);
 const usable = data.designs.filter(d => d.figures);
-let picked = usable[0], path = "", sortBy = null, sortUp = false;
+let picked = usable[0], path = "", sortBy = null, sortUp = false, folded = null;
+const openFolders = new Set();
 
 function element(tag, text, className) {
   const e = document.createElement(tag);
@@ -48,6 +49,22 @@ function showVerdict() {
   for (const n of notes) box.append(element("p", n, "soft"));
   byId("about").textContent = `${data.chip.name}, ${data.yosys}, commit ${data.commit || "unknown"}`;
 }
+// The chip as the whole of it, or the largest design that there is, fills it, beside what the paper's own takes of it.
+function showChip() {
+  const d = usable.find(d => d.limits.lut === data.chip.lut) ?? usable.reduce((a, b) => b.figures.lut > a.figures.lut ? b : a), f = d.figures;
+  byId("chip-title").textContent = `${data.chip.name}, filled by ${d.name}`;
+  for (const [name, key] of [["LUT", "lut"], ["FF", "ff"], ["DSP", "dsp"], ["block RAM", "ram"], ["slices", "slices"]]) {
+    const box = element("div"), meter = element("div", undefined, "meter"), part = element("i", undefined, f[key] > data.chip[key] ? "full" : "");
+    part.style.width = Math.min(100, 100 * f[key] / data.chip[key]) + "%";
+    meter.append(part);
+    box.append(element("b", String(f[key])), ` ${name}`, element("span", `${share(f[key], data.chip[key])} of ${data.chip[key]}`), meter);
+    if (data.paper[key]) box.append(element("div", `the paper's Table I: ${share(data.paper[key], data.chip[key])}`, "soft"));
+    byId("chip").append(box);
+  }
+  const box = element("div");
+  box.append(element("b", f.mhz ? clock(f) : "no path", f.mhz < data.chip.mhz ? "bad" : "good"), " MHz", element("div", `${data.chip.mhz} are wanted; median and range of the netlist's orders`, "soft"));
+  byId("chip").append(box);
+}
 function showPaper() {
   const d = usable.find(d => d.paper);
   if (!d) return;
@@ -67,12 +84,7 @@ function showPaper() {
 
 // ---- The table of designs
 const columns = [
-  ["design", d => d.name], ["LUT", d => d.figures.lut, d => {
-    const span = element("span"), bar = element("span", "", "share");
-    bar.style.width = 60 * d.figures.lut / data.chip.lut + "px";
-    span.append(bar, String(d.figures.lut));
-    return span;
-  }],
+  ["design", d => d.name], ["LUT", d => d.figures.lut, d => bar(d.figures.lut, data.chip.lut)],
   ["of chip", d => d.figures.lut, d => share(d.figures.lut, data.chip.lut)],
   ["change", d => d.accepted ? d.figures.lut - d.accepted.lut : -1e9, d => change(d, "lut")],
   ["LUT6", d => d.figures.luts[5]], ["RAM", d => d.figures.lutRam], ["SRL", d => d.figures.shift], ["thru", d => d.figures.through],
@@ -94,25 +106,50 @@ function change(d, key) {
   const by = d.figures[key] - d.accepted[key];
   return by === 0 ? "" : [signed(by), d.figures[key] > d.budget[key] ? "bad" : by < 0 ? "good" : ""];
 }
+// Modules stand in their folders, which fold; sorted or filtered, all are one list.
 function showDesigns() {
-  const rows = usable.slice();
+  const words = byId("filter").value.toLowerCase().split(/\s+/), table = byId("designs");
+  const rows = usable.filter(d => words.every(w => `${d.name} ${d.file} ${d.title}`.toLowerCase().includes(w)));
+  const folderOf = d => d.limits.lut ? "" : d.file.startsWith("build/") ? "generated" : d.file.replace(/\/[^/]*$/, "");
+  const grouped = sortBy === null && !byId("filter").value, lines = []; // [cells, design or folder]
   if (sortBy !== null) {
     const key = columns[sortBy][1];
     rows.sort((a, b) => (key(a) < key(b) ? -1 : key(a) > key(b) ? 1 : 0) * (sortUp ? 1 : -1));
   }
-  const table = byId("designs");
-  fill(table, columns.map(c => c[0]), rows.map(d => columns.map(c => (c[2] ?? c[1])(d))));
+  const cells = d => columns.map(c => (c[2] ?? c[1])(d));
+  if (!grouped) rows.forEach(d => lines.push([cells(d), d]));
+  else for (const folder of [...new Set(rows.map(folderOf))].sort()) {
+    const members = rows.filter(d => folderOf(d) === folder), open = openFolders.has(folder);
+    if (folder) lines.push([[`${open ? "\u25be" : "\u25b8"} ${folder}, ${members.length} ${members.length === 1 ? "module" : "modules"}`], folder]);
+    if (!folder || open) for (const d of members) lines.push([cells(d), d]);
+  }
+  fill(table, columns.map(c => c[0]), lines.map(([line]) => line));
   [...table.tHead.rows[0].cells].forEach((th, i) => {
     if (i === sortBy) th.className = sortUp ? "up" : "down";
-    th.onclick = () => { sortUp = sortBy === i ? !sortUp : i === 0; sortBy = i; showDesigns(); };
+    press(th, () => { sortUp = sortBy === i ? !sortUp : i === 0; sortBy = i; showDesigns(); });
   });
   [...table.tBodies[0].rows].forEach((tr, i) => {
-    if (rows[i] === picked) tr.className = "picked";
-    tr.onclick = () => { picked = rows[i]; path = ""; show(); };
+    const what = lines[i][1];
+    if (what === picked) tr.className = "picked";
+    if (typeof what === "string") {
+      tr.cells[0].colSpan = columns.length;
+      tr.setAttribute("aria-expanded", openFolders.has(what));
+    }
+    press(tr, () => {
+      if (typeof what !== "string") { pick(what, ""); return; }
+      if (!openFolders.delete(what)) openFolders.add(what);
+      showDesigns();
+      byId("designs").tBodies[0].rows[i].focus();
+    });
   });
 }
+function press(node, action) { // by the pointer, or by Enter and the space bar
+  node.tabIndex = 0;
+  node.onclick = action;
+  node.onkeydown = event => { if (event.key === "Enter" || event.key === " ") { event.preventDefault(); action(); } };
+}
 
-// ---- The chart of the hierarchy
+// ---- The tree of instances
 function treeOf(costs) { // {name, path, own: [LUT, FF], sum: [LUT, FF], children}
   const root = { name: "", path: "", own: [0, 0], sum: [0, 0], children: [] }, known = { "": root };
   const node = p => known[p] ??= (() => {
@@ -128,50 +165,85 @@ function treeOf(costs) { // {name, path, own: [LUT, FF], sum: [LUT, FF], childre
       }
   return { root, known };
 }
-const colour = text => { let h = 0; for (const c of text) h = (h * 31 + c.charCodeAt(0)) % 360; return `hsl(${h} 55% 72%)`; };
-function showChart() {
-  const metric = Number(byId("metric").value), { root, known } = treeOf(picked.costs), top = known[path] ?? root;
-  const svg = byId("chart"), width = 1160, rowHeight = 34, depth = 4;
-  svg.setAttribute("viewBox", `0 0 ${width} ${rowHeight * depth}`);
-  svg.replaceChildren();
-  const draw = (n, x, w, level) => {
-    if (level >= depth || w < 1) return;
-    const label = n.name || picked.top, module = picked.modules?.[n.path];
-    const box = shape("rect", { x, y: level * rowHeight, width: w, height: rowHeight - 1, fill: colour(n.path), "data-path": n.path });
-    box.append(shape("title", {}, `${n.path || picked.top}${module ? " (" + module + ")" : ""}: ${n.sum[0]} LUT, ${n.sum[1]} FF`));
-    box.onclick = () => { path = n.path === path ? path.slice(0, Math.max(0, path.lastIndexOf("."))) : n.path; showInside(); };
-    svg.append(box);
-    if (w > 46) svg.append(shape("text", { x: x + 4, y: level * rowHeight + 21 }, `${label} ${n.sum[metric]}`.slice(0, Math.floor(w / 7))));
-    let at = x;
-    for (const c of n.children.slice().sort((a, b) => b.sum[metric] - a.sum[metric])) {
-      const part = n.sum[metric] ? w * c.sum[metric] / n.sum[metric] : 0;
-      draw(c, at, part, level + 1);
-      at += part;
-    }
-  };
-  draw(top, 0, width, 0);
-  const crumbs = byId("crumbs"), parts = path ? path.split(".") : [];
-  crumbs.replaceChildren();
-  [picked.top, ...parts].forEach((p, i) => {
-    const a = element("a", p);
-    a.onclick = () => { path = parts.slice(0, i).join("."); showInside(); };
-    crumbs.append(i ? " / " : "", a);
-  });
+function bar(value, whole) {
+  const span = element("span"), part = element("span", "", "share");
+  part.style.width = (whole ? 60 * value / whole : 0) + "px";
+  span.append(part, String(value));
+  return span;
 }
-function showInside() {
+// Rows in the order of their LUTs; what is folded is not there, and with a filter only what fits it and what leads there.
+function showTree(focus) {
+  const { root, known } = treeOf(picked.costs), wanted = byId("within").value.toLowerCase(), rows = [];
+  folded ??= new Set(Object.keys(known).filter(p => p.includes(".") && known[p].children.length));
+  const name = n => `${n.path} ${picked.modules?.[n.path] ?? ""}`.toLowerCase();
+  const fits = n => name(n).includes(wanted) || n.children.some(fits);
+  const walk = (n, level) => {
+    if (wanted && !fits(n)) return;
+    rows.push([n, level]);
+    if (wanted || !folded.has(n.path)) n.children.slice().sort((a, b) => b.sum[0] - a.sum[0] || b.sum[1] - a.sum[1]).forEach(c => walk(c, level + 1));
+  };
+  walk(root, 1);
+  fill(byId("tree"), ["instance", "LUT", "its own", "FF", "its own", "module"], rows.map(([n, level]) => {
+    const cell = element("span"), leaf = !n.children.length;
+    cell.style.paddingLeft = 1.2 * (level - 1) + "em";
+    const fold = element("span", leaf ? "" : folded.has(n.path) && !wanted ? "\u25b8" : "\u25be", "fold");
+    cell.append(fold, n.name || picked.top);
+    return [cell, bar(n.sum[0], root.sum[0]), leaf ? "" : n.own[0], bar(n.sum[1], root.sum[1]), leaf ? "" : n.own[1], [picked.modules?.[n.path] ?? "", "text"]];
+  }));
+  const lines = [...byId("tree").tBodies[0].rows];
+  lines.forEach((tr, i) => {
+    const [n, level] = rows[i], leaf = !n.children.length, shut = folded.has(n.path);
+    const go = p => { path = p; showInside(true); }, toggle = () => { if (!folded.delete(n.path)) folded.add(n.path); go(n.path); };
+    tr.dataset.path = n.path;
+    tr.setAttribute("aria-level", level);
+    if (!leaf) tr.setAttribute("aria-expanded", !shut);
+    tr.tabIndex = n.path === path ? 0 : -1;
+    if (n.path === path) tr.className = "picked";
+    tr.onclick = event => event.target.className === "fold" || n.path === path && !leaf ? toggle() : go(n.path);
+    tr.onkeydown = event => {
+      const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+      if (step && rows[i + step]) go(rows[i + step][0].path);
+      else if (event.key === "Enter" && !leaf || event.key === "ArrowRight" && shut || event.key === "ArrowLeft" && !shut && !leaf) toggle();
+      else if (event.key === "ArrowRight" && !leaf && rows[i + 1]) go(rows[i + 1][0].path);
+      else if (event.key === "ArrowLeft" && n.path) go(n.path.slice(0, Math.max(0, n.path.lastIndexOf("."))));
+      else return;
+      event.preventDefault();
+    };
+  });
+  if (focus) lines.find(tr => tr.dataset.path === path)?.focus();
+}
+// How many registers and memories have how much time left of the clock's period, at the slower grade; half a ns a bar.
+function showSlack() {
+  const ends = picked.figures.timing.ends, period = 1000 / data.chip.mhz, last = Math.max(ends.length, 2 * period + 1), most = Math.max(1, ...ends);
+  const svg = byId("slack"), width = 560, height = 170, step = (width - 20) / last, x = i => 10 + (last - 1 - i) * step;
+  svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+  svg.replaceChildren();
+  for (let i = 0; i < last; i++) {
+    const slack = period - (i + 1) / 2, tall = (height - 50) * (ends[i] ?? 0) / most; // at least so much
+    const box = shape("rect", { x: x(i), y: height - 30 - tall, width: step - 1, height: tall, fill: slack < 0 ? "var(--bad)" : "var(--bar)" });
+    box.append(shape("title", {}, `${ends[i] ?? 0} with ${slack} to ${slack + 0.5} ns left`));
+    svg.append(box);
+    if (i % 4 === 0) svg.append(shape("text", { x: x(i) + step, y: height - 12, "text-anchor": "middle" }, String(period - i / 2)));
+  }
+  svg.append(shape("text", { x: 4, y: 14 }, `${ends.reduce((a, b) => a + b, 0)} registers and memories; the highest bar: ${most}; ns left of ${period}`));
+}
+function showInside(focus) {
   byId("inside").textContent = `Inside ${picked.name}: ${picked.title}`;
-  showChart();
-  const metric = Number(byId("metric").value), here = [];
+  byId("here").textContent = `Signals of ${path || picked.top}`;
+  showTree(focus === true);
+  showSlack();
+  const wanted = byId("within").value.toLowerCase(), here = [];
   for (const [p, signals] of Object.entries(picked.costs))
     if (p === path || (path === "" || p.startsWith(path + ".")))
       for (const [s, c] of Object.entries(signals)) here.push([(p ? p + "." : "").slice(path ? path.length + 1 : 0) + s, c]);
-  here.sort((a, b) => b[1][metric] - a[1][metric] || b[1][1 - metric] - a[1][1 - metric]);
-  fill(byId("signals"), ["signal", "LUT", "of these RAM", "FF"], here.slice(0, 200).map(([n, c]) => [n, c[0], c[2] || "", c[1]]));
+  here.sort((a, b) => b[1][0] - a[1][0] || b[1][1] - a[1][1]);
+  fill(byId("signals"), ["signal", "LUT", "of these RAM", "FF"],
+    here.filter(([n]) => n.toLowerCase().includes(wanted)).slice(0, 200).map(([n, c]) => [n, c[0], c[2] || "", c[1]]));
   const box = byId("paths");
   box.replaceChildren();
   for (const p of picked.figures.timing.paths) {
     const d = element("details");
-    d.append(element("summary", `${p.ns.toFixed(2)} ns (-3), ${(p.ns * data.slowGrade).toFixed(2)} (-2), ${p.levels} levels: ${p.from} to ${p.to} ${p.pin}`));
+    d.append(element("summary", `slack ${(1000 / data.chip.mhz - p.ns * data.slowGrade).toFixed(2)}: ${p.ns.toFixed(2)} ns (-3), ${(p.ns * data.slowGrade).toFixed(2)} (-2), ${p.levels} levels: ${p.from} to ${p.to} ${p.pin}`));
     const t = element("table");
     fill(t, ["cell", "net", "fan-out", "cell ns", "net ns"], p.steps.map(s => [s[0], s[1] || "(no name left)", s[2], s[3].toFixed(3), s[4].toFixed(3)]));
     d.append(t);
@@ -220,7 +292,13 @@ function showHistory() {
     if (last) svg.append(shape("text", { x: width - 90, y: y(last[key]) + 4 }, `${last[key]} ${label}`));
     if (picked.limits[key]) svg.append(shape("line", { x1: 56, x2: width - 96, y1: y(picked.limits[key]), y2: y(picked.limits[key]), stroke, "stroke-dasharray": "6 4" }));
   }
-  all.forEach((c, i) => svg.append(shape("text", { x: x(i) - 20, y: height - 8 }, c.id)));
+  const every = Math.ceil(all.length / 12); // dates that do not touch
+  all.forEach((c, i) => { if ((all.length - 1 - i) % every === 0) svg.append(shape("text", { x: x(i), y: height - 8, "text-anchor": "middle" }, c.date.slice(5) || c.id)); });
+  const by = (now, before) => before && now !== before ? ` (${signed(now - before)})` : "";
+  fill(byId("commits"), ["commit", "date", "LUT", "FF", "slices", "MHz", "subject"], all.map((c, i) => {
+    const f = series[i], before = series[i - 1];
+    return f ? [c.id, c.date, f.lut + by(f.lut, before?.lut), f.ff + by(f.ff, before?.ff), f.slices, f.mhz ? f.mhz.toFixed(0) : "", [c.subject, "text"]] : null;
+  }).filter(row => row).reverse());
 }
 function showDifference() {
   const a = all[byId("from").value], b = all[byId("to").value];
@@ -236,6 +314,7 @@ function showDifference() {
       .filter(([, x, y]) => x[0] !== y[0] || x[1] !== y[1]).sort((l, r) => Math.abs(r[2][0] - r[1][0]) - Math.abs(l[2][0] - l[1][0]))
       .map(([p, x, y]) => [p || picked.top, y[0], by(x, y, 0), y[1], by(x, y, 1)]));
 }
+function pick(design, inside) { picked = design; path = inside; folded = null; show(); }
 function show() { showDesigns(); showInside(); showHistory(); showDifference(); }
 
 for (const [id, chosen] of [["from", Math.max(0, all.length - 2)], ["to", all.length - 1]]) {
@@ -243,10 +322,12 @@ for (const [id, chosen] of [["from", Math.max(0, all.length - 2)], ["to", all.le
   byId(id).value = chosen;
   byId(id).onchange = showDifference;
 }
-byId("metric").onchange = showInside;
+byId("filter").oninput = showDesigns;
+byId("within").oninput = showInside;
 showVerdict();
+if (usable.length) showChip();
 showPaper();
 if (picked) show();
 // "#design/instance.path" opens the page there.
 const [wanted, inside] = decodeURIComponent(location.hash.slice(1)).split("/");
-if (wanted && usable.some(d => d.name === wanted)) { picked = usable.find(d => d.name === wanted); path = inside ?? ""; show(); }
+if (wanted && usable.some(d => d.name === wanted)) pick(usable.find(d => d.name === wanted), inside ?? "");

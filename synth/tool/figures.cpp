@@ -91,6 +91,7 @@ void to_json(json& j, const Timing& t) {
                          {"steps", steps}});
     }
     j = {{"paths", paths},
+         {"ends", t.ends},
          {"inputLevels", t.inputLevels},
          {"outputLevels", t.outputLevels},
          {"throughLevels", t.throughLevels}};
@@ -103,6 +104,7 @@ void from_json(const json& j, Timing& t) {
             path.steps.push_back({s[0], s[1], s[2], s[3], s[4]});
         t.paths.push_back(path);
     }
+    j.at("ends").get_to(t.ends);
     t.inputLevels = j.at("inputLevels");
     t.outputLevels = j.at("outputLevels");
     t.throughLevels = j.at("throughLevels");

@@ -189,6 +189,8 @@ string html(const Report& r, const string& page, const string& style, const stri
                    {"lut", r.plan->chip.lut},
                    {"ff", r.plan->chip.ff},
                    {"slices", r.plan->chip.slices},
+                   {"dsp", r.plan->chip.dsp},
+                   {"ram", r.plan->chip.ramb16},
                    {"mhz", r.plan->chip.mhz}}},
                  {"slowGrade", slowGrade},
                  {"slicesError", slicesError},

@@ -222,6 +222,7 @@ Timing timingOf(const Netlist& n, const std::vector<string>& owners, size_t coun
         if (isCombinational(cell.type))
             continue;
         const bool memory = memoryLuts(cell.type) != 0 || isShiftRegister(cell.type);
+        double longest = -1;
         for (const Pin& pin : cell.pins)
             for (const int bit : pin.bits) {
                 if (pin.output || bit < 0 || pin.port == "C" || (memory && isReadOnly(pin.port)))
@@ -234,6 +235,7 @@ Timing timingOf(const Netlist& n, const std::vector<string>& owners, size_t coun
                     continue;
                 const double ns = arrival.ns + analysis.net(bit, static_cast<int>(i)) +
                                   endDelay(cell.type, pin.port);
+                longest = std::max(longest, ns);
                 const string end = endName(n, owners, i);
                 Path& path = worst[end.substr(0, end.find('['))];
                 if (ns <= path.ns)
@@ -253,6 +255,11 @@ Timing timingOf(const Netlist& n, const std::vector<string>& owners, size_t coun
                     at = a.before;
                 }
             }
+        if (longest < 0)
+            continue;
+        const auto bin = static_cast<size_t>(2 * longest * slowGrade);
+        t.ends.resize(std::max(t.ends.size(), bin + 1));
+        t.ends[bin]++;
     }
     for (const Port& port : n.ports)
         for (const int bit : port.bits)

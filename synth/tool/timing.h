@@ -32,6 +32,8 @@ struct Path {
 
 struct Timing {
     std::vector<Path> paths; // between clocked cells, longest first, one for each end register
+    std::vector<int>
+        ends; // registers and memories by their longest path, half a ns each, of grade -2
     int inputLevels = 0, outputLevels = 0, throughLevels = 0; // from, to, and between ports
 };
 

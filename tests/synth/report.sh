@@ -120,17 +120,36 @@ page)
     cat >"$work/clicks.js" <<'JS'
 const seen = [];
 const cells = (id, row, column) => document.getElementById(id).tBodies[0].rows[row].cells[column].textContent;
-seen.push("rows " + document.getElementById("designs").tBodies[0].rows.length);
+const key = (row, key) => row.dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true}));
+const rowsOf = id => document.getElementById(id).tBodies[0].rows;
+const filter = (id, text) => { document.getElementById(id).value = text; document.getElementById(id).oninput(); };
+const verdict = document.getElementById("verdict"), chip = document.getElementById("chip");
+seen.push("first " + (verdict.compareDocumentPosition(chip) & Node.DOCUMENT_POSITION_FOLLOWING ? verdict.firstChild.textContent : "not the verdict"));
+seen.push("chip " + chip.querySelectorAll(".meter").length + " " + chip.firstChild.textContent);
+seen.push("folder " + cells("designs", 1, 0));
+key(rowsOf("designs")[1], "Enter");
+seen.push("opened " + rowsOf("designs").length);
+filter("filter", "STORE");
+seen.push("filtered " + rowsOf("designs").length + " " + cells("designs", 0, 0));
+filter("filter", "");
 document.querySelectorAll("#designs th")[1].click();
 seen.push("largest " + cells("designs", 0, 0));
 document.querySelectorAll("#designs th")[1].click();
 const rows = [...document.getElementById("designs").tBodies[0].rows].map(r => r.cells[0].textContent);
 seen.push("last " + rows[rows.length - 1]);
 [...document.getElementById("designs").tBodies[0].rows].find(r => r.cells[0].textContent === "whole").click();
-document.querySelector('#chart rect[data-path="u_store"]').dispatchEvent(new MouseEvent("click"));
-seen.push("crumbs " + document.getElementById("crumbs").textContent);
+key(rowsOf("tree")[0], "ArrowLeft");
+seen.push("folded " + rowsOf("tree").length);
+key(rowsOf("tree")[0], "ArrowRight");
+key(rowsOf("tree")[0], "ArrowDown");
+document.querySelector('#tree tr[data-path="u_store"]').click();
+seen.push("tree " + [...rowsOf("tree")].map(r => r.cells[0].textContent + r.cells[5].textContent).join(" "));
+seen.push("here " + document.getElementById("here").textContent + ", " + document.activeElement.dataset.path);
 seen.push("signal " + cells("signals", 0, 0) + " " + cells("signals", 0, 1));
 seen.push("paths " + document.querySelectorAll("#paths details").length);
+const bars = [...document.querySelectorAll("#slack rect title")].map(t => t.textContent);
+seen.push("slack " + bars.reduce((sum, text) => sum + parseInt(text), 0) + " " + bars.find(text => parseInt(text) > 0).replace(/^[0-9]+ /, ""));
+seen.push("commit " + cells("commits", 0, 6));
 seen.push("paper " + cells("paper", 0, 3));
 seen.push("points " + document.querySelectorAll("#history circle").length);
 const from = document.getElementById("from");
@@ -140,7 +159,12 @@ JS
     awk -v clicks="$work/clicks.js" '/^<\/body>/ { print "<p id=\"seen\"></p><script>"; while ((getline line < clicks) > 0) print line; print "</script>" } { print }' \
         "$page" >"$work/clicked.html"
     HOME=$work chromium --headless --no-sandbox --disable-gpu --dump-dom "file://$work/clicked.html" >"$work/log" 2>/dev/null
-    has '>rows 3; largest whole; last whole; crumbs pair / u_store; signal read_addr_i 5; paths [1-9]'
+    has '>first Within all budgets; chip 5 [0-9]* LUT0.[0-9] % of 9112'
+    has 'folder . hdl/blocks, 2 modules; opened 4; filtered 1 store; largest whole; last whole; folded 1;'
+    has 'here Signals of u_store, u_store; signal read_addr_i 5; paths [1-9]'
+    has 'tree .pair .*u_storestore'
+    has 'slack [1-9][0-9]* with [0-9.]* to [0-9.]* ns left; commit this run; paper 50 '
+    "$source/tests/regress/test/look.sh" "$page" || fail "the page"
     has 'paper 50 (0.3 %); points 3; choices 1;'
     grep -q '"peer": 100' "$work/out/report.json" || fail "report.json has no figure of the paper"
     grep -q '^| whole |' "$work/out/report.md" || fail "report.md has no table of designs"

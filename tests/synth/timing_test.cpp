@@ -56,6 +56,14 @@ TEST(Timing, APathOfSixLutsIsWithinATenthOfXst) {
     EXPECT_EQ(p.pin, "CE");
 }
 
+TEST(Timing, EachRegisterIsCountedOnceByItsLongestPath) {
+    const Netlist n = chain({4, 1, 88, 26, 2, 5, 16}, "CE");
+    const Timing t = timingOf(n, std::vector<std::string>(n.cells.size()));
+    std::vector<int> ends(static_cast<size_t>(2 * slowGrade * t.paths.front().ns) + 1);
+    ends.back() = 1; // nothing ends at the first register
+    EXPECT_EQ(t.ends, ends);
+}
+
 TEST(Timing, AShortPathIntoTheFlipFlopBesideItIsWithinASeventhOfXst) {
     // A counter's report: 2.712 ns, two levels; the last net costs nothing.
     const Path p = longest(chain({7, 2, 1}, "D"));

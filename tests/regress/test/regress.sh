@@ -297,6 +297,7 @@ END
     has 'value 1 is not 7' dom.html
     has 'href="failures/test_b.Bad-1.log"' dom.html
     hasNot 'src="http\|href="http' build/regress/report.html # offline
+    "$source/tests/regress/test/look.sh" build/regress/report.html || fail "the page"
     ;;
 large) # more than this project has: the page stays small
     cat >>tests/room/CMakeLists.txt <<'END'

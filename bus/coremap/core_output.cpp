@@ -198,6 +198,10 @@ std::string constraintsOf(const Chip& chip) {
                                  p.places.empty() ? "..." : p.places[bit], c.name, p.name, bit);
     for (const Core& c : chip.cores)
         s += ownConstraints(c);
+    for (const Core& c : chip.cores)
+        if (c.hasGate)
+            s += fmt::format(
+                "NET \"u_soc/u_gate_{}.g_gate.run\" MAXDELAY = 4 ns; # to its BUFGCE\n", c.name);
     return s;
 }
 

@@ -23,7 +23,8 @@ module core_gate #(
         end else begin : g_gate
             reg  [4:0] rest; // clocks of rest, 16 at most
             wire       active = rst_i || access_i || !idle_i;
-            wire       run    = active || !rest[4];
+            (* keep *) wire run; // core_pins.ucf names it
+            assign     run    = active || !rest[4];
             always @(posedge clk_i)
                 rest <= active ? 5'd0 : rest + {4'd0, !rest[4]};
 `ifdef VERILATOR

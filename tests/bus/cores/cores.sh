@@ -89,6 +89,7 @@ accepted gates 'adder gate=on\nadder name=other\nled\n'
 grep -q 'core_gate #(.GATED(1)) u_gate_adder .*slot_valid\[2\].*clk_adder' "$out/soc_cores.vh" && grep -q '.clk_i(clk_adder)' "$out/soc_cores.vh" ||
     fail 'the core that asked for a gate has none'
 grep -q 'core_gate #(.GATED(GATES)) u_gate_other' "$out/soc_cores.vh" || fail 'a core that asked for no gate has one on the board'
+grep -q '^NET "u_soc/u_gate_adder.g_gate.run" MAXDELAY' "$out/core_pins.ucf" || fail 'the way to the gate is not constrained'
 ! grep -q u_gate_led "$out/soc_cores.vh" || fail 'a core that does not say when it is idle has a gate'
 accepted hole 'led slot=63\n'
 is SLOT_COUNT 0x40

@@ -163,8 +163,8 @@ Link_Status Link_closeChannel(Link* link, int channel);
 /* Queues a copy of a message of 1..LINK_MAX_MESSAGE bytes. `tag` is for the `outcome` callback. */
 Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag);
 
-/* Takes bytes from the radio, in any portions: packet boundaries are not relied upon. Calls back
- * with what they complete. */
+/* Takes bytes from the radio, at least one, in any portions: packet boundaries are not relied upon.
+ * Calls back with what they complete. */
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs);
 
 /* Sends what is due: fragments, acknowledgements, retransmissions, HELLO. */

@@ -10,6 +10,7 @@
 #include "fpga.h"
 #include "loader.h"
 #include "map_regs.h"
+#include "provision.h"
 #include "secrets.h"
 #include "stm32f2.h"
 #include "system_regs.h"
@@ -46,6 +47,7 @@ void Firmware_run(void) {
     uav_restart = restart;
     Secrets_start();
     UAV_useBoard(&secrets_board, 0);
+    Provision_listen();
     status = UAV_start(&board_fsmc, 0);
     if (status != UAV_NO_FPGA)
         FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, Boot_report());

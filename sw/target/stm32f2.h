@@ -33,6 +33,7 @@
 #define RCC_APB1ENR REG(0x40023840UL)
 #define RCC_APB1ENR_PWR (1UL << 28)
 #define RCC_APB2ENR REG(0x40023844UL)
+#define RCC_APB2ENR_USART1 (1UL << 4)
 #define RCC_APB2ENR_SPI1 (1UL << 12)
 #define RCC_APB2ENR_SYSCFG (1UL << 14)
 #define RCC_CSR REG(0x40023874UL)
@@ -83,9 +84,11 @@
 #define GPIO_MODER(port) GPIO(port, 0x00UL)   /* two bits a pin: 0 input, 2 alternate function */
 #define GPIO_OTYPER(port) GPIO(port, 0x04UL)  /* a bit a pin: 1 is open drain */
 #define GPIO_OSPEEDR(port) GPIO(port, 0x08UL) /* two bits a pin: 3 is 100 MHz */
+#define GPIO_PUPDR(port) GPIO(port, 0x0CUL)   /* two bits a pin: 1 is up */
 #define GPIO_IDR(port) GPIO(port, 0x10UL)
 #define GPIO_BSRR(port) GPIO(port, 0x18UL) /* a bit a pin: sets 15..0, resets 31..16 */
 #define GPIO_AFR(port, half) GPIO(port, 0x20UL + 4UL * (half)) /* four bits a pin */
+#define GPIO_AF_USART1 7UL
 #define GPIO_AF_FSMC 12UL
 
 /* Pins that EXTI lines listen to, and the lines (RM0033, 7.2 and 8.3). */
@@ -93,6 +96,17 @@
 #define EXTI_IMR REG(0x40013C00UL)
 #define EXTI_RTSR REG(0x40013C08UL)
 #define EXTI_PR REG(0x40013C14UL) /* write 1 to clear */
+
+/* USART 1 (RM0033, 24.6), clocked by PCLK2, 60 MHz. */
+#define USART1_SR REG(0x40011000UL)
+#define USART1_SR_RXNE (1UL << 5)
+#define USART1_SR_TC (1UL << 6)
+#define USART1_SR_TXE (1UL << 7)
+#define USART1_DR REG(0x40011004UL)
+#define USART1_BRR REG(0x40011008UL)
+#define USART1_BRR_115200 521UL
+#define USART1_CR1 REG(0x4001100CUL)
+#define USART1_CR1_ON 0x200CUL /* on, transmits and receives, 8 bits */
 
 /* SPI 1 (RM0033, 25.5). */
 #define SPI1_CR1 REG(0x40013000UL)
@@ -112,6 +126,7 @@
 /* The core (ARMv7-M ARM, B3). */
 #define SYST_CSR REG(0xE000E010UL)
 #define SYST_CSR_ON 7UL /* from HCLK, with interrupt */
+#define SYST_CSR_POLLED 5UL
 #define SYST_RVR REG(0xE000E014UL)
 #define SYST_CVR REG(0xE000E018UL)
 #define SYST_CALIB REG(0xE000E01CUL) /* RM0033, 8.1.2: HCLK/8 ticks in one millisecond */

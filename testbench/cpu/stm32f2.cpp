@@ -9,8 +9,9 @@ namespace {
 
 constexpr uint32_t iwdg = 0x40003000, syscfg = 0x40013800, exti = 0x40013C00, gpio = 0x40020000,
                    crcUnit = 0x40023000, rcc = 0x40023800, flashInterface = 0x40023C00,
-                   backupSram = 0x40024000, spi = 0x40013000, power = 0x40007000, rng = 0x50060800,
-                   windows = 0x60000000, fsmcRegisters = 0xA0000000;
+                   backupSram = 0x40024000, spi = 0x40013000, usart = 0x40011000,
+                   power = 0x40007000, rng = 0x50060800, windows = 0x60000000,
+                   fsmcRegisters = 0xA0000000;
 constexpr uint32_t ahb1Enable = rcc + 0x30, ahb2Enable = rcc + 0x34, ahb3Enable = rcc + 0x38,
                    apb1Enable = rcc + 0x40, apb2Enable = rcc + 0x44, csr = rcc + 0x74;
 constexpr uint32_t padReset = 1u << 26, powerReset = 1u << 27, softwareReset = 1u << 28,
@@ -231,6 +232,7 @@ void Stm32F2::requireClock(uint32_t address) const {
               : isIn(address, backupSram, 4096) ? isSet(ahb1Enable, 18)
               : isIn(address, rng, 12)          ? isSet(ahb2Enable, 6)
               : isIn(address, power, 8)         ? isSet(apb1Enable, 28)
+              : isIn(address, usart, 0x400)     ? isSet(apb2Enable, 4)
               : isIn(address, spi, 0x400)       ? isSet(apb2Enable, 12)
               : isIn(address, syscfg, 0x400)    ? isSet(apb2Enable, 14)
                                                 : true;
@@ -242,6 +244,7 @@ uint32_t Stm32F2::readPeripheral(uint32_t address) {
     requireClock(address);
     if (isIn(address, gpio, 0x2400) && (address & 0x3FF) < 0x28)
         return (address & 0x3FF) != 0x10 ? stored(address)
+               : address == gpio + 0x10  ? uint32_t(!isSerialBreak) << 10
                : address == gpio + 0x410 ? pinsB_
                : address == gpio + 0x810 ? uint32_t(isFpgaDone()) << 1
                                          : 0;
@@ -259,6 +262,16 @@ uint32_t Stm32F2::readPeripheral(uint32_t address) {
         return stored(address);
     if (isIn(address, flashInterface, 0x18))
         return flash_.read(address - flashInterface);
+    if (address == usart) // what is written is sent at once
+        return 0xC0 | uint32_t(!serialIn.empty()) << 5;
+    if (address == usart + 4) {
+        const uint32_t byte = serialIn.empty() ? 0 : serialIn.front();
+        if (!serialIn.empty())
+            serialIn.pop_front();
+        return byte;
+    }
+    if (isIn(address, usart, 0x1C))
+        return stored(address);
     if (isIn(address, spi, 0x24)) // a byte is through as soon as it is written
         return address == spi + 8 ? 3 : address == spi + 12 ? spiIn_ : stored(address);
     if (address == crcUnit)
@@ -290,7 +303,10 @@ void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
     } else if (address == spi + 12) {
         spiIn_ = spiFlash_ ? spiFlash_->transfer(static_cast<uint8_t>(value)) : 0xFF;
         waited_ += 32; // at half of PCLK2, as the driver has it
-    } else if (isIn(address, spi, 0x24)) {
+    } else if (address == usart + 4) {
+        if (onSerial)
+            onSerial(static_cast<uint8_t>(value));
+    } else if (isIn(address, spi, 0x24) || isIn(address, usart, 0x1C)) {
         stored(address) = value;
     } else if (isIn(address, rcc, 0x88)) {
         stored(address) = value;

@@ -16,6 +16,7 @@
 #include "spi_flash.h"
 #include "stm32_flash.h"
 #include <array>
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -51,6 +52,12 @@ public:
     const Spartan6Boot& fpga() const { return fpga_; }
     // Called when the FPGA has lost its configuration, and is about to have one.
     std::function<void()> onReconfigured;
+
+    // USART 1, at its rate: what the firmware receives (PA10), whether that line is in a break, and
+    // who is told of what it sends.
+    std::deque<uint8_t> serialIn;
+    bool isSerialBreak = false;
+    std::function<void(uint8_t)> onSerial;
 
     // The 4 KiB that VBAT keeps, whatever becomes of power and resets.
     std::array<uint32_t, 1024>& backup() { return backup_; }

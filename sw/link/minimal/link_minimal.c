@@ -168,16 +168,9 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
         link->heardAt = link->inputAt;
 }
 
-/* Returns 1 if a packet may be whole frames: then it is, whatever came before it. */
-static int isWhole(const Link* link, const U8* bytes, U32 size) {
-    U32 at = 0;
-    while (at < size)
-        at += LINK_LENGTH(bytes + at) + LINK_OVERHEAD_OF(link);
-    return at == size;
-}
-
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
-    if (nowUs - link->inputAt > FRAME_GAP || isWhole(link, bytes, size))
+    /* A frame begins behind a silence, or where it is all of the packet. */
+    if (nowUs - link->inputAt > FRAME_GAP || LINK_LENGTH(bytes) + LINK_OVERHEAD_OF(link) == size)
         link->inputCount = 0;
     link->inputAt = nowUs;
     while (size--) {

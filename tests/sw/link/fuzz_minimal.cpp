@@ -42,7 +42,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
             return taken;
         };
         if (step == 0) {
-            auto raw = bytes(n);
+            const Bytes raw = bytes(n);
+            if (raw.empty())
+                continue;
             Link_receive(link, raw.data(), static_cast<U32>(raw.size()), now);
         } else if (step <= 3) {
             auto frame = bytes(3 + n % (LINK_MAX_PAYLOAD + 1));

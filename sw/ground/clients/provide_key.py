@@ -1,0 +1,87 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""provide_key: gives a vehicle its key over the processor's own serial port, in the factory or after a key was lost.
+
+Wire the port to PA9 and PA10, start this, and switch the vehicle on: it listens if the line is in a break while it starts.
+"""
+
+import argparse
+import fcntl
+import os
+import re
+import select
+import sys
+import termios
+import time
+import tty
+
+BREAK, PAUSE = 1.5, 0.5  # s; a vehicle without a key starts again each second
+
+
+class Failed(Exception):
+    """The vehicle has no new key; the text says why."""
+
+
+def read_key(path):
+    """The first key of a file as the plugin takes it (docs/security.md)."""
+    with open(path) as f:
+        if os.fstat(f.fileno()).st_mode & 0o077:
+            raise Failed("others may read '%s': chmod 600 '%s'" % (path, path))
+        for line in f:
+            words = line.split("#")[0].split()
+            for word in words:
+                if re.fullmatch("[0-9a-fA-F]{32}", word):
+                    return word.lower()
+    raise Failed("'%s' has no key, 32 hexadecimal digits: openssl rand -hex 16 makes one" % path)
+
+
+def read_line(port, seconds):
+    """What comes until a line has ended, or the time is over."""
+    text, end = b"", time.monotonic() + seconds
+    while b"\n" not in text and select.select([port], [], [], max(0, end - time.monotonic()))[0]:
+        text += os.read(port, 100)
+    return text.decode(errors="replace").strip()
+
+
+def provide(port, command, patience):
+    end = time.monotonic() + patience
+    while "icesoc: key?" not in read_line(port, PAUSE):
+        if time.monotonic() > end:
+            raise Failed("no vehicle has asked for %d s: is it wired, and was it switched on meanwhile?" % patience)
+        fcntl.ioctl(port, termios.TIOCSBRK)
+        time.sleep(BREAK)
+        termios.tcflush(port, termios.TCIFLUSH)
+        fcntl.ioctl(port, termios.TIOCCBRK)
+    os.write(port, command.encode() + b"\n")
+    answer = read_line(port, 10)
+    if answer != "ok":
+        raise Failed("the vehicle did not take it: '%s'" % answer)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--port", required=True, help="serial port that is wired to the processor")
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("--key", help="file with the key, mode 0600")
+    what.add_argument("--open", action="store_true", help="in place of a key: who has a radio may call the vehicle")
+    parser.add_argument("--patience", type=int, default=120, help="seconds without a vehicle until it gives up")
+    args = parser.parse_args()
+    try:
+        command = "open" if args.open else "key " + read_key(args.key)
+        port = os.open(args.port, os.O_RDWR | os.O_NOCTTY)
+        tty.setraw(port)
+        mode = termios.tcgetattr(port)
+        mode[4] = mode[5] = termios.B115200
+        termios.tcsetattr(port, termios.TCSANOW, mode)
+        provide(port, command, args.patience)
+        print("provide_key: the vehicle %s" % ("is open" if args.open else "has this key, and no other"))
+        return 0
+    except (Failed, OSError, termios.error) as e:
+        print("provide_key: %s" % e, file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

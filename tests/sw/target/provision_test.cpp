@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+//
+// provision_test: the ground's program gives a key to the firmware's ARM binary, over the
+// processor's own serial port, here a pseudo-terminal.
+
+#include "stm32f2.h"
+#include <algorithm>
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace {
+
+class Provision : public ::testing::Test {
+protected:
+    Provision() {
+        chip.load(FIRMWARE "uav.elf");
+        chip.onSerial = [this](uint8_t byte) { said += static_cast<char>(byte); };
+        chip.onTime([this] {
+            if (chip.cpu().cycles() >= limit || (!said.empty() && said.back() == '\n'))
+                chip.cpu().stop();
+            return uint64_t(0);
+        });
+    }
+    // Runs until a line has been sent, or for so many cycles; returns the line.
+    std::string run(uint64_t cycles = 10'000'000) {
+        said.clear();
+        limit = chip.cpu().cycles() + cycles;
+        chip.run();
+        return said;
+    }
+    // The firmware starts with the line in a break, which then ends.
+    std::string start() {
+        chip.isSerialBreak = true;
+        chip.powerOn();
+        run(2'000'000);
+        chip.isSerialBreak = false;
+        return run();
+    }
+    std::string answerTo(const std::string& line) {
+        chip.serialIn.insert(chip.serialIn.end(), line.begin(), line.end());
+        return run();
+    }
+    // The words in which the firmware keeps a key (uav_keys.h); none: it is open.
+    bool has(const std::vector<uint8_t>& key) {
+        std::array<uint32_t, 4> words = {};
+        for (size_t i = 0; i < key.size(); ++i)
+            words[i / 4] |= uint32_t(key[i]) << 8 * (i % 4);
+        constexpr uint32_t open = 0x4F50454E;
+        return std::equal(words.begin(), words.end(), chip.backup().begin()) &&
+               (chip.backup()[10] == open) == key.empty();
+    }
+
+    std::string said;
+    uint64_t limit = 0;
+    FsmcPins pins;
+    FsmcMaster fsmc{pins, {[] {}, [] {}, [](uint64_t clocks, uint64_t) { return clocks; }}};
+    Stm32F2 chip{fsmc, [this] { return fsmc.hclks() * 25 / 3; }, {}};
+};
+
+const std::string digits = "00112233445566778899aabbccddeeff";
+const std::vector<uint8_t> key = {0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77,
+                                  0x88, 0x99, 0xAA, 0xBB, 0xCC, 0xDD, 0xEE, 0xFF};
+
+TEST_F(Provision, TakesAKeyOrOpensTheVehicle) {
+    EXPECT_EQ(start(), "icesoc: key?\r\n");
+    EXPECT_EQ(answerTo("key " + digits + "\n"), "ok\r\n");
+    EXPECT_TRUE(has(key));
+    EXPECT_EQ(start(), "icesoc: key?\r\n");
+    EXPECT_EQ(answerTo("open\r\n"), "ok\r\n");
+    EXPECT_TRUE(has({}));
+}
+
+TEST_F(Provision, WhatMakesNoSenseChangesNothing) {
+    start();
+    answerTo("key " + digits + "\n");
+    for (const std::string& line :
+         {"key " + digits.substr(1), "key " + digits + "0", "key x" + digits.substr(1),
+          "Open" + digits, std::string("key"), std::string(""), std::string(200, 'k')}) {
+        EXPECT_EQ(start(), "icesoc: key?\r\n");
+        EXPECT_EQ(answerTo(line + "\n").substr(0, 3), "no:") << line;
+        EXPECT_TRUE(has(key)) << line;
+        chip.serialIn.clear();
+    }
+}
+
+TEST_F(Provision, NobodyIsListenedToWithoutABreak) {
+    chip.powerOn();
+    EXPECT_EQ(answerTo("key " + digits + "\n"), "");
+    EXPECT_FALSE(has(key));
+}
+
+// The model stands still while the program is waited for: nothing depends on how fast that is.
+TEST_F(Provision, TheGroundsProgramGivesIt) {
+    const std::string file = FOLDER + std::to_string(getpid()) + ".key";
+    std::ofstream(file) << "# demo\n0x0001 " << digits << "\n";
+    ::chmod(file.c_str(), 0600);
+    const int port = posix_openpt(O_RDWR | O_NOCTTY);
+    ASSERT_TRUE(port >= 0 && grantpt(port) == 0 && unlockpt(port) == 0);
+    const std::string name = ptsname(port);
+    const int held = open(name.c_str(), O_RDWR | O_NOCTTY); // or a write would be lost before
+    const pid_t child = fork();
+    if (child == 0) {
+        execl("/usr/bin/python3", "python3", PROVIDE_KEY, "--port", name.c_str(), "--key",
+              file.c_str(), nullptr);
+        _exit(127);
+    }
+    std::string line;
+    for (int tries = 0; tries < 60 && line.find('\n') == std::string::npos; ++tries) {
+        const std::string prompt = start();
+        ASSERT_EQ(write(port, prompt.data(), prompt.size()), ssize_t(prompt.size()));
+        pollfd wanted = {port, POLLIN, 0};
+        char bytes[64];
+        if (poll(&wanted, 1, 1000) > 0)
+            line.append(bytes,
+                        static_cast<size_t>(std::max<ssize_t>(0, read(port, bytes, sizeof bytes))));
+    }
+    const std::string answer = answerTo(line);
+    ASSERT_EQ(write(port, answer.data(), answer.size()), ssize_t(answer.size()));
+    int status = -1;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+    EXPECT_TRUE(has(key));
+    close(held);
+    close(port);
+    std::filesystem::remove(file);
+}
+
+} // namespace

@@ -26,11 +26,11 @@ public:
         uint16_t guardMs = 0;
         // The whole of flash, in place of the program's; the program is for its symbols then.
         std::vector<uint8_t> flash = {};
-        // The FPGA's configuration flash; none: it needs no configuration.
-        std::vector<uint8_t> fpgaFlash = {};
         // The link's key, as from the factory, 16 bytes; none: the vehicle is open.
         std::vector<uint8_t> key = {};
         uint64_t seed = 1; // of the random number generator
+        // The FPGA's configuration flash; none: it needs no configuration.
+        std::vector<uint8_t> fpgaFlash = {};
     };
     // `poll` is called about once a simulated millisecond; when it returns false, run() ends.
     M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll);

@@ -3,7 +3,6 @@
  * provision: polls, as no task runs yet. The SysTick only tells that 10 ms have passed.
  */
 #include "provision.h"
-#include "ascon.h"
 #include "stm32f2.h"
 #include "uav_keys.h"
 
@@ -72,7 +71,7 @@ static int obey(char* line) {
     if (!isKey && strcmp(line, "open") != 0)
         return 0;
     UAV_provide(isKey ? key : 0);
-    Ascon_wipe(key, sizeof key);
+    UAV_wipe(key, sizeof key);
     return 1;
 }
 
@@ -107,7 +106,7 @@ void Provision_listen(void) {
     say("icesoc: key?\r\n");
     if (readLine(line))
         say(obey(line) ? "ok\r\n" : "no: key and 32 of 0..9a..f, or open\r\n");
-    Ascon_wipe(line, sizeof line);
+    UAV_wipe((volatile U8*)line, sizeof line);
     GPIO_MODER(PORT) &= ~(3UL << 2U * TRANSMIT | 3UL << 2U * RECEIVE);
     stop();
 }

@@ -264,6 +264,21 @@ void roundTrips(Mode mode) {
     }
 }
 
+// MAVLink 2's COMMAND_LONG and COMMAND_ACK, as bare bytes that are never sent again, on the same
+// air; under a key signed.
+void peers(Mode mode) {
+    const bool isSigned = mode == Keyed;
+    const double ms = floorMs(isSigned ? 58 : 45, isSigned ? 35 : 22, mode == Encrypted);
+    World w(RfWeather(), mode);
+    const auto times = callTimes(w, 3, 31); // setParameterA(short) has 3 bytes
+    const double own = times[times.size() / 2];
+    std::printf("%s: MAVLink 2's command and its answer: %.1f ms; a message of 3 bytes and back by "
+                "the link: %.1f\n",
+                columns[mode], ms, own);
+    figures.add(std::string("round trip of a command ") + names[mode] + ", beside MAVLink 2", own,
+                "ms", ms);
+}
+
 // A call of one byte while pictures of 8 KB come from the one that is called, one behind the
 // other.
 void headOfLine(Mode mode) {
@@ -296,6 +311,7 @@ int main(int argc, char** argv) {
     const std::map<std::string, void (*)(Mode)> parts = {{"goodput", allGoodput},
                                                          {"round-trips", roundTrips},
                                                          {"head-of-line", headOfLine},
+                                                         {"peers", peers},
                                                          {"weather", allWeather}};
     figures.app.add_option("part", only, "only this part")->check(CLI::IsMember(parts));
     return figures.run(argc, argv, [&] {

@@ -29,6 +29,24 @@ std::string lower(std::string text) {
     return text;
 }
 
+// The lines of the file's last 128 KiB, so that a page of a long flight stays as it is.
+json newest(const std::string& path) {
+    constexpr std::streamoff most = 128 << 10;
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    json list = json::array();
+    if (!file)
+        return list;
+    const std::streamoff size = file.tellg();
+    file.seekg(std::max<std::streamoff>(0, size - most));
+    std::string line;
+    if (size > most)
+        std::getline(file, line); // the end of one
+    while (std::getline(file, line))
+        if (json event = json::parse(line, nullptr, false); event.is_object())
+            list.push_back(event);
+    return list;
+}
+
 } // namespace
 
 std::string contents(const std::string& path) {
@@ -117,6 +135,7 @@ std::string LiveState::now() const {
             state["calls"].push_back(row);
         }
     }
+    state["events"] = newest(folder_ + "/events.jsonl");
     using namespace std::filesystem;
     std::error_code none;
     const path frame = folder_ + "/before.png", report = folder_ + "/report.json";

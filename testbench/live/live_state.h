@@ -21,7 +21,8 @@ public:
     LiveState(std::string folder, const std::string& registers);
 
     // JSON: {"air": {...}, "calls": [...], "features": [[x, y, score]], "found": n, "frame": bool,
-    // "slots": [...]}; what is not there yet is missing or empty.
+    // "slots": [...], "events": [...]} (testbench/sim/events.h); what is not there yet is missing
+    // or empty.
     std::string now() const;
 
 private:

@@ -124,9 +124,9 @@ Flight::Flight(const Options& options)
       ground_(recorded_ ? static_cast<SerialLine&>(*recorded_) : *o_.replayed, air_,
               modem("ground", o_.guard)),
       soc_(air_, modem("uav", o_.guard)), step_(*status_, pty_, [this] { return isWanted(); }),
-      pace_(o_.speed == "real"  ? 1
-            : o_.speed == "max" ? 0
-                                : std::stod(o_.speed)) {
+      events_(o_.out + "/events.jsonl"), pace_(o_.speed == "real"  ? 1
+                                               : o_.speed == "max" ? 0
+                                                                   : std::stod(o_.speed)) {
     air_.weather = o_.weather;
     uav_guardMs = o_.guard;
     connectModels();
@@ -146,10 +146,12 @@ void Flight::connectModels() {
         return std::min(
             {ground_.nextEvent(), std::max(step_.nextEvent(), now + 1), now + clockStepNs});
     });
-    air_.onPacket([this](uint64_t, const RfPacket& packet, RfChannel::Outcome outcome) {
+    air_.onPacket([this](uint64_t now, const RfPacket& packet, RfChannel::Outcome outcome) {
         (packet.from == 1 ? status_->bytesDown : status_->bytesUp) += packet.bytes.size();
         ++status_->packets;
-        status_->lost += outcome != RfChannel::Outcome::Delivered;
+        const bool lost = outcome != RfChannel::Outcome::Delivered;
+        status_->lost += lost;
+        events_.packet(now, packet.bytes.size(), packet.from != 1, lost);
     });
 }
 
@@ -166,8 +168,10 @@ void Flight::watchRegisters() {
         accesses_.add(soc_.cycles(), address, value, isWrite);
         if (address - control >= bytes)
             return;
-        status_->registers[(address - control) / 4] = value;
-        status_->seen[(address - control) / 4] = isWrite ? 2 : 1;
+        const uint32_t word = (address - control) / 4;
+        status_->registers[word] = value;
+        status_->seen[word] = isWrite ? 2 : 1;
+        events_.access(soc_.now(), word, value, isWrite);
     };
 }
 
@@ -302,6 +306,7 @@ int Flight::run() {
     startProgram();
     runProcessor();
     child_.stop();
+    events_.flush();
     if (recorded_ || !stopSignal)
         mark("end", {{"clocks", soc_.cycles()},
                      {"packets", status_->packets},

@@ -8,6 +8,7 @@
 
 #include "camera.h"
 #include "child.h"
+#include "events.h"
 #include "ground_step.h"
 #include "m3_machine.h"
 #include "pace.h"
@@ -81,6 +82,7 @@ private:
     SocModel soc_;
     Child child_;
     GroundStep step_;
+    Events events_;
     Pace pace_;
     bool advised_ = false, looks_ = false;
     AccessDigest accesses_;

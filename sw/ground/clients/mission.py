@@ -75,7 +75,8 @@ class Log:
 
     def follow(self, row):
         with self.lock:
-            self.live.write(json.dumps(dict(row, at=round(time.monotonic() - self.start, 3))) + "\n")
+            self.live.write(json.dumps(dict(row, at=round(time.monotonic() - self.start, 3),
+                                            ns=(self.air.read() or {}).get("ns"))) + "\n")
             self.live.flush()
 
     def remind(self, what, answered):

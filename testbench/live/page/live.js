@@ -67,6 +67,46 @@ function showCalls(calls) {
         number(c.bytes_up, ''), number(c.bytes_down, '')])));
 }
 
+// A lane for each direction of the air, the calls, and each slot that the processor spoke to: what is tall happened, or
+// was most. One path a lane and kind; only calls have a title.
+function showTimeline(state) {
+    const events = state.events, width = 1200, left = 150, height = 22, svg = $('timeline');
+    if (!events.length || !state.air) return;
+    const end = state.air.ns, span = Number($('span').value) * 1e9, begin = span ? Math.max(0, end - span) : 0;
+    const x = ns => left + (width - left - 10) * (ns - begin) / (end - begin);
+    const lanes = [];
+    const lane = name => lanes.find(l => l.name === name) ?? (lanes.push({name, mark: '', event: '', lost: '', calls: []}), lanes[lanes.length - 1]);
+    const bar = (ns, share, wide = 1.5) => `M${x(ns).toFixed(1)} 0h${wide}v${-Math.max(2, 16 * share).toFixed(1)}h${-wide}z`;
+    for (const name of ['ground to UAV', 'UAV to ground', 'calls, ground', 'calls, UAV']) lane(name);
+    const names = new Map(state.slots.map(s => [s.slot, s.block])), nameOf = slot => names.get(Number(slot)) ?? `slot ${slot}`;
+    for (const e of events) {
+        if (e.ns < begin) continue;
+        if (e.packet !== undefined) lane(e.from === 'ground' ? 'ground to UAV' : 'UAV to ground')[e.lost ? 'lost' : 'mark'] += bar(e.ns, e.packet / 100);
+        else if (e.events) lane(nameOf(e.slot)).event += bar(e.ns, 1);
+        else for (const [slot, n] of Object.entries(e.accesses ?? {})) lane(nameOf(slot)).mark += bar(e.ns, n / 20);
+    }
+    for (const c of state.calls)
+        if (c.ns >= begin) lane(c.who.startsWith('ground') ? 'calls, ground' : 'calls, UAV').calls.push(c);
+    const shape = (name, attributes, text) => {
+        const e = document.createElementNS('http://www.w3.org/2000/svg', name);
+        for (const [k, v] of Object.entries(attributes)) e.setAttribute(k, v);
+        if (text !== undefined) e.textContent = text;
+        return e;
+    };
+    svg.setAttribute('viewBox', `0 0 ${width} ${height * (lanes.length + 1)}`);
+    svg.replaceChildren(...lanes.flatMap((l, i) => {
+        const low = height * (i + 1), all = [shape('text', {x: 0, y: low - 5}, l.name), shape('line', {x1: left, x2: width, y1: low, y2: low})];
+        for (const kind of ['mark', 'event', 'lost'])
+            if (l[kind]) all.push(shape('path', {d: l[kind], class: kind, transform: `translate(0 ${low})`}));
+        for (const c of l.calls) {
+            const from = Math.max(left, x(c.ns - (c.simulated_ms ?? 0) * 1e6)), box = shape('rect', {x: from, y: low - 14, width: Math.max(2, x(c.ns) - from), height: 12, class: /failed:/.test(c.what) ? 'lost' : 'mark'});
+            box.append(shape('title', {}, `${c.what}: until ${(c.ns / 1e9).toFixed(3)} s`));
+            all.push(box);
+        }
+        return all;
+    }), ...[0, 1, 2, 3, 4].map(i => shape('text', {x: left + (width - left - 50) * i / 4, y: height * (lanes.length + 1) - 5}, `${((begin + (end - begin) * i / 4) / 1e9).toFixed(2)} s`)));
+}
+
 function showSlots(slots) {
     $('slots').replaceChildren(...slots.filter(s => s.words.length).map(s => {
         const div = element('div'), table = element('table');
@@ -87,10 +127,13 @@ async function look() {
         const state = await (await fetch('state', {cache: 'no-store'})).json();
         showFrame(state);
         showAir(state.air);
+        showTimeline(state);
         showCalls(state.calls);
         showSlots(state.slots);
+        $('phase').className = state.over ? 'good' : '';
         $('phase').textContent = state.over ? 'the mission is over' : state.air ? 'flying' : 'waiting for the simulator';
     } catch (error) {
+        $('phase').className = 'bad';
         $('phase').textContent = 'the mission has ended, and its page with it (make run LIVE=1 keeps it)';
         wait = 2000;
     }

@@ -19,8 +19,9 @@ const numbers = text => text.match(/[\d.]+/g).map(Number);
 const luminance = rgb => rgb.slice(0, 3).map(c => c / 255).map(c => c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4)
   .reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
 const over = (top, below) => { const a = top[3] ?? 1; return below.map((c, i) => a * top[i] + (1 - a) * c); };
+const theme = location.hash.slice(1), canvas = theme === "dark" ? [18, 18, 18] : [255, 255, 255]; // Chromium's own
 function background(node) {
-  if (!node) return [255, 255, 255];
+  if (!node) return canvas;
   const own = numbers(node.ownerDocument.defaultView.getComputedStyle(node).backgroundColor);
   return own[3] === undefined ? own : own[3] === 0 ? background(node.parentElement) : over(own, background(node.parentElement));
 }
@@ -41,7 +42,7 @@ function look(document, width, theme) {
   }
   return [...document.body.querySelectorAll("*")].length;
 }
-const theme = location.hash.slice(1), widths = [420, 900, 1400, 2560];
+const widths = [420, 900, 1400, 2560];
 let left = widths.length, elements = 0;
 for (const width of widths) {
   const frame = document.createElement("iframe");

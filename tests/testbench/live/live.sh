@@ -32,9 +32,27 @@ mission)
     has 'Station.vehicleState(uptimeMs'
     has '<td>THRESHOLD</td><td class="n">0x00000018</td>'
     has 'corners, the strongest'
+    has '<text x="0" y="[0-9]*">vision</text>'
+    has '<title>hwengine1.getResult(): until [0-9.]* s</title>'
+    has 'id="phase" role="status" class="good"'
+    # The flight as JSON Lines: all packets, and the core's end as an event.
+    python3 - "$out" <<'PY' || fail "events.jsonl is not the flight"
+import json, sys
+events = [json.loads(line) for line in open(sys.argv[1] + "/events.jsonl")]
+whole = json.loads(open(sys.argv[1] + "/flight.jsonl").readlines()[-1])["end"]
+packets = [e for e in events if "packet" in e]
+assert (len(packets), sum(e["lost"] for e in packets)) == (whole["packets"], whole["lost"]), (len(packets), whole)
+assert {e["from"] for e in packets} == {"ground", "uav"}
+assert any(e.get("slot", 0) >= 2 and e["events"] for e in events), "no core's event"
+assert sum(sum(e["accesses"].values()) for e in events if "accesses" in e) > 100
+PY
     drawn=$(sed -n 's/.*data-features="\([0-9]*\)".*/\1/p' "$out/dom.html")
     wanted=$(python3 -c 'import json,sys; print([len(r["features"]) for r in map(json.loads, open(sys.argv[1])) if "features" in r][-1])' "$out/calls.jsonl")
     [ "$drawn" = "$wanted" ] || fail "$drawn corners drawn, $wanted were found"
+    # As it stands, without its script.
+    cp "$source/testbench/live/page/live.css" "$out"
+    sed 's,<script.*</script>,,' "$out/dom.html" >"$out/still.html"
+    "$source/tests/regress/test/look.sh" "$out/still.html" || fail "the page's looks"
     ! grep -En '(https?:)?//[a-z]' "$source"/testbench/live/page/*.html "$source"/testbench/live/page/*.css || fail "the page names another host"
     ;;
 errors)

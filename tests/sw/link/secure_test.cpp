@@ -178,7 +178,7 @@ TEST_P(Attacked, NothingHostileIsAcceptedAndNothingLegalLostOrDoubled) {
     expectAllArrivedOnce();
     EXPECT_EQ(ups(a_), 1u);
     EXPECT_EQ(ups(b_), 1u);
-    RecordProperty("hostile", static_cast<int>(hostile_));
+    RecordProperty("packets", static_cast<int>(hostile_));
     std::printf("%llu hostile packets, %zu + %zu messages\n",
                 static_cast<unsigned long long>(hostile_), sentA_.size(), sentB_.size());
 }

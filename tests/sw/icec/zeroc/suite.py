@@ -25,8 +25,6 @@ passed = 0
 failures = {}  # "File.py:line": text
 lock = threading.Lock()
 PATIENCE = 3  # seconds
-ROUNDS = 0  # of a loop that waits for what failed; 0: for ever
-rounds = {}
 
 
 def check(truth):
@@ -50,13 +48,6 @@ def wait(self, timeout=None, wait=threading.Condition.wait):
     """The clients' callbacks tell a condition that they were called: not for ever, where one failed."""
     if not wait(self, timeout or PATIENCE) and timeout is None:
         raise RuntimeError("nothing came")
-
-
-def again(where):
-    """Each round of a loop comes here."""
-    rounds[where] = rounds.get(where, 0) + 1
-    if rounds[where] == ROUNDS:
-        raise RuntimeError("waits in vain")
 
 
 class Guard(ast.NodeTransformer):
@@ -83,7 +74,6 @@ class Guard(ast.NodeTransformer):
     visit_For = visit_With
 
     def visit_While(self, node):
-        node.body[:0] = ast.parse("__again__(%d)" % node.lineno).body
         return self.guarded(node)  # it may wait for what failed
 
     def visit_If(self, node):
@@ -111,7 +101,7 @@ class Loader(importlib.abc.Loader):
         if module.__name__ != "Client":
             guard = Guard(os.path.basename(self.path))
             tree.body = [guard.visit(s) if isinstance(s, (ast.FunctionDef, ast.ClassDef)) else s for s in tree.body]
-        module.test, module.__failed__, module.__again__ = check, failed, again
+        module.test, module.__failed__ = check, failed
         exec(compile(ast.fix_missing_locations(tree), self.path, "exec"), module.__dict__)
 
 
@@ -136,7 +126,7 @@ def designed(run):
 
 
 def main():
-    global PATIENCE, ROUNDS
+    global PATIENCE
     parser = argparse.ArgumentParser()
     parser.add_argument("folder")
     parser.add_argument("suite")
@@ -151,7 +141,7 @@ def main():
     sys.path.append(a.folder)
     import TestHelper
     if not endpoint.startswith("tcp"):
-        PATIENCE, ROUNDS = 60, 100
+        PATIENCE = 60
     threading.Condition.wait = wait
 
     def createTestProperties(self, args=[], create=TestHelper.TestHelper.createTestProperties):

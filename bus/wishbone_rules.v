@@ -38,12 +38,9 @@ module wishbone_rules #(
         assert (!stb_i || cyc_i);                         // 3.25: CYC whenever STB
         assert (!(stb_i && outstanding));                 // one at a time
         assume (ack_i + err_i + rty_i <= 1);              // 3.45: one of ACK, ERR, RTY
-        if (!cyc_i)
-            assume (!answer);                             // 3.35: answers belong to a cycle
-        if (PIPELINED != 0 && !outstanding && !taken)
-            assume (!answer);                             // no answer before the strobe was taken
-        else if (PIPELINED == 0 && !stb_i)
-            assume (!answer);                             // 3.35: in response to STB
+        // 3.55: outside of a cycle a slave may hold its answer, so nothing is assumed there.
+        if (PIPELINED != 0 && cyc_i && !outstanding && !taken)
+            assume (!answer);                             // 3.35: none before the strobe was taken
     end
     always @(posedge clk_i) begin
         if (past && $past(rst_i))

@@ -10,7 +10,8 @@
 // - Once NWAIT is inactive in an access to a register it stays so, and data on the pins stays.
 // - A write to a register goes on only when the write before it is handed over and registers are idle. The bridge's time-out
 //   lets go only accesses to memory, however short it is.
-// WORDS = 1 proves something else: 32-bit register words are atomic (fsmc_words_proof).
+// WORDS = 1 proves something else: 32-bit register words are atomic (fsmc_words_proof); with LATE bounded, without by
+// induction, since what makes that inductive counts the synchronisers' clocks.
 
 `default_nettype none
 
@@ -20,7 +21,8 @@ module fsmc_bridge_proof #(
     parameter SYNC         = 0, // 1: the processor uses NE2 only; bursts (fsmc_burst) are free
     parameter WAIT_HIGH    = 0,
     parameter TIMEOUT_LOG2 = 1,
-    parameter WORDS        = 0  // 1: proves only that 32-bit words are atomic (fsmc_words_proof)
+    parameter WORDS        = 0, // 1: proves only that 32-bit words are atomic (fsmc_words_proof)
+    parameter LATE         = WORDS == 0 // 1: each synchroniser may see what its input was a clock ago
 ) (
     input wire        clk_i,
     // pins: addresses are 8 halfwords, and one beyond the slots; a halfword has two bits of data
@@ -83,13 +85,12 @@ module fsmc_bridge_proof #(
                         \u_fsmc_bridge.u_fsmc_registers.given_up , \u_fsmc_bridge.u_fsmc_registers.seen ;
     (* hierconn, init = 1'b0 *) wire \u_fsmc_bridge.u_fsmc_registers.u_done.bit_meta , \u_fsmc_bridge.u_fsmc_registers.u_done.bit_sync ;
     (* hierconn *) wire [31:0] \u_fsmc_bridge.u_fsmc_registers.word ;
-    // Each synchroniser may see what its input was a clock ago; with WORDS, whose assertions are inductive, it does not.
     (* hierconn *) wire \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.late , \u_fsmc_bridge.u_fsmc_registers.u_done.late ;
     (* hierconn *) wire [4:0] \u_fsmc_bridge.u_fsmc_async.u_access.late ;
     (* anyseq *) reg late_write, late_done, late_access;
-    assign \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.late = late_write && WORDS == 0;
-    assign \u_fsmc_bridge.u_fsmc_registers.u_done.late = late_done && WORDS == 0;
-    assign \u_fsmc_bridge.u_fsmc_async.u_access.late = {5{late_access && WORDS == 0}};
+    assign \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.late = late_write && LATE != 0;
+    assign \u_fsmc_bridge.u_fsmc_registers.u_done.late = late_done && LATE != 0;
+    assign \u_fsmc_bridge.u_fsmc_async.u_access.late = {5{late_access && LATE != 0}};
     wire clear = \u_fsmc_bridge.clear , excuse = \u_fsmc_bridge.excuse ;
     // `turns` is a write's toggle on its way through cdc_pulse: the source's flip-flop first, then those in clk_i to the last.
     wire [4:0]  turns = {\u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.turned ,
@@ -117,7 +118,7 @@ module fsmc_bridge_proof #(
     reg        let_go = 1'b0; // NWAIT has been seen inactive in this access
     reg [2:0]  rest = 3'd0;   // clocks since NWE's last edge, or since an access was given up
     reg [1:0]  calm = 2'd0;   // clocks since NWAIT was seen inactive
-    localparam [1:0] CALM = WORDS == 0 ? 2'd3 : 2'd2; // clocks in which a synchroniser is sure to see a level
+    localparam [1:0] CALM = LATE != 0 ? 2'd3 : 2'd2; // clocks in which a synchroniser is sure to see a level
     reg        latched = 1'b0; // NADV has been low in this access
     reg        held = 1'b0;   // a write's strobe has risen, NE has not yet
     reg        given_up = 1'b0; // the access before was given up
@@ -177,6 +178,8 @@ module fsmc_bridge_proof #(
         // Edges of NWE are at least three clocks apart (fsmc_async), and four after an access that was given up.
         assume (!wrote || rest >= 3'd3);
         assume (!(given_up && access) || rest >= 3'd4);
+        // A clock lies between NWE's edge and the next access (HCLK times 1 + BUSTURN), else a read might be seen before it.
+        assume (WORDS == 0 || LATE == 0 || was_access || !access || rest != 3'd0);
     end
 
     // ---- NWAIT
@@ -208,7 +211,7 @@ module fsmc_bridge_proof #(
                 cover (waited > 8'd8 && was_access && access && nwait_n);
             end
         end else begin : g_words
-            fsmc_words_proof u_fsmc_words_proof (
+            fsmc_words_proof #(.LATE(LATE)) u_fsmc_words_proof (
                 .past_i(past), .rst_i(rst), .resets_i(resets),
                 .clock_i(clock), .ne2_i(ne2_i), .nwe_n_i(nwe_n_i), .noe_n_i(noe_n_i),
                 .access_i(access), .was_access_i(was_access), .beyond_i(beyond_i), .a_i(a_i),

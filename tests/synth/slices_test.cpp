@@ -35,6 +35,28 @@ TEST(Slices, EstimateIsWithinAThirdOfEveryReportOfMap) {
     EXPECT_LT(sum / std::size(reports), 0.18) << "mean error";
 }
 
+// "Number used as logic": sites of one function, of two.
+TEST(Slices, FunctionsShareSitesAsInTheReportsOfMap) {
+    const struct {
+        const char* design;
+        double one, two;
+    } told[] = {
+        {"A stack for the J1 processor (LX16)", 93 + 11, 5},
+        {"MiniCPU of the anycpu challenge (LX4)", 184 + 19, 29},
+        {"Mojo tutorial: hello, YOUR_NAME (LX9)", 123 + 12, 22},
+        {"one channel of a motion controller (LX9)", 1690 + 122, 491},
+        {"minispartan6-audio, a RISC-V that plays MP3 (LX9)", 3958 + 261, 923},
+    };
+    double sum = 0;
+    for (const auto& d : told) {
+        const double saved = d.two / (d.one + 2 * d.two);
+        EXPECT_GE(saved, 0.04) << d.design;
+        EXPECT_LE(saved, 0.18) << d.design;
+        sum += saved;
+    }
+    EXPECT_NEAR(sum / std::size(told), usualPairing, 0.005);
+}
+
 TEST(Slices, TheErrorThatIsStatedIsThatOfAReportLeftOutOfTheCalibration) {
     double sum = 0;
     for (const Reported& left : reports) {

@@ -20,6 +20,8 @@ constexpr uint64_t margin = 2;          // clocks before an event that are evalu
 constexpr uint64_t settling = 8; // clocks after a carry in which its tick may still have effects
 constexpr unsigned longest = 32; // clocks between two looks at a busy chip
 constexpr uint64_t blameEvery = 256; // looks at a busy chip
+const std::set<std::string> platform = {"u_fsmc_bridge", "u_bus_decoder", "u_modem",
+                                        "u_system_slot", "u_memory"}; // soc.v
 
 #define PHASE soc__DOT__u_modem__DOT__u_baud__DOT__phase
 #define PRESCALER soc__DOT__u_modem__DOT__u_baud__DOT__count
@@ -76,17 +78,17 @@ void QuietSpan::beginPause() {
     pause_ = patience_;
 }
 
-// Notes, now and then, which blocks have moved since the image, but for the known counters.
+// Notes, now and then, which cores have moved since the image.
 void QuietSpan::blame() {
     if (++busyLooks_ % blameEvery)
         return;
     ++blamed_;
     std::set<std::string> blocks;
     for (const std::string& path : SocState::differences(image_, SocState::of(*top_.rootp)))
-        if (path.rfind("u_", 0) == 0)
-            blocks.insert(path.substr(2, path.find('.') - 2));
+        blocks.insert(path.substr(0, path.find('.')));
     for (const std::string& block : blocks)
-        ++movers_[block];
+        if (block.rfind("u_", 0) == 0 && !platform.count(block))
+            ++movers_[block.substr(2)];
 }
 
 std::string QuietSpan::mover() const {

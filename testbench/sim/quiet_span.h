@@ -42,7 +42,7 @@ public:
     // left: those that a tick of the baud rate is on its way in, and that must be evaluated.
     uint64_t pass(uint64_t clocks);
 
-    // Returns the block that keeps the chip from being quiet, by its name, as far as one does: it
+    // Returns the core that keeps the chip from being quiet, by its name, as far as one does: it
     // has moved in most of the clocks that were not passed. Empty: none.
     std::string mover() const;
 
@@ -79,7 +79,7 @@ private:
     unsigned patience_ = 0, pause_ = 0;      // clocks before the next look at a busy chip
     uint64_t busyLooks_ = 0;                 // that found the chip busy
     unsigned blamed_ = 0;                    // of these, in which it was noted what had moved
-    std::map<std::string, unsigned> movers_; // blocks, by the looks in which they had moved
+    std::map<std::string, unsigned> movers_; // cores, by the looks in which they had moved
 };
 
 #endif

@@ -49,7 +49,7 @@ public:
         skips_ = !all;
     }
     uint64_t evaluated() const { return evaluated_; } // clocks
-    // The block, most likely a core, that moves in most of them; empty: none.
+    // The core that moves in most of them; empty: none.
     std::string mover() const { return span_.mover(); }
 
     // Returns all of the chip's state, as it is now.

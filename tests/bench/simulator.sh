@@ -6,8 +6,8 @@
 # the chip at rest under Icarus.
 # Usage: simulator.sh source-folder build-folder output.json [--brief]   (--brief: without 2 MHz, whose simulator it would build)
 set -eu
-source=$1 build=$2 json=$3 runs='1 2 3' seconds=5 flight='' slow=$1/build/slow
-[ "${4:-}" != --brief ] || runs=1 seconds=0.5 flight='--size 96x64 --guard 20' slow=
+source=$1 build=$2 json=$3 runs='1 2 3' seconds=5 flight='' rest=20000 slow=$1/build/slow
+[ "${4:-}" != --brief ] || runs=1 seconds=0.5 flight='--size 96x64 --guard 20' rest=1000 slow=
 image=/usr/share/xplanet/images/earth.jpg
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -42,7 +42,7 @@ for run in $runs; do
     better 3_every "$(speed "$build" --image $image --duration 0.02 --every-clock)"
     better 4_flight "$(speed "$build" --replay "$work/mission_host")"
     better 5_flight_m3 "$(speed "$build" --replay "$work/mission_m3")"
-    better 6_icarus "$(icarus 20000)"
+    better 6_icarus "$(icarus $rest)"
     if [ -n "$slow" ]; then
         better 7_slow "$(speed "$slow" --image $image --duration $seconds)"
         better 8_slow_every "$(speed "$slow" --image $image --duration 1 --every-clock)"

@@ -8,7 +8,9 @@
 
 #define HEAD 8
 #define BODY 7
-#define RETRIES 100 /* of what the link has no room for now, 20 ms apart */
+/* Tries to send what the link has no room for, 20 ms apart: for 30 s, in which a link that makes no
+ * way has ended. Two answers of 8 KB take 4 s where three packets of ten are lost. */
+#define RETRIES 1500
 
 /* The head of an encoded endpoint: type, 13 bytes of encapsulation, encoding 1.1. */
 static const Ice_Byte head[HEAD] = {

@@ -16,14 +16,25 @@ namespace {
 class RadioEndpoint : public ::testing::Test {
 protected:
     RadioEndpoint() {
-        static const XBeeATEndpoint_Port port = {[](void*) {},
-                                                 [](void*) {},
-                                                 [](void*) {},
-                                                 [](void* c, Ice_Int ms) { return self(c).pair_.run(static_cast<U32>(ms) * 1000), 0; },
-                                                 [](void*) {},
-                                                 [](void* c) { return self(c).pair_.now32() / 1000; }};
+        static const XBeeATEndpoint_Port port = {
+            [](void*) {},
+            [](void*) {},
+            [](void*) {},
+            [](void* c, Ice_Int ms) {
+                self(c).run(static_cast<U32>(ms));
+                return 0;
+            },
+            [](void*) {},
+            [](void* c) { return self(c).pair_.now32() / 1000; }};
         Ice_initialize(&ic_);
         XBeeATEndpoint_init(&ic_, "xbee-at", &endpoint_, pair_.b.link(), 1, &port, this);
+    }
+    // All of the endpoint's messages have one tag, of which a side may learn one outcome.
+    void run(U32 ms) {
+        for (; ms; --ms) {
+            pair_.b.outcomes.clear();
+            pair_.run(1000);
+        }
     }
     static RadioEndpoint& self(void* c) { return *static_cast<RadioEndpoint*>(c); }
     const Ice_Endpoint& ops() { return *ic_.endpoint; }
@@ -89,6 +100,23 @@ TEST_F(RadioEndpoint, ConnectingWaitsUntilTheLastClosingIsAnswered) {
     ops().close(ic_.endpointContext, 3);
     EXPECT_EQ(Link_openChannel(pair_.b.link(), 3), LINK_FULL);
     EXPECT_EQ(connect(), ICE_OK);
+}
+
+TEST_F(RadioEndpoint, AnswersThatTheLinkHasNoRoomForWaitForASlowLink) {
+    ASSERT_TRUE(pair_.connect());
+    ASSERT_EQ(connect(), ICE_OK);
+    pair_.run(500000);
+    Weather bad;
+    bad.loss = 0.4;
+    pair_.setWeather(bad);
+    const Side::Bytes answer(7930, 7);
+    for (int n = 0; n < 5; ++n)
+        EXPECT_EQ(
+            ops().send(ic_.endpointContext, 3, answer.data(), static_cast<Ice_Int>(answer.size())),
+            ICE_OK)
+            << n;
+    run(30000);
+    EXPECT_EQ(pair_.a.received, (std::vector<std::pair<int, Side::Bytes>>(5, {3, answer})));
 }
 
 // Options are written as the ground's plugin writes them (test_radio_ice,

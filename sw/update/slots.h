@@ -43,7 +43,7 @@ typedef enum Slots_State {
 #define SLOTS_TRUE 0x600DF1A5U /* makes a state true */
 #define SLOTS_ERASED 0xFFFFFFFFU
 
-/* Where things are in a flash. */
+/* The layout of a flash. */
 typedef struct Slots_Layout {
     U32 at, bytes;      /* of slot 0; slot 1 is behind it */
     U32 sectorBytes;    /* that are erased at once */

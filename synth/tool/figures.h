@@ -28,7 +28,7 @@ struct Figures {
     Timing timing; // only for Spartan-6
     Costs costs;
 
-    // What lut and clock() are with the netlist in other orders; this one has the median of LUTs.
+    // LUTs and clock() of the netlist in other orders; this one has the median of LUTs.
     std::vector<int> otherLuts;
     std::vector<double> clocks;
 

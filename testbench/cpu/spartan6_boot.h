@@ -20,7 +20,7 @@ struct Spartan6Boot {
     // Powers on, or takes PROGRAM_B up.
     void configure(const std::vector<uint8_t>& flash);
 
-    // Where the bitstream that runs lies in flash; none: DONE stays low.
+    // The address in flash of the bitstream that runs; none: DONE stays low.
     std::optional<uint32_t> running;
     bool isStuck = false; // and no new try would be made
     uint64_t clocks = 0;  // of CCLK that it took

@@ -90,7 +90,7 @@ std::vector<uint8_t> keyBytes(const std::string& digits) {
     return key;
 }
 
-// What a file has for a flash; nothing, if there is no file.
+// Returns a file's bytes, for a flash; none if there is no file.
 std::vector<uint8_t> flashOf(const std::string& file, size_t size, const std::string& whose) {
     const std::string bytes = file.empty() ? "" : readFile(file);
     if (!file.empty() && bytes.size() != size)

@@ -7,7 +7,7 @@
 
 #include "slots.h"
 
-/* What can be renewed: firmware, as the object "update", and the FPGA's bitstream, as "fpga". */
+/* The images that can be renewed: firmware, the object "update", and bitstream, "fpga". */
 typedef enum UAV_Updatable { UAV_FIRMWARE, UAV_BITSTREAM, UAV_UPDATABLES } UAV_Updatable;
 
 /* The flash of each, 0 as at first: it does not come over the air; which slot runs, and for which

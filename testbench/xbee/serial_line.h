@@ -5,6 +5,7 @@
 #ifndef SERIAL_LINE_H
 #define SERIAL_LINE_H
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -48,6 +49,7 @@ protected:
 class UartPins : public SerialLine {
 public:
     void setTxd(bool level, uint64_t now) {
+        receive(now);
         level_ = level;
         if (!level && rxBit_ == 0 && armed_) {
             rxBit_ = 1;
@@ -69,19 +71,20 @@ public:
     }
 
     void advance(uint64_t now) override {
-        while (rxBit_ && rxAt_ <= static_cast<double>(now))
-            sample(now);
+        receive(now);
         while (txBit_ && txAt_ <= static_cast<double>(now))
-            shift(now);
+            shift();
         if (rxBit_ == 0 && txBit_ == 0)
             bitNs_ = wantedBitNs_;
     }
+    // The next stop bit of a byte from the design, or edge of RXD: between edges of TXD nothing
+    // need be looked at.
     uint64_t nextEvent() const override {
         double at = 1e300;
         if (rxBit_)
-            at = rxAt_;
-        if (txBit_ && txAt_ < at)
-            at = txAt_;
+            at = rxAt_ + (stopBit - rxBit_) * bitNs_;
+        if (txBit_)
+            at = std::min(at, nextEdge());
         return at > 1e299 ? never : static_cast<uint64_t>(at);
     }
     void wake(uint64_t now) override {
@@ -90,16 +93,22 @@ public:
     }
 
 private:
+    static constexpr unsigned stopBit = 10; // bit 1 is the start bit, 2..9 data
+
     bool mayTalk() const { return rts_ || !heedsRts_; }
+    // Samples TXD, which has not changed meanwhile, up to `now`.
+    void receive(uint64_t now) {
+        while (rxBit_ && rxAt_ <= static_cast<double>(now))
+            sample(now);
+    }
     void sample(uint64_t now) {
-        // Bit 1 is the start bit, 2..9 data, 10 stop.
         if (rxBit_ == 1 && level_) {
             rxBit_ = 0; // a glitch
             return;
         }
         if (rxBit_ >= 2 && rxBit_ <= 9)
             rxByte_ = static_cast<uint8_t>(rxByte_ >> 1 | (level_ ? 0x80 : 0));
-        if (rxBit_ == 10) {
+        if (rxBit_ == stopBit) {
             rxBit_ = 0;
             armed_ = level_;
             level_ ? client_->fromHost(rxByte_, now) : client_->framingError(now);
@@ -115,12 +124,18 @@ private:
         txBit_ = 1;
         txAt_ = at + bitNs_;
     }
-    void shift(uint64_t) {
+    // Level after the start bit or a data bit.
+    bool levelAfter(unsigned bit) const { return bit > 8 || (txByte_ >> (bit - 1) & 1); }
+    double nextEdge() const {
+        unsigned bit = txBit_;
+        while (bit < stopBit && levelAfter(bit) == txLevel_)
+            ++bit;
+        return txAt_ + (bit - txBit_) * bitNs_;
+    }
+    void shift() {
         double at = txAt_;
-        if (txBit_ <= 8) {
-            txLevel_ = txByte_ >> (txBit_ - 1) & 1;
-        } else if (txBit_ == 9) {
-            txLevel_ = true;
+        if (txBit_ < stopBit) {
+            txLevel_ = levelAfter(txBit_);
         } else {
             txBit_ = 0;
             if (mayTalk())

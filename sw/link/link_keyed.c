@@ -168,7 +168,7 @@ void link_pollKeyed(Link* link) {
         if (watch->pingsAnswered == watch->pingsSent)
             watch->askedAt = now;
         (void)link_sendControl(link, frame, LINK_KIND_PING, ++watch->pingsSent, 0, 0);
-        link->pingAt = now + LINK_PING_EVERY;
+        link->pingAt = now + (silence >= LINK_PING_AFTER ? LINK_PING_EVERY : LINK_PROOF_EVERY);
     }
 }
 

@@ -14,13 +14,14 @@
 #define LINK_ACK_DELAY 30000U    /* silence behind data after which it is acknowledged unasked */
 #define LINK_HELLO_LAST 2000000U /* between HELLOs, at most */
 #define LINK_PING_AFTER 5000000U /* silence after which the peer is asked, ... */
-#define LINK_PING_EVERY 1000000U /* again, ... */
+#define LINK_PING_EVERY 200000U  /* again, ... */
 #define LINK_DEAD_AFTER 9000000U /* and given up */
 #define LINK_RTO_FIRST 600000U   /* retransmission time-out, before the first sample; its limits */
 #define LINK_RTO_MIN 60000U
 #define LINK_RTO_MAX 2000000U
 #define LINK_FRAME_GAP 25000U /* silence on the serial side after which half a frame is dropped */
 #define LINK_PROOF_AFTER 5000000U /* silence of answers after which the peer is asked, ... */
+#define LINK_PROOF_EVERY 1000000U /* again, ... */
 #define LINK_PROOF_LAST 27000000U /* and given up, whatever else was heard */
 #define LINK_POLL_EVERY 1000U     /* while the radio has no room */
 #define LINK_OFFER_EVERY 5000U    /* while nobody takes a message */

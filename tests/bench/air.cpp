@@ -5,20 +5,13 @@
 // are as the ground's: link layer, pacer, serial line of 111,111 baud.
 
 #include "figures.h"
-#include "frame_pacer.h"
 #include "modem_floor.h"
-#include "rf_channel.h"
-#include "timed_line.h"
+#include "modem_pair.h"
 #include <array>
 #include <cstdio>
 
-extern "C" {
-#include "link.h"
-}
-
 namespace {
 
-constexpr U32 byteTimeUs16 = 1440;
 unsigned leastExponent = 2;            // RN, as controller and ground set it
 constexpr int pictures = 0, calls = 1; // channels
 const char* const key = "0123456789ABCDEF0123456789ABCDEF";
@@ -28,48 +21,17 @@ enum Mode { Clear, Encrypted, Keyed };
 const char* const columns[] = {"clear    ", "encrypted", "keyed    "};
 const char* const names[] = {"in the clear", "encrypted", "with a key"};
 
-class End {
+class End : public ModemEnd {
 public:
-    End(RfChannel& air, unsigned address, Mode mode, uint64_t seed)
-        : modem_(line_, air, options(address, mode)),
-          pacer_(90, mode == Encrypted ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME), random_(seed) {
-        static const Link_Port port = {
-            [](void* c, const U8* f, U32 n) { return self(c).transmit(f, n); },
-            [](void* c) { return self(c).random_.next(); },
-            [](void* c, int channel, const U8* m, U32 n) {
-                return self(c).onMessage(channel, m, n);
-            },
-            [](void*, int, int) {},
-            [](void*, Link_State) {},
-            nullptr,
-            nullptr};
-        Link_init(link(), &port, this, byteTimeUs16);
+    End(RfChannel& air, unsigned address, uint64_t seed, Mode mode)
+        : ModemEnd(air, options(address, mode), seed) {
         if (mode == Keyed)
             Link_setKey(link(), 0, reinterpret_cast<const U8*>(key));
-        if (mode == Encrypted)
-            Link_limitFrame(link(), LINK_MAX_ENCRYPTED);
     }
-    Link* link() { return link_.get(); }
-    const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
-    bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
-    const XBee& modem() const { return modem_; }
-
-    // Returns when it wants to be called again.
     uint64_t advance(uint64_t now) {
-        now_ = now;
-        modem_.advance(now);
-        write();
         if (feed)
             fill();
-        if (now >= nextPoll_ || !line_.received.empty()) {
-            U32 us = static_cast<U32>(now / 1000);
-            Link_receive(link(), line_.received.data(), static_cast<U32>(line_.received.size()),
-                         us);
-            line_.received.clear();
-            Link_poll(link(), us);
-            nextPoll_ = now + std::min<uint64_t>(Link_deadline(link(), us), 1000) * 1000 + 100'000;
-        }
-        return std::min({modem_.nextEvent(), nextPoll_, nextWrite_});
+        return ModemEnd::advance(now);
     }
     U32 echoSize = 0, called = 0;                 // called: messages of channel `calls`
     uint64_t bytes = 0, lastAt = 0, calledAt = 0; // bytes, last one: of channel `pictures`
@@ -84,33 +46,13 @@ public:
     }
 
 private:
-    static End& self(void* c) { return *static_cast<End*>(c); }
     static XBee::Options options(unsigned address, Mode mode) {
-        XBee::Options o;
-        o.set = {{"BD", 7},
-                 {"MY", address},
-                 {"DL", 1 - address},
-                 {"D7", 1},
-                 {"EE", mode == Encrypted ? 1u : 0u},
-                 {"RN", leastExponent}};
+        XBee::Options o = modemOptions(address, mode == Encrypted, leastExponent);
         if (mode == Encrypted)
             o.key = key;
         return o;
     }
-    int transmit(const U8* frame, U32 size) {
-        if (!pacer_.offer(frame, size, static_cast<U32>(now_ / 1000)))
-            return 1;
-        write();
-        return 0;
-    }
-    void write() {
-        U32 us = static_cast<U32>(now_ / 1000);
-        std::vector<U8> frame = pacer_.due(us);
-        line_.send(frame.data(), frame.size(), now_);
-        U32 wait = pacer_.deadline(us);
-        nextWrite_ = wait == 0xFFFFFFFFu ? never : now_ + wait * 1000ull;
-    }
-    int onMessage(int channel, const U8* message, U32 size) {
+    void onMessage(int channel, const U8* message, U32 size) override {
         static const U8 answer[LINK_MAX_PAYLOAD] = {1};
         if (channel == pictures) {
             const std::vector<U8> expected(size, static_cast<U8>(received_++));
@@ -118,49 +60,20 @@ private:
                 throw std::runtime_error("a message was lost, doubled or changed");
             bytes += size;
             lastAt = now_;
-            return 0;
+            return;
         }
         ++called;
         calledAt = now_;
         if (echoSize)
             Link_send(link(), channel, answer, echoSize, 0);
-        return 0;
     }
-    TimedLine line_;
-    XBee modem_;
-    XBeeAT::FramePacer pacer_;
-    Random random_;
-    std::unique_ptr<Link> link_{new Link};
-    uint64_t now_ = 0, nextPoll_ = 0, nextWrite_ = never;
     unsigned sent_ = 0, received_ = 0; // pictures
 };
 
-class World {
+class World : public ModemPair<End> {
 public:
     World(const RfWeather& weather, Mode mode, uint64_t seed = testSeed())
-        : air(seed), a(air, 0, mode, seed + 1), b(air, 1, mode, seed + 2) {
-        air.weather = weather;
-        Link_start(a.link(), 0);
-        until([&] { return a.isUp() && b.isUp(); }, 60);
-        for (int channel : {pictures, calls}) {
-            Link_openChannel(a.link(), channel);
-            until([&] { return Link_openChannel(b.link(), channel) == LINK_OK; }, 60);
-        }
-        const uint64_t rest = now + 500'000'000;
-        until([&] { return now >= rest; }, 10);
-    }
-    template <class Done> void until(Done done, double limitSeconds) {
-        for (const uint64_t end = now + static_cast<uint64_t>(limitSeconds * 1e9); !done();) {
-            if (now > end)
-                throw std::runtime_error("not done in time");
-            air.advance(now);
-            const uint64_t next = std::min(a.advance(now), b.advance(now));
-            now = std::max(now + 1, std::min(next, air.nextEvent()));
-        }
-    }
-    uint64_t now = 0;
-    RfChannel air;
-    End a, b;
+        : ModemPair(weather, seed, 2, mode) {}
 };
 
 Figures figures("The radio link on a half-duplex air with the modems' own limits.");
@@ -234,10 +147,9 @@ std::vector<double> callTimes(World& w, U32 size, int count) {
         const U32 before = w.a.called;
         const uint64_t start = w.now;
         Link_send(w.a.link(), calls, message.data(), size, 0);
-        w.until([&] { return w.a.called > before; }, 60);
+        w.need([&] { return w.a.called > before; });
         times.push_back(static_cast<double>(w.a.calledAt - start) / 1e6);
-        const uint64_t rest = w.now + 160'000'000 + static_cast<uint64_t>(i) * 330'000;
-        w.until([&] { return w.now >= rest; }, 5);
+        w.pass(160'000'000 + static_cast<uint64_t>(i) * 330'000);
     }
     std::sort(times.begin(), times.end());
     return times;

@@ -6,9 +6,7 @@
 #ifndef MODEM_FLOOR_H
 #define MODEM_FLOOR_H
 
-#include "rf_channel.h"
-#include "timed_line.h"
-#include <algorithm>
+#include "modem_pair.h"
 
 // Returns the median in ms of `out` bytes there and, from the moment of the last one on, `back`
 // bytes here; each at most a packet. RN is 2.
@@ -16,13 +14,7 @@ inline double floorMs(size_t out, size_t back, bool isEncrypted = false) {
     RfChannel air(1);
     struct End {
         End(RfChannel& channel, unsigned address, bool encrypts)
-            : modem(line, channel, options(address, encrypts)) {}
-        static XBee::Options options(unsigned address, bool encrypts) {
-            XBee::Options o;
-            o.set = {{"BD", 7}, {"MY", address}, {"DL", 1 - address},
-                     {"D7", 1}, {"RN", 2},       {"EE", encrypts}};
-            return o;
-        }
+            : modem(line, channel, modemOptions(address, encrypts)) {}
         TimedLine line;
         XBee modem;
     } a(air, 0, isEncrypted), b(air, 1, isEncrypted);

@@ -18,8 +18,11 @@ public:
     }
     size_t waiting() const { return out_.size(); }
     std::vector<uint8_t> received;
+    bool hangs = false; // its host: nothing moves
 
     void advance(uint64_t now) override {
+        if (hangs)
+            return;
         const double byteNs = 10 * bitNs_, time = static_cast<double>(now);
         while (!out_.empty() && cts_ && outFree_ + byteNs <= time) {
             outFree_ += byteNs;
@@ -35,6 +38,8 @@ public:
         }
     }
     uint64_t nextEvent() const override {
+        if (hangs)
+            return never;
         double at = busy_ ? inDone_ : 1e300;
         if (!out_.empty())
             at = std::min(at, outFree_ + 10 * bitNs_);

@@ -3,105 +3,31 @@
 // modem_test: two link layers over two modem models and the air between them: what modems lose
 // after they have acknowledged it, the published weathers, the example of a trace.
 
-#include "frame_pacer.h"
-#include "rf_channel.h"
-#include "timed_line.h"
+#include "modem_pair.h"
 #include <gtest/gtest.h>
-
-extern "C" {
-#include "link.h"
-}
 
 namespace {
 
 constexpr uint64_t ms = 1'000'000;
 
-// A serial line whose host may hang: then nothing moves.
-class HangingLine : public TimedLine {
+class End : public ModemEnd {
 public:
-    bool hangs = false;
-    void advance(uint64_t now) override {
-        if (!hangs)
-            TimedLine::advance(now);
-    }
-};
-
-class End {
-public:
-    End(RfChannel& air, unsigned address, bool hasKey)
-        : modem(line, air, options(address)), random_(address + 1) {
-        static const Link_Port port = {
-            [](void* c, const U8* f, U32 n) { return self(c).transmit(f, n); },
-            [](void* c) { return self(c).random_.next(); },
-            [](void* c, int, const U8* m, U32 n) {
-                self(c).received.emplace_back(m, m + n);
-                return 0;
-            },
-            [](void*, int, int) {},
-            [](void*, Link_State) {},
-            nullptr,
-            nullptr};
+    End(RfChannel& air, unsigned address, uint64_t seed, bool hasKey)
+        : ModemEnd(air, modemOptions(address), seed) {
         static const U8 key[LINK_KEY_BYTES] = {1, 2, 3};
-        Link_init(link(), &port, this, 1440);
         if (hasKey)
             Link_setKey(link(), 0, key);
     }
-    Link* link() { return link_.get(); }
-    bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
-    void advance(uint64_t now) {
-        const U32 us = static_cast<U32>(now / 1000);
-        modem.advance(now);
-        now_ = now;
-        write();
-        Link_receive(link(), line.received.data(), static_cast<U32>(line.received.size()), us);
-        line.received.clear();
-        Link_poll(link(), us);
-    }
-    HangingLine line;
-    XBee modem;
     std::vector<std::vector<U8>> received;
 
 private:
-    static End& self(void* c) { return *static_cast<End*>(c); }
-    static XBee::Options options(unsigned address) {
-        XBee::Options o;
-        o.set = {{"BD", 7}, {"MY", address}, {"DL", 1 - address}, {"RN", 2}};
-        return o;
+    void onMessage(int, const U8* message, U32 size) override {
+        received.emplace_back(message, message + size);
     }
-    int transmit(const U8* frame, U32 size) {
-        if (!pacer_.offer(frame, size, static_cast<U32>(now_ / 1000)))
-            return 1;
-        write();
-        return 0;
-    }
-    void write() {
-        const auto frame = pacer_.due(static_cast<U32>(now_ / 1000));
-        line.send(frame.data(), frame.size(), now_);
-    }
-    XBeeAT::FramePacer pacer_{90, LINK_MAX_FRAME};
-    std::unique_ptr<Link> link_{new Link};
-    Random random_;
-    uint64_t now_ = 0;
 };
 
 class LinkOverModems : public ::testing::TestWithParam<bool> {
 protected:
-    void SetUp() override {
-        Link_start(a_.link(), 0);
-        ASSERT_TRUE(until([&] { return a_.isUp() && b_.isUp(); }, 10));
-        ASSERT_EQ(Link_openChannel(a_.link(), 0), LINK_OK);
-        ASSERT_TRUE(until([&] { return Link_openChannel(b_.link(), 0) == LINK_OK; }, 10));
-    }
-    template <class Done> bool until(Done done, unsigned seconds) {
-        for (const uint64_t end = now_ + seconds * 1000 * ms; now_ < end; now_ += ms / 4) {
-            air_.advance(now_);
-            a_.advance(now_);
-            b_.advance(now_);
-            if (done())
-                return true;
-        }
-        return done();
-    }
     // Sends so many messages each way, and expects all, once, in order.
     void expectAll(unsigned count, unsigned seconds, const std::function<void()>& meanwhile = {}) {
         std::vector<std::vector<U8>> messages;
@@ -113,7 +39,7 @@ protected:
                                           static_cast<U32>(messages[n].size()), n) == LINK_OK)
                 ++n;
         };
-        EXPECT_TRUE(until(
+        EXPECT_TRUE(pair_.until(
             [&] {
                 offer(a_, sent[0]);
                 offer(b_, sent[1]);
@@ -127,23 +53,23 @@ protected:
         a_.received.clear();
         b_.received.clear();
     }
-    uint64_t now_ = 0;
-    RfChannel air_{testSeed()};
-    End a_{air_, 0, GetParam()}, b_{air_, 1, GetParam()};
+    ModemPair<End> pair_{RfWeather(), testSeed(), 1, GetParam()};
+    RfChannel& air_ = pair_.air;
+    End &a_ = pair_.a, &b_ = pair_.b;
 };
 
 // The hosts hang for up to 200 ms now and then: their modems acknowledge what no longer fits, and
 // drop it.
 TEST_P(LinkOverModems, WhatAModemAcknowledgesAndThenDropsIsSentAgain) {
     Random random(testSeed());
-    uint64_t until[2] = {0, 0};
+    uint64_t drawn = pair_.now, wakesAt[2] = {0, 0};
     expectAll(60, 120, [&] {
-        for (End* end : {&a_, &b_}) {
-            uint64_t& at = until[end == &b_];
-            if (random.chance(0.002)) // eight times a second
-                at = now_ + random.below(200) * ms;
-            end->line.hangs = now_ < at;
-        }
+        for (; drawn < pair_.now; drawn += ms / 4)
+            for (uint64_t& at : wakesAt)
+                if (random.chance(0.002)) // eight times a second
+                    at = drawn + random.below(200) * ms;
+        a_.line.hangs = pair_.now < wakesAt[0];
+        b_.line.hangs = pair_.now < wakesAt[1];
     });
     EXPECT_GT(a_.modem.counters().packetsDropped, 2u);
     EXPECT_GT(b_.modem.counters().packetsDropped, 2u);
@@ -160,9 +86,28 @@ TEST_P(LinkOverModems, InThePublishedWeathersNothingIsLostOrDoubled) {
 TEST_P(LinkOverModems, TheTraceOfTheExampleIsFlown) {
     air_.weather.trace = std::make_shared<RfTrace>(TRACE);
     const uint64_t lost = air_.counters().lost;
-    while (now_ < 110'000 * ms && !HasFailure())
+    while (pair_.now < 110'000 * ms && !HasFailure())
         expectAll(24, 120);
     EXPECT_GT(air_.counters().lost - lost, 100u);
+}
+
+// An idle link asks after five seconds, which costs few bytes, and again soon where no answer
+// comes: in an hour in which three of ten packets are lost, or in any of the weathers, it gives no
+// living peer up.
+TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
+    a_.longestRestUs = b_.longestRestUs = 100'000;
+    const U32 before = a_.statistics().bytesSent + b_.statistics().bytesSent;
+    pair_.pass(3600 * 1000 * ms);
+    EXPECT_LE((a_.statistics().bytesSent + b_.statistics().bytesSent - before) / 720,
+              GetParam() ? 44u : 11u); // in five seconds
+    auto weathers = RfWeather::published();
+    weathers.emplace_back("loss", RfWeather()).second.loss = 0.3;
+    for (auto& [what, weather] : weathers) {
+        air_.weather = weather;
+        pair_.pass(3600 * 1000 * ms);
+        EXPECT_EQ(a_.statistics().sessions, 1u) << what;
+        EXPECT_EQ(b_.statistics().sessions, 1u) << what;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Keys, LinkOverModems, ::testing::Bool(),

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+//
+// modem_pair: two link layers over two modem models and the air between them, from event to event.
+// Both ends are as the ground's: link layer, pacer, serial line of 111,111 baud.
+
+#ifndef MODEM_PAIR_H
+#define MODEM_PAIR_H
+
+#include "frame_pacer.h"
+#include "rf_channel.h"
+#include "timed_line.h"
+#include <stdexcept>
+
+extern "C" {
+#include "link.h"
+}
+
+// The settings of modem 0 or 1, which talks to the other; RN is `leastExponent`.
+inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
+                                  unsigned leastExponent = 2) {
+    XBee::Options o;
+    o.set = {{"BD", 7}, {"MY", address},  {"DL", 1 - address},
+             {"D7", 1}, {"EE", encrypts}, {"RN", leastExponent}};
+    return o;
+}
+
+// One end. A derived class says what becomes of the messages; it calls Link_setKey before time
+// passes, if at all.
+class ModemEnd {
+public:
+    ModemEnd(RfChannel& air, const XBee::Options& options, uint64_t seed)
+        : modem(line, air, options),
+          pacer_(90, options.set.at("EE") ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME), random_(seed) {
+        static const Link_Port port = {
+            [](void* c, const U8* f, U32 n) { return self(c).transmit(f, n); },
+            [](void* c) { return self(c).random_.next(); },
+            [](void* c, int channel, const U8* m, U32 n) {
+                self(c).onMessage(channel, m, n);
+                return 0;
+            },
+            [](void*, int, int) {},
+            [](void*, Link_State) {},
+            nullptr,
+            nullptr};
+        Link_init(link(), &port, this, 1440);
+        if (options.set.at("EE"))
+            Link_limitFrame(link(), LINK_MAX_ENCRYPTED);
+    }
+    virtual ~ModemEnd() = default;
+    ModemEnd(const ModemEnd&) = delete;
+    ModemEnd& operator=(const ModemEnd&) = delete;
+    virtual void onMessage(int channel, const U8* message, U32 size) = 0;
+
+    Link* link() { return link_.get(); }
+    const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
+    bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
+    // Returns when it wants to be called again.
+    uint64_t advance(uint64_t now) {
+        now_ = now;
+        modem.advance(now);
+        write();
+        if (now >= nextPoll_ || !line.received.empty()) {
+            const U32 us = static_cast<U32>(now / 1000);
+            Link_receive(link(), line.received.data(), static_cast<U32>(line.received.size()), us);
+            line.received.clear();
+            Link_poll(link(), us);
+            nextPoll_ =
+                now + std::min(Link_deadline(link(), us), longestRestUs) * 1000ull + 100'000;
+        }
+        return std::min({modem.nextEvent(), nextPoll_, nextWrite_});
+    }
+    TimedLine line;
+    XBee modem;
+    U32 longestRestUs = 1000; // between two polls
+
+protected:
+    uint64_t now_ = 0;
+
+private:
+    static ModemEnd& self(void* c) { return *static_cast<ModemEnd*>(c); }
+    int transmit(const U8* frame, U32 size) {
+        if (!pacer_.offer(frame, size, static_cast<U32>(now_ / 1000)))
+            return 1;
+        write();
+        return 0;
+    }
+    void write() {
+        const U32 us = static_cast<U32>(now_ / 1000);
+        const auto frame = pacer_.due(us);
+        line.send(frame.data(), frame.size(), now_);
+        const U32 wait = pacer_.deadline(us);
+        nextWrite_ = wait == 0xFFFFFFFFu ? never : now_ + wait * 1000ull;
+    }
+    XBeeAT::FramePacer pacer_;
+    std::unique_ptr<Link> link_{new Link};
+    Random random_;
+    uint64_t nextPoll_ = 0, nextWrite_ = never;
+};
+
+// Two ends of a class derived from ModemEnd, and the air; the first has called, and both are up
+// with the channels 0 to `channels` - 1 open.
+template <class End> class ModemPair {
+public:
+    template <class... Arguments>
+    ModemPair(const RfWeather& weather, uint64_t seed, int channels, const Arguments&... arguments)
+        : air(seed), a(air, 0, seed + 1, arguments...), b(air, 1, seed + 2, arguments...) {
+        air.weather = weather;
+        Link_start(a.link(), 0);
+        need([&] { return a.isUp() && b.isUp(); });
+        for (int channel = 0; channel < channels; ++channel) {
+            Link_openChannel(a.link(), channel);
+            need([&] { return Link_openChannel(b.link(), channel) == LINK_OK; });
+        }
+        pass(500'000'000);
+    }
+    // Lets time pass until `done`. Returns whether it is within so many seconds.
+    template <class Done> bool until(Done done, double seconds) {
+        for (const uint64_t end = now + static_cast<uint64_t>(seconds * 1e9); !done();) {
+            if (now > end)
+                return false;
+            air.advance(now);
+            const uint64_t next = std::min(a.advance(now), b.advance(now));
+            now = std::max(now + 1, std::min(next, air.nextEvent()));
+        }
+        return true;
+    }
+    template <class Done> void need(Done done) {
+        if (!until(done, 60))
+            throw std::runtime_error("not done in time");
+    }
+    void pass(uint64_t ns) {
+        const uint64_t end = now + ns;
+        until([&] { return now >= end; }, 1e9);
+    }
+    uint64_t now = 0;
+    RfChannel air;
+    End a, b;
+};
+
+#endif

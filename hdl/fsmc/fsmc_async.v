@@ -32,7 +32,7 @@ module fsmc_async (
     // accesses under way
     input  wire        hit_async_i,  // the data for the address on the pins is there
     input  wire        safe_async_i, // it was there a clock ago, too
-    output wire [1:0]  reading_o,    // a read is under way: bit 1 NE2, bit 0 NE1
+    output wire [1:0]  reading_o,    // a read is under way: bit 1 NE2, once no write is pending; bit 0 NE1
     output wire        hit_o,        // hit_async_i and safe_async_i, sampled together with reading_o
     output wire        safe_o,
     output wire        writing_o,    // a write to NE1 is under way
@@ -48,9 +48,12 @@ module fsmc_async (
     );
     assign wr_ne2_async_o = wr_async_o && taken[44];
 
+    // A read of a register is hidden until the write before it has been handed over: else a synchroniser that is late by chance
+    // would let it go first. A read of memory need not be, since a write drops what was read.
+    wire [1:0] reads = ne & {!fsmc_noe_n_i && !wr_async_o, !fsmc_noe_n_i};
     cdc_bit #(.WIDTH(5), .TOGETHER(1)) u_access (
         .clk_i(clk_i),
-        .bit_async_i({ne & {2{!fsmc_noe_n_i}}, ne[0] && !fsmc_nwe_n_i, hit_async_i, safe_async_i}),
+        .bit_async_i({reads, ne[0] && !fsmc_nwe_n_i, hit_async_i, safe_async_i}),
         .bit_sync_o({reading_o, writing_o, hit_o, safe_o})
     );
     cdc_copy #(.WIDTH(25)) u_at (.clk_i(clk_i), .bus_async_i(fsmc_a_i), .bus_sync_o(at_o));

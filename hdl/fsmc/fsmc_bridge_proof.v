@@ -178,8 +178,6 @@ module fsmc_bridge_proof #(
         // Edges of NWE are at least three clocks apart (fsmc_async), and four after an access that was given up.
         assume (!wrote || rest >= 3'd3);
         assume (!(given_up && access) || rest >= 3'd4);
-        // A clock lies between NWE's edge and the next access (HCLK times 1 + BUSTURN), else a read might be seen before it.
-        assume (WORDS == 0 || LATE == 0 || was_access || !access || rest != 3'd0);
     end
 
     // ---- NWAIT

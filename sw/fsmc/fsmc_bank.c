@@ -28,7 +28,8 @@ static int isBad(const FSMC_Bank* bank) {
         return 1;
     if (bank->mode == FSMC_MODE_BURST)
         return bank->clkdiv < 1U || bank->clkdiv > 15U || bank->latency < 2U || bank->latency > 17U;
-    if (bank->mode > FSMC_MODE_BURST || timingIsBad(bank, &bank->read, bank->mode))
+    if (bank->mode > FSMC_MODE_BURST || bank->busturn == 0U ||
+        timingIsBad(bank, &bank->read, bank->mode))
         return 1;
     return isExtended(bank->mode) &&
            (!isExtended(bank->writeMode) || timingIsBad(bank, &bank->write, bank->writeMode));

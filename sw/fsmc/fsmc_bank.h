@@ -31,7 +31,7 @@ typedef struct FSMC_Bank {
     U8 muxed;                /* MUXEN: address bits 15..0 on the data pins (the bridge's MUXED) */
     U8 wait;                 /* ASYNCWAIT: asynchronous accesses look at NWAIT */
     U8 waitHigh;             /* WAITPOL: NWAIT is active high (WAIT_HIGH) */
-    U8 busturn;              /* BUSTURN, HCLK, 0..15 */
+    U8 busturn;              /* BUSTURN, HCLK, 1..15 (burst 0..15) */
     FSMC_Timing read, write; /* modes 1 and 2: only `read`, for both */
     U8 clkdiv;               /* burst: FSMC_CLK = HCLK / (clkdiv + 1), 1..15 */
     U8 latency; /* burst: edges from the address to the first data, 2..17 (LATENCY): DATLAT + 2 */

@@ -309,7 +309,7 @@ uint32_t FsmcMaster::read32(uint32_t address) {
 void FsmcMaster::write32(uint32_t address, uint32_t value) {
     if (address >= registersAt) {
         fsmcRegister(address) = value;
-        return;
+        return passHclk(1); // the AHB's data phase
     }
     writePins(address, static_cast<uint16_t>(value), 3);
     writePins(address + 2, static_cast<uint16_t>(value >> 16), 3);

@@ -35,12 +35,12 @@ const Mode plainModes[] = {
     {"1 slow", {FSMC_MODE_1, {}, 0, 0, 1, 0, 15, {15, 1, 20}, {}, 0, 0}},
     {"1 PSRAM", {FSMC_MODE_1, {}, 1, 0, 1, 0, 1, {1, 1, 4}, {}, 0, 0}},
     {"A", {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 1, {2, 1, 4}, {1, 1, 5}, 0, 0}},
-    {"A write fast", {FSMC_MODE_A, FSMC_MODE_A, 1, 0, 1, 0, 0, {3, 1, 6}, {1, 1, 4}, 0, 0}},
+    {"A write fast", {FSMC_MODE_A, FSMC_MODE_A, 1, 0, 1, 0, 1, {3, 1, 6}, {1, 1, 4}, 0, 0}},
     {"2", {FSMC_MODE_2, {}, 0, 0, 1, 0, 1, {2, 1, 4}, {}, 0, 0}},
     {"B", {FSMC_MODE_B, FSMC_MODE_B, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}, 0, 0}},
     {"C", {FSMC_MODE_C, FSMC_MODE_C, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}, 0, 0}},
     {"D", {FSMC_MODE_D, FSMC_MODE_D, 0, 0, 1, 0, 1, {2, 2, 4}, {2, 2, 4}, 0, 0}},
-    {"read A, write D", {FSMC_MODE_A, FSMC_MODE_D, 0, 0, 1, 0, 0, {2, 1, 4}, {1, 3, 4}, 0, 0}},
+    {"read A, write D", {FSMC_MODE_A, FSMC_MODE_D, 0, 0, 1, 0, 1, {2, 1, 4}, {1, 3, 4}, 0, 0}},
 };
 const Mode muxedModes[] = {
     {"muxed NOR", {FSMC_MODE_2, {}, 0, 1, 1, 0, 1, {2, 2, 4}, {}, 0, 0}},
@@ -131,19 +131,20 @@ TEST(Modes, NwaitActiveHighAndSmallBuffers) {
 TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0, 120, 100);
     b.slave.words[0] = SYSTEM_ID_VALUE;
-    FSMC_Bank bank = {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 0, {2, 1, 4}, {2, 1, 4}, 0, 0};
+    FSMC_Bank bank = {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}, 0, 0};
     auto hclksOfAWord = [&](uint8_t busturn, bool pauses) {
         bank.busturn = busturn;
         const FSMC_Bank banks[2] = {bank, bank};
         EXPECT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
         b.master.pauseWrites(pauses);
         (void)b.master.read32(control);
+        b.master.idle(20);
         const uint64_t start = b.master.hclks();
         b.master.write32(ddr, 1);
         return b.master.hclks() - start;
     };
-    EXPECT_EQ(hclksOfAWord(3, true), hclksOfAWord(0, true) + 3);
-    EXPECT_EQ(hclksOfAWord(3, false), hclksOfAWord(0, false));
+    EXPECT_EQ(hclksOfAWord(4, true), hclksOfAWord(1, true) + 3);
+    EXPECT_EQ(hclksOfAWord(4, false), hclksOfAWord(1, false));
 }
 
 // A doorbell right behind a read drops what is read ahead, on its way or even asked for in that
@@ -153,7 +154,7 @@ TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
 TEST(Modes, WhatADoorbellDropsOnItsWayIsNotTakenForFresh) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0.1, 168, 100);
     b.slave.words[0] = SYSTEM_ID_VALUE;
-    const FSMC_Bank bank = {FSMC_MODE_1, {}, 0, 0, 1, 0, 0, {2, 1, 4}, {}, 0, 0};
+    const FSMC_Bank bank = {FSMC_MODE_1, {}, 0, 0, 1, 0, 1, {2, 1, 4}, {}, 0, 0};
     const FSMC_Bank banks[2] = {bank, bank};
     ASSERT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
     Random random(testSeed());
@@ -191,7 +192,9 @@ TEST(Modes, TheDriverRefusesWhatTheManualForbids) {
             << "reserved in mode D";
         EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.read.addset = 16; }));
         EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.read.addhld = 16; }));
-        EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.busturn = 16; }));
+        for (unsigned busturn : {0u, 16u})
+            EXPECT_TRUE(refuses(bank, [=](FSMC_Bank& x) { x.busturn = static_cast<U8>(busturn); }))
+                << "a read may begin too soon behind a write";
         EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.writeMode = FSMC_MODE_1; }));
         EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.mode = static_cast<FSMC_Mode>(7); }));
         for (unsigned clkdiv : {0u, 16u})

@@ -14,7 +14,7 @@
 
 module cdc_bit #(
     parameter             WIDTH    = 1,
-    parameter             TOGETHER = 0, // 1: all bits are late together, or none is
+    parameter             TOGETHER = 0, // n: all bits are late together, if one of the n upper ones moves; the others follow clk_i
     parameter             EXACT    = 0, // 1: no bit is late here; cdc_skew on the way here makes them late
     parameter [WIDTH-1:0] INITIAL  = 0
 ) (
@@ -30,10 +30,14 @@ module cdc_bit #(
 
 `ifdef VERILATOR
     `include "cdc_random.vh"
-    reg [WIDTH-1:0] bit_was;
+    reg  [WIDTH-1:0] bit_was;
+    wire [WIDTH-1:0] moved = bit_async_i ^ bit_was;
     always @(posedge clk_i) begin
         bit_was  <= bit_async_i;
-        bit_meta <= bit_async_i ^ late((bit_async_i ^ bit_was) & {WIDTH{EXACT == 0}});
+        if (EXACT != 0 || (TOGETHER != 0 && moved >> (WIDTH - TOGETHER) == 0))
+            bit_meta <= bit_async_i;
+        else
+            bit_meta <= bit_async_i ^ late(moved);
     end
 `elsif FORMAL
     reg  [WIDTH-1:0] bit_was;

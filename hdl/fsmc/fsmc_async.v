@@ -51,7 +51,7 @@ module fsmc_async (
     // A read of a register is hidden until the write before it has been handed over: else a synchroniser that is late by chance
     // would let it go first. A read of memory need not be, since a write drops what was read.
     wire [1:0] reads = ne & {!fsmc_noe_n_i && !wr_async_o, !fsmc_noe_n_i};
-    cdc_bit #(.WIDTH(5), .TOGETHER(1)) u_access (
+    cdc_bit #(.WIDTH(5), .TOGETHER(3)) u_access (
         .clk_i(clk_i),
         .bit_async_i({reads, ne[0] && !fsmc_nwe_n_i, hit_async_i, safe_async_i}),
         .bit_sync_o({reading_o, writing_o, hit_o, safe_o})

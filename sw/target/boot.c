@@ -44,6 +44,10 @@ int Boot_imageIsSound(void) {
     return CRC_DR == *image_end;
 }
 
+int Boot_isPowerOn(void) {
+    return reason == BOOT_POWER_ON;
+}
+
 U32 Boot_report(void) {
     return BOOT_REPORT_MARK << 24 | (boot_record.starts & 0xFFU) << 16 | (U32)reason << 8 |
            (detail & 0xFFU);

@@ -45,6 +45,8 @@ extern Boot_Record boot_record; /* of the run before, once Boot_begin has been c
 void Boot_begin(void);
 /* Returns 1 if the checksum that the build has put behind the image is right. */
 int Boot_imageIsSound(void);
+/* Returns 1 if the power came, and not only a reset. */
+int Boot_isPowerOn(void);
 /* Returns the word for SCRATCH. */
 U32 Boot_report(void);
 /* Makes the next start report this reason, whatever ends the run. */

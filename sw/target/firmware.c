@@ -42,8 +42,8 @@ void Firmware_run(void) {
     uav_update[UAV_FIRMWARE].product = LOADER_PRODUCT;
     uav_update[UAV_BITSTREAM].product = FPGA_PRODUCT;
     if (uav_update[UAV_FIRMWARE].slots)
-        uav_update[UAV_BITSTREAM].slots =
-            Fpga_slots(uav_update[UAV_FIRMWARE].slots, &uav_update[UAV_BITSTREAM].running);
+        uav_update[UAV_BITSTREAM].slots = Fpga_slots(
+            uav_update[UAV_FIRMWARE].slots, Boot_isPowerOn(), &uav_update[UAV_BITSTREAM].running);
     uav_restart = restart;
     Secrets_start();
     UAV_useBoard(&secrets_board, 0);

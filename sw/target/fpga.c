@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * fpga: the flash hangs on SPI 1 and on the FPGA's configuration pins. These float once it is
- * configured; the processor drives the bus for the length of a transaction only, and PROGRAM_B when
- * nothing is under way there.
+ * configured, and while PROGRAM_B is low; the processor drives the bus for the length of a
+ * transaction only. While the FPGA loads its configuration, SPI 1 is a slave that hears from where.
  */
 #include "fpga.h"
 #include "board.h"
@@ -10,15 +10,19 @@
 #include "stm32f2.h"
 #include "ucos_ii.h"
 
-#define BUS 0U                  /* port A: chip select 4, clock 5, data in 6, data out 7 */
-#define BUS_PINS (0xFFUL << 8)  /* their bits of MODER */
-#define BUS_OURS (0xA9UL << 8)  /* an output, and three of SPI 1 */
-#define BUS_SPI (0x555UL << 20) /* alternate function 5 */
-#define SELECT 4U
-#define CONTROL 2U /* port C: PROGRAM_B 0, open drain; DONE 1 */
+#define BUS 0U                   /* port A: chip select 4, clock 5, data in 6, data out 7 */
+#define BUS_PINS (0xFFUL << 8)   /* their bits of MODER */
+#define BUS_OURS (0xA9UL << 8)   /* an output, and three of SPI 1 */
+#define BUS_HEARS (0x8AUL << 8)  /* all but data in are SPI 1's */
+#define BUS_SPI (0x5555UL << 16) /* alternate function 5 */
+#define SELECT 4U                /* its EXTI line as well: port A's, as after a reset */
+#define SELECT_VECTOR 10U
+#define ADDRESS_BYTES 4U /* the flash's instruction before it */
+#define CONTROL 2U       /* port C: PROGRAM_B 0, open drain; DONE 1 */
 #define DONE 1U
 #define NO_TASK 255U
-#define WAIT_TICKS 500U /* of 10 ms: 3.7 Mbit at 2 MHz take 1.9 s, after tries that fail more */
+/* Of 10 ms: 3.7 Mbit at 2 MHz, or half of that, take 1.9 s, or 3.7; four tries are the most. */
+#define WAIT_TICKS 1600U
 #define READS_A_PAUSE 64U
 
 static Slots_Port port;
@@ -56,42 +60,105 @@ static void read(void* context, U32 offset, U8* bytes, U32 count) {
 static void startPins(void) {
     RCC_AHB1ENR |= 1UL << BUS | 1UL << CONTROL;
     RCC_APB2ENR |= RCC_APB2ENR_SPI1;
-    GPIO_AFR(BUS, 0) = (GPIO_AFR(BUS, 0) & ~(0xFFFUL << 20)) | BUS_SPI;
+    GPIO_AFR(BUS, 0) = (GPIO_AFR(BUS, 0) & ~(0xFFFFUL << 16)) | BUS_SPI;
     GPIO_OTYPER(CONTROL) |= 1UL;
-    SPI1_CR1 = SPI1_CR1_MASTER;
 }
 
-/* Has the FPGA load its configuration: PROGRAM_B is low for more than 0.5 us. */
-static void reconfigure(void) {
+/* Takes the FPGA its configuration, and holds it there for more than 0.5 us: PROGRAM_B is low. */
+static void hold(void) {
     U32 i;
     GPIO_BSRR(CONTROL) = 1UL << 16;
     GPIO_MODER(CONTROL) = (GPIO_MODER(CONTROL) & ~3UL) | 1UL;
     for (i = 0; i < 100U; ++i)
         (void)GPIO_IDR(CONTROL);
-    GPIO_MODER(CONTROL) &= ~3UL;
 }
 
-/* Sleeps until DONE is high, or long enough. The SysTick wakes the processor, and is not served. */
-static void waitForDone(void) {
-    U32 i;
+static int isDone(void) {
+    return (int)(GPIO_IDR(CONTROL) >> DONE & 1UL);
+}
+
+static int isSelected(void) {
+    return !(GPIO_IDR(BUS) >> SELECT & 1UL);
+}
+
+/* Empties the receiver, which begins with the next chip select. */
+static void arm(void) {
+    SPI1_CR1 = 0;
+    (void)SPI1_DR;
+    (void)SPI1_SR;
+    SPI1_CR1 = SPI1_CR1_SLAVE;
+}
+
+/* Returns the address that the FPGA sends to its flash now; 0: it was not heard in time. */
+static U32 hear(void) {
+    U32 address = 0, i;
+    for (i = 0; i < ADDRESS_BYTES; ++i) {
+        while (!(SPI1_SR & SPI1_SR_RXNE))
+            if (!isSelected())
+                return 0;
+        address = address << 8 | SPI1_DR;
+    }
+    return address & 0xFFFFFFUL;
+}
+
+/* Lets the FPGA load its configuration, and sleeps until DONE is high, or long enough. What wakes
+ * the processor, SysTick and chip select, is not served. Returns where the FPGA read last. */
+static U32 load(void) {
+    U32 i, heard = 0;
     __asm__ volatile("cpsid i");
-    SYST_RVR = (SYST_CALIB & SYST_CALIB_TENMS) * 8UL * 10UL - 1UL;
+    GPIO_MODER(BUS) = (GPIO_MODER(BUS) & ~BUS_PINS) | BUS_HEARS;
+    arm();
+    EXTI_RTSR |= 1UL << SELECT;
+    EXTI_FTSR |= 1UL << SELECT;
+    EXTI_IMR |= 1UL << SELECT;
+    NVIC_ISER(0) = 1UL << SELECT_VECTOR;
+    SYST_RVR = 10UL * SYST_MS - 1UL;
     SYST_CVR = 0;
     SYST_CSR = SYST_CSR_ON;
-    for (i = 0; i < WAIT_TICKS && !(GPIO_IDR(CONTROL) >> DONE & 1UL); ++i) {
+    GPIO_MODER(CONTROL) &= ~3UL;
+    for (i = 0; i < WAIT_TICKS && !isDone();) {
         __asm__ volatile("wfi");
+        i += SCB_ICSR & SCB_ICSR_PENDSTSET ? 1U : 0U;
         SCB_ICSR = SCB_ICSR_PENDSTCLR;
+        if (!(EXTI_PR >> SELECT & 1UL))
+            continue;
+        EXTI_PR = 1UL << SELECT;
+        if (isSelected())
+            heard = hear();
+        else
+            arm();
+        NVIC_ICPR(0) = 1UL << SELECT_VECTOR;
     }
     SYST_CSR = 0;
     SCB_ICSR = SCB_ICSR_PENDSTCLR;
+    NVIC_ICER(0) = 1UL << SELECT_VECTOR;
+    EXTI_IMR &= ~(1UL << SELECT);
+    EXTI_PR = 1UL << SELECT;
+    NVIC_ICPR(0) = 1UL << SELECT_VECTOR;
+    GPIO_MODER(BUS) &= ~BUS_PINS;
+    SPI1_CR1 = SPI1_CR1_MASTER;
     __asm__ volatile("cpsie i");
+    if (!isDone())
+        hold(); /* it hangs: the bus is free again */
+    return heard;
 }
 
-const Slots_Port* Fpga_slots(const Slots_Port* firmware, U32* running) {
+/* Returns 1 if the FPGA hangs, or has gone back to the golden bitstream. */
+static int loadsAnother(void) {
+    const U32 from = load();
+    return !isDone() || from == Slots_at(&slots_fpga, 0) + SLOTS_IMAGE_AT;
+}
+
+const Slots_Port* Fpga_slots(const Slots_Port* firmware, int isPowerOn, U32* running) {
+    int isRefused;
     startPins();
-    waitForDone(); /* until then the bus is the FPGA's */
-    if (!SpiNor_isThere((void*)&bus))
+    if (isPowerOn)
+        hold(); /* so that all that it reads is heard */
+    isRefused = loadsAnother();
+    if (!SpiNor_isThere((void*)&bus)) {
+        GPIO_MODER(CONTROL) &= ~3UL;
         return 0;
+    }
     port = *firmware;
     port.layout = &slots_fpga;
     port.context = (void*)&bus;
@@ -99,9 +166,11 @@ const Slots_Port* Fpga_slots(const Slots_Port* firmware, U32* running) {
     port.erase = SpiNor_erase;
     port.program = SpiNor_program;
     port.mapped = 0;
-    if (Slots_settleFpga(&port)) {
-        reconfigure();
-        waitForDone();
+    while (Slots_settleFpga(&port, isRefused)) {
+        hold();
+        isRefused = loadsAnother();
+        if (!isRefused)
+            break;
     }
     *running = Slots_is(&port, 1, SLOTS_READY) ? 1U : 0U;
     return &port;

@@ -12,7 +12,8 @@
 
 /* Returns the slots of bitstreams, with the checks of the firmware's; 0: there is no such flash.
  * Before that it has the FPGA load a bitstream that is new, or the golden one in place of one that
- * was not confirmed, and waits for DONE. `running` becomes the slot of what the FPGA should run. */
-const Slots_Port* Fpga_slots(const Slots_Port* firmware, U32* running);
+ * was not confirmed or that the FPGA did not take, and waits for DONE. `isPowerOn`: the FPGA loads
+ * what it has once more, to be listened to. `running` becomes the slot of what the FPGA runs. */
+const Slots_Port* Fpga_slots(const Slots_Port* firmware, int isPowerOn, U32* running);
 
 #endif

@@ -3,6 +3,7 @@
  * provision: polls, as no task runs yet. The SysTick only tells that 10 ms have passed.
  */
 #include "provision.h"
+#include "ascon.h"
 #include "stm32f2.h"
 #include "uav_keys.h"
 
@@ -71,7 +72,7 @@ static int obey(char* line) {
     if (!isKey && strcmp(line, "open") != 0)
         return 0;
     UAV_provide(isKey ? key : 0);
-    UAV_wipe(key, sizeof key);
+    Ascon_wipe(key, sizeof key);
     return 1;
 }
 
@@ -87,7 +88,7 @@ void Provision_listen(void) {
     GPIO_PUPDR(PORT) |= 1UL << 2U * RECEIVE; /* up, where nothing is wired to it */
     if (!isBreak())
         return;
-    SYST_RVR = (SYST_CALIB & SYST_CALIB_TENMS) * 8UL * 10UL - 1UL;
+    SYST_RVR = 10UL * SYST_MS - 1UL;
     SYST_CVR = 0;
     SYST_CSR = SYST_CSR_POLLED;
     while (!tick())
@@ -106,7 +107,7 @@ void Provision_listen(void) {
     say("icesoc: key?\r\n");
     if (readLine(line))
         say(obey(line) ? "ok\r\n" : "no: key and 32 of 0..9a..f, or open\r\n");
-    UAV_wipe((volatile U8*)line, sizeof line);
+    Ascon_wipe(line, sizeof line);
     GPIO_MODER(PORT) &= ~(3UL << 2U * TRANSMIT | 3UL << 2U * RECEIVE);
     stop();
 }

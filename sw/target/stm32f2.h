@@ -95,6 +95,7 @@
 #define SYSCFG_EXTICR(n) REG(0x40013808UL + 4UL * (n)) /* four bits a line: the port */
 #define EXTI_IMR REG(0x40013C00UL)
 #define EXTI_RTSR REG(0x40013C08UL)
+#define EXTI_FTSR REG(0x40013C0CUL)
 #define EXTI_PR REG(0x40013C14UL) /* write 1 to clear */
 
 /* USART 1 (RM0033, 24.6), clocked by PCLK2, 60 MHz. */
@@ -111,6 +112,7 @@
 /* SPI 1 (RM0033, 25.5). */
 #define SPI1_CR1 REG(0x40013000UL)
 #define SPI1_CR1_MASTER 0x0344UL /* on, master, PCLK2 / 2, mode 0, no NSS pin */
+#define SPI1_CR1_SLAVE 0x0040UL  /* on, slave by its NSS pin, mode 0 */
 #define SPI1_SR REG(0x40013008UL)
 #define SPI1_SR_RXNE 1UL
 #define SPI1_DR REG(0x4001300CUL)
@@ -130,11 +132,14 @@
 #define SYST_RVR REG(0xE000E014UL)
 #define SYST_CVR REG(0xE000E018UL)
 #define SYST_CALIB REG(0xE000E01CUL) /* RM0033, 8.1.2: HCLK/8 ticks in one millisecond */
-#define SYST_CALIB_TENMS 0xFFFFFFUL
+#define SYST_MS ((SYST_CALIB & 0xFFFFFFUL) * 8UL) /* of HCLK */
 #define NVIC_ISER(n) REG(0xE000E100UL + 4UL * (n))
+#define NVIC_ICER(n) REG(0xE000E180UL + 4UL * (n))
+#define NVIC_ICPR(n) REG(0xE000E280UL + 4UL * (n))
 #define NVIC_IPR(n) (*(volatile U8*)(0xE000E400UL + (n)))
 #define SCB_ICSR REG(0xE000ED04UL)
 #define SCB_ICSR_PENDSTCLR (1UL << 25)
+#define SCB_ICSR_PENDSTSET (1UL << 26)
 #define SCB_VTOR REG(0xE000ED08UL)
 #define SCB_AIRCR REG(0xE000ED0CUL)
 #define SCB_AIRCR_RESET 0x05FA0004UL

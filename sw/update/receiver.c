@@ -93,6 +93,8 @@ void Receiver_init(Receiver* self, const Slots_Port* port, U32 product, U32 runn
         return;
     if (hasBegun(self, &self->header))
         takeUp(self);
+    else if (Slots_is(port, self->slot, SLOTS_REFUSED))
+        self->reason = RECEIVER_REFUSED;
     else if (Slots_is(port, self->slot, SLOTS_TRIED) &&
              !Slots_is(port, self->slot, SLOTS_CONFIRMED))
         self->reason = RECEIVER_WENT_BACK;

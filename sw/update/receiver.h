@@ -29,7 +29,8 @@ typedef enum Receiver_Reason {
     RECEIVER_NOT_BEGUN, /* nothing to write to, or not all is there yet */
     RECEIVER_MISPLACED, /* a piece behind a gap, not in words, or over the end */
     RECEIVER_FLASH,     /* the flash does not take it */
-    RECEIVER_WENT_BACK  /* the image was tried and not confirmed */
+    RECEIVER_WENT_BACK, /* the image was tried and not confirmed */
+    RECEIVER_REFUSED    /* the FPGA did not take the bitstream */
 } Receiver_Reason;
 
 typedef struct Receiver {

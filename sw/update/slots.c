@@ -139,12 +139,12 @@ U32 Slots_choose(const Slots_Port* port, U32 product) {
     return SLOTS_NONE;
 }
 
-int Slots_settleFpga(const Slots_Port* port) {
-    if (!Slots_is(port, 1, SLOTS_READY) || Slots_is(port, 1, SLOTS_CONFIRMED))
+int Slots_settleFpga(const Slots_Port* port, int isRefused) {
+    if (!Slots_is(port, 1, SLOTS_READY))
         return 0;
-    if (Slots_is(port, 1, SLOTS_TRIED))
-        (void)Slots_retire(port, 1);
-    else
-        (void)Slots_set(port, 1, SLOTS_TRIED);
-    return 1;
+    if (isRefused)
+        return Slots_set(port, 1, SLOTS_REFUSED) && Slots_retire(port, 1);
+    if (Slots_is(port, 1, SLOTS_CONFIRMED))
+        return 0;
+    return Slots_is(port, 1, SLOTS_TRIED) ? Slots_retire(port, 1) : Slots_set(port, 1, SLOTS_TRIED);
 }

@@ -36,9 +36,10 @@ typedef struct Slots_Header {
 
 /* State words, by their offset in a slot. */
 typedef enum Slots_State {
-    SLOTS_READY = 0x1C0,    /* the whole image is there, and was checked (or Slots_Layout.ready) */
-    SLOTS_TRIED = 0x1D0,    /* it was started once */
-    SLOTS_CONFIRMED = 0x1E0 /* it was said to be good */
+    SLOTS_READY = 0x1C0,     /* the whole image is there, and was checked (or Slots_Layout.ready) */
+    SLOTS_TRIED = 0x1D0,     /* it was started once */
+    SLOTS_CONFIRMED = 0x1E0, /* it was said to be good */
+    SLOTS_REFUSED = 0x1F0    /* the FPGA did not take it */
 } Slots_State;
 #define SLOTS_TRUE 0x600DF1A5U /* makes a state true */
 #define SLOTS_ERASED 0xFFFFFFFFU
@@ -101,8 +102,9 @@ int Slots_retire(const Slots_Port* port, U32 slot);
  * whole. */
 U32 Slots_choose(const Slots_Port* port, U32 product);
 
-/* Looks at the FPGA's flash at a start. A bitstream that is new is tried once; one that was tried
- * and not confirmed is retired. Returns 1: the FPGA is to load its configuration anew. */
-int Slots_settleFpga(const Slots_Port* port);
+/* Looks at the FPGA's flash at a start, and after each load of the FPGA that failed. A bitstream
+ * that is new is tried once; one that was tried and not confirmed is retired, and so is one that
+ * the FPGA has refused: it hangs, or runs the golden one. Returns 1: the FPGA is to load anew. */
+int Slots_settleFpga(const Slots_Port* port, int isRefused);
 
 #endif

@@ -32,17 +32,23 @@ void addCrc(uint32_t& crc, unsigned reg, uint16_t word) {
 } // namespace
 
 void Spartan6Boot::configure(const std::vector<uint8_t>& flash) {
+    constexpr uint64_t clearing = 2000; // of the configuration memory, about a millisecond
     running.reset();
     isStuck = false;
     strikes = 0;
     clocks = 0;
+    reads.clear();
     uint32_t address = 0;
     for (unsigned stage = 0; stage < 3; ++stage) { // header, MultiBoot, golden
         if (stage)
             address = uint32_t(general_[2 * stage - 1] & 0xFF) << 16 | general_[2 * stage - 2];
         End end = End::Failed;
         for (unsigned i = 0; i < 3 && end == End::Failed; ++i) {
+            clocks += clearing;
+            reads.push_back({address, clocks, clocks});
+            clocks += 32; // the flash's instruction, and the address
             end = load(flash, address);
+            reads.back().to = end == End::Stuck ? ~0ull : clocks;
             strikes += end == End::Failed;
         }
         if (end == End::Done)

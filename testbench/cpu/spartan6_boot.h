@@ -25,6 +25,13 @@ struct Spartan6Boot {
     bool isStuck = false; // and no new try would be made
     uint64_t clocks = 0;  // of CCLK that it took
     unsigned strikes = 0; // tries that failed
+    // The reads of the flash, a try each: the address, and the clocks at which its chip select
+    // falls and rises.
+    struct Read {
+        uint32_t address;
+        uint64_t from, to;
+    };
+    std::vector<Read> reads;
 
 private:
     enum class End { Done, Failed, Stuck, Iprog };

@@ -9,7 +9,7 @@
 #include <iostream>
 
 int main(int argc, char** argv) {
-    const uint32_t frames = 233'000; // words of an XC6SLX16's, about
+    const uint32_t frames = 233'127; // words, so that all has an XC6SLX16's 466,408 bytes
     if (argc < 3) {
         std::cerr << "Usage: stand_in_bitstream OUT.bin SEED [WORDS OF FRAMES, else " << frames
                   << "]\n";

@@ -18,6 +18,7 @@ constexpr uint32_t padReset = 1u << 26, powerReset = 1u << 27, softwareReset = 1
                    watchdogReset = 1u << 29;
 constexpr uint64_t lsiNs = 31'250; // one cycle of 32 kHz
 constexpr unsigned extiVector = 6; // of line 0; up to line 4 each has its own
+constexpr uint64_t never = ~0ull;
 
 bool isIn(uint32_t address, uint32_t base, uint32_t bytes) {
     return address - base < bytes;
@@ -39,7 +40,7 @@ constexpr Pins fsmcPins[] = {
 } // namespace
 
 Stm32F2::Stm32F2(FsmcMaster& fsmc, std::function<uint64_t()> now, Config config)
-    : fsmc_(fsmc), now_(std::move(now)), config_(config),
+    : fpga(now), fsmc_(fsmc), now_(std::move(now)), config_(config),
       cpu_(*this, {0x08000000, 0x100000, 0x20000000, 0x20000, config.hclkHz / 8 / 1000},
            {{0x40000000, 0x80000},
             {rng & ~0xFFFu, 0x1000},
@@ -65,10 +66,8 @@ void Stm32F2::powerOn() {
     ++resets_.power;
     resetFlags_ = padReset | powerReset;
     resetPeripherals();
-    if (spiFlash_) {
-        spiFlash_->powerOff();
-        configureFpga();
-    }
+    fpga.powerOn();
+    followFpga();
     cpu_.reset();
 }
 
@@ -110,13 +109,15 @@ void Stm32F2::lookAround() {
         watchdog_.due = ~0ull;
         cpu_.requestReset();
     }
+    if (fpgaEdgeNs_ != never && now_() >= fpgaEdgeNs_)
+        followFpga();
     if (onTime_)
         wantedNs_ = onTime_();
 }
 
 unsigned Stm32F2::sleep(unsigned limit) {
     const unsigned each = config_.coreCyclesPerHclk;
-    const uint64_t until = std::min<uint64_t>(wantedNs_, watchdog_.on ? watchdog_.due : ~0ull);
+    const uint64_t until = std::min({wantedNs_, watchdog_.on ? watchdog_.due : never, fpgaEdgeNs_});
     unsigned passed = 0;
     lineChanged_ = false;
     do {
@@ -157,7 +158,7 @@ uint32_t Stm32F2::read(uint32_t address, unsigned bytes) {
     }
     uint64_t before = fsmc_.hclks();
     requireFsmc();
-    if (!isFpgaDone())
+    if (!fpga.isDone())
         return 0;
     try {
         uint32_t value = bytes == 1   ? fsmc_.read8(address)
@@ -178,7 +179,7 @@ void Stm32F2::write(uint32_t address, unsigned bytes, uint32_t value) {
     }
     uint64_t before = fsmc_.hclks();
     requireFsmc();
-    if (!isFpgaDone())
+    if (!fpga.isDone())
         return;
     try {
         if (bytes == 1)
@@ -244,9 +245,9 @@ uint32_t Stm32F2::readPeripheral(uint32_t address) {
     requireClock(address);
     if (isIn(address, gpio, 0x2400) && (address & 0x3FF) < 0x28)
         return (address & 0x3FF) != 0x10 ? stored(address)
-               : address == gpio + 0x10  ? uint32_t(!isSerialBreak) << 10
-               : address == gpio + 0x410 ? pinsB_
-               : address == gpio + 0x810 ? uint32_t(isFpgaDone()) << 1
+               : address == gpio + 0x10  ? (pins_[0] & ~0x400u) | uint32_t(!isSerialBreak) << 10
+               : address == gpio + 0x410 ? pins_[1]
+               : address == gpio + 0x810 ? uint32_t(fpga.isDone()) << 1
                                          : 0;
     if (isIn(address, rcc, 0x88)) {
         uint32_t value = stored(address);
@@ -272,8 +273,8 @@ uint32_t Stm32F2::readPeripheral(uint32_t address) {
     }
     if (isIn(address, usart, 0x1C))
         return stored(address);
-    if (isIn(address, spi, 0x24)) // a byte is through as soon as it is written
-        return address == spi + 8 ? 3 : address == spi + 12 ? spiIn_ : stored(address);
+    if (isIn(address, spi, 0x24))
+        return readSpi(address - spi);
     if (address == crcUnit)
         return crc_;
     if (isIn(address, power, 8))
@@ -301,12 +302,14 @@ void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
         fsmcUsable_ = false;
         updateFpgaPins();
     } else if (address == spi + 12) {
-        spiIn_ = spiFlash_ ? spiFlash_->transfer(static_cast<uint8_t>(value)) : 0xFF;
+        spiIn_ = fpga.transfer(static_cast<uint8_t>(value));
         waited_ += 32; // at half of PCLK2, as the driver has it
     } else if (address == usart + 4) {
         if (onSerial)
             onSerial(static_cast<uint8_t>(value));
     } else if (isIn(address, spi, 0x24) || isIn(address, usart, 0x1C)) {
+        if (address == spi)
+            spiTaken_ = fpga.bytesSent();
         stored(address) = value;
     } else if (isIn(address, rcc, 0x88)) {
         stored(address) = value;
@@ -371,10 +374,10 @@ void Stm32F2::writeWatchdog(uint32_t offset, uint32_t value) {
 
 // ---- external interrupts ----
 
-void Stm32F2::setPinB(unsigned pin, bool high) {
-    bool was = pinsB_ >> pin & 1;
-    pinsB_ = (pinsB_ & ~(1u << pin)) | uint32_t(high) << pin;
-    if (pin > 4 || was == high || (stored(syscfg + 8) >> 4 * pin & 15) != 1)
+void Stm32F2::setPin(unsigned port, unsigned pin, bool high) {
+    const bool was = pins_[port] >> pin & 1;
+    pins_[port] = (pins_[port] & ~(1u << pin)) | uint32_t(high) << pin;
+    if (pin > 4 || was == high || (stored(syscfg + 8 + pin / 4 * 4) >> 4 * (pin % 4) & 15) != port)
         return;
     if (stored(exti + (high ? 8 : 12)) >> pin & 1)
         pendingExti_ |= 1u << pin;
@@ -395,22 +398,27 @@ bool Stm32F2::drivesLow(uint32_t port, unsigned pin) const {
 }
 
 void Stm32F2::updateFpgaPins() {
-    if (!spiFlash_)
-        return;
-    spiFlash_->select(drivesLow(0, 4));
-    const bool was = isProgramLow_;
-    isProgramLow_ = drivesLow(2, 0);
-    if (isProgramLow_)
-        fpga_.running.reset();
-    else if (was)
-        configureFpga();
+    const bool isSelectLow = drivesLow(0, 4);
+    if (fpga.isReading() && isSelectLow)
+        throw Error("the FPGA reads its flash while the processor drives that bus (port A, 4..7)");
+    fpga.drive(isSelectLow, drivesLow(2, 0));
+    followFpga();
 }
 
-void Stm32F2::configureFpga() {
-    if (stored(gpio) >> 8 & 0xFF)
-        throw Error("the FPGA reads its flash while the processor drives that bus (port A, 4..7)");
-    fpga_.configure(spiFlash_->memory);
-    fpgaDoneAt_ = now_() + fpga_.clocks * 1'000'000'000 / Spartan6Boot::cclkHz;
-    if (onReconfigured)
-        onReconfigured();
+void Stm32F2::followFpga() {
+    spiTaken_ = 0;
+    setPin(0, 4, !fpga.isReading());
+    fpgaEdgeNs_ = fpga.nextEdgeNs();
+}
+
+// A master's byte is through as soon as it is written. A slave that is too slow loses bytes.
+uint32_t Stm32F2::readSpi(uint32_t offset) {
+    const bool isMaster = stored(spi) & 4;
+    if (offset == 8)
+        return isMaster ? 3 : 2 | uint32_t(fpga.bytesSent() > spiTaken_);
+    if (offset != 12 || isMaster)
+        return offset == 12 ? spiIn_ : stored(spi + offset);
+    const uint64_t taken = spiTaken_;
+    spiTaken_ = fpga.bytesSent();
+    return fpga.byteSent(taken);
 }

@@ -10,10 +10,9 @@
 
 #include "cortex_m3.h"
 #include "elf_image.h"
+#include "fpga_pins.h"
 #include "fsmc_master.h"
 #include "random_block.h"
-#include "spartan6_boot.h"
-#include "spi_flash.h"
 #include "stm32_flash.h"
 #include <array>
 #include <deque>
@@ -41,17 +40,14 @@ public:
     void powerOn();
     CortexM3::Stop run(bool singleStep = false) { return cpu_.run(singleStep); }
     // Sets the level at a pin of port B, 0..4, which EXTI can listen to.
-    void setPinB(unsigned pin, bool high);
+    void setPinB(unsigned pin, bool high) { setPin(1, pin, high); }
     // Sets what is called whenever time has passed, at the pace of the pins. It returns the time in
     // ns at which it wants to be called; until then a processor that sleeps need not call it.
     void onTime(std::function<uint64_t()> called) { onTime_ = std::move(called); }
 
-    // Wires the FPGA's flash to SPI 1 (PA4..7) and to the FPGA, PROGRAM_B to PC0, DONE to PC1.
-    // Without it the FPGA is configured, by nobody. The flash loses its power with the processor.
-    void wireFpga(SpiFlash& flash) { spiFlash_ = &flash; }
-    const Spartan6Boot& fpga() const { return fpga_; }
-    // Called when the FPGA has lost its configuration, and is about to have one.
-    std::function<void()> onReconfigured;
+    // The FPGA's flash, on SPI 1 (PA4..7), PROGRAM_B on PC0, DONE on PC1. The flash loses its power
+    // with the processor.
+    FpgaPins fpga;
 
     // USART 1, at its rate: what the firmware receives (PA10), whether that line is in a break, and
     // who is told of what it sends.
@@ -83,10 +79,11 @@ private:
     bool isSet(uint32_t address, unsigned bit) const;
     void requireFsmc();
     void waitForFlash();
+    void setPin(unsigned port, unsigned pin, bool high);
     void updateExti();
     void updateFpgaPins();
-    void configureFpga();
-    bool isFpgaDone() const { return !spiFlash_ || (fpga_.running && now_() >= fpgaDoneAt_); }
+    void followFpga();
+    uint32_t readSpi(uint32_t offset);
     bool drivesLow(uint32_t port, unsigned pin) const;
     void resetPeripherals();
     uint64_t watchdogNs() const;
@@ -104,12 +101,11 @@ private:
     RandomBlock random_{config_.seed};
     std::array<uint32_t, 1024> backup_{};
     unsigned carry_ = 0, waited_ = 0;
-    uint32_t resetFlags_ = 0, crc_ = 0xFFFFFFFF, pinsB_ = 0, pendingExti_ = 0;
+    uint32_t resetFlags_ = 0, crc_ = 0xFFFFFFFF, pendingExti_ = 0;
+    uint32_t pins_[2] = {0x410, 0}; // levels at ports A and B
     bool fsmcUsable_ = false, lineChanged_ = false;
-    SpiFlash* spiFlash_ = nullptr;
-    Spartan6Boot fpga_;
-    uint64_t fpgaDoneAt_ = 0;
-    bool isProgramLow_ = false;
+    uint64_t fpgaEdgeNs_ = ~0ull; // when PA4 changes next
+    uint64_t spiTaken_ = 0;       // bytes of those that the FPGA has sent
     uint8_t spiIn_ = 0xFF;
     struct {
         bool on = false, unlocked = false, fired = false;

@@ -36,8 +36,8 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
         cpu().loadFlash(0x08000000, config.flash);
     if (!config.fpgaFlash.empty()) {
         fpgaFlash_.memory = config.fpgaFlash;
-        stm32_.wireFpga(fpgaFlash_);
-        stm32_.onReconfigured = [this] { soc_.reset(true); };
+        stm32_.fpga.wire(fpgaFlash_);
+        stm32_.fpga.onReconfigured = [this] { soc_.reset(true); };
     }
     const bool asks = config.guardMs && config.flash.empty() && stm32_.image()->has("uav_guardMs");
     uint32_t guardAt = asks ? stm32_.image()->symbol("uav_guardMs") : 0;

@@ -41,7 +41,7 @@ void Reset_Handler(void) {
         *to++ = *from++;
     for (to = bss_begin; to < bss_end;)
         *to++ = 0;
-    SYST_RVR = (SYST_CALIB & SYST_CALIB_TENMS) * 8UL - 1UL; /* a millisecond */
+    SYST_RVR = SYST_MS - 1UL;
     SYST_CVR = 0;
     SYST_CSR = SYST_CSR_ON;
     (void)main();

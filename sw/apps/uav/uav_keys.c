@@ -3,6 +3,7 @@
  * uav_keys: slots of keys, and how one follows another.
  */
 #include "uav_keys.h"
+#include "ascon.h"
 
 #include <string.h>
 
@@ -44,11 +45,6 @@ static U32 checkOf(const U32* words) {
     return check | 1U;
 }
 
-void UAV_wipe(volatile U8* bytes, U32 size) {
-    while (size--)
-        *bytes++ = 0;
-}
-
 int UAV_readKey(int slot, U8* key) {
     U32 words[KEY_WORDS], i;
     int isKey;
@@ -57,7 +53,7 @@ int UAV_readKey(int slot, U8* key) {
     isKey = load(slot, CHECK) == checkOf(words);
     for (i = 0; i < LINK_KEY_BYTES; ++i)
         key[i] = isKey ? (U8)(words[i / 4U] >> 8U * (i % 4U)) : 0;
-    UAV_wipe((volatile U8*)words, sizeof words);
+    Ascon_wipe(words, sizeof words);
     return isKey;
 }
 
@@ -70,7 +66,7 @@ static void writeKey(int slot, const U8* key) {
     for (i = 0; i < KEY_WORDS; ++i)
         store(slot, i, words[i]);
     store(slot, CHECK, key ? checkOf(words) : 0);
-    UAV_wipe((volatile U8*)words, sizeof words);
+    Ascon_wipe(words, sizeof words);
 }
 
 void UAV_provide(const U8* key) {
@@ -82,7 +78,7 @@ void UAV_provide(const U8* key) {
 int UAV_countKeys(void) {
     U8 key[LINK_KEY_BYTES];
     int count = UAV_readKey(0, key) + UAV_readKey(1, key);
-    UAV_wipe(key, sizeof key);
+    Ascon_wipe(key, sizeof key);
     return count;
 }
 
@@ -98,7 +94,7 @@ int UAV_giveKeys(Link* link) {
             Link_setKey(link, slot, key);
             ++count;
         }
-    UAV_wipe(key, sizeof key);
+    Ascon_wipe(key, sizeof key);
     nextSlot = count < UAV_KEY_SLOTS ? -1 : (int)(board->load(boardContext, STATE_AT) - STATE_NEXT);
     return count;
 }
@@ -109,7 +105,7 @@ int UAV_setNextKey(Link* link, const U8* key) {
     if (inUse < 0)
         return 0;
     isSame = UAV_readKey(inUse, present) && memcmp(present, key, sizeof present) == 0;
-    UAV_wipe(present, sizeof present);
+    Ascon_wipe(present, sizeof present);
     if (isSame)
         return 1;
     /* The state comes first: where both slots have a key, it says which is the next one. */

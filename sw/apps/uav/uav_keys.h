@@ -45,9 +45,6 @@ int UAV_isOpen(void);
 /* Gives the link the keys of both slots; returns how many there are. */
 int UAV_giveKeys(Link* link);
 
-/* Overwrites what was secret. */
-void UAV_wipe(volatile U8* bytes, U32 size);
-
 /* Puts the next key into the slot that is not in use. Returns 0: the session has no key, so that
  * everybody on the air would read the new one. The key in use once more is no change. */
 int UAV_setNextKey(Link* link, const U8* key);

@@ -29,6 +29,7 @@ TEXT = {
     "onTrial": "what the vehicle runs is not confirmed yet; it goes back in a minute",
     "flashFault": "the vehicle's flash does not take it",
     "wentBack": "the new one was started and went back: it was not confirmed in time, or crashed",
+    "refused": "the FPGA did not take it: its CRC is wrong, or it is for another device; the golden one runs",
 }
 
 
@@ -154,8 +155,8 @@ class Vehicle:
             len(image) - first, end - begun, ", %d bytes on the air" % (air_end - air) if air_end else ""))
 
 
-def update(vehicle, images, say, clock):
-    """Brings the vehicle to the package's version, confirmed."""
+def update(vehicle, images, say, clock, rehearses):
+    """Brings the vehicle to the package's version, confirmed; a rehearsal sees it start and go back."""
     version = HEADER.unpack(next(iter(images.values()))[0])[2]
     status = vehicle.status()
     say("the vehicle runs version %d%s" % (status.running, ", on trial" if status.trial else ""))
@@ -192,6 +193,12 @@ def update(vehicle, images, say, clock):
             if str(status.last) != "none":
                 vehicle.expect(status.last)
             time.sleep(0.2)
+    if rehearses:
+        say("version %d runs, and is not confirmed: within a minute it goes back" % version)
+        while vehicle.status().running == version:
+            time.sleep(1)
+        say("the vehicle runs version %d" % vehicle.status().running)
+        return
     vehicle.expect(vehicle.persist(vehicle.proxy.confirm))
     say("version %d runs and is confirmed" % version)
 
@@ -206,6 +213,7 @@ def main():
     parser.add_argument("--status", help="the simulator's counters")
     parser.add_argument("--key", default="", help="file with the link's key; without: in the clear")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
+    parser.add_argument("--rehearse", action="store_true", help="confirm nothing: see it start, and go back by itself")
     parser.add_argument("--patience", type=int, default=120, help="seconds without an answer until it gives up")
     args = parser.parse_args()
     start = time.monotonic()
@@ -230,7 +238,7 @@ def main():
         communicator = Ice.initialize(data)
         where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % (name, args.device)
         proxy = Update.FirmwarePrx.uncheckedCast(communicator.stringToProxy(where))
-        update(Vehicle(proxy, args.patience), images, say, Clock(args.status))
+        update(Vehicle(proxy, args.patience), images, say, Clock(args.status), args.rehearse)
         return 0
     except KeyboardInterrupt:
         return 130

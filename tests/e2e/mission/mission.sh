@@ -99,7 +99,7 @@ m3) # the ARM binary
     run "$out" --image $image --cpu m3 && check_output "$out"
     replays_with 'bit by bit the flight that was recorded' "$out" --from 0.5 --to 0.51
     ;;
-update) # new firmware: a wrong file, a vehicle of another key, a loss of power amidst, then into a slot that has to be erased; a crash; bitstreams
+update) # new firmware: a wrong file, a vehicle of another key, a loss of power amidst, then into a slot that has to be erased; a crash; bitstreams, good and bad
     send() { run "$out" --image $image --cpu m3 --update "$build/firmware/uav.elf"; }
     says() { grep -q -- "$1" "$out/log" || { cat "$out/log" && echo "expected: $1" && exit 1; }; }
     fails_with 'no 32-bit ARM ELF file' run "$out" --image $image --cpu m3 --update "$source/Makefile"
@@ -120,6 +120,13 @@ update) # new firmware: a wrong file, a vehicle of another key, a loss of power 
         says 'runs and is confirmed'
         says '1 software, 0 watchdog'
     done
+    # 256 KiB into three full sectors, within 30 s of air.
+    "$source/tests/e2e/mission/big_firmware.sh" "$build" "$out/big.elf" 262144
+    "$build/sw/target/pack_update" vehicle "$build/firmware/loader.elf" "$build/firmware/uav.elf" 1 "$build/update.key" "$out/flash.bin"
+    dd if=/dev/urandom of="$out/flash.bin" bs=128K seek=4 count=3 conv=notrunc 2>/dev/null
+    run "$out" --image $image --cpu m3 --update "$out/big.elf" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+    says 'runs and is confirmed'
+    awk '/sent 262144 bytes in/ { air = $7 } END { exit !(air && air <= 30) }' "$out/log" || { cat "$out/log" && exit 1; }
     # Firmware that crashes as soon as it is started: the one before it is back, by itself.
     cp "$build/firmware/uav.elf" "$out/crashes.elf"
     at=$(arm-none-eabi-nm "$out/crashes.elf" | sed -n 's/ T Firmware_run$//p')
@@ -130,11 +137,21 @@ update) # new firmware: a wrong file, a vehicle of another key, a loss of power 
     says 'is signed and whole; it starts'
     says 'was started and went back'
     says '2 software, 0 watchdog'
-    # A bitstream: one that is none, and one that configures the FPGA.
+    # A bitstream: one that is none, one that the FPGA does not take, one that nobody confirms, and one of full size.
     fails_with 'has a sync word, AA 99 55 66' run "$out" --image $image --cpu m3 --update "$build/firmware/uav.bin"
     "$build/testbench/cpu/stand_in_bitstream" "$out/new.bin" 2 10000
-    for runs in 1 2; do
-        run "$out" --image $image --cpu m3 --update "$out/new.bin" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+    cp "$out/new.bin" "$out/damaged.bin"
+    printf x | dd of="$out/damaged.bin" bs=1 seek=9000 conv=notrunc 2>/dev/null
+    fails_with 'the FPGA did not take it' run "$out" --image $image --cpu m3 --update "$out/damaged.bin"
+    "$build/sw/target/pack_update" bitstream "$out/new.bin" "$(date +%s)" "$build/update.key" "$out/new.update"
+    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --cpu m3 --flash "$out/flash.bin" --fpga-flash "$out/fpga.bin" -- \
+        "$source/sw/ground/clients/update.py" "$out/new.update" --rehearse --device '{device}' --plugin "$build/ground" \
+        --slice "$source/sw/apps/uav/Update.ice" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+    says 'runs, and is not confirmed'
+    says 'the vehicle runs version 1$'
+    "$build/testbench/cpu/stand_in_bitstream" "$out/full.bin" 3
+    for bits in new full; do
+        run "$out" --image $image --cpu m3 --update "$out/$bits.bin" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
         says 'runs and is confirmed'
     done
     ;;

@@ -4,13 +4,9 @@
 // as a programmer fills it.
 
 #include "stm32f2.h"
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
+#include "vehicle_folder.h"
 #include <gtest/gtest.h>
-#include <iterator>
 #include <sys/stat.h>
-#include <unistd.h>
 
 extern "C" {
 #include "loader.h"
@@ -18,26 +14,8 @@ extern "C" {
 
 namespace {
 
-using Bytes = std::vector<uint8_t>;
+using Bytes = VehicleFolder::Bytes;
 constexpr uint32_t flashBase = 0x08000000;
-
-// A folder of its own for each process, as tests run side by side.
-struct Folder {
-    Folder() { std::filesystem::create_directories(path); }
-    ~Folder() { std::filesystem::remove_all(path); }
-    int pack(const std::string& words) const {
-        return std::system(("cd " + path + " && " PACK_UPDATE " " + words + " >said 2>&1").c_str());
-    }
-    Bytes read(const std::string& name) const {
-        std::ifstream in(path + "/" + name, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-    std::string said() const {
-        const Bytes text = read("said");
-        return {text.begin(), text.end()};
-    }
-    std::string path = FOLDER + std::to_string(getpid());
-};
 
 class Loader : public ::testing::Test {
 protected:
@@ -90,7 +68,7 @@ protected:
         return vtor;
     }
 
-    Folder folder;
+    VehicleFolder folder;
     uint64_t cycles = 0;
     FsmcPins pins;
     FsmcMaster fsmc{pins, {[] {}, [] {}, [](uint64_t clocks, uint64_t) { return clocks; }}};
@@ -142,7 +120,7 @@ TEST_F(Loader, OffersItsChecksToTheFirmware) {
 }
 
 TEST(PackUpdate, SaysWhatIsWrong) {
-    Folder folder;
+    VehicleFolder folder;
     EXPECT_NE(folder.pack("image /dev/null 2 key update"), 0);
     EXPECT_NE(folder.said().find("/dev/null"), std::string::npos) << folder.said();
     EXPECT_NE(folder.pack("image " FIRMWARE "uav.elf 0 key update"), 0);

@@ -88,7 +88,7 @@ protected:
     }
     // Power comes, or the processor starts anew; returns the version that configures the FPGA.
     uint32_t boot() {
-        if (Slots_settleFpga(&port))
+        if (Slots_settleFpga(&port, 0))
             fpga.configure(flash.memory);
         EXPECT_TRUE(fpga.running.has_value()) << (fpga.isStuck ? "stuck" : "nothing configures");
         const uint32_t slot = Slots_is(&port, 1, SLOTS_READY);
@@ -179,7 +179,7 @@ TEST_F(Fpga, ABitstreamThatHangsTheFpgaIsTakenBack) {
     ours.sign(image.header);
     EXPECT_EQ(begin(image), RECEIVER_OK);
     EXPECT_EQ(send(image), RECEIVER_OK);
-    EXPECT_EQ(Slots_settleFpga(&port), 1);
+    EXPECT_EQ(Slots_settleFpga(&port, 0), 1);
     fpga.configure(flash.memory);
     EXPECT_TRUE(fpga.isStuck);
     EXPECT_EQ(boot(), 1u);

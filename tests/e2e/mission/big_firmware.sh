@@ -1,0 +1,20 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# big_firmware: BUILD-FOLDER OUT.elf BYTES: this tree's firmware, filled up to so many bytes with code of newlib, which compresses as code does.
+set -eu
+build=$(realpath "$1") out=$2 bytes=$3
+part=$out.part
+echo 'SECTIONS { .text : { *(.text .text.*) } }' >"$part.ld"
+for library in c m; do
+    arm-none-eabi-ld -r -T "$part.ld" --whole-archive "$(arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -print-file-name=lib$library.a)" -o "$part.o"
+    arm-none-eabi-objcopy -O binary -j .text "$part.o" "$part.bin"
+    cat "$part.bin" >>"$part.text"
+done
+filling=$((bytes - $(stat -c %s "$build/firmware/uav.bin")))
+[ "$filling" -le "$(stat -c %s "$part.text")" ] || { echo "big_firmware: newlib has not as much code as that" >&2 && exit 1; }
+head -c "$filling" "$part.text" >"$part.rodata"
+printf '.section .rodata.filling, "a"\n.balign 4\n.global filling\nfilling: .incbin "%s"\n' "$part.rodata" >"$part.S"
+arm-none-eabi-gcc -mcpu=cortex-m3 -c "$part.S" -o "$part.o"
+ninja -C "$build" -t commands firmware/uav.elf | tail -n 1 |
+    sed "s#-o $build/firmware/uav.elf#-Wl,--undefined=filling $part.o &#; s#$build/firmware/uav#${out%.elf}#g" | sh
+rm "$part".*

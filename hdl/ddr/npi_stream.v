@@ -136,6 +136,7 @@ module npi_stream #(
 
         if (rst_i) begin
             request     <= 1'b0;
+            request_read <= 1'b1; // as while idle, also before npi_init_done_i
             to_ask      <= {WORD_BITS{1'b0}};
             to_give     <= {WORD_BITS{1'b0}};
             outstanding <= 6'd0;

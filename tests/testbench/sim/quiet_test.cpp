@@ -60,7 +60,7 @@ Flight fly(bool evaluateAll) {
         note(1, static_cast<uint32_t>(packet.bytes.size() << 8) | static_cast<uint32_t>(outcome));
     });
     unsetenv("UNGATED");
-    soc.reset();
+    soc.reset(true);
     soc.evaluateAll(evaluateAll);
     int sent = 0;
     bool opened = false;
@@ -111,6 +111,21 @@ TEST(Quiet, AFlightIsTheSameWithQuietClocksPassedAtOnce) {
     std::printf("%.1f million clocks, %.2f million evaluated, %zu events, %zu replies\n",
                 static_cast<double>(quick.clocks) / 1e6, static_cast<double>(quick.evaluated) / 1e6,
                 quick.events.size(), quick.replies);
+}
+
+// Returns if the memory is ready so many clocks after it began to start.
+bool isMemoryReady(uint64_t clocks) {
+    RfChannel air(testSeed());
+    SocModel soc(air, Ground::uavModem());
+    soc.reset(true);
+    while (soc.cycles() < clocks)
+        soc.tick();
+    return soc.memory().pins.calibDone;
+}
+
+TEST(Quiet, TheMemoryIsReadyInItsClock) {
+    EXPECT_FALSE(isMemoryReady(McbModel::startClocks - 1));
+    EXPECT_TRUE(isMemoryReady(McbModel::startClocks));
 }
 
 } // namespace

@@ -26,9 +26,9 @@ struct Slices {
 // flip-flops) / 4, where `share` is how many flip-flops find no place beside a LUT that is used.
 // Calibrated with published reports of map for Spartan-6 (tests/synth/slices_test.cpp has them).
 constexpr double usualShare = 0.55, leastShare = 0.13, mostShare = 0.97;
-// Functions that map finds no site of their own for, since two share one: 4 to 18 % in the reports
+// Functions that map finds no site of their own for, since two share one: 1 to 18 % in the reports
 // that tell.
-constexpr double usualPairing = 0.12;
+constexpr double usualPairing = 0.11;
 // Mean error for a design that the calibration has not seen: each of those reports by a share that
 // fits the others best (leave one out).
 constexpr double slicesError = 0.17;

@@ -31,8 +31,6 @@ module bus_decoder #(
 );
     wire [5:0] slot = bus_addr_i[9:4];
 
-    // The multiplexer is a one-hot AND-OR with constant indices: no multiplier for the solvers, no
-    // priority for the mapper.
     reg [SLOTS-1:0] selected;
     reg             mapped, write;
     integer s;
@@ -45,20 +43,42 @@ module bus_decoder #(
         write  <= bus_write_i;
     end
 
-    reg [31:0] rdata;
-    integer i;
-    always @* begin
-        rdata = 32'd0;
-        for (i = 0; i < SLOTS; i = i + 1)
-            rdata = rdata | ({32{selected[i]}} & slot_rdata_i[32*i +: 32]);
-    end
+    // Up to three slots an AND-OR is a LUT a bit; of more, a tree chooses by a number, for a third less LUTs. Behind the
+    // last slot stand zeros.
+    generate
+        if (SLOTS < 4) begin : g_few
+            reg [31:0] rdata;
+            integer i;
+            always @* begin
+                rdata = 32'd0;
+                for (i = 0; i < SLOTS; i = i + 1)
+                    rdata = rdata | ({32{selected[i]}} & slot_rdata_i[32*i +: 32]);
+            end
+            assign bus_rdata_o = rdata;
+        end else begin : g_many
+            localparam BITS = SLOTS < 8 ? 3 : SLOTS < 16 ? 4 : SLOTS < 32 ? 5 : 6;
+            reg [BITS-1:0]           index;
+            reg [32*(1 << BITS)-1:0] left; // halved by each bit of the number
+            integer b, i;
+            always @(posedge clk_i)
+                index <= {26'd0, slot} < SLOTS ? slot[BITS-1:0] : {BITS{1'b1}};
+            always @* begin
+                left = {32*(1 << BITS){1'b0}};
+                left[32*SLOTS-1:0] = slot_rdata_i;
+                for (b = BITS - 1; b >= 0; b = b - 1)
+                    for (i = 0; i < 1 << b; i = i + 1)
+                        if (index[b])
+                            left[32*i +: 32] = left[32*(i + (1 << b)) +: 32];
+            end
+            assign bus_rdata_o = left[31:0];
+        end
+    endgenerate
 
     assign slot_valid_o = selected & {SLOTS{bus_valid_i}};
     assign slot_write_o = write;
     assign slot_wdata_o = bus_wdata_i;
     assign bus_ready_o  = !mapped || |(selected & slot_ready_i);
     assign bus_error_o  = !mapped || |(selected & slot_error_i);
-    assign bus_rdata_o  = rdata;
 
 `ifdef FORMAL
 `include "bus_decoder_proof.vh"

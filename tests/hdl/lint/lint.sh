@@ -10,7 +10,7 @@ core=$(ls "$source"/ip/*/"$module.v" 2>/dev/null || true)
 file=$(for f in $folders; do ls "$f/$module.v" 2>/dev/null || true; done)
 refused=''
 case $module in
-bus_decoder) variants='SLOTS=1 SLOTS=3 SLOTS=64' ;;
+bus_decoder) variants='SLOTS=1 SLOTS=4 SLOTS=64' ;;
 npi_select) variants="PORTS=2 PORTS=3 PORTS=4 PORTS=5 PORTS=6 PORTS=7 PORTS=8 URGENT=2'd1" ;;
 npi_arbiter | memory_mcb | memory_litedram)
     variants="PORTS=2 PORTS=3 PORTS=4 PORTS=5 PORTS=6 PORTS=7 PORTS=8 URGENT=2'd1 READ_FIFO=2'd1 BLOCK_RAM=0 ADDR_WIDTH=30"
@@ -19,6 +19,7 @@ litedram_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=32' ;;
 mcb_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=30' refused='ADDR_WIDTH=31' ;;
 npi_queue) variants='PORT_BITS=2 PORT_BITS=3' ;;
 npi_stream) variants='ADDR_BITS=7 WORD_BITS=4 WORD_BITS=32' ;;
+axis_read | axis_write | axis_memory) variants='ADDR_BITS=7 BYTE_BITS=7 BYTE_BITS=32 ROWS=0 TAG_BITS=6' ;;
 bus_wrapper) variants='EVENTS=1 EVENTS=32' ;;
 bus_window) variants='ADDR_WIDTH=3 ADDR_WIDTH=5 ADDR_WIDTH=6 ADDR_WIDTH=32' refused='ADDR_WIDTH=2 ADDR_WIDTH=33 TIMEOUT=0 TIMEOUT=256' ;;
 bus_to_axi4lite) variants='ADDR_WIDTH=3 ADDR_WIDTH=32' ;;

@@ -38,6 +38,13 @@ bool makePair(int ends[2]) {
     return true;
 }
 
+// Says whether the program has closed its end, and left nothing to be read.
+bool hasLeft(int fd) {
+    pollfd end{fd, POLLRDHUP, 0};
+    char byte;
+    return poll(&end, 1, 0) > 0 && recv(fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT) <= 0;
+}
+
 } // namespace
 
 std::shared_ptr<Engine> Engine::get(const Settings& settings, const Log& log) {
@@ -98,6 +105,8 @@ Engine::~Engine() {
         Link_setKey(link_.get(), static_cast<int>(slot), nullptr);
         explicit_bzero(settings_.keys[slot].data(), settings_.keys[slot].size());
     }
+    for (const Waiting& program : waiting_)
+        close(program.fd);
     for (int fd : {wakePipe_[0], wakePipe_[1], acceptPipe_[0], acceptPipe_[1]})
         if (fd >= 0)
             close(fd);
@@ -109,48 +118,80 @@ void Engine::wake() {
     changed_.notify_all();
 }
 
-// Returns a free channel, `wanted` or (-1) any; -1 if there is none.
-int Engine::freeChannel(int wanted) {
-    const U32 now = clock_.nowUs(), idleUs = static_cast<U32>(settings_.idleMs) * 1000;
+// Returns a channel for a program, `wanted` or (-1) any: a free one, else that of the program that
+// has been silent longest, if that is so long that it is to make room; -1 if there is none.
+int Engine::freeChannel(int wanted, U32 now) {
+    U32 longest = settings_.idleMs ? static_cast<U32>(settings_.idleMs) * 1000 - 1 : 0xFFFFFFFFu;
+    int idlest = -1;
     for (int i = 0; i < ownChannels; ++i) {
-        Stream& s = streams_[i];
-        if (s.is(Stream::State::Wanted) && s.isLeft()) // it gave up before the link was up
+        const int channel = wanted >= 0 ? wanted : (nextChannel_ + i) % ownChannels;
+        Stream& s = streams_[channel];
+        if (s.is(Stream::State::Wanted) && hasLeft(s.fd())) // it gave up before the link was up
             s.close();
-        if (idleUs && s.isIdle(now, idleUs)) {
-            s.sayGoodbye(now);
-            end(i, 1, "is idle, and another program waits");
-        }
-    }
-    for (int i = 0; i < ownChannels; ++i) {
-        int channel = wanted >= 0 ? wanted : (nextChannel_ + i) % ownChannels;
-        if (channel < ownChannels && streams_[channel].is(Stream::State::Closed)) {
+        if (s.is(Stream::State::Closed)) {
             nextChannel_ = (channel + 1) % ownChannels;
             return channel;
         }
+        if (s.silentUs(now) > longest) {
+            longest = s.silentUs(now);
+            idlest = channel;
+        }
     }
-    return -1;
+    if (idlest >= 0) {
+        streams_[idlest].sayGoodbye(now);
+        end(idlest, 1, "is idle, and another program waits");
+    }
+    return idlest;
+}
+
+// Gives the programs that wait a channel, in their order; one that has left, or waited for too
+// long, goes without.
+void Engine::placePrograms(U32 now) {
+    const U32 patienceUs = static_cast<U32>(settings_.waitMs) * 1000;
+    for (size_t i = 0; i < waiting_.size();) {
+        const Waiting& w = waiting_[i];
+        const bool goes = hasLeft(w.fd) || (patienceUs && now - w.since >= patienceUs);
+        const int channel = goes ? -1 : freeChannel(w.channel, now);
+        if (channel < 0 && !goes) {
+            ++i;
+            continue;
+        }
+        if (goes) {
+            const U32 waited = (now - w.since) / 1000000;
+            log_(waited ? 0 : 1, w.name + " has waited " + std::to_string(waited) +
+                                     " s for one of the three channels: connection closed");
+            ::close(w.fd);
+        } else {
+            log_(1, w.name + " is connected, channel " + std::to_string(channel));
+            streams_[channel].want(w.fd, w.name);
+        }
+        waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
 }
 
 int Engine::connect(int channel) {
-    std::lock_guard<std::mutex> lock(mutex_);
-    const int chosen = freeChannel(channel);
     int ends[2];
-    if (chosen < 0 || !makePair(ends))
+    if (!makePair(ends))
         return -1;
-    streams_[chosen].want(ends[0], "the program on channel " + std::to_string(chosen));
-    wake();
+    add({ends[0], channel, "a program", 0});
     return ends[1];
 }
 
-bool Engine::connect(int socket, const std::string& name) {
+void Engine::connect(int socket, const std::string& name) {
+    add({socket, -1, name, 0});
+}
+
+void Engine::add(Waiting program) {
     std::lock_guard<std::mutex> lock(mutex_);
-    const int chosen = freeChannel(-1);
-    if (chosen < 0)
-        return false;
-    streams_[chosen].want(socket, name);
-    log_(1, name + " is connected");
+    program.since = clock_.nowUs();
+    waiting_.push_back(std::move(program));
+    placePrograms(clock_.nowUs());
     wake();
-    return true;
+}
+
+size_t Engine::waiting() const {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return waiting_.size();
 }
 
 bool Engine::isWanted() const {

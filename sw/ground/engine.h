@@ -14,6 +14,7 @@
 #include "stream.h"
 
 #include <condition_variable>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -36,13 +37,15 @@ public:
     Engine(const Engine&) = delete;
     Engine& operator=(const Engine&) = delete;
 
-    // Opens a connection to the peer, on a channel of 0..2 or (-1) any free one. Returns the
-    // program's end of it, a socket; -1 if no channel is free. The peer speaks as soon as the link
-    // is up; a port that was lost is opened again for it. If there is no modem, the socket ends.
+    // Opens a connection to the peer, on a channel of 0..2 or (-1) any one. Returns the program's
+    // end of it, a socket; -1 if there is no descriptor for it. The peer speaks as soon as the link
+    // is up and a channel is free: programs wait their turn. A port that was lost is opened again.
+    // The socket ends if there is no modem, or after Settings::waitMs without a channel.
     int connect(int channel);
-    // The same for a program that has a socket: true, and the engine owns it from now on; or no
-    // channel is free. `name` is for the log.
-    bool connect(int socket, const std::string& name);
+    // The same for a program that has a socket, which the engine owns from now on. `name` is for
+    // the log.
+    void connect(int socket, const std::string& name);
+    size_t waiting() const; // programs without a channel
     // The peer may open connections: each makes the returned descriptor readable, also after the
     // port was lost and found again. -1: taken already.
     int listen();
@@ -70,7 +73,14 @@ private:
     bool isWanted() const;
     void readSerial(U32 now);
     void writeSerial(U32 now);
-    int freeChannel(int wanted);
+    struct Waiting { // a program without a channel
+        int fd, channel;
+        std::string name;
+        U32 since;
+    };
+    void add(Waiting program);
+    int freeChannel(int wanted, U32 now);
+    void placePrograms(U32 now);
     int calledChannel() const;
     void servePrograms(const std::vector<pollfd>& fds, U32 now);
     void sendMessages(U32 now);
@@ -103,6 +113,7 @@ private:
     unsigned full_ = 0;   // a bit a channel: the link has no room for its message, it is not read
     unsigned lost_ = 0;   // calls of programs that have left, which may not have arrived
     Stream streams_[LINK_CHANNELS];
+    std::deque<Waiting> waiting_;
     std::unique_ptr<Link> link_;
     std::vector<U8> serialOut_; // of a frame, not yet taken by the port
     FramePacer pacer_;

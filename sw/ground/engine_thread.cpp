@@ -18,6 +18,7 @@ namespace XBeeAT {
 namespace {
 
 constexpr std::chrono::seconds retryEvery{5}; // while only a listener waits for the modem
+constexpr U32 lookUs = 50000;   // between two looks for a channel, while programs wait for one
 constexpr U32 briefBytes = 128; // of a message that one fragment takes, its head compressed
 
 } // namespace
@@ -123,6 +124,9 @@ void Engine::fail(const std::string& text) {
     Link_stop(link_.get(), clock_.nowUs());
     for (Stream& s : streams_)
         s.close();
+    for (const Waiting& program : waiting_)
+        close(program.fd);
+    waiting_.clear();
     reportLost();
 }
 
@@ -337,8 +341,10 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
         if (downTooLong(now))
             return;
         reportLost();
+        placePrograms(now);
         Link_poll(link_.get(), now);
-        U32 deadline = std::min({Link_deadline(link_.get(), now), beat(now), pacer_.deadline(now)});
+        U32 deadline = std::min({Link_deadline(link_.get(), now), beat(now), pacer_.deadline(now),
+                                 waiting_.empty() ? 0xFFFFFFFFu : lookUs});
         std::vector<pollfd> fds;
         for (Stream& s : streams_)
             fds.push_back(s.interest(!(full_ >> (&s - streams_) & 1)));

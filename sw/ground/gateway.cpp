@@ -14,7 +14,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <deque>
 #include <iostream>
 #include <netdb.h>
 #include <netinet/tcp.h>
@@ -125,8 +124,6 @@ public:
                   << engine_->device() << std::endl;
     }
     ~Gateway() {
-        for (Client& client : waiting_)
-            close(client.fd);
         close(listener_);
         close(toStation_);
         sayStatistics();
@@ -138,7 +135,6 @@ public:
         for (auto due = Clock::now() + seconds(options_.statistics); !stopSignal;) {
             wait();
             acceptClients();
-            placeClients();
             callStation();
             if (options_.statistics > 0 && Clock::now() >= due) {
                 due += seconds(options_.statistics);
@@ -148,34 +144,27 @@ public:
     }
 
 private:
-    struct Client {
-        int fd;
-        std::string name;
-        Clock::time_point since;
-    };
-
     void sayStatistics() { std::cout << "gateway: " + engine_->statistics() + "\n" << std::flush; }
     void complain(const std::string& text) { std::cerr << "gateway: " + text + "\n"; }
 
     void wait() {
-        // A program may leave its channel to one that waits at any time.
-        const int ms = waiting_.empty() && toStation_ < 0 ? 1000 : 50;
-        pollfd fds[] = {{waiting_.size() < mostWaiting ? listener_ : -1, POLLIN, 0},
+        const bool isFull = engine_->waiting() >= mostWaiting;
+        pollfd fds[] = {{isFull ? -1 : listener_, POLLIN, 0},
                         {toStation_ < 0 ? radioCalls_ : -1, POLLIN, 0},
                         {toStation_, POLLOUT, 0}};
-        poll(fds, 3, ms);
+        poll(fds, 3, isFull || toStation_ >= 0 ? 50 : 1000);
         isCalled_ = fds[1].revents != 0;
         isAnswered_ = fds[2].revents != 0;
     }
     void acceptClients() {
-        while (waiting_.size() < mostWaiting) {
+        while (engine_->waiting() < mostWaiting) {
             int fd = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
             if (fd < 0) {
                 noteFull(errno);
                 return;
             }
             prepare(fd, options_.vanished);
-            waiting_.push_back({fd, "client " + std::to_string(++count_), Clock::now()});
+            engine_->connect(fd, "client " + std::to_string(++count_));
         }
     }
     // Notes that descriptors are used up: the listener stays readable without them.
@@ -184,19 +173,6 @@ private:
             return;
         complain(std::string("cannot accept a client: ") + std::strerror(error));
         poll(nullptr, 0, 500);
-    }
-    void placeClients() {
-        while (!waiting_.empty()) {
-            Client& first = waiting_.front();
-            if (!engine_->connect(first.fd, first.name)) {
-                if (Clock::now() - first.since < seconds(options_.wait))
-                    return;
-                complain(first.name + " has waited " + std::to_string(options_.wait) +
-                         " s for one of the three channels: connection closed");
-                close(first.fd);
-            }
-            waiting_.pop_front();
-        }
     }
     // The UAV's call, in two steps: the station may be far away.
     void callStation() {
@@ -235,7 +211,6 @@ private:
     bool isCalled_ = false, isAnswered_ = false;
     Clock::time_point stationDue_;
     unsigned count_ = 0;
-    std::deque<Client> waiting_;
 };
 
 // Reads the modem's key from a file: every user of the machine can read the command line.
@@ -297,6 +272,7 @@ int main(int argc, char** argv) {
         sigaction(signal, &action, nullptr);
     try {
         s.idleMs = o.idle * 1000;
+        s.waitMs = o.wait * 1000;
         if (!o.keyFile.empty())
             s.keys = XBeeAT::KeyFile(o.keyFile).of(s.target);
         if (!o.modemKeyFile.empty())

@@ -22,8 +22,8 @@ public:
     IceInternal::TransceiverPtr connect() override {
         auto engine = instance_->engine(options_);
         int fd = engine->connect(options_.channel == 255 ? -1 : options_.channel);
-        if (fd < 0) // all channels are taken, or the modem was given up
-            throw Ice::ConnectFailedException(__FILE__, __LINE__, EBUSY);
+        if (fd < 0) // no descriptor is left
+            throw Ice::ConnectFailedException(__FILE__, __LINE__, errno);
         return new Transceiver(engine, fd);
     }
     Ice::Short type() const override { return endpointType; }

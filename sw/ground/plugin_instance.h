@@ -54,6 +54,7 @@ public:
                                                      std::string("xbee-at: ") + e.what());
         }
         defaults_.serial.downMs = 1000 * p->getPropertyAsIntWithDefault("XBeeAT.Down", 15);
+        defaults_.serial.idleMs = 1000 * p->getPropertyAsIntWithDefault("XBeeAT.Idle", 60);
         defaults_.serial.setUp = p->getPropertyAsIntWithDefault("XBeeAT.Setup", 1) > 0;
     }
     const EndpointOptions& defaults() const { return defaults_; }

@@ -25,7 +25,8 @@ struct Settings {
     int guardMs = 1000;   // of the modem as it is
     bool setUp = true;    // by AT commands
     int downMs = 15000;   // without a link: set the modem up again, it may have been reset
-    int idleMs = 0;       // so long silent, a program makes room for one that waits; 0: never
+    int idleMs = 60000;   // so long silent, a program makes room for one that waits; 0: never
+    int waitMs = 0;       // so long a program waits for a channel; 0: as long as it likes
 
     // Returns a random number for sessions; a test may have its own source.
     std::function<unsigned()> random = [] { return std::random_device()(); };

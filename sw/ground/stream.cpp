@@ -73,12 +73,6 @@ void Stream::close(State to) {
     pending_ = 0;
 }
 
-bool Stream::isLeft() const {
-    pollfd end{fd_, POLLRDHUP, 0};
-    char byte;
-    return poll(&end, 1, 0) > 0 && recv(fd_, &byte, 1, MSG_PEEK | MSG_DONTWAIT) <= 0;
-}
-
 pollfd Stream::interest(bool reads) const {
     const bool wantsIn = reads && is(State::Open) && !ended_;
     const int events = (wantsIn ? POLLIN : 0) | (in_.empty() ? 0 : POLLOUT);
@@ -183,8 +177,8 @@ U32 Stream::beat(U32 nowUs) {
     return 100000u;
 }
 
-bool Stream::isIdle(U32 nowUs, U32 forUs) const {
-    return is(State::Open) && !pending_ && nowUs - activeAt_ >= forUs;
+U32 Stream::silentUs(U32 nowUs) const {
+    return is(State::Open) && !pending_ ? nowUs - activeAt_ : 0;
 }
 
 void Stream::sayGoodbye(U32 nowUs) {

@@ -46,8 +46,6 @@ public:
     void close(State to = State::Closed);
     const std::string& name() const { return name_; }
     int fd() const { return fd_; }
-    // True if the program has closed its end, and left nothing to be read.
-    bool isLeft() const;
 
     // Says what poll is to look for; fd -1 is nothing. `reads`: the link has room for messages.
     pollfd interest(bool reads) const;
@@ -72,9 +70,9 @@ public:
     // connections. Ends a leaving that takes too long.
     // Returns when to come again, in microseconds.
     U32 beat(U32 nowUs);
-    // True if the program waits for no answer, and for so long has neither sent a whole message nor
-    // taken a byte.
-    bool isIdle(U32 nowUs, U32 forUs) const;
+    // Returns how long the program has neither sent a whole message nor taken a byte; 0: it waits
+    // for an answer.
+    U32 silentUs(U32 nowUs) const;
     // Tells the program, in Ice's words, that the connection closes and it may open another one.
     void sayGoodbye(U32 nowUs);
 

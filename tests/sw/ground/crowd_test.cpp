@@ -143,9 +143,7 @@ TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
         flood.clear(); // in the midst of it
         for (int i = 0; i < 3; ++i) {
             unsigned openings = 2 * round + 1;
-            int fd = -1;
-            ASSERT_TRUE(wire_.until([&] { return (fd = engine_->connect(i)) >= 0; }));
-            Program next(fd);
+            Program next(engine_->connect(i));
             echoes(next);
             EXPECT_EQ(wire_.openings[i], ++openings) << "the UAV greets nobody";
         }
@@ -160,20 +158,14 @@ TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
 // never ends. A fourth that waits has one of theirs after a while.
 class Keepers : public ::testing::Test {
 protected:
-    // The fourth's connection, while the three do `meanwhile` again and again.
+    // The fourth has an answer, while the three do `meanwhile` again and again.
     template <class F> void theFourthIsServed(F meanwhile) {
-        int fd = -1;
+        Program fourth(engine_->connect(-1));
+        fourth.send(message(1));
         EXPECT_TRUE(wire_.until(
             [&] {
                 for (auto& keeper : keepers_)
                     meanwhile(*keeper);
-                return (fd = engine_->connect(-1)) >= 0;
-            },
-            30));
-        Program fourth(fd);
-        fourth.send(message(1));
-        EXPECT_TRUE(wire_.until(
-            [&] {
                 fourth.write();
                 fourth.read();
                 return fourth.got > 0;

@@ -61,13 +61,32 @@ TEST_F(EngineTest, MessagesGoBothWaysOnSeveralConnections) {
         fd = engine->connect(-1);
         ASSERT_GE(fd, 0);
     }
-    EXPECT_EQ(engine->connect(-1), -1) << "a fourth connection";
     for (uint8_t tag = 1; tag < 4; ++tag)
         for (int fd : fds)
             echoes(fd, tag, 20u * tag);
     echoes(fds[1], 9, 8192);
     for (int fd : fds)
         close(fd);
+}
+
+TEST_F(EngineTest, MoreProgramsThanChannelsWaitTheirTurn) {
+    rig_.with([&] { rig_.echo = true; });
+    auto engine = start();
+    int fds[3];
+    for (int& fd : fds)
+        echoes(fd = engine->connect(-1), 1);
+    int gone = engine->connect(-1), next = engine->connect(-1), last = engine->connect(1);
+    EXPECT_EQ(engine->waiting(), 3u);
+    close(gone);
+    close(fds[2]);
+    echoes(next, 2); // not the one that has left
+    close(fds[0]);
+    close(fds[1]);
+    echoes(last, 3);
+    rig_.with([&] { EXPECT_EQ(rig_.opened.back(), std::make_pair(1, 1)); });
+    EXPECT_EQ(engine->waiting(), 0u);
+    close(next);
+    close(last);
 }
 
 TEST_F(EngineTest, AModemThatIsResetInFlightIsSetUpAgain) {
@@ -107,13 +126,11 @@ TEST_F(EngineTest, WhoGivesUpBeforeTheLinkIsUpFreesItsChannel) {
     rig_.with([&] { rig_.echo = true; });
     auto engine = start();
     int fd = engine->connect(1);
-    ASSERT_GE(fd, 0);
-    EXPECT_EQ(engine->connect(1), -1);
+    int next = engine->connect(1);
+    EXPECT_EQ(engine->waiting(), 1u);
     close(fd);
-    fd = engine->connect(1);
-    ASSERT_GE(fd, 0);
-    echoes(fd, 1);
-    close(fd);
+    echoes(next, 1);
+    close(next);
 }
 
 TEST_F(EngineTest, HeartbeatsTakeNoAir) {

@@ -134,7 +134,7 @@ private:
             take();
         }
         (void)stream_.beat(now_);
-        (void)stream_.isIdle(now_, 60'000'000);
+        (void)stream_.silentUs(now_);
     }
     bool makesSense() const {
         return sent_.size() < 14 || (sizeOf(sent_.data()) >= 14 && sizeOf(sent_.data()) <= longest);

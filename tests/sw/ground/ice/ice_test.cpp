@@ -106,6 +106,31 @@ TEST_F(StockIce, OnewaysArriveInNumberAndTwoProgramsShareTheModem) {
     EXPECT_EQ(a->noted(), 100);
 }
 
+// A closing goes to the UAV and back, and takes its channel that long.
+TEST_F(StockIce, WhoOpensWhileTheLastConnectionsStillCloseWaitsItsTurn) {
+    Ice::CommunicatorHolder ic(world_.client());
+    auto named = [&](const char* name) { return world_.proxy(ic.communicator(), name); };
+    for (int i = 0; i < 10; ++i) {
+        std::vector<Ice::ConnectionPtr> open;
+        for (const char* name : {"a", "b", "c"})
+            open.push_back(named(name)->ice_getConnection());
+        for (const auto& connection : open)
+            connection->close(Ice::ConnectionClose::Gracefully);
+        EXPECT_EQ(named("d")->repeat(i, {1}), RadioTest::Bytes{1});
+        named("d")->ice_getConnection()->close(Ice::ConnectionClose::GracefullyWithWait);
+    }
+}
+
+TEST_F(StockIce, MoreProgramsThanChannelsShareThem) {
+    std::vector<std::unique_ptr<Ice::CommunicatorHolder>> programs;
+    for (int i = 0; i < 5; ++i) {
+        programs.push_back(std::make_unique<Ice::CommunicatorHolder>(
+            world_.client({{"XBeeAT.Idle", "1"}, {"Ice.RetryIntervals", "0"}})));
+        world_.proxy(programs.back()->communicator())->ice_ping();
+    }
+    world_.proxy(programs[0]->communicator())->ice_ping(); // its connection was the first to go
+}
+
 TEST_F(StockIce, AUavThatIsOffIsAConnectTimeout) {
     world_.rig.with([&] { world_.rig.uavRuns = false; });
     Ice::CommunicatorHolder ic(world_.client());

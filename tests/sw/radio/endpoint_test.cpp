@@ -119,6 +119,27 @@ TEST_F(RadioEndpoint, AnswersThatTheLinkHasNoRoomForWaitForASlowLink) {
     EXPECT_EQ(pair_.a.received, (std::vector<std::pair<int, Side::Bytes>>(5, {3, answer})));
 }
 
+TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSides) {
+    ASSERT_TRUE(pair_.connect());
+    ASSERT_EQ(connect(), ICE_OK);
+    pair_.run(500000);
+    pair_.a.refuse = true; // the link lives, and makes no way
+    const Side::Bytes answer(7930, 7);
+    Ice_Status status = ICE_OK;
+    for (int n = 0; n < 10 && status == ICE_OK; ++n)
+        status =
+            ops().send(ic_.endpointContext, 3, answer.data(), static_cast<Ice_Int>(answer.size()));
+    EXPECT_EQ(status, ICE_CONNECTION_LOST);
+    EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 3}}));
+    pair_.a.refuse = false;
+    run(10000);
+    EXPECT_EQ(pair_.a.events.back(), "close 3");
+    EXPECT_EQ(connect(), ICE_OK);
+    run(1000);
+    EXPECT_EQ(pair_.a.events.back(), "open 3");
+    EXPECT_EQ(events(), Kinds{});
+}
+
 // Options are written as the ground's plugin writes them (test_radio_ice,
 // EndpointsKeepTheirOptionsAsText...), so far as the UAV has them.
 TEST_F(RadioEndpoint, AnEndpointsOptionsAreInTheProxysTextAgain) {

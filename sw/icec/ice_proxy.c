@@ -72,6 +72,22 @@ Ice_String Ice_ObjectPrx_getFacet(const Ice_ObjectPrx* prx) {
     return facet;
 }
 
+/* Gives endpoints, as they stand in a message, the message's encoding where they are of this
+ * program's transport, as Ice does; those of others stay as they came. */
+static void adoptEncoding(Ice_CommunicatorPtr ic, Ice_Byte* endpoints, Ice_Byte minor) {
+    Ice_Byte* at = endpoints + 1;
+    int n;
+    for (n = endpoints[0]; n > 0; --n) {
+        Ice_Int size = 2 + at[2]; /* type, and an encapsulation: at most ICE_ENDPOINT_MAX */
+        Ice_OutputStream nothing;
+        Ice_OutputStream_init(&nothing, 0, 0);
+        if (at[7] != minor && ic->endpoint->print &&
+            ic->endpoint->print(ic->endpointContext, at, size, &nothing))
+            at[7] = minor;
+        at += size;
+    }
+}
+
 void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx) {
     if (!prx || Ice_ObjectPrx_isNull(prx)) {
         Ice_OutputStream_writeShort(os, 0); /* two empty strings */
@@ -84,6 +100,8 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx)
     if (os->minor != 0) /* protocol 1.0, the encoding */
         Ice_OutputStream_writeInt(os, 0x00010001 | prx->minor << 24);
     Ice_OutputStream_writeBlob(os, prx->endpoints, prx->endpointsSize);
+    if (ICEC_FULL && !os->failed && prx->communicator && prx->communicator->endpoint)
+        adoptEncoding(prx->communicator, os->data + os->size - prx->endpointsSize, os->minor);
 }
 
 /* Keeps bytes of the message behind those kept so far. 0: no room. */

@@ -5,7 +5,7 @@
 peer.py client [slow] PORT|ENDPOINT   every operation against the server on PORT; `slow`: fewer, smaller calls
 peer.py lost PORT            a connection that is cut: calls fail cleanly and the next ones work
 peer.py server               prints its port
-peer.py strings              reads proxies, prints what Ice makes of them
+peer.py strings              reads proxies, prints what Ice makes of them, and their bytes in 1.1 and 1.0
 """
 
 import os
@@ -294,10 +294,26 @@ def server(ic):
     ic.waitForShutdown()
 
 
+class Bytes(Ice.Blobject):
+    """Answers with the parameters, and keeps them: what is in their encapsulation."""
+
+    def ice_invoke(self, parameters, current):
+        self.last = bytes(parameters)[6:]
+        return True, parameters
+
+
 def strings(ic):
+    adapter = ic.createObjectAdapterWithEndpoints("Adapter", "tcp -h 127.0.0.1")
+    servant = Bytes()
+    sink = E.TesterPrx.uncheckedCast(adapter.addWithUUID(servant))
+    adapter.activate()
     for line in sys.stdin:
         try:
-            print(ic.proxyToString(ic.stringToProxy(line.rstrip("\n"))))
+            proxy = ic.stringToProxy(line.rstrip("\n"))
+            print(ic.proxyToString(proxy))
+            for encoding in Ice.Encoding_1_1, Ice.Encoding_1_0:
+                sink.ice_encodingVersion(encoding).echoProxy(proxy)
+                print(servant.last.hex())
         except Ice.LocalException:
             print("refused")
 

@@ -25,6 +25,7 @@ passed = 0
 failures = {}  # "File.py:line": text
 lock = threading.Lock()
 PATIENCE = 3  # seconds
+TURNS = 200  # of a loop that waits for what the server has
 
 
 def check(truth):
@@ -42,6 +43,13 @@ def failed(where, error):
         os._exit(1)
     with lock:
         failures.setdefault(where, "%s: %s" % (type(error).__name__, str(error).strip().replace("\n", " ")[:160]))
+
+
+def turn(turns):
+    """Ends a loop that waits for what will never come."""
+    turns.append(0)
+    if len(turns) > TURNS:
+        raise RuntimeError("waited for %d turns" % TURNS)
 
 
 def wait(self, timeout=None, wait=threading.Condition.wait):
@@ -74,7 +82,9 @@ class Guard(ast.NodeTransformer):
     visit_For = visit_With
 
     def visit_While(self, node):
-        return self.guarded(node)  # it may wait for what failed
+        begin, turn = ast.parse("__turns__ = []\n__turn__(__turns__)").body
+        node.body.insert(0, turn)
+        return self.guarded(node, begin)  # it may wait for what failed
 
     def visit_If(self, node):
         node.body = [self.visit(s) for s in node.body]
@@ -85,10 +95,10 @@ class Guard(ast.NodeTransformer):
         plain = isinstance(node, (ast.Expr, ast.Assign, ast.AugAssign))
         return self.guarded(node) if plain else node
 
-    def guarded(self, node):
+    def guarded(self, node, *before):
         note = ast.parse("__failed__(%r, __error__)" % ("%s:%d" % (self.name, node.lineno))).body
         handler = ast.ExceptHandler(type=ast.Name("Exception", ast.Load()), name="__error__", body=note)
-        return ast.copy_location(ast.Try(body=[node], handlers=[handler], orelse=[], finalbody=[]), node)
+        return ast.copy_location(ast.Try(body=[*before, node], handlers=[handler], orelse=[], finalbody=[]), node)
 
 
 class Loader(importlib.abc.Loader):
@@ -101,7 +111,7 @@ class Loader(importlib.abc.Loader):
         if module.__name__ != "Client":
             guard = Guard(os.path.basename(self.path))
             tree.body = [guard.visit(s) if isinstance(s, (ast.FunctionDef, ast.ClassDef)) else s for s in tree.body]
-        module.test, module.__failed__ = check, failed
+        module.test, module.__failed__, module.__turn__ = check, failed, turn
         exec(compile(ast.fix_missing_locations(tree), self.path, "exec"), module.__dict__)
 
 

@@ -181,4 +181,16 @@ protected:
     uint64_t now_ = 0xFFFF0000; // so that the 32-bit time wraps in every test
 };
 
+// The frames in a packet.
+inline std::vector<Bytes> framesOf(const Bytes& packet) {
+    std::vector<Bytes> frames;
+    for (size_t at = 0; at + LINK_SECURE_OVERHEAD <= packet.size();) {
+        size_t size = LINK_LENGTH(&packet[at]) + LINK_SECURE_OVERHEAD;
+        frames.emplace_back(packet.begin() + static_cast<long>(at),
+                            packet.begin() + static_cast<long>(std::min(at + size, packet.size())));
+        at += size;
+    }
+    return frames;
+}
+
 #endif

@@ -155,7 +155,7 @@ TEST_F(Gateway, PythonWithoutThePlugin) {
     GatewayProgram gateway = start();
     int port = gateway.port();
     ASSERT_GT(port, 0) << gateway.said();
-    std::string command = "/usr/bin/python3 '" CLIENT "' '" SLICE "' '' '" + endpoint(port) + "' 0";
+    std::string command = PYTHON " '" CLIENT "' '" SLICE "' '' '" + endpoint(port) + "' 0";
     EXPECT_EQ(std::system(command.c_str()), 0) << "the gateway said:\n" << gateway.said();
 }
 

@@ -159,7 +159,7 @@ TEST_F(StockIce, EndpointsKeepTheirOptionsAsTextAndWrongOnesAreRefused) {
 
 // The same by Python, which loads the plugin's other library.
 TEST_F(StockIce, PythonWithThreadsAndCallbacks) {
-    std::string command = "/usr/bin/python3 '" CLIENT "' '" SLICE "' '" PLUGIN_FOLDER "' '" +
+    std::string command = PYTHON " '" CLIENT "' '" SLICE "' '" PLUGIN_FOLDER "' '" +
                           world_.endpoint() + "' " + std::to_string(Rig::guardMs);
     EXPECT_EQ(std::system(command.c_str()), 0);
 }

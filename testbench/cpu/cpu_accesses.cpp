@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+//
+// cpu_accesses: CortexM3's loads and stores outside of RAM: what they wait for, the store buffer,
+// faults; and a debugger's.
+
+#include "cortex_m3.h"
+#include "unicorn_calls.h"
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+namespace {
+constexpr unsigned storeCycles = 14; // the FSMC's for a register word
+
+std::string accessText(uint32_t address, unsigned bytes, const char* what) {
+    char text[64];
+    std::snprintf(text, sizeof text, "access of %u bytes to 0x%08X: ", bytes, address);
+    return std::string(text) + what;
+}
+} // namespace
+
+// The processor has waited for the access that the bus has just made.
+void CortexM3::passWaited() {
+    const unsigned waited = bus_.takeWaited();
+    waited_ += waited;
+    control_.pass(waited);
+    attention_ = attention_ || exceptions_.deliverable();
+}
+
+// Carries a store out. Its fault comes when it does, and has no address.
+template <class Store> void CortexM3::store(uint32_t address, unsigned bytes, Store store) {
+    try {
+        store();
+        passWaited();
+    } catch (const CpuBus::Error& e) {
+        (void)bus_.takeWaited();
+        reportStoreFault(accessText(address, bytes, e.what()));
+    } catch (...) {
+        failure_ = std::current_exception();
+    }
+    attention_ = attention_ || failure_;
+}
+
+void CortexM3::drainStore() {
+    const BufferedStore s = store_;
+    store_.bytes = 0;
+    if (s.bytes)
+        store(s.address, s.bytes, [&] { bus_.write(s.address, s.bytes, s.value); });
+}
+
+template <class Access>
+uint32_t CortexM3::guardedAccess(uint32_t address, unsigned bytes, Access access) {
+    if (failure_ || synchronous_.number)
+        return 0; // the processor stops before the next instruction
+    try {
+        uint32_t value = 0;
+        if (address >= 0xE0000000) {
+            value = access(true);
+            // Writing a system register may make an exception deliverable: DSB and ISB cost nothing
+            // more.
+            attention_ = attention_ || exceptions_.deliverable() || stopAsked_;
+            return value;
+        }
+        drainStore();
+        value = access(false);
+        passWaited();
+        return value;
+    } catch (const CpuBus::Error& e) {
+        (void)bus_.takeWaited();
+        synchronous_ = {BusFault, SystemControl::preciseBus | SystemControl::bfarValid,
+                        accessText(address, bytes, e.what())};
+        control_.setFaultAddress(SystemControl::bfarValid, address);
+    } catch (...) {
+        failure_ = std::current_exception();
+    }
+    attention_ = true;
+    uc_emu_stop(uc_);
+    return 0;
+}
+
+uint32_t CortexM3::onRead(uint32_t address, unsigned bytes) {
+    return guardedAccess(address, bytes, [&](bool own) {
+        uint32_t value = 0;
+        if (!own)
+            return bus_.read(address, bytes);
+        if (!control_.read(address, bytes, value))
+            throw CpuBus::Error("no such system register");
+        return value;
+    });
+}
+
+void CortexM3::onWrite(uint32_t address, unsigned bytes, uint32_t value) {
+    if (address < 0xE0000000 && control_.buffersStores() && !failure_ && !synchronous_.number) {
+        drainStore();
+        store_ = {address, value, bytes, cycles() + storeCycles};
+        return;
+    }
+    guardedAccess(address, bytes, [&](bool own) {
+        if (!own)
+            bus_.write(address, bytes, value);
+        else if (!control_.write(address, bytes, value))
+            throw CpuBus::Error("no such system register, or a value that is not modelled");
+        return 0u;
+    });
+    if (address >= 0xE0000000 && control_.takeResetRequest())
+        requestReset();
+}
+
+// Called before libunicorn stores to flash; what the bus makes of it is what counts.
+void CortexM3::onFlashWrite(uint32_t offset, unsigned bytes, uint32_t value) {
+    settleFlash();
+    if (failure_ || synchronous_.number)
+        return;
+    drainStore();
+    store(config_.flashBase + offset, bytes, [&] { bus_.writeFlash(offset, bytes, value); });
+    FlashStore store{offset, bytes, {}};
+    std::memcpy(store.was, flash_.get() + offset, bytes);
+    stores_.push_back(store);
+}
+
+void CortexM3::flashChanged(uint32_t offset, uint32_t bytes) {
+    const uint32_t first = offset >= 2 ? offset / 2 - 1 : 0; // a long instruction may begin before
+    for (uint32_t at = first; at < (offset + bytes + 1) / 2; ++at) {
+        staleCode_ = staleCode_ || decoded_[at].bytes;
+        decoded_[at].bytes = 0;
+    }
+    attention_ = attention_ || staleCode_;
+}
+
+bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
+    drainStore(); // RAM is behind the same bus
+    if (!control_.isForbidden(address, bytes, write) || synchronous_.number ||
+        currentException() == HardFault)
+        return false;
+    char text[80];
+    std::snprintf(text, sizeof text, "access of %u bytes to 0x%08X: the MPU forbids it", bytes,
+                  address);
+    synchronous_ = {MemManage, SystemControl::dataAccess | SystemControl::mmfarValid, text};
+    control_.setFaultAddress(SystemControl::mmfarValid, address);
+    attention_ = true;
+    uc_emu_stop(uc_);
+    return true;
+}
+
+// ---- a debugger's accesses outside of memory: in words where they are aligned, else in bytes ----
+
+bool CortexM3::debugRead(uint32_t address, void* data, uint32_t bytes) {
+    if (readMemory(address, data, bytes))
+        return true;
+    drainStore();
+    auto* to = static_cast<uint8_t*>(data);
+    try {
+        while (bytes) {
+            unsigned size = address % 4 == 0 && bytes >= 4   ? 4
+                            : address % 2 == 0 && bytes >= 2 ? 2
+                                                             : 1;
+            uint32_t value = 0;
+            if (address >= 0xE0000000) {
+                if (!control_.read(address, size, value))
+                    return false;
+            } else {
+                value = bus_.read(address, size);
+                control_.pass(bus_.takeWaited());
+            }
+            std::memcpy(to, &value, size);
+            to += size, address += size, bytes -= size;
+        }
+    } catch (const CpuBus::Error&) {
+        (void)bus_.takeWaited();
+    }
+    return bytes == 0;
+}
+
+bool CortexM3::debugWrite(uint32_t address, const void* data, uint32_t bytes) {
+    if (writeMemory(address, data, bytes))
+        return true;
+    drainStore();
+    const auto* from = static_cast<const uint8_t*>(data);
+    try {
+        while (bytes) {
+            unsigned size = address % 4 == 0 && bytes >= 4   ? 4
+                            : address % 2 == 0 && bytes >= 2 ? 2
+                                                             : 1;
+            uint32_t value = 0;
+            std::memcpy(&value, from, size);
+            if (address >= 0xE0000000) {
+                if (!control_.write(address, size, value))
+                    return false;
+            } else {
+                bus_.write(address, size, value);
+                control_.pass(bus_.takeWaited());
+            }
+            from += size, address += size, bytes -= size;
+        }
+    } catch (const CpuBus::Error&) {
+        (void)bus_.takeWaited();
+    }
+    return bytes == 0;
+}

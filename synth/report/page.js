@@ -31,6 +31,14 @@ function fill(table, head, rows) { // cells: text, [text, class], or an element
   table.append(element("tbody"));
   for (const row of rows) table.tBodies[0].append(line(row, "td"));
 }
+// File and line of a signal of the picked design, as a link; "" where it is not known.
+function place(signal) {
+  const at = picked.figures.nets.places[signal.replace(/\[\d+\]$/, "")];
+  if (!at) return "";
+  const a = element("a", at);
+  a.href = "../../" + at.replace(/:\d+$/, "");
+  return a;
+}
 function shape(tag, attributes, text) {
   const e = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [k, v] of Object.entries(attributes)) e.setAttribute(k, v);
@@ -237,18 +245,24 @@ function showInside(focus) {
     if (p === path || (path === "" || p.startsWith(path + ".")))
       for (const [s, c] of Object.entries(signals)) here.push([(p ? p + "." : "").slice(path ? path.length + 1 : 0) + s, c]);
   here.sort((a, b) => b[1][0] - a[1][0] || b[1][1] - a[1][1]);
-  fill(byId("signals"), ["signal", "LUT", "of these RAM", "FF"],
-    here.filter(([n]) => n.toLowerCase().includes(wanted)).slice(0, 200).map(([n, c]) => [n, c[0], c[2] || "", c[1]]));
+  fill(byId("signals"), ["signal", "LUT", "of these RAM", "FF", "source"], here.filter(([n]) => n.toLowerCase().includes(wanted)).slice(0, 200)
+    .map(([n, c]) => [n, c[0], c[2] || "", c[1], place((path ? path + "." : "") + n)]));
   const box = byId("paths");
   box.replaceChildren();
   for (const p of picked.figures.timing.paths) {
     const d = element("details");
     d.append(element("summary", `slack ${(1000 / data.chip.mhz - p.ns * data.slowGrade).toFixed(2)}: ${p.ns.toFixed(2)} ns (-3), ${(p.ns * data.slowGrade).toFixed(2)} (-2), ${p.levels} levels: ${p.from} to ${p.to} ${p.pin}`));
     const t = element("table");
-    fill(t, ["cell", "net", "fan-out", "cell ns", "net ns"], p.steps.map(s => [s[0], s[1] || "(no name left)", s[2], s[3].toFixed(3), s[4].toFixed(3)]));
+    fill(t, ["cell", "net", "fan-out", "cell ns", "net ns", "source"],
+      [...p.steps.map(s => [s[0], s[1] || "(no name left)", s[2], s[3].toFixed(3), s[4].toFixed(3), place(s[1])]), [p.pin, p.to, "", "", "", place(p.to)]]);
     d.append(t);
     box.append(d);
   }
+  const nets = picked.figures.nets, within = n => n.name.toLowerCase().includes(wanted);
+  fill(byId("clocks"), ["clock", "flip-flops", "pins", "MHz", "source"], nets.clocks.filter(within)
+    .map(n => [n.name, n.flipFlops, n.ends, n.ns ? (1000 / n.ns / data.slowGrade).toFixed(0) : "", place(n.name)]));
+  fill(byId("resets"), ["reset", "kind", "flip-flops", "source"], nets.resets.filter(within).map(n => [n.name, n.kind, n.flipFlops, place(n.name)]));
+  fill(byId("fanouts"), ["net", "ends", "from", "source"], nets.fanouts.filter(within).map(n => [n.name, n.ends, n.kind, place(n.name)]));
   const picture = byId("picture"), module = path ? picked.modules?.[path] : picked.top;
   picture.replaceChildren();
   if (data.pictures[module]) {

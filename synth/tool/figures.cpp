@@ -71,9 +71,28 @@ Figures figuresOf(const Netlist& netlist, bool spartan6, const FilesAlong& files
         if (port.name.rfind("mcb_", 0) != 0)
             f.pins += static_cast<int>(port.bits.size());
     f.slices = slicesOf(netlist);
-    if (spartan6)
-        f.timing = timingOf(netlist, owners);
     f.costs = costsOf(netlist, owners);
+    if (spartan6) {
+        f.timing = timingOf(netlist, owners);
+        f.nets = netsOf(netlist, owners, f.timing);
+        // Where what the report names stands in the sources.
+        const auto place = [&](const std::string& signal) {
+            const std::string at = placeOf(netlist, signal);
+            if (!at.empty())
+                f.nets.places[withoutIndex(signal)] = at;
+        };
+        for (const auto& [owner, cost] : f.costs)
+            place(owner.first.empty() ? owner.second : owner.first + "." + owner.second);
+        for (const Path& path : f.timing.paths) {
+            place(path.from);
+            place(path.to);
+            for (const Step& step : path.steps)
+                place(step.name);
+        }
+        for (const auto* nets : {&f.nets.fanouts, &f.nets.clocks, &f.nets.resets})
+            for (const Net& net : *nets)
+                place(net.name);
+    }
     return f;
 }
 
@@ -110,6 +129,9 @@ void from_json(const json& j, Timing& t) {
     t.throughLevels = j.at("throughLevels");
 }
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Net, name, kind, ends, flipFlops, ns)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Nets, fanouts, clocks, resets, places)
+
 void to_json(json& j, const Figures& f) {
     json costs = json::array(); // path, signal, LUT, memory LUT, FF, carry
     for (const auto& [owner, c] : f.costs)
@@ -121,7 +143,8 @@ void to_json(json& j, const Figures& f) {
          {"costs", costs},        {"timing", f.timing}, {"slices", s.estimate},
          {"low", s.low},          {"high", s.high},     {"slicem", s.slicem},
          {"sites", s.sites},      {"pairs", s.pairs},   {"through", s.through},
-         {"sets", s.controlSets}, {"clocks", f.clocks}, {"otherLuts", f.otherLuts}};
+         {"sets", s.controlSets}, {"clocks", f.clocks}, {"otherLuts", f.otherLuts},
+         {"nets", f.nets}};
 }
 
 void from_json(const json& j, Figures& f) {
@@ -139,6 +162,7 @@ void from_json(const json& j, Figures& f) {
     j.at("timing").get_to(f.timing);
     j.at("clocks").get_to(f.clocks);
     j.at("otherLuts").get_to(f.otherLuts);
+    j.at("nets").get_to(f.nets);
     f.slices = {j.at("low"),   j.at("slices"), j.at("high"),    j.at("slicem"),
                 j.at("sites"), j.at("pairs"),  j.at("through"), j.at("sets")};
 }

@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include "nets.h"
 #include "owners.h"
 #include "slices.h"
 #include "timing.h"
@@ -26,6 +27,7 @@ struct Figures {
     int pins = 0;  // ports that leave the chip: not those of the memory controller (mcb_*)
     Slices slices; // not for ECP5
     Timing timing; // only for Spartan-6
+    Nets nets;     // the same
     Costs costs;
 
     // LUTs and clock() of the netlist in other orders; this one has the median of LUTs.

@@ -72,12 +72,13 @@ int Cell::bit(const std::string& port) const {
     return p && !p->bits.empty() ? p->bits[0] : bitUndefined;
 }
 
+std::string Netlist::Name::text() const {
+    return index < 0 ? name : fmt::format("{}[{}]", name, index);
+}
+
 std::string Netlist::nameOf(int bit) const {
     const auto it = names.find(bit);
-    if (it == names.end())
-        return "";
-    const Name& name = it->second.front();
-    return name.index < 0 ? name.name : fmt::format("{}[{}]", name.name, name.index);
+    return it == names.end() ? "" : it->second.front().text();
 }
 
 Netlist readNetlist(const std::filesystem::path& file) {
@@ -114,6 +115,7 @@ Netlist readNetlist(const std::filesystem::path& file) {
     for (const auto& [name, net] : module["netnames"].items()) {
         if (net["hide_name"] != 0)
             continue;
+        n.sources[name] = net["attributes"].value("src", "");
         const std::vector<int> bits = bitsOf(net["bits"]);
         for (size_t i = 0; i < bits.size(); i++)
             if (bits[i] >= 0)

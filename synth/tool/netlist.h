@@ -45,8 +45,11 @@ struct Netlist {
     struct Name {
         std::string name;
         int index = -1;
+
+        std::string text() const; // with the index
     };
     std::unordered_map<int, std::vector<Name>> names;
+    std::unordered_map<std::string, std::string> sources; // name -> its Yosys attribute src
 
     std::unordered_map<int, int> driver;               // bit -> cell
     std::unordered_map<int, std::vector<int>> readers; // bit -> cells

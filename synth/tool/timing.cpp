@@ -5,6 +5,7 @@
 
 #include "timing.h"
 
+#include "nets.h"
 #include "owners.h"
 
 #include <algorithm>
@@ -257,6 +258,9 @@ Timing timingOf(const Netlist& n, const std::vector<string>& owners, size_t coun
             }
         if (longest < 0)
             continue;
+        for (const Pin& pin : cell.pins)
+            if (isClock(pin.port) && !pin.bits.empty())
+                t.byClock[pin.bits[0]] = std::max(t.byClock[pin.bits[0]], longest);
         const auto bin = static_cast<size_t>(2 * longest * slowGrade);
         t.ends.resize(std::max(t.ends.size(), bin + 1));
         t.ends[bin]++;

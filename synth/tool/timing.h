@@ -11,6 +11,7 @@
 
 #include "netlist.h"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ struct Timing {
     std::vector<int>
         ends; // registers and memories by their longest path, half a ns each, of grade -2
     int inputLevels = 0, outputLevels = 0, throughLevels = 0; // from, to, and between ports
+    std::map<int, double> byClock; // longest path that ends with this clock's bit, ns; not kept
 };
 
 constexpr double slowGrade =

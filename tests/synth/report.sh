@@ -149,6 +149,10 @@ seen.push("signal " + cells("signals", 0, 0) + " " + cells("signals", 0, 1));
 seen.push("paths " + document.querySelectorAll("#paths details").length);
 const bars = [...document.querySelectorAll("#slack rect title")].map(t => t.textContent);
 seen.push("slack " + bars.reduce((sum, text) => sum + parseInt(text), 0) + " " + bars.find(text => parseInt(text) > 0).replace(/^[0-9]+ /, ""));
+for (const id of ["clocks", "resets", "fanouts"])
+  seen.push(id + " " + [...rowsOf(id)[0].cells].map(c => c.textContent).join(" "));
+seen.push("step " + [...document.querySelectorAll("#paths table a")].pop().textContent);
+seen.push("place " + cells("signals", 0, 4));
 seen.push("commit " + cells("commits", 0, 6));
 seen.push("paper " + cells("paper", 0, 3));
 seen.push("points " + document.querySelectorAll("#history circle").length);
@@ -163,7 +167,9 @@ JS
     has 'folder . hdl/blocks, 2 modules; opened 4; filtered 1 store; largest whole; last whole; folded 1;'
     has 'here Signals of u_store, u_store; signal read_addr_i 5; paths [1-9]'
     has 'tree .pair .*u_storestore'
-    has 'slack [1-9][0-9]* with [0-9.]* to [0-9.]* ns left; commit this run; paper 50 '
+    has 'slack [1-9][0-9]* with [0-9.]* to [0-9.]* ns left; clocks clk_i 11 12 [0-9]* project/hdl/blocks/pair.v:8;'
+    has 'resets rst_i synchronous 5 project/hdl/blocks/pair.v:9; fanouts u_counter.count_o.4. 9 FDRE project/hdl/blocks/counter.v:13;'
+    has 'step project/hdl/blocks/[a-z]*.v:1[23]; place project/hdl/blocks/store.v:12; commit this run; paper 50 '
     "$source/tests/regress/test/look.sh" "$page" || fail "the page"
     has 'paper 50 (0.3 %); points 3; choices 1;'
     grep -q '"peer": 100' "$work/out/report.json" || fail "report.json has no figure of the paper"

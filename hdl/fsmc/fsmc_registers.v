@@ -111,7 +111,7 @@ module fsmc_registers (
             low <= wr_data_i;
         if (ends && !bus_write_o)
             word <= bus_rdata_i;
-        if (at_once && !kept)
+        if (idle && reading_i && |rd_addr_i[24:11]) // by itself, not by `wrong`: a short path to 32 resets
             word <= 32'd0;
 
         if (begins || flushed)

@@ -101,9 +101,9 @@ mutants: setup-tests $(BUILD)/build.ninja ## plant every seeded bug of tests/mut
 	@tests/mutants/run.py --jobs $(JOBS) $(if $(BLOCK),--block '$(BLOCK)')
 
 bench: $(BUILD)/build.ninja ## measure everything that has a figure (tests/bench), write build/bench/*.json and docs/figures.md
-	@$(NINJA) bench_programs regress
+	@$(NINJA) bench_programs regress size
 	@mkdir -p build/bench && $(BUILD)/tests/regress/regress --tree "bus hdl ip sw testbench tests" >build/bench/tree
-	@$(NINJA) -j 1 -k 0 benches; status=$$?; tests/bench/figures.py docs/figures.md build/bench/*.json && exit $$status
+	@$(NINJA) -j 1 -k 0 benches; status=$$?; tests/bench/figures.py docs/figures.md build/bench/*.json build/size.json && exit $$status
 
 firmware: $(BUILD)/build.ninja ## the firmware for the STM32F2: ELF and map in build/main/firmware, table of flash, RAM and stacks
 	@$(NINJA) firmware

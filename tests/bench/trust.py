@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""trust: what attackers and losses of power did to the link and to updates, as their tests have counted it.
+"""trust: what attackers and losses of power did to the link and to updates, and what a key costs on the air, as their
+tests have counted it.
 
     trust.py TEST_UPDATE TEST_LINK OUTPUT.json [--brief]
 """
@@ -10,12 +11,16 @@ import subprocess
 import sys
 import tempfile
 
+CALL = "Tags/CallBytes.ACallAndItsReplyTakeFewerThanMavlink/"
 HOSTILE = "Vehicles/Attacked.NothingHostileIsAcceptedAndNothingLegalLostOrDoubled/"
 FIGURES = [  # program, tests, property, text
     (0, "Update.WhereverThePowerIsCutThereIsAnImageThatBoots", "cuts", "new firmware: losses of power, in each operation and later"),
     (0, "Fpga.WhereverThePowerIsCutABitstreamConfiguresIt", "cuts", "new bitstream: losses of power, in each operation and later"),
     (1, HOSTILE + "0:" + HOSTILE + "1", "packets", "hostile packets, full link layer"),
     (1, HOSTILE + "2:" + HOSTILE + "3", "packets", "hostile packets, minimal link layer"),
+    (1, CALL + "0", "bytes", "setParameterA and its reply on the air, in the clear; beside MAVLink 2"),
+    (1, CALL + "1", "bytes", "the same under a key; beside MAVLink 2, signed"),
+    (1, CALL + "2", "bytes", "the same with tags of 4 bytes"),
 ]
 HARM = {"cuts": "it does not start again", "packets": "one accepted, or a legal message lost or doubled"}
 
@@ -34,9 +39,13 @@ def main(words):
     entries = []
     for program, tests, name, text in FIGURES:
         found = run(words[program], tests, "2000" if "--brief" in words else "10000000")
-        failures = sum(len(test.get("failures", [])) for test in found)
-        for what, value, unit in (text, sum(int(test[name]) for test in found), name), ("of these: " + HARM[name], failures, "failures"):
-            entries.append({"name": what, "value": value, "unit": unit, "command": "make bench"})
+        entries.append({"name": text, "value": sum(int(test[name]) for test in found), "unit": name, "command": "make bench"})
+        if name in HARM:
+            failures = sum(len(test.get("failures", [])) for test in found)
+            entries.append({"name": "of these: " + HARM[name], "value": failures, "unit": "failures", "command": "make bench"})
+        else:
+            limit = int(found[0]["mavlink"])
+            entries[-1].update(limit=limit, share=entries[-1]["value"] / limit)
     with open(words[2], "w") as file:
         json.dump(entries, file, indent=1)
         file.write("\n")

@@ -89,9 +89,8 @@ TEST_P(CallBytes, ACallAndItsReplyTakeFewerThanMavlink) {
     }
     const uint64_t took = a_.sent + b_.sent - before;
     const uint64_t tag = !isSecure ? LINK_CRC : std::get<0>(GetParam()) == "tag4" ? 4 : LINK_TAG;
-    std::printf("setParameterA(short) and its reply, %s: %u bytes on the air; MAVLink 2: %u\n",
-                isSecure ? std::get<0>(GetParam()).c_str() : "open", unsigned(took),
-                isSecure ? 58u + 35 : 45u + 22);
+    RecordProperty("bytes", static_cast<int>(took));
+    RecordProperty("mavlink", isSecure ? 58 + 35 : 45 + 22);
     EXPECT_EQ(took, 21 + 3 * (tag - LINK_CRC));
 }
 

@@ -35,6 +35,9 @@ KEY   ?=
 OPEN  ?=
 # PINS=file: drives the inputs of cores (docs/simulation.md)
 PINS ?=
+# PROBE=u_fir.sent=1: the trigger of a probe among CORES (ip/probe/README.md); ground.py reads it
+PROBE ?=
+export PROBE
 # Folder of a flight (its OUT) that make run and make gdb fly again, bit by bit; FROM=1.5 TO=1.6: its waveform, in s
 REPLAY ?=
 FROM  ?=
@@ -56,7 +59,7 @@ help: ## this list
 	@echo
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 	@echo
-	@echo "Variables: IMAGE=file SIZE=320x240 THRESHOLD=24 LOSS=0.1 SEED=1 OUT=build/run CPU=host|m3 APP=uav|minimal LIVE=1 PORT=8080 CORES=ascon CAMERA=1 PINS=file KEY=file OPEN=1 UPDATE=new.elf CLK_HZ=2000000 REPLAY=build/run FROM=1.5 TO=1.6 (make run);"
+	@echo "Variables: IMAGE=file SIZE=320x240 THRESHOLD=24 LOSS=0.1 SEED=1 OUT=build/run CPU=host|m3 APP=uav|minimal LIVE=1 PORT=8080 CORES=ascon CAMERA=1 PINS=file PROBE=signal=1 KEY=file OPEN=1 UPDATE=new.elf CLK_HZ=2000000 REPLAY=build/run FROM=1.5 TO=1.6 (make run);"
 	@echo "           LABEL=rtl|vhdl|formal|lint|firmware|interop|e2e NAME=regexp SEED=1 (make test)"
 
 setup: ## install the Debian packages that make run needs and the machine lacks

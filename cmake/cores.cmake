@@ -181,6 +181,7 @@ function(icesoc_chip)
   list(TRANSFORM idle PREPEND "--idle;")
   add_custom_command(OUTPUT ${GEN_DIR}/map.regs.json ${GEN_DIR}/soc_cores.vh ${GEN_DIR}/soc_cores.c ${GEN_DIR}/soc_pins.h
                      ${GEN_DIR}/core_pins.ucf ${GEN_DIR}/icesoc.svd ${GEN_DIR}/registers.html
+                     ${GEN_DIR}/probes.json ${GEN_DIR}/icesoc.rdl ${GEN_DIR}/icesoc.ipxact.xml
     ${check}
     COMMAND coremap ${CORES} --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${clocked} ${idle}
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json

@@ -75,8 +75,8 @@ def converted(top, files, work):
     return [out]
 
 
-def read_module(top, files):
-    """The module `top` as Yosys has it: its ports in order, and the names of its parameters."""
+def read_module(top, files, include=()):
+    """The module `top` as Yosys has it: its ports in order, and the names of its parameters. `include`: folders."""
     kind, flags = ("entity", re.I) if is_vhdl(files[0]) else ("module", 0)
     there = [m for f in files for m in re.findall(rf"^\s*{kind}\s+(\w+)", text_of(f), re.M | flags)]
     if top not in there:
@@ -85,7 +85,7 @@ def read_module(top, files):
         if kind == "entity":
             files = converted(top, files, work)
         out = os.path.join(work, "top.json")
-        folders = " ".join("-I" + d for d in sorted({os.path.dirname(f) for f in files}))
+        folders = " ".join("-I" + d for d in sorted({*include, *(os.path.dirname(f) for f in files)} - {""}))
         run = subprocess.run(["yosys", "-q", "-p", f"read_verilog -defer {folders} {' '.join(files)}; hierarchy -top {top}; "
                               f"proc; write_json {out}"], capture_output=True, text=True)
         if run.returncode:
@@ -378,4 +378,5 @@ def main(words):
           f"make run CORES={name}")
 
 
-main(sys.argv[1:])
+if __name__ == "__main__":
+    main(sys.argv[1:])

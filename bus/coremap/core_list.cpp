@@ -4,6 +4,7 @@
 
 #include "core_list.h"
 #include <algorithm>
+#include <cstring>
 #include <fmt/format.h>
 #include <set>
 #include <sstream>
@@ -85,13 +86,15 @@ private:
             size_t equals = word.find('=');
             if (equals == std::string::npos || equals + 1 == word.size())
                 fail(n, fmt::format("'{}': after the core's folder come name=, identity=, slot=, "
-                                    "memory=, gate= and its pins",
+                                    "memory=, gate=, signals= and its pins",
                                     word));
             if (!given.emplace(word.substr(0, equals), word.substr(equals + 1)).second)
                 fail(n, fmt::format("'{}' is given twice", word.substr(0, equals)));
         }
         for (const auto& [key, value] : given)
             set(c, key, value);
+        if (c.isProbe && c.signals.empty())
+            fail(n, fmt::format("'{}' records nothing: signals=u_fir.busy,u_fir.count:9", c.name));
         if (c.identity.empty())
             c.identity = c.name;
         auto [it, isNew] = names_.emplace(c.name, n);
@@ -121,6 +124,7 @@ private:
         if (bytes)
             for (c.memoryBytes = bufferAlignment; c.memoryBytes < bytes;)
                 c.memoryBytes *= 2;
+        c.isProbe = j.value("probe", false);
         if (j.contains("servant")) {
             c.servantType = j.at("servant").at("type");
             c.servantHeader = j.at("servant").at("header");
@@ -156,6 +160,8 @@ private:
                      fmt::format("memory={}: a byte address in DDR3, for a core with buffers",
                                  value));
             c.isPlaced = true;
+        } else if (key == "signals" && c.isProbe) {
+            setSignals(c, value);
         } else if (key == "gate") {
             if (value != "on")
                 fail(c.line, fmt::format("gate={}: on, or without the word", value));
@@ -171,6 +177,30 @@ private:
                 }
             fail(c.line, fmt::format("'{}' has no input pin '{}'", c.folder, key));
         }
+    }
+
+    // signals=u_fir.busy,u_fir.count:9: their names in the simulator, below soc, and their bits.
+    static void setSignals(Core& c, const std::string& value) {
+        std::istringstream words(value);
+        unsigned bits = 0;
+        for (std::string word; std::getline(words, word, ',');) {
+            size_t colon = word.find(':');
+            std::string name = word.substr(0, colon),
+                        width = colon < word.size() ? word.substr(colon + 1) : "1";
+            auto isOf = [](const std::string& s, const char* others) {
+                return !s.empty() && std::all_of(s.begin(), s.end(), [=](unsigned char ch) {
+                    return std::isdigit(ch) ||
+                           (*others && (std::isalpha(ch) || std::strchr(others, ch)));
+                });
+            };
+            if (!isOf(name, "_.") || !isOf(width, "") || width.size() > 3 || !std::stoul(width))
+                fail(c.line,
+                     fmt::format("signals: '{}' is no name and width, as u_fir.count:9", word));
+            c.signals.push_back({name, static_cast<unsigned>(std::stoul(width))});
+            bits += c.signals.back().width;
+        }
+        if (bits > 223)
+            fail(c.line, fmt::format("signals: {} bits; a probe has 223", bits));
     }
 
     // pwm_o=@A4,B4: where the bits are on the board, from bit 0.

@@ -22,6 +22,12 @@ struct Pin {
     bool isOut() const { return name.back() == 'o'; }
 };
 
+// What a probe records: a signal by its name in the simulator, below soc.
+struct Signal {
+    std::string name;
+    unsigned width = 1;
+};
+
 struct Core {
     std::string name, folder, identity;
     unsigned line = 0, slot = 0;
@@ -31,10 +37,12 @@ struct Core {
     bool isPlaced = false;    // memory= says where
     std::string servantType, servantHeader;
     std::vector<Pin> pins;
-    std::string constraints; // <folder>.ucf beside its description, or nothing
-    bool hasClock = false;   // the module has the parameter CLK_HZ
-    bool saysIdle = false;   // the module has the output idle_o
-    bool hasGate = false;    // its clock stands still while it is idle, on the board, too
+    std::string constraints;     // <folder>.ucf beside its description, or nothing
+    bool hasClock = false;       // the module has the parameter CLK_HZ
+    bool saysIdle = false;       // the module has the output idle_o
+    bool hasGate = false;        // its clock stands still while it is idle, on the board, too
+    bool isProbe = false;        // it has cycles_i and signals_i
+    std::vector<Signal> signals; // of a probe, from bit 0 of signals_i on
     // Without a servant of its own it has the one of sw/hw/registers.
     bool isGeneric() const { return servantType.empty(); }
 };
@@ -50,6 +58,12 @@ struct Chip {
 // cores' *.regs.json by folder. Throws for a line that is wrong, with its number.
 Chip readCores(const std::string& list, const nlohmann::json& base,
                const std::map<std::string, nlohmann::json>& descriptions);
+
+// 64-bit words of a probe's change: 1, 2 or 4, for 31, 95 or 223 bits (ip/probe/probe.v).
+unsigned changeWords(const Core& probe);
+// Hash of its signals' names and widths.
+uint32_t namesOf(const Core& probe);
+nlohmann::ordered_json probesOf(const Chip& chip); // what each probe records, for the ground
 
 nlohmann::ordered_json mapOf(const Chip& chip, const nlohmann::ordered_json& base);
 std::string pinTableOf(const Chip& chip);    // pins by name, for the simulator
@@ -67,6 +81,10 @@ uint32_t contractOf(const nlohmann::json& description);
 std::string verilogOf(const Chip& chip, const std::vector<Slot>& slots);   // instances, for soc.v
 std::string instancesOf(const Chip& chip, const std::vector<Slot>& slots); // for the firmware
 std::string svdOf(const std::vector<Slot>& slots);
+std::string rdlOf(const std::vector<Slot>& slots);       // SystemRDL
+std::string ipxactOf(const std::vector<Slot>& slots);    // IP-XACT
+std::string escaped(const std::string& text);            // as text of XML and HTML
+nlohmann::json registersOf(const nlohmann::json& block); // with the three that every slot has
 std::string htmlOf(const std::vector<Slot>& slots);
 
 #endif

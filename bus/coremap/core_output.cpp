@@ -22,8 +22,62 @@ std::string bits(unsigned lsb, unsigned width) {
     return width == 1 ? fmt::format("[{}]", lsb) : fmt::format("[{}:{}]", lsb + width - 1, lsb);
 }
 
+uint32_t hashOf(const std::string& text) { // FNV-1a
+    uint32_t hash = 0x811C9DC5;
+    for (char c : text)
+        hash = (hash ^ static_cast<unsigned char>(c)) * 0x01000193;
+    return hash;
+}
+
+std::string declared(unsigned width, const std::string& name) {
+    return fmt::format("wire {}{}", width == 1 ? "" : fmt::format("[{}:0] ", width - 1), name);
+}
+
+// Signals of probes by hierarchical names. Yosys joins a wire of such a name with the signal when
+// it flattens the chip.
+std::string probed(const Chip& chip) {
+    const Signal count{"u_system_slot.cycles", 64};
+    std::string yosys, names[2], ends;
+    std::set<std::string> joined;
+    for (const Core& c : chip.cores) {
+        if (!c.isProbe)
+            continue;
+        unsigned bits = 0;
+        std::string list;
+        auto add = [&](const Signal& signal, unsigned width, const std::string& wire) {
+            if (joined.insert(signal.name).second)
+                yosys += fmt::format("    (* hierconn *) {} ;\n",
+                                     declared(signal.width, "\\" + signal.name));
+            std::string part = width < signal.width ? fmt::format("[{}:0]", width - 1) : "";
+            names[0] +=
+                fmt::format("    {} = \\{} {};\n", declared(width, wire), signal.name, part);
+            names[1] += fmt::format("    {} = {}{};\n", declared(width, wire), signal.name, part);
+        };
+        for (size_t i = 0; i < c.signals.size(); ++i) {
+            std::string wire = fmt::format("{}_{}", c.name, i);
+            add(c.signals[i], c.signals[i].width, wire);
+            list = wire + (list.empty() ? "" : ", ") + list;
+            bits += c.signals[i].width;
+        }
+        add(count, 32, "cycles_" + c.name);
+        unsigned width = 64 * changeWords(c) - 33;
+        ends += fmt::format("    {} = {{{}{}}};\n", declared(width, "signals_" + c.name),
+                            bits < width ? fmt::format("{}'d0, ", width - bits) : "", list);
+    }
+    if (ends.empty())
+        return "";
+    return "    // What probes record.\n`ifdef YOSYS\n" + yosys + names[0] + "`else\n" + names[1] +
+           "`endif\n" + ends + "\n";
+}
+
 std::string instance(const Core& c) {
-    std::string s = fmt::format("    // {}: ip/{}\n", c.name, c.folder), pins;
+    std::string s = fmt::format("    // {}: ip/{}\n", c.name, c.folder), pins, parameters;
+    if (c.hasClock)
+        parameters = ".CLK_HZ(CLK_HZ)";
+    if (c.isProbe) {
+        parameters += fmt::format(", .WORDS({}), .NAMES(32'h{:08X})", changeWords(c), namesOf(c));
+        pins = fmt::format(",\n        .cycles_i(cycles_{0}), .signals_i(signals_{0})", c.name);
+    }
     for (const Pin& p : c.pins) {
         std::string at;
         if (!p.source.empty()) {
@@ -47,7 +101,7 @@ std::string instance(const Core& c) {
     }
     s += fmt::format(
         "    {0} {3}u_{1} (\n        .clk_i({4}), .rst_i(rst), `SLOT({2}), .irq_o(slot_irq[{2}])",
-        c.folder, c.name, c.slot, c.hasClock ? "#(.CLK_HZ(CLK_HZ)) " : "",
+        c.folder, c.name, c.slot, parameters.empty() ? "" : "#(" + parameters + ") ",
         c.saysIdle ? "clk_" + c.name : "clk_i");
     if (c.port >= 0)
         s += fmt::format(", `NPI({})", c.port);
@@ -107,11 +161,37 @@ uint32_t contractOf(const json& description) {
         lines.push_back(
             fmt::format("{} {}", e.at("name").get<std::string>(), e.at("bit").get<unsigned>()));
     std::sort(lines.begin(), lines.end()); // the order in the file does not matter
-    uint32_t hash = 0x811C9DC5;            // FNV-1a
+    std::string all;
     for (const std::string& line : lines)
-        for (char c : line + "\n")
-            hash = (hash ^ static_cast<unsigned char>(c)) * 0x01000193;
-    return hash;
+        all += line + "\n";
+    return hashOf(all);
+}
+
+unsigned changeWords(const Core& probe) {
+    unsigned bits = 0;
+    for (const Signal& signal : probe.signals)
+        bits += signal.width;
+    return bits <= 31 ? 1 : bits <= 95 ? 2 : 4;
+}
+
+uint32_t namesOf(const Core& probe) {
+    std::string all;
+    for (const Signal& signal : probe.signals)
+        all += fmt::format("{}:{}\n", signal.name, signal.width);
+    return hashOf(all);
+}
+
+ordered_json probesOf(const Chip& chip) {
+    ordered_json all = ordered_json::object();
+    for (const Core& c : chip.cores)
+        if (c.isProbe) {
+            ordered_json& probe = all[c.name];
+            probe["identity"] = c.identity;
+            probe["names"] = namesOf(c);
+            for (const Signal& signal : c.signals)
+                probe["signals"].push_back({signal.name, signal.width});
+        }
+    return all;
 }
 
 std::string verilogOf(const Chip& chip, const std::vector<Slot>& slots) {
@@ -127,9 +207,8 @@ std::string verilogOf(const Chip& chip, const std::vector<Slot>& slots) {
     for (const Core& c : chip.cores)
         for (const Pin& p : c.pins)
             if (p.isOut())
-                s += fmt::format("    wire {}pin_{}_{};\n",
-                                 p.width == 1 ? "" : fmt::format("[{}:0] ", p.width - 1), c.name,
-                                 p.name);
+                s += fmt::format("    {};\n", declared(p.width, "pin_" + c.name + "_" + p.name));
+    s += probed(chip);
     for (const Core& c : chip.cores)
         s += instance(c) + "\n";
     std::set<unsigned> used;

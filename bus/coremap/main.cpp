@@ -2,7 +2,7 @@
 //
 // coremap: the chip's cores, a line each in ip/cores.list, as map.regs.json (slots, memory ports,
 // buffers in DDR3, pins), soc_cores.vh (their instances, for soc.v), soc_cores.c (their servants),
-// soc_pins.h (for the simulator) and core_pins.ucf (for ISE).
+// soc_pins.h (for the simulator), core_pins.ucf (for ISE) and probes.json (what probes record).
 
 #include "core_list.h"
 #include <CLI/CLI.hpp>
@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
     std::vector<std::string> cores, blocks, clocked, idle;
     app.add_option("list", list,
                    "a core a line: folder [name=] [identity=] [slot=] [memory=] [gate=on] "
+                   "[signals=u_fir.count:9] "
                    "[input=core.output] [pin=@places]")
         ->required();
     app.add_option("--base", base, "the platform's map.regs.json")->required();
@@ -73,6 +74,7 @@ int main(int argc, char** argv) {
             c.constraints = constraints[c.folder];
         }
         save(outputDir + "/map.regs.json", mapOf(chip, platform).dump(2) + "\n");
+        save(outputDir + "/probes.json", probesOf(chip).dump() + "\n");
         save(outputDir + "/soc_pins.h", pinTableOf(chip));
         save(outputDir + "/core_pins.ucf", constraintsOf(chip));
         std::vector<Slot> slots;
@@ -92,6 +94,8 @@ int main(int argc, char** argv) {
         save(outputDir + "/soc_cores.vh", verilogOf(chip, slots));
         save(outputDir + "/soc_cores.c", instancesOf(chip, slots));
         save(outputDir + "/icesoc.svd", svdOf(slots));
+        save(outputDir + "/icesoc.rdl", rdlOf(slots));
+        save(outputDir + "/icesoc.ipxact.xml", ipxactOf(slots));
         save(outputDir + "/registers.html", htmlOf(slots));
     } catch (const std::exception& e) {
         std::cerr << list << ":" << e.what() << "\n";

@@ -35,6 +35,10 @@ for program in xst ngdbuild map par trce bitgen; do
         exit 2
     }
 done
+[ -z "$whole" ] || ! grep -q hierconn "$soc"/*.vh || {
+    echo "build: the chip has a probe, whose signals are hierarchical names: XST knows none; leave --xst out" >&2
+    exit 2
+}
 mkdir -p "$output"
 "$source/merge_ucf.py" "$mig/par/mig.ucf" "$source/chip.ucf" "$4" "$5" >"$output/all.ucf"
 soc=$(cd "$(dirname "$soc")" && pwd)/$(basename "$soc") mig=$(cd "$mig" && pwd)

@@ -59,8 +59,8 @@ def whole(path):
 class Log:
     """One line a call, for people, and rows for the report."""
 
-    def __init__(self, air, out):
-        self.air = air
+    def __init__(self, air, out, build):
+        self.air, self.out, self.build = air, out, build  # folders: of the results, of the build
         self.rows = []
         for name in RESULTS:  # of the mission before; a link is removed, and what it leads to stays
             with contextlib.suppress(FileNotFoundError):
@@ -260,7 +260,7 @@ def explain(communicator, args, failure):
 def fly(args, communicator):
     import Autopilot  # made by loadSlice
     air = Air(args.status)
-    log = Log(air, args.out)
+    log = Log(air, args.out, os.path.dirname(os.path.abspath(args.plugin)))
     station = make_station(Autopilot, log)
     adapter = communicator.createObjectAdapter("Station")
     adapter.add(station, communicator.stringToIdentity("station"))
@@ -301,8 +301,10 @@ def fly(args, communicator):
     if args.reference:
         check_against_reference(args, result)
         log.say("the result equals the C++ reference, bit by bit")
-    for part in parts:
-        part.fly(log, proxy, "%d corners" % result.found)
+    # A part may give back what is to be done after all of them.
+    ends = [part.fly(log, proxy, "%d corners" % result.found) for part in parts]
+    for end in filter(None, ends):
+        end()
     draw(args.frame, result, os.path.join(args.out, "after.png"))
     report(args, log, result, station, air)
 

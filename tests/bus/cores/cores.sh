@@ -15,16 +15,16 @@ chip() { # name, the list: the chip in $work/name
     printf '%b' "$2" >"$out/cores.list"
     "$coremap" "$out/cores.list" --base "$source/bus/map.regs.json" --core "led=$data/led.regs.json" \
         --core "adder=$data/adder.regs.json" --core "mover=$data/mover.regs.json" \
-        --clocked mover --idle adder --block "0=system=$source/hdl/system/system.regs.json" --output-dir "$out" 2>"$out/messages"
+        --core "probe=$source/ip/probe/probe.regs.json" --clocked mover --clocked probe --idle adder --block "0=system=$source/hdl/system/system.regs.json" --output-dir "$out" 2>"$out/messages"
 }
 accepted() {
     chip "$@" || { cat "$out/messages" && fail "refused: $2"; }
     for regs in "$out/map.regs.json" "$data"/*.regs.json; do "$regmap" "$regs" --output-dir "$out"; done
     # shellcheck disable=SC2086 # a list of folders
-    verilator --lint-only -Wall -I"$out" $(for f in "$out" "$data" "$source"/bus "$source"/hdl/* "$gen"; do [ ! -d "$f" ] || echo "-y $f"; done) \
+    verilator --lint-only -Wall -I"$out" $(for f in "$out" "$data" "$source"/bus "$source"/hdl/* "$source/ip/probe" "$gen"; do [ ! -d "$f" ] || echo "-y $f"; done) \
         -I"$gen" --top-module soc "$source/hdl/soc.v"
     gcc -std=c90 -pedantic -Wall -Wextra -Wmissing-prototypes -Werror -fsyntax-only -I"$out" -I"$data" -I"$source/sw/hw" \
-        -I"$source/sw/hw/registers" -I"$gen/slice/Registers" -I"$source/sw/icec" -I"$source/sw/base" "$out/soc_cores.c"
+        -I"$source/sw/hw/registers" -I"$gen/slice/Registers" -I"$source/ip/probe" -I"$gen/slice/Probe" -I"$source/sw/icec" -I"$source/sw/base" "$out/soc_cores.c"
 }
 refused() { # words of the message, the list
     ! chip refused "$2" || fail "accepted: $2"
@@ -91,6 +91,19 @@ grep -q 'core_gate #(.GATED(1)) u_gate_adder .*slot_valid\[2\].*clk_adder' "$out
 grep -q 'core_gate #(.GATED(GATES)) u_gate_other' "$out/soc_cores.vh" || fail 'a core that asked for no gate has one on the board'
 grep -q '^NET "u_soc/u_gate_adder.g_gate.run" MAXDELAY' "$out/core_pins.ucf" || fail 'the way to the gate is not constrained'
 ! grep -q u_gate_led "$out/soc_cores.vh" || fail 'a core that does not say when it is idle has a gate'
+# A probe has its signals by name, at any depth, in Verilator and, flattened, in Yosys; the ground is told which they are.
+accepted probe 'adder\nprobe signals=u_adder.u_registers.u_wrapper.mask,u_modem.u_timer.clocks:17\nprobe name=other signals=u_adder.irq_o\n'
+yosys -q -p "verilog_defaults -add -I$out -I$gen $(for f in bus hdl/fsmc hdl/ddr hdl/modem hdl/system hdl/cdc; do printf -- '-I%s ' "$source/$f"; done)
+    read_verilog $source/hdl/soc.v
+    hierarchy -top soc $(for f in "$out" "$data" "$source/ip/probe" "$gen" "$source"/bus "$source"/hdl/*; do [ ! -d "$f" ] || printf -- '-libdir %s ' "$f"; done)
+    proc; flatten; opt_clean; check -assert; select -assert-count 1 w:u_adder.u_registers.u_wrapper.mask" >"$work/yosys" 2>&1 ||
+    { cat "$work/yosys" && fail 'Yosys does not join a signal with the probe'; }
+hash=$(sed -n 's/.*"names":\([0-9]*\),"signals":\[\["u_adder.irq_o".*/\1/p' "$out/probes.json")
+grep -q "WORDS(1), .NAMES(32'h$(printf %08X "$hash"))) u_other" "$out/soc_cores.vh" || fail 'chip and ground have other hashes of what a probe records'
+refused "1: error: 'probe' records nothing" 'probe\n'
+refused "signals: 'u_a.b:0' is no name and width" 'probe signals=u_a.b:0\n'
+refused 'signals: 224 bits; a probe has 223' 'probe signals=a:200,b:24\n'
+refused "'led' has no input pin 'signals'" 'led signals=a\n'
 accepted hole 'led slot=63\n'
 is SLOT_COUNT 0x40
 

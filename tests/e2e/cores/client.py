@@ -1,22 +1,26 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Calls new cores in a UAV's FPGA by radio: client.py DEVICE GUARD STATUS PLUGIN File.ice ..."""
+"""Calls new cores in a UAV's FPGA by radio: client.py DEVICE GUARD STATUS PLUGIN FOLDER File.ice ..."""
 
 import os
 import sys
 import threading
+import types
 
 import Ice
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../sw/ground/clients"))
+TREE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../..")
+sys.path[:0] = [os.path.join(TREE, "sw/ground/clients"), os.path.join(TREE, "ip/probe")]
 import mission  # noqa: E402
+import probe  # noqa: E402
 
-device, guard, status, plugin, *files = sys.argv[1:]
+device, guard, status, plugin, folder, *files = sys.argv[1:]
 for file in files:
     Ice.loadSlice("", [file])
 import Cores  # noqa: E402
 import Demo  # noqa: E402
 import Hw  # noqa: E402
+import Probes  # noqa: E402
 
 
 def expect(what, value, wanted):
@@ -53,6 +57,23 @@ data.properties.setProperty("XBeeAT.Guard", guard)
 data.properties.setProperty("Ground.Endpoints", "xbee-at -d %s" % device)
 with Ice.initialize(data) as ic:
     where = ":xbee-at -d %s -a 0x0001 -t 300000" % device
+    # A probe records what goes to the first core and what comes from it; cores.sh compares that with the simulator's trace.
+    said = []
+    signals = probe.Signals(os.path.join(folder, "build/gen/probes.json"), "probe")
+    prober = Probes.ProbePrx.checkedCast(ic.stringToProxy("probe" + where))
+    settings = types.SimpleNamespace(trigger="u_sample_verilog.bus_valid_i=1", level=False, before=4, after=150, wait=600,
+                                     out=os.path.join(folder, "probe.vcd"))
+    recording = threading.Thread(target=probe.capture, args=(prober, signals, settings, said.append))
+    recording.start()
+    while not said and recording.is_alive():
+        threading.Event().wait(0.01)
+    core = Cores.SampleVerilogPrx.uncheckedCast(ic.stringToProxy("sample_verilog" + where))
+    while recording.is_alive():  # calls close behind each other: the trace is of few clocks
+        calls = [call for _ in range(3) for call in (core.setOffsetAsync(7), core.addAsync(42))]
+        expect("add, recorded", [call.result() for call in calls], 3 * [None, 49])
+    print(said)
+    signals.names ^= 1
+    expect("another chip's names", "probes.json" in str(fails(probe.Failed, signals.check, prober.getState())), True)
     for identity, prx in (("sample_verilog", Cores.SampleVerilogPrx), ("newcomer", Cores.SampleVhdlPrx)):
         core = prx.checkedCast(ic.stringToProxy(identity + where))
         core.setOffset(-100)
@@ -79,7 +100,7 @@ with Ice.initialize(data) as ic:
     chip = Hw.ChipPrx.checkedCast(ic.stringToProxy("chip" + where))
     contracts = chip.contracts()
     expect("blocks", [c.block for c in contracts],
-           ["system", "modem", "sample_verilog", "scaler", "servo", "port", "my_requests", "my_lamps", "sample_vhdl"])
+           ["system", "modem", "sample_verilog", "scaler", "servo", "port", "my_requests", "my_lamps", "probe", "sample_vhdl"])
     expect("contracts", mission.differences(chip), [])
 
     class Other:

@@ -13,6 +13,7 @@ mkdir -p "$work"
     echo 'my_port name=port'
     echo my_requests
     echo my_lamps
+    echo 'probe signals=u_sample_verilog.bus_valid_i,u_sample_verilog.bus_write_i,u_sample_verilog.bus_addr_i:4,u_sample_verilog.bus_wdata_i:32,u_sample_verilog.bus_ready_o,u_sample_verilog.bus_rdata_o:32'
 } >"$work/cores.list"
 samples=$build/tests/ip/new
 foreign=$build/tests/ip/new_foreign
@@ -23,8 +24,8 @@ rm -rf "$work/my_lamps"
 GHDL=$build/ghdl/ghdl "$source/ip/new_foreign.py" my_lamps lamps own "$work/my_lamps" read=rd write=wr address=a wdata=d rdata=q \
     "$source/tests/ip/new_foreign/lamps.vhd" >"$work/log" || { cat "$work/log" && exit 1; }
 [ -e "$work/build/ghdl" ] || ln -s "$build/ghdl" "$work/build/ghdl"
-# CLK_HZ: the servo core counts in every clock, so that none is skipped.
-cmake -S "$source" -B "$work/build" -G Ninja -DCLK_HZ=2000000 "-DCORES=$work/cores.list" "-DCORE_FOLDERS=$folders" \
+# CLK_HZ: the servo core counts in every clock, so that none is skipped. TRACE: for what the probe is compared with.
+cmake -S "$source" -B "$work/build" -G Ninja -DTRACE=ON -DCLK_HZ=2000000 "-DCORES=$work/cores.list" "-DCORE_FOLDERS=$folders" \
     "-DROOMS=bus;slice;ip;sw;hdl;testbench" >"$work/build.log" 2>&1 &&
     ninja -C "$work/build" icesoc-sim firmware_uav test_ip_servo test_ip_my_lamps >>"$work/build.log" 2>&1 || { tail -40 "$work/build.log" && exit 1; }
 ctest --test-dir "$work/build" --output-on-failure --no-tests=error -R '^test_ip_(servo|my_lamps)[.]' >"$work/log" 2>&1 || { cat "$work/log" && exit 1; }
@@ -33,11 +34,23 @@ echo '1001 servo.fault_i 0' >>"$work/pins"
 echo '500 port.port_in_i 0x83' >>"$work/pins"
 "$work/build/testbench/sim/icesoc-sim" --pins "$work/pins" --size 96x64 --image /usr/share/xplanet/images/earth.jpg --out "$work" --seed "${SEED:-1}" --guard 20 -- \
     /usr/bin/python3 "$source/tests/e2e/cores/client.py" '{device}' '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" \
-    "$samples/sample_verilog/sample_verilog.ice" "$source/tests/slice/hardware/golden/scaler.ice" "$source/tests/e2e/cores/servo/servo.ice" "$samples/sample_vhdl/sample_vhdl.ice" \
-    "$source/sw/hw/registers/Registers.ice" \
+    "$work" "$samples/sample_verilog/sample_verilog.ice" "$source/tests/slice/hardware/golden/scaler.ice" "$source/tests/e2e/cores/servo/servo.ice" "$samples/sample_vhdl/sample_vhdl.ice" \
+    "$source/sw/hw/registers/Registers.ice" "$source/ip/probe/Probe.ice" \
     >"$work/log" 2>&1 || { cat "$work/log" && exit 1; }
 # Pulses of 1.5 ms, whatever the clock; the fault pin ended one of them or none.
 awk '$2 == "servo.pwm_o" && $3 == 4 { up = $1 } $2 == "servo.pwm_o" && $3 == 0 && up { n += $1 - up > 1.499 && $1 - up < 1.501; all++; up = 0 }
      END { exit !(n > 10 && all - n <= 1) }' "$work/pins.log" || { tail "$work/pins.log" && echo 'the pulses are not 1.5 ms long' && exit 1; }
 grep -q "'servo' moves in nearly every clock" "$work/log" || { cat "$work/log" && echo 'who keeps the chip from being quiet is not said' && exit 1; }
 grep -q 'cores: all as expected' "$work/log" || { cat "$work/log" && exit 1; }
+
+# What the probe captured by radio, read by GTKWave's tools, is what the simulator traces when it flies this flight again.
+vcd2fst "$work/probe.vcd" "$work/probe.fst" >"$work/log"
+fst2vcd "$work/probe.fst" >"$work/captured.vcd"
+span=$(awk '/^#/ { t = substr($1, 2) / 1e9; if (!n++) first = t } END { printf "--from %.6f --to %.6f", first - 2e-5, t + 2e-5 }' "$work/probe.vcd")
+# shellcheck disable=SC2086 # options
+"$work/build/testbench/sim/icesoc-sim" --replay "$work" --out "$work/again" --wave "$work/trace.fst" $span >"$work/log" 2>&1 || { cat "$work/log" && exit 1; }
+fst2vcd "$work/trace.fst" >"$work/trace.vcd"
+"$source/tests/e2e/cores/same.py" "$work/captured.vcd" "$work/trace.vcd" 500
+# Its inputs, given to the core alone, bring forth its outputs.
+"$source/ip/probe/replay.py" "$work/probe.vcd" --scope u_sample_verilog --top sample_verilog --out "$work/replay" -I "$work/build/gen" -I "$source/bus" \
+    "$samples/sample_verilog/sample_verilog.v" "$work/build/gen/sample_verilog_wrapper.v"

@@ -1,0 +1,251 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""rdl: makes register descriptions (*.regs.json) of SystemRDL 2.0: make from-rdl RDL=spi.rdl OUT=folder.
+
+    rdl.py spi.rdl FOLDER [--first 3]
+
+Reads a flat subset: addrmap, reg and field, named or not, defaults, addresses, resets; enums and properties of others are passed over. Register n
+of an addrmap gets word FIRST + n, behind the three words that every slot has; one that begins with ID, EVENT and MASK, as
+those of icesoc.rdl, has them already. What has no words of its own (regfile, mem, arrays, parameters) is an error.
+"""
+import argparse
+import json
+import os
+import re
+import sys
+
+TOKEN = re.compile(r'(?P<string>"(?:[^"\\]|\\.)*")|(?P<number>\d+\'[hbdoHBDO][\da-fA-F_]+|0[xX][\da-fA-F_]+|\d+)'
+                   r'|(?P<name>\\?[A-Za-z_]\w*)|(?P<sign>->|[+%]=|[^\s])')
+ACCESS = {"r": "ro", "w": "ws", "rw": "rw", "wr": "rw", "rw1": "rw", "w1": "ws"}
+
+
+class Wrong(Exception):
+    pass
+
+
+def number(text):
+    if "'" in text:
+        digits = text.split("'")[1]
+        return int(digits[1:].replace("_", ""), {"h": 16, "b": 2, "d": 10, "o": 8}[digits[0].lower()])
+    return int(text.replace("_", ""), 0)
+
+
+class Component:
+    def __init__(self, kind, parent):
+        self.kind, self.parent, self.properties, self.defaults, self.types, self.children = kind, parent, {}, {}, {}, []
+
+    def find_type(self, name):
+        return self.types.get(name) or (self.parent and self.parent.find_type(name))
+
+    def default(self, name):
+        return self.defaults[name] if name in self.defaults else self.parent and self.parent.default(name)
+
+    def get(self, name, otherwise=None):
+        if name in self.properties:
+            return self.properties[name]
+        value = self.parent and self.parent.default(name)
+        return otherwise if value is None else value
+
+
+class Reader:
+    """A file as a tree: each component's children are (instance's name, msb, lsb, reset, address, component)."""
+
+    def __init__(self, path):
+        with open(path) as f:
+            text = f.read()
+        # Comments keep their lines; those within strings are text.
+        text = re.sub(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/',
+                      lambda m: m[0] if m[0][0] == '"' else re.sub(r"[^\n]", " ", m[0]), text, flags=re.S)
+        self.tokens = [(m.lastgroup, m[0], text.count("\n", 0, m.start()) + 1) for m in TOKEN.finditer(text)]
+        self.at, self.last = 0, text.count("\n") + 1
+
+    def peek(self, ahead=0):
+        return self.tokens[self.at + ahead][1] if self.at + ahead < len(self.tokens) else ""
+
+    def fail(self, text):
+        line = self.tokens[self.at][2] if self.at < len(self.tokens) else self.last
+        raise Wrong("%d: error: %s" % (line, text))
+
+    def take(self, wanted=None):
+        token = self.peek()
+        if not token or (wanted and token != wanted):
+            self.fail("'%s' comes where '%s' is to come" % (token or "the end", wanted or "more"))
+        self.at += 1
+        return token
+
+    def take_number(self):
+        if self.at >= len(self.tokens) or self.tokens[self.at][0] != "number":
+            self.fail("'%s' is no number; expressions and parameters are not of the flat subset" % self.peek())
+        return number(self.take())
+
+    def file(self):
+        root = Component("root", None)
+        self.body(root, "")
+        return root
+
+    def body(self, parent, end):
+        while self.peek() != end:
+            word = self.take()
+            if word in ("addrmap", "reg", "field"):
+                component = Component(word, parent)
+                if self.peek() != "{":
+                    parent.types[self.take()] = component
+                if self.peek() == "#":
+                    self.fail("parameters are not of the flat subset")
+                self.take("{")
+                self.body(component, "}")
+                self.take("}")
+                if self.peek() in ("external", "internal"):
+                    self.take()
+                if self.peek() != ";":
+                    self.instances(parent, component)
+                elif word == "addrmap" and parent.kind == "root":
+                    parent.children.append(([n for n, c in parent.types.items() if c is component][0], 0, 0, None, 0, component))
+            elif word in ("enum", "property"):
+                while self.take() != "}":
+                    pass
+            elif word == "default":
+                self.property(parent.defaults, self.take())
+            elif word in ("regfile", "mem", "signal", "struct", "constraint"):
+                self.at -= 1
+                self.fail("%s is not of the flat subset: addrmap, reg, field" % word)
+            elif word in ("external", "internal"):
+                continue
+            elif parent.find_type(word) and self.peek() not in ("=", ";"):
+                self.instances(parent, parent.find_type(word))
+            else:
+                self.property(parent.properties, word)
+            self.take(";")
+
+    def property(self, where, name):
+        value = True
+        if self.peek() == "=":
+            self.take()
+            value = []
+            while self.peek() not in (";", ""):
+                value.append(self.take())
+            value = value[0] if len(value) == 1 else " ".join(value)
+        where[name.split()[0]] = value
+
+    def instances(self, parent, component):
+        while True:
+            name, msb, lsb, reset, address = self.take().lstrip("\\"), None, None, None, None
+            if self.peek() == "[":
+                if component.kind != "field":
+                    self.fail("arrays are not of the flat subset: name each register")
+                self.take()
+                msb, lsb = self.take_number(), 0
+                if self.peek() == ":":
+                    self.take()
+                    lsb = self.take_number()
+                else:
+                    msb, lsb = msb - 1, None  # a width: from the next free bit on
+                self.take("]")
+            if self.peek() == "=":
+                self.take()
+                reset = self.take_number()
+            if self.peek() == "@":
+                self.take()
+                address = self.take_number()
+            if self.peek() in ("+=", "%="):
+                self.fail("strides are not of the flat subset: give each register its address")
+            parent.children.append((name, msb, lsb, reset, address, component))
+            if self.peek() != ",":
+                return
+            self.take()
+
+
+def text_of(component):
+    text = component.get("desc") or component.get("name") or ""
+    return re.sub(r"\s+", " ", re.sub(r"\\(.)", r"\1", str(text).strip('"'))).strip()
+
+
+def register_of(name, reg, word):
+    """A register of a description, and the resets of its fields."""
+    fields, resets, accesses, used, next_bit = [], {}, set(), 0, 0
+    overlap = False
+    for field_name, msb, lsb, reset, _, field in reg.children:
+        if lsb is None:  # a width, or one bit
+            lsb = next_bit
+            msb = lsb + (msb or 0)
+        if msb > 31 or msb < lsb:
+            raise Wrong("%s.%s is at bits %d to %d: a word has bits 31 to 0" % (name, field_name, msb, lsb))
+        bits = (1 << msb - lsb + 1) - 1 << lsb
+        overlap |= bool(used & bits)
+        used, next_bit = used | bits, msb + 1
+        access = ACCESS.get(field.get("sw", "rw"), "rw")
+        if access == "rw" and (field.get("onwrite") == "woclr" or field.get("woclr")):
+            access = "w1c"
+        accesses.add(access)
+        resets[field_name] = reset
+        fields.append({"name": field_name, "lsb": lsb, "width": msb - lsb + 1, "doc": text_of(field)})
+    if not fields:
+        raise Wrong("%s has no field" % name)
+    access = accesses.pop() if len(accesses) == 1 else "rw"
+    register = {"word": word, "name": name, "access": access, "doc": text_of(reg)}
+    if overlap or (len(fields) == 1 and fields[0]["name"] == "WORD" and fields[0]["lsb"] == 0):
+        if used != 0xFFFFFFFF:
+            register["width"] = used.bit_length()
+    else:
+        register["fields"] = sorted(fields, key=lambda f: f["lsb"])
+    return register, resets
+
+
+def block_of(name, component, first):
+    bytes_of, next_address = int(component.default("regwidth") or 32) // 8, 0
+    registers, resets = [], {}
+    for reg_name, _, _, _, address, reg in component.children:
+        bytes_of = int(reg.get("regwidth", 8 * bytes_of)) // 8
+        address = next_address if address is None else address
+        next_address = address + bytes_of
+        register, found = register_of(reg_name, reg, address // bytes_of)
+        registers.append(register)
+        resets[reg_name] = found
+    block = {"block": name.lower(), "doc": text_of(component)}
+    letters = (re.sub(r"[^A-Za-z]", "", name) + "XX")[:2].upper()
+    if "memory_bytes" in component.properties:
+        block.update(memory_port=True, memory_bytes=int(component.get("memory_bytes")))
+    block["type"], block["version"], events = "0x%04X" % int.from_bytes(letters.encode(), "big"), "0x0100", []
+    if [r["name"] for r in registers[:3]] == ["ID", "EVENT", "MASK"]:
+        for key, field in (("type", "TYPE"), ("version", "VERSION")):
+            if resets["ID"].get(field) is not None:
+                block[key] = "0x%04X" % resets["ID"][field]
+        events = [{"name": f["name"], "bit": f["lsb"], "doc": f["doc"]} for f in registers[1].get("fields", [])]
+        registers = registers[3:]
+    else:
+        for register in registers:
+            register["word"] += first
+    for register in registers:
+        if register["word"] > 15:
+            raise Wrong("%s would be word %d of its slot, which has 16" % (register["name"], register["word"]))
+    return dict(block, registers=registers, **({"events": events} if events else {}))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("file", help="SystemRDL")
+    parser.add_argument("folder", help="where <block>.regs.json go")
+    parser.add_argument("--first", type=int, default=3, help="word of the first register (3)")
+    args = parser.parse_args()
+    written = []
+    try:
+        root = Reader(args.file).file()
+        maps = [(n, c) for n, _, _, _, _, c in root.children if c.kind == "addrmap"]
+        inner = [(n, c) for _, top in maps for n, _, _, _, _, c in top.children if c.kind == "addrmap"]
+        blocks = [block_of(n, c, args.first) for n, c in inner or maps]
+        if not blocks:
+            raise Wrong("1: error: there is no addrmap in it")
+    except (Wrong, OSError, UnicodeDecodeError) as e:
+        text = str(e)
+        sys.exit("%s:%s%s" % (args.file, "" if text[0].isdigit() else " error: ", text))
+    os.makedirs(args.folder, exist_ok=True)
+    for block in blocks:
+        written.append(os.path.join(args.folder, block["block"] + ".regs.json"))
+        with open(written[-1], "w") as f:
+            json.dump(block, f, indent=2)
+            f.write("\n")
+    print("\n".join(written))
+
+
+if __name__ == "__main__":
+    main()

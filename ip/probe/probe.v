@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+//
+// probe: records signals of the chip into a ring in DDR3, a change at a time, around a trigger (ip/probe/README.md).
+//
+// A change is the value of all signals with the clock from which on they had it; nothing is stored while nothing
+// moves. It is WORDS words of 64 bits: word 0 has in bits 31..0 the low bits of cycles_i, two clocks after that
+// clock, in bit 32 that changes before it were lost, and above them signals_i from bit 0 on, which goes on in word 1.
+// A FIFO of 512 changes stands between the signals, which may change in every clock, and memory.
+
+`default_nettype none
+
+module probe #(
+    parameter        WORDS  = 2,         // of a change: 1, 2 or 4, for 31, 95 or 223 signals
+    parameter        CLK_HZ = 100000000, // Hz
+    parameter [31:0] NAMES  = 32'd0      // hash of the signals' names and widths
+) (
+    input  wire                 clk_i,
+    input  wire                 rst_i,
+    // register bus
+    input  wire                 bus_valid_i,
+    input  wire                 bus_write_i,
+    input  wire [3:0]           bus_addr_i,
+    input  wire [31:0]          bus_wdata_i,
+    output wire                 bus_ready_o,
+    output wire [31:0]          bus_rdata_o,
+    output wire                 bus_error_o,
+    output wire                 irq_o,
+    // memory port
+    output wire [31:0]          npi_addr_o,
+    output wire                 npi_addr_req_o,
+    input  wire                 npi_addr_ack_i,
+    output wire                 npi_rnw_o,
+    output wire [3:0]           npi_size_o,
+    output wire                 npi_rmw_o,
+    output wire [63:0]          npi_wr_data_o,
+    output wire [7:0]           npi_wr_be_o,
+    output wire                 npi_wr_push_o,
+    input  wire                 npi_wr_empty_i,
+    input  wire                 npi_wr_almost_full_i,
+    output wire                 npi_wr_flush_o,
+    input  wire [63:0]          npi_rd_data_i,
+    input  wire [3:0]           npi_rd_word_i,
+    output wire                 npi_rd_pop_o,
+    input  wire                 npi_rd_empty_i,
+    output wire                 npi_rd_flush_o,
+    input  wire                 npi_init_done_i,
+    // what is recorded
+    input  wire [31:0]          cycles_i,  // the low bits of the chip's count of clocks
+    input  wire [64*WORDS-34:0] signals_i
+);
+    `include "probe_regs.vh"
+
+    localparam WIDTH = 64 * WORDS - 33;
+    localparam LOG2_WORDS = WORDS == 1 ? 0 : WORDS == 2 ? 1 : 2;
+    localparam LOG2_RING = PROBE_LOG2_BYTES - 3 - LOG2_WORDS; // changes in the ring
+
+    wire        reg_write, unused_read;
+    wire [3:0]  reg_addr;
+    wire [31:0] reg_wdata;
+    reg  [31:0] reg_rdata;
+    reg  [30:0] mask, wanted;
+    reg  [31:PROBE_LOG2_BYTES] base;
+    reg  [LOG2_RING-1:0] after;
+    reg         edge_only;
+
+    // ---- signals: registers of their own, so that the probe adds a wire to what it looks at, and no logic ----
+    reg [WIDTH-1:0] now, last;
+    reg             changed, fits, fitted; // last is another value than the one before it; it meets the trigger, so did that
+    always @(posedge clk_i) begin
+        now     <= signals_i;
+        last    <= now;
+        changed <= now != last;
+        fits    <= ((now[30:0] ^ wanted) & mask) == 31'd0;
+        fitted  <= fits;
+    end
+
+    // ---- capture ----
+    reg                 running, draining, done, triggered, wrapped;
+    reg                 owed;  // an entry without a change: the first one, and the one after a loss
+    reg                 lost;
+    reg                 half;  // cycles_i[31] at the last entry: one is stored in each half of its turn at least
+    reg [LOG2_RING-1:0] next, trigger, left;
+
+    wire full, empty, pop, room, stream_idle;
+    reg  [2:0] settled; // clocks for which the FIFO has been empty at the end: a word takes two to get there, a flush two to the stream's idle
+    wire act    = reg_write && reg_addr == PROBE_CONTROL;
+    wire arm    = act && reg_wdata[PROBE_CONTROL_ARM_LSB] && !running && !draining;
+    wire ended  = triggered && left == {LOG2_RING{1'b0}};
+    wire entry  = running && !ended && (changed || owed || half != cycles_i[31]);
+    wire push   = entry && !full;
+    wire hit    = running && !triggered && fits && !(edge_only && fitted);
+
+    wire [64*WORDS-1:0] oldest;
+    npi_fifo #(.WIDTH(64 * WORDS), .LOG2(9), .BLOCK(1)) u_fifo (
+        .clk_i(clk_i), .rst_i(rst_i), .push_i(push), .data_i({last, lost, cycles_i}),
+        .pop_i(pop), .data_o(oldest), .empty_o(empty), .full_o(full));
+
+    always @(posedge clk_i) begin
+        if (arm) begin
+            running   <= 1'b1;
+            owed      <= 1'b1;
+            done      <= 1'b0;
+            triggered <= 1'b0;
+            wrapped   <= 1'b0;
+            lost      <= 1'b0;
+            next      <= {LOG2_RING{1'b0}};
+        end
+        if (entry) begin
+            owed <= full;
+            lost <= full;
+        end
+        if (push) begin
+            half    <= cycles_i[31];
+            next    <= next + 1'b1;
+            wrapped <= wrapped || &next;
+            if (triggered)
+                left <= left - 1'b1;
+        end
+        if (hit) begin
+            triggered <= 1'b1;
+            trigger   <= next; // this clock's entry, or where that is lost the one after
+            left      <= after;
+        end
+        if (running && (ended || (act && reg_wdata[PROBE_CONTROL_STOP_LSB]))) begin
+            running  <= 1'b0;
+            draining <= 1'b1;
+        end
+        if (&settled && stream_idle) begin
+            draining <= 1'b0;
+            done     <= 1'b1;
+        end
+        if (rst_i) begin
+            running  <= 1'b0;
+            draining <= 1'b0;
+            done     <= 1'b0;
+        end
+    end
+
+    // ---- to memory ----
+    wire [63:0] word;
+    generate
+        if (WORDS == 1) begin : g_one
+            assign word = oldest;
+            assign pop  = !empty && room;
+        end else begin : g_several
+            reg [LOG2_WORDS-1:0] place;
+            assign word = oldest[64*place +: 64];
+            assign pop  = !empty && room && &place;
+            always @(posedge clk_i)
+                if (rst_i)
+                    place <= {LOG2_WORDS{1'b0}};
+                else if (!empty && room)
+                    place <= place + 1'b1;
+        end
+    endgenerate
+    always @(posedge clk_i)
+        if (!draining || !empty)
+            settled <= 3'd0;
+        else if (!(&settled))
+            settled <= settled + 3'd1;
+
+    wire [31:0] unused_addr;
+    wire        unused_valid, unused_read_idle;
+    wire [63:0] unused_data;
+    npi_stream #(.ADDR_BITS(PROBE_LOG2_BYTES), .WORD_BITS(4)) u_stream ( // its address turns round at the ring's end
+        .clk_i(clk_i), .rst_i(rst_i),
+        .read_start_i(1'b0), .read_base_i({(PROBE_LOG2_BYTES - 6){1'b0}}), .read_words_i(4'd0), .read_stop_i(1'b0),
+        .read_valid_o(unused_valid), .read_data_o(unused_data), .read_take_i(1'b0), .read_idle_o(unused_read_idle),
+        .write_start_i(arm), .write_base_i({(PROBE_LOG2_BYTES - 6){1'b0}}),
+        .write_valid_i(!empty), .write_data_i(word), .write_be_i(8'hFF), .write_ready_o(room),
+        .write_flush_i(settled == 3'd4), .write_idle_o(stream_idle),
+        .npi_addr_o(unused_addr), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
+        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o), .npi_wr_be_o(npi_wr_be_o),
+        .npi_wr_push_o(npi_wr_push_o), .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),
+        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i), .npi_init_done_i(npi_init_done_i));
+    assign npi_addr_o     = {base, unused_addr[PROBE_LOG2_BYTES-1:0]};
+    assign npi_rmw_o      = 1'b0;
+    assign npi_wr_flush_o = 1'b0;
+    assign npi_rd_flush_o = 1'b0;
+
+    // ---- registers ----
+    reg done_before;
+    bus_wrapper #(.ID_VALUE(PROBE_ID_VALUE), .WORDS(16'h1FF8), .EVENTS(1)) u_wrapper (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i), .bus_wdata_i(bus_wdata_i),
+        .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o), .bus_error_o(bus_error_o),
+        .reg_write_o(reg_write), .reg_read_o(unused_read), .reg_addr_o(reg_addr), .reg_wdata_o(reg_wdata),
+        .reg_rdata_i(reg_rdata), .event_i(done && !done_before), .irq_o(irq_o));
+
+    always @* case (reg_addr)
+        PROBE_STATUS:     reg_rdata = {21'd0, WORDS[2:0], 3'd0, wrapped, done, triggered, draining, running};
+        PROBE_NAMES:      reg_rdata = NAMES;
+        PROBE_CLK_HZ:     reg_rdata = CLK_HZ;
+        PROBE_NEXT:       reg_rdata = {{(32 - LOG2_RING){1'b0}}, next};
+        PROBE_TRIGGER_AT: reg_rdata = {{(32 - LOG2_RING){1'b0}}, trigger};
+        default:          reg_rdata = 32'd0;
+    endcase
+
+    always @(posedge clk_i) begin
+        done_before <= done;
+        if (reg_write)
+            case (reg_addr)
+                PROBE_TRIGGER_BITS:  mask   <= reg_wdata[30:0];
+                PROBE_TRIGGER_VALUE: wanted <= reg_wdata[30:0];
+                PROBE_BASE:          base   <= reg_wdata[31:PROBE_LOG2_BYTES];
+                PROBE_AFTER: begin
+                    after     <= reg_wdata[LOG2_RING-1:0];
+                    edge_only <= reg_wdata[PROBE_AFTER_EDGE_LSB];
+                end
+                default: ;
+            endcase
+    end
+
+    wire unused = &{1'b0, unused_read, reg_wdata[31], unused_addr, unused_valid, unused_data,
+                    unused_read_idle, npi_wr_empty_i, npi_rd_word_i, 1'b0};
+`ifdef COVER_POINTS
+    loses_changes: cover property (@(posedge clk_i) entry && full);
+    turns_round: cover property (@(posedge clk_i) push && &next);
+    stopped_untriggered: cover property (@(posedge clk_i) draining && !triggered);
+`endif
+endmodule

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * probe_servant: Probes::Probe (Probe.ice) by the core in a slot; shaped as slice2c's servants are
+ * (docs/hw-mapping.md).
+ */
+#ifndef PROBE_SERVANT_H
+#define PROBE_SERVANT_H
+
+#include "Probe.h"
+#include "hw_core.h"
+
+#define PROBE_READ_BYTES 4096 /* of an answer */
+
+typedef struct Probe_Core {
+    Probes_Probe servant;
+    Hw_Core core;
+    Ice_Byte bytes[PROBE_READ_BYTES];
+} Probe_Core;
+
+Hw_Status Probe_Core_init(Probe_Core* self, U32 slot, U32 memory, const Hw_Port* port,
+                          void* context);
+void Probe_Core_interrupt(Probe_Core* self);
+U32 Probe_Core_poll(Probe_Core* self, U32 nowMs);
+
+#endif

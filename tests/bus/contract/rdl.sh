@@ -1,0 +1,67 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# rdl: source-folder generated-folder work-folder   The chip's SystemRDL gives back the descriptions it was made of, its IP-XACT has
+# the same registers; what SystemRDL the reader takes, and what it says to the rest.
+set -eu
+source=$1 gen=$2 work=$3
+rm -rf "$work"
+mkdir -p "$work/old/ip" "$work/new"
+fail() { echo "rdl: $*" && exit 1; }
+rdl() { "$source/bus/rdl.py" "$@" >"$work/log" 2>&1; }
+
+# None of the chip's blocks has words behind an adapter, which have no addresses of their own.
+rdl "$gen/icesoc.rdl" "$work/new/ip" || { cat "$work/log" && fail 'the chip was not read'; }
+for block in "$work"/new/ip/*.regs.json; do
+    name=$(basename "$block")
+    find "$source/hdl" "$source/ip" "$gen" -name "$name" -exec cp {} "$work/old/ip" \;
+    [ -f "$work/old/ip/$name" ] || fail "there is no block $name"
+done
+[ "$("$source/bus/contract_diff.py" true "$work/old" "$work/new")" = 'no breaking change' ] ||
+    { "$source/bus/contract_diff.py" true "$work/old" "$work/new" || true; fail 'what comes back is not what was there'; }
+for file in icesoc.svd icesoc.ipxact.xml; do xmllint --noout "$gen/$file" || fail "$file is no XML"; done
+registers=$(grep -c ' @ 0x[0-9A-F]\{1,2\};' "$gen/icesoc.rdl")
+[ "$registers" -gt 50 ] && [ "$(xmllint --xpath 'count(//*[local-name()="register"])' "$gen/icesoc.ipxact.xml")" = "$registers" ] ||
+    fail "IP-XACT has not the $registers registers of SystemRDL"
+
+cat >"$work/lamp.rdl" <<'RDL'
+/* A lamp /* of */
+addrmap lamp {
+    name = "Lamp // not a comment"; default regwidth = 8; default sw = rw; default hw = r;
+    enum colour { red = 0; green = 1; };
+    reg state_r { desc = "State"; field { sw = r; hw = w; } BUSY; field { sw = r; hw = w; } MODE[2] = 2'b01; };
+    reg { field { desc = "Level
+        of light"; } LEVEL[7:0] = 8'hFF; field { encode = colour; } COLOUR[10:8]; regwidth = 16; } CTRL @ 0x2;
+    state_r STATE @ 4;
+    reg { field { sw = w; hw = r; } W[7:0]; field { sw = r; hw = w; } R[7:0]; } DATA;
+    reg { field { woclr; hw = w; } DONE[0:0] = 0; field { onwrite = woclr; } OVER[1:1]; } EVENTS @ 6;
+};
+RDL
+rdl "$work/lamp.rdl" "$work" || { cat "$work/log" && fail 'the lamp was not read'; }
+/usr/bin/python3 - "$work/lamp.regs.json" <<'PYTHON' || fail 'the lamp has other registers'
+import json, sys
+block = json.load(open(sys.argv[1]))
+found = [(r["word"], r["name"], r["access"], r.get("width", 32), [(f["name"], f["lsb"], f["width"]) for f in r.get("fields", [])])
+         for r in block["registers"]]
+wanted = [(4, "CTRL", "rw", 32, [("LEVEL", 0, 8), ("COLOUR", 8, 3)]), (7, "STATE", "ro", 32, [("BUSY", 0, 1), ("MODE", 1, 2)]),
+          (8, "DATA", "rw", 8, []), (9, "EVENTS", "w1c", 32, [("DONE", 0, 1), ("OVER", 1, 1)])]
+if found != wanted or block["type"] != "0x4C41" or block["doc"] != "Lamp // not a comment" \
+        or block["registers"][0]["fields"][0]["doc"] != "Level of light":
+    sys.exit("%s\nand not\n%s" % (block, wanted))
+PYTHON
+refused() { # words of the message, the SystemRDL
+    printf '%b' "$2" >"$work/wrong.rdl"
+    ! rdl "$work/wrong.rdl" "$work/wrong" || fail "accepted: $2"
+    grep -q -- "$1" "$work/log" || { cat "$work/log" && fail "'$1' is not said: $2"; }
+    [ ! -e "$work/wrong" ] || fail "files were written in spite of: $1"
+}
+refused 'wrong.rdl:2: error: regfile is not of the flat subset' 'addrmap a {\n regfile { } x; };'
+refused 'wrong.rdl:1: error: arrays are not' 'addrmap a { reg { field {} b; } x[4]; };'
+refused 'parameters are not of the flat subset' 'addrmap a { reg t #(longint N = 1) { field {} b; }; };'
+refused "'N' is no number" 'addrmap a { reg { field {} b[N:0]; } x; };'
+refused "'the end' comes where" 'addrmap a { reg { field {} b; } x;'
+refused 'x would be word 16 of its slot' 'addrmap a { reg { field {} b; } x @ 0x34; };'
+refused 'x has no field' 'addrmap a { reg { } x; };'
+refused 'x.b is at bits 39 to 0' 'addrmap a { reg { field {} b[40]; } x; };'
+refused 'there is no addrmap' '// nothing\n'
+! rdl "$work/none.rdl" "$work" && grep -q 'No such file' "$work/log" || fail 'a file that is not there is not said'
+echo 'rdl: all as expected'

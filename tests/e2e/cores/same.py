@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""same: is what a probe captured what the simulator traced? same.py capture.vcd trace.vcd nanoseconds-of-a-clock
+
+Compares each signal of the capture in each clock that both have. The trace (fst2vcd) has two moments a clock; its clocks
+are those of u_system_slot.cycles, which it has.
+"""
+import re
+import sys
+
+
+def read(path):
+    """The names of the signals, below soc, by their keys; and (time, changes by key) of each moment."""
+    with open(path) as f:
+        head, _, body = f.read().partition("$enddefinitions")
+    scope, names = [], {}
+    for kind, rest in re.findall(r"\$(scope|upscope|var)\s*(.*?)\s*\$end", head):
+        words = rest.split()
+        if kind == "scope":
+            scope.append(words[1])
+        elif kind == "upscope":
+            scope.pop()
+        else:
+            names.setdefault(words[2], []).append(".".join(scope[2:] + [words[3]]))
+    moments = []
+    for line in body.split("\n")[1:]:
+        if line.startswith("#"):
+            moments.append((int(line[1:]), {}))
+        elif line.startswith("b"):
+            bits, key = line[1:].split()
+            moments[-1][1][key] = int(bits, 2)
+        elif line and line[0] in "01" and moments:
+            moments[-1][1][line[1:]] = int(line[0])
+    return names, moments
+
+
+def clocks(moments, keys, clock_of):
+    """What the signals of these keys are from a clock on, at each moment."""
+    values, found = {}, {}
+    for time, changes in moments:
+        values = {key: changes.get(key, values.get(key)) for key in keys}
+        found[clock_of(time, values)] = values
+    return found
+
+
+capture_file, trace_file, period = sys.argv[1:]
+names, moments = read(capture_file)
+captured = clocks(moments, list(names), lambda time, values: time // int(period))
+names_there, moments = read(trace_file)
+key_of = {name: key for key, all_names in names_there.items() for name in all_names}
+pairs = [(key, key_of[name], name) for key, all_names in names.items() for name in all_names]
+count = key_of["u_system_slot.cycles"]
+traced = clocks(moments, [count] + [other for _, other, _ in pairs], lambda time, values: values[count])
+changes = sorted(captured)
+first, last = max(changes[0], min(traced)), min(changes[-1], max(traced) + 1)
+now, there, wrong = captured[max(c for c in changes if c <= first)], None, 0
+for clock in range(first, last):
+    now = captured.get(clock) or now
+    there = traced.get(clock) or there
+    for mine, other, name in pairs:
+        if now[mine] != there[other]:
+            wrong += 1
+            print("clock %d: %s is %d in the capture and %d in the trace" % (clock, name, now[mine], there[other]))
+moved = sum(first < c < last for c in changes)
+print("%d signals in %d clocks, %d changes: %d differ" % (len(pairs), last - first, moved, wrong))
+sys.exit(wrong != 0 or moved < 100)

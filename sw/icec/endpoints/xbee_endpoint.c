@@ -129,24 +129,11 @@ static Link_Status openOwn(XBeeATEndpoint* self) {
     return status;
 }
 
-static void closeChannel(void* context, int connection) {
-    XBeeATEndpoint* self = context;
-    lock(self);
-    /* The peer may have closed already; the channel may be a new one by now. */
-    if (!takeBack(self, ICE_EVENT_CLOSED, connection)) {
-        (void)Link_closeChannel(self->link, connection);
-        if (connection == XBEE_OWN_CHANNEL)
-            self->ownOpen = 0;
-    }
-    unlock(self);
-    kick(self);
-}
-
 /* Ends a connection whose message finds no room. The link tells the peer as soon as it can. */
 static void giveUp(XBeeATEndpoint* self, int connection) {
-    closeChannel(self, connection);
     lock(self);
-    report(self, ICE_EVENT_CLOSED, connection);
+    if (Link_closeChannel(self->link, connection) == LINK_OK)
+        XBeeATEndpoint_onChannel(self, connection, 0);
     unlock(self);
 }
 
@@ -181,6 +168,19 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
         return ICE_NO_ENDPOINT;
     *connection = XBEE_OWN_CHANNEL;
     return offer(context, 0, 0, 0); /* the last closing may be on its way still */
+}
+
+static void closeChannel(void* context, int connection) {
+    XBeeATEndpoint* self = context;
+    lock(self);
+    /* The peer may have closed already; the channel may be a new one by now. */
+    if (!takeBack(self, ICE_EVENT_CLOSED, connection)) {
+        (void)Link_closeChannel(self->link, connection);
+        if (connection == XBEE_OWN_CHANNEL)
+            self->ownOpen = 0;
+    }
+    unlock(self);
+    kick(self);
 }
 
 static Ice_Status listenTo(void* context, const char* options) {

@@ -5,12 +5,9 @@
 #include "board.h"
 #include "boot.h"
 #include "firmware.h"
+#include "program_memory.h"
 #include "stm32f2.h"
 
-typedef void (*Vector)(void);
-
-extern void stack_top(void);
-extern U32 data_begin[], data_end[], data_load[], bss_begin[], bss_end[];
 extern void PendSV_Handler(void);
 
 void Reset_Handler(void);
@@ -65,13 +62,8 @@ __attribute__((section(".vectors"), used)) static const Vector vectors[16 + 7] =
     EXTI0_Handler};
 
 void Reset_Handler(void) {
-    U32* to;
-    const U32* from = data_load;
     Board_start();
-    for (to = data_begin; to < data_end;)
-        *to++ = *from++;
-    for (to = bss_begin; to < bss_end;)
-        *to++ = 0;
+    startMemory();
     Boot_begin();
     if (!Boot_imageIsSound())
         Boot_refuse();

@@ -4,6 +4,7 @@
  * end.
  */
 #include "os_cases.h"
+#include "program_memory.h"
 #include "stm32f2.h"
 
 #define TICK_CYCLES 4000UL
@@ -11,10 +12,6 @@
 #define TICK_PRIORITY 0x60U
 #define SWITCH_PRIORITY 0xF0U
 
-typedef void (*Vector)(void);
-
-extern void stack_top(void);
-extern U32 data_begin[], data_end[], data_load[], bss_begin[], bss_end[];
 extern void PendSV_Handler(void);
 
 void Reset_Handler(void);
@@ -48,12 +45,7 @@ __attribute__((section(".vectors"), used)) static const Vector vectors[17] = {st
                                                                               Irq_Handler};
 
 void Reset_Handler(void) {
-    U32* to;
-    const U32* from = data_load;
-    for (to = data_begin; to < data_end;)
-        *to++ = *from++;
-    for (to = bss_begin; to < bss_end;)
-        *to++ = 0;
+    startMemory();
     SCB_SHCSR |= SCB_SHCSR_FAULTS;
     SCB_SHPR(15) = TICK_PRIORITY;
     SCB_SHPR(14) = SWITCH_PRIORITY;

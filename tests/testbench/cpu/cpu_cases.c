@@ -3,11 +3,7 @@
  * cpu_cases: start-up, handlers of all exceptions, and the table of cases.
  */
 #include "cpu_cases.h"
-
-typedef void (*Vector)(void);
-
-extern void stack_top(void);
-extern U32 data_begin[], data_end[], data_load[], bss_begin[], bss_end[];
+#include "program_memory.h"
 
 void Handler(void);
 void Handler_run(U32* frame, U32 number, U32 excReturn);
@@ -79,12 +75,7 @@ __attribute__((section(".vectors"), used)) static const Vector vectors[22] = {
     Case_ack,  Case_ackWait};
 
 void Reset_Handler(void) {
-    U32* to;
-    const U32* from = data_load;
-    for (to = data_begin; to < data_end;)
-        *to++ = *from++;
-    for (to = bss_begin; to < bss_end;)
-        *to++ = 0;
+    startMemory();
     cases[selected]();
     __asm__ volatile("bkpt #1");
 }

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * program_memory: what firmware.ld has placed, and the begin of a program: its variables get their
+ * values.
+ */
+#ifndef PROGRAM_MEMORY_H
+#define PROGRAM_MEMORY_H
+
+#include "base.h"
+
+typedef void (*Vector)(void);
+
+extern void stack_top(void);
+extern U32 data_begin[], data_end[], data_load[], bss_begin[], bss_end[];
+
+static void startMemory(void) {
+    U32* to;
+    const U32* from = data_load;
+    for (to = data_begin; to < data_end;)
+        *to++ = *from++;
+    for (to = bss_begin; to < bss_end;)
+        *to++ = 0;
+}
+
+#endif

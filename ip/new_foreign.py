@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: MIT
 """new_foreign: puts a third-party core in Verilog or VHDL into a slot (docs/recipes.md).
 
-    new_foreign.py NAME TOP wishbone|axil|memory|own FOLDER [ROLE=port...] FILE...
+    new_foreign.py NAME TOP wishbone|axil|memory|own|axis FOLDER [ROLE=port...] FILE...
 
 Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v, which connects TOP to
 the slot; its registers, with the names that TOP has for their addresses; a test; what a mission calls of it;
 CMakeLists.txt. ROLE=port says what a port is for, instead of its name. Ports that are neither bus, clock, reset nor
-interrupt become pins. VHDL is read by GHDL, which the environment names.
+interrupt become pins. VHDL is read by GHDL, which the environment names. A core with AXI-Streams (axis) has an operation
+instead of registers: foreign_axis.py.
 """
 import json
 import os
@@ -15,6 +16,8 @@ import re
 import subprocess
 import sys
 import tempfile
+
+import foreign_axis
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 CLOCKS = {"clk", "aclk", "clock"}
@@ -31,9 +34,9 @@ MEMORY = {"cs": "stb", "ce": "stb", "we": "we", "address": "adr", "addr": "adr",
 # Words for ROLE=port. select is high until the answer, strobe for one clock; read and write beside neither are both.
 ROLES = {"select": "stb", "strobe": "strobe", "read": "re", "write": "we", "address": "adr", "enables": "sel",
          "wdata": "wdata", "rdata": "rdata", "ack": "ack", "error": "err", "clock": "clock", "reset": "reset",
-         "resetn": "resetn", "interrupt": "interrupt", "pin": ""}
+         "resetn": "resetn", "interrupt": "interrupt", "pin": "", "setting": "setting"}
 NEEDED = {"memory": ["stb", "we", "adr", "wdata", "rdata"], "wishbone": ["cyc", "stb", "we", "wdata", "rdata", "ack"],
-          "axil": [n for n in AXI if not n.endswith("prot")], "own": ["we", "wdata", "rdata"]}
+          "axil": [n for n in AXI if not n.endswith("prot")], "own": ["we", "wdata", "rdata"], "axis": foreign_axis.NEEDED}
 BUSES = {"wishbone": "Wishbone", "axil": "AXI4-Lite", "memory": "select, address and data", "own": "a bus of its own"}
 SLOT = """    input  wire        clk_i,
     input  wire        rst_i,
@@ -102,6 +105,8 @@ def role(name, port, bus):
         return "clock"
     if port["direction"] == "input" and RESETS & set(tokens):
         return "resetn" if re.search(r"((rst|reset)n|_n|nrst)(_i)?$", name.lower()) else "reset"
+    if bus == "axis":
+        return foreign_axis.role(name, port) or ""
     if bus == "memory":
         found = [MEMORY[base]] if (base := re.sub(r"^[io]_|_[io]$", "", name.lower())) in MEMORY else []
     elif bus == "axil":
@@ -128,6 +133,8 @@ def roles_of(top, bus, ports, given):
         is_answer_role = ROLES[what] in ("rdata", "ack", "err", "interrupt")
         if ROLES[what] and is_answer_role != (ports[port]["direction"] == "output"):
             fail(f"PORTS: {what} is an {'output' if is_answer_role else 'input'} of a core, and '{port}' is not")
+        if what == "setting" and bus != "axis":
+            fail("PORTS: a setting is for BUS=axis; here an input that is none of the bus is a pin")
         roles[port] = ROLES[what]
     missing = [r for r in NEEDED[bus] + ["clock"] if r not in roles.values()]
     if missing:
@@ -329,7 +336,7 @@ def fly(log, proxy, report):
 
 def main(words):
     if len(words) < 5:
-        sys.exit("usage: make new-foreign NAME=my_uart TOP=module BUS=wishbone|axil|memory|own FILES='a.v b.v' [PORTS='write=we ...']")
+        sys.exit("usage: make new-foreign NAME=my_uart TOP=module BUS=wishbone|axil|memory|own|axis FILES='a.v b.v' [PORTS='write=we ...']")
     name, top, bus, folder, *rest = words
     given, files = [w for w in rest if "=" in w], [w for w in rest if "=" not in w]
     if bus not in NEEDED:
@@ -351,30 +358,38 @@ def main(words):
     if two_way:
         fail(f"{top} has the inout port '{two_way[0]}': tri-states belong to the chip's pads; take a top without")
     roles = roles_of(top, bus, ports, given)
-    verilog, word_bits, adr_bits, data_width, pins = write_verilog(name, top, bus, ports, roles, parameters)
-    words = names_of(top, files, word_bits) or {a: f"REG{a}" for a in range(min(8, 1 << word_bits))}
-    first = next(iter(words.values()))
+    source = f"REGS {name}.regs.json"
+    if bus == "axis":
+        if wrong := foreign_axis.problem(top, ports, roles):
+            fail(wrong)
+        source, answers = f"ICE {name}.ice", "operation: process" + "".join(
+            f", set{foreign_axis.camel(foreign_axis.setting(n))}" for n in ports if roles[n] == "setting")
+        texts = foreign_axis.texts(name, top, ports, roles, pin_name, vector, SLOT)
+    else:
+        verilog, word_bits, adr_bits, data_width, pins = write_verilog(name, top, bus, ports, roles, parameters)
+        words = names_of(top, files, word_bits) or {a: f"REG{a}" for a in range(min(8, 1 << word_bits))}
+        first, answers = next(iter(words.values())), "registers: " + " ".join(words.values())
+        registers = description(name, top, bus, words, adr_bits, data_width, pins)
+        texts = {f"{name}.v": verilog, f"{name}_test.cpp": test_of(name, first),
+                 f"{name}.regs.json": json.dumps(registers, indent=2) + "\n", "ground.py": ground_of(name, folder, first)}
     if is_vhdl(files[0]):
         build = (f"icesoc_vhdl(NAME {top} SOURCES\n  " + "\n  ".join(files) + ")\n"
-                 f"icesoc_core({name} REGS {name}.regs.json FLAGS -Wno-lint -Wno-style DEPENDS {top}_verilog\n"
+                 f"icesoc_core({name} {source} FLAGS -Wno-lint -Wno-style DEPENDS {top}_verilog\n"
                  f"  VERILOG {name}.v ${{GEN_DIR}}/{top}.v)\n")
     else:
-        build = (f"icesoc_core({name} REGS {name}.regs.json FLAGS -Wno-lint -Wno-style "
+        build = (f"icesoc_core({name} {source} FLAGS -Wno-lint -Wno-style -Wno-TIMESCALEMOD -Wno-SELRANGE "
                  + " ".join("-I" + d for d in sorted({os.path.dirname(f) for f in files})) + f"\n  VERILOG {name}.v "
                  + "\n  ".join(files) + ")\n")
-    registers = description(name, top, bus, words, adr_bits, data_width, pins)
+    texts["CMakeLists.txt"] = "# SPDX-License-Identifier: MIT\n" + build
     os.makedirs(folder)
-    for file, text in ((f"{name}.v", verilog), (f"{name}_test.cpp", test_of(name, first)),
-                       (f"{name}.regs.json", json.dumps(registers, indent=2) + "\n"),
-                       ("ground.py", ground_of(name, folder, first)),
-                       ("CMakeLists.txt", "# SPDX-License-Identifier: MIT\n" + build)):
+    for file, text in texts.items():
         with open(os.path.join(folder, file), "w") as out:
             out.write(text)
     print(f"{folder}: {' '.join(sorted(os.listdir(folder)))}")
     for n in ports:
         print(f"  {n}: {roles[n] or 'pin ' + pin_name(n, ports[n])}")
-    print(f"  registers: {' '.join(words.values())}")
-    print(f"Next: look at the ports and registers above; make ip-test IP={name}; a line {name} in ip/cores.list; "
+    print(f"  {answers}")
+    print(f"Next: look at what is above; make ip-test IP={name}; a line {name} in ip/cores.list; "
           f"make run CORES={name}")
 
 

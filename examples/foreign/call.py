@@ -1,16 +1,18 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Calls third-party cores by radio, by their registers: call.py DEVICE GUARD STATUS PLUGIN Registers.ice
+"""Calls third-party cores by radio: call.py DEVICE GUARD STATUS PLUGIN Registers.ice foreign_cobs.ice
 
 An AES key and block of FIPS 197, appendix B; a byte through each UART and the SPI controller, whose outputs lead to
-their inputs; the I2C master's registers. With stock ZeroC Ice.
+their inputs; the I2C master's registers; packets through the COBS encoder's AXI-Streams. With stock ZeroC Ice.
 """
 import sys
 
 import Ice
 
-device, guard, status, plugin, file = sys.argv[1:]
-Ice.loadSlice("", [file])
+device, guard, status, plugin, *files = sys.argv[1:]
+for file in files:
+    Ice.loadSlice("", [file])
+import Cores  # noqa: E402
 import Hw  # noqa: E402
 
 KEY = (0x2B7E1516, 0x28AED2A6, 0xABF71588, 0x09CF4F3C)
@@ -61,6 +63,17 @@ def i2c(core):
     return (core.get("PRER_LO"), core.get("CTR")), (0x3F, 0x80)
 
 
+def cobs(data):
+    """Consistent overhead byte stuffing (Cheshire and Baker, 1999), and the zero at its end."""
+    out = bytearray()
+    for part in data.split(b"\0"):
+        while len(part) >= 254:
+            out += b"\xff" + part[:254]
+            part = part[254:]
+        out += bytes([len(part) + 1]) + part
+    return bytes(out) + b"\0"
+
+
 CORES = {"foreign_aes": aes, "foreign_uart": uart("TXREG", "RXREG"), "axil_uart": uart("TX", "RX"), "spi_master": spi,
          "i2c_master": i2c}
 data = Ice.InitializationData()
@@ -75,3 +88,8 @@ with Ice.initialize(data) as ic:
         if value != wanted:
             sys.exit("%s: %r, expected %r" % (name, value, wanted))
         print("%s: %d registers and fields, called by radio: as expected" % (name, len(core.list())))
+    encoder = Cores.ForeignCobsPrx.checkedCast(ic.stringToProxy("foreign_cobs:xbee-at -d %s -a 0x0001 -t 300000" % device))
+    for packet in (b"\x11\x22\x00\x33", b"\0" * 9, bytes(range(1, 201))):
+        if bytes(encoder.process(packet)) != cobs(packet):
+            sys.exit("foreign_cobs: %r came of %r, expected %r" % (encoder.process(packet), packet, cobs(packet)))
+    print("foreign_cobs: packets encoded, called by radio: as expected")

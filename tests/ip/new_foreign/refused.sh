@@ -34,4 +34,11 @@ refused "'grant' is none of select, strobe" my_port req_words own "$work/out" gr
 refused "has no port 'go'" my_port req_words own "$work/out" write=go "$here/req_words.v"
 refused "ack is an output of a core, and 'req' is not" my_port req_words own "$work/out" ack=req "$here/req_words.v"
 refused 'a strobe of one clock needs an ack' my_port req_words own "$work/out" strobe=req write=wr wdata=value rdata=held clock=clock "$here/req_words.v"
+echo 'module two(input clk, input [7:0] a_tdata, b_tdata, input a_tvalid, output [7:0] o_tdata, output o_tvalid, input o_tready); endmodule' >"$work/two.v"
+echo 'module odd(input clk, input [23:0] i_tdata, input i_tvalid, output [7:0] o_tdata, output o_tvalid, input o_tready); endmodule' >"$work/odd.v"
+refused 'more than one stream in: a_tdata, b_tdata' my_port two axis "$work/out" "$work/two.v"
+refused 'odd has 24 and 8 bits: it must be 8, 16, 32 or 64' my_port odd axis "$work/out" "$work/odd.v"
+refused 'has no port for s_tdata' my_port wb_port axis "$work/out" "$here/wb_port.v"
+refused 'a setting is for BUS=axis' my_port req_words own "$work/out" setting=value "$here/req_words.v"
+refused "setting is an input of a core, and 'over' is not" my_port axis_scale axis "$work/out" setting=over "$here/axis_scale.v"
 echo 'refused: all as expected'

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+//
+// axis_core_test: third-party cores with AXI-Streams, as `make new-foreign BUS=axis` puts them into
+// slots, called through their generated servants.
+
+#include "Vmy_scale_slot.h"
+#include "Vmy_twice_slot.h"
+#include "my_scale_proxy.h"
+#include "my_twice_proxy.h"
+
+namespace {
+
+template <class Element, class Packet, class Core>
+std::vector<Element> process(Core& core, std::vector<Element> list) {
+    Packet in{static_cast<Ice_Int>(list.size()), list.data()}, out = core.process(&in);
+    return {out.data, out.data + out.size};
+}
+
+class Scale : public ::testing::Test {
+protected:
+    std::vector<Ice_Short> scaled(const std::vector<Ice_Short>& list) {
+        return process<Ice_Short, Cores_MyScalePacket>(core_, list);
+    }
+    MyScaleProxy<Vmy_scale_slot> core_;
+};
+
+TEST_F(Scale, EverySampleComesOutOnceScaled) {
+    core_.setGainFactor(3);
+    for (size_t n : {1u, 2u, 3u, 4u, 5u, 31u, 32u, 33u, 512u}) {
+        std::vector<Ice_Short> list, wanted;
+        for (size_t i = 0; i < n; ++i) {
+            list.push_back(static_cast<Ice_Short>(i + n));
+            wanted.push_back(static_cast<Ice_Short>(3 * (i + n)));
+        }
+        EXPECT_EQ(scaled(list), wanted) << n << " samples";
+    }
+    EXPECT_FALSE(core_.bench_.top().over_o);
+    scaled({0x7FFF});
+    EXPECT_TRUE(core_.bench_.top().over_o) << "its pin";
+}
+
+TEST_F(Scale, AnEmptyPacketIsRefused) {
+    EXPECT_THROW(scaled({}), CoreError);
+    core_.setGainFactor(1);
+    EXPECT_EQ(scaled({7}), std::vector<Ice_Short>{7});
+}
+
+TEST_F(Scale, WhatDoesNotEndIsGivenUpAndTheNextCallWorks) {
+    core_.setGainFactor(2);
+    core_.memory_.hold(true);
+    EXPECT_THROW(scaled(std::vector<Ice_Short>(300, 5)), CoreError);
+    core_.memory_.hold(false);
+    EXPECT_EQ(scaled({1, 2, 3}), (std::vector<Ice_Short>{2, 4, 6}));
+}
+
+class Twice : public ::testing::Test {
+protected:
+    std::vector<Ice_Byte> twice(size_t n) {
+        std::vector<Ice_Byte> list;
+        for (size_t i = 0; i < n; ++i)
+            list.push_back(static_cast<Ice_Byte>(7 * i));
+        return process<Ice_Byte, Cores_MyTwicePacket>(core_, list);
+    }
+    MyTwiceProxy<Vmy_twice_slot> core_;
+};
+
+TEST_F(Twice, AnswersAreAsLongAsWhatComesOut) {
+    for (size_t n : {8u, 16u, 504u, 512u}) {
+        auto out = twice(n);
+        ASSERT_EQ(out.size(), 2 * n);
+        for (size_t i = 0; i < 2 * n; ++i)
+            ASSERT_EQ(out[i], static_cast<Ice_Byte>(7 * (i / 16 * 8 + i % 8))) << i << " of " << n;
+    }
+    auto out = twice(5); // the first word is given whole, then what is kept of it
+    ASSERT_EQ(out.size(), 13u);
+    for (size_t i = 0; i < 5; ++i)
+        EXPECT_EQ(out[8 + i], 7 * i);
+}
+
+TEST_F(Twice, AnAnswerThatIsTooLongIsRefused) {
+    EXPECT_THROW(twice(520), CoreError);
+    EXPECT_EQ(twice(8).size(), 16u);
+}
+
+} // namespace

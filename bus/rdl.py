@@ -227,6 +227,8 @@ def main():
     parser.add_argument("folder", help="where <block>.regs.json go")
     parser.add_argument("--first", type=int, default=3, help="word of the first register (3)")
     args = parser.parse_args()
+    if not args.file or not args.folder:
+        sys.exit("usage: make from-rdl RDL=spi.rdl OUT=ip/spi")
     written = []
     try:
         root = Reader(args.file).file()

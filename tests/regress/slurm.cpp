@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// slurm: the same tests as one array job.
+// slurm: the same tests as one array job. Those of a node that dies are queued again.
 
 #include "files.h"
 #include "process.h"
@@ -20,7 +20,7 @@ namespace {
 
 void writeJob(const std::string& path, const std::vector<Test>& tests, const RunOptions& options) {
     std::ostringstream job;
-    job << "#!/bin/sh\n#SBATCH --job-name=icesoc\n#SBATCH --ntasks=1\n"
+    job << "#!/bin/sh\n#SBATCH --job-name=icesoc\n#SBATCH --ntasks=1\n#SBATCH --requeue\n"
         << "export SEED=" << options.seed << "\n"
         << "test=$(sed -n \"$((SLURM_ARRAY_TASK_ID + 1))p\" "
         << quoted(fs::absolute(options.out + "/slurm.list")) << ")\n"
@@ -74,8 +74,11 @@ std::vector<Result> runSlurm(const std::vector<Test>& tests, const RunOptions& o
     std::vector<bool> known(tests.size());
     unsigned done = 0;
     for (bool running = true; running;) {
-        // Asked before the files are looked at: a job that is gone has left all it will leave.
-        running = run({"squeue", "--noheader", "--jobs", id}).text.find(id) != std::string::npos;
+        // Asked before the files are looked at: a job that is gone has left all it will leave. A
+        // controller that does not answer has said nothing of it.
+        const Output queue = run({"squeue", "--noheader", "--jobs", id});
+        running = queue.status == 0 ? queue.text.find(id) != std::string::npos
+                                    : queue.text.find("Invalid job id") == std::string::npos;
         if (interrupted) {
             run({"scancel", id});
             throw std::runtime_error("interrupted; job " + id + " is cancelled");
@@ -84,7 +87,7 @@ std::vector<Result> runSlurm(const std::vector<Test>& tests, const RunOptions& o
             if (known[i])
                 continue;
             known[i] = resultOf(junit(i), results[i]);
-            if (!known[i] && !running) { // the node died, or somebody cancelled it: that is no pass
+            if (!known[i] && !running) { // somebody cancelled it: that is no pass
                 known[i] = true;
                 results[i].name = tests[i].name;
                 results[i].status = "failed";

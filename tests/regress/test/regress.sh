@@ -270,6 +270,37 @@ slurm)
     has "4 passed, 2 failed, 0 skipped"
     has "value 3 is not 7" build/regress/failures/test_b.Bad-3.log
     ;;
+slurm_node) # a node dies, with all that runs there, while a test does: the other one runs that again, and nothing is lost
+    command -v slurmctld >/dev/null 2>&1 || PATH=$PATH:/usr/sbin
+    cat >tests/room/node.sh <<'END'
+#!/bin/sh
+cd ../../../..
+[ ! -e dead ] || exit 0
+pid=$$
+until grep -q '^Name:.slurmstepd' /proc/$pid/status; do
+    echo "$pid" >>pids
+    pid=$(sed -n 's/^PPid:.//p' /proc/$pid/status)
+done
+echo "$pid" >>pids
+echo "$SLURMD_NODENAME" >node.part && mv node.part node
+exec sleep infinity
+END
+    chmod +x tests/room/node.sh
+    # shellcheck disable=SC2016 # CMake's
+    echo 'add_test(NAME test_e.Node COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/node.sh)' >>tests/room/CMakeLists.txt
+    cmake build/main >/dev/null
+    {
+        until [ -e node ]; do sleep 0.2; done
+        touch dead
+        # shellcheck disable=SC2046 # a line a process
+        kill -9 "$(cat "cluster/slurmd.$(cat node).pid")" $(cat pids)
+    } &
+    killer=$! status=0
+    "$cluster" cluster "$regress" --launcher slurm --seed 3 >out.txt 2>&1 || status=$?
+    [ -e dead ] || kill $killer
+    [ $status -eq 1 ] || fail "exit status $status, not 1"
+    has "5 passed, 2 failed, 0 skipped"
+    ;;
 page)
     cat >t.vcd <<'END'
 $timescale 1ns $end $scope module top $end $var wire 1 ! clk_i $end $scope module u_fifo $end $var wire 1 ! clk_i $end

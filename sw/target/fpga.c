@@ -18,6 +18,7 @@
 #define SELECT 4U                /* its EXTI line as well: port A's, as after a reset */
 #define SELECT_VECTOR 10U
 #define ADDRESS_BYTES 4U /* the flash's instruction before it */
+#define POLLS 2000U      /* of 10 cycles and more; the address takes 32 us at 1 MHz */
 #define CONTROL 2U       /* port C: PROGRAM_B 0, open drain; DONE 1 */
 #define DONE 1U
 #define NO_TASK 255U
@@ -91,10 +92,10 @@ static void arm(void) {
 
 /* Returns the address that the FPGA sends to its flash now; 0: it was not heard in time. */
 static U32 hear(void) {
-    U32 address = 0, i;
+    U32 address = 0, polls = 0, i;
     for (i = 0; i < ADDRESS_BYTES; ++i) {
         while (!(SPI1_SR & SPI1_SR_RXNE))
-            if (!isSelected())
+            if (!isSelected() || ++polls == POLLS)
                 return 0;
         address = address << 8 | SPI1_DR;
     }

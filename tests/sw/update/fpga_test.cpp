@@ -185,6 +185,21 @@ TEST_F(Fpga, ABitstreamThatHangsTheFpgaIsTakenBack) {
     EXPECT_EQ(boot(), 1u);
 }
 
+TEST_F(Fpga, ABitstreamThatTheFpgaRefusesIsNamedAndDoesNotCountAsRunning) {
+    powerOn();
+    const Image image(2);
+    EXPECT_EQ(begin(image), RECEIVER_OK);
+    EXPECT_EQ(send(image), RECEIVER_OK);
+    EXPECT_EQ(Slots_settleFpga(&port, 0), 1);
+    EXPECT_EQ(Slots_settleFpga(&port, 1), 1);
+    EXPECT_EQ(powerOn(), 1u);
+    EXPECT_EQ(receiver.reason, RECEIVER_REFUSED);
+    EXPECT_EQ(receiver.isOnTrial, 0);
+    EXPECT_EQ(Receiver_confirm(&receiver), RECEIVER_OK);
+    EXPECT_EQ(receiver.confirmed, 1u);
+    updateTo(3);
+}
+
 TEST_F(Fpga, WhatIsNotForItLeavesItUntouched) {
     powerOn();
     updateTo(5);

@@ -20,7 +20,7 @@ static Link_Kind kindOf(const U8* frame) {
 /* True if a header makes sense; this keeps chance from passing garbage on to the checksum. */
 static int isPlausible(const Link* link, const U8* frame) {
     static const U8 sizes[2][6] = {{1, 4, 8, 0, 0, 0}, {1, 8, 16, 16, 0, 0}}; /* by Link_Kind */
-    U32 payload = LINK_LENGTH(frame);
+    U32 payload = LINK_LENGTH(frame) + LINK_OVERHEAD - link->overhead;
     Link_Kind kind = kindOf(frame);
     if (kind == LINK_KIND_DATA)
         return payload != 0 || (frame[2] & LINK_LAST);
@@ -78,16 +78,16 @@ static int decrypt(Link* link, U8* frame) {
 
 /* The same as ownerOf, with a key; copies the frame, and decrypts the copy. */
 static Owner decipher(Link* link, const U8* frame, U8* copy) {
-    U32 size = LINK_LENGTH(frame);
-    if (!isPlausible(link, frame))
+    U32 size = LINK_LENGTH(frame) + LINK_OVERHEAD;
+    if (size < link->overhead || !isPlausible(link, frame))
         return NOBODY;
-    memcpy(copy, frame, size + link->overhead);
+    memcpy(copy, frame, size);
     if (LINK_IS_HANDSHAKE(kindOf(frame)))
         return mayTry(link, LINK_ROUNDS_HANDSHAKE) && link_isGenuine(link, copy, kindOf(frame))
                    ? HANDSHAKE
                    : NOBODY;
     return link->state == LINK_STATE_UP && LINK_EPOCH(frame) == LINK_KEY_EPOCH(link->session.key) &&
-                   mayTry(link, LINK_ROUNDS_OF(size)) && decrypt(link, copy)
+                   mayTry(link, LINK_ROUNDS_OF(size - link->overhead)) && decrypt(link, copy)
                ? SESSION
                : NOBODY;
 }
@@ -184,7 +184,7 @@ static U32 parse(Link* link, const U8* bytes, U32 count, int isEnd) {
     while (used < count) {
         const U8* frame = bytes + used;
         U32 left = count - used;
-        U32 size = LINK_LENGTH(frame) + link->overhead;
+        U32 size = LINK_LENGTH(frame) + LINK_OVERHEAD;
         if (size <= LINK_MAX_FRAME && left < size && !isEnd)
             break;
         if (size <= LINK_MAX_FRAME && left >= size) {

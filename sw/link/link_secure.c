@@ -57,16 +57,19 @@ U32 link_protect(U8* frame, U32 header, const U8* key, U32 number, U32 acked) {
     frame[2] = (U8)(header >> 16);
     crypt(frame, key, number, acked, 0, tag);
     memcpy(frame + size, tag, LINK_TAG);
+    frame[0] = (U8)(frame[0] + LINK_TAG_MORE);
     return size + LINK_TAG;
 }
 
 int link_unprotect(U8* frame, const U8* key, U32 number, U32 acked) {
-    U32 size = LINK_LENGTH(frame);
+    U32 size = LINK_LENGTH(frame) - LINK_TAG_MORE;
     U8 tag[ASCON_TAG_BYTES];
+    frame[0] = (U8)(frame[0] - LINK_TAG_MORE);
     crypt(frame, key, number, acked, 1, tag);
     if (Ascon_isSame(tag, frame + LINK_HEADER + size, LINK_TAG))
         return 1;
     Ascon_wipe(frame + LINK_HEADER + clearOf(frame), size - clearOf(frame));
+    frame[0] = (U8)(frame[0] + LINK_TAG_MORE);
     return 0;
 }
 

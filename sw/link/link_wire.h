@@ -3,11 +3,13 @@
  * link_wire: names the fields of a frame, and declares checksums and numbers of the wire format
  * (docs/link.md). The full layer and the minimal one share it; only link.h includes it.
  *
- *   byte 0      control bit, length of the payload
+ *   byte 0      control bit, length of the frame less 5 bytes
  *   byte 1      SEQ (data); what the kind says (control)
  *   byte 2      F, L, A, epoch, channel (data); kind, epoch, features (control)
  *   bytes 3..   payload
  *   last two    CRC, high byte first; with a key: the tag, LINK_TAG bytes
+ *
+ * In the clear the length is the payload's; with a key LINK_TAG_MORE bytes more.
  */
 #ifndef LINK_WIRE_H
 #define LINK_WIRE_H
@@ -19,6 +21,7 @@
 #define LINK_OVERHEAD (LINK_HEADER + LINK_CRC)
 #define LINK_MAX_PAYLOAD 95U
 #define LINK_SECURE_OVERHEAD (LINK_HEADER + LINK_TAG)
+#define LINK_TAG_MORE (LINK_TAG - LINK_CRC)
 #define LINK_MAX_OVERHEAD (LINK_HEADER + 16U)
 
 /* Byte 0. */
@@ -133,13 +136,14 @@ void link_deriveKeys(const U8* secret, const U8* nonce, const U8* peerNonce, Lin
 /* Returns the number whose lowest byte is `byte`, as near to the expected one as can be. */
 U32 link_extend(U32 expected, U32 byte);
 
-/* Writes the header, which has its epoch, encrypts the payload that `frame` already holds, and adds
- * the tag. `number` is what byte 1 is the lowest byte of; `acked` the same of the first byte of the
- * payload of a PIGGYBACK. Returns the frame's length in bytes. */
+/* Writes the header, which comes with its epoch and the payload's length, encrypts the payload that
+ * `frame` already holds, and adds the tag. `number` is what byte 1 is the lowest byte of; `acked`
+ * the same of the first byte of the payload of a PIGGYBACK. Returns the frame's length in bytes. */
 U32 link_protect(U8* frame, U32 header, const U8* key, U32 number, U32 acked);
 
-/* Decrypts the payload of a whole frame in its place. Returns 0 where its tag is wrong; then
- * what was decrypted is wiped. */
+/* Decrypts the payload of a whole frame, of LINK_SECURE_OVERHEAD bytes at least, in its place, and
+ * gives its header the payload's length. Returns 0 where its tag is wrong: then what was decrypted
+ * is wiped, and the header as it came. */
 int link_unprotect(U8* frame, const U8* key, U32 number, U32 acked);
 
 #endif

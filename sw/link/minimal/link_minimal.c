@@ -170,11 +170,11 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
 
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
     /* A frame begins behind a silence, or where it is all of the packet. */
-    if (nowUs - link->inputAt > FRAME_GAP || LINK_LENGTH(bytes) + LINK_OVERHEAD_OF(link) == size)
+    if (nowUs - link->inputAt > FRAME_GAP || LINK_LENGTH(bytes) + LINK_OVERHEAD == size)
         link->inputCount = 0;
     link->inputAt = nowUs;
     while (size--) {
-        U32 whole = LINK_LENGTH(link->input) + LINK_OVERHEAD_OF(link);
+        U32 whole = LINK_LENGTH(link->input) + LINK_OVERHEAD;
         link->input[link->inputCount++] = *bytes++;
         if (link->inputCount == whole) {
             takeFrame(link, link->input, whole);

@@ -17,7 +17,7 @@
 #endif
 
 /* No length that a frame may claim goes beyond. */
-#define LINK_INPUT_BYTES (0x7FU + (LINK_SECURE ? LINK_SECURE_OVERHEAD : LINK_OVERHEAD))
+#define LINK_INPUT_BYTES (0x7FU + LINK_OVERHEAD)
 
 /* Bytes that a frame has beside its payload: known to the compiler where there are no keys. */
 #define LINK_OVERHEAD_OF(link) (LINK_SECURE ? (link)->overhead : LINK_OVERHEAD)

@@ -95,11 +95,11 @@ static void takeHandshake(Link* link, Link_Kind kind) {
     if (keyed->isAnswered && link->inputAt - keyed->firstAnswer >= LINK_NONCE_LIFE)
         draw(link);
     if (kind == LINK_KIND_HELLO) {
-        if (LINK_LENGTH(link->input) != LINK_NONCE_BYTES ||
+        if (LINK_LENGTH(link->input) != LINK_NONCE_BYTES + LINK_TAG_MORE ||
             (isUp && (link->inputAt - keyed->lastFrame < LINK_ANSWER_EVERY ||
                       memcmp(nonces, keyed->nonces, LINK_NONCE_BYTES) == 0)))
             return;
-    } else if (LINK_LENGTH(link->input) != 2U * LINK_NONCE_BYTES) {
+    } else if (LINK_LENGTH(link->input) != 2U * LINK_NONCE_BYTES + LINK_TAG_MORE) {
         return;
     } else if (isUp && kind == LINK_KIND_CONFIRM &&
                memcmp(nonces, keyed->nonces, sizeof keyed->nonces) == 0) {
@@ -119,6 +119,8 @@ int link_takeKeyed(Link* link) {
     U32 kind = (U32)frame[2] >> 5;
     U32 number = link->receiveNext; /* whose lowest byte is near byte 1 */
     int isControl = frame[0] >> 7;
+    if (LINK_LENGTH(frame) < LINK_TAG_MORE)
+        return 0;
     if (isControl && LINK_IS_HANDSHAKE(kind)) {
         if (frame[1] == LINK_VERSION)
             takeHandshake(link, (Link_Kind)kind);

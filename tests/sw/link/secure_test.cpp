@@ -28,8 +28,11 @@ protected:
             Peer& from = side ? b_ : a_;
             for (auto& [time, packet] : from.air)
                 if (time > heardUntil_[side])
-                    for (Bytes& frame : framesOf(packet))
+                    for (Bytes& frame : framesOf(packet)) {
+                        // The modem controller counts a packet's bytes by its first one.
+                        EXPECT_EQ(frame.size(), LINK_LENGTH(frame) + LINK_OVERHEAD);
                         recorded_.push_back({&from == &a_, std::move(frame)});
+                    }
             if (!from.air.empty())
                 heardUntil_[side] = from.air.back().first;
         }
@@ -70,7 +73,7 @@ protected:
                   // tag
             static const uint8_t sizes[] = {1, 8, 16, 16, 0, 0};
             uint32_t kind = random_.below(6);
-            frame = {static_cast<uint8_t>(0x80 | sizes[kind]),
+            frame = {static_cast<uint8_t>(0x80 | (sizes[kind] + LINK_TAG_MORE)),
                      static_cast<uint8_t>(LINK_IS_HANDSHAKE(kind) ? LINK_VERSION : random_.next()),
                      static_cast<uint8_t>(kind << 5 | (random_.next() & 0x1F))};
             const Bytes& heard = any();
@@ -85,7 +88,7 @@ protected:
                           random_.below(LINK_MAX_FRAME - LINK_SECURE_OVERHEAD + 1));
             for (auto& byte : frame)
                 byte = static_cast<uint8_t>(random_.next());
-            frame[0] = static_cast<uint8_t>(frame.size() - LINK_SECURE_OVERHEAD);
+            frame[0] = static_cast<uint8_t>(frame.size() - LINK_OVERHEAD);
             break;
         default: // the open protocol's RST, HELLO and PING
             frame = {static_cast<uint8_t>(random_.below(2) ? 0x80 : 0x84),

@@ -184,8 +184,8 @@ protected:
 // The frames in a packet.
 inline std::vector<Bytes> framesOf(const Bytes& packet) {
     std::vector<Bytes> frames;
-    for (size_t at = 0; at + LINK_SECURE_OVERHEAD <= packet.size();) {
-        size_t size = LINK_LENGTH(&packet[at]) + LINK_SECURE_OVERHEAD;
+    for (size_t at = 0; at < packet.size();) {
+        size_t size = LINK_LENGTH(&packet[at]) + LINK_OVERHEAD;
         frames.emplace_back(packet.begin() + static_cast<long>(at),
                             packet.begin() + static_cast<long>(std::min(at + size, packet.size())));
         at += size;

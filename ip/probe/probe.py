@@ -161,8 +161,7 @@ def capture(probe, signals, args, say):
     probe.arm(signed(mask), signed(value), bool(args.trigger) and not args.level, args.after)
     say("armed; waiting for %s" % (args.trigger or "nothing: it begins now"))
     end = time.monotonic() + args.wait
-    while str(state.phase) != "done" or state.next == 0:
-        state = probe.getState()
+    while str((state := probe.getState()).phase) != "done":
         if time.monotonic() > end:
             say("%s after %d s: stopped with what there is" % (
                 "no trigger" if state.trigger < 0 else "not all changes behind the trigger", args.wait))

@@ -72,6 +72,10 @@ with Ice.initialize(data) as ic:
         calls = [call for _ in range(3) for call in (core.setOffsetAsync(7), core.addAsync(42))]
         expect("add, recorded", [call.result() for call in calls], 3 * [None, 49])
     print(said)
+    settings.trigger, settings.before, settings.after, settings.out = "", 0, 0, os.path.join(folder, "second.vcd")
+    probe.capture(prober, signals, settings, said.append)
+    times = [[int(line[1:]) for line in open(os.path.join(folder, f)) if line[0] == "#"] for f in ("probe.vcd", "second.vcd")]
+    expect("the second capture is another one", times[1][0] > times[0][-1], True)
     signals.names ^= 1
     expect("another chip's names", "probes.json" in str(fails(probe.Failed, signals.check, prober.getState())), True)
     for identity, prx in (("sample_verilog", Cores.SampleVerilogPrx), ("newcomer", Cores.SampleVhdlPrx)):

@@ -22,7 +22,7 @@ new-foreign: $(BUILD)/build.ninja ## put a third-party core into a slot: NAME=my
 	@GHDL='$(BUILD)/ghdl/ghdl' ip/new_foreign.py '$(NAME)' '$(TOP)' '$(BUS)' 'ip/$(NAME)' $(PORTS) $(FILES)
 .PHONY: new-foreign
 
-FOREIGN := i2c_master axil_uart spi_master
+FOREIGN := i2c_master axil_uart spi_master olo_spi
 # Put into slots by new-foreign: slot=module=bus=repository.
 FOREIGN_NEW := foreign_aes=aes=memory=aes foreign_uart=wbuart=wishbone=wbuart32 foreign_cobs=axis_cobs_encode=axis=verilog-axis
 foreign_slots = $(foreach f,$(FOREIGN_NEW),$(firstword $(subst =, ,$(f))))
@@ -41,7 +41,7 @@ foreign: setup-tests ## put third-party cores (Wishbone, AXI4-Lite, AXI-Stream a
 	@ctest --test-dir build/foreign --output-on-failure --no-tests=error -R '^test_ip_($(subst $(eval ) ,|,$(FOREIGN) $(foreign_slots)))[.]'
 	@build/foreign/testbench/sim/icesoc-sim --size 96x64 --image $(IMAGE) --out build/foreign/flight --guard 20 -- \
 	    /usr/bin/python3 examples/foreign/call.py '{device}' '{guard}' '{status}' build/foreign/ground/xbeeat:createXBeeAT \
-	    sw/hw/registers/Registers.ice build/foreign-cores/slots/foreign_cobs/foreign_cobs.ice
+	    sw/hw/registers/Registers.ice build/foreign-cores/slots/foreign_cobs/foreign_cobs.ice examples/foreign/olo_spi/olo_spi.ice
 .PHONY: foreign
 
 # Folders of cores outside of ip/, separated by ;: the build folder keeps them. CORE_FOLDERS=none: none from now on.

@@ -93,3 +93,7 @@ with Ice.initialize(data) as ic:
         if bytes(encoder.process(packet)) != cobs(packet):
             sys.exit("foreign_cobs: %r came of %r, expected %r" % (encoder.process(packet), packet, cobs(packet)))
     print("foreign_cobs: packets encoded, called by radio: as expected")
+    master = Cores.OloSpiPrx.checkedCast(ic.stringToProxy("olo_spi:xbee-at -d %s -a 0x0001 -t 300000" % device))
+    if master.transfer(0x5AC3F00D) != 0x5AC3F00D:
+        sys.exit("olo_spi: what was sent did not come back")
+    print("olo_spi: 32 bits sent and received, called by radio: as expected")

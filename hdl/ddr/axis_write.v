@@ -106,7 +106,7 @@ module axis_write #(
     wire start = desc_valid_i && desc_ready_o;
     wire [ADDR_BITS-1:3] next_row = row + stride;
     wire [WORD_BITS-1:0] wanted   = {1'b0, desc_bytes_i[BYTE_BITS-1:3]} + {{(WORD_BITS-1){1'b0}}, |desc_bytes_i[2:0]};
-    assign desc_ready_o = !busy && !stop_i;
+    assign desc_ready_o = (!busy || ends) && !stop_i;
     assign idle_o       = !busy && !pad && unacked == 3'd0 && !ending;
 
     // ---- requests ----

@@ -72,7 +72,7 @@
         if ($past(done_valid_o && !done_ready_i && !stop_i))
             assert (done_valid_o && $stable(done_bytes_o) && $stable(done_over_o) && $stable(done_tag_o));
         if ($past(ends))
-            assert (ending && !busy);
+            assert (ending && busy == $past(start));
         if (done_valid_o && !$past(done_valid_o))
             assert (f_owed == 4'd0);
     end

@@ -250,16 +250,18 @@ module fsmc_bridge #(
     assign npi_rd_flush_o = 1'b0;
 
     // ---- Errors
-    assign access_error_o = reg_error || reg_error_memory || excuse;
+    reg reading_d, excuse_was; // a clock later: excuse comes late in its own
+    always @(posedge clk_i) excuse_was <= excuse;
+    assign access_error_o = reg_error || reg_error_memory || excuse_was;
     assign error_memory_o = !reg_error;
     assign error_addr_o   = bus_addr_o;
-    assign error_write_o  = reg_error ? reg_write : !mem_reading;
+    assign error_write_o  = reg_error ? reg_write : !reading_d;
 
     // ---- late_o tells of a master that ignores NWAIT: of a write that found no room, and of a read that ends although its
     // data was neither safe (rd_safe_o) in the second clock of its address nor there for two clocks since. In the first clock the
     // pins may still have moved. Reads of other addresses may follow each other without a rest that the clock sees.
     reg [1:0] at_was, at_before, good;
-    reg       reading_d, second, early;
+    reg       second, early;
     wire moved  = at_was != at_before && SYNC == 0;
     wire starts = mem_reading && (moved || !reading_d);
     assign late_o = wr_lost || (reading_d && (starts || !mem_reading) && early);

@@ -94,6 +94,7 @@ architecture rtl of vision is
   -- `step` is `take` a clock later: everything from the window on moves by this register, whose
   -- fan-out has the clock to itself.
   signal step          : std_logic;
+  signal decide        : std_logic; -- as step, for all decisions: without the time that step's fan-out takes
   signal step_x        : unsigned(9 downto 0);
   signal pixel, step_pixel : std_logic_vector(7 downto 0);
   signal window        : std_logic_vector(391 downto 0);
@@ -242,7 +243,8 @@ begin
   taking : process (clk_i)
   begin
     if rising_edge(clk_i) then
-      step   <= take;
+      step   <= take; -- not reset, or the two would be made one
+      decide <= take;
       step_x <= x;
       step_pixel <= pixel and (7 downto 0 => real_pixel);
       if take = '1' then
@@ -261,7 +263,7 @@ begin
         real_pixel <= '1';
       end if;
       if rst_i = '1' then
-        step <= '0';
+        decide <= '0';
       end if;
     end if;
   end process;
@@ -274,8 +276,8 @@ begin
   frame_x     <= resize(kept_x, 16) - 3;
   frame_y     <= resize(kept_y, 16) - 3;
   -- Lines that are not of this frame are in the block RAMs until the first have gone through.
-  is_corner   <= step and kept when fill = SCORE_DELAY + KEPT_DELAY and kept_y >= 6 and
-                                    kept_y < resize(height, 17) else '0';
+  is_corner   <= decide and kept when fill = SCORE_DELAY + KEPT_DELAY and kept_y >= 6 and
+                                      kept_y < resize(height, 17) else '0';
   record_push <= is_corner when stored < result_max else '0';
   data        <= x"00000" & std_logic_vector(centre_score) &
                  std_logic_vector(frame_y) & std_logic_vector(frame_x);
@@ -323,7 +325,7 @@ begin
           end if;
       end case;
 
-      if step = '1' then
+      if decide = '1' then
         if fill >= SCORE_DELAY then
           advance(score_x, score_y, width);
         end if;
@@ -357,7 +359,7 @@ begin
         -- Column and line of the first centre: one before (0, -1), counted from line 0 for unsigned.
         kept_x <= resize(width - 1, 10);
         kept_y <= to_unsigned(131070, 17); -- -2
-      elsif step = '1' and fill = SCORE_DELAY + KEPT_DELAY then
+      elsif decide = '1' and fill = SCORE_DELAY + KEPT_DELAY then
         advance(kept_x, kept_y, width);
       end if;
     end if;

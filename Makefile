@@ -44,6 +44,8 @@ FROM  ?=
 TO    ?=
 # Firmware (ELF) that is sent to the vehicle in place of the mission (docs/update.md)
 UPDATE ?=
+# Mutants that are drawn for each proof, with SEED (make mutants)
+DRAW ?=
 # Folder of the real uC/OS-II: the firmware is built with it, too, and CPU=m3 flies it (docs/ucos2.md)
 UCOS2 ?=
 
@@ -99,9 +101,9 @@ else
 	@SEED=$(SEED) ctest --test-dir build/sanitized -j $(TESTS) --output-on-failure --no-tests=error -L sanitized
 endif
 
-mutants: setup-tests $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect its test to fail (BLOCK=bus, or BLOCK=bus/name)
-	@$(NINJA) regress
-	@tests/mutants/run.py --jobs $(JOBS) $(if $(BLOCK),--block '$(BLOCK)')
+mutants: setup-tests $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect its test to fail (BLOCK=bus, or BLOCK=bus/name); DRAW=20: of mutants that Yosys draws, 20 a proof
+	@$(NINJA) regress $(if $(DRAW),regmaps)
+	@$(if $(DRAW),tests/mutants/drawn.py --build $(BUILD) --number $(call quoted,$(DRAW)) --seed $(call quoted,$(SEED)),tests/mutants/run.py) --jobs $(JOBS) $(if $(BLOCK),--block '$(BLOCK)')
 
 bench: $(BUILD)/build.ninja ## measure everything that has a figure (tests/bench), write build/bench/*.json and docs/figures.md
 	@$(NINJA) bench_programs regress size

@@ -18,6 +18,8 @@
             if (one[k])
                 assert ({bus_ready_o, bus_error_o, bus_rdata_o, slot_addr_o[4*k +: 4]} ==
                         {slot_ready_i[k], slot_error_i[k], slot_rdata_i[32*k +: 32], bus_addr_i[3:0]});
+            else
+                assert (slot_addr_o[4*k +: 4] == 4'd0);
         assert (slot_valid_o == one);
         assert (one != {SLOTS{1'b0}} || (bus_ready_o && bus_error_o && bus_rdata_o == 32'd0));
         assert ({slot_write_o, slot_wdata_o} == {bus_write_i, bus_wdata_i});

@@ -75,7 +75,7 @@ nightly: setup-tests build ## what a timer runs: seeds that have failed, the reg
 	    $$tool --kept $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
 	    $$tool --seed random --repeat $(NIGHTLY) $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
 	    ctest --test-dir $(BUILD) -C zeroc -L zeroc -j $(TESTS) --output-on-failure || status=$$?; \
-	    make faults SEED=$$(date +%Y%m%d) || status=$$?; make sanitizers || status=$$?; \
+	    make mutants DRAW=8 SEED=$$(date +%Y%m%d) || status=$$?; make faults SEED=$$(date +%Y%m%d) || status=$$?; make sanitizers || status=$$?; \
 	    ctest --test-dir $(BUILD) -C nightly -L nightly -j $(TESTS) --output-on-failure || status=$$?; \
 	    exit $$status
 

@@ -50,10 +50,18 @@ json ofTests(const json& data, bool proofs) {
     return judge(proofs ? "proofs" : "tests", good, "failed", bad);
 }
 
-json ofMutants(const json& rows) {
+// Of the mutants that were drawn, a module's score counts, and only if the sources are the same.
+json ofMutants(const json& rows, const json& drawn, const std::string& source) {
+    std::vector<std::string> bad;
+    const std::string tree = drawn.value("tree", "");
+    if (!tree.empty() && treeState(source, tree.substr(0, tree.find(':'))) == tree)
+        for (const auto& [module, score] : drawn.at("modules").items())
+            if (score.at("score") < drawn.at("gate"))
+                bad.push_back(module);
+    if (!bad.empty())
+        return judge("mutants", "", "modules of which the proofs miss drawn mutants", bad);
     if (rows.empty())
         return missing("mutants", "make mutants");
-    std::vector<std::string> bad;
     for (const json& row : rows)
         if (row.at(1) != "caught")
             bad.push_back(row.at(0));
@@ -148,7 +156,7 @@ json lightsOf(const json& data, const std::string& source) {
         }
         lights.push_back(light);
     };
-    add(ofMutants(data.at("mutants")));
+    add(ofMutants(data.at("mutants"), data.value("drawn", json::object()), source));
     add(ofCoverage(data));
     add(ofSize(data.value("utilisation", json())));
     add(ofEntries("speed", data.value("speed", json::object()).value("entries", json::array()),

@@ -175,6 +175,8 @@ json gather(const History& history, const std::vector<Test>& tests,
     }
     data["proofs"] = proofsOf(results);
     data["mutants"] = readMutants(build + "/mutants/results.tsv");
+    if (json drawn = readJson(build + "/mutants/drawn.json"); drawn.is_object())
+        data["drawn"] = drawn;
     for (auto& [key, path] :
          std::map<std::string, std::string>{{"coverage", build + "/coverage/summary.json"},
                                             {"utilisation", build + "/synth/report.json"},

@@ -10,6 +10,7 @@
 # PROVE_PDR: switches of pdr, where others are quicker.
 # PROVE_STEP=k: the assertions carry themselves over k clocks, but are too many for MiniSat: CaDiCaL does the step.
 # PROVE_BOUNDED=1: no induction.
+# PROVE_MUTANT: Yosys commands between reading and flattening (tests/mutants/drawn.py); no trace then.
 # A failed assertion leaves <work>/trace.vcd. The module may instance others of its folder, of bus/ and of hdl/system/.
 set -eu
 here=$(dirname "$(readlink -f "$0")")
@@ -38,6 +39,7 @@ read_verilog -formal -sv -I${GEN_DIR:-.} $(echo $files)
 $parameters
 hierarchy -top $module
 proc
+${PROVE_MUTANT:-}
 flatten
 prep -top $module -nordff
 memory_nordff
@@ -73,14 +75,16 @@ sat -tempinduct -prove-asserts -set-assumes -seq 1 -maxsteps 4
 END
 failed() {
     cat "$1"
-    # abc's counterexample, replayed by smtbmc for names and a waveform
+    [ -n "${PROVE_MUTANT:-}" ] || replay
+    echo "$module: $2" >&2
+    exit 1
+}
+replay() { # abc's counterexample, by smtbmc for names and a waveform
     awk -v n="$(head -1 assert.aig | cut -d' ' -f3)" 'NR == 1 { print "1" } { print NR == 1 ? $0 : substr($0, 1, n) }' \
         assert.aiw >replay.aiw 2>/dev/null || true
     timeout 100 yosys-smtbmc -s z3 --unroll --noprogress --aig assert.map:replay.aiw --dump-vcd trace.vcd model.smt2 >trace.log 2>&1 || true
     grep -E 'Assert failed' trace.log || true
     [ ! -e trace.vcd ] || echo "$module: trace: $work/trace.vcd" >&2
-    echo "$module: $2" >&2
-    exit 1
 }
 # abc commands log
 limited() { (ulimit -t "$limit" && exec "$@"); }
@@ -102,12 +106,12 @@ if [ "$(latches assert.aig)" -eq 0 ]; then
     echo "$module: proven (it has no state)"
 else
     abc "read_aiger assert.aig; fold; strash; bmc3 -F $depth; write_cex -a assert.aiw" bounded.log
-    grep -q 'output failed\|output asserted\|was asserted' bounded.log || {
+    grep -q 'output failed\|output asserted\|was asserted\|Explored all reachable states' bounded.log || {
         cat bounded.log
         echo "$module: abc has no answer (see above): is another proof at work in $work?" >&2
         exit 2
     }
-    grep -q 'No output failed\|No output asserted' bounded.log || failed bounded.log "an assertion fails within $depth clocks"
+    grep -q 'No output failed\|No output asserted\|Explored all reachable states' bounded.log || failed bounded.log "an assertion fails within $depth clocks"
     echo "$module: bounded, $depth clocks"
 
     # Blocks whose assertions are inductive as they stand are done in a second.

@@ -112,9 +112,19 @@ lights_mutants)
     run --name 'a[.]'
     light mutants 'red   *1 of 2 not caught: small/two'
     light tests green
+    sed -i 's/SURVIVED/caught/' build/mutants/results.tsv
+    drawn() { # score
+        printf '{"seed":"1","tree":"%s","gate":95,"survived":[],"modules":{"fifo":{"drawn":8,"same":0,"caught":7,"score":%s}}}' \
+            "$("$regress" --tree hdl)" "$1" >build/mutants/drawn.json
+        run --name 'a[.]'
+    }
+    drawn 87.5
+    light mutants 'red   *1 modules of which the proofs miss drawn mutants: fifo'
+    drawn 100
+    light mutants green
     mkdir -p hdl && echo >hdl/new.v # what was measured is not what is there
     run --name 'a[.]'
-    light mutants 'grey   sources have changed since it was red'
+    light mutants 'grey   sources have changed since it was green'
     ;;
 lights_size) # `make synth` on its own tests' small project, where another test has synthesised it
     cp -r "$source/tests/synth/project" project

@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Draws mutants of each proven module with Yosys' `mutate` and expects the module's proof to fail.
+
+A mutant is one bit of one cell's port that is inverted, stuck, or inverted by another bit, in what
+the module's own source makes (the proof's lines stay as they are). One that the proof does not see
+is compared with the module as it is: if no input that the proof assumes makes an output differ (abc
+proves that, by pdr), it is no bug and drops out. What is left has survived: the proof has a hole at
+its line. The score of a module is what was caught of what did not drop out, over all its proofs.
+
+Leaves build/mutants/drawn.json. Exit status 1: a module scores less than the gate.
+"""
+import argparse, collections, json, os, pathlib, re, shutil, subprocess, sys, time
+from concurrent.futures import ThreadPoolExecutor
+
+GATE = 95  # per cent
+# Proofs that are meant to say all that their module does
+JUDGED = "(bus_decoder|async_fifo_restarts|modem_uart_tx)$"
+SECONDS = "20"  # of a processor, for each step of a mutant's proof
+# A module's own cells, but those of its proof
+OF_SOURCE = "{0}/c:* {0}/a:src=*_proof.v* {0}/t:$assert {0}/t:$assume {0}/t:$cover {0}/t:$any* %u %u %u %u %d"
+
+
+class Proof:
+    """A proof as CTest runs it: prove.sh module depth source work parameters."""
+
+    def __init__(self, test, out):
+        self.name = test["name"].split(".", 1)[1]
+        self.script, self.module, self.depth, _, _, *self.parameters = test["command"]
+        self.source = out / "source"
+        given = next((p["value"] for p in test["properties"] if p["name"] == "ENVIRONMENT"), [])
+        self.environment = {**os.environ, **dict(entry.split("=", 1) for entry in given)}
+        self.work = out / self.name
+        self.first_of_proof = {}  # line, of a file
+
+    def run(self, folder, mutant, seconds=None):
+        """What prove.sh says with these commands of Yosys between reading and proving, and its exit status."""
+        limit = {"PROVE_SECONDS": seconds} if seconds else {}
+        ran = subprocess.run([self.script, self.module, self.depth, self.source, folder, *self.parameters], text=True, stdout=subprocess.PIPE,
+                             stderr=subprocess.STDOUT, env={**self.environment, "PROVE_MUTANT": mutant, **limit})
+        return ran.returncode, ran.stdout
+
+    def draw(self, number, seed):
+        """Proves the module as it is, and draws its mutants."""
+        self.work.mkdir(parents=True, exist_ok=True)
+        status, text = self.run(self.work, f"write_rtlil plain.il\nselect -set source {OF_SOURCE.format(self.module)}\nmutate -list {4 * number} -seed {seed} -o list @source")
+        if status:
+            sys.exit(f"{text}mutants: formal.{self.name} fails without any mutant: mend that first")
+        mutants = (self.work / "list").read_text().splitlines()
+        return [mutant for mutant in mutants if not self.of_proof(mutant)][:number]
+
+    def of_proof(self, mutant):
+        """Whether its source line stands below `ifdef FORMAL."""
+        file, line = re.search(r".*-src (\S+?):(\d+)", mutant).groups() if "-src" in mutant else ("", 0)
+        if file not in self.first_of_proof:
+            lines = open(file).read().split("\n") if file else []
+            self.first_of_proof[file] = lines.index("`ifdef FORMAL") if "`ifdef FORMAL" in lines else len(lines)
+        return int(line) > self.first_of_proof[file]
+
+    def differs(self, folder, mutant):
+        """Whether the mutant's outputs differ from the module's for some input that the proof assumes."""
+        if any("delete" in text for text in self.parameters):
+            return True  # parts are cut off, and what they would have seen is no output
+        # prove.sh's own way to flip-flops and gates; what is free in one module is the same input of both
+        script = (self.work / "prove.ys").read_text()
+        to_state = script.split("@source\n")[1].split("write_smt2")[0].replace("setundef -anyseq -undriven\n", "")
+        to_gates = script.split("write_rtlil model.il\n")[1].split("design -save")[0]
+        side = "chformal -assert -cover -live -fair -remove\n{}\nflatten\ndelete t:$anyseq t:$anyconst t:$allseq t:$allconst\n" \
+               "setundef -undriven -expose\n{}memory_map\nsetundef -zero\nrename {} {}\ndesign -stash {}\n"
+        (folder / "same.ys").write_text(
+            f"read_rtlil {self.work}/plain.il\ndesign -save plain\n"
+            + side.format("", to_state, self.module, "plain", "plain_side") + "design -load plain\n"
+            + side.format(mutant + "\nchformal -assume -remove", to_state, self.module, "mutant", "mutant_side")
+            + "design -copy-from plain_side -as plain plain\ndesign -copy-from mutant_side -as mutant mutant\n"
+            "miter -equiv -flatten -make_assert plain mutant pair\nhierarchy -top pair\n"
+            + to_gates + "opt_clean\nabc -g AND -fast\nopt_clean\nwrite_aiger -zinit same.aig\n")
+        with open(folder / "same.log", "w") as log:
+            if subprocess.run(["yosys", "-q", "same.ys"], cwd=folder, stdout=log, stderr=log).returncode:
+                return True  # Yosys 0.23 ends over some memories
+        said = subprocess.run(["sh", "-c", f"ulimit -t {SECONDS}; exec yosys-abc -c 'read_aiger same.aig; fold; strash; scorr -F 2; pdr; sat'"],
+                              cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True).stdout
+        return not re.search("Property proved|UNSATISFIABLE", said)
+
+
+def attempt(proof, index, mutant):
+    """A mutant's row: proof, module, source line, what was done there, result, seconds."""
+    start = time.monotonic()
+    folder = proof.work / str(index)
+    status, text = proof.run(folder, mutant, SECONDS)
+    if status and not re.search("an assertion fails|not proven|not reached", text):
+        sys.exit(f"{text}mutants: formal.{proof.name}: {mutant}: does not run")
+    result = "caught" if status else "SURVIVED" if proof.differs(folder, mutant) else "same"
+    options = collections.defaultdict(list)
+    for option, value in re.findall(r"-(\w+) (\S+)", mutant):
+        options[option].append(value)
+    line = re.sub(r"(:\d+)\..*", r"\1", os.path.relpath(options["src"][-1], proof.source)) if options["src"] else ""
+    place = f"{options['cell'][0].split('$')[1 if '$' in options['cell'][0] else 0]}.{options['port'][0]}[{options['portbit'][0]}]"
+    wire = f" ({options['wire'][0]}[{options['wirebit'][0]}])" if options["wire"] else ""
+    row = dict(proof=proof.name, module=options["module"][0], line=line, does=f"{options['mode'][0]} {place}{wire}", result=result,
+               seconds=round(time.monotonic() - start, 1))
+    if result == "SURVIVED":
+        print(f"SURVIVED  formal.{proof.name:<18} {line} {row['does']}", flush=True)
+    (folder / "mutant").write_text(mutant + "\n")
+    return row
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default="build/main", help="whose proofs")
+    parser.add_argument("--out", default="build/mutants", help="where results go")
+    parser.add_argument("--block", default=JUDGED, help="proofs by regular expression (default: %(default)s)")
+    parser.add_argument("--number", type=int, default=20, help="mutants a proof")
+    parser.add_argument("--seed", default="1", help="of the draw")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many are tried at once")
+    options = parser.parse_args()
+    out = pathlib.Path(options.out).resolve()
+    # The state of the sources that is measured, for the regression's light
+    regress = f"{options.build}/tests/regress/regress"
+    tree = subprocess.run([regress, "--tree", "bus hdl tests"], stdout=subprocess.PIPE, text=True).stdout.strip() if os.access(regress, os.X_OK) else ""
+    shown = subprocess.run(["ctest", "--test-dir", options.build, "--show-only=json-v1", "-R", rf"^formal\.({options.block})"], stdout=subprocess.PIPE, check=True)
+    tests = json.loads(shown.stdout)["tests"]
+    proofs = [Proof(test, out / "drawn") for test in tests]
+    proofs = [proof for proof in proofs if not proof.module.endswith("_proof")]  # of several modules together
+    if not proofs:
+        sys.exit(f"mutants: no proof's name begins with {options.block}: ctest -N -L formal lists them")
+    source = pathlib.Path(tests[0]["command"][3])
+    # A copy: names of cells move with any change, and somebody may be editing.
+    shutil.rmtree(out / "drawn", ignore_errors=True)
+    for folder in ("bus", "hdl", "ip"):
+        shutil.copytree(source / folder, out / "drawn/source" / folder)
+    with ThreadPoolExecutor(options.jobs) as pool:
+        lists = list(pool.map(lambda proof: proof.draw(options.number, options.seed), proofs))
+        rows = list(pool.map(lambda task: attempt(*task), [(p, i, m) for p, drawn in zip(proofs, lists) for i, m in enumerate(drawn)]))
+    scores = {}
+    for module in sorted({row["module"] for row in rows}):
+        count = collections.Counter(row["result"] for row in rows if row["module"] == module)
+        judged = count["caught"] + count["SURVIVED"]
+        scores[module] = dict(drawn=judged + count["same"], same=count["same"], caught=count["caught"],
+                              score=round(100 * count["caught"] / judged, 1) if judged else 100.0)
+    bad = [module for module, score in scores.items() if score["score"] < GATE]
+    (out / "drawn.json").write_text(json.dumps(dict(seed=options.seed, tree=tree, gate=GATE, modules=scores, survived=[row for row in rows if row["result"] == "SURVIVED"])))
+    for module, score in scores.items():
+        print("%-22s %5.1f %%  %3d caught of %3d, %d the same" % (module, score["score"], score["caught"], score["drawn"] - score["same"], score["same"]))
+    caught = sum(score["caught"] for score in scores.values())
+    judged = sum(score["drawn"] - score["same"] for score in scores.values())
+    print(f"mutants: {caught} of {judged} drawn with seed {options.seed} caught by proofs, {len(rows) - judged} the same as the module"
+          + (f"; below {GATE} %: {', '.join(bad)}" if bad else ""))
+    return bool(bad)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,51 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# drawn_test: drawn.py on a module of which the proof says half: what it misses survives at its line, what is no bug drops out.
+# Usage: drawn_test.sh drawn.py source-folder work-folder
+set -eu
+drawn=$1 source=$2 work=$3
+rm -rf "$work"
+mkdir -p "$work/hdl/small" "$work/bus" "$work/ip" "$work/build"
+cd "$work"
+touch bus/none.v
+fail() {
+    cat run.log >&2
+    echo "$*" >&2
+    exit 1
+}
+cat >hdl/small/pair.v <<'END'
+`default_nettype none
+module pair (input wire clk_i, input wire a_i, input wire b_i, output reg both_o, output wire same_o);
+    assign same_o = a_i | (a_i & b_i);
+    always @(posedge clk_i)
+        both_o <= a_i & b_i;
+`ifdef FORMAL
+    reg past = 0, a, b;
+    always @(posedge clk_i)
+        {past, a, b} <= {1'b1, a_i, b_i};
+    always @* if (past) begin
+        assert (same_o == a_i);
+        cover (both_o);
+    end
+`endif
+endmodule
+END
+cat >CMakeLists.txt <<END
+cmake_minimum_required(VERSION 3.25)
+project(tiny NONE)
+enable_testing()
+add_test(NAME formal.pair COMMAND $source/tests/hdl/formal/prove.sh pair 4 $work $work/build/pair)
+END
+cmake -S . -B build -G Ninja >/dev/null
+run() { "$drawn" --build build --out build --number 8 --seed 3 --jobs 2 --block "${1:-pair}" >run.log 2>&1; }
+if run; then fail "mutants that survive are no error"; fi
+grep -q '^SURVIVED .*formal.pair .*hdl/small/pair.v:[45] ' run.log || fail "the survivor's line is not told"
+! grep -q '^SURVIVED .*pair.v:3 ' run.log || fail "a mutant that changes nothing survives, or the proof misses one"
+grep -q '^pair .* [1-9] the same$' run.log || fail "none drops out"
+grep -q 'below 95 %: pair$' run.log || fail "the gate is not told"
+sed -i 's/assert (same_o == a_i);/& assert (both_o == (a \&\& b));/' hdl/small/pair.v
+run || fail "a proof that says all misses some"
+grep -q '^pair  *100.0 %' run.log || fail "no score"
+grep -q '"survived": \[\]' build/drawn.json || fail "no summary"
+if run nothing; then fail "no proof is no error"; fi
+grep -q 'no proof.s name begins with nothing' run.log || fail "no word of what there is"

@@ -34,9 +34,11 @@ constexpr uint64_t digestNs = 100'000'000;
 
 Frame pictureFor(const Flight::Options& o) {
     int width = 0, height = 0;
-    if (std::sscanf(o.size.c_str(), "%dx%d", &width, &height) != 2 || width < 8 || width > 1024 ||
-        height < 8 || height > 4096)
-        throw std::runtime_error("size '" + o.size + "': give WIDTHxHEIGHT, 8x8 to 1024x4096");
+    char more = 0;
+    if (std::sscanf(o.size.c_str(), "%dx%d%c", &width, &height, &more) != 2 || width < 8 ||
+        width > 1024 || width % 8 || height < 8 || height > 4096)
+        throw std::runtime_error("size '" + o.size +
+                                 "': give WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8");
     return loadFrame(o.image, width, height);
 }
 

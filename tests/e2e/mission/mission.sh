@@ -235,6 +235,8 @@ picture_bad)
     fails_with "is no picture that can be read" run "$out" --image "$out/bad.png"
     # Nothing in the folder is touched where the start is refused.
     [ "$(cat "$out/report.md" "$out/calls.jsonl")" = "$(printf 'mine\nmine')" ]
+    fails_with "size '333x111': give WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8" run "$out" --image $image --size 333x111
+    fails_with "size '96x64k'" run "$out" --image $image --size 96x64k
     ;;
 threshold_wrong) fails_with "THRESHOLD is 0..255 grey levels, not '999'" run "$out" --image $image --threshold 999 ;;
 picture_missing) fails_with "cannot read picture" run "$out" --image /nowhere.png ;;

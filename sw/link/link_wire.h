@@ -15,7 +15,7 @@
 #define LINK_WIRE_H
 
 #define LINK_HELLO_FIRST 300000U /* microseconds between HELLOs, at least */
-#define LINK_VERSION 4U
+#define LINK_VERSION 5U
 #define LINK_HEADER 3U
 #define LINK_CRC 2U
 #define LINK_OVERHEAD (LINK_HEADER + LINK_CRC)

@@ -26,7 +26,9 @@ static int isPlausible(const Link* link, const U8* frame) {
         return payload != 0 || (frame[2] & LINK_LAST);
     if (kind > LINK_KIND_PING)
         return payload >= 2U;
-    return payload == sizes[LINK_IS_SECURE(link)][kind] || (kind == LINK_KIND_ACK && payload == 5U);
+    if (kind == LINK_KIND_ACK)
+        return payload - 1U <= LINK_BITMAP;
+    return payload == sizes[LINK_IS_SECURE(link)][kind];
 }
 
 /* Returns whose a whole frame is: the session's, or that of one that a HELLO announced. */
@@ -113,7 +115,7 @@ static int onPiggyback(Link* link, const U8* frame) {
     if (kindOf(frame) == LINK_KIND_PIGGYBACK_ASK)
         flags |= LINK_ACK_NOW;
     /* Such a frame is not sent while a message is held: the whole window is open. */
-    link_onAck(link, payload[0], link->sender.fullCredit, 0);
+    link_onAck(link, payload[0], link->sender.fullCredit, 0, 0);
     return link_onData(link, frame[1], flags, payload + 1, LINK_LENGTH(frame) - 1U);
 }
 
@@ -141,7 +143,7 @@ static void takeFrame(Link* link, const U8* frame, Owner owner) {
     if (kind == LINK_KIND_DATA) {
         isFair = link_onData(link, frame[1], frame[2], payload, size);
     } else if (kind == LINK_KIND_ACK) {
-        link_onAck(link, frame[1], payload[0], size == 5U ? link_get32(payload + 1) : 0);
+        link_onAck(link, frame[1], payload[0], payload + 1, size - 1U);
     } else if (kind == LINK_KIND_BYE) {
         link_lose(link);
     } else if (kind == LINK_KIND_PING && LINK_IS_SECURE(link)) {
@@ -197,7 +199,7 @@ static U32 parse(Link* link, const U8* bytes, U32 count, int isEnd) {
                 break;
             if (confirmed && owner != NOBODY) {
                 parser->outOfStep = 0;
-                link->heard = (U8)size;
+                link_hear(link, size);
                 takeFrame(link, isSecure ? copy : frame, owner);
                 ++link->statistics.framesReceived;
                 link->statistics.bytesReceived += size;

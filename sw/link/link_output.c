@@ -13,8 +13,9 @@
 #define BYTE_US 32U
 
 /* A packet that was heard since the last own one takes more than its time from the own ones: it
- * must be handled, and the two may collide. Quarters of its time that the next one waits. */
-#define HEARD_QUARTERS 5U
+ * must be handled, and the two may collide. Quarters of its time that the next one waits; but not
+ * the second half of the wait if one is heard then: so two that talk at once take turns. */
+#define HEARD_QUARTERS 7U
 
 /* Microseconds for which a packet behind a short one waits longer: a modem that still has the short
  * one in its buffer joins the two, and cuts all later ones in the middle. */
@@ -50,10 +51,20 @@ int link_flush(Link* link) {
     link->paceUntil += link->slack;
     if (link->packed <= link->longest)
         link->slack -= SHORT_MARGIN;
-    if (link->heard)
-        link->paceUntil += timeOf(link, link->heard) * HEARD_QUARTERS >> 2;
+    link->early = 0;
+    if (link->heard) {
+        U32 wait = timeOf(link, link->heard) * HEARD_QUARTERS >> 2;
+        link->early = (timeOf(link, link->packed) + wait) / 2U;
+        link->paceUntil += wait;
+    }
     link->packed = link->heard = 0;
     return 1;
+}
+
+void link_hear(Link* link, U32 size) {
+    link->heard = (U8)size;
+    if (link->paceUntil - link->slack - link->now < link->early)
+        link->paceUntil = link->now + link->slack;
 }
 
 int link_isOpen(Link* link) {

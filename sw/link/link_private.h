@@ -11,7 +11,8 @@
 #define LINK_FEATURES (LINK_FEATURE_COMPRESSION | LINK_FEATURE_PIGGYBACK)
 
 /* Times in microseconds. */
-#define LINK_ACK_DELAY 30000U    /* silence behind data after which it is acknowledged unasked */
+#define LINK_ACK_DELAY 30000U    /* silence behind data after which it is acknowledged unasked, */
+#define LINK_ACK_WITHIN 80000U   /* the same inside a message: more is to come */
 #define LINK_HELLO_LAST 2000000U /* between HELLOs, at most */
 #define LINK_PING_AFTER 5000000U /* silence after which the peer is asked, ... */
 #define LINK_PING_EVERY 200000U  /* again, ... */
@@ -36,7 +37,8 @@
 /* True if a key was given: from then on for good. */
 #define LINK_IS_SECURE(link) (LINK_SECURE && (link)->overhead != LINK_OVERHEAD)
 
-#define LINK_ACK_ROOM(link) ((link)->overhead + 5U) /* bytes of the longest acknowledgement */
+#define LINK_ACK_ROOM(link) \
+    ((link)->overhead + 1U + LINK_BITMAP) /* bytes of the longest acknowledgement */
 
 #define LINK_SLOT(seq) ((seq) & (LINK_WINDOW - 1U))
 
@@ -200,6 +202,7 @@ struct Link {
     U32 byteTimeUs16;
     U32 slack;     /* so much before then the next packet is handed over */
     U32 paceUntil; /* when the modem will have sent everything handed over */
+    U32 early;     /* a packet that is heard shortens the wait till then by so much at most */
     U32 heardAt, pingAt;
     Link_Session session;
     Link_Parser parser;
@@ -223,6 +226,8 @@ struct Link {
 
 /* True if a fragment may go out now: the packet has room, or the modem has for a new one. */
 int link_isOpen(Link* link);
+/* Notes that a frame of so many bytes came. */
+void link_hear(Link* link, U32 size);
 /* Bytes of payload that a frame may have to fit into the packet, at least if link_isOpen. */
 U32 link_room(const Link* link);
 /* Hands the packet to the radio. Returns 0: it had no room, the packet stays. */
@@ -270,7 +275,8 @@ void link_queueClosings(Link* link);
 /* link_sender: fragments, window, retransmission. */
 
 void link_resetSender(Link* link);
-void link_onAck(Link* link, U32 cumulative, U32 credit, U32 bitmap);
+/* `bitmap`: so many bytes, as in the frame. */
+void link_onAck(Link* link, U32 cumulative, U32 credit, const U8* bitmap, U32 size);
 void link_pollSender(Link* link);
 
 /* link_session: handshake, reboots, and a peer that has vanished. */

@@ -127,7 +127,7 @@ int link_onData(Link* link, U32 seq, U32 flags, const U8* data, U32 size) {
     U32 ahead = (U8)(seq - receiver->next);
     Link_Slot* slot = &link->slots[LINK_SLOT(seq)];
     receiver->ackDue = 1;
-    receiver->ackAt = link->now + LINK_ACK_DELAY;
+    receiver->ackAt = link->now + (flags & LINK_LAST ? LINK_ACK_DELAY : LINK_ACK_WITHIN);
     if (flags & LINK_ACK_NOW)
         receiver->ackNow = 1;
     if (ahead == 0 && !receiver->isHeld) /* the usual case: straight into the message */
@@ -138,6 +138,8 @@ int link_onData(Link* link, U32 seq, U32 flags, const U8* data, U32 size) {
         slot->flags = (U8)flags;
         slot->size = (U8)size;
         memcpy(slot->bytes, data, size);
+        if ((flags & LINK_FIRST) && (flags & LINK_LAST))
+            receiver->ackNow = 1; /* a short message waits for what is missing */
     } else {
         ++link->statistics.duplicates; /* the acknowledgement was lost, or it is being resent */
         receiver->ackNow = 1;
@@ -145,14 +147,18 @@ int link_onData(Link* link, U32 seq, U32 flags, const U8* data, U32 size) {
     return 1;
 }
 
-/* Returns which fragments behind the next expected one have arrived; bit n: SEQ + 1 + n. */
-static U32 gaps(const Link* link) {
-    U32 bitmap = 0;
+/* Notes which fragments behind the next expected one have arrived; bit n: SEQ + 1 + n. Returns up
+ * to which byte there are any. */
+static U32 gaps(const Link* link, U8* bitmap) {
+    U32 size = 0;
     U32 i;
-    for (i = 1; i < LINK_WINDOW && i <= 32U; ++i)
-        if (link->slots[LINK_SLOT(link->receiver.next + i)].isUsed)
-            bitmap |= 1U << (i - 1U);
-    return bitmap;
+    memset(bitmap, 0, LINK_BITMAP);
+    for (i = 0; i < LINK_WINDOW - 1U; ++i)
+        if (link->slots[LINK_SLOT(link->receiver.next + 1U + i)].isUsed) {
+            size = i / 8U + 1U;
+            bitmap[i / 8U] = (U8)(bitmap[i / 8U] | 1U << i % 8U);
+        }
+    return size;
 }
 
 int link_ackMayRide(const Link* link) {
@@ -180,15 +186,14 @@ int link_pollReceiver(Link* link) {
 
 void link_pollAck(Link* link) {
     const Link_Receiver* receiver = &link->receiver;
-    U8 frame[LINK_MAX_OVERHEAD + 5U];
+    U8 frame[LINK_MAX_OVERHEAD + 1U + LINK_BITMAP];
     U8* payload = frame + LINK_HEADER;
-    U32 bitmap;
+    U32 size;
     if (!receiver->ackDue || (!receiver->ackNow && LINK_BEFORE(link->now, receiver->ackAt)))
         return;
-    bitmap = gaps(link);
+    size = gaps(link, payload + 1);
     /* A message that nobody takes keeps the window where it is. */
     payload[0] = (U8)(receiver->isHeld ? receiver->waiting + 1U : LINK_WINDOW);
-    link_put32(payload + 1, bitmap);
-    if (link_sendControl(link, frame, LINK_KIND_ACK, receiver->next, bitmap ? 5U : 1U, 0))
+    if (link_sendControl(link, frame, LINK_KIND_ACK, receiver->next, size + 1U, 0))
         link_ackIsSent(link);
 }

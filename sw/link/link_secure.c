@@ -3,7 +3,7 @@
  * link_secure: encrypts and authenticates frames by Ascon-AEAD128, and derives the keys.
  *
  * All of a frame that is not encrypted is part of its nonce: the numbers that its bytes stand for,
- * the header, and up to five bytes of a payload in clear. So a fragment that goes out again with
+ * the header, and the payload in clear. So a fragment that goes out again with
  * another flag or acknowledgement has another nonce, the same nonce always means the same frame,
  * and a frame that is replayed where its numbers mean something else is wrong.
  */
@@ -15,8 +15,8 @@
 
 #include <string.h>
 
-#define CLEAR_AT 11U /* where the payload in clear begins in a nonce, ... */
-#define CLEAR_MOST 5U
+#define CLEAR_AT 11U  /* where the payload in clear begins in a nonce, ... */
+#define CLEAR_MOST 5U /* and how much of it stands there */
 
 /* Returns how many bytes at the payload's beginning are not encrypted: of a control frame all, of
  * a PIGGYBACK the acknowledgement. */
@@ -34,6 +34,9 @@ static void makeNonce(U8* nonce, const U8* frame, U32 number, U32 acked) {
     link_put32(nonce + 4, acked);
     if ((frame[0] & LINK_CONTROL) && LINK_IS_HANDSHAKE(kind))
         memcpy(nonce, frame + LINK_HEADER, LINK_NONCE_BYTES);
+    else if (clear > CLEAR_MOST) /* an acknowledgement's: 9 bytes at most */
+        memcpy(nonce + 4, frame + LINK_HEADER + CLEAR_MOST,
+               clear < LINK_BITMAP + 1U ? clear - CLEAR_MOST : LINK_BITMAP + 1U - CLEAR_MOST);
     memcpy(nonce + 8, frame, LINK_HEADER);
     memcpy(nonce + CLEAR_AT, frame + LINK_HEADER, clear < CLEAR_MOST ? clear : CLEAR_MOST);
 }

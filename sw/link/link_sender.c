@@ -11,10 +11,9 @@
 #define IN_FLIGHT(sender) ((sender)->next - (sender)->base)
 #define FRAGMENT(link, seq) (&(link)->window[LINK_SLOT(seq)])
 
-/* One transmission of so many asks for an acknowledgement, which costs a turn on a half-duplex air:
- * few where nothing is lost; but what is lost keeps the window from moving on. */
-#define ASK_EVERY 16U
-#define ASK_LOSSY 6U
+/* Microseconds, a round trip, after which the timer expires at the latest while the window is full:
+ * nothing but an answer can set the sender going again. */
+#define FULL_WAIT(sender) ((sender)->srtt < LINK_RTO_MIN ? LINK_RTO_MIN : (sender)->srtt)
 
 void link_resetSender(Link* link) {
     Link_Sender* sender = &link->sender;
@@ -108,12 +107,22 @@ static int cut(Link* link) {
     return 1;
 }
 
+/* Returns of how many transmissions one asks for an acknowledgement, which costs a turn on a
+ * half-duplex air: few where nothing is lost; but what is lost keeps the window from moving on, and
+ * short messages fill the queue before the window. */
+static U32 askEvery(const Link* link) {
+    if (link->sender.isLossy)
+        return 5U;
+    if (link->queue.count >= LINK_SEND_MESSAGES / 2U)
+        return LINK_SEND_MESSAGES / 2U;
+    return link->sender.fullCredit / 4U * 3U;
+}
+
 /* True if the peer should answer a fragment at once: one of so many, the last that its credit
  * covers, and the last one that is sent again. */
 static int mustAsk(const Link* link, U32 seq) {
-    U32 place = seq - link->sender.base + 1U;
-    if (link->sender.unasked >= (link->sender.isLossy ? ASK_LOSSY : ASK_EVERY) - 1U ||
-        place >= link->sender.credit)
+    const Link_Sender* sender = &link->sender;
+    if (sender->unasked + 1U >= askEvery(link) || seq - sender->base + 1U >= sender->credit)
         return 1;
     if (!FRAGMENT(link, seq)->tries)
         return 0;
@@ -163,6 +172,8 @@ static int transmit(Link* link, U32 seq) {
     f->state = LINK_SENT;
     sender->unasked = (U8)(isAsked ? 0U : sender->unasked + 1U);
     sender->timerAt = link->now + sender->rto;
+    if (IN_FLIGHT(sender) >= sender->fullCredit && FULL_WAIT(sender) < sender->rto)
+        sender->timerAt = link->now + FULL_WAIT(sender);
     return 1;
 }
 
@@ -213,18 +224,15 @@ static void sendAgain(Link* link, U32 order) {
 /* Marks what is acknowledged: `advance` fragments from the base on, and those of the bitmap, whose
  * bit n is for the fragment at advance + 1 + n. What was transmitted before the newest of them is
  * lost. */
-static void markAcked(Link* link, U32 advance, U32 bitmap) {
+static void markAcked(Link* link, U32 advance, const U8* bitmap, U32 size) {
     Link_Sender* sender = &link->sender;
     const Link_Fragment* newest = 0;
     U32 i;
     for (i = 0; i < IN_FLIGHT(sender); ++i) {
         Link_Fragment* f = FRAGMENT(link, sender->base + i);
         U32 elapsed = link->now - f->sentAt;
-        U32 isHere = i < advance;
-        if (i > advance) {
-            isHere = bitmap & 1U;
-            bitmap >>= 1;
-        }
+        U32 bit = i - advance - 1U;
+        U32 isHere = i < advance || (bit < 8U * size && (bitmap[bit / 8U] >> bit % 8U & 1));
         if (!isHere || f->state == LINK_ACKED || f->tries == 0)
             continue;
         f->state = LINK_ACKED;
@@ -243,7 +251,7 @@ static void markAcked(Link* link, U32 advance, U32 bitmap) {
     }
 }
 
-void link_onAck(Link* link, U32 cumulative, U32 credit, U32 bitmap) {
+void link_onAck(Link* link, U32 cumulative, U32 credit, const U8* bitmap, U32 size) {
     Link_Sender* sender = &link->sender;
     U32 advance = (U8)(cumulative - sender->base);
     if (advance > IN_FLIGHT(sender))
@@ -252,8 +260,8 @@ void link_onAck(Link* link, U32 cumulative, U32 credit, U32 bitmap) {
     if (sender->fullCredit < credit)
         sender->fullCredit = (U8)credit;
     sender->hasWork = 1;
-    sender->isLossy = bitmap != 0;
-    markAcked(link, advance, bitmap);
+    sender->isLossy = size != 0;
+    markAcked(link, advance, bitmap, size);
     while (advance--) {
         const Link_Fragment* f = FRAGMENT(link, sender->base++);
         if (f->flags & LINK_LAST)

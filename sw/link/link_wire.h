@@ -18,6 +18,7 @@
 #define LINK_VERSION 5U
 #define LINK_HEADER 3U
 #define LINK_CRC 2U
+#define LINK_BITMAP 8U /* bytes of an acknowledgement's bitmap, at most */
 #define LINK_OVERHEAD (LINK_HEADER + LINK_CRC)
 #define LINK_MAX_PAYLOAD 95U
 #define LINK_SECURE_OVERHEAD (LINK_HEADER + LINK_TAG)

@@ -101,19 +101,26 @@ std::array<double, 2> flow(World& w, bool both, uint64_t seconds) {
 void goodput(const std::string& what, const RfWeather& weather, Mode mode, bool both) {
     const unsigned runs = figures.brief ? 1 : 9;
     double rate[2] = {0, 0}, least = 1e9, most = 0;
+    uint64_t packets = 0, acks = 0;
     for (unsigned run = 0; run < runs; ++run) {
         World w(weather, mode, testSeed() + 10 * run);
         const auto one = flow(w, both, figures.brief ? 1 : 20);
         for (int i = 0; i < 2; ++i)
             rate[i] += one[i] / runs;
+        for (const End* end : {&w.a, &w.b}) {
+            packets += end->modem.counters().packetsSent;
+            acks += end->statistics().acksSent;
+        }
         least = std::min(least, one[0] + one[1]);
         most = std::max(most, one[0] + one[1]);
     }
     const double limit = mode == Encrypted ? 47000.0 / 8 : 10000;
     const double all = rate[0] + rate[1];
-    std::printf("%s, %s, %s: %5.0f + %5.0f bytes/s, %.1f %% of %.0f (%.1f to %.1f)\n",
+    std::printf("%s, %s, %s: %5.0f + %5.0f bytes/s, %.1f %% of %.0f (%.1f to %.1f); "
+                "%.0f packets, %.0f acknowledgements a run\n",
                 columns[mode], both ? "both ways" : "one way  ", what.c_str(), rate[0], rate[1],
-                all / limit * 100, limit, least / limit * 100, most / limit * 100);
+                all / limit * 100, limit, least / limit * 100, most / limit * 100,
+                static_cast<double>(packets) / runs, static_cast<double>(acks) / runs);
     figures.add(std::string("goodput ") + (both ? "both ways " : "one way ") + names[mode] + ", " +
                     what,
                 all, "bytes/s", limit);

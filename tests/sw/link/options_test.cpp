@@ -62,10 +62,10 @@ INSTANTIATE_TEST_SUITE_P(
     Variants, Options,
     ::testing::Values(Names{"full", "full", false}, Names{"full", "small", false},
                       Names{"small", "full", false}, Names{"small", "small", false},
-                      Names{"window64", "full", false}, Names{"small", "window64", false},
-                      Names{"full", "minimal", false}, Names{"window64", "minimal", false},
+                      Names{"window32", "full", false}, Names{"small", "window32", false},
+                      Names{"full", "minimal", false}, Names{"window32", "minimal", false},
                       Names{"small", "minimal", false}, Names{"open", "full", false},
-                      Names{"full", "small", true}, Names{"window64", "full", true},
+                      Names{"full", "small", true}, Names{"window32", "full", true},
                       Names{"full", "minimal", true}, Names{"small", "minimal", true},
                       Names{"tag4", "tag4", true}, Names{"tag4", "minimal_tag4", true}));
 
@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(Tags, CallBytes,
                                            Names{"tag4", "tag4", true}));
 
 TEST(LinkOptions, MemoryIsWhatTheDocumentationSays) {
-    for (auto variant : {"full", "window64", "small", "minimal"})
+    for (auto variant : {"full", "window32", "small", "minimal"})
         std::printf("sizeof(Link), %s: %u bytes on this machine\n", variant,
                     Peer(variant, 1).size());
 }

@@ -114,6 +114,36 @@ TEST_P(FullOvertaking, ManyShortOnesLeaveTheLongOneHalf) {
     EXPECT_GE(b_.received.size(), 6u);
 }
 
+TEST_P(FullOvertaking, InBadWeatherEachChannelKeepsItsOrder) {
+    setWeather(0.2, 0.05, 0.02);
+    Random random(testSeed());
+    std::vector<std::pair<int, Bytes>> sent[3], came[3];
+    unsigned number = 0, overtook = 0;
+    EXPECT_TRUE(until(
+        [&] {
+            const int channel = static_cast<int>(random.below(3));
+            Bytes m(random.below(4) ? 2 + random.below(60) : 900, static_cast<uint8_t>(number));
+            m[1] = static_cast<uint8_t>(number >> 8);
+            if (number < 400 && a_.send(channel, m, tag_) == LINK_OK) {
+                sent[channel].emplace_back(channel, m);
+                ++number, ++tag_;
+            }
+            return number == 400;
+        },
+        120'000'000));
+    (void)arrived();
+    int newest = -1;
+    for (auto& message : b_.received) {
+        const int which = message.second[0] | message.second[1] << 8;
+        overtook += which < newest;
+        newest = std::max(newest, which);
+        came[message.first].push_back(message);
+    }
+    for (int channel : {0, 1, 2})
+        EXPECT_EQ(came[channel], sent[channel]) << "channel " << channel;
+    EXPECT_GT(overtook, 20u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Peers, FullOvertaking,
                          ::testing::Values(std::make_tuple("full", false),
                                            std::make_tuple("full", true),

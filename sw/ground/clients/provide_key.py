@@ -15,6 +15,7 @@ import termios
 import time
 import tty
 
+TIOCSBRK, TIOCCBRK = 0x5427, 0x5428  # Linux' ioctl_tty(2); Python 3.11's termios lacks both
 BREAK, PAUSE = 1.5, 0.5  # s; a vehicle without a key starts again each second
 
 
@@ -48,10 +49,10 @@ def provide(port, command, patience):
     while "icesoc: key?" not in read_line(port, PAUSE):
         if time.monotonic() > end:
             raise Failed("no vehicle has asked for %d s: is it wired, and was it switched on meanwhile?" % patience)
-        fcntl.ioctl(port, termios.TIOCSBRK)
+        fcntl.ioctl(port, TIOCSBRK)
         time.sleep(BREAK)
         termios.tcflush(port, termios.TCIFLUSH)
-        fcntl.ioctl(port, termios.TIOCCBRK)
+        fcntl.ioctl(port, TIOCCBRK)
     os.write(port, command.encode() + b"\n")
     answer = read_line(port, 10)
     if answer != "ok":

@@ -44,7 +44,7 @@ protected:
                     before = residentKiB(process);
                 return ended_ == threads;
             },
-            1200);
+            3600);
         for (auto& worker : workers)
             worker.join();
         const double grown = residentKiB(process) - before;

@@ -22,7 +22,7 @@ struct Pin {
     bool isOut() const { return name.back() == 'o'; }
 };
 
-// What a probe records: a signal by its name in the simulator, below soc.
+// A signal that a probe records, by its name in the simulator, below soc.
 struct Signal {
     std::string name;
     unsigned width = 1;

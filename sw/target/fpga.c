@@ -22,7 +22,8 @@
 #define CONTROL 2U       /* port C: PROGRAM_B 0, open drain; DONE 1 */
 #define DONE 1U
 #define NO_TASK 255U
-/* Of 10 ms: 3.7 Mbit at 2 MHz, or half of that, take 1.9 s, or 3.7; four tries are the most. */
+/* The longest wait for DONE, ticks of 10 ms: 3.7 Mbit take 1.9 s at 2 MHz, 3.7 s at half of it, and
+ * four tries are the most. */
 #define WAIT_TICKS 1600U
 #define READS_A_PAUSE 64U
 

@@ -75,7 +75,7 @@ Figures figuresOf(const Netlist& netlist, bool spartan6, const FilesAlong& files
     if (spartan6) {
         f.timing = timingOf(netlist, owners);
         f.nets = netsOf(netlist, owners, f.timing);
-        // Where what the report names stands in the sources.
+        // Finds the file and line of a signal that the report names.
         const auto place = [&](const std::string& signal) {
             const std::string at = placeOf(netlist, signal);
             if (!at.empty())

@@ -17,6 +17,11 @@ std::string accessText(uint32_t address, unsigned bytes, const char* what) {
     std::snprintf(text, sizeof text, "access of %u bytes to 0x%08X: ", bytes, address);
     return std::string(text) + what;
 }
+
+// Returns the bytes of the longest aligned access that begins at an address.
+unsigned accessSize(uint32_t address, uint32_t bytes) {
+    return address % 4 == 0 && bytes >= 4 ? 4 : address % 2 == 0 && bytes >= 2 ? 2 : 1;
+}
 } // namespace
 
 // The processor has waited for the access that the bus has just made.
@@ -151,9 +156,7 @@ bool CortexM3::debugRead(uint32_t address, void* data, uint32_t bytes) {
     auto* to = static_cast<uint8_t*>(data);
     try {
         while (bytes) {
-            unsigned size = address % 4 == 0 && bytes >= 4   ? 4
-                            : address % 2 == 0 && bytes >= 2 ? 2
-                                                             : 1;
+            const unsigned size = accessSize(address, bytes);
             uint32_t value = 0;
             if (address >= 0xE0000000) {
                 if (!control_.read(address, size, value))
@@ -178,9 +181,7 @@ bool CortexM3::debugWrite(uint32_t address, const void* data, uint32_t bytes) {
     const auto* from = static_cast<const uint8_t*>(data);
     try {
         while (bytes) {
-            unsigned size = address % 4 == 0 && bytes >= 4   ? 4
-                            : address % 2 == 0 && bytes >= 2 ? 2
-                                                             : 1;
+            const unsigned size = accessSize(address, bytes);
             uint32_t value = 0;
             std::memcpy(&value, from, size);
             if (address >= 0xE0000000) {

@@ -19,7 +19,7 @@ public:
     void wire(SpiFlash& flash) { flash_ = &flash; }
     bool isWired() const { return flash_; }
     void powerOn();
-    // What the processor drives: chip select, PROGRAM_B.
+    // Takes the processor's outputs: chip select, PROGRAM_B.
     void drive(bool isSelectLow, bool isProgramLow);
     bool isDone() const { return !flash_ || (boot_.running && now_() >= doneAt_); }
     const Spartan6Boot& boot() const { return boot_; }

@@ -50,7 +50,7 @@ json ofTests(const json& data, bool proofs) {
     return judge(proofs ? "proofs" : "tests", good, "failed", bad);
 }
 
-// Of the mutants that were drawn, a module's score counts, and only if the sources are the same.
+// The light of the mutants: drawn ones count by their module's score, if the sources are the same.
 json ofMutants(const json& rows, const json& drawn, const std::string& source) {
     std::vector<std::string> bad;
     const std::string tree = drawn.value("tree", "");

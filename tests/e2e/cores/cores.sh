@@ -43,7 +43,7 @@ awk '$2 == "servo.pwm_o" && $3 == 4 { up = $1 } $2 == "servo.pwm_o" && $3 == 0 &
 grep -q "'servo' moves in nearly every clock" "$work/log" || { cat "$work/log" && echo 'who keeps the chip from being quiet is not said' && exit 1; }
 grep -q 'cores: all as expected' "$work/log" || { cat "$work/log" && exit 1; }
 
-# What the probe captured by radio, read by GTKWave's tools, is what the simulator traces when it flies this flight again.
+# The probe's capture by radio, read by GTKWave's tools, is what the simulator traces when it flies this flight again.
 vcd2fst "$work/probe.vcd" "$work/probe.fst" >"$work/log"
 fst2vcd "$work/probe.fst" >"$work/captured.vcd"
 span=$(awk '/^#/ { t = substr($1, 2) / 1e9; if (!n++) first = t } END { printf "--from %.6f --to %.6f", first - 2e-5, t + 2e-5 }' "$work/probe.vcd")

@@ -40,7 +40,7 @@ protected:
         });
     }
     uint64_t now() const { return fsmc.hclks() * 25 / 3; } // ns
-    // What a complete update leaves.
+    // Leaves in the FPGA's flash what a complete update does.
     void receive(const std::vector<uint8_t>& bits) {
         folder.save("new.bin", bits);
         ASSERT_EQ(folder.pack("bitstream new.bin 2 key update"), 0) << folder.said();

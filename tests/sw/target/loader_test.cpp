@@ -24,7 +24,7 @@ protected:
             << folder.said();
         chip.cpu().loadFlash(flashBase, folder.read("flash"));
     }
-    // What a complete update leaves in the second slot.
+    // Leaves in the second slot what a complete update does.
     void receive(int version, const char* key = "key") {
         ASSERT_EQ(folder.pack("image " FIRMWARE "uav.elf " + std::to_string(version) + " " + key +
                               " update"),

@@ -193,21 +193,15 @@ def main():
     if not args.device and not args.proxy:
         parser.error("give --device, or --proxy")
     import Ice
+    sys.path.insert(0, os.path.join(here, "../../sw/ground/clients"))
+    import plugged
     Ice.loadSlice("", [os.path.join(here, "Probe.ice")])
     import Probes  # made by loadSlice
     communicator = None
     try:
         signals = Signals(args.map, args.probe)
-        data = Ice.InitializationData()
-        data.properties = Ice.createProperties()
         settings = {"Ice.Default.InvocationTimeout": "60000", "Ice.ACM.Close": "0"}
-        if args.plugin:
-            settings["Ice.Plugin.XBeeAT"] = os.path.join(args.plugin, "xbeeat") + ":createXBeeAT"
-            settings["XBeeAT.Guard"] = str(args.guard)
-            settings["XBeeAT.KeyFile"] = args.key
-        for key, value in settings.items():
-            data.properties.setProperty(key, value)
-        communicator = Ice.initialize(data)
+        communicator = plugged.initialize(settings, args.plugin, args.guard, args.key)
         where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -t 60000" % (signals.identity, args.device)
         capture(Probes.ProbePrx.uncheckedCast(communicator.stringToProxy(where)), signals, args,
                 lambda text: print("probe: " + text, flush=True))

@@ -183,9 +183,9 @@ void Engine::connect(int socket, const std::string& name) {
 
 void Engine::add(Waiting program) {
     std::lock_guard<std::mutex> lock(mutex_);
-    program.since = clock_.nowUs();
+    const U32 now = program.since = clock_.nowUs();
     waiting_.push_back(std::move(program));
-    placePrograms(clock_.nowUs());
+    placePrograms(now);
     wake();
 }
 

@@ -15,6 +15,8 @@ import sys
 
 import Ice
 
+import plugged
+
 
 def write(path, lines):
     """The file with these lines, whole or not at all, for its owner alone."""
@@ -45,13 +47,8 @@ def keys_of(lines, address):
 
 def talk(args, key_file, what):
     """Calls `what` with the vehicle's KeyRing, in a session of its own."""
-    data = Ice.InitializationData()
-    data.properties = Ice.createProperties()
-    for name, value in {"Ice.Plugin.XBeeAT": os.path.join(args.plugin, "xbeeat") + ":createXBeeAT",
-                        "Ice.Default.InvocationTimeout": str(1000 * args.patience),
-                        "XBeeAT.Guard": str(args.guard), "XBeeAT.KeyFile": key_file}.items():
-        data.properties.setProperty(name, value)
-    communicator = Ice.initialize(data)
+    communicator = plugged.initialize({"Ice.Default.InvocationTimeout": str(1000 * args.patience)}, args.plugin, args.guard,
+                                      key_file)
     try:
         import Autopilot  # made by loadSlice
         return what(Autopilot.KeyRingPrx.uncheckedCast(communicator.stringToProxy(

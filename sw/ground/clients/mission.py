@@ -19,6 +19,8 @@ import threading
 import time
 
 import Ice
+
+import plugged
 from PIL import Image, ImageDraw
 
 
@@ -137,22 +139,14 @@ def parse_arguments():
 
 
 def initialize(args):
-    properties = Ice.createProperties()
-    for key, value in {
-        "Ice.Plugin.XBeeAT": os.path.join(args.plugin, "xbeeat") + ":createXBeeAT",
+    return plugged.initialize({
         "XBeeAT.Trace": str(args.trace),
         "Ice.ThreadPool.Client.Size": "2",
         "Ice.ThreadPool.Server.Size": "2",
         "Ice.Default.InvocationTimeout": str(1000 * args.patience),
         "Ice.ACM.Close": "0",
-        "XBeeAT.Guard": str(args.guard),
-        "XBeeAT.KeyFile": args.key,
         "Station.Endpoints": "xbee-at -d %s -a 0x0001 -s 0x0000" % args.device,
-    }.items():
-        properties.setProperty(key, value)
-    data = Ice.InitializationData()
-    data.properties = properties
-    return Ice.initialize(data)
+    }, args.plugin, args.guard, args.key)
 
 
 def make_station(Autopilot, log):

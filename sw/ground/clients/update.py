@@ -7,7 +7,6 @@ left it; so does this program when it is started again. A refused package leaves
 """
 
 import argparse
-import os
 import struct
 import sys
 import threading
@@ -15,6 +14,8 @@ import time
 
 import Ice
 import lz4.block
+
+import plugged
 
 HEADER = struct.Struct("<5I64s64s")  # sw/update/slots.h
 MAGIC = 0x1CE50C02
@@ -226,16 +227,8 @@ def main():
         name, images = read_package(args.package)
         Ice.loadSlice("-I" + (Ice.getSliceDir() or ".") + " " + args.slice)
         import Update  # made by loadSlice
-        data = Ice.InitializationData()
-        data.properties = Ice.createProperties()
         settings = {"Ice.Default.InvocationTimeout": "60000", "Ice.ACM.Close": "0", "Ice.RetryIntervals": "-1"}
-        if args.plugin:
-            settings["Ice.Plugin.XBeeAT"] = os.path.join(args.plugin, "xbeeat") + ":createXBeeAT"
-            settings["XBeeAT.Guard"] = str(args.guard)
-            settings["XBeeAT.KeyFile"] = args.key
-        for key, value in settings.items():
-            data.properties.setProperty(key, value)
-        communicator = Ice.initialize(data)
+        communicator = plugged.initialize(settings, args.plugin, args.guard, args.key)
         where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % (name, args.device)
         proxy = Update.FirmwarePrx.uncheckedCast(communicator.stringToProxy(where))
         update(Vehicle(proxy, args.patience), images, say, Clock(args.status), args.rehearse)

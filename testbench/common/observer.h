@@ -13,6 +13,7 @@
 
 #include "observed_clock.h"
 #include "random.h"
+#include "wave_window.h"
 #include <cstdlib>
 #include <memory>
 #include <string>
@@ -29,16 +30,12 @@ template <class Module> class Observer {
 public:
     // Prepares the recording; to be called before the model is made.
     explicit Observer(VerilatedContext& context) : context_(context) {
-        const uint64_t seed = number("CDC_SEED", 0);
+        const uint64_t seed = environmentNumber("CDC_SEED", 0);
         const char* arguments[] = {"", std::getenv("UNGATED") ? "+ungated" : "", "+cdc_random"};
         context_.commandArgs(seed ? 3 : 2, arguments);
         context_.randSeed(static_cast<int>(Random(testSeed() * 1000 + seed).next() | 1));
 #ifdef ICESOC_TRACE
         context_.traceEverOn(true);
-        from_ = number("WAVE_FROM", 0);
-        to_ = number("WAVE_TO", ~0ull);
-        const char* name = std::getenv("WAVE");
-        name_ = name ? name : "";
 #endif
     }
     // Ends the recording; to be called before the model, which owns the counters, is destroyed.
@@ -60,15 +57,15 @@ public:
     void step(Module& top, uint64_t clock, unsigned half) {
         observedClock = clock;
 #ifdef ICESOC_TRACE
-        if (name_.empty() || clock < from_ || clock > to_)
+        if (window_.file.empty() || clock < window_.from || clock > window_.to)
             return;
         if (!wave_) { // a later model takes the file over: the test fails in its last one
             wave_.reset(new VerilatedFstC);
             top.trace(wave_.get(), 99);
-            wave_->open(name_.c_str());
+            wave_->open(window_.file.c_str());
         }
         wave_->dump(2 * clock + half);
-        if (clock == to_ && half == 1)
+        if (clock == window_.to && half == 1)
             wave_->flush();
 #else
         (void)top;
@@ -77,15 +74,9 @@ public:
     }
 
 private:
-    static uint64_t number(const char* variable, uint64_t otherwise) {
-        const char* text = std::getenv(variable);
-        return text && *text ? std::strtoull(text, nullptr, 0) : otherwise;
-    }
-
     VerilatedContext& context_;
 #ifdef ICESOC_TRACE
-    uint64_t from_ = 0, to_ = 0;
-    std::string name_;
+    const WaveWindow window_;
     std::unique_ptr<VerilatedFstC> wave_;
 #endif
 };

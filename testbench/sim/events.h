@@ -4,6 +4,7 @@
 // other tools may. One object a line:
 //   {"ns": t, "packet": bytes, "from": "ground" or "uav", "lost": bool}   one left the air
 //   {"ns": t, "slot": n, "events": bits}   the processor has read these events of slot n, not 0
+//   {"ns": t, "task": name}    this task of the firmware goes on (Cortex-M3 only)
 //   {"ns": t, "accesses": {"n": count}}    register accesses to slots in the 10 ms from t on
 
 #ifndef EVENTS_H
@@ -23,6 +24,8 @@ public:
              {"from", fromGround ? "ground" : "uav"},
              {"lost", lost}});
     }
+
+    void task(uint64_t ns, const std::string& name) { put({{"ns", ns}, {"task", name}}); }
 
     // A register access: slot * 16 + word.
     void access(uint64_t ns, uint32_t word, uint32_t value, bool isWrite) {

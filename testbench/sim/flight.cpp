@@ -8,7 +8,6 @@
 #include "files.h"
 #include "key_file.h"
 #include "map_regs.h"
-#include "mark_file.h"
 #include "sensor.h"
 #include "uav_machine.h"
 
@@ -263,9 +262,10 @@ void Flight::runOnCortexM3() {
                                fpga = flashOf(o_.fpgaFlash, SpiFlash::bytes, "the FPGA's");
     M3Machine machine(soc_, {o_.firmware, o_.hclk, o_.guard, flash, key_, o_.seed, fpga},
                       [this] { return poll(); });
-    std::optional<MarkFile> marks;
-    if (!o_.marks.empty())
-        marks.emplace(o_.marks, machine.stm32(), [this] { return soc_.now(); });
+    if (machine.program)
+        machine.program->onTask = [this](const std::string& name) {
+            events_.task(soc_.now(), name);
+        };
     if (o_.gdb >= 0) {
         GdbStub stub(static_cast<uint16_t>(o_.gdb));
         std::cout << "icesoc-sim: waiting for a debugger: gdb-multiarch " << o_.firmware

@@ -28,7 +28,7 @@ public:
         uint32_t hclk = 120'000'000;
         uint16_t guard = 1000;
         int gdb = -1;
-        std::string marks, pins, trace, flash, fpgaFlash; // files
+        std::string pins, trace, flash, fpgaFlash; // files
         RfWeather weather;
         double duration = 0;
         uint64_t seed = 1;

@@ -32,7 +32,9 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
     SimulatedBoard board;
     board.provide(config.key);
     std::copy(board.words.begin(), board.words.end(), stm32_.backup().begin());
-    if (!config.flash.empty())
+    if (config.flash.empty())
+        program.emplace(stm32_, [&soc] { return soc.cycles(); });
+    else
         cpu().loadFlash(0x08000000, config.flash);
     if (!config.fpgaFlash.empty()) {
         fpgaFlash_.memory = config.fpgaFlash;

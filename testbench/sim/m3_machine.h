@@ -8,6 +8,7 @@
 
 #include "checkpoints.h"
 #include "gdb_stub.h"
+#include "program_trace.h"
 #include "soc_model.h"
 #include "stm32f2.h"
 #include <memory>
@@ -48,6 +49,8 @@ public:
     Stm32F2& stm32() { return stm32_; }
     const std::vector<uint8_t>& fpgaFlash() const { return fpgaFlash_.memory; }
     CortexM3& cpu() { return stm32_.cpu(); }
+    // What the program is at; none where flash was given, for that program is not known.
+    std::optional<ProgramTrace> program;
 
 private:
     void powerOn();

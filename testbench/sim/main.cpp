@@ -51,10 +51,9 @@ CommandLine::CommandLine() {
     app.add_option("--guard", o.guard,
                    "guard time of both modems, ms; a ground station must know it: {guard}")
         ->check(CLI::Range(2, 3300));
-    app.add_option(
-        "--replay", replay,
-        "fly the flight again that was recorded in this folder, as it was, without its "
-        "command; beside it --out, --gdb, --marks, --wave, --every-clock and --speed count");
+    app.add_option("--replay", replay,
+                   "fly the flight again that was recorded in this folder, as it was, without its "
+                   "command; beside it --out, --gdb, --wave, --every-clock and --speed count");
     app.add_option("--wave", wave, "write a waveform (FST) of a replay to this file");
     app.add_option("--from", o.from, "s, where the waveform begins");
     app.add_option("--to", o.to, "s, where it ends");
@@ -77,7 +76,6 @@ CommandLine::CommandLine() {
                    "of the Cortex-M3, Hz in simulated time; 0: 6/5 of the fabric's clock");
     app.add_option("--gdb", o.gdb, "wait for GDB on this port of the loopback interface; 0: any")
         ->check(CLI::Range(0, 65535));
-    app.add_option("--marks", o.marks, "write exceptions and tasks to this waveform file (VCD)");
     app.add_flag("--quiet", o.quiet, "say nothing");
     app.add_option("command", o.command, "program to run against the modem, behind --");
     app.positionals_at_end();
@@ -131,7 +129,6 @@ Flight::Options recorded(const CommandLine& now) {
     o.out = now.o.out;
     o.speed = now.app.count("--speed") ? now.o.speed : "max";
     o.gdb = now.o.gdb;
-    o.marks = now.o.marks;
     o.everyClock = now.o.everyClock;
     o.quiet = now.o.quiet;
     o.from = now.o.from;
@@ -165,11 +162,11 @@ int main(int argc, char** argv) {
             throw std::invalid_argument("--flash needs --cpu m3, and the modems' usual guard time");
         if (!o.fpgaFlash.empty() && o.flash.empty())
             throw std::invalid_argument("--fpga-flash needs --flash: the boot loader's checks");
-        if (o.cpu != "m3" && (o.gdb >= 0 || !o.marks.empty()))
+        if (o.cpu != "m3" && o.gdb >= 0)
             throw std::invalid_argument(
                 o.replayed ? "that flight was flown by the firmware's host build; GDB needs one of "
                              "the ARM binary: make run CPU=m3"
-                           : "--gdb and --marks need --cpu m3");
+                           : "--gdb needs --cpu m3");
         writeWave(line);
         if (!o.trace.empty())
             o.weather.trace = std::make_shared<RfTrace>(o.trace);

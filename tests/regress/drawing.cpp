@@ -9,17 +9,18 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <tuple>
 
 using nlohmann::json;
 
 namespace {
 
-constexpr size_t shownMoments = 600, shownSignals = 80;
+constexpr size_t shownChanges = 400, shownSignals = 100, portDepth = 1;
 
 struct Signal {
-    std::string name; // with its scopes: "TOP.bridge.u_write.full"
-    unsigned bits = 1;
-    size_t depth = 0; // scopes around it
+    std::string name;  // with its scopes: "TOP.bridge.u_write.full"
+    unsigned bits = 1; // 0: text
+    size_t depth = 0;  // scopes around it
     std::vector<std::pair<uint64_t, std::string>> changes;
 };
 
@@ -60,13 +61,15 @@ std::map<std::string, Signal> readVcd(const std::string& text, std::vector<uint6
                 signal.name += scope + ".";
             signal.name += name;
             signal.depth = scopes.size();
+            if (kind == "string")
+                signal.bits = 0;
             const auto known = signals.find(id);
             if (known == signals.end() || signal.depth < known->second.depth)
                 signals[id] = signal;
         } else if (word[0] == '#') {
             now = std::stoull(word.substr(1));
             moments.push_back(now);
-        } else if (word[0] == 'b') {
+        } else if (word[0] == 'b' || word[0] == 's') {
             words >> id;
             signals[id].changes.emplace_back(now, word.substr(1));
         } else if (word[0] != '$' && word.size() > 1 && std::string("01xz").find(word[0]) < 4) {
@@ -85,26 +88,24 @@ json drawingOf(const std::string& wave) {
     std::map<std::string, Signal> signals = readVcd(text, moments);
     if (moments.empty())
         return nullptr;
-    const uint64_t from =
-        moments[moments.size() > shownMoments ? moments.size() - shownMoments : 0];
     std::vector<const Signal*> order;
     for (const auto& [id, signal] : signals)
-        if (!signal.changes.empty() && signal.changes.back().first > from) // it moves
+        if (signal.changes.size() > 1 || (signal.depth <= portDepth && !signal.changes.empty()))
             order.push_back(&signal);
     std::stable_sort(order.begin(), order.end(), [](const Signal* a, const Signal* b) {
-        return std::pair(a->depth, a->name) < std::pair(b->depth, b->name);
+        return std::tuple(a->bits != 0, a->depth, a->name) <
+               std::tuple(b->bits != 0, b->depth, b->name);
     });
-    json drawing = {{"from", from}, {"to", moments.back()}, {"signals", json::array()}};
+    json drawing = {{"from", moments.front()}, {"to", moments.back()}, {"signals", json::array()}};
     drawing["more"] = order.size() - std::min(order.size(), shownSignals);
     order.resize(std::min(order.size(), shownSignals));
     for (const Signal* signal : order) {
-        json changes = json::array(); // time, value, time, value; the first one is from before
-        for (size_t i = 0; i < signal->changes.size(); ++i) {
+        json changes = json::array(); // time, value, time, value
+        const size_t all = signal->changes.size();
+        for (size_t i = all - std::min(all, shownChanges); i < all; ++i) {
             const auto& [time, value] = signal->changes[i];
-            if (i + 1 < signal->changes.size() && signal->changes[i + 1].first <= from)
-                continue;
-            changes.push_back(std::max(time, from));
-            changes.push_back(shortened(value));
+            changes.push_back(time);
+            changes.push_back(signal->bits ? shortened(value) : value);
         }
         drawing["signals"].push_back({signal->name, signal->bits, changes});
     }

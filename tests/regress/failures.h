@@ -18,6 +18,7 @@ struct Failure {
     std::string log;    // file
     std::string wave;   // FST or VCD file, or ""
     std::string save;   // GTKWave save file, or ""
+    uint64_t clock = 0; // of the failure, in that waveform; 0: its end
 };
 
 // Keeps the logs, and the traces of proofs, in <out>/failures/. Proofs come first, then the tests
@@ -25,14 +26,15 @@ struct Failure {
 std::vector<Failure> examine(const std::vector<Result>& results, const std::vector<Test>& tests,
                              const std::string& out);
 
-// Runs failed RTL tests again in a build with waveforms (build/trace), and keeps the clocks around
-// the failure. Says on the terminal what it does; a test that cannot be traced has none.
+// Runs failed tests of RTL again in a build with waveforms (build/trace), and keeps the clocks
+// around the failure; of a failed flight its replay, around the last event of a core. Says on the
+// terminal what it does; a test that cannot be traced has none.
 void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
               const std::string& source, unsigned jobs, unsigned limit);
 
 // Returns the end of a waveform, VCD or FST (by fst2vcd): {from, to, signals: [[name, bits, [time,
-// value, ...]], ...], more: signals left out}; those that move, the outermost first. Null: it is
-// empty.
+// value, ...]], ...], more: signals left out}: the program's, then those that move and ports, the
+// outermost first, the last changes of each. Null: it is empty.
 nlohmann::json drawingOf(const std::string& wave);
 
 #endif

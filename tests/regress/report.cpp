@@ -161,6 +161,7 @@ json gather(const History& history, const std::vector<Test>& tests,
                        {"log", failure.log},
                        {"wave", failure.wave},
                        {"save", failure.save},
+                       {"clock", failure.clock},
                        {"drawing", failure.wave.empty() ? json() : drawingOf(failure.wave)},
                        {"tail", failure.result.log.substr(failure.result.log.size() > 3000
                                                               ? failure.result.log.size() - 3000

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// waves: a failed RTL test once more, with a waveform of the clocks around its failure.
+// waves: a failed test of RTL, or a failed flight, once more, with a waveform of the clocks around
+// its failure.
 
 #include "failures.h"
 #include "files.h"
@@ -8,15 +9,62 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 
 namespace {
 
-constexpr unsigned clocksBefore = 2000, clocksAfter = 20;
+constexpr double clocksPerSecond = 1e8; // of a flight's chip
+double seconds(uint64_t clocks) {
+    return static_cast<double>(clocks) / clocksPerSecond;
+}
+
+// What is to be seen again: a test's program, or a flight's recording, around a clock.
+struct Scene {
+    std::string program; // empty: nothing
+    std::string flight;  // folder of the recording
+    uint64_t clock = 0, before = 2000, after = 20;
+};
+
+// Returns the clock at which the processor last heard of a core, or else of the modem, up to `end`.
+uint64_t lastEventOf(const std::string& flight, uint64_t end) {
+    constexpr int firstCore = 2;
+    uint64_t of[2] = {end, 0}; // the modem and the system; a core
+    std::ifstream events(flight + "/events.jsonl");
+    for (std::string line; std::getline(events, line);)
+        if (const json event = json::parse(line, nullptr, false);
+            event.is_object() && event.contains("slot"))
+            of[event["slot"].get<int>() >= firstCore] = event["ns"].get<uint64_t>() / 10;
+    return of[1] ? of[1] : of[0];
+}
+
+Scene sceneOf(const Result& result, const Test& test) {
+    static const std::regex atClock("at clock cycle ([0-9]+)"),
+        replay("make run REPLAY='([^']+)' FROM=[0-9.]+ TO=([0-9.]+)");
+    Scene scene;
+    std::smatch match;
+    if (std::regex_search(result.log, match, replay)) {
+        scene.program = "icesoc-sim";
+        scene.flight = match[1];
+        scene.clock =
+            lastEventOf(scene.flight, static_cast<uint64_t>(std::stod(match[2]) * clocksPerSecond));
+    } else if (std::regex_search(result.log, match, atClock)) {
+        scene.program = result.name.substr(0, result.name.find('.'));
+        scene.clock = std::stoull(match[1]);
+    }
+    // A mission's program is at work for longer than a block is.
+    if (std::find(test.labels.begin(), test.labels.end(), "e2e") != test.labels.end()) {
+        scene.before = 150'000;
+        scene.after = 50'000;
+    }
+    return scene;
+}
 
 const Test* find(const std::vector<Test>& tests, const std::string& name) {
     for (const Test& test : tests)
@@ -39,10 +87,12 @@ std::vector<std::string> portsOf(const fs::path& header) {
     return names;
 }
 
-void writeSaveFile(const std::string& path, const std::string& wave, const fs::path& folder) {
+void writeSaveFile(const std::string& path, const std::string& wave, const fs::path& folder,
+                   bool hasProgram) {
     std::ostringstream save;
     save << "[dumpfile] \"" << fs::absolute(wave).string()
-         << "\"\n[size] 1600 900\n[treeopen] TOP.\n";
+         << "\"\n[size] 1600 900\n[treeopen] TOP.\n"
+         << (hasProgram ? "program.task\nprogram.interrupt\nprogram.function\n" : "");
     for (auto& entry : fs::recursive_directory_iterator(folder)) {
         std::string stem = entry.path().stem().string();
         std::string parent = entry.path().parent_path().filename().string();
@@ -59,35 +109,31 @@ void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
               const std::string& source, unsigned jobs, unsigned limit) {
     const std::string build = source + "/build/trace";
     unsigned made = 0;
-    static const std::regex atClock("at clock cycle ([0-9]+)");
     for (Failure& failure : failures) {
         const Test* test = find(tests, failure.result.name);
-        if (!test ||
-            std::find(test->labels.begin(), test->labels.end(), "rtl") == test->labels.end())
+        const Scene scene = test ? sceneOf(failure.result, *test) : Scene();
+        if (scene.program.empty())
             continue;
-        std::smatch match;
-        if (!std::regex_search(failure.result.log, match, atClock))
-            continue; // no clocked bench took part
-        if (made == limit) {
+        if (made++ == limit) {
             std::cout << fmt::format("No waveforms for more than {} failures (WAVES=n for more)\n",
                                      limit);
             return;
         }
-        ++made;
-        uint64_t clock = std::stoull(match[1]);
-        std::cout << fmt::format("Waveform of {} around clock {} ...\n", failure.result.name, clock)
+        std::cout << fmt::format("Waveform of {} around clock {} ...\n", failure.result.name,
+                                 scene.clock)
                   << std::flush;
         if (!fs::exists(build + "/build.ninja"))
             run({"cmake", "-S", source, "-B", build, "-G", "Ninja", "-DTRACE=ON"});
-        std::string program = failure.result.name.substr(0, failure.result.name.find('.'));
-        Output built = run({"ninja", "-C", build, "-j", std::to_string(jobs), program});
+        Output built = run({"ninja", "-C", build, "-j", std::to_string(jobs), scene.program});
         if (built.status != 0) {
             std::cout << "  it does not build with waveforms:\n" << built.text;
             continue;
         }
-        std::string base = failure.log.substr(0, failure.log.size() - 4);
-        std::string wave = fs::absolute(base + ".fst").string();
-        Output list =
+        const std::string base = failure.log.substr(0, failure.log.size() - 4);
+        const std::string wave = fs::absolute(base + ".fst").string();
+        const uint64_t from = scene.clock - std::min(scene.clock, scene.before),
+                       to = scene.clock + scene.after;
+        if (scene.flight.empty())
             run({"ctest", "--test-dir", build, "--no-tests=error", "-R",
                  "^" +
                      std::regex_replace(failure.result.name, std::regex(R"([.+*?()\[\]{}|^$\\])"),
@@ -95,14 +141,23 @@ void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
                      "$"},
                 {{"SEED", failure.result.seed},
                  {"WAVE", wave},
-                 {"WAVE_FROM", std::to_string(clock > clocksBefore ? clock - clocksBefore : 0)},
-                 {"WAVE_TO", std::to_string(clock + clocksAfter)}});
+                 {"WAVE_FROM", std::to_string(from)},
+                 {"WAVE_TO", std::to_string(to)}});
+        else
+            run({build + "/testbench/sim/icesoc-sim", "--replay", scene.flight, "--out",
+                 base + ".replay", "--wave", wave, "--from", fmt::format("{:.6f}", seconds(from)),
+                 "--to", fmt::format("{:.6f}", seconds(to))});
         if (!fs::exists(wave)) {
             std::cout << "  the test drove no traced model\n";
             continue;
         }
+        const bool hasProgram = fs::exists(wave + ".program.vcd");
+        run({source + "/testbench/common/join_waves.sh", wave});
         failure.wave = wave;
+        failure.clock = scene.clock;
         failure.save = base + ".gtkw";
-        writeSaveFile(failure.save, wave, build + "/tests/" + test->place);
+        writeSaveFile(failure.save, wave,
+                      build + (scene.flight.empty() ? "/tests/" + test->place : "/testbench/sim"),
+                      hasProgram);
     }
 }

@@ -13,7 +13,8 @@
 
 U32* OS_Switch(U32* sp); /* called by os_switch.S */
 
-static OS_Task* running; /* whose context the processor holds; 0 before the first switch */
+/* Whose context the processor holds; 0 before the first switch. Debuggers look for it by name. */
+static OS_Task* os_running;
 
 static void taskReturned(void) {
     OS_StackFault(0xFFU); /* a task must not return; it is told as what it is */
@@ -43,7 +44,7 @@ void OSCtxSw(OS_Task* from, OS_Task* to) {
 }
 
 void OSStartHighRdy(void) {
-    running = 0;
+    os_running = 0;
     SHPR3 |= 0xFFUL << 16; /* PendSV below everything */
     __asm__ volatile("msr psp, %0" : : "r"(0));
     ICSR = ICSR_PENDSVSET;
@@ -55,12 +56,12 @@ void OSStartHighRdy(void) {
 /* Switches the context; PendSV calls it with interrupts off. `sp` is where the running task's
  * registers are; returns where the next one's are. */
 U32* OS_Switch(U32* sp) {
-    if (running) {
-        running->stack = sp;
-        if (running->bottom && (sp < running->bottom || *running->bottom != 0))
-            OS_StackFault(running->base);
+    if (os_running) {
+        os_running->stack = sp;
+        if (os_running->bottom && (sp < os_running->bottom || *os_running->bottom != 0))
+            OS_StackFault(os_running->base);
     }
-    running = os_kernel.current;
-    OS_TaskSwitched(running->bottom);
-    return running->stack;
+    os_running = os_kernel.current;
+    OS_TaskSwitched(os_running->bottom);
+    return os_running->stack;
 }

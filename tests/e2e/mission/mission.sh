@@ -95,9 +95,15 @@ sensor) # the picture goes through the camera's pins and the vision core, and ne
     run "$out" --image $image --sensor 1 --cpu m3 && check_output "$out"
     grep -q 'camera.capture(96, 64)' "$out/report.md"
     ;;
-m3) # the ARM binary
+m3) # the ARM binary; of its replay, what the program is at in the 2 ms around its first event of a core
     run "$out" --image $image --cpu m3 && check_output "$out"
+    grep -q '"task":"UAV_radioTask"' "$out/events.jsonl"
+    from=$(sed -n 's/{"events":[0-9]*,"ns":\([0-9]*\)[0-9],"slot":[2-9]}/\1/p' "$out/events.jsonl" | head -1)
+    export WAVE="$out/wave" WAVE_FROM="$((from - 20000))" WAVE_TO="$((from + 200000))"
     replays_with 'bit by bit the flight that was recorded' "$out" --from 0.5 --to 0.51
+    for row in EXTI0_Handler.program.interrupt PendSV_Handler.program.function UAV_coresTask.program.task FSMC_read.*.program.function; do
+        grep -q "^s$row$" "$WAVE.program.vcd" || { cat "$WAVE.program.vcd" && echo "expected: $row" && exit 1; }
+    done
     ;;
 other_chip) # firmware that was built for other registers of the vision core: it is not served, and the ground is told why
     cp "$build/firmware/uav.elf" "$out/other.elf"

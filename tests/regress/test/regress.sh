@@ -304,8 +304,9 @@ END
 page)
     cat >t.vcd <<'END'
 $timescale 1ns $end $scope module top $end $var wire 1 ! clk_i $end $scope module u_fifo $end $var wire 1 ! clk_i $end
-$var reg 8 " level [7:0] $end $upscope $end $upscope $end $enddefinitions $end
-#0 0! b0 " #5 1! #10 0! b10100111 " #15 1!
+$var reg 8 " level [7:0] $end $upscope $end $upscope $end
+$scope module program $end $var string 1 p.task task $end $upscope $end $enddefinitions $end
+#0 0! b0 " sUAV_radioTask p.task #5 1! #10 0! b10100111 " #15 1!
 END
     cat >>tests/room/CMakeLists.txt <<'END'
 add_test(NAME formal.broken COMMAND sh -c "echo 'Assert failed in broken'; echo 'broken: trace: ${CMAKE_SOURCE_DIR}/t.vcd'; exit 1")
@@ -320,6 +321,7 @@ END
     has '>top.clk_i<' dom.html     # the outermost of its names
     has '>top.u_fifo.level<' dom.html
     has '>a7<' dom.html
+    has '>UAV_radioTask<' dom.html
     has 'id="results"' dom.html
     has 'test_c.Flicker' dom.html
     has 'class="dot dp"' dom.html
@@ -329,6 +331,31 @@ END
     has 'href="failures/test_b.Bad-1.log"' dom.html
     hasNot 'src="http\|href="http' build/regress/report.html # offline
     "$source/tests/regress/test/look.sh" build/regress/report.html || fail "the page"
+    ;;
+flight) # a flight that fails is flown again around the last event of a core, by a simulator that writes this waveform
+    mkdir -p build/trace/testbench/sim fly testbench/common
+    cp "$source/testbench/common/join_waves.sh" testbench/common
+    printf 'rule r\n command = true\nbuild icesoc-sim: r\n' >build/trace/build.ninja
+    cat >build/trace/testbench/sim/icesoc-sim <<'END'
+#!/bin/sh
+echo "$@" >asked
+while [ "$1" != --wave ]; do shift; done
+printf '$timescale 1ps $end\n$scope module TOP $end\n$var wire 1 ! irq_o $end\n$upscope $end\n$enddefinitions $end\n#10\n0!\n#20\n1!\n' | vcd2fst - "$2"
+printf '$timescale 1 ps $end\n$scope module program $end\n$var string 1 p.task task $end\n$upscope $end\n$enddefinitions $end\n#3\nsidleTask p.task\n#20\nsradioTask p.task\n#33\nsidleTask p.task\n' >"$2.program.vcd"
+END
+    chmod +x build/trace/testbench/sim/icesoc-sim
+    printf '{"ns":1000000000,"slot":1,"events":1}\n{"ns":1500000000,"slot":3,"events":1}\n{"ns":1900000000,"slot":1,"events":1}\n{"ns":2' >fly/events.jsonl
+    cat >>tests/room/CMakeLists.txt <<'END'
+add_test(NAME mission.x COMMAND sh -c "echo \"Its end as a waveform: make run REPLAY='fly' FROM=1.500 TO=2.000\"; exit 1")
+set_tests_properties(mission.x PROPERTIES LABELS e2e)
+END
+    cmake build/main >/dev/null
+    run --name mission --waves 3
+    has '^--replay fly --out build/regress/failures/mission.x-1.replay --wave .*mission.x-1.fst --from 1.498500 --to 1.500500$' asked
+    fst2vcd build/regress/failures/mission.x-1.fst | sed -n '/^#/,$p' | tr '\n' ' ' >rows
+    has '#3 .*sidleTask .*#10 .*0. .*#20 .*1. .*sradioTask .*#33 sidleTask' rows
+    has '^program.task$' build/regress/failures/mission.x-1.gtkw
+    has '"program.task",0,\[3,"idleTask",20,"radioTask",33,"idleTask"\]' build/regress/report.html
     ;;
 large) # more than this project has: the page stays small
     cat >>tests/room/CMakeLists.txt <<'END'

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+//
+// wave_window: which waveform the environment asks for: WAVE=file, WAVE_FROM and WAVE_TO in clocks.
+
+#ifndef WAVE_WINDOW_H
+#define WAVE_WINDOW_H
+
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+// Returns a number of the environment, `otherwise` where there is none.
+inline uint64_t environmentNumber(const char* variable, uint64_t otherwise) {
+    const char* text = std::getenv(variable);
+    return text && *text ? std::strtoull(text, nullptr, 0) : otherwise;
+}
+
+struct WaveWindow {
+    std::string file; // empty: none is asked for
+    uint64_t from = environmentNumber("WAVE_FROM", 0), to = environmentNumber("WAVE_TO", ~0ull);
+
+    WaveWindow() {
+        if (const char* name = std::getenv("WAVE"))
+            file = name;
+    }
+};
+
+#endif

@@ -111,8 +111,8 @@ module modem #(
     wire [6:0]  tx_bytes, rx_bytes;
     wire        tx_waits = !tx_free[4];
     wire        rx_waits = !rx_free[4];
-    // High in time for a byte that waits while the sixteenth packet is completed; low a clock after a
-    // release. A register, because it is on the path to the word that is read.
+    // A clock after the ring: a byte that waits is taken two clocks after a packet's end (`writes`).
+    // A register, because it is on the path to the word that is read.
     reg         rx_full;
     wire [7:0]  put_bytes = reg_wdata[7:0];
     wire        put      = reg_write && reg_addr == MODEM_TX_PUT;
@@ -292,7 +292,7 @@ module modem #(
         configure   <= control && reg_wdata[MODEM_CONTROL_CONFIGURE_LSB] && !rst_i;
         reset_modem <= control && reg_wdata[MODEM_CONTROL_RESET_MODEM_LSB] && !rst_i;
         rings_reset <= control && reg_wdata[MODEM_CONTROL_RESET_MODEM_LSB] || rst_i;
-        rx_full  <= rx_free == 5'd0 || (rx_free == 5'd1 && rx_push);
+        rx_full  <= rx_free == 5'd0;
 
         if (key_write || (reg_write && stored))
             words[{key_write, reg_addr[3:2], key_write ? key_index : reg_addr[1:0]}] <= reg_wdata;

@@ -17,7 +17,7 @@ begins another change of the same file, a line with a slash another file.
 Leaves build/mutants/results.tsv (name, result, test, seconds) and summary.json (the score by block).
 Exit status 1: a bug survived, is no longer found in its file, or does not build.
 """
-import argparse, collections, fcntl, glob, json, os, pathlib, queue, re, shutil, subprocess, sys, time
+import argparse, collections, fcntl, glob, json, os, pathlib, queue, re, shutil, subprocess, sys, threading, time
 from concurrent.futures import ThreadPoolExecutor
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
@@ -68,7 +68,7 @@ def bugs(chosen):
     return found or sys.exit(f"mutants: no {chosen} in tests/mutants/*.bugs and ip/*/*.bugs")
 
 
-def prepare(copy):
+def prepare(copy, *options):
     """A copy of the tree for a worker, with its own build folder."""
     copy.mkdir(parents=True, exist_ok=True)
     for kept in copy.rglob("*.orig"):  # what an interrupted run had planted
@@ -76,7 +76,7 @@ def prepare(copy):
     listed = subprocess.run(["git", "ls-files", "-coz", "--exclude-standard"], stdout=subprocess.PIPE, check=True)
     subprocess.run(["xargs", "-0", "cp", "-pu", "--parents", "-t", copy], input=listed.stdout, stderr=subprocess.DEVNULL)
     if not (copy / "build/main/build.ninja").exists():
-        made = subprocess.run(["cmake", "-S", ".", "-B", "build/main", "-G", "Ninja"], cwd=copy, env=environment(copy),
+        made = subprocess.run(["cmake", "-S", ".", "-B", "build/main", "-G", "Ninja", *options], cwd=copy, env=environment(copy),
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if made.returncode:
             sys.exit(made.stdout)
@@ -112,7 +112,7 @@ def targets(test, copy):
 
 def attempt(test, copy, log):
     """Builds what a test needs and runs it: "passes", "fails" or "does not build"."""
-    build = ["nice", "ninja", "-C", "build/main", "-j", "1", *targets(test, copy)]
+    build = ["ninja", "-C", "build/main", "-j", "1", *targets(test, copy)]
     run = ["ctest", "--test-dir", "build/main", "-R", f"^{re.escape(test)}(\\.|$)", "--no-tests=error", "--output-on-failure"]
     with open(log, "w") as out:
         for command, otherwise in (build, "does not build"), (run, "fails"):
@@ -156,6 +156,23 @@ def check(chosen):
     return bad
 
 
+def keep(rows):
+    """Writes the results: those of other blocks stay from an earlier run, unless the bug is gone."""
+    results = WORK / "results.tsv"
+    there = {bug.name for bug in bugs("*")}
+    earlier = [line.split("\t") for line in results.read_text().splitlines()] if results.exists() else []
+    all_rows = {row[0]: row for row in earlier + rows if row[0] in there}
+    results.write_text("".join("\t".join(row) + "\n" for row in all_rows.values()))
+    blocks = collections.defaultdict(lambda: {"caught": 0, "total": 0})
+    for name, result, *_ in all_rows.values():
+        blocks[name.split("/")[0]]["total"] += 1
+        blocks[name.split("/")[0]]["caught"] += result == "caught"
+    caught = sum(block["caught"] for block in blocks.values())
+    (WORK / "summary.json").write_text(json.dumps({
+        "caught": caught, "total": len(all_rows), "score": round(100 * caught / len(all_rows), 1),
+        "not_caught": [row[0] for row in all_rows.values() if row[1] != "caught"], "blocks": blocks}))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--block", default="*", help="the bugs of one block or core, or a single one as block/name (default: all)")
@@ -182,38 +199,33 @@ def main():
         prepare(WORK / str(number))
         copies.put(WORK / str(number))
 
-    def in_copy(work):
+    def of_program(group):
+        """Tries the bugs of one program, or of one proof, in one copy, where little of it is to be built again."""
         copy = copies.get()
         try:
-            return work(copy)
+            for test in sorted({bug.test for bug in group}):
+                # It must pass without a bug, or "caught" says nothing.
+                log = WORK / f"baseline.{test.replace('/', '-')}.log"
+                if attempt(test, copy, log) != "passes":
+                    sys.stderr.write(log.read_text(errors="replace"))
+                    sys.exit(f"mutants: {test} fails without any mutant: mend that first")
+                log.unlink()
+                for bug in group:
+                    if bug.test == test:
+                        row = try_bug(bug, copy)
+                        with writing:
+                            rows.append(row)
+                            keep(rows)
         finally:
             copies.put(copy)
 
+    rows, writing, groups = [], threading.Lock(), collections.defaultdict(list)
+    for bug in chosen:
+        groups[bug.test.split(".")[0] if bug.test.startswith("test_") else bug.test].append(bug)
     with ThreadPoolExecutor(options.jobs) as pool:
-        # The tests must pass without a bug, or "caught" says nothing.
-        tests = sorted({bug.test for bug in chosen})
-        logs = [WORK / f"baseline.{test}.log" for test in tests]
-        for test, log, result in zip(tests, logs, pool.map(lambda t, l: in_copy(lambda c: attempt(t, c, l)), tests, logs)):
-            if result != "passes":
-                sys.stderr.write(log.read_text(errors="replace"))
-                pool.shutdown(cancel_futures=True)
-                sys.exit(f"mutants: {test} fails without any mutant: mend that first")
-            log.unlink()
-        rows = list(pool.map(lambda bug: in_copy(lambda copy: try_bug(bug, copy)), chosen))
-    # Results of other blocks stay from an earlier run, unless the bug is gone.
-    results = WORK / "results.tsv"
-    there = {bug.name for bug in bugs("*")}
-    earlier = [line.split("\t") for line in results.read_text().splitlines()] if results.exists() else []
-    all_rows = {row[0]: row for row in earlier + rows if row[0] in there}
-    results.write_text("".join("\t".join(row) + "\n" for row in all_rows.values()))
-    blocks = collections.defaultdict(lambda: {"caught": 0, "total": 0})
-    for name, result, *_ in all_rows.values():
-        blocks[name.split("/")[0]]["total"] += 1
-        blocks[name.split("/")[0]]["caught"] += result == "caught"
-    caught = sum(block["caught"] for block in blocks.values())
-    (WORK / "summary.json").write_text(json.dumps({
-        "caught": caught, "total": len(all_rows), "score": round(100 * caught / len(all_rows), 1),
-        "not_caught": [row[0] for row in all_rows.values() if row[1] != "caught"], "blocks": blocks}))
+        failed = [task.exception() for task in [pool.submit(of_program, group) for group in sorted(groups.values(), key=len, reverse=True)]]
+    if any(failed):
+        raise next(filter(None, failed))
     now = sum(row[1] == "caught" for row in rows)
     print(f"mutants: {now} of {len(rows)} caught (build/mutants/results.tsv, summary.json)")
     return now != len(rows)

@@ -10,6 +10,7 @@ shift 3
 [ "$seeds" != - ] || seeds=
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM HUP
 mkdir "$work/found"
 if [ -f "$seeds" ]; then
     mkdir "$work/seeds"

@@ -29,6 +29,7 @@ done
 }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM HUP
 target="-mcpu=cortex-m3 -mthumb"
 includes="-I$gen -I$gen/slice/Autopilot"
 for d in base os os/host fsmc radio crypto link icec icec/endpoints; do includes="$includes -I$source/sw/$d"; done

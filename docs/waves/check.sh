@@ -5,6 +5,7 @@ set -eu
 tool=$1 folder=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM HUP
 for wave in "$folder"/*.json; do
     "$tool" "$wave" "$work/out.svg"
     cmp -s "$work/out.svg" "${wave%.json}.svg" || {

@@ -10,6 +10,7 @@ log=$(mktemp)
 "$build/testbench/sim/icesoc-sim" --gdb 0 --speed max "$@" >"$log" 2>&1 &
 pid=$!
 trap 'kill $pid 2>/dev/null || true; rm -f "$log"' EXIT
+trap 'exit 143' TERM HUP
 port=$("$(dirname "$0")/gdb_port.sh" "$log" $pid)
 cat "$log"
 trap '' INT # Ctrl-C is GDB's: it stops the processor

@@ -18,19 +18,17 @@ public:
     // Throws std::system_error, also where the disk is full: a file with holes would end in SIGBUS.
     explicit StatusFile(const std::string& path) {
         unlink(path.c_str()); // what a link leads to is not ours to write
-        int fd = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-        int error = fd < 0 ? errno : posix_fallocate(fd, 0, sizeof(SimStatus));
-        void* at =
-            error ? MAP_FAILED
-                  : mmap(nullptr, sizeof(SimStatus), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-        if (!error && at == MAP_FAILED)
-            error = errno;
+        const int fd = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+        const int error = fd < 0 ? errno : map(fd);
         if (fd >= 0)
             close(fd);
         if (error)
             throw std::system_error(error, std::generic_category(), "cannot write '" + path + "'");
-        status_ = static_cast<SimStatus*>(at);
-        std::memcpy(status_->magic, simMagic, sizeof simMagic);
+    }
+    // An empty file that is open for writing, and stays the caller's.
+    explicit StatusFile(int fd) {
+        if (const int error = map(fd))
+            throw std::system_error(error, std::generic_category(), "no file for simulated time");
     }
     ~StatusFile() { munmap(status_, sizeof(SimStatus)); }
     StatusFile(const StatusFile&) = delete;
@@ -42,6 +40,17 @@ public:
     void set(uint64_t ns) { __atomic_store_n(&status_->ns, ns, __ATOMIC_RELEASE); }
 
 private:
+    // Returns the error's number, 0: none.
+    int map(int fd) {
+        if (const int error = posix_fallocate(fd, 0, sizeof(SimStatus)))
+            return error;
+        void* at = mmap(nullptr, sizeof(SimStatus), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+        if (at == MAP_FAILED)
+            return errno;
+        status_ = static_cast<SimStatus*>(at);
+        std::memcpy(status_->magic, simMagic, sizeof simMagic);
+        return 0;
+    }
     SimStatus* status_;
 };
 

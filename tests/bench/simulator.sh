@@ -11,6 +11,7 @@ source=$1 build=$2 json=$3 runs='1 2 3' seconds=5 flight='' rest=20000 slow=$1/b
 image=/usr/share/xplanet/images/earth.jpg
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM HUP
 logged() { "$@" >"$work/log" 2>&1 || { tail -40 "$work/log" && exit 1; }; }
 speed() { # build folder, options: million clocks a second, and the share of them that were evaluated, in percent
     sim=$1/testbench/sim/icesoc-sim

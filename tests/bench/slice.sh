@@ -9,6 +9,7 @@ slice2c=$1 json=$2 rounds=15 count=5
 slices=/usr/share/ice/slice
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM HUP
 command -v slice2cpp >/dev/null || {
     echo "slice: slice2cpp is missing; run 'make setup'" >&2
     exit 1

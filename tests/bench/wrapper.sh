@@ -8,6 +8,7 @@ source=$1 slice2c=$2 ghdl=$3 json=$4 clocks=13
 [ "${5:-}" != --brief ] || clocks=6
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM HUP
 sed 's/@NAME@/sample/g; s/@TYPE@/Sample/g; s/@MODULE@/Cores/g' "$source/ip/template/NAME.ice.in" >"$work/sample.ice"
 "$slice2c" "$work/sample.ice" --output-dir "$work" --hw-verilog "$work" --hw-vhdl "$work"
 "$ghdl" -a --std=08 --workdir="$work" "$work/sample_wrapper.vhd"

@@ -17,6 +17,7 @@ set -eu
 program=$1 source=$2 case=$3 kept=$4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM HUP
 fail() {
     echo "report: $*" >&2
     exit 1

@@ -17,6 +17,7 @@ protected:
         fs::remove_all(folder_);
         fs::create_directories(folder_ / "far");
     }
+    ~Sources() override { fs::remove_all(folder_); }
     fs::path write(const std::string& name, const std::string& text) {
         std::ofstream(folder_ / name) << text;
         return folder_ / name;

@@ -17,6 +17,7 @@ echo "$said" | grep -q 'there is no variable CORE;' || { echo "$said" >&2 && exi
 # The compiler's cache serves another clone.
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM HUP
 export CCACHE_DIR="$work/cache"
 for clone in a b; do
     mkdir -p "$work/$clone/build"

@@ -7,23 +7,12 @@
 #define CLOCK_FILE_H
 
 #include "status_file.h"
+#include "unnamed_file.h"
 #include <cstdlib>
 
-class TemporaryName {
+class ClockFile : public UnnamedFile, public StatusFile {
 public:
-    TemporaryName() { close(mkstemp(name_)); }
-    ~TemporaryName() { unlink(name_); }
-    TemporaryName(const TemporaryName&) = delete;
-    TemporaryName& operator=(const TemporaryName&) = delete;
-    std::string path() const { return name_; }
-
-private:
-    char name_[27] = "/tmp/icesoc-clock-XXXXXX";
-};
-
-class ClockFile : public TemporaryName, public StatusFile {
-public:
-    ClockFile() : StatusFile(path()) { setenv("XBEEAT_CLOCK", path().c_str(), 1); }
+    ClockFile() : StatusFile(fd()) { setenv("XBEEAT_CLOCK", path().c_str(), 1); }
     ~ClockFile() { unsetenv("XBEEAT_CLOCK"); }
 };
 

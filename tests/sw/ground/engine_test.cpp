@@ -4,6 +4,7 @@
 
 #include "engine.h"
 #include "rig.h"
+#include "unnamed_file.h"
 #include "wire.h"
 #include <csignal>
 #include <cstdlib>
@@ -298,12 +299,9 @@ std::string refusal(const std::string& device) {
 }
 
 TEST(Engine, AFileThatIsNoTerminalIsRefusedAndStaysAsItIs) {
-    char name[] = "/tmp/icesoc-file-XXXXXX";
-    const int fd = mkstemp(name);
-    EXPECT_NE(refusal(name).find("no terminal"), std::string::npos) << refusal(name);
-    EXPECT_EQ(lseek(fd, 0, SEEK_END), 0);
-    close(fd);
-    unlink(name);
+    UnnamedFile file;
+    EXPECT_NE(refusal(file.path()).find("no terminal"), std::string::npos) << refusal(file.path());
+    EXPECT_EQ(lseek(file.fd(), 0, SEEK_END), 0);
 }
 
 TEST(Engine, APortThatAnotherProgramUsesIsRefusedWithItsNumber) {

@@ -7,6 +7,7 @@ work=$(mktemp -d)
 pids=''
 # shellcheck disable=SC2086
 trap 'kill $pids 2>/dev/null || true; rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM HUP
 first='' port='' command=''
 start() {
     eval "exec $command $port" >"$work/port" &

@@ -7,6 +7,7 @@ set -eu
 program=$1
 work=$(mktemp -d)
 trap 'kill $pid 2>/dev/null || true; rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM HUP
 pid=''
 fail() {
     echo "FAILED: $*" >&2

@@ -26,12 +26,10 @@ ChipWorld::ChipWorld(uint64_t seed, const EchoUav_Port& port, void* context, boo
       step_(*clock_, pty_, [this] { return !stop_; }) {
     uav_guardMs = guardMs_;
     if (hasKey) {
-        char name[] = "/tmp/chip_key.XXXXXX"; // of mode 0600
-        const int file = mkstemp(name);
         const std::string digits(2 * LINK_KEY_BYTES, '5');
-        if (file < 0 || write(file, digits.data(), digits.size()) < 0 || close(file) < 0)
+        key_ = std::make_unique<UnnamedFile>();
+        if (write(key_->fd(), digits.data(), digits.size()) < 0)
             throw std::runtime_error("no file for a key");
-        keyFile_ = name;
     }
     EchoUav_setPort(&port, context);
     soc.onTime([this](uint64_t now) { return advance(now); });
@@ -41,8 +39,6 @@ ChipWorld::ChipWorld(uint64_t seed, const EchoUav_Port& port, void* context, boo
 ChipWorld::~ChipWorld() {
     stop_ = true;
     thread_.join();
-    if (!keyFile_.empty())
-        unlink(keyFile_.c_str());
 }
 
 uint64_t ChipWorld::advance(uint64_t now) {
@@ -73,8 +69,7 @@ void ChipWorld::run() {
             UavMachine machine(
                 soc, [this] { return !stop_ && !reboot_; }, firmware);
             machine.board = SimulatedBoard(1000 * seed_ + boots);
-            machine.board.provide(
-                std::vector<uint8_t>(keyFile_.empty() ? 0 : LINK_KEY_BYTES, 0x55));
+            machine.board.provide(std::vector<uint8_t>(key_ ? LINK_KEY_BYTES : 0, 0x55));
             machine.run();
         }
     } catch (const std::exception& e) { // a model says that the chip did wrong: nobody can go on
@@ -119,8 +114,8 @@ Ice::CommunicatorPtr ChipWorld::client(std::map<std::string, std::string> more) 
         {"XBeeAT.Down", "2"},
         {"Station.Endpoints", endpoint()},
         {"Station.ThreadPool.Size", "1"}}; // so that order can be seen
-    if (!keyFile_.empty())
-        all["XBeeAT.KeyFile"] = keyFile_;
+    if (key_)
+        all["XBeeAT.KeyFile"] = key_->path();
     for (auto& [name, value] : more)
         all[name] = value;
     for (auto& [name, value] : all)

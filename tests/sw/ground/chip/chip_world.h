@@ -13,6 +13,7 @@
 #include "uav_machine.h"
 #include <Ice/Ice.h>
 #include <atomic>
+#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -47,7 +48,7 @@ private:
 
     static constexpr uint32_t guardMs_ = 20;
     const uint64_t seed_;
-    std::string keyFile_; // empty: in the clear
+    std::unique_ptr<UnnamedFile> key_; // none: in the clear
     ClockFile clock_;
 
 public: // in the world's thread only

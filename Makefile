@@ -71,7 +71,7 @@ setup-tests: ## install those that tests, reports and debuggers need beside
 	@cmake/setup.sh --tests
 
 $(BUILD)/build.ninja: setup
-	@[ -f $@ ] || cmake -S . -B $(BUILD) -G Ninja
+	@cmake/configure.sh $(BUILD)
 	@$(if $(UCOS2),cmake -S . -B $(BUILD) "-DUCOS2=$(abspath $(UCOS2))" >/dev/null)
 
 build: $(BUILD)/build.ninja ## build everything (simulator, firmware, compiler, plugin, tests)
@@ -95,8 +95,7 @@ ifneq ($(LABEL)$(NAME),)
 	    $(if $(LABEL),-L '$(LABEL)') $(if $(NAME),-R '$(NAME)') $(if $(filter zeroc,$(LABEL)),-C zeroc)
 else
 	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(TESTS) --output-on-failure --no-tests=error
-	@[ -f build/sanitized/build.ninja ] || cmake -S . -B build/sanitized -G Ninja -DSANITIZE=ON \
-	    -DROOMS="bus;slice;sw;hdl;ip;testbench;tests" >/dev/null
+	@cmake/configure.sh build/sanitized -DSANITIZE=ON -DROOMS="bus;slice;sw;hdl;ip;testbench;tests" >/dev/null
 	@cmake/ninja.sh build/sanitized -j $(JOBS) sanitized
 	@SEED=$(SEED) ctest --test-dir build/sanitized -j $(TESTS) --output-on-failure --no-tests=error -L sanitized
 endif

@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 fail() { echo "wave: $*" >&2 && exit 1; }
 [ -n "$core" ] && [ -n "$test" ] || fail "$usage"
 [ -f "ip/$core/${core}_test.cpp" ] || fail "there is no ip/$core/${core}_test.cpp"
-[ -f build/trace/build.ninja ] || cmake -S . -B build/trace -G Ninja -DTRACE=ON >/dev/null
+cmake/configure.sh build/trace -DTRACE=ON >/dev/null
 ninja -C build/trace -j "$jobs" --quiet "test_ip_$core"
 program=$(find build/trace -name "test_ip_$core" -type f -perm -u+x | head -1)
 cases=$("$program" --gtest_list_tests | awk '/^[^ ]/ { suite = $1 } /^ / { print suite $1 }' | grep -E -- "$test" || true)

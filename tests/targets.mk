@@ -57,8 +57,8 @@ bisect: setup-tests $(BUILD)/build.ninja ## find the commit since which a test f
 ROOMS_OF_PROGRAMS = bus;slice;sw;hdl;ip;testbench;tests
 GUARDED = test_engine gateway test_radio_ice
 sanitizers: setup-tests $(BUILD)/build.ninja ## tests of engine, gateway, plugin and page with AddressSanitizer, of the first three with ThreadSanitizer; fuzzers of page and debugger's stub
-	@[ -f build/sanitized/build.ninja ] || cmake -S . -B build/sanitized -G Ninja -DSANITIZE=ON -DROOMS="$(ROOMS_OF_PROGRAMS)" >/dev/null
-	@[ -f build/thread/build.ninja ] || cmake -S . -B build/thread -G Ninja -DSANITIZE=thread -DROOMS="$(ROOMS_OF_PROGRAMS)" >/dev/null
+	@cmake/configure.sh build/sanitized -DSANITIZE=ON -DROOMS="$(ROOMS_OF_PROGRAMS)" >/dev/null
+	@cmake/configure.sh build/thread -DSANITIZE=thread -DROOMS="$(ROOMS_OF_PROGRAMS)" >/dev/null
 	@ASAN_OPTIONS=detect_leaks=0 cmake/ninja.sh build/sanitized -j $(JOBS) $(GUARDED) icesoc-live regmaps # libmcpp leaks
 	@cmake/ninja.sh build/thread -j $(JOBS) $(GUARDED)
 	@$(NINJA) fuzz_page fuzz_gdb

@@ -9,7 +9,7 @@ build=$1 jobs=$2
 top=$(cd "$(dirname "$(readlink -f "$0")")/../.." && pwd)
 cd "$top"
 work=build/coverage
-[ -f $work/build.ninja ] || cmake -S . -B $work -G Ninja -DCOVERAGE=ON >/dev/null
+cmake/configure.sh $work -DCOVERAGE=ON >/dev/null
 tree=$("$build/tests/regress/regress" --tree "bus hdl ip slice sw testbench tests")
 echo "coverage: building with counters"
 ninja -C $work -j "$jobs"

@@ -27,6 +27,15 @@ for clone in a b; do
 done
 ccache --print-stats | grep -q '^\(direct\|preprocessed\)_cache_hit.1$' || { ccache --print-stats >&2 && exit 1; }
 
+# A tree that was renamed is built anew, one that was not is left alone.
+configure=$PWD/cmake/configure.sh
+mkdir "$work/old"
+printf 'cmake_minimum_required(VERSION 3.25)\nproject(moved NONE)\n' >"$work/old/CMakeLists.txt"
+(cd "$work/old" && "$configure" build >/dev/null && touch build/kept && "$configure" build && [ -f build/kept ])
+mv "$work/old" "$work/new"
+said=$(cd "$work/new" && "$configure" build 2>&1) || { echo "$said" >&2 && exit 1; }
+echo "$said" | grep -q "build was made for the tree in $work/old: made anew" || { echo "$said" >&2 && exit 1; }
+
 # What `make test` runs with sanitizers: a program without the label would go unseen.
 for program in test_os test_link test_engine test_icec; do
     grep -q sanitized "$2"/tests/sw/*/"${program}_labels.cmake" || { echo "$program: no case is labelled sanitized" >&2 && exit 1; }

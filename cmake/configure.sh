@@ -1,0 +1,16 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# configure: makes a build folder of the tree in the current folder, unless there is one; one that was made for another place
+# (the tree was moved, renamed or copied) goes first, since CMake refuses it. Usage: configure.sh build-folder [cmake-argument...]
+set -eu
+build=$1
+shift
+cache=$build/CMakeCache.txt
+if [ -f "$cache" ]; then
+    home=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$cache")
+    if ! [ "$home" -ef . ]; then
+        echo "$build was made for the tree in $home: made anew" >&2
+        rm -rf "$build"
+    fi
+fi
+[ -f "$build/build.ninja" ] || exec cmake -S . -B "$build" -G Ninja "$@"

@@ -8,6 +8,7 @@
 #   cmake/fetch.sh nextpnr DIR   nextpnr for ECP5, DIR/nextpnr-ecp5 runs it; names of files are absolute
 #   cmake/fetch.sh foreign DIR   the third-party cores that examples/foreign/files.list names, into DIR; from
 #                             ICESOC_RAW, a copy of raw.githubusercontent.com, if it is set
+#   cmake/fetch.sh svd DIR    ARM's schema of CMSIS-SVD files, 1.3.9; from ICESOC_RAW, too
 #   cmake/fetch.sh lz4 DIR    the source of LZ4, which unpacks firmware on the chip
 #   cmake/fetch.sh sodium DIR the sources of libsodium that check a signature, for the chip
 #   cmake/fetch.sh zeroc DIR  ZeroC's test suites for Python, 3.7.8, into DIR; exit status 77: there is no network
@@ -149,23 +150,38 @@ fetch_clang_format() {
     chmod +x "$target/clang-format"
 }
 
-# Each file by its commit and its checksum: what comes is what was tested.
+# Brings a file of GitHub's to $kept: its checksum says that it is the one that was tested. $1: repository, $2: commit,
+# $3: path, $4: checksum. Exit status 1: there is no network.
+kept_file() {
+    kept=$cache/foreign/$4
+    mkdir -p "$cache/foreign"
+    [ ! -f "$kept" ] || return 0
+    url=${ICESOC_RAW:-https://raw.githubusercontent.com}/$1/$2/$3
+    echo "Fetching $1 $3 ..."
+    curl --fail --silent --show-error --location --max-time 60 -o "$work/file" "$url" || return 1
+    echo "$4  $work/file" | sha256sum --check --status || fail "$url is not the file that was tested (sha256)"
+    mv "$work/file" "$kept"
+}
+
 fetch_foreign() {
     list=$(dirname "$0")/../examples/foreign/files.list
-    mkdir -p "$target" "$cache/foreign"
+    mkdir -p "$target"
     grep -v '^#' "$list" | while read -r repository commit path sum; do
-        keep=$cache/foreign/$sum
-        if [ ! -f "$keep" ]; then
-            url=${ICESOC_RAW:-https://raw.githubusercontent.com}/$repository/$commit/$path
-            echo "Fetching $repository $path ..."
-            curl --fail --silent --show-error --location --max-time 60 -o "$work/file" "$url" ||
-                fail "cannot get $url: is there a network? Only the examples of foreign cores need it"
-            echo "$sum  $work/file" | sha256sum --check --status || fail "$url is not the file that was tested (sha256)"
-            mv "$work/file" "$keep"
-        fi
+        kept_file "$repository" "$commit" "$path" "$sum" ||
+            fail "cannot get $url: is there a network? Only the examples of foreign cores need it"
         mkdir -p "$target/$(basename "$repository")"
-        cp "$keep" "$target/$(basename "$repository")/$(basename "$path")"
+        cp "$kept" "$target/$(basename "$repository")/$(basename "$path")"
     done
+}
+
+fetch_svd() {
+    kept_file ARM-software/CMSIS_5 51f8f89612c8330c0116479cfe3a2cb04c390e2b CMSIS/Utilities/CMSIS-SVD.xsd \
+        eee4bfe949f80708b00cccb4833e71da3766b0489a4cdfa2dae225d541688d89 || {
+        echo "fetch: cannot get ARM's schema: is there a network? Only the check of icesoc.svd needs it" >&2
+        exit 77
+    }
+    mkdir -p "$target"
+    cp "$kept" "$target/CMSIS-SVD.xsd"
 }
 
 # Brings a released source as Debian keeps it to $work/file: its checksum says that it is the one that was tested. $1: path in
@@ -219,6 +235,7 @@ ghdl) fetch_ghdl ;;
 clang-format) fetch_clang_format ;;
 nextpnr) fetch_nextpnr ;;
 foreign) fetch_foreign ;;
+svd) fetch_svd ;;
 lz4) fetch_source lz4-1.9.4 l/lz4/lz4_1.9.4.orig.tar.gz 0b0e3aa07c8c063ddf40b082bdf7e37a1562bda40a0ff5272957f3e987e0e54b lz4-1.9.4/lib 2 ;;
 sodium) fetch_source sodium-1.0.18 libs/libsodium/libsodium_1.0.18.orig.tar.gz \
     d59323c6b712a1519a5daf710b68f5e7fde57040845ffec53850911f10a5d4f4 libsodium-1.0.18/src/libsodium 3 ;;

@@ -37,6 +37,6 @@ said=$(cd "$work/new" && "$configure" build 2>&1) || { echo "$said" >&2 && exit 
 echo "$said" | grep -q "build was made for the tree in $work/old: made anew" || { echo "$said" >&2 && exit 1; }
 
 # What `make test` runs with sanitizers: a program without the label would go unseen.
-for program in test_os test_link test_engine test_icec; do
+for program in test_os_cases test_link test_engine test_icec; do
     grep -q sanitized "$2"/tests/sw/*/"${program}_labels.cmake" || { echo "$program: no case is labelled sanitized" >&2 && exit 1; }
 done

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// cases_test: the cases of os_cases.c on the host's port.
+// cases_test: the cases of os_cases.c on the host's port, and what only that port has.
 
 #include "os_host.h"
 #include <gtest/gtest.h>
@@ -42,6 +42,30 @@ TEST_P(OsHostCases, SaysWhatTheManualSays) {
 
 INSTANTIATE_TEST_SUITE_P(All, OsHostCases, ::testing::Range(0u, os_caseCount),
                          [](auto& c) { return std::string(os_cases[c.param].name); });
+
+TEST(OsHostPort, AnExceptionInATaskLeavesRun) {
+    OS_STK stack[16];
+    OsHost::setMachine({[] { OsHost::stop(); }, [] { return false; }, [] {}});
+    OSInit();
+    OSTaskCreate([](void*) { throw std::runtime_error("bus hung"); }, nullptr, stack + 15, 5);
+    EXPECT_THROW(OsHost::run(), std::runtime_error);
+}
+
+TEST(OsHostPort, PrioritiesAndTasksAreLimited) {
+    OS_STK stack[16];
+    auto create = [&](unsigned priority) {
+        return OSTaskCreate([](void*) {}, nullptr, stack + 15, static_cast<INT8U>(priority));
+    };
+    INT8U err = 0;
+    OSInit();
+    OSMutexCreate(2, &err);
+    EXPECT_EQ(create(2), OS_ERR_PRIO_EXIST) << "a mutex's ceiling";
+    EXPECT_EQ(create(OS_LOWEST_PRIO), OS_ERR_PRIO_INVALID);
+    for (unsigned i = 0; i < OS_MAX_TASKS; ++i)
+        EXPECT_EQ(create(10 + i), OS_ERR_NONE);
+    EXPECT_EQ(create(40), OS_ERR_TASK_NO_MORE_TCB);
+    EXPECT_EQ(create(10), OS_ERR_PRIO_EXIST);
+}
 
 } // namespace
 

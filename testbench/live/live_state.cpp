@@ -29,6 +29,24 @@ std::string lower(std::string text) {
     return text;
 }
 
+// The fields that a description gives a word: {name, value, doc}; of EVENT and MASK, the block's
+// events.
+json fieldsOf(const json& description, unsigned word, const json& fields, uint32_t value) {
+    json decoded = json::array();
+    for (const json& f : fields) {
+        const unsigned lsb = f.at("lsb"), width = f.at("width");
+        decoded.push_back({{"name", f.at("name")},
+                           {"value", value >> lsb & (width < 32 ? (1u << width) - 1 : ~0u)},
+                           {"doc", f.value("doc", "")}});
+    }
+    if (word == 1 || word == 2)
+        for (const json& e : description.value("events", json::array()))
+            decoded.push_back({{"name", e.at("name")},
+                               {"value", value >> e.at("bit").get<unsigned>() & 1},
+                               {"doc", e.value("doc", "")}});
+    return decoded;
+}
+
 // The lines of the file's last 128 KiB, so that a page of a long flight stays as it is.
 json newest(const std::string& path) {
     constexpr std::streamoff most = 128 << 10;
@@ -96,11 +114,14 @@ json LiveState::slots(const std::string& bytes) const {
                       {"written", status->seen[at] == 2}};
             static const char* const common[] = {"ID", "EVENT", "MASK"};
             w["name"] = word < 3 ? common[word] : "word " + std::to_string(word);
+            json fields = json::array();
             for (const json& r : block.description.value("registers", json::array()))
                 if (r.at("word") == word) {
                     w["name"] = r.at("name");
                     w["doc"] = r.value("doc", "");
+                    fields = r.value("fields", json::array());
                 }
+            w["fields"] = fieldsOf(block.description, word, fields, status->registers[at]);
             words.push_back(w);
         }
         list.push_back({{"slot", block.slot},

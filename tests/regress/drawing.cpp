@@ -47,8 +47,10 @@ std::map<std::string, Signal> readVcd(const std::string& text, std::vector<uint6
     std::vector<std::string> scopes;
     std::istringstream words(text);
     uint64_t now = 0;
+    bool defined = false;
     for (std::string word; words >> word;) {
         std::string kind, id, name;
+        defined = defined || word == "$enddefinitions";
         if (word == "$scope") {
             words >> kind >> name;
             scopes.push_back(name);
@@ -66,6 +68,7 @@ std::map<std::string, Signal> readVcd(const std::string& text, std::vector<uint6
             const auto known = signals.find(id);
             if (known == signals.end() || signal.depth < known->second.depth)
                 signals[id] = signal;
+        } else if (!defined) {
         } else if (word[0] == '#') {
             now = std::stoull(word.substr(1));
             moments.push_back(now);
@@ -90,11 +93,14 @@ json drawingOf(const std::string& wave) {
         return nullptr;
     std::vector<const Signal*> order;
     for (const auto& [id, signal] : signals)
-        if (signal.changes.size() > 1 || (signal.depth <= portDepth && !signal.changes.empty()))
+        if (!signal.changes.empty())
             order.push_back(&signal);
-    std::stable_sort(order.begin(), order.end(), [](const Signal* a, const Signal* b) {
-        return std::tuple(a->bits != 0, a->depth, a->name) <
-               std::tuple(b->bits != 0, b->depth, b->name);
+    const auto moves = [](const Signal* s) {
+        return s->depth <= portDepth || s->changes.size() > 1;
+    };
+    std::stable_sort(order.begin(), order.end(), [&](const Signal* a, const Signal* b) {
+        return std::tuple(a->bits != 0, !moves(a), a->depth, a->name) <
+               std::tuple(b->bits != 0, !moves(b), b->depth, b->name);
     });
     json drawing = {{"from", moments.front()}, {"to", moments.back()}, {"signals", json::array()}};
     drawing["more"] = order.size() - std::min(order.size(), shownSignals);

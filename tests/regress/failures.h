@@ -34,7 +34,7 @@ void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
 
 // Returns the end of a waveform, VCD or FST (by fst2vcd): {from, to, signals: [[name, bits, [time,
 // value, ...]], ...], more: signals left out}: the program's, then those that move and ports, the
-// outermost first, the last changes of each. Null: it is empty.
+// outermost first, then those that stay as they are; the last changes of each. Null: it is empty.
 nlohmann::json drawingOf(const std::string& wave);
 
 #endif

@@ -153,7 +153,7 @@ void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
         }
         const bool hasProgram = fs::exists(wave + ".program.vcd");
         run({source + "/testbench/common/join_waves.sh", wave});
-        failure.wave = wave;
+        failure.wave = base + ".fst";
         failure.clock = scene.clock;
         failure.save = base + ".gtkw";
         writeSaveFile(failure.save, wave,

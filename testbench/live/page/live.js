@@ -67,8 +67,8 @@ function showCalls(calls) {
         number(c.bytes_up, ''), number(c.bytes_down, '')])));
 }
 
-// A lane for each direction of the air, the calls, and each slot that the processor spoke to: what is tall happened, or
-// was most. One path a lane and kind; only calls have a title.
+// A lane for each direction of the air, the calls, each task of the firmware, and each slot that the processor spoke to: what
+// is tall happened, or was most. One path a lane and kind; only calls have a title.
 function showTimeline(state) {
     const events = state.events, width = 1200, left = 150, height = 22, svg = $('timeline');
     if (!events.length || !state.air) return;
@@ -79,8 +79,14 @@ function showTimeline(state) {
     const bar = (ns, share, wide = 1.5) => `M${x(ns).toFixed(1)} 0h${wide}v${-Math.max(2, 16 * share).toFixed(1)}h${-wide}z`;
     for (const name of ['ground to UAV', 'UAV to ground', 'calls, ground', 'calls, UAV']) lane(name);
     const names = new Map(state.slots.map(s => [s.slot, s.block])), nameOf = slot => names.get(Number(slot)) ?? `slot ${slot}`;
+    let since = null; // when the task under way went on
+    for (const e of [...events.filter(e => e.task), {ns: end}]) {
+        if (since && since.task !== 'idleTask' && e.ns > begin)
+            lane(since.task).mark += bar(Math.max(since.ns, begin), 1, Math.max(1, x(e.ns) - x(Math.max(since.ns, begin))).toFixed(1));
+        since = e;
+    }
     for (const e of events) {
-        if (e.ns < begin) continue;
+        if (e.ns < begin || e.task) continue;
         if (e.packet !== undefined) lane(e.from === 'ground' ? 'ground to UAV' : 'UAV to ground')[e.lost ? 'lost' : 'mark'] += bar(e.ns, e.packet / 100);
         else if (e.events) lane(nameOf(e.slot)).event += bar(e.ns, 1);
         else for (const [slot, n] of Object.entries(e.accesses ?? {})) lane(nameOf(slot)).mark += bar(e.ns, n / 20);
@@ -115,6 +121,16 @@ function showSlots(slots) {
             const tr = row([[w.name], ['0x' + w.value.toString(16).padStart(8, '0'), 'n'], [w.written ? 'written' : 'read']]);
             tr.title = w.doc || '';
             table.append(tr);
+            if (!w.fields.length) continue;
+            const line = element('tr', undefined, 'fields'), cell = element('td');
+            cell.colSpan = 3;
+            for (const f of w.fields) {
+                const field = element('span', `${f.name} ${f.value}`, f.value ? 'set' : '');
+                field.title = f.doc;
+                cell.append(field, ' ');
+            }
+            line.append(cell);
+            table.append(line);
         }
         div.title = s.doc;
         return div;

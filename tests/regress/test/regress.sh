@@ -304,9 +304,9 @@ END
 page)
     cat >t.vcd <<'END'
 $timescale 1ns $end $scope module top $end $var wire 1 ! clk_i $end $scope module u_fifo $end $var wire 1 ! clk_i $end
-$var reg 8 " level [7:0] $end $upscope $end $upscope $end
+$var reg 8 " level [7:0] $end $var reg 8 & mask [7:0] $end $upscope $end $upscope $end
 $scope module program $end $var string 1 p.task task $end $upscope $end $enddefinitions $end
-#0 0! b0 " sUAV_radioTask p.task #5 1! #10 0! b10100111 " #15 1!
+#0 0! b0 " b1010 & sUAV_radioTask p.task #5 1! #10 0! b10100111 " #15 1!
 END
     cat >>tests/room/CMakeLists.txt <<'END'
 add_test(NAME formal.broken COMMAND sh -c "echo 'Assert failed in broken'; echo 'broken: trace: ${CMAKE_SOURCE_DIR}/t.vcd'; exit 1")
@@ -321,6 +321,7 @@ END
     has '>top.clk_i<' dom.html     # the outermost of its names
     has '>top.u_fifo.level<' dom.html
     has '>a7<' dom.html
+    has '>top.u_fifo.mask<' dom.html # which stays as it is
     has '>UAV_radioTask<' dom.html
     has 'id="results"' dom.html
     has 'test_c.Flicker' dom.html

@@ -14,7 +14,7 @@ fail() {
 has() { grep -q -- "$1" "$out/dom.html" || fail "the page lacks '$1' (see $out/dom.html)"; }
 case $case in
 mission)
-    "$source/testbench/sim/run.sh" "$build" --image /usr/share/xplanet/images/earth.jpg --size 96x64 --guard 20 --out "$out" --live 1 >"$out/log" 2>&1 &
+    "$source/testbench/sim/run.sh" "$build" --image /usr/share/xplanet/images/earth.jpg --size 96x64 --guard 20 --cpu m3 --out "$out" --live 1 >"$out/log" 2>&1 &
     run=$!
     trap 'kill $(ps -o pid= --ppid $run) $run 2>/dev/null || true' EXIT
     while ! grep -q 'The page stays' "$out/log"; do
@@ -31,6 +31,9 @@ mission)
     has 'hwengine1.getResult()'
     has 'Station.vehicleState(uptimeMs'
     has '<td>THRESHOLD</td><td class="n">0x00000018</td>'
+    has '>WIDTH 96</span>.*>HEIGHT 64</span>' # fields of the vision core's FRAME_SIZE
+    has '>DONE [01]</span>'                  # an event of the vision core
+    has 'y="[0-9]*">UAV_radioTask</text>'
     has 'corners, the strongest'
     has '<text x="0" y="[0-9]*">vision</text>'
     has '<title>hwengine1.getResult(): until [0-9.]* s</title>'

@@ -56,6 +56,7 @@ module axis_write #(
     reg                 busy;      // a descriptor's packet is taken
     reg                 over;      // the rest of it is thrown away
     reg                 pad;       // the burst that is begun is filled up
+    reg                 leading;   // the row begins within a burst, which is filled up to there, behind `pad`
     reg [ADDR_BITS-1:3] at;        // where the next word goes
     reg [WORD_BITS-1:0] left;      // words of the row
     reg [ADDR_BITS-1:3] row, stride;
@@ -73,9 +74,9 @@ module axis_write #(
     reg [2:0]           behind;    // bursts until it is acknowledged
 
     // ---- words ----
-    wire free   = !wr_full_i && unacked != 3'd4;
-    wire may    = free && busy && !over && !pad && place == at[5:3];
-    wire lead   = free && busy && !over && !pad && place != at[5:3]; // the row begins within a burst
+    wire free   = !wr_full_i && !unacked[2];
+    wire may    = free && busy && !over && !pad && !leading;
+    wire lead   = free && busy && !over && !pad && leading;
     wire take   = axis_tvalid_i && axis_tready_o;
     wire data   = take && !over;
     wire full   = wr_push_o && place == 3'd7;
@@ -111,22 +112,40 @@ module axis_write #(
 
     // ---- requests ----
     wire ask = ask_valid_o && ask_ready_i;
-    wire [2:0] next_unacked = unacked + {2'd0, full} - {2'd0, acked_i};
     assign ask_valid_o  = queued != 3'd0;
     assign ask_addr_o   = bursts[out];
     assign done_valid_o = ending && behind == 3'd0;
 
     always @(posedge clk_i) begin
-        if (data) begin
-            at   <= row_ends ? next_row : at + 1'b1;
-            left <= row_ends ? words : left - 1'b1;
-            if (row_ends) begin
-                row  <= next_row;
-                rows <= rows - 16'd1;
+        // What stands at the descriptor's inputs is taken whether it is one or not, behind a packet and until the next:
+        // so the wide choice is made early, and `take`, which is late, only enables it.
+        if (take || !busy) begin
+            if (axis_tlast_i || !busy) begin
+                at      <= desc_base_i;
+                left    <= wanted;
+                row     <= desc_base_i;
+                stride  <= desc_stride_i;
+                words   <= wanted;
+                rest    <= desc_bytes_i[2:0];
+                rows    <= desc_rows_i;
+                tag     <= desc_tag_i;
+                bytes   <= {BYTE_BITS{1'b0}};
+                leading <= desc_base_i[5:3] != 3'd0;
+            end else begin
+                at   <= row_ends ? next_row : at + 1'b1;
+                left <= row_ends ? words : left - 1'b1;
+                if (row_ends) begin
+                    row     <= next_row;
+                    rows    <= rows - 16'd1;
+                    leading <= next_row[5:3] != 3'd0;
+                end
+                bytes <= so_far;
             end
-            over  <= too_much;
-            bytes <= so_far;
         end
+        if (lead)
+            leading <= place + 3'd1 != at[5:3];
+        if (data)
+            over <= too_much;
         if (ends) begin
             busy         <= 1'b0;
             over         <= 1'b0;
@@ -135,17 +154,8 @@ module axis_write #(
             done_tag_o   <= tag;
         end
         if (start) begin
-            busy   <= 1'b1;
-            over   <= 1'b0;
-            at     <= desc_base_i;
-            left   <= wanted;
-            row    <= desc_base_i;
-            stride <= desc_stride_i;
-            words  <= wanted;
-            rest   <= desc_bytes_i[2:0];
-            rows   <= desc_rows_i;
-            tag    <= desc_tag_i;
-            bytes  <= {BYTE_BITS{1'b0}};
+            busy <= 1'b1;
+            over <= 1'b0;
         end
 
         place <= next_place;
@@ -161,11 +171,11 @@ module axis_write #(
         if (ask)
             out <= out + 2'd1;
         queued  <= queued + {2'd0, full} - {2'd0, ask};
-        unacked <= next_unacked;
+        unacked <= unacked + {2'd0, full} - {2'd0, acked_i};
 
         if (ends) begin
             ending <= 1'b1;
-            behind <= next_unacked + {2'd0, next_place != 3'd0};
+            behind <= unacked + {2'd0, !over || pad} - {2'd0, acked_i}; // with the burst of the last word that was written
         end else begin
             ending <= ending && !(done_valid_o && done_ready_i);
             behind <= behind - {2'd0, acked_i && behind != 3'd0};

@@ -15,6 +15,7 @@
     wire       f_begun = place != 3'd0;
     wire [ADDR_BITS-1:3] f_done  = {{(ADDR_BITS-4){1'b0}}, 1'b0} + words - left; // words of the row taken
     wire [ADDR_BITS-1:3] f_place = {f_begun ? burst : at[ADDR_BITS-1:6], place};
+    wire [4*(ADDR_BITS-6)-1:0] f_bursts = {bursts[3], bursts[2], bursts[1], bursts[0]}; // for axi4_memory's proof
     initial assume (rst_i);
     always @* begin
         assume (!acked_i || unacked > queued); // of what was asked for
@@ -43,6 +44,7 @@
         // A burst that is begun belongs to the word that comes next, or is being filled up.
         assert (!pad || f_begun);
         assert (!f_begun || pad || (busy && !over && burst == at[ADDR_BITS-1:6] && place <= at[5:3]));
+        assert (!busy || over || leading == (at[5:3] != (pad ? 3'd0 : place)));
         if (busy && !over)
             assert (left != {WORD_BITS{1'b0}} && left <= words && at == row + f_done && rows != 16'd0);
         // A word that is taken is pushed in this clock, to its place; what is pushed besides writes nothing.

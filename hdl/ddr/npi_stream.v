@@ -58,7 +58,7 @@ module npi_stream #(
     reg [WORD_BITS-1:0] to_ask, to_give;       // words not yet asked for; not yet given to the core
     reg [5:0]           outstanding;           // words asked for and not yet popped
     reg [2:0]           filled;                // words of the burst that is begun
-    reg [2:0]           bursts;                // pushed and not yet acknowledged
+    reg [2:0]           bursts;                // pushed and not yet acknowledged, 4 at most
     reg                 padding;
 
     wire acked_read  = npi_addr_ack_i && request_read;
@@ -72,10 +72,10 @@ module npi_stream #(
     assign npi_rd_pop_o = !npi_rd_empty_i && (read_take_i || to_give == {WORD_BITS{1'b0}});
 
     // ---- write ----
-    wire push = !npi_wr_almost_full_i && bursts != 3'd4 && (padding || write_valid_i);
+    wire push = !npi_wr_almost_full_i && !bursts[2] && (padding || write_valid_i);
     wire full = push && filled == 3'd7;
 
-    assign write_ready_o = !npi_wr_almost_full_i && bursts != 3'd4 && !padding;
+    assign write_ready_o = !npi_wr_almost_full_i && !bursts[2] && !padding;
     assign npi_wr_push_o = push;
     assign npi_wr_data_o = write_data_i;
     assign npi_wr_be_o   = padding ? 8'd0 : write_be_i;
@@ -107,7 +107,10 @@ module npi_stream #(
         // The idle signals are registers, a clock late, because a core's start depends on them.
         read_idle_o  <= to_give == {WORD_BITS{1'b0}} && outstanding == 6'd0 && !(request && request_read) && !read_start_i;
         write_idle_o <= filled == 3'd0 && bursts == 3'd0 && !push;
-        outstanding <= outstanding + (acked_read ? BURST : 6'd0) - {5'd0, npi_rd_pop_o};
+        // Words and bursts apart: no carry chain comes after the core's take.
+        outstanding[2:0] <= outstanding[2:0] - {2'd0, npi_rd_pop_o};
+        outstanding[5:3] <= outstanding[5:3] + {2'd0, acked_read}
+                            - {2'd0, npi_rd_pop_o && outstanding[2:0] == 3'd0};
         if (acked_read) begin
             read_addr <= read_addr + 1'b1;
             to_ask    <= to_ask > {{(WORD_BITS - 4){1'b0}}, 4'd8} ? to_ask - {{(WORD_BITS - 4){1'b0}}, 4'd8}

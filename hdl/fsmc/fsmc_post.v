@@ -37,14 +37,14 @@ module fsmc_post #(
     localparam WORD = ADDR_BITS - 2;
 
     reg [WORD-1:0] addrs [0:(1<<LOG2)-1];
-    // Words head..tail-1 are closed. Initial values keep Yosys from keeping them twice (npi_queue).
-    reg [LOG2-1:0] head = 0, tail = 0;
+    // `count` words from `head` on are closed. The initial value keeps Yosys from keeping head twice (npi_queue).
+    reg [LOG2-1:0] head = 0, count;
     reg            open;
     reg [WORD-1:0] open_addr;
     reg [7:0]      open_be;
 
     wire       joins = open_addr == wr_addr_i[ADDR_BITS-1:2];
-    wire [LOG2-1:0] count = tail - head;
+    wire [LOG2-1:0] tail = head + count;
     wire full   = &count; // no closed word more fits, so the open one stays open
     wire close  = open && !full && (&open_be || flush_i || (wr_i && !joins));
     wire accept = wr_i && !(full && open && !joins);
@@ -54,7 +54,7 @@ module fsmc_post #(
     assign room_o       = !(&count[LOG2-1:1] || (open && count == (1 << LOG2) - 3));
     localparam [LOG2-1:0] LOW = 3;
     assign more_room_o  = !(&(count | LOW) && (count[0] || count[1] || open));
-    assign word_valid_o = head != tail; // a shorter path than count != 0
+    assign word_valid_o = |count;
     assign idle_o       = !open && !word_valid_o;
     assign word_addr_o  = addrs[head];
     assign push_o       = close;
@@ -72,10 +72,10 @@ module fsmc_post #(
     endgenerate
 
     always @(posedge clk_i) begin
-        if (close) begin
+        if (close)
             addrs[tail] <= open_addr;
-            tail <= tail + 1'b1;
-        end
+        if (close != word_taken_i)
+            count <= close ? count + 1'b1 : count - 1'b1;
         if (close || accept)
             open <= accept;
         open_be <= take | (open && !close ? open_be : 8'd0);
@@ -85,7 +85,7 @@ module fsmc_post #(
             head <= head + 1'b1;
         if (rst_i) begin
             head <= 0;
-            tail <= 0;
+            count <= 0;
             open <= 1'b0;
         end
     end

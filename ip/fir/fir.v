@@ -62,9 +62,9 @@ module fir (
     wire        flush   = ended && filled == 3'd0 && !flushed;
     wire        sending = to_send != 9'd0 && read_valid;
     wire        sent    = sending && sample_ready;
-    wire        offer   = (filled == 3'd4 || (ended && filled != 3'd0)) && !core_rst;
+    wire        offer   = (filled[2] || (ended && filled != 3'd0)) && !core_rst;
     wire        written = offer && write_ready;
-    wire        room    = filled != 3'd4 || write_ready;
+    wire        room    = !filled[2] || write_ready;
     wire        taken   = result_valid && room;
     wire [3:0]  here    = written ? 4'd1 : 4'd1 << filled[1:0]; // where this result goes
 

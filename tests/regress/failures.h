@@ -27,10 +27,12 @@ std::vector<Failure> examine(const std::vector<Result>& results, const std::vect
                              const std::string& out);
 
 // Runs failed tests of RTL again in a build with waveforms (build/trace), and keeps the clocks
-// around the failure; of a failed flight its replay, around the last event of a core. Says on the
-// terminal what it does; a test that cannot be traced has none.
+// around the failure; of a failed flight its replay, around the last event of a core. `launcher`:
+// local, or slurm, where a node runs them. Says on the terminal what it does; a test that cannot be
+// traced has none.
 void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
-              const std::string& source, unsigned jobs, unsigned limit);
+              const std::string& source, const std::string& launcher, unsigned jobs,
+              unsigned limit);
 
 // Returns the end of a waveform, VCD or FST (by fst2vcd): {from, to, signals: [[name, bits, [time,
 // value, ...]], ...], more: signals left out}: the program's, then those that move and ports, the

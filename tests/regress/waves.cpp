@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
@@ -106,8 +107,16 @@ void writeSaveFile(const std::string& path, const std::string& wave, const fs::p
 } // namespace
 
 void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
-              const std::string& source, unsigned jobs, unsigned limit) {
+              const std::string& source, const std::string& launcher, unsigned jobs,
+              unsigned limit) {
     const std::string build = source + "/build/trace";
+    const auto launch = [&](std::vector<std::string> command,
+                            const std::map<std::string, std::string>& environment = {}) {
+        if (launcher ==
+            "slurm") // where the tests ran; what it writes is in the folder that all share
+            command.insert(command.begin(), {"srun", "--quiet", "--ntasks=1"});
+        run(command, environment);
+    };
     unsigned made = 0;
     for (Failure& failure : failures) {
         const Test* test = find(tests, failure.result.name);
@@ -134,19 +143,20 @@ void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
         const uint64_t from = scene.clock - std::min(scene.clock, scene.before),
                        to = scene.clock + scene.after;
         if (scene.flight.empty())
-            run({"ctest", "--test-dir", build, "--no-tests=error", "-R",
-                 "^" +
-                     std::regex_replace(failure.result.name, std::regex(R"([.+*?()\[\]{}|^$\\])"),
-                                        "\\$&") +
-                     "$"},
-                {{"SEED", failure.result.seed},
-                 {"WAVE", wave},
-                 {"WAVE_FROM", std::to_string(from)},
-                 {"WAVE_TO", std::to_string(to)}});
+            launch({"ctest", "--test-dir", build, "--no-tests=error", "-R",
+                    "^" +
+                        std::regex_replace(failure.result.name,
+                                           std::regex(R"([.+*?()\[\]{}|^$\\])"), "\\$&") +
+                        "$"},
+                   {{"SEED", failure.result.seed},
+                    {"WAVE", wave},
+                    {"WAVE_FROM", std::to_string(from)},
+                    {"WAVE_TO", std::to_string(to)}});
         else
-            run({build + "/testbench/sim/icesoc-sim", "--replay", scene.flight, "--out",
-                 base + ".replay", "--wave", wave, "--from", fmt::format("{:.6f}", seconds(from)),
-                 "--to", fmt::format("{:.6f}", seconds(to))});
+            launch({build + "/testbench/sim/icesoc-sim", "--replay", scene.flight, "--out",
+                    base + ".replay", "--wave", wave, "--from",
+                    fmt::format("{:.6f}", seconds(from)), "--to",
+                    fmt::format("{:.6f}", seconds(to))});
         if (!fs::exists(wave)) {
             std::cout << "  the test drove no traced model\n";
             continue;

@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: MIT
 # prove: module depth source-folder work-folder [yosys commands for parameters]
 #
-# 1. bounded: no assertion fails within `depth` clocks (BMC);
-# 2. induction: none ever fails: by k-induction (MiniSat) where the assertions carry themselves; else
+# 1. induction: no assertion ever fails: by k-induction (MiniSat) where the assertions carry themselves; else
 #    property-directed reachability finds the inductive invariant itself and has it checked
 #    (z3's k-induction did not end on 64-bit data);
+# 2. bounded: where that does not prove it, the shortest counterexample of `depth` clocks (BMC);
 # 3. cover: every cover statement is reached within 4 * `depth` clocks.
 # PROVE_PDR: switches of pdr, where others are quicker.
 # PROVE_STEP=k: the assertions carry themselves over k clocks, but are too many for MiniSat: CaDiCaL does the step.
-# PROVE_BOUNDED=1: no induction.
+# PROVE_BOUNDED=1: bounded only.
 # PROVE_MUTANT: Yosys commands between reading and flattening (tests/mutants/drawn.py); no trace then.
 # A failed assertion leaves <work>/trace.vcd. The module may instance others of its folder, of bus/ and of hdl/system/.
 set -eu
@@ -98,6 +98,17 @@ step() {
     abc "read_blif step.blif; strash; write_cnf step.cnf" step.log
     limited cadical -q step.cnf >step.log 2>&1
 }
+# bounded clocks: does an assertion fail within so many?
+bounded() {
+    abc "read_aiger assert.aig; fold; strash; bmc3 -F $1; write_cex -a assert.aiw" bounded.log
+    grep -q 'output failed\|output asserted\|was asserted\|Explored all reachable states' bounded.log || {
+        cat bounded.log
+        echo "$module: abc has no answer (see above): is another proof at work in $work?" >&2
+        exit 2
+    }
+    grep -q 'No output failed\|No output asserted\|Explored all reachable states' bounded.log || failed bounded.log "an assertion fails within $1 clocks"
+    echo "$module: bounded, $1 clocks"
+}
 latches() { head -1 "$1" | cut -d' ' -f4; }
 
 if [ "$(latches assert.aig)" -eq 0 ]; then
@@ -105,42 +116,38 @@ if [ "$(latches assert.aig)" -eq 0 ]; then
     grep -q 'UNSATISFIABLE' induction.log || failed induction.log "an assertion fails"
     echo "$module: proven (it has no state)"
 else
-    abc "read_aiger assert.aig; fold; strash; bmc3 -F $depth; write_cex -a assert.aiw" bounded.log
-    grep -q 'output failed\|output asserted\|was asserted\|Explored all reachable states' bounded.log || {
-        cat bounded.log
-        echo "$module: abc has no answer (see above): is another proof at work in $work?" >&2
-        exit 2
-    }
-    grep -q 'No output failed\|No output asserted\|Explored all reachable states' bounded.log || failed bounded.log "an assertion fails within $depth clocks"
-    echo "$module: bounded, $depth clocks"
-
-    # Blocks whose assertions are inductive as they stand are done in a second.
-    : >induct.log
-    clocks_of_step=${PROVE_STEP:-0} status=0
+    clocks_of_step=${PROVE_STEP:-0} carried=''
     if [ -n "${PROVE_BOUNDED:-}" ]; then
-        : no more
+        bounded "$depth"
+        carried=no
     elif [ "$clocks_of_step" -gt 0 ]; then
         command -v cadical >/dev/null || {
             echo "$module: PROVE_STEP needs cadical: cmake/setup.sh" >&2
             exit 2
         }
+        bounded $((clocks_of_step + 1))
+        status=0
         step "$clocks_of_step" || status=$?
-    elif [ "$clocks" = async2sync ]; then
+        [ $status -ne 20 ] || carried="induction step of $clocks_of_step clock(s)"
+    elif [ "$clocks" = async2sync ]; then # blocks whose assertions are inductive as they stand are done in a second
         limited yosys -q -l induct.log induct.ys >/dev/null 2>&1 || true
+        ! grep -q 'Induction step proven: SUCCESS' induct.log || {
+            bounded 2 # the base begins after the first clock
+            carried="$(grep -c 'Induction step failed' induct.log || true) + 1 steps"
+        }
     fi
-    if [ -n "${PROVE_BOUNDED:-}" ]; then
-        : no more
-    elif [ $status -eq 20 ]; then
-        echo "$module: proven, induction step of $clocks_of_step clock(s)"
-    elif grep -q 'Induction step proven: SUCCESS' induct.log; then
-        echo "$module: proven, $(grep -c 'Induction step failed' induct.log) + 1 steps"
-    else
+    if [ -z "$carried" ]; then
         abc "read_aiger assert.aig; fold; strash; scorr -F 2; pdr ${PROVE_PDR:-}; write_cex -a assert.aiw; sat" induction.log
         # sat: scorr alone may find the output constant; newer versions of abc then have nothing to prove
-        grep -q 'Property proved\|UNSATISFIABLE' induction.log || failed induction.log "not proven (PROVE_SECONDS=$limit)"
-        invariant=$(sed -n 's/^Invariant[^:]*: \([0-9]* clauses with [0-9]* flops\).*/\1/p' induction.log)
-        echo "$module: proven, ${invariant:-no clause needed}"
+        grep -q 'Property proved\|UNSATISFIABLE' induction.log || {
+            mv assert.aiw deep.aiw 2>/dev/null || true
+            bounded "$depth" # the shortest counterexample
+            mv deep.aiw assert.aiw 2>/dev/null || true
+            failed induction.log "not proven (PROVE_SECONDS=$limit)"
+        }
+        carried=$(sed -n 's/^Invariant[^:]*: \([0-9]* clauses with [0-9]* flops\).*/\1/p' induction.log)
     fi
+    [ "$carried" = no ] || echo "$module: proven, ${carried:-no clause needed}"
 fi
 
 covers=$(grep -c . cover.names || true)
@@ -148,7 +155,7 @@ covers=$(grep -c . cover.names || true)
     echo "$module: no cover statement: nothing shows that the properties are reached" >&2
     exit 1
 }
-solve="bmc3 -F $((depth * 4))"
+solve="bmc3 -g -F $((depth * 4))" # glucose: a quarter of the time where a cover is deep
 [ "$(latches cover.aig)" -gt 0 ] || solve=sat
 # older abc drops the flip-flops of a cone without -s, newer has no -s
 cone=cone

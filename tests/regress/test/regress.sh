@@ -262,13 +262,29 @@ bisect) # of five commits the third breaks test_a.One; the second does not confi
     bisect test_a.One nonsense
     [ $status -eq 2 ] && has 'no commit nonsense' || fail "a commit that is none"
     ;;
-slurm)
+slurm) # results, logs and waveforms come from the nodes
     command -v slurmctld >/dev/null 2>&1 || PATH=$PATH:/usr/sbin
+    cat >tests/room/wave.sh <<'END'
+#!/bin/sh
+echo "wrong at clock cycle 5"
+[ -z "${WAVE:-}" ] || { echo "$SLURMD_NODENAME $WAVE_FROM $WAVE_TO" >../../../../where && vcd2fst ../../../../t.vcd "$WAVE"; }
+exit 1
+END
+    chmod +x tests/room/wave.sh
+    mkdir -p testbench/common && cp "$source/testbench/common/join_waves.sh" testbench/common/
+    # shellcheck disable=SC2016 # VCD's
+    echo '$timescale 1ns $end $var wire 1 ! clk_i $end $enddefinitions $end #0 0! #5 1! #10 0!' >t.vcd
+    # shellcheck disable=SC2016 # CMake's
+    printf 'add_test(NAME test_w.Wave COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/wave.sh)\nadd_custom_target(test_w)\n' >>tests/room/CMakeLists.txt
+    cmake build/main >/dev/null
     status=0
     "$cluster" cluster "$regress" --launcher slurm --seed 3 >out.txt 2>&1 || status=$?
     [ $status -eq 1 ] || fail "exit status $status, not 1"
-    has "4 passed, 2 failed, 0 skipped"
+    has "4 passed, 3 failed, 0 skipped"
     has "value 3 is not 7" build/regress/failures/test_b.Bad-3.log
+    has '^\(one\|two\) 0 25$' where
+    has 'gtkwave build/regress/failures/test_w.Wave-3.gtkw'
+    has '<property name="wave" value="[^"]*/test_w.Wave-3.fst"' build/regress/junit.xml
     ;;
 slurm_node) # a node dies, with all that runs there, while a test does: the other one runs that again, and nothing is lost
     command -v slurmctld >/dev/null 2>&1 || PATH=$PATH:/usr/sbin

@@ -169,7 +169,7 @@ std::string typesFile(const CContext& c) {
                 findFunction(w, *d);
             break;
         case DKind::Exception:
-            exceptionFunctions(w, c, *d);
+            exceptionFunctions(w, *d);
             break;
         case DKind::Class:
             classFunctions(w, *d);

@@ -68,37 +68,9 @@ void writeFunction(Writer& w, const Declaration& d, const Writer::Values& v) {
     });
 }
 
-void readFunction(Writer& w, const CContext& c, const Declaration& d, const Writer::Values& v) {
-    bool classes = needsTables(d);
-    w.block("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is)", v, [&] {
-        std::string skip = "Ice_InputStream_skipSlice(is)";
-        if (classes)
-            w.line("Ice_InputValues values;");
-        if (d.preserves()) {
-            skip = "Ice_InputStream_keepSlice(is, id, &v->" + unknownOf(d) + ")";
-            w.line("v->" + unknownOf(d) + " = 0;");
-        }
-        if (classes)
-            w.line("Ice_InputStream_beginValues(is, &values, " + c.valueTable() + ");");
-        w.line("Ice_InputStream_startException(is);");
-        w.block("for (;;)", {}, [&] {
-            w.line("Ice_String id = Ice_InputStream_startSlice(is);");
-            w.line("if (Ice_String_equals(id, \"{id}\"))", v);
-            w.nested("break;");
-            w.block("if (!" + skip + ")", {}, [&] {
-                w.line("is->failed = 1;");
-                w.line("break;");
-            });
-        });
-        w.line("{c}_readSlices(v, is);", v);
-        if (classes)
-            w.line("Ice_InputStream_endValues(is);");
-    });
-}
-
 } // namespace
 
-void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d) {
+void exceptionFunctions(Writer& w, const Declaration& d) {
     const Writer::Values v = {
         {"c", cName(d)}, {"id", d.id()}, {"classes", requiresClasses(d) ? "1" : "0"}};
     initFunction(w, d);
@@ -106,8 +78,6 @@ void exceptionFunctions(Writer& w, const CContext& c, const Declaration& d) {
     slicesFunctions(w, d, v);
     w.blank();
     writeFunction(w, d, v);
-    w.blank();
-    readFunction(w, c, d, v);
 }
 
 void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {

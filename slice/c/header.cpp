@@ -148,8 +148,9 @@ void declareType(Writer& w, const Declaration& d) {
         return;
     }
     w.line("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os);", v);
-    w.line("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is);", v);
-    if (d.kind == DKind::Exception) {
+    if (d.kind != DKind::Exception) {
+        w.line("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is);", v);
+    } else {
         w.line("/* Without the head: this type's slice and those of its bases. */");
         w.line("void {c}_writeSlices(const {c} *v, Ice_OutputStreamPtr os);", v);
         w.line("void {c}_readSlices({c} *v, Ice_InputStreamPtr is);", v);

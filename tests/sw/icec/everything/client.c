@@ -95,6 +95,7 @@ static int sequences(void) {
 }
 
 static int types(void) {
+    static Ice_Int many[255];
     Everything_Numbers n, same, back;
     Everything_Mixed m[2], mBack;
     Everything_Mixeds list, listBack;
@@ -102,10 +103,10 @@ static int types(void) {
     Everything_Counts counts, countsBack;
     Everything_Leaf leaf;
     Everything_Node node, *nodeBack;
-    Ice_ObjectPrx prx, prxBack;
+    Ice_ObjectPrx prx, prxBack, older = tester;
     Ice_String text = Ice_String_from("text"), textBack;
     Ice_Bool hasText, hasNumbers, hasInts, hasResult;
-    Everything_Ints intsBack;
+    Everything_Ints ints, intsBack;
     Ice_Int count, result;
     fill(&n);
     CHECK(Everything_TesterPrx_echoNumbers(&tester, &n, &same, &back) == ICE_OK);
@@ -138,6 +139,14 @@ static int types(void) {
                                              &result) == ICE_OK);
     CHECK(hasText == tester.minor && hasResult == tester.minor && !hasNumbers && !hasInts);
     CHECK(!tester.minor || (Ice_String_equals(textBack, "text") && result == 4));
+    CHECK(Ice_ObjectPrx_ice_identity(&older, "older") == ICE_OK);
+    ints.data = many; /* with a size of one byte, and of five */
+    for (ints.size = 254; ints.size <= 255; ++ints.size) {
+        CHECK(Everything_TesterPrx_echoOptionals(&older, 4, &text, 0, &ints, &hasText, &textBack,
+                                                 &hasNumbers, &back, &hasInts, &intsBack,
+                                                 &hasResult, &result) == ICE_OK);
+        CHECK(hasResult == tester.minor && !hasInts);
+    }
     Everything_Node_init(&node);
     Everything_Leaf_init(&leaf);
     node.id = 1, node.next = &leaf.base;

@@ -155,6 +155,14 @@ private:
     int side_ = 0;
 };
 
+class OlderI : public Older {
+public:
+    Ice::optional<int> echoOptionals(int required, Ice::optional<std::string>,
+                                     const Ice::Current&) override {
+        return required;
+    }
+};
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -171,6 +179,7 @@ int main(int argc, char** argv) {
         adapter->add(servant, {"tester", ""});
         adapter->addFacet(servant, {"tester", ""}, "side");
         adapter->add(std::make_shared<SquareI>(), {"square", ""});
+        adapter->add(std::make_shared<OlderI>(), {"older", ""});
         adapter->addDefaultServant(servant, "any");
         adapter->activate();
         auto info = adapter->getPublishedEndpoints().at(0)->getInfo();

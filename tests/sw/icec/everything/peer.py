@@ -282,12 +282,18 @@ class SquareI(E.SquareDisp):
         return Ice.Future.completed(self.side)
 
 
+class OlderI(E.Older):
+    def echoOptionals(self, required, a, current):
+        return required
+
+
 def server(ic):
     adapter = ic.createObjectAdapterWithEndpoints("Adapter", "tcp -h 127.0.0.1")
     servant = TesterI()
     adapter.add(servant, ic.stringToIdentity("tester"))
     adapter.addFacet(servant, ic.stringToIdentity("tester"), "side")
     adapter.add(SquareI(), ic.stringToIdentity("square"))
+    adapter.add(OlderI(), ic.stringToIdentity("older"))
     adapter.addDefaultServant(servant, "any")
     adapter.activate()
     print(adapter.getPublishedEndpoints()[0].getInfo().port, flush=True)

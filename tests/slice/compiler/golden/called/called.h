@@ -55,7 +55,6 @@ typedef struct Shop_Sold {
 } Shop_Sold;
 void Shop_Sold_init(Shop_Sold *v);
 void Shop_Sold_writeToOutputStream(const Shop_Sold *v, Ice_OutputStreamPtr os);
-void Shop_Sold_readFromInputStream(Shop_Sold *v, Ice_InputStreamPtr is);
 /* Without the head: this type's slice and those of its bases. */
 void Shop_Sold_writeSlices(const Shop_Sold *v, Ice_OutputStreamPtr os);
 void Shop_Sold_readSlices(Shop_Sold *v, Ice_InputStreamPtr is);

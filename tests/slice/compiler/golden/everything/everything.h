@@ -182,7 +182,6 @@ typedef struct Outer_Failure {
 } Outer_Failure;
 void Outer_Failure_init(Outer_Failure *v);
 void Outer_Failure_writeToOutputStream(const Outer_Failure *v, Ice_OutputStreamPtr os);
-void Outer_Failure_readFromInputStream(Outer_Failure *v, Ice_InputStreamPtr is);
 /* Without the head: this type's slice and those of its bases. */
 void Outer_Failure_writeSlices(const Outer_Failure *v, Ice_OutputStreamPtr os);
 void Outer_Failure_readSlices(Outer_Failure *v, Ice_InputStreamPtr is);
@@ -197,7 +196,6 @@ typedef struct Outer_Deep {
 } Outer_Deep;
 void Outer_Deep_init(Outer_Deep *v);
 void Outer_Deep_writeToOutputStream(const Outer_Deep *v, Ice_OutputStreamPtr os);
-void Outer_Deep_readFromInputStream(Outer_Deep *v, Ice_InputStreamPtr is);
 /* Without the head: this type's slice and those of its bases. */
 void Outer_Deep_writeSlices(const Outer_Deep *v, Ice_OutputStreamPtr os);
 void Outer_Deep_readSlices(Outer_Deep *v, Ice_InputStreamPtr is);
@@ -207,7 +205,6 @@ typedef struct Outer_Other {
 } Outer_Other;
 void Outer_Other_init(Outer_Other *v);
 void Outer_Other_writeToOutputStream(const Outer_Other *v, Ice_OutputStreamPtr os);
-void Outer_Other_readFromInputStream(Outer_Other *v, Ice_InputStreamPtr is);
 /* Without the head: this type's slice and those of its bases. */
 void Outer_Other_writeSlices(const Outer_Other *v, Ice_OutputStreamPtr os);
 void Outer_Other_readSlices(Outer_Other *v, Ice_InputStreamPtr is);
@@ -251,7 +248,6 @@ typedef struct Outer_WithClass {
 } Outer_WithClass;
 void Outer_WithClass_init(Outer_WithClass *v);
 void Outer_WithClass_writeToOutputStream(const Outer_WithClass *v, Ice_OutputStreamPtr os);
-void Outer_WithClass_readFromInputStream(Outer_WithClass *v, Ice_InputStreamPtr is);
 /* Without the head: this type's slice and those of its bases. */
 void Outer_WithClass_writeSlices(const Outer_WithClass *v, Ice_OutputStreamPtr os);
 void Outer_WithClass_readSlices(Outer_WithClass *v, Ice_InputStreamPtr is);
@@ -275,7 +271,6 @@ typedef struct Outer_Inner_Failure {
 } Outer_Inner_Failure;
 void Outer_Inner_Failure_init(Outer_Inner_Failure *v);
 void Outer_Inner_Failure_writeToOutputStream(const Outer_Inner_Failure *v, Ice_OutputStreamPtr os);
-void Outer_Inner_Failure_readFromInputStream(Outer_Inner_Failure *v, Ice_InputStreamPtr is);
 /* Without the head: this type's slice and those of its bases. */
 void Outer_Inner_Failure_writeSlices(const Outer_Inner_Failure *v, Ice_OutputStreamPtr os);
 void Outer_Inner_Failure_readSlices(Outer_Inner_Failure *v, Ice_InputStreamPtr is);

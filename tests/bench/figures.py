@@ -10,6 +10,7 @@ and share (measured by limit), or peer and ratio.
 import datetime
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -22,22 +23,50 @@ TITLES = {
     "size": "Bytes of the firmware's layers",
 }
 
+# What a row has columns for, where it has two to six
+AXES = [r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %", r"of \d+ bytes", r"\d+ ports"]
+
 
 def number(value):
     return f"{value:,.4g}" if isinstance(value, float) and abs(value) < 1e4 else f"{value:,.0f}"
 
 
-def row(entry):
-    beside = ""
+def beside(entry):
     if "limit" in entry:
-        beside = f"limit {number(entry['limit'])}"
-        if "share" in entry:
-            beside += f", {100 * entry['share']:.1f} %"
-    elif "peer" in entry:
-        beside = f"{entry['peer']}, {entry['ratio']} times"
-    elif "by_hand" in entry:
-        beside = f"by hand {entry['by_hand']}, from VHDL {entry['in_vhdl']}"
-    return f"| {entry['name']} | {number(entry['value'])} {entry['unit']} | {beside} |"
+        share = f", {100 * entry['share']:.1f} %" if "share" in entry else ""
+        return f"limit {number(entry['limit'])}{share}"
+    if "peer" in entry:
+        return f"{entry['peer']}, {entry['ratio']} times"
+    return f"by hand {entry['by_hand']}, from VHDL {entry['in_vhdl']}" if "by_hand" in entry else ""
+
+
+def split(name):
+    """A name without the first axis that it has, and what stands there."""
+    for axis in AXES:
+        found = re.search(f",? ({axis})", name)
+        if found:
+            return (axis, name.replace(found[0], "", 1)), found[1]
+    return (None, name), None
+
+
+def tables(rows):
+    """The lines of the tables of (name, value, unit, beside)."""
+    series, plain = {}, []  # by axis and rest of the name: its cells
+    for name, value, unit, limit in rows:
+        key, column = split(name)
+        cells = series.setdefault((*key, unit), {})
+        cells[column] = value + (" of " + limit[6:] if limit.startswith("limit") else "")
+        plain.append((cells, f"| {name} | {value} {unit} | {limit} |"))
+    lines, shapes = [], {}
+    for (_, what, unit), cells in series.items():
+        if 2 <= len(cells) <= 6:
+            shapes.setdefault(tuple(cells), []).append(f"| {what}, {unit} | {' | '.join(cells.values())} |")
+    single = [line for cells, line in plain if not 2 <= len(cells) <= 6]
+    if single:
+        lines += ["| what | measured | beside |", "|---|---|---|", *single]
+    for columns, those in shapes.items():
+        lines += [""] * bool(lines) + [f"| what | {' | '.join(columns)} |", "|---" * (len(columns) + 1) + "|", *those]
+    return lines
 
 
 def main(words):
@@ -47,14 +76,15 @@ def main(words):
     changed = " and changes to it" if git("status", "--porcelain", "--untracked-files=no") else ""
     lines = ["# Figures", "",
              "Written by `make bench`: one run on one machine, each figure beside its limit or its peer of the",
-             "same run. What each one means, and how it is measured, is said on the page of its subject.", "",
+             "same run. What each one means, and how it is measured, is said on the page of its subject.",
+             "`a of b, c %` is a measured, and c % of the limit b.", "",
              f"Measured on {datetime.date.today()} at commit {git('rev-parse', '--short', 'HEAD')}{changed}."]
     for path in words[1:]:
         content = json.load(open(path))
         entries = content["entries"] if isinstance(content, dict) else content
         name = os.path.splitext(os.path.basename(path))[0]
-        lines += ["", f"## {TITLES.get(name, name)}", "| what | measured | beside |", "|---|---|---|"]
-        lines += [row(e) for e in entries]
+        rows = [(e["name"], number(e["value"]), e["unit"], beside(e)) for e in entries]
+        lines += ["", f"## {TITLES.get(name, name)}", *tables(rows)]
     with open(words[0], "w") as page:
         page.write("\n".join(lines) + "\n")
 

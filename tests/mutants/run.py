@@ -14,7 +14,7 @@ empty lines:
 A line that begins with a space stays; lines that go and stay must be found once in the file. `@@`
 begins another change of the same file, a line with a slash another file.
 
-Leaves build/mutants/results.tsv (name, result, test, seconds) and summary.json (the score by block).
+Leaves build/mutants/results.tsv (name, result, test, seconds, file:line) and summary.json (the score by block).
 Exit status 1: a bug survived, is no longer found in its file, or does not build.
 """
 import argparse, collections, fcntl, glob, json, os, pathlib, queue, re, shutil, subprocess, sys, threading, time
@@ -40,6 +40,13 @@ class Bug:
             self.changes[-1][2].extend([line[1:]] if line[0] != "-" else [])
         if not does or not self.changes:
             raise ValueError
+
+    def place(self, root):
+        """file:line of its first change, as the file stands without it."""
+        file, before, _ = self.changes[0]
+        lines = (root / file).read_text().split("\n")
+        starts = [i for i in range(len(lines)) if lines[i:i + len(before)] == before]
+        return f"{file}:{starts[0] + 1}"
 
     def planted(self, root):
         """The texts of the files with the bug in them; ValueError if it does not fit."""
@@ -139,8 +146,8 @@ def try_bug(bug, copy):
         result = {"passes": "SURVIVED", "fails": "caught"}.get(result, result)
     for file in planted:
         restore(copy / file)
-    row = [bug.name, result, bug.test, str(round(time.monotonic() - start))]
-    print("%-14s %-36s %s (%s s)" % (result, bug.name, *row[2:]), flush=True)
+    row = [bug.name, result, bug.test, str(round(time.monotonic() - start)), bug.place(copy) if planted else ""]
+    print("%-14s %-36s %s (%s s)" % (result, bug.name, *row[2:4]), flush=True)
     return row
 
 

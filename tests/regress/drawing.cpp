@@ -6,8 +6,11 @@
 #include "files.h"
 #include "process.h"
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <tuple>
 
@@ -39,6 +42,12 @@ std::string shortened(const std::string& bits) {
         digits.insert(digits.begin(), "0123456789abcdef"[digit]);
     }
     return digits;
+}
+
+// Proofs' traces repeat at each step what has not changed.
+void change(Signal& signal, uint64_t now, const std::string& value) {
+    if (signal.changes.empty() || signal.changes.back().second != value)
+        signal.changes.emplace_back(now, value);
 }
 
 // Reads a VCD file (IEEE 1364-2005, 18.2). A signal that goes by several names has its outermost.
@@ -74,9 +83,9 @@ std::map<std::string, Signal> readVcd(const std::string& text, std::vector<uint6
             moments.push_back(now);
         } else if (word[0] == 'b' || word[0] == 's') {
             words >> id;
-            signals[id].changes.emplace_back(now, word.substr(1));
+            change(signals[id], now, word.substr(1));
         } else if (word[0] != '$' && word.size() > 1 && std::string("01xz").find(word[0]) < 4) {
-            signals[word.substr(1)].changes.emplace_back(now, word.substr(0, 1));
+            change(signals[word.substr(1)], now, word.substr(0, 1));
         }
     }
     return signals;
@@ -84,7 +93,7 @@ std::map<std::string, Signal> readVcd(const std::string& text, std::vector<uint6
 
 } // namespace
 
-json drawingOf(const std::string& wave) {
+json drawingOf(const std::string& wave, const std::string& about) {
     const bool compressed = wave.size() > 4 && wave.compare(wave.size() - 4, 4, ".fst") == 0;
     const std::string text = compressed ? run({"fst2vcd", "-f", wave}).text : readFile(wave);
     std::vector<uint64_t> moments;
@@ -98,10 +107,22 @@ json drawingOf(const std::string& wave) {
     const auto moves = [](const Signal* s) {
         return s->depth <= portDepth || s->changes.size() > 1;
     };
-    std::stable_sort(order.begin(), order.end(), [&](const Signal* a, const Signal* b) {
-        return std::tuple(a->bits != 0, !moves(a), a->depth, a->name) <
-               std::tuple(b->bits != 0, !moves(b), b->depth, b->name);
-    });
+    const auto isNamed = [&about](const Signal* s) {
+        const std::string name = s->name.substr(s->name.rfind('.') + 1);
+        return s->depth <= 2 &&
+               std::regex_search(
+                   about,
+                   std::regex("\\b" + std::regex_replace(name, std::regex(R"([^\w])"), "\\$&") +
+                              "\\b"));
+    };
+    std::set<const Signal*> named;
+    if (!about.empty())
+        std::copy_if(order.begin(), order.end(), std::inserter(named, named.end()), isNamed);
+    const auto rank = [&](const Signal* s) {
+        return std::tuple(s->bits != 0, named.count(s) == 0, !moves(s), s->depth, s->name);
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](const Signal* a, const Signal* b) { return rank(a) < rank(b); });
     json drawing = {{"from", moments.front()}, {"to", moments.back()}, {"signals", json::array()}};
     drawing["more"] = order.size() - std::min(order.size(), shownSignals);
     order.resize(std::min(order.size(), shownSignals));

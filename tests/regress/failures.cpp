@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fstream>
 #include <regex>
 #include <sstream>
 
@@ -42,6 +43,26 @@ std::string reasonOf(const std::string& log) {
         last = line;
     }
     return failure ? reason : last;
+}
+
+// Returns the text of the assertion of a proof that fails, and adds it and its place to `reason`.
+std::string assertionOf(const std::string& log, std::string& reason) {
+    static const std::regex failed(
+        R"(Assert failed in \S+: ((?:/\S*/)?((?:hdl|bus|ip)/\S+?)):(\d+)[.]\d+-(\d+))");
+    std::smatch match;
+    if (!std::regex_search(log, match, failed))
+        return "";
+    std::ifstream file(match[1].str());
+    const int first = std::stoi(match[3]), last = std::stoi(match[4]);
+    std::string text;
+    for (int number = 1; number <= last && file; ++number) {
+        std::string line;
+        std::getline(file, line);
+        if (number >= first)
+            text += (text.empty() ? "" : " ") + strip(line);
+    }
+    reason += fmt::format(": {}:{}: {}", match[2].str(), first, text);
+    return text;
 }
 
 std::string bucketOf(const std::string& reason) {
@@ -87,6 +108,7 @@ std::vector<Failure> examine(const std::vector<Result>& results, const std::vect
         Failure failure;
         failure.result = result;
         failure.reason = reasonOf(result.log);
+        failure.assertion = assertionOf(result.log, failure.reason);
         failure.bucket = bucketOf(failure.reason);
         std::string exact =
             std::regex_replace(result.name, std::regex(R"([.+*?()\[\]{}|^$\\])"), "\\$&");

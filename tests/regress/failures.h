@@ -14,11 +14,12 @@ struct Failure {
     std::string reason; // the line that says what went wrong
     std::string
         bucket; // the reason without its numbers: failures of one bucket have one cause, likely
-    std::string repeat; // one command
-    std::string log;    // file
-    std::string wave;   // FST or VCD file, or ""
-    std::string save;   // GTKWave save file, or ""
-    uint64_t clock = 0; // of the failure, in that waveform; 0: its end
+    std::string repeat;    // one command
+    std::string log;       // file
+    std::string wave;      // FST or VCD file, or ""
+    std::string assertion; // of a proof: its source, or ""
+    std::string save;      // GTKWave save file, or ""
+    uint64_t clock = 0;    // of the failure, in that waveform; 0: its end
 };
 
 // Keeps the logs, and the traces of proofs, in <out>/failures/. Proofs come first, then the tests
@@ -37,6 +38,7 @@ void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
 // Returns the end of a waveform, VCD or FST (by fst2vcd): {from, to, signals: [[name, bits, [time,
 // value, ...]], ...], more: signals left out}: the program's, then those that move and ports, the
 // outermost first, then those that stay as they are; the last changes of each. Null: it is empty.
-nlohmann::json drawingOf(const std::string& wave);
+// Signals that the text `about` names, an assertion, come before those that it does not.
+nlohmann::json drawingOf(const std::string& wave, const std::string& about);
 
 #endif

@@ -20,6 +20,7 @@
 #include <map>
 #include <random>
 #include <regex>
+#include <set>
 #include <unistd.h>
 
 namespace fs = std::filesystem;
@@ -123,6 +124,21 @@ private:
 std::string commitOf(const std::string& source) {
     Output out = run({"git", "-C", source, "describe", "--always", "--dirty", "--abbrev=10"});
     return out.status == 0 ? out.text.substr(0, out.text.find('\n')) : "unknown";
+}
+
+std::string subjectOf(const std::string& source) {
+    Output out = run({"git", "-C", source, "log", "-1", "--format=%s"});
+    return out.status == 0 ? out.text.substr(0, out.text.find('\n')) : "";
+}
+
+// Returns the first test of each group of failures, with its reason; of no more than five.
+nlohmann::json reasonsOf(const std::vector<Failure>& failures) {
+    std::set<std::string> buckets;
+    nlohmann::json reasons = nlohmann::json::array();
+    for (const Failure& failure : failures)
+        if (buckets.size() < 5 && buckets.insert(failure.bucket).second)
+            reasons.push_back(failure.result.name + ": " + failure.reason.substr(0, 120));
+    return reasons;
 }
 
 void summary(const nlohmann::json& data, const std::vector<Failure>& failures,
@@ -310,7 +326,10 @@ int regress(const Options& options) {
     auto failures = examine(results, all, options.out);
     addWaves(failures, all, options.source, options.launcher, options.jobs, options.waves);
     const std::string commit = commitOf(options.source);
-    history.add(History::makeRun(chosen, results, commit, seconds));
+    auto made = History::makeRun(chosen, results, commit, seconds);
+    made["subject"] = subjectOf(options.source);
+    made["reasons"] = reasonsOf(failures);
+    history.add(made);
     seeds.update(results, commit);
     auto data = gather(history, all, results, failures, options.source);
     data["seeds"] = seeds.list();

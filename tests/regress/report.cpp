@@ -29,12 +29,13 @@ json readMutants(const std::string& path) {
     json rows = json::array();
     for (std::string line; std::getline(in, line);) {
         std::istringstream cells(line);
-        std::string name, result, test, seconds;
+        std::string name, result, test, seconds, place;
         std::getline(cells, name, '\t');
         std::getline(cells, result, '\t');
         std::getline(cells, test, '\t');
         std::getline(cells, seconds, '\t');
-        rows.push_back({name, result, test, seconds});
+        std::getline(cells, place, '\t');
+        rows.push_back({name, result, test, seconds, place});
     }
     return rows;
 }
@@ -141,7 +142,7 @@ json gather(const History& history, const std::vector<Test>& tests,
         for (auto run = history.runs().rbegin(); run != history.runs().rend() && ends.size() < 10;
              ++run)
             if (auto it = run->at("tests").find(result.name); it != run->at("tests").end())
-                ends.insert(ends.begin(), it->at(0));
+                ends.insert(ends.begin(), json::array({it->at(0), it->at(1)}));
         rows.push_back({result.name, result.status, result.seconds, test ? test->place : "",
                         test && !test->labels.empty() ? test->labels[0] : "", result.seed, ends});
     }
@@ -162,7 +163,8 @@ json gather(const History& history, const std::vector<Test>& tests,
                        {"wave", failure.wave},
                        {"save", failure.save},
                        {"clock", failure.clock},
-                       {"drawing", failure.wave.empty() ? json() : drawingOf(failure.wave)},
+                       {"drawing",
+                        failure.wave.empty() ? json() : drawingOf(failure.wave, failure.assertion)},
                        {"tail", failure.result.log.substr(failure.result.log.size() > 3000
                                                               ? failure.result.log.size() - 3000
                                                               : 0)}});
@@ -172,7 +174,8 @@ json gather(const History& history, const std::vector<Test>& tests,
     for (size_t i = history.runs().size() > 60 ? history.runs().size() - 60 : 0;
          i < history.runs().size(); ++i) {
         const json& run = history.runs()[i];
-        past.push_back({run["time"], run["commit"], run["passed"], run["failed"], run["seconds"]});
+        past.push_back({run["time"], run["commit"], run["passed"], run["failed"], run["seconds"],
+                        run.value("subject", ""), run.value("reasons", json::array())});
     }
     data["proofs"] = proofsOf(results);
     data["mutants"] = readMutants(build + "/mutants/results.tsv");

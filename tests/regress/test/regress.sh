@@ -137,13 +137,15 @@ foreach(i 1 2 3)
   add_test(NAME test_g.Case${i} COMMAND sh -c "printf 'x.cpp:1: Failure\nExpected 1, got 2\n[  FAILED  ] g.Case${i} (${i}7 ms)\n'; exit 1")
 endforeach()
 add_test(NAME mission.x COMMAND sh -c "echo 'Ice.Exception: not served, as expected'; echo 'the picture differs'; exit 1")
-add_test(NAME formal.broken COMMAND sh -c "echo 'Assert failed in broken'; touch '${CMAKE_BINARY_DIR}/t.vcd'; echo 'broken: trace: ${CMAKE_BINARY_DIR}/t.vcd'; exit 1")
+add_test(NAME formal.broken COMMAND sh -c "echo 'Assert failed in broken: ${CMAKE_SOURCE_DIR}/hdl/a/broken_proof.vh:2.9-3.20 (x)'; touch '${CMAKE_BINARY_DIR}/t.vcd'; echo 'broken: trace: ${CMAKE_BINARY_DIR}/t.vcd'; echo 'broken: an assertion fails'; exit 1")
 END
+    mkdir -p hdl/a
+    printf 'begin\n    assert (full ||\n        !taken);\nend\n' >hdl/a/broken_proof.vh
     cmake build/main >/dev/null
     run --name 'test_g|mission|formal'
     has '^3 x  Expected 1, got 2$'
     has '^1 x  the picture differs$'
-    [ "$(grep -m1 ' x  ' out.txt)" = '1 x  Assert failed in broken' ] || fail "the proof is not told first"
+    [ "$(grep -m1 ' x  ' out.txt)" = '1 x  broken: an assertion fails: hdl/a/broken_proof.vh:2: assert (full || !taken);' ] || fail "the proof is not told first"
     has 'gtkwave build/regress/failures/formal.broken.vcd'
     [ -f build/regress/failures/formal.broken.vcd ] || fail "the proof's trace is not kept"
     has '<property name="wave" value="build/regress/failures/formal.broken.vcd"' build/regress/junit.xml
@@ -341,6 +343,8 @@ END
     has '>UAV_radioTask<' dom.html
     has 'id="results"' dom.html
     has 'test_c.Flicker' dom.html
+    has 'id="runs".*>one<' dom.html # the commit's subject
+    has '<div>test_b.Bad: value 1 is not 7' dom.html
     has 'class="dot dp"' dom.html
     has '12 clauses with 3 flops' dom.html
     has 'id="seeds"' dom.html

@@ -34,6 +34,6 @@ refused '{' 'parse error'
 refused '{}' "no list 'signal'"
 refused '{"signal": [{"name": "a", "wave": "01q"}]}' "signal 'a': 'q' is no state"
 refused '{"signal": [{"name": "a", "wave": ".1"}]}' "begins with"
-refused '{"signal": [{"name": "a", "wave": "1", "period": 0}]}' 'period must be above 0'
+refused '{"signal": [{"name": "a", "wave": "1", "period": 2}]}' "signal 'a': 'period' is not drawn"
 "$tool" /nonexistent "$work/x.svg" 2>"$work/said" && exit 1
 grep -q 'cannot be read' "$work/said"

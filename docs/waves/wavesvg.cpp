@@ -2,17 +2,15 @@
 //
 // wavesvg: draws a waveform in WaveJSON (the format of WaveDrom, strict JSON) as SVG.
 //
-// Of a signal: name, wave (0 1 l h L H p n P N x z u d = 2..9 . |), data (list or words), period,
-// phase. Signals are grouped by nested lists that begin with a name; {} is an empty line. head.text
-// and foot.text, config.hscale. What it does not know is an error that names the signal.
+// Of a signal: name, wave (0 1 p x z = 2..9 . |), data. Signals are grouped by nested lists that
+// begin with a name; {} is an empty line. head.text and foot.text, config.hscale. What it does not
+// know is an error that names the signal.
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 namespace {
 
@@ -22,7 +20,6 @@ constexpr double lane = 30, high = 5, low = 23, mid = 14, slope = 3;
 struct Signal {
     std::string name, wave;
     std::vector<std::string> data;
-    double period = 1, phase = 0;
     int depth = 0; // groups around it
     bool heading = false;
 };
@@ -41,26 +38,15 @@ std::string escape(const std::string& text) {
 void collect(const Json& list, int depth, std::vector<Signal>& out) {
     for (const Json& item : list) {
         if (item.is_string()) {
-            out.push_back({item, "", {}, 1, 0, depth - 1, true});
+            out.push_back({item, "", {}, depth - 1, true});
         } else if (item.is_array()) {
             collect(item, depth + 1, out);
         } else if (item.is_object()) {
-            Signal s;
-            s.name = item.value("name", "");
-            s.wave = item.value("wave", "");
-            s.period = item.value("period", 1.0);
-            s.phase = item.value("phase", 0.0);
-            s.depth = depth;
-            if (item.contains("data") && item["data"].is_string()) {
-                std::istringstream words(item["data"].get<std::string>());
-                for (std::string word; words >> word;)
-                    s.data.push_back(word);
-            } else if (item.contains("data")) {
-                s.data = item["data"].get<std::vector<std::string>>();
-            }
-            if (s.period <= 0)
-                fail("signal '" + s.name + "': period must be above 0");
-            out.push_back(s);
+            for (const auto& [key, value] : item.items())
+                if (key != "name" && key != "wave" && key != "data")
+                    fail("signal '" + item.value("name", "") + "': '" + key + "' is not drawn");
+            out.push_back({item.value("name", ""), item.value("wave", ""),
+                           item.value("data", std::vector<std::string>()), depth});
         } else {
             fail("a signal is an object, a list or a string");
         }
@@ -70,11 +56,8 @@ void collect(const Json& list, int depth, std::vector<Signal>& out) {
 bool isBus(char c) {
     return c == '=' || (c >= '2' && c <= '9');
 }
-bool isClock(char c) {
-    return std::string("pnPN").find(c) != std::string::npos;
-}
 double level(char c) {
-    return c == '1' || c == 'h' || c == 'H' || c == 'u' ? high : c == 'z' ? mid : low;
+    return c == '1' ? high : c == 'z' ? mid : low;
 }
 
 class Drawing {
@@ -89,14 +72,13 @@ public:
             bool same = c == '.' || c == '|', first = i == 0;
             if (same && first)
                 fail("signal '" + s.name + "': the wave begins with '" + std::string(1, c) + "'");
-            if (!same && !isBus(c) && !isClock(c) &&
-                std::string("01lhLHxzud").find(c) == std::string::npos)
+            if (!same && !isBus(c) && std::string("01pxz").find(c) == std::string::npos)
                 fail("signal '" + s.name + "': '" + std::string(1, c) + "' is no state of a wave");
             if (!same)
                 state = c;
-            double w = unit_ * s.period, x = left_ + w * static_cast<double>(i) - unit_ * s.phase;
-            if (isClock(state)) {
-                clock(state, x, y, w);
+            double w = unit_, x = left_ + w * static_cast<double>(i);
+            if (state == 'p') {
+                clock(x, y, w);
             } else if (isBus(state) || state == 'x') {
                 size_t end = i + 1;
                 while (end < s.wave.size() && (s.wave[end] == '.' || s.wave[end] == '|'))
@@ -113,9 +95,9 @@ public:
                                     x + w / 2, 0, y + 27);
             last = state;
         }
-        for (const auto& [style, path] : paths_)
-            svg_ += fmt::format("<path d='{}' class='{}'/>\n", path, style);
-        paths_.clear();
+        if (!lines_.empty())
+            svg_ += fmt::format("<path d='{}' class='line'/>\n", lines_);
+        lines_.clear();
     }
     void text(double x, double y, const std::string& text, const char* style) {
         svg_ +=
@@ -130,24 +112,17 @@ public:
     const std::string& svg() const { return svg_; }
 
 private:
-    // A signal's lines of one style are one path.
-    void line(const std::string& path, const char* style = "line") { paths_[style] += path; }
     void plain(char last, char state, bool same, double x, double y, double w) {
-        double to = y + level(state), from = same || !last || isClock(last) ? to : y + level(last);
+        double to = y + level(state), from = same || !last || last == 'p' ? to : y + level(last);
         if (isBus(last) || last == 'x')
             from = to;
         std::string begin =
             same ? "" : fmt::format("M{},{} L{},{}", x, from, x + (from != to ? slope : 0), to);
-        line(begin + fmt::format(" H{}", x + w), state == 'u' || state == 'd' ? "weak" : "line");
+        lines_ += begin + fmt::format(" H{}", x + w);
     }
-    void clock(char c, double x, double y, double w) {
-        bool rising = c == 'p' || c == 'P';
-        double first = y + (rising ? high : low), second = y + (rising ? low : high);
-        line(fmt::format("M{0},{1} V{2} H{3} V{1} H{4}", x, second, first, x + w / 2, x + w));
-        if (c == 'P' || c == 'N')
-            line(fmt::format("M{},{} l3,{} l3,{} z", x - 3, y + mid + (rising ? 2 : -2),
-                             rising ? -6 : 6, rising ? 6 : -6),
-                 "arrow");
+    void clock(double x, double y, double w) {
+        lines_ +=
+            fmt::format("M{0},{1} V{2} H{3} V{1} H{4}", x, y + low, y + high, x + w / 2, x + w);
     }
     void bus(char c, double x, double y, double w, const std::string& label) {
         static const char* const fills[] = {"#fff",    "#ffffb4", "#ffe0b9", "#b9e0ff",
@@ -161,8 +136,7 @@ private:
     }
 
     double unit_, left_;
-    std::string svg_;
-    std::map<std::string, std::string> paths_; // of the signal under way, by style
+    std::string svg_, lines_; // the latter of the signal under way: one path
 };
 
 std::string render(const Json& wave) {
@@ -174,7 +148,7 @@ std::string render(const Json& wave) {
     double unit = 40 * hscale, names = 40, cycles = 1;
     for (const Signal& s : signals) {
         names = std::max(names, 7.2 * static_cast<double>(s.name.size()) + 12.0 * s.depth + 16);
-        cycles = std::max(cycles, static_cast<double>(s.wave.size()) * s.period - s.phase);
+        cycles = std::max(cycles, static_cast<double>(s.wave.size()));
     }
     auto words = [&](const char* part) {
         return wave.contains(part) ? wave[part].value("text", std::string()) : std::string();
@@ -199,8 +173,7 @@ std::string render(const Json& wave) {
         "<svg xmlns='http://www.w3.org/2000/svg' width='{0}' height='{1}' viewBox='0 0 {0} {1}'>\n"
         "<style>text{{font:12px sans-serif;fill:#000}} .data,.title{{text-anchor:middle}} "
         ".title,.group{{font-weight:bold}} .line,.bus{{stroke:#000}} "
-        ".weak{{stroke:#000;stroke-dasharray:3 2}} "
-        ".line,.weak,.grid,.gap{{fill:none}} .grid{{stroke:#ccc;stroke-dasharray:1 3}} "
+        ".line,.grid,.gap{{fill:none}} .grid{{stroke:#ccc;stroke-dasharray:1 3}} "
         ".gap{{stroke:#888}}</style>\n"
         "<defs><pattern id='unknown' width='6' height='6' patternUnits='userSpaceOnUse'>"
         "<path d='M0,6 L6,0' stroke='#888'/></pattern></defs>\n<rect width='{0}' height='{1}' "

@@ -17,7 +17,6 @@ public:
     explicit FpgaPins(std::function<uint64_t()> now) : now_(std::move(now)) {}
 
     void wire(SpiFlash& flash) { flash_ = &flash; }
-    bool isWired() const { return flash_; }
     void powerOn();
     // Takes the processor's outputs: chip select, PROGRAM_B.
     void drive(bool isSelectLow, bool isProgramLow);

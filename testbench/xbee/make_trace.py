@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""make_trace: writes flight.csv, an example of a trace: out to 300 m at 10 m/s, most of a minute there, and back.
+"""make_trace: prints an example of a trace: out to 300 m at 10 m/s, most of a minute there, and back.
 
 It is made up, not recorded: free space and Rayleigh fading of the four tries of a packet, as rf_weather.h has
 them, and bursts of the frequency of "bursts, long" (docs/models.md), drawn anew each second."""

@@ -125,6 +125,8 @@ module bus_registers #(
             end
         end
     endgenerate
+    always @*
+        assert (strobe_o == 13'd0 || wdata_o == bus_wdata_i);
     always @(posedge clk_i)
         cover (past && !rst_i && $past(|strobe_o) && irq_o);
 `endif

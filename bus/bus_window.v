@@ -130,11 +130,17 @@ module bus_window #(
             assert ($past({write_o, addr_o}) == {write_o, addr_o});
         if (past && !rst_i && !$past(rst_i) && busy_o && !$past(busy_o))
             assert ($past(idle_i));
+        if (past && !rst_i && !$past(rst_i) && ADDR_WIDTH > 5)
+            assert (page == ($past(bus_valid_i && bus_write_i && bus_addr_i == PAGE) ? $past(bus_wdata_i[WIDTH-1:5]) : $past(page)));
         cover (past && !rst_i && $past(given_up) && irq_o);
     end
     always @* if (!rst_i) begin
         assert (!busy_o || wanted);          // it never outlives the access
         assert (patience + used == TIMEOUT);
+        if (bus_valid_i && !bus_write_i && bus_addr_i == PAGE)
+            assert (bus_rdata_o == page_value);
+        if (wanted && bus_ready_o && !bus_error_o)
+            assert (bus_rdata_o == rdata_i && wdata_o == bus_wdata_i);
     end
 `endif
 `ifdef COVER_POINTS

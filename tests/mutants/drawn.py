@@ -1,21 +1,25 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws mutants of each proven module with Yosys' `mutate` and expects the module's proof to fail.
+"""Draws mutants of each proven module with Yosys' `mutate` and expects the module's proof, or its tests, to fail.
 
 A mutant is one bit of one cell's port that is inverted, stuck, or inverted by another bit, in what
 the module's own source makes (the proof's lines stay as they are). One that the proof does not see
 is compared with the module as it is: if no input that the proof assumes makes an output differ (abc
-proves that, by pdr), it is no bug and drops out. What is left has survived: the proof has a hole at
-its line. The score of a module is what was caught of what did not drop out, over all its proofs.
+proves that, by pdr), it is no bug and drops out. What is left is tried against the module's tests,
+all of it in one build (model.py). What they miss, too, has survived: there is a hole at its line.
+The score of a module is what was caught of what did not drop out, over all its proofs.
 
 Leaves build/mutants/drawn.json. Exit status 1: a module scores less than the gate.
 """
 import argparse, collections, json, os, pathlib, re, shutil, subprocess, sys, time
+import model, run
 from concurrent.futures import ThreadPoolExecutor
 
 GATE = 95  # per cent
-# Proofs that are meant to say all that their module does
-JUDGED = "(bus_decoder|async_fifo_restarts|modem_uart_tx)$"
+TESTS = {"bus_decoder": "test_bus_decoder", "bus_(registers|wrapper)": "test_bus_registers", "bus_(to_wishbone|window)": "test_bus_wishbone",
+         "bus_to_axi4lite": "test_bus_axi4lite", "system_slot": "test_system_slot", "npi_|mcb_|litedram_": "test_memory", "axis_|axi4_": "test_axis",
+         "modem_baud": "test_modem_baud", "modem_api_": "test_modem_api", "modem_": "test_modem test_modem_api", "camera_": "test_ip_camera",
+         "fsmc_burst": "test_fsmc_burst", "fsmc_": "test_fsmc_bridge test_fsmc_modes", "async_fifo": "test_fsmc_burst", "cdc_": "test_fsmc_bridge"}
 SECONDS = "20"  # of a processor, for each step of a mutant's proof
 # A module's own cells, but those of its proof
 OF_SOURCE = "{0}/c:* {0}/a:src=*_proof.v* {0}/t:$assert {0}/t:$assume {0}/t:$cover {0}/t:$any* %u %u %u %u %d"
@@ -43,9 +47,10 @@ class Proof:
     def draw(self, number, seed):
         """Proves the module as it is, and draws its mutants."""
         self.work.mkdir(parents=True, exist_ok=True)
-        status, text = self.run(self.work, f"write_rtlil plain.il\nselect -set source {OF_SOURCE.format(self.module)}\nmutate -list {4 * number} -seed {seed} -o list @source")
+        status, text = self.run(self.work, f"opt_clean\nwrite_rtlil plain.il\nwrite_json plain.json\nselect -set source {OF_SOURCE.format(self.module)}\nmutate -list {4 * number} -seed {seed} -o list @source")
         if status:
             sys.exit(f"{text}mutants: formal.{self.name} fails without any mutant: mend that first")
+        self.design = model.cells(self.work / "plain.json")
         mutants = (self.work / "list").read_text().splitlines()
         return [mutant for mutant in mutants if not self.of_proof(mutant)][:number]
 
@@ -66,7 +71,7 @@ class Proof:
         to_state = script.split("@source\n")[1].split("write_smt2")[0].replace("setundef -anyseq -undriven\n", "")
         to_gates = script.split("write_rtlil model.il\n")[1].split("design -save")[0]
         side = "chformal -assert -cover -live -fair -remove\n{}\nflatten\ndelete t:$anyseq t:$anyconst t:$allseq t:$allconst\n" \
-               "setundef -undriven -expose\n{}memory_map\nsetundef -zero\nrename {} {}\ndesign -stash {}\n"
+               "setundef -undriven -expose\n{}memory_map\nsetundef -zero\nsetundef -zero -init\nrename {} {}\ndesign -stash {}\n"
         (folder / "same.ys").write_text(
             f"read_rtlil {self.work}/plain.il\ndesign -save plain\n"
             + side.format("", to_state, self.module, "plain", "plain_side") + "design -load plain\n"
@@ -75,7 +80,7 @@ class Proof:
             "miter -equiv -flatten -make_assert plain mutant pair\nhierarchy -top pair\n"
             + to_gates + "opt_clean\nabc -g AND -fast\nopt_clean\nwrite_aiger -zinit same.aig\n")
         with open(folder / "same.log", "w") as log:
-            if subprocess.run(["yosys", "-q", "same.ys"], cwd=folder, stdout=log, stderr=log).returncode:
+            if subprocess.run(["sh", "-c", f"ulimit -t {SECONDS}; exec yosys -q same.ys"], cwd=folder, stdout=log, stderr=log).returncode:
                 return True  # Yosys 0.23 ends over some memories
         said = subprocess.run(["sh", "-c", f"ulimit -t {SECONDS}; exec yosys-abc -c 'read_aiger same.aig; fold; strash; scorr -F 2; pdr; sat'"],
                               cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True).stdout
@@ -96,19 +101,50 @@ def attempt(proof, index, mutant):
     line = re.sub(r"(:\d+)\..*", r"\1", os.path.relpath(options["src"][-1], proof.source)) if options["src"] else ""
     place = f"{options['cell'][0].split('$')[1 if '$' in options['cell'][0] else 0]}.{options['port'][0]}[{options['portbit'][0]}]"
     wire = f" ({options['wire'][0]}[{options['wirebit'][0]}])" if options["wire"] else ""
+    alike, number = model.place(proof.design, options["module"][0], options["cell"][0])
     row = dict(proof=proof.name, module=options["module"][0], line=line, does=f"{options['mode'][0]} {place}{wire}", result=result,
-               seconds=round(time.monotonic() - start, 1))
-    if result == "SURVIVED":
-        print(f"SURVIVED  formal.{proof.name:<18} {line} {row['does']}", flush=True)
+               seconds=round(time.monotonic() - start, 1), alike=alike, place=number)
+    row.update({name: (options[name] or ["0"])[0] for name in ("mode", "port", "portbit", "ctrlbit")})
     (folder / "mutant").write_text(mutant + "\n")
     return row
+
+
+def programs(row):
+    return next((names.split() for modules, names in TESTS.items() if re.match(modules, row["module"])), [])
+
+
+def by_tests(rows, copy, pool):
+    """Tries what the proofs have missed against the modules' tests; sets each row's result."""
+    os.chdir(run.TOP)
+    run.prepare(copy, f"-DVERILATOR={run.TOP}/tests/mutants/model.py")
+    (copy / "build/drawn.json").write_text(json.dumps(rows))
+    needed = sorted({name for row in rows for name in programs(row)})
+    environment = {**run.environment(copy), "DRAWN": str(copy / "build/drawn.json")}
+    for old in copy.glob("build/main/**/V*__ALL.a"):
+        old.unlink()
+    subprocess.run(["ninja", "-C", "build/main", *needed], cwd=copy, env=environment, stdout=open(copy / "build/log", "w"), check=True)
+    where = {name: next(copy.glob(f"build/main/**/{name}")) for name in needed}
+
+    def fails(name, number):
+        said = subprocess.run(["sh", "-c", 'ulimit -t 300; exec "$0" --gtest_fail_fast --gtest_brief=1', where[name]], cwd=where[name].parent,
+                              env={**environment, "MUTANT": str(number)}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        return said.returncode != 0
+
+    def try_row(numbered):
+        return next((name for name in programs(numbered[1]) if fails(name, numbered[0])), "SURVIVED")
+
+    bad = [name for name, failed in zip(needed, pool.map(lambda name: fails(name, 0), needed)) if failed]
+    if bad:
+        sys.exit(f"mutants: {bad[0]} fails without any mutant: mend that first")
+    for row, result in zip(rows, pool.map(try_row, enumerate(rows, 1))):
+        row["result"] = result
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default="build/main", help="whose proofs")
     parser.add_argument("--out", default="build/mutants", help="where results go")
-    parser.add_argument("--block", default=JUDGED, help="proofs by regular expression (default: %(default)s)")
+    parser.add_argument("--block", default="", help="proofs by regular expression (default: all)")
     parser.add_argument("--number", type=int, default=20, help="mutants a proof")
     parser.add_argument("--seed", default="1", help="of the draw")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many are tried at once")
@@ -131,19 +167,27 @@ def main():
     with ThreadPoolExecutor(options.jobs) as pool:
         lists = list(pool.map(lambda proof: proof.draw(options.number, options.seed), proofs))
         rows = list(pool.map(lambda task: attempt(*task), [(p, i, m) for p, drawn in zip(proofs, lists) for i, m in enumerate(drawn)]))
+        missed = [row for row in rows if row["result"] == "SURVIVED" and programs(row)]
+        if missed:
+            by_tests(missed, run.WORK / "model", pool)
+    for row in rows:
+        if row["result"] == "SURVIVED":
+            print(f"SURVIVED  formal.{row['proof']:<18} {row['line']} {row['does']}", flush=True)
     scores = {}
     for module in sorted({row["module"] for row in rows}):
         count = collections.Counter(row["result"] for row in rows if row["module"] == module)
-        judged = count["caught"] + count["SURVIVED"]
-        scores[module] = dict(drawn=judged + count["same"], same=count["same"], caught=count["caught"],
-                              score=round(100 * count["caught"] / judged, 1) if judged else 100.0)
+        judged = count.total() - count["same"]
+        caught = judged - count["SURVIVED"]
+        scores[module] = dict(drawn=count.total(), same=count["same"], caught=caught, by_tests=caught - count["caught"],
+                              score=round(100 * caught / judged, 1) if judged else 100.0)
     bad = [module for module, score in scores.items() if score["score"] < GATE]
     (out / "drawn.json").write_text(json.dumps(dict(seed=options.seed, tree=tree, gate=GATE, modules=scores, survived=[row for row in rows if row["result"] == "SURVIVED"])))
     for module, score in scores.items():
-        print("%-22s %5.1f %%  %3d caught of %3d, %d the same" % (module, score["score"], score["caught"], score["drawn"] - score["same"], score["same"]))
+        print("%-22s %5.1f %%  %3d caught of %3d, %d of them by tests, %d the same" % (
+            module, score["score"], score["caught"], score["drawn"] - score["same"], score["by_tests"], score["same"]))
     caught = sum(score["caught"] for score in scores.values())
     judged = sum(score["drawn"] - score["same"] for score in scores.values())
-    print(f"mutants: {caught} of {judged} drawn with seed {options.seed} caught by proofs, {len(rows) - judged} the same as the module"
+    print(f"mutants: {caught} of {judged} drawn with seed {options.seed} caught, {sum(score['by_tests'] for score in scores.values())} of them by tests, {len(rows) - judged} the same as the module"
           + (f"; below {GATE} %: {', '.join(bad)}" if bad else ""))
     return bool(bad)
 

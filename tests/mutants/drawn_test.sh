@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # drawn_test: drawn.py on a module of which the proof says half: what it misses survives at its line, what is no bug drops out.
-# Usage: drawn_test.sh drawn.py source-folder work-folder
+# What survives is found by a test of a model that carries all of them (model.py).
+# Usage: drawn_test.sh drawn.py source-folder work-folder verilators-runtime.a
 set -eu
-drawn=$1 source=$2 work=$3
+drawn=$1 source=$2 work=$3 runtime=$4
 rm -rf "$work"
 mkdir -p "$work/hdl/small" "$work/bus" "$work/ip" "$work/build"
 cd "$work"
@@ -43,6 +44,30 @@ grep -q '^SURVIVED .*formal.pair .*hdl/small/pair.v:[45] ' run.log || fail "the 
 ! grep -q '^SURVIVED .*pair.v:3 ' run.log || fail "a mutant that changes nothing survives, or the proof misses one"
 grep -q '^pair .* [1-9] the same$' run.log || fail "none drops out"
 grep -q 'below 95 %: pair$' run.log || fail "the gate is not told"
+python3 -c 'import json, sys; json.dump(json.load(sys.stdin)["survived"], sys.stdout)' <build/drawn.json >missed.json
+cat >main.cpp <<'END'
+#include "Vpair.h"
+int main() {
+    Vpair top;
+    for (unsigned i = 0; i < 8; ++i) {
+        top.clk_i = 0;
+        top.eval();
+        top.a_i = i & 1, top.b_i = i >> 1 & 1;
+        top.eval();
+        top.clk_i = 1;
+        top.eval();
+        if (top.both_o != (top.a_i & top.b_i))
+            return 3;
+    }
+}
+END
+DRAWN=$PWD/missed.json "${drawn%drawn.py}model.py" --cc -Wall --top-module pair --prefix Vpair --Mdir model hdl/small/pair.v >run.log 2>&1 || fail "no model"
+include=$(verilator --getenv VERILATOR_ROOT)/include
+c++ -Imodel -I"$include" -I"$include/vltstd" main.cpp model/*.cpp "$runtime" -lz -lpthread -o test_pair
+./test_pair || fail "the model without a mutant is not the module"
+for mutant in $(seq "$(grep -o '"alike"' missed.json | wc -l)"); do
+    ! MUTANT=$mutant ./test_pair || fail "the model does not have mutant $mutant"
+done
 sed -i 's/assert (same_o == a_i);/& assert (both_o == (a \&\& b));/' hdl/small/pair.v
 run || fail "a proof that says all misses some"
 grep -q '^pair  *100.0 %' run.log || fail "no score"

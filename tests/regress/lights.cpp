@@ -59,7 +59,7 @@ json ofMutants(const json& rows, const json& drawn, const std::string& source) {
             if (score.at("score") < drawn.at("gate"))
                 bad.push_back(module);
     if (!bad.empty())
-        return judge("mutants", "", "modules of which the proofs miss drawn mutants", bad);
+        return judge("mutants", "", "modules of which proofs and tests miss drawn mutants", bad);
     if (rows.empty())
         return missing("mutants", "make mutants");
     for (const json& row : rows)

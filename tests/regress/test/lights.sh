@@ -119,7 +119,7 @@ lights_mutants)
         run --name 'a[.]'
     }
     drawn 87.5
-    light mutants 'red   *1 modules of which the proofs miss drawn mutants: fifo'
+    light mutants 'red   *1 modules of which proofs and tests miss drawn mutants: fifo'
     drawn 100
     light mutants green
     mkdir -p hdl && echo >hdl/new.v # what was measured is not what is there

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Stands in for Verilator where drawn mutants are tried against tests: a model of which modules have mutants carries all of
+these, and MUTANT in the environment chooses one by its number when a test begins (none: the module as it is).
+
+A mutant was drawn in its module as a proof has it. In a model the cell is found again by its kind, its source line and its
+place among the like; a bit that is not there becomes the last one. DRAWN is the list that drawn.py writes.
+"""
+import collections, json, os, pathlib, re, subprocess, sys, tempfile
+
+NUMBER = """module mutant_number(output reg [15:0] number);
+    initial number = $c("(std::getenv(\\"MUTANT\\") ? std::atoi(std::getenv(\\"MUTANT\\")) : 0)");
+endmodule
+"""
+
+
+def module_of(name):
+    """A module's name without its parameters."""
+    return re.sub(r"^\$paramod(\$[0-9a-f]+)?\\(\w+).*", r"\2", name)
+
+
+def cells(path):
+    """The cells of a design in Yosys' JSON: module -> kind and source -> [(cell, width of each port)], as they were made."""
+    found = {}
+    for module, content in json.load(open(path))["modules"].items():
+        alike = found[module] = collections.defaultdict(list)
+        for name, cell in sorted(content["cells"].items(), key=lambda item: int((re.findall(r"\$(\d+)$", item[0]) or [0])[0])):
+            source = re.sub(r"[^|]*/((bus|hdl|ip)/)", r"\1", cell["attributes"].get("src", ""))
+            alike[f"{module_of(cell['type'])} {source}"].append((name, {port: len(bits) for port, bits in cell["connections"].items()}))
+    return found
+
+
+def place(design, module, cell):
+    """Kind and source of a cell, and its place among the like."""
+    for alike, names in design[module].items():
+        for number, (name, _) in enumerate(names):
+            if name == cell:
+                return alike, number
+    return "", 0
+
+
+def yosys(folder, script):
+    with open(f"{folder}/script.ys", "w") as file:
+        file.write(script)
+    subprocess.run(["yosys", "-q", "-s", f"{folder}/script.ys"], check=True)
+
+
+def mutated(arguments, folder):
+    """The file of a model's modules with all their mutants; None if there are none."""
+    def of(flag):
+        return [a[len(flag):] for a in arguments if a.startswith(flag)]
+    top = arguments[arguments.index("--top-module") + 1]
+    sources = [a for a in arguments if a.endswith(".v")]
+    folders = "".join(f" -libdir {arguments[i + 1]}" for i, a in enumerate(arguments) if a == "-y")
+    parameters = "".join(f"chparam -set {p.replace('=', ' ')} {top}\n" for p in of("-G"))
+    yosys(folder, f"verilog_defaults -add -sv {' '.join('-I' + d for d in of('-I'))}\nread_verilog {' '.join(sources)}\n{parameters}"
+          f"hierarchy -top {top}{folders}\nproc\nwrite_rtlil {folder}/plain.il\nwrite_json {folder}/plain.json\n")
+    design = cells(f"{folder}/plain.json")
+    mutations, has = "", set()
+    for number, mutant in enumerate(json.load(open(os.environ["DRAWN"])), 1):
+        for module in design:
+            like = design[module].get(mutant["alike"], []) if module_of(module) == mutant["module"] else []
+            if not like:
+                continue
+            cell, ports = like[mutant["place"] % len(like)]
+            bit, control = (min(int(mutant[bit]), ports[mutant["port"]] - 1) for bit in ("portbit", "ctrlbit"))
+            has.add(module)
+            mutations += (f"mutate -mode {mutant['mode']} -module {module} -cell {cell} -port {mutant['port']} -portbit {bit} -ctrlbit {control} "
+                          f"-ctrl mutant 16 {number}\n")
+    if not has:
+        return None
+    lines = []
+    for line in open(f"{folder}/plain.il"):
+        lines.append(line)
+        if line.startswith("module ") and line.split()[1].lstrip("\\") in has:
+            lines.append("  wire width 16 \\mutant\n  cell \\mutant_number \\u_mutant\n    connect \\number \\mutant\n  end\n")
+    with open(f"{folder}/plain.il", "w") as file:
+        file.writelines(lines)
+    yosys(folder, f"read_rtlil {folder}/plain.il\n{mutations}opt_expr\nopt_reduce\nopt_merge\nsplitnets w:*_EN*\nopt_clean\nwrite_verilog -noattr {folder}/{top}.v\n")
+    with open(f"{folder}/{top}.v", "a") as file:
+        file.write(NUMBER)
+    return f"{folder}/{top}.v"
+
+
+def main():
+    arguments = sys.argv[1:]
+    if "--cc" in arguments:
+        with tempfile.TemporaryDirectory() as folder:
+            if file := mutated(arguments, folder):
+                kept = [a for a in arguments if not a.startswith("-G") and not a.endswith(".v") and a != "-Wall"]
+                status = subprocess.run(["verilator", *kept, "-Wno-fatal", "-Wno-lint", "-Wno-style", file]).returncode
+                makefile = pathlib.Path(arguments[arguments.index("--Mdir") + 1], arguments[arguments.index("--prefix") + 1] + ".mk")
+                makefile.write_text("override OPT_FAST = -O1\n" + makefile.read_text())  # compiled once, run for seconds
+                return status
+    os.execvp("verilator", ["verilator", *arguments])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

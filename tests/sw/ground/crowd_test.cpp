@@ -93,7 +93,7 @@ TEST_F(Crowd, WhoNeverReadsIsCutOffAndNobodyIsBehindIt) {
 TEST_F(Crowd, WhatAProgramHasWrittenArrivesAlthoughItLeaves) {
     wire_.echo = false;
     Program program(engine_->connect(0));
-    constexpr unsigned count = 10'000;
+    constexpr unsigned count = 3000;
     const Bytes oneway = message(1);
     for (unsigned i = 0; i < count; ++i)
         program.send(oneway);
@@ -131,7 +131,7 @@ TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
         for (int i = 0; i < 3; ++i) {
             flood.push_back(std::make_unique<Program>(engine_->connect(-1)));
             echoes(*flood.back());
-            for (int k = 0; k < 2000; ++k)
+            for (int k = 0; k < 200; ++k)
                 flood.back()->send(message(1));
         }
         const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(200);

@@ -6,6 +6,7 @@ import os
 import sys
 import threading
 import types
+import zlib
 
 import Ice
 
@@ -100,11 +101,16 @@ with Ice.initialize(data) as ic:
     servo.clear()
     expect("servo.fault after clear", servo.fault(), False)
 
+    crc = Cores.Crc32Prx.checkedCast(ic.stringToProxy("crc32" + where))
+    for length in (0, 1, 8, 1000, 4096):
+        packet = bytes(i * i * 7 + 31 * i & 0xFF for i in range(length))
+        expect("crc32 of %d bytes" % length, crc.crc(packet) & 0xFFFFFFFF, zlib.crc32(packet))
+
     # The chip is the one that the firmware was built for; a mission says it where it is not.
     chip = Hw.ChipPrx.checkedCast(ic.stringToProxy("chip" + where))
     contracts = chip.contracts()
     expect("blocks", [c.block for c in contracts],
-           ["system", "modem", "sample_verilog", "scaler", "servo", "port", "my_requests", "my_lamps", "probe", "sample_vhdl"])
+           ["system", "modem", "sample_verilog", "scaler", "servo", "crc32", "port", "my_requests", "my_lamps", "sample_vhdl", "probe"])
     expect("contracts", mission.differences(chip), [])
 
     class Other:

@@ -10,6 +10,7 @@ mkdir -p "$work"
     echo 'sample_vhdl identity=newcomer slot=9'
     echo scaler
     echo 'servo fault_i=@B4'
+    echo crc32
     echo 'my_port name=port'
     echo my_requests
     echo my_lamps
@@ -17,7 +18,7 @@ mkdir -p "$work"
 } >"$work/cores.list"
 samples=$build/tests/ip/new
 foreign=$build/tests/ip/new_foreign
-folders="$samples/sample_verilog;$samples/sample_vhdl;$source/tests/e2e/cores/scaler;$source/tests/e2e/cores/servo;$foreign/my_port;$foreign/my_requests;$work/my_lamps"
+folders="$samples/sample_verilog;$samples/sample_vhdl;$source/tests/e2e/cores/scaler;$source/tests/e2e/cores/servo;$source/tests/e2e/cores/crc32;$foreign/my_port;$foreign/my_requests;$work/my_lamps"
 mkdir -p "$work/build"
 # A core in VHDL, as make new-foreign puts it into a slot. GHDL is fetched once.
 rm -rf "$work/my_lamps"
@@ -27,19 +28,20 @@ GHDL=$build/ghdl/ghdl "$source/ip/new_foreign.py" my_lamps lamps own "$work/my_l
 # CLK_HZ: the servo core counts in every clock, so that none is skipped. TRACE: for what the probe is compared with.
 cmake -S "$source" -B "$work/build" -G Ninja -DTRACE=ON -DCLK_HZ=2000000 "-DCORES=$work/cores.list" "-DCORE_FOLDERS=$folders" \
     "-DROOMS=bus;slice;ip;sw;hdl;testbench" >"$work/build.log" 2>&1 &&
-    ninja -C "$work/build" icesoc-sim firmware_uav test_ip_servo test_ip_my_lamps >>"$work/build.log" 2>&1 || { tail -40 "$work/build.log" && exit 1; }
-ctest --test-dir "$work/build" --output-on-failure --no-tests=error -R '^test_ip_(servo|my_lamps)[.]' >"$work/log" 2>&1 || { cat "$work/log" && exit 1; }
+    ninja -C "$work/build" icesoc-sim firmware_uav test_ip_servo test_ip_crc32 test_ip_my_lamps >>"$work/build.log" 2>&1 || { tail -40 "$work/build.log" && exit 1; }
+ctest --test-dir "$work/build" --output-on-failure --no-tests=error -R '^test_ip_(servo|crc32|my_lamps)[.]' >"$work/log" 2>&1 || { cat "$work/log" && exit 1; }
 echo '1000 servo.fault_i 1 # milliseconds' >"$work/pins"
 echo '1001 servo.fault_i 0' >>"$work/pins"
 echo '500 port.port_in_i 0x83' >>"$work/pins"
 "$work/build/testbench/sim/icesoc-sim" --pins "$work/pins" --size 96x64 --image /usr/share/xplanet/images/earth.jpg --out "$work" --seed "${SEED:-1}" --guard 20 -- \
     /usr/bin/python3 "$source/tests/e2e/cores/client.py" '{device}' '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" \
-    "$work" "$samples/sample_verilog/sample_verilog.ice" "$source/tests/slice/hardware/golden/scaler.ice" "$source/tests/e2e/cores/servo/servo.ice" "$samples/sample_vhdl/sample_vhdl.ice" \
+    "$work" "$samples/sample_verilog/sample_verilog.ice" "$source/tests/slice/hardware/golden/scaler.ice" "$source/tests/e2e/cores/servo/servo.ice" "$source/tests/e2e/cores/crc32/crc32.ice" "$samples/sample_vhdl/sample_vhdl.ice" \
     "$source/sw/hw/registers/Registers.ice" "$source/ip/probe/Probe.ice" \
     >"$work/log" 2>&1 || { cat "$work/log" && exit 1; }
-# Pulses of 1.5 ms, whatever the clock; the fault pin ended one of them or none.
-awk '$2 == "servo.pwm_o" && $3 == 4 { up = $1 } $2 == "servo.pwm_o" && $3 == 0 && up { n += $1 - up > 1.499 && $1 - up < 1.501; all++; up = 0 }
-     END { exit !(n > 10 && all - n <= 1) }' "$work/pins.log" || { tail "$work/pins.log" && echo 'the pulses are not 1.5 ms long' && exit 1; }
+# Pulses of 1.5 ms, 20 ms apart, whatever the clock; the fault pin ended one of them or none, and moved what came next.
+awk '$2 == "servo.pwm_o" && $3 == 4 { frames += up && $1 - last > 19.999 && $1 - last < 20.001; last = up = $1 }
+     $2 == "servo.pwm_o" && $3 == 0 && up { n += $1 - up > 1.499 && $1 - up < 1.501; all++ }
+     END { exit !(n > 10 && all - n <= 1 && frames >= n - 2) }' "$work/pins.log" || { tail "$work/pins.log" && echo 'the pulses are not 1.5 ms long, 20 ms apart' && exit 1; }
 grep -q "'servo' moves in nearly every clock" "$work/log" || { cat "$work/log" && echo 'who keeps the chip from being quiet is not said' && exit 1; }
 grep -q 'cores: all as expected' "$work/log" || { cat "$work/log" && exit 1; }
 

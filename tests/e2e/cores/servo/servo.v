@@ -22,7 +22,7 @@ module servo #(
     output wire [3:0]  pwm_o,
     input  wire        fault_i
 );
-    localparam PERIOD = 2000; // microseconds
+    localparam PERIOD = 20000; // microseconds: 50 Hz
 
     wire        core_rst, set_pulse, clear, fault_start;
     wire [7:0]  channel;
@@ -41,7 +41,7 @@ module servo #(
     // A microsecond is CLK_HZ / 1000000 clocks: the remainder is carried, whatever the clock.
     reg [31:0] fraction;
     wire       next = fraction + 32'd1000000 >= CLK_HZ;
-    reg [10:0] now; // microseconds of the period
+    reg [14:0] now; // microseconds of the period
     reg [1:0]  fault_meta;
     reg        fault;
     reg [15:0] length [0:3];
@@ -53,15 +53,15 @@ module servo #(
         fraction   <= fraction + 32'd1000000 - (next ? CLK_HZ : 32'd0);
         fault_meta <= {fault_meta[0], fault_i};
         if (next)
-            now <= {21'd0, now} == PERIOD - 1 ? 11'd0 : now + 11'd1;
+            now <= {17'd0, now} == PERIOD - 1 ? 15'd0 : now + 15'd1;
         for (i = 0; i < 4; i = i + 1)
-            pulses[i] <= {5'd0, now} < length[i] && !fault;
+            pulses[i] <= {1'b0, now} < length[i] && !fault;
         if (set_pulse && channel < 8'd4)
             length[channel[1:0]] <= pulse;
         fault <= fault_meta[1] || (fault && !clear);
         if (rst_i || core_rst) begin
             fraction <= 32'd0;
-            now      <= 11'd0;
+            now      <= 15'd0;
             fault    <= 1'b0;
             pulses   <= 4'd0;
             for (i = 0; i < 4; i = i + 1)

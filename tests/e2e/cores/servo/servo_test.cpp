@@ -4,19 +4,23 @@
 
 #include "Vservo_slot.h"
 #include "servo_proxy.h"
+#include <array>
 
 namespace {
 
 class Servo : public ::testing::Test {
 protected:
-    // Returns how long a pin is high within one period of 2 ms.
-    unsigned microsecondsHigh(unsigned channel) {
-        unsigned clocks = 0;
-        for (unsigned i = 0; i < 2 * coreClocksOfMs; ++i) {
+    // Returns how long each pin is high within one frame of 20 ms.
+    std::array<uint64_t, 4> microsecondsHigh() {
+        std::array<uint64_t, 4> clocks{};
+        for (unsigned i = 0; i < 20 * coreClocksOfMs; ++i) {
             core_.tick();
-            clocks += core_.bench_.top().pwm_o >> channel & 1;
+            for (unsigned channel = 0; channel < 4; ++channel)
+                clocks[channel] += core_.bench_.top().pwm_o >> channel & 1;
         }
-        return clocks * 1000 / coreClocksOfMs;
+        for (uint64_t& n : clocks)
+            n = n * 1000 / coreClocksOfMs;
+        return clocks;
     }
     ServoProxy<Vservo_slot> core_;
 };
@@ -24,9 +28,7 @@ protected:
 TEST_F(Servo, PulsesAreMicrosecondsLongWhateverTheClock) {
     core_.setPulse(0, 1500);
     core_.setPulse(3, 400);
-    EXPECT_EQ(microsecondsHigh(0), 1500u);
-    EXPECT_EQ(microsecondsHigh(3), 400u);
-    EXPECT_EQ(microsecondsHigh(1), 0u);
+    EXPECT_EQ(microsecondsHigh(), (std::array<uint64_t, 4>{1500, 0, 0, 400}));
 }
 
 TEST_F(Servo, AFaultEndsThePulsesUntilItIsCleared) {
@@ -36,10 +38,10 @@ TEST_F(Servo, AFaultEndsThePulsesUntilItIsCleared) {
         core_.tick();
     core_.bench_.top().fault_i = 0;
     EXPECT_TRUE(core_.fault());
-    EXPECT_EQ(microsecondsHigh(0), 0u);
+    EXPECT_EQ(microsecondsHigh()[0], 0u);
     core_.clear();
     EXPECT_FALSE(core_.fault());
-    EXPECT_EQ(microsecondsHigh(0), 1500u);
+    EXPECT_EQ(microsecondsHigh()[0], 1500u);
 }
 
 } // namespace

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+//
+// crc32_test: the core's answers beside a CRC-32 computed bit by bit, with random waits of the
+// memory.
+
+#include "Vcrc32_slot.h"
+#include "crc32_proxy.h"
+
+namespace {
+
+uint32_t crcOf(const std::vector<Ice_Byte>& bytes) {
+    uint32_t crc = 0xFFFFFFFFu;
+    for (Ice_Byte byte : bytes)
+        for (int i = 0; i < 8; ++i)
+            crc = crc >> 1 ^ ((crc ^ byte >> i) & 1 ? 0xEDB88320u : 0u);
+    return ~crc;
+}
+
+TEST(Crc32, OfEachLength) {
+    Crc32Proxy<Vcrc32_slot> core;
+    for (size_t length : {0, 1, 7, 8, 9, 63, 64, 65, 300, 4096}) {
+        std::vector<Ice_Byte> bytes(length);
+        for (size_t i = 0; i < length; ++i)
+            bytes[i] = static_cast<Ice_Byte>(i * 151 + i / 256);
+        Cores_Data data{static_cast<Ice_Int>(length), bytes.data()};
+        EXPECT_EQ(static_cast<uint32_t>(core.crc(&data)), crcOf(bytes)) << length;
+    }
+}
+
+TEST(Crc32, OfTheCheckString) {
+    Crc32Proxy<Vcrc32_slot> core;
+    Ice_Byte digits[] = {49, 50, 51, 52, 53, 54, 55, 56, 57};
+    Cores_Data data{9, digits};
+    EXPECT_EQ(static_cast<uint32_t>(core.crc(&data)),
+              0xCBF43926u); // the catalogue of CRCs' check value
+}
+
+} // namespace

@@ -4,8 +4,8 @@
 
     cost.py BASELINE.json MAP.regs.json CORE...
 
-Adds up the LUTs and flip-flops that the accepted netlist of the whole chip has by instance (synth/baseline.json). The
-decoder's are shared equally by the slots, the arbiter's by the memory ports. Logic that two instances share is counted
+Adds up the LUTs and flip-flops that the netlist of the whole chip has by instance: the accepted one (synth/baseline.json),
+or with CHIP=1 that of the chip as it is listed now. The decoder's are shared equally by the slots, the arbiter's by the memory ports. Logic that two instances share is counted
 at one of them.
 """
 import json
@@ -44,9 +44,9 @@ def main(words):
         constants = {c["name"]: c["value"] for c in json.load(f)["constants"]}
     for core in words[2:]:
         if "u_" + core not in signals or "SLOT_" + core.upper() not in constants:
-            print(f"{core} in the chip: not in the one that was accepted; a line in ip/cores.list, then make synth-accept DESIGN=soc")
+            print(f"{core} in the chip: not in {words[0]}: a line in ip/cores.list, then make ip-synth IP={core} CHIP=1")
             continue
-        print(f"{core} in the chip, as accepted (make synth-accept DESIGN=soc measures it anew):")
+        print(f"{core} in the chip, by {words[0]}:")
         for what, lut, ff in parts_of(core, signals, constants):
             print(f"  {what:26} {lut:6.0f} LUT {ff:6.0f} FF")
 

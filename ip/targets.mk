@@ -27,21 +27,15 @@ FOREIGN := i2c_master axil_uart spi_master olo_spi
 FOREIGN_NEW := foreign_aes=aes=memory=aes foreign_uart=wbuart=wishbone=wbuart32 foreign_cobs=axis_cobs_encode=axis=verilog-axis
 foreign_slots = $(foreach f,$(FOREIGN_NEW),$(firstword $(subst =, ,$(f))))
 # Third-party cores come from the network, so they are no part of the rest.
-foreign: setup-tests ## put third-party cores (Wishbone, AXI4-Lite, AXI-Stream and plain buses in Verilog, records in VHDL) through the recipe, test them and call them by radio; downloads them
+foreign: setup-tests ## put third-party cores (Wishbone, AXI4-Lite, AXI-Stream and plain buses in Verilog, records in VHDL) and two of one's own through the recipe, in three orders, test them and call them by radio; downloads them (CHIP=1: and what each costs in that chip)
 	@cmake/fetch.sh foreign build/foreign-cores
 	@rm -rf build/foreign-cores/slots
 	@for f in $(FOREIGN_NEW); do \
 	    echo "$$f" | { IFS='=' read -r slot top bus from; \
 	        ip/new_foreign.py "$$slot" "$$top" "$$bus" "$(CURDIR)/build/foreign-cores/slots/$$slot" $(CURDIR)/build/foreign-cores/"$$from"/*.v >/dev/null; } || exit 1; \
 	done
-	@cmake -S . -B build/foreign -G Ninja -DROOMS="bus;slice;sw;hdl;ip;testbench" -DCLK_HZ=2000000 \
-	    -DCORES='$(CURDIR)/examples/foreign/cores.list' -DFOREIGN_CORES='$(CURDIR)/build/foreign-cores' \
-	    -DCORE_FOLDERS='$(subst $(eval ) ,;,$(FOREIGN:%=$(CURDIR)/examples/foreign/%) $(foreign_slots:%=$(CURDIR)/build/foreign-cores/slots/%))' >/dev/null
-	@ninja -C build/foreign -j $(JOBS) --quiet $(FOREIGN:%=test_ip_%) $(foreign_slots:%=test_ip_%) vehicle
-	@ctest --test-dir build/foreign --output-on-failure --no-tests=error -R '^test_ip_($(subst $(eval ) ,|,$(FOREIGN) $(foreign_slots)))[.]'
-	@build/foreign/testbench/sim/icesoc-sim --size 96x64 --image $(IMAGE) --out build/foreign/flight --guard 20 -- \
-	    /usr/bin/python3 examples/foreign/call.py '{device}' '{guard}' '{status}' build/foreign/ground/xbeeat:createXBeeAT \
-	    sw/hw/registers/Registers.ice build/foreign-cores/slots/foreign_cobs/foreign_cobs.ice examples/foreign/olo_spi/olo_spi.ice
+	@IMAGE='$(IMAGE)' JOBS='$(JOBS)' SEED='$(SEED)' CHIP='$(CHIP)' examples/foreign/orders.sh $(addprefix examples/foreign/,$(FOREIGN)) \
+	    $(addprefix tests/e2e/cores/,servo crc32) $(addprefix build/foreign-cores/slots/,$(foreign_slots))
 .PHONY: foreign
 
 # Folders of cores outside of ip/, separated by ;: the build folder keeps them. CORE_FOLDERS=none: none from now on.
@@ -54,10 +48,13 @@ core-folders: $(BUILD)/build.ninja
 ip-test: core-folders ## build and test one core: IP=fir (CORE_FOLDERS=/path/to/it where it is not in ip/)
 	@SEED=$(SEED) ip/test.sh '$(BUILD)' '$(IP)' '$(JOBS)'
 
-ip-synth: core-folders ## utilisation of one core, alone and in the chip: IP=fir (CORE_FOLDERS=/path/to/it where it is not in ip/)
+# CHIP=1: in the chip as it is listed now, which takes minutes, instead of the accepted one.
+CHIP ?=
+ip-synth: core-folders ## utilisation of one core, alone and in the chip: IP=fir (CORE_FOLDERS=/path/to/it where it is not in ip/; CHIP=1: the chip of today, not the accepted one)
 	@grep -qx '$(or $(IP),none)' $(BUILD)/cores.known || { echo "ip-synth: IP=name of a core, not '$(IP)'" >&2; exit 1; }
 	@make --no-print-directory synth DESIGN='$(IP)'
-	@ip/cost.py synth/baseline.json '$(BUILD)/gen/map.regs.json' '$(IP)'
+	@$(if $(CHIP),$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) --design soc --accept --baseline $(BUILD)/chip.json)
+	@ip/cost.py $(if $(CHIP),$(BUILD)/chip.json,synth/baseline.json) '$(BUILD)/gen/map.regs.json' '$(IP)'
 
 wave: $(BUILD)/build.ninja ## waveform of one test of a core, for GTKWave: IP=fir TEST=Impulse
 	@JOBS=$(JOBS) ip/wave.sh '$(IP)' '$(TEST)'

@@ -1,11 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Calls third-party cores by radio: call.py DEVICE GUARD STATUS PLUGIN Registers.ice foreign_cobs.ice
+"""Calls third-party cores and two of one's own by radio: call.py DEVICE GUARD STATUS PLUGIN Registers.ice File.ice ...
 
 An AES key and block of FIPS 197, appendix B; a byte through each UART and the SPI controller, whose outputs lead to
-their inputs; the I2C master's registers; packets through the COBS encoder's AXI-Streams. With stock ZeroC Ice.
+their inputs; the I2C master's registers; packets through the COBS encoder's AXI-Streams; a CRC-32 of buffers in DDR3; a
+servo's pulses, which orders.sh measures at the pins. With stock ZeroC Ice.
 """
 import sys
+import zlib
 
 import Ice
 
@@ -13,11 +15,13 @@ device, guard, status, plugin, *files = sys.argv[1:]
 for file in files:
     Ice.loadSlice("", [file])
 import Cores  # noqa: E402
+import Demo  # noqa: E402
 import Hw  # noqa: E402
 
-KEY = (0x2B7E1516, 0x28AED2A6, 0xABF71588, 0x09CF4F3C)
-BLOCK = (0x3243F6A8, 0x885A308D, 0x313198A2, 0xE0370734)
-CIPHER = [0x3925841D, 0x02DC09FB, 0xDC118597, 0x196A0B32]
+# Keys, blocks and ciphers of FIPS 197: appendices B, C.1 and C.3.
+AES = [("2b7e151628aed2a6abf7158809cf4f3c", "3243f6a8885a308d313198a2e0370734", "3925841d02dc09fbdc118597196a0b32"),
+       (bytes(range(16)).hex(), "00112233445566778899aabbccddeeff", "69c4e0d86a7b0430d8cdb78070b4c55a"),
+       (bytes(range(32)).hex(), "00112233445566778899aabbccddeeff", "8ea2b7ca516745bfeafc49904b496089")]
 
 
 def until(core, name, condition):
@@ -27,17 +31,24 @@ def until(core, name, condition):
     sys.exit("%s stays 0x%X" % (name, value))
 
 
+def words(text):
+    return [int(text[i:i + 8], 16) for i in range(0, len(text), 8)]
+
+
 def aes(core):
-    for i, word in enumerate(KEY):
-        core.set("KEY%d" % i, word)
-    core.set("CONFIG", 1)  # encipher, 128 bits
-    core.set("CTRL", 1)    # expand the key
-    until(core, "STATUS", lambda v: v & 1)
-    for i, word in enumerate(BLOCK):
-        core.set("BLOCK%d" % i, word)
-    core.set("CTRL", 2)
-    until(core, "STATUS", lambda v: v & 2)
-    return [core.get("RESULT%d" % i) for i in range(4)], CIPHER
+    answers = []
+    for key, block, _ in AES:
+        for i, word in enumerate(words(key)):
+            core.set("KEY%d" % i, word)
+        core.set("CONFIG", 3 if len(key) > 32 else 1)  # encipher, 256 or 128 bits
+        core.set("CTRL", 1)                            # expand the key
+        until(core, "STATUS", lambda v: v & 1)
+        for i, word in enumerate(words(block)):
+            core.set("BLOCK%d" % i, word)
+        core.set("CTRL", 2)
+        until(core, "STATUS", lambda v: v & 2)
+        answers.append([core.get("RESULT%d" % i) for i in range(4)])
+    return answers, [words(cipher) for _, _, cipher in AES]
 
 
 def uart(send, receive):
@@ -82,18 +93,28 @@ data.properties.setProperty("Ice.Plugin.XBeeAT", plugin)
 data.properties.setProperty("XBeeAT.Clock", status)
 data.properties.setProperty("XBeeAT.Guard", guard)
 with Ice.initialize(data) as ic:
+    def proxy(kind, name):
+        return kind.checkedCast(ic.stringToProxy("%s:xbee-at -d %s -a 0x0001 -t 300000" % (name, device)))
+
+    servo = proxy(Demo.ServoPrx, "servo")
+    servo.setPulse(2, 1500)
     for name, call in CORES.items():
-        core = Hw.RegistersPrx.checkedCast(ic.stringToProxy("%s:xbee-at -d %s -a 0x0001 -t 300000" % (name, device)))
+        core = proxy(Hw.RegistersPrx, name)
         value, wanted = call(core)
         if value != wanted:
             sys.exit("%s: %r, expected %r" % (name, value, wanted))
         print("%s: %d registers and fields, called by radio: as expected" % (name, len(core.list())))
-    encoder = Cores.ForeignCobsPrx.checkedCast(ic.stringToProxy("foreign_cobs:xbee-at -d %s -a 0x0001 -t 300000" % device))
+    encoder, crc = proxy(Cores.ForeignCobsPrx, "foreign_cobs"), proxy(Cores.Crc32Prx, "crc32")
     for packet in (b"\x11\x22\x00\x33", b"\0" * 9, bytes(range(1, 201))):
         if bytes(encoder.process(packet)) != cobs(packet):
             sys.exit("foreign_cobs: %r came of %r, expected %r" % (encoder.process(packet), packet, cobs(packet)))
     print("foreign_cobs: packets encoded, called by radio: as expected")
-    master = Cores.OloSpiPrx.checkedCast(ic.stringToProxy("olo_spi:xbee-at -d %s -a 0x0001 -t 300000" % device))
-    if master.transfer(0x5AC3F00D) != 0x5AC3F00D:
+    for packet in (b"", b"123456789", bytes(range(256)) * 16):
+        if crc.crc(packet) & 0xFFFFFFFF != zlib.crc32(packet):
+            sys.exit("crc32: 0x%08X, expected 0x%08X" % (crc.crc(packet) & 0xFFFFFFFF, zlib.crc32(packet)))
+    print("crc32: of up to 4096 bytes in DDR3, called by radio: as zlib's")
+    if proxy(Cores.OloSpiPrx, "olo_spi").transfer(0x5AC3F00D) != 0x5AC3F00D:
         sys.exit("olo_spi: what was sent did not come back")
     print("olo_spi: 32 bits sent and received, called by radio: as expected")
+    if servo.fault():
+        sys.exit("servo: a fault, of a pin that is low")

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
+#include <regex>
 #include <thread>
 
 namespace fs = std::filesystem;
@@ -28,6 +29,7 @@ struct Options {
     std::string yosys = "yosys";
     unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
     bool accept = false;
+    fs::path baseline;   // instead of synth/baseline.json
     std::string nextpnr; // places the designs for ECP5
     std::string edif;    // a design's name
     std::string compare; // another report.json
@@ -47,12 +49,14 @@ std::vector<fs::path> rtlFolders(const Options& o) {
     return folders;
 }
 
-// The Verilog of all cores of the build, wherever it is.
-std::vector<fs::path> coreFiles(const Options& o) {
+// The Verilog of all cores of the build, wherever it is, or (`isRead` false) the headers.
+std::vector<fs::path> coreFiles(const Options& o, bool isRead) {
+    static const std::regex verilog("\\.s?v", std::regex::icase);
     std::vector<fs::path> files;
     std::ifstream list(o.generated / "cores.files");
     for (std::string line; std::getline(list, line);)
-        if (fs::path(line).extension() == ".v" && fs::exists(line))
+        if (std::regex_match(fs::path(line).extension().string(), verilog) == isRead &&
+            fs::exists(line))
             files.push_back(line);
     return files;
 }
@@ -125,10 +129,11 @@ Library rtlOf(const Options& o) {
     if (!fs::is_directory(o.generated))
         throw std::runtime_error(fmt::format("{} is not there: build first", o.generated.string()));
     const std::vector<fs::path> folders = rtlFolders(o); // include files lie beside the modules
-    const std::vector<fs::path> files = coreFiles(o);
+    const std::vector<fs::path> files = coreFiles(o, true);
     std::vector<fs::path> includes = folders;
-    for (const fs::path& file : files)
-        includes.push_back(file.parent_path());
+    for (const auto& some : {files, coreFiles(o, false)})
+        for (const fs::path& file : some)
+            includes.push_back(file.parent_path());
     return Library(folders, includes, files);
 }
 
@@ -192,7 +197,7 @@ int report(const Options& o) {
     r.library = &library;
     r.rows = rowsOf(plan, runs, mainFamily);
     r.yosys = versionOf(o.yosys);
-    const fs::path accepted = o.source / "synth/baseline.json";
+    const fs::path accepted = o.baseline.empty() ? o.source / "synth/baseline.json" : o.baseline;
     r.baseline = readBaseline(fs::exists(accepted) ? readFile(accepted) : "");
     for (const Row& row : r.rows)
         r.verdicts.push_back(judge(row, r.baseline, r.yosys, plan.chip.mhz));
@@ -230,6 +235,7 @@ int main(int argc, char** argv) {
     app.add_option("--yosys", o.yosys, "the program")->capture_default_str();
     app.add_option("--jobs", o.jobs, "synthesis runs at a time")->capture_default_str();
     app.add_flag("--accept", o.accept, "record these figures in synth/baseline.json");
+    app.add_option("--baseline", o.baseline, "another file of accepted figures");
     app.add_option("--compare", o.compare,
                    "only tell how the last report differs from this report.json")
         ->check(CLI::ExistingFile);

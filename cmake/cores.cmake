@@ -32,7 +32,7 @@ endif()
 # The core NAME: a module or entity NAME with a slot's ports. ICE: its [":hw"] interface, from which
 # registers, wrapper and servant are made; else REGS describes its registers, and SERVANT is written by hand, for
 # interfaces of SLICE: files, or names given to icesoc_slice; without SERVANT it is that of sw/hw/registers. <NAME>_test.cpp beside it becomes test_ip_<NAME>, with the model V<NAME>_slot.
-# FLAGS: Verilator's, for a foreign core's style. LIBRARY: the VHDL library that its files say they are in. DEPENDS: what makes VERILOG files that are generated.
+# VERILOG may name headers, in whose folders `include looks. FLAGS: Verilator's, for a foreign core's style. LIBRARY: the VHDL library that its files say they are in. DEPENDS: what makes VERILOG files that are generated.
 # CLK_HZ: the module has a parameter of that name, the clock in Hz: 100 MHz on the board, in <NAME>_test.cpp and in
 # the simulator, unless it is told another. IDLE: it has an output idle_o, so that its clock can have a gate (hdl/system/core_gate.v).
 function(icesoc_core name)
@@ -53,6 +53,9 @@ function(icesoc_core name)
     set(idle ${name})
   endif()
   set(files ${A_VERILOG})
+  set(headers ${A_VERILOG}) # which `include finds
+  list(FILTER files EXCLUDE REGEX "[.]([sS]?[vV]?[hH]|[iI][nN][cC])$")
+  list(FILTER headers INCLUDE REGEX "[.]([sS]?[vV]?[hH]|[iI][nN][cC])$")
   set(targets ${A_DEPENDS})
   set(wrapper)
   set(arm_sources ${A_SERVANT})
@@ -114,7 +117,7 @@ function(icesoc_core name)
     list(APPEND targets ${name}_verilog)
     list(APPEND A_FLAGS -Wno-PINCONNECTEMPTY) # GHDL's way to write `open`
   endif()
-  foreach(what files targets regs libs clocked idle slices arm_sources arm_includes arm_targets)
+  foreach(what files headers targets regs libs clocked idle slices arm_sources arm_includes arm_targets)
     set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_${what} ${${what}})
   endforeach()
   set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_flags ${A_FLAGS})

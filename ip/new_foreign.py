@@ -59,8 +59,15 @@ def fail(text):
     sys.exit("new-foreign: " + text)
 
 
+def kind_of(file):
+    """"vhdl", "verilog", "header" or "" of a file, by the end of its name."""
+    end = os.path.splitext(file)[1].lower()
+    return {".vhd": "vhdl", ".vhdl": "vhdl", ".v": "verilog", ".sv": "verilog",
+            ".vh": "header", ".svh": "header", ".h": "header", ".inc": "header"}.get(end, "")
+
+
 def is_vhdl(file):
-    return file.endswith((".vhd", ".vhdl"))
+    return kind_of(file) == "vhdl"
 
 
 def text_of(file):
@@ -78,24 +85,64 @@ def converted(top, files, work):
     return [out]
 
 
-def read_module(top, files, include=()):
-    """The module `top` as Yosys has it: its ports in order, and the names of its parameters. `include`: folders."""
-    kind, flags = ("entity", re.I) if is_vhdl(files[0]) else ("module", 0)
-    there = [m for f in files for m in re.findall(rf"^\s*{kind}\s+(\w+)", text_of(f), re.M | flags)]
-    if top not in there:
-        fail(f"there is no {kind} '{top}' in FILES; there is {', '.join(there) or 'none'}")
+def declared(files, kind):
+    """The modules or entities of the files: name, "file:line"."""
+    flags = re.I if kind == "entity" else 0
+    found = []
+    for f in files:
+        text = re.sub(r"/\*.*?\*/|//[^\n]*", lambda m: "\n" * m.group().count("\n"), text_of(f), flags=re.S)
+        found += [(m.group(1), f"{f}:{text.count(chr(10), 0, m.start(1)) + 1}")
+                  for m in re.finditer(rf"^[ \t]*{kind}\s+(?:automatic\s+)?(\w+)", text, re.M | flags)]
+    return found
+
+
+def check_names(top, files):
+    """Each module is in one file, and none has the name of one of this project's: in the chip there is one of each."""
+    if is_vhdl(files[0]):
+        if top not in (there := [n for n, _ in declared(files, "entity")]):
+            fail(f"there is no entity '{top}' in FILES; there is {', '.join(there) or 'none'}")
+        return
+    there = declared(files, "module")
+    if top not in (names := [n for n, _ in there]):
+        fail(f"there is no module '{top}' in FILES; there is {', '.join(names) or 'none'}")
+    first = {}
+    for name, place in there:
+        other = first.setdefault(name, place)
+        if other.rsplit(":", 1)[0] != place.rsplit(":", 1)[0]:
+            fail(f"{place}: module '{name}' is in {other}, too: leave one of the files out")
+    room = os.path.join(HERE, "..")
+    ours = [os.path.join(d, f) for r in ("bus", "hdl") for d, _, there in os.walk(os.path.join(room, r)) for f in there if f.endswith(".v")]
+    for name, place in declared(ours, "module"):
+        if name in first and first[name].rsplit(":", 1)[0] != place.rsplit(":", 1)[0]:
+            fail(f"{first[name]}: module '{name}' has the name of this project's {os.path.relpath(place, room)}: give it another, "
+                 "where it is used, too")
+    for f in files:
+        if os.path.splitext(f)[1].lower() == ".sv" and (packages := declared([f], "package")):
+            fail(f"{packages[0][1]}: package '{packages[0][0]}': Yosys does not read it for the report; make Verilog of it by sv2v")
+
+
+def read_module(top, files, headers=()):
+    """The module `top` as Yosys has it: its ports in order, and the names of its parameters. `headers`: files in whose
+    folders `include finds more."""
+    kind = "entity" if is_vhdl(files[0]) else "module"
     with tempfile.TemporaryDirectory() as work:
         if kind == "entity":
             files = converted(top, files, work)
         out = os.path.join(work, "top.json")
-        folders = " ".join("-I" + d for d in sorted({*include, *(os.path.dirname(f) for f in files)} - {""}))
-        run = subprocess.run(["yosys", "-q", "-p", f"read_verilog -defer {folders} {' '.join(files)}; hierarchy -top {top}; "
+        folders = " ".join("-I" + d for d in folders_of([*files, *headers]))
+        run = subprocess.run(["yosys", "-q", "-p", "".join(
+            f"read_verilog -defer {'-sv' if f.lower().endswith('.sv') else ''} {folders} {f}; " for f in files) + f"hierarchy -top {top}; "
                               f"proc; write_json {out}"], capture_output=True, text=True)
         if run.returncode:
-            fail(f"Yosys does not elaborate {top}:\n{run.stdout}{run.stderr}".rstrip())
+            hint = "\nFILES may name headers, too: `include finds what is in their folders" if "include file" in run.stderr else ""
+            fail(f"Yosys does not elaborate {top}:\n{run.stdout}{run.stderr}".rstrip() + hint)
         modules = json.load(open(out))["modules"]
     module = next(m for n, m in modules.items() if m["attributes"].get("top") or n == top)
     return module["ports"], module.get("parameter_default_values", {})
+
+
+def folders_of(files):
+    return sorted({os.path.dirname(f) for f in files} - {""})
 
 
 def role(name, port, bus):
@@ -349,11 +396,16 @@ def main(words):
         fail(f"{folder} is there already")
     files = [os.path.abspath(f) for f in files]
     for f in files:
-        if " " in f or not f.endswith((".v", ".vhd", ".vhdl")) or not os.path.isfile(f):
-            fail(f"there is no Verilog or VHDL file '{f}' (in whose name no space may be: makefiles have none)")
+        if " " in f:
+            fail(f"'{f}' has a space in its name, which makefiles cannot have: rename it, or its folder")
+        if not kind_of(f) or not os.path.isfile(f):
+            fail(f"there is no Verilog or VHDL file '{f}'")
+    headers = [f for f in files if kind_of(f) == "header"]
+    files = [f for f in files if f not in headers]
     if not files or len({is_vhdl(f) for f in files}) > 1:
         fail("FILES are all Verilog or all VHDL, and at least one")
-    ports, parameters = read_module(top, files)
+    check_names(top, files)
+    ports, parameters = read_module(top, files, headers)
     two_way = [n for n, p in ports.items() if p["direction"] == "inout"]
     if two_way:
         fail(f"{top} has the inout port '{two_way[0]}': tri-states belong to the chip's pads; take a top without")
@@ -378,8 +430,8 @@ def main(words):
                  f"  VERILOG {name}.v ${{GEN_DIR}}/{top}.v)\n")
     else:
         build = (f"icesoc_core({name} {source} FLAGS -Wno-lint -Wno-style -Wno-TIMESCALEMOD -Wno-SELRANGE "
-                 + " ".join("-I" + d for d in sorted({os.path.dirname(f) for f in files})) + f"\n  VERILOG {name}.v "
-                 + "\n  ".join(files) + ")\n")
+                 + " ".join("-I" + d for d in folders_of([*files, *headers])) + f"\n  VERILOG {name}.v "
+                 + "\n  ".join([*files, *headers]) + ")\n")
     texts["CMakeLists.txt"] = "# SPDX-License-Identifier: MIT\n" + build
     os.makedirs(folder)
     for file, text in texts.items():

@@ -35,9 +35,13 @@ std::string replaceAll(std::string text, const std::string& what, const std::str
 
 std::string scriptOf(const Run& run, const Library& library, const RunnerOptions& options,
                      const std::string& output) {
-    std::string sources, includes, parameters;
-    for (const fs::path& file : library.filesOf(run.design->top))
-        sources += fmt::format(" \"{}\"", file.string());
+    std::string sources, includes, parameters, system; // SystemVerilog has words of its own
+    for (const fs::path& file : library.filesOf(run.design->top)) {
+        const std::string end = file.extension().string();
+        (end == ".sv" || end == ".SV" ? system : sources) += fmt::format(" \"{}\"", file.string());
+    }
+    if (!system.empty())
+        sources += "\nread_verilog -sv @INCLUDES@" + system;
     for (const fs::path& folder : library.includeFolders())
         includes += fmt::format(" -I{}", folder.string());
     for (const auto& [name, value] : run.design->parameters)

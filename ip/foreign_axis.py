@@ -166,11 +166,6 @@ TEST({type_name}, AnswersAPacket) {{
 """
     ground = f'''# SPDX-License-Identifier: MIT
 """{name}'s part of a mission: a packet goes through the core."""
-import os
-
-
-def slices(folder):
-    return [os.path.join(folder, "{name}.ice")]
 
 
 def fly(log, proxy, report):

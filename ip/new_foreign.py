@@ -359,15 +359,9 @@ TEST({suite}, IsInItsSlotAndAnswers) {{
 """
 
 
-def ground_of(name, folder, first):
-    slice_folder = os.path.relpath(os.path.join(HERE, "../sw/hw/registers"), folder)
+def ground_of(name, first):
     return f'''# SPDX-License-Identifier: MIT
 \"""{name}'s part of a mission: its registers are listed, and one is read.\"""
-import os
-
-
-def slices(folder):
-    return [os.path.join(folder, "{slice_folder}/Registers.ice")]
 
 
 def fly(log, proxy, report):
@@ -423,7 +417,7 @@ def main(words):
         first, answers = next(iter(words.values())), "registers: " + " ".join(words.values())
         registers = description(name, top, bus, words, adr_bits, data_width, pins)
         texts = {f"{name}.v": verilog, f"{name}_test.cpp": test_of(name, first),
-                 f"{name}.regs.json": json.dumps(registers, indent=2) + "\n", "ground.py": ground_of(name, folder, first)}
+                 f"{name}.regs.json": json.dumps(registers, indent=2) + "\n", "ground.py": ground_of(name, first)}
     if is_vhdl(files[0]):
         build = (f"icesoc_vhdl(NAME {top} SOURCES\n  " + "\n  ".join(files) + ")\n"
                  f"icesoc_core({name} {source} FLAGS -Wno-lint -Wno-style DEPENDS {top}_verilog\n"

@@ -3,10 +3,6 @@
 import os
 
 
-def slices(folder):
-    return [os.path.join(folder, "Ascon.ice")]
-
-
 def fly(log, proxy, report):
     import Cores  # made by loadSlice
 

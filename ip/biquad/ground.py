@@ -1,10 +1,5 @@
 # SPDX-License-Identifier: MIT
 """biquad's part of a mission (with a line biquad in ip/cores.list): a step goes through two leaky integrators."""
-import os
-
-
-def slices(folder):
-    return [os.path.join(folder, "biquad.ice")]
 
 
 def fly(log, proxy, report):

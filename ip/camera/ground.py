@@ -1,12 +1,7 @@
 # SPDX-License-Identifier: MIT
 """camera's part of a mission: it is started and stopped; with a sensor, the vision core works on its frames."""
-import os
 
 import Ice
-
-
-def slices(folder):
-    return [os.path.join(folder, "Camera.ice")]
 
 
 def camera_of(proxy):

@@ -1,10 +1,5 @@
 # SPDX-License-Identifier: MIT
 """fir's part of a mission: a noisy step goes through a moving average of 16 samples."""
-import os
-
-
-def slices(folder):
-    return [os.path.join(folder, "fir.ice")]
 
 
 def fly(log, proxy, report):

@@ -9,10 +9,6 @@ import probe as tool  # noqa: E402
 NEWEST = 2000  # changes that are read without a trigger
 
 
-def slices(folder):
-    return [os.path.join(folder, "Probe.ice")]
-
-
 def fly(log, proxy, report):
     import Probes  # made by loadSlice
 

@@ -8,6 +8,7 @@ the picture, and serves Station, which the UAV calls. All of it over the radio.
 
 import argparse
 import contextlib
+import glob
 import importlib.util
 import json
 import mmap
@@ -127,7 +128,7 @@ def parse_arguments():
     parser.add_argument("--status", help="the simulator's counters")
     parser.add_argument("--reference", help="program that computes the corners on the host")
     parser.add_argument("--core", action="append", default=[], metavar="FOLDER",
-                        help="also fly the part of this core: FOLDER/ground.py")
+                        help="also fly the part of this core: FOLDER/ground.py, with the Slice files beside it")
     parser.add_argument("--sensor", action="store_true", help="the frame comes through the camera core")
     parser.add_argument("--loss", default="0", help="noted in the report")
     parser.add_argument("--key", default="", help="file with the link's key; without: in the clear")
@@ -239,7 +240,6 @@ def differences(chip):
 
 def explain(communicator, args, failure):
     """Why the UAV has no such object: a core that differs from what the firmware was built for is not served."""
-    Ice.loadSlice("", [os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../hw/registers/Registers.ice")])
     import Hw  # made by loadSlice
     text = "the UAV has no object '%s'" % failure.id.name
     with contextlib.suppress(Ice.Exception):  # a UAV without the object chip
@@ -253,6 +253,7 @@ def explain(communicator, args, failure):
 
 def fly(args, communicator):
     import Autopilot  # made by loadSlice
+    parts = [part_of(folder) for folder in args.core]
     air = Air(args.status)
     log = Log(air, args.out, os.path.dirname(os.path.abspath(args.plugin)))
     station = make_station(Autopilot, log)
@@ -274,7 +275,6 @@ def fly(args, communicator):
     def proxy(identity):
         return communicator.stringToProxy(identity + ":" + where)
 
-    parts = [part_of(folder) for folder in args.core]
     if args.sensor:
         size = Image.open(args.frame).size
         for part in parts:
@@ -305,12 +305,11 @@ def fly(args, communicator):
 
 def main():
     args = parse_arguments()
-    Ice.loadSlice("-I" + (Ice.getSliceDir() or ".") + " " + args.slice)
     communicator = initialize(args)
     try:
-        for folder in args.core:
-            for file in part_of(folder).slices(folder):
-                Ice.loadSlice("-I" + (Ice.getSliceDir() or ".") + " " + file)
+        registers = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../hw/registers/Registers.ice")
+        for file in [args.slice, registers, *(file for core in args.core for file in glob.glob(os.path.join(core, "*.ice")))]:
+            Ice.loadSlice("-I" + (Ice.getSliceDir() or ".") + " " + file)
         fly(args, communicator)
         return 0
     except KeyboardInterrupt:

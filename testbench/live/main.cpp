@@ -16,10 +16,12 @@ int main(int argc, char** argv) {
     CLI::App app{"Serves the page that shows a mission as it runs, on 127.0.0.1."};
     std::string dir, registers;
     int port = 0;
+    bool onlyTry = false;
     app.add_option("--dir", dir, "the mission's folder: status, calls.jsonl, before.png")
         ->required();
     app.add_option("--registers", registers, "file that lists the blocks' *.regs.json")->required();
     app.add_option("--port", port, "0: any that is free")->check(CLI::Range(0, 65535));
+    app.add_flag("--try", onlyTry, "only look whether the page can be served");
     CLI11_PARSE(app, argc, argv);
     for (int signal : {SIGINT, SIGTERM})
         std::signal(signal, [](int number) { stopSignal = number; });
@@ -35,6 +37,8 @@ int main(int argc, char** argv) {
         add("/frame.png", "image/png", dir + "/before.png");
         pages.add("/state", "application/json", [&] { return state.now(); });
         PageServer server(pages, port);
+        if (onlyTry)
+            return 0;
         std::cout << "The mission as it runs: http://127.0.0.1:" << server.port() << "/"
                   << std::endl;
         server.serve(stopSignal);

@@ -102,9 +102,10 @@ for core in $cores; do
     parts="$parts --core $here/ip/$core"
 done
 # Each process ends with the one that started it, however that ends.
-setpriv --pdeathsig TERM "$build/testbench/live/icesoc-live" --dir "$out" --port "$port" --registers "$build/gen/registers.list" &
-page=$!
-trap 'kill $page 2>/dev/null || true' EXIT
+serve() { exec setpriv --pdeathsig TERM "$build/testbench/live/icesoc-live" --dir "$out" --port "$port" --registers "$build/gen/registers.list" "$@"; }
+(serve --try) || exit 1
+flown() { stat -c '%i %z' "$out/status" 2>/dev/null || true; }
+before=$(flown)
 # shellcheck disable=SC2086 # a list of words
 setpriv --pdeathsig TERM "$build/testbench/sim/icesoc-sim" --image "$image" --size "$size" --loss "$loss" --seed "$seed" --out "$out" --cpu "$cpu" --guard "$guard" --firmware "$firmware" $sensor ${pins:+--pins "$pins"} ${key:+--key "$key"} -- \
     /usr/bin/python3 "$here/sw/ground/clients/mission.py" --device '{device}' --frame '{frame}' \
@@ -119,6 +120,14 @@ stop() { # exit status
 }
 trap 'stop 130' INT
 trap 'stop 143' TERM HUP
+# The page begins when the simulator has taken its options: an address would hide what it refuses.
+while [ "$(flown)" = "$before" ] && kill -0 $sim 2>/dev/null; do sleep 0.05; done
+page=''
+trap 'kill $page 2>/dev/null || true' EXIT
+if kill -0 $sim 2>/dev/null; then
+    serve &
+    page=$!
+fi
 status=0
 wait $sim || status=$?
 if [ $status = 0 ]; then

@@ -239,6 +239,7 @@ picture_bad)
     mkdir "$out/mine" && echo mine >"$out/mine/report.md" && ln -s "$out/mine/report.md" "$out/calls.jsonl" && cp "$out/mine/report.md" "$out"
     echo "this is no picture" >"$out/bad.png"
     fails_with "is no picture that can be read" run "$out" --image "$out/bad.png"
+    if grep 127.0.0.1 "$out/log"; then echo "a page's address before what is refused" && exit 1; fi
     # Nothing in the folder is touched where the start is refused.
     [ "$(cat "$out/report.md" "$out/calls.jsonl")" = "$(printf 'mine\nmine')" ]
     fails_with "size '333x111': give WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8" run "$out" --image $image --size 333x111

@@ -74,6 +74,8 @@ errors)
     while ! grep -q 127.0.0.1 "$out/first" 2>/dev/null; do kill -0 $first || fail "the page has ended"; sleep 0.1; done
     port=$(sed -n 's,.*127.0.0.1:\([0-9]*\)/.*,\1,p' "$out/first")
     expect 'is the port taken' "$live" --dir "$out" --registers "$build/gen/registers.list" --port "$port"
+    expect 'is the port taken' "$source/testbench/sim/run.sh" "$build" --image /usr/share/xplanet/images/earth.jpg --size 96x64 --out "$out/unflown" --port "$port"
+    [ ! -e "$out/unflown/status" ] || fail "it flies without its page"
     # Nothing has run in this folder yet: the page still answers; and only on the loopback interface.
     python3 - "$port" "$out" <<'PY'
 import json, sys, urllib.request, urllib.error

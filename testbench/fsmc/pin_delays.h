@@ -12,8 +12,10 @@
 #include <map>
 #include <random>
 
-// A delay in ps, random between two bounds. Equal bounds: no skew.
+// A delay in ps, random between two bounds, or exact: no skew.
 struct PinDelay {
+    constexpr PinDelay(int exact) : least(exact), most(exact) {}
+    constexpr PinDelay(int atLeast, int atMost) : least(atLeast), most(atMost) {}
     int least, most;
 };
 
@@ -27,8 +29,8 @@ struct FsmcCorner {
     PinDelay padIn, clockIn;                       // clockIn: NWE, NADV, FSMC_CLK, as clocks
     PinDelay padOut;                               // LUTs and pad
     int setup, hold;                               // of the design's capture by NWE, by FSMC_CLK
-    int readSetup;                                 // of the FSMC, before HCLK's length
-    int burstSetup; // of the FSMC, before FSMC_CLK's rising edge: data and NWAIT
+    int readSetup = 4000;                          // of the FSMC, before HCLK's length
+    int burstSetup = 6000; // of the FSMC, before FSMC_CLK's rising edge: data and NWAIT
 };
 
 extern const FsmcCorner fsmcCorners[];

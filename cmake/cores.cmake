@@ -28,21 +28,25 @@ if(instances GREATER 4)
 endif()
 
 # icesoc_core(NAME [ICE file.ice | REGS name.regs.json] [VERILOG file...] [VHDL file...] [SERVANT file.c...]
-#             [SLICE name...] [INCLUDES dir...] [FLAGS ...] [LIBRARY name] [DEPENDS target...] [CLK_HZ] [IDLE])
+#             [SLICE name...] [INCLUDES dir...] [FLAGS ...] [LIBRARY name] [DEPENDS target...] [CLK_HZ] [IDLE] [CLOCK Hz])
 # The core NAME: a module or entity NAME with a slot's ports. ICE: its [":hw"] interface, from which
 # registers, wrapper and servant are made; else REGS describes its registers, and SERVANT is written by hand, for
 # interfaces of SLICE: files, or names given to icesoc_slice; without SERVANT it is that of sw/hw/registers. <NAME>_test.cpp beside it becomes test_ip_<NAME>, with the model V<NAME>_slot.
 # VERILOG may name headers, in whose folders `include looks. FLAGS: Verilator's, for a foreign core's style. LIBRARY: the VHDL library that its files say they are in. DEPENDS: what makes VERILOG files that are generated.
 # CLK_HZ: the module has a parameter of that name, the clock in Hz: 100 MHz on the board, in <NAME>_test.cpp and in
 # the simulator, unless it is told another. IDLE: it has an output idle_o, so that its clock can have a gate (hdl/system/core_gate.v).
+# CLOCK: it has a clock of its own, of that frequency at most, behind bus/bus_crossing.v; clk_i, rst_i and its pins are of that clock.
 function(icesoc_core name)
-  cmake_parse_arguments(A "CLK_HZ;IDLE" "ICE;REGS;LIBRARY" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS;DEPENDS" ${ARGN})
+  cmake_parse_arguments(A "CLK_HZ;IDLE" "ICE;REGS;LIBRARY;CLOCK" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS;DEPENDS" ${ARGN})
   list(TRANSFORM A_VHDL PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_VERILOG PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_SERVANT PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   if(A_CLK_HZ AND A_VHDL)
     message(FATAL_ERROR "${name}: CLK_HZ is for a module in Verilog: GHDL fixes an entity's generics when it converts it, "
                         "before the clock is known. Take a number by an operation instead")
+  endif()
+  if(A_CLOCK AND (A_IDLE OR NOT A_CLOCK MATCHES "^[0-9]+$" OR A_CLOCK LESS 3000000 OR A_CLOCK GREATER 100000000))
+    message(FATAL_ERROR "${name}: CLOCK is 3000000 to 100000000 Hz, and without IDLE: a clock of the core's own has no gate")
   endif()
   set(clocked)
   if(A_CLK_HZ)
@@ -117,25 +121,48 @@ function(icesoc_core name)
     list(APPEND targets ${name}_verilog)
     list(APPEND A_FLAGS -Wno-PINCONNECTEMPTY) # GHDL's way to write `open`
   endif()
-  foreach(what files headers targets regs libs clocked idle slices arm_sources arm_includes arm_targets)
+  set(top ${name})
+  set(own)
+  set(hz 100000000)
+  if(A_CLOCK)
+    set(top ${name}_clocked)
+    set(own ${name}=${A_CLOCK})
+    set(hz ${A_CLOCK})
+    set(flag)
+    if(A_CLK_HZ)
+      set(flag --clk-hz)
+    endif()
+    add_custom_command(OUTPUT ${GEN_DIR}/${top}.v COMMAND regmap ${regs} --clocked ${flag} --output-dir ${GEN_DIR}
+                       DEPENDS regmap ${regs} VERBATIM COMMENT "${name} in its own clock")
+    add_custom_target(${top}_verilog DEPENDS ${GEN_DIR}/${top}.v)
+    list(APPEND files ${GEN_DIR}/${top}.v)
+    list(APPEND targets ${top}_verilog)
+  endif()
+  foreach(what files headers targets regs libs clocked idle own slices arm_sources arm_includes arm_targets)
     set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_${what} ${${what}})
   endforeach()
   set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_flags ${A_FLAGS})
   set_property(GLOBAL APPEND PROPERTY ICESOC_CORES ${name})
   set(clock)
   if(A_CLK_HZ)
-    set(clock CLK_HZ=100000000)
+    set(clock CLK_HZ=${hz})
   endif()
   file(GLOB test CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
   if(test AND "testbench" IN_LIST ROOMS)
-    icesoc_verilate(${name}_slot TOP ${name} SOURCES ${files} DEPENDS ${targets} FLAGS ${A_FLAGS}
+    icesoc_verilate(${name}_slot TOP ${top} SOURCES ${files} DEPENDS ${targets} FLAGS ${A_FLAGS}
                     PARAMS ${clock} INCLUDES ${CMAKE_SOURCE_DIR}/bus ${CMAKE_SOURCE_DIR}/hdl/ddr ${CMAKE_SOURCE_DIR}/hdl/system ${CMAKE_SOURCE_DIR}/hdl/cdc ${CMAKE_CURRENT_SOURCE_DIR})
     set(labels rtl)
     if(A_VHDL)
       list(APPEND labels vhdl)
     endif()
     icesoc_test(test_ip_${name} SOURCES ${name}_test.cpp LIBS ${libs} ${name}_slot bench fsmc hw_core icec LABELS ${labels})
-    list(TRANSFORM clock PREPEND CORE_)
+    if(A_CLK_HZ)
+      set(clock CORE_CLK_HZ=100000000)
+    endif()
+    if(A_CLOCK)
+      list(APPEND clock CORE_OWN_HZ=${A_CLOCK}u)
+      icesoc_uncertain(test_ip_${name} 1)
+    endif()
     target_compile_definitions(test_ip_${name} PRIVATE ${clock})
   endif()
 endfunction()
@@ -182,11 +209,13 @@ function(icesoc_chip)
   list(TRANSFORM clocked PREPEND "--clocked;")
   icesoc_chip_property(idle idle)
   list(TRANSFORM idle PREPEND "--idle;")
+  icesoc_chip_property(own own)
+  list(TRANSFORM own PREPEND "--own-clock;")
   add_custom_command(OUTPUT ${GEN_DIR}/map.regs.json ${GEN_DIR}/soc_cores.vh ${GEN_DIR}/soc_cores.c ${GEN_DIR}/soc_pins.h
                      ${GEN_DIR}/core_pins.ucf ${GEN_DIR}/icesoc.svd ${GEN_DIR}/registers.html
                      ${GEN_DIR}/probes.json ${GEN_DIR}/icesoc.rdl ${GEN_DIR}/icesoc.ipxact.xml
     ${check}
-    COMMAND coremap ${CORES} --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${clocked} ${idle}
+    COMMAND coremap ${CORES} --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${clocked} ${idle} ${own}
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             --block 1=modem=${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json --output-dir ${GEN_DIR}
     DEPENDS coremap ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${inputs}

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: MIT
 """new_foreign: puts a third-party core in Verilog or VHDL into a slot (docs/recipes.md).
 
-    new_foreign.py NAME TOP wishbone|axil|memory|own|axis FOLDER [ROLE=port...] FILE...
+    new_foreign.py NAME TOP wishbone|axil|memory|own|axis FOLDER [CLOCK=Hz] [ROLE=port...] FILE...
 
 Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v, which connects TOP to
 the slot; its registers, with the names that TOP has for their addresses; a test; what a mission calls of it;
 CMakeLists.txt. ROLE=port says what a port is for, instead of its name. Ports that are neither bus, clock, reset nor
-interrupt become pins. VHDL is read by GHDL, which the environment names. A core with AXI-Streams (axis) has an operation
+interrupt become pins. CLOCK: the core has a clock of its own, of that frequency at most. VHDL is read by GHDL, which the environment names. A core with AXI-Streams (axis) has an operation
 instead of registers: foreign_axis.py.
 """
 import json
@@ -234,7 +234,7 @@ def address(signal, port):
     return f"{signal}[{width + lsb - 1}:{lsb}]", max(0, width + lsb - 2)
 
 
-def write_verilog(name, top, bus, ports, roles, parameters):
+def write_verilog(name, top, bus, ports, roles, parameters, clock):
     by_role = {r: (n, p) for n, p in ports.items() if (r := roles[n])}
     word_bits, data_width, connections, extra, interrupts = 0, 32, [], [], []
     adr_bits = 6
@@ -277,6 +277,8 @@ def write_verilog(name, top, bus, ports, roles, parameters):
     pin_ports = "".join(f",\n    {p['direction']:6} wire {vector(len(p['bits']))}{n}" for n, p in pins)
     levels = " #(.ARST_LVL(1'b1))" if "ARST_LVL" in parameters else ""
     pipelined = ", .PIPELINED(1)" if {"stall", "strobe"} & set(by_role) else ""
+    if clock:  # the adapter gives a core up before bus_crossing does, after 250 clocks of the chip
+        pipelined += f", .TIMEOUT({max(2, 250 * clock // 100000000 - 6)})"
     irq = " || ".join(interrupts) or "1'b0"
     unused = ", ".join(s for s in signals if not is_answer(s))
     adapter_module = "bus_to_axi4lite" if bus == "axil" else "bus_to_wishbone"
@@ -380,6 +382,12 @@ def main(words):
         sys.exit("usage: make new-foreign NAME=my_uart TOP=module BUS=wishbone|axil|memory|own|axis FILES='a.v b.v' [PORTS='write=we ...']")
     name, top, bus, folder, *rest = words
     given, files = [w for w in rest if "=" in w], [w for w in rest if "=" not in w]
+    clock = [w[6:] for w in given if w.startswith("CLOCK=")]
+    given = [w for w in given if not w.startswith("CLOCK=")]
+    if clock and not (clock[0].isdigit() and 3000000 <= int(clock[0]) <= 100000000):
+        fail(f"CLOCK={clock[0]}: the frequency of the core's own clock, 3000000 to 100000000 Hz")
+    if clock and bus == "axis":
+        fail("CLOCK: a core with AXI-Streams reaches DDR3, whose port has the chip's clock")
     if bus not in NEEDED:
         fail(f"BUS is {', '.join(NEEDED)}, not '{bus}'")
     if not re.fullmatch(r"[a-z][a-z0-9]+(_[a-z0-9]+)*", name) or name == top:
@@ -404,7 +412,7 @@ def main(words):
     if two_way:
         fail(f"{top} has the inout port '{two_way[0]}': tri-states belong to the chip's pads; take a top without")
     roles = roles_of(top, bus, ports, given)
-    source = f"REGS {name}.regs.json"
+    source = f"REGS {name}.regs.json" + (f" CLOCK {clock[0]}" if clock else "")
     if bus == "axis":
         if wrong := foreign_axis.problem(top, ports, roles):
             fail(wrong)
@@ -412,7 +420,7 @@ def main(words):
             f", set{foreign_axis.camel(foreign_axis.setting(n))}" for n in ports if roles[n] == "setting")
         texts = foreign_axis.texts(name, top, ports, roles, pin_name, vector, SLOT)
     else:
-        verilog, word_bits, adr_bits, data_width, pins = write_verilog(name, top, bus, ports, roles, parameters)
+        verilog, word_bits, adr_bits, data_width, pins = write_verilog(name, top, bus, ports, roles, parameters, int(clock[0]) if clock else 0)
         words = names_of(top, files, word_bits) or {a: f"REG{a}" for a in range(min(8, 1 << word_bits))}
         first, answers = next(iter(words.values())), "registers: " + " ".join(words.values())
         registers = description(name, top, bus, words, adr_bits, data_width, pins)

@@ -17,22 +17,23 @@ TOP ?=
 BUS ?=
 FILES ?=
 PORTS ?=
-new-foreign: $(BUILD)/build.ninja ## put a third-party core into a slot: NAME=my_uart TOP=its_module BUS=wishbone|axil|memory|own|axis FILES="a.v b.v" [PORTS="write=we ack=done"]
+CLOCK ?=
+new-foreign: $(BUILD)/build.ninja ## put a third-party core into a slot: NAME=my_uart TOP=its_module BUS=wishbone|axil|memory|own|axis FILES="a.v b.v" [PORTS="write=we ack=done"] [CLOCK=24000000]
 	@$(if $(filter %.vhd %.vhdl,$(FILES)),$(NINJA) --quiet ghdl)
-	@GHDL='$(BUILD)/ghdl/ghdl' ip/new_foreign.py '$(NAME)' '$(TOP)' '$(BUS)' 'ip/$(NAME)' $(PORTS) $(FILES)
+	@GHDL='$(BUILD)/ghdl/ghdl' ip/new_foreign.py '$(NAME)' '$(TOP)' '$(BUS)' 'ip/$(NAME)' $(if $(CLOCK),'CLOCK=$(CLOCK)') $(PORTS) $(FILES)
 .PHONY: new-foreign
 
 FOREIGN := i2c_master axil_uart spi_master olo_spi
-# Put into slots by new-foreign: slot=module=bus=repository.
-FOREIGN_NEW := foreign_aes=aes=memory=aes foreign_uart=wbuart=wishbone=wbuart32 foreign_cobs=axis_cobs_encode=axis=verilog-axis
+# Put into slots by new-foreign: slot=module=bus=repository, and =Hz of a clock of its own.
+FOREIGN_NEW := foreign_aes=aes=memory=aes foreign_uart=wbuart=wishbone=wbuart32=24000000 foreign_cobs=axis_cobs_encode=axis=verilog-axis
 foreign_slots = $(foreach f,$(FOREIGN_NEW),$(firstword $(subst =, ,$(f))))
 # Third-party cores come from the network, so they are no part of the rest.
 foreign: setup-tests ## put third-party cores (Wishbone, AXI4-Lite, AXI-Stream and plain buses in Verilog, records in VHDL) and two of one's own through the recipe, in three orders, test them and call them by radio; downloads them (CHIP=1: and what each costs in that chip)
 	@cmake/fetch.sh foreign build/foreign-cores
 	@rm -rf build/foreign-cores/slots
 	@for f in $(FOREIGN_NEW); do \
-	    echo "$$f" | { IFS='=' read -r slot top bus from; \
-	        ip/new_foreign.py "$$slot" "$$top" "$$bus" "$(CURDIR)/build/foreign-cores/slots/$$slot" $(CURDIR)/build/foreign-cores/"$$from"/*.v >/dev/null; } || exit 1; \
+	    echo "$$f" | { IFS='=' read -r slot top bus from clock; \
+	        ip/new_foreign.py "$$slot" "$$top" "$$bus" "$(CURDIR)/build/foreign-cores/slots/$$slot" $${clock:+CLOCK=$$clock} $(CURDIR)/build/foreign-cores/"$$from"/*.v >/dev/null; } || exit 1; \
 	done
 	@IMAGE='$(IMAGE)' JOBS='$(JOBS)' SEED='$(SEED)' CHIP='$(CHIP)' examples/foreign/orders.sh $(addprefix examples/foreign/,$(FOREIGN)) \
 	    $(addprefix tests/e2e/cores/,servo crc32) $(addprefix build/foreign-cores/slots/,$(foreign_slots))

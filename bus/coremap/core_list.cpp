@@ -4,6 +4,7 @@
 
 #include "core_list.h"
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <fmt/format.h>
 #include <set>
@@ -16,6 +17,9 @@ namespace {
 
 constexpr unsigned slotLimit = 64, pinLimit = 32;
 constexpr unsigned bufferAlignment = 128; // the largest NPI burst, bytes
+constexpr double chipHz = 100e6;
+constexpr double leastHz =
+    3e6; // of a core's own clock: an access ends within bus_crossing's TIMEOUT
 
 [[noreturn]] void fail(unsigned line, const std::string& text) {
     throw std::runtime_error(fmt::format("{}: error: {}", line, text));
@@ -132,6 +136,9 @@ private:
         for (const json& p : j.value("pins", json::array()))
             c.pins.push_back(
                 {p.at("name"), p.value("width", 1u), 0, "", p.value("internal", false), {}});
+        c.ownClock = j.value("own_clock", 0u);
+        if (c.ownClock)
+            c.pins.push_back({"clock_i", 1, 0, "", false, {}}); // the last one
     }
 
     void set(Core& c, const std::string& key, const std::string& value) {
@@ -162,6 +169,8 @@ private:
             c.isPlaced = true;
         } else if (key == "signals" && c.isProbe) {
             setSignals(c, value);
+        } else if (key == "clock" && c.ownClock) {
+            setClock(c, value);
         } else if (key == "gate") {
             if (value != "on")
                 fail(c.line, fmt::format("gate={}: on, or without the word", value));
@@ -177,6 +186,22 @@ private:
                 }
             fail(c.line, fmt::format("'{}' has no input pin '{}'", c.folder, key));
         }
+    }
+
+    // clock=3/8: of the chip's clock, by a DCM_CLKGEN; the pin clock_i is then none.
+    static void setClock(Core& c, const std::string& value) {
+        char end = 0;
+        if (std::sscanf(value.c_str(), "%3u/%3u%c", &c.multiply, &c.divide, &end) != 2 ||
+            c.multiply < 2 || c.multiply > 256 || !c.divide || c.divide > 256 ||
+            c.multiply > c.divide)
+            fail(c.line,
+                 fmt::format("clock={}: a part of the chip's clock, as 3/8: 2..256 / 2..256",
+                             value));
+        const double hz = chipHz / c.divide * c.multiply;
+        if (hz > c.ownClock || hz < leastHz)
+            fail(c.line, fmt::format("clock={}: {:.0f} Hz; '{}' is for {:.0f} to {} Hz", value, hz,
+                                     c.folder, leastHz, c.ownClock));
+        c.pins.back().isInternal = true;
     }
 
     // signals=u_fir.busy,u_fir.count:9: their names in the simulator, below soc, and their bits.

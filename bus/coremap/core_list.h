@@ -37,8 +37,11 @@ struct Core {
     bool isPlaced = false;    // memory= says where
     std::string servantType, servantHeader;
     std::vector<Pin> pins;
-    std::string constraints;     // <folder>.ucf beside its description, or nothing
-    bool hasClock = false;       // the module has the parameter CLK_HZ
+    std::string constraints; // <folder>.ucf beside its description, or nothing
+    bool hasClock = false;   // the module has the parameter CLK_HZ
+    unsigned ownClock = 0;   // Hz at most of its own clock; 0: it has the chip's
+    unsigned multiply = 0,
+             divide = 1;         // of the chip's clock, makes the own one; 0: pin clock_i does
     bool saysIdle = false;       // the module has the output idle_o
     bool hasGate = false;        // its clock stands still while it is idle, on the board, too
     bool isProbe = false;        // it has cycles_i and signals_i

@@ -72,8 +72,15 @@ std::string probed(const Chip& chip) {
 
 std::string instance(const Core& c) {
     std::string s = fmt::format("    // {}: ip/{}\n", c.name, c.folder), pins, parameters;
-    if (c.hasClock)
+    if (c.hasClock && !c.ownClock)
         parameters = ".CLK_HZ(CLK_HZ)";
+    else if (c.hasClock)
+        parameters = c.multiply ? fmt::format(".CLK_HZ(CLK_HZ / {} * {})", c.divide, c.multiply)
+                                : fmt::format(".CLK_HZ({})", c.ownClock);
+    if (c.multiply)
+        s += fmt::format("    wire clk_{0};\n    core_clock #(.MULTIPLY({1}), .DIVIDE({2})) "
+                         "u_clock_{0} (.clk_i(clk_i), .clk_o(clk_{0}));\n",
+                         c.name, c.multiply, c.divide);
     if (c.isProbe) {
         parameters += fmt::format(", .WORDS({}), .NAMES(32'h{:08X})", changeWords(c), namesOf(c));
         pins = fmt::format(",\n        .cycles_i(cycles_{0}), .signals_i(signals_{0})", c.name);
@@ -83,6 +90,8 @@ std::string instance(const Core& c) {
         if (!p.source.empty()) {
             size_t dot = p.source.find('.');
             at = fmt::format("pin_{}_{}", p.source.substr(0, dot), p.source.substr(dot + 1));
+        } else if (c.multiply && p.name == "clock_i") {
+            at = "clk_" + c.name;
         } else if (!p.isOut() && p.isInternal) {
             at = fmt::format("{}'d0", p.width);
         } else if (!p.isOut()) {
@@ -99,10 +108,10 @@ std::string instance(const Core& c) {
                          c.name, c.slot, c.hasGate ? "1" : "GATES");
         pins = fmt::format(", .idle_o(idle_{})", c.name) + pins;
     }
-    s += fmt::format(
-        "    {0} {3}u_{1} (\n        .clk_i({4}), .rst_i(rst), `SLOT({2}), .irq_o(slot_irq[{2}])",
-        c.folder, c.name, c.slot, parameters.empty() ? "" : "#(" + parameters + ") ",
-        c.saysIdle ? "clk_" + c.name : "clk_i");
+    s += fmt::format("    {0}{5} {3}u_{1} (\n        .clk_i({4}), .rst_i(rst), `SLOT({2}), "
+                     ".irq_o(slot_irq[{2}])",
+                     c.folder, c.name, c.slot, parameters.empty() ? "" : "#(" + parameters + ") ",
+                     c.saysIdle ? "clk_" + c.name : "clk_i", c.ownClock ? "_clocked" : "");
     if (c.port >= 0)
         s += fmt::format(", `NPI({})", c.port);
     return s + pins + "\n    );\n";
@@ -266,6 +275,29 @@ static std::string ownConstraints(const Core& c) {
     return s;
 }
 
+// A clock of the core's own: its period; between it and the chip's a step has 8 ns to arrive, so
+// that two bits, or a word and its flag, are at most a clock of 10 ns apart.
+static std::string clockConstraints(const Core& c) {
+    if (!c.ownClock)
+        return "";
+    std::string net = "u_soc/clk_" + c.name;
+    double hz = 100e6 / c.divide * c.multiply;
+    for (const Pin& p : c.pins)
+        if (p.name == "clock_i" && !c.multiply) {
+            net = p.isPin() ? fmt::format("core_pins_i<{}>", p.lsb)
+                            : "u_soc/pin_" + p.source.substr(0, p.source.find('.')) + "_" +
+                                  p.source.substr(p.source.find('.') + 1);
+            hz = c.ownClock;
+        }
+    return fmt::format("NET \"{0}\" TNM_NET = \"{1}_clk\";\n"
+                       "TIMESPEC \"TS_{1}_clk\" = PERIOD \"{1}_clk\" {2:.3f} ns HIGH 50%;\n"
+                       "TIMESPEC \"TS_{1}_to_soc\" = FROM \"{1}_clk\" TO \"soc_clk\" 8 ns "
+                       "DATAPATHONLY;\n"
+                       "TIMESPEC \"TS_soc_to_{1}\" = FROM \"soc_clk\" TO \"{1}_clk\" 8 ns "
+                       "DATAPATHONLY;\n",
+                       net, c.name, 1e9 / hz);
+}
+
 std::string constraintsOf(const Chip& chip) {
     std::string s = "# Generated from ip/cores.list: do not edit. Pins of cores, for ngdbuild "
                     "(docs/ise.md).\n";
@@ -276,7 +308,7 @@ std::string constraintsOf(const Chip& chip) {
                                  p.places.empty() ? "# " : "", p.isOut() ? 'o' : 'i', p.lsb + bit,
                                  p.places.empty() ? "..." : p.places[bit], c.name, p.name, bit);
     for (const Core& c : chip.cores)
-        s += ownConstraints(c);
+        s += ownConstraints(c) + clockConstraints(c);
     for (const Core& c : chip.cores)
         if (c.hasGate)
             s += fmt::format(

@@ -36,15 +36,17 @@ int main(int argc, char** argv) {
     CLI::App app{"Puts the cores of a list into the chip: address map, instances in Verilog, the "
                  "firmware's table."};
     std::string list, base, outputDir = ".";
-    std::vector<std::string> cores, blocks, clocked, idle;
-    app.add_option("list", list,
-                   "a core a line: folder [name=] [identity=] [slot=] [memory=] [gate=on] "
-                   "[signals=u_fir.count:9] "
-                   "[input=core.output] [pin=@places]")
+    std::vector<std::string> cores, blocks, clocked, idle, clocks;
+    app.add_option(
+           "list", list,
+           "a core a line: folder [name=] [identity=] [slot=] [memory=] [gate=on] [clock=3/8] "
+           "[signals=u_fir.count:9] "
+           "[input=core.output] [pin=@places]")
         ->required();
     app.add_option("--base", base, "the platform's map.regs.json")->required();
     app.add_option("--core", cores, "folder=its description (*.regs.json)");
     app.add_option("--clocked", clocked, "folder of a core with the parameter CLK_HZ");
+    app.add_option("--own-clock", clocks, "folder=Hz at most, of a core with a clock of its own");
     app.add_option("--idle", idle, "folder of a core with the output idle_o");
     app.add_option("--block", blocks,
                    "slot=name=description of a block of the platform, for the pages");
@@ -63,6 +65,9 @@ int main(int argc, char** argv) {
             if (std::filesystem::exists(own))
                 constraints[folder] = read(own.string());
         }
+        for (const std::string& o : clocks)
+            if (auto at = descriptions.find(o.substr(0, o.find('='))); at != descriptions.end())
+                at->second["own_clock"] = std::stoul(o.substr(o.find('=') + 1));
         auto platform = nlohmann::ordered_json::parse(read(base));
         Chip chip = readCores(read(list), platform, descriptions);
         for (Core& c : chip.cores) {

@@ -2,7 +2,8 @@
 //
 // regmap: turns the register description of a block (*.regs.json) into what each side includes:
 // <block>_regs.vh (Verilog localparams), <block>_regs.h (C90 macros), <block>_regs_pkg.vhd (VHDL
-// package), <block>_regs.md (page for people). Format of the description: docs/bus.md.
+// package), <block>_regs.md (page for people); or, with --clocked, <block>_clocked.v (the block
+// behind bus_crossing.v). Format of the description: docs/bus.md.
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -217,6 +218,61 @@ std::string markdown(const Block& b) {
                "reads as 0.\n";
 }
 
+// The block, a core with a clock of its own, as one with a slot's ports: clock_i is that clock.
+std::string clocked(const Block& b, const json& j, bool hasClkHz) {
+    check(
+        !j.value("memory_port", false),
+        "a core with a memory port has the chip's clock, which the port has; one of its own for a "
+        "part of the core: hdl/cdc/async_fifo.v, as ip/camera does");
+    std::string ports, pins;
+    for (const json& p : j.value("pins", json::array())) {
+        auto name = p.at("name").get<std::string>();
+        unsigned width = p.value("width", 1u);
+        ports += fmt::format(",\n    {} wire {}{}", name.back() == 'o' ? "output" : "input ",
+                             width == 1 ? "" : fmt::format("[{}:0] ", width - 1), name);
+        pins += fmt::format(",\n        .{0}({0})", name);
+    }
+    return fmt::format(
+        R"(// Generated from {0}.regs.json: do not edit. {0} in a clock of its own (docs/hw-mapping.md).
+
+`default_nettype none
+
+module {0}_clocked{1} (
+    input  wire        clk_i,
+    input  wire        rst_i,
+    input  wire        bus_valid_i,
+    input  wire        bus_write_i,
+    input  wire [3:0]  bus_addr_i,
+    input  wire [31:0] bus_wdata_i,
+    output wire        bus_ready_o,
+    output wire [31:0] bus_rdata_o,
+    output wire        bus_error_o,
+    output wire        irq_o,
+    input  wire        clock_i{2}
+);
+    wire        rst, valid, write, ready, error, irq;
+    wire [3:0]  addr;
+    wire [31:0] wdata, rdata;
+    bus_crossing u_crossing (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
+        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
+        .bus_error_o(bus_error_o), .irq_o(irq_o),
+        .core_clk_i(clock_i), .core_rst_o(rst), .core_valid_o(valid), .core_write_o(write),
+        .core_addr_o(addr), .core_wdata_o(wdata), .core_ready_i(ready), .core_rdata_i(rdata),
+        .core_error_i(error), .core_irq_i(irq)
+    );
+    {0} {3}u_core (
+        .clk_i(clock_i), .rst_i(rst), .bus_valid_i(valid), .bus_write_i(write), .bus_addr_i(addr),
+        .bus_wdata_i(wdata), .bus_ready_o(ready), .bus_rdata_o(rdata), .bus_error_o(error),
+        .irq_o(irq){4}
+    );
+endmodule
+)",
+        b.name, hasClkHz ? " #(\n    parameter CLK_HZ = 100000000 // of clock_i\n)" : "", ports,
+        hasClkHz ? "#(.CLK_HZ(CLK_HZ)) " : "", pins);
+}
+
 void save(const std::string& path, const std::string& text) {
     std::ofstream out(path, std::ios::binary);
     out << text;
@@ -231,11 +287,19 @@ int main(int argc, char** argv) {
     std::string input, outputDir = ".";
     app.add_option("description", input, "the block's *.regs.json")->required();
     app.add_option("--output-dir", outputDir, "where the four files go");
+    bool isClocked = false, hasClkHz = false;
+    app.add_flag("--clocked", isClocked, "instead of them <block>_clocked.v");
+    app.add_flag("--clk-hz", hasClkHz, "whose module has the parameter CLK_HZ");
     CLI11_PARSE(app, argc, argv);
     try {
         std::ifstream in(input);
         check(bool(in), "cannot be read");
-        Block b = parse(json::parse(in));
+        const json j = json::parse(in);
+        Block b = parse(j);
+        if (isClocked) {
+            save(outputDir + "/" + b.name + "_clocked.v", clocked(b, j, hasClkHz));
+            return 0;
+        }
         std::string base = outputDir + "/" + b.name + "_regs";
         save(base + ".vh", verilog(b));
         save(base + ".h", cHeader(b));

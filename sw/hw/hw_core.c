@@ -16,11 +16,12 @@ typedef char hw_check_double[sizeof(double) == 8 ? 1 : -1];
 Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Port* port, void* context) {
     U32 i;
     self->slot = slot;
+    self->id = id;
     self->port = port;
     self->context = context;
     for (i = 0; i < HW_OPERATIONS; ++i)
         self->done[i] = self->later[i] = 0;
-    if (FSMC_read(slot, ID) != id)
+    if (!Hw_Core_answers(self))
         return HW_WRONG_CORE;
     FSMC_write(slot, CONTROL, RESET);
     FSMC_write(slot, EVENT, 0xFFFFFFFFU);
@@ -45,6 +46,10 @@ Hw_Status Hw_Core_ready(const Hw_Core* self, U32 operation) {
 
 void Hw_Core_act(const Hw_Core* self, U32 operation) {
     FSMC_write(self->slot, CONTROL, 1U << operation);
+}
+
+int Hw_Core_answers(const Hw_Core* self) {
+    return FSMC_read(self->slot, ID) == self->id;
 }
 
 Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms) {

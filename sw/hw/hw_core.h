@@ -49,6 +49,7 @@ typedef struct Hw_Port {
 
 typedef struct Hw_Core {
     U32 slot; /* 0..63 */
+    U32 id;   /* what its word ID reads */
     const Hw_Port* port;
     void* context;
     volatile U8 done[HW_OPERATIONS];  /* set by the interrupt */
@@ -68,6 +69,8 @@ void Hw_Core_interrupt(Hw_Core* self);
  * event. */
 Hw_Status Hw_Core_ready(const Hw_Core* self, U32 operation);
 void Hw_Core_act(const Hw_Core* self, U32 operation);
+/* Returns 1 if the core answers: the accesses before were done. 0: its clock stands still. */
+int Hw_Core_answers(const Hw_Core* self);
 Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms);
 
 /* Steps of an operation that is answered later. begin: starts it, and its time. later: leaves the

@@ -37,6 +37,10 @@ public:
         models_.emplace_back(std::move(sample), std::move(drive));
     }
 
+    // Adds a clock that does not belong to clk_i: `half` is called between its edges, twice a
+    // cycle.
+    void addClock(std::function<void()> half) { half_ = std::move(half); }
+
     // Passes one clock cycle: settle, models sample, rising edge, models drive, falling edge,
     // settle.
     void tick() {
@@ -48,9 +52,13 @@ public:
         for (auto& model : models_)
             model.second();
         observer_.step(*top_, cycles_, 0);
+        if (half_)
+            half_();
         top_->clk_i = 0;
         top_->eval();
         observer_.step(*top_, cycles_, 1);
+        if (half_)
+            half_();
         ++cycles_;
     }
 
@@ -79,6 +87,7 @@ private:
     Observer<Module> observer_;
     std::unique_ptr<Module> top_;
     std::vector<std::pair<std::function<void()>, std::function<void()>>> models_;
+    std::function<void()> half_;
     uint64_t cycles_ = 0;
 };
 

@@ -57,6 +57,29 @@ public:
     explicit CoreMemory(Bench<Module>& bench) : NpiMemory<Module>(bench, 0.2, testSeed()) {}
 };
 
+// The clock of a core that has its own: beside the chip's 100 MHz, its edges between that one's.
+#ifndef CORE_OWN_HZ
+#define CORE_OWN_HZ 24000000u
+#endif
+template <class Module, class = void> struct OwnClock {
+    explicit OwnClock(Bench<Module>&) {}
+};
+template <class Module> class OwnClock<Module, std::void_t<decltype(Module::clock_i)>> {
+public:
+    explicit OwnClock(Bench<Module>& bench) {
+        bench.addClock([this, &top = bench.top()] {
+            for (time_ += hz_; time_ >= 100000000; time_ -= 100000000) {
+                top.clock_i ^= 1;
+                top.eval();
+            }
+        });
+    }
+    void run(unsigned hz) { hz_ = hz; } // 0: it stands still
+
+private:
+    unsigned hz_ = CORE_OWN_HZ, time_ = 0;
+};
+
 // A core in a slot, with the driver's port, the interrupt and the wait.
 template <class Module> class CoreSlot {
 public:
@@ -126,6 +149,7 @@ public:
     static inline Hw_Frames frames{};
     static constexpr Hw_Port port = {wait, post, nowMs, busErrors, &frames};
     Bench<Module> bench_;
+    OwnClock<Module> ownClock_{bench_};
     CoreMemory<Module> memory_{bench_};
     BusMaster<Module> bus_{bench_};
     Hw_Core* core_ = nullptr;

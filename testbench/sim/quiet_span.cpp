@@ -87,8 +87,8 @@ void QuietSpan::blame() {
     for (const std::string& path : SocState::differences(image_, SocState::of(*top_.rootp)))
         blocks.insert(path.substr(0, path.find('.')));
     for (const std::string& block : blocks)
-        if (block.rfind("u_", 0) == 0 && !platform.count(block))
-            ++movers_[block.substr(2)];
+        if (block.rfind("u_", 0) == 0 && !platform.count(block)) // u_clock_fir: fir's own clock
+            ++movers_[block.substr(block.rfind("u_clock_", 0) == 0 ? 8 : 2)];
 }
 
 std::string QuietSpan::mover() const {

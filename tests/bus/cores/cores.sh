@@ -6,7 +6,10 @@ set -eu
 coremap=$1 regmap=$2 source=$3 gen=$4 work=$5
 data=$(cd "$(dirname "$0")/data" && pwd)
 rm -rf "$work"
-mkdir -p "$work"
+mkdir -p "$work/own"
+# The led again, with a clock of its own.
+for f in regs.json v; do sed 's/\<led\>/tuner/' "$data/led.$f" >"$work/own/tuner.$f"; done
+"$regmap" "$work/own/tuner.regs.json" --clocked --output-dir "$work/own"
 fail() { echo "cores: $*" && exit 1; }
 
 chip() { # name, the list: the chip in $work/name
@@ -15,13 +18,13 @@ chip() { # name, the list: the chip in $work/name
     printf '%b' "$2" >"$out/cores.list"
     "$coremap" "$out/cores.list" --base "$source/bus/map.regs.json" --core "led=$data/led.regs.json" \
         --core "adder=$data/adder.regs.json" --core "mover=$data/mover.regs.json" \
-        --core "probe=$source/ip/probe/probe.regs.json" --clocked mover --clocked probe --idle adder --block "0=system=$source/hdl/system/system.regs.json" --output-dir "$out" 2>"$out/messages"
+        --core "probe=$source/ip/probe/probe.regs.json" --clocked mover --clocked probe --idle adder --core "tuner=$work/own/tuner.regs.json" --own-clock tuner=48000000 --block "0=system=$source/hdl/system/system.regs.json" --output-dir "$out" 2>"$out/messages"
 }
 accepted() {
     chip "$@" || { cat "$out/messages" && fail "refused: $2"; }
-    for regs in "$out/map.regs.json" "$data"/*.regs.json; do "$regmap" "$regs" --output-dir "$out"; done
+    for regs in "$out/map.regs.json" "$data"/*.regs.json "$work"/own/*.regs.json; do "$regmap" "$regs" --output-dir "$out"; done
     # shellcheck disable=SC2086 # a list of folders
-    verilator --lint-only -Wall -I"$out" $(for f in "$out" "$data" "$source"/bus "$source"/hdl/* "$source/ip/probe" "$gen"; do [ ! -d "$f" ] || echo "-y $f"; done) \
+    verilator --lint-only -Wall -I"$out" $(for f in "$out" "$data" "$work/own" "$source"/bus "$source"/hdl/* "$source/ip/probe" "$gen"; do [ ! -d "$f" ] || echo "-y $f"; done) \
         -I"$gen" --top-module soc "$source/hdl/soc.v"
     gcc -std=c90 -pedantic -Wall -Wextra -Wmissing-prototypes -Werror -fsyntax-only -I"$out" -I"$data" -I"$source/sw/hw" \
         -I"$source/sw/hw/registers" -I"$gen/slice/Registers" -I"$source/ip/probe" -I"$gen/slice/Probe" -I"$source/sw/icec" -I"$source/sw/base" "$out/soc_cores.c"
@@ -89,7 +92,22 @@ grep -q 'core_gate #(.GATED(1)) u_gate_adder .*slot_valid\[2\].*clk_adder' "$out
 grep -q 'core_gate #(.GATED(GATES)) u_gate_other' "$out/soc_cores.vh" || fail 'a core that asked for no gate has one on the board'
 grep -q '^NET "u_soc/u_gate_adder.g_gate.run" MAXDELAY' "$out/core_pins.ucf" || fail 'the way to the gate is not constrained'
 ! grep -q u_gate_led "$out/soc_cores.vh" || fail 'a core that does not say when it is idle has a gate'
-# A probe has its signals by name, at any depth, in Verilator and, flattened, in Yosys; the ground is told which they are.
+# A clock of a core's own comes from a pin, from another core, or is made of the chip's; ISE is told its period, and what crosses.
+accepted clocks 'led\ntuner clock_i=@A9\ntuner name=other clock_i=led.led_o\ntuner name=made clock=6/25\n'
+is PIN_TUNER_CLOCK_I 0x2
+grep -q '^    tuner_clocked u_tuner' "$out/soc_cores.vh" && grep -q 'clock_i(pin_led_led_o)' "$out/soc_cores.vh" || fail 'a core has not its own clock'
+grep -q 'core_clock #(.MULTIPLY(6), .DIVIDE(25)) u_clock_made' "$out/soc_cores.vh" || fail 'the clock is not made'
+grep -qx 'NET "core_pins_i<2>" TNM_NET = "tuner_clk";' "$out/core_pins.ucf" && grep -qx 'TIMESPEC "TS_tuner_clk" = PERIOD "tuner_clk" 20.833 ns HIGH 50%;' "$out/core_pins.ucf" &&
+    grep -qx 'TIMESPEC "TS_made_clk" = PERIOD "made_clk" 41.667 ns HIGH 50%;' "$out/core_pins.ucf" &&
+    grep -qx 'TIMESPEC "TS_soc_to_other" = FROM "soc_clk" TO "other_clk" 8 ns DATAPATHONLY;' "$out/core_pins.ucf" || fail 'the constraints of a clock'
+refused 'clock=3/4: 75000000 Hz' 'tuner clock=3/4\n'
+refused 'clock=2/99: 2020202 Hz' 'tuner clock=2/99\n'
+refused 'clock=9/8: a part of' 'tuner clock=9/8\n'
+refused 'clock=x: a part of' 'tuner clock=x\n'
+refused "has no input pin 'clock'" 'led clock=6/25\n'
+! "$regmap" "$data/mover.regs.json" --clocked --output-dir "$work" 2>"$work/messages" && grep -q 'a core with a memory port has the chip' "$work/messages" ||
+    fail 'a memory port in another clock'
+# A probe has its signals# A probe has its signals by name, at any depth, in Verilator and, flattened, in Yosys; the ground is told which they are.
 accepted probe 'adder\nprobe signals=u_adder.u_registers.u_wrapper.mask,u_modem.u_timer.clocks:17\nprobe name=other signals=u_adder.irq_o\n'
 yosys -q -p "verilog_defaults -add -I$out -I$gen $(for f in bus hdl/fsmc hdl/ddr hdl/modem hdl/system hdl/cdc; do printf -- '-I%s ' "$source/$f"; done)
     read_verilog $source/hdl/soc.v

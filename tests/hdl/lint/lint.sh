@@ -40,6 +40,7 @@ fsmc_bridge)
     refused='SYNC=1,LATENCY=3 SYNC=1,LATENCY=18 SYNC=2 POST_LOG2=1 POST_LOG2=6 BLOCK_LOG2=0 BLOCK_LOG2=5 TIMEOUT_LOG2=0' ;;
 system_slot) variants='SLOTS=2 SLOTS=63' ;;
 core_gate) folders="$folders $source/tests/hdl/lint" variants='GATED=1' ;; # BUFGCE.v
+core_clock) folders="$folders $source/tests/hdl/lint" variants='MULTIPLY=5,DIVIDE=7' ;; # DCM_CLKGEN.v, too
 *) variants='' ;;
 esac
 search=$(for f in $folders ${core:+"$gen"}; do echo "-y $f -I$f"; done)

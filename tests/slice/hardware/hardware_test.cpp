@@ -43,6 +43,14 @@ TEST_F(CalculatorServant, IdentityIsTypeAndVersionOfTheInterface) {
     EXPECT_EQ(Hw_Core_init(&other, slot, 0x43410103, &slot_.port, &slot_), HW_WRONG_CORE);
 }
 
+// As one whose own clock stands still: what it reads as is no result.
+TEST_F(CalculatorServant, ACoreThatNoLongerAnswersIsATimeOut) {
+    Ice_Int sum = 0;
+    core_.core.id ^= 1;
+    EXPECT_EQ(Demo_Calculator_add(self_, 2, 3, &sum, nullptr), ICE_TIMEOUT);
+    EXPECT_EQ(Demo_Calculator_setMode(self_, Demo_wrap, 0, 0, nullptr), ICE_TIMEOUT);
+}
+
 TEST_F(CalculatorServant, SettersReachTheCoreAndGettersReadIt) {
     for (Demo_Mode mode : {Demo_wrap, Demo_saturate, Demo_refuse})
         for (Ice_Bool negate : {Ice_Bool(0), Ice_Bool(1)}) {

@@ -36,7 +36,7 @@ Ice_Status Demo_Calculator_setMode(Demo_CalculatorPtr self, Demo_Mode mode, Ice_
     FSMC_write(hw_core->core.slot, CALCULATOR_SET_MODE_IN0,
             (U32)mode | (U32)(negate != 0) << CALCULATOR_SET_MODE_IN0_NEGATE_LSB | (U32)shift << CALCULATOR_SET_MODE_IN0_SHIFT_LSB);
     Hw_Core_act(&hw_core->core, 0U);
-    return ICE_OK;
+    return Hw_Core_answers(&hw_core->core) ? ICE_OK : ICE_TIMEOUT;
 }
 
 Ice_Status Demo_Calculator_getMode(Demo_CalculatorPtr self, Ice_Bool *negate, Ice_Byte *shift,
@@ -53,7 +53,7 @@ Ice_Status Demo_Calculator_getMode(Demo_CalculatorPtr self, Ice_Bool *negate, Ic
         return ICE_UNKNOWN_EXCEPTION; /* no such enumerator */
     (*result) =
             (Demo_Mode)((hw_word & CALCULATOR_GET_MODE_OUT0_RESULT_MASK) >> CALCULATOR_GET_MODE_OUT0_RESULT_LSB);
-    return ICE_OK;
+    return Hw_Core_answers(&hw_core->core) ? ICE_OK : ICE_TIMEOUT;
 }
 
 Ice_Status Demo_Calculator_add(Demo_CalculatorPtr self, Ice_Int a, Ice_Int b, Ice_Int *result,
@@ -66,7 +66,7 @@ Ice_Status Demo_Calculator_add(Demo_CalculatorPtr self, Ice_Int a, Ice_Int b, Ic
     Hw_Core_act(&hw_core->core, 2U);
     hw_word = FSMC_read(hw_core->core.slot, CALCULATOR_ADD_OUT0);
     (*result) = (Ice_Int)hw_word;
-    return ICE_OK;
+    return Hw_Core_answers(&hw_core->core) ? ICE_OK : ICE_TIMEOUT;
 }
 
 Ice_Status Demo_Calculator_divide(Demo_CalculatorPtr self, Ice_Int a, Ice_Int b,
@@ -103,7 +103,7 @@ Ice_Status Demo_Calculator_swap(Demo_CalculatorPtr self, const Demo_Pair *p, Dem
             (Ice_Short)((hw_word & CALCULATOR_SWAP_OUT0_RESULT_X_MASK) >> CALCULATOR_SWAP_OUT0_RESULT_X_LSB);
     result->y =
             (Ice_Short)((hw_word & CALCULATOR_SWAP_OUT0_RESULT_Y_MASK) >> CALCULATOR_SWAP_OUT0_RESULT_Y_LSB);
-    return ICE_OK;
+    return Hw_Core_answers(&hw_core->core) ? ICE_OK : ICE_TIMEOUT;
 }
 
 U32 Demo_Calculator_Core_poll(Demo_Calculator_Core *self, U32 nowMs) {

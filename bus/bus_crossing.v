@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+//
+// bus_crossing: a slot whose core has a clock of its own: accesses, interrupt and reset go across through hdl/cdc.
+//
+// An access takes four to five clocks of the core, and six of the chip. One that the core does not answer within TIMEOUT
+// clocks, because its clock stands still or it hangs, ends with an error. The core may still do it later; until it has
+// answered, no other access begins, each ends with an error, and the interrupt line is low.
+// core_valid_o falls by core_ready_i or the core's reset only. The handshake has no reset, so that neither side's can make
+// or lose a request. Constraints: those of cdc_bus, cdc_bit and cdc_reset, written by coremap for each such core.
+
+`default_nettype none
+
+module bus_crossing #(
+    parameter TIMEOUT = 250 // clocks, 1..255: with the answer, a bus master's patience
+) (
+    input  wire        clk_i,
+    input  wire        rst_i,
+    // register bus
+    input  wire        bus_valid_i,
+    input  wire        bus_write_i,
+    input  wire [3:0]  bus_addr_i,
+    input  wire [31:0] bus_wdata_i,
+    output wire        bus_ready_o,
+    output wire [31:0] bus_rdata_o,
+    output wire        bus_error_o,
+    output wire        irq_o,
+    // the core: its clock, and a slot's signals in it
+    input  wire        core_clk_i,
+    output wire        core_rst_o,
+    output wire        core_valid_o,
+    output wire        core_write_o,
+    output wire [3:0]  core_addr_o,
+    output wire [31:0] core_wdata_o,
+    input  wire        core_ready_i,
+    input  wire [31:0] core_rdata_i,
+    input  wire        core_error_i,
+    input  wire        core_irq_i
+);
+    // ---- clk_i
+    reg       owes;     // the core has not answered the last request
+    reg       asked;    // that request is the access under way, which waits for the answer
+    reg       answered; // a clock after the answer came: an interrupt that the access has ended is low by now
+    reg       deaf;     // the last access was given up
+    reg [7:0] patience;
+    wire      handed, irq, error;
+    wire [31:0] rdata;
+    wire      given_up = bus_valid_i && !answered && patience == 8'd0;
+    wire      ask      = bus_valid_i && !bus_ready_o && !owes && !asked && !rst_i;
+    initial   owes     = 1'b0;
+
+    assign bus_ready_o = answered || given_up;
+    assign bus_error_o = !answered || error;
+    assign bus_rdata_o = answered && !error ? rdata : 32'd0;
+    assign irq_o       = irq && !deaf;
+
+    always @(posedge clk_i) begin
+        owes     <= ask || (owes && !handed);
+        asked    <= ask || (asked && !answered && bus_valid_i && !given_up);
+        answered <= handed && asked && bus_valid_i && !given_up;
+        deaf     <= given_up || (deaf && !handed);
+        patience <= bus_valid_i && !bus_ready_o ? patience - 8'd1 : TIMEOUT[7:0];
+        if (rst_i) begin
+            asked    <= 1'b0;
+            answered <= 1'b0;
+            deaf     <= 1'b0;
+            patience <= TIMEOUT[7:0];
+        end
+    end
+
+`ifdef FORMAL
+`include "bus_crossing_proof.vh"
+`else
+    // ---- core_clk_i
+    reg        busy, ended, core_irq;
+    reg [32:0] answer;
+    wire       begins;
+    wire       ends = busy && (core_ready_i || core_rst_o);
+    initial {busy, ended, core_irq} = 3'b000;
+    assign core_valid_o = busy && !core_rst_o;
+    always @(posedge core_clk_i) begin
+        busy     <= begins || (busy && !ends);
+        ended    <= ends;       // with what the access did to the interrupt
+        core_irq <= core_irq_i; // no glitch of a LUT may cross
+        if (ends)
+            answer <= {core_error_i || core_rst_o, core_rdata_i};
+    end
+
+    wire [36:0] request_kept;
+    wire [3:0]  pending;
+    cdc_bus #(.WIDTH(37)) u_request (
+        .src_clk_i(clk_i), .src_valid_i(ask), .src_data_i({bus_write_i, bus_addr_i, bus_wdata_i}), .src_data_o(request_kept),
+        .dst_clk_i(core_clk_i), .dst_valid_o(begins), .dst_data_o({core_write_o, core_addr_o, core_wdata_o}),
+        .pending_sync_o(pending[0]), .pending_async_o(pending[1]));
+    cdc_pulse u_handed (
+        .src_clk_i(core_clk_i),
+        .src_valid_i(ended), .dst_clk_i(clk_i), .dst_valid_o(handed),
+        .pending_sync_o(pending[2]), .pending_async_o(pending[3]));
+    cdc_copy #(.WIDTH(33)) u_answer (.clk_i(clk_i), .bus_async_i(answer), .bus_sync_o({error, rdata}));
+    cdc_bit u_irq (.clk_i(clk_i), .bit_async_i(core_irq), .bit_sync_o(irq));
+    reg rst; // a flip-flop's output, as what resets without a clock must be
+    initial rst = 1'b1;
+    always @(posedge clk_i) rst <= rst_i;
+    cdc_reset u_rst (.clk_i(core_clk_i), .rst_async_i(rst), .rst_o(core_rst_o));
+    wire unused = &{1'b0, request_kept, pending, 1'b0};
+`endif
+`ifdef COVER_POINTS
+    clock_stands: cover property (@(posedge clk_i) given_up);
+    late_answer: cover property (@(posedge clk_i) handed && !asked);
+    waits_for_the_last: cover property (@(posedge clk_i) bus_valid_i && owes && !asked);
+`endif
+endmodule

@@ -5,6 +5,11 @@
 set -eu
 build=$1
 shift
+mkdir -p "$build" 2>/dev/null || true
+[ -w "$build" ] || {
+    echo "you may not write in $build, where the build goes: take a clone of your own, or BUILD=a folder that is yours" >&2
+    exit 1
+}
 cache=$build/CMakeCache.txt
 if [ -f "$cache" ]; then
     home=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$cache")

@@ -14,10 +14,17 @@ make -n run CORES='ascon fir' IMAGE='a picture=1.jpg' >/dev/null
 if said=$(make help CORE=ascon 2>&1); then echo "CORE=ascon is accepted" >&2 && exit 1; fi
 echo "$said" | grep -q 'there is no variable CORE;' || { echo "$said" >&2 && exit 1; }
 
-# The compiler's cache serves another clone.
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 trap 'exit 130' INT TERM HUP
+# Where one may not write, what to do is said.
+mkdir "$work/theirs" && cp cmake/configure.sh "$work" && chmod 755 "$work" && chmod 555 "$work/theirs"
+other=''
+[ "$(id -u)" != 0 ] || other='setpriv --reuid=65534 --regid=65534 --clear-groups'
+if said=$($other "$work/configure.sh" "$work/theirs" 2>&1); then echo "a build where one may not write" >&2 && exit 1; fi
+case $said in *"you may not write in $work/theirs"*BUILD=*) ;; *) echo "$said" >&2 && exit 1 ;; esac
+
+# The compiler's cache serves another clone.
 export CCACHE_DIR="$work/cache"
 for clone in a b; do
     mkdir -p "$work/$clone/build"

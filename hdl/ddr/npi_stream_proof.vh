@@ -14,6 +14,8 @@
     // The core takes what is offered, starts when idle, flushes without a word.
     reg [WORD_BITS-1:0] f_left; // words that it may still take
     reg [2:0] f_begun;          // words it gave since the burst began
+    reg [ADDR_BITS-1:6] f_read, f_write; // where the next bursts go, once there was a start
+    reg       f_reads, f_writes;
     initial assume (rst_i);
     always @* begin
         assume (!npi_addr_ack_i || npi_addr_req_o);
@@ -36,6 +38,10 @@
             f_begun <= f_begun + 3'd1;
         else if (padding && full)
             f_begun <= 3'd0;
+        f_read   <= read_start_i ? read_base_i : f_read + {{(ADDR_BITS - 7){1'b0}}, npi_addr_ack_i && npi_rnw_o};
+        f_write  <= write_start_i ? write_base_i : f_write + {{(ADDR_BITS - 7){1'b0}}, npi_addr_ack_i && !npi_rnw_o};
+        f_reads  <= !rst_i && (f_reads || read_start_i);
+        f_writes <= !rst_i && (f_writes || write_start_i);
         if (rst_i) begin
             pushed   <= 6'd0;
             owed     <= 7'd0;
@@ -65,6 +71,9 @@
         assert (pushed <= 6'd32);
         assert (!padding || filled != 3'd0);
         assert (!npi_addr_req_o || npi_rnw_o || bursts != 3'd0);
+        // Bursts follow each other from the base.
+        assert (!f_reads || read_addr == f_read);
+        assert (!f_writes || write_addr == f_write);
         // A word that is not the core's writes nothing.
         assert (!npi_wr_push_o || npi_wr_be_o == 8'd0 || (write_valid_i && write_ready_o));
         cover (read_take_i && f_left == {{(WORD_BITS - 1){1'b0}}, 1'b1} && npi_addr_req_o && !npi_rnw_o);
@@ -76,4 +85,9 @@
     always @(posedge clk_i) if (past && !rst_i && !$past(rst_i) && $past(npi_addr_req_o && !npi_addr_ack_i)) begin
         assert (npi_addr_req_o && $stable(npi_rnw_o) && $stable(npi_size_o));
         assert ($stable(npi_addr_o));
+    end
+    // Idle is told a clock later, not more.
+    always @(posedge clk_i) if (past && !rst_i && !$past(rst_i)) begin
+        assert (write_idle_o || $past(filled != 3'd0 || bursts != 3'd0 || npi_wr_push_o));
+        assert (read_idle_o || $past(to_give != {WORD_BITS{1'b0}} || promised != 6'd0 || read_start_i || (npi_addr_req_o && npi_rnw_o)));
     end

@@ -7,9 +7,6 @@
 #define DWT_CYCCNT REG(0xE0001004UL)
 #define PENDSVSET (1UL << 28)
 
-void Case_pend0(void) {
-    Case_pend(0);
-}
 static void pend1(void) {
     Case_pend(1);
 }

@@ -11,11 +11,11 @@
 
 typedef void (*Action)(void);
 
-extern volatile U32 selected;  /* the case; written by the test */
-extern volatile U32 boots;     /* survives a reset */
-extern U32 value[8];           /* what a case found out; [7]: EXC_RETURN of the last exception */
-extern Action Case_action[20]; /* of exceptions, called by their handlers */
-extern U32* Case_frame;        /* the frame of the exception under way */
+extern volatile Action selected; /* the case; written by the test */
+extern volatile U32 boots;       /* survives a reset */
+extern U32 value[8];             /* what a case found out; [7]: EXC_RETURN of the last exception */
+extern Action Case_action[20];   /* of exceptions, called by their handlers */
+extern U32* Case_frame;          /* the frame of the exception under way */
 
 void Case_say(char c);
 void Case_priority(U32 irq, U32 value8); /* and enables it */
@@ -50,7 +50,6 @@ void Case_process(void);
 void Case_alignment(void);
 void Case_cycles(void);
 void Case_resetRequest(void);
-void Case_pend0(void);
 void Case_work(void);
 U32 Work_asm(U32 rounds);
 

@@ -171,7 +171,7 @@ JS
     has 'slack [1-9][0-9]* with [0-9.]* to [0-9.]* ns left; clocks clk_i 11 12 [0-9]* project/hdl/blocks/pair.v:8;'
     has 'resets rst_i synchronous 5 project/hdl/blocks/pair.v:9; fanouts u_counter.count_o.4. 9 FDRE project/hdl/blocks/counter.v:13;'
     has 'step project/hdl/blocks/[a-z]*.v:1[23]; place project/hdl/blocks/store.v:12; commit this run; paper 50 '
-    "$source/tests/regress/test/look.sh" "$page" || fail "the page"
+    "$source/tests/regress/test/look.sh" "$page" utilisation || fail "the page"
     has 'paper 50 (0.3 %); points 3; choices 1;'
     grep -q '"peer": 100' "$work/out/report.json" || fail "report.json has no figure of the paper"
     grep -q '^| whole |' "$work/out/report.md" || fail "report.md has no table of designs"

@@ -351,7 +351,7 @@ END
     has 'value 1 is not 7' dom.html
     has 'href="failures/test_b.Bad-1.log"' dom.html
     hasNot 'src="http\|href="http' build/regress/report.html # offline
-    "$source/tests/regress/test/look.sh" build/regress/report.html || fail "the page"
+    "$source/tests/regress/test/look.sh" build/regress/report.html regression || fail "the page"
     ;;
 flight) # a flight that fails is flown again around the last event of a core, by a simulator that writes this waveform
     mkdir -p build/trace/testbench/sim fly testbench/common

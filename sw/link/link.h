@@ -57,7 +57,7 @@
 #endif
 #endif
 #ifndef LINK_WINDOW
-#define LINK_WINDOW 64U /* fragments in flight, a power of two, 2..64 */
+#define LINK_WINDOW 64U /* fragments in flight, a power of two, 8..64 */
 #endif
 #ifndef LINK_SEND_BYTES
 #define LINK_SEND_BYTES 16384U /* queue of outgoing messages, of all channels; a power of two */

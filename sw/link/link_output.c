@@ -52,7 +52,7 @@ int link_flush(Link* link) {
     if (link->packed <= link->longest)
         link->slack -= SHORT_MARGIN;
     link->early = 0;
-    if (link->heard) {
+    if (link->heard && link->sender.fastest > PACKET_US) { /* else a wire, which needs no turns */
         U32 wait = timeOf(link, link->heard) * HEARD_QUARTERS >> 2;
         link->early = (timeOf(link, link->packed) + wait) / 2U;
         link->paceUntil += wait;

@@ -40,6 +40,9 @@
 #define LINK_ACK_ROOM(link) \
     ((link)->overhead + 1U + LINK_BITMAP) /* bytes of the longest acknowledgement */
 
+/* Fragments that the peer takes, before it has said how many. */
+#define LINK_LEAST_WINDOW 8U
+
 #define LINK_SLOT(seq) ((seq) & (LINK_WINDOW - 1U))
 
 #define LINK_HEAD_AT 18U    /* where a head begins in a request: behind header and request id */
@@ -54,7 +57,7 @@
 
 /* Fails to compile where a size of link.h is out of range. */
 typedef char
-    Link_Check[LINK_WINDOW >= 2U && LINK_WINDOW <= 64U && !(LINK_WINDOW & (LINK_WINDOW - 1U)) &&
+    Link_Check[LINK_WINDOW >= 8U && LINK_WINDOW <= 64U && !(LINK_WINDOW & (LINK_WINDOW - 1U)) &&
                        !(LINK_SEND_BYTES & (LINK_SEND_BYTES - 1U)) && LINK_SEND_BYTES <= 32768U &&
                        LINK_SEND_BYTES > LINK_MAX_MESSAGE + LINK_RESERVE&& LINK_MAX_MESSAGE <=
                            32000U &&
@@ -126,7 +129,7 @@ typedef struct Link_Fragment {
 
 typedef struct Link_Sender {
     U32 base, next; /* numbers, of which SEQ is the lowest byte: oldest unacknowledged, next new */
-    U8 credit, fullCredit; /* fragments that the peer takes: now, and the most it gave */
+    U8 credit, fullCredit; /* fragments that may be in flight: now, and at most so far */
     U8 hasWork;            /* there may be something to send */
     U8 isLossy;            /* the newest acknowledgement had gaps */
     U8 isLate;             /* the timer has expired since the last answer */
@@ -137,6 +140,7 @@ typedef struct Link_Sender {
     U16 cutBytes;          /* of which so many bytes are cut already */
     U32 cutAt;             /* in the queue's bytes */
     U32 rto, srtt, rttvar; /* microseconds, as RFC 6298 names them */
+    U32 fastest;           /* round trip of the session */
     U32 timerAt;           /* when the retransmission timer expires */
     U32 order;             /* transmissions so far */
 } Link_Sender;

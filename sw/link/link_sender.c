@@ -21,10 +21,10 @@ void link_resetSender(Link* link) {
         link_endEntry(link, link_entryAt(link, 0), LINK_UNKNOWN);
     sender->cutAt = link->queue.tail = link->queue.head;
     sender->base = sender->next = 0;
-    sender->credit = sender->fullCredit = LINK_WINDOW;
+    sender->credit = sender->fullCredit = LINK_LEAST_WINDOW;
     sender->cutEntry = sender->isAhead = sender->hasWork = sender->hasSample = 0;
     sender->cutBytes = 0;
-    sender->rto = LINK_RTO_FIRST;
+    sender->fastest = sender->rto = LINK_RTO_FIRST;
 }
 
 /* Finds a message of one fragment, an opening or a closing that may overtake the long message whose
@@ -191,6 +191,8 @@ static void sample(Link* link, U32 roundTrip) {
         sender->rttvar += error / 4U - sender->rttvar / 4U;
         sender->srtt += roundTrip / 8U - sender->srtt / 8U;
     }
+    if (roundTrip < sender->fastest)
+        sender->fastest = roundTrip;
     link->statistics.roundTripUs = sender->srtt;
 }
 
@@ -256,9 +258,9 @@ void link_onAck(Link* link, U32 cumulative, U32 credit, const U8* bitmap, U32 si
     U32 advance = (U8)(cumulative - sender->base);
     if (advance > IN_FLIGHT(sender))
         return; /* an old one that came late */
-    sender->credit = (U8)credit;
-    if (sender->fullCredit < credit)
-        sender->fullCredit = (U8)credit;
+    sender->credit = (U8)(credit < LINK_WINDOW ? credit : LINK_WINDOW);
+    if (sender->fullCredit < sender->credit)
+        sender->fullCredit = sender->credit;
     sender->hasWork = 1;
     sender->isLossy = size != 0;
     markAcked(link, advance, bitmap, size);

@@ -280,13 +280,13 @@ void profileCalls(Flight& f, int calls) {
 }
 
 void measureStream(Flight& f, const std::string& what) {
-    // Floods the vehicle with one-way requests of 1 KB to nobody: link and IceC's dispatcher work,
-    // no servant, no reply.
+    // Floods the vehicle, a window of the link and more in the queue, with one-way requests of 1 KB
+    // to nobody: link and IceC's dispatcher work, no servant, no reply.
     f.ground.replies.clear();
     uint64_t bytes = 0;
     const std::vector<uint8_t> load(1000, 0x55);
     auto feed = [&] {
-        while (f.ground.backlog() < 4000)
+        while (f.ground.backlog() < 12000)
             f.ground.call(0, "nobody", "listen", 0, load);
         return false;
     };

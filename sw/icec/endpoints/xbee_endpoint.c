@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#define NOBODY 255
 #define HEAD 8
 #define BODY 7
 /* Tries to send what the link has no room for, 20 ms apart: for 30 s, in which a link that makes no
@@ -54,6 +55,15 @@ static int takeBack(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     return 1;
 }
 
+/* Notes that a connection is over: nothing more may be sent on its channel, which may soon be
+ * another one's. */
+static void end(XBeeATEndpoint* self, int channel) {
+    if (channel == XBEE_OWN_CHANNEL)
+        self->ownOpen = 0;
+    if (ICEC_FULL && channel == self->offered)
+        self->offered = NOBODY;
+}
+
 int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 size) {
     XBeeATEndpoint* self = context;
     /* Opening and closing come before it in order, so nothing else may be waiting. */
@@ -73,8 +83,8 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
     XBeeATEndpoint* self = context;
     if (channel == XBEE_OWN_CHANNEL && isOpen)
         return;
-    if (channel == XBEE_OWN_CHANNEL)
-        self->ownOpen = 0;
+    if (!isOpen)
+        end(self, channel);
     /* An opening that nobody has seen is taken back by its closing: so at most a closing and then
      * an opening wait for a channel, however often the ground starts again. */
     if (isOpen || !takeBack(self, ICE_EVENT_OPENED, channel))
@@ -123,38 +133,48 @@ static Link_Status openOwn(XBeeATEndpoint* self) {
         status = Link_openChannel(self->link, XBEE_OWN_CHANNEL);
         if (status == LINK_OK) {
             self->ownOpen = 1; /* and the end of the last connection is not the end of this one */
-            (void)takeBack(self, ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL);
+            self->events &= ~EVENT(ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL);
         }
     }
     return status;
 }
 
-/* Ends a connection whose message finds no room. The link tells the peer as soon as it can. */
-static void giveUp(XBeeATEndpoint* self, int connection) {
-    lock(self);
-    if (Link_closeChannel(self->link, connection) == LINK_OK)
-        XBeeATEndpoint_onChannel(self, connection, 0);
-    unlock(self);
+/* Returns whether the connection of the message that is offered has ended, seen by the receiver or
+ * not yet: its channel may be another one's by now. */
+static int hasEnded(const XBeeATEndpoint* self, int connection) {
+    return (self->events & EVENT(ICE_EVENT_CLOSED, connection)) ||
+           (ICEC_FULL && self->offered != connection);
 }
 
-/* Sends, or opens the own channel (no message); while the link has no room, again and again. */
+/* Sends, or opens the own channel (no message); while the link has no room, again and again, and in
+ * the end the connection ends: the link tells the peer as soon as it can. */
 static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* message,
                         Ice_Int size) {
     Link_Status status;
-    int tries = 0;
+    int tries = RETRIES;
+    lock(self);
+    if (ICEC_FULL && message)
+        self->offered = (Ice_Byte)connection; /* one at a time: under ICE_LOCK_SEND */
     for (;;) {
-        lock(self);
-        status = message ? Link_send(self->link, connection, message, (U32)size, 0) : openOwn(self);
+        if (!message)
+            status = openOwn(self);
+        else if (hasEnded(self, connection))
+            status = LINK_CLOSED;
+        else
+            status = Link_send(self->link, connection, message, (U32)size, 0);
+        if (ICEC_FULL && status == LINK_FULL && message && !tries) {
+            (void)Link_closeChannel(self->link, connection);
+            XBeeATEndpoint_onChannel(self, connection, 0);
+        }
         unlock(self);
         kick(self);
-        if (status != LINK_FULL || ++tries > RETRIES)
+        if (status != LINK_FULL || !tries--)
             break;
         (void)self->port->wait(self->context, 20);
+        lock(self);
     }
-    if (tries)
+    if (tries != RETRIES)
         signal(self); /* this may have taken what the receiver waits for */
-    if (ICEC_FULL && status == LINK_FULL && message)
-        giveUp(self, connection);
     return status == LINK_OK ? ICE_OK : status == LINK_TOO_LONG ? ICE_LIMIT : ICE_CONNECTION_LOST;
 }
 
@@ -176,8 +196,7 @@ static void closeChannel(void* context, int connection) {
     /* The peer may have closed already; the channel may be a new one by now. */
     if (!takeBack(self, ICE_EVENT_CLOSED, connection)) {
         (void)Link_closeChannel(self->link, connection);
-        if (connection == XBEE_OWN_CHANNEL)
-            self->ownOpen = 0;
+        end(self, connection);
     }
     unlock(self);
     kick(self);

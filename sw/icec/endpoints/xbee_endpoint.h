@@ -37,7 +37,8 @@ typedef struct XBeeATEndpoint {
     Ice_Int size;     /* of the message that waits */
     Ice_Byte* buffer; /* of the task that receives; 0: nobody does, the link keeps the message */
     Ice_Byte ownOpen;
-    Ice_Byte held; /* the link keeps a message that was not taken */
+    Ice_Byte held;    /* the link keeps a message that was not taken */
+    Ice_Byte offered; /* connection of the message that is being sent, unless it has ended */
 } XBeeATEndpoint;
 
 /* Makes `name` (always "xbee-at") known to the communicator. */

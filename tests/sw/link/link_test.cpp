@@ -380,6 +380,29 @@ double goodput(double loss, uint64_t seed) {
     return 300.0 * 950 / seconds / 10000;
 }
 
+// Answers that come sooner than modems can bring them tell of a wire, which needs no turns.
+TEST(LinkLayer, OverAWireACallWaitsForNoTurn) {
+    Pair pair(testSeed());
+    pair.setWeather({0, 0, 0, 0});
+    ASSERT_TRUE(pair.connect());
+    Link_openChannel(pair.a.link(), 0);
+    pair.run(100'000);
+    const Side::Bytes call(2, 7);
+    auto take = [&](unsigned calls) { // one behind the other, each answered; returns us
+        const uint64_t start = pair.nowUs;
+        for (unsigned i = 0; i < calls; ++i)
+            for (auto [from, to] : {std::pair(&pair.a, &pair.b), std::pair(&pair.b, &pair.a)}) {
+                const size_t arrived = to->received.size();
+                Link_send(from->link(), 0, call.data(), 2, static_cast<U32>(pair.nowUs));
+                EXPECT_TRUE(
+                    pair.runUntil([&] { return to->received.size() > arrived; }, 1'000'000));
+            }
+        return pair.nowUs - start;
+    };
+    take(20); // and both know the way
+    EXPECT_LE(take(20), 20 * 12'000u);
+}
+
 TEST(LinkLayer, GoodputMeetsItsTargets) {
     const double targets[][2] = {{0, 0.83}, {0.01, 0.81}, {0.1, 0.68}, {0.3, 0.42}};
     for (auto& [loss, target] : targets) {

@@ -45,6 +45,27 @@ TEST_P(Options, MessagesGoBothWaysThroughLoss) {
     EXPECT_TRUE(a_.received == sent[1]) << "seed " << testSeed();
 }
 
+// What the peer's window has no room for would be sent twice.
+TEST_P(Options, OnlyWhatIsLostIsSentAgain) {
+    ASSERT_TRUE(connect());
+    a_.open(1);
+    run(200'000);
+    const Bytes call(1, 7), picture(1024, 7);
+    for (U32 tag = 0; tag < 6; ++tag) {
+        ASSERT_EQ(a_.send(1, call, tag), LINK_OK); // its acknowledgement rides on the answer
+        ASSERT_TRUE(until([&] { return b_.received.size() == 2 * tag + 1; }, 1'000'000));
+        b_.send(1, call, tag);
+        ASSERT_TRUE(until([&] { return a_.outcomes.count(tag) != 0; }, 1'000'000));
+        ASSERT_EQ(a_.send(1, picture, 100 + tag), LINK_OK);
+        setWeather(tag % 2, 0, 0);
+        run(5'000);
+        setWeather(0, 0, 0);
+        ASSERT_TRUE(until([&] { return a_.outcomes.count(100 + tag) != 0; }, 5'000'000));
+    }
+    EXPECT_EQ(a_.lost, 3u);
+    EXPECT_EQ(a_.statistics(a_.link())->fragmentsResent, a_.lost);
+}
+
 TEST_P(Options, AMessageThatIsTooLongForThePeerIsReported) {
     U32 most = b_.maxMessage();
     if (a_.maxMessage() <= most)

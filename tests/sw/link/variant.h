@@ -107,6 +107,7 @@ public:
     double loss = 0, duplication = 0, corruption = 0;
     uint64_t now = 0, free = 0;
     uint64_t sent = 0; // bytes
+    unsigned lost = 0; // packets
 
 private:
     template <class F> void load(F& f, const char* name) {
@@ -120,8 +121,10 @@ private:
             return 1;
         free = std::max(free, now) + bytes * 90;
         sent += bytes;
-        if (random_.chance(loss))
+        if (random_.chance(loss)) {
+            ++lost;
             return 0;
+        }
         Bytes packet(frame, frame + bytes);
         if (random_.chance(corruption))
             packet[random_.below(bytes)] ^= static_cast<uint8_t>(1 + random_.below(255));

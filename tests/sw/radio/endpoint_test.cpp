@@ -4,8 +4,10 @@
 // looks.
 
 #include "link_pair.h"
+#include <functional>
 #include <gtest/gtest.h>
 #include <map>
+#include <utility>
 
 extern "C" {
 #include "xbee_endpoint.h"
@@ -21,6 +23,8 @@ protected:
             [](void*) {},
             [](void*) {},
             [](void* c, Ice_Int ms) {
+                if (ms && self(c).atWait_)
+                    std::exchange(self(c).atWait_, nullptr)();
                 self(c).run(static_cast<U32>(ms));
                 return 0;
             },
@@ -60,6 +64,7 @@ protected:
     Ice_Communicator ic_;
     XBeeATEndpoint endpoint_;
     Ice_Byte buffer_[ICE_MESSAGE_MAX];
+    std::function<void()> atWait_; // happens when somebody waits next
 };
 
 using Kinds = std::vector<std::pair<Ice_EventKind, int>>;
@@ -138,6 +143,38 @@ TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSid
     run(1000);
     EXPECT_EQ(pair_.a.events.back(), "open 3");
     EXPECT_EQ(events(), Kinds{});
+}
+
+// A message that waits for room is for the program that had the channel when it came.
+TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnItsChannel) {
+    ASSERT_TRUE(pair_.connect());
+    const Side::Bytes answer(7930, 7);
+    auto send = [&] {
+        return ops().send(ic_.endpointContext, 1, answer.data(),
+                          static_cast<Ice_Int>(answer.size()));
+    };
+    auto again = [&] { // another program takes the ground's channel
+        for (int isOpen : {0, 1})
+            XBeeATEndpoint_onChannel(&endpoint_, 1, isOpen);
+    };
+    Link_openChannel(pair_.a.link(), 1);
+    run(500);
+    XBeeATEndpoint_onChannel(&endpoint_, 1, 1);
+    EXPECT_EQ(events().size(), 1u);
+    pair_.a.refuse = true; // the queue fills
+    while (Link_send(pair_.b.link(), 1, answer.data(), static_cast<U32>(answer.size()), 0) ==
+           LINK_OK) {
+    }
+    atWait_ = [&] { // and while the next one waits, the other task learns the end
+        again();
+        EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 1}, {ICE_EVENT_OPENED, 1}}));
+        pair_.a.refuse = false;
+    };
+    EXPECT_EQ(send(), ICE_CONNECTION_LOST);
+    run(10000);
+    EXPECT_EQ(send(), ICE_OK);
+    again(); // and nobody has looked yet
+    EXPECT_EQ(send(), ICE_CONNECTION_LOST);
 }
 
 // Options are written as the ground's plugin writes them (test_radio_ice,

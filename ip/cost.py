@@ -39,7 +39,8 @@ def main(words):
     if len(words) < 3:
         sys.exit("usage: cost.py BASELINE.json MAP.regs.json CORE...")
     with open(words[0]) as f:
-        signals = json.load(f)["designs"]["soc"]["signals"]
+        chip = json.load(f)["designs"]["soc"]
+    signals = chip["signals"]
     with open(words[1]) as f:
         constants = {c["name"]: c["value"] for c in json.load(f)["constants"]}
     for core in words[2:]:
@@ -49,6 +50,7 @@ def main(words):
         print(f"{core} in the chip, by {words[0]}:")
         for what, lut, ff in parts_of(core, signals, constants):
             print(f"  {what:26} {lut:6.0f} LUT {ff:6.0f} FF")
+    print(f"the chip: {chip['lut']} LUT, {chip['ff']} FF, {chip['ram']:g} block RAMs")
 
 
 main(sys.argv[1:])

@@ -47,6 +47,8 @@ counts)
     yosys -q -p "read_verilog $project/hdl/blocks/*.v; synth_xilinx -family xc6s -flatten -noiopad -noclkbuf -top pair; tee -o $work/stat stat"
     luts=$(awk '/^ +(LUT[1-6]|INV) /{n += $2} /^ +[0-9]+ +.* (LUT[1-6]|INV)$/{n += $1} END {print n + 4}' "$work/stat")
     grep -q "\"lut\":$luts," "$work"/out/cache/whole.xc6s.*.figures || fail "Yosys counts $luts LUTs: $(cat "$work"/out/cache/whole.xc6s.*.figures)"
+    run --design whole --costs out/costs.json || fail "$(cat "$work/log")"
+    grep -q '"u_counter": {"count_o":\[0,5\]' out/costs.json || fail "the costs are not written: $(cat out/costs.json)"
     rm -rf "$kept"
     cp -r out/cache "$kept"
     ;;

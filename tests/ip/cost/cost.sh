@@ -5,7 +5,7 @@ set -eu
 cost=$1 work=$2
 mkdir -p "$work"
 cat >"$work/baseline.json" <<'END'
-{"designs": {"soc": {"signals": {
+{"designs": {"soc": {"lut": 1700, "ff": 1600, "ram": 14.5, "signals": {
   "u_bus_decoder": {"rdata": [40, 0], "selected": [0, 4]},
   "u_low": {"a": [10, 1], "b": [5, 2]}, "u_low.u_wrapper": {"c": [3, 30]}, "u_low.u_wrapper.u_registers": {"d": [1, 2]},
   "u_low.u_filter": {"e": [7, 8]}, "u_lower": {"f": [1000, 1000]},
@@ -33,5 +33,6 @@ plain in the chip, by baseline.json:
   decoder, one of 4 slots        10 LUT      1 FF
   together                       23 LUT     15 FF
 other in the chip: not in baseline.json: a line in ip/cores.list, then make ip-synth IP=other CHIP=1
+the chip: 1700 LUT, 1600 FF, 14.5 block RAMs
 END
 diff "$work/wanted" "$work/out"

@@ -44,7 +44,7 @@ def main(words):
     with open(words[1]) as f:
         constants = {c["name"]: c["value"] for c in json.load(f)["constants"]}
     for core in words[2:]:
-        if "u_" + core not in signals or "SLOT_" + core.upper() not in constants:
+        if not any(re.fullmatch(rf"u_{core}(\..*)?", path) for path in signals) or "SLOT_" + core.upper() not in constants:
             print(f"{core} in the chip: not in {words[0]}: a line in ip/cores.list, then make ip-synth IP={core} CHIP=1")
             continue
         print(f"{core} in the chip, by {words[0]}:")

@@ -9,7 +9,7 @@ cat >"$work/baseline.json" <<'END'
   "u_bus_decoder": {"rdata": [40, 0], "selected": [0, 4]},
   "u_low": {"a": [10, 1], "b": [5, 2]}, "u_low.u_wrapper": {"c": [3, 30]}, "u_low.u_wrapper.u_registers": {"d": [1, 2]},
   "u_low.u_filter": {"e": [7, 8]}, "u_lower": {"f": [1000, 1000]},
-  "u_plain": {"g": [9, 9]}, "u_plain.u_bus.u_window": {"h": [4, 5]},
+  "u_plain.u_core": {"g": [9, 9]}, "u_plain.u_bus.u_window": {"h": [4, 5]},
   "u_memory.u_arbiter": {"i": [20, 6]}, "u_memory.u_backend": {"j": [10, 0]},
   "u_memory.u_arbiter.g_port[1].u_write": {"k": [5, 6]}, "u_memory.u_arbiter.g_port[10].u_write": {"l": [500, 500]}}}}}
 END

@@ -8,6 +8,11 @@ cd "$(dirname "$(readlink -f "$0")")/../.."
 out=docs/pictures
 profile=$(mktemp -d)
 trap 'rm -rf "$profile"' EXIT
+small() { # file: its colours, no more of them than one sees
+    /usr/bin/python3 -c 'import sys; from PIL import Image
+Image.open(sys.argv[1]).convert("RGB").quantize(64, dither=Image.Dither.NONE).save(sys.argv[1], optimize=True)' "$1"
+    echo "$1"
+}
 shot() { # picture width height address; the page has three seconds of its own time
     HOME=$profile chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --hide-scrollbars \
         --user-data-dir="$profile/chromium" --virtual-time-budget=3000 --window-size="$2,$3" --screenshot="$PWD/$out/$1.png" "$4" \
@@ -16,7 +21,7 @@ shot() { # picture width height address; the page has three seconds of its own t
         echo "take: no picture of $4" >&2
         exit 1
     }
-    echo "$out/$1.png"
+    small "$out/$1.png"
 }
 page() { # file command
     [ -s "$1" ] || {
@@ -33,16 +38,16 @@ for picture in "$@"; do
     mission)
         make run SIZE=640x480 OUT="$profile/run" >"$profile/log" 2>&1 || { cat "$profile/log" >&2 && exit 1; }
         cp "$profile/run/after.png" $out/mission.png
-        echo $out/mission.png
+        small $out/mission.png
         ;;
     live) # once the mission has flown; its page stays until it is stopped
-        setsid make run LIVE=1 OUT="$profile/live" >"$profile/live.log" 2>&1 &
+        setsid make run LIVE=1 CPU=m3 OUT="$profile/live" >"$profile/live.log" 2>&1 &
         group=$!
         until grep -q 'stays until' "$profile/live.log"; do
             kill -0 $group 2>/dev/null || { cat "$profile/live.log" >&2 && exit 1; }
             sleep 1
         done
-        shot live 1280 1100 "$(sed -n 's/^The mission as it runs: //p' "$profile/live.log")"
+        shot live 1280 1300 "$(sed -n 's/^The mission as it runs: //p' "$profile/live.log")"
         kill -- -$group
         ;;
     *)

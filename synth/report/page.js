@@ -249,7 +249,9 @@ function showInside(focus) {
     .map(([n, c]) => [n, c[0], c[2] || "", c[1], place((path ? path + "." : "") + n)]));
   const box = byId("paths");
   box.replaceChildren();
-  for (const p of picked.figures.timing.paths) {
+  const paths = picked.figures.timing.paths.filter(p => !path || [p.from, p.to].some(end => end.startsWith(path + ".")));
+  if (!paths.length) box.append(element("p", `None of the ${picked.figures.timing.paths.length} longest begins or ends in ${path}.`, "soft"));
+  for (const p of paths) {
     const d = element("details");
     d.append(element("summary", `slack ${(1000 / data.chip.mhz - p.ns * data.slowGrade).toFixed(2)}: ${p.ns.toFixed(2)} ns (-3), ${(p.ns * data.slowGrade).toFixed(2)} (-2), ${p.levels} levels: ${p.from} to ${p.to} ${p.pin}`));
     const t = element("table");

@@ -21,13 +21,27 @@ namespace {
 
 constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
+// A corner. With synchronisers that are late (tests cdc.*) the address comes no later than NOE, and
+// NWE's way into the chip is as long at each edge: their lateness, a whole clock, stands for all
+// that the two may be late (docs/fsmc.md).
+FsmcCorner cornerOf(unsigned index) {
+    FsmcCorner corner = fsmcCorners[index];
+    if (std::getenv("CDC_SEED")) {
+        corner.address = {0, 0};
+        corner.padIn.most = corner.padIn.least;
+        corner.clockIn.least = corner.clockIn.most;
+    }
+    return corner;
+}
+
 // Runs each case in a bench of its own, with its name in every message.
 template <class Case> void inEveryCorner(double stall, Case&& run) {
     for (unsigned corner = 0; corner < fsmcCornerCount; ++corner)
         for (unsigned hclk : {60u, 100u, 120u})
             for (bool looksTwice : {false, true}) {
-                SCOPED_TRACE(std::string(fsmcCorners[corner].name) + ", HCLK " +
-                             std::to_string(hclk) + " MHz, looks " +
+                const FsmcCorner delays = cornerOf(corner);
+                SCOPED_TRACE(std::string(delays.name) + ", HCLK " + std::to_string(hclk) +
+                             " MHz, looks " +
                              (looksTwice ? "twice, pauses between writes" : "once") +
                              ", SEED=" + std::to_string(testSeed()));
                 BridgeBench<VFsmcBridge> b(testSeed() + hclk, stall, hclk, 100);
@@ -35,7 +49,7 @@ template <class Case> void inEveryCorner(double stall, Case&& run) {
                 b.slave.clearWord =
                     MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT; // as the system slot does it
                 b.lateMask = SYSTEM_EVENT_LATE_MASK;
-                b.delay(fsmcCorners[corner], testSeed() + corner, looksTwice);
+                b.delay(delays, testSeed() + corner, looksTwice);
                 b.master.pauseWrites(looksTwice);
                 run(b, hclk);
                 if (testing::Test::HasFailure())

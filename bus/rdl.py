@@ -6,7 +6,7 @@
 
 Reads a flat subset: addrmap, reg and field, named or not, defaults, addresses, resets; enums and properties of others are passed over. Register n
 of an addrmap gets word FIRST + n, behind the three words that every slot has; one that begins with ID, EVENT and MASK, as
-those of icesoc.rdl, has them already. What has no words of its own (regfile, mem, arrays, parameters) is an error.
+those of icesoc.rdl, has them already; <SLOT>_PAGES there is what the slot has behind its PAGE. What has no words of its own (regfile, mem, arrays, parameters) is an error.
 """
 import argparse
 import json
@@ -235,6 +235,11 @@ def main():
         maps = [(n, c) for n, _, _, _, _, c in root.children if c.kind == "addrmap"]
         inner = [(n, c) for _, top in maps for n, _, _, _, _, c in top.children if c.kind == "addrmap"]
         blocks = [block_of(n, c, args.first) for n, c in inner or maps]
+        pages = {n[:-6]: c for n, c in maps if n.endswith("_PAGES")} if inner else {}
+        for (name, _), block in zip(inner, blocks):
+            for reg_name, _, _, _, address, reg in pages[name].children if name in pages else []:
+                register, _ = register_of(reg_name, reg, 8 + address // 4 % 8)
+                block["registers"].append(dict(register, page=address // 32 * 32))
         if not blocks:
             raise Wrong("1: error: there is no addrmap in it")
     except (Wrong, OSError, UnicodeDecodeError) as e:

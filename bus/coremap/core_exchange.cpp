@@ -4,6 +4,7 @@
 // (IEEE 1685-2014).
 
 #include "core_list.h"
+#include <algorithm>
 #include <fmt/format.h>
 
 using nlohmann::json;
@@ -115,9 +116,18 @@ json fieldsOf(const json& r) {
     return fields;
 }
 
-// Words behind an adapter share their addresses: neither language can say by which PAGE.
+// Words behind an adapter share their addresses in the slot, so they have an address map of their
+// own, <SLOT>_PAGES: by their byte addresses in the core.
 bool isPaged(const json& r) {
     return r.value("page", -1) >= 0;
+}
+bool hasPages(const Slot& slot) {
+    const json registers = registersOf(slot.description);
+    return std::any_of(registers.begin(), registers.end(), isPaged);
+}
+unsigned addressOf(const json& r) {
+    const unsigned word = r.at("word");
+    return isPaged(r) ? r.at("page").get<unsigned>() + 4 * (word - 8) : 4 * word;
 }
 
 std::string quoted(const std::string& text) {
@@ -141,8 +151,8 @@ std::string rdlRegister(const json& r) {
                          quoted(f.at("doc")), f.at("name").get<std::string>(), lsb + width - 1, lsb,
                          reset.empty() ? "" : " = " + reset);
     }
-    return s + fmt::format("        }} {} @ 0x{:X};\n", r.at("name").get<std::string>(),
-                           4 * r.at("word").get<unsigned>());
+    return s +
+           fmt::format("        }} {} @ 0x{:X};\n", r.at("name").get<std::string>(), addressOf(r));
 }
 
 std::string ipxact(const std::string& tag, const std::string& text) {
@@ -151,11 +161,10 @@ std::string ipxact(const std::string& tag, const std::string& text) {
 
 std::string ipxactRegister(const json& r) {
     std::string access = r.at("access");
-    std::string s =
-        "        <ipxact:register>" + ipxact("name", r.at("name")) +
-        ipxact("description", escaped(r.at("doc"))) +
-        ipxact("addressOffset", fmt::format("'h{:x}", 4 * r.at("word").get<unsigned>())) +
-        ipxact("size", "32") + "\n";
+    std::string s = "        <ipxact:register>" + ipxact("name", r.at("name")) +
+                    ipxact("description", escaped(r.at("doc"))) +
+                    ipxact("addressOffset", fmt::format("'h{:x}", addressOf(r))) +
+                    ipxact("size", "32") + "\n";
     for (const json& f : fieldsOf(r)) {
         std::string reset = f.value("reset", std::string());
         s += "          <ipxact:field>" + ipxact("name", f.at("name")) +
@@ -204,8 +213,19 @@ std::string rdlOf(const std::vector<Slot>& slots) {
     std::string s =
         "// Registers of the FPGA in the FSMC window NE2 (SystemRDL 2.0). Generated from "
         "ip/cores.list: do not edit.\n"
-        "property memory_bytes { type = longint unsigned; component = addrmap; };\n"
-        "addrmap icesoc {\n    default regwidth = 32;\n    default accesswidth = 32;\n";
+        "property memory_bytes { type = longint unsigned; component = addrmap; };\n";
+    const std::string words = "    default regwidth = 32;\n    default accesswidth = 32;\n";
+    for (const Slot& slot : slots)
+        if (hasPages(slot)) {
+            s +=
+                fmt::format("addrmap {}_PAGES {{\n    desc = \"By byte address in the core.\";\n{}",
+                            upper(slot.name), words);
+            for (const json& r : registersOf(slot.description))
+                if (isPaged(r))
+                    s += rdlRegister(r);
+            s += "};\n";
+        }
+    s += "addrmap icesoc {\n" + words;
     for (const Slot& slot : slots) {
         s +=
             fmt::format("    addrmap {{\n        desc = {};\n", quoted(slot.description.at("doc")));
@@ -229,16 +249,29 @@ std::string ipxactOf(const std::vector<Slot>& slots) {
                     ipxact("name", "icesoc") + ipxact("version", "1.0") +
                     "\n  <ipxact:memoryMaps>\n    <ipxact:memoryMap>" +
                     ipxact("name", "registers") + "\n";
-    for (const Slot& slot : slots) {
-        s += "      <ipxact:addressBlock>" + ipxact("name", upper(slot.name)) +
-             ipxact("description", escaped(slot.description.at("doc"))) +
-             ipxact("baseAddress", fmt::format("'h{:x}", slot.address)) +
-             ipxact("range", std::to_string(slotBytes)) + ipxact("width", "32") + "\n";
+    auto block = [](const Slot& slot, const std::string& name, unsigned address, bool paged) {
+        std::string registers;
+        unsigned range = slotBytes;
         for (const json& r : registersOf(slot.description))
-            if (!isPaged(r))
-                s += ipxactRegister(r);
-        s += "      </ipxact:addressBlock>\n";
+            if (isPaged(r) == paged) {
+                registers += ipxactRegister(r);
+                range = std::max(range, addressOf(r) + 4);
+            }
+        return "      <ipxact:addressBlock>" + ipxact("name", name) +
+               ipxact("description", escaped(slot.description.at("doc"))) +
+               ipxact("baseAddress", fmt::format("'h{:x}", address)) +
+               ipxact("range", std::to_string(range)) + ipxact("width", "32") + "\n" + registers +
+               "      </ipxact:addressBlock>\n";
+    };
+    std::string pages;
+    for (const Slot& slot : slots) {
+        const std::string name = upper(slot.name);
+        s += block(slot, name, slot.address, false);
+        if (hasPages(slot))
+            pages += "    <ipxact:memoryMap>" + ipxact("name", name + "_PAGES") + "\n" +
+                     block(slot, name, 0, true) + "      " + ipxact("addressUnitBits", "8") +
+                     "</ipxact:memoryMap>\n";
     }
-    return s + "      " + ipxact("addressUnitBits", "8") +
-           "</ipxact:memoryMap>\n  </ipxact:memoryMaps>\n</ipxact:component>\n";
+    return s + "      " + ipxact("addressUnitBits", "8") + "</ipxact:memoryMap>\n" + pages +
+           "  </ipxact:memoryMaps>\n</ipxact:component>\n";
 }

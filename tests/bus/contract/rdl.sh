@@ -9,7 +9,6 @@ mkdir -p "$work/old/ip" "$work/new"
 fail() { echo "rdl: $*" && exit 1; }
 rdl() { "$source/bus/rdl.py" "$@" >"$work/log" 2>&1; }
 
-# None of the chip's blocks has words behind an adapter, which have no addresses of their own.
 rdl "$gen/icesoc.rdl" "$work/new/ip" || { cat "$work/log" && fail 'the chip was not read'; }
 for block in "$work"/new/ip/*.regs.json; do
     name=$(basename "$block")

@@ -59,6 +59,13 @@ address=$(xmllint --xpath 'string(//peripheral[name="CAMERA"]/baseAddress)' "$ou
 [ "$(xmllint --xpath 'string(//peripheral[name="SYSTEM"]/registers/register[name="EVENT"]/modifiedWriteValues)' "$out/icesoc.svd")" = oneToClear ] ||
     fail 'EVENT is not cleared by writing 1 in the SVD file'
 [ "$(xmllint --xpath 'count(//peripheral)' "$out/icesoc.svd")" = 6 ] || fail 'the SVD file has not six peripherals'
+# Words behind PAGE have maps of their own in SystemRDL, which gives them back, and in IP-XACT.
+"$source/bus/rdl.py" "$out/icesoc.rdl" "$work/back" >"$work/rdl" 2>&1 || { cat "$work/rdl" && fail 'SystemRDL with pages'; }
+for f in "$data/led.regs.json" "$work/back/led.regs.json"; do
+    python3 -c 'import json, sys; print(sorted(json.dumps(dict(r), sort_keys=True) for r in json.load(open(sys.argv[1]))["registers"]))' "$f"
+done | uniq | wc -l | grep -qx 1 || { cat "$work/back/led.regs.json" && fail 'what comes back from SystemRDL is not what was there'; }
+[ "$(xmllint --xpath 'string(//*[local-name()="memoryMap"][*[local-name()="name"]="LED_PAGES"]//*[local-name()="register"][1]/*[local-name()="addressOffset"])' "$out/icesoc.ipxact.xml")" = "'h44" ] ||
+    fail 'IP-XACT has not the words behind PAGE'
 xmllint --html --noout "$out/registers.html" 2>"$work/html" || { cat "$work/html" && fail 'registers.html'; }
 is PIN_CAMERA_SEEN_O 0xB
 grep -q '"eye"' "$out/soc_cores.c" || fail 'the identity is not in the table'

@@ -53,6 +53,9 @@ UCOS2 ?=
 export CCACHE_BASEDIR := $(CURDIR)
 export CCACHE_NOHASHDIR := 1
 
+# Numbers have a point in every tool, whatever the user's language.
+export LC_ALL := C.UTF-8
+
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-tests build run test mutants bench firmware gdb size clean
 

@@ -13,12 +13,13 @@ done
 make -n run CORES='ascon fir' IMAGE='a picture=1.jpg' >/dev/null
 if said=$(make help CORE=ascon 2>&1); then echo "CORE=ascon is accepted" >&2 && exit 1; fi
 echo "$said" | grep -q 'there is no variable CORE;' || { echo "$said" >&2 && exit 1; }
+[ "$(LC_ALL=de_DE.UTF-8 make -s --eval 'locale: ; @echo $$LC_ALL' locale)" = C.UTF-8 ] || { echo "numbers as the user's language writes them" >&2 && exit 1; }
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 trap 'exit 130' INT TERM HUP
 # Where one may not write, what to do is said.
-mkdir "$work/theirs" && cp cmake/configure.sh "$work" && chmod 755 "$work" && chmod 555 "$work/theirs"
+mkdir "$work/theirs" && cp cmake/configure.sh "$work" && chmod 755 "$work" "$work/configure.sh" && chmod 555 "$work/theirs"
 other=''
 [ "$(id -u)" != 0 ] || other='setpriv --reuid=65534 --regid=65534 --clear-groups'
 if said=$($other "$work/configure.sh" "$work/theirs" 2>&1); then echo "a build where one may not write" >&2 && exit 1; fi

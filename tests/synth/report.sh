@@ -181,8 +181,8 @@ JS
 compare)
     cd project
     cp -r "$source/synth/compare.sh" synth/
-    sed -i 's/"paper": true/"orders": 1, &/' synth/designs.json # one order of lines: spreads are what counts looks at
     mkdir -p build/main/gen build/synth
+    cp -r ../out/cache build/synth/
     printf 'cmake_minimum_required(VERSION 3.25)\nproject(small NONE)\nadd_custom_target(synth_inputs COMMAND ${CMAKE_COMMAND} -E make_directory gen)\n' >CMakeLists.txt
     echo build >.gitignore
     git init -q . && git add . && git -c user.name=a -c user.email=a@b commit -qm "The first one"

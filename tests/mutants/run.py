@@ -120,7 +120,7 @@ def targets(test, copy):
 def attempt(test, copy, log):
     """Builds what a test needs and runs it: "passes", "fails" or "does not build"."""
     build = ["ninja", "-C", "build/main", "-j", "1", *targets(test, copy)]
-    run = ["ctest", "--test-dir", "build/main", "-R", f"^{re.escape(test)}(\\.|$)", "--no-tests=error", "--output-on-failure"]
+    run = ["ctest", "--test-dir", "build/main", "-R", f"^{re.escape(test)}(\\.|$)", "--no-tests=error", "--output-on-failure", "--stop-on-failure"]
     with open(log, "w") as out:
         for command, otherwise in (build, "does not build"), (run, "fails"):
             if subprocess.run(command, cwd=copy, env=environment(copy), stdout=out, stderr=out).returncode:

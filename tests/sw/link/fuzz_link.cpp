@@ -16,6 +16,7 @@
 // With -DKEYED both have a key, and the fuzzer knows it.
 
 #include "fuzz_node.h"
+#include <cstdint>
 #include <cstring>
 
 namespace {

@@ -15,6 +15,7 @@
 //   7     the program takes messages (n even) or not
 
 #include "fuzz_node.h"
+#include <cstdint>
 
 namespace {
 

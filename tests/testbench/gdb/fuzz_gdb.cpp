@@ -8,6 +8,7 @@
 #include "gdb_stub.h"
 #include <arpa/inet.h>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <netinet/in.h>

@@ -6,6 +6,7 @@
 // An input is a request's head. Every second one gets a right Host, so that the rest is reached.
 
 #include "page_server.h"
+#include <cstdint>
 #include <cstdlib>
 
 namespace {

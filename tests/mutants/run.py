@@ -81,6 +81,10 @@ def prepare(copy, *options):
     for kept in copy.rglob("*.orig"):  # what an interrupted run had planted
         restore(kept.with_suffix(""))
     listed = subprocess.run(["git", "ls-files", "-coz", "--exclude-standard"], stdout=subprocess.PIPE, check=True)
+    there = {name for name in os.fsdecode(listed.stdout).split("\0") if os.path.exists(name)}
+    for file in [file for top in copy.iterdir() if top.name != "build" for file in (top, *top.rglob("*"))]:
+        if not file.is_dir() and str(file.relative_to(copy)) not in there:  # it has left the tree
+            file.unlink()
     subprocess.run(["xargs", "-0", "cp", "-pu", "--parents", "-t", copy], input=listed.stdout, stderr=subprocess.DEVNULL)
     if not (copy / "build/main/build.ninja").exists():
         made = subprocess.run(["cmake", "-S", ".", "-B", "build/main", "-G", "Ninja", *options], cwd=copy, env=environment(copy),

@@ -43,6 +43,7 @@ grep -q '"caught": 1, "total": 1, "score": 100.0' build/mutants/summary.json || 
 # A bug that an interrupted run had planted is taken out, or the tests would fail without a bug.
 cp build/mutants/0/tiny.c build/mutants/0/tiny.c.orig
 sed -i 's/2 \*/3 */' build/mutants/0/tiny.c
+touch build/mutants/0/left_the_tree.c
 bug comment test_tiny '/* doubles */' '/* halves */'
 bug nonsense test_tiny '    return 2 * n;' '    retrun 2 * n;'
 bug stale test_tiny '    return 6 * n;' '    return 5 * n;'
@@ -53,6 +54,7 @@ tests/mutants/run.py --jobs 2 >run.log 2>&1 || status=$?
 for line in 'caught *tiny/wrong ' 'SURVIVED *tiny/comment ' 'does not build *tiny/nonsense ' 'does not apply *tiny/stale ' 'does not apply *tiny/nothing ' '^mutants: 1 of 5 caught'; do
     grep -q "$line" run.log || fail "not said: $line"
 done
+[ ! -e build/mutants/0/left_the_tree.c ] || fail "a copy keeps a file that has left the tree"
 for copy in 0 1; do cmp tiny.c build/mutants/$copy/tiny.c || fail "a bug was left in copy $copy"; done
 ! tests/mutants/run.py --check >run.log 2>&1 || fail "--check does not see the stale patch"
 grep -q 'tiny/stale: does not apply' run.log || fail "--check does not name the stale patch"

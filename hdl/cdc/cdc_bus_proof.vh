@@ -8,7 +8,7 @@
     (* gclk *) wire step;
     reg past = 1'b0, was_src = 1'b1, was_clk = 1'b1, was_valid = 1'b0, known = 1'b0;
     reg [WIDTH-1:0] was_data = 0;
-    reg was_given = 1'b0;
+    reg was_given = 1'b0, gave = 1'b0;
     reg [WIDTH-1:0] older = 0, newer = 0; // words that have not been handed over; with none, `newer` is the last one
     reg [1:0] count = 2'd0;
     reg [2:0] clocks = 3'd3;             // edges of dst_clk_i since the last word's edge
@@ -25,6 +25,7 @@
         was_valid <= dst_valid_o;
         was_data  <= src_data_i;
         was_given <= src_valid_i;
+        gave      <= gives;
         assume (past || (src_clk_i && dst_clk_i));
         count <= count + {1'b0, new_write} - {1'b0, handed};
         if (new_write) begin
@@ -38,17 +39,22 @@
         // Two edges of src_clk_i that hand over are at least three edges of dst_clk_i apart; ringing is closer.
         assume (!new_write || clocks >= 3'd3);
     end
-    wire [1:0] left = count - {1'b0, handed}; // words left in this step
+    wire [1:0] left  = count - {1'b0, handed}; // words left in this step
+    wire       gives = edge_of_clk ? was_valid : gave; // the clock after dst_valid_o
     always @* if (past) begin
         // Each word is pending at once and handed over once, in order, as it was.
         assert (!handed || count != 2'd0);
         assert (left <= 2'd1 || dst_valid_o);
-        assert (left == 2'd0 || pending_async_o);
+        assert (pending_async_o == (new_write || left != 2'd0 || gives));
+        assert (pending_sync_o == (dst_valid_o || gives));
         if (dst_valid_o) begin
             assert (left != 2'd0);
             assert (dst_data_o == (left == 2'd2 ? older : newer));
         end
         assert (left == 2'd0 || clocks + {2'd0, edge_of_clk} <= 3'd3 || (clocks == 3'd3 && handed));
+        // The source's word stands from its edge until the next.
+        if (known || new_write)
+            assert (src_data_o == (new_write ? was_data : newer));
         // The copy of the last word stays until the next.
         if (known && left == 2'd0)
             assert (dst_data_o == newer);

@@ -44,12 +44,12 @@ replays_with() {
 }
 case $case in
 plain) # secure, as each flight that does not say otherwise; its recording and its key are nobody else's to read
-    run "$out" --image $image && check_output "$out"
+    run "$out" --image $image; check_output "$out"
     grep -q -- "\"--key\",\"$(dirname "$build")/demo.key\"" "$out/flight.jsonl"
     [ "$(stat -c %a "$out/flight.jsonl" "$(dirname "$build")/demo.key" | sort -u)" = 600 ]
     ;;
 open) # in the clear, because that was asked for
-    run "$out" --image $image --open 1 && check_output "$out"
+    run "$out" --image $image --open 1; check_output "$out"
     ! grep -q -- '--key' "$out/flight.jsonl"
     fails_with "give one of them" run "$out" --image $image --open 1 --key "$out/any.key"
     ;;
@@ -69,7 +69,7 @@ keys) # what the ground, the vehicle and their start say of keys that are not fi
     fails_with "chmod 600" "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d /dev/null' 1 "--XBeeAT.KeyFile=$out/others.key"
     ;;
 loss) # and again from its recording, whose time is the one for looking
-    run "$out" --image $image --loss 0.1 --seed "${SEED:-1}" && check_output "$out"
+    run "$out" --image $image --loss 0.1 --seed "${SEED:-1}"; check_output "$out"
     replays_with 'bit by bit the flight that was recorded' "$out" --from 0.5 --to 0.51
     # Cut short by a kill; altered; of another file; into its own folder; waveforms are another build's.
     mkdir "$out/cut" "$out/other"
@@ -87,16 +87,16 @@ loss) # and again from its recording, whose time is the one for looking
     ;;
 cores) # every core that has a part in a mission
     parts=$(cd "$source/ip" && awk '/^[^#]/ { print $1 }' cores.list | while read -r core; do [ ! -f "$core/ground.py" ] || echo "$core"; done)
-    run "$out" --image $image --cores "$parts" && check_output "$out"
+    run "$out" --image $image --cores "$parts"; check_output "$out"
     for part in $parts; do grep -q "$part\." "$out/report.md" || { echo "nothing was called of $part" && exit 1; }; done
     fails_with "has no part in a mission" run "$out/none" --image $image --cores nonesuch
     ;;
 sensor) # the picture goes through the camera's pins and the vision core, and never past the processor
-    run "$out" --image $image --sensor 1 --cpu m3 && check_output "$out"
+    run "$out" --image $image --sensor 1 --cpu m3; check_output "$out"
     grep -q 'camera.capture(96, 64)' "$out/report.md"
     ;;
 m3) # the ARM binary; of its replay, what the program is at in the 2 ms around its first event of a core
-    run "$out" --image $image --cpu m3 && check_output "$out"
+    run "$out" --image $image --cpu m3; check_output "$out"
     grep -q '"task":"UAV_radioTask"' "$out/events.jsonl"
     from=$(sed -n 's/{"events":[0-9]*,"ns":\([0-9]*\)[0-9],"slot":[2-9]}/\1/p' "$out/events.jsonl" | head -1)
     export WAVE="$out/wave" WAVE_FROM="$((from - 20000))" WAVE_TO="$((from + 200000))"
@@ -229,7 +229,7 @@ twice)
     ;;
 odd_names) # words of the shell, of make and of the simulator in a folder's name are only a name
     odd="$out/a'b \"c\" {device} {out}x \`touch $out/oops\` \$(touch $out/oops)"
-    run "$odd" --image $image && check_output "$odd"
+    run "$odd" --image $image; check_output "$odd"
     make --no-print-directory -s -C "$source" -n run BUILD="$build" OUT="$(echo "$odd" | sed 's/\$/$$/g')" | sed -n '/run.sh/,$p' |
         sed 's/^testbench.*run.sh/set --/' >"$out/words"
     sh -c '. "$1" && while [ "$1" != --out ]; do shift; done && [ "$2" = "$0" ]' "$odd" "$out/words" || { cat "$out/words" && exit 1; }

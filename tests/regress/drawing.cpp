@@ -18,7 +18,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr size_t shownChanges = 400, shownSignals = 100, portDepth = 1;
+constexpr size_t mostChanges = 400, fewestChanges = 25, mostSignals = 100, portDepth = 1;
 
 struct Signal {
     std::string name;  // with its scopes: "TOP.bridge.u_write.full"
@@ -93,7 +93,7 @@ std::map<std::string, Signal> readVcd(const std::string& text, std::vector<uint6
 
 } // namespace
 
-json drawingOf(const std::string& wave, const std::string& about) {
+json drawingOf(const std::string& wave, const std::string& about, size_t room) {
     const bool compressed = wave.size() > 4 && wave.compare(wave.size() - 4, 4, ".fst") == 0;
     const std::string text = compressed ? run({"fst2vcd", "-f", wave}).text : readFile(wave);
     std::vector<uint64_t> moments;
@@ -123,18 +123,27 @@ json drawingOf(const std::string& wave, const std::string& about) {
     };
     std::stable_sort(order.begin(), order.end(),
                      [&](const Signal* a, const Signal* b) { return rank(a) < rank(b); });
-    json drawing = {{"from", moments.front()}, {"to", moments.back()}, {"signals", json::array()}};
-    drawing["more"] = order.size() - std::min(order.size(), shownSignals);
-    order.resize(std::min(order.size(), shownSignals));
-    for (const Signal* signal : order) {
-        json changes = json::array(); // time, value, time, value
-        const size_t all = signal->changes.size();
-        for (size_t i = all - std::min(all, shownChanges); i < all; ++i) {
-            const auto& [time, value] = signal->changes[i];
-            changes.push_back(time);
-            changes.push_back(signal->bits ? shortened(value) : value);
+    const auto draw = [&](size_t shown, size_t changes) {
+        json rows = json::array();
+        for (size_t row = 0; row < shown; ++row) {
+            json pairs = json::array(); // time, value, time, value
+            const auto& all = order[row]->changes;
+            for (size_t i = all.size() - std::min(all.size(), changes); i < all.size(); ++i) {
+                pairs.push_back(all[i].first);
+                pairs.push_back(order[row]->bits ? shortened(all[i].second) : all[i].second);
+            }
+            rows.push_back({order[row]->name, order[row]->bits, pairs});
         }
-        drawing["signals"].push_back({signal->name, signal->bits, changes});
+        return json{{"from", moments.front()},
+                    {"to", moments.back()},
+                    {"signals", rows},
+                    {"more", order.size() - shown}};
+    };
+    size_t shown = std::min(order.size(), mostSignals), changes = mostChanges;
+    json drawing = draw(shown, changes);
+    while (drawing.dump().size() > room && shown > 1) {
+        (changes > fewestChanges ? changes : shown) /= 2;
+        drawing = draw(shown, changes);
     }
     return drawing;
 }

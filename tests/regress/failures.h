@@ -38,7 +38,8 @@ void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
 // Returns the end of a waveform, VCD or FST (by fst2vcd): {from, to, signals: [[name, bits, [time,
 // value, ...]], ...], more: signals left out}: the program's, then those that move and ports, the
 // outermost first, then those that stay as they are; the last changes of each. Null: it is empty.
-// Signals that the text `about` names, an assertion, come before those that it does not.
-nlohmann::json drawingOf(const std::string& wave, const std::string& about);
+// Signals that the text `about` names, an assertion, come before those that it does not. Of a
+// drawing of more than `room` bytes as JSON the older changes are left out, then the last signals.
+nlohmann::json drawingOf(const std::string& wave, const std::string& about, size_t room);
 
 #endif

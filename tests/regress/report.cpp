@@ -5,6 +5,7 @@
 #include "lights.h"
 #include "page.h"
 #include "plan.h"
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -153,6 +154,10 @@ json gather(const History& history, const std::vector<Test>& tests,
     for (const Test& test : tests)
         left[test.name.rfind("formal.", 0) == 0] += ran.count(test.name) == 0;
     data["left"] = {{"tests", left[0]}, {"proofs", left[1]}};
+    constexpr size_t drawingsRoom = 1'000'000; // bytes of the page's 2 MB
+    const size_t drawings = std::max<size_t>(
+        1, std::count_if(failures.begin(), failures.end(),
+                         [](const Failure& failure) { return !failure.wave.empty(); }));
     auto& bad = data["failures"] = json::array();
     for (const Failure& failure : failures)
         bad.push_back({{"name", failure.result.name},
@@ -163,8 +168,9 @@ json gather(const History& history, const std::vector<Test>& tests,
                        {"wave", failure.wave},
                        {"save", failure.save},
                        {"clock", failure.clock},
-                       {"drawing",
-                        failure.wave.empty() ? json() : drawingOf(failure.wave, failure.assertion)},
+                       {"drawing", failure.wave.empty() ? json()
+                                                        : drawingOf(failure.wave, failure.assertion,
+                                                                    drawingsRoom / drawings)},
                        {"tail", failure.result.log.substr(failure.result.log.size() > 3000
                                                               ? failure.result.log.size() - 3000
                                                               : 0)}});

@@ -330,6 +330,9 @@ END
 add_test(NAME formal.broken COMMAND sh -c "echo 'Assert failed in broken'; echo 'broken: trace: ${CMAKE_SOURCE_DIR}/t.vcd'; exit 1")
 END
     cmake build/main >/dev/null
+    mkdir -p build/coverage
+    echo '{"total": 97, "toggles": 95, "files": [{"file": "hdl/fifo/fifo.v", "percent": 97, "lines": 200, "gate": 95, "toggles": 96, "toggle_points": 9,
+        "toggle_gate": 95, "why": "", "missed": ["12: level_o[3]", "40"]}]}' >build/coverage/summary.json
     run
     chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$work/chromium" \
         --virtual-time-budget=5000 --dump-dom "file://$work/build/regress/report.html" >dom.html 2>chromium.log ||
@@ -347,6 +350,7 @@ END
     has '<div>test_b.Bad: value 1 is not 7' dom.html
     has 'class="dot dp"' dom.html
     has '12 clauses with 3 flops' dom.html
+    has '<a href="../../hdl/fifo/fifo.v">hdl/fifo/fifo.v:12: level_o\[3\]</a><br><a href="../../hdl/fifo/fifo.v">hdl/fifo/fifo.v:40</a>' dom.html
     has 'id="seeds"' dom.html
     has 'value 1 is not 7' dom.html
     has 'href="failures/test_b.Bad-1.log"' dom.html
@@ -386,7 +390,14 @@ endforeach()
 foreach(i RANGE 1 30)
   add_test(NAME test_loud.Case${i} COMMAND sh -c "seq 1 20000; exit 1")
 endforeach()
+foreach(i RANGE 1 8)
+  add_test(NAME formal.long${i} COMMAND sh -c "echo 'long${i}: trace: ${CMAKE_SOURCE_DIR}/long.vcd'; exit 1")
+endforeach()
 END
+    awk 'BEGIN { print "$scope module top $end"
+        for (s = 0; s < 100; s++) printf "$var wire 16 s%d a_signal_%d $end\n", s, s
+        print "$upscope $end $enddefinitions $end"
+        for (t = 0; t < 300; t++) { print "#" 1000000 + t; for (s = 0; s < 100; s++) print "b1" t % 2 "10101010101010 s" s } }' >long.vcd
     mkdir -p build/coverage build/mutants
     awk 'BEGIN { printf "{\"total\": 97.1, \"toggles\": 95.2, \"files\": ["
         for (f = 0; f < 300; f++) {
@@ -397,7 +408,8 @@ END
     awk 'BEGIN { for (i = 0; i < 400; i++) printf "block/some_seeded_bug_%d\tcaught\ttest_block.Case\t7\n", i }' >build/mutants/results.tsv
     cmake build/main >/dev/null
     run
-    has "404 passed, 32 failed"
+    has "404 passed, 40 failed"
+    [ "$(grep -o '"signals":\[\["top.a_signal_' build/regress/report.html | wc -l)" = 8 ] || fail "there are not eight drawings"
     [ "$(wc -c <build/regress/report.html)" -lt 2000000 ] || fail "the page has $(wc -c <build/regress/report.html) bytes"
     ;;
 lights_*) . "$source/tests/regress/test/lights.sh" ;;

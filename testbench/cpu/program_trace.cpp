@@ -9,16 +9,19 @@ constexpr unsigned pendSv = 14;                 // in which each kernel switches
 constexpr uint64_t tenthOfASecond = 10'000'000; // clocks
 constexpr uint64_t soon = 200'000; // clocks, in which an exception comes: the tick is 100,000
 
-// Names the pointer to the running task: uC/OS-II's, or our kernel's.
-const char* kernelsPointer(const ElfImage& image) {
-    return image.has("OSTCBCur") ? "OSTCBCur" : "os_running";
+// Returns the address of the pointer to the running task, uC/OS-II's or our kernel's; 0: a program
+// without a kernel.
+uint32_t kernelsPointer(const ElfImage& image) {
+    for (const char* name : {"OSTCBCur", "os_running"})
+        if (image.has(name))
+            return image.symbol(name);
+    return 0;
 }
 
 } // namespace
 
 ProgramTrace::ProgramTrace(Stm32F2& stm32, std::function<uint64_t()> clocks)
-    : stm32_(stm32), clocks_(std::move(clocks)),
-      taskAddress_(stm32.image()->symbol(kernelsPointer(*stm32.image()))) {
+    : stm32_(stm32), clocks_(std::move(clocks)), taskAddress_(kernelsPointer(*stm32.image())) {
     CortexM3& cpu = stm32.cpu();
     cpu.listener.entered = [this, &cpu](unsigned) {
         interrupt_ = stm32_.image()->functionAt(cpu.reg(CortexM3::Pc));
@@ -26,7 +29,7 @@ ProgramTrace::ProgramTrace(Stm32F2& stm32, std::function<uint64_t()> clocks)
     };
     cpu.listener.left = [this](unsigned number) {
         interrupt_ = "-";
-        if (number == pendSv)
+        if (number == pendSv && taskAddress_)
             switched();
         look();
     };

@@ -36,7 +36,7 @@ private:
     std::function<uint64_t()> clocks_;
     const WaveWindow window_;
     std::ofstream file_;
-    uint32_t taskAddress_;                  // of the pointer to the running task
+    uint32_t taskAddress_;                  // of the pointer to the running task; 0: no kernel
     std::map<uint32_t, std::string> tasks_; // by that pointer
     std::string task_, interrupt_ = "-";
     std::map<std::string, std::string> written_; // by row

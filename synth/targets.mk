@@ -5,16 +5,17 @@ DESIGN ?=
 FAMILY ?=
 # PLACE=1: on ECP5 also placed and routed, by nextpnr of Debian 13; DESIGN= or Table I's content and the chip
 PLACE  ?=
-# BASE=main: and what has changed since that commit, as Markdown
+# BASE=main: and what has changed since that commit, as Markdown; BASE=v1..main: only what has changed between these
 BASE   ?=
 
-synth: setup-tests $(BUILD)/build.ninja ## utilisation: LUTs, flip-flops, slices of the chip and each part, against limits and paper (DESIGN=modem FAMILY=xc7 PLACE=1 BASE=main)
+synth: setup-tests $(BUILD)/build.ninja ## utilisation: LUTs, flip-flops, slices of the chip and each part, against limits and paper (DESIGN=modem FAMILY=xc7 PLACE=1 BASE=main BASE=v1..main)
 	@$(NINJA) --quiet synth_inputs
-	@$(if $(PLACE),cmake/fetch.sh nextpnr $(BUILD)/nextpnr)
-	@$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) \
+	@$(if $(findstring ..,$(BASE)),exec synth/compare.sh $(BUILD)/synth/utilisation $(call quoted,$(BASE)) $(JOBS);) \
+	$(if $(PLACE),cmake/fetch.sh nextpnr $(BUILD)/nextpnr &&) \
+	$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) \
 	    $(addprefix --design ,$(or $(DESIGN),$(PLACE:%=table1 soc))) $(addprefix --family ,$(FAMILY)) \
-	    $(PLACE:%=--place $(BUILD)/nextpnr/nextpnr-ecp5)
-	@$(if $(BASE),synth/compare.sh $(BUILD)/synth/utilisation $(call quoted,$(BASE)) $(JOBS))
+	    $(PLACE:%=--place $(BUILD)/nextpnr/nextpnr-ecp5) \
+	$(if $(BASE),&& synth/compare.sh $(BUILD)/synth/utilisation $(call quoted,$(BASE)) $(JOBS))
 .PHONY: synth
 
 synth-accept: $(BUILD)/build.ninja ## record today's utilisation as what is wanted (synth/baseline.json)

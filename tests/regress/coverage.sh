@@ -3,7 +3,7 @@
 #
 # coverage: builds models, C and C++ that count what ran (build/coverage), runs all tests but proofs, lint and those of tools,
 # and merges Verilator's, GHDL's and gcov's counts. Usage: coverage.sh main-build jobs
-# Leaves build/coverage/html/index.html, summary.json. Exit status 1: a file is below its gate.
+# Leaves build/coverage/html/index.html, summary.json, history (a line a run). Exit status 1: a file is below its gate.
 set -eu
 build=$1 jobs=$2
 top=$(cd "$(dirname "$(readlink -f "$0")")/../.." && pwd)
@@ -11,6 +11,7 @@ cd "$top"
 work=build/coverage
 cmake/configure.sh $work -DCOVERAGE=ON >/dev/null
 tree=$("$build/tests/regress/regress" --tree "bus hdl ip slice sw testbench tests")
+commit=$(git describe --always --dirty=+ --abbrev=10)
 echo "coverage: building with counters"
 ninja -C $work -j "$jobs"
 rm -rf $work/points $work/html
@@ -50,4 +51,5 @@ for info in host vhdl; do
 done
 "$build/tests/regress/coverage" --gates tests/regress/coverage_gates.json --verilator $work/rtl.dat "$@" --out $work/summary.json && status=0 || status=$?
 echo "$tree" >$work/tree
+sed -n 's/^ "total": \([0-9]*\.*[0-9]\{0,1\}\).*/'"$commit"' \1 % of lines/p' $work/summary.json >>$work/history # of each commit, for make synth BASE=
 exit $status

@@ -9,7 +9,7 @@
 #   partial  one design alone: the page has all; of those that have changed it says so; the limits hold, whatever is accepted
 #   broken   a syntax error is told with its file and line, and the other designs are reported nevertheless
 #   twice    of two runs at once the second waits, says so, and takes what the first has made
-#   compare  what has changed since another commit, as Markdown
+#   compare  what has changed since another commit, or between two, as Markdown
 #   place    a design placed with five seeds: clock, estimate, utilisation; placed once; a failure is told
 #   edif     the netlist for ISE is whole
 #   page     the page in Chromium: tables, chart, sorting, looking inside, differences; one file, no network
@@ -198,8 +198,23 @@ compare)
     has '^| wide | gone | gone |'
     has '^| wider | [0-9]* (new) |'
     cmp -s build/synth/compare.md "$work/log" || grep -q '^| wider ' build/synth/compare.md || fail "compare.md is not there"
-    if synth/compare.sh "$program" nonsense >"$work/log" 2>&1; then fail "a commit that is none"; fi
-    has 'there is no commit nonsense'
+    has '^| [0-9a-f]*+ | not measured | not measured |' # nobody knows what was measured of files without a commit
+    # The same between two commits, whatever is here now; tests and coverage are those of each.
+    git add . && git -c user.name=a -c user.email=a@b commit -qm "The second one"
+    mkdir -p build/regress build/coverage
+    for tests in 9 7; do printf '{"commit":"%s","passed":%s,"failed":1}\n' "$(git describe --always --abbrev=10)" $tests; done >build/regress/history.jsonl
+    echo "$(git describe --always --abbrev=10 HEAD~1) 97.1 % of lines" >build/coverage/history
+    echo 'module pair' >hdl/blocks/pair.v
+    rm build/synth/report.json
+    synth/compare.sh "$program" HEAD~1..HEAD >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+    has '^Utilisation since .* (The first one), at .* (The second one):'
+    has '^| whole | .* | [0-9]* -> [0-9]* (+12) |'
+    has '^| [0-9a-f]* | not measured | 97.1 % of lines |'
+    has '^| [0-9a-f]* | 9 passed, 1 failed | not measured |'
+    for wrong in nonsense HEAD..nonsense; do
+        if synth/compare.sh "$program" $wrong >"$work/log" 2>&1; then fail "a commit that is none"; fi
+        has 'there is no commit nonsense'
+    done
     ;;
 place)
     cat >nextpnr <<'EOF'

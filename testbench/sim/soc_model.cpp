@@ -79,6 +79,8 @@ void SocModel::pay() {
     uint64_t left = span_.pass(owed_);
     memory_.pass(owed_ - left);
     owed_ = 0;
+    if (left) // the chip stands in a tick of the baud rate: no state to add clocks to
+        quiet_ = 0;
     for (cycles_ -= left; left; --left)
         evaluate();
 }

@@ -113,6 +113,27 @@ TEST(Quiet, AFlightIsTheSameWithQuietClocksPassedAtOnce) {
                 quick.events.size(), quick.replies);
 }
 
+TEST(Quiet, TheChipIsTheSameInWhateverClockItIsLookedAt) {
+    RfChannel air(testSeed());
+    SocModel quick(air, Ground::uavModem()), slow(air, Ground::uavModem());
+    slow.evaluateAll(true);
+    quick.reset(true);
+    slow.reset(true);
+    Random random(testSeed());
+    for (uint64_t look = 0; quick.cycles() < 1000000;) {
+        for (look += 100 + random.below(400); quick.cycles() < look;)
+            if (!quick.passQuiet(look))
+                quick.tick();
+        while (slow.cycles() < quick.cycles())
+            slow.tick();
+        EXPECT_THAT(SocState::differences(SocState::of(*quick.chip().rootp),
+                                          SocState::of(*slow.chip().rootp)),
+                    testing::IsEmpty())
+            << "in clock " << quick.cycles();
+    }
+    EXPECT_LT(quick.evaluated() * 2, quick.cycles());
+}
+
 // Returns if the memory is ready so many clocks after it began to start.
 bool isMemoryReady(uint64_t clocks) {
     RfChannel air(testSeed());

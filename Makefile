@@ -92,8 +92,12 @@ run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground st
 	    --cpu $(call quoted,$(CPU)) --port $(call quoted,$(PORT)) $(if $(LIVE),--live 1) $(if $(CORES),--cores $(call quoted,$(CORES))) \
 	    $(if $(CAMERA),--sensor 1) $(if $(PINS),--pins $(call quoted,$(PINS))) $(if $(KEY),--key $(call quoted,$(KEY))) $(if $(OPEN),--open 1) $(if $(UPDATE),--update $(call quoted,$(UPDATE))) $(if $(UCOS2),--firmware "$(BUILD)/firmware/uav_ucos2.elf")
 
-test: setup-tests build ## run all tests; firmware, models and IceC once more with sanitizers
+test: setup-tests $(if $(filter-out zeroc,$(or $(LABEL),$(NAME:%=some))),$(BUILD)/build.ninja,build) ## run all tests; firmware, models and IceC once more with sanitizers
 ifneq ($(LABEL)$(NAME),)
+ifneq ($(LABEL),zeroc)
+	@$(NINJA) --quiet regress
+	@$(BUILD)/tests/regress/regress --prepare --build $(BUILD) $(if $(NAME),--name '$(NAME)') $(if $(LABEL),--label '$(LABEL)')
+endif
 	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(TESTS) --output-on-failure --no-tests=error \
 	    $(if $(LABEL),-L '$(LABEL)') $(if $(NAME),-R '$(NAME)') $(if $(filter zeroc,$(LABEL)),-C zeroc)
 else
@@ -135,3 +139,5 @@ SPACE   := $(subst ,, )
 GIVEN   := $(foreach word,$(subst \$(SPACE),,$(MAKEOVERRIDES)),$(if $(findstring =,$(word)),$(firstword $(subst =, ,$(word)))))
 UNKNOWN := $(filter-out LANG $(shell sed -n 's/^\([A-Z0-9_]*\) *?*=.*/\1/p' $(MAKEFILE_LIST)),$(GIVEN))
 $(if $(UNKNOWN),$(error there is no variable $(UNKNOWN); `make help` names those that there are))
+NUMBER   = $(filter-out 0,$(shell expr x$(call quoted,$(1)) : 'x[1-9][0-9]*$$'))
+$(foreach name,$(filter JOBS TESTS,$(GIVEN)),$(if $(call NUMBER,$($(name))),,$(error $(name)='$($(name))' is not a number from 1 on)))

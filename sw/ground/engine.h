@@ -62,7 +62,7 @@ public:
 private:
     Engine(const Settings& settings, const Log& log);
     void run();
-    bool prepareModem(const Settings& settings);
+    std::string prepareModem(const Settings& settings);
     void fly(std::unique_lock<std::mutex>& lock);
     void waitForReason(std::unique_lock<std::mutex>& lock);
     void loop(std::unique_lock<std::mutex>& lock);

@@ -130,13 +130,15 @@ void Engine::fail(const std::string& text) {
     reportLost();
 }
 
-bool Engine::prepareModem(const Settings& settings) {
+// Returns why the modem cannot be used; empty: it is ready.
+std::string Engine::prepareModem(const Settings& settings) {
+    const U32 begin = clock_.nowUs();
     ModemSetup setup(serial_, settings, log_,
                      [this](int ms, bool forBytes) { return waitMs(ms, forBytes); });
     if (!settings.setUp) {
         serial_.setSpeed(settings.baud);
     } else if (!setup.run()) {
-        return false;
+        return setup.trouble().empty() ? "the port '" + device_ + "' is lost" : setup.trouble();
     }
     std::lock_guard<std::mutex> lock(mutex_);
     U32 longest = setup.encrypts() ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME;
@@ -144,8 +146,10 @@ bool Engine::prepareModem(const Settings& settings) {
     pacer_.clear(clock_.nowUs());
     serialOut_.clear();
     Link_limitFrame(link_.get(), longest);
-    log_(1, "modem ready on " + device_ + (setup.encrypts() ? ", it encrypts" : ""));
-    return true;
+    log_(1, "modem ready on " + device_ + " after " +
+                std::to_string((clock_.nowUs() - begin) / 1000) + " ms" +
+                (setup.encrypts() ? ", it encrypts" : ""));
+    return "";
 }
 
 // Flies again and again: a lost port or a modem that does not answer is tried again for a program
@@ -191,16 +195,14 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
     } step(clock_, serial_.fd(), device_);
     for (bool first = true;; first = false) {
         lock.unlock();
-        bool ready = prepareModem(settings);
+        const std::string trouble = prepareModem(settings);
         lock.lock();
         if (stop_)
             return;
-        if (!ready && first)
-            return fail("no modem answers on '" + device_ +
-                        "': check its power and cable, the guard time (-g), or set XBeeAT.Setup=0 "
-                        "if it must not be set up; given up");
-        if (!ready)
-            log_(0, "no modem answers on '" + device_ + "'");
+        if (!trouble.empty() && first)
+            return fail(trouble + "; the next connection tries again");
+        if (!trouble.empty())
+            log_(0, trouble);
         failed_ = complained_ = false;
         Link_start(link_.get(), clock_.nowUs());
         upAt_ = clock_.nowUs();

@@ -83,11 +83,13 @@ std::string ModemSetup::ask(const std::string& text) {
 }
 
 bool ModemSetup::command(const std::string& text) {
+    std::string reply;
     for (int attempt = 0; attempt < tries && !stopped_; ++attempt)
-        if (ask(text) == "OK")
+        if ((reply = ask(text)) == "OK")
             return true;
     if (!stopped_)
-        log_(0, "the modem on '" + settings_.device + "' refuses AT" + text.substr(0, 2));
+        trouble_ = "the modem on '" + settings_.device + "' " +
+                   (reply == "ERROR" ? "refuses AT" : "does not answer to AT") + text.substr(0, 2);
     return false;
 }
 
@@ -111,6 +113,10 @@ bool ModemSetup::find() {
         if (found || stopped_)
             return found;
     }
+    trouble_ =
+        "no modem answers on '" + settings_.device +
+        "': check its power and cable, the guard time (-g), or set XBeeAT.Setup=0 if it must "
+        "not be set up";
     return false;
 }
 

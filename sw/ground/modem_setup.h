@@ -19,10 +19,11 @@ public:
     ModemSetup(SerialPort& serial, const Settings& settings, const Log& log, Wait wait)
         : serial_(serial), settings_(settings), log_(log), wait_(std::move(wait)) {}
 
-    // Sets the modem up. False: no modem answers, it refuses a command (logged), or `wait` gave up.
-    // About two guard times at the right rate at once, one more for each rate tried in vain.
+    // Sets the modem up. False: `trouble()` says why, or `wait` gave up and it is empty. About two
+    // guard times at the right rate at once, one more for each rate tried in vain.
     bool run();
     bool encrypts() const { return encrypts_; } // EE, after run()
+    const std::string& trouble() const { return trouble_; }
 
 private:
     bool find();
@@ -36,6 +37,7 @@ private:
     const Settings& settings_;
     const Log& log_;
     Wait wait_;
+    std::string trouble_;
     bool stopped_ = false, encrypts_ = false;
     int silentMs_ = 0; // for so long nothing was sent
 };

@@ -33,25 +33,29 @@ struct Options {
     Selection selection;
     unsigned jobs = 2, repeat = 1, waves = 3;
     double budget = 0; // seconds; 0: as long as it takes
-    bool list = false, kept = false, make = false, plan = false;
+    bool list = false, kept = false, make = false, plan = false, prepare = false;
 };
 
 std::vector<Test> choose(const std::vector<Test>& all, const Selection& selection,
                          const History& history) {
     std::vector<Test> chosen;
-    std::regex name(selection.name);
+    const std::regex name(selection.name), label(selection.label);
     const bool exact = std::any_of(all.begin(), all.end(),
                                    [&](const Test& test) { return test.name == selection.name; });
     for (const Test& test : all) {
         if (!selection.block.empty() && !blockWords(test).count(selection.block))
             continue;
-        if (isUnbuilt(test)) { // its cases and labels are not known: any of them may be meant
-            chosen.push_back(test);
+        const bool unbuilt = isUnbuilt(test);
+        if (!selection.label.empty() && !(unbuilt && test.labels.empty()) &&
+            std::none_of(test.labels.begin(), test.labels.end(),
+                         [&](const std::string& each) { return std::regex_search(each, label); }))
+            continue;
+        if (unbuilt) { // its cases are not known
+            if (!exact && mayHold(test, selection.name))
+                chosen.push_back(test);
             continue;
         }
-        bool label = selection.label.empty() || std::find(test.labels.begin(), test.labels.end(),
-                                                          selection.label) != test.labels.end();
-        if (!label || !(exact ? test.name == selection.name : std::regex_search(test.name, name)))
+        if (!(exact ? test.name == selection.name : std::regex_search(test.name, name)))
             continue;
         if (selection.changed && history.passedWith(test.name) == test.print)
             continue;
@@ -214,17 +218,34 @@ std::vector<Round> roundsOf(const std::vector<Test>& chosen, const Options& opti
     return rounds;
 }
 
-// Builds what the chosen tests need; their cases are known afterwards only.
+// Builds what the chosen tests need, or lists it; their cases are known afterwards only.
 void build(const Options& options, const History& history) {
-    std::set<std::string> targets;
-    for (const Test& test : choose(listTests(options.build), options.selection, history))
-        for (const std::string& target : targetsOf(test, options.build))
+    const auto all = listTests(options.build);
+    const auto outputs = outputsOf(options.build);
+    auto chosen = choose(all, options.selection, history);
+    std::set<std::string> targets, fixtures;
+    for (size_t i = 0; i < chosen.size(); ++i) { // it grows by what sets up others' fixtures
+        for (const std::string& target : targetsOf(chosen[i], options.build, outputs))
             targets.insert(target);
+        for (const std::string& need : std::vector<std::string>(chosen[i].needs))
+            if (fixtures.insert(need).second)
+                std::copy_if(all.begin(), all.end(), std::back_inserter(chosen),
+                             [&](const Test& test) {
+                                 return std::count(test.sets.begin(), test.sets.end(), need) > 0;
+                             });
+    }
     if (targets.count("all") || options.selection.changed)
         targets = {"all"};
-    std::vector<std::string> command = {"ninja", "-C", options.build};
+    if (options.list || targets.empty()) {
+        for (const std::string& target : targets)
+            std::cout << target << '\n';
+        return;
+    }
+    std::vector<std::string> command = {"flock", "-o", options.build, "ninja", "-C", options.build};
     command.insert(command.end(), targets.begin(), targets.end());
-    std::cout << fmt::format("Building {} ...\n", fmt::join(targets, " ")) << std::flush;
+    std::cout << (targets.size() > 8 ? fmt::format("Building {} targets ...\n", targets.size())
+                                     : fmt::format("Building {} ...\n", fmt::join(targets, " ")))
+              << std::flush;
     Output out = run(command);
     if (out.status != 0)
         throw std::runtime_error("it does not build:\n" + out.text);
@@ -237,7 +258,10 @@ int nothingChosen(const Options& options, const std::vector<Test>& all) {
                   << " since the last run.\n";
         return 0;
     }
-    std::cerr << "regress: no test is chosen by this.\n" << known(all) << '\n';
+    std::cerr << "regress: no test is chosen by this"
+              << (options.selection.name.empty() ? "" : ": NAME='" + options.selection.name + "'")
+              << "; `ctest --test-dir " << options.build << " -N` lists their names.\n"
+              << known(all) << '\n';
     return 2;
 }
 
@@ -287,6 +311,13 @@ int regress(const Options& options) {
             std::cout << each << '\n';
         std::cout << fmt::format("{} requirements\n", plan.size());
         return plan.empty() || !wrong.empty();
+    }
+    if (options.prepare) { // for CTest, which keeps no history
+        build(options, History(options.out + "/history.jsonl"));
+        const auto all = listTests(options.build);
+        return choose(all, options.selection, History(options.out + "/history.jsonl")).empty()
+                   ? nothingChosen(options, all)
+                   : 0;
     }
     const FolderLock lock(options.out, "regress");
     History history(options.out + "/history.jsonl");
@@ -382,6 +413,8 @@ int main(int argc, char** argv) {
     app.add_option("--launcher", options.launcher, "local or slurm")
         ->check(CLI::IsMember({"local", "slurm"}));
     app.add_flag("--make", options.make, "build what the chosen tests need first");
+    app.add_flag("--prepare", options.prepare,
+                 "only build what the chosen tests need; with --list, only say what that is");
     app.add_option("--tree", options.tree, "only print the state of these folders");
     app.add_flag("--plan", options.plan,
                  "only look whether each pattern of tests/plan.md matches a test");

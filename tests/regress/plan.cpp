@@ -16,9 +16,8 @@ bool matches(const std::string& pattern, const std::string& name) {
 } // namespace
 
 bool mayMatch(const std::string& pattern, const Test& test) {
-    return isUnbuilt(test)
-               ? matches(pattern.substr(0, pattern.find('.')), targetsOf(test, ".").at(0))
-               : matches(pattern, test.name);
+    return isUnbuilt(test) ? matches(pattern.substr(0, pattern.find('.')), programOf(test))
+                           : matches(pattern, test.name);
 }
 
 std::vector<Requirement> readPlan(const std::string& file) {

@@ -5,6 +5,7 @@
 #ifndef TEST_LIST_H
 #define TEST_LIST_H
 
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,11 +13,13 @@
 struct Test {
     unsigned number; // CTest's, from 1
     std::string name;
-    std::string place; // folder below tests/: "hdl/modem"
-    std::vector<std::string> labels;
+    std::string place;                    // folder below tests/: "hdl/modem"
+    std::string folder;                   // where it runs, which it may write
+    std::vector<std::string> labels;      // of a program that is not built: those of its cases
     std::vector<std::string> needs, sets; // CTest's fixtures: what sets them up runs before
     std::vector<std::string> command;
-    std::string print; // changes when what the test runs changes (fingerprint)
+    std::optional<std::string> targets; // NEEDS=... of its environment: what must be built for it
+    std::string print;                  // changes when what the test runs changes (fingerprint)
 };
 
 struct Selection {
@@ -37,8 +40,19 @@ void fingerprint(std::vector<Test>& tests, const std::string& source, const std:
 // True for a program that is not built, in the place of its cases.
 bool isUnbuilt(const Test& test);
 
-// Returns the targets that ninja must build for a test; "all" where they are not known.
-std::vector<std::string> targetsOf(const Test& test, const std::string& build);
+// Returns that program's name.
+std::string programOf(const Test& unbuilt);
+
+// True if cases of a program that is not built may be of this name (a regular expression).
+bool mayHold(const Test& unbuilt, const std::string& name);
+
+// Returns the targets that ninja must build for a test: Test::targets, or else what its command
+// names of the build folder's `outputs`; "all" where it names that folder, or what is unknown.
+std::vector<std::string> targetsOf(const Test& test, const std::string& build,
+                                   const std::set<std::string>& outputs);
+
+// Returns what ninja can build in a folder, by its path there.
+std::set<std::string> outputsOf(const std::string& build);
 
 // The words that --block compares with: of the folder, and of the name up to the case.
 std::set<std::string> blockWords(const Test& test);

@@ -135,7 +135,7 @@ def parse_arguments():
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
     parser.add_argument("--patience", type=int, default=300,
                         help="seconds that each answer of the UAV may take")
-    parser.add_argument("--trace", type=int, default=0, help="XBeeAT.Trace: 0, 1 or 2")
+    parser.add_argument("--trace", type=int, default=1, help="XBeeAT.Trace: 0, 1 or 2")
     return parser.parse_args()
 
 

@@ -44,6 +44,12 @@ mv "$work/old" "$work/new"
 said=$(cd "$work/new" && "$configure" build 2>&1) || { echo "$said" >&2 && exit 1; }
 echo "$said" | grep -q "build was made for the tree in $work/old: made anew" || { echo "$said" >&2 && exit 1; }
 
+# One block's tests need its programs, and no more.
+needed=$("$2/tests/regress/regress" --build "$2" --prepare --list --block bus)
+[ "$(echo "$needed" | wc -l)" -lt 20 ] && echo "$needed" | grep -q '^tests/bus/test_bus_decoder$' || { echo "for BLOCK=bus is built: $needed" >&2 && exit 1; }
+if said=$(make JOBS=abc help 2>&1); then echo "JOBS=abc is accepted" >&2 && exit 1; fi
+echo "$said" | grep -q "JOBS='abc' is not a number from 1 on" || { echo "$said" >&2 && exit 1; }
+
 # What `make test` runs with sanitizers: a program without the label would go unseen.
 for program in test_os_cases test_link test_engine test_icec; do
     grep -q sanitized "$2"/tests/sw/*/"${program}_labels.cmake" || { echo "$program: no case is labelled sanitized" >&2 && exit 1; }

@@ -165,10 +165,40 @@ company) # progress, one run at a time, words for what was mistyped, no more bui
     [ $status -eq 2 ] || fail "exit status $status, not 2, for a bad option"
     has "^regress: .*see --help"
     printf 'add_test(NAME test_a.OneMore COMMAND true)\n' >>tests/room/CMakeLists.txt
-    run --make --name test_a.One
-    has '^Building all'
+    run --name test_a.One
     has '^1 passed' # an exact name is one test
-    printf 'add_test(NAME test_late_NOT_BUILT COMMAND false)\nset_tests_properties(test_late_NOT_BUILT PROPERTIES LABELS other)\n' >>tests/room/CMakeLists.txt
+    cat >>tests/room/CMakeLists.txt <<'END'
+add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/tool COMMAND touch ${CMAKE_BINARY_DIR}/tool)
+add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/other COMMAND touch ${CMAKE_BINARY_DIR}/other)
+add_custom_target(tools ALL DEPENDS ${CMAKE_BINARY_DIR}/tool ${CMAKE_BINARY_DIR}/other)
+add_test(NAME script.tool COMMAND ${t} ${CMAKE_BINARY_DIR}/tool ${CMAKE_CURRENT_BINARY_DIR}/work)
+add_test(NAME script.whole COMMAND ${t} ${CMAKE_BINARY_DIR})
+add_test(NAME script.says COMMAND ${t} ${CMAKE_BINARY_DIR})
+set_tests_properties(script.says PROPERTIES ENVIRONMENT "NEEDS=other tools")
+add_test(NAME script.after COMMAND ${t})
+set_tests_properties(script.tool PROPERTIES FIXTURES_SETUP f)
+set_tests_properties(script.after PROPERTIES FIXTURES_REQUIRED f)
+foreach(n soon radio)
+  add_test(NAME test_${n}_NOT_BUILT COMMAND false)
+  file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/test_${n}_labels.cmake "PROPERTIES LABELS \"${n};x\"")
+endforeach()
+END
+    cmake build/main >/dev/null
+    needs() { run --prepare --list "$@" && [ $status -eq 0 ] && tr '\n' ' ' <out.txt; }
+    same() { [ "$1" = "$2" ] || fail "'$1' is built, not '$2'"; }
+    same "$(needs --name '^script.whole')" "all "
+    same "$(needs --name '^script.says')" "other tools "
+    same "$(needs --name '^test_a')" ""
+    same "$(needs --name 'script\.after')" "tool " # by what goes before it
+    same "$(needs --name 'soon\.')" "test_soon "
+    same "$(needs --name 'One')" "test_radio test_soon " # any may have such a case
+    same "$(needs --label 'rtl|radio')" "test_radio "
+    run --prepare --name script.tool
+    [ $status -eq 0 ] && has '^Building tool ' && [ -e build/main/tool ] && [ ! -e build/main/other ] || fail "more or less is built than a test needs"
+    run --prepare --name '^test_a.Nobody'
+    [ $status -eq 2 ] && has "no test is chosen by this: NAME='^test_a.Nobody'; .ctest --test-dir" || fail "a name that no test has"
+    git checkout -q tests/room/CMakeLists.txt
+    printf 'add_test(NAME test_late_NOT_BUILT COMMAND false)\n' >>tests/room/CMakeLists.txt
     cmake build/main >/dev/null
     run --label formal
     has '1 passed, 1 failed' # what is not built may be of that label: it is not left out

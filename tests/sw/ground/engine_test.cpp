@@ -26,8 +26,9 @@ protected:
         s.downMs = 300;
         return s;
     }
-    std::shared_ptr<XBeeAT::Engine> start() {
-        return XBeeAT::Engine::get(settings(), [this](int level, const std::string& text) {
+    std::shared_ptr<XBeeAT::Engine> start() { return start(settings()); }
+    std::shared_ptr<XBeeAT::Engine> start(const XBeeAT::Settings& settings) {
+        return XBeeAT::Engine::get(settings, [this](int level, const std::string& text) {
             std::lock_guard<std::mutex> lock(logMutex_);
             log_ += std::to_string(level) + " " + text + "\n";
         });
@@ -160,10 +161,7 @@ TEST_F(EngineTest, HeartbeatsTakeNoAir) {
 TEST_F(EngineTest, TheModemsKeyIsSetAndNeverLogged) {
     XBeeAT::Settings s = settings();
     s.modemKey = "0123456789ABCDEF";
-    auto engine = XBeeAT::Engine::get(s, [this](int, const std::string& text) {
-        std::lock_guard<std::mutex> lock(logMutex_);
-        log_ += text + "\n";
-    });
+    auto engine = start(s);
     ASSERT_TRUE(rig_.until([&] { return rig_.ground->parameter("EE") == 1; }));
     ASSERT_TRUE(rig_.until([&] { return !rig_.ground->inCommandMode(); }));
     EXPECT_TRUE(logged("ATKY: OK"));
@@ -238,12 +236,24 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     close(fd);
 }
 
+// What failed is told once, and as what it was.
+TEST_F(EngineTest, ARefusedCommandIsToldAsWhatItIs) {
+    XBeeAT::Settings s = settings();
+    s.pan = 0x1FFFF;
+    auto engine = start(s);
+    const int fd = engine->connect(0);
+    EXPECT_TRUE(readAll(fd, 1).empty());
+    close(fd);
+    EXPECT_TRUE(logged("refuses ATID; the next connection tries again"));
+    EXPECT_FALSE(logged("no modem answers"));
+}
+
 // A listener alone has the modem tried again, though nobody connects.
 TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
     rig_.with([&] { rig_.ground->power(false, rig_.ns()); });
     auto engine = start();
     ASSERT_GE(engine->listen(), 0);
-    while (!logged("given up"))
+    while (!logged("the next connection tries again"))
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     rig_.with([&] { rig_.ground->power(true, rig_.ns()); });
     EXPECT_TRUE(rig_.until([&] { return rig_.isUp(); }));

@@ -103,7 +103,7 @@ public:
         settings.random = [this] { return random(); };
         std::unique_lock<std::mutex> lock(mutex_);
         engine_ = XBeeAT::Engine::get(settings, [this](int, const std::string& text) {
-            if (text.find("given up") != std::string::npos) // it waits for a new connection
+            if (text.find("tries again") != std::string::npos) // it waits for a new connection
                 end();
         });
         engine_->listen();

@@ -96,12 +96,21 @@ private:
         std::map<unsigned, std::string> taken = {{control, "CONTROL"}};
         if (block_.hasLong())
             taken[status] = "STATUS";
-        unsigned needed = static_cast<unsigned>(taken.size());
-        std::string list = block_.hasLong() ? "CONTROL 1, STATUS 1" : "CONTROL 1";
-        if (block_.memoryBytes) {
+        constexpr unsigned room = slotWords - firstWord;
+        unsigned needed = static_cast<unsigned>(taken.size()) + (block_.memoryBytes ? 1 : 0);
+        for (const Call& call : block_.calls)
+            needed += static_cast<unsigned>(call.words.size());
+        if (needed > room) {
+            taken[page] = "PAGE";
             ++needed;
-            list += ", MEMORY 1";
         }
+        while (needed > room + pageWords * ((1u << block_.pageBits) - 1))
+            ++block_.pageBits;
+        std::string list = block_.hasLong() ? "CONTROL 1, STATUS 1" : "CONTROL 1";
+        if (taken.count(page))
+            list += ", PAGE 1";
+        if (block_.memoryBytes)
+            list += ", MEMORY 1";
         for (Call& call : block_.calls) {
             unsigned counts[2] = {0, 0};
             for (Word& w : call.words) {
@@ -115,32 +124,29 @@ private:
                     error(call.operation->at, w.name + " wants word " + std::to_string(w.number) +
                                                   ", which is " + taken[w.number] + "'s");
             }
-            needed += counts[0] + counts[1];
             if (counts[0] + counts[1])
                 list += ", '" + call.operation->name + "' " + std::to_string(counts[0]) + " in " +
                         std::to_string(counts[1]) + " out";
         }
-        constexpr unsigned room = slotWords - firstWord;
-        if (needed > room)
+        constexpr unsigned most = room + pageWords * ((1u << mostPageBits) - 1);
+        if (needed > most)
             error(d_.at, "needs " + std::to_string(needed) + " words, a slot has " +
-                             std::to_string(room) + ": " + list);
+                             std::to_string(most) + ": " + list);
         if (errors_)
             return;
         unsigned next = firstWord;
-        if (block_.memoryBytes) {
-            while (taken.count(next))
+        auto take = [&](const std::string& name) {
+            while (taken.count(next) || (next >= slotWords && next % slotWords < pageWords))
                 ++next;
-            block_.memoryWord = next;
-            taken[next] = "MEMORY";
-        }
+            taken[next] = name;
+            return next;
+        };
+        if (block_.memoryBytes)
+            block_.memoryWord = take("MEMORY");
         for (Call& call : block_.calls)
             for (Word& w : call.words)
-                if (w.number == 0) {
-                    while (taken.count(next))
-                        ++next;
-                    w.number = next;
-                    taken[next] = w.name;
-                }
+                if (w.number == 0)
+                    w.number = take(w.name);
     }
 
     // Checks that no two names of Slice give one name of a port, as aB and a_b do, or a member x of
@@ -200,6 +206,11 @@ unsigned Block::events() const {
         if (c.isLong || c.isEvent)
             count = c.bit + 1;
     return count;
+}
+
+unsigned Block::numbers() const {
+    auto list = words();
+    return list.empty() ? slotWords : (list.back()->number / slotWords + 1) * slotWords;
 }
 
 std::vector<const Word*> Block::words() const {

@@ -12,7 +12,10 @@
 namespace hw {
 
 constexpr unsigned firstWord = 3, slotWords = 16; // ID, EVENT and MASK come before
-constexpr unsigned control = 3, status = 4;
+constexpr unsigned control = 3, status = 4, page = 5, pageLsb = 5;
+// Of a slot with PAGE: words 8..15 are those of page n / slotWords, so a number n has n % slotWords
+// of at least 8 there.
+constexpr unsigned pageWords = 8, mostPageBits = 5;
 constexpr unsigned bufferAlignment = 128; // bytes: bursts begin there
 constexpr unsigned mostPins = 32;         // of a core, in a direction
 constexpr unsigned mostOperations = 16, refusedLsb = 16, resetBit = 31;
@@ -78,13 +81,16 @@ struct Block {
     std::vector<Call> calls;
     std::vector<Listener> listeners;
     std::vector<Pin> pins;
+    unsigned pageBits = 0;    // above 0: word 5 is PAGE, and there are 2 to this power of pages
     unsigned memoryWord = 0;  // MEMORY; 0: no sequences
     unsigned memoryBytes = 0; // of all buffers: a power of two
 
     bool hasLong() const;
     unsigned memoryLsb() const; // MEMORY holds the address from this bit on
     unsigned events() const;    // bits of EVENT that are used, from bit 0
-    // Returns every word between CONTROL and the slot's end, by number.
+    unsigned numbers() const;   // of words, from 0: a multiple of slotWords
+    bool isPaged(unsigned word) const { return pageBits && word % slotWords >= pageWords; }
+    // Returns every word of parameters and results, by number.
     std::vector<const Word*> words() const;
 };
 

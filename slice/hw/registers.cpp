@@ -67,6 +67,12 @@ std::vector<Register> registers(const Block& b) {
     list.push_back(act);
     if (b.hasLong())
         list.push_back(state);
+    if (b.pageBits)
+        list.push_back({page,
+                        "PAGE",
+                        "rw",
+                        "which words 8..15 are",
+                        {{"ADDRESS", "a multiple of 32", 0, pageLsb + b.pageBits}}});
     if (b.memoryWord)
         list.push_back(
             {b.memoryWord,
@@ -121,9 +127,12 @@ GeneratedFile registersFile(const Block& b, const CFileNames&) {
     w.line("  \"registers\": [");
     auto list = registers(b);
     for (const Register& r : list) {
-        w.line("    {\"word\": " + std::to_string(r.number) + ", \"name\": \"" + r.name +
-               "\", \"access\": \"" + r.access + "\", \"doc\": " + quoted(r.doc) +
-               ", \"fields\": [");
+        std::string behind = b.isPaged(r.number)
+                                 ? "\"page\": " + std::to_string(r.number / slotWords * 32) + ", "
+                                 : "";
+        w.line("    {\"word\": " + std::to_string(r.number % slotWords) + ", " + behind +
+               "\"name\": \"" + r.name + "\", \"access\": \"" + r.access +
+               "\", \"doc\": " + quoted(r.doc) + ", \"fields\": [");
         for (const Bits& f : r.fields)
             w.line("      {\"name\": \"" + f.name + "\", \"lsb\": " + std::to_string(f.lsb) +
                    ", \"width\": " + std::to_string(f.width) + ", \"doc\": " + quoted(f.doc) + "}" +

@@ -51,8 +51,10 @@ void initFunction(Writer& w, const Block& b) {
             w.line("if (memory & " + std::to_string(b.memoryBytes - 1) + "U)");
             w.nested("return HW_UNALIGNED;");
             w.line("if (status == HW_OK)");
-            w.nested("FSMC_write(slot, " + prefix + "_MEMORY, memory >> " +
-                     std::to_string(b.memoryLsb()) + ");");
+            w.nested((b.isPaged(b.memoryWord) ? "Hw_Core_write(&self->core, " + prefix +
+                                                    "_MEMORY, " + prefix + "_MEMORY_PAGE"
+                                              : "FSMC_write(slot, " + prefix + "_MEMORY") +
+                     ", memory >> " + std::to_string(b.memoryLsb()) + ");");
         }
         w.line("return status;");
     });

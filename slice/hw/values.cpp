@@ -45,6 +45,14 @@ std::string bitsOf(const Piece& p) {
     }
 }
 
+// A read or write of a word, up to its bracket; one behind PAGE takes more than the access.
+std::string access(const Block& b, const Word& word, const std::string& what) {
+    std::string name = upperCase(b.name) + "_" + word.name;
+    return b.isPaged(word.number)
+               ? "Hw_Core_" + what + "(&hw_core->core, " + name + ", " + name + "_PAGE"
+               : "FSMC_" + what + "(hw_core->core.slot, " + name;
+}
+
 void writeWord(Writer& w, const Block& b, const Word& word) {
     std::string value;
     for (const Piece& p : word.pieces) {
@@ -53,8 +61,7 @@ void writeWord(Writer& w, const Block& b, const Word& word) {
             bits = bits + " << " + macro(b, word, p, "LSB");
         value += (value.empty() ? "" : " | ") + bits;
     }
-    w.line("FSMC_write(hw_core->core.slot, " + upperCase(b.name) + "_" + word.name + ", " + value +
-           ");");
+    w.line(access(b, word, "write") + ", " + value + ");");
 }
 
 std::string address(const Piece& p) {
@@ -121,8 +128,7 @@ void readWords(Writer& w, const Block& b, const Call& c, unsigned exception) {
         });
         if (!word.isOut || !isMeant)
             continue;
-        w.line("hw_word = FSMC_read(hw_core->core.slot, " + upperCase(b.name) + "_" + word.name +
-               ");");
+        w.line("hw_word = " + access(b, word, "read") + ");");
         for (const Piece& p : word.pieces)
             if (!p.isCode && p.exception == exception)
                 readPiece(w, b, c, word, p);
@@ -133,8 +139,7 @@ void readException(Writer& w, const Block& b, const Call& c) {
     for (const Word& word : c.words)
         for (const Piece& p : word.pieces)
             if (p.isCode) {
-                w.line("hw_word = FSMC_read(hw_core->core.slot, " + upperCase(b.name) + "_" +
-                       word.name + ");");
+                w.line("hw_word = " + access(b, word, "read") + ");");
                 w.line("switch ((hw_word & " + macro(b, word, p, "MASK") + ") >> " +
                        macro(b, word, p, "LSB") + ") {");
             }

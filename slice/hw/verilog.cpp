@@ -7,6 +7,7 @@
 #include "hw/ports.h"
 #include "hw/words.h"
 #include <cstdio>
+#include <map>
 
 namespace hw {
 namespace {
@@ -28,7 +29,12 @@ std::string slice(const std::string& vector, unsigned lsb, unsigned width) {
 
 // The bits of bus_registers' vectors that hold a word.
 unsigned base(unsigned word) {
-    return 32 * (word - firstWord);
+    return 32 * (word % slotWords - firstWord);
+}
+
+// What the names of a page's signals end in; nothing for page 0.
+std::string suffix(unsigned word) {
+    return word < slotWords ? "" : std::to_string(word / slotWords);
 }
 
 void ports(Writer& w, const Block& b) {
@@ -41,39 +47,81 @@ void ports(Writer& w, const Block& b) {
     }
 }
 
-void parameters(Writer& w, const Block& b) {
-    unsigned rw = 0, ro = b.hasLong() ? 1u << status : 0;
-    std::string widths;
+// Writes the registers of one page, whose words begin with the number `first`.
+void registers(Writer& w, const Block& b, unsigned first) {
+    unsigned rw = 0, ro = !first && b.hasLong() ? 1u << status : 0;
+    std::map<unsigned, unsigned> widthOf;
+    auto add = [&](unsigned& kind, unsigned number, unsigned width) {
+        if (number / slotWords == first / slotWords) {
+            kind |= 1u << number % slotWords;
+            widthOf[number % slotWords] = width;
+        }
+    };
     for (const Word* word : b.words())
-        (word->isOut ? ro : rw) |= 1u << word->number;
+        add(word->isOut ? ro : rw, word->number, word->width());
     if (b.memoryWord)
-        rw |= 1u << b.memoryWord;
-    for (unsigned n = slotWords; n-- > 0;) {
-        unsigned width = 32;
-        for (const Word* word : b.words())
-            if (word->number == n)
-                width = word->width();
-        if (n && n == b.memoryWord)
-            width = 32 - b.memoryLsb();
-        widths += "6'd" + std::to_string(width) + (n ? ", " : "");
-    }
+        add(rw, b.memoryWord, 32 - b.memoryLsb());
+    if (b.pageBits)
+        add(rw, page, pageLsb + b.pageBits);
+    std::string widths;
+    for (unsigned n = slotWords; n-- > 0;)
+        widths += "6'd" + std::to_string(widthOf.count(n) ? widthOf[n] : 32) + (n ? ", " : "");
     char id[16];
-    std::snprintf(id, sizeof id, "32'h%08X", b.type << 16 | b.version);
-    unsigned events = b.events() ? b.events() : 1;
+    std::snprintf(id, sizeof id, "32'h%08X", first ? 0 : b.type << 16 | b.version);
+    unsigned events = !first && b.events() ? b.events() : 1;
+    std::string n = std::to_string(first / slotWords);
+    auto bus = [&](const std::string& name, const std::string& ofPage) {
+        return "." + name + "(" + (b.pageBits ? ofPage : name) + ")";
+    };
     w.line("    bus_registers #(");
     w.line("        .ID_VALUE(" + std::string(id) + "), .EVENTS(" + std::to_string(events) +
-           "), .RW(" + mask(rw) + "), .RO(" + mask(ro) + "), .WS(" + mask(1u << control) + "),");
+           "), .RW(" + mask(rw) + "), .RO(" + mask(ro) + "), .WS(" +
+           mask(first ? 0 : 1u << control) + "),");
     w.line("        .WIDTHS({" + widths + "})");
-    w.line("    ) u_registers (");
+    w.line("    ) u_registers" + suffix(first) + " (");
     w.line("        .clk_i(clk_i), .rst_i(rst_i),");
-    w.line("        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), "
-           ".bus_addr_i(bus_addr_i),");
-    w.line("        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), "
-           ".bus_rdata_o(bus_rdata_o),");
-    w.line("        .bus_error_o(bus_error_o),");
-    w.line("        .value_o(value), .value_i(shown), .strobe_o(strobe), .wdata_o(wdata),");
-    w.line("        .event_i(" + std::string(b.events() ? "done" : "1'b0") + "), .irq_o(irq_o)");
+    w.line("        " + bus("bus_valid_i", "bus_valid_i && here[" + n + "]") +
+           ", .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),");
+    w.line("        .bus_wdata_i(bus_wdata_i), " + bus("bus_ready_o", "ready[" + n + "]") + ", " +
+           bus("bus_rdata_o", "rdata[32*" + n + " +: 32]") + ",");
+    w.line("        " + bus("bus_error_o", "error[" + n + "]") + ",");
+    w.line("        .value_o(value{n}), .value_i(shown{n}), .strobe_o(strobe{n}), "
+           ".wdata_o(wdata{n}),",
+           {{"n", suffix(first)}});
+    w.line("        .event_i(" + std::string(!first && b.events() ? "done" : "1'b0") + "), " +
+           bus("irq_o", "irq[" + n + "]"));
     w.line("    );");
+}
+
+// Writes the registers of all pages: words 8..15 of the bus are those of one of them.
+void pages(Writer& w, const Block& b) {
+    unsigned count = b.numbers() / slotWords;
+    std::string top = "[" + std::to_string(count - 1) + ":0]", data;
+    std::string at = slice("value", base(page) + pageLsb, b.pageBits);
+    w.line("    wire " + top + " here, ready, error, irq;");
+    w.line("    wire [" + std::to_string(32 * count - 1) + ":0] rdata;");
+    for (unsigned p = 0; p < count; ++p) {
+        std::string n = std::to_string(p);
+        w.line("    assign here[" + n + "] = " + (p ? "bus_addr_i[3] && " : "!bus_addr_i[3] || ") +
+               at + " == " + std::to_string(b.pageBits) + "'d" + n + ";");
+        data += (p ? "\n                         | " : "") + ("({32{here[" + n + "]}}") +
+                " & rdata[32*" + n + " +: 32])";
+    }
+    w.line("    assign bus_ready_o = &ready;");
+    w.line("    assign bus_rdata_o = " + data + ";");
+    w.line("    assign bus_error_o = !(|here) || |(here & error);");
+    w.line("    assign irq_o = irq[0];");
+    for (unsigned first = 0; first < b.numbers(); first += slotWords) {
+        if (first) {
+            Writer::Values n = {{"n", suffix(first)}, {"irq", first == slotWords ? ", irq" : ""}};
+            w.line();
+            w.line("    wire [415:0] value{n}, shown{n};", n);
+            w.line("    wire [12:0]  strobe{n};", n);
+            w.line("    wire [31:0]  wdata{n};", n);
+            w.line("    wire unused{n} = &{1'b0, value{n}, strobe{n}, wdata{n}{irq}, 1'b0};", n);
+        }
+        registers(w, b, first);
+    }
 }
 
 // A binary constant with a bit for each call up to the last that has an event.
@@ -120,24 +168,26 @@ void longCalls(Writer& w, const Block& b) {
     w.line("    end");
 }
 
-void results(Writer& w, const Block& b) {
+// Writes what the words of a page read as, whose words begin with the number `first`.
+void results(Writer& w, const Block& b, unsigned first) {
+    std::string shown = "shown" + suffix(first);
     unsigned next = 0; // bits of `shown` below it are assigned
     auto zero = [&](unsigned until) {
         if (next < until)
-            w.line("    assign " + slice("shown", next, until - next) + " = " +
+            w.line("    assign " + slice(shown, next, until - next) + " = " +
                    std::to_string(until - next) + "'d0;");
         next = until;
     };
     auto show = [&](unsigned lsb, unsigned width, const std::string& what) {
         zero(lsb);
-        w.line("    assign " + slice("shown", lsb, width) + " = " + what + ";");
+        w.line("    assign " + slice(shown, lsb, width) + " = " + what + ";");
         next = lsb + width;
     };
     std::vector<const Word*> outs;
     for (const Word* word : b.words())
-        if (word->isOut)
+        if (word->isOut && word->number / slotWords == first / slotWords)
             outs.push_back(word);
-    if (b.hasLong()) {
+    if (!first && b.hasLong()) {
         show(base(status), b.events(), "busy");
         show(base(status) + refusedLsb, b.events(), "refused");
     }
@@ -159,8 +209,8 @@ void results(Writer& w, const Block& b) {
 void base(Writer& w, const Block& b, const Call& c, const Piece& p) {
     unsigned lsb = b.memoryLsb();
     w.line("    assign " + c.name + "_" + baseName(p) + "_o = {" +
-           slice("value", base(b.memoryWord), 32 - lsb) + ", " + std::to_string(lsb) + "'d" +
-           std::to_string(p.offset) + "};");
+           slice("value" + suffix(b.memoryWord), base(b.memoryWord), 32 - lsb) + ", " +
+           std::to_string(lsb) + "'d" + std::to_string(p.offset) + "};");
 }
 
 void calls(Writer& w, const Block& b) {
@@ -176,7 +226,9 @@ void calls(Writer& w, const Block& b) {
                     continue;
                 std::string port = c.name + "_" + p.name + "_o";
                 w.line("    assign " + (p.portWidth > 32 ? slice(port, p.portLsb, p.width) : port) +
-                       " = " + slice("value", base(word.number) + p.lsb, p.width) + ";");
+                       " = " +
+                       slice("value" + suffix(word.number), base(word.number) + p.lsb, p.width) +
+                       ";");
             }
     }
 }
@@ -198,7 +250,7 @@ GeneratedFile verilogFile(const Block& b, const CFileNames& names) {
     w.line("    wire [31:0]  wdata;");
     w.line("    wire [31:0]  act = wdata & {32{" + slice("strobe", control - firstWord, 1) + "}};");
     w.line();
-    parameters(w, b);
+    b.pageBits ? pages(w, b) : registers(w, b, 0);
     w.line();
     w.line("    // A clock after the write, from a register: the whole core hangs on it.");
     w.line("    reg core_rst;");
@@ -209,7 +261,8 @@ GeneratedFile verilogFile(const Block& b, const CFileNames& names) {
         longCalls(w, b);
     calls(w, b);
     w.line();
-    results(w, b);
+    for (unsigned first = 0; first < b.numbers(); first += slotWords)
+        results(w, b, first);
     w.line();
     w.line("    wire unused = &{1'b0, value, strobe, act" +
            std::string(b.hasLong() ? ", start" : "") + ", 1'b0};");

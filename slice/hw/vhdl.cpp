@@ -28,11 +28,20 @@ std::string slice(const std::string& vector, unsigned lsb, unsigned width) {
            ")";
 }
 
-std::string address(unsigned word) {
+std::string binary(unsigned value, unsigned width) {
     std::string bits;
-    for (unsigned b = 4; b-- > 0;)
-        bits += word >> b & 1 ? '1' : '0';
+    while (width-- > 0)
+        bits += value >> width & 1 ? '1' : '0';
     return '"' + bits + '"';
+}
+
+std::string address(const Block& b, unsigned word) {
+    return binary(word, 4 + b.pageBits);
+}
+
+// The number of the word that the bus accesses.
+std::string addressed(const Block& b) {
+    return b.pageBits ? "place" : "bus_addr_i";
 }
 
 std::string hex(unsigned value) {
@@ -77,6 +86,10 @@ void signals(Writer& w, const Block& b) {
     w.line("  signal writes, core_rst : std_logic;");
     w.line("  signal act : std_logic_vector(31 downto 0); -- CONTROL, while it is written");
     w.line("  signal happened, event_bits, mask_bits : " + vectorType(eventBits(b)) + ";");
+    if (b.pageBits) {
+        w.line("  signal page : " + vectorType(pageLsb + b.pageBits) + ";");
+        w.line("  signal place : " + vectorType(4 + b.pageBits) + "; -- words 8..15 have pages");
+    }
     if (b.memoryWord)
         w.line("  signal memory : " + vectorType(32 - b.memoryLsb()) + ";");
     for (const Word* word : b.words())
@@ -145,14 +158,17 @@ void registers(Writer& w, const Block& b) {
     w.line("      -- an event in the cycle of its clear stays set");
     w.line("      event_bits <= event_bits or happened;");
     w.line("      if writes = '1' then");
-    w.line("        case bus_addr_i is");
-    w.line("          when " + address(1) + " => event_bits <= (event_bits and not " + from +
+    w.line("        case " + addressed(b) + " is");
+    w.line("          when " + address(b, 1) + " => event_bits <= (event_bits and not " + from +
            ") or happened;");
-    w.line("          when " + address(2) + " => mask_bits <= " + from + ";");
+    w.line("          when " + address(b, 2) + " => mask_bits <= " + from + ";");
     auto store = [&](unsigned word, const std::string& name, unsigned width) {
-        w.line("          when " + address(word) + " => " + name + " <= " + written(width) + ";");
+        w.line("          when " + address(b, word) + " => " + name + " <= " + written(width) +
+               ";");
         cleared.push_back(name);
     };
+    if (b.pageBits)
+        store(page, "page", pageLsb + b.pageBits);
     if (b.memoryWord)
         store(b.memoryWord, "memory", 32 - b.memoryLsb());
     for (const Word* word : b.words())
@@ -174,7 +190,7 @@ void registers(Writer& w, const Block& b) {
 std::vector<std::string> shownWords(const Block& b, std::string& signals) {
     std::vector<std::string> lines;
     auto word = [&](unsigned n, const std::string& name) {
-        lines.push_back("      when " + address(n) + " => -- " + name);
+        lines.push_back("      when " + address(b, n) + " => -- " + name);
     };
     auto show = [&](unsigned lsb, unsigned width, const std::string& what) {
         lines.push_back("        " + slice("data", lsb, width) + " := " + what + ";");
@@ -199,6 +215,10 @@ std::vector<std::string> shownWords(const Block& b, std::string& signals) {
             show(refusedLsb + c.bit, 1, c.name + "_refused");
             signals += ", " + c.name + "_busy, " + c.name + "_refused";
         }
+    if (b.pageBits) {
+        word(page, "PAGE");
+        vector(pageLsb + b.pageBits, "page");
+    }
     if (b.memoryWord) {
         word(b.memoryWord, "MEMORY");
         vector(32 - b.memoryLsb(), "memory");
@@ -219,7 +239,7 @@ std::vector<std::string> shownWords(const Block& b, std::string& signals) {
 }
 
 void reads(Writer& w, const Block& b) {
-    std::string list = "bus_addr_i";
+    std::string list = addressed(b);
     std::vector<std::string> words = shownWords(b, list);
     w.line();
     // within 100 columns
@@ -234,7 +254,7 @@ void reads(Writer& w, const Block& b) {
     w.line("  begin");
     w.line("    data := (others => '0');");
     w.line("    bus_error_o <= '0';");
-    w.line("    case bus_addr_i is");
+    w.line("    case " + addressed(b) + " is");
     for (const std::string& line : words)
         w.line(line);
     w.line("      when others =>");
@@ -252,13 +272,10 @@ void calls(Writer& w, const Block& b) {
         for (const Word& word : c.words)
             for (const Piece& p : word.pieces) {
                 // The buffers begin at a multiple of their size, so nothing is added.
-                if (p.isCount) {
-                    std::string bits;
-                    for (unsigned bit = b.memoryLsb(); bit-- > 0;)
-                        bits += p.offset >> bit & 1 ? '1' : '0';
-                    w.line("  " + c.name + "_" + baseName(p) + "_o <= memory & \"" + bits +
-                           "\"; -- " + number(p.offset) + " bytes behind the first buffer");
-                }
+                if (p.isCount)
+                    w.line("  " + c.name + "_" + baseName(p) + "_o <= memory & " +
+                           binary(p.offset, b.memoryLsb()) + "; -- " + number(p.offset) +
+                           " bytes behind the first buffer");
                 if (!word.isOut)
                     w.line("  " + portOf(c, p, false) +
                            " <= " + slice(signalOf(word), p.lsb, p.width) + ";");
@@ -282,8 +299,12 @@ GeneratedFile vhdlFile(const Block& b, const CFileNames& names) {
     w.line();
     w.line("  bus_ready_o <= '1';");
     w.line("  writes <= bus_valid_i and bus_write_i;");
-    w.line("  act <= bus_wdata_i when writes = '1' and bus_addr_i = " + address(control) +
-           " else " + hex(0) + ";");
+    if (b.pageBits)
+        w.line("  place <= " + slice("page", pageLsb, b.pageBits) +
+               " & bus_addr_i when bus_addr_i(3) = '1' else " + binary(0, b.pageBits) +
+               " & bus_addr_i;");
+    w.line("  act <= bus_wdata_i when writes = '1' and " + addressed(b) + " = " +
+           address(b, control) + " else " + hex(0) + ";");
     w.line("  -- A clock after the write, from a register: the whole core hangs on it.");
     w.line("  core_rst_o <= core_rst;");
     w.line("  core_resets : process (clk_i)");

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-enum { ID, EVENT, MASK, CONTROL, STATUS };
+enum { ID, EVENT, MASK, CONTROL, STATUS, PAGE };
 #define RESET (1U << 31)
 #define REFUSED_LSB 16U
 
@@ -38,6 +38,21 @@ void Hw_Core_interrupt(Hw_Core* self) {
             self->done[i] = 1;
             self->port->post(self->context, i);
         }
+}
+
+U32 Hw_Core_read(const Hw_Core* self, U32 word, U32 page) {
+    U32 before = FSMC_read(self->slot, PAGE), value;
+    FSMC_write(self->slot, PAGE, page);
+    value = FSMC_read(self->slot, word);
+    FSMC_write(self->slot, PAGE, before);
+    return value;
+}
+
+void Hw_Core_write(const Hw_Core* self, U32 word, U32 page, U32 value) {
+    U32 before = FSMC_read(self->slot, PAGE);
+    FSMC_write(self->slot, PAGE, page);
+    FSMC_write(self->slot, word, value);
+    FSMC_write(self->slot, PAGE, before);
 }
 
 Hw_Status Hw_Core_ready(const Hw_Core* self, U32 operation) {

@@ -64,6 +64,11 @@ Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Port* port, voi
 /* Takes the slot's events while its interrupt line is high; for the interrupt routine or a task. */
 void Hw_Core_interrupt(Hw_Core* self);
 
+/* Access a word behind PAGE, `page`, of a slot with more than 16 words. PAGE is put back, so a task
+ * that is interrupted here goes on as before; tasks of one priority must not take turns here. */
+U32 Hw_Core_read(const Hw_Core* self, U32 word, U32 page);
+void Hw_Core_write(const Hw_Core* self, U32 word, U32 page, U32 value);
+
 /* Steps of an operation, for generated servants. ready: HW_OK if parameters may be written. act:
  * starts the operation. run: starts it and waits until it is done, or `ms` have passed without its
  * event. */

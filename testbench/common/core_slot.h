@@ -153,7 +153,8 @@ public:
     CoreMemory<Module> memory_{bench_};
     BusMaster<Module> bus_{bench_};
     Hw_Core* core_ = nullptr;
-    std::function<void()> interrupt_; // a servant's own, instead of Hw_Core_interrupt
+    std::function<void()> interrupt_;    // a servant's own, instead of Hw_Core_interrupt
+    std::function<void()> beforeAccess_; // of a register, by another task
     U32 posted_ = 0;
     U32 memoryAt_ = coreMemory; // where they are to the core: what a test writes into MEMORY
     uint64_t started_ = 0, waitedClocks_ = 0;
@@ -166,6 +167,8 @@ private:
         if (address < control || address >= control + 0x1000)
             return 0; // the FSMC's own registers
         U32 word = (address - control) / 4;
+        if (beforeAccess_)
+            beforeAccess_();
         if (word / 16 == MAP_SLOT_SYSTEM)
             return word == SYSTEM_ID ? SYSTEM_ID_VALUE : 0;
         EXPECT_EQ(word / 16, coreSlot);

@@ -5,14 +5,18 @@
 
 #include "VCalculatorSlot.h"
 #include "VHttpLevelSlot.h"
+#include "VManySlot.h"
+#include "VManyVhdlSlot.h"
 #include "VWideEchoSlot.h"
 #include "core_slot.h"
 extern "C" {
 #include "calculator_servant.h"
 #include "fsmc.h"
 #include "http_level_servant.h"
+#include "many_servant.h"
 #include "wide_echo_servant.h"
 }
+#include <cstring>
 #include <gtest/gtest.h>
 
 namespace {
@@ -210,6 +214,101 @@ TEST(VhdlCore, IsCalledAsOneInVerilog) {
     Ice_Byte read = 1;
     ASSERT_EQ(Demo_HTTPLevel_level(&core.servant, &read, nullptr), ICE_OK);
     EXPECT_EQ(read, 0) << "CONTROL's bit 31 resets the core";
+}
+
+bool isSame(const Demo_Five& x, const Demo_Five& y) {
+    return std::memcmp(&x, &y, sizeof x) == 0;
+}
+
+// 20 words in and 20 out of one operation, and three of another, at the wrapper's pins.
+template <class Module> class ManyServant : public ::testing::Test {
+protected:
+    ManyServant() {
+        EXPECT_EQ(Demo_Many_Core_init(&core_, slot, 0, &rig_.port, &rig_), HW_OK);
+        rig_.core_ = &core_.core;
+        Module& top = rig_.bench_.top();
+        rig_.bench_.addModel([&top, this] { started_ = top.turn_start_o; },
+                             [&top, this] {
+                                 top.turn_s_a_i = top.turn_p_b_o;
+                                 top.turn_s_b_i = top.turn_p_c_o;
+                                 top.turn_s_c_i = top.turn_p_d_o;
+                                 top.turn_s_d_i = top.turn_p_e_o;
+                                 top.turn_s_e_i = top.turn_p_a_o;
+                                 top.turn_result_a_i = ~top.turn_q_a_o;
+                                 top.turn_result_b_i = ~top.turn_q_b_o;
+                                 top.turn_result_c_i = ~top.turn_q_c_o;
+                                 top.turn_result_d_i = ~top.turn_q_d_o;
+                                 top.turn_result_e_i = ~top.turn_q_e_o;
+                                 top.turn_done_i = started_;
+                                 top.add_result_i = top.add_a_o + top.add_b_o;
+                             });
+    }
+    ~ManyServant() override { EXPECT_EQ(rig_.errors_, 0u) << "accesses to no register"; }
+    static Ice_Long number(U32 n) { return {n * 0x9E3779B9U, static_cast<Ice_Int>(n * 77 + 1)}; }
+    static Ice_Long inverted(Ice_Long n) { return {~n.low, ~n.high}; }
+    // Each call has other values, so that none is right by those of the call before.
+    void turn() {
+        Ice_Long n[10];
+        for (Ice_Long& one : n)
+            one = number(++numbers_);
+        Demo_Five p = {n[0], n[1], n[2], n[3], n[4]}, q = {n[5], n[6], n[7], n[8], n[9]}, s, r;
+        ASSERT_EQ(Demo_Many_turn(&core_.servant, &p, &q, &s, &r, nullptr), ICE_OK);
+        EXPECT_TRUE(isSame(s, {n[1], n[2], n[3], n[4], n[0]}));
+        EXPECT_TRUE(isSame(
+            r, {inverted(n[5]), inverted(n[6]), inverted(n[7]), inverted(n[8]), inverted(n[9])}));
+    }
+    void add() {
+        Ice_Int a = number(++numbers_).high, sum = 0;
+        ASSERT_EQ(Demo_Many_add(&core_.servant, a, 1000, &sum, nullptr), ICE_OK);
+        EXPECT_EQ(sum, a + 1000);
+    }
+
+    CoreSlot<Module> rig_;
+    Demo_Many_Core core_{};
+    U32 numbers_ = 0;
+    bool started_ = false;
+};
+using ManyModules = ::testing::Types<VManySlot, VManyVhdlSlot>;
+TYPED_TEST_SUITE(ManyServant, ManyModules);
+
+TYPED_TEST(ManyServant, WordsBehindPageAreCalledAsOthers) {
+    for (int round = 0; round < 3; ++round) {
+        this->turn();
+        this->add();
+    }
+    EXPECT_EQ(FSMC_read(slot, 5), 0u) << "PAGE is put back";
+}
+
+TYPED_TEST(ManyServant, ATaskThatInterruptsAnotherLeavesItsPageAlone) {
+    auto& rig = this->rig_;
+    U32 accesses = 0, last = 0;
+    rig.beforeAccess_ = [&] { ++accesses; };
+    this->turn();
+    last = accesses;
+    for (U32 at = 1; at <= last; ++at) {
+        accesses = 0;
+        rig.beforeAccess_ = [&] {
+            if (++accesses == at)
+                this->add();
+        };
+        this->turn();
+        ASSERT_FALSE(this->HasFailure()) << "add interrupts the access " << at;
+    }
+    EXPECT_GT(last, 100u);
+}
+
+TYPED_TEST(ManyServant, AWordThatNoPageHasIsAnError) {
+    auto& rig = this->rig_;
+    FSMC_write(slot, 5, 0xFFFFFFFF);
+    EXPECT_EQ(FSMC_read(slot, 5), 0xFFu) << "eight pages, of which six have words";
+    FSMC_read(slot, 15);
+    FSMC_write(slot, 15, 1);
+    EXPECT_EQ(rig.errors_, 2u);
+    FSMC_read(slot, 6);
+    EXPECT_EQ(rig.errors_, 2u) << "words below 8 are in each page";
+    rig.errors_ = 0;
+    FSMC_write(slot, 5, 0);
+    this->turn();
 }
 
 } // namespace

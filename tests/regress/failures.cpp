@@ -19,21 +19,24 @@ std::string strip(std::string text) {
 }
 
 // Returns the test's own last words: GoogleTest's lines after the first "Failure", else the last
-// line of the log. Words of a runner are left out: names, times and counts differ where causes do
-// not.
+// line of the log, without what stands indented below a line that ends in a colon. Words of a
+// runner or of a flight's end are left out: names, times and counts differ where causes do not.
 std::string reasonOf(const std::string& log) {
     static const std::regex runners(R"(^\[|^at clock cycle|tests? (ran|FAILED|PASSED)|)"
-                                    R"(^\s*\d+ FAILED|note:|trace: |Running main)",
+                                    R"(^\s*\d+ FAILED|note:|trace: |Running main|)"
+                                    R"(^The mission failed|^Its end|^icesoc-sim: Cortex-M3: |)"
+                                    R"(^icesoc-sim: [0-9.]+ s simulated)",
                                     std::regex::icase);
     std::istringstream lines(log);
     std::string last, reason;
     bool failure = false;
     unsigned taken = 0;
     for (std::string line; std::getline(lines, line);) {
+        const bool below = !line.empty() && line[0] == ' ' && !last.empty() && last.back() == ':';
         line = strip(line);
         if (failure && (line.empty() || line[0] == '[' || taken == 4))
             return reason;
-        if (line.empty() || std::regex_search(line, runners))
+        if (line.empty() || std::regex_search(line, runners) || (below && !failure))
             continue;
         if (failure) {
             reason += (taken++ ? " " : "") + line;

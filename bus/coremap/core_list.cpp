@@ -17,9 +17,8 @@ namespace {
 
 constexpr unsigned slotLimit = 64, pinLimit = 32;
 constexpr unsigned bufferAlignment = 128; // the largest NPI burst, bytes
-constexpr double chipHz = 100e6;
-constexpr double leastHz =
-    3e6; // of a core's own clock: an access ends within bus_crossing's TIMEOUT
+// The slowest clock of a core's own, Hz: an access ends within bus_crossing's TIMEOUT.
+constexpr double leastHz = 3e6;
 
 [[noreturn]] void fail(unsigned line, const std::string& text) {
     throw std::runtime_error(fmt::format("{}: error: {}", line, text));
@@ -197,7 +196,7 @@ private:
             fail(c.line,
                  fmt::format("clock={}: a part of the chip's clock, as 3/8: 2..256 / 2..256",
                              value));
-        const double hz = chipHz / c.divide * c.multiply;
+        const double hz = c.clockHz();
         if (hz > c.ownClock || hz < leastHz)
             fail(c.line, fmt::format("clock={}: {:.0f} Hz; '{}' is for {:.0f} to {} Hz", value, hz,
                                      c.folder, leastHz, c.ownClock));

@@ -40,8 +40,10 @@ struct Core {
     std::string constraints; // <folder>.ucf beside its description, or nothing
     bool hasClock = false;   // the module has the parameter CLK_HZ
     unsigned ownClock = 0;   // Hz at most of its own clock; 0: it has the chip's
-    unsigned multiply = 0,
-             divide = 1;         // of the chip's clock, makes the own one; 0: pin clock_i does
+    // The chip's clock times this part is the own one; 0: the pin clock_i, its last, brings it.
+    unsigned multiply = 0, divide = 1;
+    // Returns the frequency of its own clock, Hz; of one that a pin brings, the highest.
+    double clockHz() const { return multiply ? 100e6 / divide * multiply : ownClock; }
     bool saysIdle = false;       // the module has the output idle_o
     bool hasGate = false;        // its clock stands still while it is idle, on the board, too
     bool isProbe = false;        // it has cycles_i and signals_i

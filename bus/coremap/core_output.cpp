@@ -70,6 +70,13 @@ std::string probed(const Chip& chip) {
            "`endif\n" + ends + "\n";
 }
 
+// Returns the wire of the output, core.pin, that brings this input.
+std::string sourceNet(const Pin& p) {
+    std::string net = "pin_" + p.source;
+    net[net.find('.')] = '_';
+    return net;
+}
+
 std::string instance(const Core& c) {
     std::string s = fmt::format("    // {}: ip/{}\n", c.name, c.folder), pins, parameters;
     if (c.hasClock && !c.ownClock)
@@ -88,8 +95,7 @@ std::string instance(const Core& c) {
     for (const Pin& p : c.pins) {
         std::string at;
         if (!p.source.empty()) {
-            size_t dot = p.source.find('.');
-            at = fmt::format("pin_{}_{}", p.source.substr(0, dot), p.source.substr(dot + 1));
+            at = sourceNet(p);
         } else if (c.multiply && p.name == "clock_i") {
             at = "clk_" + c.name;
         } else if (!p.isOut() && p.isInternal) {
@@ -280,22 +286,17 @@ static std::string ownConstraints(const Core& c) {
 static std::string clockConstraints(const Core& c) {
     if (!c.ownClock)
         return "";
-    std::string net = "u_soc/clk_" + c.name;
-    double hz = 100e6 / c.divide * c.multiply;
-    for (const Pin& p : c.pins)
-        if (p.name == "clock_i" && !c.multiply) {
-            net = p.isPin() ? fmt::format("core_pins_i<{}>", p.lsb)
-                            : "u_soc/pin_" + p.source.substr(0, p.source.find('.')) + "_" +
-                                  p.source.substr(p.source.find('.') + 1);
-            hz = c.ownClock;
-        }
+    const Pin& p = c.pins.back();
+    std::string net = p.isPin()    ? fmt::format("core_pins_i<{}>", p.lsb)
+                      : c.multiply ? "u_soc/clk_" + c.name
+                                   : "u_soc/" + sourceNet(p);
     return fmt::format("NET \"{0}\" TNM_NET = \"{1}_clk\";\n"
                        "TIMESPEC \"TS_{1}_clk\" = PERIOD \"{1}_clk\" {2:.3f} ns HIGH 50%;\n"
                        "TIMESPEC \"TS_{1}_to_soc\" = FROM \"{1}_clk\" TO \"soc_clk\" 8 ns "
                        "DATAPATHONLY;\n"
                        "TIMESPEC \"TS_soc_to_{1}\" = FROM \"soc_clk\" TO \"{1}_clk\" 8 ns "
                        "DATAPATHONLY;\n",
-                       net, c.name, 1e9 / hz);
+                       net, c.name, 1e9 / c.clockHz());
 }
 
 std::string constraintsOf(const Chip& chip) {

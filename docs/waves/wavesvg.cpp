@@ -2,7 +2,7 @@
 //
 // wavesvg: draws a waveform in WaveJSON (the format of WaveDrom, strict JSON) as SVG.
 //
-// Of a signal: name, wave (0 1 p x z = 2..9 . |), data. Signals are grouped by nested lists that
+// A signal has name, wave (0 1 p x z = 2..9 . |), data. Signals are grouped by nested lists that
 // begin with a name; {} is an empty line. head.text and foot.text, config.hscale. What it does not
 // know is an error that names the signal.
 

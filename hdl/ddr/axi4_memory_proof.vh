@@ -92,7 +92,7 @@
         cover (r_ends && r_watched && r_len == 8'd3 && rresp_o == 2'd0 && \u_memory.u_read.asked == 3'd2);
         cover (r_ends && r_watched && r_len == 8'd1 && rresp_o == 2'd2);
     end
-    // What carries the above: the queue from its oldest place on.
+    // The queue carries the induction: it is walked from its oldest place on.
     integer q;
     reg [2:0] finals, before;
     reg       seen, ended, previous_final; // a place of the watched one came; its last
@@ -226,7 +226,7 @@
         if (bvalid_o)
             assert (w_open != 2'd0 && !(w_watched && w_ended) && bid_o == e_w_tag[ID_BITS-1:0]
                     && bresp_o == {e_w_tag[ID_BITS], 1'b0});
-        // What carries the above.
+        // These carry the induction.
         assert (w_place == \u_memory.u_write.place && w_full == \u_memory.u_write.unacked );
         assert (!\u_memory.u_write.over );
         if (\u_memory.u_write.busy )

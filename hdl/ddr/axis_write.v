@@ -117,8 +117,8 @@ module axis_write #(
     assign done_valid_o = ending && behind == 3'd0;
 
     always @(posedge clk_i) begin
-        // What stands at the descriptor's inputs is taken whether it is one or not, behind a packet and until the next:
-        // so the wide choice is made early, and `take`, which is late, only enables it.
+        // The descriptor's inputs are taken whether they hold one or not, behind a packet and until the next: so the wide
+        // choice is made early, and `take`, which is late, only enables it.
         if (take || !busy) begin
             if (axis_tlast_i || !busy) begin
                 at      <= desc_base_i;

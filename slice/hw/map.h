@@ -13,8 +13,8 @@ namespace hw {
 
 constexpr unsigned firstWord = 3, slotWords = 16; // ID, EVENT and MASK come before
 constexpr unsigned control = 3, status = 4, page = 5, pageLsb = 5;
-// Of a slot with PAGE: words 8..15 are those of page n / slotWords, so a number n has n % slotWords
-// of at least 8 there.
+// PAGE selects which words a slot shows at 8..15: number n is word n % slotWords of page
+// n / slotWords, at least 8 on pages above 0.
 constexpr unsigned pageWords = 8, mostPageBits = 5;
 constexpr unsigned bufferAlignment = 128; // bytes: bursts begin there
 constexpr unsigned mostPins = 32;         // of a core, in a direction

@@ -32,7 +32,7 @@ unsigned base(unsigned word) {
     return 32 * (word % slotWords - firstWord);
 }
 
-// What the names of a page's signals end in; nothing for page 0.
+// Returns what the names of a page's signals end in; nothing for page 0.
 std::string suffix(unsigned word) {
     return word < slotWords ? "" : std::to_string(word / slotWords);
 }

@@ -2,8 +2,8 @@
 //
 // program_trace: what the Cortex-M3's program is at: its task, its interrupt, its function.
 //
-// Where the environment asks for a waveform (wave_window.h), these are three rows of text in
-// WAVE.program.vcd, in the same unit of time as the RTL's: half a clock. join_waves.sh puts the two
+// They are three rows of text in WAVE.program.vcd where the environment asks for a waveform
+// (wave_window.h), in the same unit of time as the RTL's: half a clock. join_waves.sh puts the two
 // together. Functions are written from WAVE_FROM to WAVE_TO, tasks and interrupts a tenth of a
 // second before, too.
 

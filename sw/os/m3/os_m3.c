@@ -13,7 +13,7 @@
 
 U32* OS_Switch(U32* sp); /* called by os_switch.S */
 
-/* Whose context the processor holds; 0 before the first switch. Debuggers look for it by name. */
+/* The task whose context the processor holds; 0 before the first. Debuggers look for the name. */
 static OS_Task* os_running;
 
 static void taskReturned(void) {

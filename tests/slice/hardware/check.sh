@@ -13,8 +13,9 @@ case $kind in
 golden)
     # shellcheck disable=SC2086
     "$slice2c" "$ice" --output-dir "$work/c" $hardware
-    # Not every file: a VHDL wrapper is proven to do what the Verilog one does (equal.sh).
+    # The registers are a contract; wrappers, servants and proxies run in test_slice_hardware, new cores in test_ip_sample.
     for file in "${ice%.ice}"/*; do
+        [ -e "$file" ] || continue
         [ -z "${UPDATE_GOLDENS:-}" ] || cp "$work/out/${file##*/}" "$file"
         diff -u "$file" "$work/out/${file##*/}"
     done

@@ -1,20 +1,21 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # equal: ghdl slice2c file.ice work-folder source-folder
-# Each interface's VHDL wrapper is taken as VHDL-93 and -2008 without a warning, and does what the Verilog one does: from
-# reset on, whatever comes, their outputs are the same in every clock (proven, not bounded).
+# Each interface's VHDL wrapper, and the new core around it, are taken as VHDL-93 and -2008 without a warning. The wrapper
+# does what the Verilog one does: from reset on, whatever comes, their outputs are the same in every clock (proven, not
+# bounded).
 set -eu
 ghdl=$1 slice2c=$2 ice=$3 work=$4 source=$5
 rm -rf "$work"
 mkdir -p "$work"
-"$slice2c" "$ice" --output-dir "$work/c" --hw-verilog "$work" --hw-vhdl "$work"
+"$slice2c" "$ice" --output-dir "$work/c" --hw-verilog "$work" --hw-vhdl "$work" --hw-new-vhdl "$work"
 cd "$work"
 for file in *_wrapper.v; do
     module=$(basename "$file" .v)
     for standard in 93 08; do
         rm -f ./*.cf
-        "$ghdl" -a -Wall -Werror --std=$standard "$module.vhd"
-        "$ghdl" -e -Wall -Werror --std=$standard "$module"
+        "$ghdl" -a -Wall -Werror --std=$standard "$module.vhd" "${module%_wrapper}.vhd"
+        "$ghdl" -e -Wall -Werror --std=$standard "${module%_wrapper}"
     done
     "$ghdl" --synth --std=08 --out=verilog "$module" >converted
     # AIGER has flip-flops without enable only; both begin with zeros, as after a reset

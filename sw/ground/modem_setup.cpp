@@ -30,6 +30,11 @@ std::string hex(int value) {
     return text;
 }
 
+bool endsIn(const std::string& text, const std::string& end) {
+    return text.size() >= end.size() &&
+           text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
 } // namespace
 
 bool ModemSetup::pause(int ms) {
@@ -37,26 +42,28 @@ bool ModemSetup::pause(int ms) {
     return !stopped_;
 }
 
-// Returns the reply up to its carriage return; without one, what came in time.
-std::string ModemSetup::readReply(int timeoutMs) {
+// Returns which of `words` the reply ends in; "": none came in time. What was received by radio
+// drains out before a reply: its bytes may be carriage returns.
+std::string ModemSetup::readReply(int timeoutMs, std::initializer_list<std::string> words) {
     std::string reply;
     for (int leftUs = timeoutMs * 1000;;) {
         char byte;
         while (serial_.read(&byte, 1) == 1) {
-            if (byte == '\r')
-                return reply;
             reply += byte;
+            for (const std::string& word : words)
+                if (endsIn(reply, word + '\r'))
+                    return word;
         }
         if (leftUs <= 0)
             break;
         int passed = wait_((leftUs + 999) / 1000, true);
         stopped_ = passed < 0;
         if (stopped_)
-            return reply;
+            return "";
         leftUs -= passed;
     }
     silentMs_ = timeoutMs;
-    return reply;
+    return "";
 }
 
 // The wait for an answer that does not come is the silence before the next +++ already.
@@ -68,15 +75,15 @@ bool ModemSetup::enterCommandMode(int guardMs) {
     serial_.drop();
     if (serial_.write("+++", 3) != 3)
         return false;
-    std::string reply = readReply(guard + replyMs);
-    return reply.size() >= 2 && reply.compare(reply.size() - 2, 2, "OK") == 0;
+    return readReply(guard + replyMs, {"OK"}) == "OK";
 }
 
-std::string ModemSetup::ask(const std::string& text) {
+std::string ModemSetup::ask(const std::string& text, std::initializer_list<std::string> words) {
+    serial_.drop();
     std::string line = "AT" + text + "\r";
     if (serial_.write(line.data(), line.size()) != static_cast<ssize_t>(line.size()))
         return "";
-    std::string reply = readReply(replyMs);
+    std::string reply = readReply(replyMs, words);
     // A key is a secret: its command is logged without it.
     log_(2, "AT" + (text.compare(0, 2, "KY") ? text : text.substr(0, 2)) + ": " + reply);
     return reply;
@@ -85,7 +92,7 @@ std::string ModemSetup::ask(const std::string& text) {
 bool ModemSetup::command(const std::string& text) {
     std::string reply;
     for (int attempt = 0; attempt < tries && !stopped_; ++attempt)
-        if ((reply = ask(text)) == "OK")
+        if ((reply = ask(text, {"OK", "ERROR"})) == "OK")
             return true;
     if (!stopped_)
         trouble_ = "the modem on '" + settings_.device + "' " +
@@ -128,7 +135,7 @@ bool ModemSetup::run() {
         !command("ID" + hex(s.pan)) || !command("RN2") || !command("RO3") ||
         (!s.modemKey.empty() && (!command("EE1") || !command("KY" + s.modemKey))))
         return false;
-    encrypts_ = ask("EE") == "1";
+    encrypts_ = ask("EE", {"0", "1"}) == "1";
     if (!command("BD" + hex(codeOf(s.baud))) || !command("CN"))
         return false;
     serial_.setSpeed(rates[codeOf(s.baud)]);

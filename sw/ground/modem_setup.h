@@ -7,6 +7,7 @@
 
 #include "serial_port.h"
 #include "settings.h"
+#include <initializer_list>
 
 namespace XBeeAT {
 
@@ -30,8 +31,8 @@ private:
     bool enterCommandMode(int guardMs);
     bool pause(int ms);
     bool command(const std::string& text);
-    std::string ask(const std::string& text);
-    std::string readReply(int timeoutMs);
+    std::string ask(const std::string& text, std::initializer_list<std::string> words);
+    std::string readReply(int timeoutMs, std::initializer_list<std::string> words);
 
     SerialPort& serial_;
     const Settings& settings_;

@@ -248,6 +248,32 @@ TEST_F(EngineTest, ARefusedCommandIsToldAsWhatItIs) {
     EXPECT_FALSE(logged("no modem answers"));
 }
 
+// A vehicle that is up before the ground's program: its frames leave the modem between the replies,
+// carriage returns and all.
+TEST_F(EngineTest, TheModemIsSetUpWhileTheUavSends) {
+    uint64_t commands = 0;
+    rig_.with([&] {
+        rig_.echo = true;
+        rig_.step = [&] {
+            if (!rig_.ground->inCommandMode() || rig_.ground->counters().commands == commands)
+                return;
+            commands = rig_.ground->counters().commands;
+            RfPacket packet;
+            packet.header = true;
+            packet.bytes = {'U', '\r', 'O', 'K', 'U'};
+            rig_.ground->receive(packet, rig_.ns());
+        };
+    });
+    auto engine = start();
+    const int fd = engine->connect(0);
+    echoes(fd, 1);
+    close(fd);
+    EXPECT_FALSE(logged("refuses")) << log();
+    EXPECT_FALSE(logged("does not answer")) << log();
+    EXPECT_GE(commands, 9u);
+    rig_.with([&] { rig_.step = nullptr; });
+}
+
 // A listener alone has the modem tried again, though nobody connects.
 TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
     rig_.with([&] { rig_.ground->power(false, rig_.ns()); });

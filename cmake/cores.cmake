@@ -18,12 +18,15 @@ foreach(line IN LISTS lines)
   endif()
 endforeach()
 list(REMOVE_DUPLICATES CHIP_CORES)
-# The object adapter has room for every core's servant beside the four of the UAV: 8 servants by default (sw/icec/ice_config.h),
-# more where the list is longer, on the host and, by ARM_DEFINES, in the firmware.
+# The object adapter has room for every core's servant beside the vehicle's own: 8 servants by default (sw/icec/ice_config.h),
+# more where there are more, on the host (the library icec) and, by ARM_DEFINES, in the firmware.
 set(ARM_DEFINES)
-if(instances GREATER 4)
-  math(EXPR servants "${instances} + 4")
-  add_compile_definitions(ICE_SERVANTS=${servants})
+set(header ${CMAKE_SOURCE_DIR}/sw/apps/uav/uav_private.h)
+set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
+file(STRINGS ${header} servants REGEX "^#define UAV_SERVANTS ")
+string(REGEX REPLACE "[^0-9]" "" servants "${servants}")
+math(EXPR servants "${instances} + ${servants}")
+if(servants GREATER 8)
   set(ARM_DEFINES ICE_SERVANTS=${servants})
 endif()
 

@@ -10,6 +10,8 @@
 
 #define MS_PER_TICK (1000U / OS_TICKS_PER_SEC)
 
+typedef char UAV_RoomForEveryServant[ICE_SERVANTS >= UAV_SERVANTS + MAP_CORES ? 1 : -1];
+
 static OS_EVENT *waiter, *work; /* the task that waits within an operation; the task below */
 static U8 isStarted[MAP_CORES];
 static Hw_Contract contracts[MAP_CONTRACTS];

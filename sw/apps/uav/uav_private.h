@@ -18,6 +18,9 @@
 #define PRIO_CLIENT 12U
 #define PRIO_UPDATE 40U
 
+/* Servants beside the cores': chip, uav, update, fpga, keys. cmake/cores.cmake reads it. */
+#define UAV_SERVANTS 5
+
 extern Ice_Communicator uav_ic;
 extern Link uav_link;
 extern OS_EVENT* uav_radioWork; /* the radio task has something to do */

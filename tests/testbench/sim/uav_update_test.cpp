@@ -7,7 +7,7 @@
 #include "uav_machine.h"
 #include <algorithm>
 #include <cstring>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <lz4.h>
 #include <sodium.h>
 
@@ -66,7 +66,7 @@ protected:
         soc.onTime([this](uint64_t now) { return ground.advance(now); });
         soc.reset();
     }
-    void TearDown() override { uav_update[UAV_FIRMWARE] = {}; }
+    void TearDown() override { uav_update[UAV_FIRMWARE] = uav_update[UAV_BITSTREAM] = {}; }
 
     Slots_Header headerOf(uint32_t version, uint32_t slot) {
         Slots_Header header{SLOTS_MAGIC,
@@ -202,6 +202,15 @@ TEST_F(UavUpdate, FirmwareThatNobodyConfirmsGoesAfterAMinute) {
     machine.run();
     EXPECT_TRUE(restarted);
     EXPECT_GT(static_cast<double>(soc.now()), 0.6e9);
+}
+
+// "keys" is added last: the adapter has room for all servants of the vehicle beside the cores'.
+TEST_F(UavUpdate, WhereBothKindsOfImageAreTakenTheKeysAreServedToo) {
+    uav_update[UAV_BITSTREAM] = {&flash.port, 0, product};
+    const auto script = ground.pinging(1, "keys");
+    UavMachine machine(soc, [&] { return !script() && static_cast<double>(soc.now()) < 4e9; });
+    machine.run();
+    EXPECT_THAT(ground.replies, testing::ElementsAre(testing::Pair(1, 0)));
 }
 
 } // namespace

@@ -25,6 +25,7 @@
 /* The longest wait for DONE, ticks of 10 ms: 3.7 Mbit take 1.9 s at 2 MHz, 3.7 s at half of it, and
  * four tries are the most. */
 #define WAIT_TICKS 1600U
+#define QUIET_TICKS 100U /* no chip select for so long: it reads no more, or is not wired so */
 #define READS_A_PAUSE 64U
 
 static Slots_Port port;
@@ -62,6 +63,7 @@ static void read(void* context, U32 offset, U8* bytes, U32 count) {
 static void startPins(void) {
     RCC_AHB1ENR |= 1UL << BUS | 1UL << CONTROL;
     RCC_APB2ENR |= RCC_APB2ENR_SPI1;
+    GPIO_PUPDR(BUS) |= 1UL << 2U * SELECT;
     GPIO_AFR(BUS, 0) = (GPIO_AFR(BUS, 0) & ~(0xFFFFUL << 16)) | BUS_SPI;
     GPIO_OTYPER(CONTROL) |= 1UL;
 }
@@ -106,7 +108,7 @@ static U32 hear(void) {
 /* Lets the FPGA load its configuration, and sleeps until DONE is high, or long enough. What wakes
  * the processor, SysTick and chip select, is not served. Returns where the FPGA read last. */
 static U32 load(void) {
-    U32 i, heard = 0;
+    U32 i, edge = 0, heard = 0;
     __asm__ volatile("cpsid i");
     GPIO_MODER(BUS) = (GPIO_MODER(BUS) & ~BUS_PINS) | BUS_HEARS;
     arm();
@@ -118,13 +120,14 @@ static U32 load(void) {
     SYST_CVR = 0;
     SYST_CSR = SYST_CSR_ON;
     GPIO_MODER(CONTROL) &= ~3UL;
-    for (i = 0; i < WAIT_TICKS && !isDone();) {
+    for (i = 0; i < WAIT_TICKS && !isDone() && (isSelected() || i - edge < QUIET_TICKS);) {
         __asm__ volatile("wfi");
         i += SCB_ICSR & SCB_ICSR_PENDSTSET ? 1U : 0U;
         SCB_ICSR = SCB_ICSR_PENDSTCLR;
         if (!(EXTI_PR >> SELECT & 1UL))
             continue;
         EXTI_PR = 1UL << SELECT;
+        edge = i;
         if (isSelected())
             heard = hear();
         else
@@ -140,7 +143,7 @@ static U32 load(void) {
     GPIO_MODER(BUS) &= ~BUS_PINS;
     SPI1_CR1 = SPI1_CR1_MASTER;
     __asm__ volatile("cpsie i");
-    if (!isDone())
+    if (!isDone() && isSelected())
         hold(); /* it hangs: the bus is free again */
     return heard;
 }

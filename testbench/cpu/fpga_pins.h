@@ -20,7 +20,8 @@ public:
     void powerOn();
     // Takes the processor's outputs: chip select, PROGRAM_B.
     void drive(bool isSelectLow, bool isProgramLow);
-    bool isDone() const { return !flash_ || (boot_.running && now_() >= doneAt_); }
+    bool isDone() const { return isDoneWired && (!flash_ || (boot_.running && now_() >= doneAt_)); }
+    bool isDoneWired = true; // else it is read as low
     const Spartan6Boot& boot() const { return boot_; }
     // Called when the FPGA has lost its configuration, and is about to have one.
     std::function<void()> onReconfigured;

@@ -47,6 +47,7 @@
         assert (\u_write.unacked == \u_write.queued + {2'd0, f_writing});
         assert ({1'b0, pushed} == owed + {1'b0, \u_write.unacked , 3'd0} + {4'd0, \u_write.place });
         assert (npi_addr_o[5:0] == 6'd0);
+        assert (!idle_o || (!request && promised == 6'd0 && \u_write.unacked == 3'd0 && !m_axis_tvalid_o && !done_valid_o));
         cover (npi_addr_ack_i && !npi_rnw_o && promised == 6'd32);
         cover (done_valid_o && m_axis_tvalid_o && m_axis_tlast_o);
     end

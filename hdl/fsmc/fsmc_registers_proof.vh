@@ -66,7 +66,8 @@
             // Memory writes come first, unless the memory hangs.
             if (bus_valid_o && !$past(bus_valid_o))
                 assert ($past(idle_i) || $past(expired_i));
-            // An answer goes only to the access that asked for it.
+            // An answer goes only to the access that asked for it, and falls with either pin.
+            assert (!done || !(ne_n_async_i || noe_n_async_i));
             assert (!$past(given_up && !begins) || !(done && !$past(done)));
         end
         cover (past && bus_valid_o && bus_write_o && bus_ready_i);

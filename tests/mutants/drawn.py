@@ -47,7 +47,7 @@ class Proof:
     def draw(self, number, seed):
         """Proves the module as it is, and draws its mutants."""
         self.work.mkdir(parents=True, exist_ok=True)
-        status, text = self.run(self.work, f"opt_clean\nwrite_rtlil plain.il\nwrite_json plain.json\nselect -set source {OF_SOURCE.format(self.module)}\nmutate -list {4 * number} -seed {seed} -o list @source")
+        status, text = self.run(self.work, f"setattr -set keep 1 w:f_*\nopt_clean\nwrite_rtlil plain.il\nwrite_json plain.json\nselect -set source {OF_SOURCE.format(self.module)}\nmutate -list {4 * number} -seed {seed} -o list @source")
         if status:
             sys.exit(f"{text}mutants: formal.{self.name} fails without any mutant: mend that first")
         self.design = model.cells(self.work / "plain.json")

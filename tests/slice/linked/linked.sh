@@ -8,7 +8,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 command -v arm-none-eabi-gcc >/dev/null || { echo "linked: arm-none-eabi-gcc is missing; run 'make setup'" && exit 1; }
 rm -rf "$work"
 mkdir -p "$work"
-"$slice2c" "$here/Linked.ice" --output-dir "$work"
+for file in Lent Linked; do "$slice2c" "$here/$file.ice" --output-dir "$work"; done
 
 build() { # name, flags
     name=$1
@@ -29,6 +29,8 @@ build() { # name, flags
         -c $(sed "s,^,$sw/icec/," "$sw/icec/minimal/sources.txt") ../Linked_*.c "$here/server.c" &&
     gcc -fsanitize=address -Wl,--gc-sections -o server ./*.o)
 bad=0
+classes=$(sed -n 's/^    &\(.*\)_type,$/\1/p' "$work/Linked_types.c")
+[ "$classes" = Linked_Tree ] || { echo "linked: the table of classes is not Linked_Tree alone, which this file defines: $classes" && bad=1; }
 has() { # program, name
     grep -qx -- "$2" "$work/$1.names" || { echo "linked: $1 lacks $2: the test looks at the wrong thing" && bad=1; }
 }

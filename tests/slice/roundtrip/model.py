@@ -214,7 +214,8 @@ class Model:
             out.append("Ice_Status T_Echo_forward%s(T_EchoPtr self, const Ice_ObjectPrx *to, T_Echo_forward%s_Exception *ex, "
                        "const Ice_Current *current) {" % (e.name, e.name))
             out.append("    T_EchoPrx prx = *to; (void)self, (void)current; Ice_ObjectPrx_setReplyBuffer(&prx, room, sizeof room);")
-            out.append("    return T_EchoPrx_forward%s(&prx, 0, ex); }" % e.name)
+            # The proxy says what it was, whatever stood there.
+            out.append("    ex->type = T_Echo_forward%s_%s; return T_EchoPrx_forward%s(&prx, 0, ex); }" % (e.name, e.name, e.name))
         out.append("Ice_Status T_Echo_any(T_EchoPtr self, Ice_Value *v, Ice_Value **w, Ice_Value **result, "
                    "const Ice_Current *current) { (void)self, (void)current; *w = *result = v; return ICE_OK; }")
         out.append("Ice_Status T_Echo_shutdown(T_EchoPtr self, const Ice_Current *current) "
@@ -225,7 +226,9 @@ class Model:
         op = "T_Echo_raise%s%s" % (e.name, form)
         parameters = "".join(", " + self.c_parameter(t, name, tag is not None) for name, t, tag in e.all_fields())
         out.append("Ice_Status %s(T_EchoPtr self%s, %s_Exception *ex, const Ice_Current *current) {" % (op, parameters, op))
-        out.append("    (void)self, (void)current; ex->type = %s_%s; T_%s_init(&ex->u.%s);" % (op, e.name, e.name, e.name))
+        out.append("    (void)self, (void)current; ex->type = %s_%s;" % (op, e.name))
+        if not e.preserves():  # else a servant finds it empty
+            out.append("    T_%s_init(&ex->u.%s);" % (e.name, e.name))
         level, path = e, "ex->u.%s" % e.name
         while level:
             for name, t, tag in level.fields:

@@ -53,6 +53,9 @@ UCOS2 ?=
 export CCACHE_BASEDIR := $(CURDIR)
 export CCACHE_NOHASHDIR := 1
 
+# A timer or a container may give none: ccache and cmake/fetch.sh keep their files there.
+export HOME ?= $(shell getent passwd $$(id -u) | cut -d: -f6)
+
 # Numbers have a point in every tool, whatever the user's language.
 export LC_ALL := C.UTF-8
 

@@ -10,6 +10,11 @@ mkdir -p "$build" 2>/dev/null || true
     echo "you may not write in $build, where the build goes: take a clone of your own, or BUILD=a folder that is yours" >&2
     exit 1
 }
+kept=${XDG_CACHE_HOME:-${HOME-}/.cache}
+mkdir -p "$kept" 2>/dev/null && [ -w "$kept" ] || {
+    echo "you may not write in $kept, where what is fetched and compiled is kept: set XDG_CACHE_HOME to a folder that is yours" >&2
+    exit 1
+}
 cache=$build/CMakeCache.txt
 if [ -f "$cache" ]; then
     home=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$cache")

@@ -24,6 +24,10 @@ other=''
 [ "$(id -u)" != 0 ] || other='setpriv --reuid=65534 --regid=65534 --clear-groups'
 if said=$($other "$work/configure.sh" "$work/theirs" 2>&1); then echo "a build where one may not write" >&2 && exit 1; fi
 case $said in *"you may not write in $work/theirs"*BUILD=*) ;; *) echo "$said" >&2 && exit 1 ;; esac
+mkdir -m 777 "$work/mine"
+if said=$(HOME="$work/theirs" XDG_CACHE_HOME='' $other "$work/configure.sh" "$work/mine" 2>&1); then echo "a home where one may not write" >&2 && exit 1; fi
+case $said in *"you may not write in $work/theirs/.cache"*XDG_CACHE_HOME*) ;; *) echo "$said" >&2 && exit 1 ;; esac
+[ "$(env -u HOME make -s --eval 'home: ; @echo $$HOME' home)" = "$(getent passwd "$(id -u)" | cut -d: -f6)" ]
 
 # Set-up in two steps: what only tests need is not asked for by make run. On a machine that has no package yet:
 mkdir "$work/bin" && printf '#!/bin/sh\n' >"$work/bin/dpkg-query" && chmod +x "$work/bin/dpkg-query"

@@ -6,7 +6,6 @@
 #include "files.h"
 #include "process.h"
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -18,7 +17,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr size_t mostChanges = 400, fewestChanges = 25, mostSignals = 100, portDepth = 1;
+constexpr size_t mostChanges = 400, fewestChanges = 25, mostSignals = 200;
 
 struct Signal {
     std::string name;  // with its scopes: "TOP.bridge.u_write.full"
@@ -74,6 +73,8 @@ std::map<std::string, Signal> readVcd(const std::string& text, std::vector<uint6
             signal.depth = scopes.size();
             if (kind == "string")
                 signal.bits = 0;
+            if (name.rfind("smt_", 0) == 0) // the solver's own
+                continue;
             const auto known = signals.find(id);
             if (known == signals.end() || signal.depth < known->second.depth)
                 signals[id] = signal;
@@ -93,7 +94,8 @@ std::map<std::string, Signal> readVcd(const std::string& text, std::vector<uint6
 
 } // namespace
 
-json drawingOf(const std::string& wave, const std::string& about, size_t room) {
+json drawingOf(const Failure& failure, size_t room) {
+    const std::string& wave = failure.wave;
     const bool compressed = wave.size() > 4 && wave.compare(wave.size() - 4, 4, ".fst") == 0;
     const std::string text = compressed ? run({"fst2vcd", "-f", wave}).text : readFile(wave);
     std::vector<uint64_t> moments;
@@ -104,22 +106,19 @@ json drawingOf(const std::string& wave, const std::string& about, size_t room) {
     for (const auto& [id, signal] : signals)
         if (!signal.changes.empty())
             order.push_back(&signal);
-    const auto moves = [](const Signal* s) {
-        return s->depth <= portDepth || s->changes.size() > 1;
+    static const std::regex word("[A-Za-z_]\\w+");
+    const std::set<std::string> words(
+        std::sregex_token_iterator(failure.about.begin(), failure.about.end(), word), {});
+    const auto isWithin = [&](const Signal* s) {
+        return failure.scope.empty() ? s->depth <= 3
+                                     : s->name.find("." + failure.scope + ".") != std::string::npos;
     };
-    const auto isNamed = [&about](const Signal* s) {
-        const std::string name = s->name.substr(s->name.rfind('.') + 1);
-        return s->depth <= 2 &&
-               std::regex_search(
-                   about,
-                   std::regex("\\b" + std::regex_replace(name, std::regex(R"([^\w])"), "\\$&") +
-                              "\\b"));
-    };
-    std::set<const Signal*> named;
-    if (!about.empty())
-        std::copy_if(order.begin(), order.end(), std::inserter(named, named.end()), isNamed);
     const auto rank = [&](const Signal* s) {
-        return std::tuple(s->bits != 0, named.count(s) == 0, !moves(s), s->depth, s->name);
+        const size_t name = s->name.rfind('.') + 1;
+        const bool named = words.count(s->name.substr(name)) && isWithin(s);
+        const bool moves = s->changes.size() > 1;
+        return std::tuple(s->bits != 0, !named, !(moves && !failure.scope.empty() && isWithin(s)),
+                          !moves, s->depth, s->name);
     };
     std::stable_sort(order.begin(), order.end(),
                      [&](const Signal* a, const Signal* b) { return rank(a) < rank(b); });

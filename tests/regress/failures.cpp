@@ -48,24 +48,45 @@ std::string reasonOf(const std::string& log) {
     return failure ? reason : last;
 }
 
-// Returns the text of the assertion of a proof that fails, and adds it and its place to `reason`.
-std::string assertionOf(const std::string& log, std::string& reason) {
+// Adds to a proof's failure which assertion fails: its place and text, the instance in which it
+// stands, and whether that is of the module that is proven. Yosys names the assertion's cell by
+// instance, file and line, and beside it the lines of all cells around.
+bool findAssertion(Failure& failure) {
     static const std::regex failed(
-        R"(Assert failed in \S+: ((?:/\S*/)?((?:hdl|bus|ip)/\S+?)):(\d+)[.]\d+-(\d+))");
-    std::smatch match;
-    if (!std::regex_search(log, match, failed))
-        return "";
-    std::ifstream file(match[1].str());
-    const int first = std::stoi(match[3]), last = std::stoi(match[4]);
-    std::string text;
-    for (int number = 1; number <= last && file; ++number) {
-        std::string line;
-        std::getline(file, line);
-        if (number >= first)
-            text += (text.empty() ? "" : " ") + strip(line);
+        R"(Assert failed in \S+: (\S+) \((?:\$flatten/)?(?:(\S*?)\.?\$assert\$(\S+)\$)?)"),
+        place(R"([^|]*?((?:hdl|bus|ip)/[^|:]+):(\d+)[.](\d+)-(\d+))"); // file:89.41-91.66|...
+    std::smatch match, at;
+    if (!std::regex_search(failure.result.log, match, failed))
+        return false;
+    const std::string places = match[1];
+    for (std::sregex_iterator it(places.begin(), places.end(), place), end; it != end; ++it)
+        if (at.empty() ||
+            (match[3].matched && it->str().find(match[3].str() + ".") != std::string::npos))
+            at = *it;
+    if (at.empty())
+        return false;
+    failure.scope = std::regex_replace(match[2].str(), std::regex("\\./"), ".");
+    const int first = std::stoi(at[2]), last = std::stoi(at[4]);
+    const std::string path = at.str().substr(at.str().find_first_not_of('|'));
+    std::ifstream source(path.substr(0, path.find(':')));
+    failure.about.clear();
+    int assertion = first;
+    std::string line;
+    for (int number = 1; number <= last && std::getline(source, line); ++number) {
+        if (number < first)
+            continue;
+        if (number == first && first < last) // Yosys begins at the end of the statement before
+            line.erase(0, std::stoul(at[3]));
+        line = strip(line);
+        if (failure.about.find("assert") == std::string::npos)
+            assertion = number;
+        failure.about += (failure.about.empty() || line.empty() ? "" : " ") + line;
     }
-    reason += fmt::format(": {}:{}: {}", match[2].str(), first, text);
-    return text;
+    failure.reason = fmt::format("{}:{}: {}", at[1].str(), assertion, failure.about);
+    failure.bucket = failure.reason;
+    const std::string file = fs::path(at[1].str()).stem().string();
+    const std::string module = file.substr(0, file.rfind("_proof"));
+    return failure.result.name.rfind("formal." + module, 0) == 0;
 }
 
 std::string bucketOf(const std::string& reason) {
@@ -73,9 +94,13 @@ std::string bucketOf(const std::string& reason) {
     return std::regex_replace(std::regex_replace(reason, paths, ""), numbers, "#").substr(0, 160);
 }
 
-// Ranks a test by when to look at its failure: first proofs, which name the property; then checks
-// of sources; then tests of one block, of the chip, of the firmware; whole missions last.
-int rankOf(const std::string& name, const std::vector<Test>& tests) {
+// Ranks a test by when to look at its failure: first proofs, which name the property, of the module
+// that has it before those of the modules around; then checks of sources; then tests of one block,
+// of the chip, of the firmware; whole missions last.
+int rankOf(const Failure& failure, const std::vector<Test>& tests) {
+    if (failure.ownAssertion)
+        return -1;
+    const std::string& name = failure.result.name;
     std::string text = name;
     for (const Test& test : tests)
         if (test.name == name) {
@@ -111,8 +136,9 @@ std::vector<Failure> examine(const std::vector<Result>& results, const std::vect
         Failure failure;
         failure.result = result;
         failure.reason = reasonOf(result.log);
-        failure.assertion = assertionOf(result.log, failure.reason);
+        failure.about = failure.reason;
         failure.bucket = bucketOf(failure.reason);
+        failure.ownAssertion = findAssertion(failure);
         std::string exact =
             std::regex_replace(result.name, std::regex(R"([.+*?()\[\]{}|^$\\])"), "\\$&");
         failure.repeat = fmt::format("make test NAME='^{}$$' SEED={}", exact, result.seed);
@@ -130,7 +156,7 @@ std::vector<Failure> examine(const std::vector<Result>& results, const std::vect
         failures.push_back(std::move(failure));
     }
     std::stable_sort(failures.begin(), failures.end(), [&](const Failure& a, const Failure& b) {
-        return rankOf(a.result.name, tests) < rankOf(b.result.name, tests);
+        return rankOf(a, tests) < rankOf(b, tests);
     });
     return failures;
 }

@@ -14,12 +14,14 @@ struct Failure {
     std::string reason; // the line that says what went wrong
     std::string
         bucket; // the reason without its numbers: failures of one bucket have one cause, likely
-    std::string repeat;    // one command
-    std::string log;       // file
-    std::string wave;      // FST or VCD file, or ""
-    std::string assertion; // of a proof: its source, or ""
-    std::string save;      // GTKWave save file, or ""
-    uint64_t clock = 0;    // of the failure, in that waveform; 0: its end
+    std::string repeat;        // one command
+    std::string log;           // file
+    std::string wave;          // FST or VCD file, or ""
+    std::string about;         // text that names signals which matter: the assertion, or the reason
+    std::string scope;         // instance in which to look: "u_window.u_wrapper", or ""
+    bool ownAssertion = false; // of a proof: it stands in the module that is proven
+    std::string save;          // GTKWave save file, or ""
+    uint64_t clock = 0;        // of the failure, in that waveform; 0: its end
 };
 
 // Keeps the logs, and the traces of proofs, in <out>/failures/. Proofs come first, then the tests
@@ -36,10 +38,10 @@ void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
               unsigned limit);
 
 // Returns the end of a waveform, VCD or FST (by fst2vcd): {from, to, signals: [[name, bits, [time,
-// value, ...]], ...], more: signals left out}: the program's, then those that move and ports, the
-// outermost first, then those that stay as they are; the last changes of each. Null: it is empty.
-// Signals that the text `about` names, an assertion, come before those that it does not. Of a
-// drawing of more than `room` bytes as JSON the older changes are left out, then the last signals.
-nlohmann::json drawingOf(const std::string& wave, const std::string& about, size_t room);
+// value, ...]], ...], more: signals left out}: the program's, those that the failure's text names,
+// those that move below its instance, others that move, those that stay as they are; among each the
+// outermost first; the last changes of each. Null: it is empty. Of a drawing of more than `room`
+// bytes as JSON the older changes are left out, then the last signals.
+nlohmann::json drawingOf(const Failure& failure, size_t room);
 
 #endif

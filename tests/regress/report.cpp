@@ -160,20 +160,20 @@ json gather(const History& history, const std::vector<Test>& tests,
                          [](const Failure& failure) { return !failure.wave.empty(); }));
     auto& bad = data["failures"] = json::array();
     for (const Failure& failure : failures)
-        bad.push_back({{"name", failure.result.name},
-                       {"bucket", failure.bucket},
-                       {"reason", failure.reason},
-                       {"repeat", failure.repeat},
-                       {"log", failure.log},
-                       {"wave", failure.wave},
-                       {"save", failure.save},
-                       {"clock", failure.clock},
-                       {"drawing", failure.wave.empty() ? json()
-                                                        : drawingOf(failure.wave, failure.assertion,
-                                                                    drawingsRoom / drawings)},
-                       {"tail", failure.result.log.substr(failure.result.log.size() > 3000
-                                                              ? failure.result.log.size() - 3000
-                                                              : 0)}});
+        bad.push_back(
+            {{"name", failure.result.name},
+             {"bucket", failure.bucket},
+             {"reason", failure.reason},
+             {"repeat", failure.repeat},
+             {"log", failure.log},
+             {"wave", failure.wave},
+             {"save", failure.save},
+             {"clock", failure.clock},
+             {"drawing",
+              failure.wave.empty() ? json() : drawingOf(failure, drawingsRoom / drawings)},
+             {"tail", failure.result.log.substr(failure.result.log.size() > 3000
+                                                    ? failure.result.log.size() - 3000
+                                                    : 0)}});
     data["trees"] = json::object();
     data["flaky"] = history.flaky();
     auto& past = data["history"] = json::array();

@@ -30,19 +30,32 @@ double seconds(uint64_t clocks) {
 struct Scene {
     std::string program; // empty: nothing
     std::string flight;  // folder of the recording
+    unsigned slot = 0;   // of the core of which the processor last heard; 0: of none
     uint64_t clock = 0, before = 2000, after = 20;
 };
 
-// Returns the clock at which the processor last heard of a core, or else of the modem, up to `end`.
-uint64_t lastEventOf(const std::string& flight, uint64_t end) {
-    constexpr int firstCore = 2;
-    uint64_t of[2] = {end, 0}; // the modem and the system; a core
-    std::ifstream events(flight + "/events.jsonl");
+// Looks where the processor last heard of a core, or else of the modem, up to `end`.
+void findLastEvent(Scene& scene, uint64_t end) {
+    constexpr unsigned firstCore = 2;
+    scene.clock = end;
+    std::ifstream events(scene.flight + "/events.jsonl");
     for (std::string line; std::getline(events, line);)
         if (const json event = json::parse(line, nullptr, false);
             event.is_object() && event.contains("slot"))
-            of[event["slot"].get<int>() >= firstCore] = event["ns"].get<uint64_t>() / 10;
-    return of[1] ? of[1] : of[0];
+            if (const auto slot = event["slot"].get<unsigned>();
+                slot >= firstCore || scene.slot == 0) {
+                scene.clock = event["ns"].get<uint64_t>() / 10;
+                scene.slot = slot >= firstCore ? slot : 0;
+            }
+}
+
+// Returns the instance in a slot, as the chip's list of cores names it.
+std::string instanceIn(unsigned slot, const std::string& build) {
+    const std::string list = build + "/gen/soc_cores.vh";
+    const std::string text = fs::exists(list) ? readFile(list) : "";
+    std::smatch match;
+    const std::regex core(fmt::format("(u_\\w+) \\([^;]*`SLOT\\({}\\)", slot));
+    return std::regex_search(text, match, core) ? match[1].str() : "u_modem";
 }
 
 Scene sceneOf(const Result& result, const Test& test) {
@@ -53,8 +66,7 @@ Scene sceneOf(const Result& result, const Test& test) {
     if (std::regex_search(result.log, match, replay)) {
         scene.program = "icesoc-sim";
         scene.flight = match[1];
-        scene.clock =
-            lastEventOf(scene.flight, static_cast<uint64_t>(std::stod(match[2]) * clocksPerSecond));
+        findLastEvent(scene, static_cast<uint64_t>(std::stod(match[2]) * clocksPerSecond));
     } else if (std::regex_search(result.log, match, atClock)) {
         scene.program = result.name.substr(0, result.name.find('.'));
         scene.clock = std::stoull(match[1]);
@@ -165,6 +177,8 @@ void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
         run({source + "/testbench/common/join_waves.sh", wave});
         failure.wave = base + ".fst";
         failure.clock = scene.clock;
+        if (!scene.flight.empty())
+            failure.scope = instanceIn(scene.slot, build);
         failure.save = base + ".gtkw";
         writeSaveFile(failure.save, wave,
                       build + (scene.flight.empty() ? "/tests/" + test->place : "/testbench/sim"),

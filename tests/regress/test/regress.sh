@@ -137,7 +137,10 @@ foreach(i 1 2 3)
   add_test(NAME test_g.Case${i} COMMAND sh -c "printf 'x.cpp:1: Failure\nExpected 1, got 2\n[  FAILED  ] g.Case${i} (${i}7 ms)\n'; exit 1")
 endforeach()
 add_test(NAME mission.x COMMAND sh -c "echo 'Ice.Exception: not served, as expected'; echo 'the picture differs'; exit 1")
-add_test(NAME formal.broken COMMAND sh -c "echo 'Assert failed in broken: ${CMAKE_SOURCE_DIR}/hdl/a/broken_proof.vh:2.9-3.20 (x)'; touch '${CMAKE_BINARY_DIR}/t.vcd'; echo 'broken: trace: ${CMAKE_BINARY_DIR}/t.vcd'; echo 'broken: an assertion fails'; exit 1")
+set(at ${CMAKE_SOURCE_DIR}/hdl/a/broken_proof.vh:1)
+foreach(m around broken) # as Yosys writes it: all cells around, and the end of the line before
+  add_test(NAME formal.${m} COMMAND sh -c "echo 'Assert failed in ${m}: ${CMAKE_SOURCE_DIR}/hdl/a/around.v:7.1-8.9|${at}.6-3.20 ($flatten/u_x./u_y.$assert$${at}$12)'; touch '${CMAKE_BINARY_DIR}/t.vcd'; echo '${m}: trace: ${CMAKE_BINARY_DIR}/t.vcd'; echo '${m}: an assertion fails'; exit 1")
+endforeach()
 END
     mkdir -p hdl/a
     printf 'begin\n    assert (full ||\n        !taken);\nend\n' >hdl/a/broken_proof.vh
@@ -145,7 +148,8 @@ END
     run --name 'test_g|mission|formal'
     has '^3 x  Expected 1, got 2$'
     has '^1 x  the picture differs$'
-    [ "$(grep -m1 ' x  ' out.txt)" = '1 x  broken: an assertion fails: hdl/a/broken_proof.vh:2: assert (full || !taken);' ] || fail "the proof is not told first"
+    [ "$(grep -m1 ' x  ' out.txt)" = '2 x  hdl/a/broken_proof.vh:2: assert (full || !taken);' ] || fail "the proof is not told first"
+    grep -m1 '^    make test' out.txt | grep -q broken || fail "the module that has the assertion is not told first"
     has 'gtkwave build/regress/failures/formal.broken.vcd'
     [ -f build/regress/failures/formal.broken.vcd ] || fail "the proof's trace is not kept"
     has '<property name="wave" value="build/regress/failures/formal.broken.vcd"' build/regress/junit.xml
@@ -388,14 +392,15 @@ END
     "$source/tests/regress/test/look.sh" build/regress/report.html regression || fail "the page"
     ;;
 flight) # a flight that fails is flown again around the last event of a core, by a simulator that writes this waveform
-    mkdir -p build/trace/testbench/sim fly testbench/common
+    mkdir -p build/trace/testbench/sim build/trace/gen fly testbench/common
+    printf 'camera u_camera (\n  .clk_i(clk_i), `SLOT(2), .irq_o(i));\ncore u_core (\n    .clk_i(clk_i), `SLOT(3), .irq_o(j));\n' >build/trace/gen/soc_cores.vh
     cp "$source/testbench/common/join_waves.sh" testbench/common
     printf 'rule r\n command = true\nbuild icesoc-sim: r\n' >build/trace/build.ninja
     cat >build/trace/testbench/sim/icesoc-sim <<'END'
 #!/bin/sh
 echo "$@" >asked
 while [ "$1" != --wave ]; do shift; done
-printf '$timescale 1ps $end\n$scope module TOP $end\n$var wire 1 ! irq_o $end\n$upscope $end\n$enddefinitions $end\n#10\n0!\n#20\n1!\n' | vcd2fst - "$2"
+printf '$timescale 1ps $end\n$scope module TOP $end\n$var wire 1 ! irq_o $end\n$scope module u_core $end\n$var wire 1 & busy $end\n$upscope $end\n$upscope $end\n$enddefinitions $end\n#10\n0!\n0&\n#20\n1!\n1&\n' | vcd2fst - "$2"
 printf '$timescale 1 ps $end\n$scope module program $end\n$var string 1 p.task task $end\n$upscope $end\n$enddefinitions $end\n#3\nsidleTask p.task\n#20\nsradioTask p.task\n#33\nsidleTask p.task\n' >"$2.program.vcd"
 END
     chmod +x build/trace/testbench/sim/icesoc-sim
@@ -421,7 +426,7 @@ END
     fst2vcd build/regress/failures/mission.x-1.fst | sed -n '/^#/,$p' | tr '\n' ' ' >rows
     has '#3 .*sidleTask .*#10 .*0. .*#20 .*1. .*sradioTask .*#33 sidleTask' rows
     has '^program.task$' build/regress/failures/mission.x-1.gtkw
-    has '"program.task",0,\[3,"idleTask",20,"radioTask",33,"idleTask"\]' build/regress/report.html
+    has '"program.task",0,\[3,"idleTask",20,"radioTask",33,"idleTask"\]\],\["TOP.u_core.busy"' build/regress/report.html # the core before ports
     ;;
 large) # more than this project has: the page stays small
     cat >>tests/room/CMakeLists.txt <<'END'

@@ -7,19 +7,17 @@
 Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v, which connects TOP to
 the slot; its registers, with the names that TOP has for their addresses; a test; what a mission calls of it;
 CMakeLists.txt. ROLE=port says what a port is for, instead of its name. Ports that are neither bus, clock, reset nor
-interrupt become pins. CLOCK: the core has a clock of its own, of that frequency at most. VHDL is read by GHDL, which the environment names. A core with AXI-Streams (axis) has an operation
-instead of registers: foreign_axis.py.
+interrupt become pins. CLOCK: the core has a clock of its own, of that frequency at most. VHDL is read by GHDL, which the
+environment names. A core with AXI-Streams (axis) has an operation instead of registers: foreign_axis.py.
 """
 import json
 import os
 import re
-import subprocess
 import sys
-import tempfile
 
 import foreign_axis
+from foreign_files import check_names, fail, folders_of, is_vhdl, kind_of, names_of, read_module
 
-HERE = os.path.dirname(os.path.abspath(__file__))
 CLOCKS = {"clk", "aclk", "clock"}
 RESETS = {"rst", "reset", "arst", "rstn", "resetn", "aresetn", "nrst"}
 INTERRUPTS = {"int", "inta", "irq", "interrupt"}
@@ -53,96 +51,6 @@ ADAPTER = """.clk_i(clk_i), .rst_i(rst_i),
         .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
         .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
         .bus_error_o(bus_error_o), .irq_o(irq_o), .irq_i(interrupt)"""
-
-
-def fail(text):
-    sys.exit("new-foreign: " + text)
-
-
-def kind_of(file):
-    """"vhdl", "verilog", "header" or "" of a file, by the end of its name."""
-    end = os.path.splitext(file)[1].lower()
-    return {".vhd": "vhdl", ".vhdl": "vhdl", ".v": "verilog", ".sv": "verilog",
-            ".vh": "header", ".svh": "header", ".h": "header", ".inc": "header"}.get(end, "")
-
-
-def is_vhdl(file):
-    return kind_of(file) == "vhdl"
-
-
-def text_of(file):
-    with open(file, errors="replace") as f:
-        return f.read()
-
-
-def converted(top, files, work):
-    """The entity `top` as one file of Verilog."""
-    out = os.path.join(work, top + ".v")
-    run = subprocess.run([os.path.join(HERE, "../cmake/vhdl_to_verilog.sh"), os.environ.get("GHDL", "ghdl"), work, top, out] + files,
-                         capture_output=True, text=True)
-    if run.returncode:
-        fail(f"GHDL does not convert {top}:\n{run.stdout}{run.stderr}".rstrip())
-    return [out]
-
-
-def declared(files, kind):
-    """The modules or entities of the files: name, "file:line"."""
-    flags = re.I if kind == "entity" else 0
-    found = []
-    for f in files:
-        text = re.sub(r"/\*.*?\*/|//[^\n]*", lambda m: "\n" * m.group().count("\n"), text_of(f), flags=re.S)
-        found += [(m.group(1), f"{f}:{text.count(chr(10), 0, m.start(1)) + 1}")
-                  for m in re.finditer(rf"^[ \t]*{kind}\s+(?:automatic\s+)?(\w+)", text, re.M | flags)]
-    return found
-
-
-def check_names(top, files):
-    """Each module is in one file, and none has the name of one of this project's: in the chip there is one of each."""
-    if is_vhdl(files[0]):
-        if top not in (there := [n for n, _ in declared(files, "entity")]):
-            fail(f"there is no entity '{top}' in FILES; there is {', '.join(there) or 'none'}")
-        return
-    there = declared(files, "module")
-    if top not in (names := [n for n, _ in there]):
-        fail(f"there is no module '{top}' in FILES; there is {', '.join(names) or 'none'}")
-    first = {}
-    for name, place in there:
-        other = first.setdefault(name, place)
-        if other.rsplit(":", 1)[0] != place.rsplit(":", 1)[0]:
-            fail(f"{place}: module '{name}' is in {other}, too: leave one of the files out")
-    room = os.path.join(HERE, "..")
-    ours = [os.path.join(d, f) for r in ("bus", "hdl") for d, _, there in os.walk(os.path.join(room, r)) for f in there if f.endswith(".v")]
-    for name, place in declared(ours, "module"):
-        if name in first and first[name].rsplit(":", 1)[0] != place.rsplit(":", 1)[0]:
-            fail(f"{first[name]}: module '{name}' has the name of this project's {os.path.relpath(place, room)}: give it another, "
-                 "where it is used, too")
-    for f in files:
-        if os.path.splitext(f)[1].lower() == ".sv" and (packages := declared([f], "package")):
-            fail(f"{packages[0][1]}: package '{packages[0][0]}': Yosys does not read it for the report; make Verilog of it by sv2v")
-
-
-def read_module(top, files, headers=()):
-    """The module `top` as Yosys has it: its ports in order, and the names of its parameters. `headers`: files in whose
-    folders `include finds more."""
-    kind = "entity" if is_vhdl(files[0]) else "module"
-    with tempfile.TemporaryDirectory() as work:
-        if kind == "entity":
-            files = converted(top, files, work)
-        out = os.path.join(work, "top.json")
-        folders = " ".join("-I" + d for d in folders_of([*files, *headers]))
-        run = subprocess.run(["yosys", "-q", "-p", "".join(
-            f"read_verilog -defer {'-sv' if f.lower().endswith('.sv') else ''} {folders} {f}; " for f in files) + f"hierarchy -top {top}; "
-                              f"proc; write_json {out}"], capture_output=True, text=True)
-        if run.returncode:
-            hint = "\nFILES may name headers, too: `include finds what is in their folders" if "include file" in run.stderr else ""
-            fail(f"Yosys does not elaborate {top}:\n{run.stdout}{run.stderr}".rstrip() + hint)
-        modules = json.load(open(out))["modules"]
-    module = next(m for n, m in modules.items() if m["attributes"].get("top") or n == top)
-    return module["ports"], module.get("parameter_default_values", {})
-
-
-def folders_of(files):
-    return sorted({os.path.dirname(f) for f in files} - {""})
 
 
 def role(name, port, bus):
@@ -191,28 +99,6 @@ def roles_of(top, bus, ports, given):
     if "strobe" in roles.values() and "ack" not in roles.values():
         fail("PORTS: a strobe of one clock needs an ack; what answers in the same clock has select")
     return roles
-
-
-def names_of(top, files, bits):
-    """Names of the core's words by their addresses: the constants of the file with `top` that are as wide as its
-    address. KEY0 and KEY7 at a distance of 7 stand for those between, too."""
-    text = next((t for t in map(text_of, files) if re.search(rf"^\s*module\s+{top}\b", t, re.M)), "")
-    text = re.sub(r"//.*", "", text)
-    base = {"h": 16, "d": 10, "b": 2}
-    found = [(n, int(digits, base[b.lower()])) for part in re.findall(r"\blocalparam\b([^;]*);", text)
-             for n, b, digits in re.findall(rf"(\w+)\s*=\s*{bits}'([hdb])([0-9a-fA-F_]+)", part, re.I)]
-    if len(found) < 2 or len({v for _, v in found}) < len(found):
-        return {}
-    prefix = os.path.commonprefix([n for n, _ in found])
-    prefix = prefix[:prefix.rfind("_") + 1]
-    names = {v: n[len(prefix):].upper() for n, v in found}
-    for value, name in list(names.items()):
-        word, first = re.fullmatch(r"(.*?)(\d*)", name).groups()
-        for last, other in [(v, n) for v, n in names.items() if v > value]:
-            if first and re.fullmatch(rf"{word}\d+", other) and int(other[len(word):]) - int(first) == last - value:
-                names.update({value + i: f"{word}{int(first) + i}" for i in range(last - value)})
-    return {v: ("CORE_" + n if n in ("ID", "EVENT", "MASK", "PAGE") or not n[0].isalpha() else n)
-            for v, n in sorted(names.items())}
 
 
 def pin_name(name, port):

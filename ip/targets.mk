@@ -19,7 +19,7 @@ FILES ?=
 PORTS ?=
 CLOCK ?=
 new-foreign: $(BUILD)/build.ninja ## put a third-party core into a slot: NAME=my_uart TOP=its_module BUS=wishbone|axil|memory|own|axis FILES="a.v b.v" [PORTS="write=we ack=done"] [CLOCK=24000000]
-	@$(if $(filter %.vhd %.vhdl,$(FILES)),$(NINJA) --quiet ghdl)
+	@$(if $(filter %.vhd %.vhdl %.VHD %.VHDL,$(FILES)),$(NINJA) --quiet ghdl)
 	@GHDL='$(BUILD)/ghdl/ghdl' ip/new_foreign.py '$(NAME)' '$(TOP)' '$(BUS)' 'ip/$(NAME)' $(if $(CLOCK),'CLOCK=$(CLOCK)') $(PORTS) $(FILES)
 .PHONY: new-foreign
 

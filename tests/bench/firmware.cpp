@@ -8,23 +8,16 @@
 // 5).
 
 #include "figures.h"
-#include "ground.h"
-#include "m3_machine.h"
-
-extern "C" {
-#include "uav.h"
-}
-
+#include "measured_flight.h"
 #include <array>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <map>
 #include <unordered_map>
 
 namespace {
 
-constexpr double hclk = 120e6, hclkPerClk = 1.2;
+constexpr double hclkPerClk = 1.2;
 constexpr double entering = 12,
                  leaving = 10; // cycles of exceptions, which the model counts around its calls
 constexpr unsigned fpgaInterrupt = FirstInterrupt + 6; // EXTI0
@@ -57,73 +50,12 @@ struct Range {
     double mean() const { return n ? sum / n : 0; }
 };
 
-// The vehicle with its ground station, in the air.
-class Flight {
-public:
-    // `scaled` 1: the board's ratio of clocks; 50: the processor's time in the radio's. `key`: the
-    // link's, if any.
-    Flight(const std::string& elf, double scaled, const std::vector<uint8_t>& key = {})
-        : warp(scaled),
-          machine(soc,
-                  {elf, scaled > 1 ? static_cast<uint32_t>(hclk) : 0, Ground::guardMs, {}, key},
-                  [this] { return poll(); }) {
-        ground.key = key;
-        ground.start();
-        soc.onTime([this](uint64_t now) { return ground.advance(now); });
-        soc.reset();
-        const uint32_t size[2] = {48, 32};
-        std::memcpy(soc.memory().data() + UAV_FRAME_HEADER, size, sizeof size);
-        until([this] { return ground.isUp(); }, 20, "the link");
-        ground.open();
-        until([this] { return ground.validated; }, 5, "the connection");
-    }
-    // Runs until `done`, asked each simulated millisecond; fails after `seconds`.
-    void until(std::function<bool()> done, double seconds, const char* what) {
-        done_ = std::move(done);
-        uint64_t end = soc.now() + static_cast<uint64_t>(seconds * 1e9);
-        late_ = false;
-        end_ = end;
-        machine.run();
-        if (late_)
-            throw std::runtime_error(std::string(what) + " has not happened within " +
-                                     std::to_string(seconds) + " simulated seconds");
-    }
-    void wait(double seconds) {
-        uint64_t end = soc.now() + static_cast<uint64_t>(seconds * 1e9);
-        until([this, end] { return soc.now() >= end; }, seconds + 1, "waiting");
-    }
-    // Cycles on the board: all that the processor was awake for, and of these waiting for the FSMC.
-    double awake() { return own() + waiting(); }
-    double waiting() { return static_cast<double>(cpu().busCycles()) / warp; }
-    double own() {
-        return static_cast<double>(cpu().cycles()) - static_cast<double>(cpu().sleepingCycles()) -
-               static_cast<double>(cpu().busCycles());
-    }
-    CortexM3& cpu() { return machine.cpu(); }
-    double seconds() const { return static_cast<double>(soc.now()) / 1e9; }
-
-    double warp;
-    RfChannel air{1};
-    Ground ground{air, 6};
-    SocModel soc{air, Ground::uavModem()};
-    M3Machine machine;
-
-private:
-    bool poll() {
-        late_ = soc.now() > end_;
-        return !late_ && !done_();
-    }
-    std::function<bool()> done_;
-    uint64_t end_ = 0;
-    bool late_ = false;
-};
-
-void stopListening(Flight& f) {
+void stopListening(MeasuredFlight& f) {
     f.cpu().listener.entered = f.cpu().listener.left = nullptr;
     f.cpu().listener.instruction = nullptr;
 }
 
-void measureLatencies(Flight& f) {
+void measureLatencies(MeasuredFlight& f) {
     auto interrupts = std::make_shared<Range>();
     auto switches = std::make_shared<Range>();
     auto routines = std::make_shared<Range>();
@@ -149,21 +81,14 @@ void measureLatencies(Flight& f) {
             routines->add(f.awake() - (*begin)[n]);
     };
     f.cpu().countMasked(fpgaPriority);
-    int sent = 0;
-    f.until(
-        [&] {
-            if (static_cast<int>(f.ground.replies.size()) == sent && sent < 10) {
-                ++sent;
-                if (sent % 5 == 1)
-                    f.ground.call(sent, "hwengine1", "startProcessing");
-                else if (sent % 5 == 3)
-                    f.ground.call(sent, "hwengine1", "getResult");
-                else
-                    f.ground.call(sent, "uav", "isAlive", 0, {7, 0});
-            }
-            return f.ground.replies.size() == 10;
-        },
-        20, "ten calls");
+    f.inTurn(10, 20, [&](int number) {
+        if (number % 5 == 1)
+            f.ground.call(number, "hwengine1", "startProcessing");
+        else if (number % 5 == 3)
+            f.ground.call(number, "hwengine1", "getResult");
+        else
+            f.ground.call(number, "uav", "isAlive", 0, {7, 0});
+    });
     stopListening(f);
     say("interrupt latency, least", interrupts->least, "cycles");
     say("interrupt latency, mean", interrupts->mean(), "cycles");
@@ -177,7 +102,8 @@ void measureLatencies(Flight& f) {
         "in " + f.machine.stm32().image()->functionAt(masked.from));
 }
 
-void measureCalls(Flight& f, int calls, const std::string& what, double cycles, double share) {
+void measureCalls(MeasuredFlight& f, int calls, const std::string& what, double cycles,
+                  double share) {
     const uint32_t servant = f.machine.stm32().image()->symbol("Autopilot_Vehicle_isAlive"),
                    transmit = f.machine.stm32().image()->symbol("Radio_transmit");
     Range toServant, back;
@@ -195,18 +121,8 @@ void measureCalls(Flight& f, int calls, const std::string& what, double cycles, 
             servantAt = -1;
         }
     };
-    f.ground.replies.clear();
-    int sent = 0;
     double awake = f.awake(), waiting = f.waiting(), began = f.seconds();
-    f.until(
-        [&] {
-            if (static_cast<int>(f.ground.replies.size()) == sent && sent < calls) {
-                ++sent;
-                f.ground.call(sent, "uav", "isAlive", 0, {7, 0});
-            }
-            return static_cast<int>(f.ground.replies.size()) == calls;
-        },
-        30, "the calls");
+    f.inTurn(calls, 30, [&](int number) { f.ground.call(number, "uav", "isAlive", 0, {7, 0}); });
     awake = f.awake() - awake;
     waiting = f.waiting() - waiting;
     double took = f.seconds() - began;
@@ -226,7 +142,7 @@ void measureCalls(Flight& f, int calls, const std::string& what, double cycles, 
 }
 
 // Where a call's cycles go, by function, without what its callees take; the table is printed.
-void profileCalls(Flight& f, int calls) {
+void profileCalls(MeasuredFlight& f, int calls) {
     struct Cost {
         double cycles = 0;
         unsigned entered = 0;
@@ -252,17 +168,9 @@ void profileCalls(Flight& f, int calls) {
             (*last)->entered += place->second.second && share > 0;
         };
     };
-    f.ground.replies.clear();
-    int sent = 0;
     double began = f.seconds();
     spend(1.0 / calls);
-    f.until(
-        [&] {
-            if (static_cast<int>(f.ground.replies.size()) == sent && sent < calls)
-                f.ground.call(++sent, "uav", "isAlive", 0, {7, 0});
-            return static_cast<int>(f.ground.replies.size()) == calls;
-        },
-        30, "the calls");
+    f.inTurn(calls, 30, [&](int number) { f.ground.call(number, "uav", "isAlive", 0, {7, 0}); });
     spend(-1.0 / calls); // what an idle link takes in that time does not count
     f.wait(f.seconds() - began);
     stopListening(f);
@@ -279,7 +187,7 @@ void profileCalls(Flight& f, int calls) {
     std::printf("\n");
 }
 
-void measureStream(Flight& f, const std::string& what) {
+void measureStream(MeasuredFlight& f, const std::string& what) {
     // Floods the vehicle, a window of the link and more in the queue, with one-way requests of 1 KB
     // to nobody: link and IceC's dispatcher work, no servant, no reply.
     f.ground.replies.clear();
@@ -308,8 +216,7 @@ void measureStream(Flight& f, const std::string& what) {
 
 // Measures from the message's last byte at IceC's endpoint to the first frame of its reply, of a
 // ping.
-void measurePings(Flight& f, const std::string& program) {
-    constexpr int calls = 20;
+void measurePings(MeasuredFlight& f, const std::string& program) {
     const ElfImage& image = *f.machine.stm32().image();
     const uint32_t message = image.symbol("XBeeATEndpoint_onMessage"),
                    answered = image.symbol("icec_endReply"),
@@ -325,15 +232,7 @@ void measurePings(Flight& f, const std::string& program) {
         else if (address == transmit && from >= 0 && isAnswered)
             took.add(f.awake() - from), from = -1;
     };
-    f.ground.replies.clear();
-    int sent = 0;
-    f.until(
-        [&] {
-            if (static_cast<int>(f.ground.replies.size()) == sent && sent < calls)
-                f.ground.ping(++sent, "hwengine1");
-            return static_cast<int>(f.ground.replies.size()) == calls;
-        },
-        60, "twenty pings");
+    f.inTurn(20, 60, [&](int number) { f.ground.ping(number, "hwengine1"); });
     stopListening(f);
     say(program + ": ping, message to first frame of the reply", took.mean(), "cycles");
     say(program + ": RAM with all objects and tasks' stacks",
@@ -341,7 +240,7 @@ void measurePings(Flight& f, const std::string& program) {
 }
 
 // High-water marks: stacks are filled with zeros at the start.
-void measureStacks(Flight& f) {
+void measureStacks(MeasuredFlight& f) {
     const ElfImage& image = *f.machine.stm32().image();
     for (const char* name :
          {"radioStack", "serverStack", "clientStack", "watchStack", "idleStack", "OSTaskIdleStk"}) {
@@ -356,7 +255,7 @@ void measureStacks(Flight& f) {
 
 // The one stack of the minimal program; RAM is zero at power-on.
 void measureMinimal(const std::string& elf) {
-    Flight f(elf, 1);
+    MeasuredFlight f(elf, 1);
     measurePings(f, "minimal");
     const ElfImage& image = *f.machine.stm32().image();
     uint32_t bottom = image.symbol("stack_bottom"), top = image.symbol("stack_top"), at = bottom;
@@ -405,14 +304,14 @@ int main(int argc, char** argv) {
     return figures.run(argc, argv, [&] {
         std::printf("Setting modems up, waiting for the link ...\n");
         if (!figures.brief) {
-            Flight atBoardsRatio(elf, 1);
+            MeasuredFlight atBoardsRatio(elf, 1);
             measureLatencies(atBoardsRatio);
             if (!minimal.empty()) {
                 measurePings(atBoardsRatio, "full");
                 measureMinimal(minimal);
             }
         }
-        Flight f(elf, hclk / (SocModel::clkHz * hclkPerClk));
+        MeasuredFlight f(elf, hclk / (SocModel::clkHz * hclkPerClk));
         measureCalls(f, figures.brief ? 1 : 20, "call", 11970, 1);
         if (!figures.brief) {
             profileCalls(f, 20);
@@ -421,8 +320,8 @@ int main(int argc, char** argv) {
         }
         measureStacks(f);
         if (!figures.brief) {
-            Flight keyed(elf, hclk / (SocModel::clkHz * hclkPerClk),
-                         std::vector<uint8_t>(LINK_KEY_BYTES, 1));
+            MeasuredFlight keyed(elf, hclk / (SocModel::clkHz * hclkPerClk),
+                                 std::vector<uint8_t>(LINK_KEY_BYTES, 1));
             measureCalls(keyed, 20, "call under a key", 0, 2);
             profileCalls(keyed, 20);
             measureStream(keyed, "full stream under a key");

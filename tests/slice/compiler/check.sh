@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # check: golden|errors|compile slice2c file.ice-or-folder work-folder sw-folder
-# UPDATE_GOLDENS=1 rewrites what is expected; a new golden begins as an empty file of a generated file's name.
+# golden: the C has no warnings, `messages` are those of the compiler, and the header has the lines of `lines`, in that order.
+# UPDATE_GOLDENS=1 rewrites the messages that are expected.
 set -eu
 kind=$1 slice2c=$2 ice=$3 work=$4 sw=$5
 rm -rf "$work"
@@ -17,10 +18,10 @@ golden)
     done
     g++ -Wall -Wextra -Werror -I"$sw/base" -I"$sw/icec" -fsyntax-only -include "$work"/*.h -x c++ /dev/null
     sed -i "s|^.*/||" "$work/messages"
-    for file in "$expected"/*; do
-        [ -z "${UPDATE_GOLDENS:-}" ] || cp "$work/${file##*/}" "$file"
-        diff -u "$file" "$work/${file##*/}"
-    done
+    [ -z "${UPDATE_GOLDENS:-}" ] || cp "$work/messages" "$expected/messages"
+    diff -u "$expected/messages" "$work/messages"
+    [ ! -e "$expected/lines" ] || awk 'NR == FNR { wanted[n++] = $0; next } $0 == wanted[i] { i++ }
+        END { if (i < n) { print FILENAME ": not there, or too early: " wanted[i]; exit 1 } }' "$expected/lines" "$work"/*.h
     ;;
 errors)
     cd "$(dirname "$ice")"

@@ -49,6 +49,20 @@ protected:
             << got.size() << " of " << size << " bytes; the engine's log:\n"
             << log();
     }
+    // A call of the UAV's reaches who listens.
+    void isCalled(XBeeAT::Engine& engine, int ready) {
+        rig_.with([&] {
+            Link_openChannel(rig_.link(), 3);
+            Bytes m = message(5);
+            Link_send(rig_.link(), 3, m.data(), static_cast<U32>(m.size()), 0);
+        });
+        pollfd p{ready, POLLIN, 0};
+        ASSERT_EQ(poll(&p, 1, 60000), 1);
+        int fd = engine.accept();
+        ASSERT_GE(fd, 0);
+        EXPECT_EQ(readAll(fd, 30), message(5));
+        close(fd);
+    }
 
     std::mutex logMutex_;
     std::string log_;
@@ -174,17 +188,7 @@ TEST_F(EngineTest, TheUavMayCallWhenSomebodyListens) {
     ASSERT_GE(ready, 0);
     EXPECT_EQ(engine->listen(), -1) << "a second listener";
     ASSERT_TRUE(rig_.until([&] { return rig_.isUp(); }));
-    rig_.with([&] {
-        Link_openChannel(rig_.link(), 3);
-        Bytes m = message(5);
-        Link_send(rig_.link(), 3, m.data(), static_cast<U32>(m.size()), 0);
-    });
-    pollfd p{ready, POLLIN, 0};
-    ASSERT_EQ(poll(&p, 1, 60000), 1);
-    int fd = engine->accept();
-    ASSERT_GE(fd, 0);
-    EXPECT_EQ(readAll(fd, 30), message(5));
-    close(fd);
+    isCalled(*engine, ready);
 }
 
 TEST_F(EngineTest, ACallOfTheUavThatNoDescriptorIsLeftForIsRefusedAndReported) {
@@ -222,17 +226,7 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     fd = engine->connect(0);
     ASSERT_GE(fd, 0);
     echoes(fd, 1);
-    rig_.with([&] {
-        Link_openChannel(rig_.link(), 3);
-        Bytes m = message(5);
-        Link_send(rig_.link(), 3, m.data(), static_cast<U32>(m.size()), 0);
-    });
-    pollfd p{ready, POLLIN, 0};
-    ASSERT_EQ(poll(&p, 1, 60000), 1);
-    int called = engine->accept();
-    ASSERT_GE(called, 0);
-    EXPECT_EQ(readAll(called, 30), message(5));
-    close(called);
+    isCalled(*engine, ready);
     close(fd);
 }
 

@@ -3,6 +3,7 @@
  * client: an IceC client against a stock server on the port given. Exit status 0: all as expected.
  */
 #include "Interop.h"
+#include "check.h"
 #include "tcp_endpoint.h"
 
 #include <stdio.h>
@@ -10,14 +11,6 @@
 
 static Ice_Communicator ic;
 static TcpEndpoint tcp;
-
-#define CHECK(condition)                                                 \
-    do {                                                                 \
-        if (!(condition)) {                                              \
-            printf("client.c:%d: not true: %s\n", __LINE__, #condition); \
-            return 1;                                                    \
-        }                                                                \
-    } while (0)
 
 int main(int argc, char** argv) {
     static Interop_ServicePrx service, oneway, nobody, dead;

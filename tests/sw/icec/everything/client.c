@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * client: IceC's client of Everything.ice against a server on the port given. Exit status 0: all as
- * expected. `client slow PORT`: fewer calls; `client lost PORT`: through a
- * relay that cuts connections.
+ * expected. `client slow PORT`: fewer calls; `client lost PORT`: a relay cuts connections.
  */
+#include "../check.h"
 #include "Everything.h"
 #include "tcp_endpoint.h"
 
@@ -14,14 +14,6 @@ static Ice_Communicator ic;
 static TcpEndpoint tcp;
 static Everything_TesterPrx tester;
 static U32 room[4096]; /* for replies */
-
-#define CHECK(condition)                                                 \
-    do {                                                                 \
-        if (!(condition)) {                                              \
-            printf("client.c:%d: not true: %s\n", __LINE__, #condition); \
-            return 1;                                                    \
-        }                                                                \
-    } while (0)
 
 static int equal(const Everything_Numbers* a, const Everything_Numbers* b) {
     return a->b == b->b && a->y == b->y && a->s == b->s && a->i == b->i && a->l.low == b->l.low &&

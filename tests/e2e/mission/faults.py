@@ -303,17 +303,20 @@ def main():
     CLOCK_STEP = os.path.abspath(args.build) + "/tests/e2e/mission/libclock_step.so"
     shutil.rmtree(args.out, ignore_errors=True)
     os.makedirs(args.out)
+    may_mount = subprocess.run(["unshare", "--map-root-user", "--mount", "true"], stderr=subprocess.DEVNULL).returncode == 0
+    if not may_mount:
+        print("faults: disk_full is left out: this machine lets its users mount nothing (unshare --map-root-user)")
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
         runs = []
         for seed in range(args.seed, args.seed + args.seeds):
             draw = random.Random(seed)
             for fault, name in FAULTS:
                 moments = [draw.uniform(0, LAST) for _ in range(args.moments)]
-                if args.only in fault.__name__ + " " + name:
+                if args.only in fault.__name__ + " " + name and (may_mount or fault is not disk_full):
                     runs += [pool.submit(undergo, args, fault, name, seed, number, moment) for number, moment in enumerate(moments)]
         failed = sum(not run.result() for run in runs)
     print("faults: %d moments of seeds %d to %d, %d failed" % (len(runs), args.seed, args.seed + args.seeds - 1, failed))
-    return 1 if failed else 0
+    return 1 if failed else 0 if runs else 77
 
 
 if __name__ == "__main__":

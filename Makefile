@@ -38,6 +38,9 @@ PINS ?=
 # PROBE=u_fir.sent=1: the trigger of a probe among CORES (ip/probe/README.md); ground.py reads it
 PROBE ?=
 export PROBE
+# FRESH=1: proofs, lints and synthesis of unchanged files are computed again, too (tests/kept.py)
+FRESH ?=
+export FRESH
 # Folder of a flight (its OUT) that make run and make gdb fly again, bit by bit; FROM=1.5 TO=1.6: its waveform, in s
 REPLAY ?=
 FROM  ?=

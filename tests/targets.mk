@@ -71,7 +71,7 @@ sanitizers: setup-tests $(BUILD)/build.ninja ## tests of engine, gateway, plugin
 # Not by $$(MAKE), which `make -n` would carry out, and the whole line with it.
 # Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them. COMPARE_MS: test_quiet compares a second; HOSTILE: packets of test_link.
 nightly: setup-tests build ## what a timer runs: seeds that have failed, the regression with fresh seeds (NIGHTLY=3 of them), ZeroC's own suites, faults, sanitizers
-	@status=0; export COMPARE_MS=1000 HOSTILE=10000000; tool="$(BUILD)/tests/regress/regress --build $(BUILD) --jobs $(TESTS) --waves $(WAVES) --launcher $(LAUNCHER)"; \
+	@status=0; export FRESH=1 COMPARE_MS=1000 HOSTILE=10000000; tool="$(BUILD)/tests/regress/regress --build $(BUILD) --jobs $(TESTS) --waves $(WAVES) --launcher $(LAUNCHER)"; \
 	    $$tool --kept $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
 	    $$tool --seed random --repeat $(NIGHTLY) $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
 	    ctest --test-dir $(BUILD) -C zeroc -L zeroc -j $(TESTS) --output-on-failure || status=$$?; \
@@ -90,7 +90,7 @@ faults: $(BUILD)/build.ninja ## kill, stop and starve each process of a mission 
 
 proofs: $(BUILD)/build.ninja ## run all formal proofs, print the processor time of all together
 	@$(NINJA) regmaps
-	@ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error -L formal
+	@FRESH=1 ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-tests=error -L formal
 	@cat $(BUILD)/tests/hdl/formal/*/cpu | awk '{ n += $$1 } END { printf "%d proofs, %.0f s of a processor\n", NR, n }'
 
 # Gates: tests/regress/coverage_gates.json

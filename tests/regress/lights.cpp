@@ -45,6 +45,8 @@ json ofTests(const json& data, bool proofs) {
     if (bad.empty() && passed == 0)
         return missing(proofs ? "proofs" : "tests", "none ran");
     std::string good = fmt::format("{} {}", passed, proofs ? "hold" : "passed");
+    if (const unsigned kept = data.at("kept").at(proofs ? "proofs" : "tests"))
+        good += fmt::format(", {} of them as before, from unchanged files", kept);
     if (const unsigned left = data.at("left").at(proofs ? "proofs" : "tests"))
         good += fmt::format(", {} did not run", left);
     return judge(proofs ? "proofs" : "tests", good, "failed", bad);

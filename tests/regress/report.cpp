@@ -148,12 +148,16 @@ json gather(const History& history, const std::vector<Test>& tests,
                         test && !test->labels.empty() ? test->labels[0] : "", result.seed, ends});
     }
     std::set<std::string> ran;
-    for (const Result& result : results)
-        ran.insert(result.name);
     unsigned left[2] = {0, 0}; // tests and proofs that were not chosen
+    unsigned kept[2] = {0, 0}; // that were not computed: tests/kept.py had their verdicts
+    for (const Result& result : results) {
+        ran.insert(result.name);
+        kept[result.name.rfind("formal.", 0) == 0] += result.log.rfind("kept: the verdict", 0) == 0;
+    }
     for (const Test& test : tests)
         left[test.name.rfind("formal.", 0) == 0] += ran.count(test.name) == 0;
     data["left"] = {{"tests", left[0]}, {"proofs", left[1]}};
+    data["kept"] = {{"tests", kept[0]}, {"proofs", kept[1]}};
     constexpr size_t drawingsRoom = 1'000'000; // bytes of the page's 2 MB
     const size_t drawings = std::max<size_t>(
         1, std::count_if(failures.begin(), failures.end(),

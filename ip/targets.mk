@@ -54,8 +54,7 @@ CHIP ?=
 ip-synth: core-folders ## utilisation of one core, alone and in the chip: IP=fir (CORE_FOLDERS=/path/to/it where it is not in ip/; CHIP=1: the chip of today, not the accepted one)
 	@grep -qx '$(or $(IP),none)' $(BUILD)/cores.known || { echo "ip-synth: IP=name of a core, not '$(IP)'" >&2; exit 1; }
 	@make --no-print-directory synth DESIGN='$(IP)'
-	@$(if $(CHIP),$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) --design soc --costs $(BUILD)/chip.json)
-	@ip/cost.py $(if $(CHIP),$(BUILD)/chip.json,synth/baseline.json) '$(BUILD)/gen/map.regs.json' '$(IP)'
+	@$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) --core '$(IP)' $(if $(CHIP),--design soc)
 
 wave: $(BUILD)/build.ninja ## waveform of one test of a core, for GTKWave: IP=fir TEST=Impulse
 	@JOBS=$(JOBS) ip/wave.sh '$(IP)' '$(TEST)'

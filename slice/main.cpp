@@ -22,7 +22,7 @@ struct Options {
     std::string outputDir = ".", includeDir, headerExtension = "h", sourceExtension = "c",
                 dependFile, hwVerilog, hwVhdl, hwRegisters, hwC, hwCpp, hwNewVerilog, hwNewVhdl;
     bool oneProgram = false, preprocessOnly = false, depend = false, dependXml = false,
-         validate = false, checksums = false;
+         validate = false, checksums = false, hwOwnClock = false;
     NameRules rules;
 };
 
@@ -167,6 +167,8 @@ bool compile(const std::string& file, const Options& o, Dependencies& dependenci
     std::vector<hw::Block> blocks;
     if (diagnostics.errors() == 0 && wantsHardware(o))
         blocks = hw::mapHardware(unit, diagnostics);
+    for (hw::Block& b : blocks)
+        b.hasOwnClock = o.hwOwnClock;
     if (diagnostics.errors() == 0 && o.oneProgram)
         program.add(unit, diagnostics);
     if (diagnostics.errors()) {
@@ -194,6 +196,8 @@ void describe(CLI::App& app, Options& o) {
     app.add_option("--hw-regs", o.hwRegisters, "folder for their registers, *.regs.json");
     app.add_option("--hw-c", o.hwC, "folder for their servants in C90");
     app.add_option("--hw-cpp", o.hwCpp, "folder for their proxies in C++, for test benches");
+    app.add_flag("--hw-own-clock", o.hwOwnClock,
+                 "the cores have a clock of their own: servants ask whether they answered");
     app.add_option("--hw-new-verilog", o.hwNewVerilog,
                    "folder for a core to begin with, in Verilog, and its test");
     app.add_option("--hw-new-vhdl", o.hwNewVhdl, "the same in VHDL");

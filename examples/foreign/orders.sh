@@ -41,7 +41,6 @@ for order in backwards shuffled listed; do
 done
 [ -z "${CHIP:-}" ] || {
     ninja -C "$build" -j "$jobs" --quiet synth_inputs
-    "$build/synth/utilisation" --generated "$build/gen" --output "$build/report" --jobs "$jobs" --design soc --costs "$build/chip.json"
-    # shellcheck disable=SC2086 # a list of words
-    ip/cost.py "$build/chip.json" "$build/gen/map.regs.json" $names
+    # shellcheck disable=SC2046,SC2086 # lists of words
+    "$build/synth/utilisation" --generated "$build/gen" --output "$build/report" --jobs "$jobs" --design soc $(printf -- '--core %s ' $names)
 }

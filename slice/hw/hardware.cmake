@@ -2,11 +2,11 @@
 #
 # hardware.cmake: [":hw"] interfaces into wrappers, registers and servants (docs/hw-mapping.md).
 
-# icesoc_hardware(NAME file.ice BLOCKS block...): in ${GEN_DIR} the wrappers <block>_wrapper.v and
+# icesoc_hardware(NAME file.ice BLOCKS block... [OWN_CLOCK]): in ${GEN_DIR} the wrappers <block>_wrapper.v and
 # <block>_wrapper.vhd; the registers of each block as icesoc_regmap makes them; the library NAME_servants;
-# target NAME_hardware. BLOCKS: the file's hardware interfaces in snake_case.
+# target NAME_hardware. BLOCKS: the file's hardware interfaces in snake_case. OWN_CLOCK: these have a clock that may stand still.
 function(icesoc_hardware name file)
-  cmake_parse_arguments(A "" "" "BLOCKS;INCLUDES" ${ARGN})
+  cmake_parse_arguments(A "OWN_CLOCK" "" "BLOCKS;INCLUDES" ${ARGN})
   get_filename_component(path ${file} ABSOLUTE)
   set(dir ${GEN_DIR})
   set(outs)
@@ -22,8 +22,8 @@ function(icesoc_hardware name file)
   icesoc_slice(${name} ${file} INCLUDES ${A_INCLUDES})
   add_custom_command(OUTPUT ${outs}
     COMMAND slice2c ${A_INCLUDES} ${path} --output-dir ${dir}/hw/${name} --hw-verilog ${dir} --hw-vhdl ${dir}
-            --hw-regs ${dir} --hw-c ${dir} --hw-cpp ${dir}
-    DEPENDS slice2c ${path} VERBATIM COMMENT "Slice to hardware: ${name}")
+            --hw-regs ${dir} --hw-c ${dir} --hw-cpp ${dir} $<$<BOOL:${A_OWN_CLOCK}>:--hw-own-clock>
+    DEPENDS slice2c ${path} VERBATIM COMMAND_EXPAND_LISTS COMMENT "Slice to hardware: ${name}")
   add_custom_target(${name}_hardware DEPENDS ${outs})
   foreach(b IN LISTS A_BLOCKS)
     icesoc_regmap(${dir}/${b}.regs.json)

@@ -81,6 +81,7 @@ struct Block {
     std::vector<Call> calls;
     std::vector<Listener> listeners;
     std::vector<Pin> pins;
+    bool hasOwnClock = false; // which may stand still: then no access is answered
     unsigned pageBits = 0;    // above 0: word 5 is PAGE, and there are 2 to this power of pages
     unsigned memoryWord = 0;  // MEMORY; 0: no sequences
     unsigned memoryBytes = 0; // of all buffers: a power of two

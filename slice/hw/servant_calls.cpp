@@ -178,8 +178,9 @@ void operation(Writer& w, const Block& b, const Call& c) {
         else
             w.line("Hw_Core_act(&hw_core->core, " + number(c.bit) + ");");
         readResults(w, b, c);
-        w.line(c.isLong ? "return ICE_OK;"
-                        : "return Hw_Core_answers(&hw_core->core) ? ICE_OK : ICE_TIMEOUT;");
+        w.line(b.hasOwnClock && !c.isLong
+                   ? "return Hw_Core_answers(&hw_core->core) ? ICE_OK : ICE_TIMEOUT;"
+                   : "return ICE_OK;");
     });
 }
 

@@ -73,6 +73,10 @@ function showChip() {
   box.append(element("b", f.mhz ? clock(f) : "no path", f.mhz < data.chip.mhz ? "bad" : "good"), " MHz", element("div", `${data.chip.mhz} are wanted; median and range of the netlist's orders`, "soft"));
   byId("chip").append(box);
 }
+function showCores() {
+  byId("cores-part").hidden = !data.cores?.length;
+  if (data.cores?.length) fill(byId("cores"), data.cores[0], data.cores.slice(1));
+}
 function showPaper() {
   const d = usable.find(d => d.paper);
   if (!d) return;
@@ -342,6 +346,7 @@ byId("filter").oninput = showDesigns;
 byId("within").oninput = showInside;
 showVerdict();
 if (usable.length) showChip();
+showCores();
 showPaper();
 if (picked) show();
 // "#design/instance.path" opens the page there.

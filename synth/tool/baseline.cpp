@@ -92,8 +92,15 @@ Baseline readBaseline(const string& text) {
         Accepted a{d.at("lut"), d.at("ff"),  d.at("slices"), d.at("carry"),
                    d.at("dsp"), d.at("ram"), d.at("mhz"),    {}};
         for (const auto& [path, signals] : d.at("signals").items())
-            for (const auto& [signal, cost] : signals.items())
-                a.costs[{path, signal}] = {cost.at(0), 0, cost.at(1), 0};
+            for (const auto& [signal, cost] : signals.items()) {
+                Cost& c = a.costs[{path, signal}];
+                c.lut = cost.at(0);
+                c.ff = cost.at(1);
+                if (cost.size() == 4) {
+                    c.ram = cost[2];
+                    c.dsp = cost[3];
+                }
+            }
         b.designs[name] = a;
     }
     return b;
@@ -110,7 +117,9 @@ string written(const Baseline& b) {
             betweenDesigns, json(name).dump(), a.lut, a.ff, a.slices, a.carry, a.dsp, a.ram, a.mhz);
         std::map<string, json> instances;
         for (const auto& [owner, cost] : a.costs)
-            if (cost.lut != 0 || cost.ff != 0)
+            if (cost.ram != 0 || cost.dsp != 0)
+                instances[owner.first][owner.second] = {cost.lut, cost.ff, cost.ram, cost.dsp};
+            else if (cost.lut != 0 || cost.ff != 0)
                 instances[owner.first][owner.second] = {cost.lut, cost.ff};
         const char* between = "\n";
         for (const auto& [path, signals] : instances) {

@@ -15,7 +15,7 @@
 struct Accepted {
     int lut = 0, ff = 0, slices = 0, carry = 0, dsp = 0;
     double ram = 0, mhz = 0;
-    Costs costs; // LUT and flip-flops only
+    Costs costs; // LUT, flip-flops, block RAM and DSP only
 };
 
 struct Baseline {

@@ -10,22 +10,6 @@
 
 using nlohmann::json;
 
-namespace {
-
-double blockRams(const std::string& type) {
-    if (type == "RAMB8BWER")
-        return 0.5;
-    if (type == "RAMB16BWER" || type == "RAMB18E1" || type == "DP16KD" || type == "PDPW16KD")
-        return 1;
-    return type == "RAMB36E1" ? 2 : 0;
-}
-
-bool isMultiplier(const std::string& type) {
-    return type.rfind("DSP48", 0) == 0 || type == "MULT18X18D" || type == "ALU54B";
-}
-
-} // namespace
-
 double Figures::clock() const {
     return timing.paths.empty() ? 0 : 1000 / (timing.paths.front().ns * slowGrade);
 }
@@ -64,8 +48,8 @@ Figures figuresOf(const Netlist& netlist, bool spartan6, const FilesAlong& files
         f.shift += isShiftRegister(cell.type) ? 1 : 0;
         f.ff += cost.ff;
         f.carry += cost.carry;
-        f.ram += blockRams(cell.type);
-        f.dsp += isMultiplier(cell.type) ? 1 : 0;
+        f.ram += cost.ram;
+        f.dsp += cost.dsp;
     }
     for (const Port& port : netlist.ports)
         if (port.name.rfind("mcb_", 0) != 0)
@@ -133,9 +117,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Net, name, kind, ends, flipFlops, ns)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Nets, fanouts, clocks, resets, places)
 
 void to_json(json& j, const Figures& f) {
-    json costs = json::array(); // path, signal, LUT, memory LUT, FF, carry
+    json costs = json::array(); // path, signal, LUT, memory LUT, FF, carry, block RAM, DSP
     for (const auto& [owner, c] : f.costs)
-        costs.push_back({owner.first, owner.second, c.lut, c.memory, c.ff, c.carry});
+        costs.push_back({owner.first, owner.second, c.lut, c.memory, c.ff, c.carry, c.ram, c.dsp});
     const Slices& s = f.slices;
     j = {{"cells", f.cells},      {"lut", f.lut},       {"lutRam", f.lutRam},
          {"shift", f.shift},      {"ff", f.ff},         {"carry", f.carry},
@@ -158,7 +142,7 @@ void from_json(const json& j, Figures& f) {
     j.at("dsp").get_to(f.dsp);
     j.at("pins").get_to(f.pins);
     for (const json& c : j.at("costs"))
-        f.costs[{c[0], c[1]}] = {c[2], c[3], c[4], c[5]};
+        f.costs[{c[0], c[1]}] = {c[2], c[3], c[4], c[5], c[6], c[7]};
     j.at("timing").get_to(f.timing);
     j.at("clocks").get_to(f.clocks);
     j.at("otherLuts").get_to(f.otherLuts);

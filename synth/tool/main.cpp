@@ -2,6 +2,7 @@
 //
 // utilisation: what the chip and each of its parts take of the FPGA, beside limits and the paper.
 
+#include "cores.h"
 #include "designs.h"
 #include "files.h"
 #include "pictures.h"
@@ -22,6 +23,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* mainFamily = "xc6s";
+constexpr const char* wholeChip = "soc";
 
 struct Options {
     fs::path source = ".", generated = "build/main/gen", output = "build/synth";
@@ -29,10 +31,10 @@ struct Options {
     std::string yosys = "yosys";
     unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
     bool accept = false;
-    fs::path costs;      // where to write what each part costs
-    std::string nextpnr; // places the designs for ECP5
-    std::string edif;    // a design's name
-    std::string compare; // another report.json
+    std::vector<std::string> cores; // only what these cost
+    std::string nextpnr;            // places the designs for ECP5
+    std::string edif;               // a design's name
+    std::string compare;            // another report.json
 };
 
 constexpr size_t shownCommits = 30;
@@ -66,6 +68,8 @@ void print(const Report& r) {
         if (row.design->beside && row.main->wanted && row.main->error.empty())
             fmt::print("{}\n{}\n{}\n{}\n", row.design->title, paperTable(*r.plan, row).plain(),
                        costTable(*r.library, row, 2).plain(), pathTable(*r.plan, row, 5).plain());
+    if (!r.cores.rows().empty())
+        fmt::print("{}\n", r.cores.plain());
     std::vector<Row> wanted;
     std::copy_if(r.rows.begin(), r.rows.end(), std::back_inserter(wanted),
                  [](const Row& row) { return row.main->wanted; });
@@ -125,20 +129,6 @@ int accept(const Report& r, const fs::path& file) {
     return 0;
 }
 
-// Writes what was measured as synth/baseline.json has it, whatever the limits. Returns 1 if a
-// design failed.
-int writeCosts(const std::vector<Run>& runs, const fs::path& file) {
-    Baseline b;
-    for (const Run& run : runs) {
-        if (run.wanted && !run.error.empty())
-            return 1;
-        if (run.wanted && run.family == mainFamily)
-            b.designs[run.design->name] = acceptedFrom(run.figures);
-    }
-    writeFile(file, written(b));
-    return 0;
-}
-
 Library rtlOf(const Options& o) {
     if (!fs::is_directory(o.generated))
         throw std::runtime_error(fmt::format("{} is not there: build first", o.generated.string()));
@@ -192,9 +182,48 @@ std::vector<Run> synthesise(const Plan& plan, const Library& library, const Runn
     return runs;
 }
 
+Baseline acceptedOf(const Options& o) {
+    const fs::path file = o.source / "synth/baseline.json";
+    return readBaseline(fs::exists(file) ? readFile(file) : "");
+}
+
+// Tells what some cores cost in the chip, whatever the limits: in the one that was synthesised, the
+// only design wanted, or, without `runs`, in the accepted one. Returns 1 if its synthesis failed.
+int tellCores(const Library& library, const RunnerOptions& options, const Options& o,
+              const std::vector<Run>& runs) {
+    const auto run = std::find_if(runs.begin(), runs.end(), [](const Run& r) { return r.wanted; });
+    if (run != runs.end() && !run->error.empty())
+        return 1;
+    const Accepted chip =
+        run == runs.end() ? acceptedOf(o).designs[wholeChip] : acceptedFrom(run->figures);
+    const ChipMap map = readMap(o.generated / "map.regs.json");
+    if (map.empty())
+        throw std::runtime_error(
+            fmt::format("{} has no map.regs.json: build first", o.generated.string()));
+    const TextTable table =
+        coreTable(chip.costs, map, slotCost(library, options, map, true), o.cores,
+                  run == runs.end() ? "synth/baseline.json" : "the list");
+    fmt::print("{}The chip: {} LUT, {} FF, {:g} block RAMs, {} DSP\n", table.plain(), chip.lut,
+               chip.ff, chip.ram, chip.dsp);
+    return 0;
+}
+
+// What each core takes of the chip, as far as that was synthesised.
+TextTable coresOf(const Report& r, const RunnerOptions& options, const Options& o) {
+    const ChipMap map = readMap(o.generated / "map.regs.json");
+    for (const Row& row : r.rows)
+        if (row.design->name == wholeChip && row.main->error.empty() && !map.empty())
+            return coreTable(row.main->figures.costs, map,
+                             slotCost(*r.library, options, map, row.main->wanted), {}, "");
+    return {};
+}
+
 int report(const Options& o) {
     const Library library = rtlOf(o);
-    const Plan plan = readPlan(o.source / "synth/designs.json", library, o.source);
+    Plan plan = readPlan(o.source / "synth/designs.json", library, o.source);
+    if (!o.cores.empty()) // other orders are there for the median of clocks
+        for (Design& design : plan.designs)
+            design.orders = 0;
     checkNames(plan, o);
     // A design that another run is synthesising is then found in the cache.
     const FolderLock lock(o.output, "utilisation");
@@ -204,17 +233,18 @@ int report(const Options& o) {
         return 0;
     }
     const std::string tree = treeState(o.source, "bus hdl ip slice synth");
+    if (!o.cores.empty())
+        return tellCores(library, options, o,
+                         o.only.empty() ? std::vector<Run>{}
+                                        : synthesise(plan, library, options, o));
     const std::vector<Run> runs = synthesise(plan, library, options, o);
-    if (!o.costs.empty())
-        return writeCosts(runs, o.costs);
 
     Report r;
     r.plan = &plan;
     r.library = &library;
     r.rows = rowsOf(plan, runs, mainFamily);
     r.yosys = versionOf(o.yosys);
-    const fs::path accepted = o.source / "synth/baseline.json";
-    r.baseline = readBaseline(fs::exists(accepted) ? readFile(accepted) : "");
+    r.baseline = acceptedOf(o);
     for (const Row& row : r.rows)
         r.verdicts.push_back(judge(row, r.baseline, r.yosys, plan.chip.mhz));
     r.commits = history(o.source, shownCommits);
@@ -222,7 +252,8 @@ int report(const Options& o) {
     r.pictures = drawNetlists(plan, library, options);
 
     if (o.accept)
-        return accept(r, accepted);
+        return accept(r, o.source / "synth/baseline.json");
+    r.cores = coresOf(r, options, o);
     print(r);
     writeReports(r, o);
     if (!o.nextpnr.empty()) {
@@ -251,8 +282,9 @@ int main(int argc, char** argv) {
     app.add_option("--yosys", o.yosys, "the program")->capture_default_str();
     app.add_option("--jobs", o.jobs, "synthesis runs at a time")->capture_default_str();
     app.add_flag("--accept", o.accept, "record these figures in synth/baseline.json");
-    app.add_option("--costs", o.costs,
-                   "only write what each part of these designs costs into this file");
+    app.add_option("--core", o.cores,
+                   "only tell what this core costs in the accepted chip (may be repeated); with "
+                   "--design soc in the chip of now");
     app.add_option("--compare", o.compare,
                    "only tell how the last report differs from this report.json")
         ->check(CLI::ExistingFile);

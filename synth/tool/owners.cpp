@@ -30,6 +30,67 @@ bool isCombinational(const string& type) {
            type == "CCU2C" || type == "PFUMX" || type == "L6MUX21";
 }
 
+double blockRams(const string& type) {
+    if (type == "RAMB8BWER")
+        return 0.5;
+    if (type == "RAMB16BWER" || type == "RAMB18E1" || type == "DP16KD" || type == "PDPW16KD")
+        return 1;
+    return type == "RAMB36E1" ? 2 : 0;
+}
+
+bool isMultiplier(const string& type) {
+    return type.rfind("DSP48", 0) == 0 || type == "MULT18X18D" || type == "ALU54B";
+}
+
+string blockOf(const string& owner) { // of the top: "u_fir.u_filter.sum" -> "u_fir"
+    return owner.substr(0, owner.find('.'));
+}
+
+// Gives the logic that reads a slot's registers to the block in the slot. It is one cone with the
+// bus decoder's multiplexer, in which optimisation leaves no name, and so the decoder's by now:
+// what has only one block's signals at its inputs, beside the decoder's own, is that block's.
+class SlotReads {
+public:
+    SlotReads(const Netlist& n, std::vector<string>& owners) : n_(n), owners_(owners) {
+        for (size_t i = 0; i < owners.size(); i++)
+            if (isInside(i))
+                blocksBehind(i);
+        for (const auto& [cell, blocks] : behind_)
+            if (blocks.size() == 1)
+                owners[cell] = *blocks.begin() + ".bus_rdata_o";
+    }
+
+private:
+    bool isInside(size_t cell) const {
+        return isCombinational(n_.cells[cell].type) && blockOf(owners_[cell]) == decoder;
+    }
+
+    const std::set<string>& blocksBehind(size_t cell) {
+        const auto [at, isNew] = behind_.emplace(cell, std::set<string>());
+        std::set<string>& blocks = at->second; // stays where it is
+        if (isNew)
+            for (const Pin& pin : n_.cells[cell].pins)
+                for (const int bit : pin.bits)
+                    if (!pin.output && n_.driver.count(bit))
+                        add(blocks, n_.driver.at(bit));
+        return blocks;
+    }
+
+    void add(std::set<string>& blocks, size_t driver) {
+        if (isInside(driver)) {
+            const std::set<string> more = blocksBehind(driver);
+            blocks.insert(more.begin(), more.end());
+        } else if (!owners_[driver].empty() && blockOf(owners_[driver]) != decoder) {
+            blocks.insert(blockOf(owners_[driver]));
+        }
+    }
+
+    static constexpr const char* decoder = "u_bus_decoder";
+    const Netlist& n_;
+    const std::vector<string>& owners_;
+    std::map<size_t, std::set<string>> behind_;
+};
+
 class Finder {
 public:
     Finder(const Netlist& n, const FilesAlong& filesAlong)
@@ -94,6 +155,8 @@ Cost& Cost::operator+=(const Cost& o) {
     memory += o.memory;
     ff += o.ff;
     carry += o.carry;
+    ram += o.ram;
+    dsp += o.dsp;
     return *this;
 }
 
@@ -103,6 +166,8 @@ Cost costOf(const Cell& cell) {
     c.lut = c.memory + (lutInputs(cell.type) != 0 ? 1 : 0) + (cell.type == "CCU2C" ? 2 : 0);
     c.ff = isFlipFlop(cell.type) || isLatch(cell.type) ? 1 : 0;
     c.carry = cell.type == "CARRY4" || cell.type == "CCU2C" ? 1 : 0;
+    c.ram = blockRams(cell.type);
+    c.dsp = isMultiplier(cell.type) ? 1 : 0;
     return c;
 }
 
@@ -118,6 +183,7 @@ std::vector<string> ownersOf(const Netlist& netlist, const FilesAlong& filesAlon
     std::vector<string> owners;
     for (size_t i = 0; i < netlist.cells.size(); i++)
         owners.push_back(finder.ownerOf(static_cast<int>(i)));
+    SlotReads(netlist, owners);
     return owners;
 }
 

@@ -17,9 +17,11 @@ struct Cost {
     int memory = 0; // of these, used as memory or shift register
     int ff = 0;     // flip-flops and latches
     int carry = 0;  // carry chain segments of 4 bits
+    double ram = 0; // block RAMs of 16 or 18 Kbit; half ones count half
+    int dsp = 0;
 
     Cost& operator+=(const Cost& o);
-    bool empty() const { return lut == 0 && ff == 0 && carry == 0; }
+    bool empty() const { return lut == 0 && ff == 0 && carry == 0 && ram == 0 && dsp == 0; }
 };
 
 // (instance path, "" for the top; signal) -> cost. A flip-flop is its register's. Logic is the

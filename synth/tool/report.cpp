@@ -133,6 +133,8 @@ string markdown(const Report& r) {
             text += fmt::format(
                 "## {}\n{}\n{}\n{}\n", row.design->title, paperTable(*r.plan, row).markdown(),
                 costTable(*r.library, row, 2).markdown(), pathTable(*r.plan, row, 5).markdown());
+    if (!r.cores.rows().empty())
+        text += "## Cores\n" + r.cores.markdown() + "\n";
     text += "## All designs\n" + designTable(*r.plan, r.rows, countsOf(r.baseline)).markdown();
     for (const Verdict& v : r.verdicts) {
         for (const string& failure : v.failures)
@@ -196,6 +198,7 @@ string html(const Report& r, const string& page, const string& style, const stri
                  {"slicesError", slicesError},
                  {"designs", json::array()},
                  {"history", json::array()},
+                 {"cores", r.cores.rows()},
                  {"pictures", r.pictures}};
     for (size_t i = 0; i < r.rows.size(); i++) {
         const Row& row = r.rows[i];

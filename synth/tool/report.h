@@ -22,6 +22,7 @@ struct Report {
     std::vector<Commit> commits;
     std::string yosys, commit;
     std::map<std::string, std::string> pictures; // module -> SVG of its netlist
+    TextTable cores; // what each core takes of the chip; empty where that is not known
 };
 
 std::string entriesJson(const Report& report); // docs: the contract of all figures

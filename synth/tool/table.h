@@ -25,6 +25,7 @@ public:
     void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
     std::string plain() const;
     std::string markdown() const;
+    const std::vector<std::vector<std::string>>& rows() const { return rows_; }
 
 private:
     std::vector<std::vector<std::string>> rows_;

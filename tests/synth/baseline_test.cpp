@@ -25,7 +25,7 @@ struct Fixture {
     Fixture() {
         run.figures.lut = 100;
         run.figures.ff = 50;
-        run.figures.costs[{"u_part", "state"}] = {60, 0, 30, 0};
+        run.figures.costs[{"u_part", "state"}] = {60, 0, 30, 0, 1.5, 2};
         run.figures.costs[{"", "count"}] = {40, 0, 20, 0};
         baseline.designs["block"] = acceptedFrom(run.figures);
     }
@@ -151,6 +151,8 @@ TEST(Baseline, WhatIsWrittenIsReadAgain) {
     const Accepted& a = again.designs.at("block");
     EXPECT_EQ(a.lut, 100);
     EXPECT_EQ(a.ff, 50);
+    EXPECT_EQ(a.costs.at({"u_part", "state"}).ram, 1.5);
+    EXPECT_EQ(a.costs.at({"u_part", "state"}).dsp, 2);
     EXPECT_THAT(changedSignals(a.costs, f.run.figures.costs), IsEmpty());
     EXPECT_EQ(written(again), written(f.baseline));
 }

@@ -47,7 +47,7 @@ TEST_F(CalculatorServant, IdentityIsTypeAndVersionOfTheInterface) {
     EXPECT_EQ(Hw_Core_init(&other, slot, 0x43410103, &slot_.port, &slot_), HW_WRONG_CORE);
 }
 
-// As one whose own clock stands still: what it reads as is no result.
+// Its own clock stands still (OWN_CLOCK): what it reads as is no result.
 TEST_F(CalculatorServant, ACoreThatNoLongerAnswersIsATimeOut) {
     Ice_Int sum = 0;
     core_.core.id ^= 1;

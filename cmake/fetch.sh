@@ -25,6 +25,9 @@ fail() {
     exit 1
 }
 
+# A word for the shell, whatever is in it.
+quoted() { printf "'%s'" "$(printf %s "$1" | sed "s/'/'\\\\''/g")"; }
+
 # The Debian mirror that this machine uses.
 mirror() {
     found=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/*.sources /etc/apt/sources.list.d/*.list 2>/dev/null |
@@ -110,8 +113,9 @@ fetch_ghdl() {
     [ -n "$lib" ] || lib=$root/usr/lib/x86_64-linux-gnu
     cat >"$target/ghdl" <<EOF
 #!/bin/sh
-GHDL_PREFIX=$root/usr/lib/ghdl/mcode/vhdl exec "$lib/ld-linux-x86-64.so.2" \\
-    --library-path "$root/usr/lib/x86_64-linux-gnu" "$root/usr/bin/ghdl-mcode" "\$@"
+root=$(quoted "$root") lib=$(quoted "$lib")
+GHDL_PREFIX=\$root/usr/lib/ghdl/mcode/vhdl exec "\$lib/ld-linux-x86-64.so.2" \\
+    --library-path "\$root/usr/lib/x86_64-linux-gnu" "\$root/usr/bin/ghdl-mcode" "\$@"
 EOF
     chmod +x "$target/ghdl"
 }
@@ -131,7 +135,9 @@ fetch_nextpnr() {
     lib=$root/usr/lib/$(uname -m)-linux-gnu
     cat >"$target/nextpnr-ecp5" <<EOF
 #!/bin/sh
-cd "$root" && PYTHONHOME=$root/usr exec "$(find "$lib" -name 'ld-linux-*')" --library-path "$lib" "$program" "\$@"
+root=$(quoted "$root") lib=$(quoted "$lib")
+cd "\$root" && PYTHONHOME=\$root/usr exec "\$lib/$(basename "$(find "$lib" -name 'ld-linux-*')")" --library-path "\$lib" \\
+    "\$root/usr/bin/nextpnr-ecp5-here" "\$@"
 EOF
     chmod +x "$target/nextpnr-ecp5"
 }
@@ -144,7 +150,7 @@ fetch_clang_format() {
         keep=$cache/clang-format-14
         unpacked bookworm 'clang-format 14 (38 MB)' clang-format-14 libclang-cpp14 libllvm14 libz3-4 libxml2 libicu72
         library=$(find "$keep/root" -name libLLVM-14.so.1)
-        program="env LD_LIBRARY_PATH=${library%/*} $keep/root/usr/bin/clang-format-14"
+        program="env LD_LIBRARY_PATH=$(quoted "${library%/*}") $(quoted "$keep/root/usr/bin/clang-format-14")"
     fi
     printf '#!/bin/sh\nexec %s "$@"\n' "$program" >"$target/clang-format"
     chmod +x "$target/clang-format"

@@ -233,11 +233,14 @@ public:
         return recv(fd_, bytes, sizeof bytes, MSG_WAITALL) == sizeof bytes;
     }
 
-    // From here on no packet reaches it, as if its machine were off: the kernel drops them.
-    void vanish() {
+    // From here on no packet reaches it, as if its machine were off: the kernel drops them. False:
+    // it lets this user have no filter.
+    bool vanish() {
         sock_filter none = BPF_STMT(BPF_RET | BPF_K, 0);
         const sock_fprog filter = {1, &none};
-        ASSERT_EQ(setsockopt(fd_, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof filter), 0);
+        const bool has = setsockopt(fd_, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof filter) == 0;
+        EXPECT_TRUE(has || errno == EPERM);
+        return has;
     }
     // Calls ice_ping of echo.
     void ping() {
@@ -261,7 +264,8 @@ TEST_F(Gateway, AClientThatVanishesWithoutAWordIsGivenUp) {
         ASSERT_TRUE(vanished.back().isGreeted());
     }
     for (SilentClient& client : vanished) {
-        client.vanish();
+        if (!client.vanish())
+            GTEST_SKIP() << "this machine's kernel lets the user attach no filter to a socket";
         if (&client != &vanished[0])
             client.ping();
     }

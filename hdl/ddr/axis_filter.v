@@ -155,6 +155,10 @@ module axis_filter #(
         .npi_init_done_i(npi_init_done_i));
 
     wire unused = &{1'b0, idle, tag, no_tag, shifted, kept, 1'b0};
+
+`ifdef FORMAL
+`include "axis_filter_proof.vh"
+`endif
 `ifdef COVER_POINTS
     filter_is_given_up: cover property (@(posedge clk_i) core_rst_i && word_valid);
     filter_core_holds_up: cover property (@(posedge clk_i) m_axis_tvalid_o && !m_axis_tready_i);

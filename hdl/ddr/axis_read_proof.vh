@@ -63,8 +63,10 @@
         if ($past(axis_tvalid_o && !axis_tready_i && !stop_i) && !rd_empty_i) // whose word stays
             assert (axis_tvalid_o && $stable(axis_tkeep_o) && $stable(axis_tlast_o) && $stable(axis_tid_o));
         if ($past(start))
-            assert (busy && at == $past(desc_base_i) && rows == $past(desc_rows_i)
-                    && {words, 3'd0} == $past({2'd0, desc_bytes_i} + 3'd7) >> 3 << 3);
+            assert (busy && at == $past(desc_base_i) && rows == $past(desc_rows_i) && stride == $past(desc_stride_i)
+                    && {words, 3'd0} == $past({2'd0, desc_bytes_i} + 3'd7) >> 3 << 3 && {rest, tag} == $past({desc_bytes_i[2:0], desc_tag_i}));
+        else
+            assert ($stable({stride, words, rest, tag}));
         if ($past(ask && row_ends))
             assert (busy == !$past(one_row) && at == $past(row) + $past(stride) && rows == $past(rows) - 16'd1);
     end

@@ -67,8 +67,10 @@
     end
     always @(posedge clk_i) if (past && !rst_i && !$past(rst_i)) begin
         if ($past(start))
-            assert (busy && at == $past(desc_base_i) && rows == $past(desc_rows_i)
-                    && {words, 3'd0} == $past({2'd0, desc_bytes_i} + 3'd7) >> 3 << 3);
+            assert (busy && at == $past(desc_base_i) && rows == $past(desc_rows_i) && stride == $past(desc_stride_i)
+                    && {words, 3'd0} == $past({2'd0, desc_bytes_i} + 3'd7) >> 3 << 3 && {rest, tag} == $past({desc_bytes_i[2:0], desc_tag_i}));
+        else if (busy)
+            assert ($stable({stride, words, rest, tag}));
         if ($past(data && row_ends && !axis_tlast_i && !stop_i))
             assert (over == $past(one_row) && at == $past(row) + $past(stride) && rows == $past(rows) - 16'd1);
         if ($past(done_valid_o && !done_ready_i && !stop_i))

@@ -72,6 +72,9 @@
             assert (!rd_safe_o || rd_hit_o);
             if (idle_o)
                 assert (memory == newest);
+            // A block keeps its words until a fetch needs its place, or all are dropped.
+            if ($past(!rst_i && !drop_i && !wr_i && !(miss && at_upper != upper)))
+                assert (($past(full) & ~full & ($past(miss || next) ? ~(2'b01 << fetch_block) : 2'b11)) == 2'b00);
             // The port's rules hold: one read at a time, data of a write before its request, aligned blocks.
             if (npi_addr_req_o) begin
                 assert (!npi_rnw_o || to_come == 5'd0);

@@ -27,11 +27,12 @@ OF_SOURCE = "{0}/c:* {0}/a:src=*_proof.v* {0}/t:$assert {0}/t:$assume {0}/t:$cov
 
 
 class Proof:
-    """A proof as CTest runs it: prove.sh module depth source work parameters."""
+    """A proof as CTest runs it: what keeps its verdict, prove.sh module depth source work parameters."""
 
     def __init__(self, test, out):
         self.name = test["name"].split(".", 1)[1]
-        self.script, self.module, self.depth, _, _, *self.parameters = test["command"]
+        start = next(i for i, word in enumerate(test["command"]) if word.endswith("/prove.sh"))
+        self.script, self.module, self.depth, self.tree, _, *self.parameters = test["command"][start:]
         self.source = out / "source"
         given = next((p["value"] for p in test["properties"] if p["name"] == "ENVIRONMENT"), [])
         self.environment = {**os.environ, **dict(entry.split("=", 1) for entry in given)}
@@ -161,7 +162,7 @@ def main():
     proofs = [proof for proof in proofs if not proof.module.endswith("_proof")]  # of several modules together
     if not proofs:
         sys.exit(f"mutants: no proof's name begins with {options.block}: ctest -N -L formal lists them")
-    source = pathlib.Path(tests[0]["command"][3])
+    source = pathlib.Path(proofs[0].tree)
     # A copy: names of cells move with any change, and somebody may be editing.
     shutil.rmtree(out / "drawn", ignore_errors=True)
     for folder in ("bus", "hdl", "ip"):

@@ -35,7 +35,7 @@ cat >CMakeLists.txt <<END
 cmake_minimum_required(VERSION 3.25)
 project(tiny NONE)
 enable_testing()
-add_test(NAME formal.pair COMMAND $source/tests/hdl/formal/prove.sh pair 4 $work $work/build/pair)
+add_test(NAME formal.pair COMMAND env $source/tests/hdl/formal/prove.sh pair 4 $work $work/build/pair)
 END
 cmake -S . -B build -G Ninja >/dev/null
 run() { "$drawn" --build build --out build --number 8 --seed 3 --jobs 2 --block "${1:-pair}" >run.log 2>&1; }

@@ -10,6 +10,7 @@
 #include "hw/ports.h"
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 
 namespace hw {
 namespace {
@@ -95,42 +96,37 @@ void head(Writer& w, const Block& b, const char* comment) {
 
 // The memory port as two streams of words that rest: what a core reads and writes its buffers by.
 // No operation has a name that begins with npi_.
-const char* const npiStream[] = {
-    "    // The buffers in DDR3 as two streams of words, which rest here (docs/memory.md, "
-    "npi_stream).",
-    "    wire        npi_read_start = 1'd0, npi_read_take = 1'd0;",
-    "    wire [31:0] npi_read_base = 32'd0, npi_write_base = 32'd0;",
-    "    wire [23:0] npi_read_words = 24'd0;",
-    "    wire        npi_write_start = 1'd0, npi_write_valid = 1'd0, npi_write_flush = 1'd0;",
-    "    wire [63:0] npi_write_data = 64'd0;",
-    "    wire [63:0] npi_read_data;",
-    "    wire [7:0]  npi_write_be = 8'hFF;",
-    "    wire        npi_read_valid, npi_read_idle, npi_write_ready, npi_write_idle;",
-    "",
-    "    npi_stream u_stream (",
-    "        .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: what was asked for must be taken",
-    "        .read_start_i(npi_read_start), .read_base_i(npi_read_base[31:6]),",
-    "        .read_words_i(npi_read_words), .read_stop_i(core_rst), .read_valid_o(npi_read_valid),",
-    "        .read_data_o(npi_read_data), .read_take_i(npi_read_take), "
-    ".read_idle_o(npi_read_idle),",
-    "        .write_start_i(npi_write_start), .write_base_i(npi_write_base[31:6]),",
-    "        .write_valid_i(npi_write_valid), .write_data_i(npi_write_data), "
-    ".write_be_i(npi_write_be),",
-    "        .write_ready_o(npi_write_ready), .write_flush_i(npi_write_flush || core_rst),",
-    "        .write_idle_o(npi_write_idle),",
-    "        .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), "
-    ".npi_addr_ack_i(npi_addr_ack_i),",
-    "        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o),",
-    "        .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o),",
-    "        .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),",
-    "        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i),",
-    "        .npi_init_done_i(npi_init_done_i)",
-    "    );",
-    "    assign {npi_rmw_o, npi_wr_flush_o, npi_rd_flush_o} = 3'd0;",
-    "    wire npi_unused = &{1'b0, npi_wr_empty_i, npi_rd_word_i, npi_read_base[5:0], "
-    "npi_read_data,",
-    "                        npi_read_valid, npi_read_idle, npi_write_base[5:0], npi_write_ready,",
-    "                        npi_write_idle, 1'b0};"};
+const char npiStream[] =
+    R"(    // The buffers in DDR3 as two streams of words, which rest here (docs/memory.md, npi_stream).
+    wire        npi_read_start = 1'd0, npi_read_take = 1'd0;
+    wire [31:0] npi_read_base = 32'd0, npi_write_base = 32'd0;
+    wire [23:0] npi_read_words = 24'd0;
+    wire        npi_write_start = 1'd0, npi_write_valid = 1'd0, npi_write_flush = 1'd0;
+    wire [63:0] npi_write_data = 64'd0;
+    wire [63:0] npi_read_data;
+    wire [7:0]  npi_write_be = 8'hFF;
+    wire        npi_read_valid, npi_read_idle, npi_write_ready, npi_write_idle;
+
+    npi_stream u_stream (
+        .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: what was asked for must be taken
+        .read_start_i(npi_read_start), .read_base_i(npi_read_base[31:6]),
+        .read_words_i(npi_read_words), .read_stop_i(core_rst), .read_valid_o(npi_read_valid),
+        .read_data_o(npi_read_data), .read_take_i(npi_read_take), .read_idle_o(npi_read_idle),
+        .write_start_i(npi_write_start), .write_base_i(npi_write_base[31:6]),
+        .write_valid_i(npi_write_valid), .write_data_i(npi_write_data), .write_be_i(npi_write_be),
+        .write_ready_o(npi_write_ready), .write_flush_i(npi_write_flush || core_rst),
+        .write_idle_o(npi_write_idle),
+        .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
+        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o),
+        .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o),
+        .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),
+        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i),
+        .npi_init_done_i(npi_init_done_i)
+    );
+    assign {npi_rmw_o, npi_wr_flush_o, npi_rd_flush_o} = 3'd0;
+    wire npi_unused = &{1'b0, npi_wr_empty_i, npi_rd_word_i, npi_read_base[5:0], npi_read_data,
+                        npi_read_valid, npi_read_idle, npi_write_base[5:0], npi_write_ready,
+                        npi_write_idle, 1'b0};)";
 
 std::string verilogCore(const Block& b) {
     Writer w;
@@ -174,9 +170,9 @@ std::string verilogCore(const Block& b) {
             w.line("        " + signalOf(p) + " <= " + callOf(p) + "_start && !core_rst;");
         }
     w.line();
-    if (b.memoryBytes)
-        for (const char* line : npiStream)
-            w.line(line);
+    std::istringstream stream(b.memoryBytes ? npiStream : "");
+    for (std::string line; std::getline(stream, line);)
+        w.line(line);
     for (const Pin& p : b.pins) {
         if (p.isOut())
             w.line("    assign " + p.name + " = " + std::to_string(p.width) + "'d0;");

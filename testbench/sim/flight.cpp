@@ -260,7 +260,7 @@ void Flight::runOnHost() {
 void Flight::runOnCortexM3() {
     const std::vector<uint8_t> flash = flashOf(o_.flash, Stm32Flash::bytes, "the chip's"),
                                fpga = flashOf(o_.fpgaFlash, SpiFlash::bytes, "the FPGA's");
-    M3Machine machine(soc_, {o_.firmware, o_.hclk, o_.guard, flash, key_, o_.seed, fpga},
+    M3Machine machine(soc_, {o_.firmware, 120'000'000, o_.guard, flash, key_, o_.seed, fpga},
                       [this] { return poll(); });
     if (machine.program)
         machine.program->onTask = [this](const std::string& name) {

@@ -25,7 +25,6 @@ public:
         std::string keyFile;  // of the link; none: the vehicle is open
         std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
                            firmware = FIRMWARE_ELF;
-        uint32_t hclk = 120'000'000;
         uint16_t guard = 1000;
         int gdb = -1;
         std::string pins, trace, flash, fpgaFlash; // files

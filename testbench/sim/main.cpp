@@ -72,8 +72,6 @@ CommandLine::CommandLine() {
                    "the chip's flash with --cpu m3, 1 MiB by pack_update; it is kept there");
     app.add_option("--fpga-flash", o.fpgaFlash,
                    "the FPGA's configuration flash beside --flash, 2 MiB by pack_update; kept too");
-    app.add_option("--hclk", o.hclk,
-                   "of the Cortex-M3, Hz in simulated time; 0: 6/5 of the fabric's clock");
     app.add_option("--gdb", o.gdb, "wait for GDB on this port of the loopback interface; 0: any")
         ->check(CLI::Range(0, 65535));
     app.add_flag("--quiet", o.quiet, "say nothing");

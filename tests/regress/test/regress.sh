@@ -207,8 +207,9 @@ END
     cmake build/main >/dev/null
     run --label formal
     has '1 passed, 1 failed' # what is not built may be of that label: it is not left out
-    (flock build/regress/lock sleep 2) &
-    sleep 0.3
+    # Another run has the lock until this one has said that it waits.
+    flock build/regress/lock sh -c 'touch held; until grep -q "waiting for another run" out.txt; do sleep 0.1; done' &
+    until [ -e held ]; do sleep 0.1; done
     run --name a.One
     has 'waiting for another run in build/regress'
     wait

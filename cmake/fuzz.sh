@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: MIT
 #
 # fuzz: runs a libFuzzer program on so many inputs, from SEED (default 1). Usage: fuzz.sh program runs seeds|- option...
-# seeds: a folder of inputs, or a file with one a line in hex ("#" begins a comment). RUNS=1000000 goes on for longer.
+# seeds: a folder of inputs, or a file with one a line in hex ("#" begins a comment). FUZZ=10: ten times as many inputs.
 # An input that does harm is printed.
 set -eu
-program=$1 runs=${RUNS:-$2} seeds=$3
+program=$1 runs=$(($2 * ${FUZZ:-1})) seeds=$3
 shift 3
 [ "$seeds" != - ] || seeds=
 work=$(mktemp -d)

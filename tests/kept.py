@@ -49,7 +49,9 @@ def state(path, listed):
 def touched(trace):
     """{path: (was it listed, did the run write it)} of strace's lines."""
     lines = pathlib.Path(trace).read_text(errors="surrogateescape").splitlines()
-    here = {ROOT, *re.findall(r"AT_FDCWD<(/[^>]*)>", "\n".join(lines))}  # folders that relative paths may begin in
+    whole = "\n".join(lines)
+    here = {os.getcwd(), *re.findall(r"AT_FDCWD<(/[^>]*)>", whole)}  # folders that relative paths may begin in
+    here |= {os.path.join(b, n) for n in re.findall(r'\bchdir\("([^"]*)"', whole) for b in here}
     paths = {}
     for line in lines:
         call, _, rest = line.partition("(")

@@ -69,9 +69,9 @@ sanitizers: setup-tests $(BUILD)/build.ninja ## tests of engine, gateway, plugin
 	    ctest --test-dir $(BUILD) -R '^fuzz[.](page|gdb)$$' --output-on-failure || status=1; exit $$status
 
 # Not by $$(MAKE), which `make -n` would carry out, and the whole line with it.
-# Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them. COMPARE_MS: test_quiet compares a second; HOSTILE: packets of test_link.
+# Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them. COMPARE_MS: test_quiet compares a second; FUZZ: times as many inputs of fuzzers; HOSTILE: packets of test_link.
 nightly: setup-tests build ## what a timer runs: seeds that have failed, the regression with fresh seeds (NIGHTLY=3 of them), ZeroC's own suites, faults, sanitizers
-	@status=0; export FRESH=1 COMPARE_MS=1000 HOSTILE=10000000; tool="$(BUILD)/tests/regress/regress --build $(BUILD) --jobs $(TESTS) --waves $(WAVES) --launcher $(LAUNCHER)"; \
+	@status=0; export FRESH=1 FUZZ=10 COMPARE_MS=1000 HOSTILE=10000000; tool="$(BUILD)/tests/regress/regress --build $(BUILD) --jobs $(TESTS) --waves $(WAVES) --launcher $(LAUNCHER)"; \
 	    $$tool --kept $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
 	    $$tool --seed random --repeat $(NIGHTLY) $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
 	    ctest --test-dir $(BUILD) -C zeroc -L zeroc -j $(TESTS) --output-on-failure || status=$$?; \

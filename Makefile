@@ -119,7 +119,7 @@ mutants: setup-tests $(BUILD)/build.ninja ## plant every seeded bug of tests/mut
 
 bench: $(BUILD)/build.ninja ## measure everything that has a figure (tests/bench), write build/bench/*.json and docs/figures.md
 	@$(NINJA) bench_programs regress size
-	@mkdir -p build/bench && $(BUILD)/tests/regress/regress --tree "bus hdl ip sw testbench tests" >build/bench/tree
+	@rm -rf build/bench && mkdir -p build/bench && $(BUILD)/tests/regress/regress --tree "bus hdl ip sw testbench tests" >build/bench/tree
 	@$(NINJA) -j 1 -k 0 benches; status=$$?; tests/bench/figures.py docs/figures.md build/bench/*.json build/size.json && exit $$status
 
 firmware: $(BUILD)/build.ninja ## the firmware for the STM32F2: ELF and map in build/main/firmware, table of flash, RAM and stacks
@@ -145,5 +145,7 @@ SPACE   := $(subst ,, )
 GIVEN   := $(foreach word,$(subst \$(SPACE),,$(MAKEOVERRIDES)),$(if $(findstring =,$(word)),$(firstword $(subst =, ,$(word)))))
 UNKNOWN := $(filter-out LANG $(shell sed -n 's/^\([A-Z0-9_]*\) *?*=.*/\1/p' $(MAKEFILE_LIST)),$(GIVEN))
 $(if $(UNKNOWN),$(error there is no variable $(UNKNOWN); `make help` names those that there are))
-NUMBER   = $(filter-out 0,$(shell expr x$(call quoted,$(1)) : 'x[1-9][0-9]*$$'))
-$(foreach name,$(filter JOBS TESTS,$(GIVEN)),$(if $(call NUMBER,$($(name))),,$(error $(name)='$($(name))' is not a number from 1 on)))
+# expr prints how long what fits is.
+fits     = $(filter-out 0,$(shell expr x$(call quoted,$(1)) : 'x$(2)$$'))
+$(foreach name,$(filter JOBS TESTS FUZZED REPEAT NIGHTLY MOMENTS SEEDS DRAW,$(GIVEN)),$(if $(call fits,$($(name)),[1-9][0-9]*),,$(error $(name)='$($(name))' is not a number from 1 on)))
+$(foreach given,$(filter MINUTES,$(GIVEN)),$(if $(call fits,$(MINUTES),[0-9]*[.]*[0-9]*[1-9][0-9]*),,$(error MINUTES='$(MINUTES)' is not a number of minutes, such as 4 or 0.5)))

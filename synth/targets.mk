@@ -11,6 +11,7 @@ BASE   ?=
 synth: setup-tests $(BUILD)/build.ninja ## utilisation: LUTs, flip-flops, slices of the chip and each part, against limits and paper (DESIGN=modem FAMILY=xc7 PLACE=1 BASE=main BASE=v1..main)
 	@$(NINJA) --quiet synth_inputs
 	@$(if $(findstring ..,$(BASE)),exec synth/compare.sh $(BUILD)/synth/utilisation $(call quoted,$(BASE)) $(JOBS);) \
+	$(if $(BASE),git rev-parse --verify -q $(call quoted,$(BASE)^{commit}) >/dev/null || { echo "synth: there is no commit BASE="$(call quoted,$(BASE)) >&2; exit 2; };) \
 	$(if $(PLACE),cmake/fetch.sh nextpnr $(BUILD)/nextpnr &&) \
 	$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) \
 	    $(addprefix --design ,$(or $(DESIGN),$(PLACE:%=table1 soc))) $(addprefix --family ,$(FAMILY)) \

@@ -2,8 +2,8 @@
 
 # MINUTES=60 goes on for an hour: a third the link alone (half of it attacked), a third stock Ice through the plugin to a stock server, a third
 # to IceC on the chip's RTL (there simulated seconds). Then noise:
-# FUZZED bytes into the modem controller's UART (10,000,000 take 5 minutes of a core), 10,000,000 into
-# the link layer and the plugin's engine.
+# FUZZED bytes into the modem controller's UART (10,000,000 take 5 minutes of a core), ten times as many
+# into the link layer and the plugin's engine.
 MINUTES ?= 4
 FUZZED  ?= 1000000
 sixth   := $$(echo $(MINUTES) | awk '{print $$1 / 6}')
@@ -15,8 +15,8 @@ soak: $(BUILD)/build.ninja ## endurance of the radio: MINUTES=4 of messages and 
 	@$(BUILD)/tests/soak/soak --minutes $(sixth) --seed $(SEED) --attacked
 	@SEED=$(SEED) SOAK_SECONDS=$(seconds) $(BUILD)/tests/sw/ground/ice/test_radio_ice --gtest_brief=1 --gtest_filter='IceSoak*'
 	@SEED=$(SEED) SOAK_SECONDS=$(seconds) $(BUILD)/tests/sw/ground/chip/test_chip_soak --gtest_brief=1
-	@SEED=$(SEED) $(BUILD)/tests/sw/link/test_link --gtest_brief=1 --gtest_filter='*TenMillion*'
-	@SEED=$(SEED) $(BUILD)/tests/sw/ground/test_engine --gtest_brief=1 --gtest_filter='Engine.RandomBytes*'
+	@SEED=$(SEED) BYTES=$(FUZZED)0 $(BUILD)/tests/sw/link/test_link --gtest_brief=1 --gtest_filter='*TenMillion*'
+	@SEED=$(SEED) BYTES=$(FUZZED)0 $(BUILD)/tests/sw/ground/test_engine --gtest_brief=1 --gtest_filter='Engine.RandomBytes*'
 	@SEED=$(SEED) SOAK_BYTES=$(FUZZED) $(BUILD)/tests/hdl/modem/test_modem_soak --gtest_brief=1
 .PHONY: soak
 

@@ -141,7 +141,10 @@ int main(int argc, char** argv) {
     try {
         line.parse({argv + 1, argv + argc});
     } catch (const CLI::ParseError& e) {
-        return line.app.exit(e);
+        if (e.get_exit_code() == 0) // --help
+            return line.app.exit(e);
+        std::cerr << "icesoc-sim: " << e.what() << "; see --help\n";
+        return 2;
     }
     struct sigaction action {};
     action.sa_handler = [](int signal) { Flight::stopSignal = signal; };

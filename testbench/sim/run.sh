@@ -44,12 +44,17 @@ while [ $# -gt 0 ]; do
     esac
     shift 2
 done
-case $threshold in
-'' | *[!0-9]* | ????*) bad=1 ;;
-*) bad=$((threshold > 255)) ;;
-esac
-[ "$bad" = 0 ] || { echo "run: THRESHOLD is 0..255 grey levels, not '$threshold'" >&2 && exit 2; }
-[ -z "$open" ] || [ -z "$key" ] || { echo "run: OPEN=1 flies in the clear, KEY='$key' does not: give one of them" >&2 && exit 2; }
+refuse() {
+    echo "run: $*" >&2
+    exit 2
+}
+number() { expr "x$1" : 'x[0-9]\{1,18\}$' >/dev/null; }
+number "$threshold" && [ "$threshold" -le 255 ] || refuse "THRESHOLD is 0..255 grey levels, not '$threshold'"
+number "$seed" || refuse "SEED is a whole number, not '$seed'"
+number "$port" && [ "$port" -le 65535 ] || refuse "PORT is 0..65535, and 0 is any, not '$port'"
+echo "$loss" | grep -Eqx '0?\.[0-9]+|[01](\.0*)?' || refuse "LOSS is the share of packets that is lost, 0..1, not '$loss'"
+case $cpu in host | m3) ;; *) refuse "CPU is host or m3, not '$cpu'" ;; esac
+[ -z "$open" ] || [ -z "$key" ] || refuse "OPEN=1 flies in the clear, KEY='$key' does not: give one of them"
 if [ -z "$open$key" ] && [ "$app" = uav ]; then
     key=$(dirname "$build")/demo.key
     if [ ! -e "$key" ]; then
@@ -70,8 +75,8 @@ minimal:m3)
         --frame '{frame}' --reference "$build/testbench/sim/vision-reference" "--Ice.Plugin.XBeeAT=$build/ground/xbeeat:createXBeeAT" \
         '--XBeeAT.Guard={guard}'
     ;;
-minimal:*) echo "run: the minimal program is an ARM binary: give CPU=m3" >&2 && exit 2 ;;
-*) echo "run: there is no program '$app': uav, minimal" >&2 && exit 2 ;;
+minimal:*) refuse "the minimal program is an ARM binary: give CPU=m3" ;;
+*) refuse "there is no program '$app': uav, minimal" ;;
 esac
 if [ -n "$update" ]; then
     pack=$build/sw/target/pack_update
@@ -94,8 +99,9 @@ parts=''
 [ -z "$sensor" ] || case " $cores " in *' camera '*) ;; *) cores="$cores camera" ;; esac
 listed=$(sed -n 's/^CORES:[A-Z]*=//p' "$build/CMakeCache.txt")
 for core in $cores; do
+    [ -f "$here/ip/$core/ground.py" ] || refuse "core '$core' has no part in a mission: there is no ip/$core/ground.py"
     # A core that the tree has and the chip does not would be an object that does not exist, minutes from now.
-    [ ! -d "$here/ip/$core" ] || grep -Eq "^[[:space:]]*$core([[:space:]#]|\$)" "$listed" || {
+    grep -Eq "^[[:space:]]*$core([[:space:]#]|\$)" "$listed" || {
         echo "run: the chip has no core '$core': it needs a line '$core' in $listed" >&2
         exit 1
     }
@@ -137,7 +143,7 @@ elif [ $status -gt 128 ]; then
 else
     echo "The mission failed (exit status $status)." >&2
 fi
-if [ $status != 0 ] && [ -s "$out/flight.jsonl" ]; then # the last checkpoint that is 10 ms before its end, or more
+if [ $status != 0 ] && [ "$(flown)" != "$before" ]; then # the last checkpoint that is 10 ms before its end, or more
     span=$(sed -n 's/.*"digest".*"ns":\([0-9]*\).*/\1 checkpoint/p; s/.*"ns":\([0-9]*\).*/\1/p' "$out/flight.jsonl" |
         awk '{ end = $1 } $2 { before = last; last = $1 } END { if (end - last > 1e7) before = last; printf "FROM=%.3f TO=%.3f", before / 1e9, end / 1e9 }')
     echo "Its end as a waveform: make run REPLAY='$out' $span" >&2

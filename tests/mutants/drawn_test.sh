@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: MIT
 # drawn_test: drawn.py on a module of which the proof says half: what it misses survives at its line, what is no bug drops out.
 # What survives is found by a test of a model that carries all of them (model.py).
-# Usage: drawn_test.sh drawn.py source-folder work-folder verilators-runtime.a
+# Usage: drawn_test.sh source-folder work-folder verilators-runtime.a
 set -eu
-drawn=$1 source=$2 work=$3 runtime=$4
+source=$1 work=$2 runtime=$3
 rm -rf "$work"
-mkdir -p "$work/hdl/small" "$work/bus" "$work/ip" "$work/build"
+mkdir -p "$work/hdl/small" "$work/bus" "$work/ip" "$work/build" "$work/tests"
 cd "$work"
+ln -s "$source/tests/mutants" tests/mutants
 touch bus/none.v
 fail() {
     cat run.log >&2
@@ -38,13 +39,13 @@ enable_testing()
 add_test(NAME formal.pair COMMAND env $source/tests/hdl/formal/prove.sh pair 4 $work $work/build/pair)
 END
 cmake -S . -B build -G Ninja >/dev/null
-run() { "$drawn" --build build --out build --number 8 --seed 3 --jobs 2 --block "${1:-pair}" >run.log 2>&1; }
+run() { "$source/tests/regress/test/make_in.sh" "$source" "$work" build mutants DRAW=8 SEED=3 JOBS=2 BLOCK="${1:-pair}" >run.log 2>&1; }
 if run; then fail "mutants that survive are no error"; fi
 grep -q '^SURVIVED .*formal.pair .*hdl/small/pair.v:[45] ' run.log || fail "the survivor's line is not told"
 ! grep -q '^SURVIVED .*pair.v:3 ' run.log || fail "a mutant that changes nothing survives, or the proof misses one"
 grep -q '^pair .* [1-9] the same$' run.log || fail "none drops out"
 grep -q 'below 95 %: pair$' run.log || fail "the gate is not told"
-python3 -c 'import json, sys; json.dump(json.load(sys.stdin)["survived"], sys.stdout)' <build/drawn.json >missed.json
+python3 -c 'import json, sys; json.dump(json.load(sys.stdin)["survived"], sys.stdout)' <build/mutants/drawn.json >missed.json
 cat >main.cpp <<'END'
 #include "Vpair.h"
 int main() {
@@ -61,7 +62,7 @@ int main() {
     }
 }
 END
-DRAWN=$PWD/missed.json "${drawn%drawn.py}model.py" --cc -Wall --top-module pair --prefix Vpair --Mdir model hdl/small/pair.v >run.log 2>&1 || fail "no model"
+DRAWN=$PWD/missed.json "$source/tests/mutants/model.py" --cc -Wall --top-module pair --prefix Vpair --Mdir model hdl/small/pair.v >run.log 2>&1 || fail "no model"
 include=$(verilator --getenv VERILATOR_ROOT)/include
 c++ -Imodel -I"$include" -I"$include/vltstd" main.cpp model/*.cpp "$runtime" -lz -lpthread -o test_pair
 ./test_pair || fail "the model without a mutant is not the module"
@@ -71,6 +72,6 @@ done
 sed -i 's/assert (same_o == a_i);/& assert (both_o == (a \&\& b));/' hdl/small/pair.v
 run || fail "a proof that says all misses some"
 grep -q '^pair  *100.0 %' run.log || fail "no score"
-grep -q '"survived": \[\]' build/drawn.json || fail "no summary"
+grep -q '"survived": \[\]' build/mutants/drawn.json || fail "no summary"
 if run nothing; then fail "no proof is no error"; fi
 grep -q 'no proof.s name begins with nothing' run.log || fail "no word of what there is"

@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # run_test: run.py in a tree of one program: each result that a seeded bug can have, an interrupted run, two at once.
-# Usage: run_test.sh run.py work-folder
+# Usage: run_test.sh source-folder work-folder
 set -eu
-run=$1 work=$2
+source=$1 work=$2
 rm -rf "$work"
 mkdir -p "$work/tests/mutants"
-cp "$run" "$work/tests/mutants/run.py"
+cp "$source/tests/mutants/run.py" "$work/tests/mutants"
 cd "$work"
 fail() {
     cat run.log >&2
@@ -58,7 +58,7 @@ done
 for copy in 0 1; do cmp tiny.c build/mutants/$copy/tiny.c || fail "a bug was left in copy $copy"; done
 ! tests/mutants/run.py --check >run.log 2>&1 || fail "--check does not see the stale patch"
 grep -q 'tiny/stale: does not apply' run.log || fail "--check does not name the stale patch"
-tests/mutants/run.py --block tiny/wrong --jobs 1 >run.log 2>&1 || fail "one bug by its name"
+"$source/tests/regress/test/make_in.sh" "$source" "$work" build mutants BLOCK=tiny/wrong JOBS=1 >run.log 2>&1 || fail "one bug by its name"
 grep -q '^mutants: 1 of 1 caught' run.log || fail "one bug by its name is not one"
 rm tests/mutants/tiny.bugs
 bug wrong test_tiny '    return 2 * n;' '    return 3 * n;'

@@ -11,6 +11,7 @@
 #   twice    of two runs at once the second waits, says so, and takes what the first has made
 #   compare  what has changed since another commit, or between two, as Markdown
 #   place    a design placed with five seeds: clock, estimate, utilisation; placed once; a failure is told
+#   made     by make, with its variables
 #   edif     the netlist for ISE is whole
 #   page     the page in Chromium: tables, chart, sorting, looking inside, differences; one file, no network
 set -eu
@@ -31,6 +32,12 @@ mkdir gen out
 run() {
     "$program" --source project --generated gen --output out "$@" >"$work/log" 2>&1
 }
+users_tree() {
+    cd project
+    mkdir -p build/main/synth build/synth
+    ln -s "$program" build/main/synth/utilisation && mv ../gen build/main && mv ../out/cache build/synth
+}
+made() { "$source/tests/regress/test/make_in.sh" "$source" . build/main "$@" >"$work/log" 2>&1; } # in the project, as a user
 has() { grep -q -- "$1" "$work/log" || { cat "$work/log" >&2; fail "no '$1' in the output"; }; }
 
 case $case in
@@ -247,18 +254,31 @@ EOF
     if run --design whole --place "$work/nextpnr"; then fail "a placement that fails passes"; fi
     has 'cannot place whole: ERROR: no room'
     ;;
+made)
+    users_tree
+    made synth-accept DESIGN=store && made synth DESIGN=store || fail "$(cat "$work/log")"
+    if grep -q '^wide ' "$work/log"; then fail "a design that was not asked for is in the table"; fi
+    if made synth FAMILY=none; then fail "no such family"; fi
+    has 'none not in {xc6s'
+    if made synth BASE=nonsense; then fail "no such commit"; fi
+    has 'there is no commit BASE=nonsense'
+    echo store >build/main/cores.known
+    if made ip-synth IP=nobody; then fail "a core that is none"; fi
+    has "not 'nobody'"
+    ;;
 edif)
     # The netlist that ISE reads has every cell that Yosys counts, once, and well-formed parentheses.
-    run --edif whole || fail "$(cat "$work/log")"
-    edif=$work/out/ise/whole.edf
+    users_tree
+    made synth-edif DESIGN=whole || fail "$(cat "$work/log")"
+    edif=build/synth/ise/whole.edf
     [ "$(tr -cd '(' <"$edif" | wc -c)" = "$(tr -cd ')' <"$edif" | wc -c)" ] || fail "parentheses do not match"
     for cell in RAM32M CARRY4 FDRE; do
         inside=$(grep -o "(cellRef $cell " "$edif" | wc -l)
-        counted=$(grep -c "\"type\": \"$cell\"" "$work"/out/ise/whole.json)
+        counted=$(grep -c "\"type\": \"$cell\"" build/synth/ise/whole.json)
         { [ "$inside" = "$counted" ] && [ "$inside" -gt 0 ]; } || fail "$inside $cell in EDIF, $counted counted"
     done
     grep -q '(design pair' "$edif" || grep -q '(design whole' "$edif" || fail "the top is not named"
-    [ -f "$work/out/ise/verilog/store.v" ] || fail "the Verilog for XST is not there"
+    [ -f "build/synth/ise/verilog/store.v" ] || fail "the Verilog for XST is not there"
     ;;
 *) fail "unknown case $case" ;;
 esac

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# diff: contract_diff.py slice2c work-folder   Which changes of registers are told as breaking, which as compatible.
+# diff: source-folder slice2c work-folder   Which changes of registers are told as breaking, which as compatible.
 set -eu
-diff=$1 slice2c=$2 work=$3
+source=$1 diff=$1/bus/contract_diff.py slice2c=$2 work=$3
 rm -rf "$work"
 mkdir -p "$work/old/ip/a" "$work/old/ip/b" "$work/new/ip/a" "$work/bad/ip/a"
 cat >"$work/old/ip/a/a.regs.json" <<'END'
@@ -75,4 +75,9 @@ git -C "$work" -c user.name=t -c user.email=t@t commit -qm old
 sed -i 's/"STATUS"/"STATE"/' "$work/ip/a/a.regs.json"
 run 1 "$work" HEAD
 says 'breaking   a: STATUS (word 4) is gone' 'compatible a: STATE (word 4) is new' '1 breaking change'
+mkdir -p "$work/build/slice" "$work/bus"
+ln -s "$slice2c" "$work/build/slice"
+ln -s "$diff" "$work/bus"
+! "$source/tests/regress/test/make_in.sh" "$source" "$work" build contract-diff BASE=HEAD >"$work/made" 2>&1 && grep -q '^1 breaking change' "$work/made" ||
+    { cat "$work/made" && exit 1; }
 echo 'diff: all as expected'

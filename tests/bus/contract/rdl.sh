@@ -35,7 +35,7 @@ addrmap lamp {
     reg { field { woclr; hw = w; } DONE[0:0] = 0; field { onwrite = woclr; } OVER[1:1]; } EVENTS @ 6;
 };
 RDL
-rdl "$work/lamp.rdl" "$work" || { cat "$work/log" && fail 'the lamp was not read'; }
+"$source/tests/regress/test/make_in.sh" "$source" "$source" none from-rdl RDL="$work/lamp.rdl" OUT="$work" >"$work/log" 2>&1 || { cat "$work/log" && fail 'the lamp was not read'; }
 /usr/bin/python3 - "$work/lamp.regs.json" <<'PYTHON' || fail 'the lamp has other registers'
 import json, sys
 block = json.load(open(sys.argv[1]))

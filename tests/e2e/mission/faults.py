@@ -301,6 +301,9 @@ def main():
     args = parser.parse_args()
     global CLOCK_STEP
     CLOCK_STEP = os.path.abspath(args.build) + "/tests/e2e/mission/libclock_step.so"
+    faults = [(fault, name, args.only in fault.__name__ + " " + name) for fault, name in FAULTS]
+    if not any(chosen for _, _, chosen in faults):
+        sys.exit("faults: none is called %s; there are %s" % (args.only, ", ".join(sorted({fault.__name__ for fault, _ in FAULTS}))))
     shutil.rmtree(args.out, ignore_errors=True)
     os.makedirs(args.out)
     may_mount = subprocess.run(["unshare", "--map-root-user", "--mount", "true"], stderr=subprocess.DEVNULL).returncode == 0
@@ -310,9 +313,9 @@ def main():
         runs = []
         for seed in range(args.seed, args.seed + args.seeds):
             draw = random.Random(seed)
-            for fault, name in FAULTS:
+            for fault, name, chosen in faults:
                 moments = [draw.uniform(0, LAST) for _ in range(args.moments)]
-                if args.only in fault.__name__ + " " + name and (may_mount or fault is not disk_full):
+                if chosen and (may_mount or fault is not disk_full):
                     runs += [pool.submit(undergo, args, fault, name, seed, number, moment) for number, moment in enumerate(moments)]
         failed = sum(not run.result() for run in runs)
     print("faults: %d moments of seeds %d to %d, %d failed" % (len(runs), args.seed, args.seed + args.seeds - 1, failed))

@@ -44,7 +44,7 @@ replays_with() {
 }
 case $case in
 plain) # secure, as each flight that does not say otherwise; its recording and its key are nobody else's to read
-    run "$out" --image $image >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+    "$source/tests/regress/test/make_in.sh" "$source" "$source" "$build" run IMAGE=$image SIZE=96x64 OUT="$out" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
     check_output "$out"
     # What is waited for first: the modem's set-up, then the vehicle.
     grep -o 'modem ready on .* after [0-9]* ms\|link connecting\|link up, secure\|the UAV has .* s to answer' "$out/log" | sed 's/ .*//' | tr '\n' ' ' | grep -q '^the modem link link ' || { cat "$out/log" && exit 1; }
@@ -248,8 +248,6 @@ picture_bad)
     fails_with "size '333x111': give WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8" run "$out" --image $image --size 333x111
     fails_with "size '96x64k'" run "$out" --image $image --size 96x64k
     ;;
-threshold_wrong) fails_with "THRESHOLD is 0..255 grey levels, not '999'" run "$out" --image $image --threshold 999 ;;
-picture_missing) fails_with "cannot read picture" run "$out" --image /nowhere.png ;;
 device_missing)
     fails_with "cannot open serial port '/dev/no-such-port'" /usr/bin/python3 "$source/sw/ground/clients/mission.py" \
         --device /dev/no-such-port --plugin "$build/ground" --slice "$source/sw/apps/uav/Autopilot.ice" \

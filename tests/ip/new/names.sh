@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# names: ip-folder work-folder slice2c   make new-ip's and rm-ip's scripts: names that it refuses, with what is there left as it was.
+# names: source-folder work-folder slice2c   make new-ip's and rm-ip's scripts: names that it refuses, with what is there left as it was.
 set -eu
-ip=$1 work=$2 slice2c=$3
+source=$1 ip=$1/ip work=$2 slice2c=$3
 rm -rf "$work"
 mkdir -p "$work/bus" "$work/hdl/modem" "$work/ip/old" "$work/sw" "$work/testbench" "$work/synth"
 cp -r "$ip/new.sh" "$ip/rm.sh" "$ip/template" "$work/ip"
@@ -84,7 +84,10 @@ mkdir "$work/build"
 touch "$work/build/build.ninja"
 refused 'nothing was changed' fir verilog "$work/build"
 rm -r "$work/build"
-"$work/ip/new.sh" fir verilog "$work/build" | grep -q 'make ip-test IP=fir'
+made() { "$source/tests/regress/test/make_in.sh" "$source" "$work" build "$@"; }
+made new-ip NAME=fir LANG=verilog | grep -q 'make ip-test IP=fir'
 [ -f "$work/ip/fir/fir.v" ] && ! grep -rq '@[A-Z]*@' "$work/ip/fir" || { echo 'ip/fir is not what it should be' && exit 1; }
+made rm-ip NAME=fir FORCE=1 >/dev/null
+[ ! -e "$work/ip/fir" ] || { echo 'make rm-ip left it' && exit 1; }
 "$work/ip/new.sh" --help | grep -q usage
 echo 'names: all as expected'

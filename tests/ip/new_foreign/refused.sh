@@ -52,4 +52,11 @@ refused "CLOCK=fast: the frequency" my_port wb_port wishbone "$work/out" CLOCK=f
 refused 'CLOCK: a core with AXI-Streams' my_port axis_scale axis "$work/out" CLOCK=24000000 "$here/axis_scale.v"
 refused 'a setting is for BUS=axis' my_port req_words own "$work/out" setting=value "$here/req_words.v"
 refused "setting is an input of a core, and 'over' is not" my_port axis_scale axis "$work/out" setting=over "$here/axis_scale.v"
+# The same by make, and one that is taken.
+mkdir -p "$work/tree/ip"
+ln -s "$new" "$work/tree/ip"
+made() { "${new%/ip/*}/tests/regress/test/make_in.sh" "${new%/ip/*}" "$work/tree" build new-foreign NAME=my_port TOP=req_words BUS=own FILES="$here/req_words.v" "$@" >"$work/log" 2>&1; }
+! made && grep -q "PORTS=" "$work/log" || { cat "$work/log" && exit 1; }
+made CLOCK=24000000 PORTS='select=req write=wr address=where wdata=value rdata=held ack=gnt' && [ -s "$work/tree/ip/my_port/my_port.regs.json" ] ||
+    { cat "$work/log" && exit 1; }
 echo 'refused: all as expected'

@@ -461,5 +461,6 @@ END
     [ "$(wc -c <build/regress/report.html)" -lt 2000000 ] || fail "the page has $(wc -c <build/regress/report.html) bytes"
     ;;
 lights_*) . "$source/tests/regress/test/lights.sh" ;;
+commands_*) . "$source/tests/regress/test/commands.sh" ;;
 *) fail "no such case" ;;
 esac

@@ -24,7 +24,8 @@ TITLES = {
 }
 
 # What a row has columns for, where it has two to six
-AXES = [r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %", r"of \d+ bytes", r"\d+ ports"]
+AXES = [r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %", "in the clear|encrypted|with a key",
+        r"of \d+ bytes", r"\d+ ports"]
 
 
 def number(value):

@@ -1,21 +1,39 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# take: the pictures of README.md from what is in build/: the pages of make regress and make synth, a mission and its page.
-# Usage: docs/pictures/take.sh [mission|live|utilisation|regression]...     (all of them, if none is named)
+# take: the pictures of README.md and docs/ from what is in build/: the pages of make regress and make synth, a mission and its page.
+# Each has as many colours as fit into 100 KB, at most 64.
+# Usage: docs/pictures/take.sh [--from build-folder] [--to folder] [mission|live|utilisation|regression|failure]...
+# `make pictures` takes all but the failure, for which a test must have failed.
 set -eu
-cd "$(dirname "$(readlink -f "$0")")/../.."
-out=docs/pictures
+from=build out=docs/pictures
+while :; do
+    case ${1:-} in
+    --from) from=$(readlink -f "$2") ;;
+    --to) out=$(readlink -f "$2") ;;
+    *) break ;;
+    esac
+    shift 2
+done
+script=$(readlink -f "$0")
+cd "${script%/*}/../.."
 profile=$(mktemp -d)
 trap 'rm -rf "$profile"' EXIT
-small() { # file: its colours, no more of them than one sees
-    /usr/bin/python3 -c 'import sys; from PIL import Image
-Image.open(sys.argv[1]).convert("RGB").quantize(64, dither=Image.Dither.NONE).save(sys.argv[1], optimize=True)' "$1"
-    echo "$1"
+small() { # file
+    /usr/bin/python3 - "$1" <<'END'
+import os, sys
+from PIL import Image
+picture = Image.open(sys.argv[1]).convert("RGB")
+for colours in (64, 48, 32, 24, 16, 8):
+    picture.quantize(colours, dither=Image.Dither.NONE).save(sys.argv[1], optimize=True)
+    if os.path.getsize(sys.argv[1]) < 100000:
+        sys.exit(print(sys.argv[1], colours, "colours"))
+sys.exit(f"take: {sys.argv[1]} has 100 KB with eight colours: show less of it")
+END
 }
 shot() { # picture width height address; the page has three seconds of its own time
     HOME=$profile chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --hide-scrollbars \
-        --user-data-dir="$profile/chromium" --virtual-time-budget=3000 --window-size="$2,$3" --screenshot="$PWD/$out/$1.png" "$4" \
+        --user-data-dir="$profile/chromium" --virtual-time-budget=3000 --window-size="$2,$3" --screenshot="$(readlink -f "$out")/$1.png" "$4" \
         >"$profile/log" 2>&1 && [ -s "$out/$1.png" ] || {
         cat "$profile/log" >&2
         echo "take: no picture of $4" >&2
@@ -28,17 +46,18 @@ page() { # file command
         echo "take: there is no $1: $2" >&2
         exit 1
     }
-    echo "file://$PWD/$1"
+    echo "file://$(readlink -f "$1")"
 }
 [ $# -gt 0 ] || set -- mission live utilisation regression
 for picture in "$@"; do
     case $picture in
-    utilisation) shot utilisation 1400 2680 "$(page build/synth/report.html 'make synth')#table1/u_modem" ;;
-    regression) shot regression 1180 1180 "$(page build/regress/report.html 'make regress')" ;;
+    utilisation) shot utilisation 1400 1500 "$(page "$from/synth/report.html" 'make synth')#table1/u_modem" ;;
+    regression) shot regression 1180 1180 "$(page "$from/regress/report.html" 'make regress')" ;;
+    failure) shot failure 1180 900 "$(page "$from/regress/report.html" 'make regress')" ;;
     mission)
         make run SIZE=640x480 OUT="$profile/run" >"$profile/log" 2>&1 || { cat "$profile/log" >&2 && exit 1; }
-        cp "$profile/run/after.png" $out/mission.png
-        small $out/mission.png
+        cp "$profile/run/after.png" "$out/mission.png"
+        small "$out/mission.png"
         ;;
     live) # once the mission has flown; its page stays until it is stopped
         setsid make run LIVE=1 CPU=m3 OUT="$profile/live" >"$profile/live.log" 2>&1 &
@@ -51,7 +70,7 @@ for picture in "$@"; do
         kill -- -$group
         ;;
     *)
-        sed -n '4,5s/^# \{0,1\}//p' "$0" >&2
+        sed -n '6,7s/^# \{0,1\}//p' "$script" >&2
         exit 2
         ;;
     esac

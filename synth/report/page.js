@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // page: the utilisation report at work: tables to sort, trees to fold, history, differences.
-"use strict";
 const data = JSON.parse(document.getElementById("data").textContent);
 const byId = id => document.getElementById(id);
 const share = (part, whole) => (100 * part / whole).toFixed(1) + " %";
@@ -10,12 +9,6 @@ const usable = data.designs.filter(d => d.figures);
 let picked = usable[0], path = "", sortBy = null, sortUp = false, folded = null;
 const openFolders = new Set();
 
-function element(tag, text, className) {
-  const e = document.createElement(tag);
-  if (text !== undefined) e.textContent = text;
-  if (className) e.className = className;
-  return e;
-}
 function fill(table, head, rows) { // cells: text, [text, class], or an element
   table.replaceChildren();
   const line = (cells, tag) => {
@@ -38,12 +31,6 @@ function place(signal) {
   const a = element("a", at);
   a.href = "../../" + at.replace(/:\d+$/, "");
   return a;
-}
-function shape(tag, attributes, text) {
-  const e = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [k, v] of Object.entries(attributes)) e.setAttribute(k, v);
-  if (text !== undefined) e.textContent = text;
-  return e;
 }
 
 // ---- Verdict and the paper's table

@@ -93,10 +93,11 @@ void print(const Report& r) {
 void writeReports(const Report& r, const Options& o) {
     writeFile(o.output / "report.json", entriesJson(r));
     writeFile(o.output / "report.md", markdown(r));
-    const fs::path parts = o.source / "synth/report";
+    const fs::path parts = o.source / "synth/report", common = COMMON_PAGE;
     writeFile(o.output / "report.html",
-              html(r, readFile(parts / "page.html"), readFile(parts / "page.css"),
-                   readFile(parts / "page.js")));
+              html(r, readFile(parts / "page.html"),
+                   readFile(common / "common.css") + readFile(parts / "page.css"),
+                   readFile(common / "common.js") + readFile(parts / "page.js")));
     fmt::print("Page: {}\n", (o.output / "report.html").string());
 }
 

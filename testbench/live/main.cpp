@@ -32,6 +32,8 @@ int main(int argc, char** argv) {
             pages.add(path, type, [file] { return contents(file); });
         };
         add("/", "text/html; charset=utf-8", PAGE "/index.html");
+        add("/common.css", "text/css", COMMON_PAGE "/common.css");
+        add("/common.js", "text/javascript", COMMON_PAGE "/common.js");
         add("/live.css", "text/css", PAGE "/live.css");
         add("/live.js", "text/javascript", PAGE "/live.js");
         add("/frame.png", "image/png", dir + "/before.png");

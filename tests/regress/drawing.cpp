@@ -6,6 +6,7 @@
 #include "files.h"
 #include "process.h"
 #include <algorithm>
+#include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -92,9 +93,7 @@ std::map<std::string, Signal> readVcd(const std::string& text, std::vector<uint6
     return signals;
 }
 
-} // namespace
-
-json drawingOf(const Failure& failure, size_t room) {
+json draw(const Failure& failure, size_t room) {
     const std::string& wave = failure.wave;
     const bool compressed = wave.size() > 4 && wave.compare(wave.size() - 4, 4, ".fst") == 0;
     const std::string text = compressed ? run({"fst2vcd", "-f", wave}).text : readFile(wave);
@@ -113,16 +112,18 @@ json drawingOf(const Failure& failure, size_t room) {
         return failure.scope.empty() ? s->depth <= 3
                                      : s->name.find("." + failure.scope + ".") != std::string::npos;
     };
+    static const std::regex nameless("n\\d+(_o)?"); // a converter's
     const auto rank = [&](const Signal* s) {
-        const size_t name = s->name.rfind('.') + 1;
-        const bool named = words.count(s->name.substr(name)) && isWithin(s);
+        const std::string name = s->name.substr(s->name.rfind('.') + 1);
+        const bool named = words.count(name) && isWithin(s);
         const bool moves = s->changes.size() > 1;
-        return std::tuple(s->bits != 0, !named, !(moves && !failure.scope.empty() && isWithin(s)),
-                          !moves, s->depth, s->name);
+        return std::tuple(s->bits != 0, std::regex_match(name, nameless), !named,
+                          !(moves && !failure.scope.empty() && isWithin(s)), !moves, s->depth,
+                          s->name);
     };
     std::stable_sort(order.begin(), order.end(),
                      [&](const Signal* a, const Signal* b) { return rank(a) < rank(b); });
-    const auto draw = [&](size_t shown, size_t changes) {
+    const auto rowsOf = [&](size_t shown, size_t changes) {
         json rows = json::array();
         for (size_t row = 0; row < shown; ++row) {
             json pairs = json::array(); // time, value, time, value
@@ -139,10 +140,21 @@ json drawingOf(const Failure& failure, size_t room) {
                     {"more", order.size() - shown}};
     };
     size_t shown = std::min(order.size(), mostSignals), changes = mostChanges;
-    json drawing = draw(shown, changes);
+    json drawing = rowsOf(shown, changes);
     while (drawing.dump().size() > room && shown > 1) {
         (changes > fewestChanges ? changes : shown) /= 2;
-        drawing = draw(shown, changes);
+        drawing = rowsOf(shown, changes);
     }
     return drawing;
+}
+
+} // namespace
+
+json drawingOf(const Failure& failure, size_t room) {
+    try {
+        return draw(failure, room);
+    } catch (const std::exception& error) { // the report is worth more than a drawing
+        std::cout << failure.wave << " is damaged, and not drawn (" << error.what() << ")\n";
+        return nullptr;
+    }
 }

@@ -34,8 +34,8 @@ std::vector<Failure> examine(const std::vector<Result>& results, const std::vect
 // local, or slurm, where a node runs them. Says on the terminal what it does; a test that cannot be
 // traced has none.
 void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
-              const std::string& source, const std::string& launcher, unsigned jobs,
-              unsigned limit);
+              const std::string& source, const std::string& build, const std::string& launcher,
+              unsigned jobs, unsigned limit);
 
 // Returns the end of a waveform, VCD or FST (by fst2vcd): {from, to, signals: [[name, bits, [time,
 // value, ...]], ...], more: signals left out}: the program's, those that the failure's text names,

@@ -312,7 +312,8 @@ int regress(const Options& options) {
     double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     auto failures = examine(results, all, options.out);
-    addWaves(failures, all, options.source, options.launcher, options.jobs, options.waves);
+    addWaves(failures, all, options.source, options.build, options.launcher, options.jobs,
+             options.waves);
     const std::string commit = commitOf(options.source);
     auto made = History::makeRun(chosen, results, commit, seconds);
     made["subject"] = subjectOf(options.source);

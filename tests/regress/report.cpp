@@ -3,7 +3,6 @@
 #include "report.h"
 #include "files.h"
 #include "lights.h"
-#include "page.h"
 #include "plan.h"
 #include <algorithm>
 #include <filesystem>
@@ -225,7 +224,9 @@ json gather(const History& history, const std::vector<Test>& tests,
 
 void writeReports(const json& data, const std::string& out) {
     writeFile(out + "/report.html",
-              filled(reportPage, {{"/*DATA*/null", scriptSafe(data.dump())}}));
+              filled(readFile(PAGE), {{"/*COMMON*/", readFile(COMMON_PAGE "/common.css")},
+                                      {"//COMMON", readFile(COMMON_PAGE "/common.js")},
+                                      {"/*DATA*/null", scriptSafe(data.dump())}}));
     writeFile(out + "/report.json", data.dump(1));
     writeFile(out + "/summary.md", markdown(data));
     writeFile(out + "/badge.svg",

@@ -14,7 +14,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 #include <sstream>
+#include <stdexcept>
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -100,27 +102,32 @@ std::vector<std::string> portsOf(const fs::path& header) {
     return names;
 }
 
-void writeSaveFile(const std::string& path, const std::string& wave, const fs::path& folder,
-                   bool hasProgram) {
+// Writes a save file for GTKWave: the program's rows, and ports of the models below `folder`, and
+// below the folder of the block that is tested there: tests/hdl/fifo, hdl/fifo.
+void writeSaveFile(const std::string& path, const std::string& wave, const fs::path& build,
+                   const std::string& folder, bool hasProgram) {
     std::ostringstream save;
     save << "[dumpfile] \"" << fs::absolute(wave).string()
          << "\"\n[size] 1600 900\n[treeopen] TOP.\n"
          << (hasProgram ? "program.task\nprogram.interrupt\nprogram.function\n" : "");
-    for (auto& entry : fs::recursive_directory_iterator(folder)) {
-        std::string stem = entry.path().stem().string();
-        std::string parent = entry.path().parent_path().filename().string();
-        if (entry.path().extension() == ".h" && parent == "verilated_" + stem.substr(1))
-            for (const std::string& name : portsOf(entry.path()))
-                save << name << '\n';
+    for (const std::string& place :
+         std::set<std::string>{folder, std::regex_replace(folder, std::regex("^tests/"), "")}) {
+        if (!fs::is_directory(build / place))
+            continue;
+        for (auto& entry : fs::recursive_directory_iterator(build / place)) {
+            std::string stem = entry.path().stem().string();
+            std::string parent = entry.path().parent_path().filename().string();
+            if (entry.path().extension() == ".h" && parent == "verilated_" + stem.substr(1))
+                for (const std::string& name : portsOf(entry.path()))
+                    save << name << '\n';
+        }
     }
     writeFile(path, save.str());
 }
 
-} // namespace
-
-void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
-              const std::string& source, const std::string& launcher, unsigned jobs,
-              unsigned limit) {
+// Makes a failure's waveform by the build in build/trace, or says why there is none.
+void addWave(Failure& failure, const Test& test, const Scene& scene, const std::string& source,
+             const std::string& tested, const std::string& launcher, unsigned jobs) {
     const std::string build = source + "/build/trace";
     const auto launch = [&](std::vector<std::string> command,
                             const std::map<std::string, std::string>& environment = {}) {
@@ -129,6 +136,49 @@ void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
             command.insert(command.begin(), {"srun", "--quiet", "--ntasks=1"});
         run(command, environment);
     };
+    if (!fs::exists(build + "/build.ninja"))
+        run({"cmake", "-S", source, "-B", build, "-G", "Ninja", "-DTRACE=ON"});
+    Output built = run({"ninja", "-C", build, "-j", std::to_string(jobs), scene.program});
+    if (built.status != 0)
+        throw std::runtime_error("it does not build with waveforms:\n" + built.text);
+    const std::string base = failure.log.substr(0, failure.log.size() - 4);
+    const std::string wave = fs::absolute(base + ".fst").string();
+    const uint64_t from = scene.clock - std::min(scene.clock, scene.before),
+                   to = scene.clock + scene.after;
+    if (scene.flight.empty())
+        launch({"ctest", "--test-dir", build, "--no-tests=error", "-R",
+                "^" +
+                    std::regex_replace(failure.result.name, std::regex(R"([.+*?()\[\]{}|^$\\])"),
+                                       "\\$&") +
+                    "$"},
+               {{"SEED", failure.result.seed},
+                {"WAVE", wave},
+                {"WAVE_FROM", std::to_string(from)},
+                {"WAVE_TO", std::to_string(to)}});
+    else
+        launch({build + "/testbench/sim/icesoc-sim", "--replay", scene.flight, "--out",
+                base + ".replay", "--wave", wave, "--from", fmt::format("{:.6f}", seconds(from)),
+                "--to", fmt::format("{:.6f}", seconds(to))});
+    if (!fs::exists(wave))
+        throw std::runtime_error("the test drove no traced model");
+    const bool hasProgram = fs::exists(wave + ".program.vcd");
+    run({source + "/testbench/common/join_waves.sh", wave});
+    failure.wave = base + ".fst";
+    failure.clock = scene.clock;
+    if (!scene.flight.empty())
+        failure.scope = instanceIn(scene.slot, build);
+    writeSaveFile(base + ".gtkw", wave, build,
+                  scene.flight.empty() ? fs::relative(test.folder, tested).string()
+                                       : "testbench/sim",
+                  hasProgram);
+    failure.save = base + ".gtkw";
+}
+
+} // namespace
+
+void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
+              const std::string& source, const std::string& build, const std::string& launcher,
+              unsigned jobs, unsigned limit) {
     unsigned made = 0;
     for (Failure& failure : failures) {
         const Test* test = find(tests, failure.result.name);
@@ -143,45 +193,10 @@ void addWaves(std::vector<Failure>& failures, const std::vector<Test>& tests,
         std::cout << fmt::format("Waveform of {} around clock {} ...\n", failure.result.name,
                                  scene.clock)
                   << std::flush;
-        if (!fs::exists(build + "/build.ninja"))
-            run({"cmake", "-S", source, "-B", build, "-G", "Ninja", "-DTRACE=ON"});
-        Output built = run({"ninja", "-C", build, "-j", std::to_string(jobs), scene.program});
-        if (built.status != 0) {
-            std::cout << "  it does not build with waveforms:\n" << built.text;
-            continue;
+        try {
+            addWave(failure, *test, scene, source, build, launcher, jobs);
+        } catch (const std::exception& error) { // the report is worth more than a waveform
+            std::cout << "  none: " << error.what() << '\n';
         }
-        const std::string base = failure.log.substr(0, failure.log.size() - 4);
-        const std::string wave = fs::absolute(base + ".fst").string();
-        const uint64_t from = scene.clock - std::min(scene.clock, scene.before),
-                       to = scene.clock + scene.after;
-        if (scene.flight.empty())
-            launch({"ctest", "--test-dir", build, "--no-tests=error", "-R",
-                    "^" +
-                        std::regex_replace(failure.result.name,
-                                           std::regex(R"([.+*?()\[\]{}|^$\\])"), "\\$&") +
-                        "$"},
-                   {{"SEED", failure.result.seed},
-                    {"WAVE", wave},
-                    {"WAVE_FROM", std::to_string(from)},
-                    {"WAVE_TO", std::to_string(to)}});
-        else
-            launch({build + "/testbench/sim/icesoc-sim", "--replay", scene.flight, "--out",
-                    base + ".replay", "--wave", wave, "--from",
-                    fmt::format("{:.6f}", seconds(from)), "--to",
-                    fmt::format("{:.6f}", seconds(to))});
-        if (!fs::exists(wave)) {
-            std::cout << "  the test drove no traced model\n";
-            continue;
-        }
-        const bool hasProgram = fs::exists(wave + ".program.vcd");
-        run({source + "/testbench/common/join_waves.sh", wave});
-        failure.wave = base + ".fst";
-        failure.clock = scene.clock;
-        if (!scene.flight.empty())
-            failure.scope = instanceIn(scene.slot, build);
-        failure.save = base + ".gtkw";
-        writeSaveFile(failure.save, wave,
-                      build + (scene.flight.empty() ? "/tests/" + test->place : "/testbench/sim"),
-                      hasProgram);
     }
 }

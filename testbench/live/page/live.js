@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // live: asks /state four times a second, and shows what is there.
-'use strict';
 
 const $ = id => document.getElementById(id);
 const scale = 2; // screen pixels of the canvas for one of the frame
 let picture = null, pictureWanted = false;
-
-function element(name, text, className) {
-    const e = document.createElement(name);
-    if (text !== undefined) e.textContent = text;
-    if (className) e.className = className;
-    return e;
-}
 
 function row(cells) {
     const tr = element('tr');
@@ -93,12 +85,6 @@ function showTimeline(state) {
     }
     for (const c of state.calls)
         if (c.ns >= begin) lane(c.who.startsWith('ground') ? 'calls, ground' : 'calls, UAV').calls.push(c);
-    const shape = (name, attributes, text) => {
-        const e = document.createElementNS('http://www.w3.org/2000/svg', name);
-        for (const [k, v] of Object.entries(attributes)) e.setAttribute(k, v);
-        if (text !== undefined) e.textContent = text;
-        return e;
-    };
     svg.setAttribute('viewBox', `0 0 ${width} ${height * (lanes.length + 1)}`);
     svg.replaceChildren(...lanes.flatMap((l, i) => {
         const low = height * (i + 1), all = [shape('text', {x: 0, y: low - 5}, l.name), shape('line', {x1: left, x2: width, y1: low, y2: low})];

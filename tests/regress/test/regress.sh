@@ -392,6 +392,34 @@ END
     has 'href="failures/test_b.Bad-1.log"' dom.html
     hasNot 'src="http\|href="http' build/regress/report.html # offline
     "$source/tests/regress/test/look.sh" build/regress/report.html regression || fail "the page"
+    "$source/docs/pictures/take.sh" --from build --to . regression >/dev/null || fail "its picture"
+    [ "$(head -c 4 regression.png | tail -c 3)" = PNG ] && [ "$(wc -c <regression.png)" -lt 100000 ] || fail "its picture is none, or large"
+    ;;
+waves) # a test that runs beside a core, not below tests/; a trace that is damaged: the report comes in any case
+    mkdir -p ip/core build/trace/ip/core/verilated_core testbench/common
+    cp "$source/testbench/common/join_waves.sh" testbench/common
+    cat >ip/core/wave.sh <<'END'
+#!/bin/sh
+echo "wrong at clock cycle 5"
+[ -z "${WAVE:-}" ] || vcd2fst "${0%/*}/t.vcd" "$WAVE"
+exit 1
+END
+    chmod +x ip/core/wave.sh
+    cat >ip/core/CMakeLists.txt <<'END'
+add_test(NAME test_w.Wave COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/wave.sh)
+add_test(NAME formal.damaged COMMAND sh -c "echo 'damaged: trace: ${CMAKE_CURRENT_SOURCE_DIR}/damaged.vcd'; exit 1")
+add_custom_target(test_w)
+END
+    # shellcheck disable=SC2016 # VCD's
+    echo '$timescale 1ns $end $var wire 1 ! clk_i $end $enddefinitions $end #0 0! #5 1! #10 0!' | tee ip/core/t.vcd | sed 's/#5/#five/' >ip/core/damaged.vcd
+    echo 'VL_IN8(&clk_i,0,0);' >build/trace/ip/core/verilated_core/Vcore.h
+    echo 'add_subdirectory(ip/core)' >>CMakeLists.txt
+    cmake build/main >/dev/null
+    run --name 'test_w|damaged'
+    has '^0 passed, 2 failed'
+    has 'formal.damaged.vcd is damaged, and not drawn'
+    has '^TOP.clk_i$' build/regress/failures/test_w.Wave-1.gtkw
+    has 'test_w.Wave-1.fst' build/regress/report.html
     ;;
 flight) # a flight that fails is flown again around the last event of a core, by a simulator that writes this waveform
     mkdir -p build/trace/testbench/sim build/trace/gen fly testbench/common

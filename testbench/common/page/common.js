@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+//
+// common: what the scripts of the three pages make their elements with.
+"use strict";
+function element(tag, text, className) {
+  const e = document.createElement(tag);
+  if (text !== undefined) e.textContent = text;
+  if (className) e.className = className;
+  return e;
+}
+function shape(tag, attributes, text) { // of a drawing
+  const e = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [key, value] of Object.entries(attributes)) e.setAttribute(key, value);
+  if (text !== undefined) e.textContent = text;
+  return e;
+}

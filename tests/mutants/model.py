@@ -25,7 +25,8 @@ def cells(path):
     for module, content in json.load(open(path))["modules"].items():
         alike = found[module] = collections.defaultdict(list)
         for name, cell in sorted(content["cells"].items(), key=lambda item: int((re.findall(r"\$(\d+)$", item[0]) or [0])[0])):
-            source = re.sub(r"[^|]*/((bus|hdl|ip)/)", r"\1", cell["attributes"].get("src", ""))
+            # The last of several: a condition's own place stands before it where Yosys did not see through the condition.
+            source = re.sub(r".*/((bus|hdl|ip)/)", r"\1", cell["attributes"].get("src", "").split("|")[-1])
             alike[f"{module_of(cell['type'])} {source}"].append((name, {port: len(bits) for port, bits in cell["connections"].items()}))
     return found
 

@@ -13,7 +13,9 @@ fail() { echo "wave: $*" >&2 && exit 1; }
 cmake/configure.sh build/trace -DTRACE=ON >/dev/null
 ninja -C build/trace -j "$jobs" --quiet "test_ip_$core"
 program=$(find build/trace -name "test_ip_$core" -type f -perm -u+x | head -1)
-cases=$("$program" --gtest_list_tests | awk '/^[^ ]/ { suite = $1 } /^ / { print suite $1 }' | grep -E -- "$test" || true)
+all=$("$program" --gtest_list_tests | awk '/^[^ ]/ { suite = $1 } /^ / { print suite $1 }')
+cases=$(echo "$all" | awk -v name="$test" '$0 == name || substr($0, index($0, ".") + 1) == name') # a whole name is one test
+[ -n "$cases" ] || cases=$(echo "$all" | grep -E -- "$test" || true)
 [ "$(echo "$cases" | grep -c .)" = 1 ] || fail "TEST=$test is $(echo "$cases" | grep -c .) tests, not one of:
 $("$program" --gtest_list_tests)"
 mkdir -p build/wave

@@ -23,7 +23,7 @@ entrance() {
     cat >waved <<'TEXT'
 #!/bin/sh
 case $1 in
---gtest_list_tests) printf 'Fir.\n  Impulse\n  Step\n' ;;
+--gtest_list_tests) printf 'Fir.\n  Impulse\n  ImpulseAndStep\n' ;;
 *) echo "$1" >"$WAVE" ;;
 esac
 TEXT
@@ -122,7 +122,8 @@ commands_small)
     DISPLAY='' good wave IP=fir TEST=Impulse
     has '^gtkwave .*/build/wave/fir.fst'
     [ "$(cat build/wave/fir.fst)" = --gtest_filter=Fir.Impulse ] || fail "another test than was asked for"
-    bad wave IP=fir TEST=.
+    DISPLAY='' good wave IP=fir TEST='And'
+    bad wave IP=fir TEST=Imp
     has '2 tests, not one of'
     good ip-test IP=fir && has '1 tests passed\|100% tests passed'
     good ip-test IP=fir CORE_FOLDERS="$work/mine" && grep -q "^CORE_FOLDERS.*=$work/mine$" build/main/CMakeCache.txt || fail "CORE_FOLDERS"

@@ -262,8 +262,10 @@ seeds)
     hasNot test_a build/regress/seeds.jsonl
     run --name 'test_[ab]' --seed 7 # passes with another seed: the others stay
     has "2 failing seeds are kept"
-    run --kept --name 'a[.]' # none of these
+    cp build/regress/report.html page.html
+    run --kept --name 'a[.]' # none of these: another run's page stays what it was
     has "no seed is kept"
+    cmp -s page.html build/regress/report.html || fail "a run of nothing has written over another run's page"
     run --kept
     [ $status -eq 1 ] || fail "exit status $status, not 1, where kept seeds still fail"
     for seed in $seeds; do has "^1 tests, SEED=$seed"; done

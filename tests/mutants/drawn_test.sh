@@ -73,5 +73,8 @@ sed -i 's/assert (same_o == a_i);/& assert (both_o == (a \&\& b));/' hdl/small/p
 run || fail "a proof that says all misses some"
 grep -q '^pair  *100.0 %' run.log || fail "no score"
 grep -q '"survived": \[\]' build/mutants/drawn.json || fail "no summary"
+cp build/mutants/drawn/pair/list drawn.list
+run || fail "a second run of the same seed fails"
+cmp build/mutants/drawn/pair/list drawn.list || fail "the same seed draws others"
 if run nothing; then fail "no proof is no error"; fi
 grep -q 'no proof.s name begins with nothing' run.log || fail "no word of what there is"

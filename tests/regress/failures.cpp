@@ -18,17 +18,21 @@ std::string strip(std::string text) {
     return begin == std::string::npos ? "" : text.substr(begin, end - begin + 1);
 }
 
-// Returns the test's own last words: GoogleTest's lines after the first "Failure", else the last
-// line of the log, without what stands indented below a line that ends in a colon. Words of a
-// runner or of a flight's end are left out: names, times and counts differ where causes do not.
+// Returns the test's own last words: GoogleTest's lines after the first "Failure", else the first
+// that a compiler or a lint says of a line of a file, else the last line of the log, without what
+// stands indented below a line that ends in a colon. Words of a runner or of a flight's end are
+// left out: names, times and counts differ where causes do not.
 std::string reasonOf(const std::string& log) {
     static const std::regex runners(R"(^\[|^at clock cycle|tests? (ran|FAILED|PASSED)|)"
                                     R"(^\s*\d+ FAILED|note:|trace: |Running main|)"
                                     R"(^The mission failed|^Its end|^icesoc-sim: Cortex-M3: |)"
                                     R"(^icesoc-sim: [0-9.]+ s simulated)",
                                     std::regex::icase);
+    static const std::regex ofFile(R"(^%(Error|Warning)[^ ]*: [^ ]+:\d+:|)"
+                                   R"(^[^ ]+:\d+:(\d+:)? *(fatal error|error|warning):|)"
+                                   R"(^[^ ]+\.vhdl?:\d+:\d+:)");
     std::istringstream lines(log);
-    std::string last, reason;
+    std::string last, reason, first;
     bool failure = false;
     unsigned taken = 0;
     for (std::string line; std::getline(lines, line);) {
@@ -44,8 +48,10 @@ std::string reasonOf(const std::string& log) {
         }
         failure = line.size() > 7 && line.compare(line.size() - 7, 7, "Failure") == 0;
         last = line;
+        if (first.empty() && std::regex_search(line, ofFile))
+            first = line;
     }
-    return failure ? reason : last;
+    return failure ? reason : first.empty() ? last : first;
 }
 
 // Adds to a proof's failure which assertion fails: its place and text, the instance in which it

@@ -160,7 +160,7 @@ company) # progress, one run at a time, words for what was mistyped, no more bui
     run --name 'a.One|formal'
     has '^2 of 2, 0 failed, 0:00 left'
     has '^tests  *green  1 passed, 4 did not run$'
-    has '^proofs  *green  1 hold$'
+    has '^proofs  *green  1 hold, 1 of them'
     run --seed abc
     [ $status -eq 2 ] || fail "exit status $status, not 2, for a seed that is none"
     has "'abc' is neither a number nor .random"

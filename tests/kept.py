@@ -98,6 +98,8 @@ def main():
             return run.returncode if run.returncode > 0 else 128 - run.returncode
         seen = {}
         for path, (listed, written) in touched(trace).items():
+            if own and path.startswith(own):
+                path = os.path.realpath(path)  # a link from there
             if (path + "/").startswith((own or "/dev/", folder + "/", "/proc/", "/dev/", "/sys/")):
                 continue
             if not written and (listed or os.path.isfile(path)) and os.path.exists(path) and os.stat(path).st_mtime_ns > begin:

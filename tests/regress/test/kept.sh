@@ -17,6 +17,7 @@ mkdir "$own" || exit 1 # it was not emptied
 [ ! -e wait ] || { mkfifo "$own/gate" && touch "$own/waits" && read -r _ <"$own/gate"; }
 for f in first second; do [ ! -f $f/b.vh ] || { cat $f/b.vh; break; }; done
 echo "$(ls second | wc -l) names, $(tool), ${PROVE_LIMIT:-no limit}, ${OTHER:-nothing else}, $own"
+[ ! -e linked ] || { ln -s "$PWD/prog" "$own/link" && "$own/link" 'by a link'; }
 ! grep -q wrong second/b.vh || exit 3
 END
 printf '#!/bin/sh\necho one\n' >"$work/bin/tool"
@@ -48,6 +49,9 @@ PROVE_LIMIT=5 && export PROVE_LIMIT && computed 'another setting' ', 5,'
 FRESH=1 && export FRESH && run && ! grep -q '^kept:' "$work/said" || fail "FRESH=1"
 unset FRESH
 cp -r "$work/a" "$work/b" && cd "$work/b" && same 'another clone' ", $PWD/own$" && cd "$work/a"
+touch linked && cp /bin/echo prog && computed 'a program of the tree, by a link of the test' '^by a link$'
+cp /bin/printf prog && computed 'another one there' '^by a link$'
+rm prog linked
 # A test that fails leaves no verdict.
 echo wrong >second/b.vh
 for _ in 1 2; do

@@ -5,6 +5,7 @@
 # Usage: drawn_test.sh source-folder work-folder verilators-runtime.a
 set -eu
 source=$1 work=$2 runtime=$3
+[ -d "$source/tests/mutants" ] || { echo "drawn_test: $source is not the source folder: run cmake again" >&2 && exit 2; }
 rm -rf "$work"
 mkdir -p "$work/hdl/small" "$work/bus" "$work/ip" "$work/build" "$work/tests"
 cd "$work"

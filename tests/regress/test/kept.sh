@@ -17,7 +17,7 @@ mkdir "$own" || exit 1 # it was not emptied
 [ ! -e wait ] || { mkfifo "$own/gate" && touch "$own/waits" && read -r _ <"$own/gate"; }
 for f in first second; do [ ! -f $f/b.vh ] || { cat $f/b.vh; break; }; done
 echo "$(ls second | wc -l) names, $(tool), ${PROVE_LIMIT:-no limit}, ${OTHER:-nothing else}, $own"
-[ ! -e linked ] || { ln -s "$PWD/prog" "$own/link" && "$own/link" 'by a link'; }
+[ ! -e linked ] || { ln -s ../prog "$own/link" && "$own/link" 'by a link'; }
 ! grep -q wrong second/b.vh || exit 3
 END
 printf '#!/bin/sh\necho one\n' >"$work/bin/tool"

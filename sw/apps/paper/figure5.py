@@ -12,7 +12,7 @@ import sys
 
 import Ice
 
-Ice.loadSlice(os.path.join(os.path.dirname(os.path.abspath(__file__)), "Figure3.ice"))
+Ice.loadSlice("", [os.path.join(os.path.dirname(os.path.abspath(__file__)), "Figure3.ice")])
 import Autopilot  # noqa: E402
 
 

@@ -87,7 +87,7 @@ def main():
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
     parser.add_argument("--patience", type=int, default=60, help="seconds that an answer may take")
     args = parser.parse_args()
-    Ice.loadSlice("-I" + (Ice.getSliceDir() or ".") + " " + args.slice)
+    Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), args.slice])
     try:
         change(args)
         return 0

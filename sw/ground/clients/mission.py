@@ -309,7 +309,7 @@ def main():
     try:
         registers = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../hw/registers/Registers.ice")
         for file in [args.slice, registers, *(file for core in args.core for file in glob.glob(os.path.join(core, "*.ice")))]:
-            Ice.loadSlice("-I" + (Ice.getSliceDir() or ".") + " " + file)
+            Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), file])
         fly(args, communicator)
         return 0
     except KeyboardInterrupt:

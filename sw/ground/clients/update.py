@@ -225,7 +225,7 @@ def main():
     communicator = None
     try:
         name, images = read_package(args.package)
-        Ice.loadSlice("-I" + (Ice.getSliceDir() or ".") + " " + args.slice)
+        Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), args.slice])
         import Update  # made by loadSlice
         settings = {"Ice.Default.InvocationTimeout": "60000", "Ice.ACM.Close": "0", "Ice.RetryIntervals": "-1"}
         communicator = plugged.initialize(settings, args.plugin, args.guard, args.key)

@@ -28,6 +28,9 @@ mkdir -m 777 "$work/mine"
 if said=$(HOME="$work/theirs" XDG_CACHE_HOME='' $other "$work/configure.sh" "$work/mine" 2>&1); then echo "a home where one may not write" >&2 && exit 1; fi
 case $said in *"you may not write in $work/theirs/.cache"*XDG_CACHE_HOME*) ;; *) echo "$said" >&2 && exit 1 ;; esac
 [ "$(env -u HOME make -s --eval 'home: ; @echo $$HOME' home)" = "$(getent passwd "$(id -u)" | cut -d: -f6)" ]
+# A user's name may have an apostrophe.
+mkdir "$work/it's" && ln -s "${XDG_CACHE_HOME:-$HOME/.cache}/icesoc" "$work/it's/icesoc"
+XDG_CACHE_HOME="$work/it's" cmake/fetch.sh ghdl "$work/ghdl" && "$work/ghdl/ghdl" --version >/dev/null
 
 # Set-up in two steps: what only tests need is not asked for by make run. On a machine that has no package yet:
 mkdir "$work/bin" && printf '#!/bin/sh\n' >"$work/bin/dpkg-query" && chmod +x "$work/bin/dpkg-query"

@@ -170,7 +170,7 @@ def forwarded(echo, module, ic, encoding, thrower, own, e):
 
 
 def client(folder, port):
-    Ice.loadSlice(os.path.join(folder, "Hidden.ice"))
+    Ice.loadSlice("", [os.path.join(folder, "Hidden.ice")])
     import T as module
 
     calls = 0

@@ -11,7 +11,7 @@ import threading
 
 import Ice
 
-Ice.loadSlice(os.path.join(os.path.dirname(__file__), "Interop.ice"))
+Ice.loadSlice("", [os.path.join(os.path.dirname(__file__), "Interop.ice")])
 import Interop  # noqa: E402
 
 CROWD = 20

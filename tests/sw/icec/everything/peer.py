@@ -13,7 +13,7 @@ import sys
 
 import Ice
 
-Ice.loadSlice("-I%s %s/Everything.ice" % (os.path.dirname(__file__), os.path.dirname(__file__)))
+Ice.loadSlice("", ["-I" + os.path.dirname(__file__), os.path.join(os.path.dirname(__file__), "Everything.ice")])
 import Everything as E  # noqa: E402
 
 

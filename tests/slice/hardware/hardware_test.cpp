@@ -279,6 +279,11 @@ TYPED_TEST(ManyServant, WordsBehindPageAreCalledAsOthers) {
     EXPECT_EQ(FSMC_read(slot, 5), 0u) << "PAGE is put back";
 }
 
+TYPED_TEST(ManyServant, InTheChipsClockACoreIsNotAskedWhetherItAnswers) {
+    this->core_.core.id ^= 1;
+    this->add();
+}
+
 TYPED_TEST(ManyServant, ATaskThatInterruptsAnotherLeavesItsPageAlone) {
     auto& rig = this->rig_;
     U32 accesses = 0, last = 0;

@@ -110,7 +110,7 @@ with Ice.initialize(data) as ic:
     chip = Hw.ChipPrx.checkedCast(ic.stringToProxy("chip" + where))
     contracts = chip.contracts()
     expect("blocks", [c.block for c in contracts],
-           ["system", "modem", "sample_verilog", "scaler", "servo", "crc32", "port", "my_requests", "my_lamps", "sample_vhdl", "probe"])
+           ["system", "modem", "sample_verilog", "scaler", "servo", "crc32", "port", "my_requests", "my_lamps", "sample_vhdl", "many", "probe"])
     expect("contracts", mission.differences(chip), [])
 
     class Other:
@@ -140,6 +140,14 @@ with Ice.initialize(data) as ic:
     lamps.set("REG0", 0x1234)
     expect("my_lamps", [lamps.get("REG0"), lamps.get("REG1"), lamps.get("REG1")], [0x1234, 1, 2])
     expect("port.wait, still high", waits.result(), ["CORE"])
+
+    # More words than a slot has: behind PAGE.
+    many = Demo.ManyPrx.checkedCast(ic.stringToProxy("many" + where))
+    for seed in (1, 1000003):
+        p, q = ([(seed * i * 0x123456789ABCDEF + i & 2**64 - 1) - 2**63 for i in range(n, n + 5)] for n in (1, 6))
+        answer = many.turn(Demo.Five(*p), Demo.Five(*q))
+        expect("many.turn", answer, (Demo.Five(*[~i for i in q]), Demo.Five(*p[1:], p[0])))
+        expect("many.add", many.add(seed, -7), seed - 7)
 
     scaler = Demo.ScalerPrx.checkedCast(ic.stringToProxy("scaler" + where))
     watcher = Watcher()

@@ -14,11 +14,12 @@ mkdir -p "$work"
     echo 'my_port name=port'
     echo 'my_requests clock=6/25'
     echo my_lamps
+    echo many
     echo 'probe signals=u_sample_verilog.bus_valid_i,u_sample_verilog.bus_write_i,u_sample_verilog.bus_addr_i:4,u_sample_verilog.bus_wdata_i:32,u_sample_verilog.bus_ready_o,u_sample_verilog.bus_rdata_o:32'
 } >"$work/cores.list"
 samples=$build/tests/ip/new
 foreign=$build/tests/ip/new_foreign
-folders="$samples/sample_verilog;$samples/sample_vhdl;$source/tests/e2e/cores/scaler;$source/tests/e2e/cores/servo;$source/tests/e2e/cores/crc32;$foreign/my_port;$foreign/my_requests;$work/my_lamps"
+folders="$samples/sample_verilog;$samples/sample_vhdl;$source/tests/e2e/cores/scaler;$source/tests/e2e/cores/servo;$source/tests/e2e/cores/crc32;$source/tests/e2e/cores/many;$foreign/my_port;$foreign/my_requests;$work/my_lamps"
 mkdir -p "$work/build"
 # A core in VHDL, as make new-foreign puts it into a slot. GHDL is fetched once.
 rm -rf "$work/my_lamps"
@@ -35,7 +36,7 @@ echo '1001 servo.fault_i 0' >>"$work/pins"
 echo '500 port.port_in_i 0x83' >>"$work/pins"
 "$work/build/testbench/sim/icesoc-sim" --pins "$work/pins" --size 96x64 --image /usr/share/xplanet/images/earth.jpg --out "$work" --seed "${SEED:-1}" --guard 20 -- \
     /usr/bin/python3 "$source/tests/e2e/cores/client.py" '{device}' '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" \
-    "$work" "$samples/sample_verilog/sample_verilog.ice" "$source/tests/slice/hardware/golden/scaler.ice" "$source/tests/e2e/cores/servo/servo.ice" "$source/tests/e2e/cores/crc32/crc32.ice" "$samples/sample_vhdl/sample_vhdl.ice" \
+    "$work" "$samples/sample_verilog/sample_verilog.ice" "$source/tests/slice/hardware/golden/scaler.ice" "$source/tests/slice/hardware/golden/many.ice" "$source/tests/e2e/cores/servo/servo.ice" "$source/tests/e2e/cores/crc32/crc32.ice" "$samples/sample_vhdl/sample_vhdl.ice" \
     "$source/sw/hw/registers/Registers.ice" "$source/ip/probe/Probe.ice" \
     >"$work/log" 2>&1 || { cat "$work/log" && exit 1; }
 # Pulses of 1.5 ms, 20 ms apart, whatever the clock; the fault pin ended one of them or none, and moved what came next.

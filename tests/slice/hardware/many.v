@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+//
+// many: a core of more words than a slot has: turns five numbers by one place, inverts five, and adds two.
+
+`default_nettype none
+
+module many (
+    input  wire        clk_i,
+    input  wire        rst_i,
+    // register bus
+    input  wire        bus_valid_i,
+    input  wire        bus_write_i,
+    input  wire [3:0]  bus_addr_i,
+    input  wire [31:0] bus_wdata_i,
+    output wire        bus_ready_o,
+    output wire [31:0] bus_rdata_o,
+    output wire        bus_error_o,
+    output wire        irq_o
+);
+    wire        core_rst, start, unused_start;
+    wire [63:0] a, b, c, d, e, v, w, x, y, z;
+    wire [31:0] left, right;
+    reg         done;
+    always @(posedge clk_i)
+        done <= start && !core_rst;
+
+    many_wrapper u_wrapper (
+        .clk_i(clk_i), .rst_i(rst_i),
+        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
+        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
+        .bus_error_o(bus_error_o), .irq_o(irq_o), .core_rst_o(core_rst), .turn_start_o(start),
+        .turn_p_a_o(a), .turn_p_b_o(b), .turn_p_c_o(c), .turn_p_d_o(d), .turn_p_e_o(e),
+        .turn_q_a_o(v), .turn_q_b_o(w), .turn_q_c_o(x), .turn_q_d_o(y), .turn_q_e_o(z),
+        .turn_s_a_i(b), .turn_s_b_i(c), .turn_s_c_i(d), .turn_s_d_i(e), .turn_s_e_i(a),
+        .turn_result_a_i(~v), .turn_result_b_i(~w), .turn_result_c_i(~x), .turn_result_d_i(~y),
+        .turn_result_e_i(~z), .turn_done_i(done), .turn_refused_i(1'b0),
+        .add_start_o(unused_start), .add_a_o(left), .add_b_o(right), .add_result_i(left + right)
+    );
+endmodule

@@ -119,7 +119,7 @@ TextTable coreTable(const Costs& chip, const ChipMap& map, const Cost& slot,
     for (const string& name : names)
         if (std::none_of(cores.begin(), cores.end(),
                          [&](const auto& core) { return core.second == name; }))
-            throw std::runtime_error(
+            throw NotInChip(
                 fmt::format("{0} is not in the chip of {1}: a line in ip/cores.list, then make "
                             "ip-synth IP={0} CHIP=1",
                             name, where));

@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,14 @@ ChipMap readMap(const std::filesystem::path& file);
 Cost slotCost(const Library& library, const RunnerOptions& options, const ChipMap& map,
               bool wanted);
 
+// A core that a chip is asked for and does not have.
+struct NotInChip : std::runtime_error {
+    using runtime_error::runtime_error;
+};
+
 // Writes a row for each core of the map that the chip has, or only for `names`: LUT, flip-flops,
 // block RAM and DSP together, then LUT / flip-flops of its parts. A port's share of the arbiter is
-// the arbiter's by the number of ports. Throws on a name that is not there, `where` the chip is
-// from.
+// the arbiter's by the number of ports. Throws NotInChip on a name that is not there, `where` the
+// chip is from.
 TextTable coreTable(const Costs& chip, const ChipMap& map, const Cost& slot,
                     const std::vector<std::string>& names, const std::string& where);

@@ -189,7 +189,8 @@ Baseline acceptedOf(const Options& o) {
 }
 
 // Tells what some cores cost in the chip, whatever the limits: in the one that was synthesised, the
-// only design wanted, or, without `runs`, in the accepted one. Returns 1 if its synthesis failed.
+// only design wanted, or, without `runs`, in the accepted one, of which a core that is not there
+// yet is no error. Returns 1 if the synthesis failed.
 int tellCores(const Library& library, const RunnerOptions& options, const Options& o,
               const std::vector<Run>& runs) {
     const auto run = std::find_if(runs.begin(), runs.end(), [](const Run& r) { return r.wanted; });
@@ -201,11 +202,17 @@ int tellCores(const Library& library, const RunnerOptions& options, const Option
     if (map.empty())
         throw std::runtime_error(
             fmt::format("{} has no map.regs.json: build first", o.generated.string()));
-    const TextTable table =
-        coreTable(chip.costs, map, slotCost(library, options, map, true), o.cores,
-                  run == runs.end() ? "synth/baseline.json" : "the list");
-    fmt::print("{}The chip: {} LUT, {} FF, {:g} block RAMs, {} DSP\n", table.plain(), chip.lut,
-               chip.ff, chip.ram, chip.dsp);
+    const bool accepted = run == runs.end();
+    try {
+        const TextTable table = coreTable(chip.costs, map, slotCost(library, options, map, true),
+                                          o.cores, accepted ? "synth/baseline.json" : "the list");
+        fmt::print("{}The chip: {} LUT, {} FF, {:g} block RAMs, {} DSP\n", table.plain(), chip.lut,
+                   chip.ff, chip.ram, chip.dsp);
+    } catch (const NotInChip& missing) {
+        if (!accepted)
+            throw;
+        fmt::print("{}\n", missing.what());
+    }
     return 0;
 }
 

@@ -62,7 +62,7 @@ counts)
     run --core low || fail "$(cat "$work/log")"
     has '^low  *[1-9][0-9]  *13  *1.5  *2  *7 / 8  *[1-9][0-9]* / 5$' # a bit each of 32, a select, four of address
     has '^The chip: 9 LUT, 9 FF, 1.5 block RAMs, 2 DSP'
-    if run --core high; then fail "a core that is not in the chip"; fi
+    run --core high || fail "a core that is not in the accepted chip is no error"
     has 'high is not in the chip of synth/baseline.json: a line in ip/cores.list, then make ip-synth IP=high CHIP=1'
     rm -rf "$kept"
     cp -r out/cache "$kept"

@@ -6,6 +6,10 @@
 set -eu
 case=$1 regress=$2 work=$3 source=$4 build=$5
 cluster=$source/tests/regress/test/slurm_cluster.sh
+case $case in slurm*)
+    grep -q ' /sys/fs/cgroup' /proc/mounts || { echo "skipped: slurmd needs /sys/fs/cgroup, which is not mounted here"; exit 77; }
+    ;;
+esac
 fail() {
     echo "$case: $*" >&2
     [ ! -f out.txt ] || cat out.txt >&2

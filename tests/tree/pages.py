@@ -5,8 +5,10 @@
     pages.py TREE
 
 A link leads to a file of the repository, a path in backquotes exists, lines outside of tables and code have at most
-100 columns, and docs/architecture.md lists every page of docs/. Exit status 1, and a line for each that does not hold.
+100 columns, docs/architecture.md lists every page of docs/, and figures that README.md tells are those of
+docs/figures.md and synth/baseline.json. Exit status 1, and a line for each that does not hold.
 """
+import json
 import os
 import re
 import subprocess
@@ -42,6 +44,27 @@ def check(tree, page, files):
                 yield f"{page}:{number}: there is no {path}"
 
 
+def stale(tree):
+    """A line for each figure of README.md that is not the one of the page or file which a command writes."""
+    readme, figures = (open(os.path.join(tree, page)).read() for page in ("README.md", "docs/figures.md"))
+    table1 = json.load(open(os.path.join(tree, "synth/baseline.json")))["designs"]["table1"]
+
+    def row(name):
+        found = re.search(rf"^\| {re.escape(name)} \| (.*) \|$", figures, re.M)
+        return found.group(1) if found else "0"
+
+    def count(name):
+        return int(row(name).split()[0].replace(",", ""))
+
+    hostile = count("hostile packets, full link layer") + count("hostile packets, minimal link layer")
+    for said in (str(count("minimal.all")), "{lut} / {ff} / {slices}".format(**table1), f"0 of {hostile:,}",
+                 "0 of {}; 0 of {}".format(*(count(f"new {what}: losses of power, in each operation and later")
+                                             for what in ("firmware", "bitstream"))),
+                 row("slice2c.all").split(", ")[-1].replace("times", "times as fast")):
+        if f"| {said} |" not in readme:
+            yield f"README.md: the last command that measured wrote {said}"
+
+
 def main(words):
     if len(words) != 1 or words[0].startswith("-"):
         sys.exit(__doc__)
@@ -53,6 +76,7 @@ def main(words):
     index = open(os.path.join(tree, "docs/architecture.md")).read()
     wrong += [f"docs/architecture.md: its index has no {page}" for page in pages if re.match(r"docs/[^/]*$", page)
               and f"({os.path.basename(page)})" not in index and not page.endswith("architecture.md")]
+    wrong += stale(tree)
     print("\n".join(wrong))
     return 1 if wrong else 0
 

@@ -194,15 +194,14 @@ Baseline acceptedOf(const Options& o) {
 int tellCores(const Library& library, const RunnerOptions& options, const Options& o,
               const std::vector<Run>& runs) {
     const auto run = std::find_if(runs.begin(), runs.end(), [](const Run& r) { return r.wanted; });
-    if (run != runs.end() && !run->error.empty())
+    const bool accepted = run == runs.end();
+    if (!accepted && !run->error.empty())
         return 1;
-    const Accepted chip =
-        run == runs.end() ? acceptedOf(o).designs[wholeChip] : acceptedFrom(run->figures);
+    const Accepted chip = accepted ? acceptedOf(o).designs[wholeChip] : acceptedFrom(run->figures);
     const ChipMap map = readMap(o.generated / "map.regs.json");
     if (map.empty())
         throw std::runtime_error(
             fmt::format("{} has no map.regs.json: build first", o.generated.string()));
-    const bool accepted = run == runs.end();
     try {
         const TextTable table = coreTable(chip.costs, map, slotCost(library, options, map, true),
                                           o.cores, accepted ? "synth/baseline.json" : "the list");
@@ -216,7 +215,7 @@ int tellCores(const Library& library, const RunnerOptions& options, const Option
     return 0;
 }
 
-// What each core takes of the chip, as far as that was synthesised.
+// Returns a row for each core of the chip; none if the chip was not synthesised.
 TextTable coresOf(const Report& r, const RunnerOptions& options, const Options& o) {
     const ChipMap map = readMap(o.generated / "map.regs.json");
     for (const Row& row : r.rows)

@@ -66,7 +66,7 @@ class Proof:
 
     def differs(self, folder, mutant):
         """Whether the mutant's outputs differ from the module's for some input that the proof assumes."""
-        # Where parts are cut off, each wire with a name is an output: they might have seen it.
+        # Each wire with a name is an output where parts are cut off: they might have seen it.
         seen = "expose w:* w:$* %d\n" if any("delete" in text for text in self.parameters) else ""
         # prove.sh's own way to flip-flops and gates; what is free in one module is the same input of both
         script = (self.work / "prove.ys").read_text()

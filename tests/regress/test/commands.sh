@@ -71,7 +71,7 @@ commands_run) # a variable's value that cannot be is refused in the user's words
     refused "cannot read firmware '/none'" run UPDATE=/none CPU=m3 OUT="$work/flight"
     refused "no flight was recorded in '/none'" run REPLAY=/none
     refused "where a flight was recorded" gdb REPLAY=/none OUT="$work/replay"
-    # What an earlier flight has left is not this one's.
+    # A flight that is refused does not offer the replay of an earlier one, which is still in the folder.
     echo '{}' >flight/flight.jsonl && echo up >flight/status
     refused "cannot read picture '/none'" run IMAGE=/none OUT="$work/flight"
     hasNot 'REPLAY='

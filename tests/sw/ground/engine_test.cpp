@@ -230,7 +230,7 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     close(fd);
 }
 
-// What failed is told once, and as what it was.
+// A failure is told once, and as what it was.
 TEST_F(EngineTest, ARefusedCommandIsToldAsWhatItIs) {
     XBeeAT::Settings s = settings();
     s.pan = 0x1FFFF;

@@ -143,6 +143,19 @@ def by_tests(rows, copy, pool):
         row["result"] = result
 
 
+def told(results, number):
+    """The results as they come, and a line of how far they are: of each on a terminal, of each tenth in a log."""
+    start, rows = time.monotonic(), []
+    for row in results:
+        rows.append(row)
+        done, screen = len(rows), sys.stderr.isatty()
+        left = round((time.monotonic() - start) / done * (number - done) / 60)
+        if screen or done * 10 // number > (done - 1) * 10 // number:
+            print(f"{done} of {number} mutants tried against their proofs, {sum(row['result'] == 'SURVIVED' for row in rows)} not seen by one, "
+                  f"{left // 60}:{left % 60:02} h left", end="\33[K\r" if screen and done < number else "\n", file=sys.stderr, flush=True)
+    return rows
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default="build/main", help="whose proofs")
@@ -162,6 +175,8 @@ def main():
     proofs = [proof for proof in proofs if not proof.module.endswith("_proof")]  # of several modules together
     if not proofs:
         sys.exit(f"mutants: no proof's name begins with {options.block}: ctest -N -L formal lists them")
+    out.mkdir(parents=True, exist_ok=True)
+    lock = run.only_one(out)
     source = pathlib.Path(proofs[0].tree)
     # A copy: names of cells move with any change, and somebody may be editing.
     shutil.rmtree(out / "drawn", ignore_errors=True)
@@ -169,7 +184,12 @@ def main():
         shutil.copytree(source / folder, out / "drawn/source" / folder)
     with ThreadPoolExecutor(options.jobs) as pool:
         lists = list(pool.map(lambda proof: proof.draw(options.number, options.seed), proofs))
-        rows = list(pool.map(lambda task: attempt(*task), [(p, i, m) for p, drawn in zip(proofs, lists) for i, m in enumerate(drawn)]))
+        tasks = [(p, i, m) for p, drawn in zip(proofs, lists) for i, m in enumerate(drawn)]
+        try:
+            rows = told(pool.map(lambda task: attempt(*task), tasks), len(tasks))
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
         missed = [row for row in rows if row["result"] == "SURVIVED" and programs(row)]
         if missed:
             by_tests(missed, run.WORK / "model", pool)

@@ -184,6 +184,17 @@ def keep(rows):
         "not_caught": [row[0] for row in all_rows.values() if row[1] != "caught"], "blocks": blocks}))
 
 
+def only_one(folder):
+    """A lock of the folder that is held as long as it is kept: two runs would work in the same copies."""
+    lock = open(folder / "lock", "w")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        print(f"mutants: another run is at work in {os.path.relpath(folder)}; waiting for its end ...", file=sys.stderr, flush=True)
+        fcntl.flock(lock, fcntl.LOCK_EX)
+    return lock
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--block", default="*", help="the bugs of one block or core, or a single one as block/name (default: all)")
@@ -195,12 +206,7 @@ def main():
     if options.check:
         return check(chosen)
     WORK.mkdir(parents=True, exist_ok=True)
-    lock = open(WORK / "lock", "w")  # two runs would plant their bugs in the same copies
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        print("mutants: another run is at work in build/mutants; waiting for its end ...", file=sys.stderr, flush=True)
-        fcntl.flock(lock, fcntl.LOCK_EX)
+    lock = only_one(WORK)
     # The state that all blocks were measured from, for the regression's light.
     if options.block == "*" and os.access("build/main/tests/regress/regress", os.X_OK):
         with open(WORK / "tree", "w") as tree:

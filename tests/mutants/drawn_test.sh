@@ -72,6 +72,7 @@ for mutant in $(seq "$(grep -o '"alike"' missed.json | wc -l)"); do
 done
 sed -i 's/assert (same_o == a_i);/& assert (both_o == (a \&\& b));/' hdl/small/pair.v
 run || fail "a proof that says all misses some"
+grep -q '^\([0-9]*\) of \1 mutants tried' run.log || fail "no word of how far it is"
 grep -q '^pair  *100.0 %' run.log || fail "no score"
 grep -q '"survived": \[\]' build/mutants/drawn.json || fail "no summary"
 cp build/mutants/drawn/pair/list drawn.list

@@ -11,6 +11,8 @@
 #   cmake/fetch.sh svd DIR    ARM's schema of CMSIS-SVD files, 1.3.9; from ICESOC_RAW, too
 #   cmake/fetch.sh lz4 DIR    the source of LZ4, which unpacks firmware on the chip
 #   cmake/fetch.sh sodium DIR the sources of libsodium that check a signature, for the chip
+#   cmake/fetch.sh page DIR   Tabulator and uPlot for the pages, as DIR/libraries.js and .css; from ICESOC_NPM, a mirror of
+#                             registry.npmjs.org, if it is set; if there is no network both are empty, and there is no DIR/done
 #   cmake/fetch.sh zeroc DIR  ZeroC's test suites for Python, 3.7.8, into DIR; exit status 77: there is no network
 # Kept in ${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network.
 
@@ -156,24 +158,26 @@ fetch_clang_format() {
     chmod +x "$target/clang-format"
 }
 
-# Brings a file of GitHub's to $kept: its checksum says that it is the one that was tested. $1: repository, $2: commit,
-# $3: path, $4: checksum. Exit status 1: there is no network.
+# Brings a file to $kept: its checksum says that it is the one that was tested. $1: address, $2: checksum. Exit status 1: there
+# is no network.
 kept_file() {
-    kept=$cache/foreign/$4
+    kept=$cache/foreign/$2
     mkdir -p "$cache/foreign"
     [ ! -f "$kept" ] || return 0
-    url=${ICESOC_RAW:-https://raw.githubusercontent.com}/$1/$2/$3
-    echo "Fetching $1 $3 ..."
-    curl --fail --silent --show-error --location --max-time 60 -o "$work/file" "$url" || return 1
-    echo "$4  $work/file" | sha256sum --check --status || fail "$url is not the file that was tested (sha256)"
+    url=$1
+    echo "Fetching ${url##*/} ..."
+    curl --fail --silent --show-error --location --connect-timeout 10 --max-time 60 -o "$work/file" "$url" || return 1
+    echo "$2  $work/file" | sha256sum --check --status || fail "$url is not the file that was tested (sha256)"
     mv "$work/file" "$kept"
 }
+
+github=${ICESOC_RAW:-https://raw.githubusercontent.com}
 
 fetch_foreign() {
     list=$(dirname "$0")/../examples/foreign/files.list
     mkdir -p "$target"
     grep -v '^#' "$list" | while read -r repository commit path sum; do
-        kept_file "$repository" "$commit" "$path" "$sum" ||
+        kept_file "$github/$repository/$commit/$path" "$sum" ||
             fail "cannot get $url: is there a network? Only the examples of foreign cores need it"
         mkdir -p "$target/$(basename "$repository")"
         cp "$kept" "$target/$(basename "$repository")/$(basename "$path")"
@@ -181,13 +185,40 @@ fetch_foreign() {
 }
 
 fetch_svd() {
-    kept_file ARM-software/CMSIS_5 51f8f89612c8330c0116479cfe3a2cb04c390e2b CMSIS/Utilities/CMSIS-SVD.xsd \
+    kept_file "$github/ARM-software/CMSIS_5/51f8f89612c8330c0116479cfe3a2cb04c390e2b/CMSIS/Utilities/CMSIS-SVD.xsd" \
         eee4bfe949f80708b00cccb4833e71da3766b0489a4cdfa2dae225d541688d89 || {
         echo "fetch: cannot get ARM's schema: is there a network? Only the check of icesoc.svd needs it" >&2
         exit 77
     }
     mkdir -p "$target"
     cp "$kept" "$target/CMSIS-SVD.xsd"
+}
+
+# Adds a package of npm's to $work/libraries.js and .css, each file below its licence. $1: name, $2: version, $3: checksum, then its
+# files. Exit status 1: there is no network.
+npm_files() {
+    (kept_file "${ICESOC_NPM:-https://registry.npmjs.org}/$1/-/$1-$2.tgz" "$3") || return 1
+    mkdir -p "$work/$1"
+    tar -xzf "$cache/foreign/$3" -C "$work/$1" --strip-components=1 || fail "cannot unpack $1"
+    name="$1 $2" folder=$work/$1
+    shift 3
+    for file in "$@"; do
+        { printf '/*! %s\n' "$name" && cat "$folder/LICENSE" && printf '\n*/\n' && sed '/sourceMappingURL=/d' "$folder/dist/$file" && echo; } \
+            >>"$work/libraries.${file##*.}"
+    done
+}
+
+# The build goes on without: pages then say so, and since there is no DIR/done the next build tries again.
+fetch_page() {
+    mkdir -p "$target"
+    if npm_files tabulator-tables 6.5.3 a3aeb833e5cf924c8a686fa6748c1070c5fde8e605e0b1734000c35b78571a9b js/tabulator.min.js css/tabulator_simple.min.css &&
+        npm_files uplot 1.6.32 4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d uPlot.iife.min.js uPlot.min.css; then
+        mv "$work/libraries.js" "$work/libraries.css" "$target"
+        touch "$target/done"
+    else
+        echo "fetch: cannot get Tabulator and uPlot, is there a network? Pages have plain tables and no charts; the next build tries again" >&2
+        touch "$target/libraries.js" "$target/libraries.css"
+    fi
 }
 
 # Brings a released source as Debian keeps it to $work/file: its checksum says that it is the one that was tested. $1: path in
@@ -242,6 +273,7 @@ clang-format) fetch_clang_format ;;
 nextpnr) fetch_nextpnr ;;
 foreign) fetch_foreign ;;
 svd) fetch_svd ;;
+page) fetch_page ;;
 lz4) fetch_source lz4-1.9.4 l/lz4/lz4_1.9.4.orig.tar.gz 0b0e3aa07c8c063ddf40b082bdf7e37a1562bda40a0ff5272957f3e987e0e54b lz4-1.9.4/lib 2 ;;
 sodium) fetch_source sodium-1.0.18 libs/libsodium/libsodium_1.0.18.orig.tar.gz \
     d59323c6b712a1519a5daf710b68f5e7fde57040845ffec53850911f10a5d4f4 libsodium-1.0.18/src/libsodium 3 ;;

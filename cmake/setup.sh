@@ -62,7 +62,7 @@ lcov coverage pages
 chromium opens the report pages in tests
 tshark reads the messages on the wire in tests
 strace sees which files a proof reads, so that its verdict holds until one changes
-curl fetches the foreign cores of the examples
+curl fetches what pages sort and draw with, and the foreign cores of the examples
 slurmctld regression on a cluster, tested on loopback
 slurmd its node
 slurm-client its commands

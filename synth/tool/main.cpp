@@ -93,11 +93,10 @@ void print(const Report& r) {
 void writeReports(const Report& r, const Options& o) {
     writeFile(o.output / "report.json", entriesJson(r));
     writeFile(o.output / "report.md", markdown(r));
-    const fs::path parts = o.source / "synth/report", common = COMMON_PAGE;
+    const fs::path parts = o.source / "synth/report";
     writeFile(o.output / "report.html",
-              html(r, readFile(parts / "page.html"),
-                   readFile(common / "common.css") + readFile(parts / "page.css"),
-                   readFile(common / "common.js") + readFile(parts / "page.js")));
+              html(r, readFile(parts / "page.html"), pageStyle() + readFile(parts / "page.css"),
+                   pageScript() + readFile(parts / "page.js")));
     fmt::print("Page: {}\n", (o.output / "report.html").string());
 }
 

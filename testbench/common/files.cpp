@@ -65,6 +65,16 @@ std::string treeState(const fs::path& source, const std::string& folders) {
     return folders + ": " + hexHash(contents);
 }
 
+std::string pageStyle() {
+    return readFile(LIBRARIES ".css") + readFile(COMMON_PAGE "/common.css") +
+           readFile(COMMON_PAGE "/tables.css");
+}
+
+std::string pageScript() {
+    return readFile(LIBRARIES ".js") + readFile(COMMON_PAGE "/common.js") +
+           readFile(COMMON_PAGE "/tables.js");
+}
+
 std::string filled(std::string page, const std::map<std::string, std::string>& places) {
     for (const auto& [place, text] : places) {
         const size_t at = page.find(place);

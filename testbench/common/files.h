@@ -27,6 +27,11 @@ std::map<std::string, std::string> fileHashes(const std::filesystem::path& sourc
 // today as long as it is the same.
 std::string treeState(const std::filesystem::path& source, const std::string& folders);
 
+// Return the style and the script that the pages of utilisation and of the regression begin with:
+// libraries (nothing where they could not be fetched), colours, tables, charts.
+std::string pageStyle();
+std::string pageScript();
+
 // Replaces each place in a page by its text. Throws std::runtime_error for a place that is not
 // there.
 std::string filled(std::string page, const std::map<std::string, std::string>& places);

@@ -224,8 +224,8 @@ json gather(const History& history, const std::vector<Test>& tests,
 
 void writeReports(const json& data, const std::string& out) {
     writeFile(out + "/report.html",
-              filled(readFile(PAGE), {{"/*COMMON*/", readFile(COMMON_PAGE "/common.css")},
-                                      {"//COMMON", readFile(COMMON_PAGE "/common.js")},
+              filled(readFile(PAGE), {{"/*COMMON*/", pageStyle()},
+                                      {"//COMMON", pageScript()},
                                       {"/*DATA*/null", scriptSafe(data.dump())}}));
     writeFile(out + "/report.json", data.dump(1));
     writeFile(out + "/summary.md", markdown(data));

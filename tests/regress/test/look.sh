@@ -61,12 +61,12 @@ for (const width of widths) {
   frame.width = width;
   frame.height = 900;
   frame.style.border = 0;
-  frame.onload = () => {
+  frame.onload = () => setTimeout(() => { // tables and charts are made when the page has loaded
     elements += look(frame.contentDocument, width, theme);
     measure(frame.contentDocument, width);
     if (--left === 0) document.body.append(`looked at ${elements}; ${[...wrong].join("; ")}.`,
       ...Object.entries(boxes).map(([name, at]) => `\nbox ${name} ${widths.map(w => at[w] ?? "-").join(" ")}`));
-  };
+  }, 1000);
   frame.src = page;
   document.body.append(frame);
 }

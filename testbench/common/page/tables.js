@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+//
+// tables: tables by Tabulator and charts by uPlot, in the page's colours. Where these could not be fetched at build time, tables
+// are plain and have all rows, and charts are left out.
+
+// Shows rows in `place`. A column is [title, value(row), cell(row), options of Tabulator's]: the value is what is sorted, filtered and
+// downloaded, the cell (text or an element; the value, if there is none) is what is seen.
+//   options.id        of the table
+//   options.filter    what an empty filter box says; beside it stands a button that downloads CSV
+//   options.children  (row) => the rows below it, which fold; options.open: (row) => whether they are shown at first
+//   options.pick      (row): what a click and Enter do; arrow keys move from row to row
+//   options.style     (row) => class of the row
+// Returns {show(rows): shows others in their place, tabulator: undefined without the library}.
+function table(place, columns, rows, options = {}) {
+  const content = (row, [, value, cell]) => (cell ?? value)(row) ?? "";
+  const record = row => {
+    const below = options.children?.(row)?.map(record) ?? [], one = {row, text: columns.map(([, value]) => value(row)).join(" ").toLowerCase()};
+    columns.forEach(([, value], i) => { one[`c${i}`] = value(row); });
+    if (below.length) one._children = below;
+    one.text += below.map(r => ` ${r.text}`).join("");
+    return one;
+  };
+  const box = element("div"), filter = element("input"), csv = element("button", "CSV");
+  if (options.id) box.id = options.id;
+  place.replaceChildren(box);
+  if (typeof Tabulator === "undefined") {
+    const plain = document.createElement("table"), line = (row, depth) => {
+      const tr = element("tr", undefined, options.style?.(row));
+      for (const column of columns) tr.append(element("td"));
+      columns.forEach((column, i) => tr.cells[i].append(content(row, column)));
+      tr.cells[0].style.paddingLeft = `${depth + 0.3}em`;
+      plain.tBodies[0].append(tr);
+      options.children?.(row)?.forEach(r => line(r, depth + 1));
+    };
+    plain.createTHead().append(element("tr"));
+    for (const [title] of columns) plain.tHead.rows[0].append(element("th", title));
+    plain.append(element("tbody"));
+    rows.forEach(row => line(row, 0));
+    box.className = "plain";
+    box.append(plain);
+    return {show: others => { plain.tBodies[0].replaceChildren(); others.forEach(row => line(row, 0)); }};
+  }
+  // As wide as the longest text of the first rows wants, or as its share of what there is: then the text breaks into lines.
+  const letters = column => Math.max(column[0].length + 3, ...rows.slice(0, 100).map(row => content(row, column))
+    .map(c => (c instanceof Node ? (c.querySelector("summary, div") ?? c).textContent : String(c)).length));
+  const tabulator = new Tabulator(box, {
+    data: rows.map(record), layout: "fitColumns", maxHeight: "560px", renderVertical: rows.length > 300 ? "virtual" : "basic",
+    dataTree: Boolean(options.children), dataTreeFilter: true, dataTreeStartExpanded: row => options.open?.(row.getData().row) ?? false,
+    columnDefaults: {headerSortTristate: true, sorter: (a, b) => a < b ? -1 : a > b ? 1 : 0}, placeholder: "nothing",
+    columns: columns.map((column, i) => {
+      const wide = letters(column), number = rows.length > 0 && rows.every(row => typeof column[1](row) === "number");
+      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 90), minWidth: 22 + 8 * Math.min(wide, 25), ...(number ? {headerSortStartingDir: "desc"} : {}),
+        formatter: cell => content(cell.getData().row, column), cssClass: number && !column[2] ? "n" : "", ...column[3]};
+    }),
+    rowFormatter: row => {
+      const node = row.getElement(), style = options.style?.(row.getData().row);
+      if (style) node.classList.add(style);
+      if (!options.pick && !options.children) return;
+      node.tabIndex = 0;
+      node.onkeydown = event => {
+        const near = event.key === "ArrowDown" ? node.nextElementSibling : event.key === "ArrowUp" ? node.previousElementSibling : null;
+        if (near) near.focus();
+        else if (event.key === "Enter") options.pick?.(row.getData().row, row);
+        else if (event.key === "ArrowRight" && options.children) row.treeExpand();
+        else if (event.key === "ArrowLeft" && options.children) row.treeCollapse();
+        else return;
+        event.preventDefault();
+      };
+    },
+  });
+  tabulator.on("tableBuilt", () => {
+    for (const title of box.querySelectorAll(".tabulator-col")) {
+      title.tabIndex = 0;
+      title.onkeydown = event => { if (event.key === "Enter") title.click(); };
+    }
+  });
+  if (options.pick) tabulator.on("rowClick", (event, row) => options.pick(row.getData().row, row));
+  if (options.filter) {
+    filter.placeholder = filter.ariaLabel = options.filter;
+    filter.oninput = () => {
+      const words = filter.value.toLowerCase().split(/\s+/);
+      tabulator.setFilter(one => words.every(word => one.text.includes(word)));
+    };
+    csv.onclick = () => tabulator.download("csv", `${options.id ?? "table"}.csv`);
+    const tools = element("div", undefined, "tools");
+    tools.append(filter, csv);
+    place.prepend(tools);
+  }
+  return {tabulator, show: others => tabulator.replaceData(others.map(record))};
+}
+
+// Draws series over points in `place`: {labels: of each point, on the axis; titles: of each, in the read-out below; series: [{name,
+// values, colour: of the page's "--good", bars: true or a line, says: (i) => text for the read-out}]; limits: [{name, value, colour}],
+// dashed; height in pixels}. The pointer and the arrow keys choose the point that is read out; at first it is the last.
+function chart(place, {labels, titles = labels, series, limits = [], height = 190}) {
+  place.replaceChildren();
+  if (typeof uPlot === "undefined" || !labels.length) return;
+  const colour = name => () => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const axis = {stroke: colour("--soft"), font: "12px system-ui, sans-serif", ticks: {show: false}};
+  const last = labels.length - 1, most = Math.max(1e-9, ...series.flatMap(s => s.values.filter(v => v !== null)), ...limits.map(l => l.value));
+  const plot = new uPlot({
+    width: place.clientWidth || 600, height, cursor: {y: false, drag: {x: false}},
+    scales: {x: {time: false, range: [-0.7, last + 0.7]}, y: {range: [0, 1.08 * most]}},
+    axes: [{...axis, grid: {show: false}, space: 80, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000], values: (u, at) => at.map(i => labels[i] ?? "")},
+      {...axis, size: 56, grid: {stroke: colour("--line"), width: 1}}],
+    series: [{label: "", value: (u, v, s, i) => titles[i] ?? ""},
+      ...series.map(({name, colour: c, bars, says}) => ({label: name, stroke: colour(c), width: bars ? 0 : 2, points: {show: !bars},
+        value: (u, v, s, i) => i === null || v === null ? "" : says ? says(i) : String(v), ...(bars ? {fill: colour(c), paths: uPlot.paths.bars({size: [0.85, 34]})} : {})})),
+      ...limits.map(({name, colour: c}) => ({label: name, stroke: colour(c), dash: [6, 4], width: 1.5, points: {show: false}, value: (u, v) => v === null ? "" : String(v)}))],
+    hooks: {setCursor: [u => { if (u.cursor.idx === null) u.setLegend({idx: last}, false); }]},
+  }, [labels.map((_, i) => i), ...series.map(s => s.values), ...limits.map(l => labels.map(() => l.value))], place);
+  plot.setLegend({idx: last}, false);
+  place.tabIndex = 0;
+  place.onkeydown = event => {
+    const step = {ArrowLeft: -1, ArrowRight: 1}[event.key];
+    if (!step) return;
+    plot.setCursor({left: plot.valToPos(Math.max(0, Math.min(last, (plot.cursor.idx ?? last + 1) + step)), "x"), top: 0});
+    event.preventDefault();
+  };
+  new ResizeObserver(() => plot.setSize({width: place.clientWidth, height})).observe(place);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => plot.redraw());
+}
+
+if (typeof Tabulator === "undefined")
+  document.body.prepend(element("p", "Tables do not sort and charts are left out: Tabulator and uPlot could not be fetched. With a network, " +
+    "or a mirror of npm's in the environment's ICESOC_NPM, make this page again.", "soft"));

@@ -28,7 +28,7 @@ function table(place, columns, rows, options = {}) {
       const tr = element("tr", undefined, options.style?.(row));
       for (const column of columns) tr.append(element("td"));
       columns.forEach((column, i) => tr.cells[i].append(content(row, column)));
-      tr.cells[0].style.paddingLeft = `${depth + 0.3}em`;
+      if (depth) tr.cells[0].style.paddingLeft = `${depth + 1}em`;
       plain.tBodies[0].append(tr);
       options.children?.(row)?.forEach(r => line(r, depth + 1));
     };
@@ -49,8 +49,9 @@ function table(place, columns, rows, options = {}) {
     columnDefaults: {headerSortTristate: true, sorter: (a, b) => a < b ? -1 : a > b ? 1 : 0}, placeholder: "nothing",
     columns: columns.map((column, i) => {
       const wide = letters(column), number = rows.length > 0 && rows.every(row => typeof column[1](row) === "number");
-      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 90), minWidth: 22 + 8 * Math.min(wide, 25), ...(number ? {headerSortStartingDir: "desc"} : {}),
-        formatter: cell => content(cell.getData().row, column), cssClass: number && !column[2] ? "n" : "", ...column[3]};
+      const plain = rows.slice(0, 1).map(row => content(row, column)).every(c => c.childElementCount ? false : /^[-\d.]*$/.test(c.textContent ?? c));
+      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 90), minWidth: (number ? 38 : 26) + 8.4 * Math.min(wide, 25), ...(number ? {headerSortStartingDir: "desc"} : {}),
+        formatter: cell => content(cell.getData().row, column), cssClass: number && plain ? "n" : "", ...column[3]};
     }),
     rowFormatter: row => {
       const node = row.getElement(), style = options.style?.(row.getData().row);
@@ -101,9 +102,9 @@ function chart(place, {labels, titles = labels, series, limits = [], height = 19
   const plot = new uPlot({
     width: place.clientWidth || 600, height, cursor: {y: false, drag: {x: false}},
     scales: {x: {time: false, range: [-0.7, last + 0.7]}, y: {range: [0, 1.08 * most]}},
-    axes: [{...axis, grid: {show: false}, space: 80, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000], values: (u, at) => at.map(i => labels[i] ?? "")},
+    axes: [{...axis, size: 28, grid: {show: false}, space: 80, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000], values: (u, at) => at.map(i => labels[i] ?? "")},
       {...axis, size: 56, grid: {stroke: colour("--line"), width: 1}}],
-    series: [{label: "", value: (u, v, s, i) => titles[i] ?? ""},
+    series: [{label: "point", value: (u, v, s, i) => titles[i] ?? ""},
       ...series.map(({name, colour: c, bars, says}) => ({label: name, stroke: colour(c), width: bars ? 0 : 2, points: {show: !bars},
         value: (u, v, s, i) => i === null || v === null ? "" : says ? says(i) : String(v), ...(bars ? {fill: colour(c), paths: uPlot.paths.bars({size: [0.85, 34]})} : {})})),
       ...limits.map(({name, colour: c}) => ({label: name, stroke: colour(c), dash: [6, 4], width: 1.5, points: {show: false}, value: (u, v) => v === null ? "" : String(v)}))],
@@ -114,7 +115,7 @@ function chart(place, {labels, titles = labels, series, limits = [], height = 19
   place.onkeydown = event => {
     const step = {ArrowLeft: -1, ArrowRight: 1}[event.key];
     if (!step) return;
-    plot.setCursor({left: plot.valToPos(Math.max(0, Math.min(last, (plot.cursor.idx ?? last + 1) + step)), "x"), top: 0});
+    plot.setCursor({left: plot.valToPos(Math.max(0, Math.min(last, (plot.cursor.idx ?? last) + step)), "x"), top: 0});
     event.preventDefault();
   };
   new ResizeObserver(() => plot.setSize({width: place.clientWidth, height})).observe(place);

@@ -31,6 +31,17 @@ case $said in *"you may not write in $work/theirs/.cache"*XDG_CACHE_HOME*) ;; *)
 # A user's name may have an apostrophe.
 mkdir "$work/it's" && ln -s "${XDG_CACHE_HOME:-$HOME/.cache}/icesoc" "$work/it's/icesoc"
 XDG_CACHE_HOME="$work/it's" cmake/fetch.sh ghdl "$work/ghdl" && "$work/ghdl/ghdl" --version >/dev/null
+# What pages sort and draw with: without a network, or where a file is not the one that was tested, the build goes on, says so, and
+# nothing half is kept.
+page() { XDG_CACHE_HOME="$work/empty" ICESOC_NPM=$1 cmake/fetch.sh page "$work/page" 2>&1; }
+mkdir -p "$work/npm/tabulator-tables/-" && echo wrong >"$work/npm/tabulator-tables/-/tabulator-tables-6.5.3.tgz"
+for mirror in http://127.0.0.1:9 "file://$work/npm"; do
+    said=$(page "$mirror") || { echo "without a network: $said" >&2 && exit 1; }
+    case $said in *"cannot get Tabulator and uPlot"*) ;; *) echo "$said" >&2 && exit 1 ;; esac
+    [ -f "$work/page/libraries.js" ] && [ ! -s "$work/page/libraries.js" ] && [ ! -e "$work/page/done" ] && [ -z "$(ls "$work/empty/icesoc/foreign")" ] ||
+        { echo "left by $mirror: $(ls -R "$work/page" "$work/empty")" >&2 && exit 1; }
+done
+case $said in *tabulator-tables-6.5.3.tgz\ is\ not\ the\ file\ that\ was\ tested*) ;; *) echo "$said" >&2 && exit 1 ;; esac
 
 # Set-up in two steps: what only tests need is not asked for by make run. On a machine that has no package yet:
 mkdir "$work/bin" && printf '#!/bin/sh\n' >"$work/bin/dpkg-query" && chmod +x "$work/bin/dpkg-query"

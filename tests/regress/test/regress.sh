@@ -376,9 +376,68 @@ END
     echo '{"total": 97, "toggles": 95, "files": [{"file": "hdl/fifo/fifo.v", "percent": 97, "lines": 200, "gate": 95, "toggles": 96, "toggle_points": 9,
         "toggle_gate": 95, "why": "", "missed": ["12: level_o[3]", "40"]}]}' >build/coverage/summary.json
     run
-    chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$work/chromium" \
-        --virtual-time-budget=5000 --dump-dom "file://$work/build/regress/report.html" >dom.html 2>chromium.log ||
-        fail "chromium: $(tail -3 chromium.log)"
+    opened() { # page
+        chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$work/chromium" \
+            --virtual-time-budget=5000 --dump-dom "file://$work/$1" >dom.html 2>chromium.log || fail "chromium: $(tail -3 chromium.log)"
+    }
+    # Where the libraries could not be fetched, all is there, and the page says how to get them.
+    sed '/^!function.*Tabulator=/d; /^.*var uPlot=/d' build/regress/report.html >plain.html
+    opened plain.html
+    has 'Tabulator and uPlot could not be fetched. With a network' dom.html
+    has '<td>test_c.Flicker</td>' dom.html
+    has 'class="dot dp"' dom.html
+    [ -s "$build/page/libraries.js" ] || { echo "skipped: Tabulator and uPlot could not be fetched"; exit 77; }
+    # A second script clicks as a user does, also on a table and a chart of its own, and writes what it then sees.
+    cat >clicks.js <<'JS'
+const seen = [], $ = (selector, at = document) => at.querySelector(selector), wait = () => new Promise(done => setTimeout(done, 300));
+const column = (at, n) => [...at.querySelectorAll(".tabulator-row")].map(row => row.querySelectorAll(".tabulator-cell")[n].textContent).join(" ");
+const key = (node, key) => node.dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true}));
+(async () => {
+  await wait();
+  const results = $("#results"), test = $(".tabulator-col", results), filter = $("input", results.parentElement);
+  test.click();
+  key(test, "Enter");
+  seen.push(`sorted ${column(results, 0)}`);
+  filter.value = "ROOM fli";
+  filter.oninput();
+  URL.createObjectURL = blob => { blob.text().then(text => seen.push(`csv ${text.replace(/\n/g, " / ")}`)); return ""; };
+  HTMLAnchorElement.prototype.click = () => {}; // nothing is downloaded
+  $("button", results.parentElement).click();
+  seen.push(`filtered ${column(results, 0)}`);
+  const many = element("div"), few = element("div"), drawn = element("div");
+  document.body.append(many, few, drawn);
+  table(many, [["n", r => r]], [...Array(2000).keys()]);
+  const t = table(few, [["name", r => r.name], ["n", r => r.n]], [{name: "a", n: 9}, {name: "b", n: 10, below: [{name: "c", n: 1}]}],
+    {id: "few", children: r => r.below, pick: r => seen.push(`picked ${r.name}`)});
+  chart(drawn, {labels: ["i", "ii", "iii"], series: [{name: "s", colour: "--good", values: [1, null, 4], says: i => `no. ${i}`, bars: true}], limits: [{name: "l", value: 2, colour: "--bad"}]});
+  await wait();
+  seen.push(`of 2000 ${many.querySelectorAll(".tabulator-row").length < 300 ? "some" : "all"}`);
+  few.querySelectorAll(".tabulator-col")[1].click();
+  seen.push(`largest ${column(few, 0)}`);
+  key($(".tabulator-row", few), "Enter");
+  key($(".tabulator-row", few), "ArrowRight");
+  seen.push(`open ${column(few, 0)}`);
+  t.show([{name: "d", n: 4}]);
+  await wait();
+  seen.push(`shown ${column(few, 0)}`);
+  const read = () => [...drawn.querySelectorAll(".u-value")].map(v => v.textContent).join(" "), canvas = $("canvas", drawn), pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+  const drawnIn = (r, g, b) => pixels.some((_, i) => i % 4 === 0 && pixels[i] === r && pixels[i + 1] === g && pixels[i + 2] === b && pixels[i + 3] === 255);
+  seen.push(`canvas ${drawnIn(21, 122, 60)} ${drawnIn(179, 38, 30)}`, `read ${read()}`);
+  key(drawn, "ArrowLeft");
+  key(drawn, "ArrowLeft");
+  seen.push(`moved ${read()}`);
+  filter.value = "";
+  filter.oninput();
+  document.body.append(element("p", `seen: ${seen.join("; ")};`));
+})();
+JS
+    { sed '/^<\/body>/,$d' build/regress/report.html; echo '<script>'; cat clicks.js; echo '</script></body></html>'; } >clicked.html
+    opened clicked.html
+    sed -n 's/.*<p>\(seen: .*;\)<.*/\1/p' dom.html >out.txt
+    has 'sorted test_d.Crash test_c.Flicker test_b.Bad test_a.Two test_a.One formal.thing formal.broken;'
+    has 'filtered test_c.Flicker;'
+    has 'csv "test",.* / "test_c.Flicker","passed",'
+    has 'of 2000 some; largest b a; picked b; open b c a; shown d; canvas true true; read iii no. 2 2; moved i no. 0 2;'
     has '3 failed' dom.html
     has 'class="waveform"' dom.html
     has '>top.clk_i<' dom.html     # the outermost of its names

@@ -11,6 +11,7 @@ it had stored before the capture is not known. Writes replay.v, and replay.fst w
 import argparse
 import os
 import re
+import shutil
 import subprocess
 import sys
 
@@ -144,9 +145,10 @@ def main():
             format=",".join(f" {n} is %h, was %h" for n, _ in shown), values="".join(", " + v for _, v in shown)))
     files = [os.path.abspath(f) for f in args.files]
     folders = [word for f in args.I + [os.path.dirname(f) for f in files] for word in ("-y", os.path.abspath(f), "-I" + os.path.abspath(f))]
+    environment = {"OBJCACHE": shutil.which("ccache") or "", **os.environ}  # of Verilator's own makefile
     for command in (["verilator", "--binary", "--timing", "--trace-fst", "-Wno-fatal", "-Wno-lint", "--top-module", "replay",
                      "--Mdir", "model", "replay.v"] + folders + files, ["model/Vreplay"]):
-        run = subprocess.run(command, cwd=args.out, capture_output=True, text=True)
+        run = subprocess.run(command, cwd=args.out, capture_output=True, text=True, env=environment)
         if run.returncode:
             fail(f"{command[0]} fails:\n{run.stdout}{run.stderr}".rstrip())
     lines = [line for line in run.stdout.splitlines() if line.endswith("differ") or "differs" in line]

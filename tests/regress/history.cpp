@@ -36,6 +36,14 @@ std::string History::passedWith(const std::string& test) const {
     return end.is_null() ? "" : end.at(2);
 }
 
+std::optional<Pass> History::lastPass(const std::string& test) const {
+    for (auto run = runs_.rbegin(); run != runs_.rend(); ++run)
+        if (auto it = run->at("tests").find(test); it != run->at("tests").end() && it->at(0) == "p")
+            return Pass{run->at("commit"), run->value("tree", ""),
+                        it->size() > 3 ? it->at(3).get<std::string>() : ""};
+    return {};
+}
+
 std::string History::last(const std::string& test) const {
     const nlohmann::json end = newest(test, "");
     return end.is_null() ? "" : end.at(0);

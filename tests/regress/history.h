@@ -8,6 +8,12 @@
 #include "runner.h"
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+
+// Where a test has passed: `tree` is what the tree was then (changes.h), or "".
+struct Pass {
+    std::string commit, tree, seed;
+};
 
 class History {
 public:
@@ -21,6 +27,8 @@ public:
 
     // Fingerprint with which a test last passed, or "".
     std::string passedWith(const std::string& test) const;
+    // Returns where a test last passed, if it has.
+    std::optional<Pass> lastPass(const std::string& test) const;
     // Returns how a test ended in the newest run that had it: "p", "f", "s" or "".
     std::string last(const std::string& test) const;
     // Seconds that a test took in the newest run that had it, or 0.

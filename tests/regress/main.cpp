@@ -4,6 +4,7 @@
 // calls it.
 
 #include "budget.h"
+#include "changes.h"
 #include "failures.h"
 #include "files.h"
 #include "history.h"
@@ -117,6 +118,8 @@ void summary(const nlohmann::json& data, const std::vector<Failure>& failures,
         std::cout << fmt::format("\n{} x  {}\n", members.size(), members[0]->reason.substr(0, 200));
         for (const Failure* failure : members) {
             std::cout << "    " << failure->repeat << "\n        log " << failure->log << '\n';
+            if (!failure->changed.empty())
+                std::cout << "        " << failure->changed << '\n';
             if (!failure->wave.empty())
                 std::cout << "        gtkwave "
                           << (failure->save.empty() ? failure->wave : failure->save) << '\n';
@@ -252,6 +255,8 @@ Properties propertiesOf(const std::vector<Failure>& failures) {
             properties[failure.result.name] = {{"repeat", failure.repeat}, {"log", failure.log}};
         if (!failure.wave.empty())
             of["wave"] = failure.wave;
+        if (!failure.changed.empty())
+            of["changed"] = failure.changed;
     }
     return properties;
 }
@@ -307,16 +312,23 @@ int regress(const Options& options) {
         std::cout << "Nothing to run: no seed is kept that made one of these tests fail.\n";
         return 0;
     }
+    Changes changes(options.source, options.build, options.out);
     auto start = std::chrono::steady_clock::now();
     auto results = run(rounds, options, history);
     double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     auto failures = examine(results, all, options.out);
+    for (Failure& failure : failures)
+        for (const Test& test : all)
+            if (test.name == failure.result.name)
+                failure.changed =
+                    changes.since(history.lastPass(test.name), test, failure.result.seed);
     addWaves(failures, all, options.source, options.build, options.launcher, options.jobs,
              options.waves);
     const std::string commit = commitOf(options.source);
     auto made = History::makeRun(chosen, results, commit, seconds);
     made["subject"] = subjectOf(options.source);
+    made["tree"] = changes.tree();
     made["reasons"] = reasonsOf(failures);
     history.add(made);
     seeds.update(results, commit);

@@ -18,16 +18,6 @@ namespace {
 
 const std::string notBuilt = "_NOT_BUILT"; // what CTest calls a program without its cases
 
-// Returns the folders that a test reads which is no program of its own.
-std::vector<std::string> readsOf(const Test& test) {
-    if (test.place.find("formal") != std::string::npos ||
-        test.place.find("lint") != std::string::npos)
-        return {"bus", "hdl", "ip", "tests/" + test.place};
-    if (test.place.rfind("slice", 0) == 0)
-        return {"slice", "tests/slice"};
-    return {"bus", "hdl", "ip", "slice", "sw", "testbench", "tests/" + test.place};
-}
-
 // Returns the labels that icesoc_test() gives to the cases of a program.
 std::vector<std::string> labelsOfCases(const Test& unbuilt) {
     const std::string file = unbuilt.folder + "/" + programOf(unbuilt) + "_labels.cmake";
@@ -105,6 +95,20 @@ std::set<std::string> blockWords(const Test& test) {
     return words;
 }
 
+std::vector<std::string> readsOf(const Test& test) {
+    if (test.place.find("formal") != std::string::npos ||
+        test.place.find("lint") != std::string::npos)
+        return {"bus", "hdl", "ip", "tests/" + test.place};
+    if (test.place.rfind("slice", 0) == 0)
+        return {"slice", "tests/slice"};
+    return {"bus", "hdl", "ip", "slice", "sw", "testbench", "tests/" + test.place};
+}
+
+bool isProgram(const Test& test, const std::string& build) {
+    return !test.command.empty() && test.command[0].find("/test_") != std::string::npos &&
+           test.command[0].rfind(fs::absolute(build).string(), 0) == 0;
+}
+
 bool isUnbuilt(const Test& test) {
     return test.name.size() > notBuilt.size() &&
            test.name.compare(test.name.size() - notBuilt.size(), notBuilt.size(), notBuilt) == 0;
@@ -169,10 +173,7 @@ void fingerprint(std::vector<Test>& tests, const std::string& source, const std:
     std::map<std::string, std::string> programHash;
     for (Test& test : tests) {
         std::vector<std::string> parts;
-        bool program = !test.command.empty() &&
-                       test.command[0].find("/test_") != std::string::npos &&
-                       test.command[0].rfind(fs::absolute(build).string(), 0) == 0;
-        if (program) {
+        if (isProgram(test, build)) {
             auto found = programHash.find(test.command[0]);
             if (found == programHash.end())
                 found = programHash

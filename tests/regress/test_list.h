@@ -37,6 +37,12 @@ std::vector<Test> listTests(const std::string& build);
 // their program. `source` is the root of the tree; only files that Git knows count.
 void fingerprint(std::vector<Test>& tests, const std::string& source, const std::string& build);
 
+// True if a test is a program of the build folder, and not a script.
+bool isProgram(const Test& test, const std::string& build);
+
+// Returns the folders that a test reads which is no program.
+std::vector<std::string> readsOf(const Test& test);
+
 // True for a program that is not built, in the place of its cases.
 bool isUnbuilt(const Test& test);
 

@@ -3,7 +3,10 @@
 # cores: source-folder build-folder work-folder   Builds a simulator with the cores of a list of its own, and calls them by radio.
 set -eu
 source=$1 build=$2 work=$3
-mkdir -p "$work"
+mkdir -p "$work/build"
+# Puts fresh/NAME in the place of NAME if they differ: what is as it was is not built again.
+fresh() { diff -r "$work/fresh/$1" "$work/$1" >/dev/null 2>&1 || { rm -rf "${work:?}/$1" && mv "$work/fresh/$1" "$work/$1"; }; }
+rm -rf "$work/fresh" && mkdir "$work/fresh"
 {
     echo '# No vision core here.'
     echo sample_verilog
@@ -16,15 +19,15 @@ mkdir -p "$work"
     echo my_lamps
     echo many
     echo 'probe signals=u_sample_verilog.bus_valid_i,u_sample_verilog.bus_write_i,u_sample_verilog.bus_addr_i:4,u_sample_verilog.bus_wdata_i:32,u_sample_verilog.bus_ready_o,u_sample_verilog.bus_rdata_o:32'
-} >"$work/cores.list"
+} >"$work/fresh/cores.list"
+fresh cores.list
 samples=$build/tests/ip/new
 foreign=$build/tests/ip/new_foreign
 folders="$samples/sample_verilog;$samples/sample_vhdl;$source/tests/e2e/cores/scaler;$source/tests/e2e/cores/servo;$source/tests/e2e/cores/crc32;$source/tests/e2e/cores/many;$foreign/my_port;$foreign/my_requests;$work/my_lamps"
-mkdir -p "$work/build"
 # A core in VHDL, as make new-foreign puts it into a slot. GHDL is fetched once.
-rm -rf "$work/my_lamps"
-GHDL=$build/ghdl/ghdl "$source/ip/new_foreign.py" my_lamps lamps own "$work/my_lamps" read=rd write=wr address=a wdata=d rdata=q \
+GHDL=$build/ghdl/ghdl "$source/ip/new_foreign.py" my_lamps lamps own "$work/fresh/my_lamps" read=rd write=wr address=a wdata=d rdata=q \
     "$source/tests/ip/new_foreign/lamps.vhd" >"$work/log" || { cat "$work/log" && exit 1; }
+fresh my_lamps
 [ -e "$work/build/ghdl" ] || ln -s "$build/ghdl" "$work/build/ghdl"
 # CLK_HZ: the servo core counts in every clock, so that none is skipped. TRACE: for what the probe is compared with.
 cmake -S "$source" -B "$work/build" -G Ninja -DTRACE=ON -DCLK_HZ=2000000 "-DCORES=$work/cores.list" "-DCORE_FOLDERS=$folders" \
@@ -46,12 +49,14 @@ awk '$2 == "servo.pwm_o" && $3 == 4 { frames += up && $1 - last > 19.999 && $1 -
 grep -q "'my_requests' moves in nearly every clock" "$work/log" || { cat "$work/log" && echo 'who keeps the chip from being quiet is not said' && exit 1; }
 grep -q 'cores: all as expected' "$work/log" || { cat "$work/log" && exit 1; }
 
-# The probe's capture by radio, read by GTKWave's tools, is what the simulator traces when it flies this flight again.
+# The probe's capture by radio, read by GTKWave's tools, is what the simulator traces when it flies this flight again, as far as that.
 vcd2fst "$work/probe.vcd" "$work/probe.fst" >"$work/log"
 fst2vcd "$work/probe.fst" >"$work/captured.vcd"
 span=$(awk '/^#/ { t = substr($1, 2) / 1e9; if (!n++) first = t } END { printf "--from %.6f --to %.6f", first - 2e-5, t + 2e-5 }' "$work/probe.vcd")
+mkdir -p "$work/begin" && cp "$work/before.png" "$work/begin"
+awk -v end="${span##* }" -F '"ns":' 'NR > 1 && $2 / 1e9 > end + 0.1 { exit } 1' "$work/flight.jsonl" >"$work/begin/flight.jsonl"
 # shellcheck disable=SC2086 # options
-"$work/build/testbench/sim/icesoc-sim" --replay "$work" --out "$work/again" --wave "$work/trace.fst" $span >"$work/log" 2>&1 || { cat "$work/log" && exit 1; }
+"$work/build/testbench/sim/icesoc-sim" --replay "$work/begin" --out "$work/again" --wave "$work/trace.fst" $span >"$work/log" 2>&1 || { cat "$work/log" && exit 1; }
 fst2vcd "$work/trace.fst" >"$work/trace.vcd"
 "$source/tests/e2e/cores/same.py" "$work/captured.vcd" "$work/trace.vcd" 500
 # Its inputs, given to the core alone, bring forth its outputs.

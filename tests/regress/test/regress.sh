@@ -160,6 +160,39 @@ END
     has '<property name="wave" value="build/regress/failures/formal.broken.vcd"' build/regress/junit.xml
     has '^The longest: .* s '
     ;;
+changed) # of the files on which a failed test depends, what has changed since it passed: committed or not, new or gone; of a program those it is made of
+    mkdir -p hdl/fifo docs
+    printf 'a\nb\nc\nd\n' >hdl/fifo/fifo.v
+    echo 1 >hdl/old.v && echo 1 >docs/page.md
+    printf '#include "n.h"\nint main(void) { return LIMIT; }\n' >hdl/fifo/test.c && echo '#define LIMIT 0' >hdl/fifo/n.h
+    sed -i 's/small NONE/small C/' CMakeLists.txt
+    cat >>tests/room/CMakeLists.txt <<'END'
+add_executable(test_u ${CMAKE_SOURCE_DIR}/hdl/fifo/test.c)
+add_test(NAME test_u.Unit COMMAND test_u)
+END
+    cmake build/main >/dev/null && ninja -C build/main test_u >/dev/null
+    run --name 'a.One|u.Unit'
+    [ $status -eq 0 ] || fail "exit status $status, not 0"
+    git add . && git commit -qm two
+    sed -i 's/^case .1 in/&\na.One) exit 1 ;;/' tests/room/t.sh
+    run --name 'b.Bad' # never passed: what is not committed
+    has '^        changed since the commit; it is not known to have passed: tests/room/t.sh:3 (1 line)$'
+    printf 'a\nB\nc\nD\nE\n' >hdl/fifo/fifo.v && rm hdl/old.v && echo 2 >docs/page.md && git commit -qam three
+    echo 'int g;' >hdl/new.v && echo '#define LIMIT 3' >hdl/fifo/n.h && ninja -C build/main test_u >/dev/null
+    run --name 'a.One|u.Unit' --seed 2
+    passed=$(git rev-parse --short=10 HEAD~2) # and what was not committed then
+    has "^        changed since it passed at $passed with SEED=1: hdl/fifo/fifo.v:2 (3 lines), hdl/fifo/n.h:1 (1 line), hdl/new.v:1 (1 line), hdl/old.v:1 (1 line), tests/room/t.sh:3 (1 line)$"
+    has "^        changed since it passed at $passed with SEED=1: hdl/fifo/n.h:1 (1 line), tests/room/t.sh:3 (1 line)$" # its program, its folder
+    has '<property name="changed" value="changed since it passed' build/regress/junit.xml
+    has '"changed":"changed since it passed' build/regress/report.html
+    ! git cat-file -e "$(git hash-object hdl/new.v)" 2>/dev/null || fail "the repository has got objects"
+    echo flicker >.git/info/exclude && run --name c.Flicker && touch flicker
+    run --name c.Flicker
+    has '^        nothing has changed since it passed at [0-9a-f]*$'
+    rm -r build/regress/tree # somebody has tidied up: the commit is left
+    run --name a.One
+    has "^        changed since it passed at $passed: hdl/fifo/fifo.v:1 (5 lines), hdl/fifo/n.h:1 (1 line), hdl/fifo/test.c:1 (2 lines), .* tests/room/t.sh"
+    ;;
 company) # progress, one run at a time, words for what was mistyped, no more built than is needed
     run --name 'a.One|formal'
     has '^2 of 2, 0 failed, 0:00 left'
@@ -455,6 +488,7 @@ JS
     has 'id="seeds"' dom.html
     has 'value 1 is not 7' dom.html
     has 'href="failures/test_b.Bad-1.log"' dom.html
+    has 'to have passed: <a href="../../tests/room/CMakeLists.txt">tests/room/CMakeLists.txt:8</a> (1 line)' dom.html
     hasNot 'src="http\|href="http' build/regress/report.html # offline
     "$source/tests/regress/test/look.sh" build/regress/report.html regression || fail "the page"
     "$source/docs/pictures/take.sh" --from build --to . regression >/dev/null || fail "its picture"

@@ -157,27 +157,21 @@ json gather(const History& history, const std::vector<Test>& tests,
         left[test.name.rfind("formal.", 0) == 0] += ran.count(test.name) == 0;
     data["left"] = {{"tests", left[0]}, {"proofs", left[1]}};
     data["kept"] = {{"tests", kept[0]}, {"proofs", kept[1]}};
-    constexpr size_t drawingsRoom = 1'000'000; // bytes of the page's 2 MB
-    const size_t drawings = std::max<size_t>(
-        1, std::count_if(failures.begin(), failures.end(),
-                         [](const Failure& failure) { return !failure.wave.empty(); }));
     auto& bad = data["failures"] = json::array();
     for (const Failure& failure : failures)
-        bad.push_back(
-            {{"name", failure.result.name},
-             {"bucket", failure.bucket},
-             {"reason", failure.reason},
-             {"repeat", failure.repeat},
-             {"log", failure.log},
-             {"wave", failure.wave},
-             {"save", failure.save},
-             {"changed", failure.changed},
-             {"clock", failure.clock},
-             {"drawing",
-              failure.wave.empty() ? json() : drawingOf(failure, drawingsRoom / drawings)},
-             {"tail", failure.result.log.substr(failure.result.log.size() > 3000
-                                                    ? failure.result.log.size() - 3000
-                                                    : 0)}});
+        bad.push_back({{"name", failure.result.name},
+                       {"bucket", failure.bucket},
+                       {"reason", failure.reason},
+                       {"repeat", failure.repeat},
+                       {"log", failure.log},
+                       {"wave", failure.wave},
+                       {"save", failure.save},
+                       {"changed", failure.changed},
+                       {"clock", failure.clock},
+                       {"drawing", nullptr},
+                       {"tail", failure.result.log.substr(failure.result.log.size() > 3000
+                                                              ? failure.result.log.size() - 3000
+                                                              : 0)}});
     data["trees"] = json::object();
     data["flaky"] = history.flaky();
     auto& past = data["history"] = json::array();
@@ -220,6 +214,14 @@ json gather(const History& history, const std::vector<Test>& tests,
         }
     data["plan"] = judgePlan(readPlan(source + "/tests/plan.md"), tests, history);
     data["lights"] = lightsOf(data, source);
+    // Drawings have what the rest leaves of the page's 2 MB.
+    const size_t rest = pageStyle().size() + pageScript().size() + data.dump().size() + 60'000;
+    const size_t drawings = std::count_if(failures.begin(), failures.end(),
+                                          [](const Failure& f) { return !f.wave.empty(); });
+    for (size_t i = 0; i < failures.size(); ++i)
+        if (!failures[i].wave.empty())
+            data["failures"][i]["drawing"] =
+                drawingOf(failures[i], (2'000'000 - std::min<size_t>(2'000'000, rest)) / drawings);
     return data;
 }
 

@@ -575,7 +575,7 @@ END
         for (t = 0; t < 300; t++) { print "#" 1000000 + t; for (s = 0; s < 100; s++) print "b1" t % 2 "10101010101010 s" s } }' >long.vcd
     mkdir -p build/coverage build/mutants
     awk 'BEGIN { printf "{\"total\": 97.1, \"toggles\": 95.2, \"files\": ["
-        for (f = 0; f < 300; f++) {
+        for (f = 0; f < 600; f++) {
             printf "%s{\"file\": \"hdl/block/some_module_%d.v\", \"percent\": 97, \"lines\": 200, \"gate\": 95, \"toggles\": 96, \"toggle_points\": 900, \"toggle_gate\": 95, \"why\": \"\", \"missed\": [", f ? "," : "", f
             for (m = 0; m < 500; m++) printf "%s\"%d: some_signal_of_it[%d]\"", m ? "," : "", m, m
             printf "]}" }

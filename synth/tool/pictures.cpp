@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <mutex>
+#include <regex>
 
 namespace fs = std::filesystem;
 using std::string;
@@ -58,6 +59,9 @@ std::map<string, string> drawNetlists(const Plan& plan, const Library& library,
         fmt::print(stderr, "no netlist pictures: Graphviz' dot does not run\n");
         return pictures;
     }
+    // Of Graphviz' text what the page does not show, a quarter of it.
+    const std::regex unused("<!--[^>]*>\n|<title>[^<]*</title>\n|"
+                            " font-(family|size)=\"[^\"]*\"| (id|class)=\"[^\"]*\"");
     std::mutex mutex;
     inParallel(options.jobs, plan.designs.size(), [&](size_t i) {
         const Design& design = plan.designs[i];
@@ -68,7 +72,7 @@ std::map<string, string> drawNetlists(const Plan& plan, const Library& library,
         const string svg = readFile(stem.string() + ".svg");
         const std::lock_guard<std::mutex> lock(mutex);
         if (!svg.empty())
-            pictures[design.top] = svg;
+            pictures[design.top] = std::regex_replace(svg, unused, "");
     });
     return pictures;
 }

@@ -232,7 +232,6 @@ string html(const Report& r, const string& page, const string& style, const stri
         const auto accepted = r.baseline.designs.find(row.design->name);
         if (accepted != r.baseline.designs.end()) {
             d["accepted"] = acceptedJson(accepted->second);
-            d["acceptedCosts"] = costsJson(accepted->second.costs);
             d["budget"] = {{"lut", lutBudget(accepted->second.lut)},
                            {"ff", ffBudget(accepted->second.ff)}};
         }

@@ -3,14 +3,13 @@
 // tables: tables by Tabulator and charts by uPlot, in the page's colours. Where these could not be fetched at build time, tables
 // are plain and have all rows, and charts are left out.
 
-// Shows rows in `place`. A column is [title, value(row), cell(row), options of Tabulator's]: the value is what is sorted, filtered and
+// Shows rows in `place`, instead of what it had. A column is [title, value(row), cell(row), options of Tabulator's]: the value is what is sorted, filtered and
 // downloaded, the cell (text or an element; the value, if there is none) is what is seen.
 //   options.id        of the table
 //   options.filter    what an empty filter box says; beside it stands a button that downloads CSV
 //   options.children  (row) => the rows below it, which fold; options.open: (row) => whether they are shown at first
-//   options.pick      (row): what a click and Enter do; arrow keys move from row to row
-//   options.style     (row) => class of the row
-// Returns {show(rows): shows others in their place, tabulator: undefined without the library}.
+//   options.pick      (row, Tabulator's, if there is one): what a click and Enter do; arrow keys move from row to row, and fold
+//   options.picked    (row) => whether it is the row that was picked
 function table(place, columns, rows, options = {}) {
   const content = (row, [, value, cell]) => (cell ?? value)(row) ?? "";
   const record = row => {
@@ -22,10 +21,12 @@ function table(place, columns, rows, options = {}) {
   };
   const box = element("div"), filter = element("input"), csv = element("button", "CSV");
   if (options.id) box.id = options.id;
+  place.drawn?.destroy();
   place.replaceChildren(box);
   if (typeof Tabulator === "undefined") {
     const plain = document.createElement("table"), line = (row, depth) => {
-      const tr = element("tr", undefined, options.style?.(row));
+      const tr = element("tr");
+      if (options.pick) tr.onclick = () => options.pick(row);
       for (const column of columns) tr.append(element("td"));
       columns.forEach((column, i) => tr.cells[i].append(content(row, column)));
       if (depth) tr.cells[0].style.paddingLeft = `${depth + 1}em`;
@@ -38,33 +39,53 @@ function table(place, columns, rows, options = {}) {
     rows.forEach(row => line(row, 0));
     box.className = "plain";
     box.append(plain);
-    return {show: others => { plain.tBodies[0].replaceChildren(); others.forEach(row => line(row, 0)); }};
+    return;
   }
-  // As wide as the longest text of the first rows wants, or as its share of what there is: then the text breaks into lines.
-  const letters = column => Math.max(column[0].length + 3, ...rows.slice(0, 100).map(row => content(row, column))
-    .map(c => (c instanceof Node ? (c.querySelector("summary, div") ?? c).textContent : String(c)).length));
-  const tabulator = new Tabulator(box, {
-    data: rows.map(record), layout: "fitColumns", maxHeight: "560px", renderVertical: rows.length > 300 ? "virtual" : "basic",
+  // As wide as the widest text of the first rows wants, or as its share of what there is: then the text breaks into lines.
+  const pen = document.createElement("canvas").getContext("2d");
+  pen.font = `bold ${getComputedStyle(document.body).font}`;
+  const widest = column => Math.max(12 + pen.measureText(column[0]).width, ...rows.slice(0, 100).map(row => content(row, column))
+    .map(c => pen.measureText(c instanceof Node ? (c.querySelector("summary, div") ?? c).textContent : c).width));
+  let marked;
+  const mark = row => {
+    if (!options.picked?.(row.getData().row)) return;
+    marked?.classList.remove("picked");
+    marked = row.getElement();
+    marked.classList.add("picked");
+  };
+  const pick = row => {
+    options.pick(row.getData().row, row);
+    mark(row);
+  };
+  const unfold = rows => rows.forEach(row => { // all that is filtered, else what is open at first
+    if (!row.getTreeChildren().length) return;
+    if (filter.value || options.open?.(row.getData().row)) row.treeExpand();
+    else row.treeCollapse();
+    unfold(row.getTreeChildren());
+  });
+  const tabulator = place.drawn = new Tabulator(box, {
+    data: rows.map(record), layout: "fitColumns", maxHeight: "560px", renderVertical: rows.length > 200 ? "virtual" : "basic",
     dataTree: Boolean(options.children), dataTreeFilter: true, dataTreeStartExpanded: row => options.open?.(row.getData().row) ?? false,
     columnDefaults: {headerSortTristate: true, sorter: (a, b) => a < b ? -1 : a > b ? 1 : 0}, placeholder: "nothing",
     columns: columns.map((column, i) => {
-      const wide = letters(column), number = rows.length > 0 && rows.every(row => typeof column[1](row) === "number");
-      const plain = rows.slice(0, 1).map(row => content(row, column)).every(c => c.childElementCount ? false : /^[-\d.]*$/.test(c.textContent ?? c));
-      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 90), minWidth: (number ? 38 : 26) + 8.4 * Math.min(wide, 25), ...(number ? {headerSortStartingDir: "desc"} : {}),
+      const wide = widest(column), number = rows.length > 0 && rows.every(row => typeof column[1](row) === "number");
+      const plain = rows.slice(0, 1).map(row => content(row, column)).every(c => c.childElementCount ? false : /^[-+\d.]*( |$)/.test(c.textContent ?? c));
+      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 700), minWidth: (number ? 38 : 28) + Math.min(wide, 190), ...(number ? {headerSortStartingDir: "desc"} : {}),
         formatter: cell => content(cell.getData().row, column), cssClass: number && plain ? "n" : "", ...column[3]};
     }),
     rowFormatter: row => {
-      const node = row.getElement(), style = options.style?.(row.getData().row);
-      if (style) node.classList.add(style);
+      const node = row.getElement();
+      mark(row);
       if (!options.pick && !options.children) return;
       node.tabIndex = 0;
       node.onkeydown = event => {
         const near = event.key === "ArrowDown" ? node.nextElementSibling : event.key === "ArrowUp" ? node.previousElementSibling : null;
         if (near) near.focus();
-        else if (event.key === "Enter") options.pick?.(row.getData().row, row);
+        else if (event.key === "Enter" && options.pick) pick(row);
         else if (event.key === "ArrowRight" && options.children) row.treeExpand();
         else if (event.key === "ArrowLeft" && options.children) row.treeCollapse();
         else return;
+        if (!near) node.focus();
         event.preventDefault();
       };
     },
@@ -75,25 +96,28 @@ function table(place, columns, rows, options = {}) {
       title.onkeydown = event => { if (event.key === "Enter") title.click(); };
     }
   });
-  if (options.pick) tabulator.on("rowClick", (event, row) => options.pick(row.getData().row, row));
+  if (options.pick) tabulator.on("rowClick", (event, row) => pick(row));
   if (options.filter) {
     filter.placeholder = filter.ariaLabel = options.filter;
     filter.oninput = () => {
       const words = filter.value.toLowerCase().split(/\s+/);
+      tabulator.blockRedraw();
       tabulator.setFilter(one => words.every(word => one.text.includes(word)));
+      if (options.children) unfold(tabulator.getRows());
+      tabulator.restoreRedraw();
     };
-    csv.onclick = () => tabulator.download("csv", `${options.id ?? "table"}.csv`);
+    csv.onclick = () => tabulator.download("csv", `${options.id ?? place.id}.csv`);
     const tools = element("div", undefined, "tools");
     tools.append(filter, csv);
     place.prepend(tools);
   }
-  return {tabulator, show: others => tabulator.replaceData(others.map(record))};
 }
 
 // Draws series over points in `place`: {labels: of each point, on the axis; titles: of each, in the read-out below; series: [{name,
 // values, colour: of the page's "--good", bars: true or a line, says: (i) => text for the read-out}]; limits: [{name, value, colour}],
 // dashed; height in pixels}. The pointer and the arrow keys choose the point that is read out; at first it is the last.
 function chart(place, {labels, titles = labels, series, limits = [], height = 190}) {
+  place.drawn?.destroy();
   place.replaceChildren();
   if (typeof uPlot === "undefined" || !labels.length) return;
   const colour = name => () => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -118,8 +142,15 @@ function chart(place, {labels, titles = labels, series, limits = [], height = 19
     plot.setCursor({left: plot.valToPos(Math.max(0, Math.min(last, (plot.cursor.idx ?? last) + step)), "x"), top: 0});
     event.preventDefault();
   };
-  new ResizeObserver(() => plot.setSize({width: place.clientWidth, height})).observe(place);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => plot.redraw());
+  const resized = new ResizeObserver(() => plot.setSize({width: place.clientWidth, height}));
+  resized.observe(place);
+  const scheme = matchMedia("(prefers-color-scheme: dark)"), redraw = () => plot.redraw();
+  scheme.addEventListener("change", redraw);
+  place.drawn = {destroy: () => {
+    resized.disconnect();
+    scheme.removeEventListener("change", redraw);
+    plot.destroy();
+  }};
 }
 
 if (typeof Tabulator === "undefined")

@@ -56,7 +56,7 @@ function showChip() {
 }
 function showCores() {
   byId("cores-part").hidden = !data.cores?.length;
-  if (data.cores?.length) table(byId("cores"), data.cores[0].map((title, i) => [title, r => r[i]]), data.cores.slice(1));
+  if (data.cores?.length) table(byId("cores"), data.cores[0].map((title, i) => [title, r => i ? parseFloat(r[i]) || 0 : r[i], r => r[i]]), data.cores.slice(1));
 }
 function showPaper() {
   const d = usable.find(d => d.paper);
@@ -95,10 +95,10 @@ function showDesigns() {
   table(byId("designs"), [
     ["design", r => r.folder ?? r.name, r => r.members ? `${r.folder}, ${r.members.length} ${r.members.length === 1 ? "module" : "modules"}` : r.name, { minWidth: 215 }],
     [...column("LUT", d => d.figures.lut, d => bar(d.figures.lut, data.chip.lut)), { minWidth: 130 }], column("of chip", d => d.figures.lut, d => share(d.figures.lut, data.chip.lut)), change("lut"),
-    column("LUT6", d => d.figures.luts[5]), count("RAM", "lutRam"), count("SRL", "shift"), count("thru", "through"), count("FF", "ff"), change("ff"), count("sets", "sets"),
-    count("carry", "carry"), count("RAM16", "ram"), count("DSP", "dsp"), count("pins", "pins"), count("slices", "slices"),
-    column("from-to", d => d.figures.low, d => `${d.figures.low}-${d.figures.high}`), column("levels", d => d.figures.timing.paths[0]?.levels ?? 0),
-    column("MHz", d => d.figures.mhz, d => d.figures.mhz ? element("span", clock(d.figures), d.figures.mhz < data.chip.mhz ? "bad" : "") : ""),
+    count("FF", "ff"), change("ff"), column("MHz", d => d.figures.mhz, d => d.figures.mhz ? element("span", clock(d.figures), d.figures.mhz < data.chip.mhz ? "bad" : "") : ""),
+    column("levels", d => d.figures.timing.paths[0]?.levels ?? 0), count("slices", "slices"), column("from-to", d => d.figures.low, d => `${d.figures.low}-${d.figures.high}`),
+    count("RAM16", "ram"), count("DSP", "dsp"), column("LUT6", d => d.figures.luts[5]), count("RAM", "lutRam"), count("SRL", "shift"), count("thru", "through"),
+    count("carry", "carry"), count("sets", "sets"), count("pins", "pins"),
     ...Object.keys(usable[0].others ?? {}).flatMap(family => ["lut", "ff"].map(key => column(`${family} ${key.toUpperCase()}`, d => d.others?.[family]?.[key] ?? 0))),
     ["file", r => r.file ?? "", r => link(r.file)], ["what it is", r => r.title ?? "", , { minWidth: 560 }],
   ], rows, { filter: "filter by name, folder or title", children: r => r.members, picked: r => r === picked,

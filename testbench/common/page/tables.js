@@ -70,7 +70,7 @@ function table(place, columns, rows, options = {}) {
     columns: columns.map((column, i) => {
       const wide = widest(column), number = rows.length > 0 && rows.every(row => typeof column[1](row) === "number");
       const plain = rows.slice(0, 1).map(row => content(row, column)).every(c => c.childElementCount ? false : /^[-+\d.]*( |$)/.test(c.textContent ?? c));
-      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 700), minWidth: (number ? 38 : 28) + Math.min(wide, 190), ...(number ? {headerSortStartingDir: "desc"} : {}),
+      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 700), minWidth: (number ? 32 : 28) + Math.min(wide, 190), ...(number ? {headerSortStartingDir: "desc"} : {}),
         formatter: cell => content(cell.getData().row, column), cssClass: number && plain ? "n" : "", ...column[3]};
     }),
     rowFormatter: row => {

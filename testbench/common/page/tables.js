@@ -68,9 +68,9 @@ function table(place, columns, rows, options = {}) {
     dataTree: Boolean(options.children), dataTreeFilter: true, dataTreeStartExpanded: row => options.open?.(row.getData().row) ?? false,
     columnDefaults: {headerSortTristate: true, sorter: (a, b) => a < b ? -1 : a > b ? 1 : 0}, placeholder: "nothing",
     columns: columns.map((column, i) => {
-      const wide = widest(column), number = rows.length > 0 && rows.every(row => typeof column[1](row) === "number");
+      const number = rows.length > 0 && rows.every(row => typeof column[1](row) === "number"), wide = widest(column) + (number ? 32 : 28);
       const plain = rows.slice(0, 1).map(row => content(row, column)).every(c => c.childElementCount ? false : /^[-+\d.]*( |$)/.test(c.textContent ?? c));
-      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 700), minWidth: (number ? 32 : 28) + Math.min(wide, 190), ...(number ? {headerSortStartingDir: "desc"} : {}),
+      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 700) / 50, minWidth: Math.min(wide, 220), ...(number ? {headerSortStartingDir: "desc"} : {}),
         formatter: cell => content(cell.getData().row, column), cssClass: number && plain ? "n" : "", ...column[3]};
     }),
     rowFormatter: row => {

@@ -3,15 +3,18 @@
 // tables: tables by Tabulator and charts by uPlot, in the page's colours. Where these could not be fetched at build time, tables
 // are plain and have all rows, and charts are left out.
 
-// Shows rows in `place`, instead of what it had. A column is [title, value(row), cell(row), options of Tabulator's]: the value is what is sorted, filtered and
-// downloaded, the cell (text or an element; the value, if there is none) is what is seen.
+// Shows rows in `place`, instead of what it had. A column is [title, value(row), cell(row), options of Tabulator's]: the value is
+// what is sorted, filtered and downloaded, the cell (text or an element; the value, if there is none) is what is seen.
 //   options.id        of the table
 //   options.filter    what an empty filter box says; beside it stands a button that downloads CSV
 //   options.children  (row) => the rows below it, which fold; options.open: (row) => whether they are shown at first
 //   options.pick      (row, Tabulator's, if there is one): what a click and Enter do; arrow keys move from row to row, and fold
 //   options.picked    (row) => whether it is the row that was picked
 function table(place, columns, rows, options = {}) {
-  const content = (row, [, value, cell]) => (cell ?? value)(row) ?? "";
+  const content = (row, [, value, cell]) => { // a node: Tabulator would take text as HTML
+    const seen = (cell ?? value)(row) ?? "";
+    return seen instanceof Node ? seen : document.createTextNode(seen);
+  };
   const record = row => {
     const below = options.children?.(row)?.map(record) ?? [], one = {row, text: columns.map(([, value]) => value(row)).join(" ").toLowerCase()};
     columns.forEach(([, value], i) => { one[`c${i}`] = value(row); });
@@ -45,7 +48,7 @@ function table(place, columns, rows, options = {}) {
   const pen = document.createElement("canvas").getContext("2d");
   pen.font = `bold ${getComputedStyle(document.body).font}`;
   const widest = column => Math.max(12 + pen.measureText(column[0]).width, ...rows.slice(0, 100).map(row => content(row, column))
-    .map(c => pen.measureText(c instanceof Node ? (c.querySelector("summary, div") ?? c).textContent : c).width));
+    .map(seen => pen.measureText((seen.querySelector?.("summary, div") ?? seen).textContent).width));
   let marked;
   const mark = row => {
     if (!options.picked?.(row.getData().row)) return;
@@ -64,12 +67,12 @@ function table(place, columns, rows, options = {}) {
     unfold(row.getTreeChildren());
   });
   const tabulator = place.drawn = new Tabulator(box, {
-    data: rows.map(record), layout: "fitColumns", maxHeight: "560px", renderVertical: rows.length > 200 ? "virtual" : "basic",
+    data: rows.map(record), layout: "fitColumns", maxHeight: "560px", renderVertical: rows.length > 100 ? "virtual" : "basic",
     dataTree: Boolean(options.children), dataTreeFilter: true, dataTreeStartExpanded: row => options.open?.(row.getData().row) ?? false,
     columnDefaults: {headerSortTristate: true, sorter: (a, b) => a < b ? -1 : a > b ? 1 : 0}, placeholder: "nothing",
     columns: columns.map((column, i) => {
       const number = rows.length > 0 && rows.every(row => typeof column[1](row) === "number"), wide = widest(column) + (number ? 32 : 28);
-      const plain = rows.slice(0, 1).map(row => content(row, column)).every(c => c.childElementCount ? false : /^[-+\d.]*( |$)/.test(c.textContent ?? c));
+      const plain = rows.slice(0, 1).map(row => content(row, column)).every(seen => !seen.childElementCount && /^[-+\d.]*( |$)/.test(seen.textContent));
       return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 700) / 50, minWidth: Math.min(wide, 220), ...(number ? {headerSortStartingDir: "desc"} : {}),
         formatter: cell => content(cell.getData().row, column), cssClass: number && plain ? "n" : "", ...column[3]};
     }),
@@ -96,6 +99,7 @@ function table(place, columns, rows, options = {}) {
       title.onkeydown = event => { if (event.key === "Enter") title.click(); };
     }
   });
+  box.addEventListener("toggle", event => tabulator.getRow(event.target.closest(".tabulator-row")).normalizeHeight(), true);
   if (options.pick) tabulator.on("rowClick", (event, row) => pick(row));
   if (options.filter) {
     filter.placeholder = filter.ariaLabel = options.filter;

@@ -440,7 +440,7 @@ const key = (node, key) => node.dispatchEvent(new KeyboardEvent("keydown", {key,
   const many = element("div"), few = element("div"), drawn = element("div");
   document.body.append(many, few, drawn);
   table(many, [["n", r => r]], [...Array(2000).keys()]);
-  table(few, [["name", r => r.name], ["n", r => r.n]], [{name: "a", n: 9}, {name: "b", n: 10, below: [{name: "c", n: 1}]}],
+  table(few, [["name", r => r.name], ["n", r => r.n]], [{name: "<a>", n: 9}, {name: "b", n: 10, below: [{name: "c", n: 1}]}],
     {id: "few", children: r => r.below, pick: r => seen.push(`picked ${r.name}`)});
   chart(drawn, {labels: ["i", "ii", "iii"], series: [{name: "s", colour: "--good", values: [1, null, 4], says: i => `no. ${i}`, bars: true}], limits: [{name: "l", value: 2, colour: "--bad"}]});
   await wait();
@@ -467,7 +467,7 @@ JS
     has 'sorted test_d.Crash test_c.Flicker test_b.Bad test_a.Two test_a.One formal.thing formal.broken;'
     has 'filtered test_c.Flicker;'
     has 'csv "test",.* / "test_c.Flicker","passed",'
-    has 'of 2000 some; largest b a; picked b; open b c a; canvas true true; read iii no. 2 2; moved i no. 0 2;'
+    has 'of 2000 some; largest b &lt;a&gt;; picked b; open b c &lt;a&gt;; canvas true true; read iii no. 2 2; moved i no. 0 2;'
     has '3 failed' dom.html
     has 'class="waveform"' dom.html
     has '>top.clk_i<' dom.html     # the outermost of its names

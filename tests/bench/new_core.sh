@@ -13,7 +13,8 @@ rm -rf "$tree"
 mkdir -p "$tree/bus" "$tree/hdl" "$tree/sw" "$tree/testbench" "$tree/synth" "$tree/ip" "$(dirname "$json")"
 cp -r "$source/ip/new.sh" "$source/ip/template" "$tree/ip"
 name=fresh$(date +%s | tail -c 6) # new to the compiler's cache, too
-[ "${4:-}" != --brief ] || name=sample_verilog
+guard=1000 # ms, of modems as they are delivered
+[ "${4:-}" != --brief ] || { name=sample_verilog && guard=20; }
 begin=$(date +%s.%N)
 "$tree/ip/new.sh" "$name" verilog "$tree/none" >/dev/null
 if [ "${4:-}" != --brief ]; then
@@ -31,11 +32,12 @@ data = Ice.InitializationData()
 data.properties = Ice.createProperties()
 data.properties.setProperty("Ice.Plugin.XBeeAT", "$build/ground/xbeeat:createXBeeAT")
 data.properties.setProperty("XBeeAT.Clock", sys.argv[2])
+data.properties.setProperty("XBeeAT.Guard", "$guard")
 with Ice.initialize(data) as ic:
     p = ic.stringToProxy("sample_verilog:xbee-at -d %s -a 0x0001 -t 300000" % sys.argv[1])
     $2
 P
-    "$work/build/testbench/sim/icesoc-sim" --size 96x64 --image /usr/share/xplanet/images/earth.jpg --out "$work" -- \
+    "$work/build/testbench/sim/icesoc-sim" --size 96x64 --image /usr/share/xplanet/images/earth.jpg --out "$work" --guard $guard -- \
         /usr/bin/python3 "$work/call.py" '{device}' '{status}' >"$work/log" 2>&1 || { cat "$work/log" && exit 1; }
 }
 caller "$tree/ip/$name/$name.ice" "import Cores; sys.exit(Cores.${type}Prx.checkedCast(p).sumTo(100) != 5050)"

@@ -145,6 +145,10 @@ std::vector<Failure> examine(const std::vector<Result>& results, const std::vect
         failure.about = failure.reason;
         failure.bucket = bucketOf(failure.reason);
         failure.ownAssertion = findAssertion(failure);
+        static const std::regex place(R"((?:^|\n)(?:[.][.]/)*([^\s/]\S*:\d+): Failure\n)");
+        std::smatch match;
+        if (std::regex_search(result.log, match, place))
+            failure.place = match[1];
         std::string exact =
             std::regex_replace(result.name, std::regex(R"([.+*?()\[\]{}|^$\\])"), "\\$&");
         failure.repeat = fmt::format("make test NAME='^{}$$' SEED={}", exact, result.seed);
@@ -153,7 +157,6 @@ std::vector<Failure> examine(const std::vector<Result>& results, const std::vect
         failure.log = (folder / (file + "-" + result.seed + ".log")).string();
         // A proof has its trace already.
         static const std::regex trace("trace: (\\S+[.]vcd)");
-        std::smatch match;
         if (std::regex_search(result.log, match, trace) && fs::exists(match[1].str())) {
             failure.wave = (folder / (file + ".vcd")).string();
             fs::copy_file(match[1].str(), failure.wave, fs::copy_options::overwrite_existing);

@@ -15,6 +15,7 @@ struct Failure {
     std::string
         bucket; // the reason without its numbers: failures of one bucket have one cause, likely
     std::string repeat;        // one command
+    std::string place;         // GoogleTest's: "tests/sw/link/link_test.cpp:185", or ""
     std::string changed;       // since it passed, by Changes; or ""
     std::string log;           // file
     std::string wave;          // FST or VCD file, or ""

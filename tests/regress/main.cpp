@@ -118,6 +118,8 @@ void summary(const nlohmann::json& data, const std::vector<Failure>& failures,
         std::cout << fmt::format("\n{} x  {}\n", members.size(), members[0]->reason.substr(0, 200));
         for (const Failure* failure : members) {
             std::cout << "    " << failure->repeat << "\n        log " << failure->log << '\n';
+            if (!failure->place.empty())
+                std::cout << "        at " << failure->place << '\n';
             if (!failure->changed.empty())
                 std::cout << "        " << failure->changed << '\n';
             if (!failure->wave.empty())

@@ -74,9 +74,12 @@ for (const width of widths) {
 END
 for theme in dark light; do
     [ $theme = dark ] && number=0 || number=1
-    HOME=$work chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$work/chromium" --allow-file-access-from-files \
+    HOME=$work chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$work/chromium" --allow-file-access-from-files --enable-logging=stderr \
         --blink-settings=preferredColorScheme=$number --virtual-time-budget=20000 --dump-dom "file://$work/look.html#$theme" >"$work/dom" 2>"$work/log" ||
         { tail -3 "$work/log" >&2 && exit 1; }
+    # A script that ends by an error: the page's line, and what stands there.
+    error=$(sed -n 's|.*:CONSOLE[^ ]* "\(Uncaught .*\)", source: file:[^ ]* (\([0-9]*\))$|\2: \1|p' "$work/log" | head -1)
+    [ -z "$error" ] || { echo "$1:$error: $(sed -n "${error%%:*}s/^ *\(.\{0,120\}\).*/\1/p" "$1")" >&2 && exit 1; }
     said=$(sed -n 's/.*looked at \([0-9]*; .*\)\..*/\1/p' "$work/dom" | tail -1)
     case $said in
     [0-9]*"; ") ;;

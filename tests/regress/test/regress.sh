@@ -484,7 +484,7 @@ JS
     has '<a href="../../hdl/fifo/fifo.v">hdl/fifo/fifo.v:12: level_o\[3\]</a><br><a href="../../hdl/fifo/fifo.v">hdl/fifo/fifo.v:40</a>' dom.html
     has 'id="seeds"' dom.html
     has 'value 1 is not 7' dom.html
-    has 'href="failures/test_b.Bad-1.log"' dom.html
+    has 'at <a href="../../x.cpp">x.cpp:12</a>; log <a href="failures/test_b.Bad-1.log"' dom.html
     has 'to have passed: <a href="../../tests/room/CMakeLists.txt">tests/room/CMakeLists.txt:8</a> (1 line)' dom.html
     hasNot 'src="http\|href="http' build/regress/report.html # offline
     "$source/tests/regress/test/look.sh" build/regress/report.html regression || fail "the page"

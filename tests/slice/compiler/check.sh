@@ -11,7 +11,7 @@ flags='-std=c90 -pedantic -Wall -Wextra -Wconversion -Wstrict-prototypes -Wmissi
 case $kind in
 golden)
     expected=${ice%.ice}
-    "$slice2c" "$ice" --output-dir "$work" 2>"$work/messages"
+    "$slice2c" "$ice" --output-dir "$work" 2>"$work/messages" || { cat "$work/messages" && exit 1; }
     for cc in gcc clang; do
         command -v $cc >/dev/null || continue
         $cc $flags -I"$sw/base" -I"$sw/icec" -I"$work" -fsyntax-only "$work"/*.c
@@ -21,7 +21,7 @@ golden)
     [ -z "${UPDATE_GOLDENS:-}" ] || cp "$work/messages" "$expected/messages"
     diff -u "$expected/messages" "$work/messages"
     [ ! -e "$expected/lines" ] || awk 'NR == FNR { wanted[n++] = $0; next } $0 == wanted[i] { i++ }
-        END { if (i < n) { print FILENAME ": not there, or too early: " wanted[i]; exit 1 } }' "$expected/lines" "$work"/*.h
+        END { if (i < n) { print ARGV[1] ":" i + 1 ": not in the header, or too early: " wanted[i]; exit 1 } }' "$expected/lines" "$work"/*.h
     ;;
 errors)
     cd "$(dirname "$ice")"

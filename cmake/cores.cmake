@@ -31,14 +31,13 @@ if(servants GREATER 8)
 endif()
 
 # icesoc_core(NAME [ICE file.ice | REGS name.regs.json] [VERILOG file...] [VHDL file...] [SERVANT file.c...]
-#             [SLICE name...] [INCLUDES dir...] [FLAGS ...] [LIBRARY name] [DEPENDS target...] [CLK_HZ] [IDLE] [CLOCK Hz])
+#             [SLICE name...] [INCLUDES dir...] [FLAGS ...] [DEPENDS target...] [CLK_HZ] [IDLE] [CLOCK Hz])
 # The core NAME: a module or entity NAME with a slot's ports. ICE: its [":hw"] interface, from which registers, wrapper
 # and servant are made; else REGS describes its registers, and SERVANT is written by hand, for interfaces of SLICE:
 # files, or names given to icesoc_slice; without SERVANT it is that of sw/hw/registers. <NAME>_test.cpp beside it
 # becomes test_ip_<NAME>, with the model V<NAME>_slot.
 # VERILOG may name headers, in whose folders `include looks.
 # FLAGS: Verilator's, for a foreign core's style.
-# LIBRARY: the VHDL library that its files say they are in.
 # DEPENDS: what makes VERILOG files that are generated.
 # CLK_HZ: the module has a parameter of that name, the clock in Hz: 100 MHz on the board, in <NAME>_test.cpp and in the
 # simulator, unless it is told another.
@@ -46,7 +45,7 @@ endif()
 # CLOCK: it has a clock of its own, of that frequency at most, behind bus/bus_crossing.v; clk_i, rst_i and its pins are
 # of that clock.
 function(icesoc_core name)
-  cmake_parse_arguments(A "CLK_HZ;IDLE" "ICE;REGS;LIBRARY;CLOCK" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS;DEPENDS" ${ARGN})
+  cmake_parse_arguments(A "CLK_HZ;IDLE" "ICE;REGS;CLOCK" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS;DEPENDS" ${ARGN})
   list(TRANSFORM A_VHDL PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_VERILOG PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_SERVANT PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
@@ -129,7 +128,7 @@ function(icesoc_core name)
     if(A_REGS)
       set(registers REGS ${name})
     endif()
-    icesoc_vhdl(NAME ${name} SOURCES ${wrapper} ${A_VHDL} ${registers} LIBRARY ${A_LIBRARY})
+    icesoc_vhdl(NAME ${name} SOURCES ${wrapper} ${A_VHDL} ${registers})
     list(APPEND files ${GEN_DIR}/${name}.v)
     list(APPEND targets ${name}_verilog)
     list(APPEND A_FLAGS -Wno-PINCONNECTEMPTY) # GHDL's way to write `open`

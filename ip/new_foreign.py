@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: MIT
 """new_foreign: puts a third-party core in Verilog or VHDL into a slot (docs/recipes.md).
 
-    new_foreign.py NAME TOP wishbone|axil|memory|own|axis FOLDER [CLOCK=Hz] [ROLE=port...] FILE...
+    new_foreign.py NAME TOP wishbone|axil|memory|own|axis FOLDER [CLOCK=Hz] [LIBRARY=name] [ROLE=port...] FILE...
 
 Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v, which connects TOP to
 the slot; its registers, with the names that TOP has for their addresses; a test; what a mission calls of it;
 CMakeLists.txt. ROLE=port says what a port is for, instead of its name. Ports that are neither bus, clock, reset nor
 interrupt become pins. CLOCK: the core has a clock of its own, of that frequency at most. VHDL is read by GHDL, which the
-environment names. A core with AXI-Streams (axis) has an operation instead of registers: foreign_axis.py.
+environment names; LIBRARY: the VHDL library that its files say they are in. A core with AXI-Streams (axis) has an operation instead of registers: foreign_axis.py.
 """
 import json
 import os
@@ -269,7 +269,8 @@ def main(words):
     name, top, bus, folder, *rest = words
     given, files = [w for w in rest if "=" in w], [w for w in rest if "=" not in w]
     clock = [w[6:] for w in given if w.startswith("CLOCK=")]
-    given = [w for w in given if not w.startswith("CLOCK=")]
+    library = [w[8:] for w in given if w.startswith("LIBRARY=")]
+    given = [w for w in given if not w.startswith(("CLOCK=", "LIBRARY="))]
     if clock and not (clock[0].isdigit() and 3000000 <= int(clock[0]) <= 100000000):
         fail(f"CLOCK={clock[0]}: the frequency of the core's own clock, 3000000 to 100000000 Hz")
     if clock and bus == "axis":
@@ -282,12 +283,16 @@ def main(words):
         fail(f"TOP is the name of a module or an entity, not '{top}'")
     if os.path.exists(folder):
         fail(f"{folder} is there already")
+    if library:
+        os.environ["VHDL_LIBRARY"] = library[0]  # for vhdl_to_verilog.sh
     files = [os.path.abspath(f) for f in files]
     for f in files:
         if " " in f:
             fail(f"'{f}' has a space in its name, which makefiles cannot have: rename it, or its folder")
         if not kind_of(f) or not os.path.isfile(f):
             fail(f"there is no Verilog or VHDL file '{f}'")
+    if library and not any(map(is_vhdl, files)):
+        fail("LIBRARY: the library that VHDL files say they are in; these are Verilog")
     headers = [f for f in files if kind_of(f) == "header"]
     files = [f for f in files if f not in headers]
     if not files or len({is_vhdl(f) for f in files}) > 1:
@@ -313,7 +318,7 @@ def main(words):
         texts = {f"{name}.v": verilog, f"{name}_test.cpp": test_of(name, first),
                  f"{name}.regs.json": json.dumps(registers, indent=2) + "\n", "ground.py": ground_of(name, first)}
     if is_vhdl(files[0]):
-        build = (f"icesoc_vhdl(NAME {top} SOURCES\n  " + "\n  ".join(files) + ")\n"
+        build = (f"icesoc_vhdl(NAME {top}{' LIBRARY ' + library[0] if library else ''} SOURCES\n  " + "\n  ".join(files) + ")\n"
                  f"icesoc_core({name} {source} FLAGS -Wno-lint -Wno-style DEPENDS {top}_verilog\n"
                  f"  VERILOG {name}.v ${{GEN_DIR}}/{top}.v)\n")
     else:

@@ -18,24 +18,29 @@ BUS ?=
 FILES ?=
 PORTS ?=
 CLOCK ?=
-new-foreign: $(BUILD)/build.ninja ## put a third-party core into a slot: NAME=my_uart TOP=its_module BUS=wishbone|axil|memory|own|axis FILES="a.v b.v" [PORTS="write=we ack=done"] [CLOCK=24000000]
+LIBRARY ?=
+new-foreign: $(BUILD)/build.ninja ## put a third-party core into a slot: NAME=my_uart TOP=its_module BUS=wishbone|axil|memory|own|axis FILES="a.v b.v" [PORTS="write=we ack=done"] [CLOCK=24000000] [LIBRARY=of_the_vhdl]
 	@$(if $(filter %.vhd %.vhdl %.VHD %.VHDL,$(FILES)),$(NINJA) --quiet ghdl)
-	@GHDL='$(BUILD)/ghdl/ghdl' ip/new_foreign.py '$(NAME)' '$(TOP)' '$(BUS)' 'ip/$(NAME)' $(if $(CLOCK),'CLOCK=$(CLOCK)') $(PORTS) $(FILES)
+	@GHDL='$(BUILD)/ghdl/ghdl' ip/new_foreign.py '$(NAME)' '$(TOP)' '$(BUS)' 'ip/$(NAME)' $(if $(CLOCK),'CLOCK=$(CLOCK)') $(if $(LIBRARY),'LIBRARY=$(LIBRARY)') $(PORTS) $(FILES)
 .PHONY: new-foreign
 
-FOREIGN := i2c_master axil_uart spi_master olo_spi
 # Put into slots by new-foreign: slot=module=bus=repository, and =Hz of a clock of its own.
-FOREIGN_NEW := foreign_aes=aes=memory=aes foreign_uart=wbuart=wishbone=wbuart32=24000000 foreign_cobs=axis_cobs_encode=axis=verilog-axis
-foreign_slots = $(foreach f,$(FOREIGN_NEW),$(firstword $(subst =, ,$(f))))
+FOREIGN_NEW := foreign_aes=aes=memory=aes foreign_uart=wbuart=wishbone=wbuart32=24000000 foreign_axil=axiluart=axil=wbuart32 \
+    foreign_i2c=i2c_master_top=wishbone=i2c foreign_cobs=axis_cobs_encode=axis=verilog-axis
+foreign_slots = foreign_spi $(foreach f,$(FOREIGN_NEW),$(firstword $(subst =, ,$(f))))
 # Third-party cores come from the network, so they are no part of the rest.
 foreign: setup-tests ## put third-party cores (Wishbone, AXI4-Lite, AXI-Stream and plain buses in Verilog, records in VHDL) and two of one's own through the recipe, in three orders, test them and call them by radio; downloads them (CHIP=1: and what each costs in that chip)
 	@cmake/fetch.sh foreign build/foreign-cores
+	@cmake/fetch.sh ghdl build/foreign-cores/ghdl
 	@rm -rf build/foreign-cores/slots
+	@GHDL=build/foreign-cores/ghdl/ghdl ip/new_foreign.py foreign_spi spi_plain own build/foreign-cores/slots/foreign_spi LIBRARY=neorv32 \
+	    strobe=stb_i write=we_i address=adr_i wdata=dat_i rdata=dat_o ack=ack_o error=err_o \
+	    $(addprefix build/foreign-cores/neorv32/neorv32_,package.vhd prim.vhd spi.vhd) examples/foreign/spi_plain.vhd >/dev/null
 	@for f in $(FOREIGN_NEW); do \
 	    echo "$$f" | { IFS='=' read -r slot top bus from clock; \
 	        ip/new_foreign.py "$$slot" "$$top" "$$bus" "$(CURDIR)/build/foreign-cores/slots/$$slot" $${clock:+CLOCK=$$clock} $(CURDIR)/build/foreign-cores/"$$from"/*.v >/dev/null; } || exit 1; \
 	done
-	@IMAGE='$(IMAGE)' JOBS='$(JOBS)' SEED='$(SEED)' CHIP='$(CHIP)' examples/foreign/orders.sh $(addprefix examples/foreign/,$(FOREIGN)) \
+	@IMAGE='$(IMAGE)' JOBS='$(JOBS)' SEED='$(SEED)' CHIP='$(CHIP)' examples/foreign/orders.sh examples/foreign/olo_spi \
 	    $(addprefix tests/e2e/cores/,servo crc32) $(addprefix build/foreign-cores/slots/,$(foreign_slots))
 .PHONY: foreign
 

@@ -25,7 +25,7 @@ samples=$build/tests/ip/new
 foreign=$build/tests/ip/new_foreign
 folders="$samples/sample_verilog;$samples/sample_vhdl;$source/tests/e2e/cores/scaler;$source/tests/e2e/cores/servo;$source/tests/e2e/cores/crc32;$source/tests/e2e/cores/many;$foreign/my_port;$foreign/my_requests;$work/my_lamps"
 # A core in VHDL, as make new-foreign puts it into a slot. GHDL is fetched once.
-GHDL=$build/ghdl/ghdl "$source/ip/new_foreign.py" my_lamps lamps own "$work/fresh/my_lamps" read=rd write=wr address=a wdata=d rdata=q \
+GHDL=$build/ghdl/ghdl "$source/ip/new_foreign.py" my_lamps lamps own "$work/fresh/my_lamps" LIBRARY=lights read=rd write=wr address=a wdata=d rdata=q \
     "$source/tests/ip/new_foreign/lamps.vhd" >"$work/log" || { cat "$work/log" && exit 1; }
 fresh my_lamps
 [ -e "$work/build/ghdl" ] || ln -s "$build/ghdl" "$work/build/ghdl"

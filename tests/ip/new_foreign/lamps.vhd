@@ -1,7 +1,7 @@
 -- SPDX-License-Identifier: MIT
 --
 -- lamps: a core in VHDL with a strobe for reading and one for writing; it counts what is read.
-library ieee;
+library ieee, lights; -- the second one is its own
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
 

@@ -50,6 +50,7 @@ refused 'odd has 24 and 8 bits: it must be 8, 16, 32 or 64' my_port odd axis "$w
 refused 'has no port for s_tdata' my_port wb_port axis "$work/out" "$here/wb_port.v"
 refused "CLOCK=fast: the frequency" my_port wb_port wishbone "$work/out" CLOCK=fast "$here/wb_port.v"
 refused 'CLOCK: a core with AXI-Streams' my_port axis_scale axis "$work/out" CLOCK=24000000 "$here/axis_scale.v"
+refused 'LIBRARY: .* these are Verilog' my_port req_words own "$work/out" LIBRARY=lights "$here/req_words.v"
 refused 'a setting is for BUS=axis' my_port req_words own "$work/out" setting=value "$here/req_words.v"
 refused "setting is an input of a core, and 'over' is not" my_port axis_scale axis "$work/out" setting=over "$here/axis_scale.v"
 # The same by make, and one that is taken.

@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: MIT
 
-# MINUTES=60 goes on for an hour: a third the link alone (half of it attacked), a third stock Ice through the plugin to a stock server, a third
-# to IceC on the chip's RTL (there simulated seconds). Then noise:
+# MINUTES=60 goes on for an hour: half of it the link alone (half of that attacked), then so many simulated seconds of stock Ice through
+# the plugin to IceC on the chip's RTL. Then noise:
 # FUZZED bytes into the modem controller's UART (10,000,000 take 5 minutes of a core), ten times as many
 # into the link layer and the plugin's engine.
 MINUTES ?= 4
 FUZZED  ?= 1000000
-sixth   := $$(echo $(MINUTES) | awk '{print $$1 / 6}')
-seconds := $$(echo $(MINUTES) | awk '{print $$1 * 20}')
+quarter := $$(echo $(MINUTES) | awk '{print $$1 / 4}')
+seconds := $$(echo $(MINUTES) | awk '{print $$1 * 30}')
 
 soak: $(BUILD)/build.ninja ## endurance of the radio: MINUTES=4 of messages and of stock Ice's calls, bad weather, reboots; FUZZED=1000000 bytes of noise; SEED=1
-	@$(NINJA) --quiet soak test_radio_ice test_chip_soak test_engine test_modem_soak test_link
-	@$(BUILD)/tests/soak/soak --minutes $(sixth) --seed $(SEED)
-	@$(BUILD)/tests/soak/soak --minutes $(sixth) --seed $(SEED) --attacked
-	@SEED=$(SEED) SOAK_SECONDS=$(seconds) $(BUILD)/tests/sw/ground/ice/test_radio_ice --gtest_brief=1 --gtest_filter='IceSoak*'
+	@$(NINJA) --quiet soak test_chip_soak test_engine test_modem_soak test_link
+	@$(BUILD)/tests/soak/soak --minutes $(quarter) --seed $(SEED)
+	@$(BUILD)/tests/soak/soak --minutes $(quarter) --seed $(SEED) --attacked
 	@SEED=$(SEED) SOAK_SECONDS=$(seconds) $(BUILD)/tests/sw/ground/chip/test_chip_soak --gtest_brief=1
 	@SEED=$(SEED) BYTES=$(FUZZED)0 $(BUILD)/tests/sw/link/test_link --gtest_brief=1 --gtest_filter='*TenMillion*'
 	@SEED=$(SEED) BYTES=$(FUZZED)0 $(BUILD)/tests/sw/ground/test_engine --gtest_brief=1 --gtest_filter='Engine.RandomBytes*'

@@ -8,7 +8,6 @@
 //   SOAK_REST=10 has each caller rest for so many seconds on average; misfortunes are rarer by as
 //   much. That is a flight (make fly): most of its clocks pass at once.
 
-#include "../reported.h"
 #include "chip_world.h"
 #include "random.h"
 #include <cstdlib>
@@ -28,6 +27,45 @@ RadioTest::Bytes pattern(int id, size_t size) {
         bytes[i] = static_cast<Ice::Byte>(i * 7 + static_cast<size_t>(id) * 31);
     return bytes;
 }
+
+// The ground's program, which ends and starts again under its callers.
+class GroundProgram {
+public:
+    Ice::CommunicatorPtr get() {
+        std::lock_guard<std::mutex> lock(mutex_);
+        return current_;
+    }
+    void start(const Ice::CommunicatorPtr& fresh) {
+        std::lock_guard<std::mutex> lock(mutex_);
+        current_ = fresh;
+    }
+    void end() {
+        auto old = get();
+        {
+            std::lock_guard<std::mutex> lock(mutex_);
+            ended_.insert(old);
+        }
+        old->destroy();
+    }
+    // True if an exception says, in Ice's words, "this call may not have been executed". While a
+    // communicator is destroyed, Ice's own parts say in other words that they are gone: "timer
+    // destroyed", a null handle.
+    bool isReport(const Ice::CommunicatorPtr& used, const std::string& exceptionId) {
+        static const std::set<std::string> reports = {
+            "::Ice::ConnectionLostException",    "::Ice::ConnectFailedException",
+            "::Ice::ConnectTimeoutException",    "::Ice::InvocationTimeoutException",
+            "::Ice::TimeoutException",           "::Ice::CloseConnectionException",
+            "::Ice::CloseTimeoutException",      "::Ice::ConnectionTimeoutException",
+            "::Ice::ConnectionRefusedException", "::Ice::CommunicatorDestroyedException"};
+        std::lock_guard<std::mutex> lock(mutex_);
+        return reports.count(exceptionId) != 0 || ended_.count(used) != 0;
+    }
+
+private:
+    std::mutex mutex_;
+    Ice::CommunicatorPtr current_;
+    std::set<Ice::CommunicatorPtr> ended_;
+};
 
 // Messages have numbers that rise with each of their sender's: the sender in the upper bits.
 class Book {

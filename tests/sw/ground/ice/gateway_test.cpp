@@ -6,7 +6,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
-#include <future>
 #include <gtest/gtest.h>
 #include <linux/filter.h>
 #include <map>

@@ -4,6 +4,7 @@
 // calls.
 
 #include "world.h"
+#include <atomic>
 #include <cstdlib>
 #include <future>
 #include <gtest/gtest.h>

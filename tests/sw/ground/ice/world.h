@@ -9,7 +9,6 @@
 #include "Echo.h"
 #include "relay.h"
 #include <Ice/Ice.h>
-#include <atomic>
 #include <set>
 
 class EchoServant : public RadioTest::Echo {

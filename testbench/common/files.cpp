@@ -48,8 +48,9 @@ std::string hexHash(const std::vector<std::string>& contents) {
 
 std::map<std::string, std::string> fileHashes(const fs::path& source) {
     std::map<std::string, std::string> hashes;
-    std::istringstream lines(
-        run({"git", "-C", source.string(), "ls-files", "-co", "--exclude-standard"}).text);
+    std::istringstream lines(run({"git", "-C", source.string(), "grep", "--no-index",
+                                  "--exclude-standard", "--no-color", "-l", ""})
+                                 .text);
     for (std::string line; std::getline(lines, line);)
         if (fs::is_regular_file(source / line))
             hashes[line] = hexHash({readFile(source / line)});

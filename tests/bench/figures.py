@@ -79,7 +79,7 @@ def main(words):
              "Written by `make bench`: one run on one machine, each figure beside its limit or its peer of the",
              "same run. What each one means, and how it is measured, is said on the page of its subject.",
              "`a of b, c %` is a measured, and c % of the limit b.", "",
-             f"Measured on {datetime.date.today()} at commit {git('rev-parse', '--short', 'HEAD')}{changed}."]
+             f"Measured on {datetime.date.today()} at commit {git('rev-parse', '--short', 'HEAD') or 'unknown'}{changed}."]
     for path in filter(os.path.exists, words[1:]):
         content = json.load(open(path))
         entries = content["entries"] if isinstance(content, dict) else content

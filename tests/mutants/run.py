@@ -80,7 +80,7 @@ def prepare(copy, *options):
     copy.mkdir(parents=True, exist_ok=True)
     for kept in copy.rglob("*.orig"):  # what an interrupted run had planted
         restore(kept.with_suffix(""))
-    listed = subprocess.run(["git", "ls-files", "-coz", "--exclude-standard"], stdout=subprocess.PIPE, check=True)
+    listed = subprocess.run(["git", "grep", "--no-index", "--exclude-standard", "--no-color", "-lz", ""], stdout=subprocess.PIPE, check=True)
     there = {name for name in os.fsdecode(listed.stdout).split("\0") if os.path.exists(name)}
     for file in [file for top in copy.iterdir() if top.name != "build" for file in (top, *top.rglob("*"))]:
         if not file.is_dir() and str(file.relative_to(copy)) not in there:  # it has left the tree

@@ -11,7 +11,7 @@ cd "$top"
 work=build/coverage
 cmake/configure.sh $work -DCOVERAGE=ON >/dev/null
 tree=$("$build/tests/regress/regress" --tree "bus hdl ip slice sw testbench tests")
-commit=$(git describe --always --dirty=+ --abbrev=10)
+commit=$(git describe --always --dirty=+ --abbrev=10 2>/dev/null || echo unknown)
 echo "coverage: building with counters"
 ninja -C $work -j "$jobs"
 rm -rf $work/points $work/html

@@ -8,7 +8,7 @@ set -eu
 cd "$1"
 program=$2/clang-format
 [ -x "$program" ] || cmake/fetch.sh clang-format "$2"
-files=$(git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' | grep -v -e /golden/ -e /errors/)
+files=$(git grep --no-index --exclude-standard --no-color -l '' -- '*.c' '*.h' '*.cpp' | grep -v -e /golden/ -e /errors/)
 # shellcheck disable=SC2086 # a list of words
 echo $files | xargs -n 60 -P 2 "$program" --dry-run -Werror >"$2/format.log" 2>&1 || {
     echo "Not as clang-format 14 writes them (mend: $program -i FILE):"

@@ -69,7 +69,7 @@ def main(words):
     if len(words) != 1 or words[0].startswith("-"):
         sys.exit(__doc__)
     tree = words[0]
-    files = subprocess.run(["git", "-C", tree, "ls-files", "-co", "--exclude-standard"],
+    files = subprocess.run(["git", "-C", tree, "grep", "--no-index", "--exclude-standard", "--no-color", "-l", ""],
                            capture_output=True, text=True, check=True).stdout.split("\n")
     pages = [f for f in files if f.endswith(".md") and os.path.exists(os.path.join(tree, f))]
     wrong = [w for page in pages for w in check(tree, page, files)]

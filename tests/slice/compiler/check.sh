@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # check: golden|errors|compile slice2c file.ice-or-folder work-folder sw-folder
-# golden: the C has no warnings, `messages` are those of the compiler, and the header has the lines of `lines`, in that order.
+# golden: the C has no warnings, `messages` are those of the compiler (no file: none), and the header has the lines of `lines`, in that order.
 # UPDATE_GOLDENS=1 rewrites the messages that are expected.
 set -eu
 kind=$1 slice2c=$2 ice=$3 work=$4 sw=$5
@@ -19,7 +19,7 @@ golden)
     g++ -Wall -Wextra -Werror -I"$sw/base" -I"$sw/icec" -fsyntax-only -include "$work"/*.h -x c++ /dev/null
     sed -i "s|^.*/||" "$work/messages"
     [ -z "${UPDATE_GOLDENS:-}" ] || cp "$work/messages" "$expected/messages"
-    diff -u "$expected/messages" "$work/messages"
+    diff -uN "$expected/messages" "$work/messages"
     [ ! -e "$expected/lines" ] || awk 'NR == FNR { wanted[n++] = $0; next } $0 == wanted[i] { i++ }
         END { if (i < n) { print ARGV[1] ":" i + 1 ": not in the header, or too early: " wanted[i]; exit 1 } }' "$expected/lines" "$work"/*.h
     ;;

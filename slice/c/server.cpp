@@ -5,7 +5,6 @@
 #include "c/files.h"
 #include "c/members.h"
 #include "c/names.h"
-#include <algorithm>
 #include <set>
 
 namespace {

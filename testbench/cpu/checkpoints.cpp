@@ -4,11 +4,9 @@
 // do.
 
 #include "checkpoints.h"
-#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <iostream>
 #include <sys/mman.h>
 #include <sys/prctl.h>

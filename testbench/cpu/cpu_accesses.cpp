@@ -5,7 +5,6 @@
 
 #include "cortex_m3.h"
 #include "unicorn_calls.h"
-#include <algorithm>
 #include <cstdio>
 #include <cstring>
 

@@ -3,7 +3,6 @@
 // spi_flash: an operation changes the memory at its end; a cut one at its cut.
 
 #include "spi_flash.h"
-#include <algorithm>
 
 namespace {
 

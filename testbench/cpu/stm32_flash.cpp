@@ -3,7 +3,6 @@
 // stm32_flash: an operation changes the memory at its end; a cut one at its cut.
 
 #include "stm32_flash.h"
-#include <algorithm>
 #include <cstring>
 
 namespace {

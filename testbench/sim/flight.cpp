@@ -21,7 +21,6 @@ extern "C" {
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <optional>
 #include <unistd.h>
 
 volatile sig_atomic_t Flight::stopSignal = 0;

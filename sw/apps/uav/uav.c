@@ -10,8 +10,6 @@
 #include "uav_keys.h"
 #include "uav_private.h"
 
-#include <string.h>
-
 #define STACK_WORDS 512
 
 Ice_Communicator uav_ic;

@@ -8,7 +8,6 @@
 #include <sys/syscall.h>
 #include <sys/time.h>
 #include <time.h>
-#include <unistd.h>
 
 static void step(time_t* seconds) {
     static const int steps[] = {0, 3600, -3600, 7200};

@@ -6,7 +6,6 @@
 #include "VModemBaud100.h"
 #include "VModemBaud2.h"
 #include "bench.h"
-#include <cmath>
 #include <gtest/gtest.h>
 
 namespace {

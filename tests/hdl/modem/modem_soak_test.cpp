@@ -9,7 +9,6 @@
 #include "VModem.h"
 #include "modem_rig.h"
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <iostream>
 

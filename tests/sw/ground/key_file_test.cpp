@@ -4,7 +4,6 @@
 
 #include "key_file.h"
 #include <cstdio>
-#include <fcntl.h>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <sys/stat.h>

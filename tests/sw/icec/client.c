@@ -7,7 +7,6 @@
 #include "tcp_endpoint.h"
 
 #include <stdio.h>
-#include <string.h>
 
 static Ice_Communicator ic;
 static TcpEndpoint tcp;

@@ -6,7 +6,6 @@
 #include "link_pair.h"
 #include <functional>
 #include <gtest/gtest.h>
-#include <map>
 #include <utility>
 
 extern "C" {

@@ -5,7 +5,6 @@
 // simulated.
 
 #include "uav_machine.h"
-#include <cstring>
 #include <gtest/gtest.h>
 
 extern "C" {

@@ -3,7 +3,6 @@
 // litedram_model_test: the LiteDRAM model's native port: order, bank lock, and what it refuses.
 
 #include "litedram_model.h"
-#include <functional>
 #include <gtest/gtest.h>
 #include <vector>
 

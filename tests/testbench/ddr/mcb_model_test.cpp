@@ -3,7 +3,6 @@
 // mcb_model_test: the MCB model's user port: order, flags, and everything that it refuses.
 
 #include "mcb_model.h"
-#include <cstring>
 #include <functional>
 #include <gtest/gtest.h>
 

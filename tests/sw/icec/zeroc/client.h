@@ -8,8 +8,6 @@
 
 #include "icec.h"
 
-#include <string.h>
-
 /* Calls the suite's server, whose objects this makes proxies to. */
 void Suite_call(Ice_CommunicatorPtr ic);
 /* Makes a proxy to an object of the server's first or second (1) adapter. */

@@ -20,7 +20,7 @@ golden)
     sed -i "s|^.*/||" "$work/messages"
     [ -z "${UPDATE_GOLDENS:-}" ] || cp "$work/messages" "$expected/messages"
     diff -uN "$expected/messages" "$work/messages"
-    [ ! -e "$expected/lines" ] || awk 'NR == FNR { wanted[n++] = $0; next } $0 == wanted[i] { i++ }
+    [ ! -e "$expected/lines" ] || awk 'BEGIN { i = 0 } NR == FNR { wanted[n++] = $0; next } $0 == wanted[i] { i++ }
         END { if (i < n) { print ARGV[1] ":" i + 1 ": not in the header, or too early: " wanted[i]; exit 1 } }' "$expected/lines" "$work"/*.h
     ;;
 errors)

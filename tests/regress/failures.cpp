@@ -26,7 +26,7 @@ std::string reasonOf(const std::string& log) {
     static const std::regex runners(R"(^\[|^at clock cycle|tests? (ran|FAILED|PASSED)|)"
                                     R"(^\s*\d+ FAILED|note:|trace: |Running main|)"
                                     R"(^The mission failed|^Its end|^icesoc-sim: Cortex-M3: |)"
-                                    R"(^icesoc-sim: [0-9.]+ s simulated)",
+                                    R"(^icesoc-sim: [0-9.]+ s simulated|^-- \S+ \S+ XBeeAT: )",
                                     std::regex::icase);
     static const std::regex ofFile(R"(^%(Error|Warning)[^ ]*: [^ ]+:\d+:|)"
                                    R"(^[^ ]+:\d+:(\d+:)? *(fatal error|error|warning):|)"
@@ -145,10 +145,12 @@ std::vector<Failure> examine(const std::vector<Result>& results, const std::vect
         failure.about = failure.reason;
         failure.bucket = bucketOf(failure.reason);
         failure.ownAssertion = findAssertion(failure);
-        static const std::regex place(R"((?:^|\n)(?:[.][.]/)*([^\s/]\S*:\d+): Failure\n)");
+        static const std::regex place(R"((?:^|\n)(?:[.][.]/)*(\S+:\d+): Failure\n)");
         std::smatch match;
         if (std::regex_search(result.log, match, place))
-            failure.place = match[1];
+            failure.place = fs::path(match[1].str()).is_absolute()
+                                ? fs::path(match[1].str()).lexically_relative(fs::current_path())
+                                : fs::path(match[1].str());
         std::string exact =
             std::regex_replace(result.name, std::regex(R"([.+*?()\[\]{}|^$\\])"), "\\$&");
         failure.repeat = fmt::format("make test NAME='^{}$$' SEED={}", exact, result.seed);

@@ -46,6 +46,7 @@ case $case in
 plain) # secure, as each flight that does not say otherwise; its recording and its key are nobody else's to read
     "$source/tests/regress/test/make_in.sh" "$source" "$source" "$build" run IMAGE=$image SIZE=96x64 OUT="$out" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
     check_output "$out"
+    grep -q '121 corners leave much of the core untried: make ip-test IP=vision' "$out/log" || { cat "$out/log" && exit 1; }
     # The modem's set-up is waited for first, then the vehicle.
     grep -o 'modem ready on .* after [0-9]* ms\|link connecting\|link up, secure\|the UAV has .* s to answer' "$out/log" | sed 's/ .*//' | tr '\n' ' ' | grep -q '^the modem link link ' || { cat "$out/log" && exit 1; }
     grep -q -- "\"--key\",\"$(dirname "$build")/demo.key\"" "$out/flight.jsonl"

@@ -84,6 +84,11 @@ class Log:
                                             ns=(self.air.read() or {}).get("ns"))) + "\n")
             self.live.flush()
 
+    def note(self, text):
+        """What is no call, on the terminal and on the page."""
+        self.say(text)
+        self.follow({"who": "ground", "what": text})
+
     def remind(self, what, answered):
         seconds = 0
         while not answered.wait(15):
@@ -300,10 +305,14 @@ def fly(args, communicator):
     if not station.alive:
         raise RuntimeError("uav.isAlive answered %r" % station.alive)
     if args.reference:
-        check_against_reference(args, result)
-        log.say("the result equals the C++ reference, bit by bit")
+        try:
+            check_against_reference(args, result)
+        except RuntimeError as e:
+            log.follow({"who": "ground", "what": "the mission failed: %s" % e})
+            raise
+        log.note("the result equals the C++ reference, bit by bit")
         if result.found < ENOUGH:
-            log.say("%d corners leave much of the core untried: make ip-test IP=vision tries all of it" % result.found)
+            log.note("%d corners leave much of the core untried: make ip-test IP=vision tries all of it" % result.found)
     # A part may give back what is to be done after all of them.
     ends = [part.fly(log, proxy, "%d corners" % result.found) for part in parts]
     for end in filter(None, ends):

@@ -34,6 +34,7 @@ mission)
     has '>WIDTH 96</span>.*>HEIGHT 64</span>' # fields of the vision core's FRAME_SIZE
     has '>DONE [01]</span>'                  # an event of the vision core
     has 'y="[0-9]*">UAV_radioTask</text>'
+    has 'the result equals the C++ reference, bit by bit'
     has 'corners, the strongest'
     has '<text x="0" y="[0-9]*">vision</text>'
     has '<title>hwengine1.getResult(): until [0-9.]* s</title>'

@@ -216,7 +216,7 @@ fetch_page() {
         mv "$work/libraries.js" "$work/libraries.css" "$target"
         touch "$target/done"
     else
-        echo "fetch: cannot get Tabulator and uPlot, is there a network? Pages have plain tables and no charts; the next build tries again" >&2
+        echo "fetch: cannot get Tabulator and uPlot, is there a network? Pages have plain tables and no drawn charts; the next build tries again" >&2
         touch "$target/libraries.js" "$target/libraries.css"
     fi
 }

@@ -141,7 +141,7 @@ page)
     sed -n '/<p class="soft">/,/<script id/p' "$work/dom" | tr -d '\n' | sed 's/<script.*//; s/<[^>]*>/ /g; s/  */ /g' >"$work/log"
     has 'Tabulator and uPlot could not be fetched. With a network'
     has ' wide 1 0.0 % .* store [0-9]* .* pair 15 .* u_store .* read_addr_i 5 0 project/hdl/blocks/store.v:12 .* clk_i 11 12 [0-9]* .* rst_i synchronous 5 '
-    has ' u_counter.count_o.4. 9 FDRE .* now 15 11 6 [0-9]* this run '
+    has ' 8 to 8.5 ns left of 10 1 .* u_counter.count_o.4. 9 FDRE .* now 15 11 6 [0-9]* this run '
     [ -s "${program%/synth/*}/page/libraries.js" ] || { echo "skipped: Tabulator and uPlot could not be fetched"; exit 77; }
     # A second script clicks as a user does and writes what it then sees.
     cat >"$work/clicks.js" <<'JS'

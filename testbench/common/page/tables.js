@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // tables: tables by Tabulator and charts by uPlot, in the page's colours. Where these could not be fetched at build time, tables
-// are plain and have all rows, and charts are left out.
+// are plain and have all rows, and a chart is a table of its points.
 
 // Shows rows in `place`, instead of what it had. A column is [title, value(row), cell(row), options of Tabulator's]: the value is
 // what is sorted, filtered and downloaded, the cell (text or an element; the value, if there is none) is what is seen.
@@ -123,7 +123,11 @@ function table(place, columns, rows, options = {}) {
 function chart(place, {labels, titles = labels, series, limits = [], height = 190}) {
   place.drawn?.destroy();
   place.replaceChildren();
-  if (typeof uPlot === "undefined" || !labels.length) return;
+  if (!labels.length) return;
+  if (typeof uPlot === "undefined") {
+    table(place, [["point", i => titles[i]], ...series.map(({name, values, says}) => [name, i => values[i] === null ? "" : says?.(i) ?? values[i]])], [...labels.keys()]);
+    return;
+  }
   const colour = name => () => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const axis = {stroke: colour("--soft"), font: "12px system-ui, sans-serif", ticks: {show: false}};
   const last = labels.length - 1, most = Math.max(1e-9, ...series.flatMap(s => s.values.filter(v => v !== null)), ...limits.map(l => l.value));
@@ -158,5 +162,5 @@ function chart(place, {labels, titles = labels, series, limits = [], height = 19
 }
 
 if (typeof Tabulator === "undefined")
-  document.body.prepend(element("p", "Tables do not sort and charts are left out: Tabulator and uPlot could not be fetched. With a network, " +
+  document.body.prepend(element("p", "Tables do not sort and charts are tables: Tabulator and uPlot could not be fetched. With a network, " +
     "or a mirror of npm's in the environment's ICESOC_NPM, make this page again.", "soft"));

@@ -3,12 +3,12 @@
 #
 # speed: clocks a second of Verilator, Icarus and GHDL on the same frames of the vision core, in one run.
 # Usage: speed.sh verilated-program ghdl generated-folder vision.v work-folder "vhdl-files..." out.json
-# Of three runs the quickest counts. A `ghdl` of -: one run of a frame, without GHDL.
+# Of three runs the quickest counts. A `ghdl` of -: one run of fewer frames, without GHDL.
 # Exit status 1: Verilator's model is not `least` times as fast as Icarus: something costs that should not.
 set -eu
-runs=3 frames=2 least=100
+runs=3 frames=2 verilated=200 least=100
 program=$1 ghdl=$2 gen=$3 core=$4 work=$5 vhdl=$6 out=$7
-[ "$ghdl" != - ] || runs=1 frames=1
+[ "$ghdl" != - ] || runs=1 frames=1 verilated=100
 here=$(dirname "$(readlink -f "$0")")
 mkdir -p "$work" "$(dirname "$out")"
 iverilog -g2005 -o "$work/speed.vvp" -I"$gen" -s speed_tb "$here/speed_tb.v" "$core"
@@ -33,7 +33,7 @@ measure() {
     done | sort -n -k3 | head -n 1
 }
 {
-    measure Verilator "$program" 200
+    measure Verilator "$program" $verilated
     measure Icarus vvp -n "$work/speed.vvp" +frames="$frames"
     [ "$ghdl" = - ] || (cd "$work" && measure GHDL "$ghdl" -r --std=08 speed_tb -gframes="$frames")
 } >"$work/figures"

@@ -9,6 +9,7 @@ source=$1 work=$2 runtime=$3
 rm -rf "$work"
 mkdir -p "$work/hdl/small" "$work/bus" "$work/ip" "$work/build" "$work/tests"
 cd "$work"
+export PYTHONPYCACHEPREFIX="$work/compiled" # a script's compiled form has its time in it, which differs in each clone
 ln -s "$source/tests/mutants" tests/mutants
 touch bus/none.v
 fail() {

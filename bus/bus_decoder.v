@@ -43,8 +43,8 @@ module bus_decoder #(
         write  <= bus_write_i;
     end
 
-    // Up to three slots an AND-OR is a LUT a bit; of more, a tree chooses by a number, for a third less LUTs. Behind the
-    // last slot stand zeros.
+    // Up to three slots an AND-OR is a LUT a bit. Of more, a number chooses in each group of eight, two LUTs and a MUXF7
+    // a bit, and an AND-OR among the groups. Behind the last slot stand zeros.
     generate
         if (SLOTS < 4) begin : g_few
             reg [31:0] rdata;
@@ -56,21 +56,30 @@ module bus_decoder #(
             end
             assign bus_rdata_o = rdata;
         end else begin : g_many
-            localparam BITS = SLOTS < 8 ? 3 : SLOTS < 16 ? 4 : SLOTS < 32 ? 5 : 6;
-            reg [BITS-1:0]           index;
-            reg [32*(1 << BITS)-1:0] left; // halved by each bit of the number
-            integer b, i;
-            always @(posedge clk_i)
-                index <= {26'd0, slot} < SLOTS ? slot[BITS-1:0] : {BITS{1'b1}};
-            always @* begin
-                left = {32*(1 << BITS){1'b0}};
-                left[32*SLOTS-1:0] = slot_rdata_i;
-                for (b = BITS - 1; b >= 0; b = b - 1)
-                    for (i = 0; i < 1 << b; i = i + 1)
-                        if (index[b])
-                            left[32*i +: 32] = left[32*(i + (1 << b)) +: 32];
+            localparam GROUPS = (SLOTS + 7) / 8;
+            reg [2:0]            index;
+            reg [GROUPS-1:0]     group; // a single one with room for zeros is always chosen
+            reg [256*GROUPS-1:0] left;  // each group is halved by each bit of the number
+            reg [31:0]           rdata;
+            integer g, b, i;
+            always @(posedge clk_i) begin
+                index <= {26'd0, slot} < SLOTS ? slot[2:0] : 3'd7;
+                for (g = 0; g < GROUPS; g = g + 1)
+                    group[g] <= {29'd0, slot[5:3]} == g;
             end
-            assign bus_rdata_o = left[31:0];
+            always @* begin
+                left = {256*GROUPS{1'b0}};
+                left[32*SLOTS-1:0] = slot_rdata_i;
+                rdata = 32'd0;
+                for (g = 0; g < GROUPS; g = g + 1) begin
+                    for (b = 2; b >= 0; b = b - 1)
+                        for (i = 0; i < 1 << b; i = i + 1)
+                            if (index[b])
+                                left[256*g + 32*i +: 32] = left[256*g + 32*(i + (1 << b)) +: 32];
+                    rdata = rdata | ({32{SLOTS < 8 || group[g]}} & left[256*g +: 32]);
+                end
+            end
+            assign bus_rdata_o = rdata;
         end
     endgenerate
 

@@ -117,7 +117,7 @@ def programs(row):
 
 
 def by_tests(rows, copy, pool):
-    """Tries what the proofs have missed against the modules' tests; sets each row's result."""
+    """Tries what the proofs have missed against the modules' tests; sets each row's result. Returns the programs that fail as they are."""
     os.chdir(run.TOP)
     run.prepare(copy, f"-DVERILATOR={run.TOP}/tests/mutants/model.py")
     (copy / "build/drawn.json").write_text(json.dumps(rows))
@@ -125,22 +125,32 @@ def by_tests(rows, copy, pool):
     environment = {**run.environment(copy), "DRAWN": str(copy / "build/drawn.json")}
     for old in copy.glob("build/main/**/V*__ALL.a"):
         old.unlink()
-    subprocess.run(["ninja", "-C", "build/main", *needed], cwd=copy, env=environment, stdout=open(copy / "build/log", "w"), check=True)
+    with open(copy / "build/log", "w") as log:
+        if subprocess.run(["ninja", "-C", "build/main", *needed], cwd=copy, env=environment, stdout=log, stderr=log).returncode:
+            print(f"mutants: the tests' programs do not build with mutants in their models, so they caught none: {log.name} says why", file=sys.stderr)
+            return needed
     where = {name: next(copy.glob(f"build/main/**/{name}")) for name in needed}
 
     def fails(name, number):
-        said = subprocess.run(["sh", "-c", 'ulimit -t 300; exec "$0" --gtest_fail_fast --gtest_brief=1', where[name]], cwd=where[name].parent,
-                              env={**environment, "MUTANT": str(number)}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        return said.returncode != 0
-
-    def try_row(numbered):
-        return next((name for name in programs(numbered[1]) if fails(name, numbered[0])), "SURVIVED")
+        log = copy / "build" / f"{name}.{number}.log"
+        with open(log, "w") as out:
+            failed = subprocess.run(["sh", "-c", 'ulimit -t 300; exec "$0" --gtest_fail_fast --gtest_brief=1', where[name]], cwd=where[name].parent,
+                                    env={**environment, "MUTANT": str(number)}, stdout=out, stderr=out).returncode != 0
+        if number or not failed:
+            log.unlink()
+        return failed
 
     bad = [name for name, failed in zip(needed, pool.map(lambda name: fails(name, 0), needed)) if failed]
-    if bad:
-        sys.exit(f"mutants: {bad[0]} fails without any mutant: mend that first")
+
+    def try_row(numbered):
+        return next((name for name in programs(numbered[1]) if name not in bad and fails(name, numbered[0])), "SURVIVED")
+
     for row, result in zip(rows, pool.map(try_row, enumerate(rows, 1))):
         row["result"] = result
+    for name in bad:
+        log = copy / "build" / f"{name}.0.log"
+        print(f"{log.read_text(errors='replace')}mutants: {name} fails without any mutant, so it caught none: mend that first ({log})", file=sys.stderr)
+    return bad
 
 
 def told(results, number):
@@ -191,8 +201,7 @@ def main():
             pool.shutdown(cancel_futures=True)
             raise
         missed = [row for row in rows if row["result"] == "SURVIVED" and programs(row)]
-        if missed:
-            by_tests(missed, run.WORK / "model", pool)
+        failing = by_tests(missed, run.WORK / "model", pool) if missed else []
     for row in rows:
         if row["result"] == "SURVIVED":
             print(f"SURVIVED  formal.{row['proof']:<18} {row['line']} {row['does']}", flush=True)
@@ -212,7 +221,7 @@ def main():
     judged = sum(score["drawn"] - score["same"] for score in scores.values())
     print(f"mutants: {caught} of {judged} drawn with seed {options.seed} caught, {sum(score['by_tests'] for score in scores.values())} of them by tests, {len(rows) - judged} the same as the module"
           + (f"; below {GATE} %: {', '.join(bad)}" if bad else ""))
-    return bool(bad)
+    return bool(bad or failing)
 
 
 if __name__ == "__main__":

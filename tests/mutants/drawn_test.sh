@@ -79,5 +79,28 @@ grep -q '"survived": \[\]' build/mutants/drawn.json || fail "no summary"
 cp build/mutants/drawn/pair/list drawn.list
 run || fail "a second run of the same seed fails"
 cmp build/mutants/drawn/pair/list drawn.list || fail "the same seed draws others"
+# What the tests' programs say: one that fails without a mutant catches none, and the rest is told all the same.
+mkdir -p copy/build/main
+cat >copy/build/main/build.ninja <<'END'
+rule script
+  command = printf '#!/bin/sh\necho said; exit $$((%s))\n' '$fails' >$out && chmod +x $out
+build test_pair: script
+  fails = MUTANT == 1
+build test_bad: script
+  fails = 1
+END
+cat >by_tests.py <<END
+import pathlib, sys
+from concurrent.futures import ThreadPoolExecutor
+sys.path.insert(0, "$source/tests/mutants")
+import drawn, run
+run.TOP, run.prepare, drawn.TESTS = pathlib.Path.cwd(), lambda *_: None, {"pair": "test_pair", "bad": "test_bad"}
+rows = [dict(module=name, result="SURVIVED") for name in ("pair", "pair", "bad")]
+with ThreadPoolExecutor(2) as pool:
+    assert drawn.by_tests(rows, run.TOP / "copy", pool) == ["test_bad"]
+assert [row["result"] for row in rows] == ["test_pair", "SURVIVED", "SURVIVED"], rows
+END
+/usr/bin/python3 by_tests.py >run.log 2>&1 || fail "what the tests say of mutants is lost"
+grep -q '^said$' run.log && grep -q 'test_bad fails without any mutant, so it caught none' run.log || fail "no word of a test that fails as it is"
 if run nothing; then fail "no proof is no error"; fi
 grep -q 'no proof.s name begins with nothing' run.log || fail "no word of what there is"

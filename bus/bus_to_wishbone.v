@@ -82,7 +82,11 @@ module bus_to_wishbone #(
         assert (wb_we_o == bus_write_i && wb_adr_o[4:2] == bus_addr_i[2:0]);
         assert (wb_stb_o || outstanding);
     end
+    reg retry = 1'b0;
+    always @(posedge clk_i)
+        retry <= !rst_i && wb_cyc_o && wb_rty_i && !wb_ack_i && !wb_err_i && !(bus_valid_i && bus_ready_o);
     always @* if (!rst_i) begin
+        assert (!(retry && wb_cyc_o)); // a clock without CYC follows RTY
         assert (!accepted || (busy && !pause));
         assert (accepted == outstanding);
         cover (bus_valid_i && bus_ready_o && !bus_error_o && bus_addr_i[3] && accepted == (PIPELINED != 0));

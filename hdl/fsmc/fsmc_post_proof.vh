@@ -42,8 +42,10 @@
     wire [1:0] head_be;
     assign {head_be, head_data} = fifo[head];
 
+    reg more_was = 1'b0, more = 1'b0; // a clock ago, and two
     always @(posedge clk_i) begin
         past <= 1'b1;
+        {more, more_was} <= {more_was, more_room_o && past};
         if (past)
             assume (!rst_i && $stable(place));
         else
@@ -68,6 +70,9 @@
             assert (final_value == newest);
             // Two writes may come before the processor can see that there is no room.
             assert (!wr_lost_o || !$past(room_o));
+            assert (!(wr_lost_o && more)); // or three
+            // A word that has all its bytes does not wait for another, or for a flush.
+            assert (push_o || !(open && push_be_o == 8'hFF && count != DEPTH - 1));
             // The oldest word stays as it is until it is taken.
             if ($past(word_valid_o && !word_taken_i && !rst_i))
                 assert (word_valid_o && $stable(word_addr_o));

@@ -15,6 +15,7 @@
             if (open && !end_o && !bad_o)
                 assert (received && (state == DATA || state == CHECKSUM));
             assert (!(unsent_o && end_o));
+            assert (state != TYPE || (left > 8'd2 && left <= LONGEST)); // no frame of another length is opened
         end
         cover (past && !rst_i && end_o && open);
         cover (past && !rst_i && unsent_o);

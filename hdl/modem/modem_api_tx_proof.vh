@@ -12,6 +12,8 @@
             total <= place < TYPE ? 8'd0 : total + data_o;
         if (past && !$past(rst_i)) begin
             assert (place <= CHECKSUM);
+            // Each place follows its predecessor; that of the packet's bytes, after the last.
+            assert (place == $past(!taken || (place == DATA && !last_i) ? place : place == CHECKSUM ? 4'd0 : place + 4'd1));
             // The packet's bytes are taken in their place, and in no other.
             assert (!ready_o || place == DATA);
             // The frame's sum is 0xFF.

@@ -21,6 +21,8 @@
             // A step follows its predecessor, and only after "OK" and a return came.
             if (passed)
                 assert (heard == {"OK", 8'h0D});
+            // A return that does not end "OK" is a refusal, but for one of what was said before.
+            assert (refused == $past(rx_valid_i && rx_data_i == 8'h0D && !heard_k && !fresh));
             if (hear) begin
                 assert (!send);
                 assert (!heard_o || heard[7:0] == "O");

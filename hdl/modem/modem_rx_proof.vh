@@ -9,6 +9,7 @@
     (* anyseq *) reg acknowledge;
     reg       owed  = 1'b0; // a write was taken and is not acknowledged
     reg [6:0] wrote = 7'd0; // bytes of this packet in memory or on the way
+    reg [8:0] ticks = 9'd0; // 80 a character, since the latest byte
     reg       lost  = 1'b0; // a byte of this packet was replaced before it was taken
     reg [7:0] latest = 8'd0; // the latest byte
     wire      write = wr_valid_o && wr_ready_i;
@@ -26,6 +27,7 @@
             latest <= rx_data_i;
         if (rx_valid_i && !deaf && pending && !taken && !ending)
             lost <= 1'b1;
+        ticks <= !rx_idle_i || rx_valid_i || rst_i ? 9'd0 : ticks + {8'd0, tick_i && ticks != 9'd256};
         if (done || rst_i) begin
             wrote <= 7'd0;
             lost  <= 1'b0;
@@ -46,6 +48,7 @@
             assert (!overrun_o || $past(late || dropping));
             assert (!(overrun_o && $past(push_o && !late)));
             assert (!lost || (ending && dropping));
+            assert (silence == ticks); // 256 are 3.2 characters
         end
         cover (past && !rst_i && push_o && wrote == 7'd3);
         cover (past && !rst_i && overrun_o && $past(full_i));

@@ -36,8 +36,8 @@
             else
                 assert ({error_addr, error_write} == $past({error_addr, error_write}));
             assert (error_open == ($past(access_error_i) || $past(error_open && !clearing)));
-            if (!$past(reg_read && reg_addr == SYSTEM_CYCLES_LO))
-                assert (cycles_high_latched == $past(cycles_high_latched));
+            // The high word stays that of the moment of the low one's read.
+            assert (cycles_high_latched == $past(reg_read && reg_addr == SYSTEM_CYCLES_LO ? cycles[63:32] : cycles_high_latched));
         end
         cover (past && !rst_i && $past(access_error_i && clearing && error_open));
     end

@@ -108,7 +108,7 @@ for core in $cores; do
     parts="$parts --core $here/ip/$core"
 done
 # Each process ends with the one that started it, however that ends.
-serve() { exec setpriv --pdeathsig TERM "$build/testbench/live/icesoc-live" --dir "$out" --port "$port" --registers "$build/gen/registers.list" "$@"; }
+serve() { exec setpriv --pdeathsig TERM /usr/bin/python3 "$here/testbench/live/live.py" --dir "$out" --port "$port" --registers "$build/gen/registers.list" "$@"; }
 (serve --try) || exit 1
 flown() { stat -c '%i %z' "$out/status" 2>/dev/null || true; }
 before=$(flown)

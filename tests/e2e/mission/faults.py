@@ -57,7 +57,7 @@ def lives(pid):
 
 class Mission:
     """A mission that runs, and its processes by name."""
-    NAMES = {"ground": "mission.py --device", "simulator": "sim/icesoc-sim", "page": "live/icesoc-live"}
+    NAMES = {"ground": "mission.py --device", "simulator": "sim/icesoc-sim", "page": "live/live.py"}
 
     def __init__(self, source, build, out, prefix=(), options=()):
         self.out = out

@@ -5,7 +5,7 @@ set -eu
 source=$1 build=$2 case=$3 out=$4
 rm -rf "$out"
 mkdir -p "$out"
-live=$build/testbench/live/icesoc-live
+live=$source/testbench/live/live.py
 fail() {
     cat "$out/log" 2>/dev/null || true
     echo "live: $*" >&2

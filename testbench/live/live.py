@@ -1,0 +1,214 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""live: serves the page that shows a mission as it runs, on the loopback interface and nothing else anywhere.
+
+One thread serves all, a request a connection. A client that is slow, silent or endless costs a place and a head of
+memory, for PATIENCE seconds at most, and none of the others waits for it.
+"""
+
+import argparse
+import asyncio
+import http.client
+import io
+import json
+import os
+import signal
+import struct
+import sys
+from http import HTTPStatus
+
+PATIENCE = 10        # seconds for a request and its answer
+LONGEST_HEAD = 8192  # bytes of a request
+MOST_CLIENTS = 128   # at once: the one that has been here for longest makes room
+NEWEST = 128 << 10   # bytes of events.jsonl that are shown, so that a page of a long flight stays as it is
+HERE = os.path.dirname(os.path.abspath(__file__))
+FILES = {  # path: MIME type, file
+    "/": ("text/html; charset=utf-8", HERE + "/page/index.html"),
+    "/live.css": ("text/css", HERE + "/page/live.css"),
+    "/live.js": ("text/javascript", HERE + "/page/live.js"),
+    "/common.css": ("text/css", HERE + "/../common/page/common.css"),
+    "/common.js": ("text/javascript", HERE + "/../common/page/common.js"),
+}
+# SimStatus (sw/ground/sim_status.h): counters, registers by slot * 16 + word, how each was seen
+STATUS = struct.Struct("<8s7Q1024I1024B")
+COUNTERS = ("ns", "cycles", "bytesUp", "bytesDown", "packets", "lost", "wallNs")
+WRITTEN = 2
+
+
+def contents(path):
+    """What is in a file; nothing if it cannot be read."""
+    try:
+        with open(path, "rb") as file:
+            return file.read()
+    except OSError:
+        return b""
+
+
+def rows(lines):
+    """The JSON objects among lines; the last one may be half written."""
+    for line in lines:
+        try:
+            row = json.loads(line)
+        except ValueError:
+            continue
+        if isinstance(row, dict):
+            yield row
+
+
+def newest(path):
+    """The lines of a file's last bytes."""
+    try:
+        with open(path, "rb") as file:
+            size = file.seek(0, os.SEEK_END)
+            file.seek(max(0, size - NEWEST))
+            if size > NEWEST:
+                file.readline()  # the end of one
+            return file.readlines()
+    except OSError:
+        return []
+
+
+def blocks_by_slot(registers):
+    """[(slot, the description of its block)]; registers: a file that lists the blocks' *.regs.json, one a line."""
+    blocks = {}
+    with open(registers) as paths:
+        for path in filter(None, paths.read().split("\n")):
+            with open(path) as file:
+                block = json.load(file)
+            blocks[block["block"]] = block
+    slots = []
+    for constant in blocks["map"]["constants"]:
+        prefix, _, block = constant["name"].lower().partition("slot_")
+        if not prefix and block not in ("", "count"):
+            slots.append((constant["value"], {**blocks.get(block, {}), "block": block}))
+    return sorted(slots, key=lambda slot: slot[0])
+
+
+def register(block, word, value, seen):
+    """A word with its name and its fields; of EVENT and MASK, the fields are the block's events."""
+    described = next((r for r in block.get("registers", []) if r["word"] == word), {})
+    fields = [{"name": f["name"], "value": value >> f["lsb"] & (1 << f["width"]) - 1, "doc": f.get("doc", "")}
+              for f in described.get("fields", [])]
+    if word in (1, 2):
+        fields += [{"name": e["name"], "value": value >> e["bit"] & 1, "doc": e.get("doc", "")} for e in block.get("events", [])]
+    common = ("ID", "EVENT", "MASK")
+    name = described.get("name", common[word] if word < 3 else f"word {word}")
+    return {"word": word, "value": value, "written": seen == WRITTEN, "name": name, "doc": described.get("doc", ""), "fields": fields}
+
+
+def state(folder, slots):
+    """What the page shows, from the files that simulator and ground station leave; what is not there yet is missing or empty."""
+    shown = {"calls": [], "features": [], "slots": []}
+    status = contents(folder + "/status")
+    if len(status) >= STATUS.size and status.startswith(b"ICESOC1\0"):
+        values = STATUS.unpack_from(status)[1:]
+        shown["air"] = dict(zip(COUNTERS, values))
+        registers, seen = values[7:7 + 1024], values[7 + 1024:]
+        for slot, block in slots:
+            words = [register(block, word, registers[slot * 16 + word], seen[slot * 16 + word])
+                     for word in range(16) if seen[slot * 16 + word]]
+            shown["slots"].append({"slot": slot, "block": block["block"], "doc": block.get("doc", ""), "words": words})
+    for row in rows(contents(folder + "/calls.jsonl").split(b"\n")):
+        if "features" in row:
+            shown.update(features=row["features"], found=row["found"])
+        else:
+            shown["calls"].append(row)
+    shown["events"] = list(rows(newest(folder + "/events.jsonl")))
+    changed = {name: os.stat(path).st_mtime_ns for name in ("before.png", "report.json") if os.path.exists(path := f"{folder}/{name}")}
+    shown["frame"] = "before.png" in changed
+    # A report that is older than the picture is of the mission before.
+    shown["over"] = len(changed) == 2 and changed["report.json"] >= changed["before.png"]
+    return shown
+
+
+class Page:
+    """The page of a mission, and its clients."""
+
+    def __init__(self, folder, slots):
+        self.folder, self.slots = folder, slots
+        self.clients = []  # the oldest first
+        self.hosts = ()
+
+    def answer(self, head):
+        """(status, MIME type, content) for a request. Who names this address otherwise than we do is refused: a page of
+        another host may have it by another name."""
+        first, _, rest = head.partition(b"\r\n")
+        words = first.decode("latin-1").split()
+        try:
+            if len(words) != 3 or not words[2].startswith("HTTP/1."):
+                raise http.client.HTTPException
+            hosts = http.client.parse_headers(io.BytesIO(rest)).get_all("Host", [])
+        except http.client.HTTPException:
+            return HTTPStatus.BAD_REQUEST, "text/plain", b""
+        if len(hosts) != 1 or hosts[0] not in self.hosts:
+            return HTTPStatus.FORBIDDEN, "text/plain", b""
+        if words[0] != "GET":
+            return HTTPStatus.METHOD_NOT_ALLOWED, "text/plain", b""
+        path = words[1].partition("?")[0]
+        if path == "/state":
+            return HTTPStatus.OK, "application/json", json.dumps(state(self.folder, self.slots)).encode()
+        kind, file = FILES.get(path, ("image/png", self.folder + "/before.png" if path == "/frame.png" else ""))
+        content = contents(file)
+        return HTTPStatus.OK if content else HTTPStatus.NOT_FOUND, kind if content else "text/plain", content
+
+    async def exchange(self, reader, writer):
+        try:
+            status, kind, content = self.answer(await reader.readuntil(b"\r\n\r\n"))
+        except asyncio.LimitOverrunError:
+            status, kind, content = HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE, "text/plain", b""
+        content = content or f"{status.value} {status.phrase}\n".encode()
+        writer.write(f"HTTP/1.1 {status.value} {status.phrase}\r\nContent-Type: {kind}\r\nContent-Length: {len(content)}\r\n"
+                     "Connection: close\r\n\r\n".encode() + content)
+        await writer.drain()
+        writer.close()
+        await writer.wait_closed()
+
+    async def serve(self, reader, writer):
+        if len(self.clients) == MOST_CLIENTS:
+            self.clients.pop(0).transport.abort()
+        self.clients.append(writer)
+        try:
+            await asyncio.wait_for(self.exchange(reader, writer), PATIENCE)
+        except (asyncio.TimeoutError, asyncio.IncompleteReadError, OSError):
+            pass  # it is gone, or not worth waiting for
+        finally:
+            writer.transport.abort()
+            if writer in self.clients:
+                self.clients.remove(writer)
+
+    async def run(self, port, only_try):
+        try:
+            server = await asyncio.start_server(self.serve, "127.0.0.1", port, limit=LONGEST_HEAD, backlog=MOST_CLIENTS)
+        except OSError:
+            sys.exit("icesoc-live: error: cannot listen on 127.0.0.1: is the port taken? PORT=0 takes any that is free")
+        port = server.sockets[0].getsockname()[1]
+        self.hosts = (f"127.0.0.1:{port}", f"localhost:{port}")
+        if only_try:
+            return
+        print(f"The mission as it runs: http://127.0.0.1:{port}/", flush=True)
+        await server.serve_forever()
+
+
+def port_number(text):
+    if not 0 <= (port := int(text)) <= 65535:
+        raise argparse.ArgumentTypeError(f"{port} is not in 0..65535")
+    return port
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="icesoc-live", description="Serves the page that shows a mission as it runs, on 127.0.0.1.")
+    parser.add_argument("--dir", required=True, help="the mission's folder: status, calls.jsonl, before.png")
+    parser.add_argument("--registers", required=True, help="file that lists the blocks' *.regs.json; map.regs.json says which is in which slot")
+    parser.add_argument("--port", type=port_number, default=0, help="0: any that is free")
+    parser.add_argument("--try", dest="only_try", action="store_true", help="only look whether the page can be served")
+    words = parser.parse_args()
+    try:
+        slots = blocks_by_slot(words.registers)
+    except (OSError, ValueError, KeyError) as error:
+        sys.exit(f"icesoc-live: error: cannot read '{words.registers}': {error}")
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: os._exit(0))
+    asyncio.run(Page(words.dir, slots).run(words.port, words.only_try))
+
+
+main()

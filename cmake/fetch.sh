@@ -13,6 +13,7 @@
 #   cmake/fetch.sh sodium DIR the sources of libsodium that check a signature, for the chip
 #   cmake/fetch.sh page DIR   Tabulator and uPlot for the pages, as DIR/libraries.js and .css; from ICESOC_NPM, a mirror of
 #                             registry.npmjs.org, if it is set; if there is no network both are empty, and there is no DIR/done
+#   cmake/fetch.sh wavedrom DIR   WaveDrom, which draws the pages' waveforms; from ICESOC_NPM, too; exit status 77: there is no network
 #   cmake/fetch.sh zeroc DIR  ZeroC's test suites for Python, 3.7.8, into DIR; exit status 77: there is no network
 # Kept in ${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network.
 
@@ -194,10 +195,21 @@ fetch_svd() {
     cp "$kept" "$target/CMSIS-SVD.xsd"
 }
 
+npm=${ICESOC_NPM:-https://registry.npmjs.org}
+
+fetch_wavedrom() {
+    kept_file "$npm/wavedrom/-/wavedrom-3.5.0.tgz" 7efce288c7e1e6f4072ba93345592ccd1e09442817a91cc2f3b351b777b6b0e9 || {
+        echo "fetch: cannot get WaveDrom: is there a network? Only drawings of waveforms need it" >&2
+        exit 77
+    }
+    mkdir -p "$target"
+    tar -xzf "$kept" -C "$target" --strip-components=1 package/wavedrom.unpkg.min.js
+}
+
 # Adds a package of npm's to $work/libraries.js and .css, each file below its licence. $1: name, $2: version, $3: checksum, then its
 # files. Exit status 1: there is no network.
 npm_files() {
-    (kept_file "${ICESOC_NPM:-https://registry.npmjs.org}/$1/-/$1-$2.tgz" "$3") || return 1
+    (kept_file "$npm/$1/-/$1-$2.tgz" "$3") || return 1
     mkdir -p "$work/$1"
     tar -xzf "$cache/foreign/$3" -C "$work/$1" --strip-components=1 || fail "cannot unpack $1"
     name="$1 $2" folder=$work/$1
@@ -274,6 +286,7 @@ nextpnr) fetch_nextpnr ;;
 foreign) fetch_foreign ;;
 svd) fetch_svd ;;
 page) fetch_page ;;
+wavedrom) fetch_wavedrom ;;
 lz4) fetch_source lz4-1.9.4 l/lz4/lz4_1.9.4.orig.tar.gz 0b0e3aa07c8c063ddf40b082bdf7e37a1562bda40a0ff5272957f3e987e0e54b lz4-1.9.4/lib 2 ;;
 sodium) fetch_source sodium-1.0.18 libs/libsodium/libsodium_1.0.18.orig.tar.gz \
     d59323c6b712a1519a5daf710b68f5e7fde57040845ffec53850911f10a5d4f4 libsodium-1.0.18/src/libsodium 3 ;;

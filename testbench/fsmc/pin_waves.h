@@ -67,7 +67,7 @@ public:
         text += (isWrite ? nwe.json("NWE") : noe.json("NOE")) + nwait.json("NWAIT") + d.json("D");
         text.erase(text.size() - 2, 1); // the last comma
         return text + " ],\n \"head\": {\"text\": \"" + head + "\"},\n \"foot\": {\"text\": \"" +
-               foot + "\"}, \"config\": {\"hscale\": 0.6}}\n";
+               foot + "\"}}\n";
     }
 
 private:

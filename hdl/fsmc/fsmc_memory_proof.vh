@@ -78,6 +78,7 @@
             // A block keeps its words until a fetch needs its place, or all are dropped.
             if ($past(!rst_i && !drop_i && !wr_i && !(miss && at_upper != upper)))
                 assert (($past(full) & ~full & ($past(miss || next) ? ~(2'b01 << fetch_block) : 2'b11)) == 2'b00);
+            assert (!ahead || fetch_block != current); // what is read ahead never takes the place of the block being read
             // The port's rules hold: one read at a time, data of a write before its request, aligned blocks.
             if (npi_addr_req_o) begin
                 assert (!npi_rnw_o || to_come == 5'd0);

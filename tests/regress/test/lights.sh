@@ -231,14 +231,14 @@ lights_speed)
     mkdir -p build/bench
     measure() { # program
         status=0
-        "$source/tests/bench/speed/speed.sh" "$1" - "$build/gen" "$build/gen/vision.v" build/speed '' build/bench/speed.json >speed.txt 2>&1 || status=$?
+        "$source/tests/bench/speed.sh" "$1" "$source" "$build/gen" build/bench/speed.json --brief >speed.txt 2>&1 || status=$?
         measured bench hdl
         run --name 'a[.]'
     }
-    measure "$build/tests/bench/bench_speed"
+    measure "$build/testbench/sim/icesoc-sim"
     light speed green
-    printf '#!/bin/sh\nfor i in 1 2 3 4 5 6 7; do "%s" "$@" >/dev/null; done\nexec "%s" "$@"\n' "$build/tests/bench/bench_speed" \
-        "$build/tests/bench/bench_speed" >slow # as a model that costs too much
+    printf '#!/bin/sh\nfor i in 1 2 3 4 5 6 7 8 9 10 11; do "%s" "$@" >/dev/null; done\nexec "%s" "$@"\n' "$build/testbench/sim/icesoc-sim" \
+        "$build/testbench/sim/icesoc-sim" >slow # as a model that costs too much
     chmod +x slow
     status=0
     measure "$PWD/slow"

@@ -81,7 +81,7 @@ setup-tests: ## install those that tests, reports and debuggers need beside
 
 $(BUILD)/build.ninja: setup
 	@cmake/configure.sh $(BUILD)
-	@$(if $(UCOS2),cmake -S . -B $(BUILD) "-DUCOS2=$(abspath $(UCOS2))" >/dev/null)
+	@$(if $(UCOS2),cmake/set.sh $(BUILD) $(call quoted,-DUCOS2=$(abspath $(UCOS2))))
 
 build: $(BUILD)/build.ninja ## build everything (simulator, firmware, compiler, plugin, tests)
 	@$(NINJA)
@@ -90,7 +90,7 @@ build: $(BUILD)/build.ninja ## build everything (simulator, firmware, compiler, 
 quoted = '$(subst ','\'',$(1))'
 
 run: $(BUILD)/build.ninja ## fly the mission: simulated UAV, ZeroC Ice ground station, pictures in build/run
-	@grep -q '^CLK_HZ:STRING=$(CLK_HZ)$$' $(BUILD)/CMakeCache.txt || cmake -S . -B $(BUILD) -DCLK_HZ='$(CLK_HZ)' >/dev/null
+	@grep -qx $(call quoted,CLK_HZ:STRING=$(CLK_HZ)) $(BUILD)/CMakeCache.txt || cmake/set.sh $(BUILD) $(call quoted,-DCLK_HZ=$(CLK_HZ))
 	@$(NINJA) mission $(if $(filter minimal,$(APP)),firmware_minimal)
 	@$(if $(REPLAY),exec testbench/sim/replay.sh "$(BUILD)" $(call quoted,$(REPLAY)) $(call quoted,$(OUT)) $(call quoted,$(FROM)) $(call quoted,$(TO));) \
 	testbench/sim/run.sh "$(BUILD)" --app $(call quoted,$(APP)) --image $(call quoted,$(IMAGE)) --size $(call quoted,$(SIZE)) \
@@ -102,10 +102,10 @@ test: setup-tests $(if $(filter-out zeroc,$(or $(LABEL),$(NAME:%=some))),$(BUILD
 ifneq ($(LABEL)$(NAME),)
 ifneq ($(LABEL),zeroc)
 	@$(NINJA) --quiet regress
-	@$(BUILD)/tests/regress/regress --prepare --build $(BUILD) $(if $(NAME),--name '$(NAME)') $(if $(LABEL),--label '$(LABEL)')
+	@$(BUILD)/tests/regress/regress --prepare --build $(BUILD) $(if $(NAME),--name $(call quoted,$(NAME))) $(if $(LABEL),--label $(call quoted,$(LABEL)))
 endif
 	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(TESTS) --output-on-failure --no-tests=error \
-	    $(if $(LABEL),-L '$(LABEL)') $(if $(NAME),-R '$(NAME)') $(if $(filter zeroc,$(LABEL)),-C zeroc)
+	    $(if $(LABEL),-L $(call quoted,$(LABEL))) $(if $(NAME),-R $(call quoted,$(NAME))) $(if $(filter zeroc,$(LABEL)),-C zeroc)
 else
 	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(TESTS) --output-on-failure --no-tests=error
 	@cmake/configure.sh build/sanitized -DSANITIZE=ON -DROOMS="bus;slice;sw;hdl;ip;testbench;tests" >/dev/null
@@ -115,7 +115,7 @@ endif
 
 mutants: setup-tests $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect its test to fail (BLOCK=bus, or BLOCK=bus/name); DRAW=20: of mutants that Yosys draws, 20 a proof
 	@$(NINJA) regress $(if $(DRAW),regmaps)
-	@$(if $(DRAW),tests/mutants/drawn.py --build $(BUILD) --number $(call quoted,$(DRAW)) --seed $(call quoted,$(SEED)),tests/mutants/run.py) --jobs $(JOBS) $(if $(BLOCK),--block '$(BLOCK)')
+	@$(if $(DRAW),tests/mutants/drawn.py --build $(BUILD) --number $(call quoted,$(DRAW)) --seed $(call quoted,$(SEED)),tests/mutants/run.py) --jobs $(JOBS) $(if $(BLOCK),--block $(call quoted,$(BLOCK)))
 
 bench: $(BUILD)/build.ninja ## measure everything that has a figure (tests/bench), write build/bench/*.json and docs/figures.md
 	@$(NINJA) bench_programs regress size
@@ -142,10 +142,18 @@ include $(wildcard */targets.mk) # what a room adds
 
 # A variable that nobody reads is a typing error.
 SPACE   := $(subst ,, )
+COMMA   := ,
 GIVEN   := $(foreach word,$(subst \$(SPACE),,$(MAKEOVERRIDES)),$(if $(findstring =,$(word)),$(firstword $(subst =, ,$(word)))))
 UNKNOWN := $(filter-out LANG $(shell sed -n 's/^\([A-Z0-9_]*\) *?*=.*/\1/p' $(MAKEFILE_LIST)),$(GIVEN))
 $(if $(UNKNOWN),$(error there is no variable $(UNKNOWN); `make help` names those that there are))
+# A switch that is 0 is off.
+$(foreach name,LIVE OPEN CAMERA CHANGED FAILED KEPT FRESH FORCE CHIP PLACE,$(if $(filter 0,$($(name))),$(eval override $(name) :=)))
 # expr prints how long what fits is.
 fits     = $(filter-out 0,$(shell expr x$(call quoted,$(1)) : 'x$(2)$$'))
-$(foreach name,$(filter JOBS TESTS FUZZED REPEAT NIGHTLY MOMENTS SEEDS DRAW,$(GIVEN)),$(if $(call fits,$($(name)),[1-9][0-9]*),,$(error $(name)='$($(name))' is not a number from 1 on)))
-$(foreach given,$(filter MINUTES,$(GIVEN)),$(if $(call fits,$(MINUTES),[0-9]*[.]*[0-9]*[1-9][0-9]*),,$(error MINUTES='$(MINUTES)' is not a number of minutes, such as 4 or 0.5)))
+must     = $(foreach name,$(filter $(1),$(GIVEN)),$(if $(call fits,$($(name)),$(2)),,$(error $(name)='$($(name))' is not $(3))))
+$(call must,JOBS TESTS FUZZED REPEAT NIGHTLY MOMENTS SEEDS DRAW,[1-9][0-9]*,a number from 1 on)
+$(call must,WAVES,[0-9][0-9]*,a number from 0 on)
+$(call must,SEED,[0-9]\{1$(COMMA)18\}$(if $(filter regress,$(MAKECMDGOALS)),$$\|xrandom),a whole number$(if $(filter regress,$(MAKECMDGOALS)), or random))
+$(call must,MINUTES,[0-9]*[.]*[0-9]*[1-9][0-9]*,a number of minutes$(COMMA) such as 4 or 0.5)
+$(call must,BUDGET,[0-9.]*[1-9][0-9.]*[ms]\{0$(COMMA)1\},a time$(COMMA) such as 60s or 5m)
+$(call must,LAUNCHER,\(local\|slurm\),local or slurm)

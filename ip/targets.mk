@@ -47,8 +47,7 @@ foreign: setup-tests ## put third-party cores (Wishbone, AXI4-Lite, AXI-Stream a
 # Folders of cores outside of ip/, separated by ;: the build folder keeps them. CORE_FOLDERS=none: none from now on.
 CORE_FOLDERS ?=
 core-folders: $(BUILD)/build.ninja
-	@[ -z '$(CORE_FOLDERS)' ] || cmake '-DCORE_FOLDERS=$(filter-out none,$(CORE_FOLDERS))' $(BUILD) >$(BUILD)/core-folders.log 2>&1 || \
-	    { grep -A6 'CMake Error' $(BUILD)/core-folders.log >&2; exit 1; }
+	@[ -z '$(CORE_FOLDERS)' ] || cmake/set.sh $(BUILD) '-DCORE_FOLDERS=$(filter-out none,$(CORE_FOLDERS))'
 .PHONY: core-folders
 
 ip-test: core-folders ## build and test one core: IP=fir (CORE_FOLDERS=/path/to/it where it is not in ip/)

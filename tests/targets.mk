@@ -40,9 +40,9 @@ NIGHTLY  ?= 3
 regress: setup-tests $(BUILD)/build.ninja ## run the regression, write build/regress/report.html (NAME= BLOCK= LABEL= CHANGED=1 FAILED=1 KEPT=1 BUDGET=60s SEED=n|random REPEAT=n LAUNCHER=slurm)
 	@$(NINJA) --quiet regress
 	@$(BUILD)/tests/regress/regress --make --build $(BUILD) --jobs $(TESTS) --seed $(SEED) --repeat $(REPEAT) --waves $(WAVES) \
-	    --launcher $(LAUNCHER) $(if $(NAME),--name '$(NAME)') $(if $(BLOCK),--block '$(BLOCK)') \
-	    $(if $(LABEL),--label '$(LABEL)') $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed) $(if $(KEPT),--kept) \
-	    $(if $(BUDGET),--budget '$(BUDGET)')
+	    --launcher $(LAUNCHER) $(if $(NAME),--name $(call quoted,$(NAME))) $(if $(BLOCK),--block $(call quoted,$(BLOCK))) \
+	    $(if $(LABEL),--label $(call quoted,$(LABEL))) $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed) $(if $(KEPT),--kept) \
+	    $(if $(BUDGET),--budget $(call quoted,$(BUDGET)))
 
 # TEST=test_fifo.Fifo.Wraps GOOD=commit that it passed at (the last one noted) BAD=HEAD
 TEST ?=
@@ -70,8 +70,8 @@ sanitizers: setup-tests $(BUILD)/build.ninja ## tests of engine, gateway and plu
 # Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them. COMPARE_MS: test_quiet compares a second; FUZZ: times as many inputs of fuzzers; HOSTILE: packets of test_link.
 nightly: setup-tests build ## what a timer runs: seeds that have failed, the regression with fresh seeds (NIGHTLY=3 of them), ZeroC's own suites, faults, sanitizers
 	@status=0; export FRESH=1 FUZZ=10 COMPARE_MS=1000 HOSTILE=10000000; tool="$(BUILD)/tests/regress/regress --build $(BUILD) --jobs $(TESTS) --waves $(WAVES) --launcher $(LAUNCHER)"; \
-	    $$tool --kept $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
-	    $$tool --seed random --repeat $(NIGHTLY) $(if $(LABEL),--label '$(LABEL)') $(if $(NAME),--name '$(NAME)') || status=$$?; \
+	    $$tool --kept $(if $(LABEL),--label $(call quoted,$(LABEL))) $(if $(NAME),--name $(call quoted,$(NAME))) || status=$$?; \
+	    $$tool --seed random --repeat $(NIGHTLY) $(if $(LABEL),--label $(call quoted,$(LABEL))) $(if $(NAME),--name $(call quoted,$(NAME))) || status=$$?; \
 	    ctest --test-dir $(BUILD) -C zeroc -L zeroc -j $(TESTS) --output-on-failure || status=$$?; \
 	    make mutants DRAW=8 SEED=$$(date +%Y%m%d) || status=$$?; make faults SEED=$$(date +%Y%m%d) || status=$$?; make sanitizers || status=$$?; \
 	    ctest --test-dir $(BUILD) -C nightly -L nightly -j $(TESTS) --output-on-failure || status=$$?; \
@@ -82,9 +82,9 @@ MOMENTS ?= 10
 SEEDS   ?= 1
 faults: $(BUILD)/build.ninja ## kill, stop and starve each process of a mission at ten moments drawn from a seed (MOMENTS=10 SEED=1 SEEDS=1 NAME=killed), expect docs/faults.md
 	@$(NINJA) mission clock_step regress utilisation regmaps
-	@[ -n '$(NAME)' ] || SEED=$(SEED) tests/regress/test/interrupted.py . "$(BUILD)" build/faults/interrupted $(MOMENTS) new_ip regress synth
+	@[ -n $(call quoted,$(NAME)) ] || SEED=$(SEED) tests/regress/test/interrupted.py . "$(BUILD)" build/faults/interrupted $(MOMENTS) new_ip regress synth
 	@/usr/bin/python3 tests/e2e/mission/faults.py "$(CURDIR)" "$(BUILD)" build/faults/missions --seed $(SEED) --seeds $(SEEDS) --moments $(MOMENTS) \
-	    --jobs $(JOBS) --deaths 2 $(if $(NAME),--only '$(NAME)')
+	    --jobs $(JOBS) --deaths 2 $(if $(NAME),--only $(call quoted,$(NAME)))
 
 proofs: $(BUILD)/build.ninja ## run all formal proofs, print the processor time of all together
 	@$(NINJA) regmaps

@@ -10,6 +10,10 @@ build=$1 flight=$2 out=$3 from=${4:-} to=${5:-}
 if [ -z "$from$to" ]; then
     exec "$build/testbench/sim/icesoc-sim" --replay "$flight" --out "$out"
 fi
+awk -v from="${from:-0}" -v to="${to:-1e9}" 'BEGIN { n = "^[0-9]*[.]?[0-9]*(e9)?$"; exit !(from ~ n && to ~ n && from + 0 < to + 0) }' || {
+    echo "replay: FROM='$from' TO='$to' are no span in seconds, such as FROM=1.5 TO=1.6" >&2
+    exit 2
+}
 hz=$(sed -n 's/^CLK_HZ:STRING=//p' "$build/CMakeCache.txt")
 echo "replay: building the simulator that writes waveforms (build/trace) ..."
 cmake -S . -B build/trace -G Ninja -DTRACE=ON -DCLK_HZ="$hz" >/dev/null

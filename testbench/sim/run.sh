@@ -64,7 +64,8 @@ if [ -z "$open$key" ] && [ "$app" = uav ]; then
         rm -f "$new"
     fi
 fi
-mkdir -p "$out"
+case $pins in '') ;; *) [ -r "$pins" ] || refuse "cannot read PINS='$pins'" ;; esac
+mkdir -p "$out" 2>/dev/null && [ -w "$out" ] || refuse "OUT='$out' is no folder into which a flight can be written"
 exec 9>"$out/lock" # until the last of this flight's programs has ended
 flock -n 9 || { echo "run: another flight is under way in $out; give this one a folder of its own: OUT=build/other" >&2 && exit 1; }
 case $app:$cpu in
@@ -97,6 +98,7 @@ if [ -n "$update" ]; then
 fi
 parts=''
 [ -z "$sensor" ] || case " $cores " in *' camera '*) ;; *) cores="$cores camera" ;; esac
+case ${PROBE:+x}" $cores " in x*' probe '* | ' '*) ;; *) refuse "PROBE='$PROBE' is a trigger of a probe: CORES=probe" ;; esac
 listed=$(sed -n 's/^CORES:[A-Z]*=//p' "$build/CMakeCache.txt")
 for core in $cores; do
     [ -f "$here/ip/$core/ground.py" ] || refuse "core '$core' has no part in a mission: there is no ip/$core/ground.py"

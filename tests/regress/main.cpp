@@ -37,10 +37,20 @@ struct Options {
     bool list = false, kept = false, make = false, plan = false, prepare = false;
 };
 
+std::regex regexOf(const std::string& variable, const std::string& text) {
+    try {
+        return std::regex(text);
+    } catch (const std::regex_error&) {
+        throw std::runtime_error(fmt::format(
+            "{}='{}' is no regular expression, in which .* is any text", variable, text));
+    }
+}
+
 std::vector<Test> choose(const std::vector<Test>& all, const Selection& selection,
                          const History& history) {
     std::vector<Test> chosen;
-    const std::regex name(selection.name), label(selection.label);
+    const std::regex name = regexOf("NAME", selection.name),
+                     label = regexOf("LABEL", selection.label);
     const bool exact = std::any_of(all.begin(), all.end(),
                                    [&](const Test& test) { return test.name == selection.name; });
     for (const Test& test : all) {
@@ -220,9 +230,14 @@ int nothingChosen(const Options& options, const std::vector<Test>& all) {
                   << " since the last run.\n";
         return 0;
     }
-    std::cerr << "regress: no test is chosen by this"
-              << (options.selection.name.empty() ? "" : ": NAME='" + options.selection.name + "'")
-              << "; `ctest --test-dir " << options.build << " -N` lists their names.\n"
+    std::string given;
+    for (const auto& [variable, value] :
+         std::map<std::string, std::string>{{"BLOCK", options.selection.block},
+                                            {"LABEL", options.selection.label},
+                                            {"NAME", options.selection.name}})
+        given += value.empty() ? "" : " " + variable + "='" + value + "'";
+    std::cerr << "regress: no test is chosen by" << given << "; `ctest --test-dir " << options.build
+              << " -N` lists their names.\n"
               << known(all) << '\n';
     return 2;
 }

@@ -14,7 +14,7 @@ refused() { # words, then the command
 # In this project, with all that the Makefile's recipes ask of a build.
 entrance() {
     mkdir -p cmake ip/fir
-    cp "$source/cmake/configure.sh" "$source/cmake/ninja.sh" cmake
+    cp "$source/cmake/configure.sh" "$source/cmake/set.sh" "$source/cmake/ninja.sh" cmake
     printf '#!/bin/sh\n' >cmake/setup.sh && chmod +x cmake/setup.sh
     cp "$source/ip/wave.sh" "$source/ip/test.sh" ip && touch ip/fir/fir_test.cpp
     mkdir -p tests/bench tests/regress && cp "$source/tests/bench/figures.py" tests/bench && cp "$source/tests/regress/bisect.sh" tests/regress
@@ -57,9 +57,9 @@ bad() { here "$@" && [ $status -ne 0 ] || fail "make $* succeeds"; }
 
 case $case in
 commands_run) # a variable's value that cannot be is refused in the user's words: so each reaches its program
+    mkdir flight && echo '{}' >flight/flight.jsonl && echo up >flight/status
     refused "THRESHOLD is 0..255 grey levels, not '300'" run THRESHOLD=300
     refused "LOSS is the share .* not '7'" run LOSS=7
-    refused "SEED is a whole number, not 'abc'" run SEED=abc
     refused "PORT is 0..65535, and 0 is any, not 'x'" run PORT=x
     refused "CPU is host or m3, not 'x'" run CPU=x
     refused "no program 'x'" run APP=x
@@ -67,14 +67,15 @@ commands_run) # a variable's value that cannot be is refused in the user's words
     refused "OPEN=1 flies in the clear, KEY='/none' does not" run OPEN=1 KEY=/none
     refused "size '96x64k'" run SIZE=96x64k OUT="$work/flight"
     refused "cannot read picture '/none'" run IMAGE=/none OUT="$work/flight"
-    refused "cannot read /none" run PINS=/none OUT="$work/flight"
+    hasNot 'REPLAY=' # which would be of an earlier flight, still in the folder
+    refused "cannot read PINS='/none'" run PINS=/none OUT="$work/flight"
+    refused "PROBE='fir.go=1' is a trigger of a probe: CORES=probe" run PROBE=fir.go=1 OUT="$work/flight"
+    refused "OUT='/proc/none' is no folder" run OUT=/proc/none
+    refused "FROM='x' TO='' are no span" run REPLAY="$work/flight" FROM=x # before a simulator is built for it
+    refused "FROM='2' TO='1' are no span" run REPLAY="$work/flight" FROM=2 TO=1
     refused "cannot read firmware '/none'" run UPDATE=/none CPU=m3 OUT="$work/flight"
     refused "no flight was recorded in '/none'" run REPLAY=/none
     refused "where a flight was recorded" gdb REPLAY=/none OUT="$work/replay"
-    # A flight that is refused does not offer the replay of an earlier one, which is still in the folder.
-    echo '{}' >flight/flight.jsonl && echo up >flight/status
-    refused "cannot read picture '/none'" run IMAGE=/none OUT="$work/flight"
-    hasNot 'REPLAY='
     printf 'print $pc\nkill\n' >commands
     "$source/tests/regress/test/make_in.sh" "$source" "$source" "$build" gdb SIZE=96x64 OUT="$work/gdb" <commands >out.txt 2>&1 || fail "gdb"
     has 'Reset_Handler'
@@ -82,7 +83,10 @@ commands_run) # a variable's value that cannot be is refused in the user's words
     [ $status -eq 0 ] && has '^Written: build/firmware.json' || fail "firmware"
     user faults NAME=no_memory MOMENTS=1 SEEDS=1 SEED=2
     [ $status -eq 0 ] && has '^faults: 1 moments of seeds 2 to 2, 0 failed' || fail "faults"
-    for wrong in MINUTES=abc FUZZED=0 REPEAT=0 NIGHTLY=x MOMENTS=x SEEDS=x DRAW=x TESTS=x; do refused "${wrong%=*}='${wrong#*=}' is not a number" help "$wrong"; done
+    for wrong in JOBS=abc MINUTES=abc FUZZED=0 REPEAT=0 NIGHTLY=x MOMENTS=x SEEDS=x DRAW=x TESTS=x WAVES=-1 SEED=-1 SEED=7x BUDGET=0 BUDGET=1x; do
+        refused "${wrong%=*}='${wrong#*=}' is not a \(whole \)\?\(number\|time\|local or slurm\)" help "$wrong"
+    done
+    refused "LAUNCHER='pbs' is not local or slurm" help LAUNCHER=pbs
     refused 'faults: none is called nonsense; there are clock_step' faults NAME=nonsense
     refused 'there is no commit BASE=none' synth BASE=none
     ;;

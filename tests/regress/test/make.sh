@@ -71,12 +71,16 @@ printf 'cmake_minimum_required(VERSION 3.25)\nproject(moved NONE)\n' >"$work/old
 mv "$work/old" "$work/new"
 said=$(cd "$work/new" && "$configure" build 2>&1) || { echo "$said" >&2 && exit 1; }
 echo "$said" | grep -q "build was made for the tree in $work/old: made anew" || { echo "$said" >&2 && exit 1; }
+# A value that CMake refuses is not kept: it would fail whatever is made next.
+printf 'if(WRONG)\n  message(FATAL_ERROR "WRONG is ${WRONG}")\nendif()\n' >>"$work/new/CMakeLists.txt"
+said=$(cd "$work/new" && "${configure%/*}/set.sh" build -DWRONG=here 2>&1) && { echo "WRONG=here is accepted" >&2 && exit 1; }
+case $said in *'WRONG is here'*) ;; *) echo "$said" >&2 && exit 1 ;; esac
+said=$(cmake "$work/new/build" 2>&1) || { echo "kept: $said" >&2 && exit 1; }
 
 # One block's tests need its programs, and no more.
 needed=$("$2/tests/regress/regress" --build "$2" --prepare --list --block bus)
 [ "$(echo "$needed" | wc -l)" -lt 20 ] && echo "$needed" | grep -q '^tests/bus/test_bus_decoder$' || { echo "for BLOCK=bus is built: $needed" >&2 && exit 1; }
-if said=$(make JOBS=abc help 2>&1); then echo "JOBS=abc is accepted" >&2 && exit 1; fi
-echo "$said" | grep -q "JOBS='abc' is not a number from 1 on" || { echo "$said" >&2 && exit 1; }
+[ "$(make -s --eval 'force: ; @echo "$(FORCE)$(LIVE)"' force FORCE=0 LIVE=1)" = 1 ] || { echo "FORCE=0 is not off" >&2 && exit 1; }
 
 # What `make test` runs with sanitizers: a program without the label would go unseen.
 for program in test_os_cases test_link test_engine test_icec; do

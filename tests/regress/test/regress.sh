@@ -238,7 +238,7 @@ END
     run --prepare --name script.tool
     [ $status -eq 0 ] && has '^Building tool ' && [ -e build/main/tool ] && [ ! -e build/main/other ] || fail "more or less is built than a test needs"
     run --prepare --name '^test_a.Nobody'
-    [ $status -eq 2 ] && has "no test is chosen by this: NAME='^test_a.Nobody'; .ctest --test-dir" || fail "a name that no test has"
+    [ $status -eq 2 ] && has "no test is chosen by NAME='^test_a.Nobody'; .ctest --test-dir" || fail "a name that no test has"
     git checkout -q tests/room/CMakeLists.txt
     printf 'add_test(NAME test_late_NOT_BUILT COMMAND false)\n' >>tests/room/CMakeLists.txt
     cmake build/main >/dev/null
@@ -259,6 +259,8 @@ selection)
     run --name nothing
     [ $status -eq 2 ] || fail "exit status $status, not 2, where nothing is chosen"
     has "labels: formal rtl"
+    run --name '*'
+    [ $status -eq 2 ] && has "^regress: NAME='\*' is no regular expression" || fail "a pattern that is none"
     run --build nowhere
     [ $status -eq 2 ] || fail "exit status $status, not 2, without a build"
     ;;

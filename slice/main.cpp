@@ -163,7 +163,7 @@ bool compile(const std::string& file, const Options& o, Dependencies& dependenci
     Diagnostics diagnostics(std::cerr);
     Unit unit = compileUnit(p.text, file, o.rules, diagnostics);
     if (diagnostics.errors() == 0)
-        checkC(unit, diagnostics);
+        checkC(unit, names, diagnostics);
     std::vector<hw::Block> blocks;
     if (diagnostics.errors() == 0 && wantsHardware(o))
         blocks = hw::mapHardware(unit, diagnostics);

@@ -165,12 +165,10 @@ void checkInner(const Declaration& d, CNames& names) {
 
 } // namespace
 
-void checkC(const Unit& unit, Diagnostics& diagnostics) {
+void checkC(const Unit& unit, const CFileNames& files, Diagnostics& diagnostics) {
     CNames names(unit, diagnostics);
-    std::string base = unit.file.substr(unit.file.rfind('/') + 1);
-    base.resize(std::min(base.rfind('.'), base.size()));
     for (const char* own : {"_ice_valueTypes", "_sliceChecksums"})
-        names.add(cFileName(base, own), base + own, {});
+        names.add(cFileName(files, own), files.base + own, {});
     for (const auto& d : unit.declarations)
         if (!d->isLocal)
             names.add(*d);

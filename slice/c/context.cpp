@@ -23,11 +23,11 @@ std::string CContext::header() const {
 }
 
 std::string CContext::valueTable() const {
-    return cFileName(names.base, "_ice_valueTypes");
+    return cFileName(names, "_ice_valueTypes");
 }
 
 std::string CContext::checksumTable() const {
-    return cFileName(names.base, "_sliceChecksums");
+    return cFileName(names, "_sliceChecksums");
 }
 
 bool CContext::usesClasses() const {

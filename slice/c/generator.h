@@ -17,14 +17,14 @@ struct CFileNames {
     std::string base;                  // "Printer"
     std::string headerExtension = "h"; // without the dot
     std::string sourceExtension = "c";
-    std::string path;                  // of the header, as others include it: its guard
+    std::string path;                  // "folder/Printer.h": the header, as others include it
     std::string includeDir;            // before the header's name in the sources, may be empty
     bool checksums = false;            // a table of them, too
     std::vector<std::string> includes; // headers of the Slice files that the main file includes
 };
 
 // Says what C cannot map, or would map to one name twice. Call it before generateC.
-void checkC(const Unit& unit, Diagnostics& diagnostics);
+void checkC(const Unit& unit, const CFileNames& names, Diagnostics& diagnostics);
 
 std::vector<GeneratedFile> generateC(const Unit& unit, const CFileNames& names);
 

@@ -12,14 +12,10 @@ using DKind = Declaration::Kind;
 
 // "ICE_METRICS_ICE_H" of Ice/Metrics.ice
 std::string guardOf(const CContext& c) {
-    std::string path = c.names.path.empty() ? c.header() : c.names.path;
-    std::string guard = path.substr(0, path.rfind('.')) + "_ICE_" + c.names.headerExtension;
-    for (char& ch : guard) {
-        bool isSmall = ch >= 'a' && ch <= 'z';
-        bool isKept = (ch >= '0' && ch <= '9') || (ch >= 'A' && ch <= 'Z');
-        ch = isSmall ? static_cast<char>(ch - 32) : isKept ? ch : '_';
-    }
-    return guard[0] >= '0' && guard[0] <= '9' ? "SLICE_" + guard : guard;
+    std::string guard = cFileName(c.names, "_ICE_" + c.names.headerExtension);
+    for (char& ch : guard)
+        ch = ch >= 'a' && ch <= 'z' ? static_cast<char>(ch - 32) : ch;
+    return guard;
 }
 
 // Interfaces and classes may be declared by several files: C90 wants one typedef.

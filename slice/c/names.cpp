@@ -113,11 +113,12 @@ std::string cEnumerator(const Declaration& owner, const std::string& name) {
     return prefix + name;
 }
 
-std::string cFileName(const std::string& base, const char* what) {
-    std::string s;
-    for (char ch : base)
-        s += (ch >= '0' && ch <= '9') || (ch >= 'A' && ch <= 'Z') || (ch >= 'a' && ch <= 'z') ? ch
-                                                                                              : '_';
+std::string cFileName(const CFileNames& names, const std::string& what) {
+    auto isDigit = [](char ch) { return ch >= '0' && ch <= '9'; };
+    auto isLetter = [](char ch) { return (ch >= 'A' && ch <= 'Z') || (ch >= 'a' && ch <= 'z'); };
+    std::string s = isDigit(names.path[0]) ? "Slice_" : "";
+    for (char ch : names.path.substr(0, names.path.rfind('.')))
+        s += isDigit(ch) || isLetter(ch) ? ch : '_';
     return s + what;
 }
 

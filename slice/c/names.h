@@ -5,7 +5,7 @@
 #ifndef SLICE_C_NAMES_H
 #define SLICE_C_NAMES_H
 
-#include "front/ast.h"
+#include "c/generator.h"
 #include <string>
 
 // Module_Sub_Name
@@ -28,8 +28,8 @@ std::string cType(const Type& type);
 std::string cEnumerator(const Declaration& owner, const std::string& name);
 // A constant's value as an expression; a Long's is an initialiser {low, high}.
 std::string cValue(const Literal& value, const Type& type);
-// The name of something that a generated file has once: "File_what".
-std::string cFileName(const std::string& base, const char* what);
+// The name of something that there is once for a Slice file: "Folder_File_what".
+std::string cFileName(const CFileNames& names, const std::string& what);
 // "text" with escapes, so that any bytes survive.
 std::string cString(const std::string& bytes);
 // True if icec.h declares the type itself; only its stream functions are generated.

@@ -33,7 +33,7 @@ void Writer::line(std::string_view text, const Values& values) {
         return blank();
     size_t indent = filled[0] == '#' ? 0 : indent_ * 4;
     constexpr size_t columns = 100;
-    bool breakable = filled[0] != '#' && filled[0] != '/' && filled[0] != ' ';
+    bool breakable = std::string_view("#/- ").find(filled[0]) == std::string::npos;
     while (breakable && indent + filled.size() > columns) {
         size_t at = std::string::npos;
         for (std::string_view behind : {", ", " = ", " && "}) {

@@ -283,8 +283,12 @@ Declaration& Parser::declareType(Declaration::Kind kind, bool mayBeForward) {
         return d;
     }
     if (earlier->kind != kind || !mayBeForward || (!earlier->isForward && !isSymbol(";"))) {
-        error(begin, "'" + called + "' is defined already, as " + kindName(earlier->kind) +
-                         " at line " + std::to_string(earlier->at.line));
+        bool isAgain = earlier->at.file == begin.file && earlier->at.line == begin.line &&
+                       earlier->at.column == begin.column;
+        error(begin, "'" + called + "' is defined already" +
+                         (isAgain ? ": this file is included twice; begin it with #pragma once"
+                                  : std::string(", as ") + kindName(earlier->kind) + " at line " +
+                                        std::to_string(earlier->at.line)));
         return d;
     }
     if (earlier->isLocal != d.isLocal)

@@ -185,6 +185,9 @@ void registers(Writer& w, const Block& b) {
     w.line("  end process;");
 }
 
+// Between the signals that a process waits for: one a line, since their names may be long.
+const std::string nextSignal = ",\n                   ";
+
 // The lines of the case statement that say what each word reads as. Appends to `signals` the
 // signals that they read.
 std::vector<std::string> shownWords(const Block& b, std::string& signals) {
@@ -197,7 +200,7 @@ std::vector<std::string> shownWords(const Block& b, std::string& signals) {
     };
     auto vector = [&](unsigned width, const std::string& what) {
         lines.push_back("        data(" + number(width - 1) + " downto 0) := " + what + ";");
-        signals += ", " + what;
+        signals += nextSignal + what;
     };
     word(0, "ID");
     lines.push_back("        data := " + hex(b.type << 16 | b.version) + ";");
@@ -213,7 +216,7 @@ std::vector<std::string> shownWords(const Block& b, std::string& signals) {
         if (c.isLong) {
             show(c.bit, 1, c.name + "_busy");
             show(refusedLsb + c.bit, 1, c.name + "_refused");
-            signals += ", " + c.name + "_busy, " + c.name + "_refused";
+            signals += nextSignal + c.name + "_busy" + nextSignal + c.name + "_refused";
         }
     if (b.pageBits) {
         word(page, "PAGE");
@@ -232,7 +235,7 @@ std::vector<std::string> shownWords(const Block& b, std::string& signals) {
                 for (const Piece& p : own.pieces) {
                     show(p.lsb, p.width, portOf(c, p, true));
                     if (p.portLsb == 0)
-                        signals += ", " + c.name + "_" + p.name + "_i";
+                        signals += nextSignal + c.name + "_" + p.name + "_i";
                 }
         }
     return lines;
@@ -242,14 +245,7 @@ void reads(Writer& w, const Block& b) {
     std::string list = addressed(b);
     std::vector<std::string> words = shownWords(b, list);
     w.line();
-    // within 100 columns
-    std::string head = "  reads : process (" + list + ")";
-    for (size_t at; head.size() > 100; head.erase(0, at)) {
-        at = head.rfind(", ", 97) + 1;
-        w.line(head.substr(0, at));
-        head.replace(at, 1, 19, ' ');
-    }
-    w.line(head);
+    w.line("  reads : process (" + list + ")");
     w.line("    variable data : std_logic_vector(31 downto 0);");
     w.line("  begin");
     w.line("    data := (others => '0');");

@@ -94,9 +94,16 @@ grep -q '#include "Lib/Base.h"' out/Lib/Middle.h || fail 'Middle.h does not incl
 grep -q 'More_Amount ((Ice_Int)7)' out/Top.h || fail '-D does nothing'
 expect 0 '' "$slice2c" -Islice -DWITH_MORE=7 -UWITH_MORE slice/Top.ice --output-dir out
 ! grep -q More_ out/Top.h || fail '-U does nothing'
+# Two files of one name go into one program; a name may begin with a digit.
+mkdir slice/2nd
+echo 'module Second { class Node { int x; }; };' >slice/2nd/Base.ice
+printf '#include <Lib/Base.ice>\n#include <2nd/Base.ice>\nmodule Both { struct S { Lib::Node a; Second::Node b; }; };\n' >slice/Both.ice
+expect 0 '' "$slice2c" -Islice slice/Both.ice --output-dir out
+expect 0 '' "$slice2c" -Islice slice/2nd/Base.ice --output-dir out/2nd
+gcc -r -I"$sw/base" -I"$sw/icec" -Iout -o linked.o out/Both_types.c out/Lib/Base_types.c out/2nd/Base_types.c
 for cc in gcc clang; do
     command -v $cc >/dev/null || continue
-    for c in out/*.c out/Lib/*.c; do
+    for c in out/*.c out/Lib/*.c out/2nd/*.c; do
         $cc -std=c90 -pedantic -Wall -Wextra -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Werror -fsyntax-only \
             -I"$sw/base" -I"$sw/icec" -Iout -Iout/Lib "$c"
     done
@@ -137,6 +144,8 @@ printf 'module L {\r\n struct S { int a; };\r\n};' >crlf.ice
 printf '#include <crlf.ice>\nmodule M { struct T { L::S a; }; };' >without.ice
 expect 0 '' "$slice2c" -I . crlf.ice without.ice --output-dir x
 [ ! -s log ] || { cat log && fail 'a line end is spoken of'; }
+printf '#include <crlf.ice>\n#include <crlf.ice>\n' >twice.ice
+expect 1 'crlf.ice:2:9: error: .S. is defined already: this file is included twice; begin it with #pragma once' "$slice2c" -I . twice.ice
 # A full disk.
 for option in -E --depend --depend-xml; do
     ! "$slice2c" $option crlf.ice >/dev/full 2>log || fail "$option: no error although nothing could be written"

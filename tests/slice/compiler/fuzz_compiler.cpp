@@ -14,16 +14,17 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     std::ostringstream out;
     Diagnostics diagnostics(out);
     Unit unit = compileUnit(text, "Fuzz.ice", {}, diagnostics);
+    CFileNames names;
+    names.base = "Fuzz";
+    names.path = "Fuzz.h";
+    names.checksums = true;
     if (diagnostics.errors() == 0)
-        checkC(unit, diagnostics);
+        checkC(unit, names, diagnostics);
     if (diagnostics.errors() > 0) {
         if (out.str().empty())
             std::abort(); // errors without a message
         return 0;
     }
-    CFileNames names;
-    names.base = "Fuzz";
-    names.checksums = true;
     if (generateC(unit, names).empty())
         std::abort();
     return 0;

@@ -39,11 +39,18 @@ Changes::Changes(const std::string& source, const std::string& build, const std:
     environment_ = {{"GIT_INDEX_FILE", folder + "/index"},
                     {"GIT_OBJECT_DIRECTORY", folder + "/objects"},
                     {"GIT_ALTERNATE_OBJECT_DIRECTORIES", linesOf(objects.text).at(0)}};
-    if (git({"add", "--all"}).status != 0)
-        return;
-    const Output tree = git({"write-tree"});
-    if (tree.status == 0)
-        tree_ = linesOf(tree.text).at(0);
+    tree_ = writeTree();
+}
+
+std::string Changes::writeTree() const {
+    const Output added = git({"add", "--all"}), tree = git({"write-tree"});
+    return added.status || tree.status ? "" : linesOf(tree.text).at(0);
+}
+
+std::vector<std::string> Changes::meanwhile() const {
+    const std::string now = tree_.empty() ? "" : writeTree();
+    return now.empty() ? std::vector<std::string>()
+                       : linesOf(git({"diff", "--name-only", "--no-renames", tree_, now}).text);
 }
 
 Output Changes::git(std::vector<std::string> words) const {

@@ -28,12 +28,16 @@ public:
     // the commit.
     std::string since(const std::optional<Pass>& pass, const Test& test, const std::string& seed);
 
+    // Returns the files that have changed since the tree was noted, which is while the tests ran.
+    std::vector<std::string> meanwhile() const;
+
 private:
     struct File {
         std::string path;
         unsigned line, lines; // the first that differs, how many do; 0: it has no lines
     };
 
+    std::string writeTree() const;
     Output git(std::vector<std::string> words) const;
     const std::vector<File>* differing(const std::string& from);
     std::set<std::string> inputsOf(const Test& test);

@@ -29,7 +29,8 @@ std::string reasonOf(const std::string& log) {
                                     R"(^icesoc-sim: [0-9.]+ s simulated|^-- \S+ \S+ XBeeAT: )",
                                     std::regex::icase);
     static const std::regex ofFile(R"(^%(Error|Warning)[^ ]*: [^ ]+:\d+:|)"
-                                   R"(^[^ ]+:\d+:(\d+:)? *(fatal error|error|warning):|)"
+                                   R"(^[^ ]+:\d+:(\d+:)? *((fatal|runtime) error|error|warning):|)"
+                                   R"(^SUMMARY: \S+Sanitizer: |)"
                                    R"(^[^ ]+\.vhdl?:\d+:\d+:)");
     std::istringstream lines(log);
     std::string last, reason, first;
@@ -142,6 +143,9 @@ std::vector<Failure> examine(const std::vector<Result>& results, const std::vect
         Failure failure;
         failure.result = result;
         failure.reason = reasonOf(result.log);
+        if (!result.end.empty() || failure.reason.empty())
+            failure.reason = (result.end.empty() ? "failed" : result.end) +
+                             (failure.reason.empty() ? " without a word" : ": " + failure.reason);
         failure.about = failure.reason;
         failure.bucket = bucketOf(failure.reason);
         failure.ownAssertion = findAssertion(failure);

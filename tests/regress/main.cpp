@@ -268,8 +268,8 @@ std::vector<Result> run(const std::vector<Round>& rounds, const Options& options
 Properties propertiesOf(const std::vector<Failure>& failures) {
     Properties properties;
     for (const Failure& failure : failures) {
-        auto& of =
-            properties[failure.result.name] = {{"repeat", failure.repeat}, {"log", failure.log}};
+        auto& of = properties[failure.result.name] = {
+            {"reason", failure.reason}, {"repeat", failure.repeat}, {"log", failure.log}};
         if (!failure.wave.empty())
             of["wave"] = failure.wave;
         if (!failure.changed.empty())
@@ -331,7 +331,12 @@ int regress(const Options& options) {
     }
     Changes changes(options.source, options.build, options.out);
     auto start = std::chrono::steady_clock::now();
+    adoptOrphans();
     auto results = run(rounds, options, history);
+    for (const std::string& each : endOrphans())
+        std::cout << "A test has left behind, and it was ended: " << each << '\n';
+    for (const std::string& each : changes.meanwhile())
+        std::cout << "Changed while the tests ran, by one of them or by you: " << each << '\n';
     double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     auto failures = examine(results, all, options.out);
@@ -340,8 +345,6 @@ int regress(const Options& options) {
             if (test.name == failure.result.name)
                 failure.changed =
                     changes.since(history.lastPass(test.name), test, failure.result.seed);
-    addWaves(failures, all, options.source, options.build, options.launcher, options.jobs,
-             options.waves);
     const std::string commit = commitOf(options.source);
     auto made = History::makeRun(chosen, results, commit, seconds);
     made["subject"] = subjectOf(options.source);
@@ -349,6 +352,8 @@ int regress(const Options& options) {
     made["reasons"] = reasonsOf(failures);
     history.add(made);
     seeds.update(results, commit);
+    addWaves(failures, all, options.source, options.build, options.launcher, options.jobs,
+             options.waves);
     auto data = gather(history, all, results, failures, options.source);
     data["seeds"] = seeds.list();
     writeReports(data, options.out);

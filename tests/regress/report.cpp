@@ -82,6 +82,18 @@ std::string badge(unsigned passed, unsigned failed) {
         width, value, width - 78, failed ? "#c0392b" : "#2e8b57");
 }
 
+// Text in a table of Markdown.
+std::string cell(std::string text) {
+    for (const auto& [from, to] : {std::pair{"&", "&amp;"}, {"<", "&lt;"}, {"\\|", "\\|"}})
+        text = std::regex_replace(text, std::regex(from), to);
+    return text.substr(0, 300);
+}
+
+std::string located(const json& failure) {
+    const std::string place = failure["place"], reason = failure["reason"];
+    return place.empty() ? reason : place + ": " + reason;
+}
+
 std::string markdown(const json& data) {
     std::string text =
         fmt::format("# Regression: {} passed, {} failed, {} skipped\n\n", data["passed"].get<int>(),
@@ -93,12 +105,10 @@ std::string markdown(const json& data) {
         text += fmt::format("| {} | {} | {} |\n", each["name"].get<std::string>(),
                             each["state"].get<std::string>(), each["text"].get<std::string>());
     if (!data["failures"].empty()) {
-        text += "\n| bucket | test | repeat |\n|---|---|---|\n";
+        text += "\n| reason | test | changed | repeat |\n|---|---|---|---|\n";
         for (auto& f : data["failures"])
-            text += fmt::format(
-                "| {} | {} | `{}` |\n",
-                std::regex_replace(f["bucket"].get<std::string>(), std::regex("\\|"), "\\|"),
-                f["name"].get<std::string>(), f["repeat"].get<std::string>());
+            text += fmt::format("| {} | {} | {} | `{}` |\n", cell(located(f)), cell(f["name"]),
+                                cell(f["changed"]), f["repeat"].get<std::string>());
     }
     bool first = true;
     for (auto& each : data["plan"])

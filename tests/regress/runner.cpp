@@ -8,9 +8,28 @@
 #include <map>
 #include <pugixml.hpp>
 #include <regex>
+#include <sstream>
 #include <stdexcept>
 
 namespace fs = std::filesystem;
+
+namespace {
+
+std::string readable(const std::string& log) {
+    constexpr size_t longest = 2000;
+    static const std::regex colour(R"(\[NON-XML-CHAR-0x1B\]\[[0-9;]*m)"); // CTest's word for ESC
+    std::istringstream in(log);
+    std::string text;
+    for (std::string line; std::getline(in, line);)
+        text += (line.size() > longest
+                     ? fmt::format("{} ... {} characters ... {}", line.substr(0, longest / 2),
+                                   line.size(), line.substr(line.size() - longest / 4))
+                     : std::regex_replace(line, colour, "")) +
+                "\n";
+    return text;
+}
+
+} // namespace
 
 std::vector<Result> readJUnit(const std::string& path) {
     pugi::xml_document document;
@@ -23,8 +42,11 @@ std::vector<Result> readJUnit(const std::string& path) {
         result.name = node.attribute("name").value();
         result.seconds = node.attribute("time").as_double();
         std::string status = node.attribute("status").value();
-        result.status = status == "run" ? "passed" : status == "fail" ? "failed" : "skipped";
-        result.log = node.child("system-out").text().get();
+        result.log = readable(node.child("system-out").text().get());
+        const bool missing = result.log.rfind("Unable to find", 0) == 0; // its program
+        result.status = status == "run"               ? "passed"
+                        : status == "fail" || missing ? "failed"
+                                                      : "skipped";
         results.push_back(std::move(result));
     }
     return results;
@@ -42,16 +64,20 @@ void writeJUnit(const std::string& path, const std::vector<Result>& results,
         node.append_attribute("time") = result.seconds;
         if (result.status == "failed") {
             ++failures;
+            std::string message = "SEED=" + result.seed;
             if (auto found = properties.find(result.name); found != properties.end()) {
                 auto list = node.append_child("properties");
                 for (const auto& [name, value] : found->second) {
+                    if (name == "reason") {
+                        message = value + " (" + message + ")";
+                        continue;
+                    }
                     auto property = list.append_child("property");
                     property.append_attribute("name") = name.c_str();
                     property.append_attribute("value") = value.c_str();
                 }
             }
-            node.append_child("failure").append_attribute("message") =
-                ("SEED=" + result.seed).c_str();
+            node.append_child("failure").append_attribute("message") = message.c_str();
             node.append_child("system-out").text().set(result.log.c_str());
         } else if (result.status == "skipped") {
             ++skipped;
@@ -78,34 +104,35 @@ std::vector<Result> runHere(const std::vector<Test>& tests, const RunOptions& op
     std::regex started(R"(^ *Start +\d+: (\S+))");
     unsigned done = 0;
     std::map<std::string, std::string> ends; // CTest's words: "***Exception: SegFault"
-    Output out = run({"ctest", "--test-dir", options.build, "-I", fs::absolute(list), "-j",
-                      std::to_string(options.jobs), "--output-junit", junit,
-                      "--test-output-size-passed", "4096", "--test-output-size-failed", "200000"},
-                     {{"SEED", options.seed}}, [&](const std::string& line) {
-                         std::smatch match;
-                         if (std::regex_match(line, match, started) && options.onStart)
-                             options.onStart(match[1]);
-                         if (!std::regex_match(line, match, ended))
-                             return;
-                         Result result;
-                         result.name = match[1];
-                         std::string how = match[2];
-                         ends[result.name] = how;
-                         result.status = how.find("Passed") != std::string::npos    ? "passed"
-                                         : how.find("Skipped") != std::string::npos ? "skipped"
-                                                                                    : "failed";
-                         result.seconds = std::stod(match[3]);
-                         result.seed = options.seed;
-                         if (options.onEnd)
-                             options.onEnd(result, ++done, static_cast<unsigned>(tests.size()));
-                     });
+    Output out =
+        run({"ctest", "--test-dir", options.build, "-I", fs::absolute(list), "-j",
+             std::to_string(options.jobs), "--output-junit", junit, "--test-output-size-passed",
+             "4096", "--test-output-size-failed", "200000", "--test-output-truncation", "middle"},
+            {{"SEED", options.seed}}, [&](const std::string& line) {
+                std::smatch match;
+                if (std::regex_match(line, match, started) && options.onStart)
+                    options.onStart(match[1]);
+                if (!std::regex_match(line, match, ended))
+                    return;
+                Result result;
+                result.name = match[1];
+                std::string how = match[2];
+                ends[result.name] = how;
+                result.status = how.find("Passed") != std::string::npos    ? "passed"
+                                : how.find("Skipped") != std::string::npos ? "skipped"
+                                                                           : "failed";
+                result.seconds = std::stod(match[3]);
+                result.seed = options.seed;
+                if (options.onEnd)
+                    options.onEnd(result, ++done, static_cast<unsigned>(tests.size()));
+            });
     if (!fs::exists(junit))
         throw std::runtime_error("ctest gave no results:\n" + out.text);
     auto results = readJUnit(junit);
     for (Result& result : results) {
         result.seed = options.seed;
-        if (result.status == "failed" && result.log.find_first_not_of(" \n") == std::string::npos)
-            result.log = ends[result.name]; // a crash says nothing itself
+        if (const std::string& how = ends[result.name]; how != "***Failed" && how != "***Not Run")
+            result.end = std::regex_replace(how, std::regex("[*]{3}(Exception: *)?"), "");
     }
     return results;
 }

@@ -14,6 +14,7 @@ struct Result {
     std::string status; // "passed", "failed", "skipped"
     double seconds = 0;
     std::string log;
+    std::string end; // of one that failed: "SegFault", "Timeout"; "" where it ended by itself
     std::string seed;
 };
 
@@ -33,10 +34,12 @@ std::vector<Result> runHere(const std::vector<Test>& tests, const RunOptions& op
 // share.
 std::vector<Result> runSlurm(const std::vector<Test>& tests, const RunOptions& options);
 
-// The results of a JUnit file that CTest wrote.
+// The results of a JUnit file that CTest wrote: logs without colours and with lines of no more than
+// 2,000 characters: regular expressions recurse over longer ones.
 std::vector<Result> readJUnit(const std::string& path);
 
-// JUnit of all results, for CI systems; `properties` of a failed one by its name: {"wave": file}.
+// JUnit of all results, for CI systems; `properties` of a failed one by its name: {"wave": file};
+// its "reason" is the failure's message.
 using Properties = std::map<std::string, std::map<std::string, std::string>>;
 void writeJUnit(const std::string& path, const std::vector<Result>& results,
                 const Properties& properties);

@@ -64,9 +64,32 @@ results)
     has 'failures="2"' build/regress/junit.xml
     has "2 failed" build/regress/badge.svg
     has "test_d.Crash" build/regress/summary.md
-    has "1 x  \*\*\*Exception: SegFault" # a crash without a word
+    has "1 x  SegFault without a word"
+    has 'message="value 5 is not 7 &lt;/script> (SEED=5)"' build/regress/junit.xml
+    has '| x.cpp:12: value 5 is not 7 &lt;/script> | test_b.Bad | ' build/regress/summary.md
     hasNot "not 7 </script>" build/regress/report.html
     [ "$(wc -c <build/regress/report.html)" -lt 2000000 ] || fail "the page is over 2 MB"
+    ;;
+rude) # what a test does that is not its place: its first line says it, and the run goes on
+    while IFS='^' read -r name does says; do
+        echo "add_test(NAME test_r.$name COMMAND sh -c [=[$does]=])" >>tests/room/CMakeLists.txt
+        echo "$says" >>said
+    done <<'END'
+Hang^exec sleep 1000^^1 x  Timeout
+Loud^yes 'a line' | head -c 1000000; echo; echo 'x is 3'; exit 1^^1 x  x is 3$
+Long^head -c 300000 /dev/zero | tr '\0' x; exit 1^^1 x  \.\.\.$
+Crash^echo begun; kill -SEGV $$^^1 x  SegFault: begun$
+Mute^exit 3^^1 x  failed without a word$
+Red^printf '\033[31mx.c:1: error: red\033[0m\n'; exit 1^^1 x  x.c:1: error: red$
+Leaves^setsid sleep 1000 >/dev/null 2>&1 &^A test has left behind, and it was ended: .*sleep 1000 (in build/main/tests/room)$
+Writes^echo >../../../../written^^Changed while the tests ran, .*: written$
+END
+    printf 'add_test(NAME test_r.Gone COMMAND /none)\nset_tests_properties(test_r.Hang PROPERTIES TIMEOUT 2)\n' >>tests/room/CMakeLists.txt
+    echo '^1 x  Unable to find executable: /none$' >>said
+    cmake build/main >/dev/null
+    run --name test_r --jobs 4
+    [ $status -eq 1 ] && has '^2 passed, 7 failed, 0 skipped' || fail "exit status $status"
+    while read -r line; do has "$line"; done <said
     ;;
 plan) # which requirement is proven, failed, has not run with these sources, or has no test
     cat >tests/plan.md <<'END'

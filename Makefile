@@ -124,7 +124,7 @@ bench: $(BUILD)/build.ninja ## measure everything that has a figure (tests/bench
 
 firmware: $(BUILD)/build.ninja ## the firmware for the STM32F2: ELF and map in build/main/firmware, table of flash, RAM and stacks
 	@$(NINJA) firmware
-	@sw/target/table.sh $(BUILD)/firmware/uav.map $(BUILD)/sw/target/uav.arm build/firmware.json
+	@sw/sizes.py firmware $(BUILD)/firmware/uav.map $(BUILD)/sw/target/uav.arm build/firmware.json
 
 gdb: setup-tests $(BUILD)/build.ninja ## debug the firmware's ARM binary against the RTL with gdb-multiarch
 	@$(NINJA) mission

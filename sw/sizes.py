@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""sizes: bytes of the firmware's layers, from linkers' maps and objects.
+
+    sizes.py layers SOURCE GENERATED BUILD OUT.json   each layer on a Cortex-M3 at -Os, beside the paper's Table II; RAM and
+                                                      largest frames; fails where one exceeds sw/size_budget.json
+    sizes.py firmware MAP OBJECTS OUT.json            flash and RAM of a firmware by layer; its stacks, by the call graph
+
+layers: `minimal` is the program that flies (sw/apps/minimal), with the minimal run time and link: of each layer what is in the
+image (text and read-only data; the C library and generated code are not counted, as in the paper). `full` is everything that
+the layer's files hold, linked or not.
+"""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+PAPER = {"fsmc": 1116, "radio": 1795, "crypto": 0, "link": 1307, "icec": 2622, "endpoint": 0}  # its layers, and two of ours
+TITLES = {"uav": "application", "Autopilot": "generated stubs", "endpoints": "icec, xbee-at endpoint", "m3": "os", "GNU": "uC/OS-II",
+          "Source": "uC/OS-II", "ARMv7-M": "uC/OS-II"}
+ENTRIES = ("UAV_radioTask", "appMainTask", "clientTask", "watchTask", "idleTask", "EXTI0_Handler", "SysTick_Handler")
+
+
+def sections(path):
+    """(section, address, bytes, file) of what a linker's map says is in the image."""
+    text = open(path).read().partition("Linker script and memory map")[2]
+    text = re.sub(r"^( \.?[A-Za-z_]\S*)\n +(?=0x)", r"\1 ", text, flags=re.M)  # long names have a line of their own
+    for name, address, size, file in re.findall(r"^ (\.?[A-Za-z_]\S*) +0x(\w+) +0x(\w+) (\S.*)$", text, re.M):
+        yield name, int(address, 16), int(size, 16), file
+
+
+def written(path, entries):
+    os.makedirs(os.path.dirname(os.path.abspath(path)), exist_ok=True)
+    with open(path, "w") as file:
+        file.write("[" + ",\n ".join(map(json.dumps, entries)) + "]\n")
+    print(f"Written: {path}")
+
+
+def layers(source, generated, build, output):
+    source, generated = os.path.abspath(source), os.path.abspath(generated)
+    image = list(sections(f"{build}/firmware/minimal.map"))
+    includes = [generated, f"{generated}/slice/Autopilot"] + [f"{source}/sw/{d}" for d in (
+        "base", "os", "os/host", "fsmc", "radio", "crypto", "link", "icec", "icec/endpoints")]
+
+    def linked(layer, wanted):
+        return sum(size for name, _, size, file in image if f"/minimal_{layer}.arm/" in file and re.match(wanted, name))
+
+    def whole(files, *options):
+        """(text and read-only data, RAM) of all that these files hold."""
+        with tempfile.TemporaryDirectory() as work:
+            paths = [str(path) for pattern in files for path in pathlib.Path(source, "sw").glob(pattern)]
+            subprocess.run(["arm-none-eabi-gcc", "-std=c90", "-mcpu=cortex-m3", "-mthumb", "-Os", "-ffunction-sections", "-fdata-sections",
+                            "-fno-merge-constants", *(f"-I{i}" for i in includes), *options, "-c", *paths], cwd=work, check=True)
+            table = subprocess.run(["arm-none-eabi-size", *os.listdir(work)], cwd=work, check=True, capture_output=True, text=True).stdout
+        rows = [line.split() for line in table.splitlines()[1:]]
+        return sum(int(row[0]) for row in rows), sum(int(row[1]) + int(row[2]) for row in rows)
+
+    def deepest(layer):
+        """(bytes, function) of the minimal program's largest frame."""
+        lines = [line.split("\t") for su in pathlib.Path(build, "sw/apps").glob(f"minimal_{layer}.arm/**/*.su") for line in open(su)]
+        return max(((int(size), where.split(":")[3]) for where, size, *_ in lines), default=(0, ""))
+
+    budget, over, entries = json.load(open(f"{source}/sw/size_budget.json")), [], []
+
+    def entry(name, size, limit=0, is_held=True):
+        entries.append({"name": name, "value": size, "unit": "bytes", **({"limit": limit} if limit else {}), "command": "make size"})
+        if is_held and name not in budget:
+            over.append(f'sw/size_budget.json has no "{name}" (it is {size})')
+        elif is_held and size > budget[name]:
+            over.append(f"{name} has grown to {size} bytes, its budget is {budget[name]} (sw/size_budget.json)")
+
+    print("%-10s %8s %8s %8s %8s %9s %s" % ("layer", "minimal", "paper's", "full", "RAM min", "RAM full", "largest frame (minimal)"))
+    small_all = large_all = 0
+    for layer, paper in PAPER.items():
+        small, ram = linked(layer, r"\.(text|rodata)"), linked(layer, r"\.(data|bss)|COMMON")
+        large, large_ram = whole(["icec/endpoints/xbee_endpoint.c" if layer == "endpoint" else f"{layer}/*.c"])
+        print("%-10s %8d %8s %8d %8d %9d %d %s" % (layer, small, paper or "-", large, ram, large_ram, *deepest(layer)))
+        entry(f"minimal.{layer}", small, paper)
+        entry(f"full.{layer}", large)
+        small_all, large_all = small_all + small, large_all + large
+    print("%-10s %8d %8d %8d" % ("all", small_all, sum(PAPER.values()), large_all))
+    entry("minimal.all", small_all, sum(PAPER.values()), is_held=False)
+    unkeyed = whole(["link/*.c"], "-DLINK_SECURE=0")[0]
+    keyed = whole(["link/minimal/*.c", "link/link_wire.c", "link/link_secure.c"], "-DLINK_MINIMAL", "-DLINK_SECURE=1")[0]
+    entry("full.link without keys", unkeyed)
+    entry("minimal.link with keys", keyed)
+    print(f"The full link without keys (LINK_SECURE=0): {unkeyed}; the minimal one with them (LINK_SECURE=1): {keyed}, and crypto")
+    print(f"RAM of the minimal program with all objects: {linked('app', r'[.](data|bss)|COMMON')} bytes, of generated code and servants: "
+          f"{linked('app', r'[.](text|rodata)')} bytes of text")
+    written(output, entries)
+    if over:
+        sys.exit("\n".join("size: " + what for what in over))
+
+
+def firmware(path, objects, output):
+    flash, ram = {}, {}
+    for name, address, size, file in sections(path):
+        kind = re.match(r"\.(text|rodata|data|bss|vectors|noinit)", name)
+        if kind and address and size:
+            folder = os.path.basename(os.path.dirname(file))
+            layer = TITLES.get(folder, folder) if ".arm/" in file else "C library"
+            flash[layer] = flash.get(layer, 0) + (size if kind[1] not in ("bss", "noinit") else 0)
+            ram[layer] = ram.get(layer, 0) + (size if kind[1] in ("bss", "noinit", "data") else 0)
+    print("%-26s %8s %8s" % ("layer", "flash", "RAM"))
+    for layer in flash:
+        print("%-26s %8d %8d" % (layer, flash[layer], ram[layer]))
+    print("%-26s %8d %8d   bytes, stacks of tasks included in RAM\n" % ("all", sum(flash.values()), sum(ram.values())))
+    stacks(objects)
+    written(output, [{"name": f"{what}: {layer}", "value": table[layer], "unit": "bytes", "command": "make firmware"}
+                     for layer in flash for what, table in (("flash", flash), ("RAM", ram))])
+
+
+def stacks(objects):
+    """Prints the deepest stack below each task: frames (-fstack-usage) along the call graph (-fcallgraph-info)."""
+    text = "".join(path.read_text() for path in sorted(pathlib.Path(objects).rglob("*.ci")))
+    name = r'"(?:[^"]*:)?([^":]*)"'
+    frames = {f: int(size) for f, size in re.findall(r"^node: .*?title: " + name + r".*?(\d+) bytes", text, re.M)}
+    calls = {}
+    for caller, called in re.findall(r"^edge: .*?sourcename: " + name + " targetname: " + name, text, re.M):
+        calls.setdefault(caller, {})[called] = True
+    known = {}
+
+    def depth(function):
+        """(bytes, way) of the deepest stack; a circle counts once."""
+        if function not in known:
+            known[function] = (0, [])
+            below, way = max((depth(called) for called in calls.get(function, ()) if called != "__indirect_call"),
+                             key=lambda found: found[0], default=(0, []))
+            known[function] = (frames.get(function, 0) + below, [function] + way * bool(below))
+        return known[function]
+
+    print("%-26s %8s   %s" % ("stack, by analysis", "bytes", "deepest way (calls through pointers and of the C library are not followed)"))
+    for entry in ENTRIES:
+        size, way = depth(entry)
+        print("%-26s %8d   %s" % (entry, size, " > ".join(way[1:])))
+
+
+commands = {"layers": (layers, 4), "firmware": (firmware, 3)}
+command, *words = sys.argv[1:] or [""]
+if command not in commands or len(words) != commands[command][1]:
+    sys.exit(__doc__)
+commands[command][0](*words)

@@ -28,10 +28,6 @@ def role(name, port):
 
 def problem(top, ports, roles):
     """What is wrong with the module's streams, or None."""
-    for r in sorted(set(roles.values())):
-        names = [n for n in ports if roles[n] == r]
-        if r[:2] in ("s_", "m_") and len(names) > 1:
-            return f"{top} has more than one stream {'in' if r[0] == 's' else 'out'}: {', '.join(names)}; the others by PORTS='pin=...'"
     widths = [len(p["bits"]) for n, p in ports.items() if roles[n] in ("s_tdata", "m_tdata")]
     if widths[0] != widths[1] or widths[0] not in ELEMENTS:
         return f"tdata of {top} has {widths[0]} and {widths[1]} bits: it must be 8, 16, 32 or 64 in both directions"
@@ -48,7 +44,7 @@ def setting(name):
     return re.sub(r"^i_|_i$", "", name.lower())
 
 
-def texts(name, top, ports, roles, pin_name, vector, slot):
+def texts(name, top, params, ports, roles, pin_name, vector, slot):
     """The files by their names: interface, module, test, mission."""
     type_name = camel(name)
     by_role = {r: n for n, r in roles.items()}
@@ -83,7 +79,7 @@ module Cores {{
         if r == "setting":
             signal = f"{setting(n)}[{bits - 1}:0]" if bits > 1 else f"{setting(n)}[0]"
         else:
-            signal = to.get(r) or (pin_name(n, p) if not r else f"{bits}'d0" if p["direction"] == "input" else "")
+            signal = to.get(r) or (pin_name(n, p) if not r else f"{{{bits}{{1'b{int(r == 'high')}}}}}" if p["direction"] == "input" else "")
         connections.append(f".{n}({signal})")
     wires = [f"    wire {vector(32)}{setting(n)};" for n in settings]
     wires += [f"    wire set_{setting(n)};" for n in settings]
@@ -137,7 +133,7 @@ module {name} (
         .s_axis_tlast_i(from_last),
         {npi});
 
-    {top} u_core (
+    {top}{params} u_core (
         {separator.join(connections)});
 
     wire unused = &{{1'b0, {"".join(s + ", " for s in unused)}to_keep, to_last, bytes, 1'b0}};
@@ -158,7 +154,8 @@ TEST({type_name}, AnswersAPacket) {{
     for (int i = 0; i < 64; ++i)
         words[i] = static_cast<Ice_{ELEMENTS[element].capitalize()}>(i);
     Cores_{type_name}Packet packet{{64, words}};
-    auto answer = core.process(&packet);
+{"".join(f"    core.set{camel(setting(n))}(1);{chr(10)}" for n in settings)}{"".join(f"    core.bench_.top().{n} = 0; // a pin{chr(10)}" for n, p in pins if p["direction"] == "input")}    Cores_{type_name}Packet answer{{}};
+    ASSERT_NO_THROW(answer = core.process(&packet)) << "no answer: what does the core want at its reset, its settings and its pins?";
     EXPECT_GT(answer.size, 0);
 }}
 

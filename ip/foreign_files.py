@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """foreign_files: what new_foreign.py reads of a third-party core's files: which modules there are, and TOP's ports."""
 import json
@@ -10,6 +11,9 @@ import tempfile
 HERE = os.path.dirname(os.path.abspath(__file__))
 KINDS = {".vhd": "vhdl", ".vhdl": "vhdl", ".v": "verilog", ".sv": "verilog",
          ".vh": "header", ".svh": "header", ".h": "header", ".inc": "header"}
+# Verilator's, for a core in anybody's style.
+FLAGS = ["-Wno-fatal", "-Wno-lint", "-Wno-style", *("-Wno-" + w for w in "TIMESCALEMOD SELRANGE COMBDLY INITIALDLY UNOPTFLAT".split()),
+         "-Werror-MODDUP", "--no-timing"]
 
 
 def fail(text):
@@ -48,57 +52,105 @@ def declared(files, kind):
     return found
 
 
-def check_names(top, files):
-    """Each module is in one file, and none has the name of one of this project's: in the chip there is one of each."""
-    kind = "entity" if is_vhdl(files[0]) else "module"
-    there = declared(files, kind)
-    if top not in (names := [n for n, *_ in there]):
-        fail(f"there is no {kind} '{top}' in FILES; there is {', '.join(names) or 'none'}")
-    if kind == "entity":
-        return
+def only_once(modules, what_to_do):
+    """Where each module is; one that is in two files is an error."""
     first = {}
-    for name, file, line in there:
+    for name, file, line in modules:
         other, at = first.setdefault(name, (file, line))
         if other != file:
-            fail(f"{file}:{line}: module '{name}' is in {other}:{at}, too: leave one of the files out")
+            fail(f"{file}:{line}: module '{name}' is in {other}:{at}, too: {what_to_do}")
+    return first
+
+
+def check_names(slot, top, files):
+    """Each module is in one file, and none has the name of the slot or of one of this project's: in the chip there is one of each.
+    Returns TOP as it is declared."""
+    kind = "entity" if is_vhdl(files[0]) else "module"
+    there = declared(files, kind)
+    names = [n for n, *_ in there]
+    if kind == "entity":  # whose names have no case; GHDL writes them as they are declared
+        top = next((n for n in names if n.lower() == top.lower()), top)
+    if top not in names:
+        fail(f"there is no {kind} '{top}' in FILES; there is {', '.join(names) or 'none'}")
+    if slot in names:
+        fail(f"'{slot}' is the name of a {kind} of the core: give the slot another")
+    first = only_once(there, "leave one of the files out") if kind == "module" else {}
     room = os.path.dirname(HERE)
     ours = [os.path.join(d, f) for r in ("bus", "hdl") for d, _, there in os.walk(os.path.join(room, r)) for f in there
             if f.endswith(".v")]
     for name, file, line in declared(ours, "module"):
+        if name == slot:
+            fail(f"'{slot}' is the name of this project's module in {os.path.relpath(file, room)}: give the slot another")
         if name in first and first[name][0] != file:
             fail(f"{first[name][0]}:{first[name][1]}: module '{name}' has the name of this project's "
                  f"{os.path.relpath(file, room)}:{line}: give it another, where it is used, too")
     for name, file, line in declared([f for f in files if end_of(f) == ".sv"], "package"):
         fail(f"{file}:{line}: package '{name}': Yosys does not read it for the report; make Verilog of it by sv2v")
+    return top
 
 
-def converted(top, files, work):
-    """The entity `top` as one file of Verilog."""
-    out = os.path.join(work, top + ".v")
-    script = os.path.join(HERE, "../cmake/vhdl_to_verilog.sh")
-    run = subprocess.run([script, os.environ.get("GHDL", "ghdl"), work, top, out, *files], capture_output=True, text=True)
-    if run.returncode:
-        fail(f"GHDL does not convert {top}:\n{run.stdout}{run.stderr}".rstrip())
-    return [out]
+# Verilator's and Yosys' words, and what to do about it.
+HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may name headers, too: `include looks for {0} in their folders (a timescale.v may be empty)",
+         r"(?:Module `\\|unknown type `|containing module: ')(\w+)": "FILES lacks the file with module '{0}'",
+         r"object for defparam `(\w+)|no generic \"(\w+)\"": "PARAMS: {top} has no '{0}'",
+         r"\.sv:\d+: ERROR: syntax": "Make Verilog of it by sv2v, which knows all of SystemVerilog"}
 
 
-def read_module(top, files, headers=()):
-    """The module `top` as Yosys has it: its ports in order, and the names of its parameters. `headers`: files in whose
-    folders `include finds more."""
+def run_tool(what, top, command):
+    """Runs a tool that reads the core; what it refuses is an error, with what to do about it. Without `what`: says whether
+    it does."""
+    run = subprocess.run(command, capture_output=True, text=True)
+    if run.returncode and what:
+        said = (run.stdout + run.stderr).rstrip()
+        lines = said.splitlines()
+        hints = [hint.format(*filter(None, m.groups()), top=top) for words, hint in HINTS.items() if (m := re.search(words, said))]
+        fail("\n".join([f"{what} {top}:", *lines[:12], *(["..."] if len(lines) > 12 else []), *hints]))
+    return run.returncode == 0
+
+
+def older(file, folder):
+    """A copy of a file in Verilog for Verilator, in which SystemVerilog's words are names. It has our name, not the file's."""
+    copy = os.path.join(folder, "older_" + os.path.basename(file))
+    with open(copy, "w") as out:
+        out.write(f'`ifdef VERILATOR\n`begin_keywords "1364-2005"\n`endif\n{text_of(file)}\n`ifdef VERILATOR\n`end_keywords\n`endif\n')
+    return copy
+
+
+def read_module(top, files, headers=(), params=(), is_whole=True):
+    """The module `top`: its ports in order, and the names of its parameters. A port that resets registers asynchronously has
+    "reset", the level at which it does. `headers`: files in whose folders `include finds more. `params`: NAME=value of
+    parameters or generics. `is_whole`: all of its modules are in the files."""
     with tempfile.TemporaryDirectory() as work:
+        out = os.path.join(work, top + ".v")
+        chosen = " ".join("-chparam {} {}".format(*p.split("=", 1)) for p in params)
         if is_vhdl(files[0]):
-            files = converted(top, files, work)
-        out = os.path.join(work, "top.json")
-        folders = " ".join("-I" + d for d in folders_of([*files, *headers]))
-        reads = [f"read_verilog -defer {'-sv' if end_of(f) == '.sv' else ''} {folders} {f}" for f in files]
-        script = "; ".join([*reads, f"hierarchy -top {top}", "proc", f"write_json {out}"])
-        run = subprocess.run(["yosys", "-q", "-p", script], capture_output=True, text=True)
-        if run.returncode:
-            hint = "\nFILES may name headers, too: `include finds what is in their folders" if "include file" in run.stderr else ""
-            fail(f"Yosys does not elaborate {top}:\n{run.stdout}{run.stderr}".rstrip() + hint)
-        modules = json.loads(text_of(out))["modules"]
+            os.environ["VHDL_GENERICS"] = " ".join("-g" + p for p in params)
+            run_tool("GHDL does not convert", top, [os.path.join(HERE, "../cmake/vhdl_to_verilog.sh"),
+                                                    os.environ.get("GHDL", "ghdl"), work, top, out, *files])
+            files, chosen = [out], ""
+        folders = ["-I" + d for d in folders_of([*files, *headers])]
+        reads = [f"read_verilog -defer {'-sv' if end_of(f) == '.sv' else ''} {' '.join(folders)} {f}" for f in files]
+        script = "; ".join([*reads, f"hierarchy {'-check' if is_whole else ''} -top {top} {chosen}", "proc", "flatten", f"write_json {out}.json"])
+        run_tool("Yosys does not elaborate", top, ["yosys", "-q", "-p", script])
+        modules = json.loads(text_of(out + ".json"))["modules"]
     module = next(m for n, m in modules.items() if m["attributes"].get("top") or n == top)
+    for cell in module["cells"].values():
+        for port in module["ports"].values():
+            if cell["connections"].get("ARST") == port["bits"] and "ARST_POLARITY" in cell["parameters"]:
+                port["reset"] = cell["parameters"]["ARST_POLARITY"][-1]
     return module["ports"], module.get("parameter_default_values", {})
+
+
+def copies_for_verilator(top, files, headers):
+    """The texts by their files that Verilator reads in place of them; none, where it reads the files themselves."""
+    lint = ["verilator", "--lint-only", *FLAGS, "--top-module", top, *("-I" + d for d in folders_of([*files, *headers]))]
+    if run_tool(None, top, [*lint, *files]):
+        return {}
+    with tempfile.TemporaryDirectory() as work:
+        copies = {f: older(f, work) for f in files if end_of(f) == ".v" and declared([f], "module")}
+        if run_tool(None, top, [*lint, *(copies.get(f, f) for f in files)]):
+            return {f: text_of(c) for f, c in copies.items()}
+    run_tool("Verilator does not read", top, [*lint, *files])
 
 
 def names_of(top, files, bits):
@@ -121,3 +173,8 @@ def names_of(top, files, bits):
                 names.update({value + i: f"{word}{int(first) + i}" for i in range(last - value)})
     return {v: ("CORE_" + n if n in ("ID", "EVENT", "MASK", "PAGE") or not n[0].isalpha() else n)
             for v, n in sorted(names.items())}
+
+
+if __name__ == "__main__":  # foreign_files.py FILE...: the Verilog of all cores of a chip
+    only_once(declared([f for f in sys.argv[1:] if os.path.isfile(f)], "module"),
+              "a chip has one of each: give one of them another name, in a copy, where it is used, too")

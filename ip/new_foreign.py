@@ -2,40 +2,53 @@
 # SPDX-License-Identifier: MIT
 """new_foreign: puts a third-party core in Verilog or VHDL into a slot (docs/recipes.md).
 
-    new_foreign.py NAME TOP wishbone|axil|memory|own|axis FOLDER [CLOCK=Hz] [LIBRARY=name] [ROLE=port...] FILE...
+    new_foreign.py NAME TOP wishbone|axil|apb|memory|own|axis FOLDER [CLOCK=Hz] [LIBRARY=name] [PARAM:NAME=value...] [ROLE=port...] FILE...
 
 Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v, which connects TOP to
 the slot; its registers, with the names that TOP has for their addresses; a test; what a mission calls of it;
 CMakeLists.txt. ROLE=port says what a port is for, instead of its name. Ports that are neither bus, clock, reset nor
 interrupt become pins. CLOCK: the core has a clock of its own, of that frequency at most. VHDL is read by GHDL, which the
-environment names; LIBRARY: the VHDL library that its files say they are in. A core with AXI-Streams (axis) has an operation instead of registers: foreign_axis.py.
+environment names; LIBRARY: the VHDL library that its files say they are in; PARAM: a parameter or generic of TOP. A core with AXI-Streams (axis) has an operation instead of registers: foreign_axis.py.
 """
 import json
 import os
 import re
+import subprocess
 import sys
 
 import foreign_axis
-from foreign_files import check_names, fail, folders_of, is_vhdl, kind_of, names_of, read_module
+from foreign_files import FLAGS, HERE, check_names, copies_for_verilator, fail, folders_of, is_vhdl, kind_of, names_of, read_module
 
-CLOCKS = {"clk", "aclk", "clock"}
-RESETS = {"rst", "reset", "arst", "rstn", "resetn", "aresetn", "nrst"}
-INTERRUPTS = {"int", "inta", "irq", "interrupt"}
+CLOCK = r"[aph]?(clk|clock)"
+RESET = r"[aph]?n?(rst|reset)[nb]?"
+# What stands beside these words in names of other signals: clk_en, gate_clk_pad_i.
+NO_CLOCK = {"en", "ena", "enable", "ce", "sel", "div", "gate", "ext", "pad"}
+INTERRUPTS = {"int", "inta", "intr", "irq", "interrupt"}
 AXI = ["awvalid", "awready", "awaddr", "awprot", "wvalid", "wready", "wdata", "wstrb", "bvalid", "bready", "bresp",
        "arvalid", "arready", "araddr", "arprot", "rvalid", "rready", "rdata", "rresp"]
 WISHBONE = {"input": {"cyc": "cyc", "stb": "stb", "we": "we", "adr": "adr", "addr": "adr", "sel": "sel", "dat": "wdata",
                       "data": "wdata"},
             "output": {"ack": "ack", "err": "err", "rty": "rty", "stall": "stall", "dat": "rdata", "data": "rdata"}}
+# "apb": AMBA APB 2 to 4 (ARM IHI 0024), without waking and user signals.
+APB = {"psel": "stb", "penable": "enable", "pwrite": "we", "paddr": "adr", "pwdata": "wdata", "pstrb": "sel", "pwstrb": "sel", "pprot": "low",
+       "prdata": "rdata", "pready": "ack", "pslverr": "err"}
+# What a bus may have, too, and what is said there: single transfers of whole words; its outputs are left open.
+TIED = {"axil": {**dict.fromkeys("awid awlen awlock awcache awqos awregion awuser wuser arid arlen arlock arcache arqos arregion aruser".split(), "low"),
+                 "wlast": "high", "awburst": "1", "arburst": "1", "awsize": "2", "arsize": "2",
+                 **dict.fromkeys(("bid", "buser", "rid", "rlast", "ruser"), "open")},
+        "wishbone": dict.fromkeys(("cti", "bte", "lock"), "low")}
 # "memory": chip select, write enable, address of a word, data; what is read is there in the same clock.
 MEMORY = {"cs": "stb", "ce": "stb", "we": "we", "address": "adr", "addr": "adr", "write_data": "wdata", "wdata": "wdata",
           "din": "wdata", "read_data": "rdata", "rdata": "rdata", "dout": "rdata"}
 # Words for ROLE=port. select is high until the answer, strobe for one clock; read and write beside neither are both.
 ROLES = {"select": "stb", "strobe": "strobe", "read": "re", "write": "we", "address": "adr", "enables": "sel",
          "wdata": "wdata", "rdata": "rdata", "ack": "ack", "error": "err", "clock": "clock", "reset": "reset",
-         "resetn": "resetn", "interrupt": "interrupt", "pin": "", "setting": "setting"}
-NEEDED = {"memory": ["stb", "we", "adr", "wdata", "rdata"], "wishbone": ["cyc", "stb", "we", "wdata", "rdata", "ack"],
-          "axil": [n for n in AXI if not n.endswith("prot")], "own": ["we", "wdata", "rdata"], "axis": foreign_axis.NEEDED}
-BUSES = {"wishbone": "Wishbone", "axil": "AXI4-Lite", "memory": "select, address and data", "own": "a bus of its own"}
+         "resetn": "resetn", "interrupt": "interrupt", "pin": "", "setting": "setting", "low": "low", "high": "high",
+         "open": "open", "words": "words", "bytes": "bytes", "enable": "enable"}
+OUTPUTS = ("rdata", "ack", "err", "interrupt", "open")
+NEEDED = {"memory": ["stb", "we", "adr", "wdata", "rdata"], "wishbone": ["stb", "we", "wdata", "rdata", "ack"],
+          "apb": ["stb", "enable", "we", "wdata", "rdata"], "axil": [n for n in AXI if not n.endswith("prot")], "own": ["we", "wdata", "rdata"], "axis": foreign_axis.NEEDED}
+BUSES = {"wishbone": "Wishbone", "apb": "APB", "axil": "AXI4-Lite", "memory": "select, address and data", "own": "a bus of its own"}
 SLOT = """    input  wire        clk_i,
     input  wire        rst_i,
     // register bus
@@ -56,49 +69,80 @@ ADAPTER = """.clk_i(clk_i), .rst_i(rst_i),
 def role(name, port, bus):
     """What a port is: clock, reset, interrupt, a signal of the bus, or "" for a pin."""
     tokens = name.lower().split("_")
-    if port["direction"] == "input" and CLOCKS & set(tokens):
-        return "clock"
-    if port["direction"] == "input" and RESETS & set(tokens):
-        return "resetn" if re.search(r"((rst|reset)n|_n|nrst)(_i)?$", name.lower()) else "reset"
+    is_input = port["direction"] == "input"
+    if is_input and len(port["bits"]) == 1 and not NO_CLOCK & set(tokens):
+        if any(re.fullmatch(CLOCK, t) for t in tokens):
+            return "clock"
+        if any(re.fullmatch(RESET, t) for t in tokens):
+            if "reset" in port:
+                return "reset" if port["reset"] == "1" else "resetn"
+            return "resetn" if {"n", "ni", "b"} & set(tokens) or any(re.fullmatch(RESET, t) and re.search("nr|[nb]$", t) for t in tokens) else "reset"
     if bus == "axis":
         return foreign_axis.role(name, port) or ""
+    base = re.sub(r"^[io]_|_[io]$", "", name.lower())
+    found = []
     if bus == "memory":
-        found = [MEMORY[base]] if (base := re.sub(r"^[io]_|_[io]$", "", name.lower())) in MEMORY else []
+        found = [MEMORY[base]] if base in MEMORY else []
     elif bus == "axil":
         found = [t for t in tokens if t in AXI]
-    elif bus == "wishbone":
-        is_bus = "wb" in tokens or len(tokens) <= 2
-        found = [WISHBONE[port["direction"]][t] for t in tokens if is_bus and t in WISHBONE[port["direction"]]]
-    else:
-        found = []
+    elif bus == "apb":
+        found = [APB[t] for t in tokens if t in APB]
+    elif bus == "wishbone" and (len(tokens) <= 2 or any(t.startswith("wb") for t in tokens)):
+        found = [WISHBONE[port["direction"]][t] for t in tokens if t in WISHBONE[port["direction"]]]
+    found = [r for r in found if (r in OUTPUTS or is_answer(r)) != is_input]
+    found += [r for t in tokens if (r := TIED.get(bus, {}).get(t)) and (r == "open") != is_input]
     if found:
         return found[0]
-    return "interrupt" if port["direction"] == "output" and INTERRUPTS & set(tokens) else ""
+    return "interrupt" if not is_input and INTERRUPTS & set(tokens) else ""
 
 
 def roles_of(top, bus, ports, given):
-    """Each port's role; `given` is ROLE=port."""
+    """Each port's role, and after how many clocks a core without `ack` answers, or None; `given` is ROLE=port."""
     roles = {n: role(n, p, bus) for n, p in ports.items()}
+    # The signals of the bus by their own names, too, where no word means them.
+    words = {**{r: r for r in NEEDED[bus] + (AXI if bus == "axil" else [])}, **ROLES}
+    say = {v: k for k, v in ROLES.items()} if bus != "axis" else {}
+    known, latency = ", ".join(ports), None
     for word in given:
         what, port = word.split("=", 1)
-        if what not in ROLES:
-            fail(f"PORTS: '{what}' is none of {', '.join(ROLES)}")
+        if what not in words:
+            fail(f"PORTS: '{what}' is none of {', '.join(words)}")
+        if what == "ack" and re.fullmatch("[1-9]", port):
+            latency = int(port)
+            continue
         if port not in ports:
-            fail(f"PORTS: {top} has no port '{port}': {', '.join(ports)}")
-        is_answer_role = ROLES[what] in ("rdata", "ack", "err", "interrupt")
-        if ROLES[what] and is_answer_role != (ports[port]["direction"] == "output"):
-            fail(f"PORTS: {what} is an {'output' if is_answer_role else 'input'} of a core, and '{port}' is not")
+            fail(f"PORTS: {top} has no port '{port}': {known}")
+        is_output = words[what] in OUTPUTS or is_answer(words[what])
+        if words[what] and is_output != (ports[port]["direction"] == "output"):
+            fail(f"PORTS: {what} is an {'output' if is_output else 'input'} of a core, and '{port}' is not")
         if what == "setting" and bus != "axis":
             fail("PORTS: a setting is for BUS=axis; here an input that is none of the bus is a pin")
-        roles[port] = ROLES[what]
-    missing = [r for r in NEEDED[bus] + ["clock"] if r not in roles.values()]
+        roles[port] = words[what]
+    there = {*roles.values(), *(["ack"] if latency else []), *(["adr"] if {"words", "bytes"} & set(roles.values()) else []),
+             *(["stb"] if bus == "wishbone" and "cyc" in roles.values() else [])}
+    missing = [say.get(r, r) for r in NEEDED[bus] + ["clock"] if r not in there]
     if missing:
-        say = {v: k for k, v in ROLES.items()} if bus == "own" else {}
-        fail(f"{top} has no port for {', '.join(say.get(m, m) for m in missing)}: {', '.join(ports)}"
-             + ("; say which by PORTS='write=port ...'" if bus == "own" else ""))
-    if "strobe" in roles.values() and "ack" not in roles.values():
+        fail(f"{top} has no port for {', '.join(missing)}: {known}; say which by PORTS='{missing[0]}=port ...'"
+             + (", or by ack=1 that what is read is there a clock later" if "ack" in missing else ""))
+    for r in there - {"", "clock", "reset", "resetn", "interrupt", "setting", "low", "high", "open", "1", "2"}:
+        if len(same := [n for n in ports if roles[n] == r]) > 1:
+            fail(f"{top} has more than one port for {say.get(r, r)}: {', '.join(same)}; what the others are by PORTS='pin={same[-1]} ...'")
+    if "strobe" in roles.values() and "ack" not in there:
         fail("PORTS: a strobe of one clock needs an ack; what answers in the same clock has select")
-    return roles
+    if wide := [n for n in ports if bus != "axis" and roles[n] in ("wdata", "rdata") and len(ports[n]["bits"]) > 32]:
+        fail(f"'{wide[0]}' of {top} has {len(ports[wide[0]]['bits'])} bits: a slot's bus has 32; put a module between that halves the words")
+    return roles, latency
+
+
+def tie(port, what):
+    """A port that is always the same."""
+    width = len(port["bits"])
+    return {"low": f"{width}'d0", "high": f"{{{width}{{1'b1}}}}", "open": ""}.get(what, f"{width}'d{what}")
+
+
+def overrides(params):
+    """Parameters of an instance."""
+    return f" #({', '.join('.{}({})'.format(*p.split('=', 1)) for p in params)})" if params else ""
 
 
 def pin_name(name, port):
@@ -111,16 +155,16 @@ def vector(width):
     return f"[{width - 1}:0] " if width > 1 else ""
 
 
-def address(signal, port):
+def address(signal, port, bus):
     """Connection of an address, and the bits that count words: byte addresses where the port has bits of them, else a
     word for each address."""
     width, lsb = len(port["bits"]), port.get("offset", 0)
-    if lsb == 0 and signal == "adr" and width < 16:
+    if signal == "words" or lsb == 0 and signal == "adr" and bus != "apb" and (width < 16 or width == 30):
         return f"adr[{width + 1}:2]", width
-    return f"{signal}[{width + lsb - 1}:{lsb}]", max(0, width + lsb - 2)
+    return f"{'adr' if signal == 'bytes' else signal}[{width + lsb - 1}:{lsb}]", max(0, width + lsb - 2)
 
 
-def write_verilog(name, top, bus, ports, roles, parameters, clock):
+def write_verilog(name, top, bus, ports, roles, latency, params, clock):
     by_role = {r: (n, p) for n, p in ports.items() if (r := roles[n])}
     word_bits, data_width, connections, extra, interrupts = 0, 32, [], [], []
     adr_bits = 6
@@ -132,13 +176,16 @@ def write_verilog(name, top, bus, ports, roles, parameters, clock):
             to = "clk_i"
         elif r in ("reset", "resetn"):
             to = "rst_i" if r == "reset" else "!rst_i"
-        elif bus == "own" and r in ("strobe", "re", "we"):
-            to = strobes.get(r, {"strobe": "stb", "re": "!we"}.get(r, r))
+        elif r in ("stb", "strobe", "re", "we"):  # a bit for each byte: all of them
+            to = strobes.get(r, {"strobe": "stb", "re": "!we"}.get(r, r)) if bus == "own" else r
+            to = f"{{{width}{{{to}}}}}" if width > 1 else to
+        elif r in ("low", "high", "open", "1", "2"):
+            to = tie(p, r)
         elif r == "interrupt":
             to = f"interrupt_{len(interrupts)}"
-            interrupts.append(to)
-        elif r in ("adr", "awaddr", "araddr"):
-            to, word_bits = address(r, p)
+            interrupts.append((width, to))
+        elif r in ("adr", "words", "bytes", "awaddr", "araddr"):
+            to, word_bits = address(r, p, bus)
             adr_bits = max(adr_bits, int(re.search(r"\[(\d+):", to).group(1)) + 1)
         elif r in ("wdata", "sel", "wstrb") and width < {"wdata": 32, "sel": 4, "wstrb": 4}[r]:
             to = f"{r}[{width - 1}:0]"
@@ -153,7 +200,18 @@ def write_verilog(name, top, bus, ports, roles, parameters, clock):
         connections.append(f".{n}({to})")
     widths = {"adr": adr_bits, "sel": 4, "wdata": 32, "rdata": 32, "awaddr": adr_bits, "araddr": adr_bits, "wstrb": 4,
               "bresp": 2, "rresp": 2, "awprot": 3, "arprot": 3}
-    answers = {"ack": "stb"} if bus in ("memory", "own") else {}
+    answers = {"ack": "stb"} if bus in ("memory", "own", "apb") else {}
+    registers, clocked = [], []
+    if latency:
+        answers = {"ack": f"answered[{latency - 1}]"}
+        registers.append(f"    reg [{latency - 1}:0] answered; // the core answers so many clocks after its strobe")
+        clocked.append(f"        answered <= rst_i ? {latency}'d0 : {f'{{answered[{latency - 2}:0], stb}}' if latency > 1 else 'stb'};")
+    if "enable" in by_role:
+        registers.append("    reg enable; // from the second clock of a transfer on")
+        clocked.append("        enable <= stb && !rst_i;")
+    if clocked:
+        clocked.insert(0, "    always @(posedge clk_i) begin")
+        clocked.append("    end")
     signals = AXI if bus == "axil" else ["cyc", "stb", "we", "adr", "sel", "wdata", "rdata", "ack", "err", "rty", "stall"]
     wires = "\n".join(f"    wire {vector(widths.get(s, 1))}{s}{'' if s in by_role or not is_answer(s) else ' = ' + answers.get(s, zero(widths, s))};"
                       for s in signals)
@@ -161,11 +219,10 @@ def write_verilog(name, top, bus, ports, roles, parameters, clock):
     adapter = ",\n        ".join(f".{names[s]}_{'i' if is_answer(s) else 'o'}({s})" for s in signals)
     pins = [(pin_name(n, p), p) for n, p in ports.items() if not roles[n]]
     pin_ports = "".join(f",\n    {p['direction']:6} wire {vector(len(p['bits']))}{n}" for n, p in pins)
-    levels = " #(.ARST_LVL(1'b1))" if "ARST_LVL" in parameters else ""
-    pipelined = ", .PIPELINED(1)" if {"stall", "strobe"} & set(by_role) else ""
+    pipelined = ", .PIPELINED(1)" if {"stall", "strobe"} & set(by_role) or latency else ""
     if clock:  # the adapter gives a core up before bus_crossing does, after 250 clocks of the chip
         pipelined += f", .TIMEOUT({max(2, 250 * clock // 100000000 - 6)})"
-    irq = " || ".join(interrupts) or "1'b0"
+    irq = " || ".join(("|" if w > 1 else "") + i for w, i in interrupts) or "1'b0"
     unused = ", ".join(s for s in signals if not is_answer(s))
     adapter_module = "bus_to_axi4lite" if bus == "axil" else "bus_to_wishbone"
     separator = ",\n        "
@@ -180,15 +237,15 @@ module {name} (
 );
     `include "{name}_regs.vh"
 
-{wires}
-{"".join(f"    wire {i};{chr(10)}" for i in interrupts)}    wire interrupt = {irq};
+{"".join(line + chr(10) for line in registers)}{wires}
+{"".join(line + chr(10) for line in clocked)}{"".join(f"    wire {vector(w)}{i};{chr(10)}" for w, i in interrupts)}    wire interrupt = {irq};
 
     {adapter_module} #(.ID_VALUE({name.upper()}_ID_VALUE), .ADDR_WIDTH({adr_bits}){pipelined}) u_bus (
         {ADAPTER},
         {adapter}
     );
 
-    {top}{levels} u_core (
+    {top}{overrides(params)} u_core (
         {separator.join(connections)}
     );
 {chr(10).join(extra)}{chr(10) if extra else ""}    wire unused = &{{1'b0, {unused}, 1'b0}};
@@ -198,7 +255,8 @@ endmodule
 
 
 def is_answer(signal):
-    return signal in ("rdata", "ack", "err", "rty", "stall", "awready", "wready", "bvalid", "bresp", "arready", "rvalid", "rresp")
+    return signal in ("rdata", "ack", "err", "rty", "stall", "awready", "wready", "bvalid", "bresp", "arready", "rvalid", "rresp",
+                      "s_tready", "m_tdata", "m_tvalid")
 
 
 def zero(widths, signal):
@@ -239,7 +297,7 @@ TEST({suite}, IsInItsSlotAndAnswers) {{
     EXPECT_EQ(slot.bus_.read(0), {name.upper()}_ID_VALUE);
     slot.bus_.write({name.upper()}_PAGE, {name.upper()}_{first}_PAGE);
     auto answer = slot.bus_.transfer(false, {name.upper()}_{first}, 0);
-    EXPECT_FALSE(answer.error);
+    EXPECT_FALSE(answer.error) << "no answer, or an error: what does the core want at its reset and its pins?";
     EXPECT_EQ(slot.bus_.read(1) & {name.upper()}_EVENT_TIMEOUT_MASK, 0u);
 }}
 
@@ -265,24 +323,28 @@ def fly(log, proxy, report):
 
 def main(words):
     if len(words) < 5:
-        sys.exit("usage: make new-foreign NAME=my_uart TOP=module BUS=wishbone|axil|memory|own|axis FILES='a.v b.v' [PORTS='write=we ...']")
+        sys.exit("usage: make new-foreign NAME=my_uart TOP=module BUS=wishbone|axil|apb|memory|own|axis FILES='a.v b.v' [PORTS='write=we ...']")
     name, top, bus, folder, *rest = words
     given, files = [w for w in rest if "=" in w], [w for w in rest if "=" not in w]
+    params = [w[6:] for w in given if w.startswith("PARAM:")]
     clock = [w[6:] for w in given if w.startswith("CLOCK=")]
     library = [w[8:] for w in given if w.startswith("LIBRARY=")]
-    given = [w for w in given if not w.startswith(("CLOCK=", "LIBRARY="))]
+    given = [w for w in given if not w.startswith(("CLOCK=", "LIBRARY=", "PARAM:"))]
     if clock and not (clock[0].isdigit() and 3000000 <= int(clock[0]) <= 100000000):
         fail(f"CLOCK={clock[0]}: the frequency of the core's own clock, 3000000 to 100000000 Hz")
     if clock and bus == "axis":
         fail("CLOCK: a core with AXI-Streams reaches DDR3, whose port has the chip's clock")
     if bus not in NEEDED:
         fail(f"BUS is {', '.join(NEEDED)}, not '{bus}'")
-    if not re.fullmatch(r"[a-z][a-z0-9]+(_[a-z0-9]+)*", name) or name == top:
-        fail(f"'{name}': words of small letters and digits, joined by _, and not the module's own name")
+    if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", name):
+        fail(f"'{name}': words of small letters and digits, joined by _")
     if not re.fullmatch(r"[A-Za-z_]\w*", top):
         fail(f"TOP is the name of a module or an entity, not '{top}'")
     if os.path.exists(folder):
         fail(f"{folder} is there already")
+    check = subprocess.run([os.path.join(HERE, "new.sh"), name, "check"], capture_output=True, text=True)
+    if check.returncode:
+        fail(check.stderr.partition(": ")[2].rstrip())
     if library:
         os.environ["VHDL_LIBRARY"] = library[0]  # for vhdl_to_verilog.sh
     files = [os.path.abspath(f) for f in files]
@@ -297,33 +359,43 @@ def main(words):
     files = [f for f in files if f not in headers]
     if not files or len({is_vhdl(f) for f in files}) > 1:
         fail("FILES are all Verilog or all VHDL, and at least one")
-    check_names(top, files)
-    ports, parameters = read_module(top, files, headers)
+    top = check_names(name, top, files)
+    ports, parameters = read_module(top, files, headers, params)
+    copies = {} if is_vhdl(files[0]) else copies_for_verilator(top, files, headers)
+    # A level that OpenCores' cores have as a parameter.
+    levels = [p for p in ["ARST_LVL=1'b1"] if p[:8] in parameters and not any(q.startswith("ARST_LVL=") for q in params)]
+    if odd := [n for n in ports if not re.fullmatch(r"\w+", n)]:
+        fail(f"{top} has the port '{odd[0]}', an escaped name: put a module with plain names around it")
     two_way = [n for n, p in ports.items() if p["direction"] == "inout"]
     if two_way:
         fail(f"{top} has the inout port '{two_way[0]}': tri-states belong to the chip's pads; take a top without")
-    roles = roles_of(top, bus, ports, given)
+    roles, latency = roles_of(top, bus, ports, given)
+    if is_vhdl(files[0]):
+        generics, params = params, []
     source = f"REGS {name}.regs.json" + (f" CLOCK {clock[0]}" if clock else "")
     if bus == "axis":
         if wrong := foreign_axis.problem(top, ports, roles):
             fail(wrong)
         source, answers = f"ICE {name}.ice", "operation: process" + "".join(
             f", set{foreign_axis.camel(foreign_axis.setting(n))}" for n in ports if roles[n] == "setting")
-        texts = foreign_axis.texts(name, top, ports, roles, pin_name, vector, SLOT)
+        texts = foreign_axis.texts(name, top, overrides(params), ports, roles, pin_name, vector, SLOT)
     else:
-        verilog, word_bits, adr_bits, data_width, pins = write_verilog(name, top, bus, ports, roles, parameters, int(clock[0]) if clock else 0)
+        verilog, word_bits, adr_bits, data_width, pins = write_verilog(name, top, bus, ports, roles, latency, params + levels, int(clock[0]) if clock else 0)
         words = names_of(top, files, word_bits) or {a: f"REG{a}" for a in range(min(8, 1 << word_bits))}
         first, answers = next(iter(words.values())), "registers: " + " ".join(words.values())
         registers = description(name, top, bus, words, adr_bits, data_width, pins)
         texts = {f"{name}.v": verilog, f"{name}_test.cpp": test_of(name, first),
                  f"{name}.regs.json": json.dumps(registers, indent=2) + "\n", "ground.py": ground_of(name, first)}
     if is_vhdl(files[0]):
-        build = (f"icesoc_vhdl(NAME {top}{' LIBRARY ' + library[0] if library else ''} SOURCES\n  " + "\n  ".join(files) + ")\n"
+        build = (f"icesoc_vhdl(NAME {top}{' LIBRARY ' + library[0] if library else ''}{' GENERICS ' + ' '.join(generics) if generics else ''} SOURCES\n  " + "\n  ".join(files) + ")\n"
                  f"icesoc_core({name} {source} FLAGS -Wno-lint -Wno-style DEPENDS {top}_verilog\n"
                  f"  VERILOG {name}.v ${{GEN_DIR}}/{top}.v)\n")
     else:
-        build = (f"icesoc_core({name} {source} FLAGS -Wno-lint -Wno-style -Wno-TIMESCALEMOD -Wno-SELRANGE "
-                 + " ".join("-I" + d for d in folders_of([*files, *headers])) + f"\n  VERILOG {name}.v "
+        for f, text in copies.items():  # beside the slot, in the place of the file
+            texts["older_" + os.path.basename(f)] = text
+            files = ["older_" + os.path.basename(f) if g == f else g for g in files]
+        build = (f"icesoc_core({name} {source} FLAGS {' '.join(FLAGS)} "
+                 + " ".join("-I" + d for d in folders_of([*files, *copies, *headers])) + f"\n  VERILOG {name}.v "
                  + "\n  ".join([*files, *headers]) + ")\n")
     texts["CMakeLists.txt"] = "# SPDX-License-Identifier: MIT\n" + build
     os.makedirs(folder)
@@ -331,6 +403,8 @@ def main(words):
         with open(os.path.join(folder, file), "w") as out:
             out.write(text)
     print(f"{folder}: {' '.join(sorted(os.listdir(folder)))}")
+    for f in copies:
+        print(f"  older_{os.path.basename(f)}: a copy, in which words of SystemVerilog are names")
     for n in ports:
         print(f"  {n}: {roles[n] or 'pin ' + pin_name(n, ports[n])}")
     print(f"  {answers}")

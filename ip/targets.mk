@@ -19,9 +19,10 @@ FILES ?=
 PORTS ?=
 CLOCK ?=
 LIBRARY ?=
-new-foreign: $(BUILD)/build.ninja ## put a third-party core into a slot: NAME=my_uart TOP=its_module BUS=wishbone|axil|memory|own|axis FILES="a.v b.v" [PORTS="write=we ack=done"] [CLOCK=24000000] [LIBRARY=of_the_vhdl]
+PARAMS ?=
+new-foreign: $(BUILD)/build.ninja ## put a third-party core into a slot: NAME=my_uart TOP=its_module BUS=wishbone|axil|apb|memory|own|axis FILES="a.v b.v" [PORTS="write=we ack=done"] [PARAMS="depth=16"] [CLOCK=24000000] [LIBRARY=of_the_vhdl]
 	@$(if $(filter %.vhd %.vhdl %.VHD %.VHDL,$(FILES)),$(NINJA) --quiet ghdl)
-	@GHDL='$(BUILD)/ghdl/ghdl' ip/new_foreign.py '$(NAME)' '$(TOP)' '$(BUS)' 'ip/$(NAME)' $(if $(CLOCK),'CLOCK=$(CLOCK)') $(if $(LIBRARY),'LIBRARY=$(LIBRARY)') $(PORTS) $(FILES)
+	@GHDL='$(BUILD)/ghdl/ghdl' ip/new_foreign.py '$(NAME)' '$(TOP)' '$(BUS)' 'ip/$(NAME)' $(if $(CLOCK),'CLOCK=$(CLOCK)') $(if $(LIBRARY),'LIBRARY=$(LIBRARY)') $(addprefix PARAM:,$(PARAMS)) $(PORTS) $(FILES)
 .PHONY: new-foreign
 
 # Put into slots by new-foreign: slot=module=bus=repository, and =Hz of a clock of its own.
@@ -33,9 +34,10 @@ foreign: setup-tests ## put third-party cores (Wishbone, AXI4-Lite, AXI-Stream a
 	@cmake/fetch.sh foreign build/foreign-cores
 	@cmake/fetch.sh ghdl build/foreign-cores/ghdl
 	@rm -rf build/foreign-cores/slots
-	@GHDL=build/foreign-cores/ghdl/ghdl ip/new_foreign.py foreign_spi spi_plain own build/foreign-cores/slots/foreign_spi LIBRARY=neorv32 \
-	    strobe=stb_i write=we_i address=adr_i wdata=dat_i rdata=dat_o ack=ack_o error=err_o \
-	    $(addprefix build/foreign-cores/neorv32/neorv32_,package.vhd prim.vhd spi.vhd) examples/foreign/spi_plain.vhd >/dev/null
+	@GHDL=build/foreign-cores/ghdl/ghdl ip/new_foreign.py foreign_spi neorv32_spi own build/foreign-cores/slots/foreign_spi LIBRARY=neorv32 PARAM:IO_SPI_FIFO=4 \
+	    strobe=bus_req_i_stb write=bus_req_i_rw address=bus_req_i_addr enables=bus_req_i_ben wdata=bus_req_i_data \
+	    rdata=bus_rsp_o_data ack=bus_rsp_o_ack error=bus_rsp_o_err high=clkgen_i \
+	    $(addprefix low=bus_req_i_,meta amo amoop burst lock) build/foreign-cores/neorv32/*.vhd >/dev/null
 	@for f in $(FOREIGN_NEW); do \
 	    echo "$$f" | { IFS='=' read -r slot top bus from clock; \
 	        ip/new_foreign.py "$$slot" "$$top" "$$bus" "$(CURDIR)/build/foreign-cores/slots/$$slot" $${clock:+CLOCK=$$clock} $(CURDIR)/build/foreign-cores/"$$from"/*.v >/dev/null; } || exit 1; \

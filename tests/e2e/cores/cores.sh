@@ -25,8 +25,8 @@ samples=$build/tests/ip/new
 foreign=$build/tests/ip/new_foreign
 folders="$samples/sample_verilog;$samples/sample_vhdl;$source/tests/e2e/cores/scaler;$source/tests/e2e/cores/servo;$source/tests/e2e/cores/crc32;$source/tests/e2e/cores/many;$foreign/my_port;$foreign/my_requests;$work/my_lamps"
 # A core in VHDL, as make new-foreign puts it into a slot. GHDL is fetched once.
-GHDL=$build/ghdl/ghdl "$source/ip/new_foreign.py" my_lamps lamps own "$work/fresh/my_lamps" LIBRARY=lights read=rd write=wr address=a wdata=d rdata=q \
-    "$source/tests/ip/new_foreign/lamps.vhd" >"$work/log" || { cat "$work/log" && exit 1; }
+GHDL=$build/ghdl/ghdl "$source/ip/new_foreign.py" my_lamps lamps own "$work/fresh/my_lamps" LIBRARY=lights PARAM:lamps_lit=4 read=request_rd write=request_wr address=request_a wdata=request_d rdata=q \
+    "$source/tests/ip/new_foreign/lamps.vhd" "$source/tests/ip/new_foreign/lamps_types.vhd" >"$work/log" || { cat "$work/log" && exit 1; }
 fresh my_lamps
 [ -e "$work/build/ghdl" ] || ln -s "$build/ghdl" "$work/build/ghdl"
 # CLK_HZ: the servo core counts in every clock, so that none is skipped. TRACE: for what the probe is compared with.

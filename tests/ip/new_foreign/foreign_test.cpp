@@ -3,11 +3,15 @@
 // foreign_test: third-party cores as make new-foreign connects them: registers, pins, interrupt; a
 // clock of its own.
 
+#include "Va_bridge_slot.h"
+#include "Vmy_late_slot.h"
 #include "Vmy_port_slot.h"
 #include "Vmy_requests_slot.h"
 #include "Vmy_words_slot.h"
 #include "core_slot.h"
 extern "C" {
+#include "a_bridge_regs.h"
+#include "my_late_regs.h"
 #include "my_port_regs.h"
 #include "my_requests_regs.h"
 #include "my_words_regs.h"
@@ -37,6 +41,31 @@ TEST(Axi4Lite, EveryWordIsARegisterOfItsOwn) {
     for (uint32_t i = 0; i < 4; ++i)
         EXPECT_EQ(slot.bus_.read(MY_WORDS_REG0 + i), 0x1000 + i);
     EXPECT_EQ(slot.bus_.read(1), 0u);
+}
+
+TEST(Apb, TransfersBeginWithoutEnableAndEndWithReady) {
+    CoreSlot<Va_bridge_slot> slot;
+    slot.bus_.write(A_BRIDGE_REG1, 0x12345678);
+    slot.bus_.write(A_BRIDGE_REG2, 0x9ABCDEF0);
+    EXPECT_EQ(slot.bus_.read(A_BRIDGE_REG1), 0x12345678u);
+    EXPECT_EQ(slot.bus_.read(A_BRIDGE_REG2), 0x9ABCDEF0u);
+    EXPECT_TRUE(slot.bus_.transfer(false, A_BRIDGE_REG3, 0).error) << "refused by PSLVERR";
+    EXPECT_EQ(slot.bus_.read(A_BRIDGE_REG0), 6u);
+    EXPECT_EQ(slot.bus_.read(1), 0u);
+    slot.bench_.top().clk_div_i = 3; // the second of its interrupts
+    slot.tick();
+    slot.tick();
+    EXPECT_EQ(slot.bus_.read(1), A_BRIDGE_EVENT_CORE_MASK);
+}
+
+TEST(Late, AValueIsReadOnceAndAClockLater) {
+    CoreSlot<Vmy_late_slot> slot;
+    for (uint32_t i = 0; i < 4; ++i)
+        slot.bus_.write(MY_LATE_REG0 + i, 0xA5C0 + i);
+    for (uint32_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(slot.bus_.read(MY_LATE_REG0 + i), 0xA5C0 + i);
+        EXPECT_EQ(slot.bus_.read(MY_LATE_REG0 + i), 0u);
+    }
 }
 
 TEST(OwnClock, AnyRatioOfTheTwoClocksWillDo) {

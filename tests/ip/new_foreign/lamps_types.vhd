@@ -1,0 +1,13 @@
+-- SPDX-License-Identifier: MIT
+--
+-- lamps_types: what lamps is asked.
+library ieee;
+use ieee.std_logic_1164.all;
+
+package lamps_types is
+  type request_t is record
+    rd, wr : std_logic;
+    a      : std_logic_vector(0 downto 0);
+    d      : std_logic_vector(15 downto 0);
+  end record;
+end package;

@@ -179,6 +179,9 @@ private:
                 if (p.name == key && value[0] == '@') {
                     setPlaces(c, p, value);
                     return;
+                } else if (p.name == key && value == "none") {
+                    p.isInternal = true;
+                    return;
                 } else if (p.name == key && !p.isOut()) {
                     p.source = value;
                     return;
@@ -332,8 +335,9 @@ private:
             next += p.width;
             if (next > pinLimit)
                 fail(c.line,
-                     fmt::format("'{}' of '{}': the chip has {} pins of a direction for cores",
-                                 p.name, c.name, pinLimit));
+                     fmt::format("'{}' of '{}': the chip has {} pins of a direction for cores; "
+                                 "{}=none: it is no pin",
+                                 p.name, c.name, pinLimit, p.name));
         }
     }
 

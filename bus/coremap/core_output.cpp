@@ -237,16 +237,18 @@ std::string verilogOf(const Chip& chip, const std::vector<Slot>& slots) {
                              "    assign slot_error[{0}] = 1'b1;\n"
                              "    assign slot_irq[{0}]   = 1'b0;\n\n",
                              slot);
+    std::string unused;
     for (const Core& c : chip.cores)
         for (const Pin& p : c.pins)
-            if (p.isOut() && !p.isInternal)
+            if (p.isOut() && p.isInternal)
+                unused += fmt::format(", pin_{}_{}", c.name, p.name);
+            else if (p.isOut())
                 s += fmt::format("    assign core_pins_o{} = pin_{}_{};\n", bits(p.lsb, p.width),
                                  c.name, p.name);
     if (chip.pins[1] < 32)
         s += fmt::format("    assign core_pins_o{} = {}'d0;\n",
                          bits(chip.pins[1], 32 - chip.pins[1]), 32 - chip.pins[1]);
-    s += "    wire unused_pins = &{1'b0, core_pins_i, GATES != 0, 1'b0};\n";
-    return s;
+    return s + "    wire unused_pins = &{1'b0, core_pins_i, GATES != 0" + unused + ", 1'b0};\n";
 }
 
 std::string pinTableOf(const Chip& chip) {

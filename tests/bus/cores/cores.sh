@@ -71,6 +71,9 @@ is PIN_CAMERA_SEEN_O 0xB
 grep -q '"eye"' "$out/soc_cores.c" || fail 'the identity is not in the table'
 grep -q '{"camera", MAP_SLOT_CAMERA, .*core_camera_start' "$out/soc_cores.c" && grep -q 'core_camera_table\[\] = {MOVER_TABLE}' "$out/soc_cores.c" ||
     fail 'a core without a servant has not that of its registers'
+accepted unwired 'mover\nmover name=a\nmover name=b level_o=none\nled button_i=none\nmover name=c level_o=none\n'
+grep -q '"a.level_o"' "$out/soc_pins.h" && ! grep -Eq '"(c.level_o|led.button_i)"' "$out/soc_pins.h" && grep -q "button_i(1'd0)" "$out/soc_cores.vh" ||
+    { grep button_i "$out/soc_cores.vh" && fail 'what is no pin has a place'; }
 accepted pins 'led name=eye button_i=@A4\nmover seen_o=@B1 level_o=@C1,C2,C3,C4,C5,C6,C7,C8,C9\n'
 grep -qx '    {"eye.button_i", 0, 1, false},' "$out/soc_pins.h" || fail 'the pin is not in the table'
 grep -qx 'NET "core_pins_i<0>" LOC = "A4"; # eye.button_i\[0\]' "$out/core_pins.ucf" || fail 'the place is not in the constraints'
@@ -159,7 +162,7 @@ refused 'places are letters and digits' 'led button_i=@A-4\n'
 refused "1: error: gate=on: 'led' has no output idle_o" 'led gate=on\n'
 refused 'gate=off: on, or without the word' 'adder gate=off\n'
 refused "no core's output of 1 bits" 'led button_i=mover.nothing_o\n'
-refused "pins of a direction" 'mover\nmover name=a\nmover name=b\nmover name=c\n'
+refused "_o=none: it is no pin" 'mover\nmover name=a\nmover name=b\nmover name=c\n'
 "$coremap" --help | grep -q 'a core a line' || fail 'no help'
 ! "$coremap" "$work/missing" --base "$source/bus/map.regs.json" 2>"$work/messages" || fail 'a missing list is accepted'
 grep -q 'cannot read' "$work/messages" || fail 'a missing list is not said'

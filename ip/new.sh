@@ -45,6 +45,8 @@ fill() { # template, target
 }
 if [ -n "$ice" ]; then
     [ -f "$ice" ] || fail "there is no file '$ice'"
+    included=$(sed -n 's/^ *# *include *[<"]\([^>"]*\).*/\1/p' "$ice" | tr '\n' ' ')
+    [ -z "$included" ] || fail "$ice includes ${included% }: a core has one Slice file; write into it what it needs of others"
     slice2c=$build/slice/slice2c
     [ -x "$slice2c" ] || fail "there is no $slice2c: make build"
     "$slice2c" -I"$(dirname "$ice")" "$ice" --output-dir "$work/c" --hw-regs "$work/regs" --hw-new-"$lang" "$work/new" ||

@@ -48,6 +48,13 @@ void plainTag(std::string& s) {
     }
 }
 
+// Takes apart what means something within a comment of C; the last is a backslash in C90.
+void apart(std::string& s) {
+    replaceAll(s, "*/", "* /");
+    replaceAll(s, "/*", "/ *");
+    replaceAll(s, "??/", "?? /");
+}
+
 } // namespace
 
 std::vector<std::string> docLines(const std::string& doc) {
@@ -62,8 +69,7 @@ std::vector<std::string> docLines(const std::string& doc) {
                    : line.substr(begin, line.find_last_not_of(" \t\r") - begin + 1);
         plainLinks(line);
         plainTag(line);
-        replaceAll(line, "*/", "* /");
-        replaceAll(line, "/*", "/ *");
+        apart(line);
         if (!line.empty() || (!lines.empty() && !lines.back().empty()))
             lines.push_back(line);
     }
@@ -75,9 +81,11 @@ std::vector<std::string> docLines(const std::string& doc) {
 void writeDoc(Writer& w, const std::string& doc, const std::vector<std::string>& metadata) {
     std::vector<std::string> lines = docLines(doc);
     for (const std::string& m : metadata)
-        if (m.compare(0, 9, "deprecate") == 0)
+        if ((m + ":").compare(0, 10, "deprecate:") == 0) {
             lines.push_back("Deprecated" +
                             (m.size() > 10 ? ": " + m.substr(10) : std::string(".")));
+            apart(lines.back());
+        }
     if (lines.empty())
         return;
     for (size_t i = 0; i < lines.size(); ++i) {

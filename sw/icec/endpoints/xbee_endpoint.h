@@ -12,9 +12,7 @@
 #include "link.h"
 
 #define XBEE_ENDPOINT_TYPE 0x4158
-#ifndef XBEE_OWN_CHANNEL
-#define XBEE_OWN_CHANNEL 3 /* that this side opens; 0..2 where it is the ground */
-#endif
+#define XBEE_OWN_CHANNEL 3 /* that this side, the UAV, opens; the ground opens 0..2 */
 
 /* The endpoint's port to the application, whose radio task owns the link. In the
  * minimal run time there is one task, which polls the link in `wait`: lock, unlock, kick and signal

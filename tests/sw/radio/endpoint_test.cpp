@@ -86,6 +86,24 @@ TEST_F(RadioEndpoint, OfConnectionsThatCameAndWentOnlyTheLastStateIsTold) {
                                {ICE_EVENT_OPENED, 1}}));
 }
 
+TEST_F(RadioEndpoint, AMessageIsTakenOnceAndOnlyWhileSomebodyReceives) {
+    const U8 message[] = {1, 2, 3};
+    auto offer = [&](int channel) {
+        return XBeeATEndpoint_onMessage(&endpoint_, channel, message, sizeof message);
+    };
+    EXPECT_EQ(offer(2), 1) << "the link keeps it";
+    atWait_ = [&] {
+        EXPECT_EQ(offer(2), 0);
+        EXPECT_EQ(offer(1), 1) << "one at a time";
+    };
+    Ice_Event event{};
+    EXPECT_EQ(ops().receive(ic_.endpointContext, buffer_, 1, &event), ICE_OK);
+    EXPECT_EQ(event.kind, ICE_EVENT_MESSAGE);
+    EXPECT_EQ(event.connection, 2);
+    EXPECT_EQ(Side::Bytes(buffer_, buffer_ + event.size), Side::Bytes(message, message + 3));
+    EXPECT_EQ(events(), Kinds{});
+}
+
 TEST_F(RadioEndpoint, TheEndOfTheLastOwnConnectionDoesNotEndTheNext) {
     ASSERT_TRUE(pair_.connect());
     ASSERT_EQ(connect(), ICE_OK);

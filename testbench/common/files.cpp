@@ -29,8 +29,10 @@ void writeFile(const fs::path& file, const std::string& text) {
     std::ofstream out(part, std::ios::binary);
     out << text;
     out.close();
-    if (!out)
-        throw std::runtime_error(fmt::format("cannot write {}: is the disk full?", part.string()));
+    if (!out) {
+        fs::remove(part);
+        throw std::runtime_error(fmt::format("cannot write {}: is the disk full?", file.string()));
+    }
     fs::rename(part, file);
 }
 

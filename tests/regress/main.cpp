@@ -356,9 +356,9 @@ int regress(const Options& options) {
              options.waves);
     auto data = gather(history, all, results, failures, options.source);
     data["seeds"] = seeds.list();
-    writeReports(data, options.out);
-    writeJUnit(options.out + "/junit.xml", results, propertiesOf(failures));
     summary(data, failures, options.out);
+    writeJUnit(options.out + "/junit.xml", results, propertiesOf(failures));
+    writeReports(data, options.out);
     return failures.empty() ? 0 : 1;
 }
 

@@ -35,7 +35,8 @@ std::vector<Result> readJUnit(const std::string& path) {
     pugi::xml_document document;
     auto parsed = document.load_file(path.c_str());
     if (!parsed)
-        throw std::runtime_error(path + ": " + parsed.description());
+        throw std::runtime_error(
+            fmt::format("{}: {}; is the disk full?", path, parsed.description()));
     std::vector<Result> results;
     for (auto node : document.child("testsuite").children("testcase")) {
         Result result;

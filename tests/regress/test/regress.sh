@@ -90,6 +90,9 @@ END
     run --name test_r --jobs 4
     [ $status -eq 1 ] && has '^2 passed, 7 failed, 0 skipped' || fail "exit status $status"
     while read -r line; do has "$line"; done <said
+    (trap '' XFSZ && ulimit -f 500 && "$regress" --name test_a >out.txt 2>&1) && fail "a full disk is not told" # a file of 250 KB is one
+    has '^2 passed, 0 failed' && has '^regress: cannot write build/regress/report.html: is the disk full?$'
+    [ ! -e build/regress/report.html.part ] && [ "$(wc -l <build/regress/history.jsonl)" = 2 ] || fail "after a full disk"
     ;;
 plan) # which requirement is proven, failed, has not run with these sources, or has no test
     cat >tests/plan.md <<'END'

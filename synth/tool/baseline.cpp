@@ -48,11 +48,12 @@ string described(const Change& c) {
     return text;
 }
 
-string list(const std::vector<Change>& changes) {
+// Returns lines below a title, or nothing where nothing grew.
+string list(const string& title, const std::vector<Change>& changes) {
     string text;
     for (size_t i = 0; i < std::min(namedChanges, changes.size()) && changes[i].grown() > 0; i++)
         text += "\n      " + described(changes[i]);
-    return text;
+    return text.empty() ? "" : "\n    " + title + text;
 }
 
 } // namespace
@@ -196,8 +197,8 @@ Verdict judge(const Row& row, const Baseline& baseline, const string& yosys, dou
         string text =
             fmt::format("{}: {} LUT, {} FF; accepted were {} and {}, the budget is {} and {}", name,
                         f.lut, f.ff, a.lut, a.ff, lutBudget(a.lut), ffBudget(a.ff));
-        text += "\n    modules that grew:" + list(changedInstances(a.costs, f.costs));
-        text += "\n    signals that grew:" + list(changedSignals(a.costs, f.costs));
+        text += list("modules that grew:", changedInstances(a.costs, f.costs));
+        text += list("signals that grew:", changedSignals(a.costs, f.costs));
         v.failures.push_back(text);
     }
     const double slowest = a.mhz >= goal ? goal : 0.9 * a.mhz;

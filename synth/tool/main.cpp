@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <thread>
 
@@ -182,9 +183,18 @@ std::vector<Run> synthesise(const Plan& plan, const Library& library, const Runn
     return runs;
 }
 
+// Reads a file of ours, whose name is in what is thrown.
+template <class Read> auto named(const fs::path& file, Read read) {
+    try {
+        return read();
+    } catch (const nlohmann::json::exception& e) {
+        throw std::runtime_error(fmt::format("{}: {}", file.string(), e.what()));
+    }
+}
+
 Baseline acceptedOf(const Options& o) {
     const fs::path file = o.source / "synth/baseline.json";
-    return readBaseline(fs::exists(file) ? readFile(file) : "");
+    return named(file, [&] { return readBaseline(fs::exists(file) ? readFile(file) : ""); });
 }
 
 // Tells what some cores cost in the chip, whatever the limits: in the one that was synthesised, the
@@ -226,7 +236,8 @@ TextTable coresOf(const Report& r, const RunnerOptions& options, const Options& 
 
 int report(const Options& o) {
     const Library library = rtlOf(o);
-    Plan plan = readPlan(o.source / "synth/designs.json", library, o.source);
+    const fs::path designs = o.source / "synth/designs.json";
+    Plan plan = named(designs, [&] { return readPlan(designs, library, o.source); });
     if (!o.cores.empty()) // other orders are there for the median of clocks
         for (Design& design : plan.designs)
             design.orders = 0;

@@ -106,6 +106,11 @@ broken)
     has "^wide "
     has '^broken .*failed'
     grep -q '"broken: synthesis failed"' out/report.json || fail "the failure is not in report.json"
+    for file in baseline designs; do # as a merge leaves it
+        printf '{\n<<<<<<< HEAD\n' >"$project/synth/$file.json"
+        if run; then fail "a $file.json that is none passes"; fi
+        has "^utilisation: project/synth/$file.json: .*line 2"
+    done
     ;;
 twice)
     # The first one's Yosys begins when the second has been seen to wait (or, if it never does, after 20 s).

@@ -17,7 +17,7 @@ import sys
 TITLES = {
     "simulator": "Simulator", "air": "Radio link on the half-duplex air", "speed": "Simulation of RTL against Icarus",
     "plugin": "Stock Ice through the plugin", "trust": "Attacks, losses of power in updates, bytes of a key", "load": "Load on the ground's engine and gateway",
-    "modem": "Modem set-up",
+    "modem": "Modem set-up", "crypto": "Ascon in C and by the core",
     "fsmc": "FSMC bridge", "memory": "Memory ports", "firmware": "Firmware on the Cortex-M3", "cores": "Cores",
     "wrapper": "Generated wrapper against one by hand", "new_core": "A new core", "slice": "Slice compiler",
     "size": "Bytes of the firmware's layers",

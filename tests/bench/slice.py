@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""slice: slice2c beside slice2cpp on the five largest files of Debian's zeroc-ice-slice: processor time, the files alternating;
+the best of the rounds counts, since everything else on the machine only makes them slower.
+
+    slice.py SLICE2C OUTPUT.json [--brief]
+"""
+import json
+import pathlib
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+
+SLICES = pathlib.Path("/usr/share/ice/slice")
+
+
+def once(program, file, folder):
+    """Milliseconds of processor time that a run takes, of ten."""
+    spent = lambda: sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
+    begin = spent()
+    for _ in range(10):
+        subprocess.run([program, "-I", SLICES, file, "--output-dir", folder], check=True, stdout=subprocess.DEVNULL)
+    return (spent() - begin) * 100
+
+
+def entry(name, ours, theirs):
+    print("%-28s %9.2f ms %9.2f ms %8.2f" % (name, theirs, ours, theirs / ours))
+    return {"name": f"slice2c.{name}", "value": round(ours, 2), "unit": "ms", "peer": f"slice2cpp: {theirs:.2f} ms",
+            "ratio": round(theirs / ours, 2), "command": "make bench"}
+
+
+def main(slice2c, output, brief=""):
+    if not shutil.which("slice2cpp"):
+        sys.exit("slice: slice2cpp is missing; run 'make setup'")
+    largest = sorted(SLICES.rglob("*.ice"), key=lambda file: -file.stat().st_size)[:1 if brief else 5]
+    print("%-28s %12s %12s %8s" % ("file", "slice2cpp", "slice2c", "ratio"))
+    entries, sums = [], [0, 0]
+    with tempfile.TemporaryDirectory() as folder:
+        for file in largest:
+            rounds = [(once(slice2c, file, folder), once("slice2cpp", file, folder)) for _ in range(1 if brief else 15)]
+            best = [min(times) for times in zip(*rounds)]
+            entries.append(entry(str(file.relative_to(SLICES)), *best))
+            sums = [a + b for a, b in zip(sums, best)]
+    entries.append(entry("all", *sums))
+    pathlib.Path(output).parent.mkdir(parents=True, exist_ok=True)
+    pathlib.Path(output).write_text(json.dumps(entries, indent=1) + "\n")
+
+
+main(*sys.argv[1:]) if len(sys.argv) > 2 else sys.exit(__doc__)

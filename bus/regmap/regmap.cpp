@@ -76,8 +76,12 @@ void addCommonWords(Block& b, const json& j) {
 
 void checkRegisters(const Block& b) {
     std::set<std::pair<unsigned, int>> words;
+    std::set<std::string> names; // as the generated files spell them
+    for (const Constant& c : b.constants)
+        check(names.insert(c.name).second, fmt::format("{} is there twice", c.name));
     for (const Register& r : b.registers) {
         static const std::set<std::string> accesses = {"ro", "rw", "w1c", "ws"};
+        check(names.insert(r.name).second, fmt::format("{} is there twice", r.name));
         check(r.word < wordsPerSlot, fmt::format("{}: word {} is not in 0..15", r.name, r.word));
         check(words.insert({r.word, r.page}).second && (r.page < 0 || !words.count({r.word, -1})),
               fmt::format("{}: word {} is taken", r.name, r.word));
@@ -91,6 +95,8 @@ void checkRegisters(const Block& b) {
             check(f.width > 0 && f.lsb + f.width <= 32,
                   fmt::format("{}.{}: bits {}..{} do not fit a word", r.name, f.name,
                               f.lsb + f.width - 1, f.lsb));
+            check(names.insert(r.name + "_" + f.name).second,
+                  fmt::format("{}.{} is there twice", r.name, f.name));
             unsigned long bits = ((1ul << f.width) - 1) << f.lsb;
             check(!(used & bits), fmt::format("{}.{}: overlaps another field", r.name, f.name));
             used |= bits;

@@ -6,6 +6,7 @@
 #include "c/names.h"
 #include "c/writer.h"
 #include "hw/generator.h"
+#include <algorithm>
 #include <cstdio>
 
 namespace hw {
@@ -63,7 +64,11 @@ std::vector<Register> registers(const Block& b) {
         if (c.isLong)
             state.fields.push_back({upperCase(c.name) + "_REFUSED",
                                     "the core refused the last call", refusedLsb + c.bit, 1});
-    act.fields.push_back({"RESET", "the core, and what is under way", resetBit, 1});
+    std::string reset = "RESET"; // unless an operation has that name
+    while (std::any_of(act.fields.begin(), act.fields.end(),
+                       [&](const Bits& f) { return f.name == reset; }))
+        reset = "CORE_" + reset;
+    act.fields.push_back({reset, "the core, and what is under way", resetBit, 1});
     list.push_back(act);
     if (b.hasLong())
         list.push_back(state);

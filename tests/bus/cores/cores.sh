@@ -117,6 +117,14 @@ refused 'clock=x: a part of' 'tuner clock=x\n'
 refused "has no input pin 'clock'" 'led clock=6/25\n'
 ! "$regmap" "$data/mover.regs.json" --clocked --output-dir "$work" 2>"$work/messages" && grep -q 'a core with a memory port has the chip' "$work/messages" ||
     fail 'a memory port in another clock'
+# Registers and fields whose names are one in the headers.
+for names in 'A B A_B' 'A_B C A_B'; do
+    # shellcheck disable=SC2086 # three words
+    printf '{"block": "b", "doc": "", "registers": [{"word": 0, "name": "%s", "access": "ro", "doc": "",
+        "fields": [{"name": "%s", "doc": "", "lsb": 0, "width": 1}]}, {"word": 1, "name": "%s", "access": "ro", "doc": ""}]}' $names >"$work/twice.regs.json"
+    ! "$regmap" "$work/twice.regs.json" --output-dir "$work" 2>"$work/messages" && grep -q 'A_B is there twice' "$work/messages" ||
+        fail "registers and fields of one name ($names)"
+done
 # A probe has its signals by name, at any depth, in Verilator and, flattened, in Yosys; the ground is told which they are.
 accepted probe 'adder\nprobe signals=u_adder.u_registers.u_wrapper.mask,u_modem.u_timer.clocks:17\nprobe name=other signals=u_adder.irq_o\n'
 yosys -q -p "verilog_defaults -add -I$out -I$gen $(for f in bus hdl/fsmc hdl/ddr hdl/modem hdl/system hdl/cdc; do printf -- '-I%s ' "$source/$f"; done)

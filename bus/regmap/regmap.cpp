@@ -95,7 +95,7 @@ void checkRegisters(const Block& b) {
             check(f.width > 0 && f.lsb + f.width <= 32,
                   fmt::format("{}.{}: bits {}..{} do not fit a word", r.name, f.name,
                               f.lsb + f.width - 1, f.lsb));
-            check(names.insert(r.name + "_" + f.name).second,
+            check(names.insert(r.name + "_" + f.name + "_LSB").second,
                   fmt::format("{}.{} is there twice", r.name, f.name));
             unsigned long bits = ((1ul << f.width) - 1) << f.lsb;
             check(!(used & bits), fmt::format("{}.{}: overlaps another field", r.name, f.name));

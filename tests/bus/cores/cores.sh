@@ -118,11 +118,11 @@ refused "has no input pin 'clock'" 'led clock=6/25\n'
 ! "$regmap" "$data/mover.regs.json" --clocked --output-dir "$work" 2>"$work/messages" && grep -q 'a core with a memory port has the chip' "$work/messages" ||
     fail 'a memory port in another clock'
 # Registers and fields whose names are one in the headers.
-for names in 'A B A_B' 'A_B C A_B'; do
+for names in 'A B A_B_LSB' 'A_B_LSB C A_B_LSB'; do
     # shellcheck disable=SC2086 # three words
     printf '{"block": "b", "doc": "", "registers": [{"word": 0, "name": "%s", "access": "ro", "doc": "",
         "fields": [{"name": "%s", "doc": "", "lsb": 0, "width": 1}]}, {"word": 1, "name": "%s", "access": "ro", "doc": ""}]}' $names >"$work/twice.regs.json"
-    ! "$regmap" "$work/twice.regs.json" --output-dir "$work" 2>"$work/messages" && grep -q 'A_B is there twice' "$work/messages" ||
+    ! "$regmap" "$work/twice.regs.json" --output-dir "$work" 2>"$work/messages" && grep -q 'A_B_LSB is there twice' "$work/messages" ||
         fail "registers and fields of one name ($names)"
 done
 # A probe has its signals by name, at any depth, in Verilator and, flattened, in Yosys; the ground is told which they are.

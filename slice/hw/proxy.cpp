@@ -102,7 +102,7 @@ GeneratedFile proxyFile(const Block& b, const CFileNames& names) {
     w.line("public:");
     w.line("    " + type + "() {");
     w.line("        this->hw_start(" + coreType(b) +
-           "_init(&core_, coreSlot, coreMemory, &this->port, this), core_.core);");
+           "_init(&core_, coreSlot, coreMemory, &CoreSlot<Module>::port, this), core_.core);");
     w.line("    }");
     w.indented([&] {
         for (const Call& c : b.calls)

@@ -125,6 +125,8 @@ TEST(Proxy, MovesThePins) {
 TEST(Proxy, ElementsLieInMemoryAsInC) {
     StoreProxy<VStoreWrapper> core;
     auto& pins = core.bench_.top();
+    core.port(9);
+    EXPECT_EQ(pins.port_pins_o, 9);
     Demo_Vector v{2, {1.5, -2.0}}, w{};
     Demo_Peak peaks[7] = {{1, 2}, {0x1234, -1}};
     Demo_Peaks list{2, peaks};

@@ -55,6 +55,14 @@ void checkMetadata(const Declaration& d, Diagnostics& diagnostics) {
     }
 }
 
+void checkText(const Literal& value, const Location& at, Diagnostics& diagnostics) {
+    constexpr size_t most = 509;
+    if (value.kind == Literal::Kind::String && value.text.size() > most)
+        diagnostics.error(at, "a string of " + std::to_string(value.text.size()) +
+                                  " bytes; a compiler of C90 needs to take " +
+                                  std::to_string(most) + " only");
+}
+
 // The names that the generated C has at file scope, each with the Slice name it comes from.
 class CNames {
 public:
@@ -179,6 +187,9 @@ void checkC(const Unit& unit, const CFileNames& files, Diagnostics& diagnostics)
         if (d->ofClass) // the rest is said of the class
             continue;
         checkMetadata(*d, diagnostics);
+        checkText(d->value, d->at, diagnostics);
+        for (const Field& f : d->fields)
+            checkText(f.value, f.at, diagnostics);
         if (d->kind == DKind::Interface && d->isHardware())
             checkHardware(*d, diagnostics);
     }

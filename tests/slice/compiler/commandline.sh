@@ -146,6 +146,9 @@ expect 0 '' "$slice2c" -I . crlf.ice without.ice --output-dir x
 [ ! -s log ] || { cat log && fail 'a line end is spoken of'; }
 printf '#include <crlf.ice>\n#include <crlf.ice>\n' >twice.ice
 expect 1 'crlf.ice:2:9: error: .S. is defined already: this file is included twice; begin it with #pragma once' "$slice2c" -I . twice.ice
+printf 'module L { const string T = "%0509d"; struct S { string a = "%0510d"; }; };' 0 0 >text.ice
+expect 1 'text.ice:1:[0-9]*: error: a string of 510 bytes; a compiler of C90 needs to take 509 only' "$slice2c" text.ice
+grep -q '^1 error$' log || { cat log && fail 'a string of 509 bytes is refused'; }
 # A full disk.
 for option in -E --depend --depend-xml; do
     ! "$slice2c" $option crlf.ice >/dev/full 2>log || fail "$option: no error although nothing could be written"

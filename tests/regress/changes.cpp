@@ -58,7 +58,8 @@ Output Changes::git(std::vector<std::string> words) const {
     return run(words, environment_);
 }
 
-// Returns what differs between a tree or a commit and now; null if git does not know it any more.
+// Returns what differs between a tree or a commit and now, what is not committed first; null if git
+// does not know it any more.
 const std::vector<Changes::File>* Changes::differing(const std::string& from) {
     auto found = differing_.find(from);
     if (found != differing_.end())
@@ -82,8 +83,12 @@ const std::vector<Changes::File>* Changes::differing(const std::string& from) {
             file.lines += static_cast<unsigned>(std::max(count(2), count(5)));
         }
     }
+    const auto open = linesOf(git({"diff", "--name-only", "--no-renames", "HEAD", tree_}).text);
     std::stable_partition(files.begin(), files.end(),
                           [](const File& file) { return isSource(file.path); });
+    std::stable_partition(files.begin(), files.end(), [&](const File& file) {
+        return std::find(open.begin(), open.end(), file.path) != open.end();
+    });
     return &files;
 }
 

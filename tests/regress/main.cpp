@@ -130,7 +130,8 @@ void summary(const nlohmann::json& data, const std::vector<Failure>& failures,
             std::cout << "    " << failure->repeat << "\n        log " << failure->log << '\n';
             if (!failure->place.empty())
                 std::cout << "        at " << failure->place << '\n';
-            if (!failure->changed.empty())
+            if (!failure->changed.empty() &&
+                (failure == members[0] || failure->changed != members[0]->changed))
                 std::cout << "        " << failure->changed << '\n';
             if (!failure->wave.empty())
                 std::cout << "        gtkwave "

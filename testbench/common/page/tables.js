@@ -73,7 +73,7 @@ function table(place, columns, rows, options = {}) {
     columns: columns.map((column, i) => {
       const number = rows.length > 0 && rows.every(row => typeof column[1](row) === "number"), wide = widest(column) + (number ? 32 : 28);
       const plain = rows.slice(0, 1).map(row => content(row, column)).every(seen => !seen.childElementCount && /^[-+\d.]*( |$)/.test(seen.textContent));
-      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 700) / 50, minWidth: Math.min(wide, 220), ...(number ? {headerSortStartingDir: "desc"} : {}),
+      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 700) / 50, minWidth: Math.min(wide, 160), ...(number ? {headerSortStartingDir: "desc"} : {}),
         formatter: cell => content(cell.getData().row, column), cssClass: number && plain ? "n" : "", ...column[3]};
     }),
     rowFormatter: row => {

@@ -62,7 +62,7 @@ function showCalls(calls) {
 // A lane for each direction of the air, the calls, each task of the firmware, and each slot that the processor spoke to: what
 // is tall happened, or was most. One path a lane and kind; only calls have a title.
 function showTimeline(state) {
-    const events = state.events, width = 1200, left = 150, height = 22, svg = $('timeline');
+    const events = state.events, svg = $('timeline'), width = svg.getBoundingClientRect().width || 1200, left = 120, height = 22;
     if (!events.length || !state.air) return;
     const end = state.air.ns, span = Number($('span').value) * 1e9, begin = span ? Math.max(0, end - span) : 0;
     const x = ns => left + (width - left - 10) * (ns - begin) / (end - begin);

@@ -516,7 +516,8 @@ JS
     has 'at <a href="../../x.cpp">x.cpp:12</a>; log <a href="failures/test_b.Bad-1.log"' dom.html
     has 'to have passed: <a href="../../tests/room/CMakeLists.txt">tests/room/CMakeLists.txt:8</a> (1 line)' dom.html
     hasNot 'src="http\|href="http' build/regress/report.html # offline
-    "$source/tests/regress/test/look.sh" build/regress/report.html regression || fail "the page"
+    sed 's/test_d.Crash/&OfANameForWhichANarrowWindowHasNoRoomUnlessItIsBrokenSomewhere/g' build/regress/report.html >long.html
+    "$source/tests/regress/test/look.sh" long.html regression || fail "the page"
     "$source/docs/pictures/take.sh" --from build --to . regression >/dev/null || fail "its picture"
     [ "$(head -c 4 regression.png | tail -c 3)" = PNG ] && [ "$(wc -c <regression.png)" -lt 100000 ] || fail "its picture is none, or large"
     ;;

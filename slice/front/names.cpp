@@ -13,25 +13,12 @@ constexpr std::string_view keywords[] = {
     "int",    "long",    "float",      "double",     "string",   "Object",   "LocalObject", "local",
     "const",  "false",   "true",       "idempotent", "optional", "Value"};
 
-char lower(char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-}
-
-bool equalsIgnoringCase(std::string_view a, std::string_view b) {
-    if (a.size() != b.size())
-        return false;
-    for (size_t i = 0; i < a.size(); ++i)
-        if (lower(a[i]) != lower(b[i]))
-            return false;
-    return true;
-}
-
 } // namespace
 
 std::string lowerCase(std::string_view text) {
     std::string s(text);
     for (char& c : s)
-        c = lower(c);
+        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
     return s;
 }
 
@@ -59,7 +46,7 @@ void checkName(std::string_view name, const NameRules& rules, const Location& at
         diagnostics.error(
             at, "identifier " + quoted +
                     " has an underscore; allow them with [[\"underscore\"]] or --underscore");
-    if (name.size() > 2 && equalsIgnoringCase(name.substr(0, 3), "ice") && !rules.icePrefix)
+    if (lowerCase(name.substr(0, 3)) == "ice" && !rules.icePrefix)
         diagnostics.error(at, "identifier " + quoted + ": the prefix '" +
                                   std::string(name.substr(0, 3)) +
                                   "' is reserved; allow it with [[\"ice-prefix\"]] or --ice");

@@ -60,8 +60,7 @@ std::string tooLongLine(const std::filesystem::path& file, const std::vector<std
         if (length > longestLine)
             return file.string() + ":" + std::to_string(number) +
                    ": error: the line is too long: a line, with those that '\\' joins to it, has "
-                   "at "
-                   "most " +
+                   "at most " +
                    std::to_string(longestLine) + " bytes\n";
         if (!line.empty() && line.back() == '\\')
             continue;

@@ -4,11 +4,11 @@
 // wrapper's ports that does the same clock by clock, in VHDL-93 and later.
 
 #include "c/writer.h"
+#include "front/names.h"
 #include "hw/generator.h"
 #include "hw/ports.h"
 #include "hw/words.h"
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 
 namespace hw {
@@ -50,13 +50,6 @@ std::string hex(unsigned value) {
     return text;
 }
 
-std::string signalOf(const Word& word) {
-    std::string name = word.name;
-    for (char& c : name)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return name;
-}
-
 // The port of a piece, or the bits of it that the piece is.
 std::string portOf(const Call& c, const Piece& p, bool isResult) {
     std::string port = c.name + "_" + p.name + (isResult ? "_i" : "_o");
@@ -94,7 +87,7 @@ void signals(Writer& w, const Block& b) {
         w.line("  signal memory : " + vectorType(32 - b.memoryLsb()) + ";");
     for (const Word* word : b.words())
         if (!word->isOut)
-            w.line("  signal " + signalOf(*word) + " : " + vectorType(word->width()) + ";");
+            w.line("  signal " + lowerCase(word->name) + " : " + vectorType(word->width()) + ";");
     for (const Call& c : b.calls)
         if (c.isLong)
             w.line("  signal " + c.name + "_start, " + c.name + "_done, " + c.name + "_busy, " +
@@ -173,7 +166,7 @@ void registers(Writer& w, const Block& b) {
         store(b.memoryWord, "memory", 32 - b.memoryLsb());
     for (const Word* word : b.words())
         if (!word->isOut)
-            store(word->number, signalOf(*word), word->width());
+            store(word->number, lowerCase(word->name), word->width());
     w.line("          when others => null;");
     w.line("        end case;");
     w.line("      end if;");
@@ -230,7 +223,7 @@ std::vector<std::string> shownWords(const Block& b, std::string& signals) {
         for (const Word& own : c.words) {
             word(own.number, own.name);
             if (!own.isOut)
-                vector(own.width(), signalOf(own));
+                vector(own.width(), lowerCase(own.name));
             else
                 for (const Piece& p : own.pieces) {
                     show(p.lsb, p.width, portOf(c, p, true));
@@ -274,7 +267,7 @@ void calls(Writer& w, const Block& b) {
                            " bytes behind the first buffer");
                 if (!word.isOut)
                     w.line("  " + portOf(c, p, false) +
-                           " <= " + slice(signalOf(word), p.lsb, p.width) + ";");
+                           " <= " + slice(lowerCase(word.name), p.lsb, p.width) + ";");
             }
     }
 }

@@ -20,9 +20,7 @@ std::string headerOf(const std::string& included, const std::string& file,
     for (const std::string& d : includeDirs)
         consider(d);
     if (best.empty())
-        consider(fs::absolute(file).parent_path());
-    if (best.empty())
-        best = path;
+        best = path.lexically_relative(fs::weakly_canonical(fs::absolute(file).parent_path()));
     return best.replace_extension(extension).generic_string();
 }
 

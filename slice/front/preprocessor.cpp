@@ -20,12 +20,21 @@ void addOnce(std::vector<std::string>& list, const std::string& name) {
         list.push_back(name);
 }
 
-// Follows the markers: #line 1 "file" enters a file, any other name returns to one around it.
+// Where `name`, which `includer` includes, is: libmcpp leaves a name that is relative to the
+// includer's folder as it stands.
+std::string placeOf(const std::string& name, const std::string& includer) {
+    auto beside = (std::filesystem::path(includer).parent_path() / name).lexically_normal();
+    std::error_code error;
+    return std::filesystem::exists(beside, error) ? beside.string() : name;
+}
+
+// Follows the markers: #line 1 "file" enters a file, any other name returns to one around it. Each
+// gets the file's place.
 void findFiles(Preprocessed& p) {
-    std::vector<std::string> open;
+    std::vector<std::string> open, places;
     for (size_t at = 0; (at = p.text.find("#line ", at)) != std::string::npos;) {
         size_t begin = at, end = std::min(p.text.find('\n', at), p.text.size());
-        at = end;
+        at = begin + 1;
         if (begin > 0 && p.text[begin - 1] != '\n')
             continue;
         size_t quote = p.text.find('"', begin), close = p.text.rfind('"', end);
@@ -35,12 +44,15 @@ void findFiles(Preprocessed& p) {
         auto around = std::find(open.begin(), open.end(), name);
         if (around != open.end()) {
             open.erase(around + 1, open.end());
-            continue;
+            places.resize(open.size());
+        } else {
+            places.push_back(open.empty() ? name : placeOf(name, places.back()));
+            if (open.size() == 1)
+                addOnce(p.includes, places.back());
+            open.push_back(name);
+            addOnce(p.files, places.back());
         }
-        if (open.size() == 1)
-            addOnce(p.includes, name);
-        open.push_back(name);
-        addOnce(p.files, name);
+        p.text.replace(quote + 1, name.size(), places.back());
     }
 }
 

@@ -149,6 +149,18 @@ expect 1 'crlf.ice:2:9: error: .S. is defined already: this file is included twi
 printf 'module L { const string T = "%0509d"; struct S { string a = "%0510d"; }; };' 0 0 >text.ice
 expect 1 'text.ice:1:[0-9]*: error: a string of 510 bytes; a compiler of C90 needs to take 509 only' "$slice2c" text.ice
 grep -q '^1 error$' log || { cat log && fail 'a string of 509 bytes is refused'; }
+# A file beside the one that includes it, or above, wherever the compiler runs.
+mkdir -p beside/sub
+echo 'module Above { struct S { int a; }; };' >beside/above.ice
+echo 'module Next { struct S { Above::S a; Nothing b; }; };' >beside/sub/next.ice
+printf '#include "../above.ice"\n#include "next.ice"\nmodule Low { struct S { Above::S a; }; };\n' >beside/sub/low.ice
+expect 1 '^/.*/beside/sub/next.ice:1:38: error: .Nothing. is not a type' "$slice2c" beside/sub/low.ice
+grep -q '^module Next' log || { cat log && fail 'the line of an included file is not shown'; }
+sed -i 's/Nothing b;//' beside/sub/next.ice
+expect 0 '' "$slice2c" beside/sub/low.ice --output-dir beside/sub
+grep -q '^#include "../above.h"$' beside/sub/low.h && grep -q '^#include "next.h"$' beside/sub/low.h || fail 'a header beside its file, or above, is not included'
+expect 0 '' "$slice2c" --depend beside/sub/low.ice
+grep -q '^ beside/above.ice ' log && grep -q '^ beside/sub/next.ice$' log || { cat log && fail 'dependencies beside a file, or above'; }
 # A full disk.
 for option in -E --depend --depend-xml; do
     ! "$slice2c" $option crlf.ice >/dev/full 2>log || fail "$option: no error although nothing could be written"

@@ -93,6 +93,7 @@ def check_names(slot, top, files):
 HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may name headers, too: `include looks for {0} in their folders (a timescale.v may be empty)",
          r"(?:Module `\\|unknown type `|containing module: ')(\w+)": "FILES lacks the file with module '{0}'",
          r"object for defparam `(\w+)|no generic \"(\w+)\"": "PARAMS: {top} has no '{0}'",
+         r"find resource library \"(\w+)\"": "LIBRARY={0} says that the files are in that library",
          r"\.sv:\d+: ERROR: syntax": "Make Verilog of it by sv2v, which knows all of SystemVerilog"}
 
 
@@ -108,18 +109,10 @@ def run_tool(what, top, command):
     return run.returncode == 0
 
 
-def older(file, folder):
-    """A copy of a file in Verilog for Verilator, in which SystemVerilog's words are names. It has our name, not the file's."""
-    copy = os.path.join(folder, "older_" + os.path.basename(file))
-    with open(copy, "w") as out:
-        out.write(f'`ifdef VERILATOR\n`begin_keywords "1364-2005"\n`endif\n{text_of(file)}\n`ifdef VERILATOR\n`end_keywords\n`endif\n')
-    return copy
-
-
-def read_module(top, files, headers=(), params=(), is_whole=True):
+def read_module(top, files, headers=(), params=(), defines=(), is_whole=True):
     """The module `top`: its ports in order, and the names of its parameters. A port that resets registers asynchronously has
     "reset", the level at which it does. `headers`: files in whose folders `include finds more. `params`: NAME=value of
-    parameters or generics. `is_whole`: all of its modules are in the files."""
+    parameters or generics; `defines`: NAME or NAME=value of macros. `is_whole`: all of its modules are in the files."""
     with tempfile.TemporaryDirectory() as work:
         out = os.path.join(work, top + ".v")
         chosen = " ".join("-chparam {} {}".format(*p.split("=", 1)) for p in params)
@@ -128,7 +121,7 @@ def read_module(top, files, headers=(), params=(), is_whole=True):
             run_tool("GHDL does not convert", top, [os.path.join(HERE, "../cmake/vhdl_to_verilog.sh"),
                                                     os.environ.get("GHDL", "ghdl"), work, top, out, *files])
             files, chosen = [out], ""
-        folders = ["-I" + d for d in folders_of([*files, *headers])]
+        folders = ["-I" + d for d in folders_of([*files, *headers])] + ["-D" + d for d in defines]
         reads = [f"read_verilog -defer {'-sv' if end_of(f) == '.sv' else ''} {' '.join(folders)} {f}" for f in files]
         script = "; ".join([*reads, f"hierarchy {'-check' if is_whole else ''} -top {top} {chosen}", "proc", "flatten", f"write_json {out}.json"])
         run_tool("Yosys does not elaborate", top, ["yosys", "-q", "-p", script])
@@ -141,15 +134,35 @@ def read_module(top, files, headers=(), params=(), is_whole=True):
     return module["ports"], module.get("parameter_default_values", {})
 
 
-def copies_for_verilator(top, files, headers):
-    """The texts by their files that Verilator reads in place of them; none, where it reads the files themselves."""
-    lint = ["verilator", "--lint-only", *FLAGS, "--top-module", top, *("-I" + d for d in folders_of([*files, *headers]))]
+def filled(file, defines):
+    """The file's text with macros and the paths of what it reads by $readmemh: a simulation runs in any folder."""
+    def path(m):
+        there = os.path.join(os.path.dirname(file), m.group(1))
+        return f'"{there}"' if os.path.isfile(there) else m.group()
+    text = re.sub(r'(?<!`include )"([^"\n/]+\.\w+)"', path, text_of(file))
+    if not declared([file], "module"):
+        return text
+    before = "".join(f"`define {d.replace('=', ' ', 1)}\n" for d in defines)
+    return before + text + "".join(f"\n`undef {d.split('=')[0]}\n" for d in defines)
+
+
+def copies_for_verilator(top, files, headers, defines):
+    """Texts by the files that they stand for, with macros, paths of data and, where Verilator needs it, words of SystemVerilog as
+    names."""
+    lint = ["verilator", "--lint-only", *FLAGS, "--top-module", top, *("-I" + d for d in folders_of([*files, *headers])), *("-D" + d for d in defines)]
+    copies = {f: t for f in files if (t := filled(f, defines)) != text_of(f)}
     if run_tool(None, top, [*lint, *files]):
-        return {}
+        return copies
     with tempfile.TemporaryDirectory() as work:
-        copies = {f: older(f, work) for f in files if end_of(f) == ".v" and declared([f], "module")}
-        if run_tool(None, top, [*lint, *(copies.get(f, f) for f in files)]):
-            return {f: text_of(c) for f, c in copies.items()}
+        older, names = {}, {}
+        for f in files:
+            if end_of(f) == ".v" and declared([f], "module"):
+                older[f] = f'`ifdef VERILATOR\n`begin_keywords "1364-2005"\n`endif\n{filled(f, defines)}\n`ifdef VERILATOR\n`end_keywords\n`endif\n'
+                names[f] = os.path.join(work, os.path.basename(f))
+                with open(names[f], "w") as out:
+                    out.write(older[f])
+        if run_tool(None, top, [*lint, *(names.get(f, f) for f in files)]):
+            return {**copies, **older}
     run_tool("Verilator does not read", top, [*lint, *files])
 
 

@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: MIT
 """new_foreign: puts a third-party core in Verilog or VHDL into a slot (docs/recipes.md).
 
-    new_foreign.py NAME TOP wishbone|axil|apb|memory|own|axis FOLDER [CLOCK=Hz] [LIBRARY=name] [PARAM:NAME=value...] [ROLE=port...] FILE...
+    new_foreign.py NAME TOP wishbone|axil|apb|memory|own|axis FOLDER [CLOCK=Hz] [LIBRARY=name] [PARAM:NAME=value...] [DEFINE:NAME...]
+                   [ROLE=port...] FILE...
 
 Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v, which connects TOP to
 the slot; its registers, with the names that TOP has for their addresses; a test; what a mission calls of it;
 CMakeLists.txt. ROLE=port says what a port is for, instead of its name. Ports that are neither bus, clock, reset nor
 interrupt become pins. CLOCK: the core has a clock of its own, of that frequency at most. VHDL is read by GHDL, which the
-environment names; LIBRARY: the VHDL library that its files say they are in; PARAM: a parameter or generic of TOP. A core with AXI-Streams (axis) has an operation instead of registers: foreign_axis.py.
+environment names; LIBRARY: the VHDL library that its files say they are in; PARAM: a parameter or generic of TOP; DEFINE: a macro
+of its Verilog, NAME or NAME=value. A core with AXI-Streams (axis) has an operation instead of registers: foreign_axis.py.
 """
 import json
 import os
@@ -18,36 +20,8 @@ import sys
 
 import foreign_axis
 from foreign_files import FLAGS, HERE, check_names, copies_for_verilator, fail, folders_of, is_vhdl, kind_of, names_of, read_module
+from foreign_roles import AXI, NEEDED, is_answer, roles_of
 
-CLOCK = r"[aph]?(clk|clock)"
-RESET = r"[aph]?n?(rst|reset)[nb]?"
-# What stands beside these words in names of other signals: clk_en, gate_clk_pad_i.
-NO_CLOCK = {"en", "ena", "enable", "ce", "sel", "div", "gate", "ext", "pad"}
-INTERRUPTS = {"int", "inta", "intr", "irq", "interrupt"}
-AXI = ["awvalid", "awready", "awaddr", "awprot", "wvalid", "wready", "wdata", "wstrb", "bvalid", "bready", "bresp",
-       "arvalid", "arready", "araddr", "arprot", "rvalid", "rready", "rdata", "rresp"]
-WISHBONE = {"input": {"cyc": "cyc", "stb": "stb", "we": "we", "adr": "adr", "addr": "adr", "sel": "sel", "dat": "wdata",
-                      "data": "wdata"},
-            "output": {"ack": "ack", "err": "err", "rty": "rty", "stall": "stall", "dat": "rdata", "data": "rdata"}}
-# "apb": AMBA APB 2 to 4 (ARM IHI 0024), without waking and user signals.
-APB = {"psel": "stb", "penable": "enable", "pwrite": "we", "paddr": "adr", "pwdata": "wdata", "pstrb": "sel", "pwstrb": "sel", "pprot": "low",
-       "prdata": "rdata", "pready": "ack", "pslverr": "err"}
-# What a bus may have, too, and what is said there: single transfers of whole words; its outputs are left open.
-TIED = {"axil": {**dict.fromkeys("awid awlen awlock awcache awqos awregion awuser wuser arid arlen arlock arcache arqos arregion aruser".split(), "low"),
-                 "wlast": "high", "awburst": "1", "arburst": "1", "awsize": "2", "arsize": "2",
-                 **dict.fromkeys(("bid", "buser", "rid", "rlast", "ruser"), "open")},
-        "wishbone": dict.fromkeys(("cti", "bte", "lock"), "low")}
-# "memory": chip select, write enable, address of a word, data; what is read is there in the same clock.
-MEMORY = {"cs": "stb", "ce": "stb", "we": "we", "address": "adr", "addr": "adr", "write_data": "wdata", "wdata": "wdata",
-          "din": "wdata", "read_data": "rdata", "rdata": "rdata", "dout": "rdata"}
-# Words for ROLE=port. select is high until the answer, strobe for one clock; read and write beside neither are both.
-ROLES = {"select": "stb", "strobe": "strobe", "read": "re", "write": "we", "address": "adr", "enables": "sel",
-         "wdata": "wdata", "rdata": "rdata", "ack": "ack", "error": "err", "clock": "clock", "reset": "reset",
-         "resetn": "resetn", "interrupt": "interrupt", "pin": "", "setting": "setting", "low": "low", "high": "high",
-         "open": "open", "words": "words", "bytes": "bytes", "enable": "enable"}
-OUTPUTS = ("rdata", "ack", "err", "interrupt", "open")
-NEEDED = {"memory": ["stb", "we", "adr", "wdata", "rdata"], "wishbone": ["stb", "we", "wdata", "rdata", "ack"],
-          "apb": ["stb", "enable", "we", "wdata", "rdata"], "axil": [n for n in AXI if not n.endswith("prot")], "own": ["we", "wdata", "rdata"], "axis": foreign_axis.NEEDED}
 BUSES = {"wishbone": "Wishbone", "apb": "APB", "axil": "AXI4-Lite", "memory": "select, address and data", "own": "a bus of its own"}
 SLOT = """    input  wire        clk_i,
     input  wire        rst_i,
@@ -64,74 +38,6 @@ ADAPTER = """.clk_i(clk_i), .rst_i(rst_i),
         .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
         .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
         .bus_error_o(bus_error_o), .irq_o(irq_o), .irq_i(interrupt)"""
-
-
-def role(name, port, bus):
-    """What a port is: clock, reset, interrupt, a signal of the bus, or "" for a pin."""
-    tokens = name.lower().split("_")
-    is_input = port["direction"] == "input"
-    if is_input and len(port["bits"]) == 1 and not NO_CLOCK & set(tokens):
-        if any(re.fullmatch(CLOCK, t) for t in tokens):
-            return "clock"
-        if any(re.fullmatch(RESET, t) for t in tokens):
-            if "reset" in port:
-                return "reset" if port["reset"] == "1" else "resetn"
-            return "resetn" if {"n", "ni", "b"} & set(tokens) or any(re.fullmatch(RESET, t) and re.search("nr|[nb]$", t) for t in tokens) else "reset"
-    if bus == "axis":
-        return foreign_axis.role(name, port) or ""
-    base = re.sub(r"^[io]_|_[io]$", "", name.lower())
-    found = []
-    if bus == "memory":
-        found = [MEMORY[base]] if base in MEMORY else []
-    elif bus == "axil":
-        found = [t for t in tokens if t in AXI]
-    elif bus == "apb":
-        found = [APB[t] for t in tokens if t in APB]
-    elif bus == "wishbone" and (len(tokens) <= 2 or any(t.startswith("wb") for t in tokens)):
-        found = [WISHBONE[port["direction"]][t] for t in tokens if t in WISHBONE[port["direction"]]]
-    found = [r for r in found if (r in OUTPUTS or is_answer(r)) != is_input]
-    found += [r for t in tokens if (r := TIED.get(bus, {}).get(t)) and (r == "open") != is_input]
-    if found:
-        return found[0]
-    return "interrupt" if not is_input and INTERRUPTS & set(tokens) else ""
-
-
-def roles_of(top, bus, ports, given):
-    """Each port's role, and after how many clocks a core without `ack` answers, or None; `given` is ROLE=port."""
-    roles = {n: role(n, p, bus) for n, p in ports.items()}
-    # The signals of the bus by their own names, too, where no word means them.
-    words = {**{r: r for r in NEEDED[bus] + (AXI if bus == "axil" else [])}, **ROLES}
-    say = {v: k for k, v in ROLES.items()} if bus != "axis" else {}
-    known, latency = ", ".join(ports), None
-    for word in given:
-        what, port = word.split("=", 1)
-        if what not in words:
-            fail(f"PORTS: '{what}' is none of {', '.join(words)}")
-        if what == "ack" and re.fullmatch("[1-9]", port):
-            latency = int(port)
-            continue
-        if port not in ports:
-            fail(f"PORTS: {top} has no port '{port}': {known}")
-        is_output = words[what] in OUTPUTS or is_answer(words[what])
-        if words[what] and is_output != (ports[port]["direction"] == "output"):
-            fail(f"PORTS: {what} is an {'output' if is_output else 'input'} of a core, and '{port}' is not")
-        if what == "setting" and bus != "axis":
-            fail("PORTS: a setting is for BUS=axis; here an input that is none of the bus is a pin")
-        roles[port] = words[what]
-    there = {*roles.values(), *(["ack"] if latency else []), *(["adr"] if {"words", "bytes"} & set(roles.values()) else []),
-             *(["stb"] if bus == "wishbone" and "cyc" in roles.values() else [])}
-    missing = [say.get(r, r) for r in NEEDED[bus] + ["clock"] if r not in there]
-    if missing:
-        fail(f"{top} has no port for {', '.join(missing)}: {known}; say which by PORTS='{missing[0]}=port ...'"
-             + (", or by ack=1 that what is read is there a clock later" if "ack" in missing else ""))
-    for r in there - {"", "clock", "reset", "resetn", "interrupt", "setting", "low", "high", "open", "1", "2"}:
-        if len(same := [n for n in ports if roles[n] == r]) > 1:
-            fail(f"{top} has more than one port for {say.get(r, r)}: {', '.join(same)}; what the others are by PORTS='pin={same[-1]} ...'")
-    if "strobe" in roles.values() and "ack" not in there:
-        fail("PORTS: a strobe of one clock needs an ack; what answers in the same clock has select")
-    if wide := [n for n in ports if bus != "axis" and roles[n] in ("wdata", "rdata") and len(ports[n]["bits"]) > 32]:
-        fail(f"'{wide[0]}' of {top} has {len(ports[wide[0]]['bits'])} bits: a slot's bus has 32; put a module between that halves the words")
-    return roles, latency
 
 
 def tie(port, what):
@@ -155,11 +61,12 @@ def vector(width):
     return f"[{width - 1}:0] " if width > 1 else ""
 
 
-def address(signal, port, bus):
+def address(signal, port, bus, data_width):
     """Connection of an address, and the bits that count words: byte addresses where the port has bits of them, else a
     word for each address."""
     width, lsb = len(port["bits"]), port.get("offset", 0)
-    if signal == "words" or lsb == 0 and signal == "adr" and bus != "apb" and (width < 16 or width == 30):
+    if signal == "words" or lsb == 0 and signal == "adr" and bus != "apb" and (
+            width < 16 or width == 30 or width < 30 and data_width < 32):
         return f"adr[{width + 1}:2]", width
     return f"{'adr' if signal == 'bytes' else signal}[{width + lsb - 1}:{lsb}]", max(0, width + lsb - 2)
 
@@ -185,7 +92,7 @@ def write_verilog(name, top, bus, ports, roles, latency, params, clock):
             to = f"interrupt_{len(interrupts)}"
             interrupts.append((width, to))
         elif r in ("adr", "words", "bytes", "awaddr", "araddr"):
-            to, word_bits = address(r, p, bus)
+            to, word_bits = address(r, p, bus, len(by_role["rdata"][1]["bits"]))
             adr_bits = max(adr_bits, int(re.search(r"\[(\d+):", to).group(1)) + 1)
         elif r in ("wdata", "sel", "wstrb") and width < {"wdata": 32, "sel": 4, "wstrb": 4}[r]:
             to = f"{r}[{width - 1}:0]"
@@ -254,11 +161,6 @@ endmodule
     return text, word_bits, adr_bits, data_width, pins
 
 
-def is_answer(signal):
-    return signal in ("rdata", "ack", "err", "rty", "stall", "awready", "wready", "bvalid", "bresp", "arready", "rvalid", "rresp",
-                      "s_tready", "m_tdata", "m_tvalid")
-
-
 def zero(widths, signal):
     return f"{widths.get(signal, 1)}'d0"
 
@@ -325,11 +227,12 @@ def main(words):
     if len(words) < 5:
         sys.exit("usage: make new-foreign NAME=my_uart TOP=module BUS=wishbone|axil|apb|memory|own|axis FILES='a.v b.v' [PORTS='write=we ...']")
     name, top, bus, folder, *rest = words
-    given, files = [w for w in rest if "=" in w], [w for w in rest if "=" not in w]
+    given, files = [w for w in rest if "=" in w], [w for w in rest if "=" not in w and not w.startswith("DEFINE:")]
     params = [w[6:] for w in given if w.startswith("PARAM:")]
+    defines = [w[7:] for w in rest if w.startswith("DEFINE:")]
     clock = [w[6:] for w in given if w.startswith("CLOCK=")]
     library = [w[8:] for w in given if w.startswith("LIBRARY=")]
-    given = [w for w in given if not w.startswith(("CLOCK=", "LIBRARY=", "PARAM:"))]
+    given = [w for w in given if not w.startswith(("CLOCK=", "LIBRARY=", "PARAM:", "DEFINE:"))]
     if clock and not (clock[0].isdigit() and 3000000 <= int(clock[0]) <= 100000000):
         fail(f"CLOCK={clock[0]}: the frequency of the core's own clock, 3000000 to 100000000 Hz")
     if clock and bus == "axis":
@@ -360,8 +263,8 @@ def main(words):
     if not files or len({is_vhdl(f) for f in files}) > 1:
         fail("FILES are all Verilog or all VHDL, and at least one")
     top = check_names(name, top, files)
-    ports, parameters = read_module(top, files, headers, params)
-    copies = {} if is_vhdl(files[0]) else copies_for_verilator(top, files, headers)
+    ports, parameters = read_module(top, files, headers, params, defines)
+    copies = {} if is_vhdl(files[0]) else copies_for_verilator(top, files, headers, defines)
     # A level that OpenCores' cores have as a parameter.
     levels = [p for p in ["ARST_LVL=1'b1"] if p[:8] in parameters and not any(q.startswith("ARST_LVL=") for q in params)]
     if odd := [n for n in ports if not re.fullmatch(r"\w+", n)]:
@@ -392,8 +295,8 @@ def main(words):
                  f"  VERILOG {name}.v ${{GEN_DIR}}/{top}.v)\n")
     else:
         for f, text in copies.items():  # beside the slot, in the place of the file
-            texts["older_" + os.path.basename(f)] = text
-            files = ["older_" + os.path.basename(f) if g == f else g for g in files]
+            texts["copy_" + os.path.basename(f)] = text
+            files = ["copy_" + os.path.basename(f) if g == f else g for g in files]
         build = (f"icesoc_core({name} {source} FLAGS {' '.join(FLAGS)} "
                  + " ".join("-I" + d for d in folders_of([*files, *copies, *headers])) + f"\n  VERILOG {name}.v "
                  + "\n  ".join([*files, *headers]) + ")\n")
@@ -403,8 +306,8 @@ def main(words):
         with open(os.path.join(folder, file), "w") as out:
             out.write(text)
     print(f"{folder}: {' '.join(sorted(os.listdir(folder)))}")
-    for f in copies:
-        print(f"  older_{os.path.basename(f)}: a copy, in which words of SystemVerilog are names")
+    if copies:
+        print(f"  copies with macros, paths of data, and words of SystemVerilog as names: {' '.join(map(os.path.basename, copies))}")
     for n in ports:
         print(f"  {n}: {roles[n] or 'pin ' + pin_name(n, ports[n])}")
     print(f"  {answers}")

@@ -20,9 +20,10 @@ PORTS ?=
 CLOCK ?=
 LIBRARY ?=
 PARAMS ?=
-new-foreign: $(BUILD)/build.ninja ## put a third-party core into a slot: NAME=my_uart TOP=its_module BUS=wishbone|axil|apb|memory|own|axis FILES="a.v b.v" [PORTS="write=we ack=done"] [PARAMS="depth=16"] [CLOCK=24000000] [LIBRARY=of_the_vhdl]
+DEFINES ?=
+new-foreign: $(BUILD)/build.ninja ## put a third-party core into a slot: NAME=my_uart TOP=its_module BUS=wishbone|axil|apb|memory|own|axis FILES="a.v b.v" [PORTS="write=we ack=done"] [PARAMS="depth=16"] [DEFINES="wide"] [CLOCK=24000000] [LIBRARY=of_the_vhdl]
 	@$(if $(filter %.vhd %.vhdl %.VHD %.VHDL,$(FILES)),$(NINJA) --quiet ghdl)
-	@GHDL='$(BUILD)/ghdl/ghdl' ip/new_foreign.py '$(NAME)' '$(TOP)' '$(BUS)' 'ip/$(NAME)' $(if $(CLOCK),'CLOCK=$(CLOCK)') $(if $(LIBRARY),'LIBRARY=$(LIBRARY)') $(addprefix PARAM:,$(PARAMS)) $(PORTS) $(FILES)
+	@GHDL='$(BUILD)/ghdl/ghdl' ip/new_foreign.py '$(NAME)' '$(TOP)' '$(BUS)' 'ip/$(NAME)' $(if $(CLOCK),'CLOCK=$(CLOCK)') $(if $(LIBRARY),'LIBRARY=$(LIBRARY)') $(addprefix PARAM:,$(PARAMS)) $(addprefix DEFINE:,$(DEFINES)) $(PORTS) $(FILES)
 .PHONY: new-foreign
 
 # Put into slots by new-foreign: slot=module=bus=repository, and =Hz of a clock of its own.

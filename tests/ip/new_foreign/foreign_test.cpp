@@ -60,6 +60,7 @@ TEST(Apb, TransfersBeginWithoutEnableAndEndWithReady) {
 
 TEST(Late, AValueIsReadOnceAndAClockLater) {
     CoreSlot<Vmy_late_slot> slot;
+    EXPECT_EQ(slot.bus_.read(MY_LATE_REG2), 0x3222u) << "of its file, wherever the test runs";
     for (uint32_t i = 0; i < 4; ++i)
         slot.bus_.write(MY_LATE_REG0 + i, 0xA5C0 + i);
     for (uint32_t i = 0; i < 4; ++i) {

@@ -1,24 +1,26 @@
 // SPDX-License-Identifier: MIT
 //
 // late_words: four words of 16 bits, written by bytes, whose values come a clock after their strobe; a read clears its word.
+// They begin with what is in a file.
 
 module late_words (
     input             mclk, rst_ni,
     input             en,
     input      [1:0]  wen,
-    input      [1:0]  where,
-    input      [15:0] value,
-    output reg [15:0] held
+    input      [15:0] where,
+    input      [`WORD-1:0] value,
+    output reg [`WORD-1:0] held
 );
     reg [15:0] words [0:3];
+    initial $readmemh("late_words.hex", words);
     always @(posedge mclk) begin
-        held <= words[where];
+        held <= words[where[1:0]];
         if (en && wen == 2'd0)
-            words[where] <= 16'd0;
+            words[where[1:0]] <= 16'd0;
         if (en && wen[0])
-            words[where][7:0] <= value[7:0];
+            words[where[1:0]][7:0] <= value[7:0];
         if (en && wen[1])
-            words[where][15:8] <= value[15:8];
+            words[where[1:0]][15:8] <= value[15:8];
         if (!rst_ni)
             held <= 16'd0;
     end

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""foreign_roles: what new_foreign.py takes the ports of a third-party core for: by their names, and by PORTS."""
+import re
+
+import foreign_axis
+from foreign_files import fail
+
+CLOCK = r"[aph]?(clk|clock)"
+RESET = r"[aph]?n?(rst|reset)[nb]?"
+# What stands beside these words in names of other signals: clk_en, gate_clk_pad_i.
+NO_CLOCK = {"en", "ena", "enable", "ce", "sel", "div", "gate", "ext", "pad"}
+INTERRUPTS = {"int", "inta", "intr", "irq", "interrupt"}
+AXI = ["awvalid", "awready", "awaddr", "awprot", "wvalid", "wready", "wdata", "wstrb", "bvalid", "bready", "bresp",
+       "arvalid", "arready", "araddr", "arprot", "rvalid", "rready", "rdata", "rresp"]
+WISHBONE = {"input": {"cyc": "cyc", "stb": "stb", "we": "we", "adr": "adr", "addr": "adr", "sel": "sel", "dat": "wdata",
+                      "data": "wdata"},
+            "output": {"ack": "ack", "err": "err", "rty": "rty", "stall": "stall", "dat": "rdata", "data": "rdata"}}
+# "apb": AMBA APB 2 to 4 (ARM IHI 0024), without waking and user signals.
+APB = {"psel": "stb", "penable": "enable", "pwrite": "we", "paddr": "adr", "pwdata": "wdata", "pstrb": "sel", "pwstrb": "sel", "pprot": "low",
+       "prdata": "rdata", "pready": "ack", "pslverr": "err"}
+# What a bus may have, too, and what is said there: single transfers of whole words; its outputs are left open.
+TIED = {"axil": {**dict.fromkeys("awid awlen awlock awcache awqos awregion awuser wuser arid arlen arlock arcache arqos arregion aruser".split(), "low"),
+                 "wlast": "high", "awburst": "1", "arburst": "1", "awsize": "2", "arsize": "2",
+                 **dict.fromkeys(("bid", "buser", "rid", "rlast", "ruser"), "open")},
+        "wishbone": dict.fromkeys(("cti", "bte", "lock"), "low")}
+# "memory": chip select, write enable, address of a word, data; what is read is there in the same clock.
+MEMORY = {"cs": "stb", "ce": "stb", "we": "we", "address": "adr", "addr": "adr", "write_data": "wdata", "wdata": "wdata",
+          "din": "wdata", "read_data": "rdata", "rdata": "rdata", "dout": "rdata"}
+# Words for ROLE=port. select is high until the answer, strobe for one clock; read and write beside neither are both.
+ROLES = {"select": "stb", "strobe": "strobe", "read": "re", "write": "we", "address": "adr", "enables": "sel",
+         "wdata": "wdata", "rdata": "rdata", "ack": "ack", "error": "err", "clock": "clock", "reset": "reset",
+         "resetn": "resetn", "interrupt": "interrupt", "pin": "", "setting": "setting", "low": "low", "high": "high",
+         "open": "open", "words": "words", "bytes": "bytes", "enable": "enable"}
+OUTPUTS = ("rdata", "ack", "err", "interrupt", "open")
+NEEDED = {"memory": ["stb", "we", "adr", "wdata", "rdata"], "wishbone": ["stb", "we", "wdata", "rdata", "ack"],
+          "apb": ["stb", "enable", "we", "wdata", "rdata"], "axil": [n for n in AXI if not n.endswith("prot")], "own": ["we", "wdata", "rdata"], "axis": foreign_axis.NEEDED}
+
+
+def is_answer(signal):
+    return signal in ("rdata", "ack", "err", "rty", "stall", "awready", "wready", "bvalid", "bresp", "arready", "rvalid", "rresp",
+                      "s_tready", "m_tdata", "m_tvalid")
+
+
+def role(name, port, bus):
+    """What a port is: clock, reset, interrupt, a signal of the bus, or "" for a pin."""
+    tokens = name.lower().split("_")
+    is_input = port["direction"] == "input"
+    if is_input and len(port["bits"]) == 1 and not NO_CLOCK & set(tokens):
+        if any(re.fullmatch(CLOCK, t) for t in tokens):
+            return "clock"
+        if any(re.fullmatch(RESET, t) for t in tokens):
+            if "reset" in port:
+                return "reset" if port["reset"] == "1" else "resetn"
+            return "resetn" if {"n", "ni", "b"} & set(tokens) or any(re.fullmatch(RESET, t) and re.search("nr|[nb]$", t) for t in tokens) else "reset"
+    if bus == "axis":
+        return foreign_axis.role(name, port) or ""
+    base = re.sub(r"^[io]_|_[io]$", "", name.lower())
+    found = []
+    if bus == "memory":
+        found = [MEMORY[base]] if base in MEMORY else []
+    elif bus == "axil":
+        found = [t for t in tokens if t in AXI]
+    elif bus == "apb":
+        found = [APB[t] for t in tokens if t in APB]
+    elif bus == "wishbone" and (len(tokens) <= 2 or any(t.startswith("wb") for t in tokens)):
+        found = [WISHBONE[port["direction"]][t] for t in tokens if t in WISHBONE[port["direction"]]]
+    found = [r for r in found if (r in OUTPUTS or is_answer(r)) != is_input]
+    found += [r for t in tokens if (r := TIED.get(bus, {}).get(t)) and (r == "open") != is_input]
+    if found:
+        return found[0]
+    return "interrupt" if not is_input and INTERRUPTS & set(tokens) else ""
+
+
+def roles_of(top, bus, ports, given):
+    """Each port's role, and after how many clocks a core without `ack` answers, or None; `given` is ROLE=port."""
+    roles = {n: role(n, p, bus) for n, p in ports.items()}
+    # The signals of the bus by their own names, too, where no word means them.
+    words = {**{r: r for r in NEEDED[bus] + (AXI if bus == "axil" else [])}, **ROLES}
+    say = {v: k for k, v in ROLES.items()} if bus != "axis" else {}
+    known, latency = ", ".join(ports), None
+    for word in given:
+        what, port = word.split("=", 1)
+        if what not in words:
+            fail(f"PORTS: '{what}' is none of {', '.join(words)}")
+        if what == "ack" and re.fullmatch("[1-9]", port):
+            latency = int(port)
+            continue
+        if port not in ports:
+            fail(f"PORTS: {top} has no port '{port}': {known}")
+        is_output = words[what] in OUTPUTS or is_answer(words[what])
+        if words[what] and is_output != (ports[port]["direction"] == "output"):
+            fail(f"PORTS: {what} is an {'output' if is_output else 'input'} of a core, and '{port}' is not")
+        if what == "setting" and bus != "axis":
+            fail("PORTS: a setting is for BUS=axis; here an input that is none of the bus is a pin")
+        roles[port] = words[what]
+    there = {*roles.values(), *(["ack"] if latency else []), *(["adr"] if {"words", "bytes"} & set(roles.values()) else []),
+             *(["stb"] if bus == "wishbone" and "cyc" in roles.values() else [])}
+    missing = [say.get(r, r) for r in NEEDED[bus] + ["clock"] if r not in there]
+    if missing:
+        fail(f"{top} has no port for {', '.join(missing)}: {known}; say which by PORTS='{missing[0]}=port ...'"
+             + (", or by ack=1 that what is read is there a clock later" if "ack" in missing else ""))
+    for r in there - {"", "clock", "reset", "resetn", "interrupt", "setting", "low", "high", "open", "1", "2"}:
+        if len(same := [n for n in ports if roles[n] == r]) > 1:
+            fail(f"{top} has more than one port for {say.get(r, r)}: {', '.join(same)}; what the others are by PORTS='pin={same[-1]} ...'")
+    if "strobe" in roles.values() and "ack" not in there:
+        fail("PORTS: a strobe of one clock needs an ack; what answers in the same clock has select")
+    if wide := [n for n in ports if bus != "axis" and roles[n] in ("wdata", "rdata") and len(ports[n]["bits"]) > 32]:
+        fail(f"'{wide[0]}' of {top} has {len(ports[wide[0]]['bits'])} bits: a slot's bus has 32; put a module between that halves the words")
+    return roles, latency

@@ -73,7 +73,8 @@ def address(signal, port, bus, data_width):
 
 def write_verilog(name, top, bus, ports, roles, latency, params, clock):
     by_role = {r: (n, p) for n, p in ports.items() if (r := roles[n])}
-    word_bits, data_width, connections, extra, interrupts = 0, 32, [], [], []
+    word_bits, connections, extra, interrupts = 0, [], [], []
+    data_width = max(len(by_role[r][1]["bits"]) for r in ("wdata", "rdata"))
     adr_bits = 6
     # Without a select, read and write are strobes.
     strobes = {} if {"stb", "strobe"} & set(by_role) else {"we": "stb && we", "re": "stb && !we"}
@@ -92,12 +93,12 @@ def write_verilog(name, top, bus, ports, roles, latency, params, clock):
             to = f"interrupt_{len(interrupts)}"
             interrupts.append((width, to))
         elif r in ("adr", "words", "bytes", "awaddr", "araddr"):
-            to, word_bits = address(r, p, bus, len(by_role["rdata"][1]["bits"]))
+            to, word_bits = address(r, p, bus, data_width)
             adr_bits = max(adr_bits, int(re.search(r"\[(\d+):", to).group(1)) + 1)
         elif r in ("wdata", "sel", "wstrb") and width < {"wdata": 32, "sel": 4, "wstrb": 4}[r]:
             to = f"{r}[{width - 1}:0]"
         elif r == "rdata":
-            to, data_width = "rdata" if width == 32 else f"rdata[{width - 1}:0]", width
+            to = "rdata" if width == 32 else f"rdata[{width - 1}:0]"
             if width < 32:
                 extra.append(f"    assign rdata[31:{width}] = {32 - width}'d0;")
         elif r:

@@ -73,6 +73,10 @@ refused "setting is an input of a core, and 'over' is not" my_port axis_scale ax
 for line in 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' 'wbs_cyc_i: cyc' 'wbs_cti_i: low' 'intr: interrupt' 'spare: open'; do
     grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
 done
+# A register is as wide as what is written, or read.
+echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q); assign q = d[12:0]; endmodule' >"$work/narrow.v"
+"$new" my_port narrow own "$work/narrow" write=we wdata=d rdata=q "$work/narrow.v" >"$work/log" && grep -q '"width": 17' "$work/narrow/my_port.regs.json" ||
+    { cat "$work/log" && echo 'a register has not 17 bits' && exit 1; }
 # The same by make, and one that is taken.
 mkdir -p "$work/tree/ip"
 ln -s "$new" "$work/tree/ip"

@@ -139,6 +139,7 @@ void Parser::metadataStrings(Metadata& found, std::string_view end) {
 
 Parser::Metadata Parser::metadata() {
     Metadata found;
+    // Ice 3.8 has several groups before one definition.
     while (accept("["))
         metadataStrings(found, "]");
     return found;

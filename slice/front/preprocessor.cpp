@@ -21,11 +21,21 @@ void addOnce(std::vector<std::string>& list, const std::string& name) {
 }
 
 // Where `name`, which `includer` includes, is: libmcpp leaves a name that is relative to the
-// includer's folder as it stands.
+// includer's folder as it stands, or puts it behind the -I folder that it found the includer in.
 std::string placeOf(const std::string& name, const std::string& includer) {
-    auto beside = (std::filesystem::path(includer).parent_path() / name).lexically_normal();
     std::error_code error;
-    return std::filesystem::exists(beside, error) ? beside.string() : name;
+    std::filesystem::path path = name, folder = std::filesystem::path(includer).parent_path();
+    if (path.is_absolute() && std::filesystem::exists(path, error))
+        return name;
+    for (auto first = path.begin(); first != path.end(); ++first) {
+        std::filesystem::path rest;
+        for (auto part = first; part != path.end(); ++part)
+            rest /= *part;
+        auto beside = (folder / rest).lexically_normal();
+        if (rest.is_relative() && std::filesystem::exists(beside, error))
+            return beside.string();
+    }
+    return name;
 }
 
 // Follows the markers: #line 1 "file" enters a file, any other name returns to one around it. Each

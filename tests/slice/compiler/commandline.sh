@@ -161,6 +161,9 @@ expect 0 '' "$slice2c" beside/sub/low.ice --output-dir beside/sub
 grep -q '^#include "../above.h"$' beside/sub/low.h && grep -q '^#include "next.h"$' beside/sub/low.h || fail 'a header beside its file, or above, is not included'
 expect 0 '' "$slice2c" --depend beside/sub/low.ice
 grep -q '^ beside/above.ice ' log && grep -q '^ beside/sub/next.ice$' log || { cat log && fail 'dependencies beside a file, or above'; }
+echo '#include <sub/low.ice>' >top.ice
+expect 0 '' "$slice2c" --depend -Ibeside top.ice
+grep -q '^ beside/above.ice ' log && grep -q '^ beside/sub/next.ice$' log || { cat log && fail 'dependencies beside a file of the -I path'; }
 # A full disk.
 for option in -E --depend --depend-xml; do
     ! "$slice2c" $option crlf.ice >/dev/full 2>log || fail "$option: no error although nothing could be written"

@@ -49,7 +49,7 @@ TO    ?=
 UPDATE ?=
 # Mutants that are drawn for each proof, with SEED (make mutants)
 DRAW ?=
-# Folder of the real uC/OS-II: the firmware is built with it, too, and CPU=m3 flies it (docs/ucos2.md)
+# Folder of the real uC/OS-II: the firmware is built with it, too, and CPU=m3 flies it (docs/firmware.md)
 UCOS2 ?=
 
 # The compiler's cache serves every clone: paths below this folder are relative in it.

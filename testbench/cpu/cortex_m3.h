@@ -2,7 +2,7 @@
 //
 // cortex_m3: a Cortex-M3: libunicorn executes the instructions; exceptions, their priorities, the
 // system registers, cycles and faults are added here. Its contract and what it leaves out:
-// docs/cpu.md.
+// docs/models.md.
 
 #ifndef CORTEX_M3_H
 #define CORTEX_M3_H

@@ -15,7 +15,7 @@ namespace {
 
 class OsM3Cases : public ::testing::TestWithParam<unsigned> {};
 
-// UCOS2_CASES names a build of the same program on the real uC/OS-II (docs/ucos2.md).
+// UCOS2_CASES names a build of the same program on the real uC/OS-II (docs/firmware.md).
 std::string program() {
     const char* other = std::getenv("UCOS2_CASES");
     return other ? other : CASES_ELF;

@@ -90,7 +90,7 @@ struct Flight {
     int sent = 0;
 };
 
-// UAV_FIRMWARE names another build, of the real uC/OS-II (docs/ucos2.md).
+// UAV_FIRMWARE names another build, of the real uC/OS-II (docs/firmware.md).
 M3Machine::Config firmwareAt(uint32_t hclkHz) {
     const char* other = std::getenv("UAV_FIRMWARE");
     return {other ? other : FIRMWARE_ELF, hclkHz, Ground::guardMs};

@@ -303,7 +303,7 @@ static std::string clockConstraints(const Core& c) {
 
 std::string constraintsOf(const Chip& chip) {
     std::string s = "# Generated from ip/cores.list: do not edit. Pins of cores, for ngdbuild "
-                    "(docs/ise.md).\n";
+                    "(docs/utilisation.md).\n";
     for (const Core& c : chip.cores)
         for (const Pin& p : c.pins)
             for (unsigned bit = 0; p.isPin() && bit < p.width; ++bit)

@@ -159,7 +159,7 @@ void edif(const Plan& plan, const Library& library, const RunnerOptions& options
                                      [&](const Design& d) { return d.name == o.edif; });
     fmt::print(stderr, "{} as EDIF ...\n", o.edif);
     writeEdif(*design, library, options, o.output / "ise");
-    fmt::print("{} and its Verilog in {}; docs/ise.md says how to go on.\n",
+    fmt::print("{} and its Verilog in {}; docs/utilisation.md says how to go on.\n",
                (o.output / "ise" / (o.edif + ".edf")).string(),
                (o.output / "ise/verilog").string());
 }

@@ -259,7 +259,7 @@ def explain(communicator, args, failure):
             "chip:xbee-at -d %s -a 0x0001 -s 0x0000" % args.device)))
         if found:
             text += "; ".join(["", *found]) + ": build both anew from one ip/cores.list, the firmware by make firmware, " \
-                "the chip by make synth-edif (docs/ise.md)"
+                "the chip by make synth-edif (docs/utilisation.md)"
     return text
 
 

@@ -102,7 +102,7 @@ bool ModemSetup::command(const std::string& text) {
 
 // Tries the target rate first, since a modem that this has set up before is there; then the
 // factory's; then these with a longer guard time, because a modem keeps what it was once told
-// (ATGT), and a simulated one may be slower than the clock; then all rates. Times: docs/xbee.md.
+// (ATGT), and a simulated one may be slower than the clock; then all rates. Times: docs/modem.md.
 bool ModemSetup::find() {
     const int guard = settings_.guardMs, longer = std::min(3 * guard, mostGuard);
     std::vector<std::pair<int, int>> candidates = {{settings_.baud, guard},

@@ -80,7 +80,7 @@ nightly: setup-tests build ## what a timer runs: seeds that have failed, the reg
 # MOMENTS of each fault are drawn from each of SEEDS seeds, the first of which is SEED. Tools are interrupted for the first.
 MOMENTS ?= 10
 SEEDS   ?= 1
-faults: $(BUILD)/build.ninja ## kill, stop and starve each process of a mission at ten moments drawn from a seed (MOMENTS=10 SEED=1 SEEDS=1 NAME=killed), expect docs/faults.md
+faults: $(BUILD)/build.ninja ## kill, stop and starve each process of a mission at ten moments drawn from a seed (MOMENTS=10 SEED=1 SEEDS=1 NAME=killed), expect docs/regression.md
 	@$(NINJA) mission clock_step regress utilisation regmaps
 	@[ -n $(call quoted,$(NAME)) ] || SEED=$(SEED) tests/regress/test/interrupted.py . "$(BUILD)" build/faults/interrupted $(MOMENTS) new_ip regress synth
 	@/usr/bin/python3 tests/e2e/mission/faults.py "$(CURDIR)" "$(BUILD)" build/faults/missions --seed $(SEED) --seeds $(SEEDS) --moments $(MOMENTS) \

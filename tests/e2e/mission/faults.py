@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """faults: what becomes of a mission when one of its processes is killed or stopped, or when it is refused
-something; at moments drawn from seeds. docs/faults.md has the table that this checks.
+something; at moments drawn from seeds. docs/regression.md has the table that this checks.
 
 A moment is a time of the flight: 0.3 seconds since its process began, then simulated seconds, of which a flight has
 about 1.7. So each moment is within the flight, whatever the machine's speed.

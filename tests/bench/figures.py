@@ -25,7 +25,7 @@ TITLES = {
 
 # What a row has columns for, where it has two to six
 AXES = [r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %", "in the clear|encrypted|with a key",
-        r"of \d+ bytes", r"\d+ ports"]
+        r"of \d+ bytes", r"\d+ ports", r"HCLK \d+ MHz"]
 
 
 def number(value):
@@ -37,7 +37,7 @@ def beside(entry):
         share = f", {100 * entry['share']:.1f} %" if "share" in entry else ""
         return f"limit {number(entry['limit'])}{share}"
     if "peer" in entry:
-        return f"{entry['peer']}, {entry['ratio']} times"
+        return f"{entry['peer']}, {number(entry['ratio'])} times"
     return f"by hand {entry['by_hand']}, from VHDL {entry['in_vhdl']}" if "by_hand" in entry else ""
 
 

@@ -4,7 +4,6 @@
 # fetch: brings what Debian has but the packages in use leave out, without touching the system.
 #   cmake/fetch.sh ice DIR    internal transport headers of the installed ZeroC Ice, into DIR
 #   cmake/fetch.sh ghdl DIR   GHDL 5 (GHDL 2's Verilog output is wrong for `case`), DIR/ghdl runs it
-#   cmake/fetch.sh clang-format DIR   clang-format 14, DIR/clang-format runs it
 #   cmake/fetch.sh nextpnr DIR   nextpnr for ECP5, DIR/nextpnr-ecp5 runs it; names of files are absolute
 #   cmake/fetch.sh foreign DIR   the third-party cores that examples/foreign/files.list names, into DIR; from
 #                             ICESOC_RAW, a copy of raw.githubusercontent.com, if it is set
@@ -145,20 +144,6 @@ EOF
     chmod +x "$target/nextpnr-ecp5"
 }
 
-# Other versions write some lines in another way, so that a check would depend on the machine.
-fetch_clang_format() {
-    mkdir -p "$target"
-    program=clang-format-14
-    if ! command -v $program >/dev/null; then
-        keep=$cache/clang-format-14
-        unpacked bookworm 'clang-format 14 (38 MB)' clang-format-14 libclang-cpp14 libllvm14 libz3-4 libxml2 libicu72
-        library=$(find "$keep/root" -name libLLVM-14.so.1)
-        program="env LD_LIBRARY_PATH=$(quoted "${library%/*}") $(quoted "$keep/root/usr/bin/clang-format-14")"
-    fi
-    printf '#!/bin/sh\nexec %s "$@"\n' "$program" >"$target/clang-format"
-    chmod +x "$target/clang-format"
-}
-
 # Brings a file to $kept: its checksum says that it is the one that was tested. $1: address, $2: checksum. Exit status 1: there
 # is no network.
 kept_file() {
@@ -281,7 +266,6 @@ trap 'exit 130' INT TERM
 case $what in
 ice) fetch_ice ;;
 ghdl) fetch_ghdl ;;
-clang-format) fetch_clang_format ;;
 nextpnr) fetch_nextpnr ;;
 foreign) fetch_foreign ;;
 svd) fetch_svd ;;

@@ -57,6 +57,7 @@ libclang-rt-dev their run time, which clang only recommends
 '
 # what tests, reports and debuggers need beside
 rest='
+clang-format-19 holds the source to .clang-format
 libxml2-utils checks the generated SVD file and pages
 lcov coverage pages
 chromium opens the report pages in tests
@@ -74,12 +75,10 @@ man-db shows and checks the manual pages
 groff-base formats them
 '
 [ -z "$tests" ] || packages="$packages$rest"
-# Packages that one release has; cmake/fetch.sh brings their programs to the other.
+# Debian 12's is too old: cmake/fetch.sh brings Debian 13's.
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in
 1[3-9]) packages="$packages
 ghdl-mcode simulates and converts VHDL" ;;
-12) packages="$packages
-clang-format-14 holds the source to .clang-format" ;;
 esac
 
 if ! command -v dpkg-query >/dev/null 2>&1; then

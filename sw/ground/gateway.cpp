@@ -266,7 +266,7 @@ int main(int argc, char** argv) {
     app.add_option("--statistics", o.statistics, "print a line about every so many seconds")
         ->check(CLI::Range(0, 86400));
     CLI11_PARSE(app, argc, argv);
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_handler = [](int signal) { stopSignal = signal; };
     for (int signal : {SIGINT, SIGTERM, SIGHUP})
         sigaction(signal, &action, nullptr);

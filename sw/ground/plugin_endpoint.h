@@ -34,39 +34,23 @@ public:
         typedef IceInternal::InfoI<Ice::EndpointInfo> Info;
         return ICE_MAKE_SHARED(Info, ICE_SHARED_FROM_CONST_THIS(Endpoint));
     }
-    Ice::Short type() const override {
-        return endpointType;
-    }
-    const std::string& protocol() const override {
-        return protocolName;
-    }
-    Ice::Int timeout() const override {
-        return o_.timeoutMs;
-    }
+    Ice::Short type() const override { return endpointType; }
+    const std::string& protocol() const override { return protocolName; }
+    Ice::Int timeout() const override { return o_.timeoutMs; }
     EndpointIPtr timeout(Ice::Int ms) const override {
         return with([&](EndpointOptions& o) { o.timeoutMs = ms; });
     }
-    const std::string& connectionId() const override {
-        return o_.connectionId;
-    }
+    const std::string& connectionId() const override { return o_.connectionId; }
     EndpointIPtr connectionId(const std::string& id) const override {
         return with([&](EndpointOptions& o) { o.connectionId = id; });
     }
-    bool compress() const override {
-        return o_.compress;
-    }
+    bool compress() const override { return o_.compress; }
     EndpointIPtr compress(bool on) const override {
         return with([&](EndpointOptions& o) { o.compress = on; });
     }
-    bool datagram() const override {
-        return false;
-    }
-    bool secure() const override {
-        return false;
-    }
-    IceInternal::TransceiverPtr transceiver() const override {
-        return ICE_NULLPTR;
-    }
+    bool datagram() const override { return false; }
+    bool secure() const override { return false; }
+    IceInternal::TransceiverPtr transceiver() const override { return ICE_NULLPTR; }
     void connectors_async(Ice::EndpointSelectionType,
                           const IceInternal::EndpointI_connectorsPtr& callback) const override {
         std::vector<IceInternal::ConnectorPtr> list;
@@ -79,12 +63,8 @@ public:
         return new Acceptor(instance_, o_,
                             with([](EndpointOptions& o) { o.serial.target = o.serial.source; }));
     }
-    std::vector<EndpointIPtr> expandIfWildcard() const override {
-        return only();
-    }
-    std::vector<EndpointIPtr> expandHost(EndpointIPtr&) const override {
-        return only();
-    }
+    std::vector<EndpointIPtr> expandIfWildcard() const override { return only(); }
+    std::vector<EndpointIPtr> expandHost(EndpointIPtr&) const override { return only(); }
     bool equivalent(const EndpointIPtr& other) const override {
         const Endpoint* o = dynamic_cast<const Endpoint*>(other.get());
         return o && o->o_.serial.device == o_.serial.device && o->o_.channel == o_.channel &&
@@ -200,15 +180,9 @@ private:
     std::vector<EndpointIPtr> only() const {
         return std::vector<EndpointIPtr>(1, ICE_SHARED_FROM_CONST_THIS(Endpoint));
     }
-    std::string key() const {
-        return options() + " " + o_.connectionId;
-    }
-    bool equals(const Endpoint* other) const {
-        return other && key() == other->key();
-    }
-    bool less(const Endpoint* other) const {
-        return other && key() < other->key();
-    }
+    std::string key() const { return options() + " " + o_.connectionId; }
+    bool equals(const Endpoint* other) const { return other && key() == other->key(); }
+    bool less(const Endpoint* other) const { return other && key() < other->key(); }
 
     InstancePtr instance_;
     EndpointOptions o_;

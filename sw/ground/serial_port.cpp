@@ -19,13 +19,13 @@ namespace {
 
 // The process that has locked a file; the kernel forgets the lock with the process.
 int userOf(int fd) {
-    struct flock lock {};
+    struct flock lock{};
     lock.l_type = F_WRLCK;
     return fcntl(fd, F_GETLK, &lock) == 0 && lock.l_type != F_UNLCK ? lock.l_pid : 0;
 }
 
 bool isPty(int fd) {
-    struct stat node {};
+    struct stat node{};
     return fstat(fd, &node) == 0 && major(node.st_rdev) >= 136 && major(node.st_rdev) <= 143;
 }
 
@@ -34,7 +34,7 @@ bool isPty(int fd) {
 void SerialPort::open(const std::string& device) {
     close();
     fd_ = ::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    struct flock lock {};
+    struct flock lock{};
     lock.l_type = F_WRLCK;
     std::string why;
     int error = fd_ < 0 ? errno : 0;

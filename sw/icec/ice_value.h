@@ -37,7 +37,7 @@ typedef struct Ice_UnknownSlice {
     union {
         Ice_Int number; /* until the end of the message */
         const struct Ice_Value* value;
-    } * values;
+    }* values;
 } Ice_UnknownSlice;
 
 /* The begin of every class instance. */

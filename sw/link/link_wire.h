@@ -27,14 +27,14 @@
 
 /* Byte 0. */
 #define LINK_CONTROL 0x80U
-#define LINK_LENGTH_OF(header) ((header)&0x7FU)
+#define LINK_LENGTH_OF(header) ((header) & 0x7FU)
 #define LINK_LENGTH(frame) LINK_LENGTH_OF((frame)[0])
 
 /* Byte 2: the flags of data frames, the channel and epoch, the kind of control frames. */
 #define LINK_FIRST 0x80U
 #define LINK_LAST 0x40U
 #define LINK_ACK_NOW 0x20U
-#define LINK_CHANNEL(flags) ((flags)&3U)
+#define LINK_CHANNEL(flags) ((flags) & 3U)
 #define LINK_EPOCH(frame) ((U32)(frame)[2] >> 2 & 7U)
 #define LINK_KIND_BITS(kind) ((U32)(kind) << 5)
 

@@ -56,7 +56,7 @@ struct Keys {
         Bytes seed(crypto_sign_SEEDBYTES);
         std::ifstream in(path, std::ios::binary);
         if (in) {
-            struct stat found {};
+            struct stat found{};
             if (stat(path.c_str(), &found) == 0 && (found.st_mode & 077))
                 fail("others may read the private key '" + path + "': chmod 600 '" + path + "'");
             const Bytes file((std::istreambuf_iterator<char>(in)), {});

@@ -147,7 +147,7 @@ string markdown(const Report& r) {
 
 string differences(const string& before, const string& after) {
     std::map<string, std::map<string, std::pair<json, json>>> designs; // by name and kind of figure
-    const auto note = [&](const string& text, json std::pair<json, json>::*member) {
+    const auto note = [&](const string& text, json std::pair<json, json>::* member) {
         const json report = json::parse(text);
         for (const json& e : report.at("entries")) {
             const string name = e.at("name");

@@ -34,7 +34,7 @@ void SystemControl::setFaultAddress(uint32_t cfsrBits, uint32_t address) {
 }
 
 bool SystemControl::readScb(uint32_t at, uint32_t& value) {
-    auto flag = [&](unsigned number, unsigned bit, bool Exceptions::State::*what) {
+    auto flag = [&](unsigned number, unsigned bit, bool Exceptions::State::* what) {
         value |= uint32_t((*exceptions_)[number].*what) << bit;
     };
     constexpr auto active = &Exceptions::State::active, pending = &Exceptions::State::pending,

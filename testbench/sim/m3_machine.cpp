@@ -26,8 +26,7 @@ Stm32F2::Config configOf(uint32_t hclkHz, uint64_t seed) {
 
 M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll)
     : soc_(soc), poll_(std::move(poll)), fpgaFlash_([&soc] { return soc.now(); }, config.seed),
-      stm32_(
-          soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz, config.seed)) {
+      stm32_(soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz, config.seed)) {
     stm32_.load(config.firmware);
     SimulatedBoard board;
     board.provide(config.key);

@@ -146,7 +146,7 @@ int main(int argc, char** argv) {
         std::cerr << "icesoc-sim: " << e.what() << "; see --help\n";
         return 2;
     }
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_handler = [](int signal) { Flight::stopSignal = signal; };
     for (int signal : {SIGINT, SIGTERM, SIGHUP})
         sigaction(signal, &action, nullptr);

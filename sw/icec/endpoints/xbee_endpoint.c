@@ -19,7 +19,7 @@ static const Ice_Byte head[HEAD] = {
 
 /* Pending events, one bit each, delivered lowest bit first. */
 #define EVENT(kind, channel) \
-    (1U << (((U32)(kind)-ICE_EVENT_MESSAGE) * LINK_CHANNELS + (U32)(channel)))
+    (1U << (((U32)(kind) - ICE_EVENT_MESSAGE) * LINK_CHANNELS + (U32)(channel)))
 
 /* The task of the minimal run time needs none of these: it polls the link itself while it waits. */
 static void lock(XBeeATEndpoint* self) {

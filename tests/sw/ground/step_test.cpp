@@ -42,8 +42,7 @@ protected:
     }
     // Simulated time as fast as it goes, until `done`.
     void simulate(const std::function<bool()>& done, double patience = 60) {
-        GroundStep step(
-            *status_, pty_, [&] { return !done(); }, patience);
+        GroundStep step(*status_, pty_, [&] { return !done(); }, patience);
         while (!done()) {
             status_.set(status_->ns + 10'000);
             pty_.advance(status_->ns);

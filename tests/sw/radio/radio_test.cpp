@@ -99,8 +99,7 @@ protected:
         };
         firmware.irqHandler = [] { (void)Radio_interrupt(); };
         firmware.irqEnabled = [this] { return irqOn_; };
-        UavMachine machine(
-            soc_, [&] { return static_cast<double>(soc_.now()) < 60e9; }, firmware);
+        UavMachine machine(soc_, [&] { return static_cast<double>(soc_.now()) < 60e9; }, firmware);
         machine.run();
         ASSERT_TRUE(done) << "the task did not end within 60 simulated seconds";
     }

@@ -128,7 +128,7 @@ TEST(PackUpdate, SaysWhatIsWrong) {
     EXPECT_NE(folder.pack("image " FIRMWARE "loader.elf 2 key update"), 0);
     EXPECT_NE(folder.said().find("--emit-relocs"), std::string::npos) << folder.said();
     EXPECT_EQ(folder.pack("image " FIRMWARE "uav.elf 2 key update"), 0);
-    struct stat key {};
+    struct stat key{};
     EXPECT_EQ(stat((folder.path + "/key").c_str(), &key), 0);
     EXPECT_EQ(key.st_mode & 0777, 0600u);
     ::chmod((folder.path + "/key").c_str(), 0644);

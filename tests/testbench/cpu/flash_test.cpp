@@ -150,8 +150,7 @@ TEST_F(Flash, AResetInAnEraseLeavesAMixtureByTheSeed) {
     auto left = [](uint64_t seed) {
         std::vector<uint8_t> bytes(Stm32Flash::bytes, 0x5A);
         uint64_t time = 0;
-        Stm32Flash chip(
-            bytes.data(), [&] { return time; }, seed);
+        Stm32Flash chip(bytes.data(), [&] { return time; }, seed);
         chip.write(Stm32Flash::Keyr, 0x45670123);
         chip.write(Stm32Flash::Keyr, 0xCDEF89AB);
         chip.write(Stm32Flash::Cr, X32 | Stm32Flash::Ser | Stm32Flash::Strt);

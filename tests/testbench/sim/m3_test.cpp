@@ -65,9 +65,8 @@ struct Flight {
     }
     void mission() {
         pings(2);
-        calls.push_back([this](int id) {
-            ground.call(id, "hwengine1", "setParameterA", 0, {30, 0});
-        });
+        calls.push_back(
+            [this](int id) { ground.call(id, "hwengine1", "setParameterA", 0, {30, 0}); });
         calls.push_back([this](int id) { ground.call(id, "hwengine1", "startProcessing"); });
         calls.push_back([this](int id) { ground.call(id, "hwengine1", "getResult"); });
         calls.push_back([this](int id) { ground.call(id, "uav", "isAlive", 0, {7, 0}); });

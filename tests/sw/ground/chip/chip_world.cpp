@@ -66,8 +66,7 @@ void ChipWorld::run() {
         for (uint64_t boots = 0; !stop_; ++boots) {
             reboot_ = false;
             soc.reset();
-            UavMachine machine(
-                soc, [this] { return !stop_ && !reboot_; }, firmware);
+            UavMachine machine(soc, [this] { return !stop_ && !reboot_; }, firmware);
             machine.board = SimulatedBoard(1000 * seed_ + boots);
             machine.board.provide(std::vector<uint8_t>(key_ ? LINK_KEY_BYTES : 0, 0x55));
             machine.run();

@@ -100,7 +100,7 @@ INT32U OSTimeGet(void) {
     return ticks;
 }
 
-/* Makes a task ready whose delay or time-out has run out, whatever it waited for. */
+/* Makes a task ready when its delay or time-out has run out, whatever it waited for. */
 static void expire(OS_Task* task) {
     if (task->event) {
         OS_Set_remove(&task->event->waiting, task->priority);

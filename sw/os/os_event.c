@@ -21,7 +21,7 @@ static OS_EVENT* create(OS_EventType type) {
     return found;
 }
 
-/* Returns what is wrong with a pend call for an event of this type, OS_ERR_NONE where it may go on.
+/* Checks a pend call on an event of this type. Returns OS_ERR_NONE or what is wrong with the call.
  */
 static U8 pendError(const OS_EVENT* event, OS_EventType type) {
     if (!event)
@@ -33,9 +33,9 @@ static U8 pendError(const OS_EVENT* event, OS_EventType type) {
     return os_kernel.lockNesting ? OS_ERR_PEND_LOCKED : OS_ERR_NONE;
 }
 
-/* Puts the current task to sleep on an event; back when it is signalled or `timeout` ticks are
- * over. Returns 1 on time-out. Interrupts are disabled: their state is restored and saved around
- * it. */
+/* Puts the current task to sleep on an event until it is signalled or `timeout` ticks are over.
+ * Returns 1 on time-out. Interrupts are disabled at the call and at the return, enabled in
+ * between. */
 static U8 waitFor(OS_EVENT* event, U32 timeout, OS_CPU_SR* cpu_sr) {
     OS_Task* task = os_kernel.current;
     task->event = event;
@@ -163,7 +163,7 @@ INT8U OSMutexPost(OS_EVENT* pevent) {
     OS_CPU_SR cpu_sr;
     OS_Task* self = os_kernel.current;
     U8 priority = self->priority;
-    int mayRun; /* another task: one that waited, or now that this one has its own priority again */
+    int mayRun; /* another task: one that waited, or one that was below the raised priority */
     if (os_kernel.interruptNesting)
         return OS_ERR_POST_ISR;
     if (!pevent)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_start: starts the kernel, with its idle task. Stands on os_task and os_core.
+ * os_start: starts the kernel, with its idle task. Uses os_task and os_core.
  */
 #include "os_core.h"
 

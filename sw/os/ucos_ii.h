@@ -20,11 +20,11 @@ typedef U32 INT32U;
 #define OS_TRUE 1U
 
 #define OS_ERR_NONE 0U
-#define OS_ERR_EVENT_TYPE 1U /* the event is of another kind */
-#define OS_ERR_PEND_ISR 2U   /* pending from an interrupt */
+#define OS_ERR_EVENT_TYPE 1U /* the event is of another type */
+#define OS_ERR_PEND_ISR 2U   /* a task-only call came from an interrupt */
 #define OS_ERR_POST_NULL_PTR 3U
 #define OS_ERR_PEVENT_NULL 4U
-#define OS_ERR_POST_ISR 5U /* a mutex has an owner, which no interrupt is */
+#define OS_ERR_POST_ISR 5U /* an interrupt cannot own a mutex */
 #define OS_ERR_PDATA_NULL 9U
 #define OS_ERR_TIMEOUT 10U
 #define OS_ERR_PEND_LOCKED 13U /* the scheduler is locked */
@@ -74,7 +74,7 @@ extern INT8U OSPrioCur; /* priority at which the running task runs; not to be wr
 
 void OSTimeDly(INT32U ticks);
 INT32U OSTimeGet(void);
-void OSTimeTick(void); /* by the tick interrupt, between OSIntEnter and OSIntExit */
+void OSTimeTick(void); /* called by the tick interrupt, between OSIntEnter and OSIntExit */
 
 /* timeout 0: for ever. *perr: OS_ERR_NONE, OS_ERR_TIMEOUT, or what was wrong with the call. */
 OS_EVENT* OSSemCreate(INT16U cnt);

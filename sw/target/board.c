@@ -114,8 +114,8 @@ void Board_serveWatchdog(void) {
 void EXTI0_Handler(void) {
     OSIntEnter();
     EXTI_PR = 1UL << IRQ_PIN;
-    /* Read back: the edge is cleared before the pin is looked at. A clear that came later would
-     * take the edge of an interrupt that rises in between, and nobody would see its level. */
+    /* The edge is cleared before the pin is looked at, so the register is read back. A later clear
+     * would take the edge of an interrupt that rises in between, and its level would be missed. */
     (void)EXTI_PR;
     while (GPIO_IDR(IRQ_PORT) >> IRQ_PIN & 1UL)
         UAV_irqHandler();

@@ -7,7 +7,7 @@
 
 void Clock_start(void) {
     if ((RCC_CFGR & RCC_CFGR_SWS_MASK) == RCC_CFGR_SWS_PLL)
-        return; /* by the boot loader */
+        return; /* the boot loader has done it */
     RCC_CR |= RCC_CR_HSEON;
     while (!(RCC_CR & RCC_CR_HSERDY))
         ;

@@ -5,8 +5,8 @@
 #ifndef CLOCK_H
 #define CLOCK_H
 
-/* Switches to 120 MHz, from a crystal of 25 MHz, with the flash's wait states; nothing where it has
- * been done. Uses no RAM. */
+/* Switches to 120 MHz, from a crystal of 25 MHz, with the flash's wait states. Does nothing where
+ * this has been done. Uses no RAM. */
 void Clock_start(void);
 
 #endif

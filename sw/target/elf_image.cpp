@@ -74,7 +74,7 @@ ElfImage::ElfImage(const std::string& path) : path_(path) {
     }
 }
 
-// Keeps those of what is loaded.
+// Keeps the relocations of loaded sections.
 void ElfImage::readRelocations(const std::vector<uint8_t>& file, const Elf32_Ehdr& header,
                                const Elf32_Shdr& section) {
     const auto of = at<Elf32_Shdr>(file, header.e_shoff + section.sh_info * sizeof(Elf32_Shdr));
@@ -126,7 +126,7 @@ std::vector<uint8_t> ElfImage::movedTo(uint32_t address) const {
             std::copy(s.bytes.begin(), s.bytes.end(), word(s.address - begin));
     for (const Relocation& r : relocations_) {
         if (r.type == R_ARM_THM_PC22 || r.type == R_ARM_THM_JUMP24 || r.type == R_ARM_NONE)
-            continue; // distances stay
+            continue; // a relative address does not change
         if (r.type != R_ARM_ABS32 && r.type != R_ARM_TARGET1)
             throw std::runtime_error("firmware '" + path_ + "' has a relocation of type " +
                                      std::to_string(r.type) + ": compile with -mword-relocations");

@@ -14,29 +14,29 @@
 
 class ElfImage {
 public:
-    // Throws std::runtime_error that says what is wrong with the file.
+    // Throws std::runtime_error with what is wrong with the file.
     explicit ElfImage(const std::string& path);
 
     struct Segment {
         uint32_t address; // where it is loaded, in flash
-        uint32_t runAt;   // where the program has it: for variables' first values, RAM
+        uint32_t runAt;   // where the program uses it: RAM for variables' first values
         uint32_t offset;  // in the file
         std::vector<uint8_t> bytes;
     };
     const std::vector<Segment>& segments() const { return segments_; }
     bool has(const std::string& symbol) const { return symbols_.count(symbol) != 0; }
-    uint32_t symbol(const std::string& name) const; // throws where there is none
+    uint32_t symbol(const std::string& name) const; // throws for an unknown name
     uint32_t size(const std::string& name) const { return sizes_.at(name); }
     // Name of the function at an address, "?" where there is none.
     std::string functionAt(uint32_t address) const;
 
     // CRC of the STM32's unit (RM0033, 3.2) over the words image_begin .. image_end.
     uint32_t checksum() const;
-    // Writes it into the file, where image_end is.
+    // Writes the checksum into the file, where image_end is.
     void stamp() const;
 
-    // The bytes of flash from image_begin on, as they must be at another address, checksum
-    // included. For programs that were linked with --emit-relocs.
+    // The bytes of flash from image_begin on, relocated to another address, checksum included. For
+    // programs that were linked with --emit-relocs.
     std::vector<uint8_t> movedTo(uint32_t address) const;
 
 private:

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * firmware: starts the kernel with the application and a task below all others that serves the
- * watchdog: it does so as long as no task of higher priority, and no interrupt, takes the processor
- * for itself.
+ * firmware: starts the kernel with the application and the watchdog's task. That task is below all
+ * others, so it runs as long as no other task and no interrupt keeps the processor for itself.
  */
 #include "firmware.h"
 #include "board.h"
@@ -55,10 +54,10 @@ void Firmware_run(void) {
         (void)OSTaskCreateExt(watchTask, 0, &watchStack[WATCH_WORDS - 1], PRIO_WATCH, 0, watchStack,
                               WATCH_WORDS, 0, OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);
     } else {
-        /* Nobody serves the watchdog: the next try is in a second. */
+        /* The watchdog is not served and resets the chip: the next try is in a second. */
         Boot_note(status == UAV_NO_KEY ? BOOT_NO_KEY : BOOT_NO_FPGA);
     }
-    /* Interrupts call the kernel, and so wait from here on for the first task. */
+    /* Interrupts call the kernel, so they stay masked until the first task runs. */
     __asm__ volatile("cpsid i");
     Board_startInterrupts();
     OSStart();

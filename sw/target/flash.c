@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * flash: unlocked only for as long as an operation lasts.
+ * flash: the flash is unlocked only during an operation.
  */
 #include "flash.h"
 #include "stm32f2.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * flash: erases and programs the STM32F2's flash (PM0059). There is one bank: the processor stands
- * still meanwhile, 16 us for a word, up to 2 s for a sector of 128 KiB.
+ * flash: erases and programs the STM32F2's flash (PM0059). It has one bank, so the processor stands
+ * still meanwhile: 16 us for a word, up to 2 s for a sector of 128 KiB.
  */
 #ifndef FLASH_H
 #define FLASH_H
@@ -10,8 +10,8 @@
 
 #define FLASH_BASE 0x08000000UL
 
-/* Read, erase a sector of 128 KiB by its offset, program words: functions of a Slots_Port. The
- * latter two return 1 if no error flag was set; the context is not used. */
+/* Functions of a Slots_Port: read, erase a sector of 128 KiB by its offset, program words. The
+ * latter two return 1 if no error flag was set. The context is not used. */
 void Flash_read(void* context, U32 offset, U8* bytes, U32 count);
 int Flash_erase(void* context, U32 offset);
 int Flash_program(void* context, U32 offset, const U8* bytes, U32 count);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * fpga: the flash hangs on SPI 1 and on the FPGA's configuration pins. These float once it is
- * configured, and while PROGRAM_B is low; the processor drives the bus for the length of a
- * transaction only. While the FPGA loads its configuration, SPI 1 is a slave that hears from where.
+ * fpga: the flash is on SPI 1 and on the FPGA's configuration pins. The FPGA leaves these pins
+ * alone once it is configured, and while PROGRAM_B is low; the processor drives the bus during its
+ * transactions only. While the FPGA loads its configuration, SPI 1 is a slave that receives the
+ * addresses of its reads.
  */
 #include "fpga.h"
 #include "board.h"
@@ -15,9 +16,9 @@
 #define BUS_OURS (0xA9UL << 8)   /* an output, and three of SPI 1 */
 #define BUS_HEARS (0x8AUL << 8)  /* all but data in are SPI 1's */
 #define BUS_SPI (0x5555UL << 16) /* alternate function 5 */
-#define SELECT 4U                /* its EXTI line as well: port A's, as after a reset */
+#define SELECT 4U                /* chip select's EXTI line, too: port A's, as after a reset */
 #define SELECT_VECTOR 10U
-#define ADDRESS_BYTES 4U /* the flash's instruction before it */
+#define ADDRESS_BYTES 4U /* the flash's instruction precedes it */
 #define POLLS 2000U      /* of 10 cycles and more; the address takes 32 us at 1 MHz */
 #define CONTROL 2U       /* port C: PROGRAM_B 0, open drain; DONE 1 */
 #define DONE 1U
@@ -25,7 +26,7 @@
 /* The longest wait for DONE, ticks of 10 ms: 3.7 Mbit take 1.9 s at 2 MHz, 3.7 s at half of it, and
  * four tries are the most. */
 #define WAIT_TICKS 1600U
-#define QUIET_TICKS 100U /* no chip select for so long: it reads no more, or is not wired so */
+#define QUIET_TICKS 100U /* without chip select: no reads, or no wire */
 #define READS_A_PAUSE 64U
 
 static Slots_Port port;
@@ -52,7 +53,7 @@ static void pause(void) {
 
 static const SpiNor_Bus bus = {select, transfer, pause};
 
-/* Reads for as long as other tasks, the watchdog's among them, can wait. */
+/* Reads, with pauses for other tasks, the watchdog's among them. */
 static void read(void* context, U32 offset, U8* bytes, U32 count) {
     static U32 reads;
     SpiNor_read(context, offset, bytes, count);
@@ -68,7 +69,7 @@ static void startPins(void) {
     GPIO_OTYPER(CONTROL) |= 1UL;
 }
 
-/* Takes the FPGA its configuration, and holds it there for more than 0.5 us: PROGRAM_B is low. */
+/* Clears the FPGA's configuration, and holds it cleared for more than 0.5 us: PROGRAM_B is low. */
 static void hold(void) {
     U32 i;
     GPIO_BSRR(CONTROL) = 1UL << 16;
@@ -85,7 +86,7 @@ static int isSelected(void) {
     return !(GPIO_IDR(BUS) >> SELECT & 1UL);
 }
 
-/* Empties the receiver, which begins with the next chip select. */
+/* Empties the receiver, which starts with the next chip select. */
 static void arm(void) {
     SPI1_CR1 = 0;
     (void)SPI1_DR;
@@ -93,7 +94,7 @@ static void arm(void) {
     SPI1_CR1 = SPI1_CR1_SLAVE;
 }
 
-/* Returns the address that the FPGA sends to its flash now; 0: it was not heard in time. */
+/* Returns the address that the FPGA sends to its flash now, 0 where none came in time. */
 static U32 hear(void) {
     U32 address = 0, polls = 0, i;
     for (i = 0; i < ADDRESS_BYTES; ++i) {
@@ -105,8 +106,8 @@ static U32 hear(void) {
     return address & 0xFFFFFFUL;
 }
 
-/* Lets the FPGA load its configuration, and sleeps until DONE is high, or long enough. What wakes
- * the processor, SysTick and chip select, is not served. Returns where the FPGA read last. */
+/* Lets the FPGA load its configuration, and sleeps until DONE is high or the time is over. SysTick
+ * and chip select wake the processor, but are not served. Returns the address of the last read. */
 static U32 load(void) {
     U32 i, edge = 0, heard = 0;
     __asm__ volatile("cpsid i");
@@ -144,7 +145,7 @@ static U32 load(void) {
     SPI1_CR1 = SPI1_CR1_MASTER;
     __asm__ volatile("cpsie i");
     if (!isDone() && isSelected())
-        hold(); /* it hangs: the bus is free again */
+        hold(); /* the FPGA hangs: this frees the bus */
     return heard;
 }
 
@@ -158,7 +159,7 @@ const Slots_Port* Fpga_slots(const Slots_Port* firmware, int isPowerOn, U32* run
     int isRefused;
     startPins();
     if (isPowerOn)
-        hold(); /* so that all that it reads is heard */
+        hold(); /* starts the load again, so that all its reads are received */
     isRefused = loadsAnother();
     if (!SpiNor_isThere((void*)&bus)) {
         GPIO_MODER(CONTROL) &= ~3UL;

@@ -10,10 +10,10 @@
 
 #define FPGA_PRODUCT 0x31475046UL /* "FPG1" */
 
-/* Returns the slots of bitstreams, with the checks of the firmware's; 0: there is no such flash.
- * Before that it has the FPGA load a bitstream that is new, or the golden one in place of one that
- * was not confirmed or that the FPGA did not take, and waits for DONE. `isPowerOn`: the FPGA loads
- * what it has once more, to be listened to. `running` becomes the slot of what the FPGA runs. */
+/* Returns the slots of bitstreams, checked as the firmware's are, or 0 where there is no such
+ * flash. Before that the FPGA loads a new bitstream, or the golden one in place of one that was not
+ * confirmed or not taken, and DONE is awaited. With `isPowerOn` the FPGA loads its bitstream once
+ * more, so that its reads are received. `running` becomes the slot of what the FPGA runs. */
 const Slots_Port* Fpga_slots(const Slots_Port* firmware, int isPowerOn, U32* running);
 
 #endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * guard: the end of the running task's stack is out of bounds: an MPU region for reading only over
- * 32 bytes.
+ * guard: an MPU region, read-only, over the lowest 32 bytes of the running task's stack.
  */
 #include "guard.h"
 #include "stm32f2.h"

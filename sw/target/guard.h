@@ -8,8 +8,8 @@
 
 #include "ucos_ii.h"
 
-/* Forbids writing to the lowest 32 bytes of a stack (those at a multiple of 32); 0 takes the guard
- * away. Called at each switch, interrupts off. */
+/* Forbids writing to the lowest 32 bytes of a stack (aligned to 32); 0 removes the guard. Called at
+ * each switch, with interrupts off. */
 void Guard_place(const OS_STK* bottom);
 
 #endif

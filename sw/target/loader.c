@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * loader: checks the slots' images and starts one. It has no variables: its stack is at the end of
- * RAM, where the firmware keeps nothing that is to survive a reset.
+ * RAM, where the firmware keeps nothing across a reset.
  */
 #include "loader.h"
 #include "clock.h"
@@ -18,7 +18,7 @@ extern void stack_top(void); /* loader.ld */
 
 void Reset_Handler(void);
 
-/* A fault in the loader: the next try may be luckier. */
+/* A fault in the loader restarts it: the next try may succeed. */
 static void restart(void) {
     SCB_AIRCR = SCB_AIRCR_RESET;
     for (;;)
@@ -38,7 +38,7 @@ static const Slots_Port port = {&slots_firmware,      0,
                                 Signature_digest,     (const U8*)FLASH_BASE + SLOTS_KEY_AT,
                                 (const U8*)FLASH_BASE};
 
-/* Starts the program whose vectors are there. */
+/* Starts the program with its vectors at this address. */
 static void __attribute__((naked, noreturn)) jump(const U32* at) {
     __asm__ volatile("ldrd r1, r2, [r0]\n\t"
                      "msr msp, r1\n\t"
@@ -50,7 +50,7 @@ void Reset_Handler(void) {
     U32 slot;
     Clock_start();
     slot = Slots_choose(&port, LOADER_PRODUCT);
-    if (slot == SLOTS_NONE) /* nothing here can be helped by radio */
+    if (slot == SLOTS_NONE) /* no image can be started: only a programmer helps */
         for (;;)
             __asm__ volatile("wfi");
     if (!Slots_is(&port, slot, SLOTS_CONFIRMED)) {

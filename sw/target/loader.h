@@ -11,7 +11,7 @@
 #define LOADER_PRODUCT 0x31564155UL /* "UAV1" */
 #define LOADER_MAGIC 0x1CE50C04UL
 
-/* Lies behind the loader's vectors, so that images need not bring libsodium along. */
+/* Lies behind the loader's vectors, so that images need no libsodium of their own. */
 typedef struct Loader_Services {
     U32 magic;
     int (*isSigned)(const U8* signature, const U8* message, U32 bytes, const U8* key);
@@ -19,7 +19,7 @@ typedef struct Loader_Services {
 } Loader_Services;
 #define LOADER_SERVICES ((const Loader_Services*)0x08000040UL)
 
-/* What the firmware sees of the slots; 0: no loader has started it. `running` becomes its slot. */
+/* The slots as the firmware sees them; 0: no loader has started it. `running` becomes its slot. */
 const Slots_Port* Loader_slots(U32* running);
 
 #endif

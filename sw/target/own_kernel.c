@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * own_kernel: what sw/os asks of the board.
+ * own_kernel: implements the board's functions for sw/os.
  */
 #include "board.h"
 #include "boot.h"

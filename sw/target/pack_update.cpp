@@ -50,7 +50,7 @@ void save(const std::string& path, const Bytes& bytes) {
         fail("cannot write '" + path + "'");
 }
 
-// The private key of a file, which holds its seed.
+// Reads the private key of a file, which holds its seed.
 struct Keys {
     explicit Keys(const std::string& path) {
         Bytes seed(crypto_sign_SEEDBYTES);
@@ -116,7 +116,8 @@ std::pair<Bytes, Bytes> sign(const ElfImage& elf, uint32_t slot, uint32_t versio
 
 constexpr uint8_t sync[] = {0xAA, 0x99, 0x55, 0x66};
 
-// A bitstream from SLOTS_SYNC_AT before its sync word on, which is left out: the vehicle adds it.
+// Reads a bitstream from SLOTS_SYNC_AT bytes before its sync word on, without that word: the
+// vehicle adds it.
 Bytes readBitstream(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     const Bytes file((std::istreambuf_iterator<char>(in)), {});

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * program_memory: what firmware.ld has placed, and the begin of a program: its variables get their
- * values.
+ * program_memory: symbols that firmware.ld places, and the first step of a program, which gives its
+ * variables their values.
  */
 #ifndef PROGRAM_MEMORY_H
 #define PROGRAM_MEMORY_H

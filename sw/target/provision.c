@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * provision: polls, as no task runs yet. The SysTick only tells that 10 ms have passed.
+ * provision: polls the port, since no task runs yet. SysTick tells that 10 ms have passed.
  */
 #include "provision.h"
 #include "ascon.h"
@@ -35,7 +35,7 @@ static void say(const char* text) {
         ;
 }
 
-/* Reads a line. Returns 0: none came. */
+/* Reads a line. Returns 0 where none came. */
 static int readLine(char* line) {
     U32 ticks = 0, size = 0;
     while (ticks < LIMIT) {
@@ -59,7 +59,7 @@ static int digitOf(char c) {
     return found ? (int)(found - digits) : -1;
 }
 
-/* Does what the line says. Returns 0: it makes no sense. */
+/* Executes the line. Returns 0 where it makes no sense. */
 static int obey(char* line) {
     U8 key[LINK_KEY_BYTES];
     U32 i;
@@ -85,7 +85,7 @@ void Provision_listen(void) {
     char line[LINE_BYTES];
     U32 ticks = 0;
     RCC_AHB1ENR |= 1UL << PORT;
-    GPIO_PUPDR(PORT) |= 1UL << 2U * RECEIVE; /* up, where nothing is wired to it */
+    GPIO_PUPDR(PORT) |= 1UL << 2U * RECEIVE; /* pulled up where nothing is wired */
     if (!isBreak())
         return;
     SYST_RVR = 10UL * SYST_MS - 1UL;
@@ -94,7 +94,7 @@ void Provision_listen(void) {
     while (!tick())
         if (!isBreak()) {
             stop();
-            return; /* a byte of something else */
+            return; /* another program's byte, not a break */
         }
     while (isBreak() && ticks < LIMIT)
         ticks += tick();

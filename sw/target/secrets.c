@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * secrets: the generator by RM0033, 20.3, whose errors are waited out: numbers that can be guessed
- * are worse than a vehicle that the watchdog starts again. The backup SRAM is ST's place for keys:
- * the battery keeps it, and it is erased with the flash where the read protection is taken off.
+ * secrets: the random number generator by RM0033, 20.3. Its errors are waited out, since guessable
+ * numbers are worse than a restart by the watchdog. The backup SRAM is ST's place for keys: the
+ * battery keeps it, and removing the read protection erases it with the flash.
  */
 #include "secrets.h"
 #include "stm32f2.h"
@@ -33,7 +33,7 @@ static U32 load(void* context, U32 word) {
 static void store(void* context, U32 word, U32 value) {
     (void)context;
     BKPSRAM(word) = value;
-    __asm__ volatile("dsb"); /* one after the other, where power fails */
+    __asm__ volatile("dsb"); /* one write after the other, since power may fail */
 }
 
 const UAV_Board secrets_board = {random, load, store};
@@ -41,7 +41,7 @@ const UAV_Board secrets_board = {random, load, store};
 void Secrets_start(void) {
     RCC_AHB2ENR |= RCC_AHB2ENR_RNG;
     RNG_CR = RNG_CR_RNGEN;
-    (void)random(0); /* the first one is only there to be compared with the second */
+    (void)random(0); /* the second number is compared with this first one */
     RCC_APB1ENR |= RCC_APB1ENR_PWR;
     PWR_CR |= PWR_CR_DBP;
     RCC_AHB1ENR |= RCC_AHB1ENR_BKPSRAM;

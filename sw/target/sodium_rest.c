@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * sodium_rest: what the checking of signatures needs of other files of libsodium, which hold much
- * more.
+ * sodium_rest: the few functions of libsodium's other files that signature checks need.
  */
 #include <sodium/crypto_hash_sha512.h>
 #include <sodium/utils.h>
@@ -30,7 +29,7 @@ int sodium_is_zero(const unsigned char* bytes, const size_t count) {
     return all == 0;
 }
 
-/* Called where no intermediate result may stay in memory; what is checked here is public. */
+/* libsodium calls this to wipe intermediate results; what is checked here is public. */
 void sodium_memzero(void* const at, const size_t bytes) {
     (void)at;
     (void)bytes;

@@ -14,7 +14,7 @@ void Reset_Handler(void);
 void Fault_Handler(void);
 void Fault_entered(const U32* frame, U32 number);
 
-/* Enters a fault's handler with the frame's address: bit 2 of EXC_RETURN says which stack was in
+/* Calls a fault's handler with the frame's address: bit 2 of EXC_RETURN says which stack was in
  * use. */
 void __attribute__((naked)) Fault_Handler(void) {
     __asm__ volatile("tst lr, #4\n\t"

@@ -76,7 +76,7 @@
 #define PWR_CR REG(0x40007000UL)
 #define PWR_CR_DBP (1UL << 8) /* the backup domain may be written */
 #define PWR_CSR REG(0x40007004UL)
-#define PWR_CSR_BRE (1UL << 9) /* its regulator keeps it without VDD */
+#define PWR_CSR_BRE (1UL << 9) /* a regulator keeps the backup SRAM without VDD */
 #define BKPSRAM(word) REG(0x40024000UL + 4UL * (word))
 
 /* General-purpose pins (RM0033, 6.4). Port 0 is A. */

@@ -13,11 +13,11 @@
 
 U32* OS_Switch(U32* sp); /* called by os_switch.S */
 
-/* The task whose context the processor holds; 0 before the first. Debuggers look for the name. */
+/* The task whose context the processor holds; 0 before the first. Debuggers look for this name. */
 static OS_Task* os_running;
 
 static void taskReturned(void) {
-    OS_StackFault(0xFFU); /* a task must not return; it is told as what it is */
+    OS_StackFault(0xFFU); /* a task must not return: it is treated as an overflow */
 }
 
 OS_STK* OSTaskStkInit(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT16U opt) {
@@ -49,12 +49,12 @@ void OSStartHighRdy(void) {
     __asm__ volatile("msr psp, %0" : : "r"(0));
     ICSR = ICSR_PENDSVSET;
     __asm__ volatile("cpsie i\n\tisb");
-    for (;;) /* not reached: PendSV leaves to the first task */
+    for (;;) /* not reached: PendSV switches to the first task */
         ;
 }
 
-/* Switches the context; PendSV calls it with interrupts off. `sp` is where the running task's
- * registers are; returns where the next one's are. */
+/* Switches the context; PendSV calls it with interrupts off. `sp` points at the running task's
+ * registers; the result points at the next task's. */
 U32* OS_Switch(U32* sp) {
     if (os_running) {
         os_running->stack = sp;

@@ -7,8 +7,8 @@
 
 #include "ucos_ii.h"
 
-/* Called by PendSV before a task goes on, interrupts off; `bottom` is the lowest address of its
- * stack, 0 where unknown (OSTaskCreate): the place of a guard. */
+/* PendSV calls this before a task goes on, with interrupts off, to place a guard. `bottom` is the
+ * lowest address of the task's stack, 0 where unknown (OSTaskCreate). */
 void OS_TaskSwitched(OS_STK* bottom);
 
 /* The task with this priority has run over the end of its stack (255: a task has returned). Does

@@ -9,8 +9,8 @@
 #define CPU_CFG_KA_IPL_BOUNDARY 4u
 #define CPU_CFG_NVIC_PRIO_BITS 4u
 
-/* OSTaskPrio, which our kernel has besides: a number that differs from task to task, whatever
- * priority it inherits. */
+/* Our kernel's OSTaskPrio: a number that differs from task to task, whatever priority it
+ * inherits. */
 #define OSTaskPrio() ((INT8U)(OSTCBCur - OSTCBTbl))
 
 #endif

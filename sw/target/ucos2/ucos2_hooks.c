@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ucos2_hooks: what the real uC/OS-II asks of an application, and the name under which our vectors
- * know its PendSV handler.
+ * ucos2_hooks: the hooks that the real uC/OS-II needs of an application, and our vectors' name of
+ * its PendSV handler.
  */
 #include "guard.h"
 

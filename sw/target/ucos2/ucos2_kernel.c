@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ucos2_kernel: what the firmware's board asks of the real uC/OS-II.
+ * ucos2_kernel: implements the board's functions for the real uC/OS-II.
  */
 #include "board.h"
 

@@ -4,25 +4,24 @@
  */
 #include "ascon.h"
 
-/* Keeps gcc from another order of a round's steps, which costs 13 instructions more than the 78
- * that are written. */
+/* Keeps gcc from reordering a round's steps: its order costs 13 more instructions than these 78. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-reassoc", "no-schedule-insns")
 #endif
 
-/* The constant of the first round of 12, of the first of 8, and the one that no round has. */
+/* The constants with which 12 and 8 rounds begin, and the one behind the last round. */
 #define ROUNDS_12 0xF0U
 #define ROUNDS_8 0xB4U
 #define ROUNDS_END 0x3CU
 #define ROUND_STEP 0x0FU
 
-#define RATE 16U /* bytes of a block */
+#define RATE 16U /* bytes in a block */
 
-/* Joins to a value a half of a word turned right by 0 < n < 32; `next` is the half above it. One
- * part after the other, since the processor shifts an operand of ^ at no cost. */
+/* XORs a value with half of a word rotated right by 0 < n < 32; `next` is the half above it. The
+ * parts are separate, since the processor shifts an operand of ^ at no cost. */
 #define JOIN(value, half, next, n) value ^ half >> n ^ next << (32 - n)
 
-/* The S-box of 5 bits, 32 times at once, on one half of each word. */
+/* The 5-bit S-box, 32 times at once, on one half of each word. */
 #define SUBSTITUTE(x0, x1, x2, x3, x4) \
     x0 ^= x4;                          \
     x4 ^= x3;                          \
@@ -37,8 +36,8 @@
     x0 = y0 ^ x4;                      \
     x2 = ~y2;
 
-/* Mixes a word with itself turned right by m and by n. l and h, k and i are its two halves for each
- * of the turns: low, high; for one by more than 32, which is taken off, the other way round. */
+/* XORs a word with itself rotated right by m and by n. (l, h) and (k, i) are its halves, low first,
+ * for the two rotations; for a rotation by more than 32 they are exchanged and 32 is subtracted. */
 #define DIFFUSE(low, high, l, h, m, k, i, n)   \
     y0 = JOIN(JOIN(low, l, h, m), k, i, n);    \
     high = JOIN(JOIN(high, h, l, m), i, k, n); \
@@ -70,7 +69,7 @@ static void permute(U32* half, U32 constant) {
     half[9] = E;
 }
 
-/* Four bytes, wherever they lie, as a word: the compiler makes one access of them. */
+/* Four bytes at any address as a word: the compiler makes one access of them. */
 static U32 get(const U8* bytes) {
     return bytes[0] | (U32)bytes[1] << 8 | (U32)bytes[2] << 16 | (U32)bytes[3] << 24;
 }
@@ -100,7 +99,7 @@ void Ascon_begin(Ascon* ascon, const U8* key, const U8* nonce) {
     add(half + 6, nonce);
     permute(half, ROUNDS_12);
     add(half + 6, key);
-    half[9] ^= 0x80000000U; /* where associated data would end */
+    half[9] ^= 0x80000000U; /* separates the associated data from the message */
 }
 
 void Ascon_associate(Ascon* ascon, const U8* bytes, U32 size) {

@@ -30,17 +30,17 @@ void Ascon_begin(Ascon* ascon, const U8* key, const U8* nonce);
 /* Takes in the associated data, all of it. It is left out where there are none. */
 void Ascon_associate(Ascon* ascon, const U8* bytes, U32 size);
 
-/* Encrypts or decrypts the message in its place. What is decrypted must not be used before its tag
- * has been found right. */
+/* Encrypts or decrypts the message in place. Decrypted bytes must not be used before the tag has
+ * been verified. */
 void Ascon_crypt(Ascon* ascon, U8* bytes, U32 size, int isDecryption);
 
 /* Writes the tag of 16 bytes, and wipes the state. */
 void Ascon_end(Ascon* ascon, const U8* key, U8* tag);
 
-/* Returns whether the bytes are the same, in a time that does not tell where they differ. */
+/* Compares the bytes in a time that does not depend on where they differ. */
 int Ascon_isSame(const U8* a, const U8* b, U32 size);
 
-/* Overwrites with zeros, also where the compiler thinks that nobody will look. */
+/* Overwrites with zeros, also where the compiler sees no later read. */
 void Ascon_wipe(void* bytes, U32 size);
 
 #endif

@@ -25,8 +25,8 @@
  * accesses, on the host they go to the model of the FSMC peripheral and from there to the pins of
  * the RTL. Addresses are the Cortex-M3's: FSMC registers at 0xA0000000 (32 bits only), NE1 at
  * 0x60000000, NE2 at 0x64000000. The FSMC splits a 32-bit access to a window into two of 16 bits,
- * low half first, and no interrupt comes between the two: so FSMC_read and FSMC_write, one 32-bit
- * access each, are safe in tasks and interrupt routines alike. An 8-bit access uses one byte lane.
+ * low half first, and no interrupt comes between them. FSMC_read and FSMC_write are one such access
+ * each, so tasks and interrupt routines may use them alike. An 8-bit access uses one byte lane.
  */
 typedef struct FSMC_Port {
     U8 (*read8)(void* context, U32 address);
@@ -40,7 +40,7 @@ typedef struct FSMC_Port {
 typedef enum FSMC_Status {
     FSMC_OK = 0,
     FSMC_NO_DEVICE,  /* slot 0 does not identify itself as the system slot */
-    FSMC_BUS_ERROR,  /* an access since the last check hit nothing, or waited for too long */
+    FSMC_BUS_ERROR,  /* an access since the last check hit nothing, or timed out */
     FSMC_BAD_SETTING /* of a bank (fsmc_bank.h) */
 } FSMC_Status;
 
@@ -57,16 +57,16 @@ void FSMC_readMemory(U32 address, U8* data, U32 bytes);
 void FSMC_writeMemory(U32 address, const U8* data, U32 bytes);
 
 /* Copy at the bridge's full speed, 24 to 30 million halfwords a second, without NWAIT. `address` is
- * even. Each part is checked by the bridge's LATE event and repeated with NWAIT where it came too
- * early; returns how many halfwords that were (0 unless others keep the memory very busy).
+ * even. The bridge's LATE event checks each part, and a part that came too early is repeated with
+ * NWAIT. Returns the number of repeated halfwords (0 unless others keep the memory very busy).
  * Meanwhile nobody else may use the DDR3 window: the caller locks, interrupt routines included.
- * FSMC_setHclk first (else it is slow): Hz of HCLK, 120 million at most. */
+ * Call FSMC_setHclk first (else it is slow): Hz of HCLK, at most 120 million. */
 void FSMC_setHclk(U32 hz);
 U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords);
 U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords);
 
 /* Reads and clears the bridge's error event. Returns FSMC_OK, or FSMC_BUS_ERROR: then `where`, if
- * it is not 0, gets slot * 16 + word of the last such access, bit 16 set for a write. */
+ * not 0, becomes slot * 16 + word of the last such access, with bit 16 set for a write. */
 FSMC_Status FSMC_checkError(U32* where);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * fsmc_bank: BCR, BTR and BWTR of a bank from its settings.
+ * fsmc_bank: makes BCR, BTR and BWTR of a bank from its settings.
  */
 #include "fsmc_bank.h"
 #include "fsmc_private.h"

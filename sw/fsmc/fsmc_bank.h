@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * fsmc_bank: the FSMC's other modes, for bridges that are built for them: what BCR, BTR and BWTR of
- * a bank say (RM0033, 31.5.6), by name. FSMC_init needs none of this.
+ * fsmc_bank: the FSMC's other modes by name, for bridges that are built for them: contents of a
+ * bank's BCR, BTR and BWTR (RM0033, 31.5.6). FSMC_init needs none of this.
  */
 #ifndef FSMC_BANK_H
 #define FSMC_BANK_H
@@ -26,7 +26,7 @@ typedef struct FSMC_Timing {
 
 typedef struct FSMC_Bank {
     FSMC_Mode mode;
-    FSMC_Mode writeMode;     /* of A to D, where mode is */
+    FSMC_Mode writeMode;     /* in modes A to D */
     U8 psram;                /* MTYP of modes 1 and A: 1 PSRAM, 0 SRAM */
     U8 muxed;                /* MUXEN: address bits 15..0 on the data pins (the bridge's MUXED) */
     U8 wait;                 /* ASYNCWAIT: asynchronous accesses look at NWAIT */

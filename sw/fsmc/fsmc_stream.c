@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * fsmc_stream: blocks to and from DDR3 at the bridge's full speed, without NWAIT; checked, and
- * repeated where needed.
+ * fsmc_stream: copies blocks to and from DDR3 at the bridge's full speed, without NWAIT, checks
+ * them, and repeats parts where needed.
  */
 #include "fsmc_private.h"
 #include "map_regs.h"
 #include "system_regs.h"
 
-/* Mode A without NWAIT: an access takes ADDSET + DATAST + 1 HCLK. A write's data phase is 2 HCLK,
- * and its BUSTURN 0, since some FSMCs have it between two writes, too; a read is all data phase, so
- * that NOE is low as early as the address is there. */
+/* Mode A without NWAIT: an access takes ADDSET + DATAST + 1 HCLK. A write's data phase is 2 HCLK.
+ * Its BUSTURN is 0, since some FSMCs insert it between two writes, too. A read is all data phase,
+ * so that NOE falls with the address. */
 #define STREAM_BCR (BCR_ALWAYS | BCR_EXTMOD)
 #define WRITE_DATAST 2U
 /* Accesses/s at most (docs/fsmc.md): 33.3 ns between edges of NWE; a read has its data 15 ns after
@@ -44,8 +44,8 @@ static void setBank(int fast) {
     }
 }
 
-/* True if something was too early since the last call. The register access also ends what is
- * posted.
+/* Returns 1 if an access was too early since the last call. The register access also flushes posted
+ * writes.
  */
 static int wasLate(void) {
     if (!(FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_EVENT) & SYSTEM_EVENT_LATE_MASK))
@@ -98,7 +98,7 @@ U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords) {
         U32 part = upTo(address, REGION, 2U * halfwords) / 2U;
         U32 at = fsmc_windowAddress(address);
         if (address & (BLOCK - 1U)) {
-            /* A block is read from its beginning, since only then is there time to fetch the next
+            /* A block is read from its beginning: only then the bridge has time to fetch the next
              * one. */
             part = upTo(address, BLOCK, 2U * part) / 2U;
             readHalfwords(at, data, part);

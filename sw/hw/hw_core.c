@@ -88,7 +88,7 @@ void Hw_Core_begin(Hw_Core* self, U32 operation, U32 ms) {
 
 void Hw_Core_later(Hw_Core* self, U32 operation) {
     self->later[operation] = 1;
-    /* A post wakes the polling task: the event may be over already, or this deadline be the
+    /* A post wakes the polling task: the event may have come already, or this deadline may be the
      * earliest. */
     self->port->post(self->context, operation);
 }

@@ -21,8 +21,8 @@ typedef enum Hw_Status {
     HW_UNALIGNED   /* the buffers do not begin at a multiple of their size */
 } Hw_Status;
 
-/* Frames in DDR3, from whoever makes them to whoever processes them. A camera core's servant
- * writes base, stride, width and height; the application sets the rest. */
+/* Frames in DDR3, from the core that makes them to the core that processes them. A camera core's
+ * servant writes base, stride, width and height; the application sets the rest. */
 typedef struct Hw_Frames {
     U32 base, stride;  /* byte address of the first of three buffers; bytes to the next */
     U32 width, height; /* pixels; width 0: no camera runs, the picture is the frame */
@@ -31,18 +31,18 @@ typedef struct Hw_Frames {
     void (*processed)(U32 findings); /* called for each frame that was processed */
 } Hw_Frames;
 
-/* The port of a core's servant to what lies below: how its task waits, and what it shares with
- * others. On uC/OS-II: a semaphore (OSSemPend, OSSemPost); where several tasks call operations that
- * take time, one for each operation. */
+/* What a core's servant needs from below: how its task waits, and what it shares with others. On
+ * uC/OS-II a semaphore (OSSemPend, OSSemPost), one for each operation where several tasks call
+ * operations that take time. */
 typedef struct Hw_Port {
     /* Waits until post is called for the operation (returns 1), or `ms` have passed (0). A post
      * since the last wait counts. */
     int (*wait)(void* context, U32 operation, U32 ms);
     void (*post)(void* context, U32 operation);
     U32 (*nowMs)(void* context); /* of any beginning; wraps */
-    /* Returns how many accesses so far no register answered; what they read is not valid. */
+    /* Returns the number of accesses so far without an answer; their data is not valid. */
     U32 (*busErrors)(void* context);
-    Hw_Frames* frames; /* 0: no core of the program works on frames */
+    Hw_Frames* frames; /* 0: no core of the program processes frames */
 } Hw_Port;
 
 #define HW_NEVER 0xFFFFFFFFU
@@ -58,23 +58,23 @@ typedef struct Hw_Core {
     U32 deadline[HW_OPERATIONS];      /* ms, of those */
 } Hw_Core;
 
-/* Sets a core up: resets it, clears its events, enables them. `id` is what the slot's word ID must
- * read; HW_WRONG_CORE: it reads another. */
+/* Sets a core up: resets it, clears its events, enables them. `id` is the expected word ID; another
+ * one gives HW_WRONG_CORE. */
 Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Port* port, void* context);
 /* Takes the slot's events while its interrupt line is high; for the interrupt routine or a task. */
 void Hw_Core_interrupt(Hw_Core* self);
 
-/* Access a word behind PAGE, `page`, of a slot with more than 16 words. PAGE is put back, so a task
- * that is interrupted here goes on as before; tasks of one priority must not take turns here. */
+/* Access a word behind PAGE, `page`, of a slot with more than 16 words. PAGE is restored, so an
+ * interrupted task goes on as before. Tasks of one priority must not take turns here. */
 U32 Hw_Core_read(const Hw_Core* self, U32 word, U32 page);
 void Hw_Core_write(const Hw_Core* self, U32 word, U32 page, U32 value);
 
 /* Steps of an operation, for generated servants. ready: HW_OK if parameters may be written. act:
- * starts the operation. run: starts it and waits until it is done, or `ms` have passed without its
+ * starts the operation. run: starts it and waits until it is done, or `ms` pass without its
  * event. */
 Hw_Status Hw_Core_ready(const Hw_Core* self, U32 operation);
 void Hw_Core_act(const Hw_Core* self, U32 operation);
-/* Returns 1 if the core answers: the accesses before were done. 0: its clock stands still. */
+/* Returns 1 if the core answers, so earlier accesses were done; 0 where its clock stands still. */
 int Hw_Core_answers(const Hw_Core* self);
 Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms);
 

@@ -16,8 +16,8 @@ typedef struct Hw_Instance {
     Ice_ObjectPtr servant;
     Hw_Status (*start)(const Hw_Port* port, void* context);
     void (*interrupt)(void);
-    /* Answers calls that are done or too late; returns after how many ms it wants to be called
-     * again even without an event, or HW_NEVER. */
+    /* Answers calls that are done or too late. Returns after how many ms it must be called again
+     * even without an event, or HW_NEVER. */
     U32 (*poll)(U32 nowMs);
 } Hw_Instance;
 

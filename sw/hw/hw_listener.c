@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * hw_listener: two places, so that neither task waits for the other.
+ * hw_listener: has two places, so that neither task waits for the other.
  */
 #include "hw_listener.h"
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * receiver: how an image gets into its slot. The slot's header is written when its sectors are
- * empty, so a header in flash says what the bytes behind it are of, also after a loss of power.
+ * receiver: brings an image into its slot. The slot's header is written once its sectors are empty,
+ * so a header in flash tells which image the bytes behind it belong to, also after a loss of power.
  */
 #include "receiver.h"
 
 #include <string.h>
 
-#define CHUNK 256U /* bytes that are read, or programmed, at once */
+#define CHUNK 256U /* bytes read or programmed at once */
 
 static U32 slotAt(const Receiver* self) {
     return Slots_at(self->port->layout, self->slot);
@@ -32,7 +32,7 @@ static int holds(const Receiver* self, U32 at, const U8* data, U32 bytes) {
     return memcmp(chunk, data, bytes) == 0;
 }
 
-/* Programs bytes, where they are not there yet, and reads them back. */
+/* Programs the bytes that are not there yet, and reads them back. */
 static int put(const Receiver* self, U32 at, const U8* data, U32 bytes) {
     const Slots_Port* port = self->port;
     U32 size;
@@ -54,7 +54,7 @@ static int hasBegun(const Receiver* self, const Slots_Header* header) {
            isErased(self, slotAt(self) + self->port->layout->readyAt, 4);
 }
 
-/* Takes up the image whose header is in flash. What was written last may be so in part; it comes
+/* Goes on with the image whose header is in flash. Its last piece may be there in part; it comes
  * again. */
 static void takeUp(Receiver* self) {
     const U32 at = slotAt(self) + SLOTS_IMAGE_AT;
@@ -146,7 +146,7 @@ Receiver_Reason Receiver_confirm(Receiver* self) {
     return RECEIVER_OK;
 }
 
-/* Checks that the header is signed, and looks whether its image is here in part. */
+/* Checks that the header is signed, and looks for a part of its image in flash. */
 static void prepare(Receiver* self) {
     if (!Slots_isSigned(self->port, &self->header))
         end(self, RECEIVER_UNSIGNED);
@@ -156,8 +156,8 @@ static void prepare(Receiver* self) {
         self->state = RECEIVER_ERASING;
 }
 
-/* Erases the first sector that the image needs and that is not empty; where all are, writes the
- * header. The header's own sector is the first, so that what is left of an image is none. */
+/* Erases the first sector that the image needs and that is not empty; where all are empty, writes
+ * the header. The header's sector comes first, so a half-erased image has no header. */
 static void erase(Receiver* self) {
     const Slots_Port* port = self->port;
     const U32 at = slotAt(self), size = port->layout->sectorBytes;

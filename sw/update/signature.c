@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * signature: calls of libsodium; the host's build links Debian's, the chip's the same sources.
+ * signature: calls libsodium; the host links Debian's library, the chip the same sources.
  */
 #include "signature.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * slots: the choice that the boot loader makes, and what a start makes of the FPGA's bitstream.
+ * slots: the boot loader's choice of an image, and the check of the FPGA's bitstream at a start.
  */
 #include "slots.h"
 
@@ -67,7 +67,7 @@ static int isSound(const Slots_Port* port, U32 slot, U32 product) {
            Slots_isSigned(port, &header) && Slots_isWhole(port, slot, &header);
 }
 
-/* Returns the highest version of the log. An entry is a version and its complement; another one was
+/* Returns the highest version of the log. An entry is a version and its complement; any other was
  * cut by a loss of power. `end` becomes the offset of the first empty entry. */
 static U32 readLog(const Slots_Port* port, U32* end) {
     U32 highest = 0, entry[2];
@@ -123,14 +123,14 @@ U32 Slots_choose(const Slots_Port* port, U32 product) {
     const U32 confirmed = Slots_confirmed(port, product);
     const U32 newer = versionOf(port, 1) > versionOf(port, 0) ? 1U : 0U;
     U32 slot, i;
-    for (i = 0; i < SLOTS_COUNT; ++i) { /* new ones */
+    for (i = 0; i < SLOTS_COUNT; ++i) { /* new images */
         slot = newer ^ i;
         if (!Slots_is(port, slot, SLOTS_TRIED) && !Slots_is(port, slot, SLOTS_CONFIRMED) &&
             versionOf(port, slot) > confirmed && isSound(port, slot, product) &&
             Slots_set(port, slot, SLOTS_TRIED))
             return slot;
     }
-    for (i = 0; i < 2U * SLOTS_COUNT; ++i) { /* confirmed ones first, then whatever runs */
+    for (i = 0; i < 2U * SLOTS_COUNT; ++i) { /* confirmed images first, then any that is sound */
         slot = newer ^ (i % SLOTS_COUNT);
         if ((i >= SLOTS_COUNT || Slots_is(port, slot, SLOTS_CONFIRMED)) &&
             isSound(port, slot, product))

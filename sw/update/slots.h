@@ -2,9 +2,9 @@
  *
  * slots: two places in flash for firmware, and which of their images may run (docs/update.md).
  *
- * A slot begins with a header, which is signed and names the digest of the image behind it, and has
- * state words, which are written once after an erase. Whatever a loss of power leaves of them, a
- * word counts only if it is exactly the value that was meant, and writing it again completes it.
+ * A slot begins with a signed header that has the digest of the image behind it, and with state
+ * words, which are written once after an erase. A state word counts only if it is exactly its
+ * value, and writing it again completes one that a loss of power has cut.
  */
 #ifndef SLOTS_H
 #define SLOTS_H
@@ -21,13 +21,13 @@
 #define SLOTS_DIGEST_BYTES 64U    /* SHA-512 */
 #define SLOTS_SIGNATURE_BYTES 64U /* Ed25519 */
 
-/* What is at the beginning of a slot. The signature is of all bytes before it. */
+/* The beginning of a slot. The signature covers all bytes before it. */
 typedef struct Slots_Header {
     U32 magic;
-    U32 product; /* which vehicle it is for */
+    U32 product; /* the kind of vehicle */
     U32 version; /* 1..0xFFFFFFFE */
     U32 bytes;   /* of the image, a multiple of 4 */
-    U32 base;    /* offset in flash that the image is for: its first byte's */
+    U32 base;    /* offset in flash of the image's first byte */
     U8 digest[SLOTS_DIGEST_BYTES];
     U8 signature[SLOTS_SIGNATURE_BYTES];
 } Slots_Header;
@@ -38,8 +38,8 @@ typedef struct Slots_Header {
 typedef enum Slots_State {
     SLOTS_READY = 0x1C0,     /* the whole image is there, and was checked (or Slots_Layout.ready) */
     SLOTS_TRIED = 0x1D0,     /* it was started once */
-    SLOTS_CONFIRMED = 0x1E0, /* it was said to be good */
-    SLOTS_REFUSED = 0x1F0    /* the FPGA did not take it */
+    SLOTS_CONFIRMED = 0x1E0, /* the image works */
+    SLOTS_REFUSED = 0x1F0    /* the FPGA has not taken it */
 } Slots_State;
 #define SLOTS_TRUE 0x600DF1A5U /* makes a state true */
 #define SLOTS_ERASED 0xFFFFFFFFU
@@ -47,15 +47,15 @@ typedef enum Slots_State {
 /* The layout of a flash. */
 typedef struct Slots_Layout {
     U32 at, bytes;      /* of slot 0; slot 1 is behind it */
-    U32 sectorBytes;    /* that are erased at once */
+    U32 sectorBytes;    /* size of an erase */
     U32 readyAt, ready; /* READY's place in a slot, and the value that makes it true */
-    U32 logAt;          /* of what confirmed images were erased; 0: slots take turns */
+    U32 logAt;          /* log of erased confirmed versions; 0: slots take turns */
 } Slots_Layout;
 
 /* The processor's flash: sectors 5..7 and 8..10. */
 extern const Slots_Layout slots_firmware;
 /* The FPGA's: slot 0 has the golden bitstream, which is never written, slot 1 the one that is tried
- * first. READY is that one's sync word, without which the FPGA takes it for nothing. */
+ * first. READY is its sync word, without which the FPGA ignores it. */
 extern const Slots_Layout slots_fpga;
 #define SLOTS_SYNC_AT 16U /* in a bitstream */
 #define SLOTS_LOG_BYTES 0x1000U
@@ -63,7 +63,7 @@ extern const Slots_Layout slots_fpga;
 /* Reads bytes at an offset in flash. */
 typedef void (*Slots_Read)(void* context, U32 offset, U8* bytes, U32 count);
 
-/* A flash, and the checks, of whoever runs this. Functions that return int return 1 for success. */
+/* A flash, and the checks of its images. Functions that return int return 1 for success. */
 typedef struct Slots_Port {
     const Slots_Layout* layout;
     void* context;
@@ -74,37 +74,36 @@ typedef struct Slots_Port {
     int (*program)(void* context, U32 offset, const U8* bytes, U32 count);
     int (*isSigned)(const U8* signature, const U8* message, U32 bytes, const U8* key);
     void (*digest)(Slots_Read read, void* context, U32 offset, U32 bytes, U8* digest);
-    const U8* key;    /* the vehicle's public one */
+    const U8* key;    /* the vehicle's public key */
     const U8* mapped; /* the flash, if it is the processor's own memory; else 0 */
 } Slots_Port;
 
 /* Returns the slot's offset in flash. */
 U32 Slots_at(const Slots_Layout* layout, U32 slot);
-/* Reads what is at the slot's beginning, whatever it is. */
+/* Reads the bytes at the slot's beginning, valid or not. */
 void Slots_header(const Slots_Port* port, U32 slot, Slots_Header* header);
 int Slots_is(const Slots_Port* port, U32 slot, Slots_State state);
-/* Makes a state true; 0: the flash does not take it. */
+/* Sets a state. Returns 0 where the flash does not take it. */
 int Slots_set(const Slots_Port* port, U32 slot, Slots_State state);
 /* Returns 1 if the header could be one of an image for this slot and product. */
 int Slots_fits(const Slots_Layout* layout, const Slots_Header* header, U32 slot, U32 product);
-/* Returns 1 if the header is signed with the vehicle's key; it need not be in flash. */
+/* Returns 1 if the header is signed with the vehicle's key. The header need not be in flash. */
 int Slots_isSigned(const Slots_Port* port, const Slots_Header* header);
-/* Returns 1 if the digest of the image in the slot is the header's. */
+/* Returns 1 if the image in the slot has the header's digest. */
 int Slots_isWhole(const Slots_Port* port, U32 slot, const Slots_Header* header);
-/* Returns the highest version that was confirmed; 0: none. */
+/* Returns the highest confirmed version, 0 where there is none. */
 U32 Slots_confirmed(const Slots_Port* port, U32 product);
-/* Takes READY from a slot that is to be erased, and logs its version if it was confirmed: what is
- * erased in part is never started. */
+/* Clears READY of a slot before it is erased, and logs its version if it was confirmed. So a
+ * half-erased image never starts. */
 int Slots_retire(const Slots_Port* port, U32 slot);
 
-/* Returns the slot whose image is to run, SLOTS_NONE if there is none: one that is new, once; else
- * the newest that was confirmed; else any that is sound. Every image that it names is signed and
- * whole. */
+/* Returns the slot to run, SLOTS_NONE where there is none: a new image, once; else the newest
+ * confirmed one; else any sound one. Each is signed and whole. */
 U32 Slots_choose(const Slots_Port* port, U32 product);
 
-/* Looks at the FPGA's flash at a start, and after each load of the FPGA that failed. A bitstream
- * that is new is tried once; one that was tried and not confirmed is retired, and so is one that
- * the FPGA has refused: it hangs, or runs the golden one. Returns 1: the FPGA is to load anew. */
+/* Checks the FPGA's flash at a start, and after each failed load of the FPGA. A new bitstream is
+ * tried once. One that was tried and not confirmed is retired, and so is one that the FPGA has
+ * refused: it hangs, or runs the golden one. Returns 1 where the FPGA must load again. */
 int Slots_settleFpga(const Slots_Port* port, int isRefused);
 
 #endif

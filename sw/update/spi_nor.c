@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * spi_nor: each call is a transaction of its own, after which the bus is free.
+ * spi_nor: each call is one transaction; the bus is free after it.
  */
 #include "spi_nor.h"
 

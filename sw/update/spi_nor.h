@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * spi_nor: a serial NOR flash with the usual instructions (W25Q, M25P: 03, 02, D8, 05, 06, 9F) as
- * a Slots_Port wants it. Its context is the bus.
+ * spi_nor: a Slots_Port on a serial NOR flash with the usual instructions (W25Q, M25P: 03, 02, D8,
+ * 05, 06, 9F). Its context is the bus.
  */
 #ifndef SPI_NOR_H
 #define SPI_NOR_H
@@ -9,7 +9,7 @@
 #include "base.h"
 
 typedef struct SpiNor_Bus {
-    /* Drives chip select, and the bus with it; 0: leaves both to others. */
+    /* Drives chip select and the bus; 0: leaves both to others. */
     void (*select)(int isLow);
     U8 (*transfer)(U8 byte);
     void (*pause)(void); /* lets others work for a while */
@@ -18,9 +18,9 @@ typedef struct SpiNor_Bus {
 /* Returns 1 if a flash answers. */
 int SpiNor_isThere(void* bus);
 void SpiNor_read(void* bus, U32 offset, U8* bytes, U32 count);
-/* Erases 64 KiB. Returns 1: it is done. */
+/* Erases 64 KiB. Returns 1 when done. */
 int SpiNor_erase(void* bus, U32 offset);
-/* Programs up to 256 bytes of a page. Returns 1: it is done. */
+/* Programs up to 256 bytes of a page. Returns 1 when done. */
 int SpiNor_program(void* bus, U32 offset, const U8* bytes, U32 count);
 
 #endif

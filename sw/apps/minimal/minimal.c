@@ -2,7 +2,7 @@
  *
  * minimal: the smallest program that has all layers: one loop, no tasks, a server and a client.
  *
- * It is what `make size` measures (docs/icec.md), and it flies: `make run CPU=m3 APP=minimal`.
+ * `make size` measures it (docs/icec.md), and it flies: `make run CPU=m3 APP=minimal`. It has the
  * Slice of the paper's Figure 3, the engine's servant as in its Figure 5, and calls to the ground
  * station, two-way and one-way, over the xbee-at endpoint, the link, the modem and the FSMC.
  */
@@ -24,7 +24,7 @@ static Autopilot_HwProcessingEngine servant;
 static XBeeATEndpoint endpoint;
 static Link radioLink;
 
-/* Sleeps; all that the radio driver asks of an OS. */
+/* Sleeps. The radio driver needs no more of an OS. */
 void OSTimeDly(INT32U ticks) {
     INT32U begin = minimal_ticks;
     while (minimal_ticks - begin < ticks)
@@ -142,7 +142,7 @@ int main(void) {
     (void)Ice_Communicator_stringToProxy(&ic, "station:xbee-at -a 0x0000", &station);
     (void)Ice_Communicator_stringToProxy(&ic, "station -o:xbee-at -a 0x0000", &stationOneway);
     (void)Ice_ObjectAdapter_createProxy(&adapter, "hwengine1", &self);
-    /* Calls are served while the link comes up and the station does not listen yet. */
+    /* Calls are served before the link is up and the station listens. */
     while (Autopilot_StationPrx_vehicleState(&station, &self, &params) != ICE_OK)
         (void)Ice_Communicator_poll(&ic, 1000);
     (void)Autopilot_StationPrx_vehicleState(&stationOneway, &self, &params);

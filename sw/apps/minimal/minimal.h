@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * minimal: what the smallest program and its start share.
+ * minimal: what the smallest program shares with its start-up code.
  */
 #ifndef MINIMAL_H
 #define MINIMAL_H

@@ -22,7 +22,7 @@ static Autopilot_KeyRing keys;
 static OS_EVENT* report; /* a frame is done: tell the station */
 static U32 frames, corners;
 static U8 irqEnabled;
-/* Written by the interrupt only; where the last one was is for a debugger. */
+/* Written by the interrupt only; a debugger reads the place of the last error. */
 static U32 busErrors, busErrorPlace;
 
 Ice_Status Autopilot_Vehicle_isAlive(Autopilot_VehiclePtr self, Ice_Short sessionId,
@@ -81,12 +81,13 @@ static void clientTask(void* argument) {
         setParam(&params[2], data[2], Autopilot_cornersFound, corners);
         setParam(&params[3], data[3], Autopilot_radioBytesSent, radio->bytesCopiedOut);
         setParam(&params[4], data[4], Autopilot_radioBytesReceived, radio->bytesCopiedIn);
-        /* The result is ignored: a station that does not listen yet is told of the next frame. */
+        /* The result is ignored: a station that does not listen yet is told with the next frame. */
         (void)Autopilot_StationPrx_vehicleState(&station, &self, &list);
     }
 }
 
-/* Creates a task with its stack's bounds, so that the end is guarded and the use can be asked for.
+/* Creates a task with its stack's bounds, so that its end is guarded and its use can be
+ * measured.
  */
 static void createTask(void (*task)(void*), OS_STK* stack, INT8U priority) {
     (void)OSTaskCreateExt(task, 0, &stack[STACK_WORDS - 1], priority, priority, stack, STACK_WORDS,

@@ -14,28 +14,28 @@
 #define UAV_FRAME_HEADER \
     0x000FFF80U /* its width and height, two 32-bit words, written by the camera */
 
-/* The modem's AES key, 16 bytes that stay valid; 0, as at first: it does not encrypt. Read when the
- * tasks start. The keys of the link are the board's (uav_keys.h). */
+/* The modem's AES key, 16 bytes that stay valid; 0, the initial value: no encryption. Read when the
+ * tasks start. The board gives the link's keys (uav_keys.h). */
 extern const U8* uav_modemKey;
 
-/* Guard time of the radio's modem as it is, in ms; 0, as at first: the factory's 1000. */
+/* The modem's present guard time in ms; 0, the initial value: the factory's 1000. */
 extern U16 uav_guardMs;
 
 typedef enum UAV_Status {
     UAV_OK,
-    UAV_NO_FPGA, /* it does not answer */
+    UAV_NO_FPGA, /* the FPGA does not answer */
     UAV_NO_KEY   /* the vehicle was neither given a key nor opened */
 } UAV_Status;
 
-/* Creates the tasks; call between OSInit and OSStart, after UAV_useBoard. Unless UAV_OK, there are
- * none. */
+/* Creates the tasks. Call it between OSInit and OSStart, after UAV_useBoard. Only with UAV_OK there
+ * are tasks. */
 UAV_Status UAV_start(const FSMC_Port* port, void* context);
 
-/* Returns how many accesses no register answered, or whose core hung until the
- * bridge gave up. */
+/* Returns the number of accesses without an answer: to no register, or to a core that hung until
+ * the bridge gave up. */
 U32 UAV_busErrors(void);
 
-/* Handles the FPGA's interrupt, a level; tells whether it is unmasked. */
+/* Handles the FPGA's interrupt, which is a level. */
 void UAV_irqHandler(void);
 int UAV_irqEnabled(void);
 

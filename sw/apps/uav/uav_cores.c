@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_cores: the servants of the cores in ip/cores.list: their start, their interrupts, and the
- * task that answers calls which a core takes its time for.
+ * uav_cores: starts the servants of the cores in ip/cores.list, handles their interrupts, and has
+ * the task that answers calls which take time.
  */
 #include "hw_contracts.h"
 #include "hw_instance.h"
@@ -12,13 +12,13 @@
 
 typedef char UAV_RoomForEveryServant[ICE_SERVANTS >= UAV_SERVANTS + MAP_CORES ? 1 : -1];
 
-static OS_EVENT *waiter, *work; /* the task that waits within an operation; the task below */
+static OS_EVENT *waiter, *work; /* wake the waiting task, coresTask */
 static U8 isStarted[MAP_CORES];
 static Hw_Contract contracts[MAP_CONTRACTS];
 static Hw_Chip chip;
 
-/* Waits for any operation's event: one task waits, the one that serves calls, and checks itself
- * whether the event was its own. */
+/* Waits for any operation's event. Only the task that serves calls waits here; it checks whether
+ * the event was its own. */
 static int waitEvent(void* context, U32 operation, U32 ms) {
     INT8U error;
     (void)context;
@@ -70,7 +70,7 @@ void UAV_startCores(Ice_ObjectAdapterPtr adapter) {
         const Hw_Instance* core = &hw_instances[i];
         isStarted[i] = Hw_Contracts_hold(contracts, MAP_CONTRACTS, core->slot) &&
                        core->start(&port, 0) == HW_OK;
-        if (isStarted[i]) /* else a call of it gets ObjectNotExistException */
+        if (isStarted[i]) /* else a call gets ObjectNotExistException */
             (void)Ice_ObjectAdapter_add(adapter, core->servant, core->identity);
     }
 }
@@ -92,7 +92,7 @@ void UAV_coresTask(void* argument) {
                 U32 ms = hw_instances[i].poll(nowMs(0));
                 next = ms < next ? ms : next;
             }
-        /* OSSemPend would take 0 as for ever. */
+        /* OSSemPend takes 0 for an endless wait. */
         OSSemPend(work, next == HW_NEVER ? 0 : (INT32U)(next / MS_PER_TICK + 1U), &error);
     }
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_keys: slots of keys, and how one follows another.
+ * uav_keys: keeps keys in slots, and changes from one to the next.
  */
 #include "uav_keys.h"
 #include "ascon.h"
@@ -8,16 +8,16 @@
 #include <string.h>
 
 #define SLOT_WORDS 5U
-#define CHECK 4U     /* of a slot: right for no other words */
-#define STATE_AT 10U /* what follows, or nothing */
+#define CHECK 4U     /* a slot's check: detects words that are not whole */
+#define STATE_AT 10U /* the state word, or nothing */
 #define STATE_OPEN 0x4F50454EU
-#define STATE_NEXT 0x4E455830U /* and the slot that has the next key, if both have one */
+#define STATE_NEXT 0x4E455830U /* + slot of the next key, if both have one */
 #define CHECK_SEED 0x4B455931U
 #define KEY_WORDS (LINK_KEY_BYTES / 4U)
 
 static const UAV_Board* board;
 static void* boardContext;
-static int nextSlot; /* has the next key, and the other one the old; -1: there is but one */
+static int nextSlot; /* slot of the next key; -1: there is one key */
 
 void UAV_useBoard(const UAV_Board* ours, void* context) {
     board = ours;
@@ -37,7 +37,7 @@ static void store(int slot, U32 word, U32 value) {
     board->store(boardContext, (U32)slot * SLOT_WORDS + word, value);
 }
 
-/* Returns the check of a key: it is for power that failed, not for attackers. Never 0. */
+/* Returns the check of a key: against lost power, not against attackers. Never 0. */
 static U32 checkOf(const U32* words) {
     U32 check = CHECK_SEED, i;
     for (i = 0; i < KEY_WORDS; ++i)
@@ -57,7 +57,7 @@ int UAV_readKey(int slot, U8* key) {
     return isKey;
 }
 
-/* Writes a slot; without a key it is emptied. */
+/* Writes a slot; without a key, empties it. */
 static void writeKey(int slot, const U8* key) {
     U32 words[KEY_WORDS], i;
     memset(words, 0, sizeof words);

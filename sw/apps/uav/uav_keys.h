@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_keys: the vehicle's keys, in memory that keeps them without power: two slots, of which one
- * is in use and the other takes the key that is to follow it.
- *
- * A vehicle has a key, or it was opened on purpose, or it does not start. Power may fail at any
- * word: a slot is then as it was, empty, or as it was to be, and the other one is not touched.
+ * uav_keys: the vehicle's keys, in memory that keeps them without power. Of two slots one is in use
+ * and the other takes the next key. A vehicle without a key starts only if it was opened on
+ * purpose. Power may fail at any word: the slot then has its old content, none, or its new one, and
+ * the other slot is not touched.
  */
 #ifndef UAV_KEYS_H
 #define UAV_KEYS_H
@@ -23,17 +22,16 @@ typedef struct UAV_Board {
     void (*store)(void* context, U32 word, U32 value);
 } UAV_Board;
 
-/* Sets the board, which must stay valid; to be called before all else. */
+/* Sets the board, which must stay valid. Call it first. */
 void UAV_useBoard(const UAV_Board* board, void* context);
 
 /* Returns 32 bits that nobody can guess. */
 U32 UAV_random(void* unused);
 
-/* Provides the vehicle, in its factory, with this key alone; 0: opens it, who has a radio may call
- * it. */
+/* Provides the vehicle, in its factory, with this key alone. 0: no key; anyone may call. */
 void UAV_provide(const U8* key);
 
-/* Reads a slot's key. Returns 0: it has none. */
+/* Reads a slot's key. Returns 0 where it has none. */
 int UAV_readKey(int slot, U8* key);
 
 /* Returns how many slots have a key. */
@@ -45,12 +43,12 @@ int UAV_isOpen(void);
 /* Gives the link the keys of both slots; returns how many there are. */
 int UAV_giveKeys(Link* link);
 
-/* Puts the next key into the slot that is not in use. Returns 0: the session has no key, so that
- * everybody on the air would read the new one. The key in use once more is no change. */
+/* Puts the next key into the slot that is not in use. Returns 0 where the session has no key, since
+ * everybody on the air would read the new one. The present key is accepted and changes nothing. */
 int UAV_setNextKey(Link* link, const U8* key);
 
-/* Removes the old key once a session is up under the next one, which its peer then has. Returns 1
- * if it did. */
+/* Removes the old key once a session is up under the next one, which the peer then has. Returns 1
+ * where it did. */
 int UAV_confirmKey(Link* link);
 
 #endif

@@ -18,7 +18,8 @@
 #define PRIO_CLIENT 12U
 #define PRIO_UPDATE 40U
 
-/* Servants beside the cores': chip, uav, update, fpga, keys. cmake/cores.cmake reads it. */
+/* Number of servants besides the cores': chip, uav, update, fpga, keys. cmake/cores.cmake reads
+ * it. */
 #define UAV_SERVANTS 5
 
 extern Ice_Communicator uav_ic;
@@ -29,7 +30,7 @@ extern OS_EVENT* uav_radioWork; /* the radio task has something to do */
 U32 UAV_nowUs(void);
 
 /* Radio task: sets the modem up, runs the link, and sets it up again if the link stays down. */
-int UAV_initRadio(void);        /* 0: the vehicle has no key, and is not open */
+int UAV_initRadio(void);        /* 0: the vehicle has no key, and was not opened */
 int UAV_nextKey(const U8* key); /* UAV_setNextKey for a servant */
 void UAV_radioTask(void* argument);
 void UAV_useRadio(Ice_CommunicatorPtr ic);

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_radio: the radio task, and what IceC's endpoint needs of it.
+ * uav_radio: the radio task, and what IceC's endpoint needs from it.
  */
 #include "radio.h"
 #include "uav.h"
 #include "uav_keys.h"
 #include "uav_private.h"
 
-#define BYTE_TIME_US16 1440U /* 111,111 baud */
-#define DOWN_LIMIT \
-    (15U * OS_TICKS_PER_SEC) /* then the modem may have lost its settings: set it up again */
+#define BYTE_TIME_US16 1440U                /* 111,111 baud */
+#define DOWN_LIMIT (15U * OS_TICKS_PER_SEC) /* the modem may have lost its settings then */
 
 Link uav_link;
 OS_EVENT* uav_radioWork;
@@ -95,7 +94,7 @@ static void setUpModem(void) {
     xbeeConf.key = uav_modemKey;
     xbeeConf.guardMs = uav_guardMs;
     Link_limitFrame(&uav_link, uav_modemKey ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME);
-    /* The vehicle flies on without its modem and tries again: the modem may come back. */
+    /* The vehicle flies on without its modem, and tries again. */
     while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)
         OSTimeDly(OS_TICKS_PER_SEC);
 }
@@ -136,7 +135,7 @@ void UAV_radioTask(void* argument) {
 
 /* ---- IceC's tasks ---- */
 
-static OS_EVENT* callDone[ICE_CALLS + 1]; /* the last: of tasks that want to receive */
+static OS_EVENT* callDone[ICE_CALLS + 1]; /* the last is for tasks that want to receive */
 static OS_EVENT* iceMutex[2];             /* by ICE_LOCK_STATE and ICE_LOCK_SEND */
 
 void UAV_initIceOs(void) {

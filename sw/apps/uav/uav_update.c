@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_update: the servants of new firmware and bitstreams, and the task that does what takes long:
- * below all others but the watchdog's, one signature, sector or digest at a time.
+ * uav_update: the servants of new firmware and bitstreams, and the task for long steps, below all
+ * others but the watchdog's: one signature, sector or digest at a time.
  */
 #include "uav_update.h"
 #include "Update.h"
@@ -15,8 +15,8 @@
 #define PERIOD (OS_TICKS_PER_SEC / 10U)
 #define PIECE_BYTES 4096
 #define DICTIONARY_BYTES 65535U
-#define TRIAL_S 60U  /* then firmware that nobody has confirmed goes */
-#define RESTART_S 1U /* for the answers that are under way */
+#define TRIAL_S 60U  /* after this time an unconfirmed firmware is replaced */
+#define RESTART_S 1U /* gives the answers under way time to leave */
 
 UAV_Update uav_update[UAV_UPDATABLES];
 void (*uav_restart)(void);
@@ -44,7 +44,7 @@ Ice_Status Update_Firmware_getStatus(Update_FirmwarePtr self, Update_Status* res
     return ICE_OK;
 }
 
-/* Answers, and wakes the task for what was asked for. */
+/* Answers, and wakes the task for the requested work. */
 static Ice_Status answer(Receiver_Reason reason, Update_Reason* result) {
     *result = (Update_Reason)reason;
     if (reason == RECEIVER_OK)
@@ -61,9 +61,9 @@ Ice_Status Update_Firmware_begin(Update_FirmwarePtr self, const Update_Header* s
     return answer(Receiver_begin(receiverOf(self), &header), result);
 }
 
-/* Returns the piece's bytes, 0 if they are not what was promised. Compressed ones are unpacked by
- * what of the image is in flash, where the processor can read that as memory: so nothing is lost
- * with the power. */
+/* Returns the piece's bytes, 0 where they are not as announced. A compressed piece has the image's
+ * part in flash as its dictionary, which the processor reads as memory, so a loss of power loses
+ * nothing. */
 static const U8* unpack(const Receiver* receiver, U32 offset, Ice_Int size,
                         const Update_Piece* bytes) {
     static U8 unpacked[PIECE_BYTES];
@@ -108,7 +108,7 @@ Ice_Status Update_Firmware_confirm(Update_FirmwarePtr self, Update_Reason* resul
     return ICE_OK;
 }
 
-/* Does a step of each, and returns whether one has more to do. */
+/* Does one step of each update; returns whether one has more to do. */
 static int workOn(U32 uptime) {
     int more = 0, i;
     for (i = 0; i < UAV_UPDATABLES; ++i) {
@@ -132,7 +132,7 @@ static void updateTask(void* argument) {
     for (;;) {
         OSSemPend(work, PERIOD, &error);
         while (workOn(OSTimeGet() - begun))
-            OSTimeDly(PERIOD); /* an erase stops everything: others come first */
+            OSTimeDly(PERIOD); /* an erase stalls the processor, so other tasks run first */
     }
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * hw_contracts: a slot's hash is read by its number.
+ * hw_contracts: reads a slot's hash by its number.
  */
 #include "hw_contracts.h"
 #include "fsmc.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * hw_registers: names are looked up in the table, words go through the FSMC driver, and a wait is
- * answered by the task that polls.
+ * hw_registers: looks names up in the table and accesses words through the FSMC driver; the polling
+ * task answers `wait`.
  */
 #include "hw_registers.h"
 #include "fsmc.h"
@@ -10,8 +10,8 @@
 
 enum { ID, EVENT, MASK, PAGE };
 #define ALL 0xFFFFFFFFU
-#define WINDOW 8U        /* the word behind which a core's byte address PAGE appears */
-#define WINDOW_BYTES 32U /* of a core that words 8..15 show at once */
+#define WINDOW 8U        /* word 8 shows the core's byte address PAGE */
+#define WINDOW_BYTES 32U /* bytes of a core that words 8..15 show at once */
 #define WAIT_MAX 600000  /* ms */
 
 Hw_Status Hw_Registers_Core_init(Hw_Registers_Core* self, U32 slot, U32 id,
@@ -32,13 +32,13 @@ Hw_Status Hw_Registers_Core_init(Hw_Registers_Core* self, U32 slot, U32 id,
 }
 
 void Hw_Registers_Core_interrupt(Hw_Registers_Core* self) {
-    /* Masked until somebody waits: a line of the core that stays high would interrupt for ever. */
+    /* Masked until a call waits: a line that stays high would interrupt for ever. */
     FSMC_write(self->slot, MASK, 0);
     self->came = 1;
     self->port->post(self->context, 0);
 }
 
-/* Adds text to the reason of an exception; what does not fit ends in dots. */
+/* Adds text to the reason of an exception; text that does not fit ends in dots. */
 static void say(Hw_Registers_Core* self, Ice_String text) {
     static const char dots[] = "...";
     U32 used = (U32)strlen(self->reason), left = sizeof self->reason - sizeof dots - used;
@@ -212,8 +212,8 @@ static int write(Hw_Registers_Core* self, Ice_String name, Ice_Long value) {
         sayNumber(self, bits);
         return 0;
     }
-    /* The other fields of a register that is read and written stay; 0 does not act upon those of
-     * w1c and ws. */
+    /* The other fields of a register that can be read and written stay; in w1c and ws fields 0 has
+     * no effect. */
     if (r->access == Hw_rw && memchr(name.data, '.', (size_t)name.size)) {
         if (!transfer(self, r, 0, &others))
             return 0;
@@ -262,7 +262,7 @@ Ice_Status Hw_Registers_wait(Hw_RegistersPtr servant, Ice_Int ms, const Ice_Curr
     return ICE_LATER;
 }
 
-/* Takes the slot's events. Returns how many, with their names from the table: EVENT's fields. */
+/* Takes the slot's events. Returns their number, and their names from the table: EVENT's fields. */
 static Ice_Int takeEvents(Hw_Registers_Core* self) {
     static const char prefix[] = "EVENT.";
     const Ice_Int skipped = sizeof prefix - 1;
@@ -290,7 +290,7 @@ U32 Hw_Registers_Core_poll(Hw_Registers_Core* self, U32 nowMs) {
     FSMC_write(self->slot, MASK, 0);
     events.size = takeEvents(self);
     events.data = self->events;
-    self->waits = 0; /* from the answer on the next call may come */
+    self->waits = 0; /* the next call may come once this one is answered */
     (void)Hw_Registers_wait_response(&reply, &events);
     return HW_NEVER;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// clock: simulated time is read from memory that the simulator writes.
+// clock: reads simulated time from memory that the simulator writes.
 
 #include "clock.h"
 #include "sim_status.h"
@@ -19,7 +19,7 @@ namespace XBeeAT {
 
 namespace {
 
-constexpr uint32_t shortestUs = 50; // of a look at simulated time
+constexpr uint32_t shortestUs = 50; // between two looks at simulated time
 constexpr uint32_t longestUs = 500; // the same, while simulated time waits for this program
 constexpr uint64_t endOfTime = ~uint64_t(0);
 
@@ -88,13 +88,13 @@ uint32_t Clock::nowUs() const {
         duration_cast<microseconds>(steady_clock::now().time_since_epoch()).count());
 }
 
-// Simulated time is not faster than the machine's, as a rule: so what is left is slept, and looked
-// at again.
+// Simulated time is usually no faster than the machine's, so the remaining time is slept before the
+// next look.
 int Clock::wait(pollfd* fds, nfds_t count, uint32_t us) {
     if (!simulation_)
         return pollUs(fds, count, us);
     const uint64_t begin = nowNs() / 1000;
-    // A program that keeps step waits for shortestUs at least: one that never waits would stop
+    // A program that keeps step waits for at least shortestUs. One that never waits would stop
     // time, and might wait for it.
     const uint64_t end =
         us == forever ? endOfTime : begin + (inStep() ? std::max(us, shortestUs) : us);
@@ -136,7 +136,7 @@ void Clock::keepStep(int serial, const std::string& device) {
     store(simulation_->keeper, token_);
 }
 
-// Somebody else may keep step by now: a new program on the same port.
+// Another program on the same port may keep step by now.
 void Clock::leaveStep() {
     uint64_t mine = token_;
     if (mine)

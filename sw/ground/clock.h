@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// clock: the time that an engine lives by: the machine's, or that of a simulated modem, so that a
-// slow machine makes a mission slow and no time-out early. A simulator names its file of counters
-// (sim_status.h) to the programs it starts in the environment variable XBEEAT_CLOCK.
+// clock: an engine's time: the machine's, or a simulated modem's, so that a slow machine makes a
+// mission slow and no time-out early. A simulator gives the programs that it starts the name of its
+// counters' file (sim_status.h) in the environment variable XBEEAT_CLOCK.
 
 #ifndef GROUND_CLOCK_H
 #define GROUND_CLOCK_H
@@ -18,9 +18,9 @@ namespace XBeeAT {
 
 class Clock {
 public:
-    // Lives by the file that XBEEAT_CLOCK names, or else by the machine.
+    // Uses the file that XBEEAT_CLOCK names, or else the machine's clock.
     Clock();
-    // Lives by this file; an empty name is the machine. Throws std::system_error.
+    // Uses this file; an empty name is the machine's clock. Throws std::system_error.
     explicit Clock(const std::string& file);
     ~Clock();
     Clock(const Clock&) = delete;
@@ -28,15 +28,15 @@ public:
 
     static constexpr uint32_t forever = 0xFFFFFFFFu;
     uint32_t nowUs() const; // wraps around
-    // Works as poll does: returns when something is ready or `us` have passed by this clock.
+    // Works as poll does: returns when a descriptor is ready or `us` have passed by this clock.
     int wait(pollfd* fds, nfds_t count, uint32_t us);
 
-    // Makes simulated time wait for this thread from now on: it stands still except during `wait`,
-    // and until all has been read that `serial` was given. Has no effect by the machine's clock, or
-    // if the simulator's modem is not on `device`.
+    // From now on simulated time waits for this thread: it stands still except during `wait`, and
+    // until all that `serial` was given has been read. Has no effect with the machine's clock, or
+    // where the simulator's modem is not on `device`.
     void keepStep(int serial, const std::string& device);
     void leaveStep();
-    // Count the bytes that went through `serial`.
+    // Count the bytes read from and written to `serial`.
     void hasRead(size_t bytes);
     void hasWritten(size_t bytes);
 

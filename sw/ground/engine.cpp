@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// engine: what programs call: connect, listen, statistics.
+// engine: the calls of programs: connect, listen, statistics.
 
 #include "engine.h"
 
@@ -38,7 +38,7 @@ bool makePair(int ends[2]) {
     return true;
 }
 
-// Says whether the program has closed its end, and left nothing to be read.
+// Returns whether the program has closed its end and left no bytes to read.
 bool hasLeft(int fd) {
     pollfd end{fd, POLLRDHUP, 0};
     char byte;
@@ -52,7 +52,7 @@ std::shared_ptr<Engine> Engine::get(const Settings& settings, const Log& log) {
     auto& engines = registry();
     for (auto it = engines.begin(); it != engines.end();)
         it = it->second.expired() ? engines.erase(it) : std::next(it);
-    // A program that has a key does not talk in the clear because another was here before.
+    // A program with a key does not talk in the clear because another program was here before.
     auto shared = [&](std::shared_ptr<Engine> engine) {
         std::lock_guard<std::mutex> inner(engine->mutex_);
         if (engine->settings_.keys != settings.keys)
@@ -119,7 +119,7 @@ void Engine::wake() {
 }
 
 // Returns a channel for a program, `wanted` or (-1) any: a free one, else that of the program that
-// has been silent longest, if that is so long that it is to make room; -1 if there is none.
+// has been silent longest, if that is long enough to make room. -1 if there is none.
 int Engine::freeChannel(int wanted, U32 now) {
     U32 longest = settings_.idleMs ? static_cast<U32>(settings_.idleMs) * 1000 - 1 : 0xFFFFFFFFu;
     int idlest = -1;
@@ -144,8 +144,7 @@ int Engine::freeChannel(int wanted, U32 now) {
     return idlest;
 }
 
-// Gives the programs that wait a channel, in their order; one that has left, or waited for too
-// long, goes without.
+// Gives waiting programs a channel, in their order. One that has left or waited too long gets none.
 void Engine::placePrograms(U32 now) {
     const U32 patienceUs = static_cast<U32>(settings_.waitMs) * 1000;
     for (size_t i = 0; i < waiting_.size();) {
@@ -225,7 +224,7 @@ int Engine::accept() {
     int ends[2];
     if (channel < 0)
         return -1;
-    if (!makePair(ends)) { // nobody would answer the UAV
+    if (!makePair(ends)) { // nobody answers the UAV
         log_(0, std::string("the UAV calls, and no socket can be made: ") + std::strerror(errno));
         end(channel, 1, "is refused");
         wake();

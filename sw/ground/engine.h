@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// engine: one serial port with a modem on it, set up by AT commands, and the link layer over it.
-// One thread an engine; engines are shared by all communicators of the process that name the same
-// device.
+// engine: one serial port with a modem, which it sets up by AT commands, and the link layer over
+// it. An engine has one thread. All communicators of the process that name one device share its
+// engine.
 
 #ifndef GROUND_ENGINE_H
 #define GROUND_ENGINE_H
@@ -29,8 +29,8 @@ constexpr int ownChannels = 3; // 0..2 are opened by the ground, 3 by the UAV
 
 class Engine {
 public:
-    // The engine of a device: the one that is there, or a new one. Throws std::system_error if the
-    // device cannot be opened. An empty device means the only one that is open.
+    // Returns the device's engine, existing or new. Throws std::system_error if the device cannot
+    // be opened. An empty device means the only one that is open.
     static std::shared_ptr<Engine> get(const Settings& settings, const Log& log);
 
     ~Engine();
@@ -38,19 +38,19 @@ public:
     Engine& operator=(const Engine&) = delete;
 
     // Opens a connection to the peer, on a channel of 0..2 or (-1) any one. Returns the program's
-    // end of it, a socket; -1 if there is no descriptor for it. The peer speaks as soon as the link
-    // is up and a channel is free: programs wait their turn. A port that was lost is opened again.
-    // The socket ends if there is no modem, or after Settings::waitMs without a channel.
+    // end of it, a socket; -1 where no descriptor is left. The peer speaks once the link is up and
+    // a channel is free; programs wait their turn. A lost port is opened again. The socket ends if
+    // there is no modem, or after Settings::waitMs without a channel.
     int connect(int channel);
-    // The same for a program that has a socket, which the engine owns from now on. `name` is for
-    // the log.
+    // The same for a program with a socket, which the engine owns from now on. `name` is for the
+    // log.
     void connect(int socket, const std::string& name);
     size_t waiting() const; // programs without a channel
-    // The peer may open connections: each makes the returned descriptor readable, also after the
-    // port was lost and found again. -1: taken already.
+    // Lets the peer open connections. Each makes the returned descriptor readable, also after the
+    // port was lost and found again. -1: another has called this.
     int listen();
-    // Takes a connection that the peer opened: by a new socket, -1 if there is none; by one that
-    // the engine owns from now on; or not at all.
+    // Takes a connection that the peer opened: by a new socket (-1 if there is none), by a socket
+    // that the engine owns from now on, or not at all.
     int accept();
     void accept(int socket, const std::string& name);
     void refuse();
@@ -68,7 +68,7 @@ private:
     void loop(std::unique_lock<std::mutex>& lock);
     bool downTooLong(U32 now);
     void fail(const std::string& text);
-    // Waits as ModemSetup::Wait does; negative: the engine is to stop, or the port is gone.
+    // Waits as ModemSetup::Wait does; negative: the engine must stop, or the port is lost.
     int waitMs(int ms, bool forBytes);
     bool isWanted() const;
     void readSerial(U32 now);
@@ -101,25 +101,25 @@ private:
     static void onWritable(void* context);
 
     const std::string device_;
-    Settings settings_; // what the next set-up takes
+    Settings settings_; // for the next set-up
     Log log_;
     Clock clock_;
     SerialPort serial_{clock_};
     int wakePipe_[2] = {-1, -1}, acceptPipe_[2] = {-1, -1};
-    // failed_: the port is lost, or no modem answered; complained_: and that was said as an error.
+    // failed_: the port is lost, or no modem answered; complained_: that was logged as an error.
     bool stop_ = false, listening_ = false, failed_ = false, complained_ = false;
-    int nextChannel_ = 0; // the first that `connect` looks at
+    int nextChannel_ = 0; // where `connect` begins to search
     int turn_ = 0;        // the channel whose program sends next
-    unsigned full_ = 0;   // a bit a channel: the link has no room for its message, it is not read
-    unsigned lost_ = 0;   // calls of programs that have left, which may not have arrived
+    unsigned full_ = 0;   // a bit a channel: the link has no room for its message
+    unsigned lost_ = 0;   // unconfirmed calls of programs that have left
     Stream streams_[LINK_CHANNELS];
     std::deque<Waiting> waiting_;
     std::unique_ptr<Link> link_;
-    std::vector<U8> serialOut_; // of a frame, not yet taken by the port
+    std::vector<U8> serialOut_; // the frame's bytes that the port has not taken yet
     FramePacer pacer_;
-    U32 upAt_ = 0, patienceUs_ = 0; // when the link was up last; how long it may be down
+    U32 upAt_ = 0, patienceUs_ = 0; // when the link was last up; how long it may be down
     mutable std::mutex mutex_;
-    std::condition_variable changed_; // stop_, listening_, a stream is wanted
+    std::condition_variable changed_; // of stop_, listening_, requests for streams
     std::thread thread_;
 };
 

@@ -18,7 +18,7 @@ namespace XBeeAT {
 namespace {
 
 constexpr std::chrono::seconds retryEvery{5}; // while only a listener waits for the modem
-constexpr U32 lookUs = 50000;   // between two looks for a channel, while programs wait for one
+constexpr U32 lookUs = 50000;   // interval of looking for a channel while programs wait
 constexpr U32 briefBytes = 128; // of a message that one fragment takes, its head compressed
 
 } // namespace
@@ -43,7 +43,7 @@ int Engine::onMessage(void* context, int channel, const U8* data, U32 size) {
     Stream& s = e.streams_[channel];
     U32 now = e.clock_.nowUs();
     bool isWanted = s.is(Stream::State::Open) || s.is(Stream::State::Called);
-    // The link delivers in order: to hold a message back would hold all other programs' back.
+    // The link delivers in order, so a message held back would hold all other programs' back.
     if (isWanted && !s.give(data, size, now))
         e.end(channel, 0,
               "does not read: " + std::to_string(Stream::mostUnread) + " bytes wait for it");
@@ -96,7 +96,7 @@ void Engine::onWritable(void* context) {
 // ---- the modem's life ----
 
 int Engine::waitMs(int ms, bool forBytes) {
-    // The wait ends if the port is gone, too: where its simulator has ended, time stands still.
+    // The wait also ends when the port is lost: where its simulator has ended, time stands still.
     pollfd fds[] = {{wakePipe_[0], POLLIN, 0},
                     {serial_.fd(), static_cast<short>(forBytes ? POLLIN : 0), 0}};
     const U32 begin = clock_.nowUs(), us = static_cast<U32>(ms) * 1000;
@@ -117,7 +117,7 @@ int Engine::waitMs(int ms, bool forBytes) {
     }
 }
 
-// Ends all connections, since the port or the modem is lost; those that wait for one, too.
+// Ends all connections and those that wait for one, since the port or the modem is lost.
 void Engine::fail(const std::string& text) {
     log_(complained_ ? 1 : 0, text);
     complained_ = failed_ = true;
@@ -130,7 +130,7 @@ void Engine::fail(const std::string& text) {
     reportLost();
 }
 
-// Returns why the modem cannot be used; empty: it is ready.
+// Returns why the modem cannot be used; empty: it can.
 std::string Engine::prepareModem(const Settings& settings) {
     const U32 begin = clock_.nowUs();
     ModemSetup setup(serial_, settings, log_,
@@ -152,8 +152,8 @@ std::string Engine::prepareModem(const Settings& settings) {
     return "";
 }
 
-// Flies again and again: a lost port or a modem that does not answer is tried again for a program
-// that connects or listens.
+// Runs the link again and again: a lost port or a silent modem is tried again for a program that
+// connects or listens.
 void Engine::run() {
     std::unique_lock<std::mutex> lock(mutex_);
     while (!stop_) {
@@ -173,8 +173,8 @@ void Engine::waitForReason(std::unique_lock<std::mutex>& lock) {
 }
 
 // Runs the link from an open port to a lost one. A modem that was reset in flight has its own
-// settings again (nothing is written to its memory). It looks like a peer that is silent: so after
-// a while the modem is set up once more, and less and less often while nothing changes.
+// settings again, since nothing is written to its memory. It looks like a silent peer. So the modem
+// is set up again after a while, less and less often while nothing changes.
 void Engine::fly(std::unique_lock<std::mutex>& lock) {
     const Settings settings = settings_;
     const U32 down = static_cast<U32>(settings.downMs) * 1000;
@@ -185,7 +185,7 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
     } catch (const std::system_error& e) {
         return fail(e.what());
     }
-    // Keeps step: a simulator waits for this thread as long as it flies.
+    // Keeps step: a simulator waits for this thread while it runs.
     struct Step {
         Step(Clock& c, int serial, const std::string& device) : clock(c) {
             clock.keepStep(serial, device);
@@ -287,9 +287,9 @@ bool Engine::sendMessage(int channel, U32 now) {
     return status == LINK_OK;
 }
 
-// Sends what the programs have written. They take turns, a message each, so that one that floods
-// leaves room for the others. While one waits for room the others send only brief ones, which the
-// link has a reserve for.
+// Sends what the programs have written. They take turns, a message each, so that a flood leaves
+// room for others. While one waits for room the others send only short ones, for which the link has
+// a reserve.
 void Engine::sendMessages(U32 now) {
     for (int idle = 0, channel = turn_; idle < LINK_CHANNELS; ++idle) {
         if (!full_)
@@ -321,7 +321,7 @@ void Engine::openWanted(U32 now) {
             streams_[channel].open(now);
 }
 
-// Logs the calls of programs that have left: nobody else is there to be told.
+// Logs the calls of programs that have left: nobody else can be told.
 void Engine::reportLost() {
     if (lost_)
         log_(0, "calls of programs that have left, and may not have reached the UAV: " +
@@ -336,7 +336,7 @@ U32 Engine::beat(U32 now) {
     return wait;
 }
 
-// Moves bytes until the engine is to stop, has failed, or the link has been down for too long.
+// Moves bytes until the engine must stop, has failed, or the link has been down for too long.
 void Engine::loop(std::unique_lock<std::mutex>& lock) {
     while (!stop_ && !failed_) {
         U32 now = clock_.nowUs();

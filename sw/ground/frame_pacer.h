@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// frame_pacer: frames on their way to the modem's serial port, with the silence that a short one
-// needs.
+// frame_pacer: hands frames to the modem's serial port, with the silence that a short one needs.
 //
 // The modem sends a packet off at its longest, or after a silence of three characters (RO). So a
-// shorter frame is followed by a silence of four: else packets would cut all later frames in two,
+// silence of four follows a shorter frame. Without it packets would cut all later frames in two,
 // and each loss would cost two. One frame may wait for the silence to end, so that the line does
 // not rest longer.
 
@@ -19,18 +18,18 @@ namespace XBeeAT {
 // Times in microseconds, 32 bits that may wrap.
 class FramePacer {
 public:
-    // `longest`: bytes of a frame that the modem sends off by itself.
+    // `longest`: bytes of a frame that the modem sends off without a silence.
     FramePacer(double characterUs, uint32_t longest)
         : characterUs_(characterUs), longest_(longest) {}
 
-    // False: one waits already.
+    // Returns false where a frame waits already.
     bool offer(const uint8_t* frame, uint32_t size, uint32_t now) {
         if (!waiting_.empty() || before(now + characters(longest_), lineFree_))
             return false;
         waiting_.assign(frame, frame + size);
         return true;
     }
-    // The frame that is to be written now; empty: none.
+    // Returns the frame to be written now; empty: none.
     std::vector<uint8_t> due(uint32_t now) {
         std::vector<uint8_t> frame;
         if (waiting_.empty() || before(now, quietUntil_))

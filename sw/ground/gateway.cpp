@@ -4,7 +4,7 @@
 // this machine's TCP port, several at a time, and the UAV reaches a server here. It links to no
 // Ice.
 //
-// It finds the sockets; the engine moves the bytes.
+// It handles the sockets; the engine moves the bytes.
 
 #include "engine.h"
 
@@ -30,7 +30,7 @@ using std::chrono::seconds;
 volatile sig_atomic_t stopSignal = 0;
 
 constexpr size_t mostWaiting = 256;   // clients without a channel
-constexpr seconds stationPatience{5}; // of the UAV, until the station has accepted
+constexpr seconds stationPatience{5}; // how long the UAV waits for the station to accept
 
 struct Options {
     XBeeAT::Settings serial;
@@ -67,8 +67,8 @@ Address resolve(const std::string& text) {
     return address;
 }
 
-// Small buffers, so that back-pressure reaches the program. A peer that has vanished without a word
-// is noticed after so many seconds: by keep-alive, or by what it does not acknowledge.
+// Small buffers let back-pressure reach the program. Keep-alive or missing acknowledgements reveal
+// after these seconds a peer that has vanished.
 void prepare(int fd, int vanished) {
     auto set = [fd](int level, int name, int value) {
         setsockopt(fd, level, name, &value, sizeof value);
@@ -167,7 +167,7 @@ private:
             engine_->connect(fd, "client " + std::to_string(++count_));
         }
     }
-    // Notes that descriptors are used up: the listener stays readable without them.
+    // Records that descriptors are used up: the listener stays readable without them.
     void noteFull(int error) {
         if (error == EAGAIN || error == EINTR || error == ECONNABORTED)
             return;
@@ -213,7 +213,7 @@ private:
     unsigned count_ = 0;
 };
 
-// Reads the modem's key from a file: every user of the machine can read the command line.
+// Reads the modem's key from a file, since every user of the machine can read the command line.
 std::string readModemKey(const std::string& path) {
     std::string key = XBeeAT::readSecret(path);
     key.erase(key.find_last_not_of(" \n") + 1);

@@ -50,7 +50,7 @@ LinkKey keyOf(const std::string& digits) {
     return key;
 }
 
-// Returns the address that a word gives; negative: it gives none.
+// Returns the address in a word; negative: there is none.
 int addressOf(const std::string& word) {
     const bool isNumber = word.rfind("0x", 0) == 0 && word.size() > 2 && word.size() <= 6 &&
                           word.find_first_not_of(hexadecimal, 2) == std::string::npos;

@@ -2,7 +2,7 @@
 //
 // key_file: reads the keys of the radio link from a file that only its owner may read. A line is
 //
-//   [ADDRESS] KEY [NEXT]      KEY: 32 hexadecimal digits; NEXT: the one that is to follow it
+//   [ADDRESS] KEY [NEXT]      KEY: 32 hexadecimal digits; NEXT: the key that follows it
 //
 // The line without an address (0x0001) is for every vehicle that has none of its own; # begins a
 // comment. No key is ever printed.
@@ -20,14 +20,14 @@ namespace XBeeAT {
 using LinkKey = std::array<unsigned char, 16>;
 using LinkKeys = std::vector<LinkKey>; // at most two, the next one first; none: in the clear
 
-// Returns what a secret's file says, or a pipe (/dev/fd/3). Throws std::runtime_error, which says
-// what to do, if it cannot be read, belongs to another user, or is open to others.
+// Returns the content of a secret's file or pipe (/dev/fd/3). Throws std::runtime_error, with
+// advice, if it cannot be read, belongs to another user, or is open to others.
 std::string readSecret(const std::string& path);
 
 class KeyFile {
 public:
-    KeyFile() = default; // has no keys: everybody is talked to in the clear
-    // Throws std::runtime_error, which says what to do, also where a line makes no sense.
+    KeyFile() = default; // has no keys: every vehicle is talked to in the clear
+    // Throws std::runtime_error, with advice, also where a line makes no sense.
     explicit KeyFile(const std::string& path);
 
     // Returns the keys of a vehicle; throws std::runtime_error if the file has none for it.

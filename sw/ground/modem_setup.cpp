@@ -42,8 +42,8 @@ bool ModemSetup::pause(int ms) {
     return !stopped_;
 }
 
-// Returns which of `words` the reply ends in; "": none came in time. What was received by radio
-// drains out before a reply: its bytes may be carriage returns.
+// Returns which of `words` the reply ends in; "": none came in time. Bytes received by radio drain
+// out before a reply, and may contain carriage returns.
 std::string ModemSetup::readReply(int timeoutMs, std::initializer_list<std::string> words) {
     std::string reply;
     for (int leftUs = timeoutMs * 1000;;) {
@@ -66,7 +66,7 @@ std::string ModemSetup::readReply(int timeoutMs, std::initializer_list<std::stri
     return "";
 }
 
-// The wait for an answer that does not come is the silence before the next +++ already.
+// A wait in vain for an answer is the silence before the next +++ already.
 bool ModemSetup::enterCommandMode(int guardMs) {
     int guard = guardMs + guardMs / 8 + 5;
     if (silentMs_ < guard && !pause(guard - silentMs_))
@@ -84,7 +84,7 @@ std::string ModemSetup::ask(const std::string& text, std::initializer_list<std::
     if (serial_.write(line.data(), line.size()) != static_cast<ssize_t>(line.size()))
         return "";
     std::string reply = readReply(replyMs, words);
-    // A key is a secret: its command is logged without it.
+    // A key is secret: its command is not logged.
     log_(2, "AT" + (text.compare(0, 2, "KY") ? text : text.substr(0, 2)) + ": " + reply);
     return reply;
 }
@@ -100,9 +100,9 @@ bool ModemSetup::command(const std::string& text) {
     return false;
 }
 
-// Tries the target rate first, since a modem that this has set up before is there; then the
-// factory's; then these with a longer guard time, because a modem keeps what it was once told
-// (ATGT), and a simulated one may be slower than the clock; then all rates. Times: docs/modem.md.
+// Tries the target rate first, where a modem is that this has set up before, then the factory's.
+// Then it tries both with a longer guard time, because a modem keeps its ATGT and a simulated one
+// may be slower than the clock, then all rates. Times: docs/modem.md.
 bool ModemSetup::find() {
     const int guard = settings_.guardMs, longer = std::min(3 * guard, mostGuard);
     std::vector<std::pair<int, int>> candidates = {{settings_.baud, guard},

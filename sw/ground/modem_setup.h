@@ -13,8 +13,8 @@ namespace XBeeAT {
 
 class ModemSetup {
 public:
-    // Pauses, or (`forBytes`) until the port has something to read; returns the microseconds that
-    // have passed, negative: give up.
+    // Pauses, or (`forBytes`) until the port has something to read. Returns the microseconds that
+    // have passed; negative: give up.
     using Wait = std::function<int(int ms, bool forBytes)>;
 
     ModemSetup(SerialPort& serial, const Settings& settings, const Log& log, Wait wait)
@@ -40,7 +40,7 @@ private:
     Wait wait_;
     std::string trouble_;
     bool stopped_ = false, encrypts_ = false;
-    int silentMs_ = 0; // for so long nothing was sent
+    int silentMs_ = 0; // how long nothing was sent
 };
 
 } // namespace XBeeAT

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// plugin_connector: how Ice opens connections and accepts those of the UAV.
+// plugin_connector: lets Ice open connections and accept those of the UAV.
 
 #ifndef GROUND_PLUGIN_CONNECTOR_H
 #define GROUND_PLUGIN_CONNECTOR_H

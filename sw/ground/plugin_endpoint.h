@@ -58,8 +58,8 @@ public:
         callback->connectors(list);
     }
     IceInternal::AcceptorPtr acceptor(const std::string&) const override {
-        // The acceptor publishes this side's own address, where it is reached; so a proxy to the
-        // peer on the same device is not taken for an object of this process.
+        // The acceptor publishes this side's own address, so a proxy to the peer on the same device
+        // is not taken for an object of this process.
         return new Acceptor(instance_, o_,
                             with([](EndpointOptions& o) { o.serial.target = o.serial.source; }));
     }
@@ -120,10 +120,10 @@ protected:
                                                   "' in endpoint '" + endpoint + "'");
         if (option == "-d")
             o_.serial.device = argument;
-        else if (option == "-k") { // a secret: it is never printed
+        else if (option == "-k") { // a secret, never printed
             checkModemKey(argument, "an xbee-at endpoint");
             o_.serial.modemKey = argument;
-        } else if (option != "-h") // tolerated: there is no host
+        } else if (option != "-h") // accepted and ignored: there is no host
             number(option[1], argument, endpoint);
         return true;
     }

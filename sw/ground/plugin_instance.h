@@ -26,7 +26,7 @@ struct EndpointOptions {
     bool compress = false;
 };
 
-// The key itself is in no message.
+// The key is in no message.
 inline void checkModemKey(const std::string& key, const std::string& where) {
     if (key.size() > 32 || key.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
         throw Ice::EndpointParseException(
@@ -59,7 +59,7 @@ public:
     }
     const EndpointOptions& defaults() const { return defaults_; }
 
-    // A connection may be asked for while another thread destroys the communicator.
+    // A thread may ask for a connection while another destroys the communicator.
     std::shared_ptr<Engine> engine(const EndpointOptions& o) {
         std::lock_guard<std::mutex> lock(mutex_);
         if (!communicator_)
@@ -93,7 +93,7 @@ public:
     }
 
 private:
-    std::mutex mutex_; // of communicator_ and engine_
+    std::mutex mutex_; // guards communicator_ and engine_
     Ice::CommunicatorPtr communicator_;
     EndpointOptions defaults_;
     KeyFile keys_;

@@ -17,7 +17,7 @@ namespace XBeeAT {
 
 namespace {
 
-// The process that has locked a file; the kernel forgets the lock with the process.
+// Returns the process that has locked a file; the kernel frees the lock with the process.
 int userOf(int fd) {
     struct flock lock{};
     lock.l_type = F_WRLCK;
@@ -46,8 +46,7 @@ void SerialPort::open(const std::string& device) {
         why = ": process " + std::to_string(userOf(fd_)) + " uses it";
     }
     if (!error) {
-        // Terminal programs, too, are kept out; a pty would stay locked when this process is
-        // killed.
+        // Terminal programs are kept out, too; a pty would stay locked when this process is killed.
         if (!isPty(fd_))
             ioctl(fd_, TIOCEXCL);
         return;
@@ -77,8 +76,7 @@ ssize_t SerialPort::write(const void* bytes, size_t size) {
     return count;
 }
 
-// Drops what has come by reading it, not by TCFLSH: a byte that was given must be read, for those
-// who count (clock.h).
+// Drops arrived bytes by reading them, not by TCFLSH: clock.h counts consumed bytes.
 void SerialPort::drop() {
     char bytes[256];
     while (read(bytes, sizeof bytes) > 0)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// serial_port: the modem's serial port; what goes through it is told to the clock.
+// serial_port: the modem's serial port; the clock counts its bytes.
 
 #ifndef GROUND_SERIAL_PORT_H
 #define GROUND_SERIAL_PORT_H
@@ -19,15 +19,15 @@ public:
     SerialPort(const SerialPort&) = delete;
     SerialPort& operator=(const SerialPort&) = delete;
 
-    // Throws std::system_error: also where it is no terminal, and where another process has opened
-    // it in this way.
+    // Throws std::system_error, also where it is no terminal or another process has opened it in
+    // this way.
     void open(const std::string& device);
     void close();
     int fd() const { return fd_; }
-    // Work as the system's read and write do; they never wait.
+    // Work as the system's read and write do; never wait.
     ssize_t read(void* bytes, size_t room);
     ssize_t write(const void* bytes, size_t size);
-    void drop(); // throws away what has come by now
+    void drop(); // throws away the bytes that have arrived
     // Sets the rate, in baud.
     void setSpeed(int baud);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// settings: what an engine is told about its serial port and its modem.
+// settings: an engine's settings of its serial port and its modem.
 
 #ifndef GROUND_SETTINGS_H
 #define GROUND_SETTINGS_H
@@ -22,13 +22,13 @@ struct Settings {
     int pan = 0x3332;     // ID
     LinkKeys keys;        // of the link's sessions
     std::string modemKey; // AES, up to 32 hexadecimal digits; empty: the modem's setting stays
-    int guardMs = 1000;   // of the modem as it is
+    int guardMs = 1000;   // the modem's present guard time
     bool setUp = true;    // by AT commands
-    int downMs = 15000;   // without a link: set the modem up again, it may have been reset
-    int idleMs = 60000;   // so long silent, a program makes room for one that waits; 0: never
-    int waitMs = 0;       // so long a program waits for a channel; 0: as long as it likes
+    int downMs = 15000;   // without a link, until the modem is set up again
+    int idleMs = 60000;   // a program silent this long makes room for one that waits; 0: never
+    int waitMs = 0;       // how long a program waits for a channel; 0: without limit
 
-    // Returns a random number for sessions; a test may have its own source.
+    // Returns a random number for sessions; a test may set its own source.
     std::function<unsigned()> random = [] { return std::random_device()(); };
 
     double characterUs() const { return 1e7 / (baud == 115200 ? 111111 : baud); }

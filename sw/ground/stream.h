@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// stream: one connection of a program: a socket, the Ice messages on it, and where it stands
-// between program and link. It knows nothing of Ice but the 14 bytes before each message and a
-// request's number.
+// stream: one connection of a program: its socket, the Ice messages on it, and its state between
+// program and link. Of Ice it knows only the 14 bytes before each message and a request's number.
 
 #ifndef GROUND_STREAM_H
 #define GROUND_STREAM_H
@@ -33,42 +32,43 @@ public:
     Stream& operator=(const Stream&) = delete;
 
     bool is(State state) const { return state_ == state; }
-    // Takes the program's socket (and closes it in the end), which must not block. `name`: in log
-    // lines. A program that was called is a server, and its first ValidateConnection is its
+    // Takes the program's socket (and closes it in the end), which must not block. `name` is for
+    // log lines. A program that was called is a server, and its first ValidateConnection is its
     // greeting.
     void want(int fd, const std::string& name);
     void call(); // by the peer
     void accept(int fd, const std::string& name);
     void open(U32 nowUs);
-    // The link's channel is closed: the program may still take what came, for ten seconds. Returns
-    // the calls that were not sent, if the program is gone and cannot be told.
+    // The link's channel is closed; the program may take the rest for ten seconds. Returns the
+    // number of calls that were not sent, if the program has gone and cannot be told.
     unsigned leave(U32 nowUs);
     void close(State to = State::Closed);
     const std::string& name() const { return name_; }
     int fd() const { return fd_; }
 
-    // Says what poll is to look for; fd -1 is nothing. `reads`: the link has room for messages.
+    // Tells which events poll must wait for; fd -1 is none. `reads`: the link has room for
+    // messages.
     pollfd interest(bool reads) const;
-    void read(U32 nowUs);                 // from the program, a buffer at most
+    void read(U32 nowUs);                 // from the program, at most a buffer
     bool ended() const { return ended_; } // the program sends no more
     enum class Next { None, Message, Senseless };
-    // Finds the next whole message, at most `longest` bytes. Heartbeats are left out, because the
-    // link itself knows whether the peer is there.
+    // Finds the next whole message, at most `longest` bytes. Heartbeats are left out: the link
+    // knows whether the peer is there.
     Next next(U32 longest);
-    bool isCall() const; // the message is one
+    bool isCall() const; // whether the message is a call
     const U8* data() const { return out_.data(); }
-    U32 size() const { return messageSize(); } // also of one that makes no sense
-    void taken(U32 nowUs);                     // the link has it
+    U32 size() const { return messageSize(); } // also of a message that makes no sense
+    void taken(U32 nowUs);                     // the link has taken the message
 
-    // Hands the program a message. False: it has left 64 KiB unread.
+    // Hands the program a message. False: the program has left 64 KiB unread.
     bool give(const U8* message, U32 size, U32 nowUs);
     void write(U32 nowUs);
-    // Sends a heartbeat if the program waits for an answer and has heard nothing for a while: as a
-    // server that runs long would send it, but without air. One also follows what a program has
-    // sent that waits for nothing, a heartbeat of its own too: Ice 3.8 cuts connections that are
-    // silent. Ice 3.7 is silent itself while idle, and hears none, so that it can close its idle
-    // connections. Ends a leaving that takes too long.
-    // Returns when to come again, in microseconds.
+    // Sends a heartbeat if the program waits for an answer and has heard nothing for a while, as a
+    // busy server would, but without air. One also follows other messages of the program, its own
+    // heartbeats included, since Ice 3.8 cuts silent connections. Ice 3.7 is silent itself while
+    // idle, and hears none, so that it can close its idle connections. Ends a leaving that takes
+    // too long.
+    // Returns when to call again, in microseconds.
     U32 beat(U32 nowUs);
     // Returns how long the program has neither sent a whole message nor taken a byte; 0: it waits
     // for an answer.
@@ -87,11 +87,11 @@ private:
     std::vector<U8> out_; // from the program: less than a message and a buffer
     std::vector<U8> in_;  // to the program, not yet written
     bool ended_ = false, isServer_ = false, greeted_ = false;
-    bool owesSign_ = false;         // the program has sent something since it heard something, ...
-    U32 owesSince_ = 0;             // ... then
+    bool owesSign_ = false;         // the program has sent something since it last heard something,
+    U32 owesSince_ = 0;             // since then
     unsigned pending_ = 0;          // two-way requests of the program that are not answered yet
     U32 heardAt_ = 0;               // when it got its last message
-    U32 activeAt_ = 0, leftAt_ = 0; // when it last sent or took something; when it began to leave
+    U32 activeAt_ = 0, leftAt_ = 0; // when it last sent or took something; when its leaving began
 };
 
 } // namespace XBeeAT

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """change_key: gives a vehicle a new key over the link, and the key file with it.
 
-Whatever is cut off and whenever, vehicle and file have a key in common, and the next run goes on where this one
-ended: the file has both keys before the vehicle hears of the new one; the vehicle has both until a session has come
-up under the new one; the file loses the old one behind that.
+Wherever this is cut off, vehicle and file have a key in common, and the next run goes on from there. The file has both
+keys before the vehicle gets the new one; the vehicle has both until a session has come up under the new one; then the
+file loses the old one.
 """
 
 import argparse
@@ -19,7 +19,7 @@ import plugged
 
 
 def write(path, lines):
-    """The file with these lines, whole or not at all, for its owner alone."""
+    """Writes the file with these lines, whole or not at all, for its owner alone."""
     beside = path + ".new"
     with contextlib.suppress(FileNotFoundError):
         os.remove(beside)
@@ -31,7 +31,8 @@ def write(path, lines):
 
 
 def keys_of(lines, address):
-    """The line of the vehicle and its words, KEY [NEXT]; without one of its own, that of all."""
+    """Returns the vehicle's line and its words, KEY [NEXT]; without one of its own, the line for
+    all."""
     found = None
     for number, line in enumerate(lines):
         words = line.split("#")[0].split()
@@ -46,7 +47,7 @@ def keys_of(lines, address):
 
 
 def talk(args, key_file, what):
-    """Calls `what` with the vehicle's KeyRing, in a session of its own."""
+    """Calls `what` with the vehicle's KeyRing, in its own session."""
     communicator = plugged.initialize({"Ice.Default.InvocationTimeout": str(1000 * args.patience)}, args.plugin, args.guard,
                                       key_file)
     try:

@@ -27,7 +27,7 @@ from PIL import Image, ImageDraw
 
 
 class Air:
-    """The simulator's counters (sw/ground/sim_status.h); on real hardware there are none."""
+    """The simulator's counters (sw/ground/sim_status.h); real hardware has none."""
 
     FORMAT = struct.Struct("<8s7Q")
 
@@ -51,7 +51,7 @@ RESULTS = ("after.png", "report.md", "report.json", "calls.jsonl")
 
 @contextlib.contextmanager
 def whole(path):
-    """Where to write a file that takes the name `path` when it is complete."""
+    """Returns a temporary name for a file that takes the name `path` when it is complete."""
     beside = path + ".new"
     try:
         yield beside
@@ -62,7 +62,7 @@ def whole(path):
 
 
 class Log:
-    """One line a call, for people, and rows for the report."""
+    """Writes a line a call for people, and rows for the report."""
 
     def __init__(self, air, out, build):
         self.air, self.out, self.build = air, out, build  # folders: of the results, of the build
@@ -85,7 +85,7 @@ class Log:
             self.live.flush()
 
     def note(self, text):
-        """What is no call, on the terminal and on the page."""
+        """Prints a line that is no call, on the terminal and on the page."""
         self.say(text)
         self.follow({"who": "ground", "what": text})
 
@@ -96,7 +96,7 @@ class Log:
             self.say("no answer to %s for %d s" % (what, seconds))
 
     def call(self, who, what, function):
-        """Runs the call; its result, with the air it took written down."""
+        """Runs the call and returns its result; records the bytes on the air."""
         before, wall = self.air.read(), time.monotonic()
         answered = threading.Event()
         threading.Thread(target=self.remind, args=(what, answered), daemon=True).start()
@@ -179,7 +179,7 @@ def make_station(Autopilot, log):
 
 
 def draw(frame, result, path):
-    """The frame at twice its size, a circle a corner: the stronger, the larger."""
+    """Returns the frame at twice its size with a circle a corner, larger for stronger corners."""
     scale = 2
     picture = Image.open(frame).convert("RGB")
     picture = picture.resize((picture.width * scale, picture.height * scale), Image.NEAREST)
@@ -195,7 +195,7 @@ def draw(frame, result, path):
 
 
 def check_against_reference(args, result):
-    """The same corners, computed by a C++ program from the same frame."""
+    """Returns the same corners, computed by a C++ program from the same frame."""
     out = subprocess.run([args.reference, args.frame, str(args.threshold)],
                          check=True, stdout=subprocess.PIPE).stdout
     want = json.loads(out)
@@ -233,7 +233,7 @@ def report(args, log, result, station, air):
 
 
 def part_of(folder):
-    """The module FOLDER/ground.py."""
+    """Imports FOLDER/ground.py."""
     path = os.path.join(folder, "ground.py")
     if not os.path.exists(path):
         raise RuntimeError("the core in %s has no part in a mission: there is no ground.py" % folder)
@@ -244,14 +244,14 @@ def part_of(folder):
 
 
 def differences(chip):
-    """The blocks whose registers are others in the chip than in the firmware, in words."""
+    """Lists the blocks whose registers differ between chip and firmware."""
     return ["%s: its registers have the hash 0x%08X in the chip, 0x%08X in the firmware"
             % (c.block, c.chip & 0xFFFFFFFF, c.firmware & 0xFFFFFFFF)
             for c in chip.contracts() if c.chip != c.firmware]
 
 
 def explain(communicator, args, failure):
-    """Why the UAV has no such object: a core that differs from what the firmware was built for is not served."""
+    """Says why the UAV has no such object: a core that differs from the firmware's contract is not served."""
     import Hw  # made by loadSlice
     text = "the UAV has no object '%s'" % failure.id.name
     with contextlib.suppress(Ice.Exception):  # a UAV without the object chip
@@ -313,7 +313,7 @@ def fly(args, communicator):
         log.note("the result equals the C++ reference, bit by bit")
         if result.found < ENOUGH:
             log.note("%d corners leave much of the core untried: make ip-test IP=vision tries all of it" % result.found)
-    # A part may give back what is to be done after all of them.
+    # A part may return a function to be called after all parts.
     ends = [part.fly(log, proxy, "%d corners" % result.found) for part in parts]
     for end in filter(None, ends):
         end()

@@ -24,7 +24,7 @@ class Failed(Exception):
 
 
 def read_key(path):
-    """The first key of a file as the plugin takes it (docs/security.md)."""
+    """Returns the first key of a file, as the plugin does (docs/security.md)."""
     with open(path) as f:
         if os.fstat(f.fileno()).st_mode & 0o077:
             raise Failed("others may read '%s': chmod 600 '%s'" % (path, path))
@@ -37,7 +37,7 @@ def read_key(path):
 
 
 def read_line(port, seconds):
-    """What comes until a line has ended, or the time is over."""
+    """Returns what arrives until a line has ended or the time is over."""
     text, end = b"", time.monotonic() + seconds
     while b"\n" not in text and select.select([port], [], [], max(0, end - time.monotonic()))[0]:
         text += os.read(port, 100)

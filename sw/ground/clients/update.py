@@ -39,7 +39,7 @@ class Failed(Exception):
 
 
 def read_package(path):
-    """The object that the package is for, and its (header, image) by the offset in flash of the image."""
+    """Returns the object that the package is for, and its (header, image) by the image's offset in flash."""
     with open(path, "rb") as f:
         data = f.read()
     images, at = {}, 0
@@ -59,7 +59,8 @@ def read_package(path):
 
 
 class Clock:
-    """The vehicle's time in s and the bytes on the air to it: the simulator's (sim_status.h), else the wall clock's and none."""
+    """Returns the vehicle's time in s and the bytes on the air to it: the simulator's (sim_status.h), else the wall
+    clock's and none."""
 
     FORMAT = struct.Struct("<8s3Q")
 
@@ -75,7 +76,7 @@ class Clock:
 
 
 class Watch(threading.Thread):
-    """Calls the vehicle while others send to it, and notes the longest time that an answer took."""
+    """Calls the vehicle during an update, and records the longest time to an answer."""
 
     def __init__(self, proxy, clock):
         super().__init__(daemon=True)
@@ -89,7 +90,7 @@ class Watch(threading.Thread):
                 self.longest = max(self.longest, self.clock.read()[0] - begun)
                 self.answers += 1
             except Ice.Exception:
-                pass  # who sends says what is wrong
+                pass  # the sender reports the error
 
     def stop(self):
         self.over.set()
@@ -102,7 +103,7 @@ class Vehicle:
         self.proxy, self.patience = proxy, patience
 
     def persist(self, function):
-        """The function's result, tried again while the vehicle does not answer."""
+        """Returns the function's result; tries again while the vehicle does not answer."""
         end = time.monotonic() + self.patience
         while True:
             try:
@@ -124,7 +125,8 @@ class Vehicle:
             raise Failed(TEXT.get(str(reason), str(reason)))
 
     def wait_while(self, *phases):
-        """The status, when the vehicle is in none of these phases; why it refused, if it did."""
+        """Returns the status once the vehicle is in none of these phases, with the reason where it
+        refused."""
         while True:
             status = self.status()
             if str(status.phase) not in phases:
@@ -135,7 +137,7 @@ class Vehicle:
         return status
 
     def send(self, image, dictionary, say, clock):
-        """Sends what the vehicle does not have yet, several pieces at a time."""
+        """Sends the missing pieces, several at a time."""
         received = first = self.status().received
         begun, air = clock.read()
         on_the_way, at, shown = [], received, 0
@@ -157,7 +159,7 @@ class Vehicle:
 
 
 def update(vehicle, images, say, clock, rehearses):
-    """Brings the vehicle to the package's version, confirmed; a rehearsal sees it start and go back."""
+    """Brings the vehicle to the package's version, confirmed. A rehearsal sees it start and go back."""
     version = HEADER.unpack(next(iter(images.values()))[0])[2]
     status = vehicle.status()
     say("the vehicle runs version %d%s" % (status.running, ", on trial" if status.trial else ""))

@@ -21,15 +21,15 @@ module soc #(
 
     localparam SLOTS = MAP_SLOT_COUNT;
     localparam PORTS = MAP_NPI_PORT_COUNT;
-    // The bridge and the modem take what they read in the cycle it comes: no FIFO.
+    // The bridge and the modem take read words in the cycle they come, so they need no FIFO.
     localparam [31:0] NO_READ_FIFO = 1 << MAP_NPI_PORT_FSMC | 1 << MAP_NPI_PORT_MODEM;
     localparam [PORTS-1:0] READ_FIFO = ~NO_READ_FIFO[PORTS-1:0];
 
-    // The reset as all blocks see it: from a flip-flop, so that no path leads from the pin through
-    // their logic (which a simulator would follow whenever an input moves: 1.07 times slower).
+    // The reset of all blocks comes from a flip-flop, so no path leads from the pin through their
+    // logic (a simulator would follow it whenever an input moves: 1.07 times slower).
     wire rst, irq;
     cdc_reset u_rst (.clk_i(clk_i), .rst_async_i(rst_i), .rst_o(rst));
-    // The processor's interrupt input looks for edges: no glitch of a LUT may reach it.
+    // The processor's interrupt input sees edges, so no glitch of a LUT may reach it.
     always @(posedge clk_i) irq_o <= irq;
 
     `include "platform.vh"

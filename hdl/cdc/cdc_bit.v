@@ -2,20 +2,20 @@
 //
 // cdc_bit: two flip-flops take bits of another clock, or of a pin, into clk_i.
 //
-// Each bit arrives by itself, one to three clocks late; a level is seen for certain if it lasts for two clocks. A bus
-// therefore goes through it only in Gray code, or as bits that are independent of each other. With TOGETHER they are not:
-// routing holds their skew below the time that they rest (docs/fsmc.md).
+// Each bit arrives by itself, one to three clocks late; a level is seen for certain if it lasts for
+// two clocks. A bus goes through it only in Gray code, or as independent bits. With TOGETHER the
+// bits depend on each other: routing holds their skew below the time that they rest (docs/fsmc.md).
 // There is no reset: the output is INITIAL until two clocks have come. Constraint: at most a period of clk_i to bit_meta
 // (FROM:TO), and the whole period from bit_meta to bit_sync.
-// In proofs, and in simulation with +cdc_random, bit_meta may take what the input was a clock ago: metastability and
-// routing can do no more.
+// In proofs, and in simulation with +cdc_random, bit_meta may take the input of a clock ago:
+// metastability and routing can do no more.
 
 `default_nettype none
 
 module cdc_bit #(
     parameter             WIDTH    = 1,
     parameter             TOGETHER = 0, // n: all bits are late together, if one of the n upper ones moves; the others follow clk_i
-    parameter             EXACT    = 0, // 1: no bit is late here; cdc_skew on the way here makes them late
+    parameter             EXACT    = 0, // 1: no bit is late here; cdc_skew before it makes bits late
     parameter [WIDTH-1:0] INITIAL  = 0
 ) (
     input  wire             clk_i,

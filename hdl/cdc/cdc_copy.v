@@ -2,8 +2,9 @@
 //
 // cdc_copy: a register in clk_i follows a bus of another clock, or of pins.
 //
-// A copy is one value for all that is decided from it, but an arbitrary one while the bus moves. It is used only where a
-// synchronised flag says that the bus has rested since the clock before (cdc_bus), or where any value does no harm.
+// A copy is one value for all logic behind it, but an arbitrary one while the bus moves. It is used
+// only where a synchronised flag says that the bus has rested since the clock before (cdc_bus), or
+// where any value does no harm.
 // There is no reset. Constraint: a clock's period from the bus to the copy.
 
 `default_nettype none

@@ -2,8 +2,9 @@
 //
 // cdc_skew: models how bits that step with src_clk_i arrive in dst_clk_i; only for simulation (cdc_random.vh).
 //
-// A bit that the last edge of src_clk_i has changed, since the last one of dst_clk_i, arrives as it is or as it was, each
-// bit by itself. So a count in Gray code arrives as one of two values; one in binary may arrive as a value that it never had.
+// A bit that the last edge of src_clk_i has changed, since the last one of dst_clk_i, arrives old
+// or new, each bit independently. So a count in Gray code arrives as one of two values; a binary
+// one may arrive as a value that it never had.
 
 `default_nettype none
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// axi4_memory_proof: each read gets its beats, from its words of memory, with its id and response; each beat of a write goes to
-// its word, and the write's one answer comes behind it. Any bursts, runs of any length; what is refused writes nothing.
-// Included at the foot of axi4_memory.v, only for the prover. The port's model is axis_memory's; its parts are inside, and
-// what their proofs say is assumed of them and asserted again.
+// axi4_memory_proof: each read gets its beats, from its words of memory, with its id and response;
+// each beat of a write goes to its word, and the write's one answer comes after it. Holds for any
+// bursts and runs of any length; a refused write writes nothing. Included at the foot of
+// axi4_memory.v, only for the prover. The port's model is axis_memory's. Its parts are inside; the
+// statements of their proofs are assumed and asserted again.
 
     localparam WORD = ADDR_BITS - 3, TAG = ID_BITS + 1, ENTRY = TAG + 10;
     reg past = 1'b0;
@@ -18,7 +19,8 @@
         word_of = base + beat;
     endfunction
 
-    // ---- Reads. Any one is watched: `r_ahead` others end before it, `r_got` of its beats were given, `r_asked` words asked for.
+    // ---- Reads. Any one is watched: `r_ahead` others end before it, `r_got` of its beats were
+    // given, `r_asked` words requested.
     (* hierconn *) wire [2:0]         \u_memory.u_read.asked , \u_memory.u_read.place , \u_memory.u_read.first ,
                                       \u_memory.u_read.last , \u_memory.u_read.rest ;
     (* hierconn *) wire [1:0]         \u_memory.u_read.tag_in , \u_memory.u_read.tag_out ;
@@ -36,7 +38,8 @@
     reg [7:0]     r_len;
     reg [WORD-1:0] r_base;
     reg [9:0]     r_got, r_asked;
-    // For each place of axis_read's queue: is it the watched one's, its first beat, its burst as asked for and as acknowledged.
+    // For each place of axis_read's queue: is it the watched read's, its first beat, its requested
+    // and its acknowledged burst.
     reg [3:0]     mine;
     reg [39:0]    offsets;
     reg [4*(WORD-3)-1:0] asked_at, acked_at;
@@ -157,8 +160,9 @@
         end
     end
 
-    // ---- Writes. Of the write whose beats come: what its address said, and how many came. Any one beat is watched until the
-    // burst of its word is acknowledged, before which `w_until` others are.
+    // ---- Writes. `w_...` hold the address and the beats of the write under way. Any one beat is
+    // watched until the burst of its word is acknowledged; `w_until` others are acknowledged before
+    // it.
     (* hierconn *) wire               \u_memory.u_write.busy , \u_memory.u_write.over , \u_memory.u_write.ending ;
     (* hierconn *) wire [2:0]         \u_memory.u_write.place , \u_memory.u_write.queued , \u_memory.u_write.unacked ,
                                       \u_memory.u_write.behind , \u_memory.u_write.rest ;
@@ -169,7 +173,7 @@
     (* hierconn *) wire [TAG-1:0]     \u_memory.u_write.tag ;
     (* hierconn *) wire [4*(ADDR_BITS-6)-1:0] \u_memory.u_write.f_bursts ;
     (* anyseq *) wire w_pick;
-    reg [TAG-1:0] w_tag, e_w_tag; // of the write whose beats come; of the one whose last beat came before
+    reg [TAG-1:0] w_tag, e_w_tag; // of the write under way; of the one before
     reg [7:0]     w_len;
     reg [WORD-1:0] w_base, w_word;
     reg [9:0]     w_beat;

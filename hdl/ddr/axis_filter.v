@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// axis_filter: sends a buffer through a core with an AXI-Stream in and one out, of 8, 16, 32 or 64 bits, and puts what comes
-// out of it into another (`make new-foreign BUS=axis`).
+// axis_filter: sends a buffer through a core with an AXI-Stream in and one out, of 8, 16, 32 or 64
+// bits, and writes the core's output into another buffer (`make new-foreign BUS=axis`).
 //
-// It ends with the core's tlast; of a core that has none (LAST 0), when as many beats came out as went in. Refused: no
-// bytes, or more came out than the buffer has room for.
+// It ends with the core's tlast. Without tlast (LAST 0) it ends when as many beats came out as went
+// in. It refuses no bytes, and an output longer than the buffer.
 
 `default_nettype none
 
 module axis_filter #(
-    parameter WIDTH     = 8,   // of the core's data in both directions: 8, 16, 32, 64
+    parameter WIDTH     = 8,   // the core's data in both directions: 8, 16, 32, 64
     parameter BYTE_BITS = 11,  // of the number of bytes, 7..32
     parameter ROOM      = 1024, // bytes of the target
     parameter LAST      = 1    // 0: the core's output has no tlast
@@ -17,9 +17,9 @@ module axis_filter #(
     input  wire                 clk_i,
     input  wire                 rst_i,
     // the operation
-    input  wire                 core_rst_i, // what is under way is given up
+    input  wire                 core_rst_i, // the operation is given up
     input  wire                 start_i,
-    input  wire [31:0]          source_i,   // byte address, a multiple of 8, as the target's
+    input  wire [31:0]          source_i,   // byte address, a multiple of 8; so is the target's
     input  wire [BYTE_BITS-1:0] bytes_i,    // a multiple of WIDTH / 8, or the core looks at tkeep
     input  wire [31:0]          target_i,
     output wire                 done_o,     // high for a clock
@@ -88,7 +88,7 @@ module axis_filter #(
     reg         ends;      // and the packet's last
     reg  [63:0] out;
     reg  [7:0]  out_keep;
-    reg  [BYTE_BITS-1:0] awaited; // bytes that went in and did not come out
+    reg  [BYTE_BITS-1:0] awaited; // bytes that went in and have not come out
     wire        out_ready;
     wire        came = s_axis_tvalid_i && s_axis_tready_o;
     wire        last = LAST != 0 ? s_axis_tlast_i : awaited <= STEP;
@@ -137,7 +137,7 @@ module axis_filter #(
     assign refused_o = empty || over;
 
     axis_memory #(.BYTE_BITS(BYTE_BITS), .ROWS(0)) u_memory (
-        .clk_i(clk_i), .rst_i(rst_i), .stop_i(core_rst_i), .idle_o(idle), // not by core_rst_i: what was asked for must be taken
+        .clk_i(clk_i), .rst_i(rst_i), .stop_i(core_rst_i), .idle_o(idle), // not by core_rst_i: requested words must be taken
         .read_valid_i(reading), .read_ready_o(read_ready), .read_base_i(source_i), .read_bytes_i(bytes_i),
         .read_rows_i(16'd1), .read_stride_i(32'd0), .read_tag_i(1'b0),
         .m_axis_tvalid_o(word_valid), .m_axis_tready_i(word_ready), .m_axis_tdata_o(word), .m_axis_tkeep_o(word_keep),

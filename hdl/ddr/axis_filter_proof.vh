@@ -6,14 +6,14 @@
     reg past = 1'b0;
     reg [3:0] f_sent;  // beats of the word that the core has
     reg [3:0] f_size;  // of the word's bytes, in beats
-    reg [3:0] f_count; // beats that came and are not in memory's hands
-    // One beat of a word, any: what came as it.
+    reg [3:0] f_count; // beats of the output that are not in memory's hands
+    // Any one beat of a word: the bytes that came as it.
     (* anyconst *) reg [3:0] f_lane;
     reg [WIDTH-1:0] f_data;
     reg [KEEP-1:0]  f_keep;
-    reg [BYTE_BITS-1:0] f_bytes = 0, f_came = 0; // of the operation; come, while no more than went in
+    reg [BYTE_BITS-1:0] f_bytes = 0, f_came = 0; // the operation's; those that came, up to the number that went in
     wire       f_given = full && out_ready;
-    wire [3:0] f_place = f_given ? 4'd0 : f_count; // of the beat that comes
+    wire [3:0] f_place = f_given ? 4'd0 : f_count; // place of the beat that comes
     wire       f_rst   = rst_i || core_rst_i;
     integer f;
     initial assume (rst_i);

@@ -11,11 +11,11 @@ module axis_memory #(
     parameter ADDR_BITS = 32, // of a byte address, 7..32
     parameter BYTE_BITS = 24, // of a row's number of bytes, 7..32
     parameter ROWS      = 1,  // 0: each packet is one row, and rows and stride are not looked at
-    parameter TAG_BITS  = 1   // of what is said again with a packet
+    parameter TAG_BITS  = 1   // tag, repeated with each packet
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,
-    input  wire                 stop_i, // high for a clock: both streams are given up; then wait for idle
+    input  wire                 stop_i, // high for a clock: both streams are given up; then wait for idle_o
     output wire                 idle_o, // nothing is under way
     // buffers to read: bytes (of a row) and rows are 1 at least, base and stride multiples of 8
     input  wire                 read_valid_i,
@@ -50,7 +50,7 @@ module axis_memory #(
     output wire                 done_valid_o,
     input  wire                 done_ready_i,
     output wire [BYTE_BITS-1:0] done_bytes_o, // of it
-    output wire                 done_over_o,  // it was longer than its buffer: the rest was thrown away
+    output wire                 done_over_o,  // the packet was longer than its buffer: the rest was thrown away
     output wire [TAG_BITS-1:0]  done_tag_o,
     // memory port
     output wire [31:0]          npi_addr_o,
@@ -78,7 +78,7 @@ module axis_memory #(
     wire [ADDR_BITS-1:6] read_addr, write_addr;
     reg                  request, request_read; // a request waits for its acknowledgement
     reg  [ADDR_BITS-1:6] addr;
-    wire                 next = !request && npi_init_done_i; // a burst that is full goes before one that is wanted
+    wire                 next = !request && npi_init_done_i; // a full burst goes before a read
 
     axis_read #(.ADDR_BITS(ADDR_BITS), .BYTE_BITS(BYTE_BITS), .ROWS(ROWS), .TAG_BITS(TAG_BITS)) u_read (
         .clk_i(clk_i), .rst_i(rst_i), .stop_i(stop_i),

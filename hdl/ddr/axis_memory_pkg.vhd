@@ -12,7 +12,7 @@ package axis_memory_pkg is
       ADDR_BITS : integer := 32; -- of a byte address, 7..32
       BYTE_BITS : integer := 24; -- of a row's number of bytes, 7..32
       ROWS      : integer := 1;  -- 0: each packet is one row, and rows and stride are not looked at
-      TAG_BITS  : integer := 1   -- of what is said again with a packet
+      TAG_BITS  : integer := 1   -- tag, repeated with each packet
     );
     port (
       clk_i  : in  std_logic;

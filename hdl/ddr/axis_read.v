@@ -2,9 +2,9 @@
 //
 // axis_read: brings buffers from memory as packets of an AXI-Stream of 64 bits; the reading half of axis_memory.
 //
-// A descriptor is one packet: rows of desc_bytes_i bytes, desc_stride_i bytes from the begin of a row to the next. The
-// next descriptor may come while words of those before are on their way. It asks for bursts of 64 bytes, four ahead;
-// what it asked for and the port has not given yet is described in `tags`, a burst each.
+// A descriptor is one packet: rows of desc_bytes_i bytes, desc_stride_i bytes from the begin of a
+// row to the next. The next descriptor may come while words of earlier ones are on their way. The
+// module requests bursts of 64 bytes, up to four at once; `tags` describes each requested burst.
 
 `default_nettype none
 
@@ -121,7 +121,7 @@ module axis_read #(
         asked <= asked + {2'd0, ask} - {2'd0, given};
         if (asked == 3'd0)
             stopping <= 1'b0;
-        if (stop_i) begin // what the memory was asked for comes, and is thrown away
+        if (stop_i) begin // requested words still come, and are thrown away
             busy     <= 1'b0;
             stopping <= 1'b1;
         end

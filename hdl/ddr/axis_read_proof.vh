@@ -5,10 +5,10 @@
 
     reg       past = 1'b0;
     reg [3:0] f_given; // words of the port's burst that the stream has got
-    // One place of the queue, any: what was put there is still there when it is used.
+    // Any one place of the queue: its content is unchanged when it is used.
     (* anyconst *) reg [1:0] f_slot;
     reg [ENTRY-1:0] f_tag;
-    wire [1:0] f_age   = f_slot - tag_out; // how many are before it
+    wire [1:0] f_age   = f_slot - tag_out; // places before it
     wire       f_there = {1'b0, f_age} < asked;
     wire [2:0] f_first = f_tag[9:7], f_last = f_tag[6:4];
     wire       f_moved = axis_tvalid_o && axis_tready_i;
@@ -42,7 +42,7 @@
             assert (first <= last && (row_ends ? left == f_span : left > f_span && last == 3'd7));
         end
         // Given: each word from the burst's first to its last, once.
-        assume (first_of <= last_of); // as of any place above
+        assume (first_of <= last_of); // as in any place above
         if (!stopping && asked != 3'd0) begin
             assert (f_given == (place <= first_of ? 4'd0 : place <= last_of ? {1'b0, place} - {1'b0, first_of} : f_size));
             assert (!given || f_given + {3'd0, f_moved} == f_size);
@@ -60,7 +60,7 @@
         cover (ask && row_ends && !one_row && first != 3'd0);
     end
     always @(posedge clk_i) if (past && !rst_i && !$past(rst_i)) begin
-        if ($past(axis_tvalid_o && !axis_tready_i && !stop_i) && !rd_empty_i) // whose word stays
+        if ($past(axis_tvalid_o && !axis_tready_i && !stop_i) && !rd_empty_i) // the word stays
             assert (axis_tvalid_o && $stable(axis_tkeep_o) && $stable(axis_tlast_o) && $stable(axis_tid_o));
         if ($past(start))
             assert (busy && at == $past(desc_base_i) && rows == $past(desc_rows_i) && stride == $past(desc_stride_i)

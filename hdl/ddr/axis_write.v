@@ -2,11 +2,12 @@
 //
 // axis_write: puts packets of an AXI-Stream of 64 bits into buffers in memory; the writing half of axis_memory.
 //
-// A descriptor takes one packet: rows of desc_bytes_i bytes, desc_stride_i bytes from the begin of a row to the next. A
-// byte that is not kept leaves memory as it is. What is beyond the last row is taken, thrown away and said (over_o). It
-// fills bursts of 64 bytes up with words that no byte enable writes. done_valid_o, until done_ready_i, says that a packet is
-// in memory, where every later request of any port sees it: with its tag, its number of bytes, over_o. The next
-// descriptor may come before that, and the next packet up to its last word.
+// A descriptor takes one packet: rows of desc_bytes_i bytes, desc_stride_i bytes from the begin of
+// a row to the next. A byte that is not kept leaves memory as it is. Bytes beyond the last row are
+// thrown away, and over_o reports them. Bursts of 64 bytes are filled up with words without byte
+// enables. done_valid_o, until done_ready_i, says that a packet is in memory, where every later
+// request of any port sees it: with its tag, its number of bytes, over_o. The next descriptor may
+// come before that, and the next packet up to its last word.
 
 `default_nettype none
 
@@ -31,7 +32,7 @@ module axis_write #(
     // a packet is in memory
     output wire                 done_valid_o,
     input  wire                 done_ready_i,
-    output reg  [BYTE_BITS-1:0] done_bytes_o, // that were taken, up to the last one kept, modulo 2**BYTE_BITS
+    output reg  [BYTE_BITS-1:0] done_bytes_o, // bytes taken, up to the last one kept, modulo 2**BYTE_BITS
     output reg                  done_over_o,  // there were more
     output reg  [TAG_BITS-1:0]  done_tag_o,
     // stream
@@ -44,7 +45,7 @@ module axis_write #(
     output wire                 ask_valid_o,
     input  wire                 ask_ready_i,
     output wire [ADDR_BITS-1:6] ask_addr_o,
-    input  wire                 acked_i, // one of them
+    input  wire                 acked_i, // one of them is acknowledged
     // the port's write FIFO
     input  wire                 wr_full_i,
     output wire                 wr_push_o,
@@ -56,7 +57,7 @@ module axis_write #(
     reg                 busy;      // a descriptor's packet is taken
     reg                 over;      // the rest of it is thrown away
     reg                 pad;       // the burst that is begun is filled up
-    reg                 leading;   // the row begins within a burst, which is filled up to there, behind `pad`
+    reg                 leading;   // the row begins within a burst, which is filled up to there after `pad`
     reg [ADDR_BITS-1:3] at;        // where the next word goes
     reg [WORD_BITS-1:0] left;      // words of the row
     reg [ADDR_BITS-1:3] row, stride;
@@ -117,8 +118,8 @@ module axis_write #(
     assign done_valid_o = ending && behind == 3'd0;
 
     always @(posedge clk_i) begin
-        // The descriptor's inputs are taken whether they hold one or not, behind a packet and until the next: so the wide
-        // choice is made early, and `take`, which is late, only enables it.
+        // The descriptor's inputs are sampled while idle, valid or not. So the wide choice is
+        // early, and `take`, which is late, is only an enable.
         if (take || !busy) begin
             if (axis_tlast_i || !busy) begin
                 at      <= desc_base_i;
@@ -175,7 +176,7 @@ module axis_write #(
 
         if (ends) begin
             ending <= 1'b1;
-            behind <= unacked + {2'd0, !over || pad} - {2'd0, acked_i}; // with the burst of the last word that was written
+            behind <= unacked + {2'd0, !over || pad} - {2'd0, acked_i}; // with the burst of the last written word
         end else begin
             ending <= ending && !(done_valid_o && done_ready_i);
             behind <= behind - {2'd0, acked_i && behind != 3'd0};

@@ -4,8 +4,8 @@
 // Included at the foot of axis_write.v, only for the prover.
 
     reg       past = 1'b0;
-    reg [3:0] f_filled, f_acked, f_goal; // bursts that were filled, acknowledged; those that a packet's end waits for
-    // One place of the queue, any: what was put there is still there when it is used.
+    reg [3:0] f_filled, f_acked, f_goal; // bursts filled, acknowledged, and awaited by a packet's end
+    // Any one place of the queue: its content is unchanged when it is used.
     (* anyconst *) reg [1:0] f_slot;
     reg [ADDR_BITS-1:6] f_addr;
     wire [1:0] f_age   = f_slot - out;
@@ -18,7 +18,7 @@
     wire [4*(ADDR_BITS-6)-1:0] f_bursts = {bursts[3], bursts[2], bursts[1], bursts[0]}; // for axi4_memory's proof
     initial assume (rst_i);
     always @* begin
-        assume (!acked_i || unacked > queued); // of what was asked for
+        assume (!acked_i || unacked > queued); // of requested ones
         assume (!desc_valid_i || (desc_bytes_i != {BYTE_BITS{1'b0}} && desc_rows_i != 16'd0));
     end
     always @(posedge clk_i) begin
@@ -47,12 +47,12 @@
         assert (!busy || over || leading == (at[5:3] != (pad ? 3'd0 : place)));
         if (busy && !over)
             assert (left != {WORD_BITS{1'b0}} && left <= words && at == row + f_done && rows != 16'd0);
-        // A word that is taken is pushed in this clock, to its place; what is pushed besides writes nothing.
+        // A word that is taken is pushed in this clock, to its place; other pushes write nothing.
         assert (!data || (wr_push_o && wr_data_o == axis_tdata_i && f_place == at && busy && !pad));
         for (b = 0; b < 8; b = b + 1)
             assert (wr_be_o[b] == (data && axis_tkeep_i[b] && b < f_fits));
         assert (!take || data || over);
-        // The end is said when all bursts up to the packet's last are acknowledged.
+        // done is raised when all bursts up to the packet's last are acknowledged.
         if (ending && behind != 3'd0) begin
             assert ({1'b0, behind} == f_owed && behind <= 3'd5);
             assert (f_goal == f_filled + 4'd1 ? pad : f_filled - f_goal <= {1'b0, unacked});

@@ -35,7 +35,7 @@
             // A command that it has not taken stays.
             if ($past(dram_cmd_valid_o) && !$past(dram_cmd_ready_i))
                 assert (dram_cmd_valid_o && $stable(dram_cmd_we_o) && $stable(dram_cmd_addr_o));
-            // Every word of a transfer goes in its turn, and then the next transfer begins.
+            // Every word of a transfer goes in its turn; then the next transfer begins.
             if ($past(taken))
                 assert (index == ($past(cmd_ready_o) ? 5'd0 : $past(index) + 5'd1));
             if (taken)

@@ -2,8 +2,8 @@
 //
 // mcb_backend: puts the arbiter's command stream on a 64-bit user port of the Spartan-6 MCB (UG388).
 //
-// The MCB's read FIFO holds 64 words and loses what does not fit. A read therefore waits until half of it,
-// the longest burst, is not promised to others.
+// The MCB's read FIFO holds 64 words and loses words that do not fit. A read therefore waits until
+// half of it, the longest burst, is not promised to others.
 
 `default_nettype none
 

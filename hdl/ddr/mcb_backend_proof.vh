@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// mcb_backend_proof: the MCB is never asked for what it refuses, and no word is lost.
+// mcb_backend_proof: the MCB never gets a command that it refuses, and no word is lost.
 // Included at the foot of mcb_backend.v, only for the prover.
 
     reg past = 1'b0;
@@ -11,10 +11,10 @@
         asked <= rst_i ? 8'd0
                        : asked + (mcb_cmd_en_o && mcb_cmd_instr_o[0] ? {2'd0, mcb_cmd_bl_o} + 8'd1 : 8'd0)
                                - {7'd0, mcb_rd_en_o};
-        // The MCB shows only words that it was asked for.
+        // The MCB shows only requested words.
         assume (mcb_rd_empty_i || asked != 0);
         if (past && !rst_i) begin
-            // The MCB is never asked for what it refuses; promised words stay within 0..64.
+            // The MCB never gets a command that it refuses; promised words stay within 0..64.
             assert (asked == 8'd64 - {1'b0, free} && free <= 7'd64);
             assert (!(mcb_cmd_en_o && (mcb_cmd_full_i || !mcb_calib_done_i)));
             assert (!(mcb_wr_en_o && mcb_wr_full_i));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_arbiter: npi_arbiter as every memory controller has it; included in the bodies of memory_mcb and
-// memory_litedram, whose parameters and npi_* ports it takes. A back-end connects to the signals below.
+// memory_arbiter: the npi_arbiter of every memory controller; included in the bodies of memory_mcb
+// and memory_litedram, whose parameters and npi_* ports it takes. A back-end connects to the
+// signals below.
 
     wire        cmd_valid, cmd_read, cmd_ready, wr_valid, wr_ready, rd_valid, rd_ready;
     wire [ADDR_WIDTH-1:0] cmd_addr;

@@ -12,7 +12,7 @@ module npi_arbiter #(
     parameter [PORTS-1:0] URGENT     = 0, // ports that go before the others: npi_select
     parameter [2:0]       URGENT_RUN = 3'd3, // 1..7
     // A port without a read FIFO gets its words as they come, and holds up all ports until it takes
-    // them: for those that always do at once.
+    // them: for ports that always take them at once.
     parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}},
     parameter             BLOCK_RAM  = 1,  // FIFOs in block RAM, else in LUT RAM and a clock faster
     parameter             ADDR_WIDTH = 27, // of a byte: 2**27 are 128 MiB, 9..32
@@ -55,7 +55,8 @@ module npi_arbiter #(
 );
     generate
         if (PORTS < 2 || PORTS > 8 || URGENT_RUN == 0 || ADDR_WIDTH < 9 || ADDR_WIDTH > 32) begin : g_refused
-            // A message as a module item is SystemVerilog: to Icarus and XST an unknown module says it.
+            // Verilog-2005 has no message as a module item: the name of an unknown module tells
+            // Icarus and XST.
 `ifdef VERILATOR
             $error("npi_arbiter: PORTS is 2..8, URGENT_RUN 1..7, ADDR_WIDTH 9..32");
 `elsif YOSYS
@@ -133,7 +134,7 @@ module npi_arbiter #(
                 .empty_o(npi_wr_empty_o[p]), .full_o(npi_wr_almost_full_o[p])
             );
             if (READ_FIFO[p]) begin : g_fifo
-                wire rd_full; // a requester has room for what it reads (rule 3)
+                wire rd_full; // a requester has room for its reads (rule 3)
                 npi_fifo #(.WIDTH(68), .LOG2(FIFO_LOG2), .BLOCK(BLOCK_RAM)) u_read (
                     .clk_i(clk_i), .rst_i(rst_i || npi_rd_flush_i[p]),
                     .push_i(rd_valid_i && back_at[p]), .data_i(rd_word),
@@ -169,7 +170,7 @@ module npi_arbiter #(
     assign wr_be_o    = wr_be;
     assign rd_ready_o = |(back_at & back_free);
 
-    // Byte enables always work, so read-modify-write is nothing special. Transfers are aligned.
+    // Byte enables always work, so read-modify-write needs nothing. Transfers are aligned.
     wire unused = &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], move_at, 1'b0};
 
 `ifdef FORMAL

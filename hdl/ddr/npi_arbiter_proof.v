@@ -2,17 +2,17 @@
 //
 // npi_arbiter_proof: proves npi_arbiter as a whole, with its parts; only for the prover (formal.npi_arbiter_*).
 //
-// `me` is any port that keeps the rules of docs/memory.md; the others do what they like and harm nothing of it.
-// `mark` is any accepted request (every fourth, from any on), `w_mark` any word that `me` pushes, `r_mark` any that
-// it pops. The assertions on them therefore hold for all:
+// `me` is any port that keeps the rules of docs/memory.md; the others are free and must not harm
+// it. `mark` is any accepted request (every fourth, from any on), `w_mark` any word that `me`
+// pushes, `r_mark` any word that it pops. The assertions on them therefore hold for all:
 // - commands are the accepted requests, in their order, each once, aligned; a write's after all its words;
 // - words of a write leave their own port's FIFO, in order, with the command's place in the back-end's stream;
 // - words of a read reach their own port, in order, each with its place in its transfer;
-// - no FIFO of `me` overflows or is read empty; its flags are true; a word that is wanted of it is there;
+// - no FIFO of `me` overflows or is read empty; its flags are true; a word is there when it is needed;
 // - a request stays visible to npi_select until it is granted, so that one's proven bound on waiting holds.
 //
-// The second half relates the harness's counts to the arbiter's registers: a fault is seen where it begins.
-// With it all assertions together carry themselves over one clock: runs of any length are proven.
+// The second half relates the harness's counts to the arbiter's registers, so a fault is seen where
+// it begins. With it all assertions together are inductive: runs of any length are proven.
 
 `default_nettype none
 
@@ -260,10 +260,10 @@ module npi_arbiter_proof #(
         assume (!eager || pop == !r_empty);
         assume (!w_flush || (!asks_write && w_claimed == w_moved));
         assume (!r_flush || (!asks_read && r_claimed == r_pushed));
-        assume (!in_valid_i || all_asked != all_came); // the back-end gives what it was asked for
+        assume (!in_valid_i || all_asked != all_came); // the back-end gives requested words only
     end
 
-    // ---- What is promised
+    // ---- Guarantees
     integer o;
     always @* if (!rst_i) begin
         assert (ack_i == granted);
@@ -291,11 +291,11 @@ module npi_arbiter_proof #(
         assert (comes == |rd_push_i);
         if (has_fifo && r_have && !r_empty && r_popped == r_mark)
             assert (pop_word == r_value);
-        // flags, and what they are about
+        // the flags and their meaning
         assert (w_level <= DEPTH);
         assert (w_full == (w_level == DEPTH));
         assert (!w_pop || !w_empty);
-        assert (w_claimed - w_moved <= w_level); // what is wanted is there
+        assert (w_claimed - w_moved <= w_level); // requested words are there
         assert (BLOCK != 0 || w_empty == (w_level == 0));
         assert (w_empty || w_level != 0);
         if (has_fifo) begin

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_arbiter_proof: connects npi_arbiter_proof.v with what the arbiter's parts hold; it is for two ports.
+// npi_arbiter_proof: connects npi_arbiter_proof.v with the state of the arbiter's parts, for two
+// ports.
 // Included at the foot of npi_arbiter.v, only for the prover.
 
     localparam F_KIND = PORT_BITS + 4, F_ADDR = ADDR_WIDTH - 3, F_INDEXES = 2 * (FIFO_LOG2 + 1);

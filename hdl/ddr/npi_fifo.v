@@ -26,7 +26,7 @@ module npi_fifo #(
     // The index after the word on data_o; pop_i only decides whether to go there, so it may come late.
     wire [LOG2:0] next = read_index + {{LOG2{1'b0}}, BLOCK == 0 || !empty_o};
 
-    // full_o is a register, because the paths of those who wait for room begin here.
+    // full_o is a register, because requesters' paths begin here.
     wire [LOG2:0] after = write_index + 1'b1;
     wire          nearly = after[LOG2-1:0] == read_index[LOG2-1:0]; // room for one, of any count but the full one
     reg           full;

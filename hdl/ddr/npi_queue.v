@@ -7,7 +7,7 @@
 //   move   the write whose words go to the back-end now (a read is passed by)
 //   issue  the request whose command goes to the back-end now; a write's words are all there
 //   back   the read whose words come back now (a write is passed by)
-// Addresses are accepted, write words move, commands go and read words come in the same cycle, therefore.
+// So in one cycle an address is accepted, a write word moves, a command goes and a read word comes.
 // Commands go in the order of acceptance.
 
 `default_nettype none
@@ -46,7 +46,8 @@ module npi_queue #(
 
     reg [ADDR_BITS-1:0] addrs [0:(1<<LOG2)-1];
     reg [KIND-1:0] kinds [0:(1<<LOG2)-1]; // port, read, size
-    // Initial values keep Yosys from merging the RAM's address registers into it and keeping them twice.
+    // The initial value keeps Yosys from merging the RAM's address registers into it and keeping
+    // them twice.
     reg [LOG2-1:0] head = 0, move = 0, issue = 0, back = 0;
     reg [4:0]      move_index, back_index;
 
@@ -63,8 +64,8 @@ module npi_queue #(
     reg             full;
     assign full_o = full;
 
-    // The request at `move` is in registers, since the write FIFOs hang on it: it comes from the RAM, or, where that
-    // has none yet, from what is pushed now.
+    // The request at `move` is in registers, since the write FIFOs depend on it. It comes from the
+    // RAM, or, where the RAM does not have it yet, from the push.
     reg             moving;
     reg [KIND-1:0]  move_kind;
     wire [KIND-1:0] push_kind = {push_port_i, push_read_i, push_size_i};

@@ -52,7 +52,8 @@
         end
     end
     always @* if (!rst_i && past) begin
-        // By the rules of docs/memory.md no FIFO overflows or is popped empty, and a write's words are there first.
+        // By the rules of docs/memory.md no FIFO overflows or is popped empty, and a write's words
+        // precede its request.
         assert (!npi_wr_push_o || pushed != 6'd32);
         assert (!npi_rd_pop_o || there != 6'd0);
         assert (promised <= 6'd32 && !(npi_addr_req_o && npi_rnw_o && promised > 6'd24));
@@ -62,11 +63,11 @@
         assert ({1'b0, pushed} == owed + {1'b0, bursts, 3'd0} + {4'd0, filled});
         assert (bursts <= 3'd4 && owed <= 7'd32);
         assert (!write_idle_o || (filled == 3'd0 && bursts == 3'd0));
-        // The core gets as many words as it asked for, no more; all that were asked for come.
+        // The core gets as many words as it requested, no more; all requested words come.
         assert (to_give == f_left);
         assert (!read_valid_o || f_left != {WORD_BITS{1'b0}});
         assert (to_ask == {WORD_BITS{1'b0}} || to_give >= to_ask);
-        // While words are still to be asked for, what is on its way is the core's.
+        // While words are still to be requested, those on their way are the core's.
         assert (to_ask == {WORD_BITS{1'b0}} || {1'b0, to_give} == {1'b0, to_ask} + {{(WORD_BITS - 5){1'b0}}, outstanding});
         assert (pushed <= 6'd32);
         assert (!padding || filled != 3'd0);
@@ -86,7 +87,7 @@
         assert (npi_addr_req_o && $stable(npi_rnw_o) && $stable(npi_size_o));
         assert ($stable(npi_addr_o));
     end
-    // Idle is told a clock later, not more.
+    // Idle is shown one clock later, not more.
     always @(posedge clk_i) if (past && !rst_i && !$past(rst_i)) begin
         assert (write_idle_o || $past(filled != 3'd0 || bursts != 3'd0 || npi_wr_push_o));
         assert (read_idle_o || $past(to_give != {WORD_BITS{1'b0}} || promised != 6'd0 || read_start_i || (npi_addr_req_o && npi_rnw_o)));

@@ -48,8 +48,9 @@ module fsmc_async (
     );
     assign wr_ne2_async_o = wr_async_o && taken[44];
 
-    // A read of a register is hidden until the write before it has been handed over: else a synchroniser that is late by chance
-    // would let it go first. A read of memory need not be, since a write drops what was read.
+    // A read of a register is hidden until the write before it has been handed over; else a late
+    // synchroniser would let it go first. A read of memory is not, since a write drops the read
+    // buffer.
     wire [1:0] reads = ne & {!fsmc_noe_n_i && !wr_async_o, !fsmc_noe_n_i};
     cdc_bit #(.WIDTH(5), .TOGETHER(3)) u_access (
         .clk_i(clk_i),

@@ -2,16 +2,16 @@
 //
 // fsmc_bridge_proof: states what the processor may rely on at the pins of fsmc_bridge; only for the prover.
 //
-// Time goes in steps; clock and pins may change in each, so every ratio and phase is covered. The memory
-// (fsmc_memory, with its own proof) is free: it answers when and what it likes, or never, and so does a slave of
-// the register bus. The parts have proofs of their own for their properties.
+// Time goes in steps; clock and pins may change in each, so every ratio and phase is covered. The
+// memory (fsmc_memory, with its own proof) and the slave of the register bus are free: they answer
+// at any time with anything, or never. The parts have proofs of their own.
 //
-// - NWAIT is not active for ever: it ends within two time-outs and what the synchronisers take.
+// - NWAIT is not active for ever: it ends within two time-outs and the synchronisers' time.
 // - Once NWAIT is inactive in an access to a register it stays so, and data on the pins stays.
 // - A write to a register goes on only when the write before it is handed over and registers are idle. The bridge's time-out
 //   lets go only accesses to memory, however short it is.
-// WORDS = 1 proves something else: 32-bit register words are atomic (fsmc_words_proof); with LATE bounded, without by
-// induction, since what makes that inductive counts the synchronisers' clocks.
+// WORDS = 1 proves instead that 32-bit register words are atomic (fsmc_words_proof); with LATE
+// bounded, without it by induction, whose invariant counts the synchronisers' clocks.
 
 `default_nettype none
 
@@ -192,7 +192,7 @@ module fsmc_bridge_proof #(
                     waited <= waited + 8'd1;
                 assert (waited < BOUND);
             end
-            reg [2:0] since_ne1 = 3'd7; // clocks since an access to memory: fsmc_async's synchroniser is late by some
+            reg [2:0] since_ne1 = 3'd7; // clocks since an access to memory (a late synchroniser)
             always @(posedge step)
                 if (ne1_i && strobe)
                     since_ne1 <= 3'd0;

@@ -2,7 +2,8 @@
 //
 // fsmc_burst_pins_proof: a burst moves each halfword once, in order; only for the prover (formal.fsmc_burst_pins).
 
-    // Time goes in steps: a step is an edge of FSMC_CLK, one of NE1, or neither. Pins are taken as they were before the edge.
+    // Time goes in steps: an edge of FSMC_CLK, an edge of NE1, or neither. Pins have their values
+    // from before the edge.
     (* gclk *) wire step;
     localparam [4:0] DEPTH = 5'd16;
     reg        past = 1'b0, was_clk = 1'b0, was_ne_n = 1'b1;
@@ -79,7 +80,8 @@
             assert (held < DEPTH);
             assert (push_data_o == {beat, ~fsmc_nbl_n_i, fsmc_d_i});
         end
-        // Each halfword that it reads is the next of those that came, out of a FIFO that was restarted at the first edge.
+        // Each halfword that it reads is the next one of a FIFO that was restarted at the first
+        // edge.
         assert (restart_o == (first_edge && fsmc_nwe_n_i));
         assert (!pop_o || (!empty_i && !writes && !first_edge && addr_o == first));
         if (moves && !writes && moved == place)

@@ -105,8 +105,8 @@ module fsmc_memory #(
     wire [2*WIDTH-1:0] rd_pairs = rd_addr_async_i[1] ? rd_line[4*WIDTH-1:2*WIDTH] : rd_line[2*WIDTH-1:0];
     assign rd_data_o = rd_addr_async_i[0] ? rd_pairs[2*WIDTH-1:WIDTH] : rd_pairs[WIDTH-1:0];
 
-    // ---- The next fetch is decided from the copy of the address alone. While the pins move the copy may name any place: a word
-    // is then read in vain, but tags and words fit each other.
+    // ---- The next fetch is decided from the copy of the address alone. While the pins move the
+    // copy may name any place: the fetched word is then useless, but its tag is right.
     wire [BLOCK_LOG2-1:0] at_word  = rd_at_i[BLOCK_LOG2+1:2];
     wire                  at_block = rd_at_i[BLOCK_LOG2+2];
     wire [PAIR-1:0]       at_pair  = rd_at_i[REGION_LOG2+1:BLOCK_LOG2+3];
@@ -187,7 +187,7 @@ module fsmc_memory #(
             wanted <= 1'b0;
             ahead  <= 1'b0;
             have_single <= 1'b0;
-            // The words of a request that was made still come.
+            // The words of an acknowledged request still come.
             stale  <= start_read || (busy && !last);
         end
         if (rst_i) begin

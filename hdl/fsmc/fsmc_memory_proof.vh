@@ -72,9 +72,9 @@
             assert (!rd_safe_o || rd_hit_o);
             if (idle_o)
                 assert (memory == newest);
-            // What the buffer does not have is asked for, if nothing else is on the way.
+            // Missing data is requested, if nothing else is on the way.
             if (rd_miss_i && idle_o && !wanted && !busy)
-                assert (miss || at_whole || (at_alone && !(|(at_word ^ fetch_word)))); // said otherwise than there, or both were one cell
+                assert (miss || at_whole || (at_alone && !(|(at_word ^ fetch_word)))); // else one cell with the above
             // A block keeps its words until a fetch needs its place, or all are dropped.
             if ($past(!rst_i && !drop_i && !wr_i && !(miss && at_upper != upper)))
                 assert (($past(full) & ~full & ($past(miss || next) ? ~(2'b01 << fetch_block) : 2'b11)) == 2'b00);

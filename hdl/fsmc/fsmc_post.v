@@ -2,9 +2,10 @@
 //
 // fsmc_post: merges halfword writes into words of four, pushes closed words to the memory port and queues their addresses.
 //
-// A halfword joins the open word if it belongs to it. The word is closed when all its bytes are there,
-// when a write elsewhere comes, and with flush_i: its data goes into the port's write FIFO at once, its
-// address waits here for its request. So one word is in flip-flops, and the others in the FIFO's RAM.
+// A halfword joins the open word if it belongs to it. The word is closed when all its bytes are
+// there, when a write elsewhere comes, and with flush_i. Its data then goes into the port's write
+// FIFO at once, while its address waits here for its request. So one word is in flip-flops, the
+// others in the FIFO's RAM.
 
 `default_nettype none
 
@@ -50,7 +51,7 @@ module fsmc_post #(
     wire accept = wr_i && !(full && open && !joins);
 
     assign wr_lost_o    = wr_i && !accept;
-    // The open word counts as closed, so that room does not go away by itself.
+    // The open word counts as closed, so that room never shrinks without a write.
     assign room_o       = !(&count[LOG2-1:1] || (open && count == (1 << LOG2) - 3));
     localparam [LOG2-1:0] LOW = 3;
     assign more_room_o  = !(&(count | LOW) && (count[0] || count[1] || open));

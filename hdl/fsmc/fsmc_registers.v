@@ -121,7 +121,8 @@ module fsmc_registers (
         if (give || (answering && (given_up || (seen && !done_sync))))
             answering <= give;
 
-        // A write while busy, by a master that ignores NWAIT, is lost, and an error: the word under way may get its data.
+        // A write while busy, from a master that ignores NWAIT, is lost and reported: the word
+        // under way may get its data.
         error_o <= (begins && !keep && !kept && wrong) || (ends && (bus_error_i || !bus_ready_i)) ||
                    (wr_i && !idle);
         error_memory_o <= flushing && expired_i && !idle_i;

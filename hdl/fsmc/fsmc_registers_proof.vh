@@ -2,7 +2,8 @@
 //
 // fsmc_registers_proof: an access makes at most one transfer, of a whole word; only for the prover (formal.fsmc_registers).
 
-    // A hung slave is given up as soon as expired_i says so, which PATIENCE = 1 makes bus_rules allow.
+    // A hung slave is given up as soon as expired_i is high, which PATIENCE = 1 lets bus_rules
+    // allow.
     bus_rules #(.MASTER(1), .PATIENCE(1)) u_bus_rules (
         .clk_i(clk_i), .rst_i(rst_i), .valid_i(bus_valid_o), .write_i(bus_write_o),
         .addr_i(bus_addr_o), .wdata_i(bus_wdata_o), .ready_i(bus_ready_i), .rdata_i(bus_rdata_i),
@@ -13,12 +14,12 @@
     reg [4:0]  stuck;     // clocks of this access without an answer
     reg [31:0] last_read; // the word that the bus gave last
     reg [15:0] last_low;  // low half written last
-    reg        low_word;  // the low half of bus_addr_o's word has been written, and nothing since
+    reg        low_word;  // the low half of bus_addr_o's word was the last write
     reg        low_read;  // the access begun last reads a low half
     reg        was_busy = 1'b0;
     reg [40:0] write_was;
     always @* begin
-        // NWAIT at the pins keeps the next write, and its data, away until the one before is done.
+        // NWAIT at the pins holds the next write and its data back until the one before is done.
         assume (!(busy_o && wr_i));
         assume (!(was_busy && busy_o) || write_was == {wr_addr_i, wr_data_i});
         // Time-outs come as the bridge counts them.
@@ -49,8 +50,8 @@
                 assert ($past(flushing));
             if (flushing && !$past(flushing))
                 assert ($past(idle && (wr_i || reading_i)));
-            // Words stay whole: a high half that is kept is of the word read last; a word is written
-            // with the low half that was written to it just before.
+            // Words stay whole: a kept high half belongs to the word read last; a word is written
+            // with the low half that was written just before.
             assert (!half_read || (word == last_read && low_read));
             assert (!half_read || $past(half_read) || $past(reading_i));
             assert (half_write == low_word);

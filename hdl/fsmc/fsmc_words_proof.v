@@ -85,7 +85,7 @@ module fsmc_words_proof #(
     wire read_done = was_reads && !selected_i && !gives_up_i;
     wire begins    = valid_i && !was_valid;
     wire ends      = was_valid && !valid_i;
-    wire reports   = clock_i && error_i && error_write_i && !(ends && was_write); // an error that is no transfer's
+    wire reports   = clock_i && error_i && error_write_i && !(ends && was_write); // no transfer
     // NWE rises before NE (RM0033), or after it where the access is given up; never in the same step.
     always @* assume (!(was_access_i && !selected_i && !was_nwe_i) || !nwe_n_i);
 
@@ -169,7 +169,7 @@ module fsmc_words_proof #(
         cover (a_i == {its, 1'b1} && !beyond_i && half_may && !half_sure && !got_n);
     end
 
-    // ---- The harness's notes agree with the bridge's registers; all are as they are in this step
+    // ---- The harness's notes agree with the bridge's registers, all of this step
     wire [3:0]  turn; // a write's toggle on its way through cdc_pulse
     wire        s0, s1, flushing, give, answering, half_read, half_write, asked_high, given_up, seen;
     wire [1:0]  done_s;

@@ -59,8 +59,9 @@ module modem #(
     wire control     = reg_write && reg_addr == MODEM_CONTROL;
     reg  configure, reset_modem, rings_reset; // a cycle after the write, because their paths are long
 
-    // Settings are kept in block RAM: words 0..15 are the registers with the ID, 28..31 the key. A word is there a
-    // clock after its index, and valid if it was not the processor's, which may have written it in that clock.
+    // Settings are kept in block RAM: words 0..15 are the registers with the ID, 28..31 the key. A
+    // word is there a clock after its index. It is invalid after an index of the processor's, which
+    // may have written it in that clock.
     (* ram_style = "block", no_rw_check *)
     reg  [31:0] words [0:31];
     reg  [1:0]  key_index;
@@ -247,7 +248,7 @@ module modem #(
         .clk_i(clk_i), .rst_i(rings_reset), .tick_i(bit_tick),
         .rx_valid_i(in_valid), .rx_data_i(rx_data), .rx_error_i(in_error),
         .rx_end_i(in_end), .rx_bad_i(in_bad), .silent_o(silent),
-        .rx_idle_i(rx_idle && !modem_rts_n_o), // a pause that RTS asked for ends no packet
+        .rx_idle_i(rx_idle && !modem_rts_n_o), // a pause that RTS caused ends no packet
         .wr_valid_o(wr_valid), .wr_data_o(wr_data), .wr_index_o(wr_index), .wr_be_o(wr_be),
         .wr_ready_i(wr_ready), .wr_busy_i(wr_busy),
         .full_i(rx_full), .push_o(rx_push), .overrun_o(rx_overrun)
@@ -303,7 +304,7 @@ module modem #(
         if (at_done)
             ready <= 1'b1;
 
-        // The pulse lasts from one to two milliseconds; the modem asks for 200 ns.
+        // The pulse lasts one to two milliseconds; the modem needs 200 ns.
         if (ms_tick) begin
             pulse_ends <= !reset_n;
             if (pulse_ends)

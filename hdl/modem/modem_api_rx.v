@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_api_rx: takes packets out of API frames 0x81, received from a 16-bit address, and reads 0x89, the
-// status of a packet that was sent. Other frames are passed over; silence ends any frame.
+// modem_api_rx: takes packets out of API frames 0x81, received from a 16-bit address, and reads
+// frames 0x89, the status of a sent packet. It skips other frames; silence ends any frame.
 //
 //   7E length(2) 81 source(2) signal options, the packet, checksum      7E 00 03 89 id status checksum
 
@@ -18,7 +18,7 @@ module modem_api_rx (
     // packet out
     output wire       valid_o,  // data_i is the packet's
     output reg        end_o,    // one cycle: it is complete
-    output reg        bad_o,    // one cycle: its bytes so far are not to be used
+    output reg        bad_o,    // one cycle: drop its bytes so far
     // one cycle: a packet was given up by the modem
     output reg        unsent_o
 );

@@ -5,13 +5,13 @@
 
     reg past = 1'b0;
     initial assume (rst_i);
-    reg open = 1'b0; // bytes of a packet were given, and neither its end nor that it is bad
+    reg open = 1'b0; // a packet has begun and not ended
     always @(posedge clk_i) begin
         past <= 1'b1;
         open <= !rst_i && !end_o && !bad_o && (open || valid_o);
         if (past && !$past(rst_i)) begin
             assert (!(end_o && bad_o));
-            // Bytes are given inside a frame only, and a frame that gave some ends, one way or the other.
+            // Bytes are given inside a frame only, and a frame that gave some ends good or bad.
             if (open && !end_o && !bad_o)
                 assert (received && (state == DATA || state == CHECKSUM));
             assert (!(unsent_o && end_o));

@@ -3,10 +3,10 @@
 // modem_at: finds the modem's baud rate and sets it up by AT commands, checking each reply.
 //
 // Steps (STATUS.STEP): 1 +++  2 MY  3 DH  4 DL  5 CH  6 ID  7 EE  8 KY (only with EE)  9 RN  10 RO
-// 11 D6  12 D7  13 AP  14 BD  15 CN  0 the modem changes its rate. What is done in each is in the rows of
-// modem_at_rows; this block carries them out. Step 1 is tried at the target rate, at 9600 (the
-// factory's), then at all rates from BD 7 down and at 250,000; its wait for an answer is the guard time
-// of the next try. Any other command that is refused or not answered is sent twice again.
+// 11 D6  12 D7  13 AP  14 BD  15 CN  0 the modem changes its rate. modem_at_rows has the actions of
+// each step; this block carries them out. Step 1 is tried at the target rate, at 9600 (the
+// factory's), then at all rates from BD 7 down and at 250,000; its wait for an answer is the guard
+// time of the next try. Any other command that is refused or not answered is sent twice again.
 
 `default_nettype none
 
@@ -50,7 +50,7 @@ module modem_at #(
     reg       heard_o, heard_k; // the reply ends in "O", in "OK"
     reg       ok, refused;      // one cycle: the reply is complete
     reg [3:0] same;             // three bits each of time and guard time
-    reg       counts;           // they were to be compared
+    reg       counts;           // the digits are complete: compare time and guard time
 
     wire       send, digit, rate, guard, hear, limit, refuse, skip, settle;
     wire [7:0] data;

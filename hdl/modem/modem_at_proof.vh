@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_at_proof: the set-up answers only to what it asked, and ends.
+// modem_at_proof: each step needs the modem's OK, and the set-up ends.
 // Included at the foot of modem_at.v, only for the prover.
 
     localparam [3:0] EE = 4'd7, RN = 4'd9, SETTLES = 4'd0;
@@ -21,7 +21,7 @@
             // A step follows its predecessor, and only after "OK" and a return came.
             if (passed)
                 assert (heard == {"OK", 8'h0D});
-            // A return that does not end "OK" is a refusal, but for one of what was said before.
+            // A return without "OK" is a refusal, except the end of an earlier answer.
             assert (refused == $past(rx_valid_i && rx_data_i == 8'h0D && !heard_k && !fresh));
             if (hear) begin
                 assert (!send);

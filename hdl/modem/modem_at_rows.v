@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_at_rows: holds the AT set-up as rows in block RAM: what modem_at does at each place of each step.
+// modem_at_rows: holds the AT set-up as rows in block RAM: modem_at's action at each place of each
+// step.
 //
 // A row has flags and eight bits of data: a character, or {word of the settings, its nibble}. Without flags it does nothing.
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_baud_proof: n clocks are one step of n: what the simulator adds at once (testbench/sim/quiet_span.cpp).
+// modem_baud_proof: n clocks equal one step of n, which the simulator adds at once
+// (testbench/sim/quiet_span.cpp).
 // Included at the foot of modem_baud.v, only for the prover.
 
     // A span may begin in any clock in which no carry and no tick is on its way.
@@ -9,7 +10,7 @@
     reg [17:0] phase_then;
     reg [4:0]  count_then;
     reg [3:0]  rate;
-    reg [8:0]  n;       // clocks since
+    reg [8:0]  n;       // clocks since the span began
     reg [27:0] product; // n times the step: it is added n times
     wire [18:0] step   = FULL - minus;
     wire [27:0] sum    = {10'd0, phase_then} + product;

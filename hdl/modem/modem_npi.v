@@ -2,9 +2,9 @@
 //
 // modem_npi: shares one memory port between receiver and transmitter, an access for each byte.
 //
-// Accesses of a byte need no word buffers and cost little time: 22,000 a second at most, in both directions
-// together, are below one percent of what the memory can do. Writes go first, because the line does not
-// wait. A request that was taken is carried out, whatever becomes of the packet.
+// Accesses of a byte need no word buffers and cost little time: at most 22,000 a second in both
+// directions together, below one percent of the memory's time. Writes go first, because the line
+// does not wait. A request that was taken is carried out, even if its packet is given up.
 
 `default_nettype none
 

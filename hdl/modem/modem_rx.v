@@ -2,10 +2,11 @@
 //
 // modem_rx: writes bytes from the modem into the receive ring, a packet a buffer.
 //
-// A packet ends after the length that its first byte announces ((byte & 127) + 5, if that is at most
-// 100), at 100 bytes, after 3.2 characters of silence, or at a framing error; it is in memory before it
-// is published. With no buffer free it is dropped whole. A memory that is more than a byte time late
-// costs the packet under way, and what follows without a pause; what came before is kept.
+// A packet ends after the length that its first byte announces ((byte & 127) + 5, if at most 100),
+// at 100 bytes, after 3.2 characters of silence, or at a framing error. It is in memory before it
+// is published. With no buffer free it is dropped whole. A memory that is more than a byte time
+// late costs the packet under way and the bytes that follow without a pause; earlier packets are
+// kept.
 
 `default_nettype none
 
@@ -95,7 +96,7 @@ module modem_rx #(
         if (silent)
             deaf <= 1'b0;
         if (late) begin
-            // The byte before still waits and is lost; so is its packet, if that is not complete.
+            // The earlier byte still waits and is lost, with its packet if that is not complete.
             deaf    <= 1'b1;
             pending <= 1'b0;
             if (!ending) begin

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_timer_proof: time_o counts the ticks since clear_i, and n clocks are one step of n, up to the tick: what the
-// simulator adds at once. Included at the foot of modem_timer.v, only for the prover.
+// modem_timer_proof: time_o counts the ticks since clear_i, and n clocks equal one step of n, up to
+// the tick, which the simulator adds at once. Included at the foot of modem_timer.v, only for the
+// prover.
 
     (* anyseq *) reg begins; // a span
     reg        past = 1'b0, spans = 1'b0;
@@ -25,7 +26,7 @@
             assert (clocks == 17'd0 || !$past(rst_i || clear_i || tick_o));
             assert (time_o == ($past(rst_i || clear_i) ? 12'd0 : $past(time_o) + {11'd0, $past(tick_o)}));
             assert (!tick_o || !$past(clear_i));
-            // The state, so that the proof need not find it.
+            // States the registers, so that the prover need not find them.
             assert (clocks <= LAST + 17'd1 && (tick_o || clocks != LAST + 17'd1));
             if (spans) begin
                 assert (n != 17'd0 && sum <= {1'b0, LAST} + 18'd1);

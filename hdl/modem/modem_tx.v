@@ -42,8 +42,7 @@ module modem_tx #(
 
     wire ends   = state == REST && (tx_ready_i || API != 0) && rested;
 
-    // The set-up makes the transmitter begin anew: a packet that it interrupts is sent again,
-    // whole.
+    // The set-up restarts the transmitter: a packet that it interrupts is sent again, whole.
     wire begin_anew = rst_i || !enable_i;
 
     assign rd_valid_o = state == FETCH && packet_valid_i && enable_i && !sent_o;

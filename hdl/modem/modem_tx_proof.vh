@@ -29,7 +29,8 @@
             // Its buffer is released once, when all its bytes have left.
             if (sent_o)
                 assert (packet_valid_i && out == packet_bytes_i && !$past(sent_o));
-            // Behind a packet that the modem does not send at once by its length, the line rests for 320 ticks.
+            // After a packet that the modem does not send at once by its length, the line rests for
+            // 320 ticks.
             if (state == REST && tx_ready_i)
                 assert (ends == (API != 0 || packet_bytes_i == (encrypt_i ? 7'd95 : 7'd100) || (rest[8] && rest[6])));
         end

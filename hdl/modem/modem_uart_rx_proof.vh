@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_uart_rx_proof: a byte from a sender of the same rate comes once, in its stop bit; what no tick samples stays.
+// modem_uart_rx_proof: a byte from a sender of the same rate comes once, in its stop bit; a tick
+// without a sample changes nothing else.
 // Included at the foot of modem_uart_rx.v, only for the prover.
 
-    // The sender gives a tick a clock. Else ticks and line are free, and only what moves is looked at.
+    // The sender takes a tick a clock. Else ticks and line are free, and only changes are checked.
     (* anyconst *) reg sender;
     reg past = 1'b0;
     wire busy = !idle;
@@ -30,7 +31,7 @@
             assert (valid_o == (age == 7'd78));
             if (valid_o)
                 assert (data_o == sent);
-            // The state in each clock of a frame, so that the proof need not find it.
+            // States the registers in each clock of a frame, so that the prover need not find them.
             assert (age <= 7'd90 || age == 7'd127);
             assert (line == (age >= 7'd1 && age <= 7'd80 ? frame[before[6:3]] : 1'b1));
             assert (busy == (age >= 7'd2 && age <= 7'd77));
@@ -40,8 +41,8 @@
                 assert (bits == (({1'b0, sent} << (4'd9 - got)) | (9'h100 >> got)));
             assert (armed || age == 7'd127 || age > 7'd77);
         end
-        // A tick that samples nothing moves `ticks` alone: the simulator skips it. Without one nothing moves, and while
-        // the line rests nothing does.
+        // A tick that samples nothing moves `ticks` alone: the simulator skips it. Without a tick,
+        // or while the line rests, nothing moves.
         if (past && !$past(rst_i) && $past(busy && !(tick_i && ticks == 3'd7)))
             assert (busy && {bits, started, armed} == $past({bits, started, armed}) && !valid_o && !framing_error_o &&
                     ticks == $past(ticks) + {2'd0, $past(tick_i)});

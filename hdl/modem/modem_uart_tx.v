@@ -20,7 +20,7 @@ module modem_uart_tx (
     reg       line;
     reg       busy;
 
-    // Bytes follow each other without a gap; a tick more a byte would cost 1.2 % of the line.
+    // Bytes follow each other without a gap; one more tick a byte would cost 1.2 % of the line.
     wire ends = busy && ticks == 3'd7 && bits == 9'd0;
     assign ready_o = tick_i && (!busy || ends);
     assign txd_o   = line;

@@ -2,8 +2,8 @@
 //
 // core_clock: a clock of clk_i's frequency * MULTIPLY / DIVIDE, at most that of clk_i; on Xilinx's FPGAs a DCM_CLKGEN.
 //
-// It does not belong to clk_i: what goes between the two goes through hdl/cdc. In simulation its edges are at edges of
-// clk_i, so a ratio that is no whole number comes out on average, as of a clock with jitter.
+// It is unrelated to clk_i: crossings go through hdl/cdc. In simulation its edges are at edges of
+// clk_i, so a fractional ratio holds on average, as for a clock with jitter.
 
 `default_nettype none
 

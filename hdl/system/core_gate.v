@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// core_gate: the clock of a core; with GATED it stands still while the core is idle, 16 clocks after it became so.
+// core_gate: the clock of a core; with GATED it stops 16 clocks after the core became idle.
 //
-// The 16 clocks are for what runs on behind a core's idleness: pipelines that empty themselves. On Xilinx's
-// FPGAs the gate is a BUFGCE; its enable comes from flip-flops of clk_i and a few LUTs.
+// The 16 clocks let pipelines behind an idle core empty themselves. On Xilinx's FPGAs the gate is a
+// BUFGCE; its enable comes from flip-flops of clk_i and a few LUTs.
 
 `default_nettype none
 
@@ -28,7 +28,7 @@ module core_gate #(
             always @(posedge clk_i)
                 rest <= active ? 5'd0 : rest + {4'd0, !rest[4]};
 `ifdef VERILATOR
-            reg open; // as the BUFGCE: the enable counts as it is before the clock rises
+            reg open; // as in the BUFGCE: the enable's value before the clock's rise counts
             reg ungated;
             initial ungated = $test$plusargs("ungated") != 0; // for comparisons
             always_latch

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// platform: what every chip has: FSMC bridge, register bus, modem, memory, and the wires between them.
+// platform: the part that every chip has: FSMC bridge, register bus, modem, memory, and the wires
+// between them.
 //
 // An item of a module that has clk_i, platform_ports.vh, the reset `rst`, CLK_HZ, SLOTS, PORTS, READ_FIFO (a bit
 // for each memory port), and the numbers MAP_* of the modem's slot and of the bridge's and modem's ports. It leaves

@@ -43,7 +43,7 @@ module system_slot #(
     reg [63:0] cycles;
     reg [9:0]  error_addr;
     reg        error_write, error_open;
-    reg [31:0] contract;      // the hash of the slot that was asked for
+    reg [31:0] contract;      // the hash of the requested slot
     wire [63:0] lines = {{(64-SLOTS){1'b0}}, slot_irq_i, own_irq};
 
     bus_wrapper #(
@@ -62,7 +62,7 @@ module system_slot #(
 
     assign irq_o = |lines;
 
-    // It is found while it is asked for, so that what is read comes from a register.
+    // looked up on write, so that the read comes from a register
     reg [31:0] asked;
     integer    s;
     always @* begin

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// system_slot_proof: events, errors and the cycle count's latch do as the register table says; without an access
-// nothing moves but the cycle count, n in n clocks: what the simulator adds at once (testbench/sim/quiet_span.cpp).
-// It is included at the foot of system_slot.v, only for the prover.
+// system_slot_proof: events, errors and the cycle count's latch follow the register table; without
+// an access only the cycle count moves, n in n clocks, which the simulator adds at once
+// (testbench/sim/quiet_span.cpp). It is included at the foot of system_slot.v, only for the prover.
 
     reg past = 1'b0;
     (* anyseq *) reg begins; // a span
@@ -36,14 +36,14 @@
             else
                 assert ({error_addr, error_write} == $past({error_addr, error_write}));
             assert (error_open == ($past(access_error_i) || $past(error_open && !clearing)));
-            // The high word stays that of the moment of the low one's read.
+            // The high word stays as it was when the low word was read.
             assert (cycles_high_latched == $past(reg_read && reg_addr == SYSTEM_CYCLES_LO ? cycles[63:32] : cycles_high_latched));
         end
         cover (past && !rst_i && $past(access_error_i && clearing && error_open));
     end
     always @* begin
-        assert (!past || rst_i || error_open == \u_wrapper.sticky [0]); // so that the proof need not find it
+        assert (!past || rst_i || error_open == \u_wrapper.sticky [0]); // so that the prover need not find it
         assert (irq_o == (own_irq || |slot_irq_i));
         if (bus_valid_i && !bus_write_i && !rst_i && bus_addr_i == SYSTEM_EVENT)
-            assert ({bus_rdata_o[31:2], bus_rdata_o[0]} == {30'd0, error_open}); // event and place tell of the same error
+            assert ({bus_rdata_o[31:2], bus_rdata_o[0]} == {30'd0, error_open}); // both of one error
     end

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// wiring: macros declare and connect the signals of slots and memory ports for all that wires blocks together: the chip,
-// its generated cores, and the synthesis of Table I (docs/bus.md, docs/memory.md).
+// wiring: macros that declare and connect the signals of slots and memory ports, for all modules
+// that wire blocks together: the chip, its generated cores, and the synthesis of Table I
+// (docs/bus.md, docs/memory.md).
 
 // SLOT_WIRES declares the wires between the bus decoder and `count` slots; interrupt lines are those of slots 1 and up.
 `define SLOT_WIRES(count) \

@@ -2,8 +2,8 @@
 //
 // axi4lite_rules: AXI4-Lite's handshakes as properties of a master (ARM IHI 0022, A3.1-A3.3, B1.1).
 //
-// The slave's side is assumed, with all its freedom: ready before, with or after valid, a response at any
-// time after the address (and the data), or never.
+// The slave's side is assumed, with all its freedom: ready before, with or after valid, a response
+// at any later time, or never.
 
 `default_nettype none
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_crossing: a slot whose core has a clock of its own: accesses, interrupt and reset go across through hdl/cdc.
+// bus_crossing: a slot whose core has a clock of its own: accesses, interrupt and reset cross
+// through hdl/cdc.
 //
-// An access takes four to five clocks of the core, and six of the chip. One that the core does not answer within TIMEOUT
-// clocks, because its clock stands still or it hangs, ends with an error. The core may still do it later; until it has
-// answered, no other access begins, each ends with an error, and the interrupt line is low.
-// core_valid_o falls by core_ready_i or the core's reset only. The handshake has no reset, so that neither side's can make
-// or lose a request. Constraints: those of cdc_bus, cdc_bit and cdc_reset, written by coremap for each such core.
+// An access takes four to five clocks of the core, and six of the chip. One that the core does not
+// answer within TIMEOUT clocks, because its clock stands still or it hangs, ends with an error. The
+// core may still do it later; until it has answered, each other access ends with an error, and the
+// interrupt line is low. core_valid_o falls by core_ready_i or the core's reset only. The handshake
+// has no reset, so neither side's reset can make or lose a request. Constraints: those of cdc_bus,
+// cdc_bit and cdc_reset, written by coremap for each such core.
 
 `default_nettype none
 
@@ -38,8 +40,8 @@ module bus_crossing #(
 );
     // ---- clk_i
     reg       owes;     // the core has not answered the last request
-    reg       asked;    // that request is the access under way, which waits for the answer
-    reg       answered; // a clock after the answer came: an interrupt that the access has ended is low by now
+    reg       asked;    // that request belongs to the access under way
+    reg       answered; // a clock after the answer: an interrupt that the access has ended is low by now
     reg       deaf;     // the last access was given up
     reg [7:0] patience;
     wire      handed, irq, error;
@@ -79,7 +81,7 @@ module bus_crossing #(
     assign core_valid_o = busy && !core_rst_o;
     always @(posedge core_clk_i) begin
         busy     <= begins || (busy && !ends);
-        ended    <= ends;       // with what the access did to the interrupt
+        ended    <= ends;       // after the access's effect on the interrupt
         core_irq <= core_irq_i; // no glitch of a LUT may cross
         if (ends)
             answer <= {core_error_i || core_rst_o, core_rdata_i};

@@ -31,7 +31,7 @@
         if (!rst_i) begin
             assert (patience + used == TIMEOUT);
             assert (!ask || !owes);                          // one request at a time
-            assert (!asked || owes || answered);             // who waits has a request that is not answered
+            assert (!asked || owes || answered);             // a waiting access has a request without an answer
             assert (!answered || !owes);
             // Each access that succeeds has an answer of its own, to its own request.
             assert (!(bus_valid_i && bus_ready_o && !bus_error_o) || asked);

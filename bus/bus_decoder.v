@@ -43,8 +43,9 @@ module bus_decoder #(
         write  <= bus_write_i;
     end
 
-    // Up to three slots an AND-OR is a LUT a bit. Of more, a number chooses in each group of eight, two LUTs and a MUXF7
-    // a bit, and an AND-OR among the groups. Behind the last slot stand zeros.
+    // Up to three slots an AND-OR is a LUT a bit. Above three, 8:1 multiplexers, two LUTs and a
+    // MUXF7 a bit, choose within groups of eight, and an AND-OR among the groups. Zeros fill the
+    // last group.
     generate
         if (SLOTS < 4) begin : g_few
             reg [31:0] rdata;
@@ -58,7 +59,7 @@ module bus_decoder #(
         end else begin : g_many
             localparam GROUPS = (SLOTS + 7) / 8;
             reg [2:0]            index;
-            reg [GROUPS-1:0]     group; // a single one with room for zeros is always chosen
+            reg [GROUPS-1:0]     group; // the selected group; a single one with room for zeros is always selected
             reg [256*GROUPS-1:0] left;  // each group is halved by each bit of the number
             reg [31:0]           rdata;
             integer g, b, i;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_decoder_proof: what is proven of bus_decoder (formal.bus_decoder); included at its foot, only for the prover.
+// bus_decoder_proof: the properties of bus_decoder (formal.bus_decoder); included at its foot, only
+// for the prover.
 
-    // The master's promises. The decoder's registers depend on the clock before only, so they hold for all inputs.
+    // The master's promises are assumed. The decoder's registers depend only on the clock before,
+    // so they hold for all inputs.
     reg             past = 1'b0;
     reg [10:0]      shown; // address and direction, a clock ago
     reg [SLOTS-1:0] one;   // any one slot

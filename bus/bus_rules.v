@@ -42,16 +42,16 @@ module bus_rules #(
         addr_was  <= addr_i;
         wdata_was <= wdata_i;
     end
-    // The counter and the flag say the same: an induction hint.
+    // The counter and the flag agree: an induction hint.
     always @*
         assert (waiting == (waited != 16'd0));
 
     // Master: a transfer that waits stays as it is; it is withdrawn only when patience is over.
     wire stable    = !waiting || !valid_i
                      || (write_i == write_was && addr_i == addr_was && (!write_i || wdata_i == wdata_was));
-    // The address and the direction are there a clock before valid: the decoder relies on it.
+    // The address and the direction precede valid by a clock: the decoder relies on it.
     wire early     = !valid_i || !past || (addr_i == addr_was && write_i == write_was);
-    // Valid is low between two transfers: what a write does may take a clock.
+    // Valid is low between two transfers: a write's effect may take a clock.
     wire paused    = !valid_i || !ended;
     wire withdrawn = waiting && !valid_i && waited < PATIENCE;
     // Slave: an answer in time; an error comes without data.

@@ -9,8 +9,8 @@
 //   8..15 the core's words at PAGE + 0, 4, .. 28
 //
 // A core that does not answer within TIMEOUT clocks, or answers with an error, ends the access with
-// an error. After a time-out the adapter may still owe the core its end of the transfer: idle_i is low
-// until then, and no access starts.
+// an error. After a time-out the adapter may still wait for the end of the core's transfer: idle_i
+// is low until then, and no access starts.
 
 `default_nettype none
 

@@ -102,7 +102,7 @@ module bus_wrapper #(
     always @* begin
         // Another block's register is never strobed by a word that does not exist.
         assert (!(reg_write_o && bus_error_o));
-        // A word is the wrapper's own, or the block's as it is, or 0.
+        // A read gives the wrapper's word, the block's, or 0.
         if (bus_addr_i > MASK)
             assert (bus_rdata_o == (exists ? reg_rdata_i : 32'd0));
         else if (ZERO == 0)

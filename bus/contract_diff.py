@@ -25,7 +25,7 @@ def fail(text):
 
 
 def blocks_of(tree, slice2c, work):
-    """Descriptions by block: those written by hand and those made of Slice files."""
+    """Returns descriptions by block: those written by hand and those made of Slice files."""
     os.makedirs(work)
     files = [f for r in ROOMS for f in glob.glob(os.path.join(tree, r, "**", "*.regs.json"), recursive=True)]
     for ice in [f for r in ROOMS for f in glob.glob(os.path.join(tree, r, "**", "*.ice"), recursive=True)]:
@@ -47,7 +47,7 @@ def blocks_of(tree, slice2c, work):
 
 
 def places(registers, events):
-    """Where each name is: name -> (where in words, width in bits, access)."""
+    """Returns the place of each name: name -> (place in words, width in bits, access)."""
     there = {}
     for r in registers:
         word = "word %d" % r["word"] + (", PAGE 0x%X" % r["page"] if r.get("page", -1) >= 0 else "")
@@ -60,7 +60,7 @@ def places(registers, events):
 
 
 def compare(old, new):
-    """Two descriptions of one block: what breaks, what is compatible."""
+    """Compares two descriptions of one block: breaking changes, compatible ones."""
     breaking, compatible = [], []
     for key in ("type", "memory_bytes"):
         before, after = old.get(key, 0), new.get(key, 0)
@@ -79,7 +79,7 @@ def compare(old, new):
             breaking.append(f"{name} has {now_width} bits, and had {width}")
         elif now_width > width:
             compatible.append(f"{name} has {now_width} bits, and had {width}")
-        # A register that could only be read, and can be written now, breaks nobody.
+        # A register that was read-only and can be written now breaks nobody.
         if now_access != access and "." not in name:
             ((compatible if (access, now_access) == ("ro", "rw") else breaking)
              .append(f"{name} is {now_access}, and was {access}"))

@@ -48,7 +48,7 @@ class Component:
 
 
 class Reader:
-    """A file as a tree: each component's children are (instance's name, msb, lsb, reset, address, component)."""
+    """Reads a file as a tree: each component's children are (instance's name, msb, lsb, reset, address, component)."""
 
     def __init__(self, path):
         with open(path) as f:
@@ -161,7 +161,7 @@ def text_of(component):
 
 
 def register_of(name, reg, word):
-    """A register of a description, and the resets of its fields."""
+    """Returns a register of a description, and the resets of its fields."""
     fields, resets, accesses, used, next_bit = [], {}, set(), 0, 0
     overlap = False
     for field_name, msb, lsb, reset, _, field in reg.children:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""foreign_axis: what new_foreign.py writes for a core with an AXI-Stream in and one out (BUS=axis).
+"""foreign_axis: writes the files of a core with an AXI-Stream in and one out, for new_foreign.py (BUS=axis).
 
-It becomes a core with the operation `process`: a sequence goes in, the sequence that comes out is the answer. Wrapper,
-servant and proxies are generated from its Slice interface; axis_filter brings the words.
+The core gets the operation `process`: a sequence goes in, and what comes out is the answer.
+Wrapper, servant and proxies are generated from its Slice interface; axis_filter moves the words.
 """
 import re
 
@@ -18,7 +18,7 @@ NPI = [("output", 32, "addr_o"), ("output", 1, "addr_req_o"), ("input", 1, "addr
 
 
 def role(name, port):
-    """s_ and the signal of the stream into the core, m_ of the one out of it, or None."""
+    """Returns s_ and the signal of the stream into the core, m_ of the one out of it, or None."""
     found = re.search(f"({'|'.join(SIGNALS)})(_[io])?$", name.lower())
     if not found:
         return None
@@ -27,7 +27,7 @@ def role(name, port):
 
 
 def problem(top, ports, roles):
-    """What is wrong with the module's streams, or None."""
+    """Returns what is wrong with the module's streams, or None."""
     widths = [len(p["bits"]) for n, p in ports.items() if roles[n] in ("s_tdata", "m_tdata")]
     if widths[0] != widths[1] or widths[0] not in ELEMENTS:
         return f"tdata of {top} has {widths[0]} and {widths[1]} bits: it must be 8, 16, 32 or 64 in both directions"
@@ -40,12 +40,12 @@ def camel(name):
 
 
 def setting(name):
-    """The operation that sets a port, without its `set`, in snake_case."""
+    """Returns the operation that sets a port, without its `set`, in snake_case."""
     return re.sub(r"^i_|_i$", "", name.lower())
 
 
 def texts(name, top, params, ports, roles, pin_name, vector, slot):
-    """The files by their names: interface, module, test, mission."""
+    """Returns the files by their names: interface, module, test, mission."""
     type_name = camel(name)
     by_role = {r: n for n, r in roles.items()}
     width = len(ports[by_role["s_tdata"]]["bits"])

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""foreign_files: what new_foreign.py reads of a third-party core's files: which modules there are, and TOP's ports."""
+"""foreign_files: what new_foreign.py reads from a third-party core's files: its modules, and TOP's ports."""
 import json
 import os
 import re
@@ -43,7 +43,7 @@ def folders_of(files):
 
 
 def declared(files, kind):
-    """The modules, entities or packages of the files: (name, file, line)."""
+    """Returns the modules, entities or packages of the files: (name, file, line)."""
     found = []
     for f in files:
         text = re.sub(r"/\*.*?\*/|//[^\n]*", lambda m: "\n" * m.group().count("\n"), text_of(f), flags=re.S)
@@ -53,7 +53,7 @@ def declared(files, kind):
 
 
 def only_once(modules, what_to_do):
-    """Where each module is; one that is in two files is an error."""
+    """Returns the file of each module; a module in two files is an error."""
     first = {}
     for name, file, line in modules:
         other, at = first.setdefault(name, (file, line))
@@ -68,7 +68,7 @@ def check_names(slot, top, files):
     kind = "entity" if is_vhdl(files[0]) else "module"
     there = declared(files, kind)
     names = [n for n, *_ in there]
-    if kind == "entity":  # whose names have no case; GHDL writes them as they are declared
+    if kind == "entity":  # its names have no case; GHDL writes them as declared
         top = next((n for n in names if n.lower() == top.lower()), top)
     if top not in names:
         fail(f"there is no {kind} '{top}' in FILES; there is {', '.join(names) or 'none'}")
@@ -98,8 +98,8 @@ HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may name headers, too: `in
 
 
 def run_tool(what, top, command):
-    """Runs a tool that reads the core; what it refuses is an error, with what to do about it. Without `what`: says whether
-    it does."""
+    """Runs a tool that reads the core; a refusal is an error, with advice. Without `what`: returns whether the tool
+    accepts it."""
     run = subprocess.run(command, capture_output=True, text=True)
     if run.returncode and what:
         said = (run.stdout + run.stderr).rstrip()
@@ -135,7 +135,7 @@ def read_module(top, files, headers=(), params=(), defines=(), is_whole=True):
 
 
 def filled(file, defines):
-    """The file's text with macros and the paths of what it reads by $readmemh: a simulation runs in any folder."""
+    """Returns the file's text with macros and absolute paths for $readmemh, since a simulation runs in any folder."""
     def path(m):
         there = os.path.join(os.path.dirname(file), m.group(1))
         return f'"{there}"' if os.path.isfile(there) else m.group()
@@ -147,8 +147,8 @@ def filled(file, defines):
 
 
 def copies_for_verilator(top, files, headers, defines):
-    """Texts by the files that they stand for, with macros, paths of data and, where Verilator needs it, words of SystemVerilog as
-    names."""
+    """Returns texts by the files that they replace, with macros, paths of data and, where Verilator needs it,
+    SystemVerilog's words as names."""
     lint = ["verilator", "--lint-only", *FLAGS, "--top-module", top, *("-I" + d for d in folders_of([*files, *headers])), *("-D" + d for d in defines)]
     copies = {f: t for f in files if (t := filled(f, defines)) != text_of(f)}
     if run_tool(None, top, [*lint, *files]):

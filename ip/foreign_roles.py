@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""foreign_roles: what new_foreign.py takes the ports of a third-party core for: by their names, and by PORTS."""
+"""foreign_roles: finds the role of each port of a third-party core, by its name and by PORTS."""
 import re
 
 import foreign_axis
@@ -7,7 +7,7 @@ from foreign_files import fail
 
 CLOCK = r"[aph]?(clk|clock)"
 RESET = r"[aph]?n?(rst|reset)[nb]?"
-# What stands beside these words in names of other signals: clk_en, gate_clk_pad_i.
+# Parts of a signal's name that make it another signal than these words: clk_en, gate_clk_pad_i.
 NO_CLOCK = {"en", "ena", "enable", "ce", "sel", "div", "gate", "ext", "pad"}
 INTERRUPTS = {"int", "inta", "intr", "irq", "interrupt"}
 AXI = ["awvalid", "awready", "awaddr", "awprot", "wvalid", "wready", "wdata", "wstrb", "bvalid", "bready", "bresp",
@@ -18,12 +18,13 @@ WISHBONE = {"input": {"cyc": "cyc", "stb": "stb", "we": "we", "adr": "adr", "add
 # "apb": AMBA APB 2 to 4 (ARM IHI 0024), without waking and user signals.
 APB = {"psel": "stb", "penable": "enable", "pwrite": "we", "paddr": "adr", "pwdata": "wdata", "pstrb": "sel", "pwstrb": "sel", "pprot": "low",
        "prdata": "rdata", "pready": "ack", "pslverr": "err"}
-# What a bus may have, too, and what is said there: single transfers of whole words; its outputs are left open.
+# Optional signals of a bus, tied off for single transfers of whole words; outputs are left open.
 TIED = {"axil": {**dict.fromkeys("awid awlen awlock awcache awqos awregion awuser wuser arid arlen arlock arcache arqos arregion aruser".split(), "low"),
                  "wlast": "high", "awburst": "1", "arburst": "1", "awsize": "2", "arsize": "2",
                  **dict.fromkeys(("bid", "buser", "rid", "rlast", "ruser"), "open")},
         "wishbone": dict.fromkeys(("cti", "bte", "lock"), "low")}
-# "memory": chip select, write enable, address of a word, data; what is read is there in the same clock.
+# "memory": chip select, write enable, address of a word, data; read data is there in the same
+# clock.
 MEMORY = {"cs": "stb", "ce": "stb", "we": "we", "address": "adr", "addr": "adr", "write_data": "wdata", "wdata": "wdata",
           "din": "wdata", "read_data": "rdata", "rdata": "rdata", "dout": "rdata"}
 # Words for ROLE=port. select is high until the answer, strobe for one clock; read and write beside neither are both.
@@ -42,7 +43,7 @@ def is_answer(signal):
 
 
 def role(name, port, bus):
-    """What a port is: clock, reset, interrupt, a signal of the bus, or "" for a pin."""
+    """Returns a port's role: clock, reset, interrupt, a signal of the bus, or "" for a pin."""
     tokens = name.lower().split("_")
     is_input = port["direction"] == "input"
     if is_input and len(port["bits"]) == 1 and not NO_CLOCK & set(tokens):
@@ -72,9 +73,9 @@ def role(name, port, bus):
 
 
 def roles_of(top, bus, ports, given):
-    """Each port's role, and after how many clocks a core without `ack` answers, or None; `given` is ROLE=port."""
+    """Returns each port's role, and the clocks until a core without `ack` answers, or None; `given` is ROLE=port."""
     roles = {n: role(n, p, bus) for n, p in ports.items()}
-    # The signals of the bus by their own names, too, where no word means them.
+    # The bus' own names, too, where they are no role's word.
     words = {**{r: r for r in NEEDED[bus] + (AXI if bus == "axil" else [])}, **ROLES}
     say = {v: k for k, v in ROLES.items()} if bus != "axis" else {}
     known, latency = ", ".join(ports), None

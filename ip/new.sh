@@ -33,7 +33,7 @@ taken=$(find bus hdl ip sw testbench -name "$name.regs.json" -o -name "${name}_w
 taken=$(grep -rliE --include='*.v' --include='*.vhd' "^ *(module|entity) +${name}(_wrapper)?\b" bus hdl ip synth || true)
 [ -z "$taken" ] || fail "there is a module '$name' in $taken"
 type=$(echo "$name" | sed -E 's/(^|_)([a-z])/\U\2/g')
-# The folder takes its place when it is complete.
+# The folder is moved to its place when it is complete.
 mkdir -p "$build"
 work=$(mktemp -d "$build/new-ip.XXXXXX")
 trap 'rm -rf "$work"' EXIT
@@ -66,7 +66,7 @@ else
 fi
 mv "$folder" ip
 folder=ip/$name
-# A build folder notices the new one by itself; it is asked now, while the folder can be taken back.
+# A build folder finds the new one by itself; it runs now, while the folder can still be removed.
 if [ -f "$build/build.ninja" ] && ! cmake "$build" >"$build/new-ip.log" 2>&1; then
     rm -r "$folder"
     cmake "$build" >/dev/null 2>&1 || true

@@ -16,8 +16,8 @@ if [ -z "${FORCE:-}" ] && git rev-parse --git-dir >/dev/null 2>&1; then
     [ -z "$changed" ] || fail "ip/$name has changes that are not committed (FORCE=1 takes it away all the same):
 $changed"
 fi
-# Lines whose inputs are this core's outputs. An input that only other cores drive ("internal") is 0 from then on; any other would
-# become a pin of the chip.
+# Lines whose inputs are this core's outputs. An input that only other cores drive ("internal") is 0
+# from then on; any other would become a pin of the chip.
 users=$(sed 's/#.*//' ip/cores.list | grep -E "=$name\." | while read -r user words; do
     for word in $words; do
         case $word in

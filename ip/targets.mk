@@ -6,7 +6,8 @@ TEST ?=
 ICE ?=
 FORCE ?=
 
-# LANG is the core's language here, not that of messages, for which programs would take it; the environment's is the latter.
+# LANG here is the core's language. The environment's LANG is hidden from programs, which would take
+# it for messages.
 new-ip: language = $(if $(filter command,$(origin LANG)),$(LANG),$(filter verilog vhdl,$(LANG)))
 new-ip: export LC_ALL := C.UTF-8
 new-ip: $(BUILD)/build.ninja ## begin a core: NAME=low_pass LANG=verilog|vhdl [ICE=file] writes ip/low_pass, which builds and passes its test
@@ -30,7 +31,7 @@ new-foreign: $(BUILD)/build.ninja ## put a third-party core into a slot: NAME=my
 FOREIGN_NEW := foreign_aes=aes=memory=aes foreign_uart=wbuart=wishbone=wbuart32=24000000 foreign_axil=axiluart=axil=wbuart32 \
     foreign_i2c=i2c_master_top=wishbone=i2c foreign_cobs=axis_cobs_encode=axis=verilog-axis
 foreign_slots = foreign_spi $(foreach f,$(FOREIGN_NEW),$(firstword $(subst =, ,$(f))))
-# Third-party cores come from the network, so they are no part of the rest.
+# Third-party cores come from the network, so they are apart.
 foreign: setup-tests ## put third-party cores (Wishbone, AXI4-Lite, AXI-Stream and plain buses in Verilog, records in VHDL) and two of one's own through the recipe, in three orders, test them and call them by radio; downloads them (CHIP=1: and what each costs in that chip)
 	@cmake/fetch.sh foreign build/foreign-cores
 	@cmake/fetch.sh ghdl build/foreign-cores/ghdl
@@ -56,7 +57,7 @@ core-folders: $(BUILD)/build.ninja
 ip-test: core-folders ## build and test one core: IP=fir (CORE_FOLDERS=/path/to/it where it is not in ip/)
 	@SEED=$(SEED) ip/test.sh '$(BUILD)' '$(IP)' '$(JOBS)'
 
-# CHIP=1: in the chip as it is listed now, which takes minutes, instead of the accepted one.
+# CHIP=1: in the chip as listed now, which takes minutes, instead of the accepted one.
 CHIP ?=
 ip-synth: core-folders ## utilisation of one core, alone and in the chip: IP=fir (CORE_FOLDERS=/path/to/it where it is not in ip/; CHIP=1: the chip of today, not the accepted one)
 	@grep -qx '$(or $(IP),none)' $(BUILD)/cores.known || { echo "ip-synth: IP=name of a core, not '$(IP)'" >&2; exit 1; }

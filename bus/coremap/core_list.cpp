@@ -190,7 +190,7 @@ private:
         }
     }
 
-    // clock=3/8: of the chip's clock, by a DCM_CLKGEN; the pin clock_i is then none.
+    // clock=3/8: of the chip's clock, by a DCM_CLKGEN; there is no pin clock_i then.
     static void setClock(Core& c, const std::string& value) {
         char end = 0;
         if (std::sscanf(value.c_str(), "%3u/%3u%c", &c.multiply, &c.divide, &end) != 2 ||
@@ -267,8 +267,8 @@ private:
     }
 
     // Places buffers. A wrapper keeps only the address bits above the size of its buffers, so each
-    // core's are at a multiple of it. Those that memory= places come first, the others into what is
-    // left, in order.
+    // core's are at a multiple of it. Buffers with memory= come first, the others into the gaps, in
+    // order.
     void giveMemory() {
         std::vector<const Core*> placed;
         auto neighbour = [&](const Core& c) -> const Core* {

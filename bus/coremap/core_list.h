@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// core_list: the lines of ip/cores.list, and what the chip gives each of them (docs/hw-mapping.md).
+// core_list: the cores in ip/cores.list, with the resources that the chip gives each
+// (docs/hw-mapping.md).
 
 #ifndef CORE_LIST_H
 #define CORE_LIST_H
@@ -12,12 +13,12 @@
 #include <vector>
 
 struct Pin {
-    std::string name; // of the core's port; its end says the direction
+    std::string name; // the core's port; its end says the direction
     unsigned width = 1;
-    unsigned lsb = 0;        // in the chip's core_pins_i or core_pins_o; bits
-    std::string source;      // instead of a pin: another core's output
-    bool isInternal = false; // for other cores only: never a pin; an input that is not wired is 0
-    std::vector<std::string> places; // of its bits on the board, from bit 0; none: not said
+    unsigned lsb = 0;                // in the chip's core_pins_i or core_pins_o; bits
+    std::string source;              // instead of a pin: another core's output
+    bool isInternal = false;         // for other cores only, never a pin; unconnected inputs are 0
+    std::vector<std::string> places; // of its bits on the board, from bit 0; empty: not given
     bool isPin() const { return source.empty() && !isInternal; }
     bool isOut() const { return name.back() == 'o'; }
 };
@@ -34,21 +35,21 @@ struct Core {
     int port = -1;            // memory port; -1: none
     unsigned memory = 0;      // DDR3 byte address of its buffers, a multiple of memoryBytes
     unsigned memoryBytes = 0; // a power of two, or 0: no buffers
-    bool isPlaced = false;    // memory= says where
+    bool isPlaced = false;    // memory= gives its address
     std::string servantType, servantHeader;
     std::vector<Pin> pins;
     std::string constraints; // <folder>.ucf beside its description, or nothing
     bool hasClock = false;   // the module has the parameter CLK_HZ
     unsigned ownClock = 0;   // Hz at most of its own clock; 0: it has the chip's
-    // The chip's clock times this part is the own one; 0: the pin clock_i, its last, brings it.
+    // Its own clock is the chip's clock times this ratio; 0: the pin clock_i, its last, brings it.
     unsigned multiply = 0, divide = 1;
-    // Returns the frequency of its own clock, Hz; of one that a pin brings, the highest.
+    // Returns the frequency of its own clock, Hz; for a clock from a pin, the highest.
     double clockHz() const { return multiply ? 100e6 / divide * multiply : ownClock; }
     bool saysIdle = false;       // the module has the output idle_o
-    bool hasGate = false;        // its clock stands still while it is idle, on the board, too
+    bool hasGate = false;        // its clock stops while it is idle, on the board, too
     bool isProbe = false;        // it has cycles_i and signals_i
     std::vector<Signal> signals; // of a probe, from bit 0 of signals_i on
-    // Without a servant of its own it has the one of sw/hw/registers.
+    // A core without a servant has the one of sw/hw/registers.
     bool isGeneric() const { return servantType.empty(); }
 };
 
@@ -68,7 +69,7 @@ Chip readCores(const std::string& list, const nlohmann::json& base,
 unsigned changeWords(const Core& probe);
 // Hash of its signals' names and widths.
 uint32_t namesOf(const Core& probe);
-nlohmann::ordered_json probesOf(const Chip& chip); // what each probe records, for the ground
+nlohmann::ordered_json probesOf(const Chip& chip); // the signals of each probe, for the ground
 
 nlohmann::ordered_json mapOf(const Chip& chip, const nlohmann::ordered_json& base);
 std::string pinTableOf(const Chip& chip);    // pins by name, for the simulator

@@ -70,7 +70,7 @@ std::string probed(const Chip& chip) {
            "`endif\n" + ends + "\n";
 }
 
-// Returns the wire of the output, core.pin, that brings this input.
+// Returns the wire of the output, core.pin, that drives this input.
 std::string sourceNet(const Pin& p) {
     std::string net = "pin_" + p.source;
     net[net.find('.')] = '_';
@@ -283,8 +283,8 @@ static std::string ownConstraints(const Core& c) {
     return s;
 }
 
-// A clock of the core's own: its period; between it and the chip's a step has 8 ns to arrive, so
-// that two bits, or a word and its flag, are at most a clock of 10 ns apart.
+// A clock of the core's own: its period. Between it and the chip's a path has 8 ns, so two bits, or
+// a word and its flag, arrive at most a clock of 10 ns apart.
 static std::string clockConstraints(const Core& c) {
     if (!c.ownClock)
         return "";
@@ -319,7 +319,7 @@ std::string constraintsOf(const Chip& chip) {
     return s;
 }
 
-// The C of one core's servant: its own, or the one that any core's registers have.
+// The C of one core's servant: its own, or the one for a core without its own.
 static std::string servantOf(const Core& c) {
     std::string table, init = c.servantType, arguments = "MAP_MEMORY_" + upper(c.name);
     if (c.isGeneric()) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// coremap: the chip's cores, a line each in ip/cores.list, as map.regs.json (slots, memory ports,
-// buffers in DDR3, pins), soc_cores.vh (their instances, for soc.v), soc_cores.c (their servants),
-// soc_pins.h (for the simulator), core_pins.ucf (for ISE) and probes.json (what probes record).
+// coremap: writes the cores of ip/cores.list, a line each, as map.regs.json (slots, memory ports,
+// buffers in DDR3, pins), soc_cores.vh (instances, for soc.v), soc_cores.c (servants), soc_pins.h
+// (for the simulator), core_pins.ucf (for ISE) and probes.json (the probes' signals).
 
 #include "core_list.h"
 #include <CLI/CLI.hpp>

@@ -29,7 +29,7 @@ struct Field {
 struct Register {
     std::string name, access, doc;
     unsigned word = 0, width = 32;
-    int page = -1; // what PAGE is to be for it: a byte address in a core behind an adapter
+    int page = -1; // the PAGE that it needs: a byte address in a core behind an adapter
     std::vector<Field> fields{};
 };
 struct Constant {
@@ -58,7 +58,7 @@ void check(bool ok, const std::string& what) {
         throw std::runtime_error(what);
 }
 
-// Adds the words every slot begins with: who it is, its sticky events, their mask.
+// Adds the words that every slot begins with: its id, its sticky events, their mask.
 void addCommonWords(Block& b, const json& j) {
     Register event{"EVENT", "w1c", "sticky events; write 1 to clear", 1};
     Register mask{"MASK", "rw", "1: the event drives the interrupt line", 2};
@@ -156,7 +156,7 @@ std::string table(const Block& b) {
         for (const Field& f : r.fields)
             entry(r, r.name + "." + f.name, f.lsb, f.width);
     }
-    s.back() = '\n'; // C90 has no comma there
+    s.back() = '\n'; // C90 allows no comma there
     return s;
 }
 
@@ -224,7 +224,7 @@ std::string markdown(const Block& b) {
                "reads as 0.\n";
 }
 
-// The block, a core with a clock of its own, as one with a slot's ports: clock_i is that clock.
+// The block, a core with a clock of its own, with a slot's ports; clock_i is its clock.
 std::string clocked(const Block& b, const json& j, bool hasClkHz) {
     check(
         !j.value("memory_port", false),

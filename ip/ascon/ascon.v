@@ -3,7 +3,8 @@
 // ascon: Ascon-AEAD128 and Ascon-Hash256 (NIST SP 800-232) over buffers in DDR3, a round a clock.
 // Registers: ascon.regs.json. Page: README.md.
 //
-// State, key and message move in 64-bit words, byte n of memory in bits 8n+7..8n, as the standard has it.
+// State, key and message move in 64-bit words, byte n of memory in bits 8n+7..8n, as in the
+// standard.
 
 `default_nettype none
 
@@ -45,17 +46,17 @@ module ascon (
     // Initial values, sections 4 and 5: version, rounds, tag or digest bits, rate.
     localparam [63:0] IV_AEAD = 64'h00001000_808C0001, IV_HASH = 64'h00000801_00CC0002;
     localparam [3:0]  TWELVE_ROUNDS = 4'd0, EIGHT_ROUNDS = 4'd4, LAST_ROUND = 4'd11;
-    localparam [1:0]  ASSOCIATED = 2'd0, MESSAGE = 2'd1, WIPE = 2'd2; // what is passed over
+    localparam [1:0]  ASSOCIATED = 2'd0, MESSAGE = 2'd1, WIPE = 2'd2; // kinds of data under way
     localparam [3:0]  WAIT_FOR_START = 4'd0, ROUNDS = 4'd1, FIRST_WORDS = 4'd2, ADD_KEY = 4'd3, LOAD_SIZE = 4'd4,
                       SEPARATE = 4'd5, LOAD_TARGET = 4'd6, LOAD_SOURCE = 4'd7, WORD = 4'd8, FINAL_KEY = 4'd9,
                       LOAD_TAG = 4'd10, TAG_WORD = 4'd11, DIGEST = 4'd12, FLUSH = 4'd13, DRAIN = 4'd14, CLEAR = 4'd15;
 
-    reg [3:0]   state, after;   // after: what follows ROUNDS
-    // state is ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, WAIT_FOR_START: much hangs on these
+    reg [3:0]   state, after;   // after: the state behind ROUNDS
+    // state is ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, WAIT_FOR_START: flip-flops, for their fan-out
     reg         in_rounds, in_word, in_source, in_tag, idle;
     reg [1:0]   pass;
     reg         decrypt, hash;
-    reg [319:0] s;              // S4 .. S0; 0 while nothing is under way, but for the nonce in S4, S3
+    reg [319:0] s;              // S4 .. S0; while idle 0, except for the nonce in S4, S3
     reg [127:0] key;
     reg [2:0]   key_words, nonce_words; // written, 4 at most
     reg [3:0]   round;
@@ -64,9 +65,9 @@ module ascon (
     reg [1:0]   index;          // of the word in its block, key, tag or digest
     reg         differs, valid, aborted, wipe;
     reg         clear, acting;  // s becomes 0; that, or a command: an access waits
-    reg [4:0]   command;        // what was written to CONTROL, in the clock after
+    reg [4:0]   command;        // the write to CONTROL, in the clock after
     reg [31:0]  job [0:7];      // words AD_SIZE..TAG by their low address bits
-    reg [7:0]   bad;            // of those, what is not aligned or too long
+    reg [7:0]   bad;            // of those, misaligned or too long
 
     // ---- registers ----
     wire        reg_write, reg_read, ready, done, refused;
@@ -86,7 +87,7 @@ module ascon (
         .reg_rdata_i(is_job ? job[reg_addr[2:0]] : reg_addr == ASCON_STATUS ? status : 32'd0),
         .event_i({refused, done}), .irq_o(irq_o));
 
-    // Commands act a clock later, from registers: 448 flip-flops hang on FORGET. No access comes
+    // Commands act a clock later, from registers: FORGET drives 448 flip-flops. No access comes
     // between.
     wire start   = idle && |command[2:0] && command[4:3] == 2'd0;
     wire aead    = !command[ASCON_CONTROL_HASH_LSB];
@@ -109,7 +110,7 @@ module ascon (
     end
 
     // ---- memory ----
-    reg [2:0] wanted; // the register that the state looks at
+    reg [2:0] wanted; // the register that the state reads
     always @* case (state)
         LOAD_SIZE:   wanted = pass == ASSOCIATED ? ASCON_AD_SIZE[2:0] : ASCON_SIZE[2:0];
         LOAD_TARGET: wanted = ASCON_TARGET[2:0];
@@ -123,7 +124,7 @@ module ascon (
     wire        both_idle = read_idle && write_idle;
     wire [23:0] words = in_tag ? 24'd2 : {3'd0, left[23:3]} + {23'd0, |left[2:0]};
 
-    // Bytes of this word: all eight, or what is left, padded by a one.
+    // Bytes of this word: all eight, or the remaining ones, padded by a one.
     wire        last = in_word && few;
     wire [7:0]  be   = last ? ~(8'hFF << left[2:0]) : 8'hFF;
     wire [63:0] pad  = last ? 64'd1 << {left[2:0], 3'd0} : 64'd0;
@@ -158,8 +159,8 @@ module ascon (
     assign npi_rd_flush_o = 1'b0;
 
     // ---- state of 320 bits: a round, or one of its words plus an operand ----
-    // The operand is a word of the message, the key, the nonce or a constant. What is added is that, or, when
-    // decrypting, what makes the rate equal to the ciphertext; kept as a net, since 72 LUTs go without.
+    // The operand is a word of the message, the key, the nonce or a constant. When decrypting, the
+    // sum makes the rate equal to the ciphertext. It is kept as a net, which saves 72 LUTs.
     wire        key_high = state == FIRST_WORDS ? index[1] : index[0];
     wire        use_key  = state == ADD_KEY || state == FINAL_KEY || (state == FIRST_WORDS && index != 2'd0);
     wire        use_iv   = state == FIRST_WORDS && index == 2'd0;
@@ -169,7 +170,7 @@ module ascon (
                            {state == SEPARATE, 63'd0};
     wire        second   = index[0] && state != DIGEST;
     wire [63:0] chosen   = state == TAG_WORD ? (second ? s[319:256] : s[255:192]) : second ? s[127:64] : s[63:0];
-    wire [63:0] sum      = chosen ^ operand; // encrypted, decrypted, a tag (its difference) or a digest
+    wire [63:0] sum      = chosen ^ operand; // encrypted or decrypted bytes, a tag (its difference) or a digest
     (* keep *) wire [63:0] added    = ((decrypt && in_word && pass == MESSAGE ? sum : operand) & mask) ^ pad;
 
     // The bits of `takes` choose the halves of words that take the sum.

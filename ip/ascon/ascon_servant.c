@@ -9,7 +9,7 @@
 #define TIMEOUT_MS 100U /* 1024 bytes take 2200 clocks */
 #define KEY_BYTES 16
 
-/* Buffers, from the core's memory on. */
+/* Buffers, from the core's memory address on. */
 #define ASSOCIATED 0U
 #define MESSAGE 1024U
 #define RESULT 2048U
@@ -58,9 +58,9 @@ static int fits(const Cores_Bytes* bytes) {
     return bytes->size <= ASCON_LIMIT;
 }
 
-/* Returns 1 if the core hangs: a message that was given up is not yet ended, since the memory does
- * not answer. It would ignore a key, a nonce or a start, and the end of the old message would be
- * taken for that of the next one. */
+/* Returns 1 if the core hangs: an earlier message has not ended, since the memory does not answer.
+ * The core would ignore a key, a nonce or a start, and the end of the old message would look like
+ * the end of the next. */
 static int hangs(const Ascon_Core* self) {
     return (FSMC_read(self->core.slot, ASCON_STATUS) & ASCON_STATUS_BUSY_MASK) != 0;
 }

@@ -80,7 +80,7 @@ TEST(AsconServant, WhileTheCoreHangsNothingIsTakenForAnAnswer) {
     slot.memory_.hold(false);
     slot.bench_.waitFor([&] { return !(slot.bus_.read(ASCON_STATUS) & ASCON_STATUS_BUSY_MASK); },
                         "the core to give up", 1000);
-    // The answer to what was given up comes when the next call has begun: before the interrupt.
+    // The answer to the call that was given up comes when the next has begun, before the interrupt.
     ASSERT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, nullptr), ICE_OK);
     auto want = asconEncrypt(key, nonce, message, message);
     EXPECT_EQ(hex(AsconBytes(text.data, text.data + text.size)), hex(want.text));

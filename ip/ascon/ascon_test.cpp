@@ -170,8 +170,8 @@ TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
         ASSERT_EQ(hex(sealed.text), hex(want.text)) << associated.size() << ", " << message.size();
         ASSERT_EQ(hex(sealed.tag), hex(want.tag));
         EXPECT_EQ(memory_.byte(tagBase_ + 16), 0) << "16 bytes, no more";
-        // Each bit of what is protected is changed in turn: the tag is wrong, and nothing of the
-        // message is left.
+        // Each bit of the protected data is changed in turn: the tag is wrong, and nothing of the
+        // message remains.
         auto forged = sealed;
         auto forgedAd = associated;
         uint8_t bit = static_cast<uint8_t>(1u << random_.below(8));
@@ -217,8 +217,7 @@ TEST_F(AsconTest, ADigestWaitsForRoomInTheMemorysFifo) {
 
 TEST_F(AsconTest, CountsSizesOfUpTo16MiB) {
     put(ASCON_KEY, sixteen(0));
-    // A size bit that is not counted makes an empty message of it, or one for which nothing is
-    // read.
+    // A size bit that the core ignores makes an empty message, or one without a read.
     auto goesOn = [&](uint32_t how) {
         uint64_t before = memory_.reads();
         put(ASCON_NONCE, sixteen(1));
@@ -291,7 +290,7 @@ TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
     bus_.write(ASCON_CONTROL, ASCON_CONTROL_ABORT_MASK);
     EXPECT_EQ(hex(encrypt(sixteen(1), {}, counted(9, 5)).text),
               hex(asconEncrypt(sixteen(2), sixteen(1), {}, counted(9, 5)).text));
-    // A nonce may follow at once; a start beside an abort is none.
+    // A nonce may follow at once; a start together with an abort has no effect.
     for (uint32_t how :
          {ASCON_CONTROL_ABORT_MASK, ASCON_CONTROL_ABORT_MASK | ASCON_CONTROL_ENCRYPT_MASK}) {
         put(ASCON_NONCE, sixteen(5));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// known_answers: NIST SP 800-232's known answers. A test's own answers are written as the
-// standard's authors published theirs, and the text's SHA-256 must be that of the published file.
+// known_answers: NIST SP 800-232's known answers. A test's own answers are written in the format of
+// the standard's authors, and the text's SHA-256 must be that of the published file.
 
 #ifndef KNOWN_ANSWERS_H
 #define KNOWN_ANSWERS_H
@@ -22,7 +22,7 @@ inline std::string sha256(const std::string& text) {
     return hex(digest);
 }
 
-// `seal` returns the text with its tag behind it, for key 00 01 .., nonce 10 11 .., and these.
+// `seal` returns the text followed by its tag, for key 00 01 .., nonce 10 11 .., and these.
 inline std::string aeadAnswers(const std::function<AsconBytes(const AsconBytes& associated,
                                                               const AsconBytes& message)>& seal) {
     std::string text;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// camera: frames of a parallel sensor port into three buffers in DDR3; whole ones are handed on.
+// camera: writes frames of a parallel sensor port into three buffers in DDR3, and hands on whole
+// ones.
 // Registers: camera.regs.json. Page: README.md.
 //
-// frame_valid_o offers the newest frame, in buffer frame_index_o, to another core; what that takes with
-// frame_take_i is not written until it takes another.
+// frame_valid_o offers the newest frame, in buffer frame_index_o, to another core. A frame that it
+// takes with frame_take_i is not overwritten until it takes another.
 
 `default_nettype none
 
@@ -56,10 +57,10 @@ module camera (
                      WAIT_FOR_MEMORY = 3'd5;
 
     reg [2:0]  state;
-    reg        capturing, listening; // state is CAPTURE; is one in which tokens are taken
+    reg        capturing, listening; // state is CAPTURE; the state takes tokens
     reg        stopping;             // no further frame
-    reg        whole;                // the frame that ends, or has ended, is good
-    reg        again;                // the next one has begun already
+    reg        whole;                // the frame that ends, or has ended, is whole
+    reg        again;                // the next frame has begun already
     reg [15:0] width, height, x, y;
     reg [31:0] base, stride;         // of the buffers in use
     reg [31:0] size, set_base, set_stride;
@@ -77,7 +78,7 @@ module camera (
     async_fifo #(.WIDTH(11), .LOG2(5)) u_fifo (
         .write_clk_i(pclk_i), .push_i(push), .data_i(token_in), .full_o(full), .begins_o(never_begins),
         .read_clk_i(clk_i), .restart_i(1'b0), .pop_i(fetch), .data_o(token_out), .empty_o(waits));
-    // The next one is in a register: what becomes of it is long enough a path without the FIFO's memory.
+    // The next token is in a register: the path behind it is long enough without the FIFO's memory.
     reg [10:0] token;
     reg        has_token;
     wire       fetch = !waits && (!has_token || pop);
@@ -108,7 +109,7 @@ module camera (
     wire control = reg_write && reg_addr == CAMERA_CONTROL;
     wire start   = control && reg_wdata[CAMERA_CONTROL_START_LSB] && state == OFF;
     wire stop    = control && reg_wdata[CAMERA_CONTROL_STOP_LSB];
-    // The settings are judged in the clock of START, the answer counts in the next one.
+    // The settings are checked in the clock of START; the result counts in the next one.
     reg  asked, good;
     always @(posedge clk_i) begin
         asked <= start && !rst_i;
@@ -152,7 +153,8 @@ module camera (
     assign npi_rd_flush_o = 1'b0;
 
     // ---- frames ----
-    // Tokens wait while a buffer is chosen and while a frame is finished; what waits too long is lost, and said so.
+    // Tokens wait while a buffer is chosen and while a frame is finished; a token that waits too
+    // long is lost and reported.
     wire frozen = !listening || (eighth && !write_ready);
     assign pop  = !empty && !frozen;
     wire begins = pop && starts;
@@ -198,11 +200,11 @@ module camera (
                     enter(OFF);
                 else if (begins)
                     enter(WAIT_FOR_BUFFER);
-                if (pop && ends_line) // told once
+                if (pop && ends_line) // reported once
                     whole <= 1'b0;
                 events[CAMERA_EVENT_LONG_FRAME_LSB] <= pop && ends_line && whole;
             end
-            WAIT_FOR_BUFFER: begin // the clock in which it is chosen; the frame before is in memory
+            WAIT_FOR_BUFFER: begin // the clock of the choice; the frame before is in memory
                 x     <= 16'd0;
                 y     <= 16'd0;
                 whole <= 1'b0;

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_buffers: which of the buffers 1..3 is written, which holds the newest whole frame, which another core has.
+// camera_buffers: which of the buffers 1..3 is written, holds the newest whole frame, belongs to
+// another core.
 
 `default_nettype none
 
 module camera_buffers (
     input  wire       clk_i,
     input  wire       rst_i,
-    input  wire       active_i,  // frames are captured: while not, none is offered
+    input  wire       active_i,  // frames are captured; else none is offered
     input  wire       kept_i,    // the frame that was written is whole in memory: it is the newest, and offered
     output reg  [1:0] writing_o,
     output reg  [1:0] newest_o,
     output reg        offered_o,
-    input  wire       take_i     // the other core has the newest from now on, and gives back what it had
+    input  wire       take_i     // the other core takes the newest, and returns its old one
 );
     reg [1:0] used; // of the other core
 
@@ -22,7 +23,7 @@ module camera_buffers (
     always @(posedge clk_i) begin
         if (kept_i) begin
             newest_o  <= writing_o;
-            writing_o <= writing_o ^ reserved; // of 1, 2, 3 the one that is neither
+            writing_o <= writing_o ^ reserved; // the buffer of 1, 2, 3 that is neither
         end
         offered_o <= kept_i || (offered_o && !taken && active_i);
         used      <= reserved;

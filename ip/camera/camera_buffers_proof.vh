@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_buffers_proof: what is proven of camera_buffers (formal.camera_buffers); included at its foot, only for the prover.
+// camera_buffers_proof: the properties of camera_buffers (formal.camera_buffers); included at its
+// foot, only for the prover.
 
     // A buffer is whole from the clock in which it is kept until the next frame is begun in it.
     reg       past = 1'b0;
@@ -27,7 +28,7 @@
             // Three buffers, three parts.
             assert (writing_o != 2'd0 && newest_o != 2'd0 && used != 2'd0 && writing_o != newest_o);
             assert (writing_o != used && (!offered_o || newest_o != used));
-            // Nothing is written into what the other core has, nor into what it is offered; both are whole.
+            // The other core's buffer and the offered one are never written; both are whole.
             assert (!has || (held == used && held != writing_o && whole[held]));
             assert (!offered_o || whole[newest_o]);
             assert (!whole[writing_o]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_sensor: a sensor's parallel port, in the sensor's clock, as tokens for a FIFO (async_fifo).
+// camera_sensor: turns a sensor's parallel port, in the sensor's clock, into tokens for a FIFO
+// (async_fifo).
 //
 // A token has 11 bits: LOST (tokens before it found no room), kind, pixel. While the FIFO is full pixels are lost;
 // beginnings of frames and ends of lines wait for room until the next one comes.
@@ -24,8 +25,7 @@ module camera_sensor (
     reg [7:0] data;
     reg       owes_line_end, owes_frame_start, lost;
 
-    // This domain has no reset: the pins say where the sensor is, and a frame is whole or is not
-    // taken.
+    // This domain has no reset: the pins tell the sensor's state, and only whole frames are taken.
     initial begin
         {vsync, vsync_before, href, href_before} = 4'd0;
         {owes_line_end, owes_frame_start, lost}  = 3'd0;

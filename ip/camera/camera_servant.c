@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * camera_servant: Cores::Camera by the core's registers through the FSMC; says where frames are
- * (Hw_Frames).
+ * camera_servant: Cores::Camera by the core's registers through the FSMC; tells other servants
+ * where frames are (Hw_Frames).
  */
 #include "camera_servant.h"
 #include "camera_regs.h"
@@ -23,7 +23,7 @@ Hw_Status Camera_Core_init(Camera_Core* self, U32 slot, U32 memory, const Hw_Por
     if (status != HW_OK)
         return status;
     self->core.memory = memory;
-    set(self, CAMERA_MASK, 0); /* the core counts frames, and nobody waits for one */
+    set(self, CAMERA_MASK, 0); /* the core counts frames, and no task waits for one */
     Cores_Camera_init(&self->servant);
     return HW_OK;
 }

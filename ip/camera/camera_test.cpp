@@ -60,7 +60,7 @@ protected:
             p = static_cast<uint8_t>(random_.next());
         return pixels;
     }
-    // The events of what happens until the sensor has sent all and it has gone through.
+    // Returns the events until the sensor has sent all its frames and they have gone through.
     uint32_t drain() {
         for (int i = 0; i < 200000 && !sensor_.isIdle(); ++i)
             bench_.tick();
@@ -102,7 +102,7 @@ TEST_F(CameraTest, EveryFrameIsInMemoryAsTheSensorSentIt) {
         configure(width, height);
         start();
         for (uint32_t i = 1; i <= 4; ++i) {
-            // Settings written while the core is active hold from the next START on.
+            // Settings written while the core is active take effect at the next START.
             for (unsigned word : {CAMERA_SIZE, CAMERA_BASE, CAMERA_STRIDE}) {
                 uint32_t value = random_.next();
                 bus_.write(word, value);
@@ -138,7 +138,7 @@ TEST_F(CameraTest, FramesMayBeAsWideAndAsHighAsTheRegistersSay) {
 }
 
 TEST_F(CameraTest, FramesAreCountedModulo65536) {
-    // Frames come as fast as they can be dropped: each ends the one before, which has no lines.
+    // Frames follow as fast as they can be dropped: each ends the one before, which has no lines.
     slowest_ = 1;
     sensor_ = SensorModel({4, 2});
     start();
@@ -150,7 +150,7 @@ TEST_F(CameraTest, FramesAreCountedModulo65536) {
     }
     EXPECT_EQ(bus_.read(CAMERA_FRAMES), 0u);
     stop();
-    // Whole ones, as close as a burst to memory and the FIFO let them be.
+    // Whole frames, as close as memory bursts and the FIFO let them be.
     configure(8, 1);
     sensor_ = SensorModel({16, 1});
     memory_.setStall(0);
@@ -208,13 +208,13 @@ TEST_F(CameraTest, AMemoryThatIsTooSlowIsToldAndTheNextFrameIsRight) {
     start();
     memory_.hold(true);
     sensor_.addFrame(picture(), width, height);
-    sensor_.addFrame(picture(), width, height); // begins, and nobody can be told
+    sensor_.addFrame(picture(), width, height); // begins; its loss cannot be reported
     drain();
     memory_.hold(false);
     uint32_t events = drain();
     EXPECT_EQ(bus_.read(CAMERA_FRAMES), 0u) << events;
     auto pixels = picture();
-    sensor_.addFrame(picture(), width, height); // ends what the lost lines left open
+    sensor_.addFrame(picture(), width, height); // ends the frame that the lost lines left open
     sensor_.addFrame(pixels, width, height);
     events |= drain();
     EXPECT_TRUE(events & CAMERA_EVENT_OVERFLOW_MASK);
@@ -247,8 +247,8 @@ TEST_F(CameraTest, TheFrameThatAnotherCoreHasIsNotOverwritten) {
     }
 }
 
-// The clock in which the next frame is kept is among them: what is taken is whole, and stays until
-// the next is taken.
+// The clock in which the next frame is kept is among them: the taken frame is whole, and stays
+// until the next is taken.
 TEST_F(CameraTest, AnotherCoreTakesAFrameInAnyClock) {
     constexpr int w = 8, h = 1;
     slowest_ = 1;
@@ -298,7 +298,7 @@ TEST_F(CameraTest, StopsAndStartsInTheMiddleOfAFrame) {
 TEST_F(CameraTest, RefusesWhatItCannotCapture) {
     auto refused = [&] {
         start();
-        bench_.tick(); // judged in the clock of START, told in the next, sticky from then on
+        bench_.tick(); // checked in the clock of START, reported in the next, sticky from then on
         bench_.tick();
         uint32_t events = bus_.read(CAMERA_EVENT);
         bus_.write(CAMERA_EVENT, events);
@@ -341,8 +341,8 @@ TEST_F(CameraTest, APixelEachFabricClockWhenTheMemoryKeepsUp) {
     configure(wide, lines);
     bus_.write(CAMERA_STRIDE, wide * lines);
     sensor_ = SensorModel({60, 1});
-    // Clocks from the first word of a line that goes to memory to its last, and the pixels of all
-    // but the first.
+    // Clocks from a line's first word to memory to its last, and the pixels of all but the first
+    // word.
     uint64_t first = 0, clocks = 0, seen = 0;
     bench_.addModel(
         [&] {
@@ -375,7 +375,7 @@ TEST_F(CameraTest, APixelEachFabricClockWhenTheMemoryKeepsUp) {
             bench_.tick();
         return static_cast<double>((words - 1) * 8 * 3 * lines) / static_cast<double>(clocks);
     };
-    double rate = pixelsPerClock(1); // the pixel clock is as fast as the fabric's
+    double rate = pixelsPerClock(1); // the pixel clock equals the fabric's
     std::printf("%.3f pixels a clock, and none lost\n", rate);
     EXPECT_GE(rate, 0.999);
     // A slower pixel clock shows in the figure: its edges are 1 or 2 half periods apart.

@@ -43,12 +43,12 @@ module fir (
     wire [8:0]  count;
 
     reg         busy, refused;
-    reg         forget, put;       // earlier samples; a coefficient: a clock after they were asked for
+    reg         forget, put;       // clear the history; write a coefficient: a clock after the request
     reg         begun, flushed;    // the streams have their buffers; the last word is on its way
     reg  [8:0]  to_send, to_take;  // samples that the filter has not got; results that it has not given
     reg  [1:0]  place;             // of the next sample in its word
     reg  [63:0] packed_results;
-    reg  [2:0]  filled;            // results in there, 0..4
+    reg  [2:0]  filled;            // results in it, 0..4
     reg  [31:0] saturations;
 
     wire        bad = count == 9'd0;
@@ -57,7 +57,7 @@ module fir (
     wire        sample_ready, result_valid, saturated;
     wire [15:0] result;
     wire        idle    = read_idle && write_idle;
-    wire        go      = busy && !begun && idle; // what was given up may still be under way
+    wire        go      = busy && !begun && idle; // an earlier call's transfers may be under way
     wire        ended   = begun && to_take == 9'd0;
     wire        flush   = ended && filled == 3'd0 && !flushed;
     wire        sending = to_send != 9'd0 && read_valid;
@@ -89,7 +89,7 @@ module fir (
         .result_o(result), .saturated_o(saturated));
 
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(7)) u_stream (
-        .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: what the memory was asked for must be taken
+        .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: requested words must be taken
         .read_start_i(go && !core_rst), .read_base_i(source[31:6]),
         .read_words_i(count[8:2] + {6'd0, |count[1:0]}), .read_stop_i(core_rst),
         .read_valid_o(read_valid), .read_data_o(read_data),

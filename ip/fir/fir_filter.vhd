@@ -13,7 +13,7 @@ entity fir_filter is
   port (
     clk_i               : in  std_logic;
     rst_i               : in  std_logic;
-    -- settings; a coefficient is that of the samples that come after it was written
+    -- settings; a coefficient counts for the samples after its write
     coefficient_write_i : in  std_logic;
     coefficient_index_i : in  std_logic_vector(3 downto 0);
     coefficient_i       : in  std_logic_vector(17 downto 0);

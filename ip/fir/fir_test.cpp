@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// fir_test: the core through its generated servant, with a memory that stalls; the model says what
-// must come.
+// fir_test: the core through its generated servant, with a memory that stalls, against the model.
 
 #include "Vfir_slot.h"
 #include "fir_proxy.h"
@@ -43,7 +42,7 @@ TEST_F(FirCore, TheAnswerToAnImpulseIsTheCoefficients) {
     for (int k = 0; k < 16; ++k)
         core_.setCoefficient(static_cast<Ice_Byte>(k), 100 * k - 800);
     for (int k = 16; k < 256; ++k)
-        core_.setCoefficient(static_cast<Ice_Byte>(k), 999); // there is none, and none changes
+        core_.setCoefficient(static_cast<Ice_Byte>(k), 999); // an invalid index has no effect
     std::vector<Ice_Short> impulse(20, 0);
     impulse[0] = 1;
     auto answer = filter(impulse);

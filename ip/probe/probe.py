@@ -25,7 +25,7 @@ class Failed(Exception):
 
 
 class Signals:
-    """What one probe records: names and widths, from bit 0 on."""
+    """One probe's signals: names and widths, from bit 0 on."""
 
     def __init__(self, path, name):
         try:
@@ -81,7 +81,8 @@ def signed(value):
 
 
 def read(probe, state, before, after):
-    """Changes from `before` before the trigger's, or before the newest, to `after` behind it."""
+    """Returns the changes from `before` before the trigger's, or before the newest, to `after`
+    behind it."""
     size = 8 * state.words
     ring = RING_BYTES // size
     count = ring if state.wrapped else state.next
@@ -96,14 +97,14 @@ def read(probe, state, before, after):
     changes, clock = [], None
     for i in range(0, len(data), size):
         entry = int.from_bytes(data[i:i + size], "little")
-        low = entry - 2 & 0xFFFFFFFF  # it is stored two clocks after its clock
+        low = entry - 2 & 0xFFFFFFFF  # an entry is stored two clocks after its clock
         clock = low if clock is None else clock + (low - clock & 0xFFFFFFFF)
         changes.append(Change(clock, entry >> 32 & 1, entry >> 33))
     return changes
 
 
 def write_vcd(path, signals, changes, clk_hz):
-    """The changes as VCD. Behind a loss all signals are x until the next change that was stored."""
+    """Returns the changes as VCD. After a loss all signals are x until the next stored change."""
     unit, name = (10**9, "1ns") if 10**9 % clk_hz == 0 else (10**12, "1ps")
     ids = {s: "".join(chr(33 + d) for d in divmod(i, 94)) for i, (s, _) in enumerate(signals.list)}
     widths = dict(signals.list)
@@ -140,7 +141,7 @@ def write_vcd(path, signals, changes, clk_hz):
 
 
 def save(path, signals, probe, state, before, after):
-    """What was captured goes into a file; returns what there is to say of it."""
+    """Writes the capture into a file; returns the messages about it."""
     changes = read(probe, state, before, after)
     if not changes:
         raise Failed("the probe has no capture")

@@ -63,7 +63,7 @@ module probe #(
     reg  [LOG2_RING-1:0] after;
     reg         edge_only;
 
-    // ---- signals: registers of their own, so that the probe adds a wire to what it looks at, and no logic ----
+    // ---- signals: own registers, so that the probe adds a wire to each signal, and no logic ----
     reg [WIDTH-1:0] now, last;
     reg             changed, fits, fitted; // last is another value than the one before it; it meets the trigger, so did that
     always @(posedge clk_i) begin
@@ -118,7 +118,7 @@ module probe #(
         end
         if (hit) begin
             triggered <= 1'b1;
-            trigger   <= next; // this clock's entry, or where that is lost the one after
+            trigger   <= next; // this clock's entry, or if that is lost the next
             left      <= after;
         end
         if (running && (ended || (act && reg_wdata[PROBE_CONTROL_STOP_LSB]))) begin

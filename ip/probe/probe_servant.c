@@ -28,7 +28,7 @@ Hw_Status Probe_Core_init(Probe_Core* self, U32 slot, U32 memory, const Hw_Port*
     if (memory & ((1U << PROBE_LOG2_BYTES) - 1U))
         return HW_UNALIGNED;
     self->core.memory = memory;
-    set(self, PROBE_MASK, 0); /* who waits asks for the state */
+    set(self, PROBE_MASK, 0); /* callers poll the state */
     set(self, PROBE_BASE, memory);
     Probes_Probe_init(&self->servant);
     return HW_OK;

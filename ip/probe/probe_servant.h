@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * probe_servant: Probes::Probe (Probe.ice) by the core in a slot; shaped as slice2c's servants are
- * (docs/hw-mapping.md).
+ * probe_servant: Probes::Probe (Probe.ice) by the core in a slot, with the functions of a generated
+ * servant (docs/hw-mapping.md).
  */
 #ifndef PROBE_SERVANT_H
 #define PROBE_SERVANT_H

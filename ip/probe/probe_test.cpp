@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// probe_test: what the probe stores, through its servant, against the signals that the test gave
-// it, clock by clock.
+// probe_test: compares the probe's captures, through its servant, with the test's signals, clock by
+// clock.
 
 #include "Vprobe_1.h"
 #include "Vprobe_4.h"
@@ -67,7 +67,7 @@ protected:
         bool gap;
         Value value;
     };
-    // The ring from its oldest change on; clocks are made whole from their low 32 bits.
+    // The ring from its oldest change on, with whole clocks from their low 32 bits.
     std::vector<Change> capture(const Probes_State& s) {
         std::vector<Ice_Byte> bytes;
         auto read = [&](int first, int end) {
@@ -89,15 +89,15 @@ protected:
             for (unsigned i = 0; i < c.value.size(); ++i)
                 c.value[i] = w[i + 1] >> 1 | (i + 2 < 2 * words ? w[i + 2] << 31 : 0);
             c.value.back() &= 0x7FFFFFFFu;
-            // The first is within half a turn of the first given.
+            // The first is within half a turn of the first signal.
             const uint64_t last = all.empty() ? given_.begin()->first : all.back().clock;
             c.clock = last + static_cast<uint32_t>(c.clock - last);
             all.push_back(c);
         }
         return all;
     }
-    // Each clock from the first change to the last has the value that was given; those behind a
-    // loss are not known.
+    // Each clock from the first change to the last has the test's value; clocks after a loss are
+    // unknown.
     void expectGiven(const std::vector<Change>& all, bool loses = false) {
         unsigned found = 0;
         for (size_t i = 0; i < all.size(); ++i) {
@@ -196,7 +196,7 @@ TYPED_TEST(ProbeTest, SaysWhereChangesWereLost) {
     EXPECT_EQ(all.size(), 2001u);
     this->expectGiven(all, true);
     EXPECT_FALSE(all[512].gap);
-    for (size_t i = 0; i < 512; ++i) // what the FIFO holds while memory is not there
+    for (size_t i = 0; i < 512; ++i) // as many as the FIFO holds without memory
         ASSERT_EQ(all[i + 1].clock - all[i].clock <= 3, true) << i;
 }
 

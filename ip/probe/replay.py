@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""replay: drives a block in Verilator with what a probe captured at its inputs, and compares its outputs, clock by clock.
+"""replay: drives a block in Verilator with a probe's capture of its inputs, and compares its outputs, clock by clock.
 
     replay.py capture.vcd --scope u_fir.u_filter --top fir_filter build/main/gen/fir_filter.v
 

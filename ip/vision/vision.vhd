@@ -22,7 +22,7 @@ entity vision is
     bus_rdata_o          : out std_logic_vector(31 downto 0);
     bus_error_o          : out std_logic;
     irq_o                : out std_logic;
-    idle_o               : out std_logic; -- no frame is under way, none is waited for
+    idle_o               : out std_logic; -- no frame is under way or awaited
     -- frames of another core, in buffers 1..3 (FOLLOW)
     frame_valid_i        : in  std_logic := '0';
     frame_index_i        : in  std_logic_vector(1 downto 0) := "00";
@@ -66,24 +66,23 @@ architecture rtl of vision is
   signal taken         : std_logic_vector(1 downto 0); -- the buffer of the last frame, 0: FRAME_BASE itself
   signal set_width, set_height, set_result_max : unsigned(15 downto 0);
   signal found, stored : unsigned(15 downto 0);
-  -- of the frame under way: what was set at START
+  -- settings of the frame under way, from START
   signal threshold     : unsigned(7 downto 0);
   signal width, height, result_max : unsigned(15 downto 0);
   signal cycles        : unsigned(31 downto 0);
   signal aborted, stop : std_logic;
   signal word          : natural range 0 to 15;
-  -- Commands act a clock after the bus wrote them, so that address decoder and frame control are
-  -- not one path; what is written to other registers meanwhile comes too late for this frame, as it
-  -- should.
+  -- Commands act a clock after their write, so address decoder and frame control are not one path.
+  -- Other registers written meanwhile come too late for this frame, as they should.
   signal start, abort  : std_logic;
-  signal written       : std_logic; -- a register was, so that size_ok is not of what it holds now
+  signal written       : std_logic; -- a register was written, so size_ok is outdated
   signal size_ok       : std_logic; -- of the registers a clock ago
   signal write, idle, offered, accept : std_logic;
-  signal go            : std_logic; -- a clock after `accept`; the frame's settings are followed until then
+  signal go            : std_logic; -- a clock after `accept`; settings are loaded until then
   signal first_pixel, memory_base : std_logic_vector(31 downto 0);
 
-  -- stream: column of the pixel that is taken, and the lines that are, this one included; then column and row of the
-  -- score, and of what leaves vision_suppress
+  -- stream: column of the pixel that is taken, and number of lines, this one included; then column
+  -- and row of the score, and of vision_suppress's output
   signal x             : unsigned(9 downto 0);
   signal lines_left    : unsigned(15 downto 0);
   signal score_x, kept_x : unsigned(9 downto 0);
@@ -94,7 +93,7 @@ architecture rtl of vision is
   -- `step` is `take` a clock later: everything from the window on moves by this register, whose
   -- fan-out has the clock to itself.
   signal step          : std_logic;
-  signal decide        : std_logic; -- as step, for all decisions: without the time that step's fan-out takes
+  signal decide        : std_logic; -- as step, for all decisions: without step's fan-out
   signal step_x        : unsigned(9 downto 0);
   signal pixel, step_pixel : std_logic_vector(7 downto 0);
   signal window        : std_logic_vector(391 downto 0);
@@ -234,9 +233,10 @@ begin
 
   -- ---- stream ----
 
-  -- Lines below the frame are made up: their scores are 0, but the last corners need them to leave.
-  -- A record may be pushed one step after record_ready_o has fallen, but none is: of two scores in succession
-  -- vision_suppress keeps one at most, the first only if it is not less, the second only if it is greater.
+  -- Lines below the frame are made up: their scores are 0, but they push the last corners out.
+  -- A record may be pushed one step after record_ready_o has fallen, but none is: of two successive
+  -- scores vision_suppress keeps one at most, the first only if it is not less, the second only if
+  -- it is greater.
   take       <= streaming and (pixel_valid or not real_pixel) and record_ready;
   pixel_take <= streaming and pixel_valid and real_pixel and record_ready;
 
@@ -275,7 +275,7 @@ begin
   -- Centre of the frame's coordinates: three columns and lines back for the window.
   frame_x     <= resize(kept_x, 16) - 3;
   frame_y     <= resize(kept_y, 16) - 3;
-  -- Lines that are not of this frame are in the block RAMs until the first have gone through.
+  -- The block RAMs hold lines of an older frame until the first lines have gone through.
   is_corner   <= decide and kept when fill = SCORE_DELAY + KEPT_DELAY and kept_y >= 6 and
                                       kept_y < resize(height, 17) else '0';
   record_push <= is_corner when stored < result_max else '0';

@@ -3,8 +3,8 @@
 -- vision_fast: FAST-9 score of the window's centre: 0 where it is no corner.
 --
 -- The 16 pixels of the circle of radius 3 are brighter (> centre + threshold) or darker (< centre -
--- threshold). Nine in a row of a kind make a corner; its score is the sum, over all of that kind, of how
--- far they are beyond the threshold. Three steps behind the window.
+-- threshold). Nine in a row of a kind make a corner; its score is the sum of their distances beyond
+-- the threshold over all pixels of that kind. Three steps after the window.
 
 library ieee;
 use ieee.std_logic_1164.all;

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision_memory: the frame in, pixel by pixel, and the records out, through one memory port.
+-- vision_memory: reads the frame, pixel by pixel, and writes the records, through one memory port.
 --
 -- Reads are bursts of 128 bytes, two under way; records are written one word each, before further reads.
 
@@ -15,7 +15,7 @@ entity vision_memory is
     -- control
     idle_i         : in  std_logic;                     -- until start: the addresses are taken each cycle
     start_i        : in  std_logic;                     -- one cycle, the first without idle_i
-    stop_i         : in  std_logic;                     -- no further reads; what comes is dropped
+    stop_i         : in  std_logic;                     -- no further reads; words are dropped
     frame_base_i   : in  std_logic_vector(31 downto 0);
     result_base_i  : in  std_logic_vector(31 downto 0);
     quiet_o        : out std_logic;                     -- nothing is under way
@@ -50,7 +50,7 @@ architecture rtl of vision_memory is
   signal write_addr  : unsigned(31 downto 3);
   signal outstanding : unsigned(5 downto 0);   -- words asked for and not yet popped
   signal word        : std_logic_vector(63 downto 0);
-  signal left        : std_logic_vector(7 downto 0); -- of `word`: as many ones as bytes, from bit 0 on
+  signal left        : std_logic_vector(7 downto 0); -- of `word`: a one a byte left, from bit 0
   signal slot        : std_logic_vector(63 downto 0); -- a record that waits
   signal slot_full   : std_logic;
   signal pushed      : std_logic;
@@ -117,7 +117,7 @@ begin
         word <= x"00" & word(63 downto 8);
         left <= '0' & left(7 downto 1);
       end if;
-      -- `word` may take what is no word: only `left` needs to know whether the port has one.
+      -- `word` may take invalid data: only `left` depends on a word in the port.
       if refill = '1' then
         word <= npi_rd_data_i;
       end if;

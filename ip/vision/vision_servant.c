@@ -6,7 +6,7 @@
 #include "fsmc.h"
 #include "vision_regs.h"
 
-#define FRAME_TIMEOUT_MS 5000U /* a frame takes a tenth of that; a core that takes longer hangs */
+#define FRAME_TIMEOUT_MS 5000U /* a frame takes a tenth of that; a slower core hangs */
 
 enum { DONE, REFUSED }; /* events */
 
@@ -87,7 +87,8 @@ static Ice_Status finishFrame(Vision_Core* self) {
             !self->core.done[REFUSED]) {
             set(self, VISION_MODE, 0);
             set(self, VISION_CONTROL, VISION_CONTROL_ABORT_MASK);
-            /* A core that hangs stays busy; where no camera sent a frame there is none to end. */
+            /* A core that hangs stays busy; without a frame from the camera there is none to
+             * end. */
             self->busy = (get(self, VISION_STATUS) & VISION_STATUS_BUSY_MASK) != 0;
             return ICE_TIMEOUT;
         }
@@ -96,7 +97,7 @@ static Ice_Status finishFrame(Vision_Core* self) {
         return ICE_UNKNOWN_EXCEPTION;
     readResults(self);
     if (port->busErrors(self->core.context) != errorsBefore)
-        return ICE_UNKNOWN_EXCEPTION; /* the core hangs: what was read is nothing */
+        return ICE_UNKNOWN_EXCEPTION; /* the core hangs: the result is invalid */
     port->frames->processed((U32)self->found);
     return ICE_OK;
 }

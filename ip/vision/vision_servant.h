@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * vision_servant: HwProcessingEngine (sw/apps/uav/Autopilot.ice) by the vision core in a slot;
- * shaped as slice2c's servants are (docs/hw-mapping.md).
+ * vision_servant: HwProcessingEngine (sw/apps/uav/Autopilot.ice) by the vision core in a slot, with
+ * the functions of a generated servant (docs/hw-mapping.md).
  */
 #ifndef VISION_SERVANT_H
 #define VISION_SERVANT_H
@@ -9,12 +9,12 @@
 #include "Autopilot.h"
 #include "hw_core.h"
 
-#define VISION_BEST 64 /* features in a result, as Autopilot.ice says */
+#define VISION_BEST 64 /* features in a result, by Autopilot.ice */
 
 typedef struct Vision_Core {
     Autopilot_HwProcessingEngine servant;
     Hw_Core core;
-    U8 busy; /* a frame has begun, and is not read yet */
+    U8 busy; /* a frame has begun, and its result was not read */
     Ice_Int found, cycles, bestCount;
     Autopilot_Feature best[VISION_BEST];
 } Vision_Core;

@@ -117,7 +117,7 @@ TEST_F(VisionServant, TakesTheCamerasFramesWhereThereIsOne) {
         ASSERT_EQ(start(), ICE_OK);
         top.frame_index_i = static_cast<uint8_t>(buffer);
         top.frame_valid_i = 1;
-        ASSERT_EQ(result(), ICE_OK); // another one is offered: one frame for each start
+        ASSERT_EQ(result(), ICE_OK); // another frame is offered, but each start takes one
         expectCorners();
     }
 }

@@ -2,8 +2,8 @@
 --
 -- vision_suppress: keeps a score only where it is the greatest of its 3 x 3 neighbourhood.
 --
--- The first of equal neighbours in scan order stays. A score that enters at column x leaves, kept or not,
--- one line and one column later; kept_o then belongs to the score before in the line above.
+-- The first of equal neighbours in scan order stays. A score that enters at column x leaves, kept
+-- or 0, one line and one column later; kept_o then belongs to the score before in the line above.
 
 library ieee;
 use ieee.std_logic_1164.all;

@@ -169,7 +169,7 @@ TEST_F(VisionTest, FollowsAnotherCoresFramesAndWaitsForItsReader) {
         bench_.tick();
         EXPECT_FALSE(top.frame_take_o) << "taken once";
         bench_.waitFor([&] { return top.irq_o; }, "the core's interrupt", 100000);
-        for (int i = 0; i < 50; ++i) { // the next is offered, but nobody has read these results
+        for (int i = 0; i < 50; ++i) { // the next frame is offered, but these results were not read
             EXPECT_FALSE(top.frame_take_o);
             bench_.tick();
         }
@@ -190,8 +190,8 @@ TEST_F(VisionTest, IdentifiesItselfAndHasAllWords) {
         EXPECT_FALSE(bus_.transfer(false, word, 0).error) << word;
 }
 
-// The model itself, against the definition of ip/vision/README.md written another way: corners,
-// those that are none, scores and suppression, pixel by pixel.
+// The model itself, against the definition of ip/vision/README.md written another way, pixel by
+// pixel: corners, other pixels, scores and suppression.
 class Definition {
 public:
     Definition(const std::vector<uint8_t>& pixels, int width, int height, int threshold)

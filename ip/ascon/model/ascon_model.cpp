@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// ascon_model: sections 3 to 5 of NIST SP 800-232, in bytes and bits as they are written there.
+// ascon_model: sections 3 to 5 of NIST SP 800-232, in the bytes and bits of the standard.
 
 #include "ascon_model.h"
 
 namespace {
 
-// The S-box as the standard's table 6, not as the formula that the core uses.
+// The S-box as the standard's table 6; the core uses the formula.
 constexpr uint8_t sbox[32] = {0x04, 0x0b, 0x1f, 0x14, 0x1a, 0x15, 0x09, 0x02, 0x1b, 0x05, 0x08,
                               0x12, 0x1d, 0x03, 0x06, 0x1c, 0x1e, 0x13, 0x07, 0x0e, 0x00, 0x0d,
                               0x11, 0x18, 0x10, 0x0c, 0x01, 0x19, 0x16, 0x0a, 0x0f, 0x17};

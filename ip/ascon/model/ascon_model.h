@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ascon_model: Ascon-AEAD128 and Ascon-Hash256 on the host, written from NIST SP 800-232: what the
-// core must give.
+// ascon_model: Ascon-AEAD128 and Ascon-Hash256 on the host, written from NIST SP 800-232: the
+// core's reference.
 
 #ifndef ASCON_MODEL_H
 #define ASCON_MODEL_H

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// sensor_model: the parallel port of an image sensor: what its pins are at each pixel clock. Frames
-// that are not as they should be can be asked for.
+// sensor_model: the parallel port of an image sensor: its pins at each pixel clock, with faults on
+// request.
 
 #ifndef SENSOR_MODEL_H
 #define SENSOR_MODEL_H
@@ -22,8 +22,8 @@ public:
     };
     struct Defect {
         int line = -1;  // in this line ..
-        int pixels = 0; // .. so many pixels more, or less if negative
-        int lines = 0;  // so many lines more, or less if negative
+        int pixels = 0; // .. this many pixels more, or less if negative
+        int lines = 0;  // this many lines more, or less if negative
     };
 
     explicit SensorModel(Blanking blanking) : blanking_(blanking) {}
@@ -46,7 +46,7 @@ public:
         }
     }
     bool isIdle() const { return pins_.empty(); }
-    // Returns the pins at the next pixel clock; blank ones once all frames have gone.
+    // Returns the pins at the next pixel clock; idle ones once all frames have gone.
     Pins next() {
         if (pins_.empty())
             return {};

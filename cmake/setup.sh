@@ -34,7 +34,6 @@ libgmock-dev test framework
 nlohmann-json3-dev register descriptions, reports
 libfmt-dev text formatting
 libcli11-dev command lines
-libpugixml-dev reads JUnit results
 libsodium-dev signatures of firmware (Ed25519)
 liblz4-dev unpacks firmware that comes by radio
 python3-lz4 packs it
@@ -64,10 +63,6 @@ chromium opens the report pages in tests
 tshark reads the messages on the wire in tests
 strace sees which files a proof reads, so that its verdict holds until one changes
 curl fetches what pages sort and draw with, and the foreign cores of the examples
-slurmctld regression on a cluster, tested on loopback
-slurmd its node
-slurm-client its commands
-munge its authentication
 gdb-multiarch debugs it there
 gtkwave shows waveforms, and reads those of failures for the page
 graphviz pictures of netlists

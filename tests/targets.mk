@@ -29,7 +29,6 @@ fly: $(BUILD)/build.ninja ## a long flight: MINUTES=4 of stock Ice's calls now a
 BLOCK    ?=
 REPEAT   ?= 1
 WAVES    ?= 3
-LAUNCHER ?= local
 CHANGED  ?=
 FAILED   ?=
 KEPT     ?=
@@ -37,10 +36,10 @@ BUDGET   ?=
 # Seeds that `make nightly` draws
 NIGHTLY  ?= 3
 
-regress: setup-tests $(BUILD)/build.ninja ## run the regression, write build/regress/report.html (NAME= BLOCK= LABEL= CHANGED=1 FAILED=1 KEPT=1 BUDGET=60s SEED=n|random REPEAT=n LAUNCHER=slurm)
+regress: setup-tests $(BUILD)/build.ninja ## run the regression, write build/regress/report.html (NAME= BLOCK= LABEL= CHANGED=1 FAILED=1 KEPT=1 BUDGET=60s SEED=n|random REPEAT=n)
 	@$(NINJA) --quiet regress
 	@$(BUILD)/tests/regress/regress --make --build $(BUILD) --jobs $(TESTS) --seed $(SEED) --repeat $(REPEAT) --waves $(WAVES) \
-	    --launcher $(LAUNCHER) $(if $(NAME),--name $(call quoted,$(NAME))) $(if $(BLOCK),--block $(call quoted,$(BLOCK))) \
+	    $(if $(NAME),--name $(call quoted,$(NAME))) $(if $(BLOCK),--block $(call quoted,$(BLOCK))) \
 	    $(if $(LABEL),--label $(call quoted,$(LABEL))) $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed) $(if $(KEPT),--kept) \
 	    $(if $(BUDGET),--budget $(call quoted,$(BUDGET)))
 
@@ -69,7 +68,7 @@ sanitizers: setup-tests $(BUILD)/build.ninja ## tests of engine, gateway and plu
 # Not by $$(MAKE), which `make -n` would carry out, and the whole line with it.
 # Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them. COMPARE_MS: test_quiet compares a second; FUZZ: times as many inputs of fuzzers; HOSTILE: packets of test_link.
 nightly: setup-tests build ## what a timer runs: seeds that have failed, the regression with fresh seeds (NIGHTLY=3 of them), ZeroC's own suites, faults, sanitizers
-	@status=0; export FRESH=1 FUZZ=10 COMPARE_MS=1000 HOSTILE=10000000; tool="$(BUILD)/tests/regress/regress --build $(BUILD) --jobs $(TESTS) --waves $(WAVES) --launcher $(LAUNCHER)"; \
+	@status=0; export FRESH=1 FUZZ=10 COMPARE_MS=1000 HOSTILE=10000000; tool="$(BUILD)/tests/regress/regress --build $(BUILD) --jobs $(TESTS) --waves $(WAVES)"; \
 	    $$tool --kept $(if $(LABEL),--label $(call quoted,$(LABEL))) $(if $(NAME),--name $(call quoted,$(NAME))) || status=$$?; \
 	    $$tool --seed random --repeat $(NIGHTLY) $(if $(LABEL),--label $(call quoted,$(LABEL))) $(if $(NAME),--name $(call quoted,$(NAME))) || status=$$?; \
 	    ctest --test-dir $(BUILD) -C zeroc -L zeroc -j $(TESTS) --output-on-failure || status=$$?; \

@@ -20,9 +20,6 @@ void writeFile(const std::filesystem::path& file, const std::string& text);
 // Returns 16 hexadecimal digits that differ when the contents, or where one ends, differ (FNV-1a).
 std::string hexHash(const std::vector<std::string>& contents);
 
-// Returns the hashes of a tree's files by path; not of empty ones and those .gitignore names.
-std::map<std::string, std::string> fileHashes(const std::filesystem::path& source);
-
 // Returns the state of folders, "bus hdl ip: 0123456789abcdef": a measurement keeps it, and is of
 // today as long as it is the same.
 std::string treeState(const std::filesystem::path& source, const std::string& folders);

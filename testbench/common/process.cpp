@@ -4,21 +4,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
-#include <fmt/format.h>
-#include <fstream>
 #include <mutex>
 #include <stdexcept>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <thread>
-#include <unistd.h>
-
-namespace fs = std::filesystem;
 
 Output run(const std::vector<std::string>& command,
            const std::map<std::string, std::string>& environment,
@@ -50,38 +41,6 @@ Output run(const std::vector<std::string>& command,
     if (out.status == 126 || out.status == 127)
         throw std::runtime_error("cannot run " + command.at(0) + ": " + out.text);
     return out;
-}
-
-void adoptOrphans() {
-    prctl(PR_SET_CHILD_SUBREAPER, 1);
-}
-
-std::vector<std::string> endOrphans() {
-    std::map<pid_t, std::string> left;
-    for (int tries = 0; tries == 0 || (tries < 40 && !left.empty()); tries++) {
-        if (tries)
-            std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        left.clear();
-        std::ifstream children(fmt::format("/proc/self/task/{}/children", getpid()));
-        for (pid_t pid; children >> pid;) {
-            if (waitpid(pid, nullptr, WNOHANG) == pid)
-                continue;
-            std::error_code gone;
-            const std::string folder = fmt::format("/proc/{}/", pid);
-            std::string line;
-            std::getline(std::ifstream(folder + "cmdline"), line);
-            std::replace(line.begin(), line.end(), '\0', ' ');
-            left[pid] =
-                fmt::format("{}(in {})", line,
-                            fs::proximate(fs::read_symlink(folder + "cwd", gone), gone).string());
-        }
-    }
-    std::vector<std::string> lines;
-    for (const auto& [pid, line] : left) {
-        kill(pid, SIGKILL);
-        lines.push_back(line);
-    }
-    return lines;
 }
 
 std::string quoted(const std::string& word) {

@@ -21,13 +21,6 @@ Output run(const std::vector<std::string>& command,
            const std::map<std::string, std::string>& environment = {},
            const std::function<void(const std::string& line)>& onLine = {});
 
-// Adopts what the programs that are run start and leave behind, instead of init.
-void adoptOrphans();
-
-// Ends what has been left behind, unless it ends by itself within two seconds. Returns a line of
-// each: "sleep 300 (in build/main/tests/room)".
-std::vector<std::string> endOrphans();
-
 // Returns the text between quotes, as one word for a shell.
 std::string quoted(const std::string& word);
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""commands: each command that README.md, docs/ or `make help` names has its line in tests/plan.md, with the tests that run it.
+"""commands: each command that README.md, docs/ or `make help` names has its line in tests/plan.toml, with the tests that run it.
 
     commands.py TREE
 
@@ -40,12 +40,12 @@ def main(words):
             if target not in targets:
                 wrong.append(f"{page}: there is no `make {target}`")
             named.update((each, page) for each in pairs(target, before + after) if target in targets)
-    chapter = re.search(r"^## \[commands\].*?(?=^## |\Z)", open("tests/plan.md").read(), re.M | re.S)
+    chapter = re.search(r"^\[commands\].*", open("tests/plan.toml").read(), re.M | re.S)
     lines = set()
-    for target, text in re.findall(r"`make ([a-z-]+)([^`|]*)`", chapter[0] if chapter else ""):
+    for target, text in re.findall(r"`make ([a-z-]+)([^`]*)`", chapter[0] if chapter else ""):
         lines |= pairs(target, text)
-    wrong += [f"tests/plan.md: no test runs `make {' '.join(each)}` of {named[each]}" for each in sorted(set(named) - lines)]
-    wrong += [f"tests/plan.md: `make {' '.join(each)}` is on no page" for each in sorted(lines - set(named)) if each[1]]
+    wrong += [f"tests/plan.toml: no test runs `make {' '.join(each)}` of {named[each]}" for each in sorted(set(named) - lines)]
+    wrong += [f"tests/plan.toml: `make {' '.join(each)}` is on no page" for each in sorted(lines - set(named)) if each[1]]
     print("\n".join(wrong) or f"{len(named)} commands")
     return 1 if wrong else 0
 

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""changes: what has changed in the tree since a test last passed, of the files on which the test
+depends: the best hint there is, whatever has failed."""
+import functools
+import re
+
+from tests import Graph
+from tool import run
+
+SHOWN = 6  # files
+
+
+class Changes:
+    """Notes the state of the tree, changes that are not committed among it, as a tree of git, with
+    objects in <out>/tree: the repository itself does not get any."""
+
+    def __init__(self, source, build, out):
+        self.source, self.build, self.environment, self.tree = source, build, {}, ""
+        folder = out.resolve() / "tree"
+        status, objects = self.git("rev-parse", "--path-format=absolute", "--git-path", "objects")
+        if status == 0:
+            (folder / "objects").mkdir(parents=True, exist_ok=True)
+            self.environment = {"GIT_INDEX_FILE": str(folder / "index"),
+                                "GIT_OBJECT_DIRECTORY": str(folder / "objects"),
+                                "GIT_ALTERNATE_OBJECT_DIRECTORIES": objects.strip()}
+            self.tree = self._write_tree()
+
+    def git(self, *words):
+        return run(["git", "-C", self.source, "-c", "core.quotePath=false", *words],
+                   self.environment)
+
+    def _write_tree(self):
+        added, (status, tree) = self.git("add", "--all")[0], self.git("write-tree")
+        return "" if added or status else tree.strip()
+
+    def meanwhile(self):
+        """The files that have changed since the tree was noted: while the tests ran."""
+        now = self.tree and self._write_tree()
+        return self.git("diff", "--name-only", "--no-renames", self.tree, now)[1].splitlines() \
+            if now else []
+
+    @functools.cache
+    def differing(self, since):
+        """{path: (first line that differs, how many do)} since a tree or a commit, what is not
+        committed first, sources before tests and pages; None if git does not know it any more."""
+        status, text = self.git("diff", "--unified=0", "--no-color", "--no-ext-diff",
+                                "--no-renames", "--src-prefix=a/", "--dst-prefix=b/", since,
+                                self.tree)
+        if status:
+            return None
+        files = {}
+        for line in text.splitlines():
+            if begin := re.fullmatch("diff --git a/(.*) b/.*", line):
+                path = begin[1]
+                files[path] = (0, 0)
+            elif hunk := re.match(r"@@ -\d+(?:,(\d+))? [+](\d+)(?:,(\d+))? @@", line):
+                first, lines = files[path]
+                files[path] = (first or max(1, int(hunk[2])),
+                               lines + max(int(hunk[1] or 1), int(hunk[3] or 1)))
+        mine = self.git("diff", "--name-only", "--no-renames", "HEAD", self.tree)[1].splitlines()
+        return dict(sorted(files.items(), key=lambda file: (
+            file[0] not in mine, file[0].startswith(("tests/", "docs/")))))
+
+    @functools.cached_property
+    def graph(self):
+        return Graph(self.source, self.build)
+
+    def forget_graph(self):
+        """What ninja knows is new after it has built."""
+        self.__dict__.pop("graph", None)
+
+    def of_test(self, test, since):
+        """What differs since a tree or a commit of the files on which a test depends."""
+        folders = test.reads()
+        inputs = set()
+        if test.unbuilt or test.is_program(self.build.resolve()):
+            inputs, folders = self.graph.inputs(test.program), (f"tests/{test.place}",)
+        return {path: lines for path, lines in (self.differing(since) or {}).items()
+                if path in inputs or path.startswith(tuple(f + "/" for f in folders))}
+
+    def touched(self, test, last_pass):
+        """Whether a test's files differ from those that it last passed with; of one that has never
+        passed here, from the commit."""
+        since = last_pass[1].get("tree") if last_pass else "HEAD"
+        return not self.tree or not since or self.differing(since) is None or \
+            bool(self.of_test(test, since))
+
+    def since(self, last_pass, test, seed):
+        """"changed since it passed at 632b860abc: ip/fir/fir.v:12 (2 lines), ...", or that nothing
+        has; "" if neither is known."""
+        if not self.tree:
+            return ""
+        end, noted = last_pass or (None, {})
+        commit = noted.get("commit", "HEAD").split("-dirty")[0]
+        since = next((each for each in (noted.get("tree"), commit)
+                      if each and self.differing(each) is not None), None)
+        if not since or not (end or self.differing(since)):
+            return ""
+        # What a script reads is not known to the last file.
+        files = self.of_test(test, since) or self.differing(since)
+        text = "the commit; it is not known to have passed" if not end else \
+            f"it passed at {commit}" + (f" with SEED={end[3]}" if end[3:] not in ([], [seed]) else "")
+        if not files:
+            return f"nothing has changed since {text}"
+        told = [path + (f":{first} ({lines} line{'s' * (lines != 1)})" if first else "")
+                for path, (first, lines) in list(files.items())[:SHOWN]]
+        more = f" and {len(files) - SHOWN} more" if len(files) > SHOWN else ""
+        return f"changed since {text}: {', '.join(told)}{more}"

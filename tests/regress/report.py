@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: MIT
+"""report: what is known after a run, as a page, as Markdown, as JSON, as a badge."""
+import json
+import pathlib
+import re
+
+from drawing import drawing_of
+from lights import lights_of
+from tests import judge_plan, read_plan
+from tool import Stop, write
+
+HERE = pathlib.Path(__file__).resolve().parent
+COMMON = HERE.parents[1] / "testbench/common/page"
+LARGEST = 2_000_000  # bytes of the page
+MEASURED = {"coverage": "coverage/summary.json", "utilisation": "synth/report.json",
+            "speed": "bench/speed.json", "drawn": "mutants/drawn.json",
+            "simulator": "bench/simulator.json"}
+
+
+def read(path):
+    try:
+        return json.loads(path.read_text())
+    except (OSError, ValueError):
+        return None
+
+
+def proofs_of(results):
+    """What prove.sh says in logs: "X: proven, 47 clauses with 33 flops", "X: 2 covers reached"."""
+    def said(log, what):
+        return (re.search(what, log) or ["", "-"])[1]
+    return [[r.name[7:], r.status, said(r.log, "bounded, ([0-9]+) clocks"),
+             said(r.log, "proven[,]? *([^\n]*)"), said(r.log, "([0-9]+) covers reached"), r.seconds]
+            for r in results if r.name.startswith("formal.")]
+
+
+def measurements(build):
+    """What other commands have left in build/, with the state of the tree that they measured."""
+    data = {name: found for name, path in MEASURED.items() if (found := read(build / path))}
+    for entry in data.pop("simulator", []):  # beside the board's time, by which no run is judged
+        if limit := entry.pop("limit", None):
+            entry["peer"] = f"real time: {limit}"
+        if "speed" in data:
+            data["speed"].setdefault("entries", []).append(entry)
+    for file in data.get("coverage", {}).get("files", []):  # all of it is in coverage's own summary
+        if (more := len(file["missed"]) - 40) > 0:
+            file["missed"][40:] = [f"and {more} more"]
+    mutants = build / "mutants/results.tsv"
+    data["mutants"] = [line.split("\t") for line in mutants.read_text().splitlines()] \
+        if mutants.exists() else []
+    trees = {"mutants": "mutants", "coverage": "coverage", "size": "synth", "speed": "bench"}
+    data["trees"] = {name: (build / folder / "tree").read_text().strip()
+                     for name, folder in trees.items() if (build / folder / "tree").exists()}
+    return data
+
+
+def gather(history, tests, results, failures, source, seeds):
+    data = {**history.runs[-1], **measurements(source / "build"), "flaky": history.flaky(),
+            "seeds": seeds.list(), "proofs": proofs_of(results)}
+    del data["tests"]
+    known = {test.name: test for test in tests}
+    data["results"] = []
+    for r in results:
+        test = known.get(r.name)
+        ends = [end[:2] for end, _ in history.ends[r.name][-10:]]  # the newest last
+        data["results"].append([r.name, r.status, r.seconds, test.place if test else "",
+                                test.labels[0] if test and test.labels else "", r.seed, ends])
+    ran = {r.name for r in results}
+    names = {"left": [name for name in known if name not in ran],
+             "kept": [r.name for r in results if r.log.startswith("kept: the verdict")]}
+    for what, all_names in names.items():
+        proofs = sum(name.startswith("formal.") for name in all_names)
+        data[what] = {"tests": len(all_names) - proofs, "proofs": proofs}
+    data["failures"] = [{"name": f.result.name, "tail": f.result.log[-3000:], "drawing": None, **{
+        name: getattr(f, name) for name in ("bucket", "reason", "repeat", "log", "wave", "save",
+                                            "place", "changed", "clock")}} for f in failures]
+    data["history"] = [[run["time"], run["commit"], run["passed"], run["failed"], run["seconds"],
+                        run.get("subject", ""), run.get("reasons", [])]
+                       for run in history.runs[-60:]]
+    data["plan"] = judge_plan(read_plan(source), tests, history)
+    data["lights"] = lights_of(data, source)
+    return data
+
+
+def cell(text):
+    """Text in a table of Markdown."""
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace("|", "\\|")[:300]
+
+
+def table(title, rows):
+    return f"\n{title}\n{'|---' * (title.count('|') - 1)}|\n" + \
+        "".join(f"| {' | '.join(row)} |\n" for row in rows) if rows else ""
+
+
+def markdown(data):
+    text = (f"# Regression: {data['passed']} passed, {data['failed']} failed, {data['skipped']} "
+            f"skipped\n\nCommit `{data['commit']}`, {data['seconds']:.0f} s.\n")
+    text += table("| light | | |", [(e["name"], e["state"], e["text"]) for e in data["lights"]])
+    text += table("| reason | test | changed | repeat |", [
+        (cell(": ".join(filter(None, (f["place"], f["reason"])))), cell(f["name"]),
+         cell(f["changed"]), f"`{f['repeat']}`") for f in data["failures"]])
+    text += table("| requirement that is not proven | page | tests |", [
+        (e["text"], e["page"], ", ".join(e["open"])) for e in data["plan"]
+        if e["state"] == "failed"])
+    if data["flaky"]:
+        text += "\nFlaky (passed and failed with the same code):\n"
+        text += "".join(f"- {name}\n" for name in data["flaky"])
+    if data["seeds"]:
+        text += "\nSeeds that failed, and have not passed since (`make regress KEPT=1`):\n"
+        text += "".join(f"- {each['test']} SEED={each['seed']}\n" for each in data["seeds"])
+    return text
+
+
+def badge(data):
+    value = f"{data['failed']} failed" if data["failed"] else f"{data['passed']} passed"
+    colour, width = "#c0392b" if data["failed"] else "#2e8b57", 88 + 7 * len(value)
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="20" role="img" '
+            f'aria-label="regression: {value}"><rect width="{width}" height="20" rx="3" '
+            f'fill="#555"/><rect x="78" width="{width - 78}" height="20" rx="3" fill="{colour}"/>'
+            '<g fill="#fff" font-family="DejaVu Sans,Verdana,sans-serif" font-size="11">'
+            f'<text x="6" y="14">regression</text><text x="85" y="14">{value}</text></g></svg>\n')
+
+
+def page_parts(libraries):
+    """The style and the script that the pages begin with: libraries, colours, tables, charts."""
+    def joined(ending):
+        files = [libraries / f"libraries{ending}", *(COMMON / f"{name}{ending}"
+                                                     for name in ("common", "tables"))]
+        return "".join(file.read_text() for file in files if file.exists())
+    return joined(".css"), joined(".js")
+
+
+def write_reports(data, failures, libraries, out):
+    style, script = page_parts(libraries)
+    # Drawings have what the rest leaves of the page.
+    rest = LARGEST - len(style) - len(script) - len(json.dumps(data)) - 60_000
+    drawn = [i for i, failure in enumerate(failures) if failure.wave]
+    for i in drawn:
+        data["failures"][i]["drawing"] = drawing_of(failures[i], max(0, rest) // len(drawn))
+    page = (HERE / "page.html").read_text()
+    text = json.dumps(data, separators=(",", ":"), sort_keys=True).replace("</", "<\\/")
+    for place, part in (("/*COMMON*/", style), ("//COMMON", script), ("/*DATA*/null", text)):
+        if place not in page:
+            raise Stop(f"the page has no {place}")
+        page = page.replace(place, part, 1)
+    write(out / "report.html", page)
+    write(out / "report.json", json.dumps(data, indent=1))
+    write(out / "summary.md", markdown(data))
+    write(out / "badge.svg", badge(data))

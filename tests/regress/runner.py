@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: MIT
+"""runner: runs chosen tests by CTest, says how far it is, and writes JUnit."""
+import dataclasses
+import re
+import sys
+import xml.etree.ElementTree as xml
+
+from tool import Stop, run, write
+
+
+@dataclasses.dataclass
+class Result:
+    name: str
+    status: str  # "passed", "failed", "skipped"
+    seconds: float
+    log: str = ""
+    end: str = ""  # of one that failed: "SegFault", "Timeout"; "" where it ended by itself
+    seed: str = ""
+
+
+class Progress:
+    """Says how far the run is: on a terminal in one line that is written anew, else at each tenth.
+    A failure is told at once."""
+
+    def __init__(self, tests, history, jobs):
+        self.jobs, self.total, self.done, self.failed = jobs, len(tests), 0, 0
+        self.seconds = {test.name: history.seconds(test.name) for test in tests}
+        self.running = set()
+
+    def end(self, name, status, seconds):
+        self.running.discard(name)
+        self.seconds.pop(name, None)
+        self.done += 1
+        if status == "failed":
+            self.failed += 1
+            self._line(f"FAILED {name} ({seconds:.1f} s)", True)
+        left = int(sum(self.seconds.values()) / self.jobs)
+        tenth = 10 * self.done // self.total != 10 * (self.done - 1) // self.total
+        self._line(f"{self.done} of {self.total}, {self.failed} failed, {left // 60}:{left % 60:02} "
+                   f"left: {' '.join(sorted(self.running))}", tenth and not sys.stdout.isatty())
+
+    def _line(self, text, keep):
+        if sys.stdout.isatty():
+            print(f"\r{text[:110]}\033[K", end="\n" if keep else "", flush=True)
+        elif keep:
+            print(text, flush=True)
+
+
+def readable(log):
+    """A log without colours (the first word is CTest's for ESC) and without endless lines."""
+    def short(line):
+        return line if len(line) <= 2000 else \
+            f"{line[:1000]} ... {len(line)} characters ... {line[-500:]}"
+    log = re.sub(r"\[NON-XML-CHAR-0x1B\]\[[0-9;]*m", "", log)
+    return "".join(short(line) + "\n" for line in log.splitlines())
+
+
+def run_tests(tests, build, out, seed, jobs, history):
+    """Runs tests in parallel, those that failed last time first."""
+    chosen, junit = out / "tests.list", (out / f"junit-{seed}.xml").resolve()
+    # start, end, stride: none but the numbers
+    write(chosen, ",".join(["0,0,0", *(str(test.number) for test in tests)]) + "\n")
+    junit.unlink(missing_ok=True)
+    progress, ends = Progress(tests, history, jobs), {}
+    print(f"{len(tests)} tests, SEED={seed}", flush=True)
+
+    def on_line(line):
+        if begun := re.match(r" *Start +\d+: (\S+)", line):
+            progress.running.add(begun[1])
+        if ended := re.match(r" *\d+/\d+ Test +#\d+: (\S+) \.*(.*?) +([0-9.]+) sec", line):
+            name, how = ended[1], ended[2]
+            ends[name] = how
+            progress.end(name, "passed" if "Passed" in how else
+                         "skipped" if "Skipped" in how else "failed", float(ended[3]))
+    status, text = run(
+        ["ctest", "--test-dir", build, "-I", chosen.resolve(), "-j", jobs, "--output-junit", junit,
+         "--test-output-size-passed", 4096, "--test-output-size-failed", 200000,
+         "--test-output-truncation", "middle"], {"SEED": seed}, on_line)
+    if sys.stdout.isatty():
+        print("\r\033[K", end="")
+    try:
+        cases = xml.parse(junit).iter("testcase")
+    except FileNotFoundError:
+        raise Stop(f"ctest gave no results ({status}):\n{text}") from None
+    except xml.ParseError as error:
+        raise Stop(f"{junit}: {error}; is the disk full?") from None
+    results = []
+    for case in cases:
+        log = readable(case.findtext("system-out") or "")
+        how = {"run": "passed", "fail": "failed"}.get(case.get("status"), "skipped")
+        if log.startswith("Unable to find"):  # its program
+            how = "failed"
+        end = ends.get(case.get("name"), "")
+        results.append(Result(
+            case.get("name"), how, float(case.get("time")), log,
+            "" if end in ("***Failed", "***Not Run") else re.sub("[*]{3}(Exception: *)?", "", end),
+            seed))
+    return results
+
+
+def write_junit(path, results, failures):
+    """JUnit of all results, for CI systems; a failure has its reason and where to look."""
+    of = {id(failure.result): failure for failure in failures}
+    count = {how: str(sum(result.status == how for result in results))
+             for how in ("failed", "skipped")}
+    suite = xml.Element("testsuite", name="icesoc", tests=str(len(results)),
+                        failures=count["failed"], skipped=count["skipped"])
+    for result in results:
+        case = xml.SubElement(suite, "testcase", name=result.name, time=str(result.seconds),
+                              classname=result.name.split(".")[0])
+        if result.status == "failed":
+            failure, properties = of[id(result)], xml.SubElement(case, "properties")
+            for name in ("changed", "log", "repeat", "wave"):
+                if value := getattr(failure, name):
+                    xml.SubElement(properties, "property", name=name, value=value)
+            xml.SubElement(case, "failure", message=f"{failure.reason} (SEED={result.seed})")
+            xml.SubElement(case, "system-out").text = result.log
+        elif result.status == "skipped":
+            xml.SubElement(case, "skipped")
+    write(path, '<?xml version="1.0"?>\n' + xml.tostring(suite, encoding="unicode") + "\n")

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""tool: other programs, whole files, states of the tree, and a lock on a folder."""
+import contextlib
+import ctypes
+import fcntl
+import hashlib
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+
+class Stop(Exception):
+    """Ends the program with its words and exit status 2."""
+
+
+def run(command, environment=None, on_line=None):
+    """Runs a program to its end; (exit status, what it said). It ends with us, however we do."""
+    words = ["setpriv", "--pdeathsig", "TERM", *map(str, command)]
+    said = []
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          errors="replace", env={**os.environ, **(environment or {})}) as process:
+        for line in process.stdout:
+            said.append(line)
+            if on_line:
+                on_line(line.rstrip("\n"))
+    status = process.returncode
+    if status in (126, 127):
+        raise Stop(f"cannot run {command[0]}: {''.join(said)}")
+    return (status if status >= 0 else 128 - status), "".join(said)
+
+
+def write(path, text):
+    """Writes a file, all of it or none: readers see the old text or the new."""
+    part = pathlib.Path(f"{path}.part")
+    try:
+        part.write_text(text)
+    except OSError:
+        part.unlink(missing_ok=True)
+        raise Stop(f"cannot write {path}: is the disk full?") from None
+    part.replace(path)
+
+
+def tracked(source):
+    """Paths of the tree's files, those that .gitignore names left out; a copy has them, too."""
+    return run(["git", "-C", source, "grep", "--no-index", "--exclude-standard", "--no-color",
+                "-l", ""])[1].splitlines()
+
+
+def tree_state(source, folders):
+    """The state of folders, "bus hdl: 0123...": a measurement is of today while it is the same."""
+    files = sorted(f for f in tracked(source) if f.split("/")[0] in folders.split())
+    def hashes(text, *words):
+        return subprocess.run(["git", "hash-object", *words], input=text, text=True, cwd=source,
+                              check=True, stdout=subprocess.PIPE).stdout
+    names = "".join(f"{file}\n" for file in files)
+    return f"{folders}: {hashes(names + hashes(names, '--stdin-paths'), '--stdin')[:16]}"
+
+
+def digest(parts):
+    return hashlib.sha1("\0".join(parts).encode()).hexdigest()[:16]
+
+
+@contextlib.contextmanager
+def only_one(folder, program):
+    """Holds a folder; says who holds it, and waits, while another process does."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / "lock", "a+") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            lock.seek(0)
+            holder = lock.read()
+            print(f"{program}: waiting for another run in {folder}"
+                  f"{f' (process {holder})' if holder else ''} ...", file=sys.stderr, flush=True)
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        lock.truncate(0)
+        lock.write(str(os.getpid()))
+        lock.flush()
+        yield
+
+
+def adopt_orphans():
+    """What our programs leave behind becomes our child, and not init's."""
+    become_subreaper = 36
+    ctypes.CDLL(None).prctl(become_subreaper, 1)
+
+
+def end_orphans():
+    """Ends what does not end by itself within two seconds; a line of each that was left."""
+    left = {}
+    for attempt in range(40):
+        time.sleep(0.05 if attempt else 0)
+        left = {}
+        for pid in pathlib.Path(f"/proc/self/task/{os.getpid()}/children").read_text().split():
+            with contextlib.suppress(OSError):
+                if os.waitpid(int(pid), os.WNOHANG)[0]:
+                    continue
+                words = pathlib.Path(f"/proc/{pid}/cmdline").read_text().replace("\0", " ")
+                left[int(pid)] = f"{words}(in {os.path.relpath(os.readlink(f'/proc/{pid}/cwd'))})"
+        if not left:
+            break
+    for pid in left:
+        os.kill(pid, 9)
+    return list(left.values())

@@ -16,7 +16,6 @@
     wire [3:0] f_bytes = place == last_of && rest_of != 3'd0 ? {1'b0, rest_of} : 4'd8;
     wire [3:0] f_span  = {1'b0, last} - {1'b0, first} + 4'd1;
     wire [ADDR_BITS-1:3] f_done = {{(ADDR_BITS-4){1'b0}}, 1'b0} + words - left; // words of the row asked for
-    wire [4*ENTRY-1:0] f_tags = {tags[3], tags[2], tags[1], tags[0]}; // for axi4_memory's proof
     initial assume (rst_i);
     always @* begin
         assume (rd_empty_i || asked != 3'd0); // the port gives what it was asked for

@@ -15,7 +15,6 @@
     wire       f_begun = place != 3'd0;
     wire [ADDR_BITS-1:3] f_done  = {{(ADDR_BITS-4){1'b0}}, 1'b0} + words - left; // words of the row taken
     wire [ADDR_BITS-1:3] f_place = {f_begun ? burst : at[ADDR_BITS-1:6], place};
-    wire [4*(ADDR_BITS-6)-1:0] f_bursts = {bursts[3], bursts[2], bursts[1], bursts[0]}; // for axi4_memory's proof
     initial assume (rst_i);
     always @* begin
         assume (!acked_i || unacked > queued); // of requested ones

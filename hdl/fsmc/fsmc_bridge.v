@@ -2,7 +2,7 @@
 //
 // fsmc_bridge: connects the STM32's 16-bit FSMC to DDR3 (NE1) and to the register bus (NE2); docs/fsmc.md.
 //
-// It takes asynchronous accesses of modes 1, A, 2, B, C and D; with SYNC, bursts for NE1. NWAIT depends on the pins
+// It takes asynchronous accesses of modes 1, A, 2, B, C and D. NWAIT depends on the pins
 // combinationally and is low while a read's data is not there yet or a write has no room. Every access waits
 // until the write before it has been handed over to clk_i and a register write before it has been carried out.
 // An access that has waited for 2**TIMEOUT_LOG2 clocks is let go with access_error_o, so NWAIT is never low for ever.
@@ -11,8 +11,6 @@
 
 module fsmc_bridge #(
     parameter MUXED        = 0, // 1: address bits 15..0 come on the data pins while NADV is low
-    parameter SYNC         = 0, // 1: NE1 is a synchronous PSRAM with bursts (fsmc_burst)
-    parameter LATENCY      = 5, // with SYNC: FSMC_CLK edges from the address to the first data, DATLAT + 2
     parameter WAIT_HIGH    = 0, // 1: NWAIT is active high (WAITPOL = 1)
     parameter TIMEOUT_LOG2 = 12,
     parameter POST_LOG2    = 4, // see fsmc_memory
@@ -30,7 +28,6 @@ module fsmc_bridge #(
     input  wire        fsmc_nwe_n_i,
     input  wire [1:0]  fsmc_nbl_n_i,
     input  wire        fsmc_nadv_n_i,
-    input  wire        fsmc_clk_i,     // used with SYNC
     output wire        fsmc_nwait_n_o,
     // system slot
     input  wire [5:0]  page_i,
@@ -75,11 +72,10 @@ module fsmc_bridge #(
     `define TELLS_ERRORS
 `endif
     generate
-        if (MUXED >> 1 != 0 || SYNC >> 1 != 0 || WAIT_HIGH >> 1 != 0 || TIMEOUT_LOG2 < 1 || TIMEOUT_LOG2 > 24 ||
-            POST_LOG2 < 2 || POST_LOG2 > 5 || BLOCK_LOG2 < 1 || BLOCK_LOG2 > 4 ||
-            (SYNC != 0 && (LATENCY < 4 || LATENCY > 17))) begin : g_refused
+        if (MUXED >> 1 != 0 || WAIT_HIGH >> 1 != 0 || TIMEOUT_LOG2 < 1 || TIMEOUT_LOG2 > 24 ||
+            POST_LOG2 < 2 || POST_LOG2 > 5 || BLOCK_LOG2 < 1 || BLOCK_LOG2 > 4) begin : g_refused
 `ifdef TELLS_ERRORS
-            $error("fsmc_bridge: MUXED, SYNC, WAIT_HIGH are 0 or 1, LATENCY 4..17, TIMEOUT_LOG2 1..24, POST_LOG2 2..5, BLOCK_LOG2 1..4");
+            $error("fsmc_bridge: MUXED, WAIT_HIGH are 0 or 1, TIMEOUT_LOG2 1..24, POST_LOG2 2..5, BLOCK_LOG2 1..4");
 `else
             fsmc_bridge_parameter_out_of_range u_refused ();
 `endif
@@ -109,13 +105,8 @@ module fsmc_bridge #(
     wire [15:0] taken_data;
     wire        hit, hit_safe, room, more_room, busy, reg_done, hit_seen, safe_seen, excuse;
     wire [15:0] mem_data, reg_data;
-    // These signals are the writes to NE1, and the halfword of NE1 that is being read.
-    wire        mem_wr, mem_reading, hit_was, safe_was, mem_queued;
-    wire [24:0] mem_wr_addr, mem_rd_addr, mem_rd_at;
-    wire [15:0] mem_wr_data, burst_d;
-    wire [1:0]  mem_wr_be;
-    wire        burst_nwait_n;
-    wire        excused_read, excused_write; // the access under way has been let go
+    wire        mem_reading = seen[0];
+    reg         excused_read, excused_write; // the access under way has been let go
 
     // clear, for NWAIT, and clear_sync, for decisions in clk_i, say that the write before is handed over and registers are idle.
     wire clear      = !wr_async && !busy;
@@ -123,7 +114,7 @@ module fsmc_bridge #(
 
     fsmc_async u_fsmc_async (
         .clk_i(clk_i),
-        .fsmc_a_i(address), .fsmc_d_i(fsmc_d_i), .fsmc_ne_n_i({fsmc_ne_n_i[1], fsmc_ne_n_i[0] || SYNC != 0}),
+        .fsmc_a_i(address), .fsmc_d_i(fsmc_d_i), .fsmc_ne_n_i(fsmc_ne_n_i),
         .fsmc_noe_n_i(fsmc_noe_n_i), .fsmc_nwe_n_i(fsmc_nwe_n_i), .fsmc_nbl_n_i(fsmc_nbl_n_i),
         .wr_o(taken), .wr_ne_o(taken_ne), .wr_addr_o(taken_addr), .wr_data_o(taken_data), .wr_be_o(taken_be),
         .wr_sync_o(wr_sync), .wr_async_o(wr_async), .wr_ne2_async_o(wr_ne2_async),
@@ -131,65 +122,23 @@ module fsmc_bridge #(
         .reading_o(seen), .hit_o(hit_seen), .safe_o(safe_seen), .writing_o(writing), .at_o(at)
     );
 
-    generate
-        if (SYNC != 0) begin : g_sync
-            wire wr_valid, rd_valid;
-            fsmc_burst #(.MUXED(MUXED), .LATENCY(LATENCY)) u_fsmc_burst (
-                .clk_i(clk_i), .rst_i(rst_i), .fsmc_clk_i(fsmc_clk_i),
-                .fsmc_a_i(fsmc_a_i), .fsmc_d_i(fsmc_d_i), .fsmc_d_o(burst_d),
-                .fsmc_ne_n_i(fsmc_ne_n_i[0]), .fsmc_nwe_n_i(fsmc_nwe_n_i),
-                .fsmc_nadv_n_i(fsmc_nadv_n_i), .fsmc_nbl_n_i(fsmc_nbl_n_i),
-                .fsmc_nwait_n_o(burst_nwait_n), .busy_i(busy),
-                .wr_valid_o(wr_valid), .wr_addr_o(mem_wr_addr), .wr_data_o(mem_wr_data),
-                .wr_be_o(mem_wr_be), .wr_ready_i(mem_wr),
-                .rd_valid_o(rd_valid), .rd_addr_o(mem_rd_addr), .rd_data_i(mem_data),
-                .rd_ready_i((hit && clear_sync && !wr_valid) || excuse)
-            );
-            // A read waits for the writes of the burst before.
-            assign mem_queued  = wr_valid;
-            assign mem_wr      = wr_valid && (room || excuse);
-            assign mem_reading = rd_valid && !wr_valid;
-            assign hit_was     = hit && clear_sync;
-            assign safe_was    = 1'b1;
-            assign {excused_read, excused_write} = 2'b00; // a time-out lets go one beat of a burst at a time
-            assign mem_rd_at   = mem_rd_addr;
-            wire unused = &{1'b0, seen[0], hit_seen, safe_seen, hit_safe, taken_be, taken_ne[0], 1'b0};
-        end else begin : g_async
-            assign mem_queued  = 1'b0;
-            assign mem_wr      = taken && taken_ne[0];
-            assign mem_wr_addr = taken_addr;
-            assign mem_wr_data = taken_data;
-            assign mem_wr_be   = taken_be;
-            assign mem_rd_addr = address;
-            assign mem_rd_at   = at;
-            assign mem_reading = seen[0];
-            assign hit_was     = hit_seen;
-            assign safe_was    = safe_seen;
-            assign burst_d       = 16'd0;
-            assign burst_nwait_n = 1'b1;
-            reg excused_read_q, excused_write_q;
-            assign excused_read  = excused_read_q;
-            assign excused_write = excused_write_q;
-            always @(posedge clk_i or posedge fsmc_noe_n_i)
-                if (fsmc_noe_n_i)
-                    excused_read_q <= 1'b0;
-                else if (excuse)
-                    excused_read_q <= 1'b1;
-            always @(posedge clk_i or posedge fsmc_nwe_n_i)
-                if (fsmc_nwe_n_i)
-                    excused_write_q <= 1'b0;
-                else if (excuse)
-                    excused_write_q <= 1'b1;
-            wire unused = &{1'b0, fsmc_clk_i, mem_queued, 1'b0};
-        end
-    endgenerate
+    always @(posedge clk_i or posedge fsmc_noe_n_i)
+        if (fsmc_noe_n_i)
+            excused_read <= 1'b0;
+        else if (excuse)
+            excused_read <= 1'b1;
+    always @(posedge clk_i or posedge fsmc_nwe_n_i)
+        if (fsmc_nwe_n_i)
+            excused_write <= 1'b0;
+        else if (excuse)
+            excused_write <= 1'b1;
 
     // ---- Time-out: an access to memory that has waited too long is let go, until its strobe rises; fsmc_registers does so for
     // registers.
     reg [TIMEOUT_LOG2:0] patience;
     wire reg_restart;
     wire expired = patience[TIMEOUT_LOG2];
-    wire waiting = (mem_reading && !hit_was) || ((writing || mem_queued) && !room);
+    wire waiting = (mem_reading && !hit_seen) || (writing && !room);
     assign excuse = expired && clear_sync && waiting && !excused_read && !excused_write;
 
     always @(posedge clk_i)
@@ -207,8 +156,8 @@ module fsmc_bridge #(
     wire read_ok  = ne2 ? reg_done : (hit || excused_read) && clear;
     wire write_ok = ne2 ? clear : !busy && !wr_ne2_async && (write_room || excused_write);
     wire waits    = (ne1 || ne2) && !rst_i && !(fsmc_noe_n_i ? write_ok : read_ok);
-    assign fsmc_nwait_n_o = (WAIT_HIGH != 0) ^ (SYNC != 0 && ne1 ? burst_nwait_n || rst_i : !waits);
-    assign fsmc_d_o       = ne2 ? reg_data : SYNC != 0 ? burst_d : mem_data;
+    assign fsmc_nwait_n_o = (WAIT_HIGH != 0) ^ !waits;
+    assign fsmc_d_o       = ne2 ? reg_data : mem_data;
     assign fsmc_d_oe_o    = (ne1 || ne2) && !fsmc_noe_n_i;
 
     // ---- Registers
@@ -221,7 +170,7 @@ module fsmc_bridge #(
         .ne_n_async_i(fsmc_ne_n_i[1]), .noe_n_async_i(fsmc_noe_n_i),
         .rd_done_o(reg_done), .rd_data_o(reg_data),
         .restart_o(reg_restart), .expired_i(expired),
-        .busy_o(busy), .flush_o(reg_flush), .idle_i(mem_idle && !mem_queued),
+        .busy_o(busy), .flush_o(reg_flush), .idle_i(mem_idle),
         .error_o(reg_error), .error_memory_o(reg_error_memory), .error_write_o(reg_write),
         .bus_valid_o(bus_valid_o), .bus_write_o(bus_write_o), .bus_addr_o(bus_addr_o),
         .bus_wdata_o(bus_wdata_o), .bus_ready_i(bus_ready_i), .bus_rdata_i(bus_rdata_i),
@@ -232,10 +181,10 @@ module fsmc_bridge #(
     wire wr_lost;
     fsmc_memory #(.POST_LOG2(POST_LOG2), .BLOCK_LOG2(BLOCK_LOG2)) u_fsmc_memory (
         .clk_i(clk_i), .rst_i(rst_i), .page_i(page_i),
-        .wr_i(mem_wr), .wr_addr_i(mem_wr_addr), .wr_data_i(mem_wr_data), .wr_be_i(mem_wr_be),
+        .wr_i(taken && taken_ne[0]), .wr_addr_i(taken_addr), .wr_data_i(taken_data), .wr_be_i(taken_be),
         .wr_lost_o(wr_lost), .room_o(room), .more_room_o(more_room),
-        .rd_addr_async_i(mem_rd_addr), .rd_at_i(mem_rd_at), .rd_used_i(mem_reading && hit_was),
-        .rd_miss_i(mem_reading && !hit_was && clear_sync),
+        .rd_addr_async_i(address), .rd_at_i(at), .rd_used_i(mem_reading && hit_seen),
+        .rd_miss_i(mem_reading && !hit_seen && clear_sync),
         .rd_hit_o(hit), .rd_safe_o(hit_safe), .rd_data_o(mem_data),
         .flush_i(reg_flush), .drop_i(reg_access), .idle_o(mem_idle),
         .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
@@ -262,15 +211,15 @@ module fsmc_bridge #(
     // pins may still have moved. Reads of other addresses may follow each other without a rest that the clock sees.
     reg [1:0] at_was, at_before, good;
     reg       second, early;
-    wire moved  = at_was != at_before && SYNC == 0;
+    wire moved  = at_was != at_before;
     wire starts = mem_reading && (moved || !reading_d);
     assign late_o = wr_lost || (reading_d && (starts || !mem_reading) && early);
     always @(posedge clk_i) begin
         {at_before, at_was} <= {at_was, at[1:0]};
         reading_d <= mem_reading && !rst_i;
         second    <= starts;
-        good      <= {hit_was && good[0] && reading_d, hit_was};
-        early     <= !starts && (second ? !safe_was : early && !good[1]);
+        good      <= {hit_seen && good[0] && reading_d, hit_seen};
+        early     <= !starts && (second ? !safe_seen : early && !good[1]);
     end
 
     wire unused = &{1'b0, npi_wr_empty_i, npi_wr_almost_full_i, npi_rd_word_i, 1'b0};

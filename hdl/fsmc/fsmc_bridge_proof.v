@@ -18,7 +18,6 @@
 `ifdef FORMAL
 module fsmc_bridge_proof #(
     parameter MUXED        = 0,
-    parameter SYNC         = 0, // 1: the processor uses NE2 only; bursts (fsmc_burst) are free
     parameter WAIT_HIGH    = 0,
     parameter TIMEOUT_LOG2 = 1,
     parameter WORDS        = 0, // 1: proves only that 32-bit words are atomic (fsmc_words_proof)
@@ -52,11 +51,11 @@ module fsmc_bridge_proof #(
     wire [31:0] bus_wdata;
     wire [31:0] bus_rdata = {14'd0, rdata_i[3:2], 14'd0, rdata_i[1:0]};
 
-    fsmc_bridge #(.MUXED(MUXED), .SYNC(SYNC), .WAIT_HIGH(WAIT_HIGH), .TIMEOUT_LOG2(TIMEOUT_LOG2)) u_fsmc_bridge (
+    fsmc_bridge #(.MUXED(MUXED), .WAIT_HIGH(WAIT_HIGH), .TIMEOUT_LOG2(TIMEOUT_LOG2)) u_fsmc_bridge (
         .clk_i(clk_i), .rst_i(rst),
         .fsmc_a_i(a), .fsmc_d_i(d), .fsmc_d_o(d_out), .fsmc_d_oe_o(oe),
         .fsmc_ne_n_i({!ne2_i, !ne1_i}), .fsmc_noe_n_i(noe_n_i), .fsmc_nwe_n_i(nwe_n_i),
-        .fsmc_nbl_n_i(nbl_n_i), .fsmc_nadv_n_i(nadv_n_i), .fsmc_clk_i(1'b0), .fsmc_nwait_n_o(nwait_pin),
+        .fsmc_nbl_n_i(nbl_n_i), .fsmc_nadv_n_i(nadv_n_i), .fsmc_nwait_n_o(nwait_pin),
         .page_i(6'd0), .access_error_o(access_error), .error_memory_o(error_memory), .error_addr_o(error_addr),
         .error_write_o(error_write), .late_o(late),
         .bus_valid_o(bus_valid), .bus_write_o(bus_write), .bus_addr_o(bus_addr),
@@ -169,7 +168,6 @@ module fsmc_bridge_proof #(
         // A multiplexed address is latched before the strobe falls.
         assume (!strobe || nadv_n_i);
         assume (MUXED == 0 || !access || latched);
-        assume (SYNC == 0 || !ne1_i);
         // A strobe rises when NWAIT was inactive, or after NE: then the access is given up, and the strobe rests for a while.
         assume (!wrote || let_go);
         assume (!(was_strobe && !was_selected) || !strobe || !selected);
@@ -203,7 +201,7 @@ module fsmc_bridge_proof #(
                     assert (nwait_n);
                 if (ne2_i && access && let_go && !noe_n_i)
                     assert (d_out[1:0] == was_out);
-                assert (rst || !excuse || since_ne1 <= 3'd3 || SYNC != 0);
+                assert (rst || !excuse || since_ne1 <= 3'd3);
                 assert (!(ne2_i && !nwe_n_i && nwait_n) || clear);
                 assert (oe == (selected && !noe_n_i));
                 cover (waited > 8'd8 && was_access && access && nwait_n);

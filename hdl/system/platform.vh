@@ -39,7 +39,7 @@ fsmc_bridge u_fsmc_bridge (
     .clk_i(clk_i), .rst_i(rst),
     .fsmc_a_i(fsmc_a_i), .fsmc_d_i(fsmc_d_i), .fsmc_d_o(fsmc_d_o), .fsmc_d_oe_o(fsmc_d_oe_o),
     .fsmc_ne_n_i(fsmc_ne_n_i), .fsmc_noe_n_i(fsmc_noe_n_i), .fsmc_nwe_n_i(fsmc_nwe_n_i),
-    .fsmc_nbl_n_i(fsmc_nbl_n_i), .fsmc_nadv_n_i(fsmc_nadv_n_i), .fsmc_clk_i(1'b0),
+    .fsmc_nbl_n_i(fsmc_nbl_n_i), .fsmc_nadv_n_i(fsmc_nadv_n_i),
     .fsmc_nwait_n_o(fsmc_nwait_n_o),
     .page_i(page), .access_error_o(access_error),
     .error_memory_o(error_memory), .error_addr_o(error_addr),

@@ -71,13 +71,13 @@ module camera (
     wire       offered;
 
     // ---- sensor ----
-    wire        push, full, waits, empty, pop, never_begins;
+    wire        push, full, waits, empty, pop;
     wire [10:0] token_in, token_out;
     camera_sensor u_sensor (.pclk_i(pclk_i), .vsync_i(vsync_i), .href_i(href_i), .data_i(data_i),
                             .push_o(push), .token_o(token_in), .full_i(full));
     async_fifo #(.WIDTH(11), .LOG2(5)) u_fifo (
-        .write_clk_i(pclk_i), .push_i(push), .data_i(token_in), .full_o(full), .begins_o(never_begins),
-        .read_clk_i(clk_i), .restart_i(1'b0), .pop_i(fetch), .data_o(token_out), .empty_o(waits));
+        .write_clk_i(pclk_i), .push_i(push), .data_i(token_in), .full_o(full),
+        .read_clk_i(clk_i), .pop_i(fetch), .data_o(token_out), .empty_o(waits));
     // The next token is in a register: the path behind it is long enough without the FIFO's memory.
     reg [10:0] token;
     reg        has_token;
@@ -263,7 +263,7 @@ module camera (
         end
     end
 
-    wire unused = &{1'b0, never_begins, reg_read, no_data, no_words, read_idle, npi_wr_empty_i, npi_rd_word_i, write_base[5:0], 1'b0};
+    wire unused = &{1'b0, reg_read, no_data, no_words, read_idle, npi_wr_empty_i, npi_rd_word_i, write_base[5:0], 1'b0};
 `ifdef COVER_POINTS
     replaces_what_nobody_took: cover property (@(posedge clk_i) kept && offered);
     stopped_in_a_frame: cover property (@(posedge clk_i) capturing && stopping && !token_in_frame);

@@ -5,8 +5,6 @@
 #include "fsmc_bank.h"
 #include "fsmc_private.h"
 
-/* Fields that a synchronous access does not use, at their longest. */
-#define BTR_LONGEST (BTR_ADDSET(15) | BTR_ADDHLD(1) | BTR_DATAST(255))
 #define BWTR_RESET 0x0FFFFFFFU
 
 typedef struct Values {
@@ -24,11 +22,7 @@ static int timingIsBad(const FSMC_Bank* bank, const FSMC_Timing* time, FSMC_Mode
 }
 
 static int isBad(const FSMC_Bank* bank) {
-    if (bank->busturn > 15U)
-        return 1;
-    if (bank->mode == FSMC_MODE_BURST)
-        return bank->clkdiv < 1U || bank->clkdiv > 15U || bank->latency < 2U || bank->latency > 17U;
-    if (bank->mode > FSMC_MODE_BURST || bank->busturn == 0U ||
+    if (bank->mode > FSMC_MODE_D || bank->busturn == 0U || bank->busturn > 15U ||
         timingIsBad(bank, &bank->read, bank->mode))
         return 1;
     return isExtended(bank->mode) &&
@@ -50,12 +44,6 @@ static Values valuesOf(const FSMC_Bank* bank) {
     if (bank->waitHigh)
         v.bcr |= BCR_WAITPOL;
     v.bwtr = BWTR_RESET;
-    if (bank->mode == FSMC_MODE_BURST) {
-        v.bcr |= BCR_MTYP_PSRAM | BCR_BURSTEN | BCR_WAITEN | BCR_CBURSTRW;
-        v.btr = BTR_LONGEST | BTR_BUSTURN(bank->busturn) | BTR_CLKDIV(bank->clkdiv) |
-                BTR_DATLAT(bank->latency - 2U);
-        return v;
-    }
     v.btr = timing(&bank->read, bank->busturn, bank->mode);
     if (bank->wait)
         v.bcr |= BCR_ASYNCWAIT;
@@ -72,7 +60,7 @@ static Values valuesOf(const FSMC_Bank* bank) {
 
 FSMC_Status FSMC_initBanks(const FSMC_Port* port, void* context, const FSMC_Bank banks[2]) {
     U32 i;
-    if (isBad(&banks[0]) || isBad(&banks[1]) || banks[1].mode == FSMC_MODE_BURST)
+    if (isBad(&banks[0]) || isBad(&banks[1]))
         return FSMC_BAD_SETTING;
     fsmc_port = port;
     fsmc_context = context;

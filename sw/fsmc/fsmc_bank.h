@@ -14,8 +14,7 @@ typedef enum FSMC_Mode {
     FSMC_MODE_A, /* A to D: EXTMOD, writes have a mode and times of their own */
     FSMC_MODE_B,
     FSMC_MODE_C,
-    FSMC_MODE_D,
-    FSMC_MODE_BURST /* synchronous PSRAM: BURSTEN, CBURSTRW, WAITEN, WAITCFG 0 */
+    FSMC_MODE_D
 } FSMC_Mode;
 
 /* Times of an access in HCLK: ADDSET 0..15, ADDHLD 1..15 (mode D and multiplexed), DATAST 1..255 (4
@@ -31,14 +30,12 @@ typedef struct FSMC_Bank {
     U8 muxed;                /* MUXEN: address bits 15..0 on the data pins (the bridge's MUXED) */
     U8 wait;                 /* ASYNCWAIT: asynchronous accesses look at NWAIT */
     U8 waitHigh;             /* WAITPOL: NWAIT is active high (WAIT_HIGH) */
-    U8 busturn;              /* BUSTURN, HCLK, 1..15 (burst 0..15) */
+    U8 busturn;              /* BUSTURN, HCLK, 1..15 */
     FSMC_Timing read, write; /* modes 1 and 2: only `read`, for both */
-    U8 clkdiv;               /* burst: FSMC_CLK = HCLK / (clkdiv + 1), 1..15 */
-    U8 latency; /* burst: edges from the address to the first data, 2..17 (LATENCY): DATLAT + 2 */
 } FSMC_Bank;
 
 /* Does what FSMC_init does, with these settings of NE1 and NE2. Returns FSMC_BAD_SETTING, and
- * writes nothing, where a setting is reserved or out of range; NE2 cannot be FSMC_MODE_BURST.
+ * writes nothing, where a setting is reserved or out of range.
  * Streams (FSMC_streamRead, FSMC_streamWrite) are for the plain bridge and FSMC_init's settings
  * only. */
 FSMC_Status FSMC_initBanks(const FSMC_Port* port, void* context, const FSMC_Bank banks[2]);

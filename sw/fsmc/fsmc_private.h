@@ -20,21 +20,16 @@
 #define BCR_MWID_16 (1U << 4)
 #define BCR_FACCEN (1U << 6)
 #define BCR_RESERVED (1U << 7) /* reads 1, and is kept so */
-#define BCR_BURSTEN (1U << 8)
 #define BCR_WAITPOL (1U << 9)
 #define BCR_WREN (1U << 12)
-#define BCR_WAITEN (1U << 13)
 #define BCR_EXTMOD (1U << 14)
 #define BCR_ASYNCWAIT (1U << 15)
-#define BCR_CBURSTRW (1U << 19)
 
 /* BTR and BWTR; times in HCLK. */
 #define BTR_ADDSET(n) ((U32)(n))
 #define BTR_ADDHLD(n) ((U32)(n) << 4)
 #define BTR_DATAST(n) ((U32)(n) << 8)
 #define BTR_BUSTURN(n) ((U32)(n) << 16)
-#define BTR_CLKDIV(n) ((U32)(n) << 20)
-#define BTR_DATLAT(n) ((U32)(n) << 24)
 #define BTR_ACCMOD(n) ((U32)(n) << 28)
 
 /* The bits that all modes set: bank on, 16 bits, write enable. */

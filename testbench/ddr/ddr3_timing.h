@@ -4,7 +4,7 @@
 // turnarounds.
 //
 // All times are in clocks of the memory (tCK). Figures: Micron 1Gb DDR3 SDRAM data sheet
-// (MT41J64M16, MT41J128M8; 09005aef826aa906), "Speed Bins" and "Electrical Characteristics and AC
+// (MT41J64M16; 09005aef826aa906), "Speed Bins" and "Electrical Characteristics and AC
 // Operating Conditions", rounded up to clocks of 2.5 ns as its note on tCK demands.
 
 #ifndef DDR3_TIMING_H
@@ -28,8 +28,6 @@ struct Ddr3Part {
 // max(4 CK, 7.5 ns), tRRD = max(4 CK, 10 ns), tFAW = 50 ns for pages of 2 KiB, 40 ns for 1 KiB.
 constexpr Ddr3Part mt41j64m16{
     "MT41J64M16-187E at DDR3-800", 2048, 16, 6, 5, 6, 6, 15, 21, 4, 4, 6, 4, 4, 20, 44, 3120};
-constexpr Ddr3Part mt41j128m8{
-    "MT41J128M8-187E at DDR3-800", 1024, 8, 6, 5, 6, 6, 15, 21, 4, 4, 6, 4, 4, 16, 44, 3120};
 
 class Ddr3Timing {
 public:

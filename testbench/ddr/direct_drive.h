@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// direct_drive: a back-end's own limit: the same requests, given to the memory model by a driver
+// direct_drive: the memory's own limit: the same requests, given to the memory model by a driver
 // that loses no clock and never runs out of words or room. What remains is the memory and its port.
 
 #ifndef DIRECT_DRIVE_H
 #define DIRECT_DRIVE_H
 
-#include "litedram_model.h"
 #include "mcb_model.h"
 #include <cstddef>
 
@@ -48,35 +47,6 @@ template <class Request> uint64_t directMcb(size_t bytes, const std::vector<Requ
             m.cmdByteAddr = next->address;
             promised += next->read ? next->words : 0;
             ++issuing;
-        }
-        memory.cycle();
-    }
-    return clocks;
-}
-
-template <class Request>
-uint64_t directLitedram(size_t bytes, const std::vector<Request>& requests) {
-    LitedramModel memory(bytes);
-    while (!memory.pins.initDone)
-        memory.cycle();
-    uint64_t words = 0, clocks = 0;
-    for (const Request& r : requests)
-        words += r.words;
-    size_t issuing = 0;
-    unsigned index = 0;
-    memory.pins.wdataValid = memory.pins.rdataReady = true;
-    for (; memory.wordsRead + memory.wordsWritten < words; ++clocks) {
-        LitedramModel::Pins& m = memory.pins;
-        m.cmdValid = issuing < requests.size();
-        if (m.cmdValid) {
-            const Request& r = requests[issuing];
-            m.cmdWe = !r.read;
-            m.cmdAddr = r.address / 8 + index;
-            m.cmdReady = memory.ready(m.cmdAddr);
-            if (m.cmdReady && ++index == r.words) {
-                index = 0;
-                ++issuing;
-            }
         }
         memory.cycle();
     }

@@ -78,7 +78,6 @@ private:
         top.fsmc_noe_n_i = far->noeN;
         top.fsmc_nwe_n_i = far->nweN;
         top.fsmc_nadv_n_i = far->nadvN;
-        top.fsmc_clk_i = far->clk;
     }
     void seePins() {
         far->dFromDesign = top.fsmc_d_o;

@@ -15,9 +15,8 @@ constexpr unsigned waitLimit = 20000; // HCLK cycles of NWAIT before the model g
 // BCR
 constexpr uint32_t bcrEnable = 1u << 0, bcrMuxed = 1u << 1, bcrTypePsram = 1u << 2,
                    bcrTypeNor = 2u << 2, bcrWidth16 = 1u << 4, bcrFlashAccess = 1u << 6,
-                   bcrBurst = 1u << 8, bcrWaitHigh = 1u << 9, bcrWaitDuring = 1u << 11,
-                   bcrWriteEnable = 1u << 12, bcrWaitEnable = 1u << 13, bcrExtended = 1u << 14,
-                   bcrAsyncWait = 1u << 15, bcrBurstWrite = 1u << 19;
+                   bcrWaitHigh = 1u << 9, bcrWaitDuring = 1u << 11, bcrWriteEnable = 1u << 12,
+                   bcrWaitEnable = 1u << 13, bcrExtended = 1u << 14, bcrAsyncWait = 1u << 15;
 constexpr unsigned typeNor = 2;
 
 // BTR and BWTR: HCLK cycles; ACCMOD 0..3 for modes A..D.

@@ -207,8 +207,6 @@ void FsmcMaster::endOfAccess(const Access& access) {
 
 uint16_t FsmcMaster::readPins(uint32_t address) {
     Access access = decode(address, false);
-    if (access.bank->bcr & bcrBurst)
-        return readBurst(address, 1)[0];
     turnaround(access);
     addressPhase(access, 0, 3);
     // Data-to-NE-high set-up time: HCLK + 4 ns (STM32F2 data sheet): two HCLK cycles here.
@@ -239,8 +237,6 @@ uint16_t FsmcMaster::readPins(uint32_t address) {
 
 void FsmcMaster::writePins(uint32_t address, uint16_t value, uint8_t lanes) {
     Access access = decode(address, true);
-    if (access.bank->bcr & bcrBurstWrite)
-        return writeBurst(address, {value}, lanes);
     turnaround(access);
     addressPhase(access, value, lanes);
     passHclk(waitPhase(access));

@@ -3,10 +3,9 @@
 // fsmc_master: the STM32F2's FSMC peripheral, bank 1 (RM0033, chapter 31), on the pins to the FPGA.
 //
 // Programmed through BCRx, BTRx and BWTRx like the real one. Asynchronous modes 1, A, 2, B, C, D
-// and multiplexed, with ASYNCWAIT; synchronous bursts of PSRAM with FSMC_CLK, data latency and
-// NWAIT. An access runs the clock of the design while it lasts. HCLK and that clock stand in a
-// fixed ratio (120 MHz to 100 MHz by default), kept exactly; pins change on HCLK edges, between
-// clock edges.
+// and multiplexed, with ASYNCWAIT. An access runs the clock of the design while it lasts. HCLK and
+// that clock stand in a fixed ratio (120 MHz to 100 MHz by default), kept exactly; pins change on
+// HCLK edges, between clock edges.
 //
 // It throws FsmcError where a real system would fail: both sides driving the data bus, nobody
 // driving it in a read, read data that moves within its set-up time, NWAIT too late to be seen or
@@ -28,7 +27,7 @@ struct FsmcPins {
     uint16_t d = 0; // driven by the processor while dOut
     bool dOut = false;
     uint8_t neN = 0xF, nblN = 3; // NE1 in bit 0 .. NE4 in bit 3
-    bool noeN = true, nweN = true, nadvN = true, clk = false;
+    bool noeN = true, nweN = true, nadvN = true;
     // from the design
     uint16_t dFromDesign = 0;
     bool dDriven = false, nwaitN = true;
@@ -81,13 +80,6 @@ public:
     // first, after so many HCLK cycles of the data phase, whatever NWAIT says. Asynchronous modes.
     void abortRead(uint32_t address, unsigned hclk);
     void abortWrite(uint32_t address, uint16_t value, unsigned hclk);
-    // Synchronous bursts of halfwords (BURSTEN, and CBURSTRW for writes; FSMC_CLK, DATLAT, NWAIT
-    // one clock ahead): what an AHB burst to such a bank becomes.
-    std::vector<uint16_t> readBurst(uint32_t address, unsigned halfwords);
-    void writeBurst(uint32_t address, const std::vector<uint16_t>& values, uint8_t lanes = 3);
-    // Begins a read burst that the processor gives up after so many edges of FSMC_CLK, whatever
-    // NWAIT says; the first one takes the address.
-    void abortReadBurst(uint32_t address, unsigned edges);
     // HCLK cycles in which the processor does something else.
     void idle(unsigned hclk) { passHclk(hclk); }
     // Passes up to so many HCLK cycles, and not many more than so many ns, as far as the design is
@@ -124,9 +116,6 @@ private:
     unsigned waitPhase(const Access& access);
     void endOfAccess(const Access& access);
     void abort(const Access& access, unsigned hclk);
-    void beginBurst(const Access& access);
-    bool clockEdge(const Access& access, uint16_t& data); // returns NWAIT inactive, and the data
-    void endBurst(const Access& access);
     void show();
     void passHclk(unsigned cycles);
 
@@ -136,7 +125,6 @@ private:
     unsigned phase_ = 0;
     std::unique_ptr<PinDelays> delays_;
     bool looksTwice_ = false, pausesWrites_ = true;
-    bool inTime_ = true; // data and NWAIT were set up at FSMC_CLK's last rising edge
     Bank banks_[4] = {{0x000030DB}, {0x000030D2}, {0x000030D2}, {0x000030D2}};
     // The access before, for the turnaround.
     bool lastWrite_ = false, lastHeld_ = false;

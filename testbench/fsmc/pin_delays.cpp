@@ -47,7 +47,7 @@ PinDelays::PinDelays(FsmcPins& near, FsmcPins& far, FsmcMaster::Design design,
 uint64_t PinDelays::driven(const FsmcPins& p) {
     return (p.a & 0x1FFFFFFu) | uint64_t(p.d) << dataBit | uint64_t(p.nblN & 3) << laneBit |
            uint64_t(p.neN & 15) << selectBit | uint64_t(p.nweN) << nwe | uint64_t(p.noeN) << noe |
-           uint64_t(p.nadvN) << nadv | uint64_t(p.dOut) << drives | uint64_t(p.clk) << burst;
+           uint64_t(p.nadvN) << nadv | uint64_t(p.dOut) << drives;
 }
 
 void PinDelays::drive(FsmcPins& p, uint64_t levels) {
@@ -59,7 +59,6 @@ void PinDelays::drive(FsmcPins& p, uint64_t levels) {
     p.noeN = levels >> noe & 1;
     p.nadvN = levels >> nadv & 1;
     p.dOut = levels >> drives & 1;
-    p.clk = levels >> burst & 1;
 }
 
 int PinDelays::between(PinDelay delay) {
@@ -67,7 +66,7 @@ int PinDelays::between(PinDelay delay) {
 }
 
 int PinDelays::delayOf(unsigned pin) {
-    bool clock = pin == nwe || pin == nadv || pin == burst;
+    bool clock = pin == nwe || pin == nadv;
     PinDelay processor = pin < dataBit                    ? corner_.address
                          : pin < laneBit || pin == drives ? corner_.data
                          : pin < selectBit                ? corner_.lanes
@@ -86,7 +85,7 @@ void PinDelays::at(int64_t time, unsigned pin, bool level, bool toDesign) {
 
 void PinDelays::show() {
     uint64_t levels = driven(near_);
-    for (unsigned pin = 0; pin <= burst; ++pin)
+    for (unsigned pin = 0; pin <= drives; ++pin)
         if ((levels ^ sent_) >> pin & 1)
             at(now_ + delayOf(pin), pin, levels >> pin & 1, true);
     sent_ = levels;
@@ -96,16 +95,13 @@ void PinDelays::show() {
 // Lets a pin's change arrive at the design or at the processor.
 void PinDelays::arrive(unsigned pin, bool level) {
     bool selected = (arrived_ >> selectBit & 3) != 3;
-    if (!selected)
-        inBurst_ = false;
-    if (level && selected && (pin == burst || (pin == nwe && !inBurst_))) {
-        inBurst_ = pin == burst;
+    if (level && selected && pin == nwe) {
         if (now_ - inputMoved_ < corner_.setup)
-            throw FsmcError("a pin moved in the set-up time of NWE's or FSMC_CLK's rising edge");
+            throw FsmcError("a pin moved in the set-up time of NWE's rising edge");
         captured_ = now_;
-    } else if (pin < nwe || (inBurst_ && pin < drives)) {
+    } else if (pin < nwe) {
         if (now_ - captured_ < corner_.hold)
-            throw FsmcError("a pin moved in the hold time of NWE's or FSMC_CLK's rising edge");
+            throw FsmcError("a pin moved in the hold time of NWE's rising edge");
         inputMoved_ = now_;
     }
     arrived_ = (arrived_ & ~(uint64_t(1) << pin)) | uint64_t(level) << pin;
@@ -151,7 +147,8 @@ void PinDelays::pass(unsigned hclks) {
         else
             near_.dFromDesign = static_cast<uint16_t>((near_.dFromDesign & ~(1u << c.pin)) |
                                                       unsigned(c.level) << c.pin);
-        (c.pin == nwaitOut ? nwaitMoved_ : dataMoved_) = now_;
+        if (c.pin != nwaitOut)
+            dataMoved_ = now_;
     }
     now_ = end;
 }

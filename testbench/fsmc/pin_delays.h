@@ -26,11 +26,10 @@ struct FsmcCorner {
     const char* name;
     PinDelay address, data, lanes, select, strobe; // processor
     PinDelay board;                                // each way
-    PinDelay padIn, clockIn;                       // clockIn: NWE, NADV, FSMC_CLK, as clocks
+    PinDelay padIn, clockIn;                       // clockIn: NWE, NADV, as clocks
     PinDelay padOut;                               // LUTs and pad
-    int setup, hold;                               // of the design's capture by NWE, by FSMC_CLK
+    int setup, hold;                               // of the design's capture by NWE
     int readSetup = 4000;                          // of the FSMC, before HCLK's length
-    int burstSetup = 6000; // of the FSMC, before FSMC_CLK's rising edge: data and NWAIT
 };
 
 extern const FsmcCorner fsmcCorners[];
@@ -46,24 +45,11 @@ public:
     void show();
     // Lets time pass; runs the design's clock while it does.
     void pass(unsigned hclks);
-    // True if the data at the processor's pins has rested for its set-up time: that of an
-    // asynchronous read, that of FSMC_CLK's rising edge.
+    // True if the data at the processor's pins has rested for its set-up time.
     bool dataIsSetUp() const { return now_ - dataMoved_ >= corner_.readSetup + hclk_; }
-    bool isSetUpForClock() const {
-        return now_ - std::max(dataMoved_, nwaitMoved_) >= corner_.burstSetup;
-    }
 
 private:
-    enum {
-        dataBit = 25,
-        laneBit = 41,
-        selectBit = 43,
-        nwe = 47,
-        noe = 48,
-        nadv = 49,
-        drives = 50,
-        burst = 51
-    };
+    enum { dataBit = 25, laneBit = 41, selectBit = 43, nwe = 47, noe = 48, nadv = 49, drives = 50 };
     static uint64_t driven(const FsmcPins& pins);
     static void drive(FsmcPins& pins, uint64_t levels);
     int between(PinDelay delay);
@@ -80,11 +66,9 @@ private:
     FsmcMaster::Design design_;
     const FsmcCorner& corner_;
     std::mt19937_64 random_;
-    int64_t now_ = 0, nextEdge_, captured_ = -1000000, inputMoved_ = 0, dataMoved_ = 0,
-            nwaitMoved_ = 0;
+    int64_t now_ = 0, nextEdge_, captured_ = -1000000, inputMoved_ = 0, dataMoved_ = 0;
     int hclk_, clk_;
     uint64_t sent_, arrived_;
-    bool inBurst_ = false;      // FSMC_CLK has risen in this access
     uint32_t shown_ = 1u << 17; // the design's outputs as they are: data, its driver, NWAIT
     int64_t last_[64] = {}, lastOut_[18] = {};
     std::multimap<int64_t, Change> changes_;

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// memory: speed, latency and fairness of the memory controllers, next to their back-ends'
-// limits.
+// memory: speed, latency and fairness of the memory controller, next to the limit of the MCB.
 
-#include "VMemoryLitedram2.h"
-#include "VMemoryLitedram4.h"
-#include "VMemoryLitedram8.h"
 #include "VMemoryMcb2.h"
 #include "VMemoryMcb4.h"
 #include "VMemoryMcb8.h"
@@ -16,24 +12,9 @@
 
 namespace {
 
-Figures figures("Speed, latency and fairness of the memory controllers.");
+Figures figures("Speed, latency and fairness of the memory controller.");
 unsigned outstanding = 64; // words that a port asks for before it has them
 double leastFairness = 1;  // of all streams, by Jain's index: 1 is equal
-
-struct Mcb {
-    using Backend = McbBackend;
-    static constexpr const char* name = "MCB";
-    template <class Requests> static uint64_t direct(size_t bytes, const Requests& requests) {
-        return directMcb(bytes, requests);
-    }
-};
-struct Litedram {
-    using Backend = LitedramBackend;
-    static constexpr const char* name = "LiteDRAM";
-    template <class Requests> static uint64_t direct(size_t bytes, const Requests& requests) {
-        return directLitedram(bytes, requests);
-    }
-};
 
 struct Mix {
     const char* name;
@@ -45,9 +26,9 @@ constexpr Mix mixes[] = {{"reads", 0, 0},
                          {"each port reads and writes", 0.5, 0.5}};
 
 // Streams on every port through its own part of the memory. Returns the worst share of the limit.
-template <class Module, class Kind, unsigned ports>
+template <class Module, unsigned ports>
 double stream(const Mix& mix, unsigned size, uint64_t cycles, uint64_t seed) {
-    using Bench = MemoryBench<Module, typename Kind::Backend, ports>;
+    using Bench = MemoryBench<Module, ports>;
     Bench bench(seed);
     for (unsigned p = 0; p < ports; ++p) {
         NpiTraffic& t = bench.requesters.traffic(p);
@@ -65,11 +46,11 @@ double stream(const Mix& mix, unsigned size, uint64_t cycles, uint64_t seed) {
     bench.requesters.stop();
     bench.run(200); // calibration
     uint64_t start = bench.bench.cycles();
-    uint64_t before = bench.backend.model.wordsRead + bench.backend.model.wordsWritten;
+    uint64_t before = bench.memory.wordsRead + bench.memory.wordsWritten;
     bench.requesters.go();
     bench.run(cycles);
     bench.requesters.stop();
-    const auto& model = bench.backend.model;
+    const auto& model = bench.memory;
     bench.bench.waitFor(
         [&] {
             uint64_t asked = 0;
@@ -90,10 +71,9 @@ double stream(const Mix& mix, unsigned size, uint64_t cycles, uint64_t seed) {
         least = std::min(least, mine);
         most = std::max(most, mine);
     }
-    double limit = words / static_cast<double>(Kind::direct(Bench::size, accepted));
+    double limit = words / static_cast<double>(directMcb(Bench::size, accepted));
     double rate = words / static_cast<double>(clocks), jain = sum * sum / (ports * squares);
-    std::string name =
-        fmt::format("{}, {} ports, {} bytes, {}", Kind::name, ports, 8u << size, mix.name);
+    std::string name = fmt::format("MCB, {} ports, {} bytes, {}", ports, 8u << size, mix.name);
     fmt::print("{:<68} {:6.3f} {:6.3f} {:6.1f} % {:7.4f} {:6.3f}\n", name, rate, limit,
                100 * rate / limit, jain, least / most);
     figures.add(name, rate, "words of 64 bits a clock", limit);
@@ -101,23 +81,23 @@ double stream(const Mix& mix, unsigned size, uint64_t cycles, uint64_t seed) {
     return rate / limit;
 }
 
-template <class M2, class M4, class M8, class Kind> double streams(uint64_t cycles, uint64_t seed) {
+double streams(uint64_t cycles, uint64_t seed) {
     double worst = 1e9;
     for (unsigned size : {3u, 4u, 5u})
         for (const Mix& mix : mixes) {
-            worst = std::min(worst, stream<M2, Kind, 2>(mix, size, cycles, seed));
-            worst = std::min(worst, stream<M4, Kind, 4>(mix, size, cycles, seed));
-            worst = std::min(worst, stream<M8, Kind, 8>(mix, size, cycles, seed));
+            worst = std::min(worst, stream<VMemoryMcb2, 2>(mix, size, cycles, seed));
+            worst = std::min(worst, stream<VMemoryMcb4, 4>(mix, size, cycles, seed));
+            worst = std::min(worst, stream<VMemoryMcb8, 8>(mix, size, cycles, seed));
         }
     return worst;
 }
 
 // Measures from the request to the first word popped, one port alone and with all others streaming.
-template <class Module, class Kind, unsigned ports> void latency(uint64_t cycles, uint64_t seed) {
+template <class Module, unsigned ports> void latency(uint64_t cycles, uint64_t seed) {
     for (unsigned size = 0; size <= 5; ++size) {
         double mean[2], most[2];
         for (bool loaded : {false, true}) {
-            MemoryBench<Module, typename Kind::Backend, ports> bench(seed);
+            MemoryBench<Module, ports> bench(seed);
             for (unsigned p = 0; p < ports; ++p) {
                 NpiTraffic& t = bench.requesters.traffic(p);
                 t.ask = p == 0 ? 0.02 : loaded ? 1 : 0;
@@ -129,8 +109,7 @@ template <class Module, class Kind, unsigned ports> void latency(uint64_t cycles
             mean[loaded] = static_cast<double>(c.latencySum) / static_cast<double>(c.reads);
             most[loaded] = static_cast<double>(c.latencyMax);
         }
-        std::string name =
-            fmt::format("{}, {} ports, read of {} bytes", Kind::name, ports, 8u << size);
+        std::string name = fmt::format("MCB, {} ports, read of {} bytes", ports, 8u << size);
         fmt::print("{:<50} {:8.1f} {:8.0f} {:8.1f} {:8.0f}\n", name, mean[0], most[0], mean[1],
                    most[1]);
         figures.add(name + ", latency alone", mean[0], "clocks");
@@ -149,10 +128,7 @@ int main(int argc, char** argv) {
                    "when the memory model is driven directly\n"
                    "{:<68} {:>6} {:>6} {:>8} {:>7} {:>6}\n",
                    "", "rate", "limit", "share", "Jain", "min/max");
-        double worst = streams<VMemoryMcb2, VMemoryMcb4, VMemoryMcb8, Mcb>(cycles, seed);
-        worst = std::min(
-            worst,
-            streams<VMemoryLitedram2, VMemoryLitedram4, VMemoryLitedram8, Litedram>(cycles, seed));
+        const double worst = streams(cycles, seed);
         figures.add("memory controllers, least share of the limit", worst, "of 1", 0.95);
         figures.add("memory controllers, least fairness (Jain)", leastFairness, "of 1", 1);
         fmt::print("least share of a limit: {:.1f} %, 95 is wanted\n", 100 * worst);
@@ -162,9 +138,8 @@ int main(int argc, char** argv) {
         fmt::print("\nRead latency, from the request to the first word, in clocks\n"
                    "{:<50} {:>8} {:>8} {:>8} {:>8}\n",
                    "", "alone", "most", "loaded", "most");
-        latency<VMemoryMcb2, Mcb, 2>(cycles, seed);
-        latency<VMemoryMcb4, Mcb, 4>(cycles, seed);
-        latency<VMemoryMcb8, Mcb, 8>(cycles, seed);
-        latency<VMemoryLitedram2, Litedram, 2>(cycles, seed);
+        latency<VMemoryMcb2, 2>(cycles, seed);
+        latency<VMemoryMcb4, 4>(cycles, seed);
+        latency<VMemoryMcb8, 8>(cycles, seed);
     });
 }

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_test: memory controllers with random traffic from all ports against a reference memory.
+// memory_test: the memory controller with random traffic from all ports against a reference memory.
 
-#include "VMemoryLitedram2.h"
-#include "VMemoryLitedram4.h"
-#include "VMemoryLitedram5.h"
-#include "VMemoryLitedram7.h"
-#include "VMemoryLitedram8.h"
 #include "VMemoryMcb2.h"
 #include "VMemoryMcb3.h"
 #include "VMemoryMcb4.h"
 #include "VMemoryMcb4Options.h"
+#include "VMemoryMcb5.h"
 #include "VMemoryMcb6.h"
+#include "VMemoryMcb7.h"
 #include "VMemoryMcb8.h"
 #include "memory_bench.h"
 #include <gtest/gtest.h>
@@ -20,12 +17,11 @@
 namespace {
 
 // A controller with its parameters; urgent: URGENT, run: URGENT_RUN, bits: ADDR_WIDTH.
-template <class Module, class Backend, unsigned count, unsigned urgent = 0, unsigned run = 3,
-          unsigned bits = 27>
+template <class Module, unsigned count, unsigned urgent = 0, unsigned run = 3, unsigned bits = 27>
 struct Kind {
     static constexpr unsigned ports = count, width = bits;
-    using Bench = MemoryBench<Module, Backend, count>;
-    using Whole = MemoryBench<Module, Backend, count, size_t(1) << bits>;
+    using Bench = MemoryBench<Module, count>;
+    using Whole = MemoryBench<Module, count, size_t(1) << bits>;
 
     // Requests of others that are granted before one of this port: npi_select's bounds.
     static unsigned bound(unsigned port) {
@@ -35,14 +31,10 @@ struct Kind {
         return urgent >> port & 1 ? u + (u - 1) / run : (count - u) * (run + 1) - 1;
     }
 };
-using Kinds = ::testing::Types<
-    Kind<VMemoryMcb2, McbBackend, 2>, Kind<VMemoryMcb3, McbBackend, 3, 7>,
-    Kind<VMemoryMcb4, McbBackend, 4>, Kind<VMemoryMcb4Options, McbBackend, 4, 8, 2, 28>,
-    Kind<VMemoryMcb6, McbBackend, 6>, Kind<VMemoryMcb8, McbBackend, 8>,
-    Kind<VMemoryLitedram2, LitedramBackend, 2>, Kind<VMemoryLitedram4, LitedramBackend, 4>,
-    Kind<VMemoryLitedram5, LitedramBackend, 5, 0x12, 1>,
-    Kind<VMemoryLitedram7, LitedramBackend, 7, 0x78, 7>,
-    Kind<VMemoryLitedram8, LitedramBackend, 8>>;
+using Kinds =
+    ::testing::Types<Kind<VMemoryMcb2, 2>, Kind<VMemoryMcb3, 3, 7>, Kind<VMemoryMcb4, 4>,
+                     Kind<VMemoryMcb4Options, 4, 8, 2, 28>, Kind<VMemoryMcb5, 5, 0x12, 1>,
+                     Kind<VMemoryMcb6, 6>, Kind<VMemoryMcb7, 7, 0x78, 7>, Kind<VMemoryMcb8, 8>>;
 
 template <class T> class Memory : public ::testing::Test {
 protected:

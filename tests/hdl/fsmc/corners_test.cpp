@@ -4,7 +4,6 @@
 // each corner, at several HCLK, with both readings of when the FSMC looks at NWAIT.
 
 #include "VFsmcBridge.h"
-#include "VFsmcBridgeSync.h"
 #include "bridge_bench.h"
 #include "driver_port.h"
 #include "fsmc_fields.h"
@@ -105,7 +104,7 @@ TEST(Corners, NoAccessIsLostWithTheDriversTiming) {
 TEST(Corners, EveryModeWithTimeForNwait) {
     for (FSMC_Mode mode : {FSMC_MODE_A, FSMC_MODE_2, FSMC_MODE_B, FSMC_MODE_C, FSMC_MODE_D})
         inEveryCorner(0.9, [mode](BridgeBench<VFsmcBridge>& b, unsigned hclk) {
-            const FSMC_Bank bank = {mode, mode, 0, 0, 1, 0, 1, {2, 2, 6}, {2, 2, 6}, 0, 0};
+            const FSMC_Bank bank = {mode, mode, 0, 0, 1, 0, 1, {2, 2, 6}, {2, 2, 6}};
             const FSMC_Bank banks[2] = {bank, bank};
             ASSERT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
             traffic(b, testSeed() + hclk);
@@ -136,45 +135,6 @@ TEST(Corners, StreamsAreRightAtFullSpeed) {
             EXPECT_GT(read * 4, 0.95);
         }
     });
-}
-
-// FSMC_CLK of 25 MHz at most, as docs/fsmc.md says; NE2 stays asynchronous.
-TEST(Corners, Bursts) {
-    for (unsigned corner = 0; corner < fsmcCornerCount; ++corner)
-        for (auto [hclk, clkdiv] : {std::pair(60u, 2u), {100u, 3u}, {120u, 4u}}) {
-            SCOPED_TRACE(std::string(fsmcCorners[corner].name) + ", HCLK " + std::to_string(hclk) +
-                         " MHz, SEED=" + std::to_string(testSeed()));
-            BridgeBench<VFsmcBridgeSync> b(testSeed(), 0.5, hclk, 100);
-            FSMC_Bank banks[2] = {};
-            banks[0].mode = FSMC_MODE_BURST;
-            banks[0].clkdiv = static_cast<U8>(clkdiv);
-            banks[0].latency = 5;
-            banks[1] = {FSMC_MODE_1, FSMC_MODE_1, 0, 0, 1, 0, 2, {2, 2, 4}, {2, 2, 4}, 0, 0};
-            b.slave.words[0] = SYSTEM_ID_VALUE;
-            b.delay(fsmcCorners[corner], testSeed() + corner, true);
-            ASSERT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
-            Random random(testSeed() + hclk);
-            std::map<uint32_t, uint16_t> memory;
-            for (int i = 0; i < 60; ++i) {
-                uint32_t at = 2 * random.below(200), count = 1 + random.below(40);
-                if (random.chance(0.5)) {
-                    std::vector<uint16_t> values(count);
-                    for (unsigned k = 0; k < count; ++k)
-                        memory[at + 2 * k] = values[k] = static_cast<uint16_t>(random.next());
-                    b.master.writeBurst(ddr + at, values);
-                } else {
-                    std::vector<uint16_t> values = b.master.readBurst(ddr + at, count);
-                    for (unsigned k = 0; k < count; ++k)
-                        ASSERT_EQ(values[k], memory[at + 2 * k])
-                            << "access " << i << ", beat " << k;
-                }
-                if (random.chance(0.2)) {
-                    b.master.write32(control + 4 * 70, i);
-                    ASSERT_EQ(b.master.read32(control + 4 * 70), static_cast<uint32_t>(i));
-                }
-            }
-            EXPECT_EQ(b.errors, 0u);
-        }
 }
 
 // A chip that waits for its PLL must not stop the processor's bus.

@@ -31,21 +31,21 @@ struct Mode {
 // mode, of writes, PSRAM, muxed, wait, wait high, BUSTURN, {ADDSET, ADDHLD, DATAST} of reads,
 // writes
 const Mode plainModes[] = {
-    {"1", {FSMC_MODE_1, {}, 0, 0, 1, 0, 1, {2, 1, 4}, {}, 0, 0}},
-    {"1 slow", {FSMC_MODE_1, {}, 0, 0, 1, 0, 15, {15, 1, 20}, {}, 0, 0}},
-    {"1 PSRAM", {FSMC_MODE_1, {}, 1, 0, 1, 0, 1, {1, 1, 4}, {}, 0, 0}},
-    {"A", {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 1, {2, 1, 4}, {1, 1, 5}, 0, 0}},
-    {"A write fast", {FSMC_MODE_A, FSMC_MODE_A, 1, 0, 1, 0, 1, {3, 1, 6}, {1, 1, 4}, 0, 0}},
-    {"2", {FSMC_MODE_2, {}, 0, 0, 1, 0, 1, {2, 1, 4}, {}, 0, 0}},
-    {"B", {FSMC_MODE_B, FSMC_MODE_B, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}, 0, 0}},
-    {"C", {FSMC_MODE_C, FSMC_MODE_C, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}, 0, 0}},
-    {"D", {FSMC_MODE_D, FSMC_MODE_D, 0, 0, 1, 0, 1, {2, 2, 4}, {2, 2, 4}, 0, 0}},
-    {"read A, write D", {FSMC_MODE_A, FSMC_MODE_D, 0, 0, 1, 0, 1, {2, 1, 4}, {1, 3, 4}, 0, 0}},
+    {"1", {FSMC_MODE_1, {}, 0, 0, 1, 0, 1, {2, 1, 4}, {}}},
+    {"1 slow", {FSMC_MODE_1, {}, 0, 0, 1, 0, 15, {15, 1, 20}, {}}},
+    {"1 PSRAM", {FSMC_MODE_1, {}, 1, 0, 1, 0, 1, {1, 1, 4}, {}}},
+    {"A", {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 1, {2, 1, 4}, {1, 1, 5}}},
+    {"A write fast", {FSMC_MODE_A, FSMC_MODE_A, 1, 0, 1, 0, 1, {3, 1, 6}, {1, 1, 4}}},
+    {"2", {FSMC_MODE_2, {}, 0, 0, 1, 0, 1, {2, 1, 4}, {}}},
+    {"B", {FSMC_MODE_B, FSMC_MODE_B, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}}},
+    {"C", {FSMC_MODE_C, FSMC_MODE_C, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}}},
+    {"D", {FSMC_MODE_D, FSMC_MODE_D, 0, 0, 1, 0, 1, {2, 2, 4}, {2, 2, 4}}},
+    {"read A, write D", {FSMC_MODE_A, FSMC_MODE_D, 0, 0, 1, 0, 1, {2, 1, 4}, {1, 3, 4}}},
 };
 const Mode muxedModes[] = {
-    {"muxed NOR", {FSMC_MODE_2, {}, 0, 1, 1, 0, 1, {2, 2, 4}, {}, 0, 0}},
-    {"muxed PSRAM", {FSMC_MODE_1, {}, 1, 1, 1, 0, 2, {1, 1, 5}, {}, 0, 0}},
-    {"muxed, extended", {FSMC_MODE_D, FSMC_MODE_D, 0, 1, 1, 0, 1, {3, 1, 4}, {1, 1, 4}, 0, 0}},
+    {"muxed NOR", {FSMC_MODE_2, {}, 0, 1, 1, 0, 1, {2, 2, 4}, {}}},
+    {"muxed PSRAM", {FSMC_MODE_1, {}, 1, 1, 1, 0, 2, {1, 1, 5}, {}}},
+    {"muxed, extended", {FSMC_MODE_D, FSMC_MODE_D, 0, 1, 1, 0, 1, {3, 1, 4}, {1, 1, 4}}},
 };
 
 // Random traffic of all widths to both windows against a reference.
@@ -120,7 +120,7 @@ TEST(Modes, MultiplexedAddressAndData) {
             traffic<VFsmcBridgeMuxed>(mode, hclk, clk);
 }
 
-TEST(Modes, NwaitActiveHighAndSmallBuffers) {
+TEST(Modes, NwaitActiveHighAndTheLargestBuffers) {
     for (Mode mode : plainModes) {
         mode.bank.waitHigh = 1;
         traffic<VFsmcBridgeWaitHigh>(mode, 120, 100);
@@ -131,7 +131,7 @@ TEST(Modes, NwaitActiveHighAndSmallBuffers) {
 TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0, 120, 100);
     b.slave.words[0] = SYSTEM_ID_VALUE;
-    FSMC_Bank bank = {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}, 0, 0};
+    FSMC_Bank bank = {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}};
     auto hclksOfAWord = [&](uint8_t busturn, bool pauses) {
         bank.busturn = busturn;
         const FSMC_Bank banks[2] = {bank, bank};
@@ -154,7 +154,7 @@ TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
 TEST(Modes, WhatADoorbellDropsOnItsWayIsNotTakenForFresh) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0.1, 168, 100);
     b.slave.words[0] = SYSTEM_ID_VALUE;
-    const FSMC_Bank bank = {FSMC_MODE_1, {}, 0, 0, 1, 0, 1, {2, 1, 4}, {}, 0, 0};
+    const FSMC_Bank bank = {FSMC_MODE_1, {}, 0, 0, 1, 0, 1, {2, 1, 4}, {}};
     const FSMC_Bank banks[2] = {bank, bank};
     ASSERT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
     Random random(testSeed());
@@ -197,18 +197,7 @@ TEST(Modes, TheDriverRefusesWhatTheManualForbids) {
                 << "a read may begin too soon behind a write";
         EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.writeMode = FSMC_MODE_1; }));
         EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.mode = static_cast<FSMC_Mode>(7); }));
-        for (unsigned clkdiv : {0u, 16u})
-            EXPECT_TRUE(refuses(bank, [=](FSMC_Bank& x) {
-                x.mode = FSMC_MODE_BURST, x.latency = 5, x.clkdiv = static_cast<U8>(clkdiv);
-            }));
-        for (unsigned latency : {1u, 18u})
-            EXPECT_TRUE(refuses(bank, [=](FSMC_Bank& x) {
-                x.mode = FSMC_MODE_BURST, x.clkdiv = 3, x.latency = static_cast<U8>(latency);
-            }));
     }
-    EXPECT_TRUE(refuses(1, [](FSMC_Bank& x) {
-        x.mode = FSMC_MODE_BURST, x.clkdiv = 3, x.latency = 5;
-    })) << "NE2 is asynchronous";
     EXPECT_THROW(b.master.read16(control), FsmcError) << "bank 2 is off: nothing was written";
 }
 

@@ -14,7 +14,7 @@ import re
 import sys
 
 CLOCKS = {"clk_i", "dst_clk_i", "src_clk_i", "read_clk_i", "write_clk_i"}
-OF_WRITER = {"full_o", "begins_o", "push_i", "data_i"}
+OF_WRITER = {"full_o", "push_i", "data_i"}
 NO_DATA = {"CLK", "ARST", "ALOAD", "RD_CLK", "WR_CLK"}
 
 

@@ -12,32 +12,24 @@ refused=''
 case $module in
 bus_decoder) variants='SLOTS=1 SLOTS=4 SLOTS=64' ;;
 npi_select) variants="PORTS=2 PORTS=3 PORTS=4 PORTS=5 PORTS=6 PORTS=7 PORTS=8 URGENT=2'd1" ;;
-npi_arbiter | memory_mcb | memory_litedram)
+npi_arbiter | memory_mcb)
     variants="PORTS=2 PORTS=3 PORTS=4 PORTS=5 PORTS=6 PORTS=7 PORTS=8 URGENT=2'd1 READ_FIFO=2'd1 BLOCK_RAM=0 ADDR_WIDTH=30"
     [ "$module" != npi_arbiter ] || refused='PORTS=1 PORTS=9 URGENT_RUN=0 ADDR_WIDTH=33' ;;
-litedram_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=32' ;;
 mcb_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=30' refused='ADDR_WIDTH=31' ;;
 npi_queue) variants='PORT_BITS=2 PORT_BITS=3' ;;
 npi_stream) variants='ADDR_BITS=7 WORD_BITS=4 WORD_BITS=32' ;;
-axi4_memory) variants='ADDR_BITS=7 ID_BITS=1 ID_BITS=8' ;;
 axis_filter) variants='WIDTH=16 WIDTH=32 WIDTH=64 LAST=0' ;;
 axis_read | axis_write | axis_memory) variants='ADDR_BITS=7 BYTE_BITS=7 BYTE_BITS=32 ROWS=0 TAG_BITS=6' ;;
 bus_wrapper) variants='EVENTS=1 EVENTS=32' ;;
 bus_window) variants='ADDR_WIDTH=3 ADDR_WIDTH=5 ADDR_WIDTH=6 ADDR_WIDTH=32' refused='ADDR_WIDTH=2 ADDR_WIDTH=33 TIMEOUT=0 TIMEOUT=256' ;;
 bus_to_axi4lite) variants='ADDR_WIDTH=3 ADDR_WIDTH=32' ;;
 bus_to_wishbone) variants='ADDR_WIDTH=3 ADDR_WIDTH=32 PIPELINED=1' ;;
-async_fifo) variants='LOG2=2 LOG2=6 RESTARTS=1 SPARE=2 LOG2=3,SPARE=7,RESTARTS=1' ;;
+async_fifo) variants='LOG2=2 LOG2=6' ;;
 npi_fifo) variants='LOG2=1 LOG2=5 BLOCK=1' ;;
 modem) variants='CLK_HZ=2000000 CLK_HZ=100000000 API=1' ;;
-fsmc_burst_pins) variants='MUXED=1' ;; # the rest in fsmc_burst
-fsmc_burst)
-    for latency in 4 6 7 8 9 10 11 12 13 14 15 16 17; do
-        variants="${variants-} LATENCY=$latency"
-    done
-    variants="$variants MUXED=1,LATENCY=4 MUXED=1,LATENCY=17" ;;
 fsmc_bridge)
-    variants='MUXED=1 SYNC=1 SYNC=1,MUXED=1 WAIT_HIGH=1,TIMEOUT_LOG2=24 SYNC=1,WAIT_HIGH=1,LATENCY=4 SYNC=1,LATENCY=17,TIMEOUT_LOG2=1 POST_LOG2=2,BLOCK_LOG2=4 POST_LOG2=3,BLOCK_LOG2=1 POST_LOG2=5,BLOCK_LOG2=2'
-    refused='SYNC=1,LATENCY=3 SYNC=1,LATENCY=18 SYNC=2 POST_LOG2=1 POST_LOG2=6 BLOCK_LOG2=0 BLOCK_LOG2=5 TIMEOUT_LOG2=0' ;;
+    variants='MUXED=1 WAIT_HIGH=1,TIMEOUT_LOG2=24 TIMEOUT_LOG2=1 POST_LOG2=2,BLOCK_LOG2=4 POST_LOG2=3,BLOCK_LOG2=1 POST_LOG2=5,BLOCK_LOG2=2'
+    refused='MUXED=2 WAIT_HIGH=2 POST_LOG2=1 POST_LOG2=6 BLOCK_LOG2=0 BLOCK_LOG2=5 TIMEOUT_LOG2=0' ;;
 system_slot) variants='SLOTS=2 SLOTS=63' ;;
 core_gate) folders="$folders $source/tests/hdl/lint" variants='GATED=1' ;; # BUFGCE.v
 core_clock) folders="$folders $source/tests/hdl/lint" variants='MULTIPLY=5,DIVIDE=7' ;; # DCM_CLKGEN.v, too

@@ -114,8 +114,8 @@ bool saveHardware(const std::vector<hw::Block>& blocks, const Options& o, const 
     return true;
 }
 
-// The definitions of the files of one program, each with its place. C has one name for a definition
-// of a kind in all of them, and one header for files of one name.
+// The definitions of one program's files, each with its place. In all of them C has one name for a
+// definition of a kind, and one header for files of one name.
 class Program {
 public:
     void add(const Unit& unit, Diagnostics& diagnostics) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// check: what Slice allows and C90 does not.
+// check: rejects Slice that is valid but cannot become C90.
 
 #include "c/generator.h"
 #include "c/names.h"
@@ -14,8 +14,8 @@ namespace {
 
 using DKind = Declaration::Kind;
 
-// Holds a ":hw" interface to what fits into registers: numbers, enums, structs and sequences of
-// them, exceptions of these, and proxies of callback interfaces.
+// Checks that a ":hw" interface fits into registers: numbers, enums, structs and sequences of them,
+// exceptions of these, and proxies of callback interfaces.
 void checkHardware(const Declaration& d, Diagnostics& diagnostics) {
     std::string who = "interface '" + d.name + "' is hardware ([\":hw\"]): '";
     const char* kinds = "a number, an enum, a struct or a sequence of them";
@@ -63,7 +63,7 @@ void checkText(const Literal& value, const Location& at, Diagnostics& diagnostic
                                   std::to_string(most) + " only");
 }
 
-// The names that the generated C has at file scope, each with the Slice name it comes from.
+// The names of the generated C at file scope, each with its Slice name.
 class CNames {
 public:
     CNames(const Unit& unit, Diagnostics& diagnostics) : unit_(unit), diagnostics_(diagnostics) {}
@@ -122,7 +122,7 @@ private:
         for (const char* own : {"bases_", "dispatch_", "operations_"})
             add(own + c, id, d.at);
         if (d.fromInclude)
-            return; // its own file was held to these names
+            return; // its own file was checked for these names
         for (const Declaration* from : lineage(d))
             for (const Operation& o : from->operations) {
                 std::string slice = from->id() + "::" + o.name;
@@ -184,7 +184,7 @@ void checkC(const Unit& unit, const CFileNames& files, Diagnostics& diagnostics)
         if (d->isLocal)
             continue;
         checkInner(*d, names);
-        if (d->ofClass) // the rest is said of the class
+        if (d->ofClass) // the class has the other messages
             continue;
         checkMetadata(*d, diagnostics);
         checkText(d->value, d->at, diagnostics);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// checksums: the digest of a definition written in one fixed way: without comments, metadata and
-// defaults, optionals by their tags. The words and blanks are those of slice2cpp
+// checksums: the digest of a definition in one fixed spelling: without comments, metadata and
+// defaults, optionals by their tags. Words and blanks are those of slice2cpp
 // (tests/slice/compiler/commandline.sh compares).
 
 #include "c/checksums.h"
 #include "front/parser.h"
-#define OPENSSL_SUPPRESS_DEPRECATED // MD5: no secret hangs on it
+#define OPENSSL_SUPPRESS_DEPRECATED // MD5, which protects no secret here
 #include <algorithm>
 #include <cstdio>
 #include <openssl/md5.h>
@@ -51,7 +51,7 @@ std::string named(const Field& f) {
 
 void members(std::ostream& out, const Declaration& d) {
     for (const Field* f : ordered(d.fields))
-        out << named(*f) << (f->isOptional ? "" : "\n"); // no line's end: slice2cpp has none
+        out << named(*f) << (f->isOptional ? "" : "\n"); // no line end: slice2cpp has none
 }
 
 void operation(std::ostream& out, const Operation& o) {

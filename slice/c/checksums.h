@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// checksums: of the definitions of a Slice file, the same as ZeroC's compilers make: programs
-// compare them to find out whether they were compiled from the same Slice.
+// checksums: of the definitions of a Slice file, as ZeroC's compilers make them: programs compare
+// them to find out whether they were compiled from the same Slice.
 
 #ifndef SLICE_C_CHECKSUMS_H
 #define SLICE_C_CHECKSUMS_H
@@ -10,7 +10,7 @@
 #include <map>
 #include <string>
 
-// The checksums of what the main file defines, local definitions aside, by type id.
+// The checksums of the main file's definitions, except local ones, by type id.
 std::map<std::string, std::string> checksums(const Unit& unit);
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// classes: descriptors of classes, which the run time reads and writes graphs by.
+// classes: descriptors of classes, by which the run time reads and writes graphs.
 
 #include "c/files.h"
 #include "c/members.h"
@@ -38,8 +38,8 @@ void classFunctions(Writer& w, const Declaration& d) {
            v);
 }
 
-// The classes that the main file's types mention and do not define, and the interfaces that they
-// mention by value, with those derived from these.
+// The classes that the main file's types mention and do not define, the interfaces that they
+// mention by value, and types derived from these.
 static std::set<const Declaration*> mentioned(const Unit& unit) {
     std::set<const Declaration*> found;
     auto add = [&](const Type& t) {
@@ -62,7 +62,7 @@ static std::set<const Declaration*> mentioned(const Unit& unit) {
                 add(p.type);
         }
     }
-    for (const auto& d : unit.declarations) // bases come before what derives from them
+    for (const auto& d : unit.declarations) // bases come before derived types
         for (const Declaration* base : d->bases)
             if (d->kind == Declaration::Kind::Interface && found.count(base))
                 found.insert(d.get());

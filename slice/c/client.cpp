@@ -29,7 +29,7 @@ void writeParameters(Writer& w, const Declaration& d, const Operation& o) {
     writeWithValues(w, inSlots(o), "ice_values");
 }
 
-// An exception comes that the operation does not declare: Python's servants can throw any.
+// Handles an exception that the operation does not declare: Python's servants can throw any.
 void refuseException(Writer& w) {
     w.line("if (status == ICE_USER_EXCEPTION)");
     w.nested("status = ICE_UNKNOWN_USER_EXCEPTION;");

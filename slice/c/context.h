@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// context: what all generated files of a unit have in common.
+// context: shared by all generated files of a unit.
 
 #ifndef SLICE_C_CONTEXT_H
 #define SLICE_C_CONTEXT_H
@@ -16,16 +16,15 @@ struct CContext {
 
     CContext(const Unit& ofFile, const CFileNames& ofFiles);
     std::string header() const;
-    // The name of the table of classes that this unit knows, which are those that can be received.
+    // The name of the table of classes that this unit knows, and so can receive.
     std::string valueTable() const;
     // The name of the table of checksums.
     std::string checksumTable() const;
     bool usesClasses() const;
     Writer begin(const std::string& what) const;
     Writer beginSource(const std::string& what) const;
-    // Returns the prefix ("M_I_op") of the union of what an operation of this file throws: the
-    // first operation's that throws the same, so that what one threw is thrown again by an
-    // assignment.
+    // Returns the prefix ("M_I_op") of an operation's exception union: that of the first operation
+    // in the file that throws the same, so that an exception is thrown again by an assignment.
     const std::string& thrownAs(const Operation& o) const { return thrown_.at(&o); }
 
     // Calls `f` for each declaration of the main file of this kind, local ones aside.

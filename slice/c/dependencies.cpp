@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// dependencies: paths, and printing.
+// dependencies: shortens paths and prints them.
 
 #include "c/dependencies.h"
 #include <filesystem>
@@ -26,7 +26,7 @@ std::string headerOf(const std::string& included, const std::string& file,
 
 namespace {
 
-// The preprocessor makes paths absolute; below the current folder they are written without it.
+// The preprocessor makes paths absolute; paths below the current folder are written relative to it.
 std::string shown(const std::string& file) {
     fs::path path = fs::weakly_canonical(file),
              relative = path.lexically_relative(fs::current_path());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// dependencies: what --depend prints, and where the headers of included Slice files are.
+// dependencies: the output of --depend, and the headers of included Slice files.
 
 #ifndef SLICE_C_DEPENDENCIES_H
 #define SLICE_C_DEPENDENCIES_H
@@ -9,17 +9,17 @@
 #include <string>
 #include <vector>
 
-// The header for `included` as it is named in an #include: the shortest path from one of the -I
+// Returns the header for `included` as an #include names it: the shortest path from one of the -I
 // folders, else from the folder of `file`.
 std::string headerOf(const std::string& included, const std::string& file,
                      const std::vector<std::string>& includeDirs, const std::string& extension);
 
 class Dependencies {
 public:
-    // `files`: the Slice file itself and all that it includes.
+    // `files`: the Slice file itself and all files that it includes.
     void add(const std::string& file, const CFileNames& names,
              const std::vector<std::string>& files);
-    // The dependencies as rules for make, or as XML as Ice's compilers write it.
+    // The dependencies as rules for make, or as XML in the format of Ice's compilers.
     std::string text(bool xml) const;
 
 private:

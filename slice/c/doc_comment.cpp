@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// doc_comment: cleaning and rewording.
+// doc_comment: cleans and rewords doc comments.
 
 #include "c/doc_comment.h"
 
@@ -48,7 +48,7 @@ void plainTag(std::string& s) {
     }
 }
 
-// Takes apart what means something within a comment of C; the last is a backslash in C90.
+// Takes apart character sequences with a meaning in a comment of C; the last is a backslash in C90.
 void apart(std::string& s) {
     replaceAll(s, "*/", "* /");
     replaceAll(s, "/*", "/ *");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// exceptions: marshalling of exceptions, and of the unions of what operations throw.
+// exceptions: marshalling of exceptions, and of operations' exception unions.
 
 #include "c/files.h"
 #include "c/members.h"
@@ -17,12 +17,12 @@ bool requiresClasses(const Declaration& d) {
     return anyRequiredClass(memberSlots(d)) || (d.base() && requiresClasses(*d.base()));
 }
 
-// The path from an exception to the member that keeps unknown slices.
+// Returns the path from an exception to the member that keeps unknown slices.
 std::string unknownOf(const Declaration& d) {
     return d.base() && d.base()->preserves() ? "base." + unknownOf(*d.base()) : "ice_unknown";
 }
 
-// True if reading and writing it needs a table of instances; kept slices may hold instances too.
+// True if the code needs a table of instances; kept slices may hold instances, too.
 bool needsTables(const Declaration& d) {
     return hasClasses(d) || d.preserves();
 }

@@ -13,7 +13,7 @@ std::string clientFile(const CContext& c);
 std::string asyncFile(const CContext& c);
 std::string serverFile(const CContext& c);
 
-// Write an exception's functions, and those of the union of what an operation throws.
+// Write an exception's functions, and those of an operation's exception union.
 void exceptionFunctions(Writer& w, const Declaration& d);
 void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o);
 // Write a class's descriptor with its functions, and the table of all descriptors.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// generator: a unit as C90 for IceC: a header and four sources (docs/slice-mapping.md).
+// generator: writes a unit as C90 for IceC: a header and four sources (docs/slice-mapping.md).
 
 #ifndef SLICE_C_GENERATOR_H
 #define SLICE_C_GENERATOR_H
@@ -19,11 +19,11 @@ struct CFileNames {
     std::string sourceExtension = "c";
     std::string path;                  // "folder/Printer.h": the header, as others include it
     std::string includeDir;            // before the header's name in the sources, may be empty
-    bool checksums = false;            // a table of them, too
+    bool checksums = false;            // with a table of checksums
     std::vector<std::string> includes; // headers of the Slice files that the main file includes
 };
 
-// Says what C cannot map, or would map to one name twice. Call it before generateC.
+// Reports definitions that C cannot map, or would map to one name twice. Call it before generateC.
 void checkC(const Unit& unit, const CFileNames& names, Diagnostics& diagnostics);
 
 std::vector<GeneratedFile> generateC(const Unit& unit, const CFileNames& names);

@@ -18,7 +18,7 @@ std::string guardOf(const CContext& c) {
     return guard;
 }
 
-// Interfaces and classes may be declared by several files: C90 wants one typedef.
+// Several files may declare an interface or class: C90 allows one typedef.
 void forwardDeclarations(Writer& w, const CContext& c) {
     for (const auto& d : c.unit.declarations) {
         bool isClass = d->kind == DKind::Class;
@@ -96,7 +96,7 @@ bool hasFind(const Declaration& d) {
 void declareStruct(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", cName(d)}};
     bool isClass = d.kind == DKind::Class;
-    // A class has its typedef already.
+    // A class already has its typedef.
     w.block(
         isClass ? "struct {c}" : "typedef struct {c}", v,
         [&] {

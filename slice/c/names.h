@@ -12,9 +12,9 @@
 std::string cName(const Declaration& d);
 // Module_Sub_NamePrx, of an interface or a class
 std::string cProxy(const Declaration& d);
-// Names of one part, which share a scope with names of the generated code's own. These own names
-// are listed in names.cpp, or begin with "ice_" or "Ice_"; a user's name that is one of them, or
-// C's, gets an underscore behind it. No name in Slice ends with an underscore.
+// Names in a scope that they share with names of generated code. These are listed in names.cpp, or
+// begin with "ice_" or "Ice_". A user's name that equals one of them, or a word of C, gets an
+// underscore at its end. No name in Slice ends with an underscore.
 std::string cIdentifier(const std::string& name);
 // The name of a member of struct, class or exception `d`.
 std::string cMember(const Declaration& d, const Field& member);
@@ -28,9 +28,9 @@ std::string cType(const Type& type);
 std::string cEnumerator(const Declaration& owner, const std::string& name);
 // A constant's value as an expression; a Long's is an initialiser {low, high}.
 std::string cValue(const Literal& value, const Type& type);
-// The name of something that there is once for a Slice file: "Folder_File_what".
+// The name of a thing that a Slice file has once: "Folder_File_what".
 std::string cFileName(const CFileNames& names, const std::string& what);
-// "text" with escapes, so that any bytes survive.
+// "text" with escapes for all bytes.
 std::string cString(const std::string& bytes);
 // True if icec.h declares the type itself; only its stream functions are generated.
 bool isRuntimeType(const Declaration& d);

@@ -11,8 +11,8 @@ namespace {
 
 const char* const resultName = "result";
 
-// The declaration of an in parameter or response value; an optional one is a pointer, 0 for none. A
-// received instance is the servant's, which may change it or return it.
+// Returns the declaration of an in parameter or response value. An optional one is a pointer, 0 for
+// none. A received instance belongs to the servant, which may change it or return it.
 std::string passed(const Type& t, const std::string& name, bool isOptional, bool isReceived) {
     bool isPointer = isByPointer(t) || isOptional;
     if (isClass(t))
@@ -79,8 +79,8 @@ bool throwsPreserved(const Unit& unit, const Operation& o) {
                        [](const Declaration* e) { return e->preserves(); });
 }
 
-// The first exception of a name has it alone: those that the operation lists, in their order, then
-// the others. Another exception more does not rename it.
+// The first exception with a name has it alone: first the operation's exceptions, in their order,
+// then the others. So one more exception does not rename it.
 static bool isFirstOfName(const Operation& o, const std::vector<const Declaration*>& family,
                           const Declaration& exception) {
     for (const auto& list : {o.throws, family})
@@ -101,7 +101,7 @@ std::string exceptionLabel(const Operation& o, const std::vector<const Declarati
 
 std::string exceptionMember(const Operation& o, const std::vector<const Declaration*>& family,
                             const Declaration& exception) {
-    // C++ takes no member with the name of its type.
+    // C++ allows no member with the name of its type.
     return isFirstOfName(o, family, exception) ? cIdentifier(exceptionLabel(o, family, exception))
                                                : cName(exception) + "_";
 }

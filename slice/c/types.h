@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// types: how values are passed, written and read: pieces of C that the generators put together.
+// types: pieces of C that pass, write and read values, which the generators put together.
 
 #ifndef SLICE_C_TYPES_H
 #define SLICE_C_TYPES_H
@@ -10,31 +10,31 @@
 #include <string>
 #include <vector>
 
-// True if it is passed by const pointer: all but scalars, strings, enums and pointers to classes.
+// True if it is passed by const pointer: all types except scalars, strings, enums and classes.
 bool isByPointer(const Type& type);
 bool isEnum(const Type& type);
 bool isClass(const Type& type); // a pointer to an Ice_Value
 
-// The least bytes that a value takes on the wire; whether there can be more.
+// The least bytes of a value on the wire; whether there can be more.
 int leastWireSize(const Type& type);
 bool isVariable(const Type& type);
-// True if a class is in it, at any depth.
+// True if a class is inside, at any depth.
 bool containsClass(const Type& type);
 
 // A declaration of `name`: "Ice_Int x", "M_Node *x".
 std::string cVariable(const Type& type, const std::string& name);
 
-// A value in a list of members or parameters that is written or read.
+// A value in a list of members or parameters for writing or reading.
 struct Slot {
     const Type* type = nullptr;
     std::string value;   // its lvalue
     std::string pointer; // its address
     bool isOptional = false;
     int tag = 0;
-    std::string has; // whether it is there: a condition to write by, an lvalue to read into
+    std::string has; // whether it is there: a condition when writing, an lvalue when reading
 };
 
-// Sorts slots as they are on the wire: required ones in their order, then the optional by tag.
+// Sorts slots in the order of the wire: required ones as they are, then the optional ones by tag.
 std::vector<Slot> wireOrder(std::vector<Slot> slots);
 void writeSlots(Writer& w, const std::vector<Slot>& slots);
 void readSlots(Writer& w, const std::vector<Slot>& slots);

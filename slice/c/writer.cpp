@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// writer: filling in, indenting, breaking lines.
+// writer: fills templates in, indents, breaks lines.
 
 #include "c/writer.h"
 #include <algorithm>
@@ -19,7 +19,7 @@ std::string Writer::fill(std::string_view text, const Values& values) {
         if (known != values.end()) {
             result += known->second;
             text.remove_prefix(close + 1);
-        } else if (!text.empty()) { // a brace of the text's own
+        } else if (!text.empty()) { // a brace of the text
             result += '{';
             text.remove_prefix(1);
         }

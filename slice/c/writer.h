@@ -14,8 +14,8 @@ class Writer {
 public:
     using Values = std::vector<std::pair<std::string_view, std::string>>;
 
-    // `{name}` with a known name is replaced; any other brace is text. A line of code that is
-    // longer than 100 columns is broken behind a comma or an operator.
+    // Replaces `{name}` for a known name; any other brace is text. A line of code longer than 100
+    // columns is broken after a comma or an operator.
     void line(std::string_view text = {}, const Values& values = {});
     // Writes `body` one step to the right.
     template <class Body> void indented(Body body) {

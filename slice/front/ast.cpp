@@ -102,7 +102,7 @@ void Declaration::complete() {
         facts.leastWireSize = 1;
         facts.isNumeric = facts.isKey = false;
         break;
-    default: // a class, wherever it is a type
+    default: // a class, as a type
         facts.hasClass = true;
         facts.isNumeric = false;
     }

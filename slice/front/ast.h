@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ast: what a Slice file and the files it includes declare. Made by the parser, which has resolved
-// every name and checked what Slice demands; read by the generators.
+// ast: the declarations of a Slice file and the files that it includes. The parser makes it, with
+// every name resolved and Slice's rules checked; the generators read it.
 //
 //   Unit         declarations in the order of the source, those of included files among them
 //   Declaration  one enum, struct, sequence, dictionary, interface, class, exception or constant
@@ -44,7 +44,7 @@ struct Literal {
     Kind kind = Kind::None;
     int64_t integer = 0; // Bool, Integer; Enumerator: its value
     double floating = 0; // Floating
-    std::string written; // String, Enumerator: as checksums have it
+    std::string written; // String, Enumerator: for checksums
     std::string text;    // Floating as written; String as bytes of UTF-8; Enumerator's name
     const Declaration* owner = nullptr; // Enumerator's enum
 };
@@ -90,21 +90,21 @@ struct Declaration {
     std::vector<std::string> metadata;
 
     std::vector<Enumerator> enumerators;   // Enum
-    bool hasValues = false;                // Enum: some are written down
+    bool hasValues = false;                // Enum: some enumerators have a value
     std::vector<Field> fields;             // Struct, Class, Exception: own members
     Type key, element;                     // Dictionary; Sequence: element; Constant: its type
     Literal value;                         // Constant
     std::vector<const Declaration*> bases; // Interface: any; Class, Exception: at most one
     std::vector<const Declaration*> implemented; // Class: interfaces
     std::vector<Operation> operations;           // Interface, Class: own ones
-    const Declaration* ofClass = nullptr;        // Interface: it is what this class is called by
+    const Declaration* ofClass = nullptr;        // Interface: made for calls of this class
     int compactId = -1;                          // Class; -1: none
 
     // Facts about all values of a type; set when its definition is complete.
     struct Facts {
         int leastWireSize = 1;  // bytes
-        bool isVariable = true; // longer ones are possible
-        bool hasClass = false;  // a class is in it, at any depth
+        bool isVariable = true; // longer values are possible
+        bool hasClass = false;  // a class is inside, at any depth
         bool isKey = false;     // it can be a dictionary's key
         bool hasSequence = false;
         bool isNumeric = true; // numbers, enums, structs and sequences of them only

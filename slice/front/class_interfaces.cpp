@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// class_interfaces: operations of classes, their own and those of what they implement, as
-// interfaces that bear the class's type id, so that a class can be called and served as in Ice's
-// C++11 mapping.
+// class_interfaces: makes interfaces of classes' operations, their own and inherited ones, with the
+// class's type id, so that a class can be called and served as in Ice's C++11 mapping.
 
 #include "front/front.h"
 #include <map>

@@ -6,7 +6,7 @@
 #include <fstream>
 
 void Diagnostics::error(const Location& at, const std::string& text) {
-    // The most errors of a file that are printed.
+    // Number of errors of a file that are printed.
     if (++errors_ <= 100)
         print(at, "error", text);
 }

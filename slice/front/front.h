@@ -2,21 +2,21 @@
 //
 // front: the front end of the Slice compiler: a file's text becomes a unit, without a command line.
 //
-// The way of a file, each step in a source of its name:
+// A file passes these steps, each in a source of its name:
 //
-//   preprocessor   #include, #define and #if, by libmcpp; comments stay, #line tells where from
+//   preprocessor   #include, #define and #if, by libmcpp; comments stay, #line gives the origin
 //   lexer          text into tokens, each with its place in the original file and its doc comment
 //   parser         tokens into declarations by recursive descent: parser.cpp has tokens, recovery
 //                  and modules, parser_data, parser_interface and parser_types one method a rule;
 //                  each declaration is checked when its rule is through
-//   names          which identifiers Slice allows
-//   symbols        what a name means in its scope; the parser resolves every name at once
+//   names          identifiers that Slice allows
+//   symbols        meaning of a name in its scope; the parser resolves every name at once
 //   literals       numbers and strings as written into values
 //   ast            the result: a Unit of declarations, in the source's order, all names resolved
 //   class_interfaces   an interface beside each class that can be called
 //   diagnostics    every error and warning of all steps, with the source line and a caret
 //
-// A step says what is wrong and goes on; a unit is worth something if no error was counted.
+// A step reports errors and goes on; a unit is valid if no error was counted.
 
 #ifndef SLICE_FRONT_FRONT_H
 #define SLICE_FRONT_FRONT_H
@@ -27,7 +27,7 @@
 // The unit of a preprocessed file; errors are in `diagnostics`.
 Unit compileUnit(const std::string& text, const std::string& file, NameRules rules,
                  Diagnostics& diagnostics);
-// Adds, behind each class that can be called, an interface that holds its operations; a part of
+// Adds, after each class that can be called, an interface with its operations; a part of
 // compileUnit.
 void addClassInterfaces(Unit& unit);
 

@@ -51,7 +51,7 @@ private:
         while (position_ < position)
             advance();
     }
-    // Adds a token that reaches from `begin` to here.
+    // Adds a token from `begin` to here.
     void add(Token::Kind kind, size_t begin, const Location& at, bool escaped = false) {
         tokens_.push_back({kind, text_.substr(begin, position_ - begin), doc_, at, escaped});
         doc_ = {};
@@ -179,7 +179,7 @@ private:
         if (position_ == begin + 1 &&
             std::string_view("{}()[];:,*=<>").find(c) == std::string_view::npos) {
             auto u = static_cast<unsigned char>(c);
-            if (u >= 0xC0) // the whole of a character of UTF-8
+            if (u >= 0xC0) // a whole character of UTF-8
                 while ((static_cast<unsigned char>(peek()) & 0xC0) == 0x80)
                     ++position_;
             std::string shown = u > 32 && u != 127

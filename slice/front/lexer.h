@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// lexer: preprocessed Slice text into tokens, with the place in the original files.
+// lexer: turns preprocessed Slice text into tokens, with their places in the original files.
 
 #ifndef SLICE_FRONT_LEXER_H
 #define SLICE_FRONT_LEXER_H
@@ -12,7 +12,7 @@
 struct Token {
     enum class Kind { Identifier, Integer, Float, String, Symbol, End };
     Kind kind;
-    std::string_view text; // as written; of a string, what stands between the quotes
+    std::string_view text; // as written; of a string, the text between the quotes
     std::string_view doc;  // the doc comment before it, without /** and */
     Location at;
     bool escaped; // identifier written with a backslash

@@ -12,8 +12,8 @@
 // Decimal, 0octal or 0xhex, signed; out of range or malformed is an error, and 0.
 int64_t integerValue(const Token& token, Diagnostics& diagnostics);
 double floatingValue(const Token& token, Diagnostics& diagnostics);
-// The bytes of a string literal, its escapes replaced; \u and \U become UTF-8. `written` (if not 0)
-// is as Ice's compilers keep it: \u, \U and \\ as they stand.
+// Returns the bytes of a string literal, its escapes replaced; \u and \U become UTF-8. `written`
+// (if not 0) gets it in the spelling of Ice's compilers: with \u, \U and \\.
 std::string stringValue(const Token& token, Diagnostics& diagnostics, std::string* written);
 
 #endif

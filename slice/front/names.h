@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// names: Slice's keywords, and which identifiers Slice allows.
+// names: Slice's keywords, and the identifiers that Slice allows.
 
 #ifndef SLICE_FRONT_NAMES_H
 #define SLICE_FRONT_NAMES_H
@@ -16,7 +16,7 @@ struct NameRules {
 
 bool isKeyword(std::string_view word);
 
-// Says what is wrong with the name of something that is declared.
+// Reports what is wrong with the name of a declaration.
 void checkName(std::string_view name, const NameRules& rules, const Location& at,
                Diagnostics& diagnostics);
 

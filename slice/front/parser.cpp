@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// parser: tokens, recovery, modules, and which definition follows.
+// parser: tokens, recovery, modules, and the choice of a definition's rule.
 
 #include "front/parser_private.h"
 #include <algorithm>
@@ -71,7 +71,7 @@ std::string Parser::name(const std::string& what) {
              "')");
     NameRules rules = rules_;
     if (!isMain(token().at.file))
-        rules = {true, true}; // who includes a file does not answer for its names
+        rules = {true, true}; // an including file does not answer for these names
     checkName(text, rules, token().at, diagnostics_);
     ++position_;
     return std::string(text);
@@ -100,7 +100,7 @@ void Parser::recover() {
         if (isSymbol("{"))
             ++depth;
         if (isSymbol("}") && depth-- == 0)
-            return; // belongs to what is around
+            return; // belongs to the surrounding rule
         bool ends = (isSymbol(";") || isSymbol("}")) && depth <= 0;
         ++position_;
         if (ends) {
@@ -116,7 +116,7 @@ std::string Parser::doc() {
 
 // ---- files and metadata
 
-// The preprocessor may write the main file's name another way than the command line did.
+// The preprocessor may spell the main file's name in another way than the command line.
 bool Parser::isMain(std::string_view file) {
     auto [it, isNew] = isMain_.try_emplace(file, false);
     if (isNew) {
@@ -261,7 +261,7 @@ Declaration& Parser::add(Declaration::Kind kind, const std::string& name, const 
     return d;
 }
 
-// Declares the name that follows. A forward declaration of the same kind gives way to it, in place.
+// Declares the name that follows. It replaces a forward declaration of the same kind in place.
 Declaration& Parser::declareType(Declaration::Kind kind, bool mayBeForward) {
     Location begin = token().at;
     std::string called = name("the " + std::string(kindName(kind)) + "'s name");
@@ -295,12 +295,11 @@ Declaration& Parser::declareType(Declaration::Kind kind, bool mayBeForward) {
     if (earlier->isLocal != d.isLocal)
         error(begin, "'" + called + "' is " + (d.isLocal ? "" : "not ") +
                          "local here, unlike at line " + std::to_string(earlier->at.line));
-    if (isSymbol(";")) { // declared once more
+    if (isSymbol(";")) { // another forward declaration
         unit_.declarations.pop_back();
         return *earlier;
     }
-    // The definition takes the place that others refer to; the source's order stays by moving it
-    // back.
+    // Others refer to the definition's place; moving it to the end keeps the source's order.
     auto it = std::find_if(unit_.declarations.begin(), unit_.declarations.end(),
                            [&](const auto& p) { return p.get() == earlier; });
     *earlier = std::move(d);

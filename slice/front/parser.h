@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// parser: tokens into the declarations of a unit, every name resolved; errors are said, and passed.
+// parser: turns tokens into the declarations of a unit, every name resolved. It reports errors and
+// goes on.
 
 #ifndef SLICE_FRONT_PARSER_H
 #define SLICE_FRONT_PARSER_H
@@ -13,7 +14,7 @@
 const char* kindName(Declaration::Kind kind);
 std::string typeName(const Type& type);
 
-// `mainFile` is the file on the command line; what comes from others is marked fromInclude.
+// `mainFile` is the file on the command line; declarations of others are marked fromInclude.
 Unit parse(const std::vector<Token>& tokens, const std::string& mainFile, NameRules rules,
            Diagnostics& diagnostics);
 

@@ -56,7 +56,7 @@ void collect(const Declaration& d, std::set<const Declaration*>& seen,
         list.push_back({&o, &d});
 }
 
-// Returns the operations of an interface or class, its own and those it inherits, each once.
+// Returns the operations of an interface or class, own and inherited, each once.
 std::vector<OwnedOperation> allOperations(const Declaration& d) {
     std::set<const Declaration*> seen;
     std::vector<OwnedOperation> list;
@@ -66,7 +66,7 @@ std::vector<OwnedOperation> allOperations(const Declaration& d) {
 
 } // namespace
 
-// Checks that no two bases bring different operations of one name.
+// Checks that no two bases have different operations of one name.
 void Parser::checkBases(const Declaration& d) {
     std::vector<OwnedOperation> list = allOperations(d);
     for (size_t i = 0; i < list.size(); ++i)
@@ -112,7 +112,7 @@ void Parser::operation(Declaration& d) {
     checkLocal(o.result, d.isLocal, "operation '" + o.name + "'", begin);
     checkOperation(d, o);
     expect("(");
-    user_ += "::" + o.name; // parameters use names on the operation's account
+    user_ += "::" + o.name; // parameters use names for the operation
     parameters(o, d);
     user_ = d.id();
     expect(")");
@@ -197,7 +197,7 @@ void Parser::throwsClause(Operation& o, const Declaration& owner) {
         Location begin = token().at;
         std::string written = scopedName("an exception");
         Symbol* s = resolve(written, begin);
-        // The name that an operation has in the interface cannot mean something else there.
+        // An operation's name must have no other meaning in the interface.
         std::string first = lowerCase(written.substr(0, written.find("::")));
         bool isOperation = first == lowerCase(o.name);
         for (const Operation& other : owner.operations)

@@ -42,11 +42,11 @@ private:
     void expectEnd(const std::string& what); // a '}'
     [[noreturn]] void fail(const std::string& expected);
     void error(const Location& at, const std::string& text) { diagnostics_.error(at, text); }
-    // Reads a name that is declared here, and checks it.
+    // Reads a name that this declares, and checks it.
     std::string name(const std::string& what);
     std::string scopedName(const std::string& what);
     void recover();
-    // Runs a rule; after a syntax error goes on behind the next ';' or '}'.
+    // Runs a rule; after a syntax error continues behind the next ';' or '}'.
     template <class Rule> void guarded(Rule rule);
     template <class Rule> void braces(const Declaration& d, Rule rule);
     std::string doc();
@@ -106,8 +106,7 @@ private:
     size_t position_ = 0;
     std::vector<std::string> scope_;
     std::string scopeId_; // "::A::B"
-    std::string
-        user_; // the type around the token: it uses names on its own account, not the module's
+    std::string user_;    // the enclosing type: it uses names for itself, not for the module
     std::map<std::string_view, bool> isMain_;
     std::set<std::string_view> begun_; // files whose definitions have begun
     std::map<int, std::string> compactIds_;
@@ -126,7 +125,7 @@ template <class Rule> void Parser::guarded(Rule rule) {
         recover();
     }
     if (position_ == before)
-        ++position_; // a stray '}': reported, and passed
+        ++position_; // a stray '}': reported and skipped
 }
 
 // { rule rule ... } with an optional ';' behind it.

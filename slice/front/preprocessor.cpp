@@ -20,8 +20,8 @@ void addOnce(std::vector<std::string>& list, const std::string& name) {
         list.push_back(name);
 }
 
-// Where `name`, which `includer` includes, is: libmcpp leaves a name that is relative to the
-// includer's folder as it stands, or puts it behind the -I folder that it found the includer in.
+// Returns the path of `name`, which `includer` includes: libmcpp leaves a name relative to the
+// includer's folder unchanged, or puts it behind the -I folder of the includer.
 std::string placeOf(const std::string& name, const std::string& includer) {
     std::error_code error;
     std::filesystem::path path = name, folder = std::filesystem::path(includer).parent_path();
@@ -38,8 +38,8 @@ std::string placeOf(const std::string& name, const std::string& includer) {
     return name;
 }
 
-// Follows the markers: #line 1 "file" enters a file, any other name returns to one around it. Each
-// gets the file's place.
+// Follows the markers: #line 1 "file" enters a file, any other name returns to an enclosing one.
+// Each gets the file's path.
 void findFiles(Preprocessed& p) {
     std::vector<std::string> open, places;
     for (size_t at = 0; (at = p.text.find("#line ", at)) != std::string::npos;) {
@@ -66,10 +66,10 @@ void findFiles(Preprocessed& p) {
     }
 }
 
-// libmcpp's room for a line, with those that a backslash at the end joins to it.
+// libmcpp's limit of a line, with lines joined to it by a backslash.
 constexpr size_t longestLine = 65500;
 
-// The line of `file`, or of a file that it includes, that libmcpp has no room for, as a message.
+// Returns a message about the line of `file`, or of an included file, that exceeds libmcpp's limit.
 std::string tooLongLine(const std::filesystem::path& file, const std::vector<std::string>& options,
                         std::set<std::filesystem::path>& seen) {
     std::ifstream in(file, std::ios::binary);
@@ -105,7 +105,7 @@ std::string tooLongLine(const std::filesystem::path& file, const std::vector<std
     return "";
 }
 
-// Takes out what Ice's compilers do not say either: line ends of another system, and a missing one.
+// Removes messages that Ice's compilers do not give: foreign line ends, and a missing one.
 std::string withoutLineEnds(const std::string& messages) {
     std::istringstream in(messages);
     std::string kept;

@@ -13,10 +13,10 @@ struct Preprocessed {
     std::string text;                  // with #line markers and comments
     std::string messages;              // the preprocessor's own
     std::vector<std::string> files;    // the file and all that it includes, at any depth
-    std::vector<std::string> includes; // what it includes itself
+    std::vector<std::string> includes; // those that it includes directly
 };
 
-// `options`: -I, -D, -U as the C preprocessor takes them.
+// `options`: -I, -D, -U as for the C preprocessor.
 Preprocessed preprocess(const std::string& file, const std::vector<std::string>& options);
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// symbols: the table of what is declared under which name. Slice forbids names that differ in
-// capitals only, so the table does not see capitals, and tells them apart itself.
+// symbols: the table of declared names. Slice forbids names that differ in capitals only, so the
+// table ignores capitals and compares them itself.
 
 #ifndef SLICE_FRONT_SYMBOLS_H
 #define SLICE_FRONT_SYMBOLS_H
@@ -24,20 +24,20 @@ class Symbols {
 public:
     explicit Symbols(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
-    // The symbol of this full name, whatever its capitals.
+    // The symbol with this full name, ignoring capitals.
     Symbol* find(const std::string& id);
-    // Declares `name` in `scope` ("" or "::A::B"): a new symbol, or the one that has the name
-    // already. 0: an error was said.
+    // Declares `name` in `scope` ("" or "::A::B"): a new symbol, or the existing one. 0: an error
+    // was reported.
     Symbol* declare(const std::string& scope, const std::string& name, const Location& at,
                     bool& isNew);
-    // Finds what `written` means in `scope`, from the inside out; 0 if nothing. `user`, a module or
-    // a type, must not give the name another meaning later.
+    // Finds the meaning of `written` in `scope`, from the inside out; 0 if there is none. `user`, a
+    // module or a type, must not give the name another meaning later.
     Symbol* resolve(const std::string& scope, const std::string& written, const Location& at,
                     const std::string& user);
-    // True if `user` has used the name for something else before; says so as an error.
+    // True if `user` has used the name for something else before; reports an error.
     bool hasChanged(const std::string& user, const std::string& name, const Location& at);
-    // Enumerators of any enum in the scope, or around it, with this name: Ice still allows them
-    // bare.
+    // Enumerators with this name of any enum in the scope, or around it: Ice still allows them
+    // without their enum.
     void declareBare(const std::string& scope, const std::string& name, Symbol* enumerator);
     const std::vector<Symbol*>& bare(std::string scope, const std::string& name) const;
 
@@ -46,7 +46,7 @@ private:
     std::unordered_map<std::string, Symbol> table_; // by the name in small letters
     std::unordered_map<std::string, std::vector<Symbol*>> bare_;
     std::unordered_map<std::string, std::string>
-        used_; // first components used in a scope: what they meant
+        used_; // first components used in a scope, with their meaning
 };
 
 #endif

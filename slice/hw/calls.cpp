@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// calls: operations and events of a hardware interface into words and buffers; what is allowed.
+// calls: maps operations and events of a hardware interface to words and buffers; checks what is
+// allowed.
 
 #include "c/names.h"
 #include "c/operations.h"
@@ -168,7 +169,7 @@ private:
         addValue(call.words, p.type, snakeCase(p.name), c, true);
     }
 
-    // The last word, where what follows may go on in it; it is moved to `words`.
+    // The last word, if the next value may continue in it; it is moved to `words`.
     size_t shared(Call& call, bool isOut, std::vector<Word>& words) {
         if (call.words.empty() || call.words.back().isOut != isOut || call.words.back().number)
             return 0;

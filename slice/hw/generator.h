@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// generator: what is made of a hardware interface, one function a file (docs/hw-mapping.md).
+// generator: the files of a hardware interface, one function a file (docs/hw-mapping.md).
 
 #ifndef SLICE_HW_GENERATOR_H
 #define SLICE_HW_GENERATOR_H

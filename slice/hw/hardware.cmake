@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 #
-# hardware.cmake: [":hw"] interfaces into wrappers, registers and servants (docs/hw-mapping.md).
+# hardware.cmake: makes wrappers, registers and servants of [":hw"] interfaces (docs/hw-mapping.md).
 
-# icesoc_hardware(NAME file.ice BLOCKS block... [OWN_CLOCK]): in ${GEN_DIR} the wrappers <block>_wrapper.v and
-# <block>_wrapper.vhd; the registers of each block as icesoc_regmap makes them; the library NAME_servants;
-# target NAME_hardware. BLOCKS: the file's hardware interfaces in snake_case. OWN_CLOCK: these have a clock that may stand still.
+# icesoc_hardware(NAME file.ice BLOCKS block... [OWN_CLOCK]) makes in ${GEN_DIR} the wrappers
+# <block>_wrapper.v and <block>_wrapper.vhd, the registers of each block as icesoc_regmap does, the
+# library NAME_servants, and the target NAME_hardware. BLOCKS: the file's hardware interfaces in
+# snake_case. OWN_CLOCK: these have a clock that may stop.
 function(icesoc_hardware name file)
   cmake_parse_arguments(A "OWN_CLOCK" "" "BLOCKS;INCLUDES" ${ARGN})
   get_filename_component(path ${file} ABSOLUTE)

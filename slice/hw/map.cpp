@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// map: interfaces into slots: what is allowed, who gets which word.
+// map: maps interfaces to slots: checks what is allowed, and gives out words.
 
 #include "hw/map.h"
 #include "hw/words.h"
@@ -91,7 +91,7 @@ private:
                name == "clk_i" || name == "rst_i" || name == "irq_o";
     }
 
-    // Chosen words first, then the others in order into what is left.
+    // Chosen words first, then the others in order into the gaps.
     void place() {
         std::map<unsigned, std::string> taken = {{control, "CONTROL"}};
         if (block_.hasLong())
@@ -149,8 +149,8 @@ private:
                     w.number = take(w.name);
     }
 
-    // Checks that no two names of Slice give one name of a port, as aB and a_b do, or a member x of
-    // p and p_x.
+    // Checks that no two Slice names give one port name, as aB and a_b do, or a member x of p and
+    // p_x.
     void checkPorts() {
         std::map<std::string, std::string> ports;
         for (const char* own : {"clk", "rst", "bus_valid", "bus_write", "bus_addr", "bus_wdata",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// map: which register of a slot each value of a [":hw"] interface is in (docs/hw-mapping.md).
+// map: the register of a slot that holds each value of a [":hw"] interface (docs/hw-mapping.md).
 
 #ifndef SLICE_HW_MAP_H
 #define SLICE_HW_MAP_H
@@ -24,11 +24,11 @@ constexpr unsigned mostOperations = 16, refusedLsb = 16, resetBit = 31;
 struct Piece {
     Type type;
     std::string name; // a_x: of parameter a, member x
-    std::string c;    // as the servant's function has it: a->x
+    std::string c;    // its name in the servant's function: a->x
     unsigned lsb = 0, width = 0;
     unsigned portLsb = 0, portWidth = 0;
     unsigned exception = 0; // 0: of the call or its results; else a member of the n-th exception
-    bool isCode = false;    // not a value: 0, or which exception it is
+    bool isCode = false;    // not a value: 0, or the exception's number
     // The number of elements of a sequence: it is in DDR3, `offset` bytes behind the slot's
     // buffers.
     bool isCount = false;
@@ -43,13 +43,13 @@ struct Word {
     unsigned width() const { return pieces.back().lsb + pieces.back().width; }
 };
 
-// A call of the core's operation, or an event: a call by the core, of an operation of a callback
-// interface.
+// A call of the core's operation, or an event: a call from the core of a callback interface's
+// operation.
 struct Call {
     const Operation* operation = nullptr;
     bool isEvent = false;
-    bool isAmd = false;                     // long, and the processor goes on meanwhile
-    const Declaration* owner = nullptr;     // whose operation it is
+    bool isAmd = false;                     // long, and the processor continues meanwhile
+    const Declaration* owner = nullptr;     // the interface of the operation
     std::vector<const Declaration*> thrown; // codes 1, 2, ...
     std::vector<std::string> labels;        // their constants in C
     std::string name;                       // snake_case
@@ -59,7 +59,7 @@ struct Call {
     std::vector<Word> words;
 };
 
-// An operation that registers a proxy whose operations are events.
+// An operation that subscribes a listener.
 struct Listener {
     const Operation* operation = nullptr;
     const Declaration* interface = nullptr;
@@ -67,7 +67,7 @@ struct Listener {
     size_t first = 0, count = 0; // of Block::calls
 };
 
-// A pin of the chip that the core has as a port beside its slot's.
+// A pin of the chip, a port of the core besides its slot's.
 struct Pin {
     std::string name; // ends in _i or _o
     unsigned width = 1;
@@ -81,7 +81,7 @@ struct Block {
     std::vector<Call> calls;
     std::vector<Listener> listeners;
     std::vector<Pin> pins;
-    bool hasOwnClock = false; // which may stand still: then no access is answered
+    bool hasOwnClock = false; // it may stop: then no access is answered
     unsigned pageBits = 0;    // above 0: word 5 is PAGE, and there are 2 to this power of pages
     unsigned memoryWord = 0;  // MEMORY; 0: no sequences
     unsigned memoryBytes = 0; // of all buffers: a power of two
@@ -98,11 +98,11 @@ struct Block {
 // Maps all hardware interfaces of the unit's main file; errors are in `diagnostics`.
 std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics);
 
-// Maps the calls of an interface, which are not placed yet. Returns the number of errors.
+// Maps the calls of an interface, which have no words yet. Returns the number of errors.
 int mapCalls(const Declaration& d, const Unit& unit, Block& block, Diagnostics& diagnostics);
-// Parses a whole number, decimal or 0x..., within [low, high]. False: it is none.
+// Parses a whole number, decimal or 0x..., within [low, high]. False: it is malformed.
 bool number(const std::string& text, unsigned low, unsigned high, unsigned& value);
-// Checks that metadata that begins with hw: is one of `known`. Returns the number of errors.
+// Checks that hw: metadata is one of `known`. Returns the number of errors.
 int checkKeys(const std::vector<std::string>& metadata, const std::vector<std::string>& known,
               const std::string& who, const Location& at, Diagnostics& diagnostics);
 

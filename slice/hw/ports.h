@@ -14,11 +14,11 @@ struct Port {
     std::string name; // with _i or _o
     bool isOut = false;
     unsigned width = 1;
-    std::string group; // of the first port of a group: what it belongs to
+    std::string group; // of the first port of a group: the group's heading
 };
 
 std::vector<Port> wrapperPorts(const Block& b);
-// Writes the comment that a wrapper begins with; `mark` begins its lines.
+// Writes a wrapper's first comment; `mark` begins its lines.
 void wrapperHead(Writer& w, const Block& b, const std::string& base, const std::string& mark);
 
 } // namespace hw

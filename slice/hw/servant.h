@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// servant: what the files that write the servant share.
+// servant: shared by the files that write the servant.
 
 #ifndef SLICE_HW_SERVANT_H
 #define SLICE_HW_SERVANT_H
@@ -15,9 +15,9 @@ std::string coreType(const Block& b); // Module_Interface_Core
 
 // Moves parameters into registers and buffers; `hw_core` is the servant.
 void writeParameters(Writer& w, const Block& b, const Call& c);
-// Moves registers and buffers into results, through pointers; returns where the core threw.
+// Moves registers and buffers into results, through pointers; returns after an exception.
 void readResults(Writer& w, const Block& b, const Call& c);
-// Declares the variables that both use.
+// Declares the variables of both.
 void resultVariables(Writer& w, const Call& c);
 // Declares room for the elements of received sequences, as members of the servant.
 void sequenceMembers(Writer& w, const Block& b);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // skeleton: a core to begin with, in Verilog or VHDL, which answers every call of its interface
-// with zeros; and a test that calls them all. For make new-ip; from then on its author's.
+// with zeros, and a test that calls them all. For make new-ip; from then on the author owns it.
 
 #include "c/names.h"
 #include "c/operations.h"
@@ -94,8 +94,8 @@ void head(Writer& w, const Block& b, const char* comment) {
     w.line();
 }
 
-// The memory port as two streams of words that rest: what a core reads and writes its buffers by.
-// No operation has a name that begins with npi_.
+// The memory port as two idle streams of words, by which a core reads and writes its buffers. No
+// operation has a name that begins with npi_.
 const char npiStream[] =
     R"(    // The buffers in DDR3 as two streams of words, which rest here (docs/memory.md, npi_stream).
     wire        npi_read_start = 1'd0, npi_read_take = 1'd0;

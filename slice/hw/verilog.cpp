@@ -32,7 +32,7 @@ unsigned base(unsigned word) {
     return 32 * (word % slotWords - firstWord);
 }
 
-// Returns what the names of a page's signals end in; nothing for page 0.
+// Returns the suffix of a page's signals; empty for page 0.
 std::string suffix(unsigned word) {
     return word < slotWords ? "" : std::to_string(word / slotWords);
 }
@@ -93,7 +93,7 @@ void registers(Writer& w, const Block& b, unsigned first) {
     w.line("    );");
 }
 
-// Writes the registers of all pages: words 8..15 of the bus are those of one of them.
+// Writes the registers of all pages: words 8..15 of the bus show one of them.
 void pages(Writer& w, const Block& b) {
     unsigned count = b.numbers() / slotWords;
     std::string top = "[" + std::to_string(count - 1) + ":0]", data;
@@ -132,7 +132,7 @@ template <class Choose> std::string bits(const Block& b, Choose choose) {
     return std::to_string(b.events()) + "'b" + text;
 }
 
-// busy from start to done; a start while busy, and a done without, are nothing.
+// busy from start to done; a start while busy, and a done without, have no effect.
 void longCalls(Writer& w, const Block& b) {
     std::string n = std::to_string(b.events()), top = std::to_string(b.events() - 1);
     std::string done, refused;
@@ -168,7 +168,7 @@ void longCalls(Writer& w, const Block& b) {
     w.line("    end");
 }
 
-// Writes what the words of a page read as, whose words begin with the number `first`.
+// Writes the read values of a page's words, whose words begin with the number `first`.
 void results(Writer& w, const Block& b, unsigned first) {
     std::string shown = "shown" + suffix(first);
     unsigned next = 0; // bits of `shown` below it are assigned
@@ -205,7 +205,7 @@ void results(Writer& w, const Block& b, unsigned first) {
 }
 
 // Writes the address of a sequence. The buffers begin at a multiple of their size, so the offset
-// takes the place of low bits and nothing is added.
+// replaces low bits and nothing is added.
 void base(Writer& w, const Block& b, const Call& c, const Piece& p) {
     unsigned lsb = b.memoryLsb();
     w.line("    assign " + c.name + "_" + baseName(p) + "_o = {" +

@@ -50,7 +50,7 @@ std::string hex(unsigned value) {
     return text;
 }
 
-// The port of a piece, or the bits of it that the piece is.
+// The port of a piece, or the piece's bits of the port.
 std::string portOf(const Call& c, const Piece& p, bool isResult) {
     std::string port = c.name + "_" + p.name + (isResult ? "_i" : "_o");
     return p.portWidth > 32 ? slice(port, p.portLsb, p.width) : port;
@@ -94,8 +94,8 @@ void signals(Writer& w, const Block& b) {
                    c.name + "_refused : std_logic;");
 }
 
-// Writes the signals that start and end calls, and `happened`, one bit for each call that can end
-// or be an event.
+// Writes the signals that start and end calls, and `happened`, a bit for each call that can end or
+// be an event.
 void events(Writer& w, const Block& b) {
     for (const Call& c : b.calls)
         if (c.isLong) {
@@ -178,11 +178,11 @@ void registers(Writer& w, const Block& b) {
     w.line("  end process;");
 }
 
-// Between the signals that a process waits for: one a line, since their names may be long.
+// Separates the signals of a sensitivity list: one a line, since their names may be long.
 const std::string nextSignal = ",\n                   ";
 
-// The lines of the case statement that say what each word reads as. Appends to `signals` the
-// signals that they read.
+// The lines of the case statement with each word's read value. Appends the signals that they read
+// to `signals`.
 std::vector<std::string> shownWords(const Block& b, std::string& signals) {
     std::vector<std::string> lines;
     auto word = [&](unsigned n, const std::string& name) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_adapter: object adapters: which servant answers for which identity.
+ * ice_adapter: object adapters: find the servant of an identity.
  */
 #include "ice_proxy.h"
 #include "ice_transport.h"

@@ -24,8 +24,8 @@ static Ice_Status flush(Ice_ObjectPrxPtr prx) {
     return status;
 }
 
-/* Adds the request that was just built. A full batch is sent if there is a connection to do it on:
- * opening one here would receive, and the request's buffer is in use. */
+/* Adds the finished request. A full batch is sent if there is a connection for it: opening one here
+ * would receive, while the request's buffer is in use. */
 static Ice_Status keep(Ice_ObjectPrxPtr prx) {
     Ice_Batch* batch = prx->batch;
     Ice_OutputStreamPtr request = &prx->communicator->request;

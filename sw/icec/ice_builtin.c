@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_builtin: the operations that every object has, asked of objects elsewhere.
+ * ice_builtin: calls the operations that every object has.
  */
 #include "ice_proxy.h"
 

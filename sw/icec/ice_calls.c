@@ -111,7 +111,7 @@ void icec_expireCall(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id) {
 
 /* ---- replies ---- */
 
-/* Reads what a failed reply says. */
+/* Reads the content of a failed reply. */
 static void readFailure(Ice_InputStreamPtr is, Ice_Status status, Ice_Failure* failure) {
     if (status == ICE_MARSHAL && is->failed)
         failure->unknown = Ice_String_from(Ice_Failed_text(is->failed, is->bound));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_calls: the table of calls that this side has made and whose replies are to come.
+ * ice_calls: the table of this side's calls whose replies have not come.
  */
 #ifndef ICE_CALLS_H
 #define ICE_CALLS_H
@@ -12,10 +12,10 @@ int icec_takeCall(Ice_CommunicatorPtr ic);
 void icec_freeCall(Ice_CommunicatorPtr ic, int slot);
 Ice_CallState icec_callState(Ice_CommunicatorPtr ic, int slot);
 
-/* Hands a reply, read behind its head, to the call that waits for it. */
+/* Hands a reply, read up to its body, to the call that waits for it. */
 void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
 /* Finds an asynchronous call whose time is over, and its id; 0: there is none. Shortens `waitMs` to
- * when the next one's is; under the state lock. */
+ * the next call's time; under the state lock. */
 Ice_Call* icec_expiredCall(Ice_CommunicatorPtr ic, U32 now, Ice_Int* id, Ice_Int* waitMs);
 /* Ends that call, unless it has ended meanwhile. */
 void icec_expireCall(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_connection: what a program does with one connection: proxies that are bound to it, its end.
+ * ice_connection: operations of a program on one connection: bound proxies, its end.
  */
 #include "ice_calls.h"
 #include "ice_message.h"

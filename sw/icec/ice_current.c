@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_current: what a servant asks of the call being dispatched.
+ * ice_current: a servant's questions about the call being dispatched.
  */
 #include "icec.h"
 
@@ -32,6 +32,6 @@ void* Ice_Current_allocate(const Ice_Current* current, Ice_Int bytes) {
     void* room;
     is->failed = 0;
     room = bytes > 0 ? Ice_InputStream_allocate(is, bytes, 1) : 0;
-    is->failed = failed; /* no room is the servant's to handle */
+    is->failed = failed; /* the servant handles the lack of room */
     return room;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_dispatch: from a request to a servant and back.
+ * ice_dispatch: brings a request to its servant, and the answer back.
  */
 #include "ice_dispatch.h"
 #include "ice_reply.h"
@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-/* Grades a servant's entry against a target: an exact one comes before its category's default
+/* Grades a servant's entry for a target: an exact entry comes before its category's default
  * servant, and that before the default servant of all. */
 enum { NO_MATCH, DEFAULT_OF_ALL, DEFAULT_OF_CATEGORY, EXACT };
 
@@ -28,7 +28,7 @@ static int match(const Ice_Servant* entry, const Ice_Current* current, Ice_Statu
 }
 
 /* Finds the servant for `current`, sets current->adapter, and counts an operation under way. 0:
- * there is none, `status` says why; ICE_CONNECTION_CLOSED: after shutdown. */
+ * there is none, and `status` says why; ICE_CONNECTION_CLOSED: after shutdown. */
 static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current* current, Ice_Status* status) {
     Ice_ObjectAdapterPtr adapter;
     Ice_ObjectPtr servant = 0;
@@ -87,8 +87,8 @@ Ice_Status Ice_Object_invoke(Ice_ObjectPtr servant, const Ice_Current* current,
     return ICE_OK;
 }
 
-/* Runs an operation that its connection counts. `answers` becomes 0 where nothing is to be sent
- * now: the reply comes later, or the caller has gone meanwhile. */
+/* Runs an operation that its connection counts. `answers` becomes 0 where no reply is sent now: it
+ * comes later, or the caller has gone. */
 static Ice_Status runCounted(Ice_ObjectPtr servant, const Ice_Current* current,
                              Ice_InputStreamPtr is, Ice_OutputStreamPtr os, int* answers) {
     Ice_CommunicatorPtr ic = current->communicator;

@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-/* Notes which limit was reached, or what else is wrong, for Ice_ObjectPrx_failure. */
+/* Records which limit was reached, or which other failure happened, for Ice_ObjectPrx_failure. */
 static Ice_Status fail(Ice_ObjectPrxPtr self, Ice_Status status, int why) {
     Ice_Call* call = &self->communicator->calls[self->call];
     call->failure.unknown =
@@ -23,7 +23,7 @@ static int isValidating(Ice_CommunicatorPtr ic, int connection) {
     return icec_connectionState(ic, connection) == ICE_CONNECTION_VALIDATING;
 }
 
-/* Connects to one endpoint, or to what is there already. */
+/* Connects to one endpoint, or uses the existing connection. */
 static Ice_Status open(Ice_ObjectPrxPtr self, const Ice_Byte* endpoint, Ice_Int size) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_Status status;
@@ -124,7 +124,7 @@ Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char* opera
     return &ic->request;
 }
 
-/* Registers the call before its reply can be there. */
+/* Registers the call before its reply can arrive. */
 static void registerCall(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_Call* call = &ic->calls[self->call];
@@ -156,7 +156,7 @@ static Ice_Status sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void
     return icec_send(self->communicator, self->connection, os);
 }
 
-/* Sends, and gives the buffer back. */
+/* Sends, and releases the buffer. */
 static Ice_Status sendAndUnlock(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie) {
     Ice_Status status = sendRequest(self, callback, cookie);
     icec_unlock(self->communicator, ICE_LOCK_SEND);
@@ -190,7 +190,7 @@ Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callbac
     Ice_Status status = sendAndUnlock(self, callback, cookie);
     if (status != ICE_OK || self->mode != ICE_TWOWAY)
         return Ice_ObjectPrx_end(self, status);
-    /* Waking the receiving task lets it shorten its sleep to this call's time. */
+    /* Wakes the receiving task, which shortens its sleep to this call's time. */
     if (isWaiting(ic, slot))
         ic->endpoint->wake(ic->endpointContext);
     return ICE_OK;

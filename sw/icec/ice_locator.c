@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_locator: from an indirect proxy to a direct one, by a locator such as IceGrid's.
+ * ice_locator: resolves an indirect proxy by a locator such as IceGrid's.
  */
 #include "ice_proxy.h"
 
@@ -8,7 +8,7 @@
 
 #define MODE (2 | ICE_RESULTS) /* idempotent */
 
-/* Asks for the adapter that the proxy names, or for the object itself. */
+/* Asks for the proxy's adapter, or for the object itself. */
 static Ice_Status find(const Ice_ObjectPrx* prx, Ice_ObjectPrxPtr locator, Ice_ObjectPrxPtr found) {
     int byAdapter = prx->endpoints[1] != 0; /* the size of the adapter's id */
     Ice_OutputStreamPtr os =

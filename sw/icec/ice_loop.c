@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_loop: what arrives on connections, and waiting for it.
+ * ice_loop: handles what arrives on connections, and waits for it.
  */
 #include "ice_loop.h"
 #include "ice_calls.h"
@@ -17,7 +17,7 @@ static void validate(Ice_CommunicatorPtr ic, int connection) {
     icec_unlock(ic, ICE_LOCK_STATE);
 }
 
-/* Handles a message. Returns ICE_OK, or why the connection is to be closed: a malformed message
+/* Handles a message. Returns ICE_OK, or why the connection must be closed: a malformed message
  * loses it. */
 static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_Byte* in,
                               Ice_Int size) {
@@ -74,8 +74,8 @@ static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ic
     return ICE_OK;
 }
 
-/* Finds a connection whose callers wait for an operation and are due a heartbeat, which it notes;
- * -1: none. Shortens `waitMs` to when the next one is; under the state lock. */
+/* Finds a connection whose callers wait for an operation and are due a heartbeat, and records it;
+ * -1: none. Shortens `waitMs` to the next heartbeat; under the state lock. */
 static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
     int c, due = -1;
     for (c = 0; c < ICE_CONNECTIONS && due < 0; ++c) {
@@ -94,7 +94,7 @@ static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
 }
 
 /* Sends the heartbeats that are due, and ends the asynchronous calls whose time is over. Returns
- * how long none is, at most `waitMs`. */
+ * the time until the next, at most `waitMs`. */
 static Ice_Int keepTimes(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
     for (;;) {
         U32 now = icec_nowMs(ic);

@@ -31,8 +31,8 @@ void icec_endEncapsulation(Ice_OutputStreamPtr os, Ice_Int begin);
  * encoding is neither 1.0 nor 1.1. */
 Ice_Status icec_enterEncapsulation(Ice_InputStreamPtr is);
 
-/* Writes and reads a facet as on the wire: a sequence of no string or one. More are malformed, as
- * they are to Ice. */
+/* Writes and reads a facet in the wire's form: a sequence of no string or one. More are malformed,
+ * as for Ice. */
 void icec_writeFacet(Ice_OutputStreamPtr os, const Ice_String* facet);
 void icec_readFacet(Ice_InputStreamPtr is, Ice_String* facet);
 void icec_skipStrings(Ice_InputStreamPtr is, U32 count);
@@ -48,7 +48,7 @@ void icec_beginReply(Ice_OutputStreamPtr os, Ice_Int id);
 /* Fills the reply's status in. A failure replaces the results; its reason in words is empty. */
 void icec_endReply(Ice_OutputStreamPtr os, Ice_Status status, const Icec_Target* target);
 /* Reads a reply's status, and narrows `is` to its results or exception. Returns the status, or why
- * they cannot be read. */
+ * the reply is malformed. */
 Ice_Status icec_readReply(Ice_InputStreamPtr is);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_objects: what communicators and adapters are made of. Included by icec.h only.
+ * ice_objects: the members of communicators and adapters. Included by icec.h only.
  */
 #ifndef ICE_OBJECTS_H
 #define ICE_OBJECTS_H
@@ -9,7 +9,7 @@
 
 typedef struct Ice_Servant {
     Ice_ObjectPtr servant; /* 0: free */
-    Ice_Identity identity; /* name of no characters: default servant of the category */
+    Ice_Identity identity; /* an empty name: default servant of the category */
     Ice_String facet;
 } Ice_Servant;
 
@@ -24,7 +24,7 @@ typedef enum Ice_CallState {
     ICE_CALL_FREE,
     ICE_CALL_BUILDING, /* its request is being written */
     ICE_CALL_WAITING,  /* for the reply */
-    ICE_CALL_DONE      /* the reply is there, or never will be */
+    ICE_CALL_DONE      /* the reply is there, or will never come */
 } Ice_CallState;
 
 typedef struct Ice_Call {
@@ -54,7 +54,7 @@ typedef struct Ice_Connection {
     Ice_Byte pending; /* operations under way, or answered later */
     Ice_Byte closing; /* the peer has been asked to close */
     U16 generation;   /* counts the connections that had this number; never 0 */
-    U32 signMs;       /* when callers that wait had the last sign of life, or began to wait */
+    U32 signMs;       /* time of the callers' last sign of life, or of the wait's begin */
 } Ice_Connection;
 
 /* Small members first: their offsets are short in the code. */
@@ -64,12 +64,12 @@ struct Ice_Communicator {
     Ice_ObjectAdapterPtr adapters;
     Ice_Byte stopping;
     int receiver; /* task that receives, -1 none */
-    int servers;  /* tasks that want to */
+    int servers;  /* tasks that want to receive */
     int depth;    /* messages being handled */
     Ice_Int lastId;
     Ice_OutputStream request;    /* being built, under ICE_LOCK_SEND */
     Ice_Int requestBody;         /* where its encapsulation begins */
-    Ice_InputStreamPtr decoding; /* of the innermost operation: what it uses of the arena */
+    Ice_InputStreamPtr decoding; /* of the innermost operation, with its part of the arena */
     const Ice_Os* os;
     void* osContext;
     const char* const* properties;

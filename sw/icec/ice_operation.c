@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_operation: from an operation's name to the function that reads its parameters.
+ * ice_operation: finds the function that reads an operation's parameters.
  */
 #include "ice_operation.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_operation: the tables that generated code describes an interface by.
+ * ice_operation: the tables by which generated code describes an interface.
  */
 #ifndef ICE_OPERATION_H
 #define ICE_OPERATION_H
@@ -28,7 +28,7 @@ typedef struct Ice_Interface {
 
 struct Ice_Base {
     const Ice_Interface* interface; /* 0 ends */
-    size_t offset;                  /* of its operations in those of the derived interface */
+    size_t offset;                  /* of its operations within those of the derived interface */
 };
 
 /* Calls the operation that `current` names. ICE_PROTOCOL: it was called as idempotent and is not,

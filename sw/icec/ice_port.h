@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_port: what IceC needs from below: a transport, and tasks where there are several.
+ * ice_port: IceC's needs from below: a transport, and tasks where there are several.
  */
 #ifndef ICE_PORT_H
 #define ICE_PORT_H
@@ -10,7 +10,7 @@
 typedef enum Ice_Status {
     /* The first eight have the numbers that replies have on the wire. */
     ICE_OK = 0,
-    ICE_USER_EXCEPTION, /* the reply is one; its body is in the stream */
+    ICE_USER_EXCEPTION, /* an exception of the operation; its body is in the stream */
     ICE_OBJECT_NOT_EXIST,
     ICE_FACET_NOT_EXIST,
     ICE_OPERATION_NOT_EXIST,
@@ -18,15 +18,15 @@ typedef enum Ice_Status {
     ICE_UNKNOWN_USER_EXCEPTION,  /* an exception that the operation does not declare */
     ICE_UNKNOWN_EXCEPTION,       /* the peer failed otherwise */
     /* The next two are local exceptions to the peer, the others unknown ones. */
-    ICE_MARSHAL,  /* a message is not what it should be, or does not fit */
+    ICE_MARSHAL,  /* a message is malformed, or does not fit */
     ICE_PROTOCOL, /* not IceP 1.0, compressed, or an encoding other than 1.0 and 1.1 */
     ICE_TIMEOUT,
     ICE_CONNECTION_LOST,   /* a call under way may or may not have been executed */
     ICE_NO_ENDPOINT,       /* unknown transport, or a proxy without endpoints */
     ICE_LIMIT,             /* one of the constants of ice_config.h */
     ICE_CONNECTION_CLOSED, /* the peer closed in good order: the call was not executed */
-    ICE_PARSE,             /* a proxy, identity or endpoint string that is none */
-    ICE_TWOWAY_ONLY,       /* results are wanted through a oneway or batch proxy */
+    ICE_PARSE,             /* malformed proxy, identity or endpoint string */
+    ICE_TWOWAY_ONLY,       /* a oneway or batch proxy cannot have results */
     ICE_LATER              /* from a servant: the reply comes later (Ice_Reply) */
 } Ice_Status;
 
@@ -50,9 +50,9 @@ typedef struct Ice_Event {
  * and listen are called under the communicator's state lock, send by one task at a time, receive by
  * one task at a time. */
 typedef struct Ice_Endpoint {
-    const char* name; /* in proxy strings: "xbee-at", "tcp" */
+    const char* name; /* as in proxy strings: "xbee-at", "tcp" */
     /* Waits up to timeoutMs for one event. `buffer` takes a message of up to ICE_MESSAGE_MAX bytes,
-     * and is not touched after the return. OPENED is reported of connections that the peer made. */
+     * and is not touched after the return. OPENED reports connections that the peer made. */
     Ice_Status (*receive)(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event);
     /* Sends one message. ICE_CONNECTION_LOST: the connection is over; CLOSED is reported, too. */
     Ice_Status (*send)(void* context, int connection, const Ice_Byte* message, Ice_Int size);
@@ -60,13 +60,12 @@ typedef struct Ice_Endpoint {
      * connection to the same peer is used again. ICE_NO_ENDPOINT: the type is another transport's.
      */
     Ice_Status (*connect)(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection);
-    /* Closes a connection; CLOSED is not reported of it. */
+    /* Closes a connection, without reporting CLOSED. */
     void (*close)(void* context, int connection);
-    /* Takes connections from peers from now on; options 0: no more. */
+    /* Accepts connections from peers from now on; options 0: no more. */
     Ice_Status (*listen)(void* context, const char* options);
-    /* Writes an endpoint as on the wire from options such as "-a 1 -p 3" (up to their end, or a
-     * colon that is not quoted); options 0: the endpoint that a proxy to an object of this side
-     * carries. */
+    /* Writes an endpoint in the wire's form from options such as "-a 1 -p 3" (up to their end, or
+     * an unquoted colon); options 0: the endpoint in a proxy to an object of this side. */
     void (*encode)(void* context, const char* options, Ice_OutputStreamPtr os);
     /* Makes receive return early; may be called from any task. */
     void (*wake)(void* context);
@@ -89,13 +88,14 @@ U32 Ice_numberOption(const char* options, char letter, U32 otherwise);
  */
 enum { ICE_LOCK_STATE, ICE_LOCK_SEND };
 
-/* The tasks' port: what IceC needs where several tasks use one communicator. The version for a
- * single task is Ice_Os_none. */
+/* The tasks' port, needed where several tasks use one communicator. The version for a single task
+ * is Ice_Os_none. */
 typedef struct Ice_Os {
     void (*lock)(void* context, int which);
     void (*unlock)(void* context, int which);
-    /* Sleeps until wake of this slot (0..ICE_CALLS) or the time is over; a wake that came before
-     * counts. One task waits on each, on the last any number, of which one is woken. 1: woken. */
+    /* Sleeps until wake of this slot (0..ICE_CALLS) or the time is over; an earlier wake counts.
+     * One task waits on each slot; any number waits on the last, of which one is woken. 1:
+     * woken. */
     int (*wait)(void* context, int slot, Ice_Int timeoutMs);
     void (*wake)(void* context, int slot);
     /* Returns a number that differs from task to task, 0 or greater. */

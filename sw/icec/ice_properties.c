@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_properties: settings from a table of strings, and what is made from them.
+ * ice_properties: reads settings from a table of strings, and makes adapters and proxies from them.
  */
 #include "ice_proxy.h"
 

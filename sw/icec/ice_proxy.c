@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_proxy: what a proxy is made of, and how it travels.
+ * ice_proxy: a proxy's parts, and its form on the wire.
  *
- * Identity, facet and endpoints are kept as they are on the wire: most of what is done with them is
- * to send them.
+ * Identity, facet and endpoints are kept in the wire's form, since proxies are mostly sent.
  */
 #include "ice_proxy.h"
 #include "ice_message.h"
@@ -72,8 +71,8 @@ Ice_String Ice_ObjectPrx_getFacet(const Ice_ObjectPrx* prx) {
     return facet;
 }
 
-/* Gives endpoints, as they stand in a message, the message's encoding where they are of this
- * program's transport, as Ice does; those of others stay as they came. */
+/* Gives received endpoints of this program's transport the message's encoding, as Ice does; others
+ * stay as they came. */
 static void adoptEncoding(Ice_CommunicatorPtr ic, Ice_Byte* endpoints, Ice_Byte minor) {
     Ice_Byte* at = endpoints + 1;
     int n;
@@ -94,7 +93,7 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx)
         return;
     }
     if (ICEC_FULL && prx->generation)
-        os->failed = ICE_FAILED_MALFORMED; /* nobody else has this connection */
+        os->failed = ICE_FAILED_MALFORMED; /* a fixed proxy's connection exists here only */
     Ice_OutputStream_writeBlob(os, prx->identity, prx->identitySize);
     Ice_OutputStream_writeShort(os, (Ice_Short)(prx->mode | prx->secure << 8));
     if (os->minor != 0) /* protocol 1.0, the encoding */
@@ -104,7 +103,7 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx)
         adoptEncoding(prx->communicator, os->data + os->size - prx->endpointsSize, os->minor);
 }
 
-/* Keeps bytes of the message behind those kept so far. 0: no room. */
+/* Keeps bytes of the message behind those already kept. 0: no room. */
 static int keep(Ice_InputStreamPtr is, Ice_Int begin, Ice_ObjectPrxPtr prx) {
     Ice_Int size = is->position - begin;
     if (is->failed || size > ICE_ENDPOINT_MAX - prx->endpointsSize)
@@ -127,10 +126,10 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         is->failed = ICE_FAILED_IDENTITY;
     prx->mode = Ice_InputStream_readByte(is);
     prx->secure = Ice_InputStream_readBool(is);
-    prx->minor = is->minor; /* an old peer says nothing, and means its own */
+    prx->minor = is->minor; /* an old peer omits it, and means its own */
     if (is->minor != 0) {
         const Ice_Byte* versions = Ice_InputStream_readBlob(is, 4);
-        prx->minor = versions && versions[3] != 0; /* of a later encoding 1.1 is understood there */
+        prx->minor = versions && versions[3] != 0; /* of a later version, 1.1 is understood there */
     }
     prx->endpointsSize = 1;
     n = Ice_InputStream_readSequence(is, 8);

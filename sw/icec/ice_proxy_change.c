@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_proxy_change: proxies that differ in one thing from another.
+ * ice_proxy_change: changes one property of a proxy's copy.
  */
 #include "ice_proxy.h"
 

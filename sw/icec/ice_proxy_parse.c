@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_proxy_parse: from a proxy's string to the proxy, after the manual's "Proxy and Endpoint
- * Syntax".
+ * ice_proxy_parse: makes a proxy from its string, by the manual's "Proxy and Endpoint Syntax".
  */
 #include "ice_message.h"
 #include "ice_proxy.h"
@@ -19,8 +18,8 @@ U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     return (U32)strtoul(at, 0, at[0] == '0' && at[1] == 'x' ? 16 : 10);
 }
 
-/* Takes the next word, without its quotes; ends at a space, a colon or an at sign. Escapes stay as
- * they are. */
+/* Takes the next word, without its quotes; it ends at a space, a colon or an at sign. Escapes
+ * stay. */
 static const char* word(const char* text, Ice_String* found) {
     char quote = 0;
     text += strspn(text, SPACES);
@@ -111,7 +110,8 @@ static void decodeBase64(const char* text, Ice_Int size, Ice_OutputStreamPtr os)
     }
 }
 
-/* Parses an endpoint that is only passed on: "opaque -t type -e encoding -v bytes in base 64". */
+/* Parses an endpoint that is passed on unchanged: "opaque -t type -e encoding -v bytes in base
+ * 64". */
 static Ice_Status parseOpaque(const char* options, Ice_ObjectPrxPtr prx) {
     Ice_Int size, versionSize, begin;
     const char* value = Ice_findOption(options, 'v', &size);
@@ -142,7 +142,7 @@ static Ice_Status parseOpaque(const char* options, Ice_ObjectPrxPtr prx) {
     return ICE_OK;
 }
 
-/* Tells whether the text is "-x value" again and again; -z of tcp has no value. */
+/* Tells whether the text is a sequence of "-x value"; -z of tcp has no value. */
 static int areOptions(const char* text) {
     Ice_String option, value;
     for (;;) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_proxy_print: a proxy as a string, as stock Ice prints it.
+ * ice_proxy_print: prints a proxy as stock Ice does.
  */
 #include "ice_message.h"
 #include "ice_proxy.h"
@@ -17,7 +17,7 @@ static void putNumber(Ice_OutputStreamPtr os, U32 value) {
     Ice_OutputStream_writeByte(os, (Ice_Byte)('0' + value % 10));
 }
 
-/* Escapes what would be read otherwise; UTF-8 stays as it is. `special`: one more character, or 0.
+/* Escapes characters with a special meaning; UTF-8 stays. `special`: one more character, or 0.
  */
 static void escape(Ice_OutputStreamPtr os, Ice_String text, char special) {
     static const char from[] = "\a\b\f\n\r\t\v\\'\"", to[] = "abfnrtv\\'\"";

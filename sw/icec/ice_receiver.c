@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_receiver: which one of several tasks receives.
+ * ice_receiver: chooses which of several tasks receives.
  *
  * One task at a time holds the role: a server (waitForShutdown, poll) as soon as it can have it,
- * else a task that waits for a reply (a leader), for as long as it waits. `receiver` and `servers`
- * change under the state lock only; who gives the role up wakes who may want it.
+ * else a task that waits for a reply (a leader), as long as it waits. `receiver` and `servers`
+ * change under the state lock only. A task that gives the role up wakes another that may want it.
  */
 #include "ice_receiver.h"
 #include "ice_calls.h"
@@ -45,7 +45,7 @@ Icec_Role icec_takeRole(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
         else
             ic->receiver = task;
         if (ic->stopping && ic->servers)
-            ic->os->wake(ic->osContext, ICEC_SERVER_SLOT); /* the next one that is to leave */
+            ic->os->wake(ic->osContext, ICEC_SERVER_SLOT); /* the next one to leave */
     }
     icec_unlock(ic, ICE_LOCK_STATE);
     return role;

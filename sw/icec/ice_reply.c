@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_reply: replies, and those that come later than their operation's end.
+ * ice_reply: replies, also those after their operation's end.
  */
 #include "ice_reply.h"
 #include "ice_transport.h"
 
-/* Writes the reply's head. It is written last: until then its place may have been another
- * reply's. */
+/* Writes the reply's head. It is written last, since another reply may have used its place
+ * before. */
 static void writeHead(Ice_OutputStreamPtr os, Ice_Int id) {
     Ice_OutputStream head;
     Ice_OutputStream_init(&head, os->data, ICEC_REPLY_HEAD);
@@ -21,7 +21,7 @@ Ice_Status icec_sendReply(Ice_CommunicatorPtr ic, int connection, Ice_OutputStre
     if (os->failed)
         status = ICE_MARSHAL;
     reason = os->failed ? Ice_Failed_text(os->failed, os->bound) : Ice_Status_text(status);
-    /* A request that is gone took with it the names that this failure would repeat. */
+    /* The request has gone, and with it the names that this failure would repeat. */
     if (!target && status >= ICE_OBJECT_NOT_EXIST && status <= ICE_OPERATION_NOT_EXIST)
         status = ICE_UNKNOWN_EXCEPTION;
     writeHead(os, id);

@@ -125,7 +125,7 @@ Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
     static const Ice_String none = {0, ""};
     Ice_String id;
     if (is->sliceFlags & ICE_SLICE_LAST || is->failed || is->position == is->size) {
-        icec_failRead(is, ICE_FAILED_MALFORMED); /* a base that is asked for and is not there */
+        icec_failRead(is, ICE_FAILED_MALFORMED); /* a base is required and missing */
         return none;
     }
     is->sliceFlags = is->minor != 0 ? Ice_InputStream_readByte(is) : ICE_SLICE_SIZE;
@@ -135,8 +135,8 @@ Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
     return is->failed ? none : id;
 }
 
-/* Skips a table of instances behind a slice. `depth` bounds tables within its instances, so that a
- * peer cannot fill the stack. */
+/* Skips a table of instances behind a slice. `depth` bounds the nesting, so that a peer cannot fill
+ * the stack. */
 static void skipTable(Ice_InputStreamPtr is, int depth) {
     Ice_Int count = Ice_InputStream_readSequence(is, 1);
     while (count-- > 0 && !is->failed) {
@@ -216,7 +216,7 @@ static void skip(Ice_InputStreamPtr is, Ice_Int format) {
     }
 }
 
-/* Goes on to the first tag that is not below `tag`. 1: it is this one, and its value follows. */
+/* Goes to the first tag that is not below `tag`. Returns 1 if it is `tag`: its value follows. */
 static Ice_Bool seek(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format) {
     Ice_Int end = is->sliceFlags && is->sliceEnd ? is->sliceEnd : is->size;
     while (!is->failed && is->position < end) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_slice: what slices of exceptions and of classes have in common.
+ * ice_slice: shared by slices of exceptions and of classes.
  */
 #ifndef ICE_SLICE_H
 #define ICE_SLICE_H
@@ -16,14 +16,14 @@ enum {
     ICE_SLICE_TABLE = 0x08,
     ICE_SLICE_SIZE = 0x10,
     ICE_SLICE_LAST = 0x20,
-    ICE_SLICE_INSIDE = 0x80 /* never on the wire: a slice is under way */
+    ICE_SLICE_INSIDE = 0x80 /* never on the wire: inside a slice */
 };
 
 /* Fails a stream that has not failed yet. */
 void icec_failRead(Ice_InputStreamPtr is, Ice_Failed why);
 
-/* Reads the size of a slice with these flags: four bytes, which count themselves. Returns where the
- * slice ends; 0: it has no size, or one that fails the stream. */
+/* Reads the size of a slice with these flags: four bytes, which count themselves. Returns the
+ * slice's end; 0: it has no size, or a wrong one, which fails the stream. */
 Ice_Int icec_readSliceEnd(Ice_InputStreamPtr is, Ice_Byte flags);
 
 /* Ends a slice of 1.1 whose flags stand at `flags`, and its size at `size` (-1: none). */

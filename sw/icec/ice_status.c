@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_status: statuses in words; where Ice has an exception for one, by its name.
+ * ice_status: statuses in words, with Ice's name of the exception where there is one.
  */
 #include "ice_port.h"
 #include "ice_value.h"

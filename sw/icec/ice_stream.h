@@ -23,7 +23,7 @@ typedef struct Ice_Long {
     S32 high;
 } Ice_Long;
 
-/* A string by size: it is not terminated, and points into a message or at what the caller keeps. */
+/* A string by its size: not terminated, it points into a message or at the caller's text. */
 typedef struct Ice_String {
     Ice_Int size;
     const char* data;
@@ -39,8 +39,8 @@ struct Ice_Communicator;
 struct Ice_OutputValues; /* ice_value.h */
 struct Ice_InputValues;
 
-/* The reasons for which a stream fails: malformed bytes, or the limit that was reached. The first
- * reason stays. */
+/* Reasons for a stream's failure: malformed bytes, or the limit that was reached. The first
+ * stays. */
 typedef enum Ice_Failed {
     ICE_FAILED_MALFORMED = 1,
     ICE_FAILED_RESULT, /* the buffer is full: ICE_RESULT_MAX unless said otherwise */
@@ -54,7 +54,7 @@ typedef enum Ice_Failed {
     ICE_FAILED_CALLS, /* of calls, not of streams: ICE_LIMIT */
     ICE_FAILED_CONNECTIONS,
     ICE_FAILED_NESTING,
-    ICE_FAILED_BOUND /* of a type in Slice, ["c:max:N"]: the stream's `bound` says which */
+    ICE_FAILED_BOUND /* of a type in Slice, ["c:max:N"], which the stream's `bound` names */
 } Ice_Failed;
 
 /* Returns the reason in words: the limit, its macro and its value. `bound`: the stream's. */
@@ -64,7 +64,7 @@ typedef struct Ice_OutputStream {
     Ice_Byte* data;
     Ice_Int size, capacity;
     Ice_Byte minor;  /* encoding 1.minor */
-    Ice_Byte failed; /* Ice_Failed; 0: it has not */
+    Ice_Byte failed; /* Ice_Failed; 0: no failure */
     Ice_Byte
         sliced; /* user exceptions in the sliced format: a peer can skip slices it does not know */
     Ice_Byte sliceFlags;             /* of the slice under way */
@@ -106,7 +106,7 @@ void Ice_OutputStream_writeEnum(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int large
 #define Ice_OutputStream_writeEnum(os, v, largest)                   \
     ((largest) < 127 ? Ice_OutputStream_writeByte(os, (Ice_Byte)(v)) \
                      : (Ice_OutputStream_writeEnum)(os, v, largest))
-/* Leaves room for a size of 4 bytes that does not count itself; endSize fills it in. */
+/* Leaves room for a size of 4 bytes that does not count itself; endSize writes it. */
 Ice_Int Ice_OutputStream_startSize(Ice_OutputStreamPtr os);
 void Ice_OutputStream_endSize(Ice_OutputStreamPtr os, Ice_Int begin);
 
@@ -125,11 +125,11 @@ Ice_Int Ice_InputStream_readSize(Ice_InputStreamPtr is);
 Ice_String Ice_InputStream_readString(Ice_InputStreamPtr is);
 void Ice_InputStream_takeString(Ice_InputStreamPtr is, Ice_String* s);
 Ice_Int Ice_InputStream_readEnum(Ice_InputStreamPtr is, Ice_Int largest);
-/* Reads the size of a sequence whose elements take at least `least` bytes each; more than can be
- * left fail the stream. */
+/* Reads the size of a sequence whose elements take at least `least` bytes each. A size beyond the
+ * message fails the stream. */
 Ice_Int Ice_InputStream_readSequence(Ice_InputStreamPtr is, Ice_Int least);
-/* Returns room for `count` elements of `bytes` each, aligned to 8; 0, and the stream has failed, if
- * there is none. */
+/* Returns room for `count` elements of `bytes` each, aligned to 8; 0 where there is none, which
+ * fails the stream. */
 void* Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int bytes);
 
 /* ---- optional values: encoding 1.1 only ---- */
@@ -140,15 +140,15 @@ enum {
     ICE_OPTIONAL_F4,
     ICE_OPTIONAL_F8,    /* 1, 2, 4, 8 bytes */
     ICE_OPTIONAL_SIZE,  /* an enum */
-    ICE_OPTIONAL_VSIZE, /* a size, then so many bytes */
+    ICE_OPTIONAL_VSIZE, /* a size, then that many bytes */
     ICE_OPTIONAL_FSIZE, /* the same with a size of 4 bytes */
     ICE_OPTIONAL_CLASS
 };
 
-/* Begins a value that is there, behind the required ones, by ascending tag. Returns 0 if the
- * encoding has no optional values: then nothing is to be written. */
+/* Begins a present value, after the required ones, by ascending tag. Returns 0 if the encoding has
+ * no optional values: then write nothing. */
 Ice_Bool Ice_OutputStream_writeOptional(Ice_OutputStreamPtr os, Ice_Int tag, Ice_Int format);
-/* Returns 1 if the value is there: it follows. Tags in between that nobody asked for are skipped.
+/* Returns 1 if the value is there: it follows. Unknown tags before it are skipped.
  */
 Ice_Bool Ice_InputStream_readOptional(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format);
 /* Skips the optional values that are left in the slice or encapsulation. */

@@ -2,11 +2,11 @@
  *
  * ice_value: classes: graphs of instances, in the encodings 1.0 and 1.1 (compact and sliced).
  *
- * Generated code begins with beginValues before the first member or parameter that may hold a
- * class, and ends with endValues behind the last. The tables are on its stack. Written instances
- * are the caller's; received ones lie in the message's arena, and so do slices that are kept: of
- * types derived from one with ["preserve-slice"] that are not known here. They go on with the
- * instance (or exception) where it is written in the sliced format, as Ice's other peers do it.
+ * Generated code calls beginValues before the first member or parameter that may hold a class, and
+ * endValues after the last. The tables are on its stack. Written instances belong to the caller.
+ * Received ones lie in the message's arena, as do kept slices: those of unknown types derived from
+ * one with ["preserve-slice"]. They go on with the instance (or exception) where it is written in
+ * the sliced format, as in Ice's other peers.
  */
 #ifndef ICE_VALUE_H
 #define ICE_VALUE_H
@@ -24,16 +24,16 @@ typedef struct Ice_ValueType Ice_ValueType;
 
 struct Ice_Value;
 
-/* A kept slice, whose type is not known here. */
+/* A kept slice of an unknown type. */
 typedef struct Ice_UnknownSlice {
     struct Ice_UnknownSlice* next;     /* of the same instance, towards the base; 0: none */
-    struct Ice_UnknownSlice* nextRead; /* of the message: the run time's */
+    struct Ice_UnknownSlice* nextRead; /* of the message: for the run time */
     Ice_String typeId;
     Ice_Int compactId;    /* instead of typeId; -1: none */
     Ice_Byte flags;       /* has it optional members, is it the last */
     const Ice_Byte* data; /* its members, in the message */
     Ice_Int size;
-    Ice_Int count; /* of the instances that they point at */
+    Ice_Int count; /* number of the instances that they refer to */
     union {
         Ice_Int number; /* until the end of the message */
         const struct Ice_Value* value;
@@ -71,7 +71,7 @@ typedef struct Ice_OutputValues {
     Ice_Int count, written;
     Ice_String types[ICE_VALUE_TYPES_MAX];
     Ice_Int typeCount;
-    const Ice_Value* table[ICE_VALUES_MAX]; /* of the slices under way, one behind the other */
+    const Ice_Value* table[ICE_VALUES_MAX]; /* of the slices under way, one after the other */
     Ice_Int tableBegin, tableEnd;
     Ice_Bool pending; /* 1.0: instances follow; 0 where only optional parameters could hold one */
     Ice_Bool (*writeTable)(Ice_OutputStreamPtr os); /* for exceptions' slices */
@@ -83,8 +83,8 @@ void Ice_OutputStream_writeValue(Ice_OutputStreamPtr os, const Ice_Value* v);
 void Ice_OutputStream_endValues(Ice_OutputStreamPtr os);
 
 typedef struct Ice_InputValues {
-    const Ice_ValueType* const* types; /* those that can be made; 0 ends */
-    Ice_Value* known[ICE_VALUES_MAX];  /* by number; 0: of a type that is not known */
+    const Ice_ValueType* const* types; /* known classes; 0 ends */
+    Ice_Value* known[ICE_VALUES_MAX];  /* by number; 0: of an unknown type */
     Ice_Int count;
     Ice_String typeIds[ICE_VALUE_TYPES_MAX];
     Ice_Int typeCount;
@@ -94,24 +94,24 @@ typedef struct Ice_InputValues {
         Ice_Int number;
     } patches[ICE_VALUES_MAX]; /* for instances that come later */
     Ice_Int patchBegin, patchEnd;
-    struct Ice_LatePatch* late; /* to instances whose type is still being looked for */
-    Ice_UnknownSlice* unknown;  /* of the message, the last one first */
-    Ice_Bool pending;           /* as in Ice_OutputValues */
+    struct Ice_LatePatch* late;               /* to instances whose type is not known yet */
+    Ice_UnknownSlice* unknown;                /* of the message, the last one first */
+    Ice_Bool pending;                         /* as in Ice_OutputValues */
     void (*readTable)(Ice_InputStreamPtr is); /* for exceptions' slices */
-    void (*skip)(Ice_InputStreamPtr is);      /* an optional that nobody asked for */
+    void (*skip)(Ice_InputStreamPtr is);      /* an optional that the reader does not know */
 } Ice_InputValues;
 
 void Ice_InputStream_beginValues(Ice_InputStreamPtr is, Ice_InputValues* values,
                                  const Ice_ValueType* const* types);
-/* Sets the pointer at `at`, now or at endValues. An instance that is no `expected` (0: any) fails
- * the stream, and so does one of which no type is known. */
+/* Sets the pointer at `at`, now or at endValues. An instance that is not an `expected` (0: any), or
+ * of which no type is known, fails the stream. */
 void Ice_InputStream_readValue(Ice_InputStreamPtr is, void* at, const Ice_ValueType* expected);
 void Ice_InputStream_endValues(Ice_InputStreamPtr is);
 
-/* ---- slices of exceptions that are not known, within beginValues and endValues ---- */
+/* ---- unknown slices of exceptions, within beginValues and endValues ---- */
 
-/* Skips a slice of type `id` as skipSlice does, and puts it at the end of the list where the
- * encoding has slices that can be kept. The list begins as 0. */
+/* Skips a slice of type `id` as skipSlice does, and appends it to the list where the encoding can
+ * keep slices. The list begins as 0. */
 Ice_Bool Ice_InputStream_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_UnknownSlice** list);
 /* Writes kept slices before the exception's own; nothing where the format is not the sliced one. */
 void Ice_OutputStream_writeUnknown(Ice_OutputStreamPtr os, const Ice_UnknownSlice* list);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_value_private: what the files that read instances share.
+ * ice_value_private: shared by the files that read instances.
  */
 #ifndef ICE_VALUE_PRIVATE_H
 #define ICE_VALUE_PRIVATE_H
@@ -18,14 +18,14 @@ typedef struct Icec_SliceHead {
 /* Reads the head of an instance's slice. */
 void icec_startSlice(Ice_InputStreamPtr is, Icec_SliceHead* head);
 
-/* Reads what an instance's number on the wire says: 1 is followed by an instance. Returns the
- * instance's number, from 1. */
+/* Reads an instance's number on the wire; 1 precedes an instance. Returns the instance's number,
+ * from 1. */
 Ice_Int icec_readInstance(Ice_InputStreamPtr is, Ice_Int number);
 
-/* Keeps the slice that has begun, in 1.1, and goes on behind it. 0: it has no end, or no room. */
+/* Keeps the current slice, in 1.1, and goes behind it. 0: it has no end, or there is no room. */
 Ice_UnknownSlice* icec_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int compactId);
 
-/* Sets what kept slices point at; at the end of the message. */
+/* Sets the targets of kept slices; at the end of the message. */
 void icec_endUnknown(Ice_InputStreamPtr is);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_value_read: instances of classes from a stream. ice_value_write.c says how they lie there.
+ * ice_value_read: reads instances of classes from a stream. ice_value_write.c has their layout.
  */
 #include "ice_value_private.h"
 
@@ -96,8 +96,8 @@ static void skip(Ice_InputStreamPtr is) {
         (void)icec_readInstance(is, number);
 }
 
-/* Reads the table behind a slice: instances at which its members, the patches from patchBegin,
- * point. */
+/* Reads the table behind a slice: the instances that its members, the patches from patchBegin,
+ * refer to. */
 static void readTable(Ice_InputStreamPtr is) {
     Ice_InputValues* values = is->values;
     Ice_Int count = Ice_InputStream_readSequence(is, 1), first = values->patchBegin;
@@ -122,8 +122,8 @@ static void readEnd10(Ice_InputStreamPtr is) {
         icec_failRead(is, ICE_FAILED_MALFORMED);
 }
 
-/* Skips slices down to one whose type is known. Without one the instance becomes an Ice_Value_type
- * without a slice; in 1.0, which cannot keep slices, nothing. */
+/* Skips slices down to one of a known type. Without one the instance becomes an Ice_Value_type
+ * without a slice; in 1.0, which cannot keep slices, it is dropped. */
 static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** list) {
     Ice_Bool isFirst;
     for (isFirst = 1;; isFirst = 0) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_value_slice: heads of the slices of received instances, and slices that are kept.
+ * ice_value_slice: heads of received instances' slices, and kept slices.
  */
 #include "ice_value_private.h"
 

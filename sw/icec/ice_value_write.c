@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_value_write: instances of classes onto a stream.
+ * ice_value_write: writes instances of classes to a stream.
  *
  * 1.1: an instance stands where it is first met, its number (from 2) where it is met again; within
  * a slice of the sliced format there is an index into a table behind the slice instead. 1.0: minus
@@ -67,8 +67,7 @@ static void writeType(Ice_OutputStreamPtr os, Ice_String id, Ice_Int compactId) 
         Ice_OutputStream_writeString(os, id);
 }
 
-/* Writes the slices that were kept. Those of an exception have no flags for their type, which is a
- * string. */
+/* Writes the kept slices. Those of an exception have no flags for their type, which is a string. */
 static void writeUnknown(Ice_OutputStreamPtr os, const Ice_UnknownSlice* slice,
                          Ice_Bool isException) {
     Ice_OutputValues* values = os->values;
@@ -201,8 +200,8 @@ static void writeSlice10(Ice_OutputStreamPtr os, const Ice_ValueType* type, cons
     icec_patchSize(os, begin);
 }
 
-/* Ends the values. In 1.0 the instances follow here in groups: a group holds what the members of
- * the group before point at. */
+/* Ends the values. In 1.0 the instances follow here in groups: a group holds the instances that
+ * members of the group before refer to. */
 void Ice_OutputStream_endValues(Ice_OutputStreamPtr os) {
     Ice_OutputValues* values = os->values;
     while (os->minor == 0 && !os->failed && values->written < values->count) {

@@ -72,12 +72,12 @@ Ice_Status Ice_Object_invoke(Ice_ObjectPtr servant, const Ice_Current* current,
 
 /* Looks a key of the caller's context up. Returns 1 if it is there, and sets `value`. */
 Ice_Bool Ice_Current_context(const Ice_Current* current, const char* key, Ice_String* value);
-/* Lists the caller's context: returns 1 and the entry of this index, from 0; 0 behind the last. */
+/* Lists the caller's context: returns 1 and the entry of this index, from 0; 0 after the last. */
 Ice_Bool Ice_Current_contextAt(const Ice_Current* current, Ice_Int index, Ice_String* key,
                                Ice_String* value);
-/* Returns room for what the results point to, aligned to 8 bytes: it lies in the arena of the
- * request (ICE_ARENA_BYTES, parameters included) and is valid until the reply has been sent, or the
- * servant's function has returned ICE_LATER. 0: so much is not left. */
+/* Returns room for the targets of the results, aligned to 8 bytes. It lies in the request's arena
+ * (ICE_ARENA_BYTES, parameters included), and is valid until the reply has been sent, or the
+ * servant's function has returned ICE_LATER. 0: there is not enough room. */
 void* Ice_Current_allocate(const Ice_Current* current, Ice_Int bytes);
 
 /* The right to answer a call later, of a servant whose function returns ICE_LATER. */
@@ -93,14 +93,14 @@ typedef struct Ice_Reply {
 void Ice_Current_later(const Ice_Current* current, Ice_Reply* reply);
 /* Returns the stream for the results, or for a user exception; Ice_Reply_end must follow. */
 Ice_OutputStreamPtr Ice_Reply_begin(Ice_Reply* reply);
-/* Sends the reply: with ICE_OK and ICE_USER_EXCEPTION what was written, with any other status the
- * failure that it is. Returns ICE_CONNECTION_LOST if the caller is gone. */
+/* Sends the reply: with ICE_OK and ICE_USER_EXCEPTION the stream's content, with any other status
+ * that failure. Returns ICE_CONNECTION_LOST if the caller has gone. */
 Ice_Status Ice_Reply_end(Ice_Reply* reply, Ice_Status status);
 
 /* ---- object adapters ---- */
 
 /* Adds a servant. `identity` is "name" or "category/name", and is kept as a pointer. Returns
- * ICE_LIMIT if it is taken, or if there are ICE_SERVANTS already; ICE_PARSE: it is no identity. */
+ * ICE_LIMIT if it is taken, or if there are ICE_SERVANTS already; ICE_PARSE: malformed identity. */
 Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                                  const char* identity);
 Ice_Status Ice_ObjectAdapter_addFacet(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
@@ -109,7 +109,7 @@ Ice_Status Ice_ObjectAdapter_addFacet(Ice_ObjectAdapterPtr adapter, Ice_ObjectPt
  * "": for every category. */
 Ice_Status Ice_ObjectAdapter_addDefaultServant(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                                                const char* category);
-/* Remove what was added. ICE_OBJECT_NOT_EXIST: it was not. */
+/* Remove an added servant. ICE_OBJECT_NOT_EXIST: there was none. */
 Ice_Status Ice_ObjectAdapter_remove(Ice_ObjectAdapterPtr adapter, const char* identity);
 Ice_Status Ice_ObjectAdapter_removeFacet(Ice_ObjectAdapterPtr adapter, const char* identity,
                                          const char* facet);
@@ -158,8 +158,8 @@ struct Ice_ObjectPrx {
     Ice_Byte endpoints[ICE_ENDPOINT_MAX]; /* as on the wire: count, endpoints; or 0, adapter's id */
 };
 
-/* The reason of a failed call: identity, facet and operation for ICE_OBJECT_NOT_EXIST and its like,
- * the peer's text for failures at the peer, the limit with its macro and value for ICE_MARSHAL and
+/* The reason of a failed call: identity, facet and operation for ICE_OBJECT_NOT_EXIST and similar,
+ * the peer's text for its failures, the limit with its macro and value for ICE_MARSHAL and
  * ICE_LIMIT. */
 typedef struct Ice_Failure {
     Ice_Identity identity;
@@ -185,7 +185,7 @@ Ice_Status Ice_ObjectPrx_ice_identity(Ice_ObjectPrxPtr prx, const char* identity
 Ice_Status Ice_ObjectPrx_ice_facet(Ice_ObjectPrxPtr prx, const char* facet);
 void Ice_ObjectPrx_ice_twoway(Ice_ObjectPrxPtr prx);
 void Ice_ObjectPrx_ice_oneway(Ice_ObjectPrxPtr prx);
-/* Keeps calls in `data`, which is the caller's, until they are flushed, or until it is full. */
+/* Collects calls in `data`, which belongs to the caller, until they are flushed or it is full. */
 void Ice_ObjectPrx_ice_batchOneway(Ice_ObjectPrxPtr prx, Ice_Batch* batch, Ice_Byte* data,
                                    Ice_Int size);
 Ice_Status Ice_ObjectPrx_ice_flushBatchRequests(Ice_ObjectPrxPtr prx);
@@ -203,7 +203,7 @@ Ice_Status Ice_ObjectPrx_ice_id(Ice_ObjectPrxPtr self, Ice_String* result);
  * could be asked. */
 Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx* from,
                                      const char* id);
-/* Opens the connection that a call would use. */
+/* Opens the connection of future calls. */
 Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int* connection);
 /* Gives an indirect proxy ("object", "object@adapter") the endpoints that `locator` knows, a proxy
  * to an Ice::Locator such as IceGrid's; a direct one stays as it is. They stay until this is called
@@ -221,8 +221,8 @@ Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char* opera
                                         Ice_Byte mode);
 Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr* is);
 Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status);
-/* Instead of invoke and end: `callback` gets the reply, from the task that receives, unless this
- * returns another status than ICE_OK. What `is` holds is valid during the callback. */
+/* Instead of invoke and end: the receiving task calls `callback` with the reply, unless this
+ * returns another status than ICE_OK. `is` is valid during the callback. */
 typedef void (*Ice_Callback)(void* cookie, Ice_Status status, Ice_InputStreamPtr is);
 Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie);
 
@@ -240,8 +240,8 @@ void Ice_Communicator_setOs(Ice_CommunicatorPtr ic, const Ice_Os* os, void* cont
 void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint* endpoint,
                                   void* context);
 
-/* Takes properties from an array of strings "key=value" that ends with 0. Of two with one key the
- * first counts. */
+/* Takes properties from an array of strings "key=value" that ends with 0. The first of two with one
+ * key counts. */
 void Ice_Communicator_setProperties(Ice_CommunicatorPtr ic, const char* const* table);
 /* Returns the property's value; 0: it is not there. */
 const char* Ice_Communicator_getProperty(Ice_CommunicatorPtr ic, const char* key);
@@ -264,8 +264,8 @@ Ice_Status Ice_Communicator_createObjectAdapter(Ice_CommunicatorPtr ic, const ch
 /* Receives and dispatches until Ice_Communicator_shutdown is called. Of several tasks one receives.
  */
 void Ice_Communicator_waitForShutdown(Ice_CommunicatorPtr ic);
-/* Stops serving: no new connections are taken, and requests are not executed any more, which their
- * callers are told by closing. Calls of this side go on. */
+/* Stops serving: no connections are accepted, and requests are no longer executed, which closing
+ * tells their callers. Calls of this side go on. */
 void Ice_Communicator_shutdown(Ice_CommunicatorPtr ic);
 /* Handles at most one event; for programs with a loop of their own. Returns ICE_TIMEOUT if there
  * was none, or another task received all the time. */

@@ -28,7 +28,7 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     LoopEndpoint* self = context;
     U32 begin = *self->nowMs;
     while (self->count == 0 && (Ice_Int)(*self->nowMs - begin) < timeoutMs) {
-        /* The peer's turn, unless it is the peer that waits for this side. */
+        /* Runs the peer, unless the peer is waiting for this side. */
         if (self->peer && !self->running) {
             Ice_Status status;
             self->running = 1;
@@ -77,8 +77,8 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
                       : ICE_OK;
 }
 
-/* Returns 1 if the peer closed already, and takes its report back: the connection may be a new one
- * by now. */
+/* Returns 1 if the peer has closed already, and takes its report back, since the connection may be
+ * a new one by now. */
 static int isOver(LoopEndpoint* self, int connection) {
     unsigned i;
     for (i = 0; i < self->count; ++i) {

@@ -3,7 +3,7 @@
  * loop_endpoint: IceC's transport between two communicators of one process and one task, for tests.
  *
  * Time is simulated: it passes only where a communicator waits and nothing can happen. Without a
- * peer, what is sent goes to `tap` alone, and LoopEndpoint_inject plays the other side.
+ * peer, messages go to `tap` alone, and LoopEndpoint_inject plays the other side.
  */
 #ifndef LOOP_ENDPOINT_H
 #define LOOP_ENDPOINT_H
@@ -22,7 +22,7 @@ struct LoopEndpoint {
     U32 ownNowMs;
     Ice_Byte first; /* connections that this side makes: this number, and this + 2 */
     Ice_Byte open[ICE_CONNECTIONS];
-    Ice_Byte silent; /* connections can be made, and nobody answers */
+    Ice_Byte silent; /* connections can be made, but nobody answers */
     int running;     /* in the peer's loop */
     unsigned head, count;
     Ice_Event events[LOOP_EVENTS];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * tcp_address: what tcp_endpoint.c needs of endpoints on the wire, of names and of sockets.
+ * tcp_address: endpoints on the wire, names and sockets, for tcp_endpoint.c.
  */
 #ifndef TCP_ADDRESS_H
 #define TCP_ADDRESS_H
@@ -32,7 +32,7 @@ int TcpEndpoint_resolve(const TcpEndpoint_Address* address, TcpEndpoint_Place* p
 /* Connects with a time limit. Returns the socket; -1: refused, or not in time. */
 int TcpEndpoint_open(const TcpEndpoint_Place* to, Ice_Int timeoutMs);
 
-/* Sets a connection's options: nothing is held back, and a peer that is gone is noticed. */
+/* Sets a connection's options: no delay, and a vanished peer is noticed. */
 void TcpEndpoint_tune(int fd);
 
 #endif

@@ -196,7 +196,7 @@ static Ice_Status sendAll(void* context, int connection, const Ice_Byte* message
     if (c->over)
         closeOne(c);
     else if (ends)
-        (void)shutdown(fd, SHUT_RDWR); /* the receiver will see the end, and tell */
+        (void)shutdown(fd, SHUT_RDWR); /* the receiver sees the end, and reports it */
     unlock(self);
     return ends ? ICE_CONNECTION_LOST : ICE_OK;
 }
@@ -242,8 +242,7 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
     if (fd < 0)
         return ICE_CONNECTION_LOST;
     lock(self);
-    slot =
-        TcpEndpoint_freeSlot(self); /* the other side of another connection may have been faster */
+    slot = TcpEndpoint_freeSlot(self); /* another task may have connected first */
     if (slot >= 0) {
         use(&self->connections[slot], fd, 0);
         self->connections[slot].peer = places[turn - 1].at;
@@ -253,7 +252,7 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
     }
     unlock(self);
     *connection = slot;
-    wakeUp(self); /* a task that receives waits on the others only */
+    wakeUp(self); /* a receiving task waits only on the others */
     return slot >= 0 ? ICE_OK : ICE_LIMIT;
 }
 

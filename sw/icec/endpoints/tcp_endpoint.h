@@ -5,10 +5,10 @@
  * Options: -h name or address, IPv4 or IPv6 (default 127.0.0.1), -p port (0: the system chooses),
  * -t milliseconds for connecting (default 60000). One adapter of a communicator can listen.
  *
- * Peers of any manners: sending waits for a peer that does not read for sendMs, then closes; a
- * silent connection carries a heartbeat each heartbeatMs (Ice 3.8 cuts others after 60 s); where
- * all numbers are taken, a new peer displaces the one that has been idle longest, if for idleMs; a
- * peer that is gone without a word is noticed within about a minute.
+ * Peers: sending waits for a peer that does not read for sendMs, then closes. A silent connection
+ * carries a heartbeat each heartbeatMs (Ice 3.8 cuts others after 60 s). Where all numbers are
+ * taken, a new peer displaces the one that has been idle longest, if for idleMs. A peer that has
+ * vanished is noticed within about a minute.
  */
 #ifndef TCP_ENDPOINT_H
 #define TCP_ENDPOINT_H
@@ -26,8 +26,8 @@ typedef struct TcpEndpoint_Connection {
     Ice_Byte sending, over;       /* over: closed, but for the task that still sends */
     Ice_Byte spoke;               /* this side has sent a message */
     U32 sentMs;                   /* when it did so last */
-    U32 usedMs;                   /* when a request or reply came or went last */
-    Ice_Int owed;                 /* replies that are to come or go */
+    U32 usedMs;                   /* time of the last request or reply */
+    Ice_Int owed;                 /* replies due in either direction */
     struct sockaddr_storage peer; /* of a connection made by this side */
     socklen_t peerSize;
     Ice_Int have;
@@ -40,7 +40,7 @@ typedef struct TcpEndpoint {
     char host[64];
     int pipe[2];
     Ice_Int sendMs, heartbeatMs, idleMs; /* may be changed after TcpEndpoint_init */
-    pthread_mutex_t lock; /* of what follows: the receiver's, the sender's and who connects */
+    pthread_mutex_t lock;                /* guards the following members */
     TcpEndpoint_Connection connections[ICE_CONNECTIONS];
 } TcpEndpoint;
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * tcp_traffic: what goes over a connection and when: its use, heartbeats, sending within a bound.
+ * tcp_traffic: traffic of a connection: its use, heartbeats, sending within a bound.
  */
 #define _POSIX_C_SOURCE 200809L
 #include "tcp_traffic.h"
@@ -43,7 +43,7 @@ void TcpEndpoint_sendHead(TcpEndpoint_Connection* c, Ice_Byte type) {
     head[TYPE_AT] = type;
     if (c->fd >= 0 && !c->sending && !c->over &&
         send(c->fd, head, TCP_HEAD, MSG_NOSIGNAL | MSG_DONTWAIT) != TCP_HEAD)
-        (void)shutdown(c->fd, SHUT_RDWR); /* part of a message is none */
+        (void)shutdown(c->fd, SHUT_RDWR); /* part of a message is useless */
     c->sentMs = TcpEndpoint_nowMs(0);
 }
 

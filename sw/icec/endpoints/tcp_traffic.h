@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * tcp_traffic: what goes over a connection and when. All but nowMs and sendSome are called under
- * the endpoint's lock.
+ * tcp_traffic: traffic of a connection. All functions but nowMs and sendSome are called under the
+ * endpoint's lock.
  */
 #ifndef TCP_TRAFFIC_H
 #define TCP_TRAFFIC_H
@@ -15,13 +15,13 @@ U32 TcpEndpoint_nowMs(void* context);
 /* Returns a free number; -1: there is none. */
 int TcpEndpoint_freeSlot(const TcpEndpoint* self);
 
-/* Notes a message that came or went; a heartbeat is no use of its connection. */
+/* Records a message that came or went; a heartbeat does not count as use of its connection. */
 void TcpEndpoint_note(TcpEndpoint_Connection* c, const Ice_Byte* message, Ice_Int size);
-/* Sends a message that is nothing but its head, if the system takes it at once. */
+/* Sends a message without a body, if the system takes it at once. */
 void TcpEndpoint_sendHead(TcpEndpoint_Connection* c, Ice_Byte type);
-/* Sends the heartbeats that are due. Returns how long there is nothing to do, at most timeoutMs. */
+/* Sends the heartbeats that are due. Returns the time until the next, at most timeoutMs. */
 Ice_Int TcpEndpoint_keepUp(TcpEndpoint* self, Ice_Int timeoutMs);
-/* Sends for at most `ms`. Returns how many bytes the system took. */
+/* Sends for at most `ms`. Returns the number of bytes that the system took. */
 Ice_Int TcpEndpoint_sendSome(int fd, const Ice_Byte* message, Ice_Int size, Ice_Int ms);
 
 /* Returns the accepted connection that has been idle longest, and for how long; -1: none is. */

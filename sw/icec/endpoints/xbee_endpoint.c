@@ -9,8 +9,8 @@
 #define NOBODY 255
 #define HEAD 8
 #define BODY 7
-/* Tries to send what the link has no room for, 20 ms apart: for 30 s, in which a link that makes no
- * way has ended. Two answers of 8 KB take 4 s where three packets of ten are lost. */
+/* Tries to send while the link has no room, 20 ms apart, for 30 s. A link without progress has
+ * ended by then. Two answers of 8 KB take 4 s where three packets of ten are lost. */
 #define RETRIES 1500
 
 /* The head of an encoded endpoint: type, 13 bytes of encapsulation, encoding 1.1. */
@@ -21,7 +21,7 @@ static const Ice_Byte head[HEAD] = {
 #define EVENT(kind, channel) \
     (1U << (((U32)(kind) - ICE_EVENT_MESSAGE) * LINK_CHANNELS + (U32)(channel)))
 
-/* The task of the minimal run time needs none of these: it polls the link itself while it waits. */
+/* The task of the minimal run time does not use these: it polls the link itself while it waits. */
 static void lock(XBeeATEndpoint* self) {
     if (ICEC_FULL)
         self->port->lock(self->context);
@@ -47,7 +47,7 @@ static void report(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     signal(self);
 }
 
-/* Takes a report back. Returns 1 if it was still waiting. */
+/* Takes a report back. Returns 1 if it was not delivered yet. */
 static int takeBack(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     if (!(self->events & EVENT(kind, channel)))
         return 0;
@@ -55,8 +55,8 @@ static int takeBack(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     return 1;
 }
 
-/* Notes that a connection is over: nothing more may be sent on its channel, which may soon be
- * another one's. */
+/* Records that a connection is over: nothing more may be sent on its channel, which may soon belong
+ * to another one. */
 static void end(XBeeATEndpoint* self, int channel) {
     if (channel == XBEE_OWN_CHANNEL)
         self->ownOpen = 0;
@@ -66,7 +66,7 @@ static void end(XBeeATEndpoint* self, int channel) {
 
 int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 size) {
     XBeeATEndpoint* self = context;
-    /* Opening and closing come before it in order, so nothing else may be waiting. */
+    /* Opening and closing come before it in order, so no other event can be pending. */
     if (!self->buffer || self->events) {
         if (ICEC_FULL)
             self->held = 1;
@@ -85,8 +85,8 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
         return;
     if (!isOpen)
         end(self, channel);
-    /* An opening that nobody has seen is taken back by its closing: so at most a closing and then
-     * an opening wait for a channel, however often the ground starts again. */
+    /* A closing takes an unseen opening back, so at most a closing and then an opening wait for a
+     * channel, however often the ground restarts. */
     if (isOpen || !takeBack(self, ICE_EVENT_OPENED, channel))
         report(self, isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel);
 }
@@ -98,7 +98,7 @@ void XBeeATEndpoint_onState(void* context, Link_State state) {
 }
 
 /* Waits for one event. The link may write `buffer` only meanwhile; at other times the link keeps
- * what comes. */
+ * messages. */
 static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event) {
     XBeeATEndpoint* self = context;
     U32 first = 0;
@@ -139,14 +139,14 @@ static Link_Status openOwn(XBeeATEndpoint* self) {
     return status;
 }
 
-/* Returns whether the connection of the message that is offered has ended, seen by the receiver or
- * not yet: its channel may be another one's by now. */
+/* Returns whether the connection of the offered message has ended, seen by the receiver or not: its
+ * channel may belong to another one by now. */
 static int hasEnded(const XBeeATEndpoint* self, int connection) {
     return (self->events & EVENT(ICE_EVENT_CLOSED, connection)) ||
            (ICEC_FULL && self->offered != connection);
 }
 
-/* Sends, or opens the own channel (no message); while the link has no room, again and again, and in
+/* Sends, or opens the own channel (no message). While the link has no room it tries again, and in
  * the end the connection ends: the link tells the peer as soon as it can. */
 static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* message,
                         Ice_Int size) {
@@ -174,7 +174,7 @@ static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* me
         lock(self);
     }
     if (tries != RETRIES)
-        signal(self); /* this may have taken what the receiver waits for */
+        signal(self); /* this may have taken an event that the receiver waits for */
     return status == LINK_OK ? ICE_OK : status == LINK_TOO_LONG ? ICE_LIMIT : ICE_CONNECTION_LOST;
 }
 
@@ -187,7 +187,7 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
     if (size < 2 || encoded[0] != head[0] || encoded[1] != head[1])
         return ICE_NO_ENDPOINT;
     *connection = XBEE_OWN_CHANNEL;
-    return offer(context, 0, 0, 0); /* the last closing may be on its way still */
+    return offer(context, 0, 0, 0); /* the last closing may still be on its way */
 }
 
 static void closeChannel(void* context, int connection) {

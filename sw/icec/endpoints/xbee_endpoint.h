@@ -12,13 +12,13 @@
 #include "link.h"
 
 #define XBEE_ENDPOINT_TYPE 0x4158
-#define XBEE_OWN_CHANNEL 3 /* that this side, the UAV, opens; the ground opens 0..2 */
+#define XBEE_OWN_CHANNEL 3 /* opened by this side, the UAV; the ground opens 0..2 */
 
-/* The endpoint's port to the application, whose radio task owns the link. In the
- * minimal run time there is one task, which polls the link in `wait`: lock, unlock, kick and signal
- * are not called, and may be 0. */
+/* The endpoint's port to the application, whose radio task owns the link. The minimal run time has
+ * one task, which polls the link in `wait`; lock, unlock, kick and signal are not called, and may
+ * be 0. */
 typedef struct XBeeATEndpoint_Port {
-    void (*lock)(void* context); /* around every use of the link, callbacks included */
+    void (*lock)(void* context); /* around every use of the link, with its callbacks */
     void (*unlock)(void* context);
     void (*kick)(void* context);                   /* makes the radio task poll the link soon */
     int (*wait)(void* context, Ice_Int timeoutMs); /* for signal; 1: signalled */
@@ -31,9 +31,9 @@ typedef struct XBeeATEndpoint {
     const XBeeATEndpoint_Port* port;
     void* context;
     U16 address;      /* own, MY */
-    U32 events;       /* what waits to be told; 0: nothing */
-    Ice_Int size;     /* of the message that waits */
-    Ice_Byte* buffer; /* of the task that receives; 0: nobody does, the link keeps the message */
+    U32 events;       /* events to be delivered; 0: none */
+    Ice_Int size;     /* of the pending message */
+    Ice_Byte* buffer; /* the receiving task's; 0: nobody receives, the link keeps the message */
     Ice_Byte ownOpen;
     Ice_Byte held;    /* the link keeps a message that was not taken */
     Ice_Byte offered; /* connection of the message that is being sent, unless it has ended */

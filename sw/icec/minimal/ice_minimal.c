@@ -3,9 +3,9 @@
  * ice_minimal: the run time of the minimal configuration: one task, one active adapter, one message
  * at a time.
  *
- * What is received lies in `in`, what is sent is written to `out`; a connection and the call under
- * way have an Ice_Status, ICE_LATER as long as the peer's answer is waited for. The functions are
- * those of icec.h; the streams, proxies and tables of operations are the full run time's.
+ * `in` holds received messages, `out` those to send. A connection and the call under way have an
+ * Ice_Status, which is ICE_LATER while the peer's answer is awaited. The functions are those of
+ * icec.h; streams, proxies and tables of operations are the full run time's.
  */
 #include "ice_message.h"
 #include "ice_proxy.h"
@@ -94,7 +94,7 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
 
 /* ---- what arrives ---- */
 
-/* Handles a message. Returns ICE_OK, or why the connection is to be closed: a malformed message
+/* Handles a message. Returns ICE_OK, or why the connection must be closed: a malformed message
  * loses it. */
 static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, Ice_Int size) {
     Ice_InputStreamPtr is = &ic->is;
@@ -146,7 +146,7 @@ Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
 
 /* ---- calls ---- */
 
-/* Receives until `status` is another one than ICE_LATER. */
+/* Receives until `status` is no longer ICE_LATER. */
 static Ice_Status await(Ice_ObjectPrxPtr self, const volatile Ice_Byte* status) {
     U32 begun = nowMs(self->communicator);
     while (*status == ICE_LATER) {
@@ -217,7 +217,7 @@ Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {
 
 U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     for (; options && *options; ++options)
-        if (options[0] == '-' && options[1] == letter) { /* nothing is quoted here */
+        if (options[0] == '-' && options[1] == letter) { /* there are no quotes here */
             options += 3;
             return (U32)strtoul(options, 0, options[0] == '0' && options[1] == 'x' ? 16 : 10);
         }

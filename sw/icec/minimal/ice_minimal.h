@@ -22,7 +22,7 @@ struct Ice_Communicator {
     Ice_ObjectAdapterPtr adapter; /* the active one */
     Ice_Byte stopping;
     Ice_Byte busy; /* an operation runs */
-    /* Ice_Status: ICE_OK the connection is open, the reply is there; ICE_LATER it is waited for. */
+    /* Ice_Status: ICE_OK the connection is open, the reply is there; ICE_LATER it is awaited. */
     Ice_Byte call;
     Ice_Byte connections[ICE_CONNECTIONS];
     int connection;      /* of the call */

@@ -113,7 +113,7 @@ lights_behaviour) # a bug of the compiler, of the firmware, of a page's script: 
     cat >>tests/room/CMakeLists.txt <<TEXT
 add_test(NAME slice.golden.header COMMAND $source/tests/slice/compiler/check.sh golden $root/slice2c $source/tests/slice/compiler/golden/header.ice $work/build/golden $source/sw)
 add_test(NAME test_link.LinkLayer.AClosingWaits COMMAND $root/test_link --gtest_filter=*AClosingWaitsForRoomAndIsNotLost)
-add_test(NAME live.page COMMAND $source/tests/regress/test/look.sh page.html regression WORKING_DIRECTORY $work)
+add_test(NAME live.page COMMAND $source/tests/regress/test/look.sh page.html WORKING_DIRECTORY $work)
 TEXT
     cmake build/main >/dev/null
     run --name 'slice|link'

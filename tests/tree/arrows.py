@@ -1,32 +1,21 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""arrows: holds every #include to the table of rooms in docs/architecture.md, and libraries to having no circles.
+"""arrows: holds every #include to the rooms of rooms.toml, and libraries to having no circles.
 
     arrows.py TREE                the includes of TREE, a checkout
     arrows.py --circles LIBRARY [PREFIX...]   the object files of a static library: none needs one that needs it
                                   back; files whose names begin with one PREFIX count as one (natural recursion)
 
-A row of the table is "| `room` | `room it may use`, ... |"; a room is a folder, the longest that fits a file. A file
-may include from its own room and from those its row names. Exit status 1: an arrow that no row allows, or a circle.
+A room is a folder, the longest that fits a file. A file may include from its own room and from those that its room
+may use. Exit status 1: an include that no room allows, or a circle.
 """
 import os
 import re
 import subprocess
 import sys
+import tomllib
 
-PAGE = "docs/architecture.md"
-
-
-def read_table(tree):
-    """The rooms that PAGE lists, each with the set of rooms that it may use."""
-    rooms = {}
-    for line in open(os.path.join(tree, PAGE)):
-        row = re.match(r"\| (`[^|]*`) \| ([^|]*)\|", line)
-        if row:
-            used = set(re.findall(r"`([^`]+)`", row.group(2)))
-            for room in re.findall(r"`([^`]+)`", row.group(1)):
-                rooms[room] = used
-    return rooms
+ROOMS = "tests/tree/rooms.toml"
 
 
 def tracked(tree):
@@ -50,20 +39,19 @@ def room_of(path, rooms):
 
 
 def wrong_arrows(tree):
-    rooms = read_table(tree)
-    if not rooms:
-        return [f"{PAGE}: has no table of rooms"]
+    with open(os.path.join(tree, ROOMS), "rb") as file:
+        rooms = {room: set(used) for room, used in tomllib.load(file).items()}
     files = tracked(tree)
     by_name = {}
     for path in files:
         by_name.setdefault(os.path.basename(path), []).append(path)
-    wrong = [f"{PAGE}: `{room}` is no folder" for room in sorted(rooms) if not os.path.isdir(os.path.join(tree, room))]
-    wrong += [f"{PAGE}: `{used}`, which `{room}` may use, has no row" for room in sorted(rooms)
+    wrong = [f"{ROOMS}: `{room}` is no folder" for room in sorted(rooms) if not os.path.isdir(os.path.join(tree, room))]
+    wrong += [f"{ROOMS}: `{used}`, which `{room}` may use, is none" for room in sorted(rooms)
               for used in sorted(rooms[room]) if used not in rooms]
     for path in files:
         room = room_of(path, rooms)
         if not room:
-            wrong.append(f"{path}: its folder is in no room of {PAGE}")
+            wrong.append(f"{path}: its folder is in no room of {ROOMS}")
             continue
         for number, line in enumerate(open(os.path.join(tree, path), errors="replace"), 1):
             include = re.match(r'\s*[#`]include "([^"]+)"', line)

@@ -96,8 +96,10 @@ def attempt(proof, index, mutant):
     # A proof has four times the time that it takes without a mutant: one that is only slower is not caught.
     status, text = proof.run(folder, mutant, str(max(int(SECONDS), int(4 * float((proof.work / "cpu").read_text())))))
     if status and not re.search("an assertion fails|not proven|not reached", text):
-        sys.exit(f"{text}mutants: formal.{proof.name}: {mutant}: does not run")
-    result = "caught" if status else "SURVIVED" if proof.differs(folder, mutant) else "same"
+        print(f"{text}mutants: formal.{proof.name}: {mutant}: does not run", file=sys.stderr)
+        result = "BROKEN"
+    else:
+        result = "caught" if status else "SURVIVED" if proof.differs(folder, mutant) else "same"
     options = collections.defaultdict(list)
     for option, value in re.findall(r"-(\w+) (\S+)", mutant):
         options[option].append(value)
@@ -203,25 +205,28 @@ def main():
         missed = [row for row in rows if row["result"] == "SURVIVED" and programs(row)]
         failing = by_tests(missed, run.WORK / "model", pool) if missed else []
     for row in rows:
-        if row["result"] == "SURVIVED":
-            print(f"SURVIVED  formal.{row['proof']:<18} {row['line']} {row['does']}", flush=True)
+        if row["result"] in ("SURVIVED", "BROKEN"):
+            print(f"{row['result']:<9} formal.{row['proof']:<18} {row['line']} {row['does']}", flush=True)
     scores = {}
     for module in sorted({row["module"] for row in rows}):
         count = collections.Counter(row["result"] for row in rows if row["module"] == module)
-        judged = count.total() - count["same"]
+        judged = count.total() - count["same"] - count["BROKEN"]
         caught = judged - count["SURVIVED"]
-        scores[module] = dict(drawn=count.total(), same=count["same"], caught=caught, by_tests=caught - count["caught"],
+        scores[module] = dict(drawn=count.total(), same=count["same"], judged=judged, caught=caught, by_tests=caught - count["caught"],
                               score=round(100 * caught / judged, 1) if judged else 100.0)
     bad = [module for module, score in scores.items() if score["score"] < GATE]
     (out / "drawn.json").write_text(json.dumps(dict(seed=options.seed, tree=tree, gate=GATE, modules=scores, survived=[row for row in rows if row["result"] == "SURVIVED"])))
     for module, score in scores.items():
         print("%-22s %5.1f %%  %3d caught of %3d, %d of them by tests, %d the same" % (
-            module, score["score"], score["caught"], score["drawn"] - score["same"], score["by_tests"], score["same"]))
+            module, score["score"], score["caught"], score["judged"], score["by_tests"], score["same"]))
     caught = sum(score["caught"] for score in scores.values())
-    judged = sum(score["drawn"] - score["same"] for score in scores.values())
-    print(f"mutants: {caught} of {judged} drawn with seed {options.seed} caught, {sum(score['by_tests'] for score in scores.values())} of them by tests, {len(rows) - judged} the same as the module"
+    judged = sum(score["judged"] for score in scores.values())
+    print(f"mutants: {caught} of {judged} drawn with seed {options.seed} caught, {sum(score['by_tests'] for score in scores.values())} of them by tests, {sum(score['same'] for score in scores.values())} the same as the module"
           + (f"; below {GATE} %: {', '.join(bad)}" if bad else ""))
-    return bool(bad or failing)
+    broken = sum(row["result"] == "BROKEN" for row in rows)
+    if broken:
+        print(f"mutants: {broken} do not run, see above")
+    return bool(bad or failing or broken)
 
 
 if __name__ == "__main__":

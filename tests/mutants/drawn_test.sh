@@ -102,5 +102,15 @@ assert [row["result"] for row in rows] == ["test_pair", "SURVIVED", "SURVIVED"],
 END
 /usr/bin/python3 by_tests.py >run.log 2>&1 || fail "what the tests say of mutants is lost"
 grep -q '^said$' run.log && grep -q 'test_bad fails without any mutant, so it caught none' run.log || fail "no word of a test that fails as it is"
+# A mutant that does not run is told, and the rest is judged all the same.
+cat >yosys <<END
+#!/bin/sh
+case \$PWD in */drawn/pair/2) echo "no such thing" && exit 1 ;; esac
+exec $(command -v yosys) "\$@"
+END
+chmod +x yosys
+if PATH=$PWD:$PATH run; then fail "a mutant that does not run is no error"; fi
+grep -q 'no such thing' run.log && grep -q '^mutants: 1 do not run' run.log && grep -q '^pair  *100.0 %' run.log ||
+    fail "a mutant that does not run loses the rest"
 if run nothing; then fail "no proof is no error"; fi
 grep -q 'no proof.s name begins with nothing' run.log || fail "no word of what there is"

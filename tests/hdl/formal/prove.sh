@@ -30,8 +30,8 @@ files=$(ls "$source"/bus/*.v "$source"/hdl/system/*.v "$source"/hdl/cdc/*.v "$(d
 clocks=async2sync
 ! grep -qs gclk "$file" "$proof" || clocks='memory_map; clk2fflogic'
 # -nosdff -nodffe: AIGER has plain flip-flops only. The module's outputs are dropped: abc would take
-# them for properties.
-gates='memory_map; opt -full; techmap; opt -fast -nosdff -nodffe; dfflegalize -cell $_DFF_P_ 01; delete -output w:*'
+# them for properties. What became undefined (a flip-flop without a clock) is free: newer AIGER backends refuse it.
+gates='memory_map; opt -full; setundef -anyseq; techmap; opt -fast -nosdff -nodffe; dfflegalize -cell $_DFF_P_ 01; delete -output w:*'
 aiger='opt_clean; abc -g AND -fast; opt_clean; write_aiger -zinit -map'
 # shellcheck disable=SC2086
 cat >prove.ys <<END

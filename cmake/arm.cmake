@@ -2,9 +2,9 @@
 #
 # arm.cmake: C90 and assembly for the Cortex-M3, beside the host's build, by GCC's bare-metal toolchain.
 
-find_program(ARM_GCC arm-none-eabi-gcc REQUIRED)
-find_program(ARM_SIZE arm-none-eabi-size REQUIRED)
-find_program(ARM_OBJCOPY arm-none-eabi-objcopy REQUIRED)
+icesoc_needs(gcc-arm-none-eabi ARM_GCC program arm-none-eabi-gcc)
+icesoc_needs(binutils-arm-none-eabi ARM_SIZE program arm-none-eabi-size)
+icesoc_needs(binutils-arm-none-eabi ARM_OBJCOPY program arm-none-eabi-objcopy)
 
 set(ARM_FLAGS -mcpu=cortex-m3 -mthumb -Os -g -ffunction-sections -fdata-sections -fno-common
     -fstack-usage -fcallgraph-info=su)

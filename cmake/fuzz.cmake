@@ -2,19 +2,12 @@
 #
 # fuzz.cmake: libFuzzer programs, by clang, with address and undefined-behaviour sanitizers.
 
-find_program(CLANG clang)
-find_program(CLANGXX clang++)
-
 # icesoc_fuzz(NAME HARNESS file.cpp SOURCES file... [INCLUDES dir...] [DEFINES name...] RUNS n [SEEDS file-or-folder] [DICT file]
 #             [LENGTH bytes] [LIBS file...] [LABELS ...] [DEPENDS ...])
 # The program NAME, and the test fuzz.NAME of RUNS inputs from SEED, of up to LENGTH (400) bytes: their number decides, never
 # the time. Inputs begin with those in SEEDS.
 function(icesoc_fuzz name)
   cmake_parse_arguments(A "" "HARNESS;DICT;RUNS;SEEDS;LENGTH" "SOURCES;INCLUDES;DEFINES;LIBS;LABELS;DEPENDS" ${ARGN})
-  if(NOT CLANG OR NOT CLANGXX)
-    message(WARNING "${name}: clang is missing, so it is not built; run 'make setup'")
-    return()
-  endif()
   set(flags -g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined
             -fno-omit-frame-pointer)
   foreach(i IN LISTS A_INCLUDES)

@@ -38,7 +38,7 @@ esac
 search=$(for f in $folders ${core:+"$gen"}; do echo "-y $f -I$f"; done)
 libraries=$(for f in $folders ${core:+"$gen"}; do echo "-libdir $f"; done)
 each() { echo "$1" | tr , ' '; }
-verilate() { # variant [switch]
+verilate() { # variant [switches]
     # shellcheck disable=SC2086,SC2046
     verilator --lint-only -Wall ${2-} $search -I"$gen" --top-module "$module" $(for p in $(each "$1"); do echo "-G$p"; done) "$file"
 }
@@ -54,7 +54,7 @@ for variant in '' $variants; do
     verilate "$variant"
     checks="$checks log variant $(each "$variant"); design -load read; $(elaboration "$variant") proc; opt; check -assert; select -assert-none t:\$dlatch;"
 done
-verilate '' -DCOVER_POINTS # not always: a signal must have a use besides
+verilate '' '-DCOVER_POINTS --coverage --assert -Wno-SYNCASYNCNET' # as make coverage builds it; not always: a signal must have a use besides
 yosys -q -p "$read_file design -save read; $checks" # one process: its start costs more than a variant
 for variant in $refused; do
     for tool in verilate elaborate; do

@@ -4,6 +4,7 @@
 # gdb: Debian's GDB debugs the firmware on the RTL: breakpoints, steps, registers, memory, the FPGA's registers.
 # Usage: gdb.sh icesoc-sim firmware.elf out-folder
 set -eu
+command -v gdb-multiarch >/dev/null || { echo "gdb: gdb-multiarch is missing; run 'make setup-tests'" >&2 && exit 1; }
 sim=$1 elf=$2 out=$3
 rm -rf "$out"
 mkdir -p "$out"

@@ -3,6 +3,7 @@
 #
 # reverse: Debian's GDB runs a recorded flight backwards, a secure one. Usage: reverse.sh icesoc-sim firmware.elf out-folder
 set -eu
+command -v gdb-multiarch >/dev/null || { echo "reverse: gdb-multiarch is missing; run 'make setup-tests'" >&2 && exit 1; }
 sim=$1 elf=$2 out=$3
 rm -rf "$out"
 mkdir -p "$out"

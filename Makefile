@@ -56,7 +56,7 @@ UCOS2 ?=
 export CCACHE_BASEDIR := $(CURDIR)
 export CCACHE_NOHASHDIR := 1
 
-# A timer or a container may give none: ccache and cmake/fetch.sh keep their files there.
+# A timer or a container may give none: ccache and cmake/fetch.py keep their files there.
 export HOME ?= $(shell getent passwd $$(id -u) | cut -d: -f6)
 
 # Numbers have a point in every tool, whatever the user's language.

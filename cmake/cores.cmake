@@ -4,7 +4,7 @@
 
 set(CORES ${CMAKE_SOURCE_DIR}/ip/cores.list CACHE FILEPATH "The cores in the chip, one a line")
 set(CORE_FOLDERS "" CACHE STRING "Folders of cores besides those in ip/")
-set(FOREIGN_CORES ${CMAKE_BINARY_DIR}/foreign CACHE PATH "Where cmake/fetch.sh foreign put third-party cores")
+set(FOREIGN_CORES ${CMAKE_BINARY_DIR}/foreign CACHE PATH "Where cmake/fetch.py foreign put third-party cores")
 
 # Names in the list, for what is built only with a core: if("vision" IN_LIST CHIP_CORES)
 set(CHIP_CORES)

@@ -47,7 +47,6 @@ zeroc-ice-slice Slice files of ZeroC Ice
 python3-zeroc-ice ZeroC Ice for Python: the ground station
 python3-pil draws the features over the picture
 xplanet-images the default picture
-dpkg-dev unpacks source packages (headers of ZeroC Ice that its -dev package leaves out)
 gcc-arm-none-eabi the firmware for the Cortex-M3
 libunicorn-dev executes its instructions in the simulator
 libnewlib-arm-none-eabi C library for it
@@ -62,7 +61,7 @@ lcov coverage pages
 chromium opens the report pages in tests
 tshark reads the messages on the wire in tests
 strace sees which files a proof reads, so that its verdict holds until one changes
-curl fetches what pages sort and draw with, and the foreign cores of the examples
+ca-certificates checks whom what pages sort and draw with, and foreign cores, are fetched from
 gdb-multiarch debugs it there
 gtkwave shows waveforms, and reads those of failures for the page
 graphviz pictures of netlists
@@ -70,7 +69,7 @@ man-db shows and checks the manual pages
 groff-base formats them
 '
 [ -z "$tests" ] || packages="$packages$rest"
-# Debian 12's is too old: cmake/fetch.sh brings Debian 13's.
+# Debian 12's is too old: cmake/fetch.py brings Debian 13's.
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in
 1[3-9]) packages="$packages
 ghdl-mcode simulates and converts VHDL" ;;

@@ -33,8 +33,8 @@ FOREIGN_NEW := foreign_aes=aes=memory=aes foreign_uart=wbuart=wishbone=wbuart32=
 foreign_slots = foreign_spi $(foreach f,$(FOREIGN_NEW),$(firstword $(subst =, ,$(f))))
 # Third-party cores come from the network, so they are apart.
 foreign: setup-tests ## put third-party cores (Wishbone, AXI4-Lite, AXI-Stream and plain buses in Verilog, records in VHDL) and two of one's own through the recipe, in three orders, test them and call them by radio; downloads them (CHIP=1: and what each costs in that chip)
-	@cmake/fetch.sh foreign build/foreign-cores
-	@cmake/fetch.sh ghdl build/foreign-cores/ghdl
+	@cmake/fetch.py foreign build/foreign-cores
+	@cmake/fetch.py ghdl build/foreign-cores/ghdl
 	@rm -rf build/foreign-cores/slots
 	@GHDL=build/foreign-cores/ghdl/ghdl ip/new_foreign.py foreign_spi neorv32_spi own build/foreign-cores/slots/foreign_spi LIBRARY=neorv32 PARAM:IO_SPI_FIFO=4 \
 	    strobe=bus_req_i_stb write=bus_req_i_rw address=bus_req_i_addr enables=bus_req_i_ben wdata=bus_req_i_data \

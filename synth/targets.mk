@@ -12,7 +12,7 @@ synth: setup-tests $(BUILD)/build.ninja ## utilisation: LUTs, flip-flops, slices
 	@$(NINJA) --quiet synth_inputs
 	@$(if $(findstring ..,$(BASE)),exec synth/compare.sh $(BUILD)/synth/utilisation $(call quoted,$(BASE)) $(JOBS);) \
 	$(if $(BASE),git rev-parse --verify -q $(call quoted,$(BASE)^{commit}) >/dev/null || { echo "synth: there is no commit BASE="$(call quoted,$(BASE)) >&2; exit 2; };) \
-	$(if $(PLACE),cmake/fetch.sh nextpnr $(BUILD)/nextpnr &&) \
+	$(if $(PLACE),cmake/fetch.py nextpnr $(BUILD)/nextpnr &&) \
 	$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) \
 	    $(addprefix --design ,$(or $(DESIGN),$(PLACE:%=table1 soc))) $(addprefix --family ,$(FAMILY)) \
 	    $(PLACE:%=--place $(BUILD)/nextpnr/nextpnr-ecp5) \

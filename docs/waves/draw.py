@@ -37,7 +37,7 @@ def drawn(folder, waves):
 
 
 def main(folder, *options):
-    fetched = subprocess.run([HERE / "../../cmake/fetch.sh", "wavedrom", folder])
+    fetched = subprocess.run([HERE / "../../cmake/fetch.py", "wavedrom", folder])
     if fetched.returncode:
         sys.exit(fetched.returncode)
     files = sorted(HERE.glob("*.json"))

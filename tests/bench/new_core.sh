@@ -43,7 +43,7 @@ P
 caller "$tree/ip/$name/$name.ice" "import Cores; sys.exit(Cores.${type}Prx.checkedCast(p).sumTo(100) != 5050)"
 called=$(date +%s.%N)
 foreign='' # entries of the figures
-if [ "${4:-}" != --brief ] && "$source/cmake/fetch.sh" foreign "$work/foreign" >"$work/log" 2>&1; then
+if [ "${4:-}" != --brief ] && "$source/cmake/fetch.py" foreign "$work/foreign" >"$work/log" 2>&1; then
     for core in "aes memory aes 22" "wbuart wishbone wbuart32 34"; do
         # shellcheck disable=SC2086 # words
         set -- $core

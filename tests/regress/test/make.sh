@@ -30,10 +30,10 @@ case $said in *"you may not write in $work/theirs/.cache"*XDG_CACHE_HOME*) ;; *)
 [ "$(env -u HOME make -s --eval 'home: ; @echo $$HOME' home)" = "$(getent passwd "$(id -u)" | cut -d: -f6)" ]
 # A user's name may have an apostrophe.
 mkdir "$work/it's" && ln -s "${XDG_CACHE_HOME:-$HOME/.cache}/icesoc" "$work/it's/icesoc"
-XDG_CACHE_HOME="$work/it's" cmake/fetch.sh ghdl "$work/ghdl" && "$work/ghdl/ghdl" --version >/dev/null
+XDG_CACHE_HOME="$work/it's" cmake/fetch.py ghdl "$work/ghdl" && "$work/ghdl/ghdl" --version >/dev/null
 # What pages sort and draw with: without a network, or where a file is not the one that was tested, the build goes on, says so, and
 # nothing half is kept.
-page() { XDG_CACHE_HOME="$work/empty" ICESOC_NPM=$1 cmake/fetch.sh page "$work/page" 2>&1; }
+page() { XDG_CACHE_HOME="$work/empty" ICESOC_NPM=$1 cmake/fetch.py page "$work/page" 2>&1; }
 mkdir -p "$work/npm/tabulator-tables/-" && echo wrong >"$work/npm/tabulator-tables/-/tabulator-tables-6.5.3.tgz"
 for mirror in http://127.0.0.1:9 "file://$work/npm"; do
     said=$(page "$mirror") || { echo "without a network: $said" >&2 && exit 1; }

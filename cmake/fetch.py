@@ -1,0 +1,262 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""fetch: brings what the build uses and Debian's packages leave out, without touching the system.
+
+Usage: fetch.py THING FOLDER    puts it into FOLDER; `fetch.py --help` lists the things
+What has a checksum here is the file that was tested, or it is refused. Downloads are kept in ${XDG_CACHE_HOME:-~/.cache}/icesoc,
+so that a second build needs no network. ICESOC_NPM, ICESOC_RAW: a mirror of registry.npmjs.org, of raw.githubusercontent.com.
+Exit status 77: there is no network, and only what is optional needs this thing.
+"""
+
+import argparse
+import fcntl
+import hashlib
+import os
+import pathlib
+import shlex
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+import urllib.error
+import urllib.request
+
+CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "icesoc"
+LIST = pathlib.Path(__file__).resolve().parent.parent / "examples/foreign/files.list"
+GITHUB = os.environ.get("ICESOC_RAW") or "https://raw.githubusercontent.com"
+NPM = os.environ.get("ICESOC_NPM") or "https://registry.npmjs.org"
+KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
+
+# Path in Debian's pool, or below the mirrors above; sha256
+LZ4 = "l/lz4/lz4_1.9.4.orig.tar.gz", "0b0e3aa07c8c063ddf40b082bdf7e37a1562bda40a0ff5272957f3e987e0e54b"
+SODIUM = "libs/libsodium/libsodium_1.0.18.orig.tar.gz", "d59323c6b712a1519a5daf710b68f5e7fde57040845ffec53850911f10a5d4f4"
+ICE = {"3.7.8": "c48f9e43d65e2b1f5e2af747fd86e7718b5e344b4e9d9a7dc73a84dd0be61f66",
+       "3.7.10": "eb1c545cf679facdd07ab45e85ad9f87f2ffc84d72687eeeea2e4e490a6d31c8"}
+SCHEMA = ("ARM-software/CMSIS_5/51f8f89612c8330c0116479cfe3a2cb04c390e2b/CMSIS/Utilities/CMSIS-SVD.xsd",
+          "eee4bfe949f80708b00cccb4833e71da3766b0489a4cdfa2dae225d541688d89")
+WAVEDROM = "wavedrom/-/wavedrom-3.5.0.tgz", "7efce288c7e1e6f4072ba93345592ccd1e09442817a91cc2f3b351b777b6b0e9"
+PAGE = [("tabulator-tables", "6.5.3", "a3aeb833e5cf924c8a686fa6748c1070c5fde8e605e0b1734000c35b78571a9b",
+         ["js/tabulator.min.js", "css/tabulator_simple.min.css"]),
+        ("uplot", "1.6.32", "4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d",
+         ["uPlot.iife.min.js", "uPlot.min.css"])]
+# Debian 13's packages, with all that they load
+RUN_TIME = ["libc6", "libgcc-s1", "libstdc++6", "zlib1g", "gcc-14-base"]
+GHDL = ["ghdl-mcode", "ghdl-common", "libgnat-14", *RUN_TIME]
+NEXTPNR = ["nextpnr-ecp5", "nextpnr-ecp5-chipdb", "libpython3.13", "libpython3.13-minimal", "libpython3.13-stdlib", "libexpat1",
+           "libbz2-1.0", "liblzma5", "libzstd1", *RUN_TIME,
+           *(f"libboost-{part}1.83.0" for part in ("filesystem", "iostreams", "program-options", "thread"))]
+
+
+class Unreachable(Exception):
+    """There is no network, or a mirror does not have the file."""
+
+
+def fail(text, status=1):
+    print(f"fetch: {text}", file=sys.stderr)
+    sys.exit(status)
+
+
+def mirror():
+    """The Debian mirror that this machine uses."""
+    try:
+        targets = subprocess.run(["apt-get", "indextargets", "--format", "$(REPO_URI)", "Created-By: Packages"], text=True,
+                                 stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout.split()
+    except FileNotFoundError:
+        targets = []
+    return next((uri for uri in targets if uri.rstrip("/").endswith("/debian")), "http://deb.debian.org/debian").rstrip("/")
+
+
+def kept(url, checksum):
+    """The file of this address and checksum, in the cache."""
+    file = CACHE / "foreign" / checksum
+    if not file.exists():
+        print(f"Fetching {url.rsplit('/', 1)[1]} ...", flush=True)
+        try:
+            with urllib.request.urlopen(url, timeout=60) as answer:
+                data = answer.read()
+        except OSError as error:
+            raise Unreachable(f"{url}: {error}")
+        if hashlib.sha256(data).hexdigest() != checksum:
+            raise Unreachable(f"{url} is not the file that was tested (sha256)")
+        file.parent.mkdir(parents=True, exist_ok=True)
+        partial = file.with_suffix(".part")
+        partial.write_bytes(data)
+        partial.rename(file)
+    return file
+
+
+def released(path, checksum):
+    """A released source as Debian keeps it."""
+    return kept(f"{mirror()}/pool/main/{path}", checksum)
+
+
+def unpack(archive, folder, target, suffix=""):
+    """The files below a folder of an archive whose names end with suffix."""
+    with tarfile.open(archive) as tar:
+        for member in tar:
+            if member.isfile() and member.name.startswith(folder) and member.name.endswith(suffix):
+                file = target / member.name[len(folder):]
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_bytes(tar.extractfile(member).read())
+
+
+def packages(name, *wanted):
+    """The folder of these packages of Debian 13, unpacked in the cache."""
+    folder = CACHE / name
+    if not (folder / "done").exists():
+        print(f"Fetching {name} from Debian 13, kept apart from the system ...", flush=True)
+        with tempfile.TemporaryDirectory(dir=CACHE) as work:
+            os.makedirs(f"{work}/lists/partial")
+            os.makedirs(f"{work}/archives/partial")
+            pathlib.Path(work, "private.sources").write_text(
+                f"Types: deb\nURIs: {mirror()}\nSuites: trixie\nComponents: main\nSigned-By: {KEYRING}\n")
+            apt = ["apt-get", "-qq", "-o", f"Dir::Etc::sourcelist={work}/private.sources", "-o", "Dir::Etc::sourceparts=/dev/null",
+                   "-o", f"Dir::State::lists={work}/lists", "-o", f"Dir::Cache::archives={work}/archives", "-o", "Dir::Cache::pkgcache=",
+                   "-o", "Dir::Cache::srcpkgcache=", "-o", "APT::Sandbox::User=root", "-o", "APT::Get::List-Cleanup=0"]
+            for words in (["update"], ["download", *wanted]):
+                if subprocess.call([*apt, *words], cwd=work):
+                    raise Unreachable(f"apt-get {words[0]}: {name} from {mirror()}")
+            for package in pathlib.Path(work).glob("*.deb"):
+                subprocess.check_call(["dpkg", "-x", package, folder / "root"])
+        (folder / "done").touch()
+    return folder / "root"
+
+
+def program(target, text):
+    target.parent.mkdir(parents=True, exist_ok=True)
+    target.write_text("#!/bin/sh\n" + text)
+    target.chmod(0o755)
+
+
+def loaded(root, name):
+    """The words that run a program of these packages with their own libraries."""
+    loader = next(file for file in sorted(root.rglob("ld-linux-*.so.2")) if not file.is_symlink())
+    library = root / "usr/lib" / f"{os.uname().machine}-linux-gnu"
+    return " ".join(map(shlex.quote, [str(loader), "--library-path", str(library), str(root / "usr/bin" / name)]))
+
+
+def ghdl(target):
+    """GHDL 5 (GHDL 2's Verilog output is wrong for `case`); FOLDER/ghdl runs it"""
+    installed = shutil.which("ghdl") and subprocess.run(["ghdl", "--version"], text=True, stdout=subprocess.PIPE).stdout.split()[1]
+    if installed and int(installed.split(".")[0]) >= 5:
+        return program(target / "ghdl", 'exec ghdl "$@"\n')
+    root = packages("ghdl5", *GHDL)
+    program(target / "ghdl", f'GHDL_PREFIX={shlex.quote(str(root))}/usr/lib/ghdl/mcode/vhdl exec {loaded(root, "ghdl-mcode")} "$@"\n')
+
+
+def nextpnr(target):
+    """nextpnr for ECP5; FOLDER/nextpnr-ecp5 runs it"""
+    if shutil.which("nextpnr-ecp5"):
+        return program(target / "nextpnr-ecp5", 'exec nextpnr-ecp5 "$@"\n')
+    root = packages("nextpnr-0.7", *NEXTPNR)
+    # It looks for its chips in /usr/share/nextpnr, which is there for it alone: a mount of its own.
+    program(target / "nextpnr-ecp5", f"""root={shlex.quote(str(root))}
+exec unshare --map-root-user --mount sh -c 'mount --bind "$0/usr/share" /usr/share || {{
+    echo "nextpnr-ecp5: this machine lets its users mount nothing; Debian 13 has it as a package" >&2
+    exit 1
+}}
+PYTHONHOME=$0/usr exec {loaded(root, "nextpnr-ecp5")} "$@"' "$root" "$@"
+""")
+
+
+def ice_source(version):
+    return released(f"z/zeroc-ice/zeroc-ice_{version}.orig.tar.xz", ICE[version])
+
+
+def ice(target):
+    """internal transport headers of the installed ZeroC Ice"""
+    said = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", "libzeroc-ice-dev"], text=True, stdout=subprocess.PIPE).stdout
+    version = said.split("-")[0]
+    if version not in ICE: # Transports are internal to Ice, but did not change between 3.7.8 and 3.7.10.
+        print(f"fetch: libzeroc-ice-dev is {version or 'not installed'}: taking the headers of 3.7.10, of the same series", file=sys.stderr)
+        version = "3.7.10"
+    unpack(ice_source(version), f"ice-{version}/cpp/src/Ice/", target / "Ice", ".h")
+
+
+def zeroc(target):
+    """ZeroC's test suites for Python, 3.7.8"""
+    unpack(ice_source("3.7.8"), "ice-3.7.8/python/test/", target)
+
+
+def lz4(target):
+    """the source of LZ4, which unpacks firmware on the chip"""
+    unpack(released(*LZ4), "lz4-1.9.4/lib/", target)
+
+
+def sodium(target):
+    """the sources of libsodium that check a signature, for the chip"""
+    unpack(released(*SODIUM), "libsodium-1.0.18/src/libsodium/", target)
+
+
+def foreign(target):
+    """the third-party cores that examples/foreign/files.list names"""
+    for line in LIST.read_text().splitlines():
+        if not line.startswith("#"):
+            repository, commit, path, checksum = line.split()
+            file = target / repository.split("/")[1] / os.path.basename(path)
+            file.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(kept(f"{GITHUB}/{repository}/{commit}/{path}", checksum), file)
+
+
+def svd(target):
+    """ARM's schema of CMSIS-SVD files, 1.3.9"""
+    target.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(kept(f"{GITHUB}/{SCHEMA[0]}", SCHEMA[1]), target / "CMSIS-SVD.xsd")
+
+
+def wavedrom(target):
+    """WaveDrom, which draws the pages' waveforms"""
+    target.mkdir(parents=True, exist_ok=True)
+    unpack(kept(f"{NPM}/{WAVEDROM[0]}", WAVEDROM[1]), "package/", target)
+
+
+def page(target):
+    """Tabulator and uPlot for the pages, as FOLDER/libraries.js and .css, each below its licence"""
+    target.mkdir(parents=True, exist_ok=True)
+    texts = {"js": "", "css": ""}
+    try:
+        for name, version, checksum, files in PAGE:
+            with tarfile.open(kept(f"{NPM}/{name}/-/{name}-{version}.tgz", checksum)) as tar:
+                licence = tar.extractfile("package/LICENSE").read().decode()
+                for file in files:
+                    lines = tar.extractfile(f"package/dist/{file}").read().decode().split("\n")
+                    code = "\n".join(line for line in lines if "sourceMappingURL=" not in line)
+                    texts[file.rsplit(".", 1)[1]] += f"/*! {name} {version}\n{licence}\n*/\n{code}\n"
+        (target / "done").touch()
+    except Unreachable as error: # the next build tries again
+        texts = {"js": "", "css": ""}
+        print(f"fetch: {error}\nfetch: cannot get Tabulator and uPlot, is there a network? Pages have plain tables and no drawn charts; "
+              "the next build tries again", file=sys.stderr)
+    for kind, text in texts.items():
+        (target / f"libraries.{kind}").write_text(text)
+
+
+# What only something optional needs: what that is
+OPTIONAL = {zeroc: "only these suites need it", svd: "only the check of icesoc.svd needs it",
+            wavedrom: "only drawings of waveforms need it", foreign: "only the examples of foreign cores need it"}
+THINGS = {thing.__name__: thing for thing in (ice, ghdl, nextpnr, lz4, sodium, page, foreign, svd, wavedrom, zeroc)}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     epilog="\n".join(f"  {name:9} {thing.__doc__}" for name, thing in THINGS.items()))
+    parser.add_argument("thing", choices=THINGS, metavar="THING")
+    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER")
+    options = parser.parse_args()
+    thing = THINGS[options.thing]
+    CACHE.mkdir(parents=True, exist_ok=True)
+    with open(CACHE / "lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX) # two builds may want the same
+        try:
+            thing(options.folder.absolute())
+        except Unreachable as error:
+            fail(f"{error}\nfetch: cannot get {options.thing}: is there a network? " +
+                 OPTIONAL.get(thing, "Then run make again"), 77 if thing in OPTIONAL else 1)
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)

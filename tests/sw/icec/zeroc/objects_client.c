@@ -6,6 +6,8 @@
 #include "Test.h"
 #include "client.h"
 
+#include <string.h>
+
 #define GET(operation, v) CHECK(Test_InitialPrx_##operation(&prx, v) == ICE_OK)
 #define ECHO(operation, in, out, result) \
     CHECK(Test_InitialPrx_##operation(&prx, in, out, result) == ICE_OK)

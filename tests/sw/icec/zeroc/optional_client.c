@@ -5,6 +5,8 @@
 #include "Test.h"
 #include "client.h"
 
+#include <string.h>
+
 /* The part of a value that is looked at. */
 #define ITSELF(v) v
 #define HIGH(v) v.high

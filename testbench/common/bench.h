@@ -2,7 +2,7 @@
 //
 // bench: clock, reset and bounded waits for a Verilated module with clk_i and rst_i.
 //
-// Drive inputs after tick(), sample outputs before it: outputs are settled whenever tick() returns.
+// Drive inputs after tick(), sample outputs before it: outputs are settled when tick() returns.
 
 #ifndef BENCH_H
 #define BENCH_H
@@ -32,13 +32,12 @@ public:
     uint64_t cycles() const { return cycles_; }
 
     // Adds a synchronous model: `sample` sees the settled ports before each rising edge, `drive`
-    // sets inputs after it, as the model's registers would.
+    // sets inputs after it, as registers would.
     void addModel(std::function<void()> sample, std::function<void()> drive) {
         models_.emplace_back(std::move(sample), std::move(drive));
     }
 
-    // Adds a clock that does not belong to clk_i: `half` is called between its edges, twice a
-    // cycle.
+    // Adds a clock that is independent of clk_i: `half` is called between its edges, twice a cycle.
     void addClock(std::function<void()> half) { half_ = std::move(half); }
 
     // Passes one clock cycle: settle, models sample, rising edge, models drive, falling edge,

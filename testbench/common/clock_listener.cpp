@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// clock_listener: a failed assertion also says at which clock of the model it failed.
+// clock_listener: adds the model's clock to a failed assertion.
 
 #include "observed_clock.h"
 #include <cstdio>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// core_slot: a core behind its generated wrapper in slot 5, as the FSMC driver and a generated
-// servant see it: the driver's port, the interrupt, the wait (docs/hw-mapping.md).
+// core_slot: a core behind its generated wrapper in slot 5, for the FSMC driver and a generated
+// servant: the driver's port, the interrupt, the wait (docs/hw-mapping.md).
 
 #ifndef CORE_SLOT_H
 #define CORE_SLOT_H
@@ -57,7 +57,8 @@ public:
     explicit CoreMemory(Bench<Module>& bench) : NpiMemory<Module>(bench, 0.2, testSeed()) {}
 };
 
-// The clock of a core that has its own: beside the chip's 100 MHz, its edges between that one's.
+// The clock of a core that has its own, beside the chip's 100 MHz; its edges are between the
+// chip's.
 #ifndef CORE_OWN_HZ
 #define CORE_OWN_HZ 24000000u
 #endif
@@ -74,7 +75,7 @@ public:
             }
         });
     }
-    void run(unsigned hz) { hz_ = hz; } // 0: it stands still
+    void run(unsigned hz) { hz_ = hz; } // 0: it stops
 
 private:
     unsigned hz_ = CORE_OWN_HZ, time_ = 0;
@@ -128,8 +129,8 @@ public:
             throw exception;
         hw_check(status);
     }
-    // Polls until an operation that is answered later has ended, as the firmware's task does: woken
-    // by the core's interrupt, or some milliseconds after the time it asked for.
+    // Polls until an operation that is answered later has ended, as the firmware's task does: after
+    // the core's interrupt, or some milliseconds after the requested time.
     void hw_finish(U32 operation) {
         Hw_Status status = HW_OK;
         U32 next = HW_NEVER;
@@ -156,7 +157,7 @@ public:
     std::function<void()> interrupt_;    // a servant's own, instead of Hw_Core_interrupt
     std::function<void()> beforeAccess_; // of a register, by another task
     U32 posted_ = 0;
-    U32 memoryAt_ = coreMemory; // where they are to the core: what a test writes into MEMORY
+    U32 memoryAt_ = coreMemory; // their address for the core: the value of MEMORY
     uint64_t started_ = 0, waitedClocks_ = 0;
     unsigned errors_ = 0;
 

@@ -10,35 +10,34 @@
 #include <string>
 #include <vector>
 
-// Returns what is in a file. Throws std::runtime_error if it cannot be read.
+// Returns a file's content. Throws std::runtime_error if it cannot be read.
 std::string readFile(const std::filesystem::path& file);
 
-// Writes a file, all of it or none: readers see the old text or the new. Throws
+// Writes a file, whole or not at all: readers see the old text or the new. Throws
 // std::runtime_error.
 void writeFile(const std::filesystem::path& file, const std::string& text);
 
-// Returns 16 hexadecimal digits that differ when the contents, or where one ends, differ (FNV-1a).
+// Returns a hash of 16 hexadecimal digits of the contents and their boundaries (FNV-1a).
 std::string hexHash(const std::vector<std::string>& contents);
 
-// Returns the state of folders, "bus hdl ip: 0123456789abcdef": a measurement keeps it, and is of
-// today as long as it is the same.
+// Returns the state of folders, "bus hdl ip: 0123456789abcdef". A measurement stores it, and is
+// valid while it stays the same.
 std::string treeState(const std::filesystem::path& source, const std::string& folders);
 
-// Return the style and the script that the pages of utilisation and of the regression begin with:
+// Return the style and the script at the beginning of the pages of utilisation and regression:
 // libraries (nothing where they could not be fetched), colours, tables, charts.
 std::string pageStyle();
 std::string pageScript();
 
-// Replaces each place in a page by its text. Throws std::runtime_error for a place that is not
-// there.
+// Replaces each placeholder in a page by its text. Throws std::runtime_error for a missing one.
 std::string filled(std::string page, const std::map<std::string, std::string>& places);
 
-// Returns JSON as it may stand in a page's script: a "</" in it does not end the script.
+// Returns JSON for a page's script: a "</" in it does not end the script.
 std::string scriptSafe(std::string json);
 
-// Held from construction to destruction, and let go by the system when the process ends, however it
-// does. While another process holds the folder, says on stderr which one, and waits. The folder is
-// made if it is not there. Throws std::system_error.
+// Locks a folder from construction to destruction; the system frees the lock when the process ends,
+// however it ends. While another process holds the folder, names it on stderr and waits. Makes a
+// missing folder. Throws std::system_error.
 class FolderLock {
 public:
     FolderLock(const std::filesystem::path& folder, const std::string& program);

@@ -8,7 +8,7 @@ wave=$1 program=$1.program.vcd
 [ -s "$wave" ] && [ -s "$program" ] && command -v fst2vcd >/dev/null && command -v vcd2fst >/dev/null || exit 0
 fst2vcd "$wave" | awk -v program="$program" '
 function next_line() { more = (getline line < program) > 0; if (more && line ~ /^#/) { time = substr(line, 2) + 0; next_line() } }
-function told_until(end) { # the lines of the program up to this time
+function told_until(end) { # prints lines of the program up to this time
     while (more && (end < 0 || time <= end)) {
         if (time > now) print "#" (now = time)
         print line

@@ -26,7 +26,7 @@ public:
     }
     void setByte(uint32_t address, uint8_t value) { bytes_[address] = value; }
     void setStall(double stall) { stall_ = stall; }
-    // Holds all requests: a memory that hangs.
+    // Holds all requests, as a hung memory does.
     void hold(bool held) { held_ = held; }
     // Probability, each cycle, that a word of an acknowledged write stays in the write FIFO, as it
     // does while the memory is busy with other ports. 0: it leaves at the acknowledgement.
@@ -130,7 +130,7 @@ private:
                     bytes_[address_ + 8 * w + b] = static_cast<uint8_t>(word.data >> (8 * b));
         }
         if (linger_ > 0)
-            lingering_ += words; // what they write is seen by every later request
+            lingering_ += words; // every later request sees what they write
     }
 
     uint64_t load(uint32_t address) const {

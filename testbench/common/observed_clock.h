@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// observed_clock: the clock of the model that ran last, which a failed assertion then tells.
+// observed_clock: the clock of the model that ran last, for failed assertions.
 
 #ifndef OBSERVED_CLOCK_H
 #define OBSERVED_CLOCK_H

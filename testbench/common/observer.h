@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// observer: what a Verilated model leaves behind in builds that are made for looking: a waveform
-// (-DTRACE=ON; WAVE=file, WAVE_FROM and WAVE_TO in clocks) and coverage (-DCOVERAGE=ON;
-// COVERAGE_DIR). In other builds it only keeps the clock.
+// observer: records a Verilated model in special builds: a waveform (-DTRACE=ON; WAVE=file,
+// WAVE_FROM and WAVE_TO in clocks) and coverage (-DCOVERAGE=ON; COVERAGE_DIR). In other builds it
+// only keeps the clock.
 //
 // CDC_SEED, a number in the environment, makes the model's synchronisers uncertain
-// (hdl/cdc/cdc_random.vh); the numbers drawn follow from it and from SEED. UNGATED, any value: the
-// clocks of cores never stand still (hdl/system/core_gate.v).
+// (hdl/cdc/cdc_random.vh); the draws follow from it and from SEED. UNGATED, any value: the clocks
+// of cores never stop (hdl/system/core_gate.v).
 
 #ifndef OBSERVER_H
 #define OBSERVER_H
@@ -59,7 +59,7 @@ public:
 #ifdef ICESOC_TRACE
         if (window_.file.empty() || clock < window_.from || clock > window_.to)
             return;
-        if (!wave_) { // a later model takes the file over: the test fails in its last one
+        if (!wave_) { // a later model takes the file over, since a test fails in its last one
             wave_.reset(new VerilatedFstC);
             top.trace(wave_.get(), 99);
             wave_->open(window_.file.c_str());

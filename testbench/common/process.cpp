@@ -14,7 +14,8 @@
 Output run(const std::vector<std::string>& command,
            const std::map<std::string, std::string>& environment,
            const std::function<void(const std::string& line)>& onLine) {
-    // The shell is gone, and signals reach the program; it ends with us, however we do.
+    // The shell is replaced, so signals reach the program; it ends with this process, however that
+    // ends.
     std::string words = "exec setpriv --pdeathsig TERM env";
     for (const auto& [name, value] : environment)
         words += " " + quoted(name + "=" + value);

@@ -15,7 +15,7 @@ struct Output {
     std::string text; // standard output and error
 };
 
-// Runs a program to its end and collects what it says, if asked for line by line as it comes.
+// Runs a program to its end and collects its output, if asked for line by line as it comes.
 // `environment` is added to ours. Throws std::runtime_error when it cannot be started.
 Output run(const std::vector<std::string>& command,
            const std::map<std::string, std::string>& environment = {},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // sample_filter: a core that filters lists of 16-bit samples through its memory port, beside its
-// model, which says what must come.
+// model, which computes the expected results.
 
 #ifndef SAMPLE_FILTER_H
 #define SAMPLE_FILTER_H

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// wave_window: which waveform the environment asks for: WAVE=file, WAVE_FROM and WAVE_TO in clocks.
+// wave_window: the waveform that the environment requests: WAVE=file, WAVE_FROM and WAVE_TO in
+// clocks.
 
 #ifndef WAVE_WINDOW_H
 #define WAVE_WINDOW_H
@@ -16,7 +17,7 @@ inline uint64_t environmentNumber(const char* variable, uint64_t otherwise) {
 }
 
 struct WaveWindow {
-    std::string file; // empty: none is asked for
+    std::string file; // empty: none
     uint64_t from = environmentNumber("WAVE_FROM", 0), to = environmentNumber("WAVE_TO", ~0ull);
 
     WaveWindow() {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// checkpoints: a table in memory that all copies share says where each stands, and what it is to
-// do.
+// checkpoints: forks share a table of states and orders in memory.
 
 #include "checkpoints.h"
 #include <cerrno>
@@ -46,7 +45,7 @@ struct Checkpoints::Shared {
     unsigned breakpointCount;
     uint32_t breakpoints[mostBreakpoints];
     pid_t first, active; // active 0: it is being woken
-    bool over;           // the active process has ended in good order
+    bool over;           // the active process has ended normally
     int status;
 };
 
@@ -58,7 +57,7 @@ Checkpoints::Checkpoints()
     shared_->first = shared_->active = getpid();
 }
 
-// A process that was woken leaves the others to the first one, which waits for its status.
+// A woken process leaves the others to the first one, which waits for its status.
 Checkpoints::~Checkpoints() {
     if (getpid() != shared_->first)
         return;
@@ -87,13 +86,13 @@ std::optional<Checkpoints::Order> Checkpoints::freeze(uint64_t place) {
     return std::nullopt;
 }
 
-// Holds a frozen copy; each time that it is woken it forks. Returns in the forked process only.
+// Holds a frozen copy, which forks each time that it is woken. Returns in the forked process only.
 std::optional<Checkpoints::Order> Checkpoints::sleep() {
     sigset_t all, wakes, before;
     sigfillset(&all);
     sigemptyset(&wakes);
     sigaddset(&wakes, SIGUSR1);
-    sigprocmask(SIG_SETMASK, &all, &before); // a Ctrl-C is not for it
+    sigprocmask(SIG_SETMASK, &all, &before); // a Ctrl-C must not reach it
     signal(SIGCHLD, SIG_IGN);
     do {
         int number;

@@ -2,11 +2,10 @@
 //
 // checkpoints: frozen copies of this process (fork), to which a debugger goes back.
 //
-// A copy is all that there is: processor, chip, radio, air. Who wants to go back wakes the last
-// copy before that place, with an order, and is heard of no more; what is woken is again a copy of
-// the frozen one, which stays. Connections are shared, so that the debugger notices nothing. The
-// first process ends when the last one does, with its status; all others end with the one that made
-// them.
+// A copy has everything: processor, chip, radio, air. To go back, a process wakes the last copy
+// before that place, with an order, and ends. The woken process is a copy of the frozen one, which
+// stays. Connections are shared, so the debugger notices nothing. The first process ends when the
+// last one does, with its status; all others end with their parent.
 
 #ifndef CHECKPOINTS_H
 #define CHECKPOINTS_H
@@ -17,7 +16,7 @@
 
 class Checkpoints {
 public:
-    // The task of a copy that is woken. Places are counts of instructions.
+    // The task of a woken copy. Places are counts of instructions.
     struct Order {
         enum Goal {
             Stop,          // run to `place`, and stop there
@@ -34,13 +33,13 @@ public:
     Checkpoints& operator=(const Checkpoints&) = delete;
 
     // Leaves a frozen copy behind, unless there is one at or behind this place, or there are too
-    // many. Returns an order in a process that was woken, none where the run goes on.
+    // many. Returns an order in a woken process, none where the run continues.
     std::optional<Order> freeze(uint64_t place);
     // Wakes the last copy at or before `before`; there must be one. Does not return.
     [[noreturn]] void wake(uint64_t before, const Order& order);
-    // Ends the copies behind this place: what comes then will be something else.
+    // Ends the copies behind this place: the run from here on will differ.
     void forgetBehind(uint64_t place);
-    // True if there is nothing to go back to from here.
+    // True if there is no copy to go back to.
     bool isFirst(uint64_t place) const;
 
 private:

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// cortex_m3: the loop around libunicorn, and what happens before each instruction.
+// cortex_m3: the loop around libunicorn, and the steps before each instruction.
 //
-// Every instruction is announced by unicorn's code hook. There time passes, and there the processor
-// is stopped, before the instruction, when an exception is to be entered: so unmasking takes effect
-// at the instruction where it would on the chip. Within an IT block it is not stopped, for unicorn
-// would lose the block's state; an interrupt waits up to four instructions there.
+// Unicorn's code hook announces every instruction. There time passes, and there the processor is
+// stopped, before the instruction, when an exception must be entered: so unmasking takes effect at
+// the same instruction as on the chip. It is not stopped within an IT block, since unicorn would
+// lose the block's state; an interrupt waits there for up to four instructions.
 
 #include "cortex_m3.h"
 #include "unicorn_calls.h"
@@ -19,7 +19,7 @@ constexpr uint64_t sleepStep = 1 << 20; // cycles that the surroundings may pass
 CortexM3::Stop CortexM3::run(bool singleStep) {
     singleStep_ = singleStep;
     stepped_ = breakpointHit_ = false;
-    passBreakpoint_ = true; // the one that the processor stands on
+    passBreakpoint_ = true; // at which the processor stands
     for (;;) {
         if (failure_) {
             auto failure = failure_;
@@ -40,7 +40,7 @@ CortexM3::Stop CortexM3::run(bool singleStep) {
             updateAttention();
             return why;
         }
-        if (lockedUp_) { // only a reset gets it out of here
+        if (lockedUp_) { // only a reset ends it
             pass(1);
             continue;
         }
@@ -80,8 +80,7 @@ void CortexM3::onInstruction(uint32_t address) {
         if (skipped_ != 0) {
             unsigned cycles = skipped_;
             skipped_ = 0;
-            if (address ==
-                unitEnd_) { // instructions of an IT block that were not taken cost a cycle each
+            if (address == unitEnd_) { // skipped instructions of an IT block cost a cycle each
                 expected_ = address;
                 pass(cycles);
             }
@@ -192,8 +191,8 @@ void CortexM3::sleep() {
     asleep_ = false;
 }
 
-// Passes the time until instructions can be fetched from flash again, up to where something else is
-// to be looked after.
+// Passes the time until instructions can be fetched from flash again, or until another event is
+// due.
 void CortexM3::waitForFlash() {
     while (cycles() < flashFree_ && !stopAsked_ && !resetAsked_ && !failure_)
         passing([&] {
@@ -203,7 +202,7 @@ void CortexM3::waitForFlash() {
     updateAttention();
 }
 
-// Puts back what libunicorn has stored to flash by itself.
+// Restores the bytes that libunicorn has stored to flash by itself.
 void CortexM3::settleFlash() {
     for (auto s = stores_.rbegin(); s != stores_.rend(); ++s)
         std::memcpy(flash_.get() + s->offset, s->was, s->bytes);

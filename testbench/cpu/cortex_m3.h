@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// cortex_m3: a Cortex-M3: libunicorn executes the instructions; exceptions, their priorities, the
-// system registers, cycles and faults are added here. Its contract and what it leaves out:
-// docs/models.md.
+// cortex_m3: a Cortex-M3: libunicorn executes the instructions; this adds exceptions, their
+// priorities, the system registers, cycles and faults. Its contract and limits: docs/models.md.
 
 #ifndef CORTEX_M3_H
 #define CORTEX_M3_H
@@ -19,18 +18,18 @@
 #include <unicorn/unicorn.h>
 #include <vector>
 
-// CpuBus is what surrounds the processor. Addresses are the processor's.
+// CpuBus is everything around the processor. Addresses are the processor's.
 class CpuBus {
 public:
     virtual ~CpuBus() = default;
-    // The bus's answer to an access that fails: it becomes a BusFault with this text.
+    // Thrown by the bus for a failed access: it becomes a BusFault with this text.
     class Error : public std::runtime_error {
     public:
         using std::runtime_error::runtime_error;
     };
     virtual uint32_t read(uint32_t address, unsigned bytes) = 0; // 1, 2 or 4 bytes
     virtual void write(uint32_t address, unsigned bytes, uint32_t value) = 0;
-    // `cycles` of HCLK pass outside of accesses. Not called again from within.
+    // `cycles` of HCLK pass without an access. Not called recursively.
     virtual void pass(unsigned cycles) = 0;
     // The processor sleeps: up to `limit` cycles pass, fewer if an interrupt line has changed.
     // Returns how many have passed, at least 1.
@@ -38,11 +37,11 @@ public:
         pass(1);
         return limit ? 1 : 0;
     }
-    // A store to flash at this offset. The memory itself is whose it is to change.
+    // A store to flash at this offset; the bus performs it.
     virtual void writeFlash(uint32_t, unsigned, uint32_t) {
         throw Error("flash is not written by stores");
     }
-    // HCLK cycles that the access just made took; the processor waited for so long.
+    // HCLK cycles of the last access, for which the processor waited.
     virtual unsigned takeWaited() = 0;
 };
 
@@ -67,30 +66,30 @@ public:
     bool readMemory(uint32_t address, void* data, uint32_t bytes) const;
     bool writeMemory(uint32_t address, const void* data, uint32_t bytes);
     void loadFlash(uint32_t address, const std::vector<uint8_t>& bytes);
-    // Read and write as a debugger asks: memory, else registers and windows by accesses like the
+    // Read and write for a debugger: memory, else registers and windows by accesses like the
     // processor's own.
     bool debugRead(uint32_t address, void* data, uint32_t bytes);
     bool debugWrite(uint32_t address, const void* data, uint32_t bytes);
     uint8_t* flash() { return flash_.get(); }
     // Bytes of flash have changed; called by the bus.
     void flashChanged(uint32_t offset, uint32_t bytes);
-    // No instruction can be fetched from flash for so many cycles; called by the bus.
+    // No instruction can be fetched from flash for this many cycles; called by the bus.
     void stallFlash(uint64_t cycles) { flashFree_ = this->cycles() + cycles; }
     uint32_t word(uint32_t address) const; // 0 where there is no memory
 
     // Resets as power-on or the system does: registers from the vector table; RAM stays.
     void reset();
-    // Runs until stop(), a breakpoint or an exception of the bus that is no CpuBus::Error.
+    // Runs until stop(), a breakpoint, or an exception of the bus other than CpuBus::Error.
     enum class Stop { Asked, Breakpoint, Stepped };
     Stop run(bool singleStep = false);
-    // Stops (Stop::Stepped), too, where `instructions()` has reached this; 0: nowhere. Within an IT
-    // block it cannot.
+    // Stops (Stop::Stepped) when `instructions()` has reached this, too; 0: never. It cannot stop
+    // within an IT block.
     void setLimit(uint64_t instructions) { limit_ = instructions; }
     // The last count of instructions before the present one at which the processor could stop.
     uint64_t lastStop() const { return boundaries_[0]; }
     // Called by the bus or a listener: run() returns before the next instruction.
     void stop() { stopAsked_ = attention_ = true; }
-    // Asks for a reset from outside (a watchdog), before the next instruction.
+    // Requests a reset from outside (a watchdog), before the next instruction.
     void requestReset() { resetAsked_ = attention_ = true; }
 
     // Sets the level of an interrupt line; called by the bus.
@@ -122,8 +121,8 @@ public:
     unsigned currentException() const;
     Exceptions& exceptions() { return exceptions_; }
 
-    // Longest time that the masks held back interrupts of `priority` and below, in cycles, and
-    // where it ended. Counted from now on.
+    // Longest time that the masks held back interrupts of `priority` and below, in cycles, and its
+    // end. Counted from this call on.
     struct Masked {
         uint64_t cycles = 0;
         uint32_t from = 0, to = 0; // addresses of the instructions that masked and unmasked
@@ -134,8 +133,7 @@ public:
     std::set<uint32_t> breakpoints; // addresses, bit 0 clear
     std::string lastFault;          // text of the last fault, for people
 
-    // Listeners are told of what happens: exceptions entered and left, a system reset before it is
-    // carried out.
+    // Listeners: exceptions entered and left, a system reset before it is carried out.
     struct Listener {
         std::function<void(unsigned number)> entered, left;
         std::function<void()> systemReset;
@@ -203,8 +201,7 @@ private:
         uint32_t cfsrBits = 0;
         std::string text;
     } synchronous_; // fault of the instruction under way
-    // The write buffer of one entry (TRM r2p1, 3.5): a store to a window that is not carried out
-    // yet.
+    // The write buffer of one entry (TRM r2p1, 3.5): a pending store to a window.
     struct BufferedStore {
         uint32_t address = 0, value = 0;
         unsigned bytes = 0; // 0: the buffer is empty
@@ -212,15 +209,15 @@ private:
     } store_;
     std::exception_ptr failure_;
     uint64_t instructions_ = 0, sleeping_ = 0, waited_ = 0;
-    // libunicorn carries a store to flash out by itself: what was there is put back, and the bus
-    // changes it.
+    // libunicorn carries a store to flash out by itself: the old bytes are restored, and the bus
+    // changes them.
     struct FlashStore {
         uint32_t offset;
         unsigned bytes;
         uint8_t was[8];
     };
     std::vector<FlashStore> stores_; // of the instruction under way
-    bool staleCode_ = false;         // translated code is no longer what flash has
+    bool staleCode_ = false;         // translated code differs from flash
     uint64_t flashFree_ = 0;
     uint64_t limit_ = 0, boundaries_[2] = {0, 0};
     uint8_t watchedPriority_ = 0xFF;

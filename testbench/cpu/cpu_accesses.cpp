@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// cpu_accesses: CortexM3's loads and stores outside of RAM: what they wait for, the store buffer,
-// faults; and a debugger's.
+// cpu_accesses: CortexM3's loads and stores outside of RAM: their waits, the store buffer, faults;
+// and a debugger's accesses.
 
 #include "cortex_m3.h"
 #include "unicorn_calls.h"
@@ -23,7 +23,7 @@ unsigned accessSize(uint32_t address, uint32_t bytes) {
 }
 } // namespace
 
-// The processor has waited for the access that the bus has just made.
+// Counts the time of the bus's last access.
 void CortexM3::passWaited() {
     const unsigned waited = bus_.takeWaited();
     waited_ += waited;
@@ -31,7 +31,7 @@ void CortexM3::passWaited() {
     attention_ = attention_ || exceptions_.deliverable();
 }
 
-// Carries a store out. Its fault comes when it does, and has no address.
+// Carries a store out. Its fault comes late, and has no address.
 template <class Store> void CortexM3::store(uint32_t address, unsigned bytes, Store store) {
     try {
         store();
@@ -110,7 +110,7 @@ void CortexM3::onWrite(uint32_t address, unsigned bytes, uint32_t value) {
         requestReset();
 }
 
-// Called before libunicorn stores to flash; what the bus makes of it is what counts.
+// Called before libunicorn stores to flash; only the bus's result counts.
 void CortexM3::onFlashWrite(uint32_t offset, unsigned bytes, uint32_t value) {
     settleFlash();
     if (failure_ || synchronous_.number)

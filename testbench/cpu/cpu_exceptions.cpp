@@ -111,7 +111,7 @@ bool CortexM3::writeMemory(uint32_t address, const void* data, uint32_t bytes) {
     if (address >= config_.ramBase || !readMemory(address, &was, 1) ||
         !readMemory(address + bytes - 1, &was, 1))
         return false;
-    // Flash, as a programmer writes it.
+    // Writes flash as a programmer does.
     const uint32_t offset = address >= config_.flashBase ? address - config_.flashBase : address;
     std::memcpy(flash_.get() + offset, data, bytes);
     flashChanged(offset, bytes);
@@ -250,7 +250,7 @@ void CortexM3::leave() {
 
 // ---- faults ----
 
-// The fault of a store that the processor has gone on behind: it waits for its priority.
+// The fault of a buffered store: it waits for its priority.
 void CortexM3::reportStoreFault(const std::string& text) {
     char where[40];
     std::snprintf(where, sizeof where, " (a store before 0x%08X)", expected_);
@@ -289,7 +289,7 @@ void CortexM3::onRaised(uint32_t number) {
     uc_emu_stop(uc_);
 }
 
-// Unicorn says the same of an unknown instruction and of a jump to an even address.
+// Unicorn reports an unknown instruction and a jump to an even address alike.
 void CortexM3::undefinedAt(uint32_t address) {
     if (!(reg(Xpsr) & thumb)) {
         synchronous_ = {UsageFault, SystemControl::invalidState, "a jump out of Thumb state"};
@@ -328,7 +328,7 @@ void CortexM3::handleRaised() {
         return;
     case Breakpoint:
         pc_ = executing_;
-        breakpointHit_ = true; // a debugger's business; without one run() returns all the same
+        breakpointHit_ = true; // for a debugger; without one run() returns as well
         return;
     case Fetch:
         synchronous_ = {BusFault, SystemControl::instructionBus, "nothing to execute there"};
@@ -347,7 +347,7 @@ void CortexM3::handleRaised() {
 }
 
 void CortexM3::handleUnicorn(uc_err error) {
-    if (synchronous_.number) { // the instruction at executing_ is the one to blame
+    if (synchronous_.number) { // the instruction at executing_ caused it
         pc_ = executing_;
         return;
     }

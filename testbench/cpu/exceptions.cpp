@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// exceptions: the answer is worked out when something changes, and only read at each instruction.
+// exceptions: computes the next exception when something changes; each instruction only reads it.
 
 #include "exceptions.h"
 #include <algorithm>

@@ -59,7 +59,7 @@ public:
     int runningPriority() const { return runningPriority_; }
     // Returns the pending one of the highest priority, masked or not; 0: none.
     unsigned firstPending() const { return best_; }
-    // WFI wakes by what would preempt if PRIMASK were 0 (B1.5.19).
+    // WFI wakes by an exception that would preempt with PRIMASK 0 (B1.5.19).
     bool wakes() const { return bestPriority_ < sleepPriority_; }
     int priorityOf(unsigned number) const;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// fpga_pins: a configuration is computed at its begin; its reads are played as time passes.
+// fpga_pins: computes a configuration at its begin, and plays its reads as time passes.
 
 #include "fpga_pins.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fpga_pins: the FPGA's configuration and its flash, as the processor's pins see them: SPI 1 (PA4
-// to PA7), which the FPGA drives while it configures itself, PROGRAM_B and DONE. Without a flash
-// the FPGA is configured, by nobody.
+// fpga_pins: the FPGA's configuration and its flash at the processor's pins: SPI 1 (PA4 to PA7),
+// which the FPGA drives while it configures itself, PROGRAM_B and DONE. Without a flash the FPGA is
+// always configured.
 
 #ifndef FPGA_PINS_H
 #define FPGA_PINS_H
@@ -23,12 +23,13 @@ public:
     bool isDone() const { return isDoneWired && (!flash_ || (boot_.running && now_() >= doneAt_)); }
     bool isDoneWired = true; // else it is read as low
     const Spartan6Boot& boot() const { return boot_; }
-    // Called when the FPGA has lost its configuration, and is about to have one.
+    // Called when the FPGA has lost its configuration, and starts to load one.
     std::function<void()> onReconfigured;
 
     // The processor is the master: a byte out and one in.
     uint8_t transfer(uint8_t byte) { return flash_ ? flash_->transfer(byte) : 0xFF; }
-    // The FPGA is: whether its chip select is low, how many bytes it has sent since then, and each.
+    // The FPGA is the master: whether its chip select is low, how many bytes it has sent since
+    // then, and each.
     bool isReading() const { return current() != nullptr; }
     uint64_t bytesSent() const;
     uint8_t byteSent(uint64_t index) const;

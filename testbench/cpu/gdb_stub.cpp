@@ -135,7 +135,7 @@ bool GdbStub::receive(std::string& packet) {
             c = nextByte();
         while (c == '+' || c == '-' || c == interrupt);
         if (c != '$')
-            return false; // it has gone, or speaks something else
+            return false; // the peer has gone, or speaks another protocol
         packet.clear();
         unsigned sum = 0;
         while ((c = nextByte()) >= 0 && c != '#') {
@@ -169,7 +169,7 @@ bool GdbStub::wantsStop() {
         pollfd waiting{listener_, POLLIN, 0};
         return poll(&waiting, 1, 0) > 0;
     }
-    char bytes[4096]; // what is no Ctrl-C must not be in the way of one, nor of the end
+    char bytes[4096]; // other bytes must not hide a Ctrl-C or the end
     const ssize_t n = recv(connection_, bytes, sizeof bytes, MSG_DONTWAIT);
     return n > 0 ? std::memchr(bytes, interrupt, static_cast<size_t>(n)) != nullptr
                  : n == 0 || (errno != EAGAIN && errno != EINTR);
@@ -196,7 +196,7 @@ void GdbStub::patient(bool on) {
     setsockopt(connection_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
 }
 
-// False: it was no debugger.
+// False: the peer was no debugger.
 bool GdbStub::talks(const Target& target) {
     std::string packet;
     bool talked = false;
@@ -205,7 +205,7 @@ bool GdbStub::talks(const Target& target) {
         if (receive(packet))
             send(answer(target, packet));
         else if (talked)
-            detached_ = true; // it has gone: the program goes on
+            detached_ = true; // the debugger has gone: the program goes on
         else
             return false;
         talked = true;
@@ -366,7 +366,7 @@ std::string GdbStub::resume(const Target& target, bool singleStep) {
     return why == CortexM3::Stop::Asked ? "T02" : "T05"; // SIGINT, SIGTRAP
 }
 
-// "bs" and "bc": the run backwards.
+// "bs" and "bc": run backwards.
 std::string GdbStub::back(const Target& target, const std::string& packet) {
     if (!target.back || (packet != "bs" && packet != "bc"))
         return "";

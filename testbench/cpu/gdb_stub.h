@@ -14,7 +14,7 @@
 
 class GdbStub {
 public:
-    // The target is what the debugger commands. `run` returns when the processor stops (or the
+    // The target of the debugger's commands. `run` returns when the processor stops (or the
     // simulation ends: then `isOver` is true); `describe` is the answer to `monitor info`.
     struct Target {
         CortexM3& cpu;
@@ -22,10 +22,10 @@ public:
         std::function<void()> reset;
         std::function<bool()> isOver;
         std::function<std::string()> describe;
-        // Goes back, where that can be done: one stop, or to the last breakpoint. Returns where
-        // there is nothing before; else the process that goes on returns from `run`.
+        // Goes back, where that is possible: one stop, or to the last breakpoint. Returns where
+        // there is nothing before; else the continuing process returns from `run`.
         std::function<void(bool singleStep)> back = nullptr;
-        // Tells where a run that can go back has ended: "begin" or "end" of what there is, or "".
+        // Tells where a reversible run has ended: at its "begin" or "end", or "".
         std::function<std::string()> edge = [] { return ""; };
         std::function<void()> changed = [] {}; // the debugger has written registers or memory
     };
@@ -36,11 +36,11 @@ public:
     GdbStub& operator=(const GdbStub&) = delete;
     uint16_t port() const { return port_; }
 
-    // Waits for a debugger, as long as `mayWait`, and obeys it; who does not begin as the protocol
-    // does is sent away. True: the program is to go on; false: the debugger has killed it, the
-    // simulation is over, or none has ever come.
+    // Waits for a debugger, as long as `mayWait`, and obeys it; a peer that does not begin with the
+    // protocol is sent away. True: the program must go on; false: the debugger has killed it, the
+    // simulation is over, or no debugger has come.
     bool serve(const Target& target, const std::function<bool()>& mayWait);
-    // True while the processor runs and is to stop: the debugger has sent Ctrl-C, or has gone, or
+    // True while the processor runs and must stop: the debugger has sent Ctrl-C, or has gone, or
     // another one waits.
     bool wantsStop();
     bool hasServed() const { return served_; }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// instruction: what the CPU model must know of a Thumb-2 instruction: length, cycles, what it
-// stops.
+// instruction: a Thumb-2 instruction for the CPU model: its length, its cycles, whether it stops.
 
 #ifndef INSTRUCTION_H
 #define INSTRUCTION_H

@@ -35,8 +35,8 @@ struct PlainCpu {
         cpu.readMemory(image.symbol(name), bytes.data(), image.size(name));
         return bytes.substr(0, std::strlen(bytes.c_str()));
     }
-    // Runs up to a breakpoint or so many cycles; returns the breakpoint's number, -1 where it came
-    // to none.
+    // Runs up to a breakpoint or for these cycles; returns the breakpoint's number, -1 where none
+    // was reached.
     int run(uint64_t cycleLimit) {
         uint64_t end = cpu.cycles() + cycleLimit;
         bus.limit = [this, end] {

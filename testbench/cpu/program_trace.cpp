@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// program_trace: each exception, and within the waveform each instruction, is looked at.
+// program_trace: looks at each exception, and within the waveform at each instruction.
 
 #include "program_trace.h"
 
 namespace {
 constexpr unsigned pendSv = 14;                 // in which each kernel switches tasks
 constexpr uint64_t tenthOfASecond = 10'000'000; // clocks
-constexpr uint64_t soon = 200'000; // clocks, in which an exception comes: the tick is 100,000
+constexpr uint64_t soon = 200'000; // an exception comes within these clocks: the tick is 100,000
 
-// Returns the address of the pointer to the running task, uC/OS-II's or our kernel's; 0: a program
-// without a kernel.
+// Returns the address of the pointer to the running task, uC/OS-II's or our kernel's; 0: the
+// program has no kernel.
 uint32_t kernelsPointer(const ElfImage& image) {
     for (const char* name : {"OSTCBCur", "os_running"})
         if (image.has(name))
@@ -44,7 +44,7 @@ ProgramTrace::ProgramTrace(Stm32F2& stm32, std::function<uint64_t()> clocks)
     file_ << "$upscope $end\n$enddefinitions $end\n";
 }
 
-// A task that is seen for the first time goes on where it begins.
+// A task that is seen for the first time continues at its first instruction.
 void ProgramTrace::switched() {
     const CortexM3& cpu = stm32_.cpu();
     std::string& name = tasks_[cpu.word(taskAddress_)];

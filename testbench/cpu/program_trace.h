@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// program_trace: what the Cortex-M3's program is at: its task, its interrupt, its function.
+// program_trace: the Cortex-M3 program's task, interrupt and function over time.
 //
 // They are three rows of text in WAVE.program.vcd where the environment asks for a waveform
 // (wave_window.h), in the same unit of time as the RTL's: half a clock. join_waves.sh puts the two
@@ -17,8 +17,8 @@
 
 class ProgramTrace {
 public:
-    // Listens to `stm32`, whose flash has the program that was loaded, for good. `clocks` of the
-    // fabric have passed.
+    // Listens to `stm32`, with the loaded program in its flash, for good. `clocks` of the fabric
+    // have passed.
     ProgramTrace(Stm32F2& stm32, std::function<uint64_t()> clocks);
     ProgramTrace(const ProgramTrace&) = delete;
     ProgramTrace& operator=(const ProgramTrace&) = delete;
@@ -41,7 +41,7 @@ private:
     std::string task_, interrupt_ = "-";
     std::map<std::string, std::string> written_; // by row
     uint64_t time_ = ~0ull;
-    bool isNear_ = false; // the window is, or is about to be
+    bool isNear_ = false; // the window has begun, or begins soon
 };
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// spartan6_boot: packets by UG380, tables 5-23 to 5-30; the CRC's 22 bits as public readers of
-// bitstreams have found them out (prjcombine).
+// spartan6_boot: packets by UG380, tables 5-23 to 5-30; the CRC's 22 bits by public readers of
+// bitstreams (prjcombine).
 
 #include "spartan6_boot.h"
 #include <random>
@@ -94,7 +94,7 @@ Spartan6Boot::End Spartan6Boot::load(const std::vector<uint8_t>& flash, uint32_t
             if (reg != Crc && reg != Lout && reg != Csbo)
                 addCrc(crc, reg, data);
         }
-        if (reg == Fdri) { // its CRC follows unasked
+        if (reg == Fdri) { // its CRC follows without a command
             if (!isOurs)
                 return End::Failed;
             value = uint32_t(word()) << 16;
@@ -119,7 +119,7 @@ Spartan6Boot::End Spartan6Boot::load(const std::vector<uint8_t>& flash, uint32_t
             return isStarted ? End::Done : End::Stuck;
         }
     }
-    return End::Stuck; // it clocks on for ever
+    return End::Stuck; // it never ends
 }
 
 std::vector<uint8_t> standInBitstream(uint32_t seed, uint32_t frameWords, uint32_t idCode) {
@@ -144,7 +144,7 @@ std::vector<uint8_t> standInBitstream(uint32_t seed, uint32_t frameWords, uint32
     write(Cmd, {Rcrc});
     crc = 0;
     write(IdCode, {static_cast<uint16_t>(idCode >> 16), static_cast<uint16_t>(idCode)});
-    for (int i = 0; i < 32; ++i) // about as far as ISE's frames are from the sync word
+    for (int i = 0; i < 32; ++i) // about ISE's distance from the sync word to the frames
         put(0x2000);
     write(Cmd, {Wcfg});
     put(2 << 13 | 2 << 11 | Fdri << 5);

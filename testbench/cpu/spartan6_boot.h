@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // spartan6_boot: how a Spartan-6 configures itself from an SPI flash (UG380 v2.7, chapters 5 and
-// 7): a header at address 0 sends it to the MultiBoot bitstream; where that fails it tries again,
-// three times each, and then takes the golden one. It fails by a wrong CRC or device, or if no sync
-// word comes in time. Anything else that is wrong behind the sync word stops it for good (AMD's
-// answer 58249): such a bitstream must never be in flash.
+// 7). A header at address 0 sends it to the MultiBoot bitstream. It tries that three times, then
+// takes the golden one. A try fails by a wrong CRC or device, or without a sync word in time. Any
+// other fault behind the sync word stops it for good (AMD's answer 58249): such a bitstream must
+// never be in flash.
 
 #ifndef SPARTAN6_BOOT_H
 #define SPARTAN6_BOOT_H
@@ -17,12 +17,12 @@ struct Spartan6Boot {
     static constexpr uint32_t idCode = 0x04002093; // XC6SLX16
     static constexpr uint32_t cclkHz = 2'000'000;  // ConfigRate's default
 
-    // Powers on, or takes PROGRAM_B up.
+    // Starts at power-on, or when PROGRAM_B rises.
     void configure(const std::vector<uint8_t>& flash);
 
     // The address in flash of the bitstream that runs; none: DONE stays low.
     std::optional<uint32_t> running;
-    bool isStuck = false; // and no new try would be made
+    bool isStuck = false; // and makes no further try
     uint64_t clocks = 0;  // of CCLK that it took
     unsigned strikes = 0; // tries that failed
     // The reads of the flash, a try each: the address, and the clocks at which its chip select
@@ -39,7 +39,7 @@ private:
     uint16_t general_[4] = {}; // GENERAL1..4: MultiBoot's address, and the golden one's
 };
 
-// A bitstream that configures the model, in place of one that ISE makes: frames of random words.
+// A bitstream that configures the model, instead of ISE's: frames of random words.
 std::vector<uint8_t> standInBitstream(uint32_t seed, uint32_t frameWords,
                                       uint32_t idCode = Spartan6Boot::idCode);
 

@@ -89,8 +89,8 @@ void SpiFlash::begin(uint32_t at, uint32_t size, uint64_t ns) {
         onOperation();
 }
 
-// Leaves a write with some of its bits cleared. Of an erase, which first clears all bits and then
-// sets them, it leaves rows of 64 bytes as they were, cleared, erased, or in between.
+// Leaves a cut write with some of its bits cleared. A cut erase, which first clears all bits and
+// then sets them, leaves rows of 64 bytes old, cleared, erased, or in between.
 void SpiFlash::powerOff() {
     settle();
     for (uint32_t row = at_; isUnder_ && row < at_ + size_; row += 64) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// spi_flash: a serial NOR flash of 2 MiB as Winbond's W25Q16: instructions byte by byte, as its
-// SPI master clocks them, with the times of erases and writes. Programming only clears bits. What
-// the loss of power cuts leaves bits that a seed decides.
+// spi_flash: a serial NOR flash of 2 MiB like Winbond's W25Q16: instructions byte by byte, as the
+// SPI master clocks them, with the times of erases and writes. Programming only clears bits. An
+// operation cut by a loss of power leaves bits that a seed decides.
 
 #ifndef SPI_FLASH_H
 #define SPI_FLASH_H
@@ -22,11 +22,11 @@ public:
 
     // Chip select; an instruction that changes something begins when it rises.
     void select(bool isLow);
-    // Eight clocks: takes a byte, and returns the one that was driven meanwhile.
+    // Eight clocks: takes a byte, and returns the byte that it drives meanwhile.
     uint8_t transfer(uint8_t in);
-    // The loss of power: it cuts what is under way.
+    // A loss of power cuts the operation under way.
     void powerOff();
-    // How long an erase or a write will still take, in ns.
+    // Returns the remaining time of an erase or a write, in ns.
     uint64_t busyNs() const { return end_ > now_() ? end_ - now_() : 0; }
 
     std::vector<uint8_t> memory;
@@ -42,7 +42,7 @@ private:
     std::mt19937_64 random_;
     std::vector<uint8_t> in_, page_; // the instruction; what is being written, empty: an erase
     bool isSelected_ = false, mayWrite_ = false, isUnder_ = false;
-    uint32_t at_ = 0, size_ = 0; // of what is under way
+    uint32_t at_ = 0, size_ = 0; // of the operation under way
     uint64_t end_ = 0, operations_ = 0;
 };
 

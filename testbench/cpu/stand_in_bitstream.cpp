@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // stand_in_bitstream: writes a bitstream that configures the model of the FPGA, where there is no
-// ISE to make a real one. The design in it is the simulator's, whatever it says.
+// ISE to make a real one. The simulator's design stays the same.
 
 #include "spartan6_boot.h"
 #include <cstdlib>

@@ -163,8 +163,8 @@ void Stm32Flash::changed(uint32_t offset, uint32_t size) const {
         onChange(offset, size);
 }
 
-// Leaves a write with some of its bits cleared. Of an erase, which first clears all bits and then
-// sets them, it leaves rows of 64 bytes as they were, cleared, erased, or in between.
+// Leaves a cut write with some of its bits cleared. A cut erase, which first clears all bits and
+// then sets them, leaves rows of 64 bytes old, cleared, erased, or in between.
 void Stm32Flash::cut() {
     operation_.under = false;
     const auto [end, offset, size, value, under, erases] = operation_;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // stm32_flash: the flash memory of an STM32F2 with 1 MiB, and its interface's registers (ST's
-// PM0059, and the data sheet's table of erase and programming times). One bank: whatever reads it
-// waits until an erase or a write is done. Programming only clears bits. What is cut by a reset or
-// a loss of power leaves bits that a seed decides.
+// PM0059, and the data sheet's table of erase and programming times). It has one bank: every read
+// waits until an erase or a write is done. Programming only clears bits. An operation cut by a
+// reset or a loss of power leaves bits that a seed decides.
 
 #ifndef STM32_FLASH_H
 #define STM32_FLASH_H
@@ -44,9 +44,9 @@ public:
     void write(uint32_t reg, uint32_t value);
     // A store of 1, 2 or 4 bytes to flash.
     void store(uint32_t offset, unsigned size, uint32_t value);
-    // How long the memory cannot be read yet, in ns.
+    // Returns how long the memory cannot be read yet, in ns.
     uint64_t busyNs() const;
-    // A reset of the chip, or the loss of its power: it cuts what is under way.
+    // A reset or a loss of power cuts the operation under way.
     void reset();
 
     uint64_t operations() const { return operations_; } // erases and writes that have begun

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// stm32f2: the bus matrix by address, and what passes with time.
+// stm32f2: the bus matrix by address, and the effects of time.
 
 #include "stm32f2_map.h"
 #include <algorithm>
@@ -83,7 +83,7 @@ void Stm32F2::pass(unsigned cycles) {
     lookAround();
 }
 
-// Looks after the watchdog, and tells who wants to know that time has passed.
+// Serves the watchdog, and calls the listener for passed time.
 void Stm32F2::lookAround() {
     if (watchdog_.on && now_() >= watchdog_.due) {
         watchdog_.fired = true;
@@ -102,7 +102,7 @@ unsigned Stm32F2::sleep(unsigned limit) {
     unsigned passed = 0;
     lineChanged_ = false;
     do {
-        // Most of it at once, where the design is quiet; by HCLK where it is not.
+        // Passes most of it at once, where the design is quiet; by HCLK where it is not.
         const uint64_t now = now_();
         const unsigned hclks =
             now < until ? fsmc_.idleQuiet((carry_ + limit - passed) / each, until - now) : 0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // stm32f2: an STM32F2 as far as the firmware uses one: the Cortex-M3, flash, RAM, FSMC, and clock,
-// pins, EXTI, CRC unit, watchdog, random numbers and backup SRAM by RM0033. What is not here
-// answers with a bus fault, and so does a peripheral whose clock is off, or the FSMC while one of
-// its pins is not switched to it.
+// pins, EXTI, CRC unit, watchdog, random numbers and backup SRAM by RM0033. Other addresses answer
+// with a bus fault, and so does a peripheral whose clock is off, or the FSMC while one of its pins
+// is not switched to it.
 
 #ifndef STM32F2_H
 #define STM32F2_H
@@ -23,8 +23,8 @@
 class Stm32F2 : private CpuBus {
 public:
     struct Config {
-        // Simulated time has fewer HCLK cycles at the FSMC's pins than the processor has of its own
-        // where the fabric's clock is scaled down: so many of the processor's for one at the pins.
+        // Where the fabric's clock is scaled down, simulated time has fewer HCLK cycles at the
+        // FSMC's pins than in the processor: this many of the processor's for one at the pins.
         unsigned coreCyclesPerHclk = 1;
         uint32_t hclkHz = 120'000'000; // of the processor, in simulated time
         uint64_t seed = 1;             // of the random number generator
@@ -41,21 +41,21 @@ public:
     CortexM3::Stop run(bool singleStep = false) { return cpu_.run(singleStep); }
     // Sets the level at a pin of port B, 0..4, which EXTI can listen to.
     void setPinB(unsigned pin, bool high) { setPin(1, pin, high); }
-    // Sets what is called whenever time has passed, at the pace of the pins. It returns the time in
-    // ns at which it wants to be called; until then a processor that sleeps need not call it.
+    // Sets a function that is called whenever time has passed, at the pace of the pins. It returns
+    // the time in ns of its next call; until then a sleeping processor need not call it.
     void onTime(std::function<uint64_t()> called) { onTime_ = std::move(called); }
 
     // The FPGA's flash, on SPI 1 (PA4..7), PROGRAM_B on PC0, DONE on PC1. The flash loses its power
     // with the processor.
     FpgaPins fpga;
 
-    // USART 1, at its rate: what the firmware receives (PA10), whether that line is in a break, and
-    // who is told of what it sends.
+    // USART 1, at its rate: the bytes that the firmware receives (PA10), whether that line is in a
+    // break, and the listener for the bytes that it sends.
     std::deque<uint8_t> serialIn;
     bool isSerialBreak = false;
     std::function<void(uint8_t)> onSerial;
 
-    // The 4 KiB that VBAT keeps, whatever becomes of power and resets.
+    // The 4 KiB that VBAT keeps through power-off and resets.
     std::array<uint32_t, 1024>& backup() { return backup_; }
 
     struct Resets {
@@ -93,7 +93,7 @@ private:
     std::function<uint64_t()> now_;
     Config config_;
     std::function<uint64_t()> onTime_;
-    uint64_t wantedNs_ = 0; // when it wants to be called
+    uint64_t wantedNs_ = 0; // the requested time of the next call
     CortexM3 cpu_;
     Stm32Flash flash_;
     std::optional<ElfImage> image_;
@@ -105,7 +105,7 @@ private:
     uint32_t pins_[2] = {0x410, 0}; // levels at ports A and B
     bool fsmcUsable_ = false, lineChanged_ = false;
     uint64_t fpgaEdgeNs_ = ~0ull; // when PA4 changes next
-    uint64_t spiTaken_ = 0;       // bytes of those that the FPGA has sent
+    uint64_t spiTaken_ = 0;       // number of the FPGA's bytes that were taken
     uint8_t spiIn_ = 0xFF;
     struct {
         bool on = false, unlocked = false, fired = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// stm32f2_peripherals: Stm32F2's peripherals, most of which only store what is written.
+// stm32f2_peripherals: Stm32F2's peripherals, most of which only store written values.
 
 #include "stm32f2_map.h"
 
@@ -54,7 +54,7 @@ uint32_t Stm32F2::readPeripheral(uint32_t address) {
         return stored(address);
     if (isIn(address, flashInterface, 0x18))
         return flash_.read(address - flashInterface);
-    if (address == usart) // what is written is sent at once
+    if (address == usart) // a written byte is sent at once
         return 0xC0 | uint32_t(!serialIn.empty()) << 5;
     if (address == usart + 4) {
         const uint32_t byte = serialIn.empty() ? 0 : serialIn.front();
@@ -202,7 +202,7 @@ void Stm32F2::followFpga() {
     fpgaEdgeNs_ = fpga.nextEdgeNs();
 }
 
-// A master's byte is through as soon as it is written. A slave that is too slow loses bytes.
+// A master's byte is transferred as soon as it is written. A slow slave loses bytes.
 uint32_t Stm32F2::readSpi(uint32_t offset) {
     const bool isMaster = stored(spi) & 4;
     if (offset == 8)

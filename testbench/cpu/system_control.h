@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // system_control: registers of a Cortex-M3's private peripheral bus (0xE0000000): SysTick, NVIC,
-// SCB, MPU as far as regions without access or only for reading go, and DWT's cycle counter.
-// ARMv7-M ARM, chapter B3.
+// SCB, the MPU for regions that are inaccessible or read-only, and DWT's cycle counter. ARMv7-M
+// ARM, chapter B3.
 
 #ifndef SYSTEM_CONTROL_H
 #define SYSTEM_CONTROL_H
@@ -82,7 +82,7 @@ private:
     bool resetRequested_ = false;
     uint32_t mpuControl_ = 0, mpuRegion_ = 0;
     Region region_[regions];
-    unsigned guards_ = 0; // regions that are on and forbid something
+    unsigned guards_ = 0; // enabled regions with restrictions
 };
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// bits: fields of a packed port of a Verilated module, whatever type its width gave it.
+// bits: fields of a Verilated module's packed port, for any of Verilator's types.
 
 #ifndef BITS_H
 #define BITS_H

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// ddr3_timing: when a DDR3 device takes the commands that one BL8 burst needs: banks, rows,
+// ddr3_timing: the times at which a DDR3 device takes the commands of a BL8 burst: banks, rows,
 // turnarounds.
 //
 // All times are in clocks of the memory (tCK). Figures: Micron 1Gb DDR3 SDRAM data sheet
@@ -46,9 +46,8 @@ public:
         return b.open && b.row == row(address);
     }
 
-    // Places one burst, not before `at` and after all those before it. Returns the clock of its
-    // READ or WRITE command. The row is opened, and another closed, as need be; refreshes that are
-    // due go first.
+    // Places one burst, not before `at` and after all earlier ones. Returns the clock of its READ
+    // or WRITE command. Opens the row, closes another, and refreshes first as needed.
     uint64_t access(uint64_t at, bool read, uint32_t address) {
         at = refresh(at);
         Bank& b = banks_[bank(address)];
@@ -79,7 +78,7 @@ public:
         b.open = false;
         b.mayActivate = std::max(b.mayActivate, precharge(b, 0) + part_.tRP);
     }
-    // Refreshes on demand, not before `at`. Returns the clock in which it is over.
+    // Refreshes on demand, not before `at`. Returns the clock of its end.
     uint64_t refreshNow(uint64_t at) {
         uint64_t start = at;
         for (Bank& b : banks_) { // precharge all
@@ -124,7 +123,7 @@ private:
         b.mayPrecharge = 0;
     }
 
-    // Refreshes due until `at`; of a long idle time only the last one can be in the way.
+    // Refreshes due until `at`; after a long idle time only the last one can delay an access.
     uint64_t refresh(uint64_t at) {
         if (at < nextRefresh_)
             return at;

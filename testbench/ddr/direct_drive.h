@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // direct_drive: the memory's own limit: the same requests, given to the memory model by a driver
-// that loses no clock and never runs out of words or room. What remains is the memory and its port.
+// that loses no clock and never lacks words or room. The rest is the memory and its port.
 
 #ifndef DIRECT_DRIVE_H
 #define DIRECT_DRIVE_H
@@ -15,7 +15,7 @@ template <class Request> uint64_t directMcb(size_t bytes, const std::vector<Requ
     McbModel memory(bytes);
     while (!memory.pins.calibDone)
         memory.cycle();
-    size_t pushing = 0, issuing = 0; // requests whose words, whose command go next
+    size_t pushing = 0, issuing = 0; // requests whose words go next, whose command goes next
     unsigned pushed = 0, promised = 0;
     uint64_t words = 0, popped = 0, clocks = 0;
     for (const Request& r : requests)

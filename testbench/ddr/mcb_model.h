@@ -3,8 +3,8 @@
 // mcb_model: a 64-bit user port of the Spartan-6 memory controller block (UG388) with DDR3 behind
 // it.
 //
-// The user port: a command FIFO of 4, data FIFOs of 64 words, flags as the real one's. What the
-// real one answers with an error flag or with lost data also throws McbError, so that a test fails:
+// The user port: a command FIFO of 4, data FIFOs of 64 words, flags like the real one's. Where the
+// real one sets an error flag or loses data, this also throws McbError, so that a test fails:
 //   a command while the FIFO is full (the real one ignores it) or before calibration is done
 //   an address that is not a multiple of 8, or beyond the memory
 //   a write command before its words are in the FIFO (wr_underrun, wr_error)
@@ -12,11 +12,11 @@
 //   a word that comes from the memory while the read FIFO is full (rd_overflow)
 //
 // Behind it, commands are carried out one after another, in bursts of 8 on a device of 16 bits at
-// DDR3-800 (ddr3_timing.h), four memory clocks to one of the design: 100 MHz. As Xilinx AR36413
-// says, a write waits for the end of the data of the read before, and so does an activate; a row is
-// else opened as soon as the burst before has its command. Addresses are ROW_BANK_COLUMN, MIG's
-// default. The way through the FIFOs, both clock crossings and the PHY are two constants (Timing),
-// an estimate: UG388 gives the read latency as a range that depends on the configuration.
+// DDR3-800 (ddr3_timing.h), four memory clocks to one of the design: 100 MHz. By Xilinx AR36413 a
+// write waits for the end of the data of the read before, and so does an activate; otherwise a row
+// is opened as soon as the burst before has its command. Addresses are ROW_BANK_COLUMN, MIG's
+// default. The way through the FIFOs, both clock crossings and the PHY is estimated by two
+// constants (Timing): UG388 gives the read latency as a range that depends on the configuration.
 
 #ifndef MCB_MODEL_H
 #define MCB_MODEL_H
@@ -65,7 +65,7 @@ public:
     McbModel(size_t bytes, Timing timing)
         : memory_(bytes), timing_(timing), device_(mt41j64m16, refreshLater) {}
 
-    // One clock cycle: what the design does at the edge, then what it sees after it.
+    // One clock cycle: the design's inputs at the edge, then its outputs after it.
     void cycle() {
         if (pins.wrEn | pins.cmdEn | pins.rdEn)
             takeInputs();
@@ -74,22 +74,22 @@ public:
             work();
     }
 
-    // Clocks after which something happens by itself, less one; and so many clocks at once, in
-    // which the design does nothing.
+    // Clocks to the next event, minus 1; and a skip of such clocks, in which the design does
+    // nothing.
     uint64_t untilEvent() const {
         return hung_ ? ~0ull : nextEvent_ > now_ + 1 ? nextEvent_ - now_ - 1 : 0;
     }
     void pass(uint64_t clocks) { now_ += clocks; }
 
-    // The memory starts again, as after power-on, and takes so many clocks.
+    // Restarts the memory, as after power-on; the start takes these clocks.
     void restart(unsigned clocks) {
         timing_.calibration = static_cast<unsigned>(now_) + clocks;
         pins.calibDone = false;
         nextEvent_ = 0;
     }
 
-    // Injects a fault: no command begins and no word moves until it is over; what waits is carried
-    // out then.
+    // Injects a fault: no command begins and no word moves until it is over; waiting ones are
+    // carried out then.
     void hang(bool on) { hung_ = on; }
 
     // Back door, for pictures and checks.
@@ -101,7 +101,7 @@ public:
 
 private:
     struct Command {
-        uint64_t at; // when it has come to the memory's side
+        uint64_t at; // arrival at the memory's side
         uint32_t address;
         uint8_t instruction, words;
     };

@@ -31,7 +31,7 @@ public:
         for (uint64_t i = 0; i < cycles; ++i)
             bench.tick();
     }
-    // Lets what is under way end; the memory must then equal the reference.
+    // Lets pending requests end; the memory must then equal the reference.
     void drain() {
         requesters.stop();
         bench.waitFor([this] { return requesters.idle(); }, "the requesters' end", 20000);

@@ -3,9 +3,8 @@
 // npi_requester: requesters on the packed NPI ports of a memory controller, with a reference
 // memory.
 //
-// The reference is brought up to date at each acknowledgement, which is the order in memory
-// (docs/memory.md): every word read and its place are compared with it, at once. A difference
-// throws.
+// Each acknowledgement, which is the order in memory (docs/memory.md), updates the reference. Every
+// read word and its place are compared with it at once. A difference throws.
 
 #ifndef NPI_REQUESTER_H
 #define NPI_REQUESTER_H
@@ -22,7 +21,7 @@
 struct NpiTraffic {
     double ask = 1.0;    // chance, each cycle, of beginning a request when none is waiting
     double push = 1.0;   // ... that the next word of a write is pushed
-    double pop = 1.0;    // ... that a word that came is taken
+    double pop = 1.0;    // ... that a word that has come is taken
     double writes = 0.5; // share of writes
     unsigned minSize = 0, maxSize = 5;
     unsigned outstanding = 32; // words asked for and not yet taken; more only with pop = 1 (rule 3)
@@ -30,7 +29,7 @@ struct NpiTraffic {
     bool anyLineWord = true;   // reads of cache lines begin at any word
     bool sequential = false;   // address after address, else anywhere
     uint32_t base = 0, bytes = 1 << 16; // its part of the memory
-    uint32_t above = 0; // address bits beyond the memory, which nobody looks at: random
+    uint32_t above = 0;                 // ignored address bits beyond the memory: random
 };
 
 template <class Module> class NpiRequesters {
@@ -51,7 +50,7 @@ public:
     NpiTraffic& traffic(unsigned port) { return ports_[port].traffic; }
     const Counters& counters(unsigned port) const { return ports_[port].counters; }
     std::vector<uint8_t>& reference() { return reference_; }
-    void stop() { stopped_ = true; } // no new requests; what is under way ends
+    void stop() { stopped_ = true; } // no new requests; pending ones end
     void go() { stopped_ = false; }
     bool idle() const {
         for (const Port& port : ports_)
@@ -60,7 +59,7 @@ public:
         return true;
     }
 
-    // Accepted requests, in their order, if somebody wants them.
+    // Records accepted requests, in their order, where requested.
     struct Accepted {
         uint32_t address;
         unsigned words;
@@ -109,7 +108,8 @@ public:
         }
     }
 
-    // Pops depend on what the port shows in the same cycle: called when the outputs have settled.
+    // Called when the outputs have settled, since pops depend on the port's state in the same
+    // cycle.
     void pops() {
         for (Port& port : ports_) {
             port.popping =

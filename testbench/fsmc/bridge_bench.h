@@ -24,15 +24,15 @@ public:
 
     Bench<Bridge> bench;
     Bridge& top = bench.top();
-    FsmcPins pins;         // as the processor has them
-    FsmcPins* far = &pins; // as the design has them: others with delays
+    FsmcPins pins;         // at the processor
+    FsmcPins* far = &pins; // at the design: other ones, if there are delays
     NpiMemory<Bridge> memory;
     BusSlave<Bridge> slave;
     FsmcMaster master;
     unsigned errors = 0, errorAddr = 0;
     uint32_t lateMask = 0; // bits that a late access sets in slave.clearWord
     bool errorWrite = false;
-    std::function<void()> onTick; // who only looks
+    std::function<void()> onTick; // for observers
 
     void tick() {
         showPins();
@@ -50,7 +50,7 @@ public:
         if (onTick)
             onTick();
     }
-    // Pins take their time from now on.
+    // Gives pins delays from now on.
     void delay(const FsmcCorner& corner, uint64_t seed, bool looksTwice) {
         delayed_ = pins;
         far = &delayed_;

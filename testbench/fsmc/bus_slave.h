@@ -55,7 +55,7 @@ private:
     void drive() {
         bool ready = !hung && !random_.chance(stall_);
         top_.bus_ready_i = ready;
-        // These mean something only with ready high; else they are noise.
+        // Valid only with ready high; else noise.
         top_.bus_rdata_i = random_.next();
         top_.bus_error_i = random_.chance(0.5);
     }

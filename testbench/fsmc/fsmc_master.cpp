@@ -61,7 +61,7 @@ unsigned FsmcMaster::idleQuiet(unsigned hclk, uint64_t ns) {
         design_.passQuiet((phase_ + uint64_t(hclk) * clkPerUnit_) / hclkPerUnit_, ns);
     if (clocks == 0)
         return 0;
-    // Up to the last of these clocks, as in steps.
+    // Up to the last of these clocks, as single steps would.
     const uint64_t cycles = (clocks * hclkPerUnit_ - phase_ + clkPerUnit_ - 1) / clkPerUnit_;
     phase_ += static_cast<unsigned>(cycles * clkPerUnit_ - clocks * hclkPerUnit_);
     hclks_ += cycles;
@@ -113,7 +113,7 @@ FsmcMaster::Access FsmcMaster::decode(uint32_t address, bool write) {
     return access;
 }
 
-// RM0033, BUSTURN: which pairs of accesses have a pause between them, and how long.
+// RM0033, BUSTURN: the pauses between pairs of accesses.
 void FsmcMaster::turnaround(const Access& access) {
     bool held = access.muxed || access.mode == 'D';
     unsigned pause = 1; // after a read
@@ -168,14 +168,14 @@ void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lane
     }
     strobe = false;
     show();
-    // The pins' delays leave no time for a NWAIT that does not follow the strobe itself.
+    // The pins' delays leave no time for a NWAIT that does not follow the strobe.
     if (free && isWaiting(access) && !delays_)
         throw FsmcError(access.name + ": NWAIT went active after the strobe");
 }
 
-// The data phase up to two HCLK cycles before its end, or to its end less what is left of it. NWAIT
-// is looked at four HCLK before the end, and ends it four HCLK after it has gone high. Returns the
-// HCLK cycles that are left.
+// Plays the data phase up to two HCLK cycles before its end, or less. NWAIT is looked at four HCLK
+// before the end, and ends the phase four HCLK after it has gone high. Returns the remaining HCLK
+// cycles.
 unsigned FsmcMaster::waitPhase(const Access& access) {
     if (!(access.bank->bcr & bcrAsyncWait)) {
         unsigned left = access.timing.datast < 2 ? access.timing.datast : 2;
@@ -223,7 +223,7 @@ uint16_t FsmcMaster::readPins(uint32_t address) {
     if (ours && (delays_ ? !delays_->dataIsSetUp() : pins_.dFromDesign != value)) {
         if (access.bank->bcr & bcrAsyncWait)
             throw FsmcError(access.name + ": the data moved in its set-up time");
-        value = static_cast<uint16_t>(~pins_.dFromDesign); // nobody knows what the processor gets
+        value = static_cast<uint16_t>(~pins_.dFromDesign); // the processor gets an undefined value
     }
     endOfAccess(access);
     pins_.noeN = true;

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-// The pins between processor and FPGA. The design's side is filled in by whoever clocks it.
+// The pins between processor and FPGA. The bench sets the design's side.
 struct FsmcPins {
     uint32_t a = 0; // halfword address, 25 bits; multiplexed: only bits 24..16 are meant
     uint16_t d = 0; // driven by the processor while dOut
@@ -43,10 +43,10 @@ public:
 
 class FsmcMaster {
 public:
-    // The master's port to the design: `tick` clocks it once with the pins as they are, `settle`
-    // shows it changed pins between two clock edges. Both update the design's side. `passQuiet`
-    // passes up to so many clocks, and up to so many ns, in which nothing of the design moves, and
-    // returns how many; a design without it is never quiet.
+    // The master's port to the design: `tick` clocks it once with the present pins, `settle` shows
+    // it changed pins between two clock edges. Both update the design's side. `passQuiet` passes up
+    // to the given clocks and ns in which nothing of the design moves, and returns the number of
+    // clocks; a design without it is never quiet.
     struct Design {
         std::function<void()> tick, settle;
         std::function<uint64_t(uint64_t clocks, uint64_t ns)> passQuiet = nullptr;
@@ -54,14 +54,13 @@ public:
     FsmcMaster(FsmcPins& pins, Design design, unsigned hclkPerUnit = 6, unsigned clkPerUnit = 5);
     ~FsmcMaster();
 
-    // Gives pins delays from now on (pin_delays.h): `far` are the pins as
-    // the design has them, `pins` stay the processor's. `looksTwice` chooses between two readings
-    // of RM0033's rule when NWAIT is looked at: once, four HCLK before the end of the data phase,
-    // or again after it.
+    // Gives pins delays from now on (pin_delays.h): `far` are the pins at the design, `pins` stay
+    // the processor's. `looksTwice` chooses between two readings of RM0033's rule about NWAIT: it
+    // is looked at once, four HCLK before the end of the data phase, or again after it.
     void delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, bool looksTwice);
 
-    // Whether BUSTURN also applies between two writes to a bank: RM0033 promises that it does not,
-    // on an STM32F407 it does between the halves of a word (community.st.com, thread 309858), of
+    // Whether BUSTURN also applies between two writes to a bank. RM0033 promises that it does not.
+    // On an STM32F407 it does between the halves of a word (community.st.com, thread 309858), from
     // BWTR where that is in use.
     void pauseWrites(bool pauses) { pausesWrites_ = pauses; }
 
@@ -73,17 +72,17 @@ public:
     uint32_t read32(uint32_t address);
     void write32(uint32_t address, uint32_t value);
 
-    // Called after each 32-bit access to a window, for those who only look.
+    // Called after each 32-bit access to a window, for observers.
     std::function<void(uint32_t address, uint32_t value, bool isWrite)> onWord;
 
     // Begin an access that the processor gives up (its reset): NE and strobe rise together, NE
-    // first, after so many HCLK cycles of the data phase, whatever NWAIT says. Asynchronous modes.
+    // first, after these HCLK cycles of the data phase, whatever NWAIT is. Asynchronous modes.
     void abortRead(uint32_t address, unsigned hclk);
     void abortWrite(uint32_t address, uint16_t value, unsigned hclk);
-    // HCLK cycles in which the processor does something else.
+    // Passes HCLK cycles without an access.
     void idle(unsigned hclk) { passHclk(hclk); }
-    // Passes up to so many HCLK cycles, and not many more than so many ns, as far as the design is
-    // quiet. Returns how many have passed.
+    // Passes HCLK cycles, and about these ns at most, as far as the design is quiet. Returns the
+    // number of passed cycles.
     unsigned idleQuiet(unsigned hclk, uint64_t ns);
 
     uint64_t accesses() const { return accesses_; }
@@ -121,12 +120,12 @@ private:
 
     FsmcPins& pins_;
     Design design_;
-    unsigned hclkPerUnit_, clkPerUnit_; // in one unit of time so many cycles of each
+    unsigned hclkPerUnit_, clkPerUnit_; // cycles of each in one unit of time
     unsigned phase_ = 0;
     std::unique_ptr<PinDelays> delays_;
     bool looksTwice_ = false, pausesWrites_ = true;
     Bank banks_[4] = {{0x000030DB}, {0x000030D2}, {0x000030D2}, {0x000030D2}};
-    // The access before, for the turnaround.
+    // The previous access, for the turnaround.
     bool lastWrite_ = false, lastHeld_ = false;
     unsigned lastIndex_ = 0, lastBusturn_ = 0;
     uint64_t accesses_ = 0, hclks_ = 0;

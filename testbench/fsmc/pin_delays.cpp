@@ -11,11 +11,10 @@ constexpr unsigned nwaitOut = 17, drivenOut = 16;
 
 } // namespace
 
-// Sources: the tables of the two data sheets (STM32F2, "FSMC characteristics"; Spartan-6, DS162,
-// IOB and CLB switching) could not be had. The values of the pads are from memory, rounded to the
-// safe side, and not compared with them. Routing in the chip is what synth/ise/chip.ucf allows it;
-// boards are 2 cm to 8 cm. Address to read data and NE to NWAIT are 10 ns through the chip at most,
-// and 15 ns with the rest.
+// The tables of the two data sheets (STM32F2, "FSMC characteristics"; Spartan-6, DS162, IOB and CLB
+// switching) could not be had. The pads' values are from memory, rounded to the safe side. Routing
+// in the chip is what synth/ise/chip.ucf allows; boards are 2 cm to 8 cm. Address to read data and
+// NE to NWAIT are at most 10 ns through the chip, and 15 ns with the rest.
 const FsmcCorner fsmcCorners[] = {
     {"no delay", 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0},
     {"fast", 0, 0, 0, 0, 500, 100, 1000, 1500, 2500, 1000, 500},
@@ -110,7 +109,7 @@ void PinDelays::arrive(unsigned pin, bool level) {
     settled();
 }
 
-// Sends on what has changed at the design's pins.
+// Sends on changes at the design's pins.
 void PinDelays::settled() {
     uint32_t out =
         far_.dFromDesign | uint32_t(far_.dDriven) << drivenOut | uint32_t(far_.nwaitN) << nwaitOut;

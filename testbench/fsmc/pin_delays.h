@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// pin_delays: the wires between the FSMC and the design: each change of a pin takes its time, each
-// pin and each change its own, and a flip-flop whose data moves in its set-up or hold time throws.
+// pin_delays: the wires between the FSMC and the design: each change of each pin has its own delay,
+// and a flip-flop whose data moves in its set-up or hold time throws.
 
 #ifndef PIN_DELAYS_H
 #define PIN_DELAYS_H
@@ -20,8 +20,8 @@ struct PinDelay {
 };
 
 // A corner of delays: the STM32F2's pads (from HCLK's edge to the pin), the board, and Spartan-6's
-// pads and routing up to the first flip-flop or LUT, and from the last one. The chip's share is
-// what synth/ise/chip.ucf demands of it.
+// pads and routing up to the first flip-flop or LUT, and from the last one. The chip's share is the
+// limit in synth/ise/chip.ucf.
 struct FsmcCorner {
     const char* name;
     PinDelay address, data, lanes, select, strobe; // processor
@@ -41,11 +41,11 @@ public:
     PinDelays(FsmcPins& near, FsmcPins& far, FsmcMaster::Design design, const FsmcCorner& corner,
               uint64_t seed, int hclk, int clk);
 
-    // Sends on what has changed at the processor's pins.
+    // Sends on changes at the processor's pins.
     void show();
-    // Lets time pass; runs the design's clock while it does.
+    // Lets time pass; clocks the design meanwhile.
     void pass(unsigned hclks);
-    // True if the data at the processor's pins has rested for its set-up time.
+    // True if the data at the processor's pins has been stable for its set-up time.
     bool dataIsSetUp() const { return now_ - dataMoved_ >= corner_.readSetup + hclk_; }
 
 private:
@@ -69,7 +69,7 @@ private:
     int64_t now_ = 0, nextEdge_, captured_ = -1000000, inputMoved_ = 0, dataMoved_ = 0;
     int hclk_, clk_;
     uint64_t sent_, arrived_;
-    uint32_t shown_ = 1u << 17; // the design's outputs as they are: data, its driver, NWAIT
+    uint32_t shown_ = 1u << 17; // the design's present outputs: data, its driver, NWAIT
     int64_t last_[64] = {}, lastOut_[18] = {};
     std::multimap<int64_t, Change> changes_;
 };

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""live: serves the page that shows a mission as it runs, on the loopback interface and nothing else anywhere.
+"""live: serves the page that shows a mission as it runs, on the loopback interface only.
 
-One thread serves all, a request a connection. A client that is slow, silent or endless costs a place and a head of
-memory, for PATIENCE seconds at most, and none of the others waits for it.
+One thread serves all, a request a connection. A slow, silent or endless client costs a place and a head of memory, for
+PATIENCE seconds at most, and no other waits for it.
 """
 
 import argparse
@@ -19,7 +19,7 @@ from http import HTTPStatus
 
 PATIENCE = 10        # seconds for a request and its answer
 LONGEST_HEAD = 8192  # bytes of a request
-MOST_CLIENTS = 128   # at once: the one that has been here for longest makes room
+MOST_CLIENTS = 128   # at once: a new one displaces the oldest
 NEWEST = 128 << 10   # bytes of events.jsonl that are shown, so that a page of a long flight stays as it is
 HERE = os.path.dirname(os.path.abspath(__file__))
 FILES = {  # path: MIME type, file
@@ -36,7 +36,7 @@ WRITTEN = 2
 
 
 def contents(path):
-    """What is in a file; nothing if it cannot be read."""
+    """Returns a file's content; empty if it cannot be read."""
     try:
         with open(path, "rb") as file:
             return file.read()
@@ -45,7 +45,7 @@ def contents(path):
 
 
 def rows(lines):
-    """The JSON objects among lines; the last one may be half written."""
+    """Returns the JSON objects among lines; the last one may be half written."""
     for line in lines:
         try:
             row = json.loads(line)
@@ -56,13 +56,13 @@ def rows(lines):
 
 
 def newest(path):
-    """The lines of a file's last bytes."""
+    """Returns the lines of a file's last bytes."""
     try:
         with open(path, "rb") as file:
             size = file.seek(0, os.SEEK_END)
             file.seek(max(0, size - NEWEST))
             if size > NEWEST:
-                file.readline()  # the end of one
+                file.readline()  # the end of one line
             return file.readlines()
     except OSError:
         return []
@@ -85,7 +85,8 @@ def blocks_by_slot(registers):
 
 
 def register(block, word, value, seen):
-    """A word with its name and its fields; of EVENT and MASK, the fields are the block's events."""
+    """Returns a word with its name and its fields; the fields of EVENT and MASK are the block's
+    events."""
     described = next((r for r in block.get("registers", []) if r["word"] == word), {})
     fields = [{"name": f["name"], "value": value >> f["lsb"] & (1 << f["width"]) - 1, "doc": f.get("doc", "")}
               for f in described.get("fields", [])]
@@ -97,7 +98,7 @@ def register(block, word, value, seen):
 
 
 def state(folder, slots):
-    """What the page shows, from the files that simulator and ground station leave; what is not there yet is missing or empty."""
+    """Returns the page's data, from the files of simulator and ground station; missing files leave it empty."""
     shown = {"calls": [], "features": [], "slots": []}
     status = contents(folder + "/status")
     if len(status) >= STATUS.size and status.startswith(b"ICESOC1\0"):
@@ -116,7 +117,7 @@ def state(folder, slots):
     shown["events"] = list(rows(newest(folder + "/events.jsonl")))
     changed = {name: os.stat(path).st_mtime_ns for name in ("before.png", "report.json") if os.path.exists(path := f"{folder}/{name}")}
     shown["frame"] = "before.png" in changed
-    # A report that is older than the picture is of the mission before.
+    # A report older than the picture is of the previous mission.
     shown["over"] = len(changed) == 2 and changed["report.json"] >= changed["before.png"]
     return shown
 
@@ -130,8 +131,8 @@ class Page:
         self.hosts = ()
 
     def answer(self, head):
-        """(status, MIME type, content) for a request. Who names this address otherwise than we do is refused: a page of
-        another host may have it by another name."""
+        """Returns (status, MIME type, content) for a request. A request with another host name is refused: another
+        host's page may use one for this address."""
         first, _, rest = head.partition(b"\r\n")
         words = first.decode("latin-1").split()
         try:
@@ -170,7 +171,7 @@ class Page:
         try:
             await asyncio.wait_for(self.exchange(reader, writer), PATIENCE)
         except (asyncio.TimeoutError, asyncio.IncompleteReadError, OSError):
-            pass  # it is gone, or not worth waiting for
+            pass  # the client has gone, or is not worth waiting for
         finally:
             writer.transport.abort()
             if writer in self.clients:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// app: which firmware the simulator runs on the host; each program that links sim_main answers.
+// app: the firmware that the simulator runs on the host; each program that links sim_main defines
+// it.
 
 #ifndef APP_H
 #define APP_H

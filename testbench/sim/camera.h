@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// camera: a grey-scale frame from a picture file (PNG, JPEG, PGM and what else stb_image reads).
+// camera: reads a grey-scale frame from a picture file (PNG, JPEG, PGM and others of stb_image).
 
 #ifndef CAMERA_H
 #define CAMERA_H
@@ -14,9 +14,8 @@ struct Frame {
     std::vector<uint8_t> pixels;
 };
 
-// Returns the middle of the picture, made smaller by a whole factor where it is at least twice the
-// wanted size. The width becomes a multiple of 8. Throws std::runtime_error that says what is
-// wrong.
+// Returns the middle of the picture, reduced by a whole factor where it is at least twice the
+// wanted size. The width becomes a multiple of 8. Throws std::runtime_error with the reason.
 Frame loadFrame(const std::string& path, int width, int height);
 void savePng(const std::string& path, const Frame& frame);
 

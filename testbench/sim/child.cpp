@@ -44,7 +44,7 @@ void Child::start(const std::vector<std::string>& command,
     if (pid_ > 0)
         return;
     prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (getppid() != parent) // it has ended in between
+    if (getppid() != parent) // the parent has ended in between
         _exit(143);
     execvp(argv[0], argv.data());
     std::fprintf(stderr, "icesoc-sim: cannot start '%s': %s\n", argv[0], std::strerror(errno));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// child: the program on the ground that the simulator starts: it ends with the simulator, however
-// that ends.
+// child: the ground's program that the simulator starts; it ends with the simulator, however that
+// ends.
 
 #ifndef CHILD_H
 #define CHILD_H
@@ -21,15 +21,15 @@ public:
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
 
-    // Throws std::system_error if there is no process to be had; a program that cannot be started
-    // is one that ends with status 127.
+    // Throws std::system_error if there is no process available. A program that cannot be started
+    // ends with status 127.
     void start(const std::vector<std::string>& command,
                const std::map<std::string, std::string>& places);
-    // True while it runs. If a signal ends it, stderr says so.
+    // True while it runs. stderr names a signal that ends it.
     bool runs();
-    // Asks it to end, and waits for a second at most until it has.
+    // Asks it to end, and waits for at most a second until it has.
     void stop();
-    int status() const { return status_; } // as a shell has it
+    int status() const { return status_; } // as in a shell
 
 private:
     std::string name_;

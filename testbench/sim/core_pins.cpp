@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// core_pins: a script's lines into changes of pins, in the order of their times.
+// core_pins: turns a script's lines into changes of pins, in the order of their times.
 
 #include "core_pins.h"
 #include "soc_pins.h"
@@ -25,8 +25,8 @@ uint32_t maskOf(const CorePin& pin) {
     return static_cast<uint32_t>((uint64_t(1) << pin.width) - 1) << pin.lsb;
 }
 
-// The file ends behind what this process has written: a copy of it that a debugger has sent back
-// writes over what came later.
+// The file ends behind this process's last line: a copy that a debugger has sent back overwrites
+// later lines.
 class PinLog {
 public:
     explicit PinLog(const std::string& file)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// events: what happens in a flight, with its times, as JSON Lines: the mission's page draws it, and
-// other tools may. One object a line:
+// events: the events of a flight, with their times, as JSON Lines, for the mission's page and other
+// tools. One object a line:
 //   {"ns": t, "packet": bytes, "from": "ground" or "uav", "lost": bool}   one left the air
 //   {"ns": t, "slot": n, "events": bits}   the processor has read these events of slot n, not 0
 //   {"ns": t, "task": name}    this task of the firmware goes on (Cortex-M3 only)
@@ -40,7 +40,7 @@ public:
             put({{"ns", ns}, {"slot", word / 16}, {"events", value}});
     }
 
-    // Writes the accesses that are counted.
+    // Writes the counted accesses.
     void flush() {
         nlohmann::json counts;
         for (size_t slot = 0; slot < accesses_.size(); ++slot)

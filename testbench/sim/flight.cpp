@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// flight: the models are made and connected, the ground's program is started, the processor runs.
+// flight: makes and connects the models, starts the ground's program, runs the processor.
 
 #include "flight.h"
 #include "app.h"
@@ -40,7 +40,7 @@ Frame pictureFor(const Flight::Options& o) {
     return loadFrame(o.image, width, height);
 }
 
-// The counters' place, in a folder that has the picture.
+// The counters' file, in a folder that has the picture.
 std::string prepared(const Flight::Options& o, const Frame& frame) {
     std::filesystem::create_directories(o.out);
     savePng(o.out + "/before.png", frame);
@@ -62,7 +62,7 @@ void loadCamera(SocModel& soc, const Frame& frame) {
     std::memcpy(memory + UAV_FRAME, frame.pixels.data(), frame.pixels.size());
 }
 
-// The key that the vehicle has: where a next one is on its way, the one before it.
+// Returns the vehicle's key; with a next key on its way, the old one.
 std::vector<uint8_t> keyOf(const Flight::Options& o) {
     constexpr int address = 1;
     if (o.keyFile.empty())
@@ -71,7 +71,7 @@ std::vector<uint8_t> keyOf(const Flight::Options& o) {
     return {key.begin(), key.end()};
 }
 
-// The first line of the recording; nothing in a replay.
+// The first line of the recording; empty in a replay.
 std::unique_ptr<RecordedLine> record(const Flight::Options& o, SerialLine& line) {
     if (o.replayed)
         return nullptr;
@@ -90,7 +90,7 @@ std::vector<uint8_t> keyBytes(const std::string& digits) {
     return key;
 }
 
-// Returns a file's bytes, for a flash; none if there is no file.
+// Returns a file's bytes, for a flash; none where there is no file.
 std::vector<uint8_t> flashOf(const std::string& file, size_t size, const std::string& whose) {
     const std::string bytes = file.empty() ? "" : readFile(file);
     if (!file.empty() && bytes.size() != size)
@@ -99,7 +99,7 @@ std::vector<uint8_t> flashOf(const std::string& file, size_t size, const std::st
     return {bytes.begin(), bytes.end()};
 }
 
-// Says what the processor did, and what stopped it, if anything did.
+// Prints what the processor did, and what stopped it, if anything did.
 void reportProcessor(M3Machine& machine) {
     CortexM3& cpu = machine.cpu();
     const Stm32F2::Resets& resets = machine.stm32().resets();
@@ -194,7 +194,7 @@ double Flight::millionsPerSecond() const {
            static_cast<double>(pace_.workedNs() - step_.waitedNs());
 }
 
-// Says once if the chip is hardly ever quiet, by whose fault, and how fast the flight is.
+// Reports once if the chip is hardly ever quiet: the core that causes it, and the flight's speed.
 void Flight::adviseOnClock() {
     constexpr uint64_t enough = 2'000'000, slow = 2'000'000;
     if (o_.quiet || o_.everyClock || advised_ || soc_.evaluated() < enough ||
@@ -208,15 +208,15 @@ void Flight::adviseOnClock() {
     std::fflush(stdout);
 }
 
-// Writes down how far the flight has come, or holds it against what was written.
+// Records the flight's progress, or compares it with the recording.
 void Flight::mark(const char* what, const nlohmann::json& value) {
     if (recorded_)
         recorded_->note(soc_.now(), what, value);
-    else if (o_.gdb < 0) // who debugs may change what he looks at
+    else if (o_.gdb < 0) // a debugger may change what it looks at
         o_.replayed->compare(soc_.now(), what, value);
 }
 
-// Keeps the recording, and evaluates each clock of the span that is looked at.
+// Keeps the recording, and evaluates each clock of the waveform's span.
 void Flight::watch() {
     if (soc_.now() >= nextDigest_) {
         nextDigest_ += digestNs;
@@ -229,7 +229,7 @@ void Flight::watch() {
     looks_ = looks;
 }
 
-// Looks after the flight, about once a simulated millisecond.
+// Does the flight's periodic work, about once a simulated millisecond.
 bool Flight::poll() {
     adviseOnClock();
     watch();
@@ -274,7 +274,7 @@ void Flight::runOnCortexM3() {
         machine.run();
     }
     if (!o_.flash.empty()) {
-        machine.stm32().flash().reset(); // the power goes
+        machine.stm32().flash().reset(); // cuts the power
         std::ofstream(o_.flash, std::ios::binary)
             .write(reinterpret_cast<const char*>(machine.cpu().flash()), Stm32Flash::bytes);
     }

@@ -34,22 +34,22 @@ public:
         bool everyClock = false, quiet = false, sensor = false;
         std::vector<std::string> command;
         std::vector<std::string> words; // of the command line, which the recording keeps
-        // What is flown again, if anything is; and the span of a waveform in s, each of whose
-        // clocks is evaluated.
+        // The flight to be replayed, if any; and the span of a waveform in s, each of whose clocks
+        // is evaluated.
         std::shared_ptr<ReplayedLine> replayed;
         double from = 0, to = 0;
     };
 
-    // Makes the folder and what the ground finds in it: the counters, before.png; and the
-    // recording, unless one is replayed. Throws std::runtime_error, before it changes anything,
-    // where the options or the picture are wrong.
+    // Makes the folder and the ground's files in it: the counters, before.png; and the recording,
+    // unless one is replayed. Throws std::runtime_error, before it changes anything, where the
+    // options or the picture are wrong.
     explicit Flight(const Options& options);
     Flight(const Flight&) = delete;
     Flight& operator=(const Flight&) = delete;
 
     // Flies until the program has ended, the time is over, or `stopSignal` is set. Returns the
-    // program's exit status, or that of a shell which the signal ends. A replay throws
-    // std::runtime_error where it departs from the recording.
+    // program's exit status, or a shell's for the signal. A replay throws std::runtime_error where
+    // it departs from the recording.
     int run();
 
     static volatile sig_atomic_t stopSignal;

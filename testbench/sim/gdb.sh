@@ -13,5 +13,5 @@ trap 'kill $pid 2>/dev/null || true; rm -f "$log"' EXIT
 trap 'exit 143' TERM HUP
 port=$("$(dirname "$0")/gdb_port.sh" "$log" $pid)
 cat "$log"
-trap '' INT # Ctrl-C is GDB's: it stops the processor
+trap '' INT # Ctrl-C goes to GDB, which stops the processor
 gdb-multiarch -q "$build/firmware/uav.elf" -ex 'set remotetimeout unlimited' -ex "target remote localhost:$port"

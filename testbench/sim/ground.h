@@ -20,7 +20,7 @@ extern "C" {
 class Ground {
 public:
     static constexpr uint16_t guardMs =
-        20; // of the tests' modems: the default, a second, is idle time
+        20; // of the tests' modems; the default, a second, would be idle time
     static XBee::Options uavModem() {
         XBee::Options options;
         options.name = "uav";
@@ -34,7 +34,7 @@ public:
         modem_ = std::make_unique<XBee>(line_, air, options);
         start();
     }
-    // Begins as a fresh program on the ground: what was before is forgotten.
+    // Begins as a fresh program on the ground, without earlier state.
     void start() {
         static const Link_Port port = {transmit, random, message, nothing, state, outcome, nullptr};
         Link_init(link_.get(), &port, this, 1440);
@@ -63,7 +63,7 @@ public:
     }
     bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
     void open() { Link_openChannel(link_.get(), 0); }
-    // Makes a two-way call of an object; `parameters` as encoded. Mode 0 is normal, 2 idempotent.
+    // Makes a two-way call of an object; `parameters` are encoded. Mode 0 is normal, 2 idempotent.
     void call(int id, const std::string& object, const std::string& operation, int mode = 0,
               const std::vector<uint8_t>& parameters = {}) {
         std::vector<uint8_t> m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, 0, 0, 0, 0};
@@ -93,8 +93,8 @@ public:
             backlog_ += size;
     }
     void ping(int id, const std::string& object) { call(id, object, "ice_ping", 2); }
-    // Returns a script, to be called again and again: it connects, pings each time the ping before
-    // is answered, and returns true once `count` are.
+    // Returns a script, to be called again and again. It connects, pings each time the last ping is
+    // answered, and returns true once `count` are.
     std::function<bool()> pinging(int count, const std::string& object = "hwengine1") {
         return [this, count, object, sent = 0, opened = false]() mutable {
             if (!opened && isUp()) {
@@ -110,13 +110,13 @@ public:
 
     std::map<int, int> replies;                   // request id to reply status
     std::map<int, std::vector<uint8_t>> messages; // request id to the whole reply
-    int delivered = 0, unknown = 0;               // what became of messages
+    int delivered = 0, unknown = 0;               // outcomes of messages
     uint64_t deliveredBytes = 0;                  // of messages that were acknowledged
     size_t backlog() const { return backlog_; }   // bytes of messages that are not yet delivered
     std::vector<uint8_t> key; // of the link, from the next start on; none: in the clear
     const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
     bool validated = false, running = true;
-    unsigned hurry = 1; // the link's clock runs so many times as fast (UavMachine::hurry)
+    unsigned hurry = 1; // the link's clock runs this many times as fast (UavMachine::hurry)
 
 private:
     U32 us() const { return static_cast<U32>(clock_ / 1000); }

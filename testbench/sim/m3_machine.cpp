@@ -122,7 +122,7 @@ void M3Machine::debug(GdbStub& stub, bool canGoBack) {
     stub_ = nullptr;
 }
 
-// Runs as the debugger says, and leaves copies behind: each 50 ms, later each sixteenth of the
+// Runs as the debugger commands, and leaves copies behind: each 50 ms, later each sixteenth of the
 // time.
 CortexM3::Stop M3Machine::resume(bool singleStep) {
     constexpr uint64_t copyNs = 50'000'000;
@@ -141,7 +141,7 @@ CortexM3::Stop M3Machine::resume(bool singleStep) {
 }
 
 // Goes back to the last place before this one where the processor can stop, or to the last
-// breakpoint: a copy looks for it, and a second one goes there. Returns if there is nothing before.
+// breakpoint: one copy finds it, and a second one goes there. Returns if there is none.
 void M3Machine::goBack(bool singleStep) {
     const uint64_t here = cpu().instructions();
     if (checkpoints_->isFirst(here))
@@ -161,7 +161,7 @@ bool M3Machine::runTo(uint64_t instructions) {
     return why != CortexM3::Stop::Breakpoint;
 }
 
-// Does what this copy, which stands at `from`, was woken for.
+// Executes the order of this copy, which stands at `from`.
 CortexM3::Stop M3Machine::follow(const Checkpoints::Order& order, uint64_t from) {
     using Order = Checkpoints::Order;
     cpu().breakpoints.clear();

@@ -17,15 +17,15 @@ class M3Machine {
 public:
     struct Config {
         std::string firmware; // ELF file
-        // HCLK in simulated time. 120 MHz: what the processor does takes as long as on the board,
+        // HCLK in simulated time. 120 MHz: the processor's work takes as long as on the board,
         // though the fabric is slower. 0: in the board's ratio to the fabric's clock, 6 to 5, as
         // FSMC accesses always are; then cycles are as on the board, and the processor is slower by
         // the fabric's scale.
         uint32_t hclkHz = 120'000'000;
-        // Written to uav_guardMs (uav.h) after each start, as a debugger would, in ms; 0, or a
-        // program that has no such variable: it is left alone.
+        // Written to uav_guardMs (uav.h) after each start, as a debugger would, in ms; 0: not
+        // written. A program without the variable is left alone.
         uint16_t guardMs = 0;
-        // The whole of flash, in place of the program's; the program is for its symbols then.
+        // The whole of flash, instead of the program, which then gives only its symbols.
         std::vector<uint8_t> flash = {};
         // The link's key, as from the factory, 16 bytes; none: the vehicle is open.
         std::vector<uint8_t> key = {};
@@ -41,15 +41,15 @@ public:
     // through.
     void run();
 
-    // Runs as a debugger commands. It begins when one connects, goes on freely when it detaches,
-    // and obeys the next one. `canGoBack`: nothing outside of this process takes part, so that the
-    // debugger may run it backwards; and at the end it still can.
+    // Runs as a debugger commands. It begins when one connects, runs freely when it detaches, and
+    // obeys the next one. `canGoBack`: nothing outside of this process takes part, so the debugger
+    // may run it backwards, also from its end.
     void debug(GdbStub& stub, bool canGoBack);
 
     Stm32F2& stm32() { return stm32_; }
     const std::vector<uint8_t>& fpgaFlash() const { return fpgaFlash_.memory; }
     CortexM3& cpu() { return stm32_.cpu(); }
-    // What the program is at; none where flash was given, for that program is not known.
+    // The program's state; none where flash was given, since that program is unknown.
     std::optional<ProgramTrace> program;
 
 private:

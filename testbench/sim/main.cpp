@@ -81,7 +81,7 @@ CommandLine::CommandLine() {
 
 void CommandLine::parse(std::vector<std::string> words) {
     o.words.assign(words.begin(), std::find(words.begin(), words.end(), "--"));
-    std::reverse(words.begin(), words.end()); // as CLI11 wants them
+    std::reverse(words.begin(), words.end()); // CLI11 needs this order
     app.parse(words);
 }
 
@@ -103,7 +103,7 @@ void writeWave(const CommandLine& line) {
 #endif
 }
 
-// The options of the flight that was recorded, and how this one is to be looked at.
+// The options of the recorded flight, and those of this view of it.
 Flight::Options recorded(const CommandLine& now) {
     auto replayed = std::make_shared<ReplayedLine>(now.replay + "/flight.jsonl");
     const nlohmann::json& head = replayed->head();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// pace: keeps simulated time from running ahead of the wall clock, and counts the time in which the
-// simulator worked.
+// pace: keeps simulated time from running ahead of the wall clock, and counts the simulator's
+// working time.
 
 #ifndef PACE_H
 #define PACE_H
@@ -12,7 +12,7 @@
 
 class Pace {
 public:
-    // `rate`: simulated seconds in one of the wall clock; 0: as many as there may be.
+    // `rate`: simulated seconds in one of the wall clock; 0: no limit.
     explicit Pace(double rate) : rate_(rate), anchor_(Clock::now()), begin_(anchor_) {}
     void keep(uint64_t simulatedNs) {
         if (rate_ == 0)
@@ -24,7 +24,7 @@ public:
             std::this_thread::sleep_until(due);
             slept_ += Clock::now() - now;
         } else if (now - due > std::chrono::milliseconds(50)) {
-            anchor_ = now; // too slow for a while: go on from here, without hurry
+            anchor_ = now; // too slow for a while: continue from here, without catching up
             anchorNs_ = simulatedNs;
         }
     }

@@ -18,8 +18,8 @@ constexpr uint8_t lastTick = 7;         // modem_uart_rx.v, modem_uart_tx.v
 constexpr uint64_t worth = 4;           // fewer clocks than these are evaluated
 constexpr uint64_t margin = 2;          // clocks before an event that are evaluated
 constexpr uint64_t settling = 8; // clocks after a carry in which its tick may still have effects
-constexpr unsigned longest = 32; // clocks between two looks at a busy chip
-constexpr uint64_t blameEvery = 256; // looks at a busy chip
+constexpr unsigned longest = 32; // clocks between two tests of a busy chip
+constexpr uint64_t blameEvery = 256; // tests of a busy chip
 const std::set<std::string> platform = {"u_fsmc_bridge", "u_bus_decoder", "u_modem",
                                         "u_system_slot", "u_memory"}; // soc.v
 
@@ -60,7 +60,7 @@ void QuietSpan::takeImage() {
     nullAge_ = 0;
 }
 
-// True if all state is that of the image, but for the counters.
+// True if all state except the counters is that of the image.
 bool QuietSpan::isLikeImage() {
     const VSoc___024root& r = *top_.rootp;
     copyInto(image_, r, r.CYCLES);
@@ -78,7 +78,7 @@ void QuietSpan::beginPause() {
     pause_ = patience_;
 }
 
-// Notes, now and then, which cores have moved since the image.
+// Records, now and then, which cores have moved since the image.
 void QuietSpan::blame() {
     if (++busyLooks_ % blameEvery)
         return;
@@ -122,8 +122,8 @@ uint64_t QuietSpan::untilEvent(const Counters& now, uint64_t most) const {
     return clocks > margin ? clocks - margin : 0;
 }
 
-// Learns from the clocks since the image was last compared how its counters move. False if they
-// have moved in another way than they do.
+// Learns from the clocks since the last comparison how the counters move. False if they have moved
+// in an unknown way.
 bool QuietSpan::learn(const Counters& now) {
     const uint8_t rx = (now.rx - before_.rx) & lastTick, tx = (now.tx - before_.tx) & lastTick;
     if (!isFixed_) { // the clock after the image was taken
@@ -164,7 +164,7 @@ uint64_t QuietSpan::look(uint64_t most) {
     }
     if (!isLikeImage() || !learn(now)) {
         blame();
-        if (isFixed_ && age(now.phase) < settling) // a tick that had an effect
+        if (isFixed_ && age(now.phase) < settling) // the tick had an effect
             takeImage();
         else
             beginPause();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// quiet_span: finds out for how many clocks nothing of the chip would move but its counters, and
-// adds these clocks to the counters at once.
+// quiet_span: finds the number of clocks in which only the chip's counters would move, and adds
+// these clocks to the counters at once.
 //
-// It compares, it does not assume. All state of the Verilated chip is compared over a clock; if
-// only the counters below have moved, by their step, the same holds for each clock that follows,
-// until a counter has its event or an input moves: the next state follows from state and inputs
-// alone. A core that counts by itself is therefore never skipped.
+// It compares all state of the Verilated chip over a clock. If only the counters below have moved,
+// by their step, the same holds for each clock that follows, until a counter has its event or an
+// input moves, since the next state follows from state and inputs alone. A core that counts by
+// itself is therefore never skipped.
 //
 //   cycles of the system slot   one a clock; no event
 //   clocks of the modem's timer one a clock, or held; its event is a tick of 17/16 ms
@@ -31,22 +31,22 @@ class QuietSpan {
 public:
     QuietSpan(VSoc& top, uint64_t clkHz);
 
-    // Notes the chip's state; to be called after each clock that was evaluated.
+    // Records the chip's state; to be called after each evaluated clock.
     void sample();
 
     // Returns for how many clocks, at most `most`, the chip is quiet from here on; 0 if it is not,
-    // or not known to be.
+    // or if that is unknown.
     uint64_t look(uint64_t most);
 
-    // Adds `clocks`, at most those that look() has returned, to the counters. Returns how many it
-    // left: those that a tick of the baud rate is on its way in, and that must be evaluated.
+    // Adds `clocks`, at most look()'s result, to the counters. Returns how many are left: those
+    // with a tick of the baud rate on its way, which must be evaluated.
     uint64_t pass(uint64_t clocks);
 
-    // Returns the core that keeps the chip from being quiet, by its name, as far as one does: it
-    // has moved in most of the clocks that were not passed. Empty: none.
+    // Returns the name of the core that keeps the chip from being quiet, if one does: it has moved
+    // in most of the evaluated clocks. Empty: none.
     std::string mover() const;
 
-    // Forgets the noted state; to be called where an input changes.
+    // Forgets the recorded state; to be called where an input changes.
     void forget() { hasImage_ = false; }
 
 private:
@@ -78,7 +78,7 @@ private:
     uint8_t rxStep_ = 0, txStep_ = 0;        // of the UART's ticks, a tick
     unsigned patience_ = 0, pause_ = 0;      // clocks before the next look at a busy chip
     uint64_t busyLooks_ = 0;                 // that found the chip busy
-    unsigned blamed_ = 0;                    // of these, in which it was noted what had moved
+    unsigned blamed_ = 0;                    // of these, in which movers were recorded
     std::map<std::string, unsigned> movers_; // cores, by the looks in which they had moved
 };
 

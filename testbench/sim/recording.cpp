@@ -25,7 +25,7 @@ std::string AccessDigest::text() const {
 
 RecordedLine::RecordedLine(SerialLine& line, const std::string& file, const json& head)
     : line_(line) {
-    // The words of the flight may hold the modem's key: nobody else reads them.
+    // The flight's words may hold the modem's key: nobody else may read the file.
     const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     if (fd < 0 || fchmod(fd, 0600) != 0)
         throw std::runtime_error("cannot write '" + file + "': " + std::strerror(errno));

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// recording: all that a flight takes from outside, with its times, in a file; so that it can be
-// flown again bit by bit, without the ground's program.
+// recording: stores all inputs of a flight, with their times, in a file, so that it can be flown
+// again bit by bit, without the ground's program.
 //
-// The simulator is deterministic but for the bytes that the ground's program puts on its serial
-// port, and when. The file is JSON Lines, one object each:
+// The simulator is deterministic except for the bytes of the ground's program on its serial port,
+// and their times. The file is JSON Lines, one object each:
 //   {"flight": {options}, "clkHz": n, "hashes": {file: hash}}   the first line
 //   {"ns": time, "up": "hexadecimal"}        bytes from the program to its modem
 //   {"ns": time, "spoilt": n}                bytes with a wrong stop bit
 //   {"ns": time, "down": n}                  bytes that the modem handed to the program
 //   {"ns": time, "digest": "hexadecimal"}    of all bus accesses until then, each 100 ms
-//   {"ns": time, "end": {...}}               what the flight had come to; missing if it was killed
+//   {"ns": time, "end": {...}}               the flight's final state; missing if it was killed
 
 #ifndef RECORDING_H
 #define RECORDING_H
@@ -29,8 +29,8 @@ private:
     uint64_t hash_ = 0xCBF29CE484222325;
 };
 
-// Stands between a modem and its line, passes all on and writes it down. A line of the file is
-// written when the next begins, so that a simulator that is killed leaves what it has done.
+// Stands between a modem and its line, passes all bytes on and records them. A line of the file is
+// written when the next begins, so a killed simulator leaves its work.
 class RecordedLine : public SerialLine, SerialClient {
 public:
     // Throws std::runtime_error if the file cannot be written.
@@ -55,22 +55,22 @@ private:
     SerialLine& line_;
     std::ofstream file_;
     uint64_t now_ = 0;
-    // What the line under way says, of `now_`.
+    // The content of the line under way, of `now_`.
     const char* what_ = nullptr;
     std::string bytes_;
     unsigned count_ = 0;
 };
 
-// A recording, read back: the line of a modem whose program is not there.
+// A recording, read back: the line of a modem without its program.
 class ReplayedLine : public SerialLine {
 public:
-    // Throws std::runtime_error, with the line, if the file is no recording.
+    // Throws std::runtime_error, with the line, if the file is malformed.
     explicit ReplayedLine(const std::string& file);
 
     const nlohmann::json& head() const { return head_; }
     uint64_t endNs() const { return endNs_; }
-    // Throws std::runtime_error, which says where, if the flight is another than the recorded one:
-    // its digest at a time of which there is one, or what it has come to.
+    // Throws std::runtime_error, with the place, if the flight differs from the recorded one, by a
+    // digest or its final state.
     void compare(uint64_t ns, const char* what, const nlohmann::json& value);
     bool isWhole() const { return whole_; }
 

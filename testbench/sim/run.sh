@@ -66,7 +66,7 @@ if [ -z "$open$key" ] && [ "$app" = uav ]; then
 fi
 case $pins in '') ;; *) [ -r "$pins" ] || refuse "cannot read PINS='$pins'" ;; esac
 mkdir -p "$out" 2>/dev/null && [ -w "$out" ] || refuse "OUT='$out' is no folder into which a flight can be written"
-exec 9>"$out/lock" # until the last of this flight's programs has ended
+exec 9>"$out/lock" # until the last program of this flight has ended
 flock -n 9 || { echo "run: another flight is under way in $out; give this one a folder of its own: OUT=build/other" >&2 && exit 1; }
 case $app:$cpu in
 uav:*) ;;
@@ -102,7 +102,7 @@ case ${PROBE:+x}" $cores " in x*' probe '* | ' '*) ;; *) refuse "PROBE='$PROBE' 
 listed=$(sed -n 's/^CORES:[A-Z]*=//p' "$build/CMakeCache.txt")
 for core in $cores; do
     [ -f "$here/ip/$core/ground.py" ] || refuse "core '$core' has no part in a mission: there is no ip/$core/ground.py"
-    # A core that the tree has and the chip does not would be an object that does not exist, minutes from now.
+    # A core that is in the tree and not in the chip would be a missing object, minutes from now.
     grep -Eq "^[[:space:]]*$core([[:space:]#]|\$)" "$listed" || {
         echo "run: the chip has no core '$core': it needs a line '$core' in $listed" >&2
         exit 1
@@ -128,7 +128,7 @@ stop() { # exit status
 }
 trap 'stop 130' INT
 trap 'stop 143' TERM HUP
-# The page begins when the simulator has taken its options: an address would hide what it refuses.
+# The page begins when the simulator has accepted its options: an address would hide its error.
 while [ "$(flown)" = "$before" ] && kill -0 $sim 2>/dev/null; do sleep 0.05; done
 page=''
 trap 'kill $page 2>/dev/null || true' EXIT

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // sensor: the sensor's model on the chip's pins, with a frame each quarter of a second. Its clock
-// rests between frames, as that of many sensors can.
+// stops between frames, as many sensors' can.
 
 #include "sensor.h"
 #include "map_regs.h"
@@ -27,7 +27,7 @@ void connectSensor(SocModel& soc, const Frame& frame) {
                         uint32_t(pins.vsync) << MAP_PIN_CAMERA_VSYNC_I |
                         uint32_t(pins.href) << MAP_PIN_CAMERA_HREF_I |
                         uint32_t(pins.data) << MAP_PIN_CAMERA_DATA_I);
-        // VSYNC goes high after the last line, and some clocks more show it to the core.
+        // VSYNC goes high after the last line, and some more clocks show it to the core.
         still = sensor.isIdle() && pins.vsync ? still + 1 : 0;
         return still > 32 ? std::max(nextFrame, soc.cycles() + 1) : soc.cycles() + 1;
     });

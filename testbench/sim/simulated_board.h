@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// simulated_board: what the vehicle has for secrets, where its firmware runs on the host: random
-// numbers by a seed, the Cortex-M3 model's, and words that keep their values without power. At
-// first it is open.
+// simulated_board: the vehicle's source of secrets where its firmware runs on the host: random
+// numbers by a seed, from the Cortex-M3 model's generator, and words that keep their values without
+// power. Initially it is open.
 
 #ifndef SIMULATED_BOARD_H
 #define SIMULATED_BOARD_H
@@ -20,10 +20,10 @@ public:
     using Words = std::array<uint32_t, UAV_KEY_WORDS>;
 
     explicit SimulatedBoard(uint64_t seed = 1) : random_(seed) {
-        (void)RandomBlock::next(random_); // as secrets.c does
+        (void)RandomBlock::next(random_); // as in secrets.c
         provide({});
     }
-    // Makes it the firmware's.
+    // Gives it to the firmware.
     void use() { UAV_useBoard(&port(), this); }
     // Gives the vehicle its key, 16 bytes, as its factory does; none: opens it.
     void provide(const std::vector<uint8_t>& key) {

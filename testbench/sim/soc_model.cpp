@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// soc_model: the simulator's innermost loop. What seldom changes is looked at only when it is due.
+// soc_model: the simulator's innermost loop. Slow events are looked at only when they are due.
 
 #include "soc_model.h"
 #include "mcb_pins.h"
@@ -8,7 +8,7 @@
 
 namespace {
 
-// A model without threads of its own: of a process that forks only the calling one goes on.
+// The model has no threads of its own: a fork keeps only the calling one.
 VerilatedContext* oneThread() {
     auto* context = new VerilatedContext;
     context->threads(1);
@@ -31,7 +31,7 @@ SocModel::SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerU
 }
 
 SocModel::~SocModel() {
-    Verilated::threadContextp(context_.get()); // which the chip's scopes leave; not a later model's
+    Verilated::threadContextp(context_.get()); // the chip's scopes need it
     top_->final();
     observer_.finish();
 }
@@ -64,7 +64,7 @@ void SocModel::timeModels() {
     top_->modem_cts_n_i = line_.ctsN();
 }
 
-// Clocks until a model outside of the chip has something to do.
+// Clocks until a model outside of the chip is due.
 uint64_t SocModel::mayBeQuiet() const {
     if (!skips_ || now() >= nextEvent_ || (drive_ && cycles_ >= driveAt_))
         return 0;
@@ -72,7 +72,7 @@ uint64_t SocModel::mayBeQuiet() const {
     return drive_ ? std::min(clocks, driveAt_ - cycles_) : clocks;
 }
 
-// Gives the chip the clocks that it is owed.
+// Gives the chip its owed clocks.
 void SocModel::pay() {
     if (!owed_)
         return;

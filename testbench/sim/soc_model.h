@@ -3,7 +3,7 @@
 // soc_model: the Verilated chip with its memory, its modem and its processor's FSMC: one clock.
 //
 // Clocks in which only counters of the chip would move are not evaluated but owed: they count at
-// once, and are added to the chip's counters before anything looks at it (quiet_span.h).
+// once, and are added to the chip's counters before anything reads it (quiet_span.h).
 
 #ifndef SOC_MODEL_H
 #define SOC_MODEL_H
@@ -29,13 +29,13 @@ public:
              unsigned clkPerUnit = 5);
     ~SocModel();
 
-    // Resets the chip. Without `memoryStarts` the memory is ready at the end; with it, it starts in
-    // that moment, as on a board whose processor does not wait for it: a millisecond.
+    // Resets the chip. Without `memoryStarts` the memory is ready at the end. With it the memory
+    // starts then, as on a board whose processor does not wait for it: a millisecond.
     void reset(bool memoryStarts = false);
     void tick(); // one clock cycle
 
-    // Clock cycles that pass at once, as far as the chip is quiet, up to clock `until`. Returns how
-    // many they were.
+    // Passes clock cycles at once, as far as the chip is quiet, up to clock `until`. Returns their
+    // number.
     uint64_t passQuiet(uint64_t until) {
         const uint64_t clocks = until > cycles_ ? std::min(quiet_, until - cycles_) : 0;
         quiet_ -= clocks;
@@ -68,10 +68,10 @@ public:
     }
     uint32_t corePins() const { return top_->core_pins_o; }
 
-    // Sets what drives those pins; called before a clock, it returns the count of clocks (cycles())
-    // at which it wants to be called again.
+    // Sets the driver of those pins. Called before a clock, it returns the count of clocks
+    // (cycles()) of its next call.
     void onClock(std::function<uint64_t()> drive) { drive_ = std::move(drive); }
-    // Told of each change of the cores' outputs.
+    // Called at each change of the cores' outputs.
     void onCorePins(std::function<void(uint32_t)> changed) {
         corePinsChanged_ = std::move(changed);
     }
@@ -83,10 +83,10 @@ public:
     }
     XBee& modem() { return modem_; }
 
-    // Adds something that has events in simulated time (the ground's modem): it is called when due.
+    // Adds a model with events in simulated time (the ground's modem): it is called when due.
     void onTime(std::function<uint64_t(uint64_t now)> advance) { others_ = std::move(advance); }
 
-    // Sets who is told of each edge of the interrupt line.
+    // Sets the listener for edges of the interrupt line.
     void onIrq(std::function<void(bool high)> edge) { irqEdge_ = std::move(edge); }
 
 private:
@@ -102,7 +102,7 @@ private:
     std::unique_ptr<VSoc> top_;
     QuietSpan span_;
     bool skips_ = true;
-    uint64_t quiet_ = 0; // clocks to come that need not be evaluated
+    uint64_t quiet_ = 0; // clocks ahead that need not be evaluated
     uint64_t owed_ = 0;  // clocks that have passed and were not
     uint64_t evaluated_ = 0;
     FsmcPins pins_;
@@ -112,7 +112,7 @@ private:
     UartPins line_;
     XBee modem_;
     std::function<uint64_t()> drive_;
-    uint64_t driveAt_ = 0; // clock at which it is called again
+    uint64_t driveAt_ = 0; // clock of its next call
     std::function<void(uint32_t)> corePinsChanged_;
     uint32_t corePins_ = 0;
     std::function<uint64_t(uint64_t)> others_;

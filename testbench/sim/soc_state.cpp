@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// soc_state: looks the members of Verilator's class up in a table made of its header
+// soc_state: finds the members of Verilator's class in a table made from its header
 // (soc_members.awk).
 
 #include "soc_state.h"

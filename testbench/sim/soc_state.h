@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// soc_state: names for the bytes of the Verilated chip's state: what differs between two moments.
+// soc_state: names the bytes of the Verilated chip's state, for differences between two moments.
 
 #ifndef SOC_STATE_H
 #define SOC_STATE_H

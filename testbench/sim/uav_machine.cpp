@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// uav_machine: simulated time passes in bus accesses and in idling, nowhere else.
+// uav_machine: simulated time passes in bus accesses and idling only.
 
 #include "uav_machine.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// uav_machine: runs the firmware's host build on a SocModel: bus accesses, interrupts, the tick.
-// A table of entrances says which firmware; without one it is the UAV's application.
+// uav_machine: runs the firmware's host build on a SocModel: bus accesses, interrupts, the tick. A
+// table of entrances selects the firmware, by default the UAV's application.
 
 #ifndef UAV_MACHINE_H
 #define UAV_MACHINE_H
@@ -40,8 +40,8 @@ public:
 
     SimulatedBoard board; // of the UAV's application
 
-    // Makes the firmware's clock tick so many times as fast as the fabric's: for spans in which
-    // nothing happens but the firmware's own time-outs. The modem's times are then too long for it.
+    // Makes the firmware's clock tick this many times as fast as the fabric's, for spans with only
+    // the firmware's own time-outs. The modem's times are then too long for it.
     void hurry(unsigned times);
 
 private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// vision-reference: the corners of a picture by the model, as JSON: what the UAV must answer.
-// Usage: vision-reference picture threshold
+// vision-reference: prints the corners of a picture by the model, as JSON: the UAV's expected
+// answer. Usage: vision-reference picture threshold
 
 #include "camera.h"
 #include "vision_model.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// attacker: what it makes of what it heard.
+// attacker: makes hostile packets of those that it heard.
 
 #include "attacker.h"
 
@@ -21,7 +21,7 @@ XBee::Options modemOfNobody() {
 Attacker::Attacker(RfChannel& air, uint64_t seed)
     : air_(air), random_(seed), modem_(line_, air, modemOfNobody()) {
     air.onPacket([this](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
-        // Its own come back as the link's: they are not told apart on the air.
+        // Its own packets arrive as the link's: the air does not tell them apart.
         if (heard_.size() < 100'000)
             heard_.push_back(packet);
     });
@@ -84,7 +84,7 @@ void Attacker::doMischief(uint64_t now) {
         bytes.insert(bytes.begin(), more.begin(), more.end());
         break;
     }
-    default: // as it was
+    default: // unchanged
         break;
     }
     if (!bytes.empty())

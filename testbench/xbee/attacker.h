@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// attacker: a modem of nobody's on the air. It hears every packet, keeps them for ever, and sends
-// what it likes in anybody's name.
+// attacker: a foreign modem on the air. It hears every packet, keeps all, and sends anything in
+// anybody's name.
 
 #ifndef ATTACKER_H
 #define ATTACKER_H
@@ -15,11 +15,11 @@ public:
     // Listens from now on: it is the channel's only listener.
     Attacker(RfChannel& air, uint64_t seed);
 
-    // Sends bytes, cut to a packet, as if `from` did.
+    // Sends bytes, cut to a packet, in the name of `from`.
     void send(uint16_t from, uint16_t to, Bytes bytes, uint64_t now);
-    // Does one thing of all that it can do without a key, drawn at random: repeats what it heard,
-    // now or long ago; sends it back to who said it; changes a bit; cuts it; puts two together;
-    // makes handshakes, resets, ends, acknowledgements and data up, with tags or CRCs; makes noise.
+    // Does one of the things that are possible without a key, drawn at random: repeats a packet,
+    // recent or old; reflects it to its sender; changes a bit; cuts it; joins two; makes up
+    // handshakes, resets, ends, acknowledgements and data, with tags or CRCs; makes noise.
     void doMischief(uint64_t now);
     void advance(uint64_t now) { modem_.advance(now); }
     uint64_t nextEvent() const { return modem_.nextEvent(); }

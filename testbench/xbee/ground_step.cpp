@@ -44,7 +44,7 @@ GroundStep::GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> go
                    [this] { return load(status_.fromGround); }});
 }
 
-// By the time that a byte is counted its reader may have left, and another one begun.
+// When a byte is counted its reader may have left, and another one begun.
 void GroundStep::given(uint64_t keeper, size_t bytes) {
     uint64_t is = load(status_.toGround);
     while (is - simCount(is) == simSession(keeper) &&
@@ -58,7 +58,7 @@ bool GroundStep::holds(uint64_t now) const {
            (load(status_.untilNs) <= now || load(status_.taken) < simCount(load(status_.toGround)));
 }
 
-// A program that was killed has not said good-bye.
+// A killed program has not signed off.
 void GroundStep::dismissTheDead() {
     uint64_t keeper = load(status_.keeper);
     if (keeper && kill(processOf(keeper), 0) != 0 && errno == ESRCH)

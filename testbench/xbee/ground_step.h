@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// ground_step: simulated time waits for the program on the ground that keeps step with it
+// ground_step: makes simulated time wait for the program on the ground that keeps step with it
 // (sim_status.h), however seldom a busy machine lets that program run.
 
 #ifndef GROUND_STEP_H
@@ -13,9 +13,9 @@ struct SimStatus;
 
 class GroundStep {
 public:
-    // `goOn`: asked about each 10 ms while time stands still; false: wait no longer. A program that
-    // holds time for `patience` seconds of the wall clock, and that no debugger holds, is waited
-    // for no longer, and stderr says so.
+    // `goOn`: called about each 10 ms while time stands still; false: stop waiting. A program that
+    // holds time for `patience` seconds of the wall clock without a debugger is no longer waited
+    // for, and stderr says so.
     GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> goOn, double patience = 60);
     GroundStep(const GroundStep&) = delete;
     GroundStep& operator=(const GroundStep&) = delete;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// icesoc-xbee: two XBee modems, each on a pseudo-terminal, and the air between them: any program
-// that talks to an XBee can be tried against it.
+// icesoc-xbee: two XBee modems, each on a pseudo-terminal, and the air between them, to try any
+// program that talks to an XBee.
 
 #include "rf_channel.h"
 #include "xbee_parameters.h"
@@ -34,7 +34,7 @@ struct Modem {
     }
 };
 
-// "MY=1" into a parameter; throws CLI::ValidationError with what is wrong.
+// Parses "MY=1" into a parameter; throws CLI::ValidationError with the reason.
 void setParameter(std::map<std::string, uint32_t>& set, const std::string& text) {
     std::string letters = text.substr(0, text.find('='));
     auto parameter = xbeeParameters().find(letters);

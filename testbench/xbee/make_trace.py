@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """make_trace: prints an example of a trace: out to 300 m at 10 m/s, most of a minute there, and back.
 
-It is made up, not recorded: free space and Rayleigh fading of the four tries of a packet, as rf_weather.h has
-them, and bursts of the frequency of "bursts, long" (docs/models.md), drawn anew each second."""
+It is made up, not recorded: free space and Rayleigh fading of the four tries of a packet, as in rf_weather.h, and bursts
+as frequent as "bursts, long" (docs/models.md), drawn anew each second."""
 import math
 import random
 import sys

@@ -16,8 +16,8 @@
 
 namespace {
 
-constexpr uint64_t pollNs = 500'000;        // how often the pty is looked at
-constexpr uint64_t countedPollNs = 100'000; // the same, where nothing is late
+constexpr uint64_t pollNs = 500'000;        // interval between looks at the pty
+constexpr uint64_t countedPollNs = 100'000; // the same, where no byte is late
 constexpr int patience = 20'000;            // looks at a pty whose bytes the kernel has yet to move
 
 void makeRaw(int fd) {
@@ -60,8 +60,7 @@ bool PtyLine::speedFits() const {
     return std::fabs(settings.c_ospeed - modem) <= 0.045 * modem;
 }
 
-// Reads all that the program has written by now; the kernel takes a moment from one end to the
-// other.
+// Reads all that the program has written; the kernel takes a moment to move bytes between the ends.
 void PtyLine::readAhead(uint64_t now) {
     uint64_t counter = count_.keeper ? count_.keeper() : 0;
     if (counter != counter_)
@@ -70,7 +69,7 @@ void PtyLine::readAhead(uint64_t now) {
     for (int looks = 0; counter && looks < patience; ++looks) {
         uint8_t bytes[512];
         ssize_t count = read(master_, bytes, sizeof bytes);
-        if (count > 0) {        // also what somebody has left behind who counts no longer
+        if (count > 0) {        // also bytes of a program that counts no longer
             if (ahead_.empty()) // the wire was idle
                 rxFree_ = std::max(rxFree_, static_cast<double>(now));
             ahead_.insert(ahead_.end(), bytes, bytes + count);
@@ -94,8 +93,8 @@ size_t PtyLine::fetch(uint8_t* bytes, size_t room) {
 
 void PtyLine::readHost(uint64_t now) {
     uint8_t bytes[64];
-    // Takes only what the wire could have carried by now, so that nothing is read ahead of flow
-    // control.
+    // Takes only the bytes that the wire could have carried by now, so that no byte is read ahead
+    // of flow control.
     if (!counter_)
         rxFree_ = std::max(rxFree_, static_cast<double>(now) - lookBack());
     size_t room = 0;

@@ -12,13 +12,12 @@ constexpr uint64_t ccaNs = 128'000, turnaroundNs = 192'000, backoffUnitNs = 320'
 constexpr uint64_t byteNs = 32'000, ackNs = turnaroundNs + 11 * byteNs, gapNs = 640'000; // LIFS
 constexpr unsigned longestBackoff = 5, mostBackoffs = 4; // 802.15.4: macMaxBE, macMaxCSMABackoffs
 constexpr uint64_t roundNs = 200'000'000;                // RR: the wait for an acknowledgement
-constexpr uint32_t roundSpreadUs = 48'000;               // and at most so much more, at random
+constexpr uint32_t roundSpreadUs = 48'000;               // and at most this much more, at random
 constexpr uint64_t burstStepNs = 10'000'000;             // a full packet's time
 constexpr double sensitivity = -92;                      // dBm; XBee-PRO: -100
 constexpr double jitter = 0.05;                          // share of a modem's own time, unverified
 
-// PHY header, MAC header with 16-bit addresses, checksum: 17 bytes; an address of 64 bits has 6
-// more.
+// PHY header, MAC header with 16-bit addresses, checksum: 17 bytes; a 64-bit address adds 6.
 size_t frameBytes(const RfPacket& packet) {
     bool longSource = packet.encrypted || packet.from64;
     return 17 + 2u * packet.header + 6u * packet.wide + 6u * longSource + packet.bytes.size();
@@ -45,8 +44,8 @@ void RfChannel::leave(XBee* modem) {
 }
 
 RfChannel::Outcome RfChannel::fate(uint64_t now) {
-    // A step for this packet, and one for each that there was time for: a burst passes, too, while
-    // nobody sends.
+    // A step for this packet, and one for each missed packet time: a burst passes while nobody
+    // sends, too.
     const uint64_t quiet = std::min<uint64_t>((now - fateAt_) / burstStepNs, 1000);
     fateAt_ = now;
     for (uint64_t steps = std::max<uint64_t>(quiet, 1); weather.burstBegin > 0 && steps; --steps)
@@ -63,7 +62,7 @@ uint64_t RfChannel::delayNs(uint64_t now) const {
     return weather.trace ? weather.trace->at(now).delayNs : weather.delayNs;
 }
 
-// Draws the strength of one try and says whether it is below the receiver's sensitivity.
+// Draws the strength of one try. Returns whether it is below the receiver's sensitivity.
 bool RfChannel::faded(RfPacket& packet) {
     if (weather.distance <= 0)
         return false;
@@ -172,7 +171,7 @@ void RfChannel::finish(Flight& flight, Outcome outcome, uint64_t now) {
         listener_(now, flight.packet, outcome);
     if (!flight.sender || flight.again)
         return;
-    // A modem acknowledges what its full buffer then drops.
+    // A modem acknowledges a packet that its full buffer then drops.
     bool arrived = outcome != Outcome::Lost && outcome != Outcome::Nobody && flight.answered;
     XBee::Fate fate = outcome == Outcome::NoClearChannel       ? XBee::Fate::NoClearChannel
                       : arrived || !flight.packet.acknowledged ? XBee::Fate::Sent

@@ -20,7 +20,7 @@ public:
     struct Counters {
         uint64_t packets = 0, bytes = 0, lost = 0, duplicated = 0, corrupted = 0;
         uint64_t retries = 0, collisions = 0, noClearChannel = 0;
-        uint64_t airNs = 0; // time that the tries took
+        uint64_t airNs = 0; // time of the tries
     };
     using Listener = std::function<void(uint64_t now, const RfPacket&, Outcome)>;
 
@@ -32,8 +32,8 @@ public:
 
     void join(XBee* modem) { modems_.push_back(modem); }
     void leave(XBee* modem);
-    // Sends a packet when its modem is no longer busy; the sender hears transmitted() when the
-    // packet has left or was given up.
+    // Sends a packet when its modem is free; the sender's transmitted() is called when the packet
+    // has left or was given up.
     void transmit(XBee* sender, RfPacket packet, uint64_t now);
     // Returns a time of a modem's own work: it varies by a twentieth; 0 in perfect air.
     uint64_t jittered(uint64_t ns);
@@ -55,7 +55,7 @@ private:
         RfPacket packet;
         unsigned triesLeft, roundsLeft, copiesLeft; // of the MAC; by RR; of a broadcast with RR
         Outcome outcome;
-        bool again;  // a duplicate: the sender has been told already
+        bool again;  // a duplicate: the sender has been informed already
         bool begins; // still has to find the channel clear
         unsigned backoffs = 0, unanswered = 0;
         bool answered = true; // the last try's acknowledgement came

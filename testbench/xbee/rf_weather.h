@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-// A link's record: CSV with the heading `time_s,loss,rssi_dbm,delay_ms`. A row is in force from its
-// time to that of the next one; the last row stays.
+// A link's record: CSV with the heading `time_s,loss,rssi_dbm,delay_ms`. A row holds from its time
+// to that of the next one; the last row stays.
 class RfTrace {
 public:
     struct Row {
@@ -40,11 +40,11 @@ struct RfWeather {
     double tryLoss = 0, ackLoss = 0;
     // Free space and Rayleigh fading over this many metres, each try by itself; 0: none.
     double distance = 0;
-    // An interferer is on for this share of each of its periods: the channel is not clear then, and
-    // a try that meets it is lost. A microwave oven: about half of 20 ms (50 Hz).
+    // An interferer is on for this share of each of its periods: the channel is busy then, and a
+    // try that meets it is lost. A microwave oven: about half of 20 ms (50 Hz).
     double interference = 0;
     uint64_t interferencePeriodNs = 20'000'000;
-    // A record of a link, which stands in place of loss and delay above.
+    // A link's record, instead of loss and delay above.
     std::shared_ptr<const RfTrace> trace;
     // Perfect air, for unit tests: both directions at once, no carrier sense, no collisions, and
     // modems that need no time of their own. No radio has this air.
@@ -53,8 +53,8 @@ struct RfWeather {
     // Losses in bursts as on flights, and tries lost as in the field; distance in the clear; an
     // interferer. Sources: docs/models.md.
     static const std::vector<std::pair<std::string, RfWeather>>& published();
-    // Draws one of these, independent losses below `mostLoss` percent, or none; with doubled and
-    // damaged packets now and then.
+    // Draws one of these, independent losses below `mostLoss` percent, or none; now and then with
+    // doubled and damaged packets.
     static RfWeather drawn(Random& random, unsigned mostLoss);
 
     bool interferes(uint64_t from, uint64_t to) const;

@@ -32,11 +32,11 @@ public:
     // Takes effect when no byte is on the line.
     virtual void setBitTime(double ns) { bitNs_ = ns; }
     virtual void setCts(bool accepts) { cts_ = accepts; }
-    // True if the host's RTS stops the modem (D6); a line without RTS takes no notice.
+    // True if the host's RTS stops the modem (D6); a line without RTS ignores it.
     void setHeedRts(bool heeds) { heedsRts_ = heeds; }
     virtual void advance(uint64_t now) = 0;
     virtual uint64_t nextEvent() const = 0;
-    // The modem has something to send: nextToHost will give it.
+    // The modem has bytes to send: nextToHost gives them.
     virtual void wake(uint64_t now) = 0;
 
 protected:
@@ -77,8 +77,8 @@ public:
         if (rxBit_ == 0 && txBit_ == 0)
             bitNs_ = wantedBitNs_;
     }
-    // The next stop bit of a byte from the design, or edge of RXD: between edges of TXD nothing
-    // need be looked at.
+    // The next stop bit of a byte from the design, or edge of RXD; between TXD's edges nothing else
+    // is due.
     uint64_t nextEvent() const override {
         double at = 1e300;
         if (rxBit_)
@@ -96,7 +96,7 @@ private:
     static constexpr unsigned stopBit = 10; // bit 1 is the start bit, 2..9 data
 
     bool mayTalk() const { return rts_ || !heedsRts_; }
-    // Samples TXD, which has not changed meanwhile, up to `now`.
+    // Samples TXD, unchanged since then, up to `now`.
     void receive(uint64_t now) {
         while (rxBit_ && rxAt_ <= static_cast<double>(now))
             sample(now);
@@ -184,10 +184,10 @@ public:
     PtyLine& operator=(const PtyLine&) = delete;
     const std::string& path() const { return path_; }
 
-    // A program may say how many bytes it has written and read: then none of them is late because
-    // the machine is busy (testbench/xbee/ground_step.h).
+    // A program may report how many bytes it has written and read: then no byte is late because the
+    // machine is busy (testbench/xbee/ground_step.h).
     struct Count {
-        std::function<uint64_t()> keeper; // who does so, 0: nobody; each begins to count at 0
+        std::function<uint64_t()> keeper; // its session, 0: none; each from 0
         std::function<void(uint64_t keeper, size_t bytes)> toProgram;
         std::function<uint64_t()> fromProgram;
     };
@@ -199,8 +199,8 @@ public:
 
 private:
     bool speedFits() const;
-    // Returns the time (ns) in which an idle wire may have carried bytes unseen: a look's period
-    // and a byte.
+    // Returns the time (ns) in which an idle wire may have carried unseen bytes: a poll period and
+    // a byte.
     double lookBack() const { return 1e6 + 10 * bitNs_; }
     void readAhead(uint64_t now);
     size_t fetch(uint8_t* bytes, size_t room);
@@ -214,7 +214,7 @@ private:
     std::vector<uint8_t> unwritten_;
     Count count_;
     bool txIdle_ = true;
-    uint64_t counter_ = 0;      // who keeps count
+    uint64_t counter_ = 0;      // the counting session
     uint64_t fetched_ = 0;      // of the counted bytes
     std::deque<uint8_t> ahead_; // read, but the wire has not carried them yet
 };

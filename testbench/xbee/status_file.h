@@ -17,7 +17,7 @@ class StatusFile {
 public:
     // Throws std::system_error, also where the disk is full: a file with holes would end in SIGBUS.
     explicit StatusFile(const std::string& path) {
-        unlink(path.c_str()); // what a link leads to is not ours to write
+        unlink(path.c_str()); // never write through a link
         const int fd = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
         const int error = fd < 0 ? errno : map(fd);
         if (fd >= 0)
@@ -25,7 +25,7 @@ public:
         if (error)
             throw std::system_error(error, std::generic_category(), "cannot write '" + path + "'");
     }
-    // An empty file that is open for writing, and stays the caller's.
+    // Creates an empty file, open for writing, which the caller owns.
     explicit StatusFile(int fd) {
         if (const int error = map(fd))
             throw std::system_error(error, std::generic_category(), "no file for simulated time");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee: the modem's firmware, as its manual describes it: data, buffers, packets.
+// xbee: the modem's firmware by its manual: data, buffers, packets.
 
 #include "xbee.h"
 #include "random.h"
@@ -16,9 +16,9 @@ constexpr size_t inputBytes = 202, outputBytes = 202;
 constexpr size_t ctsSlack = 17; // bytes by which the buffer empties further before CTS comes back
 constexpr size_t packetBytes = 100, packetBytesEncrypted = 95;
 constexpr uint64_t msNs = 1'000'000, resetNs = 200;
-// Time of the modem for each packet that it sends (before it senses the carrier) or has received
-// (before it handles the next): with it and the time on the air full packets leave at 80 and,
-// encrypted, at 47 kb/s, as the maker has measured (docs/models.md).
+// The modem's time for each packet that it sends (before it senses the carrier) or has received
+// (before it handles the next). With it and the time on the air full packets leave at 80 and,
+// encrypted, at 47 kb/s, the maker's measurement (docs/models.md).
 constexpr uint64_t processingNs = 4'688'000, processingEncryptedNs = 10'666'000;
 constexpr uint64_t plusWindowNs = 1000 * msNs; // the three characters come within a second
 
@@ -155,7 +155,7 @@ void XBee::dataByte(uint8_t byte, uint64_t now) {
     sendPackets(now);
 }
 
-// Decides after the guard time: the characters held back were the command sequence, or data.
+// Decides after the guard time whether the held characters were the command sequence, or data.
 void XBee::silence(uint64_t now) {
     if (pluses_ && now - lastByte_ >= guardNs()) {
         if (pluses_ == 3)
@@ -234,7 +234,7 @@ void XBee::launch(RfPacket packet, uint64_t now) {
     channel_.transmit(this, std::move(packet), now);
 }
 
-// Its one processor handles a packet at a time, one way or the other.
+// Its one processor handles one packet at a time, in either direction.
 void XBee::work(uint64_t now, bool encrypted) {
     uint64_t needed = encrypted ? processingEncryptedNs : processingNs;
     busyUntil_ = std::max(busyUntil_, now) + channel_.jittered(needed);
@@ -274,7 +274,7 @@ XBee::Reception XBee::receive(const RfPacket& onAir, uint64_t now) {
     active_["DB"] = pending_["DB"] = static_cast<uint32_t>(std::clamp(-packet.rssi, 0.0, 255.0));
     bool wantsHeader = active_.at("MM") == 0 || active_.at("MM") == 3;
     if (wantsHeader && !packet.header)
-        return Reception::Taken; // acknowledged, but nothing that this mode understands
+        return Reception::Taken; // acknowledged, but this mode ignores it
     if (packet.encrypted != (active_.at("EE") != 0)) {
         ++counters_.packetsUnreadable;
         return Reception::Taken;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // xbee: model of an XBee 802.15.4 (series 1) modem: command mode, packetizing, buffers, flow
-// control, API frames, encryption, reset. Facts and what is left out: docs/modem.md.
+// control, API frames, encryption, reset. Facts and limits: docs/modem.md.
 //
-// Time is in nanoseconds. advance(now) does what is due; nextEvent() says when that will be. The
+// Time is in nanoseconds. advance(now) handles due events; nextEvent() returns the next time. The
 // serial side is a SerialLine (pins or a pty), the radio side an RfChannel.
 
 #ifndef XBEE_H
@@ -28,7 +28,7 @@ struct RfPacket {
     // The sender's settings
     bool header = true;       // MM 0 or 3: the maker's header of two bytes
     bool acknowledged = true; // MM 0 or 2, and no broadcast
-    bool sequenced = false;   // with a header and RR: the receiver drops what it has already
+    bool sequenced = false;   // with a header and RR: the receiver drops repeated ones
     uint16_t sequence = 0;
     uint64_t serial = 0;    // the sender's, for decryption
     bool encrypted = false; // EE
@@ -83,14 +83,14 @@ public:
     const Counters& counters() const { return counters_; }
 
     // Called by the channel, up to transmitted().
-    bool hears(const RfPacket& packet) const; // is it for this modem?
+    bool hears(const RfPacket& packet) const; // whether it is for this modem
     // Absent: it is off or boots. NoRoom: acknowledged, and lost, since the buffer to the host is
     // full.
     enum class Reception { Absent, NoRoom, Taken };
     Reception receive(const RfPacket& packet, uint64_t now);
-    // Returns until when it is at work on packets, and sends none.
+    // Returns the end of its work on packets, during which it sends none.
     uint64_t busyUntil() const { return busyUntil_; }
-    // The packet in flight is done with. `unanswered` tries had no acknowledgement.
+    // The packet in flight has ended. `unanswered` tries had no acknowledgement.
     enum class Fate { Sent, NoAck, NoClearChannel };
     void transmitted(uint64_t now, Fate fate = Fate::Sent, unsigned unanswered = 0);
 

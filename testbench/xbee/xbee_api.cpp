@@ -134,7 +134,7 @@ void XBee::apiCommand(const Bytes& frame, uint64_t now) {
         answer[4] = 2;
     }
     counters_.refused += answer[4] != 0;
-    if (frame[1] != 0) // id 0: no answer is wanted
+    if (frame[1] != 0) // id 0: no answer
         apiReply(answer);
     line_.wake(now);
 }

@@ -22,7 +22,7 @@ bool isHex(const std::string& text, size_t most) {
 
 } // namespace
 
-// The OK waits behind received data that still drains out.
+// The OK waits until received data has drained out.
 void XBee::enterCommandMode(uint64_t now) {
     mode_ = Mode::Command;
     flushCount_ = input_.size();
@@ -63,7 +63,7 @@ bool XBee::setParameter(const std::string& letters, uint32_t value) {
     return true;
 }
 
-// Write-only: a question is refused.
+// Write-only: a query is refused.
 bool XBee::setKey(const std::string& value) {
     if (!isHex(value, keyDigits))
         return false;
@@ -71,7 +71,7 @@ bool XBee::setKey(const std::string& value) {
     return true;
 }
 
-// Commands without a value; "" if there is none of that name.
+// Commands without a value; "" for any other name.
 std::string XBee::order(const std::string& letters, uint64_t now) {
     if (letters == "CN") {
         leaveCommandMode();

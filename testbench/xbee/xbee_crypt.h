@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee_crypt: AES-128 in counter mode as IEEE 802.15.4-2003 has it (security suite AES-CTR, 7.6.2):
-// five bytes in front of the payload, frame counter and key sequence counter, and no check. So a
-// packet has 95 bytes instead of 100, and another key gives garbage, not silence.
+// xbee_crypt: AES-128 in counter mode by IEEE 802.15.4-2003 (security suite AES-CTR, 7.6.2): five
+// bytes before the payload, frame counter and key sequence counter, and no check. So a packet has
+// 95 bytes instead of 100, and another key gives garbage, not silence.
 
 #ifndef XBEE_CRYPT_H
 #define XBEE_CRYPT_H

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// common: what the scripts of the three pages make their elements with.
+// common: makes elements for the scripts of the three pages.
 "use strict";
 function element(tag, text, className) {
   const e = document.createElement(tag);
@@ -8,7 +8,7 @@ function element(tag, text, className) {
   if (className) e.className = className;
   return e;
 }
-function shape(tag, attributes, text) { // of a drawing
+function shape(tag, attributes, text) { // an element of a drawing
   const e = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [key, value] of Object.entries(attributes)) e.setAttribute(key, value);
   if (text !== undefined) e.textContent = text;

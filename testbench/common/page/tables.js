@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// tables: tables by Tabulator and charts by uPlot, in the page's colours. Where these could not be fetched at build time, tables
-// are plain and have all rows, and a chart is a table of its points.
+// tables: tables by Tabulator and charts by uPlot, in the page's colours. Where these could not be
+// fetched at build time, tables are plain and have all rows, and a chart is a table of its points.
 
-// Shows rows in `place`, instead of what it had. A column is [title, value(row), cell(row), options of Tabulator's]: the value is
-// what is sorted, filtered and downloaded, the cell (text or an element; the value, if there is none) is what is seen.
+// Shows rows in `place`, replacing its content. A column is [title, value(row), cell(row), options
+// of Tabulator's]: the value is sorted, filtered and downloaded; the cell (text or an element; by
+// default the value) is shown.
 //   options.id        of the table
-//   options.filter    what an empty filter box says; beside it stands a button that downloads CSV
-//   options.children  (row) => the rows below it, which fold; options.open: (row) => whether they are shown at first
-//   options.pick      (row, Tabulator's, if there is one): what a click and Enter do; arrow keys move from row to row, and fold
-//   options.picked    (row) => whether it is the row that was picked
+//   options.filter    placeholder of the filter box, which stands beside a button that downloads CSV
+//   options.children  (row) => the rows below it, which fold; options.open: (row) => whether they are open at first
+//   options.pick      (row, Tabulator's, if there is one): action of a click and Enter; arrow keys move from row to row, and fold
+//   options.picked    (row) => whether it is the picked row
 function table(place, columns, rows, options = {}) {
   const content = (row, [, value, cell]) => { // a node: Tabulator would take text as HTML
     const seen = (cell ?? value)(row) ?? "";
@@ -44,7 +45,8 @@ function table(place, columns, rows, options = {}) {
     box.append(plain);
     return;
   }
-  // As wide as the widest text of the first rows wants, or as its share of what there is: then the text breaks into lines.
+  // As wide as the widest text of the first rows, or as its share of the width: then the text
+  // breaks into lines.
   const pen = document.createElement("canvas").getContext("2d");
   pen.font = `bold ${getComputedStyle(document.body).font}`;
   const widest = column => Math.max(12 + pen.measureText(column[0]).width, ...rows.slice(0, 100).map(row => content(row, column))
@@ -60,7 +62,7 @@ function table(place, columns, rows, options = {}) {
     options.pick(row.getData().row, row);
     mark(row);
   };
-  const unfold = rows => rows.forEach(row => { // all that is filtered, else what is open at first
+  const unfold = rows => rows.forEach(row => { // unfolds filtered rows, else those open at first
     if (!row.getTreeChildren().length) return;
     if (filter.value || options.open?.(row.getData().row)) row.treeExpand();
     else row.treeCollapse();

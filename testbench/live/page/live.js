@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// live: asks /state four times a second, and shows what is there.
+// live: asks /state four times a second, and shows the answer.
 
 const $ = id => document.getElementById(id);
 const scale = 2; // screen pixels of the canvas for one of the frame
@@ -59,8 +59,9 @@ function showCalls(calls) {
         number(c.bytes_up, ''), number(c.bytes_down, '')])));
 }
 
-// A lane for each direction of the air, the calls, each task of the firmware, and each slot that the processor spoke to: what
-// is tall happened, or was most. One path a lane and kind; only calls have a title.
+// A lane for each direction of the air, the calls, each task of the firmware, and each slot that
+// the processor accessed: tall marks are events, or most accesses. One path a lane and kind; only
+// calls have a title.
 function showTimeline(state) {
     const events = state.events, svg = $('timeline'), width = svg.getBoundingClientRect().width || 1200, left = 120, height = 22;
     if (!events.length || !state.air) return;
@@ -71,7 +72,7 @@ function showTimeline(state) {
     const bar = (ns, share, wide = 1.5) => `M${x(ns).toFixed(1)} 0h${wide}v${-Math.max(2, 16 * share).toFixed(1)}h${-wide}z`;
     for (const name of ['ground to UAV', 'UAV to ground', 'calls, ground', 'calls, UAV']) lane(name);
     const names = new Map(state.slots.map(s => [s.slot, s.block])), nameOf = slot => names.get(Number(slot)) ?? `slot ${slot}`;
-    let since = null; // when the task under way went on
+    let since = null; // start of the running task
     for (const e of [...events.filter(e => e.task), {ns: end}]) {
         if (since && since.task !== 'idleTask' && e.ns > begin)
             lane(since.task).mark += bar(Math.max(since.ns, begin), 1, Math.max(1, x(e.ns) - x(Math.max(since.ns, begin))).toFixed(1));

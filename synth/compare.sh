@@ -36,7 +36,9 @@ synthesise() { # commit folder
     "$program" --jobs "$jobs" >build.log || [ $? -eq 1 ] || exit 2
     cd "$here"
 }
-# A row: the commit, as the regression names it; of its runs that are kept the one with most tests; its coverage.
+# A row: the commit, as the regression names it; of its stored runs the one with most tests; its
+# coverage.
+# coverage.
 row() { # name
     /usr/bin/python3 - "$1" <<'END'
 import json, pathlib, sys

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// table1: what the paper's Table I counts: FSMC bridge, memory controller with two NPI ports, radio IP.
+// table1: the content of the paper's Table I: FSMC bridge, memory controller with two NPI ports,
+// radio IP.
+// radio IP.
 //
 // The system slot (page register, errors) is not in the table: its signals are ports here, and its
 // slot answers as an empty one does.

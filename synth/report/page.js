@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// page: the utilisation report at work: which rows and points its tables and charts show of the figures.
+// page: fills the utilisation report's tables and charts from the figures.
 const byId = id => document.getElementById(id);
 const data = JSON.parse(byId("data").textContent), usable = data.designs.filter(d => d.figures);
 const share = (part, whole) => (100 * part / whole).toFixed(1) + " %";
@@ -11,7 +11,7 @@ const parent = p => p.slice(0, Math.max(0, p.lastIndexOf(".")));
 const [wanted, inside] = decodeURIComponent(location.hash.slice(1)).split("/");
 let picked = usable.find(d => d.name === wanted) ?? usable[0], path = picked?.name === wanted && inside || "", signals;
 
-// File and line of a signal of the picked design, "" where it is not known.
+// File and line of a signal of the picked design, "" if unknown.
 const place = signal => picked.figures.nets.places[signal.replace(/\[\d+\]$/, "")] ?? "";
 function link(at) {
   if (!at) return "";
@@ -27,7 +27,7 @@ function bar(value, whole) {
   span.append(part, String(value));
   return span;
 }
-// A column of what has changed: more is bad, less is good.
+// A column of changes: more is bad, less is good.
 const changes = (title, by, isBad = n => n > 0) => [title, by, r => by(r) ? element("span", signed(by(r)), isBad(by(r), r) ? "bad" : by(r) < 0 ? "good" : "") : ""];
 
 // ---- Verdict, chip, and the paper's table
@@ -38,7 +38,7 @@ function showVerdict() {
     failures.length ? "bad" : stale ? "soft" : "good"), ...failures.map(f => element("p", f, "bad")), ...notes.map(n => element("p", n, "soft")));
   byId("about").textContent = `${data.chip.name}, ${data.yosys}, commit ${data.commit || "unknown"}`;
 }
-// The chip as the whole of it, or the largest design that there is, fills it, beside what the paper's own takes of it.
+// How much the chip, or the largest design, fills of it, beside the paper's own.
 function showChip() {
   const d = usable.find(d => d.limits.lut === data.chip.lut) ?? usable.reduce((a, b) => b.figures.lut > a.figures.lut ? b : a), f = d.figures;
   byId("chip-title").textContent = `${data.chip.name}, filled by ${d.name}`;
@@ -73,11 +73,11 @@ function showPaper() {
 }
 
 // ---- The table of designs
-// The clock, and between which it is with the netlist in other orders.
+// The clock, with its range over other orders of the netlist.
 function clock(f) {
   return f.mhz.toFixed(0) + (f.clocks.length ? ` (${f.mhzRange.map(mhz => mhz.toFixed(0)).join("-")})` : "");
 }
-// Modules stand in their folders, which fold; a folder sorts by the most that a module in it has.
+// Modules stand in their folders, which fold; a folder sorts by its largest module.
 function showDesigns() {
   const folders = new Map(), rows = [];
   for (const d of usable) {
@@ -124,7 +124,7 @@ function treeOf(costs) { // {name, path, own: [LUT, FF], sum: [LUT, FF], childre
   for (const n of Object.values(known)) n.children.sort((a, b) => b.sum[0] - a.sum[0] || b.sum[1] - a.sum[1]);
   return node("");
 }
-// What belongs to the instance that the path names.
+// The part of the figures that belongs to the instance at the path.
 function showInstance() {
   byId("here").textContent = `Signals of ${path || picked.top}`;
   const below = path && path + ".", here = Object.entries(picked.costs).filter(([p]) => p === path || p.startsWith(below))
@@ -145,7 +145,9 @@ function showInstance() {
   details.append(element("summary", `Netlist of ${module}`), body);
   byId("picture").replaceChildren(...(data.pictures[module] ? [details] : []));
 }
-// How many registers and memories have how much time left of the clock's period, at the slower grade; half a ns a bar.
+// Number of registers and memories by the time left in the clock's period, at the slower grade;
+// half a ns a bar.
+// half a ns a bar.
 function showSlack() {
   const ends = picked.figures.timing.ends, period = 1000 / data.chip.mhz;
   const slack = Array.from({ length: Math.max(ends.length, 2 * period + 1) }, (_, i) => period - (i + 1) / 2).reverse(); // at least so much

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// baseline: the accepted figures of all designs (synth/baseline.json), and what has grown since.
+// baseline: the accepted figures of all designs (synth/baseline.json), and growth since.
 
 #include "baseline.h"
 
@@ -182,7 +182,7 @@ Verdict judge(const Row& row, const Baseline& baseline, const string& yosys, dou
     const Figures& f = row.main->figures;
     const auto accepted = baseline.designs.find(name);
     const bool known = accepted != baseline.designs.end();
-    // Another Yosys counts otherwise: a design is judged only by the version of the accepted
+    // Another Yosys counts differently: a design is judged only by the version of the accepted
     // figures.
     const bool comparable =
         baseline.yosys.empty() || shortVersion(baseline.yosys) == shortVersion(yosys);

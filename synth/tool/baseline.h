@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// baseline: the accepted figures of all designs (synth/baseline.json), and what has grown since.
+// baseline: the accepted figures of all designs (synth/baseline.json), and growth since.
 
 #pragma once
 
@@ -23,7 +23,7 @@ struct Baseline {
     std::map<std::string, Accepted> designs;
 };
 
-Baseline readBaseline(const std::string& text); // throws on what is none; "" gives an empty one
+Baseline readBaseline(const std::string& text); // throws for malformed text; "" gives an empty one
 std::string written(const Baseline& baseline);
 Accepted acceptedFrom(const Figures& figures);
 AcceptedCounts countsOf(const Baseline& baseline);
@@ -43,10 +43,10 @@ std::vector<Change> changedInstances(const Costs& before, const Costs& after);
 struct Verdict {
     std::vector<std::string> failures, notes;
 };
-// Judges a design. Its budget is the accepted figure and a little more, since optimisation is no
-// exact science: 3 % + 4 LUTs, 1 % + 2 flip-flops. A limit must be kept, whatever is accepted. So
-// must the clock (`goal`, MHz) by a design that was accepted with it; one that was accepted below
-// it may lose a tenth.
+// Judges a design. Its budget is a little more than the accepted figure, since optimisation is a
+// heuristic: 3 % + 4 LUTs, 1 % + 2 flip-flops. A limit must be kept, whatever is accepted. So must
+// the clock (`goal`, MHz) by a design that was accepted with it; one that was accepted below it may
+// lose a tenth.
 Verdict judge(const Row& row, const Baseline& baseline, const std::string& yosys, double goal);
 // Returns a sentence for each limit of synth/designs.json that is exceeded.
 std::vector<std::string> aboveLimits(const Row& row);

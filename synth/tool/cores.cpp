@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// cores: what each core takes of the chip: itself, its registers, its slot of the decoder, its
+// cores: the cost of each core in the chip: itself, its registers, its slot of the decoder, its
 // memory port.
 
 #include "cores.h"
@@ -18,9 +18,9 @@ using std::string;
 
 namespace {
 
-constexpr int firstSlot = 2; // those below are the platform's
+constexpr int firstSlot = 2; // lower ones are the platform's
 
-// Sums up the instances whose path fits.
+// Sums up the instances with a matching path.
 Cost costOf(const Costs& chip, const string& pattern) {
     const std::regex path(pattern);
     Cost sum;

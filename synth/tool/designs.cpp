@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// designs: what is synthesised, against which limits (synth/designs.json and the modules found).
+// designs: the designs to synthesise, and their limits (synth/designs.json and the modules found).
 
 #include "designs.h"
 
@@ -21,7 +21,7 @@ bool endsWith(const std::string& name, const std::string& end) {
     return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
 }
 
-// "// name: one sentence" at the head of a file, or what a converted core says of itself.
+// "// name: one sentence" at the head of a file, or a converted core's own sentence.
 std::string sentenceOf(const fs::path& file, const std::string& module) {
     std::ifstream in(file);
     std::string line;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// designs: what is synthesised, against which limits (synth/designs.json and the modules found).
+// designs: the designs to synthesise, and their limits (synth/designs.json and the modules found).
 
 #pragma once
 
@@ -22,7 +22,7 @@ struct Design {
     std::map<std::string, std::string> parameters;
     std::map<std::string, int> limits; // "lut", "ff", "slices": not to be exceeded
     bool beside = false;               // the paper has figures for it
-    int orders = 0; // further orders of inputs and outputs in which it is mapped: one clock is luck
+    int orders = 0; // further orders of inputs and outputs for mapping: one clock is luck
 };
 
 struct Plan {

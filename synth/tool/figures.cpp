@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// figures: what one design takes of one chip family: the result of a synthesis run.
+// figures: the cost of one design on one chip family: the result of a synthesis run.
 
 #include "figures.h"
 

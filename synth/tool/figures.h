@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// figures: what one design takes of one chip family: the result of a synthesis run.
+// figures: the cost of one design on one chip family: the result of a synthesis run.
 
 #pragma once
 
@@ -40,7 +40,7 @@ struct Figures {
     // The median of all orders' clocks, which is judged; the slowest and the fastest of them.
     double mhz() const;
     std::pair<double, double> mhzRange() const;
-    int luts(int inputs) const; // logic LUTs of so many inputs
+    int luts(int inputs) const; // logic LUTs with this many inputs
 };
 
 Figures figuresOf(const Netlist& netlist, bool spartan6, const FilesAlong& filesAlong);

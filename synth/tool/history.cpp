@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// history: the accepted figures of earlier commits, as git has them.
+// history: the accepted figures of earlier commits, from git.
 
 #include "history.h"
 
@@ -35,7 +35,7 @@ std::vector<Commit> history(const std::filesystem::path& source, size_t count) {
         try {
             c.baseline = readBaseline(git(source, {"show", c.id + ":synth/baseline.json"}));
         } catch (const std::exception&) {
-            continue; // of another format, or the file was taken away: nothing to show
+            continue; // another format, or the file was removed: nothing to show
         }
         if (!c.baseline.designs.empty())
             commits.push_back(std::move(c));

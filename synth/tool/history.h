@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// history: the accepted figures of earlier commits, as git has them.
+// history: the accepted figures of earlier commits, from git.
 
 #pragma once
 

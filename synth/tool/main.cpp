@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// utilisation: what the chip and each of its parts take of the FPGA, beside limits and the paper.
+// utilisation: the cost of the chip and of each of its parts, beside limits and the paper.
 
 #include "cores.h"
 #include "designs.h"
@@ -32,7 +32,7 @@ struct Options {
     std::string yosys = "yosys";
     unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
     bool accept = false;
-    std::vector<std::string> cores; // only what these cost
+    std::vector<std::string> cores; // print only their cost
     std::string nextpnr;            // places the designs for ECP5
     std::string edif;               // a design's name
     std::string compare;            // another report.json
@@ -101,14 +101,14 @@ void writeReports(const Report& r, const Options& o) {
     fmt::print("Page: {}\n", (o.output / "report.html").string());
 }
 
-// Records what was measured; designs that were not are left as they are. What is above a limit of
-// synth/designs.json is refused: a limit moves there, or not at all.
+// Records the measured figures; other designs stay as they are. A figure above a limit of
+// synth/designs.json is refused: only an edit moves a limit.
 int accept(const Report& r, const fs::path& file) {
     Baseline b = r.baseline;
     if (shortVersion(b.yosys) != shortVersion(r.yosys))
         b.designs.clear(); // figures of two versions do not belong together
     b.yosys = r.yosys;
-    std::map<std::string, Accepted> kept; // without designs that are gone
+    std::map<std::string, Accepted> kept; // without removed designs
     for (const Row& row : r.rows) {
         const std::string& name = row.design->name;
         if (!row.main->wanted) {
@@ -183,7 +183,7 @@ std::vector<Run> synthesise(const Plan& plan, const Library& library, const Runn
     return runs;
 }
 
-// Reads a file of ours, whose name is in what is thrown.
+// Reads a project file; exceptions have its name.
 template <class Read> auto named(const fs::path& file, Read read) {
     try {
         return read();
@@ -197,9 +197,9 @@ Baseline acceptedOf(const Options& o) {
     return named(file, [&] { return readBaseline(fs::exists(file) ? readFile(file) : ""); });
 }
 
-// Tells what some cores cost in the chip, whatever the limits: in the one that was synthesised, the
-// only design wanted, or, without `runs`, in the accepted one, of which a core that is not there
-// yet is no error. Returns 1 if the synthesis failed.
+// Prints some cores' cost in the chip, whatever the limits: in the synthesised chip, the only
+// requested design, or, without `runs`, in the accepted one, where missing cores are allowed.
+// Returns 1 if the synthesis failed.
 int tellCores(const Library& library, const RunnerOptions& options, const Options& o,
               const std::vector<Run>& runs) {
     const auto run = std::find_if(runs.begin(), runs.end(), [](const Run& r) { return r.wanted; });
@@ -238,11 +238,11 @@ int report(const Options& o) {
     const Library library = rtlOf(o);
     const fs::path designs = o.source / "synth/designs.json";
     Plan plan = named(designs, [&] { return readPlan(designs, library, o.source); });
-    if (!o.cores.empty()) // other orders are there for the median of clocks
+    if (!o.cores.empty()) // other orders only serve the median of clocks
         for (Design& design : plan.designs)
             design.orders = 0;
     checkNames(plan, o);
-    // A design that another run is synthesising is then found in the cache.
+    // The cache then has a design that another run is synthesising.
     const FolderLock lock(o.output, "utilisation");
     const RunnerOptions options{o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs};
     if (!o.edif.empty()) {

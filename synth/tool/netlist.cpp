@@ -37,7 +37,7 @@ bool generated(const std::string& last) { // names that GHDL makes up: n123_o, n
     return last[0] == 'n' && i > 1 && (i == last.size() || last[i] == '_');
 }
 
-// Ranks the names of one bit; the lowest says who drives it. It is not an input of the block below,
+// Ranks the names of one bit; the lowest is its driver's. It is not an input of the block below,
 // and is the deepest, since outputs are passed up.
 std::tuple<bool, bool, long, size_t> rank(const std::string& name) {
     const std::string last = name.substr(name.rfind('.') + 1);

@@ -27,7 +27,7 @@ struct Cell {
     std::vector<Pin> pins;
 
     const Pin* pin(const std::string& port) const;
-    int bit(const std::string& port) const; // the only bit of a port, bitUndefined if not there
+    int bit(const std::string& port) const; // the port's only bit, bitUndefined without one
 };
 
 struct Port {
@@ -40,8 +40,8 @@ struct Netlist {
     std::string top;
     std::vector<Cell> cells;
     std::vector<Port> ports;
-    // Names that the source gives a bit, "u_modem.u_at.state" and its index in the vector (-1 if it
-    // is none), first the one that most likely is its driver's.
+    // Names of a bit in the source, "u_modem.u_at.state" and its index in the vector (-1 without
+    // one), first the most likely name of its driver.
     struct Name {
         std::string name;
         int index = -1;
@@ -58,11 +58,11 @@ struct Netlist {
     std::string nameOf(int bit) const;
 };
 
-Netlist readNetlist(const std::filesystem::path& file); // throws on what is no such file
+Netlist readNetlist(const std::filesystem::path& file); // throws for another kind of file
 
 // Kinds of cells, by the names of Xilinx's and Lattice's libraries.
 int lutInputs(const std::string& type);  // LUT1..LUT6 and INV: 1..6; else 0
-int memoryLuts(const std::string& type); // LUTs that a LUT RAM takes; else 0
+int memoryLuts(const std::string& type); // LUTs of a LUT RAM; else 0
 bool isShiftRegister(const std::string& type);
 bool isFlipFlop(const std::string& type);
 bool isLatch(const std::string& type);

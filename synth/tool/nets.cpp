@@ -29,8 +29,8 @@ string relative(const fs::path& file) {
     return file.lexically_proximate(file.is_absolute() ? fs::current_path() : ".").string();
 }
 
-// The place in VHDL of a signal that GHDL declares at a line of its Verilog: it stands in the
-// comment before the statement that gives it its value. A port has none, but what it is given has.
+// The place in VHDL of a signal that GHDL declares at a line of its Verilog: the comment before the
+// statement that assigns it. A port has none, but the signal assigned to it has.
 string placeInVhdl(const Lines& lines, size_t declared, const string& name) {
     static const std::regex comment(R"(^ */\* (\S+\.vhdl?:\d+):\d+ +\*/$)");
     static const std::regex copied(R"(^ *assign \S+ = (\w+); // *\((module output|signal)\))");
@@ -58,7 +58,7 @@ string placeInVhdl(const Lines& lines, size_t declared, const string& name) {
 string nameOr(const Netlist& n, const std::vector<string>& owners, int bit) {
     const auto driver = n.driver.find(bit);
     if (const auto port = n.names.find(bit); driver == n.driver.end() && port != n.names.end())
-        return port->second.back().text(); // the top's own, not that of an instance's input
+        return port->second.back().text(); // the top's own, not an instance's input
     const string name = n.nameOf(bit);
     return !name.empty() || driver == n.driver.end() ? name : forOwner + owners[driver->second];
 }

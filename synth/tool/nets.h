@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// nets: clocks, resets and the nets with most ends of a Spartan-6 netlist, and where each signal
-// stands in the sources.
+// nets: clocks, resets and widest nets of a Spartan-6 netlist, and the place of each signal in the
+// sources.
 
 #pragma once
 
@@ -13,7 +13,7 @@
 #include <vector>
 
 struct Net {
-    std::string name; // as the source has it, or "(for) " and what it drives
+    std::string name; // the source's name, or "(for) " and the driven one
     std::string kind; // of a reset: synchronous, asynchronous; else the type of the driver's cell
     int ends = 0;     // pins that it drives
     int flipFlops = 0;
@@ -21,7 +21,7 @@ struct Net {
 };
 
 struct Nets {
-    std::vector<Net> fanouts, clocks, resets;  // most ends first; clocks are no fanouts
+    std::vector<Net> fanouts, clocks, resets;  // widest first; clocks are no fanouts
     std::map<std::string, std::string> places; // signal -> "hdl/modem/modem.v:97"
 };
 
@@ -30,6 +30,6 @@ Nets netsOf(const Netlist& netlist, const std::vector<std::string>& owners, cons
 bool isClock(const std::string& port);
 std::string withoutIndex(const std::string& signal); // "u_modem.state[3]" -> "u_modem.state"
 
-// File and line where a signal ("u_modem.state[3]") is declared; of a core in VHDL, where GHDL
-// says that it is made: names of intermediate values (n71_o) are GHDL's own. "": not known.
+// File and line of a signal's declaration ("u_modem.state[3]"); for a core in VHDL the line that
+// GHDL gives: names of intermediate values (n71_o) are GHDL's own. "": unknown.
 std::string placeOf(const Netlist& netlist, const std::string& signal);

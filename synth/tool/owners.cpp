@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// owners: whose each cell of a flat netlist is: an instance path and a signal of the source.
+// owners: the owner of each cell in a flat netlist: an instance path and a signal of the source.
 
 #include "owners.h"
 
@@ -47,8 +47,8 @@ string blockOf(const string& owner) { // of the top: "u_fir.u_filter.sum" -> "u_
 }
 
 // Gives the logic that reads a slot's registers to the block in the slot. It is one cone with the
-// bus decoder's multiplexer, in which optimisation leaves no name, and so the decoder's by now:
-// what has only one block's signals at its inputs, beside the decoder's own, is that block's.
+// bus decoder's multiplexer, without names of its own, and so the decoder's by now. Logic with only
+// one block's signals at its inputs, besides the decoder's own, belongs to that block.
 class SlotReads {
 public:
     SlotReads(const Netlist& n, std::vector<string>& owners) : n_(n), owners_(owners) {
@@ -67,7 +67,7 @@ private:
 
     const std::set<string>& blocksBehind(size_t cell) {
         const auto [at, isNew] = behind_.emplace(cell, std::set<string>());
-        std::set<string>& blocks = at->second; // stays where it is
+        std::set<string>& blocks = at->second; // valid while others are inserted
         if (isNew)
             for (const Pin& pin : n_.cells[cell].pins)
                 for (const int bit : pin.bits)
@@ -128,7 +128,7 @@ private:
         return best;
     }
 
-    // The best of several names of one net is the one in the module that the cell comes from.
+    // The best of several names of one net is in the module that the cell comes from.
     string nameFor(const Cell& cell, const std::vector<Netlist::Name>& names) {
         for (const Netlist::Name& name : names) {
             const string path = splitName(name.name).first;

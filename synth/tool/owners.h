@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// owners: whose each cell of a flat netlist is: an instance path and a signal of the source.
+// owners: the owner of each cell in a flat netlist: an instance path and a signal of the source.
 
 #pragma once
 
@@ -24,16 +24,15 @@ struct Cost {
     bool empty() const { return lut == 0 && ff == 0 && carry == 0 && ram == 0 && dsp == 0; }
 };
 
-// (instance path, "" for the top; signal) -> cost. A flip-flop is its register's. Logic is the
-// named wire's that it drives; where optimisation has left no name, it is whose logic it feeds
-// most.
+// (instance path, "" for the top; signal) -> cost. A flip-flop belongs to its register. Logic
+// belongs to the named wire that it drives; where optimisation has left no name, to the owner of
+// most logic behind it.
 using Costs = std::map<std::pair<std::string, std::string>, Cost>;
 
 // Files (names only) of the modules along an instance path, the top's included.
 using FilesAlong = std::function<std::set<std::string>(const std::string& path)>;
 
-// Returns, for each cell, the signal with its path, "u_modem.u_at.state"; "" if nothing near it has
-// a name.
+// Returns, for each cell, the signal with its path, "u_modem.u_at.state"; "" without a name nearby.
 std::vector<std::string> ownersOf(const Netlist& netlist, const FilesAlong& filesAlong);
 Costs costsOf(const Netlist& netlist, const std::vector<std::string>& owners);
 Cost costOf(const Cell& cell);

@@ -19,7 +19,7 @@ namespace {
 constexpr size_t mostLines = 140;      // of the drawing's description: boxes and arrows
 constexpr size_t mostBytes = 64 << 10; // of a picture, so that the page stays small
 
-// The module's own netlist, before it is mapped: as the source has it, instances as boxes.
+// The module's own netlist, before mapping: as in the source, with instances as boxes.
 string scriptFor(const Library& library, const Design& design, const fs::path& stem) {
     string script;
     for (const fs::path& folder : library.includeFolders())
@@ -35,7 +35,7 @@ void draw(const Library& library, const Design& design, const RunnerOptions& opt
           const fs::path& stem) {
     const string script = stem.string() + ".picture.ys", dot = stem.string() + ".dot";
     writeFile(script, scriptFor(library, design, stem));
-    string svg; // nothing, if it is too large
+    string svg; // empty if it is too large
     if (run({options.yosys, "-q", "-s", script}).status == 0) {
         const string text = readFile(dot);
         if (static_cast<size_t>(std::count(text.begin(), text.end(), '\n')) <= mostLines &&
@@ -59,7 +59,7 @@ std::map<string, string> drawNetlists(const Plan& plan, const Library& library,
         fmt::print(stderr, "no netlist pictures: Graphviz' dot does not run\n");
         return pictures;
     }
-    // Of Graphviz' text what the page does not show, a quarter of it.
+    // Removes a quarter of Graphviz' text, which the page does not show.
     const std::regex unused("<!--[^>]*>\n|<title>[^<]*</title>\n|"
                             " font-(family|size)=\"[^\"]*\"| (id|class)=\"[^\"]*\"");
     std::mutex mutex;

@@ -45,8 +45,7 @@ json instancesJson(const Costs& costs) { // {path: [LUT, FF]}
     return j;
 }
 
-// The figures as the cache has them, without the costs (costsJson), and what is calculated from
-// them.
+// The figures as in the cache, without the costs (costsJson), and values calculated from them.
 json figuresJson(const Figures& f) {
     json j = f;
     j.erase("costs");

@@ -22,15 +22,14 @@ struct Report {
     std::vector<Commit> commits;
     std::string yosys, commit;
     std::map<std::string, std::string> pictures; // module -> SVG of its netlist
-    TextTable cores; // what each core takes of the chip; empty where that is not known
+    TextTable cores;                             // each core's cost in the chip; empty if unknown
 };
 
 std::string entriesJson(const Report& report); // docs: the contract of all figures
 std::string markdown(const Report& report);
-// The differences between two files of entriesJson as a table in Markdown; what only one of them
-// has is new or gone.
+// The differences between two files of entriesJson as a table in Markdown; entries of only one file
+// are new or gone.
 std::string differences(const std::string& before, const std::string& after);
-// Writes the page from the files of synth/report: "@STYLE@", "@SCRIPT@" and "@DATA@" in it are
-// replaced.
+// Writes the page from the files of synth/report, with "@STYLE@", "@SCRIPT@" and "@DATA@" replaced.
 std::string html(const Report& report, const std::string& page, const std::string& style,
                  const std::string& script);

@@ -49,7 +49,7 @@ std::string scriptOf(const Run& run, const Library& library, const RunnerOptions
     std::string script = readFile(options.scripts / (run.family + ".ys"));
     const std::string map = readFile(options.scripts / "xilinx_map.ys");
     std::string orders;
-    if (ordersOf(run) != 0) // elaborated anew: a copy made before would change the first mapping
+    if (ordersOf(run) != 0) // elaborated anew: an earlier copy would change the first mapping
         orders = fmt::format("design -reset\n{}design -save unmapped\n",
                              script.substr(0, script.find("@MAP@")));
     for (int order = 1; order <= ordersOf(run); order++) {
@@ -67,7 +67,7 @@ std::string scriptOf(const Run& run, const Library& library, const RunnerOptions
     return replaceAll(script, "@OUTPUT@", output);
 }
 
-// The lines of a log that say what is wrong.
+// The error lines of a log.
 std::string errorsIn(const std::string& log) {
     std::istringstream lines(log);
     std::string line, errors, last;
@@ -163,7 +163,7 @@ void carryOut(std::vector<Run>& runs, const Library& library, const RunnerOption
     fs::create_directories(options.cache);
     const std::string program = hexHash({readFile("/proc/self/exe")});
 
-    // Designs with limits first, since these are looked at; then the largest: none of them is begun
+    // Designs with limits first, since these are looked at; then the largest, so that none starts
     // when all others are done.
     std::vector<std::pair<std::uintmax_t, size_t>> order;
     for (size_t i = 0; i < runs.size(); i++) {

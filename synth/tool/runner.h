@@ -19,7 +19,7 @@ struct Run {
     Figures figures;
     std::string error; // why there are no figures, "" if there are
     bool cached = false;
-    bool wanted = true; // false: only what is in the cache is told
+    bool wanted = true; // false: only the cache is read
 };
 
 struct RunnerOptions {
@@ -29,7 +29,7 @@ struct RunnerOptions {
     unsigned jobs = 1;
 };
 
-// Carries all runs out, says on stderr which is done. A failed run does not stop the others.
+// Executes all runs and prints each end on stderr. A failed run does not stop the others.
 void carryOut(std::vector<Run>& runs, const Library& library, const RunnerOptions& options);
 
 // Writes a design as EDIF, FOLDER/<name>.edf, by the script edif.ys, and its Verilog to
@@ -37,5 +37,5 @@ void carryOut(std::vector<Run>& runs, const Library& library, const RunnerOption
 void writeEdif(const Design& design, const Library& library, const RunnerOptions& options,
                const std::filesystem::path& folder);
 
-// Returns what the program says of its version; throws if it does not run.
+// Returns the program's version text; throws if it does not run.
 std::string versionOf(const std::string& yosys);

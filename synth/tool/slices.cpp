@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// slices: how many slices of four LUT6 and eight flip-flops a netlist takes (docs/utilisation.md).
+// slices: estimates the slices of four LUT6 and eight flip-flops of a netlist
+// (docs/utilisation.md).
+// (docs/utilisation.md).
 
 #include "slices.h"
 
@@ -28,9 +30,8 @@ std::set<int> inputsOf(const Cell& cell) {
     return bits;
 }
 
-// LUT6 sites for these LUTs: two share one if together they have five inputs at most. Greedy, the
-// partner with most inputs in common first; LUTs with nothing in common are left apart, as map
-// does.
+// LUT6 sites for these LUTs: two share one if together they have at most five inputs. Greedy, the
+// partner with most inputs in common first; LUTs without common inputs stay apart, as in map.
 int sitesFor(const std::vector<std::set<int>>& luts) {
     std::unordered_map<int, std::vector<size_t>> readers;
     for (size_t i = 0; i < luts.size(); i++)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// sources: which Verilog files a module needs, found by reading their instances.
+// sources: finds the Verilog files of a module, by reading their instances.
 
 #include "sources.h"
 
@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Identifiers, and the punctuation that instances are recognised by; no comments, no strings. An
-// include directive becomes the token `include and the file's name.
+// Identifiers, and the punctuation around instances; no comments, no strings. An include directive
+// becomes the token `include and the file's name.
 std::vector<std::string> tokens(const std::string& text) {
     std::vector<std::string> result;
     size_t i = 0;
@@ -65,7 +65,7 @@ size_t closing(const std::vector<std::string>& t, size_t open) {
     return t.size();
 }
 
-// Tokens of a file, and behind each include those of the file that it names, where that is known.
+// Tokens of a file, with those of included files behind each include, where known.
 std::vector<std::string> allTokens(const fs::path& file,
                                    const std::vector<fs::path>& includeFolders) {
     std::vector<std::string> result;
@@ -126,7 +126,7 @@ Library::Library(const std::vector<fs::path>& folders, const std::vector<fs::pat
     }
     for (const fs::path& file : files)
         scan(file, includeFolders, modules_);
-    for (auto& [name, module] : modules_) // what is not a module was no instance
+    for (auto& [name, module] : modules_) // a name that is no module was no instance
         for (auto it = module.instances.begin(); it != module.instances.end();)
             it = has(it->second) ? std::next(it) : module.instances.erase(it);
 }

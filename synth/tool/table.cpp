@@ -100,7 +100,7 @@ TextTable paperTable(const Plan& plan, const Row& row) {
     return t;
 }
 
-// The LUTs, and between which they are with the netlist in other orders: "863 (858-865)".
+// The LUTs, with their range over other orders of the netlist: "863 (858-865)".
 static string lutText(const Figures& f) {
     return f.otherLuts.empty()
                ? std::to_string(f.lut)

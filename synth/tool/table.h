@@ -32,11 +32,11 @@ private:
 };
 
 TextTable paperTable(const Plan& plan, const Row& row);
-// `accepted`: LUTs and flip-flops by design, to tell what has changed.
+// `accepted`: LUTs and flip-flops by design, for the changes.
 using AcceptedCounts = std::map<std::string, std::pair<int, int>>;
 TextTable designTable(const Plan& plan, const std::vector<Row>& rows,
                       const AcceptedCounts& accepted);
-// Writes where a design's cost is: the instances, with all below them.
+// Writes a design's cost by instance, with all below it.
 TextTable costTable(const Library& library, const Row& row, size_t depth);
 TextTable pathTable(const Plan& plan, const Row& row, size_t count);
 std::string percent(double part, double whole); // "18.9 %"

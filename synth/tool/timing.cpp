@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// timing: the longest paths of a Spartan-6 netlist, by an estimate as XST makes it before
-// placement.
+// timing: estimates the longest paths of a Spartan-6 netlist, as XST does before placement.
 
 #include "timing.h"
 
@@ -41,15 +40,15 @@ bool isAddress(const string& port) {
     return port[0] == 'A' || startsWith(port, "DPRA"); // ADDRA.., A0.., DPRA0..
 }
 
-// True if a memory's output follows this address port: DOA follows ADDRA, DPO DPRA0.., SPO A0..;
-// none follows the write port.
+// True if a memory's output follows this address port: DOA follows ADDRA, DPO DPRA0.., SPO A0..; no
+// output follows the write port.
 bool isRead(const string& address, const string& output) {
     if (startsWith(address, "ADDR"))
         return output.size() < 3 || address.back() == output[2];
     return startsWith(address, "DPRA") ? output == "DPO" : output != "DPO";
 }
 
-// True for an address port that nothing is written at: no path ends there.
+// True for an unused write address: no path ends there.
 bool isReadOnly(const string& port) {
     return port == "ADDRA" || port == "ADDRB" || port == "ADDRC" || startsWith(port, "DPRA");
 }
@@ -182,7 +181,7 @@ private:
     std::array<std::unordered_map<int, Arrival>, 2> known_;
 };
 
-// The register or memory that drives a bit; where it has no name of its own, what it is for.
+// The register or memory that drives a bit; without a name of its own, its purpose.
 string startName(const Netlist& n, const std::vector<string>& owners, int bit) {
     const string name = n.nameOf(bit);
     const auto driver = n.driver.find(bit);

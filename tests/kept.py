@@ -29,12 +29,12 @@ STRING = re.compile(r'"((?:[^"\\]|\\.)+)"')
 
 
 def portable(text):
-    """The text with the same word for any clone's folder."""
+    """Returns the text with the same word for any clone's folder."""
     return re.sub(re.escape(ROOT) + r"(?![\w.-])", "@ROOT@", text)
 
 
 def state(path, listed):
-    """What a run can have seen of a path: nothing, a folder (and its names, where it was listed), a file."""
+    """Returns what a run can have seen of a path: nothing, a folder (and its names, where it was listed), a file."""
     try:
         status = os.stat(path)
         if stat.S_ISDIR(status.st_mode):
@@ -47,7 +47,7 @@ def state(path, listed):
 
 
 def touched(trace):
-    """{path: (was it listed, did the run write it)} of strace's lines."""
+    """Returns {path: (was it listed, did the run write it)} of strace's lines."""
     lines = pathlib.Path(trace).read_text(errors="surrogateescape").splitlines()
     whole = "\n".join(lines)
     here = {os.getcwd(), *re.findall(r"AT_FDCWD<(/[^>]*)>", whole)}  # folders that relative paths may begin in
@@ -103,7 +103,7 @@ def main():
             if (path + "/").startswith((own or "/dev/", folder + "/", "/proc/", "/dev/", "/sys/")):
                 continue
             if not written and (listed or os.path.isfile(path)) and os.path.exists(path) and os.stat(path).st_mtime_ns > begin:
-                return 0  # somebody has changed it since: which state was read?
+                return 0  # another process has changed it since: the state that was read is unknown
             seen[portable(path)] = (listed, state(path, listed))
     verdict = {"date": datetime.datetime.now().strftime("%Y-%m-%d %H:%M"), "said": portable(said.decode(errors="replace")), "seen": seen}
     store.parent.mkdir(parents=True, exist_ok=True)

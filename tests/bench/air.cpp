@@ -16,7 +16,7 @@ unsigned leastExponent = 2;            // RN, as controller and ground set it
 constexpr int pictures = 0, calls = 1; // channels
 const char* const key = "0123456789ABCDEF0123456789ABCDEF";
 
-// Who encrypts: nobody, the modems, or the link layer with a key (docs/link.md).
+// Encrypted by nobody, by the modems, or by the link layer with a key (docs/link.md).
 enum Mode { Clear, Encrypted, Keyed };
 const char* const columns[] = {"clear    ", "encrypted", "keyed    "};
 const char* const names[] = {"in the clear", "encrypted", "with a key"};
@@ -78,7 +78,8 @@ public:
 
 Figures figures("The radio link on a half-duplex air with the modems' own limits.");
 
-// Bytes a second that come to the second and to the first modem, in so many seconds.
+// Returns bytes a second that arrive at the second and at the first modem, within this many
+// seconds.
 std::array<double, 2> flow(World& w, bool both, uint64_t seconds) {
     const uint64_t start = w.now;
     w.until(
@@ -198,8 +199,7 @@ void peers(Mode mode) {
                 "ms", ms);
 }
 
-// A call of one byte while pictures of 8 KB come from the one that is called, one behind the
-// other.
+// A call of one byte while the called side sends pictures of 8 KB, one after the other.
 void headOfLine(Mode mode) {
     for (double loss : {0.0, 0.1}) {
         RfWeather weather;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// chip_tb: the chip at rest for +clocks=n clocks, for Icarus: what the simulator does with --every-clock.
+// chip_tb: the chip at rest for +clocks=n clocks, for Icarus, as the simulator with --every-clock.
 
 `timescale 1ns / 1ps
 `default_nettype none

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// crypto: what a key costs: Ascon in C on the Cortex-M3 beside the chip's core behind the FSMC.
+// crypto: the cost of a key: Ascon in C on the Cortex-M3 beside the chip's core behind the FSMC.
 
 #include "driver_port.h"
 #include "figures.h"
@@ -37,9 +37,9 @@ std::vector<double> between(const std::string& elf) {
     return took;
 }
 
-// Cycles of HCLK for which the FSMC is busy where the core encrypts a frame: message and nonce over
+// Cycles of HCLK in which the FSMC is busy where the core encrypts a frame: message and nonce over
 // the bus, sizes, the start, text and tag back. The instructions around the accesses, and an
-// interrupt instead of the waiting here, come on top.
+// interrupt instead of waiting, come on top.
 double byCore(unsigned payload) {
     RfChannel air(1);
     SocModel soc(air, {}, 120, 100);

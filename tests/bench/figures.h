@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// figures: what a bench measures, collected into the JSON file that `make bench` leaves.
+// figures: collects a bench's figures into the JSON file of `make bench`.
 //
 //   int main(int argc, char** argv) {
 //       Figures figures("Speed of the FSMC bridge.");
@@ -27,9 +27,9 @@ public:
         app.add_flag("--brief", brief, "measures just enough to show that the bench works");
     }
     CLI::App app;       // for options of a bench's own
-    bool brief = false; // a second's worth; no figure is judged
+    bool brief = false; // a short measurement; no figure is judged
 
-    // Adds a figure. `limit` is what it is compared with: a physical bound, or a budget.
+    // Adds a figure. `limit` is compared with it: a physical bound, or a budget.
     nlohmann::json& add(const std::string& name, double value, const std::string& unit,
                         double limit = 0) {
         nlohmann::json entry = {
@@ -40,7 +40,7 @@ public:
         }
         return entries_.emplace_back(std::move(entry));
     }
-    // Says that a figure is not what is wanted; the bench then ends with status 1.
+    // Reports an unwanted figure; the bench then ends with status 1.
     void miss(const std::string& what) {
         if (!brief)
             missed_ += app.get_name() + ": " + what + "\n";

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// firmware: what the firmware costs on the Cortex-M3, measured while it flies against the
-// RTL.
+// firmware: the firmware's cost on the Cortex-M3, measured while it flies against the RTL.
 //
 // Cycles are those of the board: the processor's own, and for accesses the HCLK cycles at the
 // FSMC's pins (the simulator's fabric is slower than the board's; its pins keep the ratio of 6 to
@@ -141,7 +140,7 @@ void measureCalls(MeasuredFlight& f, int calls, const std::string& what, double 
     say(what + ": the platform's share of the round trip", 100 * aCall / hclk / aTrip, "%", share);
 }
 
-// Where a call's cycles go, by function, without what its callees take; the table is printed.
+// A call's cycles by function, without those of its callees; the table is printed.
 void profileCalls(MeasuredFlight& f, int calls) {
     struct Cost {
         double cycles = 0;
@@ -189,7 +188,7 @@ void profileCalls(MeasuredFlight& f, int calls) {
 
 void measureStream(MeasuredFlight& f, const std::string& what) {
     // Floods the vehicle, a window of the link and more in the queue, with one-way requests of 1 KB
-    // to nobody: link and IceC's dispatcher work, no servant, no reply.
+    // to no object: link and IceC's dispatcher work, no servant, no reply.
     f.ground.replies.clear();
     uint64_t bytes = 0;
     const std::vector<uint8_t> load(1000, 0x55);
@@ -214,8 +213,7 @@ void measureStream(MeasuredFlight& f, const std::string& what) {
     say(what + ": cycles a byte", (f.awake() - awake) / (goodput * took), "cycles");
 }
 
-// Measures from the message's last byte at IceC's endpoint to the first frame of its reply, of a
-// ping.
+// Measures a ping from the message's last byte at IceC's endpoint to the first frame of its reply.
 void measurePings(MeasuredFlight& f, const std::string& program) {
     const ElfImage& image = *f.machine.stm32().image();
     const uint32_t message = image.symbol("XBeeATEndpoint_onMessage"),
@@ -244,7 +242,7 @@ void measureStacks(MeasuredFlight& f) {
     const ElfImage& image = *f.machine.stm32().image();
     for (const char* name :
          {"radioStack", "serverStack", "clientStack", "watchStack", "idleStack", "OSTaskIdleStk"}) {
-        if (!image.has(name)) // the idle task's is called otherwise in the real uC/OS-II
+        if (!image.has(name)) // another name in the real uC/OS-II
             continue;
         uint32_t words = image.size(name) / 4, free = 0;
         while (free < words && f.cpu().word(image.symbol(name) + 4 * free) == 0)

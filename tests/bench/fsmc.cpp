@@ -122,9 +122,9 @@ void single(unsigned hclk, uint64_t seed, int count) {
                    sum / count, least);
         figures.add(fmt::format("FSMC, HCLK {} MHz, {}", hclk, what), sum / count, "clocks", least);
     };
-    // The least time: ADDSET 2, DATAST 4 and 1 HCLK of hold or turnaround; a read that waits ends 4
-    // HCLK after NWAIT and is seen through two flip-flops (1 to 2 clocks, 1.5 on average), then a
-    // clock each for noting it, for the request and for what comes back.
+    // The least time: ADDSET 2, DATAST 4 and 1 HCLK of hold or turnaround. A read that waits ends 4
+    // HCLK after NWAIT and passes two flip-flops (1 to 2 clocks, 1.5 on average), then a clock each
+    // for noting it, for the request and for the answer.
     double access = 7 * hclks, waits = (2 + 4 + 1) * hclks + 1.5;
     show("register word, 32 bits, write", 2 * access,
          [&] { master.write32(control + 4 * SYSTEM_SCRATCH, 1); });

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // load: many programs at the ground's engine, one after the other on its three channels, and many
-// clients at once at the gateway: no call is lost, doubled or answered wrongly, and memory stays as
-// it is.
+// clients at once at the gateway: no call is lost, doubled or answered wrongly, and memory does not
+// grow.
 
 #include "../sw/ground/wire.h"
 #include "figures.h"
@@ -24,14 +24,14 @@ double residentKiB(const std::string& process) {
     return static_cast<double>(resident) * 4;
 }
 
-// What programs ask, each with a number of its own.
+// The programs' calls, each with its own number.
 class Load {
 public:
     Load(unsigned programs, unsigned calls)
         : programs_(programs), calls_(calls), latencies_(calls) {}
 
 protected:
-    // Runs the programs in so many threads, with the memory of a process watched.
+    // Runs the programs in this many threads, and watches the memory of a process.
     void run(Figures& figures, unsigned threads, const std::string& process,
              const std::string& where) {
         std::vector<std::thread> workers;
@@ -63,7 +63,7 @@ protected:
             figures.miss(where + "memory has grown by " + std::to_string(grown) + " KiB");
     }
 
-    virtual int connect() = 0; // a program; -1: there is no room
+    virtual int connect() = 0; // connects a program; -1: there is no room
     Wire wire_;
 
 private:
@@ -96,7 +96,7 @@ private:
     }
 
     const unsigned programs_, calls_;
-    std::vector<float> latencies_; // as long from the start: memory is measured
+    std::vector<float> latencies_; // fixed length, since memory is measured
     std::atomic<unsigned> next_{0}, answered_{0}, ended_{0};
 };
 
@@ -111,7 +111,7 @@ private:
     std::shared_ptr<XBeeAT::Engine> engine_ = wire_.engine();
 };
 
-// Clients that come all at once to the gateway, a process of its own.
+// Clients that come all at once to the gateway, which is a separate process.
 class Clients : Load {
 public:
     using Load::Load;

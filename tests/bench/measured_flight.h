@@ -51,8 +51,8 @@ public:
         uint64_t end = soc.now() + static_cast<uint64_t>(seconds * 1e9);
         until([this, end] { return soc.now() >= end; }, seconds + 1, "waiting");
     }
-    // Makes so many calls, each when the one before is answered: `call` gets their numbers, from 1
-    // on.
+    // Makes this many calls, each after the answer of the one before: `call` gets their numbers,
+    // from 1 on.
     void inTurn(int count, double seconds, const std::function<void(int number)>& call) {
         ground.replies.clear();
         int sent = 0;
@@ -65,7 +65,8 @@ public:
             },
             seconds, "the calls");
     }
-    // Cycles on the board: all that the processor was awake for, and of these waiting for the FSMC.
+    // Cycles on the board: while the processor was awake, and of these while it waited for the
+    // FSMC.
     double awake() { return own() + waiting(); }
     double waiting() { return static_cast<double>(cpu().busCycles()) / warp; }
     double own() {

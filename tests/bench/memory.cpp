@@ -13,7 +13,7 @@
 namespace {
 
 Figures figures("Speed, latency and fairness of the memory controller.");
-unsigned outstanding = 64; // words that a port asks for before it has them
+unsigned outstanding = 64; // words that a port may request ahead
 double leastFairness = 1;  // of all streams, by Jain's index: 1 is equal
 
 struct Mix {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem: simulated time that the modem's set-up takes, by guard time and by the rate at
-// which the modem is found: by the modem controller, from CONFIGURE to CONFIGURED, and by the
-// ground's engine.
+// modem: simulated time of the modem's set-up, by guard time and by the rate at which the modem is
+// found: by the modem controller, from CONFIGURE to CONFIGURED, and by the ground's engine.
 
 #include "VModem.h"
 #include "bench.h"
@@ -55,7 +54,7 @@ double setUpMs(uint32_t guardMs, uint32_t bd) {
     return done ? static_cast<double>((bench.cycles() - begin) * clkNs) / 1e6 : 0;
 }
 
-// The same by the program on the ground, on a pty; its pauses are what makes time pass.
+// The same by the program on the ground, on a pty; time passes in its pauses.
 double groundSetUpMs(uint32_t guardMs, uint32_t bd) {
     RfChannel air(1);
     PtyLine pty;

@@ -24,8 +24,8 @@ inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
     return o;
 }
 
-// One end. A derived class says what becomes of the messages; it calls Link_setKey before time
-// passes, if at all.
+// One end. A derived class handles the messages; it calls Link_setKey before time passes, if at
+// all.
 class ModemEnd {
 public:
     ModemEnd(RfChannel& air, const XBee::Options& options, uint64_t seed)
@@ -54,7 +54,7 @@ public:
     Link* link() { return link_.get(); }
     const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
     bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
-    // Returns when it wants to be called again.
+    // Returns the time of its next call.
     uint64_t advance(uint64_t now) {
         now_ = now;
         modem.advance(now);
@@ -113,7 +113,7 @@ public:
         }
         pass(500'000'000);
     }
-    // Lets time pass until `done`. Returns whether it is within so many seconds.
+    // Lets time pass until `done`. Returns whether that is within this many seconds.
     template <class Done> bool until(Done done, double seconds) {
         for (const uint64_t end = now + static_cast<uint64_t>(seconds * 1e9); !done();) {
             if (now > end)

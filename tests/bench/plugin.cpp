@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// plugin: the radio's figures as a program sees them: stock ZeroC Ice with the plugin, against IceC
-// on the chip's RTL; in simulated time, in the clear and under a key.
+// plugin: the radio's figures for a program: stock ZeroC Ice with the plugin, against IceC on the
+// chip's RTL; in simulated time, in the clear and under a key.
 
 #include "chip_world.h"
 #include "figures.h"
@@ -61,7 +61,7 @@ public:
         std::snprintf(name, sizeof name, "Ice, goodput %s %s, loss %.2f",
                       down ? "UAV to ground" : "ground to UAV", modes[hasKey_], loss);
         figures_.add(name, rate, "bytes/s", mostBytesPerSecond);
-        echo_->ice_ping(); // what is late is over before the next one
+        echo_->ice_ping(); // late messages end before the next measurement
     }
 
     // Makes small calls, one by one, and returns their times in ms, sorted.

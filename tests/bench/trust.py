@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""trust: what attackers and losses of power did to the link and to updates, and what a key costs on the air, as their
-tests have counted it.
+"""trust: results of attacks and losses of power on the link and on updates, and the cost of a key on the air, as the
+tests have counted them.
 
     trust.py TEST_UPDATE TEST_LINK OUTPUT.json [--brief]
 """
@@ -26,7 +26,7 @@ HARM = {"cuts": "it does not start again", "packets": "one accepted, or a legal 
 
 
 def run(program, tests, hostile):
-    """What the tests have recorded: properties, and expectations that failed."""
+    """Returns the tests' recorded properties, and expectations that failed."""
     with tempfile.NamedTemporaryFile() as out:
         subprocess.run([program, "--gtest_filter=" + tests, "--gtest_output=json:" + out.name],
                        env={**os.environ, "HOSTILE": hostile}, stdout=subprocess.DEVNULL)

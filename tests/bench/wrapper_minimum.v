@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// wrapper_minimum: what the generated wrapper of a new core (ip/template) does, as one would write it by hand:
-// the measure of what generating it costs (make bench).
+// wrapper_minimum: the generated wrapper of a new core (ip/template) as written by hand: the
+// measure of generation's cost (make bench).
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// decoder_test: every word of 64 slots in decoders of 1, 3 and 64 slots: who is selected, whose
-// answer comes back.
+// decoder_test: every word of 64 slots in decoders of 1, 3 and 64 slots: the selected slot, and the
+// answer.
 
 #include "VDecoder1.h"
 #include "VDecoder3.h"

@@ -57,8 +57,7 @@ TEST_F(SystemSlot, EveryLineIsSummarisedAndDrivesTheOne) {
         uint64_t lines = bus_.read(SYSTEM_IRQ_LO) | uint64_t(bus_.read(SYSTEM_IRQ_HI)) << 32;
         EXPECT_EQ(lines, 1ull << slot);
     }
-    // A spurious interrupt shows no slot: a line that falls before software looks leaves nothing
-    // behind.
+    // A spurious interrupt shows no slot: a line that falls before software looks leaves no trace.
     top.slot_irq_i = 0;
     top.eval();
     EXPECT_FALSE(top.irq_o);

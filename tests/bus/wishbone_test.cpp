@@ -13,7 +13,7 @@ namespace {
 
 constexpr unsigned pageWord = 3, firstWord = 8, irqEvent = 1, timeoutEvent = 2;
 
-// A memory behind Wishbone. It checks the master and misbehaves as told.
+// A memory behind Wishbone. It checks the master and misbehaves on request.
 template <class Module> class Slave {
 public:
     Slave(Bench<Module>& bench, bool pipelined, uint64_t seed)
@@ -98,8 +98,8 @@ template <class Module> void randomTraffic(bool pipelined) {
             bool write = random.chance(0.5);
             uint32_t data = random.next();
             auto answer = rig.bus.transfer(write, firstWord + word, data);
-            if (answer.error) { // waits and retries may be longer than TIMEOUT: then it is told,
-                                // and not in between
+            if (answer.error) { // waits and retries may exceed TIMEOUT: then it is reported, not in
+                                // between
                 ASSERT_GE(answer.cycles, 40u);
                 reference[page + 4 * word] = rig.slave.memory[page + 4 * word];
                 continue;
@@ -138,8 +138,8 @@ template <class Module> void misbehaviour(bool pipelined) {
     EXPECT_TRUE(rig.bus.transfer(false, 4, 0).error) << "words 4..7 do not exist";
 }
 
-// The answer is late by a clock, by none, or in time: each access says which, and the next one is
-// not told of it.
+// The answer is late by a clock, missing, or in time: each access reports it, and the next one does
+// not.
 template <class Module> void aroundTheTimeOut(bool pipelined) {
     Rig<Module> rig(pipelined);
     for (uint32_t k = 0; k < 8; ++k)

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// soak: two link layers over two XBee models and a bad radio, for as long as one likes: random
-// messages both ways, loss, bursts, corruption, duplication; reboots of the UAV, of the ground and
-// of modems; with --attacked a key on both sides, and a third modem that does its worst. None
-// wrong, none doubled, none out of order, each delivered or reported: the first that is not ends
-// it.
+// soak: two link layers over two XBee models and a bad radio, for any time: random messages both
+// ways, loss, bursts, corruption, duplication; reboots of the UAV, of the ground and of modems;
+// with --attacked a key on both sides, and a hostile third modem. No message may be wrong, doubled
+// or out of order, and each is delivered or reported: the first violation ends the program.
 
 #include "attacker.h"
 #include "ice_messages.h"
@@ -59,7 +58,7 @@ public:
     bool mayTalk() const { return cts_; }
 };
 
-// One end: modem, link and program. Its knowledge of the peer's messages serves only to check them.
+// One end: modem, link and program. It knows the peer's messages only to check them.
 class End {
 public:
     End(uint32_t side, RfChannel& air, Random& random, Totals& totals, bool hasKey)
@@ -84,7 +83,7 @@ public:
         now_ = now;
         line_.received.clear();
         out_.clear();
-        // Messages on their way when the power went: their program would call them unknown.
+        // Messages on their way at the power's loss: their program calls them unknown.
         totals_.unknown += outstanding_.size();
         outstanding_.clear();
         Link_init(link_.get(), &port, this, 1440);
@@ -148,7 +147,8 @@ private:
         ++(outcome == LINK_DELIVERED ? totals_.delivered : totals_.unknown);
         outstanding_.erase(it);
     }
-    // The link's acceptance of a message and the program's are one step here, unless it is busy.
+    // The link's and the program's acceptance of a message are one step here, unless the program is
+    // busy.
     int onMessage(int channel, const U8* data, U32 size) {
         if (busy_)
             return 1;
@@ -169,8 +169,7 @@ private:
         auto it = outstanding_.find(id);
         if (it != outstanding_.end())
             it->second = true;
-        // A message that was skipped must not be on its way any more with the sender still
-        // believing in it.
+        // A skipped message must no longer be on its way for the sender.
         for (; expected < id; expected += LINK_CHANNELS)
             if (outstanding_.count(expected))
                 fault("was skipped", expected);
@@ -190,7 +189,7 @@ private:
     bool busy_ = false;
     uint32_t nextId_ = 0, expected_[LINK_CHANNELS] = {0, 1, 2, 3}; // a channel has each fourth one
     std::unordered_map<uint32_t, bool>
-        outstanding_; // sent and not reported: whether it has arrived
+        outstanding_; // sent and not reported, with whether it has arrived
 };
 
 class Soak {
@@ -201,7 +200,7 @@ public:
         ground_.setPeer(&uav_);
         uav_.setPeer(&ground_);
     }
-    // Passes one simulated second of whatever happens.
+    // Passes one simulated second with random events.
     void second() {
         weather();
         misfortune();

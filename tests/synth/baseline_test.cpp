@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// baseline_test: what is judged as growth, which names are given, what the committed file keeps.
+// baseline_test: judgement of growth, the names that it gives, the content of the committed file.
 
 #include "baseline.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// cores_test: a core's share of the chip, of figures that can be added up by hand; whose the logic
-// is that reads its registers.
+// cores_test: a core's share of the chip, with figures that add up by hand, and the owner of logic
+// that reads its registers.
 
 #include "cores.h"
 

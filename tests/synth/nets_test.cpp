@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// nets_test: where a signal stands in the sources, by what Yosys and GHDL write of it.
+// nets_test: a signal's place in the sources, from Yosys' and GHDL's output.
 
 #include "nets.h"
 

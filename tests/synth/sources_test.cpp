@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// sources_test: which files a module needs.
+// sources_test: the files of a module.
 
 #include "sources.h"
 #include <fstream>

@@ -19,7 +19,7 @@ ROOMS = "tests/tree/rooms.toml"
 
 
 def tracked(tree):
-    """Paths of the C, C++ and Verilog files of the checkout that people write."""
+    """Returns the paths of the C, C++ and Verilog files of the checkout that people write."""
     names = subprocess.run(["git", "-C", tree, "grep", "--no-index", "--exclude-standard", "--no-color", "-l", ""],
                            capture_output=True, text=True, check=True).stdout.split("\n")
     return [n for n in names
@@ -28,7 +28,7 @@ def tracked(tree):
 
 
 def room_of(path, rooms):
-    """The room of a file; the tests and test vectors that lie beside a core are of the room `tests`."""
+    """Returns the room of a file; tests and test vectors beside a core belong to the room `tests`."""
     if re.search(r"_(test|vectors)\.(cpp|h)$", path):
         return "tests"
     while path:
@@ -68,7 +68,7 @@ def wrong_arrows(tree):
 
 
 def circles(library, prefixes):
-    """Circles among a library's object files, each as a sentence. Files of one prefix count as one."""
+    """Returns circles among a library's object files, each as a sentence. Files of one prefix count as one."""
     defines, needs = {}, {}
     for line in subprocess.run(["nm", "-A", library], capture_output=True, text=True, check=True).stdout.split("\n"):
         part = re.match(r".*?:([^:]+):\s*\S*\s+([A-Za-z]) (\S+)$", line)

@@ -18,7 +18,7 @@ ROOMS = "hdl|bus|ip|slice|sw|testbench|synth|tests|docs|cmake|examples"
 
 
 def exists(tree, path, files):
-    """True if a path that a page names is in the repository; a folder, a name without its ending or a pattern, too."""
+    """Returns whether a page's path is in the repository; also a folder, a name without its ending or a pattern."""
     path = path.rstrip("/")
     pattern = "^" + re.escape(path).replace(r"\*", "[^/]*") + r"(/|$|\.)"
     return any(re.match(pattern, f) for f in files)
@@ -45,7 +45,8 @@ def check(tree, page, files):
 
 
 def stale(tree):
-    """A line for each figure of README.md that is not the one of the page or file which a command writes."""
+    """Yields a line for each figure of README.md that differs from the one of the page or file that a command
+    writes."""
     readme, figures = (open(os.path.join(tree, page)).read() for page in ("README.md", "docs/figures.md"))
     table1 = json.load(open(os.path.join(tree, "synth/baseline.json")))["designs"]["table1"]
 

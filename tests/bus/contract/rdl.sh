@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# rdl: source-folder generated-folder work-folder   The chip's SystemRDL gives back the descriptions it was made of, its IP-XACT has
-# the same registers; what SystemRDL the reader takes, and what it says to the rest.
+# rdl: source-folder generated-folder work-folder   The chip's SystemRDL gives back its source
+# descriptions, its IP-XACT has the same registers; checks the SystemRDL that the reader accepts,
+# and its messages for the rest.
 set -eu
 source=$1 gen=$2 work=$3
 rm -rf "$work"

@@ -58,7 +58,8 @@ data.properties.setProperty("XBeeAT.Guard", guard)
 data.properties.setProperty("Ground.Endpoints", "xbee-at -d %s" % device)
 with Ice.initialize(data) as ic:
     where = ":xbee-at -d %s -a 0x0001 -t 300000" % device
-    # A probe records what goes to the first core and what comes from it; cores.sh compares that with the simulator's trace.
+    # A probe records the first core's inputs and outputs; cores.sh compares that with the
+    # simulator's trace.
     said = []
     signals = probe.Signals(os.path.join(folder, "build/gen/probes.json"), "probe")
     prober = Probes.ProbePrx.checkedCast(ic.stringToProxy("probe" + where))
@@ -106,7 +107,7 @@ with Ice.initialize(data) as ic:
         packet = bytes(i * i * 7 + 31 * i & 0xFF for i in range(length))
         expect("crc32 of %d bytes" % length, crc.crc(packet) & 0xFFFFFFFF, zlib.crc32(packet))
 
-    # The chip is the one that the firmware was built for; a mission says it where it is not.
+    # The chip is the one that the firmware was built for; a mission reports a difference.
     chip = Hw.ChipPrx.checkedCast(ic.stringToProxy("chip" + where))
     contracts = chip.contracts()
     expect("blocks", [c.block for c in contracts],

@@ -29,7 +29,8 @@ GHDL=$build/ghdl/ghdl "$source/ip/new_foreign.py" my_lamps lamps own "$work/fres
     "$source/tests/ip/new_foreign/lamps.vhd" "$source/tests/ip/new_foreign/lamps_types.vhd" >"$work/log" || { cat "$work/log" && exit 1; }
 fresh my_lamps
 [ -e "$work/build/ghdl" ] || ln -s "$build/ghdl" "$work/build/ghdl"
-# CLK_HZ: the servo core counts in every clock, so that none is skipped. TRACE: for what the probe is compared with.
+# CLK_HZ: the servo core counts in every clock, so no clock is skipped. TRACE: the probe is compared
+# with it.
 cmake -S "$source" -B "$work/build" -G Ninja -DTRACE=ON -DCLK_HZ=2000000 "-DCORES=$work/cores.list" "-DCORE_FOLDERS=$folders" \
     "-DROOMS=bus;slice;ip;sw;hdl;testbench" >"$work/build.log" 2>&1 &&
     ninja -C "$work/build" icesoc-sim firmware_uav test_ip_servo test_ip_crc32 test_ip_my_lamps >>"$work/build.log" 2>&1 || { tail -40 "$work/build.log" && exit 1; }
@@ -42,14 +43,16 @@ echo '500 port.port_in_i 0x83' >>"$work/pins"
     "$work" "$samples/sample_verilog/sample_verilog.ice" "$source/tests/slice/hardware/golden/scaler.ice" "$source/tests/slice/hardware/golden/many.ice" "$source/tests/e2e/cores/servo/servo.ice" "$source/tests/e2e/cores/crc32/crc32.ice" "$samples/sample_vhdl/sample_vhdl.ice" \
     "$source/sw/hw/registers/Registers.ice" "$source/ip/probe/Probe.ice" \
     >"$work/log" 2>&1 || { cat "$work/log" && exit 1; }
-# Pulses of 1.5 ms, 20 ms apart, whatever the clock; the fault pin ended one of them or none, and moved what came next.
+# Pulses of 1.5 ms, 20 ms apart, whatever the clock; the fault pin ended at most one of them, and
+# moved the later ones.
 awk '$2 == "servo.pwm_o" && $3 == 4 { frames += up && $1 - last > 19.999 && $1 - last < 20.001; last = up = $1 }
      $2 == "servo.pwm_o" && $3 == 0 && up { n += $1 - up > 1.499 && $1 - up < 1.501; all++ }
      END { exit !(n > 10 && all - n <= 1 && frames >= n - 2) }' "$work/pins.log" || { tail "$work/pins.log" && echo 'the pulses are not 1.5 ms long, 20 ms apart' && exit 1; }
 grep -q "'my_requests' moves in nearly every clock" "$work/log" || { cat "$work/log" && echo 'who keeps the chip from being quiet is not said' && exit 1; }
 grep -q 'cores: all as expected' "$work/log" || { cat "$work/log" && exit 1; }
 
-# The probe's capture by radio, read by GTKWave's tools, is what the simulator traces when it flies this flight again, as far as that.
+# The probe's capture by radio, read by GTKWave's tools, equals the simulator's trace of the
+# replayed flight, as far as that goes.
 vcd2fst "$work/probe.vcd" "$work/probe.fst" >"$work/log"
 fst2vcd "$work/probe.fst" >"$work/captured.vcd"
 span=$(awk '/^#/ { t = substr($1, 2) / 1e9; if (!n++) first = t } END { printf "--from %.6f --to %.6f", first - 2e-5, t + 2e-5 }' "$work/probe.vcd")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""same: is what a probe captured what the simulator traced? same.py capture.vcd trace.vcd nanoseconds-of-a-clock
+"""same: compares a probe's capture with the simulator's trace: same.py capture.vcd trace.vcd nanoseconds-of-a-clock
 
 Compares each signal of the capture in each clock that both have. The trace (fst2vcd) has two moments a clock; its clocks
 are those of u_system_slot.cycles, which it has.
@@ -10,7 +10,7 @@ import sys
 
 
 def read(path):
-    """The names of the signals, below soc, by their keys; and (time, changes by key) of each moment."""
+    """Returns the names of the signals, below soc, by their keys; and (time, changes by key) of each moment."""
     with open(path) as f:
         head, _, body = f.read().partition("$enddefinitions")
     scope, names = [], {}
@@ -35,7 +35,7 @@ def read(path):
 
 
 def clocks(moments, keys, clock_of):
-    """What the signals of these keys are from a clock on, at each moment."""
+    """Returns the values of these keys' signals from a clock on, at each moment."""
     values, found = {}, {}
     for time, changes in moments:
         values = {key: changes.get(key, values.get(key)) for key in keys}

@@ -43,7 +43,7 @@ public:
         bench.addModel([this] { sample(); }, [this] { drive(); });
     }
     void setPause(double pause) { pause_ = pause; }
-    // Forgets what was not given yet: after a stop.
+    // Forgets descriptors and beats that were not given yet: after a stop.
     void forget() {
         reads.clear();
         writes.clear();
@@ -100,7 +100,7 @@ private:
         if (top_.done_valid_o && top_.done_ready_i)
             done.push_back({top_.done_bytes_o, bool(top_.done_over_o)});
     }
-    // A valid that waits stays; each side begins and pauses when it likes.
+    // A waiting valid stays; each side begins and pauses at any time.
     bool go(bool& valid, bool any) { return valid = valid || (any && !random_.chance(pause_)); }
     void drive() {
         top_.read_valid_i = go(reading_, !reads.empty());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// axis_test: axis_memory: packets are what memory holds, memory is what packets held, under every
-// pause of port and streams; and its speed, next to the memory's.
+// axis_test: axis_memory: packets equal memory, memory equals packets, under every pause of port
+// and streams; and its speed, next to the memory's.
 
 #include "VAxisBench.h"
 #include "VAxisMemory.h"
@@ -13,7 +13,7 @@
 
 namespace {
 
-constexpr uint32_t half = 1 << 16; // bytes that are read; as many behind them are written
+constexpr uint32_t half = 1 << 16; // bytes that are read; as many after them are written
 
 class Axis : public ::testing::Test {
 protected:

@@ -23,7 +23,7 @@ struct Kind {
     using Bench = MemoryBench<Module, count>;
     using Whole = MemoryBench<Module, count, size_t(1) << bits>;
 
-    // Requests of others that are granted before one of this port: npi_select's bounds.
+    // Requests of others granted before one of this port: npi_select's bounds.
     static unsigned bound(unsigned port) {
         unsigned u = static_cast<unsigned>(__builtin_popcount(urgent));
         if (u == 0 || u == count)
@@ -46,7 +46,7 @@ protected:
         for (unsigned p = 0; p < ports; ++p)
             memory_.requesters.traffic(p) = traffic;
     }
-    // Runs, and says with which seed it failed.
+    // Runs, and names the seed of a failure.
     void run(uint64_t cycles) {
         ASSERT_NO_THROW(memory_.run(cycles); memory_.drain()) << "SEED=" << seed_;
         for (unsigned p = 0; p < ports; ++p)

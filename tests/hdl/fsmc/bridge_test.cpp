@@ -149,9 +149,9 @@ TEST_F(Bridge, ADoorbellMakesWritesVisibleAndReadsFresh) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x100), 0xBE11);
 }
 
-// The read begins one HCLK after NWE's edge, sooner than the driver's BUSTURN lets it: where the
-// write's synchroniser is late and the read's is not (cdc.test_fsmc_bridge), it sees what was
-// written.
+// The read begins one HCLK after NWE's edge, sooner than the driver's BUSTURN allows. Where the
+// write's synchroniser is late and the read's is not (cdc.test_fsmc_bridge), it still sees the
+// written value.
 TEST_F(Bridge, ARegisterReadRightBehindAWriteComesAfterIt) {
     Random random(testSeed());
     FSMC_setHclk(120000000);
@@ -201,8 +201,8 @@ TEST_F(Bridge, AHungSlaveEndsInAnErrorAndTheBridgeGoesOn) {
     EXPECT_EQ(b_.errors, 1u);
 }
 
-// NWAIT off in NE2, as nobody should: what is written while a slow slave still has the access
-// before is lost, and told.
+// NWAIT off in NE2, against the rules: a write during a slow slave's earlier access is lost, and
+// reported.
 TEST_F(Bridge, ARegisterWrittenTooEarlyIsLostAndReported) {
     const uint32_t bcr2 = fsmc::registersAt + 8, bcr = fsmc_.read32(bcr2);
     b_.slave.words[41] = 0x99998888;
@@ -272,8 +272,8 @@ TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     EXPECT_EQ(b_.errors, 4u);
 }
 
-// Registers wait for what is posted: a memory that takes nothing is told, and the register access
-// goes on.
+// Registers wait for posted writes: a memory that does not take them is reported, and the register
+// access goes on.
 TEST_F(Bridge, AHungMemoryDoesNotKeepRegistersAway) {
     b_.memory.hold(true);
     fsmc_.write16(ddr + 0x40, 0x1234);
@@ -317,7 +317,8 @@ TEST_F(Bridge, AnAccessThatIsGivenUpLeavesNothingHalfDone) {
     EXPECT_EQ(b_.errors, 0u);
 }
 
-// The fastest timing, without NWAIT: right when the memory keeps up, and noticed when it does not.
+// The fastest timing, without NWAIT: correct when the memory keeps up, and detected when it does
+// not.
 TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
     Random random(testSeed());
     FSMC_setHclk(120000000);

@@ -20,9 +20,9 @@ namespace {
 
 constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
-// A corner. With synchronisers that are late (tests cdc.*) the address comes no later than NOE, and
-// NWE's way into the chip is as long at each edge: their lateness, a whole clock, stands for all
-// that the two may be late (docs/fsmc.md).
+// A corner. With late synchronisers (tests cdc.*) the address comes no later than NOE, and NWE's
+// way into the chip is as long at each edge: the lateness, a whole clock, stands for all delays of
+// the two (docs/fsmc.md).
 FsmcCorner cornerOf(unsigned index) {
     FsmcCorner corner = fsmcCorners[index];
     if (std::getenv("CDC_SEED")) {

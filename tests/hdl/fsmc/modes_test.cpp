@@ -147,8 +147,8 @@ TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
     EXPECT_EQ(hclksOfAWord(4, false), hclksOfAWord(1, false));
 }
 
-// A doorbell right behind a read drops what is read ahead, on its way or even asked for in that
-// very clock: what comes of it is old. At 168 MHz the pins are that quick: they have the doorbell's
+// A doorbell right after a read drops data that is read ahead, on its way or even requested in that
+// very clock, since it is old. At 168 MHz the pins are quick enough: they have the doorbell's
 // address already (here that of the block in its own window) while the memory's side still sees the
 // read.
 TEST(Modes, WhatADoorbellDropsOnItsWayIsNotTakenForFresh) {
@@ -201,7 +201,7 @@ TEST(Modes, TheDriverRefusesWhatTheManualForbids) {
     EXPECT_THROW(b.master.read16(control), FsmcError) << "bank 2 is off: nothing was written";
 }
 
-// The model is strict: what a real STM32 would not do, or what would not work, throws.
+// The model is strict: it throws where a real STM32 would behave otherwise, or fail.
 TEST(Modes, TheModelRefusesWhatTheManualForbids) {
     BridgeBench<VFsmcBridge> b(testSeed());
     FsmcMaster& m = b.master;

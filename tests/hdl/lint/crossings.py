@@ -77,7 +77,7 @@ def main():
     seen, visited = {}, set()
 
     def origins(bit):
-        """Registers and pins that a net depends on: {clock: one of them}; each net is looked at once."""
+        """Returns the registers and pins that a net depends on: {clock: one of them}; each net is visited once."""
         stack = [bit]
         while stack:
             b = stack[-1]

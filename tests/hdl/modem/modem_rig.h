@@ -20,7 +20,7 @@ protected:
                               rxRing = 0x55555000; // every address line, both ways
 
     void power(XBee::Options options) {
-        air_.weather.perfect = true; // the controller is what is tried here
+        air_.weather.perfect = true; // these tests try the controller
         near_ = std::make_unique<XBee>(pins_, air_, options);
         XBee::Options far;
         far.name = "far";
@@ -100,11 +100,11 @@ protected:
         memory_.hold(false);
     }
 
-    // Returns the counted errors without the retries of the set-up, which may have to search the
+    // Returns the counted errors without the set-up's retries, since it may have to search the
     // rate.
     uint32_t errors() { return bus_.read(MODEM_ERRORS) & ~MODEM_ERRORS_RETRIES_MASK; }
-    // Drive the line from the modem's side to the clock, also as the model would not, which is
-    // silent then.
+    // Drive the line from the modem's side to the clock, also in ways that the model, which is
+    // silent then, would not.
     void level(bool high, unsigned clocks) {
         noise_ = !high;
         for (unsigned i = 0; i < clocks; ++i)

@@ -29,7 +29,7 @@ TEST_F(ModemTest, ThreeCharactersOfSilenceEndAPacket) {
 
 TEST_F(ModemTest, AFullRingDropsWholePacketsAndNothingElse) {
     ready();
-    pinsIgnoreRts_ = true; // a modem that takes no notice of RTS
+    pinsIgnoreRts_ = true; // a modem that ignores RTS
     for (unsigned i = 0; i < 18; ++i) {
         plain_.send(frame(50, static_cast<uint8_t>(i + 1)), now());
         runMs(10);
@@ -114,8 +114,8 @@ TEST_F(ModemTest, AStalledMemoryCostsTheNextPacketNotTheOneBefore) {
     EXPECT_EQ(take(), frame(50, 3)) << "it goes on";
 }
 
-// Fifteen packets fill the ring but for one buffer; one more comes whole, and of the next so many
-// bytes while memory is held: that one is dropped, and no other.
+// Fifteen packets fill the ring but for one buffer; one more comes whole, and the next has this
+// many bytes while memory is held: only that one is dropped.
 class ModemFullRing : public ModemTest {
 protected:
     void nextHasBegun(uint64_t bytes) {
@@ -143,8 +143,8 @@ TEST_F(ModemFullRing, APacketThatWaitsAsTheRingFillsIsDropped) {
     nextHasBegun(2); // its first byte is here, and waits
 }
 
-// Memory takes a packet's last byte in the very clock of what ends it, or a few before or after: in
-// time the packet is whole, else it is dropped and counted; never cut.
+// Memory takes a packet's last byte in the very clock of its end, or a few before or after. In time
+// the packet is whole, else it is dropped and counted; it is never cut.
 TEST_F(ModemTest, TheLastByteIsTakenAroundTheClockOfAFramingError) {
     ready();
     memory_.setStall(0);

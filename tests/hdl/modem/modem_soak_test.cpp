@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // modem_soak_test: noise into the modem controller's UART: random bytes, gaps, breaks and glitches,
-// with a memory that stalls and software that takes packets when it likes. What comes out must be
-// runs of what went in, in order; nothing else in memory changes; and afterwards it works.
+// with a memory that stalls and software that takes packets at random. Its output must be runs of
+// its input, in order; other memory does not change; and afterwards it works.
 //
 //   SOAK_BYTES=10000000 build/main/tests/hdl/modem/test_modem_soak     (default 30000)
 

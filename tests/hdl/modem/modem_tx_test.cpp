@@ -71,8 +71,8 @@ TEST_F(ModemTest, ShortPacketsInARowAreNotJoined) {
     EXPECT_EQ(sizes, (std::vector<size_t>{40, 40}));
 }
 
-// A word that memory gives for a packet that is no longer under way must not become a byte of the
-// one that is, even if it comes after the set-up.
+// A word that memory gives for an abandoned packet must not become a byte of the current one, even
+// if it comes after the set-up.
 class ModemWithdrawnRead : public ModemTest {
 protected:
     // CONTROL is written so many clocks after the read of the packet's second word has begun.

@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 --
--- cutter: cuts a window out of a picture in DDR3. What is read goes into what is written: a stream between two descriptors.
+-- cutter: cuts a window out of a picture in DDR3: the read stream goes into the written one,
+-- between two descriptors.
 
 library ieee;
 use ieee.std_logic_1164.all;

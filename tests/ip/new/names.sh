@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# names: source-folder work-folder slice2c   make new-ip's and rm-ip's scripts: names that it refuses, with what is there left as it was.
+# names: source-folder work-folder slice2c   make new-ip's and rm-ip's scripts: names that they
+# refuse, which leave the tree unchanged.
 set -eu
 source=$1 ip=$1/ip work=$2 slice2c=$3
 rm -rf "$work"

@@ -83,8 +83,8 @@ TEST(OwnClock, AnyRatioOfTheTwoClocksWillDo) {
     }
 }
 
-// The core's time-out is an event; its interrupt comes across, and has gone when the write that
-// takes it is done.
+// The core's time-out is an event; its interrupt crosses, and has gone when the write that takes it
+// is done.
 TEST(OwnClock, TheInterruptComesAndGoes) {
     CoreSlot<Vmy_requests_slot> slot;
     slot.interrupt_ = [] {};

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: MIT
 --
--- lamps_types: what lamps is asked.
+-- lamps_types: the record of lamps' inputs.
 library ieee;
 use ieee.std_logic_1164.all;
 

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# refused: new_foreign.py work-folder   What make new-foreign refuses, with a reason and nothing written.
+# refused: new_foreign.py work-folder   Input that make new-foreign refuses, with a reason and
+# nothing written.
 set -eu
 new=$1 work=$2
 here=$(cd "$(dirname "$0")" && pwd)
@@ -68,12 +69,12 @@ refused "setting is an input of a core, and 'over' is not" my_port axis_scale ax
 # Of two cores in one chip.
 ! "${new%/*}/foreign_files.py" "$here/wb_port.v" "$work/again.v" 2>"$work/log" && grep -q "again.v:6: module 'wb_port' is in .*a chip has one of each" "$work/log" ||
     { cat "$work/log" && exit 1; }
-# What names mean.
+# Meanings of names.
 "$new" my_port wbs_names wishbone "$work/names" ack=2 open=spare "$here/wbs_names.v" >"$work/log"
 for line in 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' 'wbs_cyc_i: cyc' 'wbs_cti_i: low' 'intr: interrupt' 'spare: open'; do
     grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
 done
-# A register is as wide as what is written, or read.
+# A register is as wide as its written, or read, data.
 echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q); assign q = d[12:0]; endmodule' >"$work/narrow.v"
 "$new" my_port narrow own "$work/narrow" write=we wdata=d rdata=q "$work/narrow.v" >"$work/log" && grep -q '"width": 17' "$work/narrow/my_port.regs.json" ||
     { cat "$work/log" && echo 'a register has not 17 bits' && exit 1; }

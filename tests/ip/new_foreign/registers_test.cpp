@@ -62,7 +62,7 @@ public:
         EXPECT_EQ(Hw_RegistersPrx_wait_async(&prx_, ms, &call_), ICE_OK);
         settle();
     }
-    // Lets time pass as the firmware's task does, until the servant wants to be called no more.
+    // Lets time pass as the firmware's task does, until the servant needs no more calls.
     void poll() {
         for (U32 next; (next = Hw_Registers_Core_poll(&core_, slot_.nowMs(&slot_))) != HW_NEVER;)
             slot_.wait(&slot_, 0, next + 1);

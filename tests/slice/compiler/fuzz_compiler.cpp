@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// compiler_fuzz: libFuzzer's entry: any text through lexer, parser, checks and generator. What has
-// no errors must give C; nothing may crash, hang or leak (built with sanitizers).
+// fuzz_compiler: libFuzzer's entry: any text through lexer, parser, checks and generator. Text
+// without errors must give C; nothing may crash, hang or leak (built with sanitizers).
 
 #include "c/generator.h"
 #include "front/front.h"

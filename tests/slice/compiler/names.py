@@ -14,7 +14,7 @@ import subprocess
 import sys
 
 SLICE2C, SW, WORK = sys.argv[1:4]
-C_FLAGS = ["-std=c90", "-pedantic", "-Werror"]  # what is not asked for takes most of the time
+C_FLAGS = ["-std=c90", "-pedantic", "-Werror"]  # optimisation would take most of the time
 INCLUDES = [f"-I{SW}/base", f"-I{SW}/icec"]
 COMMON = "struct qS { int qa; string qb; }; class qC { int qa; }; exception qE { int qa; };"
 
@@ -59,7 +59,7 @@ def run(command, **more):
 
 
 def compile_slice(folder, text):
-    """The messages of slice2c for unit.ice in a folder of its own."""
+    """Returns the messages of slice2c for unit.ice in a new folder."""
     os.makedirs(folder, exist_ok=True)
     with open(f"{folder}/unit.ice", "w") as out:
         out.write('[["underscore", "ice-prefix", "suppress-warning"]]\n' + text)

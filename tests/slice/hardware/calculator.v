@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// calculator: the generated wrapper with the core behind it: what goes into a slot.
+// calculator: the generated wrapper with the core behind it, for a slot.
 
 `default_nettype none
 

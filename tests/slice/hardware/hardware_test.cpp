@@ -47,7 +47,7 @@ TEST_F(CalculatorServant, IdentityIsTypeAndVersionOfTheInterface) {
     EXPECT_EQ(Hw_Core_init(&other, slot, 0x43410103, &slot_.port, &slot_), HW_WRONG_CORE);
 }
 
-// Its own clock stands still (OWN_CLOCK): what it reads as is no result.
+// Its own clock stops (OWN_CLOCK): a read is no result then.
 TEST_F(CalculatorServant, ACoreThatNoLongerAnswersIsATimeOut) {
     Ice_Int sum = 0;
     core_.core.id ^= 1;
@@ -246,7 +246,7 @@ protected:
     ~ManyServant() override { EXPECT_EQ(rig_.errors_, 0u) << "accesses to no register"; }
     static Ice_Long number(U32 n) { return {n * 0x9E3779B9U, static_cast<Ice_Int>(n * 77 + 1)}; }
     static Ice_Long inverted(Ice_Long n) { return {~n.low, ~n.high}; }
-    // Each call has other values, so that none is right by those of the call before.
+    // Each call has other values, so stale ones are wrong.
     void turn() {
         Ice_Long n[10];
         for (Ice_Long& one : n)

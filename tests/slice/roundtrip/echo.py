@@ -12,7 +12,7 @@ from model import Model
 
 
 def same(t, a, b, encoding, seen):
-    """Are the values equal? In encoding 1.0 optional members are gone on the way."""
+    """Compares two values. In encoding 1.0 optional members are lost on the way."""
     if a is None or b is None:
         return a is None and b is None
     if t.kind == "sequence":
@@ -31,7 +31,7 @@ def same(t, a, b, encoding, seen):
         seen[id(a)] = b
         t = next(d for d in model.declared if d.name == type(a).__name__)
         return members(t, a, b, encoding, seen)
-    if t.kind == "proxy" and encoding == "1.0":  # which does not carry a proxy's own encoding
+    if t.kind == "proxy" and encoding == "1.0":  # 1.0 does not carry a proxy's encoding
         return a.ice_encodingVersion(Ice.Encoding_1_0) == b.ice_encodingVersion(Ice.Encoding_1_0)
     return a == b
 
@@ -48,7 +48,7 @@ def members(t, a, b, encoding, seen):
 
 
 class Members:
-    """Values for the members of an exception."""
+    """Returns values for the members of an exception."""
 
 
 def check(what, ok, *values):
@@ -101,7 +101,7 @@ def hide(v, t, module, ic, values):
 
 
 def same_hidden(t, v, got, encoding):
-    """As sent where slices are kept, else cut down to `t`."""
+    """Returns the value as sent where slices are kept, else cut down to `t`."""
     kept = t.preserves() and encoding == "1.1"
     if type(got).__name__ != ("Hidden" if kept else "") + t.name or not members(t, v, got, encoding, {id(v): got}):
         return False
@@ -109,7 +109,7 @@ def same_hidden(t, v, got, encoding):
 
 
 def unknown(echo, module, ic, encoding, t):
-    """An instance of a type that C does not know; where the format does not say where its slice ends, it is refused."""
+    """Sends an instance of a type unknown to C; where the format does not tell its slice's end, it is refused."""
     v = getattr(module, "Hidden" + t.name)()
     graph = hide(v, t, module, ic, 15)
     v.other = v.same = model.value(t, module, ic, [15], graph)
@@ -130,7 +130,7 @@ def unknown(echo, module, ic, encoding, t):
 
 
 def lone(echo, module, encoding):
-    """A graph of which C knows nothing goes through a parameter of type Object as it is."""
+    """Sends a graph unknown to C through a parameter of type Object, unchanged."""
     first, second = module.Lone(1, None, "one"), module.Lone(2)
     first.next, second.next, first.any = second, first, second
     if encoding == "1.0":
@@ -147,14 +147,14 @@ def lone(echo, module, encoding):
 
 
 class Thrower:
-    """Throws `what` at whom C forwards a call to."""
+    """Throws `what` when C forwards a call here."""
 
     def forward(self, to, current):
         raise self.what
 
 
 def forwarded(echo, module, ic, encoding, thrower, own, e):
-    """C is thrown an exception of a type that it does not know, and throws it on."""
+    """Throws an exception of an unknown type at C, which throws it on."""
     thrower.what = sent = getattr(module, "Hidden" + e.name)()
     hide(sent, e, module, ic, 15)
     sent.other = module.Lone(7)

@@ -40,7 +40,7 @@ class Type:
         return (self.base.all_fields() if self.base else []) + self.fields
 
     def preserves(self):
-        """Slices of derived types that are not known are kept."""
+        """Slices of unknown derived types are kept."""
         return self.preserve or (self.base is not None and self.base.preserves())
 
     def legal_key(self):
@@ -214,7 +214,7 @@ class Model:
             out.append("Ice_Status T_Echo_forward%s(T_EchoPtr self, const Ice_ObjectPrx *to, T_Echo_forward%s_Exception *ex, "
                        "const Ice_Current *current) {" % (e.name, e.name))
             out.append("    T_EchoPrx prx = *to; (void)self, (void)current; Ice_ObjectPrx_setReplyBuffer(&prx, room, sizeof room);")
-            # The proxy says what it was, whatever stood there.
+            # The proxy stays the sender's.
             out.append("    ex->type = T_Echo_forward%s_%s; return T_EchoPrx_forward%s(&prx, 0, ex); }" % (e.name, e.name, e.name))
         out.append("Ice_Status T_Echo_any(T_EchoPtr self, Ice_Value *v, Ice_Value **w, Ice_Value **result, "
                    "const Ice_Current *current) { (void)self, (void)current; *w = *result = v; return ICE_OK; }")

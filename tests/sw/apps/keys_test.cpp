@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// keys_test: the vehicle's key slots: a key that follows another, with the power cut at every word
-// that is written, and a ground that gives up at every step.
+// keys_test: the vehicle's key slots: a change of keys, with the power cut at every written word,
+// and a ground that gives up at every step.
 
 #include "link_pair.h"
 #include <array>
@@ -51,7 +51,7 @@ public:
         return isMet && !isDead;
     }
     // The whole change, as sw/ground/clients/change_key.py makes it, or its first steps. Returns
-    // what is then in the ground's file.
+    // the resulting content of the ground's file.
     std::vector<Key> change(int steps = 3) {
         const std::vector<Key> before = {oldKey}, both = {newKey, oldKey}, after = {newKey};
         if (steps < 1)
@@ -151,7 +151,7 @@ TEST(Keys, TheKeyInUseAgainIsNoChangeAndAnotherNextKeyReplacesTheFirst) {
     EXPECT_TRUE(vehicle.hasKey(newKey) && vehicle.hasKey(oldKey));
 }
 
-// Wherever the ground gives up, what is in its file opens the vehicle.
+// Wherever the ground gives up, its file's keys open the vehicle.
 TEST(Keys, AGroundThatGivesUpKeepsAKeyThatWorks) {
     for (int steps = 0; steps <= 3; ++steps) {
         Vehicle vehicle(testSeed());
@@ -172,7 +172,7 @@ TEST(Keys, PowerThatFailsAtAnyWordLeavesAKeyThatWorks) {
         ASSERT_GE(vehicle.keys, 1) << "after " << cut << " words";
         ASSERT_TRUE(vehicle.meets(file)) << "after " << cut << " words";
         vehicle.bootVehicle();
-        if (vehicle.hasKey(newKey)) { // the old one goes, as if nothing had been
+        if (vehicle.hasKey(newKey)) { // the old key goes, as in a complete change
             ASSERT_TRUE(vehicle.meets({newKey})) << "after " << cut << " words";
             EXPECT_EQ(UAV_countKeys(), 1) << "after " << cut << " words";
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// clock_test: the engine's clock by a simulator's counters, and by the machine.
+// clock_test: the engine's clock, from a simulator's counters and from the machine.
 
 #include "clock.h"
 #include "sim_status.h"

@@ -154,8 +154,8 @@ TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
     }
 }
 
-// Three programs that keep their channels without a use: answers are left unread, or a message
-// never ends. A fourth that waits has one of theirs after a while.
+// Three programs keep their channels without a use: they leave answers unread, or never end a
+// message. A fourth that waits gets one of the channels after a while.
 class Keepers : public ::testing::Test {
 protected:
     // The fourth has an answer, while the three do `meanwhile` again and again.
@@ -202,7 +202,7 @@ TEST_F(Keepers, AMessageThatNeverEnds) {
     });
 }
 
-// One that floods has no more of the link than one that calls now and then.
+// A flooding program has no more of the link than one that calls now and then.
 TEST_F(Crowd, AFloodLeavesRoomForOthers) {
     Program flood(engine_->connect(0)), other(engine_->connect(1));
     wire_.until([&] {
@@ -224,7 +224,7 @@ TEST_F(Crowd, AFloodLeavesRoomForOthers) {
             other.read();
             return other.got >= want;
         }));
-        // What is queued for the link goes first, not all that the flood has to say.
+        // The link's queue goes first, not the whole flood.
         EXPECT_LT(flood.got - before, 60'000u);
     }
 }

@@ -49,7 +49,7 @@ protected:
             << got.size() << " of " << size << " bytes; the engine's log:\n"
             << log();
     }
-    // A call of the UAV's reaches who listens.
+    // A call of the UAV's reaches the listener.
     void isCalled(XBeeAT::Engine& engine, int ready) {
         rig_.with([&] {
             Link_openChannel(rig_.link(), 3);
@@ -210,7 +210,7 @@ TEST_F(EngineTest, ACallOfTheUavThatNoDescriptorIsLeftForIsRefusedAndReported) {
     }));
 }
 
-// A modem that was given up once may return: the same listener is called then.
+// A modem that was given up may return: the same listener is called then.
 TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     rig_.with([&] {
         rig_.echo = true;
@@ -219,7 +219,7 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     auto engine = start();
     int ready = engine->listen();
     int fd = engine->connect(0);
-    EXPECT_TRUE(readAll(fd, 1).empty()); // nobody answers: who waits is told
+    EXPECT_TRUE(readAll(fd, 1).empty()); // nobody answers: the waiting program is told
     close(fd);
     EXPECT_TRUE(logged("0 no modem answers"));
     rig_.with([&] { rig_.ground->power(true, rig_.ns()); });
@@ -230,7 +230,7 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     close(fd);
 }
 
-// A failure is told once, and as what it was.
+// A failure is reported once, with its cause.
 TEST_F(EngineTest, ARefusedCommandIsToldAsWhatItIs) {
     XBeeAT::Settings s = settings();
     s.pan = 0x1FFFF;
@@ -268,7 +268,7 @@ TEST_F(EngineTest, TheModemIsSetUpWhileTheUavSends) {
     EXPECT_GE(commands, 9u);
 }
 
-// A listener alone has the modem tried again, though nobody connects.
+// For a listener alone the modem is tried again, though nobody connects.
 TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
     rig_.with([&] { rig_.ground->power(false, rig_.ns()); });
     auto engine = start();

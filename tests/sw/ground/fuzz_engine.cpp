@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_engine: libFuzzer target of the ground's engine: its serial input and what programs send. An
-// input is a little program of steps; between them the engine runs with a link layer at the other
-// end of the wire, so that sessions come up. Nothing may crash, hang or leak, and a message that is
-// handed to a program is whole.
+// fuzz_engine: libFuzzer target of the ground's engine: its serial input and programs' writes. An
+// input is a sequence of steps; between them the engine runs with a link layer at the other end of
+// the wire, so that sessions come up. Nothing may crash, hang or leak, and a message that is handed
+// to a program is whole.
 //
 // The first byte's lowest bit: the modem is set up first. Then a byte names the step (mod 8), the
 // next its argument n:
@@ -123,7 +123,7 @@ public:
 
     void fromEngine(const uint8_t* bytes, size_t size) {
         Link_receive(peer_.get(), bytes, static_cast<U32>(size), now);
-        if (bytes[0] == 'A' || bytes[0] == '+') // what a modem would understand
+        if (bytes[0] == 'A' || bytes[0] == '+') // a modem would understand it
             for (char c : {'O', 'K', '\r'})
                 toEngine.push_back(static_cast<uint8_t>(c));
     }

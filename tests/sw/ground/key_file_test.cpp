@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// key_file_test: which key files are taken, and what is said of those that are not.
+// key_file_test: accepted key files, and messages about refused ones.
 
 #include "key_file.h"
 #include <cstdio>
@@ -24,7 +24,7 @@ protected:
         chmod(path_, mode);
         return KeyFile(path_);
     }
-    // What is said of a file that is refused; no digit of a key is ever in it.
+    // Returns the message about a refused file; no digit of a key is ever in it.
     std::string refusal(const std::string& text, mode_t mode = 0600) {
         try {
             read(text, mode);

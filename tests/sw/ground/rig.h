@@ -76,7 +76,7 @@ public:
     std::vector<std::pair<int, Bytes>> received;
     std::vector<std::pair<int, int>> opened; // channel, 1 open, 0 close
     bool echo = false, refuse = false, uavRuns = true;
-    // If set, takes a message instead of the UAV keeping it; called in the rig's thread, locked.
+    // If set, takes messages instead of the UAV; called in the rig's thread, locked.
     std::function<int(int channel, const U8* data, U32 size)> take;
     std::function<void(int channel, bool isOpen)> opening;
     std::function<void()> step;

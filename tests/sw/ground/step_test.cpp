@@ -136,7 +136,7 @@ TEST_F(Step, AnotherPortsProgramIsNotWaitedFor) {
     simulate([&] { return status_->ns >= end; });
 }
 
-// The program lives, and does nothing: time goes on without it, and somebody says so.
+// The program lives, and does nothing: time goes on without it, and stderr reports it.
 TEST_F(Step, WhoHoldsTimeForTooLongIsWaitedForNoLonger) {
     Clock clock(status_.path());
     SerialPort port(clock);
@@ -172,8 +172,7 @@ TEST_F(Step, WhoIsHeldByADebuggerIsWaitedFor) {
     close(ready[1]);
 }
 
-// A simulation that is asked to end asks once whether it goes on, and waits for nobody from then
-// on.
+// A simulation that must end asks once whether it goes on, and waits for nobody from then on.
 TEST_F(Step, NobodyIsWaitedForAfterTheStop) {
     Clock clock(status_.path());
     SerialPort port(clock);

@@ -10,9 +10,9 @@ namespace {
 
 using XBeeAT::Stream;
 
-// What Ice 3.8 documents: a connection on which nothing comes for 60 s (Ice.Connection.IdleTimeout)
-// is cut; who has written nothing for half of it sends a heartbeat. Ice 3.7 never sends one
-// unasked.
+// By Ice 3.8's manual a connection without incoming bytes for 60 s (Ice.Connection.IdleTimeout) is
+// cut; a program that has written nothing for half of it sends a heartbeat. Ice 3.7 sends none by
+// itself.
 class Program {
 public:
     Program() {

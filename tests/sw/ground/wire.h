@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// wire: a serial port with a link layer behind it and no modem: bytes as fast as they are taken.
-// And what programs write and read.
+// wire: a serial port with a link layer behind it and no modem, as fast as bytes are taken; and
+// helpers for programs' sockets.
 
 #ifndef WIRE_H
 #define WIRE_H
@@ -24,7 +24,7 @@
 
 using Bytes = std::vector<uint8_t>;
 
-// A message as Ice frames it; nothing of it but the size is looked at.
+// A message in Ice's framing; only its size is looked at.
 inline Bytes message(uint8_t tag, size_t size = 30) {
     Bytes m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 7, 0, 0, 0, 0, 0};
     m.resize(size, tag);
@@ -33,7 +33,7 @@ inline Bytes message(uint8_t tag, size_t size = 30) {
     return m;
 }
 
-// Reads `size` bytes; fewer if the stream ends, or nothing comes for so long.
+// Reads `size` bytes; fewer if the stream ends, or nothing comes for this long.
 inline Bytes readAll(int fd, size_t size, int patienceMs = 60'000) {
     Bytes bytes(size);
     size_t got = 0;
@@ -107,7 +107,7 @@ public:
         std::lock_guard<std::mutex> lock(logMutex_);
         return log_;
     }
-    // Puts bytes on the wire, throws away what comes.
+    // Puts bytes on the wire, drops the answer.
     void flood(const Bytes& bytes) {
         for (size_t done = 0; done < bytes.size();) {
             pollfd p{master_, POLLIN | POLLOUT, 0};

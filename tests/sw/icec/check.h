@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * check: what a client expects; where it is not so, it says the line, and the function returns 1.
+ * check: a client's expectation; a failed one prints its line, and the function returns 1.
  */
 #ifndef CHECK_H
 #define CHECK_H

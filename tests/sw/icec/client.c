@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * client: an IceC client against a stock server on the port given. Exit status 0: all as expected.
+ * client: an IceC client against a stock server on the given port. Exit status 0: all as expected.
  */
 #include "Interop.h"
 #include "check.h"

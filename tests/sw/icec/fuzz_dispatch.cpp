@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_dispatch: libFuzzer on everything that a peer may send: messages behind a valid head.
+// fuzz_dispatch: libFuzzer on all messages of a peer: bytes behind a valid head.
 //
 // The first byte chooses the message's type. Afterwards the communicator must still answer a ping.
 // With ICEC_MINIMAL the same of the minimal run time.
@@ -119,7 +119,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     (void)Ice_Communicator_poll(&ic, 0);
     static const Ice_Byte types[] = {0, 0, 1, 2, 2, 3, 4, 9};
     messageDuringCall(types[data[0] & 7], (data[0] & 7) == 4, {data + 1, data + size});
-    // The connection works again, whatever that was: a new one, a ping, one reply.
+    // The connection works again after any message: a new one, a ping, one reply.
     if (!loop.open[0] || data[0] & 8) {
         (void)LoopEndpoint_inject(&loop, ICE_EVENT_OPENED, 0, nullptr, 0);
         (void)Ice_Communicator_poll(&ic, 0);

@@ -2,8 +2,8 @@
 //
 // fuzz_stream: libFuzzer on the stream decoder and the parsers of proxy strings.
 //
-// Two bytes of each step choose what is read next. A proxy that is read or parsed must come back
-// the same from its own string and its own encoding.
+// Two bytes of each step choose the next read. A proxy that is read or parsed must come back the
+// same from its own string and its own encoding.
 
 #include <cstdint>
 #include <cstdio>

@@ -74,7 +74,7 @@ bool write(const Parameters& p, Format format, Bytes& bytes) {
     return !os.failed;
 }
 
-// ---- what an operation throws
+// ---- an operation's exceptions
 
 bool read(Graph_Maker_make_Exception& ex, const Bytes& bytes, Ice_Byte minor, size_t arenaBegin) {
     Ice_InputStream is = reader(bytes, minor, arenaBegin);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// manual_test: what the chapters on proxies and adapters of Ice's manual promise besides calls
-// (docs/icec.md): parts of a proxy, changes of a copy, adapters, Current, what cannot be called.
+// manual_test: the chapters on proxies and adapters of Ice's manual, besides calls (docs/icec.md):
+// parts of a proxy, changes of a copy, adapters, Current, transports that cannot be called.
 
 #include "pair.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// minimal_test: calls of the minimal run time, and what it refuses.
+// minimal_test: calls of the minimal run time, and its refusals.
 
 #include "wire.h"
 

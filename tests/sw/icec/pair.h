@@ -105,7 +105,7 @@ protected:
     }
     Side& here() { return *here_; }
     Side& there() { return *there_; }
-    // Lets the other side handle what it was sent.
+    // Lets the other side handle its received messages.
     void settle() {
         while (Ice_Communicator_poll(&there_->ic, 0) == ICE_OK ||
                Ice_Communicator_poll(&here_->ic, 0) == ICE_OK)

@@ -83,7 +83,7 @@ def client(ic, port, minimal):
     adapter.activate()
     service.work(proxy)
     assert callback.event.wait(30) and callback.percent == 100
-    # Garbage, and a client that leaves in mid-message, disturb nobody.
+    # Garbage, and a client that leaves in mid-message, disturb nobody else.
     for rubbish in (b"GET / HTTP/1.0\r\n\r\n", b"IceP\x01\x00\x01\x00\x00\x00\xff\xff\xff\x7f", b"IceP\x01\x00"):
         s = socket.create_connection(("127.0.0.1", int(port)))
         s.sendall(rubbish)
@@ -153,7 +153,7 @@ class ServiceI(Interop.Service):
 
 
 class LocatorI(Ice.Locator):
-    """As IceGrid's: knows the adapter by its name, and one object by itself."""
+    """Like IceGrid's: knows the adapter by its name, and one object by itself."""
 
     def __init__(self, adapter):
         self.adapter = adapter

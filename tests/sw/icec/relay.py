@@ -40,7 +40,7 @@ class Capture:
 
 
 async def connection(reader, writer):
-    """Hands on what comes from either side until one ends, or the bytes are through."""
+    """Passes bytes on from either side until one ends, or the bytes are through."""
     capture = Capture(writer.get_extra_info("peername")[1])
     server_reader, server_writer = await asyncio.open_connection("127.0.0.1", words.port)
     passed = 0

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// tcp_test: IceC's tcp transport and peers of any manners: many at once, silent, dead or greedy
-// ones, and those that cut a connection on which nothing is said (Ice 3.8).
+// tcp_test: IceC's tcp transport and peers: many at once, silent, dead or greedy ones, and those
+// that cut a silent connection (Ice 3.8).
 
 #include "wire.h"
 
@@ -28,7 +28,7 @@ int msSince(Clock::time_point begin) {
         std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - begin).count());
 }
 
-// A peer that is no Ice at all: a socket, and what is written to it.
+// A peer that is no Ice program: a socket, and the bytes written to it.
 class Peer {
 public:
     explicit Peer(int port) : fd_(socket(AF_INET, SOCK_STREAM, 0)) {

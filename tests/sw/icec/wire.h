@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// wire: a communicator that is sent messages as bytes, and what it answers.
+// wire: sends messages as bytes to a communicator, and returns its answers.
 
 #pragma once
 
@@ -54,7 +54,7 @@ protected:
             static_cast<Wire*>(context)->sent_.emplace_back(m, m + size);
         };
     }
-    // Opens a connection, sends the message, returns what came back behind the validation.
+    // Opens a connection, sends the message, returns the answer after the validation.
     std::vector<Bytes> exchange(const Bytes& m, Ice_Int size = -1) {
         inject(ICE_EVENT_OPENED, {});
         EXPECT_EQ(sent_, std::vector<Bytes>({message(3, {})}));

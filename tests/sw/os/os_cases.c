@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_cases: the list of cases, and what they say with.
+ * os_cases: the list of cases, and their output.
  */
 #include "os_cases_private.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_cases: programs that use uC/OS-II's API, and what its manual says they do ("MicroC/OS-II, The
- * Real-Time Kernel", chapter 16). They run on the host's port, on the Cortex-M3's, and on request
- * on the real uC/OS-II: one text is expected of all.
+ * os_cases: programs that use uC/OS-II's API, with the output that its manual implies
+ * ("MicroC/OS-II, The Real-Time Kernel", chapter 16). They run on the host's port, on the
+ * Cortex-M3's, and on request on the real uC/OS-II, with one expected text.
  */
 #ifndef OS_CASES_H
 #define OS_CASES_H
@@ -13,9 +13,9 @@ typedef struct OsCase {
     const char* name;
     void (*prepare)(void); /* between OSInit and OSStart */
     void (*interrupt)(
-        void);      /* what the interrupt routine does, between OSIntEnter and OSIntExit; or 0 */
-    unsigned ticks; /* then the case is over */
-    const char* expected; /* what was said */
+        void);            /* the interrupt routine's part, between OSIntEnter and OSIntExit; or 0 */
+    unsigned ticks;       /* length of the case */
+    const char* expected; /* the expected output */
 } OsCase;
 
 extern const OsCase os_cases[];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_cases_private: what the files of cases share: tasks that say what they do.
+ * os_cases_private: shared by the files of cases: tasks that print their steps.
  */
 #ifndef OS_CASES_PRIVATE_H
 #define OS_CASES_PRIVATE_H

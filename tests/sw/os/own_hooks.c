@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * own_hooks: what our kernel asks of the runner.
+ * own_hooks: our kernel's hooks in the runner.
  */
 #include "guard.h"
 #include "os_core.h"

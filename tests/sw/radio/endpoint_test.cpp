@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// endpoint_test: what IceC's radio endpoint tells of connections that come and go while nobody
+// endpoint_test: reports of IceC's radio endpoint about connections that come and go while nobody
 // looks.
 
 #include "link_pair.h"
@@ -162,7 +162,7 @@ TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSid
     EXPECT_EQ(events(), Kinds{});
 }
 
-// A message that waits for room is for the program that had the channel when it came.
+// A waiting message belongs to the program that had the channel when it came.
 TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnItsChannel) {
     ASSERT_TRUE(pair_.connect());
     const Side::Bytes answer(7930, 7);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // fpga_start_test: the firmware's ARM binary, at its start, has the FPGA load a bitstream, hears
-// from where in flash it does, and knows which one runs.
+// the addresses of its reads in flash, and knows which one runs.
 
 #include "stm32f2.h"
 #include "vehicle_folder.h"
@@ -62,8 +62,8 @@ protected:
         std::memcpy(&*at(slot + SLOTS_TRIED), &isTrue, 4);
         std::memcpy(&*at(slot + SLOTS_CONFIRMED), &isTrue, 4);
     }
-    // Power comes. Returns the slot of the bitstream that the firmware says is running; the FPGA
-    // says the same.
+    // Switches the power on. Returns the slot of the running bitstream, in the firmware's words and
+    // the FPGA's.
     uint32_t start() {
         chip.powerOn();
         limit = chip.cpu().cycles() + 3'000'000'000;

@@ -24,7 +24,7 @@ protected:
             << folder.said();
         chip.cpu().loadFlash(flashBase, folder.read("flash"));
     }
-    // Leaves in the second slot what a complete update does.
+    // Leaves a complete update in the second slot.
     void receive(int version, const char* key = "key") {
         ASSERT_EQ(folder.pack("image " FIRMWARE "uav.elf " + std::to_string(version) + " " + key +
                               " update"),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// vehicle_folder: a folder of a test's own, as tests run side by side, in which pack_update works.
+// vehicle_folder: a test's own folder, since tests run side by side, in which pack_update works.
 
 #ifndef VEHICLE_FOLDER_H
 #define VEHICLE_FOLDER_H

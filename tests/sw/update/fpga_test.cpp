@@ -86,7 +86,8 @@ protected:
         }
         std::copy(header.begin(), header.end(), at(0));
     }
-    // Power comes, or the processor starts anew; returns the version that configures the FPGA.
+    // Switches the power on, or restarts the processor; returns the version that configures the
+    // FPGA.
     uint32_t boot() {
         if (Slots_settleFpga(&port, 0))
             fpga.configure(flash.memory);
@@ -122,7 +123,7 @@ protected:
         work();
         return reason ? reason : receiver.reason;
     }
-    // What the ground does until this version is confirmed, whatever runs now.
+    // Does the ground's part until this version is confirmed, whatever runs now.
     void updateTo(uint32_t version) {
         const Image& image = imageOf(version);
         for (uint32_t runs = powerOn(); runs != version; runs = boot()) {

@@ -83,7 +83,7 @@ public:
         const uint32_t value = SLOTS_TRUE;
         std::memcpy(&memory[Slots_at(&slots_firmware, slot) + state], &value, 4);
     }
-    // Power comes; returns the version that runs.
+    // Switches the power on; returns the version that runs.
     uint32_t boot() {
         flash_.reset();
         const uint32_t slot = Slots_choose(&port, product);
@@ -117,7 +117,7 @@ public:
         work();
         return reason == RECEIVER_OK ? receiver.reason : reason;
     }
-    // What the ground does until this version is confirmed, whatever runs now.
+    // Does the ground's part until this version is confirmed, whatever runs now.
     void updateTo(uint32_t version) {
         for (uint32_t runs = boot(); runs != version; runs = boot()) {
             const Image image = makeImage(version, receiver.slot);

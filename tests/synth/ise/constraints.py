@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""constraints: finds what of the chip no constraint names.
+"""constraints: finds paths and pads of the chip without a constraint.
 
 Usage: constraints.py NETLIST FOLDER-OF-merge_ucf FILE.ucf...
 

@@ -9,7 +9,7 @@
 #define ACTLR_DISDEFWBUF 2UL
 #define CFSR_IMPRECISERR (1UL << 10)
 
-/* Goes on behind the instruction that failed; the fault of a store comes behind it by itself. */
+/* Continues behind the failing instruction; the fault of a store comes later by itself. */
 static void skip(void) {
     U16 first = *(U16*)Case_frame[6];
     value[0] = SCB_CFSR;

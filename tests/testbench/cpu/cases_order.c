@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * cases_order: who is served first, and when: priorities, masks, PendSV, SVC, SysTick, WFI.
+ * cases_order: order and time of exceptions: priorities, masks, PendSV, SVC, SysTick, WFI.
  */
 #include "cpu_cases.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * cpu_cases: programs for the CPU model's tests. Each says what happens by letters: interrupt n
- * enters as a small letter and leaves as a large one ('a' is interrupt 0), other handlers have
- * letters of their own.
+ * cpu_cases: programs for the CPU model's tests. Each reports by letters: interrupt n enters as a
+ * small letter and leaves as a capital ('a' is interrupt 0), other handlers have letters of their
+ * own.
  */
 #ifndef CPU_CASES_H
 #define CPU_CASES_H

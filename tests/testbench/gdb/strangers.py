@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""strangers: who is no debugger is sent away, and one that leaves or talks nonsense makes room for the next.
+"""strangers: a peer that is no debugger is sent away, and one that leaves or talks nonsense makes room for the next.
 
 Usage: strangers.py icesoc-sim firmware.elf out-folder
 """
@@ -32,7 +32,7 @@ def main(sim, elf, out):
 
 def check(port):
     def talk(*parts):
-        """The answer to these bytes, or b"" if the connection is ended."""
+        """Returns the answer to these bytes, or b"" if the connection is ended."""
         with socket.create_connection(("127.0.0.1", port), PATIENCE) as s:
             answer = b""
             try:
@@ -48,7 +48,7 @@ def check(port):
             return answer
 
     def leave(*parts):
-        """Says this, and is gone."""
+        """Sends this, and disconnects."""
         with socket.create_connection(("127.0.0.1", port), PATIENCE) as s:
             for part in parts:
                 s.sendall(part)

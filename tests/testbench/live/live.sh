@@ -22,7 +22,7 @@ mission)
         sleep 0.2
     done
     url=$(sed -n 's,.*\(http://127.0.0.1:[0-9]*/\).*,\1,p' "$out/log")
-    # No name is resolved: whatever another host would have to give is missing, and said in the log.
+    # No name is resolved: resources of other hosts would be missing, and reported in the log.
     HOME=$out timeout 120 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$out/chromium" \
         --host-resolver-rules='MAP * ~NOTFOUND, EXCLUDE 127.0.0.1' --window-size=1280,1500 --virtual-time-budget=4000 \
         --enable-logging=stderr --dump-dom "$url" >"$out/dom.html" 2>"$out/chromium.log" || fail "chromium: $(tail -3 "$out/chromium.log")"

@@ -116,8 +116,8 @@ TEST_F(Attack, WithAKeyResetsEndNothing) {
     EXPECT_EQ(ground_.statistics().sessions, 1u);
 }
 
-// Everything that can be done without the key, while the ground and then the vehicle start anew:
-// what was heard before comes again behind that.
+// Everything that is possible without the key, while the ground and then the vehicle start anew;
+// then earlier packets are repeated.
 TEST_F(Attack, WithAKeyNothingComesOfAnyMischief) {
     start(vehicleKey);
     period_ = 25 * ms;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // m3_test: the firmware's ARM binary on the RTL: the same mission as the host build's, bit by bit,
-// and what ends it: watchdog, faults, a corrupt image.
+// and its failures: watchdog, faults, a corrupt image.
 
 #include "ground.h"
 #include "m3_machine.h"
@@ -151,7 +151,7 @@ TEST(CortexM3Firmware, LosesNothingAtTenPercentLossAndAtTheBoardsCycleRatio) {
 }
 
 // One flight, several accidents: a core that hangs, a processor that hangs, the FSMC switched off,
-// a stack that runs over. Each is told in the system slot, and the link comes back by itself.
+// a stack overflow. Each is shown in the system slot, and the link comes back by itself.
 TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     Flight f;
     f.pings(2);
@@ -289,7 +289,8 @@ TEST(CortexM3Firmware, ACorruptImageIsRefusedWithItsReason) {
         Flight f;
         M3Machine machine(f.soc, firmware, [&] { return f.inTime(0.3); });
         const ElfImage& image = *machine.stm32().image();
-        // Anywhere behind the code that tells: start, boot, FSMC driver come first in the image.
+        // Anywhere behind the code that reports: start, boot and FSMC driver come first in the
+        // image.
         uint32_t begin = image.symbol("telling_end"), end = image.symbol("image_end");
         uint32_t at = begin + random.below(end - begin);
         uint8_t byte = 0;

@@ -178,8 +178,8 @@ TEST_F(Soc, EveryLineToTheSlotsIsConnected) {
         read(slot, 0);
 }
 
-// As on a board whose processor is there before the DDR3 has started: nothing hangs, what was too
-// early is told, and what was posted is kept.
+// As on a board whose processor starts before the DDR3: nothing hangs, early accesses are reported,
+// and posted writes are kept.
 TEST_F(Soc, AnAccessWhileTheMemoryStartsIsToldAndLaterOnesAreRight) {
     soc_.reset(true);
     fsmc_.write16(ddr + 0x100, 0x1234);

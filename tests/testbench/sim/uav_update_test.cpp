@@ -109,8 +109,8 @@ protected:
                                        reinterpret_cast<char*>(packed.data()), half, half, 1)));
         return packed;
     }
-    // A call, and the first byte that it must be answered with; 0xFF: any. Calls of getStatus are
-    // repeated until it comes.
+    // A call, and the first byte of its expected answer; 0xFF: any. Calls of getStatus are repeated
+    // until it comes.
     struct Step {
         const char* operation;
         Bytes parameters;

@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# program: icesoc-xbee as its user sees it, with stty and the shell as the serial programs: help, wrong
-# options, command mode, data across, statistics, a clean end by Ctrl-C. Usage: program.sh icesoc-xbee
+# program: icesoc-xbee for its user, with stty and the shell as the serial programs: help, wrong
+# options, command mode, data across, statistics, a clean end by Ctrl-C. Usage: program.sh
+# icesoc-xbee
 set -eu
 program=$1
 work=$(mktemp -d)

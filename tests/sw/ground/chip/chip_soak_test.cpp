@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
 // chip_soak_test: the real thing for long: stock Ice with the plugin and IceC on the RTL call each
-// other over a bad radio, while UAV, modems and the ground's program start again. No message wrong,
-// doubled or out of order; each answered, or reported by a status that says so.
+// other over a bad radio, while UAV, modems and the ground's program start again. No message is
+// wrong, doubled or out of order; each is answered, or reported by such a status.
 //
 //   SOAK_SECONDS=600 build/main/tests/sw/ground/chip/test_chip_soak (simulated seconds; default 5)
-//   SOAK_REST=10 has each caller rest for so many seconds on average; misfortunes are rarer by as
-//   much. That is a flight (make fly): most of its clocks pass at once.
+// SOAK_REST=10 makes each caller rest for this many seconds on average, with accidents rarer by as
+// much. That is a flight (make fly): most of its clocks pass at once.
 
 #include "chip_world.h"
 #include "random.h"
@@ -47,9 +47,9 @@ public:
         }
         old->destroy();
     }
-    // True if an exception says, in Ice's words, "this call may not have been executed". While a
-    // communicator is destroyed, Ice's own parts say in other words that they are gone: "timer
-    // destroyed", a null handle.
+    // True if an exception means, in Ice's words, "this call may not have been executed". While a
+    // communicator is destroyed, Ice's own parts report it in other words: "timer destroyed", a
+    // null handle.
     bool isReport(const Ice::CommunicatorPtr& used, const std::string& exceptionId) {
         static const std::set<std::string> reports = {
             "::Ice::ConnectionLostException",    "::Ice::ConnectFailedException",
@@ -203,7 +203,7 @@ protected:
             ++modemResets_;
             break;
         case 3:
-            ground_.end(); // with it the engine goes: a program that ends
+            ground_.end(); // with it the engine, as at a program's end
             startGround();
             ++groundStarts_;
             break;
@@ -242,12 +242,12 @@ protected:
 };
 
 TEST_F(ChipSoak, EveryMessageIsRightOnceInOrderOrReported) {
-    struct AtEnd { // also of an exception: the workers hear of it before they are waited for
+    struct AtEnd { // also after an exception: the workers are told before they are joined
         ~AtEnd() { stop = true; }
         std::atomic<bool>& stop;
     };
     startGround();
-    std::vector<std::future<void>> workers; // joined however this ends
+    std::vector<std::future<void>> workers; // joined in every case
     for (int w = 1; w <= 3; ++w)
         workers.push_back(std::async(std::launch::async, [this, w] { work(w); }));
     AtEnd atEnd{stop_};

@@ -21,14 +21,14 @@ struct EchoUav_Port; // echo_uav.h
 
 class ChipWorld {
 public:
-    // `port`: what the firmware calls, in this world's thread. Ground and UAV share a key, or speak
-    // in the clear.
+    // `port`: the firmware's calls, in this world's thread. Ground and UAV share a key, or speak in
+    // the clear.
     ChipWorld(uint64_t seed, const EchoUav_Port& port, void* context, bool hasKey = false);
     ~ChipWorld();
     ChipWorld(const ChipWorld&) = delete;
     ChipWorld& operator=(const ChipWorld&) = delete;
 
-    // Runs `f` in the world's thread; all that has a time is used there only.
+    // Runs `f` in the world's thread, the only one that uses timed objects.
     void with(std::function<void()> f);
     uint64_t ns() const { return clock_.ns(); }
     void sleep(double seconds) const; // simulated

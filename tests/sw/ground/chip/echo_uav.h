@@ -8,12 +8,12 @@
 
 #include "fsmc.h"
 
-/* The test's callbacks: what it allows and what it hears. The firmware's tasks call them. */
+/* The test's callbacks: its permissions and its observations. The firmware's tasks call them. */
 typedef struct EchoUav_Port {
     /* Called when an operation with an id has been executed here, with this data. */
     void (*executed)(void* context, int id, const U8* data, int size);
-    /* The next message to the ground: its id, its bytes written to `data`; returns their number, or
-     * -1: none now. `isOneway`: as note(id), without bytes. */
+    /* Returns the next message to the ground: its id, its bytes written to `data`, and their
+     * number, or -1: none now. `isOneway`: as note(id), without bytes. */
     int (*next)(void* context, int* id, U8* data, int* isOneway);
     /* The outcome of a call: `status` 0, and the answer's bytes unless it was oneway; else a status
      * of ice_status.c with its text. */

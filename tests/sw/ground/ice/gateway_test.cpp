@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// gateway_test: icesoc-gateway between the radio and stock Ice programs that know nothing of it.
+// gateway_test: icesoc-gateway between the radio and stock Ice programs without the plugin.
 
 #include "world.h"
 #include <csignal>
@@ -43,7 +43,7 @@ public:
             stop();
         close(out_);
     }
-    // Returns the port that the gateway says it has; -1: it ended without one.
+    // Returns the gateway's printed port; -1: it ended without one.
     int port() {
         size_t at;
         while ((at = said_.find("port ")) == std::string::npos ||
@@ -66,7 +66,7 @@ public:
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
     const std::string& said() const { return said_; }
-    // Reads until it says `text` once more. Returns false where it ends without.
+    // Reads until it prints `text` once more. Returns false where it ends without.
     bool hear(const std::string& text) {
         size_t at;
         while ((at = said_.find(text, heard_)) == std::string::npos)

@@ -254,7 +254,7 @@ static int modes(void) {
     return 0;
 }
 
-/* What asynchronous calls bring is looked at where it is valid. */
+/* Results of asynchronous calls are checked while they are valid. */
 static int right;
 
 static void gotNode(Everything_Tester_echoNode_Async* self) {
@@ -358,7 +358,7 @@ static int lost(void) {
     while (Everything_TesterPrx_shutdown(&tester) != ICE_OK)
         if (Ice_ObjectPrx_ice_ping(&tester) == ICE_CONNECTION_LOST &&
             Ice_ObjectPrx_ice_ping(&tester) == ICE_CONNECTION_LOST)
-            break; /* its answer was cut off, and it is gone */
+            break; /* its answer was cut off, and the connection has gone */
     return 0;
 }
 

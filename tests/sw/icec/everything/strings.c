@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * strings: reads a proxy a line, prints what IceC makes of it, then its bytes on the wire in the
+ * strings: reads a proxy a line, prints IceC's form of it, then its bytes on the wire in the
  * encodings 1.1 and 1.0; or "refused".
  */
 #include "tcp_endpoint.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * client: what IceC's clients of ZeroC's own servers share.
+ * client: shared by IceC's clients of ZeroC's own servers.
  */
 #include "client.h"
 #include "tcp_endpoint.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * client: IceC as the client of ZeroC's own servers: client ENCODING PORT PORT. Says how many
+ * client: IceC as the client of ZeroC's own servers: client ENCODING PORT PORT. Prints how many
  * checks passed.
  */
 #ifndef ZEROC_CLIENT_H
@@ -16,7 +16,7 @@ Ice_ObjectPrx Suite_proxyAt(Ice_CommunicatorPtr ic, const char* identity, int ad
 /* Counts a check, and prints those that fail. */
 void Suite_check(int is, const char* what, int line);
 #define CHECK(is) Suite_check(is, #is, __LINE__)
-/* True if the two print the same: what comes in encoding 1.0 has endpoints of 1.0. */
+/* True if the two print the same: a proxy received in encoding 1.0 has endpoints of 1.0. */
 int Suite_alike(const Ice_ObjectPrx* a, const Ice_ObjectPrx* b);
 /* Casts `prx` to an interface that the object has. */
 #define CAST(Type, prx, from) \

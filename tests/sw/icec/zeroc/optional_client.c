@@ -7,14 +7,14 @@
 
 #include <string.h>
 
-/* The part of a value that is looked at. */
+/* The compared part of a value. */
 #define ITSELF(v) v
 #define HIGH(v) v.high
 #define SIZE(v) v.size
 #define MEMBER(v) v.m
 #define TEXT(v) v.m.size
 
-/* An optional comes back twice where it is sent, and the encoding has it; where not, not. */
+/* A sent optional comes back twice where the encoding has optionals, else not. */
 #define ECHO(operation, Type, member, value)                                                       \
     do {                                                                                           \
         Type in, out, result;                                                                      \

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * servant: what the servants for ZeroC's test suites share.
+ * servant: shared by the servants for ZeroC's test suites.
  */
 #include "servant.h"
 

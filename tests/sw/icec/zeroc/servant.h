@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * servant: what the servants for ZeroC's test suites share.
+ * servant: shared by the servants for ZeroC's test suites.
  */
 #ifndef ZEROC_SERVANT_H
 #define ZEROC_SERVANT_H
@@ -28,7 +28,7 @@ void* Suite_reversed(const Ice_Current* current, const void* a, Ice_Int count, s
         (a)->size + (b)->size)
 #define REVERSE(out, a) \
     SET(out, Suite_reversed(current, (a)->data, (a)->size, sizeof *(a)->data), (a)->size)
-/* A dictionary: `a` with what `b` has; `b` wins. SAME compares the keys x and y. */
+/* Makes a dictionary: `a` with the entries of `b`; `b` wins. SAME compares the keys x and y. */
 #define MERGE(out, a, b, SAME)                                                                 \
     do {                                                                                       \
         Ice_Int i, j;                                                                          \
@@ -46,7 +46,7 @@ void* Suite_reversed(const Ice_Current* current, const void* a, Ice_Int count, s
 #define SAME_TEXT(x, y) ((x).size == (y).size && memcmp((x).data, (y).data, (size_t)(x).size) == 0)
 
 #define SHUTDOWN Ice_Communicator_shutdown(current->communicator)
-/* An exception from beyond the operation's file, in the sliced format where `isSliced`. */
+/* An exception outside of the operation's list, in the sliced format where `isSliced`. */
 #define THROW(exception, Type, isSliced)                 \
     do {                                                 \
         Ice_Reply reply;                                 \

@@ -21,7 +21,7 @@ PROTOTYPE = re.compile(r"^Ice_Status (\w+)\((\w+) self,\s*([^;]*?)const Ice_Curr
 
 
 def parameters(text):
-    """[(type, name)] of a signature's middle."""
+    """Returns [(type, name)] of a signature's parameters."""
     words = [" ".join(p.split()) for p in text.split(",") if p.strip()]
     return [re.fullmatch(r"(.*?)(\w+)", w).groups() for w in words]
 

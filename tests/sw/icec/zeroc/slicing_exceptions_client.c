@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * slicing_exceptions_client: calls the server of ZeroC's suite "slicing/exceptions", which throws
- * what this side does not know.
+ * exceptions unknown to this side.
  */
 #include "Test.h"
 #include "client.h"

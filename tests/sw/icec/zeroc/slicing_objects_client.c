@@ -9,7 +9,7 @@
 
 static Test_TestIntfPrx prx;
 
-/* D1 and D2, which is not known here and comes as a B, know each other. */
+/* D1, and D2, which is unknown here and comes as a B, refer to each other. */
 static void isPair(const Test_B* b1, const Test_B* b2) {
     const Test_D1* d1 = Test_D1_cast(b1);
     CHECK(d1 && d1->pd1 == b2 && b1->pb == b2 && b2->pb == b1 && !Test_D1_cast(b2));
@@ -100,7 +100,7 @@ static void sent(void) {
     CHECK(n->next == n);
 }
 
-/* What is not known here goes back whole, in 1.1. */
+/* Unknown slices go back whole, in 1.1. */
 static void unknown(void) {
     Ice_Value* any;
     Test_Preserved* p;

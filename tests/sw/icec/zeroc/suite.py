@@ -25,7 +25,7 @@ passed = 0
 failures = {}  # "File.py:line": text
 lock = threading.Lock()
 PATIENCE = 3  # seconds
-TURNS = 200  # of a loop that waits for what the server has
+TURNS = 200  # of a loop that waits for the server
 
 
 def check(truth):
@@ -46,14 +46,14 @@ def failed(where, error):
 
 
 def turn(turns):
-    """Ends a loop that waits for what will never come."""
+    """Ends a loop that waits in vain."""
     turns.append(0)
     if len(turns) > TURNS:
         raise RuntimeError("waited for %d turns" % TURNS)
 
 
 def wait(self, timeout=None, wait=threading.Condition.wait):
-    """The clients' callbacks tell a condition that they were called: not for ever, where one failed."""
+    """The clients' callbacks signal a condition: the wait for it is bounded, since one may have failed."""
     if not wait(self, timeout or PATIENCE) and timeout is None:
         raise RuntimeError("nothing came")
 
@@ -65,7 +65,7 @@ class Guard(ast.NodeTransformer):
         self.name = name
 
     def visit_Try(self, node):
-        return self.guarded(node)  # what is in it knows which exceptions it wants
+        return self.guarded(node)  # it contains its own expectations of exceptions
 
     def visit_FunctionDef(self, node):
         node.body = [self.visit(s) for s in node.body]
@@ -84,7 +84,7 @@ class Guard(ast.NodeTransformer):
     def visit_While(self, node):
         begin, turn = ast.parse("__turns__ = []\n__turn__(__turns__)").body
         node.body.insert(0, turn)
-        return self.guarded(node, begin)  # it may wait for what failed
+        return self.guarded(node, begin)  # it may wait for a failed call
 
     def visit_If(self, node):
         node.body = [self.visit(s) for s in node.body]

@@ -17,9 +17,8 @@ import sys
 TITLES = {
     "simulator": "Simulator", "air": "Radio link on the half-duplex air", "speed": "Simulation of RTL against Icarus",
     "plugin": "Stock Ice through the plugin", "trust": "Attacks, losses of power in updates, bytes of a key", "load": "Load on the ground's engine and gateway",
-    "modem": "Modem set-up", "crypto": "Ascon in C and by the core",
-    "fsmc": "FSMC bridge", "memory": "Memory ports", "firmware": "Firmware on the Cortex-M3", "cores": "Cores",
-    "wrapper": "Generated wrapper against one by hand", "new_core": "A new core", "slice": "Slice compiler",
+    "modem": "Modem set-up", "fsmc": "FSMC bridge", "memory": "Memory ports",
+    "firmware": "Firmware on the Cortex-M3", "cores": "Cores", "slice": "Slice compiler",
     "size": "Bytes of the firmware's layers",
 }
 
@@ -38,7 +37,7 @@ def beside(entry):
         return f"limit {number(entry['limit'])}{share}"
     if "peer" in entry:
         return f"{entry['peer']}, {number(entry['ratio'])} times"
-    return f"by hand {entry['by_hand']}, from VHDL {entry['in_vhdl']}" if "by_hand" in entry else ""
+    return ""
 
 
 def split(name):

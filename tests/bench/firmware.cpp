@@ -9,7 +9,6 @@
 #include "figures.h"
 #include "measured_flight.h"
 #include <array>
-#include <chrono>
 #include <cstdio>
 #include <map>
 #include <unordered_map>
@@ -262,37 +261,6 @@ void measureMinimal(const std::string& elf) {
     say("minimal: stack used", top - at, "bytes", top - bottom);
 }
 
-// Measures a loop of the firmware's: the checksum over the image at start-up.
-void measureSpeed(const std::string& elf) {
-    using Clock = std::chrono::steady_clock;
-    auto rate = [&](Stm32F2& stm32) {
-        double best = 0;
-        for (int i = 0; i < 3; ++i) {
-            uint64_t from = stm32.cpu().instructions();
-            auto start = Clock::now();
-            stm32.powerOn();
-            stm32.cpu().breakpoints = {stm32.image()->symbol("Firmware_run")};
-            stm32.run();
-            stm32.cpu().breakpoints.clear();
-            double took = std::chrono::duration<double>(Clock::now() - start).count();
-            best =
-                std::max(best, static_cast<double>(stm32.cpu().instructions() - from) / took / 1e6);
-        }
-        return best;
-    };
-    FsmcPins pins;
-    FsmcMaster nothing(pins, {[] {}, [] {}});
-    Stm32F2 alone(nothing, [] { return uint64_t(0); }, {});
-    alone.load(elf);
-    say("simulated instructions a second, without the RTL", rate(alone), "million/s");
-    RfChannel air(1);
-    SocModel soc(air, {});
-    soc.reset();
-    M3Machine machine(soc, {elf, 0}, [] { return true; });
-    say("simulated instructions a second, with the RTL", rate(machine.stm32()), "million/s", 0,
-        "in lock-step");
-}
-
 } // namespace
 
 int main(int argc, char** argv) {
@@ -314,7 +282,6 @@ int main(int argc, char** argv) {
         if (!figures.brief) {
             profileCalls(f, 20);
             measureStream(f, "full stream");
-            measureSpeed(elf);
         }
         measureStacks(f);
         if (!figures.brief) {

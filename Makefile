@@ -155,4 +155,3 @@ $(call must,JOBS TESTS FUZZED REPEAT NIGHTLY MOMENTS SEEDS DRAW,[1-9][0-9]*,a nu
 $(call must,WAVES,[0-9][0-9]*,a number from 0 on)
 $(call must,SEED,[0-9]\{1$(COMMA)18\}$(if $(filter regress,$(MAKECMDGOALS)),$$\|xrandom),a whole number$(if $(filter regress,$(MAKECMDGOALS)), or random))
 $(call must,MINUTES,[0-9]*[.]*[0-9]*[1-9][0-9]*,a number of minutes$(COMMA) such as 4 or 0.5)
-$(call must,BUDGET,[0-9.]*[1-9][0-9.]*[ms]\{0$(COMMA)1\},a time$(COMMA) such as 60s or 5m)

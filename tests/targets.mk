@@ -32,16 +32,14 @@ WAVES    ?= 3
 CHANGED  ?=
 FAILED   ?=
 KEPT     ?=
-BUDGET   ?=
 # Seeds that `make nightly` draws
 NIGHTLY  ?= 3
 
-regress: setup-tests $(BUILD)/build.ninja ## run the regression, write build/regress/report.html (NAME= BLOCK= LABEL= CHANGED=1 FAILED=1 KEPT=1 BUDGET=60s SEED=n|random REPEAT=n)
+regress: setup-tests $(BUILD)/build.ninja ## run the regression, write build/regress/report.html (NAME= BLOCK= LABEL= CHANGED=1 FAILED=1 KEPT=1 SEED=n|random REPEAT=n)
 	@$(NINJA) --quiet regress
 	@$(BUILD)/tests/regress/regress --make --build $(BUILD) --jobs $(TESTS) --seed $(SEED) --repeat $(REPEAT) --waves $(WAVES) \
 	    $(if $(NAME),--name $(call quoted,$(NAME))) $(if $(BLOCK),--block $(call quoted,$(BLOCK))) \
-	    $(if $(LABEL),--label $(call quoted,$(LABEL))) $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed) $(if $(KEPT),--kept) \
-	    $(if $(BUDGET),--budget $(call quoted,$(BUDGET)))
+	    $(if $(LABEL),--label $(call quoted,$(LABEL))) $(if $(CHANGED),--changed) $(if $(FAILED),--rerun-failed) $(if $(KEPT),--kept)
 
 # TEST=test_fifo.Fifo.Wraps GOOD=commit that it passed at (the last one noted) BAD=HEAD
 TEST ?=

@@ -64,8 +64,8 @@ class Explanations:
 
 
 def read_verilator(path, root, explanations, files):
-    """verilated.dat: C '\\1key\\2value\\1key\\2value...' count. A module that is there several times,
-    in several models or with several parameters, is covered where any of them is."""
+    """verilated.dat: C '\\1key\\2value\\1key\\2value...' count. A module that is there several
+    times, in several models or with several parameters, is covered where any of them is."""
     counts, places = collections.Counter(), {}
     for line in open(path, errors="replace"):
         if not line.startswith("C '"):
@@ -78,7 +78,8 @@ def read_verilator(path, root, explanations, files):
             page = fields["page"]
             kind = "toggles" if page.startswith("v_toggle") else \
                 "points" if page.startswith("v_user") else "lines"
-            counts[file, fields["l"], fields.get("n", ""), page[:8], fields["o"], kind] += int(count)
+            key = file, fields["l"], fields.get("n", ""), page[:8], fields["o"], kind
+            counts[key] += int(count)
     for (name, line, _, _, point, kind), count in sorted(counts.items()):
         file = files[name]
         if why := explanations.of(name, point, count > 0):
@@ -108,8 +109,8 @@ def report(files, gates, out):
     """Prints a line a file, writes the summary; what is below its gate."""
     rows, below, total = [], [], collections.defaultdict(Share)
     for name, file in sorted(files.items()):
-        gate = gates.get(max((path for path in gates if name.startswith(path)), key=len, default=""),
-                         {})
+        above = [path for path in gates if name.startswith(path)]
+        gate = gates[max(above, key=len)] if above else {}
         lines, toggles, points = (file.shares[kind] for kind in ("lines", "toggles", "points"))
         for kind, share in file.shares.items():
             total[kind].total += share.total

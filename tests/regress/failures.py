@@ -17,7 +17,8 @@ RUNNERS = re.compile(
     r"^-- \S+ \S+ XBeeAT: |^[\s{}()\[\];]*$", re.I)
 # What a compiler or a lint says of a line of a file
 OF_FILE = re.compile(
-    r"^%(Error|Warning)[^ ]*: [^ ]+:\d+:|^[^ ]+:\d+:(\d+:)? *((fatal|runtime) error|error|warning):|"
+    r"^%(Error|Warning)[^ ]*: [^ ]+:\d+:|"
+    r"^[^ ]+:\d+:(\d+:)? *((fatal|runtime) error|error|warning):|"
     r"^SUMMARY: \S+Sanitizer: |^[^ ]+\.vhdl?:\d+:\d+:")
 # What a test says of a value, or Python of an exception
 OF_VALUE = re.compile(r"\berror\b|(?<!as )\bexpected\b|\bdiffers?\b|^\w*(Error|Exception): ", re.I)
@@ -68,8 +69,9 @@ def find_assertion(failure):
     """Adds to a proof's failure which assertion fails: its place and text, the instance in which it
     stands, and whether that is of the module that is proven. Yosys names the assertion's cell by
     instance, file and line, and beside it the lines of all cells around."""
-    match = re.search(r"Assert failed in \S+: (\S+) \((?:\$flatten/)?(?:(\S*?)\.?\$assert\$(\S+)\$)?",
-                      failure.result.log)
+    match = re.search(
+        r"Assert failed in \S+: (\S+) \((?:\$flatten/)?(?:(\S*?)\.?\$assert\$(\S+)\$)?",
+        failure.result.log)
     places = list(re.finditer(r"([^|]*?((?:hdl|bus|ip)/[^|:]+)):(\d+)[.](\d+)-(\d+)",
                               match[1])) if match else []  # file:89.41-91.66|...
     if not places:

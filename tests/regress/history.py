@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""history: what each run gave, a line of JSON a run, in history.jsonl; and the seeds that made tests
-fail, in seeds.jsonl until the tests pass with them."""
+"""history: what each run gave, a line of JSON a run, in history.jsonl; and the seeds that made
+tests fail, in seeds.jsonl until the tests pass with them."""
 import collections
 import json
 import time

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""lights: a run in seven lights, tests, proofs, plan, mutants, coverage, size, speed: green, red, or
-grey: not measured, or the sources have changed since. Each looks at its own figures only, so that a
-bug of one kind turns one light red."""
+"""lights: a run in seven lights, tests, proofs, plan, mutants, coverage, size, speed: green, red,
+or grey: not measured, or the sources have changed since. Each looks at its own figures only, so
+that a bug of one kind turns one light red."""
 from tool import tree_state
 
 
@@ -53,9 +53,10 @@ def of_coverage(coverage):
     bad = [f["file"] for f in coverage["files"]
            if f["percent"] < f["gate"] or f.get("point_percent", 100) < f.get("point_gate", 0) or
            f.get("toggle_points", 0) and f.get("toggles", 100) < f.get("toggle_gate", 0)]
-    return judge("coverage", f"{coverage['total']:.1f} % of lines, {coverage.get('toggles', 0):.1f} "
-                 f"% of toggles, {coverage.get('points', 0)} of {coverage.get('points_total', 0)} "
-                 "cover points", "files below their gate", bad)
+    return judge("coverage", f"{coverage['total']:.1f} % of lines, "
+                 f"{coverage.get('toggles', 0):.1f} % of toggles, "
+                 f"{coverage.get('points', 0)} of {coverage.get('points_total', 0)} cover points",
+                 "files below their gate", bad)
 
 
 def of_entries(name, entries, command):

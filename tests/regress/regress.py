@@ -11,7 +11,6 @@ import sys
 import time
 
 import tool
-from budget import within_budget
 from changes import Changes
 from failures import examine
 from history import FailingSeeds, History, make_run
@@ -36,13 +35,6 @@ def seed(text):
     if not re.fullmatch("[0-9]{1,19}|random", text):
         raise argparse.ArgumentTypeError(f"'{text}' is neither a number nor `random`")
     return text
-
-
-def budget(text):
-    match = re.fullmatch(r"([0-9]*\.?[0-9]+)([sm]?)", text)
-    if not match or not float(match[1]):
-        raise argparse.ArgumentTypeError(f"'{text}' is not a time, such as 60s or 5m")
-    return float(match[1]) * (60 if match[2] == "m" else 1)
 
 
 def regex(text):
@@ -70,19 +62,18 @@ def parse(words):
     add("--block", help="one block: modem, link, bus, ...")
     add("--label", type=regex, default=regex(""), help="labels: rtl, formal, lint, firmware, ...")
     only = parser.add_mutually_exclusive_group()
-    only.add_argument("--changed", action="store_true", help="only tests that failed last, or whose "
-                      "program or sources differ from those of their last pass")
+    only.add_argument("--changed", action="store_true", help="only tests that failed last, or "
+                      "whose program or sources differ from those of their last pass")
     only.add_argument("--rerun-failed", action="store_true", help="only tests that failed last")
     only.add_argument("--kept", action="store_true", help="only tests that failed with some seed "
                       "and have not passed with it since, with these seeds")
     add("--seed", type=seed, default="1", help="seed of the random tests, or `random`")
-    add("--budget", type=budget, help="only tests that are worth most in so much time: 60s, 5m")
     add("--repeat", type=number(1, 1000), default=1, help="so many runs, each with the next seed")
     add("--jobs", type=number(1, 256), default=2, help="tests at once")
     add("--waves", type=number(0), default=3, help="waveforms of at most so many failures")
     add("--make", action="store_true", help="build what the chosen tests need first")
-    add("--prepare", action="store_true", help="only build what the chosen tests need; with --list, "
-        "only say what that is")
+    add("--prepare", action="store_true", help="only build what the chosen tests need; with "
+        "--list, only say what that is")
     add("--tree", metavar="FOLDERS", help="only print the state of these folders")
     add("--plan", action="store_true", help="only look whether each pattern of tests/plan.toml "
         "matches a test")
@@ -177,11 +168,6 @@ class Regression:
         chosen = self.choose(tests)
         if not chosen or o.prepare:  # of --prepare, CTest runs them, and keeps no history
             return 0 if chosen else self.nothing(tests)
-        if o.budget:
-            chosen = within_budget(chosen, o.budget, o.jobs, o.build, history,
-                                   read_plan(o.source))
-            if not chosen:
-                raise Stop("no test is so short: give it a larger budget")
         if o.list:
             print("\n".join(test.name for test in chosen))
             return 0

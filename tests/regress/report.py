@@ -4,10 +4,10 @@ import json
 import pathlib
 import re
 
-from drawing import drawing_of
 from lights import lights_of
 from tests import judge_plan, read_plan
 from tool import Stop, write
+from waves import drawing_of
 
 HERE = pathlib.Path(__file__).resolve().parent
 COMMON = HERE.parents[1] / "testbench/common/page"

@@ -36,8 +36,9 @@ class Progress:
             self._line(f"FAILED {name} ({seconds:.1f} s)", True)
         left = int(sum(self.seconds.values()) / self.jobs)
         tenth = 10 * self.done // self.total != 10 * (self.done - 1) // self.total
-        self._line(f"{self.done} of {self.total}, {self.failed} failed, {left // 60}:{left % 60:02} "
-                   f"left: {' '.join(sorted(self.running))}", tenth and not sys.stdout.isatty())
+        self._line(f"{self.done} of {self.total}, {self.failed} failed, {left // 60}:"
+                   f"{left % 60:02} left: {' '.join(sorted(self.running))}",
+                   tenth and not sys.stdout.isatty())
 
     def _line(self, text, keep):
         if sys.stdout.isatty():

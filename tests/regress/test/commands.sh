@@ -83,7 +83,7 @@ commands_run) # a variable's value that cannot be is refused in the user's words
     [ $status -eq 0 ] && has '^Written: build/firmware.json' || fail "firmware"
     user faults NAME=no_memory MOMENTS=1 SEEDS=1 SEED=2
     [ $status -eq 0 ] && has '^faults: 1 moments of seeds 2 to 2, 0 failed' || fail "faults"
-    for wrong in JOBS=abc MINUTES=abc FUZZED=0 REPEAT=0 NIGHTLY=x MOMENTS=x SEEDS=x DRAW=x TESTS=x WAVES=-1 SEED=-1 SEED=7x BUDGET=0 BUDGET=1x; do
+    for wrong in JOBS=abc MINUTES=abc FUZZED=0 REPEAT=0 NIGHTLY=x MOMENTS=x SEEDS=x DRAW=x TESTS=x WAVES=-1 SEED=-1 SEED=7x; do
         refused "${wrong%=*}='${wrong#*=}' is not a \(whole \)\?\(number\|time\)" help "$wrong"
     done
     refused 'faults: none is called nonsense; there are clock_step' faults NAME=nonsense
@@ -115,7 +115,7 @@ commands_small)
     bad regress NAME=b.Bad REPEAT=2
     has 'SEED=2'
     bad regress FAILED=1 && has '^1 tests' && bad regress KEPT=1 && has '^1 tests, SEED=2'
-    good regress CHANGED=1 NAME='a[.]' && good regress BUDGET=1m NAME='a[.]'
+    good regress CHANGED=1 NAME='a[.]'
     # A bench that fails hides no other's figures, and its own of another day are not today's.
     mkdir -p docs
     good bench && [ "$(grep -c '^| trip | 20 ms | limit 40, 50.0 % |$' docs/figures.md)" = 2 ] || fail "$(cat docs/figures.md)"

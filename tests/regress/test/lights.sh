@@ -98,43 +98,6 @@ TEXT
     sed -i 's/on()/on(Colour c)/' Lamp.ice
     seeded slice.lamp 'Lamp.ice:1:.*Colour'
     ;;
-lights_behaviour) # a bug of the compiler, of the firmware, of a page's script: what goes wrong is seen, said first, and its line is named as changed
-    root=$work/build/main
-    # Makes a program of the build with a copy of one of its sources, which is the only part that is compiled.
-    made() { # program, source, library
-        mkdir -p "$(dirname "$2")" "$root/$(dirname "$2")"
-        [ -e "$2" ] || cp "$source/$2" "$2"
-        commands=$(ninja -C "$build" -t commands "$1")
-        (cd "$build" && eval "$(echo "$commands" | grep "/$3.dir/.* -c $source/$2\$" | sed "s| -o [^ ]*| -o $root/$2.o|; s| -c [^ ]*| -c $work/$2|; s| -M[DFT] *[^ -][^ ]*||g; s| -MD||")") &&
-            (cd "$build" && eval "$(echo "$commands" | tail -1 | sed "s| -o [^ ]*| $root/$2.o -o $root/$1|")") || fail "$1 is not made"
-    }
-    made slice2c slice/c/names.cpp slice_compiler
-    made test_link sw/link/link_queue.c link_layer
-    cat >>tests/room/CMakeLists.txt <<TEXT
-add_test(NAME slice.golden.header COMMAND $source/tests/slice/compiler/check.sh golden $root/slice2c $source/tests/slice/compiler/golden/header.ice $work/build/golden $source/sw)
-add_test(NAME test_link.LinkLayer.AClosingWaits COMMAND $root/test_link --gtest_filter=*AClosingWaitsForRoomAndIsNotLost)
-add_test(NAME live.page COMMAND $source/tests/regress/test/look.sh page.html WORKING_DIRECTORY $work)
-TEXT
-    cmake build/main >/dev/null
-    run --name 'slice|link'
-    light tests 'green  2 passed'
-    cp build/regress/report.html page.html
-    git add page.html slice sw tests && git commit -qm more
-    seeded() { # test, the reason, the place
-        run --name "$1"
-        light tests "red    1 failed: $1" && has "^1 x  .*$2" && has "^        changed since .* $3 (1 line)"
-        git checkout -q .
-    }
-    sed -i '/"c:max"/s/);/) + 1;/' slice/c/names.cpp
-    made slice2c slice/c/names.cpp slice_compiler
-    seeded slice.golden.header 'golden/header/lines:[0-9]*: not in the header, or too early:     Outer_Point data' 'slice/c/names.cpp:[0-9]*'
-    sed -i 's/link->closeDue = (U8)(link->closeDue | 1U << channel);/link->closeDue = link->closeDue;/' sw/link/link_queue.c
-    made test_link sw/link/link_queue.c link_layer
-    seeded test_link.LinkLayer.AClosingWaits 'Expected equality of these values: pair.b.events.back() Which is: "open 1" "close 1"' 'sw/link/link_queue.c:[0-9]*'
-    has '^        at tests/sw/link/link_test.cpp:[0-9]*$'
-    sed -i 's/of data.lights/of data.lihgts/' page.html
-    seeded live.page 'page.html:[0-9]*: Uncaught TypeError: data.lihgts is not iterable: for (const light of data.lihgts)' 'page.html:[0-9]*'
-    ;;
 lights_coverage)
     design
     cat >main.cpp <<'END'
@@ -161,7 +124,7 @@ END
     measure() { # environment
         env "$@" build/small/Vcounter
         status=0
-        "$build/tests/regress/coverage" --gates gates.json --verilator build/coverage/small.dat \
+        "$source/tests/regress/coverage.py" --gates gates.json --verilator build/coverage/small.dat \
             --out build/coverage/summary.json >coverage.txt 2>&1 || status=$?
         measured coverage hdl
         run --name 'a[.]'
@@ -202,29 +165,19 @@ lights_mutants)
     run --name 'a[.]'
     light mutants 'grey   sources have changed since it was green'
     ;;
-lights_size) # `make synth` on its own tests' small project, where another test has synthesised it
-    cp -r "$source/tests/synth/project" project
-    cp -r "$source/synth/yosys" "$source/synth/report" project/synth/
-    mkdir -p gen out build/synth
-    cp -r "$build/tests/synth/kept" out/cache
-    synth() { "$build/synth/utilisation" --source project --generated gen --output out "$@" >synth.txt 2>&1; }
-    measure() {
-        status=0
-        synth || status=$?
-        cp out/report.json build/synth/
+lights_size) # as `make synth` reports it: within its limit, grown beyond it, not synthesised
+    mkdir -p build/synth
+    measure() { # failures, value
+        printf '{"failures":[%s],"missing":[],"entries":[{"name":"whole LUT","value":%s,"limit":40}]}' "$1" "$2" >build/synth/report.json
         measured synth project
         run --name 'a[.]'
     }
-    synth --accept || fail "$(cat synth.txt)"
-    measure
+    measure '' 40
     light size green
-    sed -i 's/^    wire \[5:0\] word;/&\n    reg [11:0] extra;/; s/^        data_o <= word/        extra <= {extra[5:0], word};\n        data_o <= extra[11:6] ^ word/' \
-        project/hdl/blocks/pair.v # twelve flip-flops that nobody wanted
-    measure
-    light size 'red .*whole'
+    measure '' 41
+    light size 'red   *1 beyond their limits: whole LUT 41 (at most 40)'
     light tests green
-    echo 'module pair' >project/hdl/blocks/pair.v # a design that cannot be synthesised has no figure
-    measure
+    measure '"whole: synthesis failed"' 0 # it has no figure
     light size 'red .*whole: synthesis failed'
     ;;
 lights_speed)

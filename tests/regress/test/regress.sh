@@ -127,38 +127,6 @@ END
     run --plan
     [ $status -eq 2 ] && has 'plan.toml: .*line 6' || fail "a line that is no TOML is not told"
     ;;
-budget) # seconds as the history says, not as a clock does
-    mkdir -p build/regress
-    run --name 'a[.]|c[.]|formal' # passes
-    took() { sed -i "s/\"test_$1\":\[\"\(.\)\",[0-9.e-]*/\"test_$1\":[\"\1\",$2/" build/regress/history.jsonl; }
-    took a.One 10 && took a.Two 9 && took c.Flicker 20
-    sed -i 's/"formal.thing":\["p",[0-9.e-]*/"formal.thing":["p",100/' build/regress/history.jsonl
-    best() { run --jobs 1 --list "$@" && tr '\n' ' ' <out.txt; }
-    first=$(best --budget 40s --name 'a[.]|c[.]|formal') # the second of a program brings nothing; formal.thing is too long
-    [ "$first" = "test_a.Two test_c.Flicker test_a.One " ] || fail "first $first"
-    first=$(best --budget 29s --name 'a[.]|c[.]|formal')
-    [ "$first" = "test_a.Two test_c.Flicker " ] || fail "within 29 s $first"
-    printf '[x]\n"It works" = "test_c.*"\n"It stands" = "*.Flicker"\n"It flies" = "*_c*"\n"It lands" = "*_c.F*"\n' >tests/plan.toml
-    first=$(best --budget 1m --name 'a[.]|c[.]|formal') # four lines of the plan in 20 s
-    [ "$first" = "test_c.Flicker test_a.Two test_a.One " ] || fail "with a plan $first"
-    first=$(best --budget 2m) # what has not passed yet comes before
-    [ "$first" = "test_b.Bad test_d.Crash test_c.Flicker test_a.Two test_a.One " ] || fail "of all $first"
-    touch flicker
-    run --name 'c.Flicker'
-    took c.Flicker 20
-    first=$(best --budget 1m)
-    [ "$first" = "test_c.Flicker test_b.Bad test_d.Crash test_a.Two test_a.One " ] || fail "after a failure $first"
-    printf 'set_tests_properties(test_b.Bad PROPERTIES FIXTURES_SETUP f)\nset_tests_properties(test_d.Crash PROPERTIES FIXTURES_REQUIRED f)\n' >>tests/room/CMakeLists.txt
-    cmake build/main >/dev/null
-    first=$(best --budget 1.5s)
-    [ "$first" = "test_b.Bad " ] || fail "where one needs the other $first"
-    run --budget 1m --jobs 1
-    has '^5 tests, SEED=1'
-    run --budget 0.001s
-    [ $status -eq 2 ] && has 'no test is so short' || fail "a budget for nothing"
-    run --budget soon
-    [ $status -eq 2 ] && has '^regress: .*see --help' || fail "a budget that is none"
-    ;;
 blame) # of one bug, one group; a test's own last word; what is nearest to the cause first
     cat >>tests/room/CMakeLists.txt <<'END'
 foreach(i 1 2 3)
@@ -484,6 +452,8 @@ JS
     hasNot 'src="http\|href="http' build/regress/report.html # offline
     sed 's/test_d.Crash/&OfANameForWhichANarrowWindowHasNoRoomUnlessItIsBrokenSomewhere/g' build/regress/report.html >long.html
     "$source/tests/regress/test/look.sh" long.html || fail "the page"
+    sed -i 's/of data.lights/of data.lihgts/' long.html
+    ! "$source/tests/regress/test/look.sh" long.html >out.txt 2>&1 && has '^long.html:[0-9]*: Uncaught TypeError: data.lihgts is not iterable: for (const light' || fail "a script's error"
     "$source/docs/pictures/take.sh" --from build --to . regression >/dev/null || fail "its picture"
     [ "$(head -c 4 regression.png | tail -c 3)" = PNG ] && [ "$(wc -c <regression.png)" -lt 100000 ] || fail "its picture is none, or large"
     ;;

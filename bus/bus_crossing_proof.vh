@@ -3,7 +3,7 @@
 // bus_crossing_proof: the slot never hangs the bus, whatever the core's clock does; only for the prover.
 //
 // It is included in the module's body in place of the core's side: answers come at any time after their request, or never.
-// That a request and an answer arrive once and whole is proven of cdc_bus.
+// The proof of cdc_bus has that a request and an answer arrive once and whole.
 
     (* anyseq *) reg free_handed, free_irq, free_error;
     (* anyseq *) reg [31:0] free_rdata;

@@ -6,7 +6,7 @@
 
 Compares every block's *.regs.json, and those that slice2c makes of interfaces with [":hw"], of two trees. Software
 that was built against the old contract goes wrong with a breaking change: a block, register, field or event that is
-gone, elsewhere or narrower, another access, another type. What is new or wider is compatible. Exit status: 1 where
+gone, elsewhere or narrower, another access, another type. New or wider ones are compatible. Exit status: 1 where
 something breaks, 2 where a tree cannot be read.
 """
 import glob

@@ -6,7 +6,8 @@
 
 Reads a flat subset: addrmap, reg and field, named or not, defaults, addresses, resets; enums and properties of others are passed over. Register n
 of an addrmap gets word FIRST + n, behind the three words that every slot has; one that begins with ID, EVENT and MASK, as
-those of icesoc.rdl, has them already; <SLOT>_PAGES there is what the slot has behind its PAGE. What has no words of its own (regfile, mem, arrays, parameters) is an error.
+those of icesoc.rdl, has them already; <SLOT>_PAGES has the
+words behind the slot's PAGE. Regfiles, memories, arrays and parameters, which have no words of their own, are errors.
 """
 import argparse
 import json

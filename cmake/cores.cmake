@@ -42,8 +42,8 @@ endif()
 # CLK_HZ: the module has a parameter of that name, the clock in Hz: 100 MHz on the board, in <NAME>_test.cpp and in the
 # simulator, unless it is told another.
 # IDLE: it has an output idle_o, so that its clock can have a gate (hdl/system/core_gate.v).
-# CLOCK: it has a clock of its own, of that frequency at most, behind bus/bus_crossing.v; clk_i, rst_i and its pins are
-# of that clock.
+# CLOCK: it has a clock of its own, of at most that frequency, behind bus/bus_crossing.v; clk_i, rst_i and its pins
+# belong to it.
 function(icesoc_core name)
   cmake_parse_arguments(A "CLK_HZ;IDLE" "ICE;REGS;CLOCK" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS;DEPENDS" ${ARGN})
   list(TRANSFORM A_VHDL PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# fuzz: runs a libFuzzer program on so many inputs, from SEED (default 1). Usage: fuzz.sh program runs seeds|- option...
+# fuzz: runs a libFuzzer program on a number of inputs, from SEED (default 1). Usage: fuzz.sh program runs seeds|- option...
 # seeds: a folder of inputs, or a file with one a line in hex ("#" begins a comment). FUZZ=10: ten times as many inputs.
 # An input that does harm is printed.
 set -eu

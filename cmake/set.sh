@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# set: gives variables of a build folder new values; where CMake refuses them, its reason is said and the values of before stay.
+# set: gives variables of a build folder new values; where CMake refuses them, it prints the reason and keeps the old values.
 # Usage: set.sh build-folder -DNAME=value...
 set -eu
 build=$1

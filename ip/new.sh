@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # new: name verilog|vhdl build-folder [file.ice]   Writes ip/<name>: interface, core, test; of the given interface, or of an
-# example. Or says what is wrong. `check` in place of the language: only whether the name is a reserved word.
+# example, or prints the error. `check` in place of the language: only whether the name is a reserved word.
 set -eu
 usage='usage: make new-ip NAME=low_pass LANG=verilog|vhdl [ICE=file.ice]'
 case ${1:-} in -h | --help) echo "$usage" && exit 0 ;; esac

@@ -25,7 +25,7 @@ ENTRIES = ("UAV_radioTask", "appMainTask", "clientTask", "watchTask", "idleTask"
 
 
 def sections(path):
-    """(section, address, bytes, file) of what a linker's map says is in the image."""
+    """Returns (section, address, bytes, file) of the image's parts in a linker's map."""
     text = open(path).read().partition("Linker script and memory map")[2]
     text = re.sub(r"^( \.?[A-Za-z_]\S*)\n +(?=0x)", r"\1 ", text, flags=re.M)  # long names have a line of their own
     for name, address, size, file in re.findall(r"^ (\.?[A-Za-z_]\S*) +0x(\w+) +0x(\w+) (\S.*)$", text, re.M):

@@ -1,6 +1,6 @@
 #!/usr/bin/python3 -I
 # SPDX-License-Identifier: MIT
-"""kept: runs a test that is a function of files; where none of these has changed since it passed, says what it said then.
+"""kept: runs a test that is a function of files; where none of these has changed since it passed, prints the kept output.
 
 Usage: kept.py OWN COMMAND [WORD...]   OWN: the test's work folder, emptied before; "" for none
 

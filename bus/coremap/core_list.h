@@ -82,7 +82,7 @@ struct Slot {
     nlohmann::json description;
 };
 constexpr unsigned slotBytes = 64;
-// The hash of what software relies on in a block's registers: places, widths, accesses, names.
+// The hash of the register properties that software relies on: places, widths, accesses, names.
 uint32_t contractOf(const nlohmann::json& description);
 std::string verilogOf(const Chip& chip, const std::vector<Slot>& slots);   // instances, for soc.v
 std::string instancesOf(const Chip& chip, const std::vector<Slot>& slots); // for the firmware

@@ -280,7 +280,7 @@ module npi_arbiter_proof #(
             if (t_mine && t_own_index == w_mark)
                 assert (w_have && out_word == w_value);
         end
-        for (o = 0; o < PORTS; o = o + 1) // all bits of what leaves
+        for (o = 0; o < PORTS; o = o + 1) // all leaving bits
             assert (!wr_pop_i[o] || {out_be_i, out_data_i} == {wr_head_bes_i[8*o +: 8], wr_heads_i[64*o +: 64]});
         assert (moves == |wr_pop_i && (!moves || all_moved != all_w));
         if (in_valid_i && t_next && t_read) begin

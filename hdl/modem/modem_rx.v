@@ -21,7 +21,7 @@ module modem_rx #(
     input  wire [7:0] rx_data_i,
     input  wire       rx_error_i, // the packet under way ends here
     input  wire       rx_end_i,   // the packet is complete (API)
-    input  wire       rx_bad_i,   // it is to be dropped (API)
+    input  wire       rx_bad_i,   // the packet must be dropped (API)
     output wire       silent_o,   // 3.2 characters without a byte
     input  wire       rx_idle_i,
     // memory

@@ -15,7 +15,7 @@ def capture(log, camera, width, height):
 
 
 def prepare(log, proxy, width, height):
-    """Before the vision core starts: frames come from a sensor with so many pixels."""
+    """Runs before the vision core starts: frames come from a sensor with this many pixels."""
     capture(log, camera_of(proxy), width, height)
 
 

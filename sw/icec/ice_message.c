@@ -36,7 +36,7 @@ Ice_Int icec_readHead(Ice_InputStreamPtr is) {
     const Ice_Byte* begin = Ice_InputStream_readBlob(is, TYPE_AT);
     if (!begin || memcmp(begin, head, TYPE_AT) != 0)
         return -1;
-    type = Ice_InputStream_readShort(is) & 0xFEFF; /* compression 0 or 1 is none */
+    type = Ice_InputStream_readShort(is) & 0xFEFF; /* compression 0 and 1: not compressed */
     return Ice_InputStream_readInt(is) == is->size ? type : -1;
 }
 

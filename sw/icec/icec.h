@@ -169,7 +169,7 @@ typedef struct Ice_Failure {
 
 /* Makes a proxy from "identity [-t|-o|-O|-d|-D|-s] [-f facet] [-e 1.0|1.1]:transport options[:...]"
  * or "...@adapter", as in Ice's manual; the minimal run time from "name [-t|-o]:transport options".
- * ICE_PARSE: it is none; ICE_LIMIT: ICE_IDENTITY_MAX or ICE_ENDPOINT_MAX. */
+ * ICE_PARSE: malformed; ICE_LIMIT: ICE_IDENTITY_MAX or ICE_ENDPOINT_MAX. */
 Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char* proxy,
                                           Ice_ObjectPrxPtr prx);
 /* Writes a terminated string of at most `size` bytes with the end mark. ICE_LIMIT: it does not fit.

@@ -150,7 +150,7 @@ function showInstance() {
 // half a ns a bar.
 function showSlack() {
   const ends = picked.figures.timing.ends, period = 1000 / data.chip.mhz;
-  const slack = Array.from({ length: Math.max(ends.length, 2 * period + 1) }, (_, i) => period - (i + 1) / 2).reverse(); // at least so much
+  const slack = Array.from({ length: Math.max(ends.length, 2 * period + 1) }, (_, i) => period - (i + 1) / 2).reverse(); // lower bounds
   const count = slack.map((_, i) => ends[slack.length - 1 - i] ?? 0);
   chart(byId("slack"), { labels: slack.map(String), titles: slack.map(ns => `${ns} to ${ns + 0.5} ns left of ${period}`), series: [
     { name: `of ${sum(ends)} registers and memories`, values: count.map((n, i) => slack[i] < 0 ? null : n), colour: "--bar", bars: true },

@@ -22,7 +22,7 @@ TITLES = {
     "size": "Bytes of the firmware's layers",
 }
 
-# What a row has columns for, where it has two to six
+# Parts of a name that become columns of a row, where there are two to six
 AXES = [r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %", "in the clear|encrypted|with a key",
         r"of \d+ bytes", r"\d+ ports", r"HCLK \d+ MHz"]
 
@@ -41,7 +41,7 @@ def beside(entry):
 
 
 def split(name):
-    """A name without the first axis that it has, and what stands there."""
+    """Returns a name without its first axis, and the axis' text."""
     for axis in AXES:
         found = re.search(f",? ({axis})", name)
         if found:
@@ -50,7 +50,7 @@ def split(name):
 
 
 def tables(rows):
-    """The lines of the tables of (name, value, unit, beside)."""
+    """Returns the lines of the tables of (name, value, unit, beside)."""
     series, plain = {}, []  # by axis and rest of the name: its cells
     for name, value, unit, limit in rows:
         key, column = split(name)

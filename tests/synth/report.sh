@@ -23,7 +23,7 @@ fail() {
     echo "report: $*" >&2
     exit 1
 }
-cd "$work" # names of files are relative: they are part of what tells one design from another
+cd "$work" # names of files are relative, since they are part of a design's identity
 project=project
 cp -r "$source/tests/synth/project" "$project"
 cp -r "$source/synth/yosys" "$source/synth/report" "$project/synth/"
@@ -54,7 +54,7 @@ counts)
     yosys -q -p "read_verilog $project/hdl/blocks/*.v; synth_xilinx -family xc6s -flatten -noiopad -noclkbuf -top pair; tee -o $work/stat stat"
     luts=$(awk '/^ +(LUT[1-6]|INV) /{n += $2} /^ +[0-9]+ +.* (LUT[1-6]|INV)$/{n += $1} END {print n + 4}' "$work/stat")
     grep -q "\"lut\":$luts," "$work"/out/cache/whole.xc6s.*.figures || fail "Yosys counts $luts LUTs: $(cat "$work"/out/cache/whole.xc6s.*.figures)"
-    # What a core costs in the accepted chip: a slot is what the decoder of three has more than that of two.
+    # A core's cost in the accepted chip: a slot is the decoder of three less that of two.
     cp "$source/bus/bus_decoder.v" "$project/bus/"
     echo '{"constants": [{"name": "SLOT_LOW", "value": 2}, {"name": "SLOT_COUNT", "value": 3}]}' >gen/map.regs.json
     echo '{"yosys": "", "designs": {"soc": {"lut": 9, "ff": 9, "slices": 9, "carry": 0, "dsp": 2, "ram": 1.5, "mhz": 99,

@@ -60,7 +60,7 @@ def wrong_arrows(tree):
             name = include.group(1)
             places = [p for p in by_name.get(os.path.basename(name), [])
                       if ("/" + p).endswith("/" + name.replace("../", ""))]
-            # A generated header has no place. Of several files of one name, one that may be used is meant.
+            # A generated header has no place. Among several files of one name, an allowed one is meant.
             targets = {room_of(p, rooms) for p in places}
             if targets and room not in targets and not targets & rooms[room]:
                 wrong.append(f"{path}:{number}: {room} may not use {' or '.join(sorted(map(str, targets)))} ({name})")

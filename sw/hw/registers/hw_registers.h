@@ -19,7 +19,7 @@ typedef struct Hw_Registers_Core {
     const Hw_Register* table;
     Ice_Int count;
     volatile U8 came;  /* set by the interrupt: the slot has an event */
-    volatile U8 waits; /* a call of wait is to be answered */
+    volatile U8 waits; /* a call of wait has no answer yet */
     U32 deadline;      /* ms, of that call */
     Ice_Reply reply;
     Ice_String events[HW_REGISTERS_EVENTS]; /* of its answer */

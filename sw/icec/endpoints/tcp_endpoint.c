@@ -56,7 +56,7 @@ static void use(TcpEndpoint_Connection* c, int fd, Ice_Byte accepted) {
     TcpEndpoint_tune(fd);
 }
 
-/* Returns the size of the message at the front; 0: it is not whole yet, -1: it is none, or too
+/* Returns the size of the message at the front; 0: it is not whole yet, -1: malformed, or too
  * long.
  */
 static Ice_Int frontSize(const TcpEndpoint_Connection* c) {

@@ -27,7 +27,7 @@ struct Ice_Communicator {
     Ice_Byte connections[ICE_CONNECTIONS];
     int connection;      /* of the call */
     Ice_Int id;          /* of the call; odd */
-    Ice_Int body;        /* of what is written: where its encapsulation begins */
+    Ice_Int body;        /* begin of the encapsulation in `os` */
     Ice_OutputStream os; /* in `out`: a request, or a reply */
     Ice_InputStream is;  /* in `in` */
     U32 arena[ICE_ARENA_BYTES / 4];

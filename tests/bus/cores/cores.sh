@@ -95,7 +95,7 @@ changed() { # sed's command for the mover's description: the hash with it
 [ "$(changed 's/With a memory/Having a memory/')" = "$before" ] || fail 'words of a description change the hash'
 [ "$(changed 's/"registers": /&[{"word": 3, "name": "A", "access": "rw", "doc": ""}], "none": /')" != "$before" ] ||
     fail 'a register does not change the hash'
-# Only who says when he is idle can have a gate; who has one in the list has it on the board, too.
+# Only a core with idle_o can have a gate; one with a gate in the list has it on the board, too.
 accepted gates 'adder gate=on\nadder name=other\nled\n'
 grep -q 'core_gate #(.GATED(1)) u_gate_adder .*slot_valid\[2\].*clk_adder' "$out/soc_cores.vh" && grep -q '.clk_i(clk_adder)' "$out/soc_cores.vh" ||
     fail 'the core that asked for a gate has none'

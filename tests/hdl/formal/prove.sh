@@ -89,8 +89,8 @@ replay() { # abc's counterexample, by smtbmc for names and a waveform
 # abc commands log
 limited() { (ulimit -t "$limit" && exec "$@"); }
 abc() { limited yosys-abc -c "$1" >"$2" 2>&1 || true; }
-# step clocks: from any state whatever (no initial values), a failure after so many clocks without one?
-# Exit status 20: there is none. The assumptions hold in each of them.
+# step clocks: from any state (no initial values), a failure after this many clocks without one?
+# Exit status 20: none. The assumptions hold in each of them.
 step() {
     abc "read_aiger assert.aig; fold; strash; orpos; frames -F $(($1 + 1)); comb; write_blif frames.blif" step.log
     awk -v bads=$(($1 + 1)) -f "$here/step.awk" frames.blif >step.blif
@@ -98,7 +98,7 @@ step() {
     abc "read_blif step.blif; strash; write_cnf step.cnf" step.log
     limited cadical -q step.cnf >step.log 2>&1
 }
-# bounded clocks: does an assertion fail within so many?
+# bounded clocks: does an assertion fail within them?
 bounded() {
     abc "read_aiger assert.aig; fold; strash; bmc3 -F $1; write_cex -a assert.aiw" bounded.log
     grep -q 'output failed\|output asserted\|was asserted\|Explored all reachable states' bounded.log || {

@@ -82,7 +82,7 @@ protected:
     }
 
     // The far modem sends both frames in one RF packet, so they come without a pause. Memory is
-    // held from the write of the first one's last byte until so many bytes of the second have
+    // held from the write of the first one's last byte until this many bytes of the second have
     // begun.
     void sendAndHold(std::vector<uint8_t> first, const std::vector<uint8_t>& second,
                      uint64_t bytes) {

@@ -75,7 +75,7 @@ TEST_F(ModemTest, ShortPacketsInARowAreNotJoined) {
 // if it comes after the set-up.
 class ModemWithdrawnRead : public ModemTest {
 protected:
-    // CONTROL is written so many clocks after the read of the packet's second word has begun.
+    // CONTROL is written this many clocks after the read of the packet's second word has begun.
     // If `hangs`, memory gives that word only when the packet is awaited (sentAgain).
     void interrupt(unsigned buffer, unsigned clocks, uint32_t control, bool hangs = false) {
         packet_ = ramp(20, static_cast<uint8_t>(16 * buffer));

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# capture: file least   Wireshark's ICEP dissector finds at least so many messages in the capture, and
+# capture: file least   Wireshark's ICEP dissector finds at least `least` messages in the capture, and
 # nothing malformed. Compressed ones (which IceC refuses) it cannot look into.
 set -eu
 file=$1 least=$2

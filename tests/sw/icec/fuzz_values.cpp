@@ -3,8 +3,8 @@
 // fuzz_values: libFuzzer on graphs of instances and on exceptions, through generated code.
 //
 // An input is read as a message; every second one is first made a good message of a graph that its
-// bytes describe, and then damaged. What was read is written in each encoding and format; where
-// that can be read again, it must be written again as the same bytes.
+// bytes describe, and then damaged. The instances read are written in each encoding and format;
+// where that can be read again, it must be written again as the same bytes.
 
 #include <cstdint>
 #include <cstdio>

@@ -26,7 +26,7 @@ protected:
             return uint64_t(0);
         });
     }
-    // Runs until a line has been sent, or for so many cycles; returns the line.
+    // Runs until a line has been sent, or for these cycles; returns the line.
     std::string run(uint64_t cycles = 10'000'000) {
         said.clear();
         limit = chip.cpu().cycles() + cycles;

@@ -32,7 +32,7 @@ def pad_name(port, index, width):
 
 def read_netlist():
     """Pairs (start, end); a start or an end is ("pad", name), ("clock", names of the net), a start ("ram",
-    names of its clock), an end ("reset", the clock of what it resets)."""
+    names of its clock), an end ("reset", the clock of the reset register)."""
     module = json.load(open(NETLIST))["modules"]["chip"]
     names, source, comb, sinks = {}, {}, {}, []
     pads = []

@@ -83,7 +83,7 @@ import json, sys, urllib.request, urllib.error
 base = "http://127.0.0.1:%s/" % sys.argv[1]
 state = json.load(urllib.request.urlopen(base + "state"))
 assert state["calls"] == [] and state["slots"] == [] and not state["frame"], state
-# Other names of this address, rows that are none, and clients that are slow, endless or say nothing.
+# Other names of this address, malformed rows, and clients that are slow, endless or say nothing.
 import http.client, socket
 port = int(sys.argv[1])
 def status(headers):

@@ -143,7 +143,7 @@ TEST(Quiet, TheChipIsTheSameInWhateverClockItIsLookedAt) {
     EXPECT_LT(quick.evaluated() * 2, quick.cycles());
 }
 
-// Returns if the memory is ready so many clocks after it began to start.
+// Returns whether the memory is ready this many clocks after its start.
 bool isMemoryReady(uint64_t clocks) {
     RfChannel air(testSeed());
     SocModel soc(air, Ground::uavModem());

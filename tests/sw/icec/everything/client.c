@@ -291,7 +291,7 @@ static int asynchronous(void) {
     return 0;
 }
 
-/* Calls a class, by its own proxy and by those of its base and of what it implements. */
+/* Calls a class, by its own proxy and by those of its base and of its interface. */
 static int classes(const char* port) {
     Everything_ShapeDisp_area_Exception ex;
     Everything_SquarePrx square;

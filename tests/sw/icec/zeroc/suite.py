@@ -5,7 +5,7 @@
 suite.py FOLDER SUITE RUN [--Ice.Property=value...] ENDPOINT|PORT
 
 A check is a call of the client's test(), true or not. The client stops at its first failure; here each statement goes on by
-itself, so that one failure hides no other one. What fails must stand in by_design.txt, with a reason, and the number of checks
+itself, so that one failure hides no other one. A failure must stand in by_design.txt, with a reason, and the number of checks
 passed may not fall below the one in expected.txt.
 """
 import argparse

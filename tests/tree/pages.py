@@ -4,9 +4,10 @@
 
     pages.py TREE
 
-A link leads to a file of the repository, a path in backquotes exists, lines outside of tables and code have at most
-100 columns, docs/architecture.md lists every page of docs/, and figures that README.md tells are those of
-docs/figures.md and synth/baseline.json. Exit status 1, and a line for each that does not hold.
+A link leads to a file of the repository, and to a heading of it where it names one, a path in
+backquotes exists, lines outside of tables and code have at most 100 columns, docs/architecture.md
+lists every page of docs/, and figures that README.md tells are those of docs/figures.md and
+synth/baseline.json. Exit status 1, and a line for each that does not hold.
 """
 import json
 import os
@@ -24,6 +25,12 @@ def exists(tree, path, files):
     return any(re.match(pattern, f) for f in files)
 
 
+def anchors(page):
+    """Returns the anchors of a page's headings, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.*)$", open(page).read(), re.M)
+    return {re.sub(r"[^\w -]", "", h).lower().replace(" ", "-") for h in headings}
+
+
 def check(tree, page, files):
     code = False
     for number, line in enumerate(open(os.path.join(tree, page)), 1):
@@ -39,6 +46,10 @@ def check(tree, page, files):
                 path = os.path.normpath(os.path.join(os.path.dirname(page), target))
                 if not exists(tree, path, files):
                     yield f"{page}:{number}: links to {path}, which is not in the repository"
+        for target, anchor in re.findall(r"\]\(([^)#\s]*)#([^)\s]+)\)", line):
+            path = os.path.normpath(os.path.join(os.path.dirname(page), target)) if target else page
+            if path.endswith(".md") and path in files and anchor not in anchors(os.path.join(tree, path)):
+                yield f"{page}:{number}: {path} has no heading #{anchor}"
         for path in re.findall(rf"`((?:{ROOMS})/[\w./*-]+)`", line):
             if not re.search("low_pass|my_uart", path) and not exists(tree, path, files):  # the recipes' own examples
                 yield f"{page}:{number}: there is no {path}"

@@ -14,7 +14,7 @@ empty lines:
 A line that begins with a space stays; lines that go and stay must be found once in the file. `@@`
 begins another change of the same file, a line with a slash another file.
 
-Leaves build/mutants/results.tsv (name, result, test, seconds, file:line) and summary.json (the score by block).
+Leaves build/mutants/results.tsv (name, result, test, seconds, file:line).
 Exit status 1: a bug survived, is no longer found in its file, or does not build.
 """
 import argparse, collections, fcntl, glob, json, os, pathlib, queue, re, shutil, subprocess, sys, threading, time
@@ -174,14 +174,6 @@ def keep(rows):
     earlier = [line.split("\t") for line in results.read_text().splitlines()] if results.exists() else []
     all_rows = {row[0]: row for row in earlier + rows if row[0] in there}
     results.write_text("".join("\t".join(row) + "\n" for row in all_rows.values()))
-    blocks = collections.defaultdict(lambda: {"caught": 0, "total": 0})
-    for name, result, *_ in all_rows.values():
-        blocks[name.split("/")[0]]["total"] += 1
-        blocks[name.split("/")[0]]["caught"] += result == "caught"
-    caught = sum(block["caught"] for block in blocks.values())
-    (WORK / "summary.json").write_text(json.dumps({
-        "caught": caught, "total": len(all_rows), "score": round(100 * caught / len(all_rows), 1),
-        "not_caught": [row[0] for row in all_rows.values() if row[1] != "caught"], "blocks": blocks}))
 
 
 def only_one(folder):
@@ -244,7 +236,7 @@ def main():
     if any(failed):
         raise next(filter(None, failed))
     now = sum(row[1] == "caught" for row in rows)
-    print(f"mutants: {now} of {len(rows)} caught (build/mutants/results.tsv, summary.json)")
+    print(f"mutants: {now} of {len(rows)} caught (build/mutants/results.tsv)")
     return now != len(rows)
 
 

@@ -38,7 +38,7 @@ bug() { # name, test, the line that goes, the line that comes
 bug wrong test_tiny '    return 2 * n;' '    return 3 * n;'
 tests/mutants/run.py --jobs 1 >run.log 2>&1 || fail "a bug that its test catches is no error"
 grep -q '^caught *tiny/wrong ' run.log || fail "the bug was not caught"
-grep -q '"caught": 1, "total": 1, "score": 100.0' build/mutants/summary.json || fail "no summary"
+grep -q '^tiny/wrong	caught	test_tiny	' build/mutants/results.tsv || fail "no results"
 
 # A bug that an interrupted run had planted is taken out, or the tests would fail without a bug.
 cp build/mutants/0/tiny.c build/mutants/0/tiny.c.orig

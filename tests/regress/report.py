@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""report: what is known after a run, as a page, as Markdown, as JSON, as a badge."""
+"""report: what is known after a run, as a page, as Markdown, as JSON."""
 import json
 import pathlib
 import re
@@ -110,16 +110,6 @@ def markdown(data):
     return text
 
 
-def badge(data):
-    value = f"{data['failed']} failed" if data["failed"] else f"{data['passed']} passed"
-    colour, width = "#c0392b" if data["failed"] else "#2e8b57", 88 + 7 * len(value)
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="20" role="img" '
-            f'aria-label="regression: {value}"><rect width="{width}" height="20" rx="3" '
-            f'fill="#555"/><rect x="78" width="{width - 78}" height="20" rx="3" fill="{colour}"/>'
-            '<g fill="#fff" font-family="DejaVu Sans,Verdana,sans-serif" font-size="11">'
-            f'<text x="6" y="14">regression</text><text x="85" y="14">{value}</text></g></svg>\n')
-
-
 def page_parts(libraries):
     """The style and the script that the pages begin with: libraries, colours, tables, charts."""
     def joined(ending):
@@ -145,4 +135,3 @@ def write_reports(data, failures, libraries, out):
     write(out / "report.html", page)
     write(out / "report.json", json.dumps(data, indent=1))
     write(out / "summary.md", markdown(data))
-    write(out / "badge.svg", badge(data))

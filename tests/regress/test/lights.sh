@@ -59,45 +59,6 @@ END
     light proofs 'red   *1 failed: formal.counter'
     light tests green
     ;;
-lights_sources) # what is wrong in a file of each language: the light of the tests, and as first reason the file and its line
-    design
-    sed -i '/FORMAL/,/^`endif/d' hdl/small/counter.v && mv hdl/small/counter.v bus
-    mkdir -p docs tests/tree
-    echo '[bus](bus.md)' >docs/architecture.md && echo '[all](architecture.md)' >docs/bus.md
-    printf 'entity lamp is end entity;\narchitecture a of lamp is\nbegin\n    assert 1 = 1 report "dark" severity failure;\nend architecture;\n' >lamp.vhd
-    printf 'int twice(int n) {\n    n += n;\n    return n;\n}\n' >twice.c
-    echo 'module M { interface Lamp { void on(); }; };' >Lamp.ice
-    cat >>tests/room/CMakeLists.txt <<TEXT
-add_test(NAME lint.counter COMMAND $source/tests/hdl/lint/lint.sh counter $work $work WORKING_DIRECTORY $work)
-add_test(NAME tree.pages COMMAND $source/tests/tree/pages.py $work)
-add_test(NAME vhdl.lamp COMMAND sh -c "$build/ghdl/ghdl -a lamp.vhd && $build/ghdl/ghdl --elab-run lamp" WORKING_DIRECTORY $work)
-add_test(NAME lint.twice_c90 COMMAND cc -std=c90 -pedantic -Wall -Wdeclaration-after-statement -Werror -c twice.c WORKING_DIRECTORY $work)
-add_test(NAME slice.lamp COMMAND $build/slice/slice2c Lamp.ice --output-dir out WORKING_DIRECTORY $work)
-TEXT
-    mkdir -p out
-    cmake build/main >/dev/null
-    run --name 'lint|tree|vhdl|slice'
-    light tests 'green  5 passed'
-    seeded() { # test, the reason's beginning
-        run --name 'lint|tree|vhdl|slice'
-        light tests "red    1 failed: $1"
-        [ "$(grep -c '^1 x  ' out.txt)" = 1 ] && has "^1 x  .*$2" || fail "the reason of $1"
-    }
-    sed -i 's/count_o + 1/count_o + 5/' bus/counter.v
-    seeded lint.counter 'bus/counter.v:5:.*'
-    sed -i 's/count_o + 5/count_o + 1/' bus/counter.v
-    sed -i 's/architecture.md/architektur.md/' docs/bus.md
-    seeded tree.pages 'docs/bus.md:1: links to docs/architektur.md'
-    sed -i 's/architektur.md/architecture.md/' docs/bus.md
-    sed -i 's/1 = 1/1 = 2/' lamp.vhd
-    seeded vhdl.lamp 'lamp.vhd:4:.*dark'
-    sed -i 's/1 = 2/1 = 1/' lamp.vhd
-    sed -i 's/    return n;/    int m = n;\n    return m;/' twice.c
-    seeded lint.twice_c90 'twice.c:3:.*C90'
-    sed -i 's/^    int m/    \/* m *\/ int m/; s/^    n += n;//' twice.c
-    sed -i 's/on()/on(Colour c)/' Lamp.ice
-    seeded slice.lamp 'Lamp.ice:1:.*Colour'
-    ;;
 lights_coverage)
     design
     cat >main.cpp <<'END'

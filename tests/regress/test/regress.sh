@@ -58,7 +58,6 @@ results)
     has "make test NAME='^test_b\\\\.Bad\$\$' SEED=5"
     has "value 5 is not 7" build/regress/failures/test_b.Bad-5.log
     has 'failures="2"' build/regress/junit.xml
-    has "2 failed" build/regress/badge.svg
     has "test_d.Crash" build/regress/summary.md
     has "1 x  SegFault without a word"
     has 'message="value 5 is not 7 &lt;/script&gt; (SEED=5)"' build/regress/junit.xml
@@ -132,6 +131,11 @@ blame) # of one bug, one group; a test's own last word; what is nearest to the c
 foreach(i 1 2 3)
   add_test(NAME test_g.Case${i} COMMAND sh -c "printf 'x.cpp:1: Failure\nExpected 1, got 2\n[  FAILED  ] g.Case${i} (${i}7 ms)\n'; exit 1")
 endforeach()
+set(n 0) # as tools name a wrong line: Verilator, the pages' test, GHDL, GCC, slice2c, a sanitizer
+foreach(said "%Error: bus/counter.v:5:9: wrong" "lamp.vhd:4:5:@0ms:(assertion failure): dark" "twice.c:3:5: warning: ISO C90" "Lamp.ice:1:36: error: no Colour" "SUMMARY: AddressSanitizer: leak")
+  math(EXPR n "${n} + 1")
+  add_test(NAME lint.tool${n} COMMAND sh -c "echo '${t}: begun'; echo '${said}'; echo 'make: *** [x] Error 1'; exit 1")
+endforeach()
 add_test(NAME ice.x COMMAND sh -c "printf 'ran\n! error: unexpected operation mode. expected Normal, received Idempotent\n}\n'; exit 1")
 add_test(NAME python.x COMMAND python3 -c "print('begun'); {}['key']")
 add_test(NAME mission.x COMMAND sh -c "echo 'Ice.Exception: not served, as expected'; echo 'the picture differs'; exit 1")
@@ -143,7 +147,10 @@ END
     mkdir -p hdl/a
     printf 'begin\n    assert (full ||\n        !taken);\nend\n' >hdl/a/broken_proof.vh
     cmake build/main >/dev/null
-    run --name 'test_g|mission|formal|ice|python'
+    run --name 'test_g|mission|formal|ice|python|lint'
+    for said in '%Error: bus/counter.v:5:9: wrong' 'lamp.vhd:4:5:@0ms:(assertion failure): dark' 'twice.c:3:5: warning: ISO C90' 'Lamp.ice:1:36: error: no Colour' 'SUMMARY: AddressSanitizer: leak'; do
+        has "^1 x  $said\$"
+    done
     has '^3 x  Expected 1, got 2$'
     has '^1 x  the picture differs$'
     has '^1 x  ! error: unexpected operation mode. expected Normal, received Idempotent$'

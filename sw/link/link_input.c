@@ -31,7 +31,7 @@ static int isPlausible(const Link* link, const U8* frame) {
     return payload == sizes[LINK_IS_SECURE(link)][kind];
 }
 
-/* Returns whose a whole frame is: the session's, or that of one that a HELLO announced. */
+/* Returns the owner of a whole frame: the session, or one that a HELLO announced. */
 static Owner ownerOf(const Link* link, const U8* frame) {
     const Link_Session* candidate = &link->handshake.candidate;
     U32 epoch = LINK_EPOCH(frame);
@@ -48,8 +48,8 @@ static Owner ownerOf(const Link* link, const U8* frame) {
                : NOBODY;
 }
 
-/* Returns whether the search may look at a frame, which takes so many rounds of Ascon: however many
- * headers an attacker's bytes pretend to hold, they do not keep the processor busy. */
+/* Spends the search budget, in rounds of Ascon, on one frame. Returns whether it sufficed: however
+ * many headers an attacker's bytes pretend to hold, they do not keep the processor busy. */
 static int mayTry(Link* link, U32 rounds) {
     if (!link->parser.outOfStep)
         return 1;

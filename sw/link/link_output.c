@@ -12,9 +12,9 @@
 #define PACKET_ENCRYPTED_US 13450U
 #define BYTE_US 32U
 
-/* A packet that was heard since the last own one takes more than its time from the own ones: it
- * must be handled, and the two may collide. Quarters of its time that the next one waits; but not
- * the second half of the wait if one is heard then: so two that talk at once take turns. */
+/* A packet heard since the last own one takes more than its time from the own ones: it must be
+ * handled, and the two may collide. Back-off of the next packet, in quarters of the airtime. The
+ * second half of the wait is dropped if one is heard then, so two that talk at once take turns. */
 #define HEARD_QUARTERS 7U
 
 /* Microseconds for which a packet behind a short one waits longer: a modem that still has the short

@@ -27,8 +27,8 @@
 #define LINK_POLL_EVERY 1000U     /* while the radio has no room */
 #define LINK_OFFER_EVERY 5000U    /* while nobody takes a message */
 
-/* The search for frames in garbage may compute so many rounds of Ascon for each byte received, and
- * so many at once. */
+/* Rounds of Ascon that the search for frames in garbage may compute: for each byte received, and at
+ * once. */
 #define LINK_ROUNDS_A_BYTE 3U
 #define LINK_ROUNDS_AT_ONCE 300U
 #define LINK_ROUNDS_HANDSHAKE 136U
@@ -305,9 +305,9 @@ void link_pollSession(Link* link);
 
 /* link_keyed: the handshake with a key, and proofs that the peer lives. */
 
-/* Returns whether a frame of the handshake is the peer's, of now, and of use here. */
+/* Returns whether a frame of the handshake is authentic, fresh and relevant. */
 int link_isGenuine(Link* link, U8* frame, Link_Kind kind);
-/* Acts upon one that is. */
+/* Acts upon such a frame. */
 void link_onGenuine(Link* link, const U8* frame, Link_Kind kind);
 void link_onPing(Link* link, const U8* frame);
 void link_pollKeyed(Link* link);

@@ -104,13 +104,13 @@ ifneq ($(LABEL),zeroc)
 	@$(NINJA) --quiet regress
 	@$(BUILD)/tests/regress/regress --prepare --build $(BUILD) $(if $(NAME),--name $(call quoted,$(NAME))) $(if $(LABEL),--label $(call quoted,$(LABEL)))
 endif
-	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(TESTS) --output-on-failure --no-tests=error \
+	@SEED=$(SEED) tests/ctest.py --test-dir $(BUILD) -j $(TESTS) --output-on-failure --no-tests=error \
 	    $(if $(LABEL),-L $(call quoted,$(LABEL))) $(if $(NAME),-R $(call quoted,$(NAME))) $(if $(filter zeroc,$(LABEL)),-C zeroc)
 else
-	@SEED=$(SEED) ctest --test-dir $(BUILD) -j $(TESTS) --output-on-failure --no-tests=error
+	@SEED=$(SEED) tests/ctest.py --test-dir $(BUILD) -j $(TESTS) --output-on-failure --no-tests=error
 	@cmake/configure.sh build/sanitized -DSANITIZE=ON -DROOMS="bus;slice;sw;hdl;ip;testbench;tests" >/dev/null
 	@cmake/ninja.sh build/sanitized -j $(JOBS) sanitized
-	@SEED=$(SEED) ctest --test-dir build/sanitized -j $(TESTS) --output-on-failure --no-tests=error -L sanitized
+	@SEED=$(SEED) tests/ctest.py --test-dir build/sanitized -j $(TESTS) --output-on-failure --no-tests=error -L sanitized
 endif
 
 mutants: setup-tests $(BUILD)/build.ninja ## plant every seeded bug of tests/mutants, expect its test to fail (BLOCK=bus, or BLOCK=bus/name); DRAW=20: of mutants that Yosys draws, 20 a proof

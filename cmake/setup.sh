@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# setup: installs the Debian packages that `make run` needs and the machine lacks.
+# setup: installs the Debian packages that `make run` needs and the machine lacks; on a terminal it asks before it calls sudo.
 # Usage: cmake/setup.sh [--tests] [--check]
 # --tests: those that tests, reports and debuggers need, too; --check: only says what is missing (exit 1 if anything is)
 
@@ -82,20 +82,15 @@ if ! command -v dpkg-query >/dev/null 2>&1; then
     exit 1
 fi
 
-missing=''
 list=$(echo "$packages" | while read -r name why; do
-    [ -n "$name" ] || continue
-    [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] ||
-        echo "$name $why"
+    [ -z "$name" ] || [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || echo "$name: $why"
 done)
 [ -n "$list" ] || exit 0
-missing=$(echo "$list" | cut -d' ' -f1)
-
 echo "Missing packages:"
-echo "$list" | sed 's/^\([^ ]*\) \(.*\)/    \1: \2/'
+echo "$list" | sed 's/^/    /'
 [ -z "$check" ] || exit 1
 
-sudo=''
+sudo='' missing=$(echo "$list" | sed 's/:.*//')
 if [ "$(id -u)" != 0 ]; then
     command -v sudo >/dev/null 2>&1 || {
         echo "setup: not root, and sudo is not there. As root, run:" >&2
@@ -103,15 +98,16 @@ if [ "$(id -u)" != 0 ]; then
         exit 1
     }
     sudo=sudo
+    if [ -t 0 ]; then
+        printf 'Install them with sudo apt-get? [Y/n] '
+        read -r answer
+        case $answer in [Nn]*) echo "setup: nothing is installed" >&2 && exit 1 ;; esac
+    fi
 fi
 echo "Installing them with apt-get (a minute or two) ..."
-$sudo apt-get update -qq || {
-    echo "setup: apt-get update failed: is there a network, and a Debian mirror in /etc/apt?" >&2
-    exit 1
-}
+$sudo apt-get update -qq || echo "setup: apt-get update failed: is there a network, and a Debian mirror in /etc/apt?" >&2
 # shellcheck disable=SC2086 # a list of words
-$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
-    $missing >/dev/null || {
+$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null || {
     echo "setup: apt-get could not install the packages above; its message says why. Then run again." >&2
     exit 1
 }

@@ -1,0 +1,37 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""ctest: CTest with these arguments; at the end it names the tests that were skipped, each with its reason."""
+
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as xml
+
+
+def reason(text):
+    """What GTEST_SKIP said, or the last words of a script that ended with 77."""
+    said = re.search(r": Skipped\n(.+)", text)
+    lines = [line for line in text.splitlines() if line.strip()]
+    return said[1] if said else lines[-1] if lines else "it does not say why"
+
+
+def main():
+    signal.signal(signal.SIGINT, signal.SIG_IGN) # CTest ends by it, and says so
+    with tempfile.TemporaryDirectory() as folder:
+        results = pathlib.Path(folder, "results.xml")
+        status = subprocess.call(["ctest", *sys.argv[1:], "--output-junit", results],
+                                 preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        cases = xml.parse(results).iter("testcase") if results.exists() else []
+    skipped = [case for case in cases if case.find("skipped") is not None]
+    if skipped:
+        print(f"\nSkipped, {len(skipped)}:")
+    for case in skipped:
+        print(f"    {case.get('name')}: {reason(case.findtext('system-out') or '')}")
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

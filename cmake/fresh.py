@@ -54,7 +54,8 @@ def empty_machine(root, release, mirror):
 def put_tree(root):
     clone = root / "root/icesoc"
     if clone.exists():
-        subprocess.check_call(["git", "-C", clone, "pull", "--quiet", "--ff-only", TREE, "HEAD"])
+        subprocess.check_call(["git", "-C", clone, "fetch", "--quiet", TREE, "HEAD"])
+        subprocess.check_call(["git", "-C", clone, "reset", "--quiet", "--hard", "FETCH_HEAD"])
     else:
         subprocess.check_call(["git", "clone", "--quiet", "--no-hardlinks", TREE, clone])
 
@@ -80,7 +81,7 @@ def main():
     parser.add_argument("release", nargs="*", default=list(RELEASES), help=f"{' or '.join(RELEASES)}; all, unless said")
     parser.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("/var/tmp/icesoc-fresh"),
                         help="where machines and logs go (%(default)s; about 8 GB each)")
-    parser.add_argument("--again", action="store_true", help="go on with the machines of before, with HEAD pulled")
+    parser.add_argument("--again", action="store_true", help="go on with the machines of before, with HEAD as it is now")
     parser.add_argument("--mirror", default="http://deb.debian.org/debian")
     parser.add_argument("--run", action="append", metavar="COMMAND", help=f"in place of {', '.join(COMMANDS)}")
     args = parser.parse_args()

@@ -22,7 +22,7 @@ Verilator() {
     "$sim" --image /usr/share/xplanet/images/earth.jpg --speed max --duration $seconds --every-clock --out "$work/flight" >"$work/log" 2>&1 &&
         od -An -td8 -j16 -N8 "$work/flight/status" # cycles in sw/ground/sim_status.h
 }
-Icarus() { vvp -n "$work/chip.vvp" "+clocks=$rest" | sed 's/clocks //'; }
+Icarus() { vvp -n "$work/chip.vvp" "+clocks=$rest" | sed -n 's/^clocks //p'; } # newer ones tell of $finish, too
 measure() { # name: "name clocks microseconds"
     for run in $(seq "$runs"); do
         times >"$work/before"

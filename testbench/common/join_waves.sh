@@ -2,10 +2,14 @@
 # SPDX-License-Identifier: MIT
 #
 # join_waves: puts the rows of wave.fst.program.vcd (program_trace.h) into wave.fst, above the RTL's.
-# Usage: join_waves.sh wave.fst      Without one of the files, or fst2vcd and vcd2fst, they stay as they are.
+# Usage: join_waves.sh wave.fst      Without one of the files they stay as they are.
 set -eu
 wave=$1 program=$1.program.vcd
-[ -s "$wave" ] && [ -s "$program" ] && command -v fst2vcd >/dev/null && command -v vcd2fst >/dev/null || exit 0
+[ -s "$wave" ] && [ -s "$program" ] || exit 0
+command -v fst2vcd >/dev/null && command -v vcd2fst >/dev/null || {
+    echo "join_waves: fst2vcd is missing (Debian: gtkwave): the program's rows stay in $program" >&2
+    exit 0
+}
 fst2vcd "$wave" | awk -v program="$program" '
 function next_line() { more = (getline line < program) > 0; if (more && line ~ /^#/) { time = substr(line, 2) + 0; next_line() } }
 function told_until(end) { # prints lines of the program up to this time

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# soc_members: of the header that Verilator wrote, the chip's signals, a line each: MEMBER(name, "path").
+# soc_members: lists the chip's signals in Verilator's header, a line each: MEMBER(name, "path").
 # Random values that it reads beyond an array's end, and the scratch of writes there, are no state.
 
 /__DOT____V(xrand|lvbound)/ { next }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# step: of an unrolled model in BLIF (abc: frames, comb) makes one output, `step`: nothing failed but in the last clock.
+# step: gives an unrolled model in BLIF (abc: frames, comb) one output, `step`: only the last clock failed.
 # Its first `bads` outputs say whether an assertion fails in each clock; the rest, the next state, goes.
 
 /\\$/ { # a line goes on in the next

@@ -13,6 +13,7 @@ Leaves build/mutants/drawn.json. Exit status 1: a module scores less than the ga
 """
 import argparse, collections, json, os, pathlib, re, shutil, subprocess, sys, time
 import model, run
+from run import tool
 from concurrent.futures import ThreadPoolExecutor
 
 GATE = 95  # per cent
@@ -168,28 +169,9 @@ def told(results, number):
     return rows
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", default="build/main", help="whose proofs")
-    parser.add_argument("--out", default="build/mutants", help="where results go")
-    parser.add_argument("--block", default="", help="proofs by regular expression (default: all)")
-    parser.add_argument("--number", type=int, default=20, help="mutants a proof")
-    parser.add_argument("--seed", default="1", help="of the draw")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many are tried at once")
-    options = parser.parse_args()
-    out = pathlib.Path(options.out).resolve()
-    # The state of the sources that is measured, for the regression's light
-    regress = f"{options.build}/tests/regress/regress"
-    tree = subprocess.run([regress, "--tree", "bus hdl tests"], stdout=subprocess.PIPE, text=True).stdout.strip() if os.access(regress, os.X_OK) else ""
-    shown = subprocess.run(["ctest", "--test-dir", options.build, "--show-only=json-v1", "-R", rf"^formal\.({options.block})"], stdout=subprocess.PIPE, check=True)
-    tests = json.loads(shown.stdout)["tests"]
-    proofs = [Proof(test, out / "drawn") for test in tests]
-    proofs = [proof for proof in proofs if not proof.module.endswith("_proof")]  # of several modules together
-    if not proofs:
-        sys.exit(f"mutants: no proof's name begins with {options.block}: ctest -N -L formal lists them")
-    out.mkdir(parents=True, exist_ok=True)
-    lock = run.only_one(out)
+def measure(proofs, options, out):
     source = pathlib.Path(proofs[0].tree)
+    tree = tool.tree_state(source, "bus hdl tests")  # that is measured, for the regression's light
     # A copy: names of cells move with any change, and somebody may be editing.
     shutil.rmtree(out / "drawn", ignore_errors=True)
     for folder in ("bus", "hdl", "ip"):
@@ -227,6 +209,26 @@ def main():
     if broken:
         print(f"mutants: {broken} do not run, see above")
     return bool(bad or failing or broken)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default="build/main", help="whose proofs")
+    parser.add_argument("--out", default="build/mutants", help="where results go")
+    parser.add_argument("--block", default="", help="proofs by regular expression (default: all)")
+    parser.add_argument("--number", type=int, default=20, help="mutants a proof")
+    parser.add_argument("--seed", default="1", help="of the draw")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many are tried at once")
+    options = parser.parse_args()
+    out = pathlib.Path(options.out).resolve()
+    shown = subprocess.run(["ctest", "--test-dir", options.build, "--show-only=json-v1", "-R", rf"^formal\.({options.block})"], stdout=subprocess.PIPE, check=True)
+    tests = json.loads(shown.stdout)["tests"]
+    proofs = [Proof(test, out / "drawn") for test in tests]
+    proofs = [proof for proof in proofs if not proof.module.endswith("_proof")]  # of several modules together
+    if not proofs:
+        sys.exit(f"mutants: no proof's name begins with {options.block}: ctest -N -L formal lists them")
+    with tool.only_one(out, "mutants"):
+        return measure(proofs, options, out)
 
 
 if __name__ == "__main__":

@@ -17,10 +17,12 @@ begins another change of the same file, a line with a slash another file.
 Leaves build/mutants/results.tsv (name, result, test, seconds, file:line).
 Exit status 1: a bug survived, is no longer found in its file, or does not build.
 """
-import argparse, collections, fcntl, glob, json, os, pathlib, queue, re, shutil, subprocess, sys, threading, time
+import argparse, collections, glob, json, os, pathlib, queue, re, shutil, subprocess, sys, threading, time
 from concurrent.futures import ThreadPoolExecutor
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(TOP / "tests/regress"))
+import tool
 WORK = TOP / "build/mutants"
 
 
@@ -176,35 +178,10 @@ def keep(rows):
     results.write_text("".join("\t".join(row) + "\n" for row in all_rows.values()))
 
 
-def only_one(folder):
-    """A lock of the folder that is held as long as it is kept: two runs would work in the same copies."""
-    lock = open(folder / "lock", "w")
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        print(f"mutants: another run is at work in {os.path.relpath(folder)}; waiting for its end ...", file=sys.stderr, flush=True)
-        fcntl.flock(lock, fcntl.LOCK_EX)
-    return lock
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--block", default="*", help="the bugs of one block or core, or a single one as block/name (default: all)")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many are tried at once")
-    parser.add_argument("--check", action="store_true", help="only look whether each is found in its file")
-    options = parser.parse_args()
-    os.chdir(TOP)
-    chosen = bugs(options.block)
-    if options.check:
-        return check(chosen)
-    WORK.mkdir(parents=True, exist_ok=True)
-    lock = only_one(WORK)
-    # The state that all blocks were measured from, for the regression's light.
-    if options.block == "*" and os.access("build/main/tests/regress/regress", os.X_OK):
-        with open(WORK / "tree", "w") as tree:
-            subprocess.run(["build/main/tests/regress/regress", "--tree", "bus hdl ip slice sw testbench tests"], stdout=tree)
+def try_all(chosen, jobs):
+    """Tries the bugs in copies of the tree, `jobs` at a time. Returns the exit status."""
     copies = queue.Queue()
-    for number in range(options.jobs):
+    for number in range(jobs):
         prepare(WORK / str(number))
         copies.put(WORK / str(number))
 
@@ -231,13 +208,29 @@ def main():
     rows, writing, groups = [], threading.Lock(), collections.defaultdict(list)
     for bug in chosen:
         groups[bug.test.split(".")[0] if bug.test.startswith("test_") else bug.test].append(bug)
-    with ThreadPoolExecutor(options.jobs) as pool:
+    with ThreadPoolExecutor(jobs) as pool:
         failed = [task.exception() for task in [pool.submit(of_program, group) for group in sorted(groups.values(), key=len, reverse=True)]]
     if any(failed):
         raise next(filter(None, failed))
     now = sum(row[1] == "caught" for row in rows)
     print(f"mutants: {now} of {len(rows)} caught (build/mutants/results.tsv)")
     return now != len(rows)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--block", default="*", help="the bugs of one block or core, or a single one as block/name (default: all)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many are tried at once")
+    parser.add_argument("--check", action="store_true", help="only look whether each is found in its file")
+    options = parser.parse_args()
+    os.chdir(TOP)
+    chosen = bugs(options.block)
+    if options.check:
+        return check(chosen)
+    with tool.only_one(WORK, "mutants"):
+        if options.block == "*":  # the state that all blocks were measured from, for the regression's light
+            tool.write(WORK / "tree", tool.tree_state(TOP, "bus hdl ip slice sw testbench tests"))
+        return try_all(chosen, options.jobs)
 
 
 if __name__ == "__main__":

@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# run_test: run.py in a tree of one program: each result that a seeded bug can have, an interrupted run, two at once.
+# run_test: run.py in a tree of one program: each result that a seeded bug can have, an interrupted run.
 # Usage: run_test.sh source-folder work-folder
 set -eu
 source=$1 work=$2
 rm -rf "$work"
-mkdir -p "$work/tests/mutants"
-cp "$source/tests/mutants/run.py" "$work/tests/mutants"
+mkdir -p "$work/tests/mutants" "$work/tests/regress"
+cp "$source/tests/mutants/run.py" "$work/tests/mutants" && cp "$source/tests/regress/tool.py" "$work/tests/regress"
 cd "$work"
 fail() {
     cat run.log >&2
@@ -72,14 +72,3 @@ sed -i 's/!= 6/!= 7/' tiny.c
 grep -q 'test_tiny fails without any mutant' run.log || fail "the failing test is not named"
 git checkout -q tiny.c
 touch tiny.c
-
-# Two at once: the second waits.
-mkfifo hold
-flock build/mutants/lock sh -c 'echo held >held; read -r _ <hold' &
-until [ -e held ]; do sleep 0.1; done
-tests/mutants/run.py --jobs 1 >run.log 2>&1 &
-until grep -q 'another run is at work' run.log; do sleep 0.1; done
-! grep -q caught run.log || fail "the second run did not wait"
-echo >hold
-wait $! || fail "the second run failed"
-grep -q '^mutants: 1 of 1 caught' run.log || fail "the second run did not do its work"

@@ -13,8 +13,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 COMMON = HERE.parents[1] / "testbench/common/page"
 LARGEST = 2_000_000  # bytes of the page
 MEASURED = {"coverage": "coverage/summary.json", "utilisation": "synth/report.json",
-            "speed": "bench/speed.json", "drawn": "mutants/drawn.json",
-            "simulator": "bench/simulator.json"}
+            "speed": "bench/speed.json", "drawn": "mutants/drawn.json"}
 
 
 def read(path):
@@ -36,11 +35,6 @@ def proofs_of(results):
 def measurements(build):
     """What other commands have left in build/, with the state of the tree that they measured."""
     data = {name: found for name, path in MEASURED.items() if (found := read(build / path))}
-    for entry in data.pop("simulator", []):  # beside the board's time, by which no run is judged
-        if limit := entry.pop("limit", None):
-            entry["peer"] = f"real time: {limit}"
-        if "speed" in data:
-            data["speed"].setdefault("entries", []).append(entry)
     for file in data.get("coverage", {}).get("files", []):  # all of it is in coverage's own summary
         if (more := len(file["missed"]) - 40) > 0:
             file["missed"][40:] = [f"and {more} more"]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# arm.cmake: C90 and assembly for the Cortex-M3, beside the host's build, by GCC's bare-metal toolchain.
+# arm.cmake: compiles C90 and assembly for the Cortex-M3 with GCC's bare-metal toolchain, beside the host's build.
 
 icesoc_needs(gcc-arm-none-eabi ARM_GCC program arm-none-eabi-gcc)
 icesoc_needs(binutils-arm-none-eabi ARM_SIZE program arm-none-eabi-size)
@@ -11,7 +11,7 @@ set(ARM_FLAGS -mcpu=cortex-m3 -mthumb -Os -g -ffunction-sections -fdata-sections
 
 # icesoc_arm_objects(OUT name SOURCES file... [INCLUDES dir...] [DEFINES NAME=value...] [OPTIONS ...]
 #                    [DEPENDS target...] [FOREIGN])
-# Object files of the sources; their paths into the variable OUT. FOREIGN: not ours, without our warnings.
+# Compiles the sources and puts the objects' paths into the variable OUT. FOREIGN: others' code, without our warnings.
 function(icesoc_arm_objects out name)
   cmake_parse_arguments(A "FOREIGN" "" "SOURCES;INCLUDES;DEFINES;OPTIONS;DEPENDS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/${name}.arm)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# configure: makes a build folder of the tree in the current folder, unless there is one; one that was made for another place
-# (the tree was moved, renamed or copied) goes first, since CMake refuses it. Usage: configure.sh build-folder [cmake-argument...]
+# configure: makes a build folder for the tree in the current folder, unless there is one. CMake refuses a folder that was made
+# for another place (the tree was moved, renamed or copied): it is removed first. Usage: configure.sh build-folder [cmake-argument...]
 set -eu
 build=$1
 shift

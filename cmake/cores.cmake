@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 #
-# cores.cmake: IP cores: how one is built, and how those of ip/cores.list come into the chip (docs/hw-mapping.md).
+# cores.cmake: builds IP cores, and puts those of ip/cores.list into the chip (docs/hw-mapping.md).
 
 set(CORES ${CMAKE_SOURCE_DIR}/ip/cores.list CACHE FILEPATH "The cores in the chip, one a line")
 set(CORE_FOLDERS "" CACHE STRING "Folders of cores besides those in ip/")
 set(FOREIGN_CORES ${CMAKE_BINARY_DIR}/foreign CACHE PATH "Where cmake/fetch.py foreign put third-party cores")
 
-# Names in the list, for what is built only with a core: if("vision" IN_LIST CHIP_CORES)
+# Names in the list, for parts that are built only with a core: if("vision" IN_LIST CHIP_CORES)
 set(CHIP_CORES)
 set(instances 0)
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CORES})
@@ -38,10 +38,10 @@ endif()
 # becomes test_ip_<NAME>, with the model V<NAME>_slot.
 # VERILOG may name headers, in whose folders `include looks.
 # FLAGS: Verilator's, for a foreign core's style.
-# DEPENDS: what makes VERILOG files that are generated.
+# DEPENDS: targets that generate VERILOG files.
 # CLK_HZ: the module has a parameter of that name, the clock in Hz: 100 MHz on the board, in <NAME>_test.cpp and in the
-# simulator, unless it is told another.
-# IDLE: it has an output idle_o, so that its clock can have a gate (hdl/system/core_gate.v).
+# simulator, unless another is given.
+# IDLE: it has an output idle_o, which allows a gate for its clock (hdl/system/core_gate.v).
 # CLOCK: it has a clock of its own, of at most that frequency, behind bus/bus_crossing.v; clk_i, rst_i and its pins
 # belong to it.
 function(icesoc_core name)
@@ -65,7 +65,7 @@ function(icesoc_core name)
     set(idle ${name})
   endif()
   set(files ${A_VERILOG})
-  set(headers ${A_VERILOG}) # which `include finds
+  set(headers ${A_VERILOG}) # found by `include
   list(FILTER files EXCLUDE REGEX "[.]([sS]?[vV]?[hH]|[iI][nN][cC])$")
   list(FILTER headers INCLUDE REGEX "[.]([sS]?[vV]?[hH]|[iI][nN][cC])$")
   set(targets ${A_DEPENDS})

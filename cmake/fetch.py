@@ -40,7 +40,7 @@ PAGE = [("tabulator-tables", "6.5.3", "a3aeb833e5cf924c8a686fa6748c1070c5fde8e60
          ["js/tabulator.min.js", "css/tabulator_simple.min.css"]),
         ("uplot", "1.6.32", "4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d",
          ["uPlot.iife.min.js", "uPlot.min.css"])]
-# Debian 13's packages, with all that they load
+# Debian 13's packages and all libraries that they load
 RUN_TIME = ["libc6", "libgcc-s1", "libstdc++6", "zlib1g", "gcc-14-base"]
 GHDL = ["ghdl-mcode", "ghdl-common", "libgnat-14", *RUN_TIME]
 NEXTPNR = ["nextpnr-ecp5", "nextpnr-ecp5-chipdb", "libpython3.13", "libpython3.13-minimal", "libpython3.13-stdlib", "libexpat1",
@@ -150,7 +150,7 @@ def nextpnr(target):
     if shutil.which("nextpnr-ecp5"):
         return program(target / "nextpnr-ecp5", 'exec nextpnr-ecp5 "$@"\n')
     root = packages("nextpnr-0.7", *NEXTPNR)
-    # It looks for its chips in /usr/share/nextpnr, which is there for it alone: a mount of its own.
+    # It reads its chips from /usr/share/nextpnr: a mount of its own provides that folder.
     program(target / "nextpnr-ecp5", f"""root={shlex.quote(str(root))}
 exec unshare --map-root-user --mount sh -c 'mount --bind "$0/usr/share" /usr/share || {{
     echo "nextpnr-ecp5: this machine lets its users mount nothing; Debian 13 has it as a package" >&2
@@ -232,7 +232,7 @@ def page(target):
         (target / f"libraries.{kind}").write_text(text)
 
 
-# What only something optional needs: what that is
+# Things that only optional parts need, with the name of the part
 OPTIONAL = {zeroc: "only these suites need it", svd: "only the check of icesoc.svd needs it",
             wavedrom: "only drawings of waveforms need it", foreign: "only the examples of foreign cores need it"}
 THINGS = {thing.__name__: thing for thing in (ice, ghdl, nextpnr, lz4, sodium, page, foreign, svd, wavedrom, zeroc)}

@@ -4,8 +4,8 @@
 
 # icesoc_fuzz(NAME HARNESS file.cpp SOURCES file... [INCLUDES dir...] [DEFINES name...] RUNS n [SEEDS file-or-folder] [DICT file]
 #             [LENGTH bytes] [LIBS file...] [LABELS ...] [DEPENDS ...])
-# The program NAME, and the test fuzz.NAME of RUNS inputs from SEED, of up to LENGTH (400) bytes: their number decides, never
-# the time. Inputs begin with those in SEEDS.
+# The program NAME, and the test fuzz.NAME of RUNS inputs from SEED, of up to LENGTH (400) bytes. It ends by their number, never
+# by time. The inputs in SEEDS come first.
 function(icesoc_fuzz name)
   cmake_parse_arguments(A "" "HARNESS;DICT;RUNS;SEEDS;LENGTH" "SOURCES;INCLUDES;DEFINES;LIBS;LABELS;DEPENDS" ${ARGN})
   set(flags -g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined

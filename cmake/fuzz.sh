@@ -3,7 +3,7 @@
 #
 # fuzz: runs a libFuzzer program on a number of inputs, from SEED (default 1). Usage: fuzz.sh program runs seeds|- option...
 # seeds: a folder of inputs, or a file with one a line in hex ("#" begins a comment). FUZZ=10: ten times as many inputs.
-# An input that does harm is printed.
+# It prints an input that fails.
 set -eu
 program=$1 runs=$(($2 * ${FUZZ:-1})) seeds=$3
 shift 3
@@ -19,8 +19,8 @@ for number, line in enumerate(sys.stdin):
     open(f"{sys.argv[1]}/{number}", "wb").write(bytes.fromhex(line.partition("#")[0]))' "$work/seeds" <"$seeds"
     seeds=$work/seeds
 fi
-# Addresses are among what is compared with, and so among what is tried: where the system lets one
-# choose, they are the same each time, and so are the inputs.
+# libFuzzer tries values that the program compares, addresses among them: with fixed addresses, where the
+# system allows them, the inputs are the same each time.
 alike=$(setarch -R true 2>/dev/null && echo "setarch -R" || :)
 $alike "$program" -seed="${SEED:-1}" -runs="$runs" -artifact_prefix="$work/" "$@" "$work/found" $seeds >"$work/log" 2>&1 || {
     cat "$work/log" >&2

@@ -3,8 +3,8 @@
 # icesoc.cmake: how each kind of source is built, said once.
 
 # icesoc_needs(PACKAGE VARIABLE program|library|path NAME): finds what Debian's package has, or ends with its name. Nothing is
-# left out in silence: the list of tests is the same on each machine. What only a test's script runs (gdb-multiarch, xmllint)
-# is not looked for here.
+# left out in silence: the list of tests is the same on each machine. Programs that only a test's
+# script runs (gdb-multiarch, xmllint) are not looked for here.
 function(icesoc_needs package variable kind name)
   cmake_language(CALL find_${kind} ${variable} ${name})
   if(NOT ${variable})
@@ -41,12 +41,12 @@ file(MAKE_DIRECTORY ${GEN_DIR})
 set(CMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE PRE_TEST)
 
 set(HOST_WARNINGS -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion)
-# Tools and tests: they compile longer than they run, most of it templates of libraries.
+# Tools and tests compile longer than they run, mostly templates of libraries.
 set(TOOL_OPTIONS ${HOST_WARNINGS} -O1)
 set(C90_WARNINGS -std=c90 -pedantic -Wall -Wextra -Wconversion -Wstrict-prototypes
     -Wmissing-prototypes -Wdeclaration-after-statement -Werror)
 if(COVERAGE)
-  add_compile_options(-g --coverage -fprofile-update=atomic) # -g: without it gcov does not know of each line
+  add_compile_options(-g --coverage -fprofile-update=atomic) # -g: without it gcov misses lines
   add_link_options(--coverage)
 endif()
 if(SANITIZE STREQUAL "thread")
@@ -95,7 +95,7 @@ function(icesoc_test name)
   target_link_libraries(${name} PRIVATE ${A_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
   gtest_discover_tests(${name} TEST_PREFIX "${name}." EXTRA_ARGS ${A_ARGS}
                        DISCOVERY_TIMEOUT 60)
-  # CTest reads this after the cases are known; gtest_discover_tests itself takes the first of several labels only.
+  # CTest reads this after the cases are known; gtest_discover_tests itself uses only the first of several labels.
   set(labels ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
   file(WRITE ${labels} "foreach(t IN LISTS ${name}_TESTS)\n  set_tests_properties(\${t} PROPERTIES LABELS \"${A_LABELS}\")\n")
   if(A_SANITIZED)
@@ -121,7 +121,7 @@ function(icesoc_uncertain program seeds)
   foreach(seed RANGE 1 ${seeds})
     add_test(NAME cdc.${program}.${seed} COMMAND ${program} --gtest_brief=1 "--gtest_filter=${filter}")
     set_tests_properties(cdc.${program}.${seed} PROPERTIES LABELS "rtl;cdc" ENVIRONMENT CDC_SEED=${seed}
-                         FAIL_REGULAR_EXPRESSION "[^0-9]0 tests from") # a filter that fits nothing
+                         FAIL_REGULAR_EXPRESSION "[^0-9]0 tests from") # a filter that matches nothing
   endforeach()
 endfunction()
 
@@ -147,8 +147,8 @@ endfunction()
 #                 [DEPENDS target-or-file...] [FLAGS ...] [FAST])
 # Verilated model of a module as a library NAME with the class V<NAME>. Lint is on (-Wall) and fatal.
 # FAST, the whole chip: compiled by clang (measured: 1.18 times the speed of g++'s code). With
-# COVERAGE its counters are those of the top module only: what moves in a block is counted in that block's tests; all
-# of them made seconds of flight take minutes.
+# COVERAGE it counts the top module only: each block's own tests count the block, and with all counters seconds of
+# flight took minutes.
 function(icesoc_verilate name)
   cmake_parse_arguments(A "FAST" "TOP" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})
@@ -173,7 +173,7 @@ function(icesoc_verilate name)
     list(APPEND definitions ICESOC_TRACE)
   endif()
   if(COVERAGE)
-    # --assert: newer Verilators leave cover properties out without it. To Verilator a cover point that looks at a pin is a
+    # --assert: newer Verilators leave cover properties out without it. Verilator takes a cover point that reads a pin for a
     # flip-flop of clk_i; where the pin is an asynchronous reset as well, that would be a warning.
     list(APPEND flags --coverage --assert -DCOVER_POINTS -Wno-SYNCASYNCNET)
     list(APPEND definitions ICESOC_COVERAGE)
@@ -195,7 +195,7 @@ function(icesoc_verilate name)
   if(A_FAST AND NOT COVERAGE AND NOT SANITIZE)
     set(compiler ${CLANGXX})
   endif()
-  # Code that runs once: with counters it is megabytes, and -O1 took minutes.
+  # This code runs once; with counters it has megabytes, and -O1 took minutes.
   set(slow -O1)
   if(COVERAGE)
     set(slow -O0)

@@ -3,7 +3,7 @@
 #
 # setup: installs the Debian packages that `make run` needs and the machine lacks; on a terminal it asks before it calls sudo.
 # Usage: cmake/setup.sh [--tests] [--check]
-# --tests: those that tests, reports and debuggers need, too; --check: only says what is missing (exit 1 if anything is)
+# --tests: also those for tests, reports and debuggers; --check: only lists missing ones (exit 1 if there are any)
 
 set -eu
 tests='' check=''
@@ -69,7 +69,7 @@ man-db shows and checks the manual pages
 groff-base formats them
 '
 [ -z "$tests" ] || packages="$packages$rest"
-# Debian 12's is too old: cmake/fetch.py brings Debian 13's.
+# Debian 12's is too old; cmake/fetch.py fetches Debian 13's.
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in
 1[3-9]) packages="$packages
 ghdl-mcode simulates and converts VHDL" ;;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# vhdl.cmake: VHDL cores into Verilog by GHDL 5, checked for latches.
+# vhdl.cmake: translates VHDL cores to Verilog by GHDL 5 and refuses latches.
 
 set(GHDL_DIR ${CMAKE_BINARY_DIR}/ghdl)
 set(GHDL ${GHDL_DIR}/ghdl)
@@ -35,8 +35,8 @@ function(icesoc_vhdl)
   set_property(GLOBAL APPEND PROPERTY ICESOC_VHDL_TARGETS ${A_NAME}_verilog)
 endfunction()
 
-# icesoc_vhdl_test(NAME core SOURCES file... [LIBS lib...]): test vhdl.<core> runs <core>_tb.vhd with what <core>_vectors.cpp
-# writes, both in this folder (cmake/vhdl_test.sh).
+# icesoc_vhdl_test(NAME core SOURCES file... [LIBS lib...]): test vhdl.<core> runs <core>_tb.vhd with the vectors that
+# <core>_vectors.cpp writes, both in this folder (cmake/vhdl_test.sh).
 function(icesoc_vhdl_test)
   cmake_parse_arguments(A "" "NAME" "SOURCES;LIBS" ${ARGN})
   add_executable(${A_NAME}_vectors ${A_NAME}_vectors.cpp)

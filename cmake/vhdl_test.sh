@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# vhdl_test: core GHDL vectors-program folder file.vhd ...   Runs entity <core>_tb by GHDL; it stops with a failure.
-# vectors-program: gets the folder and SEED, writes there what the test bench reads.
-# COVERAGE_DIR: GHDL counts the lines that ran into a file there.
+# vhdl_test: core GHDL vectors-program folder file.vhd ...   Runs entity <core>_tb by GHDL; the first failure stops it.
+# vectors-program: gets the folder and SEED and writes the test bench's input there.
+# COVERAGE_DIR: folder for GHDL's file of lines that ran.
 set -eu
 core=$1 ghdl=$2 vectors=$3 work=$4
 shift 4

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 #
 # vhdl_to_verilog: GHDL work-folder entity output.v file.vhd ...   A latch in the result is an error.
-# The files come in any order. VHDL_LIBRARY: the library that all are in, where they call themselves by its name.
+# The files come in any order. VHDL_LIBRARY: their library, if they refer to themselves by its name.
 # VHDL_GENERICS: "-gNAME=value ..." of the entity.
 
 set -eu
@@ -27,7 +27,7 @@ rm -f "$work"/*.cf
     cat "$work/messages" >&2
     exit 1
 }
-# Other entities get this one's name before theirs: another core may have some of the same library.
+# Other entities get this one's name as prefix, since another core may use the same library.
 sed -n 's/^module \([A-Za-z0-9_]*\).*/\1/p' "$output.tmp" | grep -v "^$entity" >"$work/others" || true
 while read -r other; do
     sed -i "s/^\(module \|  \)$other\b/\1${entity}_$other/" "$output.tmp"

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: MIT
 """Draws mutants of each proven module with Yosys' `mutate` and expects the module's proof, or its tests, to fail.
 
-A mutant is one bit of one cell's port that is inverted, stuck, or inverted by another bit, in what
-the module's own source makes (the proof's lines stay as they are). One that the proof does not see
-is compared with the module as it is: if no input that the proof assumes makes an output differ (abc
-proves that, by pdr), it is no bug and drops out. What is left is tried against the module's tests,
-all of it in one build (model.py). What they miss, too, has survived: there is a hole at its line.
-The score of a module is what was caught of what did not drop out, over all its proofs.
+In a mutant one bit of one cell's port is inverted, stuck, or inverted by another bit. The cell comes
+from the module's own source, not from the proof's lines. A mutant that the proof misses is compared
+with the module: if no input that the proof assumes makes an output differ (abc proves that, by pdr),
+it is no bug and drops out. The module's tests try the rest, all in one build (model.py). A mutant
+that they miss, too, has survived: there is a hole at its line. The score of a module is the share of
+mutants caught, without those that dropped out, over all its proofs.
 
 Leaves build/mutants/drawn.json. Exit status 1: a module scores less than the gate.
 """
@@ -22,7 +22,7 @@ TESTS = {"bus_decoder": "test_bus_decoder", "bus_(registers|wrapper)": "test_bus
          "axis_": "test_axis", "bus_crossing": "test_ip_new_foreign",
          "modem_baud": "test_modem_baud", "modem_api_": "test_modem_api", "modem_": "test_modem test_modem_api", "camera_": "test_ip_camera",
          "fsmc_": "test_fsmc_bridge test_fsmc_modes", "async_fifo": "test_ip_camera", "cdc_": "test_fsmc_bridge"}
-SECONDS = "20"  # of a processor, for each step of a mutant's proof at least
+SECONDS = "20"  # processor time for each step of a mutant's proof, at least
 # A module's own cells, but those of its proof
 OF_SOURCE = "{0}/c:* {0}/a:src=*_proof.v* {0}/t:$assert {0}/t:$assume {0}/t:$cover {0}/t:$any* %u %u %u %u %d"
 
@@ -41,7 +41,7 @@ class Proof:
         self.first_of_proof = {}  # line, of a file
 
     def run(self, folder, mutant, seconds=None):
-        """What prove.sh says with these commands of Yosys between reading and proving, and its exit status."""
+        """Output and exit status of prove.sh with these commands of Yosys between reading and proving."""
         limit = {"PROVE_SECONDS": seconds} if seconds else {}
         ran = subprocess.run([self.script, self.module, self.depth, self.source, folder, *self.parameters], text=True, stdout=subprocess.PIPE,
                              stderr=subprocess.STDOUT, env={**self.environment, "PROVE_MUTANT": mutant, **limit})
@@ -67,9 +67,9 @@ class Proof:
 
     def differs(self, folder, mutant):
         """Whether the mutant's outputs differ from the module's for some input that the proof assumes."""
-        # Each wire with a name is an output where parts are cut off: they might have seen it.
+        # Where parts are cut off, each named wire is an output: those parts might have read it.
         seen = "expose w:* w:$* %d\n" if any("delete" in text for text in self.parameters) else ""
-        # prove.sh's own way to flip-flops and gates; what is free in one module is the same input of both
+        # prove.sh's own commands to flip-flops and gates; free signals become the same input of both modules
         script = (self.work / "prove.ys").read_text()
         to_state = script.split("@source\n")[1].split("write_smt2")[0].replace("setundef -anyseq -undriven\n", "")
         to_gates = script.split("write_rtlil model.il\n")[1].split("design -save")[0]
@@ -91,10 +91,10 @@ class Proof:
 
 
 def attempt(proof, index, mutant):
-    """A mutant's row: proof, module, source line, what was done there, result, seconds."""
+    """A mutant's row: proof, module, source line, change, result, seconds."""
     start = time.monotonic()
     folder = proof.work / str(index)
-    # A proof has four times the time that it takes without a mutant: one that is only slower is not caught.
+    # A proof gets four times the time that it takes without a mutant: being slower is not being caught.
     status, text = proof.run(folder, mutant, str(max(int(SECONDS), int(4 * float((proof.work / "cpu").read_text())))))
     if status and not re.search("an assertion fails|not proven|not reached", text):
         print(f"{text}mutants: formal.{proof.name}: {mutant}: does not run", file=sys.stderr)
@@ -120,7 +120,8 @@ def programs(row):
 
 
 def by_tests(rows, copy, pool):
-    """Tries what the proofs have missed against the modules' tests; sets each row's result. Returns the programs that fail as they are."""
+    """Tries mutants that the proofs missed against the modules' tests and sets each row's result.
+    Returns the programs that fail without a mutant."""
     os.chdir(run.TOP)
     run.prepare(copy, f"-DVERILATOR={run.TOP}/tests/mutants/model.py")
     (copy / "build/drawn.json").write_text(json.dumps(rows))
@@ -157,7 +158,7 @@ def by_tests(rows, copy, pool):
 
 
 def told(results, number):
-    """The results as they come, and a line of how far they are: of each on a terminal, of each tenth in a log."""
+    """Yields the results as they come and prints the progress: each one on a terminal, each tenth in a log."""
     start, rows = time.monotonic(), []
     for row in results:
         rows.append(row)
@@ -172,7 +173,7 @@ def told(results, number):
 def measure(proofs, options, out):
     source = pathlib.Path(proofs[0].tree)
     tree = tool.tree_state(source, "bus hdl tests")  # that is measured, for the regression's light
-    # A copy: names of cells move with any change, and somebody may be editing.
+    # A copy: any edit meanwhile would move the names of cells.
     shutil.rmtree(out / "drawn", ignore_errors=True)
     for folder in ("bus", "hdl", "ip"):
         shutil.copytree(source / folder, out / "drawn/source" / folder)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# drawn_test: drawn.py on a module of which the proof says half: what it misses survives at its line, what is no bug drops out.
-# What survives is found by a test of a model that carries all of them (model.py).
+# drawn_test: drawn.py on a module with half a proof: mutants that it misses survive at their line, and those that are no bug
+# drop out. A test of a model that carries all survivors (model.py) finds them.
 # Usage: drawn_test.sh source-folder work-folder verilators-runtime.a
 set -eu
 source=$1 work=$2 runtime=$3
@@ -9,7 +9,7 @@ source=$1 work=$2 runtime=$3
 rm -rf "$work"
 mkdir -p "$work/hdl/small" "$work/bus" "$work/ip" "$work/build" "$work/tests"
 cd "$work"
-export PYTHONPYCACHEPREFIX="$work/compiled" # a script's compiled form has its time in it, which differs in each clone
+export PYTHONPYCACHEPREFIX="$work/compiled" # a script's compiled form contains its time, which differs in each clone
 ln -s "$source/tests/mutants" tests/mutants
 touch bus/none.v
 fail() {
@@ -79,7 +79,7 @@ grep -q '"survived": \[\]' build/mutants/drawn.json || fail "no summary"
 cp build/mutants/drawn/pair/list drawn.list
 run || fail "a second run of the same seed fails"
 cmp build/mutants/drawn/pair/list drawn.list || fail "the same seed draws others"
-# What the tests' programs say: one that fails without a mutant catches none, and the rest is told all the same.
+# A test program that fails without a mutant catches none; the others' results are still reported.
 mkdir -p copy/build/main
 cat >copy/build/main/build.ninja <<'END'
 rule script
@@ -102,7 +102,7 @@ assert [row["result"] for row in rows] == ["test_pair", "SURVIVED", "SURVIVED"],
 END
 /usr/bin/python3 by_tests.py >run.log 2>&1 || fail "what the tests say of mutants is lost"
 grep -q '^said$' run.log && grep -q 'test_bad fails without any mutant, so it caught none' run.log || fail "no word of a test that fails as it is"
-# A mutant that does not run is told, and the rest is judged all the same.
+# A mutant that does not run is reported; the others are still judged.
 cat >yosys <<END
 #!/bin/sh
 case \$PWD in */drawn/pair/2) echo "no such thing" && exit 1 ;; esac

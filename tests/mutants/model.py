@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Stands in for Verilator where drawn mutants are tried against tests: a model of which modules have mutants carries all of
-these, and MUTANT in the environment chooses one by its number when a test begins (none: the module as it is).
+"""Stands in for Verilator where drawn mutants are tried against tests: a model carries all mutants of its modules, and
+MUTANT in the environment chooses one by its number when a test begins (none: the module as it is).
 
-A mutant was drawn in its module as a proof has it. In a model the cell is found again by its kind, its source line and its
-place among the like; a bit that is not there becomes the last one. DRAWN is the list that drawn.py writes.
+A mutant was drawn in its module as a proof reads it. In a model the cell is found by its kind, its source line and its
+place among such cells; a missing bit becomes the last one. DRAWN is the list that drawn.py writes.
 """
 import collections, json, os, pathlib, re, subprocess, sys, tempfile
 
@@ -25,14 +25,14 @@ def cells(path):
     for module, content in json.load(open(path))["modules"].items():
         alike = found[module] = collections.defaultdict(list)
         for name, cell in sorted(content["cells"].items(), key=lambda item: int((re.findall(r"\$(\d+)$", item[0]) or [0])[0])):
-            # The last of several: a condition's own place stands before it where Yosys did not see through the condition.
+            # The last of several: the place of a condition that Yosys could not resolve stands before it.
             source = re.sub(r".*/((bus|hdl|ip)/)", r"\1", cell["attributes"].get("src", "").split("|")[-1])
             alike[f"{module_of(cell['type'])} {source}"].append((name, {port: len(bits) for port, bits in cell["connections"].items()}))
     return found
 
 
 def place(design, module, cell):
-    """Kind and source of a cell, and its place among the like."""
+    """Kind and source of a cell, and its place among such cells."""
     for alike, names in design[module].items():
         for number, (name, _) in enumerate(names):
             if name == cell:

@@ -9,7 +9,7 @@ empty lines:
     the test that catches it, as ctest names it
     file
     -the line, or lines, of the file that go
-    +what stands there instead
+    +the line, or lines, that replace them
 
 A line that begins with a space stays; lines that go and stay must be found once in the file. `@@`
 begins another change of the same file, a line with a slash another file.
@@ -31,7 +31,7 @@ class Bug:
         head, self.test, *lines = text.split("\n")
         name, _, does = head.partition(": ")
         self.name = f"{block}/{name}"
-        self.changes = []  # file, lines that are there, lines that come in their place
+        self.changes = []  # file, old lines, new lines
         for line in lines:
             if line[0] not in " +-@":
                 file = line
@@ -44,7 +44,7 @@ class Bug:
             raise ValueError
 
     def place(self, root):
-        """file:line of its first change, as the file stands without it."""
+        """file:line of its first change, in the file without it."""
         file, before, _ = self.changes[0]
         lines = (root / file).read_text().split("\n")
         starts = [i for i in range(len(lines)) if lines[i:i + len(before)] == before]
@@ -80,7 +80,7 @@ def bugs(chosen):
 def prepare(copy, *options):
     """A copy of the tree for a worker, with its own build folder."""
     copy.mkdir(parents=True, exist_ok=True)
-    for kept in copy.rglob("*.orig"):  # what an interrupted run had planted
+    for kept in copy.rglob("*.orig"):  # planted by an interrupted run
         restore(kept.with_suffix(""))
     listed = subprocess.run(["git", "grep", "--no-index", "--exclude-standard", "--no-color", "-lz", ""], stdout=subprocess.PIPE, check=True)
     there = {name for name in os.fsdecode(listed.stdout).split("\0") if os.path.exists(name)}
@@ -100,13 +100,13 @@ def environment(copy):
 
 
 def restore(file):
-    """Puts the file as it was back, newer than what was built from the bug."""
+    """Restores the file, newer than the build of the bug."""
     os.replace(f"{file}.orig", file)
     os.utime(file)
 
 
 def targets(test, copy):
-    """What must be built for a test."""
+    """Targets that a test needs."""
     kind, _, rest = test.partition(".")
     if kind.startswith("test_"):
         return [kind]
@@ -158,7 +158,7 @@ def try_bug(bug, copy):
 
 
 def check(chosen):
-    """Whether each bug is found in today's tree; builds nothing."""
+    """Whether each bug fits today's tree; builds nothing."""
     bad = 0
     for bug in chosen:
         try:
@@ -186,7 +186,7 @@ def try_all(chosen, jobs):
         copies.put(WORK / str(number))
 
     def of_program(group):
-        """Tries the bugs of one program, or of one proof, in one copy, where little of it is to be built again."""
+        """Tries the bugs of one program, or of one proof, in one copy: little is built again."""
         copy = copies.get()
         try:
             for test in sorted({bug.test for bug in group}):

@@ -40,7 +40,7 @@ tests/mutants/run.py --jobs 1 >run.log 2>&1 || fail "a bug that its test catches
 grep -q '^caught *tiny/wrong ' run.log || fail "the bug was not caught"
 grep -q '^tiny/wrong	caught	test_tiny	' build/mutants/results.tsv || fail "no results"
 
-# A bug that an interrupted run had planted is taken out, or the tests would fail without a bug.
+# The bug of an interrupted run is removed; the tests would fail without a bug.
 cp build/mutants/0/tiny.c build/mutants/0/tiny.c.orig
 sed -i 's/2 \*/3 */' build/mutants/0/tiny.c
 touch build/mutants/0/left_the_tree.c

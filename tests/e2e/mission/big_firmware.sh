@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# big_firmware: BUILD-FOLDER OUT.elf BYTES: this tree's firmware, filled up to so many bytes with code of newlib, which compresses as code does.
+# big_firmware: fills this tree's firmware up to a size with code of newlib, which compresses as code does.
+# Usage: big_firmware.sh BUILD-FOLDER OUT.elf BYTES
 set -eu
 build=$(realpath "$1") out=$2 bytes=$3
 part=$out.part

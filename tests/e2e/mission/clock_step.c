@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * clock_step: preloaded, it makes the clock of the day step with each second: an hour forward, then
- * two back. Whoever waits or measures by it notices.
+ * two back. Programs that wait or measure by it fail.
  */
 
 #define _GNU_SOURCE

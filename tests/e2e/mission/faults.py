@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""faults: what becomes of a mission when one of its processes is killed or stopped, or when it is refused
-something; at moments drawn from seeds. docs/regression.md has the table that this checks.
+"""faults: kills or stops processes of a mission, or refuses them something, at moments drawn from seeds.
+docs/regression.md has the table that this checks.
 
-A moment is a time of the flight: 0.3 seconds since its process began, then simulated seconds, of which a flight has
-about 1.7. So each moment is within the flight, whatever the machine's speed.
+A moment is a time of the flight: 0.3 seconds from the start of its process, then simulated seconds, about 1.7 per
+flight. So each moment is within the flight at any speed of the machine.
 """
 
 import argparse
@@ -27,7 +27,7 @@ LAST = 2.0       # moment
 
 
 def children(of):
-    """Process ids below one, by the kernel's lists; one that ends meanwhile has none."""
+    """Ids of a process' descendants, by the kernel's lists; a process that ends meanwhile has none."""
     found = []
     try:
         for task in os.listdir("/proc/%d/task" % of):
@@ -81,13 +81,13 @@ class Mission:
         return self.run.pid if name == "run" else None
 
     def pass_time(self, moment):
-        """Comes back at that moment of the flight, or when it is over."""
+        """Waits for that moment of the flight, or for its end."""
         time.sleep(min(moment, REAL))
         while self.run.poll() is None and self.simulated() < moment - REAL:
             time.sleep(0.002)
 
     def simulated(self):
-        """Seconds; from the simulator's counters (sw/ground/sim_status.h)."""
+        """Simulated seconds, from the simulator's counters (sw/ground/sim_status.h)."""
         try:
             with open(os.path.join(self.out, "status"), "rb") as f:
                 return struct.unpack("<8sQ", f.read(16))[1] / 1e9
@@ -115,7 +115,7 @@ class Mission:
         os.remove(self.out + ".log")
 
     def kill(self):
-        """For the test's own end: whatever is left."""
+        """Ends all processes that are left, when the test ends."""
         for pid in self.all():
             try:
                 os.kill(pid, signal.SIGKILL)
@@ -125,7 +125,7 @@ class Mission:
 
 
 def share(moment):
-    """For faults that are no moment but a quantity: 0 to 1."""
+    """The moment as a quantity from 0 to 1, for faults that have no moment."""
     return moment / LAST
 
 
@@ -148,7 +148,7 @@ def expect(condition, mission, text):
 
 
 def is_whole(out):
-    """No file is half written: pictures decode, reports parse; nothing is left beside."""
+    """Checks that no file is half written: pictures decode, reports parse, and no temporary file is left."""
     from PIL import Image
     for name in os.listdir(out):
         path = os.path.join(out, name)
@@ -197,7 +197,7 @@ def stopped(start, name, moment, deaths):
 
 
 def disk_full(start, name, moment, deaths):
-    """The folder is a file system of its own, of few blocks; what is in it at the end is copied."""
+    """The folder is a file system of its own with few blocks; its files are copied at the end."""
     script = "mount -t tmpfs -o size=%d none $0 || exit 9; status=0; \"$@\" || status=$?; cp -a $0 $0.kept; exit $status"
     m = start(prefix=["unshare", "--map-root-user", "--mount", "sh", "-c", script % (4096 * int(1 + 7 * share(moment))), "sh"])
     status = m.wait(LONGEST)
@@ -228,7 +228,7 @@ def port_taken(start, name, moment, deaths):
 
 
 def no_memory(start, name, moment, deaths):
-    """Each process has from 8 to 800 MB of addresses."""
+    """Limits each process to 8 to 800 MB of addresses."""
     m = start(prefix=["prlimit", "--as=%d" % (8e6 * 100 ** share(moment))])
     status = m.wait(LONGEST)
     expect(status is not None, m, "it hangs")
@@ -240,7 +240,7 @@ def no_memory(start, name, moment, deaths):
 
 
 def clock_step(start, name, moment, deaths):
-    """The clock of the day goes an hour forward and two back, again and again."""
+    """Steps the clock of the day an hour forward and two back, again and again."""
     m = start(prefix=["env", "LD_PRELOAD=" + CLOCK_STEP])
     expect(m.wait(LONGEST) == 0 and m.succeeded(), m, "it lives by the clock of the day")
     expect("cannot be preloaded" not in m.text(), m, "no clock was stepped")
@@ -264,7 +264,7 @@ FAULTS = [(killed, n) for n in ("ground", "simulator", "run", "page")] + \
 
 
 def undergo(args, fault, name, seed, number, moment):
-    """One fault at one moment; true if all was as it should be."""
+    """Tries one fault at one moment; true if the mission met the table."""
     title = (fault.__name__ + " " + name).strip()
     missions = []
 

@@ -6,7 +6,7 @@ source=$1 build=$2 case=$3 out=$4
 rm -rf "$out"
 mkdir -p "$out"
 image=/usr/share/xplanet/images/earth.jpg
-# A guard time of a second, the modem's default, is waited out four times: cases whose subject it is have it.
+# The modem's default guard time of a second passes four times: only cases that test it use it.
 guard=20
 case $case in plain | stopped) guard=1000 ;; esac
 run() { # out-folder, then options
@@ -32,32 +32,32 @@ fails_with() {
         exit 1
     }
 }
-# The flight in a folder is flown again from its recording; further words are options.
+# Repeats the flight in a folder from its recording; further words are options.
 replay() {
     "$build/testbench/sim/icesoc-sim" --out "$out/replay" --replay "$@"
 }
-# The same, with this text among what it says.
+# The same; its output contains this text.
 replays_with() {
     text=$1
     shift
     replay "$@" >"$out/replay.log" 2>&1 && grep -q -- "$text" "$out/replay.log" || { cat "$out/replay.log" && exit 1; }
 }
 case $case in
-plain) # secure, as each flight that does not say otherwise; its recording and its key are nobody else's to read
+plain) # secure by default; only the user may read its recording and its key
     "$source/tests/regress/test/make_in.sh" "$source" "$source" "$build" run IMAGE=$image SIZE=96x64 OUT="$out" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
     check_output "$out"
     grep -q '121 corners leave much of the core untried: make ip-test IP=vision' "$out/log" || { cat "$out/log" && exit 1; }
-    # The modem's set-up is waited for first, then the vehicle.
+    # It waits for the modem's set-up first, then for the vehicle.
     grep -o 'modem ready on .* after [0-9]* ms\|link connecting\|link up, secure\|the UAV has .* s to answer' "$out/log" | sed 's/ .*//' | tr '\n' ' ' | grep -q '^the modem link link ' || { cat "$out/log" && exit 1; }
     grep -q -- "\"--key\",\"$(dirname "$build")/demo.key\"" "$out/flight.jsonl"
     [ "$(stat -c %a "$out/flight.jsonl" "$(dirname "$build")/demo.key" | sort -u)" = 600 ]
     ;;
-open) # in the clear, because that was asked for
+open) # without encryption, by an option
     run "$out" --image $image --open 1; check_output "$out"
     ! grep -q -- '--key' "$out/flight.jsonl"
     fails_with "give one of them" run "$out" --image $image --open 1 --key "$out/any.key"
     ;;
-keys) # what the ground, the vehicle and their start say of keys that are not fit
+keys) # messages of the ground, the vehicle and their start about unfit keys
     umask 077
     echo 000102030405060708090a0b0c0d0e0f >"$out/a.key"
     echo 000102030405060708090a0b0c0d0e0e >"$out/b.key"
@@ -65,17 +65,17 @@ keys) # what the ground, the vehicle and their start say of keys that are not fi
     fails_with "32 hexadecimal digits" run "$out" --image $image --key "$out/short.key"
     fails_with "chmod 600" run "$out" --image $image --key "$out/others.key"
     fails_with "openssl rand" run "$out" --image $image --key "$out/no.key"
-    # Neither another key nor none ever comes to a session with this vehicle.
+    # No session with this vehicle begins with another key, or with none.
     for ground in "--XBeeAT.KeyFile=$out/b.key" --XBeeAT.KeyFile=; do
         fails_with 'Timeout' "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --guard $guard --key "$out/a.key" -- \
             "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d "{device}" -a 0x0001 -g {guard} -t 3000' 1 "$ground" --Ice.RetryIntervals=-1
     done
     fails_with "chmod 600" "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d /dev/null' 1 "--XBeeAT.KeyFile=$out/others.key"
     ;;
-loss) # and again from its recording, whose time is the one for looking
+loss) # again from its recording, in which a user looks for the cause
     run "$out" --image $image --loss 0.1 --seed "${SEED:-1}"; check_output "$out"
     replays_with 'bit by bit the flight that was recorded' "$out" --from 0.5 --to 0.51
-    # Cut short by a kill; altered; of another file; into its own folder; waveforms are another build's.
+    # Recordings cut short by a kill, altered, of another file, repeated into their own folder; waveforms need another build.
     mkdir "$out/cut" "$out/other"
     cp "$out/before.png" "$out/cut" && cp "$out/before.png" "$out/other"
     head -c "$(($(wc -c <"$out/flight.jsonl") / 2))" "$out/flight.jsonl" >"$out/cut/flight.jsonl"
@@ -95,11 +95,11 @@ cores) # every core that has a part in a mission
     for part in $parts; do grep -q "$part\." "$out/report.md" || { echo "nothing was called of $part" && exit 1; }; done
     fails_with "has no part in a mission" run "$out/none" --image $image --cores nonesuch
     ;;
-sensor) # the picture goes through the camera's pins and the vision core, and never past the processor
+sensor) # the picture goes through the camera's pins and the vision core, and never through the processor
     run "$out" --image $image --sensor 1 --cpu m3; check_output "$out"
     grep -q 'camera.capture(96, 64)' "$out/report.md"
     ;;
-m3) # the ARM binary; of its replay, what the program is at in the 2 ms around its first event of a core
+m3) # the ARM binary; its replay shows the program's tasks in the 2 ms around the first event of a core
     run "$out" --image $image --cpu m3; check_output "$out"
     grep -q '"task":"UAV_radioTask"' "$out/events.jsonl"
     from=$(sed -n 's/{"events":[0-9]*,"ns":\([0-9]*\)[0-9],"slot":[2-9]}/\1/p' "$out/events.jsonl" | head -1)
@@ -109,7 +109,7 @@ m3) # the ARM binary; of its replay, what the program is at in the 2 ms around i
         grep -q "^s$row$" "$WAVE.program.vcd" || { cat "$WAVE.program.vcd" && echo "expected: $row" && exit 1; }
     done
     ;;
-other_chip) # firmware that was built for other registers of the vision core: it is not served, and the ground is told why
+other_chip) # firmware built for other registers of the vision core: it does not serve the core and tells the ground why
     cp "$build/firmware/uav.elf" "$out/other.elf"
     # Its line in the table, from 1 on; a row has 20 bytes, the hash is its last four.
     row=$(sed -n '/hw_contracts\[/,$p' "$build/gen/soc_cores.c" | sed 1d | grep -n '"vision"' | cut -d: -f1)
@@ -120,7 +120,7 @@ other_chip) # firmware that was built for other registers of the vision core: it
     fails_with "no object 'hwengine1'; vision: its registers have the hash 0x.* in the chip, 0xFFFFFFFF in the firmware: build both anew from one ip/cores.list, the firmware by make firmware" \
         run "$out" --image $image --cpu m3 --firmware "$out/other.elf"
     ;;
-update) # new firmware: a wrong file, a vehicle of another key, a loss of power amidst, then into a slot that has to be erased; a crash; bitstreams, good and bad
+update) # new firmware: a wrong file, a vehicle with another key, a loss of power during it, a slot that must be erased, a crash; good and bad bitstreams
     send() { run "$out" --image $image --cpu m3 --update "$build/firmware/uav.elf"; }
     says() { grep -q -- "$1" "$out/log" || { cat "$out/log" && echo "expected: $1" && exit 1; }; }
     fails_with 'no 32-bit ARM ELF file' run "$out" --image $image --cpu m3 --update "$source/Makefile"
@@ -148,7 +148,7 @@ update) # new firmware: a wrong file, a vehicle of another key, a loss of power 
     run "$out" --image $image --cpu m3 --update "$out/big.elf" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
     says 'runs and is confirmed'
     awk '/sent 262144 bytes in/ { air = $7 } END { exit !(air && air <= 30) }' "$out/log" || { cat "$out/log" && exit 1; }
-    # Firmware that crashes as soon as it is started: the one before it is back, by itself.
+    # Firmware that crashes at its start: the vehicle returns to the one before by itself.
     cp "$build/firmware/uav.elf" "$out/crashes.elf"
     at=$(arm-none-eabi-nm "$out/crashes.elf" | sed -n 's/ T Firmware_run$//p')
     from=$(arm-none-eabi-objdump -h "$out/crashes.elf" | awk '$2 == ".text" { print "0x" $6 " - 0x" $4 }')
@@ -158,7 +158,7 @@ update) # new firmware: a wrong file, a vehicle of another key, a loss of power 
     says 'is signed and whole; it starts'
     says 'was started and went back'
     says '2 software, 0 watchdog'
-    # A bitstream: one that is none, one that the FPGA does not take, one that nobody confirms, and one of full size.
+    # Bitstreams: no bitstream at all, one that the FPGA refuses, one that nobody confirms, and one of full size.
     fails_with 'has a sync word, AA 99 55 66' run "$out" --image $image --cpu m3 --update "$build/firmware/uav.bin"
     "$build/testbench/cpu/stand_in_bitstream" "$out/new.bin" 2 10000
     cp "$out/new.bin" "$out/damaged.bin"
@@ -182,14 +182,14 @@ cpp) # the C++11 library of the plugin, a C++ client, and a proxy that goes thro
     grep -q 'it is a ::Autopilot::HwProcessingEngine' "$out/log"
     grep -q -- '-a 0x1 .*-p 2' "$out/log"
     ;;
-slow) # a machine that is four times too slow: the ground lives by the simulator's clock, so the modem is found as fast
+slow) # a machine that is four times too slow: the ground uses the simulator's clock, so it finds the modem as fast
     "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --speed 0.25 --guard $guard -- \
         /usr/bin/python3 "$source/sw/ground/clients/mission.py" --device '{device}' --guard '{guard}' --frame '{frame}' --status '{status}' \
         --out "$out" --plugin "$build/ground" --slice "$source/sw/apps/uav/Autopilot.ice" --trace 2 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
     [ "$(grep -c '+++ at' "$out/log")" = 2 ] || { cat "$out/log" && exit 1; }
     check_output "$out"
     ;;
-stopped) # the ground's program gets no processor for four seconds amidst the set-up: simulated time waits for it
+stopped) # the ground's program is stopped for four seconds during the set-up: simulated time waits for it
     "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --guard $guard -- \
         "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d "{device}" -a 0x0001 -t 300000' 3 --XBeeAT.Trace=2 >"$out/log" 2>&1 &
     sim=$!
@@ -231,7 +231,7 @@ twice)
     wait $first || { cat "$out/a.log" && exit 1; }
     check_output "$out/a" && check_output "$out/b"
     ;;
-odd_names) # words of the shell, of make and of the simulator in a folder's name are only a name
+odd_names) # a folder's name has special characters of the shell, of make and of the simulator
     odd="$out/a'b \"c\" {device} {out}x \`touch $out/oops\` \$(touch $out/oops)"
     run "$odd" --image $image; check_output "$odd"
     make --no-print-directory -s -C "$source" -n run BUILD="$build" OUT="$(echo "$odd" | sed 's/\$/$$/g')" | sed -n '/run.sh/,$p' |
@@ -244,7 +244,7 @@ picture_bad)
     echo "this is no picture" >"$out/bad.png"
     fails_with "is no picture that can be read" run "$out" --image "$out/bad.png"
     if grep 127.0.0.1 "$out/log"; then echo "a page's address before what is refused" && exit 1; fi
-    # Nothing in the folder is touched where the start is refused.
+    # A refused start changes nothing in the folder.
     [ "$(cat "$out/report.md" "$out/calls.jsonl")" = "$(printf 'mine\nmine')" ]
     fails_with "size '333x111': give WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8" run "$out" --image $image --size 333x111
     fails_with "size '96x64k'" run "$out" --image $image --size 96x64k
@@ -255,7 +255,7 @@ device_missing)
         --frame none --out "$out"
     ;;
 modem_silent)
-    # A pty with nobody behind it but this shell's sleep: no modem answers.
+    # Only this shell's sleep holds the pty: no modem answers.
     fails_with "no modem answers on" /usr/bin/python3 -c '
 import os, pty, subprocess, sys
 master, slave = pty.openpty()
@@ -276,7 +276,7 @@ interrupted)
     status=0
     wait $pid || status=$?
     [ $status = 130 ] || { cat "$out/log"; echo "exit status $status; expected 130"; exit 1; }
-    # What it offers for looking at its end leads there.
+    # The command that it prints shows its end.
     span=$(sed -n "s#^Its end as a waveform: make run REPLAY='$out' FROM=\([0-9.]*\) TO=\([0-9.]*\)\$#\1 --to \2#p" "$out/log")
     # shellcheck disable=SC2086 # words
     replays_with 'the recording ends here\|bit by bit' "$out" --from ${span:?nothing is offered}

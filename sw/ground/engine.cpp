@@ -144,27 +144,23 @@ int Engine::freeChannel(int wanted, U32 now) {
     return idlest;
 }
 
-// Gives waiting programs a channel, in their order. One that has left or waited too long gets none.
+// Gives waiting programs a channel, in their order. One that has left gets none.
 void Engine::placePrograms(U32 now) {
-    const U32 patienceUs = static_cast<U32>(settings_.waitMs) * 1000;
-    for (size_t i = 0; i < waiting_.size();) {
-        const Waiting& w = waiting_[i];
-        const bool goes = hasLeft(w.fd) || (patienceUs && now - w.since >= patienceUs);
-        const int channel = goes ? -1 : freeChannel(w.channel, now);
-        if (channel < 0 && !goes) {
-            ++i;
+    for (auto program = waiting_.begin(); program != waiting_.end();) {
+        const bool isGone = hasLeft(program->fd);
+        const int channel = isGone ? -1 : freeChannel(program->channel, now);
+        if (channel < 0 && !isGone) {
+            ++program;
             continue;
         }
-        if (goes) {
-            const U32 waited = (now - w.since) / 1000000;
-            log_(waited ? 0 : 1, w.name + " has waited " + std::to_string(waited) +
-                                     " s for one of the three channels: connection closed");
-            ::close(w.fd);
-        } else {
-            log_(1, w.name + " is connected, channel " + std::to_string(channel));
-            streams_[channel].want(w.fd, w.name);
-        }
-        waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
+        log_(1, isGone ? "a program has left before it got a channel"
+                       : "a program is connected, channel " + std::to_string(channel));
+        if (isGone)
+            ::close(program->fd);
+        else
+            streams_[channel].want(program->fd,
+                                   "the program on channel " + std::to_string(channel));
+        program = waiting_.erase(program);
     }
 }
 
@@ -172,20 +168,11 @@ int Engine::connect(int channel) {
     int ends[2];
     if (!makePair(ends))
         return -1;
-    add({ends[0], channel, "a program", 0});
-    return ends[1];
-}
-
-void Engine::connect(int socket, const std::string& name) {
-    add({socket, -1, name, 0});
-}
-
-void Engine::add(Waiting program) {
     std::lock_guard<std::mutex> lock(mutex_);
-    const U32 now = program.since = clock_.nowUs();
-    waiting_.push_back(std::move(program));
-    placePrograms(now);
+    waiting_.push_back({ends[0], channel});
+    placePrograms(clock_.nowUs());
     wake();
+    return ends[1];
 }
 
 size_t Engine::waiting() const {
@@ -233,26 +220,6 @@ int Engine::accept() {
     streams_[channel].accept(ends[0], "the program on channel " + std::to_string(channel));
     wake();
     return ends[1];
-}
-
-void Engine::accept(int socket, const std::string& name) {
-    std::lock_guard<std::mutex> lock(mutex_);
-    const int channel = calledChannel();
-    if (channel < 0) { // the peer has closed it again
-        close(socket);
-        return;
-    }
-    streams_[channel].accept(socket, name);
-    log_(1, name + " is connected");
-    wake();
-}
-
-void Engine::refuse() {
-    std::lock_guard<std::mutex> lock(mutex_);
-    const int channel = calledChannel();
-    if (channel >= 0)
-        end(channel, 1, "is refused");
-    wake();
 }
 
 void Engine::stopListening() {

@@ -40,20 +40,15 @@ public:
     // Opens a connection to the peer, on a channel of 0..2 or (-1) any one. Returns the program's
     // end of it, a socket; -1 where no descriptor is left. The peer speaks once the link is up and
     // a channel is free; programs wait their turn. A lost port is opened again. The socket ends if
-    // there is no modem, or after Settings::waitMs without a channel.
+    // there is no modem.
     int connect(int channel);
-    // The same for a program with a socket, which the engine owns from now on. `name` is for the
-    // log.
-    void connect(int socket, const std::string& name);
     size_t waiting() const; // programs without a channel
     // Lets the peer open connections. Each makes the returned descriptor readable, also after the
     // port was lost and found again. -1: another has called this.
     int listen();
-    // Takes a connection that the peer opened: by a new socket (-1 if there is none), by a socket
-    // that the engine owns from now on, or not at all.
+    // Takes a connection that the peer opened. Returns the program's end of it, a socket; -1 if
+    // there is none.
     int accept();
-    void accept(int socket, const std::string& name);
-    void refuse();
     void stopListening();
 
     std::string statistics() const; // one line of text
@@ -75,10 +70,7 @@ private:
     void writeSerial(U32 now);
     struct Waiting { // a program without a channel
         int fd, channel;
-        std::string name;
-        U32 since;
     };
-    void add(Waiting program);
     int freeChannel(int wanted, U32 now);
     void placePrograms(U32 now);
     int calledChannel() const;

@@ -1,219 +1,160 @@
 // SPDX-License-Identifier: MIT
 //
-// gateway: TCP to radio. Ice programs in any language and of any version reach the UAV's objects at
-// this machine's TCP port, several at a time, and the UAV reaches a server here. It links to no
-// Ice.
+// gateway: a stock Ice server that passes requests to the vehicle. Ice programs in any language and
+// of any version, several at a time, reach the vehicle's objects here, and the vehicle's calls
+// reach a server on the ground.
 //
-// It handles the sockets; the engine moves the bytes.
+// Endpoints, TLS, WebSocket, compression and connections are Ice's; forwarder.h shares the radio.
 
-#include "engine.h"
+#include "forwarder.h"
+#include "key_file.h"
+#include "rights.h"
 
 #include <CLI/CLI.hpp>
-#include <arpa/inet.h>
-#include <cerrno>
-#include <chrono>
+#include <Ice/Ice.h>
+#include <IceSSL/IceSSL.h>
+#include <algorithm>
 #include <csignal>
-#include <cstring>
 #include <iostream>
-#include <netdb.h>
-#include <netinet/tcp.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <system_error>
-#include <unistd.h>
+#include <sstream>
+
+extern "C" Ice::Plugin* createXBeeAT(const std::shared_ptr<Ice::Communicator>&, const std::string&,
+                                     const Ice::StringSeq&);
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-using std::chrono::seconds;
-
-volatile sig_atomic_t stopSignal = 0;
-
-constexpr size_t mostWaiting = 256;   // clients without a channel
-constexpr seconds stationPatience{5}; // how long the UAV waits for the station to accept
+using namespace gateway;
 
 struct Options {
-    XBeeAT::Settings serial;
-    std::string listen = "127.0.0.1:10000", station, keyFile, modemKeyFile;
-    int trace = 0, statistics = 0, idle = 60, wait = 30, vanished = 30;
+    std::string device, keyFile, modemKeyFile, rights, station, maintenance;
+    std::string listen = "127.0.0.1:10000";
+    int baud = 115200, target = 1, source = 0, rfChannel = 0x0C, pan = 0x3332, guardMs = 1000;
+    int trace = 0, wait = 30;
+    bool setUp = true;
 };
 
-struct Address {
-    sockaddr_storage bytes{};
-    socklen_t size = 0;
-};
-
-Address resolve(const std::string& text) {
-    const size_t colon = text.rfind(':');
-    if (colon == std::string::npos)
-        throw std::runtime_error("'" + text + "': give HOST:PORT");
-    const std::string port = text.substr(colon + 1);
-    const bool isNumber = port.find_first_not_of("0123456789") == std::string::npos;
-    // getaddrinfo would take it modulo 65536.
-    if (isNumber && (port.empty() || port.size() > 5 || std::stoul(port) > 65535))
-        throw std::runtime_error("'" + text + "': a port is 0 to 65535");
-    addrinfo hints{}, *found = nullptr;
-    hints.ai_socktype = SOCK_STREAM;
-    std::string host = text.substr(0, colon);
-    if (host.size() > 2 && host.front() == '[' && host.back() == ']') // as in URLs: [::1]:10000
-        host = host.substr(1, host.size() - 2);
-    int error = getaddrinfo(host.c_str(), port.c_str(), &hints, &found);
-    if (error != 0)
-        throw std::runtime_error("'" + text + "': " + gai_strerror(error));
-    Address address;
-    std::memcpy(&address.bytes, found->ai_addr, found->ai_addrlen);
-    address.size = found->ai_addrlen;
-    freeaddrinfo(found);
-    return address;
+// Objects that change keys or programs; they are reached by --maintenance only.
+bool isMaintenance(const Ice::Identity& id) {
+    return id.category.empty() && (id.name == "keys" || id.name == "update");
 }
 
-// Small buffers let back-pressure reach the program. Keep-alive or missing acknowledgements reveal
-// after these seconds a peer that has vanished.
-void prepare(int fd, int vanished) {
-    auto set = [fd](int level, int name, int value) {
-        setsockopt(fd, level, name, &value, sizeof value);
-    };
-    set(SOL_SOCKET, SO_SNDBUF, 8192);
-    set(SOL_SOCKET, SO_RCVBUF, 8192);
-    set(IPPROTO_TCP, TCP_NODELAY, 1);
-    set(SOL_SOCKET, SO_KEEPALIVE, 1);
-    set(IPPROTO_TCP, TCP_KEEPIDLE, vanished / 2);
-    set(IPPROTO_TCP, TCP_KEEPINTVL, vanished / 6);
-    set(IPPROTO_TCP, TCP_KEEPCNT, 3);
-    set(IPPROTO_TCP, TCP_USER_TIMEOUT, 1000 * vanished);
-}
-
-int newSocket(const Address& address, int vanished) {
-    int fd = socket(address.bytes.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    if (fd >= 0)
-        prepare(fd, vanished);
-    return fd;
-}
-
-int listenAt(const std::string& where, int vanished) {
-    Address address = resolve(where);
-    int fd = newSocket(address, vanished), yes = 1;
-    setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    if (fd < 0 || bind(fd, reinterpret_cast<sockaddr*>(&address.bytes), address.size) != 0 ||
-        listen(fd, SOMAXCONN) != 0)
-        throw std::system_error(errno, std::generic_category(), "cannot listen at " + where);
-    return fd;
-}
-
-unsigned portOf(int fd) {
-    sockaddr_storage name{};
-    socklen_t size = sizeof name;
-    getsockname(fd, reinterpret_cast<sockaddr*>(&name), &size);
-    return ntohs(name.ss_family == AF_INET6 ? reinterpret_cast<sockaddr_in6&>(name).sin6_port
-                                            : reinterpret_cast<sockaddr_in&>(name).sin_port);
-}
-
-class Gateway {
+// ToVehicle serves what the clients call: every object of the vehicle's.
+class ToVehicle : public Ice::BlobjectArrayAsync {
 public:
-    explicit Gateway(const Options& options) : options_(options) {
-        listener_ = listenAt(options.listen, options.vanished);
-        if (!options.station.empty())
-            station_ = resolve(options.station);
-        engine_ = XBeeAT::Engine::get(options.serial, [this](int level, const std::string& text) {
-            if (level <= options_.trace)
-                std::cerr << "gateway: " + text + "\n";
-        });
-        if (!options_.station.empty())
-            radioCalls_ = engine_->listen();
-        std::cout << "gateway: port " << portOf(listener_) << " leads to the UAV behind "
-                  << engine_->device() << std::endl;
-    }
-    ~Gateway() {
-        close(listener_);
-        close(toStation_);
-        sayStatistics();
-    }
-    Gateway(const Gateway&) = delete;
-    Gateway& operator=(const Gateway&) = delete;
-
-    void run() {
-        for (auto due = Clock::now() + seconds(options_.statistics); !stopSignal;) {
-            wait();
-            acceptClients();
-            callStation();
-            if (options_.statistics > 0 && Clock::now() >= due) {
-                due += seconds(options_.statistics);
-                sayStatistics();
-            }
-        }
+    ToVehicle(Forwarder& forwarder, const Rights& rights, bool allowsMaintenance)
+        : forwarder_(forwarder), rights_(rights), allowsMaintenance_(allowsMaintenance) {}
+    void ice_invokeAsync(Parameters in, Response response, Failure failed,
+                         const Ice::Current& current) override {
+        const std::string identity = Ice::identityToString(current.id);
+        if (isMaintenance(current.id) && !allowsMaintenance_)
+            return refuse(failed, "'" + identity +
+                                      "' is for maintenance: it is reached at the endpoint that "
+                                      "--maintenance gives");
+        const std::string subject = subjectOf(current.con);
+        if (!rights_.permit(subject, identity, current.operation))
+            return refuse(failed, "'" + subject + "' has no right to call " + current.operation +
+                                      " of '" + identity + "'");
+        forwarder_.take(
+            std::make_shared<Request>(in, std::move(response), std::move(failed), current));
     }
 
 private:
-    void sayStatistics() { std::cout << "gateway: " + engine_->statistics() + "\n" << std::flush; }
-    void complain(const std::string& text) { std::cerr << "gateway: " + text + "\n"; }
-
-    void wait() {
-        const bool isFull = engine_->waiting() >= mostWaiting;
-        pollfd fds[] = {{isFull ? -1 : listener_, POLLIN, 0},
-                        {toStation_ < 0 ? radioCalls_ : -1, POLLIN, 0},
-                        {toStation_, POLLOUT, 0}};
-        poll(fds, 3, isFull || toStation_ >= 0 ? 50 : 1000);
-        isCalled_ = fds[1].revents != 0;
-        isAnswered_ = fds[2].revents != 0;
+    static void refuse(const Failure& failed, const std::string& why) {
+        failed(std::make_exception_ptr(
+            Ice::UnknownException(__FILE__, __LINE__, "icesoc-gateway: " + why)));
     }
-    void acceptClients() {
-        while (engine_->waiting() < mostWaiting) {
-            int fd = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-            if (fd < 0) {
-                noteFull(errno);
-                return;
-            }
-            prepare(fd, options_.vanished);
-            engine_->connect(fd, "client " + std::to_string(++count_));
-        }
-    }
-    // Records that descriptors are used up: the listener stays readable without them.
-    void noteFull(int error) {
-        if (error == EAGAIN || error == EINTR || error == ECONNABORTED)
-            return;
-        complain(std::string("cannot accept a client: ") + std::strerror(error));
-        poll(nullptr, 0, 500);
-    }
-    // The UAV's call, in two steps: the station may be far away.
-    void callStation() {
-        if (isCalled_) {
-            toStation_ = newSocket(station_, options_.vanished);
-            stationDue_ = Clock::now() + stationPatience;
-            if (toStation_ < 0 || (connect(toStation_, reinterpret_cast<sockaddr*>(&station_.bytes),
-                                           station_.size) != 0 &&
-                                   errno != EINPROGRESS))
-                return refuse(errno);
-        } else if (isAnswered_) {
-            int error = 0;
-            socklen_t size = sizeof error;
-            getsockopt(toStation_, SOL_SOCKET, SO_ERROR, &error, &size);
-            if (error != 0)
-                return refuse(error);
-            engine_->accept(toStation_, "the UAV");
-            toStation_ = -1;
-        } else if (toStation_ >= 0 && Clock::now() >= stationDue_) {
-            refuse(ETIMEDOUT);
-        }
-    }
-    void refuse(int error) {
-        complain("the UAV calls, and nobody listens at " + options_.station + ": " +
-                 std::strerror(error));
-        if (toStation_ >= 0)
-            close(toStation_);
-        toStation_ = -1;
-        engine_->refuse();
-    }
-
-    Options options_;
-    std::shared_ptr<XBeeAT::Engine> engine_;
-    Address station_;
-    int listener_ = -1, radioCalls_ = -1, toStation_ = -1;
-    bool isCalled_ = false, isAnswered_ = false;
-    Clock::time_point stationDue_;
-    unsigned count_ = 0;
+    Forwarder& forwarder_;
+    const Rights& rights_;
+    const bool allowsMaintenance_;
 };
 
-// Reads the modem's key from a file, since every user of the machine can read the command line.
+// ToClients serves what the vehicle calls on the connection of the clients.
+class ToClients : public Ice::BlobjectArrayAsync {
+public:
+    explicit ToClients(Forwarder& forwarder) : forwarder_(forwarder) {}
+    void ice_invokeAsync(Parameters in, Response response, Failure failed,
+                         const Ice::Current& current) override {
+        forwarder_.takeCallback(
+            std::make_shared<Request>(in, std::move(response), std::move(failed), current));
+    }
+
+private:
+    Forwarder& forwarder_;
+};
+
+// ToStation serves what the vehicle calls on a connection of its own.
+class ToStation : public Ice::BlobjectArrayAsync {
+public:
+    ToStation(std::shared_ptr<Ice::ObjectPrx> station, std::string where)
+        : station_(std::move(station)), where_(std::move(where)) {}
+    void ice_invokeAsync(Parameters in, Response response, Failure failed,
+                         const Ice::Current& current) override {
+        if (!station_)
+            throw Ice::ObjectNotExistException(__FILE__, __LINE__, current.id, current.facet,
+                                               current.operation);
+        const auto complain = [failed, where = where_](std::exception_ptr why) {
+            try {
+                std::rethrow_exception(why);
+            } catch (const Ice::SocketException& e) {
+                std::cerr << "gateway: the UAV calls, and nobody listens at " + where + ": " +
+                                 e.what() + "\n";
+            } catch (...) {
+            }
+            failed(why);
+        };
+        Request(in, response, failed, current).sendTo(station_, response, complain);
+    }
+
+private:
+    const std::shared_ptr<Ice::ObjectPrx> station_;
+    const std::string where_;
+};
+
+// Returns Ice's endpoints of "HOST:PORT" or "[::1]:PORT"; other words are endpoints already.
+std::string endpointsOf(const std::string& text) {
+    if (text.find(' ') != std::string::npos)
+        return text;
+    const size_t colon = text.rfind(':');
+    if (colon == std::string::npos || colon == 0)
+        throw std::runtime_error("'" + text + "': give HOST:PORT, or Ice's endpoints");
+    const std::string port = text.substr(colon + 1);
+    if (port.empty() || port.find_first_not_of("0123456789") != std::string::npos ||
+        port.size() > 5 || std::stoul(port) > 65535)
+        throw std::runtime_error("'" + text + "': a port is 0 to 65535");
+    std::string host = text.substr(0, colon);
+    if (host.front() == '[') { // as in URLs: [::1]:10000
+        if (host.back() != ']')
+            throw std::runtime_error("'" + text + "': a ] is missing");
+        host = host.substr(1, host.size() - 2);
+    }
+    return "tcp -h \"" + host + "\" -p " + port;
+}
+
+// Returns the port of an adapter's first endpoint. Throws if one of them lets other machines call
+// in the clear.
+int checkedPort(const std::shared_ptr<Ice::ObjectAdapter>& adapter) {
+    int port = 0;
+    for (const auto& endpoint : adapter->getEndpoints()) {
+        auto info = endpoint->getInfo();
+        const bool isSecure = info->secure();
+        while (info->underlying)
+            info = info->underlying;
+        const auto ip = std::dynamic_pointer_cast<Ice::IPEndpointInfo>(info);
+        if (!ip)
+            continue;
+        port = port ? port : ip->port;
+        const bool isHere = ip->host.compare(0, 4, "127.") == 0 || ip->host == "::1" ||
+                            ip->host == "0:0:0:0:0:0:0:1" || ip->host == "localhost";
+        if (!isSecure && !isHere)
+            throw std::runtime_error(
+                "'" + endpoint->toString() +
+                "' would let every machine of the network call in the clear: listen at 127.0.0.1, "
+                "or give an ssl endpoint");
+    }
+    return port;
+}
+
+// Reads the modem's key from a file: every user of the machine can read the command line.
 std::string readModemKey(const std::string& path) {
     std::string key = XBeeAT::readSecret(path);
     key.erase(key.find_last_not_of(" \n") + 1);
@@ -224,60 +165,147 @@ std::string readModemKey(const std::string& path) {
     return key;
 }
 
-} // namespace
+void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o) {
+    const auto preset = [&p](const std::string& name, const std::string& value) {
+        if (p->getProperty(name).empty())
+            p->setProperty(name, value);
+    };
+    preset("Ice.ThreadPool.Server.Size", "4");
+    preset("Ice.ThreadPool.Server.SizeMax", "256"); // clients that wait for room hold one each
+    preset("Ice.ThreadPool.Server.Serialize", "1");
+    preset("Ice.ThreadPool.Client.Size", "4");
+    preset("Ice.ACM.Client.Close", "0"); // the vehicle may call back at any time
+    preset("Ice.RetryIntervals", "-1");
+    preset("Ice.Override.CloseTimeout", "5000");
+    preset("Ice.Warn.Connections", "0");
+    preset("Ice.Warn.Dispatch", "0");
+    preset("XBeeAT.Statistics", "1");
+    preset("XBeeAT.Trace", std::to_string(o.trace));
+    p->setProperty("XBeeAT.Setup", o.setUp ? "1" : "0");
+    p->setProperty("XBeeAT.KeyFile", o.keyFile);
+    if (!o.modemKeyFile.empty())
+        p->setProperty("XBeeAT.ModemKey", readModemKey(o.modemKeyFile));
+    Ice::registerPluginFactory("XBeeAT", createXBeeAT, true);
+    if ((o.listen + o.maintenance).find("ssl ") != std::string::npos ||
+        (o.listen + o.maintenance).find("wss ") != std::string::npos)
+        Ice::registerIceSSL();
+}
 
-int main(int argc, char** argv) {
-    CLI::App app{
-        "TCP to radio: Ice programs reach the UAV's objects at a TCP port, e.g. by the proxy\n"
-        "\"hwengine1:tcp -h 127.0.0.1 -p 10000\". Three connections at a time; more wait."};
-    Options o;
-    XBeeAT::Settings& s = o.serial;
-    app.add_option("-d,--device", s.device, "serial port of the modem")->required();
-    app.add_option("-b,--baud", s.baud, "baud rate (115200 is the modem's BD 7)")
+// Returns the endpoint of the vehicle, and of its calls, at the serial port.
+std::string radioEndpoint(const Options& o) {
+    std::ostringstream s;
+    s << "xbee-at -d \"" << o.device << "\" -b " << o.baud << " -a " << o.target << " -s "
+      << o.source << " -c " << o.rfChannel << " -i " << o.pan << " -g " << o.guardMs;
+    return s.str();
+}
+
+void addOptions(CLI::App& app, Options& o) {
+    app.add_option("-d,--device", o.device, "serial port of the modem")->required();
+    app.add_option("-b,--baud", o.baud, "baud rate (115200 is the modem's BD 7)")
         ->check(CLI::IsMember({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200}));
-    app.add_option("-a,--address", s.target, "the UAV's 16-bit address")
+    app.add_option("-a,--address", o.target, "the UAV's 16-bit address")
         ->check(CLI::Range(0, 0xFFFF));
-    app.add_option("-s,--source", s.source, "own 16-bit address")->check(CLI::Range(0, 0xFFFF));
-    app.add_option("-c,--channel", s.rfChannel, "RF channel")->check(CLI::Range(0x0B, 0x1A));
-    app.add_option("-i,--pan", s.pan, "network id")->check(CLI::Range(0, 0xFFFF));
+    app.add_option("-s,--source", o.source, "own 16-bit address")->check(CLI::Range(0, 0xFFFF));
+    app.add_option("-c,--channel", o.rfChannel, "RF channel")->check(CLI::Range(0x0B, 0x1A));
+    app.add_option("-i,--pan", o.pan, "network id")->check(CLI::Range(0, 0xFFFF));
     app.add_option(
         "--key", o.keyFile,
         "file (mode 0600) with the vehicle's key, 32 hexadecimal digits, or a line "
         "\"0x0001 KEY\" for each vehicle; /dev/fd/3: a descriptor. Without: in the clear");
     app.add_option("--modem-key", o.modemKeyFile,
                    "file (mode 0600) with the modems' AES key, up to 32 hexadecimal digits");
-    app.add_option("-g,--guard", s.guardMs, "guard time of the modem as it is, ms")
+    app.add_option("-g,--guard", o.guardMs, "guard time of the modem as it is, ms")
         ->check(CLI::Range(2, 3300));
-    app.add_flag("!--no-setup", s.setUp, "the modem is set up already");
+    app.add_flag("!--no-setup", o.setUp, "the modem is set up already");
     app.add_option("-l,--listen", o.listen,
-                   "HOST:PORT for clients, [::1]:PORT too; port 0: any, it is printed");
-    app.add_option("--station", o.station, "HOST:PORT of the Ice server that the UAV calls");
-    app.add_option("--idle", o.idle,
-                   "seconds of silence after which a client makes room for one that waits")
+                   "HOST:PORT of this machine for clients, [::1]:PORT too; port 0: any, it is "
+                   "printed. Or Ice's endpoints, e.g. \"ssl -p 10001\"");
+    app.add_option("--station", o.station,
+                   "HOST:PORT, or Ice's endpoints, of the server that the UAV calls");
+    app.add_option("--maintenance", o.maintenance,
+                   "HOST:PORT, or Ice's endpoints, at which the objects 'keys' and 'update' are "
+                   "reached, too. Without: nowhere");
+    app.add_option("--rights", o.rights,
+                   "JSON file: which certificate may call which identities and operations");
+    app.add_option("--wait", o.wait, "seconds that a call waits for the radio, then it fails")
         ->check(CLI::Range(1, 3600));
-    app.add_option("--wait", o.wait,
-                   "seconds that a client waits for one of the three channels, then is turned away")
-        ->check(CLI::Range(1, 3600));
-    app.add_option("--vanished", o.vanished,
-                   "seconds after which a client that has vanished without a word is given up")
-        ->check(CLI::Range(6, 3600));
     app.add_option("-t,--trace", o.trace, "0 errors, 1 link and connections, 2 AT commands")
         ->check(CLI::Range(0, 2));
-    app.add_option("--statistics", o.statistics, "print a line about every so many seconds")
-        ->check(CLI::Range(0, 86400));
-    CLI11_PARSE(app, argc, argv);
-    struct sigaction action{};
-    action.sa_handler = [](int signal) { stopSignal = signal; };
+    app.footer("Ice's properties are options, too, e.g. --IceSSL.CertFile=gateway.p12");
+}
+
+// Passes requests until the signal to stop.
+void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
+    const Rights rights = o.rights.empty() ? Rights() : Rights(o.rights);
+    const std::string radio = radioEndpoint(o);
+    Forwarder forwarder(ic->stringToProxy("any:" + radio), std::chrono::seconds(o.wait));
+    const auto adapter = [&](const std::string& name, const std::string& endpoints,
+                             const std::shared_ptr<Ice::Object>& servant) {
+        const auto made = endpoints.empty() ? ic->createObjectAdapter(name)
+                                            : ic->createObjectAdapterWithEndpoints(name, endpoints);
+        made->addDefaultServant(servant, "");
+        return made;
+    };
+    const auto servant = [&](bool allowsMaintenance) {
+        return std::make_shared<ToVehicle>(forwarder, rights, allowsMaintenance);
+    };
+    std::vector<std::shared_ptr<Ice::ObjectAdapter>> doors;
+    doors.push_back(adapter("Clients", endpointsOf(o.listen), servant(false)));
+    if (!o.maintenance.empty())
+        doors.push_back(adapter("Maintenance", endpointsOf(o.maintenance), servant(true)));
+    const int port = checkedPort(doors.front());
+    checkedPort(doors.back());
+    forwarder.setCallbacks(adapter("", "", std::make_shared<ToClients>(forwarder)));
+    std::shared_ptr<Ice::ObjectPrx> station;
+    if (!o.station.empty())
+        station = ic->stringToProxy("station:" + endpointsOf(o.station));
+    adapter("Radio", radio, std::make_shared<ToStation>(station, o.station))->activate();
+    std::cout << "gateway: port " << port << " leads to the UAV behind " << o.device << std::endl;
+    if (doors.size() > 1)
+        std::cout << "gateway: maintenance at port " << checkedPort(doors.back()) << std::endl;
+    for (const auto& door : doors)
+        door->activate();
+    sigset_t signals;
+    sigemptyset(&signals);
     for (int signal : {SIGINT, SIGTERM, SIGHUP})
-        sigaction(signal, &action, nullptr);
+        sigaddset(&signals, signal);
+    for (const timespec second{1, 0}; sigtimedwait(&signals, nullptr, &second) < 0;)
+        forwarder.failLateRequests();
+    if (const size_t left = forwarder.stop())
+        std::cerr << "gateway: one-way calls that were not sent: " << left << "\n";
+    ic->destroy(); // while what its callbacks use is there
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    sigset_t signals; // every thread leaves them to sigtimedwait
+    sigemptyset(&signals);
+    for (int signal : {SIGINT, SIGTERM, SIGHUP})
+        sigaddset(&signals, signal);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
+    CLI::App app{"A stock Ice server that passes requests to the UAV: Ice programs reach its "
+                 "objects\nat a TCP port, e.g. by the proxy \"hwengine1:tcp -h 127.0.0.1 -p "
+                 "10000\"."};
+    Options o;
+    addOptions(app, o);
     try {
-        s.idleMs = o.idle * 1000;
-        s.waitMs = o.wait * 1000;
-        if (!o.keyFile.empty())
-            s.keys = XBeeAT::KeyFile(o.keyFile).of(s.target);
-        if (!o.modemKeyFile.empty())
-            s.modemKey = readModemKey(o.modemKeyFile);
-        Gateway(o).run();
+        Ice::StringSeq words(argv + 1, argv + argc);
+        Ice::InitializationData data;
+        data.properties = Ice::createProperties(words);
+        for (const char* prefix : {"IceSSL", "XBeeAT"})
+            words = data.properties->parseCommandLineOptions(prefix, words);
+        std::reverse(words.begin(), words.end());
+        app.parse(words);
+        setProperties(data.properties, o);
+        Ice::CommunicatorHolder ic(data);
+        serve(ic.communicator(), o);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e);
+    } catch (const Ice::PluginInitializationException& e) {
+        std::cerr << "gateway: error: " << e.reason << "\n";
+        return 1;
     } catch (const std::exception& e) {
         std::cerr << "gateway: error: " << e.what() << "\n";
         return 1;

@@ -26,7 +26,6 @@ struct Settings {
     bool setUp = true;    // by AT commands
     int downMs = 15000;   // without a link, until the modem is set up again
     int idleMs = 60000;   // a program silent this long makes room for one that waits; 0: never
-    int waitMs = 0;       // how long a program waits for a channel; 0: without limit
 
     // Returns a random number for sessions; a test may set its own source.
     std::function<unsigned()> random = [] { return std::random_device()(); };

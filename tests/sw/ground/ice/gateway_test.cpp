@@ -7,9 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <linux/filter.h>
 #include <map>
-#include <poll.h>
 #include <sys/wait.h>
 #include <utility>
 
@@ -116,13 +114,12 @@ protected:
     World world_{testSeed()};
 };
 
-// Three have a channel of the radio each; the others wait for one.
-TEST_F(Gateway, FiveProgramsAtOnceShareThreeChannels) {
+TEST_F(Gateway, ProgramsAtOnceShareTheRadio) {
     GatewayProgram gateway = start();
     int port = gateway.port();
     ASSERT_GT(port, 0) << gateway.said();
     std::vector<std::thread> programs;
-    for (int p = 0; p < 5; ++p)
+    for (int p = 0; p < 10; ++p)
         programs.emplace_back([&, p] {
             try {
                 Ice::CommunicatorHolder ic(plain());
@@ -198,124 +195,135 @@ TEST_F(Gateway, ListensAtAnIPv6Address) {
     EXPECT_EQ(echo->repeat(1, {1, 2}), (RadioTest::Bytes{1, 2}));
 }
 
-// A TCP connection that says nothing.
-class SilentClient {
-public:
-    explicit SilentClient(int port) : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-        sockaddr_in to{};
-        to.sin_family = AF_INET;
-        to.sin_port = htons(static_cast<uint16_t>(port));
-        to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        EXPECT_EQ(connect(fd_, reinterpret_cast<sockaddr*>(&to), sizeof to), 0);
-    }
-    SilentClient(SilentClient&& other) : fd_(std::exchange(other.fd_, -1)) {}
-    ~SilentClient() {
-        if (fd_ >= 0)
-            close(fd_);
-    }
-    // Bytes until the connection ends; or -1, after ten seconds.
-    int untilTheEnd() {
-        for (int got = 0;;) {
-            pollfd p{fd_, POLLIN, 0};
-            char bytes[64];
-            if (poll(&p, 1, 10'000) <= 0)
-                return -1;
-            ssize_t count = recv(fd_, bytes, sizeof bytes, 0);
-            if (count <= 0)
-                return got;
-            got += static_cast<int>(count);
-        }
-    }
-    // The UAV's server has greeted it: so it has a channel.
-    bool isGreeted() {
-        char bytes[14];
-        return recv(fd_, bytes, sizeof bytes, MSG_WAITALL) == sizeof bytes;
-    }
+// ---- who shares the radio ----
 
-    // From here on no packet reaches it, as if its machine were off: the kernel drops them. False:
-    // it lets this user have no filter.
-    bool vanish() {
-        sock_filter none = BPF_STMT(BPF_RET | BPF_K, 0);
-        const sock_fprog filter = {1, &none};
-        const bool has = setsockopt(fd_, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof filter) == 0;
-        EXPECT_TRUE(has || errno == EPERM);
-        return has;
-    }
-    // Calls ice_ping of echo.
-    void ping() {
-        const std::string parameters("\1\0\0\0\4echo\0\0\10ice_ping\1\0\6\0\0\0\1\1", 29);
-        const std::string head("IceP\1\0\1\0\0\0\53\0\0\0", 14);
-        ASSERT_EQ(send(fd_, (head + parameters).data(), 43, MSG_NOSIGNAL), 43);
-    }
-
-private:
-    int fd_;
-};
-
-// Three have the channels and vanish, with a reply under way and without.
-TEST_F(Gateway, AClientThatVanishesWithoutAWordIsGivenUp) {
-    GatewayProgram gateway = start({"--idle", "3600", "--wait", "100", "--vanished", "6"});
+// One-way calls of a program that has left go all the same.
+TEST_F(Gateway, WhatAProgramHasSentArrivesAlthoughItLeaves) {
+    GatewayProgram gateway = start();
     const int port = gateway.port();
     ASSERT_GT(port, 0) << gateway.said();
-    std::vector<SilentClient> vanished, others;
-    for (int i = 0; i < 3; ++i) {
-        vanished.emplace_back(port);
-        ASSERT_TRUE(vanished.back().isGreeted());
-    }
-    for (SilentClient& client : vanished) {
-        if (!client.vanish())
-            GTEST_SKIP() << "this machine's kernel lets the user attach no filter to a socket";
-        if (&client != &vanished[0])
-            client.ping();
-    }
-    for (int i = 0; i < 3; ++i)
-        others.emplace_back(port);
-    for (SilentClient& client : others)
-        EXPECT_TRUE(client.isGreeted());
-    gateway.stop();
-}
-
-TEST_F(Gateway, ASilentClientMakesRoomForOneThatWaits) {
-    GatewayProgram gateway = start({"--idle", "1"});
-    const int port = gateway.port();
-    ASSERT_GT(port, 0) << gateway.said();
-    std::vector<SilentClient> silent;
-    for (int i = 0; i < 3; ++i) {
-        silent.emplace_back(port);
-        ASSERT_TRUE(silent.back().isGreeted());
+    constexpr int count = 1000;
+    {
+        Ice::CommunicatorHolder ic(plain());
+        auto echo = proxy(ic.communicator(), port)->ice_oneway();
+        for (int i = 0; i < count; ++i)
+            echo->note(i);
+        echo->ice_getConnection()->close(Ice::ConnectionClose::GracefullyWithWait);
     }
     Ice::CommunicatorHolder ic(plain());
-    EXPECT_EQ(proxy(ic.communicator(), port)->repeat(1, {1, 2}), (RadioTest::Bytes{1, 2}));
-    EXPECT_EQ(silent[0].untilTheEnd(), 14) << "Ice's own good-bye";
+    auto echo = proxy(ic.communicator(), port);
+    int noted = 0;
+    for (int calls = 0; calls < count && noted < count; ++calls) // each has a turn
+        noted = echo->noted();
+    EXPECT_EQ(noted, count);
+    EXPECT_EQ(world_.echo->twice(), 0);
 }
 
-TEST_F(Gateway, WhoWaitsForAChannelIsTurnedAwayAfterAWhile) {
-    GatewayProgram gateway = start({"--idle", "3600", "--wait", "1"});
+// A program that sends without an end has a turn like any other.
+TEST_F(Gateway, AFloodLeavesRoomForOthers) {
+    GatewayProgram gateway = start();
     const int port = gateway.port();
     ASSERT_GT(port, 0) << gateway.said();
-    std::vector<SilentClient> silent;
-    for (int i = 0; i < 3; ++i) {
-        silent.emplace_back(port);
-        ASSERT_TRUE(silent.back().isGreeted());
-    }
-    EXPECT_EQ(SilentClient(port).untilTheEnd(), 0);
-    gateway.stop();
-    EXPECT_NE(gateway.said().find("client 4 has waited 1 s"), std::string::npos) << gateway.said();
+    Ice::CommunicatorHolder flooding(plain()), calling(plain());
+    auto flood = proxy(flooding.communicator(), port)->ice_oneway();
+    auto echo = proxy(calling.communicator(), port);
+    echo->ice_ping();
+    for (int i = 0; i < 2000; ++i)
+        flood->noteAsync(i);
+    EXPECT_EQ(echo->repeat(9999, {1, 2}), (RadioTest::Bytes{1, 2}));
+    EXPECT_LT(echo->noted(), 1000) << "the flood went first";
 }
 
-TEST_F(Gateway, StatisticsComeEverySoManySeconds) {
-    const std::string line = "messages out";
-    GatewayProgram often = start({"--statistics", "1"});
-    for (int lines = 0; lines < 3; ++lines)
-        ASSERT_TRUE(often.hear(line)) << often.said();
-    often.stop();
-    GatewayProgram seldom = start({"--statistics", "86400"});
-    const int port = seldom.port();
-    ASSERT_GT(port, 0) << seldom.said();
+TEST_F(Gateway, ManyIdleClientsCostNothing) {
+    GatewayProgram gateway = start();
+    const int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    Ice::CommunicatorHolder ic(plain());
+    auto echo = proxy(ic.communicator(), port);
     for (int i = 0; i < 100; ++i)
-        SilentClient{port}; // each wakes it up
-    seldom.stop();
-    EXPECT_EQ(seldom.said().find(line), seldom.said().rfind(line)) << "one at the end";
+        echo->ice_connectionId(std::to_string(i))->ice_getConnection();
+    EXPECT_EQ(echo->repeat(1, {1, 2}), (RadioTest::Bytes{1, 2}));
+}
+
+// ---- who may call what ----
+
+// Says why a call fails; empty: it does not.
+std::string whyFails(const std::function<void()>& call) {
+    try {
+        call();
+        return "";
+    } catch (const Ice::UnknownException& e) {
+        return e.unknown;
+    } catch (const Ice::Exception& e) {
+        return e.ice_id();
+    }
+}
+
+TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
+    GatewayProgram gateway = start({"--maintenance", "127.0.0.1:0"});
+    const int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    ASSERT_TRUE(gateway.hear("maintenance at port ")) << gateway.said();
+    ASSERT_TRUE(gateway.hear("\n"));
+    const int door = std::atoi(gateway.said().c_str() + gateway.said().rfind("port ") + 5);
+    Ice::CommunicatorHolder ic(plain());
+    const auto ping = [&](const std::string& name, int at) {
+        return whyFails([&] { ic->stringToProxy(name + ":" + endpoint(at))->ice_ping(); });
+    };
+    for (const std::string name : {"keys", "update"}) {
+        EXPECT_NE(ping(name, port).find("'" + name + "' is for maintenance"), std::string::npos);
+        EXPECT_EQ(ping(name, door), "::Ice::ObjectNotExistException") << "said by the vehicle";
+    }
+    EXPECT_EQ(ping("echo", door), "");
+}
+
+TEST_F(Gateway, RightsSayWhoMayCallWhat) {
+    const std::string rights = testing::TempDir() + "gateway_rights.json";
+    std::ofstream(rights)
+        << R"([{"who": "", "identities": ["ec*"], "operations": ["repeat", "note*"]}])";
+    GatewayProgram gateway = start({"--rights", rights});
+    const int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    Ice::CommunicatorHolder ic(plain());
+    auto echo = proxy(ic.communicator(), port);
+    EXPECT_EQ(echo->repeat(1, {1, 2}), (RadioTest::Bytes{1, 2}));
+    EXPECT_EQ(echo->noted(), 0);
+    EXPECT_EQ(whyFails([&] { echo->ice_ping(); }), "");
+    EXPECT_NE(whyFails([&] { echo->fetch(1); }).find("has no right to call fetch of 'echo'"),
+              std::string::npos);
+    EXPECT_NE(whyFails([&] {
+                  ic->stringToProxy("other:" + endpoint(port))->ice_ping();
+              }).find("has no right"),
+              std::string::npos);
+}
+
+// A call that is refused says why: one that is too long for the radio, too.
+TEST_F(Gateway, ACallThatIsTooLongFailsWithTheLimit) {
+    GatewayProgram gateway = start();
+    const int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    Ice::CommunicatorHolder ic(plain());
+    auto echo = proxy(ic.communicator(), port);
+    EXPECT_NE(whyFails([&] { echo->repeat(1, RadioTest::Bytes(9000)); }).find("8192"),
+              std::string::npos);
+    EXPECT_EQ(echo->repeat(2, {1, 2}), (RadioTest::Bytes{1, 2}));
+}
+
+TEST_F(Gateway, CompressedCallsArrive) {
+    GatewayProgram gateway = start();
+    const int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    Ice::CommunicatorHolder ic(plain());
+    auto echo = proxy(ic.communicator(), port)->ice_compress(true);
+    EXPECT_EQ(echo->repeat(1, RadioTest::Bytes(2000)), RadioTest::Bytes(2000));
+    auto batch = echo->ice_batchOneway();
+    for (int i = 0; i < 30; ++i)
+        batch->note(100 + i);
+    batch->ice_flushBatchRequests();
+    int noted = 0;
+    for (int calls = 0; calls < 100 && noted < 30; ++calls) // the server has several threads
+        noted = echo->noted();
+    EXPECT_EQ(noted, 30);
 }
 
 TEST(GatewayOptions, WrongOnesAreRefusedByName) {
@@ -328,7 +336,10 @@ TEST(GatewayOptions, WrongOnesAreRefusedByName) {
         {{{"-a", "65536"}}, "--address"},
         {{{"--key", "/no/such/file"}}, "openssl rand -hex 16"},
         {{{"--modem-key", "/no/such/file"}}, "No such file"},
-        {{{"--statistics", "-5"}}, "--statistics"},
+        {{{"--wait", "-5"}}, "--wait"},
+        {{{"--rights", "/no/such/file"}}, "cannot be read"},
+        {{{"-l", "0.0.0.0:0"}}, "every machine of the network"},
+        {{{"--maintenance", "tcp -p 0"}}, "every machine of the network"},
         {{{"--station", "x"}}, "give HOST:PORT"}};
     for (auto [options, said] : cases) {
         options.insert({{"-d", "/dev/null"}, {"-l", "127.0.0.1:0"}});

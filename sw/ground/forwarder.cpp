@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: MIT
+//
+// forwarder: the clients' queues and their turns.
+
+#include "forwarder.h"
+
+#include <algorithm>
+
+namespace gateway {
+
+namespace {
+
+constexpr size_t mostUnderWay = 8;             // requests without an answer
+constexpr size_t mostBytesUnderWay = 8192;     // of these together, but for a single one
+constexpr size_t mostQueued = size_t{1} << 18; // bytes of a client
+
+} // namespace
+
+void Request::sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onResponse,
+                     Failure onError) const {
+    auto object = target->ice_identity(current.id)->ice_facet(current.facet);
+    object = object->ice_encodingVersion(current.encoding);
+    object = isOneway() ? object->ice_oneway() : object->ice_twoway();
+    const Parameters in{parameters.data(), parameters.data() + parameters.size()};
+    std::function<void(bool)> sent; // all that Ice tells of a one-way request
+    if (isOneway())
+        sent = [onResponse](bool) { onResponse(true, {}); };
+    object->ice_invokeAsync(current.operation, current.mode, in, std::move(onResponse),
+                            std::move(onError), std::move(sent), current.ctx);
+}
+
+Forwarder::Forwarder(std::shared_ptr<Ice::ObjectPrx> vehicle, std::chrono::seconds wait)
+    : vehicle_(std::move(vehicle)), wait_(wait) {}
+
+void Forwarder::setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter) {
+    callbacks_ = std::move(adapter);
+}
+
+// ---- from the clients to the vehicle ----
+
+Forwarder::Client& Forwarder::clientAt(const Connection& connection) {
+    const auto [client, isNew] = clients_.try_emplace(connection);
+    if (isNew)
+        connection->setCloseCallback([this](const Connection& closed) { forget(closed); });
+    return client->second;
+}
+
+// Drops a client that has left, and what it waited for; its one-way requests still go.
+void Forwarder::forget(const Connection& connection) {
+    std::lock_guard<std::mutex> lock(mutex_);
+    const auto client = clients_.find(connection);
+    if (client == clients_.end())
+        return;
+    auto& [requests, bytes, hasLeft] = client->second;
+    const auto goes = [&bytes = bytes](const std::shared_ptr<Request>& request) {
+        bytes -= request->isOneway() ? 0 : request->parameters.size();
+        return !request->isOneway();
+    };
+    requests.erase(std::remove_if(requests.begin(), requests.end(), goes), requests.end());
+    hasLeft = true;
+    if (requests.empty())
+        clients_.erase(client);
+    for (auto owner = owners_.begin(); owner != owners_.end();)
+        owner = owner->second == connection ? owners_.erase(owner) : std::next(owner);
+    room_.notify_all();
+}
+
+void Forwarder::take(std::shared_ptr<Request> request) {
+    const Connection& from = request->current.con;
+    {
+        std::unique_lock<std::mutex> lock(mutex_);
+        room_.wait(lock, [&] { return stopped_ || clientAt(from).bytes < mostQueued; });
+        if (stopped_)
+            throw Ice::CommunicatorDestroyedException(__FILE__, __LINE__);
+        Client& client = clientAt(from);
+        client.bytes += request->parameters.size();
+        client.requests.push_back(std::move(request));
+    }
+    send();
+}
+
+// Returns the request whose turn it is, if one may go now; the mutex is held.
+std::shared_ptr<Request> Forwarder::nextRequest() {
+    auto client = clients_.upper_bound(lastServed_);
+    for (size_t i = 0; i < clients_.size(); ++i, ++client) {
+        if (client == clients_.end())
+            client = clients_.begin();
+        auto& [requests, bytes, hasLeft] = client->second;
+        if (requests.empty())
+            continue;
+        const size_t size = requests.front()->parameters.size();
+        if (underWay_ > 0 &&
+            (underWay_ >= mostUnderWay || bytesUnderWay_ + size > mostBytesUnderWay))
+            return nullptr;
+        auto request = std::move(requests.front());
+        requests.pop_front();
+        bytes -= size;
+        lastServed_ = client->first;
+        if (hasLeft && requests.empty())
+            clients_.erase(client);
+        return request;
+    }
+    return nullptr;
+}
+
+// Sends what may go. One thread does so at a time; what becomes possible meanwhile, it sends too.
+void Forwarder::send() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    if (isSending_)
+        return;
+    for (isSending_ = true; !stopped_;) {
+        if (!connection_) {
+            bool wanted = false;
+            for (const auto& [from, client] : clients_)
+                wanted = wanted || !client.requests.empty();
+            if (!wanted || isConnecting_)
+                break;
+            isConnecting_ = true;
+            lock.unlock();
+            connect();
+            lock.lock();
+            continue;
+        }
+        const auto request = nextRequest();
+        if (!request)
+            break;
+        ++underWay_;
+        bytesUnderWay_ += request->parameters.size();
+        room_.notify_all();
+        const Connection connection = connection_;
+        lock.unlock();
+        sendOne(connection, request);
+        lock.lock();
+    }
+    isSending_ = false;
+}
+
+void Forwarder::sendOne(const Connection& connection, const std::shared_ptr<Request>& request) {
+    const auto done = [this, size = request->parameters.size()] {
+        {
+            std::lock_guard<std::mutex> lock(mutex_);
+            --underWay_;
+            bytesUnderWay_ -= size;
+        }
+        send();
+    };
+    const auto failed = [request, done](std::exception_ptr why) {
+        request->failed(std::move(why));
+        done();
+    };
+    try {
+        request->sendTo(
+            connection->createProxy(request->current.id),
+            [request, done](bool isOk, const Parameters& out) {
+                request->response(isOk, out);
+                done();
+            },
+            failed);
+    } catch (const Ice::Exception&) {
+        failed(std::current_exception());
+    }
+}
+
+void Forwarder::connect() {
+    const auto opened = [this](const Connection& connection) {
+        connection->setAdapter(callbacks_);
+        connection->setCloseCallback([this](const Connection& closed) {
+            {
+                std::lock_guard<std::mutex> lock(mutex_);
+                if (connection_ == closed)
+                    connection_ = nullptr;
+            }
+            send();
+        });
+        {
+            std::lock_guard<std::mutex> lock(mutex_);
+            connection_ = connection;
+            isConnecting_ = false;
+        }
+        send();
+    };
+    try {
+        vehicle_->ice_getConnectionAsync(
+            opened, [this](std::exception_ptr why) { failAll(std::move(why)); });
+    } catch (const Ice::Exception&) {
+        failAll(std::current_exception());
+    }
+}
+
+// Fails what waits, since the vehicle cannot be reached.
+void Forwarder::failAll(std::exception_ptr why) {
+    std::vector<std::shared_ptr<Request>> all;
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        isConnecting_ = false;
+        for (auto& [from, client] : clients_) {
+            all.insert(all.end(), client.requests.begin(), client.requests.end());
+            client = {};
+        }
+        room_.notify_all();
+    }
+    for (const auto& request : all)
+        request->failed(why);
+}
+
+void Forwarder::failLateRequests() {
+    const auto due = std::chrono::steady_clock::now() - wait_;
+    std::vector<std::shared_ptr<Request>> late;
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        for (auto& [from, client] : clients_)
+            for (auto it = client.requests.begin(); it != client.requests.end();) {
+                if ((*it)->isOneway() || (*it)->since > due) {
+                    ++it;
+                    continue;
+                }
+                client.bytes -= (*it)->parameters.size();
+                late.push_back(std::move(*it));
+                it = client.requests.erase(it);
+            }
+        room_.notify_all();
+    }
+    for (const auto& request : late)
+        request->failed(std::make_exception_ptr(Ice::UnknownException(
+            __FILE__, __LINE__,
+            "icesoc-gateway: waited " + std::to_string(wait_.count()) +
+                " s for the radio (--wait); the vehicle has not got this call")));
+}
+
+size_t Forwarder::stop() {
+    size_t left = 0;
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        stopped_ = true;
+        for (const auto& [from, client] : clients_)
+            for (const auto& request : client.requests)
+                left += request->isOneway();
+    }
+    // Ice waits for the answers as it stops.
+    failAll(std::make_exception_ptr(Ice::CommunicatorDestroyedException(__FILE__, __LINE__)));
+    return left;
+}
+
+// ---- from the vehicle to the clients ----
+
+void Forwarder::takeCallback(std::shared_ptr<Request> request) {
+    std::vector<Connection> clients; // the last is tried first
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        for (const auto& [connection, client] : clients_)
+            clients.push_back(connection);
+        const auto owner = owners_.find(request->current.id);
+        if (owner != owners_.end())
+            clients.push_back(owner->second);
+        else if (clients_.count(lastServed_))
+            clients.push_back(lastServed_);
+    }
+    tryClients(std::move(request), std::move(clients));
+}
+
+void Forwarder::tryClients(std::shared_ptr<Request> request, std::vector<Connection> clients) {
+    const Ice::Current& current = request->current;
+    if (clients.empty())
+        return request->failed(std::make_exception_ptr(Ice::ObjectNotExistException(
+            __FILE__, __LINE__, current.id, current.facet, current.operation)));
+    const Connection connection = clients.back();
+    clients.pop_back();
+    // A one-way request needs an answer, too, to know whether the object is there.
+    Request asked = *request;
+    asked.current.requestId = 1;
+    try {
+        asked.sendTo(
+            connection->createProxy(current.id),
+            [this, request, connection](bool isOk, const Parameters& out) {
+                {
+                    std::lock_guard<std::mutex> lock(mutex_);
+                    if (clients_.count(connection))
+                        owners_[request->current.id] = connection;
+                }
+                request->response(isOk, out);
+            },
+            [this, request, clients](std::exception_ptr why) {
+                try {
+                    std::rethrow_exception(why);
+                } catch (const Ice::ObjectNotExistException&) {
+                    tryClients(request, clients);
+                } catch (...) {
+                    request->failed(why);
+                }
+            });
+    } catch (const Ice::Exception&) { // it has just left
+        tryClients(std::move(request), std::move(clients));
+    }
+}
+
+} // namespace gateway

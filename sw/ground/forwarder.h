@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+//
+// forwarder: passes the requests of many clients to the vehicle over one connection, and the
+// vehicle's requests back to them.
+//
+// The clients take turns, a request each, and a few requests are under way at a time: so a client
+// that sends much, or never reads, delays the others by little. A request goes at most once.
+
+#ifndef GROUND_FORWARDER_H
+#define GROUND_FORWARDER_H
+
+#include <Ice/Ice.h>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+
+namespace gateway {
+
+using Parameters = std::pair<const Ice::Byte*, const Ice::Byte*>; // an encapsulation
+using Response = std::function<void(bool, const Parameters&)>;
+using Failure = std::function<void(std::exception_ptr)>;
+
+// A request that outlives its dispatch.
+struct Request {
+    Request(const Parameters& in, Response onResponse, Failure onError, const Ice::Current& current)
+        : parameters(in.first, in.second), response(std::move(onResponse)),
+          failed(std::move(onError)), current(current) {}
+    // Sends it to `target`, an object of any identity; throws what Ice throws at once.
+    void sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onResponse,
+                Failure onError) const;
+    bool isOneway() const { return current.requestId == 0; }
+
+    std::vector<Ice::Byte> parameters;
+    Response response;
+    Failure failed;
+    Ice::Current current;
+    std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
+};
+
+// Forwarder holds the clients' requests until their turn comes.
+class Forwarder {
+public:
+    // `vehicle`: a proxy with the vehicle's endpoint. `wait`: for how long a two-way request waits
+    // for its turn until it fails.
+    Forwarder(std::shared_ptr<Ice::ObjectPrx> vehicle, std::chrono::seconds wait);
+
+    // Takes a client's request. Blocks while that client has 256 KiB waiting here.
+    void take(std::shared_ptr<Request> request);
+    // Passes a request of the vehicle to the client that has the object: the last that answered for
+    // this identity, else each in turn.
+    void takeCallback(std::shared_ptr<Request> request);
+    // Requests of the vehicle on the clients' connection are dispatched by this adapter.
+    void setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter);
+
+    void failLateRequests(); // to be called now and then
+    // Ends the waiting. Returns how many one-way requests were not sent.
+    size_t stop();
+
+private:
+    struct Client {
+        std::deque<std::shared_ptr<Request>> requests;
+        size_t bytes = 0;
+        bool hasLeft = false; // what is left are one-way requests
+    };
+    using Connection = std::shared_ptr<Ice::Connection>;
+    Client& clientAt(const Connection& connection);
+    void forget(const Connection& connection);
+    std::shared_ptr<Request> nextRequest();
+    void send();
+    void sendOne(const Connection& connection, const std::shared_ptr<Request>& request);
+    void connect();
+    void failAll(std::exception_ptr why);
+    void tryClients(std::shared_ptr<Request> request, std::vector<Connection> clients);
+
+    const std::shared_ptr<Ice::ObjectPrx> vehicle_;
+    const std::chrono::seconds wait_;
+    std::shared_ptr<Ice::ObjectAdapter> callbacks_;
+    std::mutex mutex_; // of all below
+    std::condition_variable room_;
+    std::map<Connection, Client> clients_;
+    std::map<Ice::Identity, Connection> owners_; // of objects that the vehicle calls
+    Connection lastServed_, connection_;         // of a client; to the vehicle
+    bool isConnecting_ = false, isSending_ = false, stopped_ = false;
+    size_t underWay_ = 0, bytesUnderWay_ = 0;
+};
+
+} // namespace gateway
+
+#endif

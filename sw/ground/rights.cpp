@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+//
+// rights: reads the file, matches patterns.
+
+#include "rights.h"
+
+#include <IceSSL/IceSSL.h>
+#include <fnmatch.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace gateway {
+
+namespace {
+
+bool matches(const std::string& pattern, const std::string& text) {
+    return fnmatch(pattern.c_str(), text.c_str(), 0) == 0;
+}
+
+bool matchesOne(const std::vector<std::string>& patterns, const std::string& text) {
+    for (const std::string& pattern : patterns)
+        if (matches(pattern, text))
+            return true;
+    return false;
+}
+
+} // namespace
+
+Rights::Rights(const std::string& path) : isOpen_(false) {
+    std::ifstream file(path);
+    if (!file)
+        throw std::runtime_error("the file of rights '" + path + "' cannot be read");
+    try {
+        for (const auto& rule : nlohmann::json::parse(file)) {
+            for (const auto& [key, value] : rule.items())
+                if (key != "who" && key != "identities" && key != "operations")
+                    throw std::runtime_error("a rule has no '" + key + "'");
+            rules_.push_back({rule.at("who"), rule.at("identities"), rule.at("operations")});
+        }
+    } catch (const std::exception& e) {
+        throw std::runtime_error(
+            "the file of rights '" + path +
+            "' must hold rules such as [{\"who\": \"CN=pilot*\", \"identities\": [\"*\"], "
+            "\"operations\": [\"*\"]}]: " +
+            e.what());
+    }
+}
+
+bool Rights::permit(const std::string& subject, const std::string& identity,
+                    const std::string& operation) const {
+    static const std::set<std::string> always = {"ice_ping", "ice_isA", "ice_id", "ice_ids"};
+    for (const Rule& rule : rules_)
+        if (matches(rule.who, subject) && matchesOne(rule.identities, identity) &&
+            (always.count(operation) || matchesOne(rule.operations, operation)))
+            return true;
+    return isOpen_;
+}
+
+std::string subjectOf(const std::shared_ptr<Ice::Connection>& connection) {
+    for (auto info = connection->getInfo(); info; info = info->underlying)
+        if (auto ssl = std::dynamic_pointer_cast<IceSSL::ConnectionInfo>(info))
+            return ssl->certs.empty() ? "" : std::string(ssl->certs[0]->getSubjectDN());
+    return "";
+}
+
+} // namespace gateway

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// rights: who may call what through the gateway, from a JSON file of rules:
+//
+//   [{"who": "CN=pilot*", "identities": ["*"], "operations": ["*"]},
+//    {"who": "",          "identities": ["uav", "hwengine*"], "operations": ["get*", "isAlive"]}]
+//
+// `who` is the subject of the client's certificate, as a shell pattern; a client without a
+// certificate has the subject "". A call goes through if one rule lets it. Every caller of an
+// object may ask it for its type and ping it.
+
+#ifndef GROUND_RIGHTS_H
+#define GROUND_RIGHTS_H
+
+#include <Ice/Ice.h>
+
+namespace gateway {
+
+class Rights {
+public:
+    Rights() = default; // everybody may call everything
+    // Throws std::runtime_error, which says what is wrong, if the file is none as above.
+    explicit Rights(const std::string& path);
+
+    bool permit(const std::string& subject, const std::string& identity,
+                const std::string& operation) const;
+
+private:
+    struct Rule {
+        std::string who;
+        std::vector<std::string> identities, operations;
+    };
+    bool isOpen_ = true;
+    std::vector<Rule> rules_;
+};
+
+// Returns the subject of the certificate of a connection's peer; empty without one.
+std::string subjectOf(const std::shared_ptr<Ice::Connection>& connection);
+
+} // namespace gateway
+
+#endif

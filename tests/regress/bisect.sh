@@ -13,7 +13,7 @@ stop() {
 }
 [ -n "$test" ] || stop "TEST= names the test, as CTest does: make bisect TEST=test_fifo.Fifo.Wraps"
 git rev-parse --verify -q "$bad^{commit}" >/dev/null || stop "there is no commit $bad"
-if [ -z "$good" ]; then # lines are runs, the oldest first; a state that is not committed is no place to begin
+if [ -z "$good" ]; then # lines are runs, the oldest first; a bisection cannot begin at a state that is not committed
     good=$(TEST=$test python3 -c '
 import json, os
 for line in open("build/regress/history.jsonl"):
@@ -35,7 +35,7 @@ trap 'exit 2' INT TERM
 regress=$(readlink -f "$regress")
 cat >build/bisect/step.sh <<END
 #!/bin/sh
-# One commit: 0 passes, 1 fails, 125 cannot be told. What is built stays for the next one.
+# Judges one commit: 0 passes, 1 fails, 125 unknown. The build stays for the next one.
 [ -e build/main/build.ninja ] || cmake -S . -B build/main -G Ninja >/dev/null || exit 125
 status=0
 "$regress" --make --name '^$(printf %s "$test" | sed 's/[].[*+?(){}|^$\\]/\\&/g')\$' --seed '$seed' --jobs '$jobs' --waves 0 >build/step.log 2>&1 || status=\$?

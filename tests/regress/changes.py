@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""changes: what has changed in the tree since a test last passed, of the files on which the test
-depends: the best hint there is, whatever has failed."""
+"""changes: lists the files of a failed test that have changed since it last passed: usually the best
+hint at the cause."""
 import functools
 import re
 
@@ -11,8 +11,8 @@ SHOWN = 6  # files
 
 
 class Changes:
-    """Notes the state of the tree, changes that are not committed among it, as a tree of git, with
-    objects in <out>/tree: the repository itself does not get any."""
+    """Notes the state of the tree, with changes that are not committed, as a tree of git. Its objects go
+    into <out>/tree; the repository gets none."""
 
     def __init__(self, source, build, out):
         self.source, self.build, self.environment, self.tree = source, build, {}, ""
@@ -34,15 +34,15 @@ class Changes:
         return "" if added or status else tree.strip()
 
     def meanwhile(self):
-        """The files that have changed since the tree was noted: while the tests ran."""
+        """The files that have changed since the tree was noted, that is, while the tests ran."""
         now = self.tree and self._write_tree()
         return self.git("diff", "--name-only", "--no-renames", self.tree, now)[1].splitlines() \
             if now else []
 
     @functools.cache
     def differing(self, since):
-        """{path: (first line that differs, how many do)} since a tree or a commit, what is not
-        committed first, sources before tests and pages; None if git does not know it any more."""
+        """{path: (first different line, number of them)} since a tree or a commit; None if git does
+        not know it any more. Files that are not committed come first, sources before others."""
         status, text = self.git("diff", "--unified=0", "--no-color", "--no-ext-diff",
                                 "--no-renames", "--src-prefix=a/", "--dst-prefix=b/", since,
                                 self.tree)
@@ -66,11 +66,11 @@ class Changes:
         return Graph(self.source, self.build)
 
     def forget_graph(self):
-        """What ninja knows is new after it has built."""
+        """Drops what is known of ninja's files: a build has changed them."""
         self.__dict__.pop("graph", None)
 
     def of_test(self, test, since):
-        """What differs since a tree or a commit of the files on which a test depends."""
+        """The differences since a tree or a commit in the files of a test."""
         folders = test.reads()
         inputs = set()
         if test.unbuilt or test.is_program(self.build.resolve()):
@@ -79,8 +79,8 @@ class Changes:
                 if path in inputs or path.startswith(tuple(f + "/" for f in folders))}
 
     def touched(self, test, last_pass):
-        """Whether a test's files differ from those that it last passed with; of one that has never
-        passed here, from the commit."""
+        """Whether a test's files differ from those of its last pass; if it has never passed here,
+        from the commit."""
         since = last_pass[1].get("tree") if last_pass else "HEAD"
         return not self.tree or not since or self.differing(since) is None or \
             bool(self.of_test(test, since))
@@ -96,7 +96,7 @@ class Changes:
                       if each and self.differing(each) is not None), None)
         if not since or not (end or self.differing(since)):
             return ""
-        # What a script reads is not known to the last file.
+        # Nobody knows each file that a script reads.
         files = self.of_test(test, since) or self.differing(since)
         text = "the commit; it is not known to have passed" if not end else \
             f"it passed at {commit}" + (

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Coverage of RTL and host code against gates: what the tests ran of each file: points of the RTL
+"""Compares coverage of RTL and host code with gates, for each file: points of the RTL
 (lines, branches, toggles, covers) from Verilator, lines of VHDL from GHDL, of C and C++ from gcov.
 Exit status 1: a file is below its gate."""
 import argparse
@@ -31,7 +31,7 @@ class File:
         self.shares = collections.defaultdict(Share)  # of lines, toggles, points
         self.counts = collections.Counter()  # of the points: `name: cover property` in the RTL
         self.missed = []  # signals that never toggled, lines that never ran, points
-        self.explained = collections.Counter()  # why: so many points
+        self.explained = collections.Counter()  # reason: number of points
 
 
 def inside(path, root):
@@ -42,14 +42,14 @@ def inside(path, root):
 
 
 class Explanations:
-    """Points that cannot be reached, and why: they count as if they were not there."""
+    """Points that cannot be reached, with the reason: they do not count."""
 
     def __init__(self, rules):
         self.rules = [(r.get("file", ""), re.compile(r["points"]), r["why"], collections.Counter())
                       for r in rules]
 
     def of(self, file, point, covered):
-        """The reason, or ""."""
+        """The reason why a point does not count, or ""."""
         for below, points, why, seen in self.rules:
             if file.startswith(below) and points.fullmatch(point):
                 seen[covered] += 1
@@ -58,14 +58,14 @@ class Explanations:
         return ""
 
     def stale(self):
-        """The rules that explain nothing: what they speak of is reached, or gone."""
+        """The rules that explain nothing: their points are reached, or gone."""
         return [f"{below}: {points.pattern} ({'reached' if seen[True] else 'no such point'})"
                 for below, points, _, seen in self.rules if not seen[False]]
 
 
 def read_verilator(path, root, explanations, files):
-    """verilated.dat: C '\\1key\\2value\\1key\\2value...' count. A module that is there several
-    times, in several models or with several parameters, is covered where any of them is."""
+    """verilated.dat: C '\\1key\\2value\\1key\\2value...' count. If a module exists several
+    times, in several models or with several parameters, a point is covered if any of them covers it."""
     counts, places = collections.Counter(), {}
     for line in open(path, errors="replace"):
         if not line.startswith("C '"):
@@ -106,7 +106,7 @@ def read_info(path, root, files):
 
 
 def report(files, gates, out):
-    """Prints a line a file, writes the summary; what is below its gate."""
+    """Prints a line a file and writes the summary; returns the files below their gates."""
     rows, below, total = [], [], collections.defaultdict(Share)
     for name, file in sorted(files.items()):
         above = [path for path in gates if name.startswith(path)]

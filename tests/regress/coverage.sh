@@ -18,13 +18,13 @@ rm -rf $work/points $work/html
 mkdir -p $work/points
 find $work -name '*.gcda' -delete
 echo "coverage: running the tests"
-# A failing test is the regression's matter: what ran, ran. Fuzzers count for themselves; e2e.cores builds a chip of its own.
+# Tests that fail still count: the regression reports them. Fuzzers have their own counts; e2e.cores builds its own chip.
 COVERAGE_DIR=$PWD/$work/points ctest --test-dir $work -j "$jobs" -L 'rtl|firmware|vhdl|models|slice|interop|e2e' -E 'NOT_BUILT|^fuzz|^e2e.cores' >$work/ctest.log 2>&1 ||
     echo "coverage: some tests failed, see $work/ctest.log" >&2
 echo "coverage: merging"
 verilator_coverage --write $work/rtl.dat $work/points/*.dat >/dev/null
 verilator_coverage --write-info $work/rtl.info $work/points/*.dat >/dev/null
-# Each step's own patterns may match nothing in a build of few rooms; that is no error.
+# A step's patterns may match nothing in a build of few rooms; that is no error.
 own() { # in out pattern...
     in=$1 out=$2
     shift 2

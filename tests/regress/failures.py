@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""failures: what a person needs of a failed test: why, its log, how to repeat it, who fails alike,
-a waveform."""
+"""failures: collects for each failed test the reason, the log, a command that repeats it, the tests that
+fail alike, and a waveform."""
 import dataclasses
 import os
 import pathlib
@@ -10,17 +10,17 @@ import shutil
 from runner import Result
 from tool import write
 
-# Words of a runner or of a flight's end: names, times and counts differ where causes do not.
+# Words of a runner or of a flight's end: their names, times and counts differ for one cause.
 RUNNERS = re.compile(
     r"^\[|^at clock cycle|tests? (ran|FAILED|PASSED)|^\s*\d+ FAILED|note:|trace: |Running main|"
     r"^The mission failed|^Its end|^icesoc-sim: Cortex-M3: |^icesoc-sim: [0-9.]+ s simulated|"
     r"^-- \S+ \S+ XBeeAT: |^[\s{}()\[\];]*$", re.I)
-# What a compiler or a lint says of a line of a file
+# A message of a compiler or a lint about a line of a file
 OF_FILE = re.compile(
     r"^%(Error|Warning)[^ ]*: [^ ]+:\d+:|"
     r"^[^ ]+:\d+:(\d+:)? *((fatal|runtime) error|error|warning):|"
     r"^SUMMARY: \S+Sanitizer: |^[^ ]+\.vhdl?:\d+:\d+:")
-# What a test says of a value, or Python of an exception
+# A test's message about a value, or Python's about an exception
 OF_VALUE = re.compile(r"\berror\b|(?<!as )\bexpected\b|\bdiffers?\b|^\w*(Error|Exception): ", re.I)
 
 
@@ -34,18 +34,18 @@ class Failure:
     changed: str = ""  # since it passed, or ""
     log: str = ""  # file
     wave: str = ""  # FST or VCD file, or ""
-    about: str = ""  # text that names signals which matter: the assertion, or the reason
+    about: str = ""  # text with the names of relevant signals: the assertion, or the reason
     scope: str = ""  # instance in which to look: "u_window.u_wrapper", or ""
-    own_assertion: bool = False  # of a proof: it stands in the module that is proven
+    own_assertion: bool = False  # of a proof: the assertion is in the proven module
     save: str = ""  # GTKWave save file, or ""
     clock: int = 0  # of the failure, in that waveform; 0: its end
 
 
 def reason_of(log):
-    """The test's own words: GoogleTest's lines after the first "Failure", else the first that a
-    compiler says of a file, else the first that speaks of an error, else the last line.
+    """The reason in the test's log: GoogleTest's lines after the first "Failure", else a compiler's
+    first message about a file, else the first line about an error, else the last line.
 
-    What stands indented below a line that ends in a colon is left out."""
+    Indented lines below a line that ends in a colon are left out."""
     last, of_file, of_value, failure = "", "", "", None
     for line in log.splitlines():
         below = line.startswith(" ") and last.endswith(":")
@@ -66,8 +66,8 @@ def reason_of(log):
 
 
 def find_assertion(failure):
-    """Adds to a proof's failure which assertion fails: its place and text, the instance in which it
-    stands, and whether that is of the module that is proven. Yosys names the assertion's cell by
+    """Adds the assertion that fails to a proof's failure: its place and text, its instance, and
+    whether that belongs to the proven module. Yosys names the assertion's cell by
     instance, file and line, and beside it the lines of all cells around."""
     match = re.search(
         r"Assert failed in \S+: (\S+) \((?:\$flatten/)?(?:(\S*?)\.?\$assert\$(\S+)\$)?",
@@ -91,8 +91,8 @@ def find_assertion(failure):
 
 
 def rank(failure, tests):
-    """When to look at a failure: first proofs, which name the property, of the module that has it
-    before those of the modules around; then checks of sources; then tests of one block, of the
+    """The place of a failure in the reading order: first proofs, which name the property, the module
+    that has it before the modules around; then checks of sources; then tests of one block, of the
     chip, of the firmware; whole missions last."""
     test = tests.get(failure.result.name)
     text = " ".join([failure.result.name, *([test.place, *test.labels] if test else [])])
@@ -103,8 +103,7 @@ def rank(failure, tests):
 
 
 def examine(results, tests, out):
-    """The failures in the order in which they are worth reading; keeps the logs, and the traces of
-    proofs, in <out>/failures/."""
+    """The failures in reading order; keeps logs, and traces of proofs, in <out>/failures/."""
     folder, failures = out / "failures", []
     shutil.rmtree(folder, ignore_errors=True)
     for result in [result for result in results if result.status == "failed"]:

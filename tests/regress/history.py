@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""history: what each run gave, a line of JSON a run, in history.jsonl; and the seeds that made
-tests fail, in seeds.jsonl until the tests pass with them."""
+"""history: keeps the results of each run, a line of JSON a run, in history.jsonl, and in seeds.jsonl the
+seeds that made tests fail, until the tests pass with them."""
 import collections
 import json
 import time
@@ -11,7 +11,7 @@ KEPT_RUNS = 300
 
 
 def lines_of(path, *keys):
-    """The objects of a file, and how many lines of it are damaged."""
+    """The objects of a file, and the number of its damaged lines."""
     found, damaged = [], 0
     for line in path.read_text(errors="replace").splitlines() if path.exists() else []:
         try:
@@ -103,7 +103,7 @@ class FailingSeeds:
         return gone
 
     def update(self, results, commit):
-        """Takes in what failed, drops what passed with its seed, and writes the file anew."""
+        """Adds failures, drops tests that passed with their seed, and writes the file anew."""
         for result in results:
             key = (result.name, result.seed)
             if result.status == "passed":

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""lights: a run in seven lights, tests, proofs, plan, mutants, coverage, size, speed: green, red,
-or grey: not measured, or the sources have changed since. Each looks at its own figures only, so
+"""lights: shows a run as seven lights: tests, proofs, plan, mutants, coverage, size, speed. A light is
+green, red, or grey: not measured, or the sources have changed since. Each reads its own figures only, so
 that a bug of one kind turns one light red."""
 from tool import tree_state
 
@@ -14,7 +14,7 @@ def missing(name, command):
 
 
 def judge(name, good, wrong, bad):
-    """Green with `good`, or red with the first few of what is wrong."""
+    """Green with `good`, or red with the first few errors."""
     if not bad:
         return light(name, "green", good)
     return light(name, "red", f"{len(bad)} {wrong}: {', '.join(bad[:3])}{', ...' * (len(bad) > 3)}")
@@ -72,7 +72,7 @@ def of_entries(name, entries, command):
 
 
 def of_size(utilisation):
-    """A design that failed has no figure: what `make synth` says decides."""
+    """A design that failed has no figure: the result of `make synth` decides."""
     if not utilisation:
         return missing("size", "make synth")
     if utilisation["failures"]:
@@ -94,7 +94,7 @@ def of_plan(plan):
 
 
 def lights_of(data, source):
-    """The lights of what report.py has gathered: [{name, state, text}]."""
+    """The lights of report.py's data: [{name, state, text}]."""
     measured = [of_mutants(data["mutants"], data.get("drawn", {}), source),
                 of_coverage(data.get("coverage")), of_size(data.get("utilisation")),
                 of_entries("speed", data.get("speed", {}).get("entries", []), "make bench")]

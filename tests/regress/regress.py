@@ -92,7 +92,7 @@ class Regression:
         return Changes(self.options.source, self.options.build, self.options.out)
 
     def choose(self, tests, built=True):
-        """The tests that are asked for; before the build some are known by their program only."""
+        """The tests that the options choose; before the build some are known by their program only."""
         o, chosen = self.options, []
         exact = any(test.name == o.name.pattern for test in tests)
         for test in tests:
@@ -111,8 +111,8 @@ class Regression:
         return chosen
 
     def _changed(self, test, built):
-        """What failed last is chosen whatever has changed; what has never passed here, if it
-        depends on what differs from the commit."""
+        """Chooses tests that failed last in any case, and tests that have never passed here if their
+        files differ from the commit."""
         passed = self.history.last_pass(test.name)
         if self.history.last(test.name) == "f":
             return True
@@ -121,13 +121,13 @@ class Regression:
         return self.changes.touched(test, passed)
 
     def build(self):
-        """Builds what the chosen tests need, or lists it; their cases are known afterwards only."""
+        """Builds, or lists, the targets of the chosen tests; their cases are known only afterwards."""
         o = self.options
         tests = list_tests(o.build)
         outputs = {line.rpartition(":")[0] for line in tool.run(
             ["ninja", "-C", o.build, "-t", "targets", "all"])[1].splitlines()}
         chosen, targets = self.choose(tests, built=False), set()
-        for test in chosen:  # it grows by what sets up others' fixtures
+        for test in chosen:  # it grows by the tests that set up others' fixtures
             targets.update(targets_of(test, o.build, outputs))
             chosen += [other for other in tests if set(other.sets) & set(test.needs) and
                        other not in chosen]
@@ -166,7 +166,7 @@ class Regression:
         if not o.prepare or o.changed:
             fingerprint(tests, o.source, o.build)
         chosen = self.choose(tests)
-        if not chosen or o.prepare:  # of --prepare, CTest runs them, and keeps no history
+        if not chosen or o.prepare:  # after --prepare, CTest runs them without history
             return 0 if chosen else self.nothing(tests)
         if o.list:
             print("\n".join(test.name for test in chosen))

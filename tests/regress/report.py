@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""report: what is known after a run, as a page, as Markdown, as JSON."""
+"""report: writes the results of a run as a page, as Markdown and as JSON."""
 import json
 import pathlib
 import re
@@ -24,7 +24,7 @@ def read(path):
 
 
 def proofs_of(results):
-    """What prove.sh says in logs: "X: proven, 47 clauses with 33 flops", "X: 2 covers reached"."""
+    """The proofs in logs of prove.sh: "X: proven, 47 clauses with 33 flops", "X: 2 covers reached"."""
     def said(log, what):
         return (re.search(what, log) or ["", "-"])[1]
     return [[r.name[7:], r.status, said(r.log, "bounded, ([0-9]+) clocks"),
@@ -33,9 +33,9 @@ def proofs_of(results):
 
 
 def measurements(build):
-    """What other commands have left in build/, with the state of the tree that they measured."""
+    """The results that other commands left in build/, with the state of the tree that they measured."""
     data = {name: found for name, path in MEASURED.items() if (found := read(build / path))}
-    for file in data.get("coverage", {}).get("files", []):  # all of it is in coverage's own summary
+    for file in data.get("coverage", {}).get("files", []):  # coverage's own summary has the rest
         if (more := len(file["missed"]) - 40) > 0:
             file["missed"][40:] = [f"and {more} more"]
     mutants = build / "mutants/results.tsv"
@@ -76,7 +76,7 @@ def gather(history, tests, results, failures, source, seeds):
 
 
 def cell(text):
-    """Text in a table of Markdown."""
+    """Escapes a text for a table of Markdown."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace("|", "\\|")[:300]
 
 
@@ -115,7 +115,7 @@ def page_parts(libraries):
 
 def write_reports(data, failures, libraries, out):
     style, script = page_parts(libraries)
-    # Drawings have what the rest leaves of the page.
+    # Drawings get the rest of the page's size.
     rest = LARGEST - len(style) - len(script) - len(json.dumps(data)) - 60_000
     drawn = [i for i, failure in enumerate(failures) if failure.wave]
     for i in drawn:

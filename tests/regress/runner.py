@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""runner: runs chosen tests by CTest, says how far it is, and writes JUnit."""
+"""runner: runs chosen tests by CTest, prints the progress, and writes JUnit."""
 import dataclasses
 import re
 import sys
@@ -14,13 +14,13 @@ class Result:
     status: str  # "passed", "failed", "skipped"
     seconds: float
     log: str = ""
-    end: str = ""  # of one that failed: "SegFault", "Timeout"; "" where it ended by itself
+    end: str = ""  # of a failed test: "SegFault", "Timeout"; "" if it ended by itself
     seed: str = ""
 
 
 class Progress:
-    """Says how far the run is: on a terminal in one line that is written anew, else at each tenth.
-    A failure is told at once."""
+    """Prints the progress: on a terminal in one line that it rewrites, else at each tenth. It reports a
+    failure at once."""
 
     def __init__(self, tests, history, jobs):
         self.jobs, self.total, self.done, self.failed = jobs, len(tests), 0, 0

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""tests: every test that CTest knows, what it depends on, what must be built for it, and the plan:
-which requirement of docs/ which tests prove."""
+"""tests: every test that CTest knows, with its files and the targets that it needs, and the plan, which
+names the tests of each requirement in docs/."""
 import dataclasses
 import fnmatch
 import functools
@@ -13,7 +13,7 @@ import tomllib
 
 from tool import Stop, digest, run, tracked
 
-NOT_BUILT = "_NOT_BUILT"  # CTest's ending for a program whose cases it does not know
+NOT_BUILT = "_NOT_BUILT"  # CTest's suffix for a program whose cases it does not know
 
 
 @dataclasses.dataclass
@@ -26,8 +26,8 @@ class Test:
     labels: list = dataclasses.field(default_factory=list)
     needs: list = dataclasses.field(default_factory=list)  # CTest's fixtures
     sets: list = dataclasses.field(default_factory=list)
-    targets: list | None = None  # NEEDS=... of its environment: what must be built for it
-    print: str = ""  # changes when what the test runs changes
+    targets: list | None = None  # NEEDS=... of its environment: the targets that it needs
+    print: str = ""  # changes with the test's program or files
 
     @property
     def unbuilt(self):
@@ -35,7 +35,7 @@ class Test:
 
     @property
     def program(self):
-        """The program's name; it is that of the target, too."""
+        """The name of the program and of its target."""
         return self.name.removesuffix(NOT_BUILT) if self.unbuilt else self.name.split(".")[0]
 
     def is_program(self, build):
@@ -43,7 +43,7 @@ class Test:
             self.command[0].startswith(f"{build}/")
 
     def reads(self):
-        """The folders that a test reads which is no program."""
+        """The folders that a test without a program reads."""
         own = f"tests/{self.place}"
         if "formal" in self.place or "lint" in self.place:
             return ("bus", "hdl", "ip", own)
@@ -91,15 +91,15 @@ def list_tests(build):
             if word.startswith("NEEDS="):
                 test.targets = word[6:].split()
         labels = pathlib.Path(folder, f"{test.program}_labels.cmake")
-        if test.unbuilt and labels.exists():  # that icesoc_test() gives to its cases
+        if test.unbuilt and labels.exists():  # written by icesoc_test() for its cases
             test.labels = ";".join(re.findall('LABELS "([^"]*)"', labels.read_text())).split(";")
         tests.append(test)
     return tests
 
 
 def targets_of(test, build, outputs):
-    """The targets that ninja must build for a test: `Test.targets`, or else what its command names
-    of the build folder's `outputs`; "all" where it names that folder, or what is unknown."""
+    """The targets that ninja must build for a test: `Test.targets`, or else the `outputs` of the build
+    folder in its command; "all" if the command has that folder, or an unknown file in it."""
     if test.unbuilt:
         return [test.program]
     if test.name.startswith("formal."):
@@ -137,7 +137,7 @@ def fingerprint(tests, source, build):
 
 
 class Graph:
-    """What ninja makes of what, headers of the last compilation among it."""
+    """Ninja's graph of files, with the headers of the last compilation."""
 
     def __init__(self, source, build):
         self.source, self.build, self.made = source.resolve(), build.resolve(), {}
@@ -157,7 +157,7 @@ class Graph:
 
     @functools.cache
     def inputs(self, target):
-        """The files of the tree of which a target is made."""
+        """The files of the tree from which a target is made."""
         found, seen, left = set(), set(), [target]
         while left:
             path = left.pop().removeprefix(f"{self.build}/")
@@ -209,7 +209,7 @@ def unmatched(requirement, tests):
 
 
 def judge_plan(plan, tests, history):
-    """Judges each requirement by how its tests ended with these sources, or else last."""
+    """Judges each requirement by its tests' last results, those with these sources first."""
     rows = []
     for each in plan:
         mine = [test for test in tests if each.matches(test)]

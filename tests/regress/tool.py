@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tool: other programs, whole files, states of the tree, and a lock on a folder."""
+"""tool: runs other programs, writes whole files, notes states of the tree, and locks a folder."""
 import contextlib
 import ctypes
 import fcntl
@@ -12,11 +12,11 @@ import time
 
 
 class Stop(Exception):
-    """Ends the program with its words and exit status 2."""
+    """Ends the program with this message and exit status 2."""
 
 
 def run(command, environment=None, on_line=None):
-    """Runs a program to its end; (exit status, what it said). It ends with us, however we do."""
+    """Runs a program to its end; (exit status, output). It ends with this process, however that ends."""
     words = ["setpriv", "--pdeathsig", "TERM", *map(str, command)]
     said = []
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
@@ -49,7 +49,7 @@ def tracked(source):
 
 
 def tree_state(source, folders):
-    """The state of folders, "bus hdl: 0123...": a measurement is of today while it is the same."""
+    """The state of folders, "bus hdl: 0123...": a measurement is current while it is the same."""
     files = sorted(f for f in tracked(source) if f.split("/")[0] in folders.split())
     def hashes(text, *words):
         return subprocess.run(["git", "hash-object", *words], input=text, text=True, cwd=source,
@@ -64,7 +64,7 @@ def digest(parts):
 
 @contextlib.contextmanager
 def only_one(folder, program):
-    """Holds a folder; says who holds it, and waits, while another process does."""
+    """Locks a folder; while another process holds it, prints which one, and waits."""
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "lock", "a+") as lock:
         try:
@@ -82,13 +82,13 @@ def only_one(folder, program):
 
 
 def adopt_orphans():
-    """What our programs leave behind becomes our child, and not init's."""
+    """Makes processes that programs leave behind children of this process instead of init."""
     become_subreaper = 36
     ctypes.CDLL(None).prctl(become_subreaper, 1)
 
 
 def end_orphans():
-    """Ends what does not end by itself within two seconds; a line of each that was left."""
+    """Ends processes that stay for two seconds; returns a line for each of them."""
     left = {}
     for attempt in range(40):
         time.sleep(0.05 if attempt else 0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""waves: a failed test of RTL, or a failed flight, once more, with a waveform of the clocks around
-its failure; and the last moments of a waveform, as the page draws them."""
+"""waves: repeats a failed test of RTL, or a failed flight, with a waveform of the clocks around the
+failure, and prepares the end of a waveform for the page's drawing."""
 import collections
 import dataclasses
 import json
@@ -17,17 +17,17 @@ MOST_CHANGES, FEWEST_CHANGES, MOST_SIGNALS = 400, 25, 200  # of a drawing
 
 @dataclasses.dataclass
 class Scene:
-    """What is to be seen again: a test's program, or a flight's recording, around a clock."""
+    """A repetition: a test's program, or a flight's recording, around a clock."""
     program: str
     clock: int
     flight: str = ""  # folder of the recording
-    slot: int = 0  # of the core of which the processor last heard; 0: of none
+    slot: int = 0  # of the last core that the processor heard of; 0: none
     before: int = 2000
     after: int = 20
 
 
 def scene_of(failure, test):
-    """None: nothing of the failure can be seen."""
+    """None: the failure has no waveform."""
     log = failure.result.log
     if match := re.search(r"make run REPLAY='([^']+)' FROM=[0-9.]+ TO=([0-9.]+)", log):
         scene = Scene("icesoc-sim", int(float(match[2]) * CLOCKS_PER_SECOND), match[1])
@@ -37,7 +37,7 @@ def scene_of(failure, test):
                 event = json.loads(line)
             except ValueError:
                 continue
-            # Where the processor last heard of a core, or else of the modem
+            # The last place where the processor heard of a core, or else of the modem
             slot = event.get("slot", -1)
             if slot >= FIRST_CORE or slot >= 0 and not scene.slot:
                 scene.clock = event["ns"] // 10
@@ -46,13 +46,13 @@ def scene_of(failure, test):
         scene = Scene(failure.result.name.split(".")[0], int(match[1]))
     else:
         return None
-    if "e2e" in test.labels:  # a mission's program is at work for longer than a block is
+    if "e2e" in test.labels:  # a mission's program works for longer than a block
         scene.before, scene.after = 150_000, 50_000
     return scene
 
 
 def instance_in(slot, build):
-    """The instance in a slot, as the chip's list of cores names it."""
+    """The name of a slot's instance in the chip's list of cores."""
     cores = build / "gen/soc_cores.vh"
     match = re.search(rf"(u_\w+) \([^;]*`SLOT\({slot}\)",
                       cores.read_text() if cores.exists() else "")
@@ -60,8 +60,8 @@ def instance_in(slot, build):
 
 
 def save_file(wave, build, folder, has_program):
-    """GTKWave's save file: the program's rows, and the ports of the models below `folder`, and
-    below the folder of the block that is tested there: tests/hdl/fifo, hdl/fifo."""
+    """GTKWave's save file: the program's rows, and the ports of the models below `folder` and below the
+    folder of the tested block: tests/hdl/fifo, hdl/fifo."""
     rows = ["program.task", "program.interrupt", "program.function"] * has_program
     for place in sorted({folder, folder.removeprefix("tests/")}):
         for header in sorted((build / place).rglob("verilated_*/V*.h")):
@@ -74,7 +74,7 @@ def save_file(wave, build, folder, has_program):
 
 
 def add_wave(failure, test, scene, source, tested, jobs):
-    """Makes a failure's waveform by the build in build/trace, or says why there is none."""
+    """Makes a failure's waveform by the build in build/trace, or prints why there is none."""
     build = (source / "build/trace").resolve()
     if not (build / "build.ninja").exists():
         run(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DTRACE=ON"])
@@ -104,7 +104,7 @@ def add_wave(failure, test, scene, source, tested, jobs):
 
 
 def add_waves(failures, tests, source, build, jobs, limit):
-    """Says on the terminal what it does; a test that cannot be traced has no waveform."""
+    """Prints its steps on the terminal; a test that cannot be traced has no waveform."""
     made = 0
     for failure in failures:
         test = tests.get(failure.result.name)
@@ -130,7 +130,7 @@ class Signal:
 
 
 def shown(bits):
-    """A value in hexadecimal, "x" or "z" where a bit of it is; one bit as it is."""
+    """A value in hexadecimal, a digit with such a bit as "x" or "z"; a single bit unchanged."""
     strange = bits.lstrip("01")
     digits = (len(bits) + 3) // 4
     return bits if len(bits) <= 1 else strange[0] if strange else f"{int(bits, 2):0{digits}x}"
@@ -138,7 +138,7 @@ def shown(bits):
 
 def read_vcd(text):
     """The signals of a VCD file (IEEE 1364-2005, 18.2), the first and the last moment. A signal
-    that goes by several names has its outermost."""
+    with several names has its outermost one."""
     head, _, body = text.partition("$enddefinitions")
     signals, scopes = {}, []
     for kind, rest in re.findall(r"\$(scope|upscope|var)\s+(.*?)\s*\$end", head, re.S):
@@ -147,7 +147,7 @@ def read_vcd(text):
             scopes.append(words[1])
         elif kind == "upscope":
             scopes.pop()
-        elif not words[3].startswith("smt_"):  # the solver's own
+        elif not words[3].startswith("smt_"):  # signals of the solver
             signal = Signal(scopes, words[3], int(words[1]) * (words[0] != "string"))
             known = signals.get(words[2])
             if not known or signal.depth < known.depth:
@@ -166,7 +166,7 @@ def read_vcd(text):
             signal, value = signals.get(value), kind
         else:
             continue
-        # Proofs' traces repeat at each step what has not changed.
+        # Proofs' traces repeat unchanged values at each step.
         if signal and not (signal.changes and signal.changes[-1][1] == value):
             signal.changes.append((now, value))
     return [signal for signal in signals.values() if signal.changes], moments
@@ -175,8 +175,8 @@ def read_vcd(text):
 def drawing_of(failure, room):
     """{from, to, signals: [[name, bits, [time, value, ...]], ...], more: signals left out}: the
     program's, those that the failure's text names, those that move below its instance, others that
-    move, those that stay as they are; among each the outermost first. Of a drawing of more than
-    `room` bytes the older changes are left out, then the last signals."""
+    move, constant ones; in each group the outermost first. A drawing of more than `room` bytes loses
+    its older changes, then the last signals."""
     try:
         signals, moments = read_vcd(run(["fst2vcd", "-f", failure.wave])[1]
                                     if failure.wave.endswith(".fst")
@@ -192,7 +192,7 @@ def drawing_of(failure, room):
         name = signal.name.rpartition(".")[2]
         within = f".{failure.scope}." in signal.name if failure.scope else signal.depth <= 3
         moves = len(signal.changes) > 1
-        nameless = bool(re.fullmatch(r"n\d+(_o)?", name))  # a converter's
+        nameless = bool(re.fullmatch(r"n\d+(_o)?", name))  # named by a converter
         return (signal.bits != 0, nameless, not (name in words and within),
                 not (moves and failure.scope and within), not moves, signal.depth, signal.name)
     signals.sort(key=rank)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 #
-# commands: what the Makefile does, with each of its variables. Sourced by regress.sh, in its project.
+# commands: tests the Makefile's targets with each of their variables. Sourced by regress.sh, in its project.
 
-# In the whole tree, where all is built.
+# Runs make in the whole tree, where everything is built.
 user() { status=0; "$source/tests/regress/test/make_in.sh" "$source" "$source" "$build" "$@" >out.txt 2>&1 </dev/null || status=$?; }
 refused() { # words, then the command
     words=$1
@@ -11,7 +11,7 @@ refused() { # words, then the command
     [ $status -ne 0 ] && has "$words" && hasNot 'Traceback\|--help' || fail "$* is not refused"
 }
 
-# In this project, with all that the Makefile's recipes ask of a build.
+# Runs make in this project, with all files of a build that the Makefile's recipes need.
 entrance() {
     mkdir -p cmake ip/fir
     cp "$source/cmake/configure.sh" "$source/cmake/set.sh" "$source/cmake/ninja.sh" cmake
@@ -56,7 +56,7 @@ good() { here "$@" && [ $status -eq 0 ] || fail "make $* ends with $status"; }
 bad() { here "$@" && [ $status -ne 0 ] || fail "make $* succeeds"; }
 
 case $case in
-commands_run) # a variable's value that cannot be is refused in the user's words: so each reaches its program
+commands_run) # the program's message about an invalid value of a variable proves that the variable reaches it
     mkdir flight && echo '{}' >flight/flight.jsonl && echo up >flight/status
     refused "THRESHOLD is 0..255 grey levels, not '300'" run THRESHOLD=300
     refused "LOSS is the share .* not '7'" run LOSS=7
@@ -67,7 +67,7 @@ commands_run) # a variable's value that cannot be is refused in the user's words
     refused "OPEN=1 flies in the clear, KEY='/none' does not" run OPEN=1 KEY=/none
     refused "size '96x64k'" run SIZE=96x64k OUT="$work/flight"
     refused "cannot read picture '/none'" run IMAGE=/none OUT="$work/flight"
-    hasNot 'REPLAY=' # which would be of an earlier flight, still in the folder
+    hasNot 'REPLAY=' # it would be of an earlier flight, still in the folder
     refused "cannot read PINS='/none'" run PINS=/none OUT="$work/flight"
     refused "PROBE='fir.go=1' is a trigger of a probe: CORES=probe" run PROBE=fir.go=1 OUT="$work/flight"
     refused "OUT='/proc/none' is no folder" run OUT=/proc/none
@@ -116,7 +116,7 @@ commands_small)
     has 'SEED=2'
     bad regress FAILED=1 && has '^1 tests' && bad regress KEPT=1 && has '^1 tests, SEED=2'
     good regress CHANGED=1 NAME='a[.]'
-    # A bench that fails hides no other's figures, and its own of another day are not today's.
+    # A bench that fails hides no other's figures, and its older figures do not count as new.
     mkdir -p docs
     good bench && [ "$(grep -c '^| trip | 20 ms | limit 40, 50.0 % |$' docs/figures.md)" = 2 ] || fail "$(cat docs/figures.md)"
     grep -q "^Measured on .* at commit $(git rev-parse --short HEAD) and changes to it\.$" docs/figures.md || fail "figures of an unknown commit"
@@ -135,7 +135,7 @@ commands_small)
     has 'no commit nonsense'
     good clean && [ ! -e build ] || fail "make clean leaves build/"
     ;;
-commands_nightly) # each step is done whatever became of those before it, and one that fails is not forgotten
+commands_nightly) # each step runs even if earlier ones failed, and each failure is reported
     entrance
     make=$(command -v make)
     mkdir bin

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""interrupted: make regress, make synth and make new-ip are ended at moments drawn from a seed, by Ctrl-C (INT to all),
-TERM or KILL; no process is left, and the next run is right.
+"""interrupted: ends make regress, make synth and make new-ip at moments drawn from a seed, by Ctrl-C (INT to all),
+TERM or KILL. No process may be left, and the next run must be right.
 
 Usage: interrupted.py source-folder build-folder work-folder moments new_ip|regress|synth...      SEED=1
 """
@@ -87,7 +87,7 @@ def main():
         right = result()
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL) * moments:
             moment = draw.uniform(0, longest)
-            shutil.rmtree(work / tool, ignore_errors=True)  # what the run before has kept
+            shutil.rmtree(work / tool, ignore_errors=True)  # kept by the run before
             cut = interrupt(command, number, moment, where)
             subprocess.run(command, cwd=where, check=True, stdout=subprocess.DEVNULL, timeout=LONGEST)
             assert result() == right, "%s: another result after %s at %.2f s" % (tool, number.name, moment)

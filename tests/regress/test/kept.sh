@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# kept: kept.py's path, work folder   What makes tests/kept.py compute, and what does not.
+# kept: tests when tests/kept.py computes a verdict anew, and when not. Usage: kept.sh kept.py's-path work-folder
 set -eu
 kept=$1 work=$2
 rm -rf "$work"
@@ -9,7 +9,7 @@ cp "$kept" "$work/a/tests"
 cd "$work/a"
 export XDG_CACHE_HOME="$work/cache" PATH="$work/bin:$PATH"
 unset FRESH
-# The test: looks for b.vh in two folders as compilers do, counts the names of one, asks a tool, and waits where it is to.
+# The test looks for b.vh in two folders as compilers do, counts the names in one, calls a tool, and waits if told to.
 cat >tests/t.sh <<'END'
 #!/bin/sh
 own=$1
@@ -25,7 +25,7 @@ chmod +x tests/t.sh "$work/bin/tool"
 echo 'b 1' >second/b.vh
 fail() { echo "kept: $*" >&2 && cat "$work/said" >&2 && exit 1; }
 run() { status=0; tests/kept.py "$PWD/own" tests/t.sh "$PWD/own" >"$work/said" 2>&1 || status=$?; }
-# why, words that it says: the verdict is computed now, and kept when asked again
+# why, words in its output: the verdict is computed now, and kept the next time
 computed() {
     sleep 0.1 # what has just been written is not trusted
     run

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 #
-# lights: a bug of each kind, seeded on purpose, turns its light red and no other. Sourced by regress.sh, in its project.
+# lights: seeds a bug of each kind, which must turn its light red and no other. Sourced by regress.sh, in its project.
 
 # light name state: in the last run's output
 light() { has "^$1  *$2"; }
 
-# What a measurement's own command leaves beside its figures.
+# Writes the file that a measurement's command leaves beside its figures.
 measured() { "$regress" --tree "$2" >"build/$1/tree"; }
 
 # The proof's and the coverage test's design: two bits that count to 2.
@@ -122,7 +122,7 @@ lights_mutants)
     light mutants 'red   *1 modules of which proofs and tests miss drawn mutants: fifo'
     drawn 100
     light mutants green
-    mkdir -p hdl && echo >hdl/new.v # what was measured is not what is there
+    mkdir -p hdl && echo >hdl/new.v # the measured sources have changed
     run --name 'a[.]'
     light mutants 'grey   sources have changed since it was green'
     ;;

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# look: a page in headless Chromium, 420 to 2560 pixels wide, light and dark: nothing is wider than the window, but what
-# scrolls by itself, text has a contrast of 4.5 at least to what is behind it (WCAG 2, AA), and no script ends by an error.
+# look: checks a page in headless Chromium, 420 to 2560 pixels wide, light and dark: only elements that scroll are wider
+# than the window, text has a contrast of 4.5 at least to its background (WCAG 2, AA), and no script ends by an error.
 # Usage: look.sh page.html
 set -eu
 work=$(mktemp -d)
@@ -65,7 +65,7 @@ for theme in dark light; do
     HOME=$work chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$work/chromium" --allow-file-access-from-files --enable-logging=stderr \
         --blink-settings=preferredColorScheme=$number --virtual-time-budget=20000 --dump-dom "file://$work/look.html#$theme" >"$work/dom" 2>"$work/log" ||
         { tail -3 "$work/log" >&2 && exit 1; }
-    # A script that ends by an error: the page's line, and what stands there.
+    # For a script that ends by an error: the page's line and its text.
     error=$(sed -n 's|.*:CONSOLE[^ ]* "\(Uncaught .*\)", source: file:[^ ]* (\([0-9]*\))$|\2: \1|p' "$work/log" | head -1)
     [ -z "$error" ] || { echo "$1:$error: $(sed -n "${error%%:*}s/^ *\(.\{0,120\}\).*/\1/p" "$1")" >&2 && exit 1; }
     said=$(sed -n 's/.*looked at \([0-9]*; .*\)\..*/\1/p' "$work/dom" | tail -1)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# make_in: runs a command of the Makefile as a user does, in a test's own small tree or in the whole one; what it would build and
-# install is there already. Usage: make_in.sh source-folder tree build-folder target variable=value...
+# make_in: runs a command of the Makefile as a user does, in a test's own small tree or in the whole one, where everything that
+# it would build and install exists already. Usage: make_in.sh source-folder tree build-folder target variable=value...
 set -eu
 source=$1 tree=$2 build=$3
 shift 3

@@ -65,7 +65,7 @@ results)
     hasNot "not 7 </script>" build/regress/report.html
     [ "$(wc -c <build/regress/report.html)" -lt 2000000 ] || fail "the page is over 2 MB"
     ;;
-rude) # what a test does that is not its place: its first line says it, and the run goes on
+rude) # tests that misbehave: the first line says so, and the run goes on
     while IFS='^' read -r name does says; do
         echo "add_test(NAME test_r.$name COMMAND sh -c [=[$does]=])" >>tests/room/CMakeLists.txt
         echo "$says" >>said
@@ -126,7 +126,7 @@ END
     run --plan
     [ $status -eq 2 ] && has 'plan.toml: .*line 6' || fail "a line that is no TOML is not told"
     ;;
-blame) # of one bug, one group; a test's own last word; what is nearest to the cause first
+blame) # one group for one bug; a test's own last word; the failure nearest to the cause first
     cat >>tests/room/CMakeLists.txt <<'END'
 foreach(i 1 2 3)
   add_test(NAME test_g.Case${i} COMMAND sh -c "printf 'x.cpp:1: Failure\nExpected 1, got 2\n[  FAILED  ] g.Case${i} (${i}7 ms)\n'; exit 1")
@@ -163,7 +163,7 @@ END
     has '<property name="wave" value="build/regress/failures/formal.broken.vcd"' build/regress/junit.xml
     has '^The longest: .* s '
     ;;
-changed) # of the files on which a failed test depends, what has changed since it passed: committed or not, new or gone; of a program those it is made of
+changed) # the changed files of a failed test since it passed: committed or not, new or gone; for a program its sources
     mkdir -p hdl/fifo docs
     printf 'a\nb\nc\nd\n' >hdl/fifo/fifo.v
     echo 1 >hdl/old.v && echo 1 >docs/page.md
@@ -178,7 +178,7 @@ END
     [ $status -eq 0 ] || fail "exit status $status, not 0"
     git add . && git commit -qm two
     sed -i 's/^case .1 in/&\na.One) exit 1 ;;/' tests/room/t.sh
-    run --name 'b.Bad' # never passed: what is not committed
+    run --name 'b.Bad' # never passed: files that are not committed
     has '^        changed since the commit; it is not known to have passed: tests/room/t.sh:3 (1 line)$'
     printf 'a\nB\nc\nD\nE\n' >hdl/fifo/fifo.v && rm hdl/old.v && echo 2 >docs/page.md && git commit -qam three
     run --changed --prepare --list --name u.Unit # new.v is none of its inputs, a header is
@@ -188,7 +188,7 @@ END
     has '^tests/room/test_u$'
     ninja -C build/main test_u >/dev/null
     run --name 'a.One|u.Unit' --seed 2
-    passed=$(git rev-parse --short=10 HEAD~2) # and what was not committed then
+    passed=$(git rev-parse --short=10 HEAD~2) # and files that were not committed then
     has "^        changed since it passed at $passed with SEED=1: hdl/fifo/n.h:1 (1 line), hdl/new.v:1 (1 line), hdl/fifo/fifo.v:2 (3 lines), hdl/old.v:1 (1 line), tests/room/t.sh:3 (1 line)$" # mine first
     has "^        changed since it passed at $passed with SEED=1: hdl/fifo/n.h:1 (1 line), tests/room/t.sh:3 (1 line)$" # its program, its folder
     has '<property name="changed" value="changed since it passed' build/regress/junit.xml
@@ -197,11 +197,11 @@ END
     echo flicker >.git/info/exclude && run --name c.Flicker && touch flicker
     run --name c.Flicker
     has '^        nothing has changed since it passed at [0-9a-f]*$'
-    rm -r build/regress/tree # somebody has tidied up: the commit is left
+    rm -r build/regress/tree # without noted trees the commit is left
     run --name a.One
     has "^        changed since it passed at $passed: hdl/fifo/n.h:1 (1 line), hdl/new.v:1 (1 line), hdl/fifo/fifo.v:1 (5 lines), .* tests/room/t.sh"
     ;;
-company) # progress, one run at a time, words for what was mistyped, no more built than is needed
+company) # progress, one run at a time, messages about mistyped words, no needless builds
     run --name 'a.One|formal'
     has '^2 of 2, 0 failed, 0:00 left'
     has '^tests  *green  1 passed, 4 did not run$'
@@ -243,7 +243,7 @@ END
     same "$(needs --label 'rtl|radio')" "test_radio "
     run --prepare --name script.tool
     [ $status -eq 0 ] && has '^Building tool ' && [ -e build/main/tool ] && [ ! -e build/main/other ] || fail "more or less is built than a test needs"
-    # With --changed: what has never passed here and does not depend on an edit is not built.
+    # With --changed: tests that have never passed here and do not depend on an edit are not built.
     git add . && git commit -qm more
     same "$(needs --changed --name '^script|soon|radio')" "Nothing to run: no test changed since the last run. "
     echo '# edit' >>tests/room/t.sh
@@ -255,7 +255,7 @@ END
     printf 'add_test(NAME test_late_NOT_BUILT COMMAND false)\n' >>tests/room/CMakeLists.txt
     cmake build/main >/dev/null
     run --label formal
-    has '1 passed, 1 failed' # what is not built may be of that label: it is not left out
+    has '1 passed, 1 failed' # programs that are not built may have that label: they are not left out
     # Another run has the lock until this one has said that it waits.
     flock build/regress/lock sh -c 'touch held; until grep -q "waiting for another run" out.txt; do sleep 0.1; done' &
     until [ -e held ]; do sleep 0.1; done
@@ -281,14 +281,14 @@ again)
     run --rerun-failed
     has "2 tests, SEED=1"
     run --changed
-    has "2 tests, SEED=1" # what passed has not changed
+    has "2 tests, SEED=1" # the tests that passed have not changed
     echo "# changed" >>tests/room/t.sh
     run --changed
     has "6 tests, SEED=1"
     run --name 'a.One' --repeat 3 --seed 7
     has "SEED=9"
     has "3 passed, 0 failed"
-    # A bug that is taken out again: what failed is run, sources of the last pass are that pass.
+    # A removed bug: the failed tests run, and the sources of the last pass count as that pass.
     printf '[thing]\n"It works" = "test_a.One"\n' >tests/plan.toml
     cp tests/room/t.sh right && sed -i 's/^case .1 in/&\na.One) exit 1 ;;/' tests/room/t.sh
     run --changed --name a.One
@@ -324,7 +324,7 @@ seeds)
     run --name 'test_[ab]' --seed 7 # passes with another seed: the others stay
     has "2 failing seeds are kept"
     cp build/regress/report.html page.html
-    run --kept --name 'a[.]' # none of these: another run's page stays what it was
+    run --kept --name 'a[.]' # none of these: another run's page stays unchanged
     has "no seed is kept"
     cmp -s page.html build/regress/report.html || fail "a run of nothing has written over another run's page"
     run --kept
@@ -382,7 +382,7 @@ END
         chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$work/chromium" \
             --virtual-time-budget=5000 --dump-dom "file://$work/$1" >dom.html 2>chromium.log || fail "chromium: $(tail -3 chromium.log)"
     }
-    # Where the libraries could not be fetched, all is there, and the page says how to get them.
+    # If the libraries could not be fetched, the page is complete and says how to get them.
     sed '/^!function.*Tabulator=/d; /^.*var uPlot=/d' build/regress/report.html >plain.html
     opened plain.html
     has 'Tabulator and uPlot could not be fetched. With a network' dom.html
@@ -443,7 +443,7 @@ JS
     has '>top.clk_i<' dom.html     # the outermost of its names
     has '>top.u_fifo.level<' dom.html
     has '>a7<' dom.html
-    has '>top.u_fifo.mask<' dom.html # which stays as it is
+    has '>top.u_fifo.mask<' dom.html # it stays constant
     has '>UAV_radioTask<' dom.html
     has 'id="results"' dom.html
     has 'test_c.Flicker' dom.html
@@ -527,7 +527,7 @@ END
     has '^program.task$' build/regress/failures/mission.x-1.gtkw
     has '"program.task",0,\[3,"idleTask",20,"radioTask",33,"idleTask"\]\],\["TOP.u_core.busy"' build/regress/report.html # the core before ports
     ;;
-large) # more than this project has: the page stays small
+large) # more tests than this project has: the page stays small
     cat >>tests/room/CMakeLists.txt <<'END'
 foreach(i RANGE 1 400)
   add_test(NAME test_with_a_long_name.AndManyCases.Number/${i} COMMAND ${t} a.${i})

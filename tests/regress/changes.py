@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""changes: lists the files of a failed test that have changed since it last passed: usually the best
-hint at the cause."""
+"""changes: lists the files of a failed test that have changed since it last passed: usually the
+best hint at the cause."""
 import functools
 import re
 
@@ -11,8 +11,8 @@ SHOWN = 6  # files
 
 
 class Changes:
-    """Notes the state of the tree, with changes that are not committed, as a tree of git. Its objects go
-    into <out>/tree; the repository gets none."""
+    """Notes the state of the tree, with changes that are not committed, as a tree of git. Its
+    objects go into <out>/tree; the repository gets none."""
 
     def __init__(self, source, build, out):
         self.source, self.build, self.environment, self.tree = source, build, {}, ""

@@ -64,8 +64,8 @@ class Explanations:
 
 
 def read_verilator(path, root, explanations, files):
-    """verilated.dat: C '\\1key\\2value\\1key\\2value...' count. If a module exists several
-    times, in several models or with several parameters, a point is covered if any of them covers it."""
+    """verilated.dat: C '\\1key\\2value\\1key\\2value...' count. If a module exists several times,
+    in several models or with several parameters, a point is covered if any of them covers it."""
     counts, places = collections.Counter(), {}
     for line in open(path, errors="replace"):
         if not line.startswith("C '"):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""failures: collects for each failed test the reason, the log, a command that repeats it, the tests that
-fail alike, and a waveform."""
+"""failures: collects for each failed test the reason, the log, a command that repeats it, the tests
+that fail alike, and a waveform."""
 import dataclasses
 import os
 import pathlib
@@ -91,9 +91,9 @@ def find_assertion(failure):
 
 
 def rank(failure, tests):
-    """The place of a failure in the reading order: first proofs, which name the property, the module
-    that has it before the modules around; then checks of sources; then tests of one block, of the
-    chip, of the firmware; whole missions last."""
+    """The place of a failure in the reading order: first proofs, which name the property, the
+    module that has it before the modules around; then checks of sources; then tests of one block,
+    of the chip, of the firmware; whole missions last."""
     test = tests.get(failure.result.name)
     text = " ".join([failure.result.name, *([test.place, *test.labels] if test else [])])
     order = ("^formal[.]", "^(lint|tree)[.]", "^(vhdl|slice)[.]|(hdl|bus|ip)/?.* rtl", " rtl",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""history: keeps the results of each run, a line of JSON a run, in history.jsonl, and in seeds.jsonl the
-seeds that made tests fail, until the tests pass with them."""
+"""history: keeps the results of each run, a line of JSON a run, in history.jsonl, and in
+seeds.jsonl the seeds that made tests fail, until the tests pass with them."""
 import collections
 import json
 import time

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""lights: shows a run as seven lights: tests, proofs, plan, mutants, coverage, size, speed. A light is
-green, red, or grey: not measured, or the sources have changed since. Each reads its own figures only, so
-that a bug of one kind turns one light red."""
+"""lights: shows a run as seven lights: tests, proofs, plan, mutants, coverage, size, speed. A light
+is green, red, or grey: not measured, or the sources have changed since. Each reads its own figures
+only, so that a bug of one kind turns one light red."""
 from tool import tree_state
 
 

@@ -92,7 +92,7 @@ class Regression:
         return Changes(self.options.source, self.options.build, self.options.out)
 
     def choose(self, tests, built=True):
-        """The tests that the options choose; before the build some are known by their program only."""
+        """The tests that the options choose; before the build only programs of some are known."""
         o, chosen = self.options, []
         exact = any(test.name == o.name.pattern for test in tests)
         for test in tests:
@@ -111,8 +111,8 @@ class Regression:
         return chosen
 
     def _changed(self, test, built):
-        """Chooses tests that failed last in any case, and tests that have never passed here if their
-        files differ from the commit."""
+        """Chooses tests that failed last in any case, and tests that have never passed here if
+        their files differ from the commit."""
         passed = self.history.last_pass(test.name)
         if self.history.last(test.name) == "f":
             return True
@@ -121,7 +121,7 @@ class Regression:
         return self.changes.touched(test, passed)
 
     def build(self):
-        """Builds, or lists, the targets of the chosen tests; their cases are known only afterwards."""
+        """Builds, or lists, the targets of the chosen tests; their cases are known afterwards."""
         o = self.options
         tests = list_tests(o.build)
         outputs = {line.rpartition(":")[0] for line in tool.run(

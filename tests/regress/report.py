@@ -24,7 +24,7 @@ def read(path):
 
 
 def proofs_of(results):
-    """The proofs in logs of prove.sh: "X: proven, 47 clauses with 33 flops", "X: 2 covers reached"."""
+    """The proofs in logs: "X: proven, 47 clauses with 33 flops", "X: 2 covers reached"."""
     def said(log, what):
         return (re.search(what, log) or ["", "-"])[1]
     return [[r.name[7:], r.status, said(r.log, "bounded, ([0-9]+) clocks"),
@@ -33,7 +33,7 @@ def proofs_of(results):
 
 
 def measurements(build):
-    """The results that other commands left in build/, with the state of the tree that they measured."""
+    """Results that other commands left in build/, with the state of the tree they measured."""
     data = {name: found for name, path in MEASURED.items() if (found := read(build / path))}
     for file in data.get("coverage", {}).get("files", []):  # coverage's own summary has the rest
         if (more := len(file["missed"]) - 40) > 0:

@@ -19,8 +19,8 @@ class Result:
 
 
 class Progress:
-    """Prints the progress: on a terminal in one line that it rewrites, else at each tenth. It reports a
-    failure at once."""
+    """Prints the progress: on a terminal in one line that it rewrites, else at each tenth. It
+    reports a failure at once."""
 
     def __init__(self, tests, history, jobs):
         self.jobs, self.total, self.done, self.failed = jobs, len(tests), 0, 0

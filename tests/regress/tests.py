@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""tests: every test that CTest knows, with its files and the targets that it needs, and the plan, which
-names the tests of each requirement in docs/."""
+"""tests: every test that CTest knows, with its files and the targets that it needs, and the plan,
+which names the tests of each requirement in docs/."""
 import dataclasses
 import fnmatch
 import functools
@@ -98,8 +98,8 @@ def list_tests(build):
 
 
 def targets_of(test, build, outputs):
-    """The targets that ninja must build for a test: `Test.targets`, or else the `outputs` of the build
-    folder in its command; "all" if the command has that folder, or an unknown file in it."""
+    """The targets that ninja must build for a test: `Test.targets`, or else the `outputs` of the
+    build folder in its command; "all" if the command has that folder, or an unknown file in it."""
     if test.unbuilt:
         return [test.program]
     if test.name.startswith("formal."):

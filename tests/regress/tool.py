@@ -16,7 +16,7 @@ class Stop(Exception):
 
 
 def run(command, environment=None, on_line=None):
-    """Runs a program to its end; (exit status, output). It ends with this process, however that ends."""
+    """Runs a program to its end; (exit status, output). A killed parent ends it, too."""
     words = ["setpriv", "--pdeathsig", "TERM", *map(str, command)]
     said = []
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,

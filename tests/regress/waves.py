@@ -60,8 +60,8 @@ def instance_in(slot, build):
 
 
 def save_file(wave, build, folder, has_program):
-    """GTKWave's save file: the program's rows, and the ports of the models below `folder` and below the
-    folder of the tested block: tests/hdl/fifo, hdl/fifo."""
+    """GTKWave's save file: the program's rows, and the ports of the models below `folder` and below
+    the folder of the tested block: tests/hdl/fifo, hdl/fifo."""
     rows = ["program.task", "program.interrupt", "program.function"] * has_program
     for place in sorted({folder, folder.removeprefix("tests/")}):
         for header in sorted((build / place).rglob("verilated_*/V*.h")):
@@ -175,8 +175,8 @@ def read_vcd(text):
 def drawing_of(failure, room):
     """{from, to, signals: [[name, bits, [time, value, ...]], ...], more: signals left out}: the
     program's, those that the failure's text names, those that move below its instance, others that
-    move, constant ones; in each group the outermost first. A drawing of more than `room` bytes loses
-    its older changes, then the last signals."""
+    move, constant ones; in each group the outermost first. A drawing of more than `room` bytes
+    loses its older changes, then the last signals."""
     try:
         signals, moments = read_vcd(run(["fst2vcd", "-f", failure.wave])[1]
                                     if failure.wave.endswith(".fst")

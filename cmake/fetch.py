@@ -3,8 +3,9 @@
 """fetch: brings what the build uses and Debian's packages leave out, without touching the system.
 
 Usage: fetch.py THING FOLDER    puts it into FOLDER; `fetch.py --help` lists the things
-What has a checksum here is the file that was tested, or it is refused. Downloads are kept in ${XDG_CACHE_HOME:-~/.cache}/icesoc,
-so that a second build needs no network. ICESOC_NPM, ICESOC_RAW: a mirror of registry.npmjs.org, of raw.githubusercontent.com.
+What has a checksum here is the file that was tested, or it is refused. Downloads are kept in
+${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network. ICESOC_NPM, ICESOC_RAW:
+a mirror of registry.npmjs.org, of raw.githubusercontent.com.
 Exit status 77: there is no network, and only what is optional needs this thing.
 """
 
@@ -13,13 +14,13 @@ import fcntl
 import hashlib
 import os
 import pathlib
+import re
 import shlex
 import shutil
 import subprocess
 import sys
 import tarfile
 import tempfile
-import urllib.error
 import urllib.request
 
 CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "icesoc"
@@ -29,23 +30,29 @@ NPM = os.environ.get("ICESOC_NPM") or "https://registry.npmjs.org"
 KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
 
 # Path in Debian's pool, or below the mirrors above; sha256
-LZ4 = "l/lz4/lz4_1.9.4.orig.tar.gz", "0b0e3aa07c8c063ddf40b082bdf7e37a1562bda40a0ff5272957f3e987e0e54b"
-SODIUM = "libs/libsodium/libsodium_1.0.18.orig.tar.gz", "d59323c6b712a1519a5daf710b68f5e7fde57040845ffec53850911f10a5d4f4"
+LZ4 = ("l/lz4/lz4_1.9.4.orig.tar.gz",
+       "0b0e3aa07c8c063ddf40b082bdf7e37a1562bda40a0ff5272957f3e987e0e54b")
+SODIUM = ("libs/libsodium/libsodium_1.0.18.orig.tar.gz",
+          "d59323c6b712a1519a5daf710b68f5e7fde57040845ffec53850911f10a5d4f4")
 ICE = {"3.7.8": "c48f9e43d65e2b1f5e2af747fd86e7718b5e344b4e9d9a7dc73a84dd0be61f66",
        "3.7.10": "eb1c545cf679facdd07ab45e85ad9f87f2ffc84d72687eeeea2e4e490a6d31c8"}
-SCHEMA = ("ARM-software/CMSIS_5/51f8f89612c8330c0116479cfe3a2cb04c390e2b/CMSIS/Utilities/CMSIS-SVD.xsd",
+SCHEMA = ("ARM-software/CMSIS_5/51f8f89612c8330c0116479cfe3a2cb04c390e2b"
+          "/CMSIS/Utilities/CMSIS-SVD.xsd",
           "eee4bfe949f80708b00cccb4833e71da3766b0489a4cdfa2dae225d541688d89")
-WAVEDROM = "wavedrom/-/wavedrom-3.5.0.tgz", "7efce288c7e1e6f4072ba93345592ccd1e09442817a91cc2f3b351b777b6b0e9"
-PAGE = [("tabulator-tables", "6.5.3", "a3aeb833e5cf924c8a686fa6748c1070c5fde8e605e0b1734000c35b78571a9b",
+WAVEDROM = ("wavedrom/-/wavedrom-3.5.0.tgz",
+            "7efce288c7e1e6f4072ba93345592ccd1e09442817a91cc2f3b351b777b6b0e9")
+PAGE = [("tabulator-tables", "6.5.3",
+         "a3aeb833e5cf924c8a686fa6748c1070c5fde8e605e0b1734000c35b78571a9b",
          ["js/tabulator.min.js", "css/tabulator_simple.min.css"]),
         ("uplot", "1.6.32", "4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d",
          ["uPlot.iife.min.js", "uPlot.min.css"])]
 # Debian 13's packages and all libraries that they load
 RUN_TIME = ["libc6", "libgcc-s1", "libstdc++6", "zlib1g", "gcc-14-base"]
 GHDL = ["ghdl-mcode", "ghdl-common", "libgnat-14", *RUN_TIME]
-NEXTPNR = ["nextpnr-ecp5", "nextpnr-ecp5-chipdb", "libpython3.13", "libpython3.13-minimal", "libpython3.13-stdlib", "libexpat1",
-           "libbz2-1.0", "liblzma5", "libzstd1", *RUN_TIME,
-           *(f"libboost-{part}1.83.0" for part in ("filesystem", "iostreams", "program-options", "thread"))]
+BOOST = ("filesystem", "iostreams", "program-options", "thread")
+NEXTPNR = ["nextpnr-ecp5", "nextpnr-ecp5-chipdb", "libpython3.13", "libpython3.13-minimal",
+           "libpython3.13-stdlib", "libexpat1", "libbz2-1.0", "liblzma5", "libzstd1", *RUN_TIME,
+           *(f"libboost-{part}1.83.0" for part in BOOST)]
 
 
 class Unreachable(Exception):
@@ -57,14 +64,18 @@ def fail(text, status=1):
     sys.exit(status)
 
 
+def output(*words):
+    """What a program prints; nothing, where there is no such program."""
+    if not shutil.which(words[0]):
+        return ""
+    return subprocess.run(words, text=True, capture_output=True).stdout
+
+
 def mirror():
     """The Debian mirror that this machine uses."""
-    try:
-        targets = subprocess.run(["apt-get", "indextargets", "--format", "$(REPO_URI)", "Created-By: Packages"], text=True,
-                                 stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout.split()
-    except FileNotFoundError:
-        targets = []
-    return next((uri for uri in targets if uri.rstrip("/").endswith("/debian")), "http://deb.debian.org/debian").rstrip("/")
+    found = output("apt-get", "indextargets", "--format", "$(REPO_URI)", "Created-By: Packages")
+    debian = [uri.rstrip("/") for uri in found.split() if uri.rstrip("/").endswith("/debian")]
+    return debian[0] if debian else "http://deb.debian.org/debian"
 
 
 def kept(url, checksum):
@@ -110,13 +121,18 @@ def packages(name, *wanted):
             os.makedirs(f"{work}/lists/partial")
             os.makedirs(f"{work}/archives/partial")
             pathlib.Path(work, "private.sources").write_text(
-                f"Types: deb\nURIs: {mirror()}\nSuites: trixie\nComponents: main\nSigned-By: {KEYRING}\n")
-            apt = ["apt-get", "-qq", "-o", f"Dir::Etc::sourcelist={work}/private.sources", "-o", "Dir::Etc::sourceparts=/dev/null",
-                   "-o", f"Dir::State::lists={work}/lists", "-o", f"Dir::Cache::archives={work}/archives", "-o", "Dir::Cache::pkgcache=",
-                   "-o", "Dir::Cache::srcpkgcache=", "-o", "APT::Sandbox::User=root", "-o", "APT::Get::List-Cleanup=0"]
+                f"Types: deb\nURIs: {mirror()}\nSuites: trixie\nComponents: main\n"
+                f"Signed-By: {KEYRING}\n")
+            own = [f"Dir::Etc::sourcelist={work}/private.sources",
+                   "Dir::Etc::sourceparts=/dev/null", f"Dir::State::lists={work}/lists",
+                   f"Dir::Cache::archives={work}/archives",
+                   "Dir::Cache::pkgcache=", "Dir::Cache::srcpkgcache=", "APT::Sandbox::User=root",
+                   "APT::Get::List-Cleanup=0"]
+            options = [word for option in own for word in ("-o", option)]
             for words in (["update"], ["download", *wanted]):
-                if subprocess.call([*apt, *words], cwd=work):
+                if subprocess.call(["apt-get", "-qq", *options, *words], cwd=work):
                     raise Unreachable(f"apt-get {words[0]}: {name} from {mirror()}")
+            (folder / "root").mkdir(parents=True, exist_ok=True)
             for package in pathlib.Path(work).glob("*.deb"):
                 subprocess.check_call(["dpkg", "-x", package, folder / "root"])
         (folder / "done").touch()
@@ -133,16 +149,18 @@ def loaded(root, name):
     """The words that run a program of these packages with their own libraries."""
     loader = next(file for file in sorted(root.rglob("ld-linux-*.so.2")) if not file.is_symlink())
     library = root / "usr/lib" / f"{os.uname().machine}-linux-gnu"
-    return " ".join(map(shlex.quote, [str(loader), "--library-path", str(library), str(root / "usr/bin" / name)]))
+    words = [loader, "--library-path", library, root / "usr/bin" / name]
+    return " ".join(shlex.quote(str(word)) for word in words)
 
 
 def ghdl(target):
     """GHDL 5 (GHDL 2's Verilog output is wrong for `case`); FOLDER/ghdl runs it"""
-    installed = shutil.which("ghdl") and subprocess.run(["ghdl", "--version"], text=True, stdout=subprocess.PIPE).stdout.split()[1]
-    if installed and int(installed.split(".")[0]) >= 5:
+    installed = re.match(r"GHDL (\d+)", output("ghdl", "--version"))
+    if installed and int(installed[1]) >= 5:
         return program(target / "ghdl", 'exec ghdl "$@"\n')
     root = packages("ghdl5", *GHDL)
-    program(target / "ghdl", f'GHDL_PREFIX={shlex.quote(str(root))}/usr/lib/ghdl/mcode/vhdl exec {loaded(root, "ghdl-mcode")} "$@"\n')
+    prefix = shlex.quote(str(root / "usr/lib/ghdl/mcode/vhdl"))
+    program(target / "ghdl", f'GHDL_PREFIX={prefix} exec {loaded(root, "ghdl-mcode")} "$@"\n')
 
 
 def nextpnr(target):
@@ -153,7 +171,7 @@ def nextpnr(target):
     # It reads its chips from /usr/share/nextpnr: a mount of its own provides that folder.
     program(target / "nextpnr-ecp5", f"""root={shlex.quote(str(root))}
 exec unshare --map-root-user --mount sh -c 'mount --bind "$0/usr/share" /usr/share || {{
-    echo "nextpnr-ecp5: this machine lets its users mount nothing; Debian 13 has it as a package" >&2
+    echo "nextpnr-ecp5: its users may mount nothing here; Debian 13 has it as a package" >&2
     exit 1
 }}
 PYTHONHOME=$0/usr exec {loaded(root, "nextpnr-ecp5")} "$@"' "$root" "$@"
@@ -166,10 +184,10 @@ def ice_source(version):
 
 def ice(target):
     """internal transport headers of the installed ZeroC Ice"""
-    said = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", "libzeroc-ice-dev"], text=True, stdout=subprocess.PIPE).stdout
-    version = said.split("-")[0]
-    if version not in ICE: # Transports are internal to Ice, but did not change between 3.7.8 and 3.7.10.
-        print(f"fetch: libzeroc-ice-dev is {version or 'not installed'}: taking the headers of 3.7.10, of the same series", file=sys.stderr)
+    version = output("dpkg-query", "-W", "-f", "${Version}", "libzeroc-ice-dev").split("-")[0]
+    if version not in ICE:  # Transports are internal to Ice, but did not change since 3.7.8.
+        print(f"fetch: libzeroc-ice-dev is {version or 'not installed'}: taking the headers of "
+              "3.7.10, of the same series", file=sys.stderr)
         version = "3.7.10"
     unpack(ice_source(version), f"ice-{version}/cpp/src/Ice/", target / "Ice", ".h")
 
@@ -222,32 +240,36 @@ def page(target):
                 for file in files:
                     lines = tar.extractfile(f"package/dist/{file}").read().decode().split("\n")
                     code = "\n".join(line for line in lines if "sourceMappingURL=" not in line)
-                    texts[file.rsplit(".", 1)[1]] += f"/*! {name} {version}\n{licence}\n*/\n{code}\n"
+                    kind = file.rsplit(".", 1)[1]
+                    texts[kind] += f"/*! {name} {version}\n{licence}\n*/\n{code}\n"
         (target / "done").touch()
-    except Unreachable as error: # the next build tries again
+    except Unreachable as error:
         texts = {"js": "", "css": ""}
-        print(f"fetch: {error}\nfetch: cannot get Tabulator and uPlot, is there a network? Pages have plain tables and no drawn charts; "
-              "the next build tries again", file=sys.stderr)
+        print(f"fetch: {error}\nfetch: cannot get Tabulator and uPlot, is there a network? Pages "
+              "have plain tables and no drawn charts; the next build tries again", file=sys.stderr)
     for kind, text in texts.items():
         (target / f"libraries.{kind}").write_text(text)
 
 
 # Things that only optional parts need, with the name of the part
-OPTIONAL = {zeroc: "only these suites need it", svd: "only the check of icesoc.svd needs it",
-            wavedrom: "only drawings of waveforms need it", foreign: "only the examples of foreign cores need it"}
-THINGS = {thing.__name__: thing for thing in (ice, ghdl, nextpnr, lz4, sodium, page, foreign, svd, wavedrom, zeroc)}
+OPTIONAL = {zeroc: "Only these suites need it", svd: "Only the check of icesoc.svd needs it",
+            wavedrom: "Only drawings of waveforms need it",
+            foreign: "Only the examples of foreign cores need it"}
+THINGS = {thing.__name__: thing
+          for thing in (ice, ghdl, nextpnr, lz4, sodium, page, foreign, svd, wavedrom, zeroc)}
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog="\n".join(f"  {name:9} {thing.__doc__}" for name, thing in THINGS.items()))
+    things = "\n".join(f"  {name:9} {thing.__doc__}" for name, thing in THINGS.items())
+    parser = argparse.ArgumentParser(description=__doc__, epilog=things,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("thing", choices=THINGS, metavar="THING")
     parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER")
     options = parser.parse_args()
     thing = THINGS[options.thing]
     CACHE.mkdir(parents=True, exist_ok=True)
     with open(CACHE / "lock", "w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX) # two builds may want the same
+        fcntl.flock(lock, fcntl.LOCK_EX)  # two builds may want the same
         try:
             thing(options.folder.absolute())
         except Unreachable as error:

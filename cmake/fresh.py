@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""fresh: does what the README says, in its order, on an empty Debian, and prints the last lines and times.
+"""fresh: does what the README says, in its order, on an empty Debian; prints last lines and times.
 
-A machine is a folder that debootstrap fills, with a clone of this tree's HEAD and nothing else: no package, no cache.
-Its mount points and processes are its own and end with it. debootstrap, unshare and chroot need root.
+A machine is a folder that debootstrap fills, with a clone of this tree's HEAD and nothing else: no
+package, no cache. Its mount points and processes are its own and end with it. debootstrap, unshare
+and chroot need root.
 """
 
 import argparse
@@ -19,9 +20,10 @@ RELEASES = {"bookworm": "Debian 12", "trixie": "Debian 13"}
 COMMANDS = ("make run", "make test")
 KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
 CERTIFICATES = "/etc/ssl/certs/ca-certificates.crt"
-# Run as the machine's first process. Copies of /dev and /sys, not binds of theirs: what it mounts there stays with it.
+# Run as the machine's first process; what it mounts stays its own.
 BOOT = """
-mount --make-rprivate / && mount -t proc proc "$1/proc" && mount --rbind /dev "$1/dev" && mount --rbind /sys "$1/sys" &&
+mount --make-rprivate / && mount -t proc proc "$1/proc" && mount --rbind /dev "$1/dev" &&
+mount --rbind /sys "$1/sys" &&
 exec chroot "$1" /bin/sh -c "cd /root/icesoc && $2"
 """
 
@@ -35,8 +37,8 @@ def empty_machine(root, release, mirror):
     root.parent.mkdir(parents=True, exist_ok=True)
     log = root.parent / f"{release}-debootstrap.log"
     with log.open("w") as out:
-        if subprocess.call(["debootstrap", "--variant=minbase", "--include=git,make,ca-certificates",
-                            release, root, mirror], stdout=out, stderr=out):
+        words = ["--variant=minbase", "--include=git,make,ca-certificates", release, root, mirror]
+        if subprocess.call(["debootstrap", *words], stdout=out, stderr=out):
             fail(f"debootstrap has no {release} from {mirror}: see {log}")
     (root / "etc/apt/sources.list").unlink(missing_ok=True)
     (root / "etc/apt/sources.list.d/debian.sources").write_text(
@@ -66,11 +68,12 @@ def run(root, release, command):
     place = {"HOME": "/root", "PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "TERM": "dumb"}
     begun = time.monotonic()
     with log.open("w") as out:
-        status = subprocess.call(["unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-c", BOOT, "sh",
-                                  root, command], env=kept | place, stdin=subprocess.DEVNULL,
-                                 stdout=out, stderr=subprocess.STDOUT)
+        own = ["unshare", "--mount", "--pid", "--fork", "--kill-child"]
+        status = subprocess.call([*own, "sh", "-c", BOOT, "sh", root, command], env=kept | place,
+                                 stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT)
     seconds = time.monotonic() - begun
-    print(f"{RELEASES[release]}: {command}: exit status {status}, {seconds // 60:.0f} min {seconds % 60:.0f} s; {log}")
+    print(f"{RELEASES[release]}: {command}: exit status {status}, "
+          f"{seconds // 60:.0f} min {seconds % 60:.0f} s; {log}")
     lines = log.read_text(errors="replace").splitlines()
     print("\n".join("    " + line for line in lines[-12:]), flush=True)
     return status
@@ -78,12 +81,16 @@ def run(root, release, command):
 
 def main():
     parser = argparse.ArgumentParser(description="Do what the README says on an empty Debian.")
-    parser.add_argument("release", nargs="*", default=list(RELEASES), help=f"{' or '.join(RELEASES)}; all, unless said")
-    parser.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("/var/tmp/icesoc-fresh"),
+    parser.add_argument("release", nargs="*", default=list(RELEASES),
+                        help=f"{' or '.join(RELEASES)}; all, unless said")
+    parser.add_argument("--folder", type=pathlib.Path,
+                        default=pathlib.Path("/var/tmp/icesoc-fresh"),
                         help="where machines and logs go (%(default)s; about 8 GB each)")
-    parser.add_argument("--again", action="store_true", help="go on with the machines of before, with HEAD as it is now")
+    parser.add_argument("--again", action="store_true",
+                        help="go on with the machines of before, with HEAD as it is now")
     parser.add_argument("--mirror", default="http://deb.debian.org/debian")
-    parser.add_argument("--run", action="append", metavar="COMMAND", help=f"in place of {', '.join(COMMANDS)}")
+    parser.add_argument("--run", action="append", metavar="COMMAND",
+                        help=f"in place of {', '.join(COMMANDS)}")
     args = parser.parse_args()
     for release in args.release:
         if release not in RELEASES:

@@ -1,9 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# setup: installs the Debian packages that `make run` needs and the machine lacks; on a terminal it asks before it calls sudo.
+# setup: installs the Debian packages that `make run` needs and the machine lacks; on a terminal it
+# asks before it calls sudo.
 # Usage: cmake/setup.sh [--tests] [--check]
-# --tests: also those for tests, reports and debuggers; --check: only lists missing ones (exit 1 if there are any)
+# --tests: also those for tests, reports and debuggers
+# --check: only lists missing ones (exit status 1 if there are any)
 
 set -eu
 tests='' check=''
@@ -83,7 +85,9 @@ if ! command -v dpkg-query >/dev/null 2>&1; then
 fi
 
 list=$(echo "$packages" | while read -r name why; do
-    [ -z "$name" ] || [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || echo "$name: $why"
+    [ -z "$name" ] ||
+        [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] ||
+        echo "$name: $why"
 done)
 [ -n "$list" ] || exit 0
 echo "Missing packages:"
@@ -105,10 +109,12 @@ if [ "$(id -u)" != 0 ]; then
     fi
 fi
 echo "Installing them with apt-get (a minute or two) ..."
-$sudo apt-get update -qq || echo "setup: apt-get update failed: is there a network, and a Debian mirror in /etc/apt?" >&2
+$sudo apt-get update -qq ||
+    echo "setup: apt-get update failed: is there a network, and a mirror in /etc/apt?" >&2
 # shellcheck disable=SC2086 # a list of words
-$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null || {
-    echo "setup: apt-get could not install the packages above; its message says why. Then run again." >&2
+$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+    $missing >/dev/null || {
+    echo "setup: apt-get could not install the packages above, and says why. Then run again." >&2
     exit 1
 }
 echo "Installed."

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""ctest: CTest with these arguments; at the end it names the tests that were skipped, each with its reason."""
+"""ctest: CTest with these arguments; at the end it names skipped tests, each with its reason."""
 
 import pathlib
 import re

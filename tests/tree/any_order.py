@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""any_order: `make run` on a machine without the packages of tests, then `make test`, which brings them, has the tests of a
-machine that has had all of them from the start. What CMake needs and does not find is named with its package.
+"""any_order: `make run` on a machine without the packages of tests, then `make test`, which brings
+them, has the tests of a machine that has had all of them from the start. What CMake needs and does
+not find is named with its package.
 
-The machine without them is a folder of links to all other programs, in which alone CMake looks for programs.
+The machine without them is a folder of links to all other programs, in which alone CMake looks.
 Usage: any_order.py source-folder work-folder
 """
 
@@ -21,8 +22,9 @@ def fail(text):
     sys.exit(f"any_order: {text}")
 
 
-def run(arguments, **options):
-    return subprocess.run(arguments, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options)
+def run(words, **options):
+    return subprocess.run(words, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          **options)
 
 
 def packages(source, work, *options):
@@ -54,9 +56,11 @@ def links(folder, hidden):
 
 def configure(source, build, work, path):
     """As on a machine whose programs are those in path; all, once there is a file `arrived`."""
-    (work / "hide.cmake").write_text(f'if(NOT EXISTS "{work}/arrived")\n  set(CMAKE_IGNORE_PATH "{";".join(FOLDERS)}")\nendif()\n')
-    return run(["cmake", "-S", source, "-B", build, "-G", "Ninja", f"-DCMAKE_PROJECT_INCLUDE_BEFORE={work}/hide.cmake"],
-               env=environment(work, path))
+    hide = work / "hide.cmake"
+    hide.write_text(f'if(NOT EXISTS "{work}/arrived")\n'
+                    f'  set(CMAKE_IGNORE_PATH "{";".join(FOLDERS)}")\nendif()\n')
+    return run(["cmake", "-S", source, "-B", build, "-G", "Ninja",
+                f"-DCMAKE_PROJECT_INCLUDE_BEFORE={hide}"], env=environment(work, path))
 
 
 def environment(work, path):
@@ -81,7 +85,8 @@ def main():
 
     poor = links(work / "poor", {"yosys", "ccache"})
     said = configure(source, work / "without", work, poor)
-    if not said.returncode or "yosys is missing (Debian: yosys): run 'make setup'" not in said.stdout:
+    word = "yosys is missing (Debian: yosys): run 'make setup'"
+    if not said.returncode or word not in said.stdout:
         fail(f"no word of a missing yosys:\n{said.stdout}")
     if "ccache is missing" not in said.stdout:
         fail(f"no word of a missing ccache:\n{said.stdout}")
@@ -91,7 +96,8 @@ def main():
         fail(f"make run needs the packages of tests:\n{said.stdout}")
     (work / "arrived").touch()
     (work / "dpkg/status").touch()
-    said = run(["ninja", "-C", work / "grown", "build.ninja"], env=environment(work, os.environ["PATH"]))
+    said = run(["ninja", "-C", work / "grown", "build.ninja"],
+               env=environment(work, os.environ["PATH"]))
     if said.returncode:
         fail(f"configured a second time:\n{said.stdout}")
     said = configure(source, work / "rich", work, os.environ["PATH"])

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# setup: on a terminal set-up says what it would install and asks before it calls sudo; elsewhere it goes on.
+# setup: on a terminal set-up says what it would install and asks before it calls sudo; elsewhere
+# it goes on.
 # Usage: setup.sh source-folder
 set -eu
 work=$(mktemp -d)
@@ -23,10 +24,11 @@ asked() { # answer
     echo "$1" | script -qec "$2/cmake/setup.sh" "$work/said" >/dev/null || true
 }
 asked n "$1"
-grep -q '    verilator: turns' "$work/said" && grep -q 'sudo apt-get? \[Y/n\]' "$work/said" || fail "no question"
+grep -q '    verilator: turns' "$work/said" || fail "no word of what is missing"
+grep -q 'sudo apt-get? \[Y/n\]' "$work/said" || fail "no question"
 [ ! -e "$work/sudo" ] || fail "sudo was called after a no"
 asked y "$1"
 grep -q 'apt-get install .* verilator' "$work/sudo" || fail "nothing was installed after a yes"
 rm "$work/sudo"
 "$1/cmake/setup.sh" >"$work/said" </dev/null || fail "exit status $?"
-grep -q 'apt-get install .* verilator' "$work/sudo" || fail "it does not go on where nobody can be asked"
+grep -q 'apt-get install .* verilator' "$work/sudo" || fail "it stops where nobody can be asked"

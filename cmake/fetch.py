@@ -185,11 +185,13 @@ def ice_source(version):
 def ice(target):
     """internal transport headers of the installed ZeroC Ice"""
     version = output("dpkg-query", "-W", "-f", "${Version}", "libzeroc-ice-dev").split("-")[0]
-    if version not in ICE:  # Transports are internal to Ice, but did not change since 3.7.8.
-        print(f"fetch: libzeroc-ice-dev is {version or 'not installed'}: taking the headers of "
-              "3.7.10, of the same series", file=sys.stderr)
-        version = "3.7.10"
-    unpack(ice_source(version), f"ice-{version}/cpp/src/Ice/", target / "Ice", ".h")
+    try:
+        archive = ice_source(version)
+    except (KeyError, Unreachable) as error:
+        print(f"fetch: no source of ZeroC Ice {version} ({error}): taking the headers of 3.7.8; "
+              "transports did not change since", file=sys.stderr)
+        archive, version = ice_source("3.7.8"), "3.7.8"
+    unpack(archive, f"ice-{version}/cpp/src/Ice/", target / "Ice", ".h")
 
 
 def zeroc(target):

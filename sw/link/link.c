@@ -26,8 +26,8 @@ void Link_setKey(Link* link, int slot, const U8* key) {
     link->longest = (U8)(link->longest + link->overhead - LINK_SECURE_OVERHEAD);
     if (!LINK_IS_SECURE(link)) {
         link->overhead = LINK_SECURE_OVERHEAD;
-        link->handshake.slot = 1; /* the first HELLO goes out under slot 0 */
-        link_drawNonce(link);     /* a longer one */
+        link->handshake.slot = 1; /* the first HELLO uses slot 0 */
+        link_drawNonce(link);     /* a longer nonce */
     }
     if (Link_keyInUse(link) == slot)
         link_lose(link);
@@ -77,12 +77,12 @@ void Link_poll(Link* link, U32 nowUs) {
     if (link->state != LINK_STATE_UP)
         return;
     link_pollSender(link);
-    if (!link->sender.hasWork) /* else it leaves with the next fragment */
+    if (!link->sender.hasWork) /* else the next fragment takes it along */
         link_pollAck(link);
     (void)link_flush(link);
 }
 
-/* The sooner and the later of two times. */
+/* Return the earlier and the later of two times. */
 #define SOONER(a, b) (LINK_BEFORE(a, b) ? (a) : (b))
 #define LATER(a, b) (LINK_BEFORE(a, b) ? (b) : (a))
 

@@ -28,11 +28,11 @@
 
 #define LINK_CHANNELS 4
 #define LINK_MAX_FRAME 100U    /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
-#define LINK_MAX_ENCRYPTED 95U /* bytes of one that is encrypted (Link_limitFrame) */
+#define LINK_MAX_ENCRYPTED 95U /* the same if the modem encrypts (Link_limitFrame) */
 
-/* Frames are encrypted with a key (Link_setKey), and end with a tag in place of the CRC.
- * LINK_SECURE 0 leaves that out; LINK_TAG are the bytes of a tag, 4..16, the same on both sides
- * (docs/link.md says what 4 of them risk). */
+/* With a key (Link_setKey) frames are encrypted and end with a tag in place of the CRC.
+ * LINK_SECURE 0 leaves that out. LINK_TAG is the size of a tag in bytes, 4..16, the same on both
+ * sides (docs/link.md gives the risk of 4). */
 #ifndef LINK_SECURE
 #ifdef LINK_MINIMAL
 #define LINK_SECURE 0
@@ -44,11 +44,11 @@
 #define LINK_TAG 8U
 #endif
 #define LINK_KEY_BYTES 16U
-#define LINK_KEYS 2 /* slots for keys, so that one can take the other's place */
+#define LINK_KEYS 2 /* slots for keys, so that a new key can replace the old one */
 
-/* These sizes can be set on the command line; layers of different sizes understand each other.
- * LINK_MINIMAL chooses the minimal layer (minimal/link_minimal.h), which has only LINK_MAX_MESSAGE
- * of them. */
+/* The compiler's command line can set these sizes; layers of different sizes understand each other.
+ * LINK_MINIMAL chooses the minimal layer (minimal/link_minimal.h), which uses only
+ * LINK_MAX_MESSAGE. */
 #ifndef LINK_MAX_MESSAGE /* bytes of one message; a longer one from the peer ends the session */
 #ifdef LINK_MINIMAL
 #define LINK_MAX_MESSAGE 1024U
@@ -70,13 +70,13 @@ typedef enum Link_Status {
     LINK_OK = 0,
     LINK_DOWN, /* no session with the peer */
     LINK_FULL, /* no room in the send queue now, or the channel is still being closed: try later */
-    LINK_TOO_LONG, /* more than LINK_MAX_MESSAGE bytes, or none */
-    LINK_CLOSED    /* there is no such channel, or neither side has opened it */
+    LINK_TOO_LONG, /* more than LINK_MAX_MESSAGE bytes, or no byte */
+    LINK_CLOSED    /* the channel does not exist, or neither side has opened it */
 } Link_Status;
 
 typedef enum Link_State {
     LINK_STATE_IDLE,       /* not started, or given up */
-    LINK_STATE_CONNECTING, /* HELLO is being sent until the peer answers */
+    LINK_STATE_CONNECTING, /* sends HELLO until the peer answers */
     LINK_STATE_UP
 } Link_State;
 
@@ -100,8 +100,8 @@ typedef struct Link_Port {
     void (*channel)(void* context, int channel, int isOpen);
     /* Tells that the session came up or ended. */
     void (*state)(void* context, Link_State state);
-    /* Tells what became of a message: `tag` is what Link_send was given. Exactly one call a
-     * message. May be 0, as may `writable`. */
+    /* Reports the outcome of a message, exactly once; `tag` is Link_send's. May be 0, as may
+     * `writable`. */
     void (*outcome)(void* context, int channel, U32 tag, Link_Outcome outcome);
     /* Tells that room appeared after LINK_FULL. */
     void (*writable)(void* context);
@@ -120,26 +120,26 @@ typedef struct Link_Statistics {
     U32 messagesSent, messagesReceived; /* delivered ones */
     U32 sessions;                       /* times the link came up */
     U32 roundTripUs;                    /* the smoothed estimate, not a count */
-    U32 headBytesSaved;                 /* saved by header compression in sending */
+    U32 headBytesSaved;                 /* bytes saved by compression of heads sent */
 } Link_Statistics;
 
 /* Prepares `link`. `port` must stay valid; `byteTimeUs16` is the time of one byte on the slowest
  * part of the way, in 1/16 microseconds (111,111 baud: 1440), used for pacing and timers. */
 void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16);
 
-/* Limits frames to `bytes` from now on, 32..LINK_MAX_FRAME: a modem that encrypts splits what is
- * longer than LINK_MAX_ENCRYPTED. The two sides may differ. */
+/* Limits frames to `bytes` from now on, 32..LINK_MAX_FRAME: a modem that encrypts splits
+ * packets longer than LINK_MAX_ENCRYPTED. The two sides may differ. */
 void Link_limitFrame(Link* link, U32 bytes);
 
 /* Gives the vehicle's key, LINK_KEY_BYTES bytes that both sides have, for slot 0 or 1; it is
  * copied. `key` 0 wipes the slot, and ends a session that was made with it. From the first key on
- * sessions are authenticated and encrypted; a peer without the key is refused, and nothing falls
- * back, not even where both slots are wiped: then there is no session. HELLO goes out under the
- * keys of both slots in turn; one under either is answered. To be called after Link_init. */
+ * sessions are authenticated and encrypted, and a peer without the key is refused. There is no way
+ * back: with both slots wiped there is no session. The layer sends HELLO under the keys of both
+ * slots in turn and answers one under either. Call it after Link_init. */
 void Link_setKey(Link* link, int slot, const U8* key);
 
 /* Returns the slot of the key that the present session was made with; -1: there is no session, or
- * it is open. */
+ * one without a key. */
 int Link_keyInUse(const Link* link);
 
 /* Starts the handshake. Both sides may do so; either one's HELLO makes the session. A side that
@@ -156,18 +156,18 @@ Link_State Link_state(const Link* link);
  * LINK_DOWN, LINK_FULL or LINK_CLOSED. */
 Link_Status Link_openChannel(Link* link, int channel);
 
-/* Closes a channel behind the messages that were sent before; that needs no room now. Returns
- * LINK_OK, LINK_DOWN, or LINK_CLOSED: it was not open. */
+/* Closes a channel behind the messages that were sent before; it needs no room in the queue.
+ * Returns LINK_OK, LINK_DOWN, or LINK_CLOSED: it was not open. */
 Link_Status Link_closeChannel(Link* link, int channel);
 
 /* Queues a copy of a message of 1..LINK_MAX_MESSAGE bytes. `tag` is for the `outcome` callback. */
 Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag);
 
-/* Takes bytes from the radio, at least one, in any portions: packet boundaries are not relied upon.
- * Calls back with what they complete. */
+/* Takes bytes from the radio, at least one, in any portions: packet boundaries do not matter.
+ * Calls back with the messages that they complete. */
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs);
 
-/* Sends what is due: fragments, acknowledgements, retransmissions, HELLO. */
+/* Sends due frames: fragments, acknowledgements, retransmissions, HELLO. */
 void Link_poll(Link* link, U32 nowUs);
 
 /* Returns the time in microseconds until Link_poll must be called; 0xFFFFFFFF: no need. */

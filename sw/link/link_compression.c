@@ -6,8 +6,8 @@
  * It is the only file of this layer that knows what an Ice message looks like ("The Ice Protocol"
  * in the manual of ZeroC Ice 3.7). Both sides keep, for each direction, the last LINK_HEADS heads
  * of requests (identity, facet, operation, mode, context, encoding) and each channel's last request
- * ids. A session delivers everything once and in order, so both tables stay equal without a word
- * about them. A message that is not recognised goes as it is. Tokens: docs/link.md.
+ * ids. A session delivers everything once and in order, so both tables stay equal by themselves.
+ * The layer does not change a message that it does not recognise. Tokens: docs/link.md.
  */
 #include "link.h"
 
@@ -35,14 +35,14 @@ void link_resetHeads(Link* link) {
     memset(&link->headsIn, 0, sizeof link->headsIn);
 }
 
-/* Returns 1 for a whole message of this type, of `least` bytes at least. */
+/* Returns 1 for a whole message of this type with at least `least` bytes. */
 static int isMessage(const U8* m, U32 size, U32 type, U32 least) {
     return size >= least && m[8] == type && memcmp(m, magic, sizeof magic) == 0 &&
            link_get32(m + 10) == size;
 }
 
-/* Returns the length of a request's head, from its identity to its context; 0: none that can be
- * learned. */
+/* Returns the length of a request's head, from its identity to its context; 0: the peer
+ * cannot learn it. */
 static U32 headOf(const U8* m, U32 size) {
     U32 at = LINK_HEAD_AT;
     int strings;
@@ -61,7 +61,7 @@ static U32 headOf(const U8* m, U32 size) {
     }
     ++at; /* mode */
     if (at >= size || m[at++] != 0)
-        return 0; /* a context is seldom the same twice */
+        return 0; /* contexts seldom repeat */
     if (at + ENCAPSULATION > size || link_get32(m + at) != size - at)
         return 0;
     return at - LINK_HEAD_AT <= MOST_HEAD ? at - LINK_HEAD_AT : 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_input: finds frames in a stream of bytes, and gives each to the part that it is for.
+ * link_input: finds frames in a stream of bytes, and gives each to its part of the layer.
  */
 #include "link.h"
 
@@ -17,7 +17,7 @@ static Link_Kind kindOf(const U8* frame) {
     return frame[0] & LINK_CONTROL ? (Link_Kind)(frame[2] >> 5) : LINK_KIND_DATA;
 }
 
-/* True if a header makes sense; this keeps chance from passing garbage on to the checksum. */
+/* True if a header makes sense: most garbage fails here, before the checksum. */
 static int isPlausible(const Link* link, const U8* frame) {
     static const U8 sizes[2][6] = {{1, 4, 8, 0, 0, 0}, {1, 8, 16, 16, 0, 0}}; /* by Link_Kind */
     U32 payload = LINK_LENGTH(frame) + LINK_OVERHEAD - link->overhead;
@@ -114,7 +114,7 @@ static int onPiggyback(Link* link, const U8* frame) {
     U32 flags = LINK_FIRST | LINK_LAST | LINK_CHANNEL(frame[2]);
     if (kindOf(frame) == LINK_KIND_PIGGYBACK_ASK)
         flags |= LINK_ACK_NOW;
-    /* Such a frame is not sent while a message is held: the whole window is open. */
+    /* A peer sends no such frame while a message is held: the whole window is open. */
     link_onAck(link, payload[0], link->sender.fullCredit, 0, 0);
     return link_onData(link, frame[1], flags, payload + 1, LINK_LENGTH(frame) - 1U);
 }
@@ -161,7 +161,7 @@ static void takeFrame(Link* link, const U8* frame, Owner owner) {
         link_abort(link);
 }
 
-/* Tells a peer that talks in a session that is not known here, but not too often. */
+/* Answers a peer that talks in an unknown session, but not too often. */
 static void refuse(Link* link, const U8* frame) {
     U8 reset[LINK_MAX_OVERHEAD];
     if (link->state != LINK_STATE_IDLE || link->now - link->pingAt < LINK_HELLO_FIRST)
@@ -175,7 +175,7 @@ static void refuse(Link* link, const U8* frame) {
     (void)link_sendControl(link, reset, LINK_KIND_RST, 0, 0, LINK_FEATURES);
 }
 
-/* Takes all whole frames out of the bytes; returns how many bytes it is done with. After a bad
+/* Takes all whole frames out of the bytes; returns the number of bytes used. After a bad
  * frame it goes on at the next byte. `isEnd`: a silence follows, so half a frame will never become
  * whole.
  */
@@ -219,7 +219,7 @@ static U32 parse(Link* link, const U8* bytes, U32 count, int isEnd) {
     return used;
 }
 
-/* Parses what was kept, and keeps what is no whole frame yet. */
+/* Parses the kept bytes, and keeps an incomplete frame. */
 static void parseKept(Link* link, int isEnd) {
     Link_Parser* parser = &link->parser;
     U32 used = parse(link, link->input, parser->count, isEnd);

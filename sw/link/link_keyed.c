@@ -22,7 +22,7 @@ static int isSameNonce(const U8* a, const U8* b) {
     return memcmp(a, b, LINK_NONCE_BYTES) == 0;
 }
 
-/* Returns whether a CONFIRM is for the present session. */
+/* Returns whether a CONFIRM belongs to the present session. */
 static int isOfSession(const Link* link, const U8* nonces) {
     return link->state == LINK_STATE_UP && isSameNonce(nonces, link->session.peerNonce) &&
            isSameNonce(nonces + LINK_NONCE_BYTES, link->session.nonce);

@@ -1,30 +1,30 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_output: frames go out: checksum or tag, pacing, counts.
+ * link_output: sends frames: checksum or tag, pacing, counts.
  */
 #include "link.h"
 
 #include <string.h>
 
-/* Microseconds that a modem takes for a packet beside its bytes: its own work, carrier sense, the
- * random wait, headers, the MAC's acknowledgement (docs/models.md); and for a byte on the air. */
+/* A modem's microseconds for a packet without its bytes: its own work, carrier sense, the random
+ * wait, headers, the MAC's acknowledgement (docs/models.md); and for a byte on the air. */
 #define PACKET_US 7250U
 #define PACKET_ENCRYPTED_US 13450U
 #define BYTE_US 32U
 
-/* A packet heard since the last own one takes more than its time from the own ones: it must be
- * handled, and the two may collide. Back-off of the next packet, in quarters of the airtime. The
- * second half of the wait is dropped if one is heard then, so two that talk at once take turns. */
+/* Back-off of the next packet after a packet was heard, in quarters of the airtime: the modem must
+ * handle that packet, and the two may collide. Another one heard in the second half of the wait
+ * ends it, so two sides that talk at once take turns. */
 #define HEARD_QUARTERS 7U
 
-/* Microseconds for which a packet behind a short one waits longer: a modem that still has the short
- * one in its buffer joins the two, and cuts all later ones in the middle. */
+/* Extra wait of a packet behind a short one, in microseconds: a modem that still holds the short
+ * one joins the two, and cuts all later ones in the middle. */
 #define SHORT_MARGIN 1500U
 
-/* Characters of silence behind a short packet, which send it off. */
+/* Characters of silence after which the modem sends a short packet. */
 #define SILENCE 4U
 
-/* Room that a packet must have left for another fragment, and for an acknowledgement behind it. */
+/* Least room in a packet for another fragment with an acknowledgement behind it. */
 #define LEAST 32U
 
 /* The time of a packet: on the line, or in the modem, whichever is longer. */
@@ -52,7 +52,7 @@ int link_flush(Link* link) {
     if (link->packed <= link->longest)
         link->slack -= SHORT_MARGIN;
     link->early = 0;
-    if (link->heard && link->sender.fastest > PACKET_US) { /* else a wire, which needs no turns */
+    if (link->heard && link->sender.fastest > PACKET_US) { /* a wire needs no turns */
         U32 wait = timeOf(link, link->heard) * HEARD_QUARTERS >> 2;
         link->early = (timeOf(link, link->packed) + wait) / 2U;
         link->paceUntil += wait;

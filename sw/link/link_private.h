@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_private: the parts of a Link, and what the layer's files offer each other, from the bottom
- * to the top. A file calls only what stands above it here. Included by link.h only.
+ * link_private: defines a Link, and declares the functions that the layer's files share, from the
+ * bottom to the top. A file calls only functions above its own here. Only link.h includes it.
  */
 #ifndef LINK_PRIVATE_H
 #define LINK_PRIVATE_H
@@ -11,8 +11,9 @@
 #define LINK_FEATURES (LINK_FEATURE_COMPRESSION | LINK_FEATURE_PIGGYBACK)
 
 /* Times in microseconds. */
-#define LINK_ACK_DELAY 30000U    /* silence behind data after which it is acknowledged unasked, */
-#define LINK_ACK_WITHIN 80000U   /* the same inside a message: more is to come */
+#define LINK_ACK_DELAY \
+    30000U /* silence behind data before an acknowledgement that nobody asked for, */
+#define LINK_ACK_WITHIN 80000U   /* the same inside a message, whose rest will come */
 #define LINK_HELLO_LAST 2000000U /* between HELLOs, at most */
 #define LINK_PING_AFTER 5000000U /* silence after which the peer is asked, ... */
 #define LINK_PING_EVERY 200000U  /* again, ... */
@@ -25,7 +26,7 @@
 #define LINK_PROOF_EVERY 1000000U /* again, ... */
 #define LINK_PROOF_LAST 27000000U /* and given up, whatever else was heard */
 #define LINK_POLL_EVERY 1000U     /* while the radio has no room */
-#define LINK_OFFER_EVERY 5000U    /* while nobody takes a message */
+#define LINK_OFFER_EVERY 5000U    /* while the program does not take a message */
 
 /* Rounds of Ascon that the search for frames in garbage may compute: for each byte received, and at
  * once. */
@@ -34,25 +35,25 @@
 #define LINK_ROUNDS_HANDSHAKE 136U
 #define LINK_ROUNDS_OF(payload) (24U + (payload) / 2U)
 
-/* True if a key was given: from then on for good. */
+/* True once a key was given, for good. */
 #define LINK_IS_SECURE(link) (LINK_SECURE && (link)->overhead != LINK_OVERHEAD)
 
 #define LINK_ACK_ROOM(link) \
     ((link)->overhead + 1U + LINK_BITMAP) /* bytes of the longest acknowledgement */
 
-/* Fragments that the peer takes, before it has said how many. */
+/* The peer's credit in fragments, until its first frame gives it. */
 #define LINK_LEAST_WINDOW 8U
 
 #define LINK_SLOT(seq) ((seq) & (LINK_WINDOW - 1U))
 
-#define LINK_HEAD_AT 18U    /* where a head begins in a request: behind header and request id */
+#define LINK_HEAD_AT 18U    /* start of the head in a request: behind header and request id */
 #define LINK_HEADS 16U      /* request heads that each direction keeps */
 #define LINK_HEAD_BYTES 64U /* of one: up to 62, and the encoding's version */
 #define LINK_HEAD_ROOM 96U  /* bytes that decompression may add in front of a message */
-#define LINK_ESCAPE 1U      /* a byte that marks what is not Ice */
+#define LINK_ESCAPE 1U      /* a byte that marks messages other than Ice's */
 
-/* Bytes of the queue that only messages of one fragment may take, so that they need not wait until
- * there is room for them behind long ones. */
+/* Bytes of the queue for messages of one fragment only, so that they need not wait for room behind
+ * long ones. */
 #define LINK_RESERVE 256U
 
 /* Fails to compile where a size of link.h is out of range. */
@@ -65,12 +66,12 @@ typedef char
                    ? 1
                    : -1];
 
-/* What identifies a session: both nonces, and what follows from them. */
+/* The identity of a session: both nonces, and the values that follow from them. */
 typedef struct Link_Session {
     U8 nonce[LINK_NONCE_BYTES],
-        peerNonce[LINK_NONCE_BYTES]; /* without a key the first four bytes */
+        peerNonce[LINK_NONCE_BYTES]; /* only the first four bytes without a key */
     U32 key;
-    U8 features; /* those that both sides have */
+    U8 features; /* features of both sides */
     U8 slot;     /* of the key that the session was made with */
     Link_Keys keys;
 } Link_Session;
@@ -92,7 +93,7 @@ typedef struct Link_Watch {
     U32 pingsSent, pingsAnswered; /* numbers of the newest own PING, and up to which that is over */
     U32 askedAt;                  /* when the first PING after that was sent */
     U32 pingsSeen;                /* number of the peer's newest PING */
-    U32 provenAt;                 /* the peer lived then or later, as its last answer proves */
+    U32 provenAt;                 /* the last answer proves that the peer lived then or later */
     U32 failures;                 /* frames whose tag was wrong */
     U32 rounds;                   /* of Ascon that the search may compute now */
 } Link_Watch;
@@ -104,41 +105,41 @@ typedef struct Link_Entry {
     U8 flags; /* LINK_FIRST, channel; and these: */
 } Link_Entry;
 #define LINK_ENTRY_LEARNS 4U /* the peer learns a head from it: it keeps its place */
-#define LINK_ENTRY_AHEAD 8U  /* it has overtaken what stands before it */
-#define LINK_ENTRY_ENDED 16U /* its outcome is known; it waits for those before it */
+#define LINK_ENTRY_AHEAD 8U  /* it has overtaken earlier entries */
+#define LINK_ENTRY_ENDED 16U /* its outcome is known; it waits for earlier entries */
 
 typedef struct Link_Queue {
     U8 first, count;
     U8 wasFull;     /* Link_send said LINK_FULL */
-    U32 sums;       /* check of the message that is being put in */
-    U32 head, tail; /* of the bytes, not reduced modulo LINK_SEND_BYTES */
+    U32 sums;       /* check of the message that is being queued */
+    U32 head, tail; /* byte counts, not reduced modulo LINK_SEND_BYTES */
 } Link_Queue;
 
 typedef enum Link_FragmentState { LINK_TO_SEND, LINK_SENT, LINK_ACKED } Link_FragmentState;
 
-/* A fragment that was cut from the queue and is not acknowledged in order. */
+/* A fragment that was cut from the queue, until it is acknowledged in order. */
 typedef struct Link_Fragment {
     U32 start;  /* in the queue's bytes */
-    U32 sentAt; /* last time */
+    U32 sentAt; /* time of its last transmission */
     U32 order;  /* number of its last transmission */
     U8 size, flags;
     U8 tries; /* 0, 1, more */
     U8 state; /* Link_FragmentState */
-    U8 entry; /* of Link.entries, that it was cut from */
+    U8 entry; /* the one of Link.entries that it was cut from */
 } Link_Fragment;
 
 typedef struct Link_Sender {
-    U32 base, next; /* numbers, of which SEQ is the lowest byte: oldest unacknowledged, next new */
+    U32 base, next;        /* numbers whose lowest byte is SEQ: oldest unacknowledged, next new */
     U8 credit, fullCredit; /* fragments that may be in flight: now, and at most so far */
     U8 hasWork;            /* there may be something to send */
     U8 isLossy;            /* the newest acknowledgement had gaps */
     U8 isLate;             /* the timer has expired since the last answer */
-    U8 unasked;            /* transmissions since one asked for an acknowledgement, or one came */
-    U8 hasSample;          /* srtt and rttvar hold something */
-    U8 isAhead;            /* the newest fragment has overtaken a long message */
-    U8 cutEntry;           /* the next fragment in order is of this entry of the queue, ... */
-    U16 cutBytes;          /* of which so many bytes are cut already */
-    U32 cutAt;             /* in the queue's bytes */
+    U8 unasked;   /* transmissions since the last request for an acknowledgement, or the last one */
+    U8 hasSample; /* srtt and rttvar are valid */
+    U8 isAhead;   /* the newest fragment has overtaken a long message */
+    U8 cutEntry;  /* the next fragment in order is of this entry of the queue, ... */
+    U16 cutBytes; /* bytes of it that are cut already */
+    U32 cutAt;    /* in the queue's bytes */
     U32 rto, srtt, rttvar; /* microseconds, as RFC 6298 names them */
     U32 fastest;           /* round trip of the session */
     U32 timerAt;           /* when the retransmission timer expires */
@@ -167,7 +168,7 @@ typedef struct Link_Slot {
 
 typedef struct Link_Parser {
     U8 count;
-    U8 outOfStep; /* no frame where one should begin: the next one needs confirmation */
+    U8 outOfStep; /* the last bytes were no frame: the next frame needs confirmation */
     U32 at;       /* time of the last byte */
 } Link_Parser;
 
@@ -179,8 +180,8 @@ typedef struct Link_Heads {
     U8 head[LINK_HEADS][LINK_HEAD_BYTES];
 } Link_Heads;
 
-/* A compressed message: bytes[0..prefix), `middle` bytes of its head, the rest from tailAt; `head`:
- * the bytes of its head, 0: none that is remembered. */
+/* A compressed message: bytes[0..prefix), `middle` bytes of its head, the rest from tailAt. `head`
+ * is the size of its head; 0: nothing to remember. */
 typedef struct Link_Packed {
     U8 bytes[8];
     U32 prefix, middle, tailAt, tail, head;
@@ -204,9 +205,9 @@ struct Link {
     void* context;
     Link_Queue queue;
     U32 byteTimeUs16;
-    U32 slack;     /* so much before then the next packet is handed over */
+    U32 slack;     /* the next packet is handed over that long before paceUntil */
     U32 paceUntil; /* when the modem will have sent everything handed over */
-    U32 early;     /* a packet that is heard shortens the wait till then by so much at most */
+    U32 early;     /* a heard packet shortens the wait by this at most */
     U32 heardAt, pingAt;
     Link_Session session;
     Link_Parser parser;
@@ -236,25 +237,25 @@ void link_hear(Link* link, U32 size);
 U32 link_room(const Link* link);
 /* Hands the packet to the radio. Returns 0: it had no room, the packet stays. */
 int link_flush(Link* link);
-/* Puts a frame whose payload is there into the packet. `number`: that of which byte 1 of the header
- * is the lowest byte. Returns 1: taken. */
+/* Puts a frame whose payload is in place into the packet. `number` has byte 1 of the header as its
+ * lowest byte. Returns 1: taken. */
 int link_sendFrame(Link* link, U8* frame, U32 header, U32 number);
-/* Sends a control frame whose payload, `size` bytes, is there, at once; byte 1 is the lowest byte
- * of `number`. `flags`: the low bits of byte 2. Returns 1: taken. */
+/* Sends at once a control frame whose payload of `size` bytes is in place; byte 1 is the lowest
+ * byte of `number`. `flags`: the low bits of byte 2. Returns 1: taken. */
 int link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 number, U32 size, U32 flags);
 
 /* link_compression: heads of IceP messages are sent once. */
 
 void link_resetHeads(Link* link);
-/* Says how the message is to be sent, if not as it is, which `packed` says on entry. */
+/* Compresses the message: changes `packed`, which stands for the unchanged one on entry. */
 void link_compress(const Link* link, int channel, const U8* m, U32 size, Link_Packed* packed);
-/* Remembers, on both sides alike, a message that has passed, whose head is so long. */
+/* Remembers the head of a message that has passed, on both sides alike. */
 void link_note(Link_Heads* heads, int channel, const U8* m, U32 size, U32 head);
-/* Restores the message that link->receiver holds. Returns 0 where it makes no sense. */
+/* Restores the message that link->receiver holds. Returns 0: it is malformed. */
 int link_decompress(Link* link);
 
-/* link_receiver: order, messages, acknowledgements. What returns int returns 0 where the peer broke
- * the rules: nothing it sent can be trusted, so the session must end. */
+/* link_receiver: order, messages, acknowledgements. A function with an int returns 0 if the peer
+ * broke the rules: then nothing it sent can be trusted, and the session must end. */
 
 void link_resetReceiver(Link* link);
 int link_onData(Link* link, U32 seq, U32 flags, const U8* data, U32 size);
@@ -269,8 +270,8 @@ void link_pollAck(Link* link);
 
 #define LINK_RING(at) ((at) & (LINK_SEND_BYTES - 1U))
 Link_Entry* link_entryAt(Link* link, U32 index);
-/* Ends an entry, removes those that wait for nothing any more, reports a message's outcome, and
- * tells that there is room again. */
+/* Ends an entry, removes all entries that wait for nothing any more, reports a message's outcome,
+ * and tells that there is room again. */
 void link_endEntry(Link* link, Link_Entry* entry, Link_Outcome outcome);
 /* Queues the closings that had no room yet. The peer waits for each before the channel can be
  * opened again. */
@@ -293,13 +294,13 @@ U32 link_nonceBytes(const Link* link);
 void link_drawNonce(Link* link);
 /* Prepares the session that the peer's nonce and the own one make. */
 void link_makeCandidate(Link* link, const U8* peerNonce, U32 features);
-/* Sends a frame of both nonces. */
+/* Sends a frame with both nonces. */
 void link_sendHandshake(Link* link, const Link_Session* session, Link_Kind kind);
 void link_confirmCandidate(Link* link);
 void link_endSession(Link* link, Link_State next);
 /* Ends a session that the peer's wish or silence has ended. */
 void link_lose(Link* link);
-/* Ends a session because the peer broke the rules, and tells it. */
+/* Ends a session because the peer broke the rules, and informs the peer. */
 void link_abort(Link* link);
 void link_pollSession(Link* link);
 

@@ -62,7 +62,7 @@ void link_endEntry(Link* link, Link_Entry* entry, Link_Outcome outcome) {
     }
 }
 
-/* Returns whether the channel can be used or, without `mustBeOpen`, opened. */
+/* Returns whether the channel can be used, or, without `mustBeOpen`, can be opened. */
 static Link_Status check(const Link* link, int channel, int mustBeOpen) {
     if (channel < 0 || channel >= LINK_CHANNELS)
         return LINK_CLOSED;

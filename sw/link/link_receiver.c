@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_receiver: puts fragments in order, messages together, and acknowledges.
+ * link_receiver: orders fragments, assembles messages, and acknowledges.
  */
 #include "link.h"
 
@@ -33,8 +33,8 @@ static void onChannel(Link* link, U32 channel, int isOpen) {
     link->port->channel(link->context, (int)channel, isOpen);
 }
 
-/* Offers a whole message to the program; one on a channel that was closed here is dropped. What
- * nobody takes is not acknowledged either: its last fragment counts as not yet here. */
+/* Offers a whole message to the program; one on a channel that was closed here is dropped. The last
+ * fragment of a message that the program does not take counts as not received. */
 static void deliver(Link* link) {
     Link_Receiver* receiver = &link->receiver;
     receiver->isHeld = 0;
@@ -49,8 +49,8 @@ static void deliver(Link* link) {
     }
 }
 
-/* Adds a fragment to its message; one of one fragment may stand between those of a long one.
- * Returns 0 where it does not belong there. */
+/* Adds a fragment to its message; a message of one fragment may stand between those of a long one.
+ * Returns 0: the fragment does not belong there. */
 static int append(Link* link, U32 flags, const U8* data, U32 size) {
     Link_Receiver* receiver = &link->receiver;
     U8* to = link->brief + LINK_HEAD_ROOM;
@@ -76,7 +76,7 @@ static int append(Link* link, U32 flags, const U8* data, U32 size) {
     return 1;
 }
 
-/* Takes the check off the whole message. Returns 0 where it is wrong. */
+/* Takes the check off the whole message. Returns 0: it is wrong. */
 static int uncheck(Link* link) {
     Link_Receiver* receiver = &link->receiver;
     U32 size = receiver->size - LINK_CHECK;
@@ -86,7 +86,7 @@ static int uncheck(Link* link) {
     return link_sum(0, receiver->start, size) == LINK_CHECK_AT(receiver->start + size);
 }
 
-/* Takes the next fragment in order. Returns 0 where the peer broke the rules. */
+/* Takes the next fragment in order. Returns 0: the peer broke the rules. */
 static int accept(Link* link, U32 flags, const U8* data, U32 size) {
     Link_Receiver* receiver = &link->receiver;
     ++receiver->next;
@@ -107,7 +107,7 @@ static int accept(Link* link, U32 flags, const U8* data, U32 size) {
     return 1;
 }
 
-/* Takes what is in order out of the slots, unless a message is held. Returns 0 where the peer broke
+/* Takes fragments in order out of the slots, unless a message is held. Returns 0: the peer broke
  * the rules. */
 static int drain(Link* link) {
     Link_Receiver* receiver = &link->receiver;
@@ -139,7 +139,7 @@ int link_onData(Link* link, U32 seq, U32 flags, const U8* data, U32 size) {
         slot->size = (U8)size;
         memcpy(slot->bytes, data, size);
         if ((flags & LINK_FIRST) && (flags & LINK_LAST))
-            receiver->ackNow = 1; /* a short message waits for what is missing */
+            receiver->ackNow = 1; /* a short message waits for a missing fragment */
     } else {
         ++link->statistics.duplicates; /* the acknowledgement was lost, or it is being resent */
         receiver->ackNow = 1;
@@ -147,8 +147,8 @@ int link_onData(Link* link, U32 seq, U32 flags, const U8* data, U32 size) {
     return 1;
 }
 
-/* Notes which fragments behind the next expected one have arrived; bit n: SEQ + 1 + n. Returns up
- * to which byte there are any. */
+/* Notes the arrived fragments behind the next expected one; bit n: SEQ + 1 + n. Returns the size in
+ * bytes up to the last one. */
 static U32 gaps(const Link* link, U8* bitmap) {
     U32 size = 0;
     U32 i;
@@ -192,7 +192,7 @@ void link_pollAck(Link* link) {
     if (!receiver->ackDue || (!receiver->ackNow && LINK_BEFORE(link->now, receiver->ackAt)))
         return;
     size = gaps(link, payload + 1);
-    /* A message that nobody takes keeps the window where it is. */
+    /* A message that the program does not take stops the window. */
     payload[0] = (U8)(receiver->isHeld ? receiver->waiting + 1U : LINK_WINDOW);
     if (link_sendControl(link, frame, LINK_KIND_ACK, receiver->next, size + 1U, 0))
         link_ackIsSent(link);

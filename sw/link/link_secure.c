@@ -2,10 +2,10 @@
  *
  * link_secure: encrypts and authenticates frames by Ascon-AEAD128, and derives the keys.
  *
- * All of a frame that is not encrypted is part of its nonce: the numbers that its bytes stand for,
- * the header, and the payload in clear. So a fragment that goes out again with
+ * All parts of a frame that are not encrypted belong to its nonce: the full numbers of which it has
+ * the low bytes, the header, and the payload in clear. So a fragment that goes out again with
  * another flag or acknowledgement has another nonce, the same nonce always means the same frame,
- * and a frame that is replayed where its numbers mean something else is wrong.
+ * and a frame that is replayed in the place of other numbers is wrong.
  */
 #include "link.h"
 
@@ -15,11 +15,11 @@
 
 #include <string.h>
 
-#define CLEAR_AT 11U  /* where the payload in clear begins in a nonce, ... */
-#define CLEAR_MOST 5U /* and how much of it stands there */
+#define CLEAR_AT 11U  /* start of the payload in clear in a nonce, ... */
+#define CLEAR_MOST 5U /* and its greatest size there */
 
-/* Returns how many bytes at the payload's beginning are not encrypted: of a control frame all, of
- * a PIGGYBACK the acknowledgement. */
+/* Returns the number of payload bytes in clear, which come first: all of a control frame, the
+ * acknowledgement of a PIGGYBACK. */
 static U32 clearOf(const U8* frame) {
     if (!(frame[0] & LINK_CONTROL))
         return 0;
@@ -41,7 +41,7 @@ static void makeNonce(U8* nonce, const U8* frame, U32 number, U32 acked) {
     memcpy(nonce + CLEAR_AT, frame + LINK_HEADER, clear < CLEAR_MOST ? clear : CLEAR_MOST);
 }
 
-/* Encrypts or decrypts the payload; `tag` is what it should end with. */
+/* Encrypts or decrypts the payload, and computes its tag. */
 static void crypt(U8* frame, const U8* key, U32 number, U32 acked, int isDecryption, U8* tag) {
     U8 nonce[ASCON_NONCE_BYTES];
     U32 clear = clearOf(frame);
@@ -78,7 +78,7 @@ int link_unprotect(U8* frame, const U8* key, U32 number, U32 acked) {
 
 /* The keystream of a nonce of which each half is one side's, the smaller half first, so that both
  * sides make the same: the first key is that of the side with the smaller one. The text is never
- * sent, so what an attacker may learn of one such keystream tells nothing of another. */
+ * sent, so an attacker who learns one such keystream learns nothing of another. */
 void link_deriveKeys(const U8* secret, const U8* nonce, const U8* peerNonce, Link_Keys* keys) {
     U8 both[ASCON_NONCE_BYTES], tag[ASCON_TAG_BYTES];
     U8 text[2U * LINK_KEY_BYTES];
@@ -95,7 +95,7 @@ void link_deriveKeys(const U8* secret, const U8* nonce, const U8* peerNonce, Lin
     Ascon_wipe(text, sizeof text);
 }
 
-/* The HELLOs' key comes from two equal nonces, which no session has. */
+/* The key of HELLOs comes from two equal nonces, which no session has. */
 void link_setSecret(Link_Secrets* secrets, int slot, const U8* key) {
     static const U8 none[LINK_NONCE_BYTES];
     Link_Keys keys;

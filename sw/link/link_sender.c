@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_sender: cuts messages into fragments, keeps a window of them in flight, and sends again what
- * is lost.
+ * link_sender: cuts messages into fragments, keeps a window of them in flight, and repeats lost
+ * ones.
  *
- * The way is first in, first out. So what was transmitted before the newest transmission that has
- * been acknowledged, and is not acknowledged itself, is lost; the timer covers the tail only.
+ * The way to the peer keeps the order. So a transmission without acknowledgement is lost when a
+ * later one has been acknowledged; only the last ones need the timer.
  */
 #include "link.h"
 
 #define IN_FLIGHT(sender) ((sender)->next - (sender)->base)
 #define FRAGMENT(link, seq) (&(link)->window[LINK_SLOT(seq)])
 
-/* Microseconds, a round trip, after which the timer expires at the latest while the window is full:
- * nothing but an answer can set the sender going again. */
+/* Longest wait of the timer while the window is full, a round trip in microseconds: only an answer
+ * lets the sender go on then. */
 #define FULL_WAIT(sender) ((sender)->srtt < LINK_RTO_MIN ? LINK_RTO_MIN : (sender)->srtt)
 
 void link_resetSender(Link* link) {
@@ -27,9 +27,9 @@ void link_resetSender(Link* link) {
     sender->fastest = sender->rto = LINK_RTO_FIRST;
 }
 
-/* Finds a message of one fragment, an opening or a closing that may overtake the long message whose
- * turn it is: of another channel than all that it overtakes, in the order of the heads that the
- * peer learns, and never two in a row. `start` becomes where its bytes are. Returns 0: none. */
+/* Finds a message of one fragment, an opening or a closing that may overtake the present long
+ * message: on another channel than all that it overtakes, in the order of the heads that the peer
+ * learns, and never two in a row. Sets `start` to the place of its bytes. Returns 0: none. */
 static Link_Entry* findAhead(Link* link, U32* start) {
     Link_Sender* sender = &link->sender;
     Link_Entry* entry = link_entryAt(link, sender->cutEntry);
@@ -73,8 +73,7 @@ static int cut(Link* link) {
     U32 inFlight = IN_FLIGHT(sender);
     U32 flags = entry->flags & (LINK_FIRST | 3U);
     U32 left, size, start;
-    /* Without credit one goes out all the same: its acknowledgement tells when there is credit
-     * again. */
+    /* One fragment goes out even without credit: its acknowledgement brings news of credit. */
     if (sender->cutEntry == link->queue.count || (inFlight && inFlight >= sender->credit) ||
         inFlight >= LINK_WINDOW)
         return 0;
@@ -107,9 +106,9 @@ static int cut(Link* link) {
     return 1;
 }
 
-/* Returns of how many transmissions one asks for an acknowledgement, which costs a turn on a
- * half-duplex air: few where nothing is lost; but what is lost keeps the window from moving on, and
- * short messages fill the queue before the window. */
+/* Returns n: one of n transmissions asks for an acknowledgement, which costs a turn on a
+ * half-duplex air. n is great while nothing is lost; but a loss stops the window, and short
+ * messages fill the queue before the window. */
 static U32 askEvery(const Link* link) {
     if (link->sender.isLossy)
         return 5U;
@@ -118,8 +117,8 @@ static U32 askEvery(const Link* link) {
     return link->sender.fullCredit / 4U * 3U;
 }
 
-/* True if the peer should answer a fragment at once: one of so many, the last that its credit
- * covers, and the last one that is sent again. */
+/* True if the peer should answer a fragment at once: one of every n, the last one within its
+ * credit, and the last one that is sent again. */
 static int mustAsk(const Link* link, U32 seq) {
     const Link_Sender* sender = &link->sender;
     if (sender->unasked + 1U >= askEvery(link) || seq - sender->base + 1U >= sender->credit)
@@ -132,8 +131,8 @@ static int mustAsk(const Link* link, U32 seq) {
     return 1;
 }
 
-/* Puts a fragment's payload into a frame. Returns the header: of data, or of a control frame that
- * takes an acknowledgement along, as may a short message that is whole. */
+/* Puts a fragment's payload into a frame. Returns the header: of data, or, for a whole short
+ * message, of a control frame that takes an acknowledgement along. */
 static U32 build(const Link* link, U32 seq, int isAsked, U8* frame) {
     const Link_Fragment* f = FRAGMENT(link, seq);
     U8* p = frame + LINK_HEADER;
@@ -177,7 +176,7 @@ static int transmit(Link* link, U32 seq) {
     return 1;
 }
 
-/* Takes a round trip into the estimate (RFC 6298). */
+/* Adds a round trip to the estimate (RFC 6298). */
 static void sample(Link* link, U32 roundTrip) {
     Link_Sender* sender = &link->sender;
     if (!sender->hasSample) {
@@ -210,7 +209,7 @@ static void setTimer(Link* link) {
     sender->timerAt = link->now + rto;
 }
 
-/* Marks as lost what was sent before `order` and is not acknowledged: it goes out again. */
+/* Marks fragments that were sent before `order` and not acknowledged as lost: they go out again. */
 static void sendAgain(Link* link, U32 order) {
     Link_Sender* sender = &link->sender;
     U32 seq;
@@ -223,8 +222,8 @@ static void sendAgain(Link* link, U32 order) {
     }
 }
 
-/* Marks what is acknowledged: `advance` fragments from the base on, and those of the bitmap, whose
- * bit n is for the fragment at advance + 1 + n. What was transmitted before the newest of them is
+/* Marks acknowledged fragments: `advance` from the base on, and those of the bitmap, whose bit n is
+ * for the fragment at advance + 1 + n. Other fragments that were sent before the newest of them are
  * lost. */
 static void markAcked(Link* link, U32 advance, const U8* bitmap, U32 size) {
     Link_Sender* sender = &link->sender;
@@ -240,7 +239,7 @@ static void markAcked(Link* link, U32 advance, const U8* bitmap, U32 size) {
         f->state = LINK_ACKED;
         link->heardAt = link->now;
         if (f->tries != 1U && elapsed < sender->srtt - sender->srtt / 4U)
-            continue; /* sooner than a round trip: this answers an earlier transmission */
+            continue; /* too soon for a round trip: it answers an earlier transmission */
         if (!newest || LINK_BEFORE(newest->order, f->order))
             newest = f;
     }
@@ -257,7 +256,7 @@ void link_onAck(Link* link, U32 cumulative, U32 credit, const U8* bitmap, U32 si
     Link_Sender* sender = &link->sender;
     U32 advance = (U8)(cumulative - sender->base);
     if (advance > IN_FLIGHT(sender))
-        return; /* an old one that came late */
+        return; /* an old acknowledgement came late */
     sender->credit = (U8)(credit < LINK_WINDOW ? credit : LINK_WINDOW);
     if (sender->fullCredit < sender->credit)
         sender->fullCredit = sender->credit;
@@ -271,7 +270,7 @@ void link_onAck(Link* link, U32 cumulative, U32 credit, const U8* bitmap, U32 si
     }
 }
 
-/* Finds what is to be sent next; new fragments are cut as they are wanted. Returns 0: nothing. */
+/* Finds the next fragment to send, and cuts a new one if necessary. Returns 0: none. */
 static int nextFragment(Link* link, U32* seq) {
     Link_Sender* sender = &link->sender;
     for (*seq = sender->base; *seq != sender->next; ++*seq)
@@ -286,9 +285,10 @@ void link_pollSender(Link* link) {
     if (link->closeDue)
         link_queueClosings(link);
     if (sender->base != sender->next && !LINK_BEFORE(link->now, sender->timerAt)) {
-        FRAGMENT(link, sender->base)->state = LINK_TO_SEND; /* its answer tells the rest */
+        FRAGMENT(link, sender->base)->state = LINK_TO_SEND; /* its answer tells about the others */
         sender->hasWork = sender->isLate = 1;
-        /* Loss here is the radio's, no congestion: doubling would only prolong a bad tail. */
+        /* The radio loses packets, not a congested network: doubling would only prolong a bad end.
+         */
         sender->rto += sender->rto / 4U;
         if (sender->rto > LINK_RTO_MAX)
             sender->rto = LINK_RTO_MAX;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_session: makes and ends sessions: handshake, reboots, and a peer that has vanished.
+ * link_session: makes and ends sessions: handshake, reboots, a peer that has vanished.
  *
  * HELLO carries a nonce; the answer carries the peer's. Both nonces make the session's epoch and
  * the seed of its checksums, so a frame of another session is never taken for one of this. A side
@@ -96,7 +96,7 @@ void link_confirmCandidate(Link* link) {
     link->handshake.hasCandidate = 0;
     memset(&link->watch, 0, sizeof link->watch);
     link->watch.provenAt = link->heardAt = link->pingAt = link->now;
-    link->paceUntil = link->now; /* after a long silence its age would read as a future time */
+    link->paceUntil = link->now; /* after a long silence an old value would read as a future time */
     link->state = LINK_STATE_UP;
     ++link->statistics.sessions;
     link->port->state(link->context, LINK_STATE_UP);
@@ -104,7 +104,7 @@ void link_confirmCandidate(Link* link) {
 
 static void onHello(Link* link, const U8* peerNonce, U32 features) {
     Link_Session* session = &link->session;
-    /* A HELLO that comes again means that the answer was lost, and gets the same one. */
+    /* A repeated HELLO means that the answer was lost, and gets the same one. */
     if (link->state != LINK_STATE_UP || link_get32(peerNonce) != link_get32(session->peerNonce)) {
         session = &link->handshake.candidate;
         link_makeCandidate(link, peerNonce, features);

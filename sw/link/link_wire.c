@@ -4,8 +4,8 @@
  */
 #include "link.h"
 
-/* It is CRC-16/CCITT, polynomial 0x1021, MSB first, without a table: x ^= x >> 4 does Sarwate's
- * step by shifts. */
+/* This is CRC-16/CCITT, polynomial 0x1021, MSB first. x ^= x >> 4 replaces Sarwate's table by
+ * shifts. */
 U32 link_crc(U32 key, const U8* bytes, U32 size) {
     U32 crc = key & 0xFFFFU;
     while (size--) {

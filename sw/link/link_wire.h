@@ -3,8 +3,8 @@
  * link_wire: names the fields of a frame, and declares checksums and numbers of the wire format
  * (docs/link.md). The full layer and the minimal one share it; only link.h includes it.
  *
- *   byte 0      control bit, length of the frame less 5 bytes
- *   byte 1      SEQ (data); what the kind says (control)
+ *   byte 0      control bit, length of the frame minus 5 bytes
+ *   byte 1      SEQ (data); depends on the kind (control)
  *   byte 2      F, L, A, epoch, channel (data); kind, epoch, features (control)
  *   bytes 3..   payload
  *   last two    CRC, high byte first; with a key: the tag, LINK_TAG bytes
@@ -69,9 +69,9 @@ typedef enum Link_Kind {
 #define LINK_KIND_CONFIRM LINK_KIND_RST /* with a key: the answer to HELLO-ACK; there is no RST */
 #define LINK_IS_HANDSHAKE(kind) ((U32)(kind) - (U32)LINK_KIND_HELLO <= 2U)
 
-/* A message that travels in more than LINK_UNCHECKED bytes ends with LINK_CHECK bytes of check. A
- * fragment that lost its end, and has the next one's beginning in its place, has a good CRC once in
- * 65,536 times: the check over the whole message finds these. */
+/* A message of more than LINK_UNCHECKED bytes ends with LINK_CHECK bytes of check. A fragment whose
+ * end was lost and replaced by the beginning of the next one has a good CRC once in 65,536 times:
+ * the check over the whole message finds these. */
 #define LINK_CHECK_AT(p) ((p)[0] | (U32)(p)[1] << 8)
 #define LINK_UNCHECKED 20U
 #define LINK_CHECK 2U
@@ -83,8 +83,8 @@ typedef enum Link_Kind {
  * own CRC the result is 0. */
 U32 link_crc(U32 key, const U8* bytes, U32 size);
 
-/* Writes header and CRC around the payload that `frame` already holds; `header` comes without the
- * epoch, which is `key`'s. Returns the frame's length in bytes. */
+/* Writes header and CRC around the payload that `frame` already holds; `header` has no epoch, which
+ * comes from `key`. Returns the frame's length in bytes. */
 U32 link_seal(U8* frame, U32 header, U32 key);
 
 /* Continues a message's check over `size` bytes more, from 0 on: Fletcher's two sums, which a
@@ -95,10 +95,10 @@ U32 link_sum(U32 sums, const U8* bytes, U32 size);
 U32 link_get32(const U8* p);
 void link_put32(U8* p, U32 value);
 
-/* Returns the key of the session of two nonces, whoever called first. */
+/* Returns the key of the session of two nonces, in either order. */
 U32 link_sessionKey(U32 nonce, U32 peerNonce);
 
-/* link_secure: what a key does to a frame, and how a session gets its own (docs/link.md). */
+/* link_secure: encryption of frames, and derivation of a session's keys (docs/link.md). */
 
 #define LINK_NONCE_BYTES 8U /* of each side's nonce in a secure handshake */
 
@@ -121,11 +121,11 @@ typedef struct Link_Keys {
     U8 send[LINK_KEY_BYTES], receive[LINK_KEY_BYTES];
 } Link_Keys;
 
-/* The secrets of a Link: the keys that it was given, and what follows from them. */
+/* The secrets of a Link: its given keys, and the keys that follow from them. */
 typedef struct Link_Secrets {
     U8 set; /* a bit a slot */
     U8 key[LINK_KEYS][LINK_KEY_BYTES];
-    U8 hello[LINK_KEYS][LINK_KEY_BYTES]; /* those of HELLOs, which follow from them */
+    U8 hello[LINK_KEYS][LINK_KEY_BYTES]; /* the keys of HELLOs, which follow from them */
 } Link_Secrets;
 
 /* Sets a slot, or wipes it (`key` 0). */
@@ -138,13 +138,13 @@ void link_deriveKeys(const U8* secret, const U8* nonce, const U8* peerNonce, Lin
 U32 link_extend(U32 expected, U32 byte);
 
 /* Writes the header, which comes with its epoch and the payload's length, encrypts the payload that
- * `frame` already holds, and adds the tag. `number` is what byte 1 is the lowest byte of; `acked`
- * the same of the first byte of the payload of a PIGGYBACK. Returns the frame's length in bytes. */
+ * `frame` already holds, and adds the tag. `number` has byte 1 as its lowest byte; `acked`
+ * has the first byte of the payload of a PIGGYBACK. Returns the frame's length in bytes. */
 U32 link_protect(U8* frame, U32 header, const U8* key, U32 number, U32 acked);
 
 /* Decrypts the payload of a whole frame, of LINK_SECURE_OVERHEAD bytes at least, in its place, and
- * gives its header the payload's length. Returns 0 where its tag is wrong: then what was decrypted
- * is wiped, and the header as it came. */
+ * gives its header the payload's length. Returns 0: its tag is wrong, the decrypted
+ * bytes are wiped, and the header is unchanged. */
 int link_unprotect(U8* frame, const U8* key, U32 number, U32 acked);
 
 #endif

@@ -6,20 +6,21 @@
  * It sends no HELLO: the peer's makes the session; another one ends it, and so do 9 s without a
  * good frame, BYE and RST. Every fragment asks for an acknowledgement at once and goes out again
  * when its timer expires. A message that the program does not take is not acknowledged, so its last
- * fragment comes again. After a bad frame the next one is looked for behind a silence, which the
- * peer's wait for an acknowledgement leaves.
+ * fragment comes again. After a bad frame the layer looks for the next one behind a silence, which
+ * comes when the peer waits for an acknowledgement.
  */
 #include "link.h"
 
 #include <stddef.h>
 #include <string.h>
 
-/* Times are in microseconds and of few bits: such a constant is part of the instruction. */
+/* Times in microseconds. They have few one bits, so that a constant fits into the instruction. */
 #define DEAD_AFTER 0x890000U /* 9.0 s */
-#define FRAME_GAP 0x6200U    /* 25 ms of silence, behind which a frame begins */
-#define POLL_EVERY 1000U     /* while something is to be done at once */
+#define FRAME_GAP 0x6200U    /* 25 ms of silence, after which a frame begins */
+#define POLL_EVERY 1000U     /* while something is urgent */
 
-/* A channel's state is these bits, and LINK_FIRST or LINK_LAST for what is to be sent about it. */
+/* A channel's state has these bits, and LINK_FIRST or LINK_LAST for a fragment about it that is
+ * due. */
 #define OPEN 1U
 #define CLOSING 2U /* closed here, the peer's closing has not come yet */
 #define DUE (LINK_FIRST | LINK_LAST)
@@ -62,7 +63,7 @@ void link_lose(Link* link) {
 
 static void onHello(Link* link, const U8* frame) {
     U32 peerNonce = link_get32(frame + LINK_HEADER);
-    if (peerNonce != link->peerNonce) { /* an equal one: our answer was lost */
+    if (peerNonce != link->peerNonce) { /* equal nonces: our answer was lost */
         link_lose(link);
         link->peerNonce = peerNonce;
         link->nonce = link->port->random(link->context);
@@ -88,7 +89,7 @@ static void onChannel(Link* link, U32 channel, U32 isOpen) {
     }
 }
 
-/* Takes the fragment that is expected. A message on a channel that was closed here is dropped. */
+/* Takes the expected fragment. A message on a channel that was closed here is dropped. */
 static void onData(Link* link, const U8* frame, U32 size) {
     U32 flags = frame[2];
     U32 channel = LINK_CHANNEL(flags);
@@ -163,7 +164,7 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
         if (!isControl && frame[1] == (U8)link->receiveNext)
             onData(link, frame, size - LINK_OVERHEAD_OF(link));
     }
-    /* With a key, what was heard before may be an attacker's recording, and is no sign of life. */
+    /* With a key, a repeated frame may be an attacker's recording, and is no sign of life. */
     if (!LINK_IS_SECURE(link) || link->sendNext + link->receiveNext != before)
         link->heardAt = link->inputAt;
 }

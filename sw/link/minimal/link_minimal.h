@@ -19,9 +19,9 @@
 /* No length that a frame may claim goes beyond. */
 #define LINK_INPUT_BYTES (0x7FU + LINK_OVERHEAD)
 
-/* Bytes that a frame has beside its payload: known to the compiler where there are no keys. */
+/* Bytes of a frame beside its payload; a constant without keys. */
 #define LINK_OVERHEAD_OF(link) (LINK_SECURE ? (link)->overhead : LINK_OVERHEAD)
-/* True if a key was given: from then on for good. */
+/* True once a key was given, for good. */
 #define LINK_IS_SECURE(link) (LINK_OVERHEAD_OF(link) != LINK_OVERHEAD)
 
 /* With a key: the handshake's parts. */
@@ -44,17 +44,17 @@ struct Link {
     U8 state;    /* Link_State */
     U8 overhead; /* of a frame: of one without a key, or with one */
     /* The fields from here on are 0 when a session begins. */
-    U8 channels[LINK_CHANNELS]; /* OPEN, CLOSING, and what is to be sent */
+    U8 channels[LINK_CHANNELS]; /* OPEN, CLOSING, and due fragments */
     U8 ackDue;
     U8 flags;           /* byte 2 of the fragment in flight; 0: there is none */
     U8 channel;         /* channel of the message going out */
     U32 sendNext;       /* number of the fragment in flight, or of the next one: SEQ extended */
     U32 receiveNext;    /* number expected */
-    U32 outSize, outAt; /* bytes of the message going out, and of it acknowledged */
+    U32 outSize, outAt; /* bytes of the message going out, and acknowledged bytes of it */
     U32 size;           /* bytes of the fragment in flight */
     U32 messageSize;    /* bytes received of the message coming in */
     U32 peerNonce;      /* 0: no session */
-    /* The fields that begin at 0 end here. */
+    /* End of the fields that begin at 0. */
     U32 nonce, key;
     U32 timerAt; /* time at which the fragment in flight goes out again */
     U32 retryUs; /* time from one transmission of it to the next */
@@ -78,8 +78,8 @@ void link_lose(Link* link);
 /* link_minimal_keyed */
 
 void link_forgetKeys(Link* link);
-/* Sends link->frame, which holds its payload, under the session's key. `number`: that of which byte
- * 1 of the header is the lowest byte. */
+/* Sends link->frame, which holds its payload, under the session's key. `number` has
+ * byte 1 of the header as its lowest byte. */
 void link_transmitKeyed(Link* link, U32 header, U32 number);
 /* Takes the frame in link->input. Returns 1 if it is of the session, not a PING, and decrypted. */
 int link_takeKeyed(Link* link);

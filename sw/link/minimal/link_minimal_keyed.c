@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_minimal_keyed: what a key adds to the minimal layer: the handshake of link_keyed.c, as the
- * side that answers, tags, and PING.
+ * link_minimal_keyed: adds the parts for a key to the minimal layer: the answering side of
+ * link_keyed.c's handshake, tags, and PING.
  *
  * HELLO is sent once where frames of an unknown session come, in place of RST.
  */
@@ -81,7 +81,7 @@ static int takeUnder(Link* link, int slot, Link_Kind kind) {
         if (kind == LINK_KIND_HELLO_ACK)
             sendHandshake(link, LINK_KIND_CONFIRM, nonces, keys.send);
         draw(link);
-        link->ackDue = 1; /* so that the peer hears */
+        link->ackDue = 1; /* so that the peer hears a frame */
     }
     Ascon_wipe(&keys, sizeof keys);
     return isGood;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// compression_test: heads of Ice messages cross once; what is not Ice, or does not fit, crosses as
-// it is.
+// compression_test: heads of Ice messages cross once; other messages, and those that do not fit,
+// cross unchanged.
 
 #include "ice_messages.h"
 #include "link_pair.h"
@@ -164,7 +164,7 @@ TEST_F(Heads, LossAndCorruptionDoNotConfuseTheTables) {
     EXPECT_EQ(pair_.b.received, sent) << "seed " << testSeed();
 }
 
-// Whatever bytes the decoder gets: a message within the limits, or none.
+// From any bytes the decoder makes a message within the limits, or none.
 TEST_F(Heads, NonsenseIsRefusedWithinTheLimits) {
     Link* link = pair_.b.link();
     Random random(testSeed());
@@ -196,7 +196,7 @@ TEST_F(Heads, NonsenseIsRefusedWithinTheLimits) {
 
 // A peer that breaks the rules: both sides start a new session, and go on.
 TEST_F(Heads, ATokenThatMakesNoSenseEndsTheSession) {
-    Bytes m = {0x41}; // goes as it is
+    Bytes m = {0x41}; // crosses unchanged
     send(pair_.a, pair_.b, m);
     pair_.a.link()->session.features = 0; // so that A sends this token unmarked
     const U8 token = 0xE0;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
 // fuzz_link: libFuzzer target of the link layer. The input is a little program: bytes for the
-// receiver, with or without a good checksum, time, messages to send. Two links: one gets it all,
-// the other is its peer, so that a session comes up first. Nothing may crash, hang, or write where
-// it should not.
+// receiver, with or without a good checksum, time, messages to send. There are two links: one gets
+// all of it, the other is its peer, so that a session comes up first. Nothing may crash, hang, or
+// write outside of its data.
 //
 // An input byte names the step (mod 8), the next its argument n:
-//   0, 1  n bytes as they are
+//   0, 1  n bytes, unchanged
 //   2, 3  a frame of n bytes, checksum (under a key: tag) of the session added
 //   4     the same, of the handshake
 //   5     n ms pass
@@ -66,7 +66,7 @@ public:
     }
 
 private:
-    // What A takes for its peer's, where the rest makes sense.
+    // A frame that A takes for its peer's if its contents make sense.
     Bytes frame(Bytes bytes, bool isHandshake) const {
         const size_t most = LINK_MAX_FRAME - a_.link->overhead + LINK_HEADER;
         if (bytes.size() < LINK_HEADER)

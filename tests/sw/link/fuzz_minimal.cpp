@@ -2,10 +2,10 @@
 //
 // fuzz_minimal: libFuzzer target of the minimal link layer. The input is a little program:
 // bytes for the receiver, with or without a good checksum, time, messages to send. Nothing may
-// crash, hang, or write where it should not, and no message may be of an impossible size.
+// crash, hang, or write outside of its data, and no message may have an impossible size.
 //
 // An input byte names the step (mod 8), the next its argument n:
-//   0     n bytes as they are
+//   0     n bytes, unchanged
 //   1, 2  a frame of n bytes, the session's epoch and checksum added
 //   3     a data frame in order of n bytes, with flags and channel from the input
 //   4     HELLO with nonce n

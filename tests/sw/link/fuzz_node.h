@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_node: a link for a fuzzer, and the program and the radio that it talks to.
+// fuzz_node: a link for a fuzzer, with its program and its radio.
 
 #ifndef LINK_FUZZ_NODE_H
 #define LINK_FUZZ_NODE_H
@@ -20,7 +20,7 @@ struct Node {
     std::unique_ptr<Link> link{new Link};
     std::deque<Bytes> out; // frames that are on their way
     uint32_t nonce = 1;
-    uint64_t sum = 0; // so that every byte handed over is read
+    uint64_t sum = 0; // a sum, which reads every byte handed over
     bool busy = false;
 };
 

@@ -17,7 +17,7 @@ template <class... T> uint64_t packed(T... bytes) {
 
 } // namespace
 
-// States that were seen, in the order in which they were, each with the one before it.
+// The states seen, in their order, each with its predecessor.
 struct HandshakeModel::Search {
     std::unordered_map<State, uint32_t, Hash, Same> seen;
     std::vector<const State*> order;
@@ -50,7 +50,7 @@ void HandshakeModel::draw(State& state, int who) const {
     s.isAnswered = false;
 }
 
-// A session that both are in ends where one of them, or silence, ends it; never by an attack.
+// Only one of both sides, or silence, ends their session; an attack never does.
 void HandshakeModel::end(State& state, int who, bool byAttack) {
     Side &s = state.side[who], &other = state.side[1 - who];
     if (!s.isUp)
@@ -174,7 +174,7 @@ void HandshakeModel::onSession(State& state, int who, Frame f) {
     Side& s = state.side[who];
     const bool isReflected = bug_ == Bug::OneKeyForBoth && f.from == s.mine && f.to == s.peer;
     if (isReflected)
-        std::swap(f.from, f.to); // the own frame, come back
+        std::swap(f.from, f.to); // the own frame, reflected
     if (!s.isUp || f.from != s.peer || f.to != s.mine)
         return;
     s.isUnconfirmed = false;

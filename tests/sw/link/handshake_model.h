@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// handshake_model: the secure link's handshake (docs/link.md) with all that an attacker can do to
-// it, state by state.
+// handshake_model: goes through all states of the secure link's handshake (docs/link.md) under
+// attack.
 //
 // Two sides, each of which calls, answers, ends, and starts anew at any time (it was restarted, or
 // hears nothing, or its nonce is too old); and the attacker of Dolev
-// and Yao, who is the air: all that was ever sent he may deliver, at any time, to either side, as
-// often as he likes, or never. He has no key: what he makes himself has no good tag, so that only a
-// side with a bug believes it. Keys follow from the two nonces of a session, one a direction, so a
-// frame is named by them.
+// and Yao, who is the air: he may deliver every frame that was ever sent, at any time, to either
+// side, as often as he likes, or never. He has no key: frames of his own have no good tag, so that
+// only a side with a bug believes them. Keys follow from the two nonces of a session, one a
+// direction, so the nonces name a frame.
 
 #ifndef HANDSHAKE_MODEL_H
 #define HANDSHAKE_MODEL_H
@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-// What may be wrong with a side.
+// The bugs that a side may have.
 enum class Bug {
     None,
     NonceIsNotEchoed,    // HELLO-ACK counts for any nonce that the side once had
@@ -42,7 +42,7 @@ public:
     };
     struct Result {
         std::string fault;            // the first rule that was broken; none: ""
-        std::vector<std::string> way; // what led to it
+        std::vector<std::string> way; // the steps that led to it
         uint64_t states = 0;
         bool bothWereUp = false, dataArrived = false;
     };
@@ -59,7 +59,7 @@ private:
 
     struct Frame {
         Kind kind;
-        uint8_t from, to, number; // nonces of its sender and of whom it is for
+        uint8_t from, to, number; // nonces of its sender and of its receiver
     };
     struct Side {
         uint8_t nonce, drawn, begun; // for the next session; how many; a bit each that began one
@@ -69,7 +69,7 @@ private:
     };
     struct State {
         std::array<Side, 2> side;
-        Frames air; // all that was ever sent
+        Frames air; // all frames ever sent
     };
     struct Hash {
         size_t operator()(const State& state) const;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
 // handshake_model_test: the handshake keeps its promises in every state, and the model finds each
-// bug that is put into it.
+// seeded bug.
 
 #include "handshake_model.h"
 #include <gtest/gtest.h>
 
 namespace {
 
-// Two nonces a side: of a session, and of another before or after it.
+// Two nonces a side: one for a session, one for another before or after it.
 constexpr HandshakeModel::Limits withData = {2, 1, 0}, withPings = {2, 0, 1}, both = {2, 1, 1};
 
 TEST(HandshakeModel, KeepsItsPromisesInEveryState) {

@@ -20,7 +20,7 @@ protected:
     static auto ups(const Peer& side) {
         return std::count(side.events.begin(), side.events.end(), "up");
     }
-    // Sends numbers from a side, those again whose fate is unknown.
+    // Sends numbers from a side; repeats those with an unknown outcome.
     struct Flow {
         void push(Peer& from, U32 most) {
             for (auto& [tag, outcome] : from.outcomes)
@@ -97,13 +97,13 @@ TEST_P(Limits, ASessionEndsAtTooManyWrongTagsAndBeginsAnew) {
     frame.back() ^= 1;
     unsigned guesses = 0;
     while (b_.isUp() && guesses < 200) {
-        now_ += 100'000; // what is kept of half a frame is dropped
+        now_ += 100'000; // the rest of half a frame is dropped
         b_.poll(b_.link(), us());
         b_.receive(b_.link(), frame.data(), static_cast<U32>(frame.size()), us());
         b_.poll(b_.link(), us());
         ++guesses;
     }
-    EXPECT_GT(guesses, 20u); // each may be taken for some: the search goes on inside it
+    EXPECT_GT(guesses, 20u); // the search goes on inside a frame, so each may count several times
     EXPECT_LE(guesses, 50u);
     bool isSent = false;
     ASSERT_TRUE(until(

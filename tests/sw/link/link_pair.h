@@ -19,7 +19,7 @@ extern "C" {
 #include <string>
 #include <vector>
 
-// The radio's faults, each by chance, of a packet.
+// The radio's faults, with the probability of each for a packet.
 struct Weather {
     double loss = 0, duplication = 0, corruption = 0;
     uint32_t delayUs = 8000;
@@ -36,7 +36,7 @@ public:
         boot();
     }
 
-    // Forgets everything, as after a power cut.
+    // Forgets everything, like a reboot after a power cut.
     void boot() {
         static const Link_Port port = {transmit, random, message, channel, state, outcome, nullptr};
         Link_init(link_.get(), &port, this, byteTimeUs16);
@@ -59,7 +59,7 @@ public:
     std::vector<std::pair<int, Bytes>> received;
     std::map<uint32_t, Link_Outcome> outcomes;
     std::vector<std::string> events;
-    bool refuse = false; // takes no message
+    bool refuse = false; // the program takes no message
     unsigned queued() const { return static_cast<unsigned>(air.size()); }
 
 private:

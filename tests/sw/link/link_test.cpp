@@ -44,7 +44,7 @@ TEST(LinkLayer, SizesAreChecked) {
         EXPECT_EQ(Link_closeChannel(pair.a.link(), channel), LINK_CLOSED);
     }
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), LINK_MAX_MESSAGE, 0), LINK_OK);
-    // Each takes two bytes more, its check; short messages have a reserve.
+    // The check of each takes two more bytes; short messages have a reserve.
     const U32 rest = LINK_SEND_BYTES - LINK_RESERVE - LINK_MAX_MESSAGE - 4;
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), rest + 1, 1), LINK_FULL);
     EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), rest, 1), LINK_OK);
@@ -122,7 +122,7 @@ TEST(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {
     EXPECT_TRUE(pair.b.received.empty());
 }
 
-// The time of the last PING is by then so old that it would read as a future one.
+// The time of the last PING has become so old that it would read as a future time.
 TEST(LinkLayer, ASilenceAfterFortyMinutesOfTrafficIsAskedAbout) {
     Pair pair(testSeed());
     ASSERT_TRUE(pair.connect());
@@ -195,7 +195,7 @@ TEST(LinkLayer, StopTellsThePeer) {
     EXPECT_EQ(pair.b.events.back(), "idle");
 }
 
-// Answers that come sooner than modems can bring them tell of a wire, which needs no turns.
+// Answers faster than modems mean a wire, which needs no turns.
 TEST(LinkLayer, OverAWireACallWaitsForNoTurn) {
     Pair pair(testSeed());
     pair.setWeather({0, 0, 0, 0});
@@ -203,18 +203,19 @@ TEST(LinkLayer, OverAWireACallWaitsForNoTurn) {
     Link_openChannel(pair.a.link(), 0);
     pair.run(100'000);
     const Side::Bytes call(2, 7);
-    auto take = [&](unsigned calls) { // one behind the other, each answered; returns us
-        const uint64_t start = pair.nowUs;
-        for (unsigned i = 0; i < calls; ++i)
-            for (auto [from, to] : {std::pair(&pair.a, &pair.b), std::pair(&pair.b, &pair.a)}) {
-                const size_t arrived = to->received.size();
-                Link_send(from->link(), 0, call.data(), 2, static_cast<U32>(pair.nowUs));
-                EXPECT_TRUE(
-                    pair.runUntil([&] { return to->received.size() > arrived; }, 1'000'000));
-            }
-        return pair.nowUs - start;
-    };
-    take(20); // and both know the way
+    auto take =
+        [&](unsigned calls) { // calls one after the other, each answered; returns microseconds
+            const uint64_t start = pair.nowUs;
+            for (unsigned i = 0; i < calls; ++i)
+                for (auto [from, to] : {std::pair(&pair.a, &pair.b), std::pair(&pair.b, &pair.a)}) {
+                    const size_t arrived = to->received.size();
+                    Link_send(from->link(), 0, call.data(), 2, static_cast<U32>(pair.nowUs));
+                    EXPECT_TRUE(
+                        pair.runUntil([&] { return to->received.size() > arrived; }, 1'000'000));
+                }
+            return pair.nowUs - start;
+        };
+    take(20); // now both know the way's speed
     EXPECT_LE(take(20), 20 * 12'000u);
 }
 

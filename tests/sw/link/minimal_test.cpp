@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // minimal_test: the minimal layer as the vehicle, the full one as the ground station: bad weather,
-// reboots, garbage, channels, messages that nobody takes.
+// reboots, garbage, channels, messages that the program does not take.
 
 #include "variant.h"
 #include <algorithm>
@@ -31,7 +31,7 @@ protected:
         else if (status == LINK_CLOSED || status == LINK_DOWN)
             from.open(channel);
     }
-    // Messages both ways until so many were sent and all are reported, or the time is over.
+    // Sends messages both ways until their number is reached and all are reported, or time is over.
     bool traffic(unsigned messages, uint64_t limitUs) {
         return until(
             [&] {
@@ -82,7 +82,8 @@ TEST_P(Minimal, RebootsAreNoticedAndMessagesInFlightReported) {
         Peer& side = isA ? a_ : b_;
         side.boot();
         Sent& sent = isA ? sentA_ : sentB_;
-        for (U32 i = 0; i < sent.size(); ++i) // what was in flight, as the application would
+        for (U32 i = 0; i < sent.size();
+             ++i) // counts messages in flight as lost, like an application
             side.outcomes.emplace(i, LINK_UNKNOWN);
         side.start(side.link(), us());
         ASSERT_TRUE(until([&] { return bothUp(); }, 60'000'000)) << "round " << round;
@@ -107,7 +108,7 @@ TEST_P(Minimal, GarbageOnTheLineDoesNotDisturbTheSession) {
         EXPECT_NE(event, "down");
 }
 
-// Who sends the beginning of a frame each 20 ms leaves no silence behind which one could begin.
+// A side that sends the beginning of a frame each 20 ms leaves no silence for a frame to follow.
 TEST_P(Minimal, BeginningsOfFramesBetweenPacketsDoNotStopIt) {
     ASSERT_TRUE(connect());
     uint64_t at = now_;
@@ -267,7 +268,7 @@ TEST_P(MinimalOnce, StopTellsTheOtherSide) {
     EXPECT_FALSE(b_.isUp());
 }
 
-// Link_poll is called when Link_deadline says so, and not before: all goes on as it should.
+// The link works if Link_poll is called only at the times of Link_deadline.
 TEST_P(MinimalOnce, TheDeadlineIsWhenSomethingIsToBeDone) {
     ASSERT_TRUE(connect());
     ASSERT_EQ(b_.open(3), LINK_OK);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_test: two link layers over two modem models and the air between them: what modems lose
-// after they have acknowledged it, the published weathers, the example of a trace.
+// modem_test: two link layers over two modem models and the air between them: packets that modems
+// lose after their acknowledgement, the published weathers, the example of a trace.
 
 #include "modem_pair.h"
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ private:
 
 class LinkOverModems : public ::testing::TestWithParam<bool> {
 protected:
-    // Sends so many messages each way, and expects all, once, in order.
+    // Sends messages each way, and expects all of them, once, in order.
     void expectAll(unsigned count, unsigned seconds, const std::function<void()>& meanwhile = {}) {
         std::vector<std::vector<U8>> messages;
         for (unsigned i = 0; i < count; ++i)
@@ -58,8 +58,8 @@ protected:
     End &a_ = pair_.a, &b_ = pair_.b;
 };
 
-// The hosts hang for up to 200 ms now and then: their modems acknowledge what no longer fits, and
-// drop it.
+// The hosts hang for up to 200 ms now and then: their modems acknowledge packets that no longer
+// fit, and drop them.
 TEST_P(LinkOverModems, WhatAModemAcknowledgesAndThenDropsIsSentAgain) {
     Random random(testSeed());
     uint64_t drawn = pair_.now, wakesAt[2] = {0, 0};
@@ -91,9 +91,8 @@ TEST_P(LinkOverModems, TheTraceOfTheExampleIsFlown) {
     EXPECT_GT(air_.counters().lost - lost, 100u);
 }
 
-// An idle link asks after five seconds, which costs few bytes, and again soon where no answer
-// comes: in an hour in which three of ten packets are lost, or in any of the weathers, it gives no
-// living peer up.
+// An idle link asks after five seconds, which costs few bytes, and soon again without an answer. It
+// never gives up a living peer in an hour of any weather, or with three of ten packets lost.
 TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
     a_.longestRestUs = b_.longestRestUs = 100'000;
     const U32 before = a_.statistics().bytesSent + b_.statistics().bytesSent;

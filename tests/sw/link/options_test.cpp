@@ -10,7 +10,7 @@
 
 namespace {
 
-// Of A, of B, and whether they have a key.
+// The variants of A and B, and whether they have a key.
 using Names = std::tuple<std::string, std::string, bool>;
 
 class Options : public ::testing::TestWithParam<Names>, public Radio {
@@ -45,14 +45,14 @@ TEST_P(Options, MessagesGoBothWaysThroughLoss) {
     EXPECT_TRUE(a_.received == sent[1]) << "seed " << testSeed();
 }
 
-// What the peer's window has no room for would be sent twice.
+// Fragments beyond the peer's window would be sent twice.
 TEST_P(Options, OnlyWhatIsLostIsSentAgain) {
     ASSERT_TRUE(connect());
     a_.open(1);
     run(200'000);
     const Bytes call(1, 7), picture(1024, 7);
     for (U32 tag = 0; tag < 6; ++tag) {
-        ASSERT_EQ(a_.send(1, call, tag), LINK_OK); // its acknowledgement rides on the answer
+        ASSERT_EQ(a_.send(1, call, tag), LINK_OK); // the answer takes its acknowledgement along
         ASSERT_TRUE(until([&] { return b_.received.size() == 2 * tag + 1; }, 1'000'000));
         b_.send(1, call, tag);
         ASSERT_TRUE(until([&] { return a_.outcomes.count(tag) != 0; }, 1'000'000));

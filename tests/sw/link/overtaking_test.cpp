@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// overtaking_test: short messages overtake the rest of a long one on another channel, and nothing
-// else does.
+// overtaking_test: only short messages overtake, and only the rest of a long one on another
+// channel.
 
 #include "ice_messages.h"
 #include "variant.h"
@@ -9,10 +9,10 @@
 
 namespace {
 
-// What arrives: channel and size of each message.
+// The arrived messages: channel and size of each.
 using Arrived = std::vector<std::pair<int, size_t>>;
 
-// The variant of B; A is a full one. Whether they have a key.
+// The variant of B (A has the full layer), and whether they have a key.
 class Overtaking : public ::testing::TestWithParam<std::tuple<std::string, bool>>, public Radio {
 protected:
     Overtaking()
@@ -25,7 +25,7 @@ protected:
         run(500'000);
     }
     void send(int channel, const Bytes& m) { ASSERT_EQ(a_.send(channel, m, tag_++), LINK_OK); }
-    // Returns how long one message of 10 bytes takes; microseconds.
+    // Returns the microseconds of one message of 10 bytes.
     uint64_t call() {
         const size_t before = b_.received.size();
         const uint64_t start = now_;
@@ -86,7 +86,7 @@ TEST_P(FullOvertaking, NothingOvertakesAHeadThatThePeerLearns) {
     run(300'000);
     b_.received.clear();
     send(0, request(1, "picture", 500));
-    send(1, request(2, "picture", 1)); // by the head that the picture brings
+    send(1, request(2, "picture", 1)); // it uses the head that the picture brings
     send(0, request(2, "picture", 700));
     send(1, request(3, "fresh", 1)); // brings one
     send(2, request(0, "known", 2));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// secure_test: sessions with a key, and an attacker who has not got it: a third radio that hears
-// all, and sends what it likes.
+// secure_test: sessions with a key, and an attacker without it: a third radio that hears
+// everything and sends any bytes.
 
 #include "link_pair.h"
 #include "variant.h"
@@ -13,8 +13,8 @@ namespace {
 
 const Bytes key(LINK_KEY_BYTES, 0x5A), otherKey(LINK_KEY_BYTES, 0x5B);
 
-// A ground with the full layer, a vehicle with that or the minimal one, and the attacker between.
-// Messages carry their number, so that one that is lost, doubled or made up is seen at once.
+// A ground with the full layer, a vehicle with the full or the minimal one, and the attacker
+// between. Messages carry their number, so that a lost, doubled or forged one shows at once.
 class Attacked : public ::testing::TestWithParam<std::tuple<std::string, int>>, public Radio {
 protected:
     Attacked() : Radio("full", std::get<0>(GetParam()), seed(), key) {}
@@ -22,7 +22,7 @@ protected:
         return testSeed() * 100 + static_cast<uint64_t>(std::get<1>(GetParam()));
     }
 
-    // All that came from a side and was not heard by the attacker before is heard by it now.
+    // The attacker hears all new packets of a side.
     void listen() {
         for (size_t side = 0; side < 2; ++side) {
             Peer& from = side ? b_ : a_;
@@ -51,7 +51,7 @@ protected:
         Peer& to = random_.below(2) ? a_ : b_;
         Bytes frame = any();
         switch (random_.below(8)) {
-        case 0: // replay, reflection, reordering: as it was heard, from whichever side, whenever
+        case 0: // replay, reflection, reordering: an unchanged packet of either side, at any time
             break;
         case 1: // several of them in a row
             for (const Bytes& more : {any(), any()})
@@ -64,7 +64,7 @@ protected:
         case 3: // cut
             frame.resize(1 + random_.below(static_cast<uint32_t>(frame.size())));
             break;
-        case 4: // a header of the attacker's around what was heard
+        case 4: // the attacker's header around a heard payload
             for (size_t i = 0; i < LINK_HEADER && i < frame.size(); ++i)
                 if (random_.below(2))
                     frame[i] = static_cast<uint8_t>(random_.next());
@@ -117,8 +117,8 @@ protected:
                 from.open(1);
         }
     }
-    // Lets hostile packets come as often as the layer can stand: the minimal one finds the next
-    // frame behind 25 ms of silence only.
+    // Sends hostile packets as often as the layer can bear: the minimal one finds the next frame
+    // only after 25 ms of silence.
     void maybeHostile() {
         if (!recorded_.empty() && random_.chance(std::get<0>(GetParam()) == "full" ? 0.5 : 0.02))
             hostile();
@@ -174,7 +174,7 @@ TEST_P(Attacked, NothingHostileIsAcceptedAndNothingLegalLostOrDoubled) {
                 static_cast<unsigned long long>(hostile_), sentA_.size(), sentB_.size());
 }
 
-// What was heard in earlier sessions, before reboots of both sides, is worth nothing either.
+// Recordings of earlier sessions, before reboots of both sides, have no effect either.
 TEST_P(Attacked, RecordingsOfEarlierSessionsAreWorthNothing) {
     for (unsigned boot = 0; boot < 6; ++boot) {
         size_t before[2] = {a_.received.size(), b_.received.size()};
@@ -199,7 +199,7 @@ TEST_P(Attacked, RecordingsOfEarlierSessionsAreWorthNothing) {
     }
 }
 
-// Each bit of each kind of frame that crosses is wrong once, before the frame itself arrives.
+// Before each kind of frame arrives, copies with each single bit wrong arrive.
 TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
     std::map<int, unsigned> kinds;
     auto flip = [&] {
@@ -247,7 +247,7 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
         EXPECT_TRUE(kinds.count(kind)) << "no frame of kind " << kind << " has crossed";
 }
 
-// A flood of HELLOs that were once good: the session goes on, and few are answered.
+// The session survives a flood of HELLOs that were once good, and few get an answer.
 TEST_P(Attacked, AFloodOfHellosCostsFewAnswersAndNoSession) {
     std::vector<Bytes> hellos;
     for (unsigned boot = 0; boot < 12; ++boot) {
@@ -290,7 +290,7 @@ TEST_P(Attacked, AFloodOfHellosCostsFewAnswersAndNoSession) {
                 static_cast<double>(now_ - start) / 1e6, answers);
 }
 
-// A frame that is held back and comes when its peer is long gone finds no session.
+// A delayed frame that arrives long after its sender has gone finds no session.
 TEST_P(Attacked, WhoOnlyReplaysDoesNotKeepASessionAlive) {
     ASSERT_TRUE(connect());
     ASSERT_TRUE(traffic(10, false, 60'000'000));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * variant: what a test must know of a link layer that was compiled with other options than its own.
+ * variant: gives a test the sizes of a link layer that was compiled with other options.
  */
 #include "link.h"
 

@@ -51,7 +51,7 @@ public:
     Peer(const Peer&) = delete;
     Peer& operator=(const Peer&) = delete;
 
-    // Forgets everything, as after a power cut.
+    // Forgets everything, like a reboot after a power cut.
     void boot() {
         static const Link_Port port = {
             [](void* c, const U8* f, U32 n) { return static_cast<Peer*>(c)->transmit(f, n); },
@@ -103,7 +103,7 @@ public:
     std::vector<std::pair<int, Bytes>> received;
     std::map<U32, Link_Outcome> outcomes;
     std::vector<std::string> events;
-    bool refuse = false; // takes no message
+    bool refuse = false; // the program takes no message
     double loss = 0, duplication = 0, corruption = 0;
     uint64_t now = 0, free = 0;
     uint64_t sent = 0; // bytes

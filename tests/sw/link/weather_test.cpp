@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// weather_test: traffic both ways over a bad radio: nothing wrong, doubled, out of order or
-// unreported; and how much of it comes through.
+// weather_test: traffic both ways over a bad radio: no message is wrong, doubled, out of order or
+// unreported; and the goodput is sufficient.
 
 #include "link_pair.h"
 #include <cstdlib>
@@ -120,7 +120,7 @@ TEST_P(LinkSeeds, RebootsAreNoticedAndMessagesInFlightReported) {
     Traffic traffic(pair_, seed_, 300);
     for (int round = 0; round < 6; ++round) {
         traffic.run(static_cast<unsigned>(40 * (round + 1)), 3000000 + random.below(3000000));
-        // A reboot forgets what was in flight: as the application would, count it as unknown.
+        // A reboot forgets messages in flight: count them as unknown, like an application.
         Side& side = random.below(2) ? pair_.a : pair_.b;
         auto& sent = &side == &pair_.a ? traffic.sentA : traffic.sentB;
         side.boot();
@@ -153,8 +153,8 @@ TEST_P(LinkSeeds, GarbageOnTheLineDoesNotDisturbTheSession) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, LinkSeeds, ::testing::Range(0, 8));
 
-// A wrong message whose CRC-16 is right, which comes once in 65,536 times: here at once, by adding
-// the polynomial.
+// A wrong message with a right CRC-16 comes once in 65,536 times; here the polynomial is added to
+// get one at once.
 TEST(LinkLayer, AWrongMessageWithARightChecksumIsReportedAndNotDelivered) {
     for (uint32_t size : {20u, 60u, 95u, 300u}) {
         Pair pair(testSeed());

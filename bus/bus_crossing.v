@@ -15,16 +15,7 @@
 module bus_crossing #(
     parameter TIMEOUT = 250 // clocks, 1..255: with the answer, a bus master's patience
 ) (
-    input  wire        clk_i,
-    input  wire        rst_i,
-    // register bus
-    input  wire        bus_valid_i,
-    input  wire        bus_write_i,
-    input  wire [3:0]  bus_addr_i,
-    input  wire [31:0] bus_wdata_i,
-    output wire        bus_ready_o,
-    output wire [31:0] bus_rdata_o,
-    output wire        bus_error_o,
+    `include "slot_ports.vh"
     output wire        irq_o,
     // the core: its clock, and a slot's signals in it
     input  wire        core_clk_i,

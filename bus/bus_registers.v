@@ -23,16 +23,7 @@ module bus_registers #(
     parameter [15:0] WS       = 16'h0000,
     parameter [95:0] WIDTHS   = {16{6'd32}} // word w: bits 6w+5..6w, 1..32
 ) (
-    input  wire              clk_i,
-    input  wire              rst_i,
-    // register bus
-    input  wire              bus_valid_i,
-    input  wire              bus_write_i,
-    input  wire [3:0]        bus_addr_i,
-    input  wire [31:0]       bus_wdata_i,
-    output wire              bus_ready_o,
-    output wire [31:0]       bus_rdata_o,
-    output wire              bus_error_o,
+    `include "slot_ports.vh"
     // the block
     output wire [32*13-1:0]  value_o,
     input  wire [32*13-1:0]  value_i,
@@ -46,10 +37,7 @@ module bus_registers #(
     reg  [31:0] rdata;
 
     bus_wrapper #(.ID_VALUE(ID_VALUE), .WORDS(RW | RO | W1C | WS), .EVENTS(EVENTS)) u_wrapper (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o),
+        `include "slot_connect.vh"
         .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr),
         .reg_wdata_o(wdata_o), .reg_rdata_i(rdata),
         .event_i(event_i), .irq_o(irq_o)

@@ -13,16 +13,7 @@ module bus_to_axi4lite #(
     parameter        ADDR_WIDTH = 12,  // of the core's byte addresses, 3..32
     parameter        TIMEOUT    = 255  // clocks, 1..255
 ) (
-    input  wire                  clk_i,
-    input  wire                  rst_i,
-    // register bus
-    input  wire                  bus_valid_i,
-    input  wire                  bus_write_i,
-    input  wire [3:0]            bus_addr_i,
-    input  wire [31:0]           bus_wdata_i,
-    output wire                  bus_ready_o,
-    output wire [31:0]           bus_rdata_o,
-    output wire                  bus_error_o,
+    `include "slot_ports.vh"
     output wire                  irq_o,
     // AXI4-Lite master
     output reg                   axi_awvalid_o,
@@ -55,10 +46,8 @@ module bus_to_axi4lite #(
     wire response = (axi_bvalid_i && axi_bready_o) || (axi_rvalid_i && axi_rready_o);
 
     bus_window #(.ID_VALUE(ID_VALUE), .ADDR_WIDTH(ADDR_WIDTH), .TIMEOUT(TIMEOUT)) u_window (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o), .irq_o(irq_o),
+        `include "slot_connect.vh"
+        .irq_o(irq_o),
         .idle_i(!open), .busy_o(busy), .write_o(write), .addr_o(addr), .wdata_o(wdata),
         .done_i(response), .error_i(write ? axi_bresp_i[1] : axi_rresp_i[1]),
         .rdata_i(axi_rdata_i), .irq_i(irq_i)

@@ -14,16 +14,7 @@ module bus_to_wishbone #(
     parameter        TIMEOUT    = 255, // clocks, 1..255
     parameter        PIPELINED  = 0    // 1: STALL_I is observed, STB_O lasts until it is low
 ) (
-    input  wire                  clk_i,
-    input  wire                  rst_i,
-    // register bus
-    input  wire                  bus_valid_i,
-    input  wire                  bus_write_i,
-    input  wire [3:0]            bus_addr_i,
-    input  wire [31:0]           bus_wdata_i,
-    output wire                  bus_ready_o,
-    output wire [31:0]           bus_rdata_o,
-    output wire                  bus_error_o,
+    `include "slot_ports.vh"
     output wire                  irq_o,
     // Wishbone master
     output wire                  wb_cyc_o,
@@ -44,10 +35,8 @@ module bus_to_wishbone #(
     reg  pause;    // after RTY: one clock without CYC
 
     bus_window #(.ID_VALUE(ID_VALUE), .ADDR_WIDTH(ADDR_WIDTH), .TIMEOUT(TIMEOUT)) u_window (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o), .irq_o(irq_o),
+        `include "slot_connect.vh"
+        .irq_o(irq_o),
         .idle_i(1'b1), .busy_o(busy), .write_o(wb_we_o), .addr_o(wb_adr_o), .wdata_o(wb_dat_o),
         .done_i(wb_cyc_o && (wb_ack_i || wb_err_i)), .error_i(wb_err_i), .rdata_i(wb_dat_i),
         .irq_i(irq_i)

@@ -19,16 +19,7 @@ module bus_window #(
     parameter        ADDR_WIDTH = 12,  // of the core's byte addresses, 3..32
     parameter        TIMEOUT    = 255  // clocks, 1..255
 ) (
-    input  wire                  clk_i,
-    input  wire                  rst_i,
-    // register bus
-    input  wire                  bus_valid_i,
-    input  wire                  bus_write_i,
-    input  wire [3:0]            bus_addr_i,
-    input  wire [31:0]           bus_wdata_i,
-    output wire                  bus_ready_o,
-    output wire [31:0]           bus_rdata_o,
-    output wire                  bus_error_o,
+    `include "slot_ports.vh"
     output wire                  irq_o,
     // the adapter: busy_o is high, with the rest stable, until done_i or until it falls by time-out
     input  wire                  idle_i,

@@ -18,16 +18,7 @@ module bus_wrapper #(
     parameter        EVENTS   = 1,        // 1..32
     parameter        ZERO     = 0         // 1: reg_rdata_i is 0 for words 0..2 (word 0: or the ID, with ID_VALUE 0): not gated
 ) (
-    input  wire              clk_i,
-    input  wire              rst_i,
-    // register bus
-    input  wire              bus_valid_i,
-    input  wire              bus_write_i,
-    input  wire [3:0]        bus_addr_i,
-    input  wire [31:0]       bus_wdata_i,
-    output wire              bus_ready_o,
-    output wire [31:0]       bus_rdata_o,
-    output wire              bus_error_o,
+    `include "slot_ports.vh"
     // the block's registers
     output wire              reg_write_o,
     output wire              reg_read_o,

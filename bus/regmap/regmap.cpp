@@ -244,15 +244,7 @@ std::string clocked(const Block& b, const json& j, bool hasClkHz) {
 `default_nettype none
 
 module {0}_clocked{1} (
-    input  wire        clk_i,
-    input  wire        rst_i,
-    input  wire        bus_valid_i,
-    input  wire        bus_write_i,
-    input  wire [3:0]  bus_addr_i,
-    input  wire [31:0] bus_wdata_i,
-    output wire        bus_ready_o,
-    output wire [31:0] bus_rdata_o,
-    output wire        bus_error_o,
+    `include "slot_ports.vh"
     output wire        irq_o,
     input  wire        clock_i{2}
 );
@@ -260,10 +252,8 @@ module {0}_clocked{1} (
     wire [3:0]  addr;
     wire [31:0] wdata, rdata;
     bus_crossing u_crossing (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o), .irq_o(irq_o),
+        `include "slot_connect.vh"
+        .irq_o(irq_o),
         .core_clk_i(clock_i), .core_rst_o(rst), .core_valid_o(valid), .core_write_o(write),
         .core_addr_o(addr), .core_wdata_o(wdata), .core_ready_i(ready), .core_rdata_i(rdata),
         .core_error_i(error), .core_irq_i(irq)

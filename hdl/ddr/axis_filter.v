@@ -14,6 +14,7 @@ module axis_filter #(
     parameter ROOM      = 1024, // bytes of the target
     parameter LAST      = 1    // 0: the core's output has no tlast
 ) (
+    `include "memory_ports.vh"
     input  wire                 clk_i,
     input  wire                 rst_i,
     // the operation
@@ -36,26 +37,7 @@ module axis_filter #(
     output wire                 s_axis_tready_o,
     input  wire [WIDTH-1:0]     s_axis_tdata_i,
     input  wire [WIDTH/8-1:0]   s_axis_tkeep_i,
-    input  wire                 s_axis_tlast_i,
-    // memory port
-    output wire [31:0]          npi_addr_o,
-    output wire                 npi_addr_req_o,
-    input  wire                 npi_addr_ack_i,
-    output wire                 npi_rnw_o,
-    output wire [3:0]           npi_size_o,
-    output wire                 npi_rmw_o,
-    output wire [63:0]          npi_wr_data_o,
-    output wire [7:0]           npi_wr_be_o,
-    output wire                 npi_wr_push_o,
-    input  wire                 npi_wr_empty_i,
-    input  wire                 npi_wr_almost_full_i,
-    output wire                 npi_wr_flush_o,
-    input  wire [63:0]          npi_rd_data_i,
-    input  wire [3:0]           npi_rd_word_i,
-    output wire                 npi_rd_pop_o,
-    input  wire                 npi_rd_empty_i,
-    output wire                 npi_rd_flush_o,
-    input  wire                 npi_init_done_i
+    input  wire                 s_axis_tlast_i
 );
     localparam KEEP = WIDTH / 8, BEATS = 64 / WIDTH; // bytes of a beat, beats of a word
     localparam [31:0] BYTES_OF_BEAT = KEEP, BEATS_OF_WORD = BEATS;
@@ -137,6 +119,7 @@ module axis_filter #(
     assign refused_o = empty || over;
 
     axis_memory #(.BYTE_BITS(BYTE_BITS), .ROWS(0)) u_memory (
+        `include "memory_connect.vh"
         .clk_i(clk_i), .rst_i(rst_i), .stop_i(core_rst_i), .idle_o(idle), // not by core_rst_i: requested words must be taken
         .read_valid_i(reading), .read_ready_o(read_ready), .read_base_i(source_i), .read_bytes_i(bytes_i),
         .read_rows_i(16'd1), .read_stride_i(32'd0), .read_tag_i(1'b0),
@@ -146,13 +129,8 @@ module axis_filter #(
         .write_rows_i(16'd1), .write_stride_i(32'd0), .write_tag_i(1'b0),
         .s_axis_tvalid_i(full), .s_axis_tready_o(out_ready), .s_axis_tdata_i(out), .s_axis_tkeep_i(out_keep),
         .s_axis_tlast_i(ends),
-        .done_valid_o(ended), .done_ready_i(1'b1), .done_bytes_o(bytes_o), .done_over_o(over), .done_tag_o(tag),
-        .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i), .npi_rnw_o(npi_rnw_o),
-        .npi_size_o(npi_size_o), .npi_rmw_o(npi_rmw_o), .npi_wr_data_o(npi_wr_data_o), .npi_wr_be_o(npi_wr_be_o),
-        .npi_wr_push_o(npi_wr_push_o), .npi_wr_empty_i(npi_wr_empty_i), .npi_wr_almost_full_i(npi_wr_almost_full_i),
-        .npi_wr_flush_o(npi_wr_flush_o), .npi_rd_data_i(npi_rd_data_i), .npi_rd_word_i(npi_rd_word_i),
-        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i), .npi_rd_flush_o(npi_rd_flush_o),
-        .npi_init_done_i(npi_init_done_i));
+        .done_valid_o(ended), .done_ready_i(1'b1), .done_bytes_o(bytes_o), .done_over_o(over), .done_tag_o(tag)
+    );
 
     wire unused = &{1'b0, idle, tag, no_tag, shifted, kept, 1'b0};
 

@@ -13,6 +13,7 @@ module axis_memory #(
     parameter ROWS      = 1,  // 0: each packet is one row, and rows and stride are not looked at
     parameter TAG_BITS  = 1   // tag, repeated with each packet
 ) (
+    `include "memory_ports.vh"
     input  wire                 clk_i,
     input  wire                 rst_i,
     input  wire                 stop_i, // high for a clock: both streams are given up; then wait for idle_o
@@ -51,26 +52,7 @@ module axis_memory #(
     input  wire                 done_ready_i,
     output wire [BYTE_BITS-1:0] done_bytes_o, // of it
     output wire                 done_over_o,  // the packet was longer than its buffer: the rest was thrown away
-    output wire [TAG_BITS-1:0]  done_tag_o,
-    // memory port
-    output wire [31:0]          npi_addr_o,
-    output wire                 npi_addr_req_o,
-    input  wire                 npi_addr_ack_i,
-    output wire                 npi_rnw_o,
-    output wire [3:0]           npi_size_o,
-    output wire                 npi_rmw_o,
-    output wire [63:0]          npi_wr_data_o,
-    output wire [7:0]           npi_wr_be_o,
-    output wire                 npi_wr_push_o,
-    input  wire                 npi_wr_empty_i,
-    input  wire                 npi_wr_almost_full_i,
-    output wire                 npi_wr_flush_o,
-    input  wire [63:0]          npi_rd_data_i,
-    input  wire [3:0]           npi_rd_word_i,
-    output wire                 npi_rd_pop_o,
-    input  wire                 npi_rd_empty_i,
-    output wire                 npi_rd_flush_o,
-    input  wire                 npi_init_done_i
+    output wire [TAG_BITS-1:0]  done_tag_o
 );
     localparam [3:0] SIZE_64_BYTES = 4'd3;
 

@@ -16,6 +16,7 @@ module fsmc_bridge #(
     parameter POST_LOG2    = 4, // see fsmc_memory
     parameter BLOCK_LOG2   = 3
 ) (
+    `include "memory_ports.vh"
     input  wire        clk_i,
     input  wire        rst_i,
     // FSMC pins
@@ -43,26 +44,7 @@ module fsmc_bridge #(
     output wire [31:0] bus_wdata_o,
     input  wire        bus_ready_i,
     input  wire [31:0] bus_rdata_i,
-    input  wire        bus_error_i,
-    // memory port
-    output wire [31:0] npi_addr_o,
-    output wire        npi_addr_req_o,
-    input  wire        npi_addr_ack_i,
-    output wire        npi_rnw_o,
-    output wire [3:0]  npi_size_o,
-    output wire        npi_rmw_o,
-    output wire [63:0] npi_wr_data_o,
-    output wire [7:0]  npi_wr_be_o,
-    output wire        npi_wr_push_o,
-    input  wire        npi_wr_empty_i,
-    input  wire        npi_wr_almost_full_i,
-    output wire        npi_wr_flush_o,
-    input  wire [63:0] npi_rd_data_i,
-    input  wire [3:0]  npi_rd_word_i,
-    output wire        npi_rd_pop_o,
-    input  wire        npi_rd_empty_i,
-    output wire        npi_rd_flush_o,
-    input  wire        npi_init_done_i
+    input  wire        bus_error_i
 );
     // $error as a module item is SystemVerilog; for Icarus and XST the name of an unknown module is the message.
 `ifdef VERILATOR

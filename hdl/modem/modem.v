@@ -10,36 +10,9 @@ module modem #(
     parameter CLK_HZ = 100000000, // Hz, a multiple of 16000 from 2 MHz on
     parameter API    = 0          // 0 the modem is transparent, 1 it speaks API frames
 ) (
-    input  wire        clk_i,
-    input  wire        rst_i,
-    // register bus
-    input  wire        bus_valid_i,
-    input  wire        bus_write_i,
-    input  wire [3:0]  bus_addr_i,
-    input  wire [31:0] bus_wdata_i,
-    output wire        bus_ready_o,
-    output wire [31:0] bus_rdata_o,
-    output wire        bus_error_o,
+    `include "slot_ports.vh"
+    `include "memory_ports.vh"
     output wire        irq_o,
-    // memory port
-    output wire [31:0] npi_addr_o,
-    output wire        npi_addr_req_o,
-    input  wire        npi_addr_ack_i,
-    output wire        npi_rnw_o,
-    output wire [3:0]  npi_size_o,
-    output wire        npi_rmw_o,
-    output wire [63:0] npi_wr_data_o,
-    output wire [7:0]  npi_wr_be_o,
-    output wire        npi_wr_push_o,
-    input  wire        npi_wr_empty_i,
-    input  wire        npi_wr_almost_full_i,
-    output wire        npi_wr_flush_o,
-    input  wire [63:0] npi_rd_data_i,
-    input  wire [3:0]  npi_rd_word_i,
-    output wire        npi_rd_pop_o,
-    input  wire        npi_rd_empty_i,
-    output wire        npi_rd_flush_o,
-    input  wire        npi_init_done_i,
     // modem pins
     input  wire        modem_rxd_i, // from the modem
     output wire        modem_txd_o,

@@ -11,16 +11,7 @@ module system_slot #(
     parameter CLK_HZ = 100000000, // Hz
     parameter [32*SLOTS-1:0] CONTRACTS = {SLOTS{32'd0}} // hashes of the slots' registers, from slot 0 on
 ) (
-    input  wire             clk_i,
-    input  wire             rst_i,
-    // register bus
-    input  wire             bus_valid_i,
-    input  wire             bus_write_i,
-    input  wire [3:0]       bus_addr_i,
-    input  wire [31:0]      bus_wdata_i,
-    output wire             bus_ready_o,
-    output wire [31:0]      bus_rdata_o,
-    output wire             bus_error_o,
+    `include "slot_ports.vh"
     // interrupt lines of slots SLOTS-1..1, and the one to the processor
     input  wire [SLOTS-1:1] slot_irq_i,
     output wire             irq_o,
@@ -51,10 +42,7 @@ module system_slot #(
         .WORDS    (16'h1FF8),
         .EVENTS   (2)
     ) u_wrapper (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o),
+        `include "slot_connect.vh"
         .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr),
         .reg_wdata_o(reg_wdata), .reg_rdata_i(reg_rdata),
         .event_i({late_i, access_error_i}), .irq_o(own_irq)

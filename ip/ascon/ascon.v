@@ -9,37 +9,10 @@
 `default_nettype none
 
 module ascon (
-    input  wire        clk_i,
-    input  wire        rst_i,
-    // register bus
-    input  wire        bus_valid_i,
-    input  wire        bus_write_i,
-    input  wire [3:0]  bus_addr_i,
-    input  wire [31:0] bus_wdata_i,
-    output wire        bus_ready_o,
-    output wire [31:0] bus_rdata_o,
-    output wire        bus_error_o,
+    `include "slot_ports.vh"
+    `include "memory_ports.vh"
     output wire        irq_o,
-    output wire        idle_o, // no job is under way
-    // memory port
-    output wire [31:0] npi_addr_o,
-    output wire        npi_addr_req_o,
-    input  wire        npi_addr_ack_i,
-    output wire        npi_rnw_o,
-    output wire [3:0]  npi_size_o,
-    output wire        npi_rmw_o,
-    output wire [63:0] npi_wr_data_o,
-    output wire [7:0]  npi_wr_be_o,
-    output wire        npi_wr_push_o,
-    input  wire        npi_wr_empty_i,
-    input  wire        npi_wr_almost_full_i,
-    output wire        npi_wr_flush_o,
-    input  wire [63:0] npi_rd_data_i,
-    input  wire [3:0]  npi_rd_word_i,
-    output wire        npi_rd_pop_o,
-    input  wire        npi_rd_empty_i,
-    output wire        npi_rd_flush_o,
-    input  wire        npi_init_done_i
+    output wire        idle_o // no job is under way
 );
     `include "ascon_regs.vh"
 
@@ -138,6 +111,7 @@ module ascon (
     wire digest_step = state == DIGEST && write_ready;
 
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(24)) u_stream (
+        `include "memory_connect.vh"
         .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(in_source || (in_tag && decrypt && both_idle)),
         .read_base_i(setting[31:6]), .read_words_i(words),
@@ -147,16 +121,8 @@ module ascon (
         .write_base_i(setting[31:6]),
         .write_valid_i((step && writes && !none) || (tag_step && !decrypt) || digest_step),
         .write_data_i(pass == WIPE ? 64'd0 : sum), .write_be_i(be),
-        .write_ready_o(write_ready), .write_flush_i(state == FLUSH || state == FINAL_KEY), .write_idle_o(write_idle),
-        .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
-        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o),
-        .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o),
-        .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),
-        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i), .npi_init_done_i(npi_init_done_i));
+        .write_ready_o(write_ready), .write_flush_i(state == FLUSH || state == FINAL_KEY), .write_idle_o(write_idle));
     assign idle_o         = idle && both_idle;
-    assign npi_rmw_o      = 1'b0;
-    assign npi_wr_flush_o = 1'b0;
-    assign npi_rd_flush_o = 1'b0;
 
     // ---- state of 320 bits: a round, or one of its words plus an operand ----
     // The operand is a word of the message, the key, the nonce or a constant. When decrypting, the
@@ -334,7 +300,7 @@ module ascon (
         end
     end
 
-    wire unused = &{1'b0, reg_read, npi_wr_empty_i, npi_rd_word_i, 1'b0};
+    wire unused = &{1'b0, reg_read, 1'b0};
 `ifdef COVER_POINTS
     refused_job: cover property (@(posedge clk_i) refused);
     wrong_tag: cover property (@(posedge clk_i) tag_step && decrypt && index[0] && (differs || sum != 64'd0));

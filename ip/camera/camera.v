@@ -10,36 +10,9 @@
 `default_nettype none
 
 module camera (
-    input  wire        clk_i,
-    input  wire        rst_i,
-    // register bus
-    input  wire        bus_valid_i,
-    input  wire        bus_write_i,
-    input  wire [3:0]  bus_addr_i,
-    input  wire [31:0] bus_wdata_i,
-    output wire        bus_ready_o,
-    output wire [31:0] bus_rdata_o,
-    output wire        bus_error_o,
+    `include "slot_ports.vh"
+    `include "memory_ports.vh"
     output wire        irq_o,
-    // memory port
-    output wire [31:0] npi_addr_o,
-    output wire        npi_addr_req_o,
-    input  wire        npi_addr_ack_i,
-    output wire        npi_rnw_o,
-    output wire [3:0]  npi_size_o,
-    output wire        npi_rmw_o,
-    output wire [63:0] npi_wr_data_o,
-    output wire [7:0]  npi_wr_be_o,
-    output wire        npi_wr_push_o,
-    input  wire        npi_wr_empty_i,
-    input  wire        npi_wr_almost_full_i,
-    output wire        npi_wr_flush_o,
-    input  wire [63:0] npi_rd_data_i,
-    input  wire [3:0]  npi_rd_word_i,
-    output wire        npi_rd_pop_o,
-    input  wire        npi_rd_empty_i,
-    output wire        npi_rd_flush_o,
-    input  wire        npi_init_done_i,
     // the core that uses the frames
     output wire        frame_valid_o,
     output wire [1:0]  frame_index_o,
@@ -99,10 +72,7 @@ module camera (
     reg  [31:0] reg_rdata;
     reg  [6:0]  events;
     bus_wrapper #(.ID_VALUE(CAMERA_ID_VALUE), .WORDS(16'h07F8), .EVENTS(7)) u_wrapper (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o),
+        `include "slot_connect.vh"
         .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr), .reg_wdata_o(reg_wdata),
         .reg_rdata_i(reg_rdata), .event_i(events), .irq_o(irq_o));
 
@@ -137,20 +107,13 @@ module camera (
     wire        room   = x != width; // for one more pixel of this line
     wire        eighth = capturing && !empty && !lost && is_pixel && room && x[2:0] == 3'd7;
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(4)) u_stream (
+        `include "memory_connect.vh"
         .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(1'b0), .read_base_i(26'd0), .read_words_i(4'd0), .read_stop_i(1'b0),
         .read_valid_o(no_data), .read_data_o(no_words), .read_take_i(1'b0), .read_idle_o(read_idle),
         .write_start_i(state == WAIT_FOR_BUFFER), .write_base_i(write_base[31:6]),
         .write_valid_i(eighth), .write_data_i({token[7:0], pixels}), .write_be_i(8'hFF),
-        .write_ready_o(write_ready), .write_flush_i(state == FINISH), .write_idle_o(write_idle),
-        .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
-        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o),
-        .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o),
-        .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),
-        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i), .npi_init_done_i(npi_init_done_i));
-    assign npi_rmw_o      = 1'b0;
-    assign npi_wr_flush_o = 1'b0;
-    assign npi_rd_flush_o = 1'b0;
+        .write_ready_o(write_ready), .write_flush_i(state == FINISH), .write_idle_o(write_idle));
 
     // ---- frames ----
     // Tokens wait while a buffer is chosen and while a frame is finished; a token that waits too
@@ -263,7 +226,7 @@ module camera (
         end
     end
 
-    wire unused = &{1'b0, reg_read, no_data, no_words, read_idle, npi_wr_empty_i, npi_rd_word_i, write_base[5:0], 1'b0};
+    wire unused = &{1'b0, reg_read, no_data, no_words, read_idle, write_base[5:0], 1'b0};
 `ifdef COVER_POINTS
     replaces_what_nobody_took: cover property (@(posedge clk_i) kept && offered);
     stopped_in_a_frame: cover property (@(posedge clk_i) capturing && stopping && !token_in_frame);

@@ -5,37 +5,10 @@
 `default_nettype none
 
 module fir (
-    input  wire        clk_i,
-    input  wire        rst_i,
-    // register bus
-    input  wire        bus_valid_i,
-    input  wire        bus_write_i,
-    input  wire [3:0]  bus_addr_i,
-    input  wire [31:0] bus_wdata_i,
-    output wire        bus_ready_o,
-    output wire [31:0] bus_rdata_o,
-    output wire        bus_error_o,
+    `include "slot_ports.vh"
+    `include "memory_ports.vh"
     output wire        irq_o,
-    output wire        idle_o, // no call is under way
-    // memory port
-    output wire [31:0] npi_addr_o,
-    output wire        npi_addr_req_o,
-    input  wire        npi_addr_ack_i,
-    output wire        npi_rnw_o,
-    output wire [3:0]  npi_size_o,
-    output wire        npi_rmw_o,
-    output wire [63:0] npi_wr_data_o,
-    output wire [7:0]  npi_wr_be_o,
-    output wire        npi_wr_push_o,
-    input  wire        npi_wr_empty_i,
-    input  wire        npi_wr_almost_full_i,
-    output wire        npi_wr_flush_o,
-    input  wire [63:0] npi_rd_data_i,
-    input  wire [3:0]  npi_rd_word_i,
-    output wire        npi_rd_pop_o,
-    input  wire        npi_rd_empty_i,
-    output wire        npi_rd_flush_o,
-    input  wire        npi_init_done_i
+    output wire        idle_o // no call is under way
 );
     wire        core_rst, set_coefficient, clear, start, unused_shift_start;
     wire [7:0]  index, shift;
@@ -69,10 +42,8 @@ module fir (
     wire [3:0]  here    = written ? 4'd1 : 4'd1 << filled[1:0]; // where this result goes
 
     fir_wrapper u_wrapper (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o), .irq_o(irq_o), .core_rst_o(core_rst),
+        `include "slot_connect.vh"
+        .irq_o(irq_o), .core_rst_o(core_rst),
         .set_coefficient_start_o(set_coefficient), .set_coefficient_index_o(index),
         .set_coefficient_value_o(coefficient),
         .set_shift_start_o(unused_shift_start), .set_shift_bits_o(shift), .clear_start_o(clear),
@@ -89,6 +60,7 @@ module fir (
         .result_o(result), .saturated_o(saturated));
 
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(7)) u_stream (
+        `include "memory_connect.vh"
         .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: requested words must be taken
         .read_start_i(go && !core_rst), .read_base_i(source[31:6]),
         .read_words_i(count[8:2] + {6'd0, |count[1:0]}), .read_stop_i(core_rst),
@@ -97,16 +69,8 @@ module fir (
         .write_start_i(go && !core_rst), .write_base_i(target[31:6]),
         .write_valid_i(offer), .write_data_i(packed_results),
         .write_be_i({{2{filled[2]}}, {2{filled[2] || &filled[1:0]}}, {2{filled[2] || filled[1]}}, 2'b11}),
-        .write_ready_o(write_ready), .write_flush_i(flush || core_rst), .write_idle_o(write_idle),
-        .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
-        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o),
-        .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o),
-        .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),
-        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i), .npi_init_done_i(npi_init_done_i));
+        .write_ready_o(write_ready), .write_flush_i(flush || core_rst), .write_idle_o(write_idle));
     assign idle_o         = !busy && idle;
-    assign npi_rmw_o      = 1'b0;
-    assign npi_wr_flush_o = 1'b0;
-    assign npi_rd_flush_o = 1'b0;
 
     integer r;
     always @(posedge clk_i) begin
@@ -152,7 +116,7 @@ module fir (
         end
     end
 
-    wire unused = &{1'b0, unused_shift_start, shift[7:5], coefficient[31:18], source[5:0], target[5:0], npi_wr_empty_i, npi_rd_word_i, 1'b0};
+    wire unused = &{1'b0, unused_shift_start, shift[7:5], coefficient[31:18], source[5:0], target[5:0], 1'b0};
 `ifdef COVER_POINTS
     saturates: cover property (@(posedge clk_i) taken && saturated);
     reset_under_way: cover property (@(posedge clk_i) core_rst && busy);

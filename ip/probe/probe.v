@@ -14,36 +14,9 @@ module probe #(
     parameter        CLK_HZ = 100000000, // Hz
     parameter [31:0] NAMES  = 32'd0      // hash of the signals' names and widths
 ) (
-    input  wire                 clk_i,
-    input  wire                 rst_i,
-    // register bus
-    input  wire                 bus_valid_i,
-    input  wire                 bus_write_i,
-    input  wire [3:0]           bus_addr_i,
-    input  wire [31:0]          bus_wdata_i,
-    output wire                 bus_ready_o,
-    output wire [31:0]          bus_rdata_o,
-    output wire                 bus_error_o,
+    `include "slot_ports.vh"
+    `include "memory_ports.vh"
     output wire                 irq_o,
-    // memory port
-    output wire [31:0]          npi_addr_o,
-    output wire                 npi_addr_req_o,
-    input  wire                 npi_addr_ack_i,
-    output wire                 npi_rnw_o,
-    output wire [3:0]           npi_size_o,
-    output wire                 npi_rmw_o,
-    output wire [63:0]          npi_wr_data_o,
-    output wire [7:0]           npi_wr_be_o,
-    output wire                 npi_wr_push_o,
-    input  wire                 npi_wr_empty_i,
-    input  wire                 npi_wr_almost_full_i,
-    output wire                 npi_wr_flush_o,
-    input  wire [63:0]          npi_rd_data_i,
-    input  wire [3:0]           npi_rd_word_i,
-    output wire                 npi_rd_pop_o,
-    input  wire                 npi_rd_empty_i,
-    output wire                 npi_rd_flush_o,
-    input  wire                 npi_init_done_i,
     // what is recorded
     input  wire [31:0]          cycles_i,  // the low bits of the chip's count of clocks
     input  wire [64*WORDS-34:0] signals_i
@@ -170,20 +143,17 @@ module probe #(
         .write_valid_i(!empty), .write_data_i(word), .write_be_i(8'hFF), .write_ready_o(room),
         .write_flush_i(settled == 3'd4), .write_idle_o(stream_idle),
         .npi_addr_o(unused_addr), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
-        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o), .npi_wr_be_o(npi_wr_be_o),
-        .npi_wr_push_o(npi_wr_push_o), .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),
-        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i), .npi_init_done_i(npi_init_done_i));
+        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_rmw_o(npi_rmw_o), .npi_wr_data_o(npi_wr_data_o),
+        .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o), .npi_wr_empty_i(npi_wr_empty_i),
+        .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_wr_flush_o(npi_wr_flush_o), .npi_rd_data_i(npi_rd_data_i),
+        .npi_rd_word_i(npi_rd_word_i), .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i),
+        .npi_rd_flush_o(npi_rd_flush_o), .npi_init_done_i(npi_init_done_i));
     assign npi_addr_o     = {base, unused_addr[PROBE_LOG2_BYTES-1:0]};
-    assign npi_rmw_o      = 1'b0;
-    assign npi_wr_flush_o = 1'b0;
-    assign npi_rd_flush_o = 1'b0;
 
     // ---- registers ----
     reg done_before;
     bus_wrapper #(.ID_VALUE(PROBE_ID_VALUE), .WORDS(16'h1FF8), .EVENTS(1)) u_wrapper (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i), .bus_wdata_i(bus_wdata_i),
-        .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o), .bus_error_o(bus_error_o),
+        `include "slot_connect.vh"
         .reg_write_o(reg_write), .reg_read_o(unused_read), .reg_addr_o(reg_addr), .reg_wdata_o(reg_wdata),
         .reg_rdata_i(reg_rdata), .event_i(done && !done_before), .irq_o(irq_o));
 
@@ -212,7 +182,7 @@ module probe #(
     end
 
     wire unused = &{1'b0, unused_read, reg_wdata[31], unused_addr, unused_valid, unused_data,
-                    unused_read_idle, npi_wr_empty_i, npi_rd_word_i, 1'b0};
+                    unused_read_idle, 1'b0};
 `ifdef COVER_POINTS
     loses_changes: cover property (@(posedge clk_i) entry && full);
     turns_round: cover property (@(posedge clk_i) push && &next);

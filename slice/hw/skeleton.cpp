@@ -108,6 +108,7 @@ const char npiStream[] =
     wire        npi_read_valid, npi_read_idle, npi_write_ready, npi_write_idle;
 
     npi_stream u_stream (
+        `include "memory_connect.vh"
         .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: what was asked for must be taken
         .read_start_i(npi_read_start), .read_base_i(npi_read_base[31:6]),
         .read_words_i(npi_read_words), .read_stop_i(core_rst), .read_valid_o(npi_read_valid),
@@ -115,16 +116,9 @@ const char npiStream[] =
         .write_start_i(npi_write_start), .write_base_i(npi_write_base[31:6]),
         .write_valid_i(npi_write_valid), .write_data_i(npi_write_data), .write_be_i(npi_write_be),
         .write_ready_o(npi_write_ready), .write_flush_i(npi_write_flush || core_rst),
-        .write_idle_o(npi_write_idle),
-        .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
-        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o),
-        .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o),
-        .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),
-        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i),
-        .npi_init_done_i(npi_init_done_i)
+        .write_idle_o(npi_write_idle)
     );
-    assign {npi_rmw_o, npi_wr_flush_o, npi_rd_flush_o} = 3'd0;
-    wire npi_unused = &{1'b0, npi_wr_empty_i, npi_rd_word_i, npi_read_base[5:0], npi_read_data,
+    wire npi_unused = &{1'b0, npi_read_base[5:0], npi_read_data,
                         npi_read_valid, npi_read_idle, npi_write_base[5:0], npi_write_ready,
                         npi_write_idle, 1'b0};)";
 
@@ -134,13 +128,13 @@ std::string verilogCore(const Block& b) {
     w.line("`default_nettype none");
     w.line();
     w.line("module " + b.name + " (");
-    auto outer = corePorts(b);
-    for (const Port& p : outer) {
-        if (!p.group.empty())
-            w.line("    // " + p.group);
-        w.line(std::string("    ") + (p.isOut ? "output wire " : "input  wire ") +
-               range(p.width, false) + p.name + (&p == &outer.back() ? "" : ","));
-    }
+    w.line("    `include \"slot_ports.vh\"");
+    if (b.memoryBytes)
+        w.line("    `include \"memory_ports.vh\"");
+    w.line(std::string("    output wire irq_o") + (b.pins.empty() ? "" : ","));
+    for (const Pin& p : b.pins)
+        w.line(std::string("    ") + (p.isOut() ? "output wire " : "input  wire ") +
+               range(p.width, false) + p.name + (&p == &b.pins.back() ? "" : ","));
     w.line(");");
     std::string unused, connections;
     for (const Port& p : innerPorts(b)) {
@@ -156,12 +150,8 @@ std::string verilogCore(const Block& b) {
     }
     w.line();
     w.line("    " + b.name + "_wrapper u_wrapper (");
-    w.line("        .clk_i(clk_i), .rst_i(rst_i),");
-    w.line(
-        "        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),");
-    w.line(
-        "        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),");
-    w.line("        .bus_error_o(bus_error_o), .irq_o(irq_o)" + connections);
+    w.line("        `include \"slot_connect.vh\"");
+    w.line("        .irq_o(irq_o)" + connections);
     w.line("    );");
     for (const Port& p : innerPorts(b))
         if (isDone(b, p)) {

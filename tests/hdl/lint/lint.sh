@@ -47,7 +47,7 @@ elaboration() { # variant
     set_parameter=$(for p in $(each "$1"); do echo "-set ${p%%=*} ${p#*=}"; done)
     echo "${set_parameter:+chparam $(echo $set_parameter) $module;} hierarchy -top $module $(echo $libraries);"
 }
-read_file="verilog_defaults -add -I$gen; read_verilog $file;"
+read_file="verilog_defaults -add -I$gen -I$source/bus -I$source/hdl/ddr; read_verilog $file;"
 elaborate() { yosys -q -p "$read_file $(elaboration "$1")"; } # variant
 checks=''
 for variant in '' $variants; do

@@ -5,16 +5,7 @@
 `default_nettype none
 
 module calculator (
-    input  wire        clk_i,
-    input  wire        rst_i,
-    // register bus
-    input  wire        bus_valid_i,
-    input  wire        bus_write_i,
-    input  wire [3:0]  bus_addr_i,
-    input  wire [31:0] bus_wdata_i,
-    output wire        bus_ready_o,
-    output wire [31:0] bus_rdata_o,
-    output wire        bus_error_o,
+    `include "slot_ports.vh"
     // interrupt
     output wire        irq_o
 );
@@ -26,10 +17,8 @@ module calculator (
     wire [15:0] x, y;
 
     calculator_wrapper u_wrapper (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o), .irq_o(irq_o), .core_rst_o(core_rst),
+        `include "slot_connect.vh"
+        .irq_o(irq_o), .core_rst_o(core_rst),
         .set_mode_start_o(set_mode_start), .set_mode_mode_o(mode_in), .set_mode_negate_o(negate_in),
         .set_mode_shift_o(shift_in),
         .get_mode_start_o(get_mode_start), .get_mode_negate_i(negate), .get_mode_shift_i(shift),

@@ -5,16 +5,7 @@
 `default_nettype none
 
 module many (
-    input  wire        clk_i,
-    input  wire        rst_i,
-    // register bus
-    input  wire        bus_valid_i,
-    input  wire        bus_write_i,
-    input  wire [3:0]  bus_addr_i,
-    input  wire [31:0] bus_wdata_i,
-    output wire        bus_ready_o,
-    output wire [31:0] bus_rdata_o,
-    output wire        bus_error_o,
+    `include "slot_ports.vh"
     output wire        irq_o
 );
     wire        core_rst, start, unused_start;
@@ -25,10 +16,8 @@ module many (
         done <= start && !core_rst;
 
     many_wrapper u_wrapper (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o), .irq_o(irq_o), .core_rst_o(core_rst), .turn_start_o(start),
+        `include "slot_connect.vh"
+        .irq_o(irq_o), .core_rst_o(core_rst), .turn_start_o(start),
         .turn_p_a_o(a), .turn_p_b_o(b), .turn_p_c_o(c), .turn_p_d_o(d), .turn_p_e_o(e),
         .turn_q_a_o(v), .turn_q_b_o(w), .turn_q_c_o(x), .turn_q_d_o(y), .turn_q_e_o(z),
         .turn_s_a_i(b), .turn_s_b_i(c), .turn_s_c_i(d), .turn_s_d_i(e), .turn_s_e_i(a),

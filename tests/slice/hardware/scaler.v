@@ -5,37 +5,10 @@
 `default_nettype none
 
 module scaler (
-    input  wire        clk_i,
-    input  wire        rst_i,
-    // register bus
-    input  wire        bus_valid_i,
-    input  wire        bus_write_i,
-    input  wire [3:0]  bus_addr_i,
-    input  wire [31:0] bus_wdata_i,
-    output wire        bus_ready_o,
-    output wire [31:0] bus_rdata_o,
-    output wire        bus_error_o,
+    `include "slot_ports.vh"
+    `include "memory_ports.vh"
     // interrupt
-    output wire        irq_o,
-    // memory port
-    output wire [31:0] npi_addr_o,
-    output wire        npi_addr_req_o,
-    input  wire        npi_addr_ack_i,
-    output wire        npi_rnw_o,
-    output wire [3:0]  npi_size_o,
-    output wire        npi_rmw_o,
-    output wire [63:0] npi_wr_data_o,
-    output wire [7:0]  npi_wr_be_o,
-    output wire        npi_wr_push_o,
-    input  wire        npi_wr_empty_i,
-    input  wire        npi_wr_almost_full_i,
-    output wire        npi_wr_flush_o,
-    input  wire [63:0] npi_rd_data_i,
-    input  wire [3:0]  npi_rd_word_i,
-    output wire        npi_rd_pop_o,
-    input  wire        npi_rd_empty_i,
-    output wire        npi_rd_flush_o,
-    input  wire        npi_init_done_i
+    output wire        irq_o
 );
     localparam [2:0] IDLE = 3'd0, RUN = 3'd1, FLUSH = 3'd2, DRAIN = 3'd3, HANG = 3'd4;
 
@@ -64,10 +37,8 @@ module scaler (
     wire        refused  = count == 7'd0;
 
     scaler_wrapper u_wrapper (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o), .irq_o(irq_o), .core_rst_o(core_rst),
+        `include "slot_connect.vh"
+        .irq_o(irq_o), .core_rst_o(core_rst),
         .set_limit_start_o(limit_start), .set_limit_limit_o(limit),
         .peak_event_i(done && !refused && $signed(largest) > $signed(limit)),
         .peak_largest_index_i(largest_index), .peak_largest_value_i(largest), .peak_taken_o(peak_taken),
@@ -79,6 +50,7 @@ module scaler (
     );
 
     npi_stream u_stream (
+        `include "memory_connect.vh"
         .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(start && !refused && offset != 16'h7777), .read_base_i(list_base[31:6]),
         .read_words_i({19'd0, count[6:2]} + {23'd0, count[1:0] != 2'd0}), .read_stop_i(core_rst),
@@ -86,15 +58,7 @@ module scaler (
         .read_idle_o(read_idle),
         .write_start_i(start), .write_base_i(shifted_base[31:6]), .write_valid_i(step && word_end),
         .write_data_i(word), .write_be_i(~(8'hFC << {lane, 1'b0})), .write_ready_o(write_ready),
-        .write_flush_i(state == FLUSH), .write_idle_o(write_idle),
-        .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
-        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o),
-        .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o),
-        .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),
-        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i), .npi_init_done_i(npi_init_done_i)
-    );
-    assign npi_rmw_o = 1'b0;
-    assign {npi_wr_flush_o, npi_rd_flush_o} = 2'd0;
+        .write_flush_i(state == FLUSH), .write_idle_o(write_idle));
 
     always @(posedge clk_i) begin
         case (state)
@@ -130,6 +94,5 @@ module scaler (
             state <= IDLE;
     end
 
-    wire unused = &{1'b0, limit_start, peak_taken, finished_taken, list_base[5:0], shifted_base[5:0], npi_rd_word_i,
-                    npi_wr_empty_i, 1'b0};
+    wire unused = &{1'b0, limit_start, peak_taken, finished_taken, list_base[5:0], shifted_base[5:0], 1'b0};
 endmodule

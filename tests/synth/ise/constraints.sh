@@ -6,7 +6,7 @@ source=$1 gen=$2 work=$3
 here=$(dirname "$(readlink -f "$0")")
 mkdir -p "$work"
 libraries=$(for f in "$gen" "$source"/bus "$source"/hdl/* "$source"/hdl "$source"/ip/*; do [ ! -d "$f" ] || printf ' -libdir %s' "$f"; done)
-yosys -q -p "verilog_defaults -add -I$gen -I$source/hdl/system; read_verilog $source/synth/ise/chip.v; read_verilog -lib $here/mig.v;
+yosys -q -p "verilog_defaults -add -I$gen -I$source/bus -I$source/hdl/ddr -I$source/hdl/system; read_verilog $source/synth/ise/chip.v; read_verilog -lib $here/mig.v;
     hierarchy -top chip $libraries; proc; flatten; tribuf; opt_clean; memory -nomap; opt_clean; write_json $work/chip.json" \
     >"$work/yosys.log" 2>&1 || { cat "$work/yosys.log"; exit 2; }
 # As a board has them: with MIG's.

@@ -5,16 +5,7 @@
 `default_nettype none
 
 module led (
-    input  wire        clk_i,
-    input  wire        rst_i,
-    // register bus
-    input  wire        bus_valid_i,
-    input  wire        bus_write_i,
-    input  wire [3:0]  bus_addr_i,
-    input  wire [31:0] bus_wdata_i,
-    output wire        bus_ready_o,
-    output wire [31:0] bus_rdata_o,
-    output wire        bus_error_o,
+    `include "slot_ports.vh"
     // interrupt
     output wire        irq_o,
     // pins
@@ -22,10 +13,8 @@ module led (
     output wire        led_o
 );
     bus_registers #(.ID_VALUE(32'h4C450100)) u_registers (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o), .value_o(value), .value_i(416'd0), .strobe_o(strobe), .wdata_o(wdata),
+        `include "slot_connect.vh"
+        .value_o(value), .value_i(416'd0), .strobe_o(strobe), .wdata_o(wdata),
         .event_i(button_i), .irq_o(irq_o)
     );
     wire [415:0] value;

@@ -19,7 +19,7 @@ for order in 'little middle big' 'little big middle' 'middle little big' 'middle
     "$coremap" "$out/cores.list" --base "$source/bus/map.regs.json" --core "little=$work/little.regs.json" \
         --core "middle=$work/middle.regs.json" --core "big=$work/big.regs.json" --output-dir "$out"
     "$regmap" "$out/map.regs.json" --output-dir "$out"
-    iverilog -g2005-sv -Wno-timescale -o "$out/chip" -I"$out" -I"$gen" -I"$source/hdl/ddr" -I"$source/hdl/system" -y "$work" -y "$source/bus" -y "$source/hdl/ddr" \
+    iverilog -g2005-sv -Wno-timescale -o "$out/chip" -I"$out" -I"$gen" -I"$source/bus" -I"$source/hdl/ddr" -I"$source/hdl/system" -y "$work" -y "$source/bus" -y "$source/hdl/ddr" \
         -y "$source/hdl/fsmc" -y "$source/hdl/cdc" -y "$source/hdl/modem" -y "$source/hdl/system" -s memories_tb "$here/memories_tb.v" "$source/hdl/soc.v" \
         2>"$out/messages" || { cat "$out/messages" && exit 1; }
     vvp -n "$out/chip" >"$out/log"

@@ -5,38 +5,10 @@
 `default_nettype none
 
 module crc32 (
-    // clock, reset
-    input  wire clk_i,
-    input  wire rst_i,
-    // register bus
-    input  wire bus_valid_i,
-    input  wire bus_write_i,
-    input  wire [3:0] bus_addr_i,
-    input  wire [31:0] bus_wdata_i,
-    output wire bus_ready_o,
-    output wire [31:0] bus_rdata_o,
-    output wire bus_error_o,
+    `include "slot_ports.vh"
+    `include "memory_ports.vh"
     // interrupt
-    output wire irq_o,
-    // memory port
-    output wire [31:0] npi_addr_o,
-    output wire npi_addr_req_o,
-    input  wire npi_addr_ack_i,
-    output wire npi_rnw_o,
-    output wire [3:0] npi_size_o,
-    output wire npi_rmw_o,
-    output wire [63:0] npi_wr_data_o,
-    output wire [7:0] npi_wr_be_o,
-    output wire npi_wr_push_o,
-    input  wire npi_wr_empty_i,
-    input  wire npi_wr_almost_full_i,
-    output wire npi_wr_flush_o,
-    input  wire [63:0] npi_rd_data_i,
-    input  wire [3:0] npi_rd_word_i,
-    output wire npi_rd_pop_o,
-    input  wire npi_rd_empty_i,
-    output wire npi_rd_flush_o,
-    input  wire npi_init_done_i
+    output wire irq_o
 );
     wire        core_rst, start;
     wire [31:0] base;
@@ -52,16 +24,15 @@ module crc32 (
     wire        done = begun && left == 13'd0;
 
     crc32_wrapper u_wrapper (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o), .irq_o(irq_o), .core_rst_o(core_rst),
+        `include "slot_connect.vh"
+        .irq_o(irq_o), .core_rst_o(core_rst),
         .crc_start_o(start), .crc_data_base_o(base), .crc_data_count_o(count),
         .crc_result_i(~crc), .crc_done_i(done), .crc_refused_i(1'b0)
     );
 
     wire write_ready, write_idle;
     npi_stream u_stream (
+        `include "memory_connect.vh"
         .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: what was asked for must be taken
         .read_start_i(go && !core_rst), .read_base_i(base[31:6]),
         .read_words_i({14'd0, count[12:3]} + {23'd0, |count[2:0]}), .read_stop_i(core_rst),
@@ -69,15 +40,7 @@ module crc32 (
         .read_take_i(take && (place == 3'd7 || left == 13'd1)), .read_idle_o(read_idle),
         .write_start_i(1'b0), .write_base_i(26'd0), .write_valid_i(1'b0), .write_data_i(64'd0),
         .write_be_i(8'd0), .write_ready_o(write_ready), .write_flush_i(1'b0),
-        .write_idle_o(write_idle),
-        .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
-        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o),
-        .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o),
-        .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_rd_data_i(npi_rd_data_i),
-        .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i),
-        .npi_init_done_i(npi_init_done_i)
-    );
-    assign {npi_rmw_o, npi_wr_flush_o, npi_rd_flush_o} = 3'd0;
+        .write_idle_o(write_idle));
 
     // The CRC with one more byte in it.
     function [31:0] with_byte(input [31:0] old, input [7:0] value);
@@ -109,5 +72,5 @@ module crc32 (
         end
     end
 
-    wire unused = &{1'b0, base[5:0], npi_wr_empty_i, npi_rd_word_i, write_ready, write_idle, 1'b0};
+    wire unused = &{1'b0, base[5:0], write_ready, write_idle, 1'b0};
 endmodule

@@ -7,16 +7,7 @@
 module servo #(
     parameter CLK_HZ = 100000000 // Hz
 ) (
-    input  wire        clk_i,
-    input  wire        rst_i,
-    // register bus
-    input  wire        bus_valid_i,
-    input  wire        bus_write_i,
-    input  wire [3:0]  bus_addr_i,
-    input  wire [31:0] bus_wdata_i,
-    output wire        bus_ready_o,
-    output wire [31:0] bus_rdata_o,
-    output wire        bus_error_o,
+    `include "slot_ports.vh"
     output wire        irq_o,
     // pins
     output wire [3:0]  pwm_o,
@@ -29,10 +20,8 @@ module servo #(
     wire [15:0] pulse;
 
     servo_wrapper u_wrapper (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o), .irq_o(irq_o), .core_rst_o(core_rst),
+        `include "slot_connect.vh"
+        .irq_o(irq_o), .core_rst_o(core_rst),
         .set_pulse_start_o(set_pulse), .set_pulse_channel_o(channel),
         .set_pulse_microseconds_o(pulse), .fault_start_o(fault_start), .fault_result_i(fault),
         .clear_start_o(clear)

@@ -59,12 +59,14 @@ module bus_to_wishbone #(
 
     wire unused = &{1'b0, wb_stall_i, 1'b0};
 
-`ifdef FORMAL
+`ifdef RULES // in proofs, and in tests of cores
     wire outstanding;
     wishbone_rules #(.PIPELINED(PIPELINED), .ADDR_WIDTH(ADDR_WIDTH)) u_wishbone (
         .clk_i(clk_i), .rst_i(rst_i), .cyc_i(wb_cyc_o), .stb_i(wb_stb_o), .we_i(wb_we_o),
         .adr_i(wb_adr_o), .dat_i(wb_dat_o), .ack_i(wb_ack_i), .err_i(wb_err_i), .rty_i(wb_rty_i),
         .stall_i(wb_stall_i), .abort_i(!bus_valid_i || bus_ready_o), .outstanding_o(outstanding));
+`endif
+`ifdef FORMAL
     // Each answered access has had one strobe taken, and its answer is passed on unchanged.
     always @* if (!rst_i && bus_valid_i && bus_addr_i[3] && bus_ready_o && !bus_error_o) begin
         assert (wb_cyc_o && wb_ack_i && !wb_err_i && bus_rdata_o == wb_dat_i);

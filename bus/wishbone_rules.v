@@ -24,17 +24,20 @@ module wishbone_rules #(
     input wire                  abort_i, // the master may end the cycle without an answer in the next clock
     output wire                 outstanding_o // pipelined: a strobe was taken and not answered
 );
-`ifdef FORMAL
     reg past = 1'b0, outstanding = 1'b0;
     assign outstanding_o = outstanding;
     wire answer = ack_i || err_i || rty_i;
     wire taken  = stb_i && (PIPELINED == 0 ? answer : !stall_i);
     always @(posedge clk_i) begin
-        past <= 1'b1;
+        past <= past || rst_i;
         outstanding <= PIPELINED != 0 && !rst_i && cyc_i && !answer && !abort_i && (outstanding || taken);
     end
 
+`ifdef FORMAL
     always @* if (!rst_i) begin
+`else // a simulator has glitches
+    always @(posedge clk_i) if (past && !rst_i) begin
+`endif
         assert (!stb_i || cyc_i);                         // 3.25: CYC whenever STB
         assert (!(stb_i && outstanding));                 // one at a time
         assume (ack_i + err_i + rty_i <= 1);              // 3.45: one of ACK, ERR, RTY
@@ -57,9 +60,4 @@ module wishbone_rules #(
                 assert (cyc_i);
         end
     end
-`else
-    assign outstanding_o = 1'b0;
-    wire unused = &{1'b0, clk_i, rst_i, cyc_i, stb_i, we_i, adr_i, dat_i, ack_i, err_i, rty_i, stall_i,
-                    abort_i, 1'b0};
-`endif
 endmodule

@@ -161,7 +161,7 @@ function(icesoc_core name)
   endif()
   file(GLOB test CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
   if(test AND "testbench" IN_LIST ROOMS)
-    icesoc_verilate(${name}_slot TOP ${top} SOURCES ${files} DEPENDS ${targets} FLAGS ${A_FLAGS}
+    icesoc_verilate(${name}_slot TOP ${top} SOURCES ${files} DEPENDS ${targets} FLAGS ${A_FLAGS} ${CORE_TEST_FLAGS}
                     PARAMS ${clock} INCLUDES ${CMAKE_SOURCE_DIR}/bus ${CMAKE_SOURCE_DIR}/hdl/ddr ${CMAKE_SOURCE_DIR}/hdl/system ${CMAKE_SOURCE_DIR}/hdl/cdc ${CMAKE_CURRENT_SOURCE_DIR})
     set(labels rtl)
     if(A_VHDL)

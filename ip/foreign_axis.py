@@ -6,15 +6,12 @@ Wrapper, servant and proxies are generated from its Slice interface; axis_filter
 """
 import re
 
+from foreign_verilog import ADAPTER, head, overrides, pin_name, vector
+
 SIGNALS = ("tdata", "tvalid", "tready", "tkeep", "tstrb", "tlast", "tuser", "tid", "tdest")
 NEEDED = ["s_tdata", "s_tvalid", "m_tdata", "m_tvalid", "m_tready"]
 ELEMENTS = {8: "byte", 16: "short", 32: "int", 64: "long"}
 BYTES = 1024  # of a packet, in and out
-NPI = [("output", 32, "addr_o"), ("output", 1, "addr_req_o"), ("input", 1, "addr_ack_i"), ("output", 1, "rnw_o"),
-       ("output", 4, "size_o"), ("output", 1, "rmw_o"), ("output", 64, "wr_data_o"), ("output", 8, "wr_be_o"),
-       ("output", 1, "wr_push_o"), ("input", 1, "wr_empty_i"), ("input", 1, "wr_almost_full_i"), ("output", 1, "wr_flush_o"),
-       ("input", 64, "rd_data_i"), ("input", 4, "rd_word_i"), ("output", 1, "rd_pop_o"), ("input", 1, "rd_empty_i"),
-       ("output", 1, "rd_flush_o"), ("input", 1, "init_done_i")]
 
 
 def role(name, port):
@@ -44,133 +41,152 @@ def setting(name):
     return re.sub(r"^i_|_i$", "", name.lower())
 
 
-def texts(name, top, params, ports, roles, pin_name, vector, slot):
-    """Returns the files by their names: interface, module, test, mission."""
-    type_name = camel(name)
-    by_role = {r: n for n, r in roles.items()}
-    width = len(ports[by_role["s_tdata"]]["bits"])
-    by_bytes = "s_tkeep" in by_role or "m_tkeep" in by_role
-    element = 8 if by_bytes else width
-    most, keep = BYTES * 8 // element, width // 8
-    shift, count_bits = (element // 8).bit_length() - 1, (BYTES * 8 // element).bit_length()
-    settings = [n for n in ports if roles[n] == "setting"]
-    pins = [(pin_name(n, p), p) for n, p in ports.items() if not roles[n]]
-    metadata = "".join(f', "hw:pin:{n}:{len(p["bits"])}"' for n, p in pins)
+class Core:
+    """A third-party core with two streams: widths, and what its ports are."""
+
+    def __init__(self, name, top, params, ports, roles):
+        self.name, self.top, self.params, self.ports, self.roles = name, top, params, ports, roles
+        self.type_name = camel(name)
+        self.by_role = {r: n for n, r in roles.items()}
+        self.width = len(ports[self.by_role["s_tdata"]]["bits"])
+        self.bits = 8 if {"s_tkeep", "m_tkeep"} & set(self.by_role) else self.width  # of an element
+        self.most = BYTES * 8 // self.bits
+        self.settings = [n for n in ports if roles[n] == "setting"]
+        self.pins = [(pin_name(n, p), p) for n, p in ports.items() if not roles[n]]
+
+    @property
+    def element(self):
+        return ELEMENTS[self.bits]
+
+
+def interface(core):
+    metadata = "".join(f', "hw:pin:{n}:{len(p["bits"])}"' for n, p in core.pins)
     operations = "".join(f"""        /** Its input {n}. */
         idempotent void set{camel(setting(n))}(int value);
-""" for n in settings)
-    ice = f"""// SPDX-License-Identifier: MIT
+""" for n in core.settings)
+    packet = core.type_name + "Packet"
+    return f"""// SPDX-License-Identifier: MIT
 //
-// The third-party core {top}, from AXI-Stream to AXI-Stream.
+// The third-party core {core.top}, from AXI-Stream to AXI-Stream.
 module Cores {{
-    sequence<{ELEMENTS[element]}> {type_name}Packet;
-    [":hw"{metadata}] interface {type_name} {{
-{operations}        /** Sends a packet through the core, and answers what comes out. Refused: an empty one, and an answer longer than {most}. */
-        ["hw:long:1000", "hw:max:{most}"] {type_name}Packet process(["hw:max:{most}"] {type_name}Packet packet);
+    sequence<{core.element}> {packet};
+    [":hw"{metadata}] interface {core.type_name} {{
+{operations}        /** Sends a packet through the core, and answers what comes out.
+            Refused: an empty one, and an answer longer than {core.most}. */
+        ["hw:long:1000", "hw:max:{core.most}"] {packet} process(["hw:max:{core.most}"] {packet} packet);
     }};
 }};
 """
-    to = {"clock": "clk_i", "reset": "core_rst", "resetn": "!core_rst", "s_tdata": "to_data", "s_tvalid": "to_valid",
-          "s_tready": "to_ready", "s_tkeep": "to_keep", "s_tstrb": "to_keep", "s_tlast": "to_last", "m_tdata": "from_data",
-          "m_tvalid": "from_valid", "m_tready": "from_ready", "m_tkeep": "from_keep", "m_tlast": "from_last"}
-    connections, unused = [], []
-    for n, p in ports.items():
-        r, bits = roles[n], len(p["bits"])
-        if r == "setting":
-            signal = f"{setting(n)}[{bits - 1}:0]" if bits > 1 else f"{setting(n)}[0]"
-        else:
-            signal = to.get(r) or (pin_name(n, p) if not r else f"{{{bits}{{1'b{int(r == 'high')}}}}}" if p["direction"] == "input" else "")
-        connections.append(f".{n}({signal})")
-    wires = [f"    wire {vector(32)}{setting(n)};" for n in settings]
-    wires += [f"    wire set_{setting(n)};" for n in settings]
-    unused += [s for n in settings for s in (setting(n), f"set_{setting(n)}")]
-    ties = [f"    assign {w} = {v};" for r, w, v in (("s_tready", "to_ready", "1'b1"), ("m_tkeep", "from_keep", f"{{{keep}{{1'b1}}}}"),
-                                                 ("m_tlast", "from_last", "1'b0")) if r not in by_role]
-    set_ports = "".join(f".set_{setting(n)}_start_o(set_{setting(n)}), .set_{setting(n)}_value_o({setting(n)}),\n        "
-                        for n in settings)
-    bytes_of = f"{{count, {shift}'d0}}" if shift else "count"
-    npi_ports = ",\n".join(f"    {d:6} wire {vector(w)}npi_{n}" for d, w, n in NPI)
-    npi = ", ".join(f".npi_{n}(npi_{n})" for _, _, n in NPI).replace(", .npi_wr_data", ",\n        .npi_wr_data").replace(
-        ", .npi_wr_almost", ",\n        .npi_wr_almost").replace(", .npi_rd_pop", ",\n        .npi_rd_pop")
-    pin_ports = "".join(f",\n    {p['direction']:6} wire {vector(len(p['bits']))}{n}" for n, p in pins)
-    separator = ",\n        "
-    lines = "\n".join(wires + ties)
-    module = f"""// SPDX-License-Identifier: MIT
-//
-// {name}: a slot with the third-party core {top}: buffers in DDR3 through its AXI-Streams.
 
-`default_nettype none
 
-module {name} (
-{slot},
-    // memory port
-{npi_ports}{"," + chr(10) + "    // pins" + pin_ports[1:] if pins else ""}
-);
-    wire        core_rst, start, done, refused;
+def connection(core, name, port):
+    """Returns what a port of the core is connected to."""
+    role, bits = core.roles[name], len(port["bits"])
+    if role == "setting":
+        return f"{setting(name)}[{bits - 1}:0]" if bits > 1 else f"{setting(name)}[0]"
+    if role in ("s_tstrb", "s_tkeep"):
+        return "to_keep"
+    fixed = {"clock": "clk_i", "reset": "core_rst", "resetn": "!core_rst"}
+    if role in fixed or not role:
+        return fixed.get(role) or pin_name(name, port)
+    stream, _, signal = role.partition("_t")
+    if signal in ("data", "valid", "ready", "keep", "last"):
+        return {"s": "to_", "m": "from_"}[stream] + signal
+    return f"{{{bits}{{1'b{int(role == 'high')}}}}}" if port["direction"] == "input" else ""
+
+
+def module(core):
+    """Returns the slot's Verilog: wrapper, axis_filter, core."""
+    keep, count_bits = core.width // 8, core.most.bit_length()
+    shift = (core.bits // 8).bit_length() - 1
+    set_wires = [(setting(n), "set_" + setting(n)) for n in core.settings]
+    lines = [f"    wire {vector(32)}{value};\n    wire {start};" for value, start in set_wires]
+    lines += [f"    assign {w} = {v};" for r, w, v in (
+        ("s_tready", "to_ready", "1'b1"), ("m_tkeep", "from_keep", f"{{{keep}{{1'b1}}}}"), ("m_tlast", "from_last", "1'b0"))
+        if r not in core.by_role]
+    set_ports = "".join(f".{start}_start_o({start}), .{start}_value_o({value}),\n        " for value, start in set_wires)
+    unused = "".join(f"{value}, {start}, " for value, start in set_wires)
+    connections = ",\n        ".join(f".{n}({connection(core, n, p)})" for n, p in core.ports.items())
+    what = f"{core.top}: buffers in DDR3 through its AXI-Streams"
+    return f"""{head(core.name, what, core.pins, '    `include "memory_ports.vh"' + chr(10))}    wire        core_rst, start, done, refused;
     wire [31:0] source, target;
     wire {vector(count_bits)}count;
     wire {vector(count_bits + shift)}bytes;
     wire        to_valid, to_ready, to_last, from_valid, from_ready, from_last;
-    wire {vector(width)}to_data, from_data;
+    wire {vector(core.width)}to_data, from_data;
     wire {vector(keep)}to_keep, from_keep;
-{lines}{chr(10) if lines else ""}
-    {name}_wrapper u_wrapper (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
-        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o), .irq_o(irq_o), .core_rst_o(core_rst),
+{"".join(line + chr(10) for line in lines)}
+    {core.name}_wrapper u_wrapper (
+        {ADAPTER}, .core_rst_o(core_rst),
         {set_ports}.process_start_o(start), .process_packet_base_o(source), .process_packet_count_o(count),
         .process_result_base_o(target), .process_result_count_i(bytes[{count_bits + shift - 1}:{shift}]),
         .process_done_i(done), .process_refused_i(refused));
 
-    axis_filter #(.WIDTH({width}), .BYTE_BITS({count_bits + shift}), .ROOM({BYTES}), .LAST({int("m_tlast" in by_role)})) u_filter (
+    axis_filter #(.WIDTH({core.width}), .BYTE_BITS({count_bits + shift}), .ROOM({BYTES}), .LAST({int("m_tlast" in core.by_role)})) u_filter (
+        `include "memory_connect.vh"
         .clk_i(clk_i), .rst_i(rst_i), .core_rst_i(core_rst),
-        .start_i(start), .source_i(source), .bytes_i({bytes_of}), .target_i(target),
+        .start_i(start), .source_i(source), .bytes_i({f"{{count, {shift}'d0}}" if shift else "count"}), .target_i(target),
         .done_o(done), .refused_o(refused), .bytes_o(bytes),
         .m_axis_tvalid_o(to_valid), .m_axis_tready_i(to_ready), .m_axis_tdata_o(to_data), .m_axis_tkeep_o(to_keep),
         .m_axis_tlast_o(to_last),
         .s_axis_tvalid_i(from_valid), .s_axis_tready_o(from_ready), .s_axis_tdata_i(from_data), .s_axis_tkeep_i(from_keep),
-        .s_axis_tlast_i(from_last),
-        {npi});
+        .s_axis_tlast_i(from_last));
 
-    {top}{params} u_core (
-        {separator.join(connections)});
+    {core.top}{overrides(core.params)} u_core (
+        {connections});
 
-    wire unused = &{{1'b0, {"".join(s + ", " for s in unused)}to_keep, to_last, bytes, 1'b0}};
+    wire unused = &{{1'b0, {unused}to_keep, to_last, bytes, 1'b0}};
 endmodule
 """
-    test = f"""// SPDX-License-Identifier: MIT
-//
-// {name}_test: a packet goes through the core, as a program sends it. Pins: core_.bench_.top().<pin>.
 
-#include "V{name}_slot.h"
-#include "{name}_proxy.h"
+
+def test(core):
+    ice_type = "Ice_" + core.element.capitalize()
+    before = [f"core.set{camel(setting(n))}(1);" for n in core.settings]
+    before += [f"core.bench_.top().{n} = 0; // a pin" for n, p in core.pins if p["direction"] == "input"]
+    return f"""// SPDX-License-Identifier: MIT
+//
+// {core.name}_test: a packet goes through the core, as a program sends it. Pins: core_.bench_.top().<pin>.
+
+#include "V{core.name}_slot.h"
+#include "{core.name}_proxy.h"
 
 namespace {{
 
-TEST({type_name}, AnswersAPacket) {{
-    {type_name}Proxy<V{name}_slot> core;
-    Ice_{ELEMENTS[element].capitalize()} words[64];
+TEST({core.type_name}, AnswersAPacket) {{
+    {core.type_name}Proxy<V{core.name}_slot> core;
+    {ice_type} words[64];
     for (int i = 0; i < 64; ++i)
-        words[i] = static_cast<Ice_{ELEMENTS[element].capitalize()}>(i);
-    Cores_{type_name}Packet packet{{64, words}};
-{"".join(f"    core.set{camel(setting(n))}(1);{chr(10)}" for n in settings)}{"".join(f"    core.bench_.top().{n} = 0; // a pin{chr(10)}" for n, p in pins if p["direction"] == "input")}    Cores_{type_name}Packet answer{{}};
-    ASSERT_NO_THROW(answer = core.process(&packet)) << "no answer: what does the core want at its reset, its settings and its pins?";
+        words[i] = static_cast<{ice_type}>(i);
+    Cores_{core.type_name}Packet packet{{64, words}};
+{"".join(f"    {line}{chr(10)}" for line in before)}    Cores_{core.type_name}Packet answer{{}};
+    ASSERT_NO_THROW(answer = core.process(&packet))
+        << "no answer: what does the core want at its reset, its settings and its pins?";
     EXPECT_GT(answer.size, 0);
 }}
 
 }} // namespace
 """
-    ground = f'''# SPDX-License-Identifier: MIT
+
+
+def ground(core):
+    name = core.name
+    return f'''# SPDX-License-Identifier: MIT
 """{name}'s part of a mission: a packet goes through the core."""
 
 
 def fly(log, proxy, report):
     import Cores  # made by loadSlice
 
-    core = Cores.{type_name}Prx.checkedCast(proxy("{name}"))
-    packet = {"bytes(range(64))" if element == 8 else "list(range(64))"}
+    core = Cores.{core.type_name}Prx.checkedCast(proxy("{name}"))
+    packet = {"bytes(range(64))" if core.bits == 8 else "list(range(64))"}
     answer = log.call("ground -> UAV", "{name}.process(64)", lambda: core.process(packet))
     log.say("{name}: %d came out of %d: %s" % (len(answer), len(packet), list(answer[:16])))
 '''
-    return {f"{name}.ice": ice, f"{name}.v": module, f"{name}_test.cpp": test, "ground.py": ground}
+
+
+def texts(name, top, params, ports, roles):
+    """Returns the files by their names: interface, module, test, mission."""
+    core = Core(name, top, params, ports, roles)
+    return {f"{name}.ice": interface(core), f"{name}.v": module(core), f"{name}_test.cpp": test(core),
+            "ground.py": ground(core)}

@@ -103,6 +103,8 @@ def roles_of(top, bus, ports, given):
     for r in there - {"", "clock", "reset", "resetn", "interrupt", "setting", "low", "high", "open", "1", "2"}:
         if len(same := [n for n in ports if roles[n] == r]) > 1:
             fail(f"{top} has more than one port for {say.get(r, r)}: {', '.join(same)}; what the others are by PORTS='pin={same[-1]} ...'")
+    if bus == "apb" and latency:
+        fail("PORTS: an APB core without PREADY ends each transfer in its access phase: ack= is not for it")
     if "strobe" in roles.values() and "ack" not in there:
         fail("PORTS: a strobe of one clock needs an ack; what answers in the same clock has select")
     if wide := [n for n in ports if bus != "axis" and roles[n] in ("wdata", "rdata") and len(ports[n]["bits"]) > 32]:

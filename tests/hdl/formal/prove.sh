@@ -35,7 +35,7 @@ gates='memory_map; opt -full; setundef -anyseq; techmap; opt -fast -nosdff -nodf
 aiger='opt_clean; abc -g AND -fast; opt_clean; write_aiger -zinit -map'
 # shellcheck disable=SC2086
 cat >prove.ys <<END
-read_verilog -formal -sv -I${GEN_DIR:-.} -I$source/bus -I$source/hdl/ddr $(echo $files)
+read_verilog -formal -sv -DRULES -I${GEN_DIR:-.} -I$source/bus -I$source/hdl/ddr $(echo $files)
 $parameters
 hierarchy -top $module
 proc

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// axil_words: an AXI4-Lite core as others write them: four words, capitals, a reset that is low.
+// axil_words: an AXI4-Lite core as others write them: four words, capitals, a reset that is low. It takes an address after
+// `aw_late` clocks (before data if that is later), data after `w_late`, and answers `late` clocks later.
 
 module axil_words (
     input             S_AXI_ACLK, S_AXI_ARESETN,
@@ -22,21 +23,43 @@ module axil_words (
     output reg        S_AXI_RVALID,
     input             S_AXI_RREADY,
     output reg [31:0] S_AXI_RDATA,
-    output     [1:0]  S_AXI_RRESP
+    output     [1:0]  S_AXI_RRESP,
+    input      [2:0]  aw_late, w_late, late
 );
-    reg [31:0] words [0:3];
-    wire take = S_AXI_AWVALID && S_AXI_WVALID && (!S_AXI_BVALID || S_AXI_BREADY);
-    assign {S_AXI_AWREADY, S_AXI_WREADY} = {2{take}};
+    reg  [31:0] words [0:3];
+    reg  [2:0]  aw_waited, w_waited, waited;
+    reg         has_aw, has_w, has_ar;
+    reg  [1:0]  word;
+    reg  [31:0] value;
+    // A channel is ready at rest if it is not late.
+    assign S_AXI_AWREADY = !has_aw && aw_waited == aw_late;
+    assign S_AXI_ARREADY = !has_ar && aw_waited == aw_late;
+    assign S_AXI_WREADY  = !has_w && w_waited == w_late;
     assign {S_AXI_BRESP, S_AXI_RRESP} = 4'd0;
-    assign S_AXI_ARREADY = !S_AXI_RVALID || S_AXI_RREADY;
+    wire has_all = has_ar || (has_aw && has_w);
     always @(posedge S_AXI_ACLK) begin
-        if (take)
-            words[S_AXI_AWADDR[3:2]] <= S_AXI_WDATA;
-        S_AXI_BVALID <= take || (S_AXI_BVALID && !S_AXI_BREADY);
+        aw_waited <= (S_AXI_AWVALID && !S_AXI_AWREADY && !has_aw) || (S_AXI_ARVALID && !S_AXI_ARREADY && !has_ar) ? aw_waited + 1 : 0;
+        w_waited  <= S_AXI_WVALID && !S_AXI_WREADY && !has_w ? w_waited + 1 : 0;
+        if (S_AXI_AWVALID && S_AXI_AWREADY)
+            {has_aw, word} <= {1'b1, S_AXI_AWADDR[3:2]};
         if (S_AXI_ARVALID && S_AXI_ARREADY)
-            S_AXI_RDATA <= words[S_AXI_ARADDR[3:2]];
-        S_AXI_RVALID <= (S_AXI_ARVALID && S_AXI_ARREADY) || (S_AXI_RVALID && !S_AXI_RREADY);
+            {has_ar, word} <= {1'b1, S_AXI_ARADDR[3:2]};
+        if (S_AXI_WVALID && S_AXI_WREADY)
+            {has_w, value} <= {1'b1, S_AXI_WDATA};
+        waited <= has_all && waited != late ? waited + 1 : 0;
+        if (has_all && waited == late) begin
+            {has_aw, has_w, has_ar} <= 3'd0;
+            if (has_aw)
+                words[word] <= value;
+            S_AXI_RDATA  <= words[word];
+            S_AXI_BVALID <= has_aw;
+            S_AXI_RVALID <= has_ar;
+        end
+        if (S_AXI_BVALID && S_AXI_BREADY)
+            S_AXI_BVALID <= 0;
+        if (S_AXI_RVALID && S_AXI_RREADY)
+            S_AXI_RVALID <= 0;
         if (!S_AXI_ARESETN)
-            {S_AXI_BVALID, S_AXI_RVALID} <= 2'b00;
+            {S_AXI_BVALID, S_AXI_RVALID, has_aw, has_w, has_ar, aw_waited, w_waited, waited} <= 0;
     end
 endmodule

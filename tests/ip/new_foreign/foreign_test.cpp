@@ -1,23 +1,43 @@
 // SPDX-License-Identifier: MIT
 //
 // foreign_test: third-party cores as make new-foreign connects them: registers, pins, interrupt; a
-// clock of its own.
+// clock of its own; cores that answer at any time that their bus allows. Checkers of the bus'
+// rules (bus/*_rules.v) end the test where a wrapper or a core breaks one.
 
 #include "Va_bridge_slot.h"
+#include "Vmy_apb2_slot.h"
+#include "Vmy_classic_slot.h"
 #include "Vmy_late_slot.h"
+#include "Vmy_memory_slot.h"
+#include "Vmy_pipelined_slot.h"
 #include "Vmy_port_slot.h"
 #include "Vmy_requests_slot.h"
+#include "Vmy_slow_memory_slot.h"
 #include "Vmy_words_slot.h"
-#include "core_slot.h"
+#include "registers_apart.h"
+#include <gtest/gtest-spi.h>
 extern "C" {
 #include "a_bridge_regs.h"
 #include "my_late_regs.h"
+#include "my_memory_regs.h"
 #include "my_port_regs.h"
 #include "my_requests_regs.h"
 #include "my_words_regs.h"
 }
 
 namespace {
+
+// Two registers from `first` on hold what was written to them.
+template <class Module>
+void holdsRegisters(CoreSlot<Module>& slot, unsigned first, const std::string& how) {
+    for (uint32_t round : {0x12345678u, 0xEDCBA987u}) {
+        for (unsigned i = 0; i < 2; ++i)
+            EXPECT_FALSE(slot.bus_.transfer(true, first + i, round + i).error) << how;
+        for (unsigned i = 0; i < 2; ++i)
+            EXPECT_EQ(slot.bus_.read(first + i), round + i) << how << ", register " << i;
+    }
+    EXPECT_EQ(slot.bus_.read(1), 0u) << how << ": no time-out";
+}
 
 TEST(Wishbone, RegistersReachThePinsAndTheInterruptComesThrough) {
     CoreSlot<Vmy_port_slot> slot;
@@ -34,8 +54,49 @@ TEST(Wishbone, RegistersReachThePinsAndTheInterruptComesThrough) {
     EXPECT_EQ(slot.bus_.read(1), MY_PORT_EVENT_CORE_MASK);
 }
 
+TEST(Wishbone, ACoreStallsAndAnswersWhenItLikes) {
+    CoreSlot<Vmy_pipelined_slot> pipelined;
+    CoreSlot<Vmy_classic_slot> classic;
+    for (uint8_t late = 0; late < 6; ++late) {
+        for (uint8_t stalls = 0; stalls < 6; ++stalls) {
+            pipelined.bench_.top().late_i = late;
+            pipelined.bench_.top().stalls_i = stalls;
+            holdsRegisters(pipelined, 8,
+                           std::to_string(stalls) + " stalls, answer after " +
+                               std::to_string(late));
+        }
+        classic.bench_.top().late_i = late;
+        classic.bench_.top().stalls_i = 0;
+        holdsRegisters(classic, 8, "classic, answer after " + std::to_string(late));
+    }
+}
+
+TEST(Memory, WhatIsReadIsThereAtOnceOrNineClocksLater) {
+    CoreSlot<Vmy_memory_slot> memory;
+    holdsRegisters(memory, 8, "at once");
+    CoreSlot<Vmy_slow_memory_slot> slow;
+    holdsRegisters(slow, 8, "nine clocks");
+}
+
+TEST(Axi4Lite, AChannelIsReadyAndAnsweredWhenItLikes) {
+    CoreSlot<Vmy_words_slot> slot;
+    auto& top = slot.bench_.top();
+    const uint8_t clocks[] = {0, 1, 4};
+    for (uint8_t address : clocks) // before the data, with it, behind it
+        for (uint8_t data : clocks)
+            for (uint8_t late : clocks) {
+                top.aw_late_i = address;
+                top.w_late_i = data;
+                top.late_i = late;
+                holdsRegisters(slot, 8,
+                               "address after " + std::to_string(address) + ", data after " +
+                                   std::to_string(data) + ", answer after " + std::to_string(late));
+            }
+}
+
 TEST(Axi4Lite, EveryWordIsARegisterOfItsOwn) {
     CoreSlot<Vmy_words_slot> slot;
+    slot.bench_.top().aw_late_i = slot.bench_.top().w_late_i = slot.bench_.top().late_i = 0;
     for (uint32_t i = 0; i < 4; ++i)
         slot.bus_.write(MY_WORDS_REG0 + i, 0x1000 + i);
     for (uint32_t i = 0; i < 4; ++i)
@@ -45,17 +106,40 @@ TEST(Axi4Lite, EveryWordIsARegisterOfItsOwn) {
 
 TEST(Apb, TransfersBeginWithoutEnableAndEndWithReady) {
     CoreSlot<Va_bridge_slot> slot;
+    slot.bench_.top().waits_i = 1;
     slot.bus_.write(A_BRIDGE_REG1, 0x12345678);
     slot.bus_.write(A_BRIDGE_REG2, 0x9ABCDEF0);
     EXPECT_EQ(slot.bus_.read(A_BRIDGE_REG1), 0x12345678u);
     EXPECT_EQ(slot.bus_.read(A_BRIDGE_REG2), 0x9ABCDEF0u);
     EXPECT_TRUE(slot.bus_.transfer(false, A_BRIDGE_REG3, 0).error) << "refused by PSLVERR";
-    EXPECT_EQ(slot.bus_.read(A_BRIDGE_REG0), 6u);
+    EXPECT_EQ(slot.bus_.read(A_BRIDGE_REG0), 5u);
     EXPECT_EQ(slot.bus_.read(1), 0u);
     slot.bench_.top().clk_div_i = 3; // the second of its interrupts
     slot.tick();
     slot.tick();
     EXPECT_EQ(slot.bus_.read(1), A_BRIDGE_EVENT_CORE_MASK);
+}
+
+TEST(Apb, ACoreIsReadyAtRestOrAfterWaitsOrHasNoReady) {
+    CoreSlot<Va_bridge_slot> slot;
+    for (uint8_t waits = 0; waits < 6; ++waits) {
+        slot.bench_.top().waits_i = waits;
+        holdsRegisters(slot, A_BRIDGE_REG1, std::to_string(waits) + " waits");
+        EXPECT_TRUE(slot.bus_.transfer(true, A_BRIDGE_REG3, 0).error) << "refused by PSLVERR";
+    }
+    CoreSlot<Vmy_apb2_slot> apb2;
+    apb2.bench_.top().waits_i = 0;
+    holdsRegisters(apb2, A_BRIDGE_REG1, "no PREADY");
+}
+
+// The generated test, with a table that names a register twice.
+TEST(RegistersApart, OneThatHasTheValueOfAnotherIsFound) {
+    CoreSlot<Vmy_memory_slot> slot;
+    const Hw_Register table[] = {MY_MEMORY_TABLE},
+                      twice[] = {{{1, "A"}, Hw_rw, 8, 0, 32, 0}, {{1, "B"}, Hw_rw, 8, 0, 32, 0}};
+    expectRegistersApart(slot, table, MY_MEMORY_PAGE);
+    EXPECT_NONFATAL_FAILURE(expectRegistersApart(slot, twice, MY_MEMORY_PAGE),
+                            "A has what was written to B");
 }
 
 TEST(Late, AValueIsReadOnceAndAClockLater) {

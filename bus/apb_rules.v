@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+//
+// apb_rules: APB's transfers as properties of a requester (ARM IHI 0024, 3.1 to 3.3, 4.1).
+//
+// The completer is free: PREADY may be high at any time, also in the set-up phase.
+
+`default_nettype none
+
+module apb_rules #(
+    parameter ADDR_WIDTH = 12
+) (
+    input wire                  clk_i,
+    input wire                  rst_i,
+    input wire                  psel_i,
+    input wire                  penable_i,
+    input wire                  pwrite_i,
+    input wire [ADDR_WIDTH-1:0] paddr_i,
+    input wire [31:0]           pwdata_i,
+    input wire                  pready_i,
+    input wire                  abort_i // the requester may end the transfer in the next clock
+);
+    reg past = 1'b0;
+    always @(posedge clk_i) begin
+        past <= past || rst_i;
+        if (past && !rst_i && !$past(rst_i)) begin
+            // A set-up phase of one clock, then the access phase, which lasts until PREADY.
+            assert (psel_i || !penable_i);
+            assert (!penable_i || $past(psel_i));
+            if ($past(psel_i && !abort_i && !(penable_i && pready_i))) begin
+                assert (psel_i && penable_i);
+                assert (pwrite_i == $past(pwrite_i) && paddr_i == $past(paddr_i));
+                assert (!pwrite_i || pwdata_i == $past(pwdata_i));
+            end
+            if ($past(psel_i && penable_i && pready_i))
+                assert (!penable_i);
+            // No transfer ends before its access phase.
+            if ($past(psel_i && !penable_i))
+                assert (psel_i);
+        end
+    end
+endmodule

@@ -63,7 +63,8 @@ class History:
         return bool(passed) and passed[0][2] == test.print
 
     def seconds(self, name):
-        return self.ends[name][-1][0][1] if self.ends[name] else 0
+        """Seconds that a test took in the newest run that had it, or None."""
+        return self.ends[name][-1][0][1] if self.ends[name] else None
 
     def flaky(self):
         """Tests that both passed and failed with one fingerprint and one seed."""

@@ -34,11 +34,12 @@ class Progress:
         if status == "failed":
             self.failed += 1
             self._line(f"FAILED {name} ({seconds:.1f} s)", True)
-        left = int(sum(self.seconds.values()) / self.jobs)
+        known = all(each is not None for each in self.seconds.values())
+        seconds = int(sum(self.seconds.values()) / self.jobs) if known else 0
+        left = f"{seconds // 60}:{seconds % 60:02}" if known else self.total - self.done
         tenth = 10 * self.done // self.total != 10 * (self.done - 1) // self.total
-        self._line(f"{self.done} of {self.total}, {self.failed} failed, {left // 60}:"
-                   f"{left % 60:02} left: {' '.join(sorted(self.running))}",
-                   tenth and not sys.stdout.isatty())
+        self._line(f"{self.done} of {self.total}, {self.failed} failed, {left} left: "
+                   f"{' '.join(sorted(self.running))}", tenth and not sys.stdout.isatty())
 
     def _line(self, text, keep):
         if sys.stdout.isatty():

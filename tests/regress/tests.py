@@ -158,17 +158,14 @@ class Graph:
     @functools.cache
     def inputs(self, target):
         """The files of the tree from which a target is made."""
-        found, seen, left = set(), set(), [target]
+        seen, left, build, source = set(), [target], f"{self.build}/", f"{self.source}/"
         while left:
-            path = left.pop().removeprefix(f"{self.build}/")
-            if path in seen:
-                continue
-            seen.add(path)
-            left += self.made.get(path, [])
-            real = os.path.normpath(self.build / path)
-            if real.startswith(f"{self.source}/"):
-                found.add(real[len(str(self.source)) + 1:])
-        return found
+            path = left.pop().removeprefix(build)
+            if path not in seen:
+                seen.add(path)
+                left += self.made.get(path, [])
+        real = (os.path.normpath(path) for path in seen if path[0] == "/")
+        return {path[len(source):] for path in real if path.startswith(source)}
 
 
 @dataclasses.dataclass

@@ -148,7 +148,7 @@ UNKNOWN := $(filter-out LANG $(shell sed -n 's/^\([A-Z0-9_]*\) *?*=.*/\1/p' $(MA
 $(if $(UNKNOWN),$(error there is no variable $(UNKNOWN); `make help` names those that there are))
 # A switch that is 0 is off.
 $(foreach name,LIVE OPEN CAMERA CHANGED FAILED KEPT FRESH FORCE CHIP PLACE,$(if $(filter 0,$($(name))),$(eval override $(name) :=)))
-# expr prints how long what fits is.
+# expr prints the length of the match.
 fits     = $(filter-out 0,$(shell expr x$(call quoted,$(1)) : 'x$(2)$$'))
 must     = $(foreach name,$(filter $(1),$(GIVEN)),$(if $(call fits,$($(name)),$(2)),,$(error $(name)='$($(name))' is not $(3))))
 $(call must,JOBS TESTS FUZZED REPEAT NIGHTLY MOMENTS SEEDS DRAW,[1-9][0-9]*,a number from 1 on)

@@ -46,7 +46,7 @@ module bus_rules #(
     always @*
         assert (waiting == (waited != 16'd0));
 
-    // Master: a transfer that waits stays as it is; it is withdrawn only when patience is over.
+    // Master: a waiting transfer does not change; it is withdrawn only when patience is over.
     wire stable    = !waiting || !valid_i
                      || (write_i == write_was && addr_i == addr_was && (!write_i || wdata_i == wdata_was));
     // The address and the direction precede valid by a clock: the decoder relies on it.

@@ -17,7 +17,7 @@ for word in "$@"; do
     esac
 done
 
-# package: what it is for
+# package: its purpose
 packages='
 g++ C and C++ compiler
 make drives Verilator models

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
 
-# MINUTES=60 goes on for an hour: half of it the link alone (half of that attacked), then so many simulated seconds of stock Ice through
-# the plugin to IceC on the chip's RTL. Then noise:
-# FUZZED bytes into the modem controller's UART (10,000,000 take 5 minutes of a core), ten times as many
-# into the link layer and the plugin's engine.
+# MINUTES=60 goes on for an hour: half of it the link alone (half of that under attack), then as many simulated seconds of stock
+# Ice through the plugin to IceC on the chip's RTL. Then noise follows: FUZZED bytes into the modem controller's UART
+# (10,000,000 take 5 minutes of a core), ten times as many into the link layer and the plugin's engine.
 MINUTES ?= 4
 FUZZED  ?= 1000000
 quarter := $$(echo $(MINUTES) | awk '{print $$1 / 4}')

@@ -41,7 +41,7 @@ module axis_memory #(
     input  wire [15:0]          write_rows_i,
     input  wire [ADDR_BITS-1:0] write_stride_i,
     input  wire [TAG_BITS-1:0]  write_tag_i,
-    // packets; a byte that is not kept leaves memory as it is
+    // packets; a byte that is not kept leaves memory unchanged
     input  wire                 s_axis_tvalid_i,
     output wire                 s_axis_tready_o,
     input  wire [63:0]          s_axis_tdata_i,

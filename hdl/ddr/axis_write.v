@@ -3,7 +3,7 @@
 // axis_write: puts packets of an AXI-Stream of 64 bits into buffers in memory; the writing half of axis_memory.
 //
 // A descriptor takes one packet: rows of desc_bytes_i bytes, desc_stride_i bytes from the begin of
-// a row to the next. A byte that is not kept leaves memory as it is. Bytes beyond the last row are
+// a row to the next. A byte that is not kept leaves memory unchanged. Bytes beyond the last row are
 // thrown away, and over_o reports them. Bursts of 64 bytes are filled up with words without byte
 // enables. done_valid_o, until done_ready_i, says that a packet is in memory, where every later
 // request of any port sees it: with its tag, its number of bytes, over_o. The next descriptor may

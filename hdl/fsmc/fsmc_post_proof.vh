@@ -73,7 +73,7 @@
             assert (!(wr_lost_o && more)); // or three
             // A word that has all its bytes does not wait for another, or for a flush.
             assert (push_o || !(open && push_be_o == 8'hFF && count != DEPTH - 1));
-            // The oldest word stays as it is until it is taken.
+            // The oldest word does not change until it is taken.
             if ($past(word_valid_o && !word_taken_i && !rst_i))
                 assert (word_valid_o && $stable(word_addr_o));
         end

@@ -84,7 +84,7 @@ U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords) {
     return repeated;
 }
 
-/* Reads with the bank's timing as it is set. */
+/* Reads with the bank's present timing. */
 static void readHalfwords(U32 at, U16* data, U32 halfwords) {
     U32 i;
     for (i = 0; i < halfwords; ++i)

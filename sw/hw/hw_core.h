@@ -31,7 +31,7 @@ typedef struct Hw_Frames {
     void (*processed)(U32 findings); /* called for each frame that was processed */
 } Hw_Frames;
 
-/* What a core's servant needs from below: how its task waits, and what it shares with others. On
+/* The port of a core's servant: its task's waiting, and resources that it shares with others. On
  * uC/OS-II a semaphore (OSSemPend, OSSemPost), one for each operation where several tasks call
  * operations that take time. */
 typedef struct Hw_Port {

@@ -206,8 +206,8 @@ Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx*
 /* Opens the connection of future calls. */
 Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int* connection);
 /* Gives an indirect proxy ("object", "object@adapter") the endpoints that `locator` knows, a proxy
- * to an Ice::Locator such as IceGrid's; a direct one stays as it is. They stay until this is called
- * again on a fresh copy. ICE_NO_ENDPOINT: the locator knows none. */
+ * to an Ice::Locator such as IceGrid's; a direct one does not change. They stay until this is
+ * called again on a fresh copy. ICE_NO_ENDPOINT: the locator knows none. */
 Ice_Status Ice_ObjectPrx_resolve(Ice_ObjectPrxPtr self, Ice_ObjectPrxPtr locator);
 /* Tells about the last call that was made through this object, until its next call. */
 void Ice_ObjectPrx_failure(const Ice_ObjectPrx* self, Ice_Failure* failure);

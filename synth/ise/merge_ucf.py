@@ -29,7 +29,7 @@ def statements(path):
 
 
 def keys(statement):
-    """What a statement says once only: VCCAUX; place, standard, period of a net."""
+    """Settings that occur once only: VCCAUX; place, standard, period of a net."""
     if re.match(r"(?i)CONFIG\s+VCCAUX", statement):
         return ["VCCAUX"]
     net = re.match(r'(?i)NET\s+"?([^"\s]+)"?\s+(.*)', statement)

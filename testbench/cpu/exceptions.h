@@ -33,7 +33,7 @@ public:
 
     struct State {
         bool pending = false, active = false, enabled = false;
-        bool level = false; // of the line: it pends again as long as it is high
+        bool level = false; // state of the line: the interrupt pends again while it is high
         uint8_t priority = 0;
     };
 

@@ -20,7 +20,7 @@ from http import HTTPStatus
 PATIENCE = 10        # seconds for a request and its answer
 LONGEST_HEAD = 8192  # bytes of a request
 MOST_CLIENTS = 128   # at once: a new one displaces the oldest
-NEWEST = 128 << 10   # bytes of events.jsonl that are shown, so that a page of a long flight stays as it is
+NEWEST = 128 << 10   # bytes of events.jsonl that a page shows, so that a long flight does not make it large
 HERE = os.path.dirname(os.path.abspath(__file__))
 FILES = {  # path: MIME type, file
     "/": ("text/html; charset=utf-8", HERE + "/page/index.html"),

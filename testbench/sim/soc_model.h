@@ -52,7 +52,7 @@ public:
     // The core that moves in most of them; empty: none.
     std::string mover() const { return span_.mover(); }
 
-    // Returns all of the chip's state, as it is now.
+    // Returns the chip's whole present state.
     const VSoc& chip() {
         pay();
         return *top_;

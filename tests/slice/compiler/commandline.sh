@@ -86,7 +86,7 @@ for file in checksums.ice /usr/share/ice/slice/IceGrid/Admin.ice /usr/share/ice/
 done
 expect 0 'struct Point_ty' "$slice2c" -E -I slice slice/Top.ice
 
-# Several files in one run, each beside the others; a header that is included as it is on the -I path.
+# Several files in one run, each beside the others; a header that is included by its name on the -I path.
 expect 0 '' "$slice2c" -I slice slice/Lib/Base.ice slice/Lib/Middle.ice --output-dir out/Lib
 expect 0 '' "$slice2c" -Islice -DWITH_MORE=7 slice/Top.ice --output-dir out
 grep -q '#include "Lib/Middle.h"' out/Top.h || fail 'Top.h does not include Lib/Middle.h'

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_programs: libFuzzer target of what a program with the plugin sends: bytes in any pieces on a
-// socket, which the engine's Stream makes messages of. Each message must be one that was sent,
-// whole and in its turn. What comes back must be whole messages, too.
+// fuzz_programs: libFuzzer target of the bytes from a program with the plugin: they come in any
+// pieces on a socket, and the engine's Stream makes messages of them. Each message must be one that
+// was sent, whole and in its turn. The answers must be whole messages, too.
 //
 // The first byte's lowest bit: the program is a server that the UAV called. Then a byte names the
 // step (mod 8), the next its argument n:
@@ -112,7 +112,7 @@ private:
             got_.erase(got_.begin(), got_.begin() + static_cast<std::ptrdiff_t>(size));
         }
     }
-    // What the engine's thread does with it.
+    // Does the work of the engine's thread.
     void run() {
         if (!stream_.is(Stream::State::Open))
             return;

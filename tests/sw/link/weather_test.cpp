@@ -47,8 +47,8 @@ public:
             limitUs);
     }
 
-    // Every message is reported; what was received is a part of what was sent, on each channel in
-    // order, unchanged, and holds everything reported as delivered.
+    // Every message is reported. The received ones are a part of the sent ones, on each channel in
+    // order and unchanged, and contain all that are reported as delivered.
     static void check(const std::vector<std::pair<uint32_t, Side::Bytes>>& sent, const Side& sender,
                       const Side& receiver) {
         ASSERT_EQ(sender.outcomes.size(), sent.size()) << "messages not reported";

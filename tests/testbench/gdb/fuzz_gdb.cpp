@@ -3,7 +3,7 @@
 // fuzz_gdb: libFuzzer target of the GDB stub. Nothing may crash or hang, whatever a debugger says.
 //
 // Each line of an input is a packet, and gets its frame and checksum; one that begins with ! goes
-// as it is. The processor does not run: "continue" stops at once.
+// unchanged. The processor does not run: "continue" stops at once.
 
 #include "gdb_stub.h"
 #include <arpa/inet.h>

@@ -250,7 +250,7 @@ TEST(CortexM3Firmware, AHungMemoryIsReportedAndTheFlightGoesOn) {
                 return true;
             EXPECT_EQ(variable("busErrors"), 0u);
             f.soc.memory().hang(true);
-            f.ground.ping(100, "hwengine1"); // its packet is to be read from the memory
+            f.ground.ping(100, "hwengine1"); // the firmware must read its packet from the memory
             (void)f.soc.fsmc().read16(MAP_DDR_WINDOW);
             since = f.soc.cycles();
             phase = 1;

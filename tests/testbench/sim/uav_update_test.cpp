@@ -55,7 +55,7 @@ protected:
         const Slots_Header running = headerOf(5, 0);
         std::memcpy(&flash.bytes[Slots_at(&slots_firmware, 0)], &running, sizeof running);
         Slots_set(&flash.port, 0, SLOTS_CONFIRMED);
-        flash.bytes[Slots_at(&slots_firmware, 1) + 3] = 0; // it is to be erased
+        flash.bytes[Slots_at(&slots_firmware, 1) + 3] = 0; // the slot must be erased
         for (size_t i = 0; i < imageBytes; ++i)
             image[i] = static_cast<uint8_t>(i * i / 64); // its halves are alike
         std::copy_n(image.begin(), half - 16, image.begin() + half);
@@ -167,7 +167,7 @@ TEST_F(UavUpdate, AnImageComesInPiecesPackedOrNotAndIsStarted) {
     fly({{"getStatus", {}, Idle},
          {"begin", encoded(headerOf(6, 1)), None},
          {"getStatus", {}, Receiving},
-         {"write", piece(half, half, packed), Misplaced}, // before what it is packed by
+         {"write", piece(half, half, packed), Misplaced}, // before the bytes that it refers to
          {"write", piece(0, half, first), None},
          {"write", piece(half, half + 4, packed), Misplaced},
          {"write", piece(half, half, packed), None},

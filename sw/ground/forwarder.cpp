@@ -11,8 +11,8 @@ namespace gateway {
 namespace {
 
 constexpr size_t mostUnderWay = 8;             // requests without an answer
-constexpr size_t mostBytesUnderWay = 8192;     // of these together, but for a single one
-constexpr size_t mostQueued = size_t{1} << 18; // bytes of a client
+constexpr size_t mostBytesUnderWay = 8192;     // of these together; a single longer one may go
+constexpr size_t mostQueued = size_t{1} << 18; // bytes per client
 
 } // namespace
 
@@ -22,7 +22,7 @@ void Request::sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onR
     object = object->ice_encodingVersion(current.encoding);
     object = isOneway() ? object->ice_oneway() : object->ice_twoway();
     const Parameters in{parameters.data(), parameters.data() + parameters.size()};
-    std::function<void(bool)> sent; // all that Ice tells of a one-way request
+    std::function<void(bool)> sent; // Ice's only report about a one-way request
     if (isOneway())
         sent = [onResponse](bool) { onResponse(true, {}); };
     object->ice_invokeAsync(current.operation, current.mode, in, std::move(onResponse),
@@ -45,7 +45,7 @@ Forwarder::Client& Forwarder::clientAt(const Connection& connection) {
     return client->second;
 }
 
-// Drops a client that has left, and what it waited for; its one-way requests still go.
+// Drops a client that has left, and its two-way requests; its one-way requests still go.
 void Forwarder::forget(const Connection& connection) {
     std::lock_guard<std::mutex> lock(mutex_);
     const auto client = clients_.find(connection);
@@ -79,7 +79,7 @@ void Forwarder::take(std::shared_ptr<Request> request) {
     send();
 }
 
-// Returns the request whose turn it is, if one may go now; the mutex is held.
+// Returns the next request by turn, if one may go now; the mutex is held.
 std::shared_ptr<Request> Forwarder::nextRequest() {
     auto client = clients_.upper_bound(lastServed_);
     for (size_t i = 0; i < clients_.size(); ++i, ++client) {
@@ -103,7 +103,7 @@ std::shared_ptr<Request> Forwarder::nextRequest() {
     return nullptr;
 }
 
-// Sends what may go. One thread does so at a time; what becomes possible meanwhile, it sends too.
+// Sends the requests that may go. One thread does so at a time, also for those that come meanwhile.
 void Forwarder::send() {
     std::unique_lock<std::mutex> lock(mutex_);
     if (isSending_)
@@ -187,7 +187,7 @@ void Forwarder::connect() {
     }
 }
 
-// Fails what waits, since the vehicle cannot be reached.
+// Fails all waiting requests, since the vehicle cannot be reached.
 void Forwarder::failAll(std::exception_ptr why) {
     std::vector<std::shared_ptr<Request>> all;
     {
@@ -236,7 +236,7 @@ size_t Forwarder::stop() {
             for (const auto& request : client.requests)
                 left += request->isOneway();
     }
-    // Ice waits for the answers as it stops.
+    // Ice waits for the answers when it stops.
     failAll(std::make_exception_ptr(Ice::CommunicatorDestroyedException(__FILE__, __LINE__)));
     return left;
 }

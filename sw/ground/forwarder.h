@@ -4,7 +4,7 @@
 // vehicle's requests back to them.
 //
 // The clients take turns, a request each, and a few requests are under way at a time: so a client
-// that sends much, or never reads, delays the others by little. A request goes at most once.
+// that sends much, or never reads, delays the others only a little. A request goes at most once.
 
 #ifndef GROUND_FORWARDER_H
 #define GROUND_FORWARDER_H
@@ -28,7 +28,7 @@ struct Request {
     Request(const Parameters& in, Response onResponse, Failure onError, const Ice::Current& current)
         : parameters(in.first, in.second), response(std::move(onResponse)),
           failed(std::move(onError)), current(current) {}
-    // Sends it to `target`, an object of any identity; throws what Ice throws at once.
+    // Sends it to `target`, an object of any identity; throws Ice's immediate exceptions.
     void sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onResponse,
                 Failure onError) const;
     bool isOneway() const { return current.requestId == 0; }
@@ -43,27 +43,27 @@ struct Request {
 // Forwarder holds the clients' requests until their turn comes.
 class Forwarder {
 public:
-    // `vehicle`: a proxy with the vehicle's endpoint. `wait`: for how long a two-way request waits
-    // for its turn until it fails.
+    // `vehicle`: a proxy with the vehicle's endpoint. `wait`: a two-way request fails if its turn
+    // does not come within this time.
     Forwarder(std::shared_ptr<Ice::ObjectPrx> vehicle, std::chrono::seconds wait);
 
     // Takes a client's request. Blocks while that client has 256 KiB waiting here.
     void take(std::shared_ptr<Request> request);
-    // Passes a request of the vehicle to the client that has the object: the last that answered for
-    // this identity, else each in turn.
+    // Passes a request of the vehicle to the client that has the object: the last one that answered
+    // for this identity, else each in turn.
     void takeCallback(std::shared_ptr<Request> request);
-    // Requests of the vehicle on the clients' connection are dispatched by this adapter.
+    // This adapter dispatches the vehicle's requests on the clients' connection.
     void setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter);
 
-    void failLateRequests(); // to be called now and then
-    // Ends the waiting. Returns how many one-way requests were not sent.
+    void failLateRequests(); // the caller calls it now and then
+    // Ends the waiting. Returns the number of one-way requests that were not sent.
     size_t stop();
 
 private:
     struct Client {
         std::deque<std::shared_ptr<Request>> requests;
         size_t bytes = 0;
-        bool hasLeft = false; // what is left are one-way requests
+        bool hasLeft = false; // only one-way requests are left
     };
     using Connection = std::shared_ptr<Ice::Connection>;
     Client& clientAt(const Connection& connection);
@@ -78,7 +78,7 @@ private:
     const std::shared_ptr<Ice::ObjectPrx> vehicle_;
     const std::chrono::seconds wait_;
     std::shared_ptr<Ice::ObjectAdapter> callbacks_;
-    std::mutex mutex_; // of all below
+    std::mutex mutex_; // guards all members below
     std::condition_variable room_;
     std::map<Connection, Client> clients_;
     std::map<Ice::Identity, Connection> owners_; // of objects that the vehicle calls

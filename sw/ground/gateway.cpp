@@ -33,12 +33,12 @@ struct Options {
     bool setUp = true;
 };
 
-// Objects that change keys or programs; they are reached by --maintenance only.
+// Objects that change keys or programs; only --maintenance opens them.
 bool isMaintenance(const Ice::Identity& id) {
     return id.category.empty() && (id.name == "keys" || id.name == "update");
 }
 
-// ToVehicle serves what the clients call: every object of the vehicle's.
+// ToVehicle serves the clients' calls: every object of the vehicle.
 class ToVehicle : public Ice::BlobjectArrayAsync {
 public:
     ToVehicle(Forwarder& forwarder, const Rights& rights, bool allowsMaintenance)
@@ -68,7 +68,7 @@ private:
     const bool allowsMaintenance_;
 };
 
-// ToClients serves what the vehicle calls on the connection of the clients.
+// ToClients serves the vehicle's calls on the connection of the clients.
 class ToClients : public Ice::BlobjectArrayAsync {
 public:
     explicit ToClients(Forwarder& forwarder) : forwarder_(forwarder) {}
@@ -82,7 +82,7 @@ private:
     Forwarder& forwarder_;
 };
 
-// ToStation serves what the vehicle calls on a connection of its own.
+// ToStation serves the vehicle's calls on its own connection.
 class ToStation : public Ice::BlobjectArrayAsync {
 public:
     ToStation(std::shared_ptr<Ice::ObjectPrx> station, std::string where)
@@ -171,7 +171,7 @@ void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o) 
             p->setProperty(name, value);
     };
     preset("Ice.ThreadPool.Server.Size", "4");
-    preset("Ice.ThreadPool.Server.SizeMax", "256"); // clients that wait for room hold one each
+    preset("Ice.ThreadPool.Server.SizeMax", "256"); // each client that waits for room holds one
     preset("Ice.ThreadPool.Server.Serialize", "1");
     preset("Ice.ThreadPool.Client.Size", "4");
     preset("Ice.ACM.Client.Close", "0"); // the vehicle may call back at any time
@@ -273,7 +273,7 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
         forwarder.failLateRequests();
     if (const size_t left = forwarder.stop())
         std::cerr << "gateway: one-way calls that were not sent: " << left << "\n";
-    ic->destroy(); // while what its callbacks use is there
+    ic->destroy(); // while the objects that its callbacks use exist
 }
 
 } // namespace

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// rights: who may call what through the gateway, from a JSON file of rules:
+// rights: gives clients of the gateway the right to call operations, by a JSON file of rules:
 //
 //   [{"who": "CN=pilot*", "identities": ["*"], "operations": ["*"]},
 //    {"who": "",          "identities": ["uav", "hwengine*"], "operations": ["get*", "isAlive"]}]
 //
 // `who` is the subject of the client's certificate, as a shell pattern; a client without a
-// certificate has the subject "". A call goes through if one rule lets it. Every caller of an
+// certificate has the subject "". A call passes if one rule allows it. Every caller of an
 // object may ask it for its type and ping it.
 
 #ifndef GROUND_RIGHTS_H
@@ -19,7 +19,7 @@ namespace gateway {
 class Rights {
 public:
     Rights() = default; // everybody may call everything
-    // Throws std::runtime_error, which says what is wrong, if the file is none as above.
+    // Throws std::runtime_error with the reason if the file has another form.
     explicit Rights(const std::string& path);
 
     bool permit(const std::string& subject, const std::string& identity,

@@ -66,7 +66,6 @@ strace sees which files a proof reads, so that its verdict holds until one chang
 ca-certificates checks whom what pages sort and draw with, and foreign cores, are fetched from
 gdb-multiarch debugs it there
 gtkwave shows waveforms, and reads those of failures for the page
-graphviz pictures of netlists
 man-db shows and checks the manual pages
 groff-base formats them
 '

@@ -15,8 +15,8 @@ synth: setup-tests $(BUILD)/build.ninja ## utilisation: LUTs, flip-flops, slices
 	$(if $(PLACE),cmake/fetch.py nextpnr $(BUILD)/nextpnr &&) \
 	$(BUILD)/synth/utilisation --generated $(BUILD)/gen --jobs $(JOBS) \
 	    $(addprefix --design ,$(or $(DESIGN),$(PLACE:%=table1 soc))) $(addprefix --family ,$(FAMILY)) \
-	    $(PLACE:%=--place $(BUILD)/nextpnr/nextpnr-ecp5) \
-	$(if $(BASE),&& synth/compare.sh $(BUILD)/synth/utilisation $(call quoted,$(BASE)) $(JOBS))
+	    $(PLACE:%=--place $(BUILD)/nextpnr/nextpnr-ecp5); status=$$?; \
+	$(if $(BASE),[ $$status -gt 1 ] || synth/compare.sh $(BUILD)/synth/utilisation $(call quoted,$(BASE)) $(JOBS) || exit;) exit $$status
 .PHONY: synth
 
 synth-accept: $(BUILD)/build.ninja ## record today's utilisation as what is wanted (synth/baseline.json)

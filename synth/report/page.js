@@ -4,15 +4,17 @@
 const byId = id => document.getElementById(id);
 const data = JSON.parse(byId("data").textContent), usable = data.designs.filter(d => d.figures);
 const share = (part, whole) => (100 * part / whole).toFixed(1) + " %";
+// The figures of the sources of now: measured, or accepted of the same sources; nothing of a design that has neither.
+const shown = d => d.figures ?? (d.state === "as accepted" ? d.accepted : undefined);
 const signed = n => n > 0 ? "+" + n : String(n);
 const sum = values => values.reduce((a, b) => a + b, 0);
 const parent = p => p.slice(0, Math.max(0, p.lastIndexOf(".")));
 // "#design/instance.path" opens the page there.
 const [wanted, inside] = decodeURIComponent(location.hash.slice(1)).split("/");
-let picked = usable.find(d => d.name === wanted) ?? usable[0], path = picked?.name === wanted && inside || "", signals;
+let picked = usable.find(d => d.name === wanted) ?? usable[0], path = picked?.name === wanted && inside || "", isSlowest = false;
 
 // File and line of a signal of the picked design, "" if unknown.
-const place = signal => picked.figures.nets.places[signal.replace(/\[\d+\]$/, "")] ?? "";
+const place = signal => picked.figures.places[signal.replace(/\[\d+\]$/, "")] ?? "";
 function link(at) {
   if (!at) return "";
   const a = element("a", at);
@@ -33,10 +35,10 @@ const changes = (title, by, isBad = n => n > 0) => [title, by, r => by(r) ? elem
 // ---- Verdict, chip, and the paper's table
 function showVerdict() {
   const failures = data.designs.flatMap(d => d.failures), notes = data.designs.flatMap(d => d.notes);
-  const stale = data.designs.filter(d => d.error && !d.failures.length).length;
-  byId("verdict").append(element("p", failures.length ? "Failed" : stale ? `${stale} of ${data.designs.length} designs changed since they were synthesised` : "Within all budgets",
-    failures.length ? "bad" : stale ? "soft" : "good"), ...failures.map(f => element("p", f, "bad")), ...notes.map(n => element("p", n, "soft")));
-  byId("about").textContent = `${data.chip.name}, ${data.yosys}, commit ${data.commit || "unknown"}`;
+  const isOpen = data.designs.some(d => !shown(d) && !d.failures.length);
+  byId("verdict").append(element("p", failures.length ? "Failed" : isOpen ? data.states : "Within all budgets", failures.length ? "bad" : isOpen ? "soft" : "good"),
+    ...failures.map(f => element("p", f, "bad")), ...notes.map(n => element("p", n, "soft")));
+  byId("about").textContent = `${data.chip.name}, ${data.yosys}, commit ${data.commit || "unknown"}; designs: ${data.states}`;
 }
 // How much the chip, or the largest design, fills of it, beside the paper's own.
 function showChip() {
@@ -51,7 +53,11 @@ function showChip() {
     byId("chip").append(box);
   }
   const box = element("div");
-  box.append(element("b", f.mhz ? clock(f) : "no path", f.mhz < data.chip.mhz ? "bad" : "good"), " MHz", element("div", `${data.chip.mhz} are wanted; median and range of the netlist's orders`, "soft"));
+  const clock = element("a", f.clock ? `${f.clock} MHz` : "no path", f.mhz < data.chip.mhz ? "bad" : "good"), number = element("b");
+  clock.href = "#longest"; // the path that sets it
+  clock.onclick = () => { [picked, path] = [d, ""]; show(); };
+  number.append(clock);
+  box.append(number, element("div", `${data.chip.mhz} are wanted; median and range of the netlist's orders`, "soft"));
   byId("chip").append(box);
 }
 function showCores() {
@@ -73,37 +79,35 @@ function showPaper() {
 }
 
 // ---- The table of designs
-// The clock, with its range over other orders of the netlist.
-function clock(f) {
-  return f.mhz.toFixed(0) + (f.clocks.length ? ` (${f.mhzRange.map(mhz => mhz.toFixed(0)).join("-")})` : "");
-}
 // Modules stand in their folders, which fold; a folder sorts by its largest module.
 function showDesigns() {
   const folders = new Map(), rows = [];
-  for (const d of usable) {
+  for (const d of data.designs) {
     const folder = d.limits.lut ? "" : d.file.startsWith("build/") ? "generated" : d.file.replace(/\/[^/]*$/, "");
     if (!folder) rows.push(d);
     else folders.set(folder, [...folders.get(folder) ?? [], d]);
   }
   for (const [folder, members] of [...folders].sort()) rows.push({ folder, members });
   const column = (title, value, cell) => [title, r => r.members ? Math.max(...r.members.map(value)) : value(r), r => r.members ? "" : (cell ?? value)(r)];
-  const count = (title, key) => column(title, d => d.figures[key]);
+  // A figure, and nothing where it is not known of the sources of now.
+  const count = (title, key, cell) => column(title, d => shown(d)?.[key] ?? 0, d => shown(d)?.[key] === undefined ? "" : cell ? cell(shown(d)) : shown(d)[key]);
   const change = key => {
-    const [title, by, cell] = changes("change", d => d.accepted ? d.figures[key] - d.accepted[key] : 0, (n, d) => d.figures[key] > d.budget[key]);
+    const [title, by, cell] = changes("change", d => d.accepted && shown(d) ? shown(d)[key] - d.accepted[key] : 0, (n, d) => shown(d)[key] > d.budget[key]);
     return column(title, by, d => d.accepted ? cell(d) : element("span", "new", "soft"));
   };
   table(byId("designs"), [
     ["design", r => r.folder ?? r.name, r => r.members ? `${r.folder}, ${r.members.length} ${r.members.length === 1 ? "module" : "modules"}` : r.name, { minWidth: 215 }],
-    [...column("LUT", d => d.figures.lut, d => bar(d.figures.lut, data.chip.lut)), { minWidth: 130 }], column("of chip", d => d.figures.lut, d => share(d.figures.lut, data.chip.lut)), change("lut"),
-    count("FF", "ff"), change("ff"), column("MHz", d => d.figures.mhz, d => d.figures.mhz ? element("span", clock(d.figures), d.figures.mhz < data.chip.mhz ? "bad" : "") : ""),
-    column("levels", d => d.figures.timing.paths[0]?.levels ?? 0), count("slices", "slices"), column("from-to", d => d.figures.low, d => `${d.figures.low}-${d.figures.high}`),
-    count("RAM16", "ram"), count("DSP", "dsp"), column("LUT6", d => d.figures.luts[5]), count("RAM", "lutRam"), count("SRL", "shift"), count("thru", "through"),
+    [...count("LUT", "lut", f => bar(f.lut, data.chip.lut)), { minWidth: 130 }], count("of chip", "lut", f => share(f.lut, data.chip.lut)), change("lut"),
+    count("FF", "ff"), change("ff"), count("MHz", "mhz", f => f.mhz ? element("span", f.clock ?? f.mhz.toFixed(0), f.mhz < data.chip.mhz ? "bad" : "") : ""),
+    count("levels", "levels"), count("slices", "slices"), count("from-to", "low", f => `${f.low}-${f.high}`),
+    count("RAM16", "ram"), count("DSP", "dsp"), count("LUT6", "lut6"), count("RAM", "lutRam"), count("SRL", "shift"), count("thru", "through"),
     count("carry", "carry"), count("sets", "sets"), count("pins", "pins"),
     ...Object.keys(usable[0].others ?? {}).flatMap(family => ["lut", "ff"].map(key => column(`${family} ${key.toUpperCase()}`, d => d.others?.[family]?.[key] ?? 0))),
-    ["file", r => r.file ?? "", r => link(r.file)], ["what it is", r => r.title ?? "", , { minWidth: 560 }],
+    ["state", r => r.state ?? ""], ["file", r => r.file ?? "", r => link(r.file)], ["what it is", r => r.title ?? "", , { minWidth: 560 }],
   ], rows, { filter: "filter by name, folder or title", children: r => r.members, picked: r => r === picked,
     pick: (r, line) => {
       if (r.members) return line?.treeToggle();
+      if (!r.figures) return;
       [picked, path] = [r, ""];
       show();
     } });
@@ -127,26 +131,26 @@ function treeOf(costs) { // {name, path, own: [LUT, FF], sum: [LUT, FF], childre
 // The part of the figures that belongs to the instance at the path.
 function showInstance() {
   byId("here").textContent = `Signals of ${path || picked.top}`;
-  const below = path && path + ".", here = Object.entries(picked.costs).filter(([p]) => p === path || p.startsWith(below))
+  const below = path && path + ".", here = Object.entries(picked.figures.costs).filter(([p]) => p === path || p.startsWith(below))
     .flatMap(([p, signals]) => Object.entries(signals).map(([s, c]) => ({ name: (p && p + ".") + s, lut: c[0], ram: c[2], ff: c[1] })))
     .sort((a, b) => b.lut - a.lut || b.ff - a.ff);
   table(byId("signals"), [["signal", r => r.name.slice(below.length)], ["LUT", r => r.lut], ["RAM", r => r.ram, r => r.ram || ""], ["FF", r => r.ff], source(r => r.name)],
     here, { filter: "filter signals" });
-  const paths = picked.figures.timing.paths.filter(p => [p.from, p.to].some(end => end.startsWith(below)));
+  const { mhz, clocks, timing } = picked.figures, order = byId("order"), all = isSlowest ? timing.slowest : timing.paths;
+  order.hidden = !timing.slowest;
+  order.textContent = isSlowest ? `${mhz.toFixed(0)} MHz: the median order` : `${clocks[0].toFixed(0)} MHz: the slowest order`;
+  order.onclick = () => { isSlowest = !isSlowest; showInstance(); };
+  byId("longest").textContent = `Longest paths${mhz ? `, at ${(isSlowest ? clocks[0] : mhz).toFixed(0)} MHz` : ""}`;
+  const paths = all.filter(p => [p.from, p.to].some(end => end.startsWith(below)));
   byId("paths").replaceChildren(...paths.map(p => {
     const details = element("details"), steps = element("div"), slow = p.ns * data.slowGrade;
     details.append(element("summary", `slack ${(1000 / data.chip.mhz - slow).toFixed(2)}: ${p.ns.toFixed(2)} ns (-3), ${slow.toFixed(2)} (-2), ${p.levels} levels: ${p.from} to ${p.to} ${p.pin}`), steps);
     details.ontoggle = () => table(steps, [["cell", r => r[0]], ["net", r => r[1] || "(no name left)"], ["fan-out", r => r[2]], ["cell ns", r => r[3], r => r[3]?.toFixed(3)],
       ["net ns", r => r[4], r => r[4]?.toFixed(3)], source(r => r[1])], [...p.steps, [p.pin, p.to]]);
     return details;
-  }), ...(paths.length ? [] : [element("p", `None of the ${picked.figures.timing.paths.length} longest begins or ends in ${path}.`, "soft")]));
-  const module = path ? picked.modules?.[path] : picked.top, details = element("details"), body = element("div");
-  body.innerHTML = data.pictures[module] ?? "";
-  details.append(element("summary", `Netlist of ${module}`), body);
-  byId("picture").replaceChildren(...(data.pictures[module] ? [details] : []));
+  }), ...(paths.length ? [] : [element("p", `None of the ${all.length} longest begins or ends in ${path}.`, "soft")]));
 }
 // Number of registers and memories by the time left in the clock's period, at the slower grade;
-// half a ns a bar.
 // half a ns a bar.
 function showSlack() {
   const ends = picked.figures.timing.ends, period = 1000 / data.chip.mhz;
@@ -158,7 +162,7 @@ function showSlack() {
 }
 function showInside() {
   byId("inside").textContent = `Inside ${picked.name}: ${picked.title}`;
-  const root = treeOf(picked.costs), nets = picked.figures.nets;
+  const root = treeOf(picked.figures.costs), nets = picked.figures.nets;
   const cost = (title, i) => [[title, n => n.sum[i], n => bar(n.sum[i], root.sum[i]), { minWidth: 130 }], ["its own", n => n.own[i], n => n.children.length ? n.own[i] : ""]];
   table(byId("tree"), [["instance", n => n.path, n => n.name || picked.top, { minWidth: 200 }], ...cost("LUT", 0), ...cost("FF", 1), ["module", n => picked.modules?.[n.path] ?? ""]], [root], {
     filter: "filter instances", children: n => n.children, open: n => !n.path.includes(".") && n.children.some(c => !c.path.includes(".")) || path.startsWith(n.path + "."),
@@ -176,9 +180,11 @@ function points() { // oldest first; the last is now
   const now = { id: "now", date: "", subject: "this run", designs: {} };
   for (const d of usable) {
     now.designs[d.name] = { ...d.figures, instances: {} };
-    for (const [p, signals] of Object.entries(d.costs))
+    for (const [p, signals] of Object.entries(d.figures.costs))
       now.designs[d.name].instances[p] = [0, 1].map(i => sum(Object.values(signals).map(c => c[i])));
   }
+  for (const d of data.designs)
+    if (!d.figures && shown(d)) now.designs[d.name] = { ...shown(d), instances: {} };
   return [...data.history].reverse().concat(now);
 }
 const all = points();
@@ -198,7 +204,9 @@ function showDifference() {
   const pair = (title, key, gone = "") => [[title, r => r[2]?.[key] ?? gone], changes("change", r => (r[2]?.[key] ?? 0) - (r[1]?.[key] ?? 0))];
   const rows = (then, now, keys) => [...new Set([...Object.keys(then), ...Object.keys(now)])].sort().map(name => [name, then[name], now[name]])
     .filter(([, x, y]) => keys.some(key => (x?.[key] ?? 0) !== (y?.[key] ?? 0)));
-  table(byId("difference"), [["design", r => r[0]], ...pair("LUT", "lut", "gone"), ...pair("FF", "ff"), ...pair("slices", "slices")], rows(a, b, ["lut", "ff", "slices"]));
+  // Of now, nothing is told of a design whose figures are not known: it is not gone.
+  const isKnown = ([name, x, y]) => byId("to").value < all.length - 1 || y || !data.designs.some(d => d.name === name);
+  table(byId("difference"), [["design", r => r[0]], ...pair("LUT", "lut", "gone"), ...pair("FF", "ff"), ...pair("slices", "slices")], rows(a, b, ["lut", "ff", "slices"]).filter(isKnown));
   byId("difference-inside").textContent = `Instances of ${picked.name}`;
   table(byId("instances"), [["instance (without those below)", r => r[0] || picked.top], ...pair("LUT", 0, 0), ...pair("FF", 1, 0)],
     rows(x, y, [0, 1]).sort((l, r) => Math.abs((r[2]?.[0] ?? 0) - (r[1]?.[0] ?? 0)) - Math.abs((l[2]?.[0] ?? 0) - (l[1]?.[0] ?? 0))));

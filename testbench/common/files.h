@@ -1,52 +1,34 @@
 // SPDX-License-Identifier: MIT
 //
-// files: whole files, their hashes, pages with data in them, and a lock on a folder.
+// files: whole files, and their hashes.
 
 #ifndef FILES_H
 #define FILES_H
 
+#include <cstdint>
 #include <filesystem>
-#include <map>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
 #include <string>
-#include <vector>
 
-// Returns a file's content. Throws std::runtime_error if it cannot be read.
-std::string readFile(const std::filesystem::path& file);
+// Returns what is in a file. Throws std::runtime_error if it cannot be read.
+inline std::string readFile(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in)
+        throw std::runtime_error("cannot read " + file.string());
+    return {std::istreambuf_iterator<char>(in), {}};
+}
 
-// Writes a file, whole or not at all: readers see the old text or the new. Throws
-// std::runtime_error.
-void writeFile(const std::filesystem::path& file, const std::string& text);
-
-// Returns a hash of 16 hexadecimal digits of the contents and their boundaries (FNV-1a).
-std::string hexHash(const std::vector<std::string>& contents);
-
-// Returns the state of folders, "bus hdl ip: 0123456789abcdef". A measurement stores it, and is
-// valid while it stays the same.
-std::string treeState(const std::filesystem::path& source, const std::string& folders);
-
-// Return the style and the script at the beginning of the pages of utilisation and regression:
-// libraries (nothing where they could not be fetched), colours, tables, charts.
-std::string pageStyle();
-std::string pageScript();
-
-// Replaces each placeholder in a page by its text. Throws std::runtime_error for a missing one.
-std::string filled(std::string page, const std::map<std::string, std::string>& places);
-
-// Returns JSON for a page's script: a "</" in it does not end the script.
-std::string scriptSafe(std::string json);
-
-// Locks a folder from construction to destruction; the system frees the lock when the process ends,
-// however it ends. While another process holds the folder, names it on stderr and waits. Makes a
-// missing folder. Throws std::system_error.
-class FolderLock {
-public:
-    FolderLock(const std::filesystem::path& folder, const std::string& program);
-    ~FolderLock();
-    FolderLock(const FolderLock&) = delete;
-    FolderLock& operator=(const FolderLock&) = delete;
-
-private:
-    int file_;
-};
+// Returns 16 hexadecimal digits that differ when the contents differ (FNV-1a).
+inline std::string hexHash(const std::string& content) {
+    uint64_t hash = 14695981039346656037u;
+    for (const char c : content)
+        hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+    std::string digits;
+    for (int shift = 60; shift >= 0; shift -= 4)
+        digits += "0123456789abcdef"[hash >> shift & 15];
+    return digits;
+}
 
 #endif

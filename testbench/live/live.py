@@ -26,8 +26,8 @@ FILES = {  # path: MIME type, file
     "/": ("text/html; charset=utf-8", HERE + "/page/index.html"),
     "/live.css": ("text/css", HERE + "/page/live.css"),
     "/live.js": ("text/javascript", HERE + "/page/live.js"),
-    "/common.css": ("text/css", HERE + "/../common/page/common.css"),
-    "/common.js": ("text/javascript", HERE + "/../common/page/common.js"),
+    "/common.css": ("text/css", HERE + "/../page/common.css"),
+    "/common.js": ("text/javascript", HERE + "/../page/common.js"),
 }
 # SimStatus (sw/ground/sim_status.h): counters, registers by slot * 16 + word, how each was seen
 STATUS = struct.Struct("<8s7Q1024I1024B")

@@ -79,7 +79,7 @@ std::unique_ptr<RecordedLine> record(const Flight::Options& o, SerialLine& line)
     for (const std::string& file :
          {o.pins, o.trace, o.flash, o.fpgaFlash, o.cpu == "m3" ? o.firmware : ""})
         if (!file.empty())
-            head["hashes"][std::filesystem::absolute(file)] = hexHash({readFile(file)});
+            head["hashes"][std::filesystem::absolute(file)] = hexHash(readFile(file));
     return std::make_unique<RecordedLine>(line, o.out + "/flight.jsonl", head);
 }
 

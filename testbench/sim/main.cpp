@@ -115,7 +115,7 @@ Flight::Options recorded(const CommandLine& now) {
     then.parse(head.at("flight"));
     Flight::Options o = then.o;
     for (const auto& [file, hash] : head.value("hashes", std::map<std::string, std::string>()))
-        if (hexHash({readFile(file)}) != hash)
+        if (hexHash(readFile(file)) != hash)
             throw std::runtime_error("'" + file +
                                      "' is not what it was when that flight was recorded");
     if (std::filesystem::weakly_canonical(now.o.out) ==

@@ -21,7 +21,7 @@ import argparse, collections, glob, json, os, pathlib, queue, re, shutil, subpro
 from concurrent.futures import ThreadPoolExecutor
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
-sys.path.append(str(TOP / "tests/regress"))
+sys.path.append(str(TOP / "testbench/page"))
 import tool
 WORK = TOP / "build/mutants"
 

@@ -5,8 +5,8 @@
 set -eu
 source=$1 work=$2
 rm -rf "$work"
-mkdir -p "$work/tests/mutants" "$work/tests/regress"
-cp "$source/tests/mutants/run.py" "$work/tests/mutants" && cp "$source/tests/regress/tool.py" "$work/tests/regress"
+mkdir -p "$work/tests/mutants" "$work/testbench/page"
+cp "$source/tests/mutants/run.py" "$work/tests/mutants" && cp "$source/testbench/page/tool.py" "$work/testbench/page"
 cd "$work"
 fail() {
     cat run.log >&2

@@ -7,9 +7,11 @@ import argparse
 import collections
 import json
 import os
+import pathlib
 import re
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "testbench/page"))
 from tool import Stop, write
 
 

@@ -77,9 +77,11 @@ def of_size(utilisation):
         return missing("size", "make synth")
     if utilisation["failures"]:
         return judge("size", "", "designs failed", utilisation["failures"])
-    if stale := utilisation["missing"]:
-        return light("size", "grey", f"{len(stale)} designs have changed since they were "
-                     "synthesised: make synth")
+    states = list(utilisation["states"].values())
+    changed, never = states.count("changed since"), states.count("never measured here")
+    if changed or never:
+        return light("size", "grey",
+                     f"{changed} changed since, {never} never measured here: make synth")
     return of_entries("size", utilisation["entries"], "make synth")
 
 

@@ -10,6 +10,7 @@ import re
 import sys
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "testbench/page"))
 import tool
 from changes import Changes
 from failures import examine

@@ -6,11 +6,10 @@ import re
 
 from lights import lights_of
 from tests import judge_plan, read_plan
-from tool import Stop, write
+from tool import filled, page_parts, script_safe, write
 from waves import drawing_of
 
 HERE = pathlib.Path(__file__).resolve().parent
-COMMON = HERE.parents[1] / "testbench/common/page"
 LARGEST = 2_000_000  # bytes of the page
 MEASURED = {"coverage": "coverage/summary.json", "utilisation": "synth/report.json",
             "speed": "bench/speed.json", "drawn": "mutants/drawn.json"}
@@ -104,15 +103,6 @@ def markdown(data):
     return text
 
 
-def page_parts(libraries):
-    """The style and the script that the pages begin with: libraries, colours, tables, charts."""
-    def joined(ending):
-        files = [libraries / f"libraries{ending}", *(COMMON / f"{name}{ending}"
-                                                     for name in ("common", "tables"))]
-        return "".join(file.read_text() for file in files if file.exists())
-    return joined(".css"), joined(".js")
-
-
 def write_reports(data, failures, libraries, out):
     style, script = page_parts(libraries)
     # Drawings get the rest of the page's size.
@@ -121,11 +111,7 @@ def write_reports(data, failures, libraries, out):
     for i in drawn:
         data["failures"][i]["drawing"] = drawing_of(failures[i], max(0, rest) // len(drawn))
     page = (HERE / "page.html").read_text()
-    text = json.dumps(data, separators=(",", ":"), sort_keys=True).replace("</", "<\\/")
-    for place, part in (("/*COMMON*/", style), ("//COMMON", script), ("/*DATA*/null", text)):
-        if place not in page:
-            raise Stop(f"the page has no {place}")
-        page = page.replace(place, part, 1)
-    write(out / "report.html", page)
+    write(out / "report.html", filled(page, {"/*COMMON*/": style, "//COMMON": script,
+                                             "/*DATA*/null": script_safe(data)}))
     write(out / "report.json", json.dumps(data, indent=1))
     write(out / "summary.md", markdown(data))

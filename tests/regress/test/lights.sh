@@ -128,8 +128,9 @@ lights_mutants)
     ;;
 lights_figures) # as `make synth` and `make bench` report them: within a limit, beyond it, without a figure
     mkdir -p build/synth build/bench
-    figure() { # value, unit, limit
-        printf '{"failures":[%s],"missing":[],"entries":[{"name":"whole","value":%s,"unit":"%s","limit":%s}]}' "${4:-}" "$1" "$2" "$3"
+    figure() { # value, unit, limit, failure, state
+        printf '{"failures":[%s],"states":{"whole":"%s"},"entries":[{"name":"whole","value":%s,"unit":"%s","limit":%s}]}' "${4:-}" \
+            "${5:-as accepted}" "$1" "$2" "$3"
     }
     measure() {
         measured synth project
@@ -140,6 +141,9 @@ lights_figures) # as `make synth` and `make bench` report them: within a limit, 
     figure 60 'times, at least' 50 >build/bench/speed.json
     measure
     light size green && light speed green
+    figure 40 LUT 40 '' 'changed since' >build/synth/report.json
+    measure
+    light size 'grey   1 changed since, 0 never measured here: make synth'
     figure 41 LUT 40 >build/synth/report.json
     measure
     light size 'red   *1 beyond their limits: whole 41 (at most 40)'

@@ -54,7 +54,7 @@ PY
     wanted=$(python3 -c 'import json,sys; print([len(r["features"]) for r in map(json.loads, open(sys.argv[1])) if "features" in r][-1])' "$out/calls.jsonl")
     [ "$drawn" = "$wanted" ] || fail "$drawn corners drawn, $wanted were found"
     # As it stands, without its script.
-    cp "$source"/testbench/live/page/live.css "$source"/testbench/common/page/common.css "$out"
+    cp "$source"/testbench/live/page/live.css "$source"/testbench/page/common.css "$out"
     sed 's,<script.*</script>,,' "$out/dom.html" >"$out/still.html"
     "$source/tests/regress/test/look.sh" "$out/still.html" || fail "the page's looks"
     ! grep -En '(https?:)?//[a-z]' "$source"/testbench/live/page/*.html "$source"/testbench/live/page/*.css || fail "the page names another host"

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""tool: runs other programs, writes whole files, notes states of the tree, and locks a folder."""
+"""tool: what the tools of regression and utilisation share: runs other programs, writes whole files
+and pages, notes states of the tree, and locks a folder."""
 import contextlib
 import ctypes
 import fcntl
 import hashlib
+import json
 import os
 import pathlib
 import subprocess
@@ -60,6 +62,30 @@ def tree_state(source, folders):
 
 def digest(parts):
     return hashlib.sha1("\0".join(parts).encode()).hexdigest()[:16]
+
+
+def page_parts(libraries):
+    """The style and the script that the pages begin with: libraries, colours, tables, charts."""
+    here = pathlib.Path(__file__).resolve().parent
+
+    def joined(ending):
+        files = [libraries / f"libraries{ending}", here / f"common{ending}", here / f"tables{ending}"]
+        return "".join(file.read_text() for file in files if file.exists())
+    return joined(".css"), joined(".js")
+
+
+def filled(page, places):
+    """The page with each place replaced by its text."""
+    for place, text in places.items():
+        if place not in page:
+            raise Stop(f"the page has no {place}")
+        page = page.replace(place, text, 1)
+    return page
+
+
+def script_safe(data):
+    """JSON as it may stand in a page's script: a "</" in it does not end the script."""
+    return json.dumps(data, separators=(",", ":"), sort_keys=True).replace("</", "<\\/")
 
 
 @contextlib.contextmanager

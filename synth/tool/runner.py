@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: MIT
+"""runner: synthesis runs by Yosys, in parallel, each result kept under the hash of its sources, and
+the figures of a run.
+
+Figures are what the cache has in JSON: {"lut", "ff", ...: counts, "cells": by type as Yosys names
+them, "costs": {path: {signal: Cost}}, and of slices.py, timing.py, nets.py}. "mhz" is the clock
+that is judged, the median of all orders; "clocks" are those of all orders, rising.
+"""
+import concurrent.futures
+import dataclasses
+import json
+import os
+import pathlib
+import shutil
+import sys
+import threading
+import time
+
+import nets
+import netlist
+import owners
+import slices
+import timing
+from sources import Design
+from tool import Stop, digest, run as command, write
+
+TOOL = digest(file.read_text() for file in sorted(pathlib.Path(__file__).parent.glob("*.py")))
+
+
+@dataclasses.dataclass
+class Run:
+    design: Design
+    family: str  # "xc6s", "xc7", "ecp5": the script of that name
+    wanted: bool = True  # False: only what is in the cache is told
+    netlist: pathlib.Path = None  # where Yosys wrote it
+    figures: dict = None
+    error: str = ""  # why there are no figures
+    known: bool = False  # another state of its sources was synthesised here
+
+    @property
+    def orders(self):
+        return self.design.orders if self.family == "xc6s" else 0
+
+
+@dataclasses.dataclass
+class Options:
+    scripts: pathlib.Path  # *.ys
+    cache: pathlib.Path
+    yosys: str = "yosys"
+    jobs: int = 1
+
+
+def version_of(yosys):
+    return command([yosys, "-V"])[1].partition("\n")[0]
+
+
+def netlist_of_order(file, order):
+    return pathlib.Path(f"{file}.{order}")
+
+
+def script_of(run, library, options, output):
+    sources, system = [], []  # SystemVerilog has words of its own
+    for file in library.files_of(run.design.top):
+        (system if file.suffix.lower() == ".sv" else sources).append(f' "{file}"')
+    includes = "".join(f" -I{folder}" for folder in library.include_folders)
+    sources = "".join(sources) + ("\nread_verilog -sv @INCLUDES@" + "".join(system)) * bool(system)
+    parameters = "".join(f"chparam -set {name} {value} {run.design.top}\n"
+                         for name, value in sorted(run.design.parameters.items()))
+    script = (options.scripts / f"{run.family}.ys").read_text()
+    mapping = (options.scripts / "xilinx_map.ys").read_text()
+    orders = ""
+    if run.orders:  # elaborated anew: a copy made before would change the first mapping
+        orders = f"design -reset\n{script.partition('@MAP@')[0]}design -save unmapped\n"
+    for order in range(1, run.orders + 1):
+        permuted = mapping.replace("@ORDER@", f"permute,-S,{order};strash;")
+        orders += (f"design -load unmapped\n{permuted}select A:top\n"
+                   f"json -o {netlist_of_order(run.netlist, order)}\nselect -clear\n")
+    for place, text in (("MAP", mapping.replace("@ORDER@", "")), ("ORDERS", orders),
+                        ("SOURCES", sources), ("INCLUDES", includes), ("PARAMETERS", parameters),
+                        ("TOP", run.design.top), ("OUTPUT", output)):
+        script = script.replace(f"@{place}@", str(text))
+    return script
+
+
+def synthesise(run, library, options):
+    part = pathlib.Path(f"{run.netlist}.part")
+    script, log = run.netlist.with_suffix(".ys"), run.netlist.with_suffix(".log")
+    write(script, script_of(run, library, options, part))
+    status, said = command([options.yosys, "-q", "-s", script])
+    write(log, said)
+    if status:
+        errors = [line for line in said.splitlines() if "ERROR" in line] or said.splitlines()[-1:]
+        raise Stop("\n".join([*errors, f"whole log: {log}"]))
+    part.replace(run.netlist)
+
+
+def figures_of(n, spartan6, files_along):
+    """The figures of one netlist; timing and nets only for Spartan-6."""
+    owner = owners.owners_of(n, files_along)
+    types = [cell.type for cell in n.cells]
+    costs = owners.costs_of(n, owner)
+    total = sum((cost for signals in costs.values() for cost in signals.values()), owners.Cost())
+    figures = {"cells": {type: types.count(type) for type in sorted(set(types))},
+               "lut": total.lut, "ff": total.ff, "carry": total.carry, "ram": total.ram,
+               "dsp": total.dsp, "lutRam": sum(netlist.MEMORY_LUTS.get(t, 0) for t in types),
+               "shift": sum(map(netlist.is_shift_register, types)),
+               # Ports that leave the chip: not those of the memory controller.
+               "pins": sum(len(p.bits) for p in n.ports if not p.name.startswith("mcb_")),
+               "costs": costs, "timing": {"paths": [], "ends": []},
+               "nets": {"fanouts": [], "clocks": [], "resets": []}, "places": {}, "mhz": 0,
+               **slices.slices_of(n)}
+    if spartan6:
+        figures["timing"], by_clock = timing.timing_of(n, owner)
+        figures["nets"] = nets.nets_of(n, owner, by_clock)
+        figures["places"] = places_of(n, figures)
+        if figures["timing"]["paths"]:
+            figures["mhz"] = 1000 / (figures["timing"]["paths"][0]["ns"] * timing.SLOW_GRADE)
+    return figures
+
+
+def places_of(n, figures):
+    """File and line of each signal that the report names."""
+    named = {f"{path}.{signal}" if path else signal
+             for path, signals in figures["costs"].items() for signal in signals}
+    for path in figures["timing"]["paths"]:
+        named |= {path["from"], path["to"], *(step[1] for step in path["steps"])}
+    named |= {net["name"] for list in figures["nets"].values() for net in list}
+    return {nets.without_index(signal): at for signal in sorted(named)
+            if (at := nets.place_of(n, signal))}
+
+
+def together(orders):
+    """The figures of a design of those of its netlist in several orders: the order with the median
+    of LUTs, but for time the one with the median clock, beside the paths of the slowest."""
+    if len(orders) == 1:
+        return orders[0] | {"luts": [orders[0]["lut"]], "clocks": [orders[0]["mhz"]]}
+    by_lut = sorted(orders, key=lambda figures: figures["lut"])
+    by_clock = sorted(orders, key=lambda figures: figures["mhz"])
+    middle, setting, slowest = by_lut[len(orders) // 2], by_clock[len(orders) // 2], by_clock[0]
+    return middle | {
+        "timing": setting["timing"] | {"slowest": slowest["timing"]["paths"]},
+        "nets": setting["nets"], "mhz": setting["mhz"],
+        "places": slowest["places"] | setting["places"] | middle["places"],
+        "luts": [f["lut"] for f in by_lut], "clocks": [f["mhz"] for f in by_clock]}
+
+
+def read_figures(text):
+    figures = json.loads(text)
+    for signals in figures["costs"].values():
+        for signal, cost in signals.items():
+            signals[signal] = owners.Cost(*cost)
+    return figures
+
+
+def carry_out_one(run, library, options, version):
+    """Returns whether it synthesised."""
+    top = run.design.top
+    run.netlist = pathlib.Path()  # the hash is not of where its output goes
+    sources = digest([library.hash_of(top), version, script_of(run, library, options, "")])
+    stem = f"{run.design.name}.{run.family}."
+    run.netlist = options.cache / f"{stem}{sources}.json"
+    kept = options.cache / f"{stem}{sources}.{TOOL}.figures"
+    is_new = not run.netlist.exists()
+    run.known = is_new and any(options.cache.glob(f"{stem}*.json"))
+    if is_new and not run.wanted:
+        run.error = "not synthesised since its sources changed"
+        return False
+    if not is_new and kept.exists():
+        run.figures = read_figures(kept.read_text())
+        return False
+    if is_new:
+        synthesise(run, library, options)
+    files = [run.netlist] + [netlist_of_order(run.netlist, n + 1) for n in range(run.orders)]
+    run.figures = together([figures_of(netlist.read_netlist(file), run.family == "xc6s",
+                                       lambda path: library.files_along(top, path))
+                            for file in files])
+    write(kept, json.dumps(run.figures))
+    return is_new
+
+
+def carry_out(runs, library, options):
+    """Carries all runs out, says on stderr which is done. A failed run does not stop the others."""
+    version = version_of(options.yosys)
+    options.cache.mkdir(parents=True, exist_ok=True)
+    total, done, terminal = sum(run.wanted for run in runs), 0, threading.Lock()
+
+    def work(run):
+        nonlocal done
+        begin = time.monotonic()
+        try:
+            is_new = carry_out_one(run, library, options, version)
+        except (Stop, ValueError, KeyError, OSError) as error:
+            run.error, is_new = str(error), True
+        with terminal:
+            done += run.wanted
+            if is_new and run.wanted:
+                told = (f"{run.figures['lut']} LUT, {run.figures['ff']} FF" if run.figures
+                        else "failed")
+                print(f"[{done}/{total}] {run.design.name} for {run.family}: {told} "
+                      f"({time.monotonic() - begin:.1f} s)", file=sys.stderr)
+
+    def size(run):  # those with limits first, since these are looked at; then the largest
+        files = library.files_of(run.design.top)
+        return (not run.design.limits, -sum(file.stat().st_size for file in files))
+
+    sys.setrecursionlimit(1 << 20)  # as deep as a design's logic
+    threading.stack_size(512 << 20)
+    in_parallel(options.jobs, work, sorted(runs, key=size))
+
+
+def in_parallel(jobs, work, items):
+    """Calls work(item) for each, `jobs` at a time; raises what the first one raises."""
+    with concurrent.futures.ThreadPoolExecutor(max(1, jobs)) as pool:
+        try:
+            for future in [pool.submit(work, item) for item in items]:
+                future.result()
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def write_edif(design, library, options, folder):
+    """Writes a design as EDIF, FOLDER/<name>.edf, by the script edif.ys, and its Verilog to
+    FOLDER/verilog."""
+    verilog = folder / "verilog"
+    shutil.rmtree(verilog, ignore_errors=True)
+    verilog.mkdir(parents=True)
+    headers = {file.name: file for include in reversed(library.include_folders)
+               for file in include.glob("*.vh")}  # the first folder's counts
+    for file in [*headers.values(), *library.files_of(design.top)]:
+        shutil.copy(file, verilog)
+    run = Run(design, "edif", netlist=folder / f"{design.name}.edf")
+    synthesise(run, library, options)
+    os.replace(f"{run.netlist}.part.json", folder / f"{design.name}.json")

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: MIT
+"""utilisation: what the chip and each of its parts take of the FPGA, beside limits and the paper."""
+import argparse
+import json
+import os
+import pathlib
+import re
+import sys
+
+import baseline
+import cores
+import placement
+import report
+import runner
+import sources
+from report import Report, Row
+from tool import Stop, only_one, tree_state, write
+
+FAMILIES = ("xc6s", "xc7", "ecp5")  # the first is the one that figures, limits and page are of
+WHOLE_CHIP = "soc"
+STATE_OF = "bus hdl ip slice synth"
+
+
+def rtl_of(o):
+    """The modules of platform, cores and generated files, in this order."""
+    if not o.generated.is_dir():
+        raise Stop(f"{o.generated} is not there: build first")
+    rooms = sorted(folder for room in ("hdl", "ip") for folder in (o.source / room).iterdir()
+                   if folder.is_dir())
+    folders = [o.source / "synth", o.source / "hdl", o.source / "bus", *rooms, o.generated]
+    # Files of all cores of the build, wherever they are; include files lie beside the modules.
+    list = o.generated / "cores.files"
+    files = [pathlib.Path(line) for line in list.read_text().splitlines()] if list.exists() else []
+    files = [file for file in files if file.exists()]
+    verilog = [file for file in files if re.fullmatch(r"\.s?v", file.suffix, re.I)]
+    return sources.Library(folders, folders + [file.parent for file in files], verilog)
+
+
+def synthesise(plan, library, options, o):
+    """Runs of the wanted designs for each family; the others come from the cache."""
+    runs = [runner.Run(design, family, not o.design or design.name in o.design)
+            for family in o.family for design in plan.designs]
+    runner.carry_out(runs, library, options)
+    for run in runs:
+        if run.wanted and run.error:
+            print(f"utilisation: {run.design.name} for {run.family}: {run.error}", file=sys.stderr)
+    return runs
+
+
+def rows_of(plan, runs, library, accepted, yosys):
+    rows = []
+    for design in plan.designs:
+        main, *others = (run for run in runs if run.design is design)
+        row = Row(design, main, others, library.hash_of(design.top))
+        row.state = baseline.state_of(main, row.sources, accepted["designs"].get(design.name))
+        row.failures, row.notes = baseline.judge(row, accepted, yosys, plan.chip["mhz"])
+        rows.append(row)
+    return rows
+
+
+def tell_cores(library, options, o, accepted, runs):
+    """Tells what some cores cost in the chip, whatever the limits: in the one that was synthesised,
+    the only design wanted, or, without runs, in the accepted one; a core that is not there yet is no
+    error. Returns 1 if the synthesis failed."""
+    run = next((run for run in runs if run.wanted), None)
+    if run and run.error:
+        return 1
+    nothing = dict.fromkeys(baseline.KEYS, 0) | {"costs": {}}
+    chip = run.figures if run else accepted["designs"].get(WHOLE_CHIP, nothing)
+    map = cores.read_map(o.generated / "map.regs.json")
+    if not map:
+        raise Stop(f"{o.generated} has no map.regs.json: build first")
+    try:
+        slot = cores.slot_cost(library, options, map, True)
+        print(cores.core_table(chip["costs"], map, slot, o.core,
+                               "the list" if run else "synth/baseline.json").plain(), end="")
+        print(f"The chip: {chip['lut']} LUT, {chip['ff']} FF, {chip['ram']:g} block RAMs, "
+              f"{chip['dsp']} DSP")
+    except cores.NotInChip as missing:
+        if run:
+            raise
+        print(missing)
+    return 0
+
+
+def cores_of(rows, library, options, o):
+    """A row for each core of the chip; None if the chip was not synthesised."""
+    map = cores.read_map(o.generated / "map.regs.json")
+    for row in rows:
+        if row.design.name == WHOLE_CHIP and row.figures and map:
+            slot = cores.slot_cost(library, options, map, row.main.wanted)
+            return cores.core_table(row.figures["costs"], map, slot, [], "")
+    return None
+
+
+def write_reports(r, o, libraries):
+    write(o.output / "report.json", json.dumps(report.entries(r), indent=1) + "\n")
+    write(o.output / "report.md", report.markdown(r))
+    write(o.output / "report.html", report.html(r, o.source / "synth/report", libraries))
+    print(f"Page: {o.output / 'report.html'}")
+
+
+def edif(plan, library, options, o):
+    print(f"{o.edif} as EDIF ...", file=sys.stderr)
+    design = next(design for design in plan.designs if design.name == o.edif)
+    runner.write_edif(design, library, options, o.output / "ise")
+    print(f"{o.output / 'ise' / o.edif}.edf and its Verilog in {o.output / 'ise/verilog'}; "
+          "docs/ise.md says how to go on.")
+    return 0
+
+
+def run(o, libraries):
+    library = rtl_of(o)
+    plan = sources.read_plan(o.source / "synth/designs.json", library, o.source)
+    for name in o.design + [o.edif] * bool(o.edif):
+        if name not in [design.name for design in plan.designs]:
+            raise Stop(f"there is no design {name}")
+    accepted = baseline.read_baseline(o.source / "synth/baseline.json")
+    options = runner.Options(o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs)
+    if o.edif:
+        return edif(plan, library, options, o)
+    if o.core:
+        for design in plan.designs:
+            design.orders = 0  # they are there for the median of clocks
+        runs = synthesise(plan, library, options, o) if o.design else []
+        return tell_cores(library, options, o, accepted, runs)
+    tree = tree_state(o.source, STATE_OF)
+    yosys = runner.version_of(o.yosys)
+    rows = rows_of(plan, synthesise(plan, library, options, o), library, accepted, yosys)
+    r = Report(plan, library, rows, accepted, yosys, baseline.history(o.source),
+               baseline.current_commit(o.source))
+    if o.accept:
+        baseline.accept(r, o.source / "synth/baseline.json")
+        return 0
+    r.cores = cores_of(rows, library, options, o)
+    report.show(r)
+    write_reports(r, o, libraries)
+    if o.place:
+        table = placement.placed(rows, o.place, o.jobs)
+        print(f"\n{table.plain()}", end="")
+        write(o.output / "placed.md", table.markdown())
+    write(o.output / "tree", f"{tree}\n")
+    return 1 if r.failures else 0
+
+
+def options_of(words):
+    parser = argparse.ArgumentParser(prog="utilisation", description=__doc__.partition(": ")[2])
+    path = {"type": pathlib.Path}
+    parser.add_argument("--source", **path, default=".", help="the project's folder")
+    parser.add_argument("--generated", **path, default="build/main/gen",
+                        help="folder of generated Verilog (%(default)s)")
+    parser.add_argument("--output", **path, default="build/synth",
+                        help="folder of the reports (%(default)s)")
+    parser.add_argument("--design", action="append", default=[],
+                        help="only this design (may be repeated)")
+    parser.add_argument("--family", action="append", default=[], choices=FAMILIES,
+                        help="this chip, too, beside xc6s (may be repeated)")
+    parser.add_argument("--yosys", default="yosys", help="the program")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(),
+                        help="synthesis runs at a time (%(default)s)")
+    parser.add_argument("--accept", action="store_true",
+                        help="record these figures in synth/baseline.json")
+    parser.add_argument("--core", action="append", default=[],
+                        help="only tell what this core costs in the accepted chip (may be "
+                             "repeated); with --design soc in the chip of now")
+    parser.add_argument("--compare", **path, metavar="REPORT.JSON",
+                        help="only tell how the last report differs from this one")
+    parser.add_argument("--place", metavar="NEXTPNR",
+                        help="place the designs for ECP5 by this nextpnr-ecp5")
+    parser.add_argument("--edif", metavar="DESIGN",
+                        help="only write this design as EDIF for ISE, into the folder ise")
+    o = parser.parse_args(words)
+    wanted = {FAMILIES[0], *o.family, *(["ecp5"] if o.place else [])}
+    o.family = [family for family in FAMILIES if family in wanted]
+    return o
+
+
+def main(words, build):
+    """`build`: the folder of the build that has the libraries of pages."""
+    o = options_of(words)
+    try:
+        if o.compare:
+            before, after = (json.loads(file.read_text())
+                             for file in (o.compare, o.output / "report.json"))
+            print(report.differences(before, after), end="")
+            return 0
+        # A design that another run is synthesising is then found in the cache.
+        with only_one(o.output, "utilisation"):
+            return run(o, build / "page")
+    except (Stop, OSError) as error:
+        print(f"utilisation: {error}", file=sys.stderr)
+        return 2

@@ -1,0 +1,421 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""parts_test: the parts of the utilisation report, against published reports of Xilinx' tools and
+figures that can be added up by hand."""
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / folder)
+                for folder in ("synth/tool", "testbench/page")]
+import baseline
+import cores
+import nets
+import owners
+import report
+import runner
+import slices
+import sources
+import timing
+import tool
+from netlist import Cell, Name, Netlist, Pin, ZERO
+from owners import Cost
+
+YOSYS = "Yosys 0.23 (git sha1 7ce5011c24b)"
+
+
+def cell(type, inputs, outputs, name=""):
+    """Inputs and outputs: {port: bit}."""
+    pins = [Pin(port, False, [bit]) for port, bit in inputs.items()]
+    return Cell(name or type, type, pins + [Pin(port, True, [bit]) for port, bit in outputs.items()],
+                bool(name))
+
+
+def lut(inputs, output):
+    return cell(f"LUT{len(inputs)}", {f"I{i}": bit for i, bit in enumerate(inputs)}, {"O": output})
+
+
+class Slices(unittest.TestCase):
+    # "Number of Slice LUTs", "Number of Slice Registers", "Number of occupied Slices" of Spartan-6
+    # designs whose map report is published, in chips with room.
+    REPORTS = {
+        "J1 processor, registers in the fabric (LX16)": (341, 259, 94),
+        "MiniCPU of the anycpu challenge (LX4)": (276, 164, 75),
+        "Mojo tutorial: serial port and greeter (LX9)": (144, 90, 48),
+        "one channel of a motion controller (LX9)": (2315, 1395, 712),
+        "Next186 personal computer (LX25)": (8127, 3361, 2666),
+        "Table I of the paper (LX16)": (1728, 1537, 772),
+    }
+
+    @staticmethod
+    def error(report, share):
+        luts, flip_flops, occupied = report
+        return abs(slices.occupied(luts, flip_flops, share) / occupied - 1)
+
+    def test_the_estimate_is_within_a_third_of_every_report_of_map(self):
+        errors = [self.error(r, slices.USUAL_SHARE) for r in self.REPORTS.values()]
+        self.assertLess(max(errors), 0.33)
+        self.assertLess(sum(errors) / len(errors), 0.18)
+
+    def test_functions_share_sites_as_in_the_reports_of_map(self):
+        told = {  # "Number used as logic": sites of one function, of two
+            "A stack for the J1 processor (LX16)": (93 + 11, 5),
+            "The same in flip-flops (LX16)": (325 + 11, 4),
+            "MiniCPU of the anycpu challenge (LX4)": (184 + 19, 29),
+            "Mojo tutorial: hello, YOUR_NAME (LX9)": (123 + 12, 22),
+            "The same with a block RAM (LX9)": (107 + 12, 21),
+            "one channel of a motion controller (LX9)": (1690 + 122, 491),
+            "minispartan6-audio, a RISC-V that plays MP3 (LX9)": (3958 + 261, 923),
+        }
+        saved = [two / (one + 2 * two) for one, two in told.values()]
+        self.assertGreaterEqual(min(saved), 0.01)
+        self.assertLessEqual(max(saved), 0.18)
+        self.assertAlmostEqual(sum(saved) / len(saved), slices.USUAL_PAIRING, delta=0.005)
+
+    def test_the_error_that_is_stated_is_that_of_a_report_left_out_of_the_calibration(self):
+        total = 0
+        for left in self.REPORTS.values():
+            others = [r for r in self.REPORTS.values() if r != left]
+            best = min((s / 1000 for s in range(1001)),
+                       key=lambda share: sum(self.error(r, share) for r in others))
+            total += self.error(left, best)
+        self.assertAlmostEqual(total / len(self.REPORTS), slices.ERROR, delta=0.005)
+
+    def test_bounds_hold_every_report_of_map(self):
+        for design, (luts, flip_flops, occupied) in self.REPORTS.items():
+            with self.subTest(design):
+                self.assertLessEqual(slices.occupied(luts, flip_flops, slices.LEAST_SHARE), occupied + 1)
+                self.assertGreaterEqual(slices.occupied(luts, flip_flops, slices.MOST_SHARE), occupied - 1)
+
+    def test_eight_flip_flops_of_one_control_set_are_one_slice_and_of_two_are_two(self):
+        flip_flops = [cell("FDRE", {"C": 2, "CE": 3, "R": ZERO, "D": 10 + i}, {"Q": 30 + i})
+                      for i in range(8)]
+        self.assertEqual(slices.slices_of(Netlist(flip_flops))["low"], 1)
+        flip_flops[7] = cell("FDRE", {"C": 2, "CE": 4, "R": ZERO, "D": 17}, {"Q": 37})
+        self.assertEqual(slices.slices_of(Netlist(flip_flops))["low"], 2)
+        self.assertEqual(slices.slices_of(Netlist(flip_flops))["sets"], 2)
+
+    def test_luts_of_five_common_inputs_share_a_site_and_those_of_six_do_not(self):
+        for inputs, sites in (([2, 3, 4, 5], 1), ([2, 3, 4, 5, 6, 7], 2), ([2, 3, 4, 7], 2)):
+            n = Netlist([lut([2, 3, 4, 5, 6], 20), lut(inputs, 21)])
+            self.assertEqual(slices.slices_of(n)["sites"], sites, inputs)
+
+    def test_a_lut_ram_takes_a_slice_of_its_own_kind(self):
+        found = slices.slices_of(Netlist([cell("RAM32M", {}, {})] * 3))
+        self.assertEqual((found["slicem"], found["low"]), (3, 3))
+
+
+def chain(fanouts, end_pin, middle=None):
+    """A path of one-input LUTs between two flip-flops, each net with its fan-out."""
+    n = Netlist([cell("FDRE", {"C": 2}, {"Q": 10})])
+    for bit, fanout in enumerate(fanouts, 10):
+        n.readers.setdefault(bit, []).extend([0] * (fanout - 1))  # others that read it
+        if bit - 9 < len(fanouts):
+            n.add(middle or lut([bit], bit + 1))
+    n.add(cell("FDRE", {"C": 2, end_pin: 9 + len(fanouts)}, {"Q": 100}))
+    n.names = {10: [Name("from")], 100: [Name("to")]}
+    return n
+
+
+def longest(n):
+    return timing.timing_of(n, [""] * len(n.cells))[0]["paths"][0]
+
+
+class Timing(unittest.TestCase):
+    """The estimate against paths that XST printed for Spartan-6, grade -3."""
+
+    def test_a_path_of_six_luts_is_within_a_tenth_of_xst(self):
+        # A bus decoder's report: 9.068 ns, six levels, into an enable.
+        p = longest(chain([4, 1, 88, 26, 2, 5, 16], "CE"))
+        self.assertAlmostEqual(p["ns"], 9.068, delta=0.9)
+        self.assertEqual((p["levels"], p["from"], p["to"], p["pin"]), (6, "from", "to", "CE"))
+
+    def test_each_register_is_counted_once_by_its_longest_path(self):
+        t = timing.timing_of(chain([4, 1, 88, 26, 2, 5, 16], "CE"), [""] * 8)[0]
+        bins = int(2 * timing.SLOW_GRADE * t["paths"][0]["ns"])
+        self.assertEqual(t["ends"], [0] * bins + [1])  # nothing ends at the first register
+
+    def test_a_short_path_into_the_flip_flop_beside_it_is_within_a_seventh_of_xst(self):
+        # A counter's report: 2.712 ns, two levels; the last net costs nothing.
+        p = longest(chain([7, 2, 1], "D"))
+        self.assertAlmostEqual(p["ns"], 2.712, delta=0.4)
+        self.assertEqual((p["levels"], p["steps"][-1][4]), (2, 0))
+
+    def test_more_fan_out_is_never_faster(self):
+        delays = [timing.net_delay(fanout) for fanout in range(1, 152)]
+        self.assertEqual(delays, sorted(delays))
+
+    def test_through_a_memory_only_the_address_of_that_output_leads(self):
+        # ADDRD is the write port's: the path from there ends, another begins at the memory.
+        for address, levels in (("ADDRA", 1), ("ADDRD", 0), ("ADDRB", 0)):
+            p = longest(chain([1, 1], "D", cell("RAM32M", {address: 10}, {"DOA": 11})))
+            self.assertEqual(p["levels"], levels, address)
+            self.assertEqual(p["from"] == "from", levels == 1, address)
+
+    def test_a_loop_of_logic_ends_the_search(self):
+        # The LUT reads itself.
+        self.assertEqual(longest(chain([1, 1], "D", lut([10, 11], 11)))["levels"], 1)
+
+    def test_time_is_that_of_the_order_that_sets_the_clock(self):
+        def order(lut, mhz):
+            return {"lut": lut, "mhz": mhz, "timing": {"paths": [mhz]}, "nets": mhz,
+                    "places": {"at": mhz}}
+        f = runner.together([order(10, 102), order(12, 109), order(11, 108), order(13, 104),
+                             order(14, 105)])
+        self.assertEqual((f["lut"], f["mhz"], f["nets"]), (12, 105, 105))
+        self.assertEqual(f["timing"], {"paths": [105], "slowest": [102]})
+        self.assertEqual((f["luts"], f["clocks"]), ([10, 11, 12, 13, 14], [102, 104, 105, 108, 109]))
+        self.assertEqual(report.clock_of(f), "105 (102-109)")
+
+    def test_a_clock_is_rounded_as_the_page_does(self):
+        self.assertEqual([baseline.clock_text(mhz) for mhz in (104.5, 104.46, 104.44, 104.0)],
+                         ["105", "105", "104", "104"])
+
+
+class Baseline(unittest.TestCase):
+    """What is judged as growth, which names are given, what the committed file keeps."""
+
+    def setUp(self):
+        self.design = sources.Design("block", "block")
+        self.row = report.Row(self.design, runner.Run(self.design, "xc6s"))
+        self.row.main.figures = {
+            "lut": 100, "ff": 50, "slices": 30, "carry": 0, "dsp": 2, "ram": 1.5, "mhz": 0,
+            "costs": {"u_part": {"state": Cost(60, 0, 30, 0, 1.5, 2)},
+                      "": {"count": Cost(40, 0, 20)}}}
+        self.accept()
+
+    def accept(self):
+        self.accepted = baseline.accepted_from(self.row.figures, "abc")
+        self.baseline = {"yosys": YOSYS, "designs": {"block": self.accepted}}
+
+    def grow(self, luts, flip_flops):
+        f = self.row.figures
+        part = {"state": f["costs"]["u_part"]["state"] + Cost(lut=luts, ff=flip_flops)}
+        self.row.main.figures = f | {"lut": f["lut"] + luts, "ff": f["ff"] + flip_flops,
+                                     "costs": f["costs"] | {"u_part": part}}
+
+    def slow(self, mhz):
+        path = {"from": "u_a.from", "to": "u_b.to", "pin": "D", "levels": 7}
+        self.row.main.figures |= {"mhz": mhz, "timing": {"paths": [path]}}
+
+    def judged(self, yosys=YOSYS):
+        return baseline.judge(self.row, self.baseline, yosys, 100)
+
+    def fails(self, *texts):
+        (failure,), notes = self.judged()
+        for text in texts:
+            self.assertIn(text, failure)
+        return failure
+
+    def passes(self):
+        self.assertEqual(self.judged(), ([], []))
+
+    def test_growth_within_the_budget_passes(self):
+        self.grow(7, 2)  # 3 % and 4; 1 % and 2
+        self.passes()
+
+    def test_growth_beyond_the_budget_names_the_module_and_the_signal(self):
+        self.grow(8, 0)
+        failure = self.fails("108 LUT, 50 FF; accepted were 100 and 50",
+                             "modules that grew:\n      u_part +8 LUT",
+                             "signals that grew:\n      u_part.state +8 LUT")
+        self.assertNotIn("count", failure)
+
+    def test_flip_flops_are_judged_too(self):
+        self.grow(0, 3)
+        self.fails("100 LUT, 53 FF")
+
+    def test_shrinking_passes(self):
+        self.grow(-50, -25)
+        self.passes()
+
+    def test_a_limit_holds_whatever_was_accepted(self):
+        self.design.limits = {"lut": 102}
+        self.grow(3, 0)  # within the budget of growth
+        self.fails("103 lut, 1 above the limit of 102")
+        self.accept()
+        self.fails("103 lut, 1 above the limit of 102")
+
+    def test_figures_of_another_yosys_are_not_judged(self):
+        self.grow(80, 30)
+        self.assertEqual(self.judged("Yosys 0.52"), ([], []))
+
+    def test_a_limit_that_another_yosys_does_not_keep_is_noted(self):
+        self.design.limits = {"lut": 102}
+        self.grow(3, 0)
+        failures, (note,) = self.judged("Yosys 0.52")
+        self.assertEqual(failures, [])
+        self.assertIn("1 above the limit of 102 (by another Yosys", note)
+
+    def test_a_clock_that_was_reached_must_be_reached(self):
+        self.slow(104.2)
+        self.accept()
+        self.passes()
+        self.slow(99.6)
+        self.fails("99.6 MHz; accepted were 104.2, the least is 100", "u_a.from to u_b.to D, 7 levels")
+
+    def test_a_clock_that_was_not_reached_may_lose_a_tenth(self):
+        self.slow(83)
+        self.accept()
+        self.slow(76)
+        self.passes()
+        self.slow(74)
+        self.fails("74.0 MHz")
+
+    def test_a_failed_synthesis_is_a_failure(self):
+        self.row.main.error = "syntax error"
+        self.fails("block: synthesis failed")
+
+    def test_a_failed_synthesis_for_another_chip_is_a_failure(self):
+        self.row.others = [runner.Run(self.design, "xc7", error="no such thing")]
+        self.fails("block: synthesis for xc7 failed")
+
+    def test_what_is_written_is_read_again(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "baseline.json"
+            file.write_text(baseline.written(self.baseline))
+            again = baseline.read_baseline(file)
+            self.assertEqual(again, self.baseline)
+            self.assertEqual(baseline.written(again), baseline.written(self.baseline))
+            for text in ('{"designs": 3}', "not json"):
+                file.write_text(text)
+                self.assertRaises(tool.Stop, baseline.read_baseline, file)
+            file.unlink()
+            self.assertEqual(baseline.read_baseline(file)["designs"], {})
+
+    def test_a_design_is_in_one_of_four_states(self):
+        run = self.row.main
+        self.assertEqual(baseline.state_of(run, "abc", None), "measured now")
+        run.wanted, run.figures = False, None
+        self.assertEqual(baseline.state_of(run, "abc", self.accepted), "as accepted")
+        self.assertEqual(baseline.state_of(run, "other", self.accepted), "changed since")
+        self.assertEqual(baseline.state_of(run, "abc", None), "never measured here")
+        run.known = True
+        self.assertEqual(baseline.state_of(run, "abc", None), "changed since")
+
+    def test_a_difference_invents_no_savings(self):
+        def entries(states, **luts):
+            return {"states": states, "entries": [{"name": f"{name} lut", "value": value}
+                                                  for name, value in luts.items()]}
+        before = entries({"a": "measured now"}, a=10, b=20, c=30)
+        after = entries({"a": "measured now", "b": "changed since"}, a=12)
+        table = report.differences(before, after)
+        self.assertIn("| a | 10 -> 12 (+2) |", table)
+        self.assertIn("| b | changed since |", table)
+        self.assertIn("| c | gone |", table)
+        self.assertIn("| b | 20 (changed since) |", report.differences(after, before))
+        self.assertIn("| c | 30 (new) |", report.differences(after, before))
+
+
+class Cores(unittest.TestCase):
+    MAP = {"SLOT_SYSTEM": 0, "SLOT_MODEM": 1, "SLOT_LOW": 2, "SLOT_PLAIN": 3, "SLOT_OWN": 4,
+           "SLOT_GONE": 5, "SLOT_COUNT": 6, "NPI_PORT_COUNT": 3, "NPI_PORT_LOW": 1}
+    COSTS = {path: {"signal": Cost(lut=lut, ff=ff, ram=sum(more[:1]), dsp=sum(more[1:]))}
+             for path, lut, ff, *more in (
+                 ("u_modem", 900, 900), ("u_bus_decoder", 400, 4), ("u_low", 15, 3),
+                 ("u_low.u_wrapper", 3, 30), ("u_low.u_wrapper.u_registers", 1, 2),
+                 ("u_low.u_filter", 7, 8, 1.5, 4), ("u_lower", 1000, 1000), ("u_plain", 9, 9),
+                 ("u_plain.u_bus.u_window", 4, 5), ("u_own.u_crossing", 20, 60),
+                 ("u_own.u_core.u_bus", 6, 7), ("u_own.u_core.u_core", 1, 1),
+                 ("u_memory.u_arbiter", 20, 6), ("u_memory.u_backend", 10, 0),
+                 ("u_memory.u_arbiter.g_port[1].u_write", 5, 6, 2),
+                 ("u_memory.u_arbiter.g_port[10].u_write", 500, 500))}
+
+    def rows(self, *names):
+        return cores.core_table(self.COSTS, self.MAP, Cost(lut=12, ff=5), names, "here").rows
+
+    def test_a_share_has_each_part_once(self):
+        self.assertEqual(self.rows(), [
+            ["core in the chip", "LUT", "FF", "RAM16", "DSP", "itself", "registers", "slot 6",
+             "memory port", "of the arbiter"],
+            ["low", "53", "56", "3.5", "4", "22 / 11", "4 / 32", "12 / 5", "5 / 6", "10 / 2"],
+            ["plain", "25", "19", "0", "0", "9 / 9", "4 / 5", "12 / 5", "", ""],
+            ["own", "39", "73", "0", "0", "1 / 1", "26 / 67", "12 / 5", "", ""]])
+
+    def test_only_those_asked_for_are_told(self):
+        self.assertEqual(len(self.rows("plain")), 2)
+        with self.assertRaisesRegex(cores.NotInChip, "gone is not in the chip of here: a line in ip/"):
+            self.rows("plain", "gone")
+
+    def test_logic_that_reads_one_slot_is_its_blocks(self):
+        """Two LUTs that read a register of a block each, one that reads both, the decoder's choice."""
+        n = Netlist([cell("FDRE", {}, {"Q": 2}, "u_a.count"), cell("FDRE", {}, {"Q": 3}, "u_b.u_part.state"),
+                     cell("FDRE", {}, {"Q": 4}, "u_bus_decoder.index"), lut([2, 4], 5), lut([3, 4], 6),
+                     lut([2, 3, 4], 7), lut([5], 8), lut([6, 7, 8], 9)])
+        n.names[9] = [Name("u_bus_decoder.bus_rdata_o", 0)]
+        self.assertEqual(owners.owners_of(n, lambda path: set()), [
+            "u_a.count", "u_b.u_part.state", "u_bus_decoder.index", "u_a.bus_rdata_o",
+            "u_b.bus_rdata_o", "u_bus_decoder.bus_rdata_o", "u_a.bus_rdata_o",
+            "u_bus_decoder.bus_rdata_o"])
+
+
+class Files(unittest.TestCase):
+    """Which files a module needs, and where a signal stands in them."""
+
+    def setUp(self):
+        self.work = tempfile.TemporaryDirectory()
+        self.addCleanup(self.work.cleanup)
+        self.folder = pathlib.Path(self.work.name)
+
+    def write(self, name, text):
+        (self.folder / name).parent.mkdir(exist_ok=True)
+        (self.folder / name).write_text(text)
+        return self.folder / name
+
+    def files_of(self, top, *files):
+        return [file.name for file in sources.Library([self.folder], [], files).files_of(top)]
+
+    def test_branches_with_one_instance_name_bring_both_modules(self):
+        self.write("uart.v", "module uart;\n`ifdef LITE\n txuartlite tx (.a(b));\n`else\n"
+                             " txuart tx (.a(b));\n`endif\nendmodule\n")
+        self.write("txuart.v", "module txuart; endmodule\n")
+        self.write("txuartlite.v", "module txuartlite; endmodule\n")
+        self.assertEqual(self.files_of("uart"), ["txuart.v", "txuartlite.v", "uart.v"])
+
+    def test_files_outside_of_the_folders_are_found_where_the_build_names_them(self):
+        self.write("top.v", "module top; part u_part (.a(b)); endmodule\n")
+        far = self.write("far/part.v", "module part; endmodule\n")
+        self.assertEqual(self.files_of("top"), ["top.v"])
+        self.assertEqual(self.files_of("top", far), ["part.v", "top.v"])
+
+    def test_a_place_is_that_of_the_declaration_and_not_of_an_instance(self):
+        n = Netlist()
+        n.sources["u_a.g[1].count_o"] = "top.v:62.26-69.2|./hdl/a.v:97.8-97.15|top.v:3.1-3.40"
+        self.assertEqual(nets.place_of(n, "u_a.g[1].count_o"), "hdl/a.v:97")
+        self.assertEqual(nets.place_of(n, "u_a.g[1].count_o[4]"), "hdl/a.v:97")
+        self.assertEqual(nets.place_of(n, "u_a.other"), "")
+
+    def test_the_place_of_a_generated_name_is_in_the_vhdl(self):
+        file = self.write("place.v", """// Generated by GHDL from the VHDL of a: do not edit.
+module a (output kept_o);
+  wire n71_o;
+  reg n72_q;
+  wire n73_o;
+  reg n74_o;
+  assign kept_o = n71_o; //(module output)
+  /* ip/a/a.vhd:40:36  */
+  assign n71_o = n72_q & n73_o;
+  assign n73_o = 1'b1;
+  /* ip/a/a.vhd:51:5  */
+  always @(posedge clk_i)
+    n72_q <= n71_o;
+  /* ip/a/a.vhd:60:5  */
+  always @*
+    case (n71_o)
+      1'b1: n74_o = 1'b1;
+endmodule
+""")
+        n = Netlist()
+        for name, at in (("n71_o", "3.8-3.13"), ("n72_q", "4.7-4.12"), ("n73_o", "5.8-5.13"),
+                         ("n74_o", "6.7-6.12"), ("kept_o", "2.18-2.24")):
+            n.sources[name] = f"{file}:{at}"
+        for signal, place in (("n71_o", "ip/a/a.vhd:40"), ("n72_q[0]", "ip/a/a.vhd:51"),
+                              ("n74_o", "ip/a/a.vhd:60"), ("(for) kept_o", "ip/a/a.vhd:40")):
+            self.assertEqual(nets.place_of(n, signal), place)
+        self.assertTrue(nets.place_of(n, "n73_o").endswith("/place.v:5"))  # GHDL says nothing of it
+
+
+if __name__ == "__main__":
+    unittest.main()

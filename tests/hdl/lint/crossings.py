@@ -2,16 +2,19 @@
 # SPDX-License-Identifier: MIT
 """crossings: finds flip-flops that see another clock, or a pin, other than through hdl/cdc.
 
-Usage: crossings.py NETLIST TOP CLOCK [SYNCHRONOUS-INPUT...]
+Usage: crossings.py TOP CLOCK SOURCE GENERATED WORK PARAMETERS [SYNCHRONOUS-INPUT...]
 
-NETLIST is Yosys' JSON of TOP, flattened but for the modules of hdl/cdc. A register of CLOCK may see registers of CLOCK,
+Yosys flattens TOP but for the modules of hdl/cdc, with its commands PARAMETERS before. A register of CLOCK may see registers of CLOCK,
 the inputs named and outputs of hdl/cdc for that clock. A register whose clock is a pin may see pins (they come with it) and
 its own kind. Asynchronous resets are no data. Exit status 1: a crossing goes round hdl/cdc; each is told.
 """
 
 import json
+import os
 import re
+import subprocess
 import sys
+from pathlib import Path
 
 CLOCKS = {"clk_i", "dst_clk_i", "src_clk_i", "read_clk_i", "write_clk_i"}
 OF_WRITER = {"full_o", "push_i", "data_i"}
@@ -30,9 +33,28 @@ def cdc_clock(kind, port, connections):
     return connections["clk_i" if "clk_i" in connections else "dst_clk_i"][0]
 
 
+def flattened(top, source, generated, work, parameters):
+    """Returns the module TOP as Yosys' JSON has it."""
+    hdl = [source / "hdl" / part for part in ("fsmc", "ddr", "modem", "system", "cdc", "")]
+    folders = [generated, *(source / "ip").glob("*/"), source / "bus", *hdl, source / "synth"]
+    file = next(f / (top + ".v") for f in folders if (f / (top + ".v")).is_file())
+    os.makedirs(work, exist_ok=True)
+    netlist = f"{work}/{top}.json"
+    script = f"""verilog_defaults -add -I{generated} -I{source}/bus -I{source}/hdl/ddr -I{source}/hdl/system
+        read_verilog {file}; {parameters} hierarchy -top {top} {' '.join(f'-libdir {f}' for f in folders)}
+        proc; setattr -mod -set keep_hierarchy 1 cdc_* *cdc_* *async_fifo*; flatten; opt_clean; memory -nomap; opt_clean
+        write_json {netlist}"""
+    run = subprocess.run(["yosys", "-q", "-p", script], capture_output=True, text=True)
+    if run.returncode:
+        print(run.stdout + run.stderr)
+        sys.exit(2)
+    with open(netlist) as read:
+        return json.load(read)["modules"][top]
+
+
 def main():
-    netlist, top, clock, *synchronous = sys.argv[1:]
-    module = json.load(open(netlist))["modules"][top]
+    top, clock, source, generated, work, parameters, *synchronous = sys.argv[1:]
+    module = flattened(top, Path(source), Path(generated), work, parameters)
     names = {}
     for name, net in module["netnames"].items():
         for bit in net["bits"]:

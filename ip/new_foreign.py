@@ -16,13 +16,14 @@ foreign_axis.py.
 """
 import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
+sys.path.append(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
 import foreign_axis
 import foreign_bus
-from foreign_files import (FLAGS, HERE, check_names, copies_for_verilator, fail, folders_of, is_vhdl, kind_of,
+from cli.reserved import REFUSAL, RESERVED
+from foreign_files import (FLAGS, check_names, copies_for_verilator, fail, folders_of, is_vhdl, kind_of,
                            names_of, read_module)
 from foreign_roles import NEEDED, roles_of
 from foreign_verilog import pin_name
@@ -65,9 +66,8 @@ class Request:
             fail(f"TOP is the name of a module or an entity, not '{self.top}'")
         if os.path.exists(self.folder):
             fail(f"{self.folder} is there already")
-        check = subprocess.run([os.path.join(HERE, "new.sh"), self.name, "check"], capture_output=True, text=True)
-        if check.returncode:
-            fail(check.stderr.partition(": ")[2].rstrip())
+        if self.name in RESERVED:
+            fail(f"'{self.name}' {REFUSAL}")
 
     def take_files(self):
         """Splits the files into sources and headers."""

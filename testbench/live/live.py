@@ -31,6 +31,7 @@ FILES = {  # path: MIME type, file
 }
 # SimStatus (sw/ground/sim_status.h): counters, registers by slot * 16 + word, how each was seen
 STATUS = struct.Struct("<8s7Q1024I1024B")
+SCHEMA = HERE + "/../../cli/flight.schema.json"
 COUNTERS = ("ns", "cycles", "bytesUp", "bytesDown", "packets", "lost", "wallNs")
 WRITTEN = 2
 
@@ -97,9 +98,21 @@ def register(block, word, value, seen):
     return {"word": word, "value": value, "written": seen == WRITTEN, "name": name, "doc": described.get("doc", ""), "fields": fields}
 
 
+def heading(folder):
+    """What was asked for of this flight (flight.json) and is not so by default."""
+    try:
+        with open(SCHEMA) as schema, open(folder + "/flight.json") as flight:
+            fields, flight = json.load(schema)["properties"], json.load(flight)
+    except (OSError, ValueError):
+        return ""
+    hidden = ("version", "out", "firmware", "key", "port", "live")
+    return ", ".join(f"{name} {value if not isinstance(value, list) else ' '.join(value)}" for name, value in flight.items()
+                     if name not in hidden and value != fields.get(name, {}).get("default"))
+
+
 def state(folder, slots):
     """Returns the page's data, from the files of simulator and ground station; missing files leave it empty."""
-    shown = {"calls": [], "features": [], "slots": []}
+    shown = {"calls": [], "features": [], "slots": [], "flight": heading(folder)}
     status = contents(folder + "/status")
     if len(status) >= STATUS.size and status.startswith(b"ICESOC1\0"):
         values = STATUS.unpack_from(status)[1:]

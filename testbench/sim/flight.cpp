@@ -75,7 +75,7 @@ std::vector<uint8_t> keyOf(const Flight::Options& o) {
 std::unique_ptr<RecordedLine> record(const Flight::Options& o, SerialLine& line) {
     if (o.replayed)
         return nullptr;
-    nlohmann::json head = {{"flight", o.words}, {"clkHz", SocModel::clkHz}};
+    nlohmann::json head = {{"flight", o.flight}, {"clkHz", SocModel::clkHz}};
     for (const std::string& file :
          {o.pins, o.trace, o.flash, o.fpgaFlash, o.cpu == "m3" ? o.firmware : ""})
         if (!file.empty())

@@ -33,7 +33,7 @@ public:
         uint64_t seed = 1;
         bool everyClock = false, quiet = false, sensor = false;
         std::vector<std::string> command;
-        std::vector<std::string> words; // of the command line, which the recording keeps
+        nlohmann::json flight; // its description, which the recording keeps
         // The flight to be replayed, if any; and the span of a waveform in s, each of whose clocks
         // is evaluated.
         std::shared_ptr<ReplayedLine> replayed;

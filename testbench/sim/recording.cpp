@@ -25,7 +25,7 @@ std::string AccessDigest::text() const {
 
 RecordedLine::RecordedLine(SerialLine& line, const std::string& file, const json& head)
     : line_(line) {
-    // The flight's words may hold the modem's key: nobody else may read the file.
+    // The flight's description may hold the modem's key: nobody else may read the file.
     const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     if (fd < 0 || fchmod(fd, 0600) != 0)
         throw std::runtime_error("cannot write '" + file + "': " + std::strerror(errno));
@@ -102,7 +102,8 @@ ReplayedLine::ReplayedLine(const std::string& file) {
     size_t number = 1;
     try {
         head_ = json::parse(text);
-        head_.at("flight");
+        if (!head_.at("flight").is_object())
+            throw std::runtime_error("another version wrote it");
         while (!whole_ && std::getline(in, text) && !in.eof()) { // the last line may be cut short
             ++number;
             json line = json::parse(text);

@@ -5,7 +5,7 @@
 //
 // The simulator is deterministic except for the bytes of the ground's program on its serial port,
 // and their times. The file is JSON Lines, one object each:
-//   {"flight": {options}, "clkHz": n, "hashes": {file: hash}}   the first line
+//   {"flight": {flight.json}, "clkHz": n, "hashes": {file: hash}}   the first line
 //   {"ns": time, "up": "hexadecimal"}        bytes from the program to its modem
 //   {"ns": time, "spoilt": n}                bytes with a wrong stop bit
 //   {"ns": time, "down": n}                  bytes that the modem handed to the program

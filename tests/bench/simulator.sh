@@ -22,11 +22,11 @@ better() { # file, figures: keeps the larger
 }
 for cpu in host m3; do
     # shellcheck disable=SC2086 # a list of words
-    logged "$source/testbench/sim/run.sh" "$build" --image $image --cpu $cpu --out "$work/mission_$cpu" $flight
+    logged "$source/icesoc" run --built --build "$build" --image $image --cpu $cpu --out "$work/mission_$cpu" $flight
 done
 if [ -n "$slow" ]; then
     logged cmake -S "$source" -B "$slow" -G Ninja -DCLK_HZ=2000000 '-DROOMS=bus;slice;sw;hdl;ip;testbench'
-    logged "$source/cmake/ninja.sh" "$slow" --quiet icesoc-sim
+    logged ninja -C "$slow" --quiet icesoc-sim
 fi
 for run in $runs; do
     better 1_quiet "$(speed "$build" --image $image --duration $seconds)"

@@ -237,19 +237,20 @@ JS
     ;;
 compare)
     cd project
-    cp -r "$source/synth/compare.sh" synth/
-    mkdir -p build/main/gen build/synth
+    mkdir -p build/main/gen build/main/synth build/synth
+    ln -s "$program" build/main/synth/utilisation
     cp -r ../out/cache build/synth/
+    compare() { made synth BASE="$1"; }
     printf 'cmake_minimum_required(VERSION 3.25)\nproject(small NONE)\nadd_custom_target(synth_inputs COMMAND ${CMAKE_COMMAND} -E make_directory gen)\n' >CMakeLists.txt
     echo build >.gitignore
     git init -q . && git add . && git -c user.name=a -c user.email=a@b commit -qm "The first one"
     "$program" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
-    synth/compare.sh "$program" HEAD >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+    compare HEAD.. || fail "$(cat "$work/log")"
     has '^No figure of any design differs'
     sed -i 's/"WIDTH": 16/"WIDTH": 17/; s/"name": "wide"/"name": "wider"/' synth/designs.json
     sed -i 's/^    wire \[5:0\] word;/&\n    reg [11:0] extra;/; s/^        data_o <= word/        extra <= {extra[5:0], word};\n        data_o <= extra[11:6] ^ word/' hdl/blocks/pair.v
     "$program" >"$work/log" 2>&1 || [ $? -eq 1 ] || fail "$(cat "$work/log")" # it has grown
-    synth/compare.sh "$program" HEAD >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+    compare HEAD.. || fail "$(cat "$work/log")"
     has '^Utilisation since .* (The first one):'
     has '^| whole | .* | [0-9]* -> [0-9]* (+12) |'
     has '^| wide | gone | gone |'
@@ -270,14 +271,14 @@ compare)
     echo "$(git describe --always --abbrev=10 HEAD~1) 97.1 % of lines" >build/coverage/history
     echo 'module pair' >hdl/blocks/pair.v
     rm build/synth/report.json
-    synth/compare.sh "$program" HEAD~1..HEAD >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+    compare HEAD~1..HEAD || fail "$(cat "$work/log")"
     has '^Utilisation since .* (The first one), at .* (The second one):'
     has '^| whole | .* | [0-9]* -> [0-9]* (+12) |'
     has '^| [0-9a-f]* | not measured | 97.1 % of lines |'
     has '^| [0-9a-f]* | 9 passed, 1 failed | not measured |'
     for wrong in nonsense HEAD..nonsense; do
-        if synth/compare.sh "$program" $wrong >"$work/log" 2>&1; then fail "a commit that is none"; fi
-        has 'there is no commit nonsense'
+        if compare $wrong; then fail "a commit that is none"; fi
+        has 'there is no commit BASE=nonsense'
     done
     ;;
 place)
@@ -313,7 +314,7 @@ made)
     has 'there is no commit BASE=nonsense'
     echo store >build/main/cores.known
     if made ip-synth IP=nobody; then fail "a core that is none"; fi
-    has "not 'nobody'"
+    has "there is no core 'nobody': store"
     ;;
 edif)
     # The netlist that ISE reads has every cell that Yosys counts, once, and well-formed parentheses.

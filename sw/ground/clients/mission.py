@@ -46,6 +46,7 @@ class Air:
 
 
 ENOUGH = 300  # corners: a core that takes a pixel at the threshold for a brighter one passed with 121, and failed with 313
+IP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../ip")
 RESULTS = ("after.png", "report.md", "report.json", "calls.jsonl")
 
 
@@ -126,24 +127,24 @@ class Log:
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("flight", help="flight.json: threshold, key, cores, folder of the results (./icesoc run writes it)")
     parser.add_argument("--device", required=True, help="serial port of the modem")
     parser.add_argument("--plugin", required=True, help="folder of libxbeeat.so.37")
     parser.add_argument("--slice", required=True, help="Autopilot.ice")
     parser.add_argument("--frame", required=True, help="the camera's frame, to draw on")
-    parser.add_argument("--threshold", type=int, default=24, help="grey levels, 0..255")
-    parser.add_argument("--out", required=True, help="folder for after.png and the report")
     parser.add_argument("--status", help="the simulator's counters")
     parser.add_argument("--reference", help="program that computes the corners on the host")
-    parser.add_argument("--core", action="append", default=[], metavar="FOLDER",
-                        help="also fly the part of this core: FOLDER/ground.py, with the Slice files beside it")
-    parser.add_argument("--sensor", action="store_true", help="the frame comes through the camera core")
-    parser.add_argument("--loss", default="0", help="noted in the report")
-    parser.add_argument("--key", default="", help="file with the link's key; without: in the clear")
-    parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
-    parser.add_argument("--patience", type=int, default=300,
-                        help="seconds that each answer of the UAV may take")
     parser.add_argument("--trace", type=int, default=1, help="XBeeAT.Trace: 0, 1 or 2")
-    return parser.parse_args()
+    args = parser.parse_args()
+    try:
+        with open(args.flight) as file:
+            flight = json.load(file)
+        for name in ("threshold", "loss", "guard", "patience", "key", "camera", "out"):
+            setattr(args, name, flight[name])
+    except (OSError, ValueError, KeyError) as error:
+        sys.exit("mission: '%s' describes no flight: %r" % (args.flight, error))
+    args.cores = [os.path.join(IP, core) for core in flight["cores"]]
+    return args
 
 
 def initialize(args):
@@ -265,7 +266,7 @@ def explain(communicator, args, failure):
 
 def fly(args, communicator):
     import Autopilot  # made by loadSlice
-    parts = [part_of(folder) for folder in args.core]
+    parts = [part_of(folder) for folder in args.cores]
     air = Air(args.status)
     log = Log(air, args.out, os.path.dirname(os.path.abspath(args.plugin)))
     station = make_station(Autopilot, log)
@@ -287,7 +288,7 @@ def fly(args, communicator):
     def proxy(identity):
         return communicator.stringToProxy(identity + ":" + where)
 
-    if args.sensor:
+    if args.camera:
         size = Image.open(args.frame).size
         for part in parts:
             if hasattr(part, "prepare"):
@@ -326,7 +327,7 @@ def main():
     communicator = initialize(args)
     try:
         registers = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../hw/registers/Registers.ice")
-        for file in [args.slice, registers, *(file for core in args.core for file in glob.glob(os.path.join(core, "*.ice")))]:
+        for file in [args.slice, registers, *(file for core in args.cores for file in glob.glob(os.path.join(core, "*.ice")))]:
             Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), file])
         fly(args, communicator)
         return 0

@@ -128,6 +128,7 @@ async function look() {
     let wait = 250;
     try {
         const state = await (await fetch('state', {cache: 'no-store'})).json();
+        $('flight').textContent = state.flight;
         showFrame(state);
         showAir(state.air);
         showTimeline(state);

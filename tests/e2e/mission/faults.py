@@ -57,7 +57,7 @@ def lives(pid):
 
 class Mission:
     """A mission that runs, and its processes by name."""
-    NAMES = {"ground": "mission.py --device", "simulator": "sim/icesoc-sim", "page": "live/live.py"}
+    NAMES = {"ground": "clients/mission.py", "simulator": "sim/icesoc-sim", "page": "live/live.py"}
 
     def __init__(self, source, build, out, prefix=(), options=()):
         self.out = out
@@ -65,7 +65,7 @@ class Mission:
         self.log = open(out + ".log", "w+")
         self.begin = time.monotonic()
         self.run = subprocess.Popen(
-            [*(word.replace("$0", out) for word in prefix), source + "/testbench/sim/run.sh", build, "--image", IMAGE, "--size", "48x32", "--guard", "20",
+            [*(word.replace("$0", out) for word in prefix), source + "/icesoc", "run", "--built", "--build", build, "--image", IMAGE, "--size", "48x32", "--guard", "20",
              "--out", out, *options], stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True)
 
     def all(self):

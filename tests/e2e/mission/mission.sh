@@ -12,7 +12,11 @@ case $case in plain | stopped) guard=1000 ;; esac
 run() { # out-folder, then options
     to=$1
     shift
-    "$source/testbench/sim/run.sh" "$build" --out "$to" --size 96x64 --guard $guard "$@"
+    "$source/icesoc" run --built --build "$build" --out "$to" --size 96x64 --guard $guard "$@"
+}
+# A flight's description for a ground without a simulator.
+describe() {
+    printf '{"threshold": 24, "loss": 0, "guard": 20, "patience": 300, "key": "", "camera": false, "cores": [], "out": "%s"}' "$out" >"$out/flight.json"
 }
 check_output() {
     [ -s "$1/after.png" ] && [ -s "$1/before.png" ] && grep -q 'isAlive' "$1/report.md"
@@ -49,13 +53,14 @@ plain) # secure by default; only the user may read its recording and its key
     grep -q '121 corners leave much of the core untried: make ip-test IP=vision' "$out/log" || { cat "$out/log" && exit 1; }
     # It waits for the modem's set-up first, then for the vehicle.
     grep -o 'modem ready on .* after [0-9]* ms\|link connecting\|link up, secure\|the UAV has .* s to answer' "$out/log" | sed 's/ .*//' | tr '\n' ' ' | grep -q '^the modem link link ' || { cat "$out/log" && exit 1; }
-    grep -q -- "\"--key\",\"$(dirname "$build")/demo.key\"" "$out/flight.jsonl"
+    grep -q "\"key\":\"$(dirname "$build")/demo.key\"" "$out/flight.jsonl"
     [ "$(stat -c %a "$out/flight.jsonl" "$(dirname "$build")/demo.key" | sort -u)" = 600 ]
     ;;
 open) # without encryption, by an option
-    run "$out" --image $image --open 1; check_output "$out"
-    ! grep -q -- '--key' "$out/flight.jsonl"
-    fails_with "give one of them" run "$out" --image $image --open 1 --key "$out/any.key"
+    run "$out" --image $image --open; check_output "$out"
+    grep -q '"key":""' "$out/flight.jsonl"
+    : >"$out/any.key"
+    fails_with "give one of them" run "$out" --image $image --open --key "$out/any.key"
     ;;
 keys) # messages of the ground, the vehicle and their start about unfit keys
     umask 077
@@ -64,13 +69,14 @@ keys) # messages of the ground, the vehicle and their start about unfit keys
     echo 0001020304 >"$out/short.key" && cp "$out/a.key" "$out/others.key" && chmod 644 "$out/others.key"
     fails_with "32 hexadecimal digits" run "$out" --image $image --key "$out/short.key"
     fails_with "chmod 600" run "$out" --image $image --key "$out/others.key"
-    fails_with "openssl rand" run "$out" --image $image --key "$out/no.key"
+    fails_with "icesoc key '$out/no.key' makes one" run "$out" --image $image --key "$out/no.key"
     # No session with this vehicle begins with another key, or with none.
     for ground in "--XBeeAT.KeyFile=$out/b.key" --XBeeAT.KeyFile=; do
         fails_with 'Timeout' "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --guard $guard --key "$out/a.key" -- \
             "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d "{device}" -a 0x0001 -g {guard} -t 3000' 1 "$ground" --Ice.RetryIntervals=-1
     done
     fails_with "chmod 600" "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d /dev/null' 1 "--XBeeAT.KeyFile=$out/others.key"
+    fails_with "openssl rand" "$build/sw/ground/ground_ping" 'hwengine1:xbee-at -d /dev/null' 1 "--XBeeAT.KeyFile=$out/no.key"
     ;;
 loss) # again from its recording, in which a user looks for the cause
     run "$out" --image $image --loss 0.1 --seed "${SEED:-1}"; check_output "$out"
@@ -87,7 +93,7 @@ loss) # again from its recording, in which a user looks for the cause
     fails_with 'the replay needs a folder of its own' "$build/testbench/sim/icesoc-sim" --replay "$out" --out "$out"
     fails_with "flown by the firmware's host build" replay "$out" --gdb 0
     fails_with 'writes no waveforms' replay "$out" --wave "$out/wave.fst"
-    fails_with 'no flight was recorded in' "$source/testbench/sim/replay.sh" "$build" "$out/nowhere" "$out/replay"
+    fails_with 'no flight was recorded in' "$source/icesoc" replay --built --build "$build" "$out/nowhere" --out "$out/replay"
     ;;
 cores) # every core that has a part in a mission
     parts=$(cd "$source/ip" && awk '/^[^#]/ { print $1 }' cores.list | while read -r core; do [ ! -f "$core/ground.py" ] || echo "$core"; done)
@@ -96,7 +102,7 @@ cores) # every core that has a part in a mission
     fails_with "has no part in a mission" run "$out/none" --image $image --cores nonesuch
     ;;
 sensor) # the picture goes through the camera's pins and the vision core, and never through the processor
-    run "$out" --image $image --sensor 1 --cpu m3; check_output "$out"
+    run "$out" --image $image --camera --cpu m3; check_output "$out"
     grep -q 'camera.capture(96, 64)' "$out/report.md"
     ;;
 m3) # the ARM binary; its replay shows the program's tasks in the 2 ms around the first event of a core
@@ -183,9 +189,11 @@ cpp) # the C++11 library of the plugin, a C++ client, and a proxy that goes thro
     grep -q -- '-a 0x1 .*-p 2' "$out/log"
     ;;
 slow) # a machine that is four times too slow: the ground uses the simulator's clock, so it finds the modem as fast
-    "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --speed 0.25 --guard $guard -- \
-        /usr/bin/python3 "$source/sw/ground/clients/mission.py" --device '{device}' --guard '{guard}' --frame '{frame}' --status '{status}' \
-        --out "$out" --plugin "$build/ground" --slice "$source/sw/apps/uav/Autopilot.ice" --trace 2 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
+    run "$out" --image $image >"$out/log" 2>&1 || { cat "$out/log" && exit 1; } # for its flight.json
+    rm "$out/after.png"
+    "$build/testbench/sim/icesoc-sim" --flight "$out/flight.json" --speed 0.25 -- \
+        /usr/bin/python3 "$source/sw/ground/clients/mission.py" "$out/flight.json" --device '{device}' --frame '{frame}' --status '{status}' \
+        --plugin "$build/ground" --slice "$source/sw/apps/uav/Autopilot.ice" --trace 2 >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
     [ "$(grep -c '+++ at' "$out/log")" = 2 ] || { cat "$out/log" && exit 1; }
     check_output "$out"
     ;;
@@ -234,9 +242,6 @@ twice)
 odd_names) # a folder's name has special characters of the shell, of make and of the simulator
     odd="$out/a'b \"c\" {device} {out}x \`touch $out/oops\` \$(touch $out/oops)"
     run "$odd" --image $image; check_output "$odd"
-    make --no-print-directory -s -C "$source" -n run BUILD="$build" OUT="$(echo "$odd" | sed 's/\$/$$/g')" | sed -n '/run.sh/,$p' |
-        sed 's/^testbench.*run.sh/set --/' >"$out/words"
-    sh -c '. "$1" && while [ "$1" != --out ]; do shift; done && [ "$2" = "$0" ]' "$odd" "$out/words" || { cat "$out/words" && exit 1; }
     [ ! -e "$out/oops" ]
     ;;
 picture_bad)
@@ -250,18 +255,19 @@ picture_bad)
     fails_with "size '96x64k'" run "$out" --image $image --size 96x64k
     ;;
 device_missing)
-    fails_with "cannot open serial port '/dev/no-such-port'" /usr/bin/python3 "$source/sw/ground/clients/mission.py" \
-        --device /dev/no-such-port --plugin "$build/ground" --slice "$source/sw/apps/uav/Autopilot.ice" \
-        --frame none --out "$out"
+    describe
+    fails_with "cannot open serial port '/dev/no-such-port'" /usr/bin/python3 "$source/sw/ground/clients/mission.py" "$out/flight.json" \
+        --device /dev/no-such-port --plugin "$build/ground" --slice "$source/sw/apps/uav/Autopilot.ice" --frame none
     ;;
 modem_silent)
     # Only this shell's sleep holds the pty: no modem answers.
+    describe
     fails_with "no modem answers on" /usr/bin/python3 -c '
 import os, pty, subprocess, sys
 master, slave = pty.openpty()
-sys.exit(subprocess.call(sys.argv[1:] + ["--device", os.ttyname(slave), "--guard", "20"]))' \
-        /usr/bin/python3 "$source/sw/ground/clients/mission.py" --plugin "$build/ground" \
-        --slice "$source/sw/apps/uav/Autopilot.ice" --frame none --out "$out"
+sys.exit(subprocess.call(sys.argv[1:] + ["--device", os.ttyname(slave)]))' \
+        /usr/bin/python3 "$source/sw/ground/clients/mission.py" "$out/flight.json" --plugin "$build/ground" \
+        --slice "$source/sw/apps/uav/Autopilot.ice" --frame none
     ;;
 interrupted)
     run "$out" --image $image >"$out/log" 2>&1 &

@@ -1,12 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# names: source-folder work-folder slice2c   make new-ip's and rm-ip's scripts: names that they
+# names: source-folder work-folder slice2c   core new and core remove: names that they
 # refuse, which leave the tree unchanged.
 set -eu
 source=$1 ip=$1/ip work=$2 slice2c=$3
 rm -rf "$work"
 mkdir -p "$work/bus" "$work/hdl/modem" "$work/ip/old" "$work/sw" "$work/testbench" "$work/synth"
-cp -r "$ip/new.sh" "$ip/rm.sh" "$ip/template" "$work/ip"
+cp -r "$ip/template" "$work/ip"
+export ICESOC_TREE="$work"
+new() { "$source/icesoc" core new --built --build build "$@"; }
+remove() { "$source/icesoc" core remove --built --build build "$@"; }
 : >"$work/ip/cores.list"
 echo '{}' >"$work/hdl/modem/modem.regs.json"
 echo 'module bus_thing (' >"$work/bus/other.v"
@@ -18,79 +21,78 @@ refused() { # words of the message, arguments
     words=$1
     shift
     status=0
-    "$work/ip/new.sh" "$@" >"$work/log" 2>&1 || status=$?
-    [ $status = 1 ] || { echo "exit status $status, not 1: $*" && exit 1; }
+    new "$@" >"$work/log" 2>&1 || status=$?
+    [ $status = 1 ] || [ $status = 2 ] || { echo "exit status $status: $*" && exit 1; }
     grep -q -- "$words" "$work/log" || { cat "$work/log" && echo "'$words' is not said: $*" && exit 1; }
     [ "$(ls "$work/ip")" = "$before" ] || { echo "files were written: $*" && exit 1; }
 }
-refused 'usage'
-refused 'usage' '' verilog
+refused 'make new-ip NAME=low_pass'
+refused 'make new-ip NAME=low_pass' '' --lang verilog
 refused 'LANG=verilog or LANG=vhdl' fir
-refused "not 'c'" fir c
-refused 'small letters' Fir verilog
-refused 'small letters' 2fir verilog
-refused 'small letters' a_b verilog
-refused 'small letters' ../fir verilog
-refused 'small letters' 'fir x' verilog
-refused 'reserved' signal vhdl
-refused 'reserved' module verilog
-refused 'reserved' template verilog
-refused 'there already' old verilog
-refused 'modem.regs.json' modem verilog
-refused 'a module' bus_thing verilog
-refused 'a module' vhdl_thing verilog
+refused "not 'c'" fir --lang c
+refused 'small letters' Fir --lang verilog
+refused 'small letters' 2fir --lang verilog
+refused 'small letters' a_b --lang verilog
+refused 'small letters' ../fir --lang verilog
+refused 'small letters' 'fir x' --lang verilog
+refused 'reserved' signal --lang vhdl
+refused 'reserved' module --lang verilog
+refused 'reserved' template --lang verilog
+refused 'there already' old --lang verilog
+refused 'modem.regs.json' modem --lang verilog
+refused 'a module' bus_thing --lang verilog
+refused 'a module' vhdl_thing --lang verilog
 # An interface of one's own.
 mkdir -p "$work/build/slice"
 printf '#!/bin/sh\nexec "%s" "$@"\n' "$slice2c" >"$work/build/slice/slice2c"
 chmod +x "$work/build/slice/slice2c"
-refused "there is no file" fir verilog "$work/build" "$work/none.ice"
+refused "cannot read .*none.ice" fir --lang verilog --ice "$work/none.ice"
 printf '#include <b.ice>\n #  include "c/d.ice"\n' >"$work/a.ice"
-refused 'a.ice includes b.ice c/d.ice: a core has one Slice file' fir verilog "$work/build" "$work/a.ice"
+refused 'a.ice includes b.ice c/d.ice: a core has one Slice file' fir --lang verilog --ice "$work/a.ice"
 echo 'module M { interface Fir { void f(); }; };' >"$work/a.ice"
-refused 'is not an interface in hardware' fir verilog "$work/build" "$work/a.ice"
+refused 'is not an interface in hardware' fir --lang verilog --ice "$work/a.ice"
 echo 'module M { [":hw"] interface Fir { void f(string s); }; };' >"$work/a.ice"
-refused "^$work/a.ice:1:" fir verilog "$work/build" "$work/a.ice"
+refused "^$work/a.ice:1:" fir --lang verilog --ice "$work/a.ice"
 echo 'module M { [":hw"] interface Iir { void f(); }; };' >"$work/a.ice"
-refused "has the cores iir : NAME is that of the only one" fir verilog "$work/build" "$work/a.ice"
+refused "has the cores iir: the name is that of the only one" fir --lang verilog --ice "$work/a.ice"
 echo 'module M { [":hw"] interface LowPass { ["hw:long"] int f(short a); }; };' >"$work/a.ice"
 for language in verilog vhdl; do
-    "$work/ip/new.sh" low_pass $language "$work/build" "$work/a.ice" >/dev/null
+    new low_pass --lang $language --ice "$work/a.ice" >/dev/null
     grep -q "low_pass_wrapper" "$work"/ip/low_pass/low_pass.v* && grep -q 'core.f(a)' "$work/ip/low_pass/low_pass_test.cpp" ||
         { echo 'ip/low_pass is not made from its interface' && exit 1; }
     echo 'low_pass identity=a' >"$work/ip/cores.list"
     [ $language = vhdl ] || echo 'fir b_i=low_pass.c_o' >>"$work/ip/cores.list"
-    [ $language = vhdl ] || { ! "$work/ip/rm.sh" low_pass 2>"$work/log" && grep -q 'inputs of fir' "$work/log" && sed -i 2d "$work/ip/cores.list"; }
-    "$work/ip/rm.sh" low_pass >/dev/null
+    [ $language = vhdl ] || { ! remove low_pass 2>"$work/log" && grep -q 'inputs of fir' "$work/log" && sed -i 2d "$work/ip/cores.list"; }
+    remove low_pass >/dev/null
     [ ! -e "$work/ip/low_pass" ] && [ ! -s "$work/ip/cores.list" ] || { echo 'rm-ip left something' && exit 1; }
 done
 # An input that only cores drive does not keep the core that drives it.
-"$work/ip/new.sh" low_pass verilog "$work/build" "$work/a.ice" >/dev/null
+new low_pass --lang verilog --ice "$work/a.ice" >/dev/null
 mkdir -p "$work/ip/taker"
 echo '{"pins": [{"name": "b_i", "internal": true}, {"name": "c_i", "width": 2}]}' >"$work/ip/taker/taker.regs.json"
 printf 'low_pass\ntaker c_i=low_pass.c_o b_i=low_pass.b_o\n' >"$work/ip/cores.list"
-! "$work/ip/rm.sh" low_pass 2>"$work/log" && grep -q 'inputs of taker' "$work/log" || { echo 'rm-ip makes a pin of an input' && exit 1; }
+! remove low_pass 2>"$work/log" && grep -q 'inputs of taker' "$work/log" || { echo 'rm-ip makes a pin of an input' && exit 1; }
 printf 'low_pass\ntaker b_i=low_pass.b_o\n' >"$work/ip/cores.list"
-"$work/ip/rm.sh" low_pass >/dev/null
+remove low_pass >/dev/null
 [ "$(cat "$work/ip/cores.list")" = 'taker b_i=low_pass.b_o' ] || { echo 'rm-ip keeps the core, or takes another line' && exit 1; }
 rm -r "$work/ip/taker"
 for wrong in '' nobody template ../bus; do
-    ! "$work/ip/rm.sh" "$wrong" 2>"$work/log" && grep -q 'rm-ip: ' "$work/log" || { echo "rm-ip takes '$wrong'" && exit 1; }
+    ! remove "$wrong" 2>"$work/log" && grep -q 'not a core\|there is no ip/' "$work/log" || { echo "rm-ip takes '$wrong'" && exit 1; }
 done
 # Uncommitted work stays, unless forced.
-(cd "$work" && git init -q . && "$work/ip/new.sh" fir verilog "$work/build" >/dev/null)
-! "$work/ip/rm.sh" fir 2>"$work/log" && grep -q 'not committed' "$work/log" && [ -d "$work/ip/fir" ] || { echo 'rm-ip loses work' && exit 1; }
-FORCE=1 "$work/ip/rm.sh" fir >/dev/null
+(cd "$work" && git init -q . && new fir --lang verilog >/dev/null)
+! remove fir 2>"$work/log" && grep -q 'not committed' "$work/log" && [ -d "$work/ip/fir" ] || { echo 'rm-ip loses work' && exit 1; }
+remove fir --force >/dev/null
 [ ! -e "$work/ip/fir" ] || { echo 'rm-ip FORCE=1 left it' && exit 1; }
 rm -rf "$work/.git" "$work/build"
 # A build that cannot be configured with it: taken back.
 mkdir "$work/build"
 touch "$work/build/build.ninja"
-refused 'nothing was changed' fir verilog "$work/build"
+refused 'nothing was changed' fir --lang verilog
 rm -r "$work/build"
 made() { "$source/tests/regress/test/make_in.sh" "$source" "$work" build "$@"; }
 made new-ip NAME=fir LANG=verilog | grep -q 'make ip-test IP=fir'
 [ -f "$work/ip/fir/fir.v" ] && ! grep -rq '@[A-Z]*@' "$work/ip/fir" || { echo 'ip/fir is not what it should be' && exit 1; }
 made rm-ip NAME=fir FORCE=1 >/dev/null
 [ ! -e "$work/ip/fir" ] || { echo 'make rm-ip left it' && exit 1; }
-"$work/ip/new.sh" --help | grep -q usage
 echo 'names: all as expected'

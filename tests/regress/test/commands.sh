@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# commands: tests the Makefile's targets with each of their variables. Sourced by regress.sh, in its project.
+# commands: what commands do, by make, with each of its variables. Sourced by regress.sh, in its project.
 
 # Runs make in the whole tree, where everything is built.
 user() { status=0; "$source/tests/regress/test/make_in.sh" "$source" "$source" "$build" "$@" >out.txt 2>&1 </dev/null || status=$?; }
@@ -11,14 +11,12 @@ refused() { # words, then the command
     [ $status -ne 0 ] && has "$words" && hasNot 'Traceback\|--help' || fail "$* is not refused"
 }
 
-# Runs make in this project, with all files of a build that the Makefile's recipes need.
+# In this project, with all that commands ask of a build.
 entrance() {
-    mkdir -p cmake ip/fir
-    cp "$source/cmake/configure.sh" "$source/cmake/set.sh" "$source/cmake/ninja.sh" cmake
+    mkdir -p cmake ip/fir tests/bench
     printf '#!/bin/sh\n' >cmake/setup.sh && chmod +x cmake/setup.sh
-    cp "$source/ip/wave.sh" "$source/ip/test.sh" ip && touch ip/fir/fir_test.cpp
-    mkdir -p tests/bench tests/regress && cp "$source/tests/bench/figures.py" tests/bench && cp "$source/tests/regress/bisect.sh" tests/regress
-    for file in Makefile ip/targets.mk tests/targets.mk; do cp "$source/$file" $file; done
+    touch ip/fir/fir_test.cpp
+    cp "$source/tests/bench/figures.py" tests/bench
     sed -i 's/ d.Crash//' tests/room/CMakeLists.txt
     cat >waved <<'TEXT'
 #!/bin/sh
@@ -29,7 +27,7 @@ esac
 TEXT
     chmod +x waved
     cat >>tests/room/CMakeLists.txt <<TEXT
-add_custom_target(regress ALL COMMAND mkdir -p tests/regress tests/hdl/formal/thing COMMAND ln -sf $regress tests/regress
+add_custom_target(regress ALL COMMAND mkdir -p tests/regress tests/hdl/formal/thing COMMAND ln -sf $regress tests/regress/regress
   COMMAND sh -c "echo 3 >tests/hdl/formal/thing/cpu" WORKING_DIRECTORY \${CMAKE_BINARY_DIR} VERBATIM)
 foreach(target sanitized regmaps bench_programs)
   add_custom_target(\${target})
@@ -51,7 +49,7 @@ foreach(label zeroc nightly)
 endforeach()
 TEXT
 }
-here() { status=0; env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL "$(command -v make)" -s JOBS=1 "$@" >out.txt 2>&1 </dev/null || status=$?; }
+here() { status=0; env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL ICESOC_TREE="$work" make -s -C "$source" JOBS=1 "$@" >out.txt 2>&1 </dev/null || status=$?; }
 good() { here "$@" && [ $status -eq 0 ] || fail "make $* ends with $status"; }
 bad() { here "$@" && [ $status -ne 0 ] || fail "make $* succeeds"; }
 
@@ -62,20 +60,20 @@ commands_run) # the program's message about an invalid value of a variable prove
     refused "LOSS is the share .* not '7'" run LOSS=7
     refused "PORT is 0..65535, and 0 is any, not 'x'" run PORT=x
     refused "CPU is host or m3, not 'x'" run CPU=x
-    refused "no program 'x'" run APP=x
+    refused "APP is uav or minimal, not 'x'" run APP=x
     refused "core 'nobody' has no part in a mission" run CORES=nobody
-    refused "OPEN=1 flies in the clear, KEY='/none' does not" run OPEN=1 KEY=/none
-    refused "size '96x64k'" run SIZE=96x64k OUT="$work/flight"
-    refused "cannot read picture '/none'" run IMAGE=/none OUT="$work/flight"
+    refused "OPEN=1 flies in the clear, KEY='$work/out.txt' does not" run OPEN=1 KEY="$work/out.txt"
+    refused "SIZE is WIDTHxHEIGHT, .* not '96x64k'" run SIZE=96x64k OUT="$work/flight"
+    refused "cannot read '/none'" run IMAGE=/none OUT="$work/flight"
     hasNot 'REPLAY=' # it would be of an earlier flight, still in the folder
-    refused "cannot read PINS='/none'" run PINS=/none OUT="$work/flight"
+    refused "cannot read '/none'" run PINS=/none OUT="$work/flight"
     refused "PROBE='fir.go=1' is a trigger of a probe: CORES=probe" run PROBE=fir.go=1 OUT="$work/flight"
     refused "OUT='/proc/none' is no folder" run OUT=/proc/none
-    refused "FROM='x' TO='' are no span" run REPLAY="$work/flight" FROM=x # before a simulator is built for it
-    refused "FROM='2' TO='1' are no span" run REPLAY="$work/flight" FROM=2 TO=1
-    refused "cannot read firmware '/none'" run UPDATE=/none CPU=m3 OUT="$work/flight"
+    refused "FROM is a number from 0 on s, not 'x'" run REPLAY="$work/flight" FROM=x # before a simulator is built for it
+    refused "FROM=2.0 TO=1.0 are no span" run REPLAY="$work/flight" FROM=2 TO=1
+    refused "cannot read '/none'" run UPDATE=/none CPU=m3 OUT="$work/flight"
     refused "no flight was recorded in '/none'" run REPLAY=/none
-    refused "where a flight was recorded" gdb REPLAY=/none OUT="$work/replay"
+    refused "no flight was recorded in '/none'" gdb REPLAY=/none OUT="$work/replay"
     printf 'print $pc\nkill\n' >commands
     "$source/tests/regress/test/make_in.sh" "$source" "$source" "$build" gdb SIZE=96x64 OUT="$work/gdb" <commands >out.txt 2>&1 || fail "gdb"
     has 'Reset_Handler'
@@ -83,8 +81,11 @@ commands_run) # the program's message about an invalid value of a variable prove
     [ $status -eq 0 ] && has '^Written: build/firmware.json' || fail "firmware"
     user faults NAME=no_memory MOMENTS=1 SEEDS=1 SEED=2
     [ $status -eq 0 ] && has '^faults: 1 moments of seeds 2 to 2, 0 failed' || fail "faults"
-    for wrong in JOBS=abc MINUTES=abc FUZZED=0 REPEAT=0 NIGHTLY=x MOMENTS=x SEEDS=x DRAW=x TESTS=x WAVES=-1 SEED=-1 SEED=7x; do
-        refused "${wrong%=*}='${wrong#*=}' is not a \(whole \)\?\(number\|time\)" help "$wrong"
+    for wrong in 'build JOBS=abc' 'fly MINUTES=abc' 'soak FUZZED=0' 'regress REPEAT=0' 'nightly NIGHTLY=x' 'faults MOMENTS=x' 'faults SEEDS=x' \
+        'mutants DRAW=x' 'test TESTS=x' 'regress WAVES=-1' 'run SEED=-1' 'test SEED=7x'; do
+        word=${wrong#* }
+        # shellcheck disable=SC2086 # verb and variable
+        refused "${word%=*} is a \(whole \)\?\(number\|time\).*, not '${word#*=}'" $wrong
     done
     refused 'faults: none is called nonsense; there are clock_step' faults NAME=nonsense
     refused 'there is no commit BASE=none' synth BASE=none
@@ -132,25 +133,21 @@ commands_small)
     good ip-test IP=fir CORE_FOLDERS="$work/mine" && grep -q "^CORE_FOLDERS.*=$work/mine$" build/main/CMakeCache.txt || fail "CORE_FOLDERS"
     bad ip-test IP=nobody && has "there is no core 'nobody': fir"
     bad bisect TEST=test_a.One GOOD=nonsense BAD=HEAD SEED=1
-    has 'no commit nonsense'
+    has 'no commit GOOD=nonsense'
     good clean && [ ! -e build ] || fail "make clean leaves build/"
     ;;
 commands_nightly) # each step runs even if earlier ones failed, and each failure is reported
     entrance
-    make=$(command -v make)
-    mkdir bin
-    cat >bin/make <<'TEXT'
-#!/bin/sh
-echo "$1" >>done
-[ "$1" != "$(cat failing)" ]
+    cat >icesoc <<'TEXT'
+import sys
+open("done", "a").write(sys.argv[2] + "\n")
+sys.exit(sys.argv[2] == open("failing").read().strip())
 TEXT
-    chmod +x bin/make
     sed -i 's/value $SEED is not 7/failed with $SEED/; s|"$SEED" = 7|! -e ../../../../bad|' tests/room/t.sh
     nightly() { # the step that fails
         : >done
         echo "$1" >failing
-        status=0
-        env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL PATH="$PWD/bin:$PATH" "$make" -s JOBS=1 nightly NIGHTLY=2 >out.txt 2>&1 </dev/null || status=$?
+        here nightly NIGHTLY=2
         [ "$(tr '\n' ' ' <done)" = 'zeroc mutants faults sanitizers nightly ' ] || fail "where $1 fails only these are done: $(cat done)"
         [ "$(grep -c '^[0-9]* tests, SEED=' out.txt)" = "$2" ] || fail "not $2 seeds"
     }

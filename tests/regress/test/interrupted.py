@@ -66,7 +66,6 @@ def new_ip():
     tree = work / "tree"
     for folder in ("bus", "hdl", "sw", "testbench", "synth", "ip"):
         (tree / folder).mkdir(parents=True)
-    shutil.copy(source / "ip/new.sh", tree / "ip")
     shutil.copytree(source / "ip/template", tree / "ip/template")
     core = tree / "ip/low_pass"
 
@@ -74,7 +73,7 @@ def new_ip():
         files = {path.name: path.read_bytes() for path in core.iterdir()}
         shutil.rmtree(core)
         return files
-    return ["sh", "-c", "[ -d ip/low_pass ] || ip/new.sh low_pass vhdl none"], tree, 0.15, written
+    return ["sh", "-c", '[ -d ip/low_pass ] || ICESOC_TREE=. exec "$0" core new low_pass --lang vhdl --built --build none', source / "icesoc"], tree, 0.3, written
 
 
 def main():

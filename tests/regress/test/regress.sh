@@ -350,19 +350,20 @@ bisect) # of five commits the third breaks test_a.One; the second does not confi
     for n in 1 2; do echo $n >change && git commit -qam "later $n"; done
     echo mine >change
     git status --short >before.txt
-    bisect() { status=0; "$source/tests/regress/bisect.sh" "$regress" "$@" >out.txt 2>&1 || status=$?; }
+    mkdir -p build/main/tests/regress && ln -sf "$regress" build/main/tests/regress/regress
+    bisect() { status=0; ICESOC_TREE=. "$source/icesoc" bisect --built "$@" >out.txt 2>&1 || status=$?; }
     bisect test_a.One
     [ $status -eq 0 ] || fail "exit status $status, not 0"
     has '^since [0-9a-f]* breaks it (a, '
-    bisect test_a.One "$(git rev-list --max-parents=0 HEAD)"
+    bisect test_a.One --good "$(git rev-list --max-parents=0 HEAD)"
     has '^since [0-9a-f]* breaks it (a, '
     [ "$(cat change)" = mine ] && [ ! -e build/bisect/tree ] || fail "the checkout is changed"
-    bisect test_a.Two "$(git rev-list --max-parents=0 HEAD)"
+    bisect test_a.Two --good "$(git rev-list --max-parents=0 HEAD)"
     [ $status -eq 2 ] && has 'passes at' || fail "a test that passes"
     bisect test_b.Bad
     [ $status -eq 2 ] && has 'GOOD= names one' || fail "no commit to begin with"
-    bisect test_a.One nonsense
-    [ $status -eq 2 ] && has 'no commit nonsense' || fail "a commit that is none"
+    bisect test_a.One --good nonsense
+    [ $status -eq 2 ] && has 'no commit GOOD=nonsense' || fail "a commit that is none"
     ;;
 page)
     cat >t.vcd <<'END'
@@ -462,7 +463,7 @@ JS
     "$source/tests/regress/test/look.sh" long.html || fail "the page"
     sed -i 's/of data.lights/of data.lihgts/' long.html
     ! "$source/tests/regress/test/look.sh" long.html >out.txt 2>&1 && has '^long.html:[0-9]*: Uncaught TypeError: data.lihgts is not iterable: for (const light' || fail "a script's error"
-    "$source/docs/pictures/take.sh" --from build --to . regression >/dev/null || fail "its picture"
+    ICESOC_TREE=. "$source/icesoc" build pictures --from build --to . regression >/dev/null || fail "its picture"
     [ "$(head -c 4 regression.png | tail -c 3)" = PNG ] && [ "$(wc -c <regression.png)" -lt 100000 ] || fail "its picture is none, or large"
     ;;
 waves) # a test that runs beside a core, not below tests/; a trace that is damaged: the report comes in any case

@@ -14,7 +14,7 @@ fail() {
 has() { grep -q -- "$1" "$out/dom.html" || fail "the page lacks '$1' (see $out/dom.html)"; }
 case $case in
 mission)
-    "$source/testbench/sim/run.sh" "$build" --image /usr/share/xplanet/images/earth.jpg --size 96x64 --guard 20 --cpu m3 --out "$out" --live 1 >"$out/log" 2>&1 &
+    "$source/icesoc" run --built --build "$build" --size 96x64 --guard 20 --cpu m3 --out "$out" --live >"$out/log" 2>&1 &
     run=$!
     trap 'kill $(ps -o pid= --ppid $run) $run 2>/dev/null || true' EXIT
     while ! grep -q 'The page stays' "$out/log"; do
@@ -28,6 +28,7 @@ mission)
         --enable-logging=stderr --dump-dom "$url" >"$out/dom.html" 2>"$out/chromium.log" || fail "chromium: $(tail -3 "$out/chromium.log")"
     ! grep -E 'CONSOLE.*(rror|NOT_RESOLVED)' "$out/chromium.log" || fail "the page has errors"
     has 'the mission is over'
+    has '<p id="flight">size 96x64, cpu m3, guard 20</p>'
     has 'hwengine1.getResult()'
     has 'Station.vehicleState(uptimeMs'
     has '<td>THRESHOLD</td><td class="n">0x00000018</td>'
@@ -75,7 +76,7 @@ errors)
     while ! grep -q 127.0.0.1 "$out/first" 2>/dev/null; do kill -0 $first || fail "the page has ended"; sleep 0.1; done
     port=$(sed -n 's,.*127.0.0.1:\([0-9]*\)/.*,\1,p' "$out/first")
     expect 'is the port taken' "$live" --dir "$out" --registers "$build/gen/registers.list" --port "$port"
-    expect 'is the port taken' "$source/testbench/sim/run.sh" "$build" --image /usr/share/xplanet/images/earth.jpg --size 96x64 --out "$out/unflown" --port "$port"
+    expect 'is the port taken' "$source/icesoc" run --built --build "$build" --size 96x64 --out "$out/unflown" --port "$port"
     [ ! -e "$out/unflown/status" ] || fail "it flies without its page"
     # Nothing has run in this folder yet: the page still answers; and only on the loopback interface.
     python3 - "$port" "$out" <<'PY'

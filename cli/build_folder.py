@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""build_folder: set-up, CMake and ninja of a build folder. Two builds in one folder wait for each other."""
+import os
+import re
+import shutil
+from pathlib import Path
+
+from cli import runner
+from cli.runner import Stop, lock, output, run, warn
+
+TREE = Path(__file__).resolve().parent.parent
+ROOMS_OF_PROGRAMS = "bus;slice;sw;hdl;ip;testbench;tests"
+
+
+def writable(folder, otherwise):
+    """Makes a folder, or says why it cannot be used."""
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError:
+        pass
+    if not os.access(folder, os.W_OK):
+        raise Stop(f"you may not write in {folder}, {otherwise}")
+
+
+class BuildFolder:
+    """A build folder, as a command's options name it."""
+
+    def __init__(self, folder, values):
+        self.folder, self.jobs, self.built = Path(folder), values.jobs, values.built
+        self.ucos2 = getattr(values, "ucos2", "")
+
+    def __truediv__(self, name):
+        return self.folder / name
+
+    def prepare(self, *arguments, tests=False):
+        """Set-up, then CMake, unless the folder is configured."""
+        if not self.built:
+            run(["cmake/setup.sh", *(["--tests"] if tests else [])])
+            self.configure(*arguments)
+            if self.ucos2:
+                self.set(UCOS2=os.path.abspath(self.ucos2))
+        return self
+
+    def configure(self, *arguments):
+        """CMake makes the folder of this tree, unless it has; one made for another place, which CMake refuses, goes first."""
+        writable(self.folder, "where the build goes: take a clone of your own, or give --build (BUILD=) a folder that is yours")
+        writable(os.environ.get("XDG_CACHE_HOME") or os.path.join(os.environ["HOME"], ".cache"),
+                 "where what is fetched and compiled is kept: set XDG_CACHE_HOME to a folder that is yours")
+        home = self.cached("CMAKE_HOME_DIRECTORY")
+        if home and not (os.path.isdir(home) and os.path.samefile(home, ".")):
+            warn(f"{self.folder} was made for the tree in {home}: made anew")
+            shutil.rmtree(self.folder)
+        if not (self / "build.ninja").exists():
+            run(["cmake", "-S", ".", "-B", self.folder, "-G", "Ninja", *arguments])
+
+    def cached(self, name):
+        """A variable of CMake's cache; empty if there is none."""
+        try:
+            found = re.search(rf"^{name}:\w+=(.*)$", (self / "CMakeCache.txt").read_text(), re.M)
+        except OSError:
+            return ""
+        return found[1] if found else ""
+
+    def set(self, **variables):
+        """Gives variables of CMake new values; where CMake refuses them, its reason is said and the values of before stay."""
+        if all(self.cached(name) == value for name, value in variables.items()):
+            return
+        cache = (self / "CMakeCache.txt").read_bytes()
+        words = ["cmake", *(f"-D{name}={value}" for name, value in variables.items()), self.folder]
+        with open(self / "set.log", "w") as log:
+            status = run(words, check=False, stdout=log, stderr=log)
+        if status:
+            (self / "CMakeCache.txt").write_bytes(cache)
+            reasons = re.findall(r"^CMake Error.*?(?=^$|\Z)", (self / "set.log").read_text(), re.M | re.S)
+            raise Stop("CMake refuses " + " ".join(words[1:-1]) + "\n" + "\n".join(reasons))
+
+    def ninja(self, *words, check=True, env=None, jobs=None):
+        """Builds targets, one build at a time: two would spoil each other's files."""
+        if self.built:
+            return 0
+        with lock(self.folder, busy=f"waiting for another build in {self.folder} ..."):
+            return run(["ninja", "-C", self.folder, "-j", jobs or self.jobs, *words], check=check, env=env)
+
+    def quietly(self, *targets):
+        return self.ninja("--quiet", *targets)
+
+    def ctest(self, *words, tests, check=True, **env):
+        return run([TREE / "tests/ctest.py", "--test-dir", self.folder, "-j", tests, "--output-on-failure", "--no-tests=error", *words],
+                   env=env, check=check)
+
+    def targets(self):
+        """Names of all targets."""
+        return re.findall(r"^(.*): phony$", output(["ninja", "-C", self.folder, "-t", "targets", "all"]), re.M)
+
+
+def configured(values, *targets, tests=False):
+    """The build folder of a command, with targets built."""
+    build = BuildFolder(values.build, values).prepare(tests=tests)
+    if targets:
+        build.quietly(*targets)
+    return build
+
+
+def fetch(what, folder, check=True):
+    return runner.run(["cmake/fetch.py", what, folder], check=check)

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""tree: set-up, clean-up, and the list of commands."""
+import json
+import os
+import shlex
+import shutil
+import sys
+import time
+from pathlib import Path
+
+from cli import command as doors
+from cli import flight, version
+from cli.command import COMMANDS, command
+from cli.options import PATH, SWITCH, TEXT, Option
+from cli.runner import Stop, run, say
+
+
+@command("setup", [Option("tests", SWITCH, "what tests, reports and debuggers need, too", variable="WITH_TESTS"),
+                   Option("check", SWITCH, "only says what is missing"),
+                   Option("developer", SWITCH, "git's hooks of this tree, which hold subjects of commits to 72 characters")],
+         make="setup", brief="setup --check", examples=["setup", "setup --tests", "setup --developer"])
+def setup(values):
+    """install the Debian packages that are needed and missing"""
+    if values.developer:
+        run(["git", "config", "core.hooksPath", ".ci/hooks"])
+        say("git runs .ci/hooks from now on")
+    return run(["cmake/setup.sh", *(f"--{word}" for word in ("tests", "check") if getattr(values, word))], check=False)
+
+
+doors.ALIASES["setup-tests"] = ("setup", "WITH_TESTS")
+
+
+@command("clean", [Option("list", SWITCH, "only says what would be removed")], make="clean", brief="clean --list")
+def clean(values):
+    """remove what was built, but for keys"""
+    keys = sorted(Path("build").rglob("*.key"))
+    for key in keys:
+        say(f"kept: {key}")
+    for path in sorted(Path("build").glob("*")):
+        if path not in keys:
+            say(f"removed: {path}" if not values.list else f"would be removed: {path}")
+    if values.list:
+        return
+    kept = {parent for key in keys for parent in (key, *key.parents)}
+    for folder, folders, files in os.walk("build"):
+        for name in [*files, *folders]:
+            path = Path(folder, name)
+            if path not in kept:
+                shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+        folders[:] = [name for name in folders if Path(folder, name) in kept]
+    if not keys and Path("build").exists():
+        Path("build").rmdir()
+
+
+@command("commands", [Option("brief", SWITCH, "runs the brief form of each to its end, writes build/commands.md and .json"),
+                      Option("only", TEXT, "only those whose name contains this", ""),
+                      Option("man", PATH, "writes the manual page, such as icesoc.1", ""),
+                      Option("schema", PATH, "writes the JSON schema of a flight, cli/flight.schema.json", "")], make="commands",
+         brief="commands", examples=["commands --brief", "commands --man icesoc.1 && man ./icesoc.1"])
+def commands(values):
+    """list all commands with their brief forms, or run these"""
+    if values.man:
+        Path(values.man).write_text(manual())
+    if values.schema:
+        Path(values.schema).write_text(flight.schema_text())
+    if values.brief:
+        return run_all(values.only)
+    if not values.man and not values.schema:
+        for name, each in COMMANDS.items():
+            say(f"{name:<18} {'make ' + each.make if each.make else '':<18} " + "; ".join(each.brief))
+
+
+def run_all(only):
+    """Every brief form, and a table of them."""
+    rows, folder = [], Path("build/brief")
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, each in COMMANDS.items():
+        if only not in name:
+            continue
+        log, begin, status = folder / f"{name.replace(' ', '-')}.log", time.monotonic(), 0
+        with open(log, "w") as file:
+            for line in each.brief:
+                status = status or run([sys.executable, "icesoc", *shlex.split(line)], check=False, stdout=file, stderr=file,
+                                       stdin=open(os.devnull))
+        lines = log.read_text(errors="replace").strip().splitlines() or [""]
+        rows.append({"command": name, "brief": "; ".join(each.brief), "status": status, "seconds": round(time.monotonic() - begin, 1),
+                     "figure": lines[-1].strip()[:100]})
+        say(f"{name:<18} {'ok' if status == 0 else f'FAILED ({status}): {log}':<8} {rows[-1]['seconds']:7.1f} s  {rows[-1]['figure']}")
+    Path("build/commands.json").write_text(json.dumps(rows, indent=1) + "\n")
+    Path("build/commands.md").write_text("| command | status | seconds | what it says last |\n|---|---|---|---|\n" + "".join(
+        f"| `icesoc {row['brief']}` | {row['status']} | {row['seconds']} | {row['figure'].replace('|', '/')} |\n" for row in rows))
+    failed = [row["command"] for row in rows if row["status"]]
+    if failed:
+        raise Stop(f"failed: {', '.join(failed)}")
+    say(f"{len(rows)} commands, {sum(row['seconds'] for row in rows):.0f} s: build/commands.md")
+
+
+def manual():
+    """The manual page, of the commands' own help."""
+    def plain(text):
+        return "".join(f"\\&{line}\n" for line in text.replace("\\", "\\e").replace("-", "\\-").splitlines())
+    parts = [f'.TH ICESOC 1 "" "{version.text().partition(chr(10))[0]}"', ".SH NAME", "icesoc \\- every command of the IceSoC project", ".SH SYNOPSIS",
+             "\\&./icesoc COMMAND [option...]", ".SH COMMANDS", ".nf", plain(doors.overview()) + ".fi"]
+    for name, each in COMMANDS.items():
+        parts += [f'.SH "{name.upper()}"', ".nf", plain(each.parser().format_help()) + ".fi"]
+    return "\n".join(parts) + "\n"

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: MIT
+"""main: the two doors, the environment of all programs, and one way to fail."""
+import os
+import pwd
+import re
+import sys
+from pathlib import Path
+
+from cli import command, version
+from cli.commands import flights, core, synth, contract, build, regression, checks, tree  # noqa: F401 (each declares its own)
+from cli.runner import Interrupted, Stop, hear_signals, say, warn
+
+
+def surroundings():
+    """What holds for every program that is started. Returns the folder of the caller; ours is the tree's."""
+    place, tree = os.getcwd(), os.environ.pop("ICESOC_TREE", "")  # a test's own tree
+    os.chdir(tree or Path(__file__).resolve().parent.parent)
+    place = os.getcwd() if tree else place
+    # A timer or a container may give none: ccache and cmake/fetch.py keep their files there.
+    os.environ.setdefault("HOME", pwd.getpwuid(os.getuid()).pw_dir)
+    # The compiler's cache serves every clone: paths below this folder are relative in it.
+    os.environ.update(CCACHE_BASEDIR=os.getcwd(), CCACHE_NOHASHDIR="1")
+    os.environ["LC_ALL"] = "C.UTF-8"  # numbers have a point in every tool, whatever the user's language
+    return place
+
+
+def make_gave():
+    """(goal, all goals, variables of its command line), or None where make has not called."""
+    goal, goals = os.environ.pop("ICESOC_GOAL", ""), os.environ.pop("ICESOC_GOALS", "").split()
+    flags = os.environ.pop("MAKEFLAGS", "")
+    for name in ("MFLAGS", "MAKELEVEL", "MAKEOVERRIDES"):
+        os.environ.pop(name, None)
+    names = re.findall(r"(?:^|(?<=\s))([A-Za-z_]\w*) ?:?=", re.sub(r"\\.", "", " " + flags.partition(" -- ")[2]))
+    return (goal, goals or [goal], names) if goal else None
+
+
+def act(words):
+    place = surroundings()
+    made = make_gave()
+    if "_ARGCOMPLETE" in os.environ:
+        return command.complete()
+    if not words and (not made or made[0] == "help"):
+        return say(command.overview())
+    if made:
+        found, values = command.by_make(*made)
+    elif words[0] in ("help", "-h", "--help"):
+        return say(command.overview())
+    elif words[0] == "--version":
+        return say(version.text())
+    else:
+        found, values = command.by_words(words, place)
+    for option in found.options:  # they are ours; what a program is to see of them, its command hands on
+        os.environ.pop(option.variable if option.variable != "LANG" else "", None)
+    return found.function(values)
+
+
+def main(words):
+    hear_signals()
+    try:
+        return act(words) or 0
+    except Stop as stop:
+        if stop.text:
+            warn(stop.text)
+        return stop.status
+    except Interrupted as interrupted:
+        warn("stopped")
+        return interrupted.status
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except OSError as error:
+        warn(f"{error.strerror}" + (f": {error.filename}" if error.filename else ""))
+        return 1

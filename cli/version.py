@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: MIT
+"""version: the project's, by CHANGELOG.md; those of what has to fit on both sides of the air, and of the chip's blocks."""
+import json
+import re
+from pathlib import Path
+
+
+def text():
+    newest = re.search(r"^## (\d+\.\d+\.\d+)", Path("CHANGELOG.md").read_text(), re.M)[1]
+    link = re.search(r"LINK_VERSION (\d+)", Path("sw/link/link_wire.h").read_text())[1]
+    blocks = []
+    for path in sorted([*Path("hdl").rglob("*.regs.json"), *Path("ip").rglob("*.regs.json")]):
+        block = json.loads(path.read_text())
+        if "version" in block:
+            number = int(block["version"], 16)
+            blocks.append(f"{block['block']} {number >> 8}.{number & 255}")
+    return f"icesoc {newest}\nlink protocol {link}\ncontracts: {', '.join(blocks)}"

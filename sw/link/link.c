@@ -60,6 +60,7 @@ void Link_stop(Link* link, U32 nowUs) {
     if (link->state == LINK_STATE_UP)
         (void)link_sendControl(link, frame, LINK_KIND_BYE, 0, 0, 0);
     link_endSession(link, LINK_STATE_IDLE);
+    link->pingAt = nowUs; /* what the peer sent before it heard the BYE asks for no answer */
 }
 
 Link_State Link_state(const Link* link) {

@@ -51,11 +51,14 @@ static Owner ownerOf(const Link* link, const U8* frame) {
 /* Spends the search budget, in rounds of Ascon, on one frame. Returns whether it sufficed: however
  * many headers an attacker's bytes pretend to hold, they do not keep the processor busy. */
 static int mayTry(Link* link, U32 rounds) {
-    if (!link->parser.outOfStep)
-        return 1;
-    if (link->watch.rounds < rounds)
+    Link_Parser* parser = &link->parser;
+    U32 debt = parser->paidAt - link->now;
+    if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY) /* it was paid before now */
+        debt = 0;
+    debt += rounds * LINK_ROUND_EVERY;
+    if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY)
         return 0;
-    link->watch.rounds -= rounds;
+    parser->paidAt = link->now + debt;
     return 1;
 }
 
@@ -78,20 +81,29 @@ static int decrypt(Link* link, U8* frame) {
     return 0;
 }
 
-/* The same as ownerOf, with a key; copies the frame, and decrypts the copy. */
-static Owner decipher(Link* link, const U8* frame, U8* copy) {
+/* The same as ownerOf, with a key; copies the frame, and decrypts the copy. The search looks at a
+ * frame of the handshake only where the bytes end with it, as its packet does. */
+static Owner decipher(Link* link, const U8* frame, U8* copy, int isSearch, int isLast) {
     U32 size = LINK_LENGTH(frame) + LINK_OVERHEAD;
+    U32 rounds = LINK_ROUNDS_OF(size - link->overhead);
+    Link_Kind kind = kindOf(frame);
+    int isHandshake = LINK_IS_HANDSHAKE(kind);
     if (size < link->overhead || !isPlausible(link, frame))
         return NOBODY;
+    if (isHandshake) {
+        if ((isSearch && !isLast) || !link_isOfUse(link, frame, kind))
+            return NOBODY;
+        rounds = kind == LINK_KIND_HELLO ? LINK_ROUNDS_HELLO : LINK_ROUNDS_HANDSHAKE;
+    } else if (link->state != LINK_STATE_UP ||
+               LINK_EPOCH(frame) != LINK_KEY_EPOCH(link->session.key)) {
+        return NOBODY;
+    }
+    if (isSearch && !mayTry(link, rounds))
+        return NOBODY;
     memcpy(copy, frame, size);
-    if (LINK_IS_HANDSHAKE(kindOf(frame)))
-        return mayTry(link, LINK_ROUNDS_HANDSHAKE) && link_isGenuine(link, copy, kindOf(frame))
-                   ? HANDSHAKE
-                   : NOBODY;
-    return link->state == LINK_STATE_UP && LINK_EPOCH(frame) == LINK_KEY_EPOCH(link->session.key) &&
-                   mayTry(link, LINK_ROUNDS_OF(size - link->overhead)) && decrypt(link, copy)
-               ? SESSION
-               : NOBODY;
+    if (isHandshake)
+        return link_isGenuine(link, copy, kind) ? HANDSHAKE : NOBODY;
+    return decrypt(link, copy) ? SESSION : NOBODY;
 }
 
 /* Tells whether a frame that the search has found may be believed. The search at every byte behind
@@ -175,13 +187,30 @@ static void refuse(Link* link, const U8* frame) {
     (void)link_sendControl(link, reset, LINK_KIND_RST, 0, 0, LINK_FEATURES);
 }
 
+/* Counts a byte where no frame begins; the first one behind a frame may be of an unknown session.
+ */
+static void skip(Link* link, const U8* frame, U32 left) {
+    if (!link->parser.outOfStep) {
+        ++link->statistics.crcErrors;
+        if (left >= link->overhead)
+            refuse(link, frame);
+    }
+    link->parser.outOfStep = 1;
+    ++link->statistics.bytesSkipped;
+}
+
+static void accept(Link* link, const U8* frame, U32 size, Owner owner) {
+    link->parser.outOfStep = 0;
+    link_hear(link, size);
+    takeFrame(link, frame, owner);
+    ++link->statistics.framesReceived;
+    link->statistics.bytesReceived += size;
+}
+
 /* Takes all whole frames out of the bytes; returns the number of bytes used. After a bad
  * frame it goes on at the next byte. `isEnd`: a silence follows, so half a frame will never become
- * whole.
- */
+ * whole. */
 static U32 parse(Link* link, const U8* bytes, U32 count, int isEnd) {
-    Link_Parser* parser = &link->parser;
-    U8 copy[LINK_MAX_FRAME];
     U32 used = 0;
     while (used < count) {
         const U8* frame = bytes + used;
@@ -190,39 +219,61 @@ static U32 parse(Link* link, const U8* bytes, U32 count, int isEnd) {
         if (size <= LINK_MAX_FRAME && left < size && !isEnd)
             break;
         if (size <= LINK_MAX_FRAME && left >= size) {
-            int isSecure = LINK_IS_SECURE(link);
-            Owner owner = isSecure ? decipher(link, frame, copy) : ownerOf(link, frame);
+            Owner owner = ownerOf(link, frame);
             int confirmed = 1;
-            if (owner != NOBODY && parser->outOfStep && !isSecure)
+            if (owner != NOBODY && link->parser.outOfStep)
                 confirmed = isConfirmed(link, frame + size, left - size, isEnd);
             if (confirmed < 0)
                 break;
             if (confirmed && owner != NOBODY) {
-                parser->outOfStep = 0;
-                link_hear(link, size);
-                takeFrame(link, isSecure ? copy : frame, owner);
-                ++link->statistics.framesReceived;
-                link->statistics.bytesReceived += size;
+                accept(link, frame, size, owner);
                 used += size;
                 continue;
             }
         }
-        if (!parser->outOfStep) {
-            ++link->statistics.crcErrors;
-            if (left >= link->overhead)
-                refuse(link, frame);
-        }
-        parser->outOfStep = 1;
-        ++link->statistics.bytesSkipped;
+        skip(link, frame, left);
         ++used;
     }
     return used;
 }
 
+/* The same with a key. A tag needs no confirmation, so a frame is taken when its last byte is
+ * there, even behind the beginning of another that is not whole: that may be an attacker's, who
+ * would have it wait. The frames that end within the first `tried` bytes were looked at before. */
+static U32 parseKeyed(Link* link, const U8* bytes, U32 count, U32 tried, int isEnd) {
+    U8 copy[LINK_MAX_FRAME];
+    U32 used = 0;
+    U32 at = 0;
+    while (at < count) {
+        U32 end = at + LINK_LENGTH(bytes + at) + LINK_OVERHEAD;
+        int isFrame = end - at <= LINK_MAX_FRAME;
+        if (isFrame && end > tried && end <= count) {
+            int isSearch = link->parser.outOfStep || at != used;
+            Owner owner = decipher(link, bytes + at, copy, isSearch, end == count);
+            if (owner != NOBODY) {
+                accept(link, copy, end - at, owner);
+                at = used = end;
+                continue;
+            }
+        }
+        if (at == used && (!isFrame || end <= count || isEnd)) {
+            skip(link, bytes + at, count - at);
+            ++used;
+        }
+        ++at;
+    }
+    return used;
+}
+
+static U32 parseAny(Link* link, const U8* bytes, U32 count, U32 tried, int isEnd) {
+    return LINK_IS_SECURE(link) ? parseKeyed(link, bytes, count, tried, isEnd)
+                                : parse(link, bytes, count, isEnd);
+}
+
 /* Parses the kept bytes, and keeps an incomplete frame. */
-static void parseKept(Link* link, int isEnd) {
+static void parseKept(Link* link, U32 tried, int isEnd) {
     Link_Parser* parser = &link->parser;
-    U32 used = parse(link, link->input, parser->count, isEnd);
+    U32 used = parseAny(link, link->input, parser->count, tried, isEnd);
     parser->count = (U8)(parser->count - used);
     memmove(link->input, link->input + used, parser->count);
 }
@@ -230,30 +281,34 @@ static void parseKept(Link* link, int isEnd) {
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
     Link_Parser* parser = &link->parser;
     link->now = nowUs;
-    link->watch.rounds += LINK_ROUNDS_A_BYTE * (size < LINK_MAX_FRAME ? size : LINK_MAX_FRAME);
-    if (link->watch.rounds > LINK_ROUNDS_AT_ONCE)
-        link->watch.rounds = LINK_ROUNDS_AT_ONCE;
+    link_pollInput(link);
+    parser->at = nowUs;
+    if (parser->count == 0) {
+        /* The usual case, a whole frame: it is read where it is. What is left fits. */
+        U32 used = parseAny(link, bytes, size, 0, 0);
+        parser->count = (U8)(size - used);
+        memcpy(link->input, bytes + used, parser->count);
+        return;
+    }
     while (size) {
-        U32 part = sizeof link->input - parser->count;
-        if (parser->count == 0) {
-            /* The usual case, a whole frame: it is read where it is. */
-            U32 used = parse(link, bytes, size, 0);
-            bytes += used;
-            size -= used;
-        }
+        U32 had = parser->count;
+        U32 part = sizeof link->input - had;
         if (part > size)
             part = size;
-        memcpy(link->input + parser->count, bytes, part);
-        parser->count = (U8)(parser->count + part);
-        parser->at = nowUs;
+        memcpy(link->input + had, bytes, part);
+        parser->count = (U8)(had + part);
         bytes += part;
         size -= part;
-        parseKept(link, 0);
+        parseKept(link, had, 0);
     }
 }
 
 void link_pollInput(Link* link) {
-    const Link_Parser* parser = &link->parser;
-    if (parser->count && !LINK_BEFORE(link->now, parser->at + LINK_FRAME_GAP))
-        parseKept(link, 1);
+    Link_Parser* parser = &link->parser;
+    if (LINK_BEFORE(link->now, parser->at + LINK_FRAME_GAP))
+        return;
+    if (parser->count)
+        parseKept(link, parser->count, 1);
+    if (LINK_IS_SECURE(link)) /* a tag does without the confirmation that a CRC needs */
+        parser->outOfStep = 0;
 }

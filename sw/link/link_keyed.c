@@ -7,6 +7,10 @@
  *                         <-   HELLO-ACK(b, a)     nothing here, and costs an answer only
  *     CONFIRM(a, b)       ->             proves that A lives, and begins the session here
  *
+ * Where B is in a session it answers by a HELLO of its own, marked as such: one answers all HELLOs
+ * that come within LINK_ANSWER_EVERY, so that recordings do not keep A's from being answered. A,
+ * if it is in no session, goes on from there in B's place.
+ *
  * a and b are nonces of 64 bits; those of a session give its two keys, and HELLO-ACK and CONFIRM
  * are frames under these. A side that gets frames that it cannot read sends HELLO; there is no RST.
  */
@@ -54,25 +58,23 @@ static int isUnder(Link* link, int slot, U8* frame, Link_Kind kind) {
     return link_unprotect(frame, key, 0, 0);
 }
 
-/* Returns whether a HELLO was answered just now, and none is to be before long. */
-static int hasAnswered(const Link* link) {
-    return link->state == LINK_STATE_UP &&
-           link->now - link->handshake.lastAnswer < LINK_ANSWER_EVERY;
+int link_isOfUse(const Link* link, const U8* frame, Link_Kind kind) {
+    const Link_Handshake* handshake = &link->handshake;
+    const U8* nonces = frame + LINK_HEADER;
+    if (isSameNonce(nonces, handshake->nonce))
+        return 0; /* the own frame, reflected */
+    if (kind == LINK_KIND_HELLO)
+        return (frame[1] & ~LINK_VERSION_UP) == LINK_VERSION;
+    if (frame[1] != LINK_VERSION)
+        return 0;
+    if (kind == LINK_KIND_CONFIRM && (isOfSession(link, nonces) || !handshake->isAnswered))
+        return isOfSession(link, nonces);
+    return isSameNonce(nonces + LINK_NONCE_BYTES, handshake->nonce);
 }
 
 int link_isGenuine(Link* link, U8* frame, Link_Kind kind) {
-    const Link_Handshake* handshake = &link->handshake;
-    const U8* nonces = frame + LINK_HEADER;
-    int isUp = link->state == LINK_STATE_UP;
-    if (kind == LINK_KIND_HELLO && hasAnswered(link))
-        return 1; /* onHello ignores it; the next frame is behind it */
-    if (frame[1] != LINK_VERSION || isSameNonce(nonces, handshake->nonce))
-        return 0; /* the own ones, reflected */
-    if (kind == LINK_KIND_CONFIRM && isOfSession(link, nonces))
+    if (kind == LINK_KIND_CONFIRM && isOfSession(link, frame + LINK_HEADER))
         return link_unprotect(frame, link->session.keys.receive, 0, 0);
-    if (kind != LINK_KIND_HELLO && (!isSameNonce(nonces + LINK_NONCE_BYTES, handshake->nonce) ||
-                                    (kind == LINK_KIND_CONFIRM ? !handshake->isAnswered : isUp)))
-        return 0;
     if (isUnder(link, 0, frame, kind) || isUnder(link, 1, frame, kind))
         return 1;
     forgetCandidate(link);
@@ -87,17 +89,24 @@ static void begin(Link* link) {
 
 static void onHello(Link* link, const U8* frame) {
     Link_Handshake* handshake = &link->handshake;
-    if (hasAnswered(link))
+    int isUp = link->state == LINK_STATE_UP;
+    int isPresent = isUp && isSameNonce(frame + LINK_HEADER, link->session.peerNonce);
+    if (isUp && (link->now - handshake->lastAnswer < LINK_ANSWER_EVERY ||
+                 frame[1] != LINK_VERSION || (isPresent && !handshake->isUnconfirmed)))
         return;
     handshake->lastAnswer = link->now;
-    if (link->state == LINK_STATE_UP && isSameNonce(frame + LINK_HEADER, link->session.peerNonce)) {
-        if (handshake->isUnconfirmed) /* the peer has not heard the CONFIRM */
-            link_sendHandshake(link, &link->session, LINK_KIND_CONFIRM);
+    if (isPresent) { /* the peer has not heard the CONFIRM */
+        link_sendHandshake(link, &link->session, LINK_KIND_CONFIRM);
         return;
     }
-    makeKeyed(link, handshake->candidate.slot, frame);
-    link_sendHandshake(link, &handshake->candidate, LINK_KIND_HELLO_ACK);
-    forgetCandidate(link);
+    if (isUp && !handshake->isUnconfirmed) {
+        handshake->slot = handshake->candidate.slot;
+        link_sendHello(link, LINK_VERSION | LINK_VERSION_UP);
+    } else { /* a peer that is unconfirmed may yet answer a HELLO, and begin this session then */
+        makeKeyed(link, handshake->candidate.slot, frame);
+        link_sendHandshake(link, &handshake->candidate, LINK_KIND_HELLO_ACK);
+        forgetCandidate(link);
+    }
     if (!handshake->isAnswered)
         handshake->firstAnswer = link->now;
     handshake->isAnswered = 1;

@@ -28,10 +28,11 @@
 #define LINK_POLL_EVERY 1000U     /* while the radio has no room */
 #define LINK_OFFER_EVERY 5000U    /* while the program does not take a message */
 
-/* Rounds of Ascon that the search for frames in garbage may compute: for each byte received, and at
- * once. */
-#define LINK_ROUNDS_A_BYTE 3U
+/* The search for frames in garbage may compute one round of Ascon in LINK_ROUND_EVERY microseconds,
+ * and LINK_ROUNDS_AT_ONCE at once. */
+#define LINK_ROUND_EVERY 30U
 #define LINK_ROUNDS_AT_ONCE 300U
+#define LINK_ROUNDS_HELLO 48U /* under the keys of both slots */
 #define LINK_ROUNDS_HANDSHAKE 136U
 #define LINK_ROUNDS_OF(payload) (24U + (payload) / 2U)
 
@@ -95,7 +96,6 @@ typedef struct Link_Watch {
     U32 pingsSeen;                /* number of the peer's newest PING */
     U32 provenAt;                 /* the last answer proves that the peer lived then or later */
     U32 failures;                 /* frames whose tag was wrong */
-    U32 rounds;                   /* of Ascon that the search may compute now */
 } Link_Watch;
 
 /* An entry of the send queue; without bytes it opens (LINK_FIRST) or closes a channel. */
@@ -170,6 +170,7 @@ typedef struct Link_Parser {
     U8 count;
     U8 outOfStep; /* the last bytes were no frame: the next frame needs confirmation */
     U32 at;       /* time of the last byte */
+    U32 paidAt;   /* when the rounds that the search has computed are paid for */
 } Link_Parser;
 
 /* Request heads that have passed in one direction. */
@@ -287,6 +288,8 @@ void link_pollSender(Link* link);
 /* link_session: handshake, reboots, and a peer that has vanished. */
 
 void link_onHandshake(Link* link, const U8* frame, Link_Kind kind);
+void link_sendHello(Link* link, U32 version);
+/* Sends HELLO, with two keys under each in turn. */
 void link_call(Link* link);
 /* Bytes of a nonce in the frames of the handshake. */
 U32 link_nonceBytes(const Link* link);
@@ -306,7 +309,9 @@ void link_pollSession(Link* link);
 
 /* link_keyed: the handshake with a key, and proofs that the peer lives. */
 
-/* Returns whether a frame of the handshake is authentic, fresh and relevant. */
+/* Returns whether a frame of the handshake is fresh and relevant, which takes no round of Ascon. */
+int link_isOfUse(const Link* link, const U8* frame, Link_Kind kind);
+/* Returns whether such a frame is authentic, and decrypts it. */
 int link_isGenuine(Link* link, U8* frame, Link_Kind kind);
 /* Acts upon such a frame. */
 void link_onGenuine(Link* link, const U8* frame, Link_Kind kind);

@@ -41,17 +41,21 @@ void link_sendHandshake(Link* link, const Link_Session* session, Link_Kind kind)
     (void)link_sendControl(link, frame, kind, LINK_VERSION, 2U * bytes, LINK_FEATURES);
 }
 
-void link_call(Link* link) {
+void link_sendHello(Link* link, U32 version) {
     U8 frame[LINK_MAX_OVERHEAD + LINK_NONCE_BYTES];
     U32 bytes = link_nonceBytes(link);
+    memcpy(frame + LINK_HEADER, link->handshake.nonce, bytes);
+    (void)link_sendControl(link, frame, LINK_KIND_HELLO, version, bytes, LINK_FEATURES);
+}
+
+void link_call(Link* link) {
     U32 set = link->secrets.set;
     if (LINK_IS_SECURE(link)) {
         if (!set)
             return;
         link->handshake.slot = (U8)(set == 3U ? !link->handshake.slot : set >> 1);
     }
-    memcpy(frame + LINK_HEADER, link->handshake.nonce, bytes);
-    (void)link_sendControl(link, frame, LINK_KIND_HELLO, LINK_VERSION, bytes, LINK_FEATURES);
+    link_sendHello(link, LINK_VERSION);
 }
 
 /* Ends the session, if there is one: clears its state and reports its end. */

@@ -15,7 +15,8 @@
 #define LINK_WIRE_H
 
 #define LINK_HELLO_FIRST 300000U /* microseconds between HELLOs, at least */
-#define LINK_VERSION 5U
+#define LINK_VERSION 6U
+#define LINK_VERSION_UP 0x80U /* with it: HELLO of a side that has a session, under a key */
 #define LINK_HEADER 3U
 #define LINK_CRC 2U
 #define LINK_BITMAP 8U /* bytes of an acknowledgement's bitmap, at most */
@@ -102,8 +103,8 @@ U32 link_sessionKey(U32 nonce, U32 peerNonce);
 
 #define LINK_NONCE_BYTES 8U /* of each side's nonce in a secure handshake */
 
-/* Microseconds between answers to HELLO while a session is up, and for which nonces of an answered
- * HELLO can make a session. */
+/* Microseconds between answers to HELLO while a session is up, and for which the nonce of such an
+ * answer can make a session. */
 #define LINK_ANSWER_EVERY 100000U
 #define LINK_NONCE_LIFE 9000000U
 

@@ -16,11 +16,20 @@ XBee::Options modemOfNobody() {
     return options;
 }
 
+Attacker::Bytes lure() {
+    Attacker::Bytes bytes = {0xFF};
+    for (int i = 0; i < 6; ++i)
+        bytes.insert(bytes.end(), {0x8E, 6, 0x20}); // a HELLO's header, protocol version 6
+    bytes.push_back(0x8E);
+    return bytes;
+}
+
 } // namespace
 
 Attacker::Attacker(RfChannel& air, uint64_t seed)
     : air_(air), random_(seed), modem_(line_, air, modemOfNobody()) {
     air.onPacket([this](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
+        toHinder_ += hinders_ && packet.bytes != lure();
         // Its own packets arrive as the link's: the air does not tell them apart.
         if (heard_.size() < 100'000)
             heard_.push_back(packet);
@@ -37,6 +46,14 @@ void Attacker::send(uint16_t from, uint16_t to, Bytes bytes, uint64_t now) {
     packet.bytes = std::move(bytes);
     ++sent_;
     air_.transmit(&modem_, packet, now);
+}
+
+void Attacker::advance(uint64_t now) {
+    modem_.advance(now);
+    for (; toHinder_; --toHinder_) {
+        send(ground, uav, lure(), now);
+        send(uav, ground, lure(), now);
+    }
 }
 
 // One of the newest half of the time, else any.

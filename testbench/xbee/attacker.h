@@ -21,7 +21,10 @@ public:
     // recent or old; reflects it to its sender; changes a bit; cuts it; joins two; makes up
     // handshakes, resets, ends, acknowledgements and data, with tags or CRCs; makes noise.
     void doMischief(uint64_t now);
-    void advance(uint64_t now) { modem_.advance(now); }
+    // Adds 20 bytes to each packet from now on, or adds no more: what looks like six HELLOs, so
+    // that a receiver looks for frames there, and pays for it, while the true next one waits.
+    void hinder(bool isOn) { hinders_ = isOn; }
+    void advance(uint64_t now);
     uint64_t nextEvent() const { return modem_.nextEvent(); }
 
     uint64_t sent() const { return sent_; } // packets
@@ -37,6 +40,8 @@ private:
     XBee modem_;
     std::vector<RfPacket> heard_;
     uint64_t sent_ = 0;
+    bool hinders_ = false;
+    unsigned toHinder_ = 0; // packets heard, and not yet hindered
 };
 
 #endif

@@ -210,6 +210,7 @@ public:
     // Good weather, nothing new: everything that is under way must be reported.
     void settle() {
         air_.weather = {};
+        attacker_.hinder(false);
         for (int s = 0;
              s < 120 && !(ground_.isQuiet() && uav_.isQuiet() && ground_.isUp() && uav_.isUp());
              ++s) {
@@ -248,6 +249,7 @@ private:
         if (random_.below(8))
             return;
         air_.weather = RfWeather::drawn(random_, 40);
+        attacker_.hinder(attacked_ && random_.below(2));
         air_.weather.delayNs = random_.below(2) ? 0 : random_.below(20) * msNs;
         rate_ = random_.below(3)
                     ? 0.02

@@ -33,8 +33,10 @@ typedef struct Link_Keyed {
     U8 slot;                          /* of the session's key */
     U8 isAnswered;                    /* a HELLO was answered with `nonce`, ... */
     U8 isCalled;                      /* a HELLO was sent with it */
+    U8 isUnconfirmed;                 /* the peer may not know of the session yet */
     U32 firstAnswer;                  /* ... first at this time */
-    U32 lastFrame;                    /* when the handshake last sent one */
+    U32 lastAnswer;                   /* when a HELLO was last answered, ... */
+    U32 lastCall;                     /* and one sent unasked, or a session begun */
     U32 pingsSeen;                    /* number of the peer's newest PING */
     U32 failures;                     /* frames of the session whose tag was wrong */
 } Link_Keyed;

@@ -34,7 +34,8 @@ void link_transmitKeyed(Link* link, U32 header, U32 number) {
 }
 
 /* Sends a frame of the handshake that carries the own nonce, and the peer's if there is one. */
-static void sendHandshake(Link* link, Link_Kind kind, const U8* peerNonce, const U8* key) {
+static void sendHandshake(Link* link, Link_Kind kind, const U8* peerNonce, const U8* key,
+                          U32 version) {
     U8* payload = link->frame + LINK_HEADER;
     U32 size = LINK_NONCE_BYTES;
     memcpy(payload, link->keyed.nonce, LINK_NONCE_BYTES);
@@ -42,8 +43,7 @@ static void sendHandshake(Link* link, Link_Kind kind, const U8* peerNonce, const
         memcpy(payload + LINK_NONCE_BYTES, peerNonce, LINK_NONCE_BYTES);
         size += LINK_NONCE_BYTES;
     }
-    link->keyed.lastFrame = link->inputAt;
-    transmit(link, LINK_CONTROL_HEADER(kind, LINK_VERSION, size), key, 0);
+    transmit(link, LINK_CONTROL_HEADER(kind, version, size), key, 0);
 }
 
 /* Begins the session whose keys those are. */
@@ -55,7 +55,7 @@ static void begin(Link* link, const U8* nonces, const Link_Keys* keys, int slot)
     keyed->pingsSeen = keyed->failures = 0;
     memcpy(keyed->nonces, nonces, sizeof keyed->nonces);
     link->key = link_sessionKey(link_get32(nonces), link_get32(nonces + LINK_NONCE_BYTES));
-    link->heardAt = link->inputAt;
+    link->heardAt = keyed->lastCall = link->inputAt;
     link->state = LINK_STATE_UP;
     link->port->state(link->context, LINK_STATE_UP);
 }
@@ -72,14 +72,22 @@ static int takeUnder(Link* link, int slot, Link_Kind kind) {
     isGood = link_unprotect(
         link->input, kind == LINK_KIND_HELLO ? keyed->secrets.hello[slot] : keys.receive, 0, 0);
     if (isGood && kind == LINK_KIND_HELLO) {
-        sendHandshake(link, LINK_KIND_HELLO_ACK, nonces, keys.send);
+        keyed->lastAnswer = link->inputAt;
+        if (link->state == LINK_STATE_UP && !keyed->isUnconfirmed) {
+            keyed->isCalled = 1;
+            sendHandshake(link, LINK_KIND_HELLO, 0, keyed->secrets.hello[slot],
+                          LINK_VERSION | LINK_VERSION_UP);
+        } else {
+            sendHandshake(link, LINK_KIND_HELLO_ACK, nonces, keys.send, LINK_VERSION);
+        }
         if (!keyed->isAnswered)
             keyed->firstAnswer = link->inputAt;
         keyed->isAnswered = 1;
     } else if (isGood) {
         begin(link, nonces, &keys, slot);
-        if (kind == LINK_KIND_HELLO_ACK)
-            sendHandshake(link, LINK_KIND_CONFIRM, nonces, keys.send);
+        keyed->isUnconfirmed = kind == LINK_KIND_HELLO_ACK;
+        if (keyed->isUnconfirmed)
+            sendHandshake(link, LINK_KIND_CONFIRM, nonces, keys.send, LINK_VERSION);
         draw(link);
         link->ackDue = 1; /* so that the peer hears a frame */
     }
@@ -96,17 +104,19 @@ static void takeHandshake(Link* link, Link_Kind kind) {
         draw(link);
     if (kind == LINK_KIND_HELLO) {
         if (LINK_LENGTH(link->input) != LINK_NONCE_BYTES + LINK_TAG_MORE ||
-            (isUp && (link->inputAt - keyed->lastFrame < LINK_ANSWER_EVERY ||
+            (isUp && (link->inputAt - keyed->lastAnswer < LINK_ANSWER_EVERY ||
+                      link->input[1] != LINK_VERSION ||
                       memcmp(nonces, keyed->nonces, LINK_NONCE_BYTES) == 0)))
             return;
-    } else if (LINK_LENGTH(link->input) != 2U * LINK_NONCE_BYTES + LINK_TAG_MORE) {
+    } else if (link->input[1] != LINK_VERSION ||
+               LINK_LENGTH(link->input) != 2U * LINK_NONCE_BYTES + LINK_TAG_MORE) {
         return;
     } else if (isUp && kind == LINK_KIND_CONFIRM &&
                memcmp(nonces, keyed->nonces, sizeof keyed->nonces) == 0) {
         link->ackDue |= link_unprotect(link->input, keyed->keys.receive, 0, 0) != 0;
         return;
     } else if (memcmp(nonces + LINK_NONCE_BYTES, keyed->nonce, LINK_NONCE_BYTES) != 0 ||
-               !(kind == LINK_KIND_CONFIRM ? keyed->isAnswered : keyed->isCalled && !isUp)) {
+               !(kind == LINK_KIND_CONFIRM ? keyed->isAnswered : keyed->isCalled)) {
         return;
     }
     if (memcmp(nonces, keyed->nonce, LINK_NONCE_BYTES) != 0 && !takeUnder(link, 0, kind))
@@ -122,15 +132,16 @@ int link_takeKeyed(Link* link) {
     if (LINK_LENGTH(frame) < LINK_TAG_MORE)
         return 0;
     if (isControl && LINK_IS_HANDSHAKE(kind)) {
-        if (frame[1] == LINK_VERSION)
+        if ((frame[1] & ~LINK_VERSION_UP) == LINK_VERSION)
             takeHandshake(link, (Link_Kind)kind);
         return 0;
     }
     if (link->state != LINK_STATE_UP) { /* the peer is in an earlier session */
-        if (keyed->secrets.set && link->inputAt - keyed->lastFrame >= LINK_HELLO_FIRST) {
+        if (keyed->secrets.set && link->inputAt - keyed->lastCall >= LINK_HELLO_FIRST) {
             keyed->isCalled = 1;
-            sendHandshake(link, LINK_KIND_HELLO, 0,
-                          keyed->secrets.hello[!(keyed->secrets.set & 1)]);
+            keyed->lastCall = link->inputAt;
+            sendHandshake(link, LINK_KIND_HELLO, 0, keyed->secrets.hello[!(keyed->secrets.set & 1)],
+                          LINK_VERSION);
         }
         return 0;
     }
@@ -147,6 +158,7 @@ int link_takeKeyed(Link* link) {
             link_lose(link);
         return 0;
     }
+    keyed->isUnconfirmed = 0;
     if (!isControl || kind != LINK_KIND_PING)
         return 1;
     if (LINK_BEFORE(keyed->pingsSeen, number)) {

@@ -149,10 +149,14 @@ void HandshakeModel::onHandshake(State& state, int who, const Frame& f) {
                 send(state, {Confirm, s.mine, s.peer, 0});
             return;
         }
-        if (s.nonce == none)
+        if (s.nonce == none || (s.isUp && f.number))
             return;
-        send(state, {HelloAck, s.nonce, f.from, 0});
         s.isAnswered = true;
+        if (s.isUp && (!s.isUnconfirmed || bug_ == Bug::UnconfirmedCalls)) {
+            send(state, {Hello, s.nonce, none, 1}); // from a side that is up
+            return;
+        }
+        send(state, {HelloAck, s.nonce, f.from, 0});
         if (bug_ == Bug::HelloEndsTheSession)
             end(state, who, true);
         if (bug_ == Bug::HelloMakesASession)
@@ -160,7 +164,7 @@ void HandshakeModel::onHandshake(State& state, int who, const Frame& f) {
     } else if (f.kind == HelloAck) {
         const bool isEcho =
             bug_ == Bug::NonceIsNotEchoed ? isOwn(who, f.to) : f.to == s.nonce && f.to != none;
-        if (s.isUp || !isEcho)
+        if (!isEcho)
             return;
         begin(state, who, f.to, f.from);
         s.isUnconfirmed = true;

@@ -31,6 +31,7 @@ TEST(HandshakeModel, FindsEachBug) {
         {Bug::ConfirmIsNotAuthentic, "a session with somebody who is not the peer"},
         {Bug::OwnNonceIsTaken, "a session with somebody who is not the peer"},
         {Bug::NonceServesTwice, "a nonce began two sessions"},
+        {Bug::UnconfirmedCalls, "a session that both were in was ended"},
         {Bug::OldDataIsTaken, "data was taken twice"},
         {Bug::OldPingIsLife, "the peer counts as there, and is not"},
         {Bug::OldDataIsLife, "the peer counts as there, and is not"}};

@@ -332,7 +332,115 @@ TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
     }
 }
 
+// What makes a new session hard: who hears the traffic adds 20 bytes to each packet, or sends them
+// blindly. They are a byte of no frame and what looks like a HELLO, of this version or of another.
+class Hindered : public Attacked {
+protected:
+    static Bytes lure(uint8_t version) {
+        Bytes bytes = {0xFF};
+        while (bytes.size() < 20)
+            bytes.insert(bytes.end(), {LINK_CONTROL | (LINK_NONCE_BYTES + LINK_TAG_MORE), version,
+                                       LINK_KIND_BITS(LINK_KIND_HELLO)});
+        bytes.resize(20);
+        return bytes;
+    }
+    void restart(bool bothCall) {
+        for (Peer* side : {&a_, &b_}) {
+            side->boot();
+            heardUntil_[side == &b_] = side->sent;
+        }
+        setWeather(0.1, 0, 0);
+        a_.start(a_.link(), us());
+        if (bothCall)
+            b_.start(b_.link(), us());
+    }
+    // Sends bytes to both sides when a packet has crossed, or is lost.
+    void addBehindAll(const Bytes& bytes) {
+        for (Peer* from : {&a_, &b_})
+            if (uint64_t& heard = heardUntil_[from == &b_]; from->sent > heard) {
+                heard = from->sent;
+                for (Peer* to : {&a_, &b_})
+                    to->air.emplace_back(std::max(from->free, to->free) + 8000, bytes);
+            }
+    }
+    static constexpr uint64_t most = 20'000'000; // us until a session is there
+};
+
+TEST_P(Hindered, WhoAddsBytesToEachPacketPreventsNoSession) {
+    for (uint8_t version : {LINK_VERSION, 0u})
+        for (bool bothCall : {false, true})
+            for (int run = 0; run < 5; ++run) {
+                restart(bothCall);
+                EXPECT_TRUE(until([&] { return addBehindAll(lure(version)), bothUp(); }, most))
+                    << "version " << int(version) << ", both call: " << bothCall;
+            }
+}
+
+TEST_P(Hindered, WhoSendsBlindlyPreventsNoSession) {
+    for (uint8_t version : {LINK_VERSION, 0u})
+        for (int run = 0; run < 5; ++run) {
+            restart(run % 2);
+            uint64_t next = now_;
+            EXPECT_TRUE(until(
+                [&] {
+                    for (; next <= now_; next += 50'000)
+                        for (Peer* side : {&a_, &b_})
+                            attack(*side, lure(version));
+                    return bothUp();
+                },
+                most))
+                << "version " << int(version);
+        }
+}
+
+// A side that starts again has a session within a second, however often its peer, which believes
+// in the session before, hears HELLOs of that session and of an earlier one.
+TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
+    auto isHello = [](const Bytes& f) {
+        return (f[0] & LINK_CONTROL) && f[2] >> 5 == LINK_KIND_HELLO;
+    };
+    for (bool isGround : {true, false}) // which starts again
+        for (uint64_t every : {100'000, 10'000, 2000}) {
+            Peer &side = isGround ? a_ : b_, &other = isGround ? b_ : a_;
+            std::vector<Bytes> old;
+            uint64_t next = now_, start = now_;
+            a_.start(a_.link(), us());
+            for (int restart = 0; restart < 3; ++restart) {
+                ASSERT_TRUE(until([&] { return bothUp(); }, 30'000'000));
+                run(3'000'000);
+                side.boot();
+                side.start(side.link(), us());
+                ASSERT_TRUE(other.isUp());
+                next = start = now_;
+                EXPECT_TRUE(until(
+                    [&] {
+                        if (now_ % 100'000 < 1000) { // the minimal layer calls where it hears some
+                            a_.open(1);
+                            a_.send(1, {1}, static_cast<U32>(now_));
+                        }
+                        for (auto& [time, packet] : side.air)
+                            if (restart < 2 && isHello(packet))
+                                old.push_back(packet);
+                        for (; restart == 2 && next <= now_; next += every)
+                            for (const Bytes& hello : {old.front(), old.back()})
+                                attack(other, hello), attack(side, hello);
+                        return bothUp() && (restart == 2 || old.size() > unsigned(restart));
+                    },
+                    1'000'000))
+                    << (isGround ? "ground" : "vehicle") << ", each " << every << " us";
+            }
+            std::printf("%s restarted, an old HELLO each %llu us: session after %.2f s\n",
+                        isGround ? "ground" : "vehicle", static_cast<unsigned long long>(every),
+                        static_cast<double>(now_ - start) / 1e6);
+            run(15'000'000);
+            EXPECT_TRUE(bothUp());
+        }
+}
+
 INSTANTIATE_TEST_SUITE_P(Vehicles, Attacked,
+                         ::testing::Combine(::testing::Values("full", "minimal"),
+                                            ::testing::Range(0, 2)));
+INSTANTIATE_TEST_SUITE_P(Vehicles, Hindered,
                          ::testing::Combine(::testing::Values("full", "minimal"),
                                             ::testing::Range(0, 2)));
 

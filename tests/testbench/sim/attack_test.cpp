@@ -116,6 +116,24 @@ TEST_F(Attack, WithAKeyResetsEndNothing) {
     EXPECT_EQ(ground_.statistics().sessions, 1u);
 }
 
+// Twenty bytes to each packet, when the vehicle starts, when the ground does, and in flight.
+TEST_F(Attack, WithAKeyWhoAddsBytesToEachPacketPreventsNoSession) {
+    start(vehicleKey);
+    attacker_.hinder(true);
+    auto first = ground_.pinging(5), second = ground_.pinging(5);
+    int phase = 0;
+    fly(
+        [&] {
+            if (phase == 0 && first()) {
+                ground_.start();
+                phase = 1;
+            }
+            return phase == 1 && second();
+        },
+        60);
+    expectAllAnswered(5);
+}
+
 // Everything that is possible without the key, while the ground and then the vehicle start anew;
 // then earlier packets are repeated.
 TEST_F(Attack, WithAKeyNothingComesOfAnyMischief) {

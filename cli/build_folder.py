@@ -13,7 +13,7 @@ ROOMS_OF_PROGRAMS = "bus;slice;sw;hdl;ip;testbench;tests"
 
 
 def writable(folder, otherwise):
-    """Makes a folder, or says why it cannot be used."""
+    """Makes a folder, or ends with the reason why it cannot be used."""
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError:
@@ -42,7 +42,7 @@ class BuildFolder:
         return self
 
     def configure(self, *arguments):
-        """CMake makes the folder of this tree, unless it has; one made for another place, which CMake refuses, goes first."""
+        """Lets CMake make the folder, unless it has. CMake refuses a folder made for another place: it is removed first."""
         writable(self.folder, "where the build goes: take a clone of your own, or give --build (BUILD=) a folder that is yours")
         writable(os.environ.get("XDG_CACHE_HOME") or os.path.join(os.environ["HOME"], ".cache"),
                  "where what is fetched and compiled is kept: set XDG_CACHE_HOME to a folder that is yours")
@@ -62,7 +62,7 @@ class BuildFolder:
         return found[1] if found else ""
 
     def set(self, **variables):
-        """Gives variables of CMake new values; where CMake refuses them, its reason is said and the values of before stay."""
+        """Gives variables of CMake new values; if CMake refuses them, prints its reason and keeps the old values."""
         if all(self.cached(name) == value for name, value in variables.items()):
             return
         cache = (self / "CMakeCache.txt").read_bytes()

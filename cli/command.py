@@ -12,8 +12,8 @@ from cli.options import BUILT, PATHS, SWITCH
 from cli.runner import Stop
 
 COMMANDS = {}  # by name, such as "core new", in the order of the list
-GROUPS = {}    # first words of names of two, and what they are
-DEFAULTS = {}  # the one of a group that its first word alone means
+GROUPS = {}    # first words of names of two words, with their help
+DEFAULTS = {}  # a group's command that its first word alone means
 ALIASES = {}   # other verbs of make: a verb, and the switch that it turns on
 
 
@@ -21,7 +21,7 @@ class Command:
     """A command: a function of its options' values.
 
     make: its verb there, if it has one. when: the variable that chooses this one of several with the same verb.
-    brief: a short form that does all of its steps, or several command lines (./icesoc commands --brief).
+    brief: a short form that runs all of its steps, or several command lines (./icesoc commands --brief).
     """
 
     def __init__(self, function, name, options, make, when, brief, examples):
@@ -54,15 +54,15 @@ class Command:
         return parser
 
     def values(self, given, makes, place):
-        """The values of all options. given: texts by field; makes: variables of make's command line; place: where names of
-        files begin."""
+        """The values of all options. given: texts by field; makes: variables of make's command line; place: the folder
+        of relative names of files."""
         values = argparse.Namespace(given=set(), given_by_make=makes is not None)
         for option in self.options:
             text, called = given.get(option.field), f"--{option.name}"
             if text is not None and makes is None:
                 values.given.add(option.field)
                 called = option.name.upper() if option.positional else called
-            elif option.variable != "LANG" or option.variable in (makes or ()):  # the user's language is another matter
+            elif option.variable != "LANG" or option.variable in (makes or ()):  # LANG in the environment is the user's language
                 text, called = os.environ.get(option.variable), option.variable
                 if text and option.variable in (makes or ()):
                     values.given.add(option.field)
@@ -87,13 +87,13 @@ def command(name, options=(), make=None, when=None, brief=(), examples=()):
 
 
 def nearest(word, words):
-    """The end of a message on a word that there is not."""
+    """The end of a message about an unknown word."""
     close = difflib.get_close_matches(word, words, 1, 0.5)
     return f"; did you mean {close[0]}?" if close else ""
 
 
 def find(words):
-    """The command that words begin with, and the words after it."""
+    """The command at the beginning of words, and the words after it."""
     for length in (2, 1):
         name = " ".join(words[:length])
         if name in COMMANDS:
@@ -148,7 +148,7 @@ def by_make(goal, goals, makes):
 
 
 def complete():
-    """Completes words of a shell, where Debian's argcomplete is there."""
+    """Completes words of a shell, if Debian's argcomplete is installed."""
     import argcomplete
     top = argparse.ArgumentParser()
     within = {"": top.add_subparsers()}
@@ -161,7 +161,7 @@ def complete():
 
 
 def overview():
-    """What `./icesoc` prints: a line a command, or group of commands."""
+    """The text of `./icesoc`: a line for each command or group of commands."""
     lines = ["IceSoC: every function of the UAV, in software or in hardware, is a ZeroC Ice object.", ""]
     for name in dict.fromkeys(name.split()[0] for name in COMMANDS):
         parts = [each.split()[1] for each in COMMANDS if each.startswith(name + " ")]
@@ -172,7 +172,7 @@ def overview():
 
 
 def verbs():
-    """make's verbs, in lines."""
+    """The verbs of make, in lines."""
     line = "  make"
     for verb in dict.fromkeys(each.make for each in COMMANDS.values() if each.make):
         if len(line) + len(verb) > 98:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""flight: what a flight is, in one description: OUT/flight.json, which simulator, ground and page read.
+"""flight: the description of a flight, OUT/flight.json, which simulator, ground and page read.
 
 Each option below is a field of it. flight.schema.json beside this file is written from them (./icesoc commands --schema).
 """
@@ -41,7 +41,7 @@ FIELDS = [
     Option("patience", number(1, unit="s"), "for each answer of the vehicle", 300),
     Option("firmware", FILE, "firmware (ELF) in place of the one that is built", ""),
 ]
-# What else the simulator takes, in a flight's description or as words; ./icesoc has its own ways to say it.
+# Other options of the simulator, in a flight's description or as words; ./icesoc has its own options for them.
 _TEXT, _TIME = {"type": "string"}, {"type": "number", "minimum": 0}
 INNER = {
     "modem_key": {**_TEXT, "pattern": "[0-9a-fA-F]{32}", "description": "AES key with which the vehicle's modem encrypts"},
@@ -63,7 +63,7 @@ OPTIONS = [*FIELDS, UCOS2, AGAIN]
 
 
 def empty(option):
-    """What stands in flight.json for an option that is not given."""
+    """The value in flight.json of an option that is not given."""
     return {"boolean": False, "array": [], "string": ""}.get(option.kind.schema.get("type"), option.default)
 
 
@@ -85,7 +85,7 @@ def schema():
 
 
 def wrong(flight):
-    """What does not fit the schema, or None."""
+    """The first part that does not fit the schema, or None."""
     types = {"string": str, "integer": int, "number": (int, float), "boolean": bool, "array": list}
     rules = {name: rule for name, rule in schema()["properties"].items() if name not in INNER}
     if not isinstance(flight, dict) or flight.get("version") != VERSION:
@@ -112,7 +112,7 @@ def read(path):
 
 
 def complete(values):
-    """Takes what is not given from the flight that is flown again, and refuses what does not go together."""
+    """Takes options that are not given from the repeated flight, and refuses options that exclude each other."""
     if values.again:
         given = values.given | ({"key", "open"} if values.given & {"key", "open"} else {"version"})
         for name, value in read(values.again).items():
@@ -140,7 +140,7 @@ def complete(values):
 
 
 def check_chip(values, build):
-    """A core that the tree has and the chip does not would be an object that does not exist, minutes from now."""
+    """Refuses a core of the tree that the chip lacks: its call would fail only minutes later."""
     listed = build.cached("CORES") or "ip/cores.list"
     lines = re.findall(r"^\s*(\w+)", Path(listed).read_text(), re.M)
     for core in values.cores:
@@ -186,7 +186,7 @@ def write(values, build):
 
 
 def last_span(out):
-    """FROM= and TO= of a flight's end: from its last checkpoint that is 10 ms before it, or more."""
+    """FROM= and TO= of a flight's end, from its last checkpoint at least 10 ms before it."""
     last = before = finish = 0.0
     for line in (Path(out) / "flight.jsonl").read_text().split("\n"):
         at = re.search(r'"ns":(\d+)', line)

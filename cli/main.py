@@ -12,20 +12,20 @@ from cli.runner import Interrupted, Stop, hear_signals, say, warn
 
 
 def surroundings():
-    """What holds for every program that is started. Returns the folder of the caller; ours is the tree's."""
+    """Sets the environment of all programs, and changes to the tree's folder. Returns the caller's folder."""
     place, tree = os.getcwd(), os.environ.pop("ICESOC_TREE", "")  # a test's own tree
     os.chdir(tree or Path(__file__).resolve().parent.parent)
     place = os.getcwd() if tree else place
-    # A timer or a container may give none: ccache and cmake/fetch.py keep their files there.
+    # ccache and cmake/fetch.py keep files in HOME, which a timer or a container may not set.
     os.environ.setdefault("HOME", pwd.getpwuid(os.getuid()).pw_dir)
-    # The compiler's cache serves every clone: paths below this folder are relative in it.
+    # Paths below this folder are relative in the compiler's cache, so that it serves every clone.
     os.environ.update(CCACHE_BASEDIR=os.getcwd(), CCACHE_NOHASHDIR="1")
     os.environ["LC_ALL"] = "C.UTF-8"  # numbers have a point in every tool, whatever the user's language
     return place
 
 
 def make_gave():
-    """(goal, all goals, variables of its command line), or None where make has not called."""
+    """(goal, all goals, variables of its command line), or None if make has not called."""
     goal, goals = os.environ.pop("ICESOC_GOAL", ""), os.environ.pop("ICESOC_GOALS", "").split()
     flags = os.environ.pop("MAKEFLAGS", "")
     for name in ("MFLAGS", "MAKELEVEL", "MAKEOVERRIDES"):
@@ -49,7 +49,7 @@ def act(words):
         return say(version.text())
     else:
         found, values = command.by_words(words, place)
-    for option in found.options:  # they are ours; what a program is to see of them, its command hands on
+    for option in found.options:  # programs do not see these variables; a command passes on the necessary ones
         os.environ.pop(option.variable if option.variable != "LANG" else "", None)
     return found.function(values)
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""options: what an option is, and the kinds of values that options take.
+"""options: defines an option, and the kinds of values that options take.
 
-An option is declared once. Its help, its check, its variable of make and its field of flight.json come from that.
+An option is declared once. Its help, its check, its variable of make and its field of flight.json come from this declaration.
 """
 import dataclasses
 import os
@@ -12,7 +12,7 @@ from cli.runner import Stop
 
 @dataclasses.dataclass
 class Kind:
-    """A kind of value. `read` makes it of a text, and raises ValueError for one that it does not take."""
+    """A kind of value. `read` makes it of a text, and raises ValueError for an invalid one."""
     read: object
     expected: str          # completes "LOSS is ..."
     schema: dict = None    # of its value in flight.json
@@ -44,7 +44,7 @@ class Option:
             raise Stop(str(error) or f"{called} is {self.kind.expected}, not '{text}'", 2) from None
 
     def explain(self):
-        """The help's sentence: what it is, what it may be, what it is by default."""
+        """The help's sentence: its meaning, its values, its default."""
         shown = " ".join(self.default) if isinstance(self.default, list) else self.default
         parts = [] if self.kind in (TEXT, WORDS, FILES, SWITCH, FILE, KEY_FILE, FOLDER, PATH, FLIGHT) else [self.kind.expected]
         parts += [f"default {shown}"] if shown is not None and shown != "" else []
@@ -127,7 +127,7 @@ SHARE = number(0, 1, convert=float)
 COUNT = number(1)
 SECONDS = number(0, unit="s", convert=float)
 MINUTES = number(0.001, unit="minutes", convert=float)
-PATHS = (FILE, KEY_FILE, FOLDER, PATH, FLIGHT)  # relative to where the caller is
+PATHS = (FILE, KEY_FILE, FOLDER, PATH, FLIGHT)  # relative to the caller's folder
 
 BUILD = Option("build", FOLDER, "build folder", "build/main")
 JOBS = Option("jobs", COUNT, "processes of a build at a time", len(os.sched_getaffinity(0)))

@@ -14,7 +14,7 @@ import time
 
 
 class Stop(Exception):
-    """Ends the command: what its user is told (nothing, if a program has said it already), and the exit status."""
+    """Ends the command with a message (empty if a program has printed one already) and an exit status."""
 
     def __init__(self, text="", status=1):
         super().__init__(text)
@@ -48,7 +48,7 @@ def warn(text):
 
 
 def start(words, env=None, **more):
-    """A process that ends with this one, however that ends. `env`: what it has beside our environment."""
+    """A process that ends with this one, however that ends. `env`: additions to our environment."""
     words = [str(word) for word in words]
     if not shutil.which(words[0]):
         raise Stop(f"there is no program '{words[0]}': ./icesoc setup --tests installs what is missing", 127)
@@ -68,7 +68,7 @@ def end(process, seconds=20):
 
 
 def wait(process):
-    """Its exit status, as a shell has it; it is ended where we are interrupted."""
+    """Its exit status, as in a shell; an interrupt of this process ends it."""
     try:
         status = process.wait()
     except BaseException:
@@ -78,7 +78,7 @@ def wait(process):
 
 
 def run(words, check=True, **more):
-    """Runs a program to its end. Where it fails, the command ends with its exit status, unless `check` is false."""
+    """Runs a program to its end. If it fails, the command ends with its exit status, unless `check` is false."""
     status = wait(start(words, **more))
     if status > 128:
         warn(f"{os.path.basename(str(words[0]))} was ended by signal {status - 128} ({signal.strsignal(status - 128)})")
@@ -88,7 +88,7 @@ def run(words, check=True, **more):
 
 
 def output(words, check=True, **more):
-    """What a program prints, or None where it fails and `check` is false."""
+    """A program's output, or None if it fails and `check` is false."""
     process = start(words, stdout=subprocess.PIPE, text=True, **more)
     try:
         text = process.communicate()[0]
@@ -103,7 +103,7 @@ def output(words, check=True, **more):
 
 
 def logged(words, log, failed, env=None, cwd=None):
-    """Runs a program whose words are of interest only if it fails."""
+    """Runs a program and prints its output only if it fails."""
     with open(log, "w") as file:
         status = run(words, check=False, stdout=file, stderr=file, env=env, cwd=cwd)
     if status:
@@ -114,7 +114,7 @@ def logged(words, log, failed, env=None, cwd=None):
 
 @contextlib.contextmanager
 def lock(path, busy=None, refuse=None):
-    """Holds a lock, whose descriptor it gives. Taken already: waits, having said `busy`, or ends with `refuse`."""
+    """Holds a lock, and returns its descriptor. If it is taken: prints `busy` and waits, or ends with `refuse`."""
     fd = os.open(path, os.O_RDONLY if os.path.isdir(path) else os.O_RDWR | os.O_CREAT, 0o666)
     try:
         try:

@@ -49,8 +49,8 @@ PAGES = {"utilisation": (1400, 1500, "synth/report.html", "#table1/u_modem", "sy
 
 
 def small(path):
-    """As many colours as fit into 100 KB, at most 64."""
-    from PIL import Image  # not there before set-up
+    """Takes as many colours as fit into 100 KB, at most 64."""
+    from PIL import Image  # set-up installs it
     picture = Image.open(path).convert("RGB")
     for colours in (64, 48, 32, 24, 16, 8):
         picture.quantize(colours, dither=Image.Dither.NONE).save(path, optimize=True)
@@ -60,7 +60,7 @@ def small(path):
 
 
 def shoot(path, width, height, address, profile):
-    """A picture of a page, which has three seconds of its own time."""
+    """Takes a picture of a page after three seconds of the page's time."""
     logged(["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars",
             f"--user-data-dir={profile}/chromium", "--virtual-time-budget=3000", f"--window-size={width},{height}",
             f"--screenshot={path.absolute()}", address], f"{profile}/log", f"no picture of {address}", env={"HOME": profile})
@@ -68,7 +68,7 @@ def shoot(path, width, height, address, profile):
 
 
 def shoot_live(path, profile, icesoc):
-    """A picture of a mission's page, once it has flown."""
+    """Takes a picture of a mission's page after the flight."""
     with open(f"{profile}/live.log", "w+") as log:
         flight = start([*icesoc, "--live", "--cpu", "m3", "--out", f"{profile}/live"], stdout=log, stderr=log)
         try:

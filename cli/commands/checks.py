@@ -36,7 +36,7 @@ def sanitizers(values):
         folder.configure(f"-DSANITIZE={option}", f"-DROOMS={ROOMS_OF_PROGRAMS}")
         environment = {"ASAN_OPTIONS": "detect_leaks=0", "TSAN_OPTIONS": f"suppressions={Path('tests/sw/ground/threads.supp').absolute()}"}
         folder.ninja(*GUARDED, env=environment)  # libmcpp leaks
-        # ThreadSanitizer leaves out what Python loads: Python's own locks are not built with it.
+        # ThreadSanitizer leaves out Python's libraries: Python's own locks are not built with it.
         left = ["--gtest_filter=-*Python*"] if kind == "thread" else []
         for test in ("test_engine", "ice/test_radio_ice"):
             status = one_more(status, run([folder / "tests/sw/ground" / test, "--gtest_brief=1", *left], check=False, env=environment))
@@ -117,7 +117,7 @@ def coverage(values):
     for path in work.rglob("*.gcda"):
         path.unlink()
     say("coverage: running the tests")
-    # A failing test is the regression's matter: what ran, ran. Fuzzers count for themselves; e2e.cores builds a chip of its own.
+    # Tests that fail still count: the regression reports them. Fuzzers have their own counts; e2e.cores builds its own chip.
     with open(work / "ctest.log", "w") as log:
         words = ["ctest", "--test-dir", work, "-j", values.jobs, "-L", "rtl|firmware|vhdl|models|slice|interop|e2e", "-E", "NOT_BUILT|^fuzz|^e2e.cores"]
         if run(words, check=False, stdout=log, stderr=log, env={"COVERAGE_DIR": points.absolute()}):
@@ -131,7 +131,7 @@ def coverage(values):
         raise Stop((work / "lcov.log").read_text()[-1000:], 2)
 
     def own(source, name, rooms):
-        """Patterns may match nothing in a build of few rooms; that is no error."""
+        """Allows patterns that match nothing, as in a build of few rooms."""
         if lcov(work, "--extract", work / source, *(f"{top}/{room}/*" for room in rooms), "--output-file", work / name):
             (work / name).unlink(missing_ok=True)
     own("all.info", "host.info", ("sw", "slice", "testbench", "bus", "ip"))
@@ -149,7 +149,7 @@ def coverage(values):
                  check=False)
     (work / "tree").write_text(tree)
     total = re.search(r'^ "total": (\d+\.?\d?)', (work / "summary.json").read_text(), re.M)
-    with open(work / "history", "a") as file:  # of each commit, for ./icesoc synth report --base
+    with open(work / "history", "a") as file:  # the share of each commit, for ./icesoc synth report --base
         file.write(f"{commit} {total[1]} % of lines\n" if total else "")
     return status
 

@@ -21,7 +21,7 @@ CHIP = Option("chip", SWITCH, "in the chip as it is listed now, which takes minu
 
 
 def check_name(name):
-    """Refuses a name that a core cannot have, or that something else has."""
+    """Refuses a name that is invalid or taken."""
     if not name:
         raise Stop("a core needs a name: ./icesoc core new low_pass --lang verilog (make new-ip NAME=low_pass LANG=verilog)")
     if not re.fullmatch(r"[a-z][a-z0-9]*|[a-z][a-z0-9]+(_[a-z][a-z0-9]+)+", name):
@@ -40,7 +40,7 @@ def check_name(name):
 
 
 def write_own(build, name, lang, ice, folder):
-    """A core of one's own interface."""
+    """Begins a core from the user's interface."""
     included = re.findall(r'^ *# *include *[<"]([^>"]*)', Path(ice).read_text(), re.M)
     if included:
         raise Stop(f"{ice} includes {' '.join(included)}: a core has one Slice file; write into it what it needs of others")
@@ -90,8 +90,8 @@ def new(values):
         else:
             for template in [*Path("ip/template").glob("*.in"), *Path("ip/template", lang).glob("*.in")]:
                 fill(template, folder, name)
-        shutil.move(folder, f"ip/{name}")  # it takes its place when it is complete
-    # A build folder notices the new one by itself; it is asked now, while the folder can be taken back.
+        shutil.move(folder, f"ip/{name}")  # the folder takes its place when it is complete
+    # A build folder would notice the new one by itself; it must now, while the folder can still be removed.
     if (build / "build.ninja").exists():
         try:
             logged(["cmake", build.folder], build / "new-ip.log", f"the build does not take '{name}' (above); nothing was changed")
@@ -137,7 +137,7 @@ def known(values):
     if not values.built:
         if values.core_folders:
             build.set(CORE_FOLDERS="" if values.core_folders == "none" else values.core_folders)
-        build.quietly("build.ninja")  # folders that are new since CMake ran
+        build.quietly("build.ninja")  # CMake has not seen newer folders
     cores = (build / "cores.known").read_text().split()
     if values.ip not in cores:
         raise Stop(f"there is no core '{values.ip}': {' '.join(cores)}")
@@ -166,7 +166,7 @@ def synth(values):
 
 
 def one_test(program, text):
-    """The name of the test that is meant: by its whole name, or the only one that the expression matches."""
+    """The name of the test, given by its whole name or by an expression that matches no other."""
     listed = output([program, "--gtest_list_tests"])
     suite, names = "", []
     for line in listed.splitlines():
@@ -221,8 +221,8 @@ def wave(values):
 
 
 def users_of(name):
-    """Cores whose inputs are this one's outputs. An input that only other cores drive ("internal") is 0 from then on; any other
-    would become a pin of the chip."""
+    """Cores with an input that this one drives. An input for other cores only ("internal") becomes 0; any other would
+    become a pin of the chip."""
     for line in Path("ip/cores.list").read_text().splitlines():
         user, *words = line.partition("#")[0].split() or [""]
         text = "".join(path.read_text() for path in Path("ip", user or ".").glob("*.regs.json")) if user else ""
@@ -255,7 +255,7 @@ def remove(values):
     say(f"ip/{name} and its line in ip/cores.list are gone")
 
 
-# Put into slots by new_foreign.py: slot, module, bus, repository, and Hz of a clock of its own.
+# Cores that new_foreign.py puts into slots: slot, module, bus, repository, and Hz of their own clock.
 EXAMPLES = [("foreign_aes", "aes", "memory", "aes", ""), ("foreign_uart", "wbuart", "wishbone", "wbuart32", "24000000"),
             ("foreign_axil", "axiluart", "axil", "wbuart32", ""), ("foreign_i2c", "i2c_master_top", "wishbone", "i2c", ""),
             ("foreign_cobs", "axis_cobs_encode", "axis", "verilog-axis", "")]

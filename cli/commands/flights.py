@@ -33,32 +33,32 @@ def fly_mission(values):
     flight.check_chip(values, build)
     flight.take_key(values, build)
     with lock(Path(values.out) / "lock", refuse=f"another flight is under way in {values.out}; give this one a folder of its own: "
-              "OUT=build/other (--out)") as held:  # until the last of this flight's programs has ended
+              "OUT=build/other (--out)") as held:  # until this flight's last program has ended
         fly = minimal if values.app == "minimal" else update if values.update else mission
         return fly(values, build, held)
 
 
 def simulator(values, build, held, options, ground):
-    """The simulator, with the ground's program as its child. The simulator fills words such as {out} in."""
+    """Starts the simulator, with the ground's program as its child. The simulator replaces words such as {out}."""
     flight.write(values, build)
     return start([build / "testbench/sim/icesoc-sim", "--flight", Path(values.out) / "flight.json", *options, "--",
                   "/usr/bin/python3", *ground], pass_fds=[held], env={"PROBE": values.probe})
 
 
 def minimal(values, build, held):
-    """The program of Table II, and its ground."""
+    """Flies the program of Table II with its ground."""
     return wait(simulator(values, build, held, [], [
         "sw/apps/minimal/ground.py", "{device}", "--frame", "{frame}", "--reference", build / "testbench/sim/vision-reference",
         f"--Ice.Plugin.XBeeAT={build.folder}/ground/xbeeat:createXBeeAT", "--XBeeAT.Guard={guard}"]))
 
 
 def update(values, build, held):
-    """Firmware, or a bitstream, for a vehicle whose flash is OUT/flash.bin, and its FPGA's OUT/fpga.bin; made if there are none."""
+    """Sends firmware or a bitstream to a vehicle with the flash OUT/flash.bin, and its FPGA's OUT/fpga.bin; makes both if missing."""
     out, pack = Path(values.out), build / "sw/target/pack_update"
     signing = build / "update.key"  # private, made at first use
     if not (out / "flash.bin").exists():
         run([pack, "vehicle", build / "firmware/loader.elf", flight.firmware(values, build), 1, signing, out / "flash.bin"])
-    if not (out / "fpga.bin").exists():  # no ISE here: the golden bitstream stands in for one
+    if not (out / "fpga.bin").exists():  # a stand-in for ISE's golden bitstream
         run([build / "testbench/cpu/stand_in_bitstream", out / "golden.bin", 1, 10000])
         run([pack, "fpga", out / "golden.bin", 1, signing, out / "fpga.bin"])
     kind = "bitstream" if values.update.endswith((".bit", ".bin")) else "image"
@@ -70,7 +70,7 @@ def update(values, build, held):
 
 
 def mission(values, build, held):
-    """The flight of the README, and its page."""
+    """Flies the mission of the README, with its page."""
     out, status_file = Path(values.out), Path(values.out) / "status"
     page = ["/usr/bin/python3", "testbench/live/live.py", "--dir", out, "--port", values.port,
             "--registers", build / "gen/registers.list"]
@@ -84,7 +84,7 @@ def mission(values, build, held):
         "--plugin", build / "ground", "--slice", "sw/apps/uav/Autopilot.ice", "--reference", build / "testbench/sim/vision-reference"])
     shown = None
     try:
-        # The page begins when the simulator has taken its options: an address would hide what it refuses.
+        # The page starts after the simulator has accepted its options: its address would hide a refusal.
         if until(lambda: flown() != before, sim):
             shown = start(page, pass_fds=[held])
         status = wait(sim)

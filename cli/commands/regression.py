@@ -59,7 +59,7 @@ def regress(values):
 
 
 def last_good(test):
-    """The last commit that the test passed at; a state that is not committed is no place to begin."""
+    """The last commit at which the test passed; a bisection cannot begin at a state that is not committed."""
     history = Path("build/regress/history.jsonl")
     runs = map(json.loads, history.read_text().splitlines() if history.exists() else [])
     good = [each["commit"] for each in runs if each["tests"].get(test, [""])[0] == "p" and "dirty" not in each["commit"]]
@@ -98,7 +98,7 @@ def bisect(values):
 
 
 def step(program, test, tree, values):
-    """Whether the commit that is checked out passes: 0; 1: it fails; 125: it cannot be told. What is built stays for the next."""
+    """Whether the present commit passes: 0; 1: it fails; 125: unknown. Its build stays for the next one."""
     log = tree / "build/step.log"
     log.parent.mkdir(exist_ok=True)
     with open(log, "w") as file:
@@ -156,4 +156,4 @@ def nightly(values):
              lambda: run([*tool, "--seed", "random", "--repeat", values.nightly, *chosen], check=False, env=long),
              lambda: suite("zeroc"), lambda: ours("check", "mutants", "--draw", "8", "--seed", day),
              lambda: ours("check", "faults", "--seed", day), lambda: ours("check", "sanitizers"), lambda: suite("nightly")]
-    return max([each() for each in steps])  # each is done, whatever became of those before it
+    return max([each() for each in steps])  # each runs, even if an earlier one failed

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""synth: utilisation of the chip, and what has changed of it between commits."""
+"""synth: utilisation of the chip, and its changes between commits."""
 import contextlib
 import json
 from pathlib import Path
@@ -61,7 +61,7 @@ def edif(values):
 
 
 def synthesise(program, jobs, base, folder):
-    """Builds a commit in a checkout of its own, and synthesises it there; this one stays as it is."""
+    """Builds and synthesises a commit in its own checkout; this one does not change."""
     folder = folder.absolute()
     if (folder / ".git").exists():
         run([*GIT, "-C", folder, "checkout", "-q", "--detach", base])
@@ -76,9 +76,9 @@ def synthesise(program, jobs, base, folder):
     cache = folder / "build/synth/cache"
     with contextlib.suppress(FileNotFoundError):
         cache.unlink()
-    cache.symlink_to(Path("build/synth/cache").absolute())  # what both have is synthesised once
+    cache.symlink_to(Path("build/synth/cache").absolute())  # designs that both have are synthesised once
     with open(folder / "build.log", "w") as log:
-        # Status 1: that commit is beyond its own budget, which is not the question here.
+        # Status 1: that commit is beyond its own budget, which does not matter here.
         if run([program, "--jobs", jobs], check=False, cwd=folder, stdout=log) > 1:
             raise Stop(status=2)
 
@@ -88,7 +88,7 @@ def named(base):
 
 
 def row(name):
-    """The commit, as the regression names it; of its runs that are kept the one with most tests; its coverage."""
+    """The commit's name in the regression, its kept run with most tests, and its coverage."""
     def kept(file):
         path = Path("build", file)
         return path.read_text().splitlines() if path.exists() else []
@@ -100,7 +100,7 @@ def row(name):
 
 
 def compare(build, jobs, base, head=None):
-    """What has changed since a commit, or between two, with tests and coverage, as Markdown for a pull request."""
+    """The changes since a commit, or between two, with tests and coverage, as Markdown for a pull request."""
     program, folder = (build / "synth/utilisation").absolute(), Path("build/synth")
     folder.mkdir(parents=True, exist_ok=True)
     with lock(folder / "base.lock", busy="waiting for another comparison in this folder ..."):

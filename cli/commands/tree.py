@@ -71,7 +71,7 @@ def commands(values):
 
 
 def run_all(only):
-    """Every brief form, and a table of them."""
+    """Runs every brief form, and prints a table of them."""
     rows, folder = [], Path("build/brief")
     folder.mkdir(parents=True, exist_ok=True)
     for name, each in COMMANDS.items():
@@ -96,7 +96,7 @@ def run_all(only):
 
 
 def manual():
-    """The manual page, of the commands' own help."""
+    """The manual page, made of the commands' help."""
     def plain(text):
         return "".join(f"\\&{line}\n" for line in text.replace("\\", "\\e").replace("-", "\\-").splitlines())
     parts = [f'.TH ICESOC 1 "" "{version.text().partition(chr(10))[0]}"', ".SH NAME", "icesoc \\- every command of the IceSoC project", ".SH SYNOPSIS",

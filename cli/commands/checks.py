@@ -10,7 +10,7 @@ from cli.options import BLOCK, BUILD, COUNT, FRESH, JOBS, MINUTES, NAME, SEED, O
 from cli.runner import Stop, output, run, say, warn
 
 GROUPS["check"] = "what takes minutes to hours"
-GUARDED = ["test_engine", "gateway", "test_radio_ice"]
+GUARDED = ["test_engine", "gateway", "test_radio_ice", "test_icec"]
 
 
 def one_more(status, other):
@@ -29,7 +29,7 @@ def proofs(values):
 
 @command("check sanitizers", [BUILD, JOBS], make="sanitizers", brief="check sanitizers")
 def sanitizers(values):
-    """tests of engine, gateway and plugin with AddressSanitizer and with ThreadSanitizer; fuzzer of the debugger's stub"""
+    """tests of IceC, engine, gateway and plugin with AddressSanitizer and with ThreadSanitizer; fuzzer of the debugger's stub"""
     build, status = configured(values, tests=True), 0
     for kind, option in (("sanitized", "ON"), ("thread", "thread")):  # build/sanitized is that of the tests
         folder = BuildFolder(f"build/{kind}", values)
@@ -38,8 +38,8 @@ def sanitizers(values):
         folder.ninja(*GUARDED, env=environment)  # libmcpp leaks
         # ThreadSanitizer leaves out Python's libraries: Python's own locks are not built with it.
         left = ["--gtest_filter=-*Python*"] if kind == "thread" else []
-        for test in ("test_engine", "ice/test_radio_ice"):
-            status = one_more(status, run([folder / "tests/sw/ground" / test, "--gtest_brief=1", *left], check=False, env=environment))
+        for test in ("ground/test_engine", "ground/ice/test_radio_ice", "icec/test_icec"):
+            status = one_more(status, run([folder / "tests/sw" / test, "--gtest_brief=1", *left], check=False, env=environment))
     build.ninja("fuzz_gdb")
     return one_more(status, build.ctest("-R", "^fuzz[.]gdb$", tests=1, check=False))
 

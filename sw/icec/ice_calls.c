@@ -9,22 +9,25 @@
 #include <string.h>
 
 int icec_takeCall(Ice_CommunicatorPtr ic) {
+    int task = ic->os->task(ic->osContext);
     int c, slot = -1;
+    Ice_Call* call = ic->calls;
     icec_lock(ic, ICE_LOCK_STATE);
-    for (c = 0; c < ICE_CALLS && slot < 0; ++c)
-        if (ic->calls[c].state == ICE_CALL_FREE) {
-            ic->calls[c].state = ICE_CALL_BUILDING;
-            ic->calls[c].callback = 0;
+    for (c = 0; c < ICE_CALLS; ++c, ++call) {
+        if (call->state == ICE_CALL_KEPT && call->task == task)
+            call->state = ICE_CALL_FREE;
+        if (call->state == ICE_CALL_FREE)
             slot = c;
-        }
+    }
+    if (slot >= 0) {
+        call = &ic->calls[slot];
+        call->state = ICE_CALL_BUILDING;
+        call->task = task;
+        call->callback = 0;
+        call->unknown.size = 0;
+    }
     icec_unlock(ic, ICE_LOCK_STATE);
     return slot;
-}
-
-void icec_freeCall(Ice_CommunicatorPtr ic, int slot) {
-    icec_lock(ic, ICE_LOCK_STATE);
-    ic->calls[slot].state = ICE_CALL_FREE;
-    icec_unlock(ic, ICE_LOCK_STATE);
 }
 
 Ice_CallState icec_callState(Ice_CommunicatorPtr ic, int slot) {
@@ -38,7 +41,7 @@ Ice_CallState icec_callState(Ice_CommunicatorPtr ic, int slot) {
 void icec_wakeCalls(Ice_CommunicatorPtr ic) {
     int c;
     for (c = 0; c < ICE_CALLS; ++c)
-        if (ic->calls[c].state != ICE_CALL_FREE)
+        if (ic->calls[c].state > ICE_CALL_KEPT)
             ic->os->wake(ic->osContext, c);
 }
 
@@ -58,8 +61,10 @@ static void finish(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id, Ice_Statu
         call->status = status;
         /* The callback may make the next call. */
         call->state = callback ? ICE_CALL_FREE : ICE_CALL_DONE;
-        if (!callback)
+        if (!callback) {
+            call->is.size = 0; /* nothing to keep */
             ic->os->wake(ic->osContext, (int)(call - ic->calls));
+        }
     }
     icec_unlock(ic, ICE_LOCK_STATE);
     if (callback)
@@ -111,20 +116,14 @@ void icec_expireCall(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id) {
 
 /* ---- replies ---- */
 
-/* Reads the content of a failed reply. */
-static void readFailure(Ice_InputStreamPtr is, Ice_Status status, Ice_Failure* failure) {
+/* Reads a reply's status, and what a failed one says. */
+static Ice_Status readReply(Ice_Call* call, Ice_InputStreamPtr is) {
+    Ice_Status status = icec_readReply(is);
     if (status == ICE_MARSHAL && is->failed)
-        failure->unknown = Ice_String_from(Ice_Failed_text(is->failed, is->bound));
-    if (status > ICE_UNKNOWN_EXCEPTION || status <= ICE_USER_EXCEPTION)
-        return;
-    if (status > ICE_OPERATION_NOT_EXIST) {
-        failure->unknown = Ice_InputStream_readString(is);
-        return;
-    }
-    failure->identity.name = Ice_InputStream_readString(is);
-    failure->identity.category = Ice_InputStream_readString(is);
-    icec_readFacet(is, &failure->facet);
-    failure->operation = Ice_InputStream_readString(is);
+        call->unknown = Ice_String_from(Ice_Failed_text(is->failed, is->bound));
+    if (status > ICE_OPERATION_NOT_EXIST && status <= ICE_UNKNOWN_EXCEPTION)
+        Ice_InputStream_takeString(is, &call->unknown);
+    return status;
 }
 
 /* Copies the rest of the message to the waiting task's buffer; the call's stream then reads the
@@ -163,18 +162,14 @@ void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr i
         isAsynchronous = 1;
     } else if (call) {
         keepReply(call, is);
-        call->status = icec_readReply(is);
-        readFailure(is, call->status, &call->failure);
+        call->status = readReply(call, is);
         call->is = *is;
         call->state = ICE_CALL_DONE;
         ic->os->wake(ic->osContext, (int)(call - ic->calls));
     }
     icec_unlock(ic, ICE_LOCK_STATE);
     if (isAsynchronous) {
-        Ice_Status status;
         icec_giveArena(ic, is);
-        status = icec_readReply(is);
-        readFailure(is, status, &call->failure);
-        finish(ic, call, id, status, is);
+        finish(ic, call, id, readReply(call, is), is);
     }
 }

@@ -7,9 +7,9 @@
 
 #include "icec.h"
 
-/* Takes a free slot for a call that is being built. -1: all are taken. */
+/* Takes a slot for a call that is being built: a free one, or one that this task's last call has
+ * kept. -1: all are taken. */
 int icec_takeCall(Ice_CommunicatorPtr ic);
-void icec_freeCall(Ice_CommunicatorPtr ic, int slot);
 Ice_CallState icec_callState(Ice_CommunicatorPtr ic, int slot);
 
 /* Hands a reply, read up to its body, to the call that waits for it. */

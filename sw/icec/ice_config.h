@@ -38,7 +38,7 @@
 #ifndef ICE_CONNECTIONS
 #define ICE_CONNECTIONS 4
 #endif
-#ifndef ICE_CALLS /* calls under way */
+#ifndef ICE_CALLS /* calls under way, and tasks that keep what their last call returned */
 #define ICE_CALLS 4
 #endif
 #ifndef ICE_NESTING /* messages handled at once: 1 + calls made from within an operation */

@@ -9,11 +9,10 @@
 
 #include <string.h>
 
-/* Records which limit was reached, or which other failure happened, for Ice_ObjectPrx_failure. */
-static Ice_Status fail(Ice_ObjectPrxPtr self, Ice_Status status, int why) {
-    Ice_Call* call = &self->communicator->calls[self->call];
-    call->failure.unknown =
-        Ice_String_from(Ice_Failed_text((Ice_Byte)why, self->communicator->request.bound));
+/* Records which limit was reached, or which other failure happened, for Ice_ObjectPrx_failure.
+ * `bound`: the stream's. */
+static Ice_Status fail(Ice_ObjectPrxPtr self, Ice_Status status, int why, const char* bound) {
+    self->reason = Ice_Failed_text((Ice_Byte)why, bound);
     return status;
 }
 
@@ -55,11 +54,11 @@ static Ice_Status connect(Ice_ObjectPrxPtr self) {
         status = open(self, is.data + begin, is.position - begin);
     }
     if (status != ICE_OK)
-        return status == ICE_LIMIT ? fail(self, status, ICE_FAILED_CONNECTIONS) : status;
+        return status == ICE_LIMIT ? fail(self, status, ICE_FAILED_CONNECTIONS, 0) : status;
     status = icec_await(ic, isValidating, self->connection, self->call, self->timeoutMs);
     state = icec_connectionState(ic, self->connection);
     if (state == ICE_CONNECTION_VALIDATING)
-        return status == ICE_LIMIT ? fail(self, status, ICE_FAILED_NESTING) : status;
+        return status == ICE_LIMIT ? fail(self, status, ICE_FAILED_NESTING, 0) : status;
     return state == ICE_CONNECTION_OPEN ? ICE_OK : ICE_CONNECTION_LOST;
 }
 
@@ -91,14 +90,12 @@ static void beginRequest(Ice_ObjectPrxPtr self, const char* operation, Ice_Byte 
     Ice_OutputStreamPtr os = &ic->request;
     Ice_OutputStream_init(os, ic->requestData, ICE_REQUEST_MAX);
     if (!self->batch) {
-        Ice_Call* call = &ic->calls[self->call];
-        call->id = 0;
         if (self->mode == ICE_TWOWAY) {
             ic->lastId = (ic->lastId & 0x3FFFFFFF) + 1; /* never 0: that is a one-way request */
-            call->id = ic->lastId;
+            self->id = ic->lastId;
         }
         icec_beginMessage(os, ICEC_REQUEST);
-        Ice_OutputStream_writeInt(os, call->id);
+        Ice_OutputStream_writeInt(os, self->id);
     }
     os->minor = self->minor;
     Ice_OutputStream_writeBlob(os, self->identity, self->identitySize);
@@ -111,13 +108,17 @@ static void beginRequest(Ice_ObjectPrxPtr self, const char* operation, Ice_Byte 
 Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char* operation,
                                         Ice_Byte mode) {
     Ice_CommunicatorPtr ic = self->communicator;
-    self->status = self->mode != ICE_TWOWAY && mode & ICE_RESULTS ? ICE_TWOWAY_ONLY : ICE_LIMIT;
-    if (self->status == ICE_TWOWAY_ONLY)
+    self->operation = operation;
+    self->reason = 0;
+    self->id = 0;
+    self->status = ICE_TWOWAY_ONLY;
+    if (self->mode != ICE_TWOWAY && mode & ICE_RESULTS)
         return 0;
     self->call = icec_takeCall(ic);
-    if (self->call < 0)
+    if (self->call < 0) {
+        self->status = (Ice_Byte)fail(self, ICE_LIMIT, ICE_FAILED_CALLS, 0);
         return 0;
-    memset(&ic->calls[self->call].failure, 0, sizeof ic->calls[0].failure);
+    }
     self->status = self->batch ? ICE_OK : (Ice_Byte)connect(self);
     icec_lock(ic, ICE_LOCK_SEND);
     beginRequest(self, operation, mode);
@@ -129,6 +130,7 @@ static void registerCall(Ice_ObjectPrxPtr self, Ice_Callback callback, void* coo
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_Call* call = &ic->calls[self->call];
     icec_lock(ic, ICE_LOCK_STATE);
+    call->id = self->id;
     call->connection = self->connection;
     call->callback = callback;
     call->cookie = cookie;
@@ -138,6 +140,7 @@ static void registerCall(Ice_ObjectPrxPtr self, Ice_Callback callback, void* coo
     call->replySize = self->reply ? self->replySize : (Ice_Int)sizeof call->replyData;
     if (self->mode == ICE_TWOWAY)
         call->state = ICE_CALL_WAITING;
+    self->status = ICE_LATER; /* of an asynchronous call the slot has it, the proxy may be gone */
     icec_unlock(ic, ICE_LOCK_STATE);
 }
 
@@ -151,7 +154,7 @@ static Ice_Status sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void
         return (Ice_Status)self->status;
     if (os->failed)
         return fail(self, ICE_MARSHAL,
-                    os->failed == ICE_FAILED_RESULT ? ICE_FAILED_REQUEST : os->failed);
+                    os->failed == ICE_FAILED_RESULT ? ICE_FAILED_REQUEST : os->failed, os->bound);
     registerCall(self, callback, cookie);
     return icec_send(self->communicator, self->connection, os);
 }
@@ -176,10 +179,10 @@ Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr* is) {
     if (status != ICE_OK || self->mode != ICE_TWOWAY)
         return status;
     status = icec_await(ic, isWaiting, self->call, self->call, self->timeoutMs);
-    if (icec_callState(ic, self->call) == ICE_CALL_DONE)
+    if (status == ICE_OK || icec_callState(ic, self->call) == ICE_CALL_DONE)
         status = call->status;
     else if (status == ICE_LIMIT)
-        status = fail(self, status, ICE_FAILED_NESTING);
+        status = fail(self, status, ICE_FAILED_NESTING, 0);
     *is = &call->is;
     return status;
 }
@@ -196,21 +199,44 @@ Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callbac
     return ICE_OK;
 }
 
+/* Status, encapsulation and a result of one byte: nothing in them can be pointed to. */
+#define NOTHING_KEPT 8
+
 Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {
     Ice_CommunicatorPtr ic = self->communicator;
-    const Ice_Call* call = &ic->calls[self->call];
-    if (status <= ICE_USER_EXCEPTION && icec_callState(ic, self->call) == ICE_CALL_DONE &&
-        call->is.failed)
-        status = fail(self, ICE_MARSHAL, call->is.failed);
-    icec_freeCall(ic, self->call);
+    Ice_Call* call = &ic->calls[self->call];
+    Ice_CallState left = ICE_CALL_FREE;
+    icec_lock(ic, ICE_LOCK_STATE);
+    if (call->state == ICE_CALL_DONE) {
+        if (status <= ICE_USER_EXCEPTION && call->is.failed)
+            status = fail(self, ICE_MARSHAL, call->is.failed, call->is.bound);
+        if (!self->reply && call->is.size > NOTHING_KEPT)
+            left = ICE_CALL_KEPT;
+    }
+    call->state = left;
+    icec_unlock(ic, ICE_LOCK_STATE);
+    self->status = (Ice_Byte)status;
     return status;
 }
 
 void Ice_ObjectPrx_failure(const Ice_ObjectPrx* self, Ice_Failure* failure) {
-    if (self->call >= 0)
-        *failure = self->communicator->calls[self->call].failure;
-    else
-        memset(failure, 0, sizeof *failure);
-    if (self->call < 0 && self->status == ICE_LIMIT)
-        failure->unknown = Ice_String_from(Ice_Failed_text(ICE_FAILED_CALLS, 0));
+    Ice_Status status = (Ice_Status)self->status;
+    memset(failure, 0, sizeof *failure);
+    if (self->reason)
+        failure->unknown = Ice_String_from(self->reason);
+    else if (self->id != 0) {
+        const Ice_Call* call = &self->communicator->calls[self->call];
+        icec_lock(self->communicator, ICE_LOCK_STATE);
+        if (call->id == self->id) { /* the reply is still there */
+            failure->unknown = call->unknown;
+            if (status == ICE_LATER)
+                status = call->status;
+        }
+        icec_unlock(self->communicator, ICE_LOCK_STATE);
+    }
+    if (status >= ICE_OBJECT_NOT_EXIST && status <= ICE_OPERATION_NOT_EXIST) {
+        failure->identity = Ice_ObjectPrx_getIdentity(self);
+        failure->facet = Ice_ObjectPrx_getFacet(self);
+        failure->operation = Ice_String_from(self->operation);
+    }
 }

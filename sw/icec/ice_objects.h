@@ -22,6 +22,7 @@ struct Ice_ObjectAdapter {
 
 typedef enum Ice_CallState {
     ICE_CALL_FREE,
+    ICE_CALL_KEPT,     /* over; its task may still use what it returned */
     ICE_CALL_BUILDING, /* its request is being written */
     ICE_CALL_WAITING,  /* for the reply */
     ICE_CALL_DONE      /* the reply is there, or will never come */
@@ -29,6 +30,7 @@ typedef enum Ice_CallState {
 
 typedef struct Ice_Call {
     Ice_CallState state;
+    int task;          /* that made it */
     Ice_Status status; /* once it is done */
     Ice_Int id;
     int connection;
@@ -37,8 +39,8 @@ typedef struct Ice_Call {
     Ice_Callback callback; /* 0: a task waits */
     void* cookie;
     Ice_InputStream is;
-    Ice_Failure failure;
-    U32* reply; /* the reply, and behind it its decoded sequences */
+    Ice_String unknown; /* of Ice_Failure */
+    U32* reply;         /* the reply, and behind it its decoded sequences */
     Ice_Int replySize;
     U32 replyData[ICE_REPLY_MAX / 4];
 } Ice_Call;

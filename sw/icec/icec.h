@@ -16,8 +16,10 @@
  * Nothing is allocated: the caller owns every object named here, and keeps it while it is in use,
  * and so it does strings that are passed as `const char*`. The limits are those of ice_config.h.
  * Any task may call every function where an Ice_Os is set; a proxy object belongs to one task at a
- * time (copies are plain assignments). Names follow the paper's figures; docs/icec.md tells the
- * rest.
+ * time (copies are plain assignments). What a call returns by pointer (strings, sequences,
+ * exceptions, instances) is its task's until that task makes its next call, or serves (poll,
+ * waitForShutdown), whatever other tasks do; with Ice_ObjectPrx_setReplyBuffer, until the next call
+ * through that proxy. Names follow the paper's figures; docs/icec.md tells the rest.
  */
 #ifndef ICEC_H
 #define ICEC_H
@@ -147,7 +149,7 @@ struct Ice_ObjectPrx {
     Ice_Int timeoutMs; /* for connecting and for a reply; 10 s unless set */
     Ice_Byte mode, secure;
     Ice_Byte minor;  /* encoding of requests, 1.minor */
-    Ice_Byte status; /* Ice_Status of the call being built */
+    Ice_Byte status; /* Ice_Status of the last call */
     Ice_Byte identitySize, endpointsSize;
     U16 generation; /* of a fixed proxy's connection; 0: not fixed */
     const Ice_ContextEntry* context;
@@ -156,11 +158,14 @@ struct Ice_ObjectPrx {
     Ice_Int replySize;
     Ice_Byte identity[ICE_IDENTITY_MAX];  /* as on the wire: name, category, facet */
     Ice_Byte endpoints[ICE_ENDPOINT_MAX]; /* as on the wire: count, endpoints; or 0, adapter's id */
+    Ice_Int id;                           /* of the last call, 0: it has no reply */
+    const char* operation;                /* of the last call */
+    const char* reason;                   /* for which it failed on this side; 0: another one */
 };
 
-/* The reason of a failed call: identity, facet and operation for ICE_OBJECT_NOT_EXIST and similar,
- * the peer's text for its failures, the limit with its macro and value for ICE_MARSHAL and
- * ICE_LIMIT. */
+/* The reason of a failed call: identity, facet and operation that were called for
+ * ICE_OBJECT_NOT_EXIST and similar, the peer's text for its failures, the limit with its
+ * macro and value for ICE_MARSHAL and ICE_LIMIT. */
 typedef struct Ice_Failure {
     Ice_Identity identity;
     Ice_String facet, operation;
@@ -209,7 +214,8 @@ Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int* connectio
  * to an Ice::Locator such as IceGrid's; a direct one does not change. They stay until this is
  * called again on a fresh copy. ICE_NO_ENDPOINT: the locator knows none. */
 Ice_Status Ice_ObjectPrx_resolve(Ice_ObjectPrxPtr self, Ice_ObjectPrxPtr locator);
-/* Tells about the last call that was made through this object, until its next call. */
+/* Tells about the last call that was made through this object, until its next call; the peer's text
+ * is kept as results are, and empty afterwards. */
 void Ice_ObjectPrx_failure(const Ice_ObjectPrx* self, Ice_Failure* failure);
 
 /* The four steps of a call in generated code: begin, writes to the returned stream, invoke,

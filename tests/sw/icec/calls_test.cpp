@@ -84,6 +84,84 @@ TEST_F(Calls, FailuresOfServantsKeepTheirKind) {
     EXPECT_EQ(str(failure.unknown), Ice_Status_text(ICE_LIMIT));
 }
 
+TEST_F(Calls, AFailureIsToldOfItsProxyWhateverOthersCall) {
+    Ice_ObjectPrx nobody = here().proxy("nobody:loop"), fails = here().proxy("thing:loop"),
+                  works = fails;
+    Ice_Failure failure;
+    EXPECT_EQ(call(nobody, "first"), ICE_OBJECT_NOT_EXIST);
+    servant_.run = [](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+        return str(current.operation) == "works" ? ICE_OK : ICE_UNKNOWN_EXCEPTION;
+    };
+    EXPECT_EQ(call(fails, "fails"), ICE_UNKNOWN_EXCEPTION);
+    Ice_ObjectPrx_failure(&fails, &failure);
+    EXPECT_EQ(str(failure.unknown), Ice_Status_text(ICE_UNKNOWN_EXCEPTION));
+    Ice_ObjectPrx_failure(&works, &failure);
+    EXPECT_EQ(failure.unknown.size + failure.identity.name.size, 0) << "no call so far";
+    EXPECT_EQ(call(works, "works"), ICE_OK);
+    Ice_ObjectPrx_failure(&works, &failure);
+    EXPECT_EQ(failure.unknown.size + failure.identity.name.size + failure.operation.size, 0);
+    Ice_ObjectPrx_failure(&nobody, &failure);
+    EXPECT_EQ(str(failure.identity.name), "nobody");
+    EXPECT_EQ(str(failure.operation), "first");
+    EXPECT_EQ(failure.unknown.size, 0);
+    Ice_ObjectPrx_failure(&fails, &failure);
+    EXPECT_EQ(failure.unknown.size, 0) << "the reply is gone, and so is its text";
+}
+
+// Makes a call that returns the string `mine`, which lies in the reply.
+Ice_String askString(Ice_ObjectPrx& prx, const std::string& mine, Ice_Status expected = ICE_OK) {
+    Ice_String result = {0, nullptr};
+    Ice_InputStreamPtr is;
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(&prx, "op", ICE_RESULTS);
+    if (!os) {
+        EXPECT_EQ(prx.status, expected);
+        return result;
+    }
+    Ice_OutputStream_writeText(os, mine.c_str());
+    EXPECT_EQ(Ice_ObjectPrx_invoke(&prx, &is), ICE_OK);
+    result = Ice_InputStream_readString(is);
+    EXPECT_EQ(Ice_ObjectPrx_end(&prx, ICE_OK), expected);
+    return result;
+}
+
+Ice_Status echo(const Ice_Current&, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+    Ice_OutputStream_writeString(os, Ice_InputStream_readString(is));
+    return ICE_OK;
+}
+
+TEST_F(Calls, ResultsInAProxysOwnBufferStayUntilItsNextCall) {
+    Ice_ObjectPrx own = here().proxy("thing:loop"), other = own;
+    alignas(8) U32 buffer[32];
+    Ice_ObjectPrx_setReplyBuffer(&own, buffer, sizeof buffer);
+    servant_.run = echo;
+    Ice_String result = askString(own, "mine");
+    for (int i = 0; i < 2 * ICE_CALLS; ++i)
+        askString(other, "another one's");
+    EXPECT_EQ(str(result), "mine");
+}
+
+TEST_F(Calls, EachTasksLastResultStaysAndOneTaskMoreIsRefused) {
+    static int task;
+    Ice_Os os = Ice_Os_none;
+    os.task = [](void*) { return task; };
+    Ice_Communicator_setOs(&here().ic, &os, nullptr);
+    servant_.run = echo;
+    std::vector<Ice_ObjectPrx> proxies(ICE_CALLS + 1, here().proxy("thing:loop"));
+    std::vector<Ice_String> results;
+    for (int i = 0; i < 3 * ICE_CALLS; ++i) {
+        task = i % ICE_CALLS;
+        results.push_back(askString(proxies[task], "of call " + std::to_string(i)));
+    }
+    task = ICE_CALLS;
+    askString(proxies[task], "one too many", ICE_LIMIT);
+    for (int i = 2 * ICE_CALLS; i < 3 * ICE_CALLS; ++i)
+        EXPECT_EQ(str(results[i]), "of call " + std::to_string(i));
+    task = 0;
+    EXPECT_EQ(call(proxies[0], "a call without results lets go"), ICE_OK);
+    task = ICE_CALLS;
+    EXPECT_EQ(str(askString(proxies[task], "now there is one")), "now there is one");
+}
+
 TEST_F(Calls, CategoriesFacetsAndDefaultServantsAreFoundInIcesOrder) {
     Servant category, facet, any;
     auto& adapter = there().adapter;
@@ -265,7 +343,7 @@ TEST_F(Calls, EveryLimitIsSaidWithItsNameAndValue) {
     EXPECT_EQ(call(prx, "op"), ICE_LIMIT);
     EXPECT_EQ(reason(prx), "::Ice::MemoryLimitException: over ICE_CALLS (4)");
     for (Ice_ObjectPrx& each : busy)
-        icec_freeCall(&here().ic, each.call);
+        here().ic.calls[each.call].state = ICE_CALL_FREE;
 }
 
 } // namespace

@@ -16,7 +16,29 @@
 #include <thread>
 
 extern "C" {
+#include "Graph.h"
 #include "tcp_address.h"
+
+Ice_Status Graph_Maker_echo(Graph_MakerPtr, Ice_String text, Ice_String* result,
+                            const Ice_Current*) {
+    *result = text;
+    return ICE_OK;
+}
+Ice_Status Graph_Maker_echoAll(Graph_MakerPtr, const Graph_Texts* texts, Graph_Texts* result,
+                               const Ice_Current*) {
+    *result = *texts;
+    return ICE_OK;
+}
+Ice_Status Graph_Maker_make(Graph_MakerPtr, Graph_Node* a, Ice_Value*, Graph_Node** result,
+                            Graph_Maker_make_Exception* ex, const Ice_Current*) {
+    *result = a;
+    if (a->id % 2 == 0)
+        return ICE_OK;
+    ex->type = Graph_Maker_make_Exception::Graph_Maker_make_Failure;
+    ex->u.Failure.why = a->text;
+    ex->u.Failure.node = a;
+    return ICE_USER_EXCEPTION;
+}
 }
 
 // A resolver in place of the system's: "twofold.test" is 127.0.0.2 and 127.0.0.1, "mixed.test" is
@@ -283,6 +305,100 @@ TEST_F(Tasks, PreferIPv4AsIceDoes) {
     EXPECT_EQ(places[0].at.ss_family, AF_INET);
     EXPECT_EQ(reinterpret_cast<sockaddr_in&>(places[0].at).sin_port, htons(4061));
     EXPECT_EQ(places[1].at.ss_family, AF_INET6);
+}
+
+// What a call returned stays while other tasks call: each looks at its result when another task has
+// had one. Returns what was wrong.
+class Results : public Tasks {
+protected:
+    Results() {
+        Graph_Maker_init(&maker_);
+        EXPECT_EQ(Ice_ObjectAdapter_add(&server_->adapter, (Ice_ObjectPtr)&maker_, "maker"),
+                  ICE_OK);
+    }
+    void fromThreads(int count) {
+        std::vector<std::thread> callers;
+        for (int t = 0; t < count; ++t)
+            callers.emplace_back([this, t] { call(t); });
+        for (auto& c : callers)
+            c.join();
+    }
+
+private:
+    static constexpr int calls = 150;
+    void awaitOthers() {
+        int before = ++made_;
+        for (int i = 0; i < 10 && made_ == before; ++i)
+            std::this_thread::yield();
+    }
+    void call(int task) {
+        Graph_MakerPrx prx;
+        std::string where = "maker:tcp -h 127.0.0.1 -p " + std::to_string(server_->tcp.port);
+        ASSERT_EQ(Ice_Communicator_stringToProxy(&client_->ic, where.c_str(), &prx), ICE_OK);
+        prx.timeoutMs = 60000;
+        int wrong = 0;
+        for (int i = 0; i < calls; ++i) {
+            std::string mine = std::string(20, static_cast<char>('a' + task)) + std::to_string(i);
+            wrong += !(i % 3 == 0   ? string(prx, mine)
+                       : i % 3 == 1 ? sequence(prx, mine)
+                                    : instance(prx, mine, i));
+        }
+        EXPECT_EQ(wrong, 0);
+    }
+    bool string(Graph_MakerPrx& prx, const std::string& mine) {
+        Ice_String result;
+        Ice_Status status = Graph_MakerPrx_echo(&prx, text(mine.c_str()), &result);
+        awaitOthers();
+        return status == ICE_OK && str(result) == mine;
+    }
+    bool sequence(Graph_MakerPrx& prx, const std::string& mine) {
+        Ice_String each[] = {text(mine.c_str()), text("and"), text(mine.c_str())};
+        Graph_Texts sent = {3, each}, result;
+        Ice_Status status = Graph_MakerPrx_echoAll(&prx, &sent, &result);
+        awaitOthers();
+        return status == ICE_OK && result.size == 3 && str(result.data[0]) == mine &&
+               str(result.data[1]) == "and" && str(result.data[2]) == mine;
+    }
+    // Two instances, or, of an odd number, an exception that holds them.
+    bool instance(Graph_MakerPrx& prx, const std::string& mine, int number) {
+        Graph_Node sent, next, *result = nullptr;
+        Graph_Maker_make_Exception ex;
+        Graph_Node_init(&sent);
+        Graph_Node_init(&next);
+        sent.id = number;
+        sent.next = &next;
+        sent.has_text = 1;
+        sent.text = text(mine.c_str());
+        next.id = -number;
+        Ice_Status status = Graph_MakerPrx_make(&prx, &sent, nullptr, &result, &ex);
+        awaitOthers();
+        if (number % 2) {
+            if (status != ICE_USER_EXCEPTION || str(ex.u.Failure.why) != mine)
+                return false;
+            result = ex.u.Failure.node;
+        } else if (status != ICE_OK)
+            return false;
+        return result && result->id == number && str(result->text) == mine && result->next &&
+               result->next->id == -number;
+    }
+
+    Graph_Maker maker_;
+    std::atomic<int> made_{0};
+};
+
+TEST_F(Results, AreTheirTasksOfTwo) {
+    fromThreads(2);
+}
+
+TEST_F(Results, AreTheirTasksOfFour) {
+    fromThreads(4);
+}
+
+TEST_F(Results, AreTheirTasksWhileAnotherOneServes) {
+    std::thread receiving([this] { Ice_Communicator_waitForShutdown(&client_->ic); });
+    fromThreads(4);
+    Ice_Communicator_shutdown(&client_->ic);
+    receiving.join();
 }
 
 TEST_F(Tasks, ReceiveInTurnsWhereNobodyElseDoes) {

@@ -10,6 +10,13 @@
 namespace hw {
 namespace {
 
+bool isReserved(const std::string& name) {
+    static const std::string words = " "
+#include "hw/keywords.inc"
+        ;
+    return words.find(" " + name + " ") != std::string::npos;
+}
+
 class Mapper {
 public:
     Mapper(const Declaration& d, const Unit& unit, Diagnostics& diagnostics)
@@ -19,6 +26,9 @@ public:
     }
 
     Block run() {
+        if (isReserved(block_.name))
+            error(d_.at, "gives a module '" + block_.name +
+                             "', a reserved word of Verilog, SystemVerilog or VHDL");
         identity();
         pins();
         if (!d_.bases.empty())

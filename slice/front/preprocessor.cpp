@@ -66,6 +66,18 @@ void findFiles(Preprocessed& p) {
     }
 }
 
+// Says the number of the last line again: libmcpp counts comments at a file's end twice.
+void markEnd(Preprocessed& p, const std::string& file) {
+    size_t end = p.text.find('\n');
+    if (p.text.compare(0, 8, "#line 1 ") != 0)
+        return;
+    std::ifstream in(file, std::ios::binary);
+    size_t lines = 1;
+    for (std::string line; std::getline(in, line);)
+        ++lines;
+    p.text += "#line " + std::to_string(lines) + p.text.substr(7, end - 6);
+}
+
 // libmcpp's limit of a line, with lines joined to it by a backslash.
 constexpr size_t longestLine = 65500;
 
@@ -153,5 +165,6 @@ Preprocessed preprocess(const std::string& file, const std::vector<std::string>&
         result.messages = withoutLineEnds(messages);
     mcpp_use_mem_buffers(1); // frees them
     findFiles(result);
+    markEnd(result, file);
     return result;
 }

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # check: golden|errors|compile slice2c file.ice-or-folder work-folder sw-folder
 # golden: the C has no warnings, `messages` are those of the compiler (no file: none), and the header has the lines of `lines`, in that order.
-# UPDATE_GOLDENS=1 rewrites the messages that are expected.
+# errors: the messages are those of the lines behind `//> `. UPDATE_GOLDENS=1 rewrites the messages that are expected.
 set -eu
 kind=$1 slice2c=$2 ice=$3 work=$4 sw=$5
 rm -rf "$work"
@@ -29,8 +29,8 @@ errors)
     [ $status = 1 ] || { echo "exit status $status; expected 1" && exit 1; }
     [ "$(ls "$work")" = messages ] || { echo "files were written in spite of errors" && exit 1; }
     sed -i "s|^/[^:]*/||" "$work/messages"
-    [ -z "${UPDATE_GOLDENS:-}" ] || cp "$work/messages" "${ice%.ice}.expected"
-    diff -u "${ice%.ice}.expected" "$work/messages"
+    [ -z "${UPDATE_GOLDENS:-}" ] || { sed -i '/^\/\/> /d' "$ice" && sed 's/^/\/\/> /' "$work/messages" >>"$ice"; }
+    sed -n 's/^\/\/> //p' "$ice" | diff -u - "$work/messages"
     ;;
 compile) # every file of a folder compiles without a message, and its C without a warning
     find "$ice" -name '*.ice' | sort >"$work/list"

@@ -37,7 +37,7 @@ errors)
     sed -i "s/^[^:]*\///" "$work/messages"
     [ $status = 1 ] || { echo "exit status $status; expected 1" && exit 1; }
     [ "$(ls "$work")" = messages ] || { echo "files were written in spite of errors" && exit 1; }
-    [ -z "${UPDATE_GOLDENS:-}" ] || cp "$work/messages" "${ice%.ice}.expected"
-    diff -u "${ice%.ice}.expected" "$work/messages"
+    [ -z "${UPDATE_GOLDENS:-}" ] || { sed -i '/^\/\/> /d' "$ice" && sed 's/^/\/\/> /' "$work/messages" >>"$ice"; }
+    sed -n 's/^\/\/> //p' "$ice" | diff -u - "$work/messages"
     ;;
 esac

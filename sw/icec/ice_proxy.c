@@ -9,12 +9,10 @@
 
 #include <string.h>
 
-#define DEFAULT_TIMEOUT_MS 10000
-
 void icec_initProxy(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic) {
     memset(prx, 0, sizeof *prx);
     prx->communicator = ic;
-    prx->timeoutMs = DEFAULT_TIMEOUT_MS;
+    prx->timeoutMs = ICE_TIMEOUT_MS;
     prx->minor = 1;
     prx->endpointsSize = 2; /* no endpoints, no adapter's id */
     if (ICEC_FULL)

@@ -13,13 +13,6 @@
 
 #include "ice_stream.h"
 
-#ifndef ICE_VALUES_MAX /* instances in one message */
-#define ICE_VALUES_MAX 32
-#endif
-#ifndef ICE_VALUE_TYPES_MAX /* different types among them, their bases included */
-#define ICE_VALUE_TYPES_MAX 16
-#endif
-
 typedef struct Ice_ValueType Ice_ValueType;
 
 struct Ice_Value;

@@ -4,7 +4,9 @@ import re
 from pathlib import Path
 
 HDL = Path(__file__).parent.parent / "slice/hw/keywords.inc"
-OTHERS = "double false float long object operation private public short template test throws value work"  # of C, Slice and this project
+# Of C, Slice and this project.
+OTHERS = """double false float long object operation private public
+  short template test throws value work"""
 RESERVED = set(" ".join(re.findall('"(.*)"', HDL.read_text())).split() + OTHERS.split())
 
 REFUSAL = "is a reserved word of Verilog, VHDL, C, Slice or this project"

@@ -9,6 +9,7 @@ import re
 import secrets
 from pathlib import Path
 
+from cli import keys
 from cli.options import (COUNT, FILE, FOLDER, FRAME, KEY_FILE, PATH, SEED, SHARE, SWITCH, TEXT, UCOS2, WORDS, Option, matching, number,
                          one_of)
 from cli.runner import Stop, say
@@ -152,7 +153,8 @@ def take_key(values, build):
     """The demo key, made once, for a mission that is neither open nor has a key."""
     if values.open or values.key or values.app != "uav":
         return
-    values.key = str(build.folder.parent / "demo.key")
+    keys.rescue(build.folder.parent)
+    values.key = str(keys.folder() / "demo.key")
     if make_key(values.key):
         say(f"made a demo key, {values.key}: ground and vehicle share it; KEY=file takes yours, OPEN=1 none")
 

@@ -8,7 +8,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from cli import flight
+from cli import flight, keys
 from cli.build_folder import BuildFolder, configured
 from cli.command import command
 from cli.options import BUILD, FLIGHT, FOLDER, JOBS, MINUTES, PATH, SECONDS, SEED, Option
@@ -55,7 +55,8 @@ def minimal(values, build, held):
 def update(values, build, held):
     """Sends firmware or a bitstream to a vehicle with the flash OUT/flash.bin, and its FPGA's OUT/fpga.bin; makes both if missing."""
     out, pack = Path(values.out), build / "sw/target/pack_update"
-    signing = build / "update.key"  # private, made at first use
+    keys.rescue(build.folder)
+    signing = keys.folder() / "update.key"  # private, made at first use
     if not (out / "flash.bin").exists():
         run([pack, "vehicle", build / "firmware/loader.elf", flight.firmware(values, build), 1, signing, out / "flash.bin"])
     if not (out / "fpga.bin").exists():  # a stand-in for ISE's golden bitstream

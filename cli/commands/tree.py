@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 from cli import command as doors
-from cli import flight, version
+from cli import flight, keys, version
 from cli.command import COMMANDS, command
 from cli.options import PATH, SWITCH, TEXT, Option
 from cli.runner import Stop, run, say
@@ -32,24 +32,13 @@ doors.ALIASES["setup-tests"] = ("setup", "WITH_TESTS")
 
 @command("clean", [Option("list", SWITCH, "only says what would be removed")], make="clean", brief="clean --list")
 def clean(values):
-    """remove what was built, but for keys"""
-    keys = sorted(Path("build").rglob("*.key"))
-    for key in keys:
-        say(f"kept: {key}")
+    """remove what was built; keys are elsewhere"""
+    if not values.list:
+        keys.rescue("build")
     for path in sorted(Path("build").glob("*")):
-        if path not in keys:
-            say(f"removed: {path}" if not values.list else f"would be removed: {path}")
-    if values.list:
-        return
-    kept = {parent for key in keys for parent in (key, *key.parents)}
-    for folder, folders, files in os.walk("build"):
-        for name in [*files, *folders]:
-            path = Path(folder, name)
-            if path not in kept:
-                shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
-        folders[:] = [name for name in folders if Path(folder, name) in kept]
-    if not keys and Path("build").exists():
-        Path("build").rmdir()
+        say(f"would be removed: {path}" if values.list else f"removed: {path}")
+    if not values.list:
+        shutil.rmtree("build", ignore_errors=True)
 
 
 @command("commands", [Option("brief", SWITCH, "runs the brief form of each to its end, writes build/commands.md and .json"),

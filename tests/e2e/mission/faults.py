@@ -66,7 +66,8 @@ class Mission:
         self.begin = time.monotonic()
         self.run = subprocess.Popen(
             [*(word.replace("$0", out) for word in prefix), source + "/icesoc", "run", "--built", "--build", build, "--image", IMAGE, "--size", "48x32", "--guard", "20",
-             "--out", out, *options], stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True)
+             "--out", out, *options], stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True,
+            env={**os.environ, "XDG_CONFIG_HOME": build + "/config"})  # keys of the tests' own
 
     def all(self):
         return [self.run.pid] + children(self.run.pid)

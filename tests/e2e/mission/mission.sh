@@ -6,6 +6,8 @@ source=$1 build=$2 case=$3 out=$4
 rm -rf "$out"
 mkdir -p "$out"
 image=/usr/share/xplanet/images/earth.jpg
+export XDG_CONFIG_HOME="$build/config" # keys of the tests' own
+keys=$XDG_CONFIG_HOME/icesoc
 # The modem's default guard time of a second passes four times: only cases that test it use it.
 guard=20
 case $case in plain | stopped) guard=1000 ;; esac
@@ -53,8 +55,8 @@ plain) # secure by default; only the user may read its recording and its key
     grep -q '121 corners leave much of the core untried: make ip-test IP=vision' "$out/log" || { cat "$out/log" && exit 1; }
     # It waits for the modem's set-up first, then for the vehicle.
     grep -o 'modem ready on .* after [0-9]* ms\|link connecting\|link up, secure\|the UAV has .* s to answer' "$out/log" | sed 's/ .*//' | tr '\n' ' ' | grep -q '^the modem link link ' || { cat "$out/log" && exit 1; }
-    grep -q "\"key\":\"$(dirname "$build")/demo.key\"" "$out/flight.jsonl"
-    [ "$(stat -c %a "$out/flight.jsonl" "$(dirname "$build")/demo.key" | sort -u)" = 600 ]
+    grep -q "\"key\":\"$keys/demo.key\"" "$out/flight.jsonl"
+    [ "$(stat -c %a "$out/flight.jsonl" "$keys/demo.key" | sort -u)" = 600 ]
     ;;
 open) # without encryption, by an option
     run "$out" --image $image --open; check_output "$out"
@@ -136,7 +138,7 @@ update) # new firmware: a wrong file, a vehicle with another key, a loss of powe
     cmp "$out/flash.bin" "$out/flash.was"
     head -c 50000 "$out/new.update" >"$out/cut.update"
     fails_with 'is cut short' "$source/sw/ground/clients/update.py" "$out/cut.update" --slice "$source/sw/apps/uav/Update.ice"
-    "$build/sw/target/pack_update" vehicle "$build/firmware/loader.elf" "$build/firmware/uav.elf" 1 "$build/update.key" "$out/flash.bin"
+    "$build/sw/target/pack_update" vehicle "$build/firmware/loader.elf" "$build/firmware/uav.elf" 1 "$keys/update.key" "$out/flash.bin"
     "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --cpu m3 --flash "$out/flash.bin" --duration 8 -- \
         "$source/sw/ground/clients/update.py" "$out/new.update" --device '{device}' --plugin "$build/ground" \
         --slice "$source/sw/apps/uav/Update.ice" >"$out/log" 2>&1 || true
@@ -149,7 +151,7 @@ update) # new firmware: a wrong file, a vehicle with another key, a loss of powe
     done
     # 256 KiB into three full sectors, within 30 s of air.
     "$source/tests/e2e/mission/big_firmware.sh" "$build" "$out/big.elf" 262144
-    "$build/sw/target/pack_update" vehicle "$build/firmware/loader.elf" "$build/firmware/uav.elf" 1 "$build/update.key" "$out/flash.bin"
+    "$build/sw/target/pack_update" vehicle "$build/firmware/loader.elf" "$build/firmware/uav.elf" 1 "$keys/update.key" "$out/flash.bin"
     dd if=/dev/urandom of="$out/flash.bin" bs=128K seek=4 count=3 conv=notrunc 2>/dev/null
     run "$out" --image $image --cpu m3 --update "$out/big.elf" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }
     says 'runs and is confirmed'
@@ -170,7 +172,7 @@ update) # new firmware: a wrong file, a vehicle with another key, a loss of powe
     cp "$out/new.bin" "$out/damaged.bin"
     printf x | dd of="$out/damaged.bin" bs=1 seek=9000 conv=notrunc 2>/dev/null
     fails_with 'the FPGA did not take it' run "$out" --image $image --cpu m3 --update "$out/damaged.bin"
-    "$build/sw/target/pack_update" bitstream "$out/new.bin" "$(date +%s)" "$build/update.key" "$out/new.update"
+    "$build/sw/target/pack_update" bitstream "$out/new.bin" "$(date +%s)" "$keys/update.key" "$out/new.update"
     "$build/testbench/sim/icesoc-sim" --image $image --size 96x64 --out "$out" --cpu m3 --flash "$out/flash.bin" --fpga-flash "$out/fpga.bin" -- \
         "$source/sw/ground/clients/update.py" "$out/new.update" --rehearse --device '{device}' --plugin "$build/ground" \
         --slice "$source/sw/apps/uav/Update.ice" >"$out/log" 2>&1 || { cat "$out/log" && exit 1; }

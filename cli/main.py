@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from cli import command, version
-from cli.commands import flights, core, synth, contract, build, regression, checks, tree  # noqa: F401 (each declares its own)
+from cli.commands import flights, core, synth, contract, build, regression, checks, fresh, tree  # noqa: F401 (each declares its own)
 from cli.runner import Interrupted, Stop, hear_signals, say, warn
 
 

@@ -10,8 +10,6 @@
 #include "measured_flight.h"
 #include <array>
 #include <cstdio>
-#include <map>
-#include <unordered_map>
 
 namespace {
 
@@ -139,52 +137,6 @@ void measureCalls(MeasuredFlight& f, int calls, const std::string& what, double 
     say(what + ": the platform's share of the round trip", 100 * aCall / hclk / aTrip, "%", share);
 }
 
-// A call's cycles by function, without those of its callees; the table is printed.
-void profileCalls(MeasuredFlight& f, int calls) {
-    struct Cost {
-        double cycles = 0;
-        unsigned entered = 0;
-    };
-    const ElfImage& image = *f.machine.stm32().image();
-    std::map<std::string, Cost> costs;
-    std::unordered_map<uint32_t, std::pair<Cost*, bool>> places; // and whether a function begins
-    auto spend = [&](double share) {
-        auto before = std::make_shared<double>(f.awake());
-        auto last = std::make_shared<Cost*>(nullptr);
-        f.cpu().listener.instruction = [&, share, before, last](uint32_t address) {
-            double now = f.awake();
-            if (*last)
-                (*last)->cycles += share * (now - *before);
-            *before = now;
-            auto [place, isNew] = places.try_emplace(address);
-            if (isNew) {
-                std::string name = image.functionAt(address);
-                name = name.substr(0, name.find('+'));
-                place->second = {&costs[name], image.has(name) && image.symbol(name) == address};
-            }
-            *last = place->second.first;
-            (*last)->entered += place->second.second && share > 0;
-        };
-    };
-    double began = f.seconds();
-    spend(1.0 / calls);
-    f.inTurn(calls, 30, [&](int number) { f.ground.call(number, "uav", "isAlive", 0, {7, 0}); });
-    spend(-1.0 / calls); // what an idle link takes in that time does not count
-    f.wait(f.seconds() - began);
-    stopListening(f);
-    std::vector<std::pair<double, std::string>> sorted;
-    double all = 0;
-    for (const auto& [name, cost] : costs)
-        sorted.emplace_back(cost.cycles, name), all += cost.cycles;
-    std::sort(sorted.rbegin(), sorted.rend());
-    std::printf("\nA call, by function: cycles of its own, share, times entered (of %.0f cycles)\n",
-                all);
-    for (size_t i = 0; i < sorted.size() && i < 40; ++i)
-        std::printf("  %-36s %8.0f %6.1f %% %8.1f\n", sorted[i].second.c_str(), sorted[i].first,
-                    100 * sorted[i].first / all, 1.0 * costs[sorted[i].second].entered / calls);
-    std::printf("\n");
-}
-
 void measureStream(MeasuredFlight& f, const std::string& what) {
     // Floods the vehicle, a window of the link and more in the queue, with one-way requests of 1 KB
     // to no object: link and IceC's dispatcher work, no servant, no reply.
@@ -279,16 +231,13 @@ int main(int argc, char** argv) {
         }
         MeasuredFlight f(elf, hclk / (SocModel::clkHz * hclkPerClk));
         measureCalls(f, figures.brief ? 1 : 20, "call", 11970, 1);
-        if (!figures.brief) {
-            profileCalls(f, 20);
+        if (!figures.brief)
             measureStream(f, "full stream");
-        }
         measureStacks(f);
         if (!figures.brief) {
             MeasuredFlight keyed(elf, hclk / (SocModel::clkHz * hclkPerClk),
                                  std::vector<uint8_t>(LINK_KEY_BYTES, 1));
             measureCalls(keyed, 20, "call under a key", 0, 2);
-            profileCalls(keyed, 20);
             measureStream(keyed, "full stream under a key");
         }
     });

@@ -5,8 +5,8 @@
     pages.py TREE
 
 A link leads to a file of the repository, and to a heading of it where it names one, a path in
-backquotes exists, lines outside of tables and code have at most 100 columns, docs/architecture.md
-lists every page of docs/, and figures that README.md tells are those of docs/figures.md and
+backquotes exists, lines outside of tables and code have at most 100 columns, an empty line ends a
+table, docs/architecture.md lists every page of docs/, and figures that README.md tells are those of docs/figures.md and
 synth/baseline.json. Exit status 1, and a line for each that does not hold.
 """
 import json
@@ -32,13 +32,16 @@ def anchors(page):
 
 
 def check(tree, page, files):
-    code = False
+    code, before = False, ""
     for number, line in enumerate(open(os.path.join(tree, page)), 1):
         line = line.rstrip("\n")
         if re.match(r"\s*```", line):
             code = not code
         if code:
             continue
+        if before.startswith("|") and line and not line.startswith("|"):
+            yield f"{page}:{number}: a line right behind a table is shown as its last row"
+        before = line
         if len(line) > 100 and not line.startswith("|") and not re.match(r"\s*[`\[!]\S*$", line):
             yield f"{page}:{number}: {len(line)} columns"
         for target in re.findall(r"\]\(([^)#\s]+)[^)]*\)", line):

@@ -16,7 +16,7 @@ TREE = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TREE))
 from cli import command, flight, main  # noqa: E402, F401 (main declares all commands)
 from cli.commands.tree import manual  # noqa: E402
-from cli.options import SWITCH  # noqa: E402
+from cli.options import FLIGHT, SWITCH  # noqa: E402
 
 
 def clean(**more):
@@ -74,7 +74,9 @@ class Values(Work):
         for each in command.COMMANDS.values():
             if not each.make:
                 continue
-            options = [o for o in each.options if o.listed and o.kind is not SWITCH and o.kind.metavar in samples and not o.positional and o.name != "loss"]
+            options = [o for o in each.options if o.listed and o.kind is not SWITCH and o.kind.metavar in samples
+                       and not o.positional and o.kind is not FLIGHT
+                       and o.name not in ("loss", "interference")]
             words = [word for o in options for word in (f"--{o.name}", *samples[o.kind.metavar].split())]
             given = each.values(vars(each.parser().parse_args(words)), None, os.getcwd())
             variables = {o.variable: samples[o.kind.metavar] for o in options}

@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
-# Of the shapes that WaveDrom brings along a drawing keeps those that it uses. A page may be dark: a drawing is not.
+# A drawing keeps only the shapes of WaveDrom that it uses. Its background is light, also on a dark page.
 PAGE = """<!doctype html><meta charset="utf-8"><body><script src="%s/wavedrom.unpkg.min.js"></script><script>
 const draw = wave => {
     const tree = wavedrom.renderAny(0, wave, wavedrom.waveSkin), text = wavedrom.onml.stringify(tree);

@@ -53,7 +53,7 @@ def aes(core):
 
 def uart(core):
     core.set("SETUP", 20)  # clocks a bit
-    core.wait(0)           # what was before
+    core.wait(0)           # takes earlier events
     core.set("TXREG", 0xA5)
     events = core.wait(1000)
     return (events, core.get("RXREG") & 0x1FF), (["CORE"], 0xA5)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # orders: folder-of-a-core...   Tests these cores, builds the chip of cores.list in three orders (as listed, backwards, shuffled by
-# SEED), and flies each: every core is called from Python by radio. CHIP=1: and what each costs in the chip as listed.
+# SEED), and flies each: every core is called from Python by radio. CHIP=1: also prints the cost of each in the listed chip.
 set -eu
 case ${1:-} in '' | -h | --help) sed -n '3,4s/^# //p' "$0" && exit 0 ;; esac
 here=$(cd "$(dirname "$0")" && pwd)
@@ -15,7 +15,7 @@ for folder in "$@"; do
     [ ! -f "$folder/$name.ice" ] || slices="$slices $folder/$name.ice"
 done
 mkdir -p "$build"
-echo "1 servo.fault_i 0" >"$build/pins" # writes what the outputs do
+echo "1 servo.fault_i 0" >"$build/pins" # the simulator then logs the outputs
 sed 's/#.*//; /^ *$/d' "$here/cores.list" >"$build/listed.list"
 tac "$build/listed.list" >"$build/backwards.list"
 awk -v seed="$seed" 'BEGIN { srand(seed) } { print rand() "\t" $0 }' "$build/listed.list" | sort | cut -f2- >"$build/shuffled.list"

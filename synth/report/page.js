@@ -4,7 +4,7 @@
 const byId = id => document.getElementById(id);
 const data = JSON.parse(byId("data").textContent), usable = data.designs.filter(d => d.figures);
 const share = (part, whole) => (100 * part / whole).toFixed(1) + " %";
-// The figures of the sources of now: measured, or accepted of the same sources; nothing of a design that has neither.
+// Today's figures: measured, or accepted for the same sources; none for a design that has neither.
 const shown = d => d.figures ?? (d.state === "as accepted" ? d.accepted : undefined);
 const signed = n => n > 0 ? "+" + n : String(n);
 const sum = values => values.reduce((a, b) => a + b, 0);
@@ -40,7 +40,7 @@ function showVerdict() {
     ...failures.map(f => element("p", f, "bad")), ...notes.map(n => element("p", n, "soft")));
   byId("about").textContent = `${data.chip.name}, ${data.yosys}, commit ${data.commit || "unknown"}; designs: ${data.states}`;
 }
-// How much the chip, or the largest design, fills of it, beside the paper's own.
+// The share of the FPGA that the chip, or the largest design, fills, beside the paper's.
 function showChip() {
   const d = usable.find(d => d.limits.lut === data.chip.lut) ?? usable.reduce((a, b) => b.figures.lut > a.figures.lut ? b : a), f = d.figures;
   byId("chip-title").textContent = `${data.chip.name}, filled by ${d.name}`;
@@ -89,7 +89,7 @@ function showDesigns() {
   }
   for (const [folder, members] of [...folders].sort()) rows.push({ folder, members });
   const column = (title, value, cell) => [title, r => r.members ? Math.max(...r.members.map(value)) : value(r), r => r.members ? "" : (cell ?? value)(r)];
-  // A figure, and nothing where it is not known of the sources of now.
+  // A figure, or nothing if it is not known for today's sources.
   const count = (title, key, cell) => column(title, d => shown(d)?.[key] ?? 0, d => shown(d)?.[key] === undefined ? "" : cell ? cell(shown(d)) : shown(d)[key]);
   const change = key => {
     const [title, by, cell] = changes("change", d => d.accepted && shown(d) ? shown(d)[key] - d.accepted[key] : 0, (n, d) => shown(d)[key] > d.budget[key]);
@@ -204,7 +204,7 @@ function showDifference() {
   const pair = (title, key, gone = "") => [[title, r => r[2]?.[key] ?? gone], changes("change", r => (r[2]?.[key] ?? 0) - (r[1]?.[key] ?? 0))];
   const rows = (then, now, keys) => [...new Set([...Object.keys(then), ...Object.keys(now)])].sort().map(name => [name, then[name], now[name]])
     .filter(([, x, y]) => keys.some(key => (x?.[key] ?? 0) !== (y?.[key] ?? 0)));
-  // Of now, nothing is told of a design whose figures are not known: it is not gone.
+  // A design without known figures of today is left out of the difference: it is not gone.
   const isKnown = ([name, x, y]) => byId("to").value < all.length - 1 || y || !data.designs.some(d => d.name === name);
   table(byId("difference"), [["design", r => r[0]], ...pair("LUT", "lut", "gone"), ...pair("FF", "ff"), ...pair("slices", "slices")], rows(a, b, ["lut", "ff", "slices"]).filter(isKnown));
   byId("difference-inside").textContent = `Instances of ${picked.name}`;

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <string>
 
-// Returns what is in a file. Throws std::runtime_error if it cannot be read.
+// Returns the contents of a file. Throws std::runtime_error if it cannot be read.
 inline std::string readFile(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     if (!in)

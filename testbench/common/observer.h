@@ -28,7 +28,7 @@
 
 template <class Module> class Observer {
 public:
-    // Prepares the recording; to be called before the model is made.
+    // Prepares the recording; call it before the model is made.
     explicit Observer(VerilatedContext& context) : context_(context) {
         const uint64_t seed = environmentNumber("CDC_SEED", 0);
         const char* arguments[] = {"", std::getenv("UNGATED") ? "+ungated" : "", "+cdc_random"};
@@ -38,7 +38,7 @@ public:
         context_.traceEverOn(true);
 #endif
     }
-    // Ends the recording; to be called before the model, which owns the counters, is destroyed.
+    // Ends the recording; call it before the model, which owns the counters, is destroyed.
     void finish() {
 #ifdef ICESOC_TRACE
         if (wave_)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// registers_apart: what is written to two registers of a third-party core is read back from both,
+// registers_apart: values written to two registers of a third-party core are read back from both,
 // as far as they can be written. It finds a lost write, and an address whose words are taken for
 // bytes or bytes for words.
 

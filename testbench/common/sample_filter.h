@@ -52,7 +52,7 @@ protected:
             for (bool write : {false, true})
                 EXPECT_EQ(core_.bus_.transfer(write, word, 0).error, word > last) << word;
     }
-    // `memory`: the register that says where the buffers are.
+    // `memory`: the register with the address of the buffers.
     void expectBuffersAnywhere(unsigned memory, Random& random) {
         for (int round = 0; round < 12; ++round) {
             core_.memoryAt_ = random.next() & ~1023u;

@@ -99,7 +99,7 @@ def register(block, word, value, seen):
 
 
 def heading(folder):
-    """What was asked for of this flight (flight.json) and is not so by default."""
+    """The options of this flight (flight.json) that are not the defaults."""
     try:
         with open(SCHEMA) as schema, open(folder + "/flight.json") as flight:
             fields, flight = json.load(schema)["properties"], json.load(flight)

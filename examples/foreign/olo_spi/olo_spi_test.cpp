@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// olo_spi_test: a slave that gives back what it gets, and the clock that it sees.
+// olo_spi_test: a slave that echoes its input, and the clock at its pins.
 
 #include "Volo_spi_slot.h"
 #include "olo_spi_proxy.h"

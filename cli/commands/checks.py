@@ -6,7 +6,7 @@ from pathlib import Path
 
 from cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
 from cli.command import GROUPS, command
-from cli.options import BLOCK, BUILD, COUNT, FRESH, JOBS, MINUTES, NAME, SEED, Option
+from cli.options import BLOCK, BUILD, COUNT, FRESH, JOBS, MINUTES, NAME, SEED, WORDS, Option
 from cli.runner import Stop, output, run, say, warn
 
 GROUPS["check"] = "what takes minutes to hours"
@@ -27,11 +27,15 @@ def proofs(values):
     say(f"{len(spent)} proofs, {sum(spent):.0f} s of a processor")
 
 
-@command("check sanitizers", [BUILD, JOBS], make="sanitizers", brief="check sanitizers")
+@command("check sanitizers", [Option("kinds", WORDS, "address or thread", ["address", "thread"]), BUILD, JOBS], make="sanitizers",
+         brief="check sanitizers --kinds address")
 def sanitizers(values):
     """tests of IceC, engine, gateway and plugin with AddressSanitizer and with ThreadSanitizer; fuzzer of the debugger's stub"""
-    build, status = configured(values, tests=True), 0
-    for kind, option in (("sanitized", "ON"), ("thread", "thread")):  # build/sanitized is that of the tests
+    build, status, folders = configured(values, tests=True), 0, {"address": ("sanitized", "ON"), "thread": ("thread", "thread")}
+    for name in values.kinds:  # build/sanitized is that of the tests
+        if name not in folders:
+            raise Stop(f"there is no sanitizer '{name}': address, thread", 2)
+        kind, option = folders[name]
         folder = BuildFolder(f"build/{kind}", values)
         folder.configure(f"-DSANITIZE={option}", f"-DROOMS={ROOMS_OF_PROGRAMS}")
         environment = {"ASAN_OPTIONS": "detect_leaks=0", "TSAN_OPTIONS": f"suppressions={Path('tests/sw/ground/threads.supp').absolute()}"}
@@ -45,7 +49,7 @@ def sanitizers(values):
 
 
 @command("check mutants", [BLOCK, Option("draw", COUNT, "mutants that Yosys draws, for each proof, in place of those of tests/mutants"), SEED,
-                           FRESH, BUILD, JOBS], make="mutants", brief="check mutants --block bus",
+                           FRESH, BUILD, JOBS], make="mutants", brief="check mutants --block bus/axi_late_response",
          examples=["check mutants --block bus", "check mutants --draw 20"])
 def mutants(values):
     """plant every seeded bug of tests/mutants, expect its test to fail"""
@@ -59,7 +63,7 @@ def mutants(values):
 @command("check faults", [Option("moments", COUNT, "of each fault and seed", 10), SEED,
                           Option("seeds", COUNT, "how many seeds, the first of which is --seed", 1),
                           Option("name", NAME.kind, "faults whose name contains this, such as killed", ""), BUILD, JOBS],
-         make="faults", brief="check faults --moments 1", examples=["check faults --name killed --moments 2"])
+         make="faults", brief="check faults --name killed --moments 1", examples=["check faults --name killed --moments 2"])
 def faults(values):
     """kill, stop and starve each process of a mission at moments drawn from a seed, expect docs/regression.md"""
     build = configured(values)
@@ -74,7 +78,7 @@ def faults(values):
 
 @command("check soak", [Option("minutes", MINUTES, "of a processor", 4.0),
                         Option("fuzzed", COUNT, "bytes of noise into the modem controller; ten times as many into link and engine", 1000000), SEED,
-                        BUILD, JOBS], make="soak", brief="check soak --minutes 0.2 --fuzzed 100000", examples=["check soak --minutes 60"])
+                        BUILD, JOBS], make="soak", brief="check soak --minutes 0.01 --fuzzed 1000", examples=["check soak --minutes 60"])
 def soak(values):
     """endurance of the radio: messages and stock Ice's calls, bad weather, reboots, noise
 
@@ -96,7 +100,8 @@ def lcov(work, *words):
         return run(["lcov", "--quiet", *words], check=False, stderr=log)
 
 
-@command("check coverage", [BUILD, JOBS], make="coverage", brief="check coverage")
+@command("check coverage", [Option("name", NAME.kind, "only tests of which a part of the name matches this; no gate holds then", ""),
+                            BUILD, JOBS], make="coverage", brief="check coverage --name ^test_bus_decoder[.]")
 def coverage(values):
     """lines, branches and toggles that the tests reach, write build/coverage/html; exit status 1: below tests/regress/coverage_gates.json
 
@@ -109,7 +114,13 @@ def coverage(values):
     counted.configure("-DCOVERAGE=ON")
     tree = output([build / "tests/regress/regress", "--tree", "bus hdl ip slice sw testbench tests"])
     commit = (output(["git", "describe", "--always", "--dirty=+", "--abbrev=10"], check=False, stderr=-3) or "unknown").strip()
-    counted.ninja()
+    gates = Path("tests/regress/coverage_gates.json")
+    if values.name:
+        run([build / "tests/regress/regress", "--prepare", "--build", work, "--name", values.name])
+        gates = work / "no_gates.json"
+        gates.write_text('{"gates": {}, "explained": []}')
+    else:
+        counted.ninja()
     points = work / "points"
     for folder in (points, work / "html"):
         shutil.rmtree(folder, ignore_errors=True)
@@ -119,7 +130,8 @@ def coverage(values):
     say("coverage: running the tests")
     # Tests that fail still count: the regression reports them. Fuzzers have their own counts; e2e.cores builds its own chip.
     with open(work / "ctest.log", "w") as log:
-        words = ["ctest", "--test-dir", work, "-j", values.jobs, "-L", "rtl|firmware|vhdl|models|slice|interop|e2e", "-E", "NOT_BUILT|^fuzz|^e2e.cores"]
+        words = ["ctest", "--test-dir", work, "-j", values.jobs, "-L", "rtl|firmware|vhdl|models|slice|interop|e2e", "-E", "NOT_BUILT|^fuzz|^e2e.cores",
+                 *(["-R", values.name] if values.name else [])]
         if run(words, check=False, stdout=log, stderr=log, env={"COVERAGE_DIR": points.absolute()}):
             warn(f"coverage: some tests failed, see {work}/ctest.log")
     say("coverage: merging")
@@ -144,7 +156,7 @@ def coverage(values):
              if (work / f"{name}.info").exists() and (work / f"{name}.info").stat().st_size}
     run(["lcov", "--quiet", *(word for info in infos.values() for word in ("--add-tracefile", info)), "--output-file", work / "merged.info"])
     run(["genhtml", "--quiet", "--title", "IceSoC", "--output-directory", work / "html", work / "merged.info"])
-    status = run([build / "tests/regress/coverage", "--gates", "tests/regress/coverage_gates.json", "--verilator", work / "rtl.dat",
+    status = run([build / "tests/regress/coverage", "--gates", gates, "--verilator", work / "rtl.dat",
                   *(word for name, info in infos.items() if name != "rtl_own" for word in ("--info", info)), "--out", work / "summary.json"],
                  check=False)
     (work / "tree").write_text(tree)
@@ -154,10 +166,14 @@ def coverage(values):
     return status
 
 
-@command("bench", [BUILD, JOBS], make="bench", brief="test --name ^bench[.]", examples=["bench"])
+@command("bench", [Option("only", WORDS, "these alone, without docs/figures.md"), BUILD, JOBS], make="bench", brief="bench --only air",
+         examples=["bench", "bench --only air plugin"])
 def bench(values):
     """measure everything that has a figure (tests/bench), write build/bench/*.json and docs/figures.md"""
     build = configured(values)
+    if values.only:
+        Path("build/bench").mkdir(parents=True, exist_ok=True)
+        return build.ninja(*(f"measure_{name}" for name in values.only), check=False, jobs=1)
     build.ninja("bench_programs", "regress", "size")
     folder = Path("build/bench")
     shutil.rmtree(folder, ignore_errors=True)

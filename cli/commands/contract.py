@@ -18,7 +18,7 @@ def contract_diff(values):
 
 @command("contract from-rdl", [Option("rdl", FILE, "the SystemRDL file", "", positional=True),
                                Option("out", FOLDER, "folder that they are written to", "")], make="from-rdl",
-         brief="contract from-rdl tests/bus/contract/lamp.rdl --out build/brief/rdl", examples=["contract from-rdl spi.rdl --out ip/spi"])
+         brief="contract from-rdl build/main/gen/icesoc.rdl --out build/brief/rdl", examples=["contract from-rdl spi.rdl --out ip/spi"])
 def from_rdl(values):
     """register descriptions (*.regs.json) of SystemRDL"""
     return run(["bus/rdl.py", values.rdl, values.out], check=False)

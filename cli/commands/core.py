@@ -71,7 +71,7 @@ def fill(template, folder, name):
 
 @command("core new", [NAME, Option("lang", one_of("verilog", "vhdl"), "the core's language"),
                       Option("ice", FILE, "Slice file with its interface; without: an example"), BUILD, JOBS], make="new-ip",
-         brief="core new brief_core --lang vhdl", examples=["core new low_pass --lang vhdl", "core new lamp --lang verilog --ice lamp.ice"])
+         brief=("core new brief_core --lang vhdl", "core remove brief_core --force"), examples=["core new low_pass --lang vhdl", "core new lamp --lang verilog --ice lamp.ice"])
 def new(values):
     """begin a core: writes ip/NAME with interface, core and test, which builds and passes"""
     name, lang = values.name, values.lang
@@ -118,8 +118,8 @@ def foreign_words(values):
     Option("params", WORDS, "its parameters, such as depth=16"), Option("defines", WORDS, "its macros, such as wide"),
     Option("clock", COUNT, "Hz of a clock of its own"), Option("library", TEXT, "library of its VHDL", ""),
     Option("address", one_of("words", "bytes"), "what its address counts; found out, unless given"), BUILD, JOBS],
-    make="new-foreign", brief="core foreign brief_foreign --top req_words --bus own --files tests/ip/new_foreign/req_words.v "
-    "--ports select=req write=wr address=where wdata=value rdata=held ack=gnt",
+    make="new-foreign", brief=("core foreign brief_foreign --top req_words --bus own --files tests/ip/new_foreign/req_words.v "
+    "--ports select=req write=wr address=where wdata=value rdata=held ack=gnt", "core remove brief_foreign --force"),
     examples=["core foreign my_uart --top wbuart --bus wishbone --files wbuart.v ufifo.v"])
 def foreign_core(values):
     """put a third-party core into a slot: writes ip/NAME"""
@@ -232,7 +232,7 @@ def users_of(name):
 
 
 @command("core remove", [NAME, Option("force", SWITCH, "with changes that are not committed"), BUILD, JOBS], make="rm-ip",
-         brief="core remove brief_core --force", examples=["core remove low_pass"])
+         brief=("core new brief_gone --lang verilog", "core remove brief_gone --force"), examples=["core remove low_pass"])
 def remove(values):
     """take a core away: its folder and its line in ip/cores.list"""
     name, core = values.name, Path("ip", values.name or ".")

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """flights: fly the mission, fly it again, look at it in a debugger; send new firmware; make a key; fly for hours."""
-import contextlib
 import re
 import signal
 import sys
@@ -93,8 +92,10 @@ def mission(values, build, held):
             say(f"Pictures and report: {out}/before.png {out}/after.png {out}/report.md")
         if status == 0 and values.live:
             say("The page stays until Ctrl-C.")
-            with contextlib.suppress(Interrupted):
+            try:
                 wait(shown)
+            except Interrupted:
+                say("The page is closed.")
     except Interrupted:
         end(sim)
         raise
@@ -187,7 +188,7 @@ def key(values):
 
 
 @command("fly", [Option("minutes", MINUTES, "of simulated time; an hour of it is minutes of a processor", 4.0), SEED, BUILD, JOBS], make="fly",
-         brief="fly --minutes 0.1", examples=["fly --minutes 60", "fly --seed 7"])
+         brief="fly --minutes 0.01", examples=["fly --minutes 60", "fly --seed 7"])
 def fly_for_long(values):
     """a long flight: stock Ice's calls now and then, loss, reboots of UAV, modems and ground"""
     build = configured(values, "test_chip_soak")

@@ -7,8 +7,8 @@ import time
 from pathlib import Path
 
 from cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
-from cli.command import COMMANDS, command
-from cli.options import (BLOCK, BUILD, COUNT, FRESH, JOBS, LABEL, NAME, SEED, SWITCH, TESTS, TEXT, UCOS2, Option, matching, number)
+from cli.command import command
+from cli.options import (BLOCK, BUILD, COUNT, FRESH, JOBS, LABEL, NAME, SEED, SWITCH, TESTS, TEXT, UCOS2, WORDS, Option, matching, number)
 from cli.runner import Stop, commit, lock, output, run, say
 
 WAVES = Option("waves", number(0), "failures of which a waveform is written", 3)
@@ -70,8 +70,9 @@ def last_good(test):
 
 @command("bisect", [Option("test", TEXT, "the test, as CTest names it", "", positional=True),
                     Option("good", TEXT, "a commit that it passes at; the last one noted", ""),
-                    Option("bad", TEXT, "a commit that it fails at", "HEAD"), SEED, BUILD, JOBS],
-         make="bisect", brief="bisect none --good HEAD", examples=["bisect test_fifo.Fifo.Wraps --good v1"])
+                    Option("bad", TEXT, "a commit that it fails at", "HEAD"),
+                    Option("list", SWITCH, "only lists the commits that would be searched"), SEED, BUILD, JOBS],
+         make="bisect", brief="bisect test_fifo.Fifo.Wraps --good HEAD~3 --list", examples=["bisect test_fifo.Fifo.Wraps --good v1"])
 def bisect(values):
     """find the commit since which a test fails, in a checkout of its own
 
@@ -84,6 +85,8 @@ def bisect(values):
     good = commit(values.good or last_good(test), "GOOD")
     if run(["git", "merge-base", "--is-ancestor", good, bad], check=False):
         raise Stop(f"{values.good or good} does not lead to {values.bad}", 2)
+    if values.list:
+        return run(["git", "log", "--oneline", f"{good}..{bad}"])
     program = (configured(values, "regress", tests=True) / "tests/regress/regress").absolute()
     tree = Path("build/bisect/tree").absolute()
     tree.parent.mkdir(parents=True, exist_ok=True)
@@ -133,8 +136,9 @@ def search(test, good, bad, tree, told):
     return 0
 
 
-@command("nightly", [Option("nightly", COUNT, "seeds that are drawn", 3), NAME, LABEL, WAVES, TESTS, BUILD, JOBS], make="nightly",
-         brief="nightly --nightly 1 --name ^tree[.]")
+@command("nightly", [Option("nightly", COUNT, "seeds that are drawn", 3),
+                     Option("steps", WORDS, "these alone", ["kept", "random", "zeroc", "mutants", "faults", "sanitizers", "nightly"]), NAME, LABEL, WAVES, TESTS, BUILD, JOBS], make="nightly",
+         brief="nightly --steps kept random --nightly 1 --name ^tree[.]pages")
 def nightly(values):
     """what a timer runs: seeds that have failed, fresh seeds, ZeroC's own suites, faults, mutants, sanitizers
 
@@ -152,8 +156,12 @@ def nightly(values):
     def suite(name):
         return build.ctest("-C", name, "-L", name, tests=tests, check=False, **long)
     chosen = selection(values)
-    steps = [lambda: run([*tool, "--kept", *chosen], check=False, env=long),
-             lambda: run([*tool, "--seed", "random", "--repeat", values.nightly, *chosen], check=False, env=long),
-             lambda: suite("zeroc"), lambda: ours("check", "mutants", "--draw", "8", "--seed", day),
-             lambda: ours("check", "faults", "--seed", day), lambda: ours("check", "sanitizers"), lambda: suite("nightly")]
-    return max([each() for each in steps])  # each runs, even if an earlier one failed
+    steps = {"kept": lambda: run([*tool, "--kept", *chosen], check=False, env=long),
+             "random": lambda: run([*tool, "--seed", "random", "--repeat", values.nightly, *chosen], check=False, env=long),
+             "zeroc": lambda: suite("zeroc"), "mutants": lambda: ours("check", "mutants", "--draw", "8", "--seed", day),
+             "faults": lambda: ours("check", "faults", "--seed", day), "sanitizers": lambda: ours("check", "sanitizers"),
+             "nightly": lambda: suite("nightly")}
+    for name in values.steps:
+        if name not in steps:
+            raise Stop(f"there is no step '{name}': {', '.join(steps)}", 2)
+    return max([steps[name]() for name in values.steps])  # each runs, even if an earlier one failed

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""baseline: the accepted figures of all designs (synth/baseline.json), what has grown since, and what
-is known of each design: one of four words."""
+"""baseline: the accepted figures of all designs (synth/baseline.json), what has grown since, and
+what is known of each design, in one of four words."""
 import json
 import subprocess
 
@@ -13,17 +13,17 @@ NAMED_CHANGES = 6
 
 MEASURED, ACCEPTED, CHANGED, NEVER = STATES = (
     "measured now",         # of the sources of now, in this run or kept from one before
-    "as accepted",          # not synthesised here, but of the sources that the accepted figures are of
-    "changed since",        # neither: its sources are not those of its last figures
-    "never measured here")  # neither, and no figures are accepted
+    "as accepted",          # not synthesised here, but these sources have the accepted figures
+    "changed since",        # its sources are not those of its last figures, here or accepted
+    "never measured here")  # and nothing says what its accepted figures, if any, are of
 
 
 def state_of(run, source_hash, accepted):
     if run.figures or run.wanted:
         return MEASURED
-    if accepted and accepted.get("sources") == source_hash:
+    if accepted and accepted["sources"] == source_hash:
         return ACCEPTED
-    return CHANGED if accepted or run.known else NEVER
+    return CHANGED if run.known or (accepted and accepted["sources"]) else NEVER
 
 
 def lut_budget(accepted):
@@ -85,11 +85,12 @@ def written(baseline):
         head = "".join(f'"{key}": {a[key]:g}, ' for key in KEYS)
         designs.append(f'\n{json.dumps(name)}: {{{head}"sources": "{a["sources"]}", '
                        f'"signals": {{{",".join(lines)}}}}}')
-    return f'{{\n"yosys": {json.dumps(baseline["yosys"])},\n"designs": {{{",".join(designs)}}}\n}}\n'
+    yosys = json.dumps(baseline["yosys"])
+    return f'{{\n"yosys": {yosys},\n"designs": {{{",".join(designs)}}}\n}}\n'
 
 
 def accept(report, file):
-    """Records what was measured; designs that were not are left as they are, those that are gone go.
+    """Records what was measured; leaves other designs as they are, but for those that are gone.
     What is above a limit of synth/designs.json is refused: a limit moves there, or not at all."""
     old = report.baseline
     # Figures of two versions of Yosys do not belong together.
@@ -140,15 +141,16 @@ def grown(title, changed):
 
 def above_limits(row):
     """A sentence for each limit of synth/designs.json that is exceeded."""
-    return [f"{row.design.name}: {row.figures[key]} {key}, {row.figures[key] - limit} above the limit"
-            f" of {limit}" for key, limit in row.design.limits.items() if row.figures[key] > limit]
+    return [f"{row.design.name}: {row.figures[key]} {key}, {row.figures[key] - limit} above the "
+            f"limit of {limit}" for key, limit in row.design.limits.items()
+            if row.figures[key] > limit]
 
 
 def judge(row, baseline, yosys, goal):
     """(failures, notes) of a design. Its budget is the accepted figure and a little more, since
-    optimisation is no exact science: 3 % + 4 LUTs, 1 % + 2 flip-flops. A limit must be kept, whatever
-    is accepted. So must the clock (`goal`, MHz) by a design that was accepted with it; one that was
-    accepted below it may lose a tenth."""
+    optimisation is no exact science: 3 % + 4 LUTs, 1 % + 2 flip-flops. A limit must be kept,
+    whatever is accepted. So must the clock (`goal`, MHz) by a design that was accepted with it; one
+    that was accepted below it may lose a tenth."""
     name, f = row.design.name, row.figures
     if row.main.error:
         return ([f"{name}: synthesis failed"] if row.main.wanted else []), []
@@ -190,9 +192,11 @@ def git(source, *words):
 
 
 def history(source, count=30):
-    """Commits that changed synth/baseline.json, newest first: {"id", "date", "subject", "designs"}."""
+    """Commits that changed synth/baseline.json, newest first: {"id", "date", "subject",
+    "designs"}."""
     commits = []
-    lines = git(source, "log", f"-n{count}", "--format=%h%x09%cs%x09%s", "--", "synth/baseline.json")
+    lines = git(source, "log", f"-n{count}", "--format=%h%x09%cs%x09%s", "--",
+                "synth/baseline.json")
     for line in lines.splitlines():
         id, date, subject = line.split("\t", 2)
         try:

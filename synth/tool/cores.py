@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""cores: what each core takes of the chip: itself, its registers, its slot of the decoder, its memory
-port."""
+"""cores: what each core takes of the chip: itself, its registers, its slot of the decoder, its
+memory port."""
 import re
 
 import report

@@ -96,7 +96,7 @@ class Finder:
 
 def give_slot_reads(n, owners):
     """Gives the logic that reads a slot's registers to the block in the slot. It is one cone with
-    the bus decoder's multiplexer, in which optimisation leaves no name, and so the decoder's by now:
+    the bus decoder's multiplexer, in which optimisation leaves no name, and so far the decoder's:
     what has only one block's signals at its inputs, beside the decoder's own, is that block's."""
     behind = {}
 

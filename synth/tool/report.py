@@ -54,7 +54,8 @@ class Table:
         self.rows = [[str(cell) for cell in row] for row in [head, *rows]]
 
     def plain(self):
-        widths = [max(map(len, column)) for column in itertools.zip_longest(*self.rows, fillvalue="")]
+        columns = itertools.zip_longest(*self.rows, fillvalue="")
+        widths = [max(map(len, column)) for column in columns]
         return "".join("  ".join([row[0].ljust(widths[0]),
                                   *(cell.rjust(width) for cell, width in zip(row[1:], widths[1:]))])
                        .rstrip() + "\n" for row in self.rows)
@@ -80,7 +81,8 @@ def paper_table(plan, row):
     lines = [("flip-flops", "ff", f["ff"]), ("LUTs of the netlist", "lut", f["lut"]),
              ("LUTs and route-throughs, before map pairs them", "lut", f["lut"] + f["through"]),
              ("LUTs as map counts them (estimate)", "lut", sites_of_map(f)),
-             (f"slices (estimate, {100 * slices.ERROR:.0f} % off on average)", "slices", f["slices"])]
+             (f"slices (estimate, {100 * slices.ERROR:.0f} % off on average)", "slices",
+              f["slices"])]
     table = []
     for name, key, value in lines:
         chip, paper, limit = plan.chip[key], plan.paper[key], row.design.limits.get(key)
@@ -120,8 +122,8 @@ def design_row(plan, row, accepted):
 
 
 def design_table(plan, rows, accepted):
-    head = "design LUT change chip 1-2 3 4 5 6 RAM SRL thru FF change sets carry RAM16 DSP pins slices " \
-           "low-high levels MHz".split()
+    head = ("design LUT change chip 1-2 3 4 5 6 RAM SRL thru FF change sets carry RAM16 DSP pins "
+            "slices low-high levels MHz").split()
     for other in rows[0].others if rows else ():
         head += [f"{other.family} LUT", "FF"]
     return Table(head, [design_row(plan, row, accepted.get(row.design.name)) for row in rows])
@@ -159,7 +161,8 @@ def path_table(plan, row, count=5):
 def states_text(rows):
     """How many designs are in which state: "1 measured now, 65 as accepted"."""
     states = [row.state for row in rows]
-    return ", ".join(f"{states.count(state)} {state}" for state in baseline.STATES if state in states)
+    return ", ".join(f"{states.count(state)} {state}" for state in baseline.STATES
+                     if state in states)
 
 
 def show(report):
@@ -203,8 +206,8 @@ def entries(report):
             found.append({"name": f"{name} {key}", "value": value, "unit": unit,
                           "command": f"make synth DESIGN={name}", **more})
 
-        for key, unit in (("lut", "LUT"), ("ff", "flip-flops"),
-                          ("slices", f"slices, estimated, {100 * slices.ERROR:.0f} % off on average")):
+        estimated = f"slices, estimated, {100 * slices.ERROR:.0f} % off on average"
+        for key, unit in (("lut", "LUT"), ("ff", "flip-flops"), ("slices", estimated)):
             limit, more = (budgets | row.design.limits).get(key), {}
             if limit is not None:
                 more = {"limit": limit} | ({"share": round(f[key] / limit, 3)} if limit else {})
@@ -241,8 +244,8 @@ def markdown(report):
 
 
 def differences(before, after):
-    """The differences between two files of entries as a table in Markdown. What only one of them has
-    is new or gone; what one knows and has not measured has the word for that."""
+    """The differences between two files of entries as a table in Markdown. What only one of them
+    has is new or gone; what one knows and has not measured has the word for that."""
     designs = {}  # name: {kind of figure: [then, now]}
     for number, report in enumerate((before, after)):
         for entry in report["entries"]:
@@ -277,7 +280,8 @@ def page_figures(f):
         return [p | {"ns": round(p["ns"], 3)} for p in paths]
 
     times = {key: rounded(value) if key != "ends" else value for key, value in f["timing"].items()}
-    costs = {path: {signal: [c.lut, c.ff, c.memory] for signal, c in signals.items() if c.lut or c.ff}
+    costs = {path: {signal: [c.lut, c.ff, c.memory]
+                    for signal, c in signals.items() if c.lut or c.ff}
              for path, signals in f["costs"].items()}
     return f | {"mhz": round(f["mhz"], 1), "clock": clock_of(f), "lut6": f["cells"].get("LUT6", 0),
                 "levels": f["timing"]["paths"][0]["levels"] if f["mhz"] else 0, "timing": times,
@@ -317,4 +321,5 @@ def html(report, parts, libraries):
     style, script = page_parts(libraries)
     return filled((parts / "page.html").read_text(),
                   {"@STYLE@": style + (parts / "page.css").read_text(),
-                   "@SCRIPT@": script + (parts / "page.js").read_text(), "@DATA@": script_safe(data)})
+                   "@SCRIPT@": script + (parts / "page.js").read_text(),
+                   "@DATA@": script_safe(data)})

@@ -2,8 +2,8 @@
 """slices: how many slices of four LUT6 and eight flip-flops a netlist takes (docs/utilisation.md).
 
 The rules of Spartan-6 and 7-series slices (UG384, UG474): clock, enable and set/reset are common to
-a slice; a LUT6 is two functions of at most five common inputs; a carry chain takes a slice for every
-four bits with the LUTs in front of it; a LUT RAM takes a SLICEM.
+a slice; a LUT6 is two functions of at most five common inputs; a carry chain takes a slice for
+every four bits with the LUTs in front of it; a LUT RAM takes a SLICEM.
 """
 import netlist
 from netlist import LUT_INPUTS, MEMORY_LUTS, UNDEFINED
@@ -66,13 +66,14 @@ def control_set(cell):
 
 
 def slices_of(n):
-    """The estimate ("slices") between "low", with which no placer can do with less, and "high", as in
-    the most generously filled design of the calibration; and what they come of."""
+    """The estimate ("slices"); "low", which no placer can do with less than; "high", as in the most
+    generously filled design of the calibration; and the counts behind them."""
     luts, sets = [], {}  # sets: control set -> [flip-flops fed by a LUT of their own, others]
     memory = carry = through = wide = flip_flops = 0
     for cell in n.cells:
         if cell.type in LUT_INPUTS:
-            luts.append({bit for pin in cell.pins if not pin.output for bit in pin.bits if bit >= 0})
+            luts.append({bit for pin in cell.pins if not pin.output
+                         for bit in pin.bits if bit >= 0})
         elif netlist.is_memory(cell.type):
             memory += MEMORY_LUTS.get(cell.type, 1)
         elif cell.type == "MUXF7":

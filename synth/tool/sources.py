@@ -183,8 +183,9 @@ def read_plan(file, library, root):
             raise Stop(f"{file}: there is no module {design.top}")
     tops = {design.top for design in designs}
     for name, module in sorted(library.modules.items()):
+        is_hardware = not name.endswith(("_rules", "_proof"))
         # Of a converted core only the core itself.
-        if name not in tops and not name.endswith(("_rules", "_proof")) and module.file.stem == name:
+        if name not in tops and is_hardware and module.file.stem == name:
             designs.append(Design(name, name, sentence_of(module.file, name)))
     for design in designs:
         design.file = str(relative_to(library.modules[design.top].file, root))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""timing: the longest paths of a Spartan-6 netlist, by an estimate as XST makes it before placement.
+"""timing: the longest paths of a Spartan-6 netlist, by an estimate as XST makes before placement.
 
 Cell delays are those that XST 14.7 prints for speed grade -3; a net's delay depends on its fan-out
 alone. Grade -2 is slower by SLOW_GRADE. Clock skew, pads and placement are not known here.
@@ -202,7 +202,8 @@ def timing_of(n, owners, count=10):
         ends += [0] * (bin + 1 - len(ends))
         ends[bin] += 1
     paths = []
-    for ns, to, pin, levels, bit, index in sorted(worst.values(), key=lambda w: (-w[0], w[1]))[:count]:
+    longest_first = sorted(worst.values(), key=lambda path: (-path[0], path[1]))
+    for ns, to, pin, levels, bit, index in longest_first[:count]:
         steps, begin = analysis.steps(bit, index)
         paths.append({"from": start_name(n, owners, begin), "to": to, "pin": pin, "levels": levels,
                       "ns": ns, "steps": steps})

@@ -69,7 +69,8 @@ def page_parts(libraries):
     here = pathlib.Path(__file__).resolve().parent
 
     def joined(ending):
-        files = [libraries / f"libraries{ending}", here / f"common{ending}", here / f"tables{ending}"]
+        files = [libraries / f"libraries{ending}",
+                 here / f"common{ending}", here / f"tables{ending}"]
         return "".join(file.read_text() for file in files if file.exists())
     return joined(".css"), joined(".js")
 

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: MIT
 """gdb_test: the debugger's port of the simulator.
 
-    debug      Debian's GDB on the firmware and the RTL: breakpoints, steps, registers, memory, the FPGA's registers
+    debug      Debian's GDB on firmware and RTL: breakpoints, steps, registers, memory, the FPGA
     reverse    the same runs a recorded flight backwards, a secure one
-    strangers  a peer that is no debugger is sent away, and one that leaves or talks nonsense makes room for the next
+    strangers  a peer that is no debugger is sent away, and one that leaves or talks nonsense makes
+               room for the next
 
 Usage: gdb_test.py icesoc-sim firmware.elf out-folder case
 """
@@ -18,14 +19,15 @@ import sys
 
 PATIENCE = 60  # seconds: ends a hang
 sim, elf, out, case = sys.argv[1:]
-FLIGHT = [sim, "--image", "/usr/share/xplanet/images/earth.jpg", "--size", "96x64", "--cpu", "m3", "--firmware", elf,
-          "--speed", "max"]
+FLIGHT = [sim, "--image", "/usr/share/xplanet/images/earth.jpg", "--size", "96x64", "--cpu", "m3",
+          "--firmware", elf, "--speed", "max"]
 
 
 @contextlib.contextmanager
 def simulator(*command):
     """A simulator that waits for a debugger: the process, and the port."""
-    with subprocess.Popen([*command, "--gdb", "0"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+    with subprocess.Popen([*command, "--gdb", "0"], stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True) as process:
         try:
             said = ""
             for line in process.stdout:
@@ -42,8 +44,8 @@ def simulator(*command):
 def gdb(port, commands):
     """What GDB says of these commands, one a line."""
     script = pathlib.Path(out, "commands")
-    script.write_text(f"set confirm off\nset width 0\nset remotetimeout unlimited\ntarget remote localhost:{port}\n"
-                      + commands + "kill\n")
+    script.write_text("set confirm off\nset width 0\nset remotetimeout unlimited\n"
+                      f"target remote localhost:{port}\n{commands}kill\n")
     done = subprocess.run(["timeout", "600", "gdb-multiarch", "-nx", "-batch", "-x", script, elf],
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     print(done.stdout)
@@ -82,8 +84,9 @@ monitor reset
 info symbol $pc
 """)
         process.wait(PATIENCE)
-    for wanted in ("^Reset_Handler in section .text", "^Breakpoint 1, UAV_start", r"^UAV_start \+ [24] in section .text",
-                   "^Breakpoint 2, .*SysTick_Handler", "^#0 .*SysTick_Handler", "= 15$",
+    for wanted in ("^Reset_Handler in section .text", "^Breakpoint 1, UAV_start",
+                   r"^UAV_start \+ [24] in section .text", "^Breakpoint 2, .*SysTick_Handler",
+                   "^#0 .*SysTick_Handler", "= 15$",
                    "^0x64000000:.*0x5359",      # the system slot says who it is
                    "^0xe000ed00:.*0x412fc230",  # a Cortex-M3
                    "= 77$", "= 0x1234$", "s simulated, .* instructions"):
@@ -94,23 +97,27 @@ def reverse():
     key = pathlib.Path(out, "a.key")
     key.write_text("000102030405060708090a0b0c0d0e0f\n")
     key.chmod(0o600)
-    subprocess.run([*FLIGHT, "--duration", "0.3", "--key", key, "--out", f"{out}/flight", "--quiet"], check=True)
+    subprocess.run([*FLIGHT, "--duration", "0.3", "--key", key, "--out", f"{out}/flight",
+                    "--quiet"], check=True)
     # Going on from a place must lead to the same one each time.
-    steps = (("reverse-stepi", "AT_BEGIN"), ("break UAV_start\ncontinue", "START"), ("delete\nstepi 20", "AHEAD"),
-             ("reverse-stepi 20", "BACK"), ("stepi 20", "AGAIN"), ("continue", "END"),
+    steps = (("reverse-stepi", "AT_BEGIN"), ("break UAV_start\ncontinue", "START"),
+             ("delete\nstepi 20", "AHEAD"), ("reverse-stepi 20", "BACK"), ("stepi 20", "AGAIN"),
+             ("continue", "END"),
              ("break SysTick_Handler\nreverse-continue", "TICK1"), ("reverse-continue", "TICK2"),
              ("set var boot_record.starts = 77\ncontinue", "TICK1_AGAIN"),
-             ("reverse-finish\ninfo symbol $pc\ndelete\nbreak UAV_start\nreverse-continue", "START_AGAIN"))
+             ("reverse-finish\ninfo symbol $pc\ndelete\nbreak UAV_start\nreverse-continue",
+              "START_AGAIN"))
     with simulator(sim, "--replay", f"{out}/flight", "--out", out) as (process, port):
-        said = gdb(port, "".join(f"{commands}\necho {name} \\n\nmonitor info\n" for commands, name in steps)
-                   + "print boot_record.starts\n")
+        said = gdb(port, "".join(f"{commands}\necho {name} \\n\nmonitor info\n"
+                                 for commands, name in steps) + "print boot_record.starts\n")
         assert process.wait(PATIENCE) == 0, "the simulator's exit status"
     at = {name: (int(instructions), int(cycles)) for name, instructions, cycles in
           re.findall(r"^(\w+) \n.*?simulated, (\d+) instructions, (\d+) cycles", said, re.M | re.S)}
     assert at["AT_BEGIN"] == (0, 0)
-    for name, again in (("START", "BACK"), ("AHEAD", "AGAIN"), ("TICK1", "TICK1_AGAIN"), ("START", "START_AGAIN")):
+    for name, again in (("START", "BACK"), ("AHEAD", "AGAIN"), ("TICK1", "TICK1_AGAIN"),
+                        ("START", "START_AGAIN")):
         assert at[name] == at[again], (name, at[name], again, at[again])
-    assert at["TICK2"][0] < at["TICK1"][0] < at["END"][0], "ticks before the end, the later one first"
+    assert at["TICK2"][0] < at["TICK1"][0] < at["END"][0], "ticks, the later one first"
     # As GDB 13 says it, or GDB 16.
     ends = re.findall("No more reverse-execution history|Reached end of recorded history", said)
     assert len(ends) == 2, "begin and end are not told"
@@ -153,12 +160,14 @@ def check(port):
         with socket.create_connection(("127.0.0.1", port), PATIENCE) as s:
             for part in parts:
                 s.sendall(part)
-        assert talk(packet(b"?"))[:5] == b"+$T05", "the next one is not served after %r" % (parts[0][:20],)
+        assert talk(packet(b"?"))[:5] == b"+$T05", f"nobody is served after {parts[0][:20]}"
 
-    assert talk(b"POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" + packet(b"k")) == b"", "a web page's request"
+    web = b"POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
+    assert talk(web + packet(b"k")) == b"", "a web page's request"
     assert talk(b"$" + b"m" * 100000) == b"", "a packet without an end"
     assert talk() == b"", "silence"
-    for wrong in (b"m0,ffffffff", b"m", b"M0,5:00", b"M20000000,1:zz", b"pffffffffffffffff", b"P19"):
+    for wrong in (b"m0,ffffffff", b"m", b"M0,5:00", b"M20000000,1:zz", b"pffffffffffffffff",
+                  b"P19"):
         assert b"E01" in talk(packet(wrong)), wrong
     go = packet(b"?") + packet(b"c")
     leave(go)

@@ -6,8 +6,8 @@
 
 #include "elf_image.h"
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
-#include <fcntl.h>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -66,9 +66,14 @@ struct Keys {
             seed = file;
         } else {
             randombytes_buf(seed.data(), seed.size());
-            const int out = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0600);
-            if (out < 0 || write(out, seed.data(), seed.size()) != ssize_t(seed.size()) ||
-                close(out) != 0)
+            // It takes its name when it is complete: all trees of a user share it.
+            std::string beside = path + ".XXXXXX";
+            const int out = mkstemp(beside.data()); // mode 0600
+            const bool made = out >= 0 &&
+                              write(out, seed.data(), seed.size()) == ssize_t(seed.size()) &&
+                              close(out) == 0 && link(beside.c_str(), path.c_str()) == 0;
+            unlink(beside.c_str());
+            if (!made)
                 fail("cannot write the private key '" + path + "'");
             std::cout << "pack_update: made a new key pair: " << path
                       << " signs for vehicles that are filled with it\n";

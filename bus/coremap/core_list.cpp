@@ -186,7 +186,11 @@ private:
                     p.source = value;
                     return;
                 }
-            fail(c.line, fmt::format("'{}' has no input pin '{}'", c.folder, key));
+            std::string inputs;
+            for (const Pin& p : c.pins)
+                inputs += p.isOut() ? "" : (inputs.empty() ? "" : ", ") + p.name;
+            fail(c.line, fmt::format("'{}' has no input pin '{}'; it has {}", c.folder, key,
+                                     inputs.empty() ? "none" : inputs));
         }
     }
 

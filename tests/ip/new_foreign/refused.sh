@@ -14,6 +14,7 @@ refused() { # words of the message, arguments
     grep -q -- "$words" "$work/log" && ! grep -q Traceback "$work/log" || { cat "$work/log" && echo "'$words' is not said: $*" && exit 1; }
     [ ! -e "$work/out" ] || { echo "something was written: $*" && exit 1; }
 }
+: >"$work/timescale.v"
 echo 'module pads(input clk, inout sda); endmodule' >"$work/pads.v"
 echo 'module outer(input clk); inner u(clk); endmodule' >"$work/outer.v"
 echo 'module wide(input clk, clk_en, we, input [1:0] a, input [63:0] my_wide, output [31:0] q); assign q = my_wide[31:0]; endmodule' >"$work/wide.v"
@@ -62,6 +63,8 @@ refused 'more than one port for s_tdata: a_tdata, b_tdata' my_port two axis "$wo
 refused 'odd has 24 and 8 bits: it must be 8, 16, 32 or 64' my_port odd axis "$work/out" "$work/odd.v"
 refused 'has no port for s_tdata' my_port wb_port axis "$work/out" "$here/wb_port.v"
 refused "CLOCK=fast: the frequency" my_port wb_port wishbone "$work/out" CLOCK=fast "$here/wb_port.v"
+refused 'ADDRESS=fast: words or bytes' my_port wb_port wishbone "$work/out" ADDRESS=fast "$here/wb_port.v"
+refused 'ack= is not for it' my_port apb_words apb "$work/out" ack=1 pin=PREADY "$here/apb_words.v" "$work/timescale.v"
 refused 'CLOCK: a core with AXI-Streams' my_port axis_scale axis "$work/out" CLOCK=24000000 "$here/axis_scale.v"
 refused 'LIBRARY: .* these are Verilog' my_port req_words own "$work/out" LIBRARY=lights "$here/req_words.v"
 refused 'a setting is for BUS=axis' my_port req_words own "$work/out" setting=value "$here/req_words.v"
@@ -71,7 +74,7 @@ refused "setting is an input of a core, and 'over' is not" my_port axis_scale ax
     { cat "$work/log" && exit 1; }
 # Meanings of names.
 "$new" my_port wbs_names wishbone "$work/names" ack=2 open=spare "$here/wbs_names.v" >"$work/log"
-for line in 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' 'wbs_cyc_i: cyc' 'wbs_cti_i: low' 'intr: interrupt' 'spare: open'; do
+for line in 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' 'wbs_cyc_i: cyc' 'wbs_adr_i: adr, counts words: it has 2 bits; if not, ADDRESS=bytes' 'wbs_cti_i: low' 'intr: interrupt' 'spare: open'; do
     grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
 done
 # A register is as wide as its written, or read, data.
@@ -85,7 +88,6 @@ made() { "${new%/ip/*}/tests/regress/test/make_in.sh" "${new%/ip/*}" "$work/tree
 ! made && grep -q "PORTS=" "$work/log" || { cat "$work/log" && exit 1; }
 made CLOCK=24000000 PORTS='select=req write=wr address=where wdata=value rdata=held ack=gnt' && [ -s "$work/tree/ip/my_port/my_port.regs.json" ] ||
     { cat "$work/log" && exit 1; }
-: >"$work/timescale.v"
 made NAME=my_bridge TOP=apb_words BUS=apb FILES="$here/apb_words.v $work/timescale.v" PARAMS=WORDS=3 PORTS= && grep -q 'WORDS(3)' "$work/tree/ip/my_bridge/my_bridge.v" ||
     { cat "$work/log" && exit 1; }
 echo 'refused: all as expected'

@@ -22,7 +22,7 @@
 #define MCB_MODEL_H
 
 #include "ddr3_timing.h"
-#include "ring.h"
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -31,6 +31,24 @@
 class McbError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
+};
+
+// A first-in first-out of fixed capacity (a power of two) without allocation.
+template <class T, size_t capacity> class Ring {
+    static_assert((capacity & (capacity - 1)) == 0, "a power of two");
+
+public:
+    bool empty() const { return head_ == tail_; }
+    size_t size() const { return head_ - tail_; }
+    bool full() const { return size() == capacity; }
+    T& front() { return items_[tail_ % capacity]; }
+    const T& front() const { return items_[tail_ % capacity]; }
+    void push(const T& item) { items_[head_++ % capacity] = item; } // the user knows there is room
+    void pop() { ++tail_; }
+
+private:
+    T items_[capacity];
+    size_t head_ = 0, tail_ = 0;
 };
 
 class McbModel {

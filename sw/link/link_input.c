@@ -53,7 +53,7 @@ static Owner ownerOf(const Link* link, const U8* frame) {
 static int mayTry(Link* link, U32 rounds) {
     Link_Parser* parser = &link->parser;
     U32 debt = parser->paidAt - link->now;
-    if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY) /* it was paid before now */
+    if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY) /* it was paid earlier */
         debt = 0;
     debt += rounds * LINK_ROUND_EVERY;
     if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY)
@@ -284,7 +284,7 @@ void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
     link_pollInput(link);
     parser->at = nowUs;
     if (parser->count == 0) {
-        /* The usual case, a whole frame: it is read where it is. What is left fits. */
+        /* The usual case: a whole frame is read in place. The rest fits. */
         U32 used = parseAny(link, bytes, size, 0, 0);
         parser->count = (U8)(size - used);
         memcpy(link->input, bytes + used, parser->count);
@@ -309,6 +309,6 @@ void link_pollInput(Link* link) {
         return;
     if (parser->count)
         parseKept(link, parser->count, 1);
-    if (LINK_IS_SECURE(link)) /* a tag does without the confirmation that a CRC needs */
+    if (LINK_IS_SECURE(link)) /* a tag needs no confirmation, a CRC does */
         parser->outOfStep = 0;
 }

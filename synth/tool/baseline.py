@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""baseline: the accepted figures of all designs (synth/baseline.json), what has grown since, and
-what is known of each design, in one of four words."""
+"""baseline: the accepted figures of all designs (synth/baseline.json), the growth since, and
+the state of each design, in one of four words."""
 import json
 import subprocess
 
@@ -49,7 +49,7 @@ def accepted_from(figures, sources=""):
 
 
 def parse(j):
-    """{"yosys", "designs": {name: accepted}}; raises on what is none."""
+    """{"yosys", "designs": {name: accepted}}; raises on a malformed file."""
     designs = {}
     for name, d in j["designs"].items():
         costs = {path: {signal: Cost(lut=c[0], ff=c[1], **dict(zip(("ram", "dsp"), c[2:])))
@@ -90,8 +90,8 @@ def written(baseline):
 
 
 def accept(report, file):
-    """Records what was measured; leaves other designs as they are, but for those that are gone.
-    What is above a limit of synth/designs.json is refused: a limit moves there, or not at all."""
+    """Records the measured designs, keeps the others, and drops those that are gone. Refuses
+    figures above a limit of synth/designs.json: a limit moves only there."""
     old = report.baseline
     # Figures of two versions of Yosys do not belong together.
     same = short_version(old["yosys"]) == short_version(report.yosys)
@@ -122,7 +122,7 @@ def by_signal(costs):
 
 
 def changes(before, after):
-    """(name, more LUTs, more flip-flops) of what has changed, largest growth first."""
+    """(name, more LUTs, more flip-flops) of each change, largest growth first."""
     names = sorted({*before, *after})
     rows = [(name, after.get(name, Cost()).lut - before.get(name, Cost()).lut,
              after.get(name, Cost()).ff - before.get(name, Cost()).ff) for name in names]
@@ -182,7 +182,7 @@ def judge(row, baseline, yosys, goal):
 
 
 def git(source, *words):
-    """What git says, "" without it."""
+    """Git's output, "" without git."""
     try:
         done = subprocess.run(["git", "-C", source, *words], text=True, stdout=subprocess.PIPE,
                               stderr=subprocess.DEVNULL)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""cores: what each core takes of the chip: itself, its registers, its slot of the decoder, its
+"""cores: the cost of each core in the chip: itself, its registers, its slot of the decoder, its
 memory port."""
 import re
 
@@ -13,7 +13,7 @@ FIRST_SLOT = 2  # those below are the platform's
 
 
 class NotInChip(Stop):
-    """A core that a chip is asked for and does not have."""
+    """The chip lacks the requested core."""
 
 
 def read_map(file):
@@ -22,8 +22,8 @@ def read_map(file):
 
 
 def slot_cost(library, options, map, wanted):
-    """What one slot takes of the decoder: that of as many slots as the chip has, less that of one
-    fewer. `wanted` False: only by what is in the cache, nothing if it is not."""
+    """The cost of a slot in the decoder: that of the chip's number of slots, minus that of one slot
+    fewer. `wanted` False: only from the cache, nothing if it lacks it."""
     runs = [Run(Design(f"bus_decoder{slots}", "bus_decoder", parameters={"SLOTS": slots}), "xc6s",
                 wanted) for slots in (map["SLOT_COUNT"], map["SLOT_COUNT"] - 1)]
     carry_out(runs, library, options)

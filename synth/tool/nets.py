@@ -11,7 +11,7 @@ FOR_OWNER = "(for) "
 
 
 def name_or(n, owners, bit):
-    """A net's name as the source has it, or "(for) " and what it drives."""
+    """A net's name in the source, or "(for) " and the name of its load."""
     if bit not in n.driver and bit in n.names:
         return str(n.names[bit][-1])  # the top's own, not that of an instance's input
     name = n.name_of(bit)
@@ -71,7 +71,7 @@ def relative(file):
 
 def place_in_vhdl(lines, declared, name):
     """The place in VHDL of a signal that GHDL declares at a line of its Verilog: it stands in the
-    comment before the statement that gives it its value. A port has none, but what it is given
+    comment before the statement that assigns it. A port has none, but its value
     has."""
     above = ""
     for line in lines[declared:]:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""owners: whose each cell of a flat netlist is, an instance path and a signal of the source, and
-what each takes.
+"""owners: finds the owner of each cell of a flat netlist, an instance path and a signal of the
+source, and the cost of each.
 
 A flip-flop is its register's. Logic is the named wire's that it drives; where optimisation has left
 no name, it is whose logic it feeds most.

@@ -17,7 +17,7 @@ def report_of(run, seed):
 
 def place(nextpnr, run, seed):
     """LFE5U-45F, speed grade 6, the slowest. The memory's ports end within the chip, so there are
-    no pads: a block "out of context". What the cache has is not placed again."""
+    no pads: a block "out of context". Cached results are not placed again."""
     report = report_of(run, seed)
     if report.exists():
         return

@@ -40,7 +40,7 @@ class Report:
     yosys: str
     commits: list
     commit: str
-    cores: "Table" = None  # what each core takes of the chip, where that is known
+    cores: "Table" = None  # the cost of each core in the chip, if known
 
     @property
     def failures(self):
@@ -93,7 +93,7 @@ def paper_table(plan, row):
 
 
 def ranged(value, values, text=str):
-    """A figure, and between which it is with the netlist in other orders: "863 (858-865)"."""
+    """A figure, and its range with the netlist in other orders: "863 (858-865)"."""
     return text(value) + (f" ({text(min(values))}-{text(max(values))})" if len(values) > 1 else "")
 
 
@@ -130,7 +130,7 @@ def design_table(plan, rows, accepted):
 
 
 def cost_table(library, row, depth=2):
-    """Where a design's cost is: the instances, with all below them."""
+    """The places of a design's cost: the instances, each with all below it."""
     paths = {"": Cost()}
     for path, cost in baseline.by_instance(row.figures["costs"]).items():
         names = path.split(".") if path else []
@@ -159,14 +159,14 @@ def path_table(plan, row, count=5):
 
 
 def states_text(rows):
-    """How many designs are in which state: "1 measured now, 65 as accepted"."""
+    """The number of designs in each state: "1 measured now, 65 as accepted"."""
     states = [row.state for row in rows]
     return ", ".join(f"{states.count(state)} {state}" for state in baseline.STATES
                      if state in states)
 
 
 def show(report):
-    """Writes what was asked for to the terminal."""
+    """Writes the requested designs to the terminal."""
     wanted = [row for row in report.rows if row.main.wanted]
     for row in wanted:
         if row.design.paper and row.figures:
@@ -244,8 +244,8 @@ def markdown(report):
 
 
 def differences(before, after):
-    """The differences between two files of entries as a table in Markdown. What only one of them
-    has is new or gone; what one knows and has not measured has the word for that."""
+    """The differences between two files of entries as a table in Markdown. An entry of only
+    one of them is new or gone; one that is known but not measured has the word for that."""
     designs = {}  # name: {kind of figure: [then, now]}
     for number, report in enumerate((before, after)):
         for entry in report["entries"]:
@@ -275,7 +275,7 @@ def instances(costs):
 
 
 def page_figures(f):
-    """The figures as the page wants them: times are rounded here, and only here."""
+    """The figures for the page: times are rounded here, and only here."""
     def rounded(paths):
         return [p | {"ns": round(p["ns"], 3)} for p in paths]
 
@@ -309,7 +309,7 @@ def page_design(report, row):
 
 def html(report, parts, libraries):
     """The page of the folder `parts`: "@STYLE@", "@SCRIPT@" and "@DATA@" in it are replaced.
-    `libraries`: the folder of what npm has for pages."""
+    `libraries`: the folder of the pages' libraries from npm."""
     data = {"yosys": short_version(report.yosys), "commit": report.commit,
             "paper": report.plan.paper, "chip": report.plan.chip, "slowGrade": timing.SLOW_GRADE,
             "slicesError": slices.ERROR, "states": states_text(report.rows),

@@ -31,7 +31,7 @@ TOOL = digest(file.read_text() for file in sorted(pathlib.Path(__file__).parent.
 class Run:
     design: Design
     family: str  # "xc6s", "xc7", "ecp5": the script of that name
-    wanted: bool = True  # False: only what is in the cache is told
+    wanted: bool = True  # False: only from the cache
     netlist: pathlib.Path = None  # where Yosys wrote it
     figures: dict = None
     error: str = ""  # why there are no figures
@@ -153,7 +153,7 @@ def read_figures(text):
 
 
 def carry_out_one(run, library, options, version):
-    """Returns whether it synthesised."""
+    """Returns whether the synthesis succeeded."""
     top = run.design.top
     run.netlist = pathlib.Path()  # the hash is not of where its output goes
     sources = digest([library.hash_of(top), version, script_of(run, library, options, "")])
@@ -179,7 +179,7 @@ def carry_out_one(run, library, options, version):
 
 
 def carry_out(runs, library, options):
-    """Carries all runs out, says on stderr which is done. A failed run does not stop the others."""
+    """Carries out all runs, names finished ones on stderr. A failed run does not stop others."""
     version = version_of(options.yosys)
     options.cache.mkdir(parents=True, exist_ok=True)
     total, done, terminal = sum(run.wanted for run in runs), 0, threading.Lock()
@@ -209,7 +209,7 @@ def carry_out(runs, library, options):
 
 
 def in_parallel(jobs, work, items):
-    """Calls work(item) for each, `jobs` at a time; raises what the first one raises."""
+    """Calls work(item) for each, `jobs` at a time; raises the first exception."""
     with concurrent.futures.ThreadPoolExecutor(max(1, jobs)) as pool:
         try:
             for future in [pool.submit(work, item) for item in items]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""slices: how many slices of four LUT6 and eight flip-flops a netlist takes (docs/utilisation.md).
+"""slices: estimates a netlist's slices of four LUT6 and eight flip-flops (docs/utilisation.md).
 
 The rules of Spartan-6 and 7-series slices (UG384, UG474): clock, enable and set/reset are common to
 a slice; a LUT6 is two functions of at most five common inputs; a carry chain takes a slice for
@@ -66,7 +66,7 @@ def control_set(cell):
 
 
 def slices_of(n):
-    """The estimate ("slices"); "low", which no placer can do with less than; "high", as in the most
+    """The estimate ("slices"); "low", the least for any placer; "high", as in the most
     generously filled design of the calibration; and the counts behind them."""
     luts, sets = [], {}  # sets: control set -> [flip-flops fed by a LUT of their own, others]
     memory = carry = through = wide = flip_flops = 0

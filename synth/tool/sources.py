@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""sources: which Verilog files a module needs, found by reading their instances, and what is
-synthesised of them, against which limits (synth/designs.json)."""
+"""sources: finds the Verilog files that a module needs, by their instances, and the designs to
+synthesise, with their limits (synth/designs.json)."""
 import dataclasses
 import functools
 import json
@@ -63,12 +63,12 @@ class Library:
                 self.scan(file)
         for file in files:
             self.scan(file)
-        for module in self.modules.values():  # what is not a module was no instance
+        for module in self.modules.values():  # other names are no instances
             module.instances = {name: known for name, types in module.instances.items()
                                 if (known := [t for t in types if t in self.modules])}
 
     def included(self, name):
-        """The file that an include directive names, None where it is not known."""
+        """The file that an include directive names, None if it is not known."""
         return next((folder / name for folder in self.include_folders if (folder / name).exists()),
                     None)
 
@@ -117,7 +117,7 @@ class Library:
 
     @functools.cache
     def hash_of(self, top):
-        """Changes whenever a file changes that the module is made of, include files too."""
+        """A hash that changes with any file of the module, include files too."""
         names = sorted(set().union(*(self.modules[module].includes for module in self.reach(top))))
         files = self.files_of(top) + [file for name in names if (file := self.included(name))]
         return digest(map(read, files))
@@ -159,14 +159,14 @@ class Plan:
 
 
 def sentence_of(file, module):
-    """"// name: one sentence" at the head of a file, or what a converted core says of itself."""
+    """"// name: one sentence" at the head of a file, or a converted core's own sentence."""
     begin = f"// {module}: "
     return next((line.removeprefix(begin) for line in read(file).split("\n", 8)[:8]
                  if line.startswith(begin)), "")
 
 
 def read_json(file):
-    """A file of ours, whose name is in what is raised."""
+    """A file of ours; an exception contains its name."""
     try:
         return json.loads(file.read_text())
     except (OSError, ValueError) as error:

@@ -46,7 +46,7 @@ def is_read(address, output):
 
 
 def is_read_only(port):
-    """True for an address port that nothing is written at: no path ends there."""
+    """True for an address port without writes: no path ends there."""
     return port in ("ADDRA", "ADDRB", "ADDRC") or port.startswith("DPRA")
 
 
@@ -153,7 +153,7 @@ class Analysis:
 
 
 def start_name(n, owners, bit):
-    """The register or memory that drives a bit; where it has no name of its own, what it is for."""
+    """The register or memory that drives a bit; without a name of its own, the name of its load."""
     return n.name_of(bit) or (f"(for) {owners[n.driver[bit]]}" if bit in n.driver else "")
 
 

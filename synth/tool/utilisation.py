@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""utilisation: what the chip and its parts take of the FPGA, beside limits and the paper."""
+"""utilisation: reports the chip's and its parts' use of the FPGA, beside limits and the paper."""
 import argparse
 import json
 import os
@@ -59,9 +59,9 @@ def rows_of(plan, runs, library, accepted, yosys):
 
 
 def tell_cores(library, options, o, accepted, runs):
-    """Tells what some cores cost in the chip, whatever the limits: in the one that was synthesised,
-    the only design wanted, or, without runs, in the accepted one; a core that is not there yet is
-    no error. Returns 1 if the synthesis failed."""
+    """Prints the cost of some cores in the chip, whatever the limits: in the synthesised one, the
+    only design wanted, or, without runs, in the accepted one. A missing core is no error. Returns 1
+    if the synthesis failed."""
     run = next((run for run in runs if run.wanted), None)
     if run and run.error:
         return 1

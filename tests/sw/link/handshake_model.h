@@ -30,7 +30,7 @@ enum class Bug {
     ConfirmIsNotAuthentic,
     OwnNonceIsTaken,  // reflected
     NonceServesTwice, // is not drawn anew when a session begins
-    UnconfirmedCalls, // a side calls while up whose peer may not be in the session yet
+    UnconfirmedCalls, // a side calls while up, though its peer may not be in the session yet
     OldDataIsTaken,   // a number counts again
     OldPingIsLife,    // heard again, it shows that the peer is there
     OldDataIsLife

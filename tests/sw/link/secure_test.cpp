@@ -332,8 +332,8 @@ TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
     }
 }
 
-// What makes a new session hard: who hears the traffic adds 20 bytes to each packet, or sends them
-// blindly. They are a byte of no frame and what looks like a HELLO, of this version or of another.
+// An attack on new sessions: the attacker hears the traffic and adds 20 bytes to each packet, or
+// sends them blindly. They are a byte of no frame and a seeming HELLO, of this version or another.
 class Hindered : public Attacked {
 protected:
     static Bytes lure(uint8_t version) {
@@ -399,7 +399,7 @@ TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
     auto isHello = [](const Bytes& f) {
         return (f[0] & LINK_CONTROL) && f[2] >> 5 == LINK_KIND_HELLO;
     };
-    for (bool isGround : {true, false}) // which starts again
+    for (bool isGround : {true, false}) // the side that starts again
         for (uint64_t every : {100'000, 10'000, 2000}) {
             Peer &side = isGround ? a_ : b_, &other = isGround ? b_ : a_;
             std::vector<Bytes> old;
@@ -414,7 +414,7 @@ TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
                 next = start = now_;
                 EXPECT_TRUE(until(
                     [&] {
-                        if (now_ % 100'000 < 1000) { // the minimal layer calls where it hears some
+                        if (now_ % 100'000 < 1000) { // the minimal layer calls when it hears some
                             a_.open(1);
                             a_.send(1, {1}, static_cast<U32>(now_));
                         }

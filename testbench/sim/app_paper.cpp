@@ -2,7 +2,7 @@
 //
 // app_paper: the paper's Figure 5 as firmware.
 
-#include "app.h"
+#include "uav_machine.h"
 #include <stdexcept>
 
 extern "C" {

@@ -2,7 +2,7 @@
 //
 // app_uav: the UAV's application.
 
-#include "app.h"
+#include "uav_machine.h"
 
 UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& modemKey, bool) {
     static std::vector<uint8_t> key;

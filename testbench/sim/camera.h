@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// camera: reads a grey-scale frame from a picture file (PNG, JPEG, PGM and others of stb_image).
+// camera: reads a grey-scale frame from a picture file (PNG, JPEG, PGM and others of stb_image),
+// and shows one to the camera core.
 
 #ifndef CAMERA_H
 #define CAMERA_H
@@ -8,6 +9,8 @@
 #include <cstdint>
 #include <string>
 #include <vector>
+
+class SocModel;
 
 struct Frame {
     int width = 0, height = 0;
@@ -18,5 +21,9 @@ struct Frame {
 // wanted size. The width becomes a multiple of 8. Throws std::runtime_error with the reason.
 Frame loadFrame(const std::string& path, int width, int height);
 void savePng(const std::string& path, const Frame& frame);
+
+// Sends the frame again and again, a pixel every second clock. Throws std::runtime_error if the
+// chip has no camera core.
+void connectSensor(SocModel& soc, const Frame& frame);
 
 #endif

@@ -3,12 +3,10 @@
 // flight: makes and connects the models, starts the ground's program, runs the processor.
 
 #include "flight.h"
-#include "app.h"
 #include "core_pins.h"
 #include "files.h"
 #include "key_file.h"
 #include "map_regs.h"
-#include "sensor.h"
 #include "uav_machine.h"
 
 extern "C" {

@@ -3,8 +3,9 @@
 // sensor: the sensor's model on the chip's pins, with a frame each quarter of a second. Its clock
 // stops between frames, as many sensors' can.
 
-#include "sensor.h"
+#include "camera.h"
 #include "map_regs.h"
+#include "soc_model.h"
 #include <algorithm>
 #include <stdexcept>
 

@@ -11,6 +11,7 @@
 #include "soc_model.h"
 #include <functional>
 #include <stdexcept>
+#include <vector>
 
 extern "C" {
 #include "fsmc.h"
@@ -54,5 +55,10 @@ private:
     Firmware firmware_;
     uint64_t nextTick_ = 0, tickCycles_;
 };
+
+// The firmware that the simulator runs on the host: each program that links sim_main answers.
+// `modemKey`: 16 bytes of the modem's AES key, or none; `isSecure`: the link has a key. Throws if
+// the firmware cannot encrypt.
+UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& modemKey, bool isSecure);
 
 #endif

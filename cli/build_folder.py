@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""build_folder: set-up, CMake and ninja of a build folder. Two builds in one folder wait for each other."""
+"""build_folder: set-up, CMake and ninja of a build folder. Two builds in one folder wait for each
+other."""
 import os
 import re
 import shutil
@@ -42,8 +43,10 @@ class BuildFolder:
         return self
 
     def configure(self, *arguments):
-        """Lets CMake make the folder, unless it has. CMake refuses a folder made for another place: it is removed first."""
-        writable(self.folder, "where the build goes: take a clone of your own, or give --build (BUILD=) a folder that is yours")
+        """Lets CMake make the folder, unless it has. CMake refuses a folder made for another place:
+        it is removed first."""
+        writable(
+            self.folder, "where the build goes: take a clone of your own, or give --build (BUILD=) a folder that is yours")
         writable(os.environ.get("XDG_CACHE_HOME") or os.path.join(os.environ["HOME"], ".cache"),
                  "where what is fetched and compiled is kept: set XDG_CACHE_HOME to a folder that is yours")
         home = self.cached("CMAKE_HOME_DIRECTORY")
@@ -63,7 +66,8 @@ class BuildFolder:
         return found[1] if found else ""
 
     def set(self, **variables):
-        """Gives variables of CMake new values; if CMake refuses them, prints its reason and keeps the old values."""
+        """Gives variables of CMake new values; if CMake refuses them, prints its reason and keeps
+        the old values."""
         if all(self.cached(name) == value for name, value in variables.items()):
             return
         cache = (self / "CMakeCache.txt").read_bytes()
@@ -72,7 +76,8 @@ class BuildFolder:
             status = run(words, check=False, stdout=log, stderr=log)
         if status:
             (self / "CMakeCache.txt").write_bytes(cache)
-            reasons = re.findall(r"^CMake Error.*?(?=^$|\Z)", (self / "set.log").read_text(), re.M | re.S)
+            reasons = re.findall(r"^CMake Error.*?(?=^$|\Z)", (self / "set.log").read_text(),
+                                 re.M | re.S)
             raise Stop("CMake refuses " + " ".join(words[1:-1]) + "\n" + "\n".join(reasons))
 
     def ninja(self, *words, check=True, env=None, jobs=None):
@@ -80,18 +85,21 @@ class BuildFolder:
         if self.built:
             return 0
         with lock(self.folder, busy=f"waiting for another build in {self.folder} ..."):
-            return run(["ninja", "-C", self.folder, "-j", jobs or self.jobs, *words], check=check, env=env)
+            return run(["ninja", "-C", self.folder, "-j", jobs or self.jobs, *words], check=check,
+                       env=env)
 
     def quietly(self, *targets):
         return self.ninja("--quiet", *targets)
 
     def ctest(self, *words, tests, check=True, **env):
-        return run([TREE / "tests/ctest.py", "--test-dir", self.folder, "-j", tests, "--output-on-failure", "--no-tests=error", *words],
+        return run([TREE / "tests/ctest.py", "--test-dir", self.folder, "-j", tests,
+                    "--output-on-failure", "--no-tests=error", *words],
                    env=env, check=check)
 
     def targets(self):
         """Names of all targets."""
-        return re.findall(r"^(.*): phony$", output(["ninja", "-C", self.folder, "-t", "targets", "all"]), re.M)
+        return re.findall(r"^(.*): phony$", output(["ninja", "-C", self.folder, "-t", "targets",
+            "all"]), re.M)
 
 
 def configured(values, *targets, tests=False):

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""command: the list of all commands, the parser of each, and its two doors: `./icesoc run --loss 0.1`, `make run LOSS=0.1`.
+"""command: the list of all commands, the parser of each, and its two doors: `./icesoc run --loss
+0.1`, `make run LOSS=0.1`.
 
-Both doors end in `values`: an option that is not given is taken from the variable of its name in the environment, where make
+Both doors end in `values`: an option that is not given is taken from the variable of its name in
+the environment, where make
 puts those of its command line.
 """
 import argparse
@@ -20,27 +22,33 @@ ALIASES = {}   # other verbs of make: a verb, and the switch that it turns on
 class Command:
     """A command: a function of its options' values.
 
-    make: its verb there, if it has one. when: the variable that chooses this one of several with the same verb.
-    brief: a short form that runs all of its steps, or several command lines (./icesoc commands --brief).
+    make: its verb there, if it has one. when: the variable that chooses this one of several with
+    the same verb.
+    brief: a short form that runs all of its steps, or several command lines (./icesoc commands
+    --brief).
     """
 
     def __init__(self, function, name, options, make, when, brief, examples):
         self.function, self.name, self.make, self.when = function, name, make, when
         self.brief = [brief] if isinstance(brief, str) else list(brief)
         self.options = [*options, BUILT]
-        self.help, _, self.more = function.__doc__.partition("\n\n")
+        text, _, self.more = function.__doc__.partition("\n\n")
+        self.help = " ".join(text.split())
         self.examples = examples
 
     def parser(self, into=None):
         parser = into or argparse.ArgumentParser()
         parser.prog = f"icesoc {self.name}"
         parser.formatter_class = argparse.RawDescriptionHelpFormatter
-        parser.description = self.help + ("\n\n" + "\n".join(map(str.strip, self.more.split("\n"))) if self.more else "")
-        parser.epilog = "examples:\n" + "".join(f"  ./icesoc {each}\n" for each in self.examples) if self.examples else None
+        parser.description = self.help + ("\n\n" + "\n".join(map(str.strip,
+            self.more.split("\n"))) if self.more else "")
+        parser.epilog = "examples:\n" + "".join(f"  ./icesoc {each}\n"
+            for each in self.examples) if self.examples else None
         parser.allow_abbrev = False
         for option in self.options:
             if not option.listed:
-                parser.add_argument(f"--{option.name}", action="store_true", default=None, help=argparse.SUPPRESS)
+                parser.add_argument(f"--{option.name}", action="store_true", default=None,
+                                    help=argparse.SUPPRESS)
                 continue
             name = option.field if option.positional else f"--{option.name}"
             more = {"help": option.explain(), "default": None}
@@ -54,7 +62,8 @@ class Command:
         return parser
 
     def values(self, given, makes, place):
-        """The values of all options. given: texts by field; makes: variables of make's command line; place: the folder
+        """The values of all options. given: texts by field; makes: variables of make's command
+        line; place: the folder
         of relative names of files."""
         values = argparse.Namespace(given=set(), given_by_make=makes is not None)
         for option in self.options:
@@ -62,7 +71,8 @@ class Command:
             if text is not None and makes is None:
                 values.given.add(option.field)
                 called = option.name.upper() if option.positional else called
-            elif option.variable != "LANG" or option.variable in (makes or ()):  # LANG in the environment is the user's language
+            elif option.variable != "LANG" or option.variable in (makes
+                or ()):  # LANG in the environment is the user's language
                 text, called = os.environ.get(option.variable), option.variable
                 if text and option.variable in (makes or ()):
                     values.given.add(option.field)
@@ -70,7 +80,8 @@ class Command:
                 value = True
             elif text in (None, "", []):
                 value = option.default() if callable(option.default) else option.default
-                value = False if option.kind is SWITCH else [] if option.many and value is None else value
+                value = False if option.kind is SWITCH else [
+                    ] if option.many and value is None else value
             else:
                 if option.kind in PATHS and place != os.getcwd():
                     text = os.path.join(place, text)
@@ -106,7 +117,8 @@ def find(words):
         if not rest:
             raise Stop(f"{first} has the commands {', '.join(parts)}", 2)
         raise Stop(f"{first} has no command '{rest[0]}'" + nearest(rest[0], parts), 2)
-    raise Stop(f"there is no command '{first}'" + nearest(first, [*GROUPS, *COMMANDS]) + " (./icesoc lists all)", 2)
+    raise Stop(f"there is no command '{first}'" + nearest(first,
+        [*GROUPS, *COMMANDS]) + " (./icesoc lists all)", 2)
 
 
 def by_words(words, place):
@@ -120,7 +132,8 @@ def by_words(words, place):
     given, left = parser.parse_known_args(rest)
     names = [name for action in parser._actions for name in action.option_strings]
     for word in left:
-        what = f"has no option {word.partition('=')[0]}" if word.startswith("-") else f"takes no '{word}'"
+        what = f"has no option {word.partition('=')[0]}" if word.startswith(
+            "-") else f"takes no '{word}'"
         raise Stop(f"{found.name} {what}{nearest(word.partition('=')[0], names)}", 2)
     return found, found.values(vars(given), None, place)
 
@@ -135,13 +148,17 @@ def by_make(goal, goals, makes):
             os.environ[switch] = "1"
         return [each for each in COMMANDS.values() if each.make == verb]
     if not of(goal):
-        raise Stop(f"there is no 'make {goal}'" + nearest(goal, [each.make for each in COMMANDS.values() if each.make]), 2)
-    known = {"BUILD", "JOBS"} | {option.variable for each in goals for found in of(each) for option in found.options}
+        raise Stop(f"there is no 'make {goal}'" + nearest(goal,
+            [each.make for each in COMMANDS.values() if each.make]), 2)
+    known = {"BUILD", "JOBS"} | {option.variable for each in goals for found in of(each)
+                                 for option in found.options}
     for name in makes:
         if name not in known:
-            others = sorted({each.make for each in COMMANDS.values() if each.make and name in (o.variable for o in each.options)})
+            others = sorted({each.make for each in COMMANDS.values() if each.make
+                             and name in (o.variable for o in each.options)})
             where = f"; it is one of make {', '.join(others)}" if others else nearest(name, known)
-            raise Stop(f"there is no variable {name} of make {' '.join(goals)}{where}; ./icesoc {of(goal)[0].name} --help names them", 2)
+            raise Stop(
+                f"there is no variable {name} of make {' '.join(goals)}{where}; ./icesoc {of(goal)[0].name} --help names them", 2)
     chosen = sorted(of(goal), key=lambda each: not (each.when and os.environ.get(each.when)))
     found = next(each for each in chosen if not each.when or os.environ.get(each.when))
     return found, found.values({}, makes, os.getcwd())
@@ -162,12 +179,14 @@ def complete():
 
 def overview():
     """The text of `./icesoc`: a line for each command or group of commands."""
-    lines = ["IceSoC: every function of the UAV, in software or in hardware, is a ZeroC Ice object.", ""]
+    lines = [
+        "IceSoC: every function of the UAV, in software or in hardware, is a ZeroC Ice object.", ""]
     for name in dict.fromkeys(name.split()[0] for name in COMMANDS):
         parts = [each.split()[1] for each in COMMANDS if each.startswith(name + " ")]
         text = f"{GROUPS[name]}: {', '.join(parts)}" if parts else COMMANDS[name].help
         lines.append(f"  {name:<10} {text}")
-    return "\n".join([*lines, "", "./icesoc COMMAND --help explains one; make VERB VARIABLE=value is the same by the other door:",
+    return "\n".join(
+        [*lines, "", "./icesoc COMMAND --help explains one; make VERB VARIABLE=value is the same by the other door:",
                       *verbs()])
 
 

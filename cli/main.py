@@ -7,12 +7,14 @@ import sys
 from pathlib import Path
 
 from cli import command, version
-from cli.commands import flights, core, synth, contract, build, regression, checks, fresh, tree  # noqa: F401 (each declares its own)
+# noqa: F401 (each declares its own)
+from cli.commands import flights, core, synth, contract, build, regression, checks, fresh, tree
 from cli.runner import Interrupted, Stop, hear_signals, say, warn
 
 
 def surroundings():
-    """Sets the environment of all programs, and changes to the tree's folder. Returns the caller's folder."""
+    """Sets the environment of all programs, and changes to the tree's folder. Returns the caller's
+    folder."""
     place, tree = os.getcwd(), os.environ.pop("ICESOC_TREE", "")  # a test's own tree
     os.chdir(tree or Path(__file__).resolve().parent.parent)
     place = os.getcwd() if tree else place
@@ -20,7 +22,8 @@ def surroundings():
     os.environ.setdefault("HOME", pwd.getpwuid(os.getuid()).pw_dir)
     # Paths below this folder are relative in the compiler's cache, so that it serves every clone.
     os.environ.update(CCACHE_BASEDIR=os.getcwd(), CCACHE_NOHASHDIR="1")
-    os.environ["LC_ALL"] = "C.UTF-8"  # numbers have a point in every tool, whatever the user's language
+    os.environ[
+        "LC_ALL"] = "C.UTF-8"  # numbers have a point in every tool, whatever the user's language
     return place
 
 
@@ -30,7 +33,8 @@ def make_gave():
     flags = os.environ.pop("MAKEFLAGS", "")
     for name in ("MFLAGS", "MAKELEVEL", "MAKEOVERRIDES"):
         os.environ.pop(name, None)
-    names = re.findall(r"(?:^|(?<=\s))([A-Za-z_]\w*) ?:?=", re.sub(r"\\.", "", " " + flags.partition(" -- ")[2]))
+    names = re.findall(r"(?:^|(?<=\s))([A-Za-z_]\w*) ?:?=",
+                       re.sub(r"\\.", "", " " + flags.partition(" -- ")[2]))
     return (goal, goals or [goal], names) if goal else None
 
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """options: defines an option, and the kinds of values that options take.
 
-An option is declared once. Its help, its check, its variable of make and its field of flight.json come from this declaration.
+An option is declared once. Its help, its check, its variable of make and its field of flight.json
+come from this declaration.
 """
 import dataclasses
 import os
@@ -35,7 +36,8 @@ class Option:
         self.many = self.kind is WORDS or self.kind is FILES
 
     def value(self, text, called):
-        """The value of a text, or of the list of texts that argparse gives; `called`: its name in a message."""
+        """The value of a text, or of the list of texts that argparse gives; `called`: its name in a
+        message."""
         if isinstance(text, list):
             text = " ".join(text)
         try:
@@ -46,9 +48,11 @@ class Option:
     def explain(self):
         """The help's sentence: its meaning, its values, its default."""
         shown = " ".join(self.default) if isinstance(self.default, list) else self.default
-        parts = [] if self.kind in (TEXT, WORDS, FILES, SWITCH, FILE, KEY_FILE, FOLDER, PATH, FLIGHT) else [self.kind.expected]
+        parts = [] if self.kind in (TEXT, WORDS, FILES, SWITCH, FILE, KEY_FILE, FOLDER, PATH,
+                                    FLIGHT) else [self.kind.expected]
         parts += [f"default {shown}"] if shown is not None and shown != "" else []
-        return (self.help + (f" ({'; '.join(parts)})" if parts else "") + f" [{self.variable}]").replace("%", "%%")
+        return (self.help + (f" ({'; '.join(parts)})" if parts else "")
+                + f" [{self.variable}]").replace("%", "%%")
 
 
 def matching(pattern, expected, convert=str, schema=None, metavar="VALUE"):
@@ -71,11 +75,13 @@ def number(low, high=None, unit="", convert=int):
             raise ValueError
         return value
     schema = {"type": "integer" if convert is int else "number", "minimum": low}
-    return Kind(read, f"{between} {unit}".rstrip(), schema if high is None else {**schema, "maximum": high}, "N")
+    return Kind(read, f"{between} {unit}".rstrip(),
+                schema if high is None else {**schema, "maximum": high}, "N")
 
 
 def one_of(*words):
-    return matching("|".join(map(re.escape, words)), " or ".join(words), schema={"enum": list(words)}, metavar="|".join(words))
+    return matching("|".join(map(re.escape, words)), " or ".join(words),
+                    schema={"enum": list(words)}, metavar="|".join(words))
 
 
 def _switch(text):
@@ -102,7 +108,8 @@ def _key(text):
 
 def _flight(text):
     if not os.path.isfile(os.path.join(text, "flight.jsonl")):
-        raise ValueError(f"no flight was recorded in '{text}': ./icesoc run --out '{text}' records one")
+        raise ValueError(
+            f"no flight was recorded in '{text}': ./icesoc run --out '{text}' records one")
     return text
 
 
@@ -114,7 +121,8 @@ def _frame(text):
 
 
 TEXT = Kind(str, "a text", {"type": "string"})
-WORDS = Kind(str.split, "words with spaces between them", {"type": "array", "items": {"type": "string"}}, "WORD")
+WORDS = Kind(str.split, "words with spaces between them",
+             {"type": "array", "items": {"type": "string"}}, "WORD")
 FILES = Kind(str.split, "names of files with spaces between them", metavar="FILE")
 SWITCH = Kind(_switch, "1 or 0", {"type": "boolean"})
 FILE = Kind(_file, "a file that can be read", {"type": "string"}, "FILE")
@@ -122,7 +130,8 @@ FOLDER = Kind(str, "a folder", {"type": "string"}, "FOLDER")
 PATH = Kind(str, "a name of a file", {"type": "string"}, "FILE")
 KEY_FILE = Kind(_key, "a file that can be read", {"type": "string"}, "FILE")
 FLIGHT = Kind(_flight, "the folder of a recorded flight", {"type": "string"}, "FOLDER")
-FRAME = Kind(_frame, "WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8", {"type": "string"}, "WxH")
+FRAME = Kind(_frame, "WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8", {"type": "string"},
+             "WxH")
 SHARE = number(0, 1, convert=float)
 COUNT = number(1)
 SECONDS = number(0, unit="s", convert=float)
@@ -131,12 +140,17 @@ PATHS = (FILE, KEY_FILE, FOLDER, PATH, FLIGHT)  # relative to the caller's folde
 
 BUILD = Option("build", FOLDER, "build folder", "build/main")
 JOBS = Option("jobs", COUNT, "processes of a build at a time", len(os.sched_getaffinity(0)))
-TESTS = Option("tests", COUNT, "tests at a time: some wait for a clock, so two more than processors", None)
+TESTS = Option(
+    "tests", COUNT, "tests at a time: some wait for a clock, so two more than processors", None)
 SEED = Option("seed", number(0), "seed of everything that is drawn", 1)
 NAME = Option("name", TEXT, "regular expression: tests of which a part of the name matches")
-LABEL = Option("label", TEXT, "tests of this label: rtl, vhdl, formal, lint, firmware, slice, interop, e2e, ...")
+LABEL = Option(
+    "label", TEXT, "tests of this label: rtl, vhdl, formal, lint, firmware, slice, interop, e2e, ...")
 BLOCK = Option("block", TEXT, "what belongs to this block, such as bus or modem")
-UCOS2 = Option("ucos2", FOLDER, "folder of the real uC/OS-II: the firmware is built with it, too (docs/firmware.md)")
-FRESH = Option("fresh", SWITCH, "computes proofs, lints and synthesis of unchanged files again, too")
-CORE_FOLDERS = Option("core-folders", TEXT, "folders of cores outside of ip/, with ; between them; none: none from now on")
+UCOS2 = Option(
+    "ucos2", FOLDER, "folder of the real uC/OS-II: the firmware is built with it, too (docs/firmware.md)")
+FRESH = Option(
+    "fresh", SWITCH, "computes proofs, lints and synthesis of unchanged files again, too")
+CORE_FOLDERS = Option(
+    "core-folders", TEXT, "folders of cores outside of ip/, with ; between them; none: none from now on")
 BUILT = Option("built", SWITCH, "takes what is built as it is: no set-up, no build", listed=False)

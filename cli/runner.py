@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""runner: starts programs by lists of words, never through a shell; says what went wrong; ends what it has started.
+"""runner: starts programs by lists of words, never through a shell; says what went wrong; ends what
+it has started.
 
 A program that is ended by a signal, or cannot be started, is reported here, and nowhere else.
 """
@@ -14,7 +15,8 @@ import time
 
 
 class Stop(Exception):
-    """Ends the command with a message (empty if a program has printed one already) and an exit status."""
+    """Ends the command with a message (empty if a program has printed one already) and an exit
+    status."""
 
     def __init__(self, text="", status=1):
         super().__init__(text)
@@ -51,7 +53,9 @@ def start(words, env=None, **more):
     """A process that ends with this one, however that ends. `env`: additions to our environment."""
     words = [str(word) for word in words]
     if not shutil.which(words[0]):
-        raise Stop(f"there is no program '{words[0]}': ./icesoc setup --tests installs what is missing", 127)
+        raise Stop(
+            f"there is no program '{words[0]}': ./icesoc setup --tests installs what is missing",
+                   127)
     more["env"] = {**os.environ, **{name: str(value) for name, value in (env or {}).items()}}
     return subprocess.Popen(["setpriv", "--pdeathsig", "TERM", "--", *words], **more)
 
@@ -78,7 +82,8 @@ def wait(process):
 
 
 def run(words, check=True, **more):
-    """Runs a program to its end. If it fails, the command ends with its exit status, unless `check` is false."""
+    """Runs a program to its end. If it fails, the command ends with its exit status, unless `check`
+    is false."""
     status = wait(start(words, **more))
     if status > 128:
         warn(f"{os.path.basename(str(words[0]))} was ended by signal {status - 128} ({signal.strsignal(status - 128)})")
@@ -114,7 +119,8 @@ def logged(words, log, failed, env=None, cwd=None):
 
 @contextlib.contextmanager
 def lock(path, busy=None, refuse=None):
-    """Holds a lock, and returns its descriptor. If it is taken: prints `busy` and waits, or ends with `refuse`."""
+    """Holds a lock, and returns its descriptor. If it is taken: prints `busy` and waits, or ends
+    with `refuse`."""
     fd = os.open(path, os.O_RDONLY if os.path.isdir(path) else os.O_RDWR | os.O_CREAT, 0o666)
     try:
         try:

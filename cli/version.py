@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""version: the versions of the project, from CHANGELOG.md, of the protocols on the air, and of the chip's blocks."""
+"""version: the versions of the project, from CHANGELOG.md, of the protocols on the air, and of the
+chip's blocks."""
 import json
 import re
 from pathlib import Path

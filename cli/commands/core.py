@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""core: begin a core, put a third-party one into a slot, test it, look at it, take it away (docs/recipes.md)."""
+"""core: begin a core, put a third-party one into a slot, test it, look at it, take it away
+(docs/recipes.md)."""
 import os
 import re
 import shutil
@@ -17,15 +18,18 @@ from cli.runner import Stop, logged, output, run, say, warn
 GROUPS["core"] = "cores of the chip: begin one, test it, take it away"
 NAME = Option("name", TEXT, "name of the core, such as low_pass", "", positional=True)
 CORE = Option("ip", matching(r"\w+", "the name of a core"), "the core", "", positional=True)
-CHIP = Option("chip", SWITCH, "in the chip as it is listed now, which takes minutes, instead of the accepted one")
+CHIP = Option(
+    "chip", SWITCH, "in the chip as it is listed now, which takes minutes, instead of the accepted one")
 
 
 def check_name(name):
     """Refuses a name that is invalid or taken."""
     if not name:
-        raise Stop("a core needs a name: ./icesoc core new low_pass --lang verilog (make new-ip NAME=low_pass LANG=verilog)")
+        raise Stop(
+            "a core needs a name: ./icesoc core new low_pass --lang verilog (make new-ip NAME=low_pass LANG=verilog)")
     if not re.fullmatch(r"[a-z][a-z0-9]*|[a-z][a-z0-9]+(_[a-z][a-z0-9]+)+", name):
-        raise Stop(f"'{name}': words of small letters and digits, joined by _, such as mixer or low_pass")
+        raise Stop(
+            f"'{name}': words of small letters and digits, joined by _, such as mixer or low_pass")
     if name in RESERVED:
         raise Stop(f"'{name}' {REFUSAL}")
     if os.path.lexists(f"ip/{name}"):
@@ -35,7 +39,8 @@ def check_name(name):
             if room != "synth" and path.name in (f"{name}.regs.json", f"{name}_wrapper.v"):
                 raise Stop(f"{path} has the name '{name}'")
             if room not in ("sw", "testbench") and path.suffix in (".v", ".vhd") and re.search(
-                    rf"^ *(module|entity) +{name}(_wrapper)?\b", path.read_text(errors="replace"), re.M | re.I):
+                    rf"^ *(module|entity) +{name}(_wrapper)?\b", path.read_text(errors="replace"),
+                re.M | re.I):
                 raise Stop(f"there is a module '{name}' in {path}")
 
 
@@ -43,9 +48,11 @@ def write_own(build, name, lang, ice, folder):
     """Begins a core from the user's interface."""
     included = re.findall(r'^ *# *include *[<"]([^>"]*)', Path(ice).read_text(), re.M)
     if included:
-        raise Stop(f"{ice} includes {' '.join(included)}: a core has one Slice file; write into it what it needs of others")
+        raise Stop(
+            f"{ice} includes {' '.join(included)}: a core has one Slice file; write into it what it needs of others")
     work = folder.parent
-    if run([build / "slice/slice2c", f"-I{Path(ice).absolute().parent}", ice, "--output-dir", work / "c", "--hw-regs", work / "regs",
+    if run([build / "slice/slice2c", f"-I{Path(ice).absolute().parent}", ice, "--output-dir",
+            work / "c", "--hw-regs", work / "regs",
             f"--hw-new-{lang}", work / "new"], check=False):
         raise Stop(f"{ice} is not an interface in hardware (above)")
     cores = sorted(path.name[:-len(".regs.json")] for path in (work / "regs").iterdir())
@@ -58,7 +65,8 @@ def write_own(build, name, lang, ice, folder):
     fill(template / lang / "CMakeLists.txt.in", folder, name)
     fill(template / "interface/ground.py.in", folder, name)
     readme = fill(template / "README.md.in", folder, name)
-    readme.write_text(re.sub(r"^Adds an offset, and sums 1..count:", "Answers every call with zeros:", readme.read_text(), flags=re.M))
+    readme.write_text(re.sub(r"^Adds an offset, and sums 1..count:",
+                             "Answers every call with zeros:", readme.read_text(), flags=re.M))
 
 
 def fill(template, folder, name):
@@ -70,8 +78,10 @@ def fill(template, folder, name):
 
 
 @command("core new", [NAME, Option("lang", one_of("verilog", "vhdl"), "the core's language"),
-                      Option("ice", FILE, "Slice file with its interface; without: an example"), BUILD, JOBS], make="new-ip",
-         brief=("core new brief_core --lang vhdl", "core remove brief_core --force"), examples=["core new low_pass --lang vhdl", "core new lamp --lang verilog --ice lamp.ice"])
+                      Option("ice", FILE, "Slice file with its interface; without: an example"),
+                      BUILD, JOBS], make="new-ip",
+         brief=("core new brief_core --lang vhdl", "core remove brief_core --force"),
+         examples=["core new low_pass --lang vhdl", "core new lamp --lang verilog --ice lamp.ice"])
 def new(values):
     """begin a core: writes ip/NAME with interface, core and test, which builds and passes"""
     name, lang = values.name, values.lang
@@ -88,13 +98,16 @@ def new(values):
         if values.ice:
             write_own(build, name, lang, values.ice, folder)
         else:
-            for template in [*Path("ip/template").glob("*.in"), *Path("ip/template", lang).glob("*.in")]:
+            for template in [*Path("ip/template").glob("*.in"),
+                             *Path("ip/template", lang).glob("*.in")]:
                 fill(template, folder, name)
         shutil.move(folder, f"ip/{name}")  # the folder takes its place when it is complete
-    # A build folder would notice the new one by itself; it must now, while the folder can still be removed.
+    # A build folder would notice the new one by itself; it must now, while the folder can still be
+    # removed.
     if (build / "build.ninja").exists():
         try:
-            logged(["cmake", build.folder], build / "new-ip.log", f"the build does not take '{name}' (above); nothing was changed")
+            logged(["cmake", build.folder], build / "new-ip.log",
+                   f"the build does not take '{name}' (above); nothing was changed")
         except Stop:
             shutil.rmtree(f"ip/{name}")
             with open(build / "new-ip.log", "a") as log:
@@ -107,26 +120,36 @@ def new(values):
 def foreign_words(values):
     """The words of ip/new_foreign.py."""
     words = [values.name, values.top, values.bus, f"ip/{values.name}"]
-    words += [f"{key}={value}" for key, value in (("CLOCK", values.clock), ("LIBRARY", values.library), ("ADDRESS", values.address)) if value]
-    words += [f"PARAM:{each}" for each in values.params] + [f"DEFINE:{each}" for each in values.defines]
+    words += [f"{key}={value}" for key, value in (("CLOCK", values.clock),
+        ("LIBRARY", values.library), ("ADDRESS", values.address)) if value]
+    words += [f"PARAM:{each}" for each in values.params] + [f"DEFINE:{each}"
+        for each in values.defines]
     return words + values.ports + values.files
 
 
 @command("core foreign", [
-    NAME, Option("top", TEXT, "its module", ""), Option("bus", TEXT, "wishbone, axil, apb, memory, own or axis", ""),
-    Option("files", FILES, "its files, of Verilog or VHDL"), Option("ports", WORDS, "what its ports are, such as write=we ack=done"),
-    Option("params", WORDS, "its parameters, such as depth=16"), Option("defines", WORDS, "its macros, such as wide"),
-    Option("clock", COUNT, "Hz of a clock of its own"), Option("library", TEXT, "library of its VHDL", ""),
-    Option("address", one_of("words", "bytes"), "what its address counts; found out, unless given"), BUILD, JOBS],
-    make="new-foreign", brief=("core foreign brief_foreign --top req_words --bus own --files tests/ip/new_foreign/req_words.v "
-    "--ports select=req write=wr address=where wdata=value rdata=held ack=gnt", "core remove brief_foreign --force"),
+    NAME, Option("top", TEXT, "its module", ""),
+                          Option("bus", TEXT, "wishbone, axil, apb, memory, own or axis", ""),
+    Option("files", FILES, "its files, of Verilog or VHDL"),
+                          Option("ports", WORDS, "what its ports are, such as write=we ack=done"),
+    Option("params", WORDS, "its parameters, such as depth=16"),
+                          Option("defines", WORDS, "its macros, such as wide"),
+    Option("clock", COUNT, "Hz of a clock of its own"),
+                          Option("library", TEXT, "library of its VHDL", ""),
+    Option("address", one_of("words", "bytes"), "what its address counts; found out, unless given"),
+                          BUILD, JOBS],
+    make="new-foreign", brief=(
+        "core foreign brief_foreign --top req_words --bus own --files tests/ip/new_foreign/req_words.v "
+    "--ports select=req write=wr address=where wdata=value rdata=held ack=gnt",
+                               "core remove brief_foreign --force"),
     examples=["core foreign my_uart --top wbuart --bus wishbone --files wbuart.v ufifo.v"])
 def foreign_core(values):
     """put a third-party core into a slot: writes ip/NAME"""
     build = BuildFolder(values.build, values).prepare()
     if any(file.lower().endswith((".vhd", ".vhdl")) for file in values.files):
         build.quietly("ghdl")
-    return run(["ip/new_foreign.py", *foreign_words(values)], check=False, env={"GHDL": build / "ghdl/ghdl"})
+    return run(["ip/new_foreign.py", *foreign_words(values)], check=False,
+               env={"GHDL": build / "ghdl/ghdl"})
 
 
 def known(values):
@@ -144,7 +167,8 @@ def known(values):
     return build
 
 
-@command("core test", [CORE, CORE_FOLDERS, SEED, BUILD, JOBS], make="ip-test", brief="core test fir",
+@command("core test", [CORE, CORE_FOLDERS, SEED, BUILD, JOBS], make="ip-test",
+         brief="core test fir",
          examples=["core test fir", "core test my_core --core-folders /path/to/my_core"])
 def test(values):
     """build and test one core: its block test, and its VHDL under GHDL"""
@@ -156,13 +180,15 @@ def test(values):
     return build.ctest("-R", rf"^(test_ip_{core}[.]|vhdl[.]{core}$)", tests=1, SEED=values.seed)
 
 
-@command("core synth", [CORE, CORE_FOLDERS, CHIP, BUILD, JOBS], make="ip-synth", brief="core synth fir", examples=["core synth fir --chip"])
+@command("core synth", [CORE, CORE_FOLDERS, CHIP, BUILD, JOBS], make="ip-synth",
+         brief="core synth fir", examples=["core synth fir --chip"])
 def synth(values):
     """utilisation of one core, alone and in the chip"""
     build = known(values)
     build.quietly("synth_inputs")
     return utilisation(build, values, "--design", values.ip) or \
-        utilisation(build, values, "--core", values.ip, *(["--design", "soc"] if values.chip else []))
+        utilisation(build, values, "--core", values.ip,
+                    *(["--design", "soc"] if values.chip else []))
 
 
 def one_test(program, text):
@@ -174,7 +200,8 @@ def one_test(program, text):
             names.append(suite + line.split()[0])
         else:
             suite = line.split()[0]
-    found = [name for name in names if text in (name, name.partition(".")[2])] or [name for name in names if re.search(text, name)]
+    found = [name for name in names if text in (name,
+        name.partition(".")[2])] or [name for name in names if re.search(text, name)]
     if len(found) != 1:
         raise Stop(f"TEST={text} is {len(found)} tests, not one of:\n{listed}")
     return found[0]
@@ -187,34 +214,42 @@ def ports(core):
         for include in ("bus/slot_ports.vh", "hdl/ddr/memory_ports.vh"):
             text = text.replace(f'`include "{os.path.basename(include)}"', Path(include).read_text())
         head = re.search(rf"^module\s+{core}\b.*?\);", re.sub(r"//.*", "", text), re.M | re.S)
-        for wide, name in re.findall(r"(?:input|output)\s+(?:wire|reg)?\s*(?:signed\s*)?(\[\d+:0\])?\s*(\w+)", head[0] if head else ""):
+        for wide, name in re.findall(
+            r"(?:input|output)\s+(?:wire|reg)?\s*(?:signed\s*)?(\[\d+:0\])?\s*(\w+)",
+                                     head[0] if head else ""):
             yield f"TOP.{name}{wide}"
 
 
-@command("core wave", [CORE, Option("test", TEXT, "the test: its name, or an expression that matches only it", "", positional=True), JOBS],
+@command("core wave", [CORE, Option("test", TEXT,
+                                    "the test: its name, or an expression that matches only it", "",
+                                    positional=True), JOBS],
          make="wave", brief="core wave fir Impulse", examples=["core wave fir Impulse"])
 def wave(values):
     """waveform of one test of a core, for GTKWave: build/wave/CORE.fst and .gtkw"""
     core = values.ip
     if not core or not values.test:
-        raise Stop("wave needs a core and a test: ./icesoc core wave fir Impulse (make wave IP=fir TEST=Impulse)")
+        raise Stop(
+            "wave needs a core and a test: ./icesoc core wave fir Impulse (make wave IP=fir TEST=Impulse)")
     if not Path(f"ip/{core}/{core}_test.cpp").exists():
         raise Stop(f"there is no ip/{core}/{core}_test.cpp")
     build = BuildFolder("build/trace", values)
     if not values.built:
         build.configure("-DTRACE=ON")
     build.quietly(f"test_ip_{core}")
-    program = next(path for path in sorted(build.folder.rglob(f"test_ip_{core}")) if path.is_file() and os.access(path, os.X_OK))
+    program = next(path for path in sorted(build.folder.rglob(f"test_ip_{core}")) if path.is_file()
+                   and os.access(path, os.X_OK))
     name = one_test(program.absolute(), values.test)
     folder = Path("build/wave").absolute()
     folder.mkdir(parents=True, exist_ok=True)
     fst, save, log = (folder / f"{core}{end}" for end in (".fst", ".gtkw", ".log"))
     fst.unlink(missing_ok=True)
     with open(log, "w") as file:
-        status = run([program.absolute(), f"--gtest_filter={name}"], check=False, stdout=file, stderr=file, env={"WAVE": fst})
+        status = run([program.absolute(), f"--gtest_filter={name}"], check=False, stdout=file,
+                     stderr=file, env={"WAVE": fst})
     if not fst.exists() or not fst.stat().st_size:
         raise Stop(f"{log.read_text()}{name} wrote no waveform")
-    save.write_text("\n".join([f"[*] {name}: generated by ./icesoc core wave", f'[dumpfile] "{fst}"', f'[savefile] "{save}"', *ports(core)]) + "\n")
+    save.write_text("\n".join([f"[*] {name}: generated by ./icesoc core wave",
+                               f'[dumpfile] "{fst}"', f'[savefile] "{save}"', *ports(core)]) + "\n")
     if status:
         warn(f"{name} failed: {log}")
     if os.environ.get("DISPLAY") and shutil.which("gtkwave"):
@@ -223,53 +258,69 @@ def wave(values):
 
 
 def users_of(name):
-    """Cores with an input that this one drives. An input for other cores only ("internal") becomes 0; any other would
+    """Cores with an input that this one drives. An input for other cores only ("internal") becomes
+    0; any other would
     become a pin of the chip."""
     for line in Path("ip/cores.list").read_text().splitlines():
         user, *words = line.partition("#")[0].split() or [""]
-        text = "".join(path.read_text() for path in Path("ip", user or ".").glob("*.regs.json")) if user else ""
+        text = "".join(path.read_text() for path in Path("ip",
+            user or ".").glob("*.regs.json")) if user else ""
         for pin in (word.partition("=")[0] for word in words if f"={name}." in word):
             if not re.search(rf'"name": *"{pin}"[^}}]*"internal": *true', text):
                 yield user
 
 
-@command("core remove", [NAME, Option("force", SWITCH, "with changes that are not committed"), BUILD, JOBS], make="rm-ip",
-         brief=("core new brief_gone --lang verilog", "core remove brief_gone --force"), examples=["core remove low_pass"])
+@command("core remove", [NAME, Option("force", SWITCH, "with changes that are not committed"),
+                         BUILD, JOBS], make="rm-ip",
+         brief=("core new brief_gone --lang verilog", "core remove brief_gone --force"),
+         examples=["core remove low_pass"])
 def remove(values):
     """take a core away: its folder and its line in ip/cores.list"""
     name, core = values.name, Path("ip", values.name or ".")
     if not re.fullmatch(r"[a-z0-9_]+", name) or name == "template":
-        raise Stop(f"'{name}' is not a core: ./icesoc core remove low_pass (make rm-ip NAME=low_pass)")
+        raise Stop(
+            f"'{name}' is not a core: ./icesoc core remove low_pass (make rm-ip NAME=low_pass)")
     if not core.is_dir():
         raise Stop(f"there is no ip/{name}")
-    changed = output(["git", "status", "--porcelain", "--ignored", "--", core], check=False, stderr=-3)
+    changed = output(["git", "status", "--porcelain", "--ignored", "--", core], check=False,
+                     stderr=-3)
     if changed and not values.force:
-        raise Stop(f"ip/{name} has changes that are not committed (FORCE=1, --force, takes it away all the same):\n{changed}")
+        raise Stop(
+            f"ip/{name} has changes that are not committed (FORCE=1, --force, takes it away all the same):\n{changed}")
     users = sorted(set(users_of(name)))
     if users:
-        raise Stop(f"in ip/cores.list the inputs of {' '.join(users)} are outputs of '{name}'; change these lines first")
+        raise Stop(
+            f"in ip/cores.list the inputs of {' '.join(users)} are outputs of '{name}'; change these lines first")
     shutil.rmtree(core)
     listed = Path("ip/cores.list")
     listed.write_text(re.sub(rf"^[ \t]*{name}(?![^\s#]).*\n?", "", listed.read_text(), flags=re.M))
     build = BuildFolder(values.build, values)
     if (build / "build.ninja").exists():
-        logged(["cmake", build.folder], build / "rm-ip.log", "the build cannot be configured without it")
+        logged(["cmake", build.folder], build / "rm-ip.log",
+               "the build cannot be configured without it")
     say(f"ip/{name} and its line in ip/cores.list are gone")
 
 
-# Cores that new_foreign.py puts into slots: slot, module, bus, repository, and Hz of their own clock.
-EXAMPLES = [("foreign_aes", "aes", "memory", "aes", ""), ("foreign_uart", "wbuart", "wishbone", "wbuart32", "24000000"),
-            ("foreign_axil", "axiluart", "axil", "wbuart32", ""), ("foreign_i2c", "i2c_master_top", "wishbone", "i2c", ""),
+# Cores that new_foreign.py puts into slots: slot, module, bus, repository, and Hz of their own
+# clock.
+EXAMPLES = [("foreign_aes", "aes", "memory", "aes", ""),
+            ("foreign_uart", "wbuart", "wishbone", "wbuart32", "24000000"),
+            ("foreign_axil", "axiluart", "axil", "wbuart32", ""),
+            ("foreign_i2c", "i2c_master_top", "wishbone", "i2c", ""),
             ("foreign_cobs", "axis_cobs_encode", "axis", "verilog-axis", "")]
-SPI_PORTS = """strobe=bus_req_i_stb write=bus_req_i_rw address=bus_req_i_addr enables=bus_req_i_ben wdata=bus_req_i_data
- rdata=bus_rsp_o_data ack=bus_rsp_o_ack error=bus_rsp_o_err high=clkgen_i low=bus_req_i_meta low=bus_req_i_amo low=bus_req_i_amoop
+SPI_PORTS = """strobe=bus_req_i_stb write=bus_req_i_rw address=bus_req_i_addr enables=bus_req_i_ben
+wdata=bus_req_i_data
+ rdata=bus_rsp_o_data ack=bus_rsp_o_ack error=bus_rsp_o_err high=clkgen_i low=bus_req_i_meta
+ low=bus_req_i_amo low=bus_req_i_amoop
  low=bus_req_i_burst low=bus_req_i_lock""".split()
 
 
-@command("core examples", [Option("chip", SWITCH, "and what each costs in the chip"), SEED, *(o for o in FIELDS if o.name == "image"), BUILD, JOBS],
+@command("core examples", [Option("chip", SWITCH, "and what each costs in the chip"), SEED,
+                           *(o for o in FIELDS if o.name == "image"), BUILD, JOBS],
          make="foreign", brief="core examples")
 def examples(values):
-    """put third-party cores and two of one's own through the recipe, in three orders, test them and call them by radio
+    """put third-party cores and two of one's own through the recipe, in three orders, test them and
+    call them by radio
 
     Wishbone, AXI4-Lite, AXI-Stream and plain buses in Verilog, records in VHDL. Downloads them."""
     if not values.built:
@@ -280,11 +331,17 @@ def examples(values):
     shutil.rmtree(cores / "slots", ignore_errors=True)
 
     def into_slot(slot, module, bus, files, *words):
-        run(["ip/new_foreign.py", slot, module, bus, cores / "slots" / slot, *words, *sorted(files)], stdout=-3,
+        run(["ip/new_foreign.py", slot, module, bus, cores / "slots" / slot, *words,
+             *sorted(files)], stdout=-3,
             env={"GHDL": cores / "ghdl/ghdl"})
-    into_slot("foreign_spi", "neorv32_spi", "own", (cores / "neorv32").glob("*.vhd"), "LIBRARY=neorv32", "PARAM:IO_SPI_FIFO=4", *SPI_PORTS)
+    into_slot("foreign_spi", "neorv32_spi", "own", (cores / "neorv32").glob("*.vhd"),
+              "LIBRARY=neorv32", "PARAM:IO_SPI_FIFO=4", *SPI_PORTS)
     for slot, module, bus, repository, clock in EXAMPLES:
-        into_slot(slot, module, bus, (cores / repository).glob("*.v"), *([f"CLOCK={clock}"] if clock else []))
-    return run(["examples/foreign/orders.sh", "examples/foreign/olo_spi", "tests/e2e/cores/servo", "tests/e2e/cores/crc32",
-                *(cores / "slots" / slot for slot in ["foreign_spi", *(each[0] for each in EXAMPLES)])], check=False,
-               env={"IMAGE": values.image, "JOBS": values.jobs, "SEED": values.seed, "CHIP": "1" if values.chip else ""})
+        into_slot(slot, module, bus, (cores / repository).glob("*.v"),
+                  *([f"CLOCK={clock}"] if clock else []))
+    return run(["examples/foreign/orders.sh", "examples/foreign/olo_spi", "tests/e2e/cores/servo",
+                "tests/e2e/cores/crc32",
+                *(cores / "slots" / slot for slot in ["foreign_spi",
+                    *(each[0] for each in EXAMPLES)])], check=False,
+               env={"IMAGE": values.image, "JOBS": values.jobs, "SEED": values.seed,
+                    "CHIP": "1" if values.chip else ""})

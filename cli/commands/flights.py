@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""flights: fly the mission, fly it again, look at it in a debugger; send new firmware; make a key; fly for hours."""
+"""flights: fly the mission, fly it again, look at it in a debugger; send new firmware; make a key;
+fly for hours."""
 import re
 import signal
 import sys
@@ -18,12 +19,16 @@ TO = Option("to", SECONDS, "end of the waveform, in simulated time")
 DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size", "seed")]
 
 
-@command("run", [*flight.OPTIONS, BUILD, JOBS], make="run", brief="run --size 96x64 --guard 20 --out build/brief/run",
-         examples=["run --image photo.jpg --size 640x480", "run --loss 0.1 --seed 7 --cores ascon fir", "run --again build/run/flight.json"])
+@command("run", [*flight.OPTIONS, BUILD, JOBS], make="run",
+         brief="run --size 96x64 --guard 20 --out build/brief/run",
+         examples=["run --image photo.jpg --size 640x480",
+                   "run --loss 0.1 --seed 7 --cores ascon fir",
+                   "run --again build/run/flight.json"])
 def fly_mission(values):
     """fly the mission: simulated UAV, ZeroC Ice ground station, pictures in build/run
 
-    An address of a page that shows the flight is printed. What was flown is in OUT/flight.json, which --again takes."""
+    An address of a page that shows the flight is printed. What was flown is in OUT/flight.json,
+    which --again takes."""
     flight.complete(values)
     build = BuildFolder(values.build, values).prepare()
     if not build.built:
@@ -31,42 +36,52 @@ def fly_mission(values):
     build.ninja("mission", *(["firmware_minimal"] if values.app == "minimal" else []))
     flight.check_chip(values, build)
     flight.take_key(values, build)
-    with lock(Path(values.out) / "lock", refuse=f"another flight is under way in {values.out}; give this one a folder of its own: "
+    with lock(
+        Path(values.out) / "lock", refuse=f"another flight is under way in {values.out}; give this one a folder of its own: "
               "OUT=build/other (--out)") as held:  # until this flight's last program has ended
         fly = minimal if values.app == "minimal" else update if values.update else mission
         return fly(values, build, held)
 
 
 def simulator(values, build, held, options, ground):
-    """Starts the simulator, with the ground's program as its child. The simulator replaces words such as {out}."""
+    """Starts the simulator, with the ground's program as its child. The simulator replaces words
+    such as {out}."""
     flight.write(values, build)
-    return start([build / "testbench/sim/icesoc-sim", "--flight", Path(values.out) / "flight.json", *options, "--",
+    return start([build / "testbench/sim/icesoc-sim", "--flight", Path(values.out) / "flight.json",
+                  *options, "--",
                   "/usr/bin/python3", *ground], pass_fds=[held], env={"PROBE": values.probe})
 
 
 def minimal(values, build, held):
     """Flies the program of Table II with its ground."""
     return wait(simulator(values, build, held, [], [
-        "sw/apps/minimal/ground.py", "{device}", "--frame", "{frame}", "--reference", build / "testbench/sim/vision-reference",
-        f"--Ice.Plugin.XBeeAT={build.folder}/ground/xbeeat:createXBeeAT", "--XBeeAT.Guard={guard}"]))
+        "sw/apps/minimal/ground.py", "{device}", "--frame", "{frame}", "--reference",
+        build / "testbench/sim/vision-reference",
+        f"--Ice.Plugin.XBeeAT={build.folder}/ground/xbeeat:createXBeeAT",
+        "--XBeeAT.Guard={guard}"]))
 
 
 def update(values, build, held):
-    """Sends firmware or a bitstream to a vehicle with the flash OUT/flash.bin, and its FPGA's OUT/fpga.bin; makes both if missing."""
+    """Sends firmware or a bitstream to a vehicle with the flash OUT/flash.bin, and its FPGA's
+    OUT/fpga.bin; makes both if missing."""
     out, pack = Path(values.out), build / "sw/target/pack_update"
     keys.rescue(build.folder)
     signing = keys.folder() / "update.key"  # private, made at first use
     if not (out / "flash.bin").exists():
-        run([pack, "vehicle", build / "firmware/loader.elf", flight.firmware(values, build), 1, signing, out / "flash.bin"])
+        run([pack, "vehicle", build / "firmware/loader.elf", flight.firmware(values, build), 1,
+             signing, out / "flash.bin"])
     if not (out / "fpga.bin").exists():  # a stand-in for ISE's golden bitstream
         run([build / "testbench/cpu/stand_in_bitstream", out / "golden.bin", 1, 10000])
         run([pack, "fpga", out / "golden.bin", 1, signing, out / "fpga.bin"])
     kind = "bitstream" if values.update.endswith((".bit", ".bin")) else "image"
     run([pack, kind, values.update, int(time.time()), signing, out / "new.update"])
     values.cpu = "m3"
-    return wait(simulator(values, build, held, ["--flash", out / "flash.bin", "--fpga-flash", out / "fpga.bin"], [
-        "sw/ground/clients/update.py", "{out}/new.update", "--device", "{device}", "--status", "{status}", "--plugin", build / "ground",
-        "--slice", "sw/apps/uav/Update.ice", "--patience", values.patience, *(["--key", values.key] if values.key else [])]))
+    return wait(simulator(values, build, held,
+                          ["--flash", out / "flash.bin", "--fpga-flash", out / "fpga.bin"], [
+        "sw/ground/clients/update.py", "{out}/new.update", "--device", "{device}", "--status",
+                              "{status}", "--plugin", build / "ground",
+        "--slice", "sw/apps/uav/Update.ice", "--patience", values.patience,
+                              *(["--key", values.key] if values.key else [])]))
 
 
 def mission(values, build, held):
@@ -80,11 +95,14 @@ def mission(values, build, held):
     before = flown()
     run([*page, "--try"])
     sim = simulator(values, build, held, [], [
-        "sw/ground/clients/mission.py", "{out}/flight.json", "--device", "{device}", "--frame", "{frame}", "--status", "{status}",
-        "--plugin", build / "ground", "--slice", "sw/apps/uav/Autopilot.ice", "--reference", build / "testbench/sim/vision-reference"])
+        "sw/ground/clients/mission.py", "{out}/flight.json", "--device", "{device}", "--frame",
+        "{frame}", "--status", "{status}",
+        "--plugin", build / "ground", "--slice", "sw/apps/uav/Autopilot.ice", "--reference",
+        build / "testbench/sim/vision-reference"])
     shown = None
     try:
-        # The page starts after the simulator has accepted its options: its address would hide a refusal.
+        # The page starts after the simulator has accepted its options: its address would hide a
+        # refusal.
         if until(lambda: flown() != before, sim):
             shown = start(page, pass_fds=[held])
         status = wait(sim)
@@ -113,18 +131,22 @@ def mission(values, build, held):
     return status
 
 
-@command("replay", [Option("replay", FLIGHT, "folder of the flight", "build/run", positional=True), FROM, TO,
-                    Option("out", FOLDER, "folder that it is written to", "build/replay"), BUILD, JOBS],
+@command("replay", [Option("replay", FLIGHT, "folder of the flight", "build/run", positional=True),
+                    FROM, TO,
+                    Option("out", FOLDER, "folder that it is written to", "build/replay"), BUILD,
+                    JOBS],
          make="run", when="REPLAY", brief="replay build/brief/run --out build/brief/replay",
          examples=["replay build/run", "replay build/run --from 1.5 --to 1.51"])
 def replay(values):
     """fly a recorded flight again, bit by bit; with a span, its waveform
 
-    With --from or --to the waveform of that span is written to OUT/wave.fst, by a simulator that is built for it once; of a
+    With --from or --to the waveform of that span is written to OUT/wave.fst, by a simulator that is
+    built for it once; of a
     flight with --cpu m3 the program's task, interrupt and function are above it."""
     span = values.given & {"from", "to"}
     if span and values.to is not None and values.to <= (getattr(values, "from") or 0):
-        raise Stop(f"FROM={getattr(values, 'from')} TO={values.to} are no span in seconds, such as FROM=1.5 TO=1.6", 2)
+        raise Stop(
+            f"FROM={getattr(values, 'from')} TO={values.to} are no span in seconds, such as FROM=1.5 TO=1.6", 2)
     build = BuildFolder(values.build, values).prepare()
     with open(Path(values.replay) / "flight.jsonl") as recorded:
         hz = re.search(r'"clkHz": *(\d+)', recorded.readline())
@@ -141,15 +163,19 @@ def replay(values):
     trace.quietly("icesoc-sim")
     Path(values.out).mkdir(parents=True, exist_ok=True)
     wave = Path(values.out) / "wave.fst"
-    run([trace / "testbench/sim/icesoc-sim", *words, "--wave", wave, "--from", getattr(values, "from") or 0,
+    run([trace / "testbench/sim/icesoc-sim", *words, "--wave", wave, "--from",
+         getattr(values, "from") or 0,
          *(["--to", values.to] if values.to is not None else [])])
     run(["testbench/common/join_waves.sh", wave])
     say(f"Waveform: gtkwave {wave}")
 
 
-@command("gdb", [Option("replay", FLIGHT, "folder of a flight to step through, backwards too", ""), *DEBUGGED,
-                 Option("out", FOLDER, "folder that the flight is written to; default build/run, of a replay build/replay"), BUILD, JOBS],
-         make="gdb", brief="gdb --size 48x32 --out build/brief/gdb", examples=["gdb", "gdb --replay build/run"])
+@command("gdb", [Option("replay", FLIGHT, "folder of a flight to step through, backwards too", ""),
+                 *DEBUGGED,
+                 Option(
+                     "out", FOLDER, "folder that the flight is written to; default build/run, of a replay build/replay"), BUILD, JOBS],
+         make="gdb", brief="gdb --size 48x32 --out build/brief/gdb",
+         examples=["gdb", "gdb --replay build/run"])
 def gdb(values):
     """debug the firmware's ARM binary against the RTL with gdb-multiarch"""
     build = configured(values, tests=True)
@@ -159,7 +185,8 @@ def gdb(values):
     flown = ["--replay", values.replay] if values.replay else [
         "--cpu", "m3", "--image", values.image, "--size", values.size, "--seed", values.seed]
     with tempfile.TemporaryFile("w+") as log:
-        sim = start([build / "testbench/sim/icesoc-sim", "--gdb", 0, "--speed", "max", "--out", out, *flown], stdout=log, stderr=log)
+        sim = start([build / "testbench/sim/icesoc-sim", "--gdb", 0, "--speed", "max", "--out", out,
+                     *flown], stdout=log, stderr=log)
         try:
             def text():
                 log.seek(0)
@@ -170,13 +197,16 @@ def gdb(values):
             if not port:
                 raise Stop(status=wait(sim) or 1)
             signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is GDB's: it stops the processor
-            words = ["gdb-multiarch", "-q", build / "firmware/uav.elf", "-ex", "set remotetimeout unlimited", "-ex", f"target remote localhost:{port[1]}"]
-            return run(words, check=False, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+            words = ["gdb-multiarch", "-q", build / "firmware/uav.elf", "-ex",
+                     "set remotetimeout unlimited", "-ex", f"target remote localhost:{port[1]}"]
+            return run(words, check=False, preexec_fn=lambda: signal.signal(signal.SIGINT,
+                signal.SIG_DFL))
         finally:
             end(sim)
 
 
-@command("key", [Option("file", PATH, "the file that is written", "", positional=True)], brief="key build/brief/my.key",
+@command("key", [Option("file", PATH, "the file that is written", "", positional=True)],
+         brief="key build/brief/my.key",
          examples=["key my.key", "run --key my.key"])
 def key(values):
     """make a key of the link, for vehicle and ground (docs/security.md)"""
@@ -187,7 +217,9 @@ def key(values):
     say(f"made {values.file}, which nobody but you may read: ./icesoc run --key {values.file}")
 
 
-@command("fly", [Option("minutes", MINUTES, "of simulated time; an hour of it is minutes of a processor", 4.0), SEED, BUILD, JOBS], make="fly",
+@command(
+    "fly", [Option("minutes", MINUTES, "of simulated time; an hour of it is minutes of a processor",
+                   4.0), SEED, BUILD, JOBS], make="fly",
          brief="fly --minutes 0.01", examples=["fly --minutes 60", "fly --seed 7"])
 def fly_for_long(values):
     """a long flight: stock Ice's calls now and then, loss, reboots of UAV, modems and ground"""

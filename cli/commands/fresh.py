@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """fresh: what the README says, in its order, on an empty Debian 12 and 13.
 
-A machine is a folder that debootstrap fills, with a clone of this tree's HEAD and nothing else: no package, no cache. Its
+A machine is a folder that debootstrap fills, with a clone of this tree's HEAD and nothing else: no
+package, no cache. Its
 mounts and processes are its own and end with it.
 """
 import json
@@ -29,12 +30,15 @@ mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd /root/icesoc && $
 @command("check fresh", [
     Option("release", one_of(*RELEASES), "of Debian; without: one after the other", ""),
     Option("again", SWITCH, "goes on with the machines of before, with HEAD as it is now"),
-    Option("steps", TEXT, "commands in place of the README's, with ; between them", "; ".join(README)),
+    Option("steps", TEXT, "commands in place of the README's, with ; between them",
+           "; ".join(README)),
     Option("folder", FOLDER, "of machines and logs, 8 GB each", "/var/tmp/icesoc-fresh"),
     Option("list", SWITCH, "only says what was done before, with status and minutes")],
-    brief="check fresh --list", examples=["check fresh --release trixie", "check fresh --again --steps 'make test'"])
+    brief="check fresh --list", examples=["check fresh --release trixie",
+        "check fresh --again --steps 'make test'"])
 def fresh(values):
-    """do what the README says on an empty Debian 12 and 13; needs root, debootstrap and a network"""
+    """do what the README says on an empty Debian 12 and 13; needs root, debootstrap and a
+    network"""
     top, failed = Path(values.folder), 0
     results = top / "results.json"
     rows = json.loads(results.read_text()) if results.exists() else []
@@ -50,7 +54,8 @@ def fresh(values):
         for step in values.steps.split(";"):
             row = do(root, release, step.strip())
             failed |= row["status"] != 0
-            rows = [each for each in rows if (each["release"], each["step"]) != (release, row["step"])] + [row]
+            rows = [each for each in rows if (each["release"], each["step"]) != (release,
+                row["step"])] + [row]
             results.write_text(json.dumps(rows, indent=1) + "\n")
     return failed
 
@@ -62,7 +67,8 @@ def told(row):
 def empty_machine(root, release):
     shutil.rmtree(root, ignore_errors=True)
     root.parent.mkdir(parents=True, exist_ok=True)
-    run(["debootstrap", "--variant=minbase", "--include=git,make,ca-certificates", release, root, MIRROR],
+    run(["debootstrap", "--variant=minbase", "--include=git,make,ca-certificates", release, root,
+         MIRROR],
         stdout=open(f"{root}-debootstrap.log", "w"))
     (root / "etc/apt/sources.list").write_text(
         "".join(f"deb {MIRROR} {suite} main\n" for suite in (release, f"{release}-updates")))
@@ -94,7 +100,8 @@ def do(root, release, step):
                       *(f"{name}={value}" for name, value in (kept | place).items()),
                       "sh", "-c", BOOT, "sh", root, step],
                      check=False, stdin=subprocess.DEVNULL, stdout=file, stderr=file)
-    row = {"release": release, "step": step, "status": status, "minutes": round((time.monotonic() - begun) / 60, 1),
+    row = {"release": release, "step": step, "status": status,
+           "minutes": round((time.monotonic() - begun) / 60, 1),
            "commit": output(["git", "describe", "--always"]).strip()}
     say(told(row) + f": {log}")
     say("\n".join("    " + line for line in log.read_text(errors="replace").splitlines()[-12:]))

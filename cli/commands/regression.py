@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""regression: the tests, with selection, history and a page; the commit since which one fails; what a timer runs."""
+"""regression: the tests, with selection, history and a page; the commit since which one fails; what
+a timer runs."""
 import json
 import re
 import sys
@@ -8,7 +9,8 @@ from pathlib import Path
 
 from cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
 from cli.command import command
-from cli.options import (BLOCK, BUILD, COUNT, FRESH, JOBS, LABEL, NAME, SEED, SWITCH, TESTS, TEXT, UCOS2, WORDS, Option, matching, number)
+from cli.options import (BLOCK, BUILD, COUNT, FRESH, JOBS, LABEL, NAME, SEED, SWITCH, TESTS, TEXT,
+                         UCOS2, WORDS, Option, matching, number)
 from cli.runner import Stop, commit, lock, output, run, say
 
 WAVES = Option("waves", number(0), "failures of which a waveform is written", 3)
@@ -20,21 +22,26 @@ def at_once(values):
 
 def selection(values, *more):
     """Options of the regression tool that choose tests."""
-    return [word for name in ("name", "label", *more) if getattr(values, name) for word in (f"--{name}", getattr(values, name))]
+    return [word for name in ("name", "label", *more) if getattr(values,
+        name) for word in (f"--{name}", getattr(values, name))]
 
 
-@command("test", [LABEL, NAME, SEED, FRESH, TESTS, UCOS2, BUILD, JOBS], make="test", brief="test --name ^tree[.]",
+@command("test", [LABEL, NAME, SEED, FRESH, TESTS, UCOS2, BUILD, JOBS], make="test",
+         brief="test --name ^tree[.]",
          examples=["test", "test --label rtl", "test --name 'Burst' --seed 7"])
 def test(values):
     """run all tests; firmware, models and IceC once more with sanitizers"""
     build = BuildFolder(values.build, values).prepare(tests=True)
-    some, tests, seed = values.name or values.label, at_once(values), {"SEED": values.seed, "FRESH": "1" if values.fresh else ""}
+    some, tests, seed = values.name or values.label, at_once(values), {"SEED": values.seed,
+        "FRESH": "1" if values.fresh else ""}
     if not some or values.label == "zeroc":
         build.ninja()
     elif not values.built:
         build.quietly("regress")
-        run([build / "tests/regress/regress", "--prepare", "--build", build.folder, *selection(values)])
-    chosen = [*(["-L", values.label] if values.label else []), *(["-R", values.name] if values.name else []),
+        run([build / "tests/regress/regress", "--prepare", "--build", build.folder,
+             *selection(values)])
+    chosen = [*(["-L", values.label] if values.label else []),
+              *(["-R", values.name] if values.name else []),
               *(["-C", "zeroc"] if values.label == "zeroc" else [])]
     build.ctest(*chosen, tests=tests, **seed)
     if not some:
@@ -45,24 +52,33 @@ def test(values):
 
 
 @command("regress", [
-    NAME, LABEL, BLOCK, Option("changed", SWITCH, "tests that what has changed since they passed can fail"),
-    Option("failed", SWITCH, "tests that failed the last time"), Option("kept", SWITCH, "failed tests with the seeds that are kept"),
-    Option("seed", matching(r"\d{1,18}|random", "a whole number, or random", metavar="N|random"), "the first seed", "1"),
+    NAME, LABEL, BLOCK, Option("changed", SWITCH,
+                               "tests that what has changed since they passed can fail"),
+    Option("failed", SWITCH, "tests that failed the last time"),
+                     Option("kept", SWITCH, "failed tests with the seeds that are kept"),
+    Option("seed", matching(r"\d{1,18}|random", "a whole number, or random", metavar="N|random"),
+           "the first seed", "1"),
     Option("repeat", COUNT, "seeds", 1), WAVES, FRESH, TESTS, BUILD, JOBS], make="regress",
-    brief="regress --block bus", examples=["regress --changed", "regress --name Burst --seed random --repeat 20"])
+    brief="regress --block bus", examples=["regress --changed",
+        "regress --name Burst --seed random --repeat 20"])
 def regress(values):
     """run the regression, write build/regress/report.html"""
     build = configured(values, "regress", tests=True)
-    switches = [f"--{word}" for word, on in (("changed", values.changed), ("rerun-failed", values.failed), ("kept", values.kept)) if on]
-    return run([build / "tests/regress/regress", "--make", "--build", build.folder, "--jobs", at_once(values), "--seed", values.seed,
-                "--repeat", values.repeat, "--waves", values.waves, *selection(values, "block"), *switches], check=False, env={"FRESH": "1" if values.fresh else ""})
+    switches = [f"--{word}" for word, on in (("changed", values.changed),
+        ("rerun-failed", values.failed), ("kept", values.kept)) if on]
+    return run([build / "tests/regress/regress", "--make", "--build", build.folder, "--jobs",
+                at_once(values), "--seed", values.seed,
+                "--repeat", values.repeat, "--waves", values.waves, *selection(values, "block"),
+                *switches], check=False, env={"FRESH": "1" if values.fresh else ""})
 
 
 def last_good(test):
-    """The last commit at which the test passed; a bisection cannot begin at a state that is not committed."""
+    """The last commit at which the test passed; a bisection cannot begin at a state that is not
+    committed."""
     history = Path("build/regress/history.jsonl")
     runs = map(json.loads, history.read_text().splitlines() if history.exists() else [])
-    good = [each["commit"] for each in runs if each["tests"].get(test, [""])[0] == "p" and "dirty" not in each["commit"]]
+    good = [each["commit"] for each in runs if each["tests"].get(test,
+        [""])[0] == "p" and "dirty" not in each["commit"]]
     if not good:
         raise Stop(f"no run that is noted passed {test} at a commit: GOOD= names one (--good)", 2)
     return good[-1]
@@ -71,12 +87,15 @@ def last_good(test):
 @command("bisect", [Option("test", TEXT, "the test, as CTest names it", "", positional=True),
                     Option("good", TEXT, "a commit that it passes at; the last one noted", ""),
                     Option("bad", TEXT, "a commit that it fails at", "HEAD"),
-                    Option("list", SWITCH, "only lists the commits that would be searched"), SEED, BUILD, JOBS],
-         make="bisect", brief="bisect test_fifo.Fifo.Wraps --good HEAD~3 --list", examples=["bisect test_fifo.Fifo.Wraps --good v1"])
+                    Option("list", SWITCH, "only lists the commits that would be searched"), SEED,
+                    BUILD, JOBS],
+         make="bisect", brief="bisect test_fifo.Fifo.Wraps --good HEAD~3 --list",
+         examples=["bisect test_fifo.Fifo.Wraps --good v1"])
 def bisect(values):
     """find the commit since which a test fails, in a checkout of its own
 
-    Commits that do not build, or lack the test, are passed over. Exit status 0: found, and named in the last line; 1: not found;
+    Commits that do not build, or lack the test, are passed over. Exit status 0: found, and named in
+    the last line; 1: not found;
     2: it could not begin."""
     test = values.test
     if not test:
@@ -101,14 +120,18 @@ def bisect(values):
 
 
 def step(program, test, tree, values):
-    """Whether the present commit passes: 0; 1: it fails; 125: unknown. Its build stays for the next one."""
+    """Whether the present commit passes: 0; 1: it fails; 125: unknown. Its build stays for the next
+    one."""
     log = tree / "build/step.log"
     log.parent.mkdir(exist_ok=True)
     with open(log, "w") as file:
-        if not (tree / "build/main/build.ninja").exists() and run(["cmake", "-S", ".", "-B", "build/main", "-G", "Ninja"], check=False,
-                                                                   cwd=tree, stdout=file, stderr=file):
+        if not (tree / "build/main/build.ninja").exists() and run(["cmake", "-S", ".", "-B",
+            "build/main", "-G", "Ninja"], check=False,
+                                                                   cwd=tree, stdout=file,
+            stderr=file):
             return 125
-        status = run([program, "--make", "--name", f"^{re.escape(test)}$", "--seed", values.seed, "--jobs", values.jobs, "--waves", 0],
+        status = run([program, "--make", "--name", f"^{re.escape(test)}$", "--seed", values.seed,
+                      "--jobs", values.jobs, "--waves", 0],
                      check=False, cwd=tree, stdout=file, stderr=file)
     status = status if status in (0, 1) else 125
     told = {0: "passes", 1: "fails", 125: "cannot be told"}[status]
@@ -137,18 +160,23 @@ def search(test, good, bad, tree, told):
 
 
 @command("nightly", [Option("nightly", COUNT, "seeds that are drawn", 3),
-                     Option("steps", WORDS, "these alone", ["kept", "random", "zeroc", "mutants", "faults", "sanitizers", "nightly"]), NAME, LABEL, WAVES, TESTS, BUILD, JOBS], make="nightly",
+                     Option("steps", WORDS, "these alone",
+                            ["kept", "random", "zeroc", "mutants", "faults", "sanitizers",
+                             "nightly"]), NAME, LABEL, WAVES, TESTS, BUILD, JOBS], make="nightly",
          brief="nightly --steps kept random --nightly 1 --name ^tree[.]pages")
 def nightly(values):
-    """what a timer runs: seeds that have failed, fresh seeds, ZeroC's own suites, faults, mutants, sanitizers
+    """what a timer runs: seeds that have failed, fresh seeds, ZeroC's own suites, faults, mutants,
+    sanitizers
 
     Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them."""
     build = BuildFolder(values.build, values).prepare(tests=True)
     build.ninja()
     day, tests = time.strftime("%Y%m%d"), at_once(values)
-    # COMPARE_MS: test_quiet compares a second; FUZZ: times as many inputs of fuzzers; HOSTILE: packets of test_link.
+    # COMPARE_MS: test_quiet compares a second; FUZZ: times as many inputs of fuzzers; HOSTILE:
+    # packets of test_link.
     long = {"FRESH": "1", "FUZZ": "10", "COMPARE_MS": "1000", "HOSTILE": "10000000"}
-    tool = [build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves", values.waves]
+    tool = [build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves",
+            values.waves]
 
     def ours(*words):
         return run([sys.executable, "icesoc", *words], check=False, env=long)
@@ -157,9 +185,12 @@ def nightly(values):
         return build.ctest("-C", name, "-L", name, tests=tests, check=False, **long)
     chosen = selection(values)
     steps = {"kept": lambda: run([*tool, "--kept", *chosen], check=False, env=long),
-             "random": lambda: run([*tool, "--seed", "random", "--repeat", values.nightly, *chosen], check=False, env=long),
-             "zeroc": lambda: suite("zeroc"), "mutants": lambda: ours("check", "mutants", "--draw", "8", "--seed", day),
-             "faults": lambda: ours("check", "faults", "--seed", day), "sanitizers": lambda: ours("check", "sanitizers"),
+             "random": lambda: run([*tool, "--seed", "random", "--repeat", values.nightly, *chosen],
+                                   check=False, env=long),
+             "zeroc": lambda: suite("zeroc"),
+             "mutants": lambda: ours("check", "mutants", "--draw", "8", "--seed", day),
+             "faults": lambda: ours("check", "faults", "--seed", day),
+             "sanitizers": lambda: ours("check", "sanitizers"),
              "nightly": lambda: suite("nightly")}
     for name in values.steps:
         if name not in steps:

@@ -15,22 +15,27 @@ from cli.options import PATH, SWITCH, TEXT, Option
 from cli.runner import Stop, run, say
 
 
-@command("setup", [Option("tests", SWITCH, "what tests, reports and debuggers need, too", variable="WITH_TESTS"),
+@command("setup", [Option("tests", SWITCH, "what tests, reports and debuggers need, too",
+                          variable="WITH_TESTS"),
                    Option("check", SWITCH, "only says what is missing"),
-                   Option("developer", SWITCH, "git's hooks of this tree, which hold subjects of commits to 72 characters")],
-         make="setup", brief="setup --check", examples=["setup", "setup --tests", "setup --developer"])
+                   Option("developer", SWITCH,
+                          "git's hooks of this tree, which hold subjects of commits to 72 characters")],
+         make="setup", brief="setup --check",
+         examples=["setup", "setup --tests", "setup --developer"])
 def setup(values):
     """install the Debian packages that are needed and missing"""
     if values.developer:
         run(["git", "config", "core.hooksPath", ".ci/hooks"])
         say("git runs .ci/hooks from now on")
-    return run(["cmake/setup.sh", *(f"--{word}" for word in ("tests", "check") if getattr(values, word))], check=False)
+    return run(["cmake/setup.sh", *(f"--{word}" for word in ("tests", "check") if getattr(values,
+        word))], check=False)
 
 
 doors.ALIASES["setup-tests"] = ("setup", "WITH_TESTS")
 
 
-@command("clean", [Option("list", SWITCH, "only says what would be removed")], make="clean", brief="clean --list")
+@command("clean", [Option("list", SWITCH, "only says what would be removed")], make="clean",
+         brief="clean --list")
 def clean(values):
     """remove what was built; keys are elsewhere"""
     if not values.list:
@@ -41,11 +46,15 @@ def clean(values):
         shutil.rmtree("build", ignore_errors=True)
 
 
-@command("commands", [Option("brief", SWITCH, "runs the brief form of each to its end, writes build/commands.md and .json"),
+@command("commands", [Option("brief", SWITCH,
+                             "runs the brief form of each to its end, writes build/commands.md and .json"),
                       Option("only", TEXT, "only those whose name contains this", ""),
                       Option("man", PATH, "writes the manual page, such as icesoc.1", ""),
-                      Option("schema", PATH, "writes the JSON schema of a flight, cli/flight.schema.json", "")], make="commands",
-         brief="commands", examples=["commands --brief", "commands --man icesoc.1 && man ./icesoc.1"])
+                      Option("schema", PATH,
+                             "writes the JSON schema of a flight, cli/flight.schema.json", "")],
+         make="commands",
+         brief="commands", examples=["commands --brief",
+                                     "commands --man icesoc.1 && man ./icesoc.1"])
 def commands(values):
     """list all commands with their brief forms, or run these"""
     if values.man:
@@ -56,7 +65,8 @@ def commands(values):
         return run_all(values.only)
     if not values.man and not values.schema:
         for name, each in COMMANDS.items():
-            say(f"{name:<18} {'make ' + each.make if each.make else '':<18} " + "; ".join(each.brief))
+            say(f"{name:<18} {'make ' + each.make if each.make else '':<18} "
+                + "; ".join(each.brief))
 
 
 def run_all(only):
@@ -69,14 +79,17 @@ def run_all(only):
         log, begin, status = folder / f"{name.replace(' ', '-')}.log", time.monotonic(), 0
         with open(log, "w") as file:
             for line in each.brief:
-                status = status or run([sys.executable, "icesoc", *shlex.split(line)], check=False, stdout=file, stderr=file,
+                status = status or run([sys.executable, "icesoc", *shlex.split(line)], check=False,
+                                       stdout=file, stderr=file,
                                        stdin=open(os.devnull))
         lines = log.read_text(errors="replace").strip().splitlines() or [""]
-        rows.append({"command": name, "brief": "; ".join(each.brief), "status": status, "seconds": round(time.monotonic() - begin, 1),
+        rows.append({"command": name, "brief": "; ".join(each.brief), "status": status,
+                     "seconds": round(time.monotonic() - begin, 1),
                      "figure": lines[-1].strip()[:100]})
         say(f"{name:<18} {'ok' if status == 0 else f'FAILED ({status}): {log}':<8} {rows[-1]['seconds']:7.1f} s  {rows[-1]['figure']}")
     Path("build/commands.json").write_text(json.dumps(rows, indent=1) + "\n")
-    Path("build/commands.md").write_text("| command | status | seconds | what it says last |\n|---|---|---|---|\n" + "".join(
+    Path("build/commands.md").write_text(
+        "| command | status | seconds | what it says last |\n|---|---|---|---|\n" + "".join(
         f"| `icesoc {row['brief']}` | {row['status']} | {row['seconds']} | {row['figure'].replace('|', '/')} |\n" for row in rows))
     failed = [row["command"] for row in rows if row["status"]]
     if failed:
@@ -87,9 +100,12 @@ def run_all(only):
 def manual():
     """The manual page, made of the commands' help."""
     def plain(text):
-        return "".join(f"\\&{line}\n" for line in text.replace("\\", "\\e").replace("-", "\\-").splitlines())
-    parts = [f'.TH ICESOC 1 "" "{version.text().partition(chr(10))[0]}"', ".SH NAME", "icesoc \\- every command of the IceSoC project", ".SH SYNOPSIS",
-             "\\&./icesoc COMMAND [option...]", ".SH COMMANDS", ".nf", plain(doors.overview()) + ".fi"]
+        return "".join(f"\\&{line}\n" for line in text.replace("\\", "\\e").replace("-",
+            "\\-").splitlines())
+    parts = [f'.TH ICESOC 1 "" "{version.text().partition(chr(10))[0]}"', ".SH NAME",
+             "icesoc \\- every command of the IceSoC project", ".SH SYNOPSIS",
+             "\\&./icesoc COMMAND [option...]", ".SH COMMANDS", ".nf",
+             plain(doors.overview()) + ".fi"]
     for name, each in COMMANDS.items():
         parts += [f'.SH "{name.upper()}"', ".nf", plain(each.parser().format_help()) + ".fi"]
     return "\n".join(parts) + "\n"

@@ -253,8 +253,8 @@ picture_bad)
     if grep 127.0.0.1 "$out/log"; then echo "a page's address before what is refused" && exit 1; fi
     # A refused start changes nothing in the folder.
     [ "$(cat "$out/report.md" "$out/calls.jsonl")" = "$(printf 'mine\nmine')" ]
-    fails_with "size '333x111': give WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8" run "$out" --image $image --size 333x111
-    fails_with "size '96x64k'" run "$out" --image $image --size 96x64k
+    fails_with "WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8, not '333x111'" run "$out" --image $image --size 333x111
+    fails_with "not '96x64k'" run "$out" --image $image --size 96x64k
     ;;
 device_missing)
     describe

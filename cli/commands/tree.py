@@ -72,6 +72,8 @@ def commands(values):
 def run_all(only):
     """Runs every brief form, and prints a table of them."""
     rows, folder = [], Path("build/brief")
+    if not only:
+        shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True, exist_ok=True)
     for name, each in COMMANDS.items():
         if only not in name:

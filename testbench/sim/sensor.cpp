@@ -35,6 +35,6 @@ void connectSensor(SocModel& soc, const Frame& frame) {
 }
 #else
 void connectSensor(SocModel&, const Frame&) {
-    throw std::runtime_error("--sensor needs a chip with the camera core (ip/cores.list)");
+    throw std::runtime_error("--camera needs a chip with the camera core (ip/cores.list)");
 }
 #endif

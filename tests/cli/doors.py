@@ -287,6 +287,12 @@ class Lists(unittest.TestCase):
         self.assertIn("'seed' is missing", flight.wrong({name: value for name,
             value in good.items() if name != "seed"}))
 
+    def test_a_long_subject_is_refused(self):
+        with tempfile.TemporaryDirectory() as work:
+            for length, status in ((72, 0), (73, 1)):
+                Path(work, "message").write_text("# a comment\n" + "x" * length + "\n\nWhy.\n")
+                self.assertEqual(ask(".ci/hooks/commit-msg", f"{work}/message")[0], status)
+
     def test_version_and_manual_are_there(self):
         self.assertRegex(ask("./icesoc", "--version")[1], r"^icesoc \d+\.\d+\.\d+\n")
         said = subprocess.run(["groff", "-man", "-ww", "-Tutf8", "-z"], input=manual(),

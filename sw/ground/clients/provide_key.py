@@ -23,17 +23,30 @@ class Failed(Exception):
     """The vehicle has no new key; the text says why."""
 
 
-def read_key(path):
-    """Returns the first key of a file, as the plugin does (docs/security.md)."""
+def address(text):
+    """Returns the number of an address as key files have it."""
+    if not re.fullmatch("0x[0-9a-fA-F]{1,4}", text):
+        raise argparse.ArgumentTypeError("'%s' is no address of a vehicle, 0x0001 is one" % text)
+    return int(text, 16)
+
+
+def read_key(path, vehicle):
+    """Returns a vehicle's key in a file, as the plugin finds it (docs/security.md): in the line of
+    its address, else in the one without an address."""
+    keys = {}
     with open(path) as f:
         if os.fstat(f.fileno()).st_mode & 0o077:
             raise Failed("others may read '%s': chmod 600 '%s'" % (path, path))
         for line in f:
-            words = line.split("#")[0].split()
-            for word in words:
-                if re.fullmatch("[0-9a-fA-F]{32}", word):
-                    return word.lower()
-    raise Failed("'%s' has no key, 32 hexadecimal digits: openssl rand -hex 16 makes one" % path)
+            found = re.match(r"\s*(0x[0-9a-fA-F]{1,4}\s)?\s*([0-9a-fA-F]{32})\b", line)
+            if found:
+                keys[int(found[1], 16) if found[1] else None] = found[2].lower()
+    if not keys:
+        raise Failed("'%s' has no key, 32 hexadecimal digits: openssl rand -hex 16 makes one" % path)
+    key = keys.get(vehicle, keys.get(None))
+    if not key:
+        raise Failed("'%s' has no line for the vehicle 0x%04x" % (path, vehicle))
+    return key
 
 
 def read_line(port, seconds):
@@ -65,10 +78,12 @@ def main():
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--key", help="file with the key, mode 0600")
     what.add_argument("--open", action="store_true", help="in place of a key: who has a radio may call the vehicle")
+    parser.add_argument("--address", type=address, default=1,
+                        help="of the vehicle, whose line of the file it is (default: 0x0001)")
     parser.add_argument("--patience", type=int, default=120, help="seconds without a vehicle until it gives up")
     args = parser.parse_args()
     try:
-        command = "open" if args.open else "key " + read_key(args.key)
+        command = "open" if args.open else "key " + read_key(args.key, args.address)
         port = os.open(args.port, os.O_RDWR | os.O_NOCTTY)
         tty.setraw(port)
         mode = termios.tcgetattr(port)

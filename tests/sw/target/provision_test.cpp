@@ -5,6 +5,7 @@
 
 #include "stm32f2.h"
 #include <algorithm>
+#include <cstdlib>
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
@@ -97,8 +98,12 @@ TEST_F(Provision, NobodyIsListenedToWithoutABreak) {
 // The model stands still while the program is waited for: nothing depends on how fast that is.
 TEST_F(Provision, TheGroundsProgramGivesIt) {
     const std::string file = FOLDER + std::to_string(getpid()) + ".key";
-    std::ofstream(file) << "# demo\n0x0001 " << digits << "\n";
+    std::ofstream(file) << "# demo\n0x0002 " << std::string(32, 'a') << "\n0x0001 " << digits
+                        << "\n";
     ::chmod(file.c_str(), 0600);
+    const std::string other = std::string("/usr/bin/python3 ") + PROVIDE_KEY + " --key " + file +
+                              " --port /dev/null --address 0x0003 2>&1 | grep -q 0x0003";
+    EXPECT_EQ(std::system(other.c_str()), 0) << "the file has no line for this vehicle";
     const int port = posix_openpt(O_RDWR | O_NOCTTY);
     ASSERT_TRUE(port >= 0 && grantpt(port) == 0 && unlockpt(port) == 0);
     const std::string name = ptsname(port);

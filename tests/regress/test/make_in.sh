@@ -4,7 +4,8 @@
 # install is there already. Usage: make_in.sh source-folder tree build-folder verb variable=value...
 set -eu
 source=$1 build=$3
-export ICESOC_TREE="$2"
+ICESOC_TREE=$(cd "$2" && pwd)
+export ICESOC_TREE
 shift 3
 unset MAKEFLAGS MFLAGS MAKELEVEL # of the make that runs the tests
 exec make -s -C "$source" BUILD="$build" BUILT=1 "$@"

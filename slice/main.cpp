@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <map>
 
@@ -93,13 +94,16 @@ bool wantsHardware(const Options& o) {
 }
 
 bool saveHardware(const std::vector<hw::Block>& blocks, const Options& o, const CFileNames& names) {
-    using Make = GeneratedFile (*)(const hw::Block&, const CFileNames&);
+    using Make = std::function<GeneratedFile(const hw::Block&)>;
+    auto inC = [&](auto make) {
+        return [&names, make](const hw::Block& b) { return make(b, names); };
+    };
     for (auto [directory, makes] :
          {std::pair{&o.hwVerilog, std::vector<Make>{hw::verilogFile}},
           std::pair{&o.hwVhdl, std::vector<Make>{hw::vhdlFile}},
           std::pair{&o.hwRegisters, std::vector<Make>{hw::registersFile}},
-          std::pair{&o.hwC, std::vector<Make>{hw::servantHeader, hw::servantSource}},
-          std::pair{&o.hwCpp, std::vector<Make>{hw::proxyFile}},
+          std::pair{&o.hwC, std::vector<Make>{inC(hw::servantHeader), inC(hw::servantSource)}},
+          std::pair{&o.hwCpp, std::vector<Make>{inC(hw::proxyFile)}},
           std::pair{&o.hwNewVerilog, std::vector<Make>{hw::verilogSkeleton, hw::testSkeleton}},
           std::pair{&o.hwNewVhdl, std::vector<Make>{hw::vhdlSkeleton, hw::testSkeleton}}}) {
         std::vector<GeneratedFile> files;
@@ -107,7 +111,7 @@ bool saveHardware(const std::vector<hw::Block>& blocks, const Options& o, const 
             continue;
         for (const hw::Block& b : blocks)
             for (Make make : makes)
-                files.push_back(make(b, names));
+                files.push_back(make(b));
         if (!save(files, *directory))
             return false;
     }

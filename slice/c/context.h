@@ -7,7 +7,7 @@
 
 #include "c/generator.h"
 #include "c/operations.h"
-#include "c/writer.h"
+#include "text/writer.h"
 #include <map>
 
 struct CContext {

@@ -6,12 +6,9 @@
 #define SLICE_C_GENERATOR_H
 
 #include "front/ast.h"
+#include "text/writer.h"
 #include <string>
 #include <vector>
-
-struct GeneratedFile {
-    std::string name, text;
-};
 
 struct CFileNames {
     std::string base;                  // "Printer"

@@ -2,9 +2,9 @@
 //
 // header: the header: types, constants, proxies, servants.
 
-#include "c/doc_comment.h"
 #include "c/files.h"
 #include "c/names.h"
+#include "text/doc_comment.h"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #ifndef SLICE_C_TYPES_H
 #define SLICE_C_TYPES_H
 
-#include "c/writer.h"
 #include "front/ast.h"
+#include "text/writer.h"
 #include <string>
 #include <vector>
 

@@ -5,6 +5,7 @@
 #include "hw/map.h"
 #include "hw/words.h"
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 namespace hw {
@@ -241,6 +242,7 @@ std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics) {
             d->isForward || d->isLocal)
             continue;
         blocks.push_back(Mapper(*d, unit, diagnostics).run());
+        blocks.back().source = std::filesystem::path(unit.file).stem().string();
         auto [it, isNew] = names.emplace(blocks.back().name, d.get());
         if (!isNew)
             diagnostics.error(d->at, "'" + d->id() + "' becomes '" + it->first +

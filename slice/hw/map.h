@@ -76,7 +76,8 @@ struct Pin {
 
 struct Block {
     const Declaration* interface = nullptr;
-    std::string name; // snake_case
+    std::string source; // the Slice file, without .ice
+    std::string name;   // snake_case
     unsigned type = 0, version = 0;
     std::vector<Call> calls;
     std::vector<Listener> listeners;

@@ -5,8 +5,8 @@
 #ifndef SLICE_HW_PORTS_H
 #define SLICE_HW_PORTS_H
 
-#include "c/writer.h"
 #include "hw/map.h"
+#include "text/writer.h"
 
 namespace hw {
 
@@ -19,7 +19,7 @@ struct Port {
 
 std::vector<Port> wrapperPorts(const Block& b);
 // Writes a wrapper's first comment; `mark` begins its lines.
-void wrapperHead(Writer& w, const Block& b, const std::string& base, const std::string& mark);
+void wrapperHead(Writer& w, const Block& b, const std::string& mark);
 
 } // namespace hw
 

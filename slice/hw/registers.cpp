@@ -2,10 +2,10 @@
 //
 // registers: the register description that regmap turns into headers and pages.
 
-#include "c/doc_comment.h"
 #include "c/names.h"
-#include "c/writer.h"
 #include "hw/generator.h"
+#include "text/doc_comment.h"
+#include "text/writer.h"
 #include <algorithm>
 #include <cstdio>
 
@@ -109,7 +109,7 @@ std::vector<Register> registers(const Block& b) {
 
 } // namespace
 
-GeneratedFile registersFile(const Block& b, const CFileNames&) {
+GeneratedFile registersFile(const Block& b) {
     Writer w;
     w.line("{");
     w.line("  \"block\": \"" + b.name + "\",");

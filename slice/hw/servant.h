@@ -6,8 +6,8 @@
 #define SLICE_HW_SERVANT_H
 
 #include "c/generator.h"
-#include "c/writer.h"
 #include "hw/map.h"
+#include "text/writer.h"
 
 namespace hw {
 

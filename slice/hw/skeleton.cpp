@@ -5,9 +5,9 @@
 
 #include "c/names.h"
 #include "c/operations.h"
-#include "c/writer.h"
 #include "hw/generator.h"
 #include "hw/ports.h"
+#include "text/writer.h"
 #include <algorithm>
 #include <cctype>
 #include <sstream>
@@ -243,15 +243,15 @@ std::string vhdlCore(const Block& b) {
 
 } // namespace
 
-GeneratedFile verilogSkeleton(const Block& b, const CFileNames&) {
+GeneratedFile verilogSkeleton(const Block& b) {
     return {b.name + ".v", verilogCore(b)};
 }
 
-GeneratedFile vhdlSkeleton(const Block& b, const CFileNames&) {
+GeneratedFile vhdlSkeleton(const Block& b) {
     return {b.name + ".vhd", vhdlCore(b)};
 }
 
-GeneratedFile testSkeleton(const Block& b, const CFileNames&) {
+GeneratedFile testSkeleton(const Block& b) {
     Writer w;
     w.line("// SPDX-License-Identifier: MIT");
     w.line("//");

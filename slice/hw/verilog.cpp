@@ -2,10 +2,10 @@
 //
 // verilog: the wrapper over bus_registers: from words to ports with the interface's names.
 
-#include "c/writer.h"
 #include "hw/generator.h"
 #include "hw/ports.h"
 #include "hw/words.h"
+#include "text/writer.h"
 #include <cstdio>
 #include <map>
 
@@ -235,9 +235,9 @@ void calls(Writer& w, const Block& b) {
 
 } // namespace
 
-GeneratedFile verilogFile(const Block& b, const CFileNames& names) {
+GeneratedFile verilogFile(const Block& b) {
     Writer w;
-    wrapperHead(w, b, names.base, "//");
+    wrapperHead(w, b, "//");
     w.line("`default_nettype none");
     w.line();
     w.line("module " + b.name + "_wrapper (");

@@ -3,11 +3,11 @@
 // vhdl: the wrapper in VHDL, for designs that are VHDL throughout: an entity with the Verilog
 // wrapper's ports that does the same clock by clock, in VHDL-93 and later.
 
-#include "c/writer.h"
 #include "front/names.h"
 #include "hw/generator.h"
 #include "hw/ports.h"
 #include "hw/words.h"
+#include "text/writer.h"
 #include <algorithm>
 #include <cstdio>
 
@@ -274,9 +274,9 @@ void calls(Writer& w, const Block& b) {
 
 } // namespace
 
-GeneratedFile vhdlFile(const Block& b, const CFileNames& names) {
+GeneratedFile vhdlFile(const Block& b) {
     Writer w;
-    wrapperHead(w, b, names.base, "--");
+    wrapperHead(w, b, "--");
     w.line("library ieee;");
     w.line("use ieee.std_logic_1164.all;");
     w.line();

@@ -62,9 +62,6 @@ def client(ic, port, slow):
         assert t.echoProxies([prx, None, own]) == [sent(prx), None, sent(own)]
         mixeds = [E.Mixed("n%d" % i, E.Small.valueOf([0, 5, 6][i % 3]), E.Wide.near, numbers(i), None) for i in range(4)]
         assert t.echoMixeds(mixeds) == (mixeds, 4)
-        lists = ([True, False], [-1, 32767], [5, -6], [1 << 40, -1], [0.25, -1.5], [1e-300, 2.5],
-                 ["a", "", "\u4e2d"], [["x"], [], ["y", "z"]])
-        assert tuple(t.echoSequences(*lists)) == lists
         assert t.echoCounts({"a": 1, "b": -2}) == {"a": 1, "b": -2}
         assert t.echoLists({1: ["one"], 2: []}) == {1: ["one"], 2: []}
         for size in (0, 254, 255, 256, 1000) if slow else (0, 1, 254, 255, 256, 4000, 8000, 8092):
@@ -197,9 +194,6 @@ class TesterI(E.Tester):
 
     def echoMixeds(self, v, current):
         return v, len(v)
-
-    def echoSequences(self, *v):
-        return v[:-1]
 
     def echoOptionals(self, required, a, b, c, current):
         return required if required else Ice.Unset, a, b, c

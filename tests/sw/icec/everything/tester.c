@@ -48,20 +48,6 @@ Ice_Status Everything_Tester_echoBytes(Everything_TesterPtr self, const Everythi
     return ICE_OK;
 }
 
-Ice_Status Everything_Tester_echoSequences(Everything_TesterPtr self, const Everything_Bools* a,
-                                           const Everything_Shorts* b, const Everything_Ints* c,
-                                           const Everything_Longs* d, const Everything_Floats* e,
-                                           const Everything_Doubles* f, const Everything_Strings* g,
-                                           const Everything_StringLists* h, Everything_Bools* aa,
-                                           Everything_Shorts* bb, Everything_Ints* cc,
-                                           Everything_Longs* dd, Everything_Floats* ee,
-                                           Everything_Doubles* ff, Everything_Strings* gg,
-                                           Everything_StringLists* hh, const Ice_Current* current) {
-    (void)self, (void)current;
-    *aa = *a, *bb = *b, *cc = *c, *dd = *d, *ee = *e, *ff = *f, *gg = *g, *hh = *h;
-    return ICE_OK;
-}
-
 Ice_Status Everything_Tester_echoCounts(Everything_TesterPtr self, const Everything_Counts* v,
                                         Everything_Counts* result, const Ice_Current* current) {
     (void)self, (void)current;

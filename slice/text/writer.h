@@ -2,13 +2,17 @@
 //
 // writer: indented text for generators: templates look like their output, {name} is filled in.
 
-#ifndef SLICE_C_WRITER_H
-#define SLICE_C_WRITER_H
+#ifndef SLICE_TEXT_WRITER_H
+#define SLICE_TEXT_WRITER_H
 
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+struct GeneratedFile {
+    std::string name, text;
+};
 
 class Writer {
 public:

@@ -2,7 +2,7 @@
 //
 // doc_comment: cleans and rewords doc comments.
 
-#include "c/doc_comment.h"
+#include "text/doc_comment.h"
 
 namespace {
 

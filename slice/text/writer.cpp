@@ -2,7 +2,7 @@
 //
 // writer: fills templates in, indents, breaks lines.
 
-#include "c/writer.h"
+#include "text/writer.h"
 #include <algorithm>
 
 std::string Writer::fill(std::string_view text, const Values& values) {

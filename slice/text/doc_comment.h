@@ -2,11 +2,11 @@
 //
 // doc_comment: doc comments of Slice as comments of C.
 
-#ifndef SLICE_C_DOC_COMMENT_H
-#define SLICE_C_DOC_COMMENT_H
+#ifndef SLICE_TEXT_DOC_COMMENT_H
+#define SLICE_TEXT_DOC_COMMENT_H
 
-#include "c/writer.h"
 #include "front/ast.h"
+#include "text/writer.h"
 #include <string>
 #include <vector>
 

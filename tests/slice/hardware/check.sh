@@ -25,8 +25,8 @@ golden)
     for file in "$work"/out/*.v; do
         module=$(basename "$file" .v)
         verilator --lint-only -Wall -y "$source/bus" -y "$source/hdl/ddr" -y "$work/out" --top-module "$module" "$file"
-        iverilog -g2005 -Wall -Wno-timescale -t null -y "$source/bus" -y "$source/hdl/ddr" -y "$work/out" -s "$module" "$file"
-        yosys -q -p "read_verilog $work/out/*.v $source/bus/bus_registers.v $source/bus/bus_wrapper.v \
+        iverilog -g2005 -Wall -Wno-timescale -t null -I "$source/bus" -I "$source/hdl/ddr" -y "$source/bus" -y "$source/hdl/ddr" -y "$work/out" -s "$module" "$file"
+        yosys -q -p "read_verilog -I$source/bus -I$source/hdl/ddr $work/out/*.v $source/bus/bus_registers.v $source/bus/bus_wrapper.v \
                      $source/hdl/ddr/npi_stream.v; hierarchy -check -top $module; proc; opt; check -assert; select -assert-none t:\$dlatch"
     done
     ;;

@@ -138,37 +138,6 @@ TEST(LinkLayer, ASilenceAfterFortyMinutesOfTrafficIsAskedAbout) {
     EXPECT_TRUE(pair.bothUp());
 }
 
-TEST(LinkLayer, AMessageThatIsNotTakenWaitsAndStopsTheSender) {
-    Pair pair(testSeed());
-    ASSERT_TRUE(pair.connect());
-    pair.b.refuse = true;
-    Side::Bytes bytes(1000, 5);
-    Link_openChannel(pair.a.link(), 0);
-    for (U32 tag = 0; tag < 10; ++tag)
-        Link_send(pair.a.link(), 0, bytes.data(), 1000, tag);
-    pair.run(7000000);
-    EXPECT_TRUE(pair.bothUp());
-    EXPECT_TRUE(pair.b.received.empty());
-    pair.b.refuse = false;
-    ASSERT_TRUE(pair.runUntil([&] { return pair.a.outcomes.size() == 10; }, 20000000));
-    EXPECT_EQ(pair.b.received.size(), 10u);
-}
-
-TEST(LinkLayer, ALateMessageDoesNotReachTheNextConnection) {
-    Pair pair(testSeed());
-    const U8 byte = 1;
-    ASSERT_TRUE(pair.connect());
-    ASSERT_EQ(Link_openChannel(pair.a.link(), 1), LINK_OK);
-    pair.run(300000);
-    ASSERT_EQ(Link_send(pair.b.link(), 1, &byte, 1, 0), LINK_OK);
-    ASSERT_EQ(Link_closeChannel(pair.a.link(), 1), LINK_OK);
-    EXPECT_EQ(Link_openChannel(pair.a.link(), 1), LINK_FULL);
-    pair.run(300000);
-    EXPECT_EQ(Link_openChannel(pair.a.link(), 1), LINK_OK);
-    pair.run(300000);
-    EXPECT_TRUE(pair.a.received.empty());
-}
-
 TEST(LinkLayer, AClosingWaitsForRoomAndIsNotLost) {
     Pair pair(testSeed());
     const U8 byte = 1;

@@ -76,13 +76,6 @@ private:
     uint32_t maxSize_;
 };
 
-class LinkSeeds : public ::testing::TestWithParam<int> {
-protected:
-    uint64_t seed_ = testSeed() * 1000 + static_cast<uint64_t>(GetParam());
-    // Every second one with a key.
-    Pair pair_{seed_, Side::Bytes(GetParam() % 2 ? LINK_KEY_BYTES : 0, 0x5A)};
-};
-
 // Small messages, as many as the link carries: sequence numbers wrap hundreds of times.
 // MESSAGES=100000 sends more.
 TEST(LinkLayer, TenThousandMessagesAtSpeedInBadWeather) {
@@ -100,58 +93,6 @@ TEST(LinkLayer, TenThousandMessagesAtSpeedInBadWeather) {
     EXPECT_EQ(pair.a.received.size(), messages);
     EXPECT_EQ(pair.b.received.size(), messages);
 }
-
-TEST_P(LinkSeeds, NothingIsLostDoubledOrReorderedInBadWeather) {
-    ASSERT_TRUE(pair_.connect());
-    pair_.setWeather({0.1, 0.05, 0.02, 8000});
-    Traffic traffic(pair_, seed_, 400);
-    traffic.run(300, 600000000);
-    Traffic::check(traffic.sentA, pair_.a, pair_.b);
-    Traffic::check(traffic.sentB, pair_.b, pair_.a);
-    for (auto& [tag, outcome] : pair_.a.outcomes)
-        EXPECT_EQ(outcome, LINK_DELIVERED) << tag;
-}
-
-TEST_P(LinkSeeds, RebootsAreNoticedAndMessagesInFlightReported) {
-    ASSERT_TRUE(pair_.connect());
-    Link_start(pair_.b.link(), pair_.now32());
-    pair_.setWeather({0.05, 0.05, 0.01, 8000});
-    Random random(seed_ + 7);
-    Traffic traffic(pair_, seed_, 300);
-    for (int round = 0; round < 6; ++round) {
-        traffic.run(static_cast<unsigned>(40 * (round + 1)), 3000000 + random.below(3000000));
-        // A reboot forgets messages in flight: count them as unknown, like an application.
-        Side& side = random.below(2) ? pair_.a : pair_.b;
-        auto& sent = &side == &pair_.a ? traffic.sentA : traffic.sentB;
-        side.boot();
-        for (uint32_t i = 0; i < sent.size(); ++i)
-            side.outcomes.emplace(i, LINK_UNKNOWN);
-        Link_start(side.link(), pair_.now32());
-        ASSERT_TRUE(pair_.runUntil([&] { return pair_.bothUp(); }, 60000000)) << "round " << round;
-    }
-    traffic.run(240, 600000000);
-    Traffic::check(traffic.sentA, pair_.a, pair_.b);
-    Traffic::check(traffic.sentB, pair_.b, pair_.a);
-}
-
-TEST_P(LinkSeeds, GarbageOnTheLineDoesNotDisturbTheSession) {
-    ASSERT_TRUE(pair_.connect());
-    Traffic traffic(pair_, seed_, 200);
-    Random random(seed_ + 3);
-    for (int i = 0; i < 60; ++i) {
-        Side::Bytes noise(1 + random.below(150));
-        for (auto& byte : noise)
-            byte = static_cast<uint8_t>(random.next());
-        Link_receive(pair_.b.link(), noise.data(), static_cast<U32>(noise.size()), pair_.now32());
-        traffic.run(static_cast<unsigned>(3 * (i + 1)), 200000);
-    }
-    traffic.run(180, 100000000);
-    Traffic::check(traffic.sentA, pair_.a, pair_.b);
-    Traffic::check(traffic.sentB, pair_.b, pair_.a);
-    EXPECT_GT(Link_statistics(pair_.b.link())->crcErrors, 0u);
-}
-
-INSTANTIATE_TEST_SUITE_P(Seeds, LinkSeeds, ::testing::Range(0, 8));
 
 // A wrong message with a right CRC-16 comes once in 65,536 times; here the polynomial is added to
 // get one at once.

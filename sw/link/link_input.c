@@ -280,6 +280,8 @@ static void parseKept(Link* link, U32 tried, int isEnd) {
 
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
     Link_Parser* parser = &link->parser;
+    if (size == 0)
+        return; /* bytes may be null */
     link->now = nowUs;
     link_pollInput(link);
     parser->at = nowUs;

@@ -5,12 +5,14 @@ import json
 import re
 from pathlib import Path
 
+TREE = Path(__file__).resolve().parents[1]
+
 
 def text():
-    newest = re.search(r"^## (\d+\.\d+\.\d+)", Path("CHANGELOG.md").read_text(), re.M)[1]
-    link = re.search(r"LINK_VERSION (\d+)", Path("sw/link/link_wire.h").read_text())[1]
+    newest = re.search(r"^## (\d+\.\d+\.\d+)", (TREE / "CHANGELOG.md").read_text(), re.M)[1]
+    link = re.search(r"LINK_VERSION (\d+)", (TREE / "sw/link/link_wire.h").read_text())[1]
     blocks = []
-    for path in sorted([*Path("hdl").rglob("*.regs.json"), *Path("ip").rglob("*.regs.json")]):
+    for path in sorted([*(TREE / "hdl").rglob("*.regs.json"), *(TREE / "ip").rglob("*.regs.json")]):
         block = json.loads(path.read_text())
         if "version" in block:
             number = int(block["version"], 16)

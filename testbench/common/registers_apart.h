@@ -2,12 +2,14 @@
 //
 // registers_apart: values written to two registers of a third-party core are read back from both,
 // as far as they can be written. It finds a lost write, and an address whose words are taken for
-// bytes or bytes for words.
+// bytes or bytes for words: then neighbours are one register. A core with fewer registers than
+// addresses repeats them at a distance.
 
 #ifndef REGISTERS_APART_H
 #define REGISTERS_APART_H
 
 #include "core_slot.h"
+#include <cstdlib>
 #include <iostream>
 #include <vector>
 extern "C" {
@@ -45,10 +47,16 @@ void expectRegistersApart(CoreSlot<Module>& slot, const Hw_Register (&table)[N],
         access(true, r);
     for (const Register& r : hold) {
         const U32 data = access(false, r).data;
-        for (const Register& other : hold)
-            EXPECT_FALSE(&other != &r && other.value != r.value && data == other.value)
+        for (const Register& other : hold) {
+            const auto distance = &other.is - &r.is;
+            if (distance == 0 || other.value == r.value || data != other.value)
+                continue;
+            EXPECT_GT(std::abs(distance), 1)
                 << r.is.name.data << " has what was written to " << other.is.name.data
                 << ": does its address count words, or bytes? ADDRESS=words|bytes says it";
+            std::cout << "the core has fewer registers: " << r.is.name.data << " is "
+                      << other.is.name.data << " again\n";
+        }
     }
     std::cout << hold.size() << " registers can be written and read\n";
 }

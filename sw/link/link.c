@@ -73,9 +73,7 @@ void Link_poll(Link* link, U32 nowUs) {
     link_pollSession(link);
     if (LINK_IS_SECURE(link))
         link_pollKeyed(link);
-    /* What the peer has not acknowledged for so long it shall not carry out later. */
-    if (link->state == LINK_STATE_UP &&
-        (!link_pollReceiver(link) || link_age(link) >= LINK_DEAD_AFTER))
+    if (link->state == LINK_STATE_UP && !link_pollReceiver(link))
         link_abort(link);
     if (link->state != LINK_STATE_UP)
         return;

@@ -280,10 +280,10 @@ static void parseKept(Link* link, U32 tried, int isEnd) {
 
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
     Link_Parser* parser = &link->parser;
-    if (size == 0)
-        return; /* bytes may be null */
     link->now = nowUs;
     link_pollInput(link);
+    if (size == 0)
+        return; /* or no silence would ever be seen; bytes may be null */
     parser->at = nowUs;
     if (parser->count == 0) {
         /* The usual case: a whole frame is read in place. The rest fits. */

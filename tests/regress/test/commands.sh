@@ -58,7 +58,7 @@ commands_run) # the program's message about an invalid value of a variable prove
     mkdir flight && echo '{}' >flight/flight.jsonl && echo up >flight/status
     refused "THRESHOLD is 0..255 grey levels, not '300'" run THRESHOLD=300
     refused "LOSS is the share .* not '7'" run LOSS=7
-    refused "PORT is 0..65535, and 0 is any, not 'x'" run PORT=x
+    refused "PORT is 0..65535, not 'x'" run PORT=x
     refused "CPU is host or m3, not 'x'" run CPU=x
     refused "APP is uav or minimal, not 'x'" run APP=x
     refused "core 'nobody' has no part in a mission" run CORES=nobody

@@ -236,7 +236,7 @@ TEST_P(VehicleOnce, AMessageThatIsNotTakenWaitsAndStopsTheSender) {
     a_.open(0);
     for (U32 tag = 0; tag < 10; ++tag)
         EXPECT_EQ(a_.send(0, Bytes(900, static_cast<uint8_t>(tag)), tag), LINK_OK);
-    run(7'000'000);
+    run(12'000'000);
     EXPECT_TRUE(bothUp());
     EXPECT_TRUE(b_.received.empty());
     b_.refuse = false;

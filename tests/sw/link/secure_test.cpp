@@ -332,44 +332,6 @@ TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
     }
 }
 
-// Who lets all pass but the fragments of one side's message, and brings them later: their sender
-// has been told by then, and nobody takes them.
-TEST_P(Attacked, AMessageThatIsHeldBackIsReportedAndNeverTaken) {
-    for (bool isFromA : {true, false}) {
-        Peer &from = isFromA ? a_ : b_, &to = isFromA ? b_ : a_;
-        ASSERT_TRUE(connect());
-        ASSERT_TRUE(until([&] { return bothUp(); }, 30'000'000));
-        from.open(1);
-        run(500'000);
-        from.outcomes.clear(), to.received.clear();
-        ASSERT_EQ(from.send(1, {1, 2, 3}, 1), LINK_OK);
-        std::vector<Bytes> held;
-        const uint64_t start = now_;
-        auto hold = [&] {
-            for (auto it = from.air.begin(); it != from.air.end();) {
-                const Bytes frame = framesOf(it->second).front();
-                const int kind = frame[0] & LINK_CONTROL ? frame[2] >> 5 : int(LINK_KIND_DATA);
-                if (kind >= LINK_KIND_PIGGYBACK) {
-                    held.push_back(it->second);
-                    it = from.air.erase(it);
-                } else {
-                    ++it;
-                }
-            }
-        };
-        ASSERT_TRUE(until([&] { return hold(), !from.outcomes.empty(); }, 60'000'000));
-        EXPECT_EQ(from.outcomes[1], LINK_UNKNOWN);
-        EXPECT_GE(now_ - start, 8'900'000u);
-        EXPECT_LE(now_ - start, 9'300'000u);
-        until([&] { return hold(), false; }, 2'000'000);
-        ASSERT_FALSE(held.empty());
-        for (const Bytes& packet : held)
-            attack(to, packet);
-        run(1'000'000);
-        EXPECT_TRUE(to.received.empty()) << (isFromA ? "from A" : "from B");
-    }
-}
-
 // An attack on new sessions: the attacker hears the traffic and adds 20 bytes to each packet, or
 // sends them blindly. They are a byte of no frame and a seeming HELLO, of this version or another.
 class Hindered : public Attacked {

@@ -212,7 +212,9 @@ def ports(core):
     for path in (Path(f"ip/{core}/{core}.v"), Path(f"build/trace/gen/{core}.v")):
         text = path.read_text() if path.exists() else ""
         for include in ("bus/slot_ports.vh", "hdl/ddr/memory_ports.vh"):
-            text = text.replace(f'`include "{os.path.basename(include)}"', Path(include).read_text())
+            line = f'`include "{os.path.basename(include)}"'
+            if line in text:
+                text = text.replace(line, Path(include).read_text())
         head = re.search(rf"^module\s+{core}\b.*?\);", re.sub(r"//.*", "", text), re.M | re.S)
         for wide, name in re.findall(
             r"(?:input|output)\s+(?:wire|reg)?\s*(?:signed\s*)?(\[\d+:0\])?\s*(\w+)",

@@ -22,6 +22,8 @@ public:
     Bench()
         : context_(new VerilatedContext), observer_(*context_), top_(new Module(context_.get())) {}
     ~Bench() {
+        // A module's scopes leave this thread's context, which may be that of another bench, gone.
+        Verilated::threadContextp(context_.get());
         top_->final();
         observer_.finish();
     }

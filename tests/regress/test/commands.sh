@@ -67,7 +67,7 @@ commands_run) # the program's message about an invalid value of a variable prove
     refused "cannot read '/none'" run IMAGE=/none OUT="$work/flight"
     hasNot 'REPLAY=' # it would be of an earlier flight, still in the folder
     refused "cannot read '/none'" run PINS=/none OUT="$work/flight"
-    refused "PROBE='fir.go=1' is a trigger of a probe: CORES=probe" run PROBE=fir.go=1 OUT="$work/flight"
+    refused "PROBE='fir.go=1' is a trigger of a probe: give --cores probe (CORES=probe), too" run PROBE=fir.go=1 OUT="$work/flight"
     refused "OUT='/proc/none' is no folder" run OUT=/proc/none
     refused "FROM is a number from 0 on s, not 'x'" run REPLAY="$work/flight" FROM=x # before a simulator is built for it
     refused "FROM=2.0 TO=1.0 are no span" run REPLAY="$work/flight" FROM=2 TO=1

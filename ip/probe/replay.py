@@ -107,7 +107,8 @@ def main():
     widths, moments = read_vcd(args.capture)
     if any("x" in v for _, values in moments for v in values.values()):
         fail(f"{args.capture}: changes were lost, so the inputs are not known; record fewer signals, or a shorter time")
-    ports, _ = foreign_files.read_module(args.top, args.files, args.I, is_whole=False)
+    headers = [os.path.join(folder, "") for folder in args.I]  # read_module takes files and looks in their folders
+    ports, _ = foreign_files.read_module(args.top, args.files, headers, is_whole=False)
     inputs, outputs, wiring = [], [], []
     for name, port in ports.items():
         width, captured = len(port["bits"]), f"{args.scope}.{name}"

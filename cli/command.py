@@ -24,13 +24,14 @@ class Command:
 
     make: its verb there, if it has one. when: the variable that chooses this one of several with
     the same verb.
-    brief: a short form that runs all of its steps, or several command lines (./icesoc commands
-    --brief).
+    brief: a command line, or several, that runs all of its steps in short (commands --brief).
+    long: what `nightly` runs of it, with {day} for a seed; none if the tests run the whole.
     """
 
-    def __init__(self, function, name, options, make, when, brief, examples):
+    def __init__(self, function, name, options, make, when, brief, long, examples):
         self.function, self.name, self.make, self.when = function, name, make, when
-        self.brief = [brief] if isinstance(brief, str) else list(brief)
+        self.brief, self.long = ([lines] if isinstance(lines, str) else list(lines)
+                                 for lines in (brief, long))
         self.options = [*options, BUILT]
         text, _, self.more = function.__doc__.partition("\n\n")
         self.help = " ".join(text.split())
@@ -90,9 +91,9 @@ class Command:
         return values
 
 
-def command(name, options=(), make=None, when=None, brief=(), examples=()):
+def command(name, options=(), make=None, when=None, brief=(), long=(), examples=()):
     def declare(function):
-        COMMANDS[name] = Command(function, name, options, make, when, brief, examples)
+        COMMANDS[name] = Command(function, name, options, make, when, brief, long, examples)
         return function
     return declare
 

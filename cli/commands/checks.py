@@ -6,7 +6,7 @@ from pathlib import Path
 
 from cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
 from cli.command import GROUPS, command
-from cli.options import BLOCK, BUILD, COUNT, FRESH, JOBS, MINUTES, NAME, SEED, WORDS, Option
+from cli.options import BLOCK, BUILD, COUNT, FRESH, JOBS, MINUTES, NAME, PATH, SEED, WORDS, Option
 from cli.runner import Stop, output, run, say, warn
 
 GROUPS["check"] = "what takes minutes to hours"
@@ -29,7 +29,7 @@ def proofs(values):
 
 @command("check sanitizers", [Option("kinds", WORDS, "address or thread", ["address", "thread"]),
                               BUILD, JOBS], make="sanitizers",
-         brief="check sanitizers --kinds address")
+         brief="check sanitizers --kinds address", long="check sanitizers")
 def sanitizers(values):
     """tests of IceC, engine, gateway and plugin with AddressSanitizer and with ThreadSanitizer;
     fuzzer of the debugger's stub"""
@@ -57,6 +57,7 @@ def sanitizers(values):
     "mutants that Yosys draws, for each proof, in place of those of tests/mutants"), SEED,
                            FRESH, BUILD, JOBS], make="mutants",
          brief="check mutants --block bus/axi_late_response",
+         long=("check mutants", "check mutants --draw 8 --seed {day}"),
          examples=["check mutants --block bus", "check mutants --draw 20"])
 def mutants(values):
     """plant every seeded bug of tests/mutants, expect its test to fail"""
@@ -74,7 +75,7 @@ def mutants(values):
                           Option("name", NAME.kind,
                                  "faults whose name contains this, such as killed", ""), BUILD,
                           JOBS],
-         make="faults", brief="check faults --name killed --moments 1",
+         make="faults", brief="check faults --name killed --moments 1", long="check faults --seed {day}",
          examples=["check faults --name killed --moments 2"])
 def faults(values):
     """kill, stop and starve each process of a mission at moments drawn from a seed, expect
@@ -96,6 +97,7 @@ def faults(values):
                         Option("fuzzed", COUNT,
                                "bytes of noise into the modem controller; ten times as many into link and engine", 1000000), SEED,
                         BUILD, JOBS], make="soak", brief="check soak --minutes 0.01 --fuzzed 1000",
+         long="check soak --minutes 60 --seed {day}",
          examples=["check soak --minutes 60"])
 def soak(values):
     """endurance of the radio: messages and stock Ice's calls, bad weather, reboots, noise
@@ -126,7 +128,7 @@ def lcov(work, *words):
 @command("check coverage", [Option("name", NAME.kind,
                                    "only tests of which a part of the name matches this; no gate holds then", ""),
                             BUILD, JOBS], make="coverage",
-         brief="check coverage --name ^test_bus_decoder[.]")
+         brief="check coverage --name ^test_bus_decoder[.]", long="check coverage")
 def coverage(values):
     """lines, branches and toggles that the tests reach, write build/coverage/html; exit status 1:
     below tests/regress/coverage_gates.json
@@ -205,12 +207,12 @@ def coverage(values):
     return status
 
 
-@command("bench", [Option("only", WORDS, "these alone, without docs/figures.md"), BUILD, JOBS],
-         make="bench", brief="bench --only air",
+@command("bench", [Option("only", WORDS, "these alone, without a page"),
+                   Option("page", PATH, "the page that is written", "docs/figures.md"), BUILD, JOBS],
+         make="bench", brief="bench --only air", long="bench --page build/bench/figures.md",
          examples=["bench", "bench --only air plugin"])
 def bench(values):
-    """measure everything that has a figure (tests/bench), write build/bench/*.json and
-    docs/figures.md"""
+    """measure everything that has a figure (tests/bench), write build/bench/*.json and a page"""
     build = configured(values)
     if values.only:
         Path("build/bench").mkdir(parents=True, exist_ok=True)
@@ -222,5 +224,5 @@ def bench(values):
     (folder / "tree").write_text(output([build / "tests/regress/regress", "--tree",
         "bus hdl ip sw testbench tests"]))
     status = build.ninja("-k", "0", "benches", check=False, jobs=1)
-    return one_more(status, run(["tests/bench/figures.py", "docs/figures.md",
+    return one_more(status, run(["tests/bench/figures.py", values.page,
                                  *sorted(folder.glob("*.json")), "build/size.json"], check=False))

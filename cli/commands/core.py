@@ -319,7 +319,7 @@ wdata=bus_req_i_data
 
 @command("core examples", [Option("chip", SWITCH, "and what each costs in the chip"), SEED,
                            *(o for o in FIELDS if o.name == "image"), BUILD, JOBS],
-         make="foreign", brief="core examples")
+         make="foreign", brief="core examples", long="core examples --chip")
 def examples(values):
     """put third-party cores and two of one's own through the recipe, in three orders, test them and
     call them by radio

@@ -220,7 +220,7 @@ def key(values):
 @command(
     "fly", [Option("minutes", MINUTES, "of simulated time; an hour of it is minutes of a processor",
                    4.0), SEED, BUILD, JOBS], make="fly",
-         brief="fly --minutes 0.01", examples=["fly --minutes 60", "fly --seed 7"])
+         brief="fly --minutes 0.01", long="fly --minutes 60 --seed {day}", examples=["fly --minutes 60", "fly --seed 7"])
 def fly_for_long(values):
     """a long flight: stock Ice's calls now and then, loss, reboots of UAV, modems and ground"""
     build = configured(values, "test_chip_soak")

@@ -34,7 +34,7 @@ mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd /root/icesoc && $
            "; ".join(README)),
     Option("folder", FOLDER, "of machines and logs, 8 GB each", "/var/tmp/icesoc-fresh"),
     Option("list", SWITCH, "only says what was done before, with status and minutes")],
-    brief="check fresh --list", examples=["check fresh --release trixie",
+    brief="check fresh --list", long="check fresh", examples=["check fresh --release trixie",
         "check fresh --again --steps 'make test'"])
 def fresh(values):
     """do what the README says on an empty Debian 12 and 13; needs root, debootstrap and a

@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: MIT
 """regression: the tests, with selection, history and a page; the commit since which one fails; what
 a timer runs."""
+import functools
 import json
 import re
+import shlex
 import sys
 import time
 from pathlib import Path
 
 from cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
-from cli.command import command
+from cli.command import COMMANDS, command
 from cli.options import (BLOCK, BUILD, COUNT, FRESH, JOBS, LABEL, NAME, SEED, SWITCH, TESTS, TEXT,
                          UCOS2, WORDS, Option, matching, number)
 from cli.runner import Stop, commit, lock, output, run, say
+from cli.table import Table
 
 WAVES = Option("waves", number(0), "failures of which a waveform is written", 3)
 
@@ -160,39 +163,45 @@ def search(test, good, bad, tree, told):
 
 
 @command("nightly", [Option("nightly", COUNT, "seeds that are drawn", 3),
-                     Option("steps", WORDS, "these alone",
-                            ["kept", "random", "zeroc", "mutants", "faults", "sanitizers",
-                             "nightly"]), NAME, LABEL, WAVES, TESTS, BUILD, JOBS], make="nightly",
-         brief="nightly --steps kept random --nightly 1 --name ^tree[.]pages")
+                     Option("steps", WORDS, "these alone, by their names in the table", []),
+                     NAME, LABEL, WAVES, TESTS, BUILD, JOBS],
+         make="nightly", brief="nightly --steps kept random --nightly 1 --name ^tree[.]pages",
+         examples=["nightly", "nightly --steps kept check-mutants"])
 def nightly(values):
-    """what a timer runs: seeds that have failed, fresh seeds, ZeroC's own suites, faults, mutants,
-    sanitizers
+    """what a timer runs: seeds that have failed, fresh seeds, ZeroC's own suites, the long form of
+    every command
 
-    Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them."""
+    Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them. Writes a table
+    of the steps, build/nightly.md."""
     build = BuildFolder(values.build, values).prepare(tests=True)
     build.ninja()
-    day, tests = time.strftime("%Y%m%d"), at_once(values)
+    tests = at_once(values)
     # COMPARE_MS: test_quiet compares a second; FUZZ: times as many inputs of fuzzers; HOSTILE:
     # packets of test_link.
     long = {"FRESH": "1", "FUZZ": "10", "COMPARE_MS": "1000", "HOSTILE": "10000000"}
     tool = [build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves",
-            values.waves]
+            values.waves, *selection(values)]
 
-    def ours(*words):
-        return run([sys.executable, "icesoc", *words], check=False, env=long)
+    def regression(*words):
+        return run([*tool, *words], check=False, env=long)
 
     def suite(name):
         return build.ctest("-C", name, "-L", name, tests=tests, check=False, **long)
-    chosen = selection(values)
-    steps = {"kept": lambda: run([*tool, "--kept", *chosen], check=False, env=long),
-             "random": lambda: run([*tool, "--seed", "random", "--repeat", values.nightly, *chosen],
-                                   check=False, env=long),
-             "zeroc": lambda: suite("zeroc"),
-             "mutants": lambda: ours("check", "mutants", "--draw", "8", "--seed", day),
-             "faults": lambda: ours("check", "faults", "--seed", day),
-             "sanitizers": lambda: ours("check", "sanitizers"),
-             "nightly": lambda: suite("nightly")}
+
+    def whole(lines):
+        day = time.strftime("%Y%m%d")
+        return max([run([sys.executable, "icesoc", *shlex.split(line.format(day=day))], check=False,
+                        env=long) for line in lines])
+    steps = {"kept": lambda: regression("--kept"),
+             "random": lambda: regression("--seed", "random", "--repeat", values.nightly),
+             "zeroc": lambda: suite("zeroc"), "missions": lambda: suite("nightly"),
+             **{each.name.replace(' ', '-'): functools.partial(whole, each.long)
+                for each in COMMANDS.values() if each.long}}
     for name in values.steps:
         if name not in steps:
             raise Stop(f"there is no step '{name}': {', '.join(steps)}", 2)
-    return max([steps[name]() for name in values.steps])  # each runs, even if an earlier one failed
+    table = Table("build/nightly")
+    for name in values.steps or steps:  # each runs, even if an earlier one failed
+        begin = time.monotonic()
+        table.add(name, steps[name](), time.monotonic() - begin)
+    return table.end()

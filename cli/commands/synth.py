@@ -30,7 +30,7 @@ def utilisation(build, values, *words):
     Option("place", SWITCH, "on ECP5 also placed and routed, by nextpnr of Debian 13"),
     Option(
         "base", TEXT, "a commit: and what has changed since, as Markdown; COMMIT..COMMIT or COMMIT..: only what has changed between these, or until the last report", ""),
-    BUILD, JOBS], make="synth", brief="synth report --design npi_arbiter",
+    BUILD, JOBS], make="synth", brief="synth report --design npi_arbiter", long="synth report",
     examples=["synth report --design modem", "synth report --family xc7 ecp5",
               "synth report --base main..mine"])
 def synth(values):

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """tree: set-up, clean-up, and the list of commands."""
-import json
 import os
 import shlex
 import shutil
@@ -12,7 +11,8 @@ from cli import command as doors
 from cli import flight, keys, version
 from cli.command import COMMANDS, command
 from cli.options import PATH, SWITCH, TEXT, Option
-from cli.runner import Stop, run, say
+from cli.runner import run, say
+from cli.table import Table
 
 
 @command("setup", [Option("tests", SWITCH, "what tests, reports and debuggers need, too",
@@ -70,8 +70,8 @@ def commands(values):
 
 
 def run_all(only):
-    """Runs every brief form, and prints a table of them."""
-    rows, folder = [], Path("build/brief")
+    """Runs every brief form to its end, and writes a table of them. Stops at no failure."""
+    table, folder = Table("build/commands"), Path("build/brief")
     if not only:
         shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True, exist_ok=True)
@@ -79,24 +79,15 @@ def run_all(only):
         if only not in name:
             continue
         log, begin, status = folder / f"{name.replace(' ', '-')}.log", time.monotonic(), 0
-        with open(log, "w") as file:
+        with open(log, "w") as file, open(os.devnull) as nothing:
             for line in each.brief:
                 status = status or run([sys.executable, "icesoc", *shlex.split(line)], check=False,
-                                       stdout=file, stderr=file,
-                                       stdin=open(os.devnull))
+                                       stdin=nothing, stdout=file, stderr=file)
         lines = log.read_text(errors="replace").strip().splitlines() or [""]
-        rows.append({"command": name, "brief": "; ".join(each.brief), "status": status,
-                     "seconds": round(time.monotonic() - begin, 1),
-                     "figure": lines[-1].strip()[:100]})
-        say(f"{name:<18} {'ok' if status == 0 else f'FAILED ({status}): {log}':<8} {rows[-1]['seconds']:7.1f} s  {rows[-1]['figure']}")
-    Path("build/commands.json").write_text(json.dumps(rows, indent=1) + "\n")
-    Path("build/commands.md").write_text(
-        "| command | status | seconds | what it says last |\n|---|---|---|---|\n" + "".join(
-        f"| `icesoc {row['brief']}` | {row['status']} | {row['seconds']} | {row['figure'].replace('|', '/')} |\n" for row in rows))
-    failed = [row["command"] for row in rows if row["status"]]
-    if failed:
-        raise Stop(f"failed: {', '.join(failed)}")
-    say(f"{len(rows)} commands, {sum(row['seconds'] for row in rows):.0f} s: build/commands.md")
+        table.add(name, status, time.monotonic() - begin, lines[-1].strip()[:100])
+        if status:
+            say("\n".join("    " + line for line in lines[-20:]))
+    return table.end()
 
 
 def manual():

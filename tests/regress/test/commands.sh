@@ -140,20 +140,22 @@ commands_nightly) # each step runs even if earlier ones failed, and each failure
     entrance
     cat >icesoc <<'TEXT'
 import sys
-open("done", "a").write(sys.argv[2] + "\n")
-sys.exit(sys.argv[2] == open("failing").read().strip())
+name = "_".join(word for word in sys.argv[1:4] if word.isalpha())
+open("done", "a").write(name + "\n")
+sys.exit(name == open("failing").read().strip())
 TEXT
     sed -i 's/value $SEED is not 7/failed with $SEED/; s|"$SEED" = 7|! -e ../../../../bad|' tests/room/t.sh
+    checks='check_sanitizers check_mutants check_mutants check_faults check_soak check_coverage'
     nightly() { # the step that fails
         : >done
         echo "$1" >failing
         here nightly NIGHTLY=2
-        [ "$(tr '\n' ' ' <done)" = 'zeroc mutants faults sanitizers nightly ' ] || fail "where $1 fails only these are done: $(cat done)"
+        [ "$(tr '\n' ' ' <done)" = "zeroc nightly fly synth_report core_examples $checks bench check_fresh " ] || fail "where $1 fails only these are done: $(cat done)"
         [ "$(grep -c '^[0-9]* tests, SEED=' out.txt)" = "$2" ] || fail "not $2 seeds"
     }
     nightly none 2
     [ $status -eq 0 ] || fail "fails where nothing has"
-    for step in mutants faults sanitizers; do
+    for step in check_mutants fly check_fresh; do
         nightly $step 2
         [ $status -ne 0 ] || fail "nobody says that $step has failed"
     done

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: MIT
+"""table: what several commands ended with, as lines, Markdown and JSON."""
+import json
+from pathlib import Path
+
+from cli.runner import Stop, say
+
+
+class Table:
+    """Rows of a table that is written to PATH.md and PATH.json, row by row."""
+
+    def __init__(self, path):
+        self.path, self.rows = Path(path), []
+
+    def add(self, name, status, seconds, figure=""):
+        self.rows.append({"command": name, "status": status, "seconds": round(seconds, 1),
+                          "figure": figure})
+        said = "ok" if status == 0 else f"FAILED ({status})"
+        say(f"{name:<18} {said:<12} {seconds:7.1f} s  {figure}")
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self.path.with_suffix(".json").write_text(json.dumps(self.rows, indent=1) + "\n")
+        lines = ["| command | status | seconds | what it says last |", "|---|---|---|---|"]
+        for row in self.rows:
+            last = row["figure"].replace("|", "/")
+            lines.append(f"| {row['command']} | {row['status']} | {row['seconds']} | {last} |")
+        self.path.with_suffix(".md").write_text("\n".join(lines) + "\n")
+
+    def end(self):
+        """Ends the command: with an error that names what failed, if something has."""
+        seconds = sum(row["seconds"] for row in self.rows)
+        if failed := [row["command"] for row in self.rows if row["status"]]:
+            raise Stop(f"failed: {', '.join(failed)} ({self.path}.md)")
+        say(f"{len(self.rows)} commands, {seconds:.0f} s: {self.path}.md")

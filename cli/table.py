@@ -6,6 +6,9 @@ from pathlib import Path
 from cli.runner import Stop, say
 
 
+SKIPPED = 77  # the exit status of what needs a network, and has none
+
+
 class Table:
     """Rows of a table that is written to PATH.md and PATH.json, row by row."""
 
@@ -15,7 +18,7 @@ class Table:
     def add(self, name, status, seconds, figure=""):
         self.rows.append({"command": name, "status": status, "seconds": round(seconds, 1),
                           "figure": figure})
-        said = "ok" if status == 0 else f"FAILED ({status})"
+        said = {0: "ok", SKIPPED: "skipped"}.get(status, f"FAILED ({status})")
         say(f"{name:<18} {said:<12} {seconds:7.1f} s  {figure}")
         self.path.parent.mkdir(parents=True, exist_ok=True)
         self.path.with_suffix(".json").write_text(json.dumps(self.rows, indent=1) + "\n")
@@ -28,6 +31,9 @@ class Table:
     def end(self):
         """Ends the command: with an error that names what failed, if something has."""
         seconds = sum(row["seconds"] for row in self.rows)
-        if failed := [row["command"] for row in self.rows if row["status"]]:
+        skipped = [row for row in self.rows if row["status"] == SKIPPED]
+        if failed := [row["command"] for row in self.rows if row["status"] not in (0, SKIPPED)]:
             raise Stop(f"failed: {', '.join(failed)} ({self.path}.md)")
-        say(f"{len(self.rows)} commands, {seconds:.0f} s: {self.path}.md")
+        for row in skipped:
+            say(f"skipped: {row['command']}: {row['figure']}")
+        say(f"{len(self.rows) - len(skipped)} commands, {seconds:.0f} s: {self.path}.md")

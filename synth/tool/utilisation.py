@@ -105,7 +105,7 @@ def edif(plan, library, options, o):
     design = next(design for design in plan.designs if design.name == o.edif)
     runner.write_edif(design, library, options, o.output / "ise")
     print(f"{o.output / 'ise' / o.edif}.edf and its Verilog in {o.output / 'ise/verilog'}; "
-          "docs/ise.md says how to go on.")
+          "docs/utilisation.md says how to go on.")
     return 0
 
 

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: MIT
 """doors: ./icesoc and make take the same options, refuse what is wrong in words that help, and give
 no value to a shell."""
+import contextlib
+import io
 import os
 import re
 import shlex
@@ -15,7 +17,7 @@ from pathlib import Path
 
 TREE = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TREE))
-from cli import command, flight, main  # noqa: E402, F401 (main declares all commands)
+from cli import command, flight, main, runner, table  # noqa: E402, F401 (main declares all commands)
 from cli.commands.tree import manual  # noqa: E402
 from cli.options import FLIGHT, SWITCH  # noqa: E402
 
@@ -292,6 +294,18 @@ class Lists(unittest.TestCase):
             for length, status in ((72, 0), (73, 1)):
                 Path(work, "message").write_text("# a comment\n" + "x" * length + "\n\nWhy.\n")
                 self.assertEqual(ask(".ci/hooks/commit-msg", f"{work}/message")[0], status)
+
+    def test_a_table_tells_what_failed_and_what_lacks_a_network(self):
+        with tempfile.TemporaryDirectory() as work, contextlib.redirect_stdout(io.StringIO()) as out:
+            rows = table.Table(f"{work}/rows")
+            rows.add("good", 0, 1.5, "a | b")
+            rows.add("far", 77, 0)
+            rows.end()
+            self.assertIn("skipped: far", out.getvalue())
+            self.assertIn("1 commands, 2 s", out.getvalue())
+            rows.add("bad", 3, 0)
+            self.assertRaisesRegex(runner.Stop, "failed: bad ", rows.end)
+            self.assertIn("| good | 0 | 1.5 | a / b |", Path(work, "rows.md").read_text())
 
     def test_version_and_manual_are_there(self):
         self.assertRegex(ask("./icesoc", "--version")[1], r"^icesoc \d+\.\d+\.\d+\n")

@@ -25,7 +25,6 @@ def writable(folder, otherwise):
 
 class BuildFolder:
     """A build folder, as a command's options name it."""
-
     def __init__(self, folder, values):
         self.folder, self.jobs, self.built = Path(folder), values.jobs, values.built
         self.ucos2 = getattr(values, "ucos2", "")
@@ -45,10 +44,11 @@ class BuildFolder:
     def configure(self, *arguments):
         """Lets CMake make the folder, unless it has. CMake refuses a folder made for another place:
         it is removed first."""
-        writable(
-            self.folder, "where the build goes: take a clone of your own, or give --build (BUILD=) a folder that is yours")
-        writable(os.environ.get("XDG_CACHE_HOME") or os.path.join(os.environ["HOME"], ".cache"),
-                 "where what is fetched and compiled is kept: set XDG_CACHE_HOME to a folder that is yours")
+        writable(self.folder, "where the build goes: take a clone of your own, or give --build "
+                 "(BUILD=) a folder that is yours")
+        cache = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.environ["HOME"], ".cache")
+        writable(cache, "where what is fetched and compiled is kept: set XDG_CACHE_HOME to a "
+                 "folder that is yours")
         home = self.cached("CMAKE_HOME_DIRECTORY")
         if home and not (os.path.isdir(home) and os.path.samefile(home, ".")):
             warn(f"{self.folder} was made for the tree in {home}: made anew")
@@ -92,14 +92,14 @@ class BuildFolder:
         return self.ninja("--quiet", *targets)
 
     def ctest(self, *words, tests, check=True, **env):
-        return run([TREE / "tests/ctest.py", "--test-dir", self.folder, "-j", tests,
-                    "--output-on-failure", "--no-tests=error", *words],
-                   env=env, check=check)
+        return run([
+            TREE / "tests/ctest.py", "--test-dir", self.folder, "-j", tests, "--output-on-failure",
+            "--no-tests=error", *words], env=env, check=check)
 
     def targets(self):
         """Names of all targets."""
-        return re.findall(r"^(.*): phony$", output(["ninja", "-C", self.folder, "-t", "targets",
-            "all"]), re.M)
+        return re.findall(r"^(.*): phony$",
+                          output(["ninja", "-C", self.folder, "-t", "targets", "all"]), re.M)
 
 
 def configured(values, *targets, tests=False):

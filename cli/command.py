@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""command: the list of all commands, the parser of each, and its two doors: `./icesoc run --loss
-0.1`, `make run LOSS=0.1`.
+"""command: the list of all commands, the parser of each, and its two doors.
 
-Both doors end in `values`: an option that is not given is taken from the variable of its name in
-the environment, where make
-puts those of its command line.
+`./icesoc run --loss 0.1` and `make run LOSS=0.1` both end in `values`: an option that is not given
+is taken from the variable of its name in the environment, where make puts those of its command
+line.
 """
 import argparse
 import difflib
@@ -14,9 +13,9 @@ from cli.options import BUILT, PATHS, SWITCH
 from cli.runner import Stop
 
 COMMANDS = {}  # by name, such as "core new", in the order of the list
-GROUPS = {}    # first words of names of two words, with their help
+GROUPS = {}  # first words of names of two words, with their help
 DEFAULTS = {}  # a group's command that its first word alone means
-ALIASES = {}   # other verbs of make: a verb, and the switch that it turns on
+ALIASES = {}  # other verbs of make: a verb, and the switch that it turns on
 
 
 class Command:
@@ -27,7 +26,6 @@ class Command:
     brief: a command line, or several, that runs all of its steps in short (commands --brief).
     long: what `nightly` runs of it, with {day} for a seed; none if the tests run the whole.
     """
-
     def __init__(self, function, name, options, make, when, brief, long, examples):
         self.function, self.name, self.make, self.when = function, name, make, when
         self.brief, self.long = ([lines] if isinstance(lines, str) else list(lines)
@@ -41,10 +39,10 @@ class Command:
         parser = into or argparse.ArgumentParser()
         parser.prog = f"icesoc {self.name}"
         parser.formatter_class = argparse.RawDescriptionHelpFormatter
-        parser.description = self.help + ("\n\n" + "\n".join(map(str.strip,
-            self.more.split("\n"))) if self.more else "")
-        parser.epilog = "examples:\n" + "".join(f"  ./icesoc {each}\n"
-            for each in self.examples) if self.examples else None
+        parser.description = self.help + ("\n\n" + "\n".join(map(str.strip, self.more.split("\n")))
+                                          if self.more else "")
+        parser.epilog = "examples:\n" + "".join(
+            f"  ./icesoc {each}\n" for each in self.examples) if self.examples else None
         parser.allow_abbrev = False
         for option in self.options:
             if not option.listed:
@@ -63,26 +61,25 @@ class Command:
         return parser
 
     def values(self, given, makes, place):
-        """The values of all options. given: texts by field; makes: variables of make's command
-        line; place: the folder
-        of relative names of files."""
+        """The values of all options.
+
+        given: texts by field; makes: variables of make's command line; place: the folder of
+        relative names of files."""
         values = argparse.Namespace(given=set(), given_by_make=makes is not None)
         for option in self.options:
             text, called = given.get(option.field), f"--{option.name}"
             if text is not None and makes is None:
                 values.given.add(option.field)
                 called = option.name.upper() if option.positional else called
-            elif option.variable != "LANG" or option.variable in (makes
-                or ()):  # LANG in the environment is the user's language
+            elif option.variable != "LANG" or option.variable in (
+                    makes or ()):  # LANG in the environment is the user's language
                 text, called = os.environ.get(option.variable), option.variable
                 if text and option.variable in (makes or ()):
                     values.given.add(option.field)
             if text is True:
                 value = True
             elif text in (None, "", []):
-                value = option.default() if callable(option.default) else option.default
-                value = False if option.kind is SWITCH else [
-                    ] if option.many and value is None else value
+                value = option.none()
             else:
                 if option.kind in PATHS and place != os.getcwd():
                     text = os.path.join(place, text)
@@ -95,6 +92,7 @@ def command(name, options=(), make=None, when=None, brief=(), long=(), examples=
     def declare(function):
         COMMANDS[name] = Command(function, name, options, make, when, brief, long, examples)
         return function
+
     return declare
 
 
@@ -118,8 +116,9 @@ def find(words):
         if not rest:
             raise Stop(f"{first} has the commands {', '.join(parts)}", 2)
         raise Stop(f"{first} has no command '{rest[0]}'" + nearest(rest[0], parts), 2)
-    raise Stop(f"there is no command '{first}'" + nearest(first,
-        [*GROUPS, *COMMANDS]) + " (./icesoc lists all)", 2)
+    raise Stop(
+        f"there is no command '{first}'" + nearest(first, [*GROUPS, *COMMANDS])
+        + " (./icesoc lists all)", 2)
 
 
 def by_words(words, place):
@@ -129,6 +128,7 @@ def by_words(words, place):
 
     def refuse(text):
         raise Stop(f"{found.name}: {text} (./icesoc {found.name} --help)", 2)
+
     parser.error = refuse
     given, left = parser.parse_known_args(rest)
     names = [name for action in parser._actions for name in action.option_strings]
@@ -148,18 +148,23 @@ def by_make(goal, goals, makes):
         if switch:
             os.environ[switch] = "1"
         return [each for each in COMMANDS.values() if each.make == verb]
+
     if not of(goal):
-        raise Stop(f"there is no 'make {goal}'" + nearest(goal,
-            [each.make for each in COMMANDS.values() if each.make]), 2)
-    known = {"BUILD", "JOBS"} | {option.variable for each in goals for found in of(each)
-                                 for option in found.options}
+        raise Stop(
+            f"there is no 'make {goal}'"
+            + nearest(goal, [each.make for each in COMMANDS.values() if each.make]), 2)
+    known = {"BUILD", "JOBS"} | {
+        option.variable
+        for each in goals for found in of(each) for option in found.options}
     for name in makes:
         if name not in known:
-            others = sorted({each.make for each in COMMANDS.values() if each.make
-                             and name in (o.variable for o in each.options)})
+            others = sorted({
+                each.make
+                for each in COMMANDS.values()
+                if each.make and name in (o.variable for o in each.options)})
             where = f"; it is one of make {', '.join(others)}" if others else nearest(name, known)
-            raise Stop(
-                f"there is no variable {name} of make {' '.join(goals)}{where}; ./icesoc {of(goal)[0].name} --help names them", 2)
+            raise Stop(f"there is no variable {name} of make {' '.join(goals)}{where}; "
+                       f"./icesoc {of(goal)[0].name} --help names them", 2)
     chosen = sorted(of(goal), key=lambda each: not (each.when and os.environ.get(each.when)))
     found = next(each for each in chosen if not each.when or os.environ.get(each.when))
     return found, found.values({}, makes, os.getcwd())
@@ -186,9 +191,9 @@ def overview():
         parts = [each.split()[1] for each in COMMANDS if each.startswith(name + " ")]
         text = f"{GROUPS[name]}: {', '.join(parts)}" if parts else COMMANDS[name].help
         lines.append(f"  {name:<10} {text}")
-    return "\n".join(
-        [*lines, "", "./icesoc COMMAND --help explains one; make VERB VARIABLE=value is the same by the other door:",
-                      *verbs()])
+    lines += ["", "./icesoc COMMAND --help explains one; "
+              "make VERB VARIABLE=value is the same by the other door:", *verbs()]
+    return "\n".join(lines)
 
 
 def verbs():

@@ -12,8 +12,7 @@ from pathlib import Path
 
 from cli import keys
 from cli.options import (COUNT, FILE, FOLDER, FRAME, KEY_FILE, PATH, SEED, SHARE, SWITCH, TEXT,
-                         UCOS2, WORDS, Option, matching, number,
-                         one_of)
+                         UCOS2, WORDS, Option, matching, number, one_of)
 from cli.runner import Stop, say
 
 VERSION = 1
@@ -22,9 +21,10 @@ FIELDS = [
            "/usr/share/xplanet/images/earth.jpg"),
     Option("size", FRAME, "of the camera's frame, in pixels", "320x240"),
     Option("threshold", number(0, 255, "grey levels"), "threshold of the vision core", 24),
-    Option("loss", matching(r"0?\.\d+|[01](\.0*)?", "the share of packets that is lost, 0..1",
-                            float, SHARE.schema, "N"),
-           "loss on the air, each way", 0.0),
+    Option(
+        "loss",
+        matching(r"0?\.\d+|[01](\.0*)?", "the share of packets that is lost, 0..1", float,
+                 SHARE.schema, "N"), "loss on the air, each way", 0.0),
     Option("interference", SHARE, "share of each 20 ms in which others are heard on the channel",
            0.0),
     Option("distance", number(0, 100000, "metres", float), "in free space, with fading; 0: none",
@@ -32,57 +32,53 @@ FIELDS = [
     Option("trace", FILE, "CSV of loss, RSSI and delay (docs/models.md), in place of --loss", ""),
     SEED,
     Option("out", FOLDER, "folder that the flight is written to", "build/run"),
-    Option(
-        "cpu", one_of(
-            "host", "m3"), "host: the firmware's host build; m3: its ARM binary on a model of the Cortex-M3", "host"),
-    Option(
-        "app", one_of(
-            "uav", "minimal"), "uav: the mission; minimal: the program of Table II, with --cpu m3",
-           "uav"),
+    Option("cpu", one_of("host", "m3"),
+           "host: the firmware's host build; m3: its ARM binary on a model of the Cortex-M3",
+           "host"),
+    Option("app", one_of("uav", "minimal"),
+           "uav: the mission; minimal: the program of Table II, with --cpu m3", "uav"),
     Option("port", number(0, 65535), "port of the page that shows the flight; 0 is any", 0),
     Option("live", SWITCH, "keeps the page until Ctrl-C"),
     Option("cores", WORDS, "cores whose part is flown too (ip/*/ground.py)"),
     Option(
-        "camera", SWITCH, "the picture comes through the camera core's pins, and the vision core takes it from there"),
-    Option(
-        "pins", FILE, "drives the inputs of cores (docs/simulation.md); outputs go to OUT/pins.log",
-           ""),
-    Option(
-        "probe", TEXT, "trigger of a probe among the cores (ip/probe/README.md), such as u_fir.sent=1", ""),
+        "camera", SWITCH,
+        "the picture comes through the camera core's pins, and the vision core takes it from there"
+    ),
+    Option("pins", FILE,
+           "drives the inputs of cores (docs/simulation.md); outputs go to OUT/pins.log", ""),
+    Option("probe", TEXT,
+           "trigger of a probe among the cores (ip/probe/README.md), such as u_fir.sent=1", ""),
     Option("key", KEY_FILE, "file with the link's key, of vehicle and ground; without: a demo key",
            ""),
     Option("open", SWITCH, "flies in the clear"),
-    Option(
-        "update", FILE, "firmware (ELF) or bitstream (.bit, .bin) that is sent to the vehicle in place of the mission", ""),
+    Option("update", FILE, "firmware (ELF) or bitstream (.bit, .bin) that is sent to the vehicle "
+           "in place of the mission", ""),
     Option("clk-hz", COUNT, "the simulated chip's clock in Hz", 100000000),
     Option("guard", number(2, 3300, "ms"), "guard time of both modems", 1000),
     Option("patience", number(1, unit="s"), "for each answer of the vehicle", 300),
-    Option("firmware", FILE, "firmware (ELF) in place of the one that is built", ""),
-]
+    Option("firmware", FILE, "firmware (ELF) in place of the one that is built", ""), ]
 # Other options of the simulator, in a flight's description or as words; ./icesoc has its own
 # options for them.
-_TEXT, _TIME = {"type": "string"}, {"type": "number", "minimum": 0}
-INNER = {
-    "modem_key": {**_TEXT, "pattern": "[0-9a-fA-F]{32}",
-                  "description": "AES key with which the vehicle's modem encrypts"},
-    "flash": {
-        **_TEXT, "description": "file of the chip's flash, 1 MiB by pack_update; it is kept there"},
-    "fpga_flash": {
-        **_TEXT, "description": "file of the FPGA's configuration flash, 2 MiB by pack_update; kept too"},
-    "replay": {
-        **_TEXT, "description": "folder of a recorded flight, which is flown again without its command"},
-    "wave": {**_TEXT, "description": "file for the waveform (FST) of a replay"},
-    "from": {**_TIME, "description": "begin of the waveform, s"},
-    "to": {**_TIME, "description": "end of the waveform, s"},
-    "every_clock": {
-        "type": "boolean", "description": "evaluates each clock, quiet ones too (slow)"},
-    "speed": {**_TEXT, "pattern": "real|max|0?[.][0-9]+|[0-9]{1,2}([.][0-9]+)?",
-              "description": "real: simulated time follows the clock; 0.25: at a quarter of its speed; max: as fast as it goes"},
-    "duration": {**_TIME, "description": "end after this simulated time, s"},
-    "gdb": {"type": "integer", "minimum": 0, "maximum": 65535,
-            "description": "waits for GDB on this port of the loopback interface; 0: any"},
-    "quiet": {"type": "boolean", "description": "says nothing"},
-}
+_TEXT, _TIME, _FLAG = {"type": "string"}, {"type": "number", "minimum": 0}, {"type": "boolean"}
+_SPEED = {**_TEXT, "pattern": "real|max|0?[.][0-9]+|[0-9]{1,2}([.][0-9]+)?"}
+INNER = {name: {**kind, "description": text} for name, kind, text in [
+    ("modem_key", {**_TEXT, "pattern": "[0-9a-fA-F]{32}"},
+     "AES key with which the vehicle's modem encrypts"),
+    ("flash", _TEXT, "file of the chip's flash, 1 MiB by pack_update; it is kept there"),
+    ("fpga_flash", _TEXT,
+     "file of the FPGA's configuration flash, 2 MiB by pack_update; kept too"),
+    ("replay", _TEXT, "folder of a recorded flight, which is flown again without its command"),
+    ("wave", _TEXT, "file for the waveform (FST) of a replay"),
+    ("from", _TIME, "begin of the waveform, s"),
+    ("to", _TIME, "end of the waveform, s"),
+    ("every_clock", _FLAG, "evaluates each clock, quiet ones too (slow)"),
+    ("speed", _SPEED, "real: simulated time follows the clock; 0.25: at a quarter of its speed; "
+     "max: as fast as it goes"),
+    ("duration", _TIME, "end after this simulated time, s"),
+    ("gdb", {"type": "integer", "minimum": 0, "maximum": 65535},
+     "waits for GDB on this port of the loopback interface; 0: any"),
+    ("quiet", _FLAG, "says nothing"),
+]}
 AGAIN = Option("again", PATH, "flight.json of a flight: its options, where none is given here")
 OPTIONS = [*FIELDS, UCOS2, AGAIN]
 
@@ -90,29 +86,33 @@ OPTIONS = [*FIELDS, UCOS2, AGAIN]
 def empty(option):
     """The value in flight.json of an option that is not given."""
     return {"boolean": False, "array": [], "string": ""}.get(option.kind.schema.get("type"),
-        option.default)
+                                                             option.default)
 
 
 def schema_text():
     """The schema, a line a field."""
     lines = json.dumps({**schema(), "properties": None}, indent=1).split("\n")
-    fields = ",\n".join(f"  {json.dumps(name)}: {json.dumps(rule)}" for name,
-                        rule in schema()["properties"].items())
+    fields = ",\n".join(f"  {json.dumps(name)}: {json.dumps(rule)}"
+                        for name, rule in schema()["properties"].items())
     at = next(number for number, line in enumerate(lines) if '"properties"' in line)
     required = json.dumps(schema()["required"])
-    return "\n".join([*lines[:at], ' "properties": {', fields, " },", f' "required": {required},',
-                      ' "additionalProperties": false', "}"]) + "\n"
+    return "\n".join([
+        *lines[:at], ' "properties": {', fields, " },", f' "required": {required},',
+        ' "additionalProperties": false', "}"]) + "\n"
 
 
 def schema():
     """The JSON schema of flight.json."""
-    fields = {option.field: {**option.kind.schema, "description": option.help,
-                             "default": option.default or empty(option)}
-              for option in FIELDS}
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "A flight",
-            "type": "object",
-            "properties": {"version": {"const": VERSION}, **fields, **INNER},
-            "required": ["version", *fields], "additionalProperties": False}
+    fields = {
+        option.field: {
+            **option.kind.schema, "description": option.help, "default": option.default
+            or empty(option)}
+        for option in FIELDS}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "A flight", "type": "object", "properties": {
+            "version": {"const": VERSION}, **fields, **INNER}, "required": [
+                "version", *fields], "additionalProperties": False}
 
 
 def wrong(flight):
@@ -125,11 +125,10 @@ def wrong(flight):
         if name not in flight or name not in rules:
             return f"'{name}' is " + ("missing" if name in rules else "no field")
         value, rule = flight[name], rules[name]
-        fits = value in rule.get("enum", [value]) and isinstance(value,
-            types[rule.get("type", "string")] if name != "version" else int)
-        if not fits or not rule.get("minimum",
-                                    0) <= (value if "minimum" in rule else 0) <= rule.get("maximum",
-                                        float("inf")):
+        fits = value in rule.get("enum", [value]) and isinstance(
+            value, types[rule.get("type", "string")] if name != "version" else int)
+        if not fits or not rule.get("minimum", 0) <= (value if "minimum" in rule else
+                                                      0) <= rule.get("maximum", float("inf")):
             return f"'{name}' is {value!r}"
     return None
 
@@ -162,8 +161,8 @@ def complete(values):
     if values.camera and "camera" not in values.cores:
         values.cores = [*values.cores, "camera"]
     if values.probe and "probe" not in values.cores:
-        raise Stop(
-            f"PROBE='{values.probe}' is a trigger of a probe: give --cores probe (CORES=probe), too", 2)
+        raise Stop(f"PROBE='{values.probe}' is a trigger of a probe: give --cores probe "
+                   "(CORES=probe), too", 2)
     for core in values.cores:
         if not Path(f"ip/{core}/ground.py").is_file():
             raise Stop(f"core '{core}' has no part in a mission: there is no ip/{core}/ground.py",
@@ -192,7 +191,8 @@ def take_key(values, build):
     keys.rescue(build.folder.parent)
     values.key = str(keys.folder() / "demo.key")
     if make_key(values.key):
-        say(f"made a demo key, {values.key}: ground and vehicle share it; KEY=file takes yours, OPEN=1 none")
+        say(f"made a demo key, {values.key}: ground and vehicle share it; KEY=file takes yours, "
+            "OPEN=1 none")
 
 
 def make_key(path):
@@ -216,8 +216,9 @@ def firmware(values, build):
 
 def write(values, build):
     """OUT/flight.json."""
-    flight = {"version": VERSION, **{option.field: getattr(values,
-        option.field) for option in FIELDS}}
+    flight = {
+        "version": VERSION, **{option.field: getattr(values, option.field)
+                               for option in FIELDS}}
     flight["firmware"] = firmware(values, build)
     path = Path(values.out) / "flight.json"
     path.with_suffix(".new").write_text(json.dumps(flight, indent=1) + "\n")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""keys: private keys, in ~/.config/icesoc (XDG_CONFIG_HOME), outside of what is built: all trees of
-a
-user share them, a copy of a tree has none, and no command removes one."""
+"""keys: private keys, in ~/.config/icesoc (XDG_CONFIG_HOME), outside of what is built.
+
+All trees of a user share them, a copy of a tree has none, and no command removes one."""
 import filecmp
 import hashlib
 import os

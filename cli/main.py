@@ -53,7 +53,8 @@ def act(words):
         return say(version.text())
     else:
         found, values = command.by_words(words, place)
-    for option in found.options:  # programs do not see these variables; a command passes on the necessary ones
+    # Programs do not see these variables; a command passes on the necessary ones.
+    for option in found.options:
         os.environ.pop(option.variable if option.variable != "LANG" else "", None)
     return found.function(values)
 

@@ -15,8 +15,8 @@ from cli.runner import Stop
 class Kind:
     """A kind of value. `read` makes it of a text, and raises ValueError for an invalid one."""
     read: object
-    expected: str          # completes "LOSS is ..."
-    schema: dict = None    # of its value in flight.json
+    expected: str  # completes "LOSS is ..."
+    schema: dict = None  # of its value in flight.json
     metavar: str = "VALUE"
 
 
@@ -27,8 +27,8 @@ class Option:
     help: str
     default: object = None
     positional: bool = False
-    variable: str = ""     # of make and of the environment
-    listed: bool = True    # False: for the project's own tests, in no list
+    variable: str = ""  # of make and of the environment
+    listed: bool = True  # False: for the project's own tests, in no list
 
     def __post_init__(self):
         self.variable = self.variable or self.name.upper().replace("-", "_")
@@ -45,14 +45,20 @@ class Option:
         except ValueError as error:
             raise Stop(str(error) or f"{called} is {self.kind.expected}, not '{text}'", 2) from None
 
+    def none(self):
+        """The value if none is given."""
+        empty = False if self.kind is SWITCH else [] if self.many else None
+        return empty if self.default is None else self.default
+
     def explain(self):
         """The help's sentence: its meaning, its values, its default."""
         shown = " ".join(self.default) if isinstance(self.default, list) else self.default
         parts = [] if self.kind in (TEXT, WORDS, FILES, SWITCH, FILE, KEY_FILE, FOLDER, PATH,
                                     FLIGHT) else [self.kind.expected]
         parts += [f"default {shown}"] if shown is not None and shown != "" else []
-        return (self.help + (f" ({'; '.join(parts)})" if parts else "")
-                + f" [{self.variable}]").replace("%", "%%")
+        return (self.help +
+                (f" ({'; '.join(parts)})" if parts else "") + f" [{self.variable}]").replace(
+                    "%", "%%")
 
 
 def matching(pattern, expected, convert=str, schema=None, metavar="VALUE"):
@@ -60,6 +66,7 @@ def matching(pattern, expected, convert=str, schema=None, metavar="VALUE"):
         if not re.fullmatch(pattern, text):
             raise ValueError
         return convert(text)
+
     return Kind(read, expected, schema or {"type": "string"}, metavar)
 
 
@@ -74,14 +81,15 @@ def number(low, high=None, unit="", convert=int):
         if value is None or value < low or (high is not None and value > high):
             raise ValueError
         return value
+
     schema = {"type": "integer" if convert is int else "number", "minimum": low}
     return Kind(read, f"{between} {unit}".rstrip(),
                 schema if high is None else {**schema, "maximum": high}, "N")
 
 
 def one_of(*words):
-    return matching("|".join(map(re.escape, words)), " or ".join(words),
-                    schema={"enum": list(words)}, metavar="|".join(words))
+    return matching("|".join(map(re.escape, words)), " or ".join(words), schema={
+        "enum": list(words)}, metavar="|".join(words))
 
 
 def _switch(text):
@@ -140,17 +148,19 @@ PATHS = (FILE, KEY_FILE, FOLDER, PATH, FLIGHT)  # relative to the caller's folde
 
 BUILD = Option("build", FOLDER, "build folder", "build/main")
 JOBS = Option("jobs", COUNT, "processes of a build at a time", len(os.sched_getaffinity(0)))
-TESTS = Option(
-    "tests", COUNT, "tests at a time: some wait for a clock, so two more than processors", None)
+TESTS = Option("tests", COUNT,
+               "tests at a time: some wait for a clock, so two more than processors", None)
 SEED = Option("seed", number(0), "seed of everything that is drawn", 1)
 NAME = Option("name", TEXT, "regular expression: tests of which a part of the name matches")
-LABEL = Option(
-    "label", TEXT, "tests of this label: rtl, vhdl, formal, lint, firmware, slice, interop, e2e, ...")
+LABEL = Option("label", TEXT,
+               "tests of this label: rtl, vhdl, formal, lint, firmware, slice, interop, e2e, ...")
 BLOCK = Option("block", TEXT, "what belongs to this block, such as bus or modem")
 UCOS2 = Option(
-    "ucos2", FOLDER, "folder of the real uC/OS-II: the firmware is built with it, too (docs/firmware.md)")
-FRESH = Option(
-    "fresh", SWITCH, "computes proofs, lints and synthesis of unchanged files again, too")
+    "ucos2", FOLDER,
+    "folder of the real uC/OS-II: the firmware is built with it, too (docs/firmware.md)")
+FRESH = Option("fresh", SWITCH,
+               "computes proofs, lints and synthesis of unchanged files again, too")
 CORE_FOLDERS = Option(
-    "core-folders", TEXT, "folders of cores outside of ip/, with ; between them; none: none from now on")
+    "core-folders", TEXT,
+    "folders of cores outside of ip/, with ; between them; none: none from now on")
 BUILT = Option("built", SWITCH, "takes what is built as it is: no set-up, no build", listed=False)

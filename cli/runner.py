@@ -17,7 +17,6 @@ import time
 class Stop(Exception):
     """Ends the command with a message (empty if a program has printed one already) and an exit
     status."""
-
     def __init__(self, text="", status=1):
         super().__init__(text)
         self.text, self.status = text, status
@@ -25,7 +24,6 @@ class Stop(Exception):
 
 class Interrupted(BaseException):
     """A signal asks for the end."""
-
     def __init__(self, number):
         super().__init__(number)
         self.status = 128 + number
@@ -36,6 +34,7 @@ def hear_signals():
         for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(each, signal.SIG_IGN)  # one is enough: what runs is being ended
         raise Interrupted(number)
+
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, hear)
@@ -55,7 +54,7 @@ def start(words, env=None, **more):
     if not shutil.which(words[0]):
         raise Stop(
             f"there is no program '{words[0]}': ./icesoc setup --tests installs what is missing",
-                   127)
+            127)
     more["env"] = {**os.environ, **{name: str(value) for name, value in (env or {}).items()}}
     return subprocess.Popen(["setpriv", "--pdeathsig", "TERM", "--", *words], **more)
 
@@ -86,7 +85,9 @@ def run(words, check=True, **more):
     is false."""
     status = wait(start(words, **more))
     if status > 128:
-        warn(f"{os.path.basename(str(words[0]))} was ended by signal {status - 128} ({signal.strsignal(status - 128)})")
+        number = status - 128
+        warn(f"{os.path.basename(str(words[0]))} was ended by signal {number} "
+             f"({signal.strsignal(number)})")
     if status and check:
         raise Stop(status=status)
     return status

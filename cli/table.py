@@ -5,19 +5,17 @@ from pathlib import Path
 
 from cli.runner import Stop, say
 
-
 SKIPPED = 77  # the exit status of what needs a network, and has none
 
 
 class Table:
     """Rows of a table that is written to PATH.md and PATH.json, row by row."""
-
     def __init__(self, path):
         self.path, self.rows = Path(path), []
 
     def add(self, name, status, seconds, figure=""):
-        self.rows.append({"command": name, "status": status, "seconds": round(seconds, 1),
-                          "figure": figure})
+        self.rows.append({
+            "command": name, "status": status, "seconds": round(seconds, 1), "figure": figure})
         said = {0: "ok", SKIPPED: "skipped"}.get(status, f"FAILED ({status})")
         say(f"{name:<18} {said:<12} {seconds:7.1f} s  {figure}")
         self.path.parent.mkdir(parents=True, exist_ok=True)

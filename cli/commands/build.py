@@ -15,8 +15,8 @@ GROUPS["build"] = "build everything, or a part"
 DEFAULTS["build"] = "build all"
 
 
-@command("build all", [BUILD, JOBS, UCOS2], make="build", brief="build all",
-         examples=["build all", "build all --jobs 2"])
+@command("build all", [BUILD, JOBS, UCOS2], make="build", brief="build all", examples=[
+    "build all", "build all --jobs 2"])
 def build_all(values):
     """build everything: simulator, firmware, compiler, plugin, tests"""
     BuildFolder(values.build, values).prepare().ninja()
@@ -28,15 +28,16 @@ def build_configure(values):
     BuildFolder(values.build, values).prepare()
 
 
-@command("build firmware", [BUILD, JOBS, UCOS2], make="firmware", brief="build firmware",
-         examples=["build firmware", "build firmware --ucos2 ~/uC-OS2"])
+@command("build firmware", [BUILD, JOBS, UCOS2], make="firmware", brief="build firmware", examples=[
+    "build firmware", "build firmware --ucos2 ~/uC-OS2"])
 def build_firmware(values):
     """the firmware for the STM32F2: ELF and map in build/main/firmware, table of flash, RAM and
     stacks"""
     build = BuildFolder(values.build, values).prepare()
     build.ninja("firmware")
-    run(["sw/sizes.py", "firmware", build / "firmware/uav.map", build / "sw/target/uav.arm",
-         "build/firmware.json"])
+    run([
+        "sw/sizes.py", "firmware", build / "firmware/uav.map", build / "sw/target/uav.arm",
+        "build/firmware.json"])
 
 
 @command("build size", [BUILD, JOBS], make="size", brief="build size")
@@ -46,9 +47,10 @@ def build_size(values):
 
 
 # Picture: its width and height, the page's file and part, and the command that writes the page.
-PAGES = {"utilisation": (1400, 1500, "synth/report.html", "#table1/u_modem", "synth report"),
-         "regression": (1180, 1180, "regress/report.html", "", "regress"),
-         "failure": (1180, 900, "regress/report.html", "", "regress")}
+PAGES = {
+    "utilisation": (1400, 1500, "synth/report.html", "#table1/u_modem", "synth report"),
+    "regression": (1180, 1180, "regress/report.html", "", "regress"),
+    "failure": (1180, 900, "regress/report.html", "", "regress")}
 
 
 def small(path):
@@ -64,12 +66,11 @@ def small(path):
 
 def shoot(path, width, height, address, profile):
     """Takes a picture of a page after three seconds of the page's time."""
-    logged(["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-            "--hide-scrollbars",
-            f"--user-data-dir={profile}/chromium", "--virtual-time-budget=3000",
-            f"--window-size={width},{height}",
-            f"--screenshot={path.absolute()}", address], f"{profile}/log",
-           f"no picture of {address}", env={"HOME": profile})
+    logged([
+        "chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+        "--hide-scrollbars", f"--user-data-dir={profile}/chromium", "--virtual-time-budget=3000",
+        f"--window-size={width},{height}", f"--screenshot={path.absolute()}", address],
+           f"{profile}/log", f"no picture of {address}", env={"HOME": profile})
     small(path)
 
 
@@ -83,21 +84,20 @@ def shoot_live(path, profile, icesoc):
                 if flight.poll() is not None:
                     raise Stop(text)
                 time.sleep(1)
-            shoot(path, 1280, 1300, re.search("^The mission as it runs: (.*)$", text, re.M)[1],
-                  profile)
+            shoot(path, 1280, 1300,
+                  re.search("^The mission as it runs: (.*)$", text, re.M)[1], profile)
         finally:
             end(flight)
 
 
 @command("build pictures", [
-    Option(
-        "pictures", WORDS, "mission, live, utilisation, regression, or failure, for which a test must have failed",
+    Option("pictures", WORDS,
+           "mission, live, utilisation, regression, or failure, for which a test must have failed",
            ["mission", "live", "utilisation", "regression"], positional=True),
     Option("from", FOLDER, "the folder with the pages", "build"),
-                            Option("to", FOLDER, "where pictures go", "docs/pictures")],
-         make="pictures",
-    brief="build pictures mission --to build/brief",
-         examples=["build pictures", "build pictures mission"])
+    Option("to", FOLDER, "where pictures go", "docs/pictures")], make="pictures",
+         brief="build pictures mission --to build/brief", examples=[
+             "build pictures", "build pictures mission"])
 def pictures(values):
     """take the pictures of README.md and docs/ anew: missions, and the pages of synth and
     regress"""

@@ -27,82 +27,89 @@ def proofs(values):
     say(f"{len(spent)} proofs, {sum(spent):.0f} s of a processor")
 
 
-@command("check sanitizers", [Option("kinds", WORDS, "address or thread", ["address", "thread"]),
-                              BUILD, JOBS], make="sanitizers",
-         brief="check sanitizers --kinds address", long="check sanitizers")
+@command("check sanitizers",
+         [Option("kinds", WORDS, "address or thread", ["address", "thread"]), BUILD, JOBS],
+         make="sanitizers", brief="check sanitizers --kinds address", long="check sanitizers")
 def sanitizers(values):
     """tests of IceC, engine, gateway and plugin with AddressSanitizer and with ThreadSanitizer;
     fuzzer of the debugger's stub"""
-    build, status, folders = configured(values, tests=True), 0, {"address": ("sanitized", "ON"),
-        "thread": ("thread", "thread")}
+    build, status, folders = configured(values, tests=True), 0, {
+        "address": ("sanitized", "ON"), "thread": ("thread", "thread")}
     for name in values.kinds:  # build/sanitized is that of the tests
         if name not in folders:
             raise Stop(f"there is no sanitizer '{name}': address, thread", 2)
         kind, option = folders[name]
         folder = BuildFolder(f"build/{kind}", values)
         folder.configure(f"-DSANITIZE={option}", f"-DROOMS={ROOMS_OF_PROGRAMS}")
-        environment = {"ASAN_OPTIONS": "detect_leaks=0",
-                       "TSAN_OPTIONS": f"suppressions={Path('tests/sw/ground/threads.supp').absolute()}"}
+        environment = {
+            "ASAN_OPTIONS": "detect_leaks=0",
+            "TSAN_OPTIONS": f"suppressions={Path('tests/sw/ground/threads.supp').absolute()}"}
         folder.ninja(*GUARDED, env=environment)  # libmcpp leaks
         # ThreadSanitizer leaves out Python's libraries: Python's own locks are not built with it.
         left = ["--gtest_filter=-*Python*"] if kind == "thread" else []
         for test in ("ground/test_engine", "ground/ice/test_radio_ice", "icec/test_icec"):
-            status = one_more(status, run([folder / "tests/sw" / test, "--gtest_brief=1", *left],
-                check=False, env=environment))
+            status = one_more(
+                status,
+                run([folder / "tests/sw" / test, "--gtest_brief=1", *left], check=False,
+                    env=environment))
     build.ninja("fuzz_gdb")
     return one_more(status, build.ctest("-R", "^fuzz[.]gdb$", tests=1, check=False))
 
 
-@command("check mutants", [BLOCK, Option("draw", COUNT,
-    "mutants that Yosys draws, for each proof, in place of those of tests/mutants"), SEED,
-                           FRESH, BUILD, JOBS], make="mutants",
-         brief="check mutants --block bus/axi_late_response",
-         long=("check mutants", "check mutants --draw 8 --seed {day}"),
-         examples=["check mutants --block bus", "check mutants --draw 20"])
+@command("check mutants", [
+    BLOCK,
+    Option("draw", COUNT,
+           "mutants that Yosys draws, for each proof, in place of those of tests/mutants"), SEED,
+    FRESH, BUILD, JOBS], make="mutants", brief="check mutants --block bus/axi_late_response",
+         long=("check mutants", "check mutants --draw 8 --seed {day}"), examples=[
+             "check mutants --block bus", "check mutants --draw 20"])
 def mutants(values):
     """plant every seeded bug of tests/mutants, expect its test to fail"""
     build = configured(values, tests=True)
     build.ninja("regress", *(["regmaps"] if values.draw else []))
-    drawn = ["tests/mutants/drawn.py", "--build", build.folder, "--number", values.draw, "--seed",
-             values.seed]
-    return run([*(drawn if values.draw else ["tests/mutants/run.py"]), "--jobs", values.jobs,
-                *(["--block", values.block] if values.block else [])], check=False,
-               env={"FRESH": "1" if values.fresh else ""})
+    drawn = [
+        "tests/mutants/drawn.py", "--build", build.folder, "--number", values.draw, "--seed",
+        values.seed]
+    return run([
+        *(drawn if values.draw else ["tests/mutants/run.py"]), "--jobs", values.jobs,
+        *(["--block", values.block] if values.block else [])], check=False, env={
+            "FRESH": "1" if values.fresh else ""})
 
 
-@command("check faults", [Option("moments", COUNT, "of each fault and seed", 10), SEED,
-                          Option("seeds", COUNT, "how many seeds, the first of which is --seed", 1),
-                          Option("name", NAME.kind,
-                                 "faults whose name contains this, such as killed", ""), BUILD,
-                          JOBS],
-         make="faults", brief="check faults --name killed --moments 1", long="check faults --seed {day}",
-         examples=["check faults --name killed --moments 2"])
+@command("check faults", [
+    Option("moments", COUNT, "of each fault and seed", 10), SEED,
+    Option("seeds", COUNT, "how many seeds, the first of which is --seed", 1),
+    Option("name", NAME.kind, "faults whose name contains this, such as killed", ""), BUILD, JOBS],
+         make="faults", brief="check faults --name killed --moments 1",
+         long="check faults --seed {day}", examples=["check faults --name killed --moments 2"])
 def faults(values):
     """kill, stop and starve each process of a mission at moments drawn from a seed, expect
     docs/regression.md"""
     build = configured(values)
     build.ninja("mission", "clock_step", "regress", "utilisation", "regmaps")
     if not values.name:
-        run(["tests/regress/test/interrupted.py", ".", build.folder, "build/faults/interrupted",
-             values.moments, "new_ip", "regress", "synth"],
-            env={"SEED": values.seed})
-    return run(["/usr/bin/python3", "tests/e2e/mission/faults.py", Path.cwd(), build.folder,
-                "build/faults/missions", "--seed", values.seed,
-                "--seeds", values.seeds, "--moments", values.moments, "--jobs", values.jobs,
-                "--deaths", 2,
-                *(["--only", values.name] if values.name else [])], check=False)
+        run([
+            "tests/regress/test/interrupted.py", ".", build.folder, "build/faults/interrupted",
+            values.moments, "new_ip", "regress", "synth"], env={"SEED": values.seed})
+    return run([
+        "/usr/bin/python3", "tests/e2e/mission/faults.py",
+        Path.cwd(), build.folder, "build/faults/missions", "--seed", values.seed, "--seeds",
+        values.seeds, "--moments", values.moments, "--jobs", values.jobs, "--deaths", 2,
+        *(["--only", values.name] if values.name else [])], check=False)
 
 
-@command("check soak", [Option("minutes", MINUTES, "of a processor", 4.0),
-                        Option("fuzzed", COUNT,
-                               "bytes of noise into the modem controller; ten times as many into link and engine", 1000000), SEED,
-                        BUILD, JOBS], make="soak", brief="check soak --minutes 0.01 --fuzzed 1000",
-         long="check soak --minutes 60 --seed {day}",
-         examples=["check soak --minutes 60"])
+@command("check soak", [
+    Option("minutes", MINUTES, "of a processor", 4.0),
+    Option("fuzzed", COUNT,
+           "bytes of noise into the modem controller; ten times as many into link and engine",
+           1000000), SEED, BUILD, JOBS], make="soak",
+         brief="check soak --minutes 0.01 --fuzzed 1000",
+         long="check soak --minutes 60 --seed {day}", examples=["check soak --minutes 60"])
 def soak(values):
     """endurance of the radio: messages and stock Ice's calls, bad weather, reboots, noise
 
-    Half of the time it is the link alone (half of that attacked), then stock Ice through the plugin to IceC on the chip's RTL.
+    Half of the time it is the link alone (half of that attacked), then stock Ice through the
+    plugin to IceC on the chip's RTL.
     """
     build = configured(values, "soak", "test_chip_soak", "test_engine", "test_modem_soak",
                        "test_link")
@@ -114,8 +121,9 @@ def soak(values):
         env={**seed, "SOAK_SECONDS": 30 * values.minutes})
     run([build / "tests/sw/link/test_link", "--gtest_brief=1", "--gtest_filter=*TenMillion*"],
         env=noise)
-    run([build / "tests/sw/ground/test_engine", "--gtest_brief=1",
-         "--gtest_filter=Engine.RandomBytes*"], env=noise)
+    run([
+        build / "tests/sw/ground/test_engine", "--gtest_brief=1",
+        "--gtest_filter=Engine.RandomBytes*"], env=noise)
     run([build / "tests/hdl/modem/test_modem_soak", "--gtest_brief=1"],
         env={**seed, "SOAK_BYTES": values.fuzzed})
 
@@ -125,24 +133,25 @@ def lcov(work, *words):
         return run(["lcov", "--quiet", *words], check=False, stderr=log)
 
 
-@command("check coverage", [Option("name", NAME.kind,
-                                   "only tests of which a part of the name matches this; no gate holds then", ""),
-                            BUILD, JOBS], make="coverage",
-         brief="check coverage --name ^test_bus_decoder[.]", long="check coverage")
+@command("check coverage", [
+    Option("name", NAME.kind,
+           "only tests of which a part of the name matches this; no gate holds then", ""), BUILD,
+    JOBS], make="coverage", brief="check coverage --name ^test_bus_decoder[.]",
+         long="check coverage")
 def coverage(values):
     """lines, branches and toggles that the tests reach, write build/coverage/html; exit status 1:
     below tests/regress/coverage_gates.json
 
-    Builds models, C and C++ that count what ran (build/coverage), runs all tests but proofs, lint and those of tools, and merges
-    Verilator's, GHDL's and gcov's counts. Leaves html/index.html, summary.json, history (a line a
-    run)."""
+    Builds models, C and C++ that count what ran (build/coverage), runs all tests but proofs, lint
+    and those of tools, and merges Verilator's, GHDL's and gcov's counts. Leaves html/index.html,
+    summary.json, history (a line a run)."""
     build = configured(values, tests=True)
     build.ninja("coverage", "regress")
     counted = BuildFolder("build/coverage", values)
     work, top = counted.folder, Path.cwd()
     counted.configure("-DCOVERAGE=ON")
-    tree = output([build / "tests/regress/regress", "--tree",
-                   "bus hdl ip slice sw testbench tests"])
+    tree = output([
+        build / "tests/regress/regress", "--tree", "bus hdl ip slice sw testbench tests"])
     commit = (output(["git", "describe", "--always", "--dirty=+", "--abbrev=10"], check=False,
                      stderr=-3) or "unknown").strip()
     gates = Path("tests/regress/coverage_gates.json")
@@ -162,9 +171,10 @@ def coverage(values):
     # Tests that fail still count: the regression reports them. Fuzzers have their own counts;
     # e2e.cores builds its own chip.
     with open(work / "ctest.log", "w") as log:
-        words = ["ctest", "--test-dir", work, "-j", values.jobs, "-L",
-                 "rtl|firmware|vhdl|models|slice|interop|e2e", "-E", "NOT_BUILT|^fuzz|^e2e.cores",
-                 *(["-R", values.name] if values.name else [])]
+        words = [
+            "ctest", "--test-dir", work, "-j", values.jobs, "-L",
+            "rtl|firmware|vhdl|models|slice|interop|e2e", "-E", "NOT_BUILT|^fuzz|^e2e.cores",
+            *(["-R", values.name] if values.name else [])]
         if run(words, check=False, stdout=log, stderr=log, env={"COVERAGE_DIR": points.absolute()}):
             warn(f"coverage: some tests failed, see {work}/ctest.log")
     say("coverage: merging")
@@ -181,36 +191,42 @@ def coverage(values):
         if lcov(work, "--extract", work / source, *(f"{top}/{room}/*" for room in rooms),
                 "--output-file", work / name):
             (work / name).unlink(missing_ok=True)
+
     own("all.info", "host.info", ("sw", "slice", "testbench", "bus", "ip"))
     own("rtl.info", "rtl_own.info", ("hdl", "bus", "ip"))
     (work / "vhdl.info").unlink(missing_ok=True)
     if found := sorted(points.glob("*.json")):
         with open(work / "vhdl.info", "w") as file:
             run([build / "ghdl/ghdl", "coverage", "--format=lcov", *found], stdout=file)
-    infos = {name: work / f"{name}.info" for name in ("host", "rtl_own", "vhdl")
-             if (work / f"{name}.info").exists() and (work / f"{name}.info").stat().st_size}
-    run(["lcov", "--quiet", *(word for info in infos.values() for word in ("--add-tracefile",
-        info)), "--output-file", work / "merged.info"])
-    run(["genhtml", "--quiet", "--title", "IceSoC", "--output-directory", work / "html",
-         work / "merged.info"])
-    status = run([build / "tests/regress/coverage", "--gates", gates, "--verilator",
-                  work / "rtl.dat",
-                  *(word for name, info in infos.items() if name != "rtl_own" for word in ("--info",
-                      info)), "--out", work / "summary.json"],
-                 check=False)
+    infos = {
+        name: work / f"{name}.info"
+        for name in ("host", "rtl_own", "vhdl")
+        if (work / f"{name}.info").exists() and (work / f"{name}.info").stat().st_size}
+    run([
+        "lcov", "--quiet", *(word for info in infos.values() for word in ("--add-tracefile", info)),
+        "--output-file", work / "merged.info"])
+    run([
+        "genhtml", "--quiet", "--title", "IceSoC", "--output-directory", work / "html",
+        work / "merged.info"])
+    status = run([
+        build / "tests/regress/coverage", "--gates", gates, "--verilator", work / "rtl.dat",
+        *(word for name, info in infos.items() if name != "rtl_own"
+          for word in ("--info", info)), "--out", work / "summary.json"], check=False)
     (work / "tree").write_text(tree)
     total = re.search(r'^ "total": (\d+\.?\d?)', (work / "summary.json").read_text(), re.M)
     with open(
-        # the share of each commit, for ./icesoc synth report --base
-        work / "history", "a") as file:
+            # the share of each commit, for ./icesoc synth report --base
+            work / "history",
+            "a") as file:
         file.write(f"{commit} {total[1]} % of lines\n" if total else "")
     return status
 
 
-@command("bench", [Option("only", WORDS, "these alone, without a page"),
-                   Option("page", PATH, "the page that is written", "docs/figures.md"), BUILD, JOBS],
-         make="bench", brief="bench --only air", long="bench --page build/bench/figures.md",
-         examples=["bench", "bench --only air plugin"])
+@command("bench", [
+    Option("only", WORDS, "these alone, without a page"),
+    Option("page", PATH, "the page that is written", "docs/figures.md"), BUILD, JOBS], make="bench",
+         brief="bench --only air", long="bench --page build/bench/figures.md", examples=[
+             "bench", "bench --only air plugin"])
 def bench(values):
     """measure everything that has a figure (tests/bench), write build/bench/*.json and a page"""
     build = configured(values)
@@ -221,8 +237,11 @@ def bench(values):
     folder = Path("build/bench")
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    (folder / "tree").write_text(output([build / "tests/regress/regress", "--tree",
-        "bus hdl ip sw testbench tests"]))
+    (folder / "tree").write_text(
+        output([build / "tests/regress/regress", "--tree", "bus hdl ip sw testbench tests"]))
     status = build.ninja("-k", "0", "benches", check=False, jobs=1)
-    return one_more(status, run(["tests/bench/figures.py", values.page,
-                                 *sorted(folder.glob("*.json")), "build/size.json"], check=False))
+    return one_more(
+        status,
+        run([
+            "tests/bench/figures.py", values.page, *sorted(folder.glob("*.json")), "build/size.json"
+        ], check=False))

@@ -8,9 +8,9 @@ from cli.runner import run
 GROUPS["contract"] = "registers of cores"
 
 
-@command("contract diff", [Option("base", TEXT, "the commit to compare with", "", positional=True),
-                           BUILD, JOBS], make="contract-diff",
-         brief="contract diff HEAD", examples=["contract diff main"])
+@command("contract diff",
+         [Option("base", TEXT, "the commit to compare with", "", positional=True), BUILD, JOBS],
+         make="contract-diff", brief="contract diff HEAD", examples=["contract diff main"])
 def contract_diff(values):
     """what changed in the cores' registers since a commit; exit status 1: software of then would
     break"""
@@ -18,11 +18,11 @@ def contract_diff(values):
     return run(["bus/contract_diff.py", build / "slice/slice2c", ".", values.base], check=False)
 
 
-@command("contract from-rdl", [Option("rdl", FILE, "the SystemRDL file", "", positional=True),
-                               Option("out", FOLDER, "folder that they are written to", "")],
-         make="from-rdl",
-         brief="contract from-rdl build/main/gen/icesoc.rdl --out build/brief/rdl",
-         examples=["contract from-rdl spi.rdl --out ip/spi"])
+@command("contract from-rdl", [
+    Option("rdl", FILE, "the SystemRDL file", "", positional=True),
+    Option("out", FOLDER, "folder that they are written to", "")], make="from-rdl",
+         brief="contract from-rdl build/main/gen/icesoc.rdl --out build/brief/rdl", examples=[
+             "contract from-rdl spi.rdl --out ip/spi"])
 def from_rdl(values):
     """register descriptions (*.regs.json) of SystemRDL"""
     return run(["bus/rdl.py", values.rdl, values.out], check=False)

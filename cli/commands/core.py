@@ -11,22 +11,23 @@ from cli.build_folder import BuildFolder, configured, fetch
 from cli.command import GROUPS, command
 from cli.commands.synth import utilisation
 from cli.flight import FIELDS
-from cli.options import BUILD, CORE_FOLDERS, COUNT, FILE, FILES, JOBS, SEED, SWITCH, TEXT, WORDS, Option, matching, one_of
+from cli.options import (BUILD, CORE_FOLDERS, COUNT, FILE, FILES, JOBS, SEED, SWITCH, TEXT, WORDS,
+                         Option, matching, one_of)
 from cli.reserved import RESERVED, REFUSAL
 from cli.runner import Stop, logged, output, run, say, warn
 
 GROUPS["core"] = "cores of the chip: begin one, test it, take it away"
 NAME = Option("name", TEXT, "name of the core, such as low_pass", "", positional=True)
 CORE = Option("ip", matching(r"\w+", "the name of a core"), "the core", "", positional=True)
-CHIP = Option(
-    "chip", SWITCH, "in the chip as it is listed now, which takes minutes, instead of the accepted one")
+CHIP = Option("chip", SWITCH,
+              "in the chip as it is listed now, which takes minutes, instead of the accepted one")
 
 
 def check_name(name):
     """Refuses a name that is invalid or taken."""
     if not name:
-        raise Stop(
-            "a core needs a name: ./icesoc core new low_pass --lang verilog (make new-ip NAME=low_pass LANG=verilog)")
+        raise Stop("a core needs a name: ./icesoc core new low_pass --lang verilog "
+                   "(make new-ip NAME=low_pass LANG=verilog)")
     if not re.fullmatch(r"[a-z][a-z0-9]*|[a-z][a-z0-9]+(_[a-z][a-z0-9]+)+", name):
         raise Stop(
             f"'{name}': words of small letters and digits, joined by _, such as mixer or low_pass")
@@ -40,7 +41,7 @@ def check_name(name):
                 raise Stop(f"{path} has the name '{name}'")
             if room not in ("sw", "testbench") and path.suffix in (".v", ".vhd") and re.search(
                     rf"^ *(module|entity) +{name}(_wrapper)?\b", path.read_text(errors="replace"),
-                re.M | re.I):
+                    re.M | re.I):
                 raise Stop(f"there is a module '{name}' in {path}")
 
 
@@ -48,12 +49,12 @@ def write_own(build, name, lang, ice, folder):
     """Begins a core from the user's interface."""
     included = re.findall(r'^ *# *include *[<"]([^>"]*)', Path(ice).read_text(), re.M)
     if included:
-        raise Stop(
-            f"{ice} includes {' '.join(included)}: a core has one Slice file; write into it what it needs of others")
+        raise Stop(f"{ice} includes {' '.join(included)}: a core has one Slice file; write into it "
+                   "what it needs of others")
     work = folder.parent
-    if run([build / "slice/slice2c", f"-I{Path(ice).absolute().parent}", ice, "--output-dir",
-            work / "c", "--hw-regs", work / "regs",
-            f"--hw-new-{lang}", work / "new"], check=False):
+    if run([
+            build / "slice/slice2c", f"-I{Path(ice).absolute().parent}", ice, "--output-dir",
+            work / "c", "--hw-regs", work / "regs", f"--hw-new-{lang}", work / "new"], check=False):
         raise Stop(f"{ice} is not an interface in hardware (above)")
     cores = sorted(path.name[:-len(".regs.json")] for path in (work / "regs").iterdir())
     if cores != [name]:
@@ -65,8 +66,9 @@ def write_own(build, name, lang, ice, folder):
     fill(template / lang / "CMakeLists.txt.in", folder, name)
     fill(template / "interface/ground.py.in", folder, name)
     readme = fill(template / "README.md.in", folder, name)
-    readme.write_text(re.sub(r"^Adds an offset, and sums 1..count:",
-                             "Answers every call with zeros:", readme.read_text(), flags=re.M))
+    readme.write_text(
+        re.sub(r"^Adds an offset, and sums 1..count:", "Answers every call with zeros:",
+               readme.read_text(), flags=re.M))
 
 
 def fill(template, folder, name):
@@ -77,10 +79,11 @@ def fill(template, folder, name):
     return path
 
 
-@command("core new", [NAME, Option("lang", one_of("verilog", "vhdl"), "the core's language"),
-                      Option("ice", FILE, "Slice file with its interface; without: an example"),
-                      BUILD, JOBS], make="new-ip",
-         brief=("core new brief_core --lang vhdl", "core remove brief_core --force"),
+@command("core new", [
+    NAME,
+    Option("lang", one_of("verilog", "vhdl"), "the core's language"),
+    Option("ice", FILE, "Slice file with its interface; without: an example"), BUILD, JOBS],
+         make="new-ip", brief=("core new brief_core --lang vhdl", "core remove brief_core --force"),
          examples=["core new low_pass --lang vhdl", "core new lamp --lang verilog --ice lamp.ice"])
 def new(values):
     """begin a core: writes ip/NAME with interface, core and test, which builds and passes"""
@@ -98,8 +101,8 @@ def new(values):
         if values.ice:
             write_own(build, name, lang, values.ice, folder)
         else:
-            for template in [*Path("ip/template").glob("*.in"),
-                             *Path("ip/template", lang).glob("*.in")]:
+            for template in [
+                    *Path("ip/template").glob("*.in"), *Path("ip/template", lang).glob("*.in")]:
                 fill(template, folder, name)
         shutil.move(folder, f"ip/{name}")  # the folder takes its place when it is complete
     # A build folder would notice the new one by itself; it must now, while the folder can still be
@@ -114,42 +117,45 @@ def new(values):
                 run(["cmake", build.folder], check=False, stdout=log, stderr=log)
             raise
     say(f"ip/{name}: {' '.join(sorted(os.listdir(f'ip/{name}')))}")
-    say(f"Next: make ip-test IP={name}; a line '{name}' in ip/cores.list puts it into the chip; make run CORES={name} calls it by radio")
+    say(f"Next: make ip-test IP={name}; a line '{name}' in ip/cores.list puts it into the chip; "
+        f"make run CORES={name} calls it by radio")
 
 
 def foreign_words(values):
     """The words of ip/new_foreign.py."""
     words = [values.name, values.top, values.bus, f"ip/{values.name}"]
-    words += [f"{key}={value}" for key, value in (("CLOCK", values.clock),
-        ("LIBRARY", values.library), ("ADDRESS", values.address)) if value]
-    words += [f"PARAM:{each}" for each in values.params] + [f"DEFINE:{each}"
-        for each in values.defines]
+    words += [
+        f"{key}={value}" for key, value in (("CLOCK", values.clock), ("LIBRARY", values.library),
+                                            ("ADDRESS", values.address)) if value]
+    words += [f"PARAM:{each}"
+              for each in values.params] + [f"DEFINE:{each}" for each in values.defines]
     return words + values.ports + values.files
 
 
 @command("core foreign", [
-    NAME, Option("top", TEXT, "its module", ""),
-                          Option("bus", TEXT, "wishbone, axil, apb, memory, own or axis", ""),
+    NAME,
+    Option("top", TEXT, "its module", ""),
+    Option("bus", TEXT, "wishbone, axil, apb, memory, own or axis", ""),
     Option("files", FILES, "its files, of Verilog or VHDL"),
-                          Option("ports", WORDS, "what its ports are, such as write=we ack=done"),
+    Option("ports", WORDS, "what its ports are, such as write=we ack=done"),
     Option("params", WORDS, "its parameters, such as depth=16"),
-                          Option("defines", WORDS, "its macros, such as wide"),
+    Option("defines", WORDS, "its macros, such as wide"),
     Option("clock", COUNT, "Hz of a clock of its own"),
-                          Option("library", TEXT, "library of its VHDL", ""),
-    Option("address", one_of("words", "bytes"), "what its address counts; found out, unless given"),
-                          BUILD, JOBS],
-    make="new-foreign", brief=(
-        "core foreign brief_foreign --top req_words --bus own --files tests/ip/new_foreign/req_words.v "
+    Option("library", TEXT, "library of its VHDL", ""),
+    Option("address", one_of("words", "bytes"),
+           "what its address counts; found out, unless given"), BUILD, JOBS
+], make="new-foreign", brief=(
+    "core foreign brief_foreign --top req_words --bus own --files tests/ip/new_foreign/req_words.v "
     "--ports select=req write=wr address=where wdata=value rdata=held ack=gnt",
-                               "core remove brief_foreign --force"),
-    examples=["core foreign my_uart --top wbuart --bus wishbone --files wbuart.v ufifo.v"])
+    "core remove brief_foreign --force"), examples=[
+        "core foreign my_uart --top wbuart --bus wishbone --files wbuart.v ufifo.v"])
 def foreign_core(values):
     """put a third-party core into a slot: writes ip/NAME"""
     build = BuildFolder(values.build, values).prepare()
     if any(file.lower().endswith((".vhd", ".vhdl")) for file in values.files):
         build.quietly("ghdl")
-    return run(["ip/new_foreign.py", *foreign_words(values)], check=False,
-               env={"GHDL": build / "ghdl/ghdl"})
+    return run(["ip/new_foreign.py", *foreign_words(values)], check=False, env={
+        "GHDL": build / "ghdl/ghdl"})
 
 
 def known(values):
@@ -168,8 +174,8 @@ def known(values):
 
 
 @command("core test", [CORE, CORE_FOLDERS, SEED, BUILD, JOBS], make="ip-test",
-         brief="core test fir",
-         examples=["core test fir", "core test my_core --core-folders /path/to/my_core"])
+         brief="core test fir", examples=[
+             "core test fir", "core test my_core --core-folders /path/to/my_core"])
 def test(values):
     """build and test one core: its block test, and its VHDL under GHDL"""
     core, build = values.ip, known(values)
@@ -200,8 +206,8 @@ def one_test(program, text):
             names.append(suite + line.split()[0])
         else:
             suite = line.split()[0]
-    found = [name for name in names if text in (name,
-        name.partition(".")[2])] or [name for name in names if re.search(text, name)]
+    found = [name for name in names if text in (name, name.partition(".")[2])] or [
+        name for name in names if re.search(text, name)]
     if len(found) != 1:
         raise Stop(f"TEST={text} is {len(found)} tests, not one of:\n{listed}")
     return found[0]
@@ -217,29 +223,30 @@ def ports(core):
                 text = text.replace(line, Path(include).read_text())
         head = re.search(rf"^module\s+{core}\b.*?\);", re.sub(r"//.*", "", text), re.M | re.S)
         for wide, name in re.findall(
-            r"(?:input|output)\s+(?:wire|reg)?\s*(?:signed\s*)?(\[\d+:0\])?\s*(\w+)",
-                                     head[0] if head else ""):
+                r"(?:input|output)\s+(?:wire|reg)?\s*(?:signed\s*)?(\[\d+:0\])?\s*(\w+)",
+                head[0] if head else ""):
             yield f"TOP.{name}{wide}"
 
 
-@command("core wave", [CORE, Option("test", TEXT,
-                                    "the test: its name, or an expression that matches only it", "",
-                                    positional=True), JOBS],
-         make="wave", brief="core wave fir Impulse", examples=["core wave fir Impulse"])
+@command("core wave", [
+    CORE,
+    Option("test", TEXT, "the test: its name, or an expression that matches only it", "",
+           positional=True), JOBS], make="wave", brief="core wave fir Impulse", examples=[
+               "core wave fir Impulse"])
 def wave(values):
     """waveform of one test of a core, for GTKWave: build/wave/CORE.fst and .gtkw"""
     core = values.ip
     if not core or not values.test:
-        raise Stop(
-            "wave needs a core and a test: ./icesoc core wave fir Impulse (make wave IP=fir TEST=Impulse)")
+        raise Stop("wave needs a core and a test: ./icesoc core wave fir Impulse "
+                   "(make wave IP=fir TEST=Impulse)")
     if not Path(f"ip/{core}/{core}_test.cpp").exists():
         raise Stop(f"there is no ip/{core}/{core}_test.cpp")
     build = BuildFolder("build/trace", values)
     if not values.built:
         build.configure("-DTRACE=ON")
     build.quietly(f"test_ip_{core}")
-    program = next(path for path in sorted(build.folder.rglob(f"test_ip_{core}")) if path.is_file()
-                   and os.access(path, os.X_OK))
+    program = next(path for path in sorted(build.folder.rglob(f"test_ip_{core}"))
+                   if path.is_file() and os.access(path, os.X_OK))
     name = one_test(program.absolute(), values.test)
     folder = Path("build/wave").absolute()
     folder.mkdir(parents=True, exist_ok=True)
@@ -250,8 +257,9 @@ def wave(values):
                      stderr=file, env={"WAVE": fst})
     if not fst.exists() or not fst.stat().st_size:
         raise Stop(f"{log.read_text()}{name} wrote no waveform")
-    save.write_text("\n".join([f"[*] {name}: generated by ./icesoc core wave",
-                               f'[dumpfile] "{fst}"', f'[savefile] "{save}"', *ports(core)]) + "\n")
+    save.write_text("\n".join([
+        f"[*] {name}: generated by ./icesoc core wave", f'[dumpfile] "{fst}"',
+        f'[savefile] "{save}"', *ports(core)]) + "\n")
     if status:
         warn(f"{name} failed: {log}")
     if os.environ.get("DISPLAY") and shutil.which("gtkwave"):
@@ -265,17 +273,18 @@ def users_of(name):
     become a pin of the chip."""
     for line in Path("ip/cores.list").read_text().splitlines():
         user, *words = line.partition("#")[0].split() or [""]
-        text = "".join(path.read_text() for path in Path("ip",
-            user or ".").glob("*.regs.json")) if user else ""
+        text = "".join(path.read_text()
+                       for path in Path("ip", user or ".").glob("*.regs.json")) if user else ""
         for pin in (word.partition("=")[0] for word in words if f"={name}." in word):
             if not re.search(rf'"name": *"{pin}"[^}}]*"internal": *true', text):
                 yield user
 
 
-@command("core remove", [NAME, Option("force", SWITCH, "with changes that are not committed"),
-                         BUILD, JOBS], make="rm-ip",
-         brief=("core new brief_gone --lang verilog", "core remove brief_gone --force"),
-         examples=["core remove low_pass"])
+@command("core remove",
+         [NAME, Option("force", SWITCH, "with changes that are not committed"), BUILD, JOBS],
+         make="rm-ip",
+         brief=("core new brief_gone --lang verilog", "core remove brief_gone --force"), examples=[
+             "core remove low_pass"])
 def remove(values):
     """take a core away: its folder and its line in ip/cores.list"""
     name, core = values.name, Path("ip", values.name or ".")
@@ -287,12 +296,12 @@ def remove(values):
     changed = output(["git", "status", "--porcelain", "--ignored", "--", core], check=False,
                      stderr=-3)
     if changed and not values.force:
-        raise Stop(
-            f"ip/{name} has changes that are not committed (FORCE=1, --force, takes it away all the same):\n{changed}")
+        raise Stop(f"ip/{name} has changes that are not committed (FORCE=1, --force, takes it away "
+                   f"all the same):\n{changed}")
     users = sorted(set(users_of(name)))
     if users:
-        raise Stop(
-            f"in ip/cores.list the inputs of {' '.join(users)} are outputs of '{name}'; change these lines first")
+        raise Stop(f"in ip/cores.list the inputs of {' '.join(users)} are outputs of '{name}'; "
+                   "change these lines first")
     shutil.rmtree(core)
     listed = Path("ip/cores.list")
     listed.write_text(re.sub(rf"^[ \t]*{name}(?![^\s#]).*\n?", "", listed.read_text(), flags=re.M))
@@ -317,9 +326,10 @@ wdata=bus_req_i_data
  low=bus_req_i_burst low=bus_req_i_lock""".split()
 
 
-@command("core examples", [Option("chip", SWITCH, "and what each costs in the chip"), SEED,
-                           *(o for o in FIELDS if o.name == "image"), BUILD, JOBS],
-         make="foreign", brief="core examples", long="core examples --chip")
+@command("core examples", [
+    Option("chip", SWITCH, "and what each costs in the chip"), SEED,
+    *(o for o in FIELDS if o.name == "image"), BUILD, JOBS], make="foreign", brief="core examples",
+         long="core examples --chip")
 def examples(values):
     """put third-party cores and two of one's own through the recipe, in three orders, test them and
     call them by radio
@@ -333,17 +343,21 @@ def examples(values):
     shutil.rmtree(cores / "slots", ignore_errors=True)
 
     def into_slot(slot, module, bus, files, *words):
-        run(["ip/new_foreign.py", slot, module, bus, cores / "slots" / slot, *words,
-             *sorted(files)], stdout=-3,
-            env={"GHDL": cores / "ghdl/ghdl"})
+        run([
+            "ip/new_foreign.py", slot, module, bus, cores / "slots" / slot, *words, *sorted(files)],
+            stdout=-3, env={"GHDL": cores / "ghdl/ghdl"})
+
     into_slot("foreign_spi", "neorv32_spi", "own", (cores / "neorv32").glob("*.vhd"),
               "LIBRARY=neorv32", "PARAM:IO_SPI_FIFO=4", *SPI_PORTS)
     for slot, module, bus, repository, clock in EXAMPLES:
         into_slot(slot, module, bus, (cores / repository).glob("*.v"),
                   *([f"CLOCK={clock}"] if clock else []))
-    return run(["examples/foreign/orders.sh", "examples/foreign/olo_spi", "tests/e2e/cores/servo",
-                "tests/e2e/cores/crc32",
-                *(cores / "slots" / slot for slot in ["foreign_spi",
-                    *(each[0] for each in EXAMPLES)])], check=False,
-               env={"IMAGE": values.image, "JOBS": values.jobs, "SEED": values.seed,
-                    "CHIP": "1" if values.chip else ""})
+    return run(
+        [
+            "examples/foreign/orders.sh", "examples/foreign/olo_spi", "tests/e2e/cores/servo",
+            "tests/e2e/cores/crc32", *(cores / "slots" / slot
+                                       for slot in ["foreign_spi", *(each[0]
+                                                                     for each in EXAMPLES)])],
+        check=False, env={
+            "IMAGE": values.image, "JOBS": values.jobs, "SEED": values.seed,
+            "CHIP": "1" if values.chip else ""})

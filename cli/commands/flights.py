@@ -20,10 +20,9 @@ DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size
 
 
 @command("run", [*flight.OPTIONS, BUILD, JOBS], make="run",
-         brief="run --size 96x64 --guard 20 --out build/brief/run",
-         examples=["run --image photo.jpg --size 640x480",
-                   "run --loss 0.1 --seed 7 --cores ascon fir",
-                   "run --again build/run/flight.json"])
+         brief="run --size 96x64 --guard 20 --out build/brief/run", examples=[
+             "run --image photo.jpg --size 640x480", "run --loss 0.1 --seed 7 --cores ascon fir",
+             "run --again build/run/flight.json"])
 def fly_mission(values):
     """fly the mission: simulated UAV, ZeroC Ice ground station, pictures in build/run
 
@@ -36,9 +35,9 @@ def fly_mission(values):
     build.ninja("mission", *(["firmware_minimal"] if values.app == "minimal" else []))
     flight.check_chip(values, build)
     flight.take_key(values, build)
-    with lock(
-        Path(values.out) / "lock", refuse=f"another flight is under way in {values.out}; give this one a folder of its own: "
-              "OUT=build/other (--out)") as held:  # until this flight's last program has ended
+    busy = (f"another flight is under way in {values.out}; give this one a folder of its own: "
+            "OUT=build/other (--out)")
+    with lock(Path(values.out) / "lock", refuse=busy) as held:  # until the last program has ended
         fly = minimal if values.app == "minimal" else update if values.update else mission
         return fly(values, build, held)
 
@@ -47,18 +46,20 @@ def simulator(values, build, held, options, ground):
     """Starts the simulator, with the ground's program as its child. The simulator replaces words
     such as {out}."""
     flight.write(values, build)
-    return start([build / "testbench/sim/icesoc-sim", "--flight", Path(values.out) / "flight.json",
-                  *options, "--",
-                  "/usr/bin/python3", *ground], pass_fds=[held], env={"PROBE": values.probe})
+    return start([
+        build / "testbench/sim/icesoc-sim", "--flight",
+        Path(values.out) / "flight.json", *options, "--", "/usr/bin/python3", *ground], pass_fds=[
+            held], env={"PROBE": values.probe})
 
 
 def minimal(values, build, held):
     """Flies the program of Table II with its ground."""
-    return wait(simulator(values, build, held, [], [
-        "sw/apps/minimal/ground.py", "{device}", "--frame", "{frame}", "--reference",
-        build / "testbench/sim/vision-reference",
-        f"--Ice.Plugin.XBeeAT={build.folder}/ground/xbeeat:createXBeeAT",
-        "--XBeeAT.Guard={guard}"]))
+    return wait(
+        simulator(values, build, held, [], [
+            "sw/apps/minimal/ground.py", "{device}", "--frame", "{frame}", "--reference",
+            build / "testbench/sim/vision-reference",
+            f"--Ice.Plugin.XBeeAT={build.folder}/ground/xbeeat:createXBeeAT",
+            "--XBeeAT.Guard={guard}"]))
 
 
 def update(values, build, held):
@@ -68,37 +69,40 @@ def update(values, build, held):
     keys.rescue(build.folder)
     signing = keys.folder() / "update.key"  # private, made at first use
     if not (out / "flash.bin").exists():
-        run([pack, "vehicle", build / "firmware/loader.elf", flight.firmware(values, build), 1,
-             signing, out / "flash.bin"])
+        run([
+            pack, "vehicle", build / "firmware/loader.elf",
+            flight.firmware(values, build), 1, signing, out / "flash.bin"])
     if not (out / "fpga.bin").exists():  # a stand-in for ISE's golden bitstream
         run([build / "testbench/cpu/stand_in_bitstream", out / "golden.bin", 1, 10000])
         run([pack, "fpga", out / "golden.bin", 1, signing, out / "fpga.bin"])
     kind = "bitstream" if values.update.endswith((".bit", ".bin")) else "image"
     run([pack, kind, values.update, int(time.time()), signing, out / "new.update"])
     values.cpu = "m3"
-    return wait(simulator(values, build, held,
-                          ["--flash", out / "flash.bin", "--fpga-flash", out / "fpga.bin"], [
-        "sw/ground/clients/update.py", "{out}/new.update", "--device", "{device}", "--status",
-                              "{status}", "--plugin", build / "ground",
-        "--slice", "sw/apps/uav/Update.ice", "--patience", values.patience,
-                              *(["--key", values.key] if values.key else [])]))
+    return wait(
+        simulator(values, build, held,
+                  ["--flash", out / "flash.bin", "--fpga-flash", out / "fpga.bin"], [
+                      "sw/ground/clients/update.py", "{out}/new.update", "--device", "{device}",
+                      "--status", "{status}", "--plugin", build / "ground", "--slice",
+                      "sw/apps/uav/Update.ice", "--patience", values.patience,
+                      *(["--key", values.key] if values.key else [])]))
 
 
 def mission(values, build, held):
     """Flies the mission of the README, with its page."""
     out, status_file = Path(values.out), Path(values.out) / "status"
-    page = ["/usr/bin/python3", "testbench/live/live.py", "--dir", out, "--port", values.port,
-            "--registers", build / "gen/registers.list"]
+    page = [
+        "/usr/bin/python3", "testbench/live/live.py", "--dir", out, "--port", values.port,
+        "--registers", build / "gen/registers.list"]
 
     def flown():
         return status_file.stat().st_ctime_ns if status_file.exists() else None
+
     before = flown()
     run([*page, "--try"])
     sim = simulator(values, build, held, [], [
         "sw/ground/clients/mission.py", "{out}/flight.json", "--device", "{device}", "--frame",
-        "{frame}", "--status", "{status}",
-        "--plugin", build / "ground", "--slice", "sw/apps/uav/Autopilot.ice", "--reference",
-        build / "testbench/sim/vision-reference"])
+        "{frame}", "--status", "{status}", "--plugin", build / "ground", "--slice",
+        "sw/apps/uav/Autopilot.ice", "--reference", build / "testbench/sim/vision-reference"])
     shown = None
     try:
         # The page starts after the simulator has accepted its options: its address would hide a
@@ -121,7 +125,8 @@ def mission(values, build, held):
         if shown:
             end(shown)
     if status:
-        what = f" (exit status {status})." if status <= 128 else f": signal {status - 128} ended the simulator, or the ground's program."
+        signal_ended = f": signal {status - 128} ended the simulator, or the ground's program."
+        what = signal_ended if status > 128 else f" (exit status {status})."
         text = f"The mission failed{what}\n"
         if flown() != before:
             text += f"Its end as a waveform: make run REPLAY='{out}' {flight.last_span(out)}\n"
@@ -131,12 +136,11 @@ def mission(values, build, held):
     return status
 
 
-@command("replay", [Option("replay", FLIGHT, "folder of the flight", "build/run", positional=True),
-                    FROM, TO,
-                    Option("out", FOLDER, "folder that it is written to", "build/replay"), BUILD,
-                    JOBS],
-         make="run", when="REPLAY", brief="replay build/brief/run --out build/brief/replay",
-         examples=["replay build/run", "replay build/run --from 1.5 --to 1.51"])
+@command("replay", [
+    Option("replay", FLIGHT, "folder of the flight", "build/run", positional=True), FROM, TO,
+    Option("out", FOLDER, "folder that it is written to", "build/replay"), BUILD, JOBS], make="run",
+         when="REPLAY", brief="replay build/brief/run --out build/brief/replay", examples=[
+             "replay build/run", "replay build/run --from 1.5 --to 1.51"])
 def replay(values):
     """fly a recorded flight again, bit by bit; with a span, its waveform
 
@@ -145,8 +149,8 @@ def replay(values):
     flight with --cpu m3 the program's task, interrupt and function are above it."""
     span = values.given & {"from", "to"}
     if span and values.to is not None and values.to <= (getattr(values, "from") or 0):
-        raise Stop(
-            f"FROM={getattr(values, 'from')} TO={values.to} are no span in seconds, such as FROM=1.5 TO=1.6", 2)
+        raise Stop(f"FROM={getattr(values, 'from')} TO={values.to} are no span in seconds, such as "
+                   "FROM=1.5 TO=1.6", 2)
     build = BuildFolder(values.build, values).prepare()
     with open(Path(values.replay) / "flight.jsonl") as recorded:
         hz = re.search(r'"clkHz": *(\d+)', recorded.readline())
@@ -163,19 +167,19 @@ def replay(values):
     trace.quietly("icesoc-sim")
     Path(values.out).mkdir(parents=True, exist_ok=True)
     wave = Path(values.out) / "wave.fst"
-    run([trace / "testbench/sim/icesoc-sim", *words, "--wave", wave, "--from",
-         getattr(values, "from") or 0,
-         *(["--to", values.to] if values.to is not None else [])])
+    run([
+        trace / "testbench/sim/icesoc-sim", *words, "--wave", wave, "--from",
+        getattr(values, "from") or 0, *(["--to", values.to] if values.to is not None else [])])
     run(["testbench/common/join_waves.sh", wave])
     say(f"Waveform: gtkwave {wave}")
 
 
-@command("gdb", [Option("replay", FLIGHT, "folder of a flight to step through, backwards too", ""),
-                 *DEBUGGED,
-                 Option(
-                     "out", FOLDER, "folder that the flight is written to; default build/run, of a replay build/replay"), BUILD, JOBS],
-         make="gdb", brief="gdb --size 48x32 --out build/brief/gdb",
-         examples=["gdb", "gdb --replay build/run"])
+@command("gdb", [
+    Option("replay", FLIGHT, "folder of a flight to step through, backwards too", ""), *DEBUGGED,
+    Option("out", FOLDER,
+           "folder that the flight is written to; default build/run, of a replay build/replay"),
+    BUILD, JOBS], make="gdb", brief="gdb --size 48x32 --out build/brief/gdb", examples=[
+        "gdb", "gdb --replay build/run"])
 def gdb(values):
     """debug the firmware's ARM binary against the RTL with gdb-multiarch"""
     build = configured(values, tests=True)
@@ -185,29 +189,32 @@ def gdb(values):
     flown = ["--replay", values.replay] if values.replay else [
         "--cpu", "m3", "--image", values.image, "--size", values.size, "--seed", values.seed]
     with tempfile.TemporaryFile("w+") as log:
-        sim = start([build / "testbench/sim/icesoc-sim", "--gdb", 0, "--speed", "max", "--out", out,
-                     *flown], stdout=log, stderr=log)
+        sim = start([
+            build / "testbench/sim/icesoc-sim", "--gdb", 0, "--speed", "max", "--out", out, *flown],
+                    stdout=log, stderr=log)
         try:
+
             def text():
                 log.seek(0)
                 return log.read()
+
             until(lambda: "target remote" in text(), sim, 0.1)
             port = re.search(r"localhost:(\d+)'", text())
             print(text(), end="", flush=True)
             if not port:
                 raise Stop(status=wait(sim) or 1)
             signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is GDB's: it stops the processor
-            words = ["gdb-multiarch", "-q", build / "firmware/uav.elf", "-ex",
-                     "set remotetimeout unlimited", "-ex", f"target remote localhost:{port[1]}"]
-            return run(words, check=False, preexec_fn=lambda: signal.signal(signal.SIGINT,
-                signal.SIG_DFL))
+            words = [
+                "gdb-multiarch", "-q", build / "firmware/uav.elf", "-ex",
+                "set remotetimeout unlimited", "-ex", f"target remote localhost:{port[1]}"]
+            return run(words, check=False,
+                       preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         finally:
             end(sim)
 
 
 @command("key", [Option("file", PATH, "the file that is written", "", positional=True)],
-         brief="key build/brief/my.key",
-         examples=["key my.key", "run --key my.key"])
+         brief="key build/brief/my.key", examples=["key my.key", "run --key my.key"])
 def key(values):
     """make a key of the link, for vehicle and ground (docs/security.md)"""
     if not values.file:
@@ -217,12 +224,12 @@ def key(values):
     say(f"made {values.file}, which nobody but you may read: ./icesoc run --key {values.file}")
 
 
-@command(
-    "fly", [Option("minutes", MINUTES, "of simulated time; an hour of it is minutes of a processor",
-                   4.0), SEED, BUILD, JOBS], make="fly",
-         brief="fly --minutes 0.01", long="fly --minutes 60 --seed {day}", examples=["fly --minutes 60", "fly --seed 7"])
+@command("fly", [
+    Option("minutes", MINUTES, "of simulated time; an hour of it is minutes of a processor", 4.0),
+    SEED, BUILD, JOBS], make="fly", brief="fly --minutes 0.01",
+         long="fly --minutes 60 --seed {day}", examples=["fly --minutes 60", "fly --seed 7"])
 def fly_for_long(values):
     """a long flight: stock Ice's calls now and then, loss, reboots of UAV, modems and ground"""
     build = configured(values, "test_chip_soak")
-    run([build / "tests/sw/ground/chip/test_chip_soak", "--gtest_brief=1"],
-        env={"SEED": values.seed, "SOAK_REST": 10, "SOAK_SECONDS": values.minutes * 60})
+    run([build / "tests/sw/ground/chip/test_chip_soak", "--gtest_brief=1"], env={
+        "SEED": values.seed, "SOAK_REST": 10, "SOAK_SECONDS": values.minutes * 60})

@@ -2,8 +2,7 @@
 """fresh: what the README says, in its order, on an empty Debian 12 and 13.
 
 A machine is a folder that debootstrap fills, with a clone of this tree's HEAD and nothing else: no
-package, no cache. Its
-mounts and processes are its own and end with it.
+package, no cache. Its mounts and processes are its own and end with it.
 """
 import json
 import os
@@ -34,8 +33,8 @@ mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd /root/icesoc && $
            "; ".join(README)),
     Option("folder", FOLDER, "of machines and logs, 8 GB each", "/var/tmp/icesoc-fresh"),
     Option("list", SWITCH, "only says what was done before, with status and minutes")],
-    brief="check fresh --list", long="check fresh", examples=["check fresh --release trixie",
-        "check fresh --again --steps 'make test'"])
+         brief="check fresh --list", long="check fresh", examples=[
+             "check fresh --release trixie", "check fresh --again --steps 'make test'"])
 def fresh(values):
     """do what the README says on an empty Debian 12 and 13; needs root, debootstrap and a
     network"""
@@ -54,24 +53,26 @@ def fresh(values):
         for step in values.steps.split(";"):
             row = do(root, release, step.strip())
             failed |= row["status"] != 0
-            rows = [each for each in rows if (each["release"], each["step"]) != (release,
-                row["step"])] + [row]
+            rows = [
+                each for each in rows if (each["release"], each["step"]) != (release, row["step"])
+            ] + [row]
             results.write_text(json.dumps(rows, indent=1) + "\n")
     return failed
 
 
 def told(row):
-    return f"{RELEASES[row['release']]}: {row['step']}: exit status {row['status']}, {row['minutes']} min, {row['commit']}"
+    return (f"{RELEASES[row['release']]}: {row['step']}: exit status {row['status']}, "
+            f"{row['minutes']} min, {row['commit']}")
 
 
 def empty_machine(root, release):
     shutil.rmtree(root, ignore_errors=True)
     root.parent.mkdir(parents=True, exist_ok=True)
-    run(["debootstrap", "--variant=minbase", "--include=git,make,ca-certificates", release, root,
-         MIRROR],
-        stdout=open(f"{root}-debootstrap.log", "w"))
-    (root / "etc/apt/sources.list").write_text(
-        "".join(f"deb {MIRROR} {suite} main\n" for suite in (release, f"{release}-updates")))
+    run([
+        "debootstrap", "--variant=minbase", "--include=git,make,ca-certificates", release, root,
+        MIRROR], stdout=open(f"{root}-debootstrap.log", "w"))
+    (root / "etc/apt/sources.list").write_text("".join(
+        f"deb {MIRROR} {suite} main\n" for suite in (release, f"{release}-updates")))
     # How this machine reaches its network: name servers, proxies, certificates.
     shutil.copy("/etc/resolv.conf", root / "etc/resolv.conf")
     for file in Path("/etc/apt/apt.conf.d").iterdir():
@@ -96,13 +97,15 @@ def do(root, release, step):
     kept = {name: value for name, value in os.environ.items() if name.lower().endswith("_proxy")}
     begun = time.monotonic()
     with open(log, "w") as file:
-        status = run(["unshare", "--mount", "--pid", "--fork", "--kill-child", "env", "-i",
-                      *(f"{name}={value}" for name, value in (kept | place).items()),
-                      "sh", "-c", BOOT, "sh", root, step],
+        status = run([
+            "unshare", "--mount", "--pid", "--fork", "--kill-child", "env", "-i",
+            *(f"{name}={value}"
+              for name, value in (kept | place).items()), "sh", "-c", BOOT, "sh", root, step],
                      check=False, stdin=subprocess.DEVNULL, stdout=file, stderr=file)
-    row = {"release": release, "step": step, "status": status,
-           "minutes": round((time.monotonic() - begun) / 60, 1),
-           "commit": output(["git", "describe", "--always"]).strip()}
+    row = {
+        "release": release, "step": step, "status": status,
+        "minutes": round((time.monotonic() - begun) / 60, 1), "commit": output([
+            "git", "describe", "--always"]).strip()}
     say(told(row) + f": {log}")
     say("\n".join("    " + line for line in log.read_text(errors="replace").splitlines()[-12:]))
     return row

@@ -25,27 +25,30 @@ def at_once(values):
 
 def selection(values, *more):
     """Options of the regression tool that choose tests."""
-    return [word for name in ("name", "label", *more) if getattr(values,
-        name) for word in (f"--{name}", getattr(values, name))]
+    return [
+        word for name in ("name", "label", *more) if getattr(values, name)
+        for word in (f"--{name}", getattr(values, name))]
 
 
 @command("test", [LABEL, NAME, SEED, FRESH, TESTS, UCOS2, BUILD, JOBS], make="test",
-         brief="test --name ^tree[.]",
-         examples=["test", "test --label rtl", "test --name 'Burst' --seed 7"])
+         brief="test --name ^tree[.]", examples=[
+             "test", "test --label rtl", "test --name 'Burst' --seed 7"])
 def test(values):
     """run all tests; firmware, models and IceC once more with sanitizers"""
     build = BuildFolder(values.build, values).prepare(tests=True)
-    some, tests, seed = values.name or values.label, at_once(values), {"SEED": values.seed,
-        "FRESH": "1" if values.fresh else ""}
+    some, tests, seed = values.name or values.label, at_once(values), {
+        "SEED": values.seed, "FRESH": "1" if values.fresh else ""}
     if not some or values.label == "zeroc":
         build.ninja()
     elif not values.built:
         build.quietly("regress")
-        run([build / "tests/regress/regress", "--prepare", "--build", build.folder,
-             *selection(values)])
-    chosen = [*(["-L", values.label] if values.label else []),
-              *(["-R", values.name] if values.name else []),
-              *(["-C", "zeroc"] if values.label == "zeroc" else [])]
+        run([
+            build / "tests/regress/regress", "--prepare", "--build", build.folder,
+            *selection(values)])
+    chosen = [
+        *(["-L", values.label] if values.label else []),
+        *(["-R", values.name] if values.name else []),
+        *(["-C", "zeroc"] if values.label == "zeroc" else [])]
     build.ctest(*chosen, tests=tests, **seed)
     if not some:
         sanitized = BuildFolder("build/sanitized", values)
@@ -55,24 +58,26 @@ def test(values):
 
 
 @command("regress", [
-    NAME, LABEL, BLOCK, Option("changed", SWITCH,
-                               "tests that what has changed since they passed can fail"),
+    NAME, LABEL, BLOCK,
+    Option("changed", SWITCH, "tests that what has changed since they passed can fail"),
     Option("failed", SWITCH, "tests that failed the last time"),
-                     Option("kept", SWITCH, "failed tests with the seeds that are kept"),
+    Option("kept", SWITCH, "failed tests with the seeds that are kept"),
     Option("seed", matching(r"\d{1,18}|random", "a whole number, or random", metavar="N|random"),
            "the first seed", "1"),
     Option("repeat", COUNT, "seeds", 1), WAVES, FRESH, TESTS, BUILD, JOBS], make="regress",
-    brief="regress --block bus", examples=["regress --changed",
-        "regress --name Burst --seed random --repeat 20"])
+         brief="regress --block bus", examples=[
+             "regress --changed", "regress --name Burst --seed random --repeat 20"])
 def regress(values):
     """run the regression, write build/regress/report.html"""
     build = configured(values, "regress", tests=True)
-    switches = [f"--{word}" for word, on in (("changed", values.changed),
-        ("rerun-failed", values.failed), ("kept", values.kept)) if on]
-    return run([build / "tests/regress/regress", "--make", "--build", build.folder, "--jobs",
-                at_once(values), "--seed", values.seed,
-                "--repeat", values.repeat, "--waves", values.waves, *selection(values, "block"),
-                *switches], check=False, env={"FRESH": "1" if values.fresh else ""})
+    switches = [
+        f"--{word}" for word, on in (("changed", values.changed), ("rerun-failed", values.failed),
+                                     ("kept", values.kept)) if on]
+    return run([
+        build / "tests/regress/regress", "--make", "--build", build.folder, "--jobs",
+        at_once(values), "--seed", values.seed, "--repeat", values.repeat, "--waves", values.waves,
+        *selection(values, "block"), *switches], check=False, env={
+            "FRESH": "1" if values.fresh else ""})
 
 
 def last_good(test):
@@ -80,20 +85,21 @@ def last_good(test):
     committed."""
     history = Path("build/regress/history.jsonl")
     runs = map(json.loads, history.read_text().splitlines() if history.exists() else [])
-    good = [each["commit"] for each in runs if each["tests"].get(test,
-        [""])[0] == "p" and "dirty" not in each["commit"]]
+    good = [
+        each["commit"] for each in runs
+        if each["tests"].get(test, [""])[0] == "p" and "dirty" not in each["commit"]]
     if not good:
         raise Stop(f"no run that is noted passed {test} at a commit: GOOD= names one (--good)", 2)
     return good[-1]
 
 
-@command("bisect", [Option("test", TEXT, "the test, as CTest names it", "", positional=True),
-                    Option("good", TEXT, "a commit that it passes at; the last one noted", ""),
-                    Option("bad", TEXT, "a commit that it fails at", "HEAD"),
-                    Option("list", SWITCH, "only lists the commits that would be searched"), SEED,
-                    BUILD, JOBS],
-         make="bisect", brief="bisect test_fifo.Fifo.Wraps --good HEAD~3 --list",
-         examples=["bisect test_fifo.Fifo.Wraps --good v1"])
+@command("bisect", [
+    Option("test", TEXT, "the test, as CTest names it", "", positional=True),
+    Option("good", TEXT, "a commit that it passes at; the last one noted", ""),
+    Option("bad", TEXT, "a commit that it fails at", "HEAD"),
+    Option("list", SWITCH, "only lists the commits that would be searched"), SEED, BUILD, JOBS],
+         make="bisect", brief="bisect test_fifo.Fifo.Wraps --good HEAD~3 --list", examples=[
+             "bisect test_fifo.Fifo.Wraps --good v1"])
 def bisect(values):
     """find the commit since which a test fails, in a checkout of its own
 
@@ -128,14 +134,13 @@ def step(program, test, tree, values):
     log = tree / "build/step.log"
     log.parent.mkdir(exist_ok=True)
     with open(log, "w") as file:
-        if not (tree / "build/main/build.ninja").exists() and run(["cmake", "-S", ".", "-B",
-            "build/main", "-G", "Ninja"], check=False,
-                                                                   cwd=tree, stdout=file,
-            stderr=file):
+        if not (tree / "build/main/build.ninja").exists() and run(
+            ["cmake", "-S", ".", "-B", "build/main", "-G", "Ninja"], check=False, cwd=tree,
+                stdout=file, stderr=file):
             return 125
-        status = run([program, "--make", "--name", f"^{re.escape(test)}$", "--seed", values.seed,
-                      "--jobs", values.jobs, "--waves", 0],
-                     check=False, cwd=tree, stdout=file, stderr=file)
+        status = run([
+            program, "--make", "--name", f"^{re.escape(test)}$", "--seed", values.seed, "--jobs",
+            values.jobs, "--waves", 0], check=False, cwd=tree, stdout=file, stderr=file)
     status = status if status in (0, 1) else 125
     told = {0: "passes", 1: "fails", 125: "cannot be told"}[status]
     say(output(["git", "log", "-1", "--format=%h %s"], cwd=tree).strip() + ": " + told)
@@ -146,6 +151,7 @@ def search(test, good, bad, tree, told):
     """Asks git for commits until it knows the first bad one."""
     def git(*words):
         return output(["git", "bisect", *words], cwd=tree, check=False, stderr=-3) or ""
+
     if told() == 0:
         raise Stop(f"the test passes at {bad}", 2)
     git("start", bad, good)
@@ -162,11 +168,12 @@ def search(test, good, bad, tree, told):
     return 0
 
 
-@command("nightly", [Option("nightly", COUNT, "seeds that are drawn", 3),
-                     Option("steps", WORDS, "these alone, by their names in the table", []),
-                     NAME, LABEL, WAVES, TESTS, BUILD, JOBS],
-         make="nightly", brief="nightly --steps kept random --nightly 1 --name ^tree[.]pages",
-         examples=["nightly", "nightly --steps kept check-mutants"])
+@command("nightly", [
+    Option("nightly", COUNT, "seeds that are drawn", 3),
+    Option("steps", WORDS, "these alone, by their names in the table", []), NAME, LABEL, WAVES,
+    TESTS, BUILD, JOBS], make="nightly",
+         brief="nightly --steps kept random --nightly 1 --name ^tree[.]pages", examples=[
+             "nightly", "nightly --steps kept check-mutants"])
 def nightly(values):
     """what a timer runs: seeds that have failed, fresh seeds, ZeroC's own suites, the long form of
     every command
@@ -179,8 +186,9 @@ def nightly(values):
     # COMPARE_MS: test_quiet compares a second; FUZZ: times as many inputs of fuzzers; HOSTILE:
     # packets of test_link.
     long = {"FRESH": "1", "FUZZ": "10", "COMPARE_MS": "1000", "HOSTILE": "10000000"}
-    tool = [build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves",
-            values.waves, *selection(values)]
+    tool = [
+        build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves",
+        values.waves, *selection(values)]
 
     def regression(*words):
         return run([*tool, *words], check=False, env=long)
@@ -190,13 +198,16 @@ def nightly(values):
 
     def whole(lines):
         day = time.strftime("%Y%m%d")
-        return max([run([sys.executable, "icesoc", *shlex.split(line.format(day=day))], check=False,
-                        env=long) for line in lines])
-    steps = {"kept": lambda: regression("--kept"),
-             "random": lambda: regression("--seed", "random", "--repeat", values.nightly),
-             "zeroc": lambda: suite("zeroc"), "missions": lambda: suite("nightly"),
-             **{each.name.replace(' ', '-'): functools.partial(whole, each.long)
-                for each in COMMANDS.values() if each.long}}
+        return max([
+            run([sys.executable, "icesoc", *shlex.split(line.format(day=day))], check=False,
+                env=long) for line in lines])
+
+    steps = {
+        "kept": lambda: regression("--kept"),
+        "random": lambda: regression("--seed", "random", "--repeat", values.nightly),
+        "zeroc": lambda: suite("zeroc"), "missions": lambda: suite("nightly"), **{
+            each.name.replace(' ', '-'): functools.partial(whole, each.long)
+            for each in COMMANDS.values() if each.long}}
     for name in values.steps:
         if name not in steps:
             raise Stop(f"there is no step '{name}': {', '.join(steps)}", 2)

@@ -11,8 +11,8 @@ from cli.runner import Stop, commit, lock, logged, output, run, warn
 
 GROUPS["synth"] = "utilisation of the chip"
 DEFAULTS["synth"] = "synth report"
-DESIGN = Option(
-    "design", WORDS, "these designs only, such as modem, table1 or soc; of the others what is known")
+DESIGN = Option("design", WORDS,
+                "these designs only, such as modem, table1 or soc; of the others what is known")
 GIT = ["git", "-c", "advice.detachedHead=false"]
 
 
@@ -21,18 +21,21 @@ def with_name(option, names):
 
 
 def utilisation(build, values, *words):
-    return run([build / "synth/utilisation", "--generated", build / "gen", "--jobs", values.jobs,
-                *words], check=False)
+    return run(
+        [build / "synth/utilisation", "--generated", build / "gen", "--jobs", values.jobs, *words],
+        check=False)
 
 
 @command("synth report", [
-    DESIGN, Option("family", WORDS, "these chips, too, such as xc7 or ecp5"),
+    DESIGN,
+    Option("family", WORDS, "these chips, too, such as xc7 or ecp5"),
     Option("place", SWITCH, "on ECP5 also placed and routed, by nextpnr of Debian 13"),
-    Option(
-        "base", TEXT, "a commit: and what has changed since, as Markdown; COMMIT..COMMIT or COMMIT..: only what has changed between these, or until the last report", ""),
-    BUILD, JOBS], make="synth", brief="synth report --design npi_arbiter", long="synth report",
-    examples=["synth report --design modem", "synth report --family xc7 ecp5",
-              "synth report --base main..mine"])
+    Option("base", TEXT, "a commit: and what has changed since, as Markdown; COMMIT..COMMIT or "
+           "COMMIT..: only what has changed between these, or until the last report", ""),
+    BUILD, JOBS], make="synth", brief="synth report --design npi_arbiter",
+         long="synth report", examples=[
+             "synth report --design modem", "synth report --family xc7 ecp5",
+             "synth report --base main..mine"])
 def synth(values):
     """LUTs, flip-flops, slices of the chip and each part, against limits and paper"""
     first, between, last = values.base.partition("..")
@@ -40,8 +43,9 @@ def synth(values):
     build = configured(values, "synth_inputs", tests=True)
     status = 0
     if not between:
-        words = with_name("--design", values.design or (["table1",
-            "soc"] if values.place else [])) + with_name("--family", values.family)
+        words = with_name("--design", values.design or
+                          (["table1", "soc"] if values.place else [])) + with_name(
+                              "--family", values.family)
         if values.place:
             fetch("nextpnr", build / "nextpnr")
             words += ["--place", build / "nextpnr/nextpnr-ecp5"]
@@ -51,9 +55,8 @@ def synth(values):
     return status
 
 
-@command("synth accept", [DESIGN, BUILD, JOBS], make="synth-accept",
-         examples=["synth accept --design modem"],
-         brief="synth accept --design npi_arbiter")
+@command("synth accept", [DESIGN, BUILD, JOBS], make="synth-accept", examples=[
+    "synth accept --design modem"], brief="synth accept --design npi_arbiter")
 def accept(values):
     """record today's utilisation as what is wanted (synth/baseline.json)"""
     return utilisation(configured(values, "synth_inputs"), values, "--accept",
@@ -104,11 +107,12 @@ def row(name):
     def kept(file):
         path = Path("build", file)
         return path.read_text().splitlines() if path.exists() else []
-    runs = [each for each in map(json.loads,
-                                 kept("regress/history.jsonl")) if each["commit"] == name]
+
+    runs = [
+        each for each in map(json.loads, kept("regress/history.jsonl")) if each["commit"] == name]
     best = max(runs, key=lambda each: each["passed"] + each["failed"], default=None)
-    covered = [line.split(" ", 1)[1] for line in kept("coverage/history")
-               if line.startswith(name + " ")]
+    covered = [
+        line.split(" ", 1)[1] for line in kept("coverage/history") if line.startswith(name + " ")]
     tests = f"{best['passed']} passed, {best['failed']} failed" if best else "not measured"
     return f"| {name} | {tests} | {covered[-1] if covered else 'not measured'} |"
 
@@ -125,12 +129,14 @@ def compare(build, jobs, base, head=None):
         if head:
             synthesise(program, jobs, head, folder / "head")
             after = folder / "head/build/synth"
-        lines = [f"Utilisation since {named(base)}{f', at {named(head)}' if head else ''}:", "",
-                 output([program, "--output", after, "--compare",
-                         folder / "base/build/synth/report.json"]).rstrip("\n"), "",
-                 "| commit | tests | coverage |", "|---|---|---|",
-                 *(row(output([*GIT, "describe", "--always", "--abbrev=10",
-                               *which]).strip()) for which in ([base], [head or "--dirty=+"]))]
+        lines = [
+            f"Utilisation since {named(base)}{f', at {named(head)}' if head else ''}:", "",
+            output([
+                program, "--output", after, "--compare",
+                folder / "base/build/synth/report.json"]).rstrip("\n"), "",
+            "| commit | tests | coverage |", "|---|---|---|",
+            *(row(output([*GIT, "describe", "--always", "--abbrev=10", *which]).strip())
+              for which in ([base], [head or "--dirty=+"]))]
         text = "\n".join(lines) + "\n"
         (folder / "compare.md").write_text(text)
         print(text, end="")

@@ -15,20 +15,21 @@ from cli.runner import run, say
 from cli.table import Table
 
 
-@command("setup", [Option("tests", SWITCH, "what tests, reports and debuggers need, too",
-                          variable="WITH_TESTS"),
-                   Option("check", SWITCH, "only says what is missing"),
-                   Option("developer", SWITCH,
-                          "git's hooks of this tree, which hold subjects of commits to 72 characters")],
-         make="setup", brief="setup --check",
-         examples=["setup", "setup --tests", "setup --developer"])
+@command("setup", [
+    Option("tests", SWITCH, "what tests, reports and debuggers need, too", variable="WITH_TESTS"),
+    Option("check", SWITCH, "only says what is missing"),
+    Option("developer", SWITCH,
+           "git's hooks of this tree, which hold subjects of commits to 72 characters")],
+         make="setup", brief="setup --check", examples=[
+             "setup", "setup --tests", "setup --developer"])
 def setup(values):
     """install the Debian packages that are needed and missing"""
     if values.developer:
         run(["git", "config", "core.hooksPath", ".ci/hooks"])
         say("git runs .ci/hooks from now on")
-    return run(["cmake/setup.sh", *(f"--{word}" for word in ("tests", "check") if getattr(values,
-        word))], check=False)
+    return run(
+        ["cmake/setup.sh", *(f"--{word}" for word in ("tests", "check") if getattr(values, word))],
+        check=False)
 
 
 doors.ALIASES["setup-tests"] = ("setup", "WITH_TESTS")
@@ -46,15 +47,14 @@ def clean(values):
         shutil.rmtree("build", ignore_errors=True)
 
 
-@command("commands", [Option("brief", SWITCH,
-                             "runs the brief form of each to its end, writes build/commands.md and .json"),
-                      Option("only", TEXT, "only those whose name contains this", ""),
-                      Option("man", PATH, "writes the manual page, such as icesoc.1", ""),
-                      Option("schema", PATH,
-                             "writes the JSON schema of a flight, cli/flight.schema.json", "")],
-         make="commands",
-         brief="commands", examples=["commands --brief",
-                                     "commands --man icesoc.1 && man ./icesoc.1"])
+@command("commands", [
+    Option("brief", SWITCH,
+           "runs the brief form of each to its end, writes build/commands.md and .json"),
+    Option("only", TEXT, "only those whose name contains this", ""),
+    Option("man", PATH, "writes the manual page, such as icesoc.1", ""),
+    Option("schema", PATH, "writes the JSON schema of a flight, cli/flight.schema.json", "")],
+         make="commands", brief="commands", examples=[
+             "commands --brief", "commands --man icesoc.1 && man ./icesoc.1"])
 def commands(values):
     """list all commands with their brief forms, or run these"""
     if values.man:
@@ -93,12 +93,14 @@ def run_all(only):
 def manual():
     """The manual page, made of the commands' help."""
     def plain(text):
-        return "".join(f"\\&{line}\n" for line in text.replace("\\", "\\e").replace("-",
-            "\\-").splitlines())
-    parts = [f'.TH ICESOC 1 "" "{version.text().partition(chr(10))[0]}"', ".SH NAME",
-             "icesoc \\- every command of the IceSoC project", ".SH SYNOPSIS",
-             "\\&./icesoc COMMAND [option...]", ".SH COMMANDS", ".nf",
-             plain(doors.overview()) + ".fi"]
+        return "".join(
+            f"\\&{line}\n" for line in text.replace("\\", "\\e").replace("-", "\\-").splitlines())
+
+    parts = [
+        f'.TH ICESOC 1 "" "{version.text().partition(chr(10))[0]}"', ".SH NAME",
+        "icesoc \\- every command of the IceSoC project", ".SH SYNOPSIS",
+        "\\&./icesoc COMMAND [option...]", ".SH COMMANDS", ".nf",
+        plain(doors.overview()) + ".fi"]
     for name, each in COMMANDS.items():
         parts += [f'.SH "{name.upper()}"', ".nf", plain(each.parser().format_help()) + ".fi"]
     return "\n".join(parts) + "\n"

@@ -17,7 +17,7 @@ from pathlib import Path
 
 TREE = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TREE))
-from cli import command, flight, main, runner, table  # noqa: E402, F401 (main declares all commands)
+from cli import command, flight, main, runner, table  # noqa: E402, F401 (main declares commands)
 from cli.commands.tree import manual  # noqa: E402
 from cli.options import FLIGHT, SWITCH  # noqa: E402
 
@@ -25,16 +25,17 @@ from cli.options import FLIGHT, SWITCH  # noqa: E402
 def clean(**more):
     """An environment without a variable of any option, or of the make that runs the tests."""
     ours = {option.variable for each in command.COMMANDS.values() for option in each.options}
-    kept = {name: value for name, value in os.environ.items() if name not in ours | {"MAKEFLAGS",
-        "MFLAGS", "MAKELEVEL"}}
+    kept = {
+        name: value
+        for name, value in os.environ.items()
+        if name not in ours | {"MAKEFLAGS", "MFLAGS", "MAKELEVEL"}}
     return {**kept, **more}
 
 
 def ask(*words, **environment):
     """(exit status, what is said) of a program in the tree."""
     done = subprocess.run(words, cwd=TREE, env=clean(**environment), stdin=subprocess.DEVNULL,
-                          stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, timeout=100)
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=100)
     return done.returncode, done.stdout
 
 
@@ -60,17 +61,16 @@ class Values(Work):
         for verb, name in (("rm-ip", "NAME"), ("new-ip", "NAME"), ("ip-test", "IP"),
                            ("new-foreign", "NAME"), ("new-foreign", "FILES"),
                            ("synth-accept", "DESIGN"), ("run", "OUT"), ("run", "BUILD"),
-                           ("wave", "TEST"), ("bisect", "TEST"),
-                           ("ip-test", "CORE_FOLDERS"), ("regress", "NAME"), ("foreign", "IMAGE"),
-                           ("run", "KEY")):
+                           ("wave", "TEST"), ("bisect", "TEST"), ("ip-test", "CORE_FOLDERS"),
+                           ("regress", "NAME"), ("foreign", "IMAGE"), ("run", "KEY")):
             tree = {"ICESOC_TREE": str(self.work / "tree"), "PATH": "/usr/bin:/bin"}
             ask("make", "-s", verb, f"{name}={evil.replace('$', '$$')}",
                 *(["LANG=vhdl"] if verb == "new-ip" else []), "BUILT=1", **tree)
             ask("make", "-s", f"{verb}'; touch {hit}; '", **tree)
             option = next(o for each in command.COMMANDS.values() if each.make == verb
                           for o in each.options if o.variable == name)
-            words = next(each.name for each in command.COMMANDS.values()
-                         if each.make == verb).split()
+            words = next(
+                each.name for each in command.COMMANDS.values() if each.make == verb).split()
             ask("./icesoc", *words, *([evil] if option.positional else [f"--{option.name}", evil]),
                 "--built", **tree)
             self.assertFalse(hit.exists(), f"{verb} {name}")
@@ -82,17 +82,19 @@ class Values(Work):
         self.assertIn(f"'{odd}' is not a core", ask("./icesoc", "core", "remove", odd)[1])
 
     def test_both_doors_give_the_same_values(self):
-        samples = {"N": "3", "VALUE": "a", "FOLDER": "x", "WxH": "96x64", "TIME": "60s",
-                   "N|random": "random", "WORD": "a b"}
+        samples = {
+            "N": "3", "VALUE": "a", "FOLDER": "x", "WxH": "96x64", "TIME": "60s",
+            "N|random": "random", "WORD": "a b"}
         for each in command.COMMANDS.values():
             if not each.make:
                 continue
-            options = [o for o in each.options if o.listed and o.kind is not SWITCH
-                       and o.kind.metavar in samples
-                       and not o.positional and o.kind is not FLIGHT
-                       and o.name not in ("loss", "interference")]
-            words = [word for o in options for word in (f"--{o.name}",
-                *samples[o.kind.metavar].split())]
+            options = [
+                o for o in each.options
+                if o.listed and o.kind is not SWITCH and o.kind.metavar in samples
+                and not o.positional and o.kind is not FLIGHT and o.name not in ("loss",
+                                                                                 "interference")]
+            words = [
+                word for o in options for word in (f"--{o.name}", *samples[o.kind.metavar].split())]
             given = each.values(vars(each.parser().parse_args(words)), None, os.getcwd())
             variables = {o.variable: samples[o.kind.metavar] for o in options}
             os.environ.update(variables)
@@ -111,35 +113,38 @@ class Values(Work):
                       ask("make", "-s", "new-ip", "NAME=abc", LANG="verilog")[1])
         self.assertIn("OPEN=1 flies in the clear",
                       ask("make", "-s", "run", "OPEN=1", "KEY=Makefile")[1])
-        self.assertNotIn("OPEN=1 flies", ask("make", "-s", "run", "OPEN=0", "KEY=Makefile",
-            "OUT=/proc/none")[1])
+        self.assertNotIn("OPEN=1 flies",
+                         ask("make", "-s", "run", "OPEN=0", "KEY=Makefile", "OUT=/proc/none")[1])
 
 
 class Mistakes(Work):
     def test_each_is_answered_in_words(self):
         for words, said in (
-                ("./icesoc rnu", "there is no command 'rnu'; did you mean run?"),
-                ("./icesoc core nwe", "core has no command 'nwe'; did you mean new?"),
-                ("./icesoc run --treshold 3",
-                 "run has no option --treshold; did you mean --threshold?"),
-                ("./icesoc run --loss 2", "--loss is the share of packets that is lost, 0..1, not '2'"),
-                ("./icesoc run --size abc", "--size is WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8, not 'abc'"),
-                ("./icesoc run --image nofile", "cannot read '"),
-                ("./icesoc run --jobs 0", "--jobs is a whole number from 1 on, not '0'"),
-                ("./icesoc run fir", "run takes no 'fir'"),
-                ("./icesoc run --seed", "expected one argument"),
-                ("./icesoc core test", "a core is needed"),
-                ("./icesoc replay nowhere", "no flight was recorded in"),
-                ("./icesoc run --key no.key", "./icesoc key"),
-                ("./icesoc run --again Makefile", "cannot read the flight"),
-                ("./icesoc run --again cli/flight.schema.json",
-                 "describes no flight: it is not of version 1"),
-                ("./icesoc contract", "contract has the commands diff, from-rdl"),
-                ("make -s rnu", "there is no 'make rnu'; did you mean run?"),
-                ("make -s run LOS=1", "there is no variable LOS of make run; did you mean LOSS?"),
-                ("make -s run DRAW=3", "it is one of make mutants"),
-                ("make -s run CAMERA=yes", "CAMERA is 1 or 0, not 'yes'"),
-                ("make -s run SIZE=96x65k", "SIZE is WIDTHxHEIGHT")):
+            ("./icesoc rnu", "there is no command 'rnu'; did you mean run?"),
+            ("./icesoc core nwe", "core has no command 'nwe'; did you mean new?"),
+            ("./icesoc run --treshold 3",
+             "run has no option --treshold; did you mean --threshold?"),
+            ("./icesoc run --loss 2", "--loss is the share of packets that is lost, 0..1, not '2'"),
+            ("./icesoc run --size abc",
+             "--size is WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8, not 'abc'"),
+            ("./icesoc run --image nofile",
+             "cannot read '"), ("./icesoc run --jobs 0",
+                                "--jobs is a whole number from 1 on, not '0'"),
+            ("./icesoc run fir", "run takes no 'fir'"), ("./icesoc run --seed",
+                                                         "expected one argument"),
+            ("./icesoc core test",
+             "a core is needed"), ("./icesoc replay nowhere",
+                                   "no flight was recorded in"), ("./icesoc run --key no.key",
+                                                                  "./icesoc key"),
+            ("./icesoc run --again Makefile",
+             "cannot read the flight"), ("./icesoc run --again cli/flight.schema.json",
+                                         "describes no flight: it is not of version 1"),
+            ("./icesoc contract", "contract has the commands diff, from-rdl"),
+            ("make -s rnu", "there is no 'make rnu'; did you mean run?"),
+            ("make -s run LOS=1", "there is no variable LOS of make run; did you mean LOSS?"),
+            ("make -s run DRAW=3", "it is one of make mutants"),
+            ("make -s run CAMERA=yes", "CAMERA is 1 or 0, not 'yes'"), ("make -s run SIZE=96x65k",
+                                                                        "SIZE is WIDTHxHEIGHT")):
             status, text = ask(*words.split())
             self.assertNotEqual(status, 0, words)
             self.assertIn(said, text, words)
@@ -149,8 +154,9 @@ class Mistakes(Work):
         self.script("tree/cmake/setup.sh", "echo set up\n")
         for wrong in ("LOSS=7", "SIZE=1x1", "IMAGE=none", "SEED=-1", "CORES=nobody",
                       "PROBE=u_fir.sent=1", "APP=minimal", "THRESHOLD=300"):
-            self.assertNotIn("set up", ask("make", "-s", "run", wrong,
-                ICESOC_TREE=str(self.work / "tree"))[1], wrong)
+            self.assertNotIn(
+                "set up",
+                ask("make", "-s", "run", wrong, ICESOC_TREE=str(self.work / "tree"))[1], wrong)
 
     def test_where_one_may_not_write_what_to_do_is_said(self):
         theirs = self.work / "theirs"
@@ -159,25 +165,28 @@ class Mistakes(Work):
         theirs.chmod(0o555)
         (self.work / "mine").mkdir()
         (self.work / "mine").chmod(0o777)
-        other = ["setpriv", "--reuid=65534", "--regid=65534",
-                 "--clear-groups"] if os.getuid() == 0 else []
+        other = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"
+                 ] if os.getuid() == 0 else []
         reach = subprocess.run([*other, "test", "-x", TREE / "icesoc"]).returncode == 0
         if not reach:
             self.skipTest("another user cannot read this tree")
         words = [*other, "./icesoc", "build", "configure", "--build"]
         tree = {"ICESOC_TREE": str(self.work / "tree"), "PYTHONDONTWRITEBYTECODE": "1"}
         self.assertIn(f"you may not write in {theirs}", ask(*words, str(theirs), **tree)[1])
-        self.assertIn("XDG_CACHE_HOME", ask(*words, str(self.work / "mine"), HOME=str(theirs),
-            XDG_CACHE_HOME="", **tree)[1])
+        self.assertIn(
+            "XDG_CACHE_HOME",
+            ask(*words, str(self.work / "mine"), HOME=str(theirs), XDG_CACHE_HOME="", **tree)[1])
 
     def test_a_missing_program_and_a_full_disk_are_told(self):
         (self.work / "bin").mkdir()
         for name in ("setpriv", "sh", "dirname"):
             (self.work / "bin" / name).symlink_to(shutil.which(name))
-        status, text = ask("./icesoc", "build", ICESOC_TREE=str(self.work / "tree"),
-                           PATH=str(self.work / "bin"))
-        self.assertEqual((status, text), (127,
-            "icesoc: there is no program 'cmake': ./icesoc setup --tests installs what is missing\n"))
+        status, text = ask("./icesoc", "build", ICESOC_TREE=str(self.work / "tree"), PATH=str(
+            self.work / "bin"))
+        self.assertEqual((status, text), (
+            127,
+            "icesoc: there is no program 'cmake': ./icesoc setup --tests installs what is missing\n"
+        ))
         self.assertEqual(ask("./icesoc", "commands", "--man", "/dev/full"),
                          (1, "icesoc: No space left on device\n"))
 
@@ -197,15 +206,14 @@ class Mistakes(Work):
 
 class Trees(Work):
     """What happens to build folders."""
-
     def configure(self, tree):
         return ask("./icesoc", "build", "configure", "--build", "build", ICESOC_TREE=str(tree),
                    XDG_CONFIG_HOME=str(self.work / "config"))
 
     def test_a_tree_that_was_moved_is_built_anew_and_one_that_was_not_is_left_alone(self):
         old, new, config = self.work / "tree", self.work / "new", self.work / "config"
-        (old / "CMakeLists.txt").write_text(
-            "cmake_minimum_required(VERSION 3.25)\nproject(moved NONE)\n")
+        (old /
+         "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(moved NONE)\n")
         self.assertEqual(self.configure(old)[0], 0)
         (old / "build/kept").touch()
         (old / "build/update.key").write_bytes(b"private")
@@ -218,13 +226,13 @@ class Trees(Work):
         self.assertEqual((config / "icesoc/update.key").read_bytes(), b"private")
         # A value that CMake refuses is not kept: it would fail whatever is made next.
         with open(new / "CMakeLists.txt", "a") as file:
-            file.write(
-                'if(CORE_FOLDERS)\n  message(FATAL_ERROR "CORE_FOLDERS is ${CORE_FOLDERS}")\nendif()\n')
+            file.write('if(CORE_FOLDERS)\n'
+                       '  message(FATAL_ERROR "CORE_FOLDERS is ${CORE_FOLDERS}")\nendif()\n')
         status, text = ask("./icesoc", "core", "test", "fir", "--core-folders", "/here", "--build",
                            "build", ICESOC_TREE=str(new))
         self.assertIn("CORE_FOLDERS is /here", text)
-        self.assertEqual(subprocess.run(["cmake", new / "build"], capture_output=True).returncode,
-                         0)
+        self.assertEqual(
+            subprocess.run(["cmake", new / "build"], capture_output=True).returncode, 0)
 
     def test_keys_are_outside_of_what_is_built_and_nothing_removes_them(self):
         tree, config = self.work / "tree", self.work / "config"
@@ -240,12 +248,12 @@ class Trees(Work):
         self.assertEqual(remove("one"), ["one"])
         self.assertEqual(remove("another"), ["another", "one"])
         self.assertEqual((config / "icesoc/update.key").read_text(), "one")
-        self.assertEqual({key.stat().st_mode & 0o777 for key in (config / "icesoc").iterdir()},
-                         {0o600})
+        self.assertEqual({key.stat().st_mode & 0o777
+                          for key in (config / "icesoc").iterdir()}, {0o600})
 
     def test_programs_have_one_environment(self):
-        self.script(
-            "tree/cmake/setup.sh", 'echo "$HOME $LC_ALL $CCACHE_BASEDIR ${SEED:-none} ${MAKEFLAGS:-none} ${NAME:-none}"\nexit 1\n')
+        self.script("tree/cmake/setup.sh", 'echo "$HOME $LC_ALL $CCACHE_BASEDIR ${SEED:-none} '
+                    '${MAKEFLAGS:-none} ${NAME:-none}"\nexit 1\n')
         tree = str(self.work / "tree")
         said = ask("env", "-u", "HOME", "make", "-s", "test", "SEED=3", "NAME=x", ICESOC_TREE=tree,
                    LC_ALL="de_DE.UTF-8")[1]
@@ -269,25 +277,31 @@ class Lists(unittest.TestCase):
         for page in [TREE / "README.md", TREE / "CONTRIBUTING.md", *sorted(TREE.glob("docs/*.md"))]:
             quoted = "\n\n".join(re.findall(r"```.*?```|``.*?``|`[^`]+`", page.read_text(), re.S))
             for before, verb, after in re.findall(
-                rf"\bmake ((?:{value} )*)([a-z][a-z-]*)((?:[ \n]+\[?{value})*)", quoted):
+                    rf"\bmake ((?:{value} )*)([a-z][a-z-]*)((?:[ \n]+\[?{value})*)", quoted):
                 self.assertIn(verb, verbs, page.name)
-                known = {o.variable for each in command.COMMANDS.values() if each.make == verb
-                         for o in each.options}
-                self.assertLessEqual(set(re.findall(r"(?<![\w$])([A-Z][A-Z0-9_]*)=",
-                    before + after)), known, f"{page.name}: make {verb}")
+                known = {
+                    o.variable
+                    for each in command.COMMANDS.values() if each.make == verb
+                    for o in each.options}
+                self.assertLessEqual(
+                    set(re.findall(r"(?<![\w$])([A-Z][A-Z0-9_]*)=", before + after)), known,
+                    f"{page.name}: make {verb}")
             for words in re.findall(r"\./icesoc ([a-z][^`\n#|]*)", quoted):
                 command.find(words.split())
 
     def test_the_schema_is_that_of_the_options_and_holds_a_flight(self):
         self.assertEqual((TREE / "cli/flight.schema.json").read_text(), flight.schema_text())
-        good = {"version": 1, **{o.field: rule["default"] for o in flight.FIELDS
-                                 if (rule := flight.schema()["properties"][o.field])}}
+        good = {
+            "version": 1, **{
+                o.field: rule["default"]
+                for o in flight.FIELDS if (rule := flight.schema()["properties"][o.field])}}
         self.assertIsNone(flight.wrong(good))
-        for change in ({"loss": 2}, {"loss": "0"}, {"cpu": "z80"}, {"cores": "fir"}, {"version": 2},
-                       {"more": 1}, {"open": 1}):
+        for change in ({"loss": 2}, {"loss": "0"}, {"cpu": "z80"}, {"cores": "fir"}, {
+                "version": 2}, {"more": 1}, {"open": 1}):
             self.assertTrue(flight.wrong({**good, **change}), change)
-        self.assertIn("'seed' is missing", flight.wrong({name: value for name,
-            value in good.items() if name != "seed"}))
+        self.assertIn("'seed' is missing",
+                      flight.wrong({name: value
+                                    for name, value in good.items() if name != "seed"}))
 
     def test_a_long_subject_is_refused(self):
         with tempfile.TemporaryDirectory() as work:
@@ -296,7 +310,8 @@ class Lists(unittest.TestCase):
                 self.assertEqual(ask(".ci/hooks/commit-msg", f"{work}/message")[0], status)
 
     def test_a_table_tells_what_failed_and_what_lacks_a_network(self):
-        with tempfile.TemporaryDirectory() as work, contextlib.redirect_stdout(io.StringIO()) as out:
+        with tempfile.TemporaryDirectory() as work, contextlib.redirect_stdout(
+                io.StringIO()) as out:
             rows = table.Table(f"{work}/rows")
             rows.add("good", 0, 1.5, "a | b")
             rows.add("far", 77, 0)

@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 
 from cli import command, version
-# noqa: F401 (each declares its own)
-from cli.commands import flights, core, synth, contract, build, regression, checks, fresh, tree
+from cli.commands import (  # noqa: F401 (each declares its own)
+    flights, core, synth, contract, build, regression, checks, coverage, fresh, tree)
 from cli.runner import Interrupted, Stop, hear_signals, say, warn
 
 

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""check: proofs, sanitizers, seeded bugs, faults, coverage, hours of radio, measurements."""
-import re
+"""check: proofs, sanitizers, seeded bugs, faults, hours of radio, measurements."""
 import shutil
 from pathlib import Path
 
 from cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
 from cli.command import GROUPS, command
 from cli.options import BLOCK, BUILD, COUNT, FRESH, JOBS, MINUTES, NAME, PATH, SEED, WORDS, Option
-from cli.runner import Stop, output, run, say, warn
+from cli.runner import Stop, output, run, say
 
 GROUPS["check"] = "what takes minutes to hours"
 GUARDED = ["test_engine", "gateway", "test_radio_ice", "test_icec"]
@@ -126,100 +125,6 @@ def soak(values):
         "--gtest_filter=Engine.RandomBytes*"], env=noise)
     run([build / "tests/hdl/modem/test_modem_soak", "--gtest_brief=1"],
         env={**seed, "SOAK_BYTES": values.fuzzed})
-
-
-def lcov(work, *words):
-    with open(work / "lcov.log", "a") as log:
-        return run(["lcov", "--quiet", *words], check=False, stderr=log)
-
-
-@command("check coverage", [
-    Option("name", NAME.kind,
-           "only tests of which a part of the name matches this; no gate holds then", ""), BUILD,
-    JOBS], make="coverage", brief="check coverage --name ^test_bus_decoder[.]",
-         long="check coverage")
-def coverage(values):
-    """lines, branches and toggles that the tests reach, write build/coverage/html; exit status 1:
-    below tests/regress/coverage_gates.json
-
-    Builds models, C and C++ that count what ran (build/coverage), runs all tests but proofs, lint
-    and those of tools, and merges Verilator's, GHDL's and gcov's counts. Leaves html/index.html,
-    summary.json, history (a line a run)."""
-    build = configured(values, tests=True)
-    build.ninja("coverage", "regress")
-    counted = BuildFolder("build/coverage", values)
-    work, top = counted.folder, Path.cwd()
-    counted.configure("-DCOVERAGE=ON")
-    tree = output([
-        build / "tests/regress/regress", "--tree", "bus hdl ip slice sw testbench tests"])
-    commit = (output(["git", "describe", "--always", "--dirty=+", "--abbrev=10"], check=False,
-                     stderr=-3) or "unknown").strip()
-    gates = Path("tests/regress/coverage_gates.json")
-    if values.name:
-        run([build / "tests/regress/regress", "--prepare", "--build", work, "--name", values.name])
-        gates = work / "no_gates.json"
-        gates.write_text('{"gates": {}, "explained": []}')
-    else:
-        counted.ninja()
-    points = work / "points"
-    for folder in (points, work / "html"):
-        shutil.rmtree(folder, ignore_errors=True)
-    points.mkdir()
-    for path in work.rglob("*.gcda"):
-        path.unlink()
-    say("coverage: running the tests")
-    # Tests that fail still count: the regression reports them. Fuzzers have their own counts;
-    # e2e.cores builds its own chip.
-    with open(work / "ctest.log", "w") as log:
-        words = [
-            "ctest", "--test-dir", work, "-j", values.jobs, "-L",
-            "rtl|firmware|vhdl|models|slice|interop|e2e", "-E", "NOT_BUILT|^fuzz|^e2e.cores",
-            *(["-R", values.name] if values.name else [])]
-        if run(words, check=False, stdout=log, stderr=log, env={"COVERAGE_DIR": points.absolute()}):
-            warn(f"coverage: some tests failed, see {work}/ctest.log")
-    say("coverage: merging")
-    counts = sorted(points.glob("*.dat"))
-    run(["verilator_coverage", "--write", work / "rtl.dat", *counts], stdout=-3)
-    run(["verilator_coverage", "--write-info", work / "rtl.info", *counts], stdout=-3)
-    (work / "lcov.log").write_text("")
-    if lcov(work, "--capture", "--directory", work, "--output-file", work / "all.info",
-            "--ignore-errors", "gcov,source"):
-        raise Stop((work / "lcov.log").read_text()[-1000:], 2)
-
-    def own(source, name, rooms):
-        """Allows patterns that match nothing, as in a build of few rooms."""
-        if lcov(work, "--extract", work / source, *(f"{top}/{room}/*" for room in rooms),
-                "--output-file", work / name):
-            (work / name).unlink(missing_ok=True)
-
-    own("all.info", "host.info", ("sw", "slice", "testbench", "bus", "ip"))
-    own("rtl.info", "rtl_own.info", ("hdl", "bus", "ip"))
-    (work / "vhdl.info").unlink(missing_ok=True)
-    if found := sorted(points.glob("*.json")):
-        with open(work / "vhdl.info", "w") as file:
-            run([build / "ghdl/ghdl", "coverage", "--format=lcov", *found], stdout=file)
-    infos = {
-        name: work / f"{name}.info"
-        for name in ("host", "rtl_own", "vhdl")
-        if (work / f"{name}.info").exists() and (work / f"{name}.info").stat().st_size}
-    run([
-        "lcov", "--quiet", *(word for info in infos.values() for word in ("--add-tracefile", info)),
-        "--output-file", work / "merged.info"])
-    run([
-        "genhtml", "--quiet", "--title", "IceSoC", "--output-directory", work / "html",
-        work / "merged.info"])
-    status = run([
-        build / "tests/regress/coverage", "--gates", gates, "--verilator", work / "rtl.dat",
-        *(word for name, info in infos.items() if name != "rtl_own"
-          for word in ("--info", info)), "--out", work / "summary.json"], check=False)
-    (work / "tree").write_text(tree)
-    total = re.search(r'^ "total": (\d+\.?\d?)', (work / "summary.json").read_text(), re.M)
-    with open(
-            # the share of each commit, for ./icesoc synth report --base
-            work / "history",
-            "a") as file:
-        file.write(f"{commit} {total[1]} % of lines\n" if total else "")
-    return status
 
 
 @command("bench", [

@@ -166,6 +166,7 @@ bool compile(const std::string& file, const Options& o, Dependencies& dependenci
     }
     Diagnostics diagnostics(std::cerr);
     Unit unit = compileUnit(p.text, file, o.rules, diagnostics);
+    scopeEnumerators(unit);
     if (diagnostics.errors() == 0)
         checkC(unit, names, diagnostics);
     std::vector<hw::Block> blocks;

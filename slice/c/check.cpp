@@ -7,6 +7,7 @@
 #include "c/operations.h"
 #include "c/types.h"
 #include <algorithm>
+#include <map>
 #include <set>
 #include <unordered_map>
 
@@ -29,8 +30,10 @@ void checkHardware(const Declaration& d, Diagnostics& diagnostics) {
                         diagnostics.error(o.at, who + o.name + "' throws '" + e->name +
                                                     "', whose '" + f.name + "' is not " + kinds);
         for (const Field& p : o.parameters)
-            if (p.isOptional ||
-                !(factsOf(p.type).isNumeric || (p.type.kind == Type::Kind::Proxy && !p.isOut)))
+            if (p.isOptional)
+                diagnostics.error(p.at, who + p.name + "' is optional: registers are always there");
+            else if (!(factsOf(p.type).isNumeric ||
+                       (p.type.kind == Type::Kind::Proxy && !p.isOut)))
                 diagnostics.error(p.at, who + p.name + "' must be " + kinds +
                                             ", or the proxy of a callback interface");
     }
@@ -150,7 +153,8 @@ private:
         if (!isNew && it->second != id)
             diagnostics_.error(e.at,
                                "'" + id + "' becomes '" + c + "' in C, as '" + it->second +
-                                   "' does; [\"c:scoped\"] before the enum puts its name between");
+                                   "' of another file does; [\"c:scoped\"] before the enum puts "
+                                   "its name between");
     }
 
     const Unit& unit_;
@@ -172,6 +176,23 @@ void checkInner(const Declaration& d, CNames& names) {
 }
 
 } // namespace
+
+void scopeEnumerators(Unit& unit) {
+    std::map<std::string, std::string_view> files; // of names in C
+    for (const auto& d : unit.declarations)
+        files.emplace(cName(*d), d->at.file);
+    for (const auto& d : unit.declarations) {
+        auto isTaken = [&](const Enumerator& e) {
+            auto it = files.find(cEnumerator(*d, e.name));
+            return it != files.end() && it->second == d->at.file;
+        };
+        const auto& all = d->enumerators;
+        if (!d->hasMetadata("c:scoped") && std::any_of(all.begin(), all.end(), isTaken))
+            d->metadata.push_back("c:scoped");
+        for (const Enumerator& e : all)
+            files.emplace(cEnumerator(*d, e.name), d->at.file);
+    }
+}
 
 void checkC(const Unit& unit, const CFileNames& files, Diagnostics& diagnostics) {
     CNames names(unit, diagnostics);

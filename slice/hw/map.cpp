@@ -239,8 +239,13 @@ std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics) {
     std::map<std::string, const Declaration*> names;
     for (const auto& d : unit.declarations) {
         if (d->kind != Declaration::Kind::Interface || !d->isHardware() || d->fromInclude ||
-            d->isForward || d->isLocal)
+            d->isForward)
             continue;
+        if (d->isLocal) {
+            diagnostics.error(d->at, "interface '" + d->name +
+                                         "' is local: nobody calls it by radio, so it is no core");
+            continue;
+        }
         blocks.push_back(Mapper(*d, unit, diagnostics).run());
         blocks.back().source = std::filesystem::path(unit.file).stem().string();
         auto [it, isNew] = names.emplace(blocks.back().name, d.get());

@@ -32,8 +32,7 @@ void checkHardware(const Declaration& d, Diagnostics& diagnostics) {
         for (const Field& p : o.parameters)
             if (p.isOptional)
                 diagnostics.error(p.at, who + p.name + "' is optional: registers are always there");
-            else if (!(factsOf(p.type).isNumeric ||
-                       (p.type.kind == Type::Kind::Proxy && !p.isOut)))
+            else if (!(factsOf(p.type).isNumeric || (p.type.kind == Type::Kind::Proxy && !p.isOut)))
                 diagnostics.error(p.at, who + p.name + "' must be " + kinds +
                                             ", or the proxy of a callback interface");
     }

@@ -20,8 +20,9 @@ struct CFileNames {
     std::vector<std::string> includes; // headers of the Slice files that the main file includes
 };
 
-// Gives the enumerators of an enum their long names, as ["c:scoped"] does, if a short one is taken by
-// another name of the same file. What another file declares does not count: it may be included or not.
+// Gives the enumerators of an enum their long names, as ["c:scoped"] does, if a short one is taken
+// by another name of the same file. What another file declares does not count: it may be included
+// or not.
 void scopeEnumerators(Unit& unit);
 
 // Reports definitions that C cannot map, or would map to one name twice. Call it before generateC.

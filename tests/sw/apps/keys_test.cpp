@@ -33,20 +33,20 @@ public:
         isDead = false;
         b.boot();
         keys = UAV_giveKeys(b.link());
-        Link_start(b.link(), now32());
+        b.start();
     }
     // The ground's program starts with this key file; true: a session has come up.
     bool meets(const std::vector<Key>& file, uint64_t patienceUs = 20'000'000) {
         a.boot();
         for (size_t slot = 0; slot < file.size(); ++slot)
             Link_setKey(a.link(), static_cast<int>(slot), file[slot].data());
-        Link_start(a.link(), now32());
+        a.start();
         const U32 sessions = Link_statistics(b.link())->sessions;
         auto isOver = [&] { // the vehicle, too, is in the new session
             UAV_confirmKey(b.link());
             return isDead || (bothUp() && Link_statistics(b.link())->sessions != sessions);
         };
-        const bool isMet = runUntil(isOver, patienceUs) && !isDead;
+        const bool isMet = until(isOver, patienceUs) && !isDead;
         UAV_confirmKey(b.link());
         return isMet && !isDead;
     }

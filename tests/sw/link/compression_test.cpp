@@ -4,67 +4,78 @@
 // cross unchanged.
 
 #include "ice_messages.h"
-#include "link_pair.h"
-#include <algorithm>
-#include <gtest/gtest.h>
+#include "link_variants.h"
 
 namespace {
 
 using namespace IceMessages;
 
-class Heads : public ::testing::Test {
-protected:
-    void SetUp() override {
-        ASSERT_TRUE(pair_.connect());
-        ASSERT_EQ(Link_openChannel(pair_.a.link(), 0), LINK_OK);
-        ASSERT_EQ(Link_openChannel(pair_.a.link(), 1), LINK_OK);
-        settle();
-    }
-    void settle() { pair_.run(400000); }
-    static U32 bytesOf(Side& side) { return Link_statistics(side.link())->bytesSent; }
-    U32 bytes() { return bytesOf(pair_.a) + bytesOf(pair_.b); }
-    void send(Side& from, Side& to, const Bytes& m, int channel = 0) {
-        size_t before = to.received.size();
-        ASSERT_EQ(Link_send(from.link(), channel, m.data(), static_cast<U32>(m.size()), tag_++),
-                  LINK_OK);
-        ASSERT_TRUE(pair_.runUntil([&] { return to.received.size() > before; }, 1000000));
-        EXPECT_EQ(to.received.back().second, m);
-        EXPECT_EQ(to.received.back().first, channel);
-    }
-    // A call and its answer: bytes on the air, acknowledgements included.
-    U32 call(uint32_t id, const Bytes& parameters, const Bytes& results) {
-        U32 before = bytes();
-        send(pair_.a, pair_.b, request(id, "hwengine1", "setParameterA", parameters));
-        if (id)
-            send(pair_.b, pair_.a, reply(id, results));
-        settle();
-        return bytes() - before;
-    }
+// Bytes on the air of a call and its reply, acknowledgements included: without a key, with tags of
+// 8 bytes and of 4; beside MAVLink 2, whose signature takes 13 bytes a frame.
+class CallBytes : public Variants {};
 
-    Pair pair_{testSeed()};
+TEST_P(CallBytes, ACallAndItsReplyTakeFewerThanMavlink) {
+    const bool isSecure = GetParam().hasKey;
+    const uint32_t tag = !isSecure ? LINK_CRC : GetParam().a == "tag4" ? 4 : LINK_TAG;
+    const uint32_t mavlink = isSecure ? 58 + 35 : 45 + 22;
+    uint64_t took[4];
+    ASSERT_TRUE(connect());
+    a.open(0);
+    run(400'000);
+    for (uint32_t i = 0; i < 4; ++i) { // the last two are oneway
+        const uint64_t before = a.bytesSent + b.bytesSent;
+        const uint32_t id = i < 2 ? i + 1 : 0;
+        a.send(0, request(id, "hwengine1", "setParameterA", {24, 0}), i);
+        ASSERT_TRUE(until([&] { return b.received.size() == i + 1; }, 1'000'000));
+        if (id) {
+            b.send(0, reply(id, {}), i);
+            ASSERT_TRUE(until([&] { return a.received.size() == i + 1; }, 1'000'000));
+        }
+        run(400'000);
+        took[i] = a.bytesSent + b.bytesSent - before;
+    }
+    RecordProperty("bytes", static_cast<int>(took[1]));
+    RecordProperty("mavlink", static_cast<int>(mavlink));
+    EXPECT_LT(took[0], mavlink);
+    EXPECT_EQ(took[1], 21 + 3 * (tag - LINK_CRC)); // 5 + 3, 5 + 1 + an acknowledgement's 1, 6
+    EXPECT_EQ(took[3], 14 + 2 * (tag - LINK_CRC)); // 5 + 3, 6
+}
+
+INSTANTIATE_TEST_SUITE_P(Tags, CallBytes,
+                         ::testing::Values(Variant{"full", "full", false},
+                                           Variant{"full", "full", true},
+                                           Variant{"tag4", "tag4", true}));
+
+class Heads : public ::testing::Test, public Pair {
+protected:
+    Heads() : Pair(testSeed()) {}
+    void SetUp() override {
+        ASSERT_TRUE(connect());
+        ASSERT_EQ(a.open(0), LINK_OK);
+        ASSERT_EQ(a.open(1), LINK_OK);
+        settle();
+    }
+    void settle() { run(400'000); }
+    uint64_t bytes() const { return a.bytesSent + b.bytesSent; }
+    void send(Side& from, Side& to, const Bytes& m, int channel = 0) {
+        const size_t before = to.received.size();
+        ASSERT_EQ(from.send(channel, m, tag_++), LINK_OK);
+        ASSERT_TRUE(until([&] { return to.received.size() > before; }, 1'000'000));
+        EXPECT_EQ(to.received.back(), std::pair(channel, m));
+    }
+    void call(uint32_t id) {
+        send(a, b, request(id, "hwengine1", "setParameterA", {7, 0}));
+        send(b, a, reply(id, {}));
+    }
     U32 tag_ = 0;
 };
 
-TEST_F(Heads, ACallAndItsReplyTakeFewerBytesThanMavlink) {
-    U32 first = call(1, {24, 0}, {});
-    U32 second = call(2, {25, 0}, {});
-    U32 oneway = (call(0, {26, 0}, {}), call(0, {27, 0}, {}));
-    std::printf(
-        "setParameterA(short) and its reply: %u bytes on the air, the first time %u; oneway %u; "
-        "MAVLink 2 COMMAND_LONG + COMMAND_ACK 45 + 22\n",
-        second, first, oneway);
-    EXPECT_EQ(second, 21u); // 5 + 3, 5 + 1 + an acknowledgement's 1, 6
-    EXPECT_EQ(oneway, 14u); // 5 + 3, 6
-    EXPECT_LT(first, 45u + 22u);
-}
-
 TEST_F(Heads, CallsInARowCarryEachOthersAcknowledgements) {
-    call(1, {1, 0}, {});
-    U32 before = bytes();
-    for (uint32_t id = 2; id < 52; ++id) {
-        send(pair_.a, pair_.b, request(id, "hwengine1", "setParameterA", {7, 0}));
-        send(pair_.b, pair_.a, reply(id, {}));
-    }
+    call(1);
+    settle();
+    const uint64_t before = bytes();
+    for (uint32_t id = 2; id < 52; ++id)
+        call(id);
     settle();
     // 9 + 7 each: the request takes the acknowledgement of the last reply along.
     EXPECT_LE(bytes() - before, 50u * 16u + 6u);
@@ -79,96 +90,93 @@ TEST_F(Heads, WhateverIsSentArrivesUnchanged) {
     half.resize(25);
     Bytes compressed = request(9, "a", "op", {1});
     compressed[9] = 2;
-    std::vector<Bytes> all = {validate(),
-                              closing(),
-                              big,
-                              high,
-                              full,
-                              ice,
-                              longHead,
-                              withContext,
-                              spoilt,
-                              half,
-                              compressed,
-                              Bytes(1, 0),
-                              Bytes(1, 0x90),
-                              request(10, "a", "op", {}),
-                              request(11, "a", "op", {}),
-                              request(0, "a", "op", {}),
-                              request(12, "a", "op", {}, "facet"),
-                              request(13, "a", "op", {}, "", 0),
-                              request(500, "a", "op", big),
-                              reply(3, {}),
-                              reply(4, {1, 2}),
-                              reply(5, {}, 1),
-                              reply(6, {1}, 0, 0),
-                              reply(6, {}, 2),
-                              reply(0xFFFFFFFF, big),
-                              reply(0, {})};
+    const std::vector<Bytes> all = {validate(),
+                                    closing(),
+                                    big,
+                                    high,
+                                    full,
+                                    ice,
+                                    longHead,
+                                    withContext,
+                                    spoilt,
+                                    half,
+                                    compressed,
+                                    Bytes(1, 0),
+                                    Bytes(1, 0x90),
+                                    request(10, "a", "op", {}),
+                                    request(11, "a", "op", {}),
+                                    request(0, "a", "op", {}),
+                                    request(12, "a", "op", {}, "facet"),
+                                    request(13, "a", "op", {}, "", 0),
+                                    request(500, "a", "op", big),
+                                    reply(3, {}),
+                                    reply(4, {1, 2}),
+                                    reply(5, {}, 1),
+                                    reply(6, {1}, 0, 0),
+                                    reply(6, {}, 2),
+                                    reply(0xFFFFFFFF, big),
+                                    reply(0, {})};
     for (auto& m : all)
         for (int channel : {0, 1, 0})
-            send(pair_.a, pair_.b, m, channel);
+            send(a, b, m, channel);
 }
 
 TEST_F(Heads, MoreHeadsThanThereAreSlots) {
     uint32_t id = 0;
     for (int round = 0; round < 3; ++round)
         for (int i = 0; i < 20; ++i)
-            send(pair_.a, pair_.b,
+            send(a, b,
                  request(++id, "object" + std::to_string(i), "operation",
                          {static_cast<uint8_t>(i)}));
     settle();
-    U32 before = bytes();
-    send(pair_.a, pair_.b, request(++id, "object19", "operation", {1}));
+    const uint64_t before = bytes();
+    send(a, b, request(++id, "object19", "operation", {1}));
     settle();
     EXPECT_EQ(bytes() - before, 5u + 2u + 6u);
 }
 
 TEST_F(Heads, TablesAreEmptyInANewSession) {
-    call(1, {1, 0}, {});
-    pair_.b.boot();
-    Link_start(pair_.b.link(), pair_.now32());
-    ASSERT_TRUE(
-        pair_.runUntil([&] { return Link_statistics(pair_.a.link())->sessions == 2; }, 20000000));
-    ASSERT_TRUE(pair_.runUntil([&] { return pair_.bothUp(); }, 5000000));
-    Link_openChannel(pair_.a.link(), 0);
-    call(2, {1, 0}, {});
-    call(3, {2, 0}, {});
+    call(1);
+    b.boot();
+    b.start();
+    ASSERT_TRUE(until([&] { return a.statistics().sessions == 2 && bothUp(); }, 20'000'000));
+    a.open(0);
+    call(2);
+    call(3);
 }
 
 TEST_F(Heads, LossAndCorruptionDoNotConfuseTheTables) {
-    pair_.setWeather({0.2, 0.1, 0.05, 8000});
+    setWeather({0.2, 0.1, 0.05});
     Random random(testSeed());
-    std::vector<std::pair<int, Bytes>> sent;
+    Messages sent;
     uint32_t ids[2] = {0, 0};
-    pair_.runUntil(
+    until(
         [&] {
-            int channel = static_cast<int>(random.below(2));
+            const int channel = static_cast<int>(random.below(2));
             Bytes parameters(random.below(120), static_cast<uint8_t>(random.next()));
             Bytes m = random.below(4) == 0
                           ? reply(random.below(1000), parameters)
                           : request(random.below(3) ? ++ids[channel] : 0,
                                     "o" + std::to_string(random.below(24)), "op", parameters);
-            if (sent.size() < 2000 && Link_send(pair_.a.link(), channel, m.data(),
-                                                static_cast<U32>(m.size()), tag_) == LINK_OK) {
+            if (sent.size() < 2000 && a.send(channel, m, tag_) == LINK_OK) {
                 ++tag_;
                 sent.emplace_back(channel, m);
             }
-            return pair_.b.received.size() == 2000;
+            return b.received.size() == 2000;
         },
-        600000000);
+        600'000'000);
     // A short one of the other channel may overtake a long one.
-    for (auto* list : {&pair_.b.received, &sent})
+    for (auto* list : {&b.received, &sent})
         std::stable_sort(list->begin(), list->end(),
-                         [](auto& a, auto& b) { return a.first < b.first; });
-    EXPECT_EQ(pair_.b.received, sent) << "seed " << testSeed();
+                         [](auto& x, auto& y) { return x.first < y.first; });
+    EXPECT_EQ(b.received, sent) << "seed " << testSeed();
 }
 
 // From any bytes the decoder makes a message within the limits, or none.
 TEST_F(Heads, NonsenseIsRefusedWithinTheLimits) {
-    Link* link = pair_.b.link();
+    Link* link = b.link();
     Random random(testSeed());
-    call(1, {1, 0}, {});
+    call(1);
     unsigned refused = 0, taken = 0;
     for (int i = 0; i < 300000; ++i) {
         U32 size = 1 + random.below(random.below(8) ? 20 : LINK_MAX_MESSAGE + 1);
@@ -196,15 +204,13 @@ TEST_F(Heads, NonsenseIsRefusedWithinTheLimits) {
 
 // A peer that breaks the rules: both sides start a new session, and go on.
 TEST_F(Heads, ATokenThatMakesNoSenseEndsTheSession) {
-    Bytes m = {0x41}; // crosses unchanged
-    send(pair_.a, pair_.b, m);
-    pair_.a.link()->session.features = 0; // so that A sends this token unmarked
-    const U8 token = 0xE0;
-    Link_start(pair_.b.link(), pair_.now32());
-    Link_send(pair_.a.link(), 0, &token, 1, 99);
-    ASSERT_TRUE(pair_.runUntil([&] { return pair_.a.outcomes.count(99) != 0; }, 5000000));
-    EXPECT_EQ(pair_.a.outcomes[99], LINK_UNKNOWN);
-    EXPECT_TRUE(pair_.runUntil([&] { return pair_.bothUp(); }, 20000000));
+    send(a, b, {0x41});             // crosses unchanged
+    a.link()->session.features = 0; // so that A sends this token unmarked
+    b.start();
+    a.send(0, {0xE0}, 99);
+    ASSERT_TRUE(until([&] { return a.outcomes.count(99) != 0; }, 5'000'000));
+    EXPECT_EQ(a.outcomes[99], LINK_UNKNOWN);
+    EXPECT_TRUE(until([&] { return bothUp(); }, 20'000'000));
 }
 
 } // namespace

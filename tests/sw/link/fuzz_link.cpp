@@ -1,25 +1,79 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_link: libFuzzer target of the link layer. The input is a little program: bytes for the
-// receiver, with or without a good checksum, time, messages to send. There are two links: one gets
-// all of it, the other is its peer, so that a session comes up first. Nothing may crash, hang, or
-// write outside of its data.
+// fuzz_link: libFuzzer target of the full and of the minimal link layer. The input is a little
+// program: bytes for the receiver, with or without a good checksum, time, messages to send. The
+// full layer has a peer, to which it has a session; the minimal one hears a HELLO. Nothing may
+// crash, hang, or write outside of its data, and no frame or message may have an impossible size.
 //
 // An input byte names the step (mod 8), the next its argument n:
 //   0, 1  n bytes, unchanged
-//   2, 3  a frame of n bytes, checksum (under a key: tag) of the session added
-//   4     the same, of the handshake
-//   5     n ms pass
-//   6     a message of n bytes is sent on channel n mod 4, opened if need be
-//   7     n frames of the peer's come through
+//   2     a frame of n bytes, checksum (under a key: tag) of the session added
+//   3     the same; a data frame has the number that is expected
+//   4     the same of the handshake; to the minimal layer HELLO with nonce n
+//   5     n ms pass; the program takes messages (n < 64) or not
+//   6     a message (of n bytes; minimal layer: 5 n) is sent on channel n mod 4, opened if need be;
+//         255, and to the minimal layer each fourth, closes one
+//   7     n frames of the peer's come through, and the radio of a minimal layer has room again
 //
 // With -DKEYED both have a key, and the fuzzer knows it.
 
-#include "fuzz_node.h"
 #include <cstdint>
 #include <cstring>
+#include <deque>
+#include <memory>
+#include <vector>
+
+extern "C" {
+#include "link.h"
+}
 
 namespace {
+
+using Bytes = std::vector<uint8_t>;
+
+#ifdef LINK_MINIMAL
+constexpr bool isMinimal = true;
+#else
+constexpr bool isMinimal = false;
+#endif
+
+// A link with its program and its radio.
+struct Node {
+    std::unique_ptr<Link> link{new Link};
+    std::deque<Bytes> out; // frames that are on their way
+    uint32_t nonce = 1;
+    uint64_t sum = 0; // a sum, which reads every byte handed over
+    bool busy = false;
+};
+
+Node& node(void* c) {
+    return *static_cast<Node*>(c);
+}
+
+const Link_Port port = {
+    [](void* c, const U8* f, U32 n) {
+        if (n < LINK_OVERHEAD || n > LINK_MAX_FRAME ||
+            (isMinimal && n != LINK_LENGTH(f) + LINK_OVERHEAD)) // a packet is one frame
+            __builtin_trap();
+        if (node(c).out.size() > 50)
+            return 1;
+        node(c).out.emplace_back(f, f + n);
+        return 0;
+    },
+    [](void* c) { return node(c).nonce = node(c).nonce * 1664525u + 1013904223u; },
+    [](void* c, int channel, const U8* d, U32 n) {
+        if (n < 1 || n > LINK_MAX_MESSAGE || channel < 0 || channel >= LINK_CHANNELS)
+            __builtin_trap();
+        for (U32 i = 0; i < n; ++i)
+            node(c).sum += d[i];
+        return node(c).busy ? 1 : 0;
+    },
+    [](void* c, int channel, int isOpen) {
+        node(c).sum += static_cast<uint64_t>(channel + isOpen);
+    },
+    [](void* c, Link_State state) { node(c).sum += state; },
+    [](void* c, int, U32 tag, Link_Outcome) { node(c).sum += tag; },
+    [](void* c) { ++node(c).sum; }};
 
 const U8 key[LINK_KEY_BYTES] = {1, 2, 3};
 
@@ -34,7 +88,9 @@ public:
             Link_start(n->link.get(), now_);
             n->nonce += 77;
         }
-        for (int i = 0; i < 3; ++i) {
+        if (isMinimal)
+            feed(hello(1));
+        for (int i = 0; i < 3 && !isMinimal; ++i) {
             pass(400);
             cross(a_, b_, 99);
             cross(b_, a_, 99);
@@ -42,17 +98,19 @@ public:
     }
     void run(const uint8_t* p, size_t size) {
         while (size >= 2) {
-            uint8_t step = p[0] & 7, n = p[1];
+            const uint8_t step = p[0] & 7, n = p[1];
             p += 2;
             size -= 2;
-            size_t take = step < 5 ? (n < size ? n : size) : 0;
+            const size_t take = step < 5 && !(isMinimal && step == 4) ? (n < size ? n : size) : 0;
             Bytes bytes(p, p + take);
             p += take;
             size -= take;
+            if (isMinimal && step > 1 && step < 5)
+                now_ += 30000; // a silence, so that the frame is seen
             if (step < 2)
                 feed(bytes);
             else if (step < 5)
-                feed(frame(bytes, step == 4));
+                feed(isMinimal && step == 4 ? hello(n) : frame(bytes, step));
             else if (step == 5)
                 pass(n);
             else if (step == 6)
@@ -60,32 +118,34 @@ public:
             else
                 cross(b_, a_, n);
             a_.busy = n & 0x40 && step == 5;
+            if (isMinimal) {
+                Link_poll(a_.link.get(), now_);
+                if (step == 7)
+                    a_.out.clear();
+            }
+            (void)Link_deadline(a_.link.get(), now_);
         }
         a_.busy = false;
         pass(12000);
+        Link_stop(a_.link.get(), now_);
     }
 
 private:
-    // A frame that A takes for its peer's if its contents make sense.
-    Bytes frame(Bytes bytes, bool isHandshake) const {
-        const size_t most = LINK_MAX_FRAME - a_.link->overhead + LINK_HEADER;
-        if (bytes.size() < LINK_HEADER)
-            return bytes;
-        if (bytes.size() > most)
-            bytes.resize(most);
-        bytes[0] = static_cast<uint8_t>((bytes[0] & 0x80) | (bytes.size() - LINK_HEADER));
-        if (a_.link->overhead != LINK_OVERHEAD)
-            return sealed(bytes, isHandshake);
-        return checked(bytes, isHandshake ? LINK_NO_SEED : a_.link->session.key);
-    }
-    // The same under a key. A HELLO is under its own; the others of the handshake are for the
+#ifdef LINK_MINIMAL
+    U32 sessionKey() const { return a_.link->key; }
+    U32 expected() const { return a_.link->receiveNext; }
+    Bytes sealed(Bytes bytes, bool) const { return bytes; }
+#else
+    U32 sessionKey() const { return a_.link->session.key; }
+    U32 expected() const { return a_.link->receiver.next; }
+    // The frame under a key. A HELLO is under its own; the others of the handshake are for the
     // nonce of now, from a peer whose nonce is in the input.
     Bytes sealed(Bytes bytes, bool isHandshake) const {
         const Link* link = a_.link.get();
         const U8* under = link->session.keys.receive;
         Link_Keys keys;
         U32 kind = bytes[2] >> 5 & 7;
-        U32 number = link->receiver.next, acked = 0;
+        U32 number = expected(), acked = 0;
         if (isHandshake) {
             kind = LINK_KIND_HELLO + kind % 3;
             bytes.resize(LINK_HEADER + (kind == LINK_KIND_HELLO ? 8 : 16));
@@ -98,19 +158,15 @@ private:
                 link_deriveKeys(key, link->handshake.nonce, &bytes[LINK_HEADER], &keys);
                 under = keys.receive;
             }
-        } else {
-            bytes[2] =
-                static_cast<uint8_t>((bytes[2] & ~0x1C) | LINK_KEY_EPOCH(link->session.key) << 2);
-            if (bytes[0] & LINK_CONTROL) {
-                if (kind == LINK_KIND_ACK)
-                    number = link->sender.base;
-                else if (kind == LINK_KIND_PING)
-                    number = bytes[2] & 1 ? link->watch.pingsSent : link->watch.pingsSeen;
-                else if (kind >= LINK_KIND_PIGGYBACK && bytes.size() > LINK_HEADER)
-                    acked = link_extend(link->sender.base, bytes[LINK_HEADER]);
-                if (kind == LINK_KIND_BYE)
-                    number = bytes[1];
-            }
+        } else if (bytes[0] & LINK_CONTROL) {
+            if (kind == LINK_KIND_ACK)
+                number = link->sender.base;
+            else if (kind == LINK_KIND_PING)
+                number = bytes[2] & 1 ? link->watch.pingsSent : link->watch.pingsSeen;
+            else if (kind >= LINK_KIND_PIGGYBACK && bytes.size() > LINK_HEADER)
+                acked = link_extend(link->sender.base, bytes[LINK_HEADER]);
+            if (kind == LINK_KIND_BYE)
+                number = bytes[1];
         }
         number = link_extend(number, bytes[1]);
         const U32 header = bytes[0] | U32(bytes[1]) << 8 | U32(bytes[2]) << 16;
@@ -118,8 +174,37 @@ private:
         link_protect(bytes.data(), header, under, number, acked);
         return bytes;
     }
+#endif
+    // A frame that A takes for its peer's if its contents make sense.
+    Bytes frame(Bytes bytes, int step) const {
+        const bool isHandshake = step == 4;
+        const size_t most = LINK_MAX_FRAME - a_.link->overhead + LINK_HEADER;
+        if (bytes.size() < LINK_HEADER)
+            return bytes;
+        if (bytes.size() > most)
+            bytes.resize(most);
+        bytes[0] = static_cast<uint8_t>((bytes[0] & 0x80) | (bytes.size() - LINK_HEADER));
+        if (step == 3 && !(bytes[0] & LINK_CONTROL))
+            bytes[1] = static_cast<uint8_t>(expected());
+        if (!isHandshake)
+            bytes[2] = static_cast<uint8_t>((bytes[2] & ~0x1C) | LINK_KEY_EPOCH(sessionKey()) << 2);
+        if (a_.link->overhead != LINK_OVERHEAD)
+            return sealed(bytes, isHandshake);
+        return checked(bytes, isHandshake ? LINK_NO_SEED : sessionKey());
+    }
+    static Bytes hello(uint8_t nonce) {
+        return checked({0x84, LINK_VERSION, 0x20, nonce, 2, 3, 4}, LINK_NO_SEED);
+    }
+    // The frame with its checksum.
+    static Bytes checked(Bytes frame, U32 seed) {
+        const U32 crc = link_crc(seed, frame.data(), static_cast<U32>(frame.size()));
+        frame.push_back(static_cast<uint8_t>(crc >> 8));
+        frame.push_back(static_cast<uint8_t>(crc));
+        return frame;
+    }
     void feed(const Bytes& bytes) {
-        Link_receive(a_.link.get(), bytes.data(), static_cast<U32>(bytes.size()), now_);
+        if (!bytes.empty())
+            Link_receive(a_.link.get(), bytes.data(), static_cast<U32>(bytes.size()), now_);
     }
     void pass(unsigned ms) {
         for (unsigned i = 0; i < ms; i += 20) {
@@ -130,12 +215,12 @@ private:
         }
     }
     void send(uint8_t n) {
-        Bytes message(n, n);
-        Link_Status status = Link_send(a_.link.get(), n % 4, message.data(), n, n);
-        if (status == LINK_CLOSED)
+        const Bytes message(isMinimal ? n * 5u : n, n);
+        const U32 size = static_cast<U32>(message.size());
+        if (Link_send(a_.link.get(), n % 4, message.data(), size, n) == LINK_CLOSED)
             Link_openChannel(a_.link.get(), n % 4);
-        if (n == 255)
-            Link_closeChannel(a_.link.get(), 3);
+        if (n == 255 || (isMinimal && n / 4 % 4 == 3))
+            Link_closeChannel(a_.link.get(), n % 4);
     }
     void cross(Node& from, Node& to, unsigned count) {
         for (; count && !from.out.empty(); --count) {

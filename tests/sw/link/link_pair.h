@@ -6,18 +6,18 @@
 #define LINK_PAIR_H
 
 extern "C" {
-#include "link.h"
+#include "layer.h"
 }
 
 #include "random.h"
-#include <cstring>
 #include <deque>
-#include <functional>
 #include <map>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+using Bytes = std::vector<uint8_t>;
+using Messages = std::vector<std::pair<int, Bytes>>; // channel and contents of each
 
 // The radio's faults, with the probability of each for a packet.
 struct Weather {
@@ -25,55 +25,79 @@ struct Weather {
     uint32_t delayUs = 8000;
 };
 
-constexpr uint32_t byteTimeUs16 = 1440; // 111,111 baud
-
+// A link with its program and its radio. `now` is the pair's time.
 class Side {
 public:
-    using Bytes = std::vector<uint8_t>;
-
-    explicit Side(uint64_t seed, const Bytes& key = {})
-        : random_(seed), link_(std::make_unique<Link>()), key_(key) {
+    Side(const Layer& of, const uint64_t& now, uint64_t seed, const Bytes& key)
+        : layer(of), now_(now), random_(seed), key_(key), memory_(of.size / sizeof(uint64_t) + 1) {
         boot();
     }
 
     // Forgets everything, like a reboot after a power cut.
     void boot() {
-        static const Link_Port port = {transmit, random, message, channel, state, outcome, nullptr};
-        Link_init(link_.get(), &port, this, byteTimeUs16);
+        static const Link_Port port = {transmit, random,    onMessage, onChannel,
+                                       onState,  onOutcome, nullptr};
+        layer.init(link(), &port, this, byteTimeUs * 16);
         if (!key_.empty())
-            Link_setKey(link_.get(), 0, key_.data());
+            layer.setKey(link(), 0, key_.data());
         air.clear();
         serialFreeUs = 0;
     }
-
-    Link* link() { return link_.get(); }
+    Link* link() { return reinterpret_cast<Link*>(memory_.data()); }
+    bool isUp() { return layer.state(link()) == LINK_STATE_UP; }
+    // Returns how many sessions have begun.
+    unsigned sessions() const {
+        unsigned count = 0;
+        for (auto& event : events)
+            count += event == "up";
+        return count;
+    }
+    Link_Status send(int channel, const Bytes& m, U32 tag) {
+        return layer.send(link(), channel, m.data(), static_cast<U32>(m.size()), tag);
+    }
+    Link_Status open(int channel) { return layer.openChannel(link(), channel); }
+    Link_Status close(int channel) { return layer.closeChannel(link(), channel); }
+    void start() { layer.start(link(), us()); }
+    void stop() { layer.stop(link(), us()); }
+    void poll() { layer.poll(link(), us()); }
+    U32 deadline() { return layer.deadline(link(), us()); }
+    void receive(const Bytes& bytes) {
+        layer.receive(link(), bytes.data(), static_cast<U32>(bytes.size()), us());
+    }
+    const Link_Statistics& statistics() { return *layer.statistics(link()); }
 
     struct Packet {
         uint64_t arrives;
         Bytes bytes;
     };
 
-    uint64_t nowUs = 0, serialFreeUs = 0;
+    const Layer& layer;
     Weather weather;
     std::deque<Packet> air; // towards the peer, in order of arrival
-    std::vector<std::pair<int, Bytes>> received;
-    std::map<uint32_t, Link_Outcome> outcomes;
+    Messages received;
+    std::map<U32, Link_Outcome> outcomes;
     std::vector<std::string> events;
     bool refuse = false; // the program takes no message
-    unsigned queued() const { return static_cast<unsigned>(air.size()); }
+    uint64_t serialFreeUs = 0, bytesSent = 0;
+    unsigned packetsLost = 0;
 
 private:
-    static Side& self(void* context) { return *static_cast<Side*>(context); }
+    static constexpr U32 byteTimeUs = 90; // 111,111 baud
 
-    // One serial port of 11.1 kB/s, then the air; four packets fit the modem and its ring.
+    static Side& self(void* context) { return *static_cast<Side*>(context); }
+    U32 us() const { return static_cast<U32>(now_); }
+
+    // One serial port, then the air; four packets fit the modem and its ring.
     static int transmit(void* context, const U8* frame, U32 size) {
         Side& s = self(context);
-        if (s.serialFreeUs > s.nowUs + 4 * 9000)
+        if (s.serialFreeUs > s.now_ + 4 * 9000)
             return 1;
-        uint64_t start = std::max(s.serialFreeUs, s.nowUs);
-        s.serialFreeUs = start + size * byteTimeUs16 / 16;
-        if (s.random_.chance(s.weather.loss))
+        s.serialFreeUs = std::max(s.serialFreeUs, s.now_) + size * byteTimeUs;
+        s.bytesSent += size;
+        if (s.random_.chance(s.weather.loss)) {
+            ++s.packetsLost;
             return 0;
+        }
         Packet packet{s.serialFreeUs + s.weather.delayUs, Bytes(frame, frame + size)};
         if (s.random_.chance(s.weather.corruption))
             packet.bytes[s.random_.below(size)] ^= static_cast<uint8_t>(1 + s.random_.below(255));
@@ -83,72 +107,68 @@ private:
         return 0;
     }
     static U32 random(void* context) { return self(context).random_.next(); }
-    static int message(void* context, int channel, const U8* data, U32 size) {
-        if (self(context).refuse)
-            return 1;
-        self(context).received.emplace_back(channel, Bytes(data, data + size));
-        return 0;
+    static int onMessage(void* context, int channel, const U8* data, U32 size) {
+        if (!self(context).refuse)
+            self(context).received.emplace_back(channel, Bytes(data, data + size));
+        return self(context).refuse;
     }
-    static void channel(void* context, int channel, int isOpen) {
+    static void onChannel(void* context, int channel, int isOpen) {
         self(context).events.push_back((isOpen ? "open " : "close ") + std::to_string(channel));
     }
-    static void state(void* context, Link_State state) {
+    static void onState(void* context, Link_State state) {
         static const char* const names[] = {"idle", "connecting", "up"};
         self(context).events.push_back(names[state]);
     }
-    static void outcome(void* context, int, U32 tag, Link_Outcome outcome) {
-        auto& outcomes = self(context).outcomes;
-        if (!outcomes.emplace(tag, outcome).second)
+    static void onOutcome(void* context, int, U32 tag, Link_Outcome outcome) {
+        if (!self(context).outcomes.emplace(tag, outcome).second)
             throw std::logic_error("two outcomes for message " + std::to_string(tag));
     }
 
+    const uint64_t& now_;
     Random random_;
-    std::unique_ptr<Link> link_;
     const Bytes key_;
+    std::vector<uint64_t> memory_;
 };
 
 class Pair {
 public:
-    explicit Pair(uint64_t seed, const Side::Bytes& key = {})
-        : a(seed * 2 + 1, key), b(seed * 2 + 2, key) {}
+    explicit Pair(uint64_t seed, const Bytes& key = {}, const Layer& ofA = layer,
+                  const Layer& ofB = layer)
+        : a(ofA, now, seed * 2 + 1, key), b(ofB, now, seed * 2 + 2, key) {}
 
-    void setWeather(Weather weather) { a.weather = b.weather = weather; }
+    void setWeather(const Weather& weather) { a.weather = b.weather = weather; }
 
-    // Lets `us` microseconds pass, in steps of the firmware's tick.
-    void run(uint64_t us) {
-        for (uint64_t end = nowUs + us; nowUs < end; nowUs += 1000) {
-            a.nowUs = b.nowUs = nowUs;
+    // Lets time pass, in steps of the firmware's tick, until something is so. Returns whether it
+    // was within `limitUs`.
+    template <class Done> bool until(Done done, uint64_t limitUs) {
+        for (uint64_t end = now + limitUs; now < end; now += 1000) {
             deliver(a, b);
             deliver(b, a);
-            Link_poll(a.link(), now32());
-            Link_poll(b.link(), now32());
-        }
-    }
-    bool runUntil(const std::function<bool()>& done, uint64_t limitUs) {
-        for (uint64_t end = nowUs + limitUs; nowUs < end; run(1000))
+            a.poll();
+            b.poll();
             if (done())
                 return true;
-        return done();
+        }
+        return false;
     }
-    bool bothUp() {
-        return Link_state(a.link()) == LINK_STATE_UP && Link_state(b.link()) == LINK_STATE_UP;
+    void run(uint64_t us) {
+        until([] { return false; }, us);
     }
+    bool bothUp() { return a.isUp() && b.isUp(); }
     bool connect() {
-        Link_start(a.link(), now32());
-        return runUntil([&] { return bothUp(); }, 30000000);
+        a.start();
+        return until([this] { return bothUp(); }, 30'000'000);
     }
-    U32 now32() const { return static_cast<U32>(nowUs); }
 
+    uint64_t now = 0xFFFF0000u; // so that the 32-bit time wraps in every test
     Side a, b;
-    uint64_t nowUs = 0xFFFF0000u; // so that the 32-bit time wraps in every test
 
 private:
     void deliver(Side& from, Side& to) {
-        while (!from.air.empty() && from.air.front().arrives <= nowUs) {
-            Side::Packet packet = from.air.front();
+        while (!from.air.empty() && from.air.front().arrives <= now) {
+            const Bytes bytes = from.air.front().bytes;
             from.air.pop_front();
-            Link_receive(to.link(), packet.bytes.data(), static_cast<U32>(packet.bytes.size()),
-                         now32());
+            to.receive(bytes);
         }
     }
 };

@@ -1,189 +1,274 @@
 // SPDX-License-Identifier: MIT
 //
-// link_test: sessions, channels and messages of two link layers, one fault at a time.
+// link_test: sessions, channels and messages, one fault at a time: of a ground with the full layer
+// and vehicles with the full and the minimal one, in the clear and under a key.
 
-#include "link_pair.h"
-#include <gtest/gtest.h>
+#include "link_variants.h"
 
 namespace {
 
-TEST(LinkLayer, HandshakeBringsBothSidesUpAndChannelsOpenInOrder) {
-    Pair pair(testSeed());
-    ASSERT_TRUE(pair.connect());
-    Link_openChannel(pair.a.link(), 1);
-    Side::Bytes hello = {'h', 'i'};
-    Link_send(pair.a.link(), 1, hello.data(), 2, 7);
-    Link_closeChannel(pair.a.link(), 1);
-    ASSERT_TRUE(pair.runUntil([&] { return pair.a.outcomes.count(7) != 0; }, 1000000));
-    ASSERT_EQ(pair.b.received.size(), 1u);
-    EXPECT_EQ(pair.b.received[0].second, hello);
-    EXPECT_EQ(pair.b.events, (std::vector<std::string>{"up", "open 1", "close 1"}));
-}
+class LinkLayer : public Variants {};
 
-TEST(LinkLayer, BothSidesMayStartAtOnce) {
-    Pair pair(testSeed());
-    Link_start(pair.b.link(), pair.now32());
-    ASSERT_TRUE(pair.connect());
-    pair.run(3000000);
-    EXPECT_TRUE(pair.bothUp());
-    EXPECT_EQ(Link_statistics(pair.a.link())->sessions, 1u);
-    EXPECT_EQ(Link_statistics(pair.b.link())->sessions, 1u);
-}
-
-TEST(LinkLayer, SizesAreChecked) {
-    Pair pair(testSeed());
-    Side::Bytes big(LINK_MAX_MESSAGE + 1);
-    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), 5, 0), LINK_DOWN);
-    ASSERT_TRUE(pair.connect());
-    ASSERT_EQ(Link_openChannel(pair.a.link(), 0), LINK_OK);
-    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), LINK_MAX_MESSAGE + 1, 0), LINK_TOO_LONG);
-    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), 0, 0), LINK_TOO_LONG);
-    for (int channel : {-1, LINK_CHANNELS}) {
-        EXPECT_EQ(Link_send(pair.a.link(), channel, big.data(), 1, 0), LINK_CLOSED);
-        EXPECT_EQ(Link_openChannel(pair.a.link(), channel), LINK_CLOSED);
-        EXPECT_EQ(Link_closeChannel(pair.a.link(), channel), LINK_CLOSED);
+TEST_P(LinkLayer, ChannelsOpenAndCloseFromBothSidesInOrder) {
+    ASSERT_TRUE(connect());
+    ASSERT_EQ(a.open(1), LINK_OK);
+    ASSERT_EQ(a.send(1, {1}, 1), LINK_OK);
+    ASSERT_EQ(a.close(1), LINK_OK);
+    ASSERT_EQ(b.open(3), LINK_OK);
+    ASSERT_EQ(b.send(3, Bytes(300, 2), 2), LINK_OK);
+    if (isMinimal()) {
+        EXPECT_EQ(b.close(3), LINK_FULL); // its opening has not gone out
     }
-    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), LINK_MAX_MESSAGE, 0), LINK_OK);
-    // The check of each takes two more bytes; short messages have a reserve.
+    ASSERT_TRUE(until([&] { return b.close(3) == LINK_OK; }, 1'000'000));
+    ASSERT_TRUE(until([&] { return b.outcomes.count(2) && a.outcomes.count(1); }, 2'000'000));
+    run(300'000);
+    EXPECT_EQ(b.events, (std::vector<std::string>{"up", "open 1", "close 1"}));
+    EXPECT_EQ(a.events, (std::vector<std::string>{"connecting", "up", "open 3", "close 3"}));
+    EXPECT_EQ(a.received, (Messages{{3, Bytes(300, 2)}}));
+    EXPECT_EQ(b.received, (Messages{{1, {1}}}));
+    EXPECT_EQ(a.open(1), LINK_OK); // both sides have said that it is closed
+    EXPECT_EQ(b.open(3), LINK_OK);
+}
+
+TEST_P(LinkLayer, BothSidesMayStartAtOnce) {
+    b.start();
+    ASSERT_TRUE(connect());
+    run(3'000'000);
+    EXPECT_TRUE(bothUp());
+    EXPECT_EQ(a.sessions(), 1u);
+    EXPECT_EQ(b.sessions(), 1u);
+}
+
+TEST_P(LinkLayer, WhatIsWrongIsRefused) {
+    const Link_Status none = isMinimal() ? LINK_CLOSED : LINK_DOWN;
+    EXPECT_EQ(b.open(0), LINK_DOWN);
+    EXPECT_EQ(b.send(0, {1}, 0), none);
+    ASSERT_TRUE(connect());
+    EXPECT_EQ(b.send(0, {1}, 0), LINK_CLOSED);
+    EXPECT_EQ(b.close(0), LINK_CLOSED);
+    for (int channel : {-1, LINK_CHANNELS}) {
+        EXPECT_EQ(b.open(channel), isMinimal() ? LINK_DOWN : LINK_CLOSED);
+        EXPECT_EQ(b.close(channel), LINK_CLOSED);
+        EXPECT_EQ(b.send(channel, {1}, 0), LINK_CLOSED);
+    }
+    ASSERT_EQ(b.open(0), LINK_OK);
+    EXPECT_EQ(b.send(0, Bytes(b.layer.maxMessage + 1), 0), LINK_TOO_LONG);
+    EXPECT_EQ(b.send(0, {}, 0), LINK_TOO_LONG);
+    EXPECT_EQ(b.send(0, Bytes(b.layer.maxMessage), 1), LINK_OK);
+    if (isMinimal()) {
+        EXPECT_EQ(b.send(0, {1}, 2), LINK_FULL);
+    }
+    ASSERT_TRUE(until([&] { return b.outcomes.count(1) != 0; }, 10'000'000));
+    EXPECT_EQ(a.received[0].second.size(), b.layer.maxMessage);
+}
+
+TEST_P(LinkLayer, AChannelThatNobodyHasOpenedIsRefused) {
+    ASSERT_TRUE(connect());
+    EXPECT_EQ(a.send(1, {1}, 0), LINK_CLOSED);
+    EXPECT_EQ(a.close(1), LINK_CLOSED);
+    ASSERT_EQ(a.open(1), LINK_OK);
+    EXPECT_EQ(a.send(1, {1}, 1), LINK_OK);
+    EXPECT_EQ(b.send(1, {1}, 2), LINK_CLOSED); // not there yet
+    ASSERT_TRUE(until([&] { return a.outcomes.count(1) != 0; }, 1'000'000));
+    EXPECT_EQ(b.send(1, {1}, 3), LINK_OK);
+    a.close(1);
+    EXPECT_EQ(a.send(1, {1}, 4), LINK_CLOSED);
+    run(300'000);
+    EXPECT_EQ(b.send(1, {1}, 5), LINK_CLOSED);
+    EXPECT_EQ(b.received.size(), 1u);
+}
+
+// Random bytes in a session, between messages: no fault, and the link goes on. BYTES gives their
+// number to the full layer.
+TEST_P(LinkLayer, TenMillionRandomBytesAreSurvived) {
+    const char* given = std::getenv("BYTES");
+    const unsigned long bytes = isMinimal() || GetParam().hasKey ? 1'000'000
+                                : given                          ? std::strtoul(given, nullptr, 0)
+                                                                 : 10'000'000;
+    ASSERT_TRUE(connect());
+    b.start();
+    Bytes noise(isMinimal() ? 1000 : 10'000);
+    for (unsigned long done = 0; done < bytes; done += noise.size()) {
+        for (auto& byte : noise)
+            byte = static_cast<uint8_t>(random.next());
+        b.receive(noise);
+        run(2000);
+    }
+    ASSERT_TRUE(until([&] { return bothUp(); }, 60'000'000)) << "seed " << testSeed();
+    run(1'000'000);
+    b.received.clear();
+    ASSERT_TRUE(until(
+        [&] {
+            a.open(2);
+            return a.send(2, {'h', 'i'}, 9) == LINK_OK;
+        },
+        60'000'000));
+    ASSERT_TRUE(until([&] { return !b.received.empty(); }, 60'000'000));
+    EXPECT_EQ(b.received.back().second, (Bytes{'h', 'i'}));
+    std::printf("link layer: %lu bytes of noise in a session, it works\n", bytes);
+}
+
+TEST_P(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {
+    ASSERT_TRUE(connect());
+    setWeather({1, 0, 0});
+    for (Side* side : {&a, &b}) {
+        side->open(3);
+        EXPECT_EQ(side->send(3, {1, 2, 3}, 1), LINK_OK);
+    }
+    ASSERT_TRUE(until([&] { return a.outcomes.size() && b.outcomes.size(); }, 30'000'000));
+    EXPECT_EQ(a.outcomes[1], LINK_UNKNOWN);
+    EXPECT_EQ(b.outcomes[1], LINK_UNKNOWN);
+    EXPECT_EQ(a.layer.state(a.link()), LINK_STATE_CONNECTING);
+    EXPECT_EQ(b.layer.state(b.link()), LINK_STATE_IDLE);
+    EXPECT_EQ(b.deadline(), 0xFFFFFFFFU);
+    setWeather({});
+    EXPECT_TRUE(until([&] { return bothUp(); }, 20'000'000));
+    EXPECT_TRUE(a.received.empty() && b.received.empty());
+}
+
+// The ground hears of it by its next frame, not by 9 s of silence.
+TEST_P(LinkLayer, ARebootOfTheVehicleIsNoticedByTheNextFrame) {
+    ASSERT_TRUE(connect());
+    a.open(0);
+    run(100'000);
+    b.boot();
+    EXPECT_EQ(a.send(0, {1}, 7), LINK_OK);
+    ASSERT_TRUE(until([&] { return a.outcomes.count(7) != 0; }, 500'000));
+    EXPECT_EQ(a.outcomes[7], LINK_UNKNOWN);
+    EXPECT_TRUE(until([&] { return bothUp(); }, 1'000'000));
+}
+
+// The time of the last PING has become so old that it would read as a future time.
+TEST_P(LinkLayer, ASilenceAfterFortyMinutesOfTrafficIsAskedAbout) {
+    ASSERT_TRUE(connect());
+    ASSERT_EQ(a.open(0), LINK_OK);
+    for (U32 tag = 0; tag < 800; ++tag) {
+        a.send(0, {1}, tag);
+        run(3'000'000);
+    }
+    run(15'000'000);
+    EXPECT_EQ(a.sessions(), 1u);
+    EXPECT_EQ(b.sessions(), 1u);
+    EXPECT_TRUE(bothUp());
+}
+
+TEST_P(LinkLayer, AClosingWaitsForRoomAndIsNotLost) {
+    ASSERT_TRUE(connect());
+    ASSERT_EQ(a.open(1), LINK_OK);
+    run(300'000);
+    unsigned sent = 0;
+    while (a.send(1, {1}, sent) == LINK_OK)
+        ++sent;
+    EXPECT_EQ(a.close(1), LINK_OK);
+    EXPECT_EQ(a.close(1), LINK_CLOSED);
+    run(1'200'000);
+    EXPECT_EQ(b.received.size(), sent);
+    EXPECT_EQ(b.events.back(), "close 1");
+    EXPECT_EQ(a.open(1), LINK_OK);
+}
+
+TEST_P(LinkLayer, ALateMessageDoesNotReachTheNextConnection) {
+    ASSERT_TRUE(connect());
+    ASSERT_EQ(b.open(3), LINK_OK);
+    run(300'000);
+    ASSERT_EQ(a.send(3, {1}, 0), LINK_OK);
+    ASSERT_EQ(b.close(3), LINK_OK);
+    EXPECT_EQ(b.open(3), LINK_FULL);
+    run(300'000);
+    EXPECT_EQ(b.open(3), LINK_OK);
+    run(300'000);
+    EXPECT_TRUE(b.received.empty());
+}
+
+TEST_P(LinkLayer, AMessageThatIsNotTakenWaitsAndStopsTheSender) {
+    ASSERT_TRUE(connect());
+    b.refuse = true;
+    a.open(0);
+    for (U32 tag = 0; tag < 10; ++tag)
+        EXPECT_EQ(a.send(0, Bytes(900, static_cast<uint8_t>(tag)), tag), LINK_OK);
+    run(12'000'000);
+    EXPECT_TRUE(bothUp());
+    EXPECT_TRUE(b.received.empty());
+    b.refuse = false;
+    ASSERT_TRUE(until([&] { return a.outcomes.size() == 10; }, 30'000'000));
+    ASSERT_EQ(b.received.size(), 10u);
+    for (uint8_t tag = 0; tag < 10; ++tag)
+        EXPECT_EQ(b.received[tag].second, Bytes(900, tag));
+}
+
+TEST_P(LinkLayer, StopTellsThePeer) {
+    ASSERT_TRUE(connect());
+    run(100'000);
+    b.stop();
+    run(15'000);
+    EXPECT_EQ(a.events.back(), "connecting");
+    ASSERT_TRUE(until([&] { return bothUp(); }, 1'000'000)); // the ground calls again
+    a.stop();
+    run(15'000);
+    EXPECT_EQ(b.events.back(), "idle");
+    run(1'000'000);
+    EXPECT_FALSE(b.isUp());
+}
+
+INSTANTIATE_TEST_SUITE_P(Vehicles, LinkLayer, ::testing::ValuesIn(vehicles(1)));
+
+class MinimalLayer : public Variants {};
+
+// The link works if Link_poll is called only at the times of Link_deadline.
+TEST_P(MinimalLayer, TheDeadlineIsWhenSomethingIsToBeDone) {
+    ASSERT_TRUE(connect());
+    ASSERT_EQ(b.open(3), LINK_OK);
+    EXPECT_LE(b.deadline(), 1000u);
+    run(100'000);
+    EXPECT_GT(b.deadline(), 1'000'000u); // the ground's silence
+    setWeather({1, 0, 0});
+    ASSERT_EQ(b.send(3, {1}, 1), LINK_OK);
+    run(2000);
+    EXPECT_GT(b.deadline(), 100'000u); // goes out again after 144 ms
+    EXPECT_LE(b.deadline(), 144'000u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Vehicles, MinimalLayer,
+                         ::testing::Values(Variant{"full", "minimal", false},
+                                           Variant{"full", "minimal", true}));
+
+TEST(FullLayer, TheQueueHasAReserveForShortMessages) {
+    Pair pair(testSeed());
+    ASSERT_TRUE(pair.connect());
+    ASSERT_EQ(pair.a.open(0), LINK_OK);
+    EXPECT_EQ(pair.a.send(0, Bytes(LINK_MAX_MESSAGE), 0), LINK_OK);
+    // The check of each takes two more bytes.
     const U32 rest = LINK_SEND_BYTES - LINK_RESERVE - LINK_MAX_MESSAGE - 4;
-    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), rest + 1, 1), LINK_FULL);
-    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), rest, 1), LINK_OK);
-    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), LINK_MAX_PAYLOAD + 1, 2), LINK_FULL);
+    EXPECT_EQ(pair.a.send(0, Bytes(rest + 1), 1), LINK_FULL);
+    EXPECT_EQ(pair.a.send(0, Bytes(rest), 1), LINK_OK);
+    EXPECT_EQ(pair.a.send(0, Bytes(LINK_MAX_PAYLOAD + 1), 2), LINK_FULL);
     for (U32 left = LINK_RESERVE, tag = 2; left; ++tag, left -= std::min(left, 20u))
-        EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), std::min(left, 20u), tag), LINK_OK);
-    EXPECT_EQ(Link_send(pair.a.link(), 0, big.data(), 1, 2), LINK_FULL);
-    ASSERT_TRUE(pair.runUntil([&] { return pair.a.outcomes.size() == 15; }, 10000000));
+        EXPECT_EQ(pair.a.send(0, Bytes(std::min(left, 20u)), tag), LINK_OK);
+    EXPECT_EQ(pair.a.send(0, {1}, 2), LINK_FULL);
+    ASSERT_TRUE(pair.until([&] { return pair.a.outcomes.size() == 15; }, 10'000'000));
     EXPECT_EQ(pair.b.received[0].second.size(), LINK_MAX_MESSAGE);
     EXPECT_EQ(pair.b.received[1].second.size(), rest);
 }
 
-TEST(LinkLayer, AChannelThatNobodyHasOpenedIsRefused) {
-    Pair pair(testSeed());
-    const U8 byte = 1;
-    ASSERT_TRUE(pair.connect());
-    EXPECT_EQ(Link_send(pair.a.link(), 1, &byte, 1, 0), LINK_CLOSED);
-    EXPECT_EQ(Link_closeChannel(pair.a.link(), 1), LINK_CLOSED);
-    ASSERT_EQ(Link_openChannel(pair.a.link(), 1), LINK_OK);
-    EXPECT_EQ(Link_send(pair.a.link(), 1, &byte, 1, 1), LINK_OK);
-    EXPECT_EQ(Link_send(pair.b.link(), 1, &byte, 1, 2), LINK_CLOSED); // not there yet
-    ASSERT_TRUE(pair.runUntil([&] { return pair.a.outcomes.count(1) != 0; }, 1000000));
-    EXPECT_EQ(Link_send(pair.b.link(), 1, &byte, 1, 3), LINK_OK);
-    Link_closeChannel(pair.a.link(), 1);
-    EXPECT_EQ(Link_send(pair.a.link(), 1, &byte, 1, 4), LINK_CLOSED);
-    pair.run(300000);
-    EXPECT_EQ(Link_send(pair.b.link(), 1, &byte, 1, 5), LINK_CLOSED);
-    EXPECT_EQ(pair.b.received.size(), 1u);
-}
-
-// 10^7 random bytes in a session, between messages: no fault, and the link goes on.
-// BYTES=1000000 takes less.
-TEST(LinkLayer, TenMillionRandomBytesAreSurvived) {
-    const char* given = std::getenv("BYTES");
-    const unsigned long bytes = given ? std::strtoul(given, nullptr, 0) : 10'000'000;
-    Pair pair(testSeed());
-    ASSERT_TRUE(pair.connect());
-    Link_start(pair.b.link(), pair.now32());
-    Random random(testSeed());
-    Side::Bytes noise(10000), hello = {'h', 'i'};
-    for (unsigned long done = 0; done < bytes; done += noise.size()) {
-        for (auto& byte : noise)
-            byte = static_cast<uint8_t>(random.next());
-        Link_receive(pair.b.link(), noise.data(), static_cast<U32>(noise.size()), pair.now32());
-        pair.run(2000);
-    }
-    ASSERT_TRUE(pair.runUntil([&] { return pair.bothUp(); }, 60000000)) << "seed " << testSeed();
-    pair.run(1000000);
-    pair.b.received.clear();
-    ASSERT_TRUE(pair.runUntil(
-        [&] {
-            if (Link_send(pair.a.link(), 2, hello.data(), 2, 1u << 30) == LINK_OK)
-                return true;
-            Link_openChannel(pair.a.link(), 2);
-            return false;
-        },
-        60000000));
-    ASSERT_TRUE(pair.runUntil([&] { return !pair.b.received.empty(); }, 60000000));
-    EXPECT_EQ(pair.b.received.back().second, hello);
-    std::printf("link layer: %lu bytes of noise in a session, it works\n", bytes);
-}
-
-TEST(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {
-    Pair pair(testSeed());
-    ASSERT_TRUE(pair.connect());
-    pair.setWeather({1.0, 0, 0, 8000});
-    Side::Bytes bytes = {1, 2, 3};
-    Link_openChannel(pair.a.link(), 0);
-    Link_send(pair.a.link(), 0, bytes.data(), 3, 1);
-    ASSERT_TRUE(pair.runUntil([&] { return !pair.a.outcomes.empty(); }, 20000000));
-    EXPECT_EQ(pair.a.outcomes[1], LINK_UNKNOWN);
-    EXPECT_EQ(Link_state(pair.a.link()), LINK_STATE_CONNECTING);
-    pair.setWeather({});
-    EXPECT_TRUE(pair.runUntil([&] { return pair.bothUp(); }, 20000000));
-    EXPECT_TRUE(pair.b.received.empty());
-}
-
-// The time of the last PING has become so old that it would read as a future time.
-TEST(LinkLayer, ASilenceAfterFortyMinutesOfTrafficIsAskedAbout) {
-    Pair pair(testSeed());
-    ASSERT_TRUE(pair.connect());
-    ASSERT_EQ(Link_openChannel(pair.a.link(), 0), LINK_OK);
-    const U8 byte = 1;
-    for (U32 tag = 0; tag < 800; ++tag) {
-        Link_send(pair.a.link(), 0, &byte, 1, tag);
-        pair.run(3000000);
-    }
-    pair.run(15000000);
-    EXPECT_EQ(Link_statistics(pair.a.link())->sessions, 1u);
-    EXPECT_EQ(Link_statistics(pair.b.link())->sessions, 1u);
-    EXPECT_TRUE(pair.bothUp());
-}
-
-TEST(LinkLayer, AClosingWaitsForRoomAndIsNotLost) {
-    Pair pair(testSeed());
-    const U8 byte = 1;
-    ASSERT_TRUE(pair.connect());
-    ASSERT_EQ(Link_openChannel(pair.a.link(), 1), LINK_OK);
-    pair.run(300000);
-    unsigned sent = 0;
-    while (Link_send(pair.a.link(), 1, &byte, 1, sent) == LINK_OK)
-        ++sent;
-    EXPECT_EQ(Link_closeChannel(pair.a.link(), 1), LINK_OK);
-    EXPECT_EQ(Link_closeChannel(pair.a.link(), 1), LINK_CLOSED);
-    pair.run(600000);
-    EXPECT_EQ(pair.b.received.size(), sent);
-    EXPECT_EQ(pair.b.events.back(), "close 1");
-    EXPECT_EQ(Link_openChannel(pair.a.link(), 1), LINK_OK);
-}
-
-TEST(LinkLayer, StopTellsThePeer) {
-    Pair pair(testSeed());
-    ASSERT_TRUE(pair.connect());
-    Link_stop(pair.a.link(), pair.now32());
-    pair.run(200000);
-    EXPECT_EQ(Link_state(pair.b.link()), LINK_STATE_IDLE);
-    EXPECT_EQ(pair.b.events.back(), "idle");
-}
-
 // Answers faster than modems mean a wire, which needs no turns.
-TEST(LinkLayer, OverAWireACallWaitsForNoTurn) {
+TEST(FullLayer, OverAWireACallWaitsForNoTurn) {
     Pair pair(testSeed());
     pair.setWeather({0, 0, 0, 0});
     ASSERT_TRUE(pair.connect());
-    Link_openChannel(pair.a.link(), 0);
+    pair.a.open(0);
     pair.run(100'000);
-    const Side::Bytes call(2, 7);
-    auto take =
-        [&](unsigned calls) { // calls one after the other, each answered; returns microseconds
-            const uint64_t start = pair.nowUs;
-            for (unsigned i = 0; i < calls; ++i)
-                for (auto [from, to] : {std::pair(&pair.a, &pair.b), std::pair(&pair.b, &pair.a)}) {
-                    const size_t arrived = to->received.size();
-                    Link_send(from->link(), 0, call.data(), 2, static_cast<U32>(pair.nowUs));
-                    EXPECT_TRUE(
-                        pair.runUntil([&] { return to->received.size() > arrived; }, 1'000'000));
-                }
-            return pair.nowUs - start;
-        };
+    // Makes calls one after the other, each answered; returns microseconds.
+    auto take = [&](unsigned calls) {
+        const uint64_t start = pair.now;
+        for (unsigned i = 0; i < calls; ++i)
+            for (auto [from, to] : {std::pair(&pair.a, &pair.b), std::pair(&pair.b, &pair.a)}) {
+                const size_t arrived = to->received.size();
+                from->send(0, Bytes(2, 7), static_cast<U32>(pair.now));
+                EXPECT_TRUE(pair.until([&] { return to->received.size() > arrived; }, 1'000'000));
+                pair.run(1000);
+            }
+        return pair.now - start;
+    };
     take(20); // now both know the way's speed
     EXPECT_LE(take(20), 20 * 12'000u);
 }

@@ -4,43 +4,38 @@
 // channel.
 
 #include "ice_messages.h"
-#include "variant.h"
-#include <gtest/gtest.h>
+#include "link_variants.h"
 
 namespace {
 
 // The arrived messages: channel and size of each.
 using Arrived = std::vector<std::pair<int, size_t>>;
 
-// The variant of B (A has the full layer), and whether they have a key.
-class Overtaking : public ::testing::TestWithParam<std::tuple<std::string, bool>>, public Radio {
+class Overtaking : public Variants {
 protected:
-    Overtaking()
-        : Radio("full", std::get<0>(GetParam()), testSeed(),
-                Bytes(std::get<1>(GetParam()) ? LINK_KEY_BYTES : 0, 0x5A)) {}
     void SetUp() override {
         ASSERT_TRUE(connect());
         for (int channel : {0, 1, 2})
-            ASSERT_EQ(a_.open(channel), LINK_OK);
+            ASSERT_EQ(a.open(channel), LINK_OK);
         run(500'000);
     }
-    void send(int channel, const Bytes& m) { ASSERT_EQ(a_.send(channel, m, tag_++), LINK_OK); }
+    void send(int channel, const Bytes& m) { ASSERT_EQ(a.send(channel, m, tag_++), LINK_OK); }
     // Returns the microseconds of one message of 10 bytes.
     uint64_t call() {
-        const size_t before = b_.received.size();
-        const uint64_t start = now_;
+        const size_t before = b.received.size();
+        const uint64_t start = now;
         send(1, Bytes(10, 2));
-        EXPECT_TRUE(until([&] { return b_.received.size() > before; }, 5'000'000));
-        EXPECT_EQ(b_.received.back(), std::make_pair(1, Bytes(10, 2)));
-        return now_ - start;
+        EXPECT_TRUE(until([&] { return b.received.size() > before; }, 5'000'000));
+        EXPECT_EQ(b.received.back(), std::make_pair(1, Bytes(10, 2)));
+        return now - start;
     }
     // Waits until all is reported as delivered.
     Arrived arrived() {
-        EXPECT_TRUE(until([&] { return a_.outcomes.size() == tag_; }, 60'000'000));
-        for (auto& [tag, outcome] : a_.outcomes)
+        EXPECT_TRUE(until([&] { return a.outcomes.size() == tag_; }, 60'000'000));
+        for (auto& [tag, outcome] : a.outcomes)
             EXPECT_EQ(outcome, LINK_DELIVERED) << "message " << tag;
         Arrived list;
-        for (auto& [channel, bytes] : b_.received)
+        for (auto& [channel, bytes] : b.received)
             list.emplace_back(channel, bytes.size());
         return list;
     }
@@ -69,12 +64,12 @@ TEST_P(FullOvertaking, OnlyAcrossChannelsAndTheLongOneComesWhole) {
     send(1, Bytes(12, 3)); // behind a long one of its channel
     send(2, Bytes(13, 4));
     send(2, Bytes(14, 4));
-    a_.close(2);
+    a.close(2);
     const Arrived all = arrived();
     EXPECT_EQ(all, (Arrived{{2, 13}, {2, 14}, {0, 1000}, {0, 11}, {1, 300}, {1, 12}}));
-    for (auto& [channel, bytes] : b_.received)
+    for (auto& [channel, bytes] : b.received)
         EXPECT_EQ(bytes, Bytes(bytes.size(), bytes.front()));
-    EXPECT_EQ(b_.events.back(), "close 2");
+    EXPECT_EQ(b.events.back(), "close 2");
 }
 
 // Both sides number the heads of requests alike only if they pass in the order of Link_send.
@@ -84,7 +79,7 @@ TEST_P(FullOvertaking, NothingOvertakesAHeadThatThePeerLearns) {
     };
     send(1, request(1, "known", 1));
     run(300'000);
-    b_.received.clear();
+    b.received.clear();
     send(0, request(1, "picture", 500));
     send(1, request(2, "picture", 1)); // it uses the head that the picture brings
     send(0, request(2, "picture", 700));
@@ -93,38 +88,36 @@ TEST_P(FullOvertaking, NothingOvertakesAHeadThatThePeerLearns) {
     send(0, request(3, "picture", 900));
     send(1, request(4, "known", 3)); // overtakes only that one
     (void)arrived();
-    const std::vector<std::pair<int, Bytes>> expected = {
-        {0, request(1, "picture", 500)}, {1, request(2, "picture", 1)},
-        {0, request(2, "picture", 700)}, {1, request(3, "fresh", 1)},
-        {2, request(0, "known", 2)},     {1, request(4, "known", 3)},
-        {0, request(3, "picture", 900)}};
-    EXPECT_EQ(b_.received, expected);
+    const Messages expected = {{0, request(1, "picture", 500)}, {1, request(2, "picture", 1)},
+                               {0, request(2, "picture", 700)}, {1, request(3, "fresh", 1)},
+                               {2, request(0, "known", 2)},     {1, request(4, "known", 3)},
+                               {0, request(3, "picture", 900)}};
+    EXPECT_EQ(b.received, expected);
 }
 
 TEST_P(FullOvertaking, ManyShortOnesLeaveTheLongOneHalf) {
     send(0, Bytes(800, 1));
     EXPECT_TRUE(until(
         [&] {
-            if (a_.send(1, Bytes(80, 2), tag_) == LINK_OK)
+            if (a.send(1, Bytes(80, 2), tag_) == LINK_OK)
                 ++tag_;
-            return b_.received.size() && b_.received.back().first == 0;
+            return b.received.size() && b.received.back().first == 0;
         },
         5'000'000));
-    EXPECT_LE(b_.received.size(), 12u); // as many as it has fragments
-    EXPECT_GE(b_.received.size(), 6u);
+    EXPECT_LE(b.received.size(), 12u); // as many as it has fragments
+    EXPECT_GE(b.received.size(), 6u);
 }
 
 TEST_P(FullOvertaking, InBadWeatherEachChannelKeepsItsOrder) {
-    setWeather(0.2, 0.05, 0.02);
-    Random random(testSeed());
-    std::vector<std::pair<int, Bytes>> sent[3], came[3];
+    setWeather({0.2, 0.05, 0.02});
+    Messages sent[3], came[3];
     unsigned number = 0, overtook = 0;
     EXPECT_TRUE(until(
         [&] {
             const int channel = static_cast<int>(random.below(3));
             Bytes m(random.below(4) ? 2 + random.below(60) : 900, static_cast<uint8_t>(number));
             m[1] = static_cast<uint8_t>(number >> 8);
-            if (number < 400 && a_.send(channel, m, tag_) == LINK_OK) {
+            if (number < 400 && a.send(channel, m, tag_) == LINK_OK) {
                 sent[channel].emplace_back(channel, m);
                 ++number, ++tag_;
             }
@@ -133,7 +126,7 @@ TEST_P(FullOvertaking, InBadWeatherEachChannelKeepsItsOrder) {
         120'000'000));
     (void)arrived();
     int newest = -1;
-    for (auto& message : b_.received) {
+    for (auto& message : b.received) {
         const int which = message.second[0] | message.second[1] << 8;
         overtook += which < newest;
         newest = std::max(newest, which);
@@ -145,10 +138,10 @@ TEST_P(FullOvertaking, InBadWeatherEachChannelKeepsItsOrder) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Peers, FullOvertaking,
-                         ::testing::Values(std::make_tuple("full", false),
-                                           std::make_tuple("full", true),
-                                           std::make_tuple("small", false),
-                                           std::make_tuple("open", false)));
+                         ::testing::Values(Variant{"full", "full", false},
+                                           Variant{"full", "full", true},
+                                           Variant{"full", "small", false},
+                                           Variant{"full", "open", false}));
 
 TEST_P(Overtaking, NothingOvertakesTowardsTheMinimalLayer) {
     send(0, Bytes(900, 1));
@@ -158,7 +151,7 @@ TEST_P(Overtaking, NothingOvertakesTowardsTheMinimalLayer) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Peers, Overtaking,
-                         ::testing::Values(std::make_tuple("minimal", false),
-                                           std::make_tuple("minimal", true)));
+                         ::testing::Values(Variant{"full", "minimal", false},
+                                           Variant{"full", "minimal", true}));
 
 } // namespace

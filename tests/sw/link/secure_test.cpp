@@ -3,54 +3,43 @@
 // secure_test: sessions with a key, and an attacker without it: a third radio that hears
 // everything and sends any bytes.
 
-#include "link_pair.h"
-#include "variant.h"
-#include <algorithm>
-#include <cstdlib>
-#include <gtest/gtest.h>
+#include "link_variants.h"
 
 namespace {
 
-const Bytes key(LINK_KEY_BYTES, 0x5A), otherKey(LINK_KEY_BYTES, 0x5B);
-
 // A ground with the full layer, a vehicle with the full or the minimal one, and the attacker
-// between. Messages carry their number, so that a lost, doubled or forged one shows at once.
-class Attacked : public ::testing::TestWithParam<std::tuple<std::string, int>>, public Radio {
+// between.
+class Attacked : public Variants {
 protected:
-    Attacked() : Radio("full", std::get<0>(GetParam()), seed(), key) {}
-    static uint64_t seed() {
-        return testSeed() * 100 + static_cast<uint64_t>(std::get<1>(GetParam()));
-    }
-
     // The attacker hears all new packets of a side.
     void listen() {
         for (size_t side = 0; side < 2; ++side) {
-            Peer& from = side ? b_ : a_;
-            for (auto& [time, packet] : from.air)
-                if (time > heardUntil_[side])
-                    for (Bytes& frame : framesOf(packet)) {
+            Side& from = side ? b : a;
+            for (auto& packet : from.air)
+                if (packet.arrives > heardUntil_[side])
+                    for (Bytes& frame : framesOf(packet.bytes)) {
                         // The modem controller counts a packet's bytes by its first one.
                         EXPECT_EQ(frame.size(), LINK_LENGTH(frame) + LINK_OVERHEAD);
-                        recorded_.push_back({&from == &a_, std::move(frame)});
+                        recorded_.push_back({side == 0, std::move(frame)});
                     }
             if (!from.air.empty())
-                heardUntil_[side] = from.air.back().first;
+                heardUntil_[side] = from.air.back().arrives;
         }
     }
-    void attack(Peer& to, const Bytes& bytes) {
-        to.receive(to.link(), bytes.data(), static_cast<U32>(bytes.size()), us());
+    void attack(Side& to, const Bytes& bytes) {
+        to.receive(bytes);
         ++hostile_;
     }
     const Bytes& any() {
-        return recorded_[random_.below(static_cast<uint32_t>(recorded_.size()))].bytes;
+        return recorded_[random.below(static_cast<uint32_t>(recorded_.size()))].bytes;
     }
 
     // One hostile packet of a random kind to a random side. Nothing in it is a frame that its
     // receiver has not heard from its peer before, but for what `replay` may bring: exact copies.
     void hostile() {
-        Peer& to = random_.below(2) ? a_ : b_;
+        Side& to = random.below(2) ? a : b;
         Bytes frame = any();
-        switch (random_.below(8)) {
+        switch (random.below(8)) {
         case 0: // replay, reflection, reordering: an unchanged packet of either side, at any time
             break;
         case 1: // several of them in a row
@@ -58,42 +47,42 @@ protected:
                 frame.insert(frame.end(), more.begin(), more.end());
             break;
         case 2: // one bit
-            frame[random_.below(static_cast<uint32_t>(frame.size()))] ^=
-                static_cast<uint8_t>(1u << random_.below(8));
+            frame[random.below(static_cast<uint32_t>(frame.size()))] ^=
+                static_cast<uint8_t>(1u << random.below(8));
             break;
         case 3: // cut
-            frame.resize(1 + random_.below(static_cast<uint32_t>(frame.size())));
+            frame.resize(1 + random.below(static_cast<uint32_t>(frame.size())));
             break;
         case 4: // the attacker's header around a heard payload
             for (size_t i = 0; i < LINK_HEADER && i < frame.size(); ++i)
-                if (random_.below(2))
-                    frame[i] = static_cast<uint8_t>(random_.next());
+                if (random.below(2))
+                    frame[i] = static_cast<uint8_t>(random.next());
             break;
         case 5: { // a control frame: ACK, HELLO, HELLO-ACK, CONFIRM (or RST), BYE, PING; guessed
                   // tag
             static const uint8_t sizes[] = {1, 8, 16, 16, 0, 0};
-            uint32_t kind = random_.below(6);
+            uint32_t kind = random.below(6);
             frame = {static_cast<uint8_t>(0x80 | (sizes[kind] + LINK_TAG_MORE)),
-                     static_cast<uint8_t>(LINK_IS_HANDSHAKE(kind) ? LINK_VERSION : random_.next()),
-                     static_cast<uint8_t>(kind << 5 | (random_.next() & 0x1F))};
+                     static_cast<uint8_t>(LINK_IS_HANDSHAKE(kind) ? LINK_VERSION : random.next()),
+                     static_cast<uint8_t>(kind << 5 | (random.next() & 0x1F))};
             const Bytes& heard = any();
             for (size_t i = 0; i < sizes[kind] + LINK_TAG; ++i)
                 frame.push_back(i < sizes[kind] && i + 3 < heard.size()
                                     ? heard[i + 3]
-                                    : static_cast<uint8_t>(random_.next()));
+                                    : static_cast<uint8_t>(random.next()));
             break;
         }
         case 6: // a data frame in order, guessed
             frame = Bytes(LINK_SECURE_OVERHEAD +
-                          random_.below(LINK_MAX_FRAME - LINK_SECURE_OVERHEAD + 1));
+                          random.below(LINK_MAX_FRAME - LINK_SECURE_OVERHEAD + 1));
             for (auto& byte : frame)
-                byte = static_cast<uint8_t>(random_.next());
+                byte = static_cast<uint8_t>(random.next());
             frame[0] = static_cast<uint8_t>(frame.size() - LINK_OVERHEAD);
             break;
         default: // the open protocol's RST, HELLO and PING
-            frame = {static_cast<uint8_t>(random_.below(2) ? 0x80 : 0x84),
+            frame = {static_cast<uint8_t>(random.below(2) ? 0x80 : 0x84),
                      LINK_VERSION,
-                     static_cast<uint8_t>(random_.next()),
+                     static_cast<uint8_t>(random.next()),
                      1,
                      2,
                      3,
@@ -105,46 +94,18 @@ protected:
         }
         attack(to, frame);
     }
-    void offer(Peer& from, std::vector<std::pair<int, Bytes>>& sent, size_t most) {
-        Bytes m(4 + random_.below(random_.below(4) ? 30 : 400), static_cast<uint8_t>(sent.size()));
-        for (size_t i = 0; i < 4; ++i)
-            m[i] = static_cast<uint8_t>(sent.size() >> 8 * i);
-        if (sent.size() < most) {
-            Link_Status status = from.send(1, m, static_cast<U32>(sent.size()));
-            if (status == LINK_OK)
-                sent.emplace_back(1, m);
-            else if (status == LINK_CLOSED)
-                from.open(1);
-        }
-    }
     // Sends hostile packets as often as the layer can bear: the minimal one finds the next frame
     // only after 25 ms of silence.
     void maybeHostile() {
-        if (!recorded_.empty() && random_.chance(std::get<0>(GetParam()) == "full" ? 0.5 : 0.02))
+        if (!recorded_.empty() && random.chance(isMinimal() ? 0.02 : 0.5))
             hostile();
     }
     // Messages both ways.
-    bool traffic(size_t messages, bool isAttacked, uint64_t limitUs) {
-        return until(
-            [&] {
-                offer(a_, sentA_, messages);
-                offer(b_, sentB_, messages);
-                listen();
-                if (isAttacked)
-                    maybeHostile();
-                return a_.outcomes.size() >= messages && b_.outcomes.size() >= messages;
-            },
-            limitUs);
-    }
-    void expectAllArrivedOnce() {
-        EXPECT_TRUE(b_.received == sentA_) << b_.received.size() << " of " << sentA_.size();
-        EXPECT_TRUE(a_.received == sentB_) << a_.received.size() << " of " << sentB_.size();
-        for (auto* side : {&a_, &b_})
-            for (auto& [tag, outcome] : side->outcomes)
-                EXPECT_EQ(outcome, LINK_DELIVERED) << tag;
-    }
-    static unsigned ups(const Peer& side) {
-        return static_cast<unsigned>(std::count(side.events.begin(), side.events.end(), "up"));
+    bool attackedTraffic(size_t messages, uint64_t limitUs) {
+        return traffic(messages, limitUs, [&] {
+            listen();
+            maybeHostile();
+        });
     }
 
     struct Heard {
@@ -152,35 +113,33 @@ protected:
         Bytes bytes;
     };
     std::vector<Heard> recorded_;
-    std::vector<std::pair<int, Bytes>> sentA_, sentB_;
     uint64_t heardUntil_[2] = {0, 0};
     uint64_t hostile_ = 0;
-    Random random_{seed() * 31 + 5};
 };
 
 // HOSTILE=10000000 sends more, nearly all of them to the full layer.
 TEST_P(Attacked, NothingHostileIsAcceptedAndNothingLegalLostOrDoubled) {
     const char* more = std::getenv("HOSTILE");
-    const uint64_t most = (more ? std::strtoull(more, nullptr, 10) : 60000) /
-                          (std::get<0>(GetParam()) == "full" ? 2 : 20);
+    const uint64_t most =
+        (more ? std::strtoull(more, nullptr, 10) : 60000) / (isMinimal() ? 20 : 2);
     ASSERT_TRUE(connect());
     for (size_t messages = 20; hostile_ < most; messages += 20)
-        ASSERT_TRUE(traffic(messages, true, 600'000'000)) << hostile_ << " hostile packets";
-    expectAllArrivedOnce();
-    EXPECT_EQ(ups(a_), 1u);
-    EXPECT_EQ(ups(b_), 1u);
+        ASSERT_TRUE(attackedTraffic(messages, 600'000'000)) << hostile_ << " hostile packets";
+    expectAllDelivered();
+    EXPECT_EQ(a.sessions(), 1u);
+    EXPECT_EQ(b.sessions(), 1u);
     RecordProperty("packets", static_cast<int>(hostile_));
     std::printf("%llu hostile packets, %zu + %zu messages\n",
-                static_cast<unsigned long long>(hostile_), sentA_.size(), sentB_.size());
+                static_cast<unsigned long long>(hostile_), sentA.size(), sentB.size());
 }
 
 // Recordings of earlier sessions, before reboots of both sides, have no effect either.
 TEST_P(Attacked, RecordingsOfEarlierSessionsAreWorthNothing) {
     for (unsigned boot = 0; boot < 6; ++boot) {
-        size_t before[2] = {a_.received.size(), b_.received.size()};
-        Peer& side = boot % 2 ? a_ : b_;
+        size_t before[2] = {a.received.size(), b.received.size()};
+        Side& side = boot % 2 ? a : b;
         side.boot();
-        a_.start(a_.link(), us());
+        a.start();
         until(
             [&] {
                 listen();
@@ -188,14 +147,14 @@ TEST_P(Attacked, RecordingsOfEarlierSessionsAreWorthNothing) {
                 return false;
             },
             12'000'000); // longer than the other side's session
-        EXPECT_EQ(a_.received.size(), before[0]);
-        EXPECT_EQ(b_.received.size(), before[1]);
+        EXPECT_EQ(a.received.size(), before[0]);
+        EXPECT_EQ(b.received.size(), before[1]);
         ASSERT_TRUE(until([&] { return bothUp(); }, 30'000'000)) << "boot " << boot;
-        sentA_.clear(), sentB_.clear();
-        a_.outcomes.clear(), b_.outcomes.clear();
-        a_.received.clear(), b_.received.clear();
-        ASSERT_TRUE(traffic(20, true, 60'000'000)) << "boot " << boot;
-        expectAllArrivedOnce();
+        sentA.clear(), sentB.clear();
+        a.outcomes.clear(), b.outcomes.clear();
+        a.received.clear(), b.received.clear();
+        ASSERT_TRUE(attackedTraffic(20, 60'000'000)) << "boot " << boot;
+        expectAllDelivered();
     }
 }
 
@@ -203,15 +162,15 @@ TEST_P(Attacked, RecordingsOfEarlierSessionsAreWorthNothing) {
 TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
     std::map<int, unsigned> kinds;
     auto flip = [&] {
-        for (auto [from, to] : {std::pair(&a_, &b_), std::pair(&b_, &a_)})
-            for (auto& [time, packet] : from->air)
-                for (const Bytes& frame : framesOf(packet)) {
-                    int kind = frame[0] & LINK_CONTROL ? frame[2] >> 5 : int(LINK_KIND_DATA);
+        for (auto [from, to] : {std::pair(&a, &b), std::pair(&b, &a)})
+            for (auto& packet : from->air)
+                for (const Bytes& frame : framesOf(packet.bytes)) {
+                    const int kind = kindOf(frame);
                     if (kinds[kind]++ > 2)
                         continue;
                     auto rest = [&] { // what is kept of half a frame is dropped
-                        now_ += 26'000;
-                        to->poll(to->link(), us());
+                        now += 26'000;
+                        to->poll();
                     };
                     rest();
                     for (size_t bit = 0; bit < frame.size() * 8; ++bit) {
@@ -219,11 +178,11 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
                         wrong[bit / 8] ^= static_cast<uint8_t>(1u << bit % 8);
                         size_t had = to->received.size(), events = to->events.size();
                         // (The minimal layer does not count.)
-                        U32 good = to->statistics(to->link())->framesReceived;
+                        U32 good = to->statistics().framesReceived;
                         attack(*to, wrong);
                         EXPECT_EQ(to->received.size(), had) << "kind " << kind << ", bit " << bit;
                         EXPECT_EQ(to->events.size(), events) << "kind " << kind << ", bit " << bit;
-                        EXPECT_EQ(to->statistics(to->link())->framesReceived, good)
+                        EXPECT_EQ(to->statistics().framesReceived, good)
                             << "kind " << kind << ", bit " << bit;
                         if (bit < 8) // another length
                             rest();
@@ -231,17 +190,17 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
                 }
         return false;
     };
-    a_.start(a_.link(), us());
+    a.start();
     ASSERT_TRUE(until([&] { return flip() || bothUp(); }, 30'000'000));
-    sentA_.clear();
+    sentA.clear();
     until(
         [&] {
-            offer(a_, sentA_, 3);
-            offer(b_, sentB_, 3);
+            offer(a, sentA, 3);
+            offer(b, sentB, 3);
             return flip();
         },
         8'000'000); // with a PING
-    b_.stop(b_.link(), us());
+    b.stop();
     until([&] { return flip(); }, 100'000);
     for (int kind : {0, 1, 2, 3, 4, 5, 8})
         EXPECT_TRUE(kinds.count(kind)) << "no frame of kind " << kind << " has crossed";
@@ -251,57 +210,51 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
 TEST_P(Attacked, AFloodOfHellosCostsFewAnswersAndNoSession) {
     std::vector<Bytes> hellos;
     for (unsigned boot = 0; boot < 12; ++boot) {
-        a_.boot();
+        a.boot();
         recorded_.clear();
-        a_.start(a_.link(), us());
-        until([&] { return listen(), a_.isUp() && b_.isUp(); }, 12'000'000);
+        a.start();
+        until([&] { return listen(), a.isUp() && b.isUp(); }, 12'000'000);
         for (const Heard& heard : recorded_)
-            if ((heard.bytes[0] & LINK_CONTROL) && heard.bytes[2] >> 5 == LINK_KIND_HELLO)
+            if (kindOf(heard.bytes) == LINK_KIND_HELLO)
                 hellos.push_back(heard.bytes);
     }
     ASSERT_GE(hellos.size(), 12u);
     run(20'000'000); // both are in the last session
     ASSERT_TRUE(bothUp());
-    a_.events.clear(), b_.events.clear();
+    a.events.clear(), b.events.clear();
     unsigned answers = 0;
     uint64_t counted[2] = {0, 0};
-    const uint64_t start = now_;
-    ASSERT_TRUE(until(
-        [&] {
-            offer(a_, sentA_, 200);
-            offer(b_, sentB_, 200);
-            for (auto* side : {&a_, &b_}) {
-                attack(*side, hellos[random_.below(static_cast<uint32_t>(hellos.size()))]);
-                for (auto& [time, packet] : side->air)
-                    if (time > counted[side == &b_])
-                        for (const Bytes& frame : framesOf(packet))
-                            answers +=
-                                (frame[0] & LINK_CONTROL) && frame[2] >> 5 == LINK_KIND_HELLO_ACK;
-                if (!side->air.empty())
-                    counted[side == &b_] = side->air.back().first;
-            }
-            return a_.outcomes.size() == 200 && b_.outcomes.size() == 200;
-        },
-        600'000'000));
-    expectAllArrivedOnce();
-    EXPECT_EQ(ups(a_) + ups(b_), 0u);
-    EXPECT_LE(answers, 2 * (now_ - start) / LINK_ANSWER_EVERY + 2);
+    const uint64_t start = now;
+    ASSERT_TRUE(traffic(200, 600'000'000, [&] {
+        for (auto* side : {&a, &b}) {
+            attack(*side, hellos[random.below(static_cast<uint32_t>(hellos.size()))]);
+            for (auto& packet : side->air)
+                if (packet.arrives > counted[side == &b])
+                    for (const Bytes& frame : framesOf(packet.bytes))
+                        answers += kindOf(frame) == LINK_KIND_HELLO_ACK;
+            if (!side->air.empty())
+                counted[side == &b] = side->air.back().arrives;
+        }
+    }));
+    expectAllDelivered();
+    EXPECT_EQ(a.sessions() + b.sessions(), 0u);
+    EXPECT_LE(answers, 2 * (now - start) / LINK_ANSWER_EVERY + 2);
     std::printf("%llu HELLOs in %.1f s: %u answers\n", static_cast<unsigned long long>(hostile_),
-                static_cast<double>(now_ - start) / 1e6, answers);
+                static_cast<double>(now - start) / 1e6, answers);
 }
 
 // A delayed frame that arrives long after its sender has gone finds no session.
 TEST_P(Attacked, WhoOnlyReplaysDoesNotKeepASessionAlive) {
     ASSERT_TRUE(connect());
-    ASSERT_TRUE(traffic(10, false, 60'000'000));
+    ASSERT_TRUE(traffic(10, 60'000'000));
     until([&] { return listen(), false; }, 6'000'000); // a PING among it
-    setWeather(1, 0, 0);                               // A is gone
+    setWeather({1, 0, 0});                             // A is gone
     ASSERT_TRUE(until(
         [&] {
             for (const Heard& heard : recorded_)
                 if (heard.isFromA)
-                    attack(b_, heard.bytes);
-            return !b_.isUp();
+                    attack(b, heard.bytes);
+            return !b.isUp();
         },
         10'000'000));
 }
@@ -311,24 +264,24 @@ TEST_P(Attacked, WhoOnlyReplaysDoesNotKeepASessionAlive) {
 TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
     for (bool isGone : {false, true}) {
         recorded_.clear();
-        a_.boot(), b_.boot();
-        a_.start(a_.link(), us());
-        ASSERT_TRUE(until([&] { return listen(), a_.isUp(); }, 5'000'000));
-        a_.poll(a_.link(), us());
+        a.boot(), b.boot();
+        a.start();
+        ASSERT_TRUE(until([&] { return listen(), a.isUp(); }, 5'000'000));
+        a.poll();
         listen();
         Bytes held = recorded_.back().bytes;
-        ASSERT_EQ(held[2] >> 5, LINK_KIND_CONFIRM);
-        a_.boot(); // nothing of it arrives
+        ASSERT_EQ(kindOf(held), LINK_KIND_CONFIRM);
+        a.boot(); // nothing of it arrives
         if (isGone) {
             run(LINK_NONCE_LIFE);
         } else {
-            a_.start(a_.link(), us());
+            a.start();
             ASSERT_TRUE(until([&] { return bothUp(); }, 5'000'000));
         }
-        const unsigned before = ups(b_);
-        attack(b_, held);
-        EXPECT_EQ(ups(b_), before) << (isGone ? "A is gone" : "A has a new session");
-        EXPECT_EQ(b_.isUp(), !isGone);
+        const unsigned before = b.sessions();
+        attack(b, held);
+        EXPECT_EQ(b.sessions(), before) << (isGone ? "A is gone" : "A has a new session");
+        EXPECT_EQ(b.isUp(), !isGone);
     }
 }
 
@@ -345,22 +298,23 @@ protected:
         return bytes;
     }
     void restart(bool bothCall) {
-        for (Peer* side : {&a_, &b_}) {
+        for (Side* side : {&a, &b}) {
             side->boot();
-            heardUntil_[side == &b_] = side->sent;
+            heardUntil_[side == &b] = side->bytesSent;
         }
-        setWeather(0.1, 0, 0);
-        a_.start(a_.link(), us());
+        setWeather({0.1, 0, 0});
+        a.start();
         if (bothCall)
-            b_.start(b_.link(), us());
+            b.start();
     }
     // Sends bytes to both sides when a packet has crossed, or is lost.
     void addBehindAll(const Bytes& bytes) {
-        for (Peer* from : {&a_, &b_})
-            if (uint64_t& heard = heardUntil_[from == &b_]; from->sent > heard) {
-                heard = from->sent;
-                for (Peer* to : {&a_, &b_})
-                    to->air.emplace_back(std::max(from->free, to->free) + 8000, bytes);
+        for (Side* from : {&a, &b})
+            if (uint64_t& heard = heardUntil_[from == &b]; from->bytesSent > heard) {
+                heard = from->bytesSent;
+                for (Side* to : {&a, &b})
+                    to->air.push_back(
+                        {std::max(from->serialFreeUs, to->serialFreeUs) + 8000, bytes});
             }
     }
     static constexpr uint64_t most = 20'000'000; // us until a session is there
@@ -380,11 +334,11 @@ TEST_P(Hindered, WhoSendsBlindlyPreventsNoSession) {
     for (uint8_t version : {LINK_VERSION, 0u})
         for (int run = 0; run < 5; ++run) {
             restart(run % 2);
-            uint64_t next = now_;
+            uint64_t next = now;
             EXPECT_TRUE(until(
                 [&] {
-                    for (; next <= now_; next += 50'000)
-                        for (Peer* side : {&a_, &b_})
+                    for (; next <= now; next += 50'000)
+                        for (Side* side : {&a, &b})
                             attack(*side, lure(version));
                     return bothUp();
                 },
@@ -396,32 +350,29 @@ TEST_P(Hindered, WhoSendsBlindlyPreventsNoSession) {
 // A side that starts again has a session within a second, however often its peer, which believes
 // in the session before, hears HELLOs of that session and of an earlier one.
 TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
-    auto isHello = [](const Bytes& f) {
-        return (f[0] & LINK_CONTROL) && f[2] >> 5 == LINK_KIND_HELLO;
-    };
     for (bool isGround : {true, false}) // the side that starts again
         for (uint64_t every : {100'000, 10'000, 2000}) {
-            Peer &side = isGround ? a_ : b_, &other = isGround ? b_ : a_;
+            Side &side = isGround ? a : b, &other = isGround ? b : a;
             std::vector<Bytes> old;
-            uint64_t next = now_, start = now_;
-            a_.start(a_.link(), us());
+            uint64_t next = now, start = now;
+            a.start();
             for (int restart = 0; restart < 3; ++restart) {
                 ASSERT_TRUE(until([&] { return bothUp(); }, 30'000'000));
                 run(3'000'000);
                 side.boot();
-                side.start(side.link(), us());
+                side.start();
                 ASSERT_TRUE(other.isUp());
-                next = start = now_;
+                next = start = now;
                 EXPECT_TRUE(until(
                     [&] {
-                        if (now_ % 100'000 < 1000) { // the minimal layer calls when it hears some
-                            a_.open(1);
-                            a_.send(1, {1}, static_cast<U32>(now_));
+                        if (now % 100'000 < 1000) { // the minimal layer calls when it hears some
+                            a.open(1);
+                            a.send(1, {1}, static_cast<U32>(now));
                         }
-                        for (auto& [time, packet] : side.air)
-                            if (restart < 2 && isHello(packet))
-                                old.push_back(packet);
-                        for (; restart == 2 && next <= now_; next += every)
+                        for (auto& packet : side.air)
+                            if (restart < 2 && kindOf(packet.bytes) == LINK_KIND_HELLO)
+                                old.push_back(packet.bytes);
+                        for (; restart == 2 && next <= now; next += every)
                             for (const Bytes& hello : {old.front(), old.back()})
                                 attack(other, hello), attack(side, hello);
                         return bothUp() && (restart == 2 || old.size() > unsigned(restart));
@@ -431,17 +382,13 @@ TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
             }
             std::printf("%s restarted, an old HELLO each %llu us: session after %.2f s\n",
                         isGround ? "ground" : "vehicle", static_cast<unsigned long long>(every),
-                        static_cast<double>(now_ - start) / 1e6);
+                        static_cast<double>(now - start) / 1e6);
             run(15'000'000);
             EXPECT_TRUE(bothUp());
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(Vehicles, Attacked,
-                         ::testing::Combine(::testing::Values("full", "minimal"),
-                                            ::testing::Range(0, 2)));
-INSTANTIATE_TEST_SUITE_P(Vehicles, Hindered,
-                         ::testing::Combine(::testing::Values("full", "minimal"),
-                                            ::testing::Range(0, 2)));
+INSTANTIATE_TEST_SUITE_P(Vehicles, Attacked, ::testing::ValuesIn(vehicles(2, false)));
+INSTANTIATE_TEST_SUITE_P(Vehicles, Hindered, ::testing::ValuesIn(vehicles(2, false)));
 
 } // namespace

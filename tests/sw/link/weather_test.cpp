@@ -1,146 +1,191 @@
 // SPDX-License-Identifier: MIT
 //
-// weather_test: traffic both ways over a bad radio: no message is wrong, doubled, out of order or
-// unreported; and the goodput is sufficient.
+// weather_test: traffic both ways over a bad radio, reboots, garbage: no message is wrong, doubled,
+// out of order or unreported, whichever layers meet; and the goodput is sufficient.
 
-#include "link_pair.h"
-#include <cstdlib>
-#include <gtest/gtest.h>
+#include "link_variants.h"
 
 namespace {
 
-Side::Bytes pattern(uint32_t id, uint32_t size) {
-    Side::Bytes bytes(size);
-    for (uint32_t i = 0; i < size; ++i)
-        bytes[i] = static_cast<uint8_t>((id * 2654435761u >> (i % 4 * 8)) + i);
-    return bytes;
+class Met : public Variants {};
+
+TEST_P(Met, NothingIsLostDoubledOrReorderedInBadWeather) {
+    usualSize = 200;
+    longestSize = std::min(a.layer.maxMessage, b.layer.maxMessage);
+    ASSERT_TRUE(connect());
+    setWeather({0.1, 0.05, 0.03});
+    EXPECT_TRUE(traffic(200, 1'000'000'000)) << "seed " << testSeed();
+    expectAllDelivered();
 }
 
-// Sends messages both ways while time passes; checks order, content and outcomes at the end.
-class Traffic {
-public:
-    Traffic(Pair& pair, uint64_t seed, uint32_t maxSize)
-        : pair_(pair), random_(seed), maxSize_(maxSize) {}
-
-    void offer(Side& from, std::vector<std::pair<uint32_t, Side::Bytes>>& sent) {
-        uint32_t id = static_cast<uint32_t>(sent.size());
-        Side::Bytes bytes = pattern(id, 1 + random_.below(maxSize_));
-        int channel = static_cast<int>(random_.below(4));
-        Link_Status status =
-            Link_send(from.link(), channel, bytes.data(), static_cast<U32>(bytes.size()), id);
-        if (status == LINK_OK)
-            sent.emplace_back(channel, std::move(bytes));
-        else if (status == LINK_CLOSED) // a new session
-            Link_openChannel(from.link(), channel);
+// Fragments beyond the peer's window would be sent twice.
+TEST_P(Met, OnlyWhatIsLostIsSentAgain) {
+    ASSERT_TRUE(connect());
+    a.open(1);
+    run(200'000);
+    const Bytes call(1, 7), picture(1024, 7);
+    for (U32 tag = 0; tag < 6; ++tag) {
+        ASSERT_EQ(a.send(1, call, tag), LINK_OK); // the answer takes its acknowledgement along
+        ASSERT_TRUE(until([&] { return b.received.size() == 2 * tag + 1; }, 1'000'000));
+        b.send(1, call, tag);
+        ASSERT_TRUE(until([&] { return a.outcomes.count(tag) != 0; }, 1'000'000));
+        ASSERT_EQ(a.send(1, picture, 100 + tag), LINK_OK);
+        setWeather({double(tag % 2), 0, 0});
+        run(5'000);
+        setWeather({});
+        ASSERT_TRUE(until([&] { return a.outcomes.count(100 + tag) != 0; }, 5'000'000));
     }
-
-    void run(unsigned messages, uint64_t limitUs) {
-        pair_.runUntil(
-            [&] {
-                if (sentA.size() < messages)
-                    offer(pair_.a, sentA);
-                if (sentB.size() < messages)
-                    offer(pair_.b, sentB);
-                return sentA.size() >= messages && sentB.size() >= messages &&
-                       pair_.a.outcomes.size() == messages && pair_.b.outcomes.size() == messages;
-            },
-            limitUs);
-    }
-
-    // Every message is reported. The received ones are a part of the sent ones, on each channel in
-    // order and unchanged, and contain all that are reported as delivered.
-    static void check(const std::vector<std::pair<uint32_t, Side::Bytes>>& sent, const Side& sender,
-                      const Side& receiver) {
-        ASSERT_EQ(sender.outcomes.size(), sent.size()) << "messages not reported";
-        std::deque<Side::Bytes> received[LINK_CHANNELS];
-        for (auto& [channel, bytes] : receiver.received)
-            received[channel].push_back(bytes);
-        for (size_t i = 0; i < sent.size(); ++i) {
-            auto& here = received[sent[i].first];
-            bool arrived = !here.empty() && here.front() == sent[i].second;
-            if (arrived)
-                here.pop_front();
-            if (sender.outcomes.at(static_cast<uint32_t>(i)) == LINK_DELIVERED) {
-                EXPECT_TRUE(arrived) << "message " << i << " was reported delivered";
-            }
-        }
-        for (auto& left : received)
-            EXPECT_TRUE(left.empty()) << left.size() << " messages doubled, wrong or out of order";
-    }
-
-    std::vector<std::pair<uint32_t, Side::Bytes>> sentA, sentB;
-
-private:
-    Pair& pair_;
-    Random random_;
-    uint32_t maxSize_;
-};
-
-// Small messages, as many as the link carries: sequence numbers wrap hundreds of times.
-// MESSAGES=100000 sends more.
-TEST(LinkLayer, TenThousandMessagesAtSpeedInBadWeather) {
-    const char* more = std::getenv("MESSAGES");
-    const unsigned messages = more ? static_cast<unsigned>(std::atoi(more)) : 10000;
-    Pair pair(testSeed());
-    ASSERT_TRUE(pair.connect());
-    pair.setWeather({0.05, 0.05, 0.02, 8000});
-    Traffic traffic(pair, testSeed(), 40);
-    traffic.run(messages, uint64_t(messages) * 1000000);
-    ASSERT_EQ(traffic.sentA.size(), messages);
-    ASSERT_EQ(traffic.sentB.size(), messages);
-    Traffic::check(traffic.sentA, pair.a, pair.b);
-    Traffic::check(traffic.sentB, pair.b, pair.a);
-    EXPECT_EQ(pair.a.received.size(), messages);
-    EXPECT_EQ(pair.b.received.size(), messages);
+    EXPECT_EQ(a.packetsLost, 3u);
+    EXPECT_EQ(a.statistics().fragmentsResent, a.packetsLost);
 }
+
+TEST_P(Met, AMessageThatIsTooLongForThePeerIsReported) {
+    const U32 most = b.layer.maxMessage;
+    if (a.layer.maxMessage <= most)
+        return; // it cannot be sent
+    ASSERT_TRUE(connect());
+    a.open(0);
+    a.send(0, Bytes(most + 200, 7), 5);
+    EXPECT_TRUE(until([&] { return a.outcomes.count(5) != 0; }, 20'000'000));
+    EXPECT_EQ(a.outcomes[5], LINK_UNKNOWN);
+    EXPECT_TRUE(b.received.empty());
+    EXPECT_TRUE(until([&] { return bothUp(); }, 20'000'000));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Variants, Met,
+    ::testing::Values(Variant{"full", "full", false}, Variant{"full", "small", false},
+                      Variant{"small", "full", false}, Variant{"small", "small", false},
+                      Variant{"window32", "full", false}, Variant{"small", "window32", false},
+                      Variant{"full", "minimal", false}, Variant{"window32", "minimal", false},
+                      Variant{"small", "minimal", false}, Variant{"open", "full", false},
+                      Variant{"full", "full", true}, Variant{"full", "small", true},
+                      Variant{"window32", "full", true}, Variant{"full", "minimal", true},
+                      Variant{"small", "minimal", true}, Variant{"tag4", "tag4", true},
+                      Variant{"tag4", "minimal_tag4", true}));
+
+class Seeds : public Variants {};
+
+TEST_P(Seeds, NothingIsLostDoubledOrReorderedInBadWeather) {
+    ASSERT_TRUE(connect());
+    setWeather({0.1, 0.05, 0.03});
+    EXPECT_TRUE(traffic(400, 1'000'000'000)) << "seed " << testSeed();
+    expectAllDelivered();
+}
+
+TEST_P(Seeds, RebootsAreNoticedAndMessagesInFlightReported) {
+    ASSERT_TRUE(connect());
+    b.start();
+    setWeather({0.05, 0.05, 0.01});
+    for (unsigned round = 0; round < 6; ++round) {
+        traffic(40 * (round + 1), 3'000'000 + random.below(3'000'000));
+        const bool isA = random.below(2) != 0;
+        Side& side = isA ? a : b;
+        side.boot();
+        // Counts messages in flight as lost, like an application.
+        for (U32 i = 0; i < (isA ? sentA : sentB).size(); ++i)
+            side.outcomes.emplace(i, LINK_UNKNOWN);
+        side.start();
+        ASSERT_TRUE(until([&] { return bothUp(); }, 60'000'000)) << "round " << round;
+    }
+    EXPECT_TRUE(traffic(240, 600'000'000)) << "seed " << testSeed();
+    checkBoth();
+}
+
+TEST_P(Seeds, GarbageOnTheLineDoesNotDisturbTheSession) {
+    ASSERT_TRUE(connect());
+    for (unsigned i = 0; i < 60; ++i) {
+        Bytes noise(1 + random.below(150));
+        for (auto& byte : noise)
+            byte = static_cast<uint8_t>(random.next());
+        b.receive(noise);
+        traffic(3 * (i + 1), 200'000);
+    }
+    EXPECT_TRUE(traffic(180, 100'000'000)) << "seed " << testSeed();
+    checkBoth();
+    EXPECT_EQ(b.events.front(), "up");
+    EXPECT_TRUE(b.isUp());
+    EXPECT_EQ(b.sessions(), 1u);
+    if (!isMinimal()) { // the minimal layer does not count
+        EXPECT_GT(b.statistics().crcErrors, 0u);
+    }
+}
+
+// A side that sends the beginning of a frame each 20 ms leaves no silence for a frame to follow.
+TEST_P(Seeds, BeginningsOfFramesBetweenPacketsDoNotStopIt) {
+    ASSERT_TRUE(connect());
+    uint64_t at = now;
+    EXPECT_TRUE(traffic(60, 100'000'000,
+                        [&] {
+                            if (now >= at) {
+                                b.receive(Bytes(1 + random.below(3), 0x7F));
+                                at += 20'000;
+                            }
+                        }))
+        << a.outcomes.size() << " and " << b.outcomes.size() << " messages";
+    checkBoth();
+    EXPECT_EQ(b.sessions(), 1u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Vehicles, Seeds, ::testing::ValuesIn(vehicles(4)));
+
+class Speed : public Variants {};
+
+// Sequence numbers wrap hundreds of times.
+TEST_P(Speed, TenThousandMessagesInBadWeather) {
+    usualSize = longestSize = 40;
+    ASSERT_TRUE(connect());
+    setWeather({0.05, 0.05, 0.02});
+    EXPECT_TRUE(traffic(10'000, 10'000'000'000)) << "seed " << testSeed();
+    expectAllDelivered();
+}
+
+INSTANTIATE_TEST_SUITE_P(Vehicles, Speed, ::testing::ValuesIn(vehicles(1)));
+
+class InTheClear : public Variants {};
 
 // A wrong message with a right CRC-16 comes once in 65,536 times; here the polynomial is added to
 // get one at once.
-TEST(LinkLayer, AWrongMessageWithARightChecksumIsReportedAndNotDelivered) {
-    for (uint32_t size : {20u, 60u, 95u, 300u}) {
-        Pair pair(testSeed());
-        ASSERT_TRUE(pair.connect());
-        ASSERT_EQ(Link_openChannel(pair.a.link(), 0), LINK_OK);
-        pair.run(1000000);
-        Side::Bytes bytes = pattern(size, size);
-        ASSERT_EQ(Link_send(pair.a.link(), 0, bytes.data(), size, 7), LINK_OK);
-        pair.runUntil([&] { return !pair.a.air.empty() && pair.a.air[0].bytes.size() >= 20; },
-                      1000000);
-        ASSERT_FALSE(pair.a.air.empty());
+TEST_P(InTheClear, AWrongMessageWithARightChecksumIsReportedAndNotDelivered) {
+    ASSERT_TRUE(connect());
+    for (uint32_t size : {21u, 60u, 95u, 300u}) {
+        ASSERT_TRUE(until([&] { return a.open(0) == LINK_OK; }, 30'000'000));
+        run(1'000'000);
+        ASSERT_EQ(a.send(0, Bytes(size, 0x5A), size), LINK_OK);
+        until([&] { return !a.air.empty() && a.air[0].bytes.size() >= 20; }, 1'000'000);
+        ASSERT_FALSE(a.air.empty());
         const uint8_t polynomial[] = {0x01, 0x10, 0x21};
         for (size_t i = 0; i < sizeof polynomial; ++i)
-            pair.a.air[0].bytes[10 + i] ^= polynomial[i];
-        pair.run(30000000);
-        EXPECT_TRUE(pair.b.received.empty()) << size << " bytes";
-        EXPECT_EQ(pair.a.outcomes.at(7), LINK_UNKNOWN) << size << " bytes";
+            a.air[0].bytes[10 + i] ^= polynomial[i];
+        run(30'000'000);
+        EXPECT_TRUE(b.received.empty()) << size << " bytes";
+        EXPECT_EQ(a.outcomes.at(size), LINK_UNKNOWN) << size << " bytes";
     }
 }
 
+INSTANTIATE_TEST_SUITE_P(Vehicles, InTheClear,
+                         ::testing::Values(Variant{"full", "full", false},
+                                           Variant{"full", "minimal", false}));
+
 // Goodput of one direction as a share of the modem's 10,000 bytes/s (docs/link.md): the layer paces
 // itself by the modem, though the radio here takes whatever comes.
-double goodput(double loss, uint64_t seed) {
-    Pair pair(seed);
-    EXPECT_TRUE(pair.connect());
-    pair.setWeather({loss, 0, 0, 8000});
-    Side::Bytes bytes(950, 1);
-    Link_openChannel(pair.a.link(), 0);
-    const uint64_t start = pair.nowUs;
-    uint32_t tag = 0;
-    pair.runUntil(
-        [&] {
-            while (Link_send(pair.a.link(), 0, bytes.data(), 950, tag) == LINK_OK)
-                ++tag;
-            return pair.a.outcomes.size() >= 300;
-        },
-        1000000000);
-    double seconds = static_cast<double>(pair.nowUs - start) / 1e6;
-    return 300.0 * 950 / seconds / 10000;
-}
-
-TEST(LinkLayer, GoodputMeetsItsTargets) {
+TEST(Goodput, MeetsItsTargets) {
     const double targets[][2] = {{0, 0.83}, {0.01, 0.81}, {0.1, 0.68}, {0.3, 0.42}};
     for (auto& [loss, target] : targets) {
-        double share = goodput(loss, testSeed());
+        Pair pair(testSeed());
+        ASSERT_TRUE(pair.connect());
+        pair.setWeather({loss, 0, 0});
+        pair.a.open(0);
+        const uint64_t start = pair.now;
+        uint32_t tag = 0;
+        pair.until(
+            [&] {
+                while (pair.a.send(0, Bytes(950, 1), tag) == LINK_OK)
+                    ++tag;
+                return pair.a.outcomes.size() >= 300;
+            },
+            1'000'000'000);
+        const double share = 300.0 * 950 / static_cast<double>(pair.now - start) * 1e6 / 10'000;
         std::printf("loss %4.0f %%: goodput %.1f %% of the limit (target %.0f %%)\n", loss * 100,
                     share * 100, target * 100);
         EXPECT_GE(share, target) << "loss " << loss;

@@ -28,7 +28,7 @@ protected:
                 return 0;
             },
             [](void*) {},
-            [](void* c) { return self(c).pair_.now32() / 1000; }};
+            [](void* c) { return static_cast<U32>(self(c).pair_.now) / 1000; }};
         Ice_initialize(&ic_);
         XBeeATEndpoint_init(&ic_, "xbee-at", &endpoint_, pair_.b.link(), 1, &port, this);
     }
@@ -100,7 +100,7 @@ TEST_F(RadioEndpoint, AMessageIsTakenOnceAndOnlyWhileSomebodyReceives) {
     EXPECT_EQ(ops().receive(ic_.endpointContext, buffer_, 1, &event), ICE_OK);
     EXPECT_EQ(event.kind, ICE_EVENT_MESSAGE);
     EXPECT_EQ(event.connection, 2);
-    EXPECT_EQ(Side::Bytes(buffer_, buffer_ + event.size), Side::Bytes(message, message + 3));
+    EXPECT_EQ(Bytes(buffer_, buffer_ + event.size), Bytes(message, message + 3));
     EXPECT_EQ(events(), Kinds{});
 }
 
@@ -108,7 +108,7 @@ TEST_F(RadioEndpoint, TheEndOfTheLastOwnConnectionDoesNotEndTheNext) {
     ASSERT_TRUE(pair_.connect());
     ASSERT_EQ(connect(), ICE_OK);
     pair_.run(500000);
-    Link_closeChannel(pair_.a.link(), 3);
+    pair_.a.close(3);
     pair_.run(500000);
     XBeeATEndpoint_onChannel(&endpoint_, 3, 0); // nobody has looked yet
     ASSERT_EQ(connect(), ICE_OK);
@@ -120,7 +120,7 @@ TEST_F(RadioEndpoint, ConnectingWaitsUntilTheLastClosingIsAnswered) {
     ASSERT_EQ(connect(), ICE_OK);
     pair_.run(500000);
     ops().close(ic_.endpointContext, 3);
-    EXPECT_EQ(Link_openChannel(pair_.b.link(), 3), LINK_FULL);
+    EXPECT_EQ(pair_.b.open(3), LINK_FULL);
     EXPECT_EQ(connect(), ICE_OK);
 }
 
@@ -128,17 +128,15 @@ TEST_F(RadioEndpoint, AnswersThatTheLinkHasNoRoomForWaitForASlowLink) {
     ASSERT_TRUE(pair_.connect());
     ASSERT_EQ(connect(), ICE_OK);
     pair_.run(500000);
-    Weather bad;
-    bad.loss = 0.4;
-    pair_.setWeather(bad);
-    const Side::Bytes answer(7930, 7);
+    pair_.setWeather({0.4});
+    const Bytes answer(7930, 7);
     for (int n = 0; n < 5; ++n)
         EXPECT_EQ(
             ops().send(ic_.endpointContext, 3, answer.data(), static_cast<Ice_Int>(answer.size())),
             ICE_OK)
             << n;
     run(30000);
-    EXPECT_EQ(pair_.a.received, (std::vector<std::pair<int, Side::Bytes>>(5, {3, answer})));
+    EXPECT_EQ(pair_.a.received, (Messages(5, {3, answer})));
 }
 
 TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSides) {
@@ -146,7 +144,7 @@ TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSid
     ASSERT_EQ(connect(), ICE_OK);
     pair_.run(500000);
     pair_.a.refuse = true; // the link lives, and makes no way
-    const Side::Bytes answer(7930, 7);
+    const Bytes answer(7930, 7);
     Ice_Status status = ICE_OK;
     for (int n = 0; n < 10 && status == ICE_OK; ++n)
         status =
@@ -165,7 +163,7 @@ TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSid
 // A waiting message belongs to the program that had the channel when it came.
 TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnItsChannel) {
     ASSERT_TRUE(pair_.connect());
-    const Side::Bytes answer(7930, 7);
+    const Bytes answer(7930, 7);
     auto send = [&] {
         return ops().send(ic_.endpointContext, 1, answer.data(),
                           static_cast<Ice_Int>(answer.size()));
@@ -174,13 +172,12 @@ TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnIts
         for (int isOpen : {0, 1})
             XBeeATEndpoint_onChannel(&endpoint_, 1, isOpen);
     };
-    Link_openChannel(pair_.a.link(), 1);
+    pair_.a.open(1);
     run(500);
     XBeeATEndpoint_onChannel(&endpoint_, 1, 1);
     EXPECT_EQ(events().size(), 1u);
     pair_.a.refuse = true; // the queue fills
-    while (Link_send(pair_.b.link(), 1, answer.data(), static_cast<U32>(answer.size()), 0) ==
-           LINK_OK) {
+    while (pair_.b.send(1, answer, 0) == LINK_OK) {
     }
     atWait_ = [&] { // and while the next one waits, the other task learns the end
         again();

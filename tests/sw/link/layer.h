@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * layer: a table of a link layer's functions and sizes, so that a test can join layers that were
+ * compiled with different options.
+ */
+#ifndef LAYER_H
+#define LAYER_H
+
+#include "link.h"
+
+typedef struct Layer {
+    U32 size, maxMessage; /* of a Link and of a message, in bytes */
+    void (*init)(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16);
+    void (*setKey)(Link* link, int slot, const U8* key);
+    void (*start)(Link* link, U32 nowUs);
+    void (*stop)(Link* link, U32 nowUs);
+    Link_State (*state)(const Link* link);
+    Link_Status (*openChannel)(Link* link, int channel);
+    Link_Status (*closeChannel)(Link* link, int channel);
+    Link_Status (*send)(Link* link, int channel, const U8* data, U32 size, U32 tag);
+    void (*receive)(Link* link, const U8* bytes, U32 size, U32 nowUs);
+    void (*poll)(Link* link, U32 nowUs);
+    U32 (*deadline)(const Link* link, U32 nowUs);
+    const Link_Statistics* (*statistics)(const Link* link);
+} Layer;
+
+/* The layer that this file is compiled with. */
+extern const Layer layer;
+
+#endif

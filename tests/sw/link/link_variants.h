@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+//
+// link_variants: the fixture of tests that hold for link layers of different kinds, and messages
+// both ways between them.
+
+#ifndef LINK_VARIANTS_H
+#define LINK_VARIANTS_H
+
+#include "link_pair.h"
+#include <algorithm>
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+// Names of the layers of a and b (CMakeLists.txt), and whether both have a key.
+struct Variant {
+    std::string a, b;
+    bool hasKey = false;
+    unsigned seed = 0;
+};
+
+inline void PrintTo(const Variant& v, std::ostream* out) {
+    *out << v.a << "_" << v.b << (v.hasKey ? "_key" : "_open");
+    if (v.seed)
+        *out << "_" << v.seed;
+}
+
+// Vehicles with the full and the minimal layer, in the clear and under a key, or under a key only.
+inline std::vector<Variant> vehicles(unsigned seeds, bool alsoOpen = true) {
+    std::vector<Variant> all;
+    for (const char* vehicle : {"full", "minimal"})
+        for (bool hasKey : {false, true})
+            for (unsigned seed = 0; seed < seeds; ++seed)
+                if (hasKey || alsoOpen)
+                    all.push_back({"full", vehicle, hasKey, seed});
+    return all;
+}
+
+class Variants : public ::testing::TestWithParam<Variant>, public Pair {
+protected:
+    Variants()
+        : Pair(testSeed() * 1000 + GetParam().seed,
+               Bytes(GetParam().hasKey ? LINK_KEY_BYTES : 0, 0x5A), load(GetParam().a),
+               load(GetParam().b)) {}
+
+    static bool isMinimal() { return GetParam().b.find("minimal") == 0; }
+
+    // Offers a side's next message of random bytes on a random channel.
+    void offer(Side& from, Messages& sent, size_t most) {
+        if (sent.size() >= most)
+            return;
+        const int channel = static_cast<int>(random.below(LINK_CHANNELS));
+        Bytes m(1 + random.below(random.below(4) ? usualSize : longestSize));
+        for (auto& byte : m)
+            byte = static_cast<uint8_t>(random.next());
+        const Link_Status status = from.send(channel, m, static_cast<U32>(sent.size()));
+        if (status == LINK_OK)
+            sent.emplace_back(channel, m);
+        else if (status == LINK_CLOSED) // a new session
+            from.open(channel);
+    }
+    // Sends messages both ways until their number is reached and all are reported, or time is over.
+    template <class Meanwhile>
+    bool traffic(size_t messages, uint64_t limitUs, Meanwhile meanwhile) {
+        return until(
+            [&] {
+                offer(a, sentA, messages);
+                offer(b, sentB, messages);
+                meanwhile();
+                return a.outcomes.size() == messages && b.outcomes.size() == messages;
+            },
+            limitUs);
+    }
+    bool traffic(size_t messages, uint64_t limitUs) {
+        return traffic(messages, limitUs, [] {});
+    }
+    // The messages that arrived are a part of those sent, in order and unchanged, and hold all that
+    // was reported as delivered. Between full layers a short one may overtake on another channel.
+    static void check(const Messages& sent, const Side& sender, const Side& receiver) {
+        ASSERT_EQ(sender.outcomes.size(), sent.size()) << "messages not reported";
+        auto order = [](int channel) { return isMinimal() ? 0 : channel; };
+        std::deque<Messages::value_type> received[LINK_CHANNELS];
+        for (auto& message : receiver.received)
+            received[order(message.first)].push_back(message);
+        for (size_t i = 0; i < sent.size(); ++i) {
+            auto& here = received[order(sent[i].first)];
+            const bool arrived = !here.empty() && here.front() == sent[i];
+            if (arrived)
+                here.pop_front();
+            if (sender.outcomes.at(static_cast<U32>(i)) == LINK_DELIVERED) {
+                EXPECT_TRUE(arrived) << "message " << i << " was reported delivered";
+            }
+        }
+        for (auto& left : received)
+            EXPECT_TRUE(left.empty()) << left.size() << " messages doubled, wrong or out of order";
+    }
+    void checkBoth() {
+        check(sentA, a, b);
+        check(sentB, b, a);
+    }
+    void expectAllDelivered() {
+        checkBoth();
+        for (auto* side : {&a, &b})
+            for (auto& [tag, outcome] : side->outcomes)
+                EXPECT_EQ(outcome, LINK_DELIVERED) << tag;
+    }
+
+    Messages sentA, sentB;
+    uint32_t usualSize = 60, longestSize = 500;
+    Random random{testSeed() * 77 + GetParam().seed};
+
+private:
+    static const Layer& load(const std::string& name) {
+        void* library = dlopen((VARIANTS + name + ".so").c_str(), RTLD_NOW | RTLD_LOCAL);
+        if (!library)
+            throw std::runtime_error(dlerror());
+        return *static_cast<const Layer*>(dlsym(library, "layer"));
+    }
+};
+
+// Returns the Link_Kind of a frame.
+inline int kindOf(const Bytes& frame) {
+    return frame[0] & LINK_CONTROL ? frame[2] >> 5 : LINK_KIND_DATA;
+}
+
+// The frames in a packet.
+inline std::vector<Bytes> framesOf(const Bytes& packet) {
+    std::vector<Bytes> frames;
+    for (size_t at = 0; at < packet.size();) {
+        size_t size = LINK_LENGTH(&packet[at]) + LINK_OVERHEAD;
+        frames.emplace_back(packet.begin() + static_cast<long>(at),
+                            packet.begin() + static_cast<long>(std::min(at + size, packet.size())));
+        at += size;
+    }
+    return frames;
+}
+
+#endif

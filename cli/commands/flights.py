@@ -11,7 +11,7 @@ from pathlib import Path
 from cli import flight, keys
 from cli.build_folder import BuildFolder, configured
 from cli.command import command
-from cli.options import BUILD, FLIGHT, FOLDER, JOBS, MINUTES, PATH, SECONDS, SEED, Option
+from cli.options import BUILD, FLIGHT, FOLDER, JOBS, MINUTES, PATH, SECONDS, SEED, SWITCH, Option
 from cli.runner import Interrupted, Stop, end, lock, run, say, start, until, wait
 
 FROM = Option("from", SECONDS, "begin of the waveform, in simulated time")
@@ -213,15 +213,21 @@ def gdb(values):
             end(sim)
 
 
-@command("key", [Option("file", PATH, "the file that is written", "", positional=True)],
-         brief="key build/brief/my.key", examples=["key my.key", "run --key my.key"])
+@command("key", [
+    Option("file", PATH, "the file that is written", "", positional=True),
+    Option("certificate", SWITCH, "for TLS with the gateway: the file's name says whose it is, "
+           "authority.pem beside it, which is made if missing, signs it")],
+         brief=("key build/brief/my.key", "key build/brief/pilot.pem --certificate"),
+         examples=["key my.key", "run --key my.key", "key certificates/pilot.pem --certificate"])
 def key(values):
-    """make a key of the link, for vehicle and ground (docs/security.md)"""
+    """make a key of the link, for vehicle and ground, or a certificate (docs/security.md)"""
     if not values.file:
         raise Stop("key needs the name of a file: ./icesoc key my.key", 2)
-    if not flight.make_key(values.file):
+    make = keys.make_certificate if values.certificate else flight.make_key
+    if not make(values.file):
         raise Stop(f"'{values.file}' is there already: a key is never overwritten")
-    say(f"made {values.file}, which nobody but you may read: ./icesoc run --key {values.file}")
+    used = "" if values.certificate else f": ./icesoc run --key {values.file}"
+    say(f"made {values.file}, which nobody but you may read{used}")
 
 
 @command("fly", [

@@ -309,6 +309,25 @@ class Lists(unittest.TestCase):
                 Path(work, "message").write_text("# a comment\n" + "x" * length + "\n\nWhy.\n")
                 self.assertEqual(ask(".ci/hooks/commit-msg", f"{work}/message")[0], status)
 
+    def test_a_certificate_is_signed_by_the_authority_beside_it(self):
+        with tempfile.TemporaryDirectory() as work:
+            for name in ("pilot", "observer"):
+                self.assertEqual(ask("./icesoc", "key", f"{work}/{name}.pem", "--certificate")[0], 0)
+            status, said = ask("openssl", "verify", "-CAfile", f"{work}/authority.pem",
+                               f"{work}/pilot.pem", f"{work}/observer.pem")
+            self.assertEqual((status, said.count("OK")), (0, 2), said)
+            self.assertIn("subject=CN = pilot", ask("openssl", "x509", "-noout", "-subject", "-in",
+                                                    f"{work}/pilot.pem")[1])
+            # It signs no other.
+            self.assertIn("CA:FALSE", ask("openssl", "x509", "-noout", "-text", "-in",
+                                          f"{work}/pilot.pem")[1])
+            self.assertEqual(Path(work, "pilot.pem").stat().st_mode & 0o777, 0o600)
+            self.assertIn("never overwritten", ask("./icesoc", "key", f"{work}/pilot.pem",
+                                                   "--certificate")[1])
+            Path(work, "authority.key").unlink()
+            self.assertIn("one is missing", ask("./icesoc", "key", f"{work}/new.pem",
+                                                "--certificate")[1])
+
     def test_a_table_tells_what_failed_and_what_lacks_a_network(self):
         with tempfile.TemporaryDirectory() as work, contextlib.redirect_stdout(
                 io.StringIO()) as out:

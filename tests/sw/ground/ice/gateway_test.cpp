@@ -3,8 +3,10 @@
 // gateway_test: icesoc-gateway between the radio and stock Ice programs without the plugin.
 
 #include "world.h"
+#include <IceSSL/IceSSL.h>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <map>
@@ -275,6 +277,53 @@ TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
         EXPECT_EQ(ping(name, door), "::Ice::ObjectNotExistException") << "said by the vehicle";
     }
     EXPECT_EQ(ping("echo", door), "");
+}
+
+// By TLS the subject of a client's certificate is known; the certificates are those that
+// `./icesoc key FILE --certificate` makes.
+TEST_F(Gateway, ACertificateSaysWhoAsks) {
+    const std::string folder = testing::TempDir() + "gateway_tls." + std::to_string(getpid());
+    std::filesystem::create_directories(folder + "/others");
+    for (const std::string name : {"gateway", "pilot", "observer", "others/pilot"})
+        ASSERT_EQ(std::system((ICESOC " key " + folder + "/" + name + ".pem --certificate >" +
+                               folder + "/said")
+                                  .c_str()),
+                  0);
+    std::ofstream(folder + "/rights")
+        << R"([{"who": "CN=pilot", "identities": ["*"], "operations": ["*"]},
+               {"who": "CN=observer", "identities": ["echo"], "operations": ["fetch"]}])";
+    const std::string authority = folder + "/authority.pem";
+    GatewayProgram gateway = start({"--rights", folder + "/rights", "--IceSSL.CAs=" + authority,
+                                    "--IceSSL.CertFile=" + folder + "/gateway.pem"},
+                                   "ssl -h 127.0.0.1 -p 0");
+    const int port = gateway.port();
+    ASSERT_GT(port, 0) << gateway.said();
+    const auto call = [&](const std::string& name, bool repeats) {
+        Ice::registerIceSSL();
+        Ice::InitializationData data;
+        data.properties = Ice::createProperties();
+        data.properties->setProperty("Ice.Plugin.IceSSL", "IceSSL:createIceSSL");
+        data.properties->setProperty("Ice.RetryIntervals", "-1");
+        data.properties->setProperty("IceSSL.CAs", authority);
+        if (!name.empty())
+            data.properties->setProperty("IceSSL.CertFile", folder + "/" + name + ".pem");
+        Ice::CommunicatorHolder ic(data);
+        auto echo = Ice::uncheckedCast<RadioTest::EchoPrx>(
+            ic->stringToProxy("echo:ssl -h 127.0.0.1 -t 60000 -p " + std::to_string(port)));
+        return whyFails([&] {
+            if (repeats)
+                echo->repeat(1, {1, 2});
+            else
+                echo->fetch(1);
+        });
+    };
+    EXPECT_EQ(call("pilot", true), "");
+    EXPECT_EQ(call("observer", false), "");
+    EXPECT_NE(call("observer", true).find("'CN=observer' has no right to call repeat of 'echo'"),
+              std::string::npos);
+    EXPECT_NE(call("", false), "") << "without a certificate";
+    EXPECT_NE(call("others/pilot", false), "") << "a certificate of another authority";
+    std::filesystem::remove_all(folder);
 }
 
 TEST_F(Gateway, RightsSayWhoMayCallWhat) {

@@ -130,7 +130,7 @@ def soak(values):
 @command("bench", [
     Option("only", WORDS, "these alone, without a page"),
     Option("page", PATH, "the page that is written", "docs/figures.md"), BUILD, JOBS], make="bench",
-         brief="bench --only air", long="bench --page build/bench/figures.md", examples=[
+         brief="bench --only slice", long="bench --page build/bench/figures.md", examples=[
              "bench", "bench --only air plugin"])
 def bench(values):
     """measure everything that has a figure (tests/bench), write build/bench/*.json and a page"""

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """check: proofs, sanitizers, seeded bugs, faults, hours of radio, measurements."""
+import re
 import shutil
 from pathlib import Path
 
@@ -134,6 +135,11 @@ def soak(values):
              "bench", "bench --only air plugin"])
 def bench(values):
     """measure everything that has a figure (tests/bench), write build/bench/*.json and a page"""
+    listed = Path("tests/bench/CMakeLists.txt")
+    there = re.findall(r"^ *icesoc_bench\((\w+)", listed.read_text(), re.M) if listed.exists() else []
+    for name in values.only:
+        if name not in there:
+            raise Stop(f"there is no bench '{name}': {', '.join(there)}", 2)
     build = configured(values)
     if values.only:
         Path("build/bench").mkdir(parents=True, exist_ok=True)

@@ -180,9 +180,7 @@ def nightly(values):
 
     Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them. Writes a table
     of the steps, build/nightly.md."""
-    build = BuildFolder(values.build, values).prepare(tests=True)
-    build.ninja()
-    tests = at_once(values)
+    build, tests = BuildFolder(values.build, values), at_once(values)
     # COMPARE_MS: test_quiet compares a second; FUZZ: times as many inputs of fuzzers; HOSTILE:
     # packets of test_link.
     long = {"FRESH": "1", "FUZZ": "10", "COMPARE_MS": "1000", "HOSTILE": "10000000"}
@@ -211,6 +209,7 @@ def nightly(values):
     for name in values.steps:
         if name not in steps:
             raise Stop(f"there is no step '{name}': {', '.join(steps)}", 2)
+    build.prepare(tests=True).ninja()
     table = Table("build/nightly")
     for name in values.steps or steps:  # each runs, even if an earlier one failed
         begin = time.monotonic()

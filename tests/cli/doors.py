@@ -117,34 +117,38 @@ class Values(Work):
                          ask("make", "-s", "run", "OPEN=0", "KEY=Makefile", "OUT=/proc/none")[1])
 
 
+# What a person may type, and a part of the answer.
+MISTAKES = {
+    "./icesoc rnu": "there is no command 'rnu'; did you mean run?",
+    "./icesoc core nwe": "core has no command 'nwe'; did you mean new?",
+    "./icesoc run --treshold 3": "run has no option --treshold; did you mean --threshold?",
+    "./icesoc run --loss 2": "--loss is the share of packets that is lost, 0..1, not '2'",
+    "./icesoc run --size abc":
+    "--size is WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8, not 'abc'",
+    "./icesoc run --image nofile": "cannot read '",
+    "./icesoc run --jobs 0": "--jobs is a whole number from 1 on, not '0'",
+    "./icesoc run fir": "run takes no 'fir'",
+    "./icesoc run --seed": "expected one argument",
+    "./icesoc core test": "a core is needed",
+    "./icesoc replay nowhere": "no flight was recorded in",
+    "./icesoc run --key no.key": "./icesoc key",
+    "./icesoc run --again Makefile": "cannot read the flight",
+    "./icesoc run --again cli/flight.schema.json":
+    "describes no flight: it is not of version 1",
+    "./icesoc contract": "contract has the commands diff, from-rdl",
+    "./icesoc bench --only airr": "there is no bench 'airr': simulator, air",
+    "./icesoc nightly --steps nothing --built": "there is no step 'nothing': kept, random",
+    "make -s rnu": "there is no 'make rnu'; did you mean run?",
+    "make -s run LOS=1": "there is no variable LOS of make run; did you mean LOSS?",
+    "make -s run DRAW=3": "it is one of make mutants",
+    "make -s run CAMERA=yes": "CAMERA is 1 or 0, not 'yes'",
+    "make -s run SIZE=96x65k": "SIZE is WIDTHxHEIGHT",
+}
+
+
 class Mistakes(Work):
     def test_each_is_answered_in_words(self):
-        for words, said in (
-            ("./icesoc rnu", "there is no command 'rnu'; did you mean run?"),
-            ("./icesoc core nwe", "core has no command 'nwe'; did you mean new?"),
-            ("./icesoc run --treshold 3",
-             "run has no option --treshold; did you mean --threshold?"),
-            ("./icesoc run --loss 2", "--loss is the share of packets that is lost, 0..1, not '2'"),
-            ("./icesoc run --size abc",
-             "--size is WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8, not 'abc'"),
-            ("./icesoc run --image nofile",
-             "cannot read '"), ("./icesoc run --jobs 0",
-                                "--jobs is a whole number from 1 on, not '0'"),
-            ("./icesoc run fir", "run takes no 'fir'"), ("./icesoc run --seed",
-                                                         "expected one argument"),
-            ("./icesoc core test",
-             "a core is needed"), ("./icesoc replay nowhere",
-                                   "no flight was recorded in"), ("./icesoc run --key no.key",
-                                                                  "./icesoc key"),
-            ("./icesoc run --again Makefile",
-             "cannot read the flight"), ("./icesoc run --again cli/flight.schema.json",
-                                         "describes no flight: it is not of version 1"),
-            ("./icesoc contract", "contract has the commands diff, from-rdl"),
-            ("make -s rnu", "there is no 'make rnu'; did you mean run?"),
-            ("make -s run LOS=1", "there is no variable LOS of make run; did you mean LOSS?"),
-            ("make -s run DRAW=3", "it is one of make mutants"),
-            ("make -s run CAMERA=yes", "CAMERA is 1 or 0, not 'yes'"), ("make -s run SIZE=96x65k",
-                                                                        "SIZE is WIDTHxHEIGHT")):
+        for words, said in MISTAKES.items():
             status, text = ask(*words.split())
             self.assertNotEqual(status, 0, words)
             self.assertIn(said, text, words)

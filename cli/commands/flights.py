@@ -199,14 +199,14 @@ def gdb(values):
                 return log.read()
 
             until(lambda: "target remote" in text(), sim, 0.1)
-            port = re.search(r"localhost:(\d+)'", text())
+            port = re.search(r"127.0.0.1:(\d+)'", text())
             print(text(), end="", flush=True)
             if not port:
                 raise Stop(status=wait(sim) or 1)
             signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is GDB's: it stops the processor
             words = [
                 "gdb-multiarch", "-q", build / "firmware/uav.elf", "-ex",
-                "set remotetimeout unlimited", "-ex", f"target remote localhost:{port[1]}"]
+                "set remotetimeout unlimited", "-ex", f"target remote 127.0.0.1:{port[1]}"]
             return run(words, check=False,
                        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         finally:

@@ -266,7 +266,7 @@ void Flight::runOnCortexM3() {
     if (o_.gdb >= 0) {
         GdbStub stub(static_cast<uint16_t>(o_.gdb));
         std::cout << "icesoc-sim: waiting for a debugger: gdb-multiarch " << o_.firmware
-                  << " -ex 'target remote localhost:" << stub.port() << "'" << std::endl;
+                  << " -ex 'target remote 127.0.0.1:" << stub.port() << "'" << std::endl;
         machine.debug(stub, o_.replayed != nullptr);
     } else {
         machine.run();

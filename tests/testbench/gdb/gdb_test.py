@@ -33,7 +33,7 @@ def simulator(*command):
             said = ""
             for line in process.stdout:
                 said += line
-                if found := re.search(r"localhost:(\d+)'", line):
+                if found := re.search(r"127.0.0.1:(\d+)'", line):
                     break
             else:
                 sys.exit(f"no port for a debugger:\n{said}")
@@ -46,7 +46,7 @@ def gdb(port, commands):
     """What GDB says of these commands, one a line."""
     script = pathlib.Path(out, "commands")
     script.write_text("set confirm off\nset width 0\nset remotetimeout unlimited\n"
-                      f"target remote localhost:{port}\n{commands}kill\n")
+                      f"target remote 127.0.0.1:{port}\n{commands}kill\n")
     done = subprocess.run(["timeout", "600", "gdb-multiarch", "-nx", "-batch", "-x", script, elf],
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     print(done.stdout)

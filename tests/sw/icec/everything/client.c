@@ -274,7 +274,7 @@ static int classes(const char* port) {
     Ice_String text;
     Ice_Int before, side, area;
     char line[64];
-    sprintf(line, "square:tcp -h localhost -p %.8s", port);
+    sprintf(line, "square:tcp -h 127.0.0.1 -p %.8s", port);
     CHECK(Ice_Communicator_stringToProxy(&ic, line, &base) == ICE_OK);
     base.timeoutMs = 120000;
     CHECK(Everything_TesterPrx_checkedCast(&none, &base) == ICE_OK && Ice_ObjectPrx_isNull(&none));
@@ -345,7 +345,7 @@ int main(int argc, char** argv) {
     }
     Ice_initialize(&ic);
     CHECK(TcpEndpoint_init(&ic, &tcp) == ICE_OK);
-    sprintf(text, "tester:tcp -h localhost -p %.8s", argv[argc - 1]);
+    sprintf(text, "tester:tcp -h 127.0.0.1 -p %.8s", argv[argc - 1]);
     CHECK(Ice_Communicator_stringToProxy(&ic, text, &base) == ICE_OK);
     base.timeoutMs = 120000;
     Ice_ObjectPrx_setReplyBuffer(&base, room, sizeof room);

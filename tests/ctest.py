@@ -19,11 +19,12 @@ def reason(text):
 
 
 def main():
-    signal.signal(signal.SIGINT, signal.SIG_IGN) # CTest ends by it, and says so
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # CTest ends by it, and says so
     with tempfile.TemporaryDirectory() as folder:
         results = pathlib.Path(folder, "results.xml")
-        status = subprocess.call(["setpriv", "--pdeathsig", "TERM", "ctest", *sys.argv[1:], "--output-junit", results],
-                                 preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        status = subprocess.call(
+            ["setpriv", "--pdeathsig", "TERM", "ctest", *sys.argv[1:], "--output-junit", results],
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         cases = xml.parse(results).iter("testcase") if results.exists() else []
     skipped = [case for case in cases if case.find("skipped") is not None]
     if skipped:

@@ -1,13 +1,15 @@
 #!/usr/bin/python3 -I
 # SPDX-License-Identifier: MIT
-"""kept: runs a test that is a function of files; where none of these has changed since it passed, prints the kept output.
+"""kept: runs a test that is a function of files; where none of these has changed since it passed,
+prints the kept output.
 
 Usage: kept.py OWN COMMAND [WORD...]   OWN: the test's work folder, emptied before; "" for none
 
-strace sees each file that the test's processes open, look for and list, programs and libraries among them. A verdict is
-what the test printed, and the state that it left each of these in: files of the tree by content, others by size and time
-of change. It holds while all of them are as they were. The environment is the same for all: nothing else gets in.
-A test that fails leaves no verdict; nor does one that is killed, or a file of which changed meanwhile; FRESH=1 computes.
+strace sees each file that the test's processes open, look for and list, programs and libraries
+among them. A verdict is what the test printed, and the state that it left each of these in: files
+of the tree by content, others by size and time of change. It holds while all of them are as they
+were. The environment is the same for all: nothing else gets in. A test that fails leaves no
+verdict; nor does one that is killed, or a file of which changed meanwhile; FRESH=1 computes.
 Verdicts are below XDG_CACHE_HOME (~/.cache), the newest four of a command, for all clones.
 """
 
@@ -26,6 +28,9 @@ import time
 
 ROOT = str(pathlib.Path(__file__).resolve().parents[1])
 STRING = re.compile(r'"((?:[^"\\]|\\.)+)"')
+WRITES = re.compile(
+    "O_(WRONLY|RDWR|CREAT|TRUNC)|(rename|unlink|link|mkdir|rmdir|chmod|utime)")
+TRACING = ("strace", "-f", "--seccomp-bpf", "-qq", "-y", "-e", "signal=none", "-e", "trace=%file")
 
 
 def portable(text):
@@ -33,14 +38,20 @@ def portable(text):
     return re.sub(re.escape(ROOT) + r"(?![\w.-])", "@ROOT@", text)
 
 
+def digest(data):
+    return hashlib.sha256(data).hexdigest()
+
+
 def state(path, listed):
-    """Returns what a run can have seen of a path: nothing, a folder (and its names, where it was listed), a file."""
+    """Returns what a run can have seen of a path: nothing, a folder (and its names, where it was
+    listed), a file."""
     try:
         status = os.stat(path)
         if stat.S_ISDIR(status.st_mode):
-            return "folder " + (hashlib.sha256("\n".join(sorted(os.listdir(path))).encode()).hexdigest() if listed else "")
+            names = "\n".join(sorted(os.listdir(path))).encode() if listed else b""
+            return "folder " + (digest(names) if listed else "")
         if path.startswith(ROOT + "/") and stat.S_ISREG(status.st_mode):
-            return hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()
+            return digest(pathlib.Path(path).read_bytes())
         return f"{status.st_size} {status.st_mtime_ns}"
     except OSError as error:
         return f"none {error.errno}"
@@ -50,17 +61,19 @@ def touched(trace):
     """Returns {path: (was it listed, did the run write it)} of strace's lines."""
     lines = pathlib.Path(trace).read_text(errors="surrogateescape").splitlines()
     whole = "\n".join(lines)
-    here = {os.getcwd(), *re.findall(r"AT_FDCWD<(/[^>]*)>", whole)}  # folders that relative paths may begin in
+    # Folders that relative paths may begin in:
+    here = {os.getcwd(), *re.findall(r"AT_FDCWD<(/[^>]*)>", whole)}
     here |= {os.path.join(b, n) for n in re.findall(r'\bchdir\("([^"]*)"', whole) for b in here}
     paths = {}
     for line in lines:
         call, _, rest = line.partition("(")
-        ahead, _, result = rest.rpartition(" = ") if " = " in rest else (rest, "", "")  # without one: unfinished
-        names = [n.encode("latin1", "ignore").decode("unicode_escape") for n in STRING.findall(ahead)]
-        names = names[:1] if "execve" in call else names
+        ahead, _, result = (rest if " = " in rest else rest + " = ").rpartition(" = ")
+        found = STRING.findall(ahead)[:1 if "execve" in call else None]
+        names = [n.encode("latin1", "ignore").decode("unicode_escape") for n in found]
         bases = re.findall(r"(?:AT_FDCWD|\d+)<(/[^>]*)>", ahead) or here
-        writes = bool(re.search(r"O_(WRONLY|RDWR|CREAT|TRUNC)|(rename|unlink|link|mkdir|rmdir|chmod|utime)", line))
-        for path in {os.path.normpath(os.path.join(b, n)) for n in names for b in bases} | {*re.findall(r"<(/[^>]*)>", result)}:
+        writes = bool(WRITES.search(line))
+        for path in {*(os.path.normpath(os.path.join(b, n)) for n in names for b in bases),
+                     *re.findall(r"<(/[^>]*)>", result)}:
             listed, written = paths.get(path, (False, False))
             paths[path] = (listed or "O_DIRECTORY" in line, written or writes)
     return paths
@@ -68,17 +81,21 @@ def touched(trace):
 
 def main():
     own, command = sys.argv[1] and os.path.abspath(sys.argv[1]) + "/", sys.argv[2:]
-    environment = {k: v for k, v in os.environ.items() if k in ("PATH", "GEN_DIR") or k.startswith("PROVE_")}
+    environment = {k: os.environ[k] for k in os.environ if re.match("PATH$|GEN_DIR$|PROVE_", k)}
     environment["LC_ALL"] = "C.UTF-8"
-    key = hashlib.sha256(portable(json.dumps([command, environment, pathlib.Path(__file__).read_text()], sort_keys=True)).encode()).hexdigest()
-    store = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "icesoc" / "verdicts" / key
+    words = [command, environment, pathlib.Path(__file__).read_text()]
+    key = digest(portable(json.dumps(words, sort_keys=True)).encode())
+    cache = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache")
+    store = cache / "icesoc" / "verdicts" / key
     try:
         verdicts = json.loads(store.read_text())
     except (OSError, ValueError):
         verdicts = []
     for verdict in verdicts if not os.environ.get("FRESH") else []:
-        if all(state(p.replace("@ROOT@", ROOT), listed) == was for p, (listed, was) in verdict["seen"].items()):
-            print(f"kept: the verdict of {verdict['date']}, as all that it came of is unchanged; FRESH=1 computes it again")
+        if all(state(path.replace("@ROOT@", ROOT), listed) == was
+               for path, (listed, was) in verdict["seen"].items()):
+            print(f"kept: the verdict of {verdict['date']}, as all that it came of is unchanged; "
+                  "FRESH=1 computes it again")
             print(verdict["said"].replace("@ROOT@", ROOT), end="")
             return 0
     shutil.rmtree(own or "/dev/null/", ignore_errors=True)
@@ -86,11 +103,14 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         trace, said = folder + "/trace", b""
         environment["TMPDIR"] = environment["HOME"] = folder
-        tracing = ["strace", "-f", "--seccomp-bpf", "-qq", "-y", "-e", "signal=none", "-e", "trace=%file", "-o", trace]
-        if not shutil.which("strace") or subprocess.run(tracing + ["true"], stderr=subprocess.DEVNULL).returncode:
-            print("kept: strace is missing, or may not trace here: the verdict is computed each time", file=sys.stderr)
+        tracing = [*TRACING, "-o", trace]
+        if not shutil.which("strace") or subprocess.run(tracing + ["true"],
+                                                        stderr=subprocess.DEVNULL).returncode:
+            print("kept: strace is missing, or may not trace here: the verdict is computed each "
+                  "time", file=sys.stderr)
             return subprocess.call(command, env=environment)
-        with subprocess.Popen(tracing + command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as run:
+        with subprocess.Popen(tracing + command, env=environment, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT) as run:
             for line in run.stdout:
                 said += line
                 sys.stdout.buffer.write(line)
@@ -103,10 +123,12 @@ def main():
                 path = os.path.realpath(path)  # a link from there
             if (path + "/").startswith((own or "/dev/", folder + "/", "/proc/", "/dev/", "/sys/")):
                 continue
-            if not written and (listed or os.path.isfile(path)) and os.path.exists(path) and os.stat(path).st_mtime_ns > begin:
+            read = not written and (listed or os.path.isfile(path)) and os.path.exists(path)
+            if read and os.stat(path).st_mtime_ns > begin:
                 return 0  # another process has changed it since: the state that was read is unknown
             seen[portable(path)] = (listed, state(path, listed))
-    verdict = {"date": datetime.datetime.now().strftime("%Y-%m-%d %H:%M"), "said": portable(said.decode(errors="replace")), "seen": seen}
+    date = datetime.datetime.now().strftime("%Y-%m-%d %H:%M")
+    verdict = {"date": date, "said": portable(said.decode(errors="replace")), "seen": seen}
     store.parent.mkdir(parents=True, exist_ok=True)
     part = store.with_suffix(f".{os.getpid()}")
     part.write_text(json.dumps([verdict] + verdicts[:3]))

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Calls third-party cores and two of one's own by radio: call.py DEVICE GUARD STATUS PLUGIN Registers.ice File.ice ...
-
-An AES key and block of FIPS 197, appendix B; a byte through each UART and the SPI controller, whose outputs lead to
-their inputs, and of the I2C master on lines that nobody else pulls low; packets through the COBS encoder's AXI-Streams;
-a CRC-32 of buffers in DDR3; a servo's pulses, which orders.sh measures at the pins. With stock ZeroC Ice.
-"""
+"""Calls third-party cores and two of one's own by radio: call.py DEVICE GUARD STATUS PLUGIN
+Registers.ice File.ice ...
+ An AES key and block of FIPS 197, appendix B; a byte through each UART and the SPI controller,
+whose outputs lead to their inputs, and of the I2C master on lines that nobody else pulls low;
+packets through the COBS encoder's AXI-Streams; a CRC-32 of buffers in DDR3; a servo's pulses, which
+orders.sh measures at the pins. With stock ZeroC Ice. """
 import sys
 import zlib
 
@@ -19,9 +19,13 @@ import Demo  # noqa: E402
 import Hw  # noqa: E402
 
 # Keys, blocks and ciphers of FIPS 197: appendices B, C.1 and C.3.
-AES = [("2b7e151628aed2a6abf7158809cf4f3c", "3243f6a8885a308d313198a2e0370734", "3925841d02dc09fbdc118597196a0b32"),
-       (bytes(range(16)).hex(), "00112233445566778899aabbccddeeff", "69c4e0d86a7b0430d8cdb78070b4c55a"),
-       (bytes(range(32)).hex(), "00112233445566778899aabbccddeeff", "8ea2b7ca516745bfeafc49904b496089")]
+AES = [
+    ("2b7e151628aed2a6abf7158809cf4f3c", "3243f6a8885a308d313198a2e0370734",
+     "3925841d02dc09fbdc118597196a0b32"),
+    (bytes(range(16)).hex(), "00112233445566778899aabbccddeeff",
+     "69c4e0d86a7b0430d8cdb78070b4c55a"),
+    (bytes(range(32)).hex(), "00112233445566778899aabbccddeeff",
+     "8ea2b7ca516745bfeafc49904b496089")]
 
 
 def until(core, name, condition):
@@ -41,7 +45,7 @@ def aes(core):
         for i, word in enumerate(words(key)):
             core.set("KEY%d" % i, word)
         core.set("CONFIG", 3 if len(key) > 32 else 1)  # encipher, 256 or 128 bits
-        core.set("CTRL", 1)                            # expand the key
+        core.set("CTRL", 1)  # expand the key
         until(core, "STATUS", lambda v: v & 1)
         for i, word in enumerate(words(block)):
             core.set("BLOCK%d" % i, word)
@@ -53,7 +57,7 @@ def aes(core):
 
 def uart(core):
     core.set("SETUP", 20)  # clocks a bit
-    core.wait(0)           # takes earlier events
+    core.wait(0)  # takes earlier events
     core.set("TXREG", 0xA5)
     events = core.wait(1000)
     return (events, core.get("RXREG") & 0x1FF), (["CORE"], 0xA5)
@@ -67,7 +71,7 @@ def spi(core):
 
 
 def i2c(core):
-    core.set("REG0", 9)     # prescaler
+    core.set("REG0", 9)  # prescaler
     core.set("REG2", 0x80)  # enabled
     core.set("REG3", 0xA6)
     core.set("REG4", 0x90)  # start, write
@@ -89,15 +93,19 @@ def cobs(data):
     return bytes(out) + b"\0"
 
 
-CORES = {"foreign_aes": aes, "foreign_uart": uart, "foreign_axil": uart, "foreign_spi": spi, "foreign_i2c": i2c}
+CORES = {
+    "foreign_aes": aes, "foreign_uart": uart, "foreign_axil": uart, "foreign_spi": spi,
+    "foreign_i2c": i2c}
 data = Ice.InitializationData()
 data.properties = Ice.createProperties()
 data.properties.setProperty("Ice.Plugin.XBeeAT", plugin)
 data.properties.setProperty("XBeeAT.Clock", status)
 data.properties.setProperty("XBeeAT.Guard", guard)
 with Ice.initialize(data) as ic:
+
     def proxy(kind, name):
-        return kind.checkedCast(ic.stringToProxy("%s:xbee-at -d %s -a 0x0001 -t 300000" % (name, device)))
+        return kind.checkedCast(
+            ic.stringToProxy("%s:xbee-at -d %s -a 0x0001 -t 300000" % (name, device)))
 
     servo = proxy(Demo.ServoPrx, "servo")
     servo.setPulse(2, 1500)
@@ -106,15 +114,18 @@ with Ice.initialize(data) as ic:
         value, wanted = call(core)
         if value != wanted:
             sys.exit("%s: %r, expected %r" % (name, value, wanted))
-        print("%s: %d registers and fields, called by radio: as expected" % (name, len(core.list())))
+        print("%s: %d registers and fields, called by radio: as expected" %
+              (name, len(core.list())))
     encoder, crc = proxy(Cores.ForeignCobsPrx, "foreign_cobs"), proxy(Cores.Crc32Prx, "crc32")
     for packet in (b"\x11\x22\x00\x33", b"\0" * 9, bytes(range(1, 201))):
         if bytes(encoder.process(packet)) != cobs(packet):
-            sys.exit("foreign_cobs: %r came of %r, expected %r" % (encoder.process(packet), packet, cobs(packet)))
+            sys.exit("foreign_cobs: %r came of %r, expected %r" %
+                     (encoder.process(packet), packet, cobs(packet)))
     print("foreign_cobs: packets encoded, called by radio: as expected")
     for packet in (b"", b"123456789", bytes(range(256)) * 16):
         if crc.crc(packet) & 0xFFFFFFFF != zlib.crc32(packet):
-            sys.exit("crc32: 0x%08X, expected 0x%08X" % (crc.crc(packet) & 0xFFFFFFFF, zlib.crc32(packet)))
+            sys.exit("crc32: 0x%08X, expected 0x%08X" %
+                     (crc.crc(packet) & 0xFFFFFFFF, zlib.crc32(packet)))
     print("crc32: of up to 4096 bytes in DDR3, called by radio: as zlib's")
     if proxy(Cores.OloSpiPrx, "olo_spi").transfer(0x5AC3F00D) != 0x5AC3F00D:
         sys.exit("olo_spi: what was sent did not come back")

@@ -3,12 +3,11 @@
 """merge_ucf: puts MIG's constraints and others together into one file for ngdbuild.
 
 Usage: merge_ucf.py MIG.ucf OTHER.ucf... > all.ucf
-
-MIG writes its names as if its core were the top. Here it is the instance u_mig of chip.v: what is inside gets that
-prefix, c3_sys_clk and c3_sys_rst_i are the pads sys_clk_i and sys_rst_i, and a bit is <n>, as XST writes it. VCCAUX, places
-and standards of OTHER replace those of MIG. Each change is printed on stderr. Exit status 1: a
-statement that is not understood, or two of OTHER that say different things.
-"""
+ MIG writes its names as if its core were the top. Here it is the instance u_mig of chip.v: what is
+inside gets that prefix, c3_sys_clk and c3_sys_rst_i are the pads sys_clk_i and sys_rst_i, and a bit
+is <n>, as XST writes it. VCCAUX, places and standards of OTHER replace those of MIG. Each change is
+printed on stderr. Exit status 1: a statement that is not understood, or two of OTHER that say
+different things. """
 
 import os
 import re
@@ -23,7 +22,7 @@ def statements(path):
     line = 1
     for part in text.split(";"):
         if part.strip():
-            start = line + part[: len(part) - len(part.lstrip())].count("\n")
+            start = line + part[:len(part) - len(part.lstrip())].count("\n")
             yield start, " ".join(part.split())
         line += part.count("\n")
 
@@ -43,7 +42,8 @@ def renamed(statement, where):
     head = re.match(r'(?i)(NET|INST|PIN)\s+"?([^"\s]+)"?\s+(.*)', statement)
     if not head:
         if not re.match(r"(?i)(CONFIG|TIMESPEC|TIMEGRP|OFFSET)\b", statement):
-            sys.exit(f"{where}: '{statement}' is not understood: write it into the board's file by hand, and take it out here")
+            sys.exit(f"{where}: '{statement}' is not understood: write it into the board's file by "
+                     "hand, and take it out here")
         return statement
     kind, name, rest = head.groups()
     new = PADS.get(name)
@@ -73,7 +73,8 @@ def main():
         new = renamed(statement, f"{os.path.basename(mig)}:{line}")
         twice = [key for key in keys(new) if key in said]
         if twice:
-            print(f"{os.path.basename(mig)}:{line}: '{new}' is left out: {said[twice[0]]}", file=sys.stderr)
+            print(f"{os.path.basename(mig)}:{line}: '{new}' is left out: {said[twice[0]]}",
+                  file=sys.stderr)
         else:
             result.append(new + ";")
     print("\n".join(result))

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""figures: writes docs/figures.md, a table for each JSON file that `make bench`, `size` and `firmware` have left.
+"""figures: writes docs/figures.md, a table for each JSON file that `make bench`, `size` and
+`firmware` have left.
 
     figures.py OUTPUT.md FILE.json...
 
-A file is a list of entries, or an object with the list in "entries": name, value, unit, and where there is one limit
-and share (measured by limit), or peer and ratio.
+A file is a list of entries, or an object with the list in "entries": name, value, unit, and where
+there is one limit and share (measured by limit), or peer and ratio.
 """
 import datetime
 import json
@@ -16,16 +17,23 @@ import sys
 import textwrap
 
 TITLES = {
-    "simulator": "Simulator", "air": "Radio link on the half-duplex air", "speed": "Simulation of RTL against Icarus",
-    "plugin": "Stock Ice through the plugin", "trust": "Attacks, losses of power in updates, bytes of a key", "load": "Load on the ground's engine and gateway",
-    "modem": "Modem set-up", "fsmc": "FSMC bridge", "memory": "Memory ports",
-    "firmware": "Firmware on the Cortex-M3", "cores": "Cores", "slice": "Slice compiler",
-    "size": "Bytes of the firmware's layers",
+    "simulator": "Simulator", "air": "Radio link on the half-duplex air",
+    "speed": "Simulation of RTL against Icarus", "plugin": "Stock Ice through the plugin",
+    "trust": "Attacks, losses of power in updates, bytes of a key",
+    "load": "Load on the ground's engine and gateway", "modem": "Modem set-up",
+    "fsmc": "FSMC bridge", "memory": "Memory ports", "firmware": "Firmware on the Cortex-M3",
+    "cores": "Cores", "slice": "Slice compiler", "size": "Bytes of the firmware's layers",
 }
 
 # Parts of a name that become columns of a row, where there are two to six
-AXES = [r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %", "in the clear|encrypted|with a key",
-        r"of \d+ bytes", r"\d+ ports", r"HCLK \d+ MHz"]
+AXES = [r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %",
+        "in the clear|encrypted|with a key", r"of \d+ bytes", r"\d+ ports", r"HCLK \d+ MHz"]
+HEAD = """# Figures
+
+Written by `make bench`: one run on one machine, each figure beside its limit or its peer of the
+same run. What each one means, and how it is measured, is said on the page of its subject.
+`a of b, c %` is a measured, and c % of the limit b.
+"""
 
 
 def number(value):
@@ -61,12 +69,14 @@ def tables(rows):
     lines, shapes = [], {}
     for (_, what, unit), cells in series.items():
         if 2 <= len(cells) <= 6:
-            shapes.setdefault(tuple(cells), []).append(f"| {what}, {unit} | {' | '.join(cells.values())} |")
+            row = f"| {what}, {unit} | {' | '.join(cells.values())} |"
+            shapes.setdefault(tuple(cells), []).append(row)
     single = [line for cells, line in plain if not 2 <= len(cells) <= 6]
     if single:
         lines += ["| what | measured | beside |", "|---|---|---|", *single]
     for columns, those in shapes.items():
-        lines += [""] * bool(lines) + [f"| what | {' | '.join(columns)} |", "|---" * (len(columns) + 1) + "|", *those]
+        lines += [""] * bool(lines) + [f"| what | {' | '.join(columns)} |",
+                                       "|---" * (len(columns) + 1) + "|", *those]
     return lines
 
 
@@ -75,11 +85,8 @@ def main(words):
         sys.exit(__doc__)
     git = lambda *a: subprocess.run(["git", *a], capture_output=True, text=True).stdout.strip()
     changed = " and changes to it" if git("status", "--porcelain", "--untracked-files=no") else ""
-    lines = ["# Figures", "",
-             "Written by `make bench`: one run on one machine, each figure beside its limit or its peer of the",
-             "same run. What each one means, and how it is measured, is said on the page of its subject.",
-             "`a of b, c %` is a measured, and c % of the limit b.", "",
-             f"Measured on {datetime.date.today()} at commit {git('rev-parse', '--short', 'HEAD') or 'unknown'}{changed}."]
+    commit = git("rev-parse", "--short", "HEAD") or "unknown"
+    lines = [*HEAD.split("\n"), f"Measured on {datetime.date.today()} at commit {commit}{changed}."]
     for path in filter(os.path.exists, words[1:]):
         content = json.load(open(path))
         entries = content["entries"] if isinstance(content, dict) else content
@@ -89,7 +96,8 @@ def main(words):
     headings = [line[3:] for line in lines if line.startswith("## ")]
     anchors = [re.sub(r"[^\w -]", "", h).lower().replace(" ", "-") for h in headings]
     links = ", ".join(f"[{h}](#{a})" for h, a in zip(headings, anchors))
-    contents = textwrap.wrap(f"Contents: {links}.", 100, break_long_words=False, break_on_hyphens=False)
+    contents = textwrap.wrap(f"Contents: {links}.", 100, break_long_words=False,
+                             break_on_hyphens=False)
     lines[6:6] = [*contents, ""]
     with open(words[0], "w") as page:
         page.write("\n".join(lines) + "\n")

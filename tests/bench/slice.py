@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""slice: slice2c beside slice2cpp on the five largest files of Debian's zeroc-ice-slice: processor time, the files alternating;
-the best of the rounds counts, since everything else on the machine only makes them slower.
+"""slice: slice2c beside slice2cpp on the five largest files of Debian's zeroc-ice-slice: processor
+time, the files alternating; the best of the rounds counts, since everything else on the machine
+only makes them slower.
 
     slice.py SLICE2C OUTPUT.json [--brief]
 """
@@ -21,25 +22,27 @@ def once(program, file, folder):
     spent = lambda: sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
     begin = spent()
     for _ in range(10):
-        subprocess.run([program, "-I", SLICES, file, "--output-dir", folder], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([program, "-I", SLICES, file, "--output-dir", folder], check=True,
+                       stdout=subprocess.DEVNULL)
     return (spent() - begin) * 100
 
 
 def entry(name, ours, theirs):
     print("%-28s %9.2f ms %9.2f ms %8.2f" % (name, theirs, ours, theirs / ours))
-    return {"name": f"slice2c.{name}", "value": round(ours, 2), "unit": "ms", "peer": f"slice2cpp: {theirs:.2f} ms",
-            "ratio": round(theirs / ours, 2), "command": "make bench"}
+    return {"name": f"slice2c.{name}", "command": "make bench", "value": round(ours, 2),
+            "unit": "ms", "peer": f"slice2cpp: {theirs:.2f} ms", "ratio": round(theirs / ours, 2)}
 
 
 def main(slice2c, output, brief=""):
     if not shutil.which("slice2cpp"):
         sys.exit("slice: slice2cpp is missing; run 'make setup'")
-    largest = sorted(SLICES.rglob("*.ice"), key=lambda file: -file.stat().st_size)[:1 if brief else 5]
+    largest = sorted(SLICES.rglob("*.ice"), key=lambda f: -f.stat().st_size)[:1 if brief else 5]
     print("%-28s %12s %12s %8s" % ("file", "slice2cpp", "slice2c", "ratio"))
     entries, sums = [], [0, 0]
     with tempfile.TemporaryDirectory() as folder:
         for file in largest:
-            rounds = [(once(slice2c, file, folder), once("slice2cpp", file, folder)) for _ in range(1 if brief else 15)]
+            rounds = [(once(slice2c, file, folder), once("slice2cpp", file, folder))
+                      for _ in range(1 if brief else 15)]
             best = [min(times) for times in zip(*rounds)]
             entries.append(entry(str(file.relative_to(SLICES)), *best))
             sums = [a + b for a, b in zip(sums, best)]

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""trust: results of attacks and losses of power on the link and on updates, and the cost of a key on the air, as the
-tests have counted them.
+"""trust: results of attacks and losses of power on the link and on updates, and the cost of a key
+on the air, as the tests have counted them.
 
     trust.py TEST_UPDATE TEST_LINK OUTPUT.json [--brief]
 """
@@ -14,15 +14,18 @@ import tempfile
 CALL = "Tags/CallBytes.ACallAndItsReplyTakeFewerThanMavlink/"
 HOSTILE = "Vehicles/Attacked.NothingHostileIsAcceptedAndNothingLegalLostOrDoubled/"
 FIGURES = [  # program, tests, property, text
-    (0, "Update.WhereverThePowerIsCutThereIsAnImageThatBoots", "cuts", "new firmware: losses of power, in each operation and later"),
-    (0, "Fpga.WhereverThePowerIsCutABitstreamConfiguresIt", "cuts", "new bitstream: losses of power, in each operation and later"),
+    (0, "Update.WhereverThePowerIsCutThereIsAnImageThatBoots", "cuts",
+     "new firmware: losses of power, in each operation and later"),
+    (0, "Fpga.WhereverThePowerIsCutABitstreamConfiguresIt", "cuts",
+     "new bitstream: losses of power, in each operation and later"),
     (1, HOSTILE + "0:" + HOSTILE + "1", "packets", "hostile packets, full link layer"),
     (1, HOSTILE + "2:" + HOSTILE + "3", "packets", "hostile packets, minimal link layer"),
-    (1, CALL + "0", "bytes", "setParameterA and its reply on the air, in the clear; beside MAVLink 2"),
+    (1, CALL + "0", "bytes",
+     "setParameterA and its reply on the air, in the clear; beside MAVLink 2"),
     (1, CALL + "1", "bytes", "the same under a key; beside MAVLink 2, signed"),
-    (1, CALL + "2", "bytes", "the same with tags of 4 bytes"),
-]
-HARM = {"cuts": "it does not start again", "packets": "one accepted, or a legal message lost or doubled"}
+    (1, CALL + "2", "bytes", "the same with tags of 4 bytes")]
+HARM = {"cuts": "it does not start again",
+        "packets": "one accepted, or a legal message lost or doubled"}
 
 
 def run(program, tests, hostile):
@@ -37,15 +40,20 @@ def main(words):
     if len(words) < 3:
         sys.exit(__doc__)
     entries = []
+
+    def add(text, value, unit, **more):
+        entries.append(dict(name=text, value=value, unit=unit, command="make bench", **more))
+
     for program, tests, name, text in FIGURES:
         found = run(words[program], tests, "2000" if "--brief" in words else "10000000")
-        entries.append({"name": text, "value": sum(int(test[name]) for test in found), "unit": name, "command": "make bench"})
+        value = sum(int(test[name]) for test in found)
         if name in HARM:
+            add(text, value, name)
             failures = sum(len(test.get("failures", [])) for test in found)
-            entries.append({"name": "of these: " + HARM[name], "value": failures, "unit": "failures", "command": "make bench"})
+            add(f"of these: {HARM[name]}", failures, "failures")
         else:
             limit = int(found[0]["mavlink"])
-            entries[-1].update(limit=limit, share=entries[-1]["value"] / limit)
+            add(text, value, name, limit=limit, share=value / limit)
     with open(words[2], "w") as file:
         json.dump(entries, file, indent=1)
         file.write("\n")

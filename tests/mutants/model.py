@@ -1,16 +1,38 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Stands in for Verilator where drawn mutants are tried against tests: a model carries all mutants of its modules, and
-MUTANT in the environment chooses one by its number when a test begins (none: the module as it is).
+"""Stands in for Verilator where drawn mutants are tried against tests: a model carries all mutants
+of its modules, and MUTANT in the environment chooses one by its number when a test begins (none:
+the module as it is).
 
-A mutant was drawn in its module as a proof reads it. In a model the cell is found by its kind, its source line and its
-place among such cells; a missing bit becomes the last one. DRAWN is the list that drawn.py writes.
+A mutant was drawn in its module as a proof reads it. In a model the cell is found by its kind, its
+source line and its place among such cells; a missing bit becomes the last one. DRAWN is the list
+that drawn.py writes.
 """
 import collections, json, os, pathlib, re, subprocess, sys, tempfile
 
 NUMBER = """module mutant_number(output reg [15:0] number);
     initial number = $c("(std::getenv(\\"MUTANT\\") ? std::atoi(std::getenv(\\"MUTANT\\")) : 0)");
 endmodule
+"""
+READ = """verilog_defaults -add -sv {includes}
+read_verilog {sources}
+{parameters}hierarchy -top {top}{folders}
+proc
+write_rtlil {folder}/plain.il
+write_json {folder}/plain.json
+"""
+CHOICE = r"""  wire width 16 \mutant
+  cell \mutant_number \u_mutant
+    connect \number \mutant
+  end
+"""
+WRITE = """read_rtlil {folder}/plain.il
+{mutations}opt_expr
+opt_reduce
+opt_merge
+splitnets w:*_EN*
+opt_clean
+write_verilog -noattr {folder}/{top}.v
 """
 
 
@@ -20,14 +42,21 @@ def module_of(name):
 
 
 def cells(path):
-    """The cells of a design in Yosys' JSON: module -> kind and source -> [(cell, width of each port)], as they were made."""
+    """The cells of a design in Yosys' JSON: module -> kind and source -> [(cell, width of each
+    port)], as they were made."""
+    def made(item):
+        return int((re.findall(r"\$(\d+)$", item[0]) or [0])[0])
+
     found = {}
     for module, content in json.load(open(path))["modules"].items():
         alike = found[module] = collections.defaultdict(list)
-        for name, cell in sorted(content["cells"].items(), key=lambda item: int((re.findall(r"\$(\d+)$", item[0]) or [0])[0])):
-            # The last of several: the place of a condition that Yosys could not resolve stands before it.
-            source = re.sub(r".*/((bus|hdl|ip)/)", r"\1", cell["attributes"].get("src", "").split("|")[-1])
-            alike[f"{module_of(cell['type'])} {source}"].append((name, {port: len(bits) for port, bits in cell["connections"].items()}))
+        for name, cell in sorted(content["cells"].items(), key=made):
+            # The last of several: the place of a condition that Yosys could not resolve stands
+            # before it.
+            source = cell["attributes"].get("src", "").split("|")[-1]
+            source = re.sub(r".*/((bus|hdl|ip)/)", r"\1", source)
+            widths = {port: len(bits) for port, bits in cell["connections"].items()}
+            alike[f"{module_of(cell['type'])} {source}"].append((name, widths))
     return found
 
 
@@ -49,35 +78,37 @@ def yosys(folder, script):
 def mutated(arguments, folder):
     """The file of a model's modules with all their mutants; None if there are none."""
     def of(flag):
-        return [a[len(flag):] for a in arguments if a.startswith(flag)]
+        return [a.removeprefix(flag) for a in arguments if a.startswith(flag)]
+
     top = arguments[arguments.index("--top-module") + 1]
     sources = [a for a in arguments if a.endswith(".v")]
     folders = "".join(f" -libdir {arguments[i + 1]}" for i, a in enumerate(arguments) if a == "-y")
     parameters = "".join(f"chparam -set {p.replace('=', ' ')} {top}\n" for p in of("-G"))
-    yosys(folder, f"verilog_defaults -add -sv {' '.join('-I' + d for d in of('-I'))}\nread_verilog {' '.join(sources)}\n{parameters}"
-          f"hierarchy -top {top}{folders}\nproc\nwrite_rtlil {folder}/plain.il\nwrite_json {folder}/plain.json\n")
+    yosys(folder, READ.format(includes=" ".join(f"-I{d}" for d in of("-I")), top=top, folder=folder,
+                              sources=" ".join(sources), parameters=parameters, folders=folders))
     design = cells(f"{folder}/plain.json")
     mutations, has = "", set()
     for number, mutant in enumerate(json.load(open(os.environ["DRAWN"])), 1):
         for module in design:
-            like = design[module].get(mutant["alike"], []) if module_of(module) == mutant["module"] else []
-            if not like:
+            like = design[module].get(mutant["alike"])
+            if not like or module_of(module) != mutant["module"]:
                 continue
             cell, ports = like[mutant["place"] % len(like)]
-            bit, control = (min(int(mutant[bit]), ports[mutant["port"]] - 1) for bit in ("portbit", "ctrlbit"))
+            mode, port = mutant["mode"], mutant["port"]
+            bit, control = (min(int(mutant[b]), ports[port] - 1) for b in ("portbit", "ctrlbit"))
             has.add(module)
-            mutations += (f"mutate -mode {mutant['mode']} -module {module} -cell {cell} -port {mutant['port']} -portbit {bit} -ctrlbit {control} "
-                          f"-ctrl mutant 16 {number}\n")
+            mutations += (f"mutate -mode {mode} -module {module} -cell {cell} -port {port} "
+                          f"-portbit {bit} -ctrlbit {control} -ctrl mutant 16 {number}\n")
     if not has:
         return None
     lines = []
     for line in open(f"{folder}/plain.il"):
         lines.append(line)
         if line.startswith("module ") and line.split()[1].lstrip("\\") in has:
-            lines.append("  wire width 16 \\mutant\n  cell \\mutant_number \\u_mutant\n    connect \\number \\mutant\n  end\n")
+            lines.append(CHOICE)
     with open(f"{folder}/plain.il", "w") as file:
         file.writelines(lines)
-    yosys(folder, f"read_rtlil {folder}/plain.il\n{mutations}opt_expr\nopt_reduce\nopt_merge\nsplitnets w:*_EN*\nopt_clean\nwrite_verilog -noattr {folder}/{top}.v\n")
+    yosys(folder, WRITE.format(mutations=mutations, top=top, folder=folder))
     with open(f"{folder}/{top}.v", "a") as file:
         file.write(NUMBER)
     return f"{folder}/{top}.v"
@@ -88,10 +119,13 @@ def main():
     if "--cc" in arguments:
         with tempfile.TemporaryDirectory() as folder:
             if file := mutated(arguments, folder):
-                kept = [a for a in arguments if not a.startswith("-G") and not a.endswith(".v") and a != "-Wall"]
-                status = subprocess.run(["verilator", *kept, "-Wno-fatal", "-Wno-lint", "-Wno-style", file]).returncode
-                makefile = pathlib.Path(arguments[arguments.index("--Mdir") + 1], arguments[arguments.index("--prefix") + 1] + ".mk")
-                makefile.write_text("override OPT_FAST = -O1\n" + makefile.read_text())  # compiled once, run for seconds
+                kept = [a for a in arguments if not re.match(r"-G|.*\.v$|-Wall$", a)]
+                status = subprocess.call(["verilator", *kept, "-Wno-fatal", "-Wno-lint",
+                                          "-Wno-style", file])
+                given = dict(zip(arguments, arguments[1:]))
+                makefile = pathlib.Path(given["--Mdir"], given["--prefix"] + ".mk")
+                # Compiled once, run for seconds
+                makefile.write_text("override OPT_FAST = -O1\n" + makefile.read_text())
                 return status
     os.execvp("verilator", ["verilator", *arguments])
 

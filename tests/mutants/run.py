@@ -17,12 +17,13 @@ begins another change of the same file, a line with a slash another file.
 Leaves build/mutants/results.tsv (name, result, test, seconds, file:line).
 Exit status 1: a bug survived, is no longer found in its file, or does not build.
 """
-import argparse, collections, glob, json, os, pathlib, queue, re, shutil, subprocess, sys, threading, time
+import argparse, collections, glob, os, pathlib, queue, re, shutil, subprocess, sys, threading, time
 from concurrent.futures import ThreadPoolExecutor
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(TOP / "testbench/page"))
 import tool
+
 WORK = TOP / "build/mutants"
 
 
@@ -57,7 +58,8 @@ class Bug:
             text = texts.get(file) or "\n" + (root / file).read_text()
             old, new = ("\n" + "".join(line + "\n" for line in part) for part in (before, after))
             if text.count(old) != 1 or old == new:
-                raise ValueError(f"its lines stand {text.count(old)} times in {file}: give those of today's source")
+                raise ValueError(f"its lines stand {text.count(old)} times in {file}: "
+                                 "give those of today's source")
             texts[file] = text.replace(old, new)
         return {file: text[1:] for file, text in texts.items()}
 
@@ -72,7 +74,8 @@ def bugs(chosen):
             try:
                 found.append(Bug(pathlib.Path(file).stem, text))
             except (ValueError, IndexError, UnboundLocalError):
-                sys.exit(f"mutants: {file}: not a bug as `tests/mutants/run.py --help` shows it: {text[:60]}")
+                sys.exit(f"mutants: {file}: not a bug as `tests/mutants/run.py --help` shows it: "
+                         f"{text[:60]}")
     found = [bug for bug in found if not name or bug.name == chosen]
     return found or sys.exit(f"mutants: no {chosen} in tests/mutants/*.bugs and ip/*/*.bugs")
 
@@ -82,15 +85,20 @@ def prepare(copy, *options):
     copy.mkdir(parents=True, exist_ok=True)
     for kept in copy.rglob("*.orig"):  # planted by an interrupted run
         restore(kept.with_suffix(""))
-    listed = subprocess.run(["git", "grep", "--no-index", "--exclude-standard", "--no-color", "-lz", ""], stdout=subprocess.PIPE, check=True)
+    listed = subprocess.run(
+        ["git", "grep", "--no-index", "--exclude-standard", "--no-color", "-lz", ""],
+        stdout=subprocess.PIPE, check=True)
     there = {name for name in os.fsdecode(listed.stdout).split("\0") if os.path.exists(name)}
-    for file in [file for top in copy.iterdir() if top.name != "build" for file in (top, *top.rglob("*"))]:
-        if not file.is_dir() and str(file.relative_to(copy)) not in there:  # it has left the tree
-            file.unlink()
-    subprocess.run(["xargs", "-0", "cp", "-pu", "--parents", "-t", copy], input=listed.stdout, stderr=subprocess.DEVNULL)
+    for top in copy.iterdir():
+        for file in [top, *top.rglob("*")] if top.name != "build" else []:
+            if not file.is_dir() and str(file.relative_to(copy)) not in there:  # it left the tree
+                file.unlink()
+    subprocess.run(["xargs", "-0", "cp", "-pu", "--parents", "-t", copy], input=listed.stdout,
+                   stderr=subprocess.DEVNULL)
     if not (copy / "build/main/build.ninja").exists():
-        made = subprocess.run(["cmake", "-S", ".", "-B", "build/main", "-G", "Ninja", *options], cwd=copy, env=environment(copy),
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        made = subprocess.run(["cmake", "-S", ".", "-B", "build/main", "-G", "Ninja", *options],
+                              cwd=copy, env=environment(copy), stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True)
         if made.returncode:
             sys.exit(made.stdout)
 
@@ -117,19 +125,21 @@ def targets(test, copy):
     if kind == "slice":
         return ["slice2c"] + ["ghdl"] * rest.startswith("hardware.vhdl.")
     if kind == "interop":  # the programs that its command names
-        shown = subprocess.run(["ctest", "--test-dir", "build/main", "--show-only=json-v1", "-R", f"^{re.escape(test)}$"],
-                               cwd=copy, stdout=subprocess.PIPE, text=True).stdout
-        return re.findall(f'^ *"{re.escape(str(copy))}/build/main/([^"]*)"', shown, re.M)
+        shown = subprocess.run(["ctest", "--test-dir", "build/main", "--show-only=json-v1", "-R",
+                                f"^{re.escape(test)}$"], cwd=copy, capture_output=True, text=True)
+        return re.findall(f'^ *"{re.escape(str(copy))}/build/main/([^"]*)"', shown.stdout, re.M)
     return ["regmaps"]
 
 
 def attempt(test, copy, log):
     """Builds what a test needs and runs it: "passes", "fails" or "does not build"."""
     build = ["ninja", "-C", "build/main", "-j", "1", *targets(test, copy)]
-    run = ["ctest", "--test-dir", "build/main", "-R", f"^{re.escape(test)}(\\.|$)", "--no-tests=error", "--output-on-failure", "--stop-on-failure"]
+    run = ["ctest", "--test-dir", "build/main", "-R", f"^{re.escape(test)}(\\.|$)",
+           "--no-tests=error", "--output-on-failure", "--stop-on-failure"]
     with open(log, "w") as out:
         for command, otherwise in (build, "does not build"), (run, "fails"):
-            if subprocess.run(command, cwd=copy, env=environment(copy), stdout=out, stderr=out).returncode:
+            if subprocess.run(command, cwd=copy, env=environment(copy), stdout=out,
+                              stderr=out).returncode:
                 break
         else:
             return "passes"
@@ -152,9 +162,9 @@ def try_bug(bug, copy):
         result = {"passes": "SURVIVED", "fails": "caught"}.get(result, result)
     for file in planted:
         restore(copy / file)
-    row = [bug.name, result, bug.test, str(round(time.monotonic() - start)), bug.place(copy) if planted else ""]
-    print("%-14s %-36s %s (%s s)" % (result, bug.name, *row[2:4]), flush=True)
-    return row
+    seconds = str(round(time.monotonic() - start))
+    print(f"{result:<14} {bug.name:<36} {bug.test} ({seconds} s)", flush=True)
+    return [bug.name, result, bug.test, seconds, bug.place(copy) if planted else ""]
 
 
 def check(chosen):
@@ -170,11 +180,12 @@ def check(chosen):
 
 
 def keep(rows):
-    """Writes the results: those of other blocks stay from an earlier run, unless the bug is gone."""
+    """Writes the results; those of other blocks stay from an earlier run, unless a bug is gone."""
     results = WORK / "results.tsv"
     there = {bug.name for bug in bugs("*")}
-    earlier = [line.split("\t") for line in results.read_text().splitlines()] if results.exists() else []
-    all_rows = {row[0]: row for row in earlier + rows if row[0] in there}
+    earlier = results.read_text().splitlines() if results.exists() else []
+    all_rows = {row[0]: row for row in [line.split("\t") for line in earlier] + rows
+                if row[0] in there}
     results.write_text("".join("\t".join(row) + "\n" for row in all_rows.values()))
 
 
@@ -209,26 +220,33 @@ def try_all(chosen, jobs):
     for bug in chosen:
         groups[bug.test.split(".")[0] if bug.test.startswith("test_") else bug.test].append(bug)
     with ThreadPoolExecutor(jobs) as pool:
-        failed = [task.exception() for task in [pool.submit(of_program, group) for group in sorted(groups.values(), key=len, reverse=True)]]
-    if any(failed):
-        raise next(filter(None, failed))
+        tasks = [pool.submit(of_program, group)
+                 for group in sorted(groups.values(), key=len, reverse=True)]
+    for task in tasks:
+        task.result()
     now = sum(row[1] == "caught" for row in rows)
     print(f"mutants: {now} of {len(rows)} caught (build/mutants/results.tsv)")
     return now != len(rows)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--block", default="*", help="the bugs of one block or core, or a single one as block/name (default: all)")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many are tried at once")
-    parser.add_argument("--check", action="store_true", help="only look whether each is found in its file")
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument(
+        "--block", default="*",
+        help="the bugs of one block or core, or a single one as block/name (default: all)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(),
+                        help="how many are tried at once")
+    parser.add_argument("--check", action="store_true",
+                        help="only look whether each is found in its file")
     options = parser.parse_args()
     os.chdir(TOP)
     chosen = bugs(options.block)
     if options.check:
         return check(chosen)
     with tool.only_one(WORK, "mutants"):
-        if options.block == "*":  # the state that all blocks were measured from, for the regression's light
+        if options.block == "*":
+            # The state that all blocks were measured from, for the regression's light
             tool.write(WORK / "tree", tool.tree_state(TOP, "bus hdl ip slice sw testbench tests"))
         return try_all(chosen, options.jobs)
 

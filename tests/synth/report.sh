@@ -231,7 +231,7 @@ JS
     has '; signal read_addr_i 5  0 project/hdl/blocks/store.v:12; paths 1; step project/hdl/blocks/[a-z]*.v:1[23]; slack [0-9.]* to [0-9.]* ns left of 10 [1-9][0-9]* ;'
     has '; clocks clk_i 11 12 [0-9]* project/hdl/blocks/pair.v:8; resets rst_i synchronous 5 project/hdl/blocks/pair.v:9;'
     has '; fanouts u_counter.count_o.4. 9 FDRE project/hdl/blocks/counter.v:13; commit this run, 1; history now  this run 15 11 6; paper 50 (0.3 %); choices 1;'
-    "$source/tests/regress/test/look.sh" "$page" || fail "the page"
+    "$source/tests/look.py" "$page" || fail "the page"
     grep -q '"peer": 100' "$work/out/report.json" || fail "report.json has no figure of the paper"
     grep -q '^| whole |' "$work/out/report.md" || fail "report.md has no table of designs"
     ;;

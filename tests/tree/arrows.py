@@ -3,11 +3,13 @@
 """arrows: holds every #include to the rooms of rooms.toml, and libraries to having no circles.
 
     arrows.py TREE                the includes of TREE, a checkout
-    arrows.py --circles LIBRARY [PREFIX...]   the object files of a static library: none needs one that needs it
-                                  back; files whose names begin with one PREFIX count as one (natural recursion)
+    arrows.py --circles LIBRARY [PREFIX...]
+                                  the object files of a static library: none needs one that needs
+                                  it back; files whose names begin with one PREFIX count as one
+                                  (natural recursion)
 
-A room is a folder, the longest that fits a file. A file may include from its own room and from those that its room
-may use. Exit status 1: an include that no room allows, or a circle.
+A room is a folder, the longest that fits a file. A file may include from its own room and from
+those that its room may use. Exit status 1: an include that no room allows, or a circle.
 """
 import os
 import re
@@ -20,15 +22,15 @@ ROOMS = "tests/tree/rooms.toml"
 
 def tracked(tree):
     """Returns the paths of the C, C++ and Verilog files of the checkout that people write."""
-    names = subprocess.run(["git", "-C", tree, "grep", "--no-index", "--exclude-standard", "--no-color", "-l", ""],
-                           capture_output=True, text=True, check=True).stdout.split("\n")
+    listing = "grep --no-index --exclude-standard --no-color -l".split()
+    names = subprocess.check_output(["git", "-C", tree, *listing, ""], text=True).split("\n")
     return [n for n in names
             if re.search(r"\.(c|h|cpp|v|vh|in)$", n) and "/golden" not in n and "/errors/" not in n
             and os.path.isfile(os.path.join(tree, n))]
 
 
 def room_of(path, rooms):
-    """Returns the room of a file; tests and test vectors beside a core belong to the room `tests`."""
+    """Returns the room of a file; tests and vectors beside a core belong to the room `tests`."""
     if re.search(r"_(test|vectors)\.(cpp|h)$", path):
         return "tests"
     while path:
@@ -45,7 +47,8 @@ def wrong_arrows(tree):
     by_name = {}
     for path in files:
         by_name.setdefault(os.path.basename(path), []).append(path)
-    wrong = [f"{ROOMS}: `{room}` is no folder" for room in sorted(rooms) if not os.path.isdir(os.path.join(tree, room))]
+    wrong = [f"{ROOMS}: `{room}` is no folder" for room in sorted(rooms)
+             if not os.path.isdir(os.path.join(tree, room))]
     wrong += [f"{ROOMS}: `{used}`, which `{room}` may use, is none" for room in sorted(rooms)
               for used in sorted(rooms[room]) if used not in rooms]
     for path in files:
@@ -60,17 +63,20 @@ def wrong_arrows(tree):
             name = include.group(1)
             places = [p for p in by_name.get(os.path.basename(name), [])
                       if ("/" + p).endswith("/" + name.replace("../", ""))]
-            # A generated header has no place. Among several files of one name, an allowed one is meant.
+            # A generated header has no place. Among several files of one name, an allowed one is
+            # meant.
             targets = {room_of(p, rooms) for p in places}
             if targets and room not in targets and not targets & rooms[room]:
-                wrong.append(f"{path}:{number}: {room} may not use {' or '.join(sorted(map(str, targets)))} ({name})")
+                used = " or ".join(sorted(map(str, targets)))
+                wrong.append(f"{path}:{number}: {room} may not use {used} ({name})")
     return wrong
 
 
 def circles(library, prefixes):
-    """Returns circles among a library's object files, each as a sentence. Files of one prefix count as one."""
+    """Returns circles among a library's object files, each as a sentence. Files of one prefix count
+    as one."""
     defines, needs = {}, {}
-    for line in subprocess.run(["nm", "-A", library], capture_output=True, text=True, check=True).stdout.split("\n"):
+    for line in subprocess.check_output(["nm", "-A", library], text=True).split("\n"):
         part = re.match(r".*?:([^:]+):\s*\S*\s+([A-Za-z]) (\S+)$", line)
         if not part:
             continue
@@ -80,13 +86,15 @@ def circles(library, prefixes):
             needs.setdefault(file, set()).add(symbol)
         elif kind.isupper():
             defines[symbol] = file
-    uses = {f: {defines[s]: s for s in names if defines.get(s, f) != f} for f, names in needs.items()}
+    uses = {file: {defines[s]: s for s in names if defines.get(s, file) != file}
+            for file, names in needs.items()}
     found, done = [], set()
 
     def visit(file, way):
         if file in way:
             circle = way[way.index(file):] + [file]
-            found.append(", ".join(f"{a} needs {uses[a][b]} of {b}" for a, b in zip(circle, circle[1:])))
+            found.append(", ".join(f"{a} needs {uses[a][b]} of {b}"
+                                   for a, b in zip(circle, circle[1:])))
         elif file not in done:
             for used in sorted(uses.get(file, {})):
                 visit(used, way + [file])

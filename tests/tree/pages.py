@@ -19,7 +19,8 @@ ROOMS = "hdl|bus|ip|slice|sw|testbench|synth|tests|docs|cmake|examples"
 
 
 def exists(tree, path, files):
-    """Returns whether a page's path is in the repository; also a folder, a name without its ending or a pattern."""
+    """Returns whether a page's path is in the repository; also a folder, a name without its ending
+    or a pattern."""
     path = path.rstrip("/")
     pattern = "^" + re.escape(path).replace(r"\*", "[^/]*") + r"(/|$|\.)"
     return any(re.match(pattern, f) for f in files)
@@ -51,18 +52,21 @@ def check(tree, page, files):
                     yield f"{page}:{number}: links to {path}, which is not in the repository"
         for target, anchor in re.findall(r"\]\(([^)#\s]*)#([^)\s]+)\)", line):
             path = os.path.normpath(os.path.join(os.path.dirname(page), target)) if target else page
-            if path.endswith(".md") and path in files and anchor not in anchors(os.path.join(tree, path)):
+            known = path.endswith(".md") and path in files
+            if known and anchor not in anchors(os.path.join(tree, path)):
                 yield f"{page}:{number}: {path} has no heading #{anchor}"
         for path in re.findall(rf"`((?:{ROOMS})/[\w./*-]+)`", line):
-            if not re.search("low_pass|my_uart", path) and not exists(tree, path, files):  # the recipes' own examples
+            example = re.search("low_pass|my_uart", path)  # the recipes' own
+            if not example and not exists(tree, path, files):
                 yield f"{page}:{number}: there is no {path}"
 
 
 def stale(tree):
-    """Yields a line for each figure of README.md that differs from the one of the page or file that a command
-    writes."""
-    readme, figures = (open(os.path.join(tree, page)).read() for page in ("README.md", "docs/figures.md"))
-    table1 = json.load(open(os.path.join(tree, "synth/baseline.json")))["designs"]["table1"]
+    """Yields a line for each figure of README.md that differs from the one of the page or file that
+    a command writes."""
+    readme, figures, baseline = (open(os.path.join(tree, page)).read() for page in (
+        "README.md", "docs/figures.md", "synth/baseline.json"))
+    table1 = json.loads(baseline)["designs"]["table1"]
 
     def row(name):
         found = re.search(rf"^\| {re.escape(name)} \| (.*) \|$", figures, re.M)
@@ -71,10 +75,11 @@ def stale(tree):
     def count(name):
         return int(row(name).split()[0].replace(",", ""))
 
-    hostile = count("hostile packets, full link layer") + count("hostile packets, minimal link layer")
-    for said in (str(count("minimal.all")), "{lut} / {ff} / {slices}".format(**table1), f"0 of {hostile:,}",
-                 "0 of {}; 0 of {}".format(*(count(f"new {what}: losses of power, in each operation and later")
-                                             for what in ("firmware", "bitstream"))),
+    hostile = sum(count(f"hostile packets, {which} link layer") for which in ("full", "minimal"))
+    firmware, bitstream = (count(f"new {what}: losses of power, in each operation and later")
+                           for what in ("firmware", "bitstream"))
+    for said in (str(count("minimal.all")), "{lut} / {ff} / {slices}".format(**table1),
+                 f"0 of {hostile:,}", f"0 of {firmware}; 0 of {bitstream}",
                  row("slice2c.all").split(", ")[-1].replace("times", "times as fast")):
         if f"| {said} |" not in readme:
             yield f"README.md: the last command that measured wrote {said}"
@@ -84,14 +89,15 @@ def main(words):
     if len(words) != 1 or words[0].startswith("-"):
         sys.exit(__doc__)
     tree = words[0]
-    files = subprocess.run(["git", "-C", tree, "grep", "--no-index", "--exclude-standard", "--no-color", "-l", ""],
-                           capture_output=True, text=True, check=True).stdout.split("\n")
+    listing = "grep --no-index --exclude-standard --no-color -l".split()
+    files = subprocess.check_output(["git", "-C", tree, *listing, ""], text=True).split("\n")
     pages = [f for f in files if f.endswith(".md") and os.path.exists(os.path.join(tree, f))]
     wrong = [w for page in pages for w in check(tree, page, files)]
     index = open(os.path.join(tree, "docs/architecture.md")).read()
-    wrong += [f"docs/architecture.md: its index has no {page}" for page in pages if re.match(r"docs/[^/]*$", page)
-              and f"({os.path.basename(page)})" not in index and not page.endswith("architecture.md")]
-    if "docs/figures.md" in files: # the small tree of a test has none
+    wrong += [f"docs/architecture.md: its index has no {page}" for page in pages
+              if re.match(r"docs/(?!architecture)[^/]*$", page)
+              and f"({os.path.basename(page)})" not in index]
+    if "docs/figures.md" in files:  # the small tree of a test has none
         wrong += stale(tree)
     print("\n".join(wrong))
     return 1 if wrong else 0

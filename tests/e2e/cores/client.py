@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Calls new cores in a UAV's FPGA by radio: client.py DEVICE GUARD STATUS PLUGIN FOLDER File.ice ..."""
+"""Calls new cores in a UAV's FPGA by radio: client.py DEVICE GUARD STATUS PLUGIN FOLDER File.ice
+..."""
 
 import os
 import sys
@@ -63,9 +64,11 @@ with Ice.initialize(data) as ic:
     said = []
     signals = probe.Signals(os.path.join(folder, "build/gen/probes.json"), "probe")
     prober = Probes.ProbePrx.checkedCast(ic.stringToProxy("probe" + where))
-    settings = types.SimpleNamespace(trigger="u_sample_verilog.bus_valid_i=1", level=False, before=4, after=150, wait=600,
+    settings = types.SimpleNamespace(trigger="u_sample_verilog.bus_valid_i=1", level=False,
+                                     before=4, after=150, wait=600,
                                      out=os.path.join(folder, "probe.vcd"))
-    recording = threading.Thread(target=probe.capture, args=(prober, signals, settings, said.append))
+    recording = threading.Thread(target=probe.capture,
+                                 args=(prober, signals, settings, said.append))
     recording.start()
     while not said and recording.is_alive():
         threading.Event().wait(0.01)
@@ -74,19 +77,24 @@ with Ice.initialize(data) as ic:
         calls = [call for _ in range(3) for call in (core.setOffsetAsync(7), core.addAsync(42))]
         expect("add, recorded", [call.result() for call in calls], 3 * [None, 49])
     print(said)
-    settings.trigger, settings.before, settings.after, settings.out = "", 0, 0, os.path.join(folder, "second.vcd")
+    settings.trigger, settings.before, settings.after = "", 0, 0
+    settings.out = os.path.join(folder, "second.vcd")
     probe.capture(prober, signals, settings, said.append)
-    times = [[int(line[1:]) for line in open(os.path.join(folder, f)) if line[0] == "#"] for f in ("probe.vcd", "second.vcd")]
+    times = [[int(line[1:]) for line in open(os.path.join(folder, f)) if line[0] == "#"]
+             for f in ("probe.vcd", "second.vcd")]
     expect("the second capture is another one", times[1][0] > times[0][-1], True)
     signals.names ^= 1
-    expect("another chip's names", "probes.json" in str(fails(probe.Failed, signals.check, prober.getState())), True)
-    for identity, prx in (("sample_verilog", Cores.SampleVerilogPrx), ("newcomer", Cores.SampleVhdlPrx)):
+    failed = fails(probe.Failed, signals.check, prober.getState())
+    expect("another chip's names", "probes.json" in str(failed), True)
+    for identity, prx in (("sample_verilog", Cores.SampleVerilogPrx),
+                          ("newcomer", Cores.SampleVhdlPrx)):
         core = prx.checkedCast(ic.stringToProxy(identity + where))
         core.setOffset(-100)
         expect(identity + ".add", core.add(42), -58)
         expect(identity + ".sumTo", core.sumTo(100), 5050)
         fails(Ice.UnknownException, core.sumTo, 0)
-        # While a long call is under way (it hangs, and is given up after 100 ms) others are answered.
+        # While a long call is under way (it hangs, and is given up after 100 ms) others are
+        # answered.
         later = core.sumToAsync(2000000000)
         expect(identity + ".add meanwhile", core.add(1), -99)
         if later.done():
@@ -110,14 +118,16 @@ with Ice.initialize(data) as ic:
     # The chip is the one that the firmware was built for; a mission reports a difference.
     chip = Hw.ChipPrx.checkedCast(ic.stringToProxy("chip" + where))
     contracts = chip.contracts()
-    expect("blocks", [c.block for c in contracts],
-           ["system", "modem", "sample_verilog", "scaler", "servo", "crc32", "port", "my_requests", "my_lamps", "sample_vhdl", "many", "probe"])
+    expect("blocks", [c.block for c in contracts], [
+        "system", "modem", "sample_verilog", "scaler", "servo", "crc32", "port", "my_requests",
+        "my_lamps", "sample_vhdl", "many", "probe"])
     expect("contracts", mission.differences(chip), [])
 
     class Other:
         @staticmethod
         def contracts():
             return [contracts[0], Hw.Contract("fir", 5, 0x12, -1)]
+
     expect("differences", mission.differences(Other),
            ["fir: its registers have the hash 0x00000012 in the chip, 0xFFFFFFFF in the firmware"])
 
@@ -125,17 +135,20 @@ with Ice.initialize(data) as ic:
     port = Hw.RegistersPrx.checkedCast(ic.stringToProxy("port" + where))
     expect("port.wait", port.wait(10000), ["CORE"])  # the simulator's script raises the pin
     expect("port.LEVELS", port.get("LEVELS"), 0x83)
-    expect("port.list", [(r.name, r.word, r.width) for r in port.list() if r.access == Hw.Access.rw and r.page == 0],
+    expect("port.list", [
+        (r.name, r.word, r.width) for r in port.list() if r.access == Hw.Access.rw and r.page == 0],
            [("LEVELS", 8, 8), ("DRIVEN", 9, 8)])
     port.set("DRIVEN", 0x5A)
     expect("port.DRIVEN", port.get("0x4"), 0x5A)
-    expect("reason", fails(Hw.RegisterError, port.set, "DRIVEN", 256).reason, "DRIVEN takes 0 to 255")
+    expect("reason", fails(Hw.RegisterError, port.set, "DRIVEN", 256).reason,
+           "DRIVEN takes 0 to 255")
     waits = port.waitAsync(600000)
     requests = Hw.RegistersPrx.checkedCast(ic.stringToProxy("my_requests" + where))
     requests.set("REG2", 0xFFFFFFFF)
     expect("my_requests.REG2", requests.get("REG2"), 0xFFFFFFFF)
     for call in (lambda: requests.get("REG3"), lambda: requests.set("REG3", 1)):
-        expect("reason", fails(Hw.RegisterError, call).reason, "REG3: the core does not answer, or refuses the address")
+        expect("reason", fails(Hw.RegisterError, call).reason,
+               "REG3: the core does not answer, or refuses the address")
     expect("my_requests.wait", requests.wait(0), ["TIMEOUT"])
     lamps = Hw.RegistersPrx.checkedCast(ic.stringToProxy("my_lamps" + where))
     lamps.set("REG0", 0x1234)
@@ -145,7 +158,8 @@ with Ice.initialize(data) as ic:
     # More words than a slot has: behind PAGE.
     many = Demo.ManyPrx.checkedCast(ic.stringToProxy("many" + where))
     for seed in (1, 1000003):
-        p, q = ([(seed * i * 0x123456789ABCDEF + i & 2**64 - 1) - 2**63 for i in range(n, n + 5)] for n in (1, 6))
+        p, q = ([(seed * i * 0x123456789ABCDEF + i & 2**64 - 1) - 2**63 for i in range(n, n + 5)]
+                for n in (1, 6))
         answer = many.turn(Demo.Five(*p), Demo.Five(*q))
         expect("many.turn", answer, (Demo.Five(*[~i for i in q]), Demo.Five(*p[1:], p[0])))
         expect("many.add", many.add(seed, -7), seed - 7)

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""same: compares a probe's capture with the simulator's trace: same.py capture.vcd trace.vcd nanoseconds-of-a-clock
-
-Compares each signal of the capture in each clock that both have. The trace (fst2vcd) has two moments a clock; its clocks
-are those of u_system_slot.cycles, which it has.
-"""
+"""same: compares a probe's capture with the simulator's trace: same.py capture.vcd trace.vcd
+nanoseconds-of-a-clock
+ Compares each signal of the capture in each clock that both have. The trace (fst2vcd) has two
+moments a clock; its clocks are those of u_system_slot.cycles, which it has. """
 import re
 import sys
 
 
 def read(path):
-    """Returns the names of the signals, below soc, by their keys; and (time, changes by key) of each moment."""
+    """Returns the names of the signals, below soc, by their keys; and (time, changes by key) of
+    each moment."""
     with open(path) as f:
         head, _, body = f.read().partition("$enddefinitions")
     scope, names = [], {}
@@ -50,7 +50,8 @@ names_there, moments = read(trace_file)
 key_of = {name: key for key, all_names in names_there.items() for name in all_names}
 pairs = [(key, key_of[name], name) for key, all_names in names.items() for name in all_names]
 count = key_of["u_system_slot.cycles"]
-traced = clocks(moments, [count] + [other for _, other, _ in pairs], lambda time, values: values[count])
+traced = clocks(moments, [count] + [other for _, other, _ in pairs],
+                lambda time, values: values[count])
 changes = sorted(captured)
 first, last = max(changes[0], min(traced)), min(changes[-1], max(traced) + 1)
 now, there, wrong = captured[max(c for c in changes if c <= first)], None, 0
@@ -60,7 +61,8 @@ for clock in range(first, last):
     for mine, other, name in pairs:
         if now[mine] != there[other]:
             wrong += 1
-            print("clock %d: %s is %d in the capture and %d in the trace" % (clock, name, now[mine], there[other]))
+            print(f"clock {clock}: {name} is {now[mine]} in the capture and {there[other]} in the "
+                  "trace")
 moved = sum(first < c < last for c in changes)
 print("%d signals in %d clocks, %d changes: %d differ" % (len(pairs), last - first, moved, wrong))
 sys.exit(wrong != 0 or moved < 100)

@@ -1,11 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""faults: kills or stops processes of a mission, or refuses them something, at moments drawn from seeds.
-docs/regression.md has the table that this checks.
-
-A moment is a time of the flight: 0.3 seconds from the start of its process, then simulated seconds, about 1.7 per
-flight. So each moment is within the flight at any speed of the machine.
-"""
+"""faults: kills or stops processes of a mission, or refuses them something, at moments drawn from
+seeds. docs/regression.md has the table that this checks.
+ A moment is a time of the flight: 0.3 seconds from the start of its process, then simulated
+seconds, about 1.7 per flight. So each moment is within the flight at any speed of the machine. """
 
 import argparse
 import concurrent.futures
@@ -22,12 +20,13 @@ import time
 
 IMAGE = "/usr/share/xplanet/images/earth.jpg"
 LONGEST = 240.0  # seconds of a mission on a busy machine
-REAL = 0.3       # seconds of a moment before the simulated ones
-LAST = 2.0       # moment
+REAL = 0.3  # seconds of a moment before the simulated ones
+LAST = 2.0  # moment
 
 
 def children(of):
-    """Ids of a process' descendants, by the kernel's lists; a process that ends meanwhile has none."""
+    """Ids of a process' descendants, by the kernel's lists; a process that ends meanwhile has
+    none."""
     found = []
     try:
         for task in os.listdir("/proc/%d/task" % of):
@@ -65,8 +64,10 @@ class Mission:
         self.log = open(out + ".log", "w+")
         self.begin = time.monotonic()
         self.run = subprocess.Popen(
-            [*(word.replace("$0", out) for word in prefix), source + "/icesoc", "run", "--built", "--build", build, "--image", IMAGE, "--size", "48x32", "--guard", "20",
-             "--out", out, *options], stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True,
+            [*(word.replace("$0", out) for word in prefix), source + "/icesoc", "run", "--built",
+             "--build", build, "--image", IMAGE, "--size", "48x32", "--guard", "20", "--out", out,
+             *options],
+            stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True,
             env={**os.environ, "XDG_CONFIG_HOME": build + "/config"})  # keys of the tests' own
 
     def all(self):
@@ -107,7 +108,8 @@ class Mission:
 
     def succeeded(self):
         return self.run.returncode == 0 and all(
-            os.path.getsize(os.path.join(self.out, f)) for f in ("after.png", "report.md", "report.json"))
+            os.path.getsize(os.path.join(self.out, f))
+            for f in ("after.png", "report.md", "report.json"))
 
     def remove(self):
         for path in (self.out, self.out + ".kept"):
@@ -149,7 +151,8 @@ def expect(condition, mission, text):
 
 
 def is_whole(out):
-    """Checks that no file is half written: pictures decode, reports parse, and no temporary file is left."""
+    """Checks that no file is half written: pictures decode, reports parse, and no temporary file is
+    left."""
     from PIL import Image
     for name in os.listdir(out):
         path = os.path.join(out, name)
@@ -174,8 +177,8 @@ def killed(start, name, moment, deaths):
         expect(m.wait(LONGEST) == 0 and m.succeeded(), m, "the mission needs the page")
         return "the mission goes on"
     begin = time.monotonic()
-    expect(gone(everybody, deaths), m, "still there after %.0f s: %s" % (
-        deaths, [command_of(p) for p in everybody if lives(p)]))
+    left = [command_of(p) for p in everybody if lives(p)] if not gone(everybody, deaths) else []
+    expect(not left, m, f"still there after {deaths:.0f} s: {left}")
     took = time.monotonic() - begin
     m.run.wait()
     if name != "run":
@@ -199,18 +202,22 @@ def stopped(start, name, moment, deaths):
 
 def disk_full(start, name, moment, deaths):
     """The folder is a file system of its own with few blocks; its files are copied at the end."""
-    script = "mount -t tmpfs -o size=%d none $0 || exit 9; status=0; \"$@\" || status=$?; cp -a $0 $0.kept; exit $status"
-    m = start(prefix=["unshare", "--map-root-user", "--mount", "sh", "-c", script % (4096 * int(1 + 7 * share(moment))), "sh"])
+    size = 4096 * int(1 + 7 * share(moment))
+    script = (f"mount -t tmpfs -o size={size} none $0 || exit 9; status=0; \"$@\" || status=$?; "
+              "cp -a $0 $0.kept; exit $status")
+    m = start(prefix=["unshare", "--map-root-user", "--mount", "sh", "-c", script, "sh"])
     status = m.wait(LONGEST)
     expect(status is not None and status != 9, m, "it hangs")
     expect("Traceback" not in m.text() and "Bus error" not in m.text(), m, "that is no message")
     expect(is_whole(m.out + ".kept"), m, "a file is cut short")
-    expect(status == 0 or "No space left" in m.text() or "disk full" in m.text(), m, "nobody says why")
+    expect(status == 0 or "No space left" in m.text() or "disk full" in m.text(), m,
+           "nobody says why")
     return "fails with a message" if status else "has room enough"
 
 
 def no_descriptors(start, name, moment, deaths):
-    m = start(prefix=["prlimit", "--nofile=%d" % (8 + int(25 * share(moment)))], options=["--patience", "16"])
+    m = start(prefix=["prlimit", "--nofile=%d" % (8 + int(25 * share(moment)))],
+              options=["--patience", "16"])
     status = m.wait(LONGEST)
     expect(status is not None, m, "it hangs")
     expect(status != 0 or m.succeeded(), m, "it says that it succeeded")
@@ -230,7 +237,7 @@ def port_taken(start, name, moment, deaths):
 
 def no_memory(start, name, moment, deaths):
     """Limits each process to 8 to 800 MB of addresses."""
-    m = start(prefix=["prlimit", "--as=%d" % (8e6 * 100 ** share(moment))])
+    m = start(prefix=["prlimit", "--as=%d" % (8e6 * 100**share(moment))])
     status = m.wait(LONGEST)
     expect(status is not None, m, "it hangs")
     expect(status != 0 or m.succeeded(), m, "it says that it succeeded")
@@ -253,15 +260,18 @@ def air(loss):
         m = start(options=["--loss", loss, "--patience", "16", "--seed", str(int(1000 * moment))])
         status = m.wait(LONGEST)
         expect(status is not None, m, "it goes on without end")
-        expect(status == 0 and m.succeeded() or re.search("mission: .*(no answer for 16 s|Exception)", m.text()), m, "nobody says what is missing")
+        told = re.search("mission: .*(no answer for 16 s|Exception)", m.text())
+        expect(status == 0 and m.succeeded() or told, m, "nobody says what is missing")
         return "fails after its patience" if status else "succeeds"
+
     bad_air.__name__ = "loss of " + loss
     return bad_air
 
 
 FAULTS = [(killed, n) for n in ("ground", "simulator", "run", "page")] + \
          [(stopped, n) for n in ("ground", "simulator", "page")] + \
-         [(f, "") for f in (disk_full, no_descriptors, no_memory, clock_step, port_taken, air("0.9"), air("1"))]
+         [(f, "") for f in (disk_full, no_descriptors, no_memory, clock_step, port_taken,
+                             air("0.9"), air("1"))]
 
 
 def undergo(args, fault, name, seed, number, moment):
@@ -270,8 +280,8 @@ def undergo(args, fault, name, seed, number, moment):
     missions = []
 
     def start(prefix=(), options=()):
-        missions.append(Mission(args.source, args.build, "%s/%d-%s-%d" % (
-            args.out, seed, title.replace(" ", "-"), number), prefix, options))
+        out = f"{args.out}/{seed}-{title.replace(' ', '-')}-{number}"
+        missions.append(Mission(args.source, args.build, out, prefix, options))
         return missions[-1]
 
     try:
@@ -298,19 +308,23 @@ def main():
     parser.add_argument("--seeds", type=int, default=1, help="how many")
     parser.add_argument("--moments", type=int, default=1, help="of each fault and seed")
     parser.add_argument("--jobs", type=int, default=1, help="missions at a time")
-    parser.add_argument("--deaths", type=float, default=LONGEST, help="seconds in which all processes of a mission follow the first")
+    parser.add_argument("--deaths", type=float, default=LONGEST,
+                        help="seconds in which all processes of a mission follow the first")
     parser.add_argument("--only", default="", help="faults whose name contains this")
     args = parser.parse_args()
     global CLOCK_STEP
     CLOCK_STEP = os.path.abspath(args.build) + "/tests/e2e/mission/libclock_step.so"
     faults = [(fault, name, args.only in fault.__name__ + " " + name) for fault, name in FAULTS]
     if not any(chosen for _, _, chosen in faults):
-        sys.exit("faults: none is called %s; there are %s" % (args.only, ", ".join(sorted({fault.__name__ for fault, _ in FAULTS}))))
+        names = ", ".join(sorted({fault.__name__ for fault, _ in FAULTS}))
+        sys.exit(f"faults: none is called {args.only}; there are {names}")
     shutil.rmtree(args.out, ignore_errors=True)
     os.makedirs(args.out)
-    may_mount = subprocess.run(["unshare", "--map-root-user", "--mount", "true"], stderr=subprocess.DEVNULL).returncode == 0
+    may_mount = subprocess.run(["unshare", "--map-root-user", "--mount", "true"],
+                               stderr=subprocess.DEVNULL).returncode == 0
     if not may_mount:
-        print("faults: disk_full is left out: this machine lets its users mount nothing (unshare --map-root-user)")
+        print("faults: disk_full is left out: this machine lets its users mount nothing "
+              "(unshare --map-root-user)")
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
         runs = []
         for seed in range(args.seed, args.seed + args.seeds):
@@ -318,9 +332,11 @@ def main():
             for fault, name, chosen in faults:
                 moments = [draw.uniform(0, LAST) for _ in range(args.moments)]
                 if chosen and (may_mount or fault is not disk_full):
-                    runs += [pool.submit(undergo, args, fault, name, seed, number, moment) for number, moment in enumerate(moments)]
+                    runs += [pool.submit(undergo, args, fault, name, seed, number, moment)
+                             for number, moment in enumerate(moments)]
         failed = sum(not run.result() for run in runs)
-    print("faults: %d moments of seeds %d to %d, %d failed" % (len(runs), args.seed, args.seed + args.seeds - 1, failed))
+    print("faults: %d moments of seeds %d to %d, %d failed" %
+          (len(runs), args.seed, args.seed + args.seeds - 1, failed))
     return 1 if failed else 0 if runs else 77
 
 

@@ -4,9 +4,10 @@
 
 Usage: crossings.py TOP CLOCK SOURCE GENERATED WORK PARAMETERS [SYNCHRONOUS-INPUT...]
 
-Yosys flattens TOP but for the modules of hdl/cdc, with its commands PARAMETERS before. A register of CLOCK may see registers of CLOCK,
-the inputs named and outputs of hdl/cdc for that clock. A register whose clock is a pin may see pins (they come with it) and
-its own kind. Asynchronous resets are no data. Exit status 1: a crossing goes round hdl/cdc; each is told.
+Yosys flattens TOP but for the modules of hdl/cdc, with its commands PARAMETERS before. A register
+of CLOCK may see registers of CLOCK, the inputs named and outputs of hdl/cdc for that clock. A
+register whose clock is a pin may see pins (they come with it) and its own kind. Asynchronous resets
+are no data. Exit status 1: a crossing goes round hdl/cdc; each is told.
 """
 
 import json
@@ -40,9 +41,12 @@ def flattened(top, source, generated, work, parameters):
     file = next(f / (top + ".v") for f in folders if (f / (top + ".v")).is_file())
     os.makedirs(work, exist_ok=True)
     netlist = f"{work}/{top}.json"
-    script = f"""verilog_defaults -add -I{generated} -I{source}/bus -I{source}/hdl/ddr -I{source}/hdl/system
-        read_verilog {file}; {parameters} hierarchy -top {top} {' '.join(f'-libdir {f}' for f in folders)}
-        proc; setattr -mod -set keep_hierarchy 1 cdc_* *cdc_* *async_fifo*; flatten; opt_clean; memory -nomap; opt_clean
+    includes = (generated, source / "bus", source / "hdl/ddr", source / "hdl/system")
+    script = f"""verilog_defaults -add {' '.join(f'-I{folder}' for folder in includes)}
+        read_verilog {file}
+        {parameters} hierarchy -top {top} {' '.join(f'-libdir {folder}' for folder in folders)}
+        proc; setattr -mod -set keep_hierarchy 1 cdc_* *cdc_* *async_fifo*
+        flatten; opt_clean; memory -nomap; opt_clean
         write_json {netlist}"""
     run = subprocess.run(["yosys", "-q", "-p", script], capture_output=True, text=True)
     if run.returncode:
@@ -99,7 +103,8 @@ def main():
     seen, visited = {}, set()
 
     def origins(bit):
-        """Returns the registers and pins that a net depends on: {clock: one of them}; each net is visited once."""
+        """Returns the registers and pins that a net depends on: {clock: one of them}; each net is
+        visited once."""
         stack = [bit]
         while stack:
             b = stack[-1]
@@ -112,12 +117,13 @@ def main():
             elif b not in comb:
                 seen[b] = {}
             else:
-                later = [n for n in comb[b] if n not in seen and n not in visited] if b not in visited else []
+                new = [n for n in comb[b] if n not in seen and n not in visited]
+                later = [] if b in visited else new
                 visited.add(b)
                 if later:
                     stack += later
                 else:
-                    seen[b] = {of: through for n in comb[b] for of, through in seen.get(n, {}).items()}
+                    seen[b] = {of: via for n in comb[b] for of, via in seen.get(n, {}).items()}
         return seen[bit]
 
     bad = set()

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""interrupted: ends make regress, make synth and make new-ip at moments drawn from a seed, by Ctrl-C (INT to all),
-TERM or KILL. No process may be left, and the next run must be right.
+"""interrupted: ends make regress, make synth and make new-ip at moments drawn from a seed, by
+Ctrl-C (INT to all), TERM or KILL. No process may be left, and the next run must be right.
 
-Usage: interrupted.py source-folder build-folder work-folder moments new_ip|regress|synth...      SEED=1
+Usage: interrupted.py source-folder build-folder work-folder moments tool... (new_ip, regress,
+synth)      SEED=1
 """
 import json
 import os
@@ -52,14 +53,17 @@ def interrupt(command, number, moment, where):
 
 def regress():
     out = work / "regress"
-    return ([build / "tests/regress/regress", "--source", source, "--build", build, "--out", out, "--name", "^tree.pages$"], source, 1.5,
+    command = [build / "tests/regress/regress", "--source", source, "--build", build, "--out", out,
+               "--name", "^tree.pages$"]
+    return (command, source, 1.5,
             lambda: [row[:2] for row in json.loads((out / "report.json").read_text())["results"]])
 
 
 def synth():
     out = work / "synth"
-    return ([build / "synth/utilisation", "--source", source, "--generated", build / "gen", "--output", out, "--design", "npi_arbiter"], source, 6,
-            lambda: (out / "report.json").read_text())
+    command = [build / "synth/utilisation", "--source", source, "--generated", build / "gen",
+               "--output", out, "--design", "npi_arbiter"]
+    return command, source, 6, lambda: (out / "report.json").read_text()
 
 
 def new_ip():
@@ -73,7 +77,10 @@ def new_ip():
         files = {path.name: path.read_bytes() for path in core.iterdir()}
         shutil.rmtree(core)
         return files
-    return ["sh", "-c", '[ -d ip/low_pass ] || ICESOC_TREE=. exec "$0" core new low_pass --lang vhdl --built --build none', source / "icesoc"], tree, 0.3, written
+
+    made = ('[ -d ip/low_pass ] || '
+            'ICESOC_TREE=. exec "$0" core new low_pass --lang vhdl --built --build none')
+    return ["sh", "-c", made, source / "icesoc"], tree, 0.3, written
 
 
 def main():
@@ -81,16 +88,19 @@ def main():
     work.mkdir(parents=True)
     draw = random.Random(int(os.environ.get("SEED", 1)))
     for tool in tools:
-        command, where, longest, result = {"new_ip": new_ip, "regress": regress, "synth": synth}[tool]()
+        command, where, longest, result = {"new_ip": new_ip, "regress": regress,
+                                           "synth": synth}[tool]()
         subprocess.run(command, cwd=where, check=True, stdout=subprocess.DEVNULL, timeout=LONGEST)
         right = result()
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL) * moments:
             moment = draw.uniform(0, longest)
             shutil.rmtree(work / tool, ignore_errors=True)  # kept by the run before
             cut = interrupt(command, number, moment, where)
-            subprocess.run(command, cwd=where, check=True, stdout=subprocess.DEVNULL, timeout=LONGEST)
-            assert result() == right, "%s: another result after %s at %.2f s" % (tool, number.name, moment)
-            print("%-8s %-7s at %.2f s%s: the next run is right" % (tool, number.name, moment, "" if cut else " (too late)"), flush=True)
+            subprocess.run(command, cwd=where, check=True, stdout=subprocess.DEVNULL,
+                           timeout=LONGEST)
+            place = f"{tool:<8} {number.name:<7} at {moment:.2f} s{'' if cut else ' (too late)'}"
+            assert result() == right, f"{place}: another result"
+            print(f"{place}: the next run is right", flush=True)
 
 
 main()

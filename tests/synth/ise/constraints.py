@@ -3,12 +3,10 @@
 """constraints: finds paths and pads of the chip without a constraint.
 
 Usage: constraints.py NETLIST FOLDER-OF-merge_ucf FILE.ucf...
-
-NETLIST is Yosys' JSON of chip.v, flattened, with MIG's core as a cell. Every path from pad or clock to clock, to pad and to
-an asynchronous reset needs a PERIOD, an OFFSET, a FROM:TO, a MAXDELAY or a TIG; every pad but those of MIG a standard and a
-place. Then each such statement is taken away in turn: one without which nothing is missing is told, too. Exit status 1 if
-anything is told.
-"""
+ NETLIST is Yosys' JSON of chip.v, flattened, with MIG's core as a cell. Every path from pad or
+clock to clock, to pad and to an asynchronous reset needs a PERIOD, an OFFSET, a FROM:TO, a MAXDELAY
+or a TIG; every pad but those of MIG a standard and a place. Then each such statement is taken away
+in turn: one without which nothing is missing is told, too. Exit status 1 if anything is told. """
 
 import json
 import re
@@ -31,8 +29,8 @@ def pad_name(port, index, width):
 
 
 def read_netlist():
-    """Pairs (start, end); a start or an end is ("pad", name), ("clock", names of the net), a start ("ram",
-    names of its clock), an end ("reset", the clock of the reset register)."""
+    """Pairs (start, end); a start or an end is ("pad", name), ("clock", names of the net), a start
+    ("ram", names of its clock), an end ("reset", the clock of the reset register)."""
     module = json.load(open(NETLIST))["modules"]["chip"]
     names, source, comb, sinks = {}, {}, {}, []
     pads = []
@@ -58,7 +56,8 @@ def read_netlist():
         if kind == "mig":
             own = clock(nets["c3_clk0"][0])
             for port in nets:
-                for bit in nets[port] if not port.startswith((OF_MIG, "c3_sys", "c3_clk")) and "_clk" not in port else []:
+                asynchronous = port.startswith((OF_MIG, "c3_sys", "c3_clk")) or "_clk" in port
+                for bit in nets[port] if not asynchronous else []:
                     if port in ins:
                         sinks.append((own, bit))
                     else:
@@ -102,7 +101,8 @@ def read_netlist():
             if known(bit) is not None:
                 stack.pop()
                 continue
-            todo = [b for b in comb[bit] if known(b) is None and b not in visited] if bit not in visited else []
+            todo = [b for b in comb[bit]
+                    if known(b) is None and b not in visited] if bit not in visited else []
             visited.add(bit)
             if todo:
                 stack += todo
@@ -119,7 +119,8 @@ def names_in(text):
 
 class Constraints:
     def __init__(self, lines):
-        self.groups, self.paths, self.tig, self.nets, self.offsets, self.periods = {}, [], [], [], [], set()
+        self.groups, self.paths, self.tig, self.nets = {}, [], [], []
+        self.offsets, self.periods = [], set()
         for line in lines:
             if found := re.match(r'NET "([^"]+)" TNM_NET = "([^"]+)"', line):
                 self.groups[found[2]] = ("clock", [found[1]])
@@ -129,7 +130,8 @@ class Constraints:
                 self.nets.append((found[1], found[2]))
             elif found := re.match(r'TIMEGRP "([^"]+)" = PADS\((.*)\)', line):
                 self.groups[found[1]] = ("pad", names_in(found[2]))
-            elif found := re.match(r'TIMEGRP "([^"]+)" OFFSET = IN .* VALID .* BEFORE "([^"]+)"', line):
+            elif found := re.match('TIMEGRP "([^"]+)" OFFSET = IN .* VALID .* BEFORE "([^"]+)"',
+                                   line):
                 self.offsets.append((found[1], found[2]))
             elif found := re.match(r'TIMESPEC "[^"]+" = PERIOD "([^"]+)"', line):
                 self.periods.add(found[1])
@@ -141,10 +143,12 @@ class Constraints:
             return point[0] == {"FFS": "clock", "RAMS": "ram"}[group]
         kind, patterns = self.groups.get(group, ("none", []))
         members = [point[1]] if point[0] == "pad" else point[1]
-        return (kind == "pad") == (point[0] == "pad") and any(fnmatchcase(m, p) for m in members for p in patterns)
+        return (kind == "pad") == (point[0] == "pad") and any(
+            fnmatchcase(m, p) for m in members for p in patterns)
 
     def says(self, pad, word):
-        return any(fnmatchcase(pad, net) and re.search(rf"\b{word}\b", what) for net, what in self.nets)
+        return any(
+            fnmatchcase(pad, net) and re.search(rf"\b{word}\b", what) for net, what in self.nets)
 
     def covers(self, start, end):
         if start[0] == "pad" and any(fnmatchcase(start[1], net) for net in self.tig):
@@ -161,7 +165,8 @@ class Constraints:
         return any(self.has(a, start) and self.has(b, end) for a, b in self.paths)
 
     def missing(self, pads, pairs):
-        told = {f"{tell(start)} to {tell(end)}: no constraint" for start, end in pairs if not self.covers(start, end)}
+        told = {f"{tell(start)} to {tell(end)}: no constraint" for start, end in pairs
+                if not self.covers(start, end)}
         for pad in pads:
             told |= {f"pad {pad}: no {word}" for word in ("IOSTANDARD", "LOC")
                      if not self.says(pad, word) and not (word == "LOC" and pad in unused)}
@@ -175,9 +180,9 @@ def tell(point):
 
 
 all_pads, all_pairs = read_netlist()
-unused = {pad for pad in all_pads if pad.startswith("core_pins") and
-          not any(("pad", pad) in pair for pair in all_pairs) and
-          not any(end[0] == "clock" and pad in end[1] or start[0] == "clock" and pad in start[1] for start, end in all_pairs)}
+used = {point[1] for pair in all_pairs for point in pair if point[0] == "pad"}
+used |= {name for pair in all_pairs for point in pair if point[0] == "clock" for name in point[1]}
+unused = {pad for pad in all_pads if pad.startswith("core_pins") and pad not in used}
 lines = [line for path in FILES for _, line in statements(path)]
 bad = sorted(Constraints(lines).missing(all_pads, all_pairs))
 if not bad:

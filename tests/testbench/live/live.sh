@@ -57,7 +57,7 @@ PY
     # As it stands, without its script.
     cp "$source"/testbench/live/page/live.css "$source"/testbench/page/common.css "$out"
     sed 's,<script.*</script>,,' "$out/dom.html" >"$out/still.html"
-    "$source/tests/regress/test/look.sh" "$out/still.html" || fail "the page's looks"
+    "$source/tests/look.py" "$out/still.html" || fail "the page's looks"
     ! grep -En '(https?:)?//[a-z]' "$source"/testbench/live/page/*.html "$source"/testbench/live/page/*.css || fail "the page names another host"
     ;;
 errors)

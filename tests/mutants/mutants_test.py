@@ -1,0 +1,201 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""mutants_test: run.py and drawn.py on small designs of their own.
+
+Usage: mutants_test.py run|drawn work-folder verilators-runtime.a
+"""
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+# A script's compiled form contains its time, which differs in each clone.
+sys.pycache_prefix = os.environ["PYTHONPYCACHEPREFIX"] = f"{sys.argv[2]}/compiled"
+from script import TREE, Script, edit, fresh, git, main, write  # noqa: E402
+
+PROJECT = "cmake_minimum_required(VERSION 3.25)\nproject(tiny {})\nenable_testing()\n"
+TINY = """/* doubles */
+static int twice(int n) {
+    return 2 * n;
+}
+int main(void) {
+    return twice(3) != 6;
+}
+"""
+TWICE = "    return 2 * n;"
+PAIR = """`default_nettype none
+module pair (
+    input wire clk_i, input wire a_i, input wire b_i, output reg both_o, output wire same_o);
+    assign same_o = a_i | (a_i & b_i);
+    always @(posedge clk_i)
+        both_o <= a_i & b_i;
+`ifdef FORMAL
+    reg past = 0, a, b;
+    always @(posedge clk_i)
+        {past, a, b} <= {1'b1, a_i, b_i};
+    always @* if (past) begin
+        assert (same_o == a_i);
+        cover (both_o);
+    end
+`endif
+endmodule
+"""
+TEST = """#include "Vpair.h"
+int main() {
+    Vpair top;
+    for (unsigned i = 0; i < 8; ++i) {
+        top.clk_i = 0;
+        top.eval();
+        top.a_i = i & 1, top.b_i = i >> 1 & 1;
+        top.eval();
+        top.clk_i = 1;
+        top.eval();
+        if (top.both_o != (top.a_i & top.b_i))
+            return 3;
+    }
+}
+"""
+PROGRAMS = r"""rule script
+  command = printf '#!/bin/sh\necho said; exit $$((%s))\n' '$fails' >$out && chmod +x $out
+build test_pair: script
+  fails = MUTANT == 1
+build test_bad: script
+  fails = 1
+"""
+
+
+class Cases(Script):
+    def setUp(self):
+        self.work = fresh(sys.argv[2])
+
+    def bugs(self, **bugs):
+        """Seeds bugs: the line that goes, the line that comes."""
+        write("tests/mutants/tiny.bugs", "".join(
+            f"{name}: A bug.\ntest_tiny\ntiny.c\n-{old}\n+{new}\n\n"
+            for name, (old, new) in bugs.items()))
+
+    def test_run(self):
+        """Each result that a seeded bug can have, an interrupted run."""
+        for file in "tests/mutants/run.py", "testbench/page/tool.py":
+            write(file, (TREE / file).read_text())
+        run = "tests/mutants/run.py"
+        write("CMakeLists.txt", PROJECT.format("C") + "add_executable(test_tiny tiny.c)\n"
+              "add_test(NAME test_tiny COMMAND test_tiny)\n")
+        write("tiny.c", TINY)
+        write(".gitignore", "build\n")
+        git("init -q .")
+        git("add .")
+        wrong = TWICE, "    return 3 * n;"
+        self.bugs(wrong=wrong)
+        self.ask(run, "--jobs", "1")
+        self.has("^caught *tiny/wrong ")
+        self.has("^tiny/wrong\tcaught\ttest_tiny\t", file="build/mutants/results.tsv")
+
+        # The bug of an interrupted run is removed; the tests would fail without a bug.
+        copies = [Path("build/mutants", number) for number in "01"]
+        write(copies[0] / "tiny.c.orig", TINY)
+        edit(copies[0] / "tiny.c", "2 *", "3 *")
+        write(copies[0] / "left_the_tree.c", "")
+        self.bugs(wrong=wrong, comment=("/* doubles */", "/* halves */"),
+                  nonsense=(TWICE, "    retrun 2 * n;"), nothing=(TWICE, TWICE),
+                  stale=("    return 6 * n;", "    return 5 * n;"))
+        self.ask(run, "--jobs", "2", status=1)
+        self.has("caught *tiny/wrong ", "SURVIVED *tiny/comment ", "does not build *tiny/nonsense ",
+                 "does not apply *tiny/stale ", "does not apply *tiny/nothing ",
+                 "^mutants: 1 of 5 caught")
+        self.assertFalse((copies[0] / "left_the_tree.c").exists())
+        for copy in copies:
+            self.assertEqual((copy / "tiny.c").read_text(), TINY)
+        self.ask(run, "--check", status=1)
+        self.has("tiny/stale: does not apply")
+        self.make("mutants", "BLOCK=tiny/wrong", "JOBS=1", tree=".")
+        self.has("^mutants: 1 of 1 caught")
+        self.bugs(wrong=wrong)
+        malformed = Path("tests/mutants/wrong.bugs")
+        malformed.write_text("no test\n-and no file\n")
+        self.ask(run, "--check", status=1)
+        self.has("wrong.bugs: not a bug as")
+        malformed.unlink()
+
+        # A test that fails by itself catches nothing.
+        edit("tiny.c", "!= 6", "!= 7")
+        self.ask(run, "--jobs", "1", status=1)
+        self.has("test_tiny fails without any mutant")
+
+    def draw(self, status=0, block="pair"):
+        self.make("mutants", "DRAW=8", "SEED=3", "JOBS=2", f"BLOCK={block}", tree=".",
+                  status=status)
+
+    def test_drawn(self):
+        """A module with half a proof: mutants that it misses survive at their line, and those that
+        are no bug drop out. A test of a model that carries all survivors finds them."""
+        pair = "hdl/small/pair.v"
+        write(pair, PAIR)
+        write("bus/none.v", "")
+        write("ip/none", "")
+        Path("tests").mkdir()
+        os.symlink(TREE / "tests/mutants", "tests/mutants")
+        prove = f"{TREE}/tests/hdl/formal/prove.sh pair 4 {self.work} {self.work}/build/pair"
+        write("CMakeLists.txt",
+              PROJECT.format("NONE") + f"add_test(NAME formal.pair COMMAND env {prove})\n")
+        self.ask("cmake", "-S", ".", "-B", "build", "-G", "Ninja")
+        self.draw(status=2)
+        self.has("^SURVIVED .*formal.pair .*hdl/small/pair.v:[56] ", "^pair .* [1-9] the same$",
+                 "below 95 %: pair$")
+        self.lacks("^SURVIVED .*pair.v:4 ")  # it changes nothing, or the proof sees it
+        missed = json.loads(Path("build/mutants/drawn.json").read_text())["survived"]
+        self.the_model_carries(missed, pair)
+        edit(pair, "assert (same_o == a_i);",
+             "assert (same_o == a_i); assert (both_o == (a && b));")
+        self.draw()
+        self.has(r"^(\d*) of \1 mutants tried", "^pair  *100.0 %")
+        self.has(r'"survived": \[\]', file="build/mutants/drawn.json")
+        drawn = Path("build/mutants/drawn/pair/list").read_text()
+        self.draw()
+        self.assertEqual(Path("build/mutants/drawn/pair/list").read_text(), drawn)
+        self.a_test_that_fails_as_it_is_catches_none()
+        # A mutant that does not run is reported; the others are still judged.
+        path = os.environ["PATH"]
+        write("yosys", '#!/bin/sh\ncase $PWD in */drawn/pair/2) echo "no such thing" && exit 1 ;;\n'
+              f'esac\nPATH={path} exec yosys "$@"\n')
+        os.environ["PATH"] = f"{self.work}:{path}"
+        self.draw(status=2)
+        self.has("no such thing", "^mutants: 1 do not run", "^pair  *100.0 %")
+        self.draw(2, "nothing")
+        self.has("no proof.s name begins with nothing")
+
+    def the_model_carries(self, missed, pair):
+        write("missed.json", json.dumps(missed))
+        write("main.cpp", TEST)
+        self.ask(TREE / "tests/mutants/model.py", "--cc", "-Wall", "--top-module", "pair",
+                 "--prefix", "Vpair", "--Mdir", "model", pair,
+                 env={**os.environ, "DRAWN": str(self.work / "missed.json")})
+        root = subprocess.check_output(["verilator", "--getenv", "VERILATOR_ROOT"], text=True)
+        include = f"{root.strip()}/include"
+        self.ask("c++", "-Imodel", f"-I{include}", f"-I{include}/vltstd", "main.cpp",
+                 *Path("model").glob("*.cpp"), sys.argv[3], *"-lz -lpthread -o test_pair".split())
+        self.ask("./test_pair")  # the model without a mutant is the module
+        for mutant in range(1, len(missed) + 1):
+            self.ask("./test_pair", env={**os.environ, "MUTANT": str(mutant)}, status=3)
+
+    def a_test_that_fails_as_it_is_catches_none(self):
+        """The others' results are still reported."""
+        write("copy/build/main/build.ninja", PROGRAMS)
+        write("by_tests.py", f"""import pathlib, sys
+from concurrent.futures import ThreadPoolExecutor
+sys.path.insert(0, "{TREE}/tests/mutants")
+import drawn, run
+run.TOP, run.prepare = pathlib.Path.cwd(), lambda *_: None
+drawn.TESTS = {{"pair": "test_pair", "bad": "test_bad"}}
+rows = [dict(module=name, result="SURVIVED") for name in ("pair", "pair", "bad")]
+with ThreadPoolExecutor(2) as pool:
+    assert drawn.by_tests(rows, run.TOP / "copy", pool) == ["test_bad"]
+assert [row["result"] for row in rows] == ["test_pair", "SURVIVED", "SURVIVED"], rows
+""")
+        self.ask("/usr/bin/python3", "-B", "by_tests.py")
+        self.has("^said$", "test_bad fails without any mutant, so it caught none")
+
+
+main(Cases)

@@ -1,0 +1,202 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""commands_test: what commands do, by make, with each of their variables.
+
+Usage: commands_test.py commands_... work-folder build-folder
+"""
+import os
+import re
+from pathlib import Path
+
+from project import BUILD, REGRESS, TREE, Project, append, edit, git, main, write
+
+NUMBERS = ("build JOBS=abc", "fly MINUTES=abc", "soak FUZZED=0", "regress REPEAT=0",
+           "nightly NIGHTLY=x", "faults MOMENTS=x", "faults SEEDS=x", "mutants DRAW=x",
+           "test TESTS=x", "regress WAVES=-1", "run SEED=-1", "test SEED=7x")
+WAVED = r"""#!/bin/sh
+case $1 in
+--gtest_list_tests) printf 'Fir.\n  Impulse\n  ImpulseAndStep\n' ;;
+*) echo "$1" >"$WAVE" ;;
+esac
+"""
+TESTS = r"""
+set(work ${CMAKE_SOURCE_DIR})
+set(build ${CMAKE_BINARY_DIR})
+add_custom_target(regress ALL COMMAND mkdir -p tests/regress tests/hdl/formal/thing
+  COMMAND ln -sf REGRESS tests/regress/regress COMMAND sh -c "echo 3 >tests/hdl/formal/thing/cpu"
+  WORKING_DIRECTORY ${build} VERBATIM)
+foreach(target sanitized regmaps bench_programs)
+  add_custom_target(${target})
+endforeach()
+add_custom_target(size COMMAND cp ${work}/size.json ${work}/build)
+add_custom_target(measure_good COMMAND cp ${work}/air.json ${work}/build/bench)
+add_custom_target(measure_bad COMMAND test ! -e ${work}/slow
+  COMMAND cp ${work}/air.json ${work}/build/bench/link.json)
+add_custom_target(benches DEPENDS measure_bad measure_good)
+add_custom_target(test_ip_fir ALL COMMAND cp ${work}/waved ${build}/test_ip_fir)
+file(WRITE ${build}/cores.known "fir\n")
+add_test(NAME test_ip_fir.Impulse COMMAND ${build}/test_ip_fir --gtest_list_tests)
+add_test(NAME test_s.Sane COMMAND sh -c
+  "case ${build} in *sanitized) ! test -e ../../../../leak ;; esac")
+set_tests_properties(test_s.Sane PROPERTIES LABELS sanitized)
+foreach(label zeroc nightly)
+  add_test(NAME ${label}.Suite CONFIGURATIONS ${label}
+           COMMAND sh -c "echo ${label} >>../../../../done")
+  set_tests_properties(${label}.Suite PROPERTIES LABELS ${label})
+endforeach()
+"""
+STEPS = """import sys
+name = "_".join(word for word in sys.argv[1:4] if word.isalpha())
+open("done", "a").write(name + "\\n")
+sys.exit(name == open("failing").read())
+"""
+DONE = """zeroc nightly fly synth_report core_examples check_sanitizers check_mutants check_mutants
+check_faults check_soak bench check_coverage check_fresh"""
+
+
+class Cases(Project):
+    def user(self, words, *more, **how):
+        """Runs make in the whole tree, where everything is built."""
+        self.make(*words.split(), *more, build=BUILD, **how)
+
+    def test_commands_run(self):
+        """The program's message about an invalid value of a variable proves that the variable
+        reaches it."""
+        flight, file = self.work / "flight", self.work / "CMakeLists.txt"
+        write(flight / "flight.jsonl", "{}\n")
+        write(flight / "status", "up\n")
+        for words, said in (
+            ("run THRESHOLD=300", "THRESHOLD is 0..255 grey levels, not '300'"),
+            ("run LOSS=7", "LOSS is the share .* not '7'"),
+            ("run PORT=x", "PORT is 0..65535, not 'x'"),
+            ("run CPU=x", "CPU is host or m3, not 'x'"),
+            ("run APP=x", "APP is uav or minimal, not 'x'"),
+            ("run CORES=nobody", "core 'nobody' has no part in a mission"),
+            (f"run OPEN=1 KEY={file}", f"OPEN=1 flies in the clear, KEY='{file}' does not"),
+            (f"run SIZE=96x64k OUT={flight}", "SIZE is WIDTHxHEIGHT, .* not '96x64k'"),
+            (f"run IMAGE=/none OUT={flight}", "cannot read '/none'"),
+            (f"run PINS=/none OUT={flight}", "cannot read '/none'"),
+            (f"run PROBE=fir.go=1 OUT={flight}", "PROBE='fir.go=1' is a trigger of a probe: "
+             "give --cores probe [(]CORES=probe[)], too"),
+            ("run OUT=/proc/none", "OUT='/proc/none' is no folder"),
+            # before a simulator is built for it
+            (f"run REPLAY={flight} FROM=x", "FROM is a number from 0 on s, not 'x'"),
+            (f"run REPLAY={flight} FROM=2 TO=1", "FROM=2.0 TO=1.0 are no span"),
+            (f"run UPDATE=/none CPU=m3 OUT={flight}", "cannot read '/none'"),
+            ("run REPLAY=/none", "no flight was recorded in '/none'"),
+            (f"gdb REPLAY=/none OUT={flight}", "no flight was recorded in '/none'"),
+            ("faults NAME=nonsense", "faults: none is called nonsense; there are clock_step"),
+            ("synth BASE=none", "there is no commit BASE=none"),
+            *((words, "{0[0]} is a (whole )?(number|time).*, not '{0[1]}'".format(
+                words.split()[1].split("="))) for words in NUMBERS)):
+            with self.subTest(words):
+                self.user(words, status=2)
+                self.has(said)
+                # A replay would be of an earlier flight, still in the folder.
+                self.lacks("Traceback|--help" + ("|REPLAY=" if "IMAGE" in words else ""))
+        with open(self.work / "commands", "w+") as commands:
+            commands.write("print $pc\nkill\n")
+            commands.seek(0)
+            self.user("gdb SIZE=96x64", f"OUT={self.work}/gdb", stdin=commands)
+        self.has("Reset_Handler")
+        self.user("firmware")
+        self.has("^Written: build/firmware.json")
+        self.user("faults NAME=no_memory MOMENTS=1 SEEDS=1 SEED=2")
+        self.has("^faults: 1 moments of seeds 2 to 2, 0 failed")
+
+    def test_commands_radio(self):
+        """Moments of what takes hours."""
+        # Of the two that run test_chip_soak, which is a test itself, one has it do something.
+        os.environ["GTEST_FILTER"] = "-ChipSoak*"
+        self.user("soak MINUTES=0.01 FUZZED=1000")
+        self.has("^modem controller: 1000 bytes of noise", "^link layer: 10000 bytes of noise")
+        del os.environ["GTEST_FILTER"]
+        self.user("fly MINUTES=0.01")
+        self.has("^chip soak: .* simulated")
+
+    def entrance(self):
+        """Adds to this project all that commands ask of a build."""
+        write("cmake/setup.sh", "#!/bin/sh\n")
+        write("ip/fir/fir_test.cpp", "")
+        write("tests/bench/figures.py", (TREE / "tests/bench/figures.py").read_text())
+        write("waved", WAVED)
+        write("size.json", '[{"name": "call", "value": 4, "unit": "bytes"}]')
+        write("air.json",
+              '[{"name": "trip", "value": 20, "unit": "ms", "limit": 40, "share": 0.5}]')
+        edit("tests/room/CMakeLists.txt", " d.Crash", "")
+        append("tests/room/CMakeLists.txt", TESTS.replace("REGRESS", str(REGRESS)))
+
+    def good(self, words, status=0):
+        self.make("JOBS=1", *words.split(), tree=self.work, build=None, status=status)
+
+    def bad(self, words, *said):
+        self.good(words, 2)
+        self.has(*said)
+
+    def test_commands_small(self):
+        self.entrance()
+        self.ask("rm", "-rf", "build")
+        self.good("build")
+        self.assertTrue(os.access("build/main/tests/regress/regress", os.X_OK))
+        self.good("test NAME=b.Bad LABEL=rtl SEED=7")
+        self.bad("test NAME=b.Bad SEED=3", "value 3 is not 7")
+        self.bad("test LABEL=nothing")
+        self.good("test SEED=7")
+        self.assertEqual(self.said.count("100% tests passed"), 2)  # once more with sanitizers
+        write("leak", "")
+        self.bad("test SEED=7", "test_s.Sane")
+        Path("leak").unlink()
+        self.good("proofs")
+        self.has("^1 proofs, 3 s of a processor$")
+        self.good("regress BLOCK=room NAME=[ab][.] LABEL=rtl SEED=7 WAVES=0 TESTS=2")
+        self.has("^3 passed")
+        self.bad("regress NAME=b.Bad REPEAT=2", "SEED=2")
+        self.bad("regress FAILED=1", "^1 tests")
+        self.bad("regress KEPT=1", "^1 tests, SEED=2")
+        self.good("regress CHANGED=1 NAME=a[.]")
+        # A bench that fails hides no other's figures, and its older figures do not count as new.
+        figures = Path("docs/figures.md")
+        figures.parent.mkdir()
+        trip = "| trip | 20 ms | limit 40, 50.0 % |\n"
+        self.good("bench")
+        self.assertEqual(figures.read_text().count(trip), 2, figures.read_text())
+        self.has(rf"^Measured on .* at commit {git('rev-parse --short HEAD')} and changes to it\.$",
+                 file=figures)
+        write("slow", "")
+        self.bad("bench", "measure_bad")
+        self.assertEqual(figures.read_text().count("\n| trip "), 1, figures.read_text())
+        self.has("^[|] call [|] 4 bytes [|]", file=figures)
+        os.environ["DISPLAY"] = ""
+        self.good("wave IP=fir TEST=Impulse")
+        self.has("^gtkwave .*/build/wave/fir.fst")
+        self.has("^--gtest_filter=Fir.Impulse$", file="build/wave/fir.fst")
+        self.good("wave IP=fir TEST=And")
+        self.bad("wave IP=fir TEST=Imp", "2 tests, not one of")
+        self.good("ip-test IP=fir")
+        self.has("1 tests passed|100% tests passed")
+        self.good(f"ip-test IP=fir CORE_FOLDERS={self.work}/mine")
+        self.has(f"^CORE_FOLDERS.*={self.work}/mine$", file="build/main/CMakeCache.txt")
+        self.bad("ip-test IP=nobody", "there is no core 'nobody': fir")
+        self.bad("bisect TEST=test_a.One GOOD=nonsense BAD=HEAD SEED=1", "no commit GOOD=nonsense")
+        self.good("clean")
+        self.assertFalse(Path("build").exists())
+
+    def test_commands_nightly(self):
+        """Each step runs even if earlier ones failed, and each failure is reported."""
+        self.entrance()
+        write("icesoc", STEPS)
+        edit("tests/room/t.sh", "value $SEED is not 7", "failed with $SEED")
+        edit("tests/room/t.sh", '"$SEED" = 7', "! -e ../../../../bad")
+        for failing, seeds, status in (("none", 2, 0), ("check_mutants", 2, 2), ("fly", 2, 2),
+                                       ("check_fresh", 2, 2), ("a test", 2, 2),
+                                       ("a test", 4, 2)):  # and two that are kept
+            write("done", "")
+            write("failing", failing)
+            if failing == "a test":
+                write("bad", "")
+            self.good("nightly NIGHTLY=2", status)
+            self.assertEqual(Path("done").read_text().split(), DONE.split(), failing)
+            self.assertEqual(len(re.findall("^[0-9]* tests, SEED=", self.said, re.M)), seeds)
+
+
+main(Cases)

@@ -144,8 +144,8 @@ function(icesoc_core name)
     if(A_CLK_HZ)
       set(flag --clk-hz)
     endif()
-    add_custom_command(OUTPUT ${GEN_DIR}/${top}.v COMMAND regmap ${regs} --clocked ${flag} --output-dir ${GEN_DIR}
-                       DEPENDS regmap ${regs} VERBATIM COMMENT "${name} in its own clock")
+    add_custom_command(OUTPUT ${GEN_DIR}/${top}.v COMMAND ${REGMAP} ${regs} --clocked ${flag} --output-dir ${GEN_DIR}
+                       DEPENDS ${REGMAP} ${regs} VERBATIM COMMENT "${name} in its own clock")
     add_custom_target(${top}_verilog DEPENDS ${GEN_DIR}/${top}.v)
     list(APPEND files ${GEN_DIR}/${top}.v)
     list(APPEND targets ${top}_verilog)
@@ -233,10 +233,11 @@ function(icesoc_chip)
                      ${GEN_DIR}/core_pins.ucf ${GEN_DIR}/icesoc.svd ${GEN_DIR}/registers.html
                      ${GEN_DIR}/probes.json ${GEN_DIR}/icesoc.rdl ${GEN_DIR}/icesoc.ipxact.xml
     ${check}
-    COMMAND coremap ${CORES} --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${clocked} ${idle} ${own}
+    COMMAND ${CMAKE_SOURCE_DIR}/bus/coremap.py ${CORES} --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${clocked} ${idle} ${own}
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             --block 1=modem=${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json --output-dir ${GEN_DIR}
-    DEPENDS coremap ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${inputs}
+    DEPENDS ${REGMAP} ${CMAKE_SOURCE_DIR}/bus/coremap.py ${CMAKE_SOURCE_DIR}/bus/core_output.py
+            ${CMAKE_SOURCE_DIR}/bus/core_exchange.py ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${inputs}
             ${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json ${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json
             ${slice_files}
     COMMAND_EXPAND_LISTS VERBATIM COMMENT "Cores of the chip: ${CHIP_CORES}")

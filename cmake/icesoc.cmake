@@ -127,14 +127,15 @@ endfunction()
 
 # icesoc_regmap(JSON): registers of one block, from its *.regs.json, as a Verilog include, a C header,
 # a VHDL package and a Markdown page in ${GEN_DIR}; target regmap_<block>, interface library regs_<block>.
+set(REGMAP ${CMAKE_SOURCE_DIR}/bus/regmap.py)
 function(icesoc_regmap json)
   get_filename_component(block ${json} NAME_WE)
   get_filename_component(path ${json} ABSOLUTE)
   set(outs ${GEN_DIR}/${block}_regs.vh ${GEN_DIR}/${block}_regs.h ${GEN_DIR}/${block}_regs_pkg.vhd
            ${GEN_DIR}/${block}_regs.md)
   add_custom_command(OUTPUT ${outs}
-    COMMAND regmap ${path} --output-dir ${GEN_DIR}
-    DEPENDS regmap ${path} VERBATIM COMMENT "Registers of ${block}")
+    COMMAND ${REGMAP} ${path} --output-dir ${GEN_DIR}
+    DEPENDS ${REGMAP} ${path} VERBATIM COMMENT "Registers of ${block}")
   add_custom_target(regmap_${block} ALL DEPENDS ${outs})
   set_property(GLOBAL APPEND PROPERTY ICESOC_REGMAP_TARGETS regmap_${block})
   set_property(GLOBAL APPEND PROPERTY ICESOC_REGS_FILES ${path})

@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# cores: coremap regmap source-folder generated-folder work-folder   Lists of cores: what the chip is with them, lint of soc.v
+# cores: source-folder generated-folder work-folder   Lists of cores: what the chip is with them, lint of soc.v
 # with each, and errors.
 set -eu
-coremap=$1 regmap=$2 source=$3 gen=$4 work=$5
+source=$1 gen=$2 work=$3 coremap=$1/bus/coremap.py regmap=$1/bus/regmap.py
 data=$(cd "$(dirname "$0")/data" && pwd)
 rm -rf "$work"
 mkdir -p "$work/own"

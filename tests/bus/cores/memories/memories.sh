@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# memories: slice2c coremap regmap source-folder generated-folder work-folder   Three cores with buffers of different sizes, in
+# memories: slice2c source-folder generated-folder work-folder   Three cores with buffers of different sizes, in
 # every order of ip/cores.list: in the simulated chip none writes into another's memory. And the proof for two generated wrappers:
 # whatever is written to them besides, no byte of one's buffers is a byte of the other's.
 set -eu
-slice2c=$1 coremap=$2 regmap=$3 source=$4 gen=$5 work=$6
+slice2c=$1 source=$2 gen=$3 work=$4 coremap=$2/bus/coremap.py regmap=$2/bus/regmap.py
 here=$(cd "$(dirname "$0")" && pwd)
 rm -rf "$work"
 mkdir -p "$work"

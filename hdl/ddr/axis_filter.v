@@ -4,14 +4,14 @@
 // bits, and writes the core's output into another buffer (`make new-foreign BUS=axis`).
 //
 // It ends with the core's tlast. Without tlast (LAST 0) it ends when as many beats came out as went
-// in. It refuses no bytes, and an output longer than the buffer.
+// in. It refuses no bytes, and an output longer than the buffer, of which it writes what fits.
 
 `default_nettype none
 
 module axis_filter #(
     parameter WIDTH     = 8,   // the core's data in both directions: 8, 16, 32, 64
     parameter BYTE_BITS = 11,  // of the number of bytes, 7..32
-    parameter ROOM      = 1024, // bytes of the target
+    parameter ROOM      = 1024, // bytes of the target, a multiple of 8
     parameter LAST      = 1    // 0: the core's output has no tlast
 ) (
     `include "memory_ports.vh"
@@ -20,7 +20,7 @@ module axis_filter #(
     // the operation
     input  wire                 core_rst_i, // the operation is given up
     input  wire                 start_i,
-    input  wire [31:0]          source_i,   // byte address, a multiple of 8; so is the target's
+    input  wire [31:0]          source_i,   // byte address, a multiple of 64; so is the target's
     input  wire [BYTE_BITS-1:0] bytes_i,    // a multiple of WIDTH / 8, or the core looks at tkeep
     input  wire [31:0]          target_i,
     output wire                 done_o,     // high for a clock
@@ -44,12 +44,20 @@ module axis_filter #(
     localparam [3:0]  LAST_BEAT = BEATS_OF_WORD[3:0] - 4'd1;
     localparam [BYTE_BITS-1:0] STEP = BYTES_OF_BEAT[BYTE_BITS-1:0];
 
-    reg         reading, writing; // a descriptor is offered
-    reg         empty;            // refused
-    wire        read_ready, write_ready, idle, tag, no_tag, ended, over;
-    wire        word_valid, word_last, word_ready;
+    localparam WORD_BITS = BYTE_BITS - 2; // of a number of words
+
+    reg         waiting; // for transfers of an operation before, which was given up
+    reg         writing; // the output goes to memory
+    reg         closing, closed; // its last word is taken: the burst is filled; waits until it is in memory
+    reg         empty, over; // refused
+    reg  [BYTE_BITS-1:0] left; // bytes to read that the core has not got
+    reg  [BYTE_BITS-1:0] bytes; // written
+    wire        read_idle, write_idle, write_ready, word_valid;
     wire [63:0] word;
-    wire [7:0]  word_keep;
+    wire        go        = waiting && read_idle && write_idle && !core_rst_i;
+    wire        word_last = left <= {{(BYTE_BITS-4){1'b0}}, 4'd8};
+    wire [7:0]  word_keep = word_last && left[2:0] != 3'd0 ? 8'hFF >> (4'd8 - {1'b0, left[2:0]}) : 8'hFF;
+    wire        word_ready;
 
     // ---- a word from memory, beat by beat ----
     reg  [3:0]  beat;
@@ -71,18 +79,31 @@ module axis_filter #(
     reg  [63:0] out;
     reg  [7:0]  out_keep;
     reg  [BYTE_BITS-1:0] awaited; // bytes that went in and have not come out
-    wire        out_ready;
+    wire        room      = bytes != ROOM[BYTE_BITS-1:0];
+    wire        out_ready = writing && (write_ready || !room);
+    wire        given     = full && out_ready;
     wire        came = s_axis_tvalid_i && s_axis_tready_o;
     wire        last = LAST != 0 ? s_axis_tlast_i : awaited <= STEP;
     assign s_axis_tready_o = !full || out_ready;
 
+    reg [3:0] out_bytes; // up to the last one that is kept
     integer b;
+    always @* begin
+        out_bytes = 4'd0;
+        for (b = 0; b < 8; b = b + 1)
+            if (out_keep[b])
+                out_bytes = b[3:0] + 4'd1;
+    end
     always @(posedge clk_i) begin
         if (sent)
             beat <= is_last ? 4'd0 : beat + 4'd1;
-        if (full && out_ready) begin
+        if (given) begin
             full     <= 1'b0;
             out_keep <= 8'd0;
+            over     <= over || !room;
+            if (room)
+                bytes <= bytes + {{(BYTE_BITS-4){1'b0}}, ends ? out_bytes : 4'd8};
+            writing  <= !ends;
         end
         if (came) begin
             for (b = 0; b < BEATS; b = b + 1)
@@ -97,42 +118,52 @@ module axis_filter #(
         end
         empty <= start_i && bytes_i == {BYTE_BITS{1'b0}};
         if (start_i) begin
-            reading <= bytes_i != {BYTE_BITS{1'b0}};
-            writing <= bytes_i != {BYTE_BITS{1'b0}};
+            waiting <= bytes_i != {BYTE_BITS{1'b0}};
             awaited <= bytes_i;
         end
-        if (reading && read_ready)
-            reading <= 1'b0;
-        if (writing && write_ready)
-            writing <= 1'b0;
+        if (word_valid && word_ready)
+            left <= word_last ? {BYTE_BITS{1'b0}} : left - {{(BYTE_BITS-4){1'b0}}, 4'd8};
+        if (go) begin
+            waiting <= 1'b0;
+            writing <= 1'b1;
+            left    <= bytes_i;
+            bytes   <= {BYTE_BITS{1'b0}};
+            over    <= 1'b0;
+        end
+        closing <= given && ends;
+        closed  <= closing || (closed && !write_idle);
         if (core_rst_i || rst_i) begin
-            reading  <= 1'b0;
+            waiting  <= 1'b0;
             writing  <= 1'b0;
+            closing  <= 1'b0;
+            closed   <= 1'b0;
             empty    <= 1'b0;
+            left     <= {BYTE_BITS{1'b0}};
             beat     <= 4'd0;
             place    <= 4'd0;
             full     <= 1'b0;
             out_keep <= 8'd0;
         end
     end
-    assign done_o    = empty || ended;
+    assign done_o    = empty || (closed && write_idle);
     assign refused_o = empty || over;
+    assign bytes_o   = bytes;
 
-    axis_memory #(.BYTE_BITS(BYTE_BITS), .ROWS(0)) u_memory (
+    wire write = writing && full && room && !core_rst_i;
+    wire flush = closing || core_rst_i;
+    npi_stream #(.WORD_BITS(WORD_BITS)) u_stream (
         `include "memory_connect.vh"
-        .clk_i(clk_i), .rst_i(rst_i), .stop_i(core_rst_i), .idle_o(idle), // not by core_rst_i: requested words must be taken
-        .read_valid_i(reading), .read_ready_o(read_ready), .read_base_i(source_i), .read_bytes_i(bytes_i),
-        .read_rows_i(16'd1), .read_stride_i(32'd0), .read_tag_i(1'b0),
-        .m_axis_tvalid_o(word_valid), .m_axis_tready_i(word_ready), .m_axis_tdata_o(word), .m_axis_tkeep_o(word_keep),
-        .m_axis_tlast_o(word_last), .m_axis_tid_o(no_tag),
-        .write_valid_i(writing), .write_ready_o(write_ready), .write_base_i(target_i), .write_bytes_i(ROOM[BYTE_BITS-1:0]),
-        .write_rows_i(16'd1), .write_stride_i(32'd0), .write_tag_i(1'b0),
-        .s_axis_tvalid_i(full), .s_axis_tready_o(out_ready), .s_axis_tdata_i(out), .s_axis_tkeep_i(out_keep),
-        .s_axis_tlast_i(ends),
-        .done_valid_o(ended), .done_ready_i(1'b1), .done_bytes_o(bytes_o), .done_over_o(over), .done_tag_o(tag)
+        .clk_i(clk_i), .rst_i(rst_i), // not by core_rst_i: requested words must be taken
+        .read_start_i(go), .read_base_i(source_i[31:6]),
+        .read_words_i({1'b0, bytes_i[BYTE_BITS-1:3]} + {{(WORD_BITS-1){1'b0}}, |bytes_i[2:0]}),
+        .read_stop_i(core_rst_i), .read_valid_o(word_valid), .read_data_o(word),
+        .read_take_i(word_valid && word_ready), .read_idle_o(read_idle),
+        .write_start_i(go), .write_base_i(target_i[31:6]),
+        .write_valid_i(write), .write_data_i(out), .write_be_i(out_keep), .write_ready_o(write_ready),
+        .write_flush_i(flush), .write_idle_o(write_idle)
     );
 
-    wire unused = &{1'b0, idle, tag, no_tag, shifted, kept, 1'b0};
+    wire unused = &{1'b0, shifted, kept, source_i[5:0], target_i[5:0], 1'b0};
 
 `ifdef FORMAL
 `include "axis_filter_proof.vh"

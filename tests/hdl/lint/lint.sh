@@ -19,7 +19,6 @@ mcb_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=30' refused='ADDR_WIDTH=31' ;;
 npi_queue) variants='PORT_BITS=2 PORT_BITS=3' ;;
 npi_stream) variants='ADDR_BITS=7 WORD_BITS=4 WORD_BITS=32' ;;
 axis_filter) variants='WIDTH=16 WIDTH=32 WIDTH=64 LAST=0' ;;
-axis_read | axis_write | axis_memory) variants='ADDR_BITS=7 BYTE_BITS=7 BYTE_BITS=32 ROWS=0 TAG_BITS=6' ;;
 bus_wrapper) variants='EVENTS=1 EVENTS=32' ;;
 bus_window) variants='ADDR_WIDTH=3 ADDR_WIDTH=5 ADDR_WIDTH=6 ADDR_WIDTH=32' refused='ADDR_WIDTH=2 ADDR_WIDTH=33 TIMEOUT=0 TIMEOUT=256' ;;
 bus_to_axi4lite) variants='ADDR_WIDTH=3 ADDR_WIDTH=32' ;;

@@ -6,6 +6,7 @@
 #include "Vmy_scale_slot.h"
 #include "Vmy_twice_slot.h"
 #include "my_scale_proxy.h"
+#include "my_scale_regs.h"
 #include "my_twice_proxy.h"
 
 namespace {
@@ -37,6 +38,21 @@ TEST_F(Scale, EverySampleComesOutOnceScaled) {
     EXPECT_FALSE(core_.bench_.top().over_o);
     scaled({0x7FFF});
     EXPECT_TRUE(core_.bench_.top().over_o) << "its pin";
+}
+
+TEST_F(Scale, GivesABeatAClockWhenTheMemoryKeepsUp) {
+    core_.memory_.setStall(0);
+    core_.setGainFactor(1);
+    auto clocksOf = [&](size_t count) {
+        scaled(std::vector<Ice_Short>(count, 1));
+        uint64_t before = core_.bench_.cycles();
+        core_.bus_.write(MY_SCALE_CONTROL, 1u << 1); // once more, without the driver's copying
+        core_.bench_.waitFor([&] { return core_.bench_.top().irq_o; }, "the core's interrupt",
+                             9999);
+        core_.bus_.write(MY_SCALE_EVENT, ~0u);
+        return static_cast<double>(core_.bench_.cycles() - before);
+    };
+    EXPECT_LE((clocksOf(512) - clocksOf(64)) / 448, 1.05);
 }
 
 TEST_F(Scale, AnEmptyPacketIsRefused) {

@@ -4,7 +4,7 @@
 // with a memory that stalls and software that takes packets at random. Its output must be runs of
 // its input, in order; other memory does not change; and afterwards it works.
 //
-//   SOAK_BYTES=10000000 build/main/tests/hdl/modem/test_modem_soak     (default 30000)
+//   SOAK_BYTES=10000000 build/main/tests/hdl/test_modem_soak     (default 30000)
 
 #include "VModem.h"
 #include "modem_rig.h"

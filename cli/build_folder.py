@@ -6,7 +6,7 @@ import re
 import shutil
 from pathlib import Path
 
-from cli import keys, runner
+from cli import keys, progress, runner
 from cli.runner import Stop, lock, output, run, warn
 
 TREE = Path(__file__).resolve().parent.parent
@@ -85,11 +85,8 @@ class BuildFolder:
         if self.built:
             return 0
         with lock(self.folder, busy=f"waiting for another build in {self.folder} ..."):
-            return run(["ninja", "-C", self.folder, "-j", jobs or self.jobs, *words], check=check,
-                       env=env)
-
-    def quietly(self, *targets):
-        return self.ninja("--quiet", *targets)
+            return progress.build(["ninja", "-C", self.folder, "-j", jobs or self.jobs, *words],
+                                  self.folder / "build.log", check, env)
 
     def ctest(self, *words, tests, check=True, **env):
         return run([
@@ -106,7 +103,7 @@ def configured(values, *targets, tests=False):
     """The build folder of a command, with targets built."""
     build = BuildFolder(values.build, values).prepare(tests=tests)
     if targets:
-        build.quietly(*targets)
+        build.ninja(*targets)
     return build
 
 

@@ -93,7 +93,7 @@ def new(values):
     check_name(name)
     build = BuildFolder(values.build, values).prepare()
     if values.ice:
-        build.quietly("slice2c")
+        build.ninja("slice2c")
     build.folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="new-ip.", dir=build.folder) as work:
         folder = Path(work) / name
@@ -153,7 +153,7 @@ def foreign_core(values):
     """put a third-party core into a slot: writes ip/NAME"""
     build = BuildFolder(values.build, values).prepare()
     if any(file.lower().endswith((".vhd", ".vhdl")) for file in values.files):
-        build.quietly("ghdl")
+        build.ninja("ghdl")
     return run(["ip/new_foreign.py", *foreign_words(values)], check=False, env={
         "GHDL": build / "ghdl/ghdl"})
 
@@ -166,7 +166,7 @@ def known(values):
     if not values.built:
         if values.core_folders:
             build.set(CORE_FOLDERS="" if values.core_folders == "none" else values.core_folders)
-        build.quietly("build.ninja")  # CMake has not seen newer folders
+        build.ninja("build.ninja")  # CMake has not seen newer folders
     cores = (build / "cores.known").read_text().split()
     if values.ip not in cores:
         raise Stop(f"there is no core '{values.ip}': {' '.join(cores)}")
@@ -182,7 +182,7 @@ def test(values):
     program = f"test_ip_{core}"
     if program not in build.targets():
         raise Stop(f"{core} has no test: {core}_test.cpp is not in its folder")
-    build.quietly(program)
+    build.ninja(program)
     return build.ctest("-R", rf"^{program}[.]", tests=1, SEED=values.seed)
 
 
@@ -191,7 +191,7 @@ def test(values):
 def synth(values):
     """utilisation of one core, alone and in the chip"""
     build = known(values)
-    build.quietly("synth_inputs")
+    build.ninja("synth_inputs")
     return utilisation(build, values, "--design", values.ip) or \
         utilisation(build, values, "--core", values.ip,
                     *(["--design", "soc"] if values.chip else []))
@@ -244,7 +244,7 @@ def wave(values):
     build = BuildFolder("build/trace", values)
     if not values.built:
         build.configure("-DTRACE=ON")
-    build.quietly(f"test_ip_{core}")
+    build.ninja(f"test_ip_{core}")
     program = next(path for path in sorted(build.folder.rglob(f"test_ip_{core}"))
                    if path.is_file() and os.access(path, os.X_OK))
     name = one_test(program.absolute(), values.test)

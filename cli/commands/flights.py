@@ -164,7 +164,7 @@ def replay(values):
     trace = BuildFolder("build/trace", values)
     trace.configure("-DTRACE=ON")
     trace.set(CLK_HZ=build.cached("CLK_HZ"))
-    trace.quietly("icesoc-sim")
+    trace.ninja("icesoc-sim")
     Path(values.out).mkdir(parents=True, exist_ok=True)
     wave = Path(values.out) / "wave.fst"
     run([

@@ -41,7 +41,7 @@ def test(values):
     if not some or values.label == "zeroc":
         build.ninja()
     elif not values.built:
-        build.quietly("regress")
+        build.ninja("regress")
         run([
             build / "tests/regress/regress", "--prepare", "--build", build.folder,
             *selection(values)])

@@ -17,7 +17,7 @@ from pathlib import Path
 
 TREE = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TREE))
-from cli import command, flight, main, runner, table  # noqa: E402, F401 (main declares commands)
+from cli import command, flight, main, progress, runner, table  # noqa: E402, F401
 from cli.commands.tree import manual  # noqa: E402
 from cli.options import FLIGHT, SWITCH  # noqa: E402
 
@@ -331,6 +331,22 @@ class Lists(unittest.TestCase):
             Path(work, "authority.key").unlink()
             self.assertIn("one is missing", ask("./icesoc", "key", f"{work}/new.pem",
                                                 "--certificate")[1])
+
+    def test_a_build_is_one_line_and_a_file(self):
+        with tempfile.TemporaryDirectory() as work:
+            tool, log = Path(work, "tool"), Path(work, "log")
+            tool.write_text("#!/bin/sh\necho '[1/2] first'\necho 'odd: a warning'\n"
+                            "echo '[2/2] second'\nexit 3\n")
+            tool.chmod(0o755)
+            code = f"from cli import progress; progress.build(['{tool}'], '{log}', check=False)"
+            words = [sys.executable, "-c", code]
+            self.assertEqual(ask(*words)[1], "odd: a warning\n")
+            shown = ask("script", "-qec", shlex.join(words), "/dev/null")[1]
+            self.assertEqual(re.sub(r"\s*\x1b\[K", "|", shown),
+                             "|[1/2] 0:00 left first|odd: a warning|[2/2] 0:00 left second|")
+            self.assertIn("[2/2] second", log.read_text())
+            self.assertRaisesRegex(runner.Stop, f"the build failed .* {log}", progress.build,
+                                   [str(tool)], log)
 
     def test_a_table_tells_what_failed_and_what_lacks_a_network(self):
         with tempfile.TemporaryDirectory() as work, contextlib.redirect_stdout(

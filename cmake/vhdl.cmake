@@ -34,3 +34,16 @@ function(icesoc_vhdl)
   add_custom_target(${A_NAME}_verilog DEPENDS ${GEN_DIR}/${A_NAME}.v)
   set_property(GLOBAL APPEND PROPERTY ICESOC_VHDL_TARGETS ${A_NAME}_verilog)
 endfunction()
+
+# icesoc_vhdl_test(NAME core SOURCES file... [LIBS lib...]): test vhdl.<core> runs <core>_tb.vhd with the vectors that
+# <core>_vectors.cpp writes, both in this folder (cmake/vhdl_test.sh).
+function(icesoc_vhdl_test)
+  cmake_parse_arguments(A "" "NAME" "SOURCES;LIBS" ${ARGN})
+  add_executable(${A_NAME}_vectors ${A_NAME}_vectors.cpp)
+  target_link_libraries(${A_NAME}_vectors PRIVATE ${A_LIBS} bench)
+  add_dependencies(${A_NAME}_vectors ghdl)
+  set_property(GLOBAL APPEND PROPERTY ICESOC_TEST_PROGRAMS ${A_NAME}_vectors)
+  add_test(NAME vhdl.${A_NAME} COMMAND ${CMAKE_SOURCE_DIR}/cmake/vhdl_test.sh ${A_NAME} ${GHDL} $<TARGET_FILE:${A_NAME}_vectors>
+           ${CMAKE_CURRENT_BINARY_DIR}/vhdl ${A_SOURCES} ${CMAKE_CURRENT_SOURCE_DIR}/${A_NAME}_tb.vhd)
+  set_tests_properties(vhdl.${A_NAME} PROPERTIES LABELS vhdl)
+endfunction()

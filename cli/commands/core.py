@@ -177,13 +177,13 @@ def known(values):
          brief="core test fir", examples=[
              "core test fir", "core test my_core --core-folders /path/to/my_core"])
 def test(values):
-    """build and test one core"""
+    """build and test one core: its block test, and its VHDL under GHDL"""
     core, build = values.ip, known(values)
-    program = f"test_ip_{core}"
-    if program not in build.targets():
+    programs = [name for name in build.targets() if name in (f"test_ip_{core}", f"{core}_vectors")]
+    if not programs:
         raise Stop(f"{core} has no test: {core}_test.cpp is not in its folder")
-    build.ninja(program)
-    return build.ctest("-R", rf"^{program}[.]", tests=1, SEED=values.seed)
+    build.ninja(*programs)
+    return build.ctest("-R", rf"^(test_ip_{core}[.]|vhdl[.]{core}$)", tests=1, SEED=values.seed)
 
 
 @command("core synth", [CORE, CORE_FOLDERS, CHIP, BUILD, JOBS], make="ip-synth",

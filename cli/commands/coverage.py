@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""coverage: lines, branches and toggles that the tests reach, of C, C++ and Verilog."""
+"""coverage: lines, branches and toggles that the tests reach, of C, C++, Verilog and VHDL."""
 import re
 import shutil
 import subprocess
@@ -10,7 +10,7 @@ from cli.command import command
 from cli.options import BUILD, JOBS, NAME, Option
 from cli.runner import Stop, output, run, say, warn
 
-COUNTED = "rtl|firmware|models|slice|interop|e2e"  # labels of tests that run what counts
+COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"  # labels of tests that run what counts
 # Fuzzers have counts of their own, e2e.cores builds a chip of its own.
 LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
 
@@ -25,7 +25,7 @@ def coverage(values):
     below tests/regress/coverage_gates.json
 
     Builds models, C and C++ that count what ran (build/coverage), runs all tests but proofs, lint
-    and those of tools, and merges Verilator's and gcov's counts. Leaves html/index.html,
+    and those of tools, and merges Verilator's, GHDL's and gcov's counts. Leaves html/index.html,
     summary.json, history (a line a run)."""
     build = configured(values, tests=True)
     build.ninja("coverage", "regress")
@@ -42,7 +42,7 @@ def coverage(values):
         counted.ninja()
     points = run_tests(work, values)
     say("coverage: merging")
-    infos = [*of_host(work), *of_rtl(work, points)]
+    infos = [*of_host(work), *of_rtl(work, points), *of_vhdl(work, points, build)]
     run(["lcov", "--quiet", *with_word("--add-tracefile", infos), "--output-file",
          work / "merged.info"])
     run(["genhtml", "--quiet", "--title", "IceSoC", "--output-directory", work / "html",
@@ -108,6 +108,15 @@ def of_rtl(work, points):
     for option, name in (("--write", "rtl.dat"), ("--write-info", "all_rtl.info")):
         run(["verilator_coverage", option, work / name, *counts], stdout=subprocess.DEVNULL)
     return own(work, "rtl.info", work / "all_rtl.info", ("hdl", "bus", "ip"))
+
+
+def of_vhdl(work, points, build):
+    """GHDL's counts."""
+    counts, info = sorted(points.glob("*.json")), work / "vhdl.info"
+    with open(info, "w") as file:
+        if counts:
+            run([build / "ghdl/ghdl", "coverage", "--format=lcov", *counts], stdout=file)
+    return [info] if info.stat().st_size else []
 
 
 def note(work):

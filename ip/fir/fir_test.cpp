@@ -88,18 +88,12 @@ TEST_F(FirCore, BuffersMayBeAnywhereInMemory) {
 }
 
 TEST_F(FirCore, EveryResultMayBeTooLarge) {
-    const std::pair<int32_t, Ice_Short> extremes[] = {
-        {131071, 32767}, {-131072, -32768}, {-131072, 32767}};
-    for (auto [coefficient, sample] : extremes) {
-        core_.clear();
-        model_.clear();
-        for (size_t k = 0; k < FirModel::taps; ++k) {
-            model_.coefficients[k] = coefficient;
-            core_.setCoefficient(static_cast<Ice_Byte>(k), coefficient);
-        }
-        expectFiltered(std::vector<Ice_Short>(256, sample));
-        EXPECT_GE(saturations_, 255);
+    for (size_t k = 0; k < FirModel::taps; ++k) {
+        model_.coefficients[k] = 131071;
+        core_.setCoefficient(static_cast<Ice_Byte>(k), 131071);
     }
+    expectFiltered(std::vector<Ice_Short>(256, 32767));
+    EXPECT_EQ(saturations_, 256);
 }
 
 TEST_F(FirCore, HasNoWordBehindItsResults) {

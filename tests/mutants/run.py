@@ -120,6 +120,8 @@ def targets(test, copy):
         return [kind]
     if kind == "cdc":
         return [rest.rpartition(".")[0]]
+    if kind == "vhdl":
+        return [f"{rest}_vectors"]
     if kind == "slice":
         return ["slice2c"] + ["ghdl"] * rest.startswith("hardware.vhdl.")
     if kind == "interop":  # the programs that its command names

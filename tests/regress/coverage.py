@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Compares coverage of RTL and host code with gates, for each file: points of the RTL
-(lines, branches, toggles, covers) from Verilator, lines of C and C++ from gcov.
+(lines, branches, toggles, covers) from Verilator, lines of VHDL from GHDL, of C and C++ from gcov.
 Exit status 1: a file is below its gate."""
 import argparse
 import collections
@@ -150,7 +150,7 @@ def main():
     parser.add_argument("--source", default=".", help="root of the tree")
     parser.add_argument("--gates", required=True, help="JSON: least percentages by path")
     parser.add_argument("--verilator", help="merged data of verilator_coverage")
-    parser.add_argument("--info", action="append", default=[], help="lcov file of C or C++")
+    parser.add_argument("--info", action="append", default=[], help="lcov file of C, C++ or VHDL")
     parser.add_argument("--out", default="summary.json", help="JSON summary")
     options = parser.parse_args()
     try:

@@ -30,8 +30,8 @@ def tracked(tree):
 
 
 def room_of(path, rooms):
-    """Returns the room of a file; tests beside a core belong to the room `tests`."""
-    if re.search(r"_test\.(cpp|h)$", path):
+    """Returns the room of a file; tests and vectors beside a core belong to the room `tests`."""
+    if re.search(r"_(test|vectors)\.(cpp|h)$", path):
         return "tests"
     while path:
         path = os.path.dirname(path)

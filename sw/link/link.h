@@ -14,7 +14,8 @@
  *         sleep(Link_deadline(&link, nowUs()));        (or until the radio brings something)
  *     }
  *
- * The same source runs in the firmware and in the ground's plugin. Wire format: docs/link.md.
+ * The same source runs in the firmware and in the ground's plugin. Wire format: docs/link.md;
+ * sizes, times and what is built: link_config.h.
  *
  * The layer owns no thread, no clock and no memory: the caller supplies the time in microseconds
  * (32 bits, it may wrap), calls Link_poll when Link_deadline is due, and keeps the Link object.
@@ -25,46 +26,14 @@
 #define LINK_H
 
 #include "base.h"
+#include "link_config.h"
 
 #define LINK_CHANNELS 4
 #define LINK_MAX_FRAME 100U    /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
 #define LINK_MAX_ENCRYPTED 95U /* the same if the modem encrypts (Link_limitFrame) */
 
-/* With a key (Link_setKey) frames are encrypted and end with a tag in place of the CRC.
- * LINK_SECURE 0 leaves that out. LINK_TAG is the size of a tag in bytes, 4..16, the same on both
- * sides (docs/link.md gives the risk of 4). */
-#ifndef LINK_SECURE
-#ifdef LINK_MINIMAL
-#define LINK_SECURE 0
-#else
-#define LINK_SECURE 1
-#endif
-#endif
-#ifndef LINK_TAG
-#define LINK_TAG 8U
-#endif
 #define LINK_KEY_BYTES 16U
 #define LINK_KEYS 2 /* slots for keys, so that a new key can replace the old one */
-
-/* The compiler's command line can set these sizes; layers of different sizes understand each other.
- * LINK_MINIMAL chooses the minimal layer (minimal/link_minimal.h), which uses only
- * LINK_MAX_MESSAGE. */
-#ifndef LINK_MAX_MESSAGE /* bytes of one message; a longer one from the peer ends the session */
-#ifdef LINK_MINIMAL
-#define LINK_MAX_MESSAGE 1024U
-#else
-#define LINK_MAX_MESSAGE 8192U
-#endif
-#endif
-#ifndef LINK_WINDOW
-#define LINK_WINDOW 64U /* fragments in flight, a power of two, 8..64 */
-#endif
-#ifndef LINK_SEND_BYTES
-#define LINK_SEND_BYTES 16384U /* queue of outgoing messages, of all channels; a power of two */
-#endif
-#ifndef LINK_SEND_MESSAGES
-#define LINK_SEND_MESSAGES 32U /* messages, openings and closings in that queue, at most 128 */
-#endif
 
 typedef enum Link_Status {
     LINK_OK = 0,

@@ -6,33 +6,15 @@
 
 #include <string.h>
 
-/* A modem's microseconds for a packet without its bytes: its own work, carrier sense, the random
- * wait, headers, the MAC's acknowledgement (docs/models.md); and for a byte on the air. */
-#define PACKET_US 7250U
-#define PACKET_ENCRYPTED_US 13450U
-#define BYTE_US 32U
-
-/* Back-off of the next packet after a packet was heard, in quarters of the airtime: the modem must
- * handle that packet, and the two may collide. Another one heard in the second half of the wait
- * ends it, so two sides that talk at once take turns. */
-#define HEARD_QUARTERS 7U
-
-/* Extra wait of a packet behind a short one, in microseconds: a modem that still holds the short
- * one joins the two, and cuts all later ones in the middle. */
-#define SHORT_MARGIN 1500U
-
-/* Characters of silence after which the modem sends a short packet. */
-#define SILENCE 4U
-
 /* Least room in a packet for another fragment with an acknowledgement behind it. */
 #define LEAST 32U
 
 /* The time of a packet: on the line, or in the modem, whichever is longer. */
 static U32 timeOf(const Link* link, U32 size) {
-    U32 line = (size + SILENCE) * link->byteTimeUs16 >> 4;
-    U32 modem =
-        size * BYTE_US +
-        (link->longest + link->overhead > LINK_MAX_ENCRYPTED ? PACKET_US : PACKET_ENCRYPTED_US);
+    U32 line = (size + LINK_SILENCE) * link->byteTimeUs16 >> 4;
+    U32 modem = size * LINK_BYTE_US + (link->longest + link->overhead > LINK_MAX_ENCRYPTED
+                                           ? LINK_PACKET_US
+                                           : LINK_PACKET_ENCRYPTED_US);
     return line > modem ? line : modem;
 }
 
@@ -50,10 +32,10 @@ int link_flush(Link* link) {
     link->slack = timeOf(link, link->packed);
     link->paceUntil += link->slack;
     if (link->packed <= link->longest)
-        link->slack -= SHORT_MARGIN;
+        link->slack -= LINK_SHORT_MARGIN;
     link->early = 0;
-    if (link->heard && link->sender.fastest > PACKET_US) { /* a wire needs no turns */
-        U32 wait = timeOf(link, link->heard) * HEARD_QUARTERS >> 2;
+    if (link->heard && link->sender.fastest > LINK_PACKET_US) { /* a wire needs no turns */
+        U32 wait = timeOf(link, link->heard) * LINK_HEARD_QUARTERS >> 2;
         link->early = (timeOf(link, link->packed) + wait) / 2U;
         link->paceUntil += wait;
     }

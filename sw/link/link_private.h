@@ -10,28 +10,7 @@
 
 #define LINK_FEATURES (LINK_FEATURE_COMPRESSION | LINK_FEATURE_PIGGYBACK)
 
-/* Times in microseconds. */
-#define LINK_ACK_DELAY \
-    30000U /* silence behind data before an acknowledgement that nobody asked for, */
-#define LINK_ACK_WITHIN 80000U   /* the same inside a message, whose rest will come */
-#define LINK_HELLO_LAST 2000000U /* between HELLOs, at most */
-#define LINK_PING_AFTER 5000000U /* silence after which the peer is asked, ... */
-#define LINK_PING_EVERY 200000U  /* again, ... */
-#define LINK_DEAD_AFTER 9000000U /* and given up */
-#define LINK_RTO_FIRST 600000U   /* retransmission time-out, before the first sample; its limits */
-#define LINK_RTO_MIN 60000U
-#define LINK_RTO_MAX 2000000U
-#define LINK_FRAME_GAP 25000U /* silence on the serial side after which half a frame is dropped */
-#define LINK_PROOF_AFTER 5000000U /* silence of answers after which the peer is asked, ... */
-#define LINK_PROOF_EVERY 1000000U /* again, ... */
-#define LINK_PROOF_LAST 27000000U /* and given up, whatever else was heard */
-#define LINK_POLL_EVERY 1000U     /* while the radio has no room */
-#define LINK_OFFER_EVERY 5000U    /* while the program does not take a message */
-
-/* The search for frames in garbage may compute one round of Ascon in LINK_ROUND_EVERY microseconds,
- * and LINK_ROUNDS_AT_ONCE at once. */
-#define LINK_ROUND_EVERY 30U
-#define LINK_ROUNDS_AT_ONCE 300U
+/* Rounds of Ascon that the search may spend on a frame. */
 #define LINK_ROUNDS_HELLO 48U /* under the keys of both slots */
 #define LINK_ROUNDS_HANDSHAKE 136U
 #define LINK_ROUNDS_OF(payload) (24U + (payload) / 2U)
@@ -52,20 +31,6 @@
 #define LINK_HEAD_BYTES 64U /* of one: up to 62, and the encoding's version */
 #define LINK_HEAD_ROOM 96U  /* bytes that decompression may add in front of a message */
 #define LINK_ESCAPE 1U      /* a byte that marks messages other than Ice's */
-
-/* Bytes of the queue for messages of one fragment only, so that they need not wait for room behind
- * long ones. */
-#define LINK_RESERVE 256U
-
-/* Fails to compile where a size of link.h is out of range. */
-typedef char
-    Link_Check[LINK_WINDOW >= 8U && LINK_WINDOW <= 64U && !(LINK_WINDOW & (LINK_WINDOW - 1U)) &&
-                       !(LINK_SEND_BYTES & (LINK_SEND_BYTES - 1U)) && LINK_SEND_BYTES <= 32768U &&
-                       LINK_SEND_BYTES > LINK_MAX_MESSAGE + LINK_RESERVE&& LINK_MAX_MESSAGE <=
-                           32000U &&
-                       LINK_SEND_MESSAGES >= 1U && LINK_SEND_MESSAGES <= 128U
-                   ? 1
-                   : -1];
 
 /* The identity of a session: both nonces, and the values that follow from them. */
 typedef struct Link_Session {

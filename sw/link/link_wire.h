@@ -14,7 +14,6 @@
 #ifndef LINK_WIRE_H
 #define LINK_WIRE_H
 
-#define LINK_HELLO_FIRST 300000U /* microseconds between HELLOs, at least */
 #define LINK_VERSION 6U
 #define LINK_VERSION_UP 0x80U /* with it: HELLO of a side that has a session, under a key */
 #define LINK_HEADER 3U
@@ -102,20 +101,6 @@ U32 link_sessionKey(U32 nonce, U32 peerNonce);
 /* link_secure: encryption of frames, and derivation of a session's keys (docs/link.md). */
 
 #define LINK_NONCE_BYTES 8U /* of each side's nonce in a secure handshake */
-
-/* Microseconds between answers to HELLO while a session is up, and for which the nonce of such an
- * answer can make a session. */
-#define LINK_ANSWER_EVERY 100000U
-#define LINK_NONCE_LIFE 9000000U
-
-/* Numbers at which a session with a key ends, and a new one begins: of fragments sent, and of
- * frames whose tag was wrong. */
-#ifndef LINK_LAST_NUMBER
-#define LINK_LAST_NUMBER 0xFFFF0000U
-#endif
-#ifndef LINK_MOST_FAILURES
-#define LINK_MOST_FAILURES (LINK_TAG >= 8U ? 0x40000000U : 0x10000U)
-#endif
 
 /* The keys of a session, one a direction. */
 typedef struct Link_Keys {

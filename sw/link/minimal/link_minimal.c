@@ -14,11 +14,6 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Times in microseconds. They have few one bits, so that a constant fits into the instruction. */
-#define DEAD_AFTER 0x890000U /* 9.0 s */
-#define FRAME_GAP 0x6200U    /* 25 ms of silence, after which a frame begins */
-#define POLL_EVERY 1000U     /* while something is urgent */
-
 /* A channel's state has these bits, and LINK_FIRST or LINK_LAST for a fragment about it that is
  * due. */
 #define OPEN 1U
@@ -171,7 +166,7 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
 
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
     /* A frame begins behind a silence, or where it is all of the packet. */
-    if (nowUs - link->inputAt > FRAME_GAP || LINK_LENGTH(bytes) + LINK_OVERHEAD == size)
+    if (nowUs - link->inputAt > LINK_FRAME_GAP || LINK_LENGTH(bytes) + LINK_OVERHEAD == size)
         link->inputCount = 0;
     link->inputAt = nowUs;
     while (size--) {
@@ -215,7 +210,7 @@ static U32 cut(Link* link) {
 void Link_poll(Link* link, U32 nowUs) {
     if (link->state != LINK_STATE_UP)
         return;
-    if (nowUs - link->heardAt >= DEAD_AFTER ||
+    if (nowUs - link->heardAt >= LINK_DEAD_AFTER ||
         (LINK_IS_SECURE(link) && link->sendNext >= LINK_LAST_NUMBER)) {
         link_lose(link);
         return;
@@ -238,14 +233,14 @@ void Link_poll(Link* link, U32 nowUs) {
 }
 
 U32 Link_deadline(const Link* link, U32 nowUs) {
-    U32 at = link->heardAt + DEAD_AFTER;
+    U32 at = link->heardAt + LINK_DEAD_AFTER;
     int c, due = link->ackDue;
     if (link->state != LINK_STATE_UP)
         return 0xFFFFFFFFU;
     for (c = 0; c < LINK_CHANNELS && !link->flags; ++c)
         due |= link->outSize || (link->channels[c] & DUE);
     if (due)
-        return POLL_EVERY;
+        return LINK_POLL_EVERY;
     if (link->flags && LINK_BEFORE(link->timerAt, at))
         at = link->timerAt;
     return LINK_BEFORE(at, nowUs) ? 0 : at - nowUs;

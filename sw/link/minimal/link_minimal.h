@@ -7,15 +7,6 @@
 
 #include "link_wire.h"
 
-#ifndef LINK_LONGEST
-#define LINK_LONGEST                                                            \
-    LINK_MAX_PAYLOAD /* bytes of a frame's payload; 90 where the modem encrypts \
-                      */
-#endif
-#ifndef LINK_OUTCOMES
-#define LINK_OUTCOMES 0 /* 1: `outcome` and `writable` are called */
-#endif
-
 /* No length that a frame may claim goes beyond. */
 #define LINK_INPUT_BYTES (0x7FU + LINK_OVERHEAD)
 

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_config: the numbers of the link layer that a project may want to change: here, or, for those
+ * with #ifndef, on the compiler's command line. Layers with other numbers understand each other,
+ * except where "both sides" is said. Times are in microseconds, limits in parentheses.
+ */
+#ifndef LINK_CONFIG_H
+#define LINK_CONFIG_H
+
+/* ---- what is built ---- */
+
+/* LINK_MINIMAL, if defined, chooses the minimal layer (minimal/link_minimal.h). */
+
+#ifndef LINK_SECURE /* 1: Link_setKey, frames that are encrypted and authenticated; 0: left out */
+#ifdef LINK_MINIMAL
+#define LINK_SECURE 0
+#else
+#define LINK_SECURE 1
+#endif
+#endif
+
+#ifndef LINK_TAG /* bytes of such a frame's tag, both sides (4..16; docs/link.md: risk of 4) */
+#define LINK_TAG 8U
+#endif
+
+#ifndef LINK_OUTCOMES /* minimal layer, 1: it calls `outcome` and `writable` */
+#define LINK_OUTCOMES 0
+#endif
+
+/* ---- memory, in bytes unless said ---- */
+
+#ifndef LINK_MAX_MESSAGE /* of one message (1..32,000); a longer one from the peer ends the \
+                            session */
+#ifdef LINK_MINIMAL
+#define LINK_MAX_MESSAGE 1024U
+#else
+#define LINK_MAX_MESSAGE 8192U
+#endif
+#endif
+
+#ifndef LINK_WINDOW /* fragments in flight (a power of two, 8..64) */
+#define LINK_WINDOW 64U
+#endif
+
+/* Queue of outgoing messages, of all channels (a power of two, more than LINK_MAX_MESSAGE and
+ * LINK_RESERVE together, at most 32,768). */
+#ifndef LINK_SEND_BYTES
+#define LINK_SEND_BYTES 16384U
+#endif
+
+/* Bytes of it that are for messages of one fragment only, so that they need not wait for room
+ * behind long ones. */
+#define LINK_RESERVE 256U
+
+#ifndef LINK_SEND_MESSAGES /* messages, openings and closings in that queue (1..128) */
+#define LINK_SEND_MESSAGES 32U
+#endif
+
+#ifndef LINK_LONGEST /* minimal layer: payload of a frame; 90 where the modem encrypts (27..95) */
+#define LINK_LONGEST 95U
+#endif
+
+/* ---- retransmission: time-out before the first round trip, and its limits ---- */
+
+#define LINK_RTO_FIRST 600000U
+#define LINK_RTO_MIN 60000U /* (more than a round trip takes) */
+#define LINK_RTO_MAX 2000000U
+
+/* ---- acknowledgements ---- */
+
+/* Silence behind data before one that nobody asked for, and the same inside a message, whose rest
+ * will come (less than LINK_RTO_MIN, or each fragment goes out twice; LINK_RTO_FIRST). */
+#define LINK_ACK_DELAY 30000U
+#define LINK_ACK_WITHIN 80000U
+
+/* ---- a session's begin and end ---- */
+
+#define LINK_HELLO_FIRST 300000U /* between HELLOs, at least, */
+#define LINK_HELLO_LAST 2000000U /* and at most */
+#define LINK_PING_AFTER 5000000U /* silence after which the peer is asked, */
+#define LINK_PING_EVERY 200000U  /* again, */
+#ifdef LINK_MINIMAL              /* few one bits, so that a constant fits into an instruction */
+#define LINK_DEAD_AFTER 0x890000U
+#else
+#define LINK_DEAD_AFTER 9000000U /* and given up (more than LINK_PING_AFTER, below 2^31) */
+#endif
+
+/* The same under a key, of answers: whatever else was heard may be an attacker's recording. */
+#define LINK_PROOF_AFTER 5000000U
+#define LINK_PROOF_EVERY 1000000U
+#define LINK_PROOF_LAST 27000000U
+
+/* Under a key: between answers to HELLO while a session is up; and how long the nonce of such an
+ * answer can make a session. */
+#define LINK_ANSWER_EVERY 100000U
+#define LINK_NONCE_LIFE 9000000U
+
+/* Numbers at which a session under a key ends and a new one begins: of fragments sent (below 2^32
+ * - 256), and of frames whose tag was wrong. */
+#ifndef LINK_LAST_NUMBER
+#define LINK_LAST_NUMBER 0xFFFF0000U
+#endif
+#ifndef LINK_MOST_FAILURES
+#define LINK_MOST_FAILURES (LINK_TAG >= 8U ? 0x40000000U : 0x10000U)
+#endif
+
+/* ---- bytes that come in ---- */
+
+#ifdef LINK_MINIMAL
+#define LINK_FRAME_GAP 0x6200U
+#else
+#define LINK_FRAME_GAP 25000U /* silence after which half a frame is dropped */
+#endif
+
+/* Under a key the search for frames in garbage may compute one round of Ascon in LINK_ROUND_EVERY,
+ * and LINK_ROUNDS_AT_ONCE at once (136 at least: one frame of the handshake). */
+#define LINK_ROUND_EVERY 30U
+#define LINK_ROUNDS_AT_ONCE 300U
+
+/* ---- how often Link_poll looks again, at most ---- */
+
+#define LINK_POLL_EVERY 1000U  /* while the radio has no room */
+#define LINK_OFFER_EVERY 5000U /* while the program does not take a message */
+
+/* ---- pacing by the modem (docs/models.md) ---- */
+
+/* A modem's time for a packet without its bytes: its own work, carrier sense, the random wait,
+ * headers, the MAC's acknowledgement; where the modem encrypts; and for a byte on the air. */
+#define LINK_PACKET_US 7250U
+#define LINK_PACKET_ENCRYPTED_US 13450U
+#define LINK_BYTE_US 32U
+
+/* Back-off of the next packet after a packet was heard, in quarters of the airtime: the modem must
+ * handle that packet, and the two may collide. Another one heard in the second half of the wait
+ * ends it, so two sides that talk at once take turns. */
+#define LINK_HEARD_QUARTERS 7U
+
+/* Extra wait of a packet behind a short one: a modem that still holds the short one joins the two,
+ * and cuts all later ones in the middle. */
+#define LINK_SHORT_MARGIN 1500U
+
+#define LINK_SILENCE 4U /* characters of silence after which the modem sends a short packet */
+
+#if LINK_TAG < 4 || LINK_TAG > 16
+#error "LINK_TAG is 4..16 bytes"
+#elif LINK_WINDOW < 8 || LINK_WINDOW > 64 || (LINK_WINDOW & (LINK_WINDOW - 1))
+#error "LINK_WINDOW is a power of two, 8..64"
+#elif LINK_MAX_MESSAGE < 1 || LINK_MAX_MESSAGE > 32000
+#error "LINK_MAX_MESSAGE is 1..32000 bytes"
+#elif LINK_SEND_BYTES <= LINK_MAX_MESSAGE + LINK_RESERVE || LINK_SEND_BYTES > 32768 || \
+    (LINK_SEND_BYTES & (LINK_SEND_BYTES - 1))
+#error "LINK_SEND_BYTES is a power of two up to 32768, above LINK_MAX_MESSAGE + LINK_RESERVE"
+#elif LINK_SEND_MESSAGES < 1 || LINK_SEND_MESSAGES > 128
+#error "LINK_SEND_MESSAGES is 1..128"
+#elif LINK_RTO_MIN > LINK_RTO_FIRST || LINK_RTO_FIRST > LINK_RTO_MAX
+#error "LINK_RTO_FIRST lies between LINK_RTO_MIN and LINK_RTO_MAX"
+#elif LINK_PING_AFTER >= LINK_DEAD_AFTER || LINK_PROOF_AFTER >= LINK_PROOF_LAST
+#error "A peer is asked before it is given up"
+#endif
+
+#endif

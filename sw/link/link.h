@@ -25,15 +25,7 @@
 #ifndef LINK_H
 #define LINK_H
 
-#include "base.h"
-#include "link_config.h"
-
-#define LINK_CHANNELS 4
-#define LINK_MAX_FRAME 100U    /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
-#define LINK_MAX_ENCRYPTED 95U /* the same if the modem encrypts (Link_limitFrame) */
-
-#define LINK_KEY_BYTES 16U
-#define LINK_KEYS 2 /* slots for keys, so that a new key can replace the old one */
+#include "link_wire.h"
 
 typedef enum Link_Status {
     LINK_OK = 0,

@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_compression: compresses the heads of IceP messages: each is sent once, and named by a byte
- * afterwards.
- *
- * It is the only file of this layer that knows what an Ice message looks like ("The Ice Protocol"
- * in the manual of ZeroC Ice 3.7). Both sides keep, for each direction, the last LINK_HEADS heads
- * of requests (identity, facet, operation, mode, context, encoding) and each channel's last request
- * ids. A session delivers everything once and in order, so both tables stay equal by themselves.
- * The layer does not change a message that it does not recognise. Tokens: docs/link.md.
+ * link_compression: recognises Ice's messages, and writes and reads the tokens for them.
  */
-#include "link.h"
+#include "link_compression.h"
 
 #include <string.h>
 
@@ -18,9 +11,8 @@
 #define MOST_HEAD (LINK_HEAD_BYTES - 2U)
 
 #define TOKEN_REQUEST 0x80U /* bit 4: the channel's next id, else oneway; bits 3..0: slot */
-#define TOKEN_LITERAL                                                                           \
-    0xA0U                 /* bits 1..0: 0 oneway, 1 next id, 2 id follows; then length and head \
-                           */
+/* Bits 1..0: 0 oneway, 1 next id, 2 id follows; then length and head. */
+#define TOKEN_LITERAL 0xA0U
 #define TOKEN_REPLY 0xB0U /* bit 1: id follows, else next; bit 0: status and body as they are */
 #define TOKEN_VALIDATE 0xC0U
 #define TOKEN_CLOSE 0xC1U /* or one more: with the compression byte set */
@@ -29,11 +21,6 @@
 enum { REQUEST = 0, REPLY = 2, VALIDATE = 3, CLOSE = 4 };
 
 static const U8 magic[8] = {'I', 'c', 'e', 'P', 1, 0, 1, 0};
-
-void link_resetHeads(Link* link) {
-    memset(&link->headsOut, 0, sizeof link->headsOut);
-    memset(&link->headsIn, 0, sizeof link->headsIn);
-}
 
 /* Returns 1 for a whole message of this type with at least `least` bytes. */
 static int isMessage(const U8* m, U32 size, U32 type, U32 least) {
@@ -134,13 +121,14 @@ static void packReply(const Link_Heads* heads, int channel, const U8* m, U32 siz
     packed->tail = size - packed->tailAt;
 }
 
-void link_compress(const Link* link, int channel, const U8* m, U32 size, Link_Packed* packed) {
+void link_compress(const Link_Heads* heads, int channel, const U8* m, U32 size,
+                   Link_Packed* packed) {
     U32 head = headOf(m, size);
     packed->head = head;
     if (head) {
-        packRequest(&link->headsOut, channel, m, size, head, packed);
+        packRequest(heads, channel, m, size, head, packed);
     } else if (isMessage(m, size, REPLY, LINK_HEAD_AT + 1U) && m[9] == 0) {
-        packReply(&link->headsOut, channel, m, size, packed);
+        packReply(heads, channel, m, size, packed);
     } else if (size == HEADER && m[9] < 2 &&
                (isMessage(m, size, CLOSE, HEADER) ||
                 (m[9] == 0 && isMessage(m, size, VALIDATE, HEADER)))) {
@@ -244,14 +232,12 @@ static U8* unpack(const Link_Heads* heads, U32 channel, U8* p, U8* end) {
     return p;
 }
 
-int link_decompress(Link* link) {
-    Link_Receiver* receiver = &link->receiver;
-    U8* end = receiver->start + receiver->size;
-    U8* p = unpack(&link->headsIn, receiver->channel, receiver->start, end);
+U8* link_decompress(Link_Heads* heads, int channel, U8* start, U32 size) {
+    U8* end = start + size;
+    U8* p = unpack(heads, (U32)channel, start, end);
     if (!p || p == end || (U32)(end - p) > LINK_MAX_MESSAGE)
         return 0;
-    receiver->start = p;
-    receiver->size = (U16)(end - p);
-    link_note(&link->headsIn, receiver->channel, p, receiver->size, headOf(p, receiver->size));
-    return 1;
+    size = (U32)(end - p);
+    link_note(heads, channel, p, size, headOf(p, size));
+    return p;
 }

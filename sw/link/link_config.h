@@ -8,15 +8,15 @@
 #define LINK_CONFIG_H
 
 /* ---- what is built ---- */
-
 /* LINK_MINIMAL, if defined, chooses the minimal layer (minimal/link_minimal.h). */
+#ifdef LINK_MINIMAL
+#define LINK_IS_FULL 0
+#else
+#define LINK_IS_FULL 1
+#endif
 
 #ifndef LINK_SECURE /* 1: Link_setKey, frames that are encrypted and authenticated; 0: left out */
-#ifdef LINK_MINIMAL
-#define LINK_SECURE 0
-#else
-#define LINK_SECURE 1
-#endif
+#define LINK_SECURE LINK_IS_FULL
 #endif
 
 #ifndef LINK_TAG /* bytes of such a frame's tag, both sides (4..16; docs/link.md: risk of 4) */
@@ -28,14 +28,8 @@
 #endif
 
 /* ---- memory, in bytes unless said ---- */
-
-#ifndef LINK_MAX_MESSAGE /* of one message (1..32,000); a longer one from the peer ends the \
-                            session */
-#ifdef LINK_MINIMAL
-#define LINK_MAX_MESSAGE 1024U
-#else
-#define LINK_MAX_MESSAGE 8192U
-#endif
+#ifndef LINK_MAX_MESSAGE /* of one message (1..32,000); a longer one ends the session */
+#define LINK_MAX_MESSAGE (LINK_IS_FULL ? 8192U : 1024U)
 #endif
 
 #ifndef LINK_WINDOW /* fragments in flight (a power of two, 8..64) */
@@ -61,29 +55,24 @@
 #endif
 
 /* ---- retransmission: time-out before the first round trip, and its limits ---- */
-
 #define LINK_RTO_FIRST 600000U
 #define LINK_RTO_MIN 60000U /* (more than a round trip takes) */
 #define LINK_RTO_MAX 2000000U
 
 /* ---- acknowledgements ---- */
-
 /* Silence behind data before one that nobody asked for, and the same inside a message, whose rest
  * will come (less than LINK_RTO_MIN, or each fragment goes out twice; LINK_RTO_FIRST). */
 #define LINK_ACK_DELAY 30000U
 #define LINK_ACK_WITHIN 80000U
 
 /* ---- a session's begin and end ---- */
-
 #define LINK_HELLO_FIRST 300000U /* between HELLOs, at least, */
 #define LINK_HELLO_LAST 2000000U /* and at most */
 #define LINK_PING_AFTER 5000000U /* silence after which the peer is asked, */
 #define LINK_PING_EVERY 200000U  /* again, */
-#ifdef LINK_MINIMAL              /* few one bits, so that a constant fits into an instruction */
-#define LINK_DEAD_AFTER 0x890000U
-#else
-#define LINK_DEAD_AFTER 9000000U /* and given up (more than LINK_PING_AFTER, below 2^31) */
-#endif
+/* and given up (more than LINK_PING_AFTER, below 2^31); the minimal layer's times have few one
+ * bits, so that a constant fits into an instruction */
+#define LINK_DEAD_AFTER (LINK_IS_FULL ? 9000000U : 0x890000U)
 
 /* The same under a key, of answers: whatever else was heard may be an attacker's recording. */
 #define LINK_PROOF_AFTER 5000000U
@@ -105,12 +94,8 @@
 #endif
 
 /* ---- bytes that come in ---- */
-
-#ifdef LINK_MINIMAL
-#define LINK_FRAME_GAP 0x6200U
-#else
-#define LINK_FRAME_GAP 25000U /* silence after which half a frame is dropped */
-#endif
+/* Silence after which half a frame is dropped. */
+#define LINK_FRAME_GAP (LINK_IS_FULL ? 25000U : 0x6200U)
 
 /* Under a key the search for frames in garbage may compute one round of Ascon in LINK_ROUND_EVERY,
  * and LINK_ROUNDS_AT_ONCE at once (136 at least: one frame of the handshake). */
@@ -118,12 +103,10 @@
 #define LINK_ROUNDS_AT_ONCE 300U
 
 /* ---- how often Link_poll looks again, at most ---- */
-
 #define LINK_POLL_EVERY 1000U  /* while the radio has no room */
 #define LINK_OFFER_EVERY 5000U /* while the program does not take a message */
 
 /* ---- pacing by the modem (docs/models.md) ---- */
-
 /* A modem's time for a packet without its bytes: its own work, carrier sense, the random wait,
  * headers, the MAC's acknowledgement; where the modem encrypts; and for a byte on the air. */
 #define LINK_PACKET_US 7250U

@@ -2,17 +2,9 @@
  *
  * link_keyed: makes sessions with a peer that has the key, and sees that it is alive.
  *
- *     A                        B
- *     HELLO(a)            ->             proves the key, and may be a recording: so it changes
- *                         <-   HELLO-ACK(b, a)     nothing here, and costs an answer only
- *     CONFIRM(a, b)       ->             proves that A lives, and begins the session here
- *
- * Where B is in a session it answers by a HELLO of its own, marked as such: one answers all HELLOs
- * that come within LINK_ANSWER_EVERY, so that recordings do not keep A's from being answered. A,
- * if it is in no session, goes on from there in B's place.
- *
- * a and b are nonces of 64 bits; those of a session give its two keys, and HELLO-ACK and CONFIRM
- * are frames under these. A side that gets frames that it cannot read sends HELLO; there is no RST.
+ * A HELLO proves the key, and may be a recording: so it changes nothing here, and costs an answer
+ * only. HELLO-ACK and CONFIRM have the receiver's own nonce, and prove that their sender lives
+ * (docs/link.md).
  */
 #include "link.h"
 
@@ -21,6 +13,11 @@
 #include "ascon.h"
 
 #include <string.h>
+
+/* Rounds of Ascon that the search may spend on a frame. */
+#define ROUNDS_HELLO 48U /* under the keys of both slots */
+#define ROUNDS_HANDSHAKE 136U
+#define ROUNDS_OF(payload) (24U + (payload) / 2U)
 
 static int isSameNonce(const U8* a, const U8* b) {
     return memcmp(a, b, LINK_NONCE_BYTES) == 0;
@@ -58,7 +55,8 @@ static int isUnder(Link* link, int slot, U8* frame, Link_Kind kind) {
     return link_unprotect(frame, key, 0, 0);
 }
 
-int link_isOfUse(const Link* link, const U8* frame, Link_Kind kind) {
+/* Returns whether a frame of the handshake is fresh and relevant, which takes no round of Ascon. */
+static int isOfUse(const Link* link, const U8* frame, Link_Kind kind) {
     const Link_Handshake* handshake = &link->handshake;
     const U8* nonces = frame + LINK_HEADER;
     if (isSameNonce(nonces, handshake->nonce))
@@ -72,13 +70,115 @@ int link_isOfUse(const Link* link, const U8* frame, Link_Kind kind) {
     return isSameNonce(nonces + LINK_NONCE_BYTES, handshake->nonce);
 }
 
-int link_isGenuine(Link* link, U8* frame, Link_Kind kind) {
+/* Returns whether such a frame is authentic, and decrypts it. */
+static int isGenuine(Link* link, U8* frame, Link_Kind kind) {
     if (kind == LINK_KIND_CONFIRM && isOfSession(link, frame + LINK_HEADER))
         return link_unprotect(frame, link->session.keys.receive, 0, 0);
     if (isUnder(link, 0, frame, kind) || isUnder(link, 1, frame, kind))
         return 1;
     forgetCandidate(link);
     return 0;
+}
+
+/* Spends the search budget, in rounds of Ascon, on one frame. Returns whether it sufficed: however
+ * many headers an attacker's bytes pretend to hold, they do not keep the processor busy. */
+static int mayTry(Link* link, U32 rounds) {
+    Link_Parser* parser = &link->parser;
+    U32 debt = parser->paidAt - link->now;
+    if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY) /* it was paid earlier */
+        debt = 0;
+    debt += rounds * LINK_ROUND_EVERY;
+    if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY)
+        return 0;
+    parser->paidAt = link->now + debt;
+    return 1;
+}
+
+/* Decrypts a frame under the session's key, where its numbers say that it is for now. */
+static int decrypt(Link* link, U8* frame) {
+    U32 number = link->sender.base; /* whose lowest byte is near byte 1 */
+    U32 acked = 0;
+    Link_Kind kind = LINK_KIND_OF(frame);
+    if (kind >= LINK_KIND_PIGGYBACK) /* or data */
+        number = link->receiver.next;
+    if (kind == LINK_KIND_PIGGYBACK || kind == LINK_KIND_PIGGYBACK_ASK)
+        acked = link_extend(link->sender.base, frame[LINK_HEADER]);
+    if (kind == LINK_KIND_PING)
+        number = frame[2] & LINK_PING_ANSWER ? link->watch.pingsSent : link->watch.pingsSeen;
+    if (kind == LINK_KIND_BYE)
+        number = frame[1];
+    if (link_unprotect(frame, link->session.keys.receive, link_extend(number, frame[1]), acked))
+        return 1;
+    ++link->watch.failures;
+    return 0;
+}
+
+/* Copies a frame, and decrypts the copy. The search looks at a frame of the handshake only where
+ * the bytes end with it, as its packet does. Returns 0: it is none, or not of use here. */
+static int decipher(Link* link, const U8* frame, U8* copy, int isSearch, int isLast) {
+    U32 size = LINK_LENGTH(frame) + LINK_OVERHEAD;
+    U32 rounds = ROUNDS_OF(size - LINK_SECURE_OVERHEAD);
+    Link_Kind kind = LINK_KIND_OF(frame);
+    int isHandshake = LINK_IS_HANDSHAKE(kind);
+    if (size < LINK_SECURE_OVERHEAD || !link_isPlausible(link, frame))
+        return 0;
+    if (isHandshake) {
+        if ((isSearch && !isLast) || !isOfUse(link, frame, kind))
+            return 0;
+        rounds = kind == LINK_KIND_HELLO ? ROUNDS_HELLO : ROUNDS_HANDSHAKE;
+    } else if (link->state != LINK_STATE_UP ||
+               LINK_EPOCH(frame) != LINK_KEY_EPOCH(link->session.key)) {
+        return 0;
+    }
+    if (isSearch && !mayTry(link, rounds))
+        return 0;
+    memcpy(copy, frame, size);
+    if (isHandshake)
+        return isGenuine(link, copy, kind);
+    return decrypt(link, copy);
+}
+
+/* A tag needs no confirmation, so a frame is taken when its last byte is there, even behind the
+ * beginning of another that is not whole: that may be an attacker's, who would have it wait. */
+static U32 parse(Link* link, const U8* bytes, U32 count, int isEnd) {
+    U8 copy[LINK_MAX_FRAME];
+    U32 used = 0;
+    U32 at = 0;
+    while (at < count) {
+        U32 end = at + LINK_LENGTH(bytes + at) + LINK_OVERHEAD;
+        int isFrame = end - at <= LINK_MAX_FRAME;
+        if (isFrame && end > link->parser.count && end <= count) {
+            int isSearch = link->parser.outOfStep || at != used;
+            if (decipher(link, bytes + at, copy, isSearch, end == count)) {
+                link_accept(link, copy, end - at);
+                at = used = end;
+                continue;
+            }
+        }
+        if (at == used && (!isFrame || end <= count || isEnd)) {
+            link_skip(link, bytes + at, count - at);
+            ++used;
+        }
+        ++at;
+    }
+    return used;
+}
+
+/* Completes a frame under the session's key. Returns its size in bytes. */
+static U32 seal(const Link* link, U8* frame, U32 header, U32 number) {
+    const U8* key = link->session.keys.send;
+    U32 acked = 0;
+    if (header & LINK_CONTROL) {
+        U32 kind = header >> 21 & 7U;
+        if (kind == LINK_KIND_HELLO)
+            key = link->secrets.hello[link->handshake.slot];
+        if (kind == LINK_KIND_HELLO_ACK)
+            key = link->handshake.candidate.keys.send;
+        if (kind >= LINK_KIND_PIGGYBACK)
+            acked = link->receiver.next;
+    }
+    return link_protect(frame, header | LINK_KEY_EPOCH(link->session.key) << 18, key, number,
+                        acked);
 }
 
 static void begin(Link* link) {
@@ -96,15 +196,15 @@ static void onHello(Link* link, const U8* frame) {
         return;
     handshake->lastAnswer = link->now;
     if (isPresent) { /* the peer has not heard the CONFIRM */
-        link_sendHandshake(link, &link->session, LINK_KIND_CONFIRM);
+        link_sendHandshake(link, &link->session, LINK_KIND_CONFIRM, LINK_VERSION);
         return;
     }
     if (isUp && !handshake->isUnconfirmed) {
         handshake->slot = handshake->candidate.slot;
-        link_sendHello(link, LINK_VERSION | LINK_VERSION_UP);
+        link_sendHandshake(link, 0, LINK_KIND_HELLO, LINK_VERSION | LINK_VERSION_UP);
     } else { /* a peer that is unconfirmed may yet answer a HELLO, and begin this session then */
         makeKeyed(link, handshake->candidate.slot, frame);
-        link_sendHandshake(link, &handshake->candidate, LINK_KIND_HELLO_ACK);
+        link_sendHandshake(link, &handshake->candidate, LINK_KIND_HELLO_ACK, LINK_VERSION);
         forgetCandidate(link);
     }
     if (!handshake->isAnswered)
@@ -112,7 +212,7 @@ static void onHello(Link* link, const U8* frame) {
     handshake->isAnswered = 1;
 }
 
-void link_onGenuine(Link* link, const U8* frame, Link_Kind kind) {
+static void onHandshake(Link* link, const U8* frame, Link_Kind kind) {
     Link_Handshake* handshake = &link->handshake;
     if (kind == LINK_KIND_HELLO) {
         onHello(link, frame);
@@ -130,7 +230,18 @@ void link_onGenuine(Link* link, const U8* frame, Link_Kind kind) {
     link->receiver.ackDue = link->receiver.ackNow = 1; /* so that the peer hears */
 }
 
-void link_onPing(Link* link, const U8* frame) {
+/* With two keys HELLO is under each in turn. It also serves a peer in an unknown session: its
+ * answer makes a new one. */
+static void call(Link* link, const U8* unknown) {
+    U32 set = link->secrets.set;
+    (void)unknown;
+    if (!set)
+        return;
+    link->handshake.slot = (U8)(set == 3U ? !link->handshake.slot : set >> 1);
+    link_sendHandshake(link, 0, LINK_KIND_HELLO, LINK_VERSION);
+}
+
+static void onPing(Link* link, const U8* frame) {
     Link_Watch* watch = &link->watch;
     U8 answer[LINK_MAX_OVERHEAD];
     U32 number;
@@ -151,34 +262,17 @@ void link_onPing(Link* link, const U8* frame) {
     (void)link_sendControl(link, answer, LINK_KIND_PING, number, 0, LINK_PING_ANSWER);
 }
 
-void link_pollKeyed(Link* link) {
-    Link_Handshake* handshake = &link->handshake;
-    Link_Watch* watch = &link->watch;
-    U8 frame[LINK_MAX_OVERHEAD];
-    U32 now = link->now;
-    U32 silence = now - link->heardAt;
-    U32 proof = now - watch->provenAt;
-    if (handshake->isAnswered && now - handshake->firstAnswer >= LINK_NONCE_LIFE)
-        link_drawNonce(link);
-    if (link->state != LINK_STATE_UP)
-        return;
-    if (handshake->isUnconfirmed && !LINK_BEFORE(now, handshake->helloAt)) {
-        link_sendHandshake(link, &link->session, LINK_KIND_CONFIRM);
-        handshake->helloAt = now + handshake->helloEvery;
-        if (handshake->helloEvery < LINK_HELLO_LAST)
-            handshake->helloEvery *= 2U;
-    }
-    if (watch->failures >= LINK_MOST_FAILURES || link->sender.next >= LINK_LAST_NUMBER) {
-        link_abort(link);
-    } else if (silence >= LINK_DEAD_AFTER || proof >= LINK_PROOF_LAST) {
-        link_lose(link);
-    } else if ((silence >= LINK_PING_AFTER || proof >= LINK_PROOF_AFTER) &&
-               !LINK_BEFORE(now, link->pingAt)) {
-        if (watch->pingsAnswered == watch->pingsSent)
-            watch->askedAt = now;
-        (void)link_sendControl(link, frame, LINK_KIND_PING, ++watch->pingsSent, 0, 0);
-        link->pingAt = now + (silence >= LINK_PING_AFTER ? LINK_PING_EVERY : LINK_PROOF_EVERY);
-    }
-}
+const Link_Codec link_keyed = {LINK_SECURE_OVERHEAD,
+                               LINK_NONCE_BYTES,
+                               0,
+                               1,
+                               LINK_KIND_BYE,
+                               0,
+                               {1, 8, 16, 16, 0, 0},
+                               seal,
+                               parse,
+                               onHandshake,
+                               onPing,
+                               call};
 
 #endif

@@ -12,9 +12,10 @@
 /* The time of a packet: on the line, or in the modem, whichever is longer. */
 static U32 timeOf(const Link* link, U32 size) {
     U32 line = (size + LINK_SILENCE) * link->byteTimeUs16 >> 4;
-    U32 modem = size * LINK_BYTE_US + (link->longest + link->overhead > LINK_MAX_ENCRYPTED
-                                           ? LINK_PACKET_US
-                                           : LINK_PACKET_ENCRYPTED_US);
+    U32 modem =
+        size * LINK_BYTE_US + (link->longest + LINK_CODEC(link)->overhead > LINK_MAX_ENCRYPTED
+                                   ? LINK_PACKET_US
+                                   : LINK_PACKET_ENCRYPTED_US);
     return line > modem ? line : modem;
 }
 
@@ -55,34 +56,9 @@ int link_isOpen(Link* link) {
     return link->packed || !LINK_BEFORE(link->now + link->slack, link->paceUntil);
 }
 
-/* Completes a frame under the session's key. Returns its size in bytes. */
-static U32 protect(const Link* link, U8* frame, U32 header, U32 number) {
-    const U8* key = link->session.keys.send;
-    U32 acked = 0;
-    if (header & LINK_CONTROL) {
-        U32 kind = header >> 21 & 7U;
-        if (kind == LINK_KIND_HELLO)
-            key = link->secrets.hello[link->handshake.slot];
-        if (kind == LINK_KIND_HELLO_ACK)
-            key = link->handshake.candidate.keys.send;
-        if (kind >= LINK_KIND_PIGGYBACK)
-            acked = link->receiver.next;
-    }
-    return link_protect(frame, header | LINK_KEY_EPOCH(link->session.key) << 18, key, number,
-                        acked);
-}
-
 int link_sendFrame(Link* link, U8* frame, U32 header, U32 number) {
-    U32 key = link->session.key;
-    U32 size;
-    if (LINK_IS_SECURE(link)) {
-        size = protect(link, frame, header, number);
-    } else {
-        if ((header & LINK_CONTROL) && LINK_IS_HANDSHAKE(header >> 21 & 7U))
-            key |= LINK_NO_SEED;
-        size = link_seal(frame, header, key);
-    }
-    if (size > link_room(link) + link->overhead && !link_flush(link))
+    U32 size = LINK_CODEC(link)->seal(link, frame, header, number);
+    if (size > link_room(link) + LINK_CODEC(link)->overhead && !link_flush(link))
         return 0;
     memcpy(link->packet + link->packed, frame, size);
     link->packed = (U8)(link->packed + size);

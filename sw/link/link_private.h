@@ -6,31 +6,59 @@
 #ifndef LINK_PRIVATE_H
 #define LINK_PRIVATE_H
 
-#include "link_wire.h"
+#include "link_compression.h"
+#include "link_queue.h"
 
 #define LINK_FEATURES (LINK_FEATURE_COMPRESSION | LINK_FEATURE_PIGGYBACK)
 
-/* Rounds of Ascon that the search may spend on a frame. */
-#define LINK_ROUNDS_HELLO 48U /* under the keys of both slots */
-#define LINK_ROUNDS_HANDSHAKE 136U
-#define LINK_ROUNDS_OF(payload) (24U + (payload) / 2U)
-
-/* True once a key was given, for good. */
-#define LINK_IS_SECURE(link) (LINK_SECURE && (link)->overhead != LINK_OVERHEAD)
-
-#define LINK_ACK_ROOM(link) \
-    ((link)->overhead + 1U + LINK_BITMAP) /* bytes of the longest acknowledgement */
+/* Bytes of the longest acknowledgement. */
+#define LINK_ACK_ROOM(link) (LINK_CODEC(link)->overhead + 1U + LINK_BITMAP)
 
 /* The peer's credit in fragments, until its first frame gives it. */
 #define LINK_LEAST_WINDOW 8U
 
 #define LINK_SLOT(seq) ((seq) & (LINK_WINDOW - 1U))
 
-#define LINK_HEAD_AT 18U    /* start of the head in a request: behind header and request id */
-#define LINK_HEADS 16U      /* request heads that each direction keeps */
-#define LINK_HEAD_BYTES 64U /* of one: up to 62, and the encoding's version */
-#define LINK_HEAD_ROOM 96U  /* bytes that decompression may add in front of a message */
-#define LINK_ESCAPE 1U      /* a byte that marks messages other than Ice's */
+/* A codec protects frames: by a checksum (link_clear), or by a tag under a key (link_keyed). */
+typedef struct Link_Codec {
+    U8 overhead;          /* bytes of a frame beside its payload */
+    U8 nonceBytes;        /* of each side's nonce in the handshake */
+    U8 check;             /* bytes of check behind a message of more than LINK_UNCHECKED */
+    U8 isSure;            /* 1: a frame that was found is no chance; PINGs are numbered */
+    U8 endKind, endFlags; /* the frame that tells the peer of a session's end */
+    U8 sizes[6];          /* of the payloads of control frames up to PING, by Link_Kind */
+    /* Completes a frame, as link_sendFrame gets it. Returns its size in bytes. */
+    U32 (*seal)(const Link* link, U8* frame, U32 header, U32 number);
+    /* Accepts all whole frames in the bytes; returns the number of bytes used. After a bad frame it
+     * goes on at the next byte. The frames that end within the first parser.count bytes were looked
+     * at before. `isEnd`: a silence follows, so half a frame will never become whole. */
+    U32 (*parse)(Link* link, const U8* bytes, U32 count, int isEnd);
+    void (*onHandshake)(Link* link, const U8* frame, Link_Kind kind);
+    void (*onPing)(Link* link, const U8* frame); /* 0: an acknowledgement is the answer */
+    /* Sends HELLO; or, if `unknown` is a frame of an unknown session, what ends that. */
+    void (*call)(Link* link, const U8* unknown);
+} Link_Codec;
+
+extern const Link_Codec link_keyed;
+U32 link_sealClear(const Link* link, U8* frame, U32 header, U32 number);
+U32 link_parseClear(Link* link, const U8* bytes, U32 count, int isEnd);
+void link_onClearHandshake(Link* link, const U8* frame, Link_Kind kind);
+void link_callClear(Link* link, const U8* unknown);
+
+/* It stands here so that the compiler knows it where it is the only one. */
+static const Link_Codec link_clear = {LINK_OVERHEAD,
+                                      4U,
+                                      LINK_CHECK,
+                                      0,
+                                      LINK_KIND_RST,
+                                      LINK_FEATURES,
+                                      {1, 4, 8, 0, 0, 0},
+                                      link_sealClear,
+                                      link_parseClear,
+                                      link_onClearHandshake,
+                                      0,
+                                      link_callClear};
+#define LINK_CODEC(link) (LINK_SECURE ? (link)->codec : &link_clear)
 
 /* The identity of a session: both nonces, and the values that follow from them. */
 typedef struct Link_Session {
@@ -54,43 +82,24 @@ typedef struct Link_Handshake {
     U32 lastAnswer;   /* last at this one */
 } Link_Handshake;
 
-/* The watch notes what a session with a key has seen. */
+/* The watch notes signs of the peer's life. */
 typedef struct Link_Watch {
     U32 pingsSent, pingsAnswered; /* numbers of the newest own PING, and up to which that is over */
     U32 askedAt;                  /* when the first PING after that was sent */
     U32 pingsSeen;                /* number of the peer's newest PING */
-    U32 provenAt;                 /* the last answer proves that the peer lived then or later */
+    U32 provenAt;                 /* the peer lived then or later; without a key: heardAt */
     U32 failures;                 /* frames whose tag was wrong */
 } Link_Watch;
-
-/* An entry of the send queue; without bytes it opens (LINK_FIRST) or closes a channel. */
-typedef struct Link_Entry {
-    U32 tag;
-    U16 size;
-    U8 flags; /* LINK_FIRST, channel; and these: */
-} Link_Entry;
-#define LINK_ENTRY_LEARNS 4U /* the peer learns a head from it: it keeps its place */
-#define LINK_ENTRY_AHEAD 8U  /* it has overtaken earlier entries */
-#define LINK_ENTRY_ENDED 16U /* its outcome is known; it waits for earlier entries */
-
-typedef struct Link_Queue {
-    U8 first, count;
-    U8 wasFull;     /* Link_send said LINK_FULL */
-    U32 sums;       /* check of the message that is being queued */
-    U32 head, tail; /* byte counts, not reduced modulo LINK_SEND_BYTES */
-} Link_Queue;
 
 typedef enum Link_FragmentState { LINK_TO_SEND, LINK_SENT, LINK_ACKED } Link_FragmentState;
 
 /* A fragment that was cut from the queue, until it is acknowledged in order. */
 typedef struct Link_Fragment {
-    U32 start;  /* in the queue's bytes */
+    Link_Piece piece;
     U32 sentAt; /* time of its last transmission */
     U32 order;  /* number of its last transmission */
-    U8 size, flags;
-    U8 tries; /* 0, 1, more */
-    U8 state; /* Link_FragmentState */
-    U8 entry; /* the one of Link.entries that it was cut from */
+    U8 tries;   /* 0, 1, more */
+    U8 state;   /* Link_FragmentState */
 } Link_Fragment;
 
 typedef struct Link_Sender {
@@ -101,10 +110,6 @@ typedef struct Link_Sender {
     U8 isLate;             /* the timer has expired since the last answer */
     U8 unasked;   /* transmissions since the last request for an acknowledgement, or the last one */
     U8 hasSample; /* srtt and rttvar are valid */
-    U8 isAhead;   /* the newest fragment has overtaken a long message */
-    U8 cutEntry;  /* the next fragment in order is of this entry of the queue, ... */
-    U16 cutBytes; /* bytes of it that are cut already */
-    U32 cutAt;    /* in the queue's bytes */
     U32 rto, srtt, rttvar; /* microseconds, as RFC 6298 names them */
     U32 fastest;           /* round trip of the session */
     U32 timerAt;           /* when the retransmission timer expires */
@@ -138,21 +143,6 @@ typedef struct Link_Parser {
     U32 paidAt;   /* when the rounds that the search has computed are paid for */
 } Link_Parser;
 
-/* Request heads that have passed in one direction. */
-typedef struct Link_Heads {
-    U32 lastRequest[LINK_CHANNELS], lastReply[LINK_CHANNELS];
-    U8 next; /* slot that the next new one takes */
-    U8 size[LINK_HEADS];
-    U8 head[LINK_HEADS][LINK_HEAD_BYTES];
-} Link_Heads;
-
-/* A compressed message: bytes[0..prefix), `middle` bytes of its head, the rest from tailAt. `head`
- * is the size of its head; 0: nothing to remember. */
-typedef struct Link_Packed {
-    U8 bytes[8];
-    U32 prefix, middle, tailAt, tail, head;
-} Link_Packed;
-
 /* The link. Small members that are often used come first: short instructions reach them. */
 struct Link {
     U8 state;    /* Link_State */
@@ -161,15 +151,14 @@ struct Link {
     U8 open;     /* a bit a channel: messages may be sent */
     U8 closing;  /* closed here, the peer's closing has not come yet */
     U8 closeDue; /* the own closing is not queued yet */
-    U8 overhead; /* of a frame: of one without a key, or with one */
     U8 packed;   /* bytes in the packet */
     U8 heard;    /* bytes of a frame that came since the last packet left */
     Link_Receiver receiver;
     Link_Sender sender;
     U32 now;
+    const Link_Codec* codec;
     const Link_Port* port;
     void* context;
-    Link_Queue queue;
     U32 byteTimeUs16;
     U32 slack;     /* the next packet is handed over that long before paceUntil */
     U32 paceUntil; /* when the modem will have sent everything handed over */
@@ -182,15 +171,14 @@ struct Link {
     Link_Secrets secrets;
     Link_Watch watch;
 
-    U8 packet[LINK_MAX_FRAME];              /* frames that leave together */
-    U8 input[2U * LINK_MAX_FRAME];          /* the parser's */
-    Link_Fragment window[LINK_WINDOW];      /* the sender's */
-    Link_Entry entries[LINK_SEND_MESSAGES]; /* the queue's */
-    Link_Slot slots[LINK_WINDOW];           /* the receiver's, as is ... */
+    U8 packet[LINK_MAX_FRAME];         /* frames that leave together */
+    U8 input[2U * LINK_MAX_FRAME];     /* the parser's */
+    Link_Fragment window[LINK_WINDOW]; /* the sender's */
+    Link_Slot slots[LINK_WINDOW];      /* the receiver's, as is ... */
     U8 message[LINK_HEAD_ROOM + LINK_MAX_MESSAGE + LINK_ESCAPE + LINK_CHECK];
     U8 brief[LINK_HEAD_ROOM + LINK_MAX_PAYLOAD]; /* a message of one fragment */
-    Link_Heads headsOut, headsIn;
-    U8 queued[LINK_SEND_BYTES]; /* the queue's */
+    Link_Heads heads[2];                         /* of messages that came, and that were sent */
+    Link_Queue queue;
 };
 
 /* link_output: adds header and checksum, puts frames into packets, and hands these to the radio. */
@@ -210,16 +198,6 @@ int link_sendFrame(Link* link, U8* frame, U32 header, U32 number);
  * byte of `number`. `flags`: the low bits of byte 2. Returns 1: taken. */
 int link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 number, U32 size, U32 flags);
 
-/* link_compression: heads of IceP messages are sent once. */
-
-void link_resetHeads(Link* link);
-/* Compresses the message: changes `packed`, which stands for the unchanged one on entry. */
-void link_compress(const Link* link, int channel, const U8* m, U32 size, Link_Packed* packed);
-/* Remembers the head of a message that has passed, on both sides alike. */
-void link_note(Link_Heads* heads, int channel, const U8* m, U32 size, U32 head);
-/* Restores the message that link->receiver holds. Returns 0: it is malformed. */
-int link_decompress(Link* link);
-
 /* link_receiver: order, messages, acknowledgements. A function with an int returns 0 if the peer
  * broke the rules: then nothing it sent can be trusted, and the session must end. */
 
@@ -232,18 +210,10 @@ int link_ackMayRide(const Link* link);
 void link_ackIsSent(Link* link);
 void link_pollAck(Link* link);
 
-/* link_queue: messages that wait to be sent; Link_send, Link_openChannel, Link_closeChannel. */
-
-#define LINK_RING(at) ((at) & (LINK_SEND_BYTES - 1U))
-Link_Entry* link_entryAt(Link* link, U32 index);
-/* Ends an entry, removes all entries that wait for nothing any more, reports a message's outcome,
- * and tells that there is room again. */
-void link_endEntry(Link* link, Link_Entry* entry, Link_Outcome outcome);
-/* Queues the closings that had no room yet. The peer waits for each before the channel can be
- * opened again. */
-void link_queueClosings(Link* link);
-
 /* link_sender: fragments, window, retransmission. */
+
+/* Adds an entry to the queue, and work to the sender. Returns 0: there is no room. */
+Link_Entry* link_offer(Link* link, U32 flags, U32 size);
 
 void link_resetSender(Link* link);
 /* `bitmap`: so many bytes, as in the frame. */
@@ -252,39 +222,28 @@ void link_pollSender(Link* link);
 
 /* link_session: handshake, reboots, and a peer that has vanished. */
 
-void link_onHandshake(Link* link, const U8* frame, Link_Kind kind);
-void link_sendHello(Link* link, U32 version);
-/* Sends HELLO, with two keys under each in turn. */
-void link_call(Link* link);
-/* Bytes of a nonce in the frames of the handshake. */
-U32 link_nonceBytes(const Link* link);
 /* Draws the nonce of the next session. */
 void link_drawNonce(Link* link);
 /* Prepares the session that the peer's nonce and the own one make. */
 void link_makeCandidate(Link* link, const U8* peerNonce, U32 features);
-/* Sends a frame with both nonces. */
-void link_sendHandshake(Link* link, const Link_Session* session, Link_Kind kind);
+/* Sends a frame with both nonces of a session; 0: HELLO, with the own one of the next session. */
+void link_sendHandshake(Link* link, const Link_Session* session, Link_Kind kind, U32 version);
 void link_confirmCandidate(Link* link);
 void link_endSession(Link* link, Link_State next);
 /* Ends a session that the peer's wish or silence has ended. */
 void link_lose(Link* link);
 /* Ends a session because the peer broke the rules, and informs the peer. */
 void link_abort(Link* link);
+/* Calls or asks the peer; ends a session that is silent or has lasted too long. */
 void link_pollSession(Link* link);
 
-/* link_keyed: the handshake with a key, and proofs that the peer lives. */
+/* link_input: acts upon frames, for the codecs. */
 
-/* Returns whether a frame of the handshake is fresh and relevant, which takes no round of Ascon. */
-int link_isOfUse(const Link* link, const U8* frame, Link_Kind kind);
-/* Returns whether such a frame is authentic, and decrypts it. */
-int link_isGenuine(Link* link, U8* frame, Link_Kind kind);
-/* Acts upon such a frame. */
-void link_onGenuine(Link* link, const U8* frame, Link_Kind kind);
-void link_onPing(Link* link, const U8* frame);
-void link_pollKeyed(Link* link);
-
-/* link_input: finds frames in the bytes, and acts upon them; Link_receive. */
-
-void link_pollInput(Link* link);
+/* True if a header makes sense: most garbage fails here, before the checksum. */
+int link_isPlausible(const Link* link, const U8* frame);
+/* Acts upon a good frame of `size` bytes, whose header has the payload's length. */
+void link_accept(Link* link, const U8* frame, U32 size);
+/* Counts a byte where no frame begins. */
+void link_skip(Link* link, const U8* frame, U32 left);
 
 #endif

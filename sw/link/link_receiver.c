@@ -80,10 +80,23 @@ static int append(Link* link, U32 flags, const U8* data, U32 size) {
 static int uncheck(Link* link) {
     Link_Receiver* receiver = &link->receiver;
     U32 size = receiver->size - LINK_CHECK;
-    if (receiver->size <= LINK_UNCHECKED || LINK_IS_SECURE(link))
+    if (receiver->size <= LINK_UNCHECKED || !LINK_CODEC(link)->check)
         return 1;
     receiver->size = (U16)size;
     return link_sum(0, receiver->start, size) == LINK_CHECK_AT(receiver->start + size);
+}
+
+/* Restores the head of the whole message. Returns 0: the message is malformed. */
+static int expand(Link* link) {
+    Link_Receiver* receiver = &link->receiver;
+    U8* end = receiver->start + receiver->size;
+    U8* start =
+        link_decompress(&link->heads[0], receiver->channel, receiver->start, receiver->size);
+    if (!start)
+        return 0;
+    receiver->start = start;
+    receiver->size = (U16)(end - start);
+    return 1;
 }
 
 /* Takes the next fragment in order. Returns 0: the peer broke the rules. */
@@ -100,7 +113,7 @@ static int accept(Link* link, U32 flags, const U8* data, U32 size) {
         return 1;
     if (!uncheck(link))
         return 0;
-    if (link->session.features & LINK_FEATURE_COMPRESSION ? !link_decompress(link)
+    if (link->session.features & LINK_FEATURE_COMPRESSION ? !expand(link)
                                                           : receiver->size > LINK_MAX_MESSAGE)
         return 0;
     deliver(link);

@@ -7,7 +7,7 @@
  * another flag or acknowledgement has another nonce, the same nonce always means the same frame,
  * and a frame that is replayed in the place of other numbers is wrong.
  */
-#include "link.h"
+#include "link_wire.h"
 
 #if LINK_SECURE
 

@@ -15,94 +15,67 @@
  * lets the sender go on then. */
 #define FULL_WAIT(sender) ((sender)->srtt < LINK_RTO_MIN ? LINK_RTO_MIN : (sender)->srtt)
 
+Link_Entry* link_offer(Link* link, U32 flags, U32 size) {
+    Link_Entry* entry = link_enqueue(&link->queue, flags, size, link->longest);
+    if (entry)
+        link->sender.hasWork = 1;
+    return entry;
+}
+
+/* Queues the closings that had no room yet. The peer waits for each before the channel can be
+ * opened again. */
+static void queueClosings(Link* link) {
+    int channel;
+    for (channel = 0; channel < LINK_CHANNELS; ++channel)
+        if ((link->closeDue >> channel & 1) && link_offer(link, (U32)channel, 0))
+            link->closeDue = (U8)(link->closeDue ^ 1U << channel);
+}
+
+/* Ends an entry of the queue, reports a message's outcome, and tells that there is room again. */
+static void endEntry(Link* link, U32 index, Link_Outcome outcome) {
+    Link_Queue* queue = &link->queue;
+    Link_Entry ended = queue->entries[index];
+    link_dequeue(queue, index);
+    if (ended.size) { /* a message, not an opening or closing */
+        link->statistics.messagesSent += outcome == LINK_DELIVERED;
+        if (link->port->outcome)
+            link->port->outcome(link->context, (int)LINK_CHANNEL(ended.flags), ended.tag, outcome);
+    }
+    if (queue->wasFull && outcome == LINK_DELIVERED) {
+        queue->wasFull = 0;
+        queueClosings(link);
+        if (link->port->writable)
+            link->port->writable(link->context);
+    }
+}
+
 void link_resetSender(Link* link) {
     Link_Sender* sender = &link->sender;
     while (link->queue.count)
-        link_endEntry(link, link_entryAt(link, 0), LINK_UNKNOWN);
-    sender->cutAt = link->queue.tail = link->queue.head;
+        endEntry(link, link->queue.first, LINK_UNKNOWN);
+    link_rewind(&link->queue);
     sender->base = sender->next = 0;
     sender->credit = sender->fullCredit = LINK_LEAST_WINDOW;
-    sender->cutEntry = sender->isAhead = sender->hasWork = sender->hasSample = 0;
-    sender->cutBytes = 0;
+    sender->hasWork = sender->hasSample = 0;
     sender->fastest = sender->rto = LINK_RTO_FIRST;
-}
-
-/* Finds a message of one fragment, an opening or a closing that may overtake the present long
- * message: on another channel than all that it overtakes, in the order of the heads that the peer
- * learns, and never two in a row. Sets `start` to the place of its bytes. Returns 0: none. */
-static Link_Entry* findAhead(Link* link, U32* start) {
-    Link_Sender* sender = &link->sender;
-    Link_Entry* entry = link_entryAt(link, sender->cutEntry);
-    U32 channels = 0;
-    U32 i;
-    if (sender->isAhead || entry->size - sender->cutBytes <= link->longest ||
-        !(link->session.features & LINK_FEATURE_PIGGYBACK))
-        return 0;
-    *start = sender->cutAt - sender->cutBytes;
-    for (i = sender->cutEntry; !(entry->flags & LINK_ENTRY_LEARNS);) {
-        if (!(entry->flags & LINK_ENTRY_AHEAD))
-            channels |= 1U << LINK_CHANNEL(entry->flags);
-        *start += entry->size;
-        if (++i == link->queue.count)
-            break;
-        entry = link_entryAt(link, i);
-        if (entry->size <= link->longest &&
-            !(entry->flags & (LINK_ENTRY_AHEAD | LINK_ENTRY_LEARNS)) &&
-            !(channels >> LINK_CHANNEL(entry->flags) & 1U))
-            return entry;
-    }
-    return 0;
-}
-
-/* Cuts `size` bytes off an entry into the window. */
-static void cutOff(Link* link, const Link_Entry* entry, U32 start, U32 size, U32 flags) {
-    Link_Fragment* f = FRAGMENT(link, link->sender.next++);
-    f->start = start;
-    f->size = (U8)size;
-    f->flags = (U8)flags;
-    f->state = LINK_TO_SEND;
-    f->tries = 0;
-    f->entry = (U8)(entry - link->entries);
 }
 
 /* Cuts the next fragment from the queue into the window. Returns 0: nothing to cut, or no room. */
 static int cut(Link* link) {
     Link_Sender* sender = &link->sender;
-    Link_Entry* entry = link_entryAt(link, sender->cutEntry);
-    Link_Entry* ahead;
+    Link_Fragment* f = FRAGMENT(link, sender->next);
     U32 inFlight = IN_FLIGHT(sender);
-    U32 flags = entry->flags & (LINK_FIRST | 3U);
-    U32 left, size, start;
+    U32 room = link_room(link);
+    /* An acknowledgement that is due leaves in the same packet. */
+    U32 reduced = link->receiver.ackNow ? room - LINK_ACK_ROOM(link) : room;
     /* One fragment goes out even without credit: its acknowledgement brings news of credit. */
-    if (sender->cutEntry == link->queue.count || (inFlight && inFlight >= sender->credit) ||
-        inFlight >= LINK_WINDOW)
+    if ((inFlight && inFlight >= sender->credit) || inFlight >= LINK_WINDOW ||
+        !link_cut(&link->queue, &f->piece, room, reduced,
+                  link->session.features & LINK_FEATURE_PIGGYBACK ? link->longest : 0U))
         return 0;
-    ahead = findAhead(link, &start);
-    sender->isAhead = ahead != 0;
-    if (ahead) {
-        ahead->flags |= LINK_ENTRY_AHEAD;
-        cutOff(link, ahead, start, ahead->size, (ahead->flags & (LINK_FIRST | 3U)) | LINK_LAST);
-        return 1;
-    }
-    left = entry->size - sender->cutBytes;
-    size = link_room(link);
-    if (link->receiver.ackNow && (sender->cutBytes || left >= size))
-        size -= LINK_ACK_ROOM(link); /* it leaves in the same packet */
-    if (size > left)
-        size = left;
-    if (sender->cutBytes)
-        flags = LINK_CHANNEL(flags);
-    if (left == size)
-        flags |= LINK_LAST;
-    cutOff(link, entry, sender->cutAt, size, flags);
-    sender->cutAt += size;
-    sender->cutBytes = (U16)(sender->cutBytes + size);
-    if (left != size)
-        return 1;
-    sender->cutBytes = 0;
-    while (++sender->cutEntry < link->queue.count &&
-           ((entry = link_entryAt(link, sender->cutEntry))->flags & LINK_ENTRY_AHEAD))
-        sender->cutAt += entry->size;
+    ++sender->next;
+    f->state = LINK_TO_SEND;
+    f->tries = 0;
     return 1;
 }
 
@@ -134,20 +107,19 @@ static int mustAsk(const Link* link, U32 seq) {
 /* Puts a fragment's payload into a frame. Returns the header: of data, or, for a whole short
  * message, of a control frame that takes an acknowledgement along. */
 static U32 build(const Link* link, U32 seq, int isAsked, U8* frame) {
-    const Link_Fragment* f = FRAGMENT(link, seq);
+    const Link_Piece* piece = &FRAGMENT(link, seq)->piece;
     U8* p = frame + LINK_HEADER;
-    U32 size = f->size;
-    U32 at = f->start;
-    U32 header = LINK_HEADER_OF(size, (U8)seq, f->flags | (isAsked ? LINK_ACK_NOW : 0U));
-    if ((f->flags & LINK_FIRST) && (f->flags & LINK_LAST) && size && size < link_room(link) &&
+    U32 flags = piece->flags;
+    U32 size = piece->size;
+    U32 header = LINK_HEADER_OF(size, (U8)seq, flags | (isAsked ? LINK_ACK_NOW : 0U));
+    if ((flags & LINK_FIRST) && (flags & LINK_LAST) && size && size < link_room(link) &&
         link_ackMayRide(link)) {
         header = LINK_CONTROL_HEADER(isAsked ? LINK_KIND_PIGGYBACK_ASK : LINK_KIND_PIGGYBACK,
                                      (U8)seq, size + 1U) |
-                 LINK_HEADER_OF(0U, 0U, LINK_CHANNEL(f->flags));
+                 LINK_HEADER_OF(0U, 0U, LINK_CHANNEL(flags));
         *p++ = (U8)link->receiver.next;
     }
-    while (size--)
-        *p++ = link->queued[LINK_RING(at++)];
+    link_copy(&link->queue, piece, p);
     return header;
 }
 
@@ -265,8 +237,8 @@ void link_onAck(Link* link, U32 cumulative, U32 credit, const U8* bitmap, U32 si
     markAcked(link, advance, bitmap, size);
     while (advance--) {
         const Link_Fragment* f = FRAGMENT(link, sender->base++);
-        if (f->flags & LINK_LAST)
-            link_endEntry(link, &link->entries[f->entry], LINK_DELIVERED);
+        if (f->piece.flags & LINK_LAST)
+            endEntry(link, f->piece.entry, LINK_DELIVERED);
     }
 }
 
@@ -283,7 +255,7 @@ void link_pollSender(Link* link) {
     Link_Sender* sender = &link->sender;
     U32 seq;
     if (link->closeDue)
-        link_queueClosings(link);
+        queueClosings(link);
     if (sender->base != sender->next && !LINK_BEFORE(link->now, sender->timerAt)) {
         FRAGMENT(link, sender->base)->state = LINK_TO_SEND; /* its answer tells about the others */
         sender->hasWork = sender->isLate = 1;

@@ -1,13 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
  * link_session: makes and ends sessions: handshake, reboots, a peer that has vanished.
- *
- * HELLO carries a nonce; the answer carries the peer's. Both nonces make the session's epoch and
- * the seed of its checksums, so a frame of another session is never taken for one of this. A side
- * that has answered a HELLO stays in its old session until the first frame of the new one arrives:
- * a HELLO that was delayed on the air cannot end a session.
- *
- * All this is proven with a key (link_keyed.c).
  */
 #include "link.h"
 
@@ -17,45 +10,25 @@ void link_makeCandidate(Link* link, const U8* peerNonce, U32 features) {
     Link_Session* session = &link->handshake.candidate;
     memcpy(session->nonce, link->handshake.nonce, LINK_NONCE_BYTES);
     memset(session->peerNonce, 0, LINK_NONCE_BYTES);
-    memcpy(session->peerNonce, peerNonce, link_nonceBytes(link));
+    memcpy(session->peerNonce, peerNonce, LINK_CODEC(link)->nonceBytes);
     session->key = link_sessionKey(link_get32(session->nonce), link_get32(peerNonce));
     session->features = (U8)(features & LINK_FEATURES);
 }
 
-U32 link_nonceBytes(const Link* link) {
-    return LINK_IS_SECURE(link) ? LINK_NONCE_BYTES : 4U;
-}
-
 void link_drawNonce(Link* link) {
     U32 i;
-    for (i = 0; i < link_nonceBytes(link); i += 4U)
+    for (i = 0; i < LINK_CODEC(link)->nonceBytes; i += 4U)
         link_put32(link->handshake.nonce + i, link->port->random(link->context));
     link->handshake.isAnswered = 0;
 }
 
-void link_sendHandshake(Link* link, const Link_Session* session, Link_Kind kind) {
+void link_sendHandshake(Link* link, const Link_Session* session, Link_Kind kind, U32 version) {
     U8 frame[LINK_MAX_OVERHEAD + 2U * LINK_NONCE_BYTES];
-    U32 bytes = link_nonceBytes(link);
-    memcpy(frame + LINK_HEADER, session->nonce, bytes);
-    memcpy(frame + LINK_HEADER + bytes, session->peerNonce, bytes);
-    (void)link_sendControl(link, frame, kind, LINK_VERSION, 2U * bytes, LINK_FEATURES);
-}
-
-void link_sendHello(Link* link, U32 version) {
-    U8 frame[LINK_MAX_OVERHEAD + LINK_NONCE_BYTES];
-    U32 bytes = link_nonceBytes(link);
-    memcpy(frame + LINK_HEADER, link->handshake.nonce, bytes);
-    (void)link_sendControl(link, frame, LINK_KIND_HELLO, version, bytes, LINK_FEATURES);
-}
-
-void link_call(Link* link) {
-    U32 set = link->secrets.set;
-    if (LINK_IS_SECURE(link)) {
-        if (!set)
-            return;
-        link->handshake.slot = (U8)(set == 3U ? !link->handshake.slot : set >> 1);
-    }
-    link_sendHello(link, LINK_VERSION);
+    U32 bytes = LINK_CODEC(link)->nonceBytes;
+    memcpy(frame + LINK_HEADER, session ? session->nonce : link->handshake.nonce, bytes);
+    if (session)
+        memcpy(frame + LINK_HEADER + bytes, session->peerNonce, bytes);
+    (void)link_sendControl(link, frame, kind, version, session ? 2U * bytes : bytes, LINK_FEATURES);
 }
 
 /* Ends the session, if there is one: clears its state and reports its end. */
@@ -71,7 +44,7 @@ void link_endSession(Link* link, Link_State next) {
     link->handshake.helloEvery = LINK_HELLO_FIRST;
     link_resetReceiver(link);
     link_resetSender(link);
-    link_resetHeads(link);
+    memset(link->heads, 0, sizeof link->heads);
     memset(&link->session.keys, 0, sizeof link->session.keys);
     for (channel = 0; channel < LINK_CHANNELS; ++channel)
         if (open >> channel & 1U)
@@ -86,10 +59,8 @@ void link_lose(Link* link) {
 
 void link_abort(Link* link) {
     U8 frame[LINK_MAX_OVERHEAD];
-    if (LINK_IS_SECURE(link))
-        (void)link_sendControl(link, frame, LINK_KIND_BYE, 0, 0, 0);
-    else
-        (void)link_sendControl(link, frame, LINK_KIND_RST, 0, 0, LINK_FEATURES);
+    const Link_Codec* codec = LINK_CODEC(link);
+    (void)link_sendControl(link, frame, (Link_Kind)codec->endKind, 0, 0, codec->endFlags);
     link_lose(link);
 }
 
@@ -106,51 +77,38 @@ void link_confirmCandidate(Link* link) {
     link->port->state(link->context, LINK_STATE_UP);
 }
 
-static void onHello(Link* link, const U8* peerNonce, U32 features) {
-    Link_Session* session = &link->session;
-    /* A repeated HELLO means that the answer was lost, and gets the same one. */
-    if (link->state != LINK_STATE_UP || link_get32(peerNonce) != link_get32(session->peerNonce)) {
-        session = &link->handshake.candidate;
-        link_makeCandidate(link, peerNonce, features);
-        link->handshake.hasCandidate = 1;
-    }
-    link_sendHandshake(link, session, LINK_KIND_HELLO_ACK);
-}
-
-void link_onHandshake(Link* link, const U8* frame, Link_Kind kind) {
-    const U8* payload = frame + LINK_HEADER;
-    if (kind == LINK_KIND_RST) {
-        if (link->state == LINK_STATE_UP && LINK_EPOCH(frame) == LINK_KEY_EPOCH(link->session.key))
-            link_lose(link);
-    } else if (frame[1] != LINK_VERSION) {
-        return;
-    } else if (kind == LINK_KIND_HELLO) {
-        onHello(link, payload, frame[2]);
-    } else if (link->state == LINK_STATE_CONNECTING &&
-               link_get32(payload + 4) == link_get32(link->handshake.nonce)) {
-        link_makeCandidate(link, payload, frame[2]);
-        link_confirmCandidate(link);
-        link->receiver.ackDue = link->receiver.ackNow = 1; /* this first frame confirms it */
-    }
-}
-
 void link_pollSession(Link* link) {
     U8 frame[LINK_MAX_OVERHEAD];
     Link_Handshake* handshake = &link->handshake;
+    Link_Watch* watch = &link->watch;
     U32 now = link->now;
-    if (link->state == LINK_STATE_CONNECTING && !LINK_BEFORE(now, handshake->helloAt)) {
-        link_call(link);
+    U32 silence = now - link->heardAt;
+    U32 proof = LINK_SECURE ? now - watch->provenAt : silence;
+    if (LINK_SECURE && handshake->isAnswered && now - handshake->firstAnswer >= LINK_NONCE_LIFE)
+        link_drawNonce(link);
+    if ((link->state == LINK_STATE_CONNECTING || handshake->isUnconfirmed) &&
+        !LINK_BEFORE(now, handshake->helloAt)) {
+        if (LINK_SECURE && handshake->isUnconfirmed)
+            link_sendHandshake(link, &link->session, LINK_KIND_CONFIRM, LINK_VERSION);
+        else
+            LINK_CODEC(link)->call(link, 0);
         handshake->helloAt = now + handshake->helloEvery;
         if (handshake->helloEvery < LINK_HELLO_LAST)
             handshake->helloEvery *= 2U;
     }
-    if (LINK_IS_SECURE(link) || link->state != LINK_STATE_UP ||
-        now - link->heardAt < LINK_PING_AFTER)
+    if (link->state != LINK_STATE_UP)
         return;
-    if (now - link->heardAt >= LINK_DEAD_AFTER) {
+    if (LINK_SECURE &&
+        (watch->failures >= LINK_MOST_FAILURES || link->sender.next >= LINK_LAST_NUMBER)) {
+        link_abort(link);
+    } else if (silence >= LINK_DEAD_AFTER || proof >= LINK_PROOF_LAST) {
         link_lose(link);
-    } else if (!LINK_BEFORE(now, link->pingAt)) {
-        (void)link_sendControl(link, frame, LINK_KIND_PING, 0, 0, 0);
-        link->pingAt = now + LINK_PING_EVERY;
+    } else if ((silence >= LINK_PING_AFTER || proof >= LINK_PROOF_AFTER) &&
+               !LINK_BEFORE(now, link->pingAt)) {
+        if (LINK_SECURE && watch->pingsAnswered == watch->pingsSent)
+            watch->askedAt = now;
+        watch->pingsSent += LINK_CODEC(link)->isSure;
+        (void)link_sendControl(link, frame, LINK_KIND_PING, watch->pingsSent, 0, 0);
+        link->pingAt = now + (silence >= LINK_PING_AFTER ? LINK_PING_EVERY : LINK_PROOF_EVERY);
     }
 }

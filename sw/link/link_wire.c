@@ -2,7 +2,7 @@
  *
  * link_wire: computes the checksums of the wire format, and reads and writes its numbers.
  */
-#include "link.h"
+#include "link_wire.h"
 
 /* This is CRC-16/CCITT, polynomial 0x1021, MSB first. x ^= x >> 4 replaces Sarwate's table by
  * shifts. */

@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
  * link_wire: names the fields of a frame, and declares checksums and numbers of the wire format
- * (docs/link.md). The full layer and the minimal one share it; only link.h includes it.
- *
- *   byte 0      control bit, length of the frame minus 5 bytes
- *   byte 1      SEQ (data); depends on the kind (control)
- *   byte 2      F, L, A, epoch, channel (data); kind, epoch, features (control)
- *   bytes 3..   payload
- *   last two    CRC, high byte first; with a key: the tag, LINK_TAG bytes
- *
- * In the clear the length is the payload's; with a key LINK_TAG_MORE bytes more.
+ * (docs/link.md). The full layer and the minimal one share it.
  */
 #ifndef LINK_WIRE_H
 #define LINK_WIRE_H
+
+#include "base.h"
+#include "link_config.h"
+
+#define LINK_CHANNELS 4
+#define LINK_MAX_FRAME 100U    /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
+#define LINK_MAX_ENCRYPTED 95U /* the same if the modem encrypts (Link_limitFrame) */
+#define LINK_KEY_BYTES 16U
+#define LINK_KEYS 2 /* slots for keys, so that a new key can replace the old one */
 
 #define LINK_VERSION 6U
 #define LINK_VERSION_UP 0x80U /* with it: HELLO of a side that has a session, under a key */
@@ -59,6 +60,9 @@ typedef enum Link_Kind {
     LINK_KIND_PIGGYBACK_ASK, /* the same, with LINK_ACK_NOW */
     LINK_KIND_DATA           /* not a control frame */
 } Link_Kind;
+
+#define LINK_KIND_OF(frame) \
+    ((frame)[0] & LINK_CONTROL ? (Link_Kind)((frame)[2] >> 5) : LINK_KIND_DATA)
 
 /* Both sides make a session's key of their two nonces: bits 31..29 are the epoch,
  * bits 15..0 the seed of the CRCs. HELLO, HELLO-ACK and RST belong to no session: their seed is all

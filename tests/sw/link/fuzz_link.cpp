@@ -134,10 +134,12 @@ private:
 #ifdef LINK_MINIMAL
     U32 sessionKey() const { return a_.link->key; }
     U32 expected() const { return a_.link->receiveNext; }
+    U32 overhead() const { return a_.link->overhead; }
     Bytes sealed(Bytes bytes, bool) const { return bytes; }
 #else
     U32 sessionKey() const { return a_.link->session.key; }
     U32 expected() const { return a_.link->receiver.next; }
+    U32 overhead() const { return a_.link->codec->overhead; }
     // The frame under a key. A HELLO is under its own; the others of the handshake are for the
     // nonce of now, from a peer whose nonce is in the input.
     Bytes sealed(Bytes bytes, bool isHandshake) const {
@@ -178,7 +180,7 @@ private:
     // A frame that A takes for its peer's if its contents make sense.
     Bytes frame(Bytes bytes, int step) const {
         const bool isHandshake = step == 4;
-        const size_t most = LINK_MAX_FRAME - a_.link->overhead + LINK_HEADER;
+        const size_t most = LINK_MAX_FRAME - overhead() + LINK_HEADER;
         if (bytes.size() < LINK_HEADER)
             return bytes;
         if (bytes.size() > most)
@@ -188,7 +190,7 @@ private:
             bytes[1] = static_cast<uint8_t>(expected());
         if (!isHandshake)
             bytes[2] = static_cast<uint8_t>((bytes[2] & ~0x1C) | LINK_KEY_EPOCH(sessionKey()) << 2);
-        if (a_.link->overhead != LINK_OVERHEAD)
+        if (overhead() != LINK_OVERHEAD)
             return sealed(bytes, isHandshake);
         return checked(bytes, isHandshake ? LINK_NO_SEED : sessionKey());
     }

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_clear: the codec without a key: frames end with a CRC.
+ *
+ * A side that has answered a HELLO stays in its old session until the first frame of the new one
+ * arrives: a HELLO that was delayed on the air cannot end a session.
+ */
+#include "link.h"
+
+/* The party whose checksum a frame has. */
+typedef enum Owner { NOBODY, HANDSHAKE, SESSION, CANDIDATE } Owner;
+
+U32 link_sealClear(const Link* link, U8* frame, U32 header, U32 number) {
+    U32 key = link->session.key;
+    (void)number;
+    if ((header & LINK_CONTROL) && LINK_IS_HANDSHAKE(header >> 21 & 7U))
+        key |= LINK_NO_SEED;
+    return link_seal(frame, header, key);
+}
+
+static int hasGoodCrc(const U8* frame, U32 key) {
+    return link_crc(key, frame, LINK_LENGTH(frame) + LINK_OVERHEAD) == 0;
+}
+
+/* Returns the owner of a whole frame: the session, or one that a HELLO announced. */
+static Owner ownerOf(const Link* link, const U8* frame) {
+    const Link_Session* candidate = &link->handshake.candidate;
+    U32 epoch = LINK_EPOCH(frame);
+    if (!link_isPlausible(link, frame))
+        return NOBODY;
+    if (LINK_IS_HANDSHAKE(LINK_KIND_OF(frame)))
+        return hasGoodCrc(frame, LINK_NO_SEED) ? HANDSHAKE : NOBODY;
+    if (link->state == LINK_STATE_UP && epoch == LINK_KEY_EPOCH(link->session.key) &&
+        hasGoodCrc(frame, link->session.key))
+        return SESSION;
+    return link->handshake.hasCandidate && epoch == LINK_KEY_EPOCH(candidate->key) &&
+                   hasGoodCrc(frame, candidate->key)
+               ? CANDIDATE
+               : NOBODY;
+}
+
+/* Tells whether a frame that the search has found may be believed. The search at every byte behind
+ * something that was no frame might find one by chance; so there a frame counts only if it ends
+ * where the bytes end, or a good one follows. Returns 1 yes, 0 no, -1 not known yet. */
+static int isConfirmed(const Link* link, const U8* next, U32 left, int isEnd) {
+    U32 payload;
+    if (left == 0)
+        return 1;
+    payload = LINK_LENGTH(next);
+    if (payload > LINK_MAX_PAYLOAD)
+        return 0;
+    if (left < payload + LINK_OVERHEAD)
+        return isEnd ? 0 : -1;
+    return ownerOf(link, next) != NOBODY;
+}
+
+U32 link_parseClear(Link* link, const U8* bytes, U32 count, int isEnd) {
+    U32 used = 0;
+    while (used < count) {
+        const U8* frame = bytes + used;
+        U32 left = count - used;
+        U32 size = LINK_LENGTH(frame) + LINK_OVERHEAD;
+        if (size <= LINK_MAX_FRAME && left < size && !isEnd)
+            break;
+        if (size <= LINK_MAX_FRAME && left >= size) {
+            Owner owner = ownerOf(link, frame);
+            int confirmed = 1;
+            if (owner != NOBODY && link->parser.outOfStep)
+                confirmed = isConfirmed(link, frame + size, left - size, isEnd);
+            if (confirmed < 0)
+                break;
+            if (confirmed && owner != NOBODY) {
+                if (owner == CANDIDATE)
+                    link_confirmCandidate(link);
+                if (owner != HANDSHAKE)
+                    link->heardAt = link->watch.provenAt = link->now;
+                link_accept(link, frame, size);
+                used += size;
+                continue;
+            }
+        }
+        link_skip(link, frame, left);
+        ++used;
+    }
+    return used;
+}
+
+static void onHello(Link* link, const U8* peerNonce, U32 features) {
+    Link_Session* session = &link->session;
+    /* A repeated HELLO means that the answer was lost, and gets the same one. */
+    if (link->state != LINK_STATE_UP || link_get32(peerNonce) != link_get32(session->peerNonce)) {
+        session = &link->handshake.candidate;
+        link_makeCandidate(link, peerNonce, features);
+        link->handshake.hasCandidate = 1;
+    }
+    link_sendHandshake(link, session, LINK_KIND_HELLO_ACK, LINK_VERSION);
+}
+
+void link_onClearHandshake(Link* link, const U8* frame, Link_Kind kind) {
+    const U8* payload = frame + LINK_HEADER;
+    if (kind == LINK_KIND_RST) {
+        if (link->state == LINK_STATE_UP && LINK_EPOCH(frame) == LINK_KEY_EPOCH(link->session.key))
+            link_lose(link);
+    } else if (frame[1] != LINK_VERSION) {
+        return;
+    } else if (kind == LINK_KIND_HELLO) {
+        onHello(link, payload, frame[2]);
+    } else if (link->state == LINK_STATE_CONNECTING &&
+               link_get32(payload + 4) == link_get32(link->handshake.nonce)) {
+        link_makeCandidate(link, payload, frame[2]);
+        link_confirmCandidate(link);
+        link->receiver.ackDue = link->receiver.ackNow = 1; /* this first frame confirms it */
+    }
+}
+
+void link_callClear(Link* link, const U8* unknown) {
+    U8 reset[LINK_MAX_OVERHEAD];
+    if (!unknown) {
+        link_sendHandshake(link, 0, LINK_KIND_HELLO, LINK_VERSION);
+        return;
+    }
+    link->session.key = LINK_EPOCH_KEY(LINK_EPOCH(unknown));
+    (void)link_sendControl(link, reset, LINK_KIND_RST, 0, 0, LINK_FEATURES);
+}

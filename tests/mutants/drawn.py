@@ -22,9 +22,10 @@ TESTS = {
     "bus_decoder": "test_bus_decoder", "bus_(registers|wrapper)": "test_bus_registers",
     "bus_(to_wishbone|window)": "test_bus_wishbone", "bus_to_axi4lite": "test_bus_axi4lite",
     "system_slot": "test_system_slot", "npi_|mcb_": "test_memory",
-    "axis_filter": "test_ip_foreign_axis", "bus_crossing": "test_ip_new_foreign", "modem_baud": "test_modem_baud",
-    "modem_api_": "test_modem_api", "modem_": "test_modem test_modem_api",
-    "camera_": "test_ip_camera", "fsmc_": "test_fsmc_bridge test_fsmc_modes",
+    "axis_filter": "test_ip_foreign_axis", "bus_crossing": "test_ip_new_foreign",
+    "modem_baud": "test_modem_baud", "modem_api_": "test_modem_api",
+    "modem_": "test_modem test_modem_api", "camera_": "test_ip_camera",
+    "fsmc_": "test_fsmc_bridge test_fsmc_modes",
     "async_fifo": "test_ip_camera", "cdc_": "test_fsmc_bridge"}
 SECONDS = "20"  # processor time for each step of a mutant's proof, at least
 # A module's own cells, but those of its proof

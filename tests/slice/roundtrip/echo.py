@@ -1,7 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""echo: `echo.py generate SEED FOLDER` writes Random.ice and servants.c; `echo.py client SEED FOLDER PORT` sends
-random values of every type through the C servants by stock ZeroC Ice, in both encodings, and compares."""
+"""echo: stock ZeroC Ice on both sides of a bridge of generated C.
+
+echo.py generate SEED FOLDER     writes Random.ice
+echo.py server SEED FOLDER       gives back what it gets; prints its port
+echo.py client SEED FOLDER PORT  sends random values of every type, in both encodings, and compares
+"""
 
 import os
 import sys
@@ -147,14 +151,14 @@ def lone(echo, module, encoding):
 
 
 class Thrower:
-    """Throws `what` when C forwards a call here."""
+    """Throws `what` when the server forwards a call here."""
 
     def forward(self, to, current):
         raise self.what
 
 
 def forwarded(echo, module, ic, encoding, thrower, own, e):
-    """Throws an exception of an unknown type at C, which throws it on."""
+    """Lets the server throw an exception of a type unknown to C, which throws it on."""
     thrower.what = sent = getattr(module, "Hidden" + e.name)()
     hide(sent, e, module, ic, 15)
     sent.other = module.Lone(7)
@@ -169,15 +173,53 @@ def forwarded(echo, module, ic, encoding, thrower, own, e):
             check(what, got.other.number == 7 and got.other.next is got.other, got)
 
 
-def client(folder, port):
-    Ice.loadSlice("", [os.path.join(folder, "Hidden.ice")])
-    import T as module
+def raiser(module, e):
+    def throw(self, *values):  # the last one is Current
+        thrown = getattr(module, e.name)()
+        for (name, _, _), value in zip(e.all_fields(), values):
+            setattr(thrown, name, value)
+        raise thrown
+    return throw
 
-    calls = 0
+
+def forwarder(module, e):
+    def forward(self, to, current):
+        getattr(module.EchoPrx.uncheckedCast(to), "forward" + e.name)(None)
+    return forward
+
+
+def server(module):
+    """Gives back what it gets, until `shutdown`."""
+    def echo(self, v, current):
+        return v, v
+
+    operations = {"any": echo, "shutdown": lambda self, current: ic.shutdown()}
+    for i, t in enumerate(model.types):
+        names = ["plain%d%s" % (i, form) for form in model.formats(t)]
+        operations.update((name, echo) for name in names + ["maybe%d" % i])
+    for e in model.exceptions:
+        for form in ("Compact", "Sliced"):
+            operations["raise%s%s" % (e.name, form)] = raiser(module, e)
+        operations["forward" + e.name] = forwarder(module, e)
+    with communicator() as ic:
+        adapter = ic.createObjectAdapterWithEndpoints("Echo", "tcp -h 127.0.0.1")
+        adapter.add(type("Echoes", (module.Echo,), operations)(), Ice.stringToIdentity("echo"))
+        adapter.activate()
+        print(adapter.getEndpoints()[0].getInfo().port, flush=True)
+        ic.waitForShutdown()
+
+
+def communicator():
     data = Ice.InitializationData()
     data.properties = Ice.createProperties()
-    data.properties.setProperty("Ice.MessageSizeMax", "64")
-    with Ice.initialize(data) as ic:
+    for setting in "MessageSizeMax=64", "Warn.Dispatch=0":
+        data.properties.setProperty(*("Ice." + setting).split("="))
+    return Ice.initialize(data)
+
+
+def client(module, port):
+    calls = 0
+    with communicator() as ic:
         names = {"forward" + e.name: Thrower.forward for e in model.exceptions}
         thrower = type("Throws", (Thrower, module.Echo), names)()
         adapter = ic.createObjectAdapterWithEndpoints("Thrower", "tcp -h 127.0.0.1")
@@ -213,7 +255,7 @@ if sys.argv[1] == "generate":
     for name, hidden in (("Random.ice", False), ("Hidden.ice", True)):
         with open(os.path.join(sys.argv[3], name), "w") as f:
             f.write(model.slice_text(hidden))
-    with open(os.path.join(sys.argv[3], "servants.c"), "w") as f:
-        f.write(model.c_text())
 else:
-    client(sys.argv[3], sys.argv[4])
+    Ice.loadSlice("", [os.path.join(sys.argv[3], "Hidden.ice")])
+    import T
+    server(T) if sys.argv[1] == "server" else client(T, sys.argv[4])

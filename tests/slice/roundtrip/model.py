@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""model: random Slice types from a seed: their Slice text, C servants that echo them, random values."""
+"""model: random Slice types from a seed: their Slice text, and random values."""
 
 import random
 import string
@@ -25,16 +25,6 @@ class Type:
 
     def slice(self):
         return {"proxy": "Object*"}.get(self.kind, self.name or self.kind)
-
-    def c(self):
-        if self.kind == "proxy":
-            return "Ice_ObjectPrx"
-        if self.name:
-            return "T_" + self.name + (" *" if self.kind == "class" else "")
-        return "Ice_" + self.kind.capitalize()
-
-    def by_pointer(self):
-        return self.kind in ("struct", "sequence", "dictionary", "proxy")
 
     def all_fields(self):
         return (self.base.all_fields() if self.base else []) + self.fields
@@ -186,58 +176,6 @@ class Model:
             head += " extends " + t.base.name
         fields = ["%s%s %s;" % ("" if tag is None else "optional(%d) " % tag, ft.slice(), name) for name, ft, tag in t.fields]
         return head + " { " + " ".join(fields) + " };"
-
-    # ---- C: servants that give back what they get
-
-    @staticmethod
-    def c_parameter(t, name, optional=False):
-        if t.kind == "class":
-            return "%s%s%s" % (t.c(), "const *" if optional else "", name)
-        if t.by_pointer() or optional:
-            return "const %s *%s" % (t.c(), name)
-        return "%s %s" % (t.c(), name)
-
-    def c_text(self):
-        out = ['#include "echo.h"', "static U32 room[16384];"]
-        for i, t in enumerate(self.types):
-            value = "*v" if t.by_pointer() else "v"
-            for form in self.formats(t):
-                out.append("Ice_Status T_Echo_plain%d%s(T_EchoPtr self, %s, %s *w, %s *result, const Ice_Current *current) {" % (
-                    i, form, self.c_parameter(t, "v"), t.c(), t.c()))
-                out.append("    (void)self, (void)current; *w = %s; *result = %s; return ICE_OK; }" % (value, value))
-            out.append("Ice_Status T_Echo_maybe%d(T_EchoPtr self, %s, Ice_Bool *has_w, %s *w, Ice_Bool *has_result, %s *result, "
-                       "const Ice_Current *current) {" % (i, self.c_parameter(t, "v", True), t.c(), t.c()))
-            out.append("    (void)self, (void)current; *has_w = *has_result = v != 0; if (v) *w = *result = *v; return ICE_OK; }")
-        for e in self.exceptions:
-            for form in ("Compact", "Sliced"):
-                self.c_raise(out, e, form)
-            out.append("Ice_Status T_Echo_forward%s(T_EchoPtr self, const Ice_ObjectPrx *to, T_Echo_forward%s_Exception *ex, "
-                       "const Ice_Current *current) {" % (e.name, e.name))
-            out.append("    T_EchoPrx prx = *to; (void)self, (void)current; Ice_ObjectPrx_setReplyBuffer(&prx, room, sizeof room);")
-            # The proxy stays the sender's.
-            out.append("    ex->type = T_Echo_forward%s_%s; return T_EchoPrx_forward%s(&prx, 0, ex); }" % (e.name, e.name, e.name))
-        out.append("Ice_Status T_Echo_any(T_EchoPtr self, Ice_Value *v, Ice_Value **w, Ice_Value **result, "
-                   "const Ice_Current *current) { (void)self, (void)current; *w = *result = v; return ICE_OK; }")
-        out.append("Ice_Status T_Echo_shutdown(T_EchoPtr self, const Ice_Current *current) "
-                   "{ (void)self; Ice_Communicator_shutdown(current->communicator); return ICE_OK; }")
-        return "\n".join(out) + "\n"
-
-    def c_raise(self, out, e, form):
-        op = "T_Echo_raise%s%s" % (e.name, form)
-        parameters = "".join(", " + self.c_parameter(t, name, tag is not None) for name, t, tag in e.all_fields())
-        out.append("Ice_Status %s(T_EchoPtr self%s, %s_Exception *ex, const Ice_Current *current) {" % (op, parameters, op))
-        out.append("    (void)self, (void)current; ex->type = %s_%s;" % (op, e.name))
-        if not e.preserves():  # else a servant finds it empty
-            out.append("    T_%s_init(&ex->u.%s);" % (e.name, e.name))
-        level, path = e, "ex->u.%s" % e.name
-        while level:
-            for name, t, tag in level.fields:
-                if tag is None:
-                    out.append("    %s.%s = %s%s;" % (path, name, "*" if t.by_pointer() else "", name))
-                else:
-                    out.append("    %s.has_%s = %s != 0; if (%s) %s.%s = *%s;" % (path, name, name, name, path, name, name))
-            level, path = level.base, path + ".base"
-        out.append("    return ICE_USER_EXCEPTION; }")
 
     # ---- values
 

@@ -1,8 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""peer: stock ZeroC Ice in Python. `peer.py client [minimal] PORT`, `peer.py crowd PORT` or `peer.py server` (prints its port).
+"""peer: stock ZeroC Ice in Python for Interop.ice.
 
-minimal: the server has IceC's minimal configuration."""
+peer.py client [minimal] PORT   every operation; minimal: what that run time has
+peer.py client slow PORT|ENDPOINT   the same, with fewer and smaller calls
+peer.py crowd PORT              many programs at once
+peer.py lost PORT               connections that are cut: calls fail cleanly, the next ones work
+peer.py server                  prints its port
+"""
 
 import os
 import socket
@@ -15,6 +20,11 @@ Ice.loadSlice("", [os.path.join(os.path.dirname(__file__), "Interop.ice")])
 import Interop  # noqa: E402
 
 CROWD = 20
+# By Ice_Status of IceC, which says of some more only that they are others.
+FAILURES = {2: Ice.ObjectNotExistException, 3: Ice.FacetNotExistException,
+            4: Ice.OperationNotExistException, 5: Ice.UnknownLocalException,
+            6: Ice.UnknownUserException, 7: Ice.UnknownException, 8: Ice.UnknownLocalException,
+            9: Ice.UnknownLocalException, 10: Ice.UnknownException, 13: Ice.UnknownException}
 
 
 class CallbackI(Interop.Callback):
@@ -26,46 +36,58 @@ class CallbackI(Interop.Callback):
         self.percent = percent
         self.event.set()
 
+    def ask(self, question, current):
+        return 10 * question
 
-def expect(exception, function):
+
+def expect(exception, function, *arguments):
     try:
-        function()
-    except exception:
-        return
+        function(*arguments)
+    except exception as e:
+        return e
     raise AssertionError("no " + exception.__name__)
 
 
-def client(ic, port, minimal):
-    where = ":tcp -h 127.0.0.1 -p " + port
-    for encoding in ("1.1", "1.0"):
-        base = ic.stringToProxy("service -e %s%s" % (encoding, where))
-        service = Interop.ServicePrx.checkedCast(base)
-        assert service
-        service.ice_ping()
-        if minimal:
-            expect(Ice.OperationNotExistException, service.ice_id)
-            expect(Ice.OperationNotExistException, service.ice_ids)
-        else:
-            assert service.ice_id() == "::Interop::Service"
-            assert service.ice_ids() == ["::Ice::Object", "::Interop::Service"]
-        assert service.ice_isA("::Interop::Service") and not service.ice_isA("::Interop::Other")
-        for i in range(1000):
-            assert service.add(i, -2 * i) == -i
-        assert service.add(1, 2, {"context": "is tolerated"}) == 3
-        items = [Interop.Item("n%d" % i, i - 3, Interop.Colour.valueOf(i % 3), i / 3.0) for i in range(20)]
-        back, joined = service.reverse(items)
-        assert back == items[::-1] and joined == "".join(i.name for i in items)
-        for size in (0, 1, 254, 255, 256, 8000):
-            data = bytes(i % 251 for i in range(size))
-            assert bytes(service.echo(data)) == data, size
-        expect(Ice.UnknownException, service.fail)
-        nobody = Interop.ServicePrx.uncheckedCast(ic.stringToProxy("nobody" + where))
-        expect(Ice.ObjectNotExistException, nobody.ice_ping)
-        wrong = Interop.CallbackPrx.uncheckedCast(base)
-        expect(Ice.OperationNotExistException, lambda: wrong.progress(1))
-        missing = Ice.ObjectNotExistException if minimal else Ice.FacetNotExistException
-        expect(missing, base.ice_facet("other").ice_ping)
-        expect(Ice.ObjectNotExistException, base.ice_identity(Ice.Identity("service", "other")).ice_ping)
+def calls(base, minimal, slow):
+    """Calls what both run times serve, in the proxy's encoding."""
+    service = Interop.ServicePrx.checkedCast(base)
+    assert service
+    service.ice_ping()
+    if minimal:
+        expect(Ice.OperationNotExistException, service.ice_id)
+        expect(Ice.OperationNotExistException, service.ice_ids)
+    else:
+        assert service.ice_id() == "::Interop::Service"
+        assert service.ice_ids() == ["::Ice::Object", "::Interop::Service"]
+    assert service.ice_isA("::Interop::Service") and not service.ice_isA("::Interop::Other")
+    for i in range(5 if slow else 1000):
+        assert service.add(i, -2 * i) == -i
+    assert service.add(1, 2, {"context": "is tolerated"}) == 3
+    items = [Interop.Item("n%d" % i, i - 3, Interop.Colour.valueOf(i % 3), i / 3.0)
+             for i in range(20)]
+    assert service.reverse(items) == (items[::-1], "".join(i.name for i in items))
+    for size in (0, 254, 255, 256, 1000) if slow else (0, 1, 254, 255, 256, 4000, 8000, 8092):
+        data = bytes(i % 251 for i in range(size))
+        assert bytes(service.echo(data)) == data, size
+    service.fail(0)
+    e = expect(Interop.Failure, service.fail, 1)
+    assert e.reason == "as asked"
+    for status, exception in FAILURES.items():
+        if minimal and status == 3:
+            continue
+        e = expect(exception, service.fail, status)
+        if status <= 4:
+            assert e.id.name == "service" and e.operation == "fail"
+    expect(Ice.ObjectNotExistException, base.ice_identity(Ice.Identity("nobody", "")).ice_ping)
+    wrong = Interop.CallbackPrx.uncheckedCast(base)
+    expect(Ice.OperationNotExistException, wrong.progress, 1)
+    missing = Ice.ObjectNotExistException if minimal else Ice.FacetNotExistException
+    expect(missing, base.ice_facet("other").ice_ping)
+    other = base.ice_identity(Ice.Identity("service", "other"))
+    expect(Ice.ObjectNotExistException, other.ice_ping)
+
+
+def oneways(service, minimal):
     before = service.notifications()
     oneway = Interop.ServicePrx.uncheckedCast(service.ice_oneway())
     for _ in range(10):
@@ -75,16 +97,91 @@ def client(ic, port, minimal):
         for _ in range(10):
             batch.notify("hello")
         batch.ice_flushBatchRequests()
-    # batch and oneway proxies have connections of the same endpoint: order holds
+    # Batch and one-way proxies have connections of the same endpoint: order holds.
     assert service.notifications() == before + (10 if minimal else 20), service.notifications()
-    adapter = ic.createObjectAdapterWithEndpoints("Callback", "tcp -h 127.0.0.1")
-    callback = CallbackI()
-    proxy = Interop.CallbackPrx.uncheckedCast(adapter.add(callback, ic.stringToIdentity("callback")))
+
+
+def limits(base, encoding):
+    """Sends what is refused: the caller learns it, and the next call works."""
+    service = Interop.ServicePrx.uncheckedCast(base)
+    # Longer than a message may be: the server closes, and lives.
+    expect(Ice.LocalException, service.echo, bytes(9000))
+    # An idempotent operation called as a normal one.
+    none = b"\x06\0\0\0\x01" + bytes([int(encoding[2])])
+    expect(Ice.UnknownLocalException, service.ice_invoke, "add", Ice.OperationMode.Normal, none)
+    # A compressed request; the connection is closed in good order.
+    compressed = service.ice_compress(True).ice_connectionId("z" + encoding)
+    compressed = Interop.ServicePrx.uncheckedCast(compressed)
+    expect(Ice.CloseConnectionException, compressed.echo, bytes(4000))
+    assert service.echo(b"still there") == b"still there"
+
+
+def full(ic, where, encoding, slow):
+    """Calls what only the full run time serves."""
+    base = ic.stringToProxy("tester -e %s%s" % (encoding, where))
+    t = Interop.TesterPrx.checkedCast(base)
+    assert t.context("who", {"a": "b", "who": "me"}) == "me" and t.context("who") == "-"
+    with_context = Interop.TesterPrx.uncheckedCast(t.ice_context({"who": "proxy"}))
+    assert with_context.context("who") == "proxy"
+    side = Interop.TesterPrx.checkedCast(base, "side")
+    assert side.whoAmI() == "/tester -f side mode 0", side.whoAmI()
+    other = Interop.TesterPrx.uncheckedCast(base.ice_identity(Ice.Identity("whoever", "any")))
+    assert other.whoAmI() == "any/whoever -f  mode 0"
+    expect(Ice.FacetNotExistException, base.ice_facet("none").ice_ping)
+    # Asynchronous calls, answered later and in the reverse order; others are served meanwhile.
+    sent = (1, "a"), (2, Ice.Unset), (-3, "c")
+    futures = [t.laterAsync(Interop.Node(number), text) for number, text in sent]
+    assert t.context("meanwhile") == "-"
+    assert t.release() == 3
+    for future, (number, text) in zip(futures[:2], sent):
+        node, same = future.result()
+        assert node.id == number and node.next is node
+        assert same == (text if encoding == "1.1" else Ice.Unset)
+    e = expect(Interop.Worse, futures[2].result)
+    assert e.reason == "negative" and e.how == 7
+    # The servant calls back before it answers.
+    adapter = ic.createObjectAdapterWithEndpoints("Callback" + encoding, "tcp -h 127.0.0.1")
+    callback = Interop.CallbackPrx.uncheckedCast(adapter.addWithUUID(CallbackI()))
     adapter.activate()
-    service.work(proxy)
-    assert callback.event.wait(30) and callback.percent == 100
+    assert slow or t.callBack(callback, 5) == 100
+    for text in ("x @ adapter", "y -s", "u:udp -h h -p 7", "s:ssl -h h -p 8:ws -h h -p 9",
+                 "cat/o -f f -o:tcp -h 127.0.0.1 -p 9:opaque -t 99 -e 1.0 -v QUI="):
+        proxy = ic.stringToProxy(text)  # 1.0 does not carry a proxy's own encoding
+        sent = proxy.ice_encodingVersion(base.ice_getEncodingVersion())
+        assert t.same(text, proxy, "")[1] == sent, text
+    # A class that is called, and what it implements.
+    square = Interop.SquarePrx.checkedCast(ic.stringToProxy("square" + where))
+    names = ["::Ice::Object"] + ["::Interop::" + n for n in ("Labelled", "Named", "Square")]
+    assert square.ice_ids() == names and square.ice_id() == names[-1]
+    assert not Interop.TesterPrx.checkedCast(square)
+    assert square.area(3) == 9 and Interop.LabelledPrx.checkedCast(square).label() == "square"
+    assert expect(Interop.Failure, square.area, -1).reason == "negative"
+
+
+def client(ic, port, minimal, slow):
+    where = port if port.startswith(":") else ":tcp -h 127.0.0.1 -p " + port
+    for encoding in ("1.1", "1.0"):
+        base = ic.stringToProxy("service -e %s%s" % (encoding, where))
+        calls(base, minimal, slow)
+        if not minimal:
+            full(ic, where, encoding, slow)
+        if not minimal and not slow:
+            limits(base, encoding)
+    service = Interop.ServicePrx.checkedCast(base)
+    oneways(service, minimal)
+    if ":tcp" not in where:  # a vehicle is not shut down: who would close the connection with us?
+        print("peer: all calls as expected")
+        return
+    if not slow:
+        adapter = ic.createObjectAdapterWithEndpoints("Callback", "tcp -h 127.0.0.1")
+        callback = CallbackI()
+        proxy = Interop.CallbackPrx.uncheckedCast(adapter.addWithUUID(callback))
+        adapter.activate()
+        service.work(proxy)
+        assert callback.event.wait(30) and callback.percent == 100
     # Garbage, and a client that leaves in mid-message, disturb nobody else.
-    for rubbish in (b"GET / HTTP/1.0\r\n\r\n", b"IceP\x01\x00\x01\x00\x00\x00\xff\xff\xff\x7f", b"IceP\x01\x00"):
+    for rubbish in (b"GET / HTTP/1.0\r\n\r\n", b"IceP\x01\x00\x01\x00\x00\x00\xff\xff\xff\x7f",
+                    b"IceP\x01\x00"):
         s = socket.create_connection(("127.0.0.1", int(port)))
         s.sendall(rubbish)
         s.close()
@@ -123,6 +220,29 @@ def crowd(port):
     print("peer: %d clients at once were served" % CROWD)
 
 
+def lost(ic, port):
+    """The relay cuts every connection after some bytes; a call either answers or fails as lost."""
+    base = ic.stringToProxy("service:tcp -h 127.0.0.1 -p " + port).ice_invocationTimeout(60000)
+    service = Interop.ServicePrx.uncheckedCast(base)
+    answered = failed = 0
+    for i in range(60):
+        try:
+            assert len(service.echo(bytes(200))) == 200
+            answered += 1
+        except (Ice.ConnectionLostException, Ice.CloseConnectionException):
+            failed += 1
+    assert answered >= 20 and failed >= 3, (answered, failed)
+    while True:  # the connection of the good-bye may be cut as well
+        try:
+            service.shutdown()
+            break
+        except (Ice.ConnectionLostException, Ice.CloseConnectionException):
+            pass
+        except Ice.ConnectFailedException:
+            break
+    print("peer: %d calls answered, %d lost with their connection" % (answered, failed))
+
+
 class ServiceI(Interop.Service):
     def __init__(self):
         self.count = 0
@@ -142,14 +262,76 @@ class ServiceI(Interop.Service):
     def notifications(self, current):
         return self.count
 
-    def fail(self, current):
-        raise RuntimeError("as asked")
+    def fail(self, status, current):
+        if status == 1:
+            raise Interop.Failure("as asked")
+        if 2 <= status <= 4:
+            raise FAILURES[status](Ice.Identity("n", "c"), "f", "op")
+        if status:
+            raise Ice.MarshalException("as asked") if status == 5 else RuntimeError("as asked")
 
     def work(self, callback, current):
         pass
 
     def shutdown(self, current):
         current.adapter.getCommunicator().shutdown()
+
+
+class TesterI(Interop.Tester):
+    def __init__(self):
+        self.waiting = []
+
+    def context(self, key, current):
+        return current.ctx.get(key, "-")
+
+    def whoAmI(self, current):
+        return "%s/%s -f %s mode %d" % (current.id.category, current.id.name, current.facet,
+                                        current.mode.value)
+
+    def callBack(self, callback, times, current):
+        # Over the caller's own connection: it may listen nowhere.
+        bound = current.con.createProxy(callback.ice_getIdentity())
+        return sum(Interop.CallbackPrx.uncheckedCast(bound).ask(i) for i in range(times))
+
+    def later(self, v, text, current):
+        self.waiting.append((v, text, Ice.Future()))
+        return self.waiting[-1][2]
+
+    def release(self, current):
+        waiting, self.waiting = self.waiting, []
+        for node, text, future in reversed(waiting):
+            node.next = node
+            if node.id < 0:
+                future.set_exception(Interop.Worse("negative", 7))
+            else:
+                future.set_result((node, text))
+        return len(waiting)
+
+    def same(self, text, proxy, printed, current):
+        ic = current.adapter.getCommunicator()
+        try:
+            own = ic.stringToProxy(text)
+        except Ice.LocalException:
+            return not printed, proxy
+        carried = own
+        if current.encoding == Ice.Encoding_1_0:  # it does not carry a proxy's own
+            carried = own.ice_encodingVersion(current.encoding)
+        return proxy == carried and printed == ic.proxyToString(own), proxy
+
+
+class OlderI(Interop.Older):
+    def skip(self, required, text, current):
+        return text
+
+
+class SquareI(Interop.SquareDisp):
+    def label(self, current):
+        return "square"
+
+    def area(self, side, current):
+        if side < 0:
+            raise Interop.Failure("negative")
+        return side * side
 
 
 class LocatorI(Ice.Locator):
@@ -174,21 +356,27 @@ class LocatorI(Ice.Locator):
 
 def server(ic):
     adapter = ic.createObjectAdapterWithEndpoints("Adapter", "tcp -h 127.0.0.1")
-    adapter.add(ServiceI(), ic.stringToIdentity("service"))
-    adapter.add(LocatorI(adapter), ic.stringToIdentity("locator"))
+    tester = TesterI()
+    for name, servant in (("service", ServiceI()), ("tester", tester), ("square", SquareI()),
+                          ("older", OlderI()), ("locator", LocatorI(adapter))):
+        adapter.add(servant, ic.stringToIdentity(name))
+    adapter.addFacet(tester, ic.stringToIdentity("tester"), "side")
+    adapter.addDefaultServant(tester, "any")
     adapter.activate()
     print(adapter.getPublishedEndpoints()[0].getInfo().port, flush=True)
     ic.waitForShutdown()
 
 
-properties = Ice.createProperties()
-properties.setProperty("Ice.Warn.Dispatch", "0")
 data = Ice.InitializationData()
-data.properties = properties
-with Ice.initialize(data) as communicator:
-    if sys.argv[1] == "client":
-        client(communicator, sys.argv[-1], "minimal" in sys.argv)
-    elif sys.argv[1] == "crowd":
-        crowd(sys.argv[-1])
+data.properties = Ice.createProperties()
+for setting in ("Warn.Dispatch=0", "Warn.Connections=0", "RetryIntervals=-1",
+                "ThreadPool.Server.Size=4", "ThreadPool.Client.Size=2",
+                "Plugin.IceSSL=IceSSL:createIceSSL"):
+    data.properties.setProperty(*("Ice." + setting).split("="))
+with Ice.initialize(sys.argv, data) as communicator:
+    role, last = sys.argv[1], sys.argv[-1]
+    if role == "client":
+        client(communicator, last, "minimal" in sys.argv, "slow" in sys.argv)
     else:
-        server(communicator)
+        {"crowd": lambda: crowd(last), "lost": lambda: lost(communicator, last),
+         "server": lambda: server(communicator)}[role]()

@@ -41,8 +41,12 @@ class Capture:
 
 async def connection(reader, writer):
     """Passes bytes on from either side until one ends, or the bytes are through."""
+    try:
+        server_reader, server_writer = await asyncio.open_connection("127.0.0.1", words.port)
+    except OSError:  # it listens no longer
+        writer.close()
+        return
     capture = Capture(writer.get_extra_info("peername")[1])
-    server_reader, server_writer = await asyncio.open_connection("127.0.0.1", words.port)
     passed = 0
 
     async def pump(side, source, target):

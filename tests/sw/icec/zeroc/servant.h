@@ -5,12 +5,9 @@
 #ifndef ZEROC_SERVANT_H
 #define ZEROC_SERVANT_H
 
-#include "icec.h"
+#include "serve.h"
 
 #include <string.h>
-
-/* Adds the suite's servants; each suite has its own. */
-Ice_Status Suite_serve(Ice_ObjectAdapterPtr adapter);
 
 /* Returns `count` elements of `a`, then those of `b`, in the arena; 0: no room. */
 void* Suite_joined(const Ice_Current* current, const void* a, Ice_Int countA, const void* b,

@@ -20,6 +20,7 @@ import TestHelper  # noqa: E402
 def createTestProperties(self, args=[], create=TestHelper.TestHelper.createTestProperties):
     made = create(self, list(args))
     made.setProperty("Ice.Default.EncodingVersion", encoding)
+    made.setProperty("Ice.ThreadPool.Server.SizeMax", "3")  # an operation may call back
     return made
 
 

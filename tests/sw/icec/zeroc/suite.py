@@ -5,8 +5,8 @@
 suite.py FOLDER SUITE RUN [--Ice.Property=value...] ENDPOINT|PORT
 
 A check is a call of the client's test(), true or not. The client stops at its first failure; here each statement goes on by
-itself, so that one failure hides no other one. A failure must stand in by_design.txt, with a reason, and the number of checks
-passed may not fall below the one in expected.txt.
+itself, so that one failure hides no other one. expected.toml has the reason of each failure, and the
+number of checks that must pass.
 """
 import argparse
 import ast
@@ -16,7 +16,7 @@ import importlib.util
 import os
 import sys
 import threading
-
+import tomllib
 
 import Ice
 
@@ -123,16 +123,18 @@ class Finder(importlib.abc.MetaPathFinder):
         return importlib.util.spec_from_file_location(name, file, loader=Loader(file)) if os.path.exists(file) else None
 
 
-def designed(run):
-    """{place: reason} of by_design.txt for this run."""
-    found = {}
-    for line in open(os.path.join(OWN, "by_design.txt")):
-        if line.strip() and not line.startswith("#"):
-            runs, places, reason = line.split(None, 2)
+def expected(run):
+    """Returns how many checks must pass in this run, and {place: reason} of those that need not."""
+    with open(os.path.join(OWN, "expected.toml"), "rb") as file:
+        known = tomllib.load(file)
+    wanted = [n for runs, n in known["passed"].items() if fnmatch.fnmatch(run, runs)]
+    reasons = {}
+    for reason, places in known["by_design"].items():
+        for runs, place in (p.split() for p in places):
+            file, lines = place.split(":")
             if fnmatch.fnmatch(run, runs):
-                file, lines = places.split(":")
-                found.update(("%s:%s" % (file, n), reason.strip()) for n in lines.split(","))
-    return found
+                reasons.update((f"{file}:{line}", reason) for line in lines.split(","))
+    return wanted[0], reasons
 
 
 def main():
@@ -168,7 +170,7 @@ def main():
     except Exception as error:
         failed("Client.py:0", error)
 
-    reasons = designed(a.run)
+    wanted, reasons = expected(a.run)
     byReason = {}
     unknown = 0
     print()
@@ -181,8 +183,6 @@ def main():
             byReason.setdefault(reason, []).append(place)
     for reason, places in byReason.items():
         print("by design, %s: %s" % (reason, " ".join(places)))
-    expected = dict(line.split() for line in open(os.path.join(OWN, "expected.txt")) if not line.startswith("#"))
-    wanted = int(expected.get(a.run, 0))
     print("%s: %d checks passed (%d expected), %d by design, %d failed"
           % (a.run, passed, wanted, len(failures) - unknown, unknown))
     sys.stdout.flush()

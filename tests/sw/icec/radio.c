@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * radio: a suite's servants as the firmware of the simulated UAV.
+ * radio: a test's servants as the firmware of the simulated UAV.
  */
 #include "paper.h"
-#include "servant.h"
+#include "serve.h"
 #include "ucos_ii.h"
 
 void appMainTask(void* argument) {

@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""bridge: bridge.py HEADER... >bridged.c writes servants whose operations call Bridge_far.
+
+The headers are slice2c's. The servant of an interface passes each operation's parameters to the
+proxy of the same interface, and gives back what returns: results, status and exception.
+"""
+import re
+import sys
+
+SERVANT = re.compile(r"^typedef struct (\w+) \{\n    Ice_Object base;", re.M)
+OPERATION = re.compile(r"^Ice_Status (\w+)\((\w+ self)((?:, [^;]*)?), const Ice_Current \*current\);")
+CALL = re.compile(r"^Ice_Status (\w+Prx_\w+)\(\w+ self((?:, [^;]*)?)\);")
+
+
+def name_of(parameter):
+    return re.search(r"\w+$", parameter)[0]
+
+
+def operation(name, self, parameters, calls, servants):
+    """Writes an operation. What only the call gives back is sent later: it answers asynchronously."""
+    owner = max((s for s in servants if name.startswith(s + "_")), key=len)
+    call = re.sub("(Disp)?$", "Prx", owner, count=1) + name[len(owner):]
+    own = parameters.split(", ")[1:]
+    later = calls.get(call, parameters).split(", ")[len(own) + 1:]
+    given = ["(const void*)" * ("*const *" in p) + name_of(p) for p in own]
+    print(f"\nIce_Status {name}({self}{parameters}, const Ice_Current* current) {{")
+    for result in later:
+        print(f"    {result.replace('*', '', 1)};")
+    print("    Ice_ObjectPrx far = Bridge_far;\n    Ice_Status status;")
+    print("    (void)self, (void)current;")
+    arguments = ["&far", *given, *("&" + name_of(p) for p in later)]
+    print(f"    status = {call}({', '.join(arguments)});")
+    if later:
+        results = ", ".join(["&reply", *(name_of(p) for p in later if name_of(p) != "ex")])
+        answer = [f"status == ICE_OK ? {name}_response({results})"]
+        answer += [f"{name}_exception(&reply, &ex)" for p in later if name_of(p) == "ex"]
+        print("    if (status <= ICE_USER_EXCEPTION) {\n        Ice_Reply reply;\n"
+              "        Ice_Current_later(current, &reply);\n"
+              f"        (void)({' : '.join((answer + ['ICE_OK'])[:2])});\n"
+              "        return ICE_LATER;\n    }")
+    print("    return status;\n}")
+
+
+def main():
+    servants, operations, calls = [], {}, {}
+    for header in sys.argv[1:]:
+        print(f'#include "{header}"')
+        text = open(header).read()
+        servants += SERVANT.findall(text)
+        for statement in re.findall(r"^Ice_Status [^;]*;", text, re.M):
+            flat = " ".join(statement.split())
+            if match := OPERATION.match(flat):
+                operations[match[1]] = match.groups()
+            elif match := CALL.match(flat):
+                calls[match[1]] = match[2]
+    print('#include "bridge.h"')
+    for each in operations.values():
+        operation(*each, calls, servants)
+    print("\nIce_ObjectPtr Bridge_servant(int number) {\n    switch (number) {")
+    for number, servant in enumerate(servants):
+        print(f"    case {number}: {{\n        static {servant} v;\n        {servant}_init(&v);\n"
+              "        return (Ice_ObjectPtr)&v;\n    }")
+    print("    default:\n        return 0;\n    }\n}")
+
+
+main()

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * serve: the servants of a test, for server.c over tcp and radio.c over the air.
+ */
+#ifndef SERVE_H
+#define SERVE_H
+
+#include "icec.h"
+
+/* Adds the servants to an adapter. */
+Ice_Status Suite_serve(Ice_ObjectAdapterPtr adapter);
+/* Adds those of Interop.ice that need the full run time. */
+Ice_Status Tester_serve(Ice_ObjectAdapterPtr adapter);
+/* Does what is due between two events. */
+void Suite_work(void);
+
+#endif

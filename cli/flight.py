@@ -226,9 +226,13 @@ def write(values, build):
 
 
 def last_span(out):
-    """FROM= and TO= of a flight's end, from its last checkpoint at least 10 ms before it."""
+    """FROM= and TO= of a flight's end, from its last checkpoint at least 10 ms before it; None if
+    the recording is cut, as by a full disk."""
     last = before = finish = 0.0
-    for line in (Path(out) / "flight.jsonl").read_text().split("\n"):
+    recording = (Path(out) / "flight.jsonl").read_text()
+    if not recording.endswith("\n"):
+        return None
+    for line in recording.split("\n"):
         at = re.search(r'"ns":(\d+)', line)
         finish = int(at[1]) / 1e9 if at else finish
         if '"digest"' in line:

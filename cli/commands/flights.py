@@ -128,8 +128,11 @@ def mission(values, build, held):
         signal_ended = f": signal {status - 128} ended the simulator, or the ground's program."
         what = signal_ended if status > 128 else f" (exit status {status})."
         text = f"The mission failed{what}\n"
-        if flown() != before:
-            text += f"Its end as a waveform: make run REPLAY='{out}' {flight.last_span(out)}\n"
+        span = flight.last_span(out) if flown() != before else None
+        if flown() != before and not span:
+            text += f"It cannot be flown again: {out}/flight.jsonl is cut, as by a full disk.\n"
+        if span:
+            text += f"Its end as a waveform: make run REPLAY='{out}' {span}\n"
             if values.cpu == "m3":
                 text += f"Its end, and backwards from there: make gdb REPLAY='{out}'\n"
         sys.stderr.write(text)

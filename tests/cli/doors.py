@@ -307,6 +307,13 @@ class Lists(unittest.TestCase):
                       flight.wrong({name: value
                                     for name, value in good.items() if name != "seed"}))
 
+    def test_a_recording_that_is_cut_has_no_span(self):
+        with tempfile.TemporaryDirectory() as work:
+            for text, span in (('{"ns":0,"digest":1}\n{"ns":3000000000,"down":2}\n',
+                                "FROM=0.000 TO=3.000"), ('{"ns":0,"digest":1}\n{"ns":30', None)):
+                Path(work, "flight.jsonl").write_text(text)
+                self.assertEqual(flight.last_span(work), span)
+
     def test_a_long_subject_is_refused(self):
         with tempfile.TemporaryDirectory() as work:
             for length, status in ((72, 0), (73, 1)):

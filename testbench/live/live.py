@@ -87,12 +87,16 @@ def blocks_by_slot(registers):
 
 def register(block, word, value, seen):
     """Returns a word with its name and its fields; the fields of EVENT and MASK are the block's
-    events."""
+    events. What was written to EVENT is no state: each one in it has cleared an event."""
     described = next((r for r in block.get("registers", []) if r["word"] == word), {})
     fields = [{"name": f["name"], "value": value >> f["lsb"] & (1 << f["width"]) - 1, "doc": f.get("doc", "")}
               for f in described.get("fields", [])]
-    if word in (1, 2):
-        fields += [{"name": e["name"], "value": value >> e["bit"] & 1, "doc": e.get("doc", "")} for e in block.get("events", [])]
+    clears = word == 1 and seen == WRITTEN
+    for event in block.get("events", []) if word in (1, 2) else []:
+        bit = value >> event["bit"] & 1
+        if bit or not clears:
+            fields.append({"name": event["name"], "value": "cleared" if clears else bit,
+                           "doc": event.get("doc", "")})
     common = ("ID", "EVENT", "MASK")
     name = described.get("name", common[word] if word < 3 else f"word {word}")
     return {"word": word, "value": value, "written": seen == WRITTEN, "name": name, "doc": described.get("doc", ""), "fields": fields}

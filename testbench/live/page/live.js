@@ -55,7 +55,7 @@ function showAir(air) {
 function showCalls(calls) {
     const number = (value, unit) => [value === undefined ? '' : value + unit, 'n'];
     $('calls').replaceChildren(...calls.map(c => row([
-        [c.at.toFixed(3) + ' s', 'n'], [c.who], [c.what], number(c.simulated_ms, ' ms'),
+        [(c.ns === undefined ? c.at : c.ns / 1e9).toFixed(3) + ' s', 'n'], [c.who], [c.what], number(c.simulated_ms, ' ms'),
         number(c.bytes_up, ''), number(c.bytes_down, '')])));
 }
 
@@ -112,7 +112,7 @@ function showSlots(slots) {
             const line = element('tr', undefined, 'fields'), cell = element('td');
             cell.colSpan = 3;
             for (const f of w.fields) {
-                const field = element('span', `${f.name} ${f.value}`, f.value ? 'set' : '');
+                const field = element('span', `${f.name} ${f.value}`, f.value && f.value !== 'cleared' ? 'set' : '');
                 field.title = f.doc;
                 cell.append(field, ' ');
             }

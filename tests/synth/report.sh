@@ -26,6 +26,7 @@ fail() {
 cd "$work" # names of files are relative, since they are part of a design's identity
 project=project
 cp -r "$source/tests/synth/project" "$project"
+mkdir -p "$project/bus" "$project/ip"
 cp -r "$source/synth/yosys" "$source/synth/report" "$project/synth/"
 mkdir gen out
 [ "$case" = counts ] || cp -r "$kept" out/cache

@@ -1,8 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# fuzz: runs a libFuzzer program on a number of inputs, from SEED (default 1). Usage: fuzz.sh program runs seeds|- option...
-# seeds: a folder of inputs, or a file with one a line in hex ("#" begins a comment). FUZZ=10: ten times as many inputs.
+# fuzz: runs a libFuzzer program on a number of inputs, from SEED (default 1).
+# Usage: fuzz.sh program runs seeds|- option...
+# seeds: a folder of inputs, or a file with one a line in hex ("#" begins a comment). FUZZ=10: ten
+# times as many inputs.
 # It prints an input that fails.
 set -eu
 program=$1 runs=$(($2 * ${FUZZ:-1})) seeds=$3
@@ -16,13 +18,15 @@ if [ -f "$seeds" ]; then
     mkdir "$work/seeds"
     python3 -c 'import sys
 for number, line in enumerate(sys.stdin):
-    open(f"{sys.argv[1]}/{number}", "wb").write(bytes.fromhex(line.partition("#")[0]))' "$work/seeds" <"$seeds"
+    line = line.partition("#")[0]
+    open(f"{sys.argv[1]}/{number}", "wb").write(bytes.fromhex(line))' "$work/seeds" <"$seeds"
     seeds=$work/seeds
 fi
-# libFuzzer tries values that the program compares, addresses among them: with fixed addresses, where the
-# system allows them, the inputs are the same each time.
+# libFuzzer tries values that the program compares, addresses among them: with fixed addresses,
+# where the system allows them, the inputs are the same each time.
 alike=$(setarch -R true 2>/dev/null && echo "setarch -R" || :)
-$alike "$program" -seed="${SEED:-1}" -runs="$runs" -artifact_prefix="$work/" "$@" "$work/found" $seeds >"$work/log" 2>&1 || {
+$alike "$program" -seed="${SEED:-1}" -runs="$runs" -artifact_prefix="$work/" "$@" \
+    "$work/found" $seeds >"$work/log" 2>&1 || {
     cat "$work/log" >&2
     for input in "$work"/crash-* "$work"/oom-* "$work"/timeout-*; do
         [ -f "$input" ] || continue

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# vhdl_test: core GHDL vectors-program folder file.vhd ...   Runs entity <core>_tb by GHDL; the first failure stops it.
+# vhdl_test: core GHDL vectors-program folder file.vhd ...   Runs entity <core>_tb by GHDL; the
+# first failure stops it.
 # vectors-program: gets the folder and SEED and writes the test bench's input there.
 # COVERAGE_DIR: folder for GHDL's file of lines that ran.
 set -eu
@@ -13,7 +14,8 @@ mkdir -p "$work"
 cd "$work"
 # numeric_std would warn of every value that is undefined before the pipeline is full.
 status=0
-"$ghdl" --elab-run --std=08 --workdir="$work" ${COVERAGE_DIR:+--coverage} "${core}_tb" --assert-level=error --ieee-asserts=disable || status=$?
+"$ghdl" --elab-run --std=08 --workdir="$work" ${COVERAGE_DIR:+--coverage} "${core}_tb" \
+    --assert-level=error --ieee-asserts=disable || status=$?
 [ $status = 0 ] || echo "$core: vectors of SEED=${SEED:-1}"
 [ -z "${COVERAGE_DIR:-}" ] || mv coverage-*.json "$COVERAGE_DIR/$core-vhdl.json"
 exit $status

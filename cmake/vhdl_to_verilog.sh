@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# vhdl_to_verilog: GHDL work-folder entity output.v file.vhd ...   A latch in the result is an error.
+# vhdl_to_verilog: GHDL work-folder entity output.v file.vhd ...   A latch in the result is an
+# error.
 # The files come in any order. VHDL_LIBRARY: their library, if they refer to themselves by its name.
 # VHDL_GENERICS: "-gNAME=value ..." of the entity.
 
@@ -20,7 +21,8 @@ rm -f "$work"/*.cf
     echo "/* verilator lint_off UNUSEDSIGNAL */ // a generated netlist names what nobody uses"
     echo "/* verilator lint_off DECLFILENAME */ // all entities of a core are in one file"
     # shellcheck disable=SC2086 # a list of words
-    "$ghdl" --synth --std=08 --work="$library" --workdir="$work" ${VHDL_GENERICS:-} --out=verilog "$entity" 2>"$work/messages" &&
+    "$ghdl" --synth --std=08 --work="$library" --workdir="$work" ${VHDL_GENERICS:-} \
+        --out=verilog "$entity" 2>"$work/messages" &&
         echo "/* verilator lint_on UNUSEDSIGNAL */" &&
         echo "/* verilator lint_on DECLFILENAME */"
 } >"$output.tmp" || {
@@ -28,11 +30,13 @@ rm -f "$work"/*.cf
     exit 1
 }
 # Other entities get this one's name as prefix, since another core may use the same library.
-sed -n 's/^module \([A-Za-z0-9_]*\).*/\1/p' "$output.tmp" | grep -v "^$entity" >"$work/others" || true
+sed -n 's/^module \([A-Za-z0-9_]*\).*/\1/p' "$output.tmp" |
+    grep -v "^$entity" >"$work/others" || true
 while read -r other; do
     sed -i "s/^\(module \|  \)$other\b/\1${entity}_$other/" "$output.tmp"
 done <"$work/others"
-yosys -q -p "read_verilog $output.tmp; hierarchy -top $entity; proc; select -assert-none t:\$dlatch t:\$_DLATCH_*" \
+yosys -q -p "read_verilog $output.tmp; hierarchy -top $entity; proc
+    select -assert-none t:\$dlatch t:\$_DLATCH_*" \
     >"$work/yosys.log" 2>&1 || {
     cat "$work/yosys.log" >&2
     echo "vhdl_to_verilog: $entity has latches, or is not valid Verilog" >&2

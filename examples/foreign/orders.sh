@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# orders: folder-of-a-core...   Tests these cores, builds the chip of cores.list in three orders (as listed, backwards, shuffled by
-# SEED), and flies each: every core is called from Python by radio. CHIP=1: also prints the cost of each in the listed chip.
+# orders: folder-of-a-core...   Tests these cores, builds the chip of cores.list in three orders (as
+# listed, backwards, shuffled by SEED), and flies each: every core is called from Python by radio.
+# CHIP=1: also prints the cost of each in the listed chip.
 set -eu
-case ${1:-} in '' | -h | --help) sed -n '3,4s/^# //p' "$0" && exit 0 ;; esac
+case ${1:-} in '' | -h | --help) sed -n '3,5s/^# //p' "$0" && exit 0 ;; esac
 here=$(cd "$(dirname "$0")" && pwd)
 cd "$here/../.."
 source=$PWD build=build/foreign jobs=${JOBS:-$(nproc)} seed=${SEED:-1}
@@ -18,29 +19,37 @@ mkdir -p "$build"
 echo "1 servo.fault_i 0" >"$build/pins" # the simulator then logs the outputs
 sed 's/#.*//; /^ *$/d' "$here/cores.list" >"$build/listed.list"
 tac "$build/listed.list" >"$build/backwards.list"
-awk -v seed="$seed" 'BEGIN { srand(seed) } { print rand() "\t" $0 }' "$build/listed.list" | sort | cut -f2- >"$build/shuffled.list"
+awk -v seed="$seed" 'BEGIN { srand(seed) } { print rand() "\t" $0 }' "$build/listed.list" |
+    sort | cut -f2- >"$build/shuffled.list"
 for order in backwards shuffled listed; do
     echo "$order: $(cut -d' ' -f1 "$build/$order.list" | tr '\n' ' ')"
-    cmake -S . -B "$build" -G Ninja "-DROOMS=bus;slice;sw;hdl;ip;testbench;synth" -DCLK_HZ=2000000 "-DCORES=$source/$build/$order.list" \
-        "-DFOREIGN_CORES=$source/build/foreign-cores" "-DCORE_FOLDERS=${folders#;}" >"$build/log" || { cat "$build/log" && exit 1; }
+    cmake -S . -B "$build" -G Ninja "-DROOMS=bus;slice;sw;hdl;ip;testbench;synth" -DCLK_HZ=2000000 \
+        "-DCORES=$source/$build/$order.list" "-DCORE_FOLDERS=${folders#;}" \
+        "-DFOREIGN_CORES=$source/build/foreign-cores" >"$build/log" ||
+        { cat "$build/log" && exit 1; }
     # shellcheck disable=SC2046,SC2086 # lists of words
     [ $order != backwards ] || {
         ninja -C "$build" -j "$jobs" --quiet $(printf 'test_ip_%s ' $names)
-        ctest --test-dir "$build" --output-on-failure --no-tests=error -R "^test_ip_($(echo $names | tr ' ' '|'))[.]"
+        ctest --test-dir "$build" --output-on-failure --no-tests=error \
+            -R "^test_ip_($(echo $names | tr ' ' '|'))[.]"
     }
     ninja -C "$build" -j "$jobs" --quiet vehicle
     # shellcheck disable=SC2086 # a list of words
-    "$build/testbench/sim/icesoc-sim" --size 96x64 --image "$IMAGE" --seed "$seed" --pins "$build/pins" --out "$build/flight" --guard 20 -- \
-        /usr/bin/python3 "$here/call.py" '{device}' '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" \
+    "$build/testbench/sim/icesoc-sim" --size 96x64 --image "$IMAGE" --seed "$seed" --guard 20 \
+        --pins "$build/pins" --out "$build/flight" -- /usr/bin/python3 "$here/call.py" \
+        '{device}' '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" \
         sw/hw/registers/Registers.ice $slices
     # Servos' frames of 20 ms, with pulses of 1.5 ms on pin 2, as the pins had them.
-    awk '$2 == "servo.pwm_o" && $3 == 4 { frames += up && $1 - up > 19.999 && $1 - up < 20.001; up = $1 }
-         $2 == "servo.pwm_o" && $3 == 0 && up { pulses += $1 - up > 1.499 && $1 - up < 1.501; all++ }
-         END { printf "servo: %d pulses, %d of 1.5 ms, %d frames of 20 ms at the pins\n", all, pulses, frames
+    awk '$2 != "servo.pwm_o" { next }
+         $3 == 4 { frames += up && $1 - up > 19.999 && $1 - up < 20.001; up = $1 }
+         $3 == 0 && up { pulses += $1 - up > 1.499 && $1 - up < 1.501; all++ }
+         END { printf "servo: %d pulses, %d of 1.5 ms, %d frames of 20 ms at the pins\n",
+                   all, pulses, frames
                exit pulses < 5 || pulses != all || frames < all - 2 }' "$build/flight/pins.log"
 done
 [ -z "${CHIP:-}" ] || {
     ninja -C "$build" -j "$jobs" --quiet synth_inputs
     # shellcheck disable=SC2046,SC2086 # lists of words
-    "$build/synth/utilisation" --generated "$build/gen" --output "$build/report" --jobs "$jobs" --design soc $(printf -- '--core %s ' $names)
+    "$build/synth/utilisation" --generated "$build/gen" --output "$build/report" --jobs "$jobs" \
+        --design soc $(printf -- '--core %s ' $names)
 }

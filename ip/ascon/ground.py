@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""ascon's part of a mission: a report is sealed and opened by the core, a forged one is found out."""
+"""ascon's part of a mission: a report is sealed and opened by the core, a forged one is found
+out."""
 import os
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""camera's part of a mission: it is started and stopped; with a sensor, the vision core works on its frames."""
+"""camera's part of a mission: it is started and stopped; with a sensor, the vision core works on
+its frames."""
 
 import Ice
 
@@ -11,7 +12,8 @@ def camera_of(proxy):
 
 
 def capture(log, camera, width, height):
-    log.call("ground -> UAV", "camera.capture(%d, %d)" % (width, height), lambda: camera.capture(width, height))
+    log.call("ground -> UAV", "camera.capture(%d, %d)" % (width, height),
+             lambda: camera.capture(width, height))
 
 
 def prepare(log, proxy, width, height):

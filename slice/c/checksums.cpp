@@ -2,7 +2,7 @@
 //
 // checksums: the digest of a definition in one fixed spelling: without comments, metadata and
 // defaults, optionals by their tags. Words and blanks are those of slice2cpp
-// (tests/slice/compiler/commandline.sh compares).
+// (tests/slice/compiler/commandline_test.py compares).
 
 #include "c/checksums.h"
 #include "front/parser.h"

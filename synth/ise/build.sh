@@ -1,15 +1,17 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# build: from soc.edf to a bitstream with Xilinx ISE 14.7: XST for the wrapper, ngdbuild, map, par, trce, bitgen.
-# Usage: synth/ise/build.sh [--xst] [--part xc6slx16-2-csg324] soc.edf mig-folder output-folder core_pins.ucf board.ucf
+# build: from soc.edf to a bitstream with Xilinx ISE 14.7: XST for the wrapper, ngdbuild, map, par,
+# trce, bitgen.
+# Usage: synth/ise/build.sh [--xst] [--part xc6slx16-2-csg324] soc.edf mig-folder output-folder
+# core_pins.ucf board.ucf
 #   soc.edf      from `make synth-edif`
 #   mig-folder   user_design of a MIG core called "mig": its rtl/*.v and par/mig.ucf are used
 #   *.ucf        build/main/gen/core_pins.ucf, and your board's (synth/ise/board.ucf is an example)
-#   --xst        XST synthesises soc as well, from the folder verilog beside soc.edf, given instead of it
+#   --xst        XST synthesises soc as well, from the folder verilog beside soc.edf, instead of it
 set -eu
 usage() {
-    sed -n 's/^# \{0,1\}//; 5,9p' "$0"
+    sed -n 's/^# \{0,1\}//; 6,11p' "$0"
     exit "$1"
 }
 part=xc6slx16-2-csg324 whole='' xst_includes=''
@@ -36,7 +38,8 @@ for program in xst ngdbuild map par trce bitgen; do
     }
 done
 [ -z "$whole" ] || ! grep -q hierconn "$soc"/*.vh || {
-    echo "build: the chip has a probe, whose signals are hierarchical names: XST knows none; leave --xst out" >&2
+    echo "build: the chip has a probe, whose signals are hierarchical names: XST knows none;" \
+        "leave --xst out" >&2
     exit 2
 }
 mkdir -p "$output"

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# join_waves: puts the rows of wave.fst.program.vcd (program_trace.h) into wave.fst, above the RTL's.
+# join_waves: puts the rows of wave.fst.program.vcd (program_trace.h) into wave.fst, above the
+# RTL's.
 # Usage: join_waves.sh wave.fst      Without one of the files they stay as they are.
 set -eu
 wave=$1 program=$1.program.vcd
@@ -11,7 +12,10 @@ command -v fst2vcd >/dev/null && command -v vcd2fst >/dev/null || {
     exit 0
 }
 fst2vcd "$wave" | awk -v program="$program" '
-function next_line() { more = (getline line < program) > 0; if (more && line ~ /^#/) { time = substr(line, 2) + 0; next_line() } }
+function next_line() {
+    more = (getline line < program) > 0
+    if (more && line ~ /^#/) { time = substr(line, 2) + 0; next_line() }
+}
 function told_until(end) { # prints lines of the program up to this time
     while (more && (end < 0 || time <= end)) {
         if (time > now) print "#" (now = time)
@@ -20,7 +24,11 @@ function told_until(end) { # prints lines of the program up to this time
     }
 }
 BEGIN { now = -1; next_line() }
-/^\$scope/ && !head { while (line !~ /^\$enddefinitions/) { if (line !~ /^\$timescale/) print line; next_line() } head = 1; next_line() }
+/^\$scope/ && !head {
+    for (; line !~ /^\$enddefinitions/; next_line()) if (line !~ /^\$timescale/) print line
+    head = 1
+    next_line()
+}
 /^#/ { stamp = substr($0, 2) + 0; told_until(stamp - 1); now = stamp }
 { print }
 END { told_until(-1) }

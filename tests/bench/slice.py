@@ -6,13 +6,14 @@ only makes them slower.
 
     slice.py SLICE2C OUTPUT.json [--brief]
 """
-import json
 import pathlib
 import resource
 import shutil
 import subprocess
 import sys
 import tempfile
+
+from measured import figure, leave
 
 SLICES = pathlib.Path("/usr/share/ice/slice")
 
@@ -29,8 +30,8 @@ def once(program, file, folder):
 
 def entry(name, ours, theirs):
     print("%-28s %9.2f ms %9.2f ms %8.2f" % (name, theirs, ours, theirs / ours))
-    return {"name": f"slice2c.{name}", "command": "make bench", "value": round(ours, 2),
-            "unit": "ms", "peer": f"slice2cpp: {theirs:.2f} ms", "ratio": round(theirs / ours, 2)}
+    return figure(f"slice2c.{name}", round(ours, 2), "ms", peer=f"slice2cpp: {theirs:.2f} ms",
+                  ratio=theirs / ours)
 
 
 def main(slice2c, output, brief=""):
@@ -47,8 +48,7 @@ def main(slice2c, output, brief=""):
             entries.append(entry(str(file.relative_to(SLICES)), *best))
             sums = [a + b for a, b in zip(sums, best)]
     entries.append(entry("all", *sums))
-    pathlib.Path(output).parent.mkdir(parents=True, exist_ok=True)
-    pathlib.Path(output).write_text(json.dumps(entries, indent=1) + "\n")
+    leave(output, entries)
 
 
 main(*sys.argv[1:]) if len(sys.argv) > 2 else sys.exit(__doc__)

@@ -11,6 +11,8 @@ import subprocess
 import sys
 import tempfile
 
+from measured import figure, leave
+
 CALL = "Tags/CallBytes.ACallAndItsReplyTakeFewerThanMavlink/"
 HOSTILE = "Vehicles/Attacked.NothingHostileIsAcceptedAndNothingLegalLostOrDoubled/"
 FIGURES = [  # program, tests, property, text
@@ -40,23 +42,16 @@ def main(words):
     if len(words) < 3:
         sys.exit(__doc__)
     entries = []
-
-    def add(text, value, unit, **more):
-        entries.append(dict(name=text, value=value, unit=unit, command="make bench", **more))
-
     for program, tests, name, text in FIGURES:
         found = run(words[program], tests, "2000" if "--brief" in words else "10000000")
         value = sum(int(test[name]) for test in found)
         if name in HARM:
-            add(text, value, name)
             failures = sum(len(test.get("failures", [])) for test in found)
-            add(f"of these: {HARM[name]}", failures, "failures")
+            entries += [figure(text, value, name),
+                        figure(f"of these: {HARM[name]}", failures, "failures")]
         else:
-            limit = int(found[0]["mavlink"])
-            add(text, value, name, limit=limit, share=value / limit)
-    with open(words[2], "w") as file:
-        json.dump(entries, file, indent=1)
-        file.write("\n")
+            entries.append(figure(text, value, name, limit=int(found[0]["mavlink"])))
+    leave(words[2], entries)
 
 
 main(sys.argv[1:])

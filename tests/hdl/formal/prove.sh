@@ -1,21 +1,24 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # prove: module depth source-folder work-folder [yosys commands for parameters]
+# It is shell because it only calls Yosys, abc and CaDiCaL, each with a limit of processor time.
 #
-# 1. induction: no assertion ever fails: by k-induction (MiniSat) where the assertions carry themselves; else
-#    property-directed reachability finds the inductive invariant itself and has it checked
-#    (z3's k-induction did not end on 64-bit data);
+# 1. induction: no assertion ever fails: by k-induction (MiniSat) where the assertions carry
+#    themselves; else property-directed reachability finds the inductive invariant itself and has it
+#    checked (z3's k-induction did not end on 64-bit data);
 # 2. bounded: where that does not prove it, the shortest counterexample of `depth` clocks (BMC);
 # 3. cover: every cover statement is reached within 4 * `depth` clocks.
 # PROVE_PDR: switches of pdr, where others are quicker.
-# PROVE_STEP=k: the assertions carry themselves over k clocks, but are too many for MiniSat: CaDiCaL does the step.
+# PROVE_STEP=k: the assertions carry themselves over k clocks, but are too many for MiniSat: CaDiCaL
+# does the step.
 # PROVE_BOUNDED=1: bounded only.
-# PROVE_MUTANT: Yosys commands between reading and flattening (tests/mutants/drawn.py); no trace then.
-# A failed assertion leaves <work>/trace.vcd. The module may instance others of its folder, of bus/ and of hdl/system/.
+# PROVE_MUTANT: Yosys commands before flattening (tests/mutants/drawn.py); no trace then.
+# A failed assertion leaves <work>/trace.vcd. The module may instance others of its folder, of bus/
+# and of hdl/system/.
 set -eu
 here=$(dirname "$(readlink -f "$0")")
 module=$1 depth=$2 source=$3 work=$4 parameters=${5:-}
-limit=${PROVE_SECONDS:-300} # of a processor: a proof that does not end is an error, on a busy machine, too
+limit=${PROVE_SECONDS:-300} # of a processor: a proof that does not end is an error
 mkdir -p "$work"
 cd "$work"
 rm -f ./*.aig ./*.map ./*.aiw ./*.vcd
@@ -25,17 +28,21 @@ file=$(find "$source/bus" "$source/hdl" "$source/ip" -name "$module.v")
     exit 2
 }
 proof=${file%.v}_proof.vh # included at the module's foot
-files=$(ls "$source"/bus/*.v "$source"/hdl/system/*.v "$source"/hdl/cdc/*.v "$(dirname "$file")"/*.v | sort -u)
+folders="$source/bus $source/hdl/system $source/hdl/cdc $(dirname "$file")"
+files=$(for folder in $folders; do ls "$folder"/*.v || true; done | sort -u)
 # Several clocks (a proof with `gclk`): every edge is an input of its own.
 clocks=async2sync
 ! grep -qs gclk "$file" "$proof" || clocks='memory_map; clk2fflogic'
 # -nosdff -nodffe: AIGER has plain flip-flops only. The module's outputs are dropped: abc would take
-# them for properties. What became undefined (a flip-flop without a clock) is free: newer AIGER backends refuse it.
-gates='memory_map; opt -full; setundef -anyseq; techmap; opt -fast -nosdff -nodffe; dfflegalize -cell $_DFF_P_ 01; delete -output w:*'
+# them for properties. What became undefined (a flip-flop without a clock) is free: newer AIGER
+# backends refuse it.
+gates='memory_map; opt -full; setundef -anyseq; techmap; opt -fast -nosdff -nodffe
+dfflegalize -cell $_DFF_P_ 01; delete -output w:*'
 aiger='opt_clean; abc -g AND -fast; opt_clean; write_aiger -zinit -map'
 # shellcheck disable=SC2086
 cat >prove.ys <<END
-read_verilog -formal -sv -DRULES -I${GEN_DIR:-.} -I$source/bus -I$source/hdl/ddr $(echo $files)
+verilog_defaults -add -I${GEN_DIR:-.} -I$source/bus -I$source/hdl/ddr
+read_verilog -formal -sv -DRULES $(echo $files)
 $parameters
 hierarchy -top $module
 proc
@@ -51,7 +58,7 @@ opt_clean
 check -assert
 write_smt2 -wires model.smt2
 write_rtlil model.il
-$(echo $gates)
+$gates
 design -save gates
 chformal -cover -remove
 $(echo $aiger) assert.map assert.aig
@@ -80,9 +87,10 @@ failed() {
     exit 1
 }
 replay() { # abc's counterexample, by smtbmc for names and a waveform
-    awk -v n="$(head -1 assert.aig | cut -d' ' -f3)" 'NR == 1 { print "1" } { print NR == 1 ? $0 : substr($0, 1, n) }' \
-        assert.aiw >replay.aiw 2>/dev/null || true
-    timeout 100 yosys-smtbmc -s z3 --unroll --noprogress --aig assert.map:replay.aiw --dump-vcd trace.vcd model.smt2 >trace.log 2>&1 || true
+    awk -v n="$(head -1 assert.aig | cut -d' ' -f3)" 'NR == 1 { print "1" }
+        { print NR == 1 ? $0 : substr($0, 1, n) }' assert.aiw >replay.aiw 2>/dev/null || true
+    timeout 100 yosys-smtbmc -s z3 --unroll --noprogress --aig assert.map:replay.aiw \
+        --dump-vcd trace.vcd model.smt2 >trace.log 2>&1 || true
     grep -E 'Assert failed' trace.log || true
     [ ! -e trace.vcd ] || echo "$module: trace: $work/trace.vcd" >&2
 }
@@ -92,7 +100,8 @@ abc() { limited yosys-abc -c "$1" >"$2" 2>&1 || true; }
 # step clocks: from any state (no initial values), a failure after this many clocks without one?
 # Exit status 20: none. The assumptions hold in each of them.
 step() {
-    abc "read_aiger assert.aig; fold; strash; orpos; frames -F $(($1 + 1)); comb; write_blif frames.blif" step.log
+    abc "read_aiger assert.aig; fold; strash; orpos; frames -F $(($1 + 1)); comb;
+        write_blif frames.blif" step.log
     awk -v bads=$(($1 + 1)) -f "$here/step.awk" frames.blif >step.blif
     rm -f step.cnf
     abc "read_blif step.blif; strash; write_cnf step.cnf" step.log
@@ -101,12 +110,14 @@ step() {
 # bounded clocks: does an assertion fail within them?
 bounded() {
     abc "read_aiger assert.aig; fold; strash; bmc3 -F $1; write_cex -a assert.aiw" bounded.log
-    grep -q 'output failed\|output asserted\|was asserted\|Explored all reachable states' bounded.log || {
+    all='Explored all reachable states'
+    grep -q "output failed\|output asserted\|was asserted\|$all" bounded.log || {
         cat bounded.log
         echo "$module: abc has no answer (see above): is another proof at work in $work?" >&2
         exit 2
     }
-    grep -q 'No output failed\|No output asserted\|Explored all reachable states' bounded.log || failed bounded.log "an assertion fails within $1 clocks"
+    grep -q "No output failed\|No output asserted\|$all" bounded.log ||
+        failed bounded.log "an assertion fails within $1 clocks"
     echo "$module: bounded, $1 clocks"
 }
 latches() { head -1 "$1" | cut -d' ' -f4; }
@@ -129,7 +140,7 @@ else
         status=0
         step "$clocks_of_step" || status=$?
         [ $status -ne 20 ] || carried="induction step of $clocks_of_step clock(s)"
-    elif [ "$clocks" = async2sync ]; then # blocks whose assertions are inductive as they stand are done in a second
+    elif [ "$clocks" = async2sync ]; then # assertions that are inductive as they stand: a second
         limited yosys -q -l induct.log induct.ys >/dev/null 2>&1 || true
         ! grep -q 'Induction step proven: SUCCESS' induct.log || {
             bounded 2 # the base begins after the first clock
@@ -137,15 +148,18 @@ else
         }
     fi
     if [ -z "$carried" ]; then
-        abc "read_aiger assert.aig; fold; strash; scorr -F 2; pdr ${PROVE_PDR:-}; write_cex -a assert.aiw; sat" induction.log
-        # sat: scorr alone may find the output constant; newer versions of abc then have nothing to prove
+        # sat: scorr alone may find the output constant; newer versions of abc then have nothing to
+        # prove
+        abc "read_aiger assert.aig; fold; strash; scorr -F 2; pdr ${PROVE_PDR:-};
+            write_cex -a assert.aiw; sat" induction.log
         grep -q 'Property proved\|UNSATISFIABLE' induction.log || {
             mv assert.aiw deep.aiw 2>/dev/null || true
             bounded "$depth" # the shortest counterexample
             mv deep.aiw assert.aiw 2>/dev/null || true
             failed induction.log "not proven (PROVE_SECONDS=$limit)"
         }
-        carried=$(sed -n 's/^Invariant[^:]*: \([0-9]* clauses with [0-9]* flops\).*/\1/p' induction.log)
+        carried=$(sed -n 's/^Invariant[^:]*: \([0-9]* clauses with [0-9]* flops\).*/\1/p' \
+            induction.log)
     fi
     [ "$carried" = no ] || echo "$module: proven, ${carried:-no clause needed}"
 fi
@@ -162,13 +176,15 @@ cone=cone
 ! yosys-abc -c 'cone -h' 2>&1 | grep -q -- '^.*-s  ' || cone='cone -s'
 commands='' index=0
 while [ "$index" -lt "$covers" ]; do # one at a time: bmc3 -a of several outputs can crash
-    commands="$commands echo cover $index; read_aiger cover.aig; fold; strash; $cone -O $index; $solve;"
+    commands="$commands echo cover $index; read_aiger cover.aig; fold; strash;
+        $cone -O $index; $solve;"
     index=$((index + 1))
 done
 abc "$commands" cover.log
 missing=0 index=0
 while read -r name; do
-    sed -n "/^cover $index *\$/,/^cover $((index + 1)) *\$/p" cover.log | grep -q 'was asserted\|^SATISFIABLE' || {
+    sed -n "/^cover $index *\$/,/^cover $((index + 1)) *\$/p" cover.log |
+        grep -q 'was asserted\|^SATISFIABLE' || {
         echo "$module: not reached in $((depth * 4)) clocks: ${name#*/}" >&2
         missing=1
     }
@@ -178,5 +194,6 @@ done <cover.names
 echo "$module: $covers covers reached"
 # user and system time of this script and its children: `make proofs` adds them up
 times >times.txt
-awk 'function s(t) { split(t, a, /[ms]/); return 60 * a[1] + a[2] } { n += s($1) + s($2) } END { printf "%.1f\n", n }' times.txt >cpu
+awk 'function s(t) { split(t, a, /[ms]/); return 60 * a[1] + a[2] } { n += s($1) + s($2) }
+    END { printf "%.1f\n", n }' times.txt >cpu
 echo "$module: $(cat cpu) s of a processor"

@@ -1,10 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # lint: module source-folder generated-folder. Verilator -Wall, Icarus, Yosys check and latches.
-# A variant is a parameter and its value, or several with commas; what is in `refused` must not elaborate.
+# A variant is a parameter and its value, or several with commas; what is in `refused` must not
+# elaborate.
 set -eu
 module=$1 source=$2 gen=$3
-folders="$source/bus $source/hdl/fsmc $source/hdl/ddr $source/hdl/modem $source/hdl/system $source/hdl/cdc"
+folders=$source/bus
+for room in fsmc ddr modem system cdc; do folders="$folders $source/hdl/$room"; done
 core=$(ls "$source"/ip/*/"$module.v" 2>/dev/null || true)
 [ -z "$core" ] || folders="$folders $(dirname "$core")"
 file=$(for f in $folders; do ls "$f/$module.v" 2>/dev/null || true; done)
@@ -13,25 +15,34 @@ case $module in
 bus_decoder) variants='SLOTS=1 SLOTS=4 SLOTS=64' ;;
 npi_select) variants="PORTS=2 PORTS=3 PORTS=4 PORTS=5 PORTS=6 PORTS=7 PORTS=8 URGENT=2'd1" ;;
 npi_arbiter | memory_mcb)
-    variants="PORTS=2 PORTS=3 PORTS=4 PORTS=5 PORTS=6 PORTS=7 PORTS=8 URGENT=2'd1 READ_FIFO=2'd1 BLOCK_RAM=0 ADDR_WIDTH=30"
+    variants="PORTS=2 PORTS=3 PORTS=4 PORTS=5 PORTS=6 PORTS=7 PORTS=8 URGENT=2'd1 READ_FIFO=2'd1"
+    variants="$variants BLOCK_RAM=0 ADDR_WIDTH=30"
     [ "$module" != npi_arbiter ] || refused='PORTS=1 PORTS=9 URGENT_RUN=0 ADDR_WIDTH=33' ;;
 mcb_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=30' refused='ADDR_WIDTH=31' ;;
 npi_queue) variants='PORT_BITS=2 PORT_BITS=3' ;;
 npi_stream) variants='ADDR_BITS=7 WORD_BITS=4 WORD_BITS=32' ;;
 axis_filter) variants='WIDTH=16 WIDTH=32 WIDTH=64 LAST=0' ;;
 bus_wrapper) variants='EVENTS=1 EVENTS=32' ;;
-bus_window) variants='ADDR_WIDTH=3 ADDR_WIDTH=5 ADDR_WIDTH=6 ADDR_WIDTH=32' refused='ADDR_WIDTH=2 ADDR_WIDTH=33 TIMEOUT=0 TIMEOUT=256' ;;
+bus_window)
+    variants='ADDR_WIDTH=3 ADDR_WIDTH=5 ADDR_WIDTH=6 ADDR_WIDTH=32'
+    refused='ADDR_WIDTH=2 ADDR_WIDTH=33 TIMEOUT=0 TIMEOUT=256'
+    ;;
 bus_to_axi4lite) variants='ADDR_WIDTH=3 ADDR_WIDTH=32' ;;
 bus_to_wishbone) variants='ADDR_WIDTH=3 ADDR_WIDTH=32 PIPELINED=1' ;;
 async_fifo) variants='LOG2=2 LOG2=6' ;;
 npi_fifo) variants='LOG2=1 LOG2=5 BLOCK=1' ;;
 modem) variants='CLK_HZ=2000000 CLK_HZ=100000000 API=1' ;;
 fsmc_bridge)
-    variants='MUXED=1 WAIT_HIGH=1,TIMEOUT_LOG2=24 TIMEOUT_LOG2=1 POST_LOG2=2,BLOCK_LOG2=4 POST_LOG2=3,BLOCK_LOG2=1 POST_LOG2=5,BLOCK_LOG2=2'
-    refused='MUXED=2 WAIT_HIGH=2 POST_LOG2=1 POST_LOG2=6 BLOCK_LOG2=0 BLOCK_LOG2=5 TIMEOUT_LOG2=0' ;;
+    variants='MUXED=1 WAIT_HIGH=1,TIMEOUT_LOG2=24 TIMEOUT_LOG2=1 POST_LOG2=2,BLOCK_LOG2=4'
+    variants="$variants POST_LOG2=3,BLOCK_LOG2=1 POST_LOG2=5,BLOCK_LOG2=2"
+    refused='MUXED=2 WAIT_HIGH=2 POST_LOG2=1 POST_LOG2=6 BLOCK_LOG2=0 BLOCK_LOG2=5 TIMEOUT_LOG2=0'
+    ;;
 system_slot) variants='SLOTS=2 SLOTS=63' ;;
-core_gate) folders="$folders $source/tests/hdl/lint" variants='GATED=1' ;; # BUFGCE.v
-core_clock) folders="$folders $source/tests/hdl/lint" variants='MULTIPLY=5,DIVIDE=7' ;; # DCM_CLKGEN.v, too
+core_gate | core_clock) # BUFGCE.v, DCM_CLKGEN.v
+    folders="$folders $source/tests/hdl/lint"
+    variants=GATED=1
+    [ $module = core_gate ] || variants=MULTIPLY=5,DIVIDE=7
+    ;;
 *) variants='' ;;
 esac
 search=$(for f in $folders ${core:+"$gen"}; do echo "-y $f -I$f"; done)
@@ -39,22 +50,27 @@ libraries=$(for f in $folders ${core:+"$gen"}; do echo "-libdir $f"; done)
 each() { echo "$1" | tr , ' '; }
 verilate() { # variant [switches]
     # shellcheck disable=SC2086,SC2046
-    verilator --lint-only -Wall ${2-} $search -I"$gen" --top-module "$module" $(for p in $(each "$1"); do echo "-G$p"; done) "$file"
+    verilator --lint-only -Wall ${2-} $search -I"$gen" --top-module "$module" \
+        $(for p in $(each "$1"); do echo "-G$p"; done) "$file"
 }
 # Yosys' commands for one variant; modules below are found by their names.
 elaboration() { # variant
     set_parameter=$(for p in $(each "$1"); do echo "-set ${p%%=*} ${p#*=}"; done)
-    echo "${set_parameter:+chparam $(echo $set_parameter) $module;} hierarchy -top $module $(echo $libraries);"
+    echo "${set_parameter:+chparam $(echo $set_parameter) $module;}"
+    echo "hierarchy -top $module $(echo $libraries);"
 }
 read_file="verilog_defaults -add -I$gen -I$source/bus -I$source/hdl/ddr; read_verilog $file;"
 elaborate() { yosys -q -p "$read_file $(elaboration "$1")"; } # variant
 checks=''
 for variant in '' $variants; do
     verilate "$variant"
-    checks="$checks log variant $(each "$variant"); design -load read; $(elaboration "$variant") proc; opt; check -assert; select -assert-none t:\$dlatch;"
+    checks="$checks log variant $(each "$variant"); design -load read; $(elaboration "$variant")
+        proc; opt; check -assert; select -assert-none t:\$dlatch;"
 done
-verilate '' '-DCOVER_POINTS --coverage --assert -Wno-SYNCASYNCNET' # as make coverage builds it; not always: a signal must have a use besides
-yosys -q -p "$read_file design -save read; $checks" # one process: its start costs more than a variant
+# As make coverage builds it; not always: a signal must have a use besides
+verilate '' '-DCOVER_POINTS --coverage --assert -Wno-SYNCASYNCNET'
+# One process: its start costs more than a variant.
+yosys -q -p "$read_file design -save read; $checks"
 for variant in $refused; do
     for tool in verilate elaborate; do
         said=$($tool "$variant" 2>&1) && { echo "$module: $tool takes $variant" >&2; exit 1; }

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# kept: tests when tests/kept.py computes a verdict anew, and when not. Usage: kept.sh kept.py's-path work-folder
+# kept: tests when tests/kept.py computes a verdict anew, and when not.
+# Usage: kept.sh kept.py's-path work-folder
 set -eu
 kept=$1 work=$2
 rm -rf "$work"
@@ -9,7 +10,8 @@ cp "$kept" "$work/a/tests"
 cd "$work/a"
 export XDG_CACHE_HOME="$work/cache" PATH="$work/bin:$PATH"
 unset FRESH
-# The test looks for b.vh in two folders as compilers do, counts the names in one, calls a tool, and waits if told to.
+# The test looks for b.vh in two folders as compilers do, counts the names in one, calls a tool, and
+# waits if told to.
 cat >tests/t.sh <<'END'
 #!/bin/sh
 own=$1
@@ -35,7 +37,8 @@ computed() {
 }
 same() {
     run
-    { [ $status -eq 0 ] && head -1 "$work/said" | grep -q '^kept: the verdict of 20.*FRESH=1' && grep -q "$2" "$work/said"; } || fail "not kept: $1"
+    { [ $status -eq 0 ] && head -1 "$work/said" | grep -q '^kept: the verdict of 20.*FRESH=1' &&
+        grep -q "$2" "$work/said"; } || fail "not kept: $1"
 }
 computed 'never run' "^1 names, one, no limit, nothing else, $PWD/own$"
 sed -i 's/1/2/' second/b.vh && computed 'one byte of an included file' '^b 2$'
@@ -49,7 +52,8 @@ PROVE_LIMIT=5 && export PROVE_LIMIT && computed 'another setting' ', 5,'
 FRESH=1 && export FRESH && run && ! grep -q '^kept:' "$work/said" || fail "FRESH=1"
 unset FRESH
 cp -r "$work/a" "$work/b" && cd "$work/b" && same 'another clone' ", $PWD/own$" && cd "$work/a"
-touch linked && cp /bin/echo prog && computed 'a program of the tree, by a link of the test' '^by a link$'
+touch linked && cp /bin/echo prog
+computed 'a program of the tree, by a link of the test' '^by a link$'
 cp /bin/printf prog && computed 'another one there' '^by a link$'
 rm prog linked
 # A test that fails leaves no verdict.
@@ -84,5 +88,6 @@ printf '#!/bin/sh\nexit 1\n' >"$work/bin/strace" && chmod +x "$work/bin/strace"
 echo 'b 7' >second/b.vh
 for _ in 1 2; do
     run
-    { [ $status -eq 0 ] && grep -q '^b 7$' "$work/said" && grep -q '^kept: strace is missing' "$work/said"; } || fail "where strace cannot"
+    { [ $status -eq 0 ] && grep -q '^b 7$' "$work/said" &&
+        grep -q '^kept: strace is missing' "$work/said"; } || fail "where strace cannot"
 done

@@ -1,0 +1,42 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""cores: what the cores' block tests measure, beside what a memory port gives.
+
+    cores.py BUILD-FOLDER OUTPUT.json [--brief]
+
+A port moves 8 bytes a clock in each direction (docs/memory.md); the fabric's clock is 100 MHz.
+"""
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from measured import figure, leave
+
+FIGURES = (  # name, test, case, expression of the figure, bytes a clock for that figure
+    ("vision core, frame read", "vision", "OnePixelAClock", "^(.*) clocks a pixel",
+     lambda clocks: 1 / clocks),
+    ("Ascon-AEAD128, each direction", "ascon", "Speed", "AEAD128 (.*) bytes", float),
+    ("Ascon-Hash256, read", "ascon", "Speed", "Hash256 ([0-9.]*)", float),
+    ("FIR filter, each direction", "fir", "OneSampleAClock", "^(.*) clocks a sample",
+     lambda clocks: 2 / clocks),
+    ("camera, written", "camera", "APixelEach", "^(.*) pixels a clock", float))
+
+
+def main(build, output, *_):
+    entries = []
+    for name, core, case, expression, bytes_of in FIGURES:
+        program = Path(build, f"ip/{core}/test_ip_{core}")
+        if not program.exists():  # a core that is not there
+            continue
+        said = subprocess.run([program, f"--gtest_filter=*{case}*"], stdout=subprocess.PIPE,
+                              text=True).stdout
+        found = re.search(expression, said, re.M) or sys.exit(f"cores: {core} says no {name}")
+        value = round(bytes_of(float(found[1])), 3)
+        print(f"{name:<34} {value} bytes a clock: {100 * value:.1f} MB/s at 100 MHz, "
+              f"{100 * value / 8:.1f} % of the port")
+        entries.append(figure(name, value, "bytes a clock", limit=8))
+    leave(output, entries)
+
+
+main(*sys.argv[1:]) if len(sys.argv) > 2 else sys.exit(__doc__)

@@ -1,0 +1,224 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""commandline_test: slice2c's options, exit statuses, files that include others, dependencies.
+
+Usage: commandline_test.py commandline work-folder slice2c
+"""
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from script import TREE, Script, edit, fresh, main, write  # noqa: E402
+
+INCLUDES = [f"-I{TREE}/sw/base", f"-I{TREE}/sw/icec"]
+ICE = Path("/usr/share/ice/slice")
+STRICT = ("-std=c90 -pedantic -Wall -Wextra -Wconversion -Wstrict-prototypes -Wmissing-prototypes "
+          "-Werror -fsyntax-only").split()
+TREES = {
+    "slice/Lib/Base.ice": """#pragma once
+[["underscore"]]
+module Lib {
+    struct Point_ty { int x; int y; };
+    exception Failed { string why; };
+    interface Named { string name() throws Failed; };
+    class Node { Node next; };
+};
+""",
+    "slice/Lib/Middle.ice": """#ifndef MIDDLE
+#define MIDDLE
+#include <Lib/Base.ice>
+module Lib { sequence<Point_ty> Points; interface Later; };
+#endif
+""",
+    "slice/Top.ice": """#include <Lib/Middle.ice>
+#include <Lib/Base.ice>
+#ifdef WITH_MORE
+module More { const int Amount = WITH_MORE; };
+#endif
+module Top {
+    class Leaf extends Lib::Node { Lib::Points points; };
+    exception Worse extends Lib::Failed { Lib::Later* whom; };
+    interface Service extends Lib::Named { void go(Lib::Points points, Leaf leaf) throws Worse; };
+};
+""",
+    # Two files of one name go into one program; a name may begin with a digit.
+    "slice/2nd/Base.ice": "module Second { class Node { int x; }; };\n",
+    "slice/Both.ice": "#include <Lib/Base.ice>\n#include <2nd/Base.ice>\n"
+                      "module Both { struct S { Lib::Node a; Second::Node b; }; };\n",
+    "file": "in the way\n", "bad.ice": "module {\n",
+    "names.ice": "module A_b { struct iceS { int x; }; };",
+    # What the preprocessor has no room for
+    "long.ice": "module L { // " + 70000 * "x" + "\n};\n",
+    "includes.ice": "\n#include <long.ice>\n",
+    "joined.ice": "module L { struct S { int a; }; };" + 8000 * "          \\\n",
+    # Line ends of another system, or none
+    "crlf.ice": "module L {\r\n struct S { int a; };\r\n};",
+    "without.ice": "#include <crlf.ice>\nmodule M { struct T { L::S a; }; };",
+    "twice.ice": "#include <crlf.ice>\n#include <crlf.ice>\n",
+    "text.ice": f'module L {{ const string T = "{509 * "0"}"; '
+                f'struct S {{ string a = "{510 * "0"}"; }}; }};',
+    # A file beside the one that includes it, or above, wherever the compiler runs
+    "beside/above.ice": "module Above { struct S { int a; }; };\n",
+    "beside/sub/next.ice": "module Next { struct S { Above::S a; Nothing b; }; };\n",
+    "beside/sub/low.ice": '#include "../above.ice"\n#include "next.ice"\n'
+                          "module Low { struct S { Above::S a; }; };\n",
+    "top.ice": "#include <sub/low.ice>\n",
+    "one/fir.ice": "module Cores { sequence<byte> Bytes; interface Fir { void f(); }; };\n",
+    "one/crc.ice": "// a core\n"
+                   "module Cores { sequence<byte> Bytes; interface Crc { void f(); }; };\n",
+    "one/other/fir.ice": "module Other { interface Fir { void f(); }; };\n",
+    "one/user.ice": "#include <fir.ice>\n"
+                    "module Cores { interface User { void f(Bytes b); }; };\n"}
+CHECKSUMS = r"""[["underscore"]]
+module Sums {
+    const int A = -0x10; const float B = 1.50; const double C = 1e30;
+    const string D = "a\t\u00e9\"\x41\\"; const bool E = true; const long F = A;
+    const double Third = 0.333333333333; const byte G = 0; const string Empty = "";
+    const string Raw = "\U0001F681\xe9\351\'\?\n\7";
+    enum Plain { one, two }; enum Valued { x = 5, y = 1, z };
+    const Valued G_ood = y; const Valued H = Valued::z; const Valued K = H;
+    struct S { int a = 5; ["m"] string b; Plain p; };
+    sequence<Object> Q; sequence<Object*> R; dictionary<S, Q> Dict; interface I; sequence<I*> Is;
+    exception Ex { optional(5) int b; string why; optional(2) S a; };
+    exception Fx extends Ex { }; exception Gx { };
+    interface I2 { void run(); }; interface I3 { }; interface I4 { };
+    class Base;
+    class Base(7) { int a; optional(9) Base b; optional(3) bool c; Base d; };
+    class Derived extends Base implements I2 { };
+    interface I extends I3, I4 {
+        void nothing(); idempotent int op(int a, out string b) throws Fx, Gx;
+        ["amd"] optional(3) S opt(optional(7) int z, int y, optional(1) int x, out bool w);
+        optional(1) I* all(optional(9) int a, optional(2) int b);
+        void first(int a, optional(4) int b);
+    };
+};
+"""
+
+
+class Cases(Script):
+    def slice2c(self, words, status=0, *patterns):
+        self.ask(sys.argv[3], *words.split(), status=status)
+        self.has(*patterns)
+
+    def test_commandline(self):
+        fresh(sys.argv[2])
+        for name, text in TREES.items():
+            write(name, text)
+        for words, status, said in (
+            ("--help", 0, "output-dir"), ("--version", 0, "slice2c"), ("-v", 0, "slice2c"),
+            ("", 1, "Slice file"), ("--no-such-option slice/Top.ice", 1, "no-such-option"),
+            ("no-such-file.ice", 1, "cannot read"), ("slice", 1, "cannot read"),
+            ("slice/Top.ice", 1, "Middle.ice"),  # no -I
+            ("-I slice slice/Lib/Base.ice --output-dir file/sub", 1, "cannot write"),
+            ("--validate", 0, ""), ("-E -I slice slice/Top.ice", 0, "struct Point_ty")):
+            self.slice2c(words, status, said)
+        self.assertFalse(Path("Top.h").exists())
+        self.checksums()
+        self.files_that_include_others()
+        self.dependencies()
+        self.wrong_lines()
+        self.beside_and_above()
+        for option in "-E", "--depend", "--depend-xml":
+            with open("/dev/full", "w") as full:
+                said = subprocess.run([sys.argv[3], option, "crlf.ice"], stdout=full,
+                                      stderr=subprocess.PIPE, text=True)
+            self.assertNotEqual(said.returncode, 0, option)
+            self.assertIn("cannot write", said.stderr)
+        # Files of one program: no two names of theirs are one name in C.
+        one = "--one-program one/fir.ice"
+        self.slice2c(f"{one} one/crc.ice", 1, "crc.ice:2:31: error: '::Cores::Bytes' is "
+                     "'Cores_Bytes' in C, as one/fir.ice:1 is")
+        self.slice2c(f"{one} one/other/fir.ice", 1, "'fir.ice' is the name of one/fir.ice too")
+        self.slice2c(f"{one} -Ione one/user.ice")
+        self.assertFalse(Path("fir.h").exists())
+
+    def checksums(self):
+        """They are those of slice2cpp."""
+        def sums(file):
+            text = Path(file).read_text()
+            return set(re.findall(r'^ *\{*"(::[^"]*)", "([0-9a-f]*)"', text, re.M))
+
+        write("checksums.ice", CHECKSUMS)
+        Path("sums/cpp").mkdir(parents=True)
+        for file in ("checksums.ice", *(ICE / name for name in (
+                "IceGrid/Admin.ice", "Ice/Version.ice", "Ice/Metrics.ice"))):
+            words = f"--checksum -I{ICE} {file} --output-dir sums"
+            self.slice2c(words)
+            subprocess.run(["slice2cpp", *f"{words}/cpp".split()], stderr=subprocess.DEVNULL)
+            stem = Path(file).stem
+            ours = sums(f"sums/{stem}_types.c")
+            self.assertTrue(ours)
+            self.assertEqual(ours, sums(f"sums/cpp/{stem}.cpp"))
+        self.ask("gcc", *"-std=c90 -pedantic -Wall -Wextra -Werror -fsyntax-only".split(),
+                 *INCLUDES, "sums/checksums_types.c")
+
+    def files_that_include_others(self):
+        """Several files in one run, each beside the others; a header is included by its name on
+        the -I path."""
+        self.slice2c("-I slice slice/Lib/Base.ice slice/Lib/Middle.ice --output-dir out/Lib")
+        more = "-Islice -DWITH_MORE=7 slice/Top.ice --output-dir out"
+        self.slice2c(more)
+        self.has('#include "Lib/Middle.h"', r"More_Amount \(\(Ice_Int\)7\)", file="out/Top.h")
+        self.has('#include "Lib/Base.h"', file="out/Lib/Middle.h")
+        self.slice2c(f"{more} -UWITH_MORE")
+        self.lacks("More_", "out/Top.h")
+        self.slice2c("-Islice slice/Both.ice --output-dir out")
+        self.slice2c("-Islice slice/2nd/Base.ice --output-dir out/2nd")
+        self.ask("gcc", "-r", *INCLUDES, "-Iout", "-o", "linked.o", "out/Both_types.c",
+                 "out/Lib/Base_types.c", "out/2nd/Base_types.c")
+        for compiler in "gcc", "clang":
+            for file in Path("out").rglob("*.c"):
+                self.ask(compiler, *STRICT, *INCLUDES, "-Iout", "-Iout/Lib", file)
+        # A header is one for C++ too.
+        write("top.cpp",
+              '#include "Top.h"\nint main() { Top_Leaf leaf; return sizeof leaf == 0; }\n')
+        self.ask("g++", "-std=c++17", "-Wall", "-Werror", "-fsyntax-only", *INCLUDES, "-Iout",
+                 "top.cpp")
+        self.slice2c("-Islice slice/Top.ice --output-dir ext --header-ext hh --source-ext cc "
+                     "--include-dir sub")
+        self.has('#include "sub/Top.hh"', file="ext/Top_client.cc")
+
+    def dependencies(self):
+        self.slice2c("--depend -Islice slice/Top.ice", 0, "slice/Lib/Base.ice",
+                     "Top.h Top_types.c Top_client.c Top_async.c Top_server.c:")
+        self.slice2c("--depend-xml -Islice slice/Top.ice", 0,
+                     '<dependsOn name="slice/Lib/Base.ice"/>')
+        self.slice2c("--depend-file deps -Islice slice/Top.ice")
+        self.has("Top_client.c", file="deps")
+        # Make understands it, and remakes the header when an included file changes.
+        write("Makefile", "include deps\nTop.h:\n\t@echo remade\n")
+        write("Top.h", "")
+        self.ask("touch", "-d", "+1 hour", "slice/Lib/Base.ice")
+        self.ask("make", "-s", "Top.h")
+        self.has("remade")
+        # One bad file does not keep the others from being compiled.
+        self.slice2c("bad.ice slice/Lib/Base.ice --output-dir mixed", 1, "expected the module")
+        self.assertTrue(Path("mixed/Base.h").exists())
+        self.slice2c("names.ice --output-dir x", 1, "underscore")
+        self.slice2c("--underscore --ice names.ice --output-dir x")
+
+    def wrong_lines(self):
+        too_long = "error: the line is too long"
+        self.slice2c("long.ice", 1, f"long.ice:1: {too_long}")
+        self.slice2c("-I . includes.ice", 1, f"long.ice:1: {too_long}")
+        self.slice2c("joined.ice", 1, f"joined.ice:[0-9]*: {too_long}")
+        self.slice2c("-I . crlf.ice without.ice --output-dir x")
+        self.assertEqual(self.said, "")  # line ends are not spoken of
+        self.slice2c("-I . twice.ice", 1, "crlf.ice:2:9: error: .S. is defined already: this file "
+                     "is included twice; begin it with #pragma once")
+        self.slice2c("text.ice", 1, "^1 error$", "text.ice:1:[0-9]*: error: a string of 510 bytes; "
+                     "a compiler of C90 needs to take 509 only")
+
+    def beside_and_above(self):
+        self.slice2c("beside/sub/low.ice", 1, "^module Next",
+                     "^/.*/beside/sub/next.ice:1:38: error: .Nothing. is not a type")
+        edit("beside/sub/next.ice", "Nothing b;", "")
+        self.slice2c("beside/sub/low.ice --output-dir beside/sub")
+        self.has('^#include "../above.h"$', '^#include "next.h"$', file="beside/sub/low.h")
+        for words in "beside/sub/low.ice", "-Ibeside top.ice":
+            self.slice2c(f"--depend {words}", 0, "^ beside/above.ice ", "^ beside/sub/next.ice$")
+
+
+main(Cases)

@@ -1,0 +1,165 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""live_test: the page of a mission in headless Chromium, or its errors.
+
+Usage: live_test.py mission|errors work-folder build-folder
+"""
+import contextlib
+import http.client
+import json
+import re
+import socket
+import subprocess
+import sys
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from script import TREE, Script, fresh, main, write  # noqa: E402
+import look  # noqa: E402
+
+BUILD = Path(sys.argv[3]).resolve()
+LIVE = TREE / "testbench/live/live.py"
+PAGE = TREE / "testbench/live/page"
+
+
+class Cases(Script):
+    def setUp(self):
+        self.work = fresh(sys.argv[2])
+
+    @contextlib.contextmanager
+    def serving(self, *words, until):
+        """A process that serves its page: its port."""
+        with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True) as process:
+            try:
+                port, said = None, ""
+                for line in process.stdout:
+                    said += line
+                    found = re.search(r"http://127\.0\.0\.1:(\d+)/", line)
+                    port = int(found[1]) if found else port
+                    if until in line:
+                        break
+                else:
+                    self.fail(f"the page has ended: {said}")
+                yield port
+            finally:
+                process.terminate()
+                process.stdout.close()
+        self.ended = process.returncode
+
+    def test_mission(self):
+        flight = ("run", "--built", "--build", BUILD, "--size", "96x64", "--guard", "20", "--cpu",
+                  "m3", "--out", self.work, "--live")
+        with self.serving(TREE / "icesoc", *flight, until="The page stays") as port:
+            # No name is resolved: resources of other hosts would be missing, and reported.
+            self.said, log = look.browse(f"http://127.0.0.1:{port}/", "--enable-logging=stderr",
+                                         "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+                                         "--window-size=1280,1500", "--virtual-time-budget=4000")
+        self.assertNotRegex(log, "CONSOLE.*(rror|NOT_RESOLVED)")
+        self.has(
+            "the mission is over", '<p id="flight">size 96x64, cpu m3, guard 20</p>',
+            r"hwengine1.getResult\(\)", r"Station.vehicleState\(uptimeMs",
+            '<td>THRESHOLD</td><td class="n">0x00000018</td>',
+            ">WIDTH 96</span>.*>HEIGHT 64</span>",  # fields of the vision core's FRAME_SIZE
+            ">DONE cleared</span>",  # an event of the vision core, to which the firmware wrote a one
+            'y="[0-9]*">UAV_radioTask</text>',
+            "the result equals the C[+][+] reference, bit by bit", "corners, the strongest",
+            '<text x="0" y="[0-9]*">vision</text>',
+            r"<title>hwengine1.getResult\(\): until [0-9.]* s</title>",
+            'id="phase" role="status" class="good"')
+        drawn = re.findall('data-features="([0-9]*)"', self.said)
+        found = [len(call["features"]) for call in self.lines("calls") if "features" in call]
+        self.assertEqual(drawn, [str(found[-1])])
+        # The flight as JSON Lines: all packets, and the core's end as an event.
+        events, whole = self.lines("events"), self.lines("flight")[-1]["end"]
+        packets = [event for event in events if "packet" in event]
+        self.assertEqual((len(packets), sum(event["lost"] for event in packets)),
+                         (whole["packets"], whole["lost"]))
+        self.assertEqual({event["from"] for event in packets}, {"ground", "uav"})
+        self.assertTrue(any(e.get("slot", 0) >= 2 and e["events"] for e in events))
+        self.assertGreater(sum(sum(e.get("accesses", {}).values()) for e in events), 100)
+        # As it stands, without its script.
+        for style in PAGE / "live.css", TREE / "testbench/page/common.css":
+            write(style.name, style.read_text())
+        write("still.html", re.sub("<script.*</script>", "", self.said))
+        self.assertEqual(look.fault("still.html"), "")
+        for file in (*PAGE.glob("*.html"), *PAGE.glob("*.css")):
+            self.lacks("(https?:)?//[a-z]", file)  # the page names no other host
+
+    def lines(self, name):
+        return [json.loads(line) for line in open(f"{name}.jsonl")]
+
+    def test_errors(self):
+        registers = BUILD / "gen/registers.list"
+        page = LIVE, "--dir", self.work, "--registers"
+        self.ask(LIVE, "--help")
+        self.has("--registers")
+        self.ask(*page, self.work / "none", status=1)
+        self.has("cannot read")
+        self.ask(LIVE, "--dir", self.work, status=2)
+        self.has("required")
+        with self.serving(*page, registers, until="127.0.0.1") as port:
+            self.ask(*page, registers, "--port", str(port), status=1)
+            self.has("is the port taken")
+            self.ask(TREE / "icesoc", "run", "--built", "--build", BUILD, "--size", "96x64",
+                     "--out", "unflown", "--port", str(port), status=1)
+            self.has("is the port taken")
+            self.assertFalse(Path("unflown/status").exists())  # it does not fly without its page
+            self.requests(port)
+        self.assertEqual(self.ended, 0)
+
+    def requests(self, port):
+        """Nothing has run in this folder yet: the page still answers, and only on the loopback
+        interface."""
+        base, ours = f"http://127.0.0.1:{port}/", f"127.0.0.1:{port}"
+
+        def state():
+            return json.load(urllib.request.urlopen(base + "state"))
+
+        def status(headers):
+            client = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+            client.request("GET", "/live.js", headers=headers)
+            return client.getresponse().status
+
+        def connect():
+            return socket.create_connection(("127.0.0.1", port), timeout=60)
+
+        def talk(data):
+            with connect() as connection:
+                connection.sendall(data)
+                return connection.recv(1000)
+
+        empty = state()
+        self.assertEqual((empty["calls"], empty["slots"], bool(empty["frame"])), ([], [], False))
+        # Other names of this address, malformed rows, and clients that are slow, endless or say
+        # nothing.
+        self.assertEqual(status({}), 200)
+        self.assertEqual(status({"Host": f"evil.example:{port}"}), 403)
+        self.assertEqual(status({"Host": ours, "HOST": "evil.example"}), 403)
+        ranges = ",".join(f"0-{i}" for i in range(400, 800))
+        self.assertEqual(status({"Range": f"bytes={ranges}"}), 200)  # the whole of it
+        self.assertIn(b" 400 ", talk(b"EHLO\r\n\r\n"))
+        self.assertIn(b" 405 ", talk(f"POST /state HTTP/1.1\r\nHost: {ours}\r\n\r\n".encode()))
+        with connect() as endless, self.assertRaises(ConnectionError):
+            for _ in range(10000):
+                endless.sendall(b"GET / HTTP/1.1\r\n" + b"A: b\r\n" * 1000)
+        Path("calls.jsonl").write_bytes(b'7\n[1, 2]\n"text"\n{"what": "\xff"}\n'
+                                        b'{"at": 1.0, "who": "a", "what": "b"}\n{"half')
+        self.assertEqual([call["who"] for call in state()["calls"]], ["a"])
+        crowd = [connect() for _ in range(400)]
+        for connection in crowd[-20:]:
+            connection.send(b"GET / HTTP/1.1\r\nHost: ")
+        self.assertEqual(status({}), 200)
+        for connection in crowd:
+            connection.close()
+        for path, wanted in ("", 200), ("live.js", 200), ("frame.png", 404), ("../main.cpp", 404):
+            try:
+                got = urllib.request.urlopen(base + path).status
+            except urllib.error.HTTPError as error:
+                got = error.code
+            self.assertEqual(got, wanted, path)
+
+
+main(Cases)

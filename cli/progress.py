@@ -8,6 +8,10 @@ import time
 
 from cli.runner import Stop, end, say, start, wait
 
+# What ninja, Verilator and its makefiles say of themselves.
+NOISE = ("ninja: Entering directory", "ninja: no work to do", "- Verilator: ", "- V e r i l a t i o n",
+         "Archive ar ", "-- ")
+
 
 class Line:
     """The line: on a terminal it is written anew, elsewhere each tenth of the steps gives one, but
@@ -50,7 +54,7 @@ def build(words, log, check=True, env=None):
                 step = re.match(r"\[(\d+)/(\d+)\] (.*)", text)
                 if step:
                     line.show(int(step[1]), int(step[2]), step[3])
-                elif not text.startswith(("ninja: Entering directory", "ninja: no work to do")):
+                elif not text.startswith(NOISE):
                     line.clear()
                     print(text, end="", flush=True)
     except BaseException:

@@ -321,7 +321,7 @@ protected:
 };
 
 TEST_P(Hindered, WhoAddsBytesToEachPacketPreventsNoSession) {
-    for (uint8_t version : {LINK_VERSION, 0u})
+    for (uint8_t version : {uint8_t(LINK_VERSION), uint8_t(0)})
         for (bool bothCall : {false, true})
             for (int run = 0; run < 5; ++run) {
                 restart(bothCall);
@@ -331,7 +331,7 @@ TEST_P(Hindered, WhoAddsBytesToEachPacketPreventsNoSession) {
 }
 
 TEST_P(Hindered, WhoSendsBlindlyPreventsNoSession) {
-    for (uint8_t version : {LINK_VERSION, 0u})
+    for (uint8_t version : {uint8_t(LINK_VERSION), uint8_t(0)})
         for (int run = 0; run < 5; ++run) {
             restart(run % 2);
             uint64_t next = now;

@@ -5,7 +5,6 @@
 #include "ice_calls.h"
 #include "ice_loop.h"
 #include "ice_message.h"
-#include "ice_receiver.h"
 #include "ice_transport.h"
 
 #include <string.h>

@@ -3,7 +3,6 @@
  * ice_dispatch: brings a request to its servant, and the answer back.
  */
 #include "ice_dispatch.h"
-#include "ice_reply.h"
 #include "ice_transport.h"
 
 #include <string.h>

@@ -6,7 +6,6 @@
 #include "ice_calls.h"
 #include "ice_dispatch.h"
 #include "ice_message.h"
-#include "ice_receiver.h"
 #include "ice_transport.h"
 
 /* Opens a connection for calls, on the peer's first message. */

@@ -6,8 +6,8 @@
  * else a task that waits for a reply (a leader), as long as it waits. `receiver` and `servers`
  * change under the state lock only. A task that gives the role up wakes another that may want it.
  */
-#include "ice_receiver.h"
 #include "ice_calls.h"
+#include "ice_loop.h"
 #include "ice_transport.h"
 
 /* Gives the role up, and wakes a task that may want it; under the state lock. */

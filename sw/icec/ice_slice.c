@@ -7,7 +7,6 @@
  * the members, optional values behind them up to a mark.
  */
 #include "ice_slice.h"
-#include "ice_value.h"
 
 #define OPTIONAL_END 0xFF
 #define TAG_ESCAPE 30

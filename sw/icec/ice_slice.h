@@ -5,7 +5,7 @@
 #ifndef ICE_SLICE_H
 #define ICE_SLICE_H
 
-#include "ice_stream.h"
+#include "ice_value.h"
 
 /* The flags before a slice in encoding 1.1. Exceptions have none for the type: it is a string. */
 enum {
@@ -30,5 +30,15 @@ Ice_Int icec_readSliceEnd(Ice_InputStreamPtr is, Ice_Byte flags);
 void icec_finishSlice(Ice_OutputStreamPtr os, Ice_Int flags, Ice_Int size);
 /* Fills in the size of four bytes at `begin`; it counts itself. */
 void icec_patchSize(Ice_OutputStreamPtr os, Ice_Int begin);
+
+typedef struct Icec_SliceHead {
+    Ice_String id;
+    Ice_Int compactId;         /* -1: none */
+    const Ice_ValueType* type; /* 0: not known */
+    Ice_Bool isObject;         /* the base of all; it ends an instance of 1.0 */
+} Icec_SliceHead;
+
+/* Reads the head of an instance's slice. */
+void icec_startSlice(Ice_InputStreamPtr is, Icec_SliceHead* head);
 
 #endif

@@ -2,12 +2,13 @@
  *
  * ice_value_read: reads instances of classes from a stream. ice_value_write.c has their layout.
  */
-#include "ice_value_private.h"
+#include "ice_slice.h"
 
 #include <string.h>
 
 static void readTable(Ice_InputStreamPtr is);
 static void skip(Ice_InputStreamPtr is);
+static Ice_Int readInstance(Ice_InputStreamPtr is, Ice_Int number);
 
 struct Ice_LatePatch {
     struct Ice_LatePatch* next;
@@ -85,7 +86,7 @@ void Ice_InputStream_readValue(Ice_InputStreamPtr is, void* at, const Ice_ValueT
         setLater(is, at, number, expected);
         return;
     }
-    number = icec_readInstance(is, number);
+    number = readInstance(is, number);
     if (!is->failed)
         set(is, at, number, expected, 0);
 }
@@ -93,7 +94,7 @@ void Ice_InputStream_readValue(Ice_InputStreamPtr is, void* at, const Ice_ValueT
 static void skip(Ice_InputStreamPtr is) {
     Ice_Int number = Ice_InputStream_readSize(is);
     if (number != 0 && !(is->sliceFlags & ICE_SLICE_TABLE))
-        (void)icec_readInstance(is, number);
+        (void)readInstance(is, number);
 }
 
 /* Reads the table behind a slice: the instances that its members, the patches from patchBegin,
@@ -104,7 +105,7 @@ static void readTable(Ice_InputStreamPtr is) {
     Ice_Int last = values->patchEnd, i, p;
     values->patchBegin = last;
     for (i = 1; i <= count && !is->failed; ++i) {
-        Ice_Int number = icec_readInstance(is, Ice_InputStream_readSize(is));
+        Ice_Int number = readInstance(is, Ice_InputStream_readSize(is));
         for (p = first; p < last && !is->failed; ++p)
             if (values->patches[p].number == i)
                 set(is, values->patches[p].at, number, values->patches[p].expected, 0);
@@ -115,6 +116,62 @@ static void readTable(Ice_InputStreamPtr is) {
     values->patchBegin = first;
     values->patchEnd = first;
 }
+
+/* ---- slices of unknown types ---- */
+
+/* Keeps the current slice, in 1.1, and goes behind it. 0: it has no end, or there is no room. */
+static Ice_UnknownSlice* keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int compactId) {
+    Ice_Byte flags = is->sliceFlags, optionals = (flags & ICE_SLICE_OPTIONALS) != 0;
+    Ice_UnknownSlice* slice;
+    if (is->failed || is->sliceEnd - is->position < optionals) {
+        icec_failRead(is, ICE_FAILED_MALFORMED);
+        return 0;
+    }
+    slice = (Ice_UnknownSlice*)Ice_InputStream_allocate(is, 1, (Ice_Int)sizeof *slice);
+    if (!slice)
+        return 0;
+    memset(slice, 0, sizeof *slice);
+    slice->typeId = id;
+    slice->compactId = compactId;
+    slice->flags = flags & (ICE_SLICE_OPTIONALS | ICE_SLICE_LAST);
+    slice->data = is->data + is->position;
+    slice->size = is->sliceEnd - is->position - optionals; /* their end is written anew */
+    is->position = is->sliceEnd;
+    if (flags & ICE_SLICE_TABLE) {
+        Ice_Int count = Ice_InputStream_readSequence(is, 1), i;
+        void* room = Ice_InputStream_allocate(is, count, (Ice_Int)sizeof *slice->values);
+        memcpy(&slice->values, &room, sizeof room); /* its type has no name */
+        for (i = 0; i < count && !is->failed; ++i)
+            slice->values[i].number = readInstance(is, Ice_InputStream_readSize(is));
+        slice->count = is->failed ? 0 : count;
+    }
+    slice->nextRead = is->values->unknown;
+    is->values->unknown = slice;
+    return is->failed ? 0 : slice;
+}
+
+Ice_Bool Ice_InputStream_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_UnknownSlice** list) {
+    Ice_UnknownSlice* slice;
+    if (is->minor == 0 || is->failed || is->sliceEnd == 0)
+        return Ice_InputStream_skipSlice(is);
+    slice = keepSlice(is, id, -1);
+    while (*list)
+        list = &(*list)->next;
+    *list = slice;
+    return slice && !(slice->flags & ICE_SLICE_LAST) && is->position < is->size;
+}
+
+/* Sets the targets of kept slices; at the end of the message. */
+static void endUnknown(Ice_InputStreamPtr is) {
+    Ice_InputValues* values = is->values;
+    Ice_UnknownSlice* slice;
+    Ice_Int i;
+    for (slice = values->unknown; slice && !is->failed; slice = slice->nextRead)
+        for (i = 0; i < slice->count; ++i)
+            slice->values[i].value = values->known[slice->values[i].number - 1];
+}
+
+/* ---- instances ---- */
 
 /* Reads the last slice of an instance of 1.0: that of ::Ice::Object, with a size that is 0. */
 static void readEnd10(Ice_InputStreamPtr is) {
@@ -147,7 +204,7 @@ static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** 
             is->position = is->sliceEnd;
             continue;
         }
-        *list = icec_keepSlice(is, head.id, head.compactId);
+        *list = keepSlice(is, head.id, head.compactId);
         if (!*list)
             return 0;
         if ((*list)->flags & ICE_SLICE_LAST)
@@ -193,7 +250,9 @@ static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
     }
 }
 
-Ice_Int icec_readInstance(Ice_InputStreamPtr is, Ice_Int number) {
+/* Reads an instance's number on the wire; 1 precedes an instance. Returns the instance's number,
+ * from 1. */
+static Ice_Int readInstance(Ice_InputStreamPtr is, Ice_Int number) {
     Ice_InputValues* values = is->values;
     Ice_Byte flags = is->sliceFlags;
     Ice_Int sliceEnd = is->sliceEnd, patchBegin = values->patchBegin;
@@ -238,6 +297,6 @@ void Ice_InputStream_endValues(Ice_InputStreamPtr is) {
         set(is, values->patches[p].at, values->patches[p].number, values->patches[p].expected, 1);
     for (; values->late && !is->failed; values->late = values->late->next)
         set(is, values->late->at, values->late->number, values->late->expected, 1);
-    icec_endUnknown(is);
+    endUnknown(is);
     is->values = 0;
 }

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_value_slice: heads of received instances' slices, and kept slices.
+ * ice_value_slice: classes and their types, and the heads of received instances' slices.
  */
-#include "ice_value_private.h"
-
-#include <string.h>
+#include "ice_slice.h"
 
 static void noMembers(void* object, Ice_InputStreamPtr is) {
     (void)object, (void)is;
@@ -78,54 +76,4 @@ void icec_startSlice(Ice_InputStreamPtr is, Icec_SliceHead* head) {
         if (head->compactId >= 0 ? (*type)->compactId == head->compactId
                                  : Ice_String_equals(head->id, (*type)->id))
             head->type = *type;
-}
-
-Ice_UnknownSlice* icec_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int compactId) {
-    Ice_Byte flags = is->sliceFlags, optionals = (flags & ICE_SLICE_OPTIONALS) != 0;
-    Ice_UnknownSlice* slice;
-    if (is->failed || is->sliceEnd - is->position < optionals) {
-        icec_failRead(is, ICE_FAILED_MALFORMED);
-        return 0;
-    }
-    slice = (Ice_UnknownSlice*)Ice_InputStream_allocate(is, 1, (Ice_Int)sizeof *slice);
-    if (!slice)
-        return 0;
-    memset(slice, 0, sizeof *slice);
-    slice->typeId = id;
-    slice->compactId = compactId;
-    slice->flags = flags & (ICE_SLICE_OPTIONALS | ICE_SLICE_LAST);
-    slice->data = is->data + is->position;
-    slice->size = is->sliceEnd - is->position - optionals; /* their end is written anew */
-    is->position = is->sliceEnd;
-    if (flags & ICE_SLICE_TABLE) {
-        Ice_Int count = Ice_InputStream_readSequence(is, 1), i;
-        void* room = Ice_InputStream_allocate(is, count, (Ice_Int)sizeof *slice->values);
-        memcpy(&slice->values, &room, sizeof room); /* its type has no name */
-        for (i = 0; i < count && !is->failed; ++i)
-            slice->values[i].number = icec_readInstance(is, Ice_InputStream_readSize(is));
-        slice->count = is->failed ? 0 : count;
-    }
-    slice->nextRead = is->values->unknown;
-    is->values->unknown = slice;
-    return is->failed ? 0 : slice;
-}
-
-Ice_Bool Ice_InputStream_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_UnknownSlice** list) {
-    Ice_UnknownSlice* slice;
-    if (is->minor == 0 || is->failed || is->sliceEnd == 0)
-        return Ice_InputStream_skipSlice(is);
-    slice = icec_keepSlice(is, id, -1);
-    while (*list)
-        list = &(*list)->next;
-    *list = slice;
-    return slice && !(slice->flags & ICE_SLICE_LAST) && is->position < is->size;
-}
-
-void icec_endUnknown(Ice_InputStreamPtr is) {
-    Ice_InputValues* values = is->values;
-    Ice_UnknownSlice* slice;
-    Ice_Int i;
-    for (slice = values->unknown; slice && !is->failed; slice = slice->nextRead)
-        for (i = 0; i < slice->count; ++i)
-            slice->values[i].value = values->known[slice->values[i].number - 1];
 }

@@ -7,7 +7,6 @@
  * the number (from 1), and the instances behind all parameters.
  */
 #include "ice_slice.h"
-#include "ice_value.h"
 
 #include <string.h>
 

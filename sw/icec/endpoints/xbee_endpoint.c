@@ -21,30 +21,47 @@ static const Ice_Byte head[HEAD] = {
 #define EVENT(kind, channel) \
     (1U << (((U32)(kind) - ICE_EVENT_MESSAGE) * LINK_CHANNELS + (U32)(channel)))
 
-/* The task of the minimal run time does not use these: it polls the link itself while it waits. */
-static void lock(XBeeATEndpoint* self) {
+/* ---- several tasks ----
+ * The minimal run time has one, which polls the link itself while it waits: it needs none of this.
+ */
+
+/* Calls a function of the port. */
+static void tell(XBeeATEndpoint* self, void (*function)(void* context)) {
     if (ICEC_FULL)
-        self->port->lock(self->context);
+        function(self->context);
+}
+
+/* Records whether the link keeps a message that was not taken. Returns what was recorded before. */
+static int setHeld(XBeeATEndpoint* self, Ice_Byte held) {
+    int before = ICEC_FULL && self->held;
+    if (ICEC_FULL && held != before)
+        self->held = held;
+    return before;
+}
+
+/* Records the connection of the message that is being sent: one at a time, under ICE_LOCK_SEND. */
+static void setOffered(XBeeATEndpoint* self, int connection) {
+    if (ICEC_FULL)
+        self->offered = (Ice_Byte)connection;
+}
+
+static int isOffered(const XBeeATEndpoint* self, int connection) {
+    return !ICEC_FULL || self->offered == connection;
+}
+
+static void lock(XBeeATEndpoint* self) {
+    tell(self, self->port->lock);
 }
 
 static void unlock(XBeeATEndpoint* self) {
-    if (ICEC_FULL)
-        self->port->unlock(self->context);
+    tell(self, self->port->unlock);
 }
 
-static void kick(XBeeATEndpoint* self) {
-    if (ICEC_FULL)
-        self->port->kick(self->context);
-}
-
-static void signal(XBeeATEndpoint* self) {
-    if (ICEC_FULL)
-        self->port->signal(self->context);
-}
+/* ---- events ---- */
 
 static void report(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     self->events |= EVENT(kind, channel);
-    signal(self);
+    tell(self, self->port->signal);
 }
 
 /* Takes a report back. Returns 1 if it was not delivered yet. */
@@ -60,16 +77,15 @@ static int takeBack(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
 static void end(XBeeATEndpoint* self, int channel) {
     if (channel == XBEE_OWN_CHANNEL)
         self->ownOpen = 0;
-    if (ICEC_FULL && channel == self->offered)
-        self->offered = NOBODY;
+    if (isOffered(self, channel))
+        setOffered(self, NOBODY);
 }
 
 int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 size) {
     XBeeATEndpoint* self = context;
     /* Opening and closing come before it in order, so no other event can be pending. */
     if (!self->buffer || self->events) {
-        if (ICEC_FULL)
-            self->held = 1;
+        (void)setHeld(self, 1);
         return 1;
     }
     memcpy(self->buffer, data, size);
@@ -104,13 +120,11 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     U32 first = 0;
     lock(self);
     if (!self->events) {
-        int held = ICEC_FULL && self->held;
-        if (held)
-            self->held = 0;
+        int held = setHeld(self, 0);
         self->buffer = buffer;
         unlock(self);
         if (held)
-            kick(self);
+            tell(self, self->port->kick);
         (void)self->port->wait(self->context, timeoutMs);
         lock(self);
         self->buffer = 0;
@@ -142,8 +156,15 @@ static Link_Status openOwn(XBeeATEndpoint* self) {
 /* Returns whether the connection of the offered message has ended, seen by the receiver or not: its
  * channel may belong to another one by now. */
 static int hasEnded(const XBeeATEndpoint* self, int connection) {
-    return (self->events & EVENT(ICE_EVENT_CLOSED, connection)) ||
-           (ICEC_FULL && self->offered != connection);
+    return (self->events & EVENT(ICE_EVENT_CLOSED, connection)) || !isOffered(self, connection);
+}
+
+/* Ends a connection for whose message the link has no room: the minimal run time's caller may. */
+static void giveUp(XBeeATEndpoint* self, int connection) {
+    if (ICEC_FULL) {
+        (void)Link_closeChannel(self->link, connection);
+        XBeeATEndpoint_onChannel(self, connection, 0);
+    }
 }
 
 /* Sends, or opens the own channel (no message). While the link has no room it tries again, and in
@@ -153,8 +174,8 @@ static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* me
     Link_Status status;
     int tries = RETRIES;
     lock(self);
-    if (ICEC_FULL && message)
-        self->offered = (Ice_Byte)connection; /* one at a time: under ICE_LOCK_SEND */
+    if (message)
+        setOffered(self, connection);
     for (;;) {
         if (!message)
             status = openOwn(self);
@@ -162,19 +183,18 @@ static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* me
             status = LINK_CLOSED;
         else
             status = Link_send(self->link, connection, message, (U32)size, 0);
-        if (ICEC_FULL && status == LINK_FULL && message && !tries) {
-            (void)Link_closeChannel(self->link, connection);
-            XBeeATEndpoint_onChannel(self, connection, 0);
-        }
+        if (status == LINK_FULL && message && !tries)
+            giveUp(self, connection);
         unlock(self);
-        kick(self);
+        tell(self, self->port->kick);
         if (status != LINK_FULL || !tries--)
             break;
         (void)self->port->wait(self->context, 20);
         lock(self);
     }
     if (tries != RETRIES)
-        signal(self); /* this may have taken an event that the receiver waits for */
+        tell(self,
+             self->port->signal); /* this may have taken an event that the receiver waits for */
     return status == LINK_OK ? ICE_OK : status == LINK_TOO_LONG ? ICE_LIMIT : ICE_CONNECTION_LOST;
 }
 
@@ -199,7 +219,7 @@ static void closeChannel(void* context, int connection) {
         end(self, connection);
     }
     unlock(self);
-    kick(self);
+    tell(self, self->port->kick);
 }
 
 static Ice_Status listenTo(void* context, const char* options) {
@@ -255,7 +275,8 @@ static U32 nowMs(void* context) {
 }
 
 static void wakeUp(void* context) {
-    signal(context);
+    XBeeATEndpoint* self = context;
+    tell(self, self->port->signal);
 }
 
 void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoint* self, Link* link,

@@ -29,6 +29,8 @@ def operation(name, self, parameters, calls, servants):
         print(f"    {result.replace('*', '', 1)};")
     print("    Ice_ObjectPrx far = Bridge_far;\n    Ice_Status status;")
     print("    (void)self, (void)current;")
+    if own and name_of(own[-1]) == "ex":
+        print("    memset(ex, 0x55, sizeof *ex); /* the proxy must set all of it */")
     arguments = ["&far", *given, *("&" + name_of(p) for p in later)]
     print(f"    status = {call}({', '.join(arguments)});")
     if later:
@@ -54,7 +56,7 @@ def main():
                 operations[match[1]] = match.groups()
             elif match := CALL.match(flat):
                 calls[match[1]] = match[2]
-    print('#include "bridge.h"')
+    print('#include "bridge.h"\n\n#include <string.h>')
     for each in operations.values():
         operation(*each, calls, servants)
     print("\nIce_ObjectPtr Bridge_servant(int number) {\n    switch (number) {")

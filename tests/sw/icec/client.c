@@ -77,6 +77,7 @@ static int calls(void) {
     CHECK(Interop_ServicePrx_fail(&service, ICE_OK, &ex) == ICE_OK);
     CHECK(Interop_ServicePrx_fail(&service, ICE_UNKNOWN_EXCEPTION, &ex) == ICE_UNKNOWN_EXCEPTION);
     CHECK(Interop_ServicePrx_fail(&service, ICE_USER_EXCEPTION, &ex) == ICE_USER_EXCEPTION);
+    CHECK(ex.type == Interop_Service_fail_Failure);
     CHECK(Ice_String_equals(ex.u.Failure.reason, "as asked"));
     return 0;
 }

@@ -76,7 +76,7 @@ typedef struct Link_Statistics {
     U32 bytesSent, bytesReceived;       /* on the air, payload and overhead */
     U32 fragmentsResent;                /* data fragments sent more than once */
     U32 acksSent;                       /* alone or piggybacked */
-    U32 crcErrors, bytesSkipped;        /* dropped by resynchronisation */
+    U32 bytesSkipped;                   /* dropped by resynchronisation */
     U32 duplicates;                     /* fragments that had already arrived */
     U32 messagesSent, messagesReceived; /* delivered ones */
     U32 sessions;                       /* times the link came up */

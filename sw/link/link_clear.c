@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
  * link_clear: the codec without a key: frames end with a CRC.
- *
- * A side that has answered a HELLO stays in its old session until the first frame of the new one
- * arrives: a HELLO that was delayed on the air cannot end a session.
  */
 #include "link.h"
 
@@ -39,9 +36,8 @@ static Owner ownerOf(const Link* link, const U8* frame) {
                : NOBODY;
 }
 
-/* Tells whether a frame that the search has found may be believed. The search at every byte behind
- * something that was no frame might find one by chance; so there a frame counts only if it ends
- * where the bytes end, or a good one follows. Returns 1 yes, 0 no, -1 not known yet. */
+/* Tells whether a frame that the search has found may be believed, since it might be one by chance:
+ * if it ends where the bytes end, or a good one follows. Returns 1 yes, 0 no, -1 not known yet. */
 static int isConfirmed(const Link* link, const U8* next, U32 left, int isEnd) {
     U32 payload;
     if (left == 0)

@@ -11,9 +11,8 @@
 #define MOST_HEAD (LINK_HEAD_BYTES - 2U)
 
 #define TOKEN_REQUEST 0x80U /* bit 4: the channel's next id, else oneway; bits 3..0: slot */
-/* Bits 1..0: 0 oneway, 1 next id, 2 id follows; then length and head. */
-#define TOKEN_LITERAL 0xA0U
-#define TOKEN_REPLY 0xB0U /* bit 1: id follows, else next; bit 0: status and body as they are */
+#define TOKEN_LITERAL 0xA0U /* bits 1..0: 0 oneway, 1 next id, 2 id follows; length, head */
+#define TOKEN_REPLY 0xB0U   /* bit 1: id follows, else next; bit 0: status and body as they are */
 #define TOKEN_VALIDATE 0xC0U
 #define TOKEN_CLOSE 0xC1U /* or one more: with the compression byte set */
 #define TOKEN_AS_IT_IS 0xFFU
@@ -28,8 +27,7 @@ static int isMessage(const U8* m, U32 size, U32 type, U32 least) {
            link_get32(m + 10) == size;
 }
 
-/* Returns the length of a request's head, from its identity to its context; 0: the peer
- * cannot learn it. */
+/* Returns the length of a request's head, identity to context; 0: the peer cannot learn it. */
 static U32 headOf(const U8* m, U32 size) {
     U32 at = LINK_HEAD_AT;
     int strings;

@@ -4,10 +4,8 @@
  * afterwards.
  *
  * It is the only part of this layer that knows what an Ice message looks like ("The Ice Protocol"
- * in the manual of ZeroC Ice 3.7). Both sides keep, for each direction, the last LINK_HEADS heads
- * of requests (identity, facet, operation, mode, context, encoding) and each channel's last request
- * ids. A session delivers everything once and in order, so both tables stay equal by themselves.
- * The layer does not change a message that it does not recognise. Tokens: docs/link.md.
+ * in the manual of ZeroC Ice 3.7). It does not change one that it does not recognise. Tokens, and
+ * why both sides' tables stay equal: docs/link.md.
  */
 #ifndef LINK_COMPRESSION_H
 #define LINK_COMPRESSION_H

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_config: the numbers of the link layer that a project may want to change: here, or, for those
- * with #ifndef, on the compiler's command line. Layers with other numbers understand each other,
- * except where "both sides" is said. Times are in microseconds, limits in parentheses.
+ * link_config: the link layer's numbers that a project may want to change: here, or, for those with
+ * #ifndef, on the compiler's command line. Layers with other numbers understand each other, unless
+ * "both sides" is said. Times are in us, sizes in bytes, limits in parentheses.
  */
 #ifndef LINK_CONFIG_H
 #define LINK_CONFIG_H
 
-/* ---- what is built ---- */
 /* LINK_MINIMAL, if defined, chooses the minimal layer (minimal/link_minimal.h). */
 #ifdef LINK_MINIMAL
 #define LINK_IS_FULL 0
@@ -18,54 +17,43 @@
 #ifndef LINK_SECURE /* 1: Link_setKey, frames that are encrypted and authenticated; 0: left out */
 #define LINK_SECURE LINK_IS_FULL
 #endif
-
 #ifndef LINK_TAG /* bytes of such a frame's tag, both sides (4..16; docs/link.md: risk of 4) */
 #define LINK_TAG 8U
 #endif
-
 #ifndef LINK_OUTCOMES /* minimal layer, 1: it calls `outcome` and `writable` */
 #define LINK_OUTCOMES 0
 #endif
-
-/* ---- memory, in bytes unless said ---- */
 #ifndef LINK_MAX_MESSAGE /* of one message (1..32,000); a longer one ends the session */
 #define LINK_MAX_MESSAGE (LINK_IS_FULL ? 8192U : 1024U)
 #endif
-
 #ifndef LINK_WINDOW /* fragments in flight (a power of two, 8..64) */
 #define LINK_WINDOW 64U
 #endif
-
 /* Queue of outgoing messages, of all channels (a power of two, more than LINK_MAX_MESSAGE and
  * LINK_RESERVE together, at most 32,768). */
 #ifndef LINK_SEND_BYTES
 #define LINK_SEND_BYTES 16384U
 #endif
-
-/* Bytes of it that are for messages of one fragment only, so that they need not wait for room
- * behind long ones. */
+/* Bytes of it for messages of one fragment only, so that they do not wait behind long ones. */
 #define LINK_RESERVE 256U
 
 #ifndef LINK_SEND_MESSAGES /* messages, openings and closings in that queue (1..128) */
 #define LINK_SEND_MESSAGES 32U
 #endif
-
 #ifndef LINK_LONGEST /* minimal layer: payload of a frame; 90 where the modem encrypts (27..95) */
 #define LINK_LONGEST 95U
 #endif
 
-/* ---- retransmission: time-out before the first round trip, and its limits ---- */
+/* Time-out of retransmission before the first round trip, and its limits. */
 #define LINK_RTO_FIRST 600000U
 #define LINK_RTO_MIN 60000U /* (more than a round trip takes) */
 #define LINK_RTO_MAX 2000000U
 
-/* ---- acknowledgements ---- */
-/* Silence behind data before one that nobody asked for, and the same inside a message, whose rest
- * will come (less than LINK_RTO_MIN, or each fragment goes out twice; LINK_RTO_FIRST). */
+/* Silence behind data before an acknowledgement that nobody asked for (less than LINK_RTO_MIN, or
+ * fragments go out twice), and the same inside a message, whose rest will come. */
 #define LINK_ACK_DELAY 30000U
 #define LINK_ACK_WITHIN 80000U
 
-/* ---- a session's begin and end ---- */
 #define LINK_HELLO_FIRST 300000U /* between HELLOs, at least, */
 #define LINK_HELLO_LAST 2000000U /* and at most */
 #define LINK_PING_AFTER 5000000U /* silence after which the peer is asked, */
@@ -93,7 +81,6 @@
 #define LINK_MOST_FAILURES (LINK_TAG >= 8U ? 0x40000000U : 0x10000U)
 #endif
 
-/* ---- bytes that come in ---- */
 /* Silence after which half a frame is dropped. */
 #define LINK_FRAME_GAP (LINK_IS_FULL ? 25000U : 0x6200U)
 
@@ -102,24 +89,20 @@
 #define LINK_ROUND_EVERY 30U
 #define LINK_ROUNDS_AT_ONCE 300U
 
-/* ---- how often Link_poll looks again, at most ---- */
+/* How often Link_poll looks again, at most. */
 #define LINK_POLL_EVERY 1000U  /* while the radio has no room */
 #define LINK_OFFER_EVERY 5000U /* while the program does not take a message */
 
-/* ---- pacing by the modem (docs/models.md) ---- */
-/* A modem's time for a packet without its bytes: its own work, carrier sense, the random wait,
- * headers, the MAC's acknowledgement; where the modem encrypts; and for a byte on the air. */
+/* Pacing (docs/models.md): a modem's time for a packet without its bytes, the same where it
+ * encrypts, and for a byte on the air. */
 #define LINK_PACKET_US 7250U
 #define LINK_PACKET_ENCRYPTED_US 13450U
 #define LINK_BYTE_US 32U
 
-/* Back-off of the next packet after a packet was heard, in quarters of the airtime: the modem must
- * handle that packet, and the two may collide. Another one heard in the second half of the wait
- * ends it, so two sides that talk at once take turns. */
+/* Back-off of the next packet after one was heard, in quarters of the airtime (docs/link.md). */
 #define LINK_HEARD_QUARTERS 7U
 
-/* Extra wait of a packet behind a short one: a modem that still holds the short one joins the two,
- * and cuts all later ones in the middle. */
+/* Extra wait behind a short packet, or a modem that still holds it joins the two. */
 #define LINK_SHORT_MARGIN 1500U
 
 #define LINK_SILENCE 4U /* characters of silence after which the modem sends a short packet */

@@ -67,13 +67,10 @@ void link_accept(Link* link, const U8* frame, U32 size) {
 /* The first byte behind a frame may be of an unknown session, whose peer gets an answer, but not
  * too often. */
 void link_skip(Link* link, const U8* frame, U32 left) {
-    if (!link->parser.outOfStep) {
-        ++link->statistics.crcErrors;
-        if (left >= LINK_CODEC(link)->overhead && link->state == LINK_STATE_IDLE &&
-            link->now - link->pingAt >= LINK_HELLO_FIRST) {
-            link->pingAt = link->now;
-            LINK_CODEC(link)->call(link, frame);
-        }
+    if (!link->parser.outOfStep && left >= LINK_CODEC(link)->overhead &&
+        link->state == LINK_STATE_IDLE && link->now - link->pingAt >= LINK_HELLO_FIRST) {
+        link->pingAt = link->now;
+        LINK_CODEC(link)->call(link, frame);
     }
     link->parser.outOfStep = 1;
     ++link->statistics.bytesSkipped;

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * link_keyed: makes sessions with a peer that has the key, and sees that it is alive.
- *
- * A HELLO proves the key, and may be a recording: so it changes nothing here, and costs an answer
- * only. HELLO-ACK and CONFIRM have the receiver's own nonce, and prove that their sender lives
- * (docs/link.md).
+ * A HELLO may be a recording: it changes nothing here, and costs an answer only (docs/link.md).
  */
 #include "link.h"
 

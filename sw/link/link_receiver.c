@@ -8,9 +8,7 @@
 
 void link_resetReceiver(Link* link) {
     Link_Receiver* receiver = &link->receiver;
-    U32 i;
-    for (i = 0; i < LINK_WINDOW; ++i)
-        link->slots[i].isUsed = 0;
+    memset(link->slots, 0, sizeof link->slots);
     receiver->next = 0;
     receiver->isAssembling = receiver->isHeld = receiver->waiting = 0;
     receiver->ackDue = receiver->ackNow = 0;

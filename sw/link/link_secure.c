@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * link_secure: encrypts and authenticates frames by Ascon-AEAD128, and derives the keys.
- *
- * All parts of a frame that are not encrypted belong to its nonce: the full numbers of which it has
- * the low bytes, the header, and the payload in clear. So a fragment that goes out again with
- * another flag or acknowledgement has another nonce, the same nonce always means the same frame,
- * and a frame that is replayed in the place of other numbers is wrong.
+ * All parts of a frame that are not encrypted belong to its nonce (docs/link.md).
  */
 #include "link_wire.h"
 

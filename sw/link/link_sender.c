@@ -2,18 +2,11 @@
  *
  * link_sender: cuts messages into fragments, keeps a window of them in flight, and repeats lost
  * ones.
- *
- * The way to the peer keeps the order. So a transmission without acknowledgement is lost when a
- * later one has been acknowledged; only the last ones need the timer.
  */
 #include "link.h"
 
 #define IN_FLIGHT(sender) ((sender)->next - (sender)->base)
 #define FRAGMENT(link, seq) (&(link)->window[LINK_SLOT(seq)])
-
-/* Longest wait of the timer while the window is full, a round trip in microseconds: only an answer
- * lets the sender go on then. */
-#define FULL_WAIT(sender) ((sender)->srtt < LINK_RTO_MIN ? LINK_RTO_MIN : (sender)->srtt)
 
 Link_Entry* link_offer(Link* link, U32 flags, U32 size) {
     Link_Entry* entry = link_enqueue(&link->queue, flags, size, link->longest);
@@ -79,9 +72,8 @@ static int cut(Link* link) {
     return 1;
 }
 
-/* Returns n: one of n transmissions asks for an acknowledgement, which costs a turn on a
- * half-duplex air. n is great while nothing is lost; but a loss stops the window, and short
- * messages fill the queue before the window. */
+/* Returns n: one of n transmissions asks for an acknowledgement, which costs a turn of the air:
+ * more often where losses stop the window, or short messages fill the queue before it. */
 static U32 askEvery(const Link* link) {
     if (link->sender.isLossy)
         return 5U;
@@ -128,6 +120,7 @@ static int transmit(Link* link, U32 seq) {
     Link_Sender* sender = &link->sender;
     Link_Fragment* f = FRAGMENT(link, seq);
     U8 frame[LINK_MAX_FRAME];
+    U32 wait = sender->rto;
     int isAsked = mustAsk(link, seq);
     U32 header = build(link, seq, isAsked, frame);
     if (!link_sendFrame(link, frame, header, seq))
@@ -142,9 +135,9 @@ static int transmit(Link* link, U32 seq) {
     f->sentAt = link->now;
     f->state = LINK_SENT;
     sender->unasked = (U8)(isAsked ? 0U : sender->unasked + 1U);
-    sender->timerAt = link->now + sender->rto;
-    if (IN_FLIGHT(sender) >= sender->fullCredit && FULL_WAIT(sender) < sender->rto)
-        sender->timerAt = link->now + FULL_WAIT(sender);
+    if (IN_FLIGHT(sender) >= sender->fullCredit && wait > sender->srtt) /* only an answer helps */
+        wait = sender->srtt < LINK_RTO_MIN ? LINK_RTO_MIN : sender->srtt;
+    sender->timerAt = link->now + wait;
     return 1;
 }
 
@@ -170,9 +163,7 @@ static void sample(Link* link, U32 roundTrip) {
 /* Sets the time-out anew, since the peer has answered. */
 static void setTimer(Link* link) {
     Link_Sender* sender = &link->sender;
-    U32 rto = sender->srtt + 2U * sender->rttvar;
-    if (!sender->hasSample)
-        rto = LINK_RTO_FIRST;
+    U32 rto = sender->hasSample ? sender->srtt + 2U * sender->rttvar : LINK_RTO_FIRST;
     if (rto < LINK_RTO_MIN)
         rto = LINK_RTO_MIN;
     if (rto > LINK_RTO_MAX)
@@ -259,8 +250,6 @@ void link_pollSender(Link* link) {
     if (sender->base != sender->next && !LINK_BEFORE(link->now, sender->timerAt)) {
         FRAGMENT(link, sender->base)->state = LINK_TO_SEND; /* its answer tells about the others */
         sender->hasWork = sender->isLate = 1;
-        /* The radio loses packets, not a congested network: doubling would only prolong a bad end.
-         */
         sender->rto += sender->rto / 4U;
         if (sender->rto > LINK_RTO_MAX)
             sender->rto = LINK_RTO_MAX;

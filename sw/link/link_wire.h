@@ -64,18 +64,15 @@ typedef enum Link_Kind {
 #define LINK_KIND_OF(frame) \
     ((frame)[0] & LINK_CONTROL ? (Link_Kind)((frame)[2] >> 5) : LINK_KIND_DATA)
 
-/* Both sides make a session's key of their two nonces: bits 31..29 are the epoch,
- * bits 15..0 the seed of the CRCs. HELLO, HELLO-ACK and RST belong to no session: their seed is all
- * ones. */
+/* A session's key, of both nonces: bits 31..29 are the epoch, bits 15..0 the seed of the CRCs. The
+ * seed of HELLO, HELLO-ACK and RST is all ones. */
 #define LINK_KEY_EPOCH(key) ((key) >> 29)
 #define LINK_EPOCH_KEY(epoch) ((U32)(epoch) << 29)
 #define LINK_NO_SEED 0xFFFFU
 #define LINK_KIND_CONFIRM LINK_KIND_RST /* with a key: the answer to HELLO-ACK; there is no RST */
 #define LINK_IS_HANDSHAKE(kind) ((U32)(kind) - (U32)LINK_KIND_HELLO <= 2U)
 
-/* A message of more than LINK_UNCHECKED bytes ends with LINK_CHECK bytes of check. A fragment whose
- * end was lost and replaced by the beginning of the next one has a good CRC once in 65,536 times:
- * the check over the whole message finds these. */
+/* A message of more than LINK_UNCHECKED bytes ends with LINK_CHECK bytes of check. */
 #define LINK_CHECK_AT(p) ((p)[0] | (U32)(p)[1] << 8)
 #define LINK_UNCHECKED 20U
 #define LINK_CHECK 2U
@@ -133,8 +130,7 @@ U32 link_extend(U32 expected, U32 byte);
 U32 link_protect(U8* frame, U32 header, const U8* key, U32 number, U32 acked);
 
 /* Decrypts the payload of a whole frame, of LINK_SECURE_OVERHEAD bytes at least, in its place, and
- * gives its header the payload's length. Returns 0: its tag is wrong, the decrypted
- * bytes are wiped, and the header is unchanged. */
+ * gives its header the payload's length. Returns 0: its tag is wrong; then the text is wiped. */
 int link_unprotect(U8* frame, const U8* key, U32 number, U32 acked);
 
 #endif

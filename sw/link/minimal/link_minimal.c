@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * link_minimal: the link layer of a side that only answers, in 1.3 KiB of code. It has the full
- * layer's wire format and functions, works by stop and wait, and queues one message.
- *
- * It sends no HELLO: the peer's makes the session; another one ends it, and so do 9 s without a
- * good frame, BYE and RST. Every fragment asks for an acknowledgement at once and goes out again
- * when its timer expires. A message that the program does not take is not acknowledged, so its last
- * fragment comes again. After a bad frame the layer looks for the next one behind a silence, which
- * comes when the peer waits for an acknowledgement.
+ * layer's wire format and functions, works by stop and wait, and queues one message (docs/link.md).
  */
 #include "link.h"
 

@@ -9,8 +9,8 @@ import time
 from cli.runner import Stop, end, say, start, wait
 
 # What ninja, Verilator and its makefiles say of themselves.
-NOISE = ("ninja: Entering directory", "ninja: no work to do", "- Verilator: ", "- V e r i l a t i o n",
-         "Archive ar ", "-- ")
+NOISE = ("ninja: Entering directory", "ninja: no work to do", "- Verilator: ", "- V e r i l a t",
+         "Archive ar ", "-- GLOB", "-- Configuring", "-- Generating", "-- Build files")
 
 
 class Line:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""keys: private keys, in ~/.config/icesoc (XDG_CONFIG_HOME), outside of what is built; certificates.
+"""keys: certificates, and private keys in ~/.config/icesoc (XDG_CONFIG_HOME), outside of what is
+built.
 
 All trees of a user share them, a copy of a tree has none, and no command removes one."""
 import filecmp

@@ -10,7 +10,8 @@ def vector(width):
 
 
 def pin_name(name, port):
-    """Returns the port's name as the platform has pins: in small letters, with _i or _o at its end."""
+    """Returns the port's name as the platform has pins: in small letters, with _i or _o at its
+    end."""
     base = re.sub(r"^[io]_|_[io]$", "", name.lower())
     return base + ("_i" if port["direction"] == "input" else "_o")
 

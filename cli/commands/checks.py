@@ -136,7 +136,8 @@ def soak(values):
 def bench(values):
     """measure everything that has a figure (tests/bench), write build/bench/*.json and a page"""
     listed = Path("tests/bench/CMakeLists.txt")
-    there = re.findall(r"^ *icesoc_bench\((\w+)", listed.read_text(), re.M) if listed.exists() else []
+    text = listed.read_text() if listed.exists() else ""
+    there = re.findall(r"^ *icesoc_bench\((\w+)", text, re.M)
     for name in values.only:
         if name not in there:
             raise Stop(f"there is no bench '{name}': {', '.join(there)}", 2)

@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""make_trace: prints an example of a trace: out to 300 m at 10 m/s, most of a minute there, and back.
+"""make_trace: prints a trace: out to 300 m at 10 m/s, most of a minute there, and back.
 
-It is made up, not recorded: free space and Rayleigh fading of the four tries of a packet, as in rf_weather.h, and bursts
-as frequent as "bursts, long" (docs/models.md), drawn anew each second."""
+It is made up, not recorded: free space and Rayleigh fading of the four tries of a packet, as in
+rf_weather.h, and bursts as frequent as "bursts, long" (docs/models.md), drawn anew each second."""
 import math
 import random
 import sys
 
 SENSITIVITY, FIRST_METRE = -92, 40  # dBm, dB
-BEGIN, END, INSIDE = 0.01 * 10, 0.08 * 10, 0.9  # of bursts, in a second's ten packets or so; share lost in one
+# Of bursts, in a second's ten packets or so; share lost in one
+BEGIN, END, INSIDE = 0.01 * 10, 0.08 * 10, 0.9
 
 
 def rows(draw):

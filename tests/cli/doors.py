@@ -323,7 +323,8 @@ class Lists(unittest.TestCase):
     def test_a_certificate_is_signed_by_the_authority_beside_it(self):
         with tempfile.TemporaryDirectory() as work:
             for name in ("pilot", "observer"):
-                self.assertEqual(ask("./icesoc", "key", f"{work}/{name}.pem", "--certificate")[0], 0)
+                made = ask("./icesoc", "key", f"{work}/{name}.pem", "--certificate")
+                self.assertEqual(made[0], 0)
             status, said = ask("openssl", "verify", "-CAfile", f"{work}/authority.pem",
                                f"{work}/pilot.pem", f"{work}/observer.pem")
             self.assertEqual((status, said.count("OK")), (0, 2), said)

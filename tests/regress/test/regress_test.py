@@ -21,7 +21,8 @@ RUDE = {
     "Mute": ("exit 3", "^1 x  failed without a word$"),
     "Red": (r"printf '\033[31mx.c:1: error: red\033[0m\n'; exit 1", "^1 x  x.c:1: error: red$"),
     "Leaves": ("setsid sleep 1000 >/dev/null 2>&1 &",
-               r"^A test has left behind, and it was ended: .*sleep 1000 \(in build/main/tests/room"),
+               r"^A test has left behind, and it was ended: .*sleep 1000 "
+               r"\(in build/main/tests/room\)$"),
     "Writes": ("echo >../../../../written", "^Changed while the tests ran, .*: written$")}
 # As tools name a wrong line: Verilator, the pages' test, GHDL, GCC, slice2c, a sanitizer.
 TOOLS = ("%Error: bus/counter.v:5:9: wrong", "lamp.vhd:4:5:@0ms:(assertion failure): dark",
@@ -444,7 +445,8 @@ add_custom_target(test_w)
               '{"ns":1500000000,"slot":3,"events":1}\n{"ns":1900000000,"slot":1,"events":1}\n'
               '{"ns":2')
         write("ended", ENDED)
-        self.tests('add_test(NAME mission.x COMMAND sh -c "cat ${CMAKE_SOURCE_DIR}/ended; exit 1")\n'
+        self.tests("set(ended ${CMAKE_SOURCE_DIR}/ended)\n"
+                   'add_test(NAME mission.x COMMAND sh -c "cat ${ended}; exit 1")\n'
                    "set_tests_properties(mission.x PROPERTIES LABELS e2e)\n")
         self.regress("--name mission --waves 3", 1)
         self.has("^1 x  mission: the vision core's result differs from the C[+][+] reference: 141 ")

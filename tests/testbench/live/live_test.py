@@ -63,7 +63,8 @@ class Cases(Script):
             r"hwengine1.getResult\(\)", r"Station.vehicleState\(uptimeMs",
             '<td>THRESHOLD</td><td class="n">0x00000018</td>',
             ">WIDTH 96</span>.*>HEIGHT 64</span>",  # fields of the vision core's FRAME_SIZE
-            ">DONE cleared</span>",  # an event of the vision core, to which the firmware wrote a one
+            # An event of the vision core, to which the firmware wrote a one:
+            ">DONE cleared</span>",
             'y="[0-9]*">UAV_radioTask</text>',
             "the result equals the C[+][+] reference, bit by bit", "corners, the strongest",
             '<text x="0" y="[0-9]*">vision</text>',

@@ -16,7 +16,8 @@ fail() {
     exit 1
 }
 "$program" --help | grep -q 'Two XBee' || fail "--help"
-for wrong in '--loss 2' '--a ZZ=1' '--a MY=G' '--a CH=1' '--b MY' '--nonsense' '--trace /dev/null' "--link-a $work/none/x"; do
+for wrong in '--loss 2' '--a ZZ=1' '--a MY=G' '--a CH=1' '--b MY' '--nonsense' \
+    '--trace /dev/null' "--link-a $work/none/x"; do
     # shellcheck disable=SC2086
     if "$program" $wrong --duration 0.1 >"$work/out" 2>&1; then fail "took $wrong"; fi
     [ -s "$work/out" ] || fail "said nothing about $wrong"
@@ -32,7 +33,8 @@ stty -F "$work/a" 115200 raw -echo
 stty -F "$work/b" 115200 raw -echo
 exec 3<>"$work/a" 4<>"$work/b"
 sleep 0.2
-# bash's own read would change the terminal's settings. The limit only keeps a broken program from hanging.
+# bash's own read would change the terminal's settings. The limit only keeps a broken program from
+# hanging.
 expect() { # file-descriptor text what
     answer=$(timeout 60 head -c ${#2} <&"$1" | tr '\r' '~') || true
     [ "$answer" = "${2//$'\r'/'~'}" ] || fail "$3: '$answer'"

@@ -14,6 +14,7 @@
 #   made     by make, with its variables
 #   edif     the netlist for ISE is whole
 #   page     the page in Chromium: tables, chart, sorting, looking inside, differences; one file, no network
+# It is shell because it runs the command as a user does; its parts are tested by parts_test.py.
 set -eu
 program=$1 source=$2 case=$3 kept=$4
 work=$(mktemp -d)

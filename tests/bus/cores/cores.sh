@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: MIT
 # cores: source-folder generated-folder work-folder   Lists of cores: what the chip is with them, lint of soc.v
 # with each, and errors.
+# It is shell because a case is a list and the words that programs (coremap, Verilator, GCC, xmllint,
+# Yosys) say of it.
 set -eu
 source=$1 gen=$2 work=$3 coremap=$1/bus/coremap.py regmap=$1/bus/regmap.py
 data=$(cd "$(dirname "$0")/data" && pwd)

@@ -1,0 +1,377 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""mission_test: missions as users start them.
+
+Usage: mission_test.py case out-folder build-folder
+"""
+import contextlib
+import json
+import os
+import pty
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from script import TREE, Script, fresh, main, write  # noqa: E402
+
+CASE, BUILD = sys.argv[1], Path(sys.argv[3]).resolve()
+IMAGE = Path("/usr/share/xplanet/images/earth.jpg")
+# The modem's default guard time of a second passes four times: only cases that test it, and
+# vehicles with a flash memory, use it.
+GUARD = 1000 if CASE in ("plain", "stopped", "update") else 20
+SIMULATOR, PING = BUILD / "testbench/sim/icesoc-sim", BUILD / "sw/ground/ground_ping"
+CLIENTS = TREE / "sw/ground/clients"
+INTERFACE = ("--plugin", BUILD / "ground", "--slice", TREE / "sw/apps/uav/Autopilot.ice")
+UPDATES = (CLIENTS / "update.py", "new.update", "--device", "{device}", "--plugin",
+           BUILD / "ground", "--slice", TREE / "sw/apps/uav/Update.ice")
+LOADER, FIRMWARE = BUILD / "firmware/loader.elf", BUILD / "firmware/uav.elf"
+DEVICE = 'hwengine1:xbee-at -d "{device}" -a 0x0001 '
+
+
+class Cases(Script):
+    def setUp(self):
+        self.out = fresh(sys.argv[2])
+        os.environ["XDG_CONFIG_HOME"] = str(BUILD / "config")  # keys of the tests' own
+        self.keys = BUILD / "config/icesoc"
+
+    def words(self, *options, out=None, image=IMAGE):
+        return (TREE / "icesoc", "run", "--built", "--build", BUILD, "--out", out or self.out,
+                "--size", "96x64", "--guard", str(GUARD), "--image", image, *options)
+
+    def fly(self, *options, out=None):
+        """A mission that succeeds."""
+        self.ask(*self.words(*options, out=out))
+        for name in "after.png", "before.png":
+            self.assertTrue(((out or self.out) / name).stat().st_size)
+        self.has("isAlive", file=(out or self.out) / "report.md")
+
+    def fails(self, said, *words):
+        """A command fails, with this text and no Python traceback."""
+        self.ask(*words, status=None)
+        self.has(said)
+        self.lacks("Traceback")
+
+    def refused(self, said, *options, **how):
+        self.fails(said, *self.words(*options, **how))
+
+    def simulate(self, *words, options=(), **how):
+        """A vehicle in the simulator, and a program of the ground."""
+        self.ask(SIMULATOR, "--image", IMAGE, "--size", "96x64", "--out", self.out, "--guard",
+                 str(GUARD), *options, "--", *words, **how)
+
+    def replay(self, folder, *options, **how):
+        """Repeats the flight in a folder from its recording."""
+        self.ask(SIMULATOR, "--out", "replay", "--replay", folder, *options, **how)
+
+    def test_plain(self):
+        """Secure by default; only the user may read its recording and its key."""
+        self.make("run", f"IMAGE={IMAGE}", "SIZE=96x64", f"OUT={self.out}", build=BUILD)
+        for name in "after.png", "before.png":
+            self.assertTrue(Path(name).stat().st_size)
+        self.has("isAlive", file="report.md")
+        self.has("121 corners leave much of the core untried: make ip-test IP=vision")
+        # It waits for the modem's set-up first, then for the vehicle.
+        steps = re.findall("modem ready on .* after [0-9]* ms|link connecting|link up, secure|"
+                           "the UAV has .* s to answer", self.said)
+        self.assertEqual([step.split()[0] for step in steps][:4], ["the", "modem", "link", "link"])
+        self.has(f'"key":"{self.keys}/demo.key"', file="flight.jsonl")
+        for file in Path("flight.jsonl"), self.keys / "demo.key":
+            self.assertEqual(file.stat().st_mode & 0o777, 0o600)
+
+    def test_open(self):
+        """Without encryption, by an option."""
+        self.fly("--open")
+        self.has('"key":""', file="flight.jsonl")
+        write("any.key", "")
+        self.refused("give one of them", "--open", "--key", "any.key")
+
+    def test_keys(self):
+        """Messages of the ground, the vehicle and their start about unfit keys."""
+        os.umask(0o077)
+        write("a.key", "000102030405060708090a0b0c0d0e0f\n")
+        write("b.key", "000102030405060708090a0b0c0d0e0e\n")
+        write("short.key", "0001020304\n")
+        shutil.copy("a.key", "others.key")
+        os.chmod("others.key", 0o644)
+        for name, said in (("short", "32 hexadecimal digits"), ("others", "chmod 600"),
+                           ("no", "icesoc key '.*no.key' makes one")):
+            self.refused(said, "--key", f"{name}.key")
+        # No session with this vehicle begins with another key, or with none.
+        for key in self.out / "b.key", "":
+            self.simulate(PING, DEVICE + "-g {guard} -t 3000", "1", f"--XBeeAT.KeyFile={key}",
+                          "--Ice.RetryIntervals=-1", options=("--key", "a.key"), status=None)
+            self.has("Timeout")
+        for name, said in ("others", "chmod 600"), ("no", "openssl rand"):
+            self.fails(said, PING, "hwengine1:xbee-at -d /dev/null", "1",
+                       f"--XBeeAT.KeyFile={self.out}/{name}.key")
+
+    def test_loss(self):
+        """Again from its recording, in which a user looks for the cause."""
+        self.fly("--loss", "0.1", "--seed", os.environ.get("SEED", "1"))
+        self.replay(self.out, "--from", "0.5", "--to", "0.51")
+        self.has("bit by bit the flight that was recorded")
+        # Recordings cut short by a kill, altered, of another file, repeated into their own folder;
+        # waveforms need another build.
+        flight = Path("flight.jsonl").read_text()
+        for folder, text in (("cut", flight[:len(flight) // 2]),
+                             ("other", flight.replace('"up":"2b', '"up":"2c'))):
+            write(f"{folder}/flight.jsonl", text)
+            shutil.copy("before.png", folder)
+        self.replay("cut")
+        self.has("the recording ends here")
+        replay = SIMULATOR, "--out", "replay", "--replay"
+        self.fails("not the flight that was recorded: it departs between", *replay, "other")
+        write("other/flight.jsonl", '{"no": "flight"}\n')
+        self.fails("is no recording of a flight: line 1", *replay, "other")
+        self.fails("the replay needs a folder of its own", SIMULATOR, "--replay", self.out,
+                   "--out", self.out)
+        self.fails("flown by the firmware's host build", *replay, self.out, "--gdb", "0")
+        self.fails("writes no waveforms", *replay, self.out, "--wave", "wave.fst")
+        self.fails("no flight was recorded in", TREE / "icesoc", "replay", "--built", "--build",
+                   BUILD, "nowhere", "--out", "replay")
+
+    def test_cores(self):
+        """Every core that has a part in a mission."""
+        listed = re.findall(r"^\w+", (TREE / "ip/cores.list").read_text(), re.M)
+        parts = [core for core in listed if (TREE / f"ip/{core}/ground.py").exists()]
+        self.fly("--cores", " ".join(parts))
+        self.has(*(rf"{part}\." for part in parts), file="report.md")
+        self.refused("has no part in a mission", "--cores", "nonesuch", out=self.out / "none")
+
+    def test_sensor(self):
+        """The picture goes through the camera's pins and the vision core, and never through the
+        processor."""
+        self.fly("--camera", "--cpu", "m3")
+        self.has(r"camera.capture\(96, 64\)", file="report.md")
+
+    def test_m3(self):
+        """The ARM binary; its replay shows the program's tasks in the 2 ms around the first event
+        of a core."""
+        self.fly("--cpu", "m3")
+        self.has('"task":"UAV_radioTask"', file="events.jsonl")
+        first = re.search(r'\{"events":\d*,"ns":(\d*)\d,"slot":[2-9]\}',
+                          Path("events.jsonl").read_text())
+        start, wave = int(first[1]), self.out / "wave"
+        os.environ.update(WAVE=str(wave), WAVE_FROM=str(start - 20000),
+                          WAVE_TO=str(start + 200000))
+        self.replay(self.out, "--from", "0.5", "--to", "0.51")
+        self.has("bit by bit the flight that was recorded")
+        self.has("^sEXTI0_Handler.program.interrupt$", "^sPendSV_Handler.program.function$",
+                 "^sUAV_coresTask.program.task$", "^sFSMC_read.*.program.function$",
+                 file=f"{wave}.program.vcd")
+
+    def patched(self, name, symbol, offset, value):
+        """The firmware with other bytes at a symbol."""
+        shutil.copy(FIRMWARE, name)
+        table = subprocess.check_output(["arm-none-eabi-nm", name], text=True)
+        headers = subprocess.check_output(["arm-none-eabi-objdump", "-h", name], text=True)
+        text = re.search(r" \.text +\w+ +(\w+) +\w+ +(\w+)", headers)
+        at = int(re.search(rf"^(\w+) [RT] {symbol}$", table, re.M)[1], 16)
+        with open(name, "r+b") as file:
+            file.seek(at + offset - int(text[1], 16) + int(text[2], 16))
+            file.write(value)
+        self.ask(BUILD / "sw/target/stamp_image", name)
+
+    def test_other_chip(self):
+        """Firmware built for other registers of the vision core: it does not serve the core and
+        tells the ground why."""
+        table = (BUILD / "gen/soc_cores.c").read_text().split("hw_contracts[")[1]
+        lines = table.split("\n")[1:]
+        row = 1 + next(n for n, line in enumerate(lines) if '"vision"' in line)
+        self.patched("other.elf", "hw_contracts", 20 * row - 4, b"\xff" * 4)  # a row's last word
+        self.refused("no object 'hwengine1'; vision: its registers have the hash 0x.* in the chip, "
+                     "0xFFFFFFFF in the firmware: build both anew from one ip/cores.list, the "
+                     "firmware by make firmware", "--cpu", "m3", "--firmware", "other.elf")
+
+    def pack(self, *words):
+        self.ask(BUILD / "sw/target/pack_update", *words)
+
+    def update(self, file, *said, status=0):
+        self.ask(*self.words("--cpu", "m3", "--update", file), status=status)
+        self.has(*said)
+        self.lacks("Traceback")
+
+    def test_update(self):
+        """New firmware: a wrong file, a vehicle with another key, a loss of power during it, a slot
+        that must be erased, a crash; good and bad bitstreams."""
+        self.update(TREE / "Makefile", "no 32-bit ARM ELF file", status=None)
+        flash = Path("flash.bin")
+        vehicle = "vehicle", LOADER, FIRMWARE, "1"
+        self.pack(*vehicle, "other.key", flash)
+        before = flash.read_bytes()
+        self.update(FIRMWARE, "not signed with this vehicle's key", status=None)
+        self.assertEqual(flash.read_bytes(), before)
+        Path("cut.update").write_bytes(Path("new.update").read_bytes()[:50000])
+        self.fails("is cut short", CLIENTS / "update.py", "cut.update", "--slice", UPDATES[-1])
+        self.pack(*vehicle, self.keys / "update.key", flash)
+        self.ask(SIMULATOR, "--image", IMAGE, "--size", "96x64", "--out", self.out, "--cpu", "m3",
+                 "--flash", flash, "--duration", "8", "--", *UPDATES, status=None)
+        self.has("the vehicle runs version 1$")
+        self.assertNotEqual(flash.read_bytes(), before)
+        for _ in range(2):
+            self.update(FIRMWARE, "runs and is confirmed", "1 software, 0 watchdog")
+        # 256 KiB into three full sectors, within 30 s of air.
+        self.ask(TREE / "tests/e2e/mission/big_firmware.sh", BUILD, "big.elf", "262144")
+        self.pack(*vehicle, self.keys / "update.key", flash)
+        with open(flash, "r+b") as file:
+            file.seek(4 * 128 * 1024)
+            file.write(os.urandom(3 * 128 * 1024))
+        self.update("big.elf", "runs and is confirmed")
+        sent = re.search(r"sent 262144 bytes in (.*)", self.said)[1]
+        self.assertLessEqual(float(re.search(r"[\d.]+", sent)[0]), 30)
+        # Firmware that crashes at its start: the vehicle returns to the one before by itself.
+        self.patched("crashes.elf", "Firmware_run", 0, b"\xff\xde")  # UDF
+        self.update("crashes.elf", "is signed and whole; it starts", "was started and went back",
+                    "2 software, 0 watchdog", status=None)
+        # Bitstreams: no bitstream at all, one that the FPGA refuses, one that nobody confirms, and
+        # one of full size.
+        self.update(BUILD / "firmware/uav.bin", "has a sync word, AA 99 55 66", status=None)
+        stand_in = BUILD / "testbench/cpu/stand_in_bitstream"
+        self.ask(stand_in, "new.bin", "2", "10000")
+        damaged = bytearray(Path("new.bin").read_bytes())
+        damaged[9000] = ord("x")
+        Path("damaged.bin").write_bytes(damaged)
+        self.update("damaged.bin", "the FPGA did not take it", status=None)
+        self.pack("bitstream", "new.bin", str(int(time.time())), self.keys / "update.key",
+                  "new.update")
+        self.ask(SIMULATOR, "--image", IMAGE, "--size", "96x64", "--out", self.out, "--cpu", "m3",
+                 "--flash", flash, "--fpga-flash", "fpga.bin", "--", *UPDATES, "--rehearse")
+        self.has("runs, and is not confirmed", "the vehicle runs version 1$")
+        self.ask(stand_in, "full.bin", "3")
+        for bits in "new.bin", "full.bin":
+            self.update(bits, "runs and is confirmed")
+
+    def test_cpp(self):
+        """The C++11 library of the plugin, a C++ client, and a proxy that goes through its string
+        form."""
+        self.simulate(PING, DEVICE + "-p 2 -g {guard} -t 300000", "3")
+        self.has("it is a ::Autopilot::HwProcessingEngine", "-a 0x1 .*-p 2")
+
+    def test_slow(self):
+        """A machine that is four times too slow: the ground uses the simulator's clock, so it finds
+        the modem as fast."""
+        self.fly()  # for its flight.json
+        Path("after.png").unlink()
+        self.ask(SIMULATOR, "--flight", "flight.json", "--speed", "0.25", "--", "/usr/bin/python3",
+                 CLIENTS / "mission.py", "flight.json", "--device", "{device}", "--frame",
+                 "{frame}", "--status", "{status}", *INTERFACE, "--trace", "2")
+        self.assertEqual(len(re.findall(r".*\+\+\+ at", self.said)), 2)
+        self.assertTrue(Path("after.png").stat().st_size)
+
+    @contextlib.contextmanager
+    def until(self, said, *words):
+        """A process that has said this."""
+        with open("log", "w") as log:
+            process = subprocess.Popen(words, stdout=log, stderr=log)
+        try:
+            while said not in Path("log").read_text():
+                self.assertIsNone(process.poll(), Path("log").read_text())
+                time.sleep(0.02)
+            yield process
+        finally:
+            process.terminate()
+            process.wait()
+
+    def test_stopped(self):
+        """The ground's program is stopped for four seconds during the set-up: simulated time waits
+        for it."""
+        with self.until("+++ at 9600 baud: OK", SIMULATOR, "--image", IMAGE, "--size", "96x64",
+                        "--out", self.out, "--guard", str(GUARD), "--", PING,
+                        DEVICE + "-t 300000", "3", "--XBeeAT.Trace=2") as simulator:
+            ground = int(subprocess.check_output(["pgrep", "-P", str(simulator.pid)]))
+            os.kill(ground, signal.SIGSTOP)
+            time.sleep(4)
+            os.kill(ground, signal.SIGCONT)
+            self.assertEqual(simulator.wait(), 0, Path("log").read_text())
+        seconds = re.search(r": ([\d.]+) s simulated", Path("log").read_text())
+        self.assertLess(float(seconds[1]), 5)
+
+    def test_encrypted(self):
+        """Both modems by the same AES key: the controller sets one, the endpoint's -k the other."""
+        key = "00112233445566778899AABBCCDDEEFF"
+        self.simulate(PING, f"{DEVICE}-k {key} -g {{guard}} -t 60000", "3",
+                      options=("--modem-key", key))
+        self.has("it is a ::Autopilot::HwProcessingEngine")
+        self.lacks(key)
+
+    def test_new_key(self):
+        """A key follows another over the link, and the old one opens nothing any more."""
+        os.umask(0o077)
+        write("the.key", "0x0001 000102030405060708090a0b0c0d0e0f\n")
+        self.simulate("/usr/bin/python3", CLIENTS / "change_key.py", "--device", "{device}",
+                      "--guard", "{guard}", "--key", "the.key", *INTERFACE,
+                      options=("--key", "the.key"))
+        self.has("have a new key")
+        self.assertEqual(Path("the.key").stat().st_mode & 0o777, 0o600)
+        self.has("^0x0001 [0-9a-f]{32}$", file="the.key")
+        self.lacks("000102030405", "the.key")
+
+    def test_gateway(self):
+        """Two stock clients at once, through TCP."""
+        self.simulate(TREE / "tests/e2e/mission/gateway.sh", BUILD, "{device}", "{guard}", self.out)
+
+    def test_twice(self):
+        with open("a.log", "w") as log:
+            first = subprocess.Popen(self.words(out=self.out / "a"), stdout=log, stderr=log)
+        self.fly("--threshold", "50", out=self.out / "b")
+        self.assertEqual(first.wait(), 0, Path("a.log").read_text())
+        self.assertTrue(Path("a/after.png").stat().st_size)
+        self.has("isAlive", file="a/report.md")
+
+    def test_odd_names(self):
+        """A folder's name has special characters of the shell, of make and of the simulator."""
+        hit = self.out / "oops"
+        odd = f"a'b \"c\" {{device}} {{out}}x `touch {hit}` $(touch {hit})"
+        self.fly(out=self.out / odd)
+        self.assertFalse(hit.exists())
+
+    def test_picture_bad(self):
+        write("mine/report.md", "mine\n")
+        shutil.copy("mine/report.md", ".")
+        os.symlink(self.out / "mine/report.md", "calls.jsonl")
+        write("bad.png", "this is no picture\n")
+        self.refused("is no picture that can be read", image="bad.png")
+        self.lacks("127.0.0.1")  # a page's address before what is refused
+        # A refused start changes nothing in the folder.
+        for name in "report.md", "calls.jsonl":
+            self.assertEqual(Path(name).read_text(), "mine\n")
+        self.refused("WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8, not '333x111'",
+                     "--size", "333x111")
+        self.refused("not '96x64k'", "--size", "96x64k")
+
+    def described(self, *words):
+        """The ground's program, with a flight's description but without a simulator."""
+        write("flight.json", json.dumps(
+            dict(threshold=24, loss=0, guard=20, patience=300, key="", camera=False, cores=[],
+                 out=str(self.out))))
+        return ("/usr/bin/python3", CLIENTS / "mission.py", "flight.json", *INTERFACE, "--frame",
+                "none", *words)
+
+    def test_device_missing(self):
+        self.fails("cannot open serial port '/dev/no-such-port'",
+                   *self.described("--device", "/dev/no-such-port"))
+
+    def test_modem_silent(self):
+        _, slave = pty.openpty()  # which only this test holds: no modem answers
+        self.fails("no modem answers on", *self.described("--device", os.ttyname(slave)))
+
+    def test_interrupted(self):
+        with self.until("setting the ground", *self.words()) as run:
+            self.refused("another flight is under way")
+            # The simulator; Ctrl-C would reach all of them.
+            self.ask("pkill", "-INT", "-f", f"icesoc-sim.*{self.out}")
+            self.assertEqual(run.wait(), 130, Path("log").read_text())
+        # The command that it prints shows its end.
+        span = re.search(f"^Its end as a waveform: make run REPLAY='{self.out}' "
+                         r"FROM=([\d.]+) TO=([\d.]+)$", Path("log").read_text(), re.M)
+        self.replay(self.out, "--from", span[1], "--to", span[2])
+        self.has("the recording ends here|bit by bit")
+        self.ask("pgrep", "-f", f"mission.py.*{self.out}", status=1)  # no ground station runs
+
+
+main(Cases)

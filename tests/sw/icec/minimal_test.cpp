@@ -8,40 +8,6 @@ namespace {
 
 class Minimal : public Pair {};
 
-TEST_F(Minimal, ResultsAndUserExceptionsComeBack) {
-    servant_.run = [](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-        Ice_OutputStream_writeInt(os, 2 * Ice_InputStream_readInt(is));
-        return str(current.operation) == "raise" ? ICE_USER_EXCEPTION : ICE_OK;
-    };
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
-    Ice_Int out = 0;
-    EXPECT_EQ(call(prx, "double", 21, &out), ICE_OK);
-    EXPECT_EQ(out, 42);
-    EXPECT_EQ(call(prx, "raise", 21, &out), ICE_USER_EXCEPTION);
-    Ice_Bool is = 0;
-    EXPECT_EQ(Ice_ObjectPrx_ice_isA(&prx, "::Test::Thing", &is), ICE_OK);
-    EXPECT_EQ(is, 1);
-    EXPECT_EQ(Ice_ObjectPrx_ice_isA(&prx, "::Test::Thin", &is), ICE_OK);
-    EXPECT_EQ(is, 0);
-}
-
-TEST_F(Minimal, FailuresOfServantsKeepTheirKind) {
-    const std::pair<Ice_Status, Ice_Status> kinds[] = {
-        {ICE_OPERATION_NOT_EXIST, ICE_OPERATION_NOT_EXIST},
-        {ICE_OBJECT_NOT_EXIST, ICE_OBJECT_NOT_EXIST},
-        {ICE_UNKNOWN_USER_EXCEPTION, ICE_UNKNOWN_USER_EXCEPTION},
-        {ICE_MARSHAL, ICE_UNKNOWN_LOCAL_EXCEPTION},
-        {ICE_PROTOCOL, ICE_UNKNOWN_LOCAL_EXCEPTION},
-        {ICE_LIMIT, ICE_UNKNOWN_EXCEPTION}};
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
-    for (const auto& kind : kinds) {
-        servant_.run = [&](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-            return kind.first;
-        };
-        EXPECT_EQ(call(prx, "op"), kind.second) << kind.first;
-    }
-}
-
 TEST_F(Minimal, ParametersThatLackAndResultsThatDoNotFitAreUnknownLocalExceptions) {
     Ice_ObjectPrx prx = here().proxy("thing:loop");
     servant_.run = [](const Ice_Current&, Ice_InputStreamPtr is, Ice_OutputStreamPtr) {
@@ -57,15 +23,6 @@ TEST_F(Minimal, ParametersThatLackAndResultsThatDoNotFitAreUnknownLocalException
     };
     EXPECT_EQ(call(prx, "op"), ICE_UNKNOWN_LOCAL_EXCEPTION);
     EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OK);
-}
-
-TEST_F(Minimal, OnewayCallsReturnAtOnceAndRefuseResults) {
-    Ice_ObjectPrx prx = here().proxy("thing -o:loop");
-    Ice_Int out = 0;
-    EXPECT_EQ(call(prx, "op", 1), ICE_OK);
-    EXPECT_EQ(call(prx, "op", 1, &out), ICE_TWOWAY_ONLY);
-    settle();
-    EXPECT_EQ(servant_.calls, 1);
 }
 
 TEST_F(Minimal, CallsFromWithinAnOperationAreRefused) {

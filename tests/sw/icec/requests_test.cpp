@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// requests_test: messages as bytes: answered, malformed, refused or skipped; the same for the full
-// and for the minimal run time.
+// requests_test: calls, and messages as bytes: answered, malformed, refused or skipped; the same
+// for the full and for the minimal run time.
 
 #include "wire.h"
 
@@ -9,6 +9,60 @@
 #include <random>
 
 namespace {
+
+TEST_F(Calls, ResultsComeBack) {
+    servant_.run = [](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+        Ice_OutputStream_writeInt(os, 2 * Ice_InputStream_readInt(is));
+        return str(current.operation) == "raise" ? ICE_USER_EXCEPTION : ICE_OK;
+    };
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    Ice_Int out = 0;
+    for (int i = 0; i < 1000; ++i) {
+        ASSERT_EQ(call(prx, "double", i, &out), ICE_OK);
+        ASSERT_EQ(out, 2 * i);
+    }
+    EXPECT_EQ(servant_.calls, 1000);
+    EXPECT_EQ(call(prx, "raise", 21, &out), ICE_USER_EXCEPTION);
+}
+
+TEST_F(Calls, TypesAreAskedForByName) {
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    Ice_Bool is = 0;
+    EXPECT_EQ(Ice_ObjectPrx_ice_isA(&prx, "::Test::Thing", &is), ICE_OK);
+    EXPECT_EQ(is, 1);
+    EXPECT_EQ(Ice_ObjectPrx_ice_isA(&prx, "::Test::Thin", &is), ICE_OK);
+    EXPECT_EQ(is, 0);
+}
+
+TEST_F(Calls, FailuresOfServantsKeepTheirKind) {
+    const std::pair<Ice_Status, Ice_Status> kinds[] = {
+        {ICE_OPERATION_NOT_EXIST, ICE_OPERATION_NOT_EXIST},
+        {ICE_OBJECT_NOT_EXIST, ICE_OBJECT_NOT_EXIST},
+        {ICE_USER_EXCEPTION, ICE_USER_EXCEPTION},
+        {ICE_UNKNOWN_USER_EXCEPTION, ICE_UNKNOWN_USER_EXCEPTION},
+        {ICE_MARSHAL, ICE_UNKNOWN_LOCAL_EXCEPTION},
+        {ICE_PROTOCOL, ICE_UNKNOWN_LOCAL_EXCEPTION},
+        {ICE_UNKNOWN_EXCEPTION, ICE_UNKNOWN_EXCEPTION},
+        {ICE_TIMEOUT, ICE_UNKNOWN_EXCEPTION},
+        {ICE_LIMIT, ICE_UNKNOWN_EXCEPTION}};
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    for (const auto& kind : kinds) {
+        servant_.run = [&](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
+            return kind.first;
+        };
+        EXPECT_EQ(call(prx, "op"), kind.second) << kind.first;
+    }
+}
+
+TEST_F(Calls, OnewayCallsReturnAtOnceAndRefuseResults) {
+    Ice_ObjectPrx prx = here().proxy("thing -o:loop");
+    Ice_Int out = 0;
+    EXPECT_EQ(call(prx, "op", 0, &out), ICE_TWOWAY_ONLY);
+    for (int i = 0; i < 10; ++i)
+        EXPECT_EQ(call(prx, "op"), ICE_OK);
+    settle();
+    EXPECT_EQ(servant_.calls, 10);
+}
 
 // The figures of the protocol's description: a ping is 39 bytes out and 25 back.
 TEST_F(Wire, APingIsAnsweredAsIceDoes) {

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 #
 # setup: installs the Debian packages that `make run` needs and the machine lacks; on a terminal it
-# asks before it calls sudo.
+# asks before it calls sudo. It is shell because an empty Debian has no Python.
 # Usage: cmake/setup.sh [--tests] [--check]
 # --tests: also those for tests, reports and debuggers
 # --check: only lists missing ones (exit status 1 if there are any)

@@ -216,7 +216,7 @@ class Cases(Script):
         for _ in range(2):
             self.update(FIRMWARE, "runs and is confirmed", "1 software, 0 watchdog")
         # 256 KiB into three full sectors, within 30 s of air.
-        self.ask(TREE / "tests/e2e/mission/big_firmware.sh", BUILD, "big.elf", "262144")
+        self.ask(TREE / "tests/e2e/mission/big_firmware.sh", BUILD, self.out / "big.elf", "262144")
         self.pack(*vehicle, self.keys / "update.key", flash)
         with open(flash, "r+b") as file:
             file.seek(4 * 128 * 1024)

@@ -28,6 +28,7 @@ cd "$work" # names of files are relative, since they are part of a design's iden
 project=project
 cp -r "$source/tests/synth/project" "$project"
 mkdir -p "$project/bus" "$project/ip"
+touch "$project/bus/none" "$project/ip/none" # git keeps no empty folder
 cp -r "$source/synth/yosys" "$source/synth/report" "$project/synth/"
 mkdir gen out
 [ "$case" = counts ] || cp -r "$kept" out/cache

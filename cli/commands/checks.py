@@ -124,7 +124,7 @@ def soak(values):
     run([
         build / "tests/sw/ground/test_engine", "--gtest_brief=1",
         "--gtest_filter=Engine.RandomBytes*"], env=noise)
-    run([build / "tests/hdl/modem/test_modem_soak", "--gtest_brief=1"],
+    run([build / "tests/hdl/test_modem_soak", "--gtest_brief=1"],
         env={**seed, "SOAK_BYTES": values.fuzzed})
 
 

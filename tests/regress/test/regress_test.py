@@ -218,6 +218,7 @@ class Cases(Project):
                    "add_test(NAME test_u.Unit COMMAND test_u)\n")
         self.ask("ninja", "-C", "build/main", "test_u")
         self.regress("--name 'a.One|u.Unit'")
+        write("docs/page.md", "0\n")  # no commit has the tree that was noted
         commit("two")
         edit("tests/room/t.sh", *BREAK)
         self.regress("--name b.Bad", 1)  # never passed: files that are not committed

@@ -12,7 +12,7 @@ from cli import flight, keys, version
 from cli.command import COMMANDS, command
 from cli.options import PATH, SWITCH, TEXT, Option
 from cli.runner import run, say
-from cli.table import Table
+from cli.table import SKIPPED, Table
 
 
 @command("setup", [
@@ -85,7 +85,7 @@ def run_all(only):
                                        stdin=nothing, stdout=file, stderr=file)
         lines = log.read_text(errors="replace").strip().splitlines() or [""]
         table.add(name, status, time.monotonic() - begin, lines[-1].strip()[:100])
-        if status:
+        if status not in (0, SKIPPED):
             say("\n".join("    " + line for line in lines[-20:]))
     return table.end()
 

@@ -52,7 +52,7 @@ void plainTag(std::string& s) {
 void apart(std::string& s) {
     replaceAll(s, "*/", "* /");
     replaceAll(s, "/*", "/ *");
-    replaceAll(s, "??/", "?? /");
+    replaceAll(s, "?\?/", "?? /");
 }
 
 } // namespace

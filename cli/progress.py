@@ -48,7 +48,7 @@ def build(words, log, check=True, env=None):
     process = start(words, env={**(env or {}), "NINJA_STATUS": "[%f/%t] "}, text=True,
                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace")
     try:
-        with open(log, "w") as file, process.stdout as said:
+        with open(log, "w", buffering=1) as file, process.stdout as said:
             for text in said:
                 file.write(text)
                 step = re.match(r"\[(\d+)/(\d+)\] (.*)", text)

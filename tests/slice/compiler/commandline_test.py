@@ -133,6 +133,9 @@ class Cases(Script):
         self.slice2c(f"{one} one/other/fir.ice", 1, "'fir.ice' is the name of one/fir.ice too")
         self.slice2c(f"{one} -Ione one/user.ice")
         self.assertFalse(Path("fir.h").exists())
+        self.slice2c("--hw-c x crlf.ice", 1,
+                     r"crlf.ice:1:1: error: there is no interface with \[\":hw\"\] in this file")
+        self.assertFalse(Path("crlf.h").exists())
 
     def checksums(self):
         """They are those of slice2cpp."""

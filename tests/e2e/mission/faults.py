@@ -335,9 +335,11 @@ def main():
                     runs += [pool.submit(undergo, args, fault, name, seed, number, moment)
                              for number, moment in enumerate(moments)]
         failed = sum(not run.result() for run in runs)
+    if not runs:
+        return 77
     print("faults: %d moments of seeds %d to %d, %d failed" %
           (len(runs), args.seed, args.seed + args.seeds - 1, failed))
-    return 1 if failed else 0 if runs else 77
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 #include "Interop.h"
 #include "tcp_endpoint.h"
 
+#include <netdb.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -27,7 +28,10 @@ static int slow;
 static Ice_Status object(const char* proxy, Ice_ObjectPrxPtr prx) {
     char text[128];
     Ice_Status status;
-    sprintf(text, "%.40s:tcp -h localhost -p %.8s", proxy, port);
+    /* localhost has two addresses, of which the server listens at one. An empty machine does not
+     * know that name. */
+    sprintf(text, "%.40s:tcp -h %s -p %.8s", proxy,
+            gethostbyname("localhost") ? "localhost" : "127.0.0.1", port);
     status = Ice_Communicator_stringToProxy(&ic, text, prx);
     prx->timeoutMs = 120000;
 #ifndef ICEC_MINIMAL

@@ -186,7 +186,9 @@ void Link_poll(Link* link, U32 nowUs) {
     link->now = nowUs;
     pollInput(link);
     link_pollSession(link);
-    if (link->state == LINK_STATE_UP && !link_pollReceiver(link))
+    /* What the peer has not acknowledged for so long it shall not carry out later. */
+    if (link->state == LINK_STATE_UP &&
+        (!link_pollReceiver(link) || link_age(link) >= LINK_AGE_LAST))
         link_abort(link);
     if (link->state != LINK_STATE_UP)
         return;

@@ -67,6 +67,11 @@
 #define LINK_PROOF_EVERY 1000000U
 #define LINK_PROOF_LAST 27000000U
 
+/* Age of a fragment without acknowledgement at which the session ends, so that nobody carries out
+ * later what its caller has given up (more than LINK_PING_AFTER, below 2^31). The minimal layer
+ * ends it under a key, after LINK_DEAD_AFTER. */
+#define LINK_AGE_LAST 27000000U
+
 /* Under a key: between answers to HELLO while a session is up; and how long the nonce of such an
  * answer can make a session. */
 #define LINK_ANSWER_EVERY 100000U

@@ -96,10 +96,10 @@ typedef enum Link_FragmentState { LINK_TO_SEND, LINK_SENT, LINK_ACKED } Link_Fra
 /* A fragment that was cut from the queue, until it is acknowledged in order. */
 typedef struct Link_Fragment {
     Link_Piece piece;
-    U32 sentAt; /* time of its last transmission */
-    U32 order;  /* number of its last transmission */
-    U8 tries;   /* 0, 1, more */
-    U8 state;   /* Link_FragmentState */
+    U32 firstAt, sentAt; /* times of its first and its last transmission */
+    U32 order;           /* number of its last transmission */
+    U8 tries;            /* 0, 1, more */
+    U8 state;            /* Link_FragmentState */
 } Link_Fragment;
 
 typedef struct Link_Sender {
@@ -218,6 +218,9 @@ Link_Entry* link_offer(Link* link, U32 flags, U32 size);
 void link_resetSender(Link* link);
 /* `bitmap`: so many bytes, as in the frame. */
 void link_onAck(Link* link, U32 cumulative, U32 credit, const U8* bitmap, U32 size);
+/* Returns how long ago the oldest unacknowledged fragment was first sent, in microseconds; 0: all
+ * that was sent is acknowledged. */
+U32 link_age(const Link* link);
 void link_pollSender(Link* link);
 
 /* link_session: handshake, reboots, and a peer that has vanished. */

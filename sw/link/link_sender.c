@@ -129,6 +129,8 @@ static int transmit(Link* link, U32 seq) {
         link_ackIsSent(link);
     if (f->tries)
         ++link->statistics.fragmentsResent;
+    else
+        f->firstAt = link->now;
     if (f->tries < 2U)
         ++f->tries;
     f->order = ++sender->order;
@@ -242,6 +244,12 @@ static int nextFragment(Link* link, U32* seq) {
     return cut(link);
 }
 
+U32 link_age(const Link* link) {
+    const Link_Sender* sender = &link->sender;
+    const Link_Fragment* oldest = FRAGMENT(link, sender->base);
+    return IN_FLIGHT(sender) && oldest->tries ? link->now - oldest->firstAt : 0;
+}
+
 void link_pollSender(Link* link) {
     Link_Sender* sender = &link->sender;
     U32 seq;
@@ -253,6 +261,8 @@ void link_pollSender(Link* link) {
         sender->rto += sender->rto / 4U;
         if (sender->rto > LINK_RTO_MAX)
             sender->rto = LINK_RTO_MAX;
+        if (link_age(link) >= LINK_PING_AFTER) /* or the session ends before long */
+            sender->rto = LINK_PING_EVERY;
         sender->timerAt = link->now + sender->rto;
     }
     while (sender->hasWork && link_isOpen(link)) {

@@ -209,6 +209,10 @@ void Link_poll(Link* link, U32 nowUs) {
         link_lose(link);
         return;
     }
+    if (LINK_IS_SECURE(link) && link->flags && nowUs - link->cutAt >= LINK_DEAD_AFTER) {
+        Link_stop(link, nowUs);
+        return;
+    }
     if (link->ackDue) {
         link->ackDue = 0;
         link->frame[LINK_HEADER] = 1; /* credit */
@@ -218,6 +222,8 @@ void Link_poll(Link* link, U32 nowUs) {
     if (!link->flags) {
         link->flags = (U8)cut(link);
         link->timerAt = nowUs;
+        if (LINK_SECURE)
+            link->cutAt = nowUs;
     }
     if (link->flags && !LINK_BEFORE(nowUs, link->timerAt)) {
         link->timerAt = nowUs + link->retryUs;

@@ -56,6 +56,7 @@ struct Link {
     const Link_Port* port;
     void* context;
     U32 tag;
+    U32 cutAt; /* with a key: when the fragment in flight was first sent */
     U8 input[LINK_INPUT_BYTES];
     U8 frame[LINK_MAX_FRAME]; /* the frame going out */
     U8 out[LINK_MAX_MESSAGE + LINK_CHECK];

@@ -285,6 +285,42 @@ TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
     }
 }
 
+// Who lets all pass but the fragments of one side's message, and brings them later: their sender
+// has been told by then, and nobody takes them.
+TEST_P(Attacked, AMessageThatIsHeldBackIsReportedAndNeverTaken) {
+    for (bool isFromA : {true, false}) {
+        Side &from = isFromA ? a : b, &to = isFromA ? b : a;
+        ASSERT_TRUE(connect());
+        from.open(1);
+        run(500'000);
+        from.outcomes.clear(), to.received.clear();
+        ASSERT_EQ(from.send(1, {1, 2, 3}, 1), LINK_OK);
+        std::vector<Bytes> held;
+        auto isOfMessage = [](const Side::Packet& packet) {
+            const int kind = kindOf(framesOf(packet.bytes).front());
+            return kind >= LINK_KIND_PIGGYBACK;
+        };
+        auto hold = [&] {
+            for (auto& packet : from.air)
+                if (isOfMessage(packet))
+                    held.push_back(packet.bytes);
+            from.air.erase(std::remove_if(from.air.begin(), from.air.end(), isOfMessage),
+                           from.air.end());
+        };
+        const uint64_t start = now;
+        ASSERT_TRUE(until([&] { return hold(), !from.outcomes.empty(); }, 60'000'000));
+        EXPECT_EQ(from.outcomes[1], LINK_UNKNOWN);
+        const uint64_t age = isFromA || !isMinimal() ? 27'000'000 : 0x890000;
+        EXPECT_NEAR(double(now - start), double(age), 300'000);
+        until([&] { return hold(), false; }, 2'000'000);
+        ASSERT_FALSE(held.empty());
+        for (const Bytes& packet : held)
+            attack(to, packet);
+        run(1'000'000);
+        EXPECT_TRUE(to.received.empty()) << (isFromA ? "from A" : "from B");
+    }
+}
+
 // An attack on new sessions: the attacker hears the traffic and adds 20 bytes to each packet, or
 // sends them blindly. They are a byte of no frame and a seeming HELLO, of this version or another.
 class Hindered : public Attacked {

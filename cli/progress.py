@@ -8,7 +8,7 @@ import time
 
 from cli.runner import Stop, end, say, start, wait
 
-# What ninja, Verilator and its makefiles say of themselves.
+# Beginnings of lines in which CMake, ninja, Verilator and its makefiles report on themselves.
 NOISE = ("ninja: Entering directory", "ninja: no work to do", "- Verilator: ", "- V e r i l a t",
          "Archive ar ", "-- GLOB", "-- Configuring", "-- Generating", "-- Build files")
 

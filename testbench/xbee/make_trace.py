@@ -9,7 +9,7 @@ import random
 import sys
 
 SENSITIVITY, FIRST_METRE = -92, 40  # dBm, dB
-# Of bursts, in a second's ten packets or so; share lost in one
+# Chances that a burst begins and ends in a second, of about ten packets; its share of lost ones
 BEGIN, END, INSIDE = 0.01 * 10, 0.08 * 10, 0.9
 
 

@@ -117,7 +117,7 @@ class Values(Work):
                          ask("make", "-s", "run", "OPEN=0", "KEY=Makefile", "OUT=/proc/none")[1])
 
 
-# What a person may type, and a part of the answer.
+# Commands that are mistyped, each with a part of the answer.
 MISTAKES = {
     "./icesoc rnu": "there is no command 'rnu'; did you mean run?",
     "./icesoc core nwe": "core has no command 'nwe'; did you mean new?",

@@ -67,7 +67,8 @@ for variant in '' $variants; do
     checks="$checks log variant $(each "$variant"); design -load read; $(elaboration "$variant")
         proc; opt; check -assert; select -assert-none t:\$dlatch;"
 done
-# As make coverage builds it; not always: a signal must have a use besides
+# The design with cover points, which make coverage builds, is linted in addition: a signal must
+# have a use without them, too.
 verilate '' '-DCOVER_POINTS --coverage --assert -Wno-SYNCASYNCNET'
 # One process: its start costs more than a variant.
 yosys -q -p "$read_file design -save read; $checks"

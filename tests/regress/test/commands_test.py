@@ -106,7 +106,7 @@ class Cases(Project):
 
     def test_commands_radio(self):
         """Moments of what takes hours."""
-        # Of the two that run test_chip_soak, which is a test itself, one has it do something.
+        # soak and fly both run test_chip_soak, which is a test itself; here only fly does.
         os.environ["GTEST_FILTER"] = "-ChipSoak*"
         self.user("soak MINUTES=0.01 FUZZED=1000")
         self.has("^modem controller: 1000 bytes of noise", "^link layer: 10000 bytes of noise")

@@ -24,7 +24,7 @@ RUDE = {
                r"^A test has left behind, and it was ended: .*sleep 1000 "
                r"\(in build/main/tests/room\)$"),
     "Writes": ("echo >../../../../written", "^Changed while the tests ran, .*: written$")}
-# As tools name a wrong line: Verilator, the pages' test, GHDL, GCC, slice2c, a sanitizer.
+# Messages about a wrong line: of Verilator, GHDL, GCC, slice2c, a sanitizer.
 TOOLS = ("%Error: bus/counter.v:5:9: wrong", "lamp.vhd:4:5:@0ms:(assertion failure): dark",
          "twice.c:3:5: warning: ISO C90", "Lamp.ice:1:36: error: no Colour",
          "SUMMARY: AddressSanitizer: leak")
@@ -142,7 +142,7 @@ class Cases(Project):
         self.regress("--name test_r --jobs 4", 1)
         self.has("^2 passed, 7 failed, 0 skipped", "^1 x  Unable to find executable: /none$",
                  *(said for _, said in RUDE.values()))
-        # On a disk that is full: a file of 250 KB is one.
+        # A limit of 250 KB on files stands for a full disk.
         self.ask("sh", "-c", "trap '' XFSZ; ulimit -f 500; exec $0 --name test_a", REGRESS,
                  status=2)
         self.has("^2 passed, 0 failed",

@@ -119,7 +119,7 @@ def reverse():
                         ("START", "START_AGAIN")):
         assert at[name] == at[again], (name, at[name], again, at[again])
     assert at["TICK2"][0] < at["TICK1"][0] < at["END"][0], "ticks, the later one first"
-    # As GDB 13 says it, or GDB 16.
+    # GDB 13 has the first wording, GDB 16 the second.
     ends = re.findall("No more reverse-execution history|Reached end of recorded history", said)
     assert len(ends) == 2, "begin and end are not told"
     assert not re.search("= 77$", said, re.M), "what the debugger wrote later is there earlier"

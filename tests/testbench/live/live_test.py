@@ -81,7 +81,7 @@ class Cases(Script):
         self.assertEqual({event["from"] for event in packets}, {"ground", "uav"})
         self.assertTrue(any(e.get("slot", 0) >= 2 and e["events"] for e in events))
         self.assertGreater(sum(sum(e.get("accesses", {}).values()) for e in events), 100)
-        # As it stands, without its script.
+        # The page's style is looked at without its script.
         for style in PAGE / "live.css", TREE / "testbench/page/common.css":
             write(style.name, style.read_text())
         write("still.html", re.sub("<script.*</script>", "", self.said))

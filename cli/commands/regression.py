@@ -123,45 +123,38 @@ def bisect(values):
         run(["git", "worktree", "prune"])
         run(["git", "worktree", "add", "-q", "--detach", tree, bad])
         try:
-            return search(test, good, bad, tree, lambda: step(program, test, tree, values))
+            return search(program, values, good, bad, tree)
         finally:
             run(["git", "worktree", "remove", "--force", tree], check=False)
 
 
-def step(program, test, tree, values):
-    """Whether the present commit passes: 0; 1: it fails; 125: unknown. Its build stays for the next
-    one."""
-    log = tree / "build/step.log"
-    log.parent.mkdir(exist_ok=True)
-    with open(log, "w") as file:
-        if not (tree / "build/main/build.ninja").exists() and run(
-            ["cmake", "-S", ".", "-B", "build/main", "-G", "Ninja"], check=False, cwd=tree,
-                stdout=file, stderr=file):
-            return 125
-        status = run([
-            program, "--make", "--name", f"^{re.escape(test)}$", "--seed", values.seed, "--jobs",
-            values.jobs, "--waves", 0], check=False, cwd=tree, stdout=file, stderr=file)
-    status = status if status in (0, 1) else 125
-    told = {0: "passes", 1: "fails", 125: "cannot be told"}[status]
-    say(output(["git", "log", "-1", "--format=%h %s"], cwd=tree).strip() + ": " + told)
-    return status
+# Whether the present commit passes; 125: unknown. Its build stays for the next one.
+STEP = """mkdir -p build
+([ -e build/main/build.ninja ] || cmake -S . -B build/main -G Ninja || exit 125
+exec setpriv --pdeathsig TERM "$0" "$@") >build/step.log 2>&1
+status=$?
+case $status in 0) told=passes ;; 1) told=fails ;; *) told='cannot be told' status=125 ;; esac
+git log -1 --format="%h %s: $told" >&2
+exit $status
+"""
 
 
-def search(test, good, bad, tree, told):
-    """Asks git for commits until it knows the first bad one."""
+def search(program, values, good, bad, tree):
+    """Lets git ask commits until it knows the first bad one."""
+    step = [
+        "setpriv", "--pdeathsig", "TERM", "sh", "-c", STEP, program, "--make", "--name",
+        f"^{re.escape(values.test)}$", "--seed", values.seed, "--jobs", values.jobs, "--waves", 0]
+
     def git(*words):
-        return output(["git", "bisect", *words], cwd=tree, check=False, stderr=-3) or ""
+        run(["git", "bisect", *words], check=False, cwd=tree, stdout=-3)
 
-    if told() == 0:
+    if run(step, check=False, cwd=tree) == 0:
         raise Stop(f"the test passes at {bad}", 2)
     git("start", bad, good)
-    said = ""
-    while "is the first bad commit" not in said and "only 'skip'ped commits" not in said:
-        said = git({0: "good", 1: "bad", 125: "skip"}[told()])
-        if not said:
-            break
-    first = re.search(r"^# first bad commit: \[(.*?)\]", git("log"), re.M)
+    git("run", *step)
+    log = output(["git", "bisect", "log"], cwd=tree)
     git("reset")
+    first = re.search(r"^# first bad commit: \[(.*?)\]", log, re.M)
     if not first:
         raise Stop("not found: commits that cannot be told lie between")
     say("since " + output(["git", "log", "-1", "--format=%h %s (%an, %as)", first[1]]).strip())

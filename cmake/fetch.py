@@ -39,8 +39,6 @@ ICE = {"3.7.8": "c48f9e43d65e2b1f5e2af747fd86e7718b5e344b4e9d9a7dc73a84dd0be61f6
 SCHEMA = ("ARM-software/CMSIS_5/51f8f89612c8330c0116479cfe3a2cb04c390e2b"
           "/CMSIS/Utilities/CMSIS-SVD.xsd",
           "eee4bfe949f80708b00cccb4833e71da3766b0489a4cdfa2dae225d541688d89")
-WAVEDROM = ("wavedrom/-/wavedrom-3.5.0.tgz",
-            "7efce288c7e1e6f4072ba93345592ccd1e09442817a91cc2f3b351b777b6b0e9")
 PAGE = [("tabulator-tables", "6.5.3",
          "a3aeb833e5cf924c8a686fa6748c1070c5fde8e605e0b1734000c35b78571a9b",
          ["js/tabulator.min.js", "css/tabulator_simple.min.css"]),
@@ -225,12 +223,6 @@ def svd(target):
     shutil.copyfile(kept(f"{GITHUB}/{SCHEMA[0]}", SCHEMA[1]), target / "CMSIS-SVD.xsd")
 
 
-def wavedrom(target):
-    """WaveDrom, which draws the pages' waveforms"""
-    target.mkdir(parents=True, exist_ok=True)
-    unpack(kept(f"{NPM}/{WAVEDROM[0]}", WAVEDROM[1]), "package/", target)
-
-
 def page(target):
     """Tabulator and uPlot for the pages, as FOLDER/libraries.js and .css, each below its licence"""
     target.mkdir(parents=True, exist_ok=True)
@@ -255,10 +247,9 @@ def page(target):
 
 # Things that only optional parts need, with the name of the part
 OPTIONAL = {zeroc: "Only these suites need it", svd: "Only the check of icesoc.svd needs it",
-            wavedrom: "Only drawings of waveforms need it",
             foreign: "Only the examples of foreign cores need it"}
 THINGS = {thing.__name__: thing
-          for thing in (ice, ghdl, nextpnr, lz4, sodium, page, foreign, svd, wavedrom, zeroc)}
+          for thing in (ice, ghdl, nextpnr, lz4, sodium, page, foreign, svd, zeroc)}
 
 
 def main():

@@ -17,7 +17,7 @@ from failures import examine
 from history import FailingSeeds, History, make_run
 from lights import text_of
 from report import gather, write_reports
-from runner import run_tests
+from runner import run_tests, write_junit
 from tests import fingerprint, list_tests, read_plan, targets_of, unmatched
 from tool import Stop
 from waves import add_waves
@@ -187,8 +187,6 @@ class Regression:
         o, history = self.options, self.history
         changes, start = self.changes or self._changes(), time.monotonic()
         tool.adopt_orphans()
-        for old in o.out.glob("junit-*.xml"):
-            old.unlink()
         results = [result for seed_, some in rounds for result in
                    run_tests(some, o.build, o.out, seed_, o.jobs, history)]
         for each in tool.end_orphans():
@@ -213,6 +211,7 @@ class Regression:
         add_waves(failures, known, o.source, o.build, o.jobs, o.waves)
         data = gather(history, tests, results, failures, o.source, seeds)
         summary(data, failures, o.out)
+        write_junit(o.out / "junit.xml", results, failures)
         write_reports(data, o.build / "page", o.out)
         return 1 if failures else 0
 

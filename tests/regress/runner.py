@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""runner: runs chosen tests by CTest, and prints the progress."""
+"""runner: runs chosen tests by CTest, prints the progress, and writes JUnit."""
 import dataclasses
 import re
 import sys
@@ -62,6 +62,7 @@ def run_tests(tests, build, out, seed, jobs, history):
     chosen, junit = out / "tests.list", (out / f"junit-{seed}.xml").resolve()
     # start, end, stride: none but the numbers
     write(chosen, ",".join(["0,0,0", *(str(test.number) for test in tests)]) + "\n")
+    junit.unlink(missing_ok=True)
     progress, ends = Progress(tests, history, jobs), {}
     print(f"{len(tests)} tests, SEED={seed}", flush=True)
 
@@ -97,3 +98,25 @@ def run_tests(tests, build, out, seed, jobs, history):
             "" if end in ("***Failed", "***Not Run") else re.sub("[*]{3}(Exception: *)?", "", end),
             seed))
     return results
+
+
+def write_junit(path, results, failures):
+    """JUnit of all results, for CI systems; a failure has its reason and where to look."""
+    of = {id(failure.result): failure for failure in failures}
+    count = {how: str(sum(result.status == how for result in results))
+             for how in ("failed", "skipped")}
+    suite = xml.Element("testsuite", name="icesoc", tests=str(len(results)),
+                        failures=count["failed"], skipped=count["skipped"])
+    for result in results:
+        case = xml.SubElement(suite, "testcase", name=result.name, time=str(result.seconds),
+                              classname=result.name.split(".")[0])
+        if result.status == "failed":
+            failure, properties = of[id(result)], xml.SubElement(case, "properties")
+            for name in ("changed", "log", "repeat", "wave"):
+                if value := getattr(failure, name):
+                    xml.SubElement(properties, "property", name=name, value=value)
+            xml.SubElement(case, "failure", message=f"{failure.reason} (SEED={result.seed})")
+            xml.SubElement(case, "system-out").text = result.log
+        elif result.status == "skipped":
+            xml.SubElement(case, "skipped")
+    write(path, '<?xml version="1.0"?>\n' + xml.tostring(suite, encoding="unicode") + "\n")

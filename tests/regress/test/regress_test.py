@@ -123,8 +123,8 @@ class Cases(Project):
                  "^proofs *green *1 hold, 1 of them as before, from unchanged files$",
                  r"make test NAME='\^test_b\\\.Bad\$\$' SEED=5", "1 x  SegFault without a word")
         self.has("value 5 is not 7", file="build/regress/failures/test_b.Bad-5.log")
-        self.has('failures="2"', "value 5 is not 7 &lt;/script&gt;",
-                 file="build/regress/junit-5.xml")
+        self.has('failures="2"', 'message="value 5 is not 7 &lt;/script&gt; [(]SEED=5[)]"',
+                 file="build/regress/junit.xml")
         self.has("test_d.Crash", "[|] x.cpp:12: value 5 is not 7 &lt;/script> [|] test_b.Bad [|] ",
                  file="build/regress/summary.md")
         self.lacks("not 7 </script>", "build/regress/report.html")
@@ -202,7 +202,8 @@ class Cases(Project):
         self.assertIn("broken", re.search("^    make test.*", self.said, re.M)[0])
         trace = "build/regress/failures/formal.broken.vcd"
         self.assertTrue(Path(trace).is_file())
-        self.has(f'"wave": "{trace}"', file="build/regress/report.json")
+        self.has('message="! error: unexpected operation mode',
+                 f'<property name="wave" value="{trace}"', file="build/regress/junit.xml")
 
     def test_changed(self):
         """The changed files of a failed test since it passed: committed or not, new or gone; for a
@@ -242,6 +243,8 @@ class Cases(Project):
         self.has(f"{since} with SEED=1: {own}hdl/new.v:{one}, hdl/fifo/fifo.v:2 "
                  rf"\(3 lines\), hdl/old.v:{one}, {script}")  # mine first
         self.has(f"{since} with SEED=1: {own}{script}")  # its program, its folder
+        self.has('<property name="changed" value="changed since it passed',
+                 file="build/regress/junit.xml")
         self.has('"changed":"changed since it passed', file="build/regress/report.html")
         self.ask("git", "cat-file", "-e", git("hash-object hdl/new.v"), status=1)  # no object
         write(".git/info/exclude", "flicker\n")

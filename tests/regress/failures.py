@@ -34,8 +34,11 @@ class Failure:
     changed: str = ""  # since it passed, or ""
     log: str = ""  # file
     wave: str = ""  # FST or VCD file, or ""
+    about: str = ""  # text with the names of relevant signals: the assertion, or the reason
+    scope: str = ""  # instance in which to look: "u_window.u_wrapper", or ""
     own_assertion: bool = False  # of a proof: the assertion is in the proven module
     save: str = ""  # GTKWave save file, or ""
+    clock: int = 0  # of the failure, in that waveform; 0: its end
 
 
 def reason_of(log):
@@ -63,25 +66,26 @@ def reason_of(log):
 
 
 def find_assertion(failure):
-    """Adds the assertion that fails to a proof's failure: its place and text, and whether that
-    belongs to the proven module. Yosys names the assertion's cell by file and line, and beside it
-    the lines of all cells around."""
+    """Adds the assertion that fails to a proof's failure: its place and text, its instance, and
+    whether that belongs to the proven module. Yosys names the assertion's cell by
+    instance, file and line, and beside it the lines of all cells around."""
     match = re.search(
-        r"Assert failed in \S+: (\S+) \((?:\S*?\$assert\$(\S+)\$)?",
+        r"Assert failed in \S+: (\S+) \((?:\$flatten/)?(?:(\S*?)\.?\$assert\$(\S+)\$)?",
         failure.result.log)
     places = list(re.finditer(r"([^|]*?((?:hdl|bus|ip)/[^|:]+)):(\d+)[.](\d+)-(\d+)",
                               match[1])) if match else []  # file:89.41-91.66|...
     if not places:
         return
-    at = next((p for p in reversed(places) if match[2] and match[2] + "." in p[0]), places[0])
+    at = next((p for p in reversed(places) if match[3] and match[3] + "." in p[0]), places[0])
+    failure.scope = (match[2] or "").replace("./", ".")
     first, last = int(at[3]), int(at[5])
     path = pathlib.Path(at[1].lstrip("|"))
     lines = path.read_text().splitlines()[first - 1:last] if path.exists() else []
     if len(lines) > 1:  # Yosys begins at the end of the statement before
         lines[0] = lines[0][int(at[4]):]
-    about = " ".join(filter(None, map(str.strip, lines)))
+    failure.about = " ".join(filter(None, map(str.strip, lines)))
     asserts = next((i for i, line in enumerate(lines) if "assert" in line), max(0, len(lines) - 1))
-    failure.reason = failure.bucket = f"{at[2]}:{first + asserts}: {about}"
+    failure.reason = failure.bucket = f"{at[2]}:{first + asserts}: {failure.about}"
     module = re.sub("_proof.*", "", pathlib.Path(at[2]).stem)
     failure.own_assertion = failure.result.name.startswith("formal." + module)
 
@@ -111,7 +115,7 @@ def examine(results, tests, out):
         exact = re.sub(r"([.+*?()\[\]{}|^$\\])", r"\\\1", result.name)
         base = f"{folder}/{re.sub('[^A-Za-z0-9_.-]', '_', result.name)}"
         failure = Failure(result, words, short[:160], f"make test NAME='^{exact}$$' "
-                          f"SEED={result.seed}", log=f"{base}-{result.seed}.log")
+                          f"SEED={result.seed}", log=f"{base}-{result.seed}.log", about=words)
         find_assertion(failure)
         if place := re.search(r"(?:^|\n)(?:[.][.]/)*(\S+:\d+): Failure\n", result.log):
             failure.place = os.path.relpath(place[1]) if place[1][0] == "/" else place[1]

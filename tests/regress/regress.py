@@ -212,7 +212,7 @@ class Regression:
         data = gather(history, tests, results, failures, o.source, seeds)
         summary(data, failures, o.out)
         write_junit(o.out / "junit.xml", results, failures)
-        write_reports(data, o.build / "page", o.out)
+        write_reports(data, failures, o.build / "page", o.out)
         return 1 if failures else 0
 
 

@@ -7,8 +7,10 @@ import re
 from lights import lights_of
 from tests import judge_plan, read_plan
 from tool import filled, page_parts, script_safe, write
+from waves import drawing_of
 
 HERE = pathlib.Path(__file__).resolve().parent
+LARGEST = 2_000_000  # bytes of the page
 MEASURED = {"coverage": "coverage/summary.json", "utilisation": "synth/report.json",
             "speed": "bench/speed.json", "drawn": "mutants/drawn.json"}
 
@@ -61,9 +63,9 @@ def gather(history, tests, results, failures, source, seeds):
     for what, all_names in names.items():
         proofs = sum(name.startswith("formal.") for name in all_names)
         data[what] = {"tests": len(all_names) - proofs, "proofs": proofs}
-    data["failures"] = [{"name": f.result.name, "tail": f.result.log[-3000:], **{
+    data["failures"] = [{"name": f.result.name, "tail": f.result.log[-3000:], "drawing": None, **{
         name: getattr(f, name) for name in ("bucket", "reason", "repeat", "log", "wave", "save",
-                                            "place", "changed")}} for f in failures]
+                                            "place", "changed", "clock")}} for f in failures]
     data["history"] = [[run["time"], run["commit"], run["passed"], run["failed"], run["seconds"],
                         run.get("subject", ""), run.get("reasons", [])]
                        for run in history.runs[-60:]]
@@ -101,8 +103,13 @@ def markdown(data):
     return text
 
 
-def write_reports(data, libraries, out):
+def write_reports(data, failures, libraries, out):
     style, script = page_parts(libraries)
+    # Drawings get the rest of the page's size.
+    rest = LARGEST - len(style) - len(script) - len(json.dumps(data)) - 60_000
+    drawn = [i for i, failure in enumerate(failures) if failure.wave]
+    for i in drawn:
+        data["failures"][i]["drawing"] = drawing_of(failures[i], max(0, rest) // len(drawn))
     page = (HERE / "page.html").read_text()
     write(out / "report.html", filled(page, {"/*COMMON*/": style, "//COMMON": script,
                                              "/*DATA*/null": script_safe(data)}))

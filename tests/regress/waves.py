@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """waves: repeats a failed test of RTL, or a failed flight, with a waveform of the clocks around the
-failure, for GTKWave."""
+failure, and prepares the end of a waveform for the page's drawing."""
+import collections
 import dataclasses
 import json
 import os
@@ -11,6 +12,7 @@ from tool import Stop, run, write
 
 CLOCKS_PER_SECOND = 1e8  # of a flight's chip
 FIRST_CORE = 2  # slot
+MOST_CHANGES, FEWEST_CHANGES, MOST_SIGNALS = 400, 25, 200  # of a drawing
 
 
 @dataclasses.dataclass
@@ -57,10 +59,9 @@ def instance_in(slot, build):
     return match[1] if match else "u_modem"
 
 
-def save_file(wave, build, folder, has_program, clock, instance):
-    """GTKWave's save file: the marker at a clock, of which a file of ours counts halves; an open
-    instance; the program's rows, and the ports of the models below `folder` and below the folder of
-    the tested block: tests/hdl/fifo, hdl/fifo."""
+def save_file(wave, build, folder, has_program):
+    """GTKWave's save file: the program's rows, and the ports of the models below `folder` and below
+    the folder of the tested block: tests/hdl/fifo, hdl/fifo."""
     rows = ["program.task", "program.interrupt", "program.function"] * has_program
     for place in sorted({folder, folder.removeprefix("tests/")}):
         for header in sorted((build / place).rglob("verilated_*/V*.h")):
@@ -68,9 +69,8 @@ def save_file(wave, build, folder, has_program, clock, instance):
                 ports = re.findall(r"VL_(?:IN|OUT)[0-9W]*\(&(\w+),(\d+),(\d+)", header.read_text())
                 rows += [f"TOP.{name}" + (f"[{high}:{low}]" if int(high) > int(low) else "")
                          for name, high, low in ports]
-    rows = [f'[dumpfile] "{wave}"', "[size] 1600 900", f"*-6.0 {2 * clock}", "[treeopen] TOP.",
-            *([f"[treeopen] TOP.soc.{instance}."] if instance else []), *rows]
-    return "".join(row + "\n" for row in rows)
+    return f'[dumpfile] "{wave}"\n[size] 1600 900\n[treeopen] TOP.\n' + \
+        "".join(row + "\n" for row in rows)
 
 
 def add_wave(failure, test, scene, source, tested, jobs):
@@ -88,6 +88,7 @@ def add_wave(failure, test, scene, source, tested, jobs):
         run([build / "testbench/sim/icesoc-sim", "--replay", scene.flight, "--out",
              f"{base}.replay", "--wave", wave, "--from", f"{first / CLOCKS_PER_SECOND:.6f}",
              "--to", f"{last / CLOCKS_PER_SECOND:.6f}"])
+        failure.scope = instance_in(scene.slot, build)
     else:
         run(["ctest", "--test-dir", build, "--no-tests=error", "-R",
              "^" + re.sub(r"([.+*?()\[\]{}|^$\\])", r"\\\1", failure.result.name) + "$"],
@@ -97,10 +98,9 @@ def add_wave(failure, test, scene, source, tested, jobs):
         raise Stop("the test drove no traced model")
     has_program = os.path.exists(wave + ".program.vcd")
     run([source / "testbench/common/join_waves.sh", wave])
-    failure.wave, failure.save = f"{base}.fst", f"{base}.gtkw"
+    failure.wave, failure.clock, failure.save = f"{base}.fst", scene.clock, f"{base}.gtkw"
     folder = "testbench/sim" if scene.flight else os.path.relpath(test.folder, tested)
-    write(failure.save, save_file(wave, build, folder, has_program, scene.clock,
-                                  scene.flight and instance_in(scene.slot, build)))
+    write(failure.save, save_file(wave, build, folder, has_program))
 
 
 def add_waves(failures, tests, source, build, jobs, limit):
@@ -120,3 +120,93 @@ def add_waves(failures, tests, source, build, jobs, limit):
             add_wave(failure, test, scene, source, build, jobs)
         except (Stop, OSError) as error:  # the report is worth more than a waveform
             print(f"  none: {error}")
+
+
+class Signal:
+    def __init__(self, scopes, name, bits):
+        self.name, self.depth = ".".join([*scopes, name]), len(scopes)
+        self.bits = bits  # 0: text
+        self.changes = collections.deque(maxlen=MOST_CHANGES)  # (time, value), the newest last
+
+
+def shown(bits):
+    """A value in hexadecimal, a digit with such a bit as "x" or "z"; a single bit unchanged."""
+    strange = bits.lstrip("01")
+    digits = (len(bits) + 3) // 4
+    return bits if len(bits) <= 1 else strange[0] if strange else f"{int(bits, 2):0{digits}x}"
+
+
+def read_vcd(text):
+    """The signals of a VCD file (IEEE 1364-2005, 18.2), the first and the last moment. A signal
+    with several names has its outermost one."""
+    head, _, body = text.partition("$enddefinitions")
+    signals, scopes = {}, []
+    for kind, rest in re.findall(r"\$(scope|upscope|var)\s+(.*?)\s*\$end", head, re.S):
+        words = rest.split()
+        if kind == "scope":
+            scopes.append(words[1])
+        elif kind == "upscope":
+            scopes.pop()
+        elif not words[3].startswith("smt_"):  # signals of the solver
+            signal = Signal(scopes, words[3], int(words[1]) * (words[0] != "string"))
+            known = signals.get(words[2])
+            if not known or signal.depth < known.depth:
+                signals[words[2]] = signal
+    moments, now = [], 0
+    words = (word for line in body.splitlines() for word in line.split())
+    for word in words:
+        kind, value = word[0], word[1:]
+        if kind == "#":
+            now = int(value)
+            moments = [moments[0] if moments else now, now]
+            continue
+        if kind in "bs":
+            signal = signals.get(next(words))
+        elif kind in "01xz" and value:
+            signal, value = signals.get(value), kind
+        else:
+            continue
+        # Proofs' traces repeat unchanged values at each step.
+        if signal and not (signal.changes and signal.changes[-1][1] == value):
+            signal.changes.append((now, value))
+    return [signal for signal in signals.values() if signal.changes], moments
+
+
+def drawing_of(failure, room):
+    """{from, to, signals: [[name, bits, [time, value, ...]], ...], more: signals left out}: the
+    program's, those that the failure's text names, those that move below its instance, others that
+    move, constant ones; in each group the outermost first. A drawing of more than `room` bytes
+    loses its older changes, then the last signals."""
+    try:
+        signals, moments = read_vcd(run(["fst2vcd", "-f", failure.wave])[1]
+                                    if failure.wave.endswith(".fst")
+                                    else pathlib.Path(failure.wave).read_text())
+    except (ValueError, IndexError, StopIteration, RuntimeError) as error:
+        print(f"{failure.wave} is damaged, and not drawn ({error})")
+        return None
+    if not moments:
+        return None
+    words = set(re.findall(r"[A-Za-z_]\w+", failure.about))
+
+    def rank(signal):
+        name = signal.name.rpartition(".")[2]
+        within = f".{failure.scope}." in signal.name if failure.scope else signal.depth <= 3
+        moves = len(signal.changes) > 1
+        nameless = bool(re.fullmatch(r"n\d+(_o)?", name))  # named by a converter
+        return (signal.bits != 0, nameless, not (name in words and within),
+                not (moves and failure.scope and within), not moves, signal.depth, signal.name)
+    signals.sort(key=rank)
+
+    def rows(count, changes):
+        return [[s.name, s.bits, [each for time, value in list(s.changes)[-changes:]
+                                  for each in (time, shown(value) if s.bits else value)]]
+                for s in signals[:count]]
+    count, changes = min(len(signals), MOST_SIGNALS), MOST_CHANGES
+    drawn = rows(count, changes)
+    while len(json.dumps(drawn)) > room and count > 1:
+        if changes > FEWEST_CHANGES:
+            changes //= 2
+        else:
+            count //= 2
+        drawn = rows(count, changes)
+    return {"from": moments[0], "to": moments[1], "signals": drawn, "more": len(signals) - count}

@@ -8,6 +8,13 @@ from pathlib import Path
 from project import BUILD, TREE, Project, edit, main, write
 import look
 
+VCD = """$timescale 1ns $end
+$scope module top $end $var wire 1 ! clk_i $end
+$scope module u_fifo $end $var wire 1 ! clk_i $end
+$var reg 8 " level [7:0] $end $var reg 8 & mask [7:0] $end $upscope $end $upscope $end
+$scope module program $end $var string 1 p.task task $end $upscope $end $enddefinitions $end
+#0 0! b0 " b1010 & sUAV_radioTask p.task #5 1! #10 0! b10100111 " #15 1!
+"""
 FIFO = {"file": "hdl/fifo/fifo.v", "percent": 97, "lines": 200, "gate": 95, "toggles": 96,
         "toggle_points": 9, "toggle_gate": 95, "why": "", "missed": ["12: level_o[3]", "40"]}
 
@@ -17,7 +24,7 @@ class Cases(Project):
         self.said = look.browse(Path(page).resolve().as_uri())[0]
 
     def test_page(self):
-        write("t.vcd", "")
+        write("t.vcd", VCD)
         self.tests("""add_test(NAME formal.broken COMMAND sh -c "echo 'Assert failed in broken'
     echo 'broken: trace: ${CMAKE_SOURCE_DIR}/t.vcd'; exit 1")
 """)
@@ -42,8 +49,11 @@ class Cases(Project):
             "formal.thing formal.broken;", "filtered test_c.Flicker;",
             'csv "test",.* / "test_c.Flicker","passed",',
             "of 2000 some; largest b &lt;a&gt;; picked b; open b c &lt;a&gt;; canvas true true; "
-            "read iii no. 2 2; moved i no. 0 2;", "3 failed",
-            'waveform <a href="failures/formal.broken.vcd">', 'id="results"', "test_c.Flicker",
+            "read iii no. 2 2; moved i no. 0 2;", "3 failed", 'class="waveform"',
+            ">top.clk_i<",  # the outermost of its names
+            ">top.u_fifo.level<", ">a7<", ">UAV_radioTask<",
+            ">top.u_fifo.mask<",  # it stays constant
+            'id="results"', "test_c.Flicker",
             'id="runs".*>one<',  # the commit's subject
             "<div>test_b.Bad: value 1 is not 7", 'class="dot dp"', "12 clauses with 3 flops",
             r'<a href="../../hdl/fifo/fifo.v">hdl/fifo/fifo.v:12: level_o\[3\]</a><br>'

@@ -409,23 +409,28 @@ class Cases(Project):
             self.assertFalse(Path("build/bisect/tree").exists())
 
     def test_waves(self):
-        """A test that runs beside a core, not below tests/."""
+        """A test that runs beside a core, not below tests/, and a trace that is damaged: the
+        report comes in any case."""
         join = "testbench/common/join_waves.sh"
         write(join, (TREE / join).read_text())
         write("ip/core/wave.sh", '#!/bin/sh\necho "wrong at clock cycle 5"\n'
               '[ -z "${WAVE:-}" ] || vcd2fst "${0%/*}/t.vcd" "$WAVE"\nexit 1\n')
         write("ip/core/CMakeLists.txt", """
 add_test(NAME test_w.Wave COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/wave.sh)
+set(damaged ${CMAKE_CURRENT_SOURCE_DIR}/damaged.vcd)
+add_test(NAME formal.damaged COMMAND sh -c "echo 'damaged: trace: ${damaged}'; exit 1")
 add_custom_target(test_w)
 """)
-        write("ip/core/t.vcd", "$timescale 1ns $end $var wire 1 ! clk_i $end $enddefinitions $end "
-              "#0 0! #5 1! #10 0!\n")
+        wave = ("$timescale 1ns $end $var wire 1 ! clk_i $end $enddefinitions $end "
+                "#0 0! #5 1! #10 0!\n")
+        write("ip/core/t.vcd", wave)
+        write("ip/core/damaged.vcd", wave.replace("#5", "#five"))
         write("build/trace/ip/core/verilated_core/Vcore.h", "VL_IN8(&clk_i,0,0);\n")
         append("CMakeLists.txt", "add_subdirectory(ip/core)\n")
         self.tests("")
-        self.regress("--name test_w", 1)
-        self.has("^0 passed, 1 failed")
-        self.has("^TOP.clk_i$", r"^\*-6.0 10$", file="build/regress/failures/test_w.Wave-1.gtkw")
+        self.regress("--name 'test_w|damaged'", 1)
+        self.has("^0 passed, 2 failed", "formal.damaged.vcd is damaged, and not drawn")
+        self.has("^TOP.clk_i$", file="build/regress/failures/test_w.Wave-1.gtkw")
         self.has("test_w.Wave-1.fst", file="build/regress/report.html")
 
     def test_flight(self):
@@ -452,10 +457,17 @@ add_custom_target(test_w)
         self.ask("fst2vcd", f"{left}.fst")
         self.assertRegex(self.said.replace("\n", " "),
                          "#3 .*sidleTask .*#10 .*0. .*#20 .*1. .*sradioTask .*#33 sidleTask")
-        self.has("^program.task$", r"^\[treeopen\] TOP.soc.u_core.$", file=f"{left}.gtkw")
+        self.has("^program.task$", file=f"{left}.gtkw")
+        self.has(r'"program.task",0,\[3,"idleTask",20,"radioTask",33,"idleTask"\]\],'
+                 r'\["TOP.u_core.busy"', file="build/regress/report.html")  # the core before ports
 
     def test_large(self):
         """More tests than this project has: the page stays small."""
+        write("long.vcd", "$scope module top $end\n" +
+              "".join(f"$var wire 16 s{s} a_signal_{s} $end\n" for s in range(100)) +
+              "$upscope $end $enddefinitions $end\n" + "".join(
+                  f"#{1000000 + t}\n" + "".join(f"b1{t % 2}10101010101010 s{s}\n"
+                                                for s in range(100)) for t in range(300)))
         some = {"percent": 97, "lines": 200, "gate": 95, "toggles": 96, "toggle_points": 900,
                 "toggle_gate": 95, "why": "",
                 "missed": [f"{m}: some_signal_of_it[{m}]" for m in range(500)]}
@@ -471,9 +483,15 @@ endforeach()
 foreach(i RANGE 1 30)
   add_test(NAME test_loud.Case${i} COMMAND sh -c "seq 1 20000; exit 1")
 endforeach()
+foreach(i RANGE 1 8)
+  add_test(NAME formal.long${i} COMMAND sh -c
+    "echo 'long${i}: trace: ${CMAKE_SOURCE_DIR}/long.vcd'; exit 1")
+endforeach()
 """)
         self.regress("", 1)
-        self.has("404 passed, 32 failed")
+        self.has("404 passed, 40 failed")
+        drawn = Path("build/regress/report.html").read_text().count('"signals":[["top.a_signal_')
+        self.assertEqual(drawn, 8)
         self.page_is_small()
 
 

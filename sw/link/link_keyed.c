@@ -227,8 +227,8 @@ static void onHandshake(Link* link, const U8* frame, Link_Kind kind) {
     link->receiver.ackDue = link->receiver.ackNow = 1; /* so that the peer hears */
 }
 
-/* With two keys HELLO is under each in turn. It also serves a peer in an unknown session: its
- * answer makes a new one. */
+/* Sends HELLO; where both slots have a key, under each in turn. A peer in an unknown session gets
+ * the same, since its answer makes a new session. */
 static void call(Link* link, const U8* unknown) {
     U32 set = link->secrets.set;
     (void)unknown;

@@ -192,9 +192,9 @@ static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* me
         (void)self->port->wait(self->context, 20);
         lock(self);
     }
+    /* A wait here may have taken an event that the receiver waits for. */
     if (tries != RETRIES)
-        tell(self,
-             self->port->signal); /* this may have taken an event that the receiver waits for */
+        tell(self, self->port->signal);
     return status == LINK_OK ? ICE_OK : status == LINK_TOO_LONG ? ICE_LIMIT : ICE_CONNECTION_LOST;
 }
 

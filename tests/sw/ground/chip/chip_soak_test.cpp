@@ -98,9 +98,6 @@ public:
     void note(int id, const Ice::Current&) override { book_.arrived(id, {}); }
     void take(int, RadioTest::Bytes, const Ice::Current&) override {}
     RadioTest::Bytes fetch(int, const Ice::Current&) override { return {}; }
-    int noted(const Ice::Current&) override { return 0; }
-    int callBack(int, const Ice::Current&) override { return 0; }
-    int callStation(int, const Ice::Current&) override { return 0; }
 
 private:
     Book& book_;

@@ -18,7 +18,6 @@ static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STA
 static Ice_Communicator ic;
 static Ice_ObjectAdapter adapter;
 static RadioTest_Echo servant;
-static Ice_Int notes;
 static U8 irqEnabled;
 static const EchoUav_Port* port;
 static void* portContext;
@@ -59,44 +58,8 @@ Ice_Status RadioTest_Echo_fetch(RadioTest_EchoPtr self, Ice_Int size, RadioTest_
 
 Ice_Status RadioTest_Echo_note(RadioTest_EchoPtr self, Ice_Int id, const Ice_Current* current) {
     (void)self, (void)current;
-    ++notes;
     port->executed(portContext, id, 0, 0);
     return ICE_OK;
-}
-
-Ice_Status RadioTest_Echo_noted(RadioTest_EchoPtr self, Ice_Int* result,
-                                const Ice_Current* current) {
-    (void)self, (void)current;
-    *result = notes;
-    return ICE_OK;
-}
-
-static Ice_Status sum(RadioTest_ListenerPrxPtr listener, Ice_Int times, Ice_Int* total) {
-    Ice_Status status = ICE_OK;
-    Ice_Int i, answer;
-    *total = 0;
-    for (i = 0; i < times && status == ICE_OK; ++i) {
-        status = RadioTest_ListenerPrx_heard(listener, i, &answer);
-        *total += answer;
-    }
-    return status;
-}
-
-Ice_Status RadioTest_Echo_callBack(RadioTest_EchoPtr self, Ice_Int times, Ice_Int* result,
-                                   const Ice_Current* current) {
-    RadioTest_ListenerPrx listener;
-    Ice_Status status = Ice_Connection_createProxy(&ic, current->connection, "listener", &listener);
-    (void)self;
-    return status == ICE_OK ? sum(&listener, times, result) : status;
-}
-
-Ice_Status RadioTest_Echo_callStation(RadioTest_EchoPtr self, Ice_Int times, Ice_Int* result,
-                                      const Ice_Current* current) {
-    RadioTest_ListenerPrx listener;
-    Ice_Status status =
-        Ice_Communicator_stringToProxy(&ic, "listener:xbee-at -a 0x0000", &listener);
-    (void)self, (void)current;
-    return status == ICE_OK ? sum(&listener, times, result) : status;
 }
 
 /* ---- tasks ---- */
@@ -160,7 +123,6 @@ int EchoUav_irqEnabled(void) {
 
 void EchoUav_start(const FSMC_Port* fsmc, void* context) {
     irqEnabled = 0;
-    notes = 0;
     if (FSMC_init(fsmc, context) != FSMC_OK)
         return;
     UAV_initRadio();

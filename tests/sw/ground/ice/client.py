@@ -40,7 +40,7 @@ def main():
         options += [f"--Ice.Plugin.XBeeAT={plugins}/xbeeat:createXBeeAT", f"--XBeeAT.Guard={guard}"]
     errors = []
     with Ice.initialize(options) as communicator:
-        proxy = RadioTest.EchoPrx.uncheckedCast(communicator.stringToProxy("echo:" + endpoint))
+        proxy = RadioTest.UavPrx.uncheckedCast(communicator.stringToProxy("echo:" + endpoint))
         threads = [
             threading.Thread(target=work, args=(proxy.ice_connectionId(str(n % 3)), 100 * n, errors))
             for n in range(6)

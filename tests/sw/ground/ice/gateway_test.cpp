@@ -92,13 +92,19 @@ private:
 
 class Gateway : public ::testing::Test {
 protected:
-    GatewayProgram start(std::vector<std::string> more = {},
-                         const std::string& at = "127.0.0.1:0") {
-        std::vector<std::string> arguments = {
-            "-d", world_.rig.pty.path(), "-g", std::to_string(Rig::guardMs), "-l", at};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return GatewayProgram(arguments);
+    // Runs the gateway; `port_` and `echo_` lead to it.
+    void start(std::vector<std::string> more = {}, const std::string& at = "127.0.0.1:0") {
+        more.insert(more.end(),
+                    {"-d", world_.rig.pty.path(), "-g", std::to_string(Rig::guardMs), "-l", at});
+        gateway_ = std::make_unique<GatewayProgram>(more);
+        port_ = gateway_->port();
+        if (port_ <= 0)
+            throw std::runtime_error("the gateway has not started: " + said());
+        echo_ = proxy(ic_.communicator());
     }
+    int stop() { return gateway_->stop(); }
+    const std::string& said() const { return gateway_->said(); }
+    bool says(const std::string& text) const { return said().find(text) != std::string::npos; }
     // A program without the plugin.
     static Ice::CommunicatorPtr plain() {
         Ice::InitializationData data;
@@ -107,25 +113,37 @@ protected:
         data.properties->setProperty("Ice.RetryIntervals", "-1");
         return Ice::initialize(data);
     }
-    static std::string endpoint(int port) {
-        return "tcp -h 127.0.0.1 -t 60000 -p " + std::to_string(port);
+    std::string endpoint(int port = 0) const {
+        return "tcp -h 127.0.0.1 -t 60000 -p " + std::to_string(port ? port : port_);
     }
-    static std::shared_ptr<RadioTest::EchoPrx> proxy(const Ice::CommunicatorPtr& ic, int port) {
-        return Ice::uncheckedCast<RadioTest::EchoPrx>(ic->stringToProxy("echo:" + endpoint(port)));
+    std::shared_ptr<RadioTest::UavPrx> proxy(const Ice::CommunicatorPtr& ic) const {
+        return Ice::uncheckedCast<RadioTest::UavPrx>(ic->stringToProxy("echo:" + endpoint()));
+    }
+    void expectAnswer(int id = 1) {
+        EXPECT_EQ(echo_->repeat(id, {1, 2}), (RadioTest::Bytes{1, 2}));
+    }
+    // Asks for the number of notes, each time with a turn, until it has come to `wanted`.
+    void expectNoted(int wanted) {
+        int noted = 0;
+        for (int calls = 0; calls < 1000 && noted < wanted; ++calls)
+            noted = echo_->noted();
+        EXPECT_EQ(noted, wanted);
     }
     World world_{testSeed()};
+    std::unique_ptr<GatewayProgram> gateway_;
+    int port_ = 0;
+    Ice::CommunicatorHolder ic_{plain()};
+    std::shared_ptr<RadioTest::UavPrx> echo_;
 };
 
 TEST_F(Gateway, ProgramsAtOnceShareTheRadio) {
-    GatewayProgram gateway = start();
-    int port = gateway.port();
-    ASSERT_GT(port, 0) << gateway.said();
+    start();
     std::vector<std::thread> programs;
     for (int p = 0; p < 10; ++p)
         programs.emplace_back([&, p] {
             try {
                 Ice::CommunicatorHolder ic(plain());
-                auto echo = proxy(ic.communicator(), port);
+                auto echo = proxy(ic.communicator());
                 for (int i = 0; i < 5; ++i)
                     EXPECT_EQ(echo->repeat(10 * p + i, World::pattern(p, 100)),
                               World::pattern(p, 100));
@@ -135,50 +153,41 @@ TEST_F(Gateway, ProgramsAtOnceShareTheRadio) {
         });
     for (auto& program : programs)
         program.join();
-    EXPECT_EQ(gateway.stop(), 0);
-    EXPECT_NE(gateway.said().find("messages out"), std::string::npos) << gateway.said();
+    EXPECT_EQ(stop(), 0);
+    EXPECT_TRUE(says("messages out")) << said();
 }
 
 TEST_F(Gateway, TheUavCallsTheStationBehindIt) {
-    Ice::CommunicatorHolder ic(plain());
-    auto adapter = ic->createObjectAdapterWithEndpoints("Station", "tcp -h 127.0.0.1");
+    auto adapter = ic_->createObjectAdapterWithEndpoints("Station", "tcp -h 127.0.0.1");
     adapter->add(std::make_shared<ListenerServant>(), Ice::stringToIdentity("station"));
     adapter->activate();
     auto info =
         std::dynamic_pointer_cast<Ice::TCPEndpointInfo>(adapter->getEndpoints()[0]->getInfo());
-    GatewayProgram gateway =
-        start({"-t", "1", "--station", "127.0.0.1:" + std::to_string(info->port)});
-    int port = gateway.port();
-    ASSERT_GT(port, 0) << gateway.said();
-    EXPECT_EQ(proxy(ic.communicator(), port)->callStation(10), 90);
+    start({"-t", "1", "--station", "127.0.0.1:" + std::to_string(info->port)});
+    EXPECT_EQ(echo_->callStation(10), 90);
     // Nobody at --station: the UAV is told so, and the gateway goes on.
     adapter->destroy();
-    EXPECT_ANY_THROW(proxy(ic.communicator(), port)->callStation(1));
-    EXPECT_EQ(proxy(ic.communicator(), port)->repeat(1, {1, 2}), (RadioTest::Bytes{1, 2}));
-    EXPECT_EQ(gateway.stop(), 0);
-    EXPECT_NE(gateway.said().find("nobody listens at 127.0.0.1"), std::string::npos);
+    EXPECT_ANY_THROW(echo_->callStation(1));
+    expectAnswer();
+    EXPECT_EQ(stop(), 0);
+    EXPECT_TRUE(says("nobody listens at 127.0.0.1"));
 }
 
 TEST_F(Gateway, PythonWithoutThePlugin) {
-    GatewayProgram gateway = start();
-    int port = gateway.port();
-    ASSERT_GT(port, 0) << gateway.said();
-    std::string command = PYTHON " '" CLIENT "' '" SLICE "' '' '" + endpoint(port) + "' 0";
-    EXPECT_EQ(std::system(command.c_str()), 0) << "the gateway said:\n" << gateway.said();
+    start();
+    std::string command = PYTHON " '" CLIENT "' '" SLICE "' '' '" + endpoint() + "' 0";
+    EXPECT_EQ(std::system(command.c_str()), 0) << "the gateway said:\n" << said();
 }
 
 TEST_F(Gateway, AModemThatComesBackIsUsedAgain) {
-    GatewayProgram gateway = start({"-t", "1"});
-    int port = gateway.port();
-    ASSERT_GT(port, 0) << gateway.said();
-    Ice::CommunicatorHolder ic(plain());
+    start({"-t", "1"});
     world_.rig.with([&] { world_.rig.ground->power(false, world_.rig.ns()); });
-    EXPECT_ANY_THROW(proxy(ic.communicator(), port)->ice_ping()); // no modem: the connection ends
+    EXPECT_ANY_THROW(echo_->ice_ping()); // no modem: the connection ends
     world_.rig.with([&] { world_.rig.ground->power(true, world_.rig.ns()); });
     bool back = false;
     for (int tries = 0; tries < 10 && !back; ++tries) // a busy machine may miss guard times
         try {
-            proxy(ic.communicator(), port)->ice_ping();
+            echo_->ice_ping();
             back = true;
         } catch (const Ice::LocalException&) {
         }
@@ -188,63 +197,46 @@ TEST_F(Gateway, AModemThatComesBackIsUsedAgain) {
 TEST_F(Gateway, ListensAtAnIPv6Address) {
     if (std::ifstream("/proc/net/if_inet6").peek() == EOF)
         GTEST_SKIP() << "this machine has no IPv6";
-    GatewayProgram gateway = start({}, "[::1]:0");
-    const int port = gateway.port();
-    ASSERT_GT(port, 0) << gateway.said();
-    Ice::CommunicatorHolder ic(plain());
-    auto echo = Ice::uncheckedCast<RadioTest::EchoPrx>(
-        ic->stringToProxy("echo:tcp -h \"::1\" -t 60000 -p " + std::to_string(port)));
-    EXPECT_EQ(echo->repeat(1, {1, 2}), (RadioTest::Bytes{1, 2}));
+    start({}, "[::1]:0");
+    echo_ = Ice::uncheckedCast<RadioTest::UavPrx>(
+        ic_->stringToProxy("echo:tcp -h \"::1\" -t 60000 -p " + std::to_string(port_)));
+    expectAnswer();
 }
 
 // ---- who shares the radio ----
 
 // One-way calls of a program that has left go all the same.
 TEST_F(Gateway, WhatAProgramHasSentArrivesAlthoughItLeaves) {
-    GatewayProgram gateway = start();
-    const int port = gateway.port();
-    ASSERT_GT(port, 0) << gateway.said();
+    start();
     constexpr int count = 1000;
     {
         Ice::CommunicatorHolder ic(plain());
-        auto echo = proxy(ic.communicator(), port)->ice_oneway();
+        auto echo = proxy(ic.communicator())->ice_oneway();
         for (int i = 0; i < count; ++i)
             echo->note(i);
         echo->ice_getConnection()->close(Ice::ConnectionClose::GracefullyWithWait);
     }
-    Ice::CommunicatorHolder ic(plain());
-    auto echo = proxy(ic.communicator(), port);
-    int noted = 0;
-    for (int calls = 0; calls < count && noted < count; ++calls) // each has a turn
-        noted = echo->noted();
-    EXPECT_EQ(noted, count);
+    expectNoted(count);
     EXPECT_EQ(world_.echo->twice(), 0);
 }
 
 // A program that sends without an end has a turn like any other.
 TEST_F(Gateway, AFloodLeavesRoomForOthers) {
-    GatewayProgram gateway = start();
-    const int port = gateway.port();
-    ASSERT_GT(port, 0) << gateway.said();
-    Ice::CommunicatorHolder flooding(plain()), calling(plain());
-    auto flood = proxy(flooding.communicator(), port)->ice_oneway();
-    auto echo = proxy(calling.communicator(), port);
-    echo->ice_ping();
+    start();
+    Ice::CommunicatorHolder flooding(plain());
+    auto flood = proxy(flooding.communicator())->ice_oneway();
+    echo_->ice_ping();
     for (int i = 0; i < 2000; ++i)
         flood->noteAsync(i);
-    EXPECT_EQ(echo->repeat(9999, {1, 2}), (RadioTest::Bytes{1, 2}));
-    EXPECT_LT(echo->noted(), 1000) << "the flood went first";
+    expectAnswer(9999);
+    EXPECT_LT(echo_->noted(), 1000) << "the flood went first";
 }
 
 TEST_F(Gateway, ManyIdleClientsCostNothing) {
-    GatewayProgram gateway = start();
-    const int port = gateway.port();
-    ASSERT_GT(port, 0) << gateway.said();
-    Ice::CommunicatorHolder ic(plain());
-    auto echo = proxy(ic.communicator(), port);
+    start();
     for (int i = 0; i < 100; ++i)
-        echo->ice_connectionId(std::to_string(i))->ice_getConnection();
-    EXPECT_EQ(echo->repeat(1, {1, 2}), (RadioTest::Bytes{1, 2}));
+        echo_->ice_connectionId(std::to_string(i))->ice_getConnection();
+    expectAnswer();
 }
 
 // ---- who may call what ----
@@ -261,22 +253,25 @@ std::string whyFails(const std::function<void()>& call) {
     }
 }
 
+void expectRefusal(const std::function<void()>& call, const std::string& why) {
+    const std::string said = whyFails(call);
+    EXPECT_NE(said.find(why), std::string::npos) << said;
+}
+
 TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
-    GatewayProgram gateway = start({"--maintenance", "127.0.0.1:0"});
-    const int port = gateway.port();
-    ASSERT_GT(port, 0) << gateway.said();
-    ASSERT_TRUE(gateway.hear("maintenance at port ")) << gateway.said();
-    ASSERT_TRUE(gateway.hear("\n"));
-    const int door = std::atoi(gateway.said().c_str() + gateway.said().rfind("port ") + 5);
-    Ice::CommunicatorHolder ic(plain());
+    start({"--maintenance", "127.0.0.1:0"});
+    ASSERT_TRUE(gateway_->hear("maintenance at port ")) << said();
+    ASSERT_TRUE(gateway_->hear("\n"));
+    const int door = std::atoi(said().c_str() + said().rfind("port ") + 5);
     const auto ping = [&](const std::string& name, int at) {
-        return whyFails([&] { ic->stringToProxy(name + ":" + endpoint(at))->ice_ping(); });
+        return [=] { ic_->stringToProxy(name + ":" + endpoint(at))->ice_ping(); };
     };
     for (const std::string name : {"keys", "update"}) {
-        EXPECT_NE(ping(name, port).find("'" + name + "' is for maintenance"), std::string::npos);
-        EXPECT_EQ(ping(name, door), "::Ice::ObjectNotExistException") << "said by the vehicle";
+        expectRefusal(ping(name, port_), "'" + name + "' is for maintenance");
+        EXPECT_EQ(whyFails(ping(name, door)), "::Ice::ObjectNotExistException")
+            << "said by the vehicle";
     }
-    EXPECT_EQ(ping("echo", door), "");
+    EXPECT_EQ(whyFails(ping("echo", door)), "");
 }
 
 // By TLS the subject of a client's certificate is known; the certificates are those that
@@ -293,11 +288,9 @@ TEST_F(Gateway, ACertificateSaysWhoAsks) {
         << R"([{"who": "CN=pilot", "identities": ["*"], "operations": ["*"]},
                {"who": "CN=observer", "identities": ["echo"], "operations": ["fetch"]}])";
     const std::string authority = folder + "/authority.pem";
-    GatewayProgram gateway = start({"--rights", folder + "/rights", "--IceSSL.CAs=" + authority,
-                                    "--IceSSL.CertFile=" + folder + "/gateway.pem"},
-                                   "ssl -h 127.0.0.1 -p 0");
-    const int port = gateway.port();
-    ASSERT_GT(port, 0) << gateway.said();
+    start({"--rights", folder + "/rights", "--IceSSL.CAs=" + authority,
+           "--IceSSL.CertFile=" + folder + "/gateway.pem"},
+          "ssl -h 127.0.0.1 -p 0");
     const auto call = [&](const std::string& name, bool repeats) {
         Ice::registerIceSSL();
         Ice::InitializationData data;
@@ -308,8 +301,8 @@ TEST_F(Gateway, ACertificateSaysWhoAsks) {
         if (!name.empty())
             data.properties->setProperty("IceSSL.CertFile", folder + "/" + name + ".pem");
         Ice::CommunicatorHolder ic(data);
-        auto echo = Ice::uncheckedCast<RadioTest::EchoPrx>(
-            ic->stringToProxy("echo:ssl -h 127.0.0.1 -t 60000 -p " + std::to_string(port)));
+        auto echo = Ice::uncheckedCast<RadioTest::UavPrx>(
+            ic->stringToProxy("echo:ssl -h 127.0.0.1 -t 60000 -p " + std::to_string(port_)));
         return whyFails([&] {
             if (repeats)
                 echo->repeat(1, {1, 2});
@@ -330,49 +323,30 @@ TEST_F(Gateway, RightsSayWhoMayCallWhat) {
     const std::string rights = testing::TempDir() + "gateway_rights.json";
     std::ofstream(rights)
         << R"([{"who": "", "identities": ["ec*"], "operations": ["repeat", "note*"]}])";
-    GatewayProgram gateway = start({"--rights", rights});
-    const int port = gateway.port();
-    ASSERT_GT(port, 0) << gateway.said();
-    Ice::CommunicatorHolder ic(plain());
-    auto echo = proxy(ic.communicator(), port);
-    EXPECT_EQ(echo->repeat(1, {1, 2}), (RadioTest::Bytes{1, 2}));
-    EXPECT_EQ(echo->noted(), 0);
-    EXPECT_EQ(whyFails([&] { echo->ice_ping(); }), "");
-    EXPECT_NE(whyFails([&] { echo->fetch(1); }).find("has no right to call fetch of 'echo'"),
-              std::string::npos);
-    EXPECT_NE(whyFails([&] {
-                  ic->stringToProxy("other:" + endpoint(port))->ice_ping();
-              }).find("has no right"),
-              std::string::npos);
+    start({"--rights", rights});
+    expectAnswer();
+    EXPECT_EQ(echo_->noted(), 0);
+    EXPECT_EQ(whyFails([&] { echo_->ice_ping(); }), "");
+    expectRefusal([&] { echo_->fetch(1); }, "has no right to call fetch of 'echo'");
+    expectRefusal([&] { ic_->stringToProxy("other:" + endpoint())->ice_ping(); }, "has no right");
 }
 
 // A call that is refused says why: one that is too long for the radio, too.
 TEST_F(Gateway, ACallThatIsTooLongFailsWithTheLimit) {
-    GatewayProgram gateway = start();
-    const int port = gateway.port();
-    ASSERT_GT(port, 0) << gateway.said();
-    Ice::CommunicatorHolder ic(plain());
-    auto echo = proxy(ic.communicator(), port);
-    EXPECT_NE(whyFails([&] { echo->repeat(1, RadioTest::Bytes(9000)); }).find("8192"),
-              std::string::npos);
-    EXPECT_EQ(echo->repeat(2, {1, 2}), (RadioTest::Bytes{1, 2}));
+    start();
+    expectRefusal([&] { echo_->repeat(1, RadioTest::Bytes(9000)); }, "8192");
+    expectAnswer(2);
 }
 
 TEST_F(Gateway, CompressedCallsArrive) {
-    GatewayProgram gateway = start();
-    const int port = gateway.port();
-    ASSERT_GT(port, 0) << gateway.said();
-    Ice::CommunicatorHolder ic(plain());
-    auto echo = proxy(ic.communicator(), port)->ice_compress(true);
-    EXPECT_EQ(echo->repeat(1, RadioTest::Bytes(2000)), RadioTest::Bytes(2000));
-    auto batch = echo->ice_batchOneway();
+    start();
+    echo_ = echo_->ice_compress(true);
+    EXPECT_EQ(echo_->repeat(1, RadioTest::Bytes(2000)), RadioTest::Bytes(2000));
+    auto batch = echo_->ice_batchOneway();
     for (int i = 0; i < 30; ++i)
         batch->note(100 + i);
     batch->ice_flushBatchRequests();
-    int noted = 0;
-    for (int calls = 0; calls < 100 && noted < 30; ++calls) // the server has several threads
-        noted = echo->noted();
-    EXPECT_EQ(noted, 30);
+    expectNoted(30); // the server has several threads
 }
 
 TEST(GatewayOptions, WrongOnesAreRefusedByName) {

@@ -11,7 +11,7 @@
 #include <Ice/Ice.h>
 #include <set>
 
-class EchoServant : public RadioTest::Echo {
+class EchoServant : public RadioTest::Uav {
 public:
     RadioTest::Bytes repeat(int id, RadioTest::Bytes data, const Ice::Current&) override {
         std::lock_guard<std::mutex> lock(mutex_);
@@ -102,9 +102,9 @@ public:
         return Ice::initialize(data);
     }
     std::string endpoint() const { return "xbee-at -t 60000 -d " + rig.pty.path(); }
-    std::shared_ptr<RadioTest::EchoPrx> proxy(const Ice::CommunicatorPtr& ic,
-                                              const std::string& connection = "") {
-        return Ice::uncheckedCast<RadioTest::EchoPrx>(
+    std::shared_ptr<RadioTest::UavPrx> proxy(const Ice::CommunicatorPtr& ic,
+                                             const std::string& connection = "") {
+        return Ice::uncheckedCast<RadioTest::UavPrx>(
             ic->stringToProxy("echo:" + endpoint())->ice_connectionId(connection));
     }
     static RadioTest::Bytes pattern(int id, size_t size) {

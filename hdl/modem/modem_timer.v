@@ -32,6 +32,39 @@ module modem_timer #(
     end
 
 `ifdef FORMAL
-`include "modem_timer_proof.vh"
+    // time_o counts the ticks since clear_i, and n clocks equal one step of n, up to the tick, which
+    // the simulator adds at once.
+    (* anyseq *) reg begins; // a span
+    reg        past = 1'b0, spans = 1'b0;
+    reg [16:0] then, n;
+    reg [11:0] time_then;
+    wire [17:0] sum = {1'b0, then} + {1'b0, n};
+    initial assume (rst_i);
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        n    <= n + 17'd1;
+        if (rst_i || clear_i || sum > {1'b0, LAST})
+            spans <= 1'b0;
+        if (begins && !rst_i && !clear_i && !tick_o) begin
+            spans     <= 1'b1;
+            then      <= clocks;
+            time_then <= time_o;
+            n         <= 17'd1;
+        end
+        if (past) begin
+            // A unit begins with clear_i and with each tick, which counts.
+            assert (clocks == 17'd0 || !$past(rst_i || clear_i || tick_o));
+            assert (time_o == ($past(rst_i || clear_i) ? 12'd0 : $past(time_o) + {11'd0, $past(tick_o)}));
+            assert (!tick_o || !$past(clear_i));
+            // States the registers, so that the prover need not find them.
+            assert (clocks <= LAST + 17'd1 && (tick_o || clocks != LAST + 17'd1));
+            if (spans) begin
+                assert (n != 17'd0 && sum <= {1'b0, LAST} + 18'd1);
+                assert ({1'b0, clocks} == sum && time_o == time_then);
+                assert (tick_o == (sum == {1'b0, LAST} + 18'd1)); // not earlier, and not a clock late
+            end
+        end
+        cover (past && spans && tick_o && n > 17'd1);
+    end
 `endif
 endmodule

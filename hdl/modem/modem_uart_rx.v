@@ -64,7 +64,54 @@ module modem_uart_rx (
     end
 
 `ifdef FORMAL
-`include "modem_uart_rx_proof.vh"
+    // A byte from a sender of the same rate comes once, in its stop bit; a tick without a sample
+    // changes nothing else.
+    // The sender takes a tick a clock. Else ticks and line are free, and only changes are checked.
+    (* anyconst *) reg sender;
+    reg past = 1'b0;
+    wire busy = !idle;
+    initial assume (rst_i);
+    (* anyconst *) reg [7:0] sent;
+    (* hierconn, init = 1'b1 *) wire \u_rxd.bit_meta ;
+    reg [6:0] age = 7'd127; // ticks since the start bit's edge at the first flip-flop; 127: not yet
+    wire [9:0] frame = {1'b1, sent, 1'b0};
+    wire [6:0] before = age - 7'd1;
+    wire [3:0] got = (age - 7'd6) >> 3; // data bits sampled
+    always @(posedge clk_i) begin
+        past <= 1'b1;
+        assume (tick_i || !sender);
+        assume (!past || !rst_i);
+        assume (!sender || \u_rxd.bit_meta  == (age < 7'd80 ? frame[age[6:3]] : 1'b1));
+        if (age == 7'd127 && past && !rst_i && armed)
+            age <= 7'd0;
+        else if (age < 7'd90)
+            age <= age + 7'd1;
+        else
+            age <= 7'd127;
+        if (past && sender) begin
+            assert (!framing_error_o);
+            assert (valid_o == (age == 7'd78));
+            if (valid_o)
+                assert (data_o == sent);
+            // States the registers in each clock of a frame, so that the prover need not find them.
+            assert (age <= 7'd90 || age == 7'd127);
+            assert (line == (age >= 7'd1 && age <= 7'd80 ? frame[before[6:3]] : 1'b1));
+            assert (busy == (age >= 7'd2 && age <= 7'd77));
+            if (busy)
+                assert (ticks == age[2:0] + 3'd2 && started == (age >= 7'd6));
+            if (busy && started)
+                assert (bits == (({1'b0, sent} << (4'd9 - got)) | (9'h100 >> got)));
+            assert (armed || age == 7'd127 || age > 7'd77);
+        end
+        // A tick that samples nothing moves `ticks` alone: the simulator skips it. Without a tick,
+        // or while the line rests, nothing moves.
+        if (past && !$past(rst_i) && $past(busy && !(tick_i && ticks == 3'd7)))
+            assert (busy && {bits, started, armed} == $past({bits, started, armed}) && !valid_o && !framing_error_o &&
+                    ticks == $past(ticks) + {2'd0, $past(tick_i)});
+        if (past && $past(past && !rst_i && idle && line && armed && !started && ticks == 3'd4))
+            assert (idle && armed && !started && ticks == 3'd4 && bits == $past(bits) && !valid_o && !framing_error_o);
+        cover (past && valid_o && sent == 8'h3C);
+    end
 `endif
 `ifdef COVER_POINTS
     framing_error: cover property (@(posedge clk_i) framing_error_o);

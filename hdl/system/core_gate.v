@@ -37,7 +37,20 @@ module core_gate #(
             assign clk_o = clk_i && (open || ungated);
 `elsif FORMAL
             assign clk_o = clk_i;
-`include "core_gate_proof.vh"
+            // The gate is open while the core is active and 16 clocks longer, then closed.
+            reg [4:0] since = 5'd16; // clocks since the core was active
+            reg past = 1'b0;
+            initial assume (rst_i);
+            always @(posedge clk_i) begin
+                past <= 1'b1;
+                since <= active ? 5'd0 : since + {4'd0, since != 5'd16};
+                if (past) begin
+                    assert (run == (active || since != 5'd16));
+                    assert (rest == since);
+                end
+                cover (past && !run);
+                cover (past && run && $past(!run));
+            end
 `else
             BUFGCE u_buffer (.I(clk_i), .CE(run), .O(clk_o));
 `endif

@@ -14,8 +14,8 @@
 //   ticks of the UART's halves  one a tick of the baud rate, or held; the tick at 7 is an event
 //
 // A tick of the baud rate is skipped, too, once the chip has been seen to come back to the very
-// same state after one, but for these counters (proven: modem_uart_rx_proof.vh,
-// modem_uart_tx_proof.vh).
+// same state after one, but for these counters (proven: formal.modem_uart_rx,
+// formal.modem_uart_tx).
 
 #ifndef QUIET_SPAN_H
 #define QUIET_SPAN_H

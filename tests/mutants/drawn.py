@@ -28,9 +28,8 @@ TESTS = {
     "fsmc_": "test_fsmc_bridge test_fsmc_modes",
     "async_fifo": "test_ip_camera", "cdc_": "test_fsmc_bridge"}
 SECONDS = "20"  # processor time for each step of a mutant's proof, at least
-# A module's own cells, but those of its proof
-OF_SOURCE = ("{0}/c:* {0}/a:src=*_proof.v* {0}/t:$assert {0}/t:$assume {0}/t:$cover {0}/t:$any* "
-             "%u %u %u %u %d")
+# A module's cells; of_proof drops those of its proof's expressions
+OF_SOURCE = "{0}/c:* {0}/t:$assert {0}/t:$assume {0}/t:$cover {0}/t:$any* %u %u %u %d"
 DRAW = """setattr -set keep 1 w:f_*
 opt_clean
 write_rtlil plain.il
@@ -87,7 +86,7 @@ class Proof:
         """Proves the module as it is, and draws its mutants."""
         self.work.mkdir(parents=True, exist_ok=True)
         cells = OF_SOURCE.format(self.module)
-        status, text = self.run(self.work, DRAW.format(cells=cells, number=4 * number, seed=seed))
+        status, text = self.run(self.work, DRAW.format(cells=cells, number=20 * number, seed=seed))
         if status:
             sys.exit(f"{text}mutants: formal.{self.name} fails without any mutant: mend that first")
         self.design = model.cells(self.work / "plain.json")
@@ -101,7 +100,7 @@ class Proof:
             return False
         file, line = found.groups()
         if file not in self.first_of_proof:
-            source = pathlib.Path(file).read_text().split("`ifdef FORMAL\n")[0]
+            source = re.split("`(?:ifdef|elsif) FORMAL\n", pathlib.Path(file).read_text())[0]
             self.first_of_proof[file] = source.count("\n")
         return int(line) > self.first_of_proof[file]
 

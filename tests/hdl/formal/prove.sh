@@ -27,12 +27,11 @@ file=$(find "$source/bus" "$source/hdl" "$source/ip" -name "$module.v")
     echo "$module: no $module.v below bus, hdl or ip" >&2
     exit 2
 }
-proof=${file%.v}_proof.vh # included at the module's foot
 folders="$source/bus $source/hdl/system $source/hdl/cdc $(dirname "$file")"
 files=$(for folder in $folders; do ls "$folder"/*.v || true; done | sort -u)
 # Several clocks (a proof with `gclk`): every edge is an input of its own.
 clocks=async2sync
-! grep -qs gclk "$file" "$proof" || clocks='memory_map; clk2fflogic'
+! grep -q gclk "$file" || clocks='memory_map; clk2fflogic'
 # -nosdff -nodffe: AIGER has plain flip-flops only. The module's outputs are dropped: abc would take
 # them for properties. What became undefined (a flip-flop without a clock) is free: newer AIGER
 # backends refuse it.

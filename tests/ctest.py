@@ -1,6 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""ctest: CTest with these arguments; at the end it names skipped tests, each with its reason."""
+"""ctest: CTest with these arguments.
+
+At the end it prints the notes of tests that passed (lines that begin with `note: `), and names
+skipped tests, each with its reason.
+"""
 
 import pathlib
 import re
@@ -23,9 +27,13 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         results = pathlib.Path(folder, "results.xml")
         status = subprocess.call(
-            ["setpriv", "--pdeathsig", "TERM", "ctest", *sys.argv[1:], "--output-junit", results],
+            ["setpriv", "--pdeathsig", "TERM", "ctest", "--test-output-size-passed", "100000",
+             *sys.argv[1:], "--output-junit", results],
             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
-        cases = xml.parse(results).iter("testcase") if results.exists() else []
+        cases = list(xml.parse(results).iter("testcase")) if results.exists() else []
+    for case in [case for case in cases if case.get("status") == "run"]:
+        for note in re.findall("^note: (.*)", case.findtext("system-out") or "", re.M):
+            print(f"{case.get('name')}: {note}")
     skipped = [case for case in cases if case.find("skipped") is not None]
     if skipped:
         print(f"\nSkipped, {len(skipped)}:")

@@ -137,9 +137,22 @@ TEST(RegistersApart, OneThatHasTheValueOfAnotherIsFound) {
     CoreSlot<Vmy_memory_slot> slot;
     const Hw_Register table[] = {MY_MEMORY_TABLE},
                       twice[] = {{{1, "A"}, Hw_rw, 8, 0, 32, 0}, {{1, "B"}, Hw_rw, 8, 0, 32, 0}};
+    ::testing::internal::CaptureStdout(); // no notes
     expectRegistersApart(slot, table, MY_MEMORY_PAGE);
     EXPECT_NONFATAL_FAILURE(expectRegistersApart(slot, twice, MY_MEMORY_PAGE),
                             "A has what was written to B");
+    ::testing::internal::GetCapturedStdout();
+}
+
+TEST(RegistersApart, EachThatIsNotReadBackIsNamed) {
+    CoreSlot<Vmy_port_slot> slot;
+    slot.bench_.top().port_in_i = 0;
+    const Hw_Register table[] = {MY_PORT_TABLE};
+    ::testing::internal::CaptureStdout();
+    expectRegistersApart(slot, table, MY_PORT_PAGE);
+    EXPECT_EQ(::testing::internal::GetCapturedStdout(),
+              "note: LEVELS: not read back: 0xc was written, 0x0 read\n"
+              "note: DRIVEN: written and read back\n");
 }
 
 TEST(Late, AValueIsReadOnceAndAClockLater) {

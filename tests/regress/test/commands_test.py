@@ -35,7 +35,7 @@ add_custom_target(measure_bad COMMAND test ! -e ${work}/slow
 add_custom_target(benches DEPENDS measure_bad measure_good)
 add_custom_target(test_ip_fir ALL COMMAND cp ${work}/waved ${build}/test_ip_fir)
 file(WRITE ${build}/cores.known "fir\n")
-add_test(NAME test_ip_fir.Impulse COMMAND ${build}/test_ip_fir --gtest_list_tests)
+add_test(NAME test_ip_fir.Impulse COMMAND echo "note: LEVELS: not read back")
 add_test(NAME test_s.Sane COMMAND sh -c
   "case ${build} in *sanitized) ! test -e ../../../../leak ;; esac")
 set_tests_properties(test_s.Sane PROPERTIES LABELS sanitized)
@@ -173,7 +173,7 @@ class Cases(Project):
         self.good("wave IP=fir TEST=And")
         self.bad("wave IP=fir TEST=Imp", "2 tests, not one of")
         self.good("ip-test IP=fir")
-        self.has("1 tests passed|100% tests passed")
+        self.has("1 tests passed|100% tests passed", "^test_ip_fir.Impulse: LEVELS: not read back$")
         self.good(f"ip-test IP=fir CORE_FOLDERS={self.work}/mine")
         self.has(f"^CORE_FOLDERS.*={self.work}/mine$", file="build/main/CMakeCache.txt")
         self.bad("ip-test IP=nobody", "there is no core 'nobody': fir")

@@ -89,7 +89,7 @@ module modem_at_rows #(
 
     (* rom_style = "block", ram_style = "block" *)
     reg [16:0] rows [0:1023];
-    integer i, k;
+    integer i, k, last;
     initial begin
         for (i = 0; i < 1024; i = i + 1)
             rows[i] = 17'd0;
@@ -104,13 +104,14 @@ module modem_at_rows #(
         for (i = 2; i <= LEAVE; i = i + 1) begin
             rows[64*i]     = {SEND, "A"};
             rows[64*i + 1] = {SEND, "T"};
+            last = 64*i + 1 + letter_count(i);
             for (k = 0; k < letter_count(i); k = k + 1)
-                rows[64*i + 1 + letter_count(i) - k] = {SEND, letter(letters(i), k)};
+                rows[last - k] = {SEND, letter(letters(i), k)};
+            last = last + digit_count(i);
             for (k = 0; k < digit_count(i); k = k + 1)
-                rows[64*i + 1 + letter_count(i) + digit_count(i) - k] = {SEND | DIGIT, digit(i, k[4:0])};
-            rows[64*i + 2 + letter_count(i) + digit_count(i)] = {SEND, 8'h0D};
-            rows[64*i + 3 + letter_count(i) + digit_count(i)] =
-                {HEAR | LIMIT | REFUSE | (i == KEY - 1 ? SKIP : 9'd0), 8'd0};
+                rows[last - k] = {SEND | DIGIT, digit(i, k[4:0])};
+            rows[last + 1] = {SEND, 8'h0D};
+            rows[last + 2] = {HEAR | LIMIT | REFUSE | (i == KEY - 1 ? SKIP : 9'd0), 8'd0};
         end
         rows[0] = {SETTLE | RATE, SETTINGS};
     end

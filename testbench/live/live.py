@@ -2,14 +2,12 @@
 # SPDX-License-Identifier: MIT
 """live: serves the page that shows a mission as it runs, on the loopback interface only.
 
-One thread serves all, a request a connection. A slow, silent or endless client costs a place and a head of memory, for
-PATIENCE seconds at most, and no other waits for it.
+Each connection has a thread of its own and one request: a slow, silent or endless client makes no
+other wait, and ends after PATIENCE seconds of silence.
 """
 
 import argparse
-import asyncio
-import http.client
-import io
+import http.server
 import json
 import os
 import signal
@@ -17,18 +15,15 @@ import struct
 import sys
 from http import HTTPStatus
 
-PATIENCE = 10        # seconds for a request and its answer
-LONGEST_HEAD = 8192  # bytes of a request
-MOST_CLIENTS = 128   # at once: a new one displaces the oldest
-NEWEST = 128 << 10   # bytes of events.jsonl that a page shows, so that a long flight does not make it large
+PATIENCE = 10  # seconds
+NEWEST = 128 << 10  # bytes of events.jsonl that a page shows: a long flight does not make it large
 HERE = os.path.dirname(os.path.abspath(__file__))
 FILES = {  # path: MIME type, file
     "/": ("text/html; charset=utf-8", HERE + "/page/index.html"),
     "/live.css": ("text/css", HERE + "/page/live.css"),
     "/live.js": ("text/javascript", HERE + "/page/live.js"),
     "/common.css": ("text/css", HERE + "/../page/common.css"),
-    "/common.js": ("text/javascript", HERE + "/../page/common.js"),
-}
+    "/common.js": ("text/javascript", HERE + "/../page/common.js")}
 # SimStatus (sw/ground/sim_status.h): counters, registers by slot * 16 + word, how each was seen
 STATUS = struct.Struct("<8s7Q1024I1024B")
 SCHEMA = HERE + "/../../cli/flight.schema.json"
@@ -70,7 +65,8 @@ def newest(path):
 
 
 def blocks_by_slot(registers):
-    """[(slot, the description of its block)]; registers: a file that lists the blocks' *.regs.json, one a line."""
+    """[(slot, the description of its block)]; registers: a file that lists the blocks' *.regs.json,
+    one a line."""
     blocks = {}
     with open(registers) as paths:
         for path in filter(None, paths.read().split("\n")):
@@ -89,8 +85,8 @@ def register(block, word, value, seen):
     """Returns a word with its name and its fields; the fields of EVENT and MASK are the block's
     events. What was written to EVENT is no state: each one in it has cleared an event."""
     described = next((r for r in block.get("registers", []) if r["word"] == word), {})
-    fields = [{"name": f["name"], "value": value >> f["lsb"] & (1 << f["width"]) - 1, "doc": f.get("doc", "")}
-              for f in described.get("fields", [])]
+    fields = [{"name": f["name"], "value": value >> f["lsb"] & (1 << f["width"]) - 1,
+               "doc": f.get("doc", "")} for f in described.get("fields", [])]
     clears = word == 1 and seen == WRITTEN
     for event in block.get("events", []) if word in (1, 2) else []:
         bit = value >> event["bit"] & 1
@@ -99,7 +95,8 @@ def register(block, word, value, seen):
                            "doc": event.get("doc", "")})
     common = ("ID", "EVENT", "MASK")
     name = described.get("name", common[word] if word < 3 else f"word {word}")
-    return {"word": word, "value": value, "written": seen == WRITTEN, "name": name, "doc": described.get("doc", ""), "fields": fields}
+    return {"word": word, "value": value, "written": seen == WRITTEN, "name": name,
+            "doc": described.get("doc", ""), "fields": fields}
 
 
 def heading(folder):
@@ -110,12 +107,14 @@ def heading(folder):
     except (OSError, ValueError):
         return ""
     hidden = ("version", "out", "firmware", "key", "port", "live")
-    return ", ".join(f"{name} {value if not isinstance(value, list) else ' '.join(value)}" for name, value in flight.items()
+    return ", ".join(f"{name} {value if not isinstance(value, list) else ' '.join(value)}"
+                     for name, value in flight.items()
                      if name not in hidden and value != fields.get(name, {}).get("default"))
 
 
 def state(folder, slots):
-    """Returns the page's data, from the files of simulator and ground station; missing files leave it empty."""
+    """Returns the page's data, from the files of simulator and ground station; missing files leave
+    it empty."""
     shown = {"calls": [], "features": [], "slots": [], "flight": heading(folder)}
     status = contents(folder + "/status")
     if len(status) >= STATUS.size and status.startswith(b"ICESOC1\0"):
@@ -125,86 +124,59 @@ def state(folder, slots):
         for slot, block in slots:
             words = [register(block, word, registers[slot * 16 + word], seen[slot * 16 + word])
                      for word in range(16) if seen[slot * 16 + word]]
-            shown["slots"].append({"slot": slot, "block": block["block"], "doc": block.get("doc", ""), "words": words})
+            shown["slots"].append({"slot": slot, "block": block["block"],
+                                   "doc": block.get("doc", ""), "words": words})
     for row in rows(contents(folder + "/calls.jsonl").split(b"\n")):
         if "features" in row:
             shown.update(features=row["features"], found=row["found"])
         else:
             shown["calls"].append(row)
     shown["events"] = list(rows(newest(folder + "/events.jsonl")))
-    changed = {name: os.stat(path).st_mtime_ns for name in ("before.png", "report.json") if os.path.exists(path := f"{folder}/{name}")}
+    changed = {name: os.stat(path).st_mtime_ns for name in ("before.png", "report.json")
+               if os.path.exists(path := f"{folder}/{name}")}
     shown["frame"] = "before.png" in changed
     # A report older than the picture is of the previous mission.
     shown["over"] = len(changed) == 2 and changed["report.json"] >= changed["before.png"]
     return shown
 
 
-class Page:
-    """The page of a mission, and its clients."""
+class Page(http.server.BaseHTTPRequestHandler):
+    """A request for the page of a mission."""
+    protocol_version, timeout = "HTTP/1.1", PATIENCE
+    error_message_format, error_content_type = "%(code)d %(message)s\n", "text/plain"
+    folder, slots = "", []
 
-    def __init__(self, folder, slots):
-        self.folder, self.slots = folder, slots
-        self.clients = []  # the oldest first
-        self.hosts = ()
-
-    def answer(self, head):
-        """Returns (status, MIME type, content) for a request. A request with another host name is refused: another
-        host's page may use one for this address."""
-        first, _, rest = head.partition(b"\r\n")
-        words = first.decode("latin-1").split()
-        try:
-            if len(words) != 3 or not words[2].startswith("HTTP/1."):
-                raise http.client.HTTPException
-            hosts = http.client.parse_headers(io.BytesIO(rest)).get_all("Host", [])
-        except http.client.HTTPException:
-            return HTTPStatus.BAD_REQUEST, "text/plain", b""
-        if len(hosts) != 1 or hosts[0] not in self.hosts:
-            return HTTPStatus.FORBIDDEN, "text/plain", b""
-        if words[0] != "GET":
-            return HTTPStatus.METHOD_NOT_ALLOWED, "text/plain", b""
-        path = words[1].partition("?")[0]
+    def do_GET(self):
+        port = self.server.server_address[1]
+        hosts = self.headers.get_all("Host", [])
+        # Another host's page may use a name of its own for this address.
+        if len(hosts) != 1 or hosts[0] not in (f"127.0.0.1:{port}", f"localhost:{port}"):
+            return self.send_error(HTTPStatus.FORBIDDEN)
+        path = self.path.partition("?")[0]
+        frame = self.folder + "/before.png" if path == "/frame.png" else ""
+        kind, file = FILES.get(path, ("image/png", frame))
         if path == "/state":
-            return HTTPStatus.OK, "application/json", json.dumps(state(self.folder, self.slots)).encode()
-        kind, file = FILES.get(path, ("image/png", self.folder + "/before.png" if path == "/frame.png" else ""))
-        content = contents(file)
-        return HTTPStatus.OK if content else HTTPStatus.NOT_FOUND, kind if content else "text/plain", content
+            kind, content = "application/json", json.dumps(state(self.folder, self.slots)).encode()
+        else:
+            content = contents(file)
+        if not content:
+            return self.send_error(HTTPStatus.NOT_FOUND)
+        self.send_response(HTTPStatus.OK)
+        self.send_header("Content-Type", kind)
+        self.send_header("Content-Length", str(len(content)))
+        self.send_header("Connection", "close")
+        self.end_headers()
+        self.wfile.write(content)
 
-    async def exchange(self, reader, writer):
-        try:
-            status, kind, content = self.answer(await reader.readuntil(b"\r\n\r\n"))
-        except asyncio.LimitOverrunError:
-            status, kind, content = HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE, "text/plain", b""
-        content = content or f"{status.value} {status.phrase}\n".encode()
-        writer.write(f"HTTP/1.1 {status.value} {status.phrase}\r\nContent-Type: {kind}\r\nContent-Length: {len(content)}\r\n"
-                     "Connection: close\r\n\r\n".encode() + content)
-        await writer.drain()
-        writer.close()
-        await writer.wait_closed()
+    def log_message(self, *_):
+        pass
 
-    async def serve(self, reader, writer):
-        if len(self.clients) == MOST_CLIENTS:
-            self.clients.pop(0).transport.abort()
-        self.clients.append(writer)
-        try:
-            await asyncio.wait_for(self.exchange(reader, writer), PATIENCE)
-        except (asyncio.TimeoutError, asyncio.IncompleteReadError, OSError):
-            pass  # the client has gone, or is not worth waiting for
-        finally:
-            writer.transport.abort()
-            if writer in self.clients:
-                self.clients.remove(writer)
 
-    async def run(self, port, only_try):
-        try:
-            server = await asyncio.start_server(self.serve, "127.0.0.1", port, limit=LONGEST_HEAD, backlog=MOST_CLIENTS)
-        except OSError:
-            sys.exit("icesoc-live: error: cannot listen on 127.0.0.1: is the port taken? PORT=0 takes any that is free")
-        port = server.sockets[0].getsockname()[1]
-        self.hosts = (f"127.0.0.1:{port}", f"localhost:{port}")
-        if only_try:
-            return
-        print(f"The mission as it runs: http://127.0.0.1:{port}/", flush=True)
-        await server.serve_forever()
+class Server(http.server.ThreadingHTTPServer):
+    request_queue_size = 128
+
+    def handle_error(self, *_):
+        pass  # the client has gone, or is not worth waiting for
 
 
 def port_number(text):
@@ -214,19 +186,32 @@ def port_number(text):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="icesoc-live", description="Serves the page that shows a mission as it runs, on 127.0.0.1.")
-    parser.add_argument("--dir", required=True, help="the mission's folder: status, calls.jsonl, before.png")
-    parser.add_argument("--registers", required=True, help="file that lists the blocks' *.regs.json; map.regs.json says which is in which slot")
+    parser = argparse.ArgumentParser(
+        prog="icesoc-live",
+        description="Serves the page that shows a mission as it runs, on 127.0.0.1.")
+    parser.add_argument("--dir", required=True,
+                        help="the mission's folder: status, calls.jsonl, before.png")
+    parser.add_argument("--registers", required=True,
+                        help="file that lists the blocks' *.regs.json; map.regs.json says which is "
+                        "in which slot")
     parser.add_argument("--port", type=port_number, default=0, help="0: any that is free")
-    parser.add_argument("--try", dest="only_try", action="store_true", help="only look whether the page can be served")
+    parser.add_argument("--try", dest="only_try", action="store_true",
+                        help="only look whether the page can be served")
     words = parser.parse_args()
     try:
-        slots = blocks_by_slot(words.registers)
+        Page.folder, Page.slots = words.dir, blocks_by_slot(words.registers)
     except (OSError, ValueError, KeyError) as error:
         sys.exit(f"icesoc-live: error: cannot read '{words.registers}': {error}")
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: os._exit(0))
-    asyncio.run(Page(words.dir, slots).run(words.port, words.only_try))
+    try:
+        server = Server(("127.0.0.1", words.port), Page)
+    except OSError:
+        sys.exit("icesoc-live: error: cannot listen on 127.0.0.1: is the port taken? PORT=0 takes "
+                 "any that is free")
+    if not words.only_try:
+        print(f"The mission as it runs: http://127.0.0.1:{server.server_address[1]}/", flush=True)
+        server.serve_forever()
 
 
 main()

@@ -7,16 +7,10 @@
 
 namespace {
 
-constexpr uint32_t keys[2] = {0x45670123, 0xCDEF89AB}, optionKeys[2] = {0x08192A3B, 0x4C5D6E7F};
-constexpr uint32_t optionLock = 1;
-constexpr uint64_t microsecond = 1'000, millisecond = 1'000'000;
-
-// Typical times (STM32F207's data sheet, flash memory characteristics), by PSIZE: the parallelism
-// of 8, 16, 32 and 64 bits.
-constexpr uint64_t eraseMs[3][4] = {
-    {400, 300, 250, 250}, {1200, 700, 550, 550}, {2000, 1300, 1000, 1000}};
-constexpr uint64_t massEraseMs[4] = {16000, 11000, 8000, 8000};
-constexpr uint64_t programNs = 16 * microsecond;
+constexpr uint32_t keys[2] = {0x45670123, 0xCDEF89AB};
+// Typical times (STM32F207's data sheet, flash memory characteristics) with a parallelism of 32
+// bits, of sectors of 16, 64 and 128 KiB and of a word.
+constexpr uint64_t eraseMs[] = {250, 550, 1000}, millisecond = 1'000'000, programNs = 16'000;
 
 } // namespace
 
@@ -32,15 +26,14 @@ unsigned Stm32Flash::sectorOf(uint32_t offset) {
     return offset < 0x10000 ? offset / 0x4000 : offset < 0x20000 ? 4 : 4 + offset / 0x20000;
 }
 
-void Stm32Flash::unlock(uint32_t value, const uint32_t key[2], unsigned& step, uint32_t& reg,
-                        uint32_t lock) {
-    if (step > 1 || value != key[step]) {
-        step = 3; // until the next reset
+void Stm32Flash::unlock(uint32_t key) {
+    if (keyStep_ > 1 || key != keys[keyStep_]) {
+        keyStep_ = 3; // until the next reset
         throw WrongKey("a wrong key, or one too many: the flash stays locked until a reset");
     }
-    if (++step == 2) {
-        reg &= ~lock;
-        step = 0;
+    if (++keyStep_ == 2) {
+        cr_ &= ~Lock;
+        keyStep_ = 0;
     }
 }
 
@@ -53,8 +46,6 @@ uint32_t Stm32Flash::read(uint32_t reg) {
         return sr_ | (operation_.under ? uint32_t(Bsy) : 0);
     case Cr:
         return cr_;
-    case Optcr:
-        return optcr_;
     default:
         return 0; // the keys' registers
     }
@@ -62,44 +53,23 @@ uint32_t Stm32Flash::read(uint32_t reg) {
 
 void Stm32Flash::write(uint32_t reg, uint32_t value) {
     settle();
-    switch (reg) {
-    case Acr:
+    if (reg == Acr)
         acr_ = value;
-        return;
-    case Keyr:
-        return unlock(value, keys, keyStep_, cr_, Lock);
-    case Optkeyr:
-        return unlock(value, optionKeys, optionStep_, optcr_, optionLock);
-    case Sr:
+    else if (reg == Keyr)
+        unlock(value);
+    else if (reg == Sr)
         sr_ &= ~value;
-        return;
-    case Optcr:
-        if (!(optcr_ & optionLock))
-            optcr_ = value;
-        return;
-    default:
-        break;
-    }
-    if ((cr_ & Lock) || operation_.under) // writes are ignored
+    if (reg != Cr || (cr_ & Lock) || operation_.under) // writes are ignored
         return;
     cr_ = value & ~Strt;
-    if (!(value & Strt) || !(value & (Ser | Mer)))
+    if (!(value & Strt) || !(value & Ser))
         return;
-    const unsigned width = value >> 8 & 3, sector = value >> 3 & 15;
-    if (value & Mer) {
-        if ((optcr_ >> 16 & 0xFFF) != 0xFFF)
-            sr_ |= Wrperr;
-        else
-            begin({0, 0, bytes, 0, false, true}, massEraseMs[width] * millisecond);
-    } else if (sector >= sectors) {
+    const unsigned sector = value >> 3 & 15, kind = sector < 4 ? 0 : sector == 4 ? 1 : 2;
+    if (sector >= sectors)
         sr_ |= Pgserr;
-    } else if (isProtected(sectorAt(sector))) {
-        sr_ |= Wrperr;
-    } else {
-        const unsigned kind = sector < 4 ? 0 : sector == 4 ? 1 : 2;
+    else
         begin({0, sectorAt(sector), sectorBytes(sector), 0, false, true},
-              eraseMs[kind][width] * millisecond);
-    }
+              eraseMs[kind] * millisecond);
 }
 
 void Stm32Flash::store(uint32_t offset, unsigned size, uint32_t value) {
@@ -112,14 +82,8 @@ void Stm32Flash::store(uint32_t offset, unsigned size, uint32_t value) {
         sr_ |= Pgperr;
     else if (offset / 16 != (offset + size - 1) / 16)
         sr_ |= Pgaerr;
-    else if (isProtected(offset))
-        sr_ |= Wrperr;
     else
         begin({0, offset, size, value, false, false}, programNs);
-}
-
-bool Stm32Flash::isProtected(uint32_t offset) const {
-    return !(optcr_ >> 16 >> sectorOf(offset) & 1);
 }
 
 void Stm32Flash::begin(Operation operation, uint64_t ns) {
@@ -184,8 +148,6 @@ void Stm32Flash::reset() {
     settle();
     if (operation_.under)
         cut();
-    keyStep_ = optionStep_ = 0;
-    acr_ = sr_ = 0;
+    keyStep_ = acr_ = sr_ = 0;
     cr_ = Lock;
-    optcr_ |= optionLock;
 }

@@ -20,11 +20,10 @@ public:
     static uint32_t sectorBytes(unsigned number); // 4 x 16 KiB, 64 KiB, 7 x 128 KiB
     static unsigned sectorOf(uint32_t offset);
 
-    enum Register : uint32_t { Acr = 0, Keyr = 4, Optkeyr = 8, Sr = 12, Cr = 16, Optcr = 20 };
-    enum : uint32_t { Pg = 1, Ser = 2, Mer = 4, Strt = 1u << 16, Lock = 1u << 31 }; // of CR
-    enum : uint32_t {                                                               // of SR
+    enum Register : uint32_t { Acr = 0, Keyr = 4, Sr = 12, Cr = 16 };
+    enum : uint32_t { Pg = 1, Ser = 2, Strt = 1u << 16, Lock = 1u << 31 }; // of CR
+    enum : uint32_t {                                                      // of SR
         Eop = 1,
-        Wrperr = 1u << 4,
         Pgaerr = 1u << 5,
         Pgperr = 1u << 6,
         Pgserr = 1u << 7,
@@ -61,13 +60,11 @@ private:
         uint32_t offset = 0, size = 0, value = 0;
         bool under = false, erases = false;
     };
-    void unlock(uint32_t value, const uint32_t keys[2], unsigned& step, uint32_t& reg,
-                uint32_t lock);
+    void unlock(uint32_t key);
     void begin(Operation operation, uint64_t ns);
     void finish();
     void settle();
     void cut();
-    bool isProtected(uint32_t offset) const;
     void put(uint32_t offset, unsigned size, uint32_t value);
     void changed(uint32_t offset, uint32_t size) const;
 
@@ -76,8 +73,7 @@ private:
     std::mt19937_64 random_;
     Operation operation_;
     uint64_t operations_ = 0;
-    unsigned keyStep_ = 0, optionStep_ = 0;
-    uint32_t acr_ = 0, sr_ = 0, cr_ = Lock, optcr_ = 0x0FFFAAED;
+    uint32_t keyStep_ = 0, acr_ = 0, sr_ = 0, cr_ = Lock;
 };
 
 #endif

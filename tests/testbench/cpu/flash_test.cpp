@@ -11,7 +11,7 @@ namespace {
 
 class Flash : public ::testing::Test {
 protected:
-    enum : uint32_t { X8 = 0, X16 = 1 << 8, X32 = 2 << 8 }; // PSIZE
+    static constexpr uint32_t X32 = 2 << 8; // PSIZE
 
     void unlock() {
         flash.write(Stm32Flash::Keyr, 0x45670123);
@@ -78,7 +78,7 @@ TEST_F(Flash, ProgrammingOnlyClearsBits) {
     EXPECT_EQ(word(8), 0x00FF0000u);
 }
 
-TEST_F(Flash, AnEraseTakesItsTimeByKindOfSectorAndParallelism) {
+TEST_F(Flash, AnEraseTakesItsTimeByKindOfSector) {
     unlock();
     const std::pair<unsigned, uint64_t> times[] = {{0, 250}, {4, 550}, {5, 1000}, {11, 1000}};
     for (auto [sector, ms] : times) {
@@ -93,8 +93,6 @@ TEST_F(Flash, AnEraseTakesItsTimeByKindOfSectorAndParallelism) {
         EXPECT_EQ(word(at), 0xFFFFFFFFu);
         EXPECT_EQ(word(at + size - 4), 0xFFFFFFFFu);
     }
-    flash.write(Stm32Flash::Cr, X8 | Stm32Flash::Ser | 5 << 3 | Stm32Flash::Strt);
-    EXPECT_EQ(flash.busyNs(), 2'000'000'000u);
 }
 
 TEST_F(Flash, AnEraseLeavesTheNeighboursAlone) {
@@ -116,20 +114,6 @@ TEST_F(Flash, AStoreOfAnotherWidthThanPsizeIsRefused) {
     flash.store(14, 4, 0); // over the end of a row of 128 bits
     EXPECT_EQ(status(), uint32_t(Stm32Flash::Pgaerr));
     EXPECT_EQ(word(12), 0xFFFFFFFFu);
-}
-
-TEST_F(Flash, ProtectedSectorsAreNeitherErasedNorWritten) {
-    unlock();
-    program(0, 5);
-    flash.write(Stm32Flash::Optkeyr, 0x08192A3B);
-    flash.write(Stm32Flash::Optkeyr, 0x4C5D6E7F);
-    flash.write(Stm32Flash::Optcr, 0x0FFEAAEC); // nWRP0 is 0
-    erase(0);
-    EXPECT_EQ(status(), uint32_t(Stm32Flash::Wrperr));
-    flash.write(Stm32Flash::Sr, Stm32Flash::Wrperr);
-    program(0, 0);
-    EXPECT_EQ(status(), uint32_t(Stm32Flash::Wrperr));
-    EXPECT_EQ(word(0), 5u);
 }
 
 TEST_F(Flash, AResetInAWriteLeavesSomeOfItsBits) {

@@ -56,15 +56,12 @@ void Case_pend(U32 irq) {
     __asm__ volatile("dsb\n\tisb");
 }
 
+#define NAMED(name) Case_##name,
 __attribute__((section(".vectors"), used)) static const Vector vectors[] = {
     stack_top, Reset_Handler, Handler, Handler, Handler, Handler, Handler, 0, 0, 0, 0, Handler,
     Handler, 0, Handler, Handler, Handler, Handler, Handler, Handler, Case_ack, Case_ackWait,
     /* The cases, behind the interrupts' vectors: the linker drops what nobody names. */
-    Case_nesting, Case_samePriority, Case_lowestNumberFirst, Case_subPriority, Case_primaskExact,
-    Case_basepri, Case_faultmask, Case_switchLast, Case_supervisorCall, Case_systick,
-    Case_sleepMasked, Case_busFault, Case_noMemory, Case_escalation, Case_undefinedInstruction,
-    Case_armState, Case_lockUp, Case_guard, Case_process, Case_alignment, Case_cycles,
-    Case_resetRequest, Case_work, Case_storeFault, Case_unbuffered, Case_storeMasked, Case_lateAck};
+    CASES(NAMED)};
 
 void Reset_Handler(void) {
     startMemory();

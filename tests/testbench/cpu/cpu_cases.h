@@ -22,35 +22,19 @@ void Case_priority(U32 irq, U32 value8); /* and enables it */
 void Case_pend(U32 irq);
 void Reset_Handler(void);
 
-void Case_nesting(void);
-void Case_samePriority(void);
-void Case_lowestNumberFirst(void);
-void Case_subPriority(void);
-void Case_primaskExact(void);
-void Case_basepri(void);
-void Case_faultmask(void);
-void Case_switchLast(void);
-void Case_supervisorCall(void);
-void Case_systick(void);
-void Case_sleepMasked(void);
-void Case_busFault(void);
-void Case_storeFault(void);
-void Case_unbuffered(void);
-void Case_storeMasked(void);
-void Case_lateAck(void);
 void Case_ack(void);
 void Case_ackWait(void);
-void Case_noMemory(void);
-void Case_escalation(void);
-void Case_undefinedInstruction(void);
-void Case_armState(void);
-void Case_lockUp(void);
-void Case_guard(void);
-void Case_process(void);
-void Case_alignment(void);
-void Case_cycles(void);
-void Case_resetRequest(void);
-void Case_work(void);
 U32 Work_asm(U32 rounds);
+
+/* clang-format off */
+#define CASES(X) \
+    X(nesting) X(samePriority) X(lowestNumberFirst) X(subPriority) X(primaskExact) X(basepri) \
+    X(faultmask) X(switchLast) X(supervisorCall) X(systick) X(sleepMasked) X(busFault) \
+    X(storeFault) X(unbuffered) X(storeMasked) X(lateAck) X(noMemory) X(escalation) \
+    X(undefinedInstruction) X(armState) X(lockUp) X(guard) X(process) X(alignment) X(cycles) \
+    X(resetRequest) X(work)
+/* clang-format on */
+#define DECLARED(name) void Case_##name(void);
+CASES(DECLARED)
 
 #endif

@@ -58,11 +58,12 @@ public:
                              static_cast<U32>(line_.received.size()), us());
             line_.received.clear();
             Link_poll(link_.get(), us());
+            if (isUp() && !isOpen_)
+                isOpen_ = Link_openChannel(link_.get(), 0) == LINK_OK;
         }
         return std::min(modem_->nextEvent(), nextPoll_);
     }
     bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
-    void open() { Link_openChannel(link_.get(), 0); }
     // Makes a two-way call of an object; `parameters` are encoded. Mode 0 is normal, 2 idempotent.
     void call(int id, const std::string& object, const std::string& operation, int mode = 0,
               const std::vector<uint8_t>& parameters = {}) {
@@ -93,14 +94,10 @@ public:
             backlog_ += size;
     }
     void ping(int id, const std::string& object) { call(id, object, "ice_ping", 2); }
-    // Returns a script, to be called again and again. It connects, pings each time the last ping is
-    // answered, and returns true once `count` are.
+    // Returns a script, to be called again and again. It pings each time the last ping is answered,
+    // and returns true once `count` are.
     std::function<bool()> pinging(int count, const std::string& object = "hwengine1") {
-        return [this, count, object, sent = 0, opened = false]() mutable {
-            if (!opened && isUp()) {
-                open();
-                opened = true;
-            }
+        return [this, count, object, sent = 0]() mutable {
             if (validated && static_cast<int>(replies.size()) == sent && sent < count)
                 ping(++sent, object);
             return static_cast<int>(replies.size()) == count;
@@ -145,7 +142,9 @@ private:
             g.deliveredBytes += size;
         ++(what == LINK_DELIVERED ? g.delivered : g.unknown);
     }
-    static void state(void* context, Link_State) { self(context).validated = false; }
+    static void state(void* context, Link_State) {
+        self(context).validated = self(context).isOpen_ = false;
+    }
 
     Random random_;
     HostLine line_;
@@ -153,6 +152,7 @@ private:
     std::unique_ptr<Link> link_;
     uint64_t now_ = 0, clock_ = 0, nextPoll_ = 0;
     size_t backlog_ = 0;
+    bool isOpen_ = false; // the channel of its calls
 };
 
 #endif

@@ -32,9 +32,7 @@ public:
         soc.reset();
         const uint32_t size[2] = {48, 32};
         std::memcpy(soc.memory().data() + UAV_FRAME_HEADER, size, sizeof size);
-        until([this] { return ground.isUp(); }, 20, "the link");
-        ground.open();
-        until([this] { return ground.validated; }, 5, "the connection");
+        until([this] { return ground.validated; }, 25, "the connection");
     }
     // Runs until `done`, asked each simulated millisecond; fails after `seconds`.
     void until(std::function<bool()> done, double seconds, const char* what) {

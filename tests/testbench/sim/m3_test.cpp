@@ -40,10 +40,6 @@ struct Flight {
     }
     // Next call, when the one before is answered; false when all are.
     bool step() {
-        if (!opened && ground.isUp()) {
-            ground.open();
-            opened = true;
-        }
         if (!ground.validated || static_cast<int>(ground.replies.size()) < sent)
             return true;
         if (sent == static_cast<int>(calls.size()))
@@ -56,7 +52,6 @@ struct Flight {
     // Goes on as after a restart of the ground's program.
     void forget() {
         ground.replies.clear();
-        opened = false;
         sent = 0;
     }
     void pings(int count) {
@@ -85,7 +80,6 @@ struct Flight {
     SocModel soc{air, Ground::uavModem()};
     std::vector<std::function<void(int id)>> calls;
     std::vector<Packet> packets;
-    bool opened = false;
     int sent = 0;
 };
 

@@ -63,13 +63,8 @@ Flight fly(bool evaluateAll) {
     soc.reset(true);
     soc.evaluateAll(evaluateAll);
     int sent = 0;
-    bool opened = false;
     uint64_t called = 0;
     UavMachine machine(soc, [&] {
-        if (!opened && ground.isUp()) {
-            ground.open();
-            opened = true;
-        }
         if (ground.validated && !called) {
             called = soc.now();
             f.clocks -= soc.cycles();

@@ -120,15 +120,11 @@ protected:
     void fly(const std::vector<Step>& steps, const std::function<bool()>& over) {
         size_t step = 0;
         int sent = 0;
-        bool opened = false, done = false;
+        bool done = false;
         const auto isStatus = [&](size_t at) {
             return std::strcmp(steps[at].operation, "getStatus") == 0;
         };
         UavMachine machine(soc, [&] {
-            if (!opened && ground.isUp()) {
-                ground.open();
-                opened = true;
-            }
             if (ground.validated && step < steps.size() &&
                 sent == static_cast<int>(ground.replies.size())) {
                 if (sent) {

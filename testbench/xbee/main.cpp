@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <fmt/format.h>
 #include <memory>
 #include <thread>
 
@@ -50,12 +51,10 @@ void setParameter(std::map<std::string, uint32_t>& set, const std::string& text)
         throw CLI::ValidationError("'" + text + "'", "there is no parameter " + letters);
     if (used == 0 || letters.size() + 1 + used != text.size())
         throw CLI::ValidationError("'" + text + "'", "give it as in MY=1A2B, in hex");
-    if (value < parameter->second.lowest || value > parameter->second.highest) {
-        char range[64];
-        std::snprintf(range, sizeof range, "%s is from %X to %X", letters.c_str(),
-                      parameter->second.lowest, parameter->second.highest);
-        throw CLI::ValidationError("'" + text + "'", range);
-    }
+    if (value < parameter->second.lowest || value > parameter->second.highest)
+        throw CLI::ValidationError("'" + text + "'", fmt::format("{} is from {:X} to {:X}", letters,
+                                                                 parameter->second.lowest,
+                                                                 parameter->second.highest));
     set[letters] = static_cast<uint32_t>(value);
 }
 
@@ -77,30 +76,26 @@ void power(Modem& modem, RfChannel& air, const std::string& name, const Settings
             throw CLI::ValidationError(settings.link, error.message());
         modem.link = settings.link;
     }
-    std::printf("%s: %s%s%s, %.0f baud, address %04X, sends to %04X\n", name.c_str(),
-                modem.line.path().c_str(), modem.link.empty() ? "" : " = ", modem.link.c_str(),
-                modem.xbee->baud(), modem.xbee->parameter("MY"), modem.xbee->parameter("DL"));
+    fmt::print("{}: {}{}{}, {:.0f} baud, address {:04X}, sends to {:04X}\n", name,
+               modem.line.path(), modem.link.empty() ? "" : " = ", modem.link, modem.xbee->baud(),
+               modem.xbee->parameter("MY"), modem.xbee->parameter("DL"));
 }
 
 void report(const XBee& modem) {
     const XBee::Counters& c = modem.counters();
-    std::printf(
-        "%s: %llu bytes from the host, %llu to it, %llu packets sent, %llu received, %llu commands "
-        "(%llu refused), lost: %llu bytes by overflow, %llu framing errors, %llu packets by a full "
-        "buffer\n",
-        modem.name().c_str(), 0ull + c.bytesFromHost, 0ull + c.bytesToHost, 0ull + c.packetsSent,
-        0ull + c.packetsReceived, 0ull + c.commands, 0ull + c.refused, 0ull + c.overflow,
-        0ull + c.framingErrors, 0ull + c.packetsDropped);
+    fmt::print("{}: {} bytes from the host, {} to it, {} packets sent, {} received, {} commands "
+               "({} refused), lost: {} bytes by overflow, {} framing errors, {} packets by a full "
+               "buffer\n",
+               modem.name(), c.bytesFromHost, c.bytesToHost, c.packetsSent, c.packetsReceived,
+               c.commands, c.refused, c.overflow, c.framingErrors, c.packetsDropped);
 }
 
 void report(const RfChannel& air) {
     const RfChannel::Counters& c = air.counters();
-    std::printf("air: %llu packets, %llu bytes, %llu lost, %llu corrupted, %llu duplicated, %llu "
-                "tries again, "
-                "%llu collisions, %llu never sent, %.1f ms\n",
-                0ull + c.packets, 0ull + c.bytes, 0ull + c.lost, 0ull + c.corrupted,
-                0ull + c.duplicated, 0ull + c.retries, 0ull + c.collisions, 0ull + c.noClearChannel,
-                static_cast<double>(c.airNs) / 1e6);
+    fmt::print("air: {} packets, {} bytes, {} lost, {} corrupted, {} duplicated, {} tries again, "
+               "{} collisions, {} never sent, {:.1f} ms\n",
+               c.packets, c.bytes, c.lost, c.corrupted, c.duplicated, c.retries, c.collisions,
+               c.noClearChannel, static_cast<double>(c.airNs) / 1e6);
 }
 
 void addSettings(CLI::App& app, const std::string& name, Settings& settings) {
@@ -108,6 +103,33 @@ void addSettings(CLI::App& app, const std::string& name, Settings& settings) {
                    "Parameter of modem " + name + ", in hex, as MY=1 or BD=7; may be repeated")
         ->type_name("XX=HEX");
     app.add_option("--link-" + name, settings.link, "Symbolic link to its pty")->type_name("PATH");
+}
+
+void say(uint64_t now, const RfPacket& packet, RfChannel::Outcome outcome) {
+    static const char* const outcomes[] = {"delivered",    "lost",    "corrupted",
+                                           "nobody there", "no room", "channel not clear"};
+    fmt::print("{:9.3f} s  {:04X} -> {:04X}  {:3} bytes  {}\n", static_cast<double>(now) / 1e9,
+               packet.from, packet.to, packet.bytes.size(), outcomes[static_cast<int>(outcome)]);
+}
+
+// Runs until Ctrl-C, or for so many seconds, if any, and prints statistics.
+void run(RfChannel& air, XBee& a, XBee& b, double duration) {
+    std::signal(SIGINT, [](int) { stopped = 1; });
+    std::signal(SIGTERM, [](int) { stopped = 1; });
+    const auto begin = std::chrono::steady_clock::now();
+    for (uint64_t now = 0;
+         !stopped && (duration == 0 || static_cast<double>(now) <= duration * 1e9);
+         std::this_thread::sleep_for(std::chrono::microseconds(500))) {
+        now = static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                        std::chrono::steady_clock::now() - begin)
+                                        .count());
+        air.advance(now);
+        a.advance(now);
+        b.advance(now);
+    }
+    report(a);
+    report(b);
+    report(air);
 }
 
 } // namespace
@@ -157,13 +179,7 @@ int main(int argc, char** argv) {
     RfChannel air(seed);
     air.weather = weather;
     if (verbose)
-        air.onPacket([](uint64_t now, const RfPacket& packet, RfChannel::Outcome outcome) {
-            static const char* const outcomes[] = {"delivered",    "lost",    "corrupted",
-                                                   "nobody there", "no room", "channel not clear"};
-            std::printf("%9.3f s  %04X -> %04X  %3zu bytes  %s\n", static_cast<double>(now) / 1e9,
-                        packet.from, packet.to, packet.bytes.size(),
-                        outcomes[static_cast<int>(outcome)]);
-        });
+        air.onPacket(say);
     std::setvbuf(stdout, nullptr, _IOLBF, 0);
     try {
         if (!trace.empty())
@@ -171,28 +187,12 @@ int main(int argc, char** argv) {
         Modem a, b;
         power(a, air, "a", settingsA, {{"MY", 1}, {"DL", 2}});
         power(b, air, "b", settingsB, {{"MY", 2}, {"DL", 1}});
-        std::signal(SIGINT, [](int) { stopped = 1; });
-        std::signal(SIGTERM, [](int) { stopped = 1; });
-        auto begin = std::chrono::steady_clock::now();
-        while (!stopped) {
-            auto elapsed = std::chrono::steady_clock::now() - begin;
-            auto now = static_cast<uint64_t>(
-                std::chrono::duration_cast<std::chrono::nanoseconds>(elapsed).count());
-            if (duration > 0 && static_cast<double>(now) > duration * 1e9)
-                break;
-            air.advance(now);
-            a.xbee->advance(now);
-            b.xbee->advance(now);
-            std::this_thread::sleep_for(std::chrono::microseconds(500));
-        }
-        report(*a.xbee);
-        report(*b.xbee);
-        report(air);
+        run(air, *a.xbee, *b.xbee, duration);
     } catch (const CLI::Error& error) {
-        std::fprintf(stderr, "icesoc-xbee: %s\n", error.what());
+        fmt::print(stderr, "icesoc-xbee: {}\n", error.what());
         return 2;
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "icesoc-xbee: %s\n", error.what());
+        fmt::print(stderr, "icesoc-xbee: {}\n", error.what());
         return 1;
     }
     return 0;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <fmt/format.h>
 #include <memory>
 #include <unordered_map>
 
@@ -52,12 +53,6 @@ struct Totals {
     uint64_t sent = 0, delivered = 0, unknown = 0, received = 0, reboots = 0, modemResets = 0;
 };
 
-// The link heeds the modem's CTS, as both drivers do.
-class FlowLine : public HostLine {
-public:
-    bool mayTalk() const { return cts_; }
-};
-
 // One end: modem, link and program. It knows the peer's messages only to check them.
 class End {
 public:
@@ -95,7 +90,7 @@ public:
     void advance(uint64_t now, double rate) {
         now_ = now;
         modem_->advance(now);
-        for (; !out_.empty() && line_.mayTalk(); out_.pop_front())
+        for (; !out_.empty() && line_.cts(); out_.pop_front()) // as both drivers do
             line_.send({out_.front()}, now);
         Link_receive(link_.get(), line_.received.data(), static_cast<U32>(line_.received.size()),
                      us());
@@ -180,7 +175,7 @@ private:
     Random& random_;
     Totals& totals_;
     const bool hasKey_;
-    FlowLine line_;
+    HostLine line_;
     std::deque<uint8_t> out_; // handed over, not yet on the line
     std::unique_ptr<XBee> modem_;
     std::unique_ptr<Link> link_;
@@ -286,6 +281,42 @@ private:
     double rate_ = 0.1;
 };
 
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void report(const Soak& soak, Clock::time_point start) {
+    const Totals& t = soak.totals();
+    const RfChannel::Counters& air = soak.air();
+    fmt::print("soak: {:7.0f} s simulated in {:4.0f} s: {} messages sent, {} received, {} "
+               "delivered, {} reported unknown; {} reboots, {} modem resets; {} packets, {} lost, "
+               "{} spoilt, {} doubled\n",
+               soak.seconds(), secondsSince(start), t.sent, t.received, t.delivered, t.unknown,
+               t.reboots, t.modemResets, air.packets, air.lost, air.corrupted, air.duplicated);
+    std::fflush(stdout);
+}
+
+// Goes on for these minutes, or for `messages` if there are any.
+void endure(Soak& soak, double minutes, uint64_t messages, Clock::time_point start) {
+    double said = 0;
+    for (int second = 1;
+         messages ? soak.totals().sent < messages : secondsSince(start) < minutes * 60; ++second) {
+        soak.second();
+        if (second % 600 == 0)
+            soak.settle();
+        if (secondsSince(start) - said >= 15) {
+            said = secondsSince(start);
+            report(soak, start);
+        }
+    }
+    soak.settle();
+    const Totals& t = soak.totals();
+    if (t.delivered + t.unknown != t.sent)
+        throw Fault("delivered and reported messages are not all that were sent");
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -303,55 +334,19 @@ int main(int argc, char** argv) {
     bool attacked = false;
     app.add_flag("--attacked", attacked, "by a third modem that has no key; the two have one");
     CLI11_PARSE(app, argc, argv);
-    using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
-    auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
     Soak soak(seed, attacked);
-    auto report = [&] {
-        const Totals& t = soak.totals();
-        std::printf("soak: %7.0f s simulated in %4.0f s: %llu messages sent, %llu received, %llu "
-                    "delivered, %llu "
-                    "reported unknown; %llu reboots, %llu modem resets; %llu packets, %llu lost, "
-                    "%llu spoilt, %llu "
-                    "doubled\n",
-                    soak.seconds(), elapsed(), static_cast<unsigned long long>(t.sent),
-                    static_cast<unsigned long long>(t.received),
-                    static_cast<unsigned long long>(t.delivered),
-                    static_cast<unsigned long long>(t.unknown),
-                    static_cast<unsigned long long>(t.reboots),
-                    static_cast<unsigned long long>(t.modemResets),
-                    static_cast<unsigned long long>(soak.air().packets),
-                    static_cast<unsigned long long>(soak.air().lost),
-                    static_cast<unsigned long long>(soak.air().corrupted),
-                    static_cast<unsigned long long>(soak.air().duplicated));
-        std::fflush(stdout);
-    };
     try {
-        double said = 0;
-        for (int second = 1; messages ? soak.totals().sent < messages : elapsed() < minutes * 60;
-             ++second) {
-            soak.second();
-            if (second % 600 == 0)
-                soak.settle();
-            if (elapsed() - said >= 15) {
-                said = elapsed();
-                report();
-            }
-        }
-        soak.settle();
-        report();
-        const Totals& t = soak.totals();
-        if (t.delivered + t.unknown != t.sent)
-            throw Fault("delivered and reported messages are not all that were sent");
+        endure(soak, minutes, messages, start);
     } catch (const Fault& fault) {
-        report();
-        std::fprintf(stderr, "soak: error: %s (seed %llu, second %.3f)\n", fault.what(),
-                     static_cast<unsigned long long>(seed), soak.seconds());
+        report(soak, start);
+        fmt::print(stderr, "soak: error: {} (seed {}, second {:.3f})\n", fault.what(), seed,
+                   soak.seconds());
         return 1;
     }
+    report(soak, start);
     if (attacked)
-        std::printf("soak: %llu hostile packets\n",
-                    static_cast<unsigned long long>(soak.hostile()));
-    std::printf("soak: none wrong, none doubled, none out of order, each delivered or reported\n");
+        fmt::print("soak: {} hostile packets\n", soak.hostile());
+    fmt::print("soak: none wrong, none doubled, none out of order, each delivered or reported\n");
     return 0;
 }

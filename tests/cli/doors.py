@@ -18,6 +18,7 @@ from pathlib import Path
 TREE = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TREE))
 from cli import command, flight, main, progress, runner, table  # noqa: E402, F401
+from cli.commands.tree import manual  # noqa: E402
 from cli.options import FLIGHT, SWITCH  # noqa: E402
 
 
@@ -190,7 +191,7 @@ class Mistakes(Work):
             127,
             "icesoc: there is no program 'cmake': ./icesoc setup --tests installs what is missing\n"
         ))
-        self.assertEqual(ask("./icesoc", "commands", "--schema", "/dev/full"),
+        self.assertEqual(ask("./icesoc", "commands", "--man", "/dev/full"),
                          (1, "icesoc: No space left on device\n"))
 
     def test_an_interrupt_ends_all_with_one_message(self):
@@ -259,7 +260,7 @@ class Lists(unittest.TestCase):
         self.assertLessEqual(len({name.split()[0] for name in command.COMMANDS}), 20)
         for name, each in command.COMMANDS.items():
             for words in [*each.brief, *each.examples]:
-                found, rest = command.find(shlex.split(words))
+                found, rest = command.find(shlex.split(words.partition(" && ")[0]))
                 found.parser().parse_args(rest)
                 self.assertTrue(found)
             self.assertTrue(each.help and name in command.find(name.split())[0].name)
@@ -358,8 +359,12 @@ class Lists(unittest.TestCase):
             self.assertRaisesRegex(runner.Stop, "failed: bad ", rows.end)
             self.assertIn("| good | 0 | 1.5 | a / b |", Path(work, "rows.md").read_text())
 
-    def test_version_and_help_are_there(self):
+    def test_version_and_manual_are_there(self):
         self.assertRegex(ask("./icesoc", "--version")[1], r"^icesoc \d+\.\d+\.\d+\n")
+        said = subprocess.run(["groff", "-man", "-ww", "-Tutf8", "-z"], input=manual(),
+                              capture_output=True, text=True).stderr \
+            if shutil.which("groff") else ""
+        self.assertEqual(said, "")
         shown = ask("./icesoc", "run", "--help")[1]
         for option in command.COMMANDS["run"].options:
             self.assertTrue(not option.listed or f"--{option.name}" in shown, option.name)

@@ -9,9 +9,9 @@
 #define NOBODY 255
 #define HEAD 8
 #define BODY 7
-/* Tries to send while the link has no room, 20 ms apart, for 20 s: the session, and with it every
- * other connection, ends 27 s after a fragment that nobody takes. Two answers of 8 KB take 4 s where
- * three packets of ten are lost. */
+/* Tries to send while the link has no room, 20 ms apart, for 20 s: 27 s after a fragment that
+ * nobody takes the session ends, and with it every other connection. Two answers of 8 KB take 4 s
+ * where three packets of ten are lost. */
 #define RETRIES 1000
 
 /* The head of an encoded endpoint: type, 13 bytes of encapsulation, encoding 1.1. */

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 from cli import command as doors
-from cli import flight, version
+from cli import flight, keys, version
 from cli.command import COMMANDS, command
 from cli.options import PATH, SWITCH, TEXT, Option
 from cli.runner import run, say
@@ -39,6 +39,8 @@ doors.ALIASES["setup-tests"] = ("setup", "WITH_TESTS")
          brief="clean --list")
 def clean(values):
     """remove what was built; keys are elsewhere"""
+    if not values.list:
+        keys.rescue("build")
     for path in sorted(Path("build").glob("*")):
         say(f"would be removed: {path}" if values.list else f"removed: {path}")
     if not values.list:

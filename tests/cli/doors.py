@@ -215,17 +215,19 @@ class Trees(Work):
                    XDG_CONFIG_HOME=str(self.work / "config"))
 
     def test_a_tree_that_was_moved_is_built_anew_and_one_that_was_not_is_left_alone(self):
-        old, new = self.work / "tree", self.work / "new"
+        old, new, config = self.work / "tree", self.work / "new", self.work / "config"
         (old /
          "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(moved NONE)\n")
         self.assertEqual(self.configure(old)[0], 0)
         (old / "build/kept").touch()
+        (old / "build/update.key").write_bytes(b"private")
         self.assertEqual(self.configure(old)[0], 0)
         self.assertTrue((old / "build/kept").exists())
         old.rename(new)
         status, text = self.configure(new)
         self.assertIn(f"build was made for the tree in {old}: made anew", text)
         self.assertEqual(status, 0)
+        self.assertEqual((config / "icesoc/update.key").read_bytes(), b"private")
         # A value that CMake refuses is not kept: it would fail whatever is made next.
         with open(new / "CMakeLists.txt", "a") as file:
             file.write('if(CORE_FOLDERS)\n'
@@ -237,13 +239,21 @@ class Trees(Work):
             subprocess.run(["cmake", new / "build"], capture_output=True).returncode, 0)
 
     def test_keys_are_outside_of_what_is_built_and_nothing_removes_them(self):
-        tree, key = self.work / "tree", self.work / "config/icesoc/update.key"
-        key.parent.mkdir(parents=True)
-        key.write_text("mine")
-        (tree / "build/main").mkdir(parents=True)
-        ask("make", "-s", "clean", ICESOC_TREE=str(tree), XDG_CONFIG_HOME=str(self.work / "config"))
-        self.assertFalse((tree / "build").exists())
-        self.assertEqual(key.read_text(), "mine")
+        tree, config = self.work / "tree", self.work / "config"
+
+        def remove(text):
+            (tree / "build/main").mkdir(parents=True, exist_ok=True)
+            (tree / "build/main/update.key").write_text(text)  # where a tree of before kept it
+            ask("make", "-s", "clean", ICESOC_TREE=str(tree), XDG_CONFIG_HOME=str(config))
+            self.assertFalse((tree / "build").exists())
+            return sorted(key.read_text() for key in (config / "icesoc").glob("update*.key"))
+
+        self.assertEqual(remove("one"), ["one"])
+        self.assertEqual(remove("one"), ["one"])
+        self.assertEqual(remove("another"), ["another", "one"])
+        self.assertEqual((config / "icesoc/update.key").read_text(), "one")
+        self.assertEqual({key.stat().st_mode & 0o777
+                          for key in (config / "icesoc").iterdir()}, {0o600})
 
     def test_programs_have_one_environment(self):
         self.script("tree/cmake/setup.sh", 'echo "$HOME $LC_ALL $CCACHE_BASEDIR ${SEED:-none} '

@@ -11,7 +11,7 @@ from netlist import LUT_INPUTS, MEMORY_LUTS, UNDEFINED
 SITES, FLIP_FLOPS, MUXES, SHARED_INPUTS = 4, 8, 2, 5
 
 # map makes (sites + share * flip-flops) / 4 slices: the share of flip-flops that find no place
-# beside a used LUT. Calibrated with published reports of map (tests/synth/tool_test.py).
+# beside a used LUT. Calibrated with published reports of map (tests/synth/parts_test.py).
 USUAL_SHARE, LEAST_SHARE, MOST_SHARE = 0.55, 0.13, 0.97
 # Functions that map finds no site of their own for, since two share one: 1 to 18 % in the reports.
 USUAL_PAIRING = 0.11

@@ -2,20 +2,25 @@
 # SPDX-License-Identifier: MIT
 """constraints: finds paths and pads of the chip without a constraint.
 
-Usage: constraints.py NETLIST FOLDER-OF-merge_ucf FILE.ucf...
- NETLIST is Yosys' JSON of chip.v, flattened, with MIG's core as a cell. Every path from pad or
-clock to clock, to pad and to an asynchronous reset needs a PERIOD, an OFFSET, a FROM:TO, a MAXDELAY
-or a TIG; every pad but those of MIG a standard and a place. Then each such statement is taken away
-in turn: one without which nothing is missing is told, too. Exit status 1 if anything is told. """
+Usage: constraints.py SOURCE GENERATED WORK, three folders. Every path of chip.v, flattened, with
+MIG's core as a cell, from pad or clock to clock, to pad and to an asynchronous reset needs a
+PERIOD, an OFFSET, a FROM:TO, a MAXDELAY or a TIG; every pad but those of MIG a standard and a
+place. Then each such statement is taken away in turn: one without which nothing is missing is told,
+too. Exit status 1 if anything is told, or if merge_ucf.py renames MIG's constraints otherwise.
+"""
 
 import json
 import re
+import subprocess
 import sys
 from fnmatch import fnmatchcase as matches
 from functools import lru_cache
+from pathlib import Path
 
-NETLIST, FOLDER, *FILES = sys.argv[1:]
-sys.path.insert(0, FOLDER)
+SOURCE, GENERATED, WORK = map(Path, sys.argv[1:])
+HERE, ISE = Path(__file__).resolve().parent, SOURCE / "synth/ise"
+FILES = [ISE / "chip.ucf", GENERATED / "core_pins.ucf", ISE / "board.ucf"]
+sys.path.insert(0, str(ISE))
 sys.dont_write_bytecode = True
 from merge_ucf import statements  # noqa: E402
 
@@ -28,10 +33,32 @@ def pad_name(port, index, width):
     return port if width == 1 else f"{port}<{index}>"
 
 
+def netlist():
+    """Returns the flattened chip as Yosys' JSON has it."""
+    WORK.mkdir(parents=True, exist_ok=True)
+    folders = [GENERATED, SOURCE / "bus", SOURCE / "hdl"]
+    folders += [f for room in ("hdl", "ip") for f in (SOURCE / room).iterdir() if f.is_dir()]
+    libraries = "".join(f" -libdir {folder}" for folder in folders)
+    includes = f"-I{GENERATED} -I{SOURCE}/bus -I{SOURCE}/hdl/ddr -I{SOURCE}/hdl/system"
+    ran = subprocess.run(["yosys", "-q", "-p", f"""verilog_defaults -add {includes}
+        read_verilog {ISE}/chip.v; read_verilog -lib {HERE}/mig.v; hierarchy -top chip {libraries}
+        proc; flatten; tribuf; opt_clean; memory -nomap; opt_clean; write_json {WORK}/chip.json"""],
+                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if ran.returncode:
+        sys.exit(ran.stdout)
+    return json.loads((WORK / "chip.json").read_text())
+
+
+def renamed():
+    """Returns what merge_ucf.py says it renamed of a board's constraints, which have MIG's."""
+    return subprocess.run([ISE / "merge_ucf.py", HERE / "mig.ucf", *FILES], check=True, text=True,
+                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE).stderr
+
+
 def read_netlist():
     """Pairs (start, end); a start or an end is ("pad", name), ("clock", names of the net), a start
     ("ram", names of its clock), an end ("reset", the clock of the reset register)."""
-    module = json.load(open(NETLIST))["modules"]["chip"]
+    module = netlist()["modules"]["chip"]
     names, source, comb, sinks = {}, {}, {}, []
     pads = []
     for name, port in module["ports"].items():
@@ -179,6 +206,8 @@ def tell(point):
     return f"pad {point[1]}" if point[0] == "pad" else f"{point[0]} {point[1][0]}"
 
 
+if renamed() != (HERE / "mig.renamed").read_text():
+    sys.exit(f"{renamed()}is what merge_ucf.py renamed, and not mig.renamed")
 all_pads, all_pairs = read_netlist()
 used = {point[1] for pair in all_pairs for point in pair if point[0] == "pad"}
 used |= {name for pair in all_pairs for point in pair if point[0] == "clock" for name in point[1]}

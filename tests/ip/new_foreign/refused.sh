@@ -65,10 +65,10 @@ refused 'has no port for s_tdata' my_port wb_port axis "$work/out" "$here/wb_por
 refused "CLOCK=fast: the frequency" my_port wb_port wishbone "$work/out" CLOCK=fast "$here/wb_port.v"
 refused 'ADDRESS=fast: words or bytes' my_port wb_port wishbone "$work/out" ADDRESS=fast "$here/wb_port.v"
 refused 'ack= is not for it' my_port apb_words apb "$work/out" ack=1 pin=PREADY "$here/apb_words.v" "$work/timescale.v"
-refused 'CLOCK: a core with AXI-Streams' my_port axis_scale axis "$work/out" CLOCK=24000000 "$here/axis_scale.v"
+refused 'CLOCK: a core with AXI-Streams' my_port axis_scale axis "$work/out" CLOCK=24000000 "$here/cores.v"
 refused 'LIBRARY: .* these are Verilog' my_port req_words own "$work/out" LIBRARY=lights "$here/req_words.v"
 refused 'a setting is for BUS=axis' my_port req_words own "$work/out" setting=value "$here/req_words.v"
-refused "setting is an input of a core, and 'over' is not" my_port axis_scale axis "$work/out" setting=over "$here/axis_scale.v"
+refused "setting is an input of a core, and 'over' is not" my_port axis_scale axis "$work/out" setting=over "$here/cores.v"
 # Of two cores in one chip.
 ! "${new%/*}/foreign_files.py" "$here/wb_port.v" "$work/again.v" 2>"$work/log" && grep -q "again.v:6: module 'wb_port' is in .*a chip has one of each" "$work/log" ||
     { cat "$work/log" && exit 1; }

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+//
+// cores: third-party cores whose files need nothing else, as other people write them.
+
+// memory_words: four words behind select and write enable; what is read is there LATE clocks later.
+module memory_words #(parameter LATE = 0) (
+    input         clk, rst,
+    input         cs, we,
+    input  [1:0]  address,
+    input  [31:0] write_data,
+    output [31:0] read_data
+);
+    reg  [31:0] words [0:3];
+    wire [31:0] value [0:LATE];
+    assign value[0]  = cs ? words[address] : 32'hBAD0BAD0;
+    assign read_data = value[LATE];
+    generate
+        genvar i;
+        for (i = 0; i < LATE; i = i + 1) begin : later
+            reg [31:0] held;
+            always @(posedge clk) held <= value[i];
+            assign value[i+1] = held;
+        end
+    endgenerate
+    always @(posedge clk)
+        if (cs && we)
+            words[address] <= write_data;
+    wire unused = rst;
+endmodule
+
+// wb_words: Wishbone as a pipelined core has it: it stalls each strobe for `stalls` clocks and answers `late` clocks after
+// it took one, in the same clock if 0. Without STALL it is a classic core, and counts from the strobe's begin. Its addresses
+// count bytes.
+module wb_words (
+    input             wb_clk_i, wb_rst_i,
+    input             wb_cyc_i, wb_stb_i, wb_we_i,
+    input      [3:0]  wb_adr_i,
+    input      [3:0]  wb_sel_i,
+    input      [31:0] wb_dat_i,
+    output     [31:0] wb_dat_o,
+    output            wb_ack_o, wb_stall_o,
+    input      [2:0]  stalls, late
+);
+    reg  [31:0] words [0:3];
+    reg  [3:0]  waited; // clocks since the strobe began
+    reg         we;
+    reg  [1:0]  word;
+    wire        begins = wb_cyc_i && wb_stb_i && waited <= stalls;
+    wire [1:0]  at     = begins ? wb_adr_i[3:2] : word;
+    assign wb_stall_o = waited < stalls;
+    assign wb_ack_o   = wb_cyc_i && (wb_stb_i || waited != 0) && waited == stalls + late;
+    assign wb_dat_o   = wb_ack_o && &wb_sel_i ? words[at] : 32'hBAD0BAD0;
+    always @(posedge wb_clk_i) begin
+        waited <= wb_cyc_i && (wb_stb_i || waited != 0) && !wb_ack_o ? waited + 1 : 0;
+        if (begins) begin
+            {we, word} <= {wb_we_i, wb_adr_i[3:2]};
+            if (wb_we_i && waited == stalls)
+                words[at] <= wb_dat_i;
+        end
+        if (wb_rst_i)
+            waited <= 0;
+    end
+endmodule
+
+// axis_scale: multiplies 16-bit samples, as a foreign core with AXI-Streams, a setting and a pin; it has no tlast.
+module axis_scale (
+    input  wire        aclk,
+    input  wire        aresetn,
+    input  wire [7:0]  gain_factor,
+    output reg         over, // a product was too large
+    input  wire [15:0] s_axis_tdata,
+    input  wire        s_axis_tvalid,
+    output wire        s_axis_tready,
+    output reg  [15:0] m_axis_tdata,
+    output reg         m_axis_tvalid,
+    input  wire        m_axis_tready
+);
+    wire [23:0] product = s_axis_tdata * gain_factor;
+    assign s_axis_tready = !m_axis_tvalid || m_axis_tready;
+    always @(posedge aclk) begin
+        if (s_axis_tready) begin
+            m_axis_tvalid <= s_axis_tvalid;
+            m_axis_tdata  <= product[15:0];
+            over          <= s_axis_tvalid ? |product[23:16] : over;
+        end
+        if (!aresetn) begin
+            m_axis_tvalid <= 1'b0;
+            over          <= 1'b0;
+        end
+    end
+endmodule
+
+// axis_twice: gives each word of 64 bits twice, bytes as they are kept: packets become longer.
+module axis_twice (
+    input  wire        clk,
+    input  wire        rst,
+    input  wire [63:0] in_tdata,
+    input  wire [7:0]  in_tkeep,
+    input  wire        in_tlast,
+    input  wire        in_tvalid,
+    output wire        in_tready,
+    output wire [63:0] out_tdata,
+    output wire [7:0]  out_tkeep,
+    output wire        out_tlast,
+    output wire        out_tvalid,
+    input  wire        out_tready
+);
+    reg second;
+    assign out_tdata  = in_tdata;
+    assign out_tkeep  = second ? in_tkeep : 8'hFF;
+    assign out_tlast  = in_tlast && second;
+    assign out_tvalid = in_tvalid;
+    assign in_tready  = out_tready && second;
+    always @(posedge clk)
+        if (rst)
+            second <= 1'b0;
+        else if (out_tvalid && out_tready)
+            second <= !second;
+endmodule

@@ -4,7 +4,7 @@
 // defaults, optionals by their tags. Words and blanks are those of slice2cpp
 // (tests/slice/compiler/commandline_test.py compares).
 
-#include "c/checksums.h"
+#include "c/context.h"
 #include "front/parser.h"
 #define OPENSSL_SUPPRESS_DEPRECATED // MD5, which protects no secret here
 #include <algorithm>

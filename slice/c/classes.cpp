@@ -2,8 +2,7 @@
 //
 // classes: descriptors of classes, by which the run time reads and writes graphs.
 
-#include "c/files.h"
-#include "c/members.h"
+#include "c/context.h"
 #include "c/names.h"
 #include <set>
 

@@ -2,8 +2,7 @@
 //
 // client: proxies: synchronous calls in one file, asynchronous ones in another.
 
-#include "c/files.h"
-#include "c/members.h"
+#include "c/context.h"
 #include "c/names.h"
 
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// context: shared by all generated files of a unit.
+// context: what the generated files of a unit share, and one function for each of them.
 
 #ifndef SLICE_C_CONTEXT_H
 #define SLICE_C_CONTEXT_H
@@ -44,5 +44,36 @@ struct CContext {
 private:
     std::map<const Operation*, std::string> thrown_;
 };
+
+// ---- the files ----
+
+std::string headerFile(const CContext& c);
+std::string typesFile(const CContext& c);
+std::string clientFile(const CContext& c);
+std::string asyncFile(const CContext& c);
+std::string serverFile(const CContext& c);
+
+// Write an exception's functions, and those of an operation's exception union.
+void exceptionFunctions(Writer& w, const Declaration& d);
+void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o);
+// Write a class's descriptor with its functions, and the table of all descriptors.
+void classFunctions(Writer& w, const Declaration& d);
+void valueTypeTable(Writer& w, const CContext& c);
+
+// ---- members of a struct, class or exception: defaults, and marshalling with the table of
+// instances for classes among them ----
+
+// The function M_T_init, which sets every member to zero or its default.
+void initFunction(Writer& w, const Declaration& d);
+// Returns the own members of `d` as slots of the variable `v`.
+std::vector<Slot> memberSlots(const Declaration& d);
+// Writes or reads slots. Where one holds a class, the variable `table` collects the instances.
+void writeWithValues(Writer& w, const std::vector<Slot>& slots, const std::string& table);
+void readWithValues(Writer& w, const CContext& c, const std::vector<Slot>& slots,
+                    const std::string& table);
+
+// The checksums of the main file's definitions, except local ones, by type id, as ZeroC's compilers
+// make them: programs compare them to find out whether they were compiled from the same Slice.
+std::map<std::string, std::string> checksums(const Unit& unit);
 
 #endif

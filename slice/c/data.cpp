@@ -2,9 +2,7 @@
 //
 // data: the types file: marshalling of structs, sequences and dictionaries, defaults, constants.
 
-#include "c/checksums.h"
-#include "c/files.h"
-#include "c/members.h"
+#include "c/context.h"
 #include "c/names.h"
 
 namespace {

@@ -2,8 +2,7 @@
 //
 // exceptions: marshalling of exceptions, and of operations' exception unions.
 
-#include "c/files.h"
-#include "c/members.h"
+#include "c/context.h"
 #include "c/names.h"
 
 namespace {

@@ -2,7 +2,7 @@
 //
 // generator: the list of generated files.
 
-#include "c/files.h"
+#include "c/context.h"
 
 std::vector<GeneratedFile> generateC(const Unit& unit, const CFileNames& names) {
     CContext c{unit, names};

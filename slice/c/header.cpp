@@ -2,7 +2,7 @@
 //
 // header: the header: types, constants, proxies, servants.
 
-#include "c/files.h"
+#include "c/context.h"
 #include "c/names.h"
 #include "text/doc_comment.h"
 
@@ -332,8 +332,6 @@ std::string headerFile(const CContext& c) {
     w.line("#include \"ice_operation.h\"");
     if (c.usesClasses())
         w.line("#include \"ice_value.h\"");
-    if (c.names.checksums)
-        w.line("#include \"ice_checksum.h\"");
     for (const std::string& include : c.names.includes)
         w.line("#include \"" + include + "\"");
     for (const std::string& m : c.unit.metadata)

@@ -2,7 +2,7 @@
 //
 // members: defaults and marshalling of members.
 
-#include "c/members.h"
+#include "c/context.h"
 #include "c/names.h"
 
 namespace {

@@ -2,8 +2,7 @@
 //
 // server: dispatch: from requests to servants.
 
-#include "c/files.h"
-#include "c/members.h"
+#include "c/context.h"
 #include "c/names.h"
 #include <set>
 

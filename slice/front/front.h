@@ -13,7 +13,7 @@
 //   symbols        meaning of a name in its scope; the parser resolves every name at once
 //   literals       numbers and strings as written into values
 //   ast            the result: a Unit of declarations, in the source's order, all names resolved
-//   class_interfaces   an interface beside each class that can be called
+//   front          an interface beside each class that can be called
 //   diagnostics    every error and warning of all steps, with the source line and a caret
 //
 // A step reports errors and goes on; a unit is valid if no error was counted.
@@ -27,8 +27,5 @@
 // The unit of a preprocessed file; errors are in `diagnostics`.
 Unit compileUnit(const std::string& text, const std::string& file, NameRules rules,
                  Diagnostics& diagnostics);
-// Adds, after each class that can be called, an interface with its operations; a part of
-// compileUnit.
-void addClassInterfaces(Unit& unit);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "c/names.h"
 #include "c/operations.h"
-#include "hw/words.h"
+#include "hw/map.h"
 #include <algorithm>
 
 namespace hw {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// generator: the files of a hardware interface, one function a file (docs/hw-mapping.md).
+// generator: the files of a hardware interface, one function a file (docs/hw-mapping.md), and what
+// wrappers in both languages share.
 
 #ifndef SLICE_HW_GENERATOR_H
 #define SLICE_HW_GENERATOR_H
@@ -24,6 +25,19 @@ GeneratedFile proxyFile(const Block& b, const CFileNames& names); // <block>_pro
 GeneratedFile verilogSkeleton(const Block& b);
 GeneratedFile vhdlSkeleton(const Block& b);
 GeneratedFile testSkeleton(const Block& b);
+
+// ---- the head and the ports of a wrapper ----
+
+struct Port {
+    std::string name; // with _i or _o
+    bool isOut = false;
+    unsigned width = 1;
+    std::string group; // of the first port of a group: the group's heading
+};
+
+std::vector<Port> wrapperPorts(const Block& b);
+// Writes a wrapper's first comment; `mark` begins its lines.
+void wrapperHead(Writer& w, const Block& b, const std::string& mark);
 
 } // namespace hw
 

@@ -3,7 +3,6 @@
 // map: maps interfaces to slots: checks what is allowed, and gives out words.
 
 #include "hw/map.h"
-#include "hw/words.h"
 #include <algorithm>
 #include <filesystem>
 #include <map>

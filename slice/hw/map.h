@@ -110,6 +110,27 @@ int checkKeys(const std::vector<std::string>& metadata, const std::vector<std::s
 std::string snakeCase(const std::string& name);
 std::string upperCase(std::string text);
 
+// ---- words: the part that knows the types ----
+
+// True if it is a number, a bool, an enum, or a struct of these.
+bool isMappable(const Type& type);
+// Appends the value's scalars. Successive ones share a word where they fit; a scalar of 64 bits
+// takes two words, low one first. `c` is the lvalue in C; "*p" for the target of p.
+void addValue(std::vector<Word>& words, const Type& type, const std::string& name,
+              const std::string& c, bool isOut);
+
+// Appends the number of elements of a sequence that lies `offset` bytes into the slot's buffers.
+void addCount(std::vector<Word>& words, const Type& type, const std::string& name,
+              const std::string& c, bool isOut, unsigned most, unsigned offset);
+// Appends the code that tells which of `count` exceptions was thrown.
+void addCode(std::vector<Word>& words, size_t count);
+// "a_base", the address port of the sequence that "a_count" counts.
+std::string baseName(const Piece& count);
+
+bool isSequence(const Type& type);
+// Bytes of an element in DDR3, as C lays it out; 0 if compilers lay the type out differently.
+unsigned elementBytes(const Type& type);
+
 } // namespace hw
 
 #endif

@@ -2,8 +2,8 @@
 //
 // ports: names and directions.
 
-#include "hw/ports.h"
-#include "hw/words.h"
+#include "hw/generator.h"
+#include "hw/map.h"
 
 namespace hw {
 

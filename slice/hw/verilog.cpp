@@ -3,8 +3,7 @@
 // verilog: the wrapper over bus_registers: from words to ports with the interface's names.
 
 #include "hw/generator.h"
-#include "hw/ports.h"
-#include "hw/words.h"
+#include "hw/map.h"
 #include "text/writer.h"
 #include <cstdio>
 #include <map>

@@ -5,8 +5,7 @@
 
 #include "front/names.h"
 #include "hw/generator.h"
-#include "hw/ports.h"
-#include "hw/words.h"
+#include "hw/map.h"
 #include "text/writer.h"
 #include <algorithm>
 #include <cstdio>

@@ -2,8 +2,8 @@
 //
 // words: scalars into words, words into the slot.
 
-#include "hw/words.h"
 #include "c/names.h"
+#include "hw/map.h"
 #include <algorithm>
 #include <cctype>
 

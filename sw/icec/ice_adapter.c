@@ -2,8 +2,7 @@
  *
  * ice_adapter: object adapters: find the servant of an identity.
  */
-#include "ice_proxy.h"
-#include "ice_transport.h"
+#include "ice_private.h"
 
 #include <string.h>
 

@@ -4,8 +4,7 @@
  *
  * A batch is a message of its own: its head, a count, and requests without ids.
  */
-#include "ice_message.h"
-#include "ice_transport.h"
+#include "ice_private.h"
 
 static void restart(Ice_Batch* batch) {
     batch->count = 0;

@@ -2,7 +2,7 @@
  *
  * ice_builtin: calls the operations that every object has.
  */
-#include "ice_proxy.h"
+#include "ice_message.h"
 
 #define MODE 1 /* nonmutating, as Ice's peers send them */
 

@@ -2,9 +2,7 @@
  *
  * ice_calls: the table of pending calls.
  */
-#include "ice_calls.h"
-#include "ice_message.h"
-#include "ice_transport.h"
+#include "ice_private.h"
 
 #include <string.h>
 

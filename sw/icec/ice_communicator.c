@@ -2,10 +2,7 @@
  *
  * ice_communicator: the communicator: its parts, its properties, its loop.
  */
-#include "ice_calls.h"
-#include "ice_loop.h"
-#include "ice_message.h"
-#include "ice_transport.h"
+#include "ice_private.h"
 
 #include <string.h>
 
@@ -105,4 +102,29 @@ void Ice_Communicator_destroy(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
             icec_closeConnection(ic, c);
             icec_loseConnection(ic, c, ICE_CONNECTION_LOST);
         }
+}
+
+/* ---- one connection: bound proxies, its end ---- */
+
+Ice_Status Ice_Connection_createProxy(Ice_CommunicatorPtr ic, int connection, const char* identity,
+                                      Ice_ObjectPrxPtr prx) {
+    Ice_Identity id = icec_parseIdentity(identity);
+    return Ice_Connection_createProxyTo(ic, connection, &id, prx);
+}
+
+Ice_Status Ice_Connection_createProxyTo(Ice_CommunicatorPtr ic, int connection,
+                                        const Ice_Identity* identity, Ice_ObjectPrxPtr prx) {
+    icec_initProxy(prx, ic);
+    if (icec_connectionState(ic, connection) == ICE_CONNECTION_NONE)
+        return ICE_CONNECTION_LOST;
+    prx->connection = connection;
+    prx->generation = ic->connections[connection].generation;
+    return icec_setIdentity(prx, &identity->name, &identity->category, 0);
+}
+
+void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection) {
+    (void)icec_sendHead(ic, connection, ICEC_CLOSE);
+    icec_closeConnection(ic, connection);
+    icec_loseConnection(ic, connection, ICE_CONNECTION_LOST);
+    ic->endpoint->wake(ic->endpointContext); /* the call that failed may be its receiver's */
 }

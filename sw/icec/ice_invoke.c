@@ -2,10 +2,7 @@
  *
  * ice_invoke: calls made through proxies: connect, request, wait, reply.
  */
-#include "ice_calls.h"
-#include "ice_loop.h"
-#include "ice_message.h"
-#include "ice_transport.h"
+#include "ice_private.h"
 
 #include <string.h>
 

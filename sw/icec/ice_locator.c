@@ -2,7 +2,7 @@
  *
  * ice_locator: resolves an indirect proxy by a locator such as IceGrid's.
  */
-#include "ice_proxy.h"
+#include "ice_message.h"
 
 #include <string.h>
 

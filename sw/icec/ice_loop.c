@@ -2,11 +2,7 @@
  *
  * ice_loop: handles what arrives on connections, and waits for it.
  */
-#include "ice_loop.h"
-#include "ice_calls.h"
-#include "ice_dispatch.h"
-#include "ice_message.h"
-#include "ice_transport.h"
+#include "ice_private.h"
 
 /* Opens a connection for calls, on the peer's first message. */
 static void validate(Ice_CommunicatorPtr ic, int connection) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_message: IceP's messages as bytes, for the full and the minimal run time: their heads, their
- * check, requests, replies, encapsulations.
+ * ice_message: what the full and the minimal run time share: IceP's messages as bytes (their heads,
+ * their check, requests, replies, encapsulations), and functions that make proxies.
  */
 #ifndef ICE_MESSAGE_H
 #define ICE_MESSAGE_H
@@ -50,5 +50,21 @@ void icec_endReply(Ice_OutputStreamPtr os, Ice_Status status, const Icec_Target*
 /* Reads a reply's status, and narrows `is` to its results or exception. Returns the status, or why
  * the reply is malformed. */
 Ice_Status icec_readReply(Ice_InputStreamPtr is);
+
+/* ---- ice_proxy ---- */
+
+/* Makes a null proxy. */
+void icec_initProxy(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic);
+/* Sets name, category and facet; the last two may be 0. ICE_LIMIT: ICE_IDENTITY_MAX. */
+Ice_Status icec_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* name,
+                            const Ice_String* category, const Ice_String* facet);
+/* Adds the transport's endpoint; `options` 0: the one that it listens on. ICE_LIMIT:
+ * ICE_ENDPOINT_MAX.
+ */
+Ice_Status icec_addEndpoint(Ice_ObjectPrxPtr prx, const char* options);
+/* Returns the options after the transport's name; 0: the text names another transport. */
+const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text);
+/* Splits "category/name", or "name". */
+Ice_Identity icec_parseIdentity(const char* text);
 
 #endif

@@ -2,7 +2,7 @@
  *
  * ice_properties: reads settings from a table of strings, and makes adapters and proxies from them.
  */
-#include "ice_proxy.h"
+#include "ice_message.h"
 
 #include <string.h>
 

@@ -4,7 +4,6 @@
  *
  * Identity, facet and endpoints are kept in the wire's form, since proxies are mostly sent.
  */
-#include "ice_proxy.h"
 #include "ice_message.h"
 
 #include <string.h>

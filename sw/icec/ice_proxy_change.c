@@ -2,7 +2,7 @@
  *
  * ice_proxy_change: changes one property of a proxy's copy.
  */
-#include "ice_proxy.h"
+#include "ice_message.h"
 
 #include <string.h>
 

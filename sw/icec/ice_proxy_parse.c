@@ -3,7 +3,6 @@
  * ice_proxy_parse: makes a proxy from its string, by the manual's "Proxy and Endpoint Syntax".
  */
 #include "ice_message.h"
-#include "ice_proxy.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,6 @@
  * ice_proxy_print: prints a proxy as stock Ice does.
  */
 #include "ice_message.h"
-#include "ice_proxy.h"
 
 #include <string.h>
 

@@ -6,9 +6,7 @@
  * else a task that waits for a reply (a leader), as long as it waits. `receiver` and `servers`
  * change under the state lock only. A task that gives the role up wakes another that may want it.
  */
-#include "ice_calls.h"
-#include "ice_loop.h"
-#include "ice_transport.h"
+#include "ice_private.h"
 
 /* Gives the role up, and wakes a task that may want it; under the state lock. */
 static void giveUp(Ice_CommunicatorPtr ic) {

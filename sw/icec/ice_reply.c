@@ -2,8 +2,7 @@
  *
  * ice_reply: replies, also those after their operation's end.
  */
-#include "ice_dispatch.h"
-#include "ice_transport.h"
+#include "ice_private.h"
 
 /* Writes the reply's head. It is written last, since another reply may have used its place
  * before. */

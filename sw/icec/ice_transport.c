@@ -2,8 +2,7 @@
  *
  * ice_transport: locks, time, connections.
  */
-#include "ice_transport.h"
-#include "ice_message.h"
+#include "ice_private.h"
 
 U32 icec_nowMs(Ice_CommunicatorPtr ic) {
     return ic->endpoint->nowMs(ic->endpointContext);

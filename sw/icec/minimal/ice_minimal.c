@@ -8,7 +8,6 @@
  * icec.h; streams, proxies and tables of operations are the full run time's.
  */
 #include "ice_message.h"
-#include "ice_proxy.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "pair.h"
 
 extern "C" {
-#include "ice_calls.h"
+#include "ice_private.h"
 }
 
 namespace {

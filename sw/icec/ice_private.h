@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ice_private: declares the functions that the full run time's files share, from the bottom to the
+ * top.
+ */
+#ifndef ICE_PRIVATE_H
+#define ICE_PRIVATE_H
+
+#include "ice_message.h"
+
+/* ---- ice_transport: locks, time, and the connections: their states, and sending on them ---- */
+
+/* `which`: ICE_LOCK_STATE or ICE_LOCK_SEND. */
+#define icec_lock(ic, which) ((ic)->os->lock((ic)->osContext, which))
+#define icec_unlock(ic, which) ((ic)->os->unlock((ic)->osContext, which))
+
+/* Milliseconds since any time; wraps. */
+U32 icec_nowMs(Ice_CommunicatorPtr ic);
+
+/* Sends the whole message in `os`; under ICE_LOCK_SEND. ICE_CONNECTION_LOST: the connection is
+ * over. */
+Ice_Status icec_send(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os);
+/* Sends a message without a body: ICEC_VALIDATE or ICEC_CLOSE. */
+Ice_Status icec_sendHead(Ice_CommunicatorPtr ic, int connection, Ice_Byte type);
+
+/* Begins a connection of this number; under the state lock. */
+void icec_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_ConnectionState state);
+/* Closes the transport's connection; icec_loseConnection ends its calls. */
+void icec_closeConnection(Ice_CommunicatorPtr ic, int connection);
+Ice_ConnectionState icec_connectionState(Ice_CommunicatorPtr ic, int connection);
+
+/* Sends CloseConnection, once: pending requests of the peer were not executed, and it closes. Waits
+ * until operations under way have been answered: then the next call sends. */
+void icec_askToClose(Ice_CommunicatorPtr ic, int connection);
+int icec_isStopping(Ice_CommunicatorPtr ic);
+
+/* Counts `change` more operations under way on a connection. 0: the number now belongs to another
+ * connection, or to none. */
+int icec_countPending(Ice_CommunicatorPtr ic, int connection, U16 generation, int change);
+
+/* Gives `is` the part of the communicator's arena that outer operations do not use. */
+void icec_giveArena(Ice_CommunicatorPtr ic, Ice_InputStreamPtr is);
+
+/* ---- ice_calls: the table of this side's calls whose replies have not come ---- */
+
+/* Takes a slot for a call that is being built: a free one, or one that this task's last call has
+ * kept. -1: all are taken. */
+int icec_takeCall(Ice_CommunicatorPtr ic);
+Ice_CallState icec_callState(Ice_CommunicatorPtr ic, int slot);
+
+/* Hands a reply, read up to its body, to the call that waits for it. */
+void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
+/* Finds an asynchronous call whose time is over, and its id; 0: there is none. Shortens `waitMs` to
+ * the next call's time; under the state lock. */
+Ice_Call* icec_expiredCall(Ice_CommunicatorPtr ic, U32 now, Ice_Int* id, Ice_Int* waitMs);
+/* Ends that call, unless it has ended meanwhile. */
+void icec_expireCall(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id);
+/* Marks a connection as closed, and fails its calls with `status`. */
+void icec_loseConnection(Ice_CommunicatorPtr ic, int connection, Ice_Status status);
+/* Wakes every task that is making a call; under the state lock. */
+void icec_wakeCalls(Ice_CommunicatorPtr ic);
+
+/* ---- ice_dispatch: incoming requests, from the message to the servant; ice_reply ---- */
+
+/* Executes a request, or a batch of them, and answers. Returns ICE_OK whatever the result;
+ * ICE_CONNECTION_LOST: the message is malformed. */
+Ice_Status icec_dispatchRequest(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
+Ice_Status icec_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
+
+/* Sends the results at ICEC_REPLY_HEAD of `os`, or the failure `status` with its reason in words;
+ * under ICE_LOCK_SEND. `target` 0: the target is no longer known. */
+Ice_Status icec_sendReply(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os,
+                          Ice_Int id, Ice_Status status, const Icec_Target* target);
+
+/* ---- ice_loop: handles arriving events, and waits for them ---- */
+
+/* Handles at most one event; for the task that has the role of the receiver. ICE_TIMEOUT: there was
+ * none; ICE_LIMIT: ICE_NESTING. */
+Ice_Status icec_receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs);
+
+/* Receives, or lets another task receive, while `waits(ic, which)` holds; from within an operation,
+ * too. `slot` belongs to the call that the task sleeps on. ICE_TIMEOUT, ICE_LIMIT. */
+Ice_Status icec_await(Ice_CommunicatorPtr ic, int (*waits)(Ice_CommunicatorPtr ic, int which),
+                      int which, int slot, Ice_Int timeoutMs);
+
+/* ---- ice_receiver: which of several tasks receives (leader and followers) ---- */
+
+typedef enum Icec_Role {
+    ICEC_ROLE_NONE,  /* another task has it */
+    ICEC_ROLE_TAKEN, /* to be returned by icec_giveRole */
+    ICEC_ROLE_HAD    /* this task already had it: an operation calls this */
+} Icec_Role;
+/* The slot of Ice_Os in which tasks sleep that want to receive; 0..ICE_CALLS-1 belong to calls. */
+#define ICEC_SERVER_SLOT ICE_CALLS
+#define ICEC_FOREVER 0x7FFFFFFF /* a time-out: until the role is free, or shutdown is called */
+
+/* Takes the role of the receiver for a server, waiting for it up to timeoutMs. */
+Icec_Role icec_takeRole(Ice_CommunicatorPtr ic, Ice_Int timeoutMs);
+void icec_giveRole(Ice_CommunicatorPtr ic);
+/* Tells whether a task that waits for a reply must receive now. Such a task leads (`leads`) where
+ * no other has or wants the role, and hands it to a server that wants it. */
+int icec_mayReceive(Ice_CommunicatorPtr ic, int* leads);
+
+#endif

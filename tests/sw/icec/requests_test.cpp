@@ -143,7 +143,7 @@ TEST_F(Wire, DamagedMessagesDoNoHarm) {
         return ICE_OK;
     };
     Bytes parameters;
-    addString(parameters, "id");
+    putString(parameters, "id");
     parameters.insert(parameters.end(),
                       {0, 0, 0, 0, 1, 0, 1, 1, 1, 9, 0, 8, 0, 0, 0, 1, 1, 65, 66});
     parameters.insert(parameters.end(),

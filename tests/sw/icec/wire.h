@@ -4,46 +4,10 @@
 
 #pragma once
 
+#include "../link/ice_messages.h"
 #include "pair.h"
 
-using Bytes = std::vector<Ice_Byte>;
-
-// Returns a message whose size is filled in.
-inline Bytes message(Ice_Byte type, Bytes body, Ice_Byte compression = 0) {
-    Bytes m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, type, compression};
-    size_t size = 14 + body.size();
-    for (int i = 0; i < 4; ++i)
-        m.push_back(static_cast<Ice_Byte>(size >> (8 * i)));
-    m.insert(m.end(), body.begin(), body.end());
-    return m;
-}
-
-inline void addString(Bytes& to, const std::string& s) {
-    to.push_back(static_cast<Ice_Byte>(s.size()));
-    to.insert(to.end(), s.begin(), s.end());
-}
-
-// Writes a request from the identity on.
-inline Bytes requestBody(const std::string& name, const std::string& operation, Ice_Byte minor = 1,
-                         Bytes parameters = {}) {
-    Bytes b;
-    addString(b, name);
-    b.push_back(0); // category
-    b.push_back(0); // facet
-    addString(b, operation);
-    b.push_back(0); // mode
-    b.push_back(0); // context
-    b.push_back(static_cast<Ice_Byte>(6 + parameters.size()));
-    b.insert(b.end(), {0, 0, 0, 1, minor});
-    b.insert(b.end(), parameters.begin(), parameters.end());
-    return b;
-}
-
-inline Bytes request(Ice_Byte id, const Bytes& body) {
-    Bytes b = {id, 0, 0, 0};
-    b.insert(b.end(), body.begin(), body.end());
-    return message(0, b);
-}
+using namespace IceMessages;
 
 class Wire : public ::testing::Test {
 protected:

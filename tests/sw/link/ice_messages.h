@@ -18,13 +18,15 @@ inline void put32(Bytes& m, uint32_t value) {
         m.push_back(static_cast<uint8_t>(value >> 8 * i));
 }
 
-inline Bytes header(uint8_t type, uint8_t compression = 0) {
-    return {'I', 'c', 'e', 'P', 1, 0, 1, 0, type, compression, 0, 0, 0, 0};
+inline void append(Bytes& m, const Bytes& more) {
+    m.insert(m.end(), more.begin(), more.end());
 }
 
-inline Bytes finish(Bytes m) {
-    for (int i = 0; i < 4; ++i)
-        m[10 + i] = static_cast<uint8_t>(m.size() >> 8 * i);
+// A message whose size is filled in.
+inline Bytes message(uint8_t type, const Bytes& body, uint8_t compression = 0) {
+    Bytes m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, type, compression};
+    put32(m, static_cast<uint32_t>(14 + body.size()));
+    append(m, body);
     return m;
 }
 
@@ -32,7 +34,7 @@ inline void encapsulate(Bytes& m, const Bytes& parameters, uint8_t minor = 1) {
     put32(m, static_cast<uint32_t>(parameters.size()) + 6);
     m.push_back(1);
     m.push_back(minor);
-    m.insert(m.end(), parameters.begin(), parameters.end());
+    append(m, parameters);
 }
 
 inline void putString(Bytes& m, const std::string& s) {
@@ -40,11 +42,10 @@ inline void putString(Bytes& m, const std::string& s) {
     m.insert(m.end(), s.begin(), s.end());
 }
 
-// id 0: oneway.
-inline Bytes request(uint32_t id, const std::string& object, const std::string& operation,
-                     const Bytes& parameters, const std::string& facet = "", uint8_t minor = 1) {
-    Bytes m = header(0);
-    put32(m, id);
+// A request from the identity on.
+inline Bytes requestBody(const std::string& object, const std::string& operation, uint8_t minor = 1,
+                         const Bytes& parameters = {}, const std::string& facet = "") {
+    Bytes m;
     putString(m, object);
     putString(m, ""); // category
     m.push_back(facet.empty() ? 0 : 1);
@@ -54,22 +55,35 @@ inline Bytes request(uint32_t id, const std::string& object, const std::string& 
     m.push_back(0); // mode
     m.push_back(0); // context
     encapsulate(m, parameters, minor);
-    return finish(m);
+    return m;
+}
+
+inline Bytes request(uint32_t id, const Bytes& body) {
+    Bytes m;
+    put32(m, id);
+    append(m, body);
+    return message(0, m);
+}
+
+// id 0: oneway.
+inline Bytes request(uint32_t id, const std::string& object, const std::string& operation,
+                     const Bytes& parameters, const std::string& facet = "", uint8_t minor = 1) {
+    return request(id, requestBody(object, operation, minor, parameters, facet));
 }
 
 inline Bytes reply(uint32_t id, const Bytes& results, uint8_t status = 0, uint8_t minor = 1) {
-    Bytes m = header(2);
+    Bytes m;
     put32(m, id);
     m.push_back(status);
     encapsulate(m, results, minor);
-    return finish(m);
+    return message(2, m);
 }
 
 inline Bytes validate() {
-    return finish(header(3));
+    return message(3, {});
 }
 inline Bytes closing() {
-    return finish(header(4, 1));
+    return message(4, {}, 1);
 }
 
 } // namespace IceMessages

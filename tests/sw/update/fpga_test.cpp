@@ -54,7 +54,7 @@ const Image& imageOf(uint32_t version, uint32_t slot = 1) {
 struct PowerCut {};
 
 // The FPGA's flash, the FPGA, and the processor that both are wired to.
-class Fpga : public ::testing::Test {
+class Fpga : public ::testing::Test, public Updated {
 protected:
     Fpga() { fill(1); }
     ~Fpga() override { flash_ = nullptr; }
@@ -103,26 +103,7 @@ protected:
         EXPECT_TRUE(fpga.running.has_value()) << (fpga.isStuck ? "stuck" : "nothing configures");
         return boot();
     }
-    Receiver_Reason begin(const Image& image) {
-        const Receiver_Reason reason = Receiver_begin(&receiver, &image.header);
-        work();
-        return reason ? reason : receiver.reason;
-    }
-    void work() {
-        while (Receiver_work(&receiver))
-            ;
-    }
-    Receiver_Reason send(const Image& image) {
-        while (receiver.received < image.bytes.size()) {
-            const uint32_t at = receiver.received;
-            const auto size = std::min<uint32_t>(chunk, image.header.bytes - at);
-            if (auto reason = Receiver_write(&receiver, at, &image.bytes[at], size))
-                return reason;
-        }
-        const Receiver_Reason reason = Receiver_finish(&receiver);
-        work();
-        return reason ? reason : receiver.reason;
-    }
+    Receiver_Reason send(const Image& image) { return Updated::send(image, chunk); }
     // Does the ground's part until this version is confirmed, whatever runs now.
     void updateTo(uint32_t version) {
         const Image& image = imageOf(version);
@@ -146,7 +127,6 @@ protected:
                     SpiNor_program,   Signature_isGood,
                     Signature_digest, ours.open.data(),
                     nullptr};
-    Receiver receiver{};
 };
 
 TEST_F(Fpga, ANewBitstreamIsTriedAndStaysWhenItIsConfirmed) {

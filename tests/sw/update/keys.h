@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// keys: a pair of keys that signs images.
+// keys: a pair of keys that signs images, and the ground's part of an update.
 
 #ifndef UPDATE_KEYS_H
 #define UPDATE_KEYS_H
 
+#include <algorithm>
 #include <array>
 #include <sodium.h>
 
 extern "C" {
+#include "receiver.h"
 #include "slots.h"
 }
 
@@ -24,6 +26,30 @@ struct Keys {
     }
     std::array<uint8_t, crypto_sign_PUBLICKEYBYTES> open;
     std::array<uint8_t, crypto_sign_SECRETKEYBYTES> secret;
+};
+
+// A vehicle's receiver, and what the ground does with it. An image has `header` and `bytes`.
+struct Updated {
+    void work() {
+        while (Receiver_work(&receiver))
+            ;
+    }
+    template <class Image> Receiver_Reason begin(const Image& image) {
+        const Receiver_Reason reason = Receiver_begin(&receiver, &image.header);
+        work();
+        return reason == RECEIVER_OK ? receiver.reason : reason;
+    }
+    template <class Image> Receiver_Reason send(const Image& image, uint32_t chunk) {
+        while (receiver.received < image.header.bytes) {
+            const uint32_t at = receiver.received, size = std::min(chunk, image.header.bytes - at);
+            if (auto reason = Receiver_write(&receiver, at, &image.bytes[at], size))
+                return reason;
+        }
+        const Receiver_Reason reason = Receiver_finish(&receiver);
+        work();
+        return reason == RECEIVER_OK ? receiver.reason : reason;
+    }
+    Receiver receiver{};
 };
 
 #endif

@@ -45,7 +45,7 @@ Image makeImage(uint32_t version, uint32_t slot, uint32_t size = imageBytes) {
 struct PowerCut {};
 
 // The flash with its power, and the firmware that boots from it.
-class Vehicle {
+class Vehicle : public Updated {
 public:
     // As a programmer leaves it, at its first start: slot 0 has a confirmed image, slot 1 something
     // else.
@@ -98,25 +98,7 @@ public:
                                memory.begin() + Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT));
         return header.version;
     }
-    void work() {
-        while (Receiver_work(&receiver))
-            ;
-    }
-    Receiver_Reason begin(const Image& image) {
-        const Receiver_Reason reason = Receiver_begin(&receiver, &image.header);
-        work();
-        return reason == RECEIVER_OK ? receiver.reason : reason;
-    }
-    Receiver_Reason send(const Image& image) {
-        while (receiver.received < image.header.bytes) {
-            const uint32_t at = receiver.received, size = std::min(chunk, image.header.bytes - at);
-            if (auto reason = Receiver_write(&receiver, at, &image.bytes[at], size))
-                return reason;
-        }
-        const Receiver_Reason reason = Receiver_finish(&receiver);
-        work();
-        return reason == RECEIVER_OK ? receiver.reason : reason;
-    }
+    Receiver_Reason send(const Image& image) { return Updated::send(image, chunk); }
     // Does the ground's part until this version is confirmed, whatever runs now.
     void updateTo(uint32_t version) {
         for (uint32_t runs = boot(); runs != version; runs = boot()) {
@@ -137,7 +119,6 @@ private:
 
 public:
     Slots_Port port;
-    Receiver receiver{};
 
 private:
     static Vehicle& of(void* context) { return *static_cast<Vehicle*>(context); }

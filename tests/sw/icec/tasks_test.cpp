@@ -5,14 +5,10 @@
 
 #include "pair.h"
 
-#include <arpa/inet.h>
 #include <atomic>
 #include <condition_variable>
 #include <deque>
-#include <dlfcn.h>
 #include <mutex>
-#include <netdb.h>
-#include <netinet/in.h>
 #include <thread>
 
 extern "C" {
@@ -39,27 +35,6 @@ Ice_Status Graph_Maker_make(Graph_MakerPtr, Graph_Node* a, Ice_Value*, Graph_Nod
     ex->u.Failure.node = a;
     return ICE_USER_EXCEPTION;
 }
-}
-
-// A resolver in place of the system's: "twofold.test" is 127.0.0.2 and 127.0.0.1, "mixed.test" is
-// ::1 and 127.0.0.1.
-static addrinfo* inFront(const char* address, const char* port, addrinfo* rest) {
-    addrinfo numeric = {}, *one = nullptr;
-    numeric.ai_flags = AI_NUMERICHOST;
-    numeric.ai_socktype = SOCK_STREAM;
-    auto real = reinterpret_cast<decltype(&getaddrinfo)>(dlsym(RTLD_NEXT, "getaddrinfo"));
-    if (real(address, port, &numeric, &one) == 0)
-        one->ai_next = rest;
-    return one;
-}
-extern "C" int getaddrinfo(const char* name, const char* port, const addrinfo* hints,
-                           addrinfo** list) {
-    bool isTwofold = name && std::string(name) == "twofold.test";
-    if (!isTwofold && (!name || std::string(name) != "mixed.test"))
-        return reinterpret_cast<decltype(&getaddrinfo)>(dlsym(RTLD_NEXT, "getaddrinfo"))(
-            name, port, hints, list);
-    *list = inFront(isTwofold ? "127.0.0.2" : "::1", port, inFront("127.0.0.1", port, nullptr));
-    return 0;
 }
 
 namespace {
@@ -170,18 +145,32 @@ protected:
         held_ = held;
         laterCame_.notify_one();
     }
-    std::string where() const {
-        return "thing:tcp -h 127.0.0.1 -p " + std::to_string(server_->tcp.port);
+    // The client's proxy of a server's object.
+    Ice_ObjectPrx proxy(const std::string& identity = "thing",
+                        const std::string& host = "127.0.0.1") {
+        Ice_ObjectPrx prx;
+        const std::string text =
+            identity + ":tcp -h " + host + " -p " + std::to_string(server_->tcp.port);
+        EXPECT_EQ(Ice_Communicator_stringToProxy(&client_->ic, text.c_str(), &prx), ICE_OK);
+        prx.timeoutMs = 60000;
+        return prx;
+    }
+    // Does something while tasks of the client's program serve.
+    template <class What> void whileServing(int tasks, What what) {
+        std::vector<std::thread> serving;
+        for (int t = 0; t < tasks; ++t)
+            serving.emplace_back([this] { Ice_Communicator_waitForShutdown(&client_->ic); });
+        what();
+        Ice_Communicator_shutdown(&client_->ic);
+        for (auto& task : serving)
+            task.join();
     }
     void callFromThreads(int count) {
         std::vector<std::thread> callers;
         std::atomic<int> wrong{0};
         for (int t = 0; t < count; ++t)
             callers.emplace_back([&, t] {
-                Ice_ObjectPrx prx;
-                wrong +=
-                    Ice_Communicator_stringToProxy(&client_->ic, where().c_str(), &prx) != ICE_OK;
-                prx.timeoutMs = 60000;
+                Ice_ObjectPrx prx = proxy();
                 for (int i = 0; i < 200; ++i) {
                     Ice_Int out = 0, v = 1000 * t + i;
                     bool later = i % 3 == 0;
@@ -204,19 +193,11 @@ protected:
 };
 
 TEST_F(Tasks, CallAtOnceWhileOneReceives) {
-    std::thread receiving([this] { Ice_Communicator_waitForShutdown(&client_->ic); });
-    callFromThreads(ICE_CALLS);
-    Ice_Communicator_shutdown(&client_->ic);
-    receiving.join();
+    whileServing(1, [this] { callFromThreads(ICE_CALLS); });
 }
 
 TEST_F(Tasks, CallWhileTwoServe) {
-    std::thread first([this] { Ice_Communicator_waitForShutdown(&client_->ic); });
-    std::thread second([this] { Ice_Communicator_waitForShutdown(&client_->ic); });
-    callFromThreads(ICE_CALLS);
-    Ice_Communicator_shutdown(&client_->ic);
-    first.join();
-    second.join();
+    whileServing(2, [this] { callFromThreads(ICE_CALLS); });
 }
 
 // A task that polls takes the leader's role from one that waits for a reply, and gives it back,
@@ -238,9 +219,8 @@ TEST_F(Tasks, AServerTakesTheRoleFromACallThatWaits) {
     hold(true);
     std::atomic<bool> answered{false};
     std::thread caller([&] {
-        Ice_ObjectPrx prx;
+        Ice_ObjectPrx prx = proxy();
         Ice_Int out = 0;
-        EXPECT_EQ(Ice_Communicator_stringToProxy(&client_->ic, where().c_str(), &prx), ICE_OK);
         prx.timeoutMs = 120000;
         EXPECT_EQ(call(prx, "later", 14, &out), ICE_OK);
         EXPECT_EQ(out, 42);
@@ -277,13 +257,10 @@ TEST_F(Tasks, MayCallTheirOwnProgramsObjects) {
     EXPECT_EQ(out, 12);
 }
 
-// The server listens on the second of the name's addresses only; the next call finds the
-// connection.
+// The server listens on the second of the name's addresses only (tcp_test.cpp resolves it); the
+// next call finds the connection.
 TEST_F(Tasks, TryEachAddressOfAName) {
-    Ice_ObjectPrx prx;
-    std::string text = "thing:tcp -h twofold.test -p " + std::to_string(server_->tcp.port);
-    ASSERT_EQ(Ice_Communicator_stringToProxy(&client_->ic, text.c_str(), &prx), ICE_OK);
-    prx.timeoutMs = 60000;
+    Ice_ObjectPrx prx = proxy("thing", "twofold.test");
     for (int i = 0; i < 3; ++i) {
         Ice_Int out = 0;
         EXPECT_EQ(call(prx, "now", 4, &out), ICE_OK);
@@ -293,18 +270,6 @@ TEST_F(Tasks, TryEachAddressOfAName) {
     for (const TcpEndpoint_Connection& c : client_->tcp.connections)
         open += c.fd >= 0;
     EXPECT_EQ(open, 1);
-}
-
-TEST_F(Tasks, PreferIPv4AsIceDoes) {
-    TcpEndpoint_Address address = {};
-    address.host.data = "mixed.test";
-    address.host.size = 10;
-    address.port = 4061;
-    TcpEndpoint_Place places[TCP_PLACES];
-    ASSERT_EQ(TcpEndpoint_resolve(&address, places), 2);
-    EXPECT_EQ(places[0].at.ss_family, AF_INET);
-    EXPECT_EQ(reinterpret_cast<sockaddr_in&>(places[0].at).sin_port, htons(4061));
-    EXPECT_EQ(places[1].at.ss_family, AF_INET6);
 }
 
 // What a call returned stays while other tasks call: each looks at its result when another task has
@@ -332,10 +297,7 @@ private:
             std::this_thread::yield();
     }
     void call(int task) {
-        Graph_MakerPrx prx;
-        std::string where = "maker:tcp -h 127.0.0.1 -p " + std::to_string(server_->tcp.port);
-        ASSERT_EQ(Ice_Communicator_stringToProxy(&client_->ic, where.c_str(), &prx), ICE_OK);
-        prx.timeoutMs = 60000;
+        Graph_MakerPrx prx = proxy("maker");
         int wrong = 0;
         for (int i = 0; i < calls; ++i) {
             std::string mine = std::string(20, static_cast<char>('a' + task)) + std::to_string(i);
@@ -395,10 +357,7 @@ TEST_F(Results, AreTheirTasksOfFour) {
 }
 
 TEST_F(Results, AreTheirTasksWhileAnotherOneServes) {
-    std::thread receiving([this] { Ice_Communicator_waitForShutdown(&client_->ic); });
-    fromThreads(4);
-    Ice_Communicator_shutdown(&client_->ic);
-    receiving.join();
+    whileServing(1, [this] { fromThreads(4); });
 }
 
 TEST_F(Tasks, ReceiveInTurnsWhereNobodyElseDoes) {

@@ -8,7 +8,9 @@
 #include <arpa/inet.h>
 #include <atomic>
 #include <chrono>
+#include <dlfcn.h>
 #include <fcntl.h>
+#include <netdb.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -16,7 +18,29 @@
 #include <unistd.h>
 
 extern "C" {
+#include "tcp_address.h"
 #include "tcp_endpoint.h"
+}
+
+// A resolver in place of the system's: "twofold.test" is 127.0.0.2 and 127.0.0.1, "mixed.test" is
+// ::1 and 127.0.0.1.
+static addrinfo* inFront(const char* address, const char* port, addrinfo* rest) {
+    addrinfo numeric = {}, *one = nullptr;
+    numeric.ai_flags = AI_NUMERICHOST;
+    numeric.ai_socktype = SOCK_STREAM;
+    auto real = reinterpret_cast<decltype(&getaddrinfo)>(dlsym(RTLD_NEXT, "getaddrinfo"));
+    if (real(address, port, &numeric, &one) == 0)
+        one->ai_next = rest;
+    return one;
+}
+extern "C" int getaddrinfo(const char* name, const char* port, const addrinfo* hints,
+                           addrinfo** list) {
+    bool isTwofold = name && std::string(name) == "twofold.test";
+    if (!isTwofold && (!name || std::string(name) != "mixed.test"))
+        return reinterpret_cast<decltype(&getaddrinfo)>(dlsym(RTLD_NEXT, "getaddrinfo"))(
+            name, port, hints, list);
+    *list = inFront(isTwofold ? "127.0.0.2" : "::1", port, inFront("127.0.0.1", port, nullptr));
+    return 0;
 }
 
 namespace {
@@ -287,6 +311,18 @@ TEST_F(Tcp, AfterShutdownNobodyListens) {
     EXPECT_FALSE(after.isConnected(500));
     ASSERT_TRUE(before.send(request(8, requestBody("thing", "ice_ping"))));
     EXPECT_EQ(before.receive(20000), message(4, {}));
+}
+
+TEST(TcpAddresses, IPv4ComesFirstAsInIce) {
+    TcpEndpoint_Address address = {};
+    address.host.data = "mixed.test";
+    address.host.size = 10;
+    address.port = 4061;
+    TcpEndpoint_Place places[TCP_PLACES];
+    ASSERT_EQ(TcpEndpoint_resolve(&address, places), 2);
+    EXPECT_EQ(places[0].at.ss_family, AF_INET);
+    EXPECT_EQ(reinterpret_cast<sockaddr_in&>(places[0].at).sin_port, htons(4061));
+    EXPECT_EQ(places[1].at.ss_family, AF_INET6);
 }
 
 } // namespace

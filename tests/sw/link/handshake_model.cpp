@@ -4,11 +4,10 @@
 // attack.
 //
 // Two sides, each of which calls, answers, ends, and starts anew at any time (it was restarted, or
-// hears nothing, or its nonce is too old); and the attacker of Dolev
-// and Yao, who is the air: he may deliver every frame that was ever sent, at any time, to either
-// side, as often as he likes, or never. He has no key: frames of his own have no good tag, so that
-// only a side with a bug believes them. Keys follow from the two nonces of a session, one a
-// direction, so the nonces name a frame.
+// hears nothing, or its nonce is too old); and the attacker of Dolev and Yao, who is the air: he
+// may deliver every frame that was ever sent, at any time, to either side, as often as he likes, or
+// never. He has no key: frames of his own have no good tag, so that only a side with a bug believes
+// them. Keys follow from the two nonces of a session, one a direction, so the nonces name a frame.
 
 #include <array>
 #include <bitset>
@@ -37,6 +36,12 @@ enum class Bug {
     OldPingIsLife,    // heard again, it shows that the peer is there
     OldDataIsLife
 };
+
+template <class... T> uint64_t packed(T... bytes) {
+    uint64_t word = 0;
+    ((word = word << 8 | bytes), ...);
+    return word;
+}
 
 class HandshakeModel {
 public:
@@ -75,10 +80,23 @@ private:
         Frames air; // all frames ever sent
     };
     struct Hash {
-        size_t operator()(const State& state) const;
+        size_t operator()(const State& s) const {
+            size_t hash = std::hash<Frames>()(s.air);
+            for (const Side& x : s.side)
+                for (uint64_t v : {packed(x.nonce, x.drawn, x.begun, x.mine, x.peer, x.dataSent,
+                                          x.dataTaken, x.pingsSent),
+                                   packed(x.pingsSeen, x.pingsAnswered, x.lives, x.isUp,
+                                          x.isAnswered, x.isUnconfirmed)}) {
+                    hash = (hash ^ v) * 0x9E3779B97F4A7C15ull;
+                    hash ^= hash >> 29;
+                }
+            return hash;
+        }
     };
     struct Same {
-        bool operator()(const State& a, const State& b) const;
+        bool operator()(const State& a, const State& b) const {
+            return std::memcmp(&a.side, &b.side, sizeof a.side) == 0 && a.air == b.air;
+        }
     };
 
     static unsigned indexOf(const Frame& f) {
@@ -108,40 +126,15 @@ private:
     Bug bug_;
     Limits limits_;
     Result result_;
-    struct Search;
+    // The states seen, in their order, each with its predecessor.
+    struct Search {
+        std::unordered_map<State, uint32_t, Hash, Same> seen;
+        std::vector<const State*> order;
+        std::vector<std::pair<uint32_t, std::string>> from;
+        uint32_t at = 0;
+    };
     Search* search_ = nullptr;
 };
-
-template <class... T> uint64_t packed(T... bytes) {
-    uint64_t word = 0;
-    ((word = word << 8 | bytes), ...);
-    return word;
-}
-
-// The states seen, in their order, each with its predecessor.
-struct HandshakeModel::Search {
-    std::unordered_map<State, uint32_t, Hash, Same> seen;
-    std::vector<const State*> order;
-    std::vector<std::pair<uint32_t, std::string>> from;
-    uint32_t at = 0;
-};
-
-size_t HandshakeModel::Hash::operator()(const State& s) const {
-    size_t hash = std::hash<Frames>()(s.air);
-    for (const Side& x : s.side)
-        for (uint64_t v : {packed(x.nonce, x.drawn, x.begun, x.mine, x.peer, x.dataSent,
-                                  x.dataTaken, x.pingsSent),
-                           packed(x.pingsSeen, x.pingsAnswered, x.lives, x.isUp, x.isAnswered,
-                                  x.isUnconfirmed)}) {
-            hash = (hash ^ v) * 0x9E3779B97F4A7C15ull;
-            hash ^= hash >> 29;
-        }
-    return hash;
-}
-
-bool HandshakeModel::Same::operator()(const State& a, const State& b) const {
-    return std::memcmp(&a.side, &b.side, sizeof a.side) == 0 && a.air == b.air;
-}
 
 // ---- what a side does ----
 

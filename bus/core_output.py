@@ -267,16 +267,20 @@ def servant_of(core):
         table = f"static const Hw_Register {name}_table[] = {{{block}_TABLE}};\n"
         arguments = (f"{block}_ID_VALUE, {name}_table,\n"
                      f"        (Ice_Int)(sizeof {name}_table / sizeof {name}_table[0])")
+    if core.servant and not core.servant.get("waits", True):  # no call of its waits for the core
+        interrupt, poll = f"Hw_Core_interrupt(&{name}.core)", "(void)nowMs;\n    return HW_NEVER"
+    else:
+        interrupt, poll = f"{kind}_interrupt(&{name})", f"return {kind}_poll(&{name}, nowMs)"
     return f"""
 {table}static {kind} {name};
 static Hw_Status {name}_start(const Hw_Port *port, void *context) {{
     return {kind}_init(&{name}, MAP_SLOT_{upper}, {arguments}, port, context);
 }}
 static void {name}_interrupt(void) {{
-    {kind}_interrupt(&{name});
+    {interrupt};
 }}
 static U32 {name}_poll(U32 nowMs) {{
-    return {kind}_poll(&{name}, nowMs);
+    {poll};
 }}
 """
 

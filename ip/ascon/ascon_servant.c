@@ -35,16 +35,6 @@ Hw_Status Ascon_Core_init(Ascon_Core* self, U32 slot, U32 memory, const Hw_Port*
     return HW_OK;
 }
 
-void Ascon_Core_interrupt(Ascon_Core* self) {
-    Hw_Core_interrupt(&self->core);
-}
-
-U32 Ascon_Core_poll(Ascon_Core* self, U32 nowMs) {
-    (void)self;
-    (void)nowMs;
-    return HW_NEVER;
-}
-
 /* Writes a key or a nonce: four words, little-endian. */
 static void setFour(const Ascon_Core* self, U32 word, const U8* bytes) {
     int i;

@@ -20,7 +20,5 @@ typedef struct Ascon_Core {
 
 Hw_Status Ascon_Core_init(Ascon_Core* self, U32 slot, U32 memory, const Hw_Port* port,
                           void* context);
-void Ascon_Core_interrupt(Ascon_Core* self);
-U32 Ascon_Core_poll(Ascon_Core* self, U32 nowMs);
 
 #endif

@@ -28,16 +28,6 @@ Hw_Status Camera_Core_init(Camera_Core* self, U32 slot, U32 memory, const Hw_Por
     return HW_OK;
 }
 
-void Camera_Core_interrupt(Camera_Core* self) {
-    Hw_Core_interrupt(&self->core);
-}
-
-U32 Camera_Core_poll(Camera_Core* self, U32 nowMs) {
-    (void)self;
-    (void)nowMs;
-    return HW_NEVER;
-}
-
 static Ice_Status stop(Camera_Core* self) {
     int i;
     self->core.port->frames->width = 0;

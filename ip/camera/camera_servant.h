@@ -16,7 +16,5 @@ typedef struct Camera_Core {
 
 Hw_Status Camera_Core_init(Camera_Core* self, U32 slot, U32 memory, const Hw_Port* port,
                            void* context);
-void Camera_Core_interrupt(Camera_Core* self);
-U32 Camera_Core_poll(Camera_Core* self, U32 nowMs);
 
 #endif

@@ -34,16 +34,6 @@ Hw_Status Probe_Core_init(Probe_Core* self, U32 slot, U32 memory, const Hw_Port*
     return HW_OK;
 }
 
-void Probe_Core_interrupt(Probe_Core* self) {
-    Hw_Core_interrupt(&self->core);
-}
-
-U32 Probe_Core_poll(Probe_Core* self, U32 nowMs) {
-    (void)self;
-    (void)nowMs;
-    return HW_NEVER;
-}
-
 static Ice_Status stop(Probe_Core* self) {
     int i;
     set(self, PROBE_CONTROL, PROBE_CONTROL_STOP_MASK);

@@ -19,7 +19,5 @@ typedef struct Probe_Core {
 
 Hw_Status Probe_Core_init(Probe_Core* self, U32 slot, U32 memory, const Hw_Port* port,
                           void* context);
-void Probe_Core_interrupt(Probe_Core* self);
-U32 Probe_Core_poll(Probe_Core* self, U32 nowMs);
 
 #endif

@@ -97,6 +97,14 @@ changed() { # sed's command for the mover's description: the hash with it
 [ "$(changed 's/With a memory/Having a memory/')" = "$before" ] || fail 'words of a description change the hash'
 [ "$(changed 's/"registers": /&[{"word": 3, "name": "A", "access": "rw", "doc": ""}], "none": /')" != "$before" ] ||
     fail 'a register does not change the hash'
+# A servant without a call that waits has neither interrupt nor poll of its own.
+sed 's/"adder_servant.h"/&, "waits": false/' "$data/adder.regs.json" >"$work/adder.regs.json"
+echo adder >"$work/cores.list"
+"$coremap" "$work/cores.list" --base "$source/bus/map.regs.json" --core "adder=$work/adder.regs.json" \
+    --output-dir "$work"
+grep -q '^    Hw_Core_interrupt(&core_adder.core);' "$work/soc_cores.c" &&
+    ! grep -q 'Demo_Adder_Core_\(interrupt\|poll\)' "$work/soc_cores.c" ||
+    fail 'a servant that waits for nothing is asked for its interrupt or poll'
 # Only a core with idle_o can have a gate; one with a gate in the list has it on the board, too.
 accepted gates 'adder gate=on\nadder name=other\nled\n'
 grep -q 'core_gate #(.GATED(1)) u_gate_adder .*slot_valid\[2\].*clk_adder' "$out/soc_cores.vh" && grep -q '.clk_i(clk_adder)' "$out/soc_cores.vh" ||

@@ -1,12 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # check: golden|hardware|errors|compile slice2c file.ice-or-folder work-folder source-folder
-# golden: the C has no warnings, and `messages` are those of the compiler (no file: none).
+# What is expected stands at the end of the file: the compiler's messages behind `//> `, and behind
+# `//= ` lines of the generated header, or of the registers, in their order.
+# golden: the C has no warnings.
 # hardware: the wrappers and new cores are Verilog without warnings, and without latches.
-# Of both the header, or the registers, have the lines of `lines`, in that order.
-# errors: the messages are those of the lines behind `//> `. The source line and caret of each are
-# compared where the file has them.
-# UPDATE_GOLDENS=1 rewrites what is expected; a new golden begins as an empty file of its name.
+# errors: nothing is written.
+# A message's source line and caret are compared where the file has them.
+# UPDATE_GOLDENS=1 rewrites messages and registers; new registers begin as an empty file.
 set -eu
 kind=$1 slice2c=$2 ice=$3 work=$4 source=$5
 rm -rf "$work"
@@ -16,13 +17,20 @@ flags="-std=c90 -pedantic -Wall -Wextra -Wconversion -Wstrict-prototypes -Wmissi
 out=$work/out
 hardware="--hw-verilog $out --hw-vhdl $out --hw-regs $out --hw-c $out --hw-cpp $out \
 --hw-new-verilog $out --hw-new-vhdl $out"
-expected=${ice%.ice}
 
-has_lines() { # the lines of `lines`, in the files
-    [ ! -e "$expected/lines" ] || awk 'BEGIN { i = 0 } NR == FNR { wanted[n++] = $0; next }
+has_lines() { # the lines behind `//= `, in the files
+    grep -q '^//= ' "$ice" || return 0
+    sed -n 's/^\/\/= //p' "$ice" | awk 'BEGIN { i = 0 } NR == FNR { wanted[n++] = $0; next }
         $0 == wanted[i] { i++ }
         END { if (i < n) { print FILENAME ": not there, or too early: " wanted[i]; exit 1 } }' \
-        "$expected/lines" "$@"
+        - "$@"
+}
+has_messages() {
+    grep -q '^//>  *^' "$ice" || sed -Ei '/^[^ ]+:[0-9]+|^[0-9]+ error/!d' "$work/messages"
+    [ -z "${UPDATE_GOLDENS:-}" ] || {
+        sed -i '/^\/\/> /d' "$ice" && sed 's/^/\/\/> /' "$work/messages" >>"$ice"
+    }
+    sed -n 's/^\/\/> //p' "$ice" | diff -u - "$work/messages"
 }
 
 # shellcheck disable=SC2086 # lists of words
@@ -35,15 +43,14 @@ golden)
     g++ -Wall -Wextra -Werror -I"$source/sw/base" -I"$source/sw/icec" -fsyntax-only \
         -include "$work"/*.h -x c++ /dev/null
     sed -i "s|^.*/||" "$work/messages"
-    [ -z "${UPDATE_GOLDENS:-}" ] || cp "$work/messages" "$expected/messages"
-    diff -uN "$expected/messages" "$work/messages"
+    has_messages
     has_lines "$work"/*.h
     ;;
 hardware)
     "$slice2c" "$ice" --output-dir "$work/c" $hardware
     # The registers are a contract; test_slice_hardware runs wrappers, servants and proxies,
     # test_ip_sample new cores.
-    for file in "$expected"/*.regs.json; do
+    for file in "${ice%.ice}"/*.regs.json; do
         [ -e "$file" ] || continue
         [ -z "${UPDATE_GOLDENS:-}" ] || cp "$out/${file##*/}" "$file"
         diff -u "$file" "$out/${file##*/}"
@@ -67,11 +74,7 @@ errors)
     [ $status = 1 ] || { echo "exit status $status; expected 1" && exit 1; }
     [ "$(ls "$work")" = messages ] || { echo "files were written in spite of errors" && exit 1; }
     sed -i "s|^/[^:]*/||" "$work/messages"
-    grep -q '^//>  *^' "$ice" || sed -Ei '/^[^ ]+:[0-9]+|^[0-9]+ error/!d' "$work/messages"
-    [ -z "${UPDATE_GOLDENS:-}" ] || {
-        sed -i '/^\/\/> /d' "$ice" && sed 's/^/\/\/> /' "$work/messages" >>"$ice"
-    }
-    sed -n 's/^\/\/> //p' "$ice" | diff -u - "$work/messages"
+    has_messages
     ;;
 compile) # every file of a folder compiles without a message, and its C without a warning
     find "$ice" -name '*.ice' | sort >"$work/list"

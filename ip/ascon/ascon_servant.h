@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ascon_servant: Cores::Ascon (Ascon.ice) by the core in a slot, with the functions of a generated
- * servant (docs/hw-mapping.md). It does the processor's part: buffers in DDR3, registers, the wait.
+ * ascon_servant: Cores::Ascon (Ascon.ice) by the core in a slot. It does the processor's part:
+ * buffers in DDR3, registers, the wait.
  */
 #ifndef ASCON_SERVANT_H
 #define ASCON_SERVANT_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * camera_servant: Cores::Camera (Camera.ice) by the core in a slot, with the functions of a
- * generated servant (docs/hw-mapping.md). Pixels never pass the processor.
+ * camera_servant: Cores::Camera (Camera.ice) by the core in a slot. Pixels never pass the
+ * processor.
  */
 #ifndef CAMERA_SERVANT_H
 #define CAMERA_SERVANT_H

@@ -17,7 +17,7 @@ def fly(log, proxy, report):
     signal = [(1000 if i >= 20 else 0) + 137 * (-1) ** i for i in range(64)]
     tooLarge, filtered = log.call("ground -> UAV", "fir.filter(64 samples)",
                                   lambda: fir.filter(signal))
-    # As ip/fir/README.md defines it: to nearest, halves up.
+    # The filter rounds to nearest, halves up (ip/fir/README.md).
     wanted = [(sum(signal[max(0, n - 15):n + 1]) + 8) >> 4 for n in range(64)]
     if list(filtered) != wanted or tooLarge:
         raise RuntimeError("fir: %s came, %s was to come" % (list(filtered), wanted))

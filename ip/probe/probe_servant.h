@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * probe_servant: Probes::Probe (Probe.ice) by the core in a slot, with the functions of a generated
- * servant (docs/hw-mapping.md).
+ * probe_servant: Probes::Probe (Probe.ice) by the core in a slot.
  */
 #ifndef PROBE_SERVANT_H
 #define PROBE_SERVANT_H

@@ -127,7 +127,7 @@ TEST(Modes, NwaitActiveHighAndTheLargestBuffers) {
     }
 }
 
-// As on an STM32F407, and as RM0033 has it.
+// An STM32F407 pauses between the halves of a written word; RM0033 promises that it does not.
 TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0, 120, 100);
     b.slave.words[0] = SYSTEM_ID_VALUE;

@@ -28,13 +28,12 @@ TESTS = {
     "fsmc_": "test_fsmc_bridge test_fsmc_modes",
     "async_fifo": "test_ip_camera", "cdc_": "test_fsmc_bridge"}
 SECONDS = "20"  # processor time for each step of a mutant's proof, at least
-# A module's cells; of_proof drops those of its proof's expressions
-OF_SOURCE = "{0}/c:* {0}/t:$assert {0}/t:$assume {0}/t:$cover {0}/t:$any* %u %u %u %d"
 DRAW = """setattr -set keep 1 w:f_*
 opt_clean
 write_rtlil plain.il
 write_json plain.json
-select -set source {cells}
+select -set proof {module}/t:$assert {module}/t:$assume {module}/t:$cover {module}/t:$any* {lines}
+select -set source {module}/c:* @proof %d
 mutate -list {number} -seed {seed} -o list @source"""
 # A module or its mutant: free signals become the same input of both.
 SIDE = """{change}
@@ -70,7 +69,6 @@ class Proof:
         given = next((p["value"] for p in test["properties"] if p["name"] == "ENVIRONMENT"), [])
         self.environment = {**os.environ, **dict(entry.split("=", 1) for entry in given)}
         self.work = out / self.name
-        self.first_of_proof = {}  # line, of a file
 
     def run(self, folder, mutant, seconds=None):
         """Output and exit status of prove.sh with these commands of Yosys between reading and
@@ -85,24 +83,20 @@ class Proof:
     def draw(self, number, seed):
         """Proves the module as it is, and draws its mutants."""
         self.work.mkdir(parents=True, exist_ok=True)
-        cells = OF_SOURCE.format(self.module)
-        status, text = self.run(self.work, DRAW.format(cells=cells, number=20 * number, seed=seed))
+        status, text = self.run(self.work, DRAW.format(
+            module=self.module, lines=self.lines_of_proof(), number=4 * number, seed=seed))
         if status:
             sys.exit(f"{text}mutants: formal.{self.name} fails without any mutant: mend that first")
         self.design = model.cells(self.work / "plain.json")
-        mutants = (self.work / "list").read_text().splitlines()
-        return [mutant for mutant in mutants if not self.of_proof(mutant)][:number]
+        return (self.work / "list").read_text().splitlines()[:number]
 
-    def of_proof(self, mutant):
-        """Whether its source line stands below `ifdef FORMAL."""
-        found = re.search(r".*-src (\S+?):(\d+)", mutant)
-        if not found:
-            return False
-        file, line = found.groups()
-        if file not in self.first_of_proof:
-            source = re.split("`(?:ifdef|elsif) FORMAL\n", pathlib.Path(file).read_text())[0]
-            self.first_of_proof[file] = source.count("\n")
-        return int(line) > self.first_of_proof[file]
+    def lines_of_proof(self):
+        """The lines of the module's file from `ifdef FORMAL on, as Yosys' select names them."""
+        lines = next(self.source.glob(f"**/{self.module}.v")).read_text().splitlines()
+        first = next((n for n, line in enumerate(lines, 1)
+                      if re.fullmatch("`(ifdef|elsif) FORMAL", line)), len(lines))
+        return " ".join(f"{self.module}/a:src=*/{self.module}.v:{n}.*"
+                        for n in range(first, len(lines) + 1))
 
     def differs(self, folder, mutant):
         """Whether the mutant's outputs differ from the module's for some input that the proof

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
-# arm.cmake: compiles C90 and assembly for the Cortex-M3 with GCC's bare-metal toolchain, beside the host's build.
+# arm.cmake: compiles C90 and assembly for the Cortex-M3 with GCC's bare-metal toolchain, beside the
+# host's build.
 
 icesoc_needs(gcc-arm-none-eabi ARM_GCC program arm-none-eabi-gcc)
 icesoc_needs(binutils-arm-none-eabi ARM_SIZE program arm-none-eabi-size)
@@ -9,9 +10,10 @@ icesoc_needs(binutils-arm-none-eabi ARM_OBJCOPY program arm-none-eabi-objcopy)
 set(ARM_FLAGS -mcpu=cortex-m3 -mthumb -Os -g -ffunction-sections -fdata-sections -fno-common
     -fstack-usage -fcallgraph-info=su)
 
-# icesoc_arm_objects(OUT name SOURCES file... [INCLUDES dir...] [DEFINES NAME=value...] [OPTIONS ...]
-#                    [DEPENDS target...] [FOREIGN])
-# Compiles the sources and puts the objects' paths into the variable OUT. FOREIGN: others' code, without our warnings.
+# icesoc_arm_objects(OUT name SOURCES file... [INCLUDES dir...] [DEFINES NAME=value...]
+#                    [OPTIONS ...] [DEPENDS target...] [FOREIGN])
+# Compiles the sources and puts the objects' paths into the variable OUT. FOREIGN: others' code,
+# without our warnings.
 function(icesoc_arm_objects out name)
   cmake_parse_arguments(A "FOREIGN" "" "SOURCES;INCLUDES;DEFINES;OPTIONS;DEPENDS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/${name}.arm)
@@ -37,7 +39,8 @@ function(icesoc_arm_objects out name)
       set(own -w)
     endif()
     add_custom_command(OUTPUT ${object}
-      COMMAND ${CCACHE} ${ARM_GCC} ${flags} ${own} ${A_OPTIONS} -MMD -MF ${object}.d -c ${path} -o ${object}
+      COMMAND ${CCACHE} ${ARM_GCC} ${flags} ${own} ${A_OPTIONS} -MMD -MF ${object}.d -c ${path}
+        -o ${object}
       DEPENDS ${path} ${A_DEPENDS} DEPFILE ${object}.d VERBATIM COMMENT "ARM: ${folder}/${file}")
     list(APPEND objects ${object})
   endforeach()
@@ -45,14 +48,16 @@ function(icesoc_arm_objects out name)
 endfunction()
 
 # icesoc_arm_program(NAME SCRIPT file.ld OBJECTS ... [OPTIONS ...])
-# Links NAME.elf with its map in ${CMAKE_BINARY_DIR}/firmware, stamped with its checksum; target firmware_NAME.
+# Links NAME.elf with its map in ${CMAKE_BINARY_DIR}/firmware, stamped with its checksum; target
+# firmware_NAME.
 function(icesoc_arm_program name)
   cmake_parse_arguments(A "" "SCRIPT" "OBJECTS;OPTIONS" ${ARGN})
   set(dir ${CMAKE_BINARY_DIR}/firmware)
   file(MAKE_DIRECTORY ${dir})
   add_custom_command(OUTPUT ${dir}/${name}.elf
-    COMMAND ${ARM_GCC} -mcpu=cortex-m3 -mthumb -nostartfiles --specs=nano.specs -T ${A_SCRIPT} ${A_OPTIONS}
-            -Wl,--gc-sections -Wl,-Map=${dir}/${name}.map -Wl,--fatal-warnings -o ${dir}/${name}.elf ${A_OBJECTS}
+    COMMAND ${ARM_GCC} -mcpu=cortex-m3 -mthumb -nostartfiles --specs=nano.specs
+            -T ${A_SCRIPT} ${A_OPTIONS} -Wl,--gc-sections -Wl,-Map=${dir}/${name}.map
+            -Wl,--fatal-warnings -o ${dir}/${name}.elf ${A_OBJECTS}
     COMMAND stamp_image ${dir}/${name}.elf
     COMMAND ${ARM_OBJCOPY} -O binary ${dir}/${name}.elf ${dir}/${name}.bin
     DEPENDS ${A_OBJECTS} ${A_SCRIPT} stamp_image BYPRODUCTS ${dir}/${name}.map ${dir}/${name}.bin

@@ -4,7 +4,8 @@
 
 set(CORES ${CMAKE_SOURCE_DIR}/ip/cores.list CACHE FILEPATH "The cores in the chip, one a line")
 set(CORE_FOLDERS "" CACHE STRING "Folders of cores besides those in ip/")
-set(FOREIGN_CORES ${CMAKE_BINARY_DIR}/foreign CACHE PATH "Where cmake/fetch.py foreign put third-party cores")
+set(FOREIGN_CORES ${CMAKE_BINARY_DIR}/foreign
+  CACHE PATH "Where cmake/fetch.py foreign put third-party cores")
 
 # Names in the list, for parts that are built only with a core: if("vision" IN_LIST CHIP_CORES)
 set(CHIP_CORES)
@@ -18,8 +19,9 @@ foreach(line IN LISTS lines)
   endif()
 endforeach()
 list(REMOVE_DUPLICATES CHIP_CORES)
-# The object adapter has room for every core's servant beside the vehicle's own: 8 servants by default (sw/icec/ice_config.h),
-# more where there are more, on the host (the library icec) and, by ARM_DEFINES, in the firmware.
+# The object adapter has room for every core's servant beside the vehicle's own: 8 servants by
+# default (sw/icec/ice_config.h), more where there are more, on the host (the library icec) and, by
+# ARM_DEFINES, in the firmware.
 set(ARM_DEFINES)
 set(header ${CMAKE_SOURCE_DIR}/sw/apps/uav/uav_private.h)
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
@@ -30,31 +32,37 @@ if(servants GREATER 8)
   set(ARM_DEFINES ICE_SERVANTS=${servants})
 endif()
 
-# icesoc_core(NAME [ICE file.ice | REGS name.regs.json] [VERILOG file...] [VHDL file...] [SERVANT file.c...]
-#             [SLICE name...] [INCLUDES dir...] [FLAGS ...] [DEPENDS target...] [CLK_HZ] [IDLE] [CLOCK Hz])
-# The core NAME: a module or entity NAME with a slot's ports. ICE: its [":hw"] interface, from which registers, wrapper
-# and servant are made; else REGS describes its registers, and SERVANT is written by hand, for interfaces of SLICE:
-# files, or names given to icesoc_slice; without SERVANT it is that of sw/hw/registers. <NAME>_test.cpp beside it
-# becomes test_ip_<NAME>, with the model V<NAME>_slot.
+# icesoc_core(NAME [ICE file.ice | REGS name.regs.json] [VERILOG file...] [VHDL file...]
+#             [SERVANT file.c...] [SLICE name...] [INCLUDES dir...] [FLAGS ...] [DEPENDS target...]
+#             [CLK_HZ] [IDLE] [CLOCK Hz])
+# The core NAME: a module or entity NAME with a slot's ports. ICE: its [":hw"] interface, from which
+# registers, wrapper and servant are made; else REGS describes its registers, and SERVANT is written
+# by hand, for interfaces of SLICE: files, or names given to icesoc_slice; without SERVANT it is
+# that of sw/hw/registers. <NAME>_test.cpp beside it becomes test_ip_<NAME>, with the model
+# V<NAME>_slot.
 # VERILOG may name headers, in whose folders `include looks.
 # FLAGS: Verilator's, for a foreign core's style.
 # DEPENDS: targets that generate VERILOG files.
-# CLK_HZ: the module has a parameter of that name, the clock in Hz: 100 MHz on the board, in <NAME>_test.cpp and in the
-# simulator, unless another is given.
+# CLK_HZ: the module has a parameter of that name, the clock in Hz: 100 MHz on the board, in
+# <NAME>_test.cpp and in the simulator, unless another is given.
 # IDLE: it has an output idle_o, which allows a gate for its clock (hdl/system/core_gate.v).
-# CLOCK: it has a clock of its own, of at most that frequency, behind bus/bus_crossing.v; clk_i, rst_i and its pins
-# belong to it.
+# CLOCK: it has a clock of its own, of at most that frequency, behind bus/bus_crossing.v; clk_i,
+# rst_i and its pins belong to it.
 function(icesoc_core name)
-  cmake_parse_arguments(A "CLK_HZ;IDLE" "ICE;REGS;CLOCK" "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS;DEPENDS" ${ARGN})
+  cmake_parse_arguments(A "CLK_HZ;IDLE" "ICE;REGS;CLOCK"
+    "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS;DEPENDS" ${ARGN})
   list(TRANSFORM A_VHDL PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_VERILOG PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_SERVANT PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   if(A_CLK_HZ AND A_VHDL)
-    message(FATAL_ERROR "${name}: CLK_HZ is for a module in Verilog: GHDL fixes an entity's generics when it converts it, "
-                        "before the clock is known. Take a number by an operation instead")
+    message(FATAL_ERROR "${name}: CLK_HZ is for a module in Verilog: GHDL fixes an entity's "
+      "generics when it converts it, before the clock is known. Take a number by an operation "
+      "instead")
   endif()
-  if(A_CLOCK AND (A_IDLE OR NOT A_CLOCK MATCHES "^[0-9]+$" OR A_CLOCK LESS 3000000 OR A_CLOCK GREATER 100000000))
-    message(FATAL_ERROR "${name}: CLOCK is 3000000 to 100000000 Hz, and without IDLE: a clock of the core's own has no gate")
+  if(A_CLOCK AND (A_IDLE OR NOT A_CLOCK MATCHES "^[0-9]+$" OR A_CLOCK LESS 3000000
+      OR A_CLOCK GREATER 100000000))
+    message(FATAL_ERROR "${name}: CLOCK is 3000000 to 100000000 Hz, and without IDLE: a clock of "
+      "the core's own has no gate")
   endif()
   set(clocked)
   if(A_CLK_HZ)
@@ -90,8 +98,8 @@ function(icesoc_core name)
     endif()
     list(APPEND targets ${name}_hardware)
     set(slice ${GEN_DIR}/slice/${name})
-    list(APPEND arm_sources ${GEN_DIR}/${name}_servant.c ${slice}/${base}_types.c ${slice}/${base}_client.c
-                            ${slice}/${base}_server.c)
+    list(APPEND arm_sources ${GEN_DIR}/${name}_servant.c ${slice}/${base}_types.c
+                            ${slice}/${base}_client.c ${slice}/${base}_server.c)
     list(APPEND arm_includes ${slice})
     list(APPEND arm_targets ${name}_slice ${name}_hardware)
     list(APPEND slices ${name}_slice)
@@ -108,7 +116,8 @@ function(icesoc_core name)
         if(s MATCHES "[.]ice$")
           icesoc_slice(${base} ${s})
           set(slice ${GEN_DIR}/slice/${base})
-          list(APPEND arm_sources ${slice}/${base}_types.c ${slice}/${base}_client.c ${slice}/${base}_server.c)
+          list(APPEND arm_sources ${slice}/${base}_types.c ${slice}/${base}_client.c
+            ${slice}/${base}_server.c)
           list(APPEND arm_includes ${slice})
           list(APPEND arm_targets ${base}_slice)
         endif()
@@ -144,13 +153,15 @@ function(icesoc_core name)
     if(A_CLK_HZ)
       set(flag --clk-hz)
     endif()
-    add_custom_command(OUTPUT ${GEN_DIR}/${top}.v COMMAND ${REGMAP} ${regs} --clocked ${flag} --output-dir ${GEN_DIR}
+    add_custom_command(OUTPUT ${GEN_DIR}/${top}.v
+                       COMMAND ${REGMAP} ${regs} --clocked ${flag} --output-dir ${GEN_DIR}
                        DEPENDS ${REGMAP} ${regs} VERBATIM COMMENT "${name} in its own clock")
     add_custom_target(${top}_verilog DEPENDS ${GEN_DIR}/${top}.v)
     list(APPEND files ${GEN_DIR}/${top}.v)
     list(APPEND targets ${top}_verilog)
   endif()
-  foreach(what files headers targets regs libs clocked idle own slices arm_sources arm_includes arm_targets)
+  foreach(what files headers targets regs libs clocked idle own slices arm_sources arm_includes
+      arm_targets)
     set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_${what} ${${what}})
   endforeach()
   set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_flags ${A_FLAGS})
@@ -161,13 +172,17 @@ function(icesoc_core name)
   endif()
   file(GLOB test CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
   if(test AND "testbench" IN_LIST ROOMS)
-    icesoc_verilate(${name}_slot TOP ${top} SOURCES ${files} DEPENDS ${targets} FLAGS ${A_FLAGS} ${CORE_TEST_FLAGS}
-                    PARAMS ${clock} INCLUDES ${CMAKE_SOURCE_DIR}/bus ${CMAKE_SOURCE_DIR}/hdl/ddr ${CMAKE_SOURCE_DIR}/hdl/system ${CMAKE_SOURCE_DIR}/hdl/cdc ${CMAKE_CURRENT_SOURCE_DIR})
+    icesoc_verilate(${name}_slot TOP ${top} SOURCES ${files} DEPENDS ${targets}
+                    FLAGS ${A_FLAGS} ${CORE_TEST_FLAGS}
+                    PARAMS ${clock} INCLUDES ${CMAKE_SOURCE_DIR}/bus ${CMAKE_SOURCE_DIR}/hdl/ddr
+                      ${CMAKE_SOURCE_DIR}/hdl/system ${CMAKE_SOURCE_DIR}/hdl/cdc
+                      ${CMAKE_CURRENT_SOURCE_DIR})
     set(labels rtl)
     if(A_VHDL)
       list(APPEND labels vhdl)
     endif()
-    icesoc_test(test_ip_${name} SOURCES ${name}_test.cpp LIBS ${libs} ${name}_slot bench fsmc hw_core icec LABELS ${labels})
+    icesoc_test(test_ip_${name} SOURCES ${name}_test.cpp
+      LIBS ${libs} ${name}_slot bench fsmc hw_core icec LABELS ${labels})
     if(A_CLK_HZ)
       set(clock CORE_CLK_HZ=100000000)
     endif()
@@ -196,8 +211,8 @@ function(icesoc_chip)
   set(options)
   foreach(name IN LISTS CHIP_CORES)
     if(NOT name IN_LIST known)
-      message(FATAL_ERROR "${CORES}: there is no core '${name}': it needs ip/${name}/CMakeLists.txt with icesoc_core, "
-                          "or its line goes")
+      message(FATAL_ERROR "${CORES}: there is no core '${name}': it needs "
+        "ip/${name}/CMakeLists.txt with icesoc_core, or its line goes")
     endif()
     get_property(regs GLOBAL PROPERTY ICESOC_CORE_${name}_regs)
     list(APPEND options --core ${name}=${regs})
@@ -206,7 +221,8 @@ function(icesoc_chip)
     list(APPEND inputs ${regs} ${own})
   endforeach()
   icesoc_chip_property(files files)
-  execute_process(COMMAND ${CMAKE_SOURCE_DIR}/ip/foreign_files.py ${files} RESULT_VARIABLE status ERROR_VARIABLE said)
+  execute_process(COMMAND ${CMAKE_SOURCE_DIR}/ip/foreign_files.py ${files} RESULT_VARIABLE status
+    ERROR_VARIABLE said)
   if(status)
     string(REPLACE "new-foreign: " "" said "${said}")
     message(FATAL_ERROR "${CORES}: ${said}")
@@ -229,19 +245,21 @@ function(icesoc_chip)
   list(TRANSFORM idle PREPEND "--idle;")
   icesoc_chip_property(own own)
   list(TRANSFORM own PREPEND "--own-clock;")
-  add_custom_command(OUTPUT ${GEN_DIR}/map.regs.json ${GEN_DIR}/soc_cores.vh ${GEN_DIR}/soc_cores.c ${GEN_DIR}/soc_pins.h
-                     ${GEN_DIR}/core_pins.ucf ${GEN_DIR}/icesoc.svd ${GEN_DIR}/registers.html
-                     ${GEN_DIR}/probes.json ${GEN_DIR}/icesoc.rdl ${GEN_DIR}/icesoc.ipxact.xml
-    ${check}
-    COMMAND ${CMAKE_SOURCE_DIR}/bus/coremap.py ${CORES} --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${clocked} ${idle} ${own}
+  add_custom_command(OUTPUT ${GEN_DIR}/map.regs.json ${GEN_DIR}/soc_cores.vh ${GEN_DIR}/soc_cores.c
+                     ${GEN_DIR}/soc_pins.h ${GEN_DIR}/core_pins.ucf ${GEN_DIR}/icesoc.svd
+                     ${GEN_DIR}/registers.html ${GEN_DIR}/probes.json ${GEN_DIR}/icesoc.rdl
+                     ${GEN_DIR}/icesoc.ipxact.xml ${check}
+    COMMAND ${CMAKE_SOURCE_DIR}/bus/coremap.py ${CORES}
+            --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${clocked} ${idle} ${own}
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             --block 1=modem=${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json --output-dir ${GEN_DIR}
     DEPENDS ${REGMAP} ${CMAKE_SOURCE_DIR}/bus/coremap.py ${CMAKE_SOURCE_DIR}/bus/core_output.py
-            ${CMAKE_SOURCE_DIR}/bus/core_exchange.py ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${inputs}
-            ${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json ${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json
-            ${slice_files}
+            ${CMAKE_SOURCE_DIR}/bus/core_exchange.py ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json
+            ${inputs} ${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
+            ${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json ${slice_files}
     COMMAND_EXPAND_LISTS VERBATIM COMMENT "Cores of the chip: ${CHIP_CORES}")
   icesoc_regmap(${GEN_DIR}/map.regs.json)
   icesoc_chip_property(libs libs)
-  icesoc_c90(soc_cores SOURCES ${GEN_DIR}/soc_cores.c LIBS ${libs} hw_core regs_map Registers_server icec)
+  icesoc_c90(soc_cores SOURCES ${GEN_DIR}/soc_cores.c
+    LIBS ${libs} hw_core regs_map Registers_server icec)
 endfunction()

@@ -2,12 +2,14 @@
 #
 # fuzz.cmake: libFuzzer programs, by clang, with address and undefined-behaviour sanitizers.
 
-# icesoc_fuzz(NAME HARNESS file.cpp SOURCES file... [INCLUDES dir...] [DEFINES name...] RUNS n [SEEDS file-or-folder] [DICT file]
-#             [LENGTH bytes] [LIBS file...] [LABELS ...] [DEPENDS ...])
-# The program NAME, and the test fuzz.NAME of RUNS inputs from SEED, of up to LENGTH (400) bytes. It ends by their number, never
-# by time. The inputs in SEEDS come first.
+# icesoc_fuzz(NAME HARNESS file.cpp SOURCES file... [INCLUDES dir...] [DEFINES name...] RUNS n
+#             [SEEDS file-or-folder] [DICT file] [LENGTH bytes] [LIBS file...] [LABELS ...]
+#             [DEPENDS ...])
+# The program NAME, and the test fuzz.NAME of RUNS inputs from SEED, of up to LENGTH (400) bytes. It
+# ends by their number, never by time. The inputs in SEEDS come first.
 function(icesoc_fuzz name)
-  cmake_parse_arguments(A "" "HARNESS;DICT;RUNS;SEEDS;LENGTH" "SOURCES;INCLUDES;DEFINES;LIBS;LABELS;DEPENDS" ${ARGN})
+  cmake_parse_arguments(A "" "HARNESS;DICT;RUNS;SEEDS;LENGTH"
+    "SOURCES;INCLUDES;DEFINES;LIBS;LABELS;DEPENDS" ${ARGN})
   set(flags -g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined
             -fno-omit-frame-pointer)
   foreach(i IN LISTS A_INCLUDES)
@@ -50,6 +52,7 @@ function(icesoc_fuzz name)
   if(A_SEEDS)
     get_filename_component(seeds ${A_SEEDS} ABSOLUTE)
   endif()
-  add_test(NAME fuzz.${name} COMMAND ${CMAKE_SOURCE_DIR}/cmake/fuzz.sh ${dir}/run ${A_RUNS} ${seeds} ${options})
+  add_test(NAME fuzz.${name}
+    COMMAND ${CMAKE_SOURCE_DIR}/cmake/fuzz.sh ${dir}/run ${A_RUNS} ${seeds} ${options})
   set_tests_properties(fuzz.${name} PROPERTIES LABELS "${A_LABELS}")
 endfunction()

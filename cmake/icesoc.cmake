@@ -2,9 +2,9 @@
 #
 # icesoc.cmake: how each kind of source is built, said once.
 
-# icesoc_needs(PACKAGE VARIABLE program|library|path NAME): finds what Debian's package has, or ends with its name. Nothing is
-# left out in silence: the list of tests is the same on each machine. Programs that only a test's
-# script runs (gdb-multiarch, xmllint) are not looked for here.
+# icesoc_needs(PACKAGE VARIABLE program|library|path NAME): finds what Debian's package has, or ends
+# with its name. Nothing is left out in silence: the list of tests is the same on each machine.
+# Programs that only a test's script runs (gdb-multiarch, xmllint) are not looked for here.
 function(icesoc_needs package variable kind name)
   cmake_language(CALL find_${kind} ${variable} ${name})
   if(NOT ${variable})
@@ -25,7 +25,8 @@ if(CCACHE)
   set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
 else()
-  message(STATUS "ccache is missing (Debian: ccache): each new build folder compiles everything itself")
+  message(STATUS "ccache is missing (Debian: ccache): each new build folder compiles everything "
+    "itself")
 endif()
 icesoc_needs(verilator VERILATOR program verilator)
 icesoc_needs(iverilog IVERILOG program iverilog)
@@ -81,8 +82,8 @@ function(icesoc_c90 name)
 endfunction()
 
 # icesoc_test(NAME SOURCES... [LIBS lib...] [LABELS label...] [ARGS ...] [SANITIZED regexp])
-# A GoogleTest program whose cases CTest finds. Labels select: `ctest -L rtl`. SANITIZED: `make test` runs the cases of these
-# names once more with sanitizers.
+# A GoogleTest program whose cases CTest finds. Labels select: `ctest -L rtl`. SANITIZED: `make
+# test` runs the cases of these names once more with sanitizers.
 function(icesoc_test name)
   cmake_parse_arguments(A "" "SANITIZED" "SOURCES;LIBS;LABELS;ARGS" ${ARGN})
   if(NOT TARGET clock_listener)
@@ -95,12 +96,16 @@ function(icesoc_test name)
   target_link_libraries(${name} PRIVATE ${A_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
   gtest_discover_tests(${name} TEST_PREFIX "${name}." EXTRA_ARGS ${A_ARGS}
                        DISCOVERY_TIMEOUT 60)
-  # CTest reads this after the cases are known; gtest_discover_tests itself uses only the first of several labels.
+  # CTest reads this after the cases are known; gtest_discover_tests itself uses only the first of
+  # several labels.
   set(labels ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
-  file(WRITE ${labels} "foreach(t IN LISTS ${name}_TESTS)\n  set_tests_properties(\${t} PROPERTIES LABELS \"${A_LABELS}\")\n")
+  file(WRITE ${labels}
+    "foreach(t IN LISTS ${name}_TESTS)\n"
+    "  set_tests_properties(\${t} PROPERTIES LABELS \"${A_LABELS}\")\n")
   if(A_SANITIZED)
     icesoc_sanitized(${name})
-    file(APPEND ${labels} "  if(t MATCHES \"${A_SANITIZED}\")\n    set_tests_properties(\${t} PROPERTIES LABELS \"${A_LABELS};sanitized\")\n  endif()\n")
+    file(APPEND ${labels} "  if(t MATCHES \"${A_SANITIZED}\")\n"
+      "    set_tests_properties(\${t} PROPERTIES LABELS \"${A_LABELS};sanitized\")\n  endif()\n")
   endif()
   file(APPEND ${labels} "endforeach()\n")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labels})
@@ -111,22 +116,27 @@ function(icesoc_sanitized)
   set_property(GLOBAL APPEND PROPERTY ICESOC_SANITIZED ${ARGN})
 endfunction()
 
-# icesoc_uncertain(PROGRAM seeds [gtest filter]): the cases of an icesoc_test once more, with synchronisers that take old or new
-# at random (hdl/cdc/cdc_random.vh): tests cdc.<program>.<seed>. The numbers drawn follow from the seed and from SEED.
+# icesoc_uncertain(PROGRAM seeds [gtest filter]): the cases of an icesoc_test once more, with
+# synchronisers that take old or new at random (hdl/cdc/cdc_random.vh): tests cdc.<program>.<seed>.
+# The numbers drawn follow from the seed and from SEED.
 function(icesoc_uncertain program seeds)
   set(filter ${ARGN})
   if(NOT filter)
     set(filter *)
   endif()
   foreach(seed RANGE 1 ${seeds})
-    add_test(NAME cdc.${program}.${seed} COMMAND ${program} --gtest_brief=1 "--gtest_filter=${filter}")
-    set_tests_properties(cdc.${program}.${seed} PROPERTIES LABELS "rtl;cdc" ENVIRONMENT CDC_SEED=${seed}
-                         FAIL_REGULAR_EXPRESSION "[^0-9]0 tests from") # a filter that matches nothing
+    add_test(NAME cdc.${program}.${seed}
+      COMMAND ${program} --gtest_brief=1 "--gtest_filter=${filter}")
+    # A filter that matches nothing fails.
+    set_tests_properties(cdc.${program}.${seed} PROPERTIES LABELS "rtl;cdc"
+                         ENVIRONMENT CDC_SEED=${seed}
+                         FAIL_REGULAR_EXPRESSION "[^0-9]0 tests from")
   endforeach()
 endfunction()
 
-# icesoc_regmap(JSON): registers of one block, from its *.regs.json, as a Verilog include, a C header,
-# a VHDL package and a Markdown page in ${GEN_DIR}; target regmap_<block>, interface library regs_<block>.
+# icesoc_regmap(JSON): registers of one block, from its *.regs.json, as a Verilog include, a C
+# header, a VHDL package and a Markdown page in ${GEN_DIR}; target regmap_<block>, interface library
+# regs_<block>.
 set(REGMAP ${CMAKE_SOURCE_DIR}/bus/regmap.py)
 function(icesoc_regmap json)
   get_filename_component(block ${json} NAME_WE)
@@ -144,18 +154,18 @@ function(icesoc_regmap json)
   add_dependencies(regs_${block} regmap_${block})
 endfunction()
 
-# icesoc_verilate(NAME TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES dir...] [REGS block...]
-#                 [DEPENDS target-or-file...] [FLAGS ...] [FAST])
-# Verilated model of a module as a library NAME with the class V<NAME>. Lint is on (-Wall) and fatal.
-# FAST, the whole chip: compiled by clang (measured: 1.18 times the speed of g++'s code). With
-# COVERAGE it counts the top module only: each block's own tests count the block, and with all counters seconds of
-# flight took minutes.
+# icesoc_verilate(NAME TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES dir...]
+#                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST])
+# Verilated model of a module as a library NAME with the class V<NAME>. Lint is on (-Wall) and
+# fatal. FAST, the whole chip: compiled by clang (measured: 1.18 times the speed of g++'s code).
+# With COVERAGE it counts the top module only: each block's own tests count the block, and with all
+# counters seconds of flight took minutes.
 function(icesoc_verilate name)
   cmake_parse_arguments(A "FAST" "TOP" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})
   set(lib ${dir}/V${name}__ALL.a)
-  set(flags --cc -Wall --x-assign unique --x-initial unique -O3 --top-module ${A_TOP} --prefix V${name}
-            --Mdir ${dir} -y ${GEN_DIR} -I${GEN_DIR} ${A_FLAGS})
+  set(flags --cc -Wall --x-assign unique --x-initial unique -O3 --top-module ${A_TOP}
+            --prefix V${name} --Mdir ${dir} -y ${GEN_DIR} -I${GEN_DIR} ${A_FLAGS})
   foreach(i IN LISTS A_INCLUDES)
     list(APPEND flags -y ${i} -I${i})
   endforeach()
@@ -174,12 +184,14 @@ function(icesoc_verilate name)
     list(APPEND definitions ICESOC_TRACE)
   endif()
   if(COVERAGE)
-    # --assert: newer Verilators leave cover properties out without it. Verilator takes a cover point that reads a pin for a
-    # flip-flop of clk_i; where the pin is an asynchronous reset as well, that would be a warning.
+    # --assert: newer Verilators leave cover properties out without it. Verilator takes a cover
+    # point that reads a pin for a flip-flop of clk_i; where the pin is an asynchronous reset as
+    # well, that would be a warning.
     list(APPEND flags --coverage --assert -DCOVER_POINTS -Wno-SYNCASYNCNET)
     list(APPEND definitions ICESOC_COVERAGE)
     if(A_FAST)
-      file(WRITE ${dir}.vlt "`verilator_config\ncoverage_off -file \"*\"\ncoverage_on -file \"*/${A_TOP}.v\"\n")
+      file(WRITE ${dir}.vlt
+        "`verilator_config\ncoverage_off -file \"*\"\ncoverage_on -file \"*/${A_TOP}.v\"\n")
       list(APPEND flags ${dir}.vlt)
     endif()
   endif()
@@ -201,8 +213,9 @@ function(icesoc_verilate name)
   if(COVERAGE)
     set(slow -O0)
   endif()
-  # Verilator's own makefile appends -Os; OPT_FAST is the way in (measured: twice the speed). The headers are said to be
-  # made here, so that what includes them is compiled again in the same run of ninja, not in the next one.
+  # Verilator's own makefile appends -Os; OPT_FAST is the way in (measured: twice the speed). The
+  # headers are said to be made here, so that what includes them is compiled again in the same run
+  # of ninja, not in the next one.
   add_custom_command(OUTPUT ${lib} BYPRODUCTS ${dir}/V${name}.h ${dir}/V${name}___024root.h
     COMMAND ${VERILATOR} ${flags} ${sources}
     COMMAND ${CMAKE_COMMAND} -E env CCACHE_DIR=$ENV{CCACHE_DIR}

@@ -9,8 +9,8 @@ add_custom_command(OUTPUT ${GHDL}
   DEPENDS ${CMAKE_SOURCE_DIR}/cmake/fetch.py VERBATIM COMMENT "GHDL 5")
 add_custom_target(ghdl DEPENDS ${GHDL})
 
-# icesoc_vhdl(NAME entity SOURCES file... [REGS block...] [LIBRARY name] [GENERICS name=value...]): ${GEN_DIR}/<entity>.v,
-# target <entity>_verilog. The files come in any order.
+# icesoc_vhdl(NAME entity SOURCES file... [REGS block...] [LIBRARY name] [GENERICS name=value...]):
+# ${GEN_DIR}/<entity>.v, target <entity>_verilog. The files come in any order.
 function(icesoc_vhdl)
   cmake_parse_arguments(A "" "NAME;LIBRARY" "SOURCES;REGS;GENERICS" ${ARGN})
   list(TRANSFORM A_GENERICS PREPEND -g)
@@ -27,23 +27,26 @@ function(icesoc_vhdl)
   set(work ${CMAKE_CURRENT_BINARY_DIR}/ghdl_${A_NAME})
   file(MAKE_DIRECTORY ${work})
   add_custom_command(OUTPUT ${GEN_DIR}/${A_NAME}.v
-    COMMAND ${CMAKE_COMMAND} -E env VHDL_LIBRARY=${A_LIBRARY} "VHDL_GENERICS=${generics}" ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh ${GHDL} ${work} ${A_NAME} ${GEN_DIR}/${A_NAME}.v
-            ${packages} ${A_SOURCES}
-    DEPENDS ${GHDL} ghdl ${packages} ${A_SOURCES} ${deps} ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh
+    COMMAND ${CMAKE_COMMAND} -E env VHDL_LIBRARY=${A_LIBRARY} "VHDL_GENERICS=${generics}"
+            ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh ${GHDL} ${work} ${A_NAME}
+            ${GEN_DIR}/${A_NAME}.v ${packages} ${A_SOURCES}
+    DEPENDS ${GHDL} ghdl ${packages} ${A_SOURCES} ${deps}
+      ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh
     VERBATIM COMMENT "VHDL to Verilog: ${A_NAME}")
   add_custom_target(${A_NAME}_verilog DEPENDS ${GEN_DIR}/${A_NAME}.v)
   set_property(GLOBAL APPEND PROPERTY ICESOC_VHDL_TARGETS ${A_NAME}_verilog)
 endfunction()
 
-# icesoc_vhdl_test(NAME core SOURCES file... [LIBS lib...]): test vhdl.<core> runs <core>_tb.vhd with the vectors that
-# <core>_vectors.cpp writes, both in this folder (cmake/vhdl_test.sh).
+# icesoc_vhdl_test(NAME core SOURCES file... [LIBS lib...]): test vhdl.<core> runs <core>_tb.vhd
+# with the vectors that <core>_vectors.cpp writes, both in this folder (cmake/vhdl_test.sh).
 function(icesoc_vhdl_test)
   cmake_parse_arguments(A "" "NAME" "SOURCES;LIBS" ${ARGN})
   add_executable(${A_NAME}_vectors ${A_NAME}_vectors.cpp)
   target_link_libraries(${A_NAME}_vectors PRIVATE ${A_LIBS} bench)
   add_dependencies(${A_NAME}_vectors ghdl)
   set_property(GLOBAL APPEND PROPERTY ICESOC_TEST_PROGRAMS ${A_NAME}_vectors)
-  add_test(NAME vhdl.${A_NAME} COMMAND ${CMAKE_SOURCE_DIR}/cmake/vhdl_test.sh ${A_NAME} ${GHDL} $<TARGET_FILE:${A_NAME}_vectors>
-           ${CMAKE_CURRENT_BINARY_DIR}/vhdl ${A_SOURCES} ${CMAKE_CURRENT_SOURCE_DIR}/${A_NAME}_tb.vhd)
+  add_test(NAME vhdl.${A_NAME} COMMAND ${CMAKE_SOURCE_DIR}/cmake/vhdl_test.sh ${A_NAME} ${GHDL}
+           $<TARGET_FILE:${A_NAME}_vectors> ${CMAKE_CURRENT_BINARY_DIR}/vhdl ${A_SOURCES}
+           ${CMAKE_CURRENT_SOURCE_DIR}/${A_NAME}_tb.vhd)
   set_tests_properties(vhdl.${A_NAME} PROPERTIES LABELS vhdl)
 endfunction()

@@ -22,7 +22,8 @@ function(icesoc_hardware name file)
   list(TRANSFORM A_INCLUDES PREPEND -I)
   icesoc_slice(${name} ${file} INCLUDES ${A_INCLUDES})
   add_custom_command(OUTPUT ${outs}
-    COMMAND slice2c ${A_INCLUDES} ${path} --output-dir ${dir}/hw/${name} --hw-verilog ${dir} --hw-vhdl ${dir}
+    COMMAND slice2c ${A_INCLUDES} ${path} --output-dir ${dir}/hw/${name} --hw-verilog ${dir}
+            --hw-vhdl ${dir}
             --hw-regs ${dir} --hw-c ${dir} --hw-cpp ${dir} $<$<BOOL:${A_OWN_CLOCK}>:--hw-own-clock>
     DEPENDS slice2c ${path} VERBATIM COMMAND_EXPAND_LISTS COMMENT "Slice to hardware: ${name}")
   add_custom_target(${name}_hardware DEPENDS ${outs})

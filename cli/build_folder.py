@@ -88,10 +88,12 @@ class BuildFolder:
             return progress.build(["ninja", "-C", self.folder, "-j", jobs or self.jobs, *words],
                                   self.folder / "build.log", check, env)
 
-    def ctest(self, *words, tests, check=True, **env):
+    def ctest(self, *words, tests, check=True, junit="junit.xml", **env):
+        """Runs tests by CTest, and leaves their results in the build folder."""
         return run([
             TREE / "tests/ctest.py", "--test-dir", self.folder, "-j", tests, "--output-on-failure",
-            "--no-tests=error", *words], env=env, check=check)
+            "--no-tests=error", "--output-junit", (self / junit).absolute(), *words], env=env,
+                   check=check)
 
     def targets(self):
         """Names of all targets."""

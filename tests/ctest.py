@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """ctest: CTest with these arguments.
 
-At the end it prints the notes of tests that passed (lines that begin with `note: `), and names
-skipped tests, each with its reason.
+With `--output-junit FILE` the results stay there, for CI systems. At the end it prints the notes of
+tests that passed (lines that begin with `note: `), and names skipped tests, each with its reason.
 """
 
 import pathlib
@@ -25,10 +25,14 @@ def reason(text):
 def main():
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # CTest ends by it, and says so
     with tempfile.TemporaryDirectory() as folder:
-        results = pathlib.Path(folder, "results.xml")
+        words = sys.argv[1:]
+        if "--output-junit" not in words:
+            words += ["--output-junit", f"{folder}/results.xml"]
+        results = pathlib.Path(words[words.index("--output-junit") + 1]).resolve()
+        results.unlink(missing_ok=True)
         status = subprocess.call(
             ["setpriv", "--pdeathsig", "TERM", "ctest", "--test-output-size-passed", "100000",
-             *sys.argv[1:], "--output-junit", results],
+             *words],
             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         cases = list(xml.parse(results).iter("testcase")) if results.exists() else []
     for case in [case for case in cases if case.get("status") == "run"]:

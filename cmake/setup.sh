@@ -64,6 +64,7 @@ lcov coverage pages
 chromium opens the report pages in tests
 tshark reads the messages on the wire in tests
 strace sees which files a proof reads, so that its verdict holds until one changes
+python3-yaml reads the workflows in tests
 ca-certificates checks whom what pages sort and draw with, and foreign cores, are fetched from
 gdb-multiarch debugs it there
 gtkwave shows waveforms, and reads those of failures for the page

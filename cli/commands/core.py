@@ -11,8 +11,8 @@ from cli.build_folder import BuildFolder, configured, fetch
 from cli.command import GROUPS, command
 from cli.commands.synth import utilisation
 from cli.flight import FIELDS
-from cli.options import (BUILD, CORE_FOLDERS, COUNT, FILE, FILES, JOBS, SEED, SWITCH, TEXT, WORDS,
-                         Option, matching, one_of)
+from cli.options import (BUILD, CORE_FOLDERS, COUNT, FILE, FILES, FOLDER, JOBS, SEED, SWITCH, TEXT,
+                         WORDS, Option, matching, one_of)
 from cli.reserved import RESERVED, REFUSAL
 from cli.runner import Stop, logged, output, run, say, warn
 
@@ -23,8 +23,8 @@ CHIP = Option("chip", SWITCH,
               "in the chip as it is listed now, which takes minutes, instead of the accepted one")
 
 
-def check_name(name):
-    """Refuses a name that is invalid or taken."""
+def check_name(name, room="ip"):
+    """Refuses a name that is invalid or taken, in the tree or in the folder `room`."""
     if not name:
         raise Stop("a core needs a name: ./icesoc core new low_pass --lang verilog "
                    "(make new-ip NAME=low_pass LANG=verilog)")
@@ -33,8 +33,9 @@ def check_name(name):
             f"'{name}': words of small letters and digits, joined by _, such as mixer or low_pass")
     if name in RESERVED:
         raise Stop(f"'{name}' {REFUSAL}")
-    if os.path.lexists(f"ip/{name}"):
-        raise Stop(f"ip/{name} is there already")
+    for folder in (Path("ip", name), Path(room, name)):
+        if os.path.lexists(folder):
+            raise Stop(f"{folder} is there already")
     for room in ("bus", "hdl", "ip", "sw", "testbench", "synth"):
         for path in sorted(Path(room).rglob("*")):
             if room != "synth" and path.name in (f"{name}.regs.json", f"{name}_wrapper.v"):
@@ -79,18 +80,45 @@ def fill(template, folder, name):
     return path
 
 
+def put_into_repository(room, name, core):
+    """Writes what the repository of the user's cores lacks; the workflows are those of this
+    tree."""
+    origin = output(["git", "remote", "get-url", "origin"], check=False, stderr=-3).strip()
+    origin = re.sub("(?<=://)[^/@]*@", "", origin)  # a name and a password stay here
+    commit = output(["git", "rev-parse", "HEAD"], check=False, stderr=-3).strip()
+    made = Path("ip/template/repository/Makefile.in").read_text()
+    made = made.replace("@URL@", origin or os.getcwd()).replace("@COMMIT@", commit or "HEAD")
+    files = {"Makefile": made, "cores.list": Path("ip/cores.list").read_text(),
+             ".gitignore": "/build/\n"}
+    for file in (".github/workflows/icesoc.yml", ".gitlab-ci.yml"):
+        files[file] = Path(file).read_text()
+    for file, text in files.items():
+        if not (room / file).exists():
+            (room / file).parent.mkdir(parents=True, exist_ok=True)
+            (room / file).write_text(text)
+    with open(room / "cores.list", "a") as listed:
+        listed.write(f"{name}\n")
+    readme = core / "README.md"
+    text = readme.read_text().replace("../../docs", "../build/icesoc/docs")
+    readme.write_text(text.replace(f"make ip-test IP={name}", "make test"))
+
+
 @command("core new", [
     NAME,
     Option("lang", one_of("verilog", "vhdl"), "the core's language"),
-    Option("ice", FILE, "Slice file with its interface; without: an example"), BUILD, JOBS],
+    Option("ice", FILE, "Slice file with its interface; without: an example"),
+    Option("repository", FOLDER, "a repository of your own cores, which is begun or gets this one, "
+           "in place of ip/"), BUILD, JOBS],
          make="new-ip", brief=("core new brief_core --lang vhdl", "core remove brief_core --force"),
-         examples=["core new low_pass --lang vhdl", "core new lamp --lang verilog --ice lamp.ice"])
+         examples=["core new low_pass --lang vhdl", "core new lamp --lang verilog --ice lamp.ice",
+                   "core new low_pass --lang verilog --repository ~/cores"])
 def new(values):
     """begin a core: writes ip/NAME with interface, core and test, which builds and passes"""
     name, lang = values.name, values.lang
     if name and not lang:
         raise Stop("LANG says the core's language: LANG=verilog or LANG=vhdl (--lang)")
-    check_name(name)
+    room = values.repository or "ip"
+    check_name(name, room)
     build = BuildFolder(values.build, values).prepare()
     if values.ice:
         build.ninja("slice2c")
@@ -104,7 +132,14 @@ def new(values):
             for template in [
                     *Path("ip/template").glob("*.in"), *Path("ip/template", lang).glob("*.in")]:
                 fill(template, folder, name)
-        shutil.move(folder, f"ip/{name}")  # the folder takes its place when it is complete
+        if values.repository:
+            put_into_repository(Path(room).absolute(), name, folder)
+        os.makedirs(room, exist_ok=True)
+        shutil.move(folder, f"{room}/{name}")  # the folder takes its place when it is complete
+    written = f"{room}/{name}: {' '.join(sorted(os.listdir(f'{room}/{name}')))}"
+    if values.repository:
+        say(written)
+        return say(f"Next: make -C {room} test; make -C {room} run calls it by radio")
     # A build folder would notice the new one by itself; it must now, while the folder can still be
     # removed.
     if (build / "build.ninja").exists():
@@ -116,9 +151,9 @@ def new(values):
             with open(build / "new-ip.log", "a") as log:
                 run(["cmake", build.folder], check=False, stdout=log, stderr=log)
             raise
-    say(f"ip/{name}: {' '.join(sorted(os.listdir(f'ip/{name}')))}")
-    say(f"Next: make ip-test IP={name}; a line '{name}' in ip/cores.list puts it into the chip; "
-        f"make run CORES={name} calls it by radio")
+    say(written)
+    return say(f"Next: make ip-test IP={name}; a line '{name}' in ip/cores.list puts it into the "
+               f"chip; make run CORES={name} calls it by radio")
 
 
 def foreign_words(values):
@@ -183,7 +218,8 @@ def test(values):
     if not programs:
         raise Stop(f"{core} has no test: {core}_test.cpp is not in its folder")
     build.ninja(*programs)
-    return build.ctest("-R", rf"^(test_ip_{core}[.]|vhdl[.]{core}$)", tests=1, SEED=values.seed)
+    return build.ctest("-R", rf"^(test_ip_{core}[.]|vhdl[.]{core}$)", tests=1,
+                       junit=f"junit-{core}.xml", SEED=values.seed)
 
 
 @command("core synth", [CORE, CORE_FOLDERS, CHIP, BUILD, JOBS], make="ip-synth",

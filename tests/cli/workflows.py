@@ -1,0 +1,141 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""workflows: the commands of the container and of the workflows for GitHub and GitLab do what they
+say, here and in a user's own repository of cores.
+
+Usage: workflows.py case work-folder build-folder
+"""
+import glob
+import os
+import re
+import shutil
+import sys
+from pathlib import Path
+
+import yaml
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from script import TREE, Script, fresh, git, main, write  # noqa: E402
+
+WORK, BUILD = map(Path, sys.argv[2:4])
+
+
+def container():
+    """The instructions of the Containerfile: (name, the rest)."""
+    text = (TREE / "Containerfile").read_text()
+    return [line.split(" ", 1) for line in text.splitlines() if not line.startswith("#")]
+
+
+def workflows(tree):
+    """Of each workflow its file, the image, its commands, and paths of what it keeps."""
+    hub, lab = (tree / name for name in (".github/workflows/icesoc.yml", ".gitlab-ci.yml"))
+    job = yaml.safe_load(hub.read_text())["jobs"]["icesoc"]
+    yield (hub, job["container"], [step["run"] for step in job["steps"] if "run" in step],
+           job["steps"][-1]["with"]["path"].split())
+    job = yaml.safe_load(lab.read_text())["icesoc"]
+    yield (lab, job["image"], job["before_script"] + job["script"],
+           [*job["artifacts"]["paths"], job["artifacts"]["reports"]["junit"]])
+
+
+def linked(tree):
+    """This tree by links, with folders ip and build of its own."""
+    for path in TREE.iterdir():
+        if path.name not in ("build", "ip", ".git"):
+            (tree / path.name).symlink_to(path)
+    (tree / "ip").mkdir()
+    for path in (TREE / "ip").iterdir():
+        (tree / "ip" / path.name).symlink_to(path)
+    (tree / "ip/cores.list").unlink()
+    shutil.copy(TREE / "ip/cores.list", tree / "ip")
+
+
+class Cases(Script):
+    def test_container(self):
+        """Each command of the container is carried out with the files that it copies, on a machine
+        that lacks all packages."""
+        work = fresh(WORK)
+        write(work / "bin/dpkg-query", "#!/bin/sh\n")
+        for program in ("apt-get", "git"):
+            write(work / f"bin/{program}", f'#!/bin/sh\necho "{program} $*" >>{work}/said\n')
+        write(work / "bin/id", "#!/bin/sh\necho 0\n")
+        (work / "tree").mkdir()
+        environment = {"PATH": f"{work}/bin:{os.environ['PATH']}", "HOME": str(work)}
+        for name, rest in container():
+            if name == "COPY":
+                *files, to = rest.split()
+                for file in files:
+                    (work / "tree" / to).mkdir(parents=True)
+                    shutil.copy(TREE / file, work / "tree" / to)
+            elif name == "RUN":
+                self.ask("sh", "-c", rest, cwd=work / "tree", env=environment)
+        self.has("install .* ca-certificates git make$", "^git config --system",
+                 "install .* verilator .* chromium", file=work / "said")
+        self.has('"make", "run"', file=TREE / "Containerfile")
+        self.has("^make run ", "podman build .* podman run", file=TREE / "README.md")
+
+    def carried_out(self, tree, **environment):
+        """Carries out the commands of both workflows, and finds all that they keep."""
+        images = [rest for name, rest in container() if name == "FROM"]
+        before = [rest for name, rest in container() if name == "RUN" and "setup" not in rest]
+        for file, image, commands, kept in workflows(tree):
+            self.assertLess(len(file.read_text().splitlines()), 60)
+            self.assertEqual(([image], commands[:-2]), (images, before))
+            self.assertEqual(commands[-2:], ["make run", "make test"])
+            shutil.rmtree(tree / "build/run", ignore_errors=True)
+            for junit in tree.glob("build/main/junit*.xml"):
+                junit.unlink()
+            for command in commands[-2:]:
+                ours = {
+                    name: value
+                    for name, value in os.environ.items()
+                    if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
+                self.ask("sh", "-c", command, cwd=tree, env={
+                    **ours, "BUILT": "1", "SIZE": "96x64", **environment})
+            for path in kept:
+                self.assertTrue(glob.glob(str(tree / path)), f"{file}: {path}")
+            self.has("<testcase ", file=next(tree.glob("build/main/junit*.xml")))
+            self.assertTrue((tree / "build/run/report.md").exists())
+
+    def test_workflows(self):
+        tree = fresh(WORK)
+        linked(tree)
+        (tree / "build").mkdir()
+        (tree / "build/main").symlink_to(BUILD)
+        self.carried_out(tree, ICESOC_TREE=str(tree), NAME="^tree[.]pages$")
+
+    def test_repository(self):
+        """A repository that `core new` writes. Its core has the name of one that is built."""
+        work = fresh(WORK)
+        icesoc, mine = work / "icesoc", work / "mine"
+        icesoc.mkdir()
+        linked(icesoc)
+        new = [TREE / "icesoc", "core", "new", "--lang", "verilog", "--repository", mine,
+               "--built", "--build", work / "none"]
+        self.ask(*new, "sample_verilog")
+        self.has(f"^Next: make -C {mine} test")
+        (mine / "build/main").mkdir(parents=True)
+        for path in BUILD.iterdir():
+            if path.name != "cores.known" and not path.name.startswith("junit"):
+                (mine / "build/main" / path.name).symlink_to(path)
+        known = (BUILD / "cores.known").read_text()
+        write(mine / "build/main/cores.known", f"{known}sample_verilog\n")
+        self.carried_out(mine, ICESOC_TREE=str(icesoc), ICESOC=str(icesoc), CORES="fir")
+        self.assertTrue((icesoc / "ip/sample_verilog/sample_verilog.v").samefile(
+            mine / "sample_verilog/sample_verilog.v"))
+        self.has("^vision ", "^sample_verilog$", file=icesoc / "ip/cores.list")
+        self.lacks("@[A-Z]+@|make ip-test", file=mine / "Makefile")
+        self.lacks(r"\.\./\.\./docs|ip-test", file=mine / "sample_verilog/README.md")
+        # Another core joins; what is there stays.
+        write(mine / ".gitlab-ci.yml", "changed\n")
+        self.ask(*new, "second")
+        self.has("^sample_verilog\nsecond$", file=mine / "cores.list")
+        self.has("^changed$", file=mine / ".gitlab-ci.yml")
+        self.ask(*new, "second", status=1)
+        self.has("second is there already")
+        # The clone is of this tree's origin, at its commit.
+        if (TREE / ".git").exists():
+            self.assertEqual(re.search("checkout --quiet (.*)", (mine / "Makefile").read_text())[1],
+                             git("-C", str(TREE), "rev-parse", "HEAD"))
+
+
+main(Cases)

@@ -8,6 +8,7 @@ Usage: workflows.py case work-folder build-folder
 import glob
 import os
 import re
+import shlex
 import shutil
 import sys
 from pathlib import Path
@@ -132,10 +133,16 @@ class Cases(Script):
         self.has("^changed$", file=mine / ".gitlab-ci.yml")
         self.ask(*new, "second", status=1)
         self.has("second is there already")
-        # The clone is of this tree's origin, at its commit.
+        # The clone is of this tree's origin, at its commit; one without that commit is not kept.
         if (TREE / ".git").exists():
-            self.assertEqual(re.search("checkout --quiet (.*)", (mine / "Makefile").read_text())[1],
-                             git("-C", str(TREE), "rev-parse", "HEAD"))
+            commit = git(f"-C {shlex.quote(str(TREE))} rev-parse HEAD")
+            text = (mine / "Makefile").read_text()
+            self.assertIn(f"checkout --quiet {commit}\n", text)
+            text = re.sub("quiet .*/.* ", f"quiet {TREE} ", text.replace(commit, "0" * 40))
+            write(mine / "Makefile", text)
+            self.ask("make", "-C", mine, "placed", "ICESOC=clone", status=2)
+            self.has("fatal: reference is not a tree")
+            self.assertFalse((mine / "clone").exists())
 
 
 main(Cases)

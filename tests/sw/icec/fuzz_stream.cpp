@@ -21,7 +21,9 @@ namespace {
 Ice_Communicator ic;
 LoopEndpoint loop;
 
-void checkProxy(const Ice_ObjectPrx& prx) {
+// `minor`: of the encoding in which it was read, since a proxy takes the encoding over in which it
+// is sent.
+void checkProxy(const Ice_ObjectPrx& prx, Ice_Byte minor) {
     static char text[8192];
     Ice_ObjectPrx again;
     auto prints = [&](const char* what) { return strstr(text, what) != nullptr; };
@@ -43,10 +45,12 @@ void checkProxy(const Ice_ObjectPrx& prx) {
     Ice_OutputStream os;
     Ice_InputStream is;
     Ice_OutputStream_init(&os, bytes, sizeof bytes);
+    os.minor = minor;
     Ice_OutputStream_writePrx(&os, &prx);
     if (os.failed)
         abort();
     Ice_InputStream_init(&is, bytes, os.size);
+    is.minor = minor;
     Ice_InputStream_readPrx(&is, &ic, &again);
     if (is.failed || is.position != is.size || !Ice_ObjectPrx_equals(&prx, &again))
         abort();
@@ -83,7 +87,7 @@ void step(Ice_InputStreamPtr is, unsigned what, Ice_Int argument) {
     case 8:
         Ice_InputStream_readPrx(is, &ic, &prx);
         if (!is->failed && !Ice_ObjectPrx_isNull(&prx))
-            checkProxy(prx);
+            checkProxy(prx, is->minor);
         break;
     case 9:
         (void)Ice_InputStream_readOptional(is, argument, argument & 7);
@@ -117,7 +121,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     std::string text(reinterpret_cast<const char*>(data), size);
     if (Ice_Communicator_stringToProxy(&ic, text.c_str(), &prx) == ICE_OK &&
         !Ice_ObjectPrx_isNull(&prx))
-        checkProxy(prx);
+        checkProxy(prx, 1);
     size_t steps = 1 + data[0] % 16;
     if (size < 2 * steps + 1)
         return 0;

@@ -34,10 +34,33 @@ Ice_Status Autopilot_Vehicle_isAlive(Autopilot_VehiclePtr self, Ice_Short sessio
     return ICE_OK;
 }
 
-Ice_Status Autopilot_KeyRing_setNextKey(Autopilot_KeyRingPtr self, const Autopilot_ByteSeq* key,
-                                        Ice_Bool* result, const Ice_Current* current) {
+Ice_Status Autopilot_Vehicle_setFlightState(Autopilot_VehiclePtr self, Autopilot_FlightState value,
+                                            const Ice_Current* current) {
     (void)self;
     (void)current;
+    UAV_setFlying(value == Autopilot_flying);
+    return ICE_OK;
+}
+
+Ice_Status Autopilot_Vehicle_getFlightState(Autopilot_VehiclePtr self,
+                                            Autopilot_FlightState* result,
+                                            const Ice_Current* current) {
+    (void)self;
+    (void)current;
+    *result = UAV_isFlying() ? Autopilot_flying : Autopilot_onGround;
+    return ICE_OK;
+}
+
+Ice_Status Autopilot_KeyRing_setNextKey(Autopilot_KeyRingPtr self, const Autopilot_ByteSeq* key,
+                                        Ice_Bool* result,
+                                        Autopilot_KeyRing_setNextKey_Exception* ex,
+                                        const Ice_Current* current) {
+    (void)self;
+    (void)current;
+    if (UAV_isFlying()) {
+        ex->type = Autopilot_KeyRing_setNextKey_InFlight;
+        return ICE_USER_EXCEPTION;
+    }
     *result = key->size == (Ice_Int)LINK_KEY_BYTES && UAV_nextKey(key->data);
     return ICE_OK;
 }

@@ -8,8 +8,10 @@
 #include <string.h>
 
 #define SLOT_WORDS 5U
-#define CHECK 4U     /* a slot's check: detects words that are not whole */
-#define STATE_AT 10U /* the state word, or nothing */
+#define CHECK 4U      /* a slot's check: detects words that are not whole */
+#define STATE_AT 10U  /* the state word, or nothing */
+#define FLIGHT_AT 11U /* the flight's state: FLYING, or anything else */
+#define FLYING 0x464C5921U
 #define STATE_OPEN 0x4F50454EU
 #define STATE_NEXT 0x4E455830U /* + slot of the next key, if both have one */
 #define CHECK_SEED 0x4B455931U
@@ -80,6 +82,14 @@ int UAV_countKeys(void) {
     int count = UAV_readKey(0, key) + UAV_readKey(1, key);
     Ascon_wipe(key, sizeof key);
     return count;
+}
+
+int UAV_isFlying(void) {
+    return board->load(boardContext, FLIGHT_AT) == FLYING;
+}
+
+void UAV_setFlying(int isFlying) {
+    board->store(boardContext, FLIGHT_AT, isFlying ? FLYING : 0);
 }
 
 int UAV_isOpen(void) {

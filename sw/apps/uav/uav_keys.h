@@ -11,7 +11,7 @@
 #include "link.h"
 
 #define UAV_KEY_SLOTS 2
-#define UAV_KEY_WORDS 11U /* a slot: four words of key, its check; then the state */
+#define UAV_KEY_WORDS 12U /* a slot: four words of key, its check; then two states */
 
 /* The board keeps secrets and draws random numbers. `context` is passed back unchanged. */
 typedef struct UAV_Board {
@@ -30,6 +30,10 @@ U32 UAV_random(void* unused);
 
 /* Provides the vehicle, in its factory, with this key alone. 0: no key; anyone may call. */
 void UAV_provide(const U8* key);
+
+/* Whether the vehicle flies; a restart in flight does not change it. */
+int UAV_isFlying(void);
+void UAV_setFlying(int isFlying);
 
 /* Reads a slot's key. Returns 0 where it has none. */
 int UAV_readKey(int slot, U8* key);

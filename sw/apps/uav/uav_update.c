@@ -6,6 +6,7 @@
 #include "uav_update.h"
 #include "Update.h"
 #include "receiver.h"
+#include "uav_keys.h"
 #include "uav_private.h"
 
 #include <lz4.h>
@@ -53,9 +54,14 @@ static Ice_Status answer(Receiver_Reason reason, Update_Reason* result) {
 }
 
 Ice_Status Update_Firmware_begin(Update_FirmwarePtr self, const Update_Header* signedHeader,
-                                 Update_Reason* result, const Ice_Current* current) {
+                                 Update_Reason* result, Update_Firmware_begin_Exception* ex,
+                                 const Ice_Current* current) {
     Slots_Header header;
     (void)current;
+    if (UAV_isFlying()) {
+        ex->type = Update_Firmware_begin_InFlight;
+        return ICE_USER_EXCEPTION;
+    }
     memset(&header, 0, sizeof header);
     memcpy(&header, signedHeader->data, (size_t)signedHeader->size);
     return answer(Receiver_begin(receiverOf(self), &header), result);
@@ -86,32 +92,48 @@ static const U8* unpack(const Receiver* receiver, U32 offset, Ice_Int size,
 
 Ice_Status Update_Firmware_write(Update_FirmwarePtr self, Ice_Int offset, Ice_Int size,
                                  const Update_Piece* bytes, Update_Reason* result,
-                                 const Ice_Current* current) {
+                                 Update_Firmware_write_Exception* ex, const Ice_Current* current) {
     Receiver* receiver = receiverOf(self);
-    const U8* data = unpack(receiver, (U32)offset, size, bytes);
+    const U8* data;
     (void)current;
+    if (UAV_isFlying()) {
+        ex->type = Update_Firmware_write_InFlight;
+        return ICE_USER_EXCEPTION;
+    }
+    data = unpack(receiver, (U32)offset, size, bytes);
     *result = data ? (Update_Reason)Receiver_write(receiver, (U32)offset, data, (U32)size)
                    : Update_misplacedPiece;
     return ICE_OK;
 }
 
 Ice_Status Update_Firmware_finish(Update_FirmwarePtr self, Update_Reason* result,
+                                  Update_Firmware_finish_Exception* ex,
                                   const Ice_Current* current) {
     (void)current;
+    if (UAV_isFlying()) {
+        ex->type = Update_Firmware_finish_InFlight;
+        return ICE_USER_EXCEPTION;
+    }
     return answer(Receiver_finish(receiverOf(self)), result);
 }
 
 Ice_Status Update_Firmware_confirm(Update_FirmwarePtr self, Update_Reason* result,
+                                   Update_Firmware_confirm_Exception* ex,
                                    const Ice_Current* current) {
     (void)current;
+    if (UAV_isFlying()) {
+        ex->type = Update_Firmware_confirm_InFlight;
+        return ICE_USER_EXCEPTION;
+    }
     *result = (Update_Reason)Receiver_confirm(receiverOf(self));
     return ICE_OK;
 }
 
-/* Does one step of each update; returns whether one has more to do. */
+/* Does one step of each update; returns whether one has more to do. What is under way waits for the
+ * landing: erases stall the processor, and a new image restarts it. */
 static int workOn(U32 uptime) {
     int more = 0, i;
-    for (i = 0; i < UAV_UPDATABLES; ++i) {
+    for (i = 0; i < UAV_UPDATABLES && !UAV_isFlying(); ++i) {
         Receiver* receiver = &receivers[i];
         if (!receiver->port)
             continue;
@@ -119,7 +141,8 @@ static int workOn(U32 uptime) {
         if (receiver->state == RECEIVER_READY ||
             (receiver->isOnTrial && uptime > TRIAL_S * OS_TICKS_PER_SEC)) {
             OSTimeDly(RESTART_S * OS_TICKS_PER_SEC);
-            uav_restart();
+            if (!UAV_isFlying())
+                uav_restart();
         }
     }
     return more;

@@ -92,6 +92,10 @@ def main():
     try:
         change(args)
         return 0
+    except Ice.UserException as e:
+        print("change_key: %s" % ("the vehicle flies: it takes no key before it has landed"
+                                  if e.ice_id() == "::Autopilot::InFlight" else e), file=sys.stderr)
+        return 1
     except (Ice.Exception, RuntimeError, OSError, ValueError) as e:
         print("change_key: %s" % e, file=sys.stderr)
         return 1

@@ -34,6 +34,9 @@ TEXT = {
 }
 
 
+IN_FLIGHT = "the vehicle flies: it takes no update before it has landed"
+
+
 class Failed(Exception):
     """The update is over; the text says why."""
 
@@ -237,6 +240,9 @@ def main():
         return 0
     except KeyboardInterrupt:
         return 130
+    except Ice.UserException as e:
+        print("update: %s" % (IN_FLIGHT if e.ice_id() == "::Update::InFlight" else e), file=sys.stderr)
+        return 1
     except (Failed, Ice.Exception, OSError) as e:
         print("update: %s" % e, file=sys.stderr)
         return 1

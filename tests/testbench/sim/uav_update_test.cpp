@@ -200,6 +200,58 @@ TEST_F(UavUpdate, FirmwareThatNobodyConfirmsGoesAfterAMinute) {
     EXPECT_GT(static_cast<double>(soc.now()), 0.6e9);
 }
 
+TEST_F(UavUpdate, InFlightImagesAndKeysAreRefusedAlsoAfterARestart) {
+    struct Call {
+        const char *object, *operation;
+        Bytes parameters;
+        int mode, status;
+        const char* exception;
+    };
+    uav_update[UAV_BITSTREAM] = {&flash.port, 0, product};
+    const Bytes key(17, 16), header = encoded(headerOf(6, 1)), data(half), before = flash.bytes;
+    const std::vector<Call> calls = {
+        {"uav", "setFlightState", {1}, 2, 0, ""},
+        {"update", "begin", header, 0, 1, "::Update::InFlight"},
+        {"update", "write", piece(0, half, data), 0, 1, "::Update::InFlight"},
+        {"update", "finish", {}, 0, 1, "::Update::InFlight"},
+        {"update", "confirm", {}, 0, 1, "::Update::InFlight"},
+        {"fpga", "begin", header, 0, 1, "::Update::InFlight"},
+        {"keys", "setNextKey", key, 2, 1, "::Autopilot::InFlight"},
+        {"update", "getStatus", {}, 2, 0, ""}};
+    const std::vector<Call> landed = {{"keys", "setNextKey", key, 2, 1, "::Autopilot::InFlight"},
+                                      {"uav", "setFlightState", {0}, 2, 0, ""},
+                                      {"keys", "setNextKey", key, 2, 0, ""},
+                                      {"update", "begin", header, 0, 0, ""}};
+    SimulatedBoard::Words words = SimulatedBoard().words; // what the battery keeps
+    for (const auto& list : {calls, landed}) {
+        EXPECT_EQ(flash.bytes, before);
+        int sent = 0;
+        soc.reset();
+        ground.start();
+        UavMachine machine(soc, [&] {
+            const auto done = static_cast<int>(ground.replies.size());
+            if (!ground.validated || done != sent)
+                return static_cast<double>(soc.now()) < 4e9;
+            if (sent == static_cast<int>(list.size()))
+                return false;
+            const Call& call = list[static_cast<size_t>(sent)];
+            ground.call(++sent, call.object, call.operation, call.mode, call.parameters);
+            return true;
+        });
+        machine.board.words = words;
+        machine.run();
+        words = machine.board.words;
+        ASSERT_EQ(ground.replies.size(), list.size());
+        for (const auto& [id, status] : ground.replies) {
+            const auto& message = ground.messages[id];
+            const Call& call = list[static_cast<size_t>(id - 1)];
+            EXPECT_EQ(status, call.status) << call.object << ' ' << call.operation;
+            EXPECT_THAT(std::string(message.begin(), message.end()),
+                        testing::HasSubstr(call.exception));
+        }
+    }
+}
+
 // "keys" is added last: the adapter has room for all servants of the vehicle beside the cores'.
 TEST_F(UavUpdate, WhereBothKindsOfImageAreTakenTheKeysAreServedToo) {
     uav_update[UAV_BITSTREAM] = {&flash.port, 0, product};

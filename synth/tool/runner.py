@@ -82,16 +82,20 @@ def script_of(run, library, options, output):
     return script
 
 
-def synthesise(run, library, options):
-    part = pathlib.Path(f"{run.netlist}.part")
-    script, log = run.netlist.with_suffix(".ys"), run.netlist.with_suffix(".log")
-    write(script, script_of(run, library, options, part))
-    status, said = command([options.yosys, "-q", "-s", script])
+def yosys_by(script, output, options):
+    """Lets Yosys carry out a script that writes `output`: the whole file or none."""
+    part, log = pathlib.Path(f"{output}.part"), output.with_suffix(".log")
+    write(output.with_suffix(".ys"), script(part))
+    status, said = command([options.yosys, "-q", "-s", output.with_suffix(".ys")])
     write(log, said)
     if status:
         errors = [line for line in said.splitlines() if "ERROR" in line] or said.splitlines()[-1:]
         raise Stop("\n".join([*errors, f"whole log: {log}"]))
-    part.replace(run.netlist)
+    part.replace(output)
+
+
+def synthesise(run, library, options):
+    yosys_by(lambda part: script_of(run, library, options, part), run.netlist, options)
 
 
 def figures_of(n, spartan6, files_along):
@@ -152,14 +156,19 @@ def read_figures(text):
     return figures
 
 
+def place(run, library, options, version):
+    """Sets run.netlist, where Yosys writes the netlist of these sources."""
+    run.netlist = pathlib.Path()  # the hash is not of where its output goes
+    sources = digest([library.hash_of(run.design.top), version,
+                      script_of(run, library, options, "")])
+    run.netlist = options.cache / f"{run.design.name}.{run.family}.{sources}.json"
+
+
 def carry_out_one(run, library, options, version):
     """Returns whether the synthesis succeeded."""
     top = run.design.top
-    run.netlist = pathlib.Path()  # the hash is not of where its output goes
-    sources = digest([library.hash_of(top), version, script_of(run, library, options, "")])
-    stem = f"{run.design.name}.{run.family}."
-    run.netlist = options.cache / f"{stem}{sources}.json"
-    kept = options.cache / f"{stem}{sources}.{TOOL}.figures"
+    place(run, library, options, version)
+    stem, kept = f"{run.design.name}.{run.family}.", run.netlist.with_suffix(f".{TOOL}.figures")
     is_new = not run.netlist.exists()
     run.known = is_new and any(options.cache.glob(f"{stem}*.json"))
     if is_new and not run.wanted:
@@ -217,6 +226,30 @@ def in_parallel(jobs, work, items):
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
+
+
+def write_for_simulation(design, library, options, file, models):
+    """Writes the netlist that a design's figures are of as Verilog of what its primitives do."""
+    options.cache.mkdir(parents=True, exist_ok=True)
+    version = version_of(options.yosys)
+    for orders in (design.orders, 0):  # the first of all orders is the netlist without others
+        run = Run(dataclasses.replace(design, orders=orders), "xc6s")
+        place(run, library, options, version)
+        if run.netlist.exists():
+            break
+    else:
+        synthesise(run, library, options)
+    words = {"NETLIST": run.netlist, "TOP": design.top,
+             "MODELS": " ".join(map(str, sorted(models.glob("*.v"))))}
+
+    def script(part):
+        text = (options.scripts / "simulate.ys").read_text()
+        for name, value in {**words, "OUTPUT": part}.items():
+            text = text.replace(f"@{name}@", str(value))
+        return text
+
+    file.parent.mkdir(parents=True, exist_ok=True)
+    yosys_by(script, file, options)
 
 
 def write_edif(design, library, options, folder):

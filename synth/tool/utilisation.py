@@ -109,16 +109,24 @@ def edif(plan, library, options, o):
     return 0
 
 
+def netlist(plan, library, options, o):
+    design = next(design for design in plan.designs if design.name == o.netlist)
+    runner.write_for_simulation(design, library, options, o.to, o.source / "synth/primitives")
+    return 0
+
+
 def run(o, libraries):
     library = rtl_of(o)
     plan = sources.read_plan(o.source / "synth/designs.json", library, o.source)
-    for name in o.design + [o.edif] * bool(o.edif):
+    for name in o.design + [name for name in (o.edif, o.netlist) if name]:
         if name not in [design.name for design in plan.designs]:
             raise Stop(f"there is no design {name}")
     accepted = baseline.read_baseline(o.source / "synth/baseline.json")
     options = runner.Options(o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs)
     if o.edif:
         return edif(plan, library, options, o)
+    if o.netlist:
+        return netlist(plan, library, options, o)
     if o.core:
         for design in plan.designs:
             design.orders = 0  # they are there for the median of clocks
@@ -169,6 +177,10 @@ def options_of(words):
                         help="place the designs for ECP5 by this nextpnr-ecp5")
     parser.add_argument("--edif", metavar="DESIGN",
                         help="only write this design as EDIF for ISE, into the folder ise")
+    parser.add_argument("--netlist", metavar="DESIGN",
+                        help="only write this design's netlist as Verilog for a simulator")
+    parser.add_argument("--to", **path, default="build/synth/netlist.v",
+                        help="the file of --netlist (%(default)s)")
     o = parser.parse_args(words)
     wanted = {FAMILIES[0], *o.family, *(["ecp5"] if o.place else [])}
     o.family = [family for family in FAMILIES if family in wanted]

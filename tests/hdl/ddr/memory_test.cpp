@@ -10,6 +10,7 @@
 #include "VMemoryMcb6.h"
 #include "VMemoryMcb7.h"
 #include "VMemoryMcb8.h"
+#include "VMemoryMcbNetlist.h"
 #include "memory_bench.h"
 #include <gtest/gtest.h>
 #include <memory>
@@ -31,10 +32,10 @@ struct Kind {
         return urgent >> port & 1 ? u + (u - 1) / run : (count - u) * (run + 1) - 1;
     }
 };
-using Kinds =
-    ::testing::Types<Kind<VMemoryMcb2, 2>, Kind<VMemoryMcb3, 3, 7>, Kind<VMemoryMcb4, 4>,
-                     Kind<VMemoryMcb4Options, 4, 8, 2, 28>, Kind<VMemoryMcb5, 5, 0x12, 1>,
-                     Kind<VMemoryMcb6, 6>, Kind<VMemoryMcb7, 7, 0x78, 7>, Kind<VMemoryMcb8, 8>>;
+using Kinds = ::testing::Types<Kind<VMemoryMcb2, 2>, Kind<VMemoryMcb3, 3, 7>, Kind<VMemoryMcb4, 4>,
+                               Kind<VMemoryMcb4Options, 4, 8, 2, 28>, Kind<VMemoryMcb5, 5, 0x12, 1>,
+                               Kind<VMemoryMcb6, 6>, Kind<VMemoryMcb7, 7, 0x78, 7>,
+                               Kind<VMemoryMcb8, 8>, Kind<VMemoryMcbNetlist, 2>>;
 
 template <class T> class Memory : public ::testing::Test {
 protected:

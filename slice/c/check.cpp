@@ -72,9 +72,11 @@ public:
 
     void add(const std::string& c, const std::string& slice, const Location& at) {
         auto [it, isNew] = names_.emplace(c, slice);
-        if (!isNew && it->second != slice && said_.insert(slice).second) // once for each
-            diagnostics_.error(at, "'" + slice + "' becomes '" + c + "' in C, as '" + it->second +
-                                       "' does");
+        bool isTaken = isRuntimeName(c) && slice != "::Ice::Identity";
+        if (((!isNew && it->second != slice) || isTaken) && said_.insert(slice).second)
+            diagnostics_.error(at, "'" + slice + "' becomes '" + c + "' in C, as " +
+                                       (isTaken ? "a name of IceC's" : "'" + it->second + "'") +
+                                       " does");
     }
     void add(const Declaration& d) {
         std::string c = cName(d), id = d.id();
@@ -182,8 +184,9 @@ void scopeEnumerators(Unit& unit) {
         files.emplace(cName(*d), d->at.file);
     for (const auto& d : unit.declarations) {
         auto isTaken = [&](const Enumerator& e) {
-            auto it = files.find(cEnumerator(*d, e.name));
-            return it != files.end() && it->second == d->at.file;
+            std::string c = cEnumerator(*d, e.name);
+            auto it = files.find(c);
+            return isRuntimeName(c) || (it != files.end() && it->second == d->at.file);
         };
         const auto& all = d->enumerators;
         if (!d->hasMetadata("c:scoped") && std::any_of(all.begin(), all.end(), isTaken))

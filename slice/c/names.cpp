@@ -7,11 +7,19 @@
 #include <cstdlib>
 #include <unordered_set>
 
+bool isRuntimeName(const std::string& c) {
+    static const std::unordered_set<std::string> names = {
+#include "runtime_names.inc"
+    };
+    return (c[0] | ' ') == 'i' && names.count(c);
+}
+
 std::string cName(const Declaration& d) {
     std::string s;
     for (const std::string& module : d.scope)
         s += module + "_";
-    return s + d.name;
+    s += d.name;
+    return isRuntimeName(s) && !isRuntimeType(d) ? s + "_" : s;
 }
 
 std::string cProxy(const Declaration& d) {
@@ -107,7 +115,7 @@ std::string cType(const Type& t) {
 std::string cEnumerator(const Declaration& owner, const std::string& name) {
     std::string prefix = cName(owner);
     if (!owner.hasMetadata("c:scoped"))
-        prefix.resize(prefix.size() - owner.name.size());
+        prefix.resize(prefix.rfind(owner.name));
     else
         prefix += "_";
     return prefix + name;

@@ -8,7 +8,9 @@
 #include "c/generator.h"
 #include <string>
 
-// Module_Sub_Name
+// True if IceC's headers use this name of C.
+bool isRuntimeName(const std::string& c);
+// Module_Sub_Name, with an underscore behind what would be a name of IceC
 std::string cName(const Declaration& d);
 // Module_Sub_NamePrx, of an interface or a class
 std::string cProxy(const Declaration& d);

@@ -53,17 +53,37 @@ private:
     }
     // Adds a token from `begin` to here.
     void add(Token::Kind kind, size_t begin, const Location& at, bool escaped = false) {
-        tokens_.push_back({kind, text_.substr(begin, position_ - begin), doc_, at, escaped});
+        tokens_.push_back(
+            {kind, text_.substr(begin, position_ - begin), doc_, linesAbove(at.line), at, escaped});
         doc_ = {};
+        comments_.clear();
+    }
+    // Returns the lines of // that end directly above this line.
+    std::string linesAbove(int line) const {
+        auto end = comments_.end();
+        while (end != comments_.begin() && (end - 1)->first >= line) // behind the line's tokens
+            --end;
+        auto begin = end;
+        while (begin != comments_.begin() && (begin - 1)->first == line - 1) {
+            --begin;
+            --line;
+        }
+        std::string lines;
+        for (; begin != end; ++begin)
+            lines.append(begin->second) += '\n';
+        return lines;
     }
 
-    // # 12 "file" or #line 12 "file", as the preprocessor leaves them.
+    // # 12 "file" or #line 12 "file", as the preprocessor leaves them, or a #pragma for a compiler.
     void lineMarker() {
         size_t end = text_.find('\n', position_);
         std::string_view line = text_.substr(position_, end - position_);
+        if (line.compare(0, 7, "#pragma") == 0)
+            diagnostics_.error(at_, "Slice has no pragma but '#pragma once'");
         position_ = end == std::string_view::npos ? text_.size() : end + 1;
         at_.column = 1;
         ++at_.line;
+        moved_ = 0;
         size_t digits = line.find_first_of("0123456789");
         if (digits == std::string_view::npos)
             return;
@@ -84,6 +104,7 @@ private:
         if (end > position_ + 2 && peek(2) == '*')
             doc_ = text_.substr(position_ + 3, end - position_ - 3);
         skipTo(end + 2);
+        ++moved_;
     }
 
     void lineComment() {
@@ -92,7 +113,11 @@ private:
             size_t begin =
                 doc_.empty() ? position_ + 3 : static_cast<size_t>(doc_.data() - text_.data());
             doc_ = text_.substr(begin, end - begin);
+        } else {
+            comments_.emplace_back(at_.line - moved_,
+                                   text_.substr(position_ + 2, end - position_ - 2));
         }
+        ++moved_;
         skipTo(end);
     }
 
@@ -196,6 +221,8 @@ private:
     size_t position_ = 0;
     Location at_;
     std::string_view doc_;
+    std::vector<std::pair<int, std::string_view>> comments_; // of //, with their lines
+    int moved_ = 0; // lines that the preprocessor has added, one behind each comment
     std::vector<Token> tokens_;
 };
 

@@ -14,6 +14,7 @@ struct Token {
     Kind kind;
     std::string_view text; // as written; of a string, the text between the quotes
     std::string_view doc;  // the doc comment before it, without /** and */
+    std::string comment;   // lines of // that stand directly above it
     Location at;
     bool escaped; // identifier written with a backslash
 };

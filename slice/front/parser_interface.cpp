@@ -95,10 +95,13 @@ void Parser::interface() {
 void Parser::operation(Declaration& d) {
     Operation o;
     user_ = d.id();
-    o.doc = doc();
+    auto readDoc = [&] {
+        if (o.doc.empty())
+            o.doc = doc().empty() ? token().comment : doc();
+    };
+    readDoc();
     o.metadata = metadata();
-    if (o.doc.empty())
-        o.doc = doc();
+    readDoc();
     o.idempotent = acceptWord("idempotent");
     Optional result = optional();
     Location begin = token().at;

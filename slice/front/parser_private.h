@@ -90,6 +90,7 @@ private:
     Type namedType();
     Optional optional();
     Literal literal(const Type& type, const std::string& what);
+    Symbol* ownEnumerator(const Declaration& d, const std::string& name, const Location& at);
     Literal namedLiteral(const Type& type, const std::string& what);
     Literal convert(Literal value, const Type& type, const std::string& what, const Location& at);
     // Reads a number from 0 on; -1 after an error.

@@ -179,6 +179,18 @@ Symbol* Parser::resolveValue(const std::string& written, const Location& at) {
     return found.front();
 }
 
+// Finds an enumerator by its bare name, which something else in scope takes away in Ice.
+Symbol* Parser::ownEnumerator(const Declaration& d, const std::string& name, const Location& at) {
+    Symbol* found = symbols_.find(d.id() + "::" + name);
+    Symbol* other = found ? symbols_.innermost(scopeId_, name) : nullptr;
+    const Declaration* is = other ? other->declaration : nullptr;
+    bool isConstant = is && is->kind == Declaration::Kind::Constant && is->value.owner == &d;
+    if (other && other->kind != Symbol::Kind::Enumerator && !isConstant)
+        error(at, "'" + name + "' is '" + other->id + "' here; the enumerator is '" + d.name +
+                      "::" + name + "'");
+    return found;
+}
+
 Literal Parser::namedLiteral(const Type& type, const std::string& what) {
     Location begin = token().at;
     std::string written = scopedName("a value");
@@ -186,7 +198,7 @@ Literal Parser::namedLiteral(const Type& type, const std::string& what) {
     Symbol* s = nullptr;
     if (type.declaration && type.declaration->kind == Declaration::Kind::Enum &&
         written.find("::") == std::string::npos)
-        s = symbols_.find(type.declaration->id() + "::" + written);
+        s = ownEnumerator(*type.declaration, written, begin);
     if (!s)
         s = resolveValue(written, begin);
     Literal v;

@@ -61,6 +61,16 @@ Symbol* Symbols::resolve(const std::string& scope, const std::string& written, c
     }
 }
 
+Symbol* Symbols::innermost(std::string scope, const std::string& written) {
+    for (;;) {
+        if (Symbol* s = find(scope + "::" + written))
+            return s;
+        if (scope.empty())
+            return nullptr;
+        scope.resize(scope.rfind("::"));
+    }
+}
+
 void Symbols::declareBare(const std::string& scope, const std::string& name, Symbol* enumerator) {
     bare_[scope + "::" + name].push_back(enumerator);
 }

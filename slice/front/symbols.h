@@ -34,6 +34,8 @@ public:
     // module or a type, must not give the name another meaning later.
     Symbol* resolve(const std::string& scope, const std::string& written, const Location& at,
                     const std::string& user);
+    // The same for any capitals, and without a user.
+    Symbol* innermost(std::string scope, const std::string& written);
     // True if `user` has used the name for something else before; reports an error.
     bool hasChanged(const std::string& user, const std::string& name, const Location& at);
     // Enumerators with this name of any enum in the scope, or around it: Ice still allows them

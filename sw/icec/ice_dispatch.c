@@ -198,6 +198,13 @@ Ice_Bool Ice_Current_context(const Ice_Current* current, const char* key, Ice_St
     return 0;
 }
 
+Ice_Status Ice_Current_fail(const Ice_Current* current, const char* text) {
+    Ice_InputStreamPtr is = current->communicator->decoding;
+    is->failed = ICE_FAILED_BOUND;
+    is->bound = text;
+    return ICE_MARSHAL;
+}
+
 void* Ice_Current_allocate(const Ice_Current* current, Ice_Int bytes) {
     Ice_InputStreamPtr is = current->communicator->decoding;
     Ice_Byte failed = is->failed;

@@ -28,6 +28,19 @@ int Ice_String_is(const Ice_String* a, const char* terminated) {
     return (size_t)a->size == size && (size == 0 || memcmp(a->data, terminated, size) == 0);
 }
 
+int Ice_String_copy(Ice_String s, char* to, Ice_Int size) {
+    Ice_Int n = s.size;
+    if (size <= 0)
+        return 0;
+    if (n >= size)
+        for (n = size - 1; n > 0 && ((U8)s.data[n] & 0xC0U) == 0x80U; --n) {
+        }
+    if (n > 0)
+        memcpy(to, s.data, (size_t)n);
+    to[n] = '\0';
+    return n == s.size;
+}
+
 void Ice_OutputStream_init(Ice_OutputStreamPtr os, Ice_Byte* data, Ice_Int capacity) {
     memset(os, 0, sizeof *os);
     os->data = data;

@@ -35,6 +35,27 @@ int Ice_String_equals(Ice_String a, const char* terminated);
 int Ice_String_is(const Ice_String* a, const char* terminated);
 int Ice_String_same(const Ice_String* a, const Ice_String* b);
 
+/* Copies into `size` bytes, the end mark included, what fits of the string, in whole characters of
+ * UTF-8. Returns 1 if all of it fits. */
+int Ice_String_copy(Ice_String s, char* to, Ice_Int size);
+/* The two arguments for "%.*s": printf("%.*s\n", ICE_PRINTF(name)). `s` is evaluated three times.
+ */
+#define ICE_PRINTF(s) (int)(s).size, (s).data ? (s).data : ""
+
+/* Ice_Long from and to long long, where the compiler has it. */
+#if (defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L) || \
+    (defined(__cplusplus) && __cplusplus >= 201103L)
+static inline Ice_Long Ice_Long_from(long long v) {
+    Ice_Long parts;
+    parts.low = (U32)(v & 0xFFFFFFFFLL);
+    parts.high = (S32)((v - (long long)parts.low) / 0x100000000LL);
+    return parts;
+}
+static inline long long Ice_Long_get(Ice_Long v) {
+    return v.high * 0x100000000LL + v.low;
+}
+#endif
+
 struct Ice_Communicator;
 struct Ice_OutputValues; /* ice_value.h */
 struct Ice_InputValues;

@@ -82,6 +82,18 @@ Ice_Bool Ice_Current_contextAt(const Ice_Current* current, Ice_Int index, Ice_St
  * servant's function has returned ICE_LATER. 0: there is not enough room. */
 void* Ice_Current_allocate(const Ice_Current* current, Ice_Int bytes);
 
+/* Ends an operation with `text` as its failure in words: `return Ice_Current_fail(current, "...")`.
+ * ICE_CHECK does where the condition is wrong, and names the servant's file and line: the caller
+ * has UnknownLocalException("pump.c:42: litres > 0"). Full run time. */
+Ice_Status Ice_Current_fail(const Ice_Current* current, const char* text);
+#define ICE_CHECK(current, condition)                                                          \
+    do {                                                                                       \
+        if (!(condition))                                                                      \
+            return Ice_Current_fail(current, __FILE__ ":" ICE_TEXT(__LINE__) ": " #condition); \
+    } while (0)
+#define ICE_TEXT(x) ICE_TEXT_OF(x)
+#define ICE_TEXT_OF(x) #x
+
 /* The right to answer a call later, of a servant whose function returns ICE_LATER. */
 typedef struct Ice_Reply {
     Ice_CommunicatorPtr communicator;

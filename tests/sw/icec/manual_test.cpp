@@ -163,6 +163,25 @@ TEST_F(Manual, AServantWithoutTypeIdsIsAskedEverything) { // a forwarder of obje
     EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OBJECT_NOT_EXIST);
 }
 
+TEST_F(Manual, AServantsFailedCheckTellsTheCallerItsLine) {
+    servant_.run = [](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+        Ice_Int litres = Ice_InputStream_readInt(is);
+        ICE_CHECK(&current, litres > 0);
+        Ice_OutputStream_writeInt(os, litres);
+        return ICE_OK;
+    };
+    std::string line = "manual_test.cpp:" + std::to_string(__LINE__ - 4) + ": litres > 0";
+    Ice_ObjectPrx prx = here().proxy("thing:loop");
+    Ice_Int out = 0;
+    EXPECT_EQ(call(prx, "op", 5, &out), ICE_OK);
+    EXPECT_EQ(call(prx, "op", 0, &out), ICE_UNKNOWN_LOCAL_EXCEPTION);
+    Ice_Failure failure;
+    Ice_ObjectPrx_failure(&prx, &failure);
+    std::string text = str(failure.unknown);
+    ASSERT_GE(text.size(), line.size()) << text;
+    EXPECT_EQ(text.substr(text.size() - line.size()), line);
+}
+
 TEST_F(Manual, AServantHasRoomForItsResults) {
     servant_.run = [](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
         Ice_Int wanted = Ice_InputStream_readInt(is);

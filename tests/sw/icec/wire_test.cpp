@@ -3,6 +3,8 @@
 // wire_test: messages as bytes that the full run time alone knows; proxies as strings; streams.
 
 #include "wire.h"
+#include <cstdio>
+#include <limits>
 
 namespace {
 
@@ -10,6 +12,33 @@ TEST_F(Wire, CompressedMessagesAreRefusedByClosing) {
     auto back = exchange(message(0, Bytes(100, 1), 2));
     EXPECT_EQ(back, std::vector<Bytes>({message(4, {})}));
     EXPECT_FALSE(isOpen());
+}
+
+TEST(Strings, AreCopiedInWholeCharactersAndPrinted) {
+    char to[6];
+    EXPECT_EQ(Ice_String_copy(Ice_String_from("four"), to, sizeof to), 1);
+    EXPECT_STREQ(to, "four");
+    EXPECT_EQ(Ice_String_copy(Ice_String_from("6bytes"), to, sizeof to), 0);
+    EXPECT_STREQ(to, "6byte");
+    EXPECT_EQ(Ice_String_copy(Ice_String_from("abcd\xC3\xA9"), to, sizeof to), 0);
+    EXPECT_STREQ(to, "abcd");
+    EXPECT_EQ(Ice_String_copy(Ice_String_from("x"), to, 0), 0);
+    Ice_String empty = {0, nullptr};
+    EXPECT_EQ(Ice_String_copy(empty, to, 1), 1);
+    EXPECT_STREQ(to, "");
+    char text[20];
+    std::snprintf(text, sizeof text, "<%.*s><%.*s>", ICE_PRINTF(empty),
+                  ICE_PRINTF(Ice_String_from("name")));
+    EXPECT_STREQ(text, "<><name>");
+}
+
+TEST(Longs, GoThroughLongLong) {
+    for (long long v :
+         {0LL, 1LL, -1LL, 0x80000000LL, -0x80000000LL, 0x100000000LL, -0x100000001LL,
+          std::numeric_limits<long long>::max(), std::numeric_limits<long long>::min()}) {
+        EXPECT_EQ(Ice_Long_get(Ice_Long_from(v)), v);
+        EXPECT_EQ(Ice_Long_from(v).low, static_cast<U32>(v));
+    }
 }
 
 TEST_F(Wire, TwoFacetsAreMalformed) {

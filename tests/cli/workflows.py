@@ -141,7 +141,7 @@ class Cases(Script):
             text = re.sub("quiet .*/.* ", f"quiet {TREE} ", text.replace(commit, "0" * 40))
             write(mine / "Makefile", text)
             self.ask("make", "-C", mine, "placed", "ICESOC=clone", status=2)
-            self.has("fatal: reference is not a tree")
+            self.has(f"^fatal: .*{'0' * 40}")
             self.assertFalse((mine / "clone").exists())
 
 

@@ -4,6 +4,7 @@
 Exit status 0: all passed; 1: some failed; 2: it could not run."""
 import argparse
 import collections
+import datetime
 import pathlib
 import random
 import re
@@ -186,6 +187,7 @@ class Regression:
     def _run_rounds(self, rounds, chosen, tests, seeds):
         o, history = self.options, self.history
         changes, start = self.changes or self._changes(), time.monotonic()
+        begin = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
         tool.adopt_orphans()
         results = [result for seed_, some in rounds for result in
                    run_tests(some, o.build, o.out, seed_, o.jobs, history)]
@@ -211,7 +213,7 @@ class Regression:
         add_waves(failures, known, o.source, o.build, o.jobs, o.waves)
         data = gather(history, tests, results, failures, o.source, seeds)
         summary(data, failures, o.out)
-        write_junit(o.out / "junit.xml", results, failures)
+        write_junit(o.out / "junit.xml", results, failures, begin, commit)
         write_reports(data, failures, o.build / "page", o.out)
         return 1 if failures else 0
 

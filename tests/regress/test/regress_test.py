@@ -4,10 +4,17 @@
 
 Usage: regress_test.py case work-folder build-folder
 """
+import contextlib
+import datetime
 import fcntl
+import io
 import json
 import re
 import subprocess
+import sys
+import types
+import unittest.mock
+import xml.etree.ElementTree as xml
 from pathlib import Path
 
 from project import BREAK, REGRESS, TREE, Project, append, commit, edit, git, main, write
@@ -45,10 +52,60 @@ class Cases(Project):
         self.has("value 5 is not 7", file="build/regress/failures/test_b.Bad-5.log")
         self.has('failures="2"', 'message="value 5 is not 7 &lt;/script&gt; [(]SEED=5[)]"',
                  file="build/regress/junit.xml")
+        self.junit_is_valid()
         self.has("test_d.Crash", "[|] x.cpp:12: value 5 is not 7 &lt;/script> [|] test_b.Bad [|] ",
                  file="build/regress/summary.md")
         self.lacks("not 7 </script>", "build/regress/report.html")
         self.page_is_small()
+
+    def junit_is_valid(self):
+        """As Jenkins' junit-10.xsd has it: elements, attributes (the needed ones first), children;
+        GitLab reads the names, times, failures and outputs of these."""
+        schema = {
+            "testsuites": ("", "name time tests failures errors", "testsuite"),
+            "testsuite": ("name tests failures errors", "time skipped timestamp",
+                          "properties testcase"),
+            "properties": ("", "", "property"), "property": ("name value", "", ""),
+            "testcase": ("name", "time classname", "skipped failure system-out"),
+            "skipped": ("", "", ""), "failure": ("", "message", ""), "system-out": ("", "", "")}
+        root = xml.parse("build/regress/junit.xml").getroot()
+        self.assertEqual(root.tag, "testsuites")
+        for element in root.iter():
+            needed, others, children = (words.split() for words in schema[element.tag])
+            self.assertLessEqual(set(needed), set(element.attrib), element.tag)
+            self.assertLessEqual(set(element.attrib), {*needed, *others}, element.tag)
+            self.assertLessEqual({each.tag for each in element}, set(children), element.tag)
+        for suite in root:
+            self.assertRegex(suite.get("time"), r"^\d+\.\d{3}$")
+            begin = datetime.datetime.fromisoformat(suite.get("timestamp"))
+            self.assertLess(datetime.datetime.now().astimezone() - begin,
+                            datetime.timedelta(hours=1))
+            self.assertEqual({each.get("name"): each.get("value") for each in suite[0]},
+                             {"seed": "5", "commit": git("describe --always --dirty --abbrev=10")})
+        self.assertEqual({suite.get("name"): suite.get("failures") for suite in root}, {
+            "test_a": "0", "test_b": "1", "test_c": "0", "test_d": "1", "formal": "0"})
+
+    def test_ages(self):
+        """A test that takes three times its usual time is named with its age, and once more when
+        it is twice as old; without history at 60 s."""
+        sys.path.insert(0, str(REGRESS.parent))
+        sys.path.insert(0, str(REGRESS.parents[2] / "testbench/page"))
+        import runner
+        usual = {"quick": 0.1, "slow": 20.0, "new": None}
+        tests = [types.SimpleNamespace(name=name) for name in usual]
+        progress = runner.Progress(tests, types.SimpleNamespace(seconds=usual.get), 2)
+        begun = 1000.0
+        for name in usual:
+            progress.start(name)
+        for age, said in ((9, []), (11, ["quick has run for 11 s, usually 0.1 s"]), (21, []),
+                          (61, ["quick has run for 61 s, usually 0.1 s",
+                                "slow has run for 61 s, usually 20.0 s",
+                                "new has run for 61 s, usually unknown"]), (119, [])):
+            with contextlib.redirect_stdout(io.StringIO()) as out, \
+                    unittest.mock.patch("time.monotonic", lambda: begun + age):
+                progress.running = dict.fromkeys(usual, begun)
+                progress.name_late()
+            self.assertEqual(out.getvalue().splitlines(), said, age)
 
     def page_is_small(self):
         self.assertLess(Path("build/regress/report.html").stat().st_size, 2000000)

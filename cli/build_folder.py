@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """build_folder: set-up, CMake and ninja of a build folder. Two builds in one folder wait for each
 other."""
+import contextlib
 import os
 import re
 import shutil
@@ -56,6 +57,11 @@ class BuildFolder:
             shutil.rmtree(self.folder)
         if not (self / "build.ninja").exists():
             run(["cmake", "-S", ".", "-B", self.folder, "-G", "Ninja", *arguments])
+        commands = Path("compile_commands.json")
+        if not commands.exists():  # an editor looks for it here; in another's tree it stays away
+            with contextlib.suppress(OSError):
+                commands.unlink(missing_ok=True)
+                commands.symlink_to(os.path.relpath(self / commands))
 
     def cached(self, name):
         """A variable of CMake's cache; empty if there is none."""

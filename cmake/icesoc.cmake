@@ -223,7 +223,15 @@ function(icesoc_verilate name)
             "CXX=${CCACHE} ${compiler}" "OPT_FAST=-O3 -march=native" OPT_GLOBAL=-O2
             "OPT_SLOW=${slow}" "USER_CPPFLAGS=-fPIC" ARCHIVE=1
     DEPENDS ${deps} VERBATIM COMMENT "Verilating ${A_TOP} as ${name}")
-  add_custom_target(verilated_${name} DEPENDS ${lib})
+  set(defines ${A_FLAGS})
+  list(FILTER defines INCLUDE REGEX "^-D")
+  list(TRANSFORM defines REPLACE "^-D" "+define+")
+  set(files ${CMAKE_BINARY_DIR}/files/${name}.f)
+  add_custom_command(OUTPUT ${files}
+    COMMAND ${CMAKE_COMMAND} -DREAD=${dir}/V${name}__ver.d -DTO=${files} -DTOP=${A_TOP}
+            "-DDEFINES=${defines}" -P ${CMAKE_SOURCE_DIR}/cmake/files.cmake
+    DEPENDS ${lib} ${CMAKE_SOURCE_DIR}/cmake/files.cmake VERBATIM COMMENT "Files of ${name}")
+  add_custom_target(verilated_${name} DEPENDS ${lib} ${files})
   icesoc_verilator_runtime()
   add_library(${name} INTERFACE)
   add_dependencies(${name} verilated_${name})

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: MIT
+# Writes the list of the Verilog files that Verilator read for a model, for other tools. Each file's
+# folder is one of includes: some cores include a file whose name ends with .v.
+#
+#   cmake -DREAD=V__ver.d -DTO=list -DTOP=module "-DDEFINES=+define+NAME" -P files.cmake
+file(READ "${READ}" text)
+string(REGEX MATCHALL "[^ \n]+[.][sS]?[vV][hH]?[ \n]" files "${text}")
+set(folders)
+set(sources)
+foreach(file IN LISTS files)
+  string(STRIP "${file}" file)
+  get_filename_component(folder "${file}" DIRECTORY)
+  list(APPEND folders "+incdir+${folder}")
+  if(file MATCHES "[vV]$")
+    list(APPEND sources "${file}")
+  endif()
+endforeach()
+list(REMOVE_DUPLICATES folders)
+string(JOIN "\n" lines "// top: ${TOP}" ${DEFINES} ${folders} ${sources} "")
+file(WRITE "${TO}" "${lines}")

@@ -56,19 +56,24 @@ static void use(TcpEndpoint_Connection* c, int fd, Ice_Byte accepted) {
     TcpEndpoint_tune(fd);
 }
 
-/* Returns the size of the message at the front; 0: it is not whole yet, -1: malformed, or too
- * long.
- */
-static Ice_Int frontSize(const TcpEndpoint_Connection* c) {
+/* Returns the size of the message at the front; 0: it is not whole yet, or refused; -1: malformed,
+ * or refused and the connection ends. */
+static Ice_Int frontSize(TcpEndpoint_Connection* c) {
     Ice_InputStream is;
     Ice_Int size;
+    int isCompressed;
     if (c->have < TCP_HEAD)
         return 0;
-    Ice_InputStream_init(&is, c->data + 10, 4);
+    Ice_InputStream_init(&is, c->data + 9, 5);
+    isCompressed = Ice_InputStream_readByte(&is) == 2;
     size = Ice_InputStream_readInt(&is);
-    if (memcmp(c->data, "IceP", 4) != 0 || size < TCP_HEAD || size > ICE_MESSAGE_MAX)
+    if (memcmp(c->data, "IceP", 4) != 0 || size < TCP_HEAD)
         return -1;
-    return size <= c->have ? size : 0;
+    if (size <= ICE_MESSAGE_MAX && !isCompressed)
+        return size <= c->have ? size : 0;
+    if (c->have < TCP_HEAD + 4) /* a request's id */
+        return 0;
+    return TcpEndpoint_refuse(c, size) ? 0 : -1;
 }
 
 /* Takes an event that needs no waiting. Returns 1 if there was one. */
@@ -107,10 +112,10 @@ static int ready(TcpEndpoint* self, Ice_Byte* buffer, Ice_Event* event) {
 /* Accepts a connection; where all numbers are taken, ends another one first. */
 static void acceptOne(TcpEndpoint* self, Ice_Event* event) {
     int slot = TcpEndpoint_freeSlot(self), fd;
-    Ice_Int idle;
+    Ice_Int left;
     if (slot < 0) {
-        slot = TcpEndpoint_idlest(self, &idle);
-        if (slot < 0 || idle < self->idleMs)
+        slot = TcpEndpoint_idlest(self, &left);
+        if (slot < 0 || left > 0)
             return;
         TcpEndpoint_sendHead(&self->connections[slot], TCP_CLOSE);
         closeOne(&self->connections[slot]);
@@ -127,8 +132,13 @@ static void acceptOne(TcpEndpoint* self, Ice_Event* event) {
 
 static void takeBytes(TcpEndpoint* self, int connection, Ice_Event* event) {
     TcpEndpoint_Connection* c = &self->connections[connection];
-    long got = (long)recv(c->fd, c->data + c->have, (size_t)(ICE_MESSAGE_MAX - c->have), 0);
-    if (got > 0)
+    Ice_Int room = ICE_MESSAGE_MAX - c->have;
+    int skips = c->skip > 0;
+    long got =
+        (long)recv(c->fd, c->data + c->have, (size_t)(skips && c->skip < room ? c->skip : room), 0);
+    if (got > 0 && skips)
+        c->skip -= (Ice_Int)got;
+    else if (got > 0)
         c->have += (Ice_Int)got;
     if (got > 0 || (got < 0 && (errno == EAGAIN || errno == EINTR)))
         return;

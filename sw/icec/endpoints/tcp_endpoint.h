@@ -7,8 +7,11 @@
  *
  * Peers: sending waits for a peer that does not read for sendMs, then closes. A silent connection
  * carries a heartbeat each heartbeatMs (Ice 3.8 cuts others after 60 s). Where all numbers are
- * taken, a new peer displaces the one that has been idle longest, if for idleMs. A peer that has
- * vanished is noticed within about a minute.
+ * taken, a new peer displaces the one that has been idle longest, at once if it has been served,
+ * else after idleMs. A peer that has vanished is noticed within about a minute.
+ *
+ * A message that is too long, or compressed, is refused and named on standard error; the caller
+ * gets the limit in an UnknownLocalException where its request can be told from the rest.
  */
 #ifndef TCP_ENDPOINT_H
 #define TCP_ENDPOINT_H
@@ -25,6 +28,8 @@ typedef struct TcpEndpoint_Connection {
     Ice_Byte accepted, told;      /* told: OPENED has been reported */
     Ice_Byte sending, over;       /* over: closed, but for the task that still sends */
     Ice_Byte spoke;               /* this side has sent a message */
+    Ice_Byte served;              /* a request or reply has come or gone */
+    Ice_Int skip;                 /* bytes to come of a message that is refused */
     U32 sentMs;                   /* when it did so last */
     U32 usedMs;                   /* time of the last request or reply */
     Ice_Int owed;                 /* replies due in either direction */

@@ -7,6 +7,7 @@
 
 #include <errno.h>
 #include <poll.h>
+#include <stdio.h>
 #include <string.h>
 #include <time.h>
 
@@ -18,6 +19,9 @@ U32 TcpEndpoint_nowMs(void* context) {
 }
 
 #define TYPE_AT 8
+#define COMPRESSION_AT 9
+#define SIZE_AT 10
+#define REASON_MAX 80
 
 int TcpEndpoint_freeSlot(const TcpEndpoint* self) {
     int c;
@@ -30,32 +34,89 @@ int TcpEndpoint_freeSlot(const TcpEndpoint* self) {
 void TcpEndpoint_note(TcpEndpoint_Connection* c, const Ice_Byte* message, Ice_Int size) {
     static const Ice_Byte noId[4] = {0};
     Ice_Byte type = message[TYPE_AT];
-    if (type != TCP_VALIDATE)
+    if (type != TCP_VALIDATE) {
         c->usedMs = TcpEndpoint_nowMs(0);
+        c->served = 1;
+    }
     if (type == TCP_REQUEST && size >= TCP_HEAD + 4 && memcmp(message + TCP_HEAD, noId, 4) != 0)
         ++c->owed;
     else if (type == TCP_REPLY && c->owed > 0)
         --c->owed;
 }
 
-void TcpEndpoint_sendHead(TcpEndpoint_Connection* c, Ice_Byte type) {
-    Ice_Byte head[TCP_HEAD] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, TCP_HEAD, 0, 0, 0};
-    head[TYPE_AT] = type;
+/* Sends a message, if the system takes it at once. */
+static void sendNow(TcpEndpoint_Connection* c, const Ice_Byte* message, Ice_Int size) {
     if (c->fd >= 0 && !c->sending && !c->over &&
-        send(c->fd, head, TCP_HEAD, MSG_NOSIGNAL | MSG_DONTWAIT) != TCP_HEAD)
+        send(c->fd, message, (size_t)size, MSG_NOSIGNAL | MSG_DONTWAIT) != size)
         (void)shutdown(c->fd, SHUT_RDWR); /* part of a message is useless */
     c->sentMs = TcpEndpoint_nowMs(0);
 }
 
-int TcpEndpoint_idlest(TcpEndpoint* self, Ice_Int* idle) {
+static const Ice_Byte plainHead[TCP_HEAD] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, TCP_HEAD};
+
+void TcpEndpoint_sendHead(TcpEndpoint_Connection* c, Ice_Byte type) {
+    Ice_Byte head[TCP_HEAD];
+    memcpy(head, plainHead, TCP_HEAD);
+    head[TYPE_AT] = type;
+    sendNow(c, head, TCP_HEAD);
+}
+
+/* Answers a request by an UnknownLocalException. */
+static void sendReason(TcpEndpoint_Connection* c, const char* reason) {
+    Ice_Byte reply[TCP_HEAD + 6 + REASON_MAX];
+    Ice_Int size = (Ice_Int)strlen(reason);
+    memcpy(reply, plainHead, TCP_HEAD);
+    reply[TYPE_AT] = TCP_REPLY;
+    reply[SIZE_AT] = (Ice_Byte)(TCP_HEAD + 6 + size);
+    memcpy(reply + TCP_HEAD, c->data + TCP_HEAD, 4);
+    reply[TCP_HEAD + 4] = ICE_UNKNOWN_LOCAL_EXCEPTION;
+    reply[TCP_HEAD + 5] = (Ice_Byte)size;
+    memcpy(reply + TCP_HEAD + 6, reason, (size_t)size);
+    sendNow(c, reply, TCP_HEAD + 6 + size);
+}
+
+int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size) {
+    static const char* const types[] = {"request", "batch", "reply"};
+    static const Ice_Byte noId[4] = {0};
+    Ice_Byte type = c->data[TYPE_AT];
+    const char* what = type <= TCP_REPLY ? types[type] : "message";
+    char reason[REASON_MAX];
+    if (c->data[COMPRESSION_AT] == 2) {
+        fprintf(stderr, "icec: refused a compressed %s: IceC has no bzip2\n", what);
+        TcpEndpoint_sendHead(c, TCP_CLOSE); /* its caller learns that it was not executed */
+        return 0;
+    }
+    sprintf(reason, "::Ice::MemoryLimitException: over ICE_MESSAGE_MAX (%d)", ICE_MESSAGE_MAX);
+    fprintf(stderr, "icec: refused a %s of %d bytes: %s\n", what, size, reason);
+    if (type > TCP_BATCH)
+        return 0;
+    if (type == TCP_REQUEST && memcmp(c->data + TCP_HEAD, noId, 4) != 0)
+        sendReason(c, reason);
+    c->served = 1;
+    c->usedMs = TcpEndpoint_nowMs(0);
+    c->skip = size - c->have;
+    c->have = 0;
+    return 1;
+}
+
+/* Returns whether a message is arriving, of which the peer may not learn that it is lost. */
+static int isArriving(const TcpEndpoint_Connection* c) {
+    Ice_Byte byte;
+    return c->have > 0 || c->skip > 0 || recv(c->fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;
+}
+
+int TcpEndpoint_idlest(TcpEndpoint* self, Ice_Int* left) {
     U32 now = TcpEndpoint_nowMs(0);
     int i, found = -1;
-    *idle = -1;
     for (i = 0; i < ICE_CONNECTIONS; ++i) {
         const TcpEndpoint_Connection* c = &self->connections[i];
-        Ice_Int ms = (Ice_Int)(now - c->usedMs);
-        if (c->fd >= 0 && c->accepted && !c->over && c->owed == 0 && ms > *idle) {
-            *idle = ms;
+        Ice_Int ms = (Ice_Int)(c->usedMs - now);
+        if (c->fd < 0 || !c->accepted || c->over || c->owed != 0)
+            continue;
+        if (!c->served || isArriving(c))
+            ms += self->idleMs;
+        if (found < 0 || ms < *left) {
+            *left = ms;
             found = i;
         }
     }
@@ -63,12 +124,11 @@ int TcpEndpoint_idlest(TcpEndpoint* self, Ice_Int* idle) {
 }
 
 int TcpEndpoint_listenerFor(TcpEndpoint* self, Ice_Int* timeoutMs) {
-    Ice_Int idle, left;
+    Ice_Int left;
     if (TcpEndpoint_freeSlot(self) >= 0)
         return self->listener;
-    if (TcpEndpoint_idlest(self, &idle) < 0)
+    if (TcpEndpoint_idlest(self, &left) < 0)
         return -1;
-    left = self->idleMs - idle;
     if (left <= 0)
         return self->listener;
     if (self->listener >= 0 && left < *timeoutMs)

@@ -24,8 +24,12 @@ Ice_Int TcpEndpoint_keepUp(TcpEndpoint* self, Ice_Int timeoutMs);
 /* Sends for at most `ms`. Returns the number of bytes that the system took. */
 Ice_Int TcpEndpoint_sendSome(int fd, const Ice_Byte* message, Ice_Int size, Ice_Int ms);
 
-/* Returns the accepted connection that has been idle longest, and for how long; -1: none is. */
-int TcpEndpoint_idlest(TcpEndpoint* self, Ice_Int* idle);
+/* Refuses the message whose first `have` bytes lie in c->data, and passes over the rest of it: the
+ * caller is told where it waits, else the connection ends. Returns 0 if it does. */
+int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size);
+/* Returns the accepted connection that a new one may displace first, and how long it still may not;
+ * -1: there is none. */
+int TcpEndpoint_idlest(TcpEndpoint* self, Ice_Int* left);
 /* Returns the listener if a connection can be accepted now; else -1, and timeoutMs is shortened to
  * when one may be. */
 int TcpEndpoint_listenerFor(TcpEndpoint* self, Ice_Int* timeoutMs);

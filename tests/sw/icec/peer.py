@@ -104,8 +104,13 @@ def oneways(service, minimal):
 def limits(base, encoding):
     """Sends what is refused: the caller learns it, and the next call works."""
     service = Interop.ServicePrx.uncheckedCast(base)
-    # Longer than a message may be: the server closes, and lives.
-    expect(Ice.LocalException, service.echo, bytes(9000))
+    # Longer than a message may be, in each of its parts: the limit is named.
+    large = base.ice_identity(Ice.Identity(10000 * "x", ""))
+    context = {"entry %d" % i: "a value" for i in range(1000)}
+    for call in (lambda: service.echo(bytes(9000)), large.ice_ping,
+                 lambda: base.ice_ping(context)):
+        e = expect(Ice.UnknownLocalException, call)
+        assert "ICE_MESSAGE_MAX (8192)" in e.unknown, e.unknown
     # An idempotent operation called as a normal one.
     none = b"\x06\0\0\0\x01" + bytes([int(encoding[2])])
     expect(Ice.UnknownLocalException, service.ice_invoke, "add", Ice.OperationMode.Normal, none)

@@ -207,6 +207,53 @@ TEST_F(Tcp, ANewPeerDisplacesTheOneThatHasBeenIdleLongest) {
     EXPECT_TRUE(ping(idle[1])) << "nobody else was closed";
 }
 
+TEST_F(Tcp, APeerThatHasBeenServedMakesRoomAtOnce) {
+    tcp_->idleMs = 3600000;
+    serve();
+    std::vector<Peer> peers;
+    for (int i = 0; i < 5 * ICE_CONNECTIONS; ++i) {
+        peers.emplace_back(port());
+        ASSERT_TRUE(ping(peers.back(), 20000)) << i;
+    }
+}
+
+// Sends "thing" a request that is longer than any message may be.
+Bytes tooLong(Ice_Int id) {
+    Bytes body = requestBody("thing", "ice_ping");
+    body.resize(9000);
+    return request(id, body);
+}
+
+TEST_F(Tcp, ARequestThatIsTooLongIsAnsweredWithTheLimitsName) {
+    serve();
+    Peer peer(port());
+    ASSERT_TRUE(ping(peer));
+    ASSERT_TRUE(peer.send(tooLong(9)));
+    Bytes reply = peer.receive(20000);
+    ASSERT_GT(reply.size(), 20u);
+    EXPECT_EQ(Bytes(reply.begin() + 14, reply.begin() + 19), Bytes({9, 0, 0, 0, 5}))
+        << "UnknownLocalException";
+    EXPECT_EQ(std::string(reply.begin() + 20, reply.end()),
+              "::Ice::MemoryLimitException: over ICE_MESSAGE_MAX (8192)");
+    EXPECT_TRUE(ping(peer)) << "the connection lives";
+}
+
+TEST_F(Tcp, WhatIsRefusedWithoutAnAnswerIsLogged) {
+    ::testing::internal::CaptureStderr();
+    serve();
+    Peer peer(port());
+    ASSERT_TRUE(ping(peer));
+    ASSERT_TRUE(peer.send(tooLong(0)));
+    EXPECT_TRUE(ping(peer)) << "the connection lives";
+    ASSERT_TRUE(peer.send(message(1, Bytes(100, 1), 2)));
+    EXPECT_EQ(peer.receive(20000), message(4, {}));
+    stop();
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+              "icec: refused a request of 9018 bytes: "
+              "::Ice::MemoryLimitException: over ICE_MESSAGE_MAX (8192)\n"
+              "icec: refused a compressed batch: IceC has no bzip2\n");
+}
+
 TEST_F(Tcp, APeerWhoseOperationIsUnderWayIsNotDisplaced) {
     tcp_->idleMs = 50;
     Ice_Reply later{};

@@ -90,7 +90,8 @@ Engine::Engine(const Settings& settings, const Log& log)
                                    onState,    onOutcome, onWritable};
     Link_init(link_.get(), &port, this, static_cast<U32>(settings.characterUs() * 16));
     for (size_t slot = 0; slot < settings.keys.size(); ++slot)
-        Link_setKey(link_.get(), static_cast<int>(slot), settings.keys[slot].data());
+        Link_setKey(link_.get(), static_cast<int>(slot), settings.keys[slot].data(),
+                    LINK_GROUND | static_cast<U32>(settings.target));
     thread_ = std::thread([this] { run(); });
 }
 
@@ -102,7 +103,7 @@ Engine::~Engine() {
     wake();
     thread_.join();
     for (size_t slot = 0; slot < settings_.keys.size(); ++slot) {
-        Link_setKey(link_.get(), static_cast<int>(slot), nullptr);
+        Link_setKey(link_.get(), static_cast<int>(slot), nullptr, LINK_GROUND);
         explicit_bzero(settings_.keys[slot].data(), settings_.keys[slot].size());
     }
     for (const Waiting& program : waiting_)

@@ -23,7 +23,7 @@ void Link_limitFrame(Link* link, U32 bytes) {
 
 #if LINK_SECURE
 
-void Link_setKey(Link* link, int slot, const U8* key) {
+void Link_setKey(Link* link, int slot, const U8* key, U32 side) {
     if (link->codec != &link_keyed) {
         link->longest = (U8)(link->longest + LINK_OVERHEAD - LINK_SECURE_OVERHEAD);
         link->codec = &link_keyed;
@@ -32,7 +32,7 @@ void Link_setKey(Link* link, int slot, const U8* key) {
     }
     if (Link_keyInUse(link) == slot)
         link_lose(link);
-    link_setSecret(&link->secrets, slot, key);
+    link_setSecret(&link->secrets, slot, key, side);
 }
 
 int Link_keyInUse(const Link* link) {

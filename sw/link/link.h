@@ -93,11 +93,13 @@ void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs1
 void Link_limitFrame(Link* link, U32 bytes);
 
 /* Gives the vehicle's key, LINK_KEY_BYTES bytes that both sides have, for slot 0 or 1; it is
- * copied. `key` 0 wipes the slot, and ends a session that was made with it. From the first key on
+ * copied. `side` is the vehicle's address, plus LINK_GROUND on the ground: a session is made only
+ * between a ground and the vehicle with the address that it means, whoever else has the key.
+ * `key` 0 wipes the slot, and ends a session that was made with it. From the first key on
  * sessions are authenticated and encrypted, and a peer without the key is refused. There is no way
  * back: with both slots wiped there is no session. The layer sends HELLO under the keys of both
  * slots in turn and answers one under either. Call it after Link_init. */
-void Link_setKey(Link* link, int slot, const U8* key);
+void Link_setKey(Link* link, int slot, const U8* key, U32 side);
 
 /* Returns the slot of the key that the present session was made with; -1: there is no session, or
  * one without a key. */

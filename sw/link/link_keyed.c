@@ -31,7 +31,7 @@ static void makeKeyed(Link* link, int slot, const U8* frame) {
     Link_Session* session = &link->handshake.candidate;
     link_makeCandidate(link, frame + LINK_HEADER, frame[2]);
     session->slot = (U8)slot;
-    link_deriveKeys(link->secrets.key[slot], session->nonce, session->peerNonce, &session->keys);
+    link_deriveKeys(&link->secrets, slot, session->nonce, session->peerNonce, &session->keys);
 }
 
 static void forgetCandidate(Link* link) {

@@ -72,38 +72,45 @@ int link_unprotect(U8* frame, const U8* key, U32 number, U32 acked) {
     return 0;
 }
 
-/* The keystream of a nonce of which each half is one side's, the smaller half first, so that both
- * sides make the same: the first key is that of the side with the smaller one. The text is never
- * sent, so an attacker who learns one such keystream learns nothing of another. */
-void link_deriveKeys(const U8* secret, const U8* nonce, const U8* peerNonce, Link_Keys* keys) {
-    U8 both[ASCON_NONCE_BYTES], tag[ASCON_TAG_BYTES];
-    U8 text[2U * LINK_KEY_BYTES];
-    int isFirst = memcmp(nonce, peerNonce, LINK_NONCE_BYTES) < 0;
+/* Makes the keystream of a nonce. It is never sent as such, so an attacker who learns one learns
+ * nothing of another. */
+static void derive(const U8* secret, const U8* nonce, U8* text, U32 size) {
+    U8 tag[ASCON_TAG_BYTES];
     Ascon ascon;
+    memset(text, 0, size);
+    Ascon_begin(&ascon, secret, nonce);
+    Ascon_crypt(&ascon, text, size, 0);
+    Ascon_end(&ascon, secret, tag);
+}
+
+/* The vehicle's nonce and key come first: two sides of one role make different keys. */
+void link_deriveKeys(const Link_Secrets* secrets, int slot, const U8* nonce, const U8* peerNonce,
+                     Link_Keys* keys) {
+    U8 both[ASCON_NONCE_BYTES];
+    U8 text[2U * LINK_KEY_BYTES];
+    int isFirst = !secrets->isGround;
     memcpy(both, isFirst ? nonce : peerNonce, LINK_NONCE_BYTES);
     memcpy(both + LINK_NONCE_BYTES, isFirst ? peerNonce : nonce, LINK_NONCE_BYTES);
-    memset(text, 0, sizeof text);
-    Ascon_begin(&ascon, secret, both);
-    Ascon_crypt(&ascon, text, sizeof text, 0);
-    Ascon_end(&ascon, secret, tag);
+    derive(secrets->key[slot], both, text, sizeof text);
     memcpy(isFirst ? keys->send : keys->receive, text, LINK_KEY_BYTES);
     memcpy(isFirst ? keys->receive : keys->send, text + LINK_KEY_BYTES, LINK_KEY_BYTES);
     Ascon_wipe(text, sizeof text);
 }
 
-/* The key of HELLOs comes from two equal nonces, which no session has. */
-void link_setSecret(Link_Secrets* secrets, int slot, const U8* key) {
-    static const U8 none[LINK_NONCE_BYTES];
-    Link_Keys keys;
+/* The key of HELLOs comes from the nonces 0, which no session has. */
+void link_setSecret(Link_Secrets* secrets, int slot, const U8* key, U32 side) {
+    U8 nonce[ASCON_NONCE_BYTES];
     Ascon_wipe(secrets->key[slot], LINK_KEY_BYTES);
     Ascon_wipe(secrets->hello[slot], LINK_KEY_BYTES);
     secrets->set = (U8)(secrets->set & ~(1U << slot));
     if (!key)
         return;
-    memcpy(secrets->key[slot], key, LINK_KEY_BYTES);
-    link_deriveKeys(key, none, none, &keys);
-    memcpy(secrets->hello[slot], keys.send, LINK_KEY_BYTES);
-    Ascon_wipe(&keys, sizeof keys);
+    secrets->isGround = (side & LINK_GROUND) != 0;
+    memset(nonce, 0, sizeof nonce);
+    link_put32(nonce, side & ~LINK_GROUND);
+    derive(key, nonce, secrets->key[slot], LINK_KEY_BYTES);
+    memset(nonce, 0, sizeof nonce);
+    derive(secrets->key[slot], nonce, secrets->hello[slot], LINK_KEY_BYTES);
     secrets->set = (U8)(secrets->set | 1U << slot);
 }
 

@@ -13,6 +13,8 @@
 #define LINK_MAX_FRAME 100U    /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
 #define LINK_MAX_ENCRYPTED 95U /* the same if the modem encrypts (Link_limitFrame) */
 #define LINK_KEY_BYTES 16U
+/* The role of this side in Link_setKey, beside the vehicle's address; without it: the vehicle's. */
+#define LINK_GROUND 0x80000000U
 #define LINK_KEYS 2 /* slots for keys, so that a new key can replace the old one */
 
 #define LINK_VERSION 6U
@@ -108,18 +110,20 @@ typedef struct Link_Keys {
     U8 send[LINK_KEY_BYTES], receive[LINK_KEY_BYTES];
 } Link_Keys;
 
-/* The secrets of a Link: its given keys, and the keys that follow from them. */
+/* The secrets of a Link, which follow from its given keys and the vehicle's address. */
 typedef struct Link_Secrets {
     U8 set; /* a bit a slot */
+    U8 isGround;
     U8 key[LINK_KEYS][LINK_KEY_BYTES];
     U8 hello[LINK_KEYS][LINK_KEY_BYTES]; /* the keys of HELLOs, which follow from them */
 } Link_Secrets;
 
-/* Sets a slot, or wipes it (`key` 0). */
-void link_setSecret(Link_Secrets* secrets, int slot, const U8* key);
+/* Sets a slot, or wipes it (`key` 0); `side` is Link_setKey's. */
+void link_setSecret(Link_Secrets* secrets, int slot, const U8* key, U32 side);
 
 /* Makes the keys of the session of two different nonces, LINK_NONCE_BYTES each. */
-void link_deriveKeys(const U8* secret, const U8* nonce, const U8* peerNonce, Link_Keys* keys);
+void link_deriveKeys(const Link_Secrets* secrets, int slot, const U8* nonce, const U8* peerNonce,
+                     Link_Keys* keys);
 
 /* Returns the number whose lowest byte is `byte`, as near to the expected one as can be. */
 U32 link_extend(U32 expected, U32 byte);

@@ -39,7 +39,7 @@ public:
         static const Link_Port port = {transmit, random, message, nothing, state, outcome, nullptr};
         Link_init(link_.get(), &port, this, 1440);
         if (!key.empty())
-            Link_setKey(link_.get(), 0, key.data());
+            Link_setKey(link_.get(), 0, key.data(), LINK_GROUND | 1);
         Link_start(link_.get(), us());
         replies.clear();
         backlog_ = 0;

@@ -26,7 +26,7 @@ public:
     End(RfChannel& air, unsigned address, uint64_t seed, Mode mode)
         : ModemEnd(air, options(address, mode), seed) {
         if (mode == Keyed)
-            Link_setKey(link(), 0, reinterpret_cast<const U8*>(key));
+            Link_setKey(link(), 0, reinterpret_cast<const U8*>(key), address ? 0 : LINK_GROUND);
     }
     uint64_t advance(uint64_t now) {
         if (feed)

@@ -84,7 +84,7 @@ public:
         Link_init(link_.get(), &port, this, 1440);
         static const U8 key[LINK_KEY_BYTES] = {1, 2, 3};
         if (hasKey_)
-            Link_setKey(link_.get(), 0, key);
+            Link_setKey(link_.get(), 0, key, side_ ? 0 : LINK_GROUND);
         Link_start(link_.get(), us());
     }
     void advance(uint64_t now, double rate) {

@@ -101,7 +101,7 @@ int UAV_giveKeys(Link* link) {
     int slot, count = 0;
     for (slot = 0; slot < UAV_KEY_SLOTS; ++slot)
         if (UAV_readKey(slot, key)) {
-            Link_setKey(link, slot, key);
+            Link_setKey(link, slot, key, UAV_ADDRESS);
             ++count;
         }
     Ascon_wipe(key, sizeof key);
@@ -122,7 +122,7 @@ int UAV_setNextKey(Link* link, const U8* key) {
     writeKey(slot, 0);
     board->store(boardContext, STATE_AT, STATE_NEXT + (U32)slot);
     writeKey(slot, key);
-    Link_setKey(link, slot, key);
+    Link_setKey(link, slot, key, UAV_ADDRESS);
     nextSlot = slot;
     return 1;
 }
@@ -131,7 +131,7 @@ int UAV_confirmKey(Link* link) {
     if (nextSlot < 0 || Link_keyInUse(link) != nextSlot)
         return 0;
     writeKey(1 - nextSlot, 0);
-    Link_setKey(link, 1 - nextSlot, 0);
+    Link_setKey(link, 1 - nextSlot, 0, UAV_ADDRESS);
     nextSlot = -1;
     return 1;
 }

@@ -10,6 +10,9 @@
 
 #include "link.h"
 
+#ifndef UAV_ADDRESS /* of the vehicle: its modem's MY, to which its keys are bound */
+#define UAV_ADDRESS 0x0001U
+#endif
 #define UAV_KEY_SLOTS 2
 #define UAV_KEY_WORDS 12U /* a slot: four words of key, its check; then two states */
 

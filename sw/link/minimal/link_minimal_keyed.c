@@ -68,7 +68,7 @@ static int takeUnder(Link* link, int slot, Link_Kind kind) {
     int isGood;
     if (!(keyed->secrets.set >> slot & 1))
         return 0;
-    link_deriveKeys(keyed->secrets.key[slot], keyed->nonce, nonces, &keys);
+    link_deriveKeys(&keyed->secrets, slot, keyed->nonce, nonces, &keys);
     isGood = link_unprotect(
         link->input, kind == LINK_KIND_HELLO ? keyed->secrets.hello[slot] : keys.receive, 0, 0);
     if (isGood && kind == LINK_KIND_HELLO) {
@@ -172,14 +172,14 @@ int link_takeKeyed(Link* link) {
     return 0;
 }
 
-void Link_setKey(Link* link, int slot, const U8* key) {
+void Link_setKey(Link* link, int slot, const U8* key, U32 side) {
     if (!LINK_IS_SECURE(link)) {
         link->overhead = LINK_SECURE_OVERHEAD;
         draw(link);
     }
     if (Link_keyInUse(link) == slot)
         link_lose(link);
-    link_setSecret(&link->keyed.secrets, slot, key);
+    link_setSecret(&link->keyed.secrets, slot, key, side);
 }
 
 int Link_keyInUse(const Link* link) {

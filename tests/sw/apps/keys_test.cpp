@@ -39,7 +39,8 @@ public:
     bool meets(const std::vector<Key>& file, uint64_t patienceUs = 20'000'000) {
         a.boot();
         for (size_t slot = 0; slot < file.size(); ++slot)
-            Link_setKey(a.link(), static_cast<int>(slot), file[slot].data());
+            Link_setKey(a.link(), static_cast<int>(slot), file[slot].data(),
+                        LINK_GROUND | UAV_ADDRESS);
         a.start();
         const U32 sessions = Link_statistics(b.link())->sessions;
         auto isOver = [&] { // the vehicle, too, is in the new session

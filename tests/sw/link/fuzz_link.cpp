@@ -83,7 +83,7 @@ public:
         for (Node* n : {&a_, &b_}) {
             Link_init(n->link.get(), &port, n, 1440);
 #ifdef KEYED
-            Link_setKey(n->link.get(), 0, key);
+            Link_setKey(n->link.get(), 0, key, n == &a_ ? LINK_GROUND : 0);
 #endif
             Link_start(n->link.get(), now_);
             n->nonce += 77;
@@ -157,7 +157,8 @@ private:
             under = link->secrets.hello[0];
             if (kind != LINK_KIND_HELLO) {
                 std::memcpy(&bytes[LINK_HEADER + 8], link->handshake.nonce, LINK_NONCE_BYTES);
-                link_deriveKeys(key, link->handshake.nonce, &bytes[LINK_HEADER], &keys);
+                link_deriveKeys(&link->secrets, 0, link->handshake.nonce, &bytes[LINK_HEADER],
+                                &keys);
                 under = keys.receive;
             }
         } else if (bytes[0] & LINK_CONTROL) {

@@ -11,7 +11,7 @@
 typedef struct Layer {
     U32 size, maxMessage; /* of a Link and of a message, in bytes */
     void (*init)(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16);
-    void (*setKey)(Link* link, int slot, const U8* key);
+    void (*setKey)(Link* link, int slot, const U8* key, U32 side);
     void (*start)(Link* link, U32 nowUs);
     void (*stop)(Link* link, U32 nowUs);
     Link_State (*state)(const Link* link);

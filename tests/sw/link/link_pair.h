@@ -28,8 +28,9 @@ struct Weather {
 // A link with its program and its radio. `now` is the pair's time.
 class Side {
 public:
-    Side(const Layer& of, const uint64_t& now, uint64_t seed, const Bytes& key)
-        : layer(of), now_(now), random_(seed), key_(key), memory_(of.size / sizeof(uint64_t) + 1) {
+    Side(const Layer& of, const uint64_t& now, uint64_t seed, const Bytes& key, U32 side)
+        : layer(of), now_(now), random_(seed), key_(key), side_(side),
+          memory_(of.size / sizeof(uint64_t) + 1) {
         boot();
     }
 
@@ -39,7 +40,7 @@ public:
                                        onState,  onOutcome, nullptr};
         layer.init(link(), &port, this, byteTimeUs * 16);
         if (!key_.empty())
-            layer.setKey(link(), 0, key_.data());
+            layer.setKey(link(), 0, key_.data(), side_);
         air.clear();
         serialFreeUs = 0;
     }
@@ -127,14 +128,16 @@ private:
     const uint64_t& now_;
     Random random_;
     const Bytes key_;
+    const U32 side_; // of Link_setKey
     std::vector<uint64_t> memory_;
 };
 
+// A ground (a) and a vehicle (b), unless a test says otherwise.
 class Pair {
 public:
     explicit Pair(uint64_t seed, const Bytes& key = {}, const Layer& ofA = layer,
-                  const Layer& ofB = layer)
-        : a(ofA, now, seed * 2 + 1, key), b(ofB, now, seed * 2 + 2, key) {}
+                  const Layer& ofB = layer, U32 sideA = LINK_GROUND | 1, U32 sideB = 1)
+        : a(ofA, now, seed * 2 + 1, key, sideA), b(ofB, now, seed * 2 + 2, key, sideB) {}
 
     void setWeather(const Weather& weather) { a.weather = b.weather = weather; }
 

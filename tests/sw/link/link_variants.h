@@ -35,12 +35,19 @@ inline std::vector<Variant> vehicles(unsigned seeds, bool alsoOpen = true) {
     return all;
 }
 
+inline const Layer& loadLayer(const std::string& name) {
+    void* library = dlopen((VARIANTS + name + ".so").c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library)
+        throw std::runtime_error(dlerror());
+    return *static_cast<const Layer*>(dlsym(library, "layer"));
+}
+
 class Variants : public ::testing::TestWithParam<Variant>, public Pair {
 protected:
     Variants()
         : Pair(testSeed() * 1000 + GetParam().seed,
-               Bytes(GetParam().hasKey ? LINK_KEY_BYTES : 0, 0x5A), load(GetParam().a),
-               load(GetParam().b)) {}
+               Bytes(GetParam().hasKey ? LINK_KEY_BYTES : 0, 0x5A), loadLayer(GetParam().a),
+               loadLayer(GetParam().b)) {}
 
     static bool isMinimal() { return GetParam().b.find("minimal") == 0; }
 
@@ -107,14 +114,6 @@ protected:
     Messages sentA, sentB;
     uint32_t usualSize = 60, longestSize = 500;
     Random random{testSeed() * 77 + GetParam().seed};
-
-private:
-    static const Layer& load(const std::string& name) {
-        void* library = dlopen((VARIANTS + name + ".so").c_str(), RTLD_NOW | RTLD_LOCAL);
-        if (!library)
-            throw std::runtime_error(dlerror());
-        return *static_cast<const Layer*>(dlsym(library, "layer"));
-    }
 };
 
 // Returns the Link_Kind of a frame.

@@ -16,7 +16,7 @@ public:
         : ModemEnd(air, modemOptions(address), seed) {
         static const U8 key[LINK_KEY_BYTES] = {1, 2, 3};
         if (hasKey)
-            Link_setKey(link(), 0, key);
+            Link_setKey(link(), 0, key, address ? 0 : LINK_GROUND);
     }
     std::vector<std::vector<U8>> received;
 

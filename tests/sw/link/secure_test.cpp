@@ -427,4 +427,36 @@ TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
 INSTANTIATE_TEST_SUITE_P(Vehicles, Attacked, ::testing::ValuesIn(vehicles(2, false)));
 INSTANTIATE_TEST_SUITE_P(Vehicles, Hindered, ::testing::ValuesIn(vehicles(2, false)));
 
+// Whoever meets, both have the key.
+struct Meeting {
+    const char* vehicle; // its layer
+    U32 sideA, sideB;
+    bool isOfSides; // a ground and the vehicle that it means
+};
+
+void PrintTo(const Meeting& m, std::ostream* out) {
+    *out << m.vehicle << std::hex << "_" << m.sideA << "_" << m.sideB;
+}
+
+class Meetings : public ::testing::TestWithParam<Meeting>, public Pair {
+protected:
+    Meetings()
+        : Pair(testSeed(), Bytes(LINK_KEY_BYTES, 0x5A), loadLayer("full"),
+               loadLayer(GetParam().vehicle), GetParam().sideA, GetParam().sideB) {}
+};
+
+TEST_P(Meetings, OnlyAGroundAndTheVehicleThatItMeansMakeASession) {
+    if (&b.layer == &a.layer)
+        b.start();
+    EXPECT_EQ(connect(), GetParam().isOfSides);
+}
+
+constexpr U32 ground1 = LINK_GROUND | 1;
+INSTANTIATE_TEST_SUITE_P(
+    All, Meetings,
+    ::testing::Values(Meeting{"full", ground1, 1, true}, Meeting{"full", 1, ground1, true},
+                      Meeting{"full", ground1, ground1, false}, Meeting{"full", ground1, 2, false},
+                      Meeting{"full", 1, 1, false}, Meeting{"minimal", ground1, 1, true},
+                      Meeting{"minimal", ground1, 2, false}));
+
 } // namespace
